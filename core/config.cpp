@@ -1,0 +1,51 @@
+#include "core/config.hpp"
+
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+namespace mosbench {
+namespace {
+
+template <typename Number>
+void check_field(std::string_view name, Number value, FieldRange range) {
+  const double number = static_cast<double>(value);
+  if (std::isfinite(number) && number >= range.lowest && number <= range.highest) return;
+  std::ostringstream message;
+  message << name << ": " << number << " is out of range, expected " << range.lowest << " to "
+          << range.highest;
+  throw std::invalid_argument(message.str());
+}
+
+void check_field(std::string_view name, const std::optional<double>& value, FieldRange range) {
+  if (value) check_field(name, *value, range);
+}
+
+}  // namespace
+
+std::string_view to_string(Variant variant) {
+  return variant == Variant::kPaper2024 ? "paper-2024" : "release-2025";
+}
+
+std::optional<Variant> variant_from_string(std::string_view name) {
+  for (const Variant variant : {Variant::kPaper2024, Variant::kRelease2025}) {
+    if (name == to_string(variant)) return variant;
+  }
+  return std::nullopt;
+}
+
+void check(const Config& config) {
+  visit_fields(config, [](std::string_view name, const auto& value, FieldRange range) {
+    check_field(name, value, range);
+  });
+  if (config.kernel_width_voxels % 2 == 0) {
+    throw std::invalid_argument(
+        "kernel_width_voxels: " + std::to_string(config.kernel_width_voxels) +
+        " is even, expected an odd width");
+  }
+  if (config.min_range_m >= config.max_range_m) {
+    throw std::invalid_argument("min_range_m: not below max_range_m, expected min < max");
+  }
+}
+
+}  // namespace mosbench

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/config.hpp"
+#include "core/scan.hpp"
+#include "core/stage_times.hpp"
+
+namespace mosbench {
+
+/// What is known about one scan once its labels are final.
+struct ScanResult {
+  std::size_t scan_index = 0;         ///< counts pushed scans from 0
+  std::vector<std::uint32_t> labels;  ///< kStaticLabel or kMovingLabel, one per pushed point
+  std::optional<double> threshold;   ///< Otsu's T; nothing when no detection ran or no level exists
+  std::size_t nonfinite_points = 0;  ///< NaN or infinite, left out of the map, labelled static
+  StageTimes stage_times;            ///< of the push that took this scan in
+};
+
+/// The whole method: push scans in order, receive labels. Independent pipelines share nothing.
+/// Results are the same bits for any thread count.
+class Pipeline {
+ public:
+  /// Throws std::invalid_argument as `check` does. `scan_count` is the length of the sequence when
+  /// it is known: a delayed run then labels its last scans as the authors' program does; without it
+  /// they are labelled static. release-2025 has no delay: delay_scans must be 0.
+  Pipeline(const Config& config, Variant variant, unsigned threads = 1,
+           std::optional<std::size_t> scan_count = std::nullopt);
+  ~Pipeline();
+  Pipeline(Pipeline&&) noexcept;
+  Pipeline& operator=(Pipeline&&) noexcept;
+
+  /// Takes one scan in and returns the scans whose labels became final, in scan order: exactly this
+  /// one when online; none or earlier ones when delayed. Throws std::range_error naming the
+  /// point when a voxel coordinate would overflow, std::logic_error beyond `scan_count` scans.
+  std::vector<ScanResult> push(std::span<const Point> points, const Pose& map_from_sensor);
+
+  /// The labels still held back by the delay, in scan order. Nothing when online.
+  std::vector<ScanResult> finish();
+
+  /// Voxel blocks of 8x8x8 voxels held in the map, and the bytes of all memory between scans.
+  std::size_t map_blocks() const;
+  std::size_t memory_bytes() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace mosbench

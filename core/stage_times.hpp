@@ -1,0 +1,29 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string_view>
+
+namespace mosbench {
+
+/// The stages in the order in which a scan passes them.
+enum class Stage : std::size_t {
+  kVoxelize,
+  kRaycast,
+  kMapUpdate,
+  kEvict,
+  kConvolution,
+  kMedian,
+  kWindow,
+  kOtsu,
+  kDynamicRegion,
+  kLabels,
+};
+inline constexpr std::array<std::string_view, 10> kStageNames = {
+    "voxelize", "raycast", "map_update", "evict",          "convolution",
+    "median",   "window",  "otsu",       "dynamic_region", "labels"};
+
+/// Wall milliseconds per stage of one scan.
+using StageTimes = std::array<double, kStageNames.size()>;
+
+}  // namespace mosbench

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+
+namespace mosbench {
+
+/// Something on disk is not what it has to be. The program ends with exit code 3.
+class DataError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+  /// Message "<file>: <what is wrong>, expected <what was expected>".
+  DataError(const std::filesystem::path& file, const std::string& wrong,
+            const std::string& expected);
+  /// The same with a line (from 1) or record index behind the file's name: "<file>:<line>: ...".
+  DataError(const std::filesystem::path& file, std::size_t line, const std::string& wrong,
+            const std::string& expected);
+};
+
+/// A flag, key or value the user gave is wrong. The program ends with exit code 2.
+class UsageError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+}  // namespace mosbench
