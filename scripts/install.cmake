@@ -1,0 +1,20 @@
+# What `cmake --install` puts where: the program, and the method as mosbench::core for
+# find_package(mosbench). Headers keep their path from the project's top folder.
+include(CMakePackageConfigHelpers)
+
+set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/mosbench)
+set_target_properties(mosbench_core PROPERTIES EXPORT_NAME core)
+install(TARGETS mosbench_core EXPORT mosbench
+        FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/mosbench)
+install(EXPORT mosbench NAMESPACE mosbench:: FILE mosbenchTargets.cmake DESTINATION ${package_dir})
+if(TARGET mosbench)
+  install(TARGETS mosbench)
+endif()
+
+configure_package_config_file(scripts/mosbenchConfig.cmake.in
+  ${PROJECT_BINARY_DIR}/generated/mosbenchConfig.cmake INSTALL_DESTINATION ${package_dir})
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/generated/mosbenchConfigVersion.cmake
+                                 COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/generated/mosbenchConfig.cmake
+              ${PROJECT_BINARY_DIR}/generated/mosbenchConfigVersion.cmake
+        DESTINATION ${package_dir})

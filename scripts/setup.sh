@@ -1,0 +1,45 @@
+#!/usr/bin/env bash
+# setup.sh [--checks]: installs the Debian packages that building and testing need; with --checks also
+# those of the format, naming and clang checks. Does nothing, quickly, when all are there.
+# MOSBENCH_WITH_PCL=OFF leaves out PCL, which brings some 400 packages.
+set -euo pipefail
+
+packages=(g++ cmake ninja-build pkg-config git xz-utils
+  libeigen3-dev libfmt-dev nlohmann-json3-dev libcli11-dev libxxhash-dev
+  libgtest-dev libgmock-dev libbenchmark-dev)
+[ "${MOSBENCH_WITH_PCL:-ON}" = OFF ] || packages+=(libpcl-dev)
+case "${1:-}" in
+  "") ;;
+  --checks) packages+=(clang clang-format clang-tidy python3) ;;
+  *) echo "usage: setup.sh [--checks]" >&2; exit 2 ;;
+esac
+
+give_up() {
+  echo "setup.sh: $1; these Debian packages must be installed first:" >&2
+  printf '  %s\n' "${missing[@]}" >&2
+  exit 1
+}
+
+missing=()
+for package in "${packages[@]}"; do
+  status=$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null) || status=absent
+  [ "$status" = installed ] || missing+=("$package")
+done
+[ ${#missing[@]} -gt 0 ] || exit 0
+
+command -v apt-get >/dev/null || give_up "there is no apt-get here"
+as_root=()
+if [ "$(id -u)" != 0 ]; then
+  command -v sudo >/dev/null || give_up "neither root nor sudo"
+  as_root=(sudo)
+  # Without a terminal a password prompt would wait for ever.
+  [ -t 0 ] || as_root=(sudo -n)
+fi
+
+echo "setup.sh: installing ${missing[*]}" >&2
+apt_get() {
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -qq \
+    -o Acquire::Retries=3 -o DPkg::Lock::Timeout=300 -o Dpkg::Use-Pty=0 "$@" </dev/null
+}
+apt_get update >&2 || give_up "apt-get update failed"
+apt_get install -y --no-install-recommends "${missing[@]}" >&2 || give_up "apt-get install failed"

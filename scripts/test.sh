@@ -1,0 +1,6 @@
+#!/usr/bin/env bash
+# test.sh [ctest arguments]: installs what is missing, builds release and runs every test.
+set -euo pipefail
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+"$here/setup.sh"
+exec "$here/build_and_test.sh" release "$@"
