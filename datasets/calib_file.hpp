@@ -1,0 +1,24 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "core/scan.hpp"
+
+namespace mosbench {
+
+/// The matrix "Tr:" of a KITTI calibration, camera_from_lidar; other lines are not looked at.
+/// Throws DataError when there is none, two, or one that is no rigid motion.
+Pose parse_calib(std::string_view text, const std::filesystem::path& file);
+/// P0 to P3 as identity, then Tr.
+std::string format_calib(const Pose& camera_from_lidar);
+
+/// KITTI stores map_from_camera in poses.txt; this is the lidar's pose, Tr^-1 * P * Tr. The pose
+/// itself, bit for bit, when Tr is the identity.
+Pose lidar_pose(const Pose& pose, const Pose& camera_from_lidar);
+
+Pose read_calib(const std::filesystem::path& file);
+void write_calib(const std::filesystem::path& file, const Pose& camera_from_lidar);
+
+}  // namespace mosbench

@@ -1,0 +1,82 @@
+#include "datasets/files.hpp"
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+#include <system_error>
+
+#include "datasets/errors.hpp"
+
+namespace mosbench {
+namespace {
+
+struct FileCloser {
+  void operator()(std::FILE* file) const { std::fclose(file); }
+};
+using OpenFile = std::unique_ptr<std::FILE, FileCloser>;
+
+std::string reason(int error_number) { return std::strerror(error_number); }
+
+void make_parent_folder(const std::filesystem::path& file) {
+  if (!file.has_parent_path()) return;
+  std::error_code error;
+  std::filesystem::create_directories(file.parent_path(), error);
+  if (error) {
+    throw DataError(file, "its folder cannot be made (" + error.message() + ")",
+                    "a writable output folder");
+  }
+}
+
+/// Nothing when written, else the errno of the first step that failed. A full disk may show only
+/// when the buffers are flushed, hence the check of fclose.
+int write_whole(const std::filesystem::path& file, std::string_view bytes) {
+  OpenFile out(std::fopen(file.c_str(), "wb"));
+  if (!out) return errno;
+  if (std::fwrite(bytes.data(), 1, bytes.size(), out.get()) != bytes.size()) return errno;
+  return std::fclose(out.release()) == 0 ? 0 : errno;
+}
+
+}  // namespace
+
+std::string read_file(const std::filesystem::path& file) {
+  std::error_code error;
+  if (std::filesystem::is_directory(file, error)) {
+    throw DataError(file, "is a folder", "a file");
+  }
+  const OpenFile in(std::fopen(file.c_str(), "rb"));
+  if (!in) throw DataError(file, "cannot be opened (" + reason(errno) + ")", "a readable file");
+
+  std::string bytes;
+  const auto size_on_disk = std::filesystem::file_size(file, error);
+  // One byte more than the file, so that its end is met without growing the buffer.
+  std::size_t room = error ? 65536 : static_cast<std::size_t>(size_on_disk) + 1;
+  std::size_t used = 0;
+  while (true) {
+    bytes.resize(used + room);
+    const std::size_t got = std::fread(bytes.data() + used, 1, room, in.get());
+    used += got;
+    if (got < room) break;
+    room = bytes.size();
+  }
+  if (std::ferror(in.get()) != 0) {
+    throw DataError(file, "cannot be read to its end (" + reason(errno) + ")", "a readable file");
+  }
+  bytes.resize(used);
+  return bytes;
+}
+
+void write_file_atomic(const std::filesystem::path& file, std::string_view bytes) {
+  make_parent_folder(file);
+  std::filesystem::path partial = file;
+  partial += ".partial";
+  int failure = write_whole(partial, bytes);
+  if (failure == 0 && std::rename(partial.c_str(), file.c_str()) != 0) failure = errno;
+  if (failure == 0) return;
+  std::error_code ignored;
+  std::filesystem::remove(partial, ignored);
+  throw DataError(file, "cannot be written (" + reason(failure) + ")",
+                  "a writable output folder with free space");
+}
+
+}  // namespace mosbench

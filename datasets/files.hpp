@@ -1,0 +1,17 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace mosbench {
+
+/// All bytes of a file; throws DataError when it cannot be read to its end.
+std::string read_file(const std::filesystem::path& file);
+
+/// Replaces `file` as a whole: readers see the old bytes or the new ones, also after a killed run.
+/// Missing folders are made. The bytes go first to `<file>.partial`, which the next write replaces
+/// should this one be killed. One writer per file at a time. Throws DataError naming `file`.
+void write_file_atomic(const std::filesystem::path& file, std::string_view bytes);
+
+}  // namespace mosbench

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace mosbench {
+
+/// A line of a text file without its end (LF or CR LF).
+struct TextLine {
+  std::size_t number;  ///< from 1
+  std::string_view text;
+};
+
+/// The lines up to the last that is not blank, as views into `text`. Throws DataError naming the
+/// line for a blank one in between.
+std::vector<TextLine> split_lines(std::string_view text, const std::filesystem::path& file);
+
+/// The parts between blanks and tabs.
+std::vector<std::string_view> split_at_blanks(std::string_view line);
+
+/// `text` without blanks, tabs and carriage returns at both ends.
+std::string_view trim(std::string_view text);
+
+/// The whole of `text` as a finite double, or nothing.
+std::optional<double> parse_double(std::string_view text);
+
+/// The whole of `text` as a decimal number without sign, or nothing.
+std::optional<std::uint64_t> parse_unsigned(std::string_view text);
+
+/// `text` in quotes for an error message: cut when long, unprintable bytes as '?'.
+std::string quoted(std::string_view text);
+
+}  // namespace mosbench
