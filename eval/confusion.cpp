@@ -31,6 +31,13 @@ void check_limits(const RangeGate& limits) {
   }
 }
 
+/// The limits in the number type in which the program compares.
+RangeGate rounded(const RangeGate& limits, Arithmetic arithmetic) {
+  if (arithmetic == Arithmetic::kDouble) return limits;
+  return {static_cast<double>(static_cast<float>(limits.min_m)),
+          static_cast<double>(static_cast<float>(limits.max_m))};
+}
+
 /// What the truth class turns into when the point is out of range.
 TruthClass class_out_of_range(RangeRule rule, TruthClass inside) {
   if (rule == RangeRule::kTruthAndPrediction) return TruthClass::kIgnored;
@@ -83,13 +90,14 @@ Confusion score_scan(const Protocol& protocol, std::span<const std::uint32_t> tr
   check_sizes(protocol, truth.size(), prediction.size(), points.size());
   const bool gated = protocol.range_rule != RangeRule::kNone;
   if (gated) check_limits(limits);
+  const RangeGate gate = rounded(limits, protocol.range_arithmetic);
   const LabelTable truth_classes(protocol.truth);
   const LabelTable prediction_classes(protocol.prediction);
   Tally tally{};
   std::uint64_t unknown_ids = 0;
   for (std::size_t i = 0; i < truth.size(); ++i) {
     TruthClass truth_class = truth_classes[truth[i]];
-    if (gated && !limits.contains(range_m(points[i], protocol.range_arithmetic))) {
+    if (gated && !gate.contains(range_m(points[i], protocol.range_arithmetic))) {
       truth_class = class_out_of_range(protocol.range_rule, truth_class);
     }
     const bool moving = prediction_classes[prediction[i]] == TruthClass::kMoving;

@@ -51,27 +51,40 @@ std::optional<double> mean_of_all(std::span<const Summary> sequences,
   return mean(values);
 }
 
-double published_ratio(const Protocol& protocol, const Confusion& counts) {
-  const std::uint64_t all = counts.tp + counts.fp + counts.fn;
-  const std::uint64_t required =
-      protocol.empty_case == EmptyCase::kNanWithoutTruth ? counts.tp + counts.fn : all;
-  if (required == 0) {
-    switch (protocol.empty_case) {
-      case EmptyCase::kOne:
-        return 1.0;
-      case EmptyCase::kEpsilon:
-        return 0.0;
-      case EmptyCase::kNan:
-      case EmptyCase::kNanWithoutTruth:
-        return std::numeric_limits<double>::quiet_NaN();
-    }
+/// Whether the protocol's own program finds anything to divide by.
+bool has_value(const Protocol& protocol, const Confusion& counts) {
+  const bool truth_moves = counts.tp + counts.fn > 0;
+  return truth_moves || (counts.fp > 0 && protocol.empty_case != EmptyCase::kNanWithoutTruth);
+}
+
+double published_value_of_nothing(EmptyCase empty_case) {
+  switch (empty_case) {
+    case EmptyCase::kOne:
+      return 1.0;
+    case EmptyCase::kEpsilon:
+      return 0.0;
+    case EmptyCase::kNan:
+    case EmptyCase::kNanWithoutTruth:
+      break;
   }
-  // 1e-15 added to a denominator of one or more matters only at exactly one, where it must stay.
-  const double epsilon = protocol.empty_case == EmptyCase::kEpsilon ? 1e-15 : 0.0;
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+double published_ratio(const Protocol& protocol, const Confusion& counts) {
+  if (!has_value(protocol, counts)) return published_value_of_nothing(protocol.empty_case);
+  const std::uint64_t all = counts.tp + counts.fp + counts.fn;
   if (protocol.metric_arithmetic == Arithmetic::kFloat) {
     return static_cast<double>(static_cast<float>(counts.tp) / static_cast<float>(all));
   }
+  // Rounding loses the epsilon from a denominator of 16 on, not below.
+  const double epsilon = protocol.empty_case == EmptyCase::kEpsilon ? 1e-15 : 0.0;
   return static_cast<double>(counts.tp) / (static_cast<double>(all) + epsilon);
+}
+
+/// What is left of a scan's value in the file from which the program averages.
+double as_in_file(const Protocol& protocol, double value) {
+  if (protocol.file_significant_digits == 0) return value;
+  return std::stod(fmt::format("{:.{}g}", value, protocol.file_significant_digits));
 }
 
 std::string print(double value, const PrintStyle& style) {
@@ -87,7 +100,9 @@ double published_iou(const Protocol& protocol, std::span<const Confusion> scans,
     return published_ratio(protocol, pooled) * unit;
   }
   double sum = 0.0;
-  for (const Confusion& scan : scans) sum += published_ratio(protocol, scan) * unit;
+  for (const Confusion& scan : scans) {
+    sum += as_in_file(protocol, published_ratio(protocol, scan)) * unit;
+  }
   return sum / static_cast<double>(scans.size());
 }
 
@@ -123,7 +138,7 @@ Summary summarize(const Protocol& protocol, std::span<const Confusion> per_scan)
     summary.precision = mean(defined_values(per_scan, precision));
     summary.recall = mean(defined_values(per_scan, recall));
     summary.f1 = mean(defined_values(per_scan, f1));
-  } else {
+  } else if (has_value(protocol, summary.pooled)) {
     summary.iou = moving_iou(summary.pooled);
     summary.precision = precision(summary.pooled);
     summary.recall = recall(summary.pooled);

@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cstdint>
+#include <ranges>
+
 namespace mosbench {
 namespace {
 
@@ -45,7 +49,7 @@ std::string_view words(EmptyCase empty_case) {
   return "";
 }
 
-std::string ids(const IdRange& range) {
+std::string words(const IdRange& range) {
   return range.first == range.last ? fmt::format("{}", range.first)
                                    : fmt::format("{}-{}", range.first, range.last);
 }
@@ -56,7 +60,7 @@ std::string ids_of(const IdMap& map, TruthClass wanted) {
   for (const IdRange& range : map.ranges) {
     if (range.becomes != wanted) continue;
     if (!text.empty()) text += ' ';
-    text += ids(range);
+    text += words(range);
   }
   return text;
 }
@@ -68,7 +72,12 @@ std::string describe_truth(const IdMap& map) {
     const std::string listed = ids_of(map, wanted);
     if (!listed.empty()) text += fmt::format("{} {}, ", listed, words(wanted));
   }
-  return text + fmt::format("others {}", words(map.unknown));
+  const LabelTable table(map);
+  const auto ids = std::views::iota(0U, 65536U);
+  const bool covers_all =
+      std::ranges::all_of(ids, [&](std::uint32_t id) { return table.is_known(id); });
+  return covers_all ? text.substr(0, text.size() - 2)
+                    : text + fmt::format("others {}", words(map.unknown));
 }
 
 std::string describe_range(const Protocol& protocol) {

@@ -10,7 +10,7 @@ namespace mosbench {
 /// A protocol in words, one cell per column of `mosbench list`.
 struct ProtocolDescription {
   std::string name;
-  std::string truth;        ///< "0-1 ignored, 2-250 static, 251-65535 moving; others ignored"
+  std::string truth;        ///< "0-1 ignored, 9 static, 251-259 moving, others ignored"
   std::string prediction;   ///< ids that count as a moving prediction
   std::string range;        ///< "truth and prediction, 0.5 to 20 m"
   std::string aggregation;  ///< "mean of scans"

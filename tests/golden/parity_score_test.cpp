@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <vector>
 
 #include "eval/confusion.hpp"
@@ -38,54 +39,55 @@ std::vector<Confusion> score_expected(const parity::ParityCase& parity, const Pr
   return scans;
 }
 
-class ParityScore : public testing::TestWithParam<parity::ParityCase> {
+class ParityScore : public testing::Test {
  protected:
   void SetUp() override {
     if (!parity::parity_root()) GTEST_SKIP() << parity::kSkipMessage;
+    ASSERT_FALSE(cases_.empty());
   }
+  const std::vector<parity::ParityCase> cases_ = parity::parity_cases();
 };
 
-TEST_P(ParityScore, CountsPerScanEqualTheCaseWithUnlabelledIgnored) {
-  const std::vector<Confusion> scans =
-      score_expected(GetParam(), protocol_named("semantickitti-mos"));
-  ASSERT_EQ(scans.size(), GetParam().per_scan_unlabelled_ignored.size());
-  for (std::size_t k = 0; k < scans.size(); ++k) {
-    EXPECT_EQ(counts_of(scans[k]), GetParam().per_scan_unlabelled_ignored[k]) << "scan " << k;
+TEST_F(ParityScore, CountsPerScanEqualTheCaseWithUnlabelledIgnored) {
+  const Protocol& protocol = protocol_named("semantickitti-mos");
+  for (const parity::ParityCase& parity : cases_) {
+    SCOPED_TRACE(parity.name);
+    const std::vector<Confusion> scans = score_expected(parity, protocol);
+    std::vector<parity::Counts> counts;
+    std::ranges::transform(scans, std::back_inserter(counts), counts_of);
+    EXPECT_EQ(counts, parity.per_scan_unlabelled_ignored);
+    const Summary summary = summarize(protocol, scans);
+    EXPECT_EQ(counts_of(summary.pooled), parity.truth_unlabelled_ignored);
+    EXPECT_EQ(summary.pooled.points(), parity.points);
+    EXPECT_EQ(summary.pooled.unknown_ids, 0U);
   }
-  const Summary summary = summarize(protocol_named("semantickitti-mos"), scans);
-  EXPECT_EQ(counts_of(summary.pooled), GetParam().truth_unlabelled_ignored);
-  EXPECT_EQ(summary.pooled.points(), GetParam().points);
-  EXPECT_EQ(summary.pooled.unknown_ids, 0U);
 }
 
-TEST_P(ParityScore, RawLabelsGiveTheSameCountsWhereNoInstanceStands) {
-  std::size_t compared = 0;
-  for (std::size_t k = 0; k < GetParam().scans; ++k) {
-    const std::vector<std::uint32_t> truth = parity::truth_of(GetParam(), k);
-    if (has_standing_instance(truth)) continue;
-    const Confusion scan = score_scan(protocol_named("semantickitti-mos"), truth,
-                                      parity::expected_of(GetParam(), k), {});
-    EXPECT_EQ(counts_of(scan), GetParam().per_scan_unlabelled_ignored[k]) << "scan " << k;
-    ++compared;
-  }
-  EXPECT_GE(compared, GetParam().scans * 9 / 10);
-}
-
-TEST_P(ParityScore, PooledCountsEqualTheCaseWithUnlabelledStatic) {
+TEST_F(ParityScore, PooledCountsEqualTheCaseWithUnlabelledStatic) {
   const Protocol& protocol = protocol_named("sipailou");
-  const Summary summary = summarize(protocol, score_expected(GetParam(), protocol));
-  EXPECT_EQ(counts_of(summary.pooled), GetParam().truth_unlabelled_static);
-  EXPECT_EQ(summary.pooled.tp + summary.pooled.fp, GetParam().predicted_moving_points);
-  EXPECT_EQ(summary.pooled.ignored, 0U);
+  for (const parity::ParityCase& parity : cases_) {
+    SCOPED_TRACE(parity.name);
+    const Summary summary = summarize(protocol, score_expected(parity, protocol));
+    EXPECT_EQ(counts_of(summary.pooled), parity.truth_unlabelled_static);
+    EXPECT_EQ(summary.pooled.tp + summary.pooled.fp, parity.predicted_moving_points);
+    EXPECT_EQ(summary.pooled.ignored, 0U);
+  }
 }
 
-INSTANTIATE_TEST_SUITE_P(Case, ParityScore, testing::ValuesIn(parity::parity_cases()),
-                         [](const auto& parity) { return parity.param.name; });
-GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(ParityScore);
-
-TEST(ParityCases, AreThereOrTheSkipSaysSo) {
-  if (!parity::shared_parity_folder()) GTEST_SKIP() << parity::kSkipMessage;
-  EXPECT_FALSE(parity::parity_cases().empty());
+TEST_F(ParityScore, RawLabelsGiveTheSameCountsWhereNoInstanceStands) {
+  for (const parity::ParityCase& parity : cases_) {
+    SCOPED_TRACE(parity.name);
+    std::size_t compared = 0;
+    for (std::size_t k = 0; k < parity.scans; ++k) {
+      const std::vector<std::uint32_t> truth = parity::truth_of(parity, k);
+      if (has_standing_instance(truth)) continue;
+      const Confusion scan = score_scan(protocol_named("semantickitti-mos"), truth,
+                                        parity::expected_of(parity, k), {});
+      EXPECT_EQ(counts_of(scan), parity.per_scan_unlabelled_ignored[k]) << "scan " << k;
+      ++compared;
+    }
+    EXPECT_GE(compared, parity.scans * 9 / 10);
+  }
 }
 
 }  // namespace
