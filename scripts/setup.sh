@@ -37,9 +37,16 @@ if [ "$(id -u)" != 0 ]; then
 fi
 
 echo "setup.sh: installing ${missing[*]}" >&2
+log=$(mktemp)
+trap 'rm -f "$log"' EXIT
 apt_get() {
-  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -qq \
-    -o Acquire::Retries=3 -o DPkg::Lock::Timeout=300 -o Dpkg::Use-Pty=0 "$@" </dev/null
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q -y \
+    -o Acquire::Retries=3 -o DPkg::Lock::Timeout=300 -o Dpkg::Use-Pty=0 "$@" </dev/null >"$log" 2>&1
 }
-apt_get update >&2 || give_up "apt-get update failed"
-apt_get install -y --no-install-recommends "${missing[@]}" >&2 || give_up "apt-get install failed"
+for arguments in update "install --no-install-recommends ${missing[*]}"; do
+  # shellcheck disable=SC2086  # the arguments are words
+  if ! apt_get $arguments; then
+    tail -n 20 "$log" >&2
+    give_up "apt-get ${arguments%% *} failed"
+  fi
+done
