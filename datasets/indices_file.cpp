@@ -45,8 +45,7 @@ IndicesRow parse_row(const TextLine& line, const std::filesystem::path& file) {
                     line.number)));
   }
   std::ranges::sort(row.moving);
-  const auto repeated = std::ranges::unique(row.moving);
-  row.moving.erase(repeated.begin(), repeated.end());
+  row.moving.erase(std::unique(row.moving.begin(), row.moving.end()), row.moving.end());
   return row;
 }
 
