@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "datasets/errors.hpp"
-#include "eval/nearest_name.hpp"
+#include "datasets/nearest_name.hpp"
 
 namespace mosbench {
 namespace {

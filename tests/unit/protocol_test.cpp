@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "datasets/errors.hpp"
-#include "eval/nearest_name.hpp"
+#include "datasets/nearest_name.hpp"
 #include "eval/protocol_list.hpp"
 
 namespace mosbench {

@@ -1,4 +1,4 @@
-#include "eval/nearest_name.hpp"
+#include "datasets/nearest_name.hpp"
 
 #include <algorithm>
 #include <cstddef>

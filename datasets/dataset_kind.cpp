@@ -1,0 +1,32 @@
+#include <array>
+#include <utility>
+
+#include "datasets/dataset.hpp"
+
+namespace mosbench {
+namespace {
+
+constexpr std::array<std::pair<DatasetKind, std::string_view>, 4> kNames = {{
+    {DatasetKind::kDoals, "doals"},
+    {DatasetKind::kSipailou, "sipailou"},
+    {DatasetKind::kHelimos, "helimos"},
+    {DatasetKind::kSemanticKitti, "semantickitti"},
+}};
+
+}  // namespace
+
+std::string_view to_string(DatasetKind kind) {
+  for (const auto& [named, name] : kNames) {
+    if (named == kind) return name;
+  }
+  return {};
+}
+
+std::optional<DatasetKind> dataset_kind_from_string(std::string_view name) {
+  for (const auto& [kind, known] : kNames) {
+    if (known == name) return kind;
+  }
+  return std::nullopt;
+}
+
+}  // namespace mosbench

@@ -1,0 +1,162 @@
+#include "datasets/simulator.hpp"
+
+#include <gtest/gtest.h>
+#include <xxhash.h>
+
+#include <algorithm>
+#include <cmath>
+#include <thread>
+
+#include "datasets/built_in_scenes.hpp"
+#include "datasets/errors.hpp"
+#include "datasets/portable_math.hpp"
+#include "datasets/scene_json.hpp"
+
+namespace mosbench {
+namespace {
+
+std::uint64_t hash_of(const SimulatedScan& scan) {
+  return XXH3_64bits(scan.points.data(), scan.points.size() * sizeof(Point));
+}
+
+std::uint64_t hash_of(const Simulator& simulator, std::size_t scan_index) {
+  return hash_of(simulator.scan(scan_index));
+}
+
+std::size_t count_moving(const Frame& frame) {
+  return static_cast<std::size_t>(
+      std::count(frame.truth->begin(), frame.truth->end(), kMovingLabel));
+}
+
+// Signed distance from a point of the map frame to the surface of a body: 0 on it, negative inside.
+double signed_distance_m(const Solid& solid, const Eigen::Vector3d& map_m) {
+  const Eigen::Vector3d offset = map_m - solid.center_m;
+  const Eigen::Vector3d local(offset.x() * solid.axis.x() + offset.y() * solid.axis.y(),
+                              offset.y() * solid.axis.x() - offset.x() * solid.axis.y(),
+                              offset.z());
+  const Eigen::Vector3d& half = solid.half_size_m;
+  if (solid.shape == Shape::kSphere) return local.norm() - half.x();
+  const double side = solid.shape == Shape::kBox
+                          ? std::max(std::abs(local.x()) - half.x(), std::abs(local.y()) - half.y())
+                          : local.head<2>().norm() - half.x();
+  return std::max(side, std::abs(local.z()) - half.z());
+}
+
+bool inside_grown(const Solid& solid, const Eigen::Vector3d& map_m, double margin_m) {
+  const Eigen::Vector3d offset = map_m - solid.center_m;
+  return offset.norm() <= solid.half_size_m.norm() + margin_m;
+}
+
+TEST(Simulator, DependsNeitherOnTheOrderOfScansNorOnThreads) {
+  const Simulator simulator = built_in_simulator("room", "vlp-16", 9);
+  const std::uint64_t fifth = hash_of(simulator, 5), second = hash_of(simulator, 2);
+  std::uint64_t fifth_elsewhere = 0, second_elsewhere = 0;
+  {
+    const std::jthread one([&] { second_elsewhere = hash_of(simulator, 2); });
+    const std::jthread two([&] { fifth_elsewhere = hash_of(simulator, 5); });
+  }
+  EXPECT_EQ(fifth, fifth_elsewhere);
+  EXPECT_EQ(second, second_elsewhere);
+  EXPECT_NE(fifth, second);
+  EXPECT_NE(fifth, hash_of(built_in_simulator("room", "vlp-16", 10), 5));
+}
+
+class EveryScene : public testing::TestWithParam<std::string_view> {};
+
+INSTANTIATE_TEST_SUITE_P(BuiltIn, EveryScene,
+                         testing::Values("mall", "campus", "street", "highway", "room"),
+                         [](const auto& name) { return std::string(name.param); });
+
+TEST(BuiltInScenes, AreTheOnesTheseTestsCover) {
+  std::vector<std::string_view> names;
+  for (const SceneSummary& scene : built_in_scenes()) names.push_back(scene.name);
+  EXPECT_EQ(names, (std::vector<std::string_view>{"mall", "campus", "street", "highway", "room"}));
+  EXPECT_THROW(built_in_scene("mal"), UsageError);
+}
+
+TEST_P(EveryScene, HoldsMovingPointsSoonAndLater) {
+  const Simulator simulator = built_in_simulator(GetParam(), "os1-64", 1);
+  for (const std::size_t scan_index : {5U, 10U, 20U, 60U, 400U}) {
+    EXPECT_GT(count_moving(simulator.frame(scan_index)), 20U) << "scan " << scan_index;
+  }
+}
+
+TEST_P(EveryScene, SeesMostlyStaticThingsAround) {
+  const Frame frame = built_in_simulator(GetParam(), "os1-64", 1).frame(10);
+  const auto fixed = std::count(frame.truth->begin(), frame.truth->end(), kStaticLabel);
+  EXPECT_GT(fixed, std::ssize(*frame.truth) / 3);
+}
+
+TEST_P(EveryScene, PutsEveryPointOnTheSurfaceThatItClaims) {
+  const Simulator simulator = built_in_simulator(GetParam(), "hdl-64e", 6);
+  const double noise_m = simulator.sensor().range_noise_m * kNormalBound + 1e-4;
+  for (const std::size_t scan_index : {0U, 37U}) {
+    const SimulatedScan scan = simulator.scan(scan_index);
+    std::size_t checked = 0;
+    for (std::size_t i = 0; i < scan.points.size(); i += 7) {
+      if (scan.owners[i] == SimulatedScan::kNoReturn || scan.owners[i] == 0) continue;
+      const Point& p = scan.points[i];
+      const Eigen::Vector3d map_m = scan.map_from_sensor * Eigen::Vector3d(p.x, p.y, p.z);
+      double nearest_m = 1e9;
+      for (const Solid& solid : scan.scene.solids) {
+        if (solid.owner != scan.owners[i]) continue;
+        const bool leaf = solid.density < 1.0 && inside_grown(solid, map_m, noise_m);
+        nearest_m = leaf ? 0.0 : std::min(nearest_m, std::abs(signed_distance_m(solid, map_m)));
+        if (leaf) break;
+      }
+      ASSERT_LE(nearest_m, noise_m) << "scan " << scan_index << " slot " << i;
+      ++checked;
+    }
+    EXPECT_GT(checked, 1000U);
+  }
+}
+
+TEST_P(EveryScene, SurvivesBeingWrittenAsJson) {
+  const Scene scene = built_in_scene(GetParam());
+  const Scene back = parse_scene(format_scene(scene), "scene.json");
+  EXPECT_EQ(format_scene(back), format_scene(scene));
+  const SensorModel sensor = sensor_model(SensorKind::kVlp16);
+  for (const std::size_t scan_index : {0U, 123U}) {
+    EXPECT_EQ(hash_of(Simulator(back, sensor, 3), scan_index),
+              hash_of(Simulator(scene, sensor, 3), scan_index));
+  }
+}
+
+TEST_P(EveryScene, KeepsTheCarrierOutOfStructuresAndAtAConstantPace) {
+  const Scene scene = built_in_scene(GetParam());
+  const Simulator simulator(scene, sensor_model(SensorKind::kVlp16), 1);
+  SimulatedScan before = simulator.scan(0);
+  for (std::size_t scan_index = 1; scan_index < 1500; scan_index += 1) {
+    if (scan_index % 50 > 1) continue;
+    const SimulatedScan scan = simulator.scan(scan_index);
+    for (const Solid& solid : scan.scene.solids) {
+      const double away_m = signed_distance_m(solid, scan.map_from_sensor.translation());
+      ASSERT_GT(away_m, 0.2) << "scan " << scan_index << " owner " << solid.owner;
+    }
+    if (scan_index % 50 == 1) {
+      const double step_m =
+          (scan.map_from_sensor.translation() - before.map_from_sensor.translation()).norm();
+      EXPECT_LT(step_m, 2.6) << "scan " << scan_index;
+    }
+    before = scan;
+  }
+}
+
+TEST(Simulator, ReturnsExactRangesWithoutNoise) {
+  Scene scene = built_in_scene("room");
+  scene.range_noise_m = 0.0;
+  scene.dropout_probability = 0.0;
+  scene.ego.carrier = Carrier::kTripod;
+  const Simulator simulator(scene, sensor_model(SensorKind::kOs1_64), 1);
+  const SimulatedScan scan = simulator.scan(4);
+  std::size_t on_ground = 0;
+  for (std::size_t i = 0; i < scan.points.size(); ++i) {
+    if (scan.owners[i] != 0) continue;
+    ++on_ground;
+    ASSERT_NEAR(scan.points[i].z, -0.8, 1e-6);
+  }
+  EXPECT_GT(on_ground, 1000U);
+}
+
+}  // namespace
+}  // namespace mosbench
