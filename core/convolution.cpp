@@ -1,0 +1,135 @@
+#include "core/convolution.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace mosbench {
+namespace {
+
+/// Map slots of the 27 blocks around each scan block, refreshed; 27 entries per scan block.
+std::vector<std::uint32_t> refreshed_map_slots(const VoxelizedScan& scan,
+                                               std::span<const std::uint32_t> slots, VoxelMap& map,
+                                               std::uint32_t scan_index, ThreadPool& pool) {
+  std::vector<std::uint32_t> around(slots.size() * 27);
+  pool.for_ranges(slots.size(), 64, [&](std::size_t begin, std::size_t end, unsigned) {
+    for (std::size_t i = begin; i < end; ++i) {
+      for_each_neighbour(scan.measured.blocks[slots[i]],
+                         [&](std::size_t position, const BlockIndex& block) {
+                           around[i * 27 + position] = map.find(block);
+                         });
+    }
+  });
+  std::vector<std::uint32_t> asked(around);
+  std::sort(asked.begin(), asked.end());
+  asked.erase(std::unique(asked.begin(), asked.end()), asked.end());
+  if (!asked.empty() && asked.back() == kNoSlot) asked.pop_back();
+  map.refresh(asked, scan_index, pool);
+  return around;
+}
+
+/// Known voxels around a block.
+void gather_known(const VoxelMap& map, std::span<const std::uint32_t> map_slots, int radius,
+                  HaloRows& halo) {
+  std::array<BlockMask, 27> known;
+  Neighbourhood masks{};
+  for (std::size_t i = 0; i < 27; ++i) {
+    if (map_slots[i] == kNoSlot) continue;
+    known[i] = map.known(map_slots[i]);
+    masks[i] = &known[i];
+  }
+  gather_halo(masks, radius, halo);
+}
+
+void invert(HaloRows& halo) {
+  const std::uint64_t row_mask = ~std::uint64_t{0} >> (64 - halo.side);
+  std::uint64_t any = 0;
+  for (std::uint64_t& row : halo.rows) {
+    row = ~row & row_mask;
+    any |= row;
+  }
+  halo.any = any != 0;
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> slots_around(const VoxelizedScan& scan,
+                                        std::span<const BlockIndex> blocks) {
+  std::vector<std::uint32_t> slots;
+  std::vector<std::uint8_t> taken(scan.measured.block_count());
+  for (const BlockIndex& centre : blocks) {
+    for_each_neighbour(centre, [&](std::size_t, const BlockIndex& block) {
+      const std::uint32_t slot = scan.measured.find(block);
+      if (slot == kNoSlot || taken[slot] != 0) return;
+      taken[slot] = 1;
+      slots.push_back(slot);
+    });
+  }
+  return slots;
+}
+
+ScoreField convolve(const VoxelizedScan& scan, const VoxelSet& changed, int kernel_width_voxels,
+                    VoxelMap& map, std::uint32_t scan_index, ThreadPool& pool) {
+  const int radius = (kernel_width_voxels - 1) / 2;
+  const int volume = kernel_width_voxels * kernel_width_voxels * kernel_width_voxels;
+  VoxelSet hits;  // occupied voxels that changed
+  for (std::size_t i = 0; i < changed.block_count(); ++i) {
+    const BlockMask* occupied = scan.occupied_in(changed.blocks[i]);
+    if (occupied == nullptr) continue;
+    const BlockMask both = *occupied & changed.masks[i];
+    if (both.any()) hits.masks[hits.insert(changed.blocks[i])] = both;
+  }
+  const std::vector<std::uint32_t> slots = slots_around(scan, hits.blocks);
+  const std::vector<std::uint32_t> map_slots =
+      refreshed_map_slots(scan, slots, map, scan_index, pool);
+
+  std::vector<ScoreField::Block> scores(slots.size());
+  std::vector<std::uint8_t> scored(slots.size());
+  pool.for_ranges(slots.size(), 16, [&](std::size_t begin, std::size_t end, unsigned) {
+    HaloRows hit_rows, known_rows;
+    for (std::size_t i = begin; i < end; ++i) {
+      Neighbourhood masks{};
+      for_each_neighbour(scan.measured.blocks[slots[i]],
+                         [&](std::size_t position, const BlockIndex& block) {
+                           masks[position] = hits.mask_of(block);
+                         });
+      gather_halo(masks, radius, hit_rows);
+      const BlockMask in_reach = dilate(hit_rows) & scan.occupied[slots[i]];
+      scores[i].fill(0);
+      if (!in_reach.any()) continue;
+      gather_known(map, std::span(map_slots).subspan(i * 27, 27), radius, known_rows);
+      for_each_cell(in_reach, [&](std::uint32_t cell) {
+        const int unknown = volume - count_around(known_rows, cell);
+        const int score = count_around(hit_rows, cell) - unknown;
+        if (score <= 0) return;
+        scores[i][cell] = static_cast<std::int16_t>(score);
+        scored[i] = 1;
+      });
+    }
+  });
+
+  ScoreField field;
+  for (std::size_t i = 0; i < slots.size(); ++i) {
+    if (scored[i] != 0) field.add(scan.measured.blocks[slots[i]], scores[i]);
+  }
+  return field;
+}
+
+std::vector<BlockMask> beside_unknown(const VoxelizedScan& scan,
+                                      std::span<const std::uint32_t> slots, int kernel_width_voxels,
+                                      VoxelMap& map, std::uint32_t scan_index, ThreadPool& pool) {
+  const std::vector<std::uint32_t> map_slots =
+      refreshed_map_slots(scan, slots, map, scan_index, pool);
+  std::vector<BlockMask> beside(slots.size());
+  pool.for_ranges(slots.size(), 16, [&](std::size_t begin, std::size_t end, unsigned) {
+    HaloRows rows;
+    for (std::size_t i = begin; i < end; ++i) {
+      gather_known(map, std::span(map_slots).subspan(i * 27, 27), (kernel_width_voxels - 1) / 2,
+                   rows);
+      invert(rows);
+      beside[i] = dilate(rows) & scan.occupied[slots[i]];
+    }
+  });
+  return beside;
+}
+
+}  // namespace mosbench

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/sparse_field.hpp"
+#include "core/thread_pool.hpp"
+#include "core/voxel_map.hpp"
+#include "core/voxelize.hpp"
+
+namespace mosbench {
+
+/// algorithm step 5a: the spatial score of every occupied voxel of the scan, max(0, votes) over the
+/// m^3 neighbours: +1 for an occupied voxel that changed, -1 for a voxel that is not known.
+/// `changed` are the changes that count for this scan; `map` is refreshed where it is asked.
+ScoreField convolve(const VoxelizedScan& scan, const VoxelSet& changed, int kernel_width_voxels,
+                    VoxelMap& map, std::uint32_t scan_index, ThreadPool& pool);
+
+/// Occupied voxels of the given blocks (slots of scan.measured) that have an unknown voxel among
+/// their m^3 neighbours; runs together with `slots`.
+std::vector<BlockMask> beside_unknown(const VoxelizedScan& scan,
+                                      std::span<const std::uint32_t> slots, int kernel_width_voxels,
+                                      VoxelMap& map, std::uint32_t scan_index, ThreadPool& pool);
+
+/// Slots of scan.measured of the given blocks and of all their neighbours, without repeats.
+std::vector<std::uint32_t> slots_around(const VoxelizedScan& scan,
+                                        std::span<const BlockIndex> blocks);
+
+}  // namespace mosbench

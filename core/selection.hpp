@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/otsu.hpp"
+#include "core/sparse_field.hpp"
+#include "core/thread_pool.hpp"
+#include "core/voxelize.hpp"
+
+namespace mosbench {
+
+/// Otsu's threshold T on S(v) of all occupied voxels.
+std::optional<double> threshold_of(const VoxelizedScan& scan, const SumField& sums);
+
+/// algorithm steps 5d to 5f: occupied voxels with S > T and those of `carried` with S >
+/// min_otsu_score, then all occupied voxels in their 27-neighbourhoods. The result is a set of the
+/// scan's occupied voxels.
+VoxelSet select_dynamic(const VoxelizedScan& scan, const SumField& sums,
+                        std::optional<double> threshold, const VoxelSet& carried,
+                        int min_otsu_score);
+
+}  // namespace mosbench

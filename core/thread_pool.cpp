@@ -1,0 +1,84 @@
+#include "core/thread_pool.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+
+namespace mosbench {
+
+struct ThreadPool::Job {
+  std::size_t count, grain;
+  const std::function<void(std::size_t, std::size_t, unsigned)>& work;
+  std::atomic<std::size_t> next{0};
+  std::mutex error_mutex{};
+  std::exception_ptr error{};
+
+  void drain(unsigned thread) {
+    try {
+      for (std::size_t begin = next.fetch_add(grain); begin < count;
+           begin = next.fetch_add(grain)) {
+        work(begin, std::min(begin + grain, count), thread);
+      }
+    } catch (...) {
+      next = count;
+      const std::lock_guard lock(error_mutex);
+      if (!error) error = std::current_exception();
+    }
+  }
+};
+
+ThreadPool::ThreadPool(unsigned threads) {
+  for (unsigned thread = 1; thread < threads; ++thread) {
+    workers_.emplace_back([this, thread] { serve(thread); });
+  }
+}
+
+ThreadPool::~ThreadPool() {
+  {
+    const std::lock_guard lock(mutex_);
+    stop_ = true;
+  }
+  start_.notify_all();
+}
+
+void ThreadPool::for_ranges(std::size_t count, std::size_t grain,
+                            const std::function<void(std::size_t, std::size_t, unsigned)>& work) {
+  Job job{.count = count, .grain = std::max<std::size_t>(grain, 1), .work = work};
+  if (workers_.empty() || count <= grain) {
+    job.drain(0);
+  } else {
+    {
+      const std::lock_guard lock(mutex_);
+      job_ = &job;
+      ++generation_;
+      busy_ = static_cast<unsigned>(workers_.size());
+    }
+    start_.notify_all();
+    job.drain(0);
+    std::unique_lock lock(mutex_);
+    finish_.wait(lock, [this] { return busy_ == 0; });
+    job_ = nullptr;
+  }
+  if (job.error) std::rethrow_exception(job.error);
+}
+
+void ThreadPool::serve(unsigned thread) {
+  std::size_t served = 0;
+  for (;;) {
+    Job* job = nullptr;
+    {
+      std::unique_lock lock(mutex_);
+      start_.wait(lock, [&] { return stop_ || generation_ != served; });
+      if (stop_) return;
+      served = generation_;
+      job = job_;
+    }
+    job->drain(thread);
+    {
+      const std::lock_guard lock(mutex_);
+      if (--busy_ == 0) finish_.notify_one();
+    }
+  }
+}
+
+}  // namespace mosbench

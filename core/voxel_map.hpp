@@ -1,0 +1,110 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <span>
+#include <vector>
+
+#include "core/config.hpp"
+#include "core/hmm.hpp"
+#include "core/pool.hpp"
+#include "core/raycast.hpp"
+#include "core/thread_pool.hpp"
+#include "core/voxel_set.hpp"
+
+namespace mosbench {
+
+/// Blocks with a voxel whose state changed; the two arrays run together.
+struct ChangedVoxels {
+  std::vector<BlockIndex> blocks;
+  std::vector<BlockMask> masks;
+};
+
+/// The occupancy map: beliefs, states and ages of every voxel seen in the last w_g scans within the
+/// eviction radius.
+class VoxelMap {
+ public:
+  VoxelMap(const Config& config, Variant variant, const VoxelGrid& grid);
+
+  /// algorithm step 3 up to eviction. `sources` are the measured sets whose union the distance
+  /// field refers to; `sensor_m` is this scan's position.
+  ChangedVoxels update(const ObservedVoxels& observed, std::span<const VoxelSet* const> sources,
+                       const Eigen::Vector3d& sensor_m, std::uint32_t scan_index, ThreadPool& pool);
+
+  /// The rest of step 3, after `update`: drops what lies beyond the eviction radius of this scan's
+  /// sensor or was not seen for more than w_g scans. Most blocks are looked at only every
+  /// kSweepScans scans; nobody can tell, because the sensor cannot come back to them in that time:
+  /// when it moves too fast for that, every block is looked at in every scan.
+  void evict(std::uint32_t scan_index);
+
+  /// Brings the ages of these blocks up to date, so that `known` answers for `scan_index`.
+  void refresh(std::span<const std::uint32_t> slots, std::uint32_t scan_index, ThreadPool& pool);
+
+  std::uint32_t find(const BlockIndex& block) const { return table_.find(block); }
+  /// Voxels with a state, seen less than w_g scans ago; valid after `refresh` of the slot.
+  BlockMask known(std::uint32_t slot) const {
+    const Block& block = blocks_[slot];
+    return without(block.states.occupied | block.states.free, block.stale);
+  }
+
+  /// Voxels whose last change is at `first_scan` or later, by block.
+  VoxelSet changed_since(std::uint32_t first_scan) const;
+
+  std::size_t block_count() const { return blocks_.in_use(); }
+  std::size_t memory_bytes() const;
+
+ private:
+  struct Block {
+    BlockIndex index;
+    std::uint32_t beliefs;      // slot in beliefs_, or kNoSlot while every belief is zero
+    std::uint32_t oldest_seen;  // lower bound of last_seen over voxels that age
+    std::uint32_t newest_seen;
+    bool live = false;
+    BlockStates states;
+    BlockMask seen;                                     // has a record
+    BlockMask stale;                                    // not seen for w_g scans or more
+    BlockMask ageless;                                  // release-2025: stale and never to expire
+    std::array<std::uint16_t, kBlockVoxels> last_seen;  // modulo 2^16; ages never reach that far
+  };
+  struct Beliefs {
+    alignas(64) std::array<float, kBlockVoxels> occupied;
+  };
+  struct ChangesOfScan {
+    std::uint32_t scan_index;
+    ChangedVoxels voxels;
+  };
+
+  std::uint32_t add_block(const BlockIndex& index, std::uint32_t scan_index);
+  void drop_block(std::uint32_t slot);
+  void refresh_block(Block& block, std::uint32_t scan_index);
+  static void forget(Block& block, const BlockMask& voxels);
+  void note_sensor(const Eigen::Vector3d& sensor_m, std::uint32_t scan_index);
+  void sweep(std::uint32_t first_slot, std::uint32_t stride, std::size_t first_sensor,
+             std::size_t last_sensor, std::uint32_t scan_index);
+  void evict_from_block(std::uint32_t slot, std::size_t first_sensor, std::size_t last_sensor,
+                        std::uint32_t scan_index);
+
+  static constexpr std::uint32_t kSweepScans = 16;
+
+  VoxelGrid grid_;
+  Variant variant_;
+  BeliefFilter filter_;
+  DistanceField distance_field_;
+  std::uint32_t global_window_scans_;
+  std::uint32_t delay_scans_;
+  double evict_radius_m_;
+  double safe_path_m_;
+  BlockTable table_;
+  Pool<Block> blocks_;
+  Pool<Beliefs> beliefs_;
+  std::deque<ChangesOfScan> changes_;  // the last delay + 1 scans
+  std::deque<Eigen::Vector3d>
+      sensors_m_;                     // the last delay + kSweepScans positions and the current one
+  bool fast_ = false;                 // the sensor moved farther than safe_path_m_ over these
+  std::vector<HaloRows> halos_;       // one per thread
+  std::vector<std::uint32_t> slots_;  // of the observed blocks
+};
+
+}  // namespace mosbench
