@@ -36,16 +36,23 @@ struct Dataset {
   std::filesystem::path root;
   std::vector<std::unique_ptr<Sequence>> sequences;  ///< in the data set's own order
   std::vector<Split> splits;                         ///< only those with at least one scan here
+  std::vector<std::string> remarks;                  ///< what was assumed about the whole
 };
 
 struct OpenOptions {
-  std::optional<DatasetKind> kind;             ///< recognised from the folders when not given
-  std::vector<std::string> sequences;          ///< names to keep; all when empty
-  std::optional<std::filesystem::path> poses;  ///< replaces the sequence's own pose file
+  /// Recognised from the folders when not given.
+  std::optional<DatasetKind> kind = std::nullopt;
+  /// Names to keep; all when empty. DOALS takes the numbers 1 to 8 of the published ones as well.
+  std::vector<std::string> sequences = {};
+  /// Replaces the sequence's own poses.txt, in the same frame: calib.txt is applied to it too.
+  std::optional<std::filesystem::path> poses = std::nullopt;
 };
 
-/// Opens a data set's root or one sequence folder. Throws DataError when nothing usable is there,
-/// UsageError for a sequence name that does not exist or a pose file given for several sequences.
+/// Opens a data set's root or one sequence folder, and of it only the sequences kept. A kind that
+/// is not given is recognised, in this order: folders named after HeLiMOS's sensors; indices.csv or
+/// sequence_N folders (doals); "sipailou" in a folder name of the path; else semantickitti. A
+/// remark says so. Throws DataError when nothing usable is there, UsageError for a sequence name
+/// that does not exist or a pose file given for several sequences.
 Dataset open_dataset(const std::filesystem::path& path, const OpenOptions& options);
 
 }  // namespace mosbench

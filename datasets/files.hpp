@@ -6,6 +6,9 @@
 
 namespace mosbench {
 
+/// Whether there is a file or folder; false when that cannot be told.
+bool is_there(const std::filesystem::path& path);
+
 /// All bytes of a file; throws DataError when it cannot be read to its end.
 std::string read_file(const std::filesystem::path& file);
 

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "datasets/dataset.hpp"
+
+namespace mosbench {
+
+/// A sequence found on disk and not yet opened.
+struct SequenceFolder {
+  std::string name;  ///< Sequence::name
+  std::filesystem::path folder;
+  std::string alias;  ///< a second name that --sequences takes; may be empty
+};
+
+/// How one data set lies on disk: one row per DatasetKind.
+struct Catalogue {
+  DatasetKind kind;
+  const char* layout;  ///< what an error says was expected
+  /// The sequences below a root, or the one of a sequence folder; empty when this is neither.
+  std::vector<SequenceFolder> (*list)(const std::filesystem::path& path);
+  std::unique_ptr<Sequence> (*open)(const SequenceFolder& sequence,
+                                    const std::optional<std::filesystem::path>& poses_file);
+  /// Splits of the opened sequences; `folders` runs parallel to `sequences`. May add remarks.
+  std::vector<Split> (*splits)(const std::vector<SequenceFolder>& folders,
+                               const std::vector<std::unique_ptr<Sequence>>& sequences,
+                               std::vector<std::string>& remarks);
+  /// Why an untold path is taken for this data set, or nothing when it is not.
+  std::optional<std::string> (*recognise)(const std::filesystem::path& path);
+};
+
+const Catalogue& doals_catalogue();
+const Catalogue& helimos_catalogue();
+const Catalogue& sipailou_catalogue();
+const Catalogue& semantickitti_catalogue();
+
+/// The last name of a path, also of "." and of one that ends with a slash.
+std::string folder_name(const std::filesystem::path& path);
+
+std::string lower_case(std::string text);
+
+/// The folder in which a sequence folder lies.
+std::filesystem::path parent_folder(const std::filesystem::path& path);
+
+/// Splits that consist of whole sequences given by name; those without any sequence are left out.
+struct NamedSplit {
+  const char* name;
+  std::vector<std::string> sequences;
+};
+std::vector<Split> splits_of_names(const std::vector<NamedSplit>& named,
+                                   const std::vector<SequenceFolder>& folders);
+
+}  // namespace mosbench

@@ -1,0 +1,116 @@
+#include "datasets/pcd_file.hpp"
+
+#include <pcl/PCLPointCloud2.h>
+#include <pcl/PCLPointField.h>
+#include <pcl/console/print.h>
+#include <pcl/io/pcd_io.h>
+
+#include <cstdint>
+#include <cstring>
+#include <exception>
+#include <string>
+#include <string_view>
+
+#include "datasets/errors.hpp"
+
+namespace mosbench {
+namespace {
+
+template <typename Stored>
+float load(const std::uint8_t* bytes) {
+  Stored value;
+  std::memcpy(&value, bytes, sizeof(value));
+  return static_cast<float>(value);
+}
+
+using LoadField = float (*)(const std::uint8_t*);
+
+/// Nothing for a type that PCL does not define.
+LoadField loader_of(std::uint8_t datatype) {
+  switch (datatype) {
+    case pcl::PCLPointField::FLOAT32:
+      return load<float>;
+    case pcl::PCLPointField::FLOAT64:
+      return load<double>;
+    case pcl::PCLPointField::INT8:
+      return load<std::int8_t>;
+    case pcl::PCLPointField::UINT8:
+      return load<std::uint8_t>;
+    case pcl::PCLPointField::INT16:
+      return load<std::int16_t>;
+    case pcl::PCLPointField::UINT16:
+      return load<std::uint16_t>;
+    case pcl::PCLPointField::INT32:
+      return load<std::int32_t>;
+    case pcl::PCLPointField::UINT32:
+      return load<std::uint32_t>;
+    default:
+      return nullptr;
+  }
+}
+
+float zero(const std::uint8_t*) { return 0.0F; }
+
+struct FieldReader {
+  LoadField load = zero;
+  std::size_t offset_bytes = 0;
+  float operator()(const std::uint8_t* point) const { return load(point + offset_bytes); }
+};
+
+FieldReader field_reader(const pcl::PCLPointCloud2& cloud, std::string_view name, bool required,
+                         const std::filesystem::path& file) {
+  for (const pcl::PCLPointField& field : cloud.fields) {
+    if (field.name != name) continue;
+    const LoadField load_field = loader_of(field.datatype);
+    if (load_field == nullptr || field.count != 1) break;
+    return {load_field, field.offset};
+  }
+  if (!required) return {};
+  throw DataError(file, "has no numeric field " + std::string(name), "fields x y z [intensity]");
+}
+
+/// Runs a call of PCL that returns a negative number or throws on bad files.
+template <typename Call>
+void check_pcl(const std::filesystem::path& file, Call&& call) {
+  // PCL would report every bad file on the console as well.
+  pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);
+  std::string why;
+  try {
+    if (call() >= 0) return;
+  } catch (const std::exception& error) {
+    why = std::string(" (") + error.what() + ")";
+  }
+  throw DataError(file, "cannot be read as a point cloud" + why,
+                  "a PCD file, version 0.7, with fields x y z [intensity]");
+}
+
+}  // namespace
+
+std::vector<Point> read_pcd(const std::filesystem::path& file) {
+  pcl::PCLPointCloud2 cloud;
+  check_pcl(file, [&] { return pcl::PCDReader().read(file.string(), cloud); });
+  const FieldReader x = field_reader(cloud, "x", true, file);
+  const FieldReader y = field_reader(cloud, "y", true, file);
+  const FieldReader z = field_reader(cloud, "z", true, file);
+  const FieldReader intensity = field_reader(cloud, "intensity", false, file);
+
+  const std::size_t count = std::size_t{cloud.width} * cloud.height;
+  if (cloud.point_step == 0 || cloud.data.size() / cloud.point_step < count) {
+    throw DataError(file, "holds less than the points of its header", std::to_string(count));
+  }
+  std::vector<Point> points(count);
+  const std::uint8_t* record = cloud.data.data();
+  for (Point& point : points) {
+    point = {x(record), y(record), z(record), intensity(record)};
+    record += cloud.point_step;
+  }
+  return points;
+}
+
+std::size_t pcd_point_count(const std::filesystem::path& file) {
+  pcl::PCLPointCloud2 header;
+  check_pcl(file, [&] { return pcl::PCDReader().readHeader(file.string(), header); });
+  return std::size_t{header.width} * header.height;
+}
+
+}  // namespace mosbench

@@ -1,0 +1,19 @@
+#include "datasets/errors.hpp"
+#include "datasets/pcd_file.hpp"
+
+namespace mosbench {
+namespace {
+
+[[noreturn]] void refuse(const std::filesystem::path& file) {
+  throw DataError(file, "this build reads no .pcd files",
+                  ".bin scans, or a build with PCL (install libpcl-dev, configure with "
+                  "-DMOSBENCH_WITH_PCL=ON)");
+}
+
+}  // namespace
+
+std::vector<Point> read_pcd(const std::filesystem::path& file) { refuse(file); }
+
+std::size_t pcd_point_count(const std::filesystem::path& file) { refuse(file); }
+
+}  // namespace mosbench
