@@ -86,6 +86,8 @@ void check_pcl(const std::filesystem::path& file, Call&& call) {
 
 }  // namespace
 
+bool reads_pcd() { return true; }
+
 std::vector<Point> read_pcd(const std::filesystem::path& file) {
   pcl::PCLPointCloud2 cloud;
   check_pcl(file, [&] { return pcl::PCDReader().read(file.string(), cloud); });

@@ -8,6 +8,9 @@
 
 namespace mosbench {
 
+/// Whether this build reads .pcd scans (MOSBENCH_WITH_PCL).
+bool reads_pcd();
+
 /// A .pcd scan read through PCL: fields x, y, z, and intensity (0 when there is none); all other
 /// fields are left aside. Throws DataError for what PCL cannot read, and always in a build without
 /// PCL (MOSBENCH_WITH_PCL=OFF).

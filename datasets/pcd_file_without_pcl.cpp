@@ -12,6 +12,8 @@ namespace {
 
 }  // namespace
 
+bool reads_pcd() { return false; }
+
 std::vector<Point> read_pcd(const std::filesystem::path& file) { refuse(file); }
 
 std::size_t pcd_point_count(const std::filesystem::path& file) { refuse(file); }

@@ -1,0 +1,94 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <string_view>
+
+#include "datasets/bin_file.hpp"
+#include "datasets/calib_file.hpp"
+#include "datasets/errors.hpp"
+#include "datasets/indices_file.hpp"
+#include "datasets/label_file.hpp"
+#include "datasets/pose_file.hpp"
+#include "datasets/split_file.hpp"
+#include "datasets/times_file.hpp"
+
+/// Every parser of bytes with what must hold of any value it returns. A parser may throw DataError;
+/// whatever else happens is a bug. Shared by the replayed corpus and the libFuzzer targets.
+namespace mosbench::fuzz {
+
+inline void require(bool holds) {
+  if (!holds) std::abort();
+}
+
+inline void bin(std::string_view bytes) { require(format_bin(parse_bin(bytes, "f")) == bytes); }
+
+/// The first byte is the number of points.
+inline void label(std::string_view bytes) {
+  if (bytes.empty()) return;
+  const std::size_t point_count = static_cast<unsigned char>(bytes.front());
+  const auto labels = parse_labels(bytes.substr(1), point_count, "f");
+  require(labels.size() == point_count && format_labels(labels) == bytes.substr(1));
+}
+
+inline void poses(std::string_view text) {
+  const auto parsed = parse_poses(text, "f");
+  const auto again = parse_poses(format_poses(parsed), "f");
+  require(again.size() == parsed.size());
+  for (std::size_t i = 0; i < parsed.size(); ++i) {
+    require(parsed[i].matrix().allFinite() && parsed[i].linear().determinant() > 0.5);
+    require(parsed[i].matrix() == again[i].matrix());
+  }
+}
+
+inline void calib(std::string_view text) {
+  const Pose parsed = parse_calib(text, "f");
+  require(parsed.matrix().allFinite());
+  require(parse_calib(format_calib(parsed), "f").matrix() == parsed.matrix());
+}
+
+inline void times(std::string_view text) {
+  const auto parsed = parse_times(text, "f");
+  require(parse_times(format_times(parsed), "f") == parsed);
+}
+
+inline void indices(std::string_view text) {
+  const auto parsed = parse_indices(text, "f");
+  const auto again = parse_indices(format_indices(parsed), "f");
+  require(again.size() == parsed.size());
+  for (std::size_t i = 0; i < parsed.size(); ++i) {
+    require(std::is_sorted(parsed[i].moving.begin(), parsed[i].moving.end()));
+    require(again[i].stamp_ns == parsed[i].stamp_ns && again[i].moving == parsed[i].moving);
+  }
+}
+
+inline void split(std::string_view text) {
+  const auto parsed = parse_split(text, "f");
+  require(!parsed.empty() && parse_split(format_split(parsed), "f") == parsed);
+}
+
+struct Parser {
+  const char* name;  ///< of its corpus folder and its libFuzzer target
+  void (*parse)(std::string_view);
+};
+inline constexpr std::array<Parser, 7> kParsers = {{{"bin", bin},
+                                                    {"label", label},
+                                                    {"poses", poses},
+                                                    {"calib", calib},
+                                                    {"times", times},
+                                                    {"indices", indices},
+                                                    {"split", split}}};
+
+/// Whether the parser gave a value; false when it threw DataError. Anything else escapes.
+inline bool gives_value(void (*parse)(std::string_view), std::string_view bytes) {
+  try {
+    parse(bytes);
+  } catch (const DataError& error) {
+    require(std::string_view(error.what()).starts_with("f"));
+    return false;
+  }
+  return true;
+}
+
+}  // namespace mosbench::fuzz

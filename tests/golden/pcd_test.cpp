@@ -1,0 +1,117 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+
+#include "datasets/bin_file.hpp"
+#include "datasets/errors.hpp"
+#include "datasets/kitti_sequence.hpp"
+#include "datasets/pcd_file.hpp"
+#include "tests/temp_folder.hpp"
+
+namespace mosbench {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+constexpr const char* kTwoPoints =
+    "VERSION 0.7\nFIELDS z y x\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 2\nHEIGHT 1\n"
+    "POINTS 2\nDATA ascii\n3 2 1\n6 5 4\n";
+
+std::filesystem::path shared_folder() {
+  const char* elsewhere = std::getenv("MOSBENCH_SHARED");
+  return elsewhere != nullptr ? std::filesystem::path(elsewhere)
+                              : std::filesystem::path(MOSBENCH_SOURCE_DIR) / "../shared";
+}
+
+class PcdFile : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!reads_pcd()) GTEST_SKIP() << "this build is without PCL";
+  }
+};
+
+TEST_F(PcdFile, EqualsTheBinFilesOfTheSameRealScansBitForBit) {
+  const auto folder = shared_folder() / "real/pcd";
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << folder << " is not there";
+  for (const char* stem : {"0000000000", "0000000001", "0000000002", "0000000003", "0000000004"}) {
+    const auto bin = read_bin(folder / (std::string(stem) + ".bin"));
+    const auto pcd_path = folder / (std::string(stem) + ".pcd");
+    const auto pcd = read_pcd(pcd_path);
+    ASSERT_GT(bin.size(), 100000U);
+    ASSERT_EQ(pcd.size(), bin.size() + 1);
+    EXPECT_EQ(pcd_point_count(pcd_path), pcd.size());
+    EXPECT_EQ(std::memcmp(pcd.data(), bin.data(), bin.size() * sizeof(Point)), 0) << stem;
+    const Point extra = {0, 0, 0, 0};
+    EXPECT_EQ(std::memcmp(&pcd.back(), &extra, sizeof(Point)), 0) << stem;
+  }
+}
+
+TEST_F(PcdFile, TakesFourOfEightFields) {
+  const auto file = shared_folder() / "real/pcd/eight_fields.pcd";
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not there";
+  const auto points = read_pcd(file);
+  ASSERT_GT(points.size(), 100000U);
+  EXPECT_EQ(pcd_point_count(file), points.size());
+  std::size_t plausible = 0;
+  for (const Point& point : points) {
+    const float range_sq_m2 = point.x * point.x + point.y * point.y + point.z * point.z;
+    if (range_sq_m2 < 130.0F * 130.0F && point.intensity >= 0.0F && point.intensity <= 1.0F) {
+      ++plausible;
+    }
+  }
+  EXPECT_EQ(plausible, points.size());
+}
+
+TEST_F(PcdFile, FindsFieldsByNameAndTakesAMissingIntensityAsZero) {
+  const TempFolder folder;
+  const auto points = read_pcd(folder.write("scan.pcd", kTwoPoints));
+  ASSERT_EQ(points.size(), 2U);
+  EXPECT_EQ(points[1].x, 4.0F);
+  EXPECT_EQ(points[1].y, 5.0F);
+  EXPECT_EQ(points[1].z, 6.0F);
+  EXPECT_EQ(points[1].intensity, 0.0F);
+}
+
+TEST_F(PcdFile, RefusesWhatIsNoPointCloudWithXyz) {
+  const TempFolder folder;
+  const auto error_of = [&](const std::string& text) {
+    const auto file = folder.write("scan.pcd", text);
+    return message_of<DataError>([&] { read_pcd(file); });
+  };
+  EXPECT_THAT(error_of(""), AllOf(HasSubstr("scan.pcd"), HasSubstr("cannot be read")));
+  EXPECT_THAT(error_of("no header at all\n"), HasSubstr("scan.pcd"));
+  std::string flat = kTwoPoints;
+  flat.replace(flat.find("FIELDS z"), 8, "FIELDS h");
+  EXPECT_THAT(error_of(flat), AllOf(HasSubstr("scan.pcd"), HasSubstr("field z")));
+  std::string cut = kTwoPoints;
+  cut.replace(cut.find("ascii"), std::string::npos, "binary\n123");
+  EXPECT_THAT(error_of(cut), HasSubstr("scan.pcd"));
+  EXPECT_THAT(message_of<DataError>([&] { read_pcd(folder / "absent.pcd"); }),
+              HasSubstr("absent.pcd"));
+}
+
+TEST_F(PcdFile, IsAScanOfASequenceLikeAnyOther) {
+  const TempFolder folder;
+  folder.write("velodyne/000000.pcd", kTwoPoints);
+  folder.write("poses.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n");
+  const KittiSequence sequence("s", folder.path());
+  EXPECT_EQ(sequence.point_count(0), 2U);
+  EXPECT_EQ(sequence.read(0).points.at(0).x, 1.0F);
+}
+
+TEST(PcdFileWithoutPcl, SaysHowToBuildWithIt) {
+  if (reads_pcd()) GTEST_SKIP() << "this build has PCL";
+  const TempFolder folder;
+  folder.write("velodyne/000000.pcd", kTwoPoints);
+  folder.write("poses.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n");
+  EXPECT_THAT(message_of<DataError>([&] { KittiSequence("s", folder.path()); }),
+              AllOf(HasSubstr("000000.pcd"), HasSubstr("-DMOSBENCH_WITH_PCL=ON")));
+  EXPECT_THROW(read_pcd(folder / "velodyne/000000.pcd"), DataError);
+}
+
+}  // namespace
+}  // namespace mosbench
