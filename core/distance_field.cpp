@@ -1,18 +1,18 @@
 #include "core/distance_field.hpp"
 
 #include <algorithm>
-#include <limits>
 
 #include "core/multiarch.hpp"
 
 namespace mosbench {
 namespace {
 
-constexpr int kMaxNarrowRadius = 14;
-constexpr int kMaxSide = kBlockSide + 2 * kMaxHalo;
+constexpr std::size_t kPlane = kBlockSide * kBlockSide;
 
-template <typename Distance>
-inline constexpr Distance kFar = std::numeric_limits<Distance>::max();
+/// Stands for "no source in reach": not below (radius + 1)^2, and small enough that a square of
+/// (radius + 7)^2 on top does not overflow a byte where bytes are used.
+int far_of(int radius) { return (radius + 1) * (radius + 1); }
+constexpr int kMaxNarrowRadius = 6;
 
 template <typename Distance>
 std::vector<std::array<Distance, kBlockSide>> row_table(int radius) {
@@ -22,28 +22,49 @@ std::vector<std::array<Distance, kBlockSide>> row_table(int radius) {
     for (int bits = 0; bits < 256; ++bits) {
       auto& distances = table.emplace_back();
       for (int x = 0; x < kBlockSide; ++x) {
-        int best = std::numeric_limits<int>::max();
+        int best = far_of(radius);
         for (int bit = 0; bit < 8; ++bit) {
           const int offset = piece * 8 + bit - radius - x;
-          if ((bits >> bit & 1) != 0 && std::abs(offset) <= radius) {
-            best = std::min(best, offset * offset);
-          }
+          if ((bits >> bit & 1) != 0) best = std::min(best, offset * offset);
         }
-        distances[static_cast<std::size_t>(x)] =
-            best == std::numeric_limits<int>::max() ? kFar<Distance> : static_cast<Distance>(best);
+        distances[static_cast<std::size_t>(x)] = static_cast<Distance>(best);
       }
     }
   }
   return table;
 }
 
-/// out[i] = min(out[i], in[i] + square), saturating at kFar.
+/// Squared distances of the eight cells of a row along x.
 template <typename Distance>
-inline void lower(Distance* out, const Distance* in, std::size_t count, int square) {
-  const auto highest = static_cast<Distance>(kFar<Distance> - square);
-  for (std::size_t i = 0; i < count; ++i) {
-    const Distance sum = static_cast<Distance>(std::min(in[i], highest) + square);
-    out[i] = std::min(out[i], sum);
+inline std::array<Distance, kBlockSide> along_x(std::uint64_t bits,
+                                                const std::array<Distance, kBlockSide>* piece) {
+  std::array<Distance, kBlockSide> nearest = piece[bits & 0xFFu];
+  for (bits >>= 8, piece += 256; bits != 0; bits >>= 8, piece += 256) {
+    const std::array<Distance, kBlockSide>& other = piece[bits & 0xFFu];
+    for (std::size_t i = 0; i < kBlockSide; ++i) nearest[i] = std::min(nearest[i], other[i]);
+  }
+  return nearest;
+}
+
+/// plane[y][x] = min(plane[y][x], row[x] + (y - row's y)^2).
+template <typename Distance>
+inline void lower_plane(Distance* __restrict plane, const std::array<Distance, kBlockSide>& row,
+                        int row_y) {
+  for (int y = 0; y < kBlockSide; ++y) {
+    const auto square = static_cast<Distance>((y - row_y) * (y - row_y));
+    for (int x = 0; x < kBlockSide; ++x) {
+      const auto sum = static_cast<Distance>(row[static_cast<std::size_t>(x)] + square);
+      plane[y * kBlockSide + x] = std::min(plane[y * kBlockSide + x], sum);
+    }
+  }
+}
+
+/// nearest[i] = min(nearest[i], plane[i] + square).
+template <typename Distance>
+inline void lower_block(Distance* __restrict nearest, const Distance* __restrict plane,
+                        Distance square) {
+  for (std::size_t i = 0; i < kPlane; ++i) {
+    nearest[i] = std::min(nearest[i], static_cast<Distance>(plane[i] + square));
   }
 }
 
@@ -51,38 +72,28 @@ template <typename Distance>
 inline __attribute__((always_inline)) void transform(const HaloRows& sources,
                                                      const std::array<Distance, kBlockSide>* table,
                                                      BlockDistances& distances) {
-  constexpr std::size_t kPlane = kBlockSide * kBlockSide;
   const int radius = sources.radius, side = sources.side;
+  const auto far = static_cast<Distance>(far_of(radius));
   alignas(64) std::array<Distance, kPlane * kBlockSide> nearest;
-  nearest.fill(kFar<Distance>);
-  alignas(64) std::array<Distance, kMaxSide * kBlockSide> rows;
+  nearest.fill(far);
   alignas(64) std::array<Distance, kPlane> plane;
   for (int z = 0; z < side; ++z) {
-    std::uint64_t any = 0;
-    for (int y = 0; y < side; ++y) any |= sources.row(z, y);
-    if (any == 0) continue;
+    plane.fill(far);
+    bool any = false;
     for (int y = 0; y < side; ++y) {
-      Distance* row = &rows[static_cast<std::size_t>(y) * kBlockSide];
-      std::fill_n(row, kBlockSide, kFar<Distance>);
-      const std::array<Distance, kBlockSide>* piece = table;
-      for (std::uint64_t bits = sources.row(z, y); bits != 0; bits >>= 8, piece += 256) {
-        lower(row, piece[bits & 0xFFu].data(), kBlockSide, 0);
-      }
+      const std::uint64_t bits = sources.row(z, y);
+      if (bits == 0) continue;
+      lower_plane(plane.data(), along_x(bits, table), y - radius);
+      any = true;
     }
-    plane.fill(kFar<Distance>);
-    for (int offset = -radius; offset <= radius; ++offset) {
-      lower(plane.data(), &rows[static_cast<std::size_t>(radius + offset) * kBlockSide], kPlane,
-            offset * offset);
-    }
+    if (!any) continue;
     for (int out = std::max(0, z - 2 * radius); out <= std::min(kBlockSide - 1, z); ++out) {
       const int offset = out + radius - z;
-      lower(&nearest[static_cast<std::size_t>(out) * kPlane], plane.data(), kPlane,
-            offset * offset);
+      lower_block(&nearest[static_cast<std::size_t>(out) * kPlane], plane.data(),
+                  static_cast<Distance>(offset * offset));
     }
   }
-  for (std::size_t i = 0; i < nearest.size(); ++i) {
-    distances[i] = nearest[i] == kFar<Distance> ? kFarAway : nearest[i];
-  }
+  std::copy(nearest.begin(), nearest.end(), distances.begin());
 }
 
 MOSBENCH_MULTIARCH void transform_narrow(const HaloRows& sources,

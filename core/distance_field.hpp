@@ -10,7 +10,6 @@ namespace mosbench {
 
 /// Squared distance in voxels from each cell of a block.
 using BlockDistances = std::array<std::uint16_t, kBlockVoxels>;
-inline constexpr std::uint16_t kFarAway = 0xFFFF;
 
 /// Squared Euclidean distances d^2 / Delta^2 from every cell of a block to the nearest source
 /// voxel: exact below (radius + 1)^2; what is not below may be any number that is not either.
@@ -30,7 +29,7 @@ class DistanceField {
 
   int radius_;
   // Entry [8-bit piece * 256 + its bits]: squared x distances of the eight cells of a row.
-  RowTable<std::uint8_t> narrow_;  // while (radius + 1)^2 fits a byte
+  RowTable<std::uint8_t> narrow_;  // while (radius + 1)^2 + (radius + 7)^2 fits a byte
   RowTable<std::uint16_t> wide_;
 };
 

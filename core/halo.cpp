@@ -3,48 +3,65 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <type_traits>
 
 #include "core/multiarch.hpp"
 
 namespace mosbench {
 namespace {
 
-/// Places eight bits at a signed position of a row.
-std::uint64_t placed(std::uint64_t byte, int position) {
-  return position >= 0 ? byte << position : byte >> -position;
+/// `Reach` is a number or, for the common one, a constant that unrolls the inner loop.
+template <typename Reach>
+inline void gather(std::span<const BlockMask* const> masks, Reach reach, int radius,
+                   HaloRows& halo) {
+  const int blocks = 2 * reach + 1;
+  const std::uint64_t row_mask = ~std::uint64_t{0} >> (64 - halo.side);
+  // Rows are put together from the lowest x bit that any of the blocks has.
+  const int skipped = reach * kBlockSide - radius;
+  std::array<std::uint64_t, 2 * ((kMaxHalo + 7) / kBlockSide) + 1> words{};
+  std::uint64_t any = 0;
+  std::uint64_t* row = halo.rows.data();
+  for (int z = -radius; z < kBlockSide + radius; ++z) {
+    for (int by = -reach; by <= reach; ++by) {
+      const int first_y = std::max(by * kBlockSide, -radius);
+      const int last_y = std::min(by * kBlockSide + kBlockSide, kBlockSide + radius);
+      const std::size_t first =
+          static_cast<std::size_t>((((z >> 3) + reach) * blocks + by + reach) * blocks);
+      std::uint64_t any_here = 0;
+      for (std::size_t bx = 0; bx < static_cast<std::size_t>(blocks); ++bx) {
+        const BlockMask* mask = masks[first + bx];
+        words[bx] = mask == nullptr ? 0 : mask->words[static_cast<std::size_t>(z & 7)];
+        any_here |= words[bx];
+      }
+      if (any_here == 0) {
+        row = std::fill_n(row, last_y - first_y, std::uint64_t{0});
+        continue;
+      }
+      for (int y = first_y; y < last_y; ++y) {
+        std::uint64_t bits = (words[0] >> ((y & 7) * 8) & 0xFFu) >> skipped;
+        for (int bx = 1; bx < blocks; ++bx) {
+          bits |= (words[static_cast<std::size_t>(bx)] >> ((y & 7) * 8) & 0xFFu)
+                  << (bx * kBlockSide - skipped);
+        }
+        *row = bits & row_mask;
+        any |= *row++;
+      }
+    }
+  }
+  halo.any = any != 0;
 }
 
 }  // namespace
 
 void gather_halo(std::span<const BlockMask* const> masks, int radius, HaloRows& halo) {
-  const int reach = reach_of_halo(radius), blocks = 2 * reach + 1;
   halo.radius = radius;
   halo.side = kBlockSide + 2 * radius;
-  halo.rows.assign(static_cast<std::size_t>(halo.side * halo.side), 0);
-  const std::uint64_t row_mask = ~std::uint64_t{0} >> (64 - halo.side);
-  std::uint64_t any = 0;
-  for (int z = -radius; z < kBlockSide + radius; ++z) {
-    const auto word = static_cast<std::size_t>(z & 7);
-    for (int by = -reach; by <= reach; ++by) {
-      const std::size_t first_mask =
-          static_cast<std::size_t>((((z >> 3) + reach) * blocks + by + reach) * blocks);
-      for (int bx = -reach; bx <= reach; ++bx) {
-        const BlockMask* mask = masks[first_mask + static_cast<std::size_t>(bx + reach)];
-        if (mask == nullptr || mask->words[word] == 0) continue;
-        const int first_y = std::max(by * kBlockSide, -radius);
-        const int last_y = std::min(by * kBlockSide + kBlockSide, kBlockSide + radius);
-        const int position = bx * kBlockSide + radius;
-        std::uint64_t* rows = &halo.rows[static_cast<std::size_t>((z + radius) * halo.side)];
-        std::uint64_t bits = mask->words[word] >> ((first_y & 7) * 8);
-        for (int y = first_y; y < last_y; ++y, bits >>= 8) {
-          const std::uint64_t row = placed(bits & 0xFFu, position) & row_mask;
-          rows[y + radius] |= row;
-          any |= row;
-        }
-      }
-    }
+  halo.rows.resize(static_cast<std::size_t>(halo.side * halo.side));
+  if (reach_of_halo(radius) == 1) {
+    gather(masks, std::integral_constant<int, 1>{}, radius, halo);
+  } else {
+    gather(masks, reach_of_halo(radius), radius, halo);
   }
-  halo.any = any != 0;
 }
 
 BlockMask dilate(const HaloRows& halo) {

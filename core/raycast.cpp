@@ -2,8 +2,14 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstring>
+#include <new>
 #include <numeric>
+#include <span>
+
+#include "core/multiarch.hpp"
 
 namespace mosbench {
 
@@ -13,15 +19,13 @@ struct RaycastScratch::Ray {
 };
 
 /// Bits of a box of voxels around the sensor, a byte for eight voxels along x, in tiles of 4x4x4
-/// blocks (one page each). The byte address of a voxel is the sum of three table entries, one per
-/// axis.
+/// blocks (one page each). Numbers of tiles are powers of two, so that an address is put together
+/// by shifting coordinates.
 struct RaycastScratch::Window {
-  static constexpr int kTileSide = 32;
-  static constexpr std::size_t kTileBytes = 4096;
+  static constexpr std::uint32_t kTileSide = 32;
+  static constexpr std::uint32_t kTileBytes = 4096;
 
-  std::array<std::vector<std::uint32_t>, 3> offsets;
-  std::vector<std::uint8_t> x_bits;
-  std::array<std::size_t, 3> tiles{};
+  std::array<int, 3> log2_tiles{};  ///< along x, y, z
   std::size_t capacity_tiles = 0;
   struct Free {
     void operator()(std::uint8_t* pointer) const { std::free(pointer); }
@@ -30,11 +34,24 @@ struct RaycastScratch::Window {
   std::vector<std::uint8_t> tile_touched;
   std::vector<std::uint32_t> touched_tiles;
 
-  void lay_out(const std::array<std::size_t, 3>& tiles_per_axis);
+  void lay_out(const std::array<int, 3>& log2_tiles_per_axis);
+  int y_shift() const { return 12 + log2_tiles[0]; }
+  int z_shift() const { return y_shift() + log2_tiles[1]; }
   void touch(std::uint32_t tile) {
     if (tile_touched[tile] != 0) return;
     tile_touched[tile] = 1;
     touched_tiles.push_back(tile);
+  }
+  /// Touches every tile that a line may have crossed between two that lie at most one apart per
+  /// axis.
+  void touch_between(std::uint32_t a, std::uint32_t b) {
+    touch(b);
+    if (a == b) return;
+    const std::uint32_t x = (1u << log2_tiles[0]) - 1;
+    const std::uint32_t y = (1u << (log2_tiles[0] + log2_tiles[1])) - 1 - x;
+    for (const std::uint32_t of_b : {0u, x, y, x | y, ~(x | y), ~y, ~x}) {
+      touch((a & ~of_b) | (b & of_b));
+    }
   }
 };
 
@@ -43,35 +60,18 @@ RaycastScratch::~RaycastScratch() = default;
 RaycastScratch::RaycastScratch(RaycastScratch&&) noexcept = default;
 RaycastScratch& RaycastScratch::operator=(RaycastScratch&&) noexcept = default;
 
-void RaycastScratch::Window::lay_out(const std::array<std::size_t, 3>& tiles_per_axis) {
-  const std::size_t count = tiles_per_axis[0] * tiles_per_axis[1] * tiles_per_axis[2];
+void RaycastScratch::Window::lay_out(const std::array<int, 3>& log2_tiles_per_axis) {
+  log2_tiles = log2_tiles_per_axis;
+  const std::size_t count = std::size_t{1} << (log2_tiles[0] + log2_tiles[1] + log2_tiles[2]);
   if (count > capacity_tiles) {
     bits.reset();
-    capacity_tiles = count + count / 4;
+    capacity_tiles = count;
     // calloc, not vector: pages that no ray touches must stay unmapped.
     bits.reset(static_cast<std::uint8_t*>(std::calloc(capacity_tiles, kTileBytes)));
     if (!bits) throw std::bad_alloc();
   }
   tile_touched.assign(count, 0);
   touched_tiles.clear();
-  if (tiles == tiles_per_axis) return;
-  tiles = tiles_per_axis;
-  // Bytes per step of (voxel in block, block in tile, tile), x fastest.
-  const std::array<std::array<std::size_t, 3>, 3> strides{
-      {{0, 64, kTileBytes},
-       {1, 256, kTileBytes * tiles[0]},
-       {8, 1024, kTileBytes * tiles[0] * tiles[1]}}};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    offsets[axis].clear();
-    for (std::size_t c = 0; c < tiles[axis] * kTileSide; ++c) {
-      offsets[axis].push_back(static_cast<std::uint32_t>(
-          c % 8 * strides[axis][0] + c / 8 % 4 * strides[axis][1] + c / 32 * strides[axis][2]));
-    }
-  }
-  x_bits.clear();
-  for (std::size_t c = 0; c < tiles[0] * kTileSide; ++c) {
-    x_bits.push_back(static_cast<std::uint8_t>(1u << (c % 8)));
-  }
 }
 
 namespace {
@@ -171,8 +171,7 @@ struct Walk {
   std::array<std::int64_t, 3> at, step;
 
   Walk(const Ray& ray, const std::array<std::int32_t, 3>& sensor) {
-    const std::int32_t longest = std::max(longest_side(ray), 1);
-    const Line line = line_of(longest);
+    const Line line = line_of(std::max(longest_side(ray), 1));
     const std::array<std::int32_t, 3> d{ray.dx, ray.dy, ray.dz};
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const std::int64_t forward = std::int64_t{sensor[axis]} << kFraction;
@@ -185,99 +184,190 @@ struct Walk {
   }
 };
 
-void touch_tiles(const Ray& ray, const Walk& walk, Window& window) {
-  constexpr std::int32_t kStride = 16;
-  std::array<std::size_t, 3> previous{};
-  for (std::int32_t i = 0;; i = std::min(i + kStride, ray.visits - 1)) {
-    std::array<std::size_t, 3> tile{};
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      tile[axis] =
-          static_cast<std::size_t>((walk.at[axis] + i * walk.step[axis]) >> (kFraction + 5));
-    }
-    if (i == 0) previous = tile;
-    // Between two samples a line may cross any tile of the box that they span.
-    for (std::size_t z = std::min(tile[2], previous[2]); z <= std::max(tile[2], previous[2]); ++z) {
-      for (std::size_t y = std::min(tile[1], previous[1]); y <= std::max(tile[1], previous[1]);
-           ++y) {
-        for (std::size_t x = std::min(tile[0], previous[0]); x <= std::max(tile[0], previous[0]);
-             ++x) {
-          window.touch(static_cast<std::uint32_t>((z * window.tiles[1] + y) * window.tiles[0] + x));
-        }
-      }
-    }
-    if (i == ray.visits - 1) return;
-    previous = tile;
-  }
+/// Byte address of a voxel; the bit is x % 8. `Number` may be a vector of lanes.
+template <typename Number>
+inline __attribute__((always_inline)) void address_of(const Number& x, const Number& y,
+                                                      const Number& z, int y_shift, int z_shift,
+                                                      Number& address) {
+  const Number in_block = (y & 7) + ((z & 7) << 3);
+  const Number in_tile = ((x & 24) << 3) + ((y & 24) << 5) + ((z & 24) << 7);
+  address = in_block + in_tile + ((x >> 5) << 12) + ((y >> 5) << y_shift) + ((z >> 5) << z_shift);
 }
 
+/// Lines are looked at every so many steps for the tiles they cross: at most one per axis between.
+constexpr std::int32_t kTouchStride = 16;
+
+/// One ray of any length.
 void cast(const Ray& ray, const std::array<std::int32_t, 3>& sensor, Window& window) {
-  Walk walk(ray, sensor);
-  touch_tiles(ray, walk, window);
-  const std::uint32_t* x_offsets = window.offsets[0].data();
-  const std::uint32_t* y_offsets = window.offsets[1].data();
-  const std::uint32_t* z_offsets = window.offsets[2].data();
-  const std::uint8_t* x_bits = window.x_bits.data();
-  std::uint8_t* bits = window.bits.get();
+  const Walk walk(ray, sensor);
   std::int64_t x = walk.at[0], y = walk.at[1], z = walk.at[2];
+  std::uint32_t tile = 0;
   for (std::int32_t i = 0; i < ray.visits; ++i) {
     const auto column = static_cast<std::size_t>(x >> kFraction);
-    const std::size_t address = std::size_t{x_offsets[column]} +
-                                y_offsets[static_cast<std::size_t>(y >> kFraction)] +
-                                z_offsets[static_cast<std::size_t>(z >> kFraction)];
-    bits[address] |= x_bits[column];
+    std::size_t address;
+    address_of(column, static_cast<std::size_t>(y >> kFraction),
+               static_cast<std::size_t>(z >> kFraction), window.y_shift(), window.z_shift(),
+               address);
+    window.bits.get()[address] |= static_cast<std::uint8_t>(1u << (column & 7));
+    if (i % kTouchStride == 0 || i == ray.visits - 1) {
+      const auto here = static_cast<std::uint32_t>(address / Window::kTileBytes);
+      window.touch_between(i == 0 ? here : tile, here);
+      tile = here;
+    }
     x += walk.step[0];
     y += walk.step[1];
     z += walk.step[2];
   }
 }
 
-}  // namespace
+/// Eight rays of similar length in step: 32-bit fixed point, increments rounded up, exact while
+/// visits * M < 2^kLaneFraction.
+constexpr int kLaneFraction = 21;
+constexpr std::size_t kLanes = 8;
+constexpr std::int32_t kMaxLaneCoordinate = (1 << (32 - kLaneFraction)) - 2;
+using Lanes = std::uint32_t __attribute__((vector_size(4 * kLanes)));
+using FloatLanes = float __attribute__((vector_size(4 * kLanes)));
+using IntLanes = std::int32_t __attribute__((vector_size(4 * kLanes)));
 
-ObservedVoxels raycast(const VoxelSet& measured, const Voxel& sensor, double voxel_size_m,
-                       double max_range_m, RaycastScratch& scratch, ThreadPool& pool) {
-  Bounds bounds;
-  collect_rays(measured, sensor, voxel_size_m, max_range_m, scratch.rays, bounds);
+bool fits_lanes(const Ray& ray) {
+  return std::int64_t{ray.visits} * longest_side(ray) < (std::int64_t{1} << kLaneFraction);
+}
 
-  // The window starts at a tile corner of its own, aligned to blocks.
-  const std::array<std::int32_t, 3> s{sensor.x, sensor.y, sensor.z};
-  std::array<std::int32_t, 3> first_block{}, sensor_in_window{};
-  std::array<std::size_t, 3> tiles{};
+struct LaneWalks {
+  Lanes at[3], step[3];
+  IntLanes last;  ///< step of the last visit
+};
+
+void set_lane(const Ray& ray, const std::array<std::int32_t, 3>& sensor, std::size_t lane,
+              LaneWalks& walks) {
+  const std::int32_t longest = std::max(longest_side(ray), 1);
+  const double scale = static_cast<double>(1 << kLaneFraction);
+  const auto start =
+      static_cast<std::uint32_t>(std::ceil((longest - 1 - longest / 2) * scale / longest));
+  const std::array<std::int32_t, 3> d{ray.dx, ray.dy, ray.dz};
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    first_block[axis] = (s[axis] + bounds.low[axis]) >> 3;
-    sensor_in_window[axis] = s[axis] - first_block[axis] * kBlockSide;
-    tiles[axis] =
-        static_cast<std::size_t>(sensor_in_window[axis] + bounds.high[axis]) / Window::kTileSide +
-        1;
+    const auto speed = static_cast<std::uint32_t>(std::ceil(std::abs(d[axis]) * scale / longest));
+    const std::uint32_t origin = static_cast<std::uint32_t>(sensor[axis]) << kLaneFraction;
+    walks.at[axis][lane] =
+        d[axis] < 0 ? origin + (1u << kLaneFraction) - 1u - start : origin + start;
+    walks.step[axis][lane] = d[axis] < 0 ? 0u - speed : speed;
   }
-  if (scratch.windows.size() < pool.size()) scratch.windows.resize(pool.size());
-  for (unsigned thread = 0; thread < pool.size(); ++thread) scratch.windows[thread].lay_out(tiles);
+  walks.last[lane] = ray.visits - 1;
+}
 
-  pool.for_ranges(scratch.rays.size(), 1024,
-                  [&](std::size_t begin, std::size_t end, unsigned thread) {
-                    Window& window = scratch.windows[thread];
-                    for (std::size_t i = begin; i < end; ++i)
-                      cast(scratch.rays[i], sensor_in_window, window);
-                  });
+/// Out of the hot loop, and only every kTouchStride steps.
+[[gnu::noinline]] void touch_lanes(const std::uint32_t* from, const std::uint32_t* to,
+                                   Window& window) {
+  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    window.touch_between(from[lane] / Window::kTileBytes, to[lane] / Window::kTileBytes);
+  }
+}
 
-  // Unite the windows and leave them zero.
-  Window& all = scratch.windows.front();
-  for (unsigned thread = 1; thread < pool.size(); ++thread) {
-    for (const std::uint32_t tile : scratch.windows[thread].touched_tiles) all.touch(tile);
+MOSBENCH_MULTIARCH void cast_lanes(std::span<const Ray> rays,
+                                   const std::array<std::int32_t, 3>& sensor, Window& window) {
+  LaneWalks walks;
+  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    set_lane(rays[std::min(lane, rays.size() - 1)], sensor, lane, walks);
+  }
+  // Locals: the byte stores below could otherwise change anything behind a reference.
+  std::uint8_t* const bits = window.bits.get();
+  const int y_shift = window.y_shift(), z_shift = window.z_shift();
+  Lanes at_x = walks.at[0], at_y = walks.at[1], at_z = walks.at[2];
+  Lanes step_x = walks.step[0], step_y = walks.step[1], step_z = walks.step[2];
+  const IntLanes last = walks.last;
+  const std::int32_t shortest = rays.front().visits - 1, longest = rays.back().visits - 1;
+  alignas(sizeof(Lanes)) std::uint32_t address[kLanes], mark[kLanes], sampled[kLanes];
+  for (std::int32_t i = 0; i <= longest; ++i) {
+    const Lanes x = at_x >> kLaneFraction, y = at_y >> kLaneFraction, z = at_z >> kLaneFraction;
+    Lanes addresses;
+    address_of(x, y, z, y_shift, z_shift, addresses);
+    // 1 << (x & 7) by way of a float's exponent, as SSE2 cannot shift lanes by different counts.
+    const Lanes exponents = ((x & 7) + 127) << 23;
+    FloatLanes powers;
+    std::memcpy(&powers, &exponents, sizeof(powers));
+    const IntLanes marks = __builtin_convertvector(powers, IntLanes);
+    std::memcpy(address, &addresses, sizeof(address));
+    std::memcpy(mark, &marks, sizeof(mark));
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      bits[address[lane]] |= static_cast<std::uint8_t>(mark[lane]);
+    }
+    if (i % kTouchStride == 0 || i == longest) {
+      touch_lanes(i == 0 ? address : sampled, address, window);
+      std::memcpy(sampled, address, sizeof(sampled));
+    }
+    if (i >= shortest) {  // rays at their end stand still
+      const IntLanes walking_signed = last > i;
+      Lanes walking;
+      std::memcpy(&walking, &walking_signed, sizeof(walking));
+      step_x &= walking;
+      step_y &= walking;
+      step_z &= walking;
+    }
+    at_x += step_x;
+    at_y += step_y;
+    at_z += step_z;
+  }
+}
+
+/// Orders rays by length, and rays of one length so that neighbours in the list are not
+/// neighbours in space: eight rays in step must not wait for each other's bytes.
+void sort_rays(const std::vector<Ray>& rays, std::vector<Ray>& sorted) {
+  std::vector<std::uint32_t> first;
+  for (const Ray& ray : rays) {
+    const auto length = static_cast<std::size_t>(ray.visits);
+    if (first.size() <= length + 1) first.resize(length + 2);
+    ++first[length + 1];
+  }
+  std::partial_sum(first.begin(), first.end(), first.begin());
+  sorted.resize(rays.size());
+  std::size_t stride = rays.size() * 5 / 8 | 1;
+  while (std::gcd(stride, rays.size()) > 1) stride += 2;
+  for (std::size_t i = 0, from = 0; i < rays.size(); ++i, from = (from + stride) % rays.size()) {
+    sorted[first[static_cast<std::size_t>(rays[from].visits)]++] = rays[from];
+  }
+}
+
+/// Casts a share of the sorted rays.
+void cast_all(std::span<const Ray> rays, const std::array<std::int32_t, 3>& sensor,
+              bool window_fits_lanes, Window& window) {
+  std::vector<Ray> group;
+  for (const Ray& ray : rays) {
+    if (window_fits_lanes && fits_lanes(ray)) {
+      group.push_back(ray);
+    } else {
+      cast(ray, sensor, window);
+    }
+    if (group.size() == kLanes || (&ray == &rays.back() && !group.empty())) {
+      cast_lanes(group, sensor, window);
+      group.clear();
+    }
+  }
+}
+
+/// Unites the threads' windows as blocks and leaves them all zero.
+ObservedVoxels collect_observed(std::vector<Window>& windows, unsigned threads,
+                                const std::array<std::int32_t, 3>& first_block) {
+  Window& all = windows.front();
+  for (unsigned thread = 1; thread < threads; ++thread) {
+    for (const std::uint32_t tile : windows[thread].touched_tiles) all.touch(tile);
   }
   ObservedVoxels observed;
   for (const std::uint32_t tile : all.touched_tiles) {
-    const std::size_t tile_x = tile % tiles[0], tile_y = tile / tiles[0] % tiles[1],
-                      tile_z = tile / tiles[0] / tiles[1];
-    for (std::size_t block = 0; block < 64; ++block) {
+    const std::uint32_t tile_x = tile & ((1u << all.log2_tiles[0]) - 1),
+                        tile_y = tile >> all.log2_tiles[0] & ((1u << all.log2_tiles[1]) - 1),
+                        tile_z = tile >> (all.log2_tiles[0] + all.log2_tiles[1]);
+    for (std::uint32_t block = 0; block < 64; ++block) {
       BlockMask mask;
-      for (unsigned thread = 0; thread < pool.size(); ++thread) {
-        Window& window = scratch.windows[thread];
-        if (window.tile_touched[tile] == 0) continue;
-        std::uint8_t* bytes = window.bits.get() + tile * Window::kTileBytes + block * 64;
+      for (unsigned thread = 0; thread < threads; ++thread) {
+        Window& window = windows[thread];
+        if (thread > 0 && window.tile_touched[tile] == 0) continue;
+        std::uint8_t* bytes =
+            window.bits.get() + std::size_t{tile} * Window::kTileBytes + block * 64;
         BlockMask part;
-        std::copy_n(bytes, 64, reinterpret_cast<std::uint8_t*>(part.words.data()));
+        std::memcpy(part.words.data(), bytes, sizeof(part.words));
+        if (!part.any()) continue;
         mask = mask | part;
-        std::fill_n(bytes, 64, std::uint8_t{0});
+        std::memset(bytes, 0, sizeof(part.words));
       }
       if (!mask.any()) continue;
       observed.blocks.push_back(
@@ -288,6 +378,39 @@ ObservedVoxels raycast(const VoxelSet& measured, const Voxel& sensor, double vox
     }
   }
   return observed;
+}
+
+}  // namespace
+
+ObservedVoxels raycast(const VoxelSet& measured, const Voxel& sensor, double voxel_size_m,
+                       double max_range_m, RaycastScratch& scratch, ThreadPool& pool) {
+  Bounds bounds;
+  collect_rays(measured, sensor, voxel_size_m, max_range_m, scratch.rays, bounds);
+
+  const std::array<std::int32_t, 3> s{sensor.x, sensor.y, sensor.z};
+  std::array<std::int32_t, 3> first_block{}, sensor_in_window{};
+  std::array<int, 3> log2_tiles{};
+  bool window_fits_lanes = true;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    first_block[axis] = (s[axis] + bounds.low[axis]) >> 3;
+    sensor_in_window[axis] = s[axis] - first_block[axis] * kBlockSide;
+    const std::int32_t highest = sensor_in_window[axis] + bounds.high[axis];
+    log2_tiles[axis] =
+        static_cast<int>(std::bit_width(static_cast<std::uint32_t>(highest) / Window::kTileSide));
+    window_fits_lanes = window_fits_lanes && highest <= kMaxLaneCoordinate;
+  }
+  if (scratch.windows.size() < pool.size()) scratch.windows.resize(pool.size());
+  for (unsigned thread = 0; thread < pool.size(); ++thread) {
+    scratch.windows[thread].lay_out(log2_tiles);
+  }
+  if (scratch.rays.empty()) return {};
+  sort_rays(scratch.rays, scratch.sorted_rays);
+  pool.for_ranges(scratch.sorted_rays.size(), 1024,
+                  [&](std::size_t begin, std::size_t end, unsigned thread) {
+                    cast_all(std::span(scratch.sorted_rays).subspan(begin, end - begin),
+                             sensor_in_window, window_fits_lanes, scratch.windows[thread]);
+                  });
+  return collect_observed(scratch.windows, pool.size(), first_block);
 }
 
 }  // namespace mosbench

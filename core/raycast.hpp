@@ -38,7 +38,7 @@ class RaycastScratch {
 ObservedVoxels raycast(const VoxelSet& measured, const Voxel& sensor, double voxel_size_m,
                        double max_range_m, RaycastScratch& scratch, ThreadPool& pool);
 
-/// Longest range in voxels, so that window offsets fit 32 bits.
+/// Longest range in voxels; the window around it must stay addressable.
 inline constexpr double kMaxRangeVoxels = 1500;
 
 }  // namespace mosbench
