@@ -110,6 +110,20 @@ MOSBENCH_MULTIARCH void transform_wide(const HaloRows& sources,
 
 }  // namespace
 
+MOSBENCH_MULTIARCH BlockMask cells_below(const BlockDistances& distances, std::size_t limit) {
+  BlockMask below;
+  const auto bound = static_cast<std::uint16_t>(limit);
+  for (std::size_t row = 0; row < kBlockVoxels / kBlockSide; ++row) {
+    std::uint16_t bits = 0;
+    for (std::size_t x = 0; x < kBlockSide; ++x) {
+      const bool is_below = distances[row * kBlockSide + x] < bound;
+      bits |= static_cast<std::uint16_t>(is_below ? 1u << x : 0u);
+    }
+    below.words[row / kBlockSide] |= std::uint64_t{bits} << (row % kBlockSide * kBlockSide);
+  }
+  return below;
+}
+
 DistanceField::DistanceField(int radius) : radius_(radius) {
   if (radius <= kMaxNarrowRadius) {
     narrow_ = row_table<std::uint8_t>(radius);

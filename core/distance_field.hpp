@@ -11,6 +11,9 @@ namespace mosbench {
 /// Squared distance in voxels from each cell of a block.
 using BlockDistances = std::array<std::uint16_t, kBlockVoxels>;
 
+/// Cells with a distance below the limit.
+BlockMask cells_below(const BlockDistances& distances, std::size_t limit);
+
 /// Squared Euclidean distances d^2 / Delta^2 from every cell of a block to the nearest source
 /// voxel: exact below (radius + 1)^2; what is not below may be any number that is not either.
 /// Separable: rows by look-up, then the lower envelope along y and along z.

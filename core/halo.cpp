@@ -3,65 +3,71 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <type_traits>
+#include <cstring>
 
 #include "core/multiarch.hpp"
 
 namespace mosbench {
 namespace {
 
-/// `Reach` is a number or, for the common one, a constant that unrolls the inner loop.
-template <typename Reach>
-inline void gather(std::span<const BlockMask* const> masks, Reach reach, int radius,
-                   HaloRows& halo) {
-  const int blocks = 2 * reach + 1;
-  const std::uint64_t row_mask = ~std::uint64_t{0} >> (64 - halo.side);
-  // Rows are put together from the lowest x bit that any of the blocks has.
-  const int skipped = reach * kBlockSide - radius;
-  std::array<std::uint64_t, 2 * ((kMaxHalo + 7) / kBlockSide) + 1> words{};
-  std::uint64_t any = 0;
-  std::uint64_t* row = halo.rows.data();
-  for (int z = -radius; z < kBlockSide + radius; ++z) {
-    for (int by = -reach; by <= reach; ++by) {
-      const int first_y = std::max(by * kBlockSide, -radius);
-      const int last_y = std::min(by * kBlockSide + kBlockSide, kBlockSide + radius);
-      const std::size_t first =
-          static_cast<std::size_t>((((z >> 3) + reach) * blocks + by + reach) * blocks);
-      std::uint64_t any_here = 0;
-      for (std::size_t bx = 0; bx < static_cast<std::size_t>(blocks); ++bx) {
-        const BlockMask* mask = masks[first + bx];
-        words[bx] = mask == nullptr ? 0 : mask->words[static_cast<std::size_t>(z & 7)];
-        any_here |= words[bx];
-      }
-      if (any_here == 0) {
-        row = std::fill_n(row, last_y - first_y, std::uint64_t{0});
-        continue;
-      }
-      for (int y = first_y; y < last_y; ++y) {
-        std::uint64_t bits = (words[0] >> ((y & 7) * 8) & 0xFFu) >> skipped;
-        for (int bx = 1; bx < blocks; ++bx) {
-          bits |= (words[static_cast<std::size_t>(bx)] >> ((y & 7) * 8) & 0xFFu)
-                  << (bx * kBlockSide - skipped);
-        }
-        *row = bits & row_mask;
-        any |= *row++;
-      }
-    }
+using Bytes = std::array<std::uint8_t, kBlockSide>;
+
+Bytes rows_of(const BlockMask* mask, int z) {
+  Bytes bytes{};
+  if (mask != nullptr) std::memcpy(bytes.data(), &mask->words[static_cast<std::size_t>(z)], 8);
+  return bytes;
+}
+
+/// Joins the rows of three blocks side by side, for halos within the next block.
+inline void join_three(const Bytes& low, const Bytes& middle, const Bytes& high, int skipped,
+                       std::uint64_t row_mask, std::uint64_t* rows) {
+  for (std::size_t y = 0; y < kBlockSide; ++y) {
+    const std::uint64_t wide =
+        std::uint64_t{low[y]} | std::uint64_t{middle[y]} << 8 | std::uint64_t{high[y]} << 16;
+    rows[y] = wide >> skipped & row_mask;
   }
-  halo.any = any != 0;
+}
+
+/// Adds the rows of one block at bit `position`, which may lie below zero.
+inline void add_rows(const Bytes& bytes, int position, std::uint64_t row_mask,
+                     std::uint64_t* rows) {
+  for (std::size_t y = 0; y < kBlockSide; ++y) {
+    const std::uint64_t byte = bytes[y];
+    rows[y] |= (position >= 0 ? byte << position : byte >> -position) & row_mask;
+  }
 }
 
 }  // namespace
 
-void gather_halo(std::span<const BlockMask* const> masks, int radius, HaloRows& halo) {
+MOSBENCH_MULTIARCH void gather_halo(std::span<const BlockMask* const> masks, int radius,
+                                    HaloRows& halo) {
+  const int reach = reach_of_halo(radius), blocks = 2 * reach + 1;
   halo.radius = radius;
   halo.side = kBlockSide + 2 * radius;
-  halo.rows.resize(static_cast<std::size_t>(halo.side * halo.side));
-  if (reach_of_halo(radius) == 1) {
-    gather(masks, std::integral_constant<int, 1>{}, radius, halo);
-  } else {
-    gather(masks, reach_of_halo(radius), radius, halo);
+  halo.stride = blocks * kBlockSide;
+  halo.first = reach * kBlockSide - radius;
+  halo.rows.assign(static_cast<std::size_t>(halo.side * halo.stride), 0);
+  const std::uint64_t row_mask = ~std::uint64_t{0} >> (64 - halo.side);
+  std::uint64_t any = 0;
+  for (int z = 0; z < halo.side; ++z) {
+    const int map_z = z - radius;
+    for (int by = 0; by < blocks; ++by) {
+      const BlockMask* const* side_by_side =
+          &masks[static_cast<std::size_t>((((map_z >> 3) + reach) * blocks + by) * blocks)];
+      std::uint64_t* rows = &halo.rows[static_cast<std::size_t>(z * halo.stride + by * kBlockSide)];
+      if (reach == 1) {
+        join_three(rows_of(side_by_side[0], map_z & 7), rows_of(side_by_side[1], map_z & 7),
+                   rows_of(side_by_side[2], map_z & 7), halo.first, row_mask, rows);
+      } else {
+        for (int bx = 0; bx < blocks; ++bx) {
+          add_rows(rows_of(side_by_side[bx], map_z & 7), bx * kBlockSide - halo.first, row_mask,
+                   rows);
+        }
+      }
+    }
+    for (int y = 0; y < halo.side; ++y) any |= halo.row(z, y);
   }
+  halo.any = any != 0;
 }
 
 BlockMask dilate(const HaloRows& halo) {

@@ -18,9 +18,14 @@ struct HaloRows {
   int radius = 0;
   int side = 0;  ///< 8 + 2 radius
   bool any = false;
-  std::vector<std::uint64_t> rows;  ///< rows[z * side + y]
 
-  std::uint64_t row(int z, int y) const { return rows[static_cast<std::size_t>(z * side + y)]; }
+  std::uint64_t row(int z, int y) const {
+    return rows[static_cast<std::size_t>(z * stride + first + y)];
+  }
+
+  // Storage: rows of whole blocks along y, so that they are gathered eight at a time.
+  int stride = 0, first = 0;
+  std::vector<std::uint64_t> rows;
 };
 
 /// Blocks per direction that a halo reaches into.

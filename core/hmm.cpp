@@ -22,37 +22,37 @@ BeliefFilter::BeliefFilter(double voxel_size_m, double sigma_m, double transitio
 }
 
 void BeliefFilter::update(const BlockMask& observed, const BlockMask& seen,
-                          const BlockDistances& distances, float* beliefs,
-                          BlockStates& states) const {
-  const std::size_t reach = likelihood_.size();
+                          const BlockDistances& distances, BlockMask& nonzero,
+                          BlockBeliefs& beliefs, BlockStates& states) const {
+  const BlockMask in_reach = observed & cells_below(distances, likelihood_.size());
+  update_far(without(observed, in_reach), nonzero, states);
   for (std::uint32_t z = 0; z < 8; ++z) {
     std::uint64_t occupied = 0, free = 0;
-    for (std::uint64_t left = observed.words[z]; left != 0; left &= left - 1) {
+    for (std::uint64_t left = in_reach.words[z]; left != 0; left &= left - 1) {
       const auto bit = static_cast<std::uint32_t>(std::countr_zero(left));
       const std::uint32_t cell = z * 64 + bit;
-      const std::uint16_t n = distances[cell];
-      float p = 0.0f;
-      if (n < reach) {
-        // x <- A x, then x <- normalize(diag(0, L, 1 - L) x), written for p(occupied) alone.
-        const float prior = seen.test(cell) ? beliefs[cell] : 0.5f;
-        const float q = epsilon_ + keep_ * prior;
-        const float hit = likelihood_[n] * q;
-        p = hit / (hit + (1.0f - likelihood_[n]) * (1.0f - q));
-      }
-      beliefs[cell] = p;
+      const float prior = nonzero.test(cell) ? beliefs.occupied[cell]
+                          : seen.test(cell)  ? 0.0f
+                                             : 0.5f;
+      // x <- A x, then x <- normalize(diag(0, L, 1 - L) x), written for p(occupied) alone.
+      const float likelihood = likelihood_[distances[cell]];
+      const float q = epsilon_ + keep_ * prior;
+      const float hit = likelihood * q;
+      const float p = hit / (hit + (1.0f - likelihood) * (1.0f - q));
+      beliefs.occupied[cell] = p;
       occupied |= std::uint64_t{p > min_probability_} << bit;
       free |= std::uint64_t{1.0f - p > min_probability_} << bit;
     }
+    nonzero.words[z] |= in_reach.words[z];
     states.occupied.words[z] = (states.occupied.words[z] & ~free) | occupied;
     states.free.words[z] = (states.free.words[z] & ~occupied) | free;
   }
 }
 
-void BeliefFilter::update_far(const BlockMask& observed, float* beliefs, BlockStates& states) {
+void BeliefFilter::update_far(const BlockMask& observed, BlockMask& nonzero, BlockStates& states) {
   states.occupied = without(states.occupied, observed);
   states.free = states.free | observed;
-  if (beliefs == nullptr) return;
-  for_each_cell(observed, [&](std::uint32_t cell) { beliefs[cell] = 0.0f; });
+  nonzero = without(nonzero, observed);
 }
 
 }  // namespace mosbench

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "core/distance_field.hpp"
@@ -10,6 +11,12 @@ namespace mosbench {
 /// Most probable states of a block's voxels. In neither mask: unobserved.
 struct BlockStates {
   BlockMask occupied, free;
+};
+
+/// p(occupied) of a block's voxels, kept only where it is neither 0 nor still the 0.5 of a voxel
+/// never seen.
+struct BlockBeliefs {
+  alignas(64) std::array<float, kBlockVoxels> occupied;  ///< valid where nonzero
 };
 
 /// The three-state filter. After its first observation a voxel is never unobserved again, so the
@@ -23,14 +30,13 @@ class BeliefFilter {
   /// Voxels per axis beyond which a likelihood cannot change a state.
   int radius() const { return radius_; }
 
-  /// algorithm step 3 for the observed voxels of a block. `beliefs` holds 512 numbers, read only
-  /// where `seen`; `states` and `beliefs` are updated.
+  /// algorithm step 3 for the observed voxels of a block. `seen` are the voxels with a record,
+  /// `nonzero` those of them with a number in `beliefs`; all others have p = 0.
   void update(const BlockMask& observed, const BlockMask& seen, const BlockDistances& distances,
-              float* beliefs, BlockStates& states) const;
+              BlockMask& nonzero, BlockBeliefs& beliefs, BlockStates& states) const;
 
-  /// The same for a block without a source in reach: every observed voxel is certainly free.
-  /// `beliefs` may be null when all of them are zero.
-  static void update_far(const BlockMask& observed, float* beliefs, BlockStates& states);
+  /// The same for voxels without a source in reach: they are certainly free.
+  static void update_far(const BlockMask& observed, BlockMask& nonzero, BlockStates& states);
 
  private:
   int radius_ = 0;

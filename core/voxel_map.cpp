@@ -10,6 +10,20 @@
 namespace mosbench {
 namespace {
 
+/// last_seen[v] = now for the voxels of the mask.
+MOSBENCH_MULTIARCH void stamp(const BlockMask& mask, std::uint16_t now,
+                              std::uint16_t* __restrict last_seen) {
+  constexpr std::array<std::uint16_t, kBlockSide> kBits{1, 2, 4, 8, 16, 32, 64, 128};
+  for (std::size_t row = 0; row < kBlockVoxels / kBlockSide; ++row, last_seen += kBlockSide) {
+    const auto bits =
+        static_cast<std::uint16_t>(mask.words[row / 8] >> (row % 8 * kBlockSide) & 0xFFu);
+    if (bits == 0) continue;
+    for (std::size_t x = 0; x < kBlockSide; ++x) {
+      last_seen[x] = (bits & kBits[x]) != 0 ? now : last_seen[x];
+    }
+  }
+}
+
 /// Ages of all voxels of a block against two limits, as masks.
 MOSBENCH_MULTIARCH void compare_ages(const std::uint16_t* last_seen, std::uint16_t now,
                                      std::uint16_t stale_age, std::uint16_t expired_age,
@@ -51,7 +65,7 @@ std::uint32_t VoxelMap::add_block(const BlockIndex& index, std::uint32_t scan_in
   block.oldest_seen = block.newest_seen = scan_index;
   block.live = true;
   block.states = {};
-  block.seen = block.stale = block.ageless = {};
+  block.seen = block.nonzero = block.stale = block.ageless = {};
   return slot;
 }
 
@@ -66,6 +80,7 @@ void VoxelMap::drop_block(std::uint32_t slot) {
 /// Takes records away as if the voxels had never been seen.
 void VoxelMap::forget(Block& block, const BlockMask& voxels) {
   block.seen = without(block.seen, voxels);
+  block.nonzero = without(block.nonzero, voxels);
   block.stale = without(block.stale, voxels);
   block.ageless = without(block.ageless, voxels);
   block.states.occupied = without(block.states.occupied, voxels);
@@ -126,10 +141,7 @@ ChangedVoxels VoxelMap::update(const ObservedVoxels& observed,
     slots_[i] = slot;
     near[i] = grid.any_around(index, reach);
     Block& block = blocks_[slot];
-    if (near[i] != 0 && block.beliefs == kNoSlot) {
-      block.beliefs = beliefs_.take();
-      beliefs_[block.beliefs].occupied.fill(0.0f);
-    }
+    if (near[i] != 0 && block.beliefs == kNoSlot) block.beliefs = beliefs_.take();
   }
 
   std::vector<BlockMask> changed(observed.blocks.size());
@@ -141,26 +153,23 @@ ChangedVoxels VoxelMap::update(const ObservedVoxels& observed,
           Block& block = blocks_[slots_[i]];
           refresh_block(block, scan_index);
           const BlockStates before = block.states;
-          float* beliefs =
-              block.beliefs == kNoSlot ? nullptr : beliefs_[block.beliefs].occupied.data();
           if (near[i] != 0) {
             grid.neighbours(block.index, reach, masks);
             gather_halo(masks, filter_.radius(), halos_[thread]);
           }
           if (near[i] != 0 && halos_[thread].any) {
             distance_field_.squared_distances(halos_[thread], distances);
-            filter_.update(observed.masks[i], block.seen, distances, beliefs, block.states);
+            filter_.update(observed.masks[i], block.seen, distances, block.nonzero,
+                           beliefs_[block.beliefs], block.states);
           } else {
-            BeliefFilter::update_far(observed.masks[i], beliefs, block.states);
+            BeliefFilter::update_far(observed.masks[i], block.nonzero, block.states);
           }
           changed[i] = detect_changes(before, block.states);
           block.seen = block.seen | observed.masks[i];
           block.stale = without(block.stale, observed.masks[i]);
           block.ageless = without(block.ageless, observed.masks[i]);
           block.newest_seen = scan_index;
-          for_each_cell(observed.masks[i], [&](std::uint32_t cell) {
-            block.last_seen[cell] = static_cast<std::uint16_t>(scan_index);
-          });
+          stamp(observed.masks[i], static_cast<std::uint16_t>(scan_index), block.last_seen.data());
         }
       });
 

@@ -64,12 +64,10 @@ class VoxelMap {
     bool live = false;
     BlockStates states;
     BlockMask seen;                                     // has a record
+    BlockMask nonzero;                                  // has a number in beliefs
     BlockMask stale;                                    // not seen for w_g scans or more
     BlockMask ageless;                                  // release-2025: stale and never to expire
     std::array<std::uint16_t, kBlockVoxels> last_seen;  // modulo 2^16; ages never reach that far
-  };
-  struct Beliefs {
-    alignas(64) std::array<float, kBlockVoxels> occupied;
   };
   struct ChangesOfScan {
     std::uint32_t scan_index;
@@ -98,7 +96,7 @@ class VoxelMap {
   double safe_path_m_;
   BlockTable table_;
   Pool<Block> blocks_;
-  Pool<Beliefs> beliefs_;
+  Pool<BlockBeliefs> beliefs_;
   std::deque<ChangesOfScan> changes_;  // the last delay + 1 scans
   std::deque<Eigen::Vector3d>
       sensors_m_;                     // the last delay + kSweepScans positions and the current one
