@@ -7,14 +7,12 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 preset=$1
 shift
 
-configure=(--preset "$preset" -DMOSBENCH_WITH_PCL="${MOSBENCH_WITH_PCL:-ON}")
-if command -v ccache >/dev/null; then configure+=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache); fi
-cmake "${configure[@]}"
-cmake --build --preset "$preset" -j "$(nproc)"
+scripts/build.sh "$preset"
 
 report=$PWD/build/$preset/tests.xml
 rm -f "$report"
-ctest --preset "$preset" -j "$(nproc)" --output-junit "$report" "$@" || true
+ctest_exit=0
+ctest --preset "$preset" -j "$(nproc)" --output-junit "$report" "$@" || ctest_exit=$?
 [ -f "$report" ] || { echo "ctest wrote no report" >&2; exit 1; }
 
 count() { sed -nE "s/^[[:space:]]*$1=\"([0-9]+)\".*/\1/p" "$report" | head -n 1; }
@@ -23,4 +21,4 @@ failed=$(count failures)
 skipped=$(($(count skipped) + $(count disabled)))
 passed=$((tests - failed - skipped))
 echo "$passed passed, $failed failed, $skipped skipped"
-[ "$failed" = 0 ] && [ "$passed" -gt 0 ]
+[ "$ctest_exit" = 0 ] && [ "$failed" = 0 ] && [ "$passed" -gt 0 ]

@@ -4,7 +4,7 @@
 # MOSBENCH_WITH_PCL=OFF leaves out PCL, which brings some 400 packages.
 set -euo pipefail
 
-packages=(g++ cmake ninja-build pkg-config git xz-utils
+packages=(g++ cmake ninja-build pkg-config git xz-utils jq bsdextrautils
   libeigen3-dev libfmt-dev nlohmann-json3-dev libcli11-dev libxxhash-dev
   libgtest-dev libgmock-dev libbenchmark-dev)
 [ "${MOSBENCH_WITH_PCL:-ON}" = OFF ] || packages+=(libpcl-dev)

@@ -1,0 +1,16 @@
+#!/usr/bin/env bash
+# build.sh PRESET [cmake --build arguments]: configures and builds, with ccache where it is there.
+# MOSBENCH_WITH_PCL, MOSBENCH_WARNINGS_AS_ERRORS and MOSBENCH_BUILD_TESTS are passed on when set.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+[ $# -ge 1 ] || { echo "usage: build.sh PRESET [cmake --build arguments]" >&2; exit 2; }
+preset=$1
+shift
+
+options=(-DMOSBENCH_WITH_PCL="${MOSBENCH_WITH_PCL:-ON}")
+for option in MOSBENCH_WARNINGS_AS_ERRORS MOSBENCH_BUILD_TESTS; do
+  [ -z "${!option:-}" ] || options+=("-D$option=${!option}")
+done
+if command -v ccache >/dev/null; then options+=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache); fi
+cmake --preset "$preset" "${options[@]}"
+cmake --build --preset "$preset" -j "$(nproc)" "$@"
