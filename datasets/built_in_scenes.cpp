@@ -115,7 +115,8 @@ Scene campus() {
   SceneBuilder add(scene, 3);
   add_campus_surroundings(add);
   for (int i = 0; i < 16; ++i) {
-    const double y_m = add.draw(-7.0, 3.5), x_m = add.draw(2.0, 80.0);
+    const double y_m = i % 2 == 0 ? add.draw(-7.0, -2.0) : add.draw(0.8, 3.5);
+    const double x_m = add.draw(2.0, 80.0);
     const double length_m = add.draw(12.0, 30.0);
     const double speed_m_s = add.draw(0.9, 1.6), wait_s = add.draw(0.0, 4.0);
     add.wanderer(MoverKind::kPedestrian, {{x_m, y_m}, {x_m + length_m, y_m + 1.0}}, speed_m_s,

@@ -35,6 +35,9 @@ struct Place {
 };
 
 std::string shown(const Json& value) {
+  // Not printed whole: a list nested a million times would print itself by recursion.
+  if (value.is_array()) return "a list";
+  if (value.is_object()) return "an object";
   const std::string text = value.dump(-1, ' ', true, Json::error_handler_t::replace);
   return text.size() <= 40 ? text : text.substr(0, 37) + "...";
 }

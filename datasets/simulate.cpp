@@ -84,9 +84,10 @@ std::string readme(const SimulatedOrigin& origin) {
   return fmt::format(
       "These scans are simulated. Nothing in this folder was recorded by a sensor, and no number\n"
       "computed from it may stand beside those published for the real data set.\n\n"
-      "Made by: mosbench simulate --layout {} --scene {} --scans {} --seed {}\n"
+      "Scene \"{}\" is in scene.json. To make the same files again:\n"
+      "mosbench simulate --layout {} --scene scene.json --scans {} --seed {} --out DIR\n"
       "{}",
-      to_string(origin.layout), origin.scene, origin.scans, origin.seed,
+      origin.scene, to_string(origin.layout), origin.scans, origin.seed,
       origin.layout == DatasetKind::kDoals
           ? "Truth is by appearance as in DOALS: a person who stands still is listed as dynamic.\n"
           : "Truth is by speed: above 0.5 m/s is moving, for vehicles above 1.0 m/s.\n");
@@ -231,6 +232,7 @@ void simulate(const SimulateOptions& options,
   }
   claim_folder(options.out, origin);
   write_file_atomic(options.out / "README.txt", readme(origin));
+  write_file_atomic(options.out / "scene.json", format_scene(scene));
 
   const std::size_t total = writers.size() * options.scans;
   std::size_t done = 0;

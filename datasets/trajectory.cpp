@@ -73,15 +73,16 @@ Eigen::Matrix3d rotation(SinCos yaw, SinCos pitch, SinCos roll) {
   return r;
 }
 
-// The mean over a second: nobody turns on the spot.
-RouteState smoothed_state(const Route& route, double time_s) {
-  constexpr int kHalfSamples = 8;
-  constexpr double kSampleStep_s = 0.0625;
+// The mean over two seconds, of a car three: nobody turns on the spot.
+RouteState smoothed_state(const Ego& ego, double time_s) {
+  constexpr int kHalfSamples = 16;
+  const double sample_step_s = (ego.carrier == Carrier::kCar ? 1.5 : 1.0) / kHalfSamples;
+  const Route& route = ego.route;
   const RouteState middle = route_state(route, time_s);
   Eigen::Vector2d position_m = Eigen::Vector2d::Zero();
   Eigen::Vector2d heading = Eigen::Vector2d::Zero();
   for (int i = -kHalfSamples; i <= kHalfSamples; ++i) {
-    const RouteState sample = route_state(route, time_s + kSampleStep_s * i);
+    const RouteState sample = route_state(route, time_s + sample_step_s * i);
     position_m += sample.position_m;
     heading += sample.heading;
   }
@@ -133,7 +134,7 @@ double ground_height_m(std::span<const GroundPlane> ground, double x_m, double y
 }
 
 Pose ego_pose(const Scene& scene, double time_s) {
-  const RouteState state = smoothed_state(scene.ego.route, time_s);
+  const RouteState state = smoothed_state(scene.ego, time_s);
   const Gait gait = gait_of(scene.ego.carrier);
   const SinCos sway = sin_cos(gait.yaw_rad.at(time_s));
   const SinCos yaw{state.heading.y() * sway.cos + state.heading.x() * sway.sin,
