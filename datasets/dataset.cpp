@@ -6,6 +6,7 @@
 
 #include "datasets/catalogue.hpp"
 #include "datasets/errors.hpp"
+#include "datasets/simulated_origin.hpp"
 
 namespace mosbench {
 namespace {
@@ -23,6 +24,11 @@ const Catalogue& catalogue_of(DatasetKind kind) {
 }
 
 const Catalogue& recognise(const std::filesystem::path& path, std::vector<std::string>& remarks) {
+  if (const auto origin = simulated_origin(path)) {
+    remarks.push_back("taken for " + std::string(to_string(origin->layout)) +
+                      ": it is simulated in this layout");
+    return catalogue_of(origin->layout);
+  }
   for (const Catalogue* catalogue : catalogues()) {
     if (const auto why = catalogue->recognise(path)) {
       remarks.push_back("taken for " + std::string(to_string(catalogue->kind)) + ": " + *why);
