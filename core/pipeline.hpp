@@ -19,7 +19,7 @@ struct ScanResult {
   std::vector<std::uint32_t> labels;  ///< kStaticLabel or kMovingLabel, one per pushed point
   std::optional<double> threshold;   ///< Otsu's T; nothing when no detection ran or no level exists
   std::size_t nonfinite_points = 0;  ///< NaN or infinite, left out of the map, labelled static
-  StageTimes stage_times;            ///< of the push that took this scan in
+  StageTimes stage_times{};          ///< of the push that took this scan in
 };
 
 /// The whole method: push scans in order, receive labels. Independent pipelines share nothing.

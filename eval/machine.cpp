@@ -1,0 +1,45 @@
+#include "eval/machine.hpp"
+
+#include <sys/utsname.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <string>
+#include <thread>
+
+namespace mosbench {
+namespace {
+
+std::string processor_name() {
+  std::ifstream cpuinfo("/proc/cpuinfo");
+  for (std::string line; std::getline(cpuinfo, line);) {
+    const std::size_t colon = line.find(": ");
+    if (line.starts_with("model name") && colon != std::string::npos) {
+      return line.substr(colon + 2);
+    }
+  }
+  return "unknown";
+}
+
+double page_mib() { return static_cast<double>(sysconf(_SC_PAGESIZE)) / 1048576.0; }
+
+}  // namespace
+
+nlohmann::ordered_json machine_json() {
+  utsname system{};
+  uname(&system);
+  return {{"processor", processor_name()},
+          {"logical_cores", std::thread::hardware_concurrency()},
+          {"memory_mib", static_cast<double>(sysconf(_SC_PHYS_PAGES)) * page_mib()},
+          {"system", std::string(system.sysname) + " " + system.machine}};
+}
+
+double resident_mib() {
+  std::ifstream statm("/proc/self/statm");
+  double total_pages = 0.0;
+  double resident_pages = 0.0;
+  statm >> total_pages >> resident_pages;
+  return statm ? resident_pages * page_mib() : 0.0;
+}
+
+}  // namespace mosbench

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <string>
+
+namespace mosbench {
+
+/// Tells on stderr how far a sequence is: one rewritten line on a terminal, a plain line every few
+/// seconds elsewhere.
+class Progress {
+ public:
+  Progress(std::string title, std::size_t scans);
+  /// Ends the terminal line so that whatever follows starts on its own.
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  /// To be called after each scan.
+  void advance();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  void print(Clock::time_point now);
+
+  std::string title_;
+  std::size_t scans_;
+  std::size_t done_ = 0;
+  bool terminal_;
+  bool line_open_ = false;
+  Clock::time_point start_ = Clock::now();
+  Clock::time_point printed_ = start_;
+};
+
+/// "41 s", "3 min 05 s" or "2 h 07 min".
+std::string duration_text(double seconds_s);
+
+}  // namespace mosbench

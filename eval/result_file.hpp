@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/stage_times.hpp"
+#include "eval/confusion.hpp"
+
+namespace mosbench {
+
+/// What a run found out about one scan. Depends on nothing but the input, the configuration and the
+/// code.
+struct ScanRow {
+  std::string stem;
+  std::size_t points = 0;
+  std::size_t predicted_moving_points = 0;
+  std::size_t nonfinite_points = 0;
+  std::optional<double> threshold;  ///< Otsu's T, see ScanResult
+  std::optional<Confusion> counts;  ///< when the scan has truth
+};
+
+/// What one scan cost: wall milliseconds, and the memory the process held after it.
+struct ScanCost {
+  double read_ms = 0.0;  ///< spent waiting for the scan; with several threads it is read ahead
+  double push_ms = 0.0;  ///< the whole method
+  StageTimes stages_ms{};
+  double resident_mib = 0.0;
+};
+
+/// Everything per scan of one sequence, in scan order.
+struct SequenceRows {
+  std::vector<ScanRow> scans;
+  std::vector<ScanCost> costs;  ///< as many as scans
+  double wall_s = 0.0;
+  std::string fingerprint;  ///< of the frames, see ContentFingerprint
+};
+
+/// Mean of ScanCost::push_ms; nothing without scans.
+std::optional<double> method_ms_per_scan(const SequenceRows& rows);
+
+/// Text of a result.json: the members of `header`, then the scans, then under the one key "timing"
+/// what depends on the clock or on `threads`, together with the members of `clock_header`.
+std::string format_result(const nlohmann::ordered_json& header, const SequenceRows& rows,
+                          unsigned threads, const nlohmann::ordered_json& clock_header);
+
+struct ResultFile {
+  nlohmann::ordered_json content;
+  SequenceRows rows;
+};
+
+/// Reads what `format_result` wrote; throws DataError naming the file for anything else.
+ResultFile read_result(const std::filesystem::path& file);
+
+}  // namespace mosbench

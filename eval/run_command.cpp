@@ -1,0 +1,73 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "eval/commands.hpp"
+#include "eval/run_execute.hpp"
+#include "eval/run_plan.hpp"
+#include "eval/run_report.hpp"
+
+namespace mosbench {
+namespace {
+
+constexpr const char* kFooter =
+    R"(Writes DIR/<sequence>/labels/<stem>.label (uint32, 9 static or 251 moving, one per point) and
+DIR/<sequence>/result.json, and prints IoU, precision, recall and ms per scan where there is truth.
+
+The same command again skips the sequences that are finished and starts an interrupted one anew: the
+method's memory spans the whole past, so scans cannot be skipped. A sequence appears under DIR when it
+is finished; until then it is written to DIR/<sequence>.partial. Results of another configuration,
+program or input are kept unless --overwrite is given.
+
+Configuration: defaults < preset < --config FILE < --set. FILE holds a JSON object such as
+  {"voxel_size_m": 0.25, "max_range_m": 50.0, "delay_scans": 10}
+occupancy_sigma_m follows voxel_size_m when it is not set. `mosbench list presets` shows the presets.
+
+Examples:
+  mosbench run ~/sipailou-livox-kitti
+  mosbench run ~/doals --preset doals-120m --sequences station/sequence_1,station/sequence_2
+  mosbench run ~/HeLiMOS/KAIST05/Deskewed_LiDAR --preset helimos-delayed --protocol helimos-test
+  mosbench run ~/kitti/sequences/08 --set max_range_m=30 voxel_size_m=0.2 --out results/runs/08-near
+  mosbench run sim/00 --config near.json --variant release-2025 --threads 4 --json)";
+
+std::string run(const RunOptions& options) {
+  const RunPlan plan = plan_run(options);
+  const std::vector<SequenceOutcome> outcomes = execute_run(plan);
+  return options.json ? run_report_json(plan, outcomes) : run_report_text(plan, outcomes);
+}
+
+}  // namespace
+
+void add_run_command(CLI::App& app, std::string& answer) {
+  auto options = std::make_shared<RunOptions>();
+  CLI::App* command = app.add_subcommand("run", "Segment sequences and score the result");
+  command->add_option("DATA", options->input, "Root of a data set, or one sequence folder")
+      ->required();
+  command
+      ->add_option("--dataset", options->dataset, "auto, doals, sipailou, helimos or semantickitti")
+      ->capture_default_str();
+  command->add_option("--sequences", options->sequences, "Names to run, a,b (default: all)")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  command->add_option("--preset", options->preset, "Published settings (default: by data set)");
+  command->add_option("--variant", options->variant,
+                      "paper-2024 (default) or release-2025, the authors' later program");
+  command->add_option("--config", options->config_file, "JSON object of configuration keys");
+  command->add_option("--set", options->assignments, "key=value ..., over everything else")
+      ->allow_extra_args(false);
+  command->add_option("--poses", options->poses, "Pose file instead of the sequence's own");
+  command->add_option("--threads", options->threads, "Results do not depend on it (default: all)")
+      ->check(CLI::Range(1U, 1024U));
+  command->add_option("--protocol", options->protocol, "How to score (default: by preset)");
+  command->add_option("--range", options->range,
+                      "MIN,MAX in metres, for protocols that limit it (default: the run's own)");
+  command->add_option("--out", options->out,
+                      "Where results go (default: results/runs/<data>-<preset>-<variant>)");
+  command->add_flag("--overwrite", options->overwrite, "Run anew and replace what is in --out");
+  command->add_flag("--json", options->json, "Print JSON instead of a table");
+  command->footer(kFooter);
+  command->callback([options, &answer] { answer = run(*options); });
+}
+
+}  // namespace mosbench

@@ -1,0 +1,162 @@
+#include "eval/sequence_runner.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <deque>
+#include <future>
+#include <stdexcept>
+
+#include "core/pipeline.hpp"
+#include "datasets/errors.hpp"
+#include "datasets/fingerprint.hpp"
+#include "datasets/label_file.hpp"
+#include "eval/machine.hpp"
+#include "eval/progress.hpp"
+
+namespace mosbench {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double milliseconds_since(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+/// What scoring needs of a scan until its labels are final.
+struct PendingScan {
+  std::string stem;
+  std::size_t points = 0;
+  std::optional<std::vector<std::uint32_t>> truth;
+  std::vector<Point> truth_points;  ///< only with truth, and only when the protocol has a range
+};
+
+std::filesystem::path scan_file(const Sequence& sequence, const std::string& stem) {
+  const std::vector<std::filesystem::path> files = sequence.files();
+  const auto found = std::ranges::find_if(files, [&](const std::filesystem::path& file) {
+    return file.stem() == stem && file.extension() != ".label";
+  });
+  return found == files.end() ? std::filesystem::path(sequence.name()) / stem : *found;
+}
+
+class SequenceRun {
+ public:
+  SequenceRun(const Sequence& sequence, const RunSettings& settings,
+              const std::filesystem::path& label_folder)
+      : sequence_(sequence),
+        settings_(settings),
+        label_folder_(label_folder),
+        // A deferred task runs inside get(), on this thread: one thread then means one thread.
+        launch_(settings.threads > 1 ? std::launch::async : std::launch::deferred),
+        pipeline_(settings.config, settings.variant, settings.threads, sequence.size()) {}
+
+  SequenceRows run() {
+    const Clock::time_point start = Clock::now();
+    Progress progress(sequence_.name(), sequence_.size());
+    std::future<Frame> upcoming = start_reading(0);
+    for (std::size_t k = 0; k < sequence_.size(); ++k) {
+      const Clock::time_point read_start = Clock::now();
+      Frame frame = upcoming.get();
+      ScanCost& cost = rows_.costs.emplace_back();
+      cost.read_ms = milliseconds_since(read_start);
+      if (k + 1 < sequence_.size()) upcoming = start_reading(k + 1);
+      push(std::move(frame));
+      progress.advance();
+    }
+    for (ScanResult& result : pipeline_.finish()) accept(std::move(result));
+    finish_writing();
+    rows_.fingerprint = fingerprint_.hex();
+    rows_.wall_s = milliseconds_since(start) / 1e3;
+    return std::move(rows_);
+  }
+
+ private:
+  std::future<Frame> start_reading(std::size_t scan_index) {
+    // One reading at a time, so the fingerprint sees the frames in order.
+    return std::async(launch_, [this, scan_index] {
+      Frame frame = sequence_.read(scan_index);
+      fingerprint_.add(frame);
+      return frame;
+    });
+  }
+
+  void push(Frame frame) {
+    const Clock::time_point start = Clock::now();
+    std::vector<ScanResult> finals;
+    try {
+      finals = pipeline_.push(frame.points, frame.map_from_sensor);
+    } catch (const std::range_error& error) {
+      throw DataError(scan_file(sequence_, frame.stem), error.what(),
+                      "points and poses within reach of the voxel grid");
+    }
+    rows_.costs.back().push_ms = milliseconds_since(start);
+    rows_.costs.back().resident_mib = resident_mib();
+    remember(std::move(frame));
+    for (ScanResult& result : finals) accept(std::move(result));
+  }
+
+  void remember(Frame frame) {
+    PendingScan& scan = pending_.emplace_back();
+    scan.stem = std::move(frame.stem);
+    scan.points = frame.points.size();
+    scan.truth = std::move(frame.truth);
+    if (scan.truth && settings_.protocol->range_rule != RangeRule::kNone) {
+      scan.truth_points = std::move(frame.points);
+    }
+  }
+
+  void accept(ScanResult result) {
+    const PendingScan scan = std::move(pending_.front());
+    pending_.pop_front();
+    rows_.costs[result.scan_index].stages_ms = result.stage_times;
+    ScanRow& row = rows_.scans.emplace_back();
+    row.stem = scan.stem;
+    row.points = scan.points;
+    row.predicted_moving_points =
+        static_cast<std::size_t>(std::ranges::count(result.labels, kMovingLabel));
+    row.nonfinite_points = result.nonfinite_points;
+    row.threshold = result.threshold;
+    if (scan.truth) {
+      row.counts = score_scan(*settings_.protocol, *scan.truth, result.labels, scan.truth_points,
+                              settings_.range);
+    }
+    write(label_folder_ / (scan.stem + ".label"), std::move(result.labels));
+  }
+
+  void write(std::filesystem::path file, std::vector<std::uint32_t> labels) {
+    finish_writing();
+    writing_ = std::async(launch_, [file = std::move(file), labels = std::move(labels)] {
+      write_labels(file, labels);
+    });
+  }
+
+  void finish_writing() {
+    if (writing_.valid()) writing_.get();
+  }
+
+  const Sequence& sequence_;
+  const RunSettings& settings_;
+  const std::filesystem::path& label_folder_;
+  std::launch launch_;
+  Pipeline pipeline_;
+  ContentFingerprint fingerprint_;
+  std::deque<PendingScan> pending_;
+  std::future<void> writing_;
+  SequenceRows rows_;
+};
+
+}  // namespace
+
+SequenceRows run_sequence(const Sequence& sequence, const RunSettings& settings,
+                          const std::filesystem::path& label_folder) {
+  return SequenceRun(sequence, settings, label_folder).run();
+}
+
+bool detection_runs(const Config& config, std::size_t scan_index, std::size_t scan_count) {
+  const auto delay = static_cast<std::size_t>(config.delay_scans);
+  const auto window = static_cast<std::size_t>(config.local_window_scans);
+  if (delay == 0 || scan_index + delay > scan_count) return scan_index > window;
+  if (scan_index + delay == scan_count) return false;
+  return scan_index > 0 && scan_index + delay > window;
+}
+
+}  // namespace mosbench

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <filesystem>
+
+#include "core/config.hpp"
+#include "datasets/sequence.hpp"
+#include "eval/protocol.hpp"
+#include "eval/result_file.hpp"
+
+namespace mosbench {
+
+/// How every sequence of one `mosbench run` is segmented and scored.
+struct RunSettings {
+  Config config;
+  Variant variant = Variant::kPaper2024;
+  const Protocol* protocol = nullptr;
+  RangeGate range;
+  unsigned threads = 1;
+};
+
+/// Segments a sequence, writes `label_folder`/<stem>.label for every scan and scores the scans with
+/// truth. With more than one thread the next scan is read and the last labels are written while a
+/// scan is processed; what is written and which error is thrown do not depend on it. Holds one scan
+/// at a time, and the truth of the scans whose labels are still delayed. Throws DataError.
+SequenceRows run_sequence(const Sequence& sequence, const RunSettings& settings,
+                          const std::filesystem::path& label_folder);
+
+/// Whether the method looks for motion in scan `scan_index` of `scan_count` (algorithm, section 4).
+bool detection_runs(const Config& config, std::size_t scan_index, std::size_t scan_count);
+
+}  // namespace mosbench
