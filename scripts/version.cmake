@@ -27,6 +27,14 @@ if(git AND EXISTS ${SOURCE_DIR}/.git)
   if(git_exit EQUAL 0)
     string(APPEND VERSION "+${described}")
   endif()
+  # Results of two different edits must not pass for those of one program.
+  if(described MATCHES "-dirty$")
+    execute_process(COMMAND ${git} -C ${SOURCE_DIR} diff HEAD -- core datasets eval
+                    OUTPUT_VARIABLE edits ERROR_QUIET)
+    string(SHA1 edits_hash "${edits}")
+    string(SUBSTRING ${edits_hash} 0 8 edits_hash)
+    string(APPEND VERSION "-${edits_hash}")
+  endif()
 endif()
 
 file(CONFIGURE OUTPUT ${HEADER} @ONLY CONTENT [[
