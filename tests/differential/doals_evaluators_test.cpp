@@ -153,11 +153,21 @@ TEST(Dynablox, GivesTheSameAsItsTwin) {
 
 TEST(Dynablox, ComparesRangesWithLimitsRoundedToFloat) {
   const Protocol& protocol = protocol_named("doals-dynablox");
-  RandomScan scan{{251}, {251}, {{14.1F, 0.0F, 0.0F, 0.0F}}};
   ASSERT_GT(static_cast<double>(14.1F), 14.1);
-  ASSERT_EQ(dynablox_scores(scan, 0.3F, 14.1F).tp, 1U);
-  EXPECT_EQ(score_scan(protocol, scan.truth, scan.prediction, scan.points, RangeGate{0.3, 14.1}).tp,
-            1U);
+  ASSERT_LT(static_cast<double>(0.7F), 0.7);
+  for (const float range : {14.1F, 0.7F}) {
+    const RandomScan scan{{251}, {251}, {{range, 0.0F, 0.0F, 0.0F}}};
+    ASSERT_EQ(dynablox_scores(scan, 0.7F, 14.1F).tp, 1U);
+    EXPECT_EQ(
+        score_scan(protocol, scan.truth, scan.prediction, scan.points, RangeGate{0.7, 14.1}).tp,
+        1U);
+  }
+}
+
+TEST(Dynablox, AveragesTheSixDigitsOfItsFile) {
+  const std::vector<Confusion> scan = {{.tp = 1, .fn = 11}};
+  ASSERT_EQ(through_csv(1.0F / 12.0F), 0.0833333);
+  EXPECT_EQ(summarize(protocol_named("doals-dynablox"), scan).published_iou, 0.0833333 * 100.0);
 }
 
 }  // namespace

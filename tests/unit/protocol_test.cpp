@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <limits>
 #include <set>
 #include <string>
@@ -99,6 +100,15 @@ TEST(NearestName, IsTheOneWithTheFewestEdits) {
   EXPECT_EQ(nearest_name("heliMOS", names), "helimos");
   EXPECT_EQ(nearest_name("DOALS", names), "doals");
   EXPECT_EQ(nearest_name("doal", names), "doals");
+}
+
+TEST(NearestName, WeighsInsertedDeletedAndReplacedCharactersAlike) {
+  const std::array<std::string_view, 2> insertion = {"xoxl", "doals"};
+  EXPECT_EQ(nearest_name("doal", insertion), "doals");
+  const std::array<std::string_view, 2> deletion = {"xoxlsx", "doals"};
+  EXPECT_EQ(nearest_name("doalss", deletion), "doals");
+  const std::array<std::string_view, 2> replacement = {"d", "doals"};
+  EXPECT_EQ(nearest_name("doakx", replacement), "doals");
 }
 
 TEST(NearestName, IsEmptyWithoutCandidates) { EXPECT_EQ(nearest_name("doals", {}), ""); }
