@@ -67,10 +67,11 @@ struct Protocol {
   Aggregation aggregation;
   EmptyCase empty_case;
   Arithmetic metric_arithmetic;
-  PrintStyle print;                ///< of its published tables
-  int file_significant_digits;     ///< of the scans' values its program averages; 0: all digits
-  PrintStyle program_print;        ///< of its own program
-  std::string_view default_split;  ///< split of the data set it is published for; empty: all scans
+  PrintStyle print;             ///< of its published tables
+  int file_significant_digits;  ///< of the scans' values its program averages; 0: all digits
+  PrintStyle program_print;     ///< of its own program
+  std::string_view
+      default_split;  ///< of the data set it is published for; empty: all labelled scans
 };
 
 /// All protocols in the order in which they are listed.

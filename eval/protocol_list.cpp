@@ -99,6 +99,8 @@ std::vector<ProtocolDescription> describe_protocols() {
                     .prediction = ids_of(protocol.prediction, TruthClass::kMoving),
                     .range = describe_range(protocol),
                     .aggregation = std::string(words(protocol.aggregation)),
+                    .split = protocol.default_split.empty() ? "all labelled scans"
+                                                            : std::string(protocol.default_split),
                     .empty_case = std::string(words(protocol.empty_case)),
                     .summary = std::string(protocol.summary),
                     .source = std::string(protocol.source)});

@@ -14,6 +14,7 @@ struct ProtocolDescription {
   std::string prediction;   ///< ids that count as a moving prediction
   std::string range;        ///< "truth and prediction, 0.5 to 20 m"
   std::string aggregation;  ///< "mean of scans"
+  std::string split;        ///< scans its published numbers are over: "test", "all labelled scans"
   std::string empty_case;   ///< what its own program gives for 0/0
   std::string summary;
   std::string source;

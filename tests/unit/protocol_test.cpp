@@ -68,6 +68,8 @@ TEST(Protocols, AreDescribedInWords) {
   EXPECT_EQ(sipailou.name, "sipailou");
   EXPECT_EQ(sipailou.truth, "0 9 static, 251-252 moving, others static");
   EXPECT_EQ(sipailou.range, "none");
+  EXPECT_EQ(sipailou.split, "test");
+  EXPECT_EQ(rows[0].split, "all labelled scans");
   const auto& mapmos = rows[6];
   EXPECT_EQ(mapmos.name, "mapmos");
   EXPECT_EQ(mapmos.range, "truth and prediction, no limit by default");
