@@ -2,9 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cstdint>
-#include <ranges>
 
 namespace mosbench {
 namespace {
@@ -65,6 +63,14 @@ std::string ids_of(const IdMap& map, TruthClass wanted) {
   return text;
 }
 
+bool knows_every_id(const IdMap& map) {
+  const LabelTable table(map);
+  for (std::uint32_t id = 0; id <= 0xFFFF; ++id) {
+    if (!table.is_known(id)) return false;
+  }
+  return true;
+}
+
 std::string describe_truth(const IdMap& map) {
   std::string text;
   for (const TruthClass wanted : {TruthClass::kIgnored, TruthClass::kStatic, TruthClass::kMoving,
@@ -72,12 +78,8 @@ std::string describe_truth(const IdMap& map) {
     const std::string listed = ids_of(map, wanted);
     if (!listed.empty()) text += fmt::format("{} {}, ", listed, words(wanted));
   }
-  const LabelTable table(map);
-  const auto ids = std::views::iota(0U, 65536U);
-  const bool covers_all =
-      std::ranges::all_of(ids, [&](std::uint32_t id) { return table.is_known(id); });
-  return covers_all ? text.substr(0, text.size() - 2)
-                    : text + fmt::format("others {}", words(map.unknown));
+  if (!knows_every_id(map)) return text + fmt::format("others {}", words(map.unknown));
+  return text.substr(0, text.size() - 2);
 }
 
 std::string describe_range(const Protocol& protocol) {
