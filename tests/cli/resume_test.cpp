@@ -1,0 +1,162 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "tests/cli/program.hpp"
+#include "tests/cli/small_sequence.hpp"
+
+namespace mosbench {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+class Resume : public testing::Test {
+ protected:
+  Resume() { cli::write_small_sequence(folder_ / "room", 10); }
+
+  std::vector<std::string> command(const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> words = {"run", (folder_ / "room").string(), "--out",
+                                      (folder_ / "out").string()};
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  }
+  fs::path results() const { return folder_ / "out/room"; }
+
+  TempFolder folder_;
+};
+
+std::size_t labels_in(const fs::path& folder) {
+  std::error_code error;
+  std::size_t labels = 0;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+    if (it->path().extension() == ".label") ++labels;
+  }
+  return labels;
+}
+
+TEST_F(Resume, AfterKillGivesTheFilesOfAnUndisturbedRun) {
+  cli::write_small_sequence(folder_ / "long", 150);
+  const std::string input = (folder_ / "long").string();
+  const std::vector<std::string> disturbed = {"run", input, "--out", (folder_ / "a").string()};
+  ASSERT_EQ(cli::run({"run", input, "--out", (folder_ / "b").string()}).exit_code, 0);
+
+  // Kill it as soon as some labels are written, long before the last.
+  const TempFolder streams;
+  const pid_t child = cli::start(disturbed, streams.path());
+  while (labels_in(folder_ / "a/long.partial/labels") < 5 &&
+         waitpid(child, nullptr, WNOHANG) == 0) {
+    std::this_thread::yield();
+  }
+  ASSERT_EQ(kill(child, SIGKILL), 0);
+  ASSERT_EQ(cli::wait_for(child), 128 + SIGKILL);
+  ASSERT_FALSE(fs::exists(folder_ / "a/long"));
+  ASSERT_TRUE(fs::exists(folder_ / "a/long.partial"));
+
+  const cli::Answer again = cli::run(disturbed);
+  ASSERT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_EQ(cli::contents(folder_ / "a"), cli::contents(folder_ / "b"));
+}
+
+TEST_F(Resume, SkipsWhatIsFinished) {
+  const cli::Answer first = cli::run(command());
+  ASSERT_EQ(first.exit_code, 0) << first.err;
+  const std::string written = read_file(results() / "result.json");
+  const cli::Answer second = cli::run(command());
+  ASSERT_EQ(second.exit_code, 0) << second.err;
+  EXPECT_THAT(second.err, HasSubstr("room: finished by an earlier run, kept"));
+  EXPECT_EQ(read_file(results() / "result.json"), written);
+  EXPECT_EQ(second.out, first.out);
+}
+
+TEST_F(Resume, RunsASequenceAnewWhenALabelFileIsMissingOrCut) {
+  ASSERT_EQ(cli::run(command()).exit_code, 0);
+  const auto whole = cli::contents(results());
+  fs::remove(results() / "labels/000003.label");
+  ASSERT_EQ(cli::run(command()).exit_code, 0);
+  EXPECT_EQ(cli::contents(results()), whole);
+  fs::resize_file(results() / "labels/000003.label", 8);
+  ASSERT_EQ(cli::run(command()).exit_code, 0);
+  EXPECT_EQ(cli::contents(results()), whole);
+}
+
+TEST_F(Resume, RefusesResultsOfAnotherConfigurationAndNamesTheDifference) {
+  ASSERT_EQ(cli::run(command()).exit_code, 0);
+  const auto before = cli::contents(folder_ / "out");
+  const cli::Answer refused = cli::run(command({"--set", "max_range_m=30"}));
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("config/max_range_m is 50.0 there and 30.0 now"));
+  EXPECT_THAT(refused.err, HasSubstr("--overwrite"));
+  EXPECT_EQ(cli::contents(folder_ / "out"), before);
+  const cli::Answer replaced = cli::run(command({"--set", "max_range_m=30", "--overwrite"}));
+  ASSERT_EQ(replaced.exit_code, 0) << replaced.err;
+  EXPECT_EQ(cli::timeless_result(results()).at("config").at("max_range_m"), 30.0);
+}
+
+TEST_F(Resume, RefusesOtherInputButNotTouchedInput) {
+  ASSERT_EQ(cli::run(command()).exit_code, 0);
+  const fs::path scan = folder_ / "room/velodyne/000004.bin";
+  fs::last_write_time(scan, fs::last_write_time(scan) + std::chrono::hours(1));
+  EXPECT_EQ(cli::run(command()).exit_code, 0);
+  std::vector<Point> points = read_bin(scan);
+  points.front().x += 0.01F;
+  write_bin(scan, points);
+  const cli::Answer refused = cli::run(command());
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("results of other input files"));
+}
+
+TEST_F(Resume, RefusesALabelFileWithoutScan) {
+  ASSERT_EQ(cli::run(command()).exit_code, 0);
+  folder_.write("out/room/labels/000999.label", "stale");
+  const cli::Answer refused = cli::run(command());
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("000999.label: belongs to no scan"));
+  ASSERT_EQ(cli::run(command({"--overwrite"})).exit_code, 0);
+  EXPECT_EQ(labels_in(results() / "labels"), 10U);
+}
+
+TEST_F(Resume, NeverReplacesAFolderThatIsNotItsOwn) {
+  // --out beside the data: results would land on the truth.
+  const auto before = cli::contents(folder_ / "room");
+  for (const std::vector<std::string>& extra : {std::vector<std::string>{}, {"--overwrite"}}) {
+    std::vector<std::string> words = {"run", (folder_ / "room").string(), "--out",
+                                      folder_.path().string()};
+    words.insert(words.end(), extra.begin(), extra.end());
+    const cli::Answer refused = cli::run(words);
+    EXPECT_EQ(refused.exit_code, 2);
+    EXPECT_THAT(refused.err, HasSubstr("was not written by mosbench run"));
+  }
+  EXPECT_EQ(cli::contents(folder_ / "room"), before);
+}
+
+TEST_F(Resume, RefusesADamagedResultFile) {
+  ASSERT_EQ(cli::run(command()).exit_code, 0);
+  fs::resize_file(results() / "result.json", 100);
+  const cli::Answer refused = cli::run(command());
+  EXPECT_EQ(refused.exit_code, 3);
+  EXPECT_THAT(refused.err, HasSubstr("result.json"));
+  EXPECT_EQ(cli::run(command({"--overwrite"})).exit_code, 0);
+}
+
+TEST_F(Resume, LetsOnlyOneRunWriteToAFolder) {
+  cli::write_small_sequence(folder_ / "long", 150);
+  const std::vector<std::string> words = {"run", (folder_ / "long").string(), "--out",
+                                          (folder_ / "out").string()};
+  const TempFolder streams;
+  const pid_t child = cli::start(words, streams.path());
+  while (!fs::exists(folder_ / "out/long.partial") && waitpid(child, nullptr, WNOHANG) == 0) {
+    std::this_thread::yield();
+  }
+  const cli::Answer second = cli::run(words);
+  ASSERT_EQ(kill(child, SIGKILL), 0);
+  ASSERT_EQ(cli::wait_for(child), 128 + SIGKILL);
+  EXPECT_EQ(second.exit_code, 2);
+  EXPECT_THAT(second.err, HasSubstr("another mosbench run is writing there"));
+}
+
+}  // namespace
+}  // namespace mosbench

@@ -1,0 +1,114 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "tests/cli/program.hpp"
+#include "tests/cli/small_sequence.hpp"
+
+namespace mosbench {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+class Score : public testing::Test {
+ protected:
+  Score() {
+    cli::write_small_sequence(folder_ / "room", 8);
+    const cli::Answer run = cli::run(
+        {"run", (folder_ / "room").string(), "--out", (folder_ / "out").string(), "--json"});
+    if (run.exit_code != 0) throw std::runtime_error(run.err);
+    run_ = nlohmann::json::parse(run.out);
+  }
+  cli::Answer score(const fs::path& predictions, const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> words = {"score", (folder_ / "room").string(), "--predictions",
+                                      predictions.string()};
+    words.insert(words.end(), more.begin(), more.end());
+    return cli::run(words);
+  }
+  fs::path labels() const { return folder_ / "out/room/labels"; }
+
+  TempFolder folder_;
+  nlohmann::json run_;
+};
+
+TEST_F(Score, GivesTheNumbersOfTheRunForItsLabelsWhereverTheyLie) {
+  fs::create_directories(folder_ / "api/sequences/room");
+  fs::copy(labels(), folder_ / "api/sequences/room/predictions", fs::copy_options::recursive);
+  for (const fs::path& predictions :
+       {folder_ / "out", folder_ / "out/room", labels(), folder_ / "api"}) {
+    const cli::Answer answer = score(predictions, {"--json"});
+    ASSERT_EQ(answer.exit_code, 0) << answer.err;
+    EXPECT_EQ(nlohmann::json::parse(answer.out).at("sequences").at(0).at("summary"),
+              run_.at("sequences").at(0).at("summary"))
+        << predictions;
+  }
+}
+
+TEST_F(Score, PrintsATableOfTheChosenProtocol) {
+  const cli::Answer answer =
+      score(folder_ / "out", {"--protocol", "doals-dynablox", "--range", "0.5,20"});
+  ASSERT_EQ(answer.exit_code, 0) << answer.err;
+  EXPECT_THAT(answer.out, HasSubstr("protocol doals-dynablox"));
+  EXPECT_THAT(answer.out, HasSubstr("room"));
+}
+
+TEST_F(Score, GivesOneToThePerfectPrediction) {
+  fs::copy(folder_ / "room/labels", folder_ / "perfect");
+  const cli::Answer answer = score(folder_ / "perfect", {"--json"});
+  ASSERT_EQ(answer.exit_code, 0) << answer.err;
+  EXPECT_EQ(nlohmann::json::parse(answer.out).at("sequences").at(0).at("summary").at("iou"), 1.0);
+}
+
+TEST_F(Score, RefusesMissingExtraAndWronglySizedFiles) {
+  const fs::path label = labels() / "000005.label";
+  fs::rename(label, folder_ / "aside");
+  EXPECT_THAT(score(folder_ / "out").err, HasSubstr("000005.label: cannot be read"));
+  EXPECT_EQ(score(folder_ / "out").exit_code, 3);
+  fs::rename(folder_ / "aside", label);
+
+  fs::copy_file(label, labels() / "000105.label");
+  const cli::Answer extra = score(folder_ / "out");
+  EXPECT_EQ(extra.exit_code, 3);
+  EXPECT_THAT(extra.err, HasSubstr("000105.label: belongs to no scan"));
+  fs::remove(labels() / "000105.label");
+
+  fs::resize_file(label, fs::file_size(label) - 4);
+  const cli::Answer shorter = score(folder_ / "out");
+  EXPECT_EQ(shorter.exit_code, 3);
+  EXPECT_THAT(shorter.err, HasSubstr("000005.label: has 34556 bytes"));
+}
+
+TEST_F(Score, NeedsPredictionsForLabelledScansOnly) {
+  for (const char* stem : {"000000", "000001"}) {
+    fs::remove(folder_ / "room/labels" / (std::string(stem) + ".label"));
+    fs::remove(labels() / (std::string(stem) + ".label"));
+  }
+  const cli::Answer answer = score(folder_ / "out", {"--json"});
+  ASSERT_EQ(answer.exit_code, 0) << answer.err;
+  EXPECT_EQ(
+      nlohmann::json::parse(answer.out).at("sequences").at(0).at("summary").at("labelled_scans"),
+      6);
+}
+
+TEST_F(Score, RefusesTheTruthAsPrediction) {
+  const cli::Answer answer = score(folder_ / "room");
+  EXPECT_EQ(answer.exit_code, 3);
+  EXPECT_THAT(answer.err, HasSubstr("holds the truth of sequence room"));
+}
+
+TEST_F(Score, RefusesWhatCannotBeScored) {
+  EXPECT_EQ(score(folder_ / "nowhere").exit_code, 3);
+  EXPECT_EQ(score(folder_ / "out", {"--split", "nowhere"}).exit_code, 2);
+  EXPECT_EQ(score(folder_ / "out", {"--protocol", "nothing"}).exit_code, 2);
+  EXPECT_EQ(score(folder_ / "out", {"--range", "1,2"}).exit_code, 2);
+  fs::remove_all(folder_ / "room/labels");
+  const cli::Answer no_truth = score(folder_ / "out");
+  EXPECT_EQ(no_truth.exit_code, 3);
+  EXPECT_THAT(no_truth.err, HasSubstr("no scan to score has truth"));
+}
+
+}  // namespace
+}  // namespace mosbench

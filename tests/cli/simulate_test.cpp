@@ -1,0 +1,86 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "tests/cli/program.hpp"
+
+namespace mosbench {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr const char* kNotice =
+    "simulated data (scene room, seed 5): not comparable with published numbers";
+
+class Simulate : public testing::Test {
+ protected:
+  cli::Answer simulate(const std::string& layout, const std::string& scene,
+                       const std::string& out) const {
+    return cli::run({"simulate", "--layout", layout, "--scene", scene, "--scans", "6", "--seed",
+                     "5", "--out", (folder_ / out).string()});
+  }
+
+  TempFolder folder_;
+};
+
+TEST_F(Simulate, GivesDataThatRunAndScoreTakeAndNeverPassForReal) {
+  for (const std::string layout : {"doals", "sipailou", "helimos", "semantickitti"}) {
+    const cli::Answer simulated = simulate(layout, "room", layout);
+    ASSERT_EQ(simulated.exit_code, 0) << simulated.err;
+    EXPECT_THAT(simulated.out, HasSubstr("simulated 6 scans of scene room, seed 5"));
+    const std::string input = (folder_ / layout).string();
+    const std::string out = (folder_ / ("out_" + layout)).string();
+    const cli::Answer text = cli::run({"run", input, "--out", out});
+    ASSERT_EQ(text.exit_code, 0) << text.err;
+    EXPECT_THAT(text.out, HasSubstr(layout + " data set"));
+    EXPECT_THAT(text.out, HasSubstr(kNotice));
+    const cli::Answer run = cli::run({"run", input, "--out", out, "--json"});
+    const auto ran = nlohmann::json::parse(run.out);
+    EXPECT_EQ(ran.at("simulated").at("notice"), kNotice);
+    for (const auto& sequence : ran.at("sequences")) {
+      const auto result = cli::timeless_result(sequence.at("folder").get<std::string>());
+      EXPECT_EQ(result.at("simulated").at("notice"), kNotice);
+    }
+    EXPECT_THAT(cli::run({"score", input, "--predictions", out}).out, HasSubstr(kNotice));
+    const cli::Answer score = cli::run({"score", input, "--predictions", out, "--json"});
+    ASSERT_EQ(score.exit_code, 0) << score.err;
+    const auto scored = nlohmann::json::parse(score.out);
+    ASSERT_EQ(scored.at("sequences").size(), ran.at("sequences").size());
+    for (std::size_t i = 0; i < scored.at("sequences").size(); ++i) {
+      EXPECT_EQ(scored.at("sequences")[i].at("summary"), ran.at("sequences")[i].at("summary"));
+    }
+  }
+}
+
+TEST_F(Simulate, GivesTheSameFilesForTheSameSeed) {
+  ASSERT_EQ(simulate("semantickitti", "room", "a").exit_code, 0);
+  ASSERT_EQ(simulate("semantickitti", "room", "b").exit_code, 0);
+  const auto files = cli::contents(folder_ / "a");
+  EXPECT_GT(files.size(), 12U);
+  EXPECT_EQ(files, cli::contents(folder_ / "b"));
+}
+
+TEST_F(Simulate, RefusesWhatItDoesNotKnow) {
+  const cli::Answer scene = simulate("doals", "rom", "out");
+  EXPECT_EQ(scene.exit_code, 2);
+  EXPECT_THAT(scene.err, HasSubstr("room"));
+  const cli::Answer layout = simulate("kitti", "room", "out");
+  EXPECT_EQ(layout.exit_code, 2);
+  EXPECT_THAT(layout.err, HasSubstr("expected doals, sipailou, helimos or semantickitti"));
+  const cli::Answer file = simulate("doals", folder_.write("scene.json", "{").string(), "out");
+  EXPECT_EQ(file.exit_code, 3);
+  EXPECT_THAT(file.err, HasSubstr("scene.json"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
+}
+
+TEST_F(Simulate, NamesAnOutputFolderThatCannotBeMade) {
+  folder_.write("out", "in the way");
+  const cli::Answer answer = simulate("doals", "room", "out/below");
+  EXPECT_EQ(answer.exit_code, 3);
+  EXPECT_THAT(answer.err, HasSubstr("out/below"));
+}
+
+}  // namespace
+}  // namespace mosbench

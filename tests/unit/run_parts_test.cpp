@@ -1,0 +1,97 @@
+#include <gtest/gtest.h>
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include "eval/progress.hpp"
+#include "eval/score_table.hpp"
+#include "eval/sequence_runner.hpp"
+#include "eval/text_table.hpp"
+
+namespace mosbench {
+namespace {
+
+std::vector<std::size_t> judged(int delay_scans, int local_window_scans, std::size_t scan_count) {
+  Config config;
+  config.delay_scans = delay_scans;
+  config.local_window_scans = local_window_scans;
+  std::vector<std::size_t> scans;
+  for (std::size_t k = 0; k < scan_count; ++k) {
+    if (detection_runs(config, k, scan_count)) scans.push_back(k);
+  }
+  return scans;
+}
+
+// Worked by hand from section 4 of the algorithm.
+TEST(DetectionRuns, OnTheScansThatTheAuthorsProgramJudges) {
+  EXPECT_EQ(judged(0, 3, 7), (std::vector<std::size_t>{4, 5, 6}));
+  // Scan 0 never, scan N - n = 6 static, the others by the delayed detection or their own.
+  EXPECT_EQ(judged(4, 3, 10), (std::vector<std::size_t>{1, 2, 3, 4, 5, 7, 8, 9}));
+  // Delay 1 reaches back to scan 3 at k = 4 only.
+  EXPECT_EQ(judged(1, 3, 7), (std::vector<std::size_t>{3, 4, 5}));
+  EXPECT_EQ(judged(10, 3, 6), (std::vector<std::size_t>{4, 5}));
+}
+
+TEST(TextTable, AlignsColumnsAndEndsLinesAtTheirLastCell) {
+  TextTable table({{"name", TextTable::Align::kLeft}, {"IoU"}});
+  table.add_row({"a", "0.5"});
+  table.add_rule();
+  table.add_row({"longer"});
+  EXPECT_EQ(table.str(),
+            "name    IoU\n"
+            "------  ---\n"
+            "a       0.5\n"
+            "------  ---\n"
+            "longer\n");
+}
+
+TEST(DurationText, ChangesItsUnitWithTheLength) {
+  EXPECT_EQ(duration_text(0.2), "0 s");
+  EXPECT_EQ(duration_text(59.4), "59 s");
+  EXPECT_EQ(duration_text(185.0), "3 min 05 s");
+  EXPECT_EQ(duration_text(7620.0), "2 h 07 min");
+}
+
+Confusion counts(std::uint64_t tp, std::uint64_t fp, std::uint64_t fn) {
+  Confusion confusion;
+  confusion.tp = tp;
+  confusion.fp = fp;
+  confusion.fn = fn;
+  return confusion;
+}
+
+const std::vector<ScoredSequence> kTwoSequences = {
+    {"a", {{"0", counts(1, 0, 1)}, {"1", std::nullopt}, {"2", counts(3, 1, 0)}}, 10.0},
+    {"b", {{"0", counts(90, 5, 5)}}, 30.0}};
+
+TEST(ScoreRows, PoolASplitOverItsSequences) {
+  const Split split{"test", {{0, std::nullopt}, {1, std::nullopt}}};
+  const auto rows = score_rows(protocol_named("sipailou"), {split}, kTwoSequences);
+  ASSERT_EQ(rows.size(), 3U);
+  EXPECT_DOUBLE_EQ(rows[0].summary.iou.value(), 4.0 / 6.0);
+  EXPECT_EQ(rows[0].scans, 3U);
+  EXPECT_EQ(rows[0].summary.scans, 2U);
+  EXPECT_EQ(rows[2].kind, ScoreRow::Kind::kSplit);
+  EXPECT_DOUBLE_EQ(rows[2].summary.iou.value(), 94.0 / 106.0);
+  EXPECT_DOUBLE_EQ(rows[2].method_ms_per_scan.value(), 15.0);
+}
+
+TEST(ScoreRows, AverageSensorsWhereTheProtocolDoes) {
+  const Split split{"test", {{0, std::set<std::string>{"2"}}, {1, std::nullopt}}};
+  const auto rows = score_rows(protocol_named("helimos-test"), {split}, kTwoSequences);
+  ASSERT_EQ(rows.size(), 4U);
+  EXPECT_EQ(rows[2].kind, ScoreRow::Kind::kPart);
+  EXPECT_DOUBLE_EQ(rows[2].summary.iou.value(), 0.75);
+  EXPECT_DOUBLE_EQ(rows[3].summary.iou.value(), (0.75 + 0.9) / 2.0);
+}
+
+TEST(ScoreRows, WithoutTruthShowNoNumber) {
+  const auto rows =
+      score_rows(protocol_named("sipailou"), {}, {{"a", {{"0", std::nullopt}}, std::nullopt}});
+  EXPECT_NE(format_rows(protocol_named("sipailou"), rows).find("no truth"), std::string::npos);
+  EXPECT_TRUE(rows_json(rows).at("sequences").at(0).at("summary").is_null());
+}
+
+}  // namespace
+}  // namespace mosbench
