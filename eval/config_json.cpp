@@ -108,7 +108,7 @@ void apply_config_assignment(std::string_view assignment, Config& config) {
   apply_value(assignment.substr(0, equals), parsed, origin, config);
 }
 
-nlohmann::ordered_json to_json(const Config& config) {
+nlohmann::ordered_json to_json(const Config& config, Variant variant) {
   Config effective = config;
   effective.occupancy_sigma_m = config.sigma_m();
   nlohmann::ordered_json object;
@@ -122,6 +122,7 @@ nlohmann::ordered_json to_json(const Config& config) {
   if (config.distance_field_scans == Config{}.distance_field_scans) {
     object.erase("distance_field_scans");
   }
+  if (variant == Variant::kRelease2025) object.erase("dynamic_window_scans");
   return object;
 }
 

@@ -20,7 +20,8 @@ void apply_config_text(std::string_view text, std::string_view origin, Config& c
 void apply_config_assignment(std::string_view assignment, Config& config);
 
 /// The effective configuration, keys in the order of `visit_fields`; occupancy_sigma_m is always a
-/// number, distance_field_scans appears only when it is not the default.
-nlohmann::ordered_json to_json(const Config& config);
+/// number, distance_field_scans appears only when it is not the default, dynamic_window_scans only
+/// for the variant that has such a window.
+nlohmann::ordered_json to_json(const Config& config, Variant variant);
 
 }  // namespace mosbench

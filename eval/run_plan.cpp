@@ -70,7 +70,7 @@ nlohmann::ordered_json identity_of(const RunPlan& plan, const Sequence& sequence
        {{"name", std::string(settings.protocol->name)},
         {"min_range_m", settings.range.min_m},
         {"max_range_m", settings.range.max_m}}},
-      {"config", to_json(settings.config)},
+      {"config", to_json(settings.config, settings.variant)},
       {"code", {{"version", std::string(kMosbenchVersion)}, {"compiler", std::string(kCompiler)}}}};
 }
 

@@ -70,7 +70,7 @@ std::string run_report_json(const RunPlan& plan, const std::vector<SequenceOutco
                                  {"protocol", std::string(plan.settings.protocol->name)},
                                  {"min_range_m", plan.settings.range.min_m},
                                  {"max_range_m", plan.settings.range.max_m},
-                                 {"config", to_json(plan.settings.config)},
+                                 {"config", to_json(plan.settings.config, plan.settings.variant)},
                                  {"out", plan.out.string()}};
   if (const auto origin = simulated_origin_json(plan.dataset)) json["simulated"] = *origin;
   json.update(rows_json(rows_of(plan, outcomes)));

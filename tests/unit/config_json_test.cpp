@@ -27,25 +27,30 @@ TEST(ConfigJson, WritesWhatItReads) {
   config.delay_scans = 7;
   config.distance_field_scans = 1;
   Config read;
-  apply_config_text(to_json(config).dump(), "written", read);
-  EXPECT_EQ(to_json(read), to_json(config));
+  apply_config_text(to_json(config, Variant::kPaper2024).dump(), "written", read);
+  EXPECT_EQ(to_json(read, Variant::kPaper2024), to_json(config, Variant::kPaper2024));
   EXPECT_EQ(read.distance_field_scans, 1);
 }
 
 TEST(ConfigJson, LetsSigmaFollowTheVoxelSizeUntilItIsSet) {
   Config config;
   apply_config_assignment("voxel_size_m=0.4", config);
-  EXPECT_EQ(to_json(config).at("occupancy_sigma_m"), 0.4);
+  EXPECT_EQ(to_json(config, Variant::kPaper2024).at("occupancy_sigma_m"), 0.4);
   apply_config_assignment("occupancy_sigma_m=0.1", config);
   apply_config_assignment("voxel_size_m=0.5", config);
-  EXPECT_EQ(to_json(config).at("occupancy_sigma_m"), 0.1);
+  EXPECT_EQ(to_json(config, Variant::kPaper2024).at("occupancy_sigma_m"), 0.1);
 }
 
 TEST(ConfigJson, ShowsTheDistanceFieldOnlyWhenItIsNotTheDefault) {
   Config config;
-  EXPECT_EQ(to_json(config).size(), 12U);
+  EXPECT_EQ(to_json(config, Variant::kPaper2024).size(), 12U);
   config.distance_field_scans = 1;
-  EXPECT_EQ(to_json(config).at("distance_field_scans"), 1);
+  EXPECT_EQ(to_json(config, Variant::kPaper2024).at("distance_field_scans"), 1);
+}
+
+TEST(ConfigJson, LeavesOutTheWindowThatTheLaterProgramDoesNotHave) {
+  EXPECT_EQ(to_json(Config{}, Variant::kRelease2025).size(), 11U);
+  EXPECT_FALSE(to_json(Config{}, Variant::kRelease2025).contains("dynamic_window_scans"));
 }
 
 TEST(ConfigJson, TakesAWholeNumberForALength) {
