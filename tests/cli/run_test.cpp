@@ -128,7 +128,7 @@ TEST_F(Run, GivesTheSameBytesForAnyThreadCount) {
 TEST_F(Run, JsonAnswerIsOnePureObject) {
   const cli::Answer answer = cli::run(command("out", {"--json", "--protocol", "sipailou"}));
   ASSERT_EQ(answer.exit_code, 0) << answer.err;
-  const auto json = nlohmann::json::parse(answer.out);
+  const auto json = nlohmann::ordered_json::parse(answer.out);
   EXPECT_EQ(json.at("protocol"), "sipailou");
   const auto summary = json.at("sequences").at(0).at("summary");
   EXPECT_EQ(summary, result("out").at("summary"));
@@ -206,7 +206,7 @@ TEST_F(Run, ScoresARangeLimitedProtocolOverTheRangeOfTheRun) {
   const cli::Answer answer =
       cli::run(command("out", {"--protocol", "doals-hmm", "--preset", "doals-120m", "--json"}));
   ASSERT_EQ(answer.exit_code, 0) << answer.err;
-  const auto json = nlohmann::json::parse(answer.out);
+  const auto json = nlohmann::ordered_json::parse(answer.out);
   EXPECT_EQ(json.at("min_range_m"), 0.5);
   EXPECT_EQ(json.at("max_range_m"), 120.0);
 }
