@@ -4,6 +4,10 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "core/halo.hpp"
+#include "core/hmm.hpp"
+#include "core/raycast.hpp"
+
 namespace mosbench {
 namespace {
 
@@ -19,6 +23,13 @@ void check_field(std::string_view name, Number value, FieldRange range) {
 
 void check_field(std::string_view name, const std::optional<double>& value, FieldRange range) {
   if (value) check_field(name, *value, range);
+}
+
+void check_voxels(std::string_view name, double voxels, double most) {
+  if (voxels <= most) return;
+  std::ostringstream message;
+  message << name << ": " << voxels << " voxels of voxel_size_m, expected at most " << most;
+  throw std::invalid_argument(message.str());
 }
 
 }  // namespace
@@ -46,6 +57,12 @@ void check(const Config& config) {
   if (config.min_range_m >= config.max_range_m) {
     throw std::invalid_argument("min_range_m: not below max_range_m, expected min < max");
   }
+  check_voxels("max_range_m", config.max_range_m / config.voxel_size_m, kMaxRangeVoxels);
+  // The distance field reaches as far as a likelihood can matter.
+  const double reach_per_sigma =
+      likelihood_reach_sigmas(config.transition_epsilon, config.min_state_probability);
+  check_voxels("occupancy_sigma_m", config.sigma_m() / config.voxel_size_m,
+               kMaxHalo / reach_per_sigma);
 }
 
 }  // namespace mosbench

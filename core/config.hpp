@@ -57,7 +57,8 @@ void visit_fields(AnyConfig& config, Visitor&& visit) {
 }
 
 /// Throws std::invalid_argument "<key>: <what is wrong>, <what was expected>" for the first field
-/// outside its range, an even kernel width, or range limits that leave nothing.
+/// outside its range, an even kernel width, range limits that leave nothing, or a range or sigma of
+/// too many voxels.
 void check(const Config& config);
 
 }  // namespace mosbench

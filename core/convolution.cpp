@@ -81,6 +81,11 @@ ScoreField convolve(const VoxelizedScan& scan, const VoxelSet& changed, int kern
   const std::vector<std::uint32_t> slots = slots_around(scan, hits.blocks);
   const std::vector<std::uint32_t> map_slots =
       refreshed_map_slots(scan, slots, map, scan_index, pool);
+  // With a delay of w_g scans or more a voxel may be forgotten since it changed.
+  for (std::size_t i = 0; i < hits.block_count(); ++i) {
+    const std::uint32_t slot = map.find(hits.blocks[i]);
+    hits.masks[i] = slot == kNoSlot ? BlockMask{} : hits.masks[i] & map.known(slot);
+  }
 
   std::vector<ScoreField::Block> scores(slots.size());
   std::vector<std::uint8_t> scored(slots.size());

@@ -28,8 +28,11 @@ struct HaloRows {
   std::vector<std::uint64_t> rows;
 };
 
-/// Blocks per direction that a halo reaches into.
-inline int reach_of_halo(int radius) { return (radius + kBlockSide - 1) / kBlockSide; }
+/// Blocks per direction that a halo is gathered from: those it reaches into, and at least one, so
+/// that a Neighbourhood serves every radius up to 8.
+inline int reach_of_halo(int radius) {
+  return radius == 0 ? 1 : (radius + kBlockSide - 1) / kBlockSide;
+}
 
 /// Gathers the cube of (2 reach + 1)^3 masks around a block, x fastest; null ones count as empty.
 void gather_halo(std::span<const BlockMask* const> masks, int radius, HaloRows& halo);

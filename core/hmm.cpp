@@ -3,15 +3,26 @@
 #include <cmath>
 
 namespace mosbench {
+namespace {
+
+/// One observation at likelihood L leaves even a certainly occupied voxel at p < L / epsilon. Below
+/// this L that lies thousands of times under 1 - p_min: no state can depend on it.
+double negligible_likelihood(double transition_epsilon, double min_state_probability) {
+  return transition_epsilon * (1 - min_state_probability) * 3.2e-4;
+}
+
+}  // namespace
+
+double likelihood_reach_sigmas(double transition_epsilon, double min_state_probability) {
+  return std::sqrt(-2 * std::log(negligible_likelihood(transition_epsilon, min_state_probability)));
+}
 
 BeliefFilter::BeliefFilter(double voxel_size_m, double sigma_m, double transition_epsilon,
                            double min_state_probability)
     : epsilon_(static_cast<float>(transition_epsilon)),
       keep_(static_cast<float>(1 - 2 * transition_epsilon)),
       min_probability_(static_cast<float>(min_state_probability)) {
-  // One observation at likelihood L leaves even a certainly occupied voxel at p < L / epsilon.
-  // Below this L that lies thousands of times under 1 - p_min: no state can depend on it.
-  const double negligible = transition_epsilon * (1 - min_state_probability) * 3.2e-4;
+  const double negligible = negligible_likelihood(transition_epsilon, min_state_probability);
   const double ratio = voxel_size_m / sigma_m;
   for (int n = 0;; ++n) {
     const double likelihood = std::exp(-n * ratio * ratio / 2);  // L = exp(-d^2 / (2 sigma^2))

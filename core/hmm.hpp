@@ -19,6 +19,9 @@ struct BlockBeliefs {
   alignas(64) std::array<float, kBlockVoxels> occupied;  ///< valid where nonzero
 };
 
+/// The distance, in sigmas, beyond which the likelihood of an occupied voxel cannot change a state.
+double likelihood_reach_sigmas(double transition_epsilon, double min_state_probability);
+
 /// The three-state filter. After its first observation a voxel is never unobserved again, so the
 /// belief is one number, p(occupied); a voxel that was never seen has p = 0.5.
 class BeliefFilter {

@@ -93,6 +93,7 @@ struct Pipeline::State {
   std::deque<HeldScan> held;  ///< the last delay + 1 scans, current one last
   VoxelSet previous_measured;
   std::size_t pushed = 0;
+  bool finished = false;
 };
 
 /// Steps 1 to 3: the scan enters the map.
@@ -198,16 +199,16 @@ std::vector<ScanResult> Pipeline::push(std::span<const Point> points, const Pose
   if (s.scan_count && s.pushed >= *s.scan_count) {
     throw std::logic_error("pushed more scans than scan_count announced");
   }
-  if (!s.memory) {
-    s.memory.emplace(s.config, s.variant,
-                     grid_around(map_from_sensor.translation(), s.config.voxel_size_m));
-  }
+  if (s.finished) throw std::logic_error("pushed a scan after finish");
+  const VoxelGrid grid =
+      s.memory ? s.memory->grid : grid_around(map_from_sensor.translation(), s.config.voxel_size_m);
   HeldScan current;
   current.result.scan_index = s.pushed;
   current.scan = timed(current.result.stage_times, Stage::kVoxelize, [&] {
-    return voxelize(points, map_from_sensor, s.memory->grid, s.config.min_range_m,
-                    s.config.max_range_m, s.pool);
+    return voxelize(points, map_from_sensor, grid, s.config.min_range_m, s.config.max_range_m,
+                    s.pool);
   });
+  if (!s.memory) s.memory.emplace(s.config, s.variant, grid);
   current.result.nonfinite_points = current.scan.nonfinite_points;
   const auto k = static_cast<std::uint32_t>(s.pushed);
   s.observe(current, k);
@@ -223,8 +224,8 @@ std::vector<ScanResult> Pipeline::push(std::span<const Point> points, const Pose
     s.memory->window.join({});
   } else if (n == 0) {
     s.detect(newest.scan, k, newest.result, times);
-  } else {
-    if (k > n) s.detect(s.held.front().scan, k, s.held.front().result, times);
+  } else if (k > n) {
+    s.detect(s.held.front().scan, k, s.held.front().result, times);
     // The authors' program labels the end of a delayed sequence online, and leaves scan N - n
     // static.
     if (s.scan_count && k + n > *s.scan_count) s.detect(newest.scan, k, newest.result, times);
@@ -232,7 +233,10 @@ std::vector<ScanResult> Pipeline::push(std::span<const Point> points, const Pose
   return s.held.size() > n ? s.release(1) : std::vector<ScanResult>{};
 }
 
-std::vector<ScanResult> Pipeline::finish() { return state_->release(state_->held.size()); }
+std::vector<ScanResult> Pipeline::finish() {
+  state_->finished = true;
+  return state_->release(state_->held.size());
+}
 
 std::size_t Pipeline::map_blocks() const {
   return state_->memory ? state_->memory->map.block_count() : 0;

@@ -37,7 +37,8 @@ class Pipeline {
 
   /// Takes one scan in and returns the scans whose labels became final, in scan order: exactly this
   /// one when online; none or earlier ones when delayed. Throws std::range_error naming the
-  /// point when a voxel coordinate would overflow, std::logic_error beyond `scan_count` scans.
+  /// point when a voxel coordinate would overflow, std::logic_error beyond `scan_count` scans
+  /// or after `finish`.
   std::vector<ScanResult> push(std::span<const Point> points, const Pose& map_from_sensor);
 
   /// The labels still held back by the delay, in scan order. Nothing when online.

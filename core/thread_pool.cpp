@@ -12,17 +12,22 @@ struct ThreadPool::Job {
   std::atomic<std::size_t> next{0};
   std::mutex error_mutex{};
   std::exception_ptr error{};
+  std::size_t error_begin = 0;
 
   void drain(unsigned thread) {
+    std::size_t begin = 0;
     try {
-      for (std::size_t begin = next.fetch_add(grain); begin < count;
-           begin = next.fetch_add(grain)) {
+      for (begin = next.fetch_add(grain); begin < count; begin = next.fetch_add(grain)) {
         work(begin, std::min(begin + grain, count), thread);
       }
     } catch (...) {
       next = count;
+      // Ranges start in order, so the lowest that throws has started before any error stops the
+      // rest.
       const std::lock_guard lock(error_mutex);
-      if (!error) error = std::current_exception();
+      if (error && error_begin < begin) return;
+      error = std::current_exception();
+      error_begin = begin;
     }
   }
 };

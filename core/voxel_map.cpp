@@ -127,6 +127,7 @@ ChangedVoxels VoxelMap::update(const ObservedVoxels& observed,
                                const Eigen::Vector3d& sensor_m, std::uint32_t scan_index,
                                ThreadPool& pool) {
   note_sensor(sensor_m, scan_index);
+  drop_expired_changes(scan_index);
   const int reach = reach_of_halo(filter_.radius()), side = 2 * reach + 1;
   const SourceGrid grid(sources, observed.blocks, reach);
   halos_.resize(pool.size());
@@ -236,6 +237,19 @@ void VoxelMap::evict_from_block(std::uint32_t slot, std::size_t first_sensor,
   }
   if (scan_index - block.newest_seen >= global_window_scans_) refresh_block(block, scan_index);
   if (!block.seen.any()) drop_block(slot);
+}
+
+/// A record that expired takes its last change along: one that is made anew has never changed.
+void VoxelMap::drop_expired_changes(std::uint32_t scan_index) {
+  for (ChangesOfScan& changes : changes_) {
+    if (scan_index - changes.scan_index < global_window_scans_ + 2) return;
+    for (std::size_t i = 0; i < changes.voxels.blocks.size(); ++i) {
+      const std::uint32_t slot = table_.find(changes.voxels.blocks[i]);
+      if (slot != kNoSlot) refresh_block(blocks_[slot], scan_index);
+      BlockMask& mask = changes.voxels.masks[i];
+      mask = slot == kNoSlot ? BlockMask{} : mask & blocks_[slot].seen;
+    }
+  }
 }
 
 VoxelSet VoxelMap::changed_since(std::uint32_t first_scan) const {

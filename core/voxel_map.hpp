@@ -84,6 +84,8 @@ class VoxelMap {
   void evict_from_block(std::uint32_t slot, std::size_t first_sensor, std::size_t last_sensor,
                         std::uint32_t scan_index);
 
+  void drop_expired_changes(std::uint32_t scan_index);
+
   static constexpr std::uint32_t kSweepScans = 16;
 
   VoxelGrid grid_;
