@@ -1,0 +1,89 @@
+#include "core/halo.hpp"
+
+#include <gtest/gtest.h>
+
+#include "core/distance_field.hpp"
+#include "tests/voxel_twins.hpp"
+
+namespace mosbench {
+namespace {
+
+/// The halo of block (0, 0, 0).
+HaloRows halo_of(const VoxelSet& set, int radius) {
+  std::vector<const BlockMask*> masks;
+  const int reach = reach_of_halo(radius);
+  for (int z = -reach; z <= reach; ++z) {
+    for (int y = -reach; y <= reach; ++y) {
+      for (int x = -reach; x <= reach; ++x) masks.push_back(set.mask_of({x, y, z}));
+    }
+  }
+  HaloRows halo;
+  gather_halo(masks, radius, halo);
+  return halo;
+}
+
+/// Few voxels or many, in the block alone or all around.
+Triples voxels_around(std::mt19937& random, int radius) {
+  const std::size_t count = random() % 2 == 0 ? 5 : 300;
+  Triples voxels = random_triples(random, count, radius + 10);
+  if (random() % 4 == 0) voxels.clear();
+  return voxels;
+}
+
+TEST(Halo, RowsHoldEveryVoxelWithinTheRadius) {
+  std::mt19937 random(31);
+  for (int radius = 0; radius <= kMaxHalo; ++radius) {
+    for (int round = 0; round < 4; ++round) {
+      const Triples voxels = voxels_around(random, radius);
+      const HaloRows halo = halo_of(voxel_set(voxels), radius);
+      ASSERT_EQ(halo.side, 8 + 2 * radius);
+      bool any = false;
+      for (int z = 0; z < halo.side; ++z) {
+        for (int y = 0; y < halo.side; ++y) {
+          std::uint64_t row = 0;
+          for (int x = 0; x < halo.side; ++x) {
+            const bool set = voxels.contains({x - radius, y - radius, z - radius});
+            row |= std::uint64_t{set} << x;
+          }
+          ASSERT_EQ(halo.row(z, y), row) << "radius " << radius << " z " << z << " y " << y;
+          any |= row != 0;
+        }
+      }
+      EXPECT_EQ(halo.any, any);
+    }
+  }
+}
+
+TEST(Halo, DilationAndCountEqualTheTripleLoop) {
+  std::mt19937 random(32);
+  std::size_t counted = 0;
+  for (int radius = 0; radius <= kMaxHalo; ++radius) {
+    for (int round = 0; round < (radius < 8 ? 8 : 1); ++round) {
+      const Triples voxels = voxels_around(random, radius);
+      const HaloRows halo = halo_of(voxel_set(voxels), radius);
+      const BlockMask dilated = dilate(halo);
+      for (std::uint32_t cell = 0; cell < 512; ++cell) {
+        const Triple here = triple(voxel_at({0, 0, 0}, cell));
+        int count = 0;
+        for (const Triple& v : voxels) {
+          count += std::abs(v[0] - here[0]) <= radius && std::abs(v[1] - here[1]) <= radius &&
+                   std::abs(v[2] - here[2]) <= radius;
+        }
+        ASSERT_EQ(count_around(halo, cell), count) << "radius " << radius << " cell " << cell;
+        ASSERT_EQ(dilated.test(cell), count > 0) << "radius " << radius << " cell " << cell;
+        counted += count > 0;
+      }
+    }
+  }
+  EXPECT_GT(counted, 10'000U);
+}
+
+TEST(Halo, RadiusZeroIsTheBlockItself) {
+  const HaloRows halo = halo_of(voxel_set({{0, 0, 0}, {7, 7, 7}, {-1, 0, 0}, {8, 7, 7}}), 0);
+  EXPECT_EQ(count_around(halo, 0), 1);
+  EXPECT_EQ(count_around(halo, 511), 1);
+  EXPECT_EQ(dilate(halo).count(), 2U);
+}
+
+}  // namespace
+}  // namespace mosbench
