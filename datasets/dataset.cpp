@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <system_error>
 #include <utility>
 
 #include "datasets/catalogue.hpp"
@@ -68,9 +69,11 @@ std::vector<SequenceFolder> keep(std::vector<SequenceFolder> folders,
 }  // namespace
 
 Dataset open_dataset(const std::filesystem::path& path, const OpenOptions& options) {
-  std::error_code ignored;
-  if (!std::filesystem::is_directory(path, ignored)) {
-    throw DataError(path, "is no folder", "a data set's root or one sequence folder");
+  std::error_code error;
+  const std::filesystem::directory_iterator listing(path, error);
+  if (error) {
+    throw DataError(path, "is no folder that can be listed (" + error.message() + ")",
+                    "a data set's root or one sequence folder");
   }
   Dataset dataset;
   const Catalogue& catalogue =

@@ -10,16 +10,13 @@
 namespace mosbench {
 namespace {
 
-std::vector<std::filesystem::directory_entry> visible_entries(const std::filesystem::path& folder) {
+std::vector<std::filesystem::directory_entry> visible_entries(const std::filesystem::path& folder,
+                                                              std::error_code& error) {
   std::vector<std::filesystem::directory_entry> entries;
-  std::error_code error;
   std::filesystem::directory_iterator entry(folder, error);
   while (!error && entry != std::filesystem::directory_iterator()) {
     if (!entry->path().filename().string().starts_with('.')) entries.push_back(*entry);
     entry.increment(error);
-  }
-  if (error) {
-    throw DataError(folder, "cannot be listed (" + error.message() + ")", "a readable folder");
   }
   return entries;
 }
@@ -51,10 +48,14 @@ std::optional<std::uint64_t> stem_number(std::string_view stem) { return parse_u
 std::vector<StemFile> list_by_stem(const std::filesystem::path& folder,
                                    std::initializer_list<std::string_view> extensions) {
   std::vector<StemFile> files;
-  for (const auto& entry : visible_entries(folder)) {
+  std::error_code error;
+  for (const auto& entry : visible_entries(folder, error)) {
     const std::string extension = entry.path().extension().string();
     if (std::ranges::find(extensions, extension) == extensions.end()) continue;
     files.push_back({entry.path(), entry.path().stem().string()});
+  }
+  if (error) {
+    throw DataError(folder, "cannot be listed (" + error.message() + ")", "a readable folder");
   }
   sort_by_stem(files);
   return files;
@@ -62,8 +63,8 @@ std::vector<StemFile> list_by_stem(const std::filesystem::path& folder,
 
 std::vector<std::filesystem::path> list_folders(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> folders;
-  for (const auto& entry : visible_entries(folder)) {
-    std::error_code ignored;
+  std::error_code ignored;
+  for (const auto& entry : visible_entries(folder, ignored)) {
     if (entry.is_directory(ignored)) folders.push_back(entry.path());
   }
   std::ranges::sort(folders, [](const auto& a, const auto& b) {

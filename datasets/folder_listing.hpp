@@ -25,7 +25,7 @@ std::vector<StemFile> list_by_stem(const std::filesystem::path& folder,
                                    std::initializer_list<std::string_view> extensions);
 
 /// The folders below `folder` in the order of `list_by_stem`, hidden ones aside; links are
-/// followed.
+/// followed. None when it cannot be read: a search passes over what is closed to it.
 std::vector<std::filesystem::path> list_folders(const std::filesystem::path& folder);
 
 }  // namespace mosbench

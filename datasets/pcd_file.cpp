@@ -12,6 +12,8 @@
 #include <string_view>
 
 #include "datasets/errors.hpp"
+#include "datasets/files.hpp"
+#include "datasets/pcd_header.hpp"
 
 namespace mosbench {
 namespace {
@@ -69,14 +71,12 @@ FieldReader field_reader(const pcl::PCLPointCloud2& cloud, std::string_view name
   throw DataError(file, "has no numeric field " + std::string(name), "fields x y z [intensity]");
 }
 
-/// Runs a call of PCL that returns a negative number or throws on bad files.
-template <typename Call>
-void check_pcl(const std::filesystem::path& file, Call&& call) {
+void read_cloud(const std::filesystem::path& file, pcl::PCLPointCloud2& cloud) {
   // PCL would report every bad file on the console as well.
   pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);
   std::string why;
   try {
-    if (call() >= 0) return;
+    if (pcl::PCDReader().read(file.string(), cloud) >= 0) return;
   } catch (const std::exception& error) {
     why = std::string(" (") + error.what() + ")";
   }
@@ -89,14 +89,15 @@ void check_pcl(const std::filesystem::path& file, Call&& call) {
 bool reads_pcd() { return true; }
 
 std::vector<Point> read_pcd(const std::filesystem::path& file) {
+  const std::size_t count = pcd_point_count(file);
+  if (count == 0) return {};
   pcl::PCLPointCloud2 cloud;
-  check_pcl(file, [&] { return pcl::PCDReader().read(file.string(), cloud); });
+  read_cloud(file, cloud);
   const FieldReader x = field_reader(cloud, "x", true, file);
   const FieldReader y = field_reader(cloud, "y", true, file);
   const FieldReader z = field_reader(cloud, "z", true, file);
   const FieldReader intensity = field_reader(cloud, "intensity", false, file);
 
-  const std::size_t count = std::size_t{cloud.width} * cloud.height;
   if (cloud.point_step == 0 || cloud.data.size() / cloud.point_step < count) {
     throw DataError(file, "holds less than the points of its header", std::to_string(count));
   }
@@ -110,9 +111,7 @@ std::vector<Point> read_pcd(const std::filesystem::path& file) {
 }
 
 std::size_t pcd_point_count(const std::filesystem::path& file) {
-  pcl::PCLPointCloud2 header;
-  check_pcl(file, [&] { return pcl::PCDReader().readHeader(file.string(), header); });
-  return std::size_t{header.width} * header.height;
+  return check_pcd(read_file(file), file).points;
 }
 
 }  // namespace mosbench

@@ -16,7 +16,7 @@ bool reads_pcd();
 /// PCL (MOSBENCH_WITH_PCL=OFF).
 std::vector<Point> read_pcd(const std::filesystem::path& file);
 
-/// The points of a .pcd scan as its header says; throws as `read_pcd`.
+/// Points of a .pcd scan by its header, the file checked; throws as `read_pcd`.
 std::size_t pcd_point_count(const std::filesystem::path& file);
 
 }  // namespace mosbench

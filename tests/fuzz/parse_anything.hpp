@@ -10,6 +10,7 @@
 #include "datasets/errors.hpp"
 #include "datasets/indices_file.hpp"
 #include "datasets/label_file.hpp"
+#include "datasets/pcd_header.hpp"
 #include "datasets/pose_file.hpp"
 #include "datasets/split_file.hpp"
 #include "datasets/times_file.hpp"
@@ -68,17 +69,22 @@ inline void split(std::string_view text) {
   require(!parsed.empty() && parse_split(format_split(parsed), "f") == parsed);
 }
 
+inline void pcd(std::string_view bytes) {
+  require(check_pcd(bytes, "f").data_offset_bytes <= bytes.size());
+}
+
 struct Parser {
   const char* name;  ///< of its corpus folder and its libFuzzer target
   void (*parse)(std::string_view);
 };
-inline constexpr std::array<Parser, 7> kParsers = {{{"bin", bin},
+inline constexpr std::array<Parser, 8> kParsers = {{{"bin", bin},
                                                     {"label", label},
                                                     {"poses", poses},
                                                     {"calib", calib},
                                                     {"times", times},
                                                     {"indices", indices},
-                                                    {"split", split}}};
+                                                    {"split", split},
+                                                    {"pcd", pcd}}};
 
 /// Whether the parser gave a value; false when it threw DataError. Anything else escapes.
 inline bool gives_value(void (*parse)(std::string_view), std::string_view bytes) {

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -84,44 +85,43 @@ class Mutator {
   std::mt19937 random_;
 };
 
-TEST(EveryParser, GivesAValueOrADataErrorForItsCorpusAndMutationsOfIt) {
-  for (const fuzz::Parser& parser : fuzz::kParsers) {
-    SCOPED_TRACE(parser.name);
-    const auto corpus = corpus_of(parser);
-    ASSERT_GE(corpus.size(), 3U);
-    std::size_t values = 0;
-    std::size_t errors = 0;
-    const auto replay = [&](const std::string& input) {
-      bool value = false;
-      ASSERT_NO_THROW(value = fuzz::gives_value(parser.parse, input)) << "input: " << input;
-      ++(value ? values : errors);
-    };
-    for (const std::string& input : corpus) replay(input);
-    EXPECT_GT(values, 0U) << "the corpus has no good input";
-    EXPECT_GT(errors, 0U) << "the corpus has no bad input";
+class EveryParser : public testing::TestWithParam<fuzz::Parser> {
+ protected:
+  void replay(const std::string& input) {
+    bool value = false;
+    ASSERT_NO_THROW(value = fuzz::gives_value(GetParam().parse, input)) << "input: " << input;
+    ++(value ? values_ : errors_);
+  }
+  std::size_t values_ = 0;
+  std::size_t errors_ = 0;
+};
 
-    values = errors = 0;
-    Mutator mutator(20240521);
-    for (std::size_t i = 0; i < 3000; ++i) {
-      replay(mutator.mutate(corpus[i % corpus.size()], corpus[(i * 7 + 1) % corpus.size()]));
-    }
-    // Both ways out are walked, so the mutations are neither harmless nor all noise.
-    EXPECT_GT(values, 30U);
-    EXPECT_GT(errors, 30U);
+TEST_P(EveryParser, GivesAValueOrADataErrorForItsCorpus) {
+  for (const std::string& input : corpus_of(GetParam())) replay(input);
+  EXPECT_GT(values_, 0U) << "the corpus has no good input";
+  EXPECT_GT(errors_, 0U) << "the corpus has no bad input";
+}
+
+TEST_P(EveryParser, GivesAValueOrADataErrorForMutationsOfItsCorpus) {
+  const auto corpus = corpus_of(GetParam());
+  ASSERT_GE(corpus.size(), 3U);
+  Mutator mutator(20240521);
+  for (std::size_t i = 0; i < 3000; ++i) {
+    replay(mutator.mutate(corpus[i % corpus.size()], corpus[(i * 7 + 1) % corpus.size()]));
+  }
+  // Both ways out are walked, so the mutations are neither harmless nor all noise.
+  EXPECT_GT(values_, 30U);
+  EXPECT_GT(errors_, 30U);
+}
+
+TEST_P(EveryParser, GivesAValueOrADataErrorForFilesOfOtherFormats) {
+  for (const fuzz::Parser& owner : fuzz::kParsers) {
+    for (const std::string& input : corpus_of(owner)) replay(input);
   }
 }
 
-/// A parser of one format fed with files of every other one.
-TEST(EveryParser, GivesAValueOrADataErrorForFilesOfOtherFormats) {
-  for (const fuzz::Parser& parser : fuzz::kParsers) {
-    for (const fuzz::Parser& owner : fuzz::kParsers) {
-      for (const std::string& input : corpus_of(owner)) {
-        EXPECT_NO_THROW(fuzz::gives_value(parser.parse, input))
-            << parser.name << " < " << owner.name;
-      }
-    }
-  }
-}
+INSTANTIATE_TEST_SUITE_P(Fuzz, EveryParser, testing::ValuesIn(fuzz::kParsers),
+                         [](const auto& parser) { return std::string(parser.param.name); });
 
 }  // namespace
 }  // namespace mosbench
