@@ -156,12 +156,13 @@ void Method::update_region(const Scan& scan, double threshold) {
   std::vector<double> scores;
   for (auto& [v, record] : region_) {
     if (!record.is_dynamic) continue;
-    record.score = 0;
+    int score = 0;
     for_neighbours(v, 1, [&](const Voxel& u) {
       const auto found = region_.find(u);
-      if (found != region_.end() && found->second.is_dynamic) ++record.score;
+      if (found != region_.end() && found->second.is_dynamic) ++score;
     });
-    scores.push_back(record.score);
+    record.score = score;
+    scores.push_back(score);
   }
   if (const auto level = otsu(scores)) region_threshold_ = *level;
   for (auto& [v, record] : region_)

@@ -73,12 +73,13 @@ class RegionTwin {
     std::vector<int> scores;
     for (auto& [v, record] : records_) {
       if (!record.dynamic) continue;
-      record.score = 0;
+      int score = 0;
       for_cube(v, 1, [&](const Triple& u) {
         const auto found = records_.find(u);
-        record.score += found != records_.end() && found->second.dynamic;
+        score += found != records_.end() && found->second.dynamic;
       });
-      scores.push_back(record.score);
+      record.score = score;
+      scores.push_back(score);
     }
     threshold_ = threshold_of(scores).value_or(threshold_);
     for (auto& [v, record] : records_) {
