@@ -31,7 +31,7 @@ class PcdCheck {
     const std::uint64_t points = number_of("POINTS", kMostPoints);
     if (width * height != points) fail("POINTS is not WIDTH * HEIGHT", "as many");
     header_.points = static_cast<std::size_t>(points);
-    check_data(words_of("DATA", 1).front());
+    check_body(words_of("DATA", 1).front());
     return header_;
   }
 
@@ -51,7 +51,7 @@ class PcdCheck {
       lines_[words.front()].assign(words.begin() + 1, words.end());
       if (words.front() == "DATA") break;
     }
-    header_.data_offset_bytes = at;
+    header_.body_offset_bytes = at;
     if (!lines_.contains("DATA")) {
       fail("has no header that ends with DATA", "a PCD file, version 0.7");
     }
@@ -100,15 +100,15 @@ class PcdCheck {
     if (point_bytes_ > kMostValues) fail("has points of too many bytes", "at most 65536");
   }
 
-  void check_data(std::string_view kind) const {
-    const std::string_view data = bytes_.substr(header_.data_offset_bytes);
+  void check_body(std::string_view kind) const {
+    const std::string_view body = bytes_.substr(header_.body_offset_bytes);
     const std::uint64_t wanted_bytes = header_.points * point_bytes_;
     if (kind == "ascii") {
-      check_ascii(data);
+      check_ascii(body);
     } else if (kind == "binary") {
-      if (data.size() < wanted_bytes) fail_short(data.size(), wanted_bytes);
+      if (body.size() < wanted_bytes) fail_short(body.size(), wanted_bytes);
     } else if (kind == "binary_compressed") {
-      check_compressed(data, wanted_bytes);
+      check_compressed(body, wanted_bytes);
     } else {
       fail("DATA " + quoted(kind), "ascii, binary or binary_compressed");
     }
@@ -119,17 +119,17 @@ class PcdCheck {
          std::to_string(wanted_bytes) + " for its " + std::to_string(header_.points) + " points");
   }
 
-  void check_compressed(std::string_view data, std::uint64_t wanted_bytes) const {
+  void check_compressed(std::string_view body, std::uint64_t wanted_bytes) const {
     std::uint32_t sizes[2] = {0, 0};  // compressed, uncompressed
-    if (data.size() < sizeof(sizes)) fail_short(data.size(), sizeof(sizes));
-    std::memcpy(sizes, data.data(), sizeof(sizes));
-    if (data.size() - sizeof(sizes) < sizes[0]) fail_short(data.size(), sizeof(sizes) + sizes[0]);
+    if (body.size() < sizeof(sizes)) fail_short(body.size(), sizeof(sizes));
+    std::memcpy(sizes, body.data(), sizeof(sizes));
+    if (body.size() - sizeof(sizes) < sizes[0]) fail_short(body.size(), sizeof(sizes) + sizes[0]);
     if (sizes[1] != wanted_bytes) fail_short(sizes[1], wanted_bytes);
   }
 
-  void check_ascii(std::string_view data) const {
+  void check_ascii(std::string_view body) const {
     std::size_t rows = 0;
-    for (const TextLine& line : split_lines(data, file_)) {
+    for (const TextLine& line : split_lines(body, file_)) {
       const auto words = split_at_blanks(line.text);
       if (words.size() != point_values_) {
         fail("point " + std::to_string(rows) + " has " + std::to_string(words.size()) + " values",

@@ -9,7 +9,7 @@ namespace mosbench {
 /// What the header of a PCD file says of its points.
 struct PcdHeader {
   std::size_t points = 0;
-  std::size_t data_offset_bytes = 0;  ///< where the line after DATA starts
+  std::size_t body_offset_bytes = 0;  ///< where the line after DATA starts
 };
 
 /// Checks a whole PCD file: every line of the header that is needed, and that the data behind it

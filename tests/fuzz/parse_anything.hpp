@@ -70,7 +70,7 @@ inline void split(std::string_view text) {
 }
 
 inline void pcd(std::string_view bytes) {
-  require(check_pcd(bytes, "f").data_offset_bytes <= bytes.size());
+  require(check_pcd(bytes, "f").body_offset_bytes <= bytes.size());
 }
 
 struct Parser {

@@ -192,7 +192,8 @@ TEST(OpenDataset, RefusesAHelimosSplitThatNamesAbsentScans) {
 
 TEST(OpenDataset, SaysWhichLayoutItExpected) {
   const TempFolder root;
-  EXPECT_THAT(error_of(root / "absent"), AllOf(HasSubstr("absent"), HasSubstr("is no folder that can be listed")));
+  EXPECT_THAT(error_of(root / "absent"),
+              AllOf(HasSubstr("absent"), HasSubstr("is no folder that can be listed")));
   EXPECT_THAT(error_of(root.path()), AllOf(HasSubstr("holds no sequence"), HasSubstr("velodyne/")));
   const std::pair<DatasetKind, const char*> layouts[] = {
       {DatasetKind::kDoals, "<scene>/sequence_N"},
