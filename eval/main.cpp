@@ -8,6 +8,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -115,6 +116,8 @@ int main(int argc, char** argv) {
   } catch (const mosbench::UsageError& error) {
     return fail(kUsage, error.what());
   } catch (const mosbench::DataError& error) {
+    return fail(kUnusableFiles, error.what());
+  } catch (const std::filesystem::filesystem_error& error) {
     return fail(kUnusableFiles, error.what());
   } catch (const std::exception& error) {
     return fail(kInternal, fmt::format("internal fault: {}", error.what()));

@@ -149,8 +149,11 @@ void ResultFolder::publish() const {
     checked(folder_, "moved",
             [&](std::error_code& error) { fs::rename(folder_, replaced, error); });
   }
-  checked(folder_, "put in place",
-          [&](std::error_code& error) { fs::rename(with_suffix(".partial"), folder_, error); });
+  checked(folder_, "put in place", [&](std::error_code& error) {
+    fs::rename(with_suffix(".partial"), folder_, error);
+    std::error_code ignored;
+    if (error) fs::rename(replaced, folder_, ignored);
+  });
   checked(replaced, "removed", [&](std::error_code& error) { fs::remove_all(replaced, error); });
 }
 
