@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "datasets/files.hpp"
+#include "eval/benchmark_split.hpp"
 #include "eval/machine.hpp"
 #include "eval/metrics.hpp"
 #include "eval/simulated.hpp"
@@ -76,10 +77,15 @@ ordered_json header(const RunPlan& plan, const PlannedSequence& planned, const S
   json["machine"] = machine_json();
   json["remarks"] = remarks;
   json["scans_without_detection"] = scans_without_detection(plan.settings.config, sequence);
+  const Split* benchmark = benchmark_scans(*plan.settings.protocol, plan.dataset.splits);
+  const auto stems =
+      benchmark == nullptr ? std::nullopt : stems_in_split(*benchmark, planned.position);
   std::vector<Confusion> counts;
   for (const ScanRow& row : rows.scans) {
-    if (row.counts) counts.push_back(*row.counts);
+    if (row.counts && (!stems || stems->contains(row.stem))) counts.push_back(*row.counts);
   }
+  json["summary_split"] =
+      benchmark == nullptr ? ordered_json(nullptr) : ordered_json(benchmark->name);
   json["summary"] =
       counts.empty() ? ordered_json(nullptr) : to_json(summarize(*plan.settings.protocol, counts));
   return json;

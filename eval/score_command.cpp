@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "datasets/errors.hpp"
+#include "eval/benchmark_split.hpp"
 #include "eval/commands.hpp"
 #include "eval/prediction_files.hpp"
 #include "eval/presets.hpp"
@@ -18,7 +19,8 @@ constexpr const char* kFooter =
     R"(Prints the numbers of `mosbench run` for label files of any origin. They are looked for in
 DIR/<sequence>/{predictions,labels}, DIR/sequences/<sequence>/predictions and, for one sequence,
 DIR/{predictions,labels} and DIR itself; scan <stem>.bin belongs to <stem>.label. Every scan with truth
-needs one; a missing file, one of the wrong size or one without scan is an error.
+needs one; a missing file, one of the wrong size or one without scan is an error. Under a protocol
+that is over a split of scans (helimos-test, mapmos) only those scans are scored.
 
 Examples:
   mosbench score ~/sipailou-livox-kitti --predictions motionbev --protocol sipailou --split test
@@ -47,14 +49,13 @@ void keep_split(const std::string& name, Dataset& dataset) {
                                dataset.root.string(), known.empty() ? "no --split" : known));
 }
 
-/// Which scans of a sequence have to be scored: those of the chosen split, or all.
-bool is_wanted(const ScoreOptions& options, const Dataset& dataset, std::size_t position,
-               const std::string& stem) {
-  if (!options.split) return true;
-  for (const SplitPart& part : dataset.splits.front().parts) {
-    if (part.sequence == position && (!part.stems || part.stems->contains(stem))) return true;
-  }
-  return false;
+/// Which scans of a sequence have to be scored: those of the chosen split or of the split that the
+/// protocol picks scans by, else all.
+bool is_wanted(const ScoreOptions& options, const Dataset& dataset, const Protocol& protocol,
+               std::size_t position, const std::string& stem) {
+  if (!options.split && benchmark_scans(protocol, dataset.splits) == nullptr) return true;
+  const auto stems = stems_in_split(dataset.splits.front(), position);
+  return !stems || stems->contains(stem);
 }
 
 Confusion score_one(const Sequence& sequence, std::size_t k, const Protocol& protocol,
@@ -74,7 +75,8 @@ ScoredSequence score_sequence(const ScoreOptions& options, const Dataset& datase
   const Sequence& sequence = *dataset.sequences[position];
   std::vector<std::size_t> wanted;
   for (std::size_t k = 0; k < sequence.size(); ++k) {
-    if (sequence.has_truth(k) && is_wanted(options, dataset, position, sequence.stem(k))) {
+    if (sequence.has_truth(k) &&
+        is_wanted(options, dataset, protocol, position, sequence.stem(k))) {
       wanted.push_back(k);
     }
   }
@@ -97,7 +99,11 @@ std::string score(const ScoreOptions& options) {
       protocol_named(options.protocol.value_or(std::string(default_preset(dataset.kind).protocol)));
   const RangeGate range =
       options.range ? range_option(*options.range, protocol) : protocol.default_range;
-  if (options.split) keep_split(*options.split, dataset);
+  if (options.split) {
+    keep_split(*options.split, dataset);
+  } else if (benchmark_scans(protocol, dataset.splits) != nullptr) {
+    keep_split(std::string(protocol.default_split), dataset);
+  }
   std::vector<ScoredSequence> sequences;
   std::size_t scored_scans = 0;
   for (std::size_t i = 0; i < dataset.sequences.size(); ++i) {
@@ -120,8 +126,9 @@ std::string score(const ScoreOptions& options) {
     json.update(rows_json(rows));
     return json.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n';
   }
-  return fmt::format("protocol {}: {}\n{}\n{}", protocol.name, protocol.summary,
-                     simulated_notice(dataset), format_rows(protocol, rows));
+  return fmt::format("protocol {}: {}\n{}{}\n{}", protocol.name, protocol.summary,
+                     benchmark_notice(protocol, dataset.splits), simulated_notice(dataset),
+                     format_rows(protocol, rows));
 }
 
 }  // namespace

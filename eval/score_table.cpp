@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "eval/benchmark_split.hpp"
 #include "eval/summary_json.hpp"
 #include "eval/text_table.hpp"
 
@@ -24,9 +25,14 @@ std::vector<Confusion> counts_of(const ScoredSequence& sequence, const Stems& st
   return counts;
 }
 
-ScoreRow sequence_row(const Protocol& protocol, const ScoredSequence& sequence) {
-  ScoreRow row{ScoreRow::Kind::kSequence, sequence.name, 0, {}, sequence.method_ms_per_scan};
-  row.summary = summarize(protocol, counts_of(sequence, std::nullopt, row.scans));
+ScoreRow sequence_row(const Protocol& protocol, const ScoredSequence& sequence,
+                      std::size_t position, const Split* benchmark) {
+  ScoreRow row;
+  row.name = sequence.name;
+  row.method_ms_per_scan = sequence.method_ms_per_scan;
+  if (benchmark != nullptr) row.split = benchmark->name;
+  const Stems stems = benchmark == nullptr ? std::nullopt : stems_in_split(*benchmark, position);
+  row.summary = summarize(protocol, counts_of(sequence, stems, row.scans));
   return row;
 }
 
@@ -45,12 +51,17 @@ std::optional<double> mean_ms(const Split& split, const std::vector<ScoredSequen
 
 void add_split(const Protocol& protocol, const Split& split,
                const std::vector<ScoredSequence>& sequences, std::vector<ScoreRow>& rows) {
-  ScoreRow whole{ScoreRow::Kind::kSplit, split.name, 0, {}, mean_ms(split, sequences)};
+  ScoreRow whole;
+  whole.kind = ScoreRow::Kind::kSplit;
+  whole.name = split.name;
+  whole.method_ms_per_scan = mean_ms(split, sequences);
   std::vector<Confusion> pooled;
   std::vector<Summary> summaries;
   for (const SplitPart& part : split.parts) {
     const ScoredSequence& sequence = sequences[part.sequence];
-    ScoreRow row{ScoreRow::Kind::kPart, sequence.name + " " + split.name, 0, {}, std::nullopt};
+    ScoreRow row;
+    row.kind = ScoreRow::Kind::kPart;
+    row.name = sequence.name + " " + split.name;
     const std::vector<Confusion> counts = counts_of(sequence, part.stems, row.scans);
     row.summary = summarize(protocol, counts);
     pooled.insert(pooled.end(), counts.begin(), counts.end());
@@ -66,10 +77,15 @@ void add_split(const Protocol& protocol, const Split& split,
 
 std::string count_text(std::uint64_t count) { return fmt::format("{}", count); }
 
+std::string row_title(const ScoreRow& row) {
+  if (row.kind == ScoreRow::Kind::kSplit) return "split " + row.name;
+  return row.split.empty() ? row.name : fmt::format("{} ({} scans)", row.name, row.split);
+}
+
 std::vector<std::string> cells(const Protocol& protocol, const ScoreRow& row, bool with_ms) {
   const Summary& summary = row.summary;
-  std::vector<std::string> cells = {(row.kind == ScoreRow::Kind::kSplit ? "split " : "") + row.name,
-                                    count_text(row.scans), count_text(summary.scans)};
+  std::vector<std::string> cells = {row_title(row), count_text(row.scans),
+                                    count_text(summary.scans)};
   if (summary.scans == 0) {
     cells.insert(cells.end(), {"no truth", "", "", "", "", "", "", ""});
   } else {
@@ -92,8 +108,9 @@ std::vector<std::string> cells(const Protocol& protocol, const ScoreRow& row, bo
 std::vector<ScoreRow> score_rows(const Protocol& protocol, const std::vector<Split>& splits,
                                  const std::vector<ScoredSequence>& sequences) {
   std::vector<ScoreRow> rows;
-  for (const ScoredSequence& sequence : sequences) {
-    rows.push_back(sequence_row(protocol, sequence));
+  const Split* benchmark = benchmark_scans(protocol, splits);
+  for (std::size_t i = 0; i < sequences.size(); ++i) {
+    rows.push_back(sequence_row(protocol, sequences[i], i, benchmark));
   }
   for (const Split& split : splits) add_split(protocol, split, sequences, rows);
   return rows;
@@ -118,6 +135,16 @@ std::string format_rows(const Protocol& protocol, const std::vector<ScoreRow>& r
   return table.str();
 }
 
+std::string benchmark_notice(const Protocol& protocol, const std::vector<Split>& splits) {
+  if (protocol.default_split.empty()) return "";
+  if (benchmark_split(protocol, splits) != nullptr) {
+    return fmt::format("the benchmark's number is that of split {}\n", protocol.default_split);
+  }
+  return fmt::format(
+      "no row is the benchmark's number: it is over split {}, which is not in this data set\n",
+      protocol.default_split);
+}
+
 nlohmann::ordered_json rows_json(const std::vector<ScoreRow>& rows) {
   nlohmann::ordered_json json = {{"sequences", nlohmann::ordered_json::array()},
                                  {"parts", nlohmann::ordered_json::array()},
@@ -125,6 +152,7 @@ nlohmann::ordered_json rows_json(const std::vector<ScoreRow>& rows) {
   constexpr std::array kLists = {"sequences", "parts", "splits"};
   for (const ScoreRow& row : rows) {
     nlohmann::ordered_json object = {{"name", row.name}, {"scans", row.scans}};
+    if (!row.split.empty()) object["split"] = row.split;
     object["summary"] = row.summary.scans == 0 ? nullptr : to_json(row.summary);
     if (row.method_ms_per_scan) object["method_ms_per_scan"] = *row.method_ms_per_scan;
     json[kLists.at(static_cast<std::size_t>(row.kind))].push_back(std::move(object));

@@ -93,6 +93,33 @@ TEST_F(Score, NeedsPredictionsForLabelledScansOnly) {
       6);
 }
 
+TEST(ScoreHelimos, CountsTheScansOfTheProtocolsSplitAsTheRunDoes) {
+  const TempFolder folder;
+  cli::write_small_sequence(folder / "helimos/Velodyne", 8);
+  write_file_atomic(folder / "helimos/test.txt", "6\n7\n");
+  write_file_atomic(folder / "helimos/train.txt", "1\n");
+  const cli::Answer run = cli::run({"run", (folder / "helimos").string(), "--protocol",
+                                    "helimos-test", "--out", (folder / "out").string(), "--json"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const auto row = nlohmann::json::parse(run.out).at("sequences").at(0);
+  EXPECT_EQ(row.at("split"), "test");
+  EXPECT_EQ(row.at("summary").at("labelled_scans"), 2);
+  const auto result = cli::timeless_result(folder / "out/Velodyne");
+  EXPECT_EQ(result.at("summary_split"), "test");
+  EXPECT_EQ(nlohmann::json(result.at("summary")), row.at("summary"));
+
+  const fs::path labels = folder / "out/Velodyne/labels";
+  fs::remove(labels / "000001.label");  // of another split: not needed
+  const auto score = [&](const std::string& protocol) {
+    return cli::run({"score", (folder / "helimos").string(), "--predictions",
+                     (folder / "out").string(), "--json", "--protocol", protocol});
+  };
+  const cli::Answer test = score("helimos-test");
+  ASSERT_EQ(test.exit_code, 0) << test.err;
+  EXPECT_EQ(nlohmann::json::parse(test.out).at("sequences").at(0).at("summary"), row.at("summary"));
+  EXPECT_THAT(score("helimos-all").err, HasSubstr("000001.label: cannot be read"));
+}
+
 TEST_F(Score, RefusesTheTruthAsPrediction) {
   const cli::Answer answer = score(folder_ / "room");
   EXPECT_EQ(answer.exit_code, 3);

@@ -1,3 +1,4 @@
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <set>
@@ -83,7 +84,27 @@ TEST(ScoreRows, AverageSensorsWhereTheProtocolDoes) {
   ASSERT_EQ(rows.size(), 4U);
   EXPECT_EQ(rows[2].kind, ScoreRow::Kind::kPart);
   EXPECT_DOUBLE_EQ(rows[2].summary.iou.value(), 0.75);
+  EXPECT_DOUBLE_EQ(rows[0].summary.iou.value(), 0.75) << "of the scans of the split";
+  EXPECT_EQ(rows[0].split, "test");
   EXPECT_DOUBLE_EQ(rows[3].summary.iou.value(), (0.75 + 0.9) / 2.0);
+}
+
+TEST(ScoreRows, CoverWholeSequencesWhereTheSplitPicksNone) {
+  const Split whole{"test", {{0, std::nullopt}}};
+  const Split picked{"test", {{0, std::set<std::string>{"2"}}}};
+  EXPECT_EQ(score_rows(protocol_named("helimos-test"), {whole}, kTwoSequences)[0].split, "");
+  EXPECT_EQ(score_rows(protocol_named("helimos-all"), {picked}, kTwoSequences)[0].split, "");
+  const auto rows = score_rows(protocol_named("helimos-test"), {picked}, kTwoSequences);
+  EXPECT_EQ(rows[1].scans, 0U) << "sequence b has no scan in the split";
+}
+
+TEST(BenchmarkNotice, SaysWhichRowHoldsTheNumberOrThatNoneDoes) {
+  const Split split{"test", {{0, std::nullopt}}};
+  EXPECT_EQ(benchmark_notice(protocol_named("sipailou"), {split}),
+            "the benchmark's number is that of split test\n");
+  EXPECT_THAT(benchmark_notice(protocol_named("sipailou"), {}),
+              testing::StartsWith("no row is the benchmark's number"));
+  EXPECT_EQ(benchmark_notice(protocol_named("helimos-all"), {}), "");
 }
 
 TEST(ScoreRows, WithoutTruthShowNoNumber) {

@@ -1,0 +1,23 @@
+#include "eval/benchmark_split.hpp"
+
+#include <algorithm>
+
+namespace mosbench {
+
+const Split* benchmark_split(const Protocol& protocol, const std::vector<Split>& splits) {
+  const auto found = std::ranges::find(splits, protocol.default_split, &Split::name);
+  return found == splits.end() ? nullptr : &*found;
+}
+
+const Split* benchmark_scans(const Protocol& protocol, const std::vector<Split>& splits) {
+  const Split* split = benchmark_split(protocol, splits);
+  const auto picks = [](const SplitPart& part) { return part.stems.has_value(); };
+  return split != nullptr && std::ranges::any_of(split->parts, picks) ? split : nullptr;
+}
+
+std::optional<std::set<std::string>> stems_in_split(const Split& split, std::size_t position) {
+  const auto part = std::ranges::find(split.parts, position, &SplitPart::sequence);
+  return part == split.parts.end() ? std::set<std::string>{} : part->stems;
+}
+
+}  // namespace mosbench
