@@ -10,6 +10,7 @@ namespace mosbench {
 void add_simulate_command(CLI::App& app, std::string& answer);
 void add_run_command(CLI::App& app, std::string& answer);
 void add_score_command(CLI::App& app, std::string& answer);
+void add_report_command(CLI::App& app, std::string& answer);
 void add_list_command(CLI::App& app, std::string& answer);
 
 }  // namespace mosbench

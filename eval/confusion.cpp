@@ -1,6 +1,5 @@
 #include "eval/confusion.hpp"
 
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <stdexcept>
@@ -44,21 +43,40 @@ TruthClass class_out_of_range(RangeRule rule, TruthClass inside) {
   return inside == TruthClass::kMoving ? TruthClass::kStatic : inside;
 }
 
-/// Points per truth class, without and with a moving prediction.
-using Tally = std::array<std::array<std::uint64_t, 2>, 4>;
+PointOutcome outcome_of(TruthClass truth, bool moving) {
+  switch (truth) {
+    case TruthClass::kStatic:
+      return moving ? PointOutcome::kFalsePositive : PointOutcome::kTrueNegative;
+    case TruthClass::kMoving:
+      return moving ? PointOutcome::kTruePositive : PointOutcome::kFalseNegative;
+    case TruthClass::kAlwaysNegative:
+      return PointOutcome::kTrueNegative;
+    case TruthClass::kIgnored:
+      break;
+  }
+  return moving ? PointOutcome::kIgnoredMoving : PointOutcome::kIgnoredStatic;
+}
 
-Confusion to_confusion(const Tally& tally, std::uint64_t unknown_ids) {
-  const auto of = [&tally](TruthClass truth) { return tally[static_cast<std::size_t>(truth)]; };
-  const auto [ignored_static, ignored_moving] = of(TruthClass::kIgnored);
-  const auto [true_negatives, false_positives] = of(TruthClass::kStatic);
-  const auto [false_negatives, true_positives] = of(TruthClass::kMoving);
-  const auto [negative_static, negative_moving] = of(TruthClass::kAlwaysNegative);
-  return {.tp = true_positives,
-          .fp = false_positives,
-          .fn = false_negatives,
-          .tn = true_negatives + negative_static + negative_moving,
-          .ignored = ignored_static + ignored_moving,
-          .unknown_ids = unknown_ids};
+/// Calls `accept` with the outcome of each point and whether its ids are known, in order.
+template <typename Accept>
+void judge_points(const Protocol& protocol, std::span<const std::uint32_t> truth,
+                  std::span<const std::uint32_t> prediction, std::span<const Point> points,
+                  const RangeGate& limits, Accept&& accept) {
+  check_sizes(protocol, truth.size(), prediction.size(), points.size());
+  const bool gated = protocol.range_rule != RangeRule::kNone;
+  if (gated) check_limits(limits);
+  const RangeGate gate = rounded(limits, protocol.range_arithmetic);
+  const LabelTable truth_classes(protocol.truth);
+  const LabelTable prediction_classes(protocol.prediction);
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    TruthClass truth_class = truth_classes[truth[i]];
+    if (gated && !gate.contains(range_m(points[i], protocol.range_arithmetic))) {
+      truth_class = class_out_of_range(protocol.range_rule, truth_class);
+    }
+    const bool moving = prediction_classes[prediction[i]] == TruthClass::kMoving;
+    accept(outcome_of(truth_class, moving),
+           truth_classes.is_known(truth[i]) && prediction_classes.is_known(prediction[i]));
+  }
 }
 
 }  // namespace
@@ -87,26 +105,37 @@ double range_m(const Point& point, Arithmetic arithmetic) {
 Confusion score_scan(const Protocol& protocol, std::span<const std::uint32_t> truth,
                      std::span<const std::uint32_t> prediction, std::span<const Point> points,
                      const RangeGate& limits) {
-  check_sizes(protocol, truth.size(), prediction.size(), points.size());
-  const bool gated = protocol.range_rule != RangeRule::kNone;
-  if (gated) check_limits(limits);
-  const RangeGate gate = rounded(limits, protocol.range_arithmetic);
-  const LabelTable truth_classes(protocol.truth);
-  const LabelTable prediction_classes(protocol.prediction);
-  Tally tally{};
+  OutcomeCounts counts{};
   std::uint64_t unknown_ids = 0;
-  for (std::size_t i = 0; i < truth.size(); ++i) {
-    TruthClass truth_class = truth_classes[truth[i]];
-    if (gated && !gate.contains(range_m(points[i], protocol.range_arithmetic))) {
-      truth_class = class_out_of_range(protocol.range_rule, truth_class);
-    }
-    const bool moving = prediction_classes[prediction[i]] == TruthClass::kMoving;
-    ++tally[static_cast<std::size_t>(truth_class)][moving ? 1 : 0];
-    const bool known =
-        truth_classes.is_known(truth[i]) && prediction_classes.is_known(prediction[i]);
+  judge_points(protocol, truth, prediction, points, limits, [&](PointOutcome outcome, bool known) {
+    ++counts[static_cast<std::size_t>(outcome)];
     unknown_ids += known ? 0 : 1;
-  }
-  return to_confusion(tally, unknown_ids);
+  });
+  Confusion confusion = to_confusion(counts);
+  confusion.unknown_ids = unknown_ids;
+  return confusion;
+}
+
+std::vector<PointOutcome> point_outcomes(const Protocol& protocol,
+                                         std::span<const std::uint32_t> truth,
+                                         std::span<const std::uint32_t> prediction,
+                                         std::span<const Point> points, const RangeGate& limits) {
+  std::vector<PointOutcome> outcomes;
+  outcomes.reserve(truth.size());
+  judge_points(protocol, truth, prediction, points, limits,
+               [&](PointOutcome outcome, bool) { outcomes.push_back(outcome); });
+  return outcomes;
+}
+
+Confusion to_confusion(const OutcomeCounts& counts) {
+  const auto of = [&counts](PointOutcome outcome) {
+    return counts[static_cast<std::size_t>(outcome)];
+  };
+  return {.tp = of(PointOutcome::kTruePositive),
+          .fp = of(PointOutcome::kFalsePositive),
+          .fn = of(PointOutcome::kFalseNegative),
+          .tn = of(PointOutcome::kTrueNegative),
+          .ignored = of(PointOutcome::kIgnoredStatic) + of(PointOutcome::kIgnoredMoving)};
 }
 
 Confusion score_scan(const Protocol& protocol, std::span<const std::uint32_t> truth,

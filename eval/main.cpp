@@ -25,6 +25,7 @@ constexpr const char* kFooter = R"(Examples:
   mosbench simulate --layout semantickitti --scene room --scans 40 --seed 1 --out sim
   mosbench run sim --out results/runs/sim
   mosbench score sim --predictions results/runs/sim --protocol semantickitti-mos
+  mosbench report results/runs/sim -o report.html
   mosbench list protocols
 
 Exit codes: 0 ok, 1 comparison failed, 2 wrong usage or configuration, 3 unusable files,
@@ -88,6 +89,7 @@ std::string answer_to(std::vector<std::string> arguments) {
   mosbench::add_simulate_command(app, answer);
   mosbench::add_run_command(app, answer);
   mosbench::add_score_command(app, answer);
+  mosbench::add_report_command(app, answer);
   mosbench::add_list_command(app, answer);
   try {
     std::ranges::reverse(arguments);  // as CLI11 expects them

@@ -91,6 +91,14 @@ ordered_json header(const RunPlan& plan, const PlannedSequence& planned, const S
   return json;
 }
 
+/// What depends on this machine's folders: where `report` and `render` find the points again.
+ordered_json clock_header(const RunPlan& plan, const PlannedSequence& planned) {
+  ordered_json json = {{"file_stamp", planned.stamp},
+                       {"dataset_root", fs::absolute(plan.dataset.root).string()}};
+  if (plan.poses) json["poses"] = fs::absolute(*plan.poses).string();
+  return json;
+}
+
 SequenceOutcome run_now(const RunPlan& plan, const PlannedSequence& planned) {
   const Sequence& sequence = *plan.dataset.sequences[planned.position];
   const fs::path partial = planned.folder.begin();
@@ -102,7 +110,7 @@ SequenceOutcome run_now(const RunPlan& plan, const PlannedSequence& planned) {
     write_file_atomic(
         partial / "result.json",
         format_result(header(plan, planned, outcome.rows, outcome.remarks), outcome.rows,
-                      plan.settings.threads, {{"file_stamp", planned.stamp}}));
+                      plan.settings.threads, clock_header(plan, planned)));
     planned.folder.publish();
     return outcome;
   } catch (...) {

@@ -12,6 +12,7 @@
 #include "datasets/fingerprint.hpp"
 #include "eval/config_json.hpp"
 #include "eval/presets.hpp"
+#include "eval/same_input.hpp"
 #include "mosbench_version.hpp"
 
 namespace mosbench {
@@ -74,14 +75,6 @@ nlohmann::ordered_json identity_of(const RunPlan& plan, const Sequence& sequence
       {"code", {{"version", std::string(kMosbenchVersion)}, {"compiler", std::string(kCompiler)}}}};
 }
 
-/// Files that were merely copied or touched hold the same frames: only then are those read.
-bool same_input(const Sequence& sequence, const std::string& stamp, const ResultFile& result) {
-  if (result.content["timing"].value("file_stamp", "") == stamp) return true;
-  ContentFingerprint fingerprint;
-  for (std::size_t k = 0; k < sequence.size(); ++k) fingerprint.add(sequence.read(k));
-  return fingerprint.hex() == result.rows.fingerprint;
-}
-
 PlannedSequence plan_sequence(const RunPlan& plan, std::size_t position, bool overwrite) {
   const Sequence& sequence = *plan.dataset.sequences[position];
   PlannedSequence planned{position, ResultFolder(plan.out / sequence.name()),
@@ -110,6 +103,7 @@ RunPlan plan_run(const RunOptions& options) {
   plan.dataset = open_dataset(
       options.input, {dataset_kind_option(options.dataset), options.sequences, options.poses});
   const Preset& preset = choose_preset(options, plan.dataset.kind, plan);
+  plan.poses = options.poses;
   plan.preset = preset.name;
   plan.settings.config = settle_config(options, preset, plan.settings.variant);
   plan.settings.protocol = &protocol_named(options.protocol.value_or(std::string(preset.protocol)));

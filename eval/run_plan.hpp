@@ -40,6 +40,7 @@ struct RunPlan {
   std::string preset;
   RunSettings settings;
   std::filesystem::path out;
+  std::optional<std::filesystem::path> poses;  ///< when not the sequence's own
   std::vector<PlannedSequence> sequences;
   std::vector<std::string> notes;  ///< choices made for the user, plain sentences
 };

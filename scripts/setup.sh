@@ -1,17 +1,24 @@
 #!/usr/bin/env bash
-# setup.sh [--checks]: installs the Debian packages that building and testing need; with --checks also
-# those of the format, naming and clang checks. Does nothing, quickly, when all are there.
+# setup.sh [--checks|--page]: installs the Debian packages that building and testing need; with --checks
+# also those of the format, naming and clang checks; with --page what the report's page is tested, linted
+# and built with: a browser, node and the packages of eval/report_page/package-lock.json. Does nothing,
+# quickly, when all are there.
 # MOSBENCH_WITH_PCL=OFF leaves out PCL, which brings some 400 packages.
 set -euo pipefail
 
 packages=(g++ cmake ninja-build pkg-config git xz-utils jq bsdextrautils
   libeigen3-dev libfmt-dev nlohmann-json3-dev libcli11-dev libxxhash-dev
+  zlib1g-dev libpng-dev
   libgtest-dev libgmock-dev libbenchmark-dev)
 [ "${MOSBENCH_WITH_PCL:-ON}" = OFF ] || packages+=(libpcl-dev)
 case "${1:-}" in
   "") ;;
   --checks) packages+=(clang clang-format clang-tidy python3) ;;
-  *) echo "usage: setup.sh [--checks]" >&2; exit 2 ;;
+  --page)
+    packages+=(chromium fonts-dejavu-core util-linux)
+    command -v npm >/dev/null || packages+=(nodejs npm)
+    ;;
+  *) echo "usage: setup.sh [--checks|--page]" >&2; exit 2 ;;
 esac
 
 give_up() {
@@ -25,28 +32,48 @@ for package in "${packages[@]}"; do
   status=$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null) || status=absent
   [ "$status" = installed ] || missing+=("$package")
 done
-[ ${#missing[@]} -gt 0 ] || exit 0
 
-command -v apt-get >/dev/null || give_up "there is no apt-get here"
-as_root=()
-if [ "$(id -u)" != 0 ]; then
-  command -v sudo >/dev/null || give_up "neither root nor sudo"
-  as_root=(sudo)
-  # Without a terminal a password prompt would wait for ever.
-  [ -t 0 ] || as_root=(sudo -n)
-fi
-
-echo "setup.sh: installing ${missing[*]}" >&2
-log=$(mktemp)
-trap 'rm -f "$log"' EXIT
-apt_get() {
-  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q -y \
-    -o Acquire::Retries=3 -o DPkg::Lock::Timeout=300 -o Dpkg::Use-Pty=0 "$@" </dev/null >"$log" 2>&1
-}
-for arguments in update "install --no-install-recommends ${missing[*]}"; do
-  # shellcheck disable=SC2086  # the arguments are words
-  if ! apt_get $arguments; then
-    tail -n 20 "$log" >&2
-    give_up "apt-get ${arguments%% *} failed"
+install_packages() {
+  [ ${#missing[@]} -gt 0 ] || return 0
+  command -v apt-get >/dev/null || give_up "there is no apt-get here"
+  as_root=()
+  if [ "$(id -u)" != 0 ]; then
+    command -v sudo >/dev/null || give_up "neither root nor sudo"
+    as_root=(sudo)
+    # Without a terminal a password prompt would wait for ever.
+    [ -t 0 ] || as_root=(sudo -n)
   fi
-done
+
+  echo "setup.sh: installing ${missing[*]}" >&2
+  log=$(mktemp)
+  trap 'rm -f "$log"' EXIT
+  apt_get() {
+    "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q -y \
+      -o Acquire::Retries=3 -o DPkg::Lock::Timeout=300 -o Dpkg::Use-Pty=0 "$@" </dev/null >"$log" 2>&1
+  }
+  for arguments in update "install --no-install-recommends ${missing[*]}"; do
+    # shellcheck disable=SC2086  # the arguments are words
+    if ! apt_get $arguments; then
+      tail -n 20 "$log" >&2
+      give_up "apt-get ${arguments%% *} failed"
+    fi
+  done
+}
+
+# What the lock file names and no more; the stamp is its copy at the last installation.
+install_page_packages() {
+  local folder stamp
+  folder=$(dirname "${BASH_SOURCE[0]}")/../eval/report_page
+  stamp=$folder/node_modules/.installed-lock.json
+  cmp -s "$folder/package-lock.json" "$stamp" && return 0
+  echo "setup.sh: installing the packages of the report's page" >&2
+  if ! (cd "$folder" && npm ci --ignore-scripts --no-audit --no-fund --loglevel=error >&2); then
+    echo "setup.sh: npm could not install them; tests of the page will be skipped" >&2
+    rm -rf "$folder/node_modules"
+    return 0
+  fi
+  cp "$folder/package-lock.json" "$stamp"
+}
+
+install_packages
+if [ "${1:-}" = --page ]; then install_page_packages; fi

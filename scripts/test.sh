@@ -2,5 +2,5 @@
 # test.sh [ctest arguments]: installs what is missing, builds release and runs every test.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-"$here/setup.sh"
+"$here/setup.sh" --page
 exec "$here/build_and_test.sh" release "$@"

@@ -1,0 +1,14 @@
+/** Numbers as text. */
+
+export function percent(fraction) {
+  return fraction === null || fraction === undefined ? 'undefined' : `${(100 * fraction).toFixed(1)} %`;
+}
+
+export function count(number) {
+  return number === null || number === undefined ? '–' : number.toLocaleString('en-US');
+}
+
+export function fixed(number, digits, unit = '') {
+  if (number === null || number === undefined) return '–';
+  return `${number.toFixed(digits)}${unit ? ` ${unit}` : ''}`;
+}

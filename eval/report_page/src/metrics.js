@@ -1,0 +1,34 @@
+/** Metrics of one scan from the counts in result.json; null where they are undefined. */
+
+function ratio(part, whole) {
+  return whole > 0 ? part / whole : null;
+}
+
+export function iou({ tp, fp, fn }) {
+  return ratio(tp, tp + fp + fn);
+}
+
+export function precision({ tp, fp }) {
+  return ratio(tp, tp + fp);
+}
+
+export function recall({ tp, fn }) {
+  return ratio(tp, tp + fn);
+}
+
+/** Whether a scan of result.json has truth. */
+export function hasCounts(scan) {
+  return scan.tp !== undefined;
+}
+
+/**
+ * Indices of the scans with false points, most first. Those in which the method did not look for
+ * motion yet come last: what it misses there says nothing about it.
+ */
+export function worstScans({ scans, scans_without_detection: idle = [] }) {
+  const wrong = (k) => scans[k].fp + scans[k].fn;
+  const isIdle = scans.map((scan) => idle.includes(scan.stem));
+  return [...scans.keys()]
+    .filter((k) => hasCounts(scans[k]) && wrong(k) > 0)
+    .sort((a, b) => isIdle[a] - isIdle[b] || wrong(b) - wrong(a) || a - b);
+}

@@ -1,0 +1,37 @@
+/** The report's content: what `mosbench report` wrote into the page. */
+
+/** @returns the JSON that holds everything but points. */
+export function readContent(root = document) {
+  return JSON.parse(root.getElementById('report').textContent);
+}
+
+/** Bytes of one compressed block. Blocks stay text until a scan is looked at. */
+export async function readBlock(index, root = document) {
+  const packed = Uint8Array.from(atob(root.getElementById(`block-${index}`).textContent), (c) =>
+    c.charCodeAt(0),
+  );
+  const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream('deflate'));
+  return new Uint8Array(await new Response(stream).arrayBuffer());
+}
+
+/** Positions in metres, x y z per point, from the planes that eval/point_planes.cpp describes. */
+export function positionsFromPlanes(planes, step_m) {
+  const points = planes.length / 6;
+  const positions_m = new Float32Array(3 * points);
+  for (let axis = 0; axis < 3; ++axis) {
+    let steps = 0;
+    for (let i = 0; i < points; ++i) {
+      const code = planes[axis * points + i] | (planes[(3 + axis) * points + i] << 8);
+      steps = ((steps + ((code >> 1) ^ -(code & 1))) << 16) >> 16;
+      positions_m[3 * i + axis] = steps * step_m;
+    }
+  }
+  return positions_m;
+}
+
+/** Splits a plane of outcomes into what each point counts as and whether it has a position. */
+export function outcomesFromPlane(plane) {
+  const outcomes = plane.map((byte) => byte & 7);
+  const drawable = plane.map((byte) => (byte & 8 ? 0 : 1));
+  return { outcomes, drawable };
+}

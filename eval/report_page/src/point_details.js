@@ -1,0 +1,21 @@
+import { element } from './dom.js';
+import { fixed } from './format.js';
+import { toMap } from './motion_map.js';
+import { OUTCOMES } from './theme.js';
+
+const vector = (numbers) => numbers.map((n) => n.toFixed(2)).join(', ');
+
+/** The numbers of one point, with its outcome in every run that is shown. */
+export function pointDetails(scans, pane, point, runs) {
+  const scan = scans[pane];
+  const position = [...scan.positions_m.subarray(3 * point, 3 * point + 3)];
+  const rows = [[scan.pose ? 'sensor x, y, z' : 'map x, y, z', `${vector(position)} m`]];
+  if (scan.pose) {
+    rows.unshift(['point', `${point} of ${scan.points}, scan ${scan.stem}`]);
+    rows.push(['range', fixed(Math.hypot(...position), 2, 'm')]);
+    rows.push(['map x, y, z', `${vector(toMap(scan.pose, ...position, [0, 0, 0]))} m`]);
+  }
+  const judged = scan.pose ? scans : [scan];
+  judged.forEach((s, p) => rows.push([judged.length > 1 ? runs[p] : 'outcome', OUTCOMES[s.outcomes[point]].name]));
+  return element('dl', {}, ...rows.flatMap(([name, value]) => [element('dt', {}, name), element('dd', {}, value)]));
+}

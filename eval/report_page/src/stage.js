@@ -1,0 +1,145 @@
+import {
+  BufferAttribute, BufferGeometry, Color, Group, LineBasicMaterial, LineLoop, Line, LineSegments,
+  PerspectiveCamera, Points, Scene, ShaderMaterial, Vector3, WebGLRenderer,
+} from 'three';
+import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
+
+const VERTEX = `
+attribute float size;
+attribute vec3 shade;
+varying vec3 colour;
+uniform float pixelRatio;
+void main() {
+  colour = shade;
+  gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+  gl_PointSize = size * pixelRatio;
+  if (size == 0.0) gl_Position = vec4(0.0, 0.0, 2.0, 1.0);
+}`;
+const FRAGMENT = `
+varying vec3 colour;
+void main() {
+  vec2 off = gl_PointCoord - 0.5;
+  if (dot(off, off) > 0.25) discard;
+  gl_FragColor = vec4(colour, 1.0);
+}`;
+const RINGS_M = [10, 20, 30, 40, 50];
+const SEGMENTS = 96;
+
+function ring(radius_m, material) {
+  const at = (s) => (2 * Math.PI * s) / SEGMENTS;
+  const corners = Array.from({ length: SEGMENTS }, (_, s) => new Vector3(radius_m * Math.cos(at(s)), radius_m * Math.sin(at(s)), 0));
+  return new LineLoop(new BufferGeometry().setFromPoints(corners), material);
+}
+
+function axes(material) {
+  const ends = [[-1, 0, 0], [3, 0, 0], [0, -1, 0], [0, 1, 0]].map((p) => new Vector3(...p));
+  return new LineSegments(new BufferGeometry().setFromPoints(ends), material);
+}
+
+/** One scan as the graphics card gets it. */
+class Pane {
+  scene = new Scene();
+  geometry = new BufferGeometry();
+
+  constructor(pointMaterial, guideMaterial) {
+    const cloud = new Points(this.geometry, pointMaterial);
+    cloud.frustumCulled = false;
+    this.guides = new Group();
+    this.guides.add(...RINGS_M.map((radius_m) => ring(radius_m, guideMaterial)), axes(guideMaterial));
+    this.path = new Line(new BufferGeometry(), guideMaterial);
+    this.path.frustumCulled = false;
+    this.scene.add(cloud, this.guides, this.path);
+  }
+
+  fill(positions_m, colours, sizes, path) {
+    this.geometry.setAttribute('position', new BufferAttribute(positions_m, 3));
+    this.geometry.setAttribute('shade', new BufferAttribute(colours, 3, true));
+    this.geometry.setAttribute('size', new BufferAttribute(sizes, 1));
+    this.geometry.setDrawRange(0, sizes.length);
+    this.guides.visible = path === null;
+    this.path.visible = path !== null;
+    if (path) this.path.geometry.setFromPoints(path.map((p) => new Vector3(...p)));
+  }
+}
+
+/**
+ * Draws one or two clouds side by side with one camera, so that they cannot get out of step. Throws
+ * when the browser has no WebGL.
+ */
+export class Stage {
+  constructor(canvas) {
+    this.canvas = canvas;
+    // Screenshots and tests read the picture after it was shown.
+    this.renderer = new WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: true });
+    this.renderer.autoClear = false;
+    this.pointMaterial = new ShaderMaterial({
+      vertexShader: VERTEX,
+      fragmentShader: FRAGMENT,
+      uniforms: { pixelRatio: { value: 1 } },
+    });
+    this.guideMaterial = new LineBasicMaterial();
+    this.panes = [0, 1].map(() => new Pane(this.pointMaterial, this.guideMaterial));
+    this.shown = 1;
+    this.camera = new PerspectiveCamera(55, 1, 0.05, 3000);
+    this.camera.up.set(0, 0, 1);
+    this.controls = new OrbitControls(this.camera, canvas);
+    this.controls.addEventListener('change', () => this.draw());
+    new ResizeObserver(() => this.draw()).observe(canvas);
+  }
+
+  setTheme({ background, guide }) {
+    this.renderer.setClearColor(new Color().setStyle(background), 1);
+    this.guideMaterial.color.setStyle(guide);
+    this.draw();
+  }
+
+  /** `eye` and `target` in metres; the angle of view in degrees; what the pointer may do. */
+  look({ eye, target, angle, rotate = true, pan = true, zoom = true }) {
+    this.camera.position.set(...eye);
+    this.camera.fov = angle;
+    Object.assign(this.controls, { enableRotate: rotate, enablePan: pan, enableZoom: zoom });
+    this.controls.mouseButtons.LEFT = rotate ? 0 : 2;
+    this.controls.touches.ONE = rotate ? 0 : 1;
+    this.controls.target.set(...target);
+    this.controls.update();
+    this.draw();
+  }
+
+  /** Width and height of one pane in CSS pixels. */
+  paneSize() {
+    return { width: this.canvas.clientWidth / this.shown, height: this.canvas.clientHeight };
+  }
+
+  /** 4x4 matrix from metres to the unit cube of the screen, columns first. */
+  clipMatrix() {
+    this.camera.updateMatrixWorld();
+    return this.camera.projectionMatrix.clone().multiply(this.camera.matrixWorldInverse).elements;
+  }
+
+  /** Draws before the browser shows its next picture, however often it is called until then. */
+  draw() {
+    this.pending ??= requestAnimationFrame(() => {
+      this.pending = null;
+      this.#drawNow();
+    });
+  }
+
+  #drawNow() {
+    const { clientWidth, clientHeight } = this.canvas;
+    if (clientWidth === 0 || clientHeight === 0) return;
+    const ratio = Math.min(devicePixelRatio, 2);
+    this.renderer.setPixelRatio(ratio);
+    this.renderer.setSize(clientWidth, clientHeight, false);
+    this.pointMaterial.uniforms.pixelRatio.value = ratio;
+    const { width, height } = this.paneSize();
+    this.camera.aspect = width / height;
+    this.camera.updateProjectionMatrix();
+    this.renderer.setScissorTest(true);
+    for (let p = 0; p < this.shown; ++p) {
+      this.renderer.setViewport(p * width, 0, width, height);
+      this.renderer.setScissor(p * width, 0, width, height);
+      this.renderer.clear();
+      this.renderer.render(this.panes[p].scene, this.camera);
+    }
+  }
+}

@@ -1,0 +1,38 @@
+import palette from '../palette.json' with { type: 'json' };
+
+/** "light" or "dark", whatever the reader or the system prefers. */
+export function preferredTheme() {
+  return matchMedia('(prefers-color-scheme: dark)').matches ? 'dark' : 'light';
+}
+
+export const OUTCOMES = palette.outcomes;
+
+/** [r, g, b] in 0..255 of "#rrggbb". */
+export function rgb(hex) {
+  return [1, 3, 5].map((i) => parseInt(hex.slice(i, i + 2), 16));
+}
+
+export function outcomeColours(theme) {
+  return palette.outcomes.map((outcome) => outcome[theme]);
+}
+
+export function surface(theme) {
+  return {
+    background: palette.background[theme],
+    text: palette.text[theme],
+    guide: palette.guide[theme],
+  };
+}
+
+/** Cividis, whose order also holds for readers who do not see red or green apart. */
+const CIVIDIS = ['#00224e', '#123570', '#3b496c', '#575d6d', '#707173', '#8a8678', '#a59c74', '#c3b369', '#e1cc55', '#fee838'].map(rgb);
+
+/** Colour of a fraction 0..1 on the scale. */
+export function scaleColour(fraction) {
+  const place = Math.min(Math.max(fraction, 0), 1) * (CIVIDIS.length - 1);
+  const low = Math.min(Math.floor(place), CIVIDIS.length - 2);
+  return CIVIDIS[low].map((c, i) => Math.round(c + (CIVIDIS[low + 1][i] - c) * (place - low)));
+}
+
+/** Paul Tol's muted scheme, and grey: told apart with any colour vision. */
+export const SERIES = ['#332288', '#88CCEE', '#44AA99', '#117733', '#999933', '#DDCC77', '#CC6677', '#882255', '#AA4499', '#9AA3AF'];

@@ -1,0 +1,158 @@
+#include "eval/report_scans.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "eval/compressed_text.hpp"
+#include "eval/point_planes.hpp"
+#include "eval/progress.hpp"
+
+namespace mosbench {
+namespace {
+
+using nlohmann::ordered_json;
+
+struct PackedScan {
+  std::size_t scan_index;
+  ordered_json header;
+  std::string positions;
+  std::vector<std::string> outcomes;  ///< per member of the cloud
+
+  std::size_t bytes() const {
+    std::size_t sum = positions.size();
+    for (const std::string& plane : outcomes) sum += plane.size();
+    return sum;
+  }
+};
+
+struct Cloud {
+  std::vector<std::size_t> members;  ///< positions in the results
+  std::vector<ResultScans> sources;  ///< one per member
+  std::vector<std::size_t> wanted;
+  std::size_t tried = 0;  ///< of wanted
+  std::vector<PackedScan> packed;
+  bool full = false;
+};
+
+/// Each result's first wish, then each one's second, ...
+std::vector<std::size_t> wishes_in_turn(const std::vector<std::vector<std::size_t>>& wishes) {
+  std::vector<std::size_t> merged;
+  for (std::size_t i = 0; i < wishes.front().size(); ++i) {
+    for (const std::vector<std::size_t>& of_result : wishes) {
+      if (i >= of_result.size() || std::ranges::count(merged, of_result[i]) > 0) continue;
+      merged.push_back(of_result[i]);
+    }
+  }
+  return merged;
+}
+
+std::vector<Cloud> group_by_frames(const std::vector<FoundResult>& results,
+                                   const ReportOptions& options) {
+  std::vector<Cloud> clouds;
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    const auto same = std::ranges::find_if(clouds, [&](const Cloud& cloud) {
+      const FoundResult& first = results[cloud.members.front()];
+      return first.name == results[i].name &&
+             first.file.rows.fingerprint == results[i].file.rows.fingerprint;
+    });
+    Cloud& cloud = same == clouds.end() ? clouds.emplace_back() : *same;
+    cloud.members.push_back(i);
+    cloud.sources.emplace_back(results[i], options.dataset_root);
+  }
+  for (Cloud& cloud : clouds) {
+    std::vector<std::vector<std::size_t>> wishes;
+    for (const std::size_t i : cloud.members) {
+      wishes.push_back(options.scans.wanted(results[i].file.rows.scans));
+    }
+    cloud.wanted = wishes_in_turn(wishes);
+  }
+  return clouds;
+}
+
+ordered_json pose_json(const Pose& pose) {
+  ordered_json numbers = ordered_json::array();
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 4; ++column) numbers.push_back(pose.matrix()(row, column));
+  }
+  return numbers;
+}
+
+PackedScan pack(const Cloud& cloud, std::size_t scan_index) {
+  PackedScan packed{scan_index, {}, {}, {}};
+  for (const ResultScans& source : cloud.sources) {
+    const JudgedScan scan = source.read(scan_index);
+    if (packed.positions.empty()) {
+      packed.header = {{"index", scan_index},
+                       {"stem", scan.frame.stem},
+                       {"points", scan.frame.points.size()},
+                       {"map_from_sensor", pose_json(scan.frame.map_from_sensor)}};
+      packed.positions = compressed_text(position_planes(scan.frame.points));
+    }
+    packed.outcomes.push_back(compressed_text(outcome_plane(scan.outcomes, scan.frame.points)));
+  }
+  return packed;
+}
+
+void pack_until_full(std::vector<Cloud>& clouds, std::size_t max_bytes) {
+  std::size_t wanted = 0, bytes = 0;
+  for (const Cloud& cloud : clouds) wanted += cloud.wanted.size();
+  Progress progress("report", wanted);
+  bool any = true;
+  while (any) {
+    any = false;
+    for (Cloud& cloud : clouds) {
+      if (cloud.full || cloud.tried == cloud.wanted.size()) continue;
+      PackedScan scan = pack(cloud, cloud.wanted[cloud.tried++]);
+      cloud.full = bytes + scan.bytes() > max_bytes;
+      if (cloud.full) continue;
+      any = true;
+      bytes += scan.bytes();
+      cloud.packed.push_back(std::move(scan));
+      progress.advance();
+    }
+  }
+}
+
+std::string left_out(const Cloud& cloud, std::size_t scans) {
+  const std::size_t shown = cloud.packed.size();
+  if (shown == scans) return "";
+  std::string text = fmt::format("the points of {} of {} scans are in the file", shown, scans);
+  if (cloud.wanted.size() < scans) text += fmt::format("; --scans chose {}", cloud.wanted.size());
+  if (cloud.full) text += "; the others would take it above --max-mb";
+  return text;
+}
+
+}  // namespace
+
+ReportScans choose_report_scans(const std::vector<FoundResult>& results,
+                                const ReportOptions& options, std::size_t max_bytes) {
+  ReportScans report;
+  report.results.resize(results.size());
+  std::vector<Cloud> clouds = group_by_frames(results, options);
+  pack_until_full(clouds, max_bytes);
+  for (Cloud& cloud : clouds) {
+    std::ranges::sort(cloud.packed, {}, &PackedScan::scan_index);
+    const FoundResult& first = results[cloud.members.front()];
+    const std::string remark = left_out(cloud, first.file.rows.scans.size());
+    if (!remark.empty()) report.remarks.push_back(first.name + ": " + remark);
+    ordered_json json = {{"sequence", first.name},
+                         {"scans_in_sequence", first.file.rows.scans.size()},
+                         {"left_out", remark},
+                         {"scans", ordered_json::array()}};
+    for (const std::size_t i : cloud.members) report.results[i].cloud = report.clouds.size();
+    for (PackedScan& scan : cloud.packed) {
+      scan.header["positions"] = report.blocks.size();
+      json["scans"].push_back(std::move(scan.header));
+      report.blocks.push_back(std::move(scan.positions));
+      for (std::size_t m = 0; m < cloud.members.size(); ++m) {
+        report.results[cloud.members[m]].outcome_blocks.push_back(report.blocks.size());
+        report.blocks.push_back(std::move(scan.outcomes[m]));
+      }
+    }
+    report.clouds.push_back(std::move(json));
+  }
+  return report;
+}
+
+}  // namespace mosbench

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstddef>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "eval/report.hpp"
+
+namespace mosbench {
+
+/// The part of a report that holds points. Results of the same frames share one cloud, so that runs
+/// can be compared point by point and positions are stored once.
+struct ReportScans {
+  nlohmann::ordered_json clouds = nlohmann::ordered_json::array();
+  /// Per result its cloud, and per scan of that cloud the block with the outcomes.
+  struct OfResult {
+    std::size_t cloud = 0;
+    std::vector<std::size_t> outcome_blocks;
+  };
+  std::vector<OfResult> results;
+  std::vector<std::string> blocks;  ///< see compressed_text
+  std::vector<std::string> remarks;
+};
+
+/// Takes scans in the order in which they are wanted, from all clouds in turn, until the next would
+/// bring the blocks above `max_bytes`.
+ReportScans choose_report_scans(const std::vector<FoundResult>& results,
+                                const ReportOptions& options, std::size_t max_bytes);
+
+}  // namespace mosbench

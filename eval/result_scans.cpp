@@ -1,0 +1,142 @@
+#include "eval/result_scans.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <system_error>
+
+#include "datasets/errors.hpp"
+#include "datasets/files.hpp"
+#include "datasets/fingerprint.hpp"
+#include "eval/same_input.hpp"
+
+namespace mosbench {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr const char* kResult = "result.json";
+
+std::vector<fs::path> result_folders(const fs::path& path) {
+  if (is_there(path / kResult)) return {path};
+  std::error_code error;
+  std::vector<fs::path> folders;
+  for (fs::recursive_directory_iterator it(path, error), end; !error && it != end;
+       it.increment(error)) {
+    // What a killed run left is no result.
+    if (it->path().extension() == ".partial") it.disable_recursion_pending();
+    if (it->path().filename() == kResult) folders.push_back(it->path().parent_path());
+  }
+  if (error) throw DataError(path, "cannot be listed (" + error.message() + ")", "a result folder");
+  std::ranges::sort(folders);
+  return folders;
+}
+
+/// Calls `read` on the content of result.json; what it misses there becomes a DataError.
+template <typename Read>
+auto from_json(const FoundResult& result, Read&& read) {
+  try {
+    return read(result.file.content);
+  } catch (const nlohmann::ordered_json::exception& error) {
+    throw DataError(result.folder / kResult, error.what(), "a result.json of mosbench run");
+  } catch (const UsageError& error) {
+    throw DataError(result.folder / kResult, error.what(), "a result.json of this mosbench");
+  }
+}
+
+std::optional<fs::path> recorded_path(const nlohmann::ordered_json& json, const char* key) {
+  const nlohmann::ordered_json& clocked = json.at("timing");
+  if (!clocked.contains(key)) return std::nullopt;
+  return clocked.at(key).get<std::string>();
+}
+
+Dataset open_dataset_of(const FoundResult& result, std::optional<fs::path> root) {
+  return from_json(result, [&](const nlohmann::ordered_json& json) {
+    const auto kind = dataset_kind_from_string(json.at("dataset").get<std::string>());
+    if (!root) root = recorded_path(json, "dataset_root");
+    if (!kind || !root || !is_there(*root)) {
+      throw DataError(result.folder / kResult,
+                      root ? fmt::format("was made from {}, which is not there", root->string())
+                           : "does not say where its data set lies",
+                      "the data set's folder in --data");
+    }
+    return open_dataset(*root, {kind, {result.name}, recorded_path(json, "poses")});
+  });
+}
+
+void check_same_scans(const FoundResult& result, const Dataset& dataset) {
+  const Sequence& sequence = *dataset.sequences.front();
+  const std::vector<ScanRow>& rows = result.file.rows.scans;
+  bool same = rows.size() == sequence.size() && rows.size() == result.file.rows.costs.size();
+  for (std::size_t k = 0; same && k < rows.size(); ++k) same = rows[k].stem == sequence.stem(k);
+  if (same && same_input(sequence, file_stamp(sequence), result.file)) return;
+  throw DataError(result.folder / kResult,
+                  fmt::format("was made from other scans, poses or labels than {} holds in {}",
+                              sequence.name(), dataset.root.string()),
+                  "the data set of the run in --data");
+}
+
+bool same_counts(const OutcomeCounts& counts, const std::optional<Confusion>& recorded) {
+  if (!recorded) return true;
+  Confusion confusion = to_confusion(counts);
+  confusion.unknown_ids = recorded->unknown_ids;
+  return confusion == *recorded;
+}
+
+std::vector<PointOutcome> outcomes_without_truth(const std::vector<std::uint32_t>& labels) {
+  std::vector<PointOutcome> outcomes;
+  for (const std::uint32_t label : labels) {
+    outcomes.push_back(label == kMovingLabel ? PointOutcome::kIgnoredMoving
+                                             : PointOutcome::kIgnoredStatic);
+  }
+  return outcomes;
+}
+
+}  // namespace
+
+std::vector<FoundResult> find_results(const fs::path& path) {
+  std::vector<FoundResult> results;
+  for (const fs::path& folder : result_folders(path)) {
+    FoundResult result{folder, "", read_result(folder / kResult)};
+    result.name = from_json(
+        result, [](const auto& json) { return json.at("sequence").template get<std::string>(); });
+    results.push_back(std::move(result));
+  }
+  if (results.empty()) throw DataError(path, "holds no result.json", "a folder of mosbench run");
+  return results;
+}
+
+ResultScans::ResultScans(const FoundResult& result, const std::optional<fs::path>& dataset_root)
+    : result_(result),
+      dataset_(open_dataset_of(result, dataset_root)),
+      protocol_(nullptr),
+      labels_(result.folder / "labels") {
+  from_json(result, [&](const nlohmann::ordered_json& json) {
+    const nlohmann::ordered_json& protocol = json.at("protocol");
+    protocol_ = &protocol_named(protocol.at("name").get<std::string>());
+    range_ = {protocol.at("min_range_m"), protocol.at("max_range_m")};
+  });
+  check_same_scans(result, dataset_);
+}
+
+JudgedScan ResultScans::read(std::size_t scan_index) const {
+  JudgedScan scan{sequence().read(scan_index), {}};
+  const std::vector<std::uint32_t> labels = labels_.read(scan.frame.stem, scan.frame.points.size());
+  const std::optional<Confusion>& recorded = result_.file.rows.scans[scan_index].counts;
+  if (scan.frame.truth && recorded) {
+    const bool gated = protocol_->range_rule != RangeRule::kNone;
+    scan.outcomes = point_outcomes(
+        *protocol_, *scan.frame.truth, labels,
+        gated ? std::span<const Point>(scan.frame.points) : std::span<const Point>(), range_);
+  } else {
+    scan.outcomes = outcomes_without_truth(labels);
+  }
+  OutcomeCounts counts{};
+  for (const PointOutcome outcome : scan.outcomes) ++counts[static_cast<std::size_t>(outcome)];
+  if (!same_counts(counts, recorded)) {
+    throw DataError(labels_.path() / (scan.frame.stem + ".label"),
+                    "does not give the counts in result.json", "the label file of that run");
+  }
+  return scan;
+}
+
+}  // namespace mosbench

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "datasets/dataset.hpp"
+#include "eval/confusion.hpp"
+#include "eval/prediction_files.hpp"
+#include "eval/result_file.hpp"
+
+namespace mosbench {
+
+/// A folder of `mosbench run` with its result.json.
+struct FoundResult {
+  std::filesystem::path folder;
+  std::string name;  ///< the sequence's
+  ResultFile file;
+};
+
+/// The results at `path` and in the folders below it, ordered by path. Throws DataError when there
+/// is none.
+std::vector<FoundResult> find_results(const std::filesystem::path& path);
+
+/// One scan with what became of each of its points.
+struct JudgedScan {
+  Frame frame;
+  std::vector<PointOutcome> outcomes;  ///< kIgnoredStatic or kIgnoredMoving without truth
+};
+
+/// The scans of a result: points and truth from the data set, labels from the result's folder.
+class ResultScans {
+ public:
+  /// Opens the data set at `dataset_root`, else where the run read it. Throws DataError when it is
+  /// not there or not what the run read, and when result.json does not say how it was scored.
+  ResultScans(const FoundResult& result, const std::optional<std::filesystem::path>& dataset_root);
+
+  const Sequence& sequence() const { return *dataset_.sequences.front(); }
+  /// Throws DataError when the labels do not give the counts of result.json.
+  JudgedScan read(std::size_t scan_index) const;
+
+ private:
+  const FoundResult& result_;
+  Dataset dataset_;
+  const Protocol* protocol_;
+  RangeGate range_;
+  PredictionFolder labels_;
+};
+
+}  // namespace mosbench

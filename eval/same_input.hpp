@@ -1,0 +1,15 @@
+#pragma once
+
+#include <string>
+
+#include "datasets/sequence.hpp"
+#include "eval/result_file.hpp"
+
+namespace mosbench {
+
+/// Whether a result was made from the frames that `sequence` has now; `stamp` is its `file_stamp`.
+/// Files that were merely copied or touched hold the same frames: only then are those read. Throws
+/// DataError.
+bool same_input(const Sequence& sequence, const std::string& stamp, const ResultFile& result);
+
+}  // namespace mosbench

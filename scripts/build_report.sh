@@ -1,0 +1,18 @@
+#!/usr/bin/env bash
+# build_report.sh [--check]: makes eval/report_page/page.html, the page that `mosbench report` fills in,
+# from eval/report_page/src. Needed after a change there; building mosbench takes the file as it is and
+# needs no node. With --check nothing is written: exit code 1 when the file is not what src makes, or
+# when the linter or a unit test of the page complains.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+scripts/setup.sh --page
+cd eval/report_page
+case "${1:-}" in
+  "") npm run --silent build ;;
+  --check)
+    npm run --silent lint
+    npm test --silent
+    npm run --silent build -- --check
+    ;;
+  *) echo "usage: build_report.sh [--check]" >&2; exit 2 ;;
+esac

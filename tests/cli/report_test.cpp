@@ -1,0 +1,166 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "tests/cli/program.hpp"
+#include "tests/cli/small_sequence.hpp"
+
+namespace mosbench {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+/// A run of the small sequence, made once for all tests of a process.
+const std::filesystem::path& small_run() {
+  static const TempFolder folder;
+  static const bool made = [] {
+    cli::write_small_sequence(folder / "scans/00", 8);
+    const cli::Answer answer =
+        cli::run({"run", folder / "scans/00", "--out", folder / "runs/mine", "--threads", "1"});
+    if (answer.exit_code != 0) throw std::runtime_error(answer.err);
+    return true;
+  }();
+  static const std::filesystem::path path = made ? folder.path() : "";
+  return path;
+}
+
+nlohmann::ordered_json content_of(const std::string& html) {
+  const std::string opening = "<script type=\"application/json\" id=\"report\">";
+  const std::size_t start = html.find(opening) + opening.size();
+  return nlohmann::ordered_json::parse(html.substr(start, html.find("</script>", start) - start));
+}
+
+TEST(Report, HoldsTheResultAndAllScansThatFit) {
+  const TempFolder folder;
+  const cli::Answer answer =
+      cli::run({"report", small_run() / "runs/mine", "-o", folder / "r.html"});
+  ASSERT_EQ(answer.exit_code, 0) << answer.err;
+  EXPECT_THAT(answer.out, HasSubstr("report of 1 result in "));
+  const auto content = content_of(read_file(folder / "r.html"));
+  EXPECT_EQ(content.at("results").at(0).at("run"), "mine");
+  EXPECT_EQ(content.at("results").at(0).at("result"),
+            nlohmann::ordered_json::parse(read_file(small_run() / "runs/mine/00/result.json")));
+  EXPECT_EQ(content.at("clouds").at(0).at("scans").size(), 8U);
+  EXPECT_EQ(content.at("clouds").at(0).at("left_out"), "");
+}
+
+TEST(Report, IsTheSameBytesEachTime) {
+  const TempFolder folder;
+  for (const char* name : {"a.html", "b.html"}) {
+    ASSERT_EQ(cli::run({"report", small_run() / "runs", "-o", folder / name}).exit_code, 0);
+  }
+  EXPECT_EQ(read_file(folder / "a.html"), read_file(folder / "b.html"));
+}
+
+TEST(Report, StaysBelowTheLimitAndSaysWhatItLeftOut) {
+  const TempFolder folder;
+  const auto report = [&](const std::string& name, std::vector<std::string> flags) {
+    std::vector<std::string> words = {"report", small_run() / "runs/mine", "-o", folder / name};
+    words.insert(words.end(), flags.begin(), flags.end());
+    const cli::Answer answer = cli::run(words);
+    EXPECT_EQ(answer.exit_code, 0) << answer.err;
+    return answer.out;
+  };
+  const auto bytes = [&](const char* name) {
+    return static_cast<double>(std::filesystem::file_size(folder / name));
+  };
+  report("none.html", {"--scans", "none"});
+  report("all.html", {"--scans", "all"});
+  const double limit_mb = (0.4 * bytes("none.html") + 0.6 * bytes("all.html")) / 1e6;
+  const std::string out = report("some.html", {"--max-mb", std::to_string(limit_mb)});
+  EXPECT_LE(bytes("some.html"), 1e6 * limit_mb);
+  const auto cloud = content_of(read_file(folder / "some.html")).at("clouds").at(0);
+  ASSERT_LT(cloud.at("scans").size(), 8U);
+  ASSERT_GT(cloud.at("scans").size(), 0U);
+  EXPECT_THAT(cloud.at("left_out").get<std::string>(), HasSubstr("--max-mb"));
+  EXPECT_THAT(out, HasSubstr(cloud.at("left_out").get<std::string>()));
+}
+
+TEST(Report, TakesTheScansThatAreAskedFor) {
+  const TempFolder folder;
+  const cli::Answer answer =
+      cli::run({"report", small_run() / "runs", "-o", folder / "r.html", "--scans", "6,1-2,99"});
+  ASSERT_EQ(answer.exit_code, 0) << answer.err;
+  const auto cloud = content_of(read_file(folder / "r.html")).at("clouds").at(0);
+  std::vector<int> scans;
+  for (const auto& scan : cloud.at("scans")) scans.push_back(scan.at("index"));
+  EXPECT_EQ(scans, (std::vector<int>{1, 2, 6}));
+  EXPECT_EQ(cloud.at("left_out"), "the points of 3 of 8 scans are in the file; --scans chose 3");
+}
+
+TEST(Report, WithoutPointsNeedsNoDataSet) {
+  const TempFolder folder;
+  std::filesystem::copy(small_run() / "runs/mine/00/result.json", folder / "result.json");
+  const cli::Answer answer =
+      cli::run({"report", folder.path(), "-o", folder / "r.html", "--scans", "none"});
+  ASSERT_EQ(answer.exit_code, 0) << answer.err;
+  EXPECT_TRUE(content_of(read_file(folder / "r.html")).at("clouds").empty());
+}
+
+TEST(Report, RefusesLabelsThatDoNotGiveTheCountsOfTheResult) {
+  const TempFolder folder;
+  std::filesystem::copy(small_run() / "runs/mine", folder / "run",
+                        std::filesystem::copy_options::recursive);
+  const auto file = folder / "run/00/labels/000005.label";
+  std::string bytes = read_file(file);
+  bytes[0] = static_cast<char>(bytes[0] == 9 ? 251 : 9);
+  write_file_atomic(file, bytes);
+  const cli::Answer answer = cli::run({"report", folder / "run", "-o", folder / "r.html"});
+  EXPECT_EQ(answer.exit_code, 3);
+  EXPECT_THAT(answer.err, HasSubstr("000005.label: does not give the counts in result.json"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "r.html"));
+}
+
+TEST(Report, RefusesADataSetThatIsNotTheOneOfTheRun) {
+  const TempFolder folder;
+  cli::write_small_sequence(folder / "00", 7);
+  const cli::Answer answer =
+      cli::run({"report", small_run() / "runs", "-o", folder / "r.html", "--data", folder / "00"});
+  EXPECT_EQ(answer.exit_code, 3);
+  EXPECT_THAT(answer.err, HasSubstr("was made from other scans, poses or labels than 00 holds"));
+}
+
+TEST(Report, TakesACopyOfTheDataSet) {
+  const TempFolder folder;
+  cli::write_small_sequence(folder / "00", 8);
+  const cli::Answer answer =
+      cli::run({"report", small_run() / "runs", "-o", folder / "r.html", "--data", folder / "00"});
+  EXPECT_EQ(answer.exit_code, 0) << answer.err;
+}
+
+TEST(Report, NamesWhatCannotBeUsed) {
+  const TempFolder folder;
+  const std::string run = small_run() / "runs";
+  const std::string out = folder / "r.html";
+  EXPECT_EQ(cli::run({"report", folder.path(), "-o", out}).exit_code, 3);
+  EXPECT_EQ(cli::run({"report", run}).exit_code, 2);
+  const cli::Answer choice = cli::run({"report", run, "-o", out, "--scans", "best"});
+  EXPECT_EQ(choice.exit_code, 2);
+  EXPECT_THAT(choice.err, HasSubstr("--scans: 'best' is not known"));
+  const cli::Answer small = cli::run({"report", run, "-o", out, "--max-mb", "0.2"});
+  EXPECT_EQ(small.exit_code, 2);
+  EXPECT_THAT(small.err, HasSubstr("no room for the numbers alone"));
+  const auto broken = folder.write("broken/result.json", R"({"sequence": 7})");
+  EXPECT_EQ(cli::run({"report", broken.parent_path(), "-o", out}).exit_code, 3);
+}
+
+TEST(Report, LeavesNoOpeningBracketOfANameInTheContent) {
+  const TempFolder folder;
+  const std::string evil = "</script><img src=x onerror=alert(1)>";
+  auto json = nlohmann::ordered_json::parse(read_file(small_run() / "runs/mine/00/result.json"));
+  json["remarks"] = {evil};
+  json["sequence"] = evil;
+  folder.write("result.json", json.dump());
+  const cli::Answer answer =
+      cli::run({"report", folder.path(), "-o", folder / "r.html", "--scans", "none"});
+  ASSERT_EQ(answer.exit_code, 0) << answer.err;
+  const std::string html = read_file(folder / "r.html");
+  EXPECT_THAT(html, Not(HasSubstr("<img")));
+  EXPECT_EQ(content_of(html).at("results").at(0).at("result").at("remarks").at(0), evil);
+}
+
+}  // namespace
+}  // namespace mosbench

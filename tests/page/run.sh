@@ -1,0 +1,15 @@
+#!/usr/bin/env bash
+# run.sh TEST_FILE...: tests of the report's page with node's own runner. Exit code 77, which ctest
+# counts as skipped, where node 20, its packages or Chromium are not there; scripts/setup.sh --page
+# installs them.
+set -euo pipefail
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+skip() {
+  echo "skipped: $1 (scripts/setup.sh --page installs it)"
+  exit 77
+}
+command -v node >/dev/null || skip "there is no node"
+[ "$(node -p 'parseInt(process.versions.node)')" -ge 20 ] || skip "node $(node --version) is older than 20"
+[ -d "$here/../../eval/report_page/node_modules/playwright-core" ] || skip "there is no playwright-core"
+[ -x "${MOSBENCH_CHROMIUM:-/usr/bin/chromium}" ] || skip "there is no Chromium"
+exec node --test --test-reporter=spec "$@"
