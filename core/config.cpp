@@ -4,7 +4,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "core/halo.hpp"
+#include "core/distance_field.hpp"
 #include "core/hmm.hpp"
 #include "core/raycast.hpp"
 
@@ -62,7 +62,7 @@ void check(const Config& config) {
   const double reach_per_sigma =
       likelihood_reach_sigmas(config.transition_epsilon, config.min_state_probability);
   check_voxels("occupancy_sigma_m", config.sigma_m() / config.voxel_size_m,
-               kMaxHalo / reach_per_sigma);
+               kMaxDistanceRadius / reach_per_sigma);
 }
 
 }  // namespace mosbench

@@ -1,7 +1,8 @@
 #include "core/convolution.hpp"
 
-#include <algorithm>
 #include <array>
+
+#include "core/halo.hpp"
 
 namespace mosbench {
 namespace {
@@ -19,10 +20,13 @@ std::vector<std::uint32_t> refreshed_map_slots(const VoxelizedScan& scan,
                          });
     }
   });
-  std::vector<std::uint32_t> asked(around);
-  std::sort(asked.begin(), asked.end());
-  asked.erase(std::unique(asked.begin(), asked.end()), asked.end());
-  if (!asked.empty() && asked.back() == kNoSlot) asked.pop_back();
+  std::vector<std::uint32_t> asked;
+  std::vector<std::uint8_t> taken(map.slot_count());
+  for (const std::uint32_t slot : around) {
+    if (slot == kNoSlot || taken[slot] != 0) continue;
+    taken[slot] = 1;
+    asked.push_back(slot);
+  }
   map.refresh(asked, scan_index, pool);
   return around;
 }
@@ -38,16 +42,6 @@ void gather_known(const VoxelMap& map, std::span<const std::uint32_t> map_slots,
     masks[i] = &known[i];
   }
   gather_halo(masks, radius, halo);
-}
-
-void invert(HaloRows& halo) {
-  const std::uint64_t row_mask = ~std::uint64_t{0} >> (64 - halo.side);
-  std::uint64_t any = 0;
-  for (std::uint64_t& row : halo.rows) {
-    row = ~row & row_mask;
-    any |= row;
-  }
-  halo.any = any != 0;
 }
 
 }  // namespace

@@ -1,143 +1,196 @@
 #include "core/distance_field.hpp"
 
 #include <algorithm>
+#include <bit>
+#include <cstring>
 
+#include "core/lanes.hpp"
 #include "core/multiarch.hpp"
 
 namespace mosbench {
 namespace {
 
-constexpr std::size_t kPlane = kBlockSide * kBlockSide;
+constexpr int kPlane = kBlockSide * kBlockSide;
 
 /// Stands for "no source in reach": not below (radius + 1)^2, and small enough that a square of
 /// (radius + 7)^2 on top does not overflow a byte where bytes are used.
 int far_of(int radius) { return (radius + 1) * (radius + 1); }
 constexpr int kMaxNarrowRadius = 6;
 
+constexpr int reach_of(int radius) { return std::max(1, (radius + kBlockSide - 1) / kBlockSide); }
+
 template <typename Distance>
-std::vector<std::array<Distance, kBlockSide>> row_table(int radius) {
-  std::vector<std::array<Distance, kBlockSide>> table;
-  const int pieces = (kBlockSide + 2 * radius + 7) / 8;
-  for (int piece = 0; piece < pieces; ++piece) {
+DistanceField::Tables<Distance> tables_of(int radius, int reach) {
+  DistanceField::Tables<Distance> tables;
+  for (int block = -reach; block <= reach; ++block) {
     for (int bits = 0; bits < 256; ++bits) {
-      auto& distances = table.emplace_back();
+      auto& distances = tables.along_x.emplace_back();
       for (int x = 0; x < kBlockSide; ++x) {
         int best = far_of(radius);
-        for (int bit = 0; bit < 8; ++bit) {
-          const int offset = piece * 8 + bit - radius - x;
+        for (int bit = 0; bit < kBlockSide; ++bit) {
+          const int offset = block * kBlockSide + bit - x;
           if ((bits >> bit & 1) != 0) best = std::min(best, offset * offset);
         }
         distances[static_cast<std::size_t>(x)] = static_cast<Distance>(best);
       }
     }
   }
-  return table;
-}
-
-/// Squared distances of the eight cells of a row along x.
-template <typename Distance>
-inline std::array<Distance, kBlockSide> along_x(std::uint64_t bits,
-                                                const std::array<Distance, kBlockSide>* piece) {
-  std::array<Distance, kBlockSide> nearest = piece[bits & 0xFFu];
-  for (bits >>= 8, piece += 256; bits != 0; bits >>= 8, piece += 256) {
-    const std::array<Distance, kBlockSide>& other = piece[bits & 0xFFu];
-    for (std::size_t i = 0; i < kBlockSide; ++i) nearest[i] = std::min(nearest[i], other[i]);
-  }
-  return nearest;
-}
-
-/// plane[y][x] = min(plane[y][x], row[x] + (y - row's y)^2).
-template <typename Distance>
-inline void lower_plane(Distance* __restrict plane, const std::array<Distance, kBlockSide>& row,
-                        int row_y) {
-  for (int y = 0; y < kBlockSide; ++y) {
-    const auto square = static_cast<Distance>((y - row_y) * (y - row_y));
-    for (int x = 0; x < kBlockSide; ++x) {
-      const auto sum = static_cast<Distance>(row[static_cast<std::size_t>(x)] + square);
-      plane[y * kBlockSide + x] = std::min(plane[y * kBlockSide + x], sum);
+  for (int row = -radius; row < kBlockSide + radius; ++row) {
+    auto& squares = tables.along_y.emplace_back();
+    for (int cell = 0; cell < kPlane; ++cell) {
+      const int offset = cell / kBlockSide - row;
+      squares[static_cast<std::size_t>(cell)] = static_cast<Distance>(offset * offset);
     }
   }
+  return tables;
 }
 
-/// nearest[i] = min(nearest[i], plane[i] + square).
+/// Planes of 8x8 distances as vectors.
 template <typename Distance>
-inline void lower_block(Distance* __restrict nearest, const Distance* __restrict plane,
-                        Distance square) {
-  for (std::size_t i = 0; i < kPlane; ++i) {
-    nearest[i] = std::min(nearest[i], static_cast<Distance>(plane[i] + square));
-  }
+struct Simd {
+  typedef Distance Lanes __attribute__((vector_size(32)));  // a dependent type: no alias
+  using Words = std::uint64_t __attribute__((vector_size(32)));
+  using Row = std::array<Distance, kBlockSide>;
+  static constexpr int kPerVector = 32 / static_cast<int>(sizeof(Distance));
+  static constexpr int kPerPlane = kPlane / kPerVector;
+  using Plane = Lanes[std::size_t{kPerPlane}];
+};
+
+template <typename Lanes>
+inline __attribute__((always_inline)) void lower(Lanes& least, const Lanes& other) {
+  least = other < least ? other : least;
 }
 
+/// A row as often as it fits in a vector.
 template <typename Distance>
-inline __attribute__((always_inline)) void transform(const HaloRows& sources,
-                                                     const std::array<Distance, kBlockSide>* table,
-                                                     BlockDistances& distances) {
-  const int radius = sources.radius, side = sources.side;
-  const auto far = static_cast<Distance>(far_of(radius));
-  alignas(64) std::array<Distance, kPlane * kBlockSide> nearest;
-  nearest.fill(far);
-  alignas(64) std::array<Distance, kPlane> plane;
-  for (int z = 0; z < side; ++z) {
-    plane.fill(far);
-    bool any = false;
-    for (int y = 0; y < side; ++y) {
-      const std::uint64_t bits = sources.row(z, y);
-      if (bits == 0) continue;
-      lower_plane(plane.data(), along_x(bits, table), y - radius);
+inline __attribute__((always_inline)) typename Simd<Distance>::Lanes repeated(
+    const typename Simd<Distance>::Row& row) {
+  std::array<std::uint64_t, sizeof(row) / 8> words;
+  std::memcpy(words.data(), row.data(), sizeof(row));
+  const typename Simd<Distance>::Words all{words[0], words.back(), words[0], words.back()};
+  typename Simd<Distance>::Lanes lanes;
+  std::memcpy(&lanes, &all, sizeof(lanes));
+  return lanes;
+}
+
+/// The lowest bit of every byte that is not zero.
+inline std::uint64_t nonzero_bytes(std::uint64_t word) {
+  word |= word >> 4;
+  word |= word >> 2;
+  word |= word >> 1;
+  return word & 0x0101010101010101u;
+}
+
+/// The cube of blocks around one, and how far sources matter.
+struct Surroundings {
+  const BlockMask* const* blocks;  ///< (2 reach + 1)^3
+  int radius;
+};
+
+/// Lowers a plane by the sources of layer z. False when it has none within the radius.
+template <int kReach, typename Distance>
+inline __attribute__((always_inline)) bool lower_plane(
+    const Surroundings& around, int z, const DistanceField::Tables<Distance>& tables, int reach,
+    typename Simd<Distance>::Plane& plane) {
+  const int side = 2 * reach + 1;
+  const BlockMask* const* blocks = around.blocks + ((z >> 3) + reach) * side * side;
+  bool any = false;
+  for (int block_y = -reach; block_y <= reach; ++block_y, blocks += side) {
+    std::array<std::uint64_t, std::size_t{2 * kReach + 1}> words;
+    std::uint64_t united = 0;
+    for (int block_x = 0; block_x < side; ++block_x) {
+      const std::uint64_t word = blocks[block_x]->words[static_cast<std::size_t>(z & 7)];
+      words[static_cast<std::size_t>(block_x)] = word;
+      united |= word;
+    }
+    for (std::uint64_t rows = nonzero_bytes(united); rows != 0; rows &= rows - 1) {
+      const int shift = std::countr_zero(rows), y = block_y * kBlockSide + shift / 8;
+      if (y < -around.radius || y >= kBlockSide + around.radius) continue;
+      typename Simd<Distance>::Row row = tables.along_x[words[0] >> shift & 0xFFu];
+      for (int block_x = 1; block_x < side; ++block_x) {
+        const auto bits = words[static_cast<std::size_t>(block_x)] >> shift & 0xFFu;
+        const auto& other = tables.along_x[static_cast<std::size_t>(block_x) * 256 + bits];
+        for (std::size_t x = 0; x < kBlockSide; ++x) row[x] = std::min(row[x], other[x]);
+      }
+      const auto lanes = repeated<Distance>(row);
+      const Distance* squares = tables.along_y[static_cast<std::size_t>(y + around.radius)].data();
+      for (int i = 0; i < Simd<Distance>::kPerPlane; ++i) {
+        typename Simd<Distance>::Lanes square;
+        std::memcpy(&square, squares + i * Simd<Distance>::kPerVector, sizeof(square));
+        lower(plane[i], lanes + square);
+      }
       any = true;
     }
-    if (!any) continue;
-    for (int out = std::max(0, z - 2 * radius); out <= std::min(kBlockSide - 1, z); ++out) {
-      const int offset = out + radius - z;
-      lower_block(&nearest[static_cast<std::size_t>(out) * kPlane], plane.data(),
-                  static_cast<Distance>(offset * offset));
+  }
+  return any;
+}
+
+template <int kReach, typename Distance>
+inline __attribute__((always_inline)) bool transform(const Surroundings& around, int reach,
+                                                     const DistanceField::Tables<Distance>& tables,
+                                                     BlockDistances& distances) {
+  using Lanes = typename Simd<Distance>::Lanes;
+  const int radius = around.radius;
+  const Lanes far = Lanes{} + static_cast<Distance>(far_of(radius));
+  typename Simd<Distance>::Plane nearest[kBlockSide], plane;
+  for (auto& lanes : nearest) std::fill(std::begin(lanes), std::end(lanes), far);
+  bool any = false;
+  for (int z = -radius; z < kBlockSide + radius; ++z) {
+    std::fill(std::begin(plane), std::end(plane), far);
+    if (!lower_plane<kReach>(around, z, tables, reach, plane)) continue;
+    any = true;
+    for (int out = std::max(0, z - radius); out <= std::min(kBlockSide - 1, z + radius); ++out) {
+      const Lanes square = Lanes{} + static_cast<Distance>((out - z) * (out - z));
+      for (int i = 0; i < Simd<Distance>::kPerPlane; ++i) {
+        lower(nearest[out][i], plane[i] + square);
+      }
     }
   }
-  std::copy(nearest.begin(), nearest.end(), distances.begin());
+  const auto* flat = reinterpret_cast<const Distance*>(nearest);
+  if (any) std::copy(flat, flat + kBlockVoxels, distances.begin());
+  return any;
 }
 
-MOSBENCH_MULTIARCH void transform_narrow(const HaloRows& sources,
-                                         const std::array<std::uint8_t, kBlockSide>* table,
+MOSBENCH_MULTIARCH bool transform_narrow(const Surroundings& around,
+                                         const DistanceField::Tables<std::uint8_t>& tables,
                                          BlockDistances& distances) {
-  transform(sources, table, distances);
+  return transform<1>(around, 1, tables, distances);
 }
 
-MOSBENCH_MULTIARCH void transform_wide(const HaloRows& sources,
-                                       const std::array<std::uint16_t, kBlockSide>* table,
+MOSBENCH_MULTIARCH bool transform_wide(const Surroundings& around, int reach,
+                                       const DistanceField::Tables<std::uint16_t>& tables,
                                        BlockDistances& distances) {
-  transform(sources, table, distances);
+  return transform<reach_of(kMaxDistanceRadius)>(around, reach, tables, distances);
 }
 
 }  // namespace
 
 MOSBENCH_MULTIARCH BlockMask cells_below(const BlockDistances& distances, std::size_t limit) {
+  using Lanes = std::uint16_t __attribute__((vector_size(16)));
+  const Lanes bound = Lanes{} + static_cast<std::uint16_t>(limit);
   BlockMask below;
-  const auto bound = static_cast<std::uint16_t>(limit);
   for (std::size_t row = 0; row < kBlockVoxels / kBlockSide; ++row) {
-    std::uint16_t bits = 0;
-    for (std::size_t x = 0; x < kBlockSide; ++x) {
-      const bool is_below = distances[row * kBlockSide + x] < bound;
-      bits |= static_cast<std::uint16_t>(is_below ? 1u << x : 0u);
-    }
-    below.words[row / kBlockSide] |= std::uint64_t{bits} << (row % kBlockSide * kBlockSide);
+    Lanes lanes;
+    std::memcpy(&lanes, &distances[row * kBlockSide], sizeof(lanes));
+    below.words[row / kBlockSide] |= std::uint64_t{bits_of(lanes < bound)}
+                                     << (row % kBlockSide * kBlockSide);
   }
   return below;
 }
 
-DistanceField::DistanceField(int radius) : radius_(radius) {
+DistanceField::DistanceField(int radius) : radius_(radius), reach_(reach_of(radius)) {
   if (radius <= kMaxNarrowRadius) {
-    narrow_ = row_table<std::uint8_t>(radius);
+    narrow_ = tables_of<std::uint8_t>(radius, reach_);
   } else {
-    wide_ = row_table<std::uint16_t>(radius);
+    wide_ = tables_of<std::uint16_t>(radius, reach_);
   }
 }
 
-void DistanceField::squared_distances(const HaloRows& sources, BlockDistances& distances) const {
-  if (!narrow_.empty()) {
-    transform_narrow(sources, narrow_.data(), distances);
-  } else {
-    transform_wide(sources, wide_.data(), distances);
-  }
+bool DistanceField::squared_distances(std::span<const BlockMask* const> sources,
+                                      BlockDistances& distances) const {
+  const Surroundings around{sources.data(), radius_};
+  return narrow_.along_x.empty() ? transform_wide(around, reach_, wide_, distances)
+                                 : transform_narrow(around, narrow_, distances);
 }
 
 }  // namespace mosbench

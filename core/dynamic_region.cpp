@@ -6,6 +6,7 @@
 #include "core/convolution.hpp"
 #include "core/halo.hpp"
 #include "core/otsu.hpp"
+#include "core/selection.hpp"
 
 namespace mosbench {
 
@@ -97,7 +98,7 @@ void DynamicRegion::update(const DetectedScan& detected, std::uint32_t scan_inde
 void DynamicRegion::visit(const DetectedScan& detected, std::uint32_t scan_index) {
   const VoxelSet stamped =
       visited_at_ == scan_index ? std::exchange(visited_, VoxelSet{}) : VoxelSet{};
-  const bool may_join = detected.threshold > min_otsu_score_;
+  const bool may_join = shows_motion(detected.threshold, min_otsu_score_);
   visited_.clear();
   visited_at_ = scan_index;
   if (may_join) {

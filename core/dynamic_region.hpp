@@ -19,7 +19,7 @@ struct DetectedScan {
   const VoxelSet& dynamic;      ///< before the back-end added any
   const VoxelSet& from_region;  ///< chosen by the back-end
   const VoxelSet& beside_unknown;
-  double threshold = 0;  ///< T, 0 when there was no level
+  std::optional<double> threshold;  ///< T
 };
 
 /// The voxels found dynamic in the last w_d scans (paper-2024 only). Voxels that are not dynamic

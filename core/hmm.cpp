@@ -1,6 +1,10 @@
 #include "core/hmm.hpp"
 
+#include <algorithm>
 #include <cmath>
+
+#include "core/lanes.hpp"
+#include "core/multiarch.hpp"
 
 namespace mosbench {
 namespace {
@@ -11,6 +15,47 @@ double negligible_likelihood(double transition_epsilon, double min_state_probabi
   return transition_epsilon * (1 - min_state_probability) * 3.2e-4;
 }
 
+struct Cells {
+  const BlockMask &in_reach, &seen, &nonzero;
+  const std::uint16_t* distances;
+  const float* likelihood;
+};
+
+/// The filter for rows of eight cells; those out of reach keep what they have.
+MOSBENCH_MULTIARCH void filter_cells(const BeliefFilter::Step& step, const Cells& cells,
+                                     float* beliefs, BlockStates& states) {
+  for (std::size_t z = 0; z < kBlockSide; ++z) {
+    std::uint64_t occupied = 0, free = 0;
+    for (std::size_t y = 0; y < kBlockSide; ++y) {
+      const auto row_of = [&](const BlockMask& mask) {
+        return static_cast<std::uint32_t>(mask.words[z] >> (8 * y) & 0xFFu);
+      };
+      const std::uint32_t in_reach = row_of(cells.in_reach);
+      if (in_reach == 0) continue;
+      const std::size_t first = (z * kBlockSide + y) * kBlockSide;
+      FloatLanes likelihood, belief;
+      for (std::size_t x = 0; x < kLanes; ++x) {
+        likelihood[x] = cells.likelihood[std::min(cells.distances[first + x], step.beyond)];
+      }
+      std::memcpy(&belief, beliefs + first, sizeof(belief));
+      const FloatLanes unseen = FloatLanes{} + 0.5f;
+      const FloatLanes prior = lanes_of(row_of(cells.nonzero))
+                                   ? belief
+                                   : (lanes_of(row_of(cells.seen)) ? FloatLanes{} : unseen);
+      // x <- A x, then x <- normalize(diag(0, L, 1 - L) x), written for p(occupied) alone.
+      const FloatLanes q = step.epsilon + step.keep * prior;
+      const FloatLanes hit = likelihood * q;
+      const FloatLanes p = hit / (hit + (1.0f - likelihood) * (1.0f - q));
+      belief = lanes_of(in_reach) ? p : belief;
+      std::memcpy(beliefs + first, &belief, sizeof(belief));
+      occupied |= std::uint64_t{bits_of(p > step.min_probability) & in_reach} << (8 * y);
+      free |= std::uint64_t{bits_of(1.0f - p > step.min_probability) & in_reach} << (8 * y);
+    }
+    states.occupied.words[z] = (states.occupied.words[z] & ~free) | occupied;
+    states.free.words[z] = (states.free.words[z] & ~occupied) | free;
+  }
+}
+
 }  // namespace
 
 double likelihood_reach_sigmas(double transition_epsilon, double min_state_probability) {
@@ -19,9 +64,9 @@ double likelihood_reach_sigmas(double transition_epsilon, double min_state_proba
 
 BeliefFilter::BeliefFilter(double voxel_size_m, double sigma_m, double transition_epsilon,
                            double min_state_probability)
-    : epsilon_(static_cast<float>(transition_epsilon)),
-      keep_(static_cast<float>(1 - 2 * transition_epsilon)),
-      min_probability_(static_cast<float>(min_state_probability)) {
+    : step_{.epsilon = static_cast<float>(transition_epsilon),
+            .keep = static_cast<float>(1 - 2 * transition_epsilon),
+            .min_probability = static_cast<float>(min_state_probability)} {
   const double negligible = negligible_likelihood(transition_epsilon, min_state_probability);
   const double ratio = voxel_size_m / sigma_m;
   for (int n = 0;; ++n) {
@@ -30,34 +75,18 @@ BeliefFilter::BeliefFilter(double voxel_size_m, double sigma_m, double transitio
     likelihood_.push_back(static_cast<float>(likelihood));
   }
   radius_ = static_cast<int>(std::sqrt(static_cast<double>(likelihood_.size() - 1)));
+  step_.beyond = static_cast<std::uint16_t>(likelihood_.size());
+  likelihood_.push_back(0);
 }
 
 void BeliefFilter::update(const BlockMask& observed, const BlockMask& seen,
                           const BlockDistances& distances, BlockMask& nonzero,
                           BlockBeliefs& beliefs, BlockStates& states) const {
-  const BlockMask in_reach = observed & cells_below(distances, likelihood_.size());
+  const BlockMask in_reach = observed & cells_below(distances, likelihood_.size() - 1);
   update_far(without(observed, in_reach), nonzero, states);
-  for (std::uint32_t z = 0; z < 8; ++z) {
-    std::uint64_t occupied = 0, free = 0;
-    for (std::uint64_t left = in_reach.words[z]; left != 0; left &= left - 1) {
-      const auto bit = static_cast<std::uint32_t>(std::countr_zero(left));
-      const std::uint32_t cell = z * 64 + bit;
-      const float prior = nonzero.test(cell) ? beliefs.occupied[cell]
-                          : seen.test(cell)  ? 0.0f
-                                             : 0.5f;
-      // x <- A x, then x <- normalize(diag(0, L, 1 - L) x), written for p(occupied) alone.
-      const float likelihood = likelihood_[distances[cell]];
-      const float q = epsilon_ + keep_ * prior;
-      const float hit = likelihood * q;
-      const float p = hit / (hit + (1.0f - likelihood) * (1.0f - q));
-      beliefs.occupied[cell] = p;
-      occupied |= std::uint64_t{p > min_probability_} << bit;
-      free |= std::uint64_t{1.0f - p > min_probability_} << bit;
-    }
-    nonzero.words[z] |= in_reach.words[z];
-    states.occupied.words[z] = (states.occupied.words[z] & ~free) | occupied;
-    states.free.words[z] = (states.free.words[z] & ~occupied) | free;
-  }
+  filter_cells(step_, {in_reach, seen, nonzero, distances.data(), likelihood_.data()},
+               beliefs.occupied.data(), states);
+  nonzero = nonzero | in_reach;
 }
 
 void BeliefFilter::update_far(const BlockMask& observed, BlockMask& nonzero, BlockStates& states) {

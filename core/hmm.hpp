@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <vector>
 
 #include "core/distance_field.hpp"
@@ -41,10 +42,16 @@ class BeliefFilter {
   /// The same for voxels without a source in reach: they are certainly free.
   static void update_far(const BlockMask& observed, BlockMask& nonzero, BlockStates& states);
 
+  /// The numbers of one filter step.
+  struct Step {
+    float epsilon, keep, min_probability;  ///< keep = 1 - 2 epsilon
+    std::uint16_t beyond = 0;              ///< squared distance from which the likelihood is 0
+  };
+
  private:
   int radius_ = 0;
-  float epsilon_ = 0, keep_ = 0, min_probability_ = 0;
-  std::vector<float> likelihood_;  // by squared distance in voxels; beyond its end 0
+  Step step_;
+  std::vector<float> likelihood_;  // by squared distance in voxels; the last one is 0
 };
 
 }  // namespace mosbench

@@ -1,5 +1,7 @@
 #include "core/pipeline.hpp"
 
+#include <time.h>
+
 #include <chrono>
 #include <cmath>
 #include <deque>
@@ -18,28 +20,45 @@
 namespace mosbench {
 namespace {
 
-/// Adds the wall time of its life to a stage.
+/// Where the times of a scan's stages go.
+struct StageRecord {
+  StageTimes& times;
+  std::vector<StageEvent>* events;  ///< may be null
+};
+
+double process_cpu_ms() {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) * 1e3 + static_cast<double>(now.tv_nsec) * 1e-6;
+}
+
+/// Adds the time of its life to a stage.
 class StageClock {
  public:
-  StageClock(StageTimes& times, Stage stage)
-      : time_ms_(times[static_cast<std::size_t>(stage)]),
-        start_(std::chrono::steady_clock::now()) {}
+  StageClock(const StageRecord& record, Stage stage)
+      : record_(record),
+        event_{stage, std::chrono::steady_clock::now(), 0,
+               record.events != nullptr ? process_cpu_ms() : 0} {}
   ~StageClock() {
-    time_ms_ += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_)
-                    .count();
+    const auto life = std::chrono::steady_clock::now() - event_.start;
+    event_.wall_ms = std::chrono::duration<double, std::milli>(life).count();
+    record_.times[static_cast<std::size_t>(event_.stage)] += event_.wall_ms;
+    if (record_.events == nullptr) return;
+    event_.cpu_ms = process_cpu_ms() - event_.cpu_ms;
+    record_.events->push_back(event_);
   }
   StageClock(const StageClock&) = delete;
   StageClock& operator=(const StageClock&) = delete;
 
  private:
-  double& time_ms_;
-  std::chrono::steady_clock::time_point start_;
+  StageRecord record_;
+  StageEvent event_;
 };
 
 /// Runs one stage and returns its value.
 template <typename Work>
-auto timed(StageTimes& times, Stage stage, Work&& work) {
-  const StageClock clock(times, stage);
+auto timed(const StageRecord& record, Stage stage, Work&& work) {
+  const StageClock clock(record, stage);
   return work();
 }
 
@@ -81,8 +100,10 @@ struct Pipeline::State {
       : config(method_config), variant(method_variant), pool(threads), scan_count(sequence_scans) {}
 
   void observe(HeldScan& current, std::uint32_t k);
-  void detect(const VoxelizedScan& scan, std::uint32_t k, ScanResult& result, StageTimes& times);
+  void detect(const VoxelizedScan& scan, std::uint32_t k, ScanResult& result,
+              const StageRecord& record);
   std::vector<ScanResult> release(std::size_t count);
+  std::size_t memory_bytes() const;
 
   Config config;
   Variant variant;
@@ -92,31 +113,32 @@ struct Pipeline::State {
   std::optional<Memory> memory;
   std::deque<HeldScan> held;  ///< the last delay + 1 scans, current one last
   VoxelSet previous_measured;
+  std::vector<StageEvent>* events = nullptr;
   std::size_t pushed = 0;
   bool finished = false;
 };
 
 /// Steps 1 to 3: the scan enters the map.
 void Pipeline::State::observe(HeldScan& current, std::uint32_t k) {
-  StageTimes& times = current.result.stage_times;
+  const StageRecord record{current.result.stage_times, events};
   const VoxelizedScan& scan = current.scan;
-  const ObservedVoxels observed = timed(times, Stage::kRaycast, [&] {
+  const ObservedVoxels observed = timed(record, Stage::kRaycast, [&] {
     return raycast(scan.measured, scan.sensor_voxel, config.voxel_size_m, config.max_range_m,
                    scratch, pool);
   });
   {
-    const StageClock clock(times, Stage::kMapUpdate);
+    const StageClock clock(record, Stage::kMapUpdate);
     std::vector<const VoxelSet*> sources{&scan.measured};
     if (config.distance_field_scans == 2) sources.push_back(&previous_measured);
     memory->map.update(observed, sources, scan.sensor_m, k, pool);
   }
-  const StageClock clock(times, Stage::kEvict);
+  const StageClock clock(record, Stage::kEvict);
   memory->map.evict(k);
 }
 
 /// Steps 5 and 6 on `scan` with the map as it is after scan k.
 void Pipeline::State::detect(const VoxelizedScan& scan, std::uint32_t k, ScanResult& result,
-                             StageTimes& times) {
+                             const StageRecord& record) {
   LocalWindow& window = memory->window;
   DynamicRegion& region = memory->region;
   result.threshold.reset();
@@ -126,26 +148,25 @@ void Pipeline::State::detect(const VoxelizedScan& scan, std::uint32_t k, ScanRes
     return;
   }
   const int width = config.kernel_width_voxels;
-  ScoreField scores = timed(times, Stage::kConvolution, [&] {
+  ScoreField scores = timed(record, Stage::kConvolution, [&] {
     const VoxelSet changed =
         memory->map.changed_since(k - static_cast<std::uint32_t>(config.delay_scans));
     return convolve(scan, changed, width, memory->map, k, pool);
   });
-  scores = timed(times, Stage::kMedian, [&] { return median_filter(scan, scores, pool); });
-  const SumField sums = timed(times, Stage::kWindow, [&] {
+  scores = timed(record, Stage::kMedian, [&] { return median_filter(scan, scores, pool); });
+  const SumField sums = timed(record, Stage::kWindow, [&] {
     window.join(std::move(scores));
     return window.sums(scan);
   });
   VoxelSet& dynamic = memory->carried;
   {
-    const StageClock clock(times, Stage::kOtsu);
+    const StageClock clock(record, Stage::kOtsu);
     result.threshold = threshold_of(scan, sums);
     dynamic = select_dynamic(scan, sums, result.threshold, dynamic, config.min_otsu_score);
   }
-  const double threshold = result.threshold.value_or(0.0);
   VoxelSet from_region;
   if (variant == Variant::kPaper2024) {
-    const StageClock clock(times, Stage::kDynamicRegion);
+    const StageClock clock(record, Stage::kDynamicRegion);
     std::vector<BlockIndex> asked = region.blocks();
     asked.insert(asked.end(), dynamic.blocks.begin(), dynamic.blocks.end());
     const std::vector<std::uint32_t> slots = slots_around(scan, asked);
@@ -156,11 +177,11 @@ void Pipeline::State::detect(const VoxelizedScan& scan, std::uint32_t k, ScanRes
       beside.masks[beside.insert(scan.measured.blocks[slots[i]])] = masks[i];
     }
     from_region = region.back_end(scan, beside, width, pool);
-    region.update({scan, dynamic, from_region, beside, threshold}, k);
+    region.update({scan, dynamic, from_region, beside, result.threshold}, k);
   }
-  const StageClock clock(times, Stage::kLabels);
+  const StageClock clock(record, Stage::kLabels);
   VoxelSet moving;
-  if (threshold > config.min_otsu_score) {
+  if (shows_motion(result.threshold, config.min_otsu_score)) {
     moving = dynamic;
     for (std::size_t i = 0; i < from_region.block_count(); ++i) {
       BlockMask& mask = moving.masks[moving.insert(from_region.blocks[i])];
@@ -204,7 +225,8 @@ std::vector<ScanResult> Pipeline::push(std::span<const Point> points, const Pose
       s.memory ? s.memory->grid : grid_around(map_from_sensor.translation(), s.config.voxel_size_m);
   HeldScan current;
   current.result.scan_index = s.pushed;
-  current.scan = timed(current.result.stage_times, Stage::kVoxelize, [&] {
+  const StageRecord voxelize_record{current.result.stage_times, s.events};
+  current.scan = timed(voxelize_record, Stage::kVoxelize, [&] {
     return voxelize(points, map_from_sensor, grid, s.config.min_range_m, s.config.max_range_m,
                     s.pool);
   });
@@ -217,18 +239,18 @@ std::vector<ScanResult> Pipeline::push(std::span<const Point> points, const Pose
   ++s.pushed;
 
   HeldScan& newest = s.held.back();
-  StageTimes& times = newest.result.stage_times;
+  const StageRecord record{newest.result.stage_times, s.events};
   newest.result.labels.assign(points.size(), kStaticLabel);
   const auto n = static_cast<std::size_t>(s.config.delay_scans);
   if (k <= static_cast<std::uint32_t>(s.config.local_window_scans)) {
     s.memory->window.join({});
   } else if (n == 0) {
-    s.detect(newest.scan, k, newest.result, times);
+    s.detect(newest.scan, k, newest.result, record);
   } else if (k > n) {
-    s.detect(s.held.front().scan, k, s.held.front().result, times);
+    s.detect(s.held.front().scan, k, s.held.front().result, record);
     // The authors' program labels the end of a delayed sequence online, and leaves scan N - n
     // static.
-    if (s.scan_count && k + n > *s.scan_count) s.detect(newest.scan, k, newest.result, times);
+    if (s.scan_count && k + n > *s.scan_count) s.detect(newest.scan, k, newest.result, record);
   }
   return s.held.size() > n ? s.release(1) : std::vector<ScanResult>{};
 }
@@ -238,14 +260,22 @@ std::vector<ScanResult> Pipeline::finish() {
   return state_->release(state_->held.size());
 }
 
+void Pipeline::record_stages(std::vector<StageEvent>* events) { state_->events = events; }
+
 std::size_t Pipeline::map_blocks() const {
   return state_->memory ? state_->memory->map.block_count() : 0;
 }
 
-std::size_t Pipeline::memory_bytes() const {
-  if (!state_->memory) return 0;
-  const Memory& memory = *state_->memory;
-  return memory.map.memory_bytes() + memory.window.memory_bytes() + memory.region.memory_bytes();
+std::size_t Pipeline::State::memory_bytes() const {
+  if (!memory) return 0;
+  std::size_t bytes = scratch.memory_bytes() + previous_measured.memory_bytes();
+  for (const HeldScan& scan : held) {
+    bytes += scan.scan.memory_bytes() + scan.result.labels.capacity() * sizeof(std::uint32_t);
+  }
+  return bytes + memory->map.memory_bytes() + memory->window.memory_bytes() +
+         memory->region.memory_bytes() + memory->carried.memory_bytes();
 }
+
+std::size_t Pipeline::memory_bytes() const { return state_->memory_bytes(); }
 
 }  // namespace mosbench

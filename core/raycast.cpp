@@ -9,6 +9,7 @@
 #include <numeric>
 #include <span>
 
+#include "core/lanes.hpp"
 #include "core/multiarch.hpp"
 
 namespace mosbench {
@@ -31,25 +32,29 @@ struct RaycastScratch::Window {
     void operator()(std::uint8_t* pointer) const { std::free(pointer); }
   };
   std::unique_ptr<std::uint8_t, Free> bits;  ///< all zero between calls
-  std::vector<std::uint8_t> tile_touched;
+  std::vector<std::uint8_t> tile_touched;    ///< in this call
   std::vector<std::uint32_t> touched_tiles;
+  std::vector<std::uint8_t> tile_resident;  ///< in any call
 
   void lay_out(const std::array<int, 3>& log2_tiles_per_axis);
   int y_shift() const { return 12 + log2_tiles[0]; }
   int z_shift() const { return y_shift() + log2_tiles[1]; }
   void touch(std::uint32_t tile) {
     if (tile_touched[tile] != 0) return;
-    tile_touched[tile] = 1;
+    tile_touched[tile] = tile_resident[tile] = 1;
     touched_tiles.push_back(tile);
   }
   /// Touches every tile that a line may have crossed between two that lie at most one apart per
   /// axis.
   void touch_between(std::uint32_t a, std::uint32_t b) {
-    touch(b);
     if (a == b) return;
+    touch(b);
     const std::uint32_t x = (1u << log2_tiles[0]) - 1;
     const std::uint32_t y = (1u << (log2_tiles[0] + log2_tiles[1])) - 1 - x;
-    for (const std::uint32_t of_b : {0u, x, y, x | y, ~(x | y), ~y, ~x}) {
+    const std::uint32_t changed = a ^ b;
+    const int axes = ((changed & x) != 0) + ((changed & y) != 0) + ((changed & ~(x | y)) != 0);
+    if (axes == 1) return;
+    for (const std::uint32_t of_b : {x, y, x | y, ~(x | y), ~y, ~x}) {
       touch((a & ~of_b) | (b & of_b));
     }
   }
@@ -60,6 +65,16 @@ RaycastScratch::~RaycastScratch() = default;
 RaycastScratch::RaycastScratch(RaycastScratch&&) noexcept = default;
 RaycastScratch& RaycastScratch::operator=(RaycastScratch&&) noexcept = default;
 
+std::size_t RaycastScratch::memory_bytes() const {
+  std::size_t bytes = (rays.capacity() + sorted_rays.capacity()) * sizeof(Ray);
+  for (const Window& window : windows) {
+    const auto resident =
+        std::count(window.tile_resident.begin(), window.tile_resident.end(), std::uint8_t{1});
+    bytes += static_cast<std::size_t>(resident) * Window::kTileBytes + 2 * window.capacity_tiles;
+  }
+  return bytes;
+}
+
 void RaycastScratch::Window::lay_out(const std::array<int, 3>& log2_tiles_per_axis) {
   log2_tiles = log2_tiles_per_axis;
   const std::size_t count = std::size_t{1} << (log2_tiles[0] + log2_tiles[1] + log2_tiles[2]);
@@ -69,6 +84,7 @@ void RaycastScratch::Window::lay_out(const std::array<int, 3>& log2_tiles_per_ax
     // calloc, not vector: pages that no ray touches must stay unmapped.
     bits.reset(static_cast<std::uint8_t*>(std::calloc(capacity_tiles, kTileBytes)));
     if (!bits) throw std::bad_alloc();
+    tile_resident.assign(capacity_tiles, 0);
   }
   tile_touched.assign(count, 0);
   touched_tiles.clear();
@@ -195,7 +211,7 @@ inline __attribute__((always_inline)) void address_of(const Number& x, const Num
 }
 
 /// Lines are looked at every so many steps for the tiles they cross: at most one per axis between.
-constexpr std::int32_t kTouchStride = 16;
+constexpr std::int32_t kTouchStride = Window::kTileSide;
 
 /// One ray of any length.
 void cast(const Ray& ray, const std::array<std::int32_t, 3>& sensor, Window& window) {
@@ -211,7 +227,11 @@ void cast(const Ray& ray, const std::array<std::int32_t, 3>& sensor, Window& win
     window.bits.get()[address] |= static_cast<std::uint8_t>(1u << (column & 7));
     if (i % kTouchStride == 0 || i == ray.visits - 1) {
       const auto here = static_cast<std::uint32_t>(address / Window::kTileBytes);
-      window.touch_between(i == 0 ? here : tile, here);
+      if (i == 0) {
+        window.touch(here);
+      } else {
+        window.touch_between(tile, here);
+      }
       tile = here;
     }
     x += walk.step[0];
@@ -223,36 +243,58 @@ void cast(const Ray& ray, const std::array<std::int32_t, 3>& sensor, Window& win
 /// Eight rays of similar length in step: 32-bit fixed point, increments rounded up, exact while
 /// visits * M < 2^kLaneFraction.
 constexpr int kLaneFraction = 21;
-constexpr std::size_t kLanes = 8;
 constexpr std::int32_t kMaxLaneCoordinate = (1 << (32 - kLaneFraction)) - 2;
-using Lanes = std::uint32_t __attribute__((vector_size(4 * kLanes)));
-using FloatLanes = float __attribute__((vector_size(4 * kLanes)));
-using IntLanes = std::int32_t __attribute__((vector_size(4 * kLanes)));
+using DoubleLanes = double __attribute__((vector_size(8 * kLanes)));
 
 bool fits_lanes(const Ray& ray) {
   return std::int64_t{ray.visits} * longest_side(ray) < (std::int64_t{1} << kLaneFraction);
 }
 
+/// Eight Walks of 32 bits.
 struct LaneWalks {
-  Lanes at[3], step[3];
+  UintLanes at[3], step[3];
   IntLanes last;  ///< step of the last visit
 };
 
-void set_lane(const Ray& ray, const std::array<std::int32_t, 3>& sensor, std::size_t lane,
-              LaneWalks& walks) {
-  const std::int32_t longest = std::max(longest_side(ray), 1);
-  const double scale = static_cast<double>(1 << kLaneFraction);
-  const auto start =
-      static_cast<std::uint32_t>(std::ceil((longest - 1 - longest / 2) * scale / longest));
-  const std::array<std::int32_t, 3> d{ray.dx, ray.dy, ray.dz};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const auto speed = static_cast<std::uint32_t>(std::ceil(std::abs(d[axis]) * scale / longest));
-    const std::uint32_t origin = static_cast<std::uint32_t>(sensor[axis]) << kLaneFraction;
-    walks.at[axis][lane] =
-        d[axis] < 0 ? origin + (1u << kLaneFraction) - 1u - start : origin + start;
-    walks.step[axis][lane] = d[axis] < 0 ? 0u - speed : speed;
+inline __attribute__((always_inline)) IntLanes magnitude(const IntLanes& lanes) {
+  return lanes < 0 ? -lanes : lanes;
+}
+
+/// ceil(numerator * 2^kLaneFraction / divisor), both at least 0.
+inline __attribute__((always_inline)) IntLanes scaled_ratio(const IntLanes& numerator,
+                                                            const DoubleLanes& divisor) {
+  const DoubleLanes ratio = __builtin_convertvector(numerator, DoubleLanes) *
+                            static_cast<double>(1 << kLaneFraction) / divisor;
+  const IntLanes floor = __builtin_convertvector(ratio, IntLanes);
+  const auto cut = __builtin_convertvector(floor, DoubleLanes) < ratio;
+  return floor - __builtin_convertvector(cut, IntLanes);
+}
+
+/// Walks of `rays`, the last of them repeated to fill the lanes.
+inline __attribute__((always_inline)) LaneWalks lane_walks(
+    std::span<const Ray> rays, const std::array<std::int32_t, 3>& sensor) {
+  LaneWalks walks;
+  IntLanes d[3];
+  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    const Ray& ray = rays[std::min(lane, rays.size() - 1)];
+    d[0][lane] = ray.dx;
+    d[1][lane] = ray.dy;
+    d[2][lane] = ray.dz;
+    walks.last[lane] = ray.visits - 1;
   }
-  walks.last[lane] = ray.visits - 1;
+  IntLanes longest = IntLanes{} + 1;
+  for (const IntLanes& side : d) longest = magnitude(side) > longest ? magnitude(side) : longest;
+  const DoubleLanes divisor = __builtin_convertvector(longest, DoubleLanes);
+  const IntLanes start = scaled_ratio(longest - 1 - (longest >> 1), divisor);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const IntLanes speed = scaled_ratio(magnitude(d[axis]), divisor);
+    const IntLanes offset = d[axis] < 0 ? (1 << kLaneFraction) - 1 - start : start;
+    const IntLanes step = d[axis] < 0 ? -speed : speed;
+    walks.step[axis] = std::bit_cast<UintLanes>(step);
+    walks.at[axis] = std::bit_cast<UintLanes>(offset) +
+                     (static_cast<std::uint32_t>(sensor[axis]) << kLaneFraction);
+  }
+  return walks;
 }
 
 /// Out of the hot loop, and only every kTouchStride steps.
@@ -265,40 +307,37 @@ void set_lane(const Ray& ray, const std::array<std::int32_t, 3>& sensor, std::si
 
 MOSBENCH_MULTIARCH void cast_lanes(std::span<const Ray> rays,
                                    const std::array<std::int32_t, 3>& sensor, Window& window) {
-  LaneWalks walks;
-  for (std::size_t lane = 0; lane < kLanes; ++lane) {
-    set_lane(rays[std::min(lane, rays.size() - 1)], sensor, lane, walks);
-  }
+  const LaneWalks walks = lane_walks(rays, sensor);
   // Locals: the byte stores below could otherwise change anything behind a reference.
   std::uint8_t* const bits = window.bits.get();
   const int y_shift = window.y_shift(), z_shift = window.z_shift();
-  Lanes at_x = walks.at[0], at_y = walks.at[1], at_z = walks.at[2];
-  Lanes step_x = walks.step[0], step_y = walks.step[1], step_z = walks.step[2];
+  UintLanes at_x = walks.at[0], at_y = walks.at[1], at_z = walks.at[2];
+  UintLanes step_x = walks.step[0], step_y = walks.step[1], step_z = walks.step[2];
   const IntLanes last = walks.last;
   const std::int32_t shortest = rays.front().visits - 1, longest = rays.back().visits - 1;
-  alignas(sizeof(Lanes)) std::uint32_t address[kLanes], mark[kLanes], sampled[kLanes];
+  alignas(sizeof(UintLanes)) std::uint32_t address[kLanes], mark[kLanes], sampled[kLanes];
   for (std::int32_t i = 0; i <= longest; ++i) {
-    const Lanes x = at_x >> kLaneFraction, y = at_y >> kLaneFraction, z = at_z >> kLaneFraction;
-    Lanes addresses;
+    const UintLanes x = at_x >> kLaneFraction, y = at_y >> kLaneFraction, z = at_z >> kLaneFraction;
+    UintLanes addresses;
     address_of(x, y, z, y_shift, z_shift, addresses);
     // 1 << (x & 7) by way of a float's exponent, as SSE2 cannot shift lanes by different counts.
-    const Lanes exponents = ((x & 7) + 127) << 23;
-    FloatLanes powers;
-    std::memcpy(&powers, &exponents, sizeof(powers));
-    const IntLanes marks = __builtin_convertvector(powers, IntLanes);
+    const IntLanes marks =
+        __builtin_convertvector(std::bit_cast<FloatLanes>(((x & 7) + 127) << 23), IntLanes);
     std::memcpy(address, &addresses, sizeof(address));
     std::memcpy(mark, &marks, sizeof(mark));
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       bits[address[lane]] |= static_cast<std::uint8_t>(mark[lane]);
     }
     if (i % kTouchStride == 0 || i == longest) {
-      touch_lanes(i == 0 ? address : sampled, address, window);
+      if (i == 0) {
+        window.touch(address[0] / Window::kTileBytes);  // all start in the sensor's voxel
+      } else {
+        touch_lanes(sampled, address, window);
+      }
       std::memcpy(sampled, address, sizeof(sampled));
     }
     if (i >= shortest) {  // rays at their end stand still
-      const IntLanes walking_signed = last > i;
-      Lanes walking;
-      std::memcpy(&walking, &walking_signed, sizeof(walking));
+      const UintLanes walking = std::bit_cast<UintLanes>(last > i);
       step_x &= walking;
       step_y &= walking;
       step_z &= walking;

@@ -28,6 +28,9 @@ class RaycastScratch {
   RaycastScratch(RaycastScratch&&) noexcept;
   RaycastScratch& operator=(RaycastScratch&&) noexcept;
 
+  /// Resident bytes: of the windows only what rays ever touched.
+  std::size_t memory_bytes() const;
+
   std::vector<Window> windows;
   std::vector<Ray> rays, sorted_rays;
 };

@@ -21,7 +21,8 @@ SourceGrid::SourceGrid(std::span<const VoxelSet* const> sets, std::span<const Bl
     high[axis] += margin;
     sides_[axis] = static_cast<std::size_t>(high[axis] - low_[axis] + 1);
   }
-  slots_.assign(sides_[0] * sides_[1] * sides_[2], kNoSlot);
+  slots_.assign(sides_[0] * sides_[1] * sides_[2], kEmpty);
+  masks_.emplace_back();
   for (const VoxelSet* set : sets) {
     for (std::size_t i = 0; i < set->block_count(); ++i) {
       const BlockIndex& block = set->blocks[i];
@@ -30,7 +31,7 @@ SourceGrid::SourceGrid(std::span<const VoxelSet* const> sets, std::span<const Bl
         continue;
       }
       std::uint32_t& slot = slots_[position(block)];
-      if (slot == kNoSlot) {
+      if (slot == kEmpty) {
         slot = static_cast<std::uint32_t>(masks_.size());
         masks_.emplace_back();
       }

@@ -15,12 +15,6 @@ class SourceGrid {
   /// The box spans `blocks` and `margin` blocks around them; voxels outside of it are left out.
   SourceGrid(std::span<const VoxelSet* const> sets, std::span<const BlockIndex> blocks, int margin);
 
-  /// Null where no set has a voxel. The block must lie within the margin of one of `blocks`.
-  const BlockMask* at(const BlockIndex& block) const {
-    const std::uint32_t slot = slots_[position(block)];
-    return slot == kNoSlot ? nullptr : &masks_[slot];
-  }
-
   /// Whether any of the (2 reach + 1)^3 blocks around holds a voxel.
   bool any_around(const BlockIndex& block, int reach) const {
     const auto width = static_cast<std::size_t>(2 * reach + 1);
@@ -28,26 +22,29 @@ class SourceGrid {
       for (int dy = -reach; dy <= reach; ++dy) {
         const std::size_t first = position({block.x - reach, block.y + dy, block.z + dz});
         for (std::size_t i = 0; i < width; ++i) {
-          if (slots_[first + i] != kNoSlot) return true;
+          if (slots_[first + i] != kEmpty) return true;
         }
       }
     }
     return false;
   }
 
-  /// Fills the masks of the (2 reach + 1)^3 blocks around, x fastest.
+  /// Fills the masks of the (2 reach + 1)^3 blocks around, x fastest. The block must lie in the
+  /// box.
   void neighbours(const BlockIndex& block, int reach, std::span<const BlockMask*> masks) const {
+    const auto width = static_cast<std::size_t>(2 * reach + 1);
     std::size_t i = 0;
     for (int dz = -reach; dz <= reach; ++dz) {
       for (int dy = -reach; dy <= reach; ++dy) {
-        for (int dx = -reach; dx <= reach; ++dx) {
-          masks[i++] = at({block.x + dx, block.y + dy, block.z + dz});
-        }
+        const std::size_t first = position({block.x - reach, block.y + dy, block.z + dz});
+        for (std::size_t dx = 0; dx < width; ++dx) masks[i++] = &masks_[slots_[first + dx]];
       }
     }
   }
 
  private:
+  static constexpr std::uint32_t kEmpty = 0;  // the slot of a mask without voxels
+
   std::size_t position(const BlockIndex& block) const {
     return (static_cast<std::size_t>(block.z - low_[2]) * sides_[1] +
             static_cast<std::size_t>(block.y - low_[1])) *

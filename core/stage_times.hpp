@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <chrono>
 #include <cstddef>
 #include <string_view>
 
@@ -25,5 +26,13 @@ inline constexpr std::array<std::string_view, 10> kStageNames = {
 
 /// Wall milliseconds per stage of one scan.
 using StageTimes = std::array<double, kStageNames.size()>;
+
+/// One run of a stage.
+struct StageEvent {
+  Stage stage;
+  std::chrono::steady_clock::time_point start;
+  double wall_ms;
+  double cpu_ms;  ///< of the whole process, all threads
+};
 
 }  // namespace mosbench

@@ -65,7 +65,7 @@ std::uint32_t VoxelMap::add_block(const BlockIndex& index, std::uint32_t scan_in
   block.oldest_seen = block.newest_seen = scan_index;
   block.live = true;
   block.states = {};
-  block.seen = block.nonzero = block.stale = block.ageless = {};
+  block.seen = block.fresh = block.nonzero = block.stale = block.ageless = {};
   return slot;
 }
 
@@ -80,6 +80,7 @@ void VoxelMap::drop_block(std::uint32_t slot) {
 /// Takes records away as if the voxels had never been seen.
 void VoxelMap::forget(Block& block, const BlockMask& voxels) {
   block.seen = without(block.seen, voxels);
+  block.fresh = without(block.fresh, voxels);
   block.nonzero = without(block.nonzero, voxels);
   block.stale = without(block.stale, voxels);
   block.ageless = without(block.ageless, voxels);
@@ -87,11 +88,32 @@ void VoxelMap::forget(Block& block, const BlockMask& voxels) {
   block.states.free = without(block.states.free, voxels);
 }
 
+/// Starts loading what `update` needs of a block.
+void VoxelMap::prefetch(std::uint32_t slot) const {
+  const Block& block = blocks_[slot];
+  constexpr std::size_t kLine = 64;
+  const auto* head = reinterpret_cast<const char*>(&block);
+  for (std::size_t at = 0; at < offsetof(Block, last_seen); at += kLine) {
+    __builtin_prefetch(head + at, 1);
+  }
+  if (block.beliefs == kNoSlot) return;
+  const auto* beliefs = reinterpret_cast<const char*>(&beliefs_[block.beliefs]);
+  for (std::size_t at = 0; at < sizeof(BlockBeliefs); at += kLine) {
+    __builtin_prefetch(beliefs + at, 1);
+  }
+}
+
+/// Writes down when voxels that may not be seen again were seen last.
+void VoxelMap::stamp_fresh(Block& block, const BlockMask& voxels) {
+  stamp(voxels, static_cast<std::uint16_t>(block.newest_seen), block.last_seen.data());
+}
+
 /// A record of age w_g still exists but is not known; one that was evicted after the last scan has
 /// age w_g + 2 now.
 void VoxelMap::refresh_block(Block& block, std::uint32_t scan_index) {
   const std::uint32_t w_g = global_window_scans_;
   if (scan_index - block.oldest_seen < w_g) return;
+  stamp_fresh(block, block.fresh);
   BlockMask stale, expired;
   compare_ages(block.last_seen.data(), static_cast<std::uint16_t>(scan_index),
                static_cast<std::uint16_t>(w_g), static_cast<std::uint16_t>(w_g + 2), stale,
@@ -128,9 +150,8 @@ ChangedVoxels VoxelMap::update(const ObservedVoxels& observed,
                                ThreadPool& pool) {
   note_sensor(sensor_m, scan_index);
   drop_expired_changes(scan_index);
-  const int reach = reach_of_halo(filter_.radius()), side = 2 * reach + 1;
+  const int reach = distance_field_.reach(), side = 2 * reach + 1;
   const SourceGrid grid(sources, observed.blocks, reach);
-  halos_.resize(pool.size());
 
   // Allocation is serial; then each block is updated on its own.
   std::vector<std::uint8_t> near(observed.blocks.size());
@@ -146,33 +167,29 @@ ChangedVoxels VoxelMap::update(const ObservedVoxels& observed,
   }
 
   std::vector<BlockMask> changed(observed.blocks.size());
-  pool.for_ranges(
-      observed.blocks.size(), 64, [&](std::size_t begin, std::size_t end, unsigned thread) {
-        std::vector<const BlockMask*> masks(static_cast<std::size_t>(side * side * side));
-        BlockDistances distances;
-        for (std::size_t i = begin; i < end; ++i) {
-          Block& block = blocks_[slots_[i]];
-          refresh_block(block, scan_index);
-          const BlockStates before = block.states;
-          if (near[i] != 0) {
-            grid.neighbours(block.index, reach, masks);
-            gather_halo(masks, filter_.radius(), halos_[thread]);
-          }
-          if (near[i] != 0 && halos_[thread].any) {
-            distance_field_.squared_distances(halos_[thread], distances);
-            filter_.update(observed.masks[i], block.seen, distances, block.nonzero,
-                           beliefs_[block.beliefs], block.states);
-          } else {
-            BeliefFilter::update_far(observed.masks[i], block.nonzero, block.states);
-          }
-          changed[i] = detect_changes(before, block.states);
-          block.seen = block.seen | observed.masks[i];
-          block.stale = without(block.stale, observed.masks[i]);
-          block.ageless = without(block.ageless, observed.masks[i]);
-          block.newest_seen = scan_index;
-          stamp(observed.masks[i], static_cast<std::uint16_t>(scan_index), block.last_seen.data());
-        }
-      });
+  pool.for_ranges(observed.blocks.size(), 64, [&](std::size_t begin, std::size_t end, unsigned) {
+    std::vector<const BlockMask*> masks(static_cast<std::size_t>(side * side * side));
+    BlockDistances distances;
+    for (std::size_t i = begin; i < end; ++i) {
+      Block& block = blocks_[slots_[i]];
+      refresh_block(block, scan_index);
+      const BlockStates before = block.states;
+      if (near[i] != 0) grid.neighbours(block.index, reach, masks);
+      if (near[i] != 0 && distance_field_.squared_distances(masks, distances)) {
+        filter_.update(observed.masks[i], block.seen, distances, block.nonzero,
+                       beliefs_[block.beliefs], block.states);
+      } else {
+        BeliefFilter::update_far(observed.masks[i], block.nonzero, block.states);
+      }
+      changed[i] = detect_changes(before, block.states);
+      block.seen = block.seen | observed.masks[i];
+      block.stale = without(block.stale, observed.masks[i]);
+      block.ageless = without(block.ageless, observed.masks[i]);
+      stamp_fresh(block, without(block.fresh, observed.masks[i]));
+      block.fresh = observed.masks[i];
+      block.newest_seen = scan_index;
+    }
+  });
 
   ChangedVoxels changes;
   for (std::size_t i = 0; i < changed.size(); ++i) {

@@ -53,6 +53,8 @@ class VoxelMap {
   VoxelSet changed_since(std::uint32_t first_scan) const;
 
   std::size_t block_count() const { return blocks_.in_use(); }
+  /// Every slot is below.
+  std::size_t slot_count() const { return blocks_.capacity(); }
   std::size_t memory_bytes() const;
 
  private:
@@ -64,6 +66,7 @@ class VoxelMap {
     bool live = false;
     BlockStates states;
     BlockMask seen;                                     // has a record
+    BlockMask fresh;                                    // seen at newest_seen, not yet in last_seen
     BlockMask nonzero;                                  // has a number in beliefs
     BlockMask stale;                                    // not seen for w_g scans or more
     BlockMask ageless;                                  // release-2025: stale and never to expire
@@ -77,6 +80,8 @@ class VoxelMap {
   std::uint32_t add_block(const BlockIndex& index, std::uint32_t scan_index);
   void drop_block(std::uint32_t slot);
   void refresh_block(Block& block, std::uint32_t scan_index);
+  void prefetch(std::uint32_t slot) const;
+  static void stamp_fresh(Block& block, const BlockMask& voxels);
   static void forget(Block& block, const BlockMask& voxels);
   void note_sensor(const Eigen::Vector3d& sensor_m, std::uint32_t scan_index);
   void sweep(std::uint32_t first_slot, std::uint32_t stride, std::size_t first_sensor,
@@ -103,7 +108,6 @@ class VoxelMap {
   std::deque<Eigen::Vector3d>
       sensors_m_;                     // the last delay + kSweepScans positions and the current one
   bool fast_ = false;                 // the sensor moved farther than safe_path_m_ over these
-  std::vector<HaloRows> halos_;       // one per thread
   std::vector<std::uint32_t> slots_;  // of the observed blocks
 };
 

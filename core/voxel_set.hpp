@@ -77,6 +77,10 @@ struct VoxelSet {
     return mask != nullptr && mask->test(cell_of(v));
   }
   void clear();
+  std::size_t memory_bytes() const {
+    return blocks.capacity() * sizeof(BlockIndex) + masks.capacity() * sizeof(BlockMask) +
+           table.memory_bytes();
+  }
 };
 
 /// Calls visit(position 0..26, block) for a block and its 26 neighbours, x fastest; 13 is itself.

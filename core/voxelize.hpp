@@ -28,6 +28,10 @@ struct VoxelizedScan {
     const std::uint32_t slot = measured.find(block);
     return slot == kNoSlot ? nullptr : &occupied[slot];
   }
+  std::size_t memory_bytes() const {
+    return measured.memory_bytes() + occupied.capacity() * sizeof(BlockMask) +
+           voxel_of_point.capacity() * sizeof(std::uint32_t);
+  }
 };
 
 /// algorithm step 1: points farther than min_range from the sensor, in the map frame, in voxels.

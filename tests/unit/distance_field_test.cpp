@@ -7,26 +7,29 @@
 namespace mosbench {
 namespace {
 
+/// Any number that stands for "none" where no source is within the radius.
 BlockDistances distances_in_block_zero(const Triples& sources, const DistanceField& field) {
   const VoxelSet set = voxel_set(sources);
-  const int reach = reach_of_halo(field.radius());
+  const BlockMask empty;
+  const int reach = field.reach();
   std::vector<const BlockMask*> masks;
   for (int z = -reach; z <= reach; ++z) {
     for (int y = -reach; y <= reach; ++y) {
-      for (int x = -reach; x <= reach; ++x) masks.push_back(set.mask_of({x, y, z}));
+      for (int x = -reach; x <= reach; ++x) {
+        const BlockMask* mask = set.mask_of({x, y, z});
+        masks.push_back(mask == nullptr ? &empty : mask);
+      }
     }
   }
-  HaloRows halo;
-  gather_halo(masks, field.radius(), halo);
   BlockDistances distances;
-  field.squared_distances(halo, distances);
+  if (!field.squared_distances(masks, distances)) distances.fill(0xFFFF);
   return distances;
 }
 
 TEST(DistanceField, EqualsAllPairsWithinItsRadius) {
   std::mt19937 random(33);
   std::size_t near = 0, far = 0;
-  for (int radius = 0; radius <= kMaxHalo; ++radius) {
+  for (int radius = 0; radius <= kMaxDistanceRadius; ++radius) {
     const DistanceField field(radius);
     ASSERT_EQ(field.radius(), radius);
     for (const std::size_t count : {0U, 1U, 2U, 8U, 60U, 600U}) {
@@ -64,6 +67,21 @@ TEST(DistanceField, SourceAtTheRimOfTheRadiusIsSeenAlongEachAxis) {
     EXPECT_EQ(distances_in_block_zero({{7 + radius, 7, 7}}, field)[511], far);
     EXPECT_EQ(distances_in_block_zero({{7, 7 + radius, 7}}, field)[511], far);
     EXPECT_EQ(distances_in_block_zero({{7, 7, 7 + radius}}, field)[511], far);
+  }
+}
+
+TEST(DistanceField, CellsBelowALimitAreThoseOfTheLoop) {
+  std::mt19937 random(35);
+  for (const std::size_t limit : {1U, 36U, 37U, 255U, 840U}) {
+    BlockDistances distances;
+    for (auto& distance : distances) {
+      distance = static_cast<std::uint16_t>(random() % 3 == 0 ? limit : random() % (2 * limit));
+    }
+    const BlockMask below = cells_below(distances, limit);
+    EXPECT_TRUE(below.any());
+    for (std::uint32_t cell = 0; cell < kBlockVoxels; ++cell) {
+      ASSERT_EQ(below.test(cell), distances[cell] < limit) << "limit " << limit;
+    }
   }
 }
 

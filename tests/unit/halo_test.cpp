@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "core/distance_field.hpp"
 #include "tests/voxel_twins.hpp"
 
 namespace mosbench {
@@ -10,13 +9,10 @@ namespace {
 
 /// The halo of block (0, 0, 0).
 HaloRows halo_of(const VoxelSet& set, int radius) {
-  std::vector<const BlockMask*> masks;
-  const int reach = reach_of_halo(radius);
-  for (int z = -reach; z <= reach; ++z) {
-    for (int y = -reach; y <= reach; ++y) {
-      for (int x = -reach; x <= reach; ++x) masks.push_back(set.mask_of({x, y, z}));
-    }
-  }
+  Neighbourhood masks;
+  for_each_neighbour({0, 0, 0}, [&](std::size_t position, const BlockIndex& block) {
+    masks[position] = set.mask_of(block);
+  });
   HaloRows halo;
   gather_halo(masks, radius, halo);
   return halo;
@@ -40,10 +36,10 @@ TEST(Halo, RowsHoldEveryVoxelWithinTheRadius) {
       bool any = false;
       for (int z = 0; z < halo.side; ++z) {
         for (int y = 0; y < halo.side; ++y) {
-          std::uint64_t row = 0;
+          std::uint32_t row = 0;
           for (int x = 0; x < halo.side; ++x) {
             const bool set = voxels.contains({x - radius, y - radius, z - radius});
-            row |= std::uint64_t{set} << x;
+            row |= std::uint32_t{set} << x;
           }
           ASSERT_EQ(halo.row(z, y), row) << "radius " << radius << " z " << z << " y " << y;
           any |= row != 0;
@@ -76,6 +72,21 @@ TEST(Halo, DilationAndCountEqualTheTripleLoop) {
     }
   }
   EXPECT_GT(counted, 10'000U);
+}
+
+TEST(Halo, InvertingTurnsOverEveryVoxelOfTheHalo) {
+  std::mt19937 random(34);
+  for (int radius = 0; radius <= kMaxHalo; ++radius) {
+    const Triples voxels = voxels_around(random, radius);
+    HaloRows halo = halo_of(voxel_set(voxels), radius);
+    const int width = 2 * radius + 1;
+    const HaloRows before = halo;
+    invert(halo);
+    EXPECT_TRUE(halo.any);
+    for (std::uint32_t cell = 0; cell < 512; ++cell) {
+      ASSERT_EQ(count_around(halo, cell), width * width * width - count_around(before, cell));
+    }
+  }
 }
 
 TEST(Halo, RadiusZeroIsTheBlockItself) {

@@ -189,11 +189,46 @@ TEST(Pipeline, StagesTakeTime) {
   }
 }
 
+TEST(Pipeline, RecordsEveryStageInItsOrderWhileAsked) {
+  const SmallWorld world = small_world({.seed = 9});
+  Pipeline pipeline(small_config(), Variant::kPaper2024);
+  std::vector<StageEvent> events;
+  for (std::size_t k = 0; k < world.scans.size(); ++k) {
+    events.clear();
+    pipeline.record_stages(k == 8 ? nullptr : &events);
+    const ScanResult result = pipeline.push(world.scans[k], world.poses[k])[0];
+    if (k == 8) {
+      EXPECT_TRUE(events.empty());
+    } else if (k > 3) {
+      StageTimes sums{};
+      for (std::size_t i = 0; i < events.size(); ++i) {
+        sums[static_cast<std::size_t>(events[i].stage)] += events[i].wall_ms;
+        EXPECT_GE(events[i].cpu_ms, 0.0);
+        if (i > 0) EXPECT_GE(events[i].start, events[i - 1].start);
+      }
+      EXPECT_EQ(events.size(), kStageNames.size());
+      EXPECT_EQ(sums, result.stage_times);
+    }
+  }
+}
+
 TEST(Pipeline, HoldsNothingBeforeTheFirstScan) {
   Pipeline pipeline(small_config(), Variant::kPaper2024);
   EXPECT_EQ(pipeline.map_blocks(), 0U);
   EXPECT_EQ(pipeline.memory_bytes(), 0U);
   EXPECT_TRUE(pipeline.finish().empty());
+}
+
+TEST(Pipeline, CountsTheScansItHoldsAmongItsMemory) {
+  const std::vector<Point> many(10'000, Point{2, 1, 0, 0});
+  Pipeline online(small_config(), Variant::kPaper2024);
+  Pipeline delayed(small_config(8), Variant::kPaper2024);
+  for (int k = 0; k < 8; ++k) {
+    online.push(many, Pose::Identity());
+    delayed.push(many, Pose::Identity());
+  }
+  // A label and a voxel number for each point of eight scans.
+  EXPECT_GE(delayed.memory_bytes(), online.memory_bytes() + 8 * 10'000 * 8);
 }
 
 }  // namespace
