@@ -9,6 +9,7 @@ namespace mosbench {
 /// belongs on stdout in `answer`. Errors are thrown: UsageError, DataError.
 void add_simulate_command(CLI::App& app, std::string& answer);
 void add_run_command(CLI::App& app, std::string& answer);
+void add_profile_command(CLI::App& app, std::string& answer);
 void add_score_command(CLI::App& app, std::string& answer);
 void add_report_command(CLI::App& app, std::string& answer);
 void add_list_command(CLI::App& app, std::string& answer);

@@ -88,6 +88,7 @@ std::string answer_to(std::vector<std::string> arguments) {
   app.require_subcommand(1);
   mosbench::add_simulate_command(app, answer);
   mosbench::add_run_command(app, answer);
+  mosbench::add_profile_command(app, answer);
   mosbench::add_score_command(app, answer);
   mosbench::add_report_command(app, answer);
   mosbench::add_list_command(app, answer);

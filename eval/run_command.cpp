@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "eval/commands.hpp"
+#include "eval/method_options.hpp"
 #include "eval/run_execute.hpp"
 #include "eval/run_plan.hpp"
 #include "eval/run_report.hpp"
@@ -42,23 +43,7 @@ std::string run(const RunOptions& options) {
 void add_run_command(CLI::App& app, std::string& answer) {
   auto options = std::make_shared<RunOptions>();
   CLI::App* command = app.add_subcommand("run", "Segment sequences and score the result");
-  command->add_option("DATA", options->input, "Root of a data set, or one sequence folder")
-      ->required();
-  command
-      ->add_option("--dataset", options->dataset, "auto, doals, sipailou, helimos or semantickitti")
-      ->capture_default_str();
-  command->add_option("--sequences", options->sequences, "Names to run, a,b (default: all)")
-      ->delimiter(',')
-      ->allow_extra_args(false);
-  command->add_option("--preset", options->preset, "Published settings (default: by data set)");
-  command->add_option("--variant", options->variant,
-                      "paper-2024 (default) or release-2025, the authors' later program");
-  command->add_option("--config", options->config_file, "JSON object of configuration keys");
-  command->add_option("--set", options->assignments, "key=value ..., over everything else")
-      ->allow_extra_args(false);
-  command->add_option("--poses", options->poses, "Pose file instead of the sequence's own");
-  command->add_option("--threads", options->threads, "Results do not depend on it (default: all)")
-      ->check(CLI::Range(1U, 1024U));
+  add_method_options(*command, *options);
   command->add_option("--protocol", options->protocol, "How to score (default: by preset)");
   command->add_option("--range", options->range,
                       "MIN,MAX in metres, for protocols that limit it (default: the run's own)");

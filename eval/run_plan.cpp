@@ -95,7 +95,7 @@ PlannedSequence plan_sequence(const RunPlan& plan, std::size_t position, bool ov
 
 }  // namespace
 
-RunPlan plan_run(const RunOptions& options) {
+RunPlan plan_method(const RunOptions& options) {
   RunPlan plan;
   plan.settings.variant = parse_variant(options.variant);
   plan.settings.threads =
@@ -108,6 +108,11 @@ RunPlan plan_run(const RunOptions& options) {
   plan.settings.config = settle_config(options, preset, plan.settings.variant);
   plan.settings.protocol = &protocol_named(options.protocol.value_or(std::string(preset.protocol)));
   plan.settings.range = choose_range(options, *plan.settings.protocol, plan.settings.config);
+  return plan;
+}
+
+RunPlan plan_run(const RunOptions& options) {
+  RunPlan plan = plan_method(options);
   plan.out = options.out.value_or(default_out(plan, options));
   for (std::size_t i = 0; i < plan.dataset.sequences.size(); ++i) {
     plan.sequences.push_back(plan_sequence(plan, i, options.overwrite));

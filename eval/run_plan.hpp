@@ -45,8 +45,11 @@ struct RunPlan {
   std::vector<std::string> notes;  ///< choices made for the user, plain sentences
 };
 
-/// Opens the data set, settles the configuration (defaults < preset < file < --set) and looks at
-/// what earlier runs left. Writes nothing. Throws UsageError and DataError.
+/// Opens the data set and settles the configuration (defaults < preset < file < --set): a plan
+/// without sequences. Throws UsageError and DataError.
+RunPlan plan_method(const RunOptions& options);
+
+/// The same, and looks at what earlier runs left. Writes nothing. Throws UsageError and DataError.
 RunPlan plan_run(const RunOptions& options);
 
 /// "auto" is nothing. Throws UsageError for a name that is no data set kind.

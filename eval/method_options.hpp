@@ -1,0 +1,13 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include "eval/run_plan.hpp"
+
+namespace mosbench {
+
+/// The arguments that say what is segmented and how: DATA, --dataset, --sequences, --preset,
+/// --variant, --config, --set, --poses and --threads.
+void add_method_options(CLI::App& command, RunOptions& options);
+
+}  // namespace mosbench

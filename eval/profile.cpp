@@ -1,0 +1,87 @@
+#include "eval/profile.hpp"
+
+#include <time.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/pipeline.hpp"
+#include "datasets/errors.hpp"
+#include "eval/machine.hpp"
+#include "eval/progress.hpp"
+
+namespace mosbench {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double process_cpu_ms() {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) * 1e3 + static_cast<double>(now.tv_nsec) * 1e-6;
+}
+
+/// What `work` costs.
+template <typename Work>
+Cost cost_of(Work&& work) {
+  const Clock::time_point start = Clock::now();
+  const double cpu_start_ms = process_cpu_ms();
+  work();
+  const double wall_ms = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+  return {wall_ms, process_cpu_ms() - cpu_start_ms};
+}
+
+std::optional<double> median_period_ms(const std::vector<std::int64_t>& stamps_ns) {
+  std::vector<double> periods_ms;
+  for (std::size_t i = 1; i < stamps_ns.size(); ++i) {
+    periods_ms.push_back(static_cast<double>(stamps_ns[i] - stamps_ns[i - 1]) * 1e-6);
+  }
+  if (periods_ms.empty()) return std::nullopt;
+  const double median_ms = quantile(periods_ms, 0.5);
+  return median_ms > 0 ? std::optional(median_ms) : std::nullopt;
+}
+
+}  // namespace
+
+double quantile(std::vector<double> values, double q) {
+  const auto rank =
+      static_cast<std::size_t>(std::max(1.0, std::ceil(q * static_cast<double>(values.size()))));
+  std::ranges::sort(values);
+  return values[rank - 1];
+}
+
+SequenceProfile profile_sequence(const Sequence& sequence, const RunSettings& settings,
+                                 std::size_t most_scans) {
+  SequenceProfile profile{sequence.name(), settings.threads, std::nullopt, {}};
+  const std::size_t scans = std::min(sequence.size(), most_scans);
+  Pipeline pipeline(settings.config, settings.variant, settings.threads, scans);
+  std::vector<StageEvent> events;
+  pipeline.record_stages(&events);
+  Progress progress("profile " + sequence.name(), scans);
+  std::vector<std::int64_t> stamps_ns;
+  for (std::size_t k = 0; k < scans; ++k) {
+    ScanProfile& scan = profile.scans.emplace_back();
+    scan.start = Clock::now();
+    Frame frame;
+    scan.read = cost_of([&] { frame = sequence.read(k); });
+    if (frame.stamp_ns) stamps_ns.push_back(*frame.stamp_ns);
+    scan.stem = frame.stem;
+    scan.points = frame.points.size();
+    try {
+      scan.method = cost_of([&] { pipeline.push(frame.points, frame.map_from_sensor); });
+    } catch (const std::range_error& error) {
+      throw DataError(sequence.name() + "/" + frame.stem, error.what(),
+                      "points and poses within reach of the voxel grid");
+    }
+    scan.stages = std::move(events);
+    events.clear();
+    scan.resident_mib = resident_mib();
+    scan.map_blocks = pipeline.map_blocks();
+    scan.method_bytes = pipeline.memory_bytes();
+    progress.advance();
+  }
+  profile.period_ms = median_period_ms(stamps_ns);
+  return profile;
+}
+
+}  // namespace mosbench
