@@ -12,6 +12,7 @@ void add_run_command(CLI::App& app, std::string& answer);
 void add_profile_command(CLI::App& app, std::string& answer);
 void add_score_command(CLI::App& app, std::string& answer);
 void add_report_command(CLI::App& app, std::string& answer);
+void add_render_command(CLI::App& app, std::string& answer);
 void add_list_command(CLI::App& app, std::string& answer);
 
 }  // namespace mosbench

@@ -26,6 +26,7 @@ constexpr const char* kFooter = R"(Examples:
   mosbench run sim --out results/runs/sim
   mosbench score sim --predictions results/runs/sim --protocol semantickitti-mos
   mosbench report results/runs/sim -o report.html
+  mosbench render results/runs/sim --scan 20 -o scan.png
   mosbench list protocols
 
 Exit codes: 0 ok, 1 comparison failed, 2 wrong usage or configuration, 3 unusable files,
@@ -91,6 +92,7 @@ std::string answer_to(std::vector<std::string> arguments) {
   mosbench::add_profile_command(app, answer);
   mosbench::add_score_command(app, answer);
   mosbench::add_report_command(app, answer);
+  mosbench::add_render_command(app, answer);
   mosbench::add_list_command(app, answer);
   try {
     std::ranges::reverse(arguments);  // as CLI11 expects them

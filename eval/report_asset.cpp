@@ -21,6 +21,7 @@
 
 MOSBENCH_EMBED(mosbench_report_page, MOSBENCH_REPORT_PAGE)
 MOSBENCH_EMBED(mosbench_palette, MOSBENCH_PALETTE)
+MOSBENCH_EMBED(mosbench_glyphs, MOSBENCH_GLYPHS)
 
 namespace mosbench {
 namespace {
@@ -37,6 +38,8 @@ std::pair<std::string_view, std::string_view> report_asset_parts() {
   if (marker == std::string_view::npos) throw std::logic_error("the page has no content marker");
   return {asset.substr(0, marker), asset.substr(marker + kContentMarker.size())};
 }
+
+std::string_view glyphs_asset() { return {mosbench_glyphs, mosbench_glyphs_end}; }
 
 std::string_view palette_asset() { return {mosbench_palette, mosbench_palette_end}; }
 

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # demo.sh: installs what is missing, builds release, simulates a small sequence for each data set's
-# layout, segments and scores them, and prints one table. Leaves everything in build/demo.
+# layout, segments and scores them, prints one table and writes the report of all. Leaves everything in
+# build/demo.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 scripts/setup.sh
@@ -39,3 +40,5 @@ show semantickitti highway 60 semantickitti
 echo
 echo "Simulated sequences: they show that everything works, not how the method does on real ones."
 column -t -s $'\t' -R 4,6,7,8,9 "$demo/table.tsv"
+
+"$mosbench" report "$demo"/runs/* -o "$demo/report.html" --max-mb 40

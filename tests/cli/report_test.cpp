@@ -162,5 +162,35 @@ TEST(Report, LeavesNoOpeningBracketOfANameInTheContent) {
   EXPECT_EQ(content_of(html).at("results").at(0).at("result").at("remarks").at(0), evil);
 }
 
+TEST(Render, DrawsAScanWithoutBrowserAndTheSameEachTime) {
+  const TempFolder folder;
+  for (const char* name : {"a.png", "b.png"}) {
+    const cli::Answer answer = cli::run(
+        {"render", small_run() / "runs/mine", "--scan", "6", "-o", folder / name, "--size", "400"});
+    ASSERT_EQ(answer.exit_code, 0) << answer.err;
+    EXPECT_THAT(answer.out, HasSubstr("scan 000006 of 00 in "));
+  }
+  const std::string bytes = read_file(folder / "a.png");
+  EXPECT_TRUE(bytes.starts_with("\x89PNG"));
+  EXPECT_EQ(bytes, read_file(folder / "b.png"));
+  EXPECT_EQ(cli::run({"render", small_run() / "runs", "--scan", "worst", "-o", folder / "w.png"})
+                .exit_code,
+            0);
+}
+
+TEST(Render, RefusesScansAndSequencesThatAreNotThere) {
+  const TempFolder folder;
+  const std::string run = small_run() / "runs";
+  for (const char* scan : {"8", "-1", "best", ""}) {
+    const cli::Answer answer = cli::run({"render", run, "--scan", scan, "-o", folder / "r.png"});
+    EXPECT_EQ(answer.exit_code, 2) << scan;
+    EXPECT_FALSE(std::filesystem::exists(folder / "r.png"));
+  }
+  const cli::Answer answer =
+      cli::run({"render", run, "--sequence", "01", "--scan", "1", "-o", folder / "r.png"});
+  EXPECT_EQ(answer.exit_code, 2);
+  EXPECT_THAT(answer.err, HasSubstr("holds results of 00, expected --sequence to name one"));
+}
+
 }  // namespace
 }  // namespace mosbench

@@ -1,4 +1,5 @@
 import { COLOURINGS } from './colouring.js';
+import { element } from './dom.js';
 import { VIEWS } from './views.js';
 
 function next(list, key) {
@@ -36,4 +37,11 @@ export function listenToKeys(actions) {
     event.preventDefault();
     action();
   });
+}
+
+/** The keys for readers, folded away. */
+export function keyList(actions) {
+  const named = Object.values(actions).filter(([keys]) => keys);
+  return element('details', { class: 'keys hint' }, element('summary', {}, 'Keys'),
+    element('dl', {}, ...named.flatMap(([keys, what]) => [element('dt', {}, element('kbd', {}, keys)), element('dd', {}, what)])));
 }

@@ -1,14 +1,19 @@
+import { Charts } from './charts.js';
 import { Clouds } from './clouds.js';
 import { element } from './dom.js';
 import { header } from './header.js';
-import { keyActions, listenToKeys } from './keyboard.js';
+import { keyActions, keyList, listenToKeys } from './keyboard.js';
+import { worstScans } from './metrics.js';
+import { notices } from './notices.js';
 import { readContent } from './payload.js';
+import { provenance } from './provenance.js';
 import { State } from './state.js';
+import { resultTables, summaryTable } from './tables.js';
 import { preferredTheme } from './theme.js';
+import { tiles } from './tiles.js';
 import { toolbar } from './toolbar.js';
 import { Transport } from './transport.js';
 import { Viewer } from './viewer.js';
-import { worstScans } from './metrics.js';
 
 /** The scan to begin with: the worst one whose points are in the file. */
 function firstScan(content, clouds, result) {
@@ -30,17 +35,26 @@ function initialState(content, clouds) {
   });
 }
 
-function viewSection(state, content, clouds) {
-  const transport = new Transport(state, content, clouds);
-  const section = element('section', { class: 'view', 'aria-label': 'Points' });
+/** The 3-D view with its controls; null where the browser cannot draw it. */
+function makeViewer(state, content, clouds, section) {
   try {
-    const viewer = new Viewer(state, content, clouds);
-    section.append(toolbar(state, content, clouds, viewer), viewer.node, transport.node);
-    return { section, viewer, transport };
+    return new Viewer(state, content, clouds);
   } catch (error) {
     section.append(element('p', { class: 'notice' }, `This browser cannot draw the points (${error.message}).`));
-    return { section, viewer: null, transport };
+    return null;
   }
+}
+
+function viewSection(state, content, clouds, transport) {
+  const section = element('section', { class: 'view', 'aria-label': 'Points' });
+  if (content.clouds.length === 0) return { section, viewer: null };
+  const viewer = makeViewer(state, content, clouds, section);
+  if (viewer) {
+    const actions = keyActions(state, viewer, transport);
+    listenToKeys(actions);
+    section.append(toolbar(state, content, clouds, viewer), viewer.node, transport.node, keyList(actions));
+  }
+  return { section, viewer };
 }
 
 function start() {
@@ -48,15 +62,17 @@ function start() {
   const clouds = new Clouds(content);
   const state = initialState(content, clouds);
   state.follow(['theme'], () => (document.documentElement.dataset.theme = state.get('theme')));
-  const { section, viewer, transport } = viewSection(state, content, clouds);
-  if (viewer) listenToKeys(keyActions(state, viewer, transport));
-  state.follow(['result'], () => {
-    state.set({ other: null, scan: firstScan(content, clouds, state.get('result')) });
-  });
-  document.body.append(header(state, content), element('main', {}, section));
-  globalThis.mosbenchReport = { content, state, viewer, transport };
+  const transport = new Transport(state, content, clouds);
+  const go = (scan) => transport.go(scan);
+  const choose = (result) => state.set({ result, other: null, scan: firstScan(content, clouds, result) });
+  const { section, viewer } = viewSection(state, content, clouds, transport);
+  const charts = new Charts(state, content, go);
+  document.body.append(
+    header(state, content, choose),
+    element('main', {}, notices(state, content, clouds), tiles(state, content), section, charts.node,
+      summaryTable(content, choose), resultTables(state, content, go), provenance(state, content)),
+  );
+  globalThis.mosbenchReport = { content, state, viewer, transport, charts };
 }
 
-performance.mark('start');
 start();
-performance.mark('end');

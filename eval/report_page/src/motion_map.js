@@ -7,26 +7,42 @@ export function toMap(pose, x, y, z, origin) {
   return [0, 4, 8].map((r, i) => pose[r] * x + pose[r + 1] * y + pose[r + 2] * z + pose[r + 3] - origin[i]);
 }
 
-/** Joins the moving points of `scans` to one that can be drawn like a scan. */
-export function accumulate(scans) {
-  const origin = scans.length > 0 ? [3, 7, 11].map((i) => scans[0].pose[i]) : [0, 0, 0];
-  const positions = [];
-  const outcomes = [];
-  for (const scan of scans) {
-    for (let i = 0; i < scan.points; ++i) {
-      if (!SHOWN[scan.outcomes[i]] || !scan.drawable[i]) continue;
-      const [x, y, z] = scan.positions_m.subarray(3 * i, 3 * i + 3);
-      positions.push(...toMap(scan.pose, x, y, z, origin));
-      outcomes.push(scan.outcomes[i]);
-    }
+function shownPoints({ outcomes, drawable }) {
+  let shown = 0;
+  for (let i = 0; i < outcomes.length; ++i) shown += SHOWN[outcomes[i]] && drawable[i] ? 1 : 0;
+  return shown;
+}
+
+/** What of one scan belongs to the map. */
+export function movingPoints(scan, origin) {
+  const points = shownPoints(scan);
+  const moving = { positions_m: new Float32Array(3 * points), outcomes: new Uint8Array(points), eye: toMap(scan.pose, 0, 0, 0, origin) };
+  let next = 0;
+  for (let i = 0; i < scan.points; ++i) {
+    if (!SHOWN[scan.outcomes[i]] || !scan.drawable[i]) continue;
+    moving.positions_m.set(toMap(scan.pose, scan.positions_m[3 * i], scan.positions_m[3 * i + 1], scan.positions_m[3 * i + 2], origin), 3 * next);
+    moving.outcomes[next++] = scan.outcomes[i];
   }
-  return {
-    points: outcomes.length,
-    stem: `${scans.length} scans`,
-    positions_m: Float32Array.from(positions),
-    outcomes: Uint8Array.from(outcomes),
-    drawable: new Uint8Array(outcomes.length).fill(1),
-    path: scans.map((scan) => toMap(scan.pose, 0, 0, 0, origin)),
+  return moving;
+}
+
+/** Joins the moving points of scans to one that can be drawn like a scan. */
+export function join(parts) {
+  const points = parts.reduce((sum, part) => sum + part.outcomes.length, 0);
+  const cloud = {
+    points,
+    stem: `${parts.length} scans`,
+    positions_m: new Float32Array(3 * points),
+    outcomes: new Uint8Array(points),
+    drawable: new Uint8Array(points).fill(1),
+    path: parts.map((part) => part.eye),
     pose: null,
   };
+  let next = 0;
+  for (const part of parts) {
+    cloud.positions_m.set(part.positions_m, 3 * next);
+    cloud.outcomes.set(part.outcomes, next);
+    next += part.outcomes.length;
+  }
+  return cloud;
 }

@@ -2,7 +2,7 @@ import { COLOURINGS, colourPoints, sizePoints } from './colouring.js';
 import { element } from './dom.js';
 import { fixed } from './format.js';
 import { Legend } from './legend.js';
-import { accumulate } from './motion_map.js';
+import { join, movingPoints } from './motion_map.js';
 import { pick } from './picking.js';
 import { pointDetails } from './point_details.js';
 import { Stage } from './stage.js';
@@ -16,7 +16,7 @@ export class Viewer {
   node = element('div', { class: 'stage' });
   scans = [];
   #turn = 0;
-  #drawnMap = null;
+  #maps = new Map();
 
   constructor(state, content, clouds) {
     Object.assign(this, { state, content, clouds });
@@ -25,7 +25,8 @@ export class Viewer {
     this.legend = new Legend(state);
     this.scale = element('div', { class: 'scale', hidden: true });
     this.details = element('div', { class: 'details', hidden: true, 'aria-live': 'polite' });
-    this.node.append(canvas, ...this.names, this.legend.node, this.scale, this.details);
+    this.busy = element('span', { class: 'busy', role: 'status' });
+    this.node.append(canvas, ...this.names, this.busy, this.legend.node, this.scale, this.details);
     this.stage = new Stage(canvas);
     this.#listen(canvas);
     state.follow(['theme'], () => this.stage.setTheme(surface(state.get('theme'))));
@@ -51,19 +52,29 @@ export class Viewer {
       name.textContent = scans.length > 1 ? this.content.results[results[p]].run : '';
       name.style.left = `${p * 50}%`;
     });
+    this.node.classList.toggle('two', scans.length > 1);
     this.legend.fill(scans);
     this.#paint();
     this.#look(view);
     this.node.dataset.shown = `${view === 'map' ? 'map' : scan} ${results.join(' ')}`;
   }
 
+  /** The map is of one place for all runs: the first scan's. */
   async #motionMap(result) {
-    if (this.#drawnMap?.result !== result) {
-      const scans = [];
-      for (const k of this.clouds.scansOf(result)) scans.push(await this.clouds.read(result, k));
-      this.#drawnMap = { result, cloud: accumulate(scans) };
+    if (!this.#maps.has(result)) {
+      const indices = this.clouds.scansOf(result);
+      const parts = [];
+      let origin = null;
+      for (const k of indices) {
+        const scan = await this.clouds.read(result, k);
+        origin ??= [3, 7, 11].map((i) => scan.pose[i]);
+        parts.push(movingPoints(scan, origin));
+        this.busy.textContent = `adding up scan ${parts.length} of ${indices.length}`;
+      }
+      this.busy.textContent = '';
+      this.#maps.set(result, join(parts));
     }
-    return this.#drawnMap.cloud;
+    return this.#maps.get(result);
   }
 
   #look(view) {

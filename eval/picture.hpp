@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace mosbench {
+
+struct Colour {
+  std::uint8_t red = 0, green = 0, blue = 0;
+  bool operator==(const Colour&) const = default;
+};
+
+/// A picture in memory. Coordinates are pixels from the upper left corner; what lies outside is not
+/// drawn. Edges are smoothed.
+class Picture {
+ public:
+  static constexpr int kGlyphWidth = 10;
+  static constexpr int kGlyphHeight = 20;
+
+  Picture(std::size_t width, std::size_t height, Colour background);
+
+  std::size_t width() const { return width_; }
+  std::size_t height() const { return height_; }
+  Colour at(std::size_t x, std::size_t y) const { return pixels_[y * width_ + x]; }
+
+  void disc(double x, double y, double radius, Colour colour);
+  void ring(double x, double y, double radius, Colour colour);
+  void rectangle(int x, int y, int width, int height, Colour colour, double opacity = 1.0);
+  /// ASCII with (x, y) its upper left corner; other characters become "?".
+  void text(int x, int y, std::string_view text, Colour colour);
+
+  /// The picture as the bytes of a PNG file.
+  std::string png() const;
+
+ private:
+  void blend(int x, int y, Colour colour, double opacity);
+
+  std::size_t width_, height_;
+  std::vector<Colour> pixels_;
+};
+
+}  // namespace mosbench

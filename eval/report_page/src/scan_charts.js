@@ -1,0 +1,102 @@
+import { count, fixed, percent } from './format.js';
+import { hasCounts, iou, precision, recall } from './metrics.js';
+import { OUTCOMES, SERIES } from './theme.js';
+
+const COLOURS = Object.fromEntries(OUTCOMES.map(({ key, light, dark }) => [key, { light, dark }]));
+const NEUTRAL = { light: '#5d6774', dark: '#97a3b2' };
+
+const perScan = (scans, of) => scans.map((scan) => (hasCounts(scan) ? of(scan) : null));
+
+function flat(scans, value) {
+  return scans.map(() => value);
+}
+
+/** IoU, precision and recall of every scan; the IoU of the whole, with its interval when known. */
+export function metricsChart({ result, estimates }) {
+  const { scans, summary } = result;
+  if (!summary) return null;
+  const mean = summary.iou;
+  const interval = estimates?.iou?.interval ?? null;
+  const series = [
+    { label: 'IoU', values: perScan(scans, iou), colour: COLOURS.tp, width: 2 },
+    { label: 'precision', values: perScan(scans, precision), colour: COLOURS.fp },
+    { label: 'recall', values: perScan(scans, recall), colour: COLOURS.unlabelled_moving },
+    { label: 'IoU of all', values: flat(scans, mean), colour: NEUTRAL, dash: [6, 4], points: { show: false } },
+  ];
+  const bands = [];
+  if (interval) {
+    const edge = { colour: NEUTRAL, width: 0.5, points: { show: false } };
+    series.push({ label: '95 % from', values: flat(scans, interval[0]), ...edge }, { label: 'to', values: flat(scans, interval[1]), ...edge });
+    bands.push({ series: [6, 5], fill: 'rgb(120 130 145 / 20%)' });
+  }
+  return {
+    key: 'metrics',
+    title: 'IoU, precision, recall',
+    note: interval ? 'the band is the 95 % interval of the whole' : 'the dashed line is the whole',
+    series,
+    options: { text: percent, bands, yScale: { range: [-0.02, 1.02] }, yAxis: { values: (_, ticks) => ticks.map((t) => `${Math.round(100 * t)} %`) } },
+  };
+}
+
+export function countsChart({ result }) {
+  if (!result.summary) return null;
+  const of = (key, label) => ({ label, values: perScan(result.scans, (scan) => scan[key]), colour: COLOURS[key] });
+  return { key: 'counts', title: 'Moving points', series: [of('tp', 'TP'), of('fp', 'FP'), of('fn', 'FN')], options: { text: count } };
+}
+
+export function thresholdChart({ result }) {
+  const values = result.scans.map((scan) => scan.threshold);
+  return {
+    key: 'threshold',
+    title: 'Otsu threshold',
+    note: 'of the dynamic score; none where no motion was looked for',
+    series: [{ label: 'threshold', values, colour: COLOURS.unlabelled_moving }],
+    options: { text: (v) => fixed(v, 1) },
+  };
+}
+
+/** Rows of timing.scans as columns by name. */
+export function costColumns({ timing }) {
+  if (!timing?.scan_columns) return null;
+  return Object.fromEntries(timing.scan_columns.map((name, c) => [name, timing.scans.map((row) => row[c])]));
+}
+
+/** Stages on top of each other, so that their upper edge is the whole scan. */
+export function stagesChart({ result }) {
+  const columns = costColumns(result);
+  if (!columns) return null;
+  const names = Object.keys(columns).filter((name) => name.endsWith('_ms') && name !== 'read_ms' && name !== 'push_ms');
+  const below = new Array(result.scans.length).fill(0);
+  const series = names.map((name, s) => {
+    columns[name].forEach((ms, k) => (below[k] += ms));
+    return {
+      label: name.slice(0, -3).replace('_', ' '),
+      values: columns[name],
+      drawn: [...below],
+      colour: SERIES[s % SERIES.length],
+      fill: (stroke) => stroke,
+      width: 0,
+      points: { show: false },
+    };
+  });
+  series.reverse(); // each fills down to zero, so the highest goes first
+  return {
+    key: 'stages',
+    title: 'Time per stage',
+    note: 'milliseconds, stacked',
+    series,
+    options: { text: (v) => fixed(v, 1, 'ms'), yScale: { range: (_, __, high) => [0, 1.05 * high] } },
+  };
+}
+
+export function memoryChart({ result }) {
+  const columns = costColumns(result);
+  if (!columns?.resident_mib) return null;
+  return {
+    key: 'memory',
+    title: 'Memory',
+    note: 'resident after each scan, MiB',
+    series: [{ label: 'resident', values: columns.resident_mib, colour: COLOURS.tp }],
+    options: { text: (v) => fixed(v, 0, 'MiB') },
+  };
+}

@@ -1,0 +1,74 @@
+import { element, table } from './dom.js';
+import { count, fixed, percent } from './format.js';
+import { iou, worstScans } from './metrics.js';
+
+const AT_MOST = 12;
+
+function block(title, note, body) {
+  return element('section', { class: 'block' }, element('h2', {}, title), note ? element('p', { class: 'hint' }, note) : null, body);
+}
+
+function withInterval(value, estimate) {
+  if (!estimate?.interval) return percent(value);
+  return element('span', {}, percent(value), element('span', { class: 'hint' }, ` ${(100 * estimate.interval[0]).toFixed(1)}–${(100 * estimate.interval[1]).toFixed(1)}`));
+}
+
+/** A row per result; a click looks at it. */
+export function summaryTable(content, choose) {
+  const rows = content.results.map(({ run, result, estimates }) => {
+    const s = result.summary;
+    const judged = s
+      ? [withInterval(s.iou, estimates?.iou), withInterval(s.precision, estimates?.precision), withInterval(s.recall, estimates?.recall), percent(s.f1), count(s.tp), count(s.fp), count(s.fn), s.published_text]
+      : ['no truth', '', '', '', '', '', '', ''];
+    return [run, result.sequence, result.protocol.name, result.variant, count(result.scans.length), ...judged, fixed(result.timing?.method_ms_per_scan, 1)];
+  });
+  const titles = ['run', 'sequence', 'protocol', 'variant', 'scans', 'IoU', 'precision', 'recall', 'F1', 'TP', 'FP', 'FN', 'as published', 'ms/scan'];
+  return block('Results', content.results.length > 1 ? 'A click on a row shows it above.' : null, table(titles, rows, { leftColumns: 4, onRow: choose }));
+}
+
+export function worstScansTable(entry, go) {
+  const { scans } = entry.result;
+  const worst = worstScans(entry.result).slice(0, AT_MOST);
+  if (worst.length === 0) return null;
+  const rows = worst.map((k) => [scans[k].stem, count(scans[k].fp), count(scans[k].fn), count(scans[k].tp), percent(iou(scans[k]))]);
+  return block('Worst scans', 'Most false points first; scans before the method looks for motion come last.', table(['scan', 'FP', 'FN', 'TP', 'IoU'], rows, { onRow: (r) => go(worst[r]) }));
+}
+
+const place = (position) => position.map((m) => m.toFixed(1)).join(', ');
+
+function scanIndex(entry, stem) {
+  return entry.result.scans.findIndex((scan) => scan.stem === stem);
+}
+
+export function falseClustersTable(entry, go) {
+  const clusters = entry.breakdown?.false_positive_clusters?.slice(0, AT_MOST) ?? [];
+  if (clusters.length === 0) return null;
+  const rows = clusters.map((c) => [c.scan, count(c.points), fixed(c.range_m, 1), fixed(c.size_m, 1), place(c.position_map_m)]);
+  return block('Worst false positives', 'Clusters of points called moving that are not.', table(['scan', 'points', 'range m', 'size m', 'position in the map m'], rows, { onRow: (r) => go(scanIndex(entry, clusters[r].scan)) }));
+}
+
+export function missedObjectsTable(entry, go) {
+  const objects = entry.breakdown?.objects?.filter((o) => o.tp < o.points).slice(0, AT_MOST) ?? [];
+  if (objects.length === 0) return null;
+  const rows = objects.map((o) => [o.first_scan, count(o.sightings), count(o.points), percent(o.recall), fixed(o.mean_range_m, 1), fixed(o.largest_size_m, 1), o.detection_delay_scans === null ? 'never' : count(o.detection_delay_scans)]);
+  return block('Worst objects', 'Moving objects by the points that were missed.', table(['first scan', 'scans', 'points', 'recall', 'range m', 'size m', 'found after scans'], rows, { onRow: (r) => go(scanIndex(entry, objects[r].first_scan)) }));
+}
+
+/** The same labels by the rules of every protocol. */
+export function protocolsTable(entry) {
+  const rows = entry.protocols ?? [];
+  if (rows.length === 0) return null;
+  return block('By every protocol', 'The same labels, counted by the rules of each benchmark.', table(['protocol', 'IoU', 'precision', 'recall', 'as published', 'what sets it apart'],
+    rows.map(({ name, summary: s, why }) => [name, percent(s.iou), percent(s.precision), percent(s.recall), s.published_text, why])));
+}
+
+/** Everything about the chosen result. */
+export function resultTables(state, content, go) {
+  const node = element('div', { class: 'blocks' });
+  state.follow(['result'], () => {
+    const entry = content.results[state.get('result')];
+    const tables = [worstScansTable(entry, go), falseClustersTable(entry, go), missedObjectsTable(entry, go), protocolsTable(entry)];
+    node.replaceChildren(...tables.filter(Boolean));
+  });
+  return node;
+}

@@ -1,0 +1,29 @@
+import { element } from './dom.js';
+import { count, fixed, percent } from './format.js';
+
+function tile(name, value, note) {
+  return element('div', { class: 'tile' }, element('span', { class: 'tile-name' }, name), element('span', { class: 'tile-value' }, value),
+    note ? element('span', { class: 'hint' }, note) : null);
+}
+
+const interval = (estimate) => (estimate?.interval ? `95 %: ${percent(estimate.interval[0])} to ${percent(estimate.interval[1])}` : null);
+
+/** The numbers one asks for first. */
+export function tiles(state, content) {
+  const node = element('section', { class: 'tiles', 'aria-label': 'Summary' });
+  state.follow(['result'], () => {
+    const { result, estimates } = content.results[state.get('result')];
+    const { summary, timing, scans } = result;
+    const judged = summary
+      ? [
+          tile('IoU', percent(summary.iou), interval(estimates?.iou) ?? `as published: ${summary.published_text}`),
+          tile('precision', percent(summary.precision), interval(estimates?.precision) ?? `${count(summary.fp)} false positives`),
+          tile('recall', percent(summary.recall), interval(estimates?.recall) ?? `${count(summary.fn)} false negatives`),
+        ]
+      : [tile('truth', 'none', 'labels only')];
+    const ms = timing?.method_ms_per_scan;
+    const cost = ms === null || ms === undefined ? [] : [tile('per scan', fixed(ms, 1, 'ms'), `${fixed(1000 / ms, 1)} scans a second, ${timing.threads} threads`)];
+    node.replaceChildren(...judged, ...cost, tile('scans', count(scans.length), summary ? `${count(summary.labelled_scans)} with truth` : null));
+  });
+  return node;
+}

@@ -1,0 +1,145 @@
+// What a reader sees and does: views, charts, keys, two runs side by side, phone and desktop.
+import assert from 'node:assert/strict';
+import { writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { DESKTOP, PHONE, openBrowser, openReport, refuseComplaints, settled } from './browser.mjs';
+import { assertLooksLikeKept } from './pictures.mjs';
+import { artefacts, freshFolder, mosbench, resultOf, simulatedRuns } from './reports.mjs';
+
+const folder = freshFolder();
+const both = join(folder, 'both.html');
+let browser, online, delayed;
+
+before(async () => {
+  const runs = simulatedRuns(folder);
+  mosbench('report', ...runs, '-o', both);
+  [online, delayed] = runs.map((run) => resultOf(join(run, '06')));
+  browser = await openBrowser();
+});
+after(() => browser.close());
+
+const STAGE = { width: 480, height: 700 };
+
+async function shot(page, name) {
+  await settled(page);
+  await assertLooksLikeKept(browser, name, await page.locator('.stage').screenshot());
+}
+
+test('each view shows what it showed before', async () => {
+  const page = await openReport(browser, both, { viewport: { width: 700, height: 640 } });
+  await page.evaluate(() => mosbenchReport.state.set({ scan: 21 }));
+  for (const view of ['orbit', 'top', 'sensor', 'map']) {
+    await page.click(`[data-view=${view}]`);
+    await shot(page, `view_${view}`);
+  }
+  refuseComplaints(page);
+});
+
+test('colours by height, the dark theme and two runs side by side show what they showed before', async () => {
+  const page = await openReport(browser, both, { viewport: { width: 700, height: 640 }, theme: 'dark' });
+  await page.evaluate(() => mosbenchReport.state.set({ scan: 21, view: 'top' }));
+  await shot(page, 'dark_top');
+  await page.selectOption('[aria-label=colour]', 'height');
+  await shot(page, 'dark_height');
+  await page.selectOption('[aria-label=colour]', 'outcome');
+  await page.selectOption('[aria-label=beside]', { label: 'delayed' });
+  await shot(page, 'dark_side_by_side');
+  refuseComplaints(page);
+});
+
+test('two runs stay in step, each with its own counts', async () => {
+  const page = await openReport(browser, both, { viewport: STAGE });
+  await page.selectOption('[aria-label=beside]', { label: 'delayed' });
+  const differing = online.scans.findIndex(({ fn }, k) => k > 0 && fn !== delayed.scans[k].fn);
+  assert.ok(differing > 0, 'the runs differ somewhere');
+  await page.evaluate((scan) => mosbenchReport.transport.go(scan), differing - 1);
+  await page.keyboard.press('ArrowRight');
+  await settled(page);
+  const counts = await page.locator('[data-outcome=fn] .counts').textContent();
+  assert.equal(counts, [online, delayed].map(({ scans }) => scans[differing].fn.toLocaleString('en-US')).join(' · '));
+  refuseComplaints(page);
+});
+
+test('charts hold the numbers of result.json', async () => {
+  const page = await openReport(browser, both);
+  const numbers = await page.evaluate(() => Object.fromEntries(mosbenchReport.charts.charts.map((chart) => [chart.key, chart.numbers()])));
+  const of = (key) => online.scans.map((scan) => scan[key]);
+  assert.deepEqual(numbers.counts, { TP: of('tp'), FP: of('fp'), FN: of('fn') });
+  assert.deepEqual(numbers.threshold, { threshold: of('threshold') });
+  const expected = online.scans.map(({ tp, fp, fn }) => (tp + fp + fn > 0 ? tp / (tp + fp + fn) : null));
+  assert.deepEqual(numbers.metrics.IoU, expected);
+  assert.equal(numbers.metrics['IoU of all'][0], online.summary.iou);
+  const { scan_columns: columns, scans } = online.timing;
+  const column = (name) => scans.map((row) => row[columns.indexOf(name)]);
+  assert.deepEqual(numbers.memory.resident, column('resident_mib'));
+  for (const name of columns.slice(3)) assert.deepEqual(numbers.stages[name.slice(0, -3).replace('_', ' ')], column(name), name);
+  refuseComplaints(page);
+});
+
+test('a click into a chart moves the 3-D view to that scan', async () => {
+  const page = await openReport(browser, both);
+  const chart = page.locator('[data-chart=counts] .u-over');
+  await chart.scrollIntoViewIfNeeded();
+  const { width, height } = await chart.boundingBox();
+  await chart.click({ position: { x: width - 2, y: height / 2 } });
+  assert.equal(await page.evaluate(() => mosbenchReport.state.get('scan')), online.scans.length - 1);
+  refuseComplaints(page);
+});
+
+test('keys change view, colour, theme and scan, and play goes on by itself', async () => {
+  const page = await openReport(browser, both, { viewport: STAGE });
+  const state = (key) => page.evaluate((k) => mosbenchReport.state.get(k), key);
+  await page.keyboard.press('2');
+  assert.equal(await state('view'), 'top');
+  await page.keyboard.press('c');
+  assert.equal(await state('colouring'), 'range');
+  await page.keyboard.press('t');
+  assert.equal(await state('theme'), 'dark');
+  await page.keyboard.press('Home');
+  assert.equal(await state('scan'), 0);
+  await page.keyboard.press(' ');
+  await page.waitForFunction(() => mosbenchReport.state.get('scan') > 1);
+  await page.keyboard.press(' ');
+  await page.keyboard.press('End');
+  assert.equal(await state('scan'), online.scans.length - 1);
+  refuseComplaints(page);
+});
+
+test('a click on a point shows its numbers', async () => {
+  const page = await openReport(browser, both, { viewport: STAGE });
+  await page.evaluate(() => mosbenchReport.state.set({ view: 'top' }));
+  await settled(page);
+  const spot = await page.evaluate(() => {
+    const { viewer } = mosbenchReport;
+    const { positions_m: p, outcomes, drawable } = viewer.scans[0];
+    const clip = viewer.stage.clipMatrix();
+    const { width, height } = viewer.stage.paneSize();
+    for (let i = 0; i < outcomes.length; ++i) {
+      const [x, y, z] = p.subarray(3 * i, 3 * i + 3);
+      const row = (r) => clip[r] * x + clip[4 + r] * y + clip[8 + r] * z + clip[12 + r];
+      const at = { x: ((row(0) / row(3) + 1) / 2) * width, y: ((1 - row(1) / row(3)) / 2) * height };
+      const inside = at.x > 20 && at.x < width - 20 && at.y > 20 && at.y < height - 150;
+      if (drawable[i] && outcomes[i] !== 3 && inside) return at;
+    }
+    return null;
+  });
+  assert.ok(spot, 'a point of a moving object is in view');
+  await page.locator('.stage canvas').click({ position: spot });
+  assert.match(await page.locator('.details').textContent(), /point\d+ of \d+, scan \d+.*range\d+\.\d\d m.*outcome(true|false) (positive|negative)/);
+  refuseComplaints(page);
+});
+
+test('everything is readable on desktop and phone, light and dark', async () => {
+  for (const [size, viewport] of Object.entries({ desktop: DESKTOP, phone: PHONE })) {
+    for (const theme of ['light', 'dark']) {
+      const page = await openReport(browser, both, { viewport, theme });
+      await settled(page);
+      const sideways = await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
+      assert.equal(sideways, 0, `${size}: the page scrolls sideways`);
+      writeFileSync(join(artefacts(), `page_${size}_${theme}.png`), await page.screenshot({ fullPage: true }));
+      refuseComplaints(page);
+      await page.context().close();
+    }
+  }
+});
