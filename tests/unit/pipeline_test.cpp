@@ -204,7 +204,9 @@ TEST(Pipeline, RecordsEveryStageInItsOrderWhileAsked) {
       for (std::size_t i = 0; i < events.size(); ++i) {
         sums[static_cast<std::size_t>(events[i].stage)] += events[i].wall_ms;
         EXPECT_GE(events[i].cpu_ms, 0.0);
-        if (i > 0) EXPECT_GE(events[i].start, events[i - 1].start);
+        if (i > 0) {
+          EXPECT_GE(events[i].start, events[i - 1].start);
+        }
       }
       EXPECT_EQ(events.size(), kStageNames.size());
       EXPECT_EQ(sums, result.stage_times);
