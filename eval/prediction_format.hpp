@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+
+namespace mosbench {
+
+/// How somebody's predictions lie on disk (protocols, section 8).
+enum class PredictionFormat : std::uint8_t {
+  kLabel,
+  kLabelByIndex,
+  kMaskedLabel,
+  kText,
+  kPcd,
+  kCsv,
+  kRows,
+  kIndices,
+  kDynabloxClouds,
+  kDynabloxScores
+};
+
+struct DescribedFormat {
+  PredictionFormat format;
+  std::string_view name;       ///< for --format
+  std::string_view extension;  ///< of its files
+  bool per_scan;               ///< a file per scan; otherwise one for the whole sequence
+  std::string_view description;
+};
+
+std::span<const DescribedFormat> prediction_formats();
+const DescribedFormat& describe(PredictionFormat format);
+/// Throws UsageError that names all formats.
+PredictionFormat prediction_format_named(std::string_view name);
+
+}  // namespace mosbench
