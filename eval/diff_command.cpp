@@ -1,0 +1,102 @@
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <memory>
+#include <thread>
+
+#include "datasets/errors.hpp"
+#include "eval/commands.hpp"
+#include "eval/run_diff.hpp"
+#include "eval/run_plan.hpp"
+
+namespace mosbench {
+namespace {
+
+constexpr const char* kFooter =
+    R"(Lists the scans in which two runs count differently, most changed first. With --data also the moving
+objects of which they find different parts; A and B then have to hold label files, as the folders of
+`mosbench run` do.
+
+Examples:
+  mosbench diff results/runs/online results/runs/delayed
+  mosbench diff results/runs/online results/runs/delayed --data ~/kitti --top 20 --json)";
+
+struct DiffOptions {
+  std::filesystem::path first, second;
+  std::optional<std::filesystem::path> root;
+  std::string dataset = "auto";
+  std::size_t top = 10;
+  bool json = false;
+};
+
+std::vector<std::size_t> scans_of(const Sequence& sequence, const SequenceResult& result) {
+  std::set<std::string> stems;
+  for (const ScanRow* row : counted_scans(result)) stems.insert(row->stem);
+  std::vector<std::size_t> scans;
+  for (std::size_t k = 0; k < sequence.size(); ++k) {
+    if (sequence.has_truth(k) && stems.contains(sequence.stem(k))) scans.push_back(k);
+  }
+  return scans;
+}
+
+SequenceBreakdown break_down_run(const Sequence& sequence, const std::vector<std::size_t>& scans,
+                                 const ResultSet& run, const BreakdownTask& task) {
+  const OpenedPredictions opened = open_predictions(run.path, sequence, scans, true, {});
+  return break_down(sequence, scans, *opened.labels, task);
+}
+
+std::vector<ObjectDisagreement> objects_of(const DiffOptions& options, const ResultSet& first,
+                                           const ResultSet& second) {
+  const Dataset dataset =
+      open_dataset(*options.root, {dataset_kind_option(options.dataset), {}, {}});
+  const BreakdownTask task{first.front().protocol, first.front().range,
+                           std::max(1U, std::thread::hardware_concurrency())};
+  std::vector<ObjectDisagreement> objects;
+  for (const auto& sequence : dataset.sequences) {
+    const auto result =
+        std::ranges::find(first.sequences, sequence->name(), &SequenceResult::sequence);
+    if (result == first.sequences.end()) continue;
+    const std::vector<std::size_t> scans = scans_of(*sequence, *result);
+    for (ObjectDisagreement& object :
+         disagreeing_objects(break_down_run(*sequence, scans, first, task),
+                             break_down_run(*sequence, scans, second, task))) {
+      objects.push_back(std::move(object));
+    }
+  }
+  return objects;
+}
+
+std::string diff(const DiffOptions& options) {
+  const ResultSet first = load_result_set(options.first);
+  const ResultSet second = load_result_set(options.second);
+  const PairedRuns paired = pair_runs(first, second);
+  if (paired.scans.empty()) {
+    throw DataError(options.second, "shares no counted scan with " + options.first.string(),
+                    "results over the same scans");
+  }
+  const auto objects =
+      options.root ? objects_of(options, first, second) : std::vector<ObjectDisagreement>{};
+  if (!options.json) return diff_text(paired, objects, options.top);
+  return diff_json(paired, objects, options.top)
+             .dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) +
+         '\n';
+}
+
+}  // namespace
+
+void add_diff_command(CLI::App& app, std::string& answer) {
+  auto options = std::make_shared<DiffOptions>();
+  CLI::App* command = app.add_subcommand("diff", "Scans and objects on which two runs disagree");
+  command->add_option("A", options->first, "Results of a run")->required();
+  command->add_option("B", options->second, "Results of another")->required();
+  command->add_option("--data", options->root, "The data set, to look at objects");
+  command
+      ->add_option("--dataset", options->dataset, "auto, doals, sipailou, helimos or semantickitti")
+      ->capture_default_str();
+  command->add_option("--top", options->top, "How many scans and objects to list")
+      ->capture_default_str();
+  command->add_flag("--json", options->json, "Print JSON instead of tables");
+  command->footer(kFooter);
+  command->callback([options, &answer] { answer = diff(*options); });
+}
+
+}  // namespace mosbench

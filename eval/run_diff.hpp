@@ -1,0 +1,41 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "eval/breakdown.hpp"
+#include "eval/paired_runs.hpp"
+
+namespace mosbench {
+
+/// A scan in which two runs count differently.
+struct ScanDisagreement {
+  PairedRuns::Scan scan;
+  std::uint64_t changed_points = 0;  ///< at least so many points changed: of tp plus of fp
+};
+
+/// A moving object of which two runs find different parts.
+struct ObjectDisagreement {
+  std::string sequence, first_scan, last_scan;
+  std::size_t points = 0, first_found = 0, second_found = 0;
+  double mean_range_m = 0.0;
+  Eigen::Vector3d position_map_m = Eigen::Vector3d::Zero();  ///< in its first scan
+};
+
+/// The scans with other counts, most changed first.
+std::vector<ScanDisagreement> disagreeing_scans(const PairedRuns& paired);
+
+/// The objects found to different parts, most changed first. Both break down the same truth; throws
+/// std::invalid_argument otherwise.
+std::vector<ObjectDisagreement> disagreeing_objects(const SequenceBreakdown& first,
+                                                    const SequenceBreakdown& second);
+
+/// Everything about the worst `at_most` of each; `objects` is empty without points at hand.
+nlohmann::ordered_json diff_json(const PairedRuns& paired,
+                                 const std::vector<ObjectDisagreement>& objects,
+                                 std::size_t at_most);
+std::string diff_text(const PairedRuns& paired, const std::vector<ObjectDisagreement>& objects,
+                      std::size_t at_most);
+
+}  // namespace mosbench
