@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace mosbench {
+
+/// A column of a published table: which sequences it is over and how many labelled scans they have
+/// in the real data set.
+struct TableColumn {
+  std::string_view name;
+  std::vector<std::string_view> sequences;  ///< names, or a folder that holds any number of them
+  std::optional<std::size_t> scans;         ///< under `scans_protocol`, where that is known
+  std::string_view scans_protocol = "";     ///< empty: under every protocol
+};
+
+/// How a published table is built from result files, and how its empty cells are filled.
+struct PaperTable {
+  std::string_view name;
+  std::string_view title;
+  std::string_view dataset;  ///< as result files name it
+  std::string_view averaging;
+  std::vector<TableColumn> columns;
+  std::string_view download;  ///< what to get, and from whom
+  std::string_view command;   ///< that fills the rows of HMM-MOS
+};
+
+std::span<const PaperTable> paper_tables();
+/// Throws UsageError naming all tables.
+const PaperTable& paper_table_named(std::string_view name);
+
+}  // namespace mosbench
