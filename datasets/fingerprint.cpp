@@ -55,6 +55,10 @@ std::string ContentFingerprint::hex() const {
   return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
 }
 
+std::string truth_hash(std::span<const std::uint32_t> labels) {
+  return fmt::format("{:016x}", XXH3_64bits(labels.data(), labels.size_bytes()));
+}
+
 std::string file_stamp(const Sequence& sequence) {
   std::string listing;
   for (const std::filesystem::path& file : sequence.files()) {

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 
 #include "datasets/sequence.hpp"
@@ -24,6 +26,10 @@ class ContentFingerprint {
   };
   std::unique_ptr<XXH3_state_s, FreeState> state_;
 };
+
+/// 16 hexadecimal digits (XXH3-64) over the raw labels of one scan: tells whether two results were
+/// scored against the same truth.
+std::string truth_hash(std::span<const std::uint32_t> labels);
 
 /// 32 hexadecimal digits over names, sizes and modification times of a sequence's files: equal when
 /// nothing was touched since, and cheap, as no scan is read. Not comparable between machines.

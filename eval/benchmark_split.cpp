@@ -20,4 +20,14 @@ std::optional<std::set<std::string>> stems_in_split(const Split& split, std::siz
   return part == split.parts.end() ? std::set<std::string>{} : part->stems;
 }
 
+nlohmann::ordered_json picked_stems(const Dataset& dataset, std::size_t position) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::object();
+  for (const Split& split : dataset.splits) {
+    for (const SplitPart& part : split.parts) {
+      if (part.sequence == position && part.stems) json[split.name] = *part.stems;
+    }
+  }
+  return json;
+}
+
 }  // namespace mosbench

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 #include <string>
@@ -21,5 +22,8 @@ const Split* benchmark_scans(const Protocol& protocol, const std::vector<Split>&
 /// The scans of the sequence at `position` that belong to the split: all of them (nothing), or
 /// those with these stems, none when the sequence is no part of it.
 std::optional<std::set<std::string>> stems_in_split(const Split& split, std::size_t position);
+
+/// {"test": [stems], ...} for the splits that pick scans of the sequence at `position`.
+nlohmann::ordered_json picked_stems(const Dataset& dataset, std::size_t position);
 
 }  // namespace mosbench

@@ -1,9 +1,17 @@
 #pragma once
 
 #include <CLI/App.hpp>
+#include <stdexcept>
 #include <string>
 
 namespace mosbench {
+
+/// A comparison that came out bad: `what()` belongs on stdout, and the program ends with exit
+/// code 1.
+class Finding : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
 
 /// Each adds one sub-command to `app`. When it is the chosen one, parsing runs it and leaves what
 /// belongs on stdout in `answer`. Errors are thrown: UsageError, DataError.
@@ -13,6 +21,13 @@ void add_profile_command(CLI::App& app, std::string& answer);
 void add_score_command(CLI::App& app, std::string& answer);
 void add_report_command(CLI::App& app, std::string& answer);
 void add_render_command(CLI::App& app, std::string& answer);
+void add_bless_command(CLI::App& app, std::string& answer);
+void add_compare_command(CLI::App& app, std::string& answer);
+void add_table_command(CLI::App& app, std::string& answer);
+void add_reproduce_command(CLI::App& app, std::string& answer);
+void add_breakdown_command(CLI::App& app, std::string& answer);
+void add_diff_command(CLI::App& app, std::string& answer);
+void add_stats_command(CLI::App& app, std::string& answer);
 void add_list_command(CLI::App& app, std::string& answer);
 
 }  // namespace mosbench

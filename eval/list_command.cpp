@@ -6,6 +6,7 @@
 #include "datasets/built_in_scenes.hpp"
 #include "eval/commands.hpp"
 #include "eval/dataset_catalogue.hpp"
+#include "eval/prediction_format.hpp"
 #include "eval/presets.hpp"
 #include "eval/protocol_list.hpp"
 #include "eval/text_table.hpp"
@@ -83,13 +84,24 @@ std::string scenes_text() {
   return table.str();
 }
 
+std::string formats_text() {
+  TextTable table({{"format", kLeft}, {"files", kLeft}, {"what", kLeft}});
+  for (const DescribedFormat& format : prediction_formats()) {
+    table.add_row({std::string(format.name), format.per_scan ? "one per scan" : "one per sequence",
+                   std::string(format.description)});
+  }
+  return table.str();
+}
+
 std::string list(const std::string& what) {
+  if (what == "formats") return formats_text();
   if (what == "datasets") return datasets_text();
   if (what == "presets") return presets_text();
   if (what == "protocols") return protocols_text();
   if (what == "scenes") return scenes_text();
-  return fmt::format("Data sets\n\n{}\nPresets\n\n{}\nProtocols\n\n{}\nScenes\n\n{}",
-                     datasets_text(), presets_text(), protocols_text(), scenes_text());
+  return fmt::format(
+      "Data sets\n\n{}\nPresets\n\n{}\nProtocols\n\n{}\nScenes\n\n{}\nFormats of predictions\n\n{}",
+      datasets_text(), presets_text(), protocols_text(), scenes_text(), formats_text());
 }
 
 }  // namespace
@@ -98,9 +110,9 @@ void add_list_command(CLI::App& app, std::string& answer) {
   auto what = std::make_shared<std::string>("all");
   CLI::App* command =
       app.add_subcommand("list", "Data sets, presets, protocols and scenes that are known");
-  command->add_option("WHAT", *what, "datasets, presets, protocols, scenes or all")
+  command->add_option("WHAT", *what, "datasets, presets, protocols, scenes, formats or all")
       ->capture_default_str()
-      ->check(CLI::IsMember({"all", "datasets", "presets", "protocols", "scenes"}));
+      ->check(CLI::IsMember({"all", "datasets", "presets", "protocols", "scenes", "formats"}));
   command->footer(kFooter);
   command->callback([what, &answer] { answer = list(*what); });
 }

@@ -19,7 +19,7 @@
 
 namespace {
 
-enum ExitCode { kOk = 0, kUsage = 2, kUnusableFiles = 3, kInternal = 70 };
+enum ExitCode { kOk = 0, kFinding = 1, kUsage = 2, kUnusableFiles = 3, kInternal = 70 };
 
 constexpr const char* kFooter = R"(Examples:
   mosbench simulate --layout semantickitti --scene room --scans 40 --seed 1 --out sim
@@ -93,6 +93,13 @@ std::string answer_to(std::vector<std::string> arguments) {
   mosbench::add_score_command(app, answer);
   mosbench::add_report_command(app, answer);
   mosbench::add_render_command(app, answer);
+  mosbench::add_table_command(app, answer);
+  mosbench::add_reproduce_command(app, answer);
+  mosbench::add_breakdown_command(app, answer);
+  mosbench::add_diff_command(app, answer);
+  mosbench::add_compare_command(app, answer);
+  mosbench::add_bless_command(app, answer);
+  mosbench::add_stats_command(app, answer);
   mosbench::add_list_command(app, answer);
   try {
     std::ranges::reverse(arguments);  // as CLI11 expects them
@@ -108,6 +115,17 @@ std::string answer_to(std::vector<std::string> arguments) {
   }
 }
 
+/// Prints the answer; a bad one is an answer too.
+int answer(std::vector<std::string> arguments) {
+  try {
+    print(answer_to(std::move(arguments)));
+    return kOk;
+  } catch (const mosbench::Finding& finding) {
+    print(finding.what());
+    return kFinding;
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -116,8 +134,7 @@ int main(int argc, char** argv) {
   std::signal(SIGPIPE, SIG_IGN);
   try {
     occupy_standard_streams();
-    print(answer_to(repeat_set_flag({argv + 1, argv + argc})));
-    return kOk;
+    return answer(repeat_set_flag({argv + 1, argv + argc}));
   } catch (const mosbench::UsageError& error) {
     return fail(kUsage, error.what());
   } catch (const mosbench::DataError& error) {

@@ -25,6 +25,7 @@ ordered_json to_json(const ScanRow& row) {
   json["tn"] = row.counts->tn;
   json["ignored"] = row.counts->ignored;
   json["unknown_ids"] = row.counts->unknown_ids;
+  json["truth_hash"] = row.truth_hash;
   return json;
 }
 
@@ -38,6 +39,7 @@ ScanRow row_from_json(const ordered_json& json) {
   if (json.contains("tp")) {
     row.counts = Confusion{json.at("tp"), json.at("fp"),      json.at("fn"),
                            json.at("tn"), json.at("ignored"), json.at("unknown_ids")};
+    row.truth_hash = json.value("truth_hash", "");
   }
   return row;
 }
@@ -113,6 +115,18 @@ void append_members(const ordered_json& object, const std::string& indent, std::
   text.erase(text.size() - 2, 1);
 }
 
+std::string format_members(const ordered_json& json) {
+  std::string text = "{\n";
+  append_members(json, " ", text);
+  return text + "}\n";
+}
+
+ordered_json with_scans(ordered_json json, const std::vector<ScanRow>& scans) {
+  json["scans"] = ordered_json::array();
+  for (const ScanRow& row : scans) json["scans"].push_back(to_json(row));
+  return json;
+}
+
 }  // namespace
 
 std::optional<double> method_ms_per_scan(const SequenceRows& rows) {
@@ -124,13 +138,13 @@ std::optional<double> method_ms_per_scan(const SequenceRows& rows) {
 
 std::string format_result(const ordered_json& header, const SequenceRows& rows, unsigned threads,
                           const ordered_json& clock_header) {
-  ordered_json json = header;
-  json["scans"] = ordered_json::array();
-  for (const ScanRow& row : rows.scans) json["scans"].push_back(to_json(row));
+  ordered_json json = with_scans(header, rows.scans);
   json["timing"] = timing(rows, threads, clock_header);
-  std::string text = "{\n";
-  append_members(json, " ", text);
-  return text + "}\n";
+  return format_members(json);
+}
+
+std::string format_scored(const ordered_json& header, const std::vector<ScanRow>& scans) {
+  return format_members(with_scans(header, scans));
 }
 
 ResultFile read_result(const std::filesystem::path& file) {
@@ -140,9 +154,11 @@ ResultFile read_result(const std::filesystem::path& file) {
     for (const ordered_json& row : result.content.at("scans")) {
       result.rows.scans.push_back(row_from_json(row));
     }
+    result.rows.fingerprint = result.content.value("fingerprint", "");
+    // Accepted results (baselines) and scores of others' labels come without a clock.
+    if (!result.content.contains("timing")) return result;
     const ordered_json& clocked = result.content.at("timing");
     result.rows.wall_s = clocked.at("wall_s");
-    result.rows.fingerprint = result.content.at("fingerprint");
     for (const ordered_json& cost : clocked.at("scans")) {
       result.rows.costs.push_back(cost_from_json(cost));
     }

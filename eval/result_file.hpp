@@ -21,6 +21,7 @@ struct ScanRow {
   std::size_t nonfinite_points = 0;
   std::optional<double> threshold;  ///< Otsu's T, see ScanResult
   std::optional<Confusion> counts;  ///< when the scan has truth
+  std::string truth_hash;           ///< of that truth, see `truth_hash`; empty in older files
 };
 
 /// What one scan cost: wall milliseconds, and the memory the process held after it.
@@ -47,12 +48,16 @@ std::optional<double> method_ms_per_scan(const SequenceRows& rows);
 std::string format_result(const nlohmann::ordered_json& header, const SequenceRows& rows,
                           unsigned threads, const nlohmann::ordered_json& clock_header);
 
+/// The same without timing, for labels that nothing is known of but what they score.
+std::string format_scored(const nlohmann::ordered_json& header, const std::vector<ScanRow>& scans);
+
 struct ResultFile {
   nlohmann::ordered_json content;
   SequenceRows rows;
 };
 
-/// Reads what `format_result` wrote; throws DataError naming the file for anything else.
+/// Reads what `format_result` or `format_scored` wrote; throws DataError naming the file for
+/// anything else.
 ResultFile read_result(const std::filesystem::path& file);
 
 }  // namespace mosbench

@@ -8,6 +8,7 @@
 #include "datasets/errors.hpp"
 #include "datasets/files.hpp"
 #include "datasets/fingerprint.hpp"
+#include "datasets/label_file.hpp"
 #include "eval/same_input.hpp"
 
 namespace mosbench {
@@ -109,7 +110,7 @@ ResultScans::ResultScans(const FoundResult& result, const std::optional<fs::path
     : result_(result),
       dataset_(open_dataset_of(result, dataset_root)),
       protocol_(nullptr),
-      labels_(result.folder / "labels") {
+      label_folder_(result.folder / "labels") {
   from_json(result, [&](const nlohmann::ordered_json& json) {
     const nlohmann::ordered_json& protocol = json.at("protocol");
     protocol_ = &protocol_named(protocol.at("name").get<std::string>());
@@ -120,7 +121,8 @@ ResultScans::ResultScans(const FoundResult& result, const std::optional<fs::path
 
 JudgedScan ResultScans::read(std::size_t scan_index) const {
   JudgedScan scan{sequence().read(scan_index), {}};
-  const std::vector<std::uint32_t> labels = labels_.read(scan.frame.stem, scan.frame.points.size());
+  const fs::path label_file = label_folder_ / (scan.frame.stem + ".label");
+  const std::vector<std::uint32_t> labels = read_labels(label_file, scan.frame.points.size());
   const std::optional<Confusion>& recorded = result_.file.rows.scans[scan_index].counts;
   if (scan.frame.truth && recorded) {
     const bool gated = protocol_->range_rule != RangeRule::kNone;
@@ -133,8 +135,8 @@ JudgedScan ResultScans::read(std::size_t scan_index) const {
   OutcomeCounts counts{};
   for (const PointOutcome outcome : scan.outcomes) ++counts[static_cast<std::size_t>(outcome)];
   if (!same_counts(counts, recorded)) {
-    throw DataError(labels_.path() / (scan.frame.stem + ".label"),
-                    "does not give the counts in result.json", "the label file of that run");
+    throw DataError(label_file, "does not give the counts in result.json",
+                    "the label file of that run");
   }
   return scan;
 }

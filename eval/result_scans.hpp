@@ -8,7 +8,6 @@
 
 #include "datasets/dataset.hpp"
 #include "eval/confusion.hpp"
-#include "eval/prediction_files.hpp"
 #include "eval/result_file.hpp"
 
 namespace mosbench {
@@ -46,7 +45,7 @@ class ResultScans {
   Dataset dataset_;
   const Protocol* protocol_;
   RangeGate range_;
-  PredictionFolder labels_;
+  std::filesystem::path label_folder_;
 };
 
 }  // namespace mosbench

@@ -84,6 +84,9 @@ ordered_json header(const RunPlan& plan, const PlannedSequence& planned, const S
   for (const ScanRow& row : rows.scans) {
     if (row.counts && (!stems || stems->contains(row.stem))) counts.push_back(*row.counts);
   }
+  if (const ordered_json splits = picked_stems(plan.dataset, planned.position); !splits.empty()) {
+    json["splits"] = splits;
+  }
   json["summary_split"] =
       benchmark == nullptr ? ordered_json(nullptr) : ordered_json(benchmark->name);
   json["summary"] =

@@ -1,38 +1,50 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <memory>
+#include <thread>
 
 #include "datasets/errors.hpp"
 #include "eval/benchmark_split.hpp"
 #include "eval/commands.hpp"
-#include "eval/prediction_files.hpp"
 #include "eval/presets.hpp"
 #include "eval/run_plan.hpp"
-#include "eval/score_table.hpp"
-#include "eval/simulated.hpp"
+#include "eval/score_report.hpp"
 
 namespace mosbench {
 namespace {
 
 constexpr const char* kFooter =
-    R"(Prints the numbers of `mosbench run` for label files of any origin. They are looked for in
-DIR/<sequence>/{predictions,labels}, DIR/sequences/<sequence>/predictions and, for one sequence,
-DIR/{predictions,labels} and DIR itself; scan <stem>.bin belongs to <stem>.label. Every scan with truth
-needs one; a missing file, one of the wrong size or one without scan is an error. Under a protocol
-that is over a split of scans (helimos-test, mapmos) only those scans are scored.
+    R"(Scores predictions of any origin as `mosbench run` scores its own. They are looked for in
+DIR/<sequence>/{predictions,labels}, DIR/<sequence>, DIR/sequences/<sequence>/predictions,
+DIR/<sequence>.{txt,csv} and, for one sequence, DIR/{predictions,labels} and DIR itself, which may be
+a file. The format is recognised and stated; `mosbench list formats` shows all. Every scan with truth
+needs a prediction; a missing file, one of the wrong size or one without scan is an error, unless
+--allow-missing leaves such scans out and marks the result. Under a protocol that is over a split of
+scans (helimos-test, mapmos) only those scans are scored.
+
+--protocol all prints the number of every protocol for the same labels and why they differ.
+--out writes result.json files, which stats, compare and table read.
 
 Examples:
   mosbench score ~/sipailou-livox-kitti --predictions motionbev --protocol sipailou --split test
   mosbench score ~/doals --predictions results/runs/doals --protocol doals-dynablox --range 0.5,20
-  mosbench score ~/kitti/sequences/08 --predictions mapmos/sequences/08/predictions --json)";
+  mosbench score ~/doals/station/sequence_1 --predictions clouds.csv --level object
+  mosbench score ~/HeLiMOS/KAIST05/Deskewed_LiDAR --predictions 4dmos --protocol helimos-test \
+    --method 4DMOS --setting delayed --out results/runs/4dmos-delayed
+  mosbench score ~/kitti/sequences/08 --predictions mapmos/sequences/08/predictions --mask 0,50 --json
+  mosbench score ~/kitti/sequences/08 --predictions mine --protocol all)";
 
 struct ScoreOptions {
   std::filesystem::path input;
-  std::filesystem::path predictions;
   std::string dataset = "auto";
   std::vector<std::string> sequences;
-  std::optional<std::string> protocol, range, split;
+  ScoreTask task;
+  std::optional<std::string> protocol, range, format, mask, id_map;
+  std::string level = "object";
+  MethodName method{"unnamed", ""};
+  std::optional<std::filesystem::path> out;
   bool json = false;
 };
 
@@ -49,107 +61,106 @@ void keep_split(const std::string& name, Dataset& dataset) {
                                dataset.root.string(), known.empty() ? "no --split" : known));
 }
 
-/// Which scans of a sequence have to be scored: those of the chosen split or of the split that the
-/// protocol picks scans by, else all.
-bool is_wanted(const ScoreOptions& options, const Dataset& dataset, const Protocol& protocol,
-               std::size_t position, const std::string& stem) {
-  if (!options.split && benchmark_scans(protocol, dataset.splits) == nullptr) return true;
-  const auto stems = stems_in_split(dataset.splits.front(), position);
-  return !stems || stems->contains(stem);
+/// MIN,MAX where any protocol may be meant.
+RangeGate mask_option(const std::string& text) {
+  return range_option(text, protocol_named("mapmos"));
 }
 
-Confusion score_one(const Sequence& sequence, std::size_t k, const Protocol& protocol,
-                    const RangeGate& range, const PredictionFolder& predictions) {
-  if (protocol.range_rule == RangeRule::kNone) {
-    const std::vector<std::uint32_t> truth = sequence.read_truth(k);
-    return score_scan(protocol, truth, predictions.read(sequence.stem(k), truth.size()), {}, range);
+std::vector<ScoreRule> all_rules(const ScoreOptions& options) {
+  std::vector<ScoreRule> rules;
+  for (const Protocol& protocol : protocols()) {
+    const bool ranged = options.range && protocol.range_rule != RangeRule::kNone;
+    rules.push_back(
+        {&protocol, ranged ? range_option(*options.range, protocol) : protocol.default_range});
   }
-  const Frame frame = sequence.read(k);
-  return score_scan(protocol, frame.truth.value(),
-                    predictions.read(frame.stem, frame.points.size()), frame.points, range);
+  return rules;
 }
 
-ScoredSequence score_sequence(const ScoreOptions& options, const Dataset& dataset,
-                              std::size_t position, const Protocol& protocol,
-                              const RangeGate& range) {
-  const Sequence& sequence = *dataset.sequences[position];
-  std::vector<std::size_t> wanted;
-  for (std::size_t k = 0; k < sequence.size(); ++k) {
-    if (sequence.has_truth(k) &&
-        is_wanted(options, dataset, protocol, position, sequence.stem(k))) {
-      wanted.push_back(k);
-    }
-  }
-  ScoredSequence scored{sequence.name(), {}, std::nullopt};
-  if (wanted.empty()) return scored;
-  const PredictionFolder predictions =
-      find_predictions(options.predictions, sequence, dataset.sequences.size() == 1);
-  predictions.check(sequence, wanted);
-  for (const std::size_t k : wanted) {
-    scored.scans.push_back(
-        {sequence.stem(k), score_one(sequence, k, protocol, range, predictions)});
-  }
-  return scored;
+ScoreRule one_rule(const ScoreOptions& options, const Dataset& dataset) {
+  const Protocol& protocol =
+      protocol_named(options.protocol.value_or(std::string(default_preset(dataset.kind).protocol)));
+  return {&protocol,
+          options.range ? range_option(*options.range, protocol) : protocol.default_range};
+}
+
+PredictionOptions prediction_options(const ScoreOptions& options) {
+  PredictionOptions settled = options.task.options;
+  if (options.format) settled.format = prediction_format_named(*options.format);
+  if (options.mask) settled.mask = mask_option(*options.mask);
+  if (options.id_map) settled.id_map = parse_id_map(*options.id_map);
+  settled.level = dynablox_level_named(options.level);
+  return settled;
+}
+
+std::string score_all(const ScoreOptions& options, const Dataset& dataset, ScoreTask task) {
+  if (options.out)
+    throw UsageError("--out: takes one protocol's results, expected no --protocol all");
+  task.rules = all_rules(options);
+  const std::vector<SequenceScores> scores = score_dataset(dataset, task);
+  return options.json ? side_by_side_json(dataset, task.rules, scores)
+                      : side_by_side_text(dataset, task.rules, scores);
 }
 
 std::string score(const ScoreOptions& options) {
   Dataset dataset =
       open_dataset(options.input, {dataset_kind_option(options.dataset), options.sequences, {}});
-  const Protocol& protocol =
-      protocol_named(options.protocol.value_or(std::string(default_preset(dataset.kind).protocol)));
-  const RangeGate range =
-      options.range ? range_option(*options.range, protocol) : protocol.default_range;
-  if (options.split) {
-    keep_split(*options.split, dataset);
-  } else if (benchmark_scans(protocol, dataset.splits) != nullptr) {
-    keep_split(std::string(protocol.default_split), dataset);
+  ScoreTask task = options.task;
+  task.options = prediction_options(options);
+  if (task.threads == 0) task.threads = std::max(1U, std::thread::hardware_concurrency());
+  if (task.split) keep_split(*task.split, dataset);
+  if (options.protocol == "all") return score_all(options, dataset, std::move(task));
+  const ScoreRule rule = one_rule(options, dataset);
+  const bool split_asked = task.split.has_value();
+  if (!split_asked && benchmark_scans(*rule.protocol, dataset.splits) != nullptr) {
+    task.split = std::string(rule.protocol->default_split);
+    keep_split(*task.split, dataset);
   }
-  std::vector<ScoredSequence> sequences;
-  std::size_t scored_scans = 0;
-  for (std::size_t i = 0; i < dataset.sequences.size(); ++i) {
-    sequences.push_back(score_sequence(options, dataset, i, protocol, range));
-    scored_scans += sequences.back().scans.size();
-  }
-  if (scored_scans == 0) {
-    throw DataError(dataset.root, "no scan to score has truth", "labels beside the scans");
-  }
-  std::vector<ScoreRow> rows = score_rows(protocol, dataset.splits, sequences);
-  if (options.split) {
-    std::erase_if(rows, [](const ScoreRow& row) { return row.kind == ScoreRow::Kind::kSequence; });
-  }
-  if (options.json) {
-    nlohmann::ordered_json json = {{"dataset", std::string(to_string(dataset.kind))},
-                                   {"protocol", std::string(protocol.name)},
-                                   {"min_range_m", range.min_m},
-                                   {"max_range_m", range.max_m}};
-    if (const auto origin = simulated_origin_json(dataset)) json["simulated"] = *origin;
-    json.update(rows_json(rows));
-    return json.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n';
-  }
-  return fmt::format("protocol {}: {}\n{}{}\n{}", protocol.name, protocol.summary,
-                     benchmark_notice(protocol, dataset.splits), simulated_notice(dataset),
-                     format_rows(protocol, rows));
+  task.rules = {rule};
+  const std::vector<SequenceScores> scores = score_dataset(dataset, task);
+  if (options.out) write_scores(dataset, rule, options.method, scores, *options.out);
+  return options.json ? score_json(dataset, rule, scores, !split_asked)
+                      : score_text(dataset, rule, scores, !split_asked);
+}
+
+void add_prediction_options(CLI::App& command, ScoreOptions& options) {
+  command.add_option("--predictions", options.task.predictions, "Folder or file of predictions")
+      ->required();
+  command.add_option("--format", options.format, "Of the predictions (default: recognised)");
+  command.add_option("--mask", options.mask,
+                     "MIN,MAX in metres that the method cut its labels by (default: found out)");
+  command.add_option("--id-map", options.id_map, "Meaning of the predicted ids: 0:0,1:9,2:251");
+  command.add_option("--level", options.level, "Of Dynablox's files: point, cluster or object")
+      ->capture_default_str();
+  command.add_flag("--allow-missing", options.task.options.allow_missing,
+                   "Leave out scans whose prediction is missing or faulty; marks the result");
 }
 
 }  // namespace
 
 void add_score_command(CLI::App& app, std::string& answer) {
   auto options = std::make_shared<ScoreOptions>();
-  CLI::App* command = app.add_subcommand("score", "Score label files of any origin");
+  options->task.threads = 0;
+  CLI::App* command = app.add_subcommand("score", "Score predictions of any origin");
   command->add_option("DATA", options->input, "Root of a data set, or one sequence folder")
       ->required();
-  command->add_option("--predictions", options->predictions, "Folder of the label files")
-      ->required();
-  command->add_option("--protocol", options->protocol, "How to score (default: by data set)");
+  add_prediction_options(*command, *options);
+  command->add_option("--protocol", options->protocol,
+                      "How to score, or all (default: by data set)");
   command
       ->add_option("--dataset", options->dataset, "auto, doals, sipailou, helimos or semantickitti")
       ->capture_default_str();
   command->add_option("--sequences", options->sequences, "Names to score, a,b (default: all)")
       ->delimiter(',')
       ->allow_extra_args(false);
-  command->add_option("--split", options->split, "Only the scans of this split");
+  command->add_option("--split", options->task.split, "Only the scans of this split");
   command->add_option("--range", options->range,
                       "MIN,MAX in metres, for protocols that limit it (default: the protocol's)");
+  command->add_option("--method", options->method.name, "Whose labels these are, for --out");
+  command->add_option("--setting", options->method.setting, "How the method was set, for --out");
+  command->add_option("--out", options->out, "Folder for DIR/<sequence>/result.json");
+  command
+      ->add_option("--threads", options->task.threads, "Results do not depend on it (default: all)")
+      ->check(CLI::Range(1U, 1024U));
   command->add_flag("--json", options->json, "Print JSON instead of a table");
   command->footer(kFooter);
   command->callback([options, &answer] { answer = score(*options); });

@@ -118,6 +118,7 @@ class SequenceRun {
     if (scan.truth) {
       row.counts = score_scan(*settings_.protocol, *scan.truth, result.labels, scan.truth_points,
                               settings_.range);
+      row.truth_hash = truth_hash(*scan.truth);
     }
     write(label_folder_ / (scan.stem + ".label"), std::move(result.labels));
   }

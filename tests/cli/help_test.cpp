@@ -14,6 +14,12 @@ TEST(Help, ShowsExamplesAtEachLevel) {
                                                     {"run", "--help"},
                                                     {"score", "--help"},
                                                     {"simulate", "--help"},
+                                                    {"table", "--help"},
+                                                    {"reproduce", "--help"},
+                                                    {"stats", "--help"},
+                                                    {"breakdown", "--help"},
+                                                    {"diff", "--help"},
+                                                    {"compare", "--help"},
                                                     {"list", "--help"}}) {
     const cli::Answer answer = cli::run(arguments);
     EXPECT_EQ(answer.exit_code, 0) << arguments.front();
@@ -53,7 +59,7 @@ TEST(Usage, IsRefusedWithExitCode2AndAPrefixedMessage) {
 TEST(List, ShowsDatasetsPresetsProtocolsAndScenes) {
   const std::string all = cli::run({"list"}).out;
   std::string parts;
-  for (const char* what : {"datasets", "presets", "protocols", "scenes"}) {
+  for (const char* what : {"datasets", "presets", "protocols", "scenes", "formats"}) {
     const cli::Answer answer = cli::run({"list", what});
     EXPECT_EQ(answer.exit_code, 0) << what;
     EXPECT_THAT(all, HasSubstr(answer.out)) << what;

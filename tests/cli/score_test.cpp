@@ -65,7 +65,7 @@ TEST_F(Score, GivesOneToThePerfectPrediction) {
 TEST_F(Score, RefusesMissingExtraAndWronglySizedFiles) {
   const fs::path label = labels() / "000005.label";
   fs::rename(label, folder_ / "aside");
-  EXPECT_THAT(score(folder_ / "out").err, HasSubstr("000005.label: cannot be read"));
+  EXPECT_THAT(score(folder_ / "out").err, HasSubstr("000005.label: is not there"));
   EXPECT_EQ(score(folder_ / "out").exit_code, 3);
   fs::rename(folder_ / "aside", label);
 
@@ -117,7 +117,7 @@ TEST(ScoreHelimos, CountsTheScansOfTheProtocolsSplitAsTheRunDoes) {
   const cli::Answer test = score("helimos-test");
   ASSERT_EQ(test.exit_code, 0) << test.err;
   EXPECT_EQ(nlohmann::json::parse(test.out).at("sequences").at(0).at("summary"), row.at("summary"));
-  EXPECT_THAT(score("helimos-all").err, HasSubstr("000001.label: cannot be read"));
+  EXPECT_THAT(score("helimos-all").err, HasSubstr("000001.label: is not there"));
 }
 
 TEST_F(Score, RefusesTheTruthAsPrediction) {

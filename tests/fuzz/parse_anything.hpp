@@ -14,6 +14,8 @@
 #include "datasets/pose_file.hpp"
 #include "datasets/split_file.hpp"
 #include "datasets/times_file.hpp"
+#include "eval/prediction_text.hpp"
+#include "eval/published.hpp"
 
 /// Every parser of bytes with what must hold of any value it returns. A parser may throw DataError;
 /// whatever else happens is a bug. Shared by the replayed corpus and the libFuzzer targets.
@@ -73,18 +75,44 @@ inline void pcd(std::string_view bytes) {
   require(check_pcd(bytes, "f").body_offset_bytes <= bytes.size());
 }
 
+/// The first byte chooses the format, the second is a number of points.
+inline void predictions(std::string_view bytes) {
+  if (bytes.size() < 2) return;
+  const std::size_t point_count = static_cast<unsigned char>(bytes[1]);
+  const std::string_view text = bytes.substr(2);
+  switch (bytes.front()) {
+    case 't':
+      return require(parse_point_text(text, point_count, "f").size() == point_count);
+    case 'c':
+      return require(parse_point_csv(text, point_count, "f").size() == point_count);
+    case 'd':
+      for (const auto& cloud : parse_dynablox_clouds(text, DynabloxLevel::kObject, "f")) {
+        require(!cloud.empty());
+      }
+      return;
+    case 's':
+      for (const DynabloxScore& score : parse_dynablox_scores(text, DynabloxLevel::kPoint, "f")) {
+        require(score.counts.points() == score.total_points);
+      }
+      return;
+    default:
+      for (const PublishedCell& cell : parse_published(text, "f")) (void)cell.iou();
+  }
+}
+
 struct Parser {
   const char* name;  ///< of its corpus folder and its libFuzzer target
   void (*parse)(std::string_view);
 };
-inline constexpr std::array<Parser, 8> kParsers = {{{"bin", bin},
+inline constexpr std::array<Parser, 9> kParsers = {{{"bin", bin},
                                                     {"label", label},
                                                     {"poses", poses},
                                                     {"calib", calib},
                                                     {"times", times},
                                                     {"indices", indices},
                                                     {"split", split},
-                                                    {"pcd", pcd}}};
+                                                    {"pcd", pcd},
+                                                    {"predictions", predictions}}};
 
 /// Whether the parser gave a value; false when it threw DataError. Anything else escapes.
 inline bool gives_value(void (*parse)(std::string_view), std::string_view bytes) {

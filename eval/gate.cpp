@@ -1,0 +1,98 @@
+#include "eval/gate.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "eval/text_table.hpp"
+
+namespace mosbench {
+namespace {
+
+std::optional<double> iou_of(const Protocol& protocol, std::span<const SequenceCounts> sequences) {
+  const double iou = aggregate(protocol, sequences)[static_cast<std::size_t>(Metric::kIou)];
+  if (std::isnan(iou)) return std::nullopt;
+  return iou;
+}
+
+GateCheck check(std::string name, const Protocol& protocol, std::span<const SequenceCounts> first,
+                std::span<const SequenceCounts> second, double max_drop) {
+  GateCheck check;
+  check.name = std::move(name);
+  check.baseline = iou_of(protocol, first);
+  check.newer = iou_of(protocol, second);
+  check.tolerance = max_drop;
+  if (!check.baseline || !check.newer) {
+    check.passed = !check.baseline;
+    return check;
+  }
+  check.difference = paired_difference(protocol, first, second)[Metric::kIou];
+  const double value = *check.difference.value;
+  if (check.difference.interval) {
+    check.tolerance = std::max(max_drop, check.difference.interval->high - value);
+  }
+  check.passed = value >= -check.tolerance;
+  return check;
+}
+
+std::string percent(const std::optional<double>& value, const char* style = "{:.2f}") {
+  return value ? fmt::format(fmt::runtime(style), *value * 100.0) : "undefined";
+}
+
+nlohmann::ordered_json number(const std::optional<double>& value) {
+  return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
+}
+
+}  // namespace
+
+bool GateResult::passed() const { return std::ranges::all_of(checks, &GateCheck::passed); }
+
+GateResult judge(const PairedRuns& paired, const Protocol& protocol, double max_drop) {
+  GateResult result;
+  std::size_t scan = 0;
+  for (std::size_t s = 0; s < paired.first.size(); ++s) {
+    if (paired.first[s].empty()) continue;
+    result.checks.push_back(check(paired.scans[scan].sequence, protocol, {&paired.first[s], 1},
+                                  {&paired.second[s], 1}, max_drop));
+    scan += paired.first[s].size();
+  }
+  if (result.checks.size() > 1) {
+    result.checks.push_back(check("all", protocol, paired.first, paired.second, max_drop));
+  }
+  return result;
+}
+
+std::string gate_text(const GateResult& result) {
+  TextTable table({{"sequence", TextTable::Align::kLeft},
+                   {"baseline IoU %"},
+                   {"new IoU %"},
+                   {"difference"},
+                   {"tolerance"},
+                   {"p"},
+                   {"verdict"}});
+  for (const GateCheck& check : result.checks) {
+    table.add_row({check.name, percent(check.baseline), percent(check.newer),
+                   percent(check.difference.value, "{:+.2f}"), percent(check.tolerance),
+                   check.difference.p_value ? fmt::format("{:.4f}", *check.difference.p_value) : "",
+                   check.passed ? "pass" : "REGRESSION"});
+  }
+  return table.str();
+}
+
+nlohmann::ordered_json to_json(const GateResult& result) {
+  nlohmann::ordered_json json = {{"passed", result.passed()},
+                                 {"checks", nlohmann::ordered_json::array()}};
+  for (const GateCheck& check : result.checks) {
+    json["checks"].push_back({{"name", check.name},
+                              {"baseline_iou", number(check.baseline)},
+                              {"new_iou", number(check.newer)},
+                              {"difference", number(check.difference.value)},
+                              {"p_value", number(check.difference.p_value)},
+                              {"tolerance", check.tolerance},
+                              {"passed", check.passed}});
+  }
+  return json;
+}
+
+}  // namespace mosbench

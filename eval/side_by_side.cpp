@@ -1,0 +1,115 @@
+#include <fmt/format.h>
+
+#include "eval/metrics.hpp"
+#include "eval/protocol_list.hpp"
+#include "eval/score_report.hpp"
+#include "eval/simulated.hpp"
+#include "eval/text_table.hpp"
+
+namespace mosbench {
+namespace {
+
+using nlohmann::ordered_json;
+
+/// One protocol's number for all scored scans.
+struct ProtocolRow {
+  std::string name;
+  Summary summary;
+  std::string reason;
+};
+
+std::string why(const ProtocolDescription& words, const ScoreRule& rule, const Confusion& pooled) {
+  std::string text = words.aggregation;
+  if (pooled.ignored > 0) {
+    text += fmt::format(
+        "; ignores {:.1f} % of the points",
+        100.0 * static_cast<double>(pooled.ignored) / static_cast<double>(pooled.points()));
+  } else {
+    text += "; ignores no point";
+  }
+  text += fmt::format("; moving truth {} points", pooled.tp + pooled.fn);
+  if (rule.protocol->range_rule == RangeRule::kTruthOnly) {
+    text += fmt::format("; truth beyond {:g} to {:g} m static, predictions there count",
+                        rule.range.min_m, rule.range.max_m);
+  } else if (rule.protocol->range_rule == RangeRule::kTruthAndPrediction && rule.range.max_m > 0) {
+    text += fmt::format("; only points at {:g} to {:g} m", rule.range.min_m, rule.range.max_m);
+  }
+  return text + fmt::format("; truth ids: {}; 0/0 gives {}", words.truth, words.empty_case);
+}
+
+Summary summary_of(const Protocol& protocol, const std::vector<SequenceScores>& scores,
+                   std::size_t rule) {
+  std::vector<Confusion> all;
+  std::vector<Summary> sequences;
+  for (const SequenceScores& sequence : scores) {
+    std::vector<Confusion> counts;
+    for (const ScanRow& row : sequence.by_rule[rule]) counts.push_back(*row.counts);
+    if (counts.empty()) continue;
+    sequences.push_back(summarize(protocol, counts));
+    all.insert(all.end(), counts.begin(), counts.end());
+  }
+  return protocol.aggregation == Aggregation::kMeanOfSequences
+             ? mean_of_sequences(protocol, sequences)
+             : summarize(protocol, all);
+}
+
+std::vector<ProtocolRow> protocol_rows(const std::vector<ScoreRule>& rules,
+                                       const std::vector<SequenceScores>& scores) {
+  const std::vector<ProtocolDescription> words = describe_protocols();
+  std::vector<ProtocolRow> rows;
+  for (std::size_t r = 0; r < rules.size(); ++r) {
+    ProtocolRow row{std::string(rules[r].protocol->name), summary_of(*rules[r].protocol, scores, r),
+                    ""};
+    const auto described = std::ranges::find(words, row.name, &ProtocolDescription::name);
+    row.reason = why(*described, rules[r], row.summary.pooled);
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+}  // namespace
+
+std::string side_by_side_text(const Dataset& dataset, const std::vector<ScoreRule>& rules,
+                              const std::vector<SequenceScores>& scores) {
+  TextTable table({{"protocol", TextTable::Align::kLeft},
+                   {"IoU %"},
+                   {"as published"},
+                   {"TP"},
+                   {"FP"},
+                   {"FN"},
+                   {"why", TextTable::Align::kLeft}});
+  for (const ProtocolRow& row : protocol_rows(rules, scores)) {
+    const Confusion& pooled = row.summary.pooled;
+    table.add_row({row.name,
+                   row.summary.iou ? fmt::format("{:.2f}", *row.summary.iou * 100.0) : "undefined",
+                   row.summary.published_text, fmt::format("{}", pooled.tp),
+                   fmt::format("{}", pooled.fp), fmt::format("{}", pooled.fn), row.reason});
+  }
+  std::string text = "the same labels by every protocol, over all scored scans\n" +
+                     simulated_notice(dataset) + '\n' + table.str() + '\n';
+  for (const std::string& remark : score_remarks(dataset, scores)) text += remark + '\n';
+  return text;
+}
+
+std::string side_by_side_json(const Dataset& dataset, const std::vector<ScoreRule>& rules,
+                              const std::vector<SequenceScores>& scores) {
+  ordered_json json = {{"dataset", std::string(to_string(dataset.kind))},
+                       {"protocols", ordered_json::array()},
+                       {"remarks", score_remarks(dataset, scores)}};
+  if (const auto origin = simulated_origin_json(dataset)) json["simulated"] = *origin;
+  for (const ProtocolRow& row : protocol_rows(rules, scores)) {
+    json["protocols"].push_back(
+        {{"name", row.name},
+         {"iou", row.summary.iou ? ordered_json(*row.summary.iou) : ordered_json(nullptr)},
+         {"published_text", row.summary.published_text},
+         {"tp", row.summary.pooled.tp},
+         {"fp", row.summary.pooled.fp},
+         {"fn", row.summary.pooled.fn},
+         {"tn", row.summary.pooled.tn},
+         {"ignored", row.summary.pooled.ignored},
+         {"why", row.reason}});
+  }
+  return json.dump(1, ' ', false, ordered_json::error_handler_t::replace) + '\n';
+}
+
+}  // namespace mosbench

@@ -1,0 +1,167 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "datasets/label_file.hpp"
+#include "tests/cli/program.hpp"
+#include "tests/cli/small_sequence.hpp"
+
+namespace mosbench {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+/// A run of a small sequence that is also the baseline.
+class Compare : public testing::Test {
+ protected:
+  Compare() {
+    cli::write_small_sequence(folder_ / "room", 12);
+    run_again("out", {});
+    const cli::Answer bless =
+        cli::run({"bless", (folder_ / "out").string(), (folder_ / "baseline").string()});
+    if (bless.exit_code != 0) throw std::runtime_error(bless.err);
+  }
+  void run_again(const std::string& out, const std::vector<std::string>& more) const {
+    std::vector<std::string> words = {"run", (folder_ / "room").string(), "--out",
+                                      (folder_ / out).string()};
+    words.insert(words.end(), more.begin(), more.end());
+    const cli::Answer run = cli::run(words);
+    if (run.exit_code != 0) throw std::runtime_error(run.err);
+  }
+  cli::Answer compare(const std::string& newer, const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> words = {"compare", (folder_ / "baseline").string(),
+                                      (folder_ / newer).string()};
+    words.insert(words.end(), more.begin(), more.end());
+    return cli::run(words);
+  }
+  /// Scores the run's labels after `change` worked on those of each scan.
+  template <typename Change>
+  void score_changed(const std::string& out, Change&& change) const {
+    const fs::path labels = folder_ / out / "predictions";
+    std::size_t moving = 0;
+    for (std::size_t k = 0; k < 12; ++k) {
+      const std::string file = cli::stem(k) + ".label";
+      auto predicted = read_labels(folder_ / "out/room/labels" / file, cli::kPointsPerScan);
+      for (std::uint32_t& label : predicted) {
+        if (label == kMovingLabel && change(moving++)) label = kStaticLabel;
+      }
+      write_labels(labels / file, predicted);
+    }
+    ASSERT_GT(moving, 1000U);
+    const cli::Answer score =
+        cli::run({"score", (folder_ / "room").string(), "--predictions", labels.string(), "--out",
+                  (folder_ / out / "results").string(), "--method", "HMM-MOS", "--json"});
+    ASSERT_EQ(score.exit_code, 0) << score.err;
+  }
+
+  TempFolder folder_;
+};
+
+TEST_F(Compare, PassesIdenticalResultsEveryTime) {
+  for (int rerun = 0; rerun < 50; ++rerun) ASSERT_EQ(compare("out").exit_code, 0);
+  EXPECT_EQ(compare("out", {"--max-drop", "0"}).exit_code, 0);
+}
+
+TEST_F(Compare, PassesARunWithAnotherNumberOfThreads) {
+  run_again("threads", {"--threads", "3"});
+  const cli::Answer answer = compare("threads", {"--max-drop", "0", "--json"});
+  ASSERT_EQ(answer.exit_code, 0) << answer.err << answer.out;
+  EXPECT_EQ(nlohmann::json::parse(answer.out).at("checks").at(0).at("difference"), 0.0);
+}
+
+TEST_F(Compare, CatchesThreePercentOfTheMovingPointsFlipped) {
+  score_changed("flipped", [](std::size_t moving) { return moving % 33 == 0; });
+  const cli::Answer answer = compare("flipped/results", {"--even-if", "--json"});
+  ASSERT_EQ(answer.exit_code, 1) << answer.err << answer.out;
+  const auto json = nlohmann::json::parse(answer.out);
+  EXPECT_FALSE(json.at("passed").get<bool>());
+  EXPECT_LT(json.at("checks").at(0).at("difference").get<double>(), -0.008);
+  EXPECT_THAT(compare("flipped/results", {"--even-if"}).out, HasSubstr("REGRESSION"));
+  EXPECT_EQ(compare("flipped/results", {"--even-if", "--max-drop", "20"}).exit_code, 0);
+}
+
+TEST_F(Compare, RefusesUnlikeResultsUnlessTold) {
+  run_again("coarse", {"--set", "voxel_size_m=0.4"});
+  const cli::Answer setting = compare("coarse");
+  EXPECT_EQ(setting.exit_code, 3);
+  EXPECT_THAT(setting.err, HasSubstr("voxel 0.4 m"));
+  EXPECT_NE(compare("coarse", {"--even-if", "--max-drop", "100"}).exit_code, 3);
+
+  run_again("other-protocol", {"--protocol", "mapmos"});
+  EXPECT_THAT(compare("other-protocol").err, HasSubstr("protocol is semantickitti-mos and mapmos"));
+
+  run_again("later", {"--variant", "release-2025"});
+  EXPECT_THAT(compare("later").err, HasSubstr("release-2025"));
+}
+
+TEST_F(Compare, RefusesOtherInputAndOtherScans) {
+  fs::remove(folder_ / "room/labels/000003.label");
+  run_again("unlabelled", {});
+  const cli::Answer scans = compare("unlabelled");
+  EXPECT_EQ(scans.exit_code, 3);
+  EXPECT_THAT(scans.err, HasSubstr("sequence room: scan 000003 is only in the first run"));
+  EXPECT_THAT(scans.err, HasSubstr("fingerprints of the scans differ"));
+  const cli::Answer even_if = compare("unlabelled", {"--even-if"});
+  EXPECT_EQ(even_if.exit_code, 0) << even_if.err;
+  EXPECT_THAT(even_if.out, HasSubstr("11 paired scans"));
+}
+
+TEST_F(Compare, RefusesWhatIsNoResult) {
+  EXPECT_EQ(compare("nowhere").exit_code, 3);
+  EXPECT_EQ(compare("out", {"--max-drop", "much"}).exit_code, 2);
+  fs::create_directories(folder_ / "empty");
+  EXPECT_THAT(compare("empty").err, HasSubstr("holds no result.json"));
+  folder_.write("broken/room/result.json", "{\"scans\": 3}");
+  const cli::Answer broken = compare("broken");
+  EXPECT_EQ(broken.exit_code, 3);
+  EXPECT_THAT(broken.err, HasSubstr("broken/room/result.json"));
+}
+
+TEST_F(Compare, BlessReplacesTheBaselineAndChangesNothingWhenRepeated) {
+  const fs::path accepted = folder_ / "baseline/room/result.json";
+  const std::string before = read_file(accepted);
+  EXPECT_EQ(before.find("timing"), std::string::npos);
+  const cli::Answer again =
+      cli::run({"bless", (folder_ / "out").string(), (folder_ / "baseline").string()});
+  ASSERT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_THAT(again.out, HasSubstr("12 paired scans"));
+  EXPECT_EQ(read_file(accepted), before);
+
+  run_again("coarse", {"--set", "voxel_size_m=0.4"});
+  ASSERT_EQ(
+      cli::run({"bless", (folder_ / "coarse").string(), (folder_ / "baseline").string()}).exit_code,
+      0);
+  EXPECT_EQ(compare("coarse").exit_code, 0);
+  EXPECT_EQ(compare("out").exit_code, 3);
+}
+
+TEST_F(Compare, StatsGiveIntervalsAndAPairedDifference) {
+  const cli::Answer one = cli::run({"stats", (folder_ / "out").string(), "--json", "--per-scan"});
+  ASSERT_EQ(one.exit_code, 0) << one.err;
+  const auto json = nlohmann::json::parse(one.out);
+  const auto iou = json.at("all").at("iou");
+  EXPECT_LE(iou.at("low"), iou.at("value"));
+  EXPECT_GE(iou.at("high"), iou.at("value"));
+  ASSERT_EQ(json.at("scans").size(), 12U);
+  EXPECT_EQ(json.at("scans").at(5).at("scan"), "000005");
+
+  const cli::Answer csv = cli::run({"stats", (folder_ / "out").string(), "--csv"});
+  EXPECT_EQ(std::ranges::count(csv.out, '\n'), 13);
+  EXPECT_THAT(csv.out, HasSubstr("room,000005,8640,"));
+
+  run_again("coarse", {"--set", "voxel_size_m=0.4"});
+  const cli::Answer two =
+      cli::run({"stats", (folder_ / "out").string(), (folder_ / "coarse").string(), "--json"});
+  ASSERT_EQ(two.exit_code, 0) << two.err;
+  EXPECT_EQ(nlohmann::json::parse(two.out).at("paired_scans"), 12);
+  run_again("other-protocol", {"--protocol", "mapmos"});
+  EXPECT_EQ(cli::run({"stats", (folder_ / "out").string(), (folder_ / "other-protocol").string()})
+                .exit_code,
+            3);
+}
+
+}  // namespace
+}  // namespace mosbench

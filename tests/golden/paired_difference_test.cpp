@@ -1,0 +1,42 @@
+// The authors' labels of the same real scans, online and delayed by ten scans.
+#include <gtest/gtest.h>
+
+#include "eval/bootstrap.hpp"
+#include "eval/confusion.hpp"
+#include "tests/parity_cases.hpp"
+
+namespace mosbench {
+namespace {
+
+SequenceCounts counts_of(const std::string& name) {
+  for (const parity::ParityCase& parity : parity::parity_cases()) {
+    if (parity.name != name) continue;
+    SequenceCounts counts;
+    for (const parity::Counts& scan : parity.per_scan_unlabelled_ignored) {
+      Confusion confusion;
+      confusion.tp = scan.tp;
+      confusion.fp = scan.fp;
+      confusion.fn = scan.fn;
+      counts.push_back(confusion);
+    }
+    return counts;
+  }
+  return {};
+}
+
+TEST(PairedDifference, OfOnlineAndDelayedLabelsOfRealScansIsFound) {
+  if (!parity::shared_parity_folder()) GTEST_SKIP() << parity::kSkipMessage;
+  const Protocol& protocol = protocol_named("semantickitti-mos");
+  const std::vector<SequenceCounts> online = {counts_of("kitti_r50")};
+  const std::vector<SequenceCounts> delayed = {counts_of("kitti_r50_delay10")};
+  ASSERT_EQ(online[0].size(), 50U);
+  EXPECT_NEAR(estimate(protocol, online)[Metric::kIou].value.value(), 0.6229043109387876, 1e-15);
+  const Difference iou = paired_difference(protocol, online, delayed)[Metric::kIou];
+  const double expected = aggregate(protocol, delayed)[0] - aggregate(protocol, online)[0];
+  EXPECT_DOUBLE_EQ(iou.value.value(), expected);
+  EXPECT_LT(iou.interval->low, expected);
+  EXPECT_GT(iou.interval->high, expected);
+}
+
+}  // namespace
+}  // namespace mosbench
