@@ -12,6 +12,9 @@ namespace {
 /// which Student's t makes up.
 constexpr double kForCoverage = 2.0;
 
+/// Fewer blocks say nothing of how different they are.
+constexpr std::size_t kFewestBlocks = 6;
+
 /// Covariances of the series with itself shifted by 0, 1, ... `lags` places.
 std::vector<double> autocovariances(std::span<const double> series, std::size_t lags) {
   double mean = 0.0;
@@ -46,7 +49,7 @@ double window(double x) { return std::clamp(2.0 * (1.0 - x), 0.0, 1.0); }
 
 std::size_t block_length(std::span<const double> series) {
   const auto n = static_cast<double>(series.size());
-  const std::size_t longest = series.size() / 3;
+  const std::size_t longest = series.size() / kFewestBlocks;
   if (longest < 2) return 1;
   const auto run = static_cast<std::size_t>(std::max(5.0, std::ceil(std::sqrt(std::log10(n)))));
   const std::size_t lags =

@@ -67,12 +67,24 @@ Verdict judge(const TableCell& cell) {
   return within ? Verdict::kWithin : Verdict::kOutside;
 }
 
-std::vector<std::string> how_to_fill(const PaperTable& table, const TableColumn& column) {
+/// The command that gives a row.
+std::string command_for(const PaperTable& table, const PublishedCell& cell) {
+  if (!is_own(cell)) return "then: mosbench score DIR --predictions LABELS --method " + cell.method;
+  if (cell.variant.empty()) return "no variant of this program is that one";
+  if (cell.variant == "paper-2024") return "then: " + std::string(table.command);
+  return fmt::format(
+      "then: mosbench run DIR --variant {} --set voxel_size_m={:g} max_range_m={:g} --protocol {}",
+      cell.variant, cell.voxel_size_m.value_or(0.2), cell.max_range_m.value_or(120.0),
+      cell.protocol);
+}
+
+std::vector<std::string> how_to_fill(const PaperTable& table, const TableColumn& column,
+                                     const PublishedCell& cell) {
   std::string sequences;
   for (const std::string_view name : column.sequences) {
     sequences += (sequences.empty() ? "" : ", ") + std::string(name);
   }
-  return {fmt::format("needs {} of {}; then: {}", sequences, table.download, table.command)};
+  return {fmt::format("needs {} of {}; {}", sequences, table.download, command_for(table, cell))};
 }
 
 TableCell measured_cell(const PaperTable& table, const TableColumn& column, const ResultSet& run,
@@ -83,7 +95,7 @@ TableCell measured_cell(const PaperTable& table, const TableColumn& column, cons
   cell.published = std::move(published);
   const ResultSet part = in_column(run, column);
   if (part.sequences.empty()) {
-    cell.reasons = how_to_fill(table, column);
+    if (cell.published) cell.reasons = how_to_fill(table, column, *cell.published);
     return cell;
   }
   cell.measured = estimate(*run.front().protocol, counts_of(part))[Metric::kIou];
@@ -113,7 +125,7 @@ TableRow published_row(const PaperTable& table, const PublishedRow& row) {
     TableCell cell;
     cell.column = column.name;
     cell.published = find_cell(row, column.name);
-    if (is_own(first)) cell.reasons = how_to_fill(table, column);
+    if (is_own(first)) cell.reasons = how_to_fill(table, column, first);
     filled.cells.push_back(std::move(cell));
   }
   return filled;
@@ -121,7 +133,9 @@ TableRow published_row(const PaperTable& table, const PublishedRow& row) {
 
 TableRow measured_row(const PaperTable& table, const ResultSet& run, const PublishedRow* row) {
   const SequenceResult& first = run.front();
-  TableRow filled{row == nullptr ? "" : row->cells.front().section,
+  const bool same_rules =
+      row != nullptr && row->cells.front().protocol == std::string(first.protocol->name);
+  TableRow filled{same_rules ? row->cells.front().section : "",
                   first.method,
                   first.setting,
                   std::string(first.protocol->name),
