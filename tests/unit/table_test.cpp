@@ -47,7 +47,7 @@ ResultSet station(std::uint64_t found) {
           {sequence("station/sequence_1", 10, found), sequence("station/sequence_2", 10, found)}};
 }
 
-const TableCell& cell_of(const FilledTable& table, std::size_t column = 0) {
+TableCell cell_of(const FilledTable& table, std::size_t column = 0) {
   for (const TableRow& row : table.rows) {
     if (!row.results.empty()) return row.cells.at(column);
   }
@@ -95,7 +95,7 @@ TEST(Published, AgreesWithItsAverages) {
 }
 
 TEST(FillTable, SaysWithinWhereThePublishedValueLiesInTheInterval) {
-  const TableCell& cell = cell_of(filled({station(889)}));
+  const TableCell cell = cell_of(filled({station(889)}));
   EXPECT_EQ(cell.verdict, Verdict::kWithin) << testing::PrintToString(cell.reasons);
   EXPECT_NEAR(cell.measured->value.value(), 0.889, 1e-12);
   EXPECT_NEAR(cell.difference.value(), 0.0, 1e-12);
@@ -149,7 +149,7 @@ TEST(FillTable, SaysHowToFillWhatIsEmpty) {
       }
     }
   }
-  const TableCell& shopville = cell_of(filled({station(889)}), 1);
+  const TableCell shopville = cell_of(filled({station(889)}), 1);
   EXPECT_EQ(shopville.verdict, Verdict::kPublishedOnly);
   EXPECT_THAT(shopville.reasons.front(), HasSubstr("shopville/sequence_1"));
 }
