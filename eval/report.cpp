@@ -6,6 +6,7 @@
 #include "eval/point_planes.hpp"
 #include "eval/protocol.hpp"
 #include "eval/report_asset.hpp"
+#include "eval/report_numbers.hpp"
 #include "eval/report_scans.hpp"
 #include "mosbench_version.hpp"
 
@@ -53,16 +54,27 @@ ordered_json result_json(const FoundResult& result) {
           name.is_string() ? find_protocol(name.get<std::string>()) : nullptr) {
     json["protocol_summary"] = protocol->summary;
   }
+  json["estimates"] = estimates_of(result);
   json["result"] = content;
   return json;
 }
 
-ordered_json content_without_points(const std::vector<FoundResult>& results,
+std::vector<FoundResult> find_all(const std::vector<std::filesystem::path>& inputs) {
+  std::vector<FoundResult> results;
+  for (const std::filesystem::path& input : inputs) {
+    for (FoundResult& result : find_results(input)) results.push_back(std::move(result));
+  }
+  return results;
+}
+
+ordered_json content_without_points(const std::vector<std::filesystem::path>& inputs,
+                                    const std::vector<FoundResult>& results,
                                     const ReportOptions& options) {
   ordered_json json = {{"format", 1},
                        {"version", std::string(kMosbenchVersion)},
                        {"position_step_m", kPositionStep_m},
                        {"max_mb", options.max_mb},
+                       {"tables", covered_tables(inputs)},
                        {"clouds", ordered_json::array()},
                        {"results", ordered_json::array()}};
   for (const FoundResult& result : results) json["results"].push_back(result_json(result));
@@ -97,17 +109,28 @@ std::string page(const ordered_json& content, const std::vector<std::string>& bl
 
 }  // namespace
 
-Report build_report(const std::vector<FoundResult>& results, const ReportOptions& options) {
-  ordered_json content = content_without_points(results, options);
-  if (options.scans.none()) return {page(content, {}), {"the file holds no points (--scans none)"}};
-  const ReportScans scans =
-      choose_report_scans(results, options, room_for_points(content, results, options));
+Report build_report(const std::vector<std::filesystem::path>& inputs,
+                    const ReportOptions& options) {
+  const std::vector<FoundResult> results = find_all(inputs);
+  ordered_json content = content_without_points(inputs, results, options);
+  if (options.scans.none()) {
+    return {page(content, {}), results.size(), {"the file holds no points (--scans none)"}};
+  }
+  std::vector<ResultScans> sources;
+  sources.reserve(results.size());
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    sources.emplace_back(results[i], options.dataset_root);
+    content["results"][i]["breakdown"] = breakdown_of(sources[i]);
+    content["results"][i]["protocols"] = protocols_of(sources[i]);
+  }
+  const ReportScans scans = choose_report_scans(results, sources, options.scans,
+                                                room_for_points(content, results, options));
   content["clouds"] = scans.clouds;
   for (std::size_t i = 0; i < results.size(); ++i) {
     content["results"][i]["cloud"] = scans.results[i].cloud;
     content["results"][i]["outcomes"] = scans.results[i].outcome_blocks;
   }
-  return {page(content, scans.blocks), scans.remarks};
+  return {page(content, scans.blocks), results.size(), scans.remarks};
 }
 
 }  // namespace mosbench

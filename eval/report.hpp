@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "eval/result_scans.hpp"
 #include "eval/scan_choice.hpp"
 
 namespace mosbench {
@@ -20,11 +19,13 @@ struct ReportOptions {
 /// A page and what has to be said about it.
 struct Report {
   std::string html;
+  std::size_t results = 0;
   std::vector<std::string> remarks;  ///< one sentence per sequence of which scans were left out
 };
 
-/// One self-contained page about `results`. Equal results and scans give equal bytes. Throws
-/// DataError as ResultScans does, UsageError when `max_mb` has no room for the numbers alone.
-Report build_report(const std::vector<FoundResult>& results, const ReportOptions& options);
+/// One self-contained page about the results in and below `inputs`. Equal results and scans give
+/// equal bytes. Throws DataError as find_results and ResultScans do, UsageError when `max_mb` has
+/// no room for the numbers alone.
+Report build_report(const std::vector<std::filesystem::path>& inputs, const ReportOptions& options);
 
 }  // namespace mosbench

@@ -38,14 +38,10 @@ struct Options {
 
 std::string write_report(Options& options) {
   options.report.scans = ScanChoice(options.scans);
-  std::vector<FoundResult> results;
-  for (const std::filesystem::path& input : options.inputs) {
-    for (FoundResult& result : find_results(input)) results.push_back(std::move(result));
-  }
-  const Report report = build_report(results, options.report);
+  const Report report = build_report(options.inputs, options.report);
   write_file_atomic(options.out, report.html);
-  std::string text = fmt::format("report of {} {} in {}, {:.1f} MB\n", results.size(),
-                                 results.size() == 1 ? "result" : "results", options.out.string(),
+  std::string text = fmt::format("report of {} {} in {}, {:.1f} MB\n", report.results,
+                                 report.results == 1 ? "result" : "results", options.out.string(),
                                  static_cast<double>(report.html.size()) / 1e6);
   for (const std::string& remark : report.remarks) text += remark + '\n';
   return text;

@@ -28,7 +28,6 @@ struct PackedScan {
 
 struct Cloud {
   std::vector<std::size_t> members;  ///< positions in the results
-  std::vector<ResultScans> sources;  ///< one per member
   std::vector<std::size_t> wanted;
   std::size_t tried = 0;  ///< of wanted
   std::vector<PackedScan> packed;
@@ -48,7 +47,7 @@ std::vector<std::size_t> wishes_in_turn(const std::vector<std::vector<std::size_
 }
 
 std::vector<Cloud> group_by_frames(const std::vector<FoundResult>& results,
-                                   const ReportOptions& options) {
+                                   const ScanChoice& choice) {
   std::vector<Cloud> clouds;
   for (std::size_t i = 0; i < results.size(); ++i) {
     const auto same = std::ranges::find_if(clouds, [&](const Cloud& cloud) {
@@ -58,12 +57,11 @@ std::vector<Cloud> group_by_frames(const std::vector<FoundResult>& results,
     });
     Cloud& cloud = same == clouds.end() ? clouds.emplace_back() : *same;
     cloud.members.push_back(i);
-    cloud.sources.emplace_back(results[i], options.dataset_root);
   }
   for (Cloud& cloud : clouds) {
     std::vector<std::vector<std::size_t>> wishes;
     for (const std::size_t i : cloud.members) {
-      wishes.push_back(options.scans.wanted(results[i].file.rows.scans));
+      wishes.push_back(choice.wanted(results[i].file.rows.scans));
     }
     cloud.wanted = wishes_in_turn(wishes);
   }
@@ -78,10 +76,11 @@ ordered_json pose_json(const Pose& pose) {
   return numbers;
 }
 
-PackedScan pack(const Cloud& cloud, std::size_t scan_index) {
+PackedScan pack(const Cloud& cloud, const std::vector<ResultScans>& sources,
+                std::size_t scan_index) {
   PackedScan packed{scan_index, {}, {}, {}};
-  for (const ResultScans& source : cloud.sources) {
-    const JudgedScan scan = source.read(scan_index);
+  for (const std::size_t member : cloud.members) {
+    const JudgedScan scan = sources[member].read(scan_index);
     if (packed.positions.empty()) {
       packed.header = {{"index", scan_index},
                        {"stem", scan.frame.stem},
@@ -94,7 +93,8 @@ PackedScan pack(const Cloud& cloud, std::size_t scan_index) {
   return packed;
 }
 
-void pack_until_full(std::vector<Cloud>& clouds, std::size_t max_bytes) {
+void pack_until_full(std::vector<Cloud>& clouds, const std::vector<ResultScans>& sources,
+                     std::size_t max_bytes) {
   std::size_t wanted = 0, bytes = 0;
   for (const Cloud& cloud : clouds) wanted += cloud.wanted.size();
   Progress progress("report", wanted);
@@ -103,7 +103,7 @@ void pack_until_full(std::vector<Cloud>& clouds, std::size_t max_bytes) {
     any = false;
     for (Cloud& cloud : clouds) {
       if (cloud.full || cloud.tried == cloud.wanted.size()) continue;
-      PackedScan scan = pack(cloud, cloud.wanted[cloud.tried++]);
+      PackedScan scan = pack(cloud, sources, cloud.wanted[cloud.tried++]);
       cloud.full = bytes + scan.bytes() > max_bytes;
       if (cloud.full) continue;
       any = true;
@@ -126,11 +126,12 @@ std::string left_out(const Cloud& cloud, std::size_t scans) {
 }  // namespace
 
 ReportScans choose_report_scans(const std::vector<FoundResult>& results,
-                                const ReportOptions& options, std::size_t max_bytes) {
+                                const std::vector<ResultScans>& sources, const ScanChoice& choice,
+                                std::size_t max_bytes) {
   ReportScans report;
   report.results.resize(results.size());
-  std::vector<Cloud> clouds = group_by_frames(results, options);
-  pack_until_full(clouds, max_bytes);
+  std::vector<Cloud> clouds = group_by_frames(results, choice);
+  pack_until_full(clouds, sources, max_bytes);
   for (Cloud& cloud : clouds) {
     std::ranges::sort(cloud.packed, {}, &PackedScan::scan_index);
     const FoundResult& first = results[cloud.members.front()];

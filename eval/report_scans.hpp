@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "eval/report.hpp"
+#include "eval/result_scans.hpp"
 
 namespace mosbench {
 
@@ -24,8 +25,9 @@ struct ReportScans {
 };
 
 /// Takes scans in the order in which they are wanted, from all clouds in turn, until the next would
-/// bring the blocks above `max_bytes`.
+/// bring the blocks above `max_bytes`. `sources` are the scans of `results`, one each.
 ReportScans choose_report_scans(const std::vector<FoundResult>& results,
-                                const ReportOptions& options, std::size_t max_bytes);
+                                const std::vector<ResultScans>& sources, const ScanChoice& choice,
+                                std::size_t max_bytes);
 
 }  // namespace mosbench

@@ -109,12 +109,12 @@ std::vector<FoundResult> find_results(const fs::path& path) {
 ResultScans::ResultScans(const FoundResult& result, const std::optional<fs::path>& dataset_root)
     : result_(result),
       dataset_(open_dataset_of(result, dataset_root)),
-      protocol_(nullptr),
+      rule_{},
       label_folder_(result.folder / "labels") {
   from_json(result, [&](const nlohmann::ordered_json& json) {
     const nlohmann::ordered_json& protocol = json.at("protocol");
-    protocol_ = &protocol_named(protocol.at("name").get<std::string>());
-    range_ = {protocol.at("min_range_m"), protocol.at("max_range_m")};
+    rule_ = {&protocol_named(protocol.at("name").get<std::string>()),
+             {protocol.at("min_range_m"), protocol.at("max_range_m")}};
   });
   check_same_scans(result, dataset_);
 }
@@ -125,10 +125,10 @@ JudgedScan ResultScans::read(std::size_t scan_index) const {
   const std::vector<std::uint32_t> labels = read_labels(label_file, scan.frame.points.size());
   const std::optional<Confusion>& recorded = result_.file.rows.scans[scan_index].counts;
   if (scan.frame.truth && recorded) {
-    const bool gated = protocol_->range_rule != RangeRule::kNone;
+    const bool gated = rule_.protocol->range_rule != RangeRule::kNone;
     scan.outcomes = point_outcomes(
-        *protocol_, *scan.frame.truth, labels,
-        gated ? std::span<const Point>(scan.frame.points) : std::span<const Point>(), range_);
+        *rule_.protocol, *scan.frame.truth, labels,
+        gated ? std::span<const Point>(scan.frame.points) : std::span<const Point>(), rule_.range);
   } else {
     scan.outcomes = outcomes_without_truth(labels);
   }

@@ -9,6 +9,7 @@
 #include "datasets/dataset.hpp"
 #include "eval/confusion.hpp"
 #include "eval/result_file.hpp"
+#include "eval/score_execute.hpp"
 
 namespace mosbench {
 
@@ -36,6 +37,10 @@ class ResultScans {
   /// not there or not what the run read, and when result.json does not say how it was scored.
   ResultScans(const FoundResult& result, const std::optional<std::filesystem::path>& dataset_root);
 
+  const Dataset& dataset() const { return dataset_; }
+  const std::filesystem::path& label_folder() const { return label_folder_; }
+  /// How the run was scored.
+  const ScoreRule& rule() const { return rule_; }
   const Sequence& sequence() const { return *dataset_.sequences.front(); }
   /// Throws DataError when the labels do not give the counts of result.json.
   JudgedScan read(std::size_t scan_index) const;
@@ -43,8 +48,7 @@ class ResultScans {
  private:
   const FoundResult& result_;
   Dataset dataset_;
-  const Protocol* protocol_;
-  RangeGate range_;
+  ScoreRule rule_;
   std::filesystem::path label_folder_;
 };
 

@@ -12,9 +12,12 @@ let browser;
 before(async () => (browser = await openBrowser()));
 after(() => browser.close());
 
-/** Every string of a JSON value, keys too, replaced. */
+// Names that the program knows or refuses.
+const KNOWN = ['sipailou', 'paper-2024'];
+
+/** Every string of a JSON value replaced. */
 function poisoned(value) {
-  if (typeof value === 'string') return EVIL;
+  if (typeof value === 'string') return KNOWN.includes(value) ? value : EVIL;
   if (Array.isArray(value)) return value.map(poisoned);
   if (value === null || typeof value !== 'object') return value;
   return Object.fromEntries(Object.entries(value).map(([key, inner]) => [key, poisoned(inner)]));

@@ -77,6 +77,25 @@ test('charts hold the numbers of result.json', async () => {
   refuseComplaints(page);
 });
 
+test('intervals, ranges, objects and protocols are those that the program tells', async () => {
+  const page = await openReport(browser, both);
+  const content = await page.evaluate(() => mosbenchReport.content.results[0]);
+  const answer = (...args) => JSON.parse(mosbench(...args, '--json'));
+  const [run, dataset] = [join(folder, 'online'), join(folder, 'sim')];
+  assert.deepEqual(content.estimates.iou, answer('stats', run).sequences[0].metrics.iou);
+  const breakdown = answer('breakdown', dataset, '--predictions', run, '--top', '50').sequences[0];
+  assert.deepEqual(content.breakdown, breakdown);
+  const own = content.protocols.find(({ name }) => name === online.protocol.name);
+  assert.equal(own.iou, online.summary.iou);
+  const ranges = await page.evaluate(() => mosbenchReport.charts.numbers('range'));
+  assert.equal(ranges.TP.reduce((a, b) => a + b), online.summary.tp);
+  assert.equal(ranges.FN.reduce((a, b) => a + b), online.summary.fn);
+  const objects = await page.evaluate(() => mosbenchReport.charts.numbers('objects'));
+  assert.deepEqual([...objects.recall].sort(), breakdown.objects.map(({ recall }) => recall).sort());
+  assert.ok(await page.getByText('Worst objects').isVisible());
+  refuseComplaints(page);
+});
+
 test('a click into a chart moves the 3-D view to that scan', async () => {
   const page = await openReport(browser, both);
   const chart = page.locator('[data-chart=counts] .u-over');

@@ -10,6 +10,11 @@ function axisStyle(theme) {
   return { stroke: text, font: '12px system-ui, sans-serif', grid: { stroke: guide, width: 0.5 }, ticks: { stroke: guide, width: 0.5 } };
 }
 
+/** 150k in place of 150,000, which has no room beside the chart. */
+function shortTicks(_, ticks) {
+  return ticks.map((tick) => (Math.abs(tick) >= 10000 ? `${tick / 1000}k` : tick.toLocaleString('en-US')));
+}
+
 /** A vertical line at the scan that the 3-D view shows. */
 function cursorAtScan(state) {
   return (plot) => {
@@ -65,7 +70,7 @@ export class Chart {
 
   #build(width) {
     const style = axisStyle(this.state.get('theme'));
-    const axes = [{ ...style, incrs: this.go ? SCAN_STEPS : undefined, ...this.options.xAxis }, { ...style, size: 58, ...this.options.yAxis }];
+    const axes = [{ ...style, incrs: this.go ? SCAN_STEPS : undefined, ...this.options.xAxis }, { ...style, size: 58, values: shortTicks, ...this.options.yAxis }];
     const draw = this.go ? [cursorAtScan(this.state)] : [];
     const options = {
       width,
@@ -86,7 +91,7 @@ export class Chart {
     const stroke = typeof colour === 'object' ? colour[this.state.get('theme')] : colour;
     return {
       label, stroke, fill: fill ? fill(stroke) : undefined, dash, width, paths, show,
-      points: points ?? { show: values.filter((v) => v !== null).length < 40, size: 4 },
+      points: points ? { fill: stroke, ...points } : { show: values.filter((v) => v !== null).length < 40, size: 4 },
       value: (_, __, ___, i) => (i === null || values[i] === null || values[i] === undefined ? '–' : this.options.text(values[i])),
     };
   }

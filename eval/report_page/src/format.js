@@ -12,3 +12,8 @@ export function fixed(number, digits, unit = '') {
   if (number === null || number === undefined) return '–';
   return `${number.toFixed(digits)}${unit ? ` ${unit}` : ''}`;
 }
+
+/** [low, high] of an estimate, or null where it has no interval. */
+export function intervalOf(estimate) {
+  return estimate && estimate.low !== null && estimate.low !== undefined ? [estimate.low, estimate.high] : null;
+}

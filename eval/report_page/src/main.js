@@ -8,7 +8,7 @@ import { notices } from './notices.js';
 import { readContent } from './payload.js';
 import { provenance } from './provenance.js';
 import { State } from './state.js';
-import { resultTables, summaryTable } from './tables.js';
+import { paperTables, resultTables, summaryTable } from './tables.js';
 import { preferredTheme } from './theme.js';
 import { tiles } from './tiles.js';
 import { toolbar } from './toolbar.js';
@@ -70,7 +70,7 @@ function start() {
   document.body.append(
     header(state, content, choose),
     element('main', {}, notices(state, content, clouds), tiles(state, content), section, charts.node,
-      summaryTable(content, choose), resultTables(state, content, go), provenance(state, content)),
+      summaryTable(content, choose), resultTables(state, content, go), paperTables(content), provenance(state, content)),
   );
   globalThis.mosbenchReport = { content, state, viewer, transport, charts };
 }

@@ -1,4 +1,4 @@
-import { count, fixed, percent } from './format.js';
+import { count, fixed, intervalOf, percent } from './format.js';
 import { hasCounts, iou, precision, recall } from './metrics.js';
 import { OUTCOMES, SERIES } from './theme.js';
 
@@ -16,7 +16,7 @@ export function metricsChart({ result, estimates }) {
   const { scans, summary } = result;
   if (!summary) return null;
   const mean = summary.iou;
-  const interval = estimates?.iou?.interval ?? null;
+  const interval = intervalOf(estimates?.iou);
   const series = [
     { label: 'IoU', values: perScan(scans, iou), colour: COLOURS.tp, width: 2 },
     { label: 'precision', values: perScan(scans, precision), colour: COLOURS.fp },

@@ -1,5 +1,5 @@
 import { element, table } from './dom.js';
-import { count, fixed, percent } from './format.js';
+import { count, fixed, intervalOf, percent } from './format.js';
 import { iou, worstScans } from './metrics.js';
 
 const AT_MOST = 12;
@@ -9,8 +9,9 @@ function block(title, note, body) {
 }
 
 function withInterval(value, estimate) {
-  if (!estimate?.interval) return percent(value);
-  return element('span', {}, percent(value), element('span', { class: 'hint' }, ` ${(100 * estimate.interval[0]).toFixed(1)}–${(100 * estimate.interval[1]).toFixed(1)}`));
+  const ends = intervalOf(estimate);
+  if (!ends) return percent(value);
+  return element('span', {}, percent(value), element('span', { class: 'hint' }, ` ${(100 * ends[0]).toFixed(1)}–${(100 * ends[1]).toFixed(1)}`));
 }
 
 /** A row per result; a click looks at it. */
@@ -58,8 +59,25 @@ export function missedObjectsTable(entry, go) {
 export function protocolsTable(entry) {
   const rows = entry.protocols ?? [];
   if (rows.length === 0) return null;
-  return block('By every protocol', 'The same labels, counted by the rules of each benchmark.', table(['protocol', 'IoU', 'precision', 'recall', 'as published', 'what sets it apart'],
-    rows.map(({ name, summary: s, why }) => [name, percent(s.iou), percent(s.precision), percent(s.recall), s.published_text, why])));
+  const own = entry.result.protocol.name;
+  const cells = rows.map(({ name, iou: value, published_text: text, tp, fp, fn, why }) => [
+    element(name === own ? 'strong' : 'span', {}, name), percent(value), text, count(tp), count(fp), count(fn), element('span', { class: 'why' }, why),
+  ]);
+  return block('By every protocol', 'The same labels, counted by the rules of each benchmark. The run was scored by the one in bold.', table(['protocol', 'IoU', 'as published', 'TP', 'FP', 'FN', 'why'], cells));
+}
+
+function paperCell({ published_percent: published, measured, low, high, verdict, reasons }) {
+  if (measured === null || measured === undefined) return published || '–';
+  const interval = low === null ? '' : ` [${(100 * low).toFixed(1)}, ${(100 * high).toFixed(1)}]`;
+  return element('span', { title: (reasons ?? []).join('; ') }, `${published || '–'} / `, element('strong', {}, `${(100 * measured).toFixed(1)}${interval}`), element('span', { class: 'hint' }, ` ${verdict}`));
+}
+
+/** Published tables with what these results put beside them. */
+export function paperTables(content) {
+  const shown = (content.tables ?? []).map(({ title, averaging, columns, rows }) =>
+    block(title, `IoU in percent, published / measured [95 % interval]; ${averaging}`, table(['method', 'setting', ...columns],
+      rows.map(({ method, setting, cells }) => [method, setting, ...cells.map(paperCell)]), { leftColumns: 2 })));
+  return element('div', { class: 'paper' }, ...shown);
 }
 
 /** Everything about the chosen result. */

@@ -1,12 +1,15 @@
 import { element } from './dom.js';
-import { count, fixed, percent } from './format.js';
+import { count, fixed, intervalOf, percent } from './format.js';
 
 function tile(name, value, note) {
   return element('div', { class: 'tile' }, element('span', { class: 'tile-name' }, name), element('span', { class: 'tile-value' }, value),
     note ? element('span', { class: 'hint' }, note) : null);
 }
 
-const interval = (estimate) => (estimate?.interval ? `95 %: ${percent(estimate.interval[0])} to ${percent(estimate.interval[1])}` : null);
+function interval(estimate) {
+  const ends = intervalOf(estimate);
+  return ends && `95 %: ${(100 * ends[0]).toFixed(1)} to ${percent(ends[1])}`;
+}
 
 /** The numbers one asks for first. */
 export function tiles(state, content) {

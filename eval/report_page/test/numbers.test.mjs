@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { count, fixed, percent } from '../src/format.js';
+import { count, fixed, intervalOf, percent } from '../src/format.js';
 import { iou, precision, recall, worstScans } from '../src/metrics.js';
 import { flatten } from '../src/provenance.js';
 import { costColumns, metricsChart, stagesChart } from '../src/scan_charts.js';
@@ -23,6 +23,10 @@ test('worst scans come by their false points, idle ones last, right ones and unl
 
 test('numbers read well, and nothing is not zero', () => {
   assert.deepEqual([percent(0.12345), percent(null), count(1234567), count(null), fixed(1.26, 1, 'ms'), fixed(undefined, 1)], ['12.3 %', 'undefined', '1,234,567', '–', '1.3 ms', '–']);
+});
+
+test('an estimate without interval has none', () => {
+  assert.deepEqual([intervalOf({ value: 1, low: null, high: null }), intervalOf(null), intervalOf({ low: 0, high: 1 })], [null, null, [0, 1]]);
 });
 
 test('provenance names nested values by their path', () => {
@@ -50,7 +54,7 @@ test('the chart of metrics has gaps where there is no truth, and a band where th
   const plain = metricsChart({ result: TIMED });
   assert.deepEqual(plain.series[0].values, [0.5, null]);
   assert.deepEqual(plain.options.bands, []);
-  const banded = metricsChart({ result: TIMED, estimates: { iou: { interval: [0.4, 0.6] } } });
+  const banded = metricsChart({ result: TIMED, estimates: { iou: { value: 0.5, low: 0.4, high: 0.6 } } });
   assert.deepEqual(banded.series.slice(4).map(({ values }) => values[0]), [0.4, 0.6]);
   assert.equal(metricsChart({ result: { ...TIMED, summary: null } }), null);
 });
