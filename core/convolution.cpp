@@ -113,21 +113,29 @@ ScoreField convolve(const VoxelizedScan& scan, const VoxelSet& changed, int kern
   return field;
 }
 
-std::vector<BlockMask> beside_unknown(const VoxelizedScan& scan,
-                                      std::span<const std::uint32_t> slots, int kernel_width_voxels,
-                                      VoxelMap& map, std::uint32_t scan_index, ThreadPool& pool) {
+VoxelSet beside_unknown(const VoxelizedScan& scan, std::span<const BlockIndex> blocks,
+                        std::span<const BlockIndex> more_blocks, int kernel_width_voxels,
+                        VoxelMap& map, std::uint32_t scan_index, ThreadPool& pool) {
+  std::vector<BlockIndex> asked(blocks.begin(), blocks.end());
+  asked.insert(asked.end(), more_blocks.begin(), more_blocks.end());
+  const std::vector<std::uint32_t> slots = slots_around(scan, asked);
   const std::vector<std::uint32_t> map_slots =
       refreshed_map_slots(scan, slots, map, scan_index, pool);
-  std::vector<BlockMask> beside(slots.size());
+  std::vector<BlockMask> masks(slots.size());
   pool.for_ranges(slots.size(), 16, [&](std::size_t begin, std::size_t end, unsigned) {
     HaloRows rows;
     for (std::size_t i = begin; i < end; ++i) {
       gather_known(map, std::span(map_slots).subspan(i * 27, 27), (kernel_width_voxels - 1) / 2,
                    rows);
       invert(rows);
-      beside[i] = dilate(rows) & scan.occupied[slots[i]];
+      masks[i] = dilate(rows) & scan.occupied[slots[i]];
     }
   });
+  VoxelSet beside;
+  for (std::size_t i = 0; i < slots.size(); ++i) {
+    if (!masks[i].any()) continue;
+    beside.masks[beside.insert(scan.measured.blocks[slots[i]])] = masks[i];
+  }
   return beside;
 }
 

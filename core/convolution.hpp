@@ -17,11 +17,11 @@ namespace mosbench {
 ScoreField convolve(const VoxelizedScan& scan, const VoxelSet& changed, int kernel_width_voxels,
                     VoxelMap& map, std::uint32_t scan_index, ThreadPool& pool);
 
-/// Occupied voxels of the given blocks (slots of scan.measured) that have an unknown voxel among
-/// their m^3 neighbours; runs together with `slots`.
-std::vector<BlockMask> beside_unknown(const VoxelizedScan& scan,
-                                      std::span<const std::uint32_t> slots, int kernel_width_voxels,
-                                      VoxelMap& map, std::uint32_t scan_index, ThreadPool& pool);
+/// Occupied voxels in and beside the blocks of either list that have an unknown voxel among their
+/// m^3 neighbours.
+VoxelSet beside_unknown(const VoxelizedScan& scan, std::span<const BlockIndex> blocks,
+                        std::span<const BlockIndex> more_blocks, int kernel_width_voxels,
+                        VoxelMap& map, std::uint32_t scan_index, ThreadPool& pool);
 
 /// Slots of scan.measured of the given blocks and of all their neighbours, without repeats.
 std::vector<std::uint32_t> slots_around(const VoxelizedScan& scan,

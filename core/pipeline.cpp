@@ -3,7 +3,6 @@
 #include <time.h>
 
 #include <chrono>
-#include <cmath>
 #include <deque>
 #include <stdexcept>
 
@@ -60,15 +59,6 @@ template <typename Work>
 auto timed(const StageRecord& record, Stage stage, Work&& work) {
   const StageClock clock(record, stage);
   return work();
-}
-
-/// Whole blocks near the first sensor position, so that voxel indices stay small.
-VoxelGrid grid_around(const Eigen::Vector3d& sensor_m, double voxel_size_m) {
-  VoxelGrid grid{.voxel_size_m = voxel_size_m};
-  for (int axis = 0; axis < 3; ++axis) {
-    grid.origin_voxels[axis] = std::floor(sensor_m[axis] / voxel_size_m / kBlockSide) * kBlockSide;
-  }
-  return grid;
 }
 
 /// What the method remembers between scans.
@@ -167,27 +157,15 @@ void Pipeline::State::detect(const VoxelizedScan& scan, std::uint32_t k, ScanRes
   VoxelSet from_region;
   if (variant == Variant::kPaper2024) {
     const StageClock clock(record, Stage::kDynamicRegion);
-    std::vector<BlockIndex> asked = region.blocks();
-    asked.insert(asked.end(), dynamic.blocks.begin(), dynamic.blocks.end());
-    const std::vector<std::uint32_t> slots = slots_around(scan, asked);
-    const std::vector<BlockMask> masks =
-        mosbench::beside_unknown(scan, slots, width, memory->map, k, pool);
-    VoxelSet beside;
-    for (std::size_t i = 0; i < slots.size(); ++i) {
-      beside.masks[beside.insert(scan.measured.blocks[slots[i]])] = masks[i];
-    }
+    const VoxelSet beside =
+        beside_unknown(scan, region.blocks(), dynamic.blocks, width, memory->map, k, pool);
     from_region = region.back_end(scan, beside, width, pool);
     region.update({scan, dynamic, from_region, beside, result.threshold}, k);
   }
   const StageClock clock(record, Stage::kLabels);
-  VoxelSet moving;
-  if (shows_motion(result.threshold, config.min_otsu_score)) {
-    moving = dynamic;
-    for (std::size_t i = 0; i < from_region.block_count(); ++i) {
-      BlockMask& mask = moving.masks[moving.insert(from_region.blocks[i])];
-      mask = mask | from_region.masks[i];
-    }
-  }
+  const VoxelSet moving = shows_motion(result.threshold, config.min_otsu_score)
+                              ? united(dynamic, from_region)
+                              : VoxelSet{};
   result.labels = project_labels(scan, moving);
 }
 

@@ -65,6 +65,12 @@ RaycastScratch::~RaycastScratch() = default;
 RaycastScratch::RaycastScratch(RaycastScratch&&) noexcept = default;
 RaycastScratch& RaycastScratch::operator=(RaycastScratch&&) noexcept = default;
 
+std::size_t RaycastScratch::steps() const {
+  return std::accumulate(
+      rays.begin(), rays.end(), std::size_t{0},
+      [](std::size_t sum, const Ray& ray) { return sum + static_cast<std::size_t>(ray.visits); });
+}
+
 std::size_t RaycastScratch::memory_bytes() const {
   std::size_t bytes = (rays.capacity() + sorted_rays.capacity()) * sizeof(Ray);
   for (const Window& window : windows) {
@@ -145,38 +151,37 @@ std::int32_t visits_within_range(const Ray& ray, double range_sq_m2, double voxe
   return step + 1;
 }
 
+/// A box around every voxel that will be visited, relative to the sensor's voxel.
 struct Bounds {
-  std::array<std::int32_t, 3> low{0, 0, 0}, high{0, 0, 0};  ///< relative to the sensor's voxel
-  void include(std::int32_t dx, std::int32_t dy, std::int32_t dz) {
-    const std::array<std::int32_t, 3> d{dx, dy, dz};
+  std::array<std::int32_t, 3> low{0, 0, 0}, high{0, 0, 0};
+
+  /// A block of measured voxels; rays end `reach` voxels from the sensor.
+  void include(const std::array<std::int32_t, 3>& corner, std::int32_t reach) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      low[axis] = std::min(low[axis], d[axis]);
-      high[axis] = std::max(high[axis], d[axis]);
+      low[axis] = std::min(low[axis], std::max(corner[axis], -reach));
+      high[axis] = std::max(high[axis], std::min(corner[axis] + kBlockSide - 1, reach));
     }
   }
 };
 
-/// One ray per measured voxel; grows `bounds` around every voxel that will be visited.
+/// One ray per measured voxel.
 void collect_rays(const VoxelSet& measured, const Voxel& sensor, double voxel_size_m,
                   double max_range_m, std::vector<Ray>& rays, Bounds& bounds) {
   const double range_sq_m2 = max_range_m * max_range_m;
+  const auto reach = static_cast<std::int32_t>(std::ceil(max_range_m / voxel_size_m)) + 1;
   rays.clear();
   for (std::size_t slot = 0; slot < measured.block_count(); ++slot) {
-    const Voxel corner = voxel_at(measured.blocks[slot], 0);
+    const Voxel first = voxel_at(measured.blocks[slot], 0);
+    const std::array<std::int32_t, 3> corner{first.x - sensor.x, first.y - sensor.y,
+                                             first.z - sensor.z};
+    bounds.include(corner, reach);
     for_each_cell(measured.masks[slot], [&](std::uint32_t cell) {
-      Ray ray{corner.x + static_cast<std::int32_t>(cell & 7) - sensor.x,
-              corner.y + static_cast<std::int32_t>((cell >> 3) & 7) - sensor.y,
-              corner.z + static_cast<std::int32_t>(cell >> 6) - sensor.z, 0};
-      const std::int32_t longest = longest_side(ray);
-      if (distance_sq_m2(ray.dx, ray.dy, ray.dz, voxel_size_m) <= range_sq_m2) {
-        ray.visits = longest + 1;
-        bounds.include(ray.dx, ray.dy, ray.dz);
-      } else {
-        ray.visits = visits_within_range(ray, range_sq_m2, voxel_size_m);
-        const Line line = line_of(longest);
-        bounds.include(line.moves(ray.dx, ray.visits - 1), line.moves(ray.dy, ray.visits - 1),
-                       line.moves(ray.dz, ray.visits - 1));
-      }
+      Ray ray{corner[0] + static_cast<std::int32_t>(cell & 7),
+              corner[1] + static_cast<std::int32_t>((cell >> 3) & 7),
+              corner[2] + static_cast<std::int32_t>(cell >> 6), 0};
+      const bool ends_inside = distance_sq_m2(ray.dx, ray.dy, ray.dz, voxel_size_m) <= range_sq_m2;
+      ray.visits =
+          ends_inside ? longest_side(ray) + 1 : visits_within_range(ray, range_sq_m2, voxel_size_m);
       rays.push_back(ray);
     });
   }

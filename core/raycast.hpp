@@ -28,6 +28,8 @@ class RaycastScratch {
   RaycastScratch(RaycastScratch&&) noexcept;
   RaycastScratch& operator=(RaycastScratch&&) noexcept;
 
+  /// Voxels visited by the rays of the last scan, each ray's own.
+  std::size_t steps() const;
   /// Resident bytes: of the windows only what rays ever touched.
   std::size_t memory_bytes() const;
 

@@ -51,4 +51,12 @@ VoxelSet select_dynamic(const VoxelizedScan& scan, const SumField& sums,
   return dilated;
 }
 
+VoxelSet united(VoxelSet some, const VoxelSet& more) {
+  for (std::size_t i = 0; i < more.block_count(); ++i) {
+    BlockMask& mask = some.masks[some.insert(more.blocks[i])];
+    mask = mask | more.masks[i];
+  }
+  return some;
+}
+
 }  // namespace mosbench

@@ -26,4 +26,7 @@ VoxelSet select_dynamic(const VoxelizedScan& scan, const SumField& sums,
                         std::optional<double> threshold, const VoxelSet& carried,
                         int min_otsu_score);
 
+/// The voxels in either set.
+VoxelSet united(VoxelSet some, const VoxelSet& more);
+
 }  // namespace mosbench

@@ -124,6 +124,14 @@ void merge(std::vector<Part>& parts, std::span<std::uint32_t> voxel_of_point) {
 
 }  // namespace
 
+VoxelGrid grid_around(const Eigen::Vector3d& sensor_m, double voxel_size_m) {
+  VoxelGrid grid{.voxel_size_m = voxel_size_m};
+  for (int axis = 0; axis < 3; ++axis) {
+    grid.origin_voxels[axis] = std::floor(sensor_m[axis] / voxel_size_m / kBlockSide) * kBlockSide;
+  }
+  return grid;
+}
+
 Voxel voxel_of(const Eigen::Vector3d& position_m, const VoxelGrid& grid) {
   Voxel voxel;
   const std::array<std::int32_t*, 3> coordinates{&voxel.x, &voxel.y, &voxel.z};

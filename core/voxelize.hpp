@@ -34,6 +34,9 @@ struct VoxelizedScan {
   }
 };
 
+/// Whole blocks near the first sensor position, so that voxel indices stay small.
+VoxelGrid grid_around(const Eigen::Vector3d& sensor_m, double voxel_size_m);
+
 /// algorithm step 1: points farther than min_range from the sensor, in the map frame, in voxels.
 /// Throws std::range_error naming the first point whose voxel lies more than 2^19 voxels from the
 /// sensor's or 2^23 from the grid's origin.

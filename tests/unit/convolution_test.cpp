@@ -99,11 +99,13 @@ TEST(Convolution, EqualsTheTripleLoopForEveryKernel) {
       ThreadPool pool(round % 2 == 0 ? 1 : 3);
       const VoxelizedScan scan = scan_of(occupied, {{9, 9, 9}, {-12, 0, 0}});
       const ScoreField scores = convolve(scan, voxel_set(changed), width, known.map(), 1, pool);
-      std::vector<std::uint32_t> slots(scan.measured.block_count());
-      for (std::uint32_t slot = 0; slot < slots.size(); ++slot) slots[slot] = slot;
-      const std::vector<BlockMask> beside =
-          beside_unknown(scan, slots, width, known.map(), 1, pool);
-      const Triples beside_voxels = triples(scan.measured.blocks, beside);
+      // Every other block from either list.
+      std::vector<BlockIndex> even, odd;
+      for (const BlockIndex& block : scan.measured.blocks) {
+        (even.size() > odd.size() ? odd : even).push_back(block);
+      }
+      const Triples beside_voxels =
+          triples(beside_unknown(scan, even, odd, width, known.map(), 1, pool));
       for (const Triple& v : occupied) {
         const Around expected = triple_loop(v, radius, occupied, changed, known_voxels);
         ASSERT_EQ(value_at(scores, v), expected.score) << "width " << width;

@@ -1,0 +1,35 @@
+#include "bench/stage_benchmark.hpp"
+#include "core/change_detection.hpp"
+
+namespace mosbench {
+namespace {
+
+/// Every block turns from this scan's occupied voxels to the previous scan's.
+void change_detection_stage(benchmark::State& state, StagedScan& staged, ThreadPool&) {
+  std::vector<BlockStates> before, after;
+  std::size_t expected = 0;
+  for (std::size_t i = 0; i < staged.observed.blocks.size(); ++i) {
+    const BlockMask& observed = staged.observed.masks[i];
+    const BlockMask* now = staged.scan.occupied_in(staged.observed.blocks[i]);
+    const BlockMask* then = staged.previous.occupied_in(staged.observed.blocks[i]);
+    const BlockMask here = now == nullptr ? BlockMask{} : *now & observed;
+    const BlockMask there = then == nullptr ? BlockMask{} : *then & observed;
+    before.push_back({here, without(observed, here)});
+    after.push_back({there, without(observed, there)});
+    expected += without(here, there).count() + without(there, here).count();
+  }
+  std::size_t changed = 0;
+  for (auto _ : state) {
+    changed = 0;
+    for (std::size_t i = 0; i < before.size(); ++i) {
+      changed += detect_changes(before[i], after[i]).count();
+    }
+  }
+  count_items(state, "voxels", before.size() * kBlockVoxels);
+  expect(state, changed == expected);
+}
+
+const RegisterStage registered("change_detection", change_detection_stage, false);
+
+}  // namespace
+}  // namespace mosbench

@@ -1,0 +1,53 @@
+#include <cmath>
+
+#include "bench/near_blocks.hpp"
+#include "bench/stage_benchmark.hpp"
+
+namespace mosbench {
+namespace {
+
+/// The belief of a voxel that was at a distance of `squared` voxels in every one of many scans.
+double settled_belief(const Config& config, double squared) {
+  const double ratio = config.voxel_size_m / config.sigma_m(), epsilon = config.transition_epsilon;
+  const double likelihood = std::exp(-squared * ratio * ratio / 2);
+  double p = likelihood;
+  for (int scan = 0; scan < 100; ++scan) {
+    const double q = epsilon + (1 - 2 * epsilon) * p;
+    p = likelihood * q / (likelihood * q + (1 - likelihood) * (1 - q));
+  }
+  return p;
+}
+
+void hmm_stage(benchmark::State& state, StagedScan& staged, ThreadPool&) {
+  const NearBlocks near(staged);
+  std::vector<BlockDistances> distances(near.size());
+  std::vector<BlockBeliefs> beliefs(near.size());
+  std::vector<BlockStates> states(near.size());
+  std::vector<BlockMask> seen(near.size()), nonzero(near.size());
+  std::size_t voxels = 0;
+  for (std::size_t i = 0; i < near.size(); ++i) {
+    if (!near.field().squared_distances(near.sources(i), distances[i])) distances[i].fill(0xFFFF);
+    voxels += near.observed(i).count();
+  }
+  const auto update = [&] {
+    for (std::size_t i = 0; i < near.size(); ++i) {
+      near.filter().update(near.observed(i), seen[i], distances[i], nonzero[i], beliefs[i],
+                           states[i]);
+      seen[i] = near.observed(i);
+    }
+  };
+  for (int scan = 0; scan < 100; ++scan) update();
+  for (auto _ : state) update();
+  count_items(state, "voxels", voxels);
+  for (std::size_t i = 0; i < near.size(); ++i) {
+    for_each_cell(near.observed(i) & nonzero[i], [&](std::uint32_t cell) {
+      const double expected = settled_belief(staged.workload.config, distances[i][cell]);
+      expect(state, std::abs(beliefs[i].occupied[cell] - expected) < 1e-3);
+    });
+  }
+}
+
+const RegisterStage registered("hmm_update", hmm_stage, false);
+
+}  // namespace
+}  // namespace mosbench

@@ -1,0 +1,78 @@
+#include <cstdio>
+#include <cstring>
+#include <exception>
+#include <memory>
+#include <vector>
+
+#include "bench/stage_benchmark.hpp"
+
+namespace mosbench {
+
+std::vector<RegisteredStage>& registered_stages() {
+  static std::vector<RegisteredStage> stages;
+  return stages;
+}
+
+namespace {
+
+void measure(benchmark::State& state, const RegisteredStage& stage, const Workload& workload,
+             unsigned threads) {
+  ThreadPool pool(threads);
+  StagedScan staged(workload, pool);
+  stage.benchmark(state, staged, pool);
+}
+
+void register_all(const std::vector<Workload>& workloads) {
+  for (const RegisteredStage& stage : registered_stages()) {
+    for (const Workload& workload : workloads) {
+      for (unsigned threads = 1; threads <= (stage.parallel ? 2U : 1U); ++threads) {
+        const std::string name =
+            stage.name + "/" + workload.name + "/threads:" + std::to_string(threads);
+        benchmark::RegisterBenchmark(name.c_str(),
+                                     [&stage, &workload, threads](benchmark::State& state) {
+                                       measure(state, stage, workload, threads);
+                                     })
+            ->Unit(benchmark::kMillisecond)
+            ->UseRealTime()
+            ->MeasureProcessCPUTime();
+      }
+    }
+  }
+}
+
+/// Takes `--data FOLDER` out of the arguments; null when it is not there.
+const char* take_data_folder(std::vector<char*>& arguments) {
+  for (std::size_t i = 1; i + 1 < arguments.size(); ++i) {
+    if (std::strcmp(arguments[i], "--data") != 0) continue;
+    const char* folder = arguments[i + 1];
+    const auto at = arguments.begin() + static_cast<std::ptrdiff_t>(i);
+    arguments.erase(at, at + 2);
+    return folder;
+  }
+  return nullptr;
+}
+
+int run(std::vector<char*> arguments) {
+  std::vector<Workload> workloads = simulated_workloads();
+  if (const char* folder = take_data_folder(arguments)) {
+    workloads.push_back(recorded_workload(folder));
+  }
+  auto count = static_cast<int>(arguments.size());
+  benchmark::Initialize(&count, arguments.data());
+  if (benchmark::ReportUnrecognizedArguments(count, arguments.data())) return 2;
+  register_all(workloads);
+  benchmark::RunSpecifiedBenchmarks();
+  return 0;
+}
+
+}  // namespace
+}  // namespace mosbench
+
+int main(int argc, char** argv) {
+  try {
+    return mosbench::run({argv, argv + argc});
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "mosbench_bench: %s\n", error.what());
+    return 3;
+  }
+}

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "bench/staged_scan.hpp"
+#include "core/distance_field.hpp"
+#include "core/hmm.hpp"
+#include "core/source_grid.hpp"
+
+namespace mosbench {
+
+/// The observed blocks of a scan with a source near, and the masks that their distance fields are
+/// made of.
+class NearBlocks {
+ public:
+  explicit NearBlocks(const StagedScan& staged);
+
+  std::size_t size() const { return observed_.size(); }
+  std::size_t with_source() const { return with_source_; }
+  const BeliefFilter& filter() const { return filter_; }
+  const DistanceField& field() const { return field_; }
+  const BlockMask& observed(std::size_t i) const { return *observed_[i]; }
+  std::span<const BlockMask* const> sources(std::size_t i) const {
+    return std::span(sources_).subspan(i * cube_, cube_);
+  }
+
+ private:
+  BeliefFilter filter_;
+  DistanceField field_;
+  SourceGrid grid_;
+  std::size_t cube_;
+  std::size_t with_source_ = 0;
+  std::vector<const BlockMask*> observed_, sources_;
+};
+
+}  // namespace mosbench

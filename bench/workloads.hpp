@@ -1,0 +1,26 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/config.hpp"
+#include "datasets/sequence.hpp"
+
+namespace mosbench {
+
+/// Scans to measure on, with the configuration they are segmented by.
+struct Workload {
+  std::string name;
+  Config config;
+  std::vector<Frame> frames;
+};
+
+/// Simulated: `indoor` (hand-held OS1-64, 20 m), `campus` (robot with a Livox Avia, 50 m) and
+/// `highway` (car with an HDL-64E, 120 m).
+std::vector<Workload> simulated_workloads();
+
+/// The first scans of a recording, at 0.25 m and 50 m. Throws DataError and UsageError.
+Workload recorded_workload(const std::filesystem::path& folder);
+
+}  // namespace mosbench
