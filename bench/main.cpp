@@ -15,6 +15,8 @@ std::vector<RegisteredStage>& registered_stages() {
 
 namespace {
 
+bool all_right = true;
+
 void measure(benchmark::State& state, const RegisteredStage& stage, const Workload& workload,
              unsigned threads) {
   ThreadPool pool(threads);
@@ -52,6 +54,15 @@ const char* take_data_folder(std::vector<char*>& arguments) {
   return nullptr;
 }
 
+}  // namespace
+
+void expect(benchmark::State& state, bool right) {
+  if (right) return;
+  all_right = false;
+  state.SkipWithError("wrong answer");
+}
+
+/// Exit code: 0, 1 after a wrong answer, 2 for wrong usage.
 int run(std::vector<char*> arguments) {
   std::vector<Workload> workloads = simulated_workloads();
   if (const char* folder = take_data_folder(arguments)) {
@@ -61,11 +72,10 @@ int run(std::vector<char*> arguments) {
   benchmark::Initialize(&count, arguments.data());
   if (benchmark::ReportUnrecognizedArguments(count, arguments.data())) return 2;
   register_all(workloads);
-  benchmark::RunSpecifiedBenchmarks();
-  return 0;
+  if (benchmark::RunSpecifiedBenchmarks() == 0) return 2;
+  return all_right ? 0 : 1;
 }
 
-}  // namespace
 }  // namespace mosbench
 
 int main(int argc, char** argv) {

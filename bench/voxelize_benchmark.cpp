@@ -12,8 +12,9 @@ void voxelize_stage(benchmark::State& state, StagedScan& staged, ThreadPool& poo
                     config.max_range_m, pool);
   }
   count_items(state, "points", frame.points.size());
-  expect(state, scan.occupied_count == staged.scan.occupied_count &&
-                    scan.measured.block_count() == staged.scan.measured.block_count());
+  expect(state, scan.measured.masks == staged.scan.measured.masks &&
+                    scan.occupied == staged.scan.occupied &&
+                    scan.voxel_of_point == staged.scan.voxel_of_point);
 }
 
 const RegisterStage registered("voxelize", voxelize_stage, true);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "datasets/dataset.hpp"
+#include "datasets/errors.hpp"
 #include "datasets/simulator.hpp"
 
 namespace mosbench {
@@ -36,6 +37,11 @@ Workload recorded_workload(const std::filesystem::path& folder) {
   workload.config.max_range_m = 50;
   const Dataset dataset = open_dataset(folder, {});
   const Sequence& sequence = *dataset.sequences.front();
+  const auto needed = static_cast<std::size_t>(workload.config.local_window_scans) + 2;
+  if (sequence.size() < needed) {
+    throw DataError(folder, "has " + std::to_string(sequence.size()) + " scans",
+                    "at least " + std::to_string(needed) + ", so that detection runs");
+  }
   for (std::size_t k = 0; k < std::min(kScans, sequence.size()); ++k) {
     workload.frames.push_back(sequence.read(k));
   }

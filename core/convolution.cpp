@@ -1,6 +1,8 @@
 #include "core/convolution.hpp"
 
 #include <array>
+#include <bit>
+#include <utility>
 
 #include "core/halo.hpp"
 
@@ -44,21 +46,49 @@ void gather_known(const VoxelMap& map, std::span<const std::uint32_t> map_slots,
   gather_halo(masks, radius, halo);
 }
 
+/// Slots of a scan's blocks without repeats, in the order they were first added.
+class SlotList {
+ public:
+  explicit SlotList(const VoxelizedScan& scan) : scan_(scan), taken_(scan.measured.block_count()) {}
+
+  /// Those of a block and its 26 neighbours whose bit is set.
+  void add(const BlockIndex& centre, std::uint32_t neighbours) {
+    for (; neighbours != 0; neighbours &= neighbours - 1) {
+      const int position = std::countr_zero(neighbours);
+      const std::uint32_t slot =
+          scan_.measured.find({centre.x + position % 3 - 1, centre.y + position / 3 % 3 - 1,
+                               centre.z + position / 9 - 1});
+      if (slot == kNoSlot || taken_[slot] != 0) continue;
+      taken_[slot] = 1;
+      slots_.push_back(slot);
+    }
+  }
+  std::vector<std::uint32_t> take() { return std::move(slots_); }
+
+ private:
+  const VoxelizedScan& scan_;
+  std::vector<std::uint8_t> taken_;
+  std::vector<std::uint32_t> slots_;
+};
+
+constexpr std::uint32_t kWholeNeighbourhood = (1u << 27) - 1;
+
 }  // namespace
 
 std::vector<std::uint32_t> slots_around(const VoxelizedScan& scan,
                                         std::span<const BlockIndex> blocks) {
-  std::vector<std::uint32_t> slots;
-  std::vector<std::uint8_t> taken(scan.measured.block_count());
-  for (const BlockIndex& centre : blocks) {
-    for_each_neighbour(centre, [&](std::size_t, const BlockIndex& block) {
-      const std::uint32_t slot = scan.measured.find(block);
-      if (slot == kNoSlot || taken[slot] != 0) return;
-      taken[slot] = 1;
-      slots.push_back(slot);
-    });
+  SlotList slots(scan);
+  for (const BlockIndex& block : blocks) slots.add(block, kWholeNeighbourhood);
+  return slots.take();
+}
+
+std::vector<std::uint32_t> slots_within(const VoxelizedScan& scan, const VoxelSet& voxels,
+                                        int radius) {
+  SlotList slots(scan);
+  for (std::size_t i = 0; i < voxels.block_count(); ++i) {
+    slots.add(voxels.blocks[i], blocks_within(voxels.masks[i], radius));
   }
-  return slots;
+  return slots.take();
 }
 
 ScoreField convolve(const VoxelizedScan& scan, const VoxelSet& changed, int kernel_width_voxels,
@@ -72,7 +102,7 @@ ScoreField convolve(const VoxelizedScan& scan, const VoxelSet& changed, int kern
     const BlockMask both = *occupied & changed.masks[i];
     if (both.any()) hits.masks[hits.insert(changed.blocks[i])] = both;
   }
-  const std::vector<std::uint32_t> slots = slots_around(scan, hits.blocks);
+  const std::vector<std::uint32_t> slots = slots_within(scan, hits, radius);
   const std::vector<std::uint32_t> map_slots =
       refreshed_map_slots(scan, slots, map, scan_index, pool);
   // With a delay of w_g scans or more a voxel may be forgotten since it changed.

@@ -27,4 +27,8 @@ VoxelSet beside_unknown(const VoxelizedScan& scan, std::span<const BlockIndex> b
 std::vector<std::uint32_t> slots_around(const VoxelizedScan& scan,
                                         std::span<const BlockIndex> blocks);
 
+/// Those of them that may have a voxel within `radius` per axis of one of `voxels`.
+std::vector<std::uint32_t> slots_within(const VoxelizedScan& scan, const VoxelSet& voxels,
+                                        int radius);
+
 }  // namespace mosbench

@@ -32,13 +32,14 @@ std::vector<BlockIndex> DynamicRegion::blocks() const {
 
 VoxelSet DynamicRegion::back_end(const VoxelizedScan& scan, const VoxelSet& beside_unknown,
                                  int kernel_width_voxels, ThreadPool& pool) const {
-  std::vector<BlockIndex> confident;
+  const int radius = (kernel_width_voxels - 1) / 2;
+  VoxelSet confident;
   for (std::uint32_t slot = 0; slot < blocks_.capacity(); ++slot) {
-    if (blocks_[slot].live && blocks_[slot].high_confidence.any()) {
-      confident.push_back(blocks_[slot].index);
-    }
+    const Block& block = blocks_[slot];
+    if (!block.live || !block.high_confidence.any()) continue;
+    confident.masks[confident.insert(block.index)] = block.high_confidence;
   }
-  const std::vector<std::uint32_t> slots = slots_around(scan, confident);
+  const std::vector<std::uint32_t> slots = slots_within(scan, confident, radius);
   std::vector<std::vector<ValueCount>> votes(slots.size());  // per candidate: B, in cell order
   std::vector<BlockMask> voted(slots.size());
   pool.for_ranges(slots.size(), 16, [&](std::size_t begin, std::size_t end, unsigned) {
@@ -47,10 +48,9 @@ VoxelSet DynamicRegion::back_end(const VoxelizedScan& scan, const VoxelSet& besi
       const BlockIndex& block = scan.measured.blocks[slots[i]];
       Neighbourhood masks{};
       for_each_neighbour(block, [&](std::size_t position, const BlockIndex& neighbour) {
-        const std::uint32_t slot = table_.find(neighbour);
-        if (slot != kNoSlot) masks[position] = &blocks_[slot].high_confidence;
+        masks[position] = confident.mask_of(neighbour);
       });
-      gather_halo(masks, (kernel_width_voxels - 1) / 2, rows);
+      gather_halo(masks, radius, rows);
       const BlockMask* beside = beside_unknown.mask_of(block);
       const BlockMask candidates =
           beside == nullptr ? scan.occupied[slots[i]] : without(scan.occupied[slots[i]], *beside);

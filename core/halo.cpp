@@ -19,7 +19,38 @@ inline __attribute__((always_inline)) Bytes rows_of(const BlockMask* mask, int z
 
 std::uint32_t row_mask(const HaloRows& halo) { return ~std::uint32_t{0} >> (32 - halo.side); }
 
+/// Of three blocks in a row, bit 1 the middle one, those within `radius` of the set bits of a byte.
+std::uint32_t reached_along_axis(std::uint32_t byte, int radius) {
+  const std::uint32_t low = (1u << radius) - 1, high = 0xFFu & ~(0xFFu >> radius);
+  return ((byte & low) != 0 ? 1u : 0u) | 2u | ((byte & high) != 0 ? 4u : 0u);
+}
+
 }  // namespace
+
+std::uint32_t blocks_within(const BlockMask& mask, int radius) {
+  std::uint64_t plane = 0;
+  std::uint32_t x = 0, y = 0, z = 0;
+  for (std::uint32_t i = 0; i < kBlockSide; ++i) {
+    plane |= mask.words[i];
+    z |= static_cast<std::uint32_t>(mask.words[i] != 0) << i;
+  }
+  if (plane == 0) return 0;
+  for (std::uint32_t i = 0; i < kBlockSide; ++i) {
+    const auto row = static_cast<std::uint32_t>(plane >> (8 * i) & 0xFFu);
+    x |= row;
+    y |= static_cast<std::uint32_t>(row != 0) << i;
+  }
+  const std::uint32_t along_x = reached_along_axis(x, radius),
+                      along_y = reached_along_axis(y, radius),
+                      along_z = reached_along_axis(z, radius);
+  std::uint32_t reached = 0;
+  for (std::uint32_t block = 0; block < 27; ++block) {
+    const std::uint32_t all =
+        along_x >> (block % 3) & along_y >> (block / 3 % 3) & along_z >> (block / 9);
+    reached |= (all & 1u) << block;
+  }
+  return reached;
+}
 
 MOSBENCH_MULTIARCH void gather_halo(const Neighbourhood& masks, int radius, HaloRows& halo) {
   halo.radius = radius;

@@ -29,6 +29,10 @@ struct HaloRows {
   alignas(32) std::array<std::uint32_t, std::size_t{kStride} * kStride> rows;
 };
 
+/// Which of a block and its 26 neighbours (bits in the order of for_each_neighbour) may have a
+/// voxel within `radius` per axis of one of the mask's. `radius` from 0 to kMaxHalo.
+std::uint32_t blocks_within(const BlockMask& mask, int radius);
+
 /// Gathers the masks of a block and its 26 neighbours, null ones as empty. `radius` from 0 to
 /// kMaxHalo.
 void gather_halo(const Neighbourhood& masks, int radius, HaloRows& halo);

@@ -77,7 +77,7 @@ ScoreField median_filter(const VoxelizedScan& scan, const ScoreField& scores, Th
   for (std::size_t i = 0; i < scores.blocks.size(); ++i) {
     scored.masks[scored.insert(scores.blocks[i])] = nonzero(scores.values[i]);
   }
-  const std::vector<std::uint32_t> slots = slots_around(scan, scored.blocks);
+  const std::vector<std::uint32_t> slots = slots_within(scan, scored, 1);
   std::vector<ScoreField::Block> filtered(slots.size());
   std::vector<std::uint8_t> any(slots.size());
   pool.for_ranges(slots.size(), 16, [&](std::size_t begin, std::size_t end, unsigned) {

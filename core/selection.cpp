@@ -38,7 +38,7 @@ VoxelSet select_dynamic(const VoxelizedScan& scan, const SumField& sums,
   }
   VoxelSet dilated;
   HaloRows rows;
-  for (const std::uint32_t slot : slots_around(scan, selected.blocks)) {
+  for (const std::uint32_t slot : slots_within(scan, selected, 1)) {
     Neighbourhood masks{};
     for_each_neighbour(scan.measured.blocks[slot],
                        [&](std::size_t position, const BlockIndex& block) {

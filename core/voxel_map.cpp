@@ -88,21 +88,6 @@ void VoxelMap::forget(Block& block, const BlockMask& voxels) {
   block.states.free = without(block.states.free, voxels);
 }
 
-/// Starts loading what `update` needs of a block.
-void VoxelMap::prefetch(std::uint32_t slot) const {
-  const Block& block = blocks_[slot];
-  constexpr std::size_t kLine = 64;
-  const auto* head = reinterpret_cast<const char*>(&block);
-  for (std::size_t at = 0; at < offsetof(Block, last_seen); at += kLine) {
-    __builtin_prefetch(head + at, 1);
-  }
-  if (block.beliefs == kNoSlot) return;
-  const auto* beliefs = reinterpret_cast<const char*>(&beliefs_[block.beliefs]);
-  for (std::size_t at = 0; at < sizeof(BlockBeliefs); at += kLine) {
-    __builtin_prefetch(beliefs + at, 1);
-  }
-}
-
 /// Writes down when voxels that may not be seen again were seen last.
 void VoxelMap::stamp_fresh(Block& block, const BlockMask& voxels) {
   stamp(voxels, static_cast<std::uint16_t>(block.newest_seen), block.last_seen.data());

@@ -80,7 +80,6 @@ class VoxelMap {
   std::uint32_t add_block(const BlockIndex& index, std::uint32_t scan_index);
   void drop_block(std::uint32_t slot);
   void refresh_block(Block& block, std::uint32_t scan_index);
-  void prefetch(std::uint32_t slot) const;
   static void stamp_fresh(Block& block, const BlockMask& voxels);
   static void forget(Block& block, const BlockMask& voxels);
   void note_sensor(const Eigen::Vector3d& sensor_m, std::uint32_t scan_index);

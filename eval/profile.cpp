@@ -54,7 +54,8 @@ SequenceProfile profile_sequence(const Sequence& sequence, const RunSettings& se
                                  std::size_t most_scans) {
   SequenceProfile profile{sequence.name(), settings.threads, std::nullopt, {}};
   const std::size_t scans = std::min(sequence.size(), most_scans);
-  Pipeline pipeline(settings.config, settings.variant, settings.threads, scans);
+  // The whole length: the end of a delayed sequence is labelled in another way.
+  Pipeline pipeline(settings.config, settings.variant, settings.threads, sequence.size());
   std::vector<StageEvent> events;
   pipeline.record_stages(&events);
   Progress progress("profile " + sequence.name(), scans);

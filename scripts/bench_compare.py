@@ -40,6 +40,8 @@ def arguments():
         parser.error("--pairs: expected at least 6")
     if not 0.5 <= chosen.confidence < 1:
         parser.error("--confidence: expected 0.5 or more and below 1")
+    if 2 ** (1 - chosen.pairs) > 1 - chosen.confidence:
+        parser.error(f"--pairs: {chosen.pairs} cannot give {chosen.confidence:g} confidence, expected more")
     if chosen.threshold < 0:
         parser.error("--threshold: expected 0 or more")
     return chosen
@@ -57,7 +59,10 @@ def cpu_seconds(program, command):
     if process.returncode != 0:
         raise RuntimeError(f"{program}: exit code {process.returncode}, expected 0: "
                            f"{error.decode(errors='replace').strip()}")
-    return usage.ru_utime + usage.ru_stime
+    seconds = usage.ru_utime + usage.ru_stime
+    if seconds == 0:
+        raise RuntimeError(f"{program}: took no measurable time, expected a longer command")
+    return seconds
 
 
 def interval_ranks(count, confidence):
@@ -71,7 +76,7 @@ def interval_ranks(count, confidence):
     return 0, count - 1
 
 
-def compare(chosen, command):
+def measured_ratios(chosen, command):
     ratios = []
     for pair in range(chosen.pairs):
         order = ["old", "new"] if pair % 4 in (0, 3) else ["new", "old"]
@@ -81,18 +86,28 @@ def compare(chosen, command):
             print(f"\rpair {pair + 1}/{chosen.pairs}", end="", file=sys.stderr, flush=True)
     if sys.stderr.isatty():
         print(file=sys.stderr)
-    ratios.sort()
-    low, high = interval_ranks(len(ratios), chosen.confidence)
-    middle = math.sqrt(ratios[(len(ratios) - 1) // 2] * ratios[len(ratios) // 2])
-    return middle, ratios[low], ratios[high]
+    return ratios
+
+
+def median_and_interval(ratios, confidence):
+    ordered = sorted(ratios)
+    low, high = interval_ranks(len(ordered), confidence)
+    middle = math.sqrt(ordered[(len(ordered) - 1) // 2] * ordered[len(ordered) // 2])
+    return middle, ordered[low], ordered[high]
+
+
+def is_slower(low, threshold):
+    """Whether even the lower end of the interval lies beyond the threshold, in per cent."""
+    return low > 1 + threshold / 100
 
 
 def main():
     chosen = arguments()
     for program in (chosen.old, chosen.new):
-        if not os.access(program, os.X_OK):
+        if not (os.path.isfile(program) and os.access(program, os.X_OK)):
             print(f"{program}: cannot be run, expected a program", file=sys.stderr)
             return 2
+    chosen.old, chosen.new = os.path.abspath(chosen.old), os.path.abspath(chosen.new)
     try:
         with tempfile.TemporaryDirectory() as simulated:
             command = chosen.command
@@ -102,13 +117,15 @@ def main():
                 command = ["run", simulated, "--threads", "1", "--out", "{out}/run"]
             for program in (chosen.old, chosen.new):  # the first run reads from the disk
                 cpu_seconds(program, command)
-            ratio, low, high = compare(chosen, command)
-    except RuntimeError as error:
+            ratio, low, high = median_and_interval(measured_ratios(chosen, command),
+                                                   chosen.confidence)
+    except (RuntimeError, OSError) as error:
         print(error, file=sys.stderr)
         return 3
-    slower = low > 1 + chosen.threshold / 100
+    slower = is_slower(low, chosen.threshold)
+    verdict = "SLOWER" if slower else "not slower"
     print(f"new / old CPU time {ratio:.3f}, {chosen.confidence:.0%} interval {low:.3f} to {high:.3f} "
-          f"from {chosen.pairs} pairs: {'SLOWER' if slower else 'not slower'} than {chosen.threshold:g} % allows")
+          f"from {chosen.pairs} pairs: {verdict} than {chosen.threshold:g} % allows")
     return 1 if slower else 0
 
 

@@ -6,14 +6,14 @@
 # MOSBENCH_WITH_PCL=OFF leaves out PCL, which brings some 400 packages.
 set -euo pipefail
 
-packages=(g++ cmake ninja-build pkg-config git xz-utils jq bsdextrautils
+packages=(g++ cmake ninja-build pkg-config git xz-utils jq bsdextrautils python3
   libeigen3-dev libfmt-dev nlohmann-json3-dev libcli11-dev libxxhash-dev
   zlib1g-dev libpng-dev
   libgtest-dev libgmock-dev libbenchmark-dev)
 [ "${MOSBENCH_WITH_PCL:-ON}" = OFF ] || packages+=(libpcl-dev)
 case "${1:-}" in
   "") ;;
-  --checks) packages+=(clang clang-format clang-tidy python3) ;;
+  --checks) packages+=(clang clang-format clang-tidy) ;;
   --page)
     packages+=(chromium fonts-dejavu-core util-linux)
     command -v npm >/dev/null || packages+=(nodejs npm)

@@ -32,8 +32,11 @@ def arguments():
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--program", default=str(ROOT / "build/release/eval/mosbench"))
     parser.add_argument("--scans", type=int, default=30, help="of the drive (default: 30)")
+    parser.add_argument("--rounds", type=int, default=3, help="over all settings (default: 3)")
     parser.add_argument("--write", action="store_true", help="into README.md and results/sweep.svg")
     chosen = parser.parse_args()
+    if chosen.rounds < 1:
+        parser.error("--rounds: expected at least 1")
     if chosen.scans <= WARM_UP_SCANS:
         parser.error(f"--scans: expected more than {WARM_UP_SCANS}")
     return chosen
@@ -64,16 +67,20 @@ def simulate(program, scans, folder):
             (target / "velodyne" / scan.name).write_bytes(thinned)
 
 
-def cost_ms(program, folder, setting):
-    """Median milliseconds of the method per scan: CPU, or wall where threads differ."""
+def profile(program, folder, setting):
     report = folder / "profile.json"
     subprocess.run([program, "profile", folder / str(setting["beams"]), "--dataset", "semantickitti",
                     "--threads", str(setting["threads"]), "--json", report, "--set",
                     f"max_range_m={setting['range']}", f"voxel_size_m={setting['voxel']}"],
-                   check=True, stdout=subprocess.DEVNULL)
-    scans = json.loads(report.read_text())["sequences"][0]["scans"][WARM_UP_SCANS:]
-    return {kind: statistics.median(scan[f"method_{kind}_ms"] for scan in scans)
-            for kind in ("cpu", "wall")}
+                   check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    return json.loads(report.read_text())
+
+
+def cost_ms(report, variable):
+    """Median milliseconds of the method per scan: CPU, or wall where threads differ."""
+    kind = "wall" if variable == "threads" else "cpu"
+    scans = report["sequences"][0]["scans"][WARM_UP_SCANS:]
+    return statistics.median(scan[f"method_{kind}_ms"] for scan in scans)
 
 
 def exponent(values, costs):
@@ -84,29 +91,37 @@ def exponent(values, costs):
             / sum((a - mean_x) ** 2 for a in x))
 
 
-def measure(program, scans):
-    rows = {}
+def measure(program, scans, rounds):
+    """The least of the medians of several rounds, each round over all settings, and the machine."""
+    costs = {(variable, value): [] for variable, values in SWEEPS.items() for value in values}
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         simulate(program, scans, folder)
-        for variable, values in SWEEPS.items():
-            kind = "wall" if variable == "threads" else "cpu"
-            costs = []
-            for value in values:
-                costs.append(cost_ms(program, folder, {**BASE, variable: value})[kind])
-                print(f"{variable} {value}: {costs[-1]:.2f} ms", file=sys.stderr, flush=True)
-            rows[variable] = (values, costs, exponent(values, costs))
-    return rows
+        for turn in range(rounds):
+            for (variable, value), found in costs.items():
+                report = profile(program, folder, {**BASE, variable: value})
+                found.append(cost_ms(report, variable))
+            print(f"round {turn + 1}/{rounds}", file=sys.stderr, flush=True)
+    rows = {variable: (values, [min(costs[variable, value]) for value in values])
+            for variable, values in SWEEPS.items()}
+    return rows, report["machine"]["processor"]
 
 
-def table(rows, scans):
-    lines = [f"Simulated highway, {scans} scans, median milliseconds per scan of the method alone (CPU time; wall "
-             "time for threads).", f"What is not swept: range {BASE['range']} m, voxel "
-             f"{BASE['voxel']} m, {BASE['beams']} beams, {BASE['threads']} thread.", "",
-             "| swept | settings | ms per scan | cost grows with |", "|---|---|---|---|"]
-    for variable, (values, costs, power) in rows.items():
+def growth(variable, values, costs):
+    if variable == "threads":
+        return f"{costs[0] / costs[-1]:.2f} times as fast with {values[-1]}"
+    return f"cost ~ {variable}^{exponent(values, costs):.2f}"
+
+
+def table(rows, machine, scans, rounds):
+    lines = [f"Simulated highway, {scans} scans (the map is still filling), {machine}: milliseconds per scan of the "
+             "method alone,", f"CPU time (wall time for threads), least median of {rounds} rounds. What is not "
+             f"swept: range {BASE['range']} m, voxel {BASE['voxel']} m, {BASE['beams']} beams, "
+             f"{BASE['threads']} thread.", "",
+             "| swept | settings | ms per scan | growth |", "|---|---|---|---|"]
+    for variable, (values, costs) in rows.items():
         lines.append(f"| {TITLES[variable]} | {', '.join(map(str, values))} | "
-                     f"{', '.join(f'{c:.1f}' for c in costs)} | {variable}^{power:.2f} |")
+                     f"{', '.join(f'{c:.1f}' for c in costs)} | {growth(variable, values, costs)} |")
     return "\n".join(lines)
 
 
@@ -127,7 +142,7 @@ def panel(left, title, values, costs):
 
 def plot(rows):
     panels = "".join(panel(220 * i, TITLES[name], values, costs)
-                     for i, (name, (values, costs, _)) in enumerate(rows.items()))
+                     for i, (name, (values, costs)) in enumerate(rows.items()))
     return ('<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 880 190" font-family="sans-serif" '
             'font-size="11"><style>text{text-anchor:middle;fill:#444}.title{font-weight:bold}'
             'polyline{fill:none;stroke:#0072b2;stroke-width:2}circle{fill:#0072b2}</style>'
@@ -147,8 +162,8 @@ def write(text, picture):
 
 def main():
     chosen = arguments()
-    rows = measure(chosen.program, chosen.scans)
-    text = table(rows, chosen.scans)
+    rows, machine = measure(chosen.program, chosen.scans, chosen.rounds)
+    text = table(rows, machine, chosen.scans, chosen.rounds)
     print(text)
     if chosen.write:
         write(text, plot(rows))

@@ -12,6 +12,7 @@ using testing::StartsWith;
 TEST(Help, ShowsExamplesAtEachLevel) {
   for (const std::vector<std::string>& arguments : {std::vector<std::string>{"--help"},
                                                     {"run", "--help"},
+                                                    {"profile", "--help"},
                                                     {"score", "--help"},
                                                     {"simulate", "--help"},
                                                     {"table", "--help"},

@@ -89,6 +89,37 @@ TEST(Halo, InvertingTurnsOverEveryVoxelOfTheHalo) {
   }
 }
 
+TEST(Halo, BlocksWithinTheRadiusHaveAVoxelOfTheBoxAround) {
+  std::mt19937 random(36);
+  std::size_t left_out = 0;
+  for (int radius = 0; radius <= kMaxHalo; ++radius) {
+    for (int round = 0; round < 20; ++round) {
+      BlockMask mask;
+      for (unsigned i = 0; i < random() % 4; ++i) mask.set(random() % kBlockVoxels);
+      const std::uint32_t reached = blocks_within(mask, radius);
+      Triple low{8, 8, 8}, high{-1, -1, -1};
+      for_each_cell(mask, [&](std::uint32_t cell) {
+        const Triple here = triple(voxel_at({0, 0, 0}, cell));
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          low[axis] = std::min(low[axis], here[axis]);
+          high[axis] = std::max(high[axis], here[axis]);
+        }
+      });
+      for_each_neighbour({0, 0, 0}, [&](std::size_t position, const BlockIndex& block) {
+        const Triple first = triple(voxel_at(block, 0));
+        bool meets = mask.any();
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          meets =
+              meets && first[axis] <= high[axis] + radius && first[axis] + 7 >= low[axis] - radius;
+        }
+        ASSERT_EQ(reached >> position & 1u, meets ? 1u : 0u) << radius << ' ' << position;
+        left_out += mask.any() && !meets;
+      });
+    }
+  }
+  EXPECT_GT(left_out, 1000U);
+}
+
 TEST(Halo, RadiusZeroIsTheBlockItself) {
   const HaloRows halo = halo_of(voxel_set({{0, 0, 0}, {7, 7, 7}, {-1, 0, 0}, {8, 7, 7}}), 0);
   EXPECT_EQ(count_around(halo, 0), 1);

@@ -1,0 +1,123 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <map>
+#include <set>
+#include <string_view>
+
+#include "core/stage_times.hpp"
+#include "tests/cli/program.hpp"
+#include "tests/cli/small_sequence.hpp"
+
+namespace mosbench {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+constexpr std::size_t kScans = 12;
+
+/// Profiles a small sequence once; the files are in `folder`.
+cli::Answer profile_small(const TempFolder& folder, const std::vector<std::string>& more = {}) {
+  cli::write_small_sequence(folder.path() / "room", kScans);
+  std::vector<std::string> arguments = {"profile",   (folder.path() / "room").string(),
+                                        "--threads", "1",
+                                        "--json",    (folder.path() / "profile.json").string(),
+                                        "--trace",   (folder.path() / "trace.json").string()};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return cli::run(arguments);
+}
+
+TEST(Profile, ShowsEveryStageMemoryAndSpeed) {
+  const TempFolder folder;
+  const cli::Answer answer = profile_small(folder);
+  ASSERT_EQ(answer.exit_code, 0) << answer.err;
+  for (const std::string_view stage : kStageNames) {
+    EXPECT_THAT(answer.out, HasSubstr(std::string(1, '\n').append(stage).append(1, ' ')));
+  }
+  EXPECT_THAT(answer.out, HasSubstr("resident MiB"));
+  EXPECT_THAT(answer.out, HasSubstr("times real time"));
+}
+
+TEST(Profile, StagesAddUpToTheMethodAndSpreadsAreInOrder) {
+  const TempFolder folder;
+  ASSERT_EQ(profile_small(folder).exit_code, 0);
+  const json whole = json::parse(read_file(folder.path() / "profile.json"));
+  const json& sequence = whole["sequences"][0];
+  ASSERT_EQ(sequence["scans"].size(), kScans);
+  for (const char* clock : {"wall_ms", "cpu_ms"}) {
+    double sum_ms = 0;
+    for (const auto& [name, cost] : sequence["stages"].items()) {
+      const json& spread = cost[clock];
+      EXPECT_LE(spread["min"], spread["median"]) << name;
+      EXPECT_LE(spread["median"], spread["p95"]) << name;
+      EXPECT_LE(spread["p95"], spread["max"]) << name;
+      if (name != "read" && name != "method") sum_ms += spread["mean"].get<double>();
+    }
+    const double method_ms = sequence["stages"]["method"][clock]["mean"];
+    EXPECT_NEAR(sum_ms, method_ms, 0.05 * method_ms) << clock;
+    EXPECT_LT(sequence["stages"]["between stages"][clock]["median"], 0.5 * method_ms) << clock;
+  }
+  for (const json& scan : sequence["scans"]) {
+    EXPECT_EQ(scan["points"], cli::kPointsPerScan);
+    EXPECT_GT(scan["map_blocks"], 0);
+    EXPECT_GT(scan["resident_mib"], 0.0);
+  }
+}
+
+TEST(Profile, TraceHoldsEachStageInsideItsScan) {
+  const TempFolder folder;
+  ASSERT_EQ(profile_small(folder).exit_code, 0);
+  const json trace = json::parse(read_file(folder.path() / "trace.json"));
+  double scan_start_us = 0, scan_end_us = 0;
+  std::size_t scans = 0, counters = 0;
+  std::map<std::string, std::size_t> slices;
+  for (const json& event : trace["traceEvents"]) {
+    counters += event["ph"] == "C";
+    if (event["ph"] != "X") continue;
+    const double start_us = event["ts"], end_us = start_us + event["dur"].get<double>();
+    if (event["name"].get<std::string>().starts_with("scan ")) {
+      EXPECT_GE(start_us, scan_end_us);
+      scan_start_us = start_us;
+      scan_end_us = end_us;
+      ++scans;
+    } else {
+      EXPECT_GE(start_us, scan_start_us) << event["name"];
+      // What lies between reading and the method is in no slice.
+      EXPECT_LE(end_us, scan_end_us + 1000) << event["name"];
+      ++slices[event["name"]];
+    }
+  }
+  EXPECT_EQ(scans, kScans);
+  EXPECT_EQ(slices["read"], kScans);
+  // Detection starts when the window is full.
+  const std::set<std::string_view> always = {"voxelize", "raycast", "map_update", "evict"};
+  for (const std::string_view stage : kStageNames) {
+    EXPECT_EQ(slices[std::string(stage)], always.contains(stage) ? kScans : kScans - 4) << stage;
+  }
+  EXPECT_EQ(counters, 2 * kScans);
+}
+
+TEST(Profile, StopsAfterTheScansAskedFor) {
+  const TempFolder folder;
+  ASSERT_EQ(profile_small(folder, {"--scans", "5"}).exit_code, 0);
+  const json whole = json::parse(read_file(folder.path() / "profile.json"));
+  EXPECT_EQ(whole["sequences"][0]["scans"].size(), 5U);
+}
+
+TEST(Profile, RefusesWhatRunRefuses) {
+  EXPECT_EQ(cli::run({"profile"}).exit_code, 2);
+  EXPECT_EQ(cli::run({"profile", "x", "--scans", "0"}).exit_code, 2);
+  const TempFolder folder;
+  const cli::Answer absent = cli::run({"profile", (folder.path() / "absent").string()});
+  EXPECT_EQ(absent.exit_code, 3);
+  EXPECT_THAT(absent.err, HasSubstr("absent"));
+  cli::write_small_sequence(folder.path() / "room", 1);
+  const cli::Answer unwritable = cli::run({"profile", (folder.path() / "room").string(), "--json",
+                                           (folder.path() / "absent/profile.json").string()});
+  EXPECT_EQ(unwritable.exit_code, 3);
+  EXPECT_THAT(unwritable.err, HasSubstr("absent"));
+}
+
+}  // namespace
+}  // namespace mosbench
