@@ -43,7 +43,7 @@ void register_all(const std::vector<Workload>& workloads) {
 }
 
 /// Takes `--data FOLDER` out of the arguments; null when it is not there.
-const char* take_data_folder(std::vector<char*>& arguments) {
+const char* take_recording_folder(std::vector<char*>& arguments) {
   for (std::size_t i = 1; i + 1 < arguments.size(); ++i) {
     if (std::strcmp(arguments[i], "--data") != 0) continue;
     const char* folder = arguments[i + 1];
@@ -65,7 +65,7 @@ void expect(benchmark::State& state, bool right) {
 /// Exit code: 0, 1 after a wrong answer, 2 for wrong usage.
 int run(std::vector<char*> arguments) {
   std::vector<Workload> workloads = simulated_workloads();
-  if (const char* folder = take_data_folder(arguments)) {
+  if (const char* folder = take_recording_folder(arguments)) {
     workloads.push_back(recorded_workload(folder));
   }
   auto count = static_cast<int>(arguments.size());
