@@ -9,9 +9,8 @@ void dynamic_region_stage(benchmark::State& state, StagedScan& staged, ThreadPoo
   std::uint32_t k = staged.k;
   VoxelSet beside;
   for (auto _ : state) {
-    const VoxelSet beside =
-        beside_unknown(staged.scan, staged.region.blocks(), staged.dynamic.blocks, width,
-                       staged.map, staged.k, pool);
+    beside = beside_unknown(staged.scan, staged.region.blocks(), staged.dynamic.blocks, width,
+                            staged.map, staged.k, pool);
     const VoxelSet chosen = staged.region.back_end(staged.scan, beside, width, pool);
     staged.region.update({staged.scan, staged.dynamic, chosen, beside, staged.threshold}, ++k);
   }
