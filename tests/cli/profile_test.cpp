@@ -113,10 +113,11 @@ TEST(Profile, RefusesWhatRunRefuses) {
   EXPECT_EQ(absent.exit_code, 3);
   EXPECT_THAT(absent.err, HasSubstr("absent"));
   cli::write_small_sequence(folder.path() / "room", 1);
-  const cli::Answer unwritable = cli::run({"profile", (folder.path() / "room").string(), "--json",
-                                           (folder.path() / "absent/profile.json").string()});
+  const cli::Answer unwritable =
+      cli::run({"profile", (folder.path() / "room").string(), "--json",
+                (folder.path() / "room/poses.txt/profile.json").string()});
   EXPECT_EQ(unwritable.exit_code, 3);
-  EXPECT_THAT(unwritable.err, HasSubstr("absent"));
+  EXPECT_THAT(unwritable.err, HasSubstr("profile.json"));
 }
 
 }  // namespace
