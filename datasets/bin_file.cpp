@@ -10,19 +10,30 @@ namespace mosbench {
 
 static_assert(std::endian::native == std::endian::little, "scans are copied as they are stored");
 
-void check_bin_size(std::uintmax_t size_bytes, const std::filesystem::path& file) {
-  if (size_bytes % sizeof(Point) == 0) return;
+void check_bin_size(std::uintmax_t size_bytes, std::size_t columns,
+                    const std::filesystem::path& file) {
+  if (size_bytes % (columns * sizeof(float)) == 0) return;
   throw DataError(file,
-                  std::to_string(size_bytes) +
-                      " bytes are no multiple of 16: cut off, or raw data of another layout",
-                  "4 float32 per point (x y z intensity)");
+                  std::to_string(size_bytes) + " bytes are no multiple of " +
+                      std::to_string(columns * sizeof(float)) +
+                      ": cut off, or raw data of another layout",
+                  std::to_string(columns) + " float32 per point (x y z intensity" +
+                      (columns > 4 ? " ...)" : ")"));
+}
+
+std::vector<Point> parse_bin(std::string_view bytes, std::size_t columns,
+                             const std::filesystem::path& file) {
+  check_bin_size(bytes.size(), columns, file);
+  const std::size_t record_bytes = columns * sizeof(float);
+  std::vector<Point> points(bytes.size() / record_bytes);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    std::memcpy(&points[i], bytes.data() + i * record_bytes, sizeof(Point));
+  }
+  return points;
 }
 
 std::vector<Point> parse_bin(std::string_view bytes, const std::filesystem::path& file) {
-  check_bin_size(bytes.size(), file);
-  std::vector<Point> points(bytes.size() / sizeof(Point));
-  if (!points.empty()) std::memcpy(points.data(), bytes.data(), bytes.size());
-  return points;
+  return parse_bin(bytes, 4, file);
 }
 
 std::string format_bin(std::span<const Point> points) {

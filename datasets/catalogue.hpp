@@ -10,21 +10,13 @@
 
 namespace mosbench {
 
-/// A sequence found on disk and not yet opened.
-struct SequenceFolder {
-  std::string name;  ///< Sequence::name
-  std::filesystem::path folder;
-  std::string alias;  ///< a second name that --sequences takes; may be empty
-};
-
 /// How one data set lies on disk: one row per DatasetKind.
 struct Catalogue {
   DatasetKind kind;
   const char* layout;  ///< what an error says was expected
   /// The sequences below a root, or the one of a sequence folder; empty when this is neither.
   std::vector<SequenceFolder> (*list)(const std::filesystem::path& path);
-  std::unique_ptr<Sequence> (*open)(const SequenceFolder& sequence,
-                                    const std::optional<std::filesystem::path>& poses_file);
+  std::unique_ptr<Sequence> (*open)(const SequenceFolder& sequence, const ReadingOptions& options);
   /// Splits of the opened sequences; `folders` runs parallel to `sequences`. May add remarks.
   std::vector<Split> (*splits)(const std::vector<SequenceFolder>& folders,
                                const std::vector<std::unique_ptr<Sequence>>& sequences,
@@ -37,6 +29,10 @@ const Catalogue& doals_catalogue();
 const Catalogue& helimos_catalogue();
 const Catalogue& sipailou_catalogue();
 const Catalogue& semantickitti_catalogue();
+const Catalogue& apollo_catalogue();
+const Catalogue& moe_catalogue();
+const Catalogue& kth_catalogue();
+const Catalogue& mdetector_catalogue();
 
 /// The last name of a path, also of "." and of one that ends with a slash.
 std::string folder_name(const std::filesystem::path& path);

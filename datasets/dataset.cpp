@@ -13,9 +13,11 @@ namespace mosbench {
 namespace {
 
 /// In the order in which an untold path is tried: the most telling layout first.
-const std::array<const Catalogue*, 4>& catalogues() {
-  static const std::array<const Catalogue*, 4> all = {
-      &helimos_catalogue(), &doals_catalogue(), &sipailou_catalogue(), &semantickitti_catalogue()};
+const std::array<const Catalogue*, 8>& catalogues() {
+  static const std::array<const Catalogue*, 8> all = {
+      &helimos_catalogue(),  &doals_catalogue(),        &moe_catalogue(),
+      &kth_catalogue(),      &apollo_catalogue(),       &mdetector_catalogue(),
+      &sipailou_catalogue(), &semantickitti_catalogue()};
   return all;
 }
 
@@ -66,30 +68,48 @@ std::vector<SequenceFolder> keep(std::vector<SequenceFolder> folders,
   return folders;
 }
 
-}  // namespace
+struct Found {
+  const Catalogue& catalogue;
+  std::vector<SequenceFolder> folders;
+};
 
-Dataset open_dataset(const std::filesystem::path& path, const OpenOptions& options) {
+Found find(const std::filesystem::path& path, const OpenOptions& options,
+           std::vector<std::string>& remarks) {
   std::error_code error;
   const std::filesystem::directory_iterator listing(path, error);
   if (error) {
     throw DataError(path, "is no folder that can be listed (" + error.message() + ")",
                     "a data set's root or one sequence folder");
   }
-  Dataset dataset;
   const Catalogue& catalogue =
-      options.kind ? catalogue_of(*options.kind) : recognise(path, dataset.remarks);
-  dataset.kind = catalogue.kind;
-  dataset.root = path;
-
+      options.kind ? catalogue_of(*options.kind) : recognise(path, remarks);
   auto found = catalogue.list(path);
   if (found.empty()) throw DataError(path, "holds no sequence", catalogue.layout);
-  const auto folders = keep(std::move(found), options.sequences);
-  if (options.poses && folders.size() != 1) {
+  return {catalogue, keep(std::move(found), options.sequences)};
+}
+
+}  // namespace
+
+std::vector<SequenceFolder> find_sequences(const std::filesystem::path& path,
+                                           const OpenOptions& options,
+                                           std::optional<DatasetKind>& kind) {
+  std::vector<std::string> ignored;
+  Found found = find(path, options, ignored);
+  kind = found.catalogue.kind;
+  return std::move(found.folders);
+}
+
+Dataset open_dataset(const std::filesystem::path& path, const OpenOptions& options) {
+  Dataset dataset;
+  const auto [catalogue, folders] = find(path, options, dataset.remarks);
+  dataset.kind = catalogue.kind;
+  dataset.root = path;
+  if (options.reading.poses && folders.size() != 1) {
     throw UsageError("--poses is for one sequence, not for " + joined(folders) +
                      ", expected one name in --sequences");
   }
   for (const SequenceFolder& folder : folders) {
-    dataset.sequences.push_back(catalogue.open(folder, options.poses));
+    dataset.sequences.push_back(catalogue.open(folder, options.reading));
   }
   dataset.splits = catalogue.splits(folders, dataset.sequences, dataset.remarks);
   return dataset;

@@ -18,7 +18,7 @@ SequenceFolder sequence_folder(std::string name, const std::filesystem::path& fo
 
 bool is_sequence_name(const std::string& name) { return name.starts_with("sequence_"); }
 
-/// The sequence_N folders of one scene, with scans or still without (a bag not exported); `prefix`
+/// The sequence_N folders of one scene, with scans, a bag or neither; `prefix`
 /// goes before their names.
 void list_scene(const std::filesystem::path& scene, const std::string& prefix,
                 std::vector<SequenceFolder>& sequences) {
@@ -31,7 +31,8 @@ void list_scene(const std::filesystem::path& scene, const std::string& prefix,
 
 /// The published scenes' alphabetical order is that of the published numbers.
 std::vector<SequenceFolder> list_doals(const std::filesystem::path& path) {
-  if (scan_folder_of(path)) return {sequence_folder(folder_name(path), path)};
+  if (scan_folder_of(path) || !list_by_stem(path, {".bag"}).empty())
+    return {sequence_folder(folder_name(path), path)};
   std::vector<SequenceFolder> sequences;
   list_scene(path, "", sequences);
   if (!sequences.empty()) return sequences;
@@ -42,9 +43,9 @@ std::vector<SequenceFolder> list_doals(const std::filesystem::path& path) {
 }
 
 std::unique_ptr<Sequence> open_doals(const SequenceFolder& sequence,
-                                     const std::optional<std::filesystem::path>& poses_file) {
+                                     const ReadingOptions& options) {
   return std::make_unique<DoalsSequence>(sequence.name, sequence.folder,
-                                         published_of(sequence.folder), poses_file);
+                                         published_of(sequence.folder), options);
 }
 
 /// ST, SV, HG and ND: both sequences of a scene.
@@ -78,14 +79,15 @@ std::optional<std::string> recognise_doals(const std::filesystem::path& path) {
 }  // namespace
 
 const Catalogue& doals_catalogue() {
-  static const Catalogue catalogue = {DatasetKind::kDoals,
-                                      "<scene>/sequence_N with velodyne/ or binFiles/, poses.txt "
-                                      "and indices.csv each (DOALS), or one "
-                                      "such sequence folder",
-                                      list_doals,
-                                      open_doals,
-                                      doals_splits,
-                                      recognise_doals};
+  static const Catalogue catalogue = {
+      DatasetKind::kDoals,
+      "<scene>/sequence_N with a bag, or velodyne/ or binFiles/ and poses.txt, "
+      "and indices.csv each (DOALS), or one "
+      "such sequence folder",
+      list_doals,
+      open_doals,
+      doals_splits,
+      recognise_doals};
   return catalogue;
 }
 

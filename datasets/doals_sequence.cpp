@@ -5,8 +5,11 @@
 #include <algorithm>
 #include <utility>
 
+#include "datasets/bag_recording.hpp"
 #include "datasets/errors.hpp"
 #include "datasets/files.hpp"
+#include "datasets/recording.hpp"
+#include "datasets/scan_file.hpp"
 
 namespace mosbench {
 namespace {
@@ -52,6 +55,14 @@ constexpr std::array<DoalsPublished, 8> kPublished = {{
      {149, 319, 489, 659, 829, 999, 1169, 1339, 1509, 1679}},
 }};
 
+std::unique_ptr<ScanSource> open_scans(const std::filesystem::path& folder,
+                                       const ReadingOptions& options) {
+  if (!scan_folder_of(folder)) {
+    if (const auto bag = bag_of(folder)) return std::make_unique<BagRecording>(*bag, options);
+  }
+  return std::make_unique<Recording>(folder, options);
+}
+
 }  // namespace
 
 std::span<const DoalsPublished> doals_published() { return kPublished; }
@@ -64,10 +75,9 @@ const DoalsPublished* find_doals_published(std::string_view scene, std::string_v
 }
 
 DoalsSequence::DoalsSequence(std::string name, const std::filesystem::path& folder,
-                             const DoalsPublished* published,
-                             const std::optional<std::filesystem::path>& poses_file)
+                             const DoalsPublished* published, const ReadingOptions& options)
     : name_(std::move(name)),
-      recording_(folder, poses_file),
+      scans_(open_scans(folder, options)),
       indices_file_(folder / "indices.csv") {
   open_truth(published);
 }
@@ -78,7 +88,7 @@ void DoalsSequence::open_truth(const DoalsPublished* published) {
     return;
   }
   const auto rows = read_indices(indices_file_);
-  const bool has_stamps = !recording_.stamps_ns().empty();
+  const bool has_stamps = !scans_->stamps_ns().empty();
   const auto scans = has_stamps ? scans_by_stamp(rows) : scans_by_list(rows, published);
   if (!has_stamps) {
     truth_remarks_.push_back(
@@ -94,7 +104,7 @@ void DoalsSequence::open_truth(const DoalsPublished* published) {
 
 std::vector<std::size_t> DoalsSequence::scans_by_stamp(std::span<const IndicesRow> rows) const {
   std::multimap<std::int64_t, std::size_t> scan_of_stamp;
-  for (std::size_t i = 0; i < size(); ++i) scan_of_stamp.emplace(recording_.stamps_ns()[i], i);
+  for (std::size_t i = 0; i < size(); ++i) scan_of_stamp.emplace(scans_->stamps_ns()[i], i);
   std::vector<std::size_t> scans;
   for (const IndicesRow& row : rows) {
     const auto same = scan_of_stamp.count(row.stamp_ns);
@@ -129,7 +139,7 @@ std::vector<std::size_t> DoalsSequence::scans_by_list(std::span<const IndicesRow
 }
 
 Frame DoalsSequence::read(std::size_t scan_index) const {
-  Frame frame = recording_.read(scan_index);
+  Frame frame = scans_->read(scan_index);
   if (has_truth(scan_index)) frame.truth = read_truth(scan_index);
   return frame;
 }
@@ -137,7 +147,7 @@ Frame DoalsSequence::read(std::size_t scan_index) const {
 std::vector<std::uint32_t> DoalsSequence::read_truth(std::size_t scan_index) const {
   const auto row = truth_.find(scan_index);
   if (row == truth_.end()) {
-    throw DataError(recording_.scan(scan_index).file, "has no truth", "a labelled scan");
+    throw DataError(scans_->file(scan_index), "has no truth", "a labelled scan");
   }
   std::vector<std::uint32_t> labels(point_count(scan_index), kStaticLabel);
   for (const std::uint32_t index : row->second.moving) labels[index] = kMovingLabel;
@@ -145,17 +155,17 @@ std::vector<std::uint32_t> DoalsSequence::read_truth(std::size_t scan_index) con
 }
 
 std::size_t DoalsSequence::point_count(std::size_t scan_index) const {
-  return recording_.point_count(scan_index);
+  return scans_->point_count(scan_index);
 }
 
 std::vector<std::filesystem::path> DoalsSequence::files() const {
-  std::vector<std::filesystem::path> files = recording_.files();
+  std::vector<std::filesystem::path> files = scans_->files();
   if (is_there(indices_file_)) files.push_back(indices_file_);
   return files;
 }
 
 std::vector<std::string> DoalsSequence::remarks() const {
-  std::vector<std::string> remarks = recording_.remarks();
+  std::vector<std::string> remarks = scans_->remarks();
   remarks.insert(remarks.end(), truth_remarks_.begin(), truth_remarks_.end());
   return remarks;
 }

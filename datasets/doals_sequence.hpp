@@ -3,6 +3,7 @@
 #include <array>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -10,7 +11,7 @@
 #include <vector>
 
 #include "datasets/indices_file.hpp"
-#include "datasets/recording.hpp"
+#include "datasets/scan_source.hpp"
 #include "datasets/sequence.hpp"
 
 namespace mosbench {
@@ -31,8 +32,9 @@ std::span<const DoalsPublished> doals_published();
 /// The published sequence that lies in `scene`/`sequence`, or null.
 const DoalsPublished* find_doals_published(std::string_view scene, std::string_view sequence);
 
-/// One DOALS sequence exported to scans: velodyne/ or binFiles/ in the raw firing order with no
-/// point dropped, poses.txt, indices.csv with the moving points of the labelled scans. Truth is
+/// One DOALS sequence: its bag, or scans exported to velodyne/ or binFiles/ in the raw firing order
+/// with no point dropped and poses.txt; indices.csv with the moving points of the labelled scans.
+/// Exported scans are taken where both are there. Truth is
 /// kMovingLabel for listed points and kStaticLabel for all others. A labelled scan is found by its
 /// exact stamp; without stamps by the published list, if the recording has the published length.
 class DoalsSequence : public Sequence {
@@ -40,20 +42,27 @@ class DoalsSequence : public Sequence {
   /// `published` is null for a recording of one's own. Throws DataError, also for a stamp or an
   /// index in indices.csv that no scan has.
   DoalsSequence(std::string name, const std::filesystem::path& folder,
-                const DoalsPublished* published,
-                const std::optional<std::filesystem::path>& poses_file = std::nullopt);
+                const DoalsPublished* published, const ReadingOptions& options = {});
 
   std::string name() const override { return name_; }
-  std::size_t size() const override { return recording_.size(); }
-  std::string stem(std::size_t scan_index) const override {
-    return recording_.scan(scan_index).stem;
-  }
+  std::size_t size() const override { return scans_->size(); }
+  std::string stem(std::size_t scan_index) const override { return scans_->stem(scan_index); }
   bool has_truth(std::size_t scan_index) const override { return truth_.contains(scan_index); }
+  std::optional<std::filesystem::path> scan_file(std::size_t scan_index) const override {
+    return scans_->own_file(scan_index);
+  }
+  Pose map_from_sensor(std::size_t scan_index) const override {
+    return scans_->map_from_sensor(scan_index);
+  }
+  std::optional<std::int64_t> stamp_ns(std::size_t scan_index) const override {
+    return scans_->stamp_ns(scan_index);
+  }
   Frame read(std::size_t scan_index) const override;
   std::vector<std::uint32_t> read_truth(std::size_t scan_index) const override;
   std::size_t point_count(std::size_t scan_index) const override;
   std::vector<std::filesystem::path> files() const override;
   std::vector<std::string> remarks() const override;
+  ReadingStatement reading() const override { return scans_->reading(); }
 
  private:
   void open_truth(const DoalsPublished* published);
@@ -62,7 +71,7 @@ class DoalsSequence : public Sequence {
                                          const DoalsPublished* published) const;
 
   std::string name_;
-  Recording recording_;
+  std::unique_ptr<ScanSource> scans_;
   std::filesystem::path indices_file_;
   std::map<std::size_t, IndicesRow> truth_;  ///< by scan
   std::vector<std::string> truth_remarks_;

@@ -57,8 +57,8 @@ std::vector<SequenceFolder> list_helimos(const std::filesystem::path& path) {
 }
 
 std::unique_ptr<Sequence> open_helimos(const SequenceFolder& sequence,
-                                       const std::optional<std::filesystem::path>& poses_file) {
-  return std::make_unique<KittiSequence>(sequence.name, sequence.folder, poses_file);
+                                       const ReadingOptions& options) {
+  return std::make_unique<KittiSequence>(sequence.name, sequence.folder, options);
 }
 
 /// The scans of `sequence` that a split file numbers. A number without a scan is an error, as the

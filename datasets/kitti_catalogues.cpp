@@ -19,8 +19,8 @@ std::vector<SequenceFolder> list_kitti(const std::filesystem::path& path) {
 }
 
 std::unique_ptr<Sequence> open_kitti(const SequenceFolder& sequence,
-                                     const std::optional<std::filesystem::path>& poses_file) {
-  return std::make_unique<KittiSequence>(sequence.name, sequence.folder, poses_file);
+                                     const ReadingOptions& options) {
+  return std::make_unique<KittiSequence>(sequence.name, sequence.folder, options);
 }
 
 std::vector<Split> semantickitti_splits(const std::vector<SequenceFolder>& folders,

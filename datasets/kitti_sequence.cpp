@@ -7,31 +7,39 @@
 
 #include "datasets/errors.hpp"
 #include "datasets/files.hpp"
-#include "datasets/label_file.hpp"
+#include "datasets/pcd_file.hpp"
 #include "datasets/scan_file.hpp"
 
 namespace mosbench {
 
 KittiSequence::KittiSequence(std::string name, const std::filesystem::path& folder,
-                             const std::optional<std::filesystem::path>& poses_file)
-    : name_(std::move(name)), recording_(folder, poses_file), label_files_(recording_.size()) {
-  open_labels(folder / "labels");
+                             const ReadingOptions& options, SequenceLayout layout)
+    : name_(std::move(name)),
+      layout_(std::move(layout)),
+      scans_(std::make_unique<Recording>(folder, options, layout_.places)),
+      label_files_(scans_->size()) {
+  open_labels(folder / layout_.label_folder);
 }
 
 void KittiSequence::open_labels(const std::filesystem::path& folder) {
   if (!is_there(folder)) {
-    label_remark_ = "no labels/: there is no truth";
+    open_label_fields();
+    if (!labels_in_scans_) {
+      label_remark_ = "no " + layout_.label_folder + "/: there is no truth";
+    }
     return;
   }
   std::unordered_map<std::string, std::size_t> scan_of_stem;
   for (std::size_t i = 0; i < size(); ++i) scan_of_stem.emplace(stem(i), i);
-  const auto labels = list_by_stem(folder, {".label"});
+  const auto labels = list_by_stem(folder, {layout_.label_extension});
   for (const StemFile& label : labels) {
     const auto scan = scan_of_stem.find(label.stem);
     if (scan == scan_of_stem.end()) {
       throw DataError(label.file, "belongs to no scan", "a scan of the same name");
     }
-    check_label_size(size_of(label.file), point_count(scan->second), label.file);
+    if (layout_.check_size != nullptr) {
+      layout_.check_size(size_of(label.file), point_count(scan->second), label.file);
+    }
     label_files_[scan->second] = label.file;
   }
   if (labels.size() < size()) {
@@ -39,30 +47,41 @@ void KittiSequence::open_labels(const std::filesystem::path& folder) {
   }
 }
 
+/// Point clouds may carry their labels in a field of that name.
+void KittiSequence::open_label_fields() {
+  for (std::size_t i = 0; i < size(); ++i) {
+    const std::filesystem::path file = scans_->file(i);
+    if (file.extension() != ".pcd" || !pcd_has_labels(file)) return;
+  }
+  labels_in_scans_ = true;
+  label_remark_ = "labels from the field \"label\" of the scans";
+}
+
 bool KittiSequence::has_truth(std::size_t scan_index) const {
-  return label_files_.at(scan_index).has_value();
+  return labels_in_scans_ || label_files_.at(scan_index).has_value();
 }
 
 Frame KittiSequence::read(std::size_t scan_index) const {
-  Frame frame = recording_.read(scan_index);
+  Frame frame = scans_->read(scan_index);
   if (has_truth(scan_index)) frame.truth = read_truth(scan_index);
   return frame;
 }
 
 std::vector<std::uint32_t> KittiSequence::read_truth(std::size_t scan_index) const {
+  if (labels_in_scans_) return read_pcd_labels(scans_->file(scan_index));
   const auto& file = label_files_.at(scan_index);
   if (!file) {
-    throw DataError(recording_.scan(scan_index).file, "has no truth", "a labelled scan");
+    throw DataError(scans_->file(scan_index), "has no truth", "a labelled scan");
   }
-  return read_labels(*file, point_count(scan_index));
+  return layout_.read_labels(*file, point_count(scan_index));
 }
 
 std::size_t KittiSequence::point_count(std::size_t scan_index) const {
-  return recording_.point_count(scan_index);
+  return scans_->point_count(scan_index);
 }
 
 std::vector<std::filesystem::path> KittiSequence::files() const {
-  std::vector<std::filesystem::path> files = recording_.files();
+  std::vector<std::filesystem::path> files = scans_->files();
   for (const auto& file : label_files_) {
     if (file) files.push_back(*file);
   }
@@ -70,7 +89,7 @@ std::vector<std::filesystem::path> KittiSequence::files() const {
 }
 
 std::vector<std::string> KittiSequence::remarks() const {
-  std::vector<std::string> remarks = recording_.remarks();
+  std::vector<std::string> remarks = scans_->remarks();
   if (!label_remark_.empty()) remarks.push_back(label_remark_);
   return remarks;
 }

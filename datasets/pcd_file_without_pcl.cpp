@@ -16,6 +16,12 @@ bool reads_pcd() { return false; }
 
 std::vector<Point> read_pcd(const std::filesystem::path& file) { refuse(file); }
 
+PcdHeader read_pcd_header(const std::filesystem::path& file) { refuse(file); }
+
+bool pcd_has_labels(const std::filesystem::path& file) { refuse(file); }
+
+std::vector<std::uint32_t> read_pcd_labels(const std::filesystem::path& file) { refuse(file); }
+
 std::size_t pcd_point_count(const std::filesystem::path& file) { refuse(file); }
 
 }  // namespace mosbench

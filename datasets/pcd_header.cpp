@@ -1,6 +1,7 @@
 #include "datasets/pcd_header.hpp"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cstdint>
 #include <cstring>
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include "datasets/errors.hpp"
+#include "datasets/quaternion.hpp"
 #include "datasets/text.hpp"
 
 namespace mosbench {
@@ -31,6 +33,8 @@ class PcdCheck {
     const std::uint64_t points = number_of("POINTS", kMostPoints);
     if (width * height != points) fail("POINTS is not WIDTH * HEIGHT", "as many");
     header_.points = static_cast<std::size_t>(points);
+    header_.has_labels = std::ranges::find(lines_["FIELDS"], "label") != lines_["FIELDS"].end();
+    if (lines_.contains("VIEWPOINT")) header_.viewpoint = viewpoint();
     check_body(words_of("DATA", 1).front());
     return header_;
   }
@@ -74,6 +78,21 @@ class PcdCheck {
 
   std::uint64_t number_of(std::string_view key, std::uint64_t largest) const {
     return as_number(words_of(key, 1).front(), largest);
+  }
+
+  /// tx ty tz qw qx qy qz.
+  Pose viewpoint() const {
+    const auto& words = words_of("VIEWPOINT", 7);
+    std::array<double, 7> numbers{};
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      const auto number = parse_double(words[i]);
+      if (!number) fail("VIEWPOINT " + quoted(words[i]), "tx ty tz qw qx qy qz");
+      numbers[i] = *number;
+    }
+    const auto pose = pose_of({numbers[0], numbers[1], numbers[2]},
+                              {numbers[4], numbers[5], numbers[6], numbers[3]});
+    if (!pose) fail("VIEWPOINT is no pose", "tx ty tz qw qx qy qz of length 1");
+    return *pose;
   }
 
   void count_values() {

@@ -2,7 +2,10 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string_view>
+
+#include "core/scan.hpp"
 
 namespace mosbench {
 
@@ -10,6 +13,8 @@ namespace mosbench {
 struct PcdHeader {
   std::size_t points = 0;
   std::size_t body_offset_bytes = 0;  ///< where the line after DATA starts
+  bool has_labels = false;            ///< there is a field "label"
+  std::optional<Pose> viewpoint;      ///< of the sensor, when the header tells
 };
 
 /// Checks a whole PCD file: every line of the header that is needed, and that the data behind it

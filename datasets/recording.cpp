@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <limits>
+#include <utility>
 
-#include "datasets/calib_file.hpp"
 #include "datasets/errors.hpp"
 #include "datasets/files.hpp"
-#include "datasets/pose_file.hpp"
+#include "datasets/pose_source.hpp"
 #include "datasets/scan_file.hpp"
 #include "datasets/times_file.hpp"
 
@@ -38,40 +38,26 @@ std::vector<std::int64_t> stamps_from_stems(const std::vector<StemFile>& scans) 
 
 }  // namespace
 
-Recording::Recording(const std::filesystem::path& folder,
-                     const std::optional<std::filesystem::path>& poses_file)
-    : scans_(list_scans(folder)) {
+Recording::Recording(const std::filesystem::path& folder, const ReadingOptions& told,
+                     const RecordingPlaces& places)
+    : scans_(places.scan_folder.empty() ? list_scans(folder)
+                                        : list_scan_folder(folder / places.scan_folder)),
+      bin_columns_(told.bin_columns) {
+  ReadingOptions options = told;
+  if (places.poses_of_lidar && !options.poses && options.pose_frame == PoseFrame::kByCalib) {
+    options.pose_frame = PoseFrame::kLidar;
+  }
   point_counts_.reserve(scans_.size());
-  for (const StemFile& scan : scans_) point_counts_.push_back(scan_point_count(scan.file));
-  open_poses(folder, poses_file);
+  for (const StemFile& scan : scans_)
+    point_counts_.push_back(scan_point_count(scan.file, bin_columns_));
   open_stamps(folder);
-}
-
-void Recording::open_poses(const std::filesystem::path& folder,
-                           const std::optional<std::filesystem::path>& poses_file) {
-  const std::filesystem::path file = poses_file.value_or(folder / "poses.txt");
-  if (!poses_file && !is_there(file)) {
-    throw DataError(file, "does not exist",
-                    "one pose per scan there, or in a file given by --poses");
-  }
-  if (poses_file) remarks_.push_back("poses from " + file.string());
-  poses_ = read_poses(file);
-  side_files_.push_back(file);
-  check_count(poses_.size(), "pose rows", scans_.size(), file);
-
-  const std::filesystem::path calib = folder / "calib.txt";
-  if (!is_there(calib)) {
-    remarks_.push_back("no calib.txt: the poses are taken as the lidar's");
-    return;
-  }
-  const Pose camera_from_lidar = read_calib(calib);
-  side_files_.push_back(calib);
-  if (camera_from_lidar.matrix() == Pose::Identity().matrix()) return;
-  for (Pose& pose : poses_) pose = lidar_pose(pose, camera_from_lidar);
-  remarks_.push_back(fmt::format(
-      "calib.txt holds a Tr other than the identity: {} is taken as camera poses, lidar pose = "
-      "Tr^-1 * P * Tr (KITTI)",
-      file.filename().string()));
+  SettledPoses settled = settle_poses(folder, places.poses_file, options, {size(), stamps_ns_});
+  poses_ = std::move(settled.map_from_sensor);
+  side_files_.insert(side_files_.begin(), settled.files.begin(), settled.files.end());
+  remarks_ = std::move(settled.remarks);
+  reading_ = {{"scan_files", fmt::format("{} of {}/", scans_.front().file.extension().string(),
+                                         scans_.front().file.parent_path().filename().string())}};
+  reading_.insert(reading_.end(), settled.reading.begin(), settled.reading.end());
 }
 
 void Recording::open_stamps(const std::filesystem::path& folder) {
@@ -89,13 +75,13 @@ Frame Recording::read(std::size_t scan_index) const {
   const StemFile& scan = scans_.at(scan_index);
   Frame frame;
   frame.stem = scan.stem;
-  frame.points = read_scan(scan.file);
+  frame.points = read_scan(scan.file, bin_columns_);
   if (frame.points.size() != point_counts_[scan_index]) {
     throw DataError(scan.file, "changed since the sequence was opened",
                     fmt::format("{} points", point_counts_[scan_index]));
   }
   frame.map_from_sensor = poses_[scan_index];
-  if (!stamps_ns_.empty()) frame.stamp_ns = stamps_ns_[scan_index];
+  frame.stamp_ns = stamp_ns(scan_index);
   return frame;
 }
 

@@ -11,18 +11,21 @@
 
 namespace mosbench {
 
-/// The folder of scans in a sequence folder: velodyne/, else binFiles/, else nothing.
+/// The folder of scans in a sequence folder: velodyne/, else binFiles/, else LIDAR_TOP/ (nuScenes),
+/// else nothing.
 std::optional<std::filesystem::path> scan_folder_of(const std::filesystem::path& sequence_folder);
 
-/// The scans (.bin and .pcd) in order. Throws DataError when the sequence folder has no scan folder
-/// or that one no scan.
+/// The scans (.bin, .pcd, .ply) of `scan_folder` in order. Throws DataError when there are none.
+std::vector<StemFile> list_scan_folder(const std::filesystem::path& scan_folder);
+/// Those of `scan_folder_of`. Throws DataError also when the sequence folder has none.
 std::vector<StemFile> list_scans(const std::filesystem::path& sequence_folder);
 
-/// Points of a .bin or .pcd scan; throws DataError.
-std::vector<Point> read_scan(const std::filesystem::path& file);
+/// Points of a scan. A .bin file has `bin_columns` float32 per point, one that ends in .pcd.bin
+/// five as in nuScenes. Throws DataError.
+std::vector<Point> read_scan(const std::filesystem::path& file, std::size_t bin_columns = 4);
 
 /// Points of a scan by its size or header; throws DataError.
-std::size_t scan_point_count(const std::filesystem::path& file);
+std::size_t scan_point_count(const std::filesystem::path& file, std::size_t bin_columns = 4);
 
 /// Size of a file in bytes; throws DataError.
 std::uintmax_t size_of(const std::filesystem::path& file);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/scan.hpp"
+#include "datasets/reading_options.hpp"
 
 namespace mosbench {
 
@@ -30,6 +31,11 @@ class Sequence {
   virtual std::size_t size() const = 0;  ///< scans
   virtual std::string stem(std::size_t scan_index) const = 0;
   virtual bool has_truth(std::size_t scan_index) const = 0;
+  /// The file that holds this scan and nothing else, when there is one.
+  virtual std::optional<std::filesystem::path> scan_file(std::size_t scan_index) const = 0;
+  /// The frame's pose and stamp without its points.
+  virtual Pose map_from_sensor(std::size_t scan_index) const = 0;
+  virtual std::optional<std::int64_t> stamp_ns(std::size_t scan_index) const = 0;
   /// Safe to call from several threads. Throws DataError.
   virtual Frame read(std::size_t scan_index) const = 0;
   /// The truth of a labelled scan without its points when the format allows; throws DataError.
@@ -40,6 +46,8 @@ class Sequence {
   virtual std::vector<std::filesystem::path> files() const = 0;
   /// Plain sentences on what was assumed or found odd while opening (pose frame, missing labels).
   virtual std::vector<std::string> remarks() const = 0;
+  /// What was read in which convention; two runs on the same files may differ in it.
+  virtual ReadingStatement reading() const = 0;
 };
 
 }  // namespace mosbench

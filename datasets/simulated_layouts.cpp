@@ -106,8 +106,9 @@ std::vector<SimulatedRecording> recordings_of(DatasetKind layout, const Scene& s
               {"KAIST05/Deskewed_LiDAR/Velodyne", SensorKind::kVlp16}};
     case DatasetKind::kSemanticKitti:
       return {{"sequences/08", sensor_of(scene, SensorKind::kHdl64e)}};
+    default:
+      throw UsageError("layout " + std::string(to_string(layout)) + " is read only");
   }
-  return {};
 }
 
 std::set<std::size_t> labelled_scans(DatasetKind layout, std::size_t scans) {
@@ -152,7 +153,7 @@ std::uint32_t layout_label(DatasetKind layout, const SimulatedScan& scan, std::s
       return helimos_label(owner, range_m(scan.points[point]));
     case DatasetKind::kSemanticKitti:
       return kitti_label(owner, owner_number);
-    case DatasetKind::kDoals:
+    default:
       break;
   }
   return moving_label(scan, point);

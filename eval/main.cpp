@@ -19,7 +19,7 @@
 
 namespace {
 
-enum ExitCode { kOk = 0, kFinding = 1, kUsage = 2, kUnusableFiles = 3, kInternal = 70 };
+enum ExitCode { kOk = 0, kUsage = 2, kUnusableFiles = 3, kInternal = 70 };
 
 constexpr const char* kFooter = R"(Examples:
   mosbench simulate --layout semantickitti --scene room --scans 40 --seed 1 --out sim
@@ -100,6 +100,8 @@ std::string answer_to(std::vector<std::string> arguments) {
   mosbench::add_compare_command(app, answer);
   mosbench::add_bless_command(app, answer);
   mosbench::add_stats_command(app, answer);
+  mosbench::add_convert_command(app, answer);
+  mosbench::add_doctor_command(app, answer);
   mosbench::add_list_command(app, answer);
   try {
     std::ranges::reverse(arguments);  // as CLI11 expects them
@@ -115,14 +117,14 @@ std::string answer_to(std::vector<std::string> arguments) {
   }
 }
 
-/// Prints the answer; a bad one is an answer too.
+/// Prints the answer; a bad one is an answer, too.
 int answer(std::vector<std::string> arguments) {
   try {
     print(answer_to(std::move(arguments)));
     return kOk;
   } catch (const mosbench::Finding& finding) {
     print(finding.what());
-    return kFinding;
+    return finding.exit_code;
   }
 }
 

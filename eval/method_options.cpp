@@ -1,12 +1,13 @@
 #include "eval/method_options.hpp"
 
+#include "eval/reading_flags.hpp"
+
 namespace mosbench {
 
 void add_method_options(CLI::App& command, RunOptions& options) {
   command.add_option("DATA", options.input, "Root of a data set, or one sequence folder")
       ->required();
-  command
-      .add_option("--dataset", options.dataset, "auto, doals, sipailou, helimos or semantickitti")
+  command.add_option("--dataset", options.dataset, "auto, " + dataset_kind_names())
       ->capture_default_str();
   command.add_option("--sequences", options.sequences, "Names to run, a,b (default: all)")
       ->delimiter(',')
@@ -17,7 +18,7 @@ void add_method_options(CLI::App& command, RunOptions& options) {
   command.add_option("--config", options.config_file, "JSON object of configuration keys");
   command.add_option("--set", options.assignments, "key=value ..., over everything else")
       ->allow_extra_args(false);
-  command.add_option("--poses", options.poses, "Pose file instead of the sequence's own");
+  add_reading_flags(command, options.reading);
   command.add_option("--threads", options.threads, "Results do not depend on it (default: all)")
       ->check(CLI::Range(1U, 1024U));
 }

@@ -7,7 +7,7 @@
 namespace mosbench {
 
 /// The arguments that say what is segmented and how: DATA, --dataset, --sequences, --preset,
-/// --variant, --config, --set, --poses and --threads.
+/// --variant, --config, --set, --threads and the flags of `add_reading_flags`.
 void add_method_options(CLI::App& command, RunOptions& options);
 
 }  // namespace mosbench

@@ -61,11 +61,18 @@ fs::path default_out(const RunPlan& plan, const RunOptions& options) {
                                                 to_string(plan.settings.variant));
 }
 
+nlohmann::ordered_json reading_json(const Sequence& sequence) {
+  auto json = nlohmann::ordered_json::object();
+  for (const auto& [what, how] : sequence.reading()) json[what] = how;
+  return json;
+}
+
 nlohmann::ordered_json identity_of(const RunPlan& plan, const Sequence& sequence) {
   const RunSettings& settings = plan.settings;
   return {
       {"sequence", sequence.name()},
       {"dataset", std::string(to_string(plan.dataset.kind))},
+      {"reading", reading_json(sequence)},
       {"variant", std::string(to_string(settings.variant))},
       {"protocol",
        {{"name", std::string(settings.protocol->name)},
@@ -101,7 +108,7 @@ RunPlan plan_method(const RunOptions& options) {
   plan.settings.threads =
       options.threads > 0 ? options.threads : std::max(1U, std::thread::hardware_concurrency());
   plan.dataset = open_dataset(
-      options.input, {dataset_kind_option(options.dataset), options.sequences, options.poses});
+      options.input, {dataset_kind_option(options.dataset), options.sequences, options.reading});
   const Preset& preset = choose_preset(options, plan.dataset.kind, plan);
   plan.poses = options.poses;
   plan.preset = preset.name;
@@ -123,9 +130,8 @@ RunPlan plan_run(const RunOptions& options) {
 std::optional<DatasetKind> dataset_kind_option(const std::string& name) {
   if (name == "auto") return std::nullopt;
   if (const std::optional<DatasetKind> kind = dataset_kind_from_string(name)) return kind;
-  throw UsageError(fmt::format(
-      "--dataset: '{}' is not known, expected auto, doals, sipailou, helimos or semantickitti",
-      name));
+  throw UsageError(
+      fmt::format("--dataset: '{}' is not known, expected auto, {}", name, dataset_kind_names()));
 }
 
 RangeGate range_option(const std::string& text, const Protocol& protocol) {

@@ -18,7 +18,8 @@ struct RunOptions {
   std::string dataset = "auto";
   std::vector<std::string> sequences;
   std::optional<std::string> preset, variant, protocol, range;
-  std::optional<std::filesystem::path> config_file, poses, out;
+  std::optional<std::filesystem::path> config_file, out;
+  ReadingOptions reading = {};
   std::vector<std::string> assignments;
   unsigned threads = 0;  ///< 0: one per logical core
   bool overwrite = false;

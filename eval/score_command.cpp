@@ -146,8 +146,7 @@ void add_score_command(CLI::App& app, std::string& answer) {
   add_prediction_options(*command, *options);
   command->add_option("--protocol", options->protocol,
                       "How to score, or all (default: by data set)");
-  command
-      ->add_option("--dataset", options->dataset, "auto, doals, sipailou, helimos or semantickitti")
+  command->add_option("--dataset", options->dataset, "auto, " + dataset_kind_names())
       ->capture_default_str();
   command->add_option("--sequences", options->sequences, "Names to score, a,b (default: all)")
       ->delimiter(',')

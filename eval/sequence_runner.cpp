@@ -30,14 +30,6 @@ struct PendingScan {
   std::vector<Point> truth_points;  ///< only with truth, and only when the protocol has a range
 };
 
-std::filesystem::path scan_file(const Sequence& sequence, const std::string& stem) {
-  const std::vector<std::filesystem::path> files = sequence.files();
-  const auto found = std::ranges::find_if(files, [&](const std::filesystem::path& file) {
-    return file.stem() == stem && file.extension() != ".label";
-  });
-  return found == files.end() ? std::filesystem::path(sequence.name()) / stem : *found;
-}
-
 class SequenceRun {
  public:
   SequenceRun(const Sequence& sequence, const RunSettings& settings,
@@ -59,7 +51,7 @@ class SequenceRun {
       ScanCost& cost = rows_.costs.emplace_back();
       cost.read_ms = milliseconds_since(read_start);
       if (k + 1 < sequence_.size()) upcoming = start_reading(k + 1);
-      push(std::move(frame));
+      push(k, std::move(frame));
       progress.advance();
     }
     for (ScanResult& result : pipeline_.finish()) accept(std::move(result));
@@ -79,14 +71,15 @@ class SequenceRun {
     });
   }
 
-  void push(Frame frame) {
+  void push(std::size_t scan_index, Frame frame) {
     const Clock::time_point start = Clock::now();
     std::vector<ScanResult> finals;
     try {
       finals = pipeline_.push(frame.points, frame.map_from_sensor);
     } catch (const std::range_error& error) {
-      throw DataError(scan_file(sequence_, frame.stem), error.what(),
-                      "points and poses within reach of the voxel grid");
+      const auto own_file = sequence_.scan_file(scan_index);
+      throw DataError(own_file.value_or(std::filesystem::path(sequence_.name()) / frame.stem),
+                      error.what(), "points and poses within reach of the voxel grid");
     }
     rows_.costs.back().push_ms = milliseconds_since(start);
     rows_.costs.back().resident_mib = resident_mib();

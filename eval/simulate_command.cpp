@@ -29,7 +29,7 @@ struct Options {
 
 std::string simulate_dataset(Options options) {
   const std::optional<DatasetKind> layout = dataset_kind_from_string(options.layout);
-  if (!layout) {
+  if (!layout || !is_written(*layout)) {
     throw UsageError(fmt::format(
         "--layout: '{}' is not known, expected doals, sipailou, helimos or semantickitti",
         options.layout));

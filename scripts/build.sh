@@ -1,13 +1,14 @@
 #!/usr/bin/env bash
 # build.sh PRESET [cmake --build arguments]: configures and builds, with ccache where it is there.
-# MOSBENCH_WITH_PCL, MOSBENCH_WARNINGS_AS_ERRORS and MOSBENCH_BUILD_TESTS are passed on when set.
+# MOSBENCH_WITH_PCL, MOSBENCH_WITH_ROSBAG, MOSBENCH_WARNINGS_AS_ERRORS and MOSBENCH_BUILD_TESTS are passed on when set.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 [ $# -ge 1 ] || { echo "usage: build.sh PRESET [cmake --build arguments]" >&2; exit 2; }
 preset=$1
 shift
 
-options=(-DMOSBENCH_WITH_PCL="${MOSBENCH_WITH_PCL:-ON}")
+options=(-DMOSBENCH_WITH_PCL="${MOSBENCH_WITH_PCL:-ON}"
+  -DMOSBENCH_WITH_ROSBAG="${MOSBENCH_WITH_ROSBAG:-ON}")
 for option in MOSBENCH_WARNINGS_AS_ERRORS MOSBENCH_BUILD_TESTS; do
   [ -z "${!option:-}" ] || options+=("-D$option=${!option}")
 done

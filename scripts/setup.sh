@@ -3,7 +3,8 @@
 # also those of the format, naming and clang checks; with --page what the report's page is tested, linted
 # and built with: a browser, node and the packages of eval/report_page/package-lock.json. Does nothing,
 # quickly, when all are there.
-# MOSBENCH_WITH_PCL=OFF leaves out PCL, which brings some 400 packages.
+# MOSBENCH_WITH_PCL=OFF leaves out PCL, which brings some 400 packages,
+# MOSBENCH_WITH_ROSBAG=OFF the 40 or so of ROS's bag library.
 set -euo pipefail
 
 packages=(g++ cmake ninja-build pkg-config git xz-utils jq bsdextrautils python3
@@ -11,6 +12,7 @@ packages=(g++ cmake ninja-build pkg-config git xz-utils jq bsdextrautils python3
   zlib1g-dev libpng-dev
   libgtest-dev libgmock-dev libbenchmark-dev)
 [ "${MOSBENCH_WITH_PCL:-ON}" = OFF ] || packages+=(libpcl-dev)
+[ "${MOSBENCH_WITH_ROSBAG:-ON}" = OFF ] || packages+=(librosbag-storage-dev)
 case "${1:-}" in
   "") ;;
   --checks) packages+=(clang clang-format clang-tidy) ;;

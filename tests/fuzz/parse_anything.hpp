@@ -5,17 +5,23 @@
 #include <cstdlib>
 #include <string_view>
 
+#include "datasets/bag_recording.hpp"
 #include "datasets/bin_file.hpp"
 #include "datasets/calib_file.hpp"
 #include "datasets/errors.hpp"
 #include "datasets/indices_file.hpp"
 #include "datasets/label_file.hpp"
+#include "datasets/moe_labels.hpp"
 #include "datasets/pcd_header.hpp"
+#include "datasets/ply_file.hpp"
+#include "datasets/point_cloud2.hpp"
 #include "datasets/pose_file.hpp"
+#include "datasets/pose_list.hpp"
 #include "datasets/split_file.hpp"
 #include "datasets/times_file.hpp"
 #include "eval/prediction_text.hpp"
 #include "eval/published.hpp"
+#include "tests/fuzz/memory_file.hpp"
 
 /// Every parser of bytes with what must hold of any value it returns. A parser may throw DataError;
 /// whatever else happens is a bug. Shared by the replayed corpus and the libFuzzer targets.
@@ -100,19 +106,72 @@ inline void predictions(std::string_view bytes) {
   }
 }
 
+inline void ply(std::string_view bytes) {
+  require(parse_ply(bytes, "f").size() == ply_point_count(bytes, "f"));
+}
+
+/// The first byte is the number of points.
+inline void moe_labels(std::string_view text) {
+  if (text.empty()) return;
+  const std::size_t point_count = static_cast<unsigned char>(text.front());
+  require(parse_moe_labels(text.substr(1), point_count, "f").size() == point_count);
+}
+
+/// Poses in any of the formats.
+inline void pose_list(std::string_view text) {
+  const PoseList list = parse_pose_list(text, std::nullopt, "f");
+  require(list.stamps_ns.empty() || list.stamps_ns.size() == list.poses.size());
+  for (const Pose& pose : list.poses) require(pose.matrix().allFinite());
+}
+
+/// The first byte chooses the type.
+inline void ros_message(std::string_view bytes) {
+  if (bytes.empty()) return;
+  const std::string_view message = bytes.substr(1);
+  if (bytes.front() == 't') {
+    for (const auto& transform : parse_tf_message(message, "f")) {
+      require(transform.parent_from_child.matrix().allFinite());
+    }
+    return;
+  }
+  const TimedCloud cloud = parse_cloud(message, "f");
+  require(cloud.times_ns.empty() || cloud.times_ns.size() == cloud.points.size());
+  require(cloud.points.size() <= message.size());
+}
+
+/// A whole bag with all its scans.
+inline void bag(std::string_view bytes) {
+  const MemoryFile file(bytes);
+  try {
+    const BagRecording recording(file.path(), {});
+    for (std::size_t i = 0; i < recording.size(); ++i) {
+      require(recording.read(i).points.size() == recording.point_count(i));
+    }
+  } catch (const DataError& error) {
+    const std::string message = error.what();
+    require(message.starts_with(file.path().string()));
+    throw DataError("f" + message);
+  }
+}
+
 struct Parser {
   const char* name;  ///< of its corpus folder and its libFuzzer target
   void (*parse)(std::string_view);
 };
-inline constexpr std::array<Parser, 9> kParsers = {{{"bin", bin},
-                                                    {"label", label},
-                                                    {"poses", poses},
-                                                    {"calib", calib},
-                                                    {"times", times},
-                                                    {"indices", indices},
-                                                    {"split", split},
-                                                    {"pcd", pcd},
-                                                    {"predictions", predictions}}};
+inline constexpr std::array<Parser, 14> kParsers = {{{"bin", bin},
+                                                     {"label", label},
+                                                     {"poses", poses},
+                                                     {"calib", calib},
+                                                     {"times", times},
+                                                     {"indices", indices},
+                                                     {"split", split},
+                                                     {"pcd", pcd},
+                                                     {"ply", ply},
+                                                     {"moe_labels", moe_labels},
+                                                     {"pose_list", pose_list},
+                                                     {"ros_message", ros_message},
+                                                     {"bag", bag},
+                                                     {"predictions", predictions}}};
 
 /// Whether the parser gave a value; false when it threw DataError. Anything else escapes.
 inline bool gives_value(void (*parse)(std::string_view), std::string_view bytes) {

@@ -143,7 +143,8 @@ TEST(KittiSequence, TakesAnotherPoseFile) {
   write_recording(folder, {"0"});
   std::filesystem::remove(folder / "poses.txt");
   write_poses(folder / "elsewhere.txt", std::vector<Pose>{at(7)});
-  const KittiSequence sequence("s", folder.path(), folder / "elsewhere.txt");
+  const KittiSequence sequence("s", folder.path(),
+                               ReadingOptions{.poses = folder / "elsewhere.txt"});
   EXPECT_EQ(sequence.read(0).map_from_sensor.translation().x(), 7.0);
 }
 

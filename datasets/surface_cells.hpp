@@ -1,0 +1,44 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include "core/scan.hpp"
+
+namespace mosbench {
+
+/// The surfaces of a scan as one normal distribution per cell of a grid (the NDT of Biber and
+/// Strasser, 2003). Unlike the distance to the nearest point it does not take the rings of a
+/// sparse sensor on the ground for a reason to stand still.
+class SurfaceCells {
+ public:
+  explicit SurfaceCells(std::span<const Eigen::Vector3d> points_m);
+
+  bool empty() const { return cells_.empty(); }
+
+  /// How well points of another scan lie on the surfaces: mean over the points of a likelihood that
+  /// is 1 in the middle of a surface and 0 where there is none.
+  double overlap(std::span<const Eigen::Vector3d> points_m, const Pose& cells_from_points) const;
+
+ private:
+  struct Cell {
+    Eigen::Vector3d mean_m = Eigen::Vector3d::Zero();
+    Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+  };
+  std::unordered_map<std::uint64_t, Cell> cells_;
+};
+
+/// Up to `most` points evenly picked from those at 2 to 40 m, where scans are dense.
+std::vector<Eigen::Vector3d> near_points(std::span<const Point> points, std::size_t most);
+
+/// The motion near `start` with the largest overlap, by a search along the axes, and that overlap.
+struct Alignment {
+  Pose cells_from_points = Pose::Identity();
+  double overlap = 0.0;
+};
+Alignment align(const SurfaceCells& cells, std::span<const Eigen::Vector3d> points_m,
+                const Pose& start);
+
+}  // namespace mosbench
