@@ -60,7 +60,7 @@ Dataset open_dataset_of(const FoundResult& result, std::optional<fs::path> root)
                            : "does not say where its data set lies",
                       "the data set's folder in --data");
     }
-    return open_dataset(*root, {kind, {result.name}, recorded_path(json, "poses")});
+    return open_dataset(*root, {kind, {result.name}, {.poses = recorded_path(json, "poses")}});
   });
 }
 

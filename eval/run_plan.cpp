@@ -110,7 +110,7 @@ RunPlan plan_method(const RunOptions& options) {
   plan.dataset = open_dataset(
       options.input, {dataset_kind_option(options.dataset), options.sequences, options.reading});
   const Preset& preset = choose_preset(options, plan.dataset.kind, plan);
-  plan.poses = options.poses;
+  plan.poses = options.reading.poses;
   plan.preset = preset.name;
   plan.settings.config = settle_config(options, preset, plan.settings.variant);
   plan.settings.protocol = &protocol_named(options.protocol.value_or(std::string(preset.protocol)));

@@ -1,0 +1,57 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "tests/cli/program.hpp"
+#include "tests/cli/small_sequence.hpp"
+
+namespace mosbench {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+class DoctorCommand : public testing::Test {
+ protected:
+  DoctorCommand() { cli::write_small_sequence(folder_ / "room", 12); }
+  std::string data() const { return (folder_ / "room").string(); }
+
+  TempFolder folder_;
+};
+
+TEST_F(DoctorCommand, EndsWithAVerdictTheNextCommandAndItsExitCode) {
+  const cli::Answer good = cli::run({"doctor", data()});
+  EXPECT_EQ(good.exit_code, 0) << good.out;
+  EXPECT_THAT(good.out,
+              HasSubstr("Verdict: nothing wrong was found. Next\n  mosbench run " + data()));
+  fs::remove(folder_ / "room/labels/000003.label");
+  const cli::Answer doubtful = cli::run({"doctor", data()});
+  EXPECT_EQ(doubtful.exit_code, 1);
+  EXPECT_THAT(doubtful.out, HasSubstr("warning: room: 1 of 12 scans have no label: 000003"));
+  EXPECT_THAT(doubtful.out, HasSubstr("Verdict: can be run"));
+  fs::remove(folder_ / "room/velodyne/000003.bin");
+  const cli::Answer unusable = cli::run({"doctor", data()});
+  EXPECT_EQ(unusable.exit_code, 3);
+  EXPECT_THAT(unusable.out, HasSubstr("the numbering of the scans lacks 1: 000003"));
+  EXPECT_THAT(unusable.out, HasSubstr("12 pose rows for 11 scans"));
+  EXPECT_THAT(unusable.out, HasSubstr("Verdict: cannot be used"));
+}
+
+TEST_F(DoctorCommand, PrintsTheSameAsJson) {
+  const cli::Answer answer = cli::run({"doctor", data(), "--json"});
+  ASSERT_EQ(answer.exit_code, 0) << answer.out;
+  const auto json = nlohmann::json::parse(answer.out);
+  EXPECT_EQ(json.at("dataset"), "semantickitti");
+  EXPECT_EQ(json.at("sequences").at(0).at("scans"), 12);
+  EXPECT_TRUE(json.at("symptoms").empty());
+}
+
+TEST_F(DoctorCommand, RefusesWhatIsNoFolderAsUnusable) {
+  const cli::Answer answer = cli::run({"doctor", (folder_ / "nothing").string()});
+  EXPECT_EQ(answer.exit_code, 3);
+  EXPECT_THAT(answer.out, HasSubstr("is no folder that can be listed"));
+}
+
+}  // namespace
+}  // namespace mosbench
