@@ -192,10 +192,15 @@ bool ConventionScore::beats_given() const {
   return pairs >= 3 && 6 * pairs_better >= 5 * pairs && overlap > given_overlap + kGain;
 }
 
-bool PoseMeasurement::given_fits() const {
+bool PoseMeasurement::is_full(double overlap) const {
   // Sparse scans can be laid over one another a little better than they were taken.
-  constexpr double kLossShare = 0.35, kCorrectionM = 0.3;
-  return given_overlap > (1.0 - kLossShare) * best_overlap || median_correction_m < kCorrectionM;
+  constexpr double kLossShare = 0.35;
+  return overlap > (1.0 - kLossShare) * best_overlap;
+}
+
+bool PoseMeasurement::given_fits() const {
+  constexpr double kCorrectionM = 0.3;
+  return is_full(given_overlap) || median_correction_m < kCorrectionM;
 }
 
 std::vector<PoseConvention> other_conventions(const std::vector<Pose>& given,

@@ -46,7 +46,9 @@ struct PoseMeasurement {
   double median_correction_m = 0.0;     ///< by which they were moved
   std::size_t scans_read = 0;
 
-  /// Scans could be moved to fit far better: the poses are not of these scans.
+  /// Whether an overlap is near what moving the scans reaches.
+  bool is_full(double overlap) const;
+  /// If not, scans could be moved to fit far better: the poses are not of these scans.
   bool given_fits() const;
 };
 
