@@ -86,7 +86,7 @@ void BagFile::walk(std::uint64_t index_at_bytes) {
       case BagOp::kConnection:
         add_connection(header, bytes_at(at, content_bytes));
         break;
-      case BagOp::kChunkInfo:
+      case BagOp::kChunkSummary:
         add_chunk_summary(bytes_at(at, content_bytes));
         break;
       case BagOp::kBagHeader:

@@ -16,7 +16,7 @@ enum class BagOp : std::uint8_t {
   kBagHeader = 3,
   kIndex = 4,
   kChunk = 5,
-  kChunkInfo = 6,
+  kChunkSummary = 6,
   kConnection = 7
 };
 

@@ -74,8 +74,9 @@ std::vector<Symptom> check_poses(const Sequence& sequence, const std::filesystem
   const PoseMeasurement& measured = *checkup.poses;
   const ConventionScore* best = nullptr;
   for (const ConventionScore& score : measured.scores) {
-    if (score.beats_given() && (best == nullptr || score.overlap - score.given_overlap >
-                                                       best->overlap - best->given_overlap)) {
+    if (score.beats_given() && measured.is_full(score.overlap) &&
+        (best == nullptr ||
+         score.overlap - score.given_overlap > best->overlap - best->given_overlap)) {
       best = &score;
     }
   }

@@ -35,7 +35,7 @@ struct Layout {
 };
 
 /// Simulated once per layout; tests that spoil it take a copy.
-fs::path good_data(const Layout& layout) {
+fs::path good_copy(const Layout& layout) {
   static std::map<DatasetKind, std::unique_ptr<TempFolder>> folders;
   auto& folder = folders[layout.kind];
   if (!folder) {
@@ -57,11 +57,11 @@ std::string all_symptoms(const Checkup& checkup) {
   return text;
 }
 
-class DoctorOnGoodData : public testing::TestWithParam<Layout> {};
+class DoctorOnWhatIsGood : public testing::TestWithParam<Layout> {};
 
-TEST_P(DoctorOnGoodData, IsQuiet) {
-  const fs::path data = good_data(GetParam());
-  const Checkup checkup = check_up(data, {});
+TEST_P(DoctorOnWhatIsGood, IsQuiet) {
+  const fs::path root = good_copy(GetParam());
+  const Checkup checkup = check_up(root, {});
   EXPECT_EQ(all_symptoms(checkup), "");
   EXPECT_EQ(checkup.kind, GetParam().kind);
   ASSERT_FALSE(checkup.sequences.empty());
@@ -71,7 +71,7 @@ TEST_P(DoctorOnGoodData, IsQuiet) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Layouts, DoctorOnGoodData,
+INSTANTIATE_TEST_SUITE_P(Layouts, DoctorOnWhatIsGood,
                          testing::Values(Layout{DatasetKind::kDoals, "mall"},
                                          Layout{DatasetKind::kSipailou, "campus"},
                                          Layout{DatasetKind::kHelimos, "street"},
@@ -253,7 +253,7 @@ class Doctor : public testing::TestWithParam<Fault> {};
 TEST_P(Doctor, FindsThePlantedFault) {
   const Fault& fault = GetParam();
   const TempFolder folder;
-  fs::copy(good_data(fault.layout), folder / "data", fs::copy_options::recursive);
+  fs::copy(good_copy(fault.layout), folder / "data", fs::copy_options::recursive);
   fault.plant(folder / "data");
   const Checkup checkup = check_up(folder / "data", {});
   EXPECT_THAT(all_symptoms(checkup), HasSubstr(fault.symptom));
