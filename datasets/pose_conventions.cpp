@@ -194,7 +194,7 @@ bool ConventionScore::beats_given() const {
 
 bool PoseMeasurement::is_full(double overlap) const {
   // Sparse scans can be laid over one another a little better than they were taken.
-  constexpr double kLossShare = 0.35;
+  constexpr double kLossShare = 0.25;
   return overlap > (1.0 - kLossShare) * best_overlap;
 }
 

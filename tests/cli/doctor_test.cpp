@@ -15,23 +15,23 @@ using testing::HasSubstr;
 class DoctorCommand : public testing::Test {
  protected:
   DoctorCommand() { cli::write_small_sequence(folder_ / "room", 12); }
-  std::string data() const { return (folder_ / "room").string(); }
+  std::string room() const { return (folder_ / "room").string(); }
 
   TempFolder folder_;
 };
 
 TEST_F(DoctorCommand, EndsWithAVerdictTheNextCommandAndItsExitCode) {
-  const cli::Answer good = cli::run({"doctor", data()});
+  const cli::Answer good = cli::run({"doctor", room()});
   EXPECT_EQ(good.exit_code, 0) << good.out;
   EXPECT_THAT(good.out,
-              HasSubstr("Verdict: nothing wrong was found. Next\n  mosbench run " + data()));
+              HasSubstr("Verdict: nothing wrong was found. Next\n  mosbench run " + room()));
   fs::remove(folder_ / "room/labels/000003.label");
-  const cli::Answer doubtful = cli::run({"doctor", data()});
+  const cli::Answer doubtful = cli::run({"doctor", room()});
   EXPECT_EQ(doubtful.exit_code, 1);
   EXPECT_THAT(doubtful.out, HasSubstr("warning: room: 1 of 12 scans have no label: 000003"));
   EXPECT_THAT(doubtful.out, HasSubstr("Verdict: can be run"));
   fs::remove(folder_ / "room/velodyne/000003.bin");
-  const cli::Answer unusable = cli::run({"doctor", data()});
+  const cli::Answer unusable = cli::run({"doctor", room()});
   EXPECT_EQ(unusable.exit_code, 3);
   EXPECT_THAT(unusable.out, HasSubstr("the numbering of the scans lacks 1: 000003"));
   EXPECT_THAT(unusable.out, HasSubstr("12 pose rows for 11 scans"));
@@ -39,7 +39,7 @@ TEST_F(DoctorCommand, EndsWithAVerdictTheNextCommandAndItsExitCode) {
 }
 
 TEST_F(DoctorCommand, PrintsTheSameAsJson) {
-  const cli::Answer answer = cli::run({"doctor", data(), "--json"});
+  const cli::Answer answer = cli::run({"doctor", room(), "--json"});
   ASSERT_EQ(answer.exit_code, 0) << answer.out;
   const auto json = nlohmann::json::parse(answer.out);
   EXPECT_EQ(json.at("dataset"), "semantickitti");
