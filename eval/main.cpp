@@ -22,7 +22,7 @@ namespace {
 enum ExitCode { kOk = 0, kUsage = 2, kUnusableFiles = 3, kInternal = 70 };
 
 constexpr const char* kFooter = R"(Examples:
-  mosbench simulate --layout semantickitti --scene room --scans 40 --seed 1 --out sim
+  mosbench simulate --layout semantickitti --scene street --scans 40 --seed 1 --out sim
   mosbench run sim --out results/runs/sim
   mosbench score sim --predictions results/runs/sim --protocol semantickitti-mos
   mosbench report results/runs/sim -o report.html

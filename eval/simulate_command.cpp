@@ -18,7 +18,7 @@ scans give the same files, whatever the number of threads. `mosbench list scenes
 that need no file; FILE is a scene of your own in JSON.
 
 Examples:
-  mosbench simulate --layout semantickitti --scene room --scans 40 --seed 1 --out sim/room
+  mosbench simulate --layout semantickitti --scene street --scans 40 --seed 1 --out sim/street
   mosbench simulate --layout doals --scene mall --scans 100 --seed 7 --out sim/doals
   mosbench simulate --layout helimos --scene my_street.json --scans 200 --seed 1 --out sim/helimos)";
 
