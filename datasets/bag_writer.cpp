@@ -132,10 +132,12 @@ BagWriter::~BagWriter() = default;
 
 void BagWriter::write(const std::string& topic, std::int64_t stamp_ns, std::string_view type,
                       std::string_view message) {
+  if (stamp_ns < 0) throw DataError(file_, "a stamp to be written is negative", "stamps from 0");
   const auto known = std::ranges::find(kTypes, type, &MessageType::name);
   const SerializedMessage serialized{message, &*known};
   ros::Time time;
-  time.fromNSec(static_cast<std::uint64_t>(stamp_ns));
+  // The time of recording, which the library wants above 0; that of the message is its own.
+  time.fromNSec(static_cast<std::uint64_t>(std::max<std::int64_t>(stamp_ns, 1)));
   checked(file_, [&] { bag_->write(topic, time, serialized); });
 }
 

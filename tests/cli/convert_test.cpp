@@ -108,6 +108,15 @@ TEST_F(Convert, TurnsEveryLayoutIntoEveryOther) {
   }
 }
 
+TEST_F(Convert, MakesABagOfScansWithoutStamps) {
+  if (!has_rosbag()) GTEST_SKIP() << "this build is without librosbag_storage";
+  cli::write_small_sequence(folder_ / "room", 3);
+  const cli::Answer answer = convert((folder_ / "room").string(), "doals-bag", "bags");
+  ASSERT_EQ(answer.exit_code, 0) << answer.err;
+  expect_same_frames(folder_ / "room", folder_ / "bags", 1e-12);
+  EXPECT_EQ(open_dataset(folder_ / "bags", {}).sequences.at(0)->stamp_ns(2), 200'000'000);
+}
+
 TEST_F(Convert, RefusesAFilledFolderAndAnUnknownLayout) {
   const std::string input = simulate("doals", "6");
   folder_.write("out/keep", "mine");
