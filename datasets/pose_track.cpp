@@ -9,8 +9,10 @@ PoseTrack::PoseTrack(std::vector<std::pair<std::int64_t, Pose>> poses, bool alwa
     : poses_(std::move(poses)), always_(always) {
   const auto stamp = [](const auto& stamped) { return stamped.first; };
   std::ranges::stable_sort(poses_, {}, stamp);
-  const auto repeated = std::ranges::unique(poses_, {}, stamp);
-  poses_.erase(repeated.begin(), repeated.end());
+  // clang 14 does not compile std::ranges::unique of libstdc++ 12.
+  poses_.erase(std::unique(poses_.begin(), poses_.end(),
+                           [&](const auto& a, const auto& b) { return stamp(a) == stamp(b); }),
+               poses_.end());
 }
 
 bool PoseTrack::covers(std::int64_t from_ns, std::int64_t to_ns) const {
