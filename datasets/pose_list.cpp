@@ -23,16 +23,6 @@ constexpr std::size_t kPoseNumbers = 7;
 
 const char* row_of(PoseFormat format) { return kRows[static_cast<std::size_t>(format)]; }
 
-std::vector<std::string_view> split_at_commas(std::string_view line) {
-  std::vector<std::string_view> parts;
-  while (true) {
-    const auto comma = line.find(',');
-    parts.push_back(trim(line.substr(0, comma)));
-    if (comma == std::string_view::npos) return parts;
-    line.remove_prefix(comma + 1);
-  }
-}
-
 PoseFormat format_of(std::string_view row) {
   if (row.find(',') != std::string_view::npos) return PoseFormat::kRollout;
   return split_at_blanks(row).size() == kPoseNumbers + 1 ? PoseFormat::kTum : PoseFormat::kKitti;

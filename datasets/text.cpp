@@ -52,6 +52,16 @@ std::vector<std::string_view> split_at_blanks(std::string_view line) {
   }
 }
 
+std::vector<std::string_view> split_at_commas(std::string_view line) {
+  std::vector<std::string_view> parts;
+  while (true) {
+    const auto comma = line.find(',');
+    parts.push_back(trim(line.substr(0, comma)));
+    if (comma == std::string_view::npos) return parts;
+    line.remove_prefix(comma + 1);
+  }
+}
+
 std::optional<double> parse_double(std::string_view text) {
   if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
   double value = 0.0;

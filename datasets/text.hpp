@@ -23,6 +23,9 @@ std::vector<TextLine> split_lines(std::string_view text, const std::filesystem::
 /// The parts between blanks and tabs.
 std::vector<std::string_view> split_at_blanks(std::string_view line);
 
+/// The parts between commas, trimmed: one more than there are commas.
+std::vector<std::string_view> split_at_commas(std::string_view line);
+
 /// `text` without blanks, tabs and carriage returns at both ends.
 std::string_view trim(std::string_view text);
 

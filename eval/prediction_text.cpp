@@ -17,16 +17,6 @@ namespace fs = std::filesystem;
 
 constexpr std::uint64_t kLargestLabel = 0xFFFFFFFF;
 
-std::vector<std::string_view> split_at_commas(std::string_view line) {
-  std::vector<std::string_view> fields;
-  for (std::size_t begin = 0; begin <= line.size();) {
-    const std::size_t end = std::min(line.find(',', begin), line.size());
-    fields.push_back(trim(line.substr(begin, end - begin)));
-    begin = end + 1;
-  }
-  return fields;
-}
-
 std::uint64_t number_at(const std::vector<std::string_view>& fields, std::size_t column,
                         const TextLine& line, const fs::path& file) {
   const auto value = column < fields.size() ? parse_unsigned(fields[column]) : std::nullopt;

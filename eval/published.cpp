@@ -16,13 +16,8 @@ constexpr std::string_view kHeader =
 constexpr std::size_t kColumns = 13;
 
 std::vector<std::string> cells_of(const TextLine& line, const std::filesystem::path& file) {
-  std::vector<std::string> cells;
-  for (std::size_t begin = 0; begin <= line.text.size();) {
-    const std::size_t end = std::min(line.text.find(',', begin), line.text.size());
-    cells.emplace_back(trim(line.text.substr(begin, end - begin)));
-    begin = end + 1;
-  }
-  if (cells.size() == kColumns) return cells;
+  const std::vector<std::string_view> cells = split_at_commas(line.text);
+  if (cells.size() == kColumns) return {cells.begin(), cells.end()};
   throw DataError(file, line.number, fmt::format("has {} cells", cells.size()),
                   fmt::format("{}", kColumns));
 }
