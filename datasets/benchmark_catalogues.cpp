@@ -6,6 +6,7 @@
 #include "datasets/kth_sequence.hpp"
 #include "datasets/moe_labels.hpp"
 #include "datasets/scan_file.hpp"
+#include "datasets/text.hpp"
 
 namespace mosbench {
 namespace {

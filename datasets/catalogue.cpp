@@ -20,11 +20,6 @@ std::filesystem::path parent_folder(const std::filesystem::path& path) {
   return without_slash(path).parent_path();
 }
 
-std::string lower_case(std::string text) {
-  for (char& c : text) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return text;
-}
-
 std::vector<Split> splits_of_names(const std::vector<NamedSplit>& named,
                                    const std::vector<SequenceFolder>& folders) {
   std::vector<Split> splits;

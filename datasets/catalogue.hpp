@@ -37,8 +37,6 @@ const Catalogue& mdetector_catalogue();
 /// The last name of a path, also of "." and of one that ends with a slash.
 std::string folder_name(const std::filesystem::path& path);
 
-std::string lower_case(std::string text);
-
 /// The folder in which a sequence folder lies.
 std::filesystem::path parent_folder(const std::filesystem::path& path);
 

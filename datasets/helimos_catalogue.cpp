@@ -12,6 +12,7 @@
 #include "datasets/kitti_sequence.hpp"
 #include "datasets/scan_file.hpp"
 #include "datasets/split_file.hpp"
+#include "datasets/text.hpp"
 
 namespace mosbench {
 namespace {

@@ -2,6 +2,7 @@
 #include "datasets/folder_listing.hpp"
 #include "datasets/kitti_sequence.hpp"
 #include "datasets/scan_file.hpp"
+#include "datasets/text.hpp"
 
 namespace mosbench {
 namespace {

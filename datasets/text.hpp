@@ -35,6 +35,9 @@ std::optional<double> parse_double(std::string_view text);
 /// The whole of `text` as a decimal number without sign, or nothing.
 std::optional<std::uint64_t> parse_unsigned(std::string_view text);
 
+/// ASCII letters in lower case, other bytes as they are.
+std::string lower_case(std::string text);
+
 /// `text` in quotes for an error message: cut when long, unprintable bytes as '?'.
 std::string quoted(std::string_view text);
 

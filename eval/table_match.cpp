@@ -3,18 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
+
+#include "datasets/text.hpp"
 
 namespace mosbench {
 namespace {
 
 constexpr std::string_view kOwn = "HMM-MOS";
-
-std::string lower(std::string text) {
-  std::ranges::transform(text, text.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
 
 void differ(const char* what, double measured, const std::optional<double>& published,
             std::vector<std::string>& reasons) {
@@ -65,7 +60,7 @@ std::vector<std::string> mismatches(const ResultSet& run, const PublishedCell& c
   std::vector<std::string> reasons;
   if (is_own(cell)) {
     own_mismatches(first.header, cell, reasons);
-  } else if (lower(first.setting) != lower(cell.setting)) {
+  } else if (lower_case(first.setting) != lower_case(cell.setting)) {
     reasons.push_back(fmt::format("setting '{}', published '{}'", first.setting, cell.setting));
   }
   if (first.protocol->name != cell.protocol) {
@@ -81,7 +76,7 @@ std::optional<std::size_t> nearest_row(const ResultSet& run,
   std::size_t fewest = 0;
   for (std::size_t r = 0; r < rows.size(); ++r) {
     const PublishedCell& cell = rows[r].cells.front();
-    if (lower(cell.method) != lower(run.front().method)) continue;
+    if (lower_case(cell.method) != lower_case(run.front().method)) continue;
     const std::size_t count = mismatches(run, cell).size();
     if (nearest && count >= fewest) continue;
     nearest = r;
