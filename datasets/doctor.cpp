@@ -49,9 +49,7 @@ void check_sequence(const Sequence& sequence, const std::filesystem::path& folde
   part.scans = sequence.size();
   part.reading = sequence.reading();
   part.remarks = sequence.remarks();
-  for (std::size_t i = 0; i < sequence.size(); ++i) {
-    if (sequence.has_truth(i)) ++part.labelled_scans;
-  }
+  part.labelled_scans = scans_with_truth(sequence).size();
   collect(checkup.symptoms, part.name, [&] { return check_content(sequence, kind, part); });
   collect(checkup.symptoms, part.name, [&] { return check_poses(sequence, folder, part); });
   if (!simulated) append(checkup.symptoms, check_published(sequence, kind, folder));

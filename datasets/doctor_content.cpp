@@ -88,10 +88,7 @@ class ContentCheck {
 
   /// Evenly spread ones, and as many of those that are labelled.
   std::set<std::size_t> sampled_scans() const {
-    std::vector<std::size_t> labelled;
-    for (std::size_t i = 0; i < sequence_.size(); ++i) {
-      if (sequence_.has_truth(i)) labelled.push_back(i);
-    }
+    const std::vector<std::size_t> labelled = scans_with_truth(sequence_);
     std::set<std::size_t> sampled;
     for (std::size_t i = 0; i < kScansRead / 2; ++i) {
       sampled.insert(i * sequence_.size() / (kScansRead / 2));

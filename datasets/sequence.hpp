@@ -50,4 +50,7 @@ class Sequence {
   virtual ReadingStatement reading() const = 0;
 };
 
+/// The indices of the labelled scans, in order.
+std::vector<std::size_t> scans_with_truth(const Sequence& sequence);
+
 }  // namespace mosbench

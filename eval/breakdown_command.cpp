@@ -35,14 +35,6 @@ struct BreakdownOptions {
   bool json = false;
 };
 
-std::vector<std::size_t> labelled(const Sequence& sequence) {
-  std::vector<std::size_t> scans;
-  for (std::size_t k = 0; k < sequence.size(); ++k) {
-    if (sequence.has_truth(k)) scans.push_back(k);
-  }
-  return scans;
-}
-
 BreakdownTask settle(const BreakdownOptions& options, const Dataset& dataset) {
   const Protocol& protocol =
       protocol_named(options.protocol.value_or(std::string(default_preset(dataset.kind).protocol)));
@@ -57,7 +49,7 @@ std::vector<SequenceBreakdown> all_breakdowns(const BreakdownOptions& options,
   if (options.format) prediction.format = prediction_format_named(*options.format);
   std::vector<SequenceBreakdown> breakdowns;
   for (const auto& sequence : dataset.sequences) {
-    const std::vector<std::size_t> scans = labelled(*sequence);
+    const std::vector<std::size_t> scans = scans_with_truth(*sequence);
     if (scans.empty()) continue;
     const OpenedPredictions opened = open_predictions(options.predictions, *sequence, scans,
                                                       dataset.sequences.size() == 1, prediction);

@@ -31,10 +31,8 @@ struct DiffOptions {
 std::vector<std::size_t> scans_of(const Sequence& sequence, const SequenceResult& result) {
   std::set<std::string> stems;
   for (const ScanRow* row : counted_scans(result)) stems.insert(row->stem);
-  std::vector<std::size_t> scans;
-  for (std::size_t k = 0; k < sequence.size(); ++k) {
-    if (sequence.has_truth(k) && stems.contains(sequence.stem(k))) scans.push_back(k);
-  }
+  std::vector<std::size_t> scans = scans_with_truth(sequence);
+  std::erase_if(scans, [&](std::size_t k) { return !stems.contains(sequence.stem(k)); });
   return scans;
 }
 

@@ -18,14 +18,6 @@ constexpr std::size_t kListed = 50;  // objects and false positives
 
 unsigned all_threads() { return std::max(1U, std::thread::hardware_concurrency()); }
 
-std::vector<std::size_t> labelled(const Sequence& sequence) {
-  std::vector<std::size_t> scans;
-  for (std::size_t k = 0; k < sequence.size(); ++k) {
-    if (sequence.has_truth(k)) scans.push_back(k);
-  }
-  return scans;
-}
-
 /// Every protocol over its own range, the run's over that of the run.
 std::vector<ScoreRule> rules_beside(const ScoreRule& own) {
   std::vector<ScoreRule> rules;
@@ -68,7 +60,7 @@ ordered_json estimates_of(const FoundResult& result) {
 }
 
 ordered_json breakdown_of(const ResultScans& scans) {
-  const std::vector<std::size_t> wanted = labelled(scans.sequence());
+  const std::vector<std::size_t> wanted = scans_with_truth(scans.sequence());
   if (wanted.empty()) return nullptr;
   const OpenedPredictions opened =
       open_predictions(scans.label_folder(), scans.sequence(), wanted, true, {});
@@ -78,7 +70,7 @@ ordered_json breakdown_of(const ResultScans& scans) {
 }
 
 ordered_json protocols_of(const ResultScans& scans) {
-  if (labelled(scans.sequence()).empty()) return nullptr;
+  if (scans_with_truth(scans.sequence()).empty()) return nullptr;
   const std::vector<ScoreRule> rules = rules_beside(scans.rule());
   const ScoreTask task{scans.label_folder(), {}, rules, std::nullopt, all_threads()};
   const auto scores = score_dataset(scans.dataset(), task);

@@ -21,15 +21,12 @@ bool looks_at_ranges(const ScoreTask& task) {
 std::vector<std::size_t> wanted_scans(const Dataset& dataset, std::size_t position,
                                       const ScoreTask& task) {
   const Sequence& sequence = *dataset.sequences[position];
-  std::optional<std::set<std::string>> stems;
-  if (task.split) {
-    stems = stems_in_split(*std::ranges::find(dataset.splits, *task.split, &Split::name), position);
-  }
-  std::vector<std::size_t> wanted;
-  for (std::size_t k = 0; k < sequence.size(); ++k) {
-    if (!sequence.has_truth(k)) continue;
-    if (!stems || stems->contains(sequence.stem(k))) wanted.push_back(k);
-  }
+  std::vector<std::size_t> wanted = scans_with_truth(sequence);
+  if (!task.split) return wanted;
+  const auto stems =
+      stems_in_split(*std::ranges::find(dataset.splits, *task.split, &Split::name), position);
+  std::erase_if(wanted,
+                [&](std::size_t k) { return stems && !stems->contains(sequence.stem(k)); });
   return wanted;
 }
 

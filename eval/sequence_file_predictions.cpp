@@ -11,14 +11,6 @@ namespace mosbench {
 namespace fs = std::filesystem;
 namespace {
 
-std::vector<std::size_t> labelled_scans(const Sequence& sequence) {
-  std::vector<std::size_t> scans;
-  for (std::size_t k = 0; k < sequence.size(); ++k) {
-    if (sequence.has_truth(k)) scans.push_back(k);
-  }
-  return scans;
-}
-
 void check_rows(std::size_t rows, const std::vector<std::size_t>& scans, const fs::path& file) {
   if (rows == scans.size()) return;
   throw DataError(file, fmt::format("has {} scans", rows),
@@ -60,7 +52,7 @@ std::unique_ptr<Predictions> open_rows(const fs::path& file, const Sequence& seq
 /// By exact stamp where the scans have stamps, else in order.
 std::unique_ptr<Predictions> open_indices(const fs::path& file, const Sequence& sequence,
                                           PredictionFaults& faults) {
-  const std::vector<std::size_t> scans = labelled_scans(sequence);
+  const std::vector<std::size_t> scans = scans_with_truth(sequence);
   std::vector<IndicesRow> found = read_indices(file);
   std::map<std::int64_t, std::size_t> by_stamp;
   for (const std::size_t k : scans) {
@@ -97,7 +89,7 @@ class Clouds : public Predictions {
 
 std::unique_ptr<Predictions> open_clouds(const fs::path& file, const Sequence& sequence,
                                          DynabloxLevel level) {
-  const std::vector<std::size_t> scans = labelled_scans(sequence);
+  const std::vector<std::size_t> scans = scans_with_truth(sequence);
   auto parsed = parse_dynablox_clouds(read_file(file), level, file);
   check_rows(parsed.size(), scans, file);
   std::map<std::size_t, std::vector<std::uint32_t>> clouds;
@@ -131,7 +123,7 @@ class CountedScans : public Predictions {
 
 std::unique_ptr<Predictions> open_scores(const fs::path& file, const Sequence& sequence,
                                          DynabloxLevel level) {
-  const std::vector<std::size_t> scans = labelled_scans(sequence);
+  const std::vector<std::size_t> scans = scans_with_truth(sequence);
   const auto scores = parse_dynablox_scores(read_file(file), level, file);
   check_rows(scores.size(), scans, file);
   std::map<std::size_t, Confusion> counts;
