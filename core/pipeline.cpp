@@ -1,7 +1,5 @@
 #include "core/pipeline.hpp"
 
-#include <time.h>
-
 #include <chrono>
 #include <deque>
 #include <stdexcept>
@@ -24,12 +22,6 @@ struct StageRecord {
   StageTimes& times;
   std::vector<StageEvent>* events;  ///< may be null
 };
-
-double process_cpu_ms() {
-  timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) * 1e3 + static_cast<double>(now.tv_nsec) * 1e-6;
-}
 
 /// Adds the time of its life to a stage.
 class StageClock {

@@ -35,4 +35,7 @@ struct StageEvent {
   double cpu_ms;  ///< of the whole process, all threads
 };
 
+/// CPU time that the process has used so far in all its threads.
+double process_cpu_ms();
+
 }  // namespace mosbench

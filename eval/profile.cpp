@@ -1,7 +1,5 @@
 #include "eval/profile.hpp"
 
-#include <time.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -14,12 +12,6 @@ namespace mosbench {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-double process_cpu_ms() {
-  timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) * 1e3 + static_cast<double>(now.tv_nsec) * 1e-6;
-}
 
 /// What `work` costs.
 template <typename Work>
