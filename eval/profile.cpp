@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "core/pipeline.hpp"
-#include "datasets/errors.hpp"
 #include "eval/machine.hpp"
 #include "eval/progress.hpp"
 
@@ -60,12 +59,7 @@ SequenceProfile profile_sequence(const Sequence& sequence, const RunSettings& se
     if (frame.stamp_ns) stamps_ns.push_back(*frame.stamp_ns);
     scan.stem = frame.stem;
     scan.points = frame.points.size();
-    try {
-      scan.method = cost_of([&] { pipeline.push(frame.points, frame.map_from_sensor); });
-    } catch (const std::range_error& error) {
-      throw DataError(sequence.name() + "/" + frame.stem, error.what(),
-                      "points and poses within reach of the voxel grid");
-    }
+    scan.method = cost_of([&] { push_scan(pipeline, sequence, k, frame); });
     scan.stages = std::move(events);
     events.clear();
     scan.resident_mib = resident_mib();

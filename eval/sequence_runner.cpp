@@ -6,7 +6,6 @@
 #include <future>
 #include <stdexcept>
 
-#include "core/pipeline.hpp"
 #include "datasets/errors.hpp"
 #include "datasets/fingerprint.hpp"
 #include "datasets/label_file.hpp"
@@ -73,14 +72,7 @@ class SequenceRun {
 
   void push(std::size_t scan_index, Frame frame) {
     const Clock::time_point start = Clock::now();
-    std::vector<ScanResult> finals;
-    try {
-      finals = pipeline_.push(frame.points, frame.map_from_sensor);
-    } catch (const std::range_error& error) {
-      const auto own_file = sequence_.scan_file(scan_index);
-      throw DataError(own_file.value_or(std::filesystem::path(sequence_.name()) / frame.stem),
-                      error.what(), "points and poses within reach of the voxel grid");
-    }
+    std::vector<ScanResult> finals = push_scan(pipeline_, sequence_, scan_index, frame);
     rows_.costs.back().push_ms = milliseconds_since(start);
     rows_.costs.back().resident_mib = resident_mib();
     remember(std::move(frame));
@@ -143,6 +135,17 @@ class SequenceRun {
 SequenceRows run_sequence(const Sequence& sequence, const RunSettings& settings,
                           const std::filesystem::path& label_folder) {
   return SequenceRun(sequence, settings, label_folder).run();
+}
+
+std::vector<ScanResult> push_scan(Pipeline& pipeline, const Sequence& sequence,
+                                  std::size_t scan_index, const Frame& frame) {
+  try {
+    return pipeline.push(frame.points, frame.map_from_sensor);
+  } catch (const std::range_error& error) {
+    const auto own_file = sequence.scan_file(scan_index);
+    throw DataError(own_file.value_or(std::filesystem::path(sequence.name()) / frame.stem),
+                    error.what(), "points and poses within reach of the voxel grid");
+  }
 }
 
 bool detection_runs(const Config& config, std::size_t scan_index, std::size_t scan_count) {

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <filesystem>
+#include <vector>
 
 #include "core/config.hpp"
+#include "core/pipeline.hpp"
 #include "datasets/sequence.hpp"
 #include "eval/protocol.hpp"
 #include "eval/result_file.hpp"
@@ -24,6 +26,11 @@ struct RunSettings {
 /// at a time, and the truth of the scans whose labels are still delayed. Throws DataError.
 SequenceRows run_sequence(const Sequence& sequence, const RunSettings& settings,
                           const std::filesystem::path& label_folder);
+
+/// Pushes one scan of `sequence`. Throws DataError naming the scan's file, or where it has none of
+/// its own the scan, for points and poses beyond the voxel grid.
+std::vector<ScanResult> push_scan(Pipeline& pipeline, const Sequence& sequence,
+                                  std::size_t scan_index, const Frame& frame);
 
 /// Whether the method looks for motion in scan `scan_index` of `scan_count` (algorithm, section 4).
 bool detection_runs(const Config& config, std::size_t scan_index, std::size_t scan_count);
