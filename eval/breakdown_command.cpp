@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "datasets/errors.hpp"
+#include "eval/answer_text.hpp"
 #include "eval/breakdown.hpp"
 #include "eval/commands.hpp"
 #include "eval/presets.hpp"
@@ -74,7 +75,7 @@ std::string breakdown(const BreakdownOptions& options) {
     for (const SequenceBreakdown& part : breakdowns) {
       json["sequences"].push_back(to_json(part, options.top));
     }
-    return json.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n';
+    return json_text(json);
   }
   std::string text = fmt::format("protocol {}\n{}", task.protocol->name, simulated_notice(dataset));
   for (const SequenceBreakdown& part : breakdowns) text += '\n' + breakdown_text(part, options.top);

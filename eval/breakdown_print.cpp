@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "eval/answer_text.hpp"
 #include "eval/breakdown.hpp"
 #include "eval/metrics.hpp"
 #include "eval/text_table.hpp"
@@ -12,19 +13,15 @@ namespace {
 using nlohmann::ordered_json;
 constexpr auto kLeft = TextTable::Align::kLeft;
 
-ordered_json number(const std::optional<double>& value) {
-  return value ? ordered_json(*value) : ordered_json(nullptr);
-}
-
 ordered_json metrics_json(const Confusion& counts) {
   return {{"tp", counts.tp},
           {"fp", counts.fp},
           {"fn", counts.fn},
           {"tn", counts.tn},
           {"ignored", counts.ignored},
-          {"iou", number(moving_iou(counts))},
-          {"precision", number(precision(counts))},
-          {"recall", number(recall(counts))}};
+          {"iou", json_or_null(moving_iou(counts))},
+          {"precision", json_or_null(precision(counts))},
+          {"recall", json_or_null(recall(counts))}};
 }
 
 template <std::size_t size>
@@ -65,7 +62,6 @@ std::vector<const ObjectTrack*> worst_first(const std::vector<ObjectTrack>& obje
 ordered_json object_json(const SequenceBreakdown& breakdown, const ObjectTrack& object) {
   const Sighting& first = object.sightings.front();
   const Sighting& last = object.sightings.back();
-  const auto delay = object.detection_delay_scans();
   return {{"first_scan", breakdown.stems[first.scan_index]},
           {"last_scan", breakdown.stems[last.scan_index]},
           {"instance", first.cluster.instance},
@@ -75,8 +71,8 @@ ordered_json object_json(const SequenceBreakdown& breakdown, const ObjectTrack& 
           {"recall", object.recall()},
           {"mean_range_m", object.mean_range_m()},
           {"largest_size_m", object.largest_size_m()},
-          {"speed_m_per_scan", number(object.speed_m_per_scan())},
-          {"detection_delay_scans", delay ? ordered_json(*delay) : ordered_json(nullptr)},
+          {"speed_m_per_scan", json_or_null(object.speed_m_per_scan())},
+          {"detection_delay_scans", json_or_null(object.detection_delay_scans())},
           {"first_position_map_m", position(first.cluster.centre_map_m)},
           {"last_position_map_m", position(last.cluster.centre_map_m)}};
 }
@@ -111,10 +107,6 @@ std::string recall_text(const char* title, const std::vector<RecallBin>& bins) {
                    fmt::format("{}", bin.tp), fmt::format("{}", bin.fn)});
   }
   return table.str() + '\n';
-}
-
-std::string position_text(const Eigen::Vector3d& position_m) {
-  return fmt::format("({:.1f}, {:.1f}, {:.1f})", position_m.x(), position_m.y(), position_m.z());
 }
 
 std::string objects_text(const SequenceBreakdown& breakdown, std::size_t at_most) {

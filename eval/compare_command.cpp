@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "datasets/errors.hpp"
+#include "eval/answer_text.hpp"
 #include "eval/commands.hpp"
 #include "eval/gate.hpp"
 #include "eval/paired_runs.hpp"
@@ -36,7 +37,7 @@ std::string answer_of(const CompareOptions& options, const PairedRuns& paired,
     nlohmann::ordered_json json = to_json(result);
     json["paired_scans"] = paired.scans.size();
     json["unlike"] = unlike_text(paired.unlike);
-    return json.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n';
+    return json_text(json);
   }
   std::string text = fmt::format("{} paired scans\n", paired.scans.size());
   if (!paired.unlike.empty()) text += "unlike: " + unlike_text(paired.unlike) + '\n';

@@ -4,6 +4,7 @@
 #include <thread>
 
 #include "datasets/errors.hpp"
+#include "eval/answer_text.hpp"
 #include "eval/commands.hpp"
 #include "eval/run_diff.hpp"
 #include "eval/run_plan.hpp"
@@ -74,9 +75,7 @@ std::string diff(const DiffOptions& options) {
   const auto objects =
       options.root ? objects_of(options, first, second) : std::vector<ObjectDisagreement>{};
   if (!options.json) return diff_text(paired, objects, options.top);
-  return diff_json(paired, objects, options.top)
-             .dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) +
-         '\n';
+  return json_text(diff_json(paired, objects, options.top));
 }
 
 }  // namespace

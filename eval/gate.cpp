@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "eval/answer_text.hpp"
 #include "eval/text_table.hpp"
 
 namespace mosbench {
@@ -36,14 +37,6 @@ GateCheck check(std::string name, const Protocol& protocol, std::span<const Sequ
   return check;
 }
 
-std::string percent(const std::optional<double>& value, const char* style = "{:.2f}") {
-  return value ? fmt::format(fmt::runtime(style), *value * 100.0) : "undefined";
-}
-
-nlohmann::ordered_json number(const std::optional<double>& value) {
-  return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
-}
-
 }  // namespace
 
 bool GateResult::passed() const { return std::ranges::all_of(checks, &GateCheck::passed); }
@@ -72,8 +65,8 @@ std::string gate_text(const GateResult& result) {
                    {"p"},
                    {"verdict"}});
   for (const GateCheck& check : result.checks) {
-    table.add_row({check.name, percent(check.baseline), percent(check.newer),
-                   percent(check.difference.value, "{:+.2f}"), percent(check.tolerance),
+    table.add_row({check.name, percent_text(check.baseline), percent_text(check.newer),
+                   percent_text(check.difference.value, "{:+.2f}"), percent_text(check.tolerance),
                    check.difference.p_value ? fmt::format("{:.4f}", *check.difference.p_value) : "",
                    check.passed ? "pass" : "REGRESSION"});
   }
@@ -85,10 +78,10 @@ nlohmann::ordered_json to_json(const GateResult& result) {
                                  {"checks", nlohmann::ordered_json::array()}};
   for (const GateCheck& check : result.checks) {
     json["checks"].push_back({{"name", check.name},
-                              {"baseline_iou", number(check.baseline)},
-                              {"new_iou", number(check.newer)},
-                              {"difference", number(check.difference.value)},
-                              {"p_value", number(check.difference.p_value)},
+                              {"baseline_iou", json_or_null(check.baseline)},
+                              {"new_iou", json_or_null(check.newer)},
+                              {"difference", json_or_null(check.difference.value)},
+                              {"p_value", json_or_null(check.difference.p_value)},
                               {"tolerance", check.tolerance},
                               {"passed", check.passed}});
   }

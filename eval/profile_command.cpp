@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "datasets/files.hpp"
+#include "eval/answer_text.hpp"
 #include "eval/commands.hpp"
 #include "eval/method_options.hpp"
 #include "eval/profile_report.hpp"
@@ -32,8 +33,7 @@ struct Options {
 
 void write(const std::optional<std::filesystem::path>& file, const nlohmann::ordered_json& json) {
   if (!file) return;
-  write_file_atomic(
-      *file, json.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n');
+  write_file_atomic(*file, json_text(json));
 }
 
 std::string profile(const Options& options) {

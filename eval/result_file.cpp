@@ -2,22 +2,19 @@
 
 #include "datasets/errors.hpp"
 #include "datasets/files.hpp"
+#include "eval/answer_text.hpp"
 
 namespace mosbench {
 namespace {
 
 using nlohmann::ordered_json;
 
-ordered_json optional_number(const std::optional<double>& value) {
-  return value ? ordered_json(*value) : ordered_json(nullptr);
-}
-
 ordered_json to_json(const ScanRow& row) {
   ordered_json json = {{"stem", row.stem},
                        {"points", row.points},
                        {"predicted_moving_points", row.predicted_moving_points},
                        {"nonfinite_points", row.nonfinite_points},
-                       {"threshold", optional_number(row.threshold)}};
+                       {"threshold", json_or_null(row.threshold)}};
   if (!row.counts) return json;
   json["tp"] = row.counts->tp;
   json["fp"] = row.counts->fp;
@@ -81,7 +78,7 @@ ordered_json timing(const SequenceRows& rows, unsigned threads, const ordered_js
   ordered_json json = clock_header;
   json["threads"] = threads;
   json["wall_s"] = rows.wall_s;
-  json["method_ms_per_scan"] = optional_number(method_ms_per_scan(rows));
+  json["method_ms_per_scan"] = json_or_null(method_ms_per_scan(rows));
   json["stage_ms_per_scan"] = mean_stages_ms(rows);
   json["scan_columns"] = cost_columns();
   json["scans"] = ordered_json::array();

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "eval/answer_text.hpp"
 #include "eval/metrics.hpp"
 #include "eval/text_table.hpp"
 
@@ -20,22 +21,15 @@ long long change(std::uint64_t from, std::uint64_t to) {
   return static_cast<long long>(to) - static_cast<long long>(from);
 }
 
-std::string percent(const std::optional<double>& value) {
-  return value ? fmt::format("{:.2f}", *value * 100.0) : "undefined";
-}
-
-ordered_json number(const std::optional<double>& value) {
-  return value ? ordered_json(*value) : ordered_json(nullptr);
-}
-
 std::string scans_text(const std::vector<ScanDisagreement>& scans, std::size_t at_most) {
   TextTable table({{"scan", kLeft}, {"IoU %"}, {"IoU %"}, {"TP"}, {"FP"}, {"FN"}});
   for (std::size_t i = 0; i < std::min(at_most, scans.size()); ++i) {
     const PairedRuns::Scan& scan = scans[i].scan;
     const Confusion& first = *scan.first->counts;
     const Confusion& second = *scan.second->counts;
-    table.add_row({scan.sequence + '/' + scan.stem, percent(moving_iou(first)),
-                   percent(moving_iou(second)), fmt::format("{:+}", change(first.tp, second.tp)),
+    table.add_row({scan.sequence + '/' + scan.stem, percent_text(moving_iou(first)),
+                   percent_text(moving_iou(second)),
+                   fmt::format("{:+}", change(first.tp, second.tp)),
                    fmt::format("{:+}", change(first.fp, second.fp)),
                    fmt::format("{:+}", change(first.fn, second.fn))});
   }
@@ -51,12 +45,11 @@ std::string objects_text(const std::vector<ObjectDisagreement>& objects, std::si
                    {"position in the map m"}});
   for (std::size_t i = 0; i < std::min(at_most, objects.size()); ++i) {
     const ObjectDisagreement& object = objects[i];
-    const Eigen::Vector3d& position = object.position_map_m;
-    table.add_row(
-        {fmt::format("{} {} to {}", object.sequence, object.first_scan, object.last_scan),
-         fmt::format("{}", object.points), fmt::format("{}", object.first_found),
-         fmt::format("{}", object.second_found), fmt::format("{:.1f}", object.mean_range_m),
-         fmt::format("({:.1f}, {:.1f}, {:.1f})", position.x(), position.y(), position.z())});
+    table.add_row({fmt::format("{} {} to {}", object.sequence, object.first_scan, object.last_scan),
+                   fmt::format("{}", object.points), fmt::format("{}", object.first_found),
+                   fmt::format("{}", object.second_found),
+                   fmt::format("{:.1f}", object.mean_range_m),
+                   position_text(object.position_map_m)});
   }
   return table.str();
 }
@@ -108,8 +101,8 @@ ordered_json diff_json(const PairedRuns& paired, const std::vector<ObjectDisagre
     const Confusion& second = *scan.second->counts;
     json["scans"].push_back({{"sequence", scan.sequence},
                              {"scan", scan.stem},
-                             {"first_iou", number(moving_iou(first))},
-                             {"second_iou", number(moving_iou(second))},
+                             {"first_iou", json_or_null(moving_iou(first))},
+                             {"second_iou", json_or_null(moving_iou(second))},
                              {"tp_change", change(first.tp, second.tp)},
                              {"fp_change", change(first.fp, second.fp)},
                              {"fn_change", change(first.fn, second.fn)}});

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "eval/answer_text.hpp"
 #include "eval/config_json.hpp"
 #include "eval/score_table.hpp"
 #include "eval/simulated.hpp"
@@ -80,7 +81,7 @@ std::string run_report_json(const RunPlan& plan, const std::vector<SequenceOutco
     json["sequences"][i]["reused"] = outcomes[i].reused;
     json["sequences"][i]["remarks"] = outcomes[i].remarks;
   }
-  return json.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n';
+  return json_text(json);
 }
 
 }  // namespace mosbench

@@ -25,8 +25,7 @@ std::vector<std::size_t> wanted_scans(const Dataset& dataset, std::size_t positi
   if (!task.split) return wanted;
   const auto stems =
       stems_in_split(*std::ranges::find(dataset.splits, *task.split, &Split::name), position);
-  std::erase_if(wanted,
-                [&](std::size_t k) { return stems && !stems->contains(sequence.stem(k)); });
+  std::erase_if(wanted, [&](std::size_t k) { return stems && !stems->contains(sequence.stem(k)); });
   return wanted;
 }
 

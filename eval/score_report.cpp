@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "datasets/files.hpp"
+#include "eval/answer_text.hpp"
 #include "eval/benchmark_split.hpp"
 #include "eval/metrics.hpp"
 #include "eval/score_table.hpp"
@@ -16,10 +17,6 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr std::size_t kNamedScans = 5;
-
-std::string dump(const ordered_json& json) {
-  return json.dump(1, ' ', false, ordered_json::error_handler_t::replace) + '\n';
-}
 
 std::vector<ScoreRow> table_rows(const Dataset& dataset, const ScoreRule& rule,
                                  const std::vector<SequenceScores>& scores, bool with_sequences) {
@@ -117,7 +114,7 @@ std::string score_json(const Dataset& dataset, const ScoreRule& rule,
         predictions_json(*sequence.opened);
   }
   json["remarks"] = score_remarks(dataset, scores);
-  return dump(json);
+  return json_text(json);
 }
 
 void write_scores(const Dataset& dataset, const ScoreRule& rule, const MethodName& method,

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "eval/answer_text.hpp"
 #include "eval/metrics.hpp"
 #include "eval/protocol_list.hpp"
 #include "eval/score_report.hpp"
@@ -80,10 +81,9 @@ std::string side_by_side_text(const Dataset& dataset, const std::vector<ScoreRul
                    {"why", TextTable::Align::kLeft}});
   for (const ProtocolRow& row : protocol_rows(rules, scores)) {
     const Confusion& pooled = row.summary.pooled;
-    table.add_row({row.name,
-                   row.summary.iou ? fmt::format("{:.2f}", *row.summary.iou * 100.0) : "undefined",
-                   row.summary.published_text, fmt::format("{}", pooled.tp),
-                   fmt::format("{}", pooled.fp), fmt::format("{}", pooled.fn), row.reason});
+    table.add_row({row.name, percent_text(row.summary.iou), row.summary.published_text,
+                   fmt::format("{}", pooled.tp), fmt::format("{}", pooled.fp),
+                   fmt::format("{}", pooled.fn), row.reason});
   }
   std::string text = "the same labels by every protocol, over all scored scans\n" +
                      simulated_notice(dataset) + '\n' + table.str() + '\n';
@@ -98,18 +98,17 @@ std::string side_by_side_json(const Dataset& dataset, const std::vector<ScoreRul
                        {"remarks", score_remarks(dataset, scores)}};
   if (const auto origin = simulated_origin_json(dataset)) json["simulated"] = *origin;
   for (const ProtocolRow& row : protocol_rows(rules, scores)) {
-    json["protocols"].push_back(
-        {{"name", row.name},
-         {"iou", row.summary.iou ? ordered_json(*row.summary.iou) : ordered_json(nullptr)},
-         {"published_text", row.summary.published_text},
-         {"tp", row.summary.pooled.tp},
-         {"fp", row.summary.pooled.fp},
-         {"fn", row.summary.pooled.fn},
-         {"tn", row.summary.pooled.tn},
-         {"ignored", row.summary.pooled.ignored},
-         {"why", row.reason}});
+    json["protocols"].push_back({{"name", row.name},
+                                 {"iou", json_or_null(row.summary.iou)},
+                                 {"published_text", row.summary.published_text},
+                                 {"tp", row.summary.pooled.tp},
+                                 {"fp", row.summary.pooled.fp},
+                                 {"fn", row.summary.pooled.fn},
+                                 {"tn", row.summary.pooled.tn},
+                                 {"ignored", row.summary.pooled.ignored},
+                                 {"why", row.reason}});
   }
-  return json.dump(1, ' ', false, ordered_json::error_handler_t::replace) + '\n';
+  return json_text(json);
 }
 
 }  // namespace mosbench

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "eval/answer_text.hpp"
 #include "eval/metrics.hpp"
 #include "eval/text_table.hpp"
 
@@ -10,33 +11,25 @@ namespace {
 
 using nlohmann::ordered_json;
 
-ordered_json number(const std::optional<double>& value) {
-  return value ? ordered_json(*value) : ordered_json(nullptr);
-}
-
 template <typename Value>
 ordered_json spread_json(const Value& value) {
-  return {{"value", number(value.value)},
-          {"standard_error", number(value.standard_error)},
+  return {{"value", json_or_null(value.value)},
+          {"standard_error", json_or_null(value.standard_error)},
           {"low", value.interval ? ordered_json(value.interval->low) : ordered_json(nullptr)},
           {"high", value.interval ? ordered_json(value.interval->high) : ordered_json(nullptr)}};
 }
 
-/// "62.29" of 0.6229.
-std::string percent(const std::optional<double>& value, const char* style = "{:.2f}") {
-  return value ? fmt::format(fmt::runtime(style), *value * 100.0) : "undefined";
-}
-
 std::string interval_text(const std::optional<Interval>& interval, const char* style = "{:.2f}") {
   if (!interval) return "none";
-  return fmt::format("[{}, {}]", percent(interval->low, style), percent(interval->high, style));
+  return fmt::format("[{}, {}]", percent_text(interval->low, style),
+                     percent_text(interval->high, style));
 }
 
 std::vector<std::string> estimate_cells(const std::string& name, std::size_t scans,
                                         const Estimates& estimates) {
   std::vector<std::string> cells = {name, fmt::format("{}", scans)};
   for (const Estimate& metric : estimates.metrics) {
-    cells.push_back(percent(metric.value));
+    cells.push_back(percent_text(metric.value));
     cells.push_back(interval_text(metric.interval));
   }
   std::size_t longest = 0;
@@ -60,10 +53,10 @@ ordered_json scan_json(const SequenceResult& sequence, const ScanRow& row) {
           {"fn", counts.fn},
           {"tn", counts.tn},
           {"ignored", counts.ignored},
-          {"iou", number(moving_iou(counts))},
-          {"precision", number(precision(counts))},
-          {"recall", number(recall(counts))},
-          {"f1", number(f1(counts))}};
+          {"iou", json_or_null(moving_iou(counts))},
+          {"precision", json_or_null(precision(counts))},
+          {"recall", json_or_null(recall(counts))},
+          {"f1", json_or_null(f1(counts))}};
 }
 
 std::string headline(const ResultSet& set) {
@@ -100,8 +93,8 @@ ordered_json to_json(const Differences& differences) {
   for (std::size_t m = 0; m < kMetricNames.size(); ++m) {
     const Difference& metric = differences.metrics[m];
     ordered_json& value = json[std::string(kMetricNames[m])] = spread_json(metric);
-    value["p_value"] = number(metric.p_value);
-    value["smallest_detectable"] = number(metric.smallest_detectable);
+    value["p_value"] = json_or_null(metric.p_value);
+    value["smallest_detectable"] = json_or_null(metric.smallest_detectable);
   }
   json["block_lengths_scans"] = differences.block_lengths_scans;
   return json;
@@ -207,10 +200,10 @@ std::string difference_text(const ResultSet& first, const ResultSet& second,
                    {"detectable"}});
   for (std::size_t m = 0; m < kMetricNames.size(); ++m) {
     const Difference& metric = differences.metrics[m];
-    table.add_row({std::string(kMetricNames[m]), percent(metric.value, "{:+.2f}"),
+    table.add_row({std::string(kMetricNames[m]), percent_text(metric.value, "{:+.2f}"),
                    interval_text(metric.interval, "{:+.2f}"),
                    metric.p_value ? fmt::format("{:.4f}", *metric.p_value) : "none",
-                   percent(metric.smallest_detectable)});
+                   percent_text(metric.smallest_detectable)});
   }
   std::string text = fmt::format("first:  {}\nsecond: {}\n{} paired scans", headline(first),
                                  headline(second), paired.scans.size());

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "datasets/errors.hpp"
+#include "eval/answer_text.hpp"
 #include "eval/commands.hpp"
 #include "eval/statistics.hpp"
 
@@ -32,14 +33,10 @@ struct StatsOptions {
   bool json = false;
 };
 
-std::string dump(const nlohmann::ordered_json& json) {
-  return json.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n';
-}
-
 std::string of_one(const StatsOptions& options) {
   const ResultSet set = load_result_set(options.first);
   if (options.csv) return scan_table_csv(set);
-  if (options.json) return dump(statistics_json(set, options.per_scan));
+  if (options.json) return json_text(statistics_json(set, options.per_scan));
   return statistics_text(set);
 }
 
@@ -57,7 +54,7 @@ std::string of_two(const StatsOptions& options) {
                     "is not like " + first.path.string() + ": " + unlike_text(paired.unlike),
                     "the same protocol, scans and truth");
   }
-  return options.json ? dump(difference_json(first, second, paired))
+  return options.json ? json_text(difference_json(first, second, paired))
                       : difference_text(first, second, paired);
 }
 

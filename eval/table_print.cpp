@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "eval/answer_text.hpp"
 #include "eval/text_table.hpp"
 
 namespace mosbench {
@@ -93,10 +94,6 @@ std::string interval_end(const Estimate& estimate, double Interval::*end) {
   return estimate.interval ? fmt::format("{:.6g}", (*estimate.interval).*end * 100.0) : "";
 }
 
-ordered_json number(const std::optional<double>& value) {
-  return value ? ordered_json(*value) : ordered_json(nullptr);
-}
-
 ordered_json to_json(const TableCell& cell) {
   ordered_json json = {{"column", cell.column},
                        {"verdict", std::string(to_string(cell.verdict))},
@@ -105,8 +102,8 @@ ordered_json to_json(const TableCell& cell) {
   json["published_percent"] = cell.published ? cell.published->iou_percent : "";
   json["note"] = cell.published ? cell.published->note : "";
   const Estimate measured = cell.measured.value_or(Estimate{});
-  json["measured"] = number(measured.value);
-  json["difference"] = number(cell.difference);
+  json["measured"] = json_or_null(measured.value);
+  json["difference"] = json_or_null(cell.difference);
   json["low"] = measured.interval ? ordered_json(measured.interval->low) : ordered_json(nullptr);
   json["high"] = measured.interval ? ordered_json(measured.interval->high) : ordered_json(nullptr);
   return json;

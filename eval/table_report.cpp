@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "datasets/errors.hpp"
+#include "eval/answer_text.hpp"
 #include "eval/table_print.hpp"
 
 namespace mosbench {
@@ -25,8 +26,7 @@ std::string table_report(const PaperTable& table, const std::vector<PublishedCel
     case TableFormat::kLatex:
       return table_latex(filled);
     case TableFormat::kJson:
-      return to_json(filled).dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) +
-             '\n';
+      return json_text(to_json(filled));
     case TableFormat::kMarkdown:
       break;
   }
