@@ -16,24 +16,11 @@ std::size_t bin_of(const std::array<double, size>& edges, double value) {
   return above == edges.begin() ? 0 : static_cast<std::size_t>(above - edges.begin()) - 1;
 }
 
-void count(PointOutcome outcome, Confusion& counts) {
-  switch (outcome) {
-    case PointOutcome::kTruePositive:
-      ++counts.tp;
-      return;
-    case PointOutcome::kFalsePositive:
-      ++counts.fp;
-      return;
-    case PointOutcome::kFalseNegative:
-      ++counts.fn;
-      return;
-    case PointOutcome::kTrueNegative:
-      ++counts.tn;
-      return;
-    case PointOutcome::kIgnoredStatic:
-    case PointOutcome::kIgnoredMoving:
-      ++counts.ignored;
-  }
+template <std::size_t size>
+std::array<Confusion, size> to_confusions(const std::array<OutcomeCounts, size>& bins) {
+  std::array<Confusion, size> confusions;
+  std::ranges::transform(bins, confusions.begin(), to_confusion);
+  return confusions;
 }
 
 /// Points of one kind: where they are in the map, and whether they are predicted moving.
@@ -86,15 +73,17 @@ ScanBreakdown break_down_scan(const Protocol& protocol, const RangeGate& limits,
   ScanBreakdown breakdown;
   std::map<std::uint32_t, Selection> moving;  // by instance
   Selection false_positives;
+  std::array<OutcomeCounts, kRangeEdges_m.size()> by_range{};
+  std::array<OutcomeCounts, kHeightEdges_m.size()> by_height{};
   for (std::size_t i = 0; i < outcomes.size(); ++i) {
     const Point& point = frame.points[i];
     const Eigen::Vector3d position =
         frame.map_from_sensor * Eigen::Vector3d(static_cast<double>(point.x),
                                                 static_cast<double>(point.y),
                                                 static_cast<double>(point.z));
-    count(outcomes[i],
-          breakdown.by_range[bin_of(kRangeEdges_m, range_m(point, Arithmetic::kDouble))]);
-    count(outcomes[i], breakdown.by_height[bin_of(kHeightEdges_m, position.z() - sensor.z())]);
+    const auto outcome = static_cast<std::size_t>(outcomes[i]);
+    ++by_range[bin_of(kRangeEdges_m, range_m(point, Arithmetic::kDouble))][outcome];
+    ++by_height[bin_of(kHeightEdges_m, position.z() - sensor.z())][outcome];
     const bool found = outcomes[i] == PointOutcome::kTruePositive;
     if (found || outcomes[i] == PointOutcome::kFalseNegative) {
       moving[truth[i] >> 16U].add(position, found);
@@ -102,6 +91,8 @@ ScanBreakdown break_down_scan(const Protocol& protocol, const RangeGate& limits,
       false_positives.add(position, true);
     }
   }
+  breakdown.by_range = to_confusions(by_range);
+  breakdown.by_height = to_confusions(by_height);
   for (const auto& [instance, selection] : moving) {
     std::vector<Cluster> groups = instance == 0 ? cluster_points(selection.positions_map_m, kCell_m)
                                                 : std::vector<Cluster>{finite_members(selection)};
