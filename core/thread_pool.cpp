@@ -6,6 +6,8 @@
 
 namespace mosbench {
 
+unsigned hardware_threads() { return std::max(1U, std::thread::hardware_concurrency()); }
+
 struct ThreadPool::Job {
   std::size_t count, grain;
   const std::function<void(std::size_t, std::size_t, unsigned)>& work;

@@ -10,6 +10,9 @@
 
 namespace mosbench {
 
+/// Logical cores of the machine; 1 when that cannot be told.
+unsigned hardware_threads();
+
 /// Worker threads created once. Work is cut into fixed chunks with disjoint outputs, so results do
 /// not depend on which thread takes which chunk.
 class ThreadPool {

@@ -11,6 +11,7 @@
 #include <thread>
 #include <vector>
 
+#include "core/thread_pool.hpp"
 #include "datasets/bin_file.hpp"
 #include "datasets/built_in_scenes.hpp"
 #include "datasets/calib_file.hpp"
@@ -237,8 +238,7 @@ void simulate(const SimulateOptions& options,
   const std::size_t total = writers.size() * options.scans;
   std::size_t done = 0;
   std::mutex progress_mutex;
-  const unsigned threads =
-      options.threads > 0 ? options.threads : std::max(1U, std::thread::hardware_concurrency());
+  const unsigned threads = options.threads > 0 ? options.threads : hardware_threads();
   for_each_in_parallel(total, threads, [&](std::size_t i) {
     writers[i / options.scans].write_scan(i % options.scans);
     if (!progress) return;

@@ -1,10 +1,9 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <memory>
-#include <thread>
 
+#include "core/thread_pool.hpp"
 #include "datasets/errors.hpp"
 #include "eval/answer_text.hpp"
 #include "eval/breakdown.hpp"
@@ -39,9 +38,9 @@ struct BreakdownOptions {
 BreakdownTask settle(const BreakdownOptions& options, const Dataset& dataset) {
   const Protocol& protocol =
       protocol_named(options.protocol.value_or(std::string(default_preset(dataset.kind).protocol)));
-  return {
-      &protocol, options.range ? range_option(*options.range, protocol) : protocol.default_range,
-      options.threads > 0 ? options.threads : std::max(1U, std::thread::hardware_concurrency())};
+  return {&protocol,
+          options.range ? range_option(*options.range, protocol) : protocol.default_range,
+          options.threads > 0 ? options.threads : hardware_threads()};
 }
 
 std::vector<SequenceBreakdown> all_breakdowns(const BreakdownOptions& options,

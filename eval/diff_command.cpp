@@ -1,8 +1,8 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <memory>
-#include <thread>
 
+#include "core/thread_pool.hpp"
 #include "datasets/errors.hpp"
 #include "eval/answer_text.hpp"
 #include "eval/commands.hpp"
@@ -47,8 +47,7 @@ std::vector<ObjectDisagreement> objects_of(const DiffOptions& options, const Res
                                            const ResultSet& second) {
   const Dataset dataset =
       open_dataset(*options.root, {dataset_kind_option(options.dataset), {}, {}});
-  const BreakdownTask task{first.front().protocol, first.front().range,
-                           std::max(1U, std::thread::hardware_concurrency())};
+  const BreakdownTask task{first.front().protocol, first.front().range, hardware_threads()};
   std::vector<ObjectDisagreement> objects;
   for (const auto& sequence : dataset.sequences) {
     const auto result =

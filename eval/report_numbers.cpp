@@ -1,8 +1,8 @@
 #include "eval/report_numbers.hpp"
 
 #include <algorithm>
-#include <thread>
 
+#include "core/thread_pool.hpp"
 #include "datasets/errors.hpp"
 #include "eval/breakdown.hpp"
 #include "eval/score_report.hpp"
@@ -15,8 +15,6 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr std::size_t kListed = 50;  // objects and false positives
-
-unsigned all_threads() { return std::max(1U, std::thread::hardware_concurrency()); }
 
 /// Every protocol over its own range, the run's over that of the run.
 std::vector<ScoreRule> rules_beside(const ScoreRule& own) {
@@ -65,14 +63,14 @@ ordered_json breakdown_of(const ResultScans& scans) {
   const OpenedPredictions opened =
       open_predictions(scans.label_folder(), scans.sequence(), wanted, true, {});
   return to_json(break_down(scans.sequence(), wanted, *opened.labels,
-                            {scans.rule().protocol, scans.rule().range, all_threads()}),
+                            {scans.rule().protocol, scans.rule().range, hardware_threads()}),
                  kListed);
 }
 
 ordered_json protocols_of(const ResultScans& scans) {
   if (scans_with_truth(scans.sequence()).empty()) return nullptr;
   const std::vector<ScoreRule> rules = rules_beside(scans.rule());
-  const ScoreTask task{scans.label_folder(), {}, rules, std::nullopt, all_threads()};
+  const ScoreTask task{scans.label_folder(), {}, rules, std::nullopt, hardware_threads()};
   const auto scores = score_dataset(scans.dataset(), task);
   return ordered_json::parse(side_by_side_json(scans.dataset(), rules, scores)).at("protocols");
 }

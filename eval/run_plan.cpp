@@ -2,12 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cstdio>
 #include <stdexcept>
-#include <thread>
 
 #include "core/pipeline.hpp"
+#include "core/thread_pool.hpp"
 #include "datasets/errors.hpp"
 #include "datasets/fingerprint.hpp"
 #include "eval/config_json.hpp"
@@ -105,8 +104,7 @@ PlannedSequence plan_sequence(const RunPlan& plan, std::size_t position, bool ov
 RunPlan plan_method(const RunOptions& options) {
   RunPlan plan;
   plan.settings.variant = parse_variant(options.variant);
-  plan.settings.threads =
-      options.threads > 0 ? options.threads : std::max(1U, std::thread::hardware_concurrency());
+  plan.settings.threads = options.threads > 0 ? options.threads : hardware_threads();
   plan.dataset = open_dataset(
       options.input, {dataset_kind_option(options.dataset), options.sequences, options.reading});
   const Preset& preset = choose_preset(options, plan.dataset.kind, plan);

@@ -1,10 +1,9 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <memory>
-#include <thread>
 
+#include "core/thread_pool.hpp"
 #include "datasets/errors.hpp"
 #include "eval/benchmark_split.hpp"
 #include "eval/commands.hpp"
@@ -106,7 +105,7 @@ std::string score(const ScoreOptions& options) {
       open_dataset(options.input, {dataset_kind_option(options.dataset), options.sequences, {}});
   ScoreTask task = options.task;
   task.options = prediction_options(options);
-  if (task.threads == 0) task.threads = std::max(1U, std::thread::hardware_concurrency());
+  if (task.threads == 0) task.threads = hardware_threads();
   if (task.split) keep_split(*task.split, dataset);
   if (options.protocol == "all") return score_all(options, dataset, std::move(task));
   const ScoreRule rule = one_rule(options, dataset);
