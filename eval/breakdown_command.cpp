@@ -93,8 +93,7 @@ void add_breakdown_command(CLI::App& app, std::string& answer) {
   command->add_option("--protocol", options->protocol,
                       "Rules of truth and range (default: by data set)");
   command->add_option("--range", options->range, "MIN,MAX in metres, for protocols that limit it");
-  command
-      ->add_option("--dataset", options->dataset, "auto, doals, sipailou, helimos or semantickitti")
+  command->add_option("--dataset", options->dataset, "auto, " + dataset_kind_names())
       ->capture_default_str();
   command->add_option("--sequences", options->sequences, "Names to look at, a,b (default: all)")
       ->delimiter(',')

@@ -85,8 +85,7 @@ void add_diff_command(CLI::App& app, std::string& answer) {
   command->add_option("A", options->first, "Results of a run")->required();
   command->add_option("B", options->second, "Results of another")->required();
   command->add_option("--data", options->root, "The data set, to look at objects");
-  command
-      ->add_option("--dataset", options->dataset, "auto, doals, sipailou, helimos or semantickitti")
+  command->add_option("--dataset", options->dataset, "auto, " + dataset_kind_names())
       ->capture_default_str();
   command->add_option("--top", options->top, "How many scans and objects to list")
       ->capture_default_str();
