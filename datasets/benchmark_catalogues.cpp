@@ -6,7 +6,6 @@
 #include "datasets/kth_sequence.hpp"
 #include "datasets/moe_labels.hpp"
 #include "datasets/scan_file.hpp"
-#include "datasets/text.hpp"
 
 namespace mosbench {
 namespace {
@@ -31,15 +30,6 @@ std::vector<SequenceFolder> list_pcd(const std::filesystem::path& path) {
 
 std::vector<SequenceFolder> list_velodyne(const std::filesystem::path& path) {
   return list_with(path, "velodyne");
-}
-
-bool is_named(const std::filesystem::path& path, std::initializer_list<const char*> words) {
-  for (const auto& part : std::filesystem::absolute(path).lexically_normal()) {
-    for (const char* word : words) {
-      if (lower_case(part.string()).find(word) != std::string::npos) return true;
-    }
-  }
-  return false;
 }
 
 bool any_holds(const std::vector<SequenceFolder>& sequences, const char* file) {
@@ -99,7 +89,8 @@ std::optional<std::string> recognise_kth(const std::filesystem::path& path) {
 }
 
 std::optional<std::string> recognise_mdetector(const std::filesystem::path& path) {
-  if (!is_named(path, {"m-detector", "m_detector", "mdetector"}) || list_velodyne(path).empty()) {
+  if (!folder_with_word(path, {"m-detector", "m_detector", "mdetector"}) ||
+      list_velodyne(path).empty()) {
     return std::nullopt;
   }
   return "M-detector is in the folder name";

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "datasets/text.hpp"
+
 namespace mosbench {
 namespace {
 
@@ -18,6 +20,17 @@ std::string folder_name(const std::filesystem::path& path) {
 
 std::filesystem::path parent_folder(const std::filesystem::path& path) {
   return without_slash(path).parent_path();
+}
+
+std::optional<std::string> folder_with_word(const std::filesystem::path& path,
+                                            std::initializer_list<const char*> words) {
+  for (const auto& part : std::filesystem::absolute(path).lexically_normal()) {
+    const std::string name = lower_case(part.string());
+    for (const char* word : words) {
+      if (name.find(word) != std::string::npos) return part.string();
+    }
+  }
+  return std::nullopt;
 }
 
 std::vector<Split> splits_of_names(const std::vector<NamedSplit>& named,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <initializer_list>
 #include <memory>
 #include <optional>
 #include <string>
@@ -36,6 +37,11 @@ const Catalogue& mdetector_catalogue();
 
 /// The last name of a path, also of "." and of one that ends with a slash.
 std::string folder_name(const std::filesystem::path& path);
+
+/// The first of the names in the whole path that has one of `words` in it, in any case; nothing
+/// when none has. `words` are in lower case.
+std::optional<std::string> folder_with_word(const std::filesystem::path& path,
+                                            std::initializer_list<const char*> words);
 
 /// The folder in which a sequence folder lies.
 std::filesystem::path parent_folder(const std::filesystem::path& path);

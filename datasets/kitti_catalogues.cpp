@@ -2,7 +2,6 @@
 #include "datasets/folder_listing.hpp"
 #include "datasets/kitti_sequence.hpp"
 #include "datasets/scan_file.hpp"
-#include "datasets/text.hpp"
 
 namespace mosbench {
 namespace {
@@ -43,13 +42,9 @@ std::vector<Split> sipailou_splits(const std::vector<SequenceFolder>& folders,
 }
 
 std::optional<std::string> recognise_sipailou(const std::filesystem::path& path) {
-  for (const auto& part : std::filesystem::absolute(path).lexically_normal()) {
-    const std::string name = lower_case(part.string());
-    if (name.find("sipailou") != std::string::npos && !list_kitti(path).empty()) {
-      return "\"sipailou\" is in the folder name " + part.string();
-    }
-  }
-  return std::nullopt;
+  const auto named = folder_with_word(path, {"sipailou"});
+  if (!named || list_kitti(path).empty()) return std::nullopt;
+  return "\"sipailou\" is in the folder name " + *named;
 }
 
 std::optional<std::string> recognise_semantickitti(const std::filesystem::path& path) {
