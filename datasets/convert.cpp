@@ -1,13 +1,13 @@
 #include "datasets/convert.hpp"
 
 #include <algorithm>
-#include <array>
 #include <set>
 #include <system_error>
 
 #include "datasets/errors.hpp"
 #include "datasets/files.hpp"
 #include "datasets/folder_listing.hpp"
+#include "datasets/helimos_layout.hpp"
 #include "datasets/sequence_writer.hpp"
 #include "datasets/simulated_origin.hpp"
 #include "datasets/split_file.hpp"
@@ -16,9 +16,6 @@ namespace mosbench {
 namespace {
 
 namespace fs = std::filesystem;
-
-const fs::path kHelimosRoot = fs::path("KAIST05") / "Deskewed_LiDAR";
-constexpr std::array<const char*, 4> kHelimosSensors = {"Aeva", "Avia", "Ouster", "Velodyne"};
 
 void refuse_filled(const fs::path& out) {
   std::error_code error;
@@ -65,9 +62,9 @@ fs::path converted_folder(DatasetKind layout, const std::string& name, std::size
       return fs::path(flat(name)) / "sequence_1";
     case DatasetKind::kHelimos:
       if (std::ranges::find(kHelimosSensors, name) != kHelimosSensors.end()) {
-        return kHelimosRoot / name;
+        return helimos_folder() / name;
       }
-      if (position < kHelimosSensors.size()) return kHelimosRoot / kHelimosSensors[position];
+      if (position < kHelimosSensors.size()) return helimos_folder() / kHelimosSensors[position];
       throw UsageError("--layout helimos has room for 4 sequences, not for " + name +
                        ", expected fewer in --sequences");
     default:
@@ -87,7 +84,8 @@ void convert(const Dataset& dataset, const ConvertOptions& options,
     origin->layout = options.layout;
     write_file_atomic(options.out / kSimulatedMarker, format_simulated_origin(*origin));
   }
-  if (options.layout == DatasetKind::kHelimos) write_splits(dataset, options.out / kHelimosRoot);
+  if (options.layout == DatasetKind::kHelimos)
+    write_splits(dataset, options.out / helimos_folder());
   std::size_t done = 0;
   for (std::size_t i = 0; i < dataset.sequences.size(); ++i) {
     const Sequence& sequence = *dataset.sequences[i];

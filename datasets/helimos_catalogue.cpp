@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <map>
 #include <span>
 
@@ -9,6 +8,7 @@
 #include "datasets/errors.hpp"
 #include "datasets/files.hpp"
 #include "datasets/folder_listing.hpp"
+#include "datasets/helimos_layout.hpp"
 #include "datasets/kitti_sequence.hpp"
 #include "datasets/scan_file.hpp"
 #include "datasets/split_file.hpp"
@@ -17,14 +17,12 @@
 namespace mosbench {
 namespace {
 
-constexpr std::array<const char*, 4> kSensors = {"Aeva", "Avia", "Ouster", "Velodyne"};
-
 /// The four recordings end up to this many scans apart (12475 to 12477), and share their split
 /// files.
 constexpr std::uint64_t kLongestTail = 2;
 
 bool is_sensor(const std::string& name) {
-  return std::ranges::find(kSensors, name) != kSensors.end();
+  return std::ranges::find(kHelimosSensors, name) != kHelimosSensors.end();
 }
 
 /// All sensor folders if one has scans: one without is listed, so that opening it says what it
@@ -32,7 +30,7 @@ bool is_sensor(const std::string& name) {
 std::vector<SequenceFolder> list_sensors(const std::filesystem::path& root) {
   std::vector<SequenceFolder> sequences;
   bool has_scans = false;
-  for (const char* sensor : kSensors) {
+  for (const char* sensor : kHelimosSensors) {
     if (!is_there(root / sensor)) continue;
     sequences.push_back({sensor, root / sensor, ""});
     has_scans = has_scans || scan_folder_of(root / sensor);
@@ -44,7 +42,8 @@ std::vector<SequenceFolder> list_sensors(const std::filesystem::path& root) {
 std::vector<SequenceFolder> list_deskewed(const std::filesystem::path& root) {
   if (auto sequences = list_sensors(root); !sequences.empty()) return sequences;
   for (const auto& folder : list_folders(root)) {
-    if (lower_case(folder.filename().string()) == "deskewed_lidar") return list_sensors(folder);
+    if (lower_case(folder.filename().string()) == lower_case(kHelimosScans))
+      return list_sensors(folder);
   }
   return {};
 }
@@ -52,7 +51,7 @@ std::vector<SequenceFolder> list_deskewed(const std::filesystem::path& root) {
 std::vector<SequenceFolder> list_helimos(const std::filesystem::path& path) {
   if (scan_folder_of(path)) return {{folder_name(path), path, ""}};
   if (auto sequences = list_deskewed(path); !sequences.empty()) return sequences;
-  const auto kaist = path / "KAIST05";
+  const auto kaist = path / kHelimosPlace;
   return std::filesystem::is_directory(kaist) ? list_deskewed(kaist)
                                               : std::vector<SequenceFolder>{};
 }

@@ -17,6 +17,7 @@
 #include "datasets/calib_file.hpp"
 #include "datasets/errors.hpp"
 #include "datasets/files.hpp"
+#include "datasets/helimos_layout.hpp"
 #include "datasets/indices_file.hpp"
 #include "datasets/label_file.hpp"
 #include "datasets/portable_math.hpp"
@@ -200,7 +201,7 @@ void for_each_in_parallel(std::size_t count, unsigned threads,
 
 void write_splits(const SimulateOptions& options) {
   const SplitNumbers splits = helimos_splits(labelled_scans(options.layout, options.scans));
-  const fs::path folder = options.out / "KAIST05" / "Deskewed_LiDAR";
+  const fs::path folder = options.out / helimos_folder();
   if (!splits.train.empty()) write_split(folder / "train.txt", splits.train);
   if (!splits.val.empty()) write_split(folder / "val.txt", splits.val);
   write_split(folder / "test.txt", splits.test);

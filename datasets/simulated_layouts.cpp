@@ -1,9 +1,11 @@
 #include "datasets/simulated_layouts.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "datasets/errors.hpp"
+#include "datasets/helimos_layout.hpp"
 
 namespace mosbench {
 namespace {
@@ -77,6 +79,16 @@ SensorKind sensor_of(const Scene& scene, SensorKind usual) {
   return scene.sensor ? sensor_kind_from_string(*scene.sensor).value_or(usual) : usual;
 }
 
+std::vector<SimulatedRecording> helimos_recordings() {
+  constexpr std::array<SensorKind, kHelimosSensors.size()> kModels = {
+      SensorKind::kAeva, SensorKind::kAvia, SensorKind::kOs2_128, SensorKind::kVlp16};
+  std::vector<SimulatedRecording> recordings;
+  for (std::size_t i = 0; i < kModels.size(); ++i) {
+    recordings.push_back({helimos_folder() / kHelimosSensors[i], kModels[i]});
+  }
+  return recordings;
+}
+
 [[noreturn]] void refuse_sensor(const Scene& scene, const std::string& why) {
   throw UsageError("scene '" + scene.name + "' asks for sensor '" + *scene.sensor + "', but " +
                    why);
@@ -100,10 +112,7 @@ std::vector<SimulatedRecording> recordings_of(DatasetKind layout, const Scene& s
                          "' sets \"sensor\" or \"columns\", but layout helimos has four sensors of "
                          "its own; leave these keys out");
       }
-      return {{"KAIST05/Deskewed_LiDAR/Aeva", SensorKind::kAeva},
-              {"KAIST05/Deskewed_LiDAR/Avia", SensorKind::kAvia},
-              {"KAIST05/Deskewed_LiDAR/Ouster", SensorKind::kOs2_128},
-              {"KAIST05/Deskewed_LiDAR/Velodyne", SensorKind::kVlp16}};
+      return helimos_recordings();
     case DatasetKind::kSemanticKitti:
       return {{"sequences/08", sensor_of(scene, SensorKind::kHdl64e)}};
     default:
