@@ -120,6 +120,16 @@ Interval interval_of(const Distribution& distribution, double ends) {
           sorted_quantile(distribution.sorted, 1.0 - tail)};
 }
 
+/// `ends` as of `reach`. What cannot be told stays unset.
+void settle(double value, const std::optional<Distribution>& spread,
+            const std::optional<double>& ends, Estimate& metric) {
+  if (std::isnan(value)) return;
+  metric.value = value;
+  if (!ends || !spread) return;
+  metric.standard_error = spread->standard_error;
+  metric.interval = interval_of(*spread, *ends);
+}
+
 /// `replicate(sums)` per metric for as many draws as asked; undefined ones are left out.
 std::array<Series, kMetricNames.size()> replicates(
     const std::vector<Drawn>& drawn, std::size_t runs, const BootstrapOptions& options,
@@ -174,13 +184,7 @@ Estimates estimate(const Protocol& protocol, Sequences sequences, const Bootstra
   const auto series = replicates(
       drawn, 1, options, [&](const auto& sums) { return aggregate_sums(protocol, sums.front()); });
   for (std::size_t m = 0; m < values.size(); ++m) {
-    Estimate& metric = estimates.metrics[m];
-    if (std::isnan(values[m])) continue;
-    metric.value = values[m];
-    const auto spread = distribution(series[m], options.replicates);
-    if (!ends || !spread) continue;
-    metric.standard_error = spread->standard_error;
-    metric.interval = interval_of(*spread, *ends);
+    settle(values[m], distribution(series[m], options.replicates), ends, estimates.metrics[m]);
   }
   return estimates;
 }
@@ -205,12 +209,9 @@ Differences paired_difference(const Protocol& protocol, Sequences first, Sequenc
   });
   for (std::size_t m = 0; m < values.size(); ++m) {
     Difference& metric = differences.metrics[m];
-    if (std::isnan(values[m])) continue;
-    metric.value = values[m];
     const auto spread = distribution(series[m], options.replicates);
-    if (!ends || !spread) continue;
-    metric.standard_error = spread->standard_error;
-    metric.interval = interval_of(*spread, *ends);
+    settle(values[m], spread, ends, metric);
+    if (!metric.interval) continue;
     metric.p_value = p_value(*spread, values[m], widening);
     metric.smallest_detectable = (*significant + normal_quantile(kPower)) * spread->standard_error;
   }

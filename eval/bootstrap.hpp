@@ -46,10 +46,7 @@ Estimates estimate(const Protocol& protocol, std::span<const SequenceCounts> seq
                    const BootstrapOptions& options = {});
 
 /// One metric of a second run minus that of a first on the same scans.
-struct Difference {
-  std::optional<double> value;
-  std::optional<double> standard_error;
-  std::optional<Interval> interval;
+struct Difference : Estimate {
   std::optional<double> p_value;  ///< two-sided, of "the runs are equally good"
   /// The true difference that scans like these would show at 5 % significance with a probability
   /// of 80 %; for n times the scans divide by the root of n.
