@@ -40,8 +40,10 @@ std::string format_calib(const Pose& camera_from_lidar) {
   return text + "Tr: " + format_pose_row(camera_from_lidar) + '\n';
 }
 
+bool is_identity(const Pose& pose) { return pose.matrix() == Pose::Identity().matrix(); }
+
 Pose lidar_pose(const Pose& pose, const Pose& camera_from_lidar) {
-  if (camera_from_lidar.matrix() == Pose::Identity().matrix()) return pose;
+  if (is_identity(camera_from_lidar)) return pose;
   // The general inverse: published Tr have rounded rotations, whose transpose is no inverse.
   return Pose(camera_from_lidar.inverse(Eigen::Affine) * pose * camera_from_lidar);
 }

@@ -14,6 +14,9 @@ Pose parse_calib(std::string_view text, const std::filesystem::path& file);
 /// P0 to P3 as identity, then Tr.
 std::string format_calib(const Pose& camera_from_lidar);
 
+/// Whether a pose is the identity to the last bit, as Tr of data sets whose poses are the lidar's.
+bool is_identity(const Pose& pose);
+
 /// KITTI stores map_from_camera in poses.txt; this is the lidar's pose, Tr^-1 * P * Tr. The pose
 /// itself, bit for bit, when Tr is the identity.
 Pose lidar_pose(const Pose& pose, const Pose& camera_from_lidar);

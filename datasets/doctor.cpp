@@ -24,7 +24,7 @@ std::optional<Pose> tr_of(const std::filesystem::path& folder) {
   const auto file = folder / "calib.txt";
   if (!is_there(file)) return std::nullopt;
   const Pose tr = read_calib(file);
-  if (tr.matrix() == Pose::Identity().matrix()) return std::nullopt;
+  if (is_identity(tr)) return std::nullopt;
   return tr;
 }
 

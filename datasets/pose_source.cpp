@@ -43,8 +43,6 @@ std::vector<Pose> at_scan_stamps(const PoseList& list, const PosedScans& scans,
   return poses;
 }
 
-bool is_identity(const Pose& pose) { return pose.matrix() == Pose::Identity().matrix(); }
-
 class Settling {
  public:
   Settling(const fs::path& folder, const ReadingOptions& options, fs::path file)
