@@ -94,6 +94,19 @@ bool names_a_scan(const std::vector<fs::path>& files, const Sequence& sequence) 
       files, [&](const fs::path& file) { return stems.contains(file.stem().string()); });
 }
 
+/// The one file for the whole sequence in a folder: one that Dynablox names, in the wanted format
+/// if there is one, else the only table.
+std::optional<fs::path> table_in(const fs::path& folder, std::optional<Format> wanted) {
+  for (const char* name : {"clouds.csv", "scores.csv"}) {
+    const fs::path file = folder / name;
+    if (fs::is_regular_file(file) && (!wanted || format_of_file(file) == *wanted)) return file;
+  }
+  std::vector<fs::path> tables = files_with_extension(folder, ".txt");
+  for (const fs::path& table : files_with_extension(folder, ".csv")) tables.push_back(table);
+  if (tables.size() != 1) return std::nullopt;
+  return tables.front();
+}
+
 /// What a folder holds for the sequence, if anything.
 std::optional<PredictionPlace> look_into(const fs::path& folder, const Sequence& sequence) {
   if (const auto labels = files_with_extension(folder, ".label"); !labels.empty()) {
@@ -106,15 +119,9 @@ std::optional<PredictionPlace> look_into(const fs::path& folder, const Sequence&
     const auto files = files_with_extension(folder, extension);
     if (!files.empty() && names_a_scan(files, sequence)) return PredictionPlace{folder, format};
   }
-  for (const char* name : {"clouds.csv", "scores.csv"}) {
-    if (fs::is_regular_file(folder / name)) {
-      return PredictionPlace{folder / name, format_of_file(folder / name)};
-    }
-  }
-  std::vector<fs::path> tables = files_with_extension(folder, ".txt");
-  for (const fs::path& table : files_with_extension(folder, ".csv")) tables.push_back(table);
-  if (tables.size() == 1) return PredictionPlace{tables.front(), format_of_file(tables.front())};
-  return std::nullopt;
+  const auto table = table_in(folder, std::nullopt);
+  if (!table) return std::nullopt;
+  return PredictionPlace{*table, format_of_file(*table)};
 }
 
 /// The same when the user says what it is.
@@ -124,15 +131,9 @@ std::optional<PredictionPlace> look_for(const fs::path& folder, PredictionFormat
     if (files_with_extension(folder, wanted.extension).empty()) return std::nullopt;
     return PredictionPlace{folder, format};
   }
-  for (const char* name : {"clouds.csv", "scores.csv"}) {
-    const bool is_meant =
-        fs::is_regular_file(folder / name) && format_of_file(folder / name) == format;
-    if (is_meant) return PredictionPlace{folder / name, format};
-  }
-  std::vector<fs::path> tables = files_with_extension(folder, ".txt");
-  for (const fs::path& table : files_with_extension(folder, ".csv")) tables.push_back(table);
-  if (tables.size() == 1) return PredictionPlace{tables.front(), format};
-  return std::nullopt;
+  const auto table = table_in(folder, format);
+  if (!table) return std::nullopt;
+  return PredictionPlace{*table, format};
 }
 
 bool is_truth(const fs::path& path, const Sequence& sequence) {
