@@ -34,5 +34,6 @@ std::vector<PublishedCell> parse_published(std::string_view text,
 
 /// The text of results/published.csv when the program was built.
 std::string_view built_in_published();
+std::vector<PublishedCell> built_in_cells();
 
 }  // namespace mosbench

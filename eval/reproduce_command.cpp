@@ -64,8 +64,7 @@ std::string reproduce(const ReproduceOptions& options) {
     execute_run(plan_run(run));
     runs.push_back(load_result_set(out / preset));
   }
-  return table_report(paper_table_named(recipe.table),
-                      parse_published(built_in_published(), "results/published.csv"), runs, format);
+  return table_report(paper_table_named(recipe.table), built_in_cells(), runs, format);
 }
 
 }  // namespace
