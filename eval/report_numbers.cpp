@@ -51,7 +51,7 @@ std::vector<ResultSet> recorded_runs(const std::vector<std::filesystem::path>& i
 }  // namespace
 
 ordered_json estimates_of(const FoundResult& result) {
-  const SequenceResult read = read_sequence_result(result.folder / "result.json");
+  const SequenceResult read = sequence_result(result.folder / "result.json", result.file);
   const std::vector<SequenceCounts> counts = {counts_of(read)};
   if (counts.front().empty()) return nullptr;
   return to_json(estimate(*read.protocol, counts));
@@ -72,7 +72,7 @@ ordered_json protocols_of(const ResultScans& scans) {
   const std::vector<ScoreRule> rules = rules_beside(scans.rule());
   const ScoreTask task{scans.label_folder(), {}, rules, std::nullopt, hardware_threads()};
   const auto scores = score_dataset(scans.dataset(), task);
-  return ordered_json::parse(side_by_side_json(scans.dataset(), rules, scores)).at("protocols");
+  return side_by_side_json(scans.dataset(), rules, scores).at("protocols");
 }
 
 ordered_json covered_tables(const std::vector<std::filesystem::path>& inputs) {

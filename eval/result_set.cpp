@@ -123,12 +123,16 @@ void add_to_runs(SequenceResult result, std::vector<ResultSet>& sets, const fs::
 
 }  // namespace
 
-SequenceResult read_sequence_result(const fs::path& file) {
+SequenceResult sequence_result(const fs::path& file, ResultFile content) {
   try {
-    return from_content(file, read_result(file));
+    return from_content(file, std::move(content));
   } catch (const ordered_json::exception& error) {
     throw DataError(file, error.what(), "a result.json of mosbench");
   }
+}
+
+SequenceResult read_sequence_result(const fs::path& file) {
+  return sequence_result(file, read_result(file));
 }
 
 std::vector<ResultSet> load_result_sets(const fs::path& path) {

@@ -38,6 +38,8 @@ struct ResultSet {
   const SequenceResult& front() const { return sequences.front(); }
 };
 
+/// What the content of `file` says. Throws DataError naming it.
+SequenceResult sequence_result(const std::filesystem::path& file, ResultFile content);
 /// Reads one result.json. Throws DataError naming it.
 SequenceResult read_sequence_result(const std::filesystem::path& file);
 

@@ -5,6 +5,7 @@
 
 #include "core/thread_pool.hpp"
 #include "datasets/errors.hpp"
+#include "eval/answer_text.hpp"
 #include "eval/benchmark_split.hpp"
 #include "eval/commands.hpp"
 #include "eval/presets.hpp"
@@ -96,7 +97,7 @@ std::string score_all(const ScoreOptions& options, const Dataset& dataset, Score
     throw UsageError("--out: takes one protocol's results, expected no --protocol all");
   task.rules = all_rules(options);
   const std::vector<SequenceScores> scores = score_dataset(dataset, task);
-  return options.json ? side_by_side_json(dataset, task.rules, scores)
+  return options.json ? json_text(side_by_side_json(dataset, task.rules, scores))
                       : side_by_side_text(dataset, task.rules, scores);
 }
 

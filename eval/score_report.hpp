@@ -28,8 +28,9 @@ std::string score_json(const Dataset& dataset, const ScoreRule& rule,
 /// The answer of `mosbench score --protocol all`: a row per rule and why it differs.
 std::string side_by_side_text(const Dataset& dataset, const std::vector<ScoreRule>& rules,
                               const std::vector<SequenceScores>& scores);
-std::string side_by_side_json(const Dataset& dataset, const std::vector<ScoreRule>& rules,
-                              const std::vector<SequenceScores>& scores);
+nlohmann::ordered_json side_by_side_json(const Dataset& dataset,
+                                         const std::vector<ScoreRule>& rules,
+                                         const std::vector<SequenceScores>& scores);
 
 /// Writes <out>/<sequence>/result.json, which `table`, `stats` and `compare` read like those of a
 /// run. Throws DataError.

@@ -91,8 +91,8 @@ std::string side_by_side_text(const Dataset& dataset, const std::vector<ScoreRul
   return text;
 }
 
-std::string side_by_side_json(const Dataset& dataset, const std::vector<ScoreRule>& rules,
-                              const std::vector<SequenceScores>& scores) {
+ordered_json side_by_side_json(const Dataset& dataset, const std::vector<ScoreRule>& rules,
+                               const std::vector<SequenceScores>& scores) {
   ordered_json json = {{"dataset", std::string(to_string(dataset.kind))},
                        {"protocols", ordered_json::array()},
                        {"remarks", score_remarks(dataset, scores)}};
@@ -108,7 +108,7 @@ std::string side_by_side_json(const Dataset& dataset, const std::vector<ScoreRul
                                  {"ignored", row.summary.pooled.ignored},
                                  {"why", row.reason}});
   }
-  return json_text(json);
+  return json;
 }
 
 }  // namespace mosbench
