@@ -1,5 +1,8 @@
 #include "eval/result_file.hpp"
 
+#include <algorithm>
+#include <system_error>
+
 #include "datasets/errors.hpp"
 #include "datasets/files.hpp"
 #include "eval/answer_text.hpp"
@@ -124,6 +127,11 @@ ordered_json with_scans(ordered_json json, const std::vector<ScanRow>& scans) {
   return json;
 }
 
+/// What a killed run left, or one that is about to be replaced.
+bool is_leftover(const std::filesystem::path& folder) {
+  return folder.extension() == ".partial" || folder.extension() == ".replaced";
+}
+
 }  // namespace
 
 std::optional<double> method_ms_per_scan(const SequenceRows& rows) {
@@ -142,6 +150,26 @@ std::string format_result(const ordered_json& header, const SequenceRows& rows, 
 
 std::string format_scored(const ordered_json& header, const std::vector<ScanRow>& scans) {
   return format_members(with_scans(header, scans));
+}
+
+std::vector<std::filesystem::path> result_files(const std::filesystem::path& path) {
+  std::error_code error;
+  if (std::filesystem::is_regular_file(path, error)) return {path};
+  std::vector<std::filesystem::path> files;
+  for (std::filesystem::recursive_directory_iterator it(path, error), end; !error && it != end;
+       it.increment(error)) {
+    if (it->path().filename() == "labels" || is_leftover(it->path())) {
+      it.disable_recursion_pending();
+    } else if (it->path().filename() == "result.json") {
+      files.push_back(it->path());
+    }
+  }
+  if (error) throw DataError(path, "cannot be read (" + error.message() + ")", "results");
+  if (files.empty()) {
+    throw DataError(path, "holds no result.json", "results of mosbench run or mosbench score");
+  }
+  std::ranges::sort(files);
+  return files;
 }
 
 ResultFile read_result(const std::filesystem::path& file) {

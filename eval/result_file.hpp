@@ -56,6 +56,10 @@ struct ResultFile {
   SequenceRows rows;
 };
 
+/// Every result.json below a folder (or the file itself), ordered by path, but not those that
+/// killed runs left. Throws DataError when there is none.
+std::vector<std::filesystem::path> result_files(const std::filesystem::path& path);
+
 /// Reads what `format_result` or `format_scored` wrote; throws DataError naming the file for
 /// anything else.
 ResultFile read_result(const std::filesystem::path& file);

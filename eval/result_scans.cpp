@@ -2,9 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <system_error>
-
 #include "datasets/errors.hpp"
 #include "datasets/files.hpp"
 #include "datasets/fingerprint.hpp"
@@ -16,21 +13,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kResult = "result.json";
-
-std::vector<fs::path> result_folders(const fs::path& path) {
-  if (is_there(path / kResult)) return {path};
-  std::error_code error;
-  std::vector<fs::path> folders;
-  for (fs::recursive_directory_iterator it(path, error), end; !error && it != end;
-       it.increment(error)) {
-    // What a killed run left is no result.
-    if (it->path().extension() == ".partial") it.disable_recursion_pending();
-    if (it->path().filename() == kResult) folders.push_back(it->path().parent_path());
-  }
-  if (error) throw DataError(path, "cannot be listed (" + error.message() + ")", "a result folder");
-  std::ranges::sort(folders);
-  return folders;
-}
 
 /// Calls `read` on the content of result.json; what it misses there becomes a DataError.
 template <typename Read>
@@ -96,13 +78,12 @@ std::vector<PointOutcome> outcomes_without_truth(const std::vector<std::uint32_t
 
 std::vector<FoundResult> find_results(const fs::path& path) {
   std::vector<FoundResult> results;
-  for (const fs::path& folder : result_folders(path)) {
-    FoundResult result{folder, "", read_result(folder / kResult)};
+  for (const fs::path& file : result_files(path)) {
+    FoundResult result{file.parent_path(), "", read_result(file)};
     result.name = from_json(
         result, [](const auto& json) { return json.at("sequence").template get<std::string>(); });
     results.push_back(std::move(result));
   }
-  if (results.empty()) throw DataError(path, "holds no result.json", "a folder of mosbench run");
   return results;
 }
 

@@ -3,10 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <system_error>
 
 #include "datasets/errors.hpp"
-#include "datasets/files.hpp"
 
 namespace mosbench {
 namespace fs = std::filesystem;
@@ -73,30 +71,6 @@ SequenceResult from_content(const fs::path& file, ResultFile content) {
     result.missing_predictions = header.at("predictions").at("missing").size();
   }
   return result;
-}
-
-bool is_unfinished(const fs::path& folder) {
-  return folder.extension() == ".partial" || folder.extension() == ".replaced";
-}
-
-std::vector<fs::path> result_files(const fs::path& path) {
-  std::error_code error;
-  if (fs::is_regular_file(path, error)) return {path};
-  std::vector<fs::path> files;
-  for (fs::recursive_directory_iterator it(path, error), end; !error && it != end;
-       it.increment(error)) {
-    if (it->path().filename() == "labels" || is_unfinished(it->path())) {
-      it.disable_recursion_pending();
-    } else if (it->path().filename() == "result.json") {
-      files.push_back(it->path());
-    }
-  }
-  if (error) throw DataError(path, "cannot be read (" + error.message() + ")", "results");
-  if (files.empty()) {
-    throw DataError(path, "holds no result.json", "results of mosbench run or mosbench score");
-  }
-  std::ranges::sort(files);
-  return files;
 }
 
 bool same_run(const SequenceResult& a, const SequenceResult& b) {

@@ -47,6 +47,18 @@ TEST(Report, HoldsTheResultAndAllScansThatFit) {
   EXPECT_EQ(content.at("clouds").at(0).at("left_out"), "");
 }
 
+TEST(Report, PassesOverWhatKilledRunsLeft) {
+  const TempFolder folder;
+  for (const char* name : {"00", "00.partial", "00.replaced"}) {
+    std::filesystem::create_directories(folder / "run" / name);
+    std::filesystem::copy(small_run() / "runs/mine/00/result.json", folder / "run" / name);
+  }
+  const cli::Answer answer =
+      cli::run({"report", folder / "run", "-o", folder / "r.html", "--scans", "none"});
+  ASSERT_EQ(answer.exit_code, 0) << answer.err;
+  EXPECT_THAT(answer.out, HasSubstr("report of 1 result in "));
+}
+
 TEST(Report, IsTheSameBytesEachTime) {
   const TempFolder folder;
   for (const char* name : {"a.html", "b.html"}) {
