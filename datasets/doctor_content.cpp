@@ -9,6 +9,7 @@
 #include <unordered_map>
 
 #include "datasets/doctor.hpp"
+#include "datasets/point_range.hpp"
 #include "datasets/scan_file.hpp"
 
 namespace mosbench {
@@ -42,11 +43,6 @@ Expected expected_of(DatasetKind kind) {
                51, 52, 60, 70, 71, 72, 80, 81, 99, 251, 252, 253, 254, 255, 256, 257, 258, 259},
               200.0};
   }
-}
-
-double range_of(const Point& point) {
-  return std::sqrt(static_cast<double>(point.x) * point.x + static_cast<double>(point.y) * point.y +
-                   static_cast<double>(point.z) * point.z);
 }
 
 /// Size and the bytes at both ends.
@@ -101,7 +97,7 @@ class ContentCheck {
     const Frame frame = sequence_.read(scan_index);
     ++checkup_.scans_read;
     for (std::size_t i = 0; i < frame.points.size(); ++i) {
-      const double range_m = range_of(frame.points[i]);
+      const double range_m = mosbench::range_m(frame.points[i]);
       ++checkup_.points;
       if (!std::isfinite(range_m)) {
         ++checkup_.nonfinite_points;

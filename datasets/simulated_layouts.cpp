@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "datasets/errors.hpp"
 #include "datasets/helimos_layout.hpp"
+#include "datasets/point_range.hpp"
 
 namespace mosbench {
 namespace {
@@ -13,11 +13,6 @@ namespace {
 bool is_vehicle(const OwnerState& owner) {
   return owner.substance == Substance::kMoverBody &&
          (owner.mover == MoverKind::kCar || owner.mover == MoverKind::kTruck);
-}
-
-double range_m(const Point& point) {
-  const double x = point.x, y = point.y, z = point.z;
-  return std::sqrt(x * x + y * y + z * z);
 }
 
 std::uint32_t sipailou_label(const OwnerState& owner, double range_m) {

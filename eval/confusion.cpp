@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "datasets/point_range.hpp"
+
 namespace mosbench {
 namespace {
 
@@ -96,10 +98,7 @@ double range_m(const Point& point, Arithmetic arithmetic) {
     const float squared = point.x * point.x + point.y * point.y + point.z * point.z;
     return static_cast<double>(std::sqrt(squared));
   }
-  const double x = static_cast<double>(point.x);
-  const double y = static_cast<double>(point.y);
-  const double z = static_cast<double>(point.z);
-  return std::sqrt(x * x + y * y + z * z);
+  return range_m(point);
 }
 
 Confusion score_scan(const Protocol& protocol, std::span<const std::uint32_t> truth,
