@@ -76,8 +76,7 @@ const DoalsPublished* find_doals_published(std::string_view scene, std::string_v
 
 DoalsSequence::DoalsSequence(std::string name, const std::filesystem::path& folder,
                              const DoalsPublished* published, const ReadingOptions& options)
-    : name_(std::move(name)),
-      scans_(open_scans(folder, options)),
+    : SourcedSequence(std::move(name), open_scans(folder, options)),
       indices_file_(folder / "indices.csv") {
   open_truth(published);
 }
@@ -88,7 +87,7 @@ void DoalsSequence::open_truth(const DoalsPublished* published) {
     return;
   }
   const auto rows = read_indices(indices_file_);
-  const bool has_stamps = !scans_->stamps_ns().empty();
+  const bool has_stamps = !source().stamps_ns().empty();
   const auto scans = has_stamps ? scans_by_stamp(rows) : scans_by_list(rows, published);
   if (!has_stamps) {
     truth_remarks_.push_back(
@@ -104,7 +103,7 @@ void DoalsSequence::open_truth(const DoalsPublished* published) {
 
 std::vector<std::size_t> DoalsSequence::scans_by_stamp(std::span<const IndicesRow> rows) const {
   std::multimap<std::int64_t, std::size_t> scan_of_stamp;
-  for (std::size_t i = 0; i < size(); ++i) scan_of_stamp.emplace(scans_->stamps_ns()[i], i);
+  for (std::size_t i = 0; i < size(); ++i) scan_of_stamp.emplace(source().stamps_ns()[i], i);
   std::vector<std::size_t> scans;
   for (const IndicesRow& row : rows) {
     const auto same = scan_of_stamp.count(row.stamp_ns);
@@ -138,34 +137,24 @@ std::vector<std::size_t> DoalsSequence::scans_by_list(std::span<const IndicesRow
   return scans;
 }
 
-Frame DoalsSequence::read(std::size_t scan_index) const {
-  Frame frame = scans_->read(scan_index);
-  if (has_truth(scan_index)) frame.truth = read_truth(scan_index);
-  return frame;
-}
-
 std::vector<std::uint32_t> DoalsSequence::read_truth(std::size_t scan_index) const {
   const auto row = truth_.find(scan_index);
   if (row == truth_.end()) {
-    throw DataError(scans_->file(scan_index), "has no truth", "a labelled scan");
+    throw DataError(source().file(scan_index), "has no truth", "a labelled scan");
   }
   std::vector<std::uint32_t> labels(point_count(scan_index), kStaticLabel);
   for (const std::uint32_t index : row->second.moving) labels[index] = kMovingLabel;
   return labels;
 }
 
-std::size_t DoalsSequence::point_count(std::size_t scan_index) const {
-  return scans_->point_count(scan_index);
-}
-
 std::vector<std::filesystem::path> DoalsSequence::files() const {
-  std::vector<std::filesystem::path> files = scans_->files();
+  std::vector<std::filesystem::path> files = source().files();
   if (is_there(indices_file_)) files.push_back(indices_file_);
   return files;
 }
 
 std::vector<std::string> DoalsSequence::remarks() const {
-  std::vector<std::string> remarks = scans_->remarks();
+  std::vector<std::string> remarks = source().remarks();
   remarks.insert(remarks.end(), truth_remarks_.begin(), truth_remarks_.end());
   return remarks;
 }

@@ -3,7 +3,6 @@
 #include <array>
 #include <filesystem>
 #include <map>
-#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -11,8 +10,7 @@
 #include <vector>
 
 #include "datasets/indices_file.hpp"
-#include "datasets/scan_source.hpp"
-#include "datasets/sequence.hpp"
+#include "datasets/sourced_sequence.hpp"
 
 namespace mosbench {
 
@@ -37,32 +35,17 @@ const DoalsPublished* find_doals_published(std::string_view scene, std::string_v
 /// Exported scans are taken where both are there. Truth is
 /// kMovingLabel for listed points and kStaticLabel for all others. A labelled scan is found by its
 /// exact stamp; without stamps by the published list, if the recording has the published length.
-class DoalsSequence : public Sequence {
+class DoalsSequence : public SourcedSequence {
  public:
   /// `published` is null for a recording of one's own. Throws DataError, also for a stamp or an
   /// index in indices.csv that no scan has.
   DoalsSequence(std::string name, const std::filesystem::path& folder,
                 const DoalsPublished* published, const ReadingOptions& options = {});
 
-  std::string name() const override { return name_; }
-  std::size_t size() const override { return scans_->size(); }
-  std::string stem(std::size_t scan_index) const override { return scans_->stem(scan_index); }
   bool has_truth(std::size_t scan_index) const override { return truth_.contains(scan_index); }
-  std::optional<std::filesystem::path> scan_file(std::size_t scan_index) const override {
-    return scans_->own_file(scan_index);
-  }
-  Pose map_from_sensor(std::size_t scan_index) const override {
-    return scans_->map_from_sensor(scan_index);
-  }
-  std::optional<std::int64_t> stamp_ns(std::size_t scan_index) const override {
-    return scans_->stamp_ns(scan_index);
-  }
-  Frame read(std::size_t scan_index) const override;
   std::vector<std::uint32_t> read_truth(std::size_t scan_index) const override;
-  std::size_t point_count(std::size_t scan_index) const override;
   std::vector<std::filesystem::path> files() const override;
   std::vector<std::string> remarks() const override;
-  ReadingStatement reading() const override { return scans_->reading(); }
 
  private:
   void open_truth(const DoalsPublished* published);
@@ -70,8 +53,6 @@ class DoalsSequence : public Sequence {
   std::vector<std::size_t> scans_by_list(std::span<const IndicesRow> rows,
                                          const DoalsPublished* published) const;
 
-  std::string name_;
-  std::unique_ptr<ScanSource> scans_;
   std::filesystem::path indices_file_;
   std::map<std::size_t, IndicesRow> truth_;  ///< by scan
   std::vector<std::string> truth_remarks_;

@@ -14,10 +14,9 @@ namespace mosbench {
 
 KittiSequence::KittiSequence(std::string name, const std::filesystem::path& folder,
                              const ReadingOptions& options, SequenceLayout layout)
-    : name_(std::move(name)),
+    : SourcedSequence(std::move(name), std::make_unique<Recording>(folder, options, layout.places)),
       layout_(std::move(layout)),
-      scans_(std::make_unique<Recording>(folder, options, layout_.places)),
-      label_files_(scans_->size()) {
+      label_files_(size()) {
   open_labels(folder / layout_.label_folder);
 }
 
@@ -50,7 +49,7 @@ void KittiSequence::open_labels(const std::filesystem::path& folder) {
 /// Point clouds may carry their labels in a field of that name.
 void KittiSequence::open_label_fields() {
   for (std::size_t i = 0; i < size(); ++i) {
-    const std::filesystem::path file = scans_->file(i);
+    const std::filesystem::path file = source().file(i);
     if (file.extension() != ".pcd" || !pcd_has_labels(file)) return;
   }
   labels_in_scans_ = true;
@@ -61,27 +60,17 @@ bool KittiSequence::has_truth(std::size_t scan_index) const {
   return labels_in_scans_ || label_files_.at(scan_index).has_value();
 }
 
-Frame KittiSequence::read(std::size_t scan_index) const {
-  Frame frame = scans_->read(scan_index);
-  if (has_truth(scan_index)) frame.truth = read_truth(scan_index);
-  return frame;
-}
-
 std::vector<std::uint32_t> KittiSequence::read_truth(std::size_t scan_index) const {
-  if (labels_in_scans_) return read_pcd_labels(scans_->file(scan_index));
+  if (labels_in_scans_) return read_pcd_labels(source().file(scan_index));
   const auto& file = label_files_.at(scan_index);
   if (!file) {
-    throw DataError(scans_->file(scan_index), "has no truth", "a labelled scan");
+    throw DataError(source().file(scan_index), "has no truth", "a labelled scan");
   }
   return layout_.read_labels(*file, point_count(scan_index));
 }
 
-std::size_t KittiSequence::point_count(std::size_t scan_index) const {
-  return scans_->point_count(scan_index);
-}
-
 std::vector<std::filesystem::path> KittiSequence::files() const {
-  std::vector<std::filesystem::path> files = scans_->files();
+  std::vector<std::filesystem::path> files = source().files();
   for (const auto& file : label_files_) {
     if (file) files.push_back(*file);
   }
@@ -89,7 +78,7 @@ std::vector<std::filesystem::path> KittiSequence::files() const {
 }
 
 std::vector<std::string> KittiSequence::remarks() const {
-  std::vector<std::string> remarks = scans_->remarks();
+  std::vector<std::string> remarks = source().remarks();
   if (!label_remark_.empty()) remarks.push_back(label_remark_);
   return remarks;
 }

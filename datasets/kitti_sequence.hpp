@@ -1,15 +1,13 @@
 #pragma once
 
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "datasets/label_file.hpp"
 #include "datasets/recording.hpp"
-#include "datasets/scan_source.hpp"
-#include "datasets/sequence.hpp"
+#include "datasets/sourced_sequence.hpp"
 
 namespace mosbench {
 
@@ -29,39 +27,22 @@ struct SequenceLayout {
 /// One sequence in the SemanticKITTI layout, which Sipailou Campus and HeLiMOS use too: velodyne/,
 /// poses.txt, calib.txt, times.txt and labels/, the last three optional; labels may exist for part
 /// of the scans. Truth is the raw label ids of the files.
-class KittiSequence : public Sequence {
+class KittiSequence : public SourcedSequence {
  public:
   /// Throws DataError, also for a label file without scan or of another length than its scan.
   KittiSequence(std::string name, const std::filesystem::path& folder,
                 const ReadingOptions& options = {}, SequenceLayout layout = {});
 
-  std::string name() const override { return name_; }
-  std::size_t size() const override { return scans_->size(); }
-  std::string stem(std::size_t scan_index) const override { return scans_->stem(scan_index); }
   bool has_truth(std::size_t scan_index) const override;
-  std::optional<std::filesystem::path> scan_file(std::size_t scan_index) const override {
-    return scans_->own_file(scan_index);
-  }
-  Pose map_from_sensor(std::size_t scan_index) const override {
-    return scans_->map_from_sensor(scan_index);
-  }
-  std::optional<std::int64_t> stamp_ns(std::size_t scan_index) const override {
-    return scans_->stamp_ns(scan_index);
-  }
-  Frame read(std::size_t scan_index) const override;
   std::vector<std::uint32_t> read_truth(std::size_t scan_index) const override;
-  std::size_t point_count(std::size_t scan_index) const override;
   std::vector<std::filesystem::path> files() const override;
   std::vector<std::string> remarks() const override;
-  ReadingStatement reading() const override { return scans_->reading(); }
 
  private:
   void open_labels(const std::filesystem::path& folder);
   void open_label_fields();
 
-  std::string name_;
   SequenceLayout layout_;
-  std::unique_ptr<ScanSource> scans_;
   bool labels_in_scans_ = false;
   std::vector<std::optional<std::filesystem::path>> label_files_;  ///< per scan
   std::string label_remark_;
