@@ -120,5 +120,16 @@ TEST(Profile, RefusesWhatRunRefuses) {
   EXPECT_THAT(unwritable.err, HasSubstr("profile.json"));
 }
 
+TEST(Profile, NamesTheFileOfAScanThatIsOutOfReach) {
+  const TempFolder folder;
+  cli::write_small_sequence(folder.path() / "room", kScans);
+  std::vector<Pose> poses(kScans, Pose::Identity());
+  poses[7].translation().x() = 1e9;
+  write_poses(folder.path() / "room/poses.txt", poses);
+  const cli::Answer answer = cli::run({"profile", (folder.path() / "room").string()});
+  EXPECT_EQ(answer.exit_code, 3);
+  EXPECT_THAT(answer.err, HasSubstr("room/velodyne/000007.bin: "));
+}
+
 }  // namespace
 }  // namespace mosbench
