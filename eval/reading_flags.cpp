@@ -4,6 +4,8 @@
 #include <functional>
 #include <string>
 
+#include "eval/reading_json.hpp"
+
 namespace mosbench {
 namespace {
 
@@ -30,12 +32,10 @@ void add_reading_flags(CLI::App& command, ReadingOptions& options) {
   add_choice(command, "--pose-frame", {"lidar", "camera"},
              "Whose poses they are; the camera's are turned by Tr of calib.txt (default: the "
              "camera's when KITTI rows stand beside a Tr)",
-             [&](const std::string& name) {
-               options.pose_frame = name == "camera" ? PoseFrame::kCamera : PoseFrame::kLidar;
-             });
+             [&](const std::string& name) { options.pose_frame = pose_frame_named(name).value(); });
   add_choice(command, "--pose-direction", {"map-from-sensor", "sensor-from-map"},
              "The latter are inverted (default: sensor-from-map for dynablox only)",
-             [&](const std::string& name) { options.poses_inverse = name == "sensor-from-map"; });
+             [&](const std::string& name) { options.poses_inverse = poses_inverse_named(name); });
   command.add_option("--topic", options.topic, "PointCloud2 topic of a bag")->group(kGroup);
   command.add_option("--map-frame", options.map_frame, "Frame of a bag's tf tree to put scans in")
       ->group(kGroup);

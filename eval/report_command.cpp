@@ -14,13 +14,13 @@ namespace {
 constexpr const char* kFooter =
     R"(Writes one HTML file that opens in any browser without network or server: the scans in 3-D with true and
 false points, charts over the scans, tables and provenance. RESULT is a folder that `mosbench run`
-wrote, or one above it. Results of the same scans can be looked at side by side. Points are read again
+wrote, one above it, or a result.json. Results of the same scans can be looked at side by side. Points are read again
 from where the run read them, or from --data.
 
 --scans takes a list of K, A-B, every:N and worst:N, counted from 0, or one of
   auto   the worst tenth first, then scans spread evenly, as many as fit (default)
   all    from the first on, as many as fit
-  none   only numbers; the data set is not needed
+  none   only numbers; needs neither data set nor labels, so results of `mosbench score` do, too
 What was left out stands in the file.
 
 Examples:

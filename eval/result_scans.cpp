@@ -6,6 +6,7 @@
 #include "datasets/files.hpp"
 #include "datasets/fingerprint.hpp"
 #include "datasets/label_file.hpp"
+#include "eval/reading_json.hpp"
 #include "eval/same_input.hpp"
 
 namespace mosbench {
@@ -13,6 +14,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kResult = "result.json";
+constexpr const char* kLabels = "labels";
 
 /// Calls `read` on the content of result.json; what it misses there becomes a DataError.
 template <typename Read>
@@ -26,24 +28,46 @@ auto from_json(const FoundResult& result, Read&& read) {
   }
 }
 
-std::optional<fs::path> recorded_path(const nlohmann::ordered_json& json, const char* key) {
-  const nlohmann::ordered_json& clocked = json.at("timing");
-  if (!clocked.contains(key)) return std::nullopt;
-  return clocked.at(key).get<std::string>();
+void check_has_labels(const FoundResult& result) {
+  const bool scored = result.file.content.contains("predictions");
+  if (!scored && is_there(result.folder / kLabels)) return;
+  throw DataError(
+      result.folder / kResult,
+      scored ? "is of mosbench score, which keeps no labels beside it" : "has no labels/ beside it",
+      "a folder of mosbench run to show points of; of others mosbench report "
+      "--scans none shows the numbers");
 }
 
 Dataset open_dataset_of(const FoundResult& result, std::optional<fs::path> root) {
+  check_has_labels(result);
   return from_json(result, [&](const nlohmann::ordered_json& json) {
     const auto kind = dataset_kind_from_string(json.at("dataset").get<std::string>());
-    if (!root) root = recorded_path(json, "dataset_root");
+    const nlohmann::ordered_json& recorded = json.at("timing");
+    if (!root && recorded.contains("dataset_root")) {
+      root = recorded.at("dataset_root").get<std::string>();
+    }
     if (!kind || !root || !is_there(*root)) {
       throw DataError(result.folder / kResult,
                       root ? fmt::format("was made from {}, which is not there", root->string())
                            : "does not say where its data set lies",
                       "the data set's folder in --data");
     }
-    return open_dataset(*root, {kind, {result.name}, {.poses = recorded_path(json, "poses")}});
+    return open_dataset(*root, {kind, {result.name}, told_from_json(recorded)});
   });
+}
+
+/// What is read in another way than the result states; older ones do not record all flags.
+std::string read_otherwise(const FoundResult& result, const Sequence& sequence) {
+  const auto before = result.file.content.value("reading", nlohmann::ordered_json::object());
+  // The path of a told pose file may be spelt otherwise; the file stamp knows which file it is.
+  const bool told_poses = result.file.content.at("timing").contains("poses");
+  std::string text;
+  for (const auto& [what, how] : sequence.reading()) {
+    const std::string was = before.value(what, how);
+    if (was == how || (told_poses && what == "poses")) continue;
+    text += fmt::format("; {} was \"{}\" and is \"{}\" now", what, was, how);
+  }
+  return text;
 }
 
 void check_same_scans(const FoundResult& result, const Dataset& dataset) {
@@ -51,10 +75,13 @@ void check_same_scans(const FoundResult& result, const Dataset& dataset) {
   const std::vector<ScanRow>& rows = result.file.rows.scans;
   bool same = rows.size() == sequence.size() && rows.size() == result.file.rows.costs.size();
   for (std::size_t k = 0; same && k < rows.size(); ++k) same = rows[k].stem == sequence.stem(k);
-  if (same && same_input(sequence, file_stamp(sequence), result.file)) return;
+  const std::string otherwise = read_otherwise(result, sequence);
+  // The same files give other frames when they are read in another way.
+  const auto stamp = otherwise.empty() ? std::optional(file_stamp(sequence)) : std::nullopt;
+  if (same && same_input(sequence, stamp, result.file)) return;
   throw DataError(result.folder / kResult,
-                  fmt::format("was made from other scans, poses or labels than {} holds in {}",
-                              sequence.name(), dataset.root.string()),
+                  fmt::format("was made from other scans, poses or labels than {} holds in {}{}",
+                              sequence.name(), dataset.root.string(), otherwise),
                   "the data set of the run in --data");
 }
 
@@ -91,13 +118,13 @@ ResultScans::ResultScans(const FoundResult& result, const std::optional<fs::path
     : result_(result),
       dataset_(open_dataset_of(result, dataset_root)),
       rule_{},
-      label_folder_(result.folder / "labels") {
+      label_folder_(result.folder / kLabels) {
   from_json(result, [&](const nlohmann::ordered_json& json) {
     const nlohmann::ordered_json& protocol = json.at("protocol");
     rule_ = {&protocol_named(protocol.at("name").get<std::string>()),
              {protocol.at("min_range_m"), protocol.at("max_range_m")}};
+    check_same_scans(result, dataset_);
   });
-  check_same_scans(result, dataset_);
 }
 
 JudgedScan ResultScans::read(std::size_t scan_index) const {

@@ -33,8 +33,9 @@ struct JudgedScan {
 /// The scans of a result: points and truth from the data set, labels from the result's folder.
 class ResultScans {
  public:
-  /// Opens the data set at `dataset_root`, else where the run read it. Throws DataError when it is
-  /// not there or not what the run read, and when result.json does not say how it was scored.
+  /// Opens the data set at `dataset_root`, else where the run read it, as the run was told to read
+  /// it. Throws DataError when it is not there or not what the run read, when the result has no
+  /// labels beside it, and when result.json does not say how it was scored.
   ResultScans(const FoundResult& result, const std::optional<std::filesystem::path>& dataset_root);
 
   const Dataset& dataset() const { return dataset_; }

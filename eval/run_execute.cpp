@@ -9,6 +9,7 @@
 #include "eval/benchmark_split.hpp"
 #include "eval/machine.hpp"
 #include "eval/metrics.hpp"
+#include "eval/reading_json.hpp"
 #include "eval/simulated.hpp"
 #include "eval/summary_json.hpp"
 
@@ -94,11 +95,11 @@ ordered_json header(const RunPlan& plan, const PlannedSequence& planned, const S
   return json;
 }
 
-/// What depends on this machine's folders: where `report` and `render` find the points again.
+/// Where and how `report` and `render` find the points again; folders are this machine's.
 ordered_json clock_header(const RunPlan& plan, const PlannedSequence& planned) {
   ordered_json json = {{"file_stamp", planned.stamp},
                        {"dataset_root", fs::absolute(plan.dataset.root).string()}};
-  if (plan.poses) json["poses"] = fs::absolute(*plan.poses).string();
+  json.update(told_json(plan.reading));
   return json;
 }
 

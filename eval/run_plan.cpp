@@ -11,6 +11,7 @@
 #include "datasets/fingerprint.hpp"
 #include "eval/config_json.hpp"
 #include "eval/presets.hpp"
+#include "eval/reading_json.hpp"
 #include "eval/same_input.hpp"
 #include "mosbench_version.hpp"
 
@@ -60,18 +61,12 @@ fs::path default_out(const RunPlan& plan, const RunOptions& options) {
                                                 to_string(plan.settings.variant));
 }
 
-nlohmann::ordered_json reading_json(const Sequence& sequence) {
-  auto json = nlohmann::ordered_json::object();
-  for (const auto& [what, how] : sequence.reading()) json[what] = how;
-  return json;
-}
-
 nlohmann::ordered_json identity_of(const RunPlan& plan, const Sequence& sequence) {
   const RunSettings& settings = plan.settings;
   return {
       {"sequence", sequence.name()},
       {"dataset", std::string(to_string(plan.dataset.kind))},
-      {"reading", reading_json(sequence)},
+      {"reading", to_json(sequence.reading())},
       {"variant", std::string(to_string(settings.variant))},
       {"protocol",
        {{"name", std::string(settings.protocol->name)},
@@ -108,7 +103,7 @@ RunPlan plan_method(const RunOptions& options) {
   plan.dataset = open_dataset(
       options.input, {dataset_kind_option(options.dataset), options.sequences, options.reading});
   const Preset& preset = choose_preset(options, plan.dataset.kind, plan);
-  plan.poses = options.reading.poses;
+  plan.reading = options.reading;
   plan.preset = preset.name;
   plan.settings.config = settle_config(options, preset, plan.settings.variant);
   plan.settings.protocol = &protocol_named(options.protocol.value_or(std::string(preset.protocol)));

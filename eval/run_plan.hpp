@@ -41,7 +41,7 @@ struct RunPlan {
   std::string preset;
   RunSettings settings;
   std::filesystem::path out;
-  std::optional<std::filesystem::path> poses;  ///< when not the sequence's own
+  ReadingOptions reading;  ///< as the user told
   std::vector<PlannedSequence> sequences;
   std::vector<std::string> notes;  ///< choices made for the user, plain sentences
 };

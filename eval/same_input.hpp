@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "datasets/sequence.hpp"
@@ -8,8 +9,9 @@
 namespace mosbench {
 
 /// Whether a result was made from the frames that `sequence` has now; `stamp` is its `file_stamp`.
-/// Files that were merely copied or touched hold the same frames: only then are those read. Throws
-/// DataError.
-bool same_input(const Sequence& sequence, const std::string& stamp, const ResultFile& result);
+/// Files that were merely copied or touched hold the same frames: only then, and without a stamp,
+/// are those read. Throws DataError.
+bool same_input(const Sequence& sequence, const std::optional<std::string>& stamp,
+                const ResultFile& result);
 
 }  // namespace mosbench

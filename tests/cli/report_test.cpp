@@ -112,6 +112,75 @@ TEST(Report, WithoutPointsNeedsNoDataSet) {
   EXPECT_TRUE(content_of(read_file(folder / "r.html")).at("clouds").empty());
 }
 
+TEST(Report, SaysThatScoresHaveNoLabelsToShow) {
+  const TempFolder folder;
+  const cli::Answer score = cli::run({"score", small_run() / "scans/00", "--predictions",
+                                      small_run() / "runs/mine", "--out", folder / "scored"});
+  ASSERT_EQ(score.exit_code, 0) << score.err;
+  const cli::Answer answer = cli::run(
+      {"report", folder / "scored", "-o", folder / "r.html", "--data", small_run() / "scans/00"});
+  EXPECT_EQ(answer.exit_code, 3);
+  EXPECT_THAT(answer.err, HasSubstr("result.json: is of mosbench score, which keeps no labels"));
+  EXPECT_THAT(answer.err, HasSubstr("--scans none"));
+  const cli::Answer numbers =
+      cli::run({"report", folder / "scored", "-o", folder / "r.html", "--scans", "none"});
+  EXPECT_EQ(numbers.exit_code, 0) << numbers.err;
+  const auto lost = small_run() / "runs/mine/00/result.json";
+  std::filesystem::copy(lost, folder / "result.json");
+  const cli::Answer without = cli::run({"report", folder / "result.json", "-o", folder / "r.html"});
+  EXPECT_EQ(without.exit_code, 3);
+  EXPECT_THAT(without.err, HasSubstr("result.json: has no labels/ beside it"));
+}
+
+/// A copy of the small sequence that only flags make readable: poses elsewhere and turned round,
+/// five numbers per point.
+void write_sequence_that_needs_flags(const std::filesystem::path& folder) {
+  cli::write_small_sequence(folder / "00", 8);
+  std::vector<Pose> sensor_from_map(8, Pose::Identity());
+  for (std::size_t k = 0; k < 8; ++k) {
+    const std::filesystem::path file = folder / "00/velodyne" / (cli::stem(k) + ".bin");
+    const std::string four = read_file(file);
+    std::string five;
+    for (std::size_t at = 0; at < four.size(); at += 16) {
+      five += four.substr(at, 16) + std::string(4, '\0');
+    }
+    write_file_atomic(file, five);
+    sensor_from_map[k].translation().x() = 0.01 * static_cast<double>(k);
+  }
+  write_poses(folder / "turned.txt", sensor_from_map);
+}
+
+TEST(Report, ReadsTheScansAsTheRunWasTold) {
+  const TempFolder folder;
+  write_sequence_that_needs_flags(folder.path());
+  const cli::Answer run = cli::run({"run", folder / "00", "--out", folder / "run", "--threads", "1",
+                                    "--poses", folder / "turned.txt", "--pose-direction",
+                                    "sensor-from-map", "--bin-columns", "5"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const cli::Answer answer = cli::run({"report", folder / "run", "-o", folder / "r.html"});
+  ASSERT_EQ(answer.exit_code, 0) << answer.err;
+  const auto cloud = content_of(read_file(folder / "r.html")).at("clouds").at(0);
+  EXPECT_EQ(cloud.at("scans").at(7).at("points"), cli::kPointsPerScan);
+  EXPECT_EQ(cloud.at("scans").at(7).at("map_from_sensor").at(3), -0.07);
+}
+
+TEST(Report, SaysWhatIsReadInAnotherWayThanByTheRun) {
+  const TempFolder folder;
+  write_sequence_that_needs_flags(folder.path());
+  ASSERT_EQ(
+      cli::run({"run", folder / "00", "--out", folder / "run", "--threads", "1", "--poses",
+                folder / "turned.txt", "--pose-direction", "sensor-from-map", "--bin-columns", "5"})
+          .exit_code,
+      0);
+  auto json = nlohmann::ordered_json::parse(read_file(folder / "run/00/result.json"));
+  ASSERT_EQ(json.at("timing").erase("pose_direction"), 1U);
+  write_file_atomic(folder / "run/00/result.json", json.dump());
+  const cli::Answer answer = cli::run({"report", folder / "run", "-o", folder / "r.html"});
+  EXPECT_EQ(answer.exit_code, 3);
+  EXPECT_THAT(answer.err, HasSubstr("pose_direction was \"sensor_from_map, inverted\" and is "
+                                    "\"map_from_sensor\" now"));
+}
+
 TEST(Report, RefusesLabelsThatDoNotGiveTheCountsOfTheResult) {
   const TempFolder folder;
   std::filesystem::copy(small_run() / "runs/mine", folder / "run",

@@ -5,7 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "datasets/errors.hpp"
 #include "eval/progress.hpp"
+#include "eval/reading_json.hpp"
 #include "eval/score_table.hpp"
 #include "eval/sequence_runner.hpp"
 #include "eval/text_table.hpp"
@@ -32,6 +34,36 @@ TEST(DetectionRuns, OnTheScansThatTheAuthorsProgramJudges) {
   // Delay 1 reaches back to scan 3 at k = 4 only.
   EXPECT_EQ(judged(1, 3, 7), (std::vector<std::size_t>{3, 4, 5}));
   EXPECT_EQ(judged(10, 3, 6), (std::vector<std::size_t>{4, 5}));
+}
+
+TEST(ReadingJson, KeepsWhatTheUserTold) {
+  const ReadingOptions told = {.poses = "/somewhere/p.csv",
+                               .pose_format = PoseFormat::kTum,
+                               .pose_frame = PoseFrame::kCamera,
+                               .poses_inverse = false,
+                               .topic = "/os1",
+                               .map_frame = "map",
+                               .undistort = false,
+                               .bin_columns = 5};
+  const nlohmann::ordered_json json = told_json(told);
+  const ReadingOptions read = told_from_json(json);
+  EXPECT_EQ(read.poses, told.poses);
+  EXPECT_EQ(read.pose_format, told.pose_format);
+  EXPECT_EQ(read.pose_frame, told.pose_frame);
+  EXPECT_EQ(read.poses_inverse, told.poses_inverse);
+  EXPECT_EQ(read.topic, told.topic);
+  EXPECT_EQ(read.map_frame, told.map_frame);
+  EXPECT_EQ(read.undistort, told.undistort);
+  EXPECT_EQ(read.bin_columns, told.bin_columns);
+  EXPECT_EQ(told_json(read), json);
+  EXPECT_TRUE(told_json({}).empty());
+  EXPECT_TRUE(told_json(told_from_json({{"file_stamp", "ab"}})).empty());
+}
+
+TEST(ReadingJson, RefusesWordsItDoesNotKnow) {
+  for (const char* key : {"pose_format", "pose_frame", "pose_direction"}) {
+    EXPECT_THROW(told_from_json({{key, "sideways"}}), UsageError) << key;
+  }
 }
 
 TEST(TextTable, AlignsColumnsAndEndsLinesAtTheirLastCell) {
