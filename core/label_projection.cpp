@@ -19,4 +19,16 @@ std::vector<std::uint32_t> project_labels(const VoxelizedScan& scan, const Voxel
   return labels;
 }
 
+std::vector<std::int32_t> project_scores(const VoxelizedScan& scan, const SumField& sums) {
+  std::vector<std::int32_t> scores(scan.voxel_of_point.size(), 0);
+  std::vector<const SumField::Block*> values;
+  for (const BlockIndex& block : scan.measured.blocks) values.push_back(sums.find(block));
+  for (std::size_t i = 0; i < scores.size(); ++i) {
+    const std::uint32_t voxel = scan.voxel_of_point[i];
+    if (voxel == kNoVoxel || values[voxel / kBlockVoxels] == nullptr) continue;
+    scores[i] = (*values[voxel / kBlockVoxels])[voxel % kBlockVoxels];
+  }
+  return scores;
+}
+
 }  // namespace mosbench

@@ -96,6 +96,7 @@ struct Pipeline::State {
   std::deque<HeldScan> held;  ///< the last delay + 1 scans, current one last
   VoxelSet previous_measured;
   std::vector<StageEvent>* events = nullptr;
+  bool records_scores = false;
   std::size_t pushed = 0;
   bool finished = false;
 };
@@ -124,6 +125,7 @@ void Pipeline::State::detect(const VoxelizedScan& scan, std::uint32_t k, ScanRes
   LocalWindow& window = memory->window;
   DynamicRegion& region = memory->region;
   result.threshold.reset();
+  if (records_scores) result.scores.assign(scan.voxel_of_point.size(), 0);
   if (scan.occupied_count == 0) {
     window.join({});
     result.labels.assign(scan.voxel_of_point.size(), kStaticLabel);
@@ -159,6 +161,7 @@ void Pipeline::State::detect(const VoxelizedScan& scan, std::uint32_t k, ScanRes
                               ? united(dynamic, from_region)
                               : VoxelSet{};
   result.labels = project_labels(scan, moving);
+  if (records_scores) result.scores = project_scores(scan, sums);
 }
 
 std::vector<ScanResult> Pipeline::State::release(std::size_t count) {
@@ -211,6 +214,7 @@ std::vector<ScanResult> Pipeline::push(std::span<const Point> points, const Pose
   HeldScan& newest = s.held.back();
   const StageRecord record{newest.result.stage_times, s.events};
   newest.result.labels.assign(points.size(), kStaticLabel);
+  if (s.records_scores) newest.result.scores.assign(points.size(), 0);
   const auto n = static_cast<std::size_t>(s.config.delay_scans);
   if (k <= static_cast<std::uint32_t>(s.config.local_window_scans)) {
     s.memory->window.join({});
@@ -232,6 +236,8 @@ std::vector<ScanResult> Pipeline::finish() {
 
 void Pipeline::record_stages(std::vector<StageEvent>* events) { state_->events = events; }
 
+void Pipeline::record_scores(bool record) { state_->records_scores = record; }
+
 std::size_t Pipeline::map_blocks() const {
   return state_->memory ? state_->memory->map.block_count() : 0;
 }
@@ -240,7 +246,8 @@ std::size_t Pipeline::State::memory_bytes() const {
   if (!memory) return 0;
   std::size_t bytes = scratch.memory_bytes() + previous_measured.memory_bytes();
   for (const HeldScan& scan : held) {
-    bytes += scan.scan.memory_bytes() + scan.result.labels.capacity() * sizeof(std::uint32_t);
+    bytes += scan.scan.memory_bytes() + scan.result.labels.capacity() * sizeof(std::uint32_t) +
+             scan.result.scores.capacity() * sizeof(std::int32_t);
   }
   return bytes + memory->map.memory_bytes() + memory->window.memory_bytes() +
          memory->region.memory_bytes() + memory->carried.memory_bytes();

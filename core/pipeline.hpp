@@ -17,6 +17,7 @@ namespace mosbench {
 struct ScanResult {
   std::size_t scan_index = 0;         ///< counts pushed scans from 0
   std::vector<std::uint32_t> labels;  ///< kStaticLabel or kMovingLabel, one per pushed point
+  std::vector<std::int32_t> scores;   ///< see Pipeline::record_scores; empty unless asked for
   std::optional<double> threshold;   ///< Otsu's T; nothing when no detection ran or no level exists
   std::size_t nonfinite_points = 0;  ///< NaN or infinite, left out of the map, labelled static
   StageTimes stage_times{};          ///< of the push that took this scan in
@@ -47,6 +48,11 @@ class Pipeline {
   /// From now on appends every run of a stage to `events`, which must outlive that; null stops it.
   /// Reading the CPU clock twice per stage costs some microseconds per scan.
   void record_stages(std::vector<StageEvent>* events);
+
+  /// From now on results hold one dynamic score per point: S of its voxel, which Otsu's T is
+  /// compared with (algorithm step 5c); 0 outside the map and in scans without detection. Labels
+  /// stay as they are; off, which is the default, it costs nothing.
+  void record_scores(bool record);
 
   /// Voxel blocks of 8x8x8 voxels held in the map, and the bytes of all memory kept between scans.
   std::size_t map_blocks() const;

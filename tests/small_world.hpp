@@ -151,18 +151,25 @@ inline SmallWorld small_world(const SmallWorldOptions& options) {
 }
 
 /// The labels of a whole sequence, one vector per scan in scan order.
-inline std::vector<std::vector<std::uint32_t>> labels_of(
-    const SmallWorld& world, const Config& config, Variant variant, unsigned threads = 1,
-    std::optional<std::size_t> scan_count = std::nullopt) {
-  Pipeline pipeline(config, variant, threads, scan_count);
-  std::vector<std::vector<std::uint32_t>> labels;
+/// All results of a pipeline in scan order.
+inline std::vector<ScanResult> results_of(Pipeline& pipeline, const SmallWorld& world) {
+  std::vector<ScanResult> all;
   const auto take = [&](std::vector<ScanResult> results) {
-    for (ScanResult& result : results) labels.push_back(std::move(result.labels));
+    for (ScanResult& result : results) all.push_back(std::move(result));
   };
   for (std::size_t k = 0; k < world.scans.size(); ++k) {
     take(pipeline.push(world.scans[k], world.poses[k]));
   }
   take(pipeline.finish());
+  return all;
+}
+
+inline std::vector<std::vector<std::uint32_t>> labels_of(
+    const SmallWorld& world, const Config& config, Variant variant, unsigned threads = 1,
+    std::optional<std::size_t> scan_count = std::nullopt) {
+  Pipeline pipeline(config, variant, threads, scan_count);
+  std::vector<std::vector<std::uint32_t>> labels;
+  for (ScanResult& result : results_of(pipeline, world)) labels.push_back(std::move(result.labels));
   return labels;
 }
 

@@ -8,7 +8,7 @@
 #include "tests/differential/slow_method.hpp"
 #include "tests/small_world.hpp"
 
-/// The core against the slow twin, label for label, on small seeded worlds.
+/// The core against the slow twin, label for label and score for score, on small seeded worlds.
 namespace mosbench {
 namespace {
 
@@ -35,12 +35,17 @@ enum class Length { kKnown, kUnknown };
 void expect_equal_labels(const SmallWorld& world, const Config& config, Variant variant,
                          Tally& tally, Length length = Length::kKnown, unsigned threads = 1) {
   const bool known = length == Length::kKnown;
-  const std::vector<std::vector<bool>> expected =
-      slow::Method(config, variant,
-                   known ? static_cast<int>(world.scans.size()) : slow::Method::kNever)
-          .run(world.scans, world.poses);
-  const std::vector<std::vector<std::uint32_t>> labels = labels_of(
-      world, config, variant, threads, known ? std::optional(world.scans.size()) : std::nullopt);
+  slow::Method twin(config, variant,
+                    known ? static_cast<int>(world.scans.size()) : slow::Method::kNever);
+  const std::vector<std::vector<bool>> expected = twin.run(world.scans, world.poses);
+  Pipeline pipeline(config, variant, threads,
+                    known ? std::optional(world.scans.size()) : std::nullopt);
+  pipeline.record_scores(true);
+  std::vector<std::vector<std::uint32_t>> labels;
+  for (ScanResult& result : results_of(pipeline, world)) {
+    ASSERT_EQ(result.scores, twin.scores().at(labels.size())) << to_text(config, variant);
+    labels.push_back(std::move(result.labels));
+  }
   ASSERT_EQ(labels.size(), expected.size());
   for (std::size_t k = 0; k < labels.size(); ++k) {
     ASSERT_EQ(labels[k].size(), expected[k].size());

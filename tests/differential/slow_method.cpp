@@ -222,11 +222,24 @@ std::vector<bool> Method::detect(Scan& scan) {
   return moving;
 }
 
+std::vector<bool> Method::detect_as(std::size_t scan_index, Scan& scan) {
+  std::vector<bool> moving = detect(scan);
+  for (std::size_t i = 0; i < scan.voxel_of_point.size(); ++i) {
+    if (!scan.voxel_of_point[i]) continue;
+    const auto found = scan.occupied.find(*scan.voxel_of_point[i]);
+    if (found != scan.occupied.end()) scores_[scan_index][i] = found->second.window_sum;
+  }
+  return moving;
+}
+
 std::vector<std::vector<bool>> Method::run(const std::vector<std::vector<Point>>& scans,
                                            const std::vector<Pose>& poses) {
   const int n = config_.delay_scans;
   std::vector<std::vector<bool>> labels;
-  for (const auto& points : scans) labels.emplace_back(points.size(), false);
+  for (const auto& points : scans) {
+    labels.emplace_back(points.size(), false);
+    scores_.emplace_back(points.size(), 0);
+  }
   std::vector<Scan> voxelized;
   for (k_ = 0; k_ < static_cast<int>(scans.size()); ++k_) {
     const auto k = static_cast<std::size_t>(k_);
@@ -243,12 +256,13 @@ std::vector<std::vector<bool>> Method::run(const std::vector<std::vector<Point>>
       continue;
     }
     if (n == 0) {
-      labels[k] = detect(scan);
+      labels[k] = detect_as(k, scan);
       continue;
     }
     if (k_ <= n) continue;
-    labels[k - static_cast<std::size_t>(n)] = detect(voxelized[k - static_cast<std::size_t>(n)]);
-    if (k_ > scan_count_ - n) labels[k] = detect(scan);
+    const std::size_t delayed = k - static_cast<std::size_t>(n);
+    labels[delayed] = detect_as(delayed, voxelized[delayed]);
+    if (k_ > scan_count_ - n) labels[k] = detect_as(k, scan);
   }
   if (n > 0 && !labels.empty()) {
     labels.front().assign(labels.front().size(), false);

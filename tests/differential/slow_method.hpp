@@ -158,6 +158,8 @@ class Method {
   /// Labels of every scan of the sequence, moving = true.
   std::vector<std::vector<bool>> run(const std::vector<std::vector<Point>>& scans,
                                      const std::vector<Pose>& poses);
+  /// Window sum of every point's voxel, scan by scan; 0 where there is none.
+  const std::vector<std::vector<std::int32_t>>& scores() const { return scores_; }
 
  private:
   Scan voxelize(std::span<const Point> points, const Pose& pose) const;
@@ -166,6 +168,7 @@ class Method {
   void evict(const Eigen::Vector3d& sensor_m);
   bool known(const Voxel& v) const;
   std::vector<bool> detect(Scan& scan);
+  std::vector<bool> detect_as(std::size_t scan_index, Scan& scan);
   void score(Scan& scan) const;
   void filter(Scan& scan) const;
   void back_end(Scan& scan) const;
@@ -180,6 +183,7 @@ class Method {
   VoxelSet carried_;
   VoxelMap<RegionRecord> region_;
   double region_threshold_ = 0;
+  std::vector<std::vector<std::int32_t>> scores_;
 };
 
 }  // namespace mosbench::slow

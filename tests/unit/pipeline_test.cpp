@@ -214,6 +214,56 @@ TEST(Pipeline, RecordsEveryStageInItsOrderWhileAsked) {
   }
 }
 
+/// One voxel on the way to a wall is free until scan 6, then occupied. With a kernel of one voxel
+/// its change is one vote in scan 6, which a window of two scans holds in scans 6 and 7.
+TEST(Pipeline, ScoresOfAPointAreTheVotesInTheWindowOfItsVoxel) {
+  Config config = small_config();
+  config.kernel_width_voxels = 1;
+  config.local_window_scans = 2;
+  const Point wall{4.1F, 0.1F, 0.1F, 0}, arrived{2.1F, 0.1F, 0.1F, 0}, near{0.1F, 0.1F, 0.1F, 0};
+  Pipeline pipeline(config, Variant::kPaper2024);
+  pipeline.record_scores(true);
+  std::vector<std::vector<std::int32_t>> scores;
+  for (int k = 0; k < 9; ++k) {
+    std::vector<Point> points = {wall, near};
+    if (k >= 6) points.push_back(arrived);
+    scores.push_back(pipeline.push(points, Pose::Identity()).front().scores);
+  }
+  for (std::size_t k = 0; k < 6; ++k) {
+    EXPECT_EQ(scores[k], (std::vector<std::int32_t>{0, 0})) << k;
+  }
+  EXPECT_EQ(scores[6], (std::vector<std::int32_t>{0, 0, 1}));
+  EXPECT_EQ(scores[7], (std::vector<std::int32_t>{0, 0, 1}));
+  EXPECT_EQ(scores[8], (std::vector<std::int32_t>{0, 0, 0}));
+}
+
+TEST(Pipeline, ScoresAreOnlyThereWhenAskedForAndChangeNoLabel) {
+  const SmallWorld world = small_world({.seed = 10});
+  for (const int delay : {0, 3}) {
+    Pipeline with(small_config(delay), Variant::kPaper2024, 1, world.scans.size());
+    with.record_scores(true);
+    Pipeline without(small_config(delay), Variant::kPaper2024, 1, world.scans.size());
+    const std::vector<ScanResult> scored = results_of(with, world);
+    const std::vector<ScanResult> plain = results_of(without, world);
+    std::size_t above = 0, moving = 0;
+    for (std::size_t k = 0; k < scored.size(); ++k) {
+      EXPECT_EQ(scored[k].labels, plain[k].labels);
+      EXPECT_TRUE(plain[k].scores.empty());
+      ASSERT_EQ(scored[k].scores.size(), world.scans[k].size());
+      moving += moving_points({plain[k].labels});
+      if (!scored[k].threshold || *scored[k].threshold <= 1.0) continue;
+      // Spec 5d: what lies above the threshold is dynamic.
+      for (std::size_t i = 0; i < scored[k].scores.size(); ++i) {
+        if (scored[k].scores[i] <= *scored[k].threshold) continue;
+        EXPECT_EQ(scored[k].labels[i], kMovingLabel);
+        ++above;
+      }
+    }
+    EXPECT_GT(above, 20U);
+    EXPECT_GT(moving, above);
+  }
+}
+
 TEST(Pipeline, HoldsNothingBeforeTheFirstScan) {
   Pipeline pipeline(small_config(), Variant::kPaper2024);
   EXPECT_EQ(pipeline.map_blocks(), 0U);

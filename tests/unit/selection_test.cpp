@@ -133,7 +133,8 @@ TEST(SelectDynamic, EqualsTheTwinOnRandomScans) {
   EXPECT_GT(carried_over, 20U);
 }
 
-TEST(ProjectLabels, PointsTakeTheLabelOfTheirVoxel) {
+/// Points in the voxels (101, 0, 0), none, (0, 0, 0), (100, 0, 0) and again (101, 0, 0).
+VoxelizedScan scan_of_five_points() {
   VoxelizedScan scan = scan_of({{0, 0, 0}, {100, 0, 0}, {101, 0, 0}});
   const auto number = [&](const Triple& v) {
     const Voxel voxel{v[0], v[1], v[2]};
@@ -141,6 +142,21 @@ TEST(ProjectLabels, PointsTakeTheLabelOfTheirVoxel) {
   };
   scan.voxel_of_point = {number({101, 0, 0}), kNoVoxel, number({0, 0, 0}), number({100, 0, 0}),
                          number({101, 0, 0})};
+  return scan;
+}
+
+TEST(ProjectScores, PointsTakeTheSumOverTheWindowAtTheirVoxel) {
+  const VoxelizedScan scan = scan_of_five_points();
+  LocalWindow window(2);
+  window.join(field_of<ScoreField>({{{101, 0, 0}, 1000}}));
+  window.join(field_of<ScoreField>({{{101, 0, 0}, 40}, {{100, 0, 0}, 7}, {{102, 0, 0}, 9}}));
+  window.join(field_of<ScoreField>({{{101, 0, 0}, 2}}));
+  EXPECT_EQ(project_scores(scan, window.sums(scan)), (std::vector<std::int32_t>{42, 0, 0, 7, 42}));
+  EXPECT_EQ(project_scores(scan, {}), std::vector<std::int32_t>(5, 0));
+}
+
+TEST(ProjectLabels, PointsTakeTheLabelOfTheirVoxel) {
+  VoxelizedScan scan = scan_of_five_points();
   EXPECT_EQ(project_labels(scan, voxel_set({{101, 0, 0}})),
             (std::vector<std::uint32_t>{251, 9, 9, 9, 251}));
   EXPECT_EQ(project_labels(scan, {}), std::vector<std::uint32_t>(5, 9));
