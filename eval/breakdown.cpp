@@ -14,6 +14,7 @@ namespace {
 
 /// What is kept of a scan's false positives: thousands of single points say nothing one by one.
 constexpr std::size_t kFalseClustersPerScan = 50;
+constexpr double kScanPeriod_s = 0.1;  ///< where there are no stamps
 
 std::vector<ScanBreakdown> per_scan(const Sequence& sequence, const std::vector<std::size_t>& scans,
                                     const Predictions& predictions, const BreakdownTask& task) {
@@ -33,6 +34,22 @@ std::vector<ScanBreakdown> per_scan(const Sequence& sequence, const std::vector<
     }
   });
   return parts;
+}
+
+/// Seconds of the scans at `scans` by their stamps; nothing unless all have one, each later than
+/// the one before.
+std::optional<std::vector<double>> stamped_times_s(const Sequence& sequence,
+                                                   const std::vector<std::size_t>& scans) {
+  std::vector<double> times_s;
+  std::optional<std::int64_t> first_ns;
+  for (const std::size_t k : scans) {
+    const std::optional<std::int64_t> stamp_ns = sequence.stamp_ns(k);
+    if (!stamp_ns) return std::nullopt;
+    if (!first_ns) first_ns = stamp_ns;
+    times_s.push_back(static_cast<double>(*stamp_ns - *first_ns) * 1e-9);
+    if (times_s.size() > 1 && times_s.back() <= times_s[times_s.size() - 2]) return std::nullopt;
+  }
+  return times_s;
 }
 
 template <std::size_t size>
@@ -76,12 +93,15 @@ SequenceBreakdown break_down(const Sequence& sequence, const std::vector<std::si
   breakdown.sequence = sequence.name();
   breakdown.scans = scans;
   for (std::size_t k = 0; k < sequence.size(); ++k) breakdown.stems.push_back(sequence.stem(k));
+  const auto times_s = stamped_times_s(sequence, scans);
+  breakdown.stamped = times_s.has_value();
   std::vector<ScanObjects> objects;
   std::vector<ScanBreakdown> parts = per_scan(sequence, scans, predictions, task);
   for (std::size_t i = 0; i < scans.size(); ++i) {
     add(parts[i].by_range, breakdown.by_range);
     add(parts[i].by_height, breakdown.by_height);
-    objects.push_back({scans[i], std::move(parts[i].objects)});
+    const double time_s = times_s ? (*times_s)[i] : static_cast<double>(scans[i]) * kScanPeriod_s;
+    objects.push_back({scans[i], time_s, std::move(parts[i].objects)});
     for (const ScanCluster& cluster : parts[i].false_positives) {
       breakdown.false_positives.push_back({scans[i], cluster});
     }
@@ -99,9 +119,9 @@ std::vector<RecallBin> recall_by_size(const std::vector<ObjectTrack>& objects) {
 }
 
 std::vector<RecallBin> recall_by_speed(const std::vector<ObjectTrack>& objects) {
-  Bins bins({0.0, 0.05, 0.1, 0.2, 0.5, 1.0}, "m per scan");
+  Bins bins({0.0, 0.5, 1.0, 2.0, 5.0, 10.0}, "m/s");
   for (const ObjectTrack& object : objects) {
-    if (const auto speed = object.speed_m_per_scan()) add(object, bins.at(*speed));
+    if (const auto speed_m_s = object.speed_m_s()) add(object, bins.at(*speed_m_s));
   }
   return bins.take();
 }

@@ -22,6 +22,7 @@ struct SequenceBreakdown {
   std::string sequence;
   std::vector<std::string> stems;  ///< of all scans, by scan index
   std::vector<std::size_t> scans;  ///< scored ones
+  bool stamped = false;            ///< speeds are by the scans' stamps, else as if at 10 Hz
   std::array<Confusion, kRangeEdges_m.size()> by_range;
   std::array<Confusion, kHeightEdges_m.size()> by_height;
   std::vector<ObjectTrack> objects;

@@ -71,7 +71,7 @@ ordered_json object_json(const SequenceBreakdown& breakdown, const ObjectTrack& 
           {"recall", object.recall()},
           {"mean_range_m", object.mean_range_m()},
           {"largest_size_m", object.largest_size_m()},
-          {"speed_m_per_scan", json_or_null(object.speed_m_per_scan())},
+          {"speed_m_s", json_or_null(object.speed_m_s())},
           {"detection_delay_scans", json_or_null(object.detection_delay_scans())},
           {"first_position_map_m", position(first.cluster.centre_map_m)},
           {"last_position_map_m", position(last.cluster.centre_map_m)}};
@@ -116,21 +116,22 @@ std::string objects_text(const SequenceBreakdown& breakdown, std::size_t at_most
                    {"recall %"},
                    {"range m"},
                    {"size m"},
-                   {"m/scan"},
+                   {"m/s"},
                    {"delay"},
                    {"position in the map m"}});
   const std::vector<const ObjectTrack*> sorted = worst_first(breakdown.objects);
   for (std::size_t i = 0; i < std::min(at_most, sorted.size()); ++i) {
     const ObjectTrack& object = *sorted[i];
     const Sighting& first = object.sightings.front();
-    const auto speed = object.speed_m_per_scan();
+    const auto speed_m_s = object.speed_m_s();
     const auto delay = object.detection_delay_scans();
-    table.add_row(
-        {"from " + breakdown.stems[first.scan_index], fmt::format("{}", object.sightings.size()),
-         fmt::format("{}", object.points()), percent(object.recall()),
-         fmt::format("{:.1f}", object.mean_range_m()),
-         fmt::format("{:.1f}", object.largest_size_m()), speed ? fmt::format("{:.2f}", *speed) : "",
-         delay ? fmt::format("{}", *delay) : "never", position_text(first.cluster.centre_map_m)});
+    table.add_row({"from " + breakdown.stems[first.scan_index],
+                   fmt::format("{}", object.sightings.size()), fmt::format("{}", object.points()),
+                   percent(object.recall()), fmt::format("{:.1f}", object.mean_range_m()),
+                   fmt::format("{:.1f}", object.largest_size_m()),
+                   speed_m_s ? fmt::format("{:.1f}", *speed_m_s) : "",
+                   delay ? fmt::format("{}", *delay) : "never",
+                   position_text(first.cluster.centre_map_m)});
   }
   return table.str() + '\n';
 }
@@ -161,6 +162,7 @@ ordered_json to_json(const SequenceBreakdown& breakdown, std::size_t at_most) {
                        {"by_object_size", recall_json(recall_by_size(breakdown.objects))},
                        {"by_object_speed", recall_json(recall_by_speed(breakdown.objects))},
                        {"by_object_age", recall_json(recall_by_age(breakdown.objects))},
+                       {"speed_clock", breakdown.stamped ? "stamps" : "10 Hz assumed"},
                        {"object_count", breakdown.objects.size()},
                        {"objects", ordered_json::array()},
                        {"false_positive_clusters", ordered_json::array()}};
@@ -181,8 +183,10 @@ ordered_json to_json(const SequenceBreakdown& breakdown, std::size_t at_most) {
 }
 
 std::string breakdown_text(const SequenceBreakdown& breakdown, std::size_t at_most) {
-  return fmt::format("sequence {}: {} scans, {} moving objects\n\n", breakdown.sequence,
-                     breakdown.scans.size(), breakdown.objects.size()) +
+  return fmt::format("sequence {}: {} scans, {} moving objects, speeds {}\n\n", breakdown.sequence,
+                     breakdown.scans.size(), breakdown.objects.size(),
+                     breakdown.stamped ? "by the scans' stamps"
+                                       : "as if scans came at 10 Hz, as they have no stamps") +
          bins_text("range", kRangeEdges_m, breakdown.by_range) +
          bins_text("height above sensor", kHeightEdges_m, breakdown.by_height) +
          recall_text("object size", recall_by_size(breakdown.objects)) +

@@ -4,12 +4,15 @@
 #include <iterator>
 #include <tuple>
 
+#include "eval/quantiles.hpp"
+
 namespace mosbench {
 namespace {
 
 constexpr double kGate_m = 2.0;
 constexpr std::size_t kLongestGap_scans = 5;
-constexpr std::size_t kFoundPart = 10;  ///< a tenth of the points makes a detection
+constexpr double kStretch_s = 1.0 - 1e-6;  ///< stamps are rounded
+constexpr std::size_t kFoundPart = 10;     ///< a tenth of the points makes a detection
 
 /// Where a track would be in a scan if it went on as between its last two sightings.
 Eigen::Vector3d expected_at(const ObjectTrack& track, std::size_t scan_index) {
@@ -58,11 +61,16 @@ void extend(std::vector<ObjectTrack>& tracks, const ScanObjects& scan) {
   for (const Pair& pair : candidate_pairs(tracks, scan)) {
     if (track_used[pair.track] || cluster_used[pair.cluster]) continue;
     track_used[pair.track] = cluster_used[pair.cluster] = true;
-    tracks[pair.track].sightings.push_back({scan.scan_index, scan.objects[pair.cluster]});
+    tracks[pair.track].sightings.push_back(
+        {scan.scan_index, scan.time_s, scan.objects[pair.cluster]});
   }
   for (std::size_t c = 0; c < scan.objects.size(); ++c) {
-    if (!cluster_used[c]) tracks.push_back({{{scan.scan_index, scan.objects[c]}}});
+    if (!cluster_used[c]) tracks.push_back({{{scan.scan_index, scan.time_s, scan.objects[c]}}});
   }
+}
+
+double speed_between(const Sighting& from, const Sighting& to) {
+  return (to.cluster.centre_map_m - from.cluster.centre_map_m).norm() / (to.time_s - from.time_s);
 }
 
 bool may_go_on(const ObjectTrack& track, std::size_t scan_index) {
@@ -98,12 +106,18 @@ double ObjectTrack::largest_size_m() const {
   return largest_m;
 }
 
-std::optional<double> ObjectTrack::speed_m_per_scan() const {
-  const Sighting& first = sightings.front();
-  const Sighting& last = sightings.back();
-  if (first.scan_index == last.scan_index) return std::nullopt;
-  return (last.cluster.centre_map_m - first.cluster.centre_map_m).norm() /
-         static_cast<double>(last.scan_index - first.scan_index);
+std::optional<double> ObjectTrack::speed_m_s() const {
+  if (sightings.size() < 2) return std::nullopt;
+  std::vector<double> speeds_m_s;
+  std::size_t later = 0;
+  for (const Sighting& from : sightings) {
+    while (later < sightings.size() && sightings[later].time_s - from.time_s < kStretch_s) ++later;
+    if (later == sightings.size()) break;
+    speeds_m_s.push_back(speed_between(from, sightings[later]));
+  }
+  if (speeds_m_s.empty()) return speed_between(sightings.front(), sightings.back());
+  std::ranges::sort(speeds_m_s);
+  return sorted_quantile(speeds_m_s, 0.5);
 }
 
 std::optional<std::size_t> ObjectTrack::detection_delay_scans() const {

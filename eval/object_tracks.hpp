@@ -12,6 +12,7 @@ namespace mosbench {
 /// A moving object seen in one scan.
 struct Sighting {
   std::size_t scan_index;  ///< in its sequence
+  double time_s;           ///< since any start that all scans share
   ScanCluster cluster;
 };
 
@@ -24,8 +25,10 @@ struct ObjectTrack {
   double recall() const { return static_cast<double>(found()) / static_cast<double>(points()); }
   double mean_range_m() const;
   double largest_size_m() const;
-  /// Way between the first and the last sighting per scan, metres; nothing for a single scan.
-  std::optional<double> speed_m_per_scan() const;
+  /// Speed of the centre in the map: the median over all stretches of about a second, so that
+  /// neither a change of what is seen of the object nor a turn decides; over its whole life when
+  /// that is shorter. Nothing for a single scan.
+  std::optional<double> speed_m_s() const;
   /// Scans from the first sighting to the first with a tenth of its points found; nothing when that
   /// never happens.
   std::optional<std::size_t> detection_delay_scans() const;
@@ -34,6 +37,7 @@ struct ObjectTrack {
 /// What the truth of one labelled scan holds.
 struct ScanObjects {
   std::size_t scan_index;
+  double time_s;
   std::vector<ScanCluster> objects;
 };
 

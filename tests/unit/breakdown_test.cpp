@@ -36,25 +36,26 @@ TEST(ClusterPoints, JoinsTouchingCellsAndLeavesOutWhatHasNoPlace) {
 
 TEST(LinkObjects, FollowsTheNearestAndStartsAnewBeyondTheGate) {
   // One object walks, another appears 3 m away in scan 1 and comes back after a gap of 5 scans.
-  const std::vector<ScanObjects> scans = {{0, {cluster_at(0.0, 10, 0)}},
-                                          {1, {cluster_at(4.0, 10, 5), cluster_at(1.0, 10, 1)}},
-                                          {2, {cluster_at(2.0, 10, 10)}},
-                                          {6, {cluster_at(4.5, 10, 5)}}};
+  const std::vector<ScanObjects> scans = {
+      {0, 0.0, {cluster_at(0.0, 10, 0)}},
+      {1, 0.1, {cluster_at(4.0, 10, 5), cluster_at(1.0, 10, 1)}},
+      {2, 0.2, {cluster_at(2.0, 10, 10)}},
+      {6, 0.6, {cluster_at(4.5, 10, 5)}}};
   const std::vector<ObjectTrack> tracks = link_objects(scans);
   ASSERT_EQ(tracks.size(), 2U);
   EXPECT_EQ(tracks[0].sightings.size(), 3U);
   EXPECT_EQ(tracks[0].points(), 30U);
   EXPECT_EQ(tracks[0].found(), 11U);
   EXPECT_EQ(tracks[0].detection_delay_scans(), 1U);
-  EXPECT_EQ(tracks[0].speed_m_per_scan(), 1.0);
+  EXPECT_DOUBLE_EQ(tracks[0].speed_m_s().value(), 10.0);
   EXPECT_EQ(tracks[1].sightings.back().scan_index, 6U);
   EXPECT_EQ(tracks[1].detection_delay_scans(), 0U);
 }
 
 TEST(LinkObjects, TrustsInstancesAcrossAnyGap) {
   const std::vector<ScanObjects> scans = {
-      {0, {cluster_at(0.0, 10, 0, 7), cluster_at(0.5, 9, 0, 8)}},
-      {50, {cluster_at(90.0, 10, 0, 8), cluster_at(80.0, 5, 0, 7)}}};
+      {0, 0.0, {cluster_at(0.0, 10, 0, 7), cluster_at(0.5, 9, 0, 8)}},
+      {50, 5.0, {cluster_at(90.0, 10, 0, 8), cluster_at(80.0, 5, 0, 7)}}};
   const std::vector<ObjectTrack> tracks = link_objects(scans);
   ASSERT_EQ(tracks.size(), 2U);
   for (const ObjectTrack& track : tracks) {
@@ -64,9 +65,28 @@ TEST(LinkObjects, TrustsInstancesAcrossAnyGap) {
   }
 }
 
+/// An object that goes 3 m/s there and back for two seconds each, its centre 0.5 m aside in every
+/// fourth scan because part of it is hidden.
+TEST(ObjectTrack, SpeedIsThatOfAboutASecondNotOfTheWholeWayOrOfAScan) {
+  std::vector<ScanObjects> scans;
+  for (std::size_t k = 0; k <= 40; ++k) {
+    const double x_m = 0.3 * static_cast<double>(k <= 20 ? k : 40 - k);
+    scans.push_back(
+        {k, 0.1 * static_cast<double>(k), {cluster_at(x_m + (k % 4 == 0 ? 0.5 : 0.0), 10, 0)}});
+  }
+  const std::vector<ObjectTrack> tracks = link_objects(scans);
+  ASSERT_EQ(tracks.size(), 1U);
+  EXPECT_NEAR(tracks[0].speed_m_s().value(), 3.0, 0.5 + 1e-9);
+  // The same way in twice the time.
+  for (ScanObjects& scan : scans) scan.time_s *= 2.0;
+  EXPECT_NEAR(link_objects(scans)[0].speed_m_s().value(), 1.5, 0.5 + 1e-9);
+  scans.resize(1);
+  EXPECT_FALSE(link_objects(scans)[0].speed_m_s());
+}
+
 TEST(LinkObjects, DoesNotReachOverSixScans) {
-  EXPECT_EQ(link_objects(std::vector<ScanObjects>{{0, {cluster_at(0.0, 10, 0)}},
-                                                  {6, {cluster_at(0.0, 10, 0)}}})
+  EXPECT_EQ(link_objects(std::vector<ScanObjects>{{0, 0.0, {cluster_at(0.0, 10, 0)}},
+                                                  {6, 0.6, {cluster_at(0.0, 10, 0)}}})
                 .size(),
             2U);
 }
@@ -116,8 +136,9 @@ TEST(BreakDownScan, AddsUpToTheScore) {
 }
 
 TEST(RecallBins, CountObjectsBySpeedAndSightingsByAge) {
-  const std::vector<ObjectTrack> tracks = link_objects(
-      std::vector<ScanObjects>{{0, {cluster_at(0.0, 10, 0)}}, {1, {cluster_at(0.3, 10, 5)}}});
+  const std::vector<ObjectTrack> tracks = link_objects(std::vector<ScanObjects>{
+      {0, 0.0, {cluster_at(0.0, 10, 0)}}, {1, 0.1, {cluster_at(0.3, 10, 5)}}});
+  EXPECT_EQ(recall_by_speed(tracks)[3].name, "2 to 5 m/s");
   EXPECT_EQ(recall_by_speed(tracks)[3].objects, 1U);
   EXPECT_EQ(recall_by_speed(tracks)[3].tp, 5U);
   EXPECT_EQ(recall_by_age(tracks)[0].fn, 10U);
@@ -130,10 +151,12 @@ TEST(RunDiff, ListsTheObjectsFoundToDifferentParts) {
   first.sequence = "room";
   first.stems = {"000000", "000001"};
   SequenceBreakdown second = first;
-  first.objects = link_objects(std::vector<ScanObjects>{
-      {0, {cluster_at(0.0, 10, 1), cluster_at(9.0, 10, 4)}}, {1, {cluster_at(9.5, 10, 4)}}});
-  second.objects = link_objects(std::vector<ScanObjects>{
-      {0, {cluster_at(0.0, 10, 1), cluster_at(9.0, 10, 4)}}, {1, {cluster_at(9.5, 10, 9)}}});
+  first.objects = link_objects(
+      std::vector<ScanObjects>{{0, 0.0, {cluster_at(0.0, 10, 1), cluster_at(9.0, 10, 4)}},
+                               {1, 0.1, {cluster_at(9.5, 10, 4)}}});
+  second.objects = link_objects(
+      std::vector<ScanObjects>{{0, 0.0, {cluster_at(0.0, 10, 1), cluster_at(9.0, 10, 4)}},
+                               {1, 0.1, {cluster_at(9.5, 10, 9)}}});
   const auto objects = disagreeing_objects(first, second);
   ASSERT_EQ(objects.size(), 1U);
   EXPECT_EQ(objects[0].first_found, 8U);
