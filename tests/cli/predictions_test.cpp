@@ -10,6 +10,7 @@
 
 #include "datasets/bin_file.hpp"
 #include "datasets/label_file.hpp"
+#include "datasets/pcd_file.hpp"
 #include "tests/cli/program.hpp"
 #include "tests/cli/small_sequence.hpp"
 
@@ -107,6 +108,53 @@ TEST_F(PredictionsTest, OfEveryFormatPerScanGiveTheSameNumbers) {
     EXPECT_EQ(format(answer), name);
     EXPECT_EQ(summary(score(folder_ / folder, {"--format", name})), expected_);
   }
+}
+
+/// A .pcd file with an intensity per point at the origin.
+std::string pcd_with(const std::vector<std::string>& intensities) {
+  std::string text =
+      "VERSION 0.7\nFIELDS x y z intensity\nSIZE 4 4 4 4\nTYPE F F F F\nCOUNT 1 1 1 1\n";
+  text += "WIDTH " + std::to_string(intensities.size()) + "\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\n";
+  text += "POINTS " + std::to_string(intensities.size()) + "\nDATA ascii\n";
+  for (const std::string& intensity : intensities) text += "0 0 0 " + intensity + '\n';
+  return text;
+}
+
+std::string pcd_of(const std::vector<std::uint32_t>& labels, const char* moving,
+                   const char* standing) {
+  std::vector<std::string> intensities;
+  for (const std::uint32_t label : labels) {
+    intensities.emplace_back(label == kMovingLabel ? moving : standing);
+  }
+  return pcd_with(intensities);
+}
+
+TEST_F(PredictionsTest, OfKthInTheIntensityOfPcdFilesGiveTheSameNumbers) {
+  if (!reads_pcd()) GTEST_SKIP() << "this build is without PCL";
+  const auto name = [](const std::string& stem) { return stem + ".pcd"; };
+  write("kth", name, [](const auto& labels) { return pcd_of(labels, "1", "0"); });
+  // ERASOR writes label numbers.
+  write("erasor", name, [](const auto& labels) { return pcd_of(labels, "252", "40"); });
+  for (const char* folder : {"kth", "erasor"}) {
+    const cli::Answer guessed = score(folder_ / folder);
+    ASSERT_EQ(guessed.exit_code, 0) << guessed.err;
+    EXPECT_EQ(format(guessed), "pcd");
+    EXPECT_EQ(summary(guessed), expected_) << folder;
+    EXPECT_EQ(summary(score(folder_ / folder, {"--format", "pcd"})), expected_) << folder;
+  }
+  const fs::path file = folder_ / "kth/000003.pcd";
+  const std::string whole = read_file(file);
+  const auto error_of = [&](const std::string& bytes) {
+    write_file_atomic(file, bytes);
+    const cli::Answer answer = score(folder_ / "kth", {"--format", "pcd"});
+    EXPECT_EQ(answer.exit_code, 3);
+    return answer.err;
+  };
+  EXPECT_THAT(error_of(pcd_with(std::vector<std::string>(7, "1"))),
+              HasSubstr("000003.pcd: has 7 points"));
+  EXPECT_THAT(error_of(pcd_with(std::vector<std::string>(cli::kPointsPerScan, "0.5"))),
+              HasSubstr("000003.pcd: has intensity 0.5"));
+  EXPECT_THAT(error_of(whole.substr(0, whole.size() / 2)), HasSubstr("000003.pcd"));
 }
 
 TEST_F(PredictionsTest, InOneFileGiveTheSameNumbers) {

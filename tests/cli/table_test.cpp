@@ -1,7 +1,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <numeric>
 #include <string>
+#include <vector>
 
 #include "tests/cli/program.hpp"
 
@@ -14,11 +16,26 @@ using testing::HasSubstr;
 /// Simulates one scan set per layout; short, as only the table is looked at.
 class Tables : public testing::Test {
  protected:
-  void simulate(const std::string& layout, const std::string& scene) const {
+  void simulate(const std::string& layout, const std::string& scene, const std::string& scans = "6",
+                const std::string& seed = "1", const std::string& folder = "") const {
     const cli::Answer answer =
-        cli::run({"simulate", "--layout", layout, "--scene", scene, "--scans", "6", "--seed", "1",
-                  "--out", (folder_ / layout).string()});
+        cli::run({"simulate", "--layout", layout, "--scene", scene, "--scans", scans, "--seed",
+                  seed, "--out", (folder_ / (folder.empty() ? layout : folder)).string()});
     ASSERT_EQ(answer.exit_code, 0) << answer.err;
+  }
+  /// IoU of every labelled scan below a folder of results.
+  static std::vector<double> scan_ious(const fs::path& results) {
+    std::vector<double> ious;
+    for (const auto& entry : fs::recursive_directory_iterator(results)) {
+      if (entry.path().filename() != "result.json") continue;
+      const auto json = nlohmann::json::parse(read_file(entry.path()));
+      for (const auto& scan : json.at("scans")) {
+        if (!scan.contains("tp")) continue;
+        const double tp = scan.at("tp"), fp = scan.at("fp"), fn = scan.at("fn");
+        ious.push_back(tp / (tp + fp + fn));
+      }
+    }
+    return ious;
   }
   cli::Answer reproduce(const std::string& layout, const std::string& format) const {
     return cli::run({"reproduce", layout, "--data", (folder_ / layout).string(), "--out",
@@ -60,6 +77,42 @@ TEST_F(Tables, FromSimulatedDataCompareNothingAndNameWhatIsMissing) {
   ASSERT_EQ(part.exit_code, 0) << part.err;
   EXPECT_THAT(part.out, HasSubstr("needs Ouster of HeLiMOS"));
   EXPECT_THAT(part.out, HasSubstr("sequence Ouster is missing"));
+}
+
+/// Two recordings of one place, named as published: its column is the mean over the scans of both,
+/// at either range, and the other places are named as missing.
+TEST_F(Tables, OneIsFilledFromASimulatedDoals) {
+  simulate("doals", "mall", "12");
+  simulate("doals", "mall", "12", "2", "second");
+  fs::rename(folder_ / "doals/mall", folder_ / "doals/station");
+  fs::rename(folder_ / "second/mall/sequence_1", folder_ / "doals/station/sequence_2");
+  const cli::Answer answer = reproduce("doals", "json");
+  ASSERT_EQ(answer.exit_code, 0) << answer.err;
+  const auto table = nlohmann::json::parse(answer.out);
+  expect_nothing_compared(table);
+  EXPECT_EQ(table.at("columns"), (nlohmann::json{"ST", "SV", "HG", "ND"}));
+  std::size_t filled = 0;
+  for (const auto& row : table.at("rows")) {
+    const auto& station = row.at("cells").at(0);
+    if (station.at("measured").is_null()) continue;
+    ++filled;
+    EXPECT_EQ(row.at("method"), "HMM-MOS");
+    EXPECT_THAT(row.at("protocol").get<std::string>(), HasSubstr("doals-hmm"));
+    const bool near =
+        row.at("setting").get<std::string>().find("range 0.5 to 20 m") != std::string::npos;
+    const std::vector<double> ious =
+        scan_ious(folder_ / "out-doals" / (near ? "doals-20m" : "doals-120m"));
+    ASSERT_EQ(ious.size(), 12U) << "six labelled scans in each recording";
+    const double mean = std::accumulate(ious.begin(), ious.end(), 0.0) / 12.0;
+    EXPECT_GT(mean, 0.0) << "the method found nothing";
+    EXPECT_NEAR(station.at("measured").get<double>(), mean, 1e-12);
+    for (std::size_t c = 1; c < 4; ++c) {
+      EXPECT_TRUE(row.at("cells").at(c).at("measured").is_null());
+      EXPECT_THAT(row.at("cells").at(c).at("reasons").at(0).get<std::string>(),
+                  HasSubstr("of DOALS"));
+    }
+  }
+  EXPECT_EQ(filled, 2U);
 }
 
 TEST_F(Tables, ArePrintedWithoutResultsInEveryFormat) {
