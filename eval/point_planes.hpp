@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -23,5 +24,8 @@ std::string position_planes(std::span<const Point> points);
 
 /// One byte per point: its PointOutcome, plus 8 when it is not drawable.
 std::string outcome_plane(std::span<const PointOutcome> outcomes, std::span<const Point> points);
+
+/// Four bytes per point: the lowest of all scores, then the next ones. Most are 0.
+std::string score_planes(std::span<const std::int32_t> scores);
 
 }  // namespace mosbench

@@ -129,6 +129,7 @@ Report build_report(const std::vector<std::filesystem::path>& inputs,
   for (std::size_t i = 0; i < results.size(); ++i) {
     content["results"][i]["cloud"] = scans.results[i].cloud;
     content["results"][i]["outcomes"] = scans.results[i].outcome_blocks;
+    content["results"][i]["scores"] = scans.results[i].score_blocks;
   }
   return {page(content, scans.blocks), results.size(), scans.remarks};
 }

@@ -18,10 +18,12 @@ struct PackedScan {
   ordered_json header;
   std::string positions;
   std::vector<std::string> outcomes;  ///< per member of the cloud
+  std::vector<std::string> scores;    ///< per member, empty where the run kept none
 
   std::size_t bytes() const {
     std::size_t sum = positions.size();
     for (const std::string& plane : outcomes) sum += plane.size();
+    for (const std::string& planes : scores) sum += planes.size();
     return sum;
   }
 };
@@ -78,7 +80,7 @@ ordered_json pose_json(const Pose& pose) {
 
 PackedScan pack(const Cloud& cloud, const std::vector<ResultScans>& sources,
                 std::size_t scan_index) {
-  PackedScan packed{scan_index, {}, {}, {}};
+  PackedScan packed{scan_index, {}, {}, {}, {}};
   for (const std::size_t member : cloud.members) {
     const JudgedScan scan = sources[member].read(scan_index);
     if (packed.positions.empty()) {
@@ -89,6 +91,8 @@ PackedScan pack(const Cloud& cloud, const std::vector<ResultScans>& sources,
       packed.positions = compressed_text(position_planes(scan.frame.points));
     }
     packed.outcomes.push_back(compressed_text(outcome_plane(scan.outcomes, scan.frame.points)));
+    packed.scores.push_back(
+        sources[member].has_scores() ? compressed_text(score_planes(scan.scores)) : "");
   }
   return packed;
 }
@@ -147,8 +151,12 @@ ReportScans choose_report_scans(const std::vector<FoundResult>& results,
       json["scans"].push_back(std::move(scan.header));
       report.blocks.push_back(std::move(scan.positions));
       for (std::size_t m = 0; m < cloud.members.size(); ++m) {
-        report.results[cloud.members[m]].outcome_blocks.push_back(report.blocks.size());
+        ReportScans::OfResult& result = report.results[cloud.members[m]];
+        result.outcome_blocks.push_back(report.blocks.size());
         report.blocks.push_back(std::move(scan.outcomes[m]));
+        if (scan.scores[m].empty()) continue;
+        result.score_blocks.push_back(report.blocks.size());
+        report.blocks.push_back(std::move(scan.scores[m]));
       }
     }
     report.clouds.push_back(std::move(json));

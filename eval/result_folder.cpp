@@ -18,6 +18,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kLabels = "labels";
+constexpr const char* kScores = "scores";
 constexpr const char* kResult = "result.json";
 
 std::vector<fs::path> entries(const fs::path& folder) {
@@ -69,23 +70,25 @@ nlohmann::ordered_json same_members(const nlohmann::ordered_json& content,
   return members;
 }
 
-bool all_labels_present(const fs::path& label_folder, const ResultFile& result) {
+/// Labels and scores both take four bytes per point.
+bool all_present(const fs::path& folder, const char* extension, const ResultFile& result) {
   for (const ScanRow& row : result.rows.scans) {
     std::error_code error;
-    const auto size = fs::file_size(label_folder / (row.stem + ".label"), error);
+    const auto size = fs::file_size(folder / (row.stem + extension), error);
     if (error || size != row.points * sizeof(std::uint32_t)) return false;
   }
   return true;
 }
 
-void refuse_extra_labels(const fs::path& label_folder, const Sequence& sequence) {
+void refuse_extra(const fs::path& folder, const char* extension, const Sequence& sequence) {
   std::set<std::string> expected;
-  for (std::size_t k = 0; k < sequence.size(); ++k) expected.insert(sequence.stem(k) + ".label");
-  for (const fs::path& file : entries(label_folder)) {
+  for (std::size_t k = 0; k < sequence.size(); ++k) expected.insert(sequence.stem(k) + extension);
+  for (const fs::path& file : entries(folder)) {
     if (expected.contains(file.filename().string())) continue;
-    throw UsageError(file.string() +
-                     ": belongs to no scan of the sequence, expected only label files of its "
-                     "scans; remove it, or replace the results with --overwrite");
+    throw UsageError(fmt::format(
+        "{}: belongs to no scan of the sequence, expected only {} files of its scans; remove it, "
+        "or replace the results with --overwrite",
+        file.string(), extension));
   }
 }
 
@@ -102,7 +105,7 @@ void ResultFolder::check_replaceable() const {
   bool has_result = found.empty();
   for (const fs::path& path : found) {
     has_result = has_result || path.filename() == kResult;
-    if (path.filename() != kResult && path.filename() != kLabels) {
+    if (path.filename() != kResult && path.filename() != kLabels && path.filename() != kScores) {
       throw UsageError(path.string() +
                        ": was not written by mosbench run, expected --out to name a folder of "
                        "its own");
@@ -116,7 +119,8 @@ void ResultFolder::check_replaceable() const {
 }
 
 std::optional<ResultFile> ResultFolder::finished(const Sequence& sequence,
-                                                 const nlohmann::ordered_json& identity) const {
+                                                 const nlohmann::ordered_json& identity,
+                                                 bool with_scores) const {
   check_replaceable();
   if (!fs::exists(folder_ / kResult)) return std::nullopt;
   ResultFile result = read_result(folder_ / kResult);
@@ -127,9 +131,11 @@ std::optional<ResultFile> ResultFolder::finished(const Sequence& sequence,
         "--overwrite to replace them",
         folder_.string(), different));
   }
-  refuse_extra_labels(folder_ / kLabels, sequence);
+  refuse_extra(folder_ / kLabels, ".label", sequence);
+  refuse_extra(folder_ / kScores, ".score", sequence);
   if (result.rows.scans.size() != sequence.size()) return std::nullopt;
-  if (!all_labels_present(folder_ / kLabels, result)) return std::nullopt;
+  if (!all_present(folder_ / kLabels, ".label", result)) return std::nullopt;
+  if (with_scores && !all_present(folder_ / kScores, ".score", result)) return std::nullopt;
   return result;
 }
 

@@ -9,9 +9,10 @@
 
 namespace mosbench {
 
-/// The folder <out>/<sequence> of a run: labels/<stem>.label and result.json. It appears as a whole
-/// when the sequence is done; until then everything lies in `<folder>.partial`, which the next run
-/// clears. So a killed or failed run never mixes with earlier results.
+/// The folder <out>/<sequence> of a run: labels/<stem>.label, scores/<stem>.score when they were
+/// asked for, and result.json. It appears as a whole when the sequence is done; until then
+/// everything lies in `<folder>.partial`, which the next run clears. So a killed or failed run
+/// never mixes with earlier results.
 class ResultFolder {
  public:
   explicit ResultFolder(std::filesystem::path folder) : folder_(std::move(folder)) {}
@@ -19,11 +20,12 @@ class ResultFolder {
   const std::filesystem::path& path() const { return folder_; }
 
   /// The finished result when it answers the same question: the members of `identity` are equal in
-  /// its result.json, and every scan has its label file. Nothing when there is no folder or label
-  /// files are missing or have the wrong size, so that the sequence has to be run. Throws
-  /// UsageError naming what differs when something else lies there.
+  /// its result.json, and every scan has its label file, and its score file when `with_scores`.
+  /// Nothing when there is no folder or such files are missing or have the wrong size, so that the
+  /// sequence has to be run. Throws UsageError naming what differs when something else lies there.
   std::optional<ResultFile> finished(const Sequence& sequence,
-                                     const nlohmann::ordered_json& identity) const;
+                                     const nlohmann::ordered_json& identity,
+                                     bool with_scores) const;
 
   /// Throws UsageError unless the folder is absent or holds nothing but a run's result, so that
   /// --overwrite never takes away anything else.

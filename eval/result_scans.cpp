@@ -6,6 +6,7 @@
 #include "datasets/files.hpp"
 #include "datasets/fingerprint.hpp"
 #include "datasets/label_file.hpp"
+#include "eval/dynamic_score_file.hpp"
 #include "eval/reading_json.hpp"
 #include "eval/same_input.hpp"
 
@@ -118,7 +119,8 @@ ResultScans::ResultScans(const FoundResult& result, const std::optional<fs::path
     : result_(result),
       dataset_(open_dataset_of(result, dataset_root)),
       rule_{},
-      label_folder_(result.folder / kLabels) {
+      label_folder_(result.folder / kLabels),
+      has_scores_(is_there(result.folder / "scores")) {
   from_json(result, [&](const nlohmann::ordered_json& json) {
     const nlohmann::ordered_json& protocol = json.at("protocol");
     rule_ = {&protocol_named(protocol.at("name").get<std::string>()),
@@ -128,7 +130,7 @@ ResultScans::ResultScans(const FoundResult& result, const std::optional<fs::path
 }
 
 JudgedScan ResultScans::read(std::size_t scan_index) const {
-  JudgedScan scan{sequence().read(scan_index), {}};
+  JudgedScan scan{sequence().read(scan_index), {}, {}};
   const fs::path label_file = label_folder_ / (scan.frame.stem + ".label");
   const std::vector<std::uint32_t> labels = read_labels(label_file, scan.frame.points.size());
   const std::optional<Confusion>& recorded = result_.file.rows.scans[scan_index].counts;
@@ -145,6 +147,10 @@ JudgedScan ResultScans::read(std::size_t scan_index) const {
   if (!same_counts(counts, recorded)) {
     throw DataError(label_file, "does not give the counts in result.json",
                     "the label file of that run");
+  }
+  if (has_scores_) {
+    const fs::path file = dynamic_score_file(result_.folder, scan.frame.stem);
+    scan.scores = parse_dynamic_scores(read_file(file), scan.frame.points.size(), file);
   }
   return scan;
 }

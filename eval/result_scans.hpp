@@ -28,6 +28,7 @@ std::vector<FoundResult> find_results(const std::filesystem::path& path);
 struct JudgedScan {
   Frame frame;
   std::vector<PointOutcome> outcomes;  ///< kIgnoredStatic or kIgnoredMoving without truth
+  std::vector<std::int32_t> scores;    ///< dynamic ones, empty unless the run kept them
 };
 
 /// The scans of a result: points and truth from the data set, labels from the result's folder.
@@ -43,6 +44,8 @@ class ResultScans {
   /// How the run was scored.
   const ScoreRule& rule() const { return rule_; }
   const Sequence& sequence() const { return *dataset_.sequences.front(); }
+  /// Whether the run kept dynamic scores.
+  bool has_scores() const { return has_scores_; }
   /// Throws DataError when the labels do not give the counts of result.json.
   JudgedScan read(std::size_t scan_index) const;
 
@@ -51,6 +54,7 @@ class ResultScans {
   Dataset dataset_;
   ScoreRule rule_;
   std::filesystem::path label_folder_;
+  bool has_scores_;
 };
 
 }  // namespace mosbench

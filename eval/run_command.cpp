@@ -15,6 +15,8 @@ namespace {
 constexpr const char* kFooter =
     R"(Writes DIR/<sequence>/labels/<stem>.label (uint32, 9 static or 251 moving, one per point) and
 DIR/<sequence>/result.json, and prints IoU, precision, recall and ms per scan where there is truth.
+--scores adds DIR/<sequence>/scores/<stem>.score (int32, one per point): the number of votes for motion
+that the threshold is compared with. `mosbench report` then colours points by it.
 
 The same command again skips the sequences that are finished and starts an interrupted one anew: the
 method's memory spans the whole past, so scans cannot be skipped. A sequence appears under DIR when it
@@ -30,6 +32,7 @@ Examples:
   mosbench run ~/doals --preset doals-120m --sequences station/sequence_1,station/sequence_2
   mosbench run ~/HeLiMOS/KAIST05/Deskewed_LiDAR --preset helimos-delayed --protocol helimos-test
   mosbench run ~/kitti/sequences/08 --set max_range_m=30 voxel_size_m=0.2 --out results/runs/08-near
+  mosbench run ~/kitti/sequences/08 --scores --out results/runs/08-scores
   mosbench run sim/00 --config near.json --variant release-2025 --threads 4 --json)";
 
 std::string run(const RunOptions& options) {
@@ -49,6 +52,7 @@ void add_run_command(CLI::App& app, std::string& answer) {
                       "MIN,MAX in metres, for protocols that limit it (default: the run's own)");
   command->add_option("--out", options->out,
                       "Where results go (default: results/runs/<data>-<preset>-<variant>)");
+  command->add_flag("--scores", options->scores, "Also write every point's dynamic score");
   command->add_flag("--overwrite", options->overwrite, "Run anew and replace what is in --out");
   command->add_flag("--json", options->json, "Print JSON instead of a table");
   command->footer(kFooter);

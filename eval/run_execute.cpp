@@ -108,7 +108,7 @@ SequenceOutcome run_now(const RunPlan& plan, const PlannedSequence& planned) {
   const fs::path partial = planned.folder.begin();
   try {
     SequenceOutcome outcome;
-    outcome.rows = run_sequence(sequence, plan.settings, partial / "labels");
+    outcome.rows = run_sequence(sequence, plan.settings, partial);
     outcome.remarks = all_remarks(plan.settings, sequence, outcome.rows);
     outcome.folder = planned.folder.path();
     write_file_atomic(

@@ -84,7 +84,8 @@ PlannedSequence plan_sequence(const RunPlan& plan, std::size_t position, bool ov
     planned.folder.check_replaceable();
     return planned;
   }
-  planned.finished = planned.folder.finished(sequence, planned.identity);
+  planned.finished =
+      planned.folder.finished(sequence, planned.identity, plan.settings.keeps_scores);
   if (planned.finished && !same_input(sequence, planned.stamp, *planned.finished)) {
     throw UsageError(fmt::format(
         "{}: holds results of other input files than {} has now, expected the same; give another "
@@ -113,6 +114,7 @@ RunPlan plan_method(const RunOptions& options) {
 
 RunPlan plan_run(const RunOptions& options) {
   RunPlan plan = plan_method(options);
+  plan.settings.keeps_scores = options.scores;
   plan.out = options.out.value_or(default_out(plan, options));
   for (std::size_t i = 0; i < plan.dataset.sequences.size(); ++i) {
     plan.sequences.push_back(plan_sequence(plan, i, options.overwrite));

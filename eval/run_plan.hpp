@@ -23,6 +23,7 @@ struct RunOptions {
   std::vector<std::string> assignments;
   unsigned threads = 0;  ///< 0: one per logical core
   bool overwrite = false;
+  bool scores = false;
   bool json = false;
 };
 

@@ -7,8 +7,10 @@
 #include <stdexcept>
 
 #include "datasets/errors.hpp"
+#include "datasets/files.hpp"
 #include "datasets/fingerprint.hpp"
 #include "datasets/label_file.hpp"
+#include "eval/dynamic_score_file.hpp"
 #include "eval/machine.hpp"
 #include "eval/progress.hpp"
 
@@ -32,13 +34,15 @@ struct PendingScan {
 class SequenceRun {
  public:
   SequenceRun(const Sequence& sequence, const RunSettings& settings,
-              const std::filesystem::path& label_folder)
+              const std::filesystem::path& folder)
       : sequence_(sequence),
         settings_(settings),
-        label_folder_(label_folder),
+        folder_(folder),
         // A deferred task runs inside get(), on this thread: one thread then means one thread.
         launch_(settings.threads > 1 ? std::launch::async : std::launch::deferred),
-        pipeline_(settings.config, settings.variant, settings.threads, sequence.size()) {}
+        pipeline_(settings.config, settings.variant, settings.threads, sequence.size()) {
+    pipeline_.record_scores(settings.keeps_scores);
+  }
 
   SequenceRows run() {
     const Clock::time_point start = Clock::now();
@@ -105,13 +109,15 @@ class SequenceRun {
                               settings_.range);
       row.truth_hash = truth_hash(*scan.truth);
     }
-    write(label_folder_ / (scan.stem + ".label"), std::move(result.labels));
+    write(scan.stem, std::move(result));
   }
 
-  void write(std::filesystem::path file, std::vector<std::uint32_t> labels) {
+  void write(const std::string& stem, ScanResult result) {
     finish_writing();
-    writing_ = std::async(launch_, [file = std::move(file), labels = std::move(labels)] {
-      write_labels(file, labels);
+    writing_ = std::async(launch_, [this, stem, result = std::move(result)] {
+      write_labels(folder_ / "labels" / (stem + ".label"), result.labels);
+      if (!settings_.keeps_scores) return;
+      write_file_atomic(dynamic_score_file(folder_, stem), format_dynamic_scores(result.scores));
     });
   }
 
@@ -121,7 +127,7 @@ class SequenceRun {
 
   const Sequence& sequence_;
   const RunSettings& settings_;
-  const std::filesystem::path& label_folder_;
+  const std::filesystem::path& folder_;
   std::launch launch_;
   Pipeline pipeline_;
   ContentFingerprint fingerprint_;
@@ -133,8 +139,8 @@ class SequenceRun {
 }  // namespace
 
 SequenceRows run_sequence(const Sequence& sequence, const RunSettings& settings,
-                          const std::filesystem::path& label_folder) {
-  return SequenceRun(sequence, settings, label_folder).run();
+                          const std::filesystem::path& folder) {
+  return SequenceRun(sequence, settings, folder).run();
 }
 
 std::vector<ScanResult> push_scan(Pipeline& pipeline, const Sequence& sequence,

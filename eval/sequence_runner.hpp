@@ -18,14 +18,16 @@ struct RunSettings {
   const Protocol* protocol = nullptr;
   RangeGate range;
   unsigned threads = 1;
+  bool keeps_scores = false;  ///< also writes every point's dynamic score
 };
 
-/// Segments a sequence, writes `label_folder`/<stem>.label for every scan and scores the scans with
-/// truth. With more than one thread the next scan is read and the last labels are written while a
-/// scan is processed; what is written and which error is thrown do not depend on it. Holds one scan
-/// at a time, and the truth of the scans whose labels are still delayed. Throws DataError.
+/// Segments a sequence, writes `folder`/labels/<stem>.label for every scan, with `keeps_scores`
+/// also `folder`/scores/<stem>.score, and scores the scans with truth. With more than one thread
+/// the next scan is read and the last labels are written while a scan is processed; what is written
+/// and which error is thrown do not depend on it. Holds one scan at a time, and the truth of the
+/// scans whose labels are still delayed. Throws DataError.
 SequenceRows run_sequence(const Sequence& sequence, const RunSettings& settings,
-                          const std::filesystem::path& label_folder);
+                          const std::filesystem::path& folder);
 
 /// Pushes one scan of `sequence`. Throws DataError naming the scan's file, or where it has none of
 /// its own the scan, for points and poses beyond the voxel grid.

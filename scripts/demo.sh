@@ -15,7 +15,7 @@ mkdir -p "$demo"
 show() {
   local data=$demo/$1 runs=$demo/runs/$1 run=$demo/$1-run.json score=$demo/$1-score.json
   "$mosbench" simulate --layout "$1" --scene "$2" --scans "$3" --seed 1 --out "$data" >&2
-  "$mosbench" run "$data" --preset "$4" --out "$runs" --json >"$run"
+  "$mosbench" run "$data" --preset "$4" --scores --out "$runs" --json >"$run"
   "$mosbench" score "$data" --predictions "$runs" --json \
     --protocol "$(jq -r .protocol "$run")" >"$score"
   # The label files scored once more must give what the run said.
@@ -41,4 +41,6 @@ echo
 echo "Simulated sequences: they show that everything works, not how the method does on real ones."
 column -t -s $'\t' -R 4,6,7,8,9 "$demo/table.tsv"
 
-"$mosbench" report "$demo"/runs/* -o "$demo/report.html" --max-mb 40
+# Seven results: the worst and some others of each one's scans, so that the file opens quickly. The
+# command says what it leaves out.
+"$mosbench" report "$demo"/runs/* -o "$demo/report.html" --max-mb 15

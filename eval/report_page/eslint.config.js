@@ -1,4 +1,4 @@
-const browser = ['atob', 'Blob', 'DecompressionStream', 'Response', 'document', 'devicePixelRatio', 'matchMedia', 'performance', 'requestAnimationFrame', 'ResizeObserver', 'setInterval', 'clearInterval'];
+const browser = ['atob', 'Blob', 'DecompressionStream', 'Response', 'document', 'devicePixelRatio', 'matchMedia', 'performance', 'requestAnimationFrame', 'ResizeObserver', 'setInterval', 'clearInterval', 'setTimeout'];
 const node = ['console', 'process', 'URL', 'Buffer'];
 const named = (names) => Object.fromEntries(names.map((name) => [name, 'readonly']));
 

@@ -59,6 +59,29 @@ TEST(Report, PassesOverWhatKilledRunsLeft) {
   EXPECT_THAT(answer.out, HasSubstr("report of 1 result in "));
 }
 
+TEST(Report, HoldsTheDynamicScoresOfARunThatKeptThem) {
+  const TempFolder folder;
+  EXPECT_TRUE(std::filesystem::exists(small_run()));
+  const auto scored = cli::run({"run", small_run() / "scans/00", "--out", folder / "runs/scored",
+                                "--threads", "1", "--scores"});
+  ASSERT_EQ(scored.exit_code, 0) << scored.err;
+  const auto report = [&] {
+    return cli::run(
+        {"report", small_run() / "runs/mine", folder / "runs/scored", "-o", folder / "r.html"});
+  };
+  ASSERT_EQ(report().exit_code, 0);
+  const auto content = content_of(read_file(folder / "r.html"));
+  EXPECT_TRUE(content.at("results").at(0).at("scores").empty());
+  EXPECT_EQ(content.at("results").at(1).at("scores").size(), 8U);
+  const auto file = folder / "runs/scored/00/scores/000005.score";
+  std::filesystem::resize_file(file, 12);
+  const cli::Answer cut = report();
+  EXPECT_EQ(cut.exit_code, 3);
+  EXPECT_THAT(cut.err, HasSubstr("000005.score: has 12 bytes"));
+  std::filesystem::remove(file);
+  EXPECT_EQ(report().exit_code, 3);
+}
+
 TEST(Report, IsTheSameBytesEachTime) {
   const TempFolder folder;
   for (const char* name : {"a.html", "b.html"}) {

@@ -83,6 +83,25 @@ TEST_F(Resume, RunsASequenceAnewWhenALabelFileIsMissingOrCut) {
   EXPECT_EQ(cli::contents(results()), whole);
 }
 
+TEST_F(Resume, RunsASequenceAnewWhenScoresAreAskedForAndNotThere) {
+  ASSERT_EQ(cli::run(command()).exit_code, 0);
+  ASSERT_EQ(cli::run(command({"--scores"})).exit_code, 0);
+  const auto whole = cli::contents(results());
+  ASSERT_EQ(labels_in(results() / "labels"), 10U);
+  ASSERT_TRUE(fs::exists(results() / "scores/000009.score"));
+  // Asking for less keeps what is there.
+  const cli::Answer less = cli::run(command());
+  EXPECT_THAT(less.err, HasSubstr("finished by an earlier run, kept"));
+  EXPECT_EQ(cli::contents(results()), whole);
+  fs::resize_file(results() / "scores/000004.score", 8);
+  ASSERT_EQ(cli::run(command({"--scores"})).exit_code, 0);
+  EXPECT_EQ(cli::contents(results()), whole);
+  folder_.write("out/room/scores/000999.score", "stale");
+  const cli::Answer refused = cli::run(command({"--scores"}));
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("000999.score: belongs to no scan"));
+}
+
 TEST_F(Resume, RefusesResultsOfAnotherConfigurationAndNamesTheDifference) {
   ASSERT_EQ(cli::run(command()).exit_code, 0);
   const auto before = cli::contents(folder_ / "out");

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "eval/dynamic_score_file.hpp"
 #include "tests/cli/program.hpp"
 #include "tests/cli/small_sequence.hpp"
 
@@ -57,6 +58,30 @@ TEST_F(Run, WritesOneLabelPerPointNamedLikeTheScan) {
     EXPECT_EQ(scan.at("points"), cli::kPointsPerScan);
   }
   EXPECT_EQ(recorded, moving);
+}
+
+TEST_F(Run, WritesOneScorePerPointWhenAskedAndTheSameLabels) {
+  ASSERT_EQ(cli::run(command("plain")).exit_code, 0);
+  const cli::Answer answer = cli::run(command("out", {"--scores"}));
+  ASSERT_EQ(answer.exit_code, 0) << answer.err;
+  EXPECT_FALSE(fs::exists(folder_ / "plain/room/scores"));
+  const auto json = result("out");
+  std::size_t above = 0;
+  for (std::size_t k = 0; k < kScans; ++k) {
+    const std::string label_name = "room/labels/" + cli::stem(k) + ".label";
+    EXPECT_EQ(read_file(folder_ / "out" / label_name), read_file(folder_ / "plain" / label_name));
+    const fs::path file = dynamic_score_file(folder_ / "out/room", cli::stem(k));
+    const auto scores = parse_dynamic_scores(read_file(file), cli::kPointsPerScan, file);
+    const auto& threshold = json.at("scans").at(k).at("threshold");
+    if (threshold.is_null() || threshold.get<double>() <= 3.0) continue;
+    const auto labels = read_labels(folder_ / "out" / label_name, cli::kPointsPerScan);
+    for (std::size_t i = 0; i < scores.size(); ++i) {
+      if (scores[i] <= threshold.get<double>()) continue;
+      ASSERT_EQ(labels[i], kMovingLabel) << k << ' ' << i;
+      ++above;
+    }
+  }
+  EXPECT_GT(above, 0U);
 }
 
 TEST_F(Run, PrintsTheScoresAndWhatItChose) {

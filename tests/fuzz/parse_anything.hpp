@@ -19,6 +19,7 @@
 #include "datasets/pose_list.hpp"
 #include "datasets/split_file.hpp"
 #include "datasets/times_file.hpp"
+#include "eval/dynamic_score_file.hpp"
 #include "eval/prediction_text.hpp"
 #include "eval/published.hpp"
 #include "tests/fuzz/memory_file.hpp"
@@ -39,6 +40,14 @@ inline void label(std::string_view bytes) {
   const std::size_t point_count = static_cast<unsigned char>(bytes.front());
   const auto labels = parse_labels(bytes.substr(1), point_count, "f");
   require(labels.size() == point_count && format_labels(labels) == bytes.substr(1));
+}
+
+/// The first byte is the number of points.
+inline void dynamic_scores(std::string_view bytes) {
+  if (bytes.empty()) return;
+  const std::size_t point_count = static_cast<unsigned char>(bytes.front());
+  const auto scores = parse_dynamic_scores(bytes.substr(1), point_count, "f");
+  require(scores.size() == point_count && format_dynamic_scores(scores) == bytes.substr(1));
 }
 
 inline void poses(std::string_view text) {
@@ -158,8 +167,9 @@ struct Parser {
   const char* name;  ///< of its corpus folder and its libFuzzer target
   void (*parse)(std::string_view);
 };
-inline constexpr std::array<Parser, 14> kParsers = {{{"bin", bin},
+inline constexpr std::array<Parser, 15> kParsers = {{{"bin", bin},
                                                      {"label", label},
+                                                     {"dynamic_scores", dynamic_scores},
                                                      {"poses", poses},
                                                      {"calib", calib},
                                                      {"times", times},

@@ -22,8 +22,10 @@ export function openBrowser() {
   });
 }
 
-/** A page on `file` that has drawn its first scan. `complaints` fills with whatever went wrong. */
-export async function openReport(browser, file, { viewport = DESKTOP, theme = 'light' } = {}) {
+/**
+ * A page on `file` with all its parts. `complaints` fills with whatever went wrong; `before` runs in it ahead of all else.
+ */
+export async function openReport(browser, file, { viewport = DESKTOP, theme = 'light', before = null } = {}) {
   const context = await browser.newContext({ viewport, colorScheme: theme, offline: true });
   const page = await context.newPage();
   page.setDefaultTimeout(60000);
@@ -35,7 +37,9 @@ export async function openReport(browser, file, { viewport = DESKTOP, theme = 'l
   page.on('request', (request) => {
     if (!/^(file|data|blob):/.test(request.url())) page.complaints.push(`asks for ${request.url()}`);
   });
+  if (before) await page.addInitScript(before);
   await page.goto(pathToFileURL(file).href);
+  await page.waitForFunction(() => globalThis.mosbenchReport);
   return page;
 }
 

@@ -28,12 +28,18 @@ export function resultOf(folder) {
   return JSON.parse(readFileSync(join(folder, 'result.json'), 'utf8'));
 }
 
-/** Simulates and segments part of a campus; two runs of it that differ in their delay. */
+/** Dynamic scores of one scan of a run, from the file that --scores writes. */
+export function scoresOf(folder, stem) {
+  const bytes = readFileSync(join(folder, 'scores', `${stem}.score`));
+  return Array.from({ length: bytes.length / 4 }, (_, i) => bytes.readInt32LE(4 * i));
+}
+
+/** Simulates and segments part of a campus; two runs that differ in their delay, the first with scores. */
 export function simulatedRuns(folder, scans = 24) {
   const dataset = join(folder, 'sim');
   mosbench('simulate', '--layout', 'sipailou', '--scene', 'campus', '--scans', String(scans), '--seed', '1', '--out', dataset);
-  for (const [run, delay] of [['online', 0], ['delayed', 4]]) {
-    mosbench('run', dataset, '--set', `delay_scans=${delay}`, '--out', join(folder, run));
+  for (const [run, delay, ...flags] of [['online', 0, '--scores'], ['delayed', 4]]) {
+    mosbench('run', dataset, '--set', `delay_scans=${delay}`, '--out', join(folder, run), ...flags);
   }
   return [join(folder, 'online'), join(folder, 'delayed')];
 }

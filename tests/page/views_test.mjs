@@ -5,7 +5,7 @@ import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { DESKTOP, PHONE, openBrowser, openReport, refuseComplaints, settled } from './browser.mjs';
 import { assertLooksLikeKept } from './pictures.mjs';
-import { artefacts, freshFolder, mosbench, resultOf, simulatedRuns } from './reports.mjs';
+import { artefacts, freshFolder, mosbench, resultOf, scoresOf, simulatedRuns } from './reports.mjs';
 
 const folder = freshFolder();
 const both = join(folder, 'both.html');
@@ -61,8 +61,53 @@ test('two runs stay in step, each with its own counts', async () => {
   refuseComplaints(page);
 });
 
+test('colours by dynamic score tell those of the score files, with a key to them', async () => {
+  const page = await openReport(browser, both, { viewport: { width: 700, height: 640 } });
+  await page.evaluate(() => mosbenchReport.state.set({ scan: 21, view: 'top' }));
+  await page.selectOption('[aria-label=colour]', 'score');
+  await shot(page, 'score_top');
+  const { stem, threshold } = online.scans[21];
+  const scores = scoresOf(join(folder, 'online', '06'), stem);
+  const without = scores.filter((score) => score === 0).length;
+  assert.ok(without > 0 && without < scores.length && threshold > 3, 'the scan has votes for motion');
+  const shown = await page.evaluate(() => mosbenchReport.viewer.coloursShown());
+  assert.equal(shown['207,213,220'], without);
+  assert.match(await page.locator('.scale').textContent(), new RegExp(`^dynamic scorenone1\\d+threshold ${threshold.toFixed(0)}$`));
+  await page.keyboard.press('t');
+  await shot(page, 'score_top_dark');
+  refuseComplaints(page);
+});
+
+test('dynamic scores are not offered beside a run without them, which is told how to get them', async () => {
+  const page = await openReport(browser, both, { viewport: STAGE });
+  await page.selectOption('[aria-label=colour]', 'score');
+  await page.selectOption('[aria-label=beside]', { label: 'delayed' });
+  await settled(page);
+  assert.equal(await page.evaluate(() => mosbenchReport.state.get('colouring')), 'outcome');
+  assert.equal(await page.locator('[aria-label=colour] option[disabled]').textContent(), 'dynamic score: needs mosbench run --scores');
+  await page.selectOption('[aria-label=beside]', '');
+  assert.equal(await page.locator('[aria-label=colour] option[disabled]').count(), 0);
+  refuseComplaints(page);
+});
+
+test('charts over the scans hold the numbers of both runs', async () => {
+  const page = await openReport(browser, both);
+  const numbers = await page.evaluate(() => Object.fromEntries(mosbenchReport.charts.charts.map((chart) => [chart.key, chart.numbers()])));
+  const ofBoth = (number) => ({ online: online.scans.map(number), delayed: delayed.scans.map(number) });
+  assert.deepEqual(numbers.fp, ofBoth(({ fp }) => fp));
+  assert.deepEqual(numbers.fn, ofBoth(({ fn }) => fn));
+  assert.deepEqual(numbers.iou, ofBoth(({ tp, fp, fn }) => (tp + fp + fn > 0 ? tp / (tp + fp + fn) : null)));
+  assert.deepEqual(numbers.threshold, ofBoth(({ threshold }) => threshold));
+  const push = ({ timing }) => timing.scans.map((row) => row[timing.scan_columns.indexOf('push_ms')]);
+  assert.deepEqual(numbers.time, { online: push(online), delayed: push(delayed) });
+  assert.match(await page.locator('[data-chart=iou] .u-legend').textContent(), /online.*delayed/s);
+  writeFileSync(join(artefacts(), 'charts_of_two.png'), await page.locator('.charts').screenshot());
+  refuseComplaints(page);
+});
+
 test('charts hold the numbers of result.json', async () => {
   const page = await openReport(browser, both);
+  await page.selectOption('[aria-label="charts beside"]', '');
   const numbers = await page.evaluate(() => Object.fromEntries(mosbenchReport.charts.charts.map((chart) => [chart.key, chart.numbers()])));
   const of = (key) => online.scans.map((scan) => scan[key]);
   assert.deepEqual(numbers.counts, { TP: of('tp'), FP: of('fp'), FN: of('fn') });
@@ -98,7 +143,7 @@ test('intervals, ranges, objects and protocols are those that the program tells'
 
 test('a click into a chart moves the 3-D view to that scan', async () => {
   const page = await openReport(browser, both);
-  const chart = page.locator('[data-chart=counts] .u-over');
+  const chart = page.locator('[data-chart=fn] .u-over');
   await chart.scrollIntoViewIfNeeded();
   const { width, height } = await chart.boundingBox();
   await chart.click({ position: { x: width - 2, y: height / 2 } });
@@ -145,7 +190,10 @@ test('a click on a point shows its numbers', async () => {
   });
   assert.ok(spot, 'a point of a moving object is in view');
   await page.locator('.stage canvas').click({ position: spot });
-  assert.match(await page.locator('.details').textContent(), /point\d+ of \d+, scan \d+.*range\d+\.\d\d m.*outcome(true|false) (positive|negative)/);
+  assert.match(await page.locator('.details').textContent(), /point\d+ of \d+, scan \d+.*range\d+\.\d\d m.*outcome(true|false) (positive|negative).*dynamic score\d+$/);
+  const [point, score] = (await page.locator('.details').textContent()).match(/^point(\d+) .*dynamic score(\d+)$/).slice(1).map(Number);
+  const { stem } = online.scans[await page.evaluate(() => mosbenchReport.state.get('scan'))];
+  assert.equal(score, scoresOf(join(folder, 'online', '06'), stem)[point]);
   refuseComplaints(page);
 });
 

@@ -7,6 +7,7 @@
 
 #include "datasets/errors.hpp"
 #include "eval/compressed_text.hpp"
+#include "eval/dynamic_score_file.hpp"
 #include "eval/point_planes.hpp"
 #include "eval/report_asset.hpp"
 #include "eval/scan_choice.hpp"
@@ -73,6 +74,24 @@ TEST(PointPlanes, MarkPointsThatHaveNoPlace) {
   const std::vector<PointOutcome> outcomes(6, PointOutcome::kTrueNegative);
   const std::string plane = outcome_plane(outcomes, points);
   EXPECT_EQ(plane, std::string("\x03\x0b\x0b\x0b\x03\x0b"));
+}
+
+TEST(PointPlanes, HoldScoresByteByByte) {
+  EXPECT_EQ(score_planes(std::vector<std::int32_t>{1, 0x01020304}),
+            std::string({1, 4, 0, 3, 0, 2, 0, 1}));
+  EXPECT_EQ(score_planes({}), "");
+}
+
+TEST(DynamicScores, AreOneIntegerPerPointAndNotNegative) {
+  const std::vector<std::int32_t> scores = {0, 7, 3375};
+  const std::string bytes = format_dynamic_scores(scores);
+  EXPECT_EQ(bytes, std::string({0, 0, 0, 0, 7, 0, 0, 0, 0x2f, 0x0d, 0, 0}));
+  EXPECT_EQ(parse_dynamic_scores(bytes, 3, "f"), scores);
+  EXPECT_TRUE(parse_dynamic_scores("", 0, "f").empty());
+  EXPECT_THROW(parse_dynamic_scores(bytes, 2, "f"), DataError);
+  EXPECT_THROW(
+      parse_dynamic_scores(format_dynamic_scores(std::vector<std::int32_t>{5, -1}), 2, "f"),
+      DataError);
 }
 
 TEST(CompressedText, IsZlibInBase64) {

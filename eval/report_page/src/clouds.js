@@ -1,4 +1,4 @@
-import { outcomesFromPlane, positionsFromPlanes, readBlock } from './payload.js';
+import { outcomesFromPlane, positionsFromPlanes, readBlock, scoresFromPlanes } from './payload.js';
 
 const SCANS_KEPT = 24;
 
@@ -20,6 +20,11 @@ export class Clouds {
     return this.#cloudOf(result)?.scans.map((scan) => scan.index) ?? [];
   }
 
+  /** Whether the points of a result have dynamic scores. */
+  hasScores(result) {
+    return (this.#content.results[result].scores ?? []).length > 0;
+  }
+
   leftOut(result) {
     return this.#cloudOf(result)?.left_out ?? 'the file holds no points';
   }
@@ -38,7 +43,10 @@ export class Clouds {
     );
   }
 
-  /** {points, positions_m, outcomes, drawable, pose}, or null when its points were left out. */
+  /**
+   * {points, positions_m, outcomes, drawable, scores, pose}, or null when its points were left out;
+   * scores are null where the run kept none.
+   */
   async read(result, index) {
     const key = `${result}/${index}`;
     if (!this.#kept.has(key)) this.#kept.set(key, this.#unpack(result, index));
@@ -53,9 +61,11 @@ export class Clouds {
     const scans = this.#cloudOf(result)?.scans ?? [];
     const place = scans.findIndex((scan) => scan.index === index);
     if (place < 0) return null;
-    const [planes, plane] = await Promise.all([
+    const { outcomes, scores } = this.#content.results[result];
+    const [planes, plane, scorePlanes] = await Promise.all([
       readBlock(scans[place].positions),
-      readBlock(this.#content.results[result].outcomes[place]),
+      readBlock(outcomes[place]),
+      this.hasScores(result) ? readBlock(scores[place]) : null,
     ]);
     return {
       points: scans[place].points,
@@ -63,6 +73,7 @@ export class Clouds {
       positions_m: positionsFromPlanes(planes, this.#content.position_step_m),
       pose: scans[place].map_from_sensor,
       ...outcomesFromPlane(plane),
+      scores: scorePlanes && scoresFromPlanes(scorePlanes),
     };
   }
 }

@@ -26,6 +26,7 @@ function initialState(content, clouds) {
   return new State({
     result: 0,
     other: null,
+    compared: null,
     scan: firstScan(content, clouds, 0),
     view: 'orbit',
     colouring: 'outcome',
@@ -45,19 +46,23 @@ function makeViewer(state, content, clouds, section) {
   }
 }
 
-function viewSection(state, content, clouds, transport) {
-  const section = element('section', { class: 'view', 'aria-label': 'Points' });
-  if (content.clouds.length === 0) return { section, viewer: null };
+function fillViewSection(section, state, content, clouds, transport) {
+  if (content.clouds.length === 0) return null;
   const viewer = makeViewer(state, content, clouds, section);
   if (viewer) {
     const actions = keyActions(state, viewer, transport);
     listenToKeys(actions);
     section.append(toolbar(state, content, clouds, viewer), viewer.node, transport.node, keyList(actions));
   }
-  return { section, viewer };
+  return viewer;
 }
 
-function start() {
+/** Resolves when all that is in the document by now has been shown. */
+function shown() {
+  return new Promise((resolve) => requestAnimationFrame(() => setTimeout(resolve)));
+}
+
+async function start() {
   const content = readContent();
   const clouds = new Clouds(content);
   const state = initialState(content, clouds);
@@ -65,13 +70,19 @@ function start() {
   const transport = new Transport(state, content, clouds);
   const go = (scan) => transport.go(scan);
   const choose = (result) => state.set({ result, other: null, scan: firstScan(content, clouds, result) });
-  const { section, viewer } = viewSection(state, content, clouds, transport);
+  const hasPoints = content.clouds.length > 0;
+  const section = element('section', { class: hasPoints ? 'view' : '', 'aria-label': 'Points' });
   const charts = new Charts(state, content, go);
   document.body.append(
     header(state, content, choose),
     element('main', {}, notices(state, content, clouds), tiles(state, content), section, charts.node,
       summaryTable(content, choose), resultTables(state, content, go), paperTables(content), provenance(state, content)),
   );
+  // Unpacking goes on in the background; getting at the graphics card may take a second. Neither
+  // keeps the numbers waiting.
+  if (hasPoints) clouds.read(state.get('result'), state.get('scan'));
+  await shown();
+  const viewer = fillViewSection(section, state, content, clouds, transport);
   globalThis.mosbenchReport = { content, state, viewer, transport, charts };
 }
 

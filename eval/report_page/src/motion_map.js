@@ -16,11 +16,17 @@ function shownPoints({ outcomes, drawable }) {
 /** What of one scan belongs to the map. */
 export function movingPoints(scan, origin) {
   const points = shownPoints(scan);
-  const moving = { positions_m: new Float32Array(3 * points), outcomes: new Uint8Array(points), eye: toMap(scan.pose, 0, 0, 0, origin) };
+  const moving = {
+    positions_m: new Float32Array(3 * points),
+    outcomes: new Uint8Array(points),
+    scores: scan.scores ? new Int32Array(points) : null,
+    eye: toMap(scan.pose, 0, 0, 0, origin),
+  };
   let next = 0;
   for (let i = 0; i < scan.points; ++i) {
     if (!SHOWN[scan.outcomes[i]] || !scan.drawable[i]) continue;
     moving.positions_m.set(toMap(scan.pose, scan.positions_m[3 * i], scan.positions_m[3 * i + 1], scan.positions_m[3 * i + 2], origin), 3 * next);
+    if (scan.scores) moving.scores[next] = scan.scores[i];
     moving.outcomes[next++] = scan.outcomes[i];
   }
   return moving;
@@ -34,6 +40,7 @@ export function join(parts) {
     stem: `${parts.length} scans`,
     positions_m: new Float32Array(3 * points),
     outcomes: new Uint8Array(points),
+    scores: parts.every((part) => part.scores) ? new Int32Array(points) : null,
     drawable: new Uint8Array(points).fill(1),
     path: parts.map((part) => part.eye),
     pose: null,
@@ -42,6 +49,7 @@ export function join(parts) {
   for (const part of parts) {
     cloud.positions_m.set(part.positions_m, 3 * next);
     cloud.outcomes.set(part.outcomes, next);
+    cloud.scores?.set(part.scores, next);
     next += part.outcomes.length;
   }
   return cloud;

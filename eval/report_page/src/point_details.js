@@ -1,5 +1,5 @@
 import { element } from './dom.js';
-import { fixed } from './format.js';
+import { count, fixed } from './format.js';
 import { toMap } from './motion_map.js';
 import { OUTCOMES } from './theme.js';
 
@@ -16,6 +16,10 @@ export function pointDetails(scans, pane, point, runs) {
     rows.push(['map x, y, z', `${vector(toMap(scan.pose, ...position, [0, 0, 0]))} m`]);
   }
   const judged = scan.pose ? scans : [scan];
-  judged.forEach((s, p) => rows.push([judged.length > 1 ? runs[p] : 'outcome', OUTCOMES[s.outcomes[point]].name]));
+  judged.forEach((s, p) => {
+    const run = judged.length > 1 ? runs[p] : null;
+    rows.push([run ?? 'outcome', OUTCOMES[s.outcomes[point]].name]);
+    if (s.scores) rows.push([run ? `${run}, dynamic score` : 'dynamic score', count(s.scores[point])]);
+  });
   return element('dl', {}, ...rows.flatMap(([name, value]) => [element('dt', {}, name), element('dd', {}, value)]));
 }

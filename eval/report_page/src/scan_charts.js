@@ -5,7 +5,14 @@ import { OUTCOMES, SERIES } from './theme.js';
 const COLOURS = Object.fromEntries(OUTCOMES.map(({ key, light, dark }) => [key, { light, dark }]));
 const NEUTRAL = { light: '#5d6774', dark: '#97a3b2' };
 
-const perScan = (scans, of) => scans.map((scan) => (hasCounts(scan) ? of(scan) : null));
+/** A number of every scan with truth, null for the others. */
+export function ofJudged(scans, number) {
+  return scans.map((scan) => (hasCounts(scan) ? number(scan) : null));
+}
+
+export function percentAxis() {
+  return { yScale: { range: [-0.02, 1.02] }, yAxis: { values: (_, ticks) => ticks.map((t) => `${Math.round(100 * t)} %`) } };
+}
 
 function flat(scans, value) {
   return scans.map(() => value);
@@ -18,9 +25,9 @@ export function metricsChart({ result, estimates }) {
   const mean = summary.iou;
   const interval = intervalOf(estimates?.iou);
   const series = [
-    { label: 'IoU', values: perScan(scans, iou), colour: COLOURS.tp, width: 2 },
-    { label: 'precision', values: perScan(scans, precision), colour: COLOURS.fp },
-    { label: 'recall', values: perScan(scans, recall), colour: COLOURS.unlabelled_moving },
+    { label: 'IoU', values: ofJudged(scans, iou), colour: COLOURS.tp, width: 2 },
+    { label: 'precision', values: ofJudged(scans, precision), colour: COLOURS.fp },
+    { label: 'recall', values: ofJudged(scans, recall), colour: COLOURS.unlabelled_moving },
     { label: 'IoU of all', values: flat(scans, mean), colour: NEUTRAL, dash: [6, 4], points: { show: false } },
   ];
   const bands = [];
@@ -34,13 +41,13 @@ export function metricsChart({ result, estimates }) {
     title: 'IoU, precision, recall',
     note: interval ? 'the band is the 95 % interval of the whole' : 'the dashed line is the whole',
     series,
-    options: { text: percent, bands, yScale: { range: [-0.02, 1.02] }, yAxis: { values: (_, ticks) => ticks.map((t) => `${Math.round(100 * t)} %`) } },
+    options: { text: percent, bands, ...percentAxis() },
   };
 }
 
 export function countsChart({ result }) {
   if (!result.summary) return null;
-  const of = (key, label) => ({ label, values: perScan(result.scans, (scan) => scan[key]), colour: COLOURS[key] });
+  const of = (key, label) => ({ label, values: ofJudged(result.scans, (scan) => scan[key]), colour: COLOURS[key] });
   return { key: 'counts', title: 'Moving points', series: [of('tp', 'TP'), of('fp', 'FP'), of('fn', 'FN')], options: { text: count } };
 }
 

@@ -124,13 +124,19 @@ export class Stage {
     });
   }
 
+  /** Only when something changed: each call makes a new picture buffer. */
+  #resize(width, height, ratio) {
+    const size = `${width} ${height} ${ratio}`;
+    if (size === this.size) return;
+    this.size = size;
+    this.renderer.setDrawingBufferSize(width, height, ratio);
+    this.pointMaterial.uniforms.pixelRatio.value = ratio;
+  }
+
   #drawNow() {
     const { clientWidth, clientHeight } = this.canvas;
     if (clientWidth === 0 || clientHeight === 0) return;
-    const ratio = Math.min(devicePixelRatio, 2);
-    this.renderer.setPixelRatio(ratio);
-    this.renderer.setSize(clientWidth, clientHeight, false);
-    this.pointMaterial.uniforms.pixelRatio.value = ratio;
+    this.#resize(clientWidth, clientHeight, Math.min(devicePixelRatio, 2));
     const { width, height } = this.paneSize();
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();

@@ -51,8 +51,9 @@ export function falseClustersTable(entry, go) {
 export function missedObjectsTable(entry, go) {
   const objects = entry.breakdown?.objects?.filter((o) => o.tp < o.points).slice(0, AT_MOST) ?? [];
   if (objects.length === 0) return null;
-  const rows = objects.map((o) => [o.first_scan, count(o.sightings), count(o.points), percent(o.recall), fixed(o.mean_range_m, 1), fixed(o.largest_size_m, 1), o.detection_delay_scans === null ? 'never' : count(o.detection_delay_scans)]);
-  return block('Worst objects', 'Moving objects by the points that were missed.', table(['first scan', 'scans', 'points', 'recall', 'range m', 'size m', 'found after scans'], rows, { onRow: (r) => go(scanIndex(entry, objects[r].first_scan)) }));
+  const rows = objects.map((o) => [o.first_scan, count(o.sightings), count(o.points), percent(o.recall), fixed(o.mean_range_m, 1), fixed(o.largest_size_m, 1), fixed(o.speed_m_s, 1), o.detection_delay_scans === null ? 'never' : count(o.detection_delay_scans)]);
+  const clock = entry.breakdown.speed_clock === 'stamps' ? 'by the scans’ stamps' : 'as if scans came at 10 Hz';
+  return block('Worst objects', `Moving objects by the points that were missed; speeds in the map’s frame, ${clock}.`, table(['first scan', 'scans', 'points', 'recall', 'range m', 'size m', 'm/s', 'found after scans'], rows, { onRow: (r) => go(scanIndex(entry, objects[r].first_scan)) }));
 }
 
 /** The same labels by the rules of every protocol. */

@@ -27,9 +27,13 @@ export function surface(theme) {
 /** Cividis, whose order also holds for readers who do not see red or green apart. */
 const CIVIDIS = ['#00224e', '#123570', '#3b496c', '#575d6d', '#707173', '#8a8678', '#a59c74', '#c3b369', '#e1cc55', '#fee838'].map(rgb);
 
+/** Its dark end would vanish on a dark background. */
+const FIRST = { light: 0, dark: 0.25 };
+
 /** Colour of a fraction 0..1 on the scale. */
-export function scaleColour(fraction) {
-  const place = Math.min(Math.max(fraction, 0), 1) * (CIVIDIS.length - 1);
+export function scaleColour(fraction, theme) {
+  const within = FIRST[theme] + (1 - FIRST[theme]) * Math.min(Math.max(fraction, 0), 1);
+  const place = within * (CIVIDIS.length - 1);
   const low = Math.min(Math.floor(place), CIVIDIS.length - 2);
   return CIVIDIS[low].map((c, i) => Math.round(c + (CIVIDIS[low + 1][i] - c) * (place - low)));
 }

@@ -1,12 +1,12 @@
-import { COLOURINGS, colourPoints, sizePoints } from './colouring.js';
+import { colourScans, sizePoints } from './colouring.js';
 import { element } from './dom.js';
-import { fixed } from './format.js';
 import { Legend } from './legend.js';
 import { join, movingPoints } from './motion_map.js';
 import { pick } from './picking.js';
 import { pointDetails } from './point_details.js';
+import { Scale } from './scale.js';
 import { Stage } from './stage.js';
-import { scaleColour, surface } from './theme.js';
+import { surface } from './theme.js';
 import { viewpoint } from './views.js';
 
 const CLICK_PIXELS = 4;
@@ -23,10 +23,10 @@ export class Viewer {
     const canvas = element('canvas', { tabindex: '0', 'aria-label': 'Points of the scan in 3-D' });
     this.names = [0, 1].map(() => element('span', { class: 'pane-name' }));
     this.legend = new Legend(state);
-    this.scale = element('div', { class: 'scale', hidden: true });
+    this.scale = new Scale();
     this.details = element('div', { class: 'details', hidden: true, 'aria-live': 'polite' });
     this.busy = element('span', { class: 'busy', role: 'status' });
-    this.node.append(canvas, ...this.names, this.busy, this.legend.node, this.scale, this.details);
+    this.node.append(canvas, ...this.names, this.busy, this.legend.node, this.scale.node, this.details);
     this.stage = new Stage(canvas);
     this.#listen(canvas);
     state.follow(['theme'], () => this.stage.setTheme(surface(state.get('theme'))));
@@ -91,23 +91,19 @@ export class Viewer {
 
   #paint() {
     const [key, theme] = [this.state.get('colouring'), this.state.get('theme')];
+    const { colours, scale } = colourScans(key, this.scans, theme);
     this.scans.forEach((scan, p) => {
-      const { colours, scale } = colourPoints(key, scan, theme);
       const sizes = sizePoints(scan, this.state.get('visible'), this.state.get('pointSize'));
-      this.stage.panes[p].fill(scan.positions_m, colours, sizes, scan.path ?? null);
-      if (p === 0) this.#drawScale(key, scale);
+      this.stage.panes[p].fill(scan.positions_m, colours[p], sizes, scan.path ?? null);
     });
+    this.scale.fill(key, scale, theme, this.#thresholds());
     this.stage.draw();
   }
 
-  #drawScale(key, scale) {
-    this.scale.hidden = scale === null;
-    if (!scale) return;
-    const { name, unit } = COLOURINGS.find((colouring) => colouring.key === key);
-    const stops = Array.from({ length: 10 }, (_, i) => `rgb(${scaleColour(i / 9).join(',')})`);
-    const bar = element('span', { class: 'bar' });
-    bar.style.background = `linear-gradient(to right, ${stops.join(',')})`;
-    this.scale.replaceChildren(name, element('span', {}, fixed(scale.low, 1)), bar, element('span', {}, fixed(scale.high, 1, unit)));
+  /** Of the scans in the panes; the motion map has none. */
+  #thresholds() {
+    if (this.state.get('view') === 'map') return [];
+    return this.results().map((r) => this.content.results[r].result.scans[this.state.get('scan')].threshold);
   }
 
   #listen(canvas) {

@@ -1,8 +1,10 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
+import { comparisonCharts, runNames } from '../src/comparison_charts.js';
 import { count, fixed, intervalOf, percent } from '../src/format.js';
 import { iou, precision, recall, worstScans } from '../src/metrics.js';
 import { flatten } from '../src/provenance.js';
+import { resultsOfSameScans } from '../src/same_scans.js';
 import { costColumns, metricsChart, stagesChart } from '../src/scan_charts.js';
 
 test('metrics of a scan worked by hand', () => {
@@ -57,4 +59,28 @@ test('the chart of metrics has gaps where there is no truth, and a band where th
   const banded = metricsChart({ result: TIMED, estimates: { iou: { value: 0.5, low: 0.4, high: 0.6 } } });
   assert.deepEqual(banded.series.slice(4).map(({ values }) => values[0]), [0.4, 0.6]);
   assert.equal(metricsChart({ result: { ...TIMED, summary: null } }), null);
+});
+
+test('charts of two runs hold both, and only what both have', () => {
+  const first = { run: 'online', result: TIMED };
+  const second = { run: 'delayed', result: { ...TIMED, scans: [{ tp: 3, fp: 0, fn: 1, threshold: 7 }, {}] } };
+  const both = Object.fromEntries(comparisonCharts([first, second]).map((chart) => [chart.key, chart]));
+  assert.deepEqual(both.iou.series.map(({ label, values }) => [label, values]), [['online', [0.5, null]], ['delayed', [0.75, null]]]);
+  assert.deepEqual(both.time.series.map(({ values }) => values), [[9, 8], [9, 8]]);
+  assert.deepEqual(both.threshold.series.map(({ values }) => values), [[null, null], [7, null]]);
+  assert.notEqual(both.fp.series[0].colour.light, both.fp.series[1].colour.light);
+  assert.notDeepEqual(both.fp.series[0].dash, both.fp.series[1].dash);
+  const untimed = { ...second, result: { ...second.result, timing: undefined } };
+  assert.deepEqual(comparisonCharts([first, untimed]).map(({ key }) => key), ['iou', 'precision', 'recall', 'fp', 'fn', 'threshold']);
+});
+
+test('runs of one name are numbered', () => {
+  assert.deepEqual(runNames([{ run: 'a' }, { run: 'a' }]), ['a (1)', 'a (2)']);
+  assert.deepEqual(runNames([{ run: 'a' }, { run: 'b' }]), ['a', 'b']);
+});
+
+test('results are of the same scans when sequence and stems are', () => {
+  const entry = (sequence, ...stems) => ({ result: { sequence, scans: stems.map((stem) => ({ stem })) } });
+  const content = { results: [entry('00', '1', '2'), entry('00', '1', '2'), entry('00', '1', '3'), entry('01', '1', '2'), entry('00', '1')] };
+  assert.deepEqual(content.results.map((_, i) => resultsOfSameScans(content, i)), [[1], [0], [], [], []]);
 });

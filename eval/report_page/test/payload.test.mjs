@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { deflateSync } from 'node:zlib';
-import { outcomesFromPlane, positionsFromPlanes, readBlock, readContent } from '../src/payload.js';
+import { outcomesFromPlane, positionsFromPlanes, readBlock, readContent, scoresFromPlanes } from '../src/payload.js';
 
 /** A document that holds elements with text. */
 function documentWith(texts) {
@@ -21,6 +21,11 @@ test('positions wrap around in 16 bits as they were packed', () => {
   const planes = Uint8Array.from([...codes.map((c) => c & 255), 0, 0, 0, 0, ...codes.map((c) => c >> 8), 0, 0, 0, 0]);
   const positions = positionsFromPlanes(planes, 1);
   assert.deepEqual([positions[0], positions[3]], [32767, -32767]);
+});
+
+test('scores are put together from their bytes', () => {
+  // The vector of the C++ test PointPlanes.HoldScoresByteByByte.
+  assert.deepEqual([...scoresFromPlanes(Uint8Array.from([1, 4, 0, 3, 0, 2, 0, 1]))], [1, 0x01020304]);
 });
 
 test('outcomes keep their number apart from whether they have a place', () => {

@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { Clouds } from '../src/clouds.js';
-import { colourPoints, countOutcomes, limits, quantity, sizePoints } from '../src/colouring.js';
+import { colourScans, colouringsOf, countOutcomes, limits, quantity, sizePoints } from '../src/colouring.js';
 import { join, movingPoints, toMap } from '../src/motion_map.js';
 import { pick } from '../src/picking.js';
 import { State } from '../src/state.js';
@@ -17,8 +17,8 @@ const SCAN = {
 const ALL = [true, true, true, true, true, true];
 
 test('points are coloured by outcome as the palette says', () => {
-  const { colours, scale } = colourPoints('outcome', SCAN, 'light');
-  assert.deepEqual([...colours.slice(0, 3)], [0x00, 0x72, 0xb2]);
+  const { colours, scale } = colourScans('outcome', [SCAN], 'light');
+  assert.deepEqual([...colours[0].slice(0, 3)], [0x00, 0x72, 0xb2]);
   assert.equal(scale, null);
   assert.deepEqual(countOutcomes(SCAN.outcomes), [1, 0, 1, 1, 1, 0]);
 });
@@ -29,9 +29,27 @@ test('range and height are those of the positions', () => {
 });
 
 test('a scale spans the drawn points, and a flat one still has two ends', () => {
-  assert.deepEqual(limits(Float32Array.from([5, 1, 3, 99]), [1, 1, 1, 0]), [1, 5]);
-  assert.deepEqual(limits(Float32Array.from([2, 2]), [1, 1]), [2, 3]);
-  assert.deepEqual(limits(Float32Array.from([2]), [0]), [0, 1]);
+  assert.deepEqual(limits(Float32Array.from([5, 1, 3])), [1, 5]);
+  assert.deepEqual(limits(Float32Array.from([2, 2])), [2, 3]);
+  assert.deepEqual(limits(Float32Array.from([])), [0, 1]);
+  assert.deepEqual(colourScans('height', [SCAN], 'light').scale, { low: -1, high: 2 });
+});
+
+test('two scans share one scale, from no vote to the most that is drawn', () => {
+  const scored = (scores) => ({ ...SCAN, scores: Int32Array.from(scores) });
+  const { colours, scale } = colourScans('score', [scored([0, 4, 8, 999]), scored([0, 16, 0, 0])], 'light');
+  assert.deepEqual(scale, { low: 0, high: 17 });
+  const at = (s, i) => [...colours[s].slice(3 * i, 3 * i + 3)];
+  assert.deepEqual(at(0, 0), [0xcf, 0xd5, 0xdc], 'no vote has a colour of its own');
+  assert.deepEqual(at(0, 0), at(1, 0));
+  assert.notDeepEqual(at(0, 1), at(0, 2));
+  assert.deepEqual(at(0, 3), [0xfe, 0xe8, 0x38], 'beyond the scale is its end');
+});
+
+test('scores are offered only where every shown run kept them', () => {
+  const clouds = new Clouds({ clouds: [], results: [{ scores: [3] }, { scores: [] }, {}] });
+  const offers = (...results) => colouringsOf(clouds, results).some(({ key }) => key === 'score');
+  assert.deepEqual([offers(0), offers(1), offers(2), offers(0, 1)], [true, false, false, false]);
 });
 
 test('hidden outcomes and points without a place have no size, judged moving ones are larger', () => {
@@ -48,6 +66,10 @@ test('the motion map holds moving points in the frame of the map', () => {
   assert.equal(map.points, 4);
   assert.deepEqual([...map.positions_m.slice(6, 9)], [-4, 3, 0]);
   assert.deepEqual(map.path, [[0, 0, 0], [0, 0, 0]]);
+  assert.equal(map.scores, null);
+  const scored = movingPoints({ ...SCAN, scores: [5, 6, 7, 8] }, [10, 20, 30]);
+  assert.deepEqual([...join([scored, scored]).scores], [5, 7, 5, 7]);
+  assert.equal(join([scored, part]).scores, null);
 });
 
 test('the nearest point to the eye under the pointer is picked, never a hidden one', () => {

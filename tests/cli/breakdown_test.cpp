@@ -1,0 +1,48 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "tests/cli/program.hpp"
+#include "tests/cli/small_sequence.hpp"
+
+namespace mosbench {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr std::size_t kScans = 12;
+
+nlohmann::json breakdown(const TempFolder& folder) {
+  const cli::Answer answer =
+      cli::run({"breakdown", folder / "room", "--predictions", folder / "predicted", "--json"});
+  if (answer.exit_code != 0) return answer.err;
+  return nlohmann::json::parse(answer.out).at("sequences").at(0);
+}
+
+// The box goes 0.2 m from scan to scan.
+TEST(Breakdown, TellsSpeedsByTheStampsOrAsIfAt10Hz) {
+  const TempFolder folder;
+  cli::write_small_sequence(folder / "room", kScans);
+  std::filesystem::copy(folder / "room/labels", folder / "predicted");
+  const nlohmann::json unstamped = breakdown(folder);
+  ASSERT_EQ(unstamped.at("object_count"), 1) << unstamped;
+  EXPECT_EQ(unstamped.at("speed_clock"), "10 Hz assumed");
+  EXPECT_NEAR(unstamped.at("objects").at(0).at("speed_m_s").get<double>(), 2.0, 0.1);
+
+  std::string times;
+  for (std::size_t k = 0; k < kScans; ++k)
+    times += std::to_string(0.25 * static_cast<double>(k)) + '\n';
+  folder.write("room/times.txt", times);
+  const nlohmann::json stamped = breakdown(folder);
+  EXPECT_EQ(stamped.at("speed_clock"), "stamps");
+  EXPECT_NEAR(stamped.at("objects").at(0).at("speed_m_s").get<double>(), 0.8, 0.04);
+
+  const cli::Answer text =
+      cli::run({"breakdown", folder / "room", "--predictions", folder / "predicted"});
+  EXPECT_THAT(text.out, HasSubstr("1 moving objects, speeds by the scans' stamps"));
+  EXPECT_THAT(text.out, HasSubstr("0.5 to 1 m/s"));
+}
+
+}  // namespace
+}  // namespace mosbench
