@@ -68,9 +68,7 @@ inline __attribute__((always_inline)) typename Simd<Distance>::Lanes repeated(
   std::array<std::uint64_t, sizeof(row) / 8> words;
   std::memcpy(words.data(), row.data(), sizeof(row));
   const typename Simd<Distance>::Words all{words[0], words.back(), words[0], words.back()};
-  typename Simd<Distance>::Lanes lanes;
-  std::memcpy(&lanes, &all, sizeof(lanes));
-  return lanes;
+  return std::bit_cast<typename Simd<Distance>::Lanes>(all);
 }
 
 /// The lowest bit of every byte that is not zero.
@@ -115,8 +113,8 @@ inline __attribute__((always_inline)) bool lower_plane(
       const auto lanes = repeated<Distance>(row);
       const Distance* squares = tables.along_y[static_cast<std::size_t>(y + around.radius)].data();
       for (int i = 0; i < Simd<Distance>::kPerPlane; ++i) {
-        typename Simd<Distance>::Lanes square;
-        std::memcpy(&square, squares + i * Simd<Distance>::kPerVector, sizeof(square));
+        const auto square =
+            load<typename Simd<Distance>::Lanes>(squares + i * Simd<Distance>::kPerVector);
         lower(plane[i], lanes + square);
       }
       any = true;
@@ -170,9 +168,8 @@ MOSBENCH_MULTIARCH BlockMask cells_below(const BlockDistances& distances, std::s
   const Lanes bound = Lanes{} + static_cast<std::uint16_t>(limit);
   BlockMask below;
   for (std::size_t row = 0; row < kBlockVoxels / kBlockSide; ++row) {
-    Lanes lanes;
-    std::memcpy(&lanes, &distances[row * kBlockSide], sizeof(lanes));
-    below.words[row / kBlockSide] |= std::uint64_t{bits_of(lanes < bound)}
+    const auto lanes = load<Lanes>(&distances[row * kBlockSide]);
+    below.words[row / kBlockSide] |= std::uint64_t{bits_of(ShortLanes(lanes < bound))}
                                      << (row % kBlockSide * kBlockSide);
   }
   return below;

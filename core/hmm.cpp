@@ -33,11 +33,11 @@ MOSBENCH_MULTIARCH void filter_cells(const BeliefFilter::Step& step, const Cells
       const std::uint32_t in_reach = row_of(cells.in_reach);
       if (in_reach == 0) continue;
       const std::size_t first = (z * kBlockSide + y) * kBlockSide;
-      FloatLanes likelihood, belief;
+      FloatLanes likelihood;
       for (std::size_t x = 0; x < kLanes; ++x) {
         likelihood[x] = cells.likelihood[std::min(cells.distances[first + x], step.beyond)];
       }
-      std::memcpy(&belief, beliefs + first, sizeof(belief));
+      const auto belief = load<FloatLanes>(beliefs + first);
       const FloatLanes unseen = FloatLanes{} + 0.5f;
       const FloatLanes prior = lanes_of(row_of(cells.nonzero))
                                    ? belief
@@ -46,8 +46,7 @@ MOSBENCH_MULTIARCH void filter_cells(const BeliefFilter::Step& step, const Cells
       const FloatLanes q = step.epsilon + step.keep * prior;
       const FloatLanes hit = likelihood * q;
       const FloatLanes p = hit / (hit + (1.0f - likelihood) * (1.0f - q));
-      belief = lanes_of(in_reach) ? p : belief;
-      std::memcpy(beliefs + first, &belief, sizeof(belief));
+      store(lanes_of(in_reach) ? p : belief, beliefs + first);
       occupied |= std::uint64_t{bits_of(p > step.min_probability) & in_reach} << (8 * y);
       free |= std::uint64_t{bits_of(1.0f - p > step.min_probability) & in_reach} << (8 * y);
     }

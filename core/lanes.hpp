@@ -1,7 +1,10 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
-#include <cstring>
+#if defined(__SSE2__)
+#include <emmintrin.h>
+#endif
 
 /// Eight numbers side by side, as many as a row of a block has cells. A vector type that GCC and
 /// clang cut to the registers of the machine they compile for.
@@ -10,7 +13,33 @@ namespace mosbench {
 using FloatLanes = float __attribute__((vector_size(32)));
 using IntLanes = std::int32_t __attribute__((vector_size(32)));
 using UintLanes = std::uint32_t __attribute__((vector_size(32)));
+using ShortLanes = std::int16_t __attribute__((vector_size(16)));
 inline constexpr std::size_t kLanes = 8;
+
+/// Where lanes are laid down to be taken one by one. Not by memcpy, which GCC 12 cuts into halves
+/// by way of general registers, at several times the cost.
+struct alignas(32) LaneArray : std::array<std::uint32_t, kLanes> {};
+
+template <typename Lanes>
+inline __attribute__((always_inline)) void store(const Lanes& lanes, LaneArray& array) {
+  static_assert(sizeof(Lanes) == sizeof(array));
+  typedef Lanes Aliasing __attribute__((may_alias));
+  *reinterpret_cast<Aliasing*>(array.data()) = lanes;
+  // Taken from a register a lane costs two operations, loaded one: keep the compiler to loads.
+  __asm__("" : "+m"(array));
+}
+
+/// Lanes from any address.
+template <typename Lanes>
+inline __attribute__((always_inline)) Lanes load(const void* from) {
+  typedef Lanes Unaligned __attribute__((may_alias, aligned(1)));
+  return *static_cast<const Unaligned*>(from);
+}
+template <typename Lanes>
+inline __attribute__((always_inline)) void store(const Lanes& lanes, void* to) {
+  typedef Lanes Unaligned __attribute__((may_alias, aligned(1)));
+  *static_cast<Unaligned*>(to) = lanes;
+}
 
 /// Lane i is -1 where bit i is set, else 0.
 inline __attribute__((always_inline)) IntLanes lanes_of(std::uint32_t bits) {
@@ -18,13 +47,19 @@ inline __attribute__((always_inline)) IntLanes lanes_of(std::uint32_t bits) {
   return (all & IntLanes{1, 2, 4, 8, 16, 32, 64, 128}) != 0;
 }
 
-/// Bit i is set where lane i is -1; every lane must be -1 or 0. `Lanes` has eight integers.
-template <typename Lanes>
-inline __attribute__((always_inline)) std::uint32_t bits_of(const Lanes& lanes) {
-  Lanes bits = lanes & Lanes{1, 2, 4, 8, 16, 32, 64, 128};
-  bits |= __builtin_shufflevector(bits, bits, 4, 5, 6, 7, 4, 5, 6, 7);
-  bits |= __builtin_shufflevector(bits, bits, 2, 3, 2, 3, 2, 3, 2, 3);
-  return static_cast<std::uint32_t>(bits[0] | bits[1]);
+/// Bit i is set where lane i is -1; every lane must be -1 or 0.
+inline __attribute__((always_inline)) std::uint32_t bits_of(const ShortLanes& lanes) {
+#if defined(__SSE2__)
+  const __m128i bytes = _mm_packs_epi16(reinterpret_cast<__m128i>(lanes), __m128i{});
+  return static_cast<std::uint32_t>(_mm_movemask_epi8(bytes));
+#else
+  std::uint32_t bits = 0;
+  for (std::size_t i = 0; i < kLanes; ++i) bits |= static_cast<std::uint32_t>(lanes[i] & 1) << i;
+  return bits;
+#endif
+}
+inline __attribute__((always_inline)) std::uint32_t bits_of(const IntLanes& lanes) {
+  return bits_of(__builtin_convertvector(lanes, ShortLanes));
 }
 
 }  // namespace mosbench

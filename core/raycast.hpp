@@ -1,40 +1,23 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
-#include <cstdlib>
-#include <memory>
 #include <vector>
 
+#include "core/ray_window.hpp"
+#include "core/rays.hpp"
 #include "core/thread_pool.hpp"
 #include "core/voxel_set.hpp"
 
 namespace mosbench {
 
-/// Blocks with any observed voxel; the two arrays run together. No block comes twice.
-struct ObservedVoxels {
-  std::vector<BlockIndex> blocks;
-  std::vector<BlockMask> masks;
-};
-
 /// Reusable memory of the ray caster: one dense bit window around the sensor per thread, of which
 /// only the touched pages are ever resident, and the rays.
-class RaycastScratch {
- public:
-  struct Window;
-  struct Ray;
-  RaycastScratch();
-  ~RaycastScratch();
-  RaycastScratch(RaycastScratch&&) noexcept;
-  RaycastScratch& operator=(RaycastScratch&&) noexcept;
+struct RaycastScratch {
+  std::vector<RayWindow> windows;
+  std::vector<Rays> rays;  ///< per thread
+  std::size_t steps = 0;   ///< voxels visited by the rays of the last scan, each ray's own
 
-  /// Voxels visited by the rays of the last scan, each ray's own.
-  std::size_t steps() const;
-  /// Resident bytes: of the windows only what rays ever touched.
   std::size_t memory_bytes() const;
-
-  std::vector<Window> windows;
-  std::vector<Ray> rays, sorted_rays;
 };
 
 /// algorithm step 2: the voxels on the integer lines from the sensor's voxel to every measured

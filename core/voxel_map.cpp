@@ -4,43 +4,9 @@
 #include <cmath>
 
 #include "core/change_detection.hpp"
-#include "core/multiarch.hpp"
 #include "core/source_grid.hpp"
 
 namespace mosbench {
-namespace {
-
-/// last_seen[v] = now for the voxels of the mask.
-MOSBENCH_MULTIARCH void stamp(const BlockMask& mask, std::uint16_t now,
-                              std::uint16_t* __restrict last_seen) {
-  constexpr std::array<std::uint16_t, kBlockSide> kBits{1, 2, 4, 8, 16, 32, 64, 128};
-  for (std::size_t row = 0; row < kBlockVoxels / kBlockSide; ++row, last_seen += kBlockSide) {
-    const auto bits =
-        static_cast<std::uint16_t>(mask.words[row / 8] >> (row % 8 * kBlockSide) & 0xFFu);
-    if (bits == 0) continue;
-    for (std::size_t x = 0; x < kBlockSide; ++x) {
-      last_seen[x] = (bits & kBits[x]) != 0 ? now : last_seen[x];
-    }
-  }
-}
-
-/// Ages of all voxels of a block against two limits, as masks.
-MOSBENCH_MULTIARCH void compare_ages(const std::uint16_t* last_seen, std::uint16_t now,
-                                     std::uint16_t stale_age, std::uint16_t expired_age,
-                                     BlockMask& stale, BlockMask& expired) {
-  for (std::size_t z = 0; z < 8; ++z) {
-    std::uint64_t stale_bits = 0, expired_bits = 0;
-    for (std::size_t i = 0; i < 64; ++i) {
-      const auto age = static_cast<std::uint16_t>(now - last_seen[z * 64 + i]);
-      stale_bits |= std::uint64_t{age >= stale_age} << i;
-      expired_bits |= std::uint64_t{age >= expired_age} << i;
-    }
-    stale.words[z] = stale_bits;
-    expired.words[z] = expired_bits;
-  }
-}
-
-}  // namespace
 
 VoxelMap::VoxelMap(const Config& config, Variant variant, const VoxelGrid& grid)
     : grid_(grid),
@@ -49,6 +15,9 @@ VoxelMap::VoxelMap(const Config& config, Variant variant, const VoxelGrid& grid)
               config.min_state_probability),
       distance_field_(filter_.radius()),
       global_window_scans_(static_cast<std::uint32_t>(config.global_window_scans)),
+      // A block is refreshed at the latest w_g and a sweep after it was seen last, and its voxels
+      // were younger than w_g + 2 then.
+      age_planes_(LastSeen::planes_for(2 * global_window_scans_ + 4 * kSweepScans)),
       delay_scans_(static_cast<std::uint32_t>(config.delay_scans)),
       evict_radius_m_((variant == Variant::kPaper2024 ? 2.0 : 1.5) * config.max_range_m) {
   // What detection asks of the map lies within max_range plus the kernel of a sensor position.
@@ -90,7 +59,7 @@ void VoxelMap::forget(Block& block, const BlockMask& voxels) {
 
 /// Writes down when voxels that may not be seen again were seen last.
 void VoxelMap::stamp_fresh(Block& block, const BlockMask& voxels) {
-  stamp(voxels, static_cast<std::uint16_t>(block.newest_seen), block.last_seen.data());
+  block.last_seen.stamp(voxels, block.newest_seen, age_planes_);
 }
 
 /// A record of age w_g still exists but is not known; one that was evicted after the last scan has
@@ -99,27 +68,18 @@ void VoxelMap::refresh_block(Block& block, std::uint32_t scan_index) {
   const std::uint32_t w_g = global_window_scans_;
   if (scan_index - block.oldest_seen < w_g) return;
   stamp_fresh(block, block.fresh);
-  BlockMask stale, expired;
-  compare_ages(block.last_seen.data(), static_cast<std::uint16_t>(scan_index),
-               static_cast<std::uint16_t>(w_g), static_cast<std::uint16_t>(w_g + 2), stale,
-               expired);
+  const LastSeen::Ages ages(block.last_seen, scan_index, age_planes_);
   const BlockMask aging = without(block.seen, block.ageless);
-  stale = stale & aging;
-  expired = expired & aging;
+  const BlockMask stale = aging & ages.at_least(w_g);
+  BlockMask expired = aging & ages.at_least(w_g + 2);
   if (variant_ == Variant::kRelease2025) {
-    for_each_cell(stale, [&](std::uint32_t cell) {
-      const auto age = static_cast<std::uint16_t>(scan_index - block.last_seen[cell]);
-      if (scan_index - age <= w_g) block.ageless.set(cell);
-    });
+    // Last seen at scan w_g or before.
+    block.ageless = block.ageless | (stale & ages.at_least(scan_index - w_g));
     expired = without(expired, block.ageless);
   }
   block.stale = stale | block.ageless;
   forget(block, expired);
-  block.oldest_seen = scan_index;
-  for_each_cell(without(block.seen, block.ageless), [&](std::uint32_t cell) {
-    const auto age = static_cast<std::uint16_t>(scan_index - block.last_seen[cell]);
-    block.oldest_seen = std::min(block.oldest_seen, scan_index - age);
-  });
+  block.oldest_seen = scan_index - ages.greatest(without(block.seen, block.ageless));
 }
 
 void VoxelMap::refresh(std::span<const std::uint32_t> slots, std::uint32_t scan_index,

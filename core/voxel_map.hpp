@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
@@ -9,6 +8,7 @@
 
 #include "core/config.hpp"
 #include "core/hmm.hpp"
+#include "core/last_seen.hpp"
 #include "core/pool.hpp"
 #include "core/raycast.hpp"
 #include "core/thread_pool.hpp"
@@ -65,12 +65,12 @@ class VoxelMap {
     std::uint32_t newest_seen;
     bool live = false;
     BlockStates states;
-    BlockMask seen;                                     // has a record
-    BlockMask fresh;                                    // seen at newest_seen, not yet in last_seen
-    BlockMask nonzero;                                  // has a number in beliefs
-    BlockMask stale;                                    // not seen for w_g scans or more
-    BlockMask ageless;                                  // release-2025: stale and never to expire
-    std::array<std::uint16_t, kBlockVoxels> last_seen;  // modulo 2^16; ages never reach that far
+    BlockMask seen;     // has a record
+    BlockMask fresh;    // seen at newest_seen, not yet in last_seen
+    BlockMask nonzero;  // has a number in beliefs
+    BlockMask stale;    // not seen for w_g scans or more
+    BlockMask ageless;  // release-2025: stale and never to expire
+    LastSeen last_seen;
   };
   struct ChangesOfScan {
     std::uint32_t scan_index;
@@ -80,7 +80,7 @@ class VoxelMap {
   std::uint32_t add_block(const BlockIndex& index, std::uint32_t scan_index);
   void drop_block(std::uint32_t slot);
   void refresh_block(Block& block, std::uint32_t scan_index);
-  static void stamp_fresh(Block& block, const BlockMask& voxels);
+  void stamp_fresh(Block& block, const BlockMask& voxels);
   static void forget(Block& block, const BlockMask& voxels);
   void note_sensor(const Eigen::Vector3d& sensor_m, std::uint32_t scan_index);
   void sweep(std::uint32_t first_slot, std::uint32_t stride, std::size_t first_sensor,
@@ -97,6 +97,7 @@ class VoxelMap {
   BeliefFilter filter_;
   DistanceField distance_field_;
   std::uint32_t global_window_scans_;
+  int age_planes_;
   std::uint32_t delay_scans_;
   double evict_radius_m_;
   double safe_path_m_;

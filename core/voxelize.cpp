@@ -7,12 +7,12 @@
 #include <stdexcept>
 #include <string>
 
+#include "core/lanes.hpp"
 #include "core/multiarch.hpp"
 
 namespace mosbench {
 namespace {
 
-constexpr std::size_t kChunk = 512;
 constexpr double kReachFromOrigin = 1 << 23;
 constexpr double kReachFromSensor = 1 << 19;
 
@@ -26,39 +26,83 @@ struct Projection {
   double voxel_size_m, min_range_sq_m2;
 };
 
+constexpr std::size_t kChunk = 512;
 struct ProjectedChunk {
   std::array<std::int32_t, kChunk> x, y, z;
 };
 
-MOSBENCH_MULTIARCH void project(std::span<const Point> points, const Projection& projection,
-                                ProjectedChunk& chunk) {
+using Doubles = double __attribute__((vector_size(32)));
+using Floats = float __attribute__((vector_size(16)));
+using Ints = std::int32_t __attribute__((vector_size(16)));
+using Choice = std::int64_t __attribute__((vector_size(32)));
+
+inline __attribute__((always_inline)) Doubles magnitude(const Doubles& lanes) {
+  return lanes < 0.0 ? -lanes : lanes;
+}
+
+/// std::floor by adding a number whose last bit is worth one; what is too large for that is whole.
+inline __attribute__((always_inline)) Doubles floor_of(const Doubles& lanes) {
+  constexpr double kWhole = 6755399441055744.0;  // 1.5 * 2^52
+  const Doubles nearest = (lanes + kWhole) - kWhole;
+  const Doubles floor = nearest > lanes ? nearest - 1.0 : nearest;
+  return magnitude(lanes) < 2251799813685248.0 ? floor : lanes;
+}
+
+inline __attribute__((always_inline)) Doubles greatest(const Doubles& a, const Doubles& b,
+                                                       const Doubles& c) {
+  const Doubles ab = a > b ? a : b;
+  return ab > c ? ab : c;
+}
+
+/// The voxels of four points, to be the chunk's from `first` on.
+inline __attribute__((always_inline)) void project_four(const Point* points,
+                                                        const Projection& projection,
+                                                        std::size_t first, ProjectedChunk& chunk) {
+  static_assert(sizeof(Point) == sizeof(Floats));
   const double* r = projection.rotation;
   const double* t = projection.translation;
   const double* s = projection.sensor_voxel;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const double x = points[i].x, y = points[i].y, z = points[i].z;
-    // Order of additions as in the authors' program.
-    const double px = ((r[0] * x + r[1] * y) + r[2] * z) + t[0];
-    const double py = ((r[3] * x + r[4] * y) + r[5] * z) + t[1];
-    const double pz = ((r[6] * x + r[7] * y) + r[8] * z) + t[2];
-    const double dx = px - t[0], dy = py - t[1], dz = pz - t[2];
-    const double range_sq_m2 = (dx * dx + dy * dy) + dz * dz;
-    const double vx = std::floor(px / projection.voxel_size_m) - projection.origin[0];
-    const double vy = std::floor(py / projection.voxel_size_m) - projection.origin[1];
-    const double vz = std::floor(pz / projection.voxel_size_m) - projection.origin[2];
-    const double reach =
-        std::max(std::max(std::abs(vx - s[0]), std::abs(vy - s[1])), std::abs(vz - s[2]));
-    const double limit = std::max(std::max(std::abs(vx), std::abs(vy)), std::abs(vz));
-    const bool fits = (reach < kReachFromSensor) & (limit < kReachFromOrigin);
-    const bool finite = ((x - x) + (y - y)) + (z - z) == 0.0;
-    const bool takes_part = range_sq_m2 > projection.min_range_sq_m2;
-    const double column = fits ? vx : static_cast<double>(kOverflow);
-    const double near_or_column = takes_part ? column : static_cast<double>(kTooNear);
-    chunk.x[i] =
-        static_cast<std::int32_t>(finite ? near_or_column : static_cast<double>(kNonfinite));
-    chunk.y[i] = static_cast<std::int32_t>(fits ? vy : 0.0);
-    chunk.z[i] = static_cast<std::int32_t>(fits ? vz : 0.0);
-  }
+  const auto p0 = load<Floats>(points), p1 = load<Floats>(points + 1),
+             p2 = load<Floats>(points + 2), p3 = load<Floats>(points + 3);
+  const Floats xy01 = __builtin_shufflevector(p0, p1, 0, 4, 1, 5);
+  const Floats xy23 = __builtin_shufflevector(p2, p3, 0, 4, 1, 5);
+  const Floats z01 = __builtin_shufflevector(p0, p1, 2, 6, 3, 7);
+  const Floats z23 = __builtin_shufflevector(p2, p3, 2, 6, 3, 7);
+  const auto x = __builtin_convertvector(__builtin_shufflevector(xy01, xy23, 0, 1, 4, 5), Doubles);
+  const auto y = __builtin_convertvector(__builtin_shufflevector(xy01, xy23, 2, 3, 6, 7), Doubles);
+  const auto z = __builtin_convertvector(__builtin_shufflevector(z01, z23, 0, 1, 4, 5), Doubles);
+  // Order of additions as in the authors' program.
+  const Doubles px = ((r[0] * x + r[1] * y) + r[2] * z) + t[0];
+  const Doubles py = ((r[3] * x + r[4] * y) + r[5] * z) + t[1];
+  const Doubles pz = ((r[6] * x + r[7] * y) + r[8] * z) + t[2];
+  const Doubles dx = px - t[0], dy = py - t[1], dz = pz - t[2];
+  const Doubles range_sq_m2 = (dx * dx + dy * dy) + dz * dz;
+  const Doubles vx = floor_of(px / projection.voxel_size_m) - projection.origin[0];
+  const Doubles vy = floor_of(py / projection.voxel_size_m) - projection.origin[1];
+  const Doubles vz = floor_of(pz / projection.voxel_size_m) - projection.origin[2];
+  const Doubles reach = greatest(magnitude(vx - s[0]), magnitude(vy - s[1]), magnitude(vz - s[2]));
+  const Doubles limit = greatest(magnitude(vx), magnitude(vy), magnitude(vz));
+  const Choice fits = (reach < kReachFromSensor) & (limit < kReachFromOrigin);
+  const Choice finite = ((x - x) + (y - y)) + (z - z) == 0.0;
+  const Choice takes_part = range_sq_m2 > projection.min_range_sq_m2;
+  const Doubles column = fits ? vx : Doubles{} + static_cast<double>(kOverflow);
+  const Doubles near_or_column = takes_part ? column : Doubles{} + static_cast<double>(kTooNear);
+  const Doubles why_or_column =
+      finite ? near_or_column : Doubles{} + static_cast<double>(kNonfinite);
+  store(__builtin_convertvector(why_or_column, Ints), &chunk.x[first]);
+  store(__builtin_convertvector(fits ? vy : Doubles{}, Ints), &chunk.y[first]);
+  store(__builtin_convertvector(fits ? vz : Doubles{}, Ints), &chunk.z[first]);
+}
+
+/// At most kChunk points.
+MOSBENCH_MULTIARCH void project(std::span<const Point> points, const Projection& projection,
+                                ProjectedChunk& chunk) {
+  const std::size_t whole = points.size() / 4 * 4;
+  for (std::size_t i = 0; i < whole; i += 4) project_four(&points[i], projection, i, chunk);
+  if (whole == points.size()) return;
+  std::array<Point, 4> rest{};
+  std::copy(points.begin() + static_cast<std::ptrdiff_t>(whole), points.end(), rest.begin());
+  project_four(rest.data(), projection, whole, chunk);
 }
 
 [[noreturn]] void throw_overflow(std::size_t point) {
