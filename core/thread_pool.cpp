@@ -58,13 +58,12 @@ void ThreadPool::for_ranges(std::size_t count, std::size_t grain,
       const std::lock_guard lock(mutex_);
       job_ = &job;
       ++generation_;
-      busy_ = static_cast<unsigned>(workers_.size());
     }
     start_.notify_all();
     job.drain(0);
     std::unique_lock lock(mutex_);
+    job_ = nullptr;  // who wakes only now has nothing left to do and is not waited for
     finish_.wait(lock, [this] { return busy_ == 0; });
-    job_ = nullptr;
   }
   if (job.error) std::rethrow_exception(job.error);
 }
@@ -79,6 +78,8 @@ void ThreadPool::serve(unsigned thread) {
       if (stop_) return;
       served = generation_;
       job = job_;
+      if (job == nullptr) continue;
+      ++busy_;
     }
     job->drain(thread);
     {

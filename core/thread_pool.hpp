@@ -39,7 +39,7 @@ class ThreadPool {
   std::condition_variable start_, finish_;
   Job* job_ = nullptr;
   std::size_t generation_ = 0;
-  unsigned busy_ = 0;
+  unsigned busy_ = 0;  // workers at the job
   bool stop_ = false;
   std::vector<std::jthread> workers_;  // last: joined before the members they use are destroyed
 };
