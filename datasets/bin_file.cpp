@@ -26,6 +26,10 @@ std::vector<Point> parse_bin(std::string_view bytes, std::size_t columns,
   check_bin_size(bytes.size(), columns, file);
   const std::size_t record_bytes = columns * sizeof(float);
   std::vector<Point> points(bytes.size() / record_bytes);
+  if (record_bytes == sizeof(Point) && !points.empty()) {
+    std::memcpy(points.data(), bytes.data(), bytes.size());
+    return points;
+  }
   for (std::size_t i = 0; i < points.size(); ++i) {
     std::memcpy(&points[i], bytes.data() + i * record_bytes, sizeof(Point));
   }
@@ -36,10 +40,8 @@ std::vector<Point> parse_bin(std::string_view bytes, const std::filesystem::path
   return parse_bin(bytes, 4, file);
 }
 
-std::string format_bin(std::span<const Point> points) {
-  std::string bytes(points.size_bytes(), '\0');
-  if (!points.empty()) std::memcpy(bytes.data(), points.data(), bytes.size());
-  return bytes;
+std::string_view format_bin(std::span<const Point> points) {
+  return {reinterpret_cast<const char*>(points.data()), points.size_bytes()};
 }
 
 std::vector<Point> read_bin(const std::filesystem::path& file) {

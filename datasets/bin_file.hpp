@@ -18,7 +18,8 @@ std::vector<Point> parse_bin(std::string_view bytes, const std::filesystem::path
 /// ring.
 std::vector<Point> parse_bin(std::string_view bytes, std::size_t columns,
                              const std::filesystem::path& file);
-std::string format_bin(std::span<const Point> points);
+/// The bytes of a file, where the points lie.
+std::string_view format_bin(std::span<const Point> points);
 
 /// Throws the DataError of `parse_bin` for a size in bytes that no scan has.
 void check_bin_size(std::uintmax_t size_bytes, std::size_t columns,

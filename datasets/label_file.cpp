@@ -27,10 +27,8 @@ std::vector<std::uint32_t> parse_labels(std::string_view bytes, std::size_t poin
   return labels;
 }
 
-std::string format_labels(std::span<const std::uint32_t> labels) {
-  std::string bytes(labels.size_bytes(), '\0');
-  if (!labels.empty()) std::memcpy(bytes.data(), labels.data(), bytes.size());
-  return bytes;
+std::string_view format_labels(std::span<const std::uint32_t> labels) {
+  return {reinterpret_cast<const char*>(labels.data()), labels.size_bytes()};
 }
 
 std::vector<std::uint32_t> read_labels(const std::filesystem::path& file, std::size_t point_count) {

@@ -14,7 +14,8 @@ namespace mosbench {
 /// instance above. Throws DataError unless there are exactly `point_count`.
 std::vector<std::uint32_t> parse_labels(std::string_view bytes, std::size_t point_count,
                                         const std::filesystem::path& file);
-std::string format_labels(std::span<const std::uint32_t> labels);
+/// The bytes of a file, where the labels lie.
+std::string_view format_labels(std::span<const std::uint32_t> labels);
 
 /// Throws the DataError of `parse_labels` for a size in bytes that does not fit the scan.
 void check_label_size(std::uintmax_t size_bytes, std::size_t point_count,

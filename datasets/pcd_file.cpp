@@ -1,20 +1,18 @@
 #include "datasets/pcd_file.hpp"
 
-#include <pcl/PCLPointCloud2.h>
-#include <pcl/PCLPointField.h>
-#include <pcl/console/print.h>
-#include <pcl/io/pcd_io.h>
+#include <dlfcn.h>
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
-#include <exception>
 #include <string>
 #include <string_view>
 
 #include "datasets/errors.hpp"
 #include "datasets/files.hpp"
 #include "datasets/pcd_header.hpp"
+#include "datasets/pcl_module.hpp"
 
 namespace mosbench {
 namespace {
@@ -28,28 +26,14 @@ double load(const std::uint8_t* bytes) {
 
 using LoadField = double (*)(const std::uint8_t*);
 
-/// Nothing for a type that PCL does not define.
+/// By data type, from 1 on.
+constexpr std::array<LoadField, 8> kLoaders = {
+    load<std::int8_t>,  load<std::uint8_t>,  load<std::int16_t>, load<std::uint16_t>,
+    load<std::int32_t>, load<std::uint32_t>, load<float>,        load<double>};
+
+/// Nothing for a type that is none of them.
 LoadField loader_of(std::uint8_t datatype) {
-  switch (datatype) {
-    case pcl::PCLPointField::FLOAT32:
-      return load<float>;
-    case pcl::PCLPointField::FLOAT64:
-      return load<double>;
-    case pcl::PCLPointField::INT8:
-      return load<std::int8_t>;
-    case pcl::PCLPointField::UINT8:
-      return load<std::uint8_t>;
-    case pcl::PCLPointField::INT16:
-      return load<std::int16_t>;
-    case pcl::PCLPointField::UINT16:
-      return load<std::uint16_t>;
-    case pcl::PCLPointField::INT32:
-      return load<std::int32_t>;
-    case pcl::PCLPointField::UINT32:
-      return load<std::uint32_t>;
-    default:
-      return nullptr;
-  }
+  return datatype >= 1 && datatype <= kLoaders.size() ? kLoaders[datatype - 1u] : nullptr;
 }
 
 double zero(const std::uint8_t*) { return 0.0; }
@@ -61,32 +45,42 @@ struct FieldReader {
   float operator()(const std::uint8_t* point) const { return static_cast<float>(value(point)); }
 };
 
-FieldReader field_reader(const pcl::PCLPointCloud2& cloud, std::string_view name, bool required,
+FieldReader field_reader(const RawCloud& cloud, std::string_view name, bool required,
                          const std::filesystem::path& file) {
-  for (const pcl::PCLPointField& field : cloud.fields) {
+  for (const RawCloud::Field& field : cloud.fields) {
     if (field.name != name) continue;
     const LoadField load_field = loader_of(field.datatype);
     if (load_field == nullptr || field.count != 1) break;
-    return {load_field, field.offset};
+    return {load_field, field.offset_bytes};
   }
   if (!required) return {};
   throw DataError(file, "has no numeric field " + std::string(name), "fields x y z [intensity]");
 }
 
+/// PCL and all it stands on cost every start of the program 30 MB and as many milliseconds, so they
+/// are loaded when the first .pcd file is read.
+ReadPcdCloud* pcl_reader(const std::filesystem::path& file) {
+  static const auto reader = [] {
+    void* module = dlopen(kPclModule, RTLD_NOW | RTLD_LOCAL);
+    return module == nullptr ? nullptr
+                             : reinterpret_cast<ReadPcdCloud*>(dlsym(module, kPclModuleFunction));
+  }();
+  if (reader != nullptr) return reader;
+  throw DataError(file, std::string("cannot be read without ") + kPclModule,
+                  "the module where mosbench was built or installed, and Debian's PCL libraries");
+}
+
 /// The checked file as PCL reads it, with `count` points.
-void read_cloud(const std::filesystem::path& file, std::size_t count, pcl::PCLPointCloud2& cloud) {
-  // PCL would report every bad file on the console as well.
-  pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);
-  std::string why;
-  try {
-    if (pcl::PCDReader().read(file.string(), cloud) >= 0) {
-      if (cloud.point_step > 0 && cloud.data.size() / cloud.point_step >= count) return;
-      why = " (less than the points of its header)";
+RawCloud read_cloud(const std::filesystem::path& file, std::size_t count) {
+  RawCloud cloud;
+  std::string why = pcl_reader(file)(file.c_str(), cloud);
+  if (why.empty()) {
+    if (cloud.point_step_bytes > 0 && cloud.bytes.size() / cloud.point_step_bytes >= count) {
+      return cloud;
     }
-  } catch (const std::exception& error) {
-    why = std::string(" (") + error.what() + ")";
+    why = "less than the points of its header";
   }
-  throw DataError(file, "cannot be read as a point cloud" + why,
+  throw DataError(file, "cannot be read as a point cloud (" + why + ")",
                   "a PCD file, version 0.7, with fields x y z [intensity]");
 }
 
@@ -97,18 +91,17 @@ bool reads_pcd() { return true; }
 std::vector<Point> read_pcd(const std::filesystem::path& file) {
   const std::size_t count = pcd_point_count(file);
   if (count == 0) return {};
-  pcl::PCLPointCloud2 cloud;
-  read_cloud(file, count, cloud);
+  const RawCloud cloud = read_cloud(file, count);
   const FieldReader x = field_reader(cloud, "x", true, file);
   const FieldReader y = field_reader(cloud, "y", true, file);
   const FieldReader z = field_reader(cloud, "z", true, file);
   const FieldReader intensity = field_reader(cloud, "intensity", false, file);
 
   std::vector<Point> points(count);
-  const std::uint8_t* record = cloud.data.data();
+  const std::uint8_t* record = cloud.bytes.data();
   for (Point& point : points) {
     point = {x(record), y(record), z(record), intensity(record)};
-    record += cloud.point_step;
+    record += cloud.point_step_bytes;
   }
   return points;
 }
@@ -122,11 +115,10 @@ bool pcd_has_labels(const std::filesystem::path& file) { return read_pcd_header(
 std::vector<std::uint32_t> read_pcd_labels(const std::filesystem::path& file) {
   std::vector<std::uint32_t> labels(pcd_point_count(file));
   if (labels.empty()) return labels;
-  pcl::PCLPointCloud2 cloud;
-  read_cloud(file, labels.size(), cloud);
+  const RawCloud cloud = read_cloud(file, labels.size());
   const FieldReader label = field_reader(cloud, "label", true, file);
-  const std::uint8_t* record = cloud.data.data();
-  for (std::size_t i = 0; i < labels.size(); ++i, record += cloud.point_step) {
+  const std::uint8_t* record = cloud.bytes.data();
+  for (std::size_t i = 0; i < labels.size(); ++i, record += cloud.point_step_bytes) {
     const double value = label.value(record);
     if (!(value >= 0.0 && value <= 4294967295.0 && value == std::floor(value))) {
       throw DataError(file, "point " + std::to_string(i) + " has a label that is no id",

@@ -2,6 +2,9 @@
 
 #include <sys/utsname.h>
 #include <unistd.h>
+#if defined(__GLIBC__)
+#include <malloc.h>
+#endif
 
 #include <fstream>
 #include <string>
@@ -32,6 +35,13 @@ nlohmann::ordered_json machine_json() {
           {"logical_cores", std::thread::hardware_concurrency()},
           {"memory_mib", static_cast<double>(sysconf(_SC_PHYS_PAGES)) * page_mib()},
           {"system", std::string(system.sysname) + " " + system.machine}};
+}
+
+void keep_freed_memory() {
+#if defined(__GLIBC__)
+  mallopt(M_MMAP_THRESHOLD, 32 << 20);
+  mallopt(M_TRIM_THRESHOLD, 64 << 20);
+#endif
 }
 
 double resident_mib() {

@@ -9,6 +9,9 @@ install(TARGETS mosbench_core EXPORT mosbench
 install(EXPORT mosbench NAMESPACE mosbench:: FILE mosbenchTargets.cmake DESTINATION ${package_dir})
 if(TARGET mosbench)
   install(TARGETS mosbench)
+  if(TARGET mosbench_pcl)
+    install(TARGETS mosbench_pcl LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/mosbench)
+  endif()
 endif()
 
 configure_package_config_file(scripts/mosbenchConfig.cmake.in
