@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <malloc.h>
 
 #include <CLI/CLI.hpp>
 #include <memory>
@@ -102,18 +101,7 @@ std::string score_all(const ScoreOptions& options, const Dataset& dataset, Score
                       : side_by_side_text(dataset, task.rules, scores);
 }
 
-/// Nothing but scans are held here, and they come and go by megabytes: by default the C library
-/// returns each to the system, which then clears every page of the next one again, a third of the
-/// time. Of no use to `run`, whose map would lie between.
-void keep_freed_memory() {
-#ifdef __GLIBC__
-  mallopt(M_MMAP_THRESHOLD, 32 * 1024 * 1024);
-  mallopt(M_TRIM_THRESHOLD, 64 * 1024 * 1024);
-#endif
-}
-
 std::string score(const ScoreOptions& options) {
-  keep_freed_memory();
   Dataset dataset =
       open_dataset(options.input, {dataset_kind_option(options.dataset), options.sequences, {}});
   ScoreTask task = options.task;
