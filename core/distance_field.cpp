@@ -167,10 +167,16 @@ MOSBENCH_MULTIARCH BlockMask cells_below(const BlockDistances& distances, std::s
   using Lanes = std::uint16_t __attribute__((vector_size(16)));
   const Lanes bound = Lanes{} + static_cast<std::uint16_t>(limit);
   BlockMask below;
-  for (std::size_t row = 0; row < kBlockVoxels / kBlockSide; ++row) {
-    const auto lanes = load<Lanes>(&distances[row * kBlockSide]);
-    below.words[row / kBlockSide] |= std::uint64_t{bits_of(ShortLanes(lanes < bound))}
-                                     << (row % kBlockSide * kBlockSide);
+  for (std::size_t z = 0; z < kBlockSide; ++z) {
+    const std::uint16_t* plane = &distances[z * kPlane];
+    std::uint64_t bits = 0;
+    for (std::size_t y = 0; y < kBlockSide; y += 2) {
+      const auto row = load<Lanes>(plane + y * kBlockSide),
+                 next = load<Lanes>(plane + (y + 1) * kBlockSide);
+      bits |= std::uint64_t{bits_of(ShortLanes(row < bound), ShortLanes(next < bound))}
+              << (y * kBlockSide);
+    }
+    below.words[z] = bits;
   }
   return below;
 }

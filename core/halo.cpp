@@ -4,6 +4,7 @@
 #include <bit>
 #include <cstring>
 
+#include "core/lanes.hpp"
 #include "core/multiarch.hpp"
 
 namespace mosbench {
@@ -95,23 +96,19 @@ MOSBENCH_MULTIARCH BlockMask dilate(const HaloRows& halo) {
   BlockMask result;
   if (!halo.any) return result;
   const int width = 2 * halo.radius + 1;
-  std::array<std::uint32_t, kBlockSide + 2 * kMaxHalo> spread{};
+  alignas(32) std::array<std::uint32_t, HaloRows::kStride> spread;
   for (int z = 0; z < halo.side; ++z) {
-    std::uint32_t any = 0;
-    for (int y = 0; y < halo.side; ++y) {
-      const std::uint32_t row = halo.row(z, y);
-      std::uint32_t bits = 0;
-      for (int i = 0; i < width; ++i) bits |= row >> i;
-      spread[static_cast<std::size_t>(y)] = bits & 0xFFu;
-      any |= bits;
+    const std::uint32_t* rows = &halo.rows[static_cast<std::size_t>(z * HaloRows::kStride)];
+    for (std::size_t y = 0; y < spread.size(); y += kLanes) {
+      const auto row = load<UintLanes>(rows + y);
+      UintLanes bits = row;
+      for (int i = 1; i < width; ++i) bits |= row >> i;
+      store(bits, &spread[y]);
     }
-    if ((any & 0xFFu) == 0) continue;
-    std::uint64_t plane = 0;
-    for (int y = 0; y < kBlockSide; ++y) {
-      std::uint64_t united = 0;
-      for (int i = 0; i < width; ++i) united |= spread[static_cast<std::size_t>(y + i)];
-      plane |= united << (y * 8);
-    }
+    UintLanes united{};
+    for (int i = 0; i < width; ++i) united |= load<UintLanes>(&spread[kLanes] + i - halo.radius);
+    const auto bytes = __builtin_convertvector(united, ByteLanes);
+    const auto plane = std::bit_cast<std::uint64_t>(bytes);
     for (int out = std::max(0, z - width + 1); out <= std::min(kBlockSide - 1, z); ++out) {
       result.words[static_cast<std::size_t>(out)] |= plane;
     }

@@ -13,6 +13,7 @@ namespace mosbench {
 using FloatLanes = float __attribute__((vector_size(32)));
 using IntLanes = std::int32_t __attribute__((vector_size(32)));
 using UintLanes = std::uint32_t __attribute__((vector_size(32)));
+using ByteLanes = std::uint8_t __attribute__((vector_size(8)));
 using ShortLanes = std::int16_t __attribute__((vector_size(16)));
 inline constexpr std::size_t kLanes = 8;
 
@@ -47,19 +48,25 @@ inline __attribute__((always_inline)) IntLanes lanes_of(std::uint32_t bits) {
   return (all & IntLanes{1, 2, 4, 8, 16, 32, 64, 128}) != 0;
 }
 
-/// Bit i is set where lane i is -1; every lane must be -1 or 0.
-inline __attribute__((always_inline)) std::uint32_t bits_of(const ShortLanes& lanes) {
+/// Bit i is set where lane i is -1, first those of `low`, then those of `high`; every lane must be
+/// -1 or 0.
+inline __attribute__((always_inline)) std::uint32_t bits_of(const ShortLanes& low,
+                                                            const ShortLanes& high) {
 #if defined(__SSE2__)
-  const __m128i bytes = _mm_packs_epi16(reinterpret_cast<__m128i>(lanes), __m128i{});
+  const __m128i bytes =
+      _mm_packs_epi16(reinterpret_cast<__m128i>(low), reinterpret_cast<__m128i>(high));
   return static_cast<std::uint32_t>(_mm_movemask_epi8(bytes));
 #else
   std::uint32_t bits = 0;
-  for (std::size_t i = 0; i < kLanes; ++i) bits |= static_cast<std::uint32_t>(lanes[i] & 1) << i;
+  for (std::size_t i = 0; i < kLanes; ++i) {
+    bits |= static_cast<std::uint32_t>(low[i] & 1) << i | static_cast<std::uint32_t>(high[i] & 1)
+                                                              << (kLanes + i);
+  }
   return bits;
 #endif
 }
 inline __attribute__((always_inline)) std::uint32_t bits_of(const IntLanes& lanes) {
-  return bits_of(__builtin_convertvector(lanes, ShortLanes));
+  return bits_of(__builtin_convertvector(lanes, ShortLanes), ShortLanes{});
 }
 
 }  // namespace mosbench

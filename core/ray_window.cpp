@@ -42,8 +42,8 @@ void append(const ObservedVoxels& part, ObservedVoxels& all) {
 
 void RayWindow::lay_out(const std::array<int, 3>& log2_tiles) {
   log2_tiles_ = log2_tiles;
-  x_tiles_ = (1u << log2_tiles[0]) - 1;
-  y_tiles_ = ((1u << log2_tiles[1]) - 1) << log2_tiles[0];
+  tiles_.x_tiles_ = (1u << log2_tiles[0]) - 1;
+  tiles_.y_tiles_ = ((1u << log2_tiles[1]) - 1) << log2_tiles[0];
   const std::size_t tiles = std::size_t{1} << (log2_tiles[0] + log2_tiles[1] + log2_tiles[2]);
   if (tiles > capacity_tiles_) {
     bits_.reset();
@@ -54,6 +54,7 @@ void RayWindow::lay_out(const std::array<int, 3>& log2_tiles) {
     resident_.assign(tiles, 0);
   }
   touched_.assign(tiles, 0);
+  tiles_.touched_ = touched_.data();
 }
 
 std::size_t RayWindow::memory_bytes() const {
@@ -66,8 +67,8 @@ BlockIndex RayWindow::block_at(std::uint32_t tile, std::uint32_t block,
   const auto at = [](std::uint32_t tiles, std::uint32_t blocks) {
     return static_cast<std::int32_t>(tiles * 4 + blocks % 4);
   };
-  return {first.x + at(tile & x_tiles_, block / 16),
-          first.y + at((tile & y_tiles_) >> log2_tiles_[0], block / 4),
+  return {first.x + at(tile & tiles_.x_tiles_, block / 16),
+          first.y + at((tile & tiles_.y_tiles_) >> log2_tiles_[0], block / 4),
           first.z + at(tile >> (log2_tiles_[0] + log2_tiles_[1]), block)};
 }
 

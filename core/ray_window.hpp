@@ -35,17 +35,26 @@ class RayWindow {
   int z_shift() const { return y_shift() + log2_tiles_[1]; }
 
   /// Bits count only in touched tiles.
-  void touch(std::uint32_t tile) { touched_[tile] = 1; }
-  /// Touches every tile that a line may have crossed between `a`, which was touched, and `b`, which
-  /// lies at most one apart per axis.
-  void touch_between(std::uint32_t a, std::uint32_t b) {
-    const std::uint32_t x = (a ^ b) & x_tiles_, y = (a ^ b) & y_tiles_,
-                        z = (a ^ b) & ~(x_tiles_ | y_tiles_);
-    // Seven stores are cheaper than guessing wrongly how many axes differ.
-    for (const std::uint32_t crossed : {x, y, z, x | y, x | z, y | z, x | y | z}) {
-      touch(a ^ crossed);
+  class Tiles {
+   public:
+    /// Touches every tile that a line may have crossed between `a`, which was touched, and `b`,
+    /// which lies at most one apart per axis; with a == b just this one.
+    void touch_between(std::uint32_t a, std::uint32_t b) const {
+      const std::uint32_t x = (a ^ b) & x_tiles_, y = (a ^ b) & y_tiles_,
+                          z = (a ^ b) & ~(x_tiles_ | y_tiles_);
+      // Seven stores are cheaper than guessing wrongly how many axes differ.
+      for (const std::uint32_t crossed : {x, y, z, x | y, x | z, y | z, x | y | z}) {
+        touched_[a ^ crossed] = 1;
+      }
     }
-  }
+
+   private:
+    friend class RayWindow;
+    std::uint32_t x_tiles_ = 0, y_tiles_ = 0;
+    std::uint8_t* touched_ = nullptr;
+  };
+  /// Until the next `lay_out`. A value, because a byte stored through it could change the window.
+  Tiles tiles() const { return tiles_; }
 
   /// Resident bytes: only what rays ever touched.
   std::size_t memory_bytes() const;
@@ -59,7 +68,7 @@ class RayWindow {
     void operator()(std::uint8_t* pointer) const { std::free(pointer); }
   };
   std::array<int, 3> log2_tiles_{};  ///< along x, y, z
-  std::uint32_t x_tiles_ = 0, y_tiles_ = 0;
+  Tiles tiles_;
   std::size_t capacity_tiles_ = 0;
   std::unique_ptr<std::uint8_t, Free> bits_;
   std::vector<std::uint8_t> touched_;   ///< in this scan, by tile

@@ -47,7 +47,7 @@ void cast(const Ray& ray, const Start& sensor, RayWindow& window) {
     window.bits()[address] |= static_cast<std::uint8_t>(1u << (x >> kLineFraction & 7));
     if (i % kTouchStride == 0 || i == ray.visits - 1) {
       const auto here = static_cast<std::uint32_t>(address / RayWindow::kTileBytes);
-      window.touch_between(i == 0 ? here : tile, here);
+      window.tiles().touch_between(i == 0 ? here : tile, here);
       tile = here;
     }
     x += walk.step[0];
@@ -109,10 +109,10 @@ inline __attribute__((always_inline)) LaneWalks lane_walks(const ShortRay* rays,
 }
 
 /// Out of the hot loop, and only every kTouchStride steps.
-[[gnu::noinline]] void touch_lanes(const std::uint32_t* from, const std::uint32_t* to,
-                                   RayWindow& window) {
+[[gnu::noinline]] void touch_lanes(const LaneArray& from, const LaneArray& to,
+                                   RayWindow::Tiles tiles) {
   for (std::size_t lane = 0; lane < kLanes; ++lane) {
-    window.touch_between(from[lane] / RayWindow::kTileBytes, to[lane] / RayWindow::kTileBytes);
+    tiles.touch_between(from[lane] / RayWindow::kTileBytes, to[lane] / RayWindow::kTileBytes);
   }
 }
 
@@ -121,6 +121,7 @@ MOSBENCH_MULTIARCH void cast_lanes(const ShortRay* rays, const Start& sensor, Ra
   const LaneWalks walks = lane_walks(rays, sensor);
   // Locals: the byte stores below could otherwise change anything behind a reference.
   std::uint8_t* const bits = window.bits();
+  const RayWindow::Tiles tiles = window.tiles();
   const int y_shift = window.y_shift(), z_shift = window.z_shift();
   UintLanes at_x = walks.at[0], at_y = walks.at[1], at_z = walks.at[2];
   UintLanes step_x = walks.step[0], step_y = walks.step[1], step_z = walks.step[2];
@@ -137,7 +138,7 @@ MOSBENCH_MULTIARCH void cast_lanes(const ShortRay* rays, const Start& sensor, Ra
     }
     if (i % kTouchStride == 0 || i == longest) {
       // All start in the sensor's voxel.
-      touch_lanes(i == 0 ? address.data() : sampled.data(), address.data(), window);
+      touch_lanes(i == 0 ? address : sampled, address, tiles);
       sampled = address;
     }
     if (i >= shortest) {  // rays at their end stand still
