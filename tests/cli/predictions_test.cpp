@@ -29,7 +29,9 @@ class PredictionsTest : public testing::Test {
     for (std::size_t k = 0; k < kScans; ++k) predicted_.push_back(wrong_in_places(k));
     write(
         "labels", [](const std::string& stem) { return stem + ".label"; },
-        [](const std::vector<std::uint32_t>& labels) { return std::string(format_labels(labels)); });
+        [](const std::vector<std::uint32_t>& labels) {
+          return std::string(format_labels(labels));
+        });
     expected_ = summary(score(folder_ / "labels"));
   }
 
