@@ -66,7 +66,15 @@ inline __attribute__((always_inline)) std::uint32_t bits_of(const ShortLanes& lo
 #endif
 }
 inline __attribute__((always_inline)) std::uint32_t bits_of(const IntLanes& lanes) {
+#if defined(__SSE2__)
+  const auto low = __builtin_shufflevector(lanes, lanes, 0, 1, 2, 3);
+  const auto high = __builtin_shufflevector(lanes, lanes, 4, 5, 6, 7);
+  const __m128i words =
+      _mm_packs_epi32(reinterpret_cast<__m128i>(low), reinterpret_cast<__m128i>(high));
+  return bits_of(reinterpret_cast<ShortLanes>(words), ShortLanes{});
+#else
   return bits_of(__builtin_convertvector(lanes, ShortLanes), ShortLanes{});
+#endif
 }
 
 }  // namespace mosbench

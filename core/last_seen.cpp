@@ -1,6 +1,7 @@
 #include "core/last_seen.hpp"
 
 #include <bit>
+#include <cassert>
 
 #include "core/multiarch.hpp"
 
@@ -12,7 +13,9 @@ BlockMask all_or_none(bool all) { return all ? ~BlockMask{} : BlockMask{}; }
 }  // namespace
 
 int LastSeen::planes_for(std::uint32_t max_age) {
-  return static_cast<int>(std::bit_width(max_age));
+  const auto planes = static_cast<int>(std::bit_width(max_age));
+  assert(planes <= kMaxPlanes);
+  return planes;
 }
 
 MOSBENCH_MULTIARCH void LastSeen::stamp(const BlockMask& voxels, std::uint32_t scan_index,

@@ -47,11 +47,12 @@ void RayWindow::lay_out(const std::array<int, 3>& log2_tiles) {
   const std::size_t tiles = std::size_t{1} << (log2_tiles[0] + log2_tiles[1] + log2_tiles[2]);
   if (tiles > capacity_tiles_) {
     bits_.reset();
-    capacity_tiles_ = tiles;
-    // calloc, not vector: pages that no ray touches must stay unmapped.
+    capacity_tiles_ = 0;
+    resident_.assign(tiles, 0);
+    // calloc, not vector: pages of large windows that no ray touches stay unmapped.
     bits_.reset(static_cast<std::uint8_t*>(std::calloc(tiles, kTileBytes)));
     if (!bits_) throw std::bad_alloc();
-    resident_.assign(tiles, 0);
+    capacity_tiles_ = tiles;
   }
   touched_.assign(tiles, 0);
   tiles_.touched_ = touched_.data();

@@ -56,7 +56,7 @@ class RayWindow {
   /// Until the next `lay_out`. A value, because a byte stored through it could change the window.
   Tiles tiles() const { return tiles_; }
 
-  /// Resident bytes: only what rays ever touched.
+  /// Bytes that rays ever touched; of small windows the rest may be resident, too.
   std::size_t memory_bytes() const;
 
  private:

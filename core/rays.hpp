@@ -8,7 +8,7 @@
 
 namespace mosbench {
 
-/// The line from the sensor's voxel to a measured one, which lies less than 2^20 voxels away per
+/// The line from the sensor's voxel to a measured one, which lies at most 2^19 voxels away per
 /// axis.
 struct Ray {
   std::int32_t dx, dy, dz;  ///< measured voxel - sensor voxel

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cfloat>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -40,7 +41,13 @@ inline __attribute__((always_inline)) Doubles magnitude(const Doubles& lanes) {
   return lanes < 0.0 ? -lanes : lanes;
 }
 
-/// std::floor by adding a number whose last bit is worth one; what is too large for that is whole.
+#if defined(__FAST_MATH__)
+#error "sums must be rounded one by one, as written"
+#endif
+static_assert(FLT_EVAL_METHOD == 0, "doubles must be rounded to doubles (x86: SSE2)");
+
+/// std::floor of numbers below 2^51 by adding one whose last bit is worth one; larger ones, far
+/// beyond any grid, stay as they are.
 inline __attribute__((always_inline)) Doubles floor_of(const Doubles& lanes) {
   constexpr double kWhole = 6755399441055744.0;  // 1.5 * 2^52
   const Doubles nearest = (lanes + kWhole) - kWhole;

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <string>
 #include <string_view>
+#include <system_error>
 
 #include "datasets/errors.hpp"
 #include "datasets/files.hpp"
@@ -57,16 +58,36 @@ FieldReader field_reader(const RawCloud& cloud, std::string_view name, bool requ
   throw DataError(file, "has no numeric field " + std::string(name), "fields x y z [intensity]");
 }
 
-/// PCL and all it stands on cost every start of the program 30 MB and as many milliseconds, so they
-/// are loaded when the first .pcd file is read.
+struct PclModule {
+  ReadPcdCloud* reader = nullptr;
+  std::string trouble = "it is in none of its places";
+};
+
+PclModule open_pcl_module() {
+  std::error_code ignored;
+  const auto program = std::filesystem::read_symlink("/proc/self/exe", ignored);
+  PclModule opened;
+  for (const std::filesystem::path& folder : {program.parent_path() / MOSBENCH_MODULES_FROM_PROGRAM,
+                                              std::filesystem::path(MOSBENCH_MODULES_INSTALLED),
+                                              std::filesystem::path(MOSBENCH_MODULES_BUILT)}) {
+    const auto file = folder / kPclModule;
+    if (!file.is_absolute() || !std::filesystem::exists(file, ignored)) continue;
+    void* module = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
+    void* function = module == nullptr ? nullptr : dlsym(module, kPclModuleFunction);
+    opened.reader = reinterpret_cast<ReadPcdCloud*>(function);
+    if (opened.reader != nullptr) return opened;
+    opened.trouble = dlerror();
+  }
+  return opened;
+}
+
+/// PCL and all it stands on cost every start of the program 22 MB and 30 ms, so they are loaded
+/// when the first .pcd file is read.
 ReadPcdCloud* pcl_reader(const std::filesystem::path& file) {
-  static const auto reader = [] {
-    void* module = dlopen(kPclModule, RTLD_NOW | RTLD_LOCAL);
-    return module == nullptr ? nullptr
-                             : reinterpret_cast<ReadPcdCloud*>(dlsym(module, kPclModuleFunction));
-  }();
-  if (reader != nullptr) return reader;
-  throw DataError(file, std::string("cannot be read without ") + kPclModule,
+  static const PclModule module = open_pcl_module();
+  if (module.reader != nullptr) return module.reader;
+  throw DataError(file,
+                  std::string("cannot be read without ") + kPclModule + " (" + module.trouble + ")",
                   "the module where mosbench was built or installed, and Debian's PCL libraries");
 }
 

@@ -57,6 +57,9 @@ Recording::Recording(const std::filesystem::path& folder, const ReadingOptions& 
   remarks_ = std::move(settled.remarks);
   reading_ = {{"scan_files", fmt::format("{} of {}/", scans_.front().file.extension().string(),
                                          scans_.front().file.parent_path().filename().string())}};
+  if (bin_columns_ != ReadingOptions{}.bin_columns) {
+    reading_.emplace_back("bin_columns", std::to_string(bin_columns_));
+  }
   reading_.insert(reading_.end(), settled.reading.begin(), settled.reading.end());
 }
 

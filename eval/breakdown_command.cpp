@@ -20,7 +20,7 @@ constexpr const char* kFooter =
 and age of moving objects; the objects that lost most points and the largest false positives, worst
 first, with scan and position. Objects are the instances of the truth where it has some, else clusters
 of moving points linked over scans. An object is detected once a tenth of its points is found. Speeds are
-in the map's frame, by the scans' stamps or, where there are none, as if scans came at 10 Hz.
+in the map's frame, by the scans' stamps or, where not all have rising ones, as if at 10 Hz.
 
 Examples:
   mosbench breakdown ~/kitti/sequences/08 --predictions results/runs/kitti

@@ -185,8 +185,9 @@ ordered_json to_json(const SequenceBreakdown& breakdown, std::size_t at_most) {
 std::string breakdown_text(const SequenceBreakdown& breakdown, std::size_t at_most) {
   return fmt::format("sequence {}: {} scans, {} moving objects, speeds {}\n\n", breakdown.sequence,
                      breakdown.scans.size(), breakdown.objects.size(),
-                     breakdown.stamped ? "by the scans' stamps"
-                                       : "as if scans came at 10 Hz, as they have no stamps") +
+                     breakdown.stamped
+                         ? "by the scans' stamps"
+                         : "as if scans came at 10 Hz, as not all have rising stamps") +
          bins_text("range", kRangeEdges_m, breakdown.by_range) +
          bins_text("height above sensor", kHeightEdges_m, breakdown.by_height) +
          recall_text("object size", recall_by_size(breakdown.objects)) +

@@ -28,10 +28,8 @@ std::vector<std::int32_t> parse_dynamic_scores(std::string_view bytes, std::size
                   "a sum of votes, which is not negative");
 }
 
-std::string format_dynamic_scores(std::span<const std::int32_t> scores) {
-  std::string bytes(scores.size_bytes(), '\0');
-  if (!scores.empty()) std::memcpy(bytes.data(), scores.data(), bytes.size());
-  return bytes;
+std::string_view format_dynamic_scores(std::span<const std::int32_t> scores) {
+  return {reinterpret_cast<const char*>(scores.data()), scores.size_bytes()};
 }
 
 std::filesystem::path dynamic_score_file(const std::filesystem::path& folder,

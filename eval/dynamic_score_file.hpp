@@ -14,7 +14,8 @@ namespace mosbench {
 /// Throws DataError unless there are exactly `point_count`.
 std::vector<std::int32_t> parse_dynamic_scores(std::string_view bytes, std::size_t point_count,
                                                const std::filesystem::path& file);
-std::string format_dynamic_scores(std::span<const std::int32_t> scores);
+/// The bytes of a file, where the scores lie.
+std::string_view format_dynamic_scores(std::span<const std::int32_t> scores);
 
 /// scores/<stem>.score of a run's folder.
 std::filesystem::path dynamic_score_file(const std::filesystem::path& folder,

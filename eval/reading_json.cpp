@@ -24,6 +24,15 @@ void take(const ordered_json& json, const char* key, Option& option) {
   if (json.contains(key)) option = json.at(key).get<Value>();
 }
 
+void take_bin_columns(const ordered_json& json, ReadingOptions& options) {
+  if (!json.contains("bin_columns")) return;
+  const ordered_json& columns = json.at("bin_columns");
+  if (columns != 4 && columns != 5) {
+    throw UsageError(fmt::format("bin_columns: {}, expected 4 or 5", columns.dump()));
+  }
+  options.bin_columns = columns.get<std::size_t>();
+}
+
 }  // namespace
 
 std::optional<PoseFrame> pose_frame_named(std::string_view word) {
@@ -65,7 +74,7 @@ ReadingOptions told_from_json(const ordered_json& json) {
   take<std::string>(json, "topic", options.topic);
   take<std::string>(json, "map_frame", options.map_frame);
   options.undistort = !json.value("raw_scans", false);
-  take<std::size_t>(json, "bin_columns", options.bin_columns);
+  take_bin_columns(json, options);
   return options;
 }
 

@@ -158,7 +158,8 @@ std::vector<std::filesystem::path> result_files(const std::filesystem::path& pat
   std::vector<std::filesystem::path> files;
   for (std::filesystem::recursive_directory_iterator it(path, error), end; !error && it != end;
        it.increment(error)) {
-    if (it->path().filename() == "labels" || is_leftover(it->path())) {
+    const bool of_scans = it->path().filename() == "labels" || it->path().filename() == "scores";
+    if (of_scans || is_leftover(it->path())) {
       it.disable_recursion_pending();
     } else if (it->path().filename() == "result.json") {
       files.push_back(it->path());

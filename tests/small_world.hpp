@@ -150,7 +150,6 @@ inline SmallWorld small_world(const SmallWorldOptions& options) {
   return world;
 }
 
-/// The labels of a whole sequence, one vector per scan in scan order.
 /// All results of a pipeline in scan order.
 inline std::vector<ScanResult> results_of(Pipeline& pipeline, const SmallWorld& world) {
   std::vector<ScanResult> all;
@@ -164,6 +163,7 @@ inline std::vector<ScanResult> results_of(Pipeline& pipeline, const SmallWorld& 
   return all;
 }
 
+/// The labels of a whole sequence, one vector per scan in scan order.
 inline std::vector<std::vector<std::uint32_t>> labels_of(
     const SmallWorld& world, const Config& config, Variant variant, unsigned threads = 1,
     std::optional<std::size_t> scan_count = std::nullopt) {

@@ -153,6 +153,10 @@ TEST_F(KittiReaders, ReadFiveColumnsWhenToldOrByTheNuscenesName) {
     EXPECT_EQ(frame.points[1].intensity, 8.0F);
   }
   EXPECT_EQ(named.sequences[0]->stem(0), "1533151603547590");
+  // Runs that read other columns of the same files are other runs.
+  EXPECT_THAT(told.sequences[0]->reading(), testing::Contains(testing::Pair("bin_columns", "5")));
+  EXPECT_THAT(named.sequences[0]->reading(),
+              testing::Not(testing::Contains(testing::Key("bin_columns"))));
   EXPECT_THAT(message_of<DataError>([&] { open_dataset(folder_ / "told", {}); }),
               HasSubstr("40 bytes are no multiple of 16"));
 }

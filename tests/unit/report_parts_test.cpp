@@ -84,7 +84,7 @@ TEST(PointPlanes, HoldScoresByteByByte) {
 
 TEST(DynamicScores, AreOneIntegerPerPointAndNotNegative) {
   const std::vector<std::int32_t> scores = {0, 7, 3375};
-  const std::string bytes = format_dynamic_scores(scores);
+  const std::string bytes(format_dynamic_scores(scores));
   EXPECT_EQ(bytes, std::string({0, 0, 0, 0, 7, 0, 0, 0, 0x2f, 0x0d, 0, 0}));
   EXPECT_EQ(parse_dynamic_scores(bytes, 3, "f"), scores);
   EXPECT_TRUE(parse_dynamic_scores("", 0, "f").empty());

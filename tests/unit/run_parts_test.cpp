@@ -66,6 +66,13 @@ TEST(ReadingJson, RefusesWordsItDoesNotKnow) {
   }
 }
 
+TEST(ReadingJson, RefusesColumnsThatNoScanFileHas) {
+  for (const char* columns : {"0", "1", "-4", "4.5", "\"5\"", "null", "4611686018427387904"}) {
+    const auto json = nlohmann::ordered_json::parse(columns);
+    EXPECT_THROW(told_from_json({{"bin_columns", json}}), UsageError) << columns;
+  }
+}
+
 TEST(TextTable, AlignsColumnsAndEndsLinesAtTheirLastCell) {
   TextTable table({{"name", TextTable::Align::kLeft}, {"IoU"}});
   table.add_row({"a", "0.5"});

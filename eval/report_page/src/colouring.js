@@ -44,7 +44,8 @@ export function limits(values) {
 /** One scale for all that is shown, so that equal colours are equal numbers. */
 function commonScale(key, scans, values) {
   const ends = values.map((v, s) => limits(v.filter((x, i) => scans[s].drawable[i] && (key !== 'score' || x > 0))));
-  return { low: key === 'score' ? 0 : Math.min(...ends.map(([low]) => low)), high: Math.max(...ends.map(([, high]) => high)) };
+  const low = key === 'score' ? 1 : Math.min(...ends.map(([lowest]) => lowest));  // without a score: a colour of its own
+  return { low, high: Math.max(key === 'score' ? 2 : -Infinity, ...ends.map(([, highest]) => highest)) };
 }
 
 function byOutcome(scan, theme) {

@@ -25,7 +25,7 @@ export class Scale {
     this.node.replaceChildren(
       element('span', {}, name),
       ...(ofScore ? [swatch(colourWithoutScore(theme)), element('span', {}, 'none')] : []),
-      element('span', {}, fixed(ofScore ? 1 : scale.low, digits)), bar, element('span', {}, fixed(scale.high, digits, unit)),
+      element('span', {}, fixed(scale.low, digits)), bar, element('span', {}, fixed(scale.high, digits, unit)),
       ...(ofScore && thresholds.length > 0 ? [element('span', { class: 'faint' }, `threshold ${thresholds.map((t) => fixed(t, 0)).join(' · ')}`)] : []),
     );
   }

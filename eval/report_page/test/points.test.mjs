@@ -35,10 +35,10 @@ test('a scale spans the drawn points, and a flat one still has two ends', () => 
   assert.deepEqual(colourScans('height', [SCAN], 'light').scale, { low: -1, high: 2 });
 });
 
-test('two scans share one scale, from no vote to the most that is drawn', () => {
+test('two scans share one scale, from one vote to the most that is drawn', () => {
   const scored = (scores) => ({ ...SCAN, scores: Int32Array.from(scores) });
   const { colours, scale } = colourScans('score', [scored([0, 4, 8, 999]), scored([0, 16, 0, 0])], 'light');
-  assert.deepEqual(scale, { low: 0, high: 17 });
+  assert.deepEqual(scale, { low: 1, high: 17 });
   const at = (s, i) => [...colours[s].slice(3 * i, 3 * i + 3)];
   assert.deepEqual(at(0, 0), [0xcf, 0xd5, 0xdc], 'no vote has a colour of its own');
   assert.deepEqual(at(0, 0), at(1, 0));
