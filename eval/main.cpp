@@ -114,7 +114,9 @@ std::string answer_to(std::vector<std::string> arguments) {
     const auto chosen = app.get_subcommands();
     return chosen.empty() ? app.help() : chosen.front()->help();
   } catch (const CLI::ParseError& error) {
-    throw mosbench::UsageError(fmt::format("{}; see mosbench --help", error.what()));
+    const auto chosen = app.get_subcommands();
+    throw mosbench::UsageError(fmt::format("{}; see mosbench {}--help", error.what(),
+                                           chosen.empty() ? "" : chosen.front()->get_name() + " "));
   }
 }
 

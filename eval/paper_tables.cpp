@@ -20,7 +20,7 @@ std::span<const PaperTable> paper_tables() {
                   {"SV", {"shopville/sequence_1", "shopville/sequence_2"}, 20},
                   {"HG", {"hauptgebaeude/sequence_1", "hauptgebaeude/sequence_2"}, 20},
                   {"ND", {"niederdorf/sequence_1", "niederdorf/sequence_2"}, 20}},
-                 "DOALS (DOI 10.3929/ethz-c-000788171), its bags exported to scans",
+                 "DOALS (DOI 10.3929/ethz-c-000788171), its bags or scans exported from them",
                  "mosbench reproduce doals --data DIR"},
       PaperTable{"II",
                  "Sipailou Campus, moving IoU in % (paper, Table II)",

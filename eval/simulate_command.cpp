@@ -15,11 +15,14 @@ namespace {
 constexpr const char* kFooter =
     R"(Writes a data set with exact truth in the layout of a real one. The same scene, seed and number of
 scans give the same files, whatever the number of threads. `mosbench list scenes` shows the scenes
-that need no file; FILE is a scene of your own in JSON.
+that need no file; FILE is a scene of your own in JSON. Every data set is written with its scene as
+scene.json: simulate one scan of a scene that comes near, change that file and pass it. A key that is
+missing, unknown or out of range is named.
 
 Examples:
   mosbench simulate --layout semantickitti --scene street --scans 40 --seed 1 --out sim/street
   mosbench simulate --layout doals --scene mall --scans 100 --seed 7 --out sim/doals
+  mosbench simulate --layout helimos --scene street --scans 1 --seed 1 --out near && cp near/scene.json my_street.json
   mosbench simulate --layout helimos --scene my_street.json --scans 200 --seed 1 --out sim/helimos)";
 
 struct Options {
