@@ -8,7 +8,8 @@ namespace mosbench {
 nlohmann::ordered_json machine_json();
 
 /// Tells the C library to keep memory that is freed for the next scan, which needs as much again,
-/// instead of having the system take its pages back and clear new ones.
+/// instead of having the system take its pages back and clear new ones. Only where nothing is held
+/// from scan to scan: beside the map of a run freed memory falls to pieces, and the process grows.
 void keep_freed_memory();
 
 /// Memory this process holds at the moment, MiB; 0 where it cannot be read.

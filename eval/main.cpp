@@ -15,7 +15,6 @@
 
 #include "datasets/errors.hpp"
 #include "eval/commands.hpp"
-#include "eval/machine.hpp"
 #include "mosbench_version.hpp"
 
 namespace {
@@ -137,7 +136,6 @@ int main(int argc, char** argv) {
   // A full disk, a file size limit or a reader that went away then show as failed writes.
   std::signal(SIGXFSZ, SIG_IGN);
   std::signal(SIGPIPE, SIG_IGN);
-  mosbench::keep_freed_memory();
   try {
     occupy_standard_streams();
     return answer(repeat_set_flag({argv + 1, argv + argc}));

@@ -8,6 +8,7 @@
 #include "eval/answer_text.hpp"
 #include "eval/benchmark_split.hpp"
 #include "eval/commands.hpp"
+#include "eval/machine.hpp"
 #include "eval/presets.hpp"
 #include "eval/run_plan.hpp"
 #include "eval/score_report.hpp"
@@ -102,6 +103,7 @@ std::string score_all(const ScoreOptions& options, const Dataset& dataset, Score
 }
 
 std::string score(const ScoreOptions& options) {
+  keep_freed_memory();
   Dataset dataset =
       open_dataset(options.input, {dataset_kind_option(options.dataset), options.sequences, {}});
   ScoreTask task = options.task;
