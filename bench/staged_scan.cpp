@@ -43,7 +43,6 @@ void StagedScan::observe(const Frame& frame, RaycastScratch& scratch, ThreadPool
                   pool);
   observed = raycast(scan.measured, scan.sensor_voxel, config.voxel_size_m, config.max_range_m,
                      scratch, pool);
-  ray_steps = scratch.steps;
   const std::vector<const VoxelSet*> sources{&scan.measured, &previous.measured};
   map.update(observed, sources, scan.sensor_m, k, pool);
   map.evict(k);

@@ -24,8 +24,7 @@ struct StagedScan {
   VoxelMap map;  ///< after this scan
   std::uint32_t k = 0;
   VoxelizedScan previous, scan;
-  ObservedVoxels previous_observed, observed;
-  std::size_t ray_steps = 0;
+  VoxelList previous_observed, observed;
   VoxelSet changed;
   ScoreField scores, filtered;
   LocalWindow window;

@@ -42,6 +42,11 @@ inline __attribute__((always_inline)) void store(const Lanes& lanes, void* to) {
   *static_cast<Unaligned*>(to) = lanes;
 }
 
+template <typename Lanes>
+inline __attribute__((always_inline)) Lanes magnitude(const Lanes& lanes) {
+  return lanes < 0 ? -lanes : lanes;
+}
+
 /// Lane i is -1 where bit i is set, else 0.
 inline __attribute__((always_inline)) IntLanes lanes_of(std::uint32_t bits) {
   const IntLanes all = IntLanes{} + static_cast<std::int32_t>(bits);

@@ -105,7 +105,7 @@ struct Pipeline::State {
 void Pipeline::State::observe(HeldScan& current, std::uint32_t k) {
   const StageRecord record{current.result.stage_times, events};
   const VoxelizedScan& scan = current.scan;
-  const ObservedVoxels observed = timed(record, Stage::kRaycast, [&] {
+  const VoxelList observed = timed(record, Stage::kRaycast, [&] {
     return raycast(scan.measured, scan.sensor_voxel, config.voxel_size_m, config.max_range_m,
                    scratch, pool);
   });
@@ -125,7 +125,6 @@ void Pipeline::State::detect(const VoxelizedScan& scan, std::uint32_t k, ScanRes
   LocalWindow& window = memory->window;
   DynamicRegion& region = memory->region;
   result.threshold.reset();
-  if (records_scores) result.scores.assign(scan.voxel_of_point.size(), 0);
   if (scan.occupied_count == 0) {
     window.join({});
     result.labels.assign(scan.voxel_of_point.size(), kStaticLabel);

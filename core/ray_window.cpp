@@ -14,13 +14,8 @@ constexpr std::uint32_t kBlocksPerTile = 64;
 /// Tiles that any of the windows touched, in rising order.
 std::vector<std::uint32_t> touched_tiles(const std::vector<std::uint8_t>& touched) {
   std::vector<std::uint32_t> tiles;
-  for (std::size_t i = 0; i < touched.size(); i += 8) {
-    std::uint64_t eight = 0;
-    std::memcpy(&eight, touched.data() + i, std::min<std::size_t>(8, touched.size() - i));
-    if (eight == 0) continue;
-    for (std::size_t tile = i; tile < std::min(i + 8, touched.size()); ++tile) {
-      if (touched[tile] != 0) tiles.push_back(static_cast<std::uint32_t>(tile));
-    }
+  for (std::size_t tile = 0; tile < touched.size(); ++tile) {
+    if (touched[tile] != 0) tiles.push_back(static_cast<std::uint32_t>(tile));
   }
   return tiles;
 }
@@ -33,7 +28,7 @@ BlockMask take(std::uint8_t* bytes) {
   return mask;
 }
 
-void append(const ObservedVoxels& part, ObservedVoxels& all) {
+void append(const VoxelList& part, VoxelList& all) {
   all.blocks.insert(all.blocks.end(), part.blocks.begin(), part.blocks.end());
   all.masks.insert(all.masks.end(), part.masks.begin(), part.masks.end());
 }
@@ -73,17 +68,16 @@ BlockIndex RayWindow::block_at(std::uint32_t tile, std::uint32_t block,
           first.z + at(tile >> (log2_tiles_[0] + log2_tiles_[1]), block)};
 }
 
-ObservedVoxels collect(std::span<RayWindow> windows, const BlockIndex& first_block,
-                       ThreadPool& pool) {
+VoxelList collect(std::span<RayWindow> windows, const BlockIndex& first_block, ThreadPool& pool) {
   RayWindow& all = windows.front();
   for (const RayWindow& window : windows.subspan(1)) {
     std::ranges::transform(all.touched_, window.touched_, all.touched_.begin(), std::bit_or<>{});
   }
   const std::vector<std::uint32_t> tiles = touched_tiles(all.touched_);
   constexpr std::size_t kGrain = 32;
-  std::vector<ObservedVoxels> parts((tiles.size() + kGrain - 1) / kGrain);
+  std::vector<VoxelList> parts((tiles.size() + kGrain - 1) / kGrain);
   pool.for_ranges(tiles.size(), kGrain, [&](std::size_t begin, std::size_t end, unsigned) {
-    ObservedVoxels& part = parts[begin / kGrain];
+    VoxelList& part = parts[begin / kGrain];
     for (std::size_t i = begin; i < end; ++i) {
       for (std::uint32_t block = 0; block < kBlocksPerTile; ++block) {
         const std::size_t at = std::size_t{tiles[i]} * RayWindow::kTileBytes + block * 64;
@@ -97,8 +91,8 @@ ObservedVoxels collect(std::span<RayWindow> windows, const BlockIndex& first_blo
       }
     }
   });
-  ObservedVoxels observed;
-  for (const ObservedVoxels& part : parts) append(part, observed);
+  VoxelList observed;
+  for (const VoxelList& part : parts) append(part, observed);
   for (RayWindow& window : windows) {
     for (const std::uint32_t tile : tiles) window.resident_[tile] |= window.touched_[tile];
   }

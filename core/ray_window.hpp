@@ -8,15 +8,9 @@
 #include <span>
 #include <vector>
 
-#include "core/voxel.hpp"
+#include "core/voxel_set.hpp"
 
 namespace mosbench {
-
-/// Blocks with any observed voxel; the two arrays run together. No block comes twice.
-struct ObservedVoxels {
-  std::vector<BlockIndex> blocks;
-  std::vector<BlockMask> masks;
-};
 
 /// Bits of a box of voxels around the sensor, a byte for eight voxels along x, in tiles of 4x4x4
 /// blocks (one page each). Numbers of tiles are powers of two, so that an address is put together
@@ -60,8 +54,8 @@ class RayWindow {
   std::size_t memory_bytes() const;
 
  private:
-  friend ObservedVoxels collect(std::span<RayWindow> windows, const BlockIndex& first_block,
-                                class ThreadPool& pool);
+  friend VoxelList collect(std::span<RayWindow> windows, const BlockIndex& first_block,
+                           class ThreadPool& pool);
   BlockIndex block_at(std::uint32_t tile, std::uint32_t block, const BlockIndex& first) const;
 
   struct Free {
@@ -96,7 +90,6 @@ inline __attribute__((always_inline)) Number address_of(const Number& x, const N
 
 /// What all windows of one layout hold, as blocks; leaves them zero. `first_block` is the block at
 /// the windows' low corner.
-ObservedVoxels collect(std::span<RayWindow> windows, const BlockIndex& first_block,
-                       ThreadPool& pool);
+VoxelList collect(std::span<RayWindow> windows, const BlockIndex& first_block, ThreadPool& pool);
 
 }  // namespace mosbench

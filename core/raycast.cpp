@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <numeric>
 #include <span>
 
 #include "core/lanes.hpp"
@@ -67,10 +66,6 @@ struct LaneWalks {
   UintLanes at[3], step[3];
   IntLanes last;  ///< step of the last visit
 };
-
-inline __attribute__((always_inline)) IntLanes magnitude(const IntLanes& lanes) {
-  return lanes < 0 ? -lanes : lanes;
-}
 
 /// ceil(numerator * 2^kLaneFraction / divisor), both at least 0; `per_unit` is 2^kLaneFraction /
 /// divisor. Its rounding may add one where the quotient is whole, which the limit above allows.
@@ -174,9 +169,8 @@ std::size_t RaycastScratch::memory_bytes() const {
   return bytes;
 }
 
-ObservedVoxels raycast(const VoxelSet& measured, const Voxel& sensor, double voxel_size_m,
-                       double max_range_m, RaycastScratch& scratch, ThreadPool& pool) {
-  scratch.steps = 0;
+VoxelList raycast(const VoxelSet& measured, const Voxel& sensor, double voxel_size_m,
+                  double max_range_m, RaycastScratch& scratch, ThreadPool& pool) {
   if (measured.block_count() == 0) return {};
   const RaySource source{measured, sensor, voxel_size_m, max_range_m};
   const RayBounds bounds = bounds_of(source);
@@ -199,14 +193,11 @@ ObservedVoxels raycast(const VoxelSet& measured, const Voxel& sensor, double vox
   const std::int64_t short_limit = window_fits_lanes ? std::int64_t{1} << kLaneFraction : 0;
   // Every share has blocks from all directions, so that all take about as long.
   const std::size_t shares = pool.size() == 1 ? 1 : std::size_t{4} * pool.size();
-  std::vector<std::size_t> steps(shares);
   pool.for_ranges(shares, 1, [&](std::size_t share, std::size_t, unsigned thread) {
     Rays& rays = scratch.rays[thread];
     collect_rays(source, {share, shares}, short_limit, rays);
     cast_all(rays, start, scratch.windows[thread]);
-    steps[share] = rays.steps();
   });
-  scratch.steps = std::accumulate(steps.begin(), steps.end(), std::size_t{0});
   return collect(scratch.windows, {first_block[0], first_block[1], first_block[2]}, pool);
 }
 

@@ -15,7 +15,6 @@ namespace mosbench {
 struct RaycastScratch {
   std::vector<RayWindow> windows;
   std::vector<Rays> rays;  ///< per thread
-  std::size_t steps = 0;   ///< voxels visited by the rays of the last scan, each ray's own
 
   std::size_t memory_bytes() const;
 };
@@ -23,8 +22,8 @@ struct RaycastScratch {
 /// algorithm step 2: the voxels on the integer lines from the sensor's voxel to every measured
 /// voxel, as far as |(s - q) Delta|^2 <= max_range^2. `max_range_m / voxel_size_m` must not exceed
 /// kMaxRangeVoxels.
-ObservedVoxels raycast(const VoxelSet& measured, const Voxel& sensor, double voxel_size_m,
-                       double max_range_m, RaycastScratch& scratch, ThreadPool& pool);
+VoxelList raycast(const VoxelSet& measured, const Voxel& sensor, double voxel_size_m,
+                  double max_range_m, RaycastScratch& scratch, ThreadPool& pool);
 
 /// Longest range in voxels; the window around it must stay addressable.
 inline constexpr double kMaxRangeVoxels = 1500;

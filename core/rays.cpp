@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace mosbench {
 namespace {
@@ -130,15 +129,6 @@ void collect_rays(const RaySource& source, BlockShare share, std::int64_t short_
 std::size_t Rays::memory_bytes() const {
   return (short_rays.capacity() + unordered.capacity()) * sizeof(ShortRay) +
          long_rays.capacity() * sizeof(Ray);
-}
-
-std::size_t Rays::steps() const {
-  const auto add = [](std::size_t sum, const auto& ray) {
-    return sum + static_cast<std::size_t>(ray.visits);
-  };
-  return std::accumulate(short_rays.begin(), short_rays.end(),
-                         std::accumulate(long_rays.begin(), long_rays.end(), std::size_t{0}, add),
-                         add);
 }
 
 RayBounds bounds_of(const RaySource& source) {

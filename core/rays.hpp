@@ -29,8 +29,6 @@ struct Rays {
   std::vector<ShortRay> unordered;  ///< scratch
 
   std::size_t memory_bytes() const;
-  /// Voxels visited by all of them, each ray's own.
-  std::size_t steps() const;
 };
 
 /// The line in closed form. With M the longest side and h = M / 2, an axis has moved

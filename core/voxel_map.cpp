@@ -89,10 +89,9 @@ void VoxelMap::refresh(std::span<const std::uint32_t> slots, std::uint32_t scan_
   });
 }
 
-ChangedVoxels VoxelMap::update(const ObservedVoxels& observed,
-                               std::span<const VoxelSet* const> sources,
-                               const Eigen::Vector3d& sensor_m, std::uint32_t scan_index,
-                               ThreadPool& pool) {
+VoxelList VoxelMap::update(const VoxelList& observed, std::span<const VoxelSet* const> sources,
+                           const Eigen::Vector3d& sensor_m, std::uint32_t scan_index,
+                           ThreadPool& pool) {
   note_sensor(sensor_m, scan_index);
   drop_expired_changes(scan_index);
   const int reach = distance_field_.reach(), side = 2 * reach + 1;
@@ -136,7 +135,7 @@ ChangedVoxels VoxelMap::update(const ObservedVoxels& observed,
     }
   });
 
-  ChangedVoxels changes;
+  VoxelList changes;
   for (std::size_t i = 0; i < changed.size(); ++i) {
     if (!changed[i].any()) continue;
     changes.blocks.push_back(observed.blocks[i]);

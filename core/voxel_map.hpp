@@ -16,12 +16,6 @@
 
 namespace mosbench {
 
-/// Blocks with a voxel whose state changed; the two arrays run together.
-struct ChangedVoxels {
-  std::vector<BlockIndex> blocks;
-  std::vector<BlockMask> masks;
-};
-
 /// The occupancy map: beliefs, states and ages of every voxel seen in the last w_g scans within the
 /// eviction radius.
 class VoxelMap {
@@ -29,9 +23,9 @@ class VoxelMap {
   VoxelMap(const Config& config, Variant variant, const VoxelGrid& grid);
 
   /// algorithm step 3 up to eviction. `sources` are the measured sets whose union the distance
-  /// field refers to; `sensor_m` is this scan's position.
-  ChangedVoxels update(const ObservedVoxels& observed, std::span<const VoxelSet* const> sources,
-                       const Eigen::Vector3d& sensor_m, std::uint32_t scan_index, ThreadPool& pool);
+  /// field refers to; `sensor_m` is this scan's position. Returns the voxels whose state changed.
+  VoxelList update(const VoxelList& observed, std::span<const VoxelSet* const> sources,
+                   const Eigen::Vector3d& sensor_m, std::uint32_t scan_index, ThreadPool& pool);
 
   /// The rest of step 3, after `update`: drops what lies beyond the eviction radius of this scan's
   /// sensor or was not seen for more than w_g scans. Most blocks are looked at only every
@@ -74,7 +68,7 @@ class VoxelMap {
   };
   struct ChangesOfScan {
     std::uint32_t scan_index;
-    ChangedVoxels voxels;
+    VoxelList voxels;
   };
 
   std::uint32_t add_block(const BlockIndex& index, std::uint32_t scan_index);

@@ -58,6 +58,12 @@ class BlockTable {
   std::size_t size_ = 0;
 };
 
+/// Voxels as a list of blocks without a table; the two arrays run together. No block comes twice.
+struct VoxelList {
+  std::vector<BlockIndex> blocks;
+  std::vector<BlockMask> masks;
+};
+
 /// A set of voxels: a bit mask for each block that holds any. `blocks` and `masks` run together.
 struct VoxelSet {
   std::vector<BlockIndex> blocks;

@@ -37,10 +37,6 @@ using Floats = float __attribute__((vector_size(16)));
 using Ints = std::int32_t __attribute__((vector_size(16)));
 using Choice = std::int64_t __attribute__((vector_size(32)));
 
-inline __attribute__((always_inline)) Doubles magnitude(const Doubles& lanes) {
-  return lanes < 0.0 ? -lanes : lanes;
-}
-
 #if defined(__FAST_MATH__)
 #error "sums must be rounded one by one, as written"
 #endif

@@ -49,8 +49,7 @@ Triples walk_all(const VoxelSet& measured, const Voxel& sensor, double voxel_siz
 /// The observed voxels; asserts that no block comes twice or empty.
 Triples observed_by(const VoxelSet& measured, const Voxel& sensor, double voxel_size_m,
                     double max_range_m, RaycastScratch& scratch, ThreadPool& pool) {
-  const ObservedVoxels observed =
-      raycast(measured, sensor, voxel_size_m, max_range_m, scratch, pool);
+  const VoxelList observed = raycast(measured, sensor, voxel_size_m, max_range_m, scratch, pool);
   VoxelSet unique;
   for (std::size_t i = 0; i < observed.blocks.size(); ++i) {
     EXPECT_EQ(unique.insert(observed.blocks[i]), i) << "a block comes twice";
