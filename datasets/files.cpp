@@ -33,7 +33,10 @@ void make_parent_folder(const std::filesystem::path& file) {
 int write_whole(const std::filesystem::path& file, std::string_view bytes) {
   OpenFile out(std::fopen(file.c_str(), "wb"));
   if (!out) return errno;
-  if (std::fwrite(bytes.data(), 1, bytes.size(), out.get()) != bytes.size()) return errno;
+  // An empty view may point nowhere, which fwrite must not be given.
+  if (!bytes.empty() && std::fwrite(bytes.data(), 1, bytes.size(), out.get()) != bytes.size()) {
+    return errno;
+  }
   return std::fclose(out.release()) == 0 ? 0 : errno;
 }
 
