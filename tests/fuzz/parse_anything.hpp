@@ -17,11 +17,14 @@
 #include "datasets/point_cloud2.hpp"
 #include "datasets/pose_file.hpp"
 #include "datasets/pose_list.hpp"
+#include "datasets/scene_json.hpp"
 #include "datasets/split_file.hpp"
 #include "datasets/times_file.hpp"
+#include "eval/config_json.hpp"
 #include "eval/dynamic_score_file.hpp"
 #include "eval/prediction_text.hpp"
 #include "eval/published.hpp"
+#include "eval/result_set.hpp"
 #include "tests/fuzz/memory_file.hpp"
 
 /// Every parser of bytes with what must hold of any value it returns. A parser may throw DataError;
@@ -148,14 +151,12 @@ inline void ros_message(std::string_view bytes) {
   require(cloud.points.size() <= message.size());
 }
 
-/// A whole bag with all its scans.
-inline void bag(std::string_view bytes) {
+/// Calls `read` with a file of these bytes, which its errors must name.
+template <typename Read>
+void with_file(std::string_view bytes, Read&& read) {
   const MemoryFile file(bytes);
   try {
-    const BagRecording recording(file.path(), {});
-    for (std::size_t i = 0; i < recording.size(); ++i) {
-      require(recording.read(i).points.size() == recording.point_count(i));
-    }
+    read(file.path());
   } catch (const DataError& error) {
     const std::string message = error.what();
     require(message.starts_with(file.path().string()));
@@ -163,11 +164,46 @@ inline void bag(std::string_view bytes) {
   }
 }
 
+/// A whole bag with all its scans.
+inline void bag(std::string_view bytes) {
+  with_file(bytes, [](const std::filesystem::path& file) {
+    const BagRecording recording(file, {});
+    for (std::size_t i = 0; i < recording.size(); ++i) {
+      require(recording.read(i).points.size() == recording.point_count(i));
+    }
+  });
+}
+
+inline void scene(std::string_view text) {
+  const std::string formatted = format_scene(parse_scene(text, "f"));
+  require(format_scene(parse_scene(formatted, "f")) == formatted);
+}
+
+inline void config(std::string_view text) {
+  Config parsed;
+  try {
+    apply_config_text(text, "f", parsed);
+  } catch (const UsageError& error) {
+    throw DataError(error.what());
+  }
+  Config again;
+  apply_config_text(to_json(parsed, Variant::kPaper2024).dump(), "f", again);
+  require(to_json(again, Variant::kPaper2024) == to_json(parsed, Variant::kPaper2024));
+}
+
+/// A result.json.
+inline void result(std::string_view bytes) {
+  with_file(bytes, [](const std::filesystem::path& file) {
+    const SequenceResult read = read_sequence_result(file);
+    for (const ScanRow* row : counted_scans(read)) require(row->counts.has_value());
+  });
+}
+
 struct Parser {
   const char* name;  ///< of its corpus folder and its libFuzzer target
   void (*parse)(std::string_view);
 };
-inline constexpr std::array<Parser, 15> kParsers = {{{"bin", bin},
+inline constexpr std::array<Parser, 18> kParsers = {{{"bin", bin},
                                                      {"label", label},
                                                      {"dynamic_scores", dynamic_scores},
                                                      {"poses", poses},
@@ -181,6 +217,9 @@ inline constexpr std::array<Parser, 15> kParsers = {{{"bin", bin},
                                                      {"pose_list", pose_list},
                                                      {"ros_message", ros_message},
                                                      {"bag", bag},
+                                                     {"scene", scene},
+                                                     {"config", config},
+                                                     {"result", result},
                                                      {"predictions", predictions}}};
 
 /// Whether the parser gave a value; false when it threw DataError. Anything else escapes.
