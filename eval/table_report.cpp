@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cstdio>
+
 #include "datasets/errors.hpp"
 #include "eval/answer_text.hpp"
 #include "eval/table_print.hpp"
@@ -19,6 +21,9 @@ TableFormat table_format_named(std::string_view name) {
 
 std::string table_report(const PaperTable& table, const std::vector<PublishedCell>& published,
                          const std::vector<ResultSet>& runs, TableFormat format) {
+  for (const std::string& sentence : left_out(table, runs)) {
+    std::fputs((sentence + '\n').c_str(), stderr);
+  }
   const FilledTable filled = fill_table(table, published, runs);
   switch (format) {
     case TableFormat::kCsv:

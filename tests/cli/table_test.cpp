@@ -71,6 +71,12 @@ TEST_F(Tables, FromSimulatedDataCompareNothingAndNameWhatIsMissing) {
   EXPECT_THAT(again.err, HasSubstr("finished by an earlier run, kept"));
   EXPECT_THAT(again.out, HasSubstr("SIMULATED"));
 
+  const cli::Answer other =
+      cli::run({"table", "III", (folder_ / "out-sipailou").string(), "--format", "csv"});
+  ASSERT_EQ(other.exit_code, 0) << other.err;
+  EXPECT_THAT(other.err, HasSubstr("left out of table III"));
+  EXPECT_THAT(other.err, HasSubstr("is of data set sipailou, not helimos"));
+
   fs::remove_all(folder_ / "out-helimos/helimos/Ouster");
   const cli::Answer part =
       cli::run({"table", "III", (folder_ / "out-helimos").string(), "--format", "markdown"});
