@@ -9,6 +9,7 @@
 #include "eval/breakdown.hpp"
 #include "eval/commands.hpp"
 #include "eval/presets.hpp"
+#include "eval/reading_flags.hpp"
 #include "eval/run_plan.hpp"
 #include "eval/simulated.hpp"
 
@@ -31,6 +32,7 @@ struct BreakdownOptions {
   std::string dataset = "auto";
   std::vector<std::string> sequences;
   std::optional<std::string> protocol, range, format;
+  ReadingOptions reading;
   std::size_t top = 10;
   unsigned threads = 0;
   bool json = false;
@@ -61,8 +63,8 @@ std::vector<SequenceBreakdown> all_breakdowns(const BreakdownOptions& options,
 }
 
 std::string breakdown(const BreakdownOptions& options) {
-  const Dataset dataset =
-      open_dataset(options.input, {dataset_kind_option(options.dataset), options.sequences, {}});
+  const Dataset dataset = open_dataset(
+      options.input, {dataset_kind_option(options.dataset), options.sequences, options.reading});
   const BreakdownTask task = settle(options, dataset);
   const std::vector<SequenceBreakdown> breakdowns = all_breakdowns(options, dataset, task);
   if (options.json) {
@@ -104,6 +106,7 @@ void add_breakdown_command(CLI::App& app, std::string& answer) {
   command->add_option("--threads", options->threads, "Results do not depend on it (default: all)")
       ->check(CLI::Range(1U, 1024U));
   command->add_flag("--json", options->json, "Print JSON instead of tables");
+  add_reading_flags(*command, options->reading);
   command->footer(kFooter);
   command->callback([options, &answer] { answer = breakdown(*options); });
 }

@@ -10,6 +10,7 @@
 #include "eval/commands.hpp"
 #include "eval/machine.hpp"
 #include "eval/presets.hpp"
+#include "eval/reading_flags.hpp"
 #include "eval/run_plan.hpp"
 #include "eval/score_report.hpp"
 
@@ -45,6 +46,7 @@ struct ScoreOptions {
   std::optional<std::string> protocol, range, format, mask, id_map;
   std::string level = "object";
   MethodName method{"unnamed", ""};
+  ReadingOptions reading;
   std::optional<std::filesystem::path> out;
   bool json = false;
 };
@@ -104,8 +106,8 @@ std::string score_all(const ScoreOptions& options, const Dataset& dataset, Score
 
 std::string score(const ScoreOptions& options) {
   keep_freed_memory();
-  Dataset dataset =
-      open_dataset(options.input, {dataset_kind_option(options.dataset), options.sequences, {}});
+  Dataset dataset = open_dataset(
+      options.input, {dataset_kind_option(options.dataset), options.sequences, options.reading});
   ScoreTask task = options.task;
   task.options = prediction_options(options);
   if (task.threads == 0) task.threads = hardware_threads();
@@ -163,6 +165,7 @@ void add_score_command(CLI::App& app, std::string& answer) {
       ->add_option("--threads", options->task.threads, "Results do not depend on it (default: all)")
       ->check(CLI::Range(1U, 1024U));
   command->add_flag("--json", options->json, "Print JSON instead of a table");
+  add_reading_flags(*command, options->reading);
   command->footer(kFooter);
   command->callback([options, &answer] { answer = score(*options); });
 }
