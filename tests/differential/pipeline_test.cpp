@@ -157,6 +157,27 @@ TEST(PipelineAgainstTheSlowTwin, AgreesWhenTheFilterIsQuickOrSlowToDecide) {
   expect_motion(tally, 60);
 }
 
+/// Likelihoods are cut off where no state can depend on them: farthest out, in sigmas and in
+/// voxels, for the smallest epsilon.
+TEST(PipelineAgainstTheSlowTwin, AgreesForTheSmallestEpsilonWithAWideSigma) {
+  Tally tally;
+  for (unsigned seed = 450; seed < 453; ++seed) {
+    const SmallWorld world = small_world({.seed = seed, .scans = 16, .noise_m = 0.02});
+    for (const double ratio : {1.0, 2.0, 3.2}) {
+      for (const double p_min : {0.5, 0.99, 0.999999}) {
+        Config config = small_config();
+        config.transition_epsilon = 1e-6;
+        config.min_state_probability = p_min;
+        config.occupancy_sigma_m = ratio * config.voxel_size_m;
+        config.min_otsu_score = 1;
+        expect_equal_labels_of_both_variants(world, config, tally);
+      }
+    }
+  }
+  EXPECT_EQ(tally.sequences, 54U);
+  EXPECT_GE(tally.with_motion, 10U);
+}
+
 TEST(PipelineAgainstTheSlowTwin, AgreesWhenRecordsExpire) {
   Tally tally;
   for (unsigned seed = 500; seed < 502; ++seed) {
