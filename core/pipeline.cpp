@@ -127,7 +127,6 @@ void Pipeline::State::detect(const VoxelizedScan& scan, std::uint32_t k, ScanRes
   result.threshold.reset();
   if (scan.occupied_count == 0) {
     window.join({});
-    result.labels.assign(scan.voxel_of_point.size(), kStaticLabel);
     return;
   }
   const int width = config.kernel_width_voxels;
@@ -163,11 +162,15 @@ void Pipeline::State::detect(const VoxelizedScan& scan, std::uint32_t k, ScanRes
   if (records_scores) result.scores = project_scores(scan, sums);
 }
 
+/// Points of a scan in which nothing was looked for are static.
 std::vector<ScanResult> Pipeline::State::release(std::size_t count) {
   std::vector<ScanResult> results;
   for (; count > 0; --count) {
-    results.push_back(std::move(held.front().result));
+    const std::size_t points = held.front().scan.voxel_of_point.size();
+    ScanResult& result = results.emplace_back(std::move(held.front().result));
     held.pop_front();
+    result.labels.resize(points, kStaticLabel);
+    if (records_scores) result.scores.resize(points, 0);
   }
   return results;
 }
@@ -212,8 +215,6 @@ std::vector<ScanResult> Pipeline::push(std::span<const Point> points, const Pose
 
   HeldScan& newest = s.held.back();
   const StageRecord record{newest.result.stage_times, s.events};
-  newest.result.labels.assign(points.size(), kStaticLabel);
-  if (s.records_scores) newest.result.scores.assign(points.size(), 0);
   const auto n = static_cast<std::size_t>(s.config.delay_scans);
   if (k <= static_cast<std::uint32_t>(s.config.local_window_scans)) {
     s.memory->window.join({});

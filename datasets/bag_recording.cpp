@@ -131,7 +131,7 @@ std::string BagRecording::stem(std::size_t scan_index) const {
   return fmt::format("{:06}", scans_.at(scan_index).number);
 }
 
-Frame BagRecording::read(std::size_t scan_index) const {
+Frame BagRecording::read_frame(std::size_t scan_index, Frame /*spent*/) const {
   const Scan& scan = scans_.at(scan_index);
   TimedCloud cloud = parse_cloud(bag_.read(scan.message), bag_.path());
   for (const std::int64_t time_ns : cloud.times_ns) {

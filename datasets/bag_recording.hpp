@@ -37,12 +37,12 @@ class BagRecording : public ScanSource {
   Pose map_from_sensor(std::size_t scan_index) const override {
     return *pose_at_(stamps_ns_.at(scan_index));
   }
-  Frame read(std::size_t scan_index) const override;
   std::vector<std::filesystem::path> files() const override { return files_; }
   std::vector<std::string> remarks() const override { return remarks_; }
   ReadingStatement reading() const override { return reading_; }
 
  private:
+  Frame read_frame(std::size_t scan_index, Frame spent) const override;
   struct Scan {
     BagMessage message;
     std::size_t number = 0;  ///< in its topic, from 0

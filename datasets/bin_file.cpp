@@ -44,8 +44,14 @@ std::string_view format_bin(std::span<const Point> points) {
   return {reinterpret_cast<const char*>(points.data()), points.size_bytes()};
 }
 
-std::vector<Point> read_bin(const std::filesystem::path& file) {
-  return parse_bin(read_file(file), file);
+std::vector<Point> read_bin(const std::filesystem::path& file, std::size_t columns,
+                            std::vector<Point> spent) {
+  if (columns * sizeof(float) != sizeof(Point)) return parse_bin(read_file(file), columns, file);
+  const std::uintmax_t size_bytes = size_of(file);
+  check_bin_size(size_bytes, columns, file);
+  spent.resize(static_cast<std::size_t>(size_bytes) / sizeof(Point));
+  read_file(file, std::as_writable_bytes(std::span(spent)));
+  return spent;
 }
 
 void write_bin(const std::filesystem::path& file, std::span<const Point> points) {

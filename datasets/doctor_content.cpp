@@ -9,8 +9,8 @@
 #include <unordered_map>
 
 #include "datasets/doctor.hpp"
+#include "datasets/files.hpp"
 #include "datasets/point_range.hpp"
-#include "datasets/scan_file.hpp"
 
 namespace mosbench {
 namespace {

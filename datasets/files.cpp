@@ -40,6 +40,21 @@ int write_whole(const std::filesystem::path& file, std::string_view bytes) {
   return std::fclose(out.release()) == 0 ? 0 : errno;
 }
 
+OpenFile open_to_read(const std::filesystem::path& file) {
+  std::error_code error;
+  if (std::filesystem::is_directory(file, error)) {
+    throw DataError(file, "is a folder", "a file");
+  }
+  OpenFile in(std::fopen(file.c_str(), "rb"));
+  if (!in) throw DataError(file, "cannot be opened (" + reason(errno) + ")", "a readable file");
+  return in;
+}
+
+void check_reading(std::FILE* in, const std::filesystem::path& file) {
+  if (std::ferror(in) == 0) return;
+  throw DataError(file, "cannot be read to its end (" + reason(errno) + ")", "a readable file");
+}
+
 }  // namespace
 
 bool is_there(const std::filesystem::path& path) {
@@ -48,14 +63,9 @@ bool is_there(const std::filesystem::path& path) {
 }
 
 std::string read_file(const std::filesystem::path& file) {
-  std::error_code error;
-  if (std::filesystem::is_directory(file, error)) {
-    throw DataError(file, "is a folder", "a file");
-  }
-  const OpenFile in(std::fopen(file.c_str(), "rb"));
-  if (!in) throw DataError(file, "cannot be opened (" + reason(errno) + ")", "a readable file");
-
+  const OpenFile in = open_to_read(file);
   std::string bytes;
+  std::error_code error;
   const auto size_on_disk = std::filesystem::file_size(file, error);
   // One byte more than the file, so that its end is met without growing the buffer.
   std::size_t room = error ? 65536 : static_cast<std::size_t>(size_on_disk) + 1;
@@ -67,11 +77,25 @@ std::string read_file(const std::filesystem::path& file) {
     if (got < room) break;
     room = bytes.size();
   }
-  if (std::ferror(in.get()) != 0) {
-    throw DataError(file, "cannot be read to its end (" + reason(errno) + ")", "a readable file");
-  }
+  check_reading(in.get(), file);
   bytes.resize(used);
   return bytes;
+}
+
+void read_file(const std::filesystem::path& file, std::span<std::byte> bytes) {
+  const OpenFile in = open_to_read(file);
+  const std::size_t got = bytes.empty() ? 0 : std::fread(bytes.data(), 1, bytes.size(), in.get());
+  const bool ends = got == bytes.size() && std::fgetc(in.get()) == EOF;
+  check_reading(in.get(), file);
+  if (ends) return;
+  throw DataError(file, "changed while it was read", std::to_string(bytes.size()) + " bytes");
+}
+
+std::uintmax_t size_of(const std::filesystem::path& file) {
+  std::error_code error;
+  const std::uintmax_t size_bytes = std::filesystem::file_size(file, error);
+  if (error) throw DataError(file, "has no size (" + error.message() + ")", "a readable file");
+  return size_bytes;
 }
 
 void write_file_atomic(const std::filesystem::path& file, std::string_view bytes) {

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -11,6 +14,12 @@ bool is_there(const std::filesystem::path& path);
 
 /// All bytes of a file; throws DataError when it cannot be read to its end.
 std::string read_file(const std::filesystem::path& file);
+/// Fills `bytes` with a file of just that size, the bytes of `size_of`; throws DataError when it
+/// cannot be read or has another size by now.
+void read_file(const std::filesystem::path& file, std::span<std::byte> bytes);
+
+/// Size of a file in bytes; throws DataError.
+std::uintmax_t size_of(const std::filesystem::path& file);
 
 /// Replaces `file` as a whole: readers see the old bytes or the new ones, also after a killed run.
 /// Missing folders are made. The bytes go first to `<file>.partial`, which the next write replaces

@@ -55,8 +55,11 @@ std::string ContentFingerprint::hex() const {
   return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
 }
 
-std::string truth_hash(std::span<const std::uint32_t> labels) {
-  return fmt::format("{:016x}", XXH3_64bits(labels.data(), labels.size_bytes()));
+TruthHash truth_hash(std::span<const std::uint32_t> labels) {
+  TruthHash hash;
+  fmt::format_to_n(hash.data(), hash.size(), "{:016x}",
+                   XXH3_64bits(labels.data(), labels.size_bytes()));
+  return hash;
 }
 
 std::string file_stamp(const Sequence& sequence) {

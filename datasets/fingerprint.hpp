@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -27,9 +28,13 @@ class ContentFingerprint {
   std::unique_ptr<XXH3_state_s, FreeState> state_;
 };
 
-/// 16 hexadecimal digits (XXH3-64) over the raw labels of one scan: tells whether two results were
-/// scored against the same truth.
-std::string truth_hash(std::span<const std::uint32_t> labels);
+/// 16 hexadecimal digits. No string: thousands of small ones, kept while large buffers come and go,
+/// would hole the heap.
+using TruthHash = std::array<char, 16>;
+
+/// XXH3-64 over the raw labels of one scan: tells whether two results were scored against the same
+/// truth.
+TruthHash truth_hash(std::span<const std::uint32_t> labels);
 
 /// 32 hexadecimal digits over names, sizes and modification times of a sequence's files: equal when
 /// nothing was touched since, and cheap, as no scan is read. Not comparable between machines.

@@ -8,7 +8,6 @@
 #include "datasets/errors.hpp"
 #include "datasets/files.hpp"
 #include "datasets/pcd_file.hpp"
-#include "datasets/scan_file.hpp"
 
 namespace mosbench {
 

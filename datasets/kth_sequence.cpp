@@ -32,7 +32,7 @@ KthSequence::KthSequence(std::string name, const std::filesystem::path& folder)
   }
 }
 
-Frame KthSequence::read(std::size_t scan_index) const {
+Frame KthSequence::read_frame(std::size_t scan_index, Frame /*spent*/) const {
   Frame frame;
   frame.stem = stem(scan_index);
   frame.points = read_pcd(scans_[scan_index].file);

@@ -26,7 +26,6 @@ class KthSequence : public Sequence {
   }
   Pose map_from_sensor(std::size_t scan_index) const override { return poses_.at(scan_index); }
   std::optional<std::int64_t> stamp_ns(std::size_t) const override { return std::nullopt; }
-  Frame read(std::size_t scan_index) const override;
   std::vector<std::uint32_t> read_truth(std::size_t scan_index) const override;
   std::size_t point_count(std::size_t scan_index) const override {
     return point_counts_.at(scan_index);
@@ -36,6 +35,7 @@ class KthSequence : public Sequence {
   ReadingStatement reading() const override;
 
  private:
+  Frame read_frame(std::size_t scan_index, Frame spent) const override;
   std::string name_;
   std::vector<StemFile> scans_;
   std::vector<std::size_t> point_counts_;

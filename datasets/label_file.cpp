@@ -32,7 +32,10 @@ std::string_view format_labels(std::span<const std::uint32_t> labels) {
 }
 
 std::vector<std::uint32_t> read_labels(const std::filesystem::path& file, std::size_t point_count) {
-  return parse_labels(read_file(file), point_count, file);
+  check_label_size(size_of(file), point_count, file);
+  std::vector<std::uint32_t> labels(point_count);
+  read_file(file, std::as_writable_bytes(std::span(labels)));
+  return labels;
 }
 
 void write_labels(const std::filesystem::path& file, std::span<const std::uint32_t> labels) {

@@ -74,11 +74,11 @@ void Recording::open_stamps(const std::filesystem::path& folder) {
   check_count(stamps_ns_.size(), "times", scans_.size(), times);
 }
 
-Frame Recording::read(std::size_t scan_index) const {
+Frame Recording::read_frame(std::size_t scan_index, Frame spent) const {
   const StemFile& scan = scans_.at(scan_index);
   Frame frame;
   frame.stem = scan.stem;
-  frame.points = read_scan(scan.file, bin_columns_);
+  frame.points = read_scan(scan.file, bin_columns_, std::move(spent.points));
   if (frame.points.size() != point_counts_[scan_index]) {
     throw DataError(scan.file, "changed since the sequence was opened",
                     fmt::format("{} points", point_counts_[scan_index]));

@@ -37,13 +37,13 @@ class Recording : public ScanSource {
   /// From times.txt, else from stems that are nanoseconds.
   const std::vector<std::int64_t>& stamps_ns() const override { return stamps_ns_; }
   Pose map_from_sensor(std::size_t scan_index) const override { return poses_.at(scan_index); }
-  Frame read(std::size_t scan_index) const override;
   /// Scans, poses, calibration and times.
   std::vector<std::filesystem::path> files() const override;
   std::vector<std::string> remarks() const override { return remarks_; }
   ReadingStatement reading() const override { return reading_; }
 
  private:
+  Frame read_frame(std::size_t scan_index, Frame spent) const override;
   void open_stamps(const std::filesystem::path& folder);
 
   std::vector<StemFile> scans_;

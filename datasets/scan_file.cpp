@@ -1,6 +1,7 @@
 #include "datasets/scan_file.hpp"
 
 #include <system_error>
+#include <utility>
 
 #include "datasets/bin_file.hpp"
 #include "datasets/errors.hpp"
@@ -52,10 +53,11 @@ std::vector<StemFile> list_scans(const std::filesystem::path& sequence_folder) {
   return list_scan_folder(*folder);
 }
 
-std::vector<Point> read_scan(const std::filesystem::path& file, std::size_t bin_columns) {
+std::vector<Point> read_scan(const std::filesystem::path& file, std::size_t bin_columns,
+                             std::vector<Point> spent) {
   if (has_extension(file, ".pcd")) return read_pcd(file);
   if (has_extension(file, ".ply")) return parse_ply(read_file(file), file);
-  return parse_bin(read_file(file), columns_of(file, bin_columns), file);
+  return read_bin(file, columns_of(file, bin_columns), std::move(spent));
 }
 
 std::size_t scan_point_count(const std::filesystem::path& file, std::size_t bin_columns) {
@@ -65,13 +67,6 @@ std::size_t scan_point_count(const std::filesystem::path& file, std::size_t bin_
   const std::size_t columns = columns_of(file, bin_columns);
   check_bin_size(size_bytes, columns, file);
   return static_cast<std::size_t>(size_bytes) / (columns * sizeof(float));
-}
-
-std::uintmax_t size_of(const std::filesystem::path& file) {
-  std::error_code error;
-  const std::uintmax_t size_bytes = std::filesystem::file_size(file, error);
-  if (error) throw DataError(file, "has no size (" + error.message() + ")", "a readable file");
-  return size_bytes;
 }
 
 }  // namespace mosbench

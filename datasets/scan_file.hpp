@@ -21,13 +21,11 @@ std::vector<StemFile> list_scan_folder(const std::filesystem::path& scan_folder)
 std::vector<StemFile> list_scans(const std::filesystem::path& sequence_folder);
 
 /// Points of a scan. A .bin file has `bin_columns` float32 per point, one that ends in .pcd.bin
-/// five as in nuScenes. Throws DataError.
-std::vector<Point> read_scan(const std::filesystem::path& file, std::size_t bin_columns = 4);
+/// five as in nuScenes. The memory of `spent` may serve them. Throws DataError.
+std::vector<Point> read_scan(const std::filesystem::path& file, std::size_t bin_columns = 4,
+                             std::vector<Point> spent = {});
 
 /// Points of a scan by its size or header; throws DataError.
 std::size_t scan_point_count(const std::filesystem::path& file, std::size_t bin_columns = 4);
-
-/// Size of a file in bytes; throws DataError.
-std::uintmax_t size_of(const std::filesystem::path& file);
 
 }  // namespace mosbench

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "datasets/reading_options.hpp"
@@ -34,12 +35,17 @@ class ScanSource {
     if (stamps_ns().empty()) return std::nullopt;
     return stamps_ns().at(scan_index);
   }
-  /// The frame without truth. Safe to call from several threads. Throws DataError.
-  virtual Frame read(std::size_t scan_index) const = 0;
+  /// The frame without truth, as `Sequence::read`.
+  Frame read(std::size_t scan_index, Frame spent = {}) const {
+    return read_frame(scan_index, std::move(spent));
+  }
   /// Everything that decides the frames.
   virtual std::vector<std::filesystem::path> files() const = 0;
   virtual std::vector<std::string> remarks() const = 0;
   virtual ReadingStatement reading() const = 0;
+
+ private:
+  virtual Frame read_frame(std::size_t scan_index, Frame spent) const = 0;
 };
 
 }  // namespace mosbench

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/scan.hpp"
@@ -36,8 +37,11 @@ class Sequence {
   /// The frame's pose and stamp without its points.
   virtual Pose map_from_sensor(std::size_t scan_index) const = 0;
   virtual std::optional<std::int64_t> stamp_ns(std::size_t scan_index) const = 0;
-  /// Safe to call from several threads. Throws DataError.
-  virtual Frame read(std::size_t scan_index) const = 0;
+  /// Safe to call from several threads. The memory of `spent` may serve the frame. Throws
+  /// DataError.
+  Frame read(std::size_t scan_index, Frame spent = {}) const {
+    return read_frame(scan_index, std::move(spent));
+  }
   /// The truth of a labelled scan without its points when the format allows; throws DataError.
   virtual std::vector<std::uint32_t> read_truth(std::size_t scan_index) const = 0;
   /// Number of points of a scan without reading them.
@@ -48,6 +52,9 @@ class Sequence {
   virtual std::vector<std::string> remarks() const = 0;
   /// What was read in which convention; two runs on the same files may differ in it.
   virtual ReadingStatement reading() const = 0;
+
+ private:
+  virtual Frame read_frame(std::size_t scan_index, Frame spent) const = 0;
 };
 
 /// The indices of the labelled scans, in order.

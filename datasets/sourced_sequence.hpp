@@ -27,11 +27,6 @@ class SourcedSequence : public Sequence {
   std::optional<std::int64_t> stamp_ns(std::size_t scan_index) const override {
     return scans_->stamp_ns(scan_index);
   }
-  Frame read(std::size_t scan_index) const override {
-    Frame frame = scans_->read(scan_index);
-    if (has_truth(scan_index)) frame.truth = read_truth(scan_index);
-    return frame;
-  }
   std::size_t point_count(std::size_t scan_index) const override {
     return scans_->point_count(scan_index);
   }
@@ -43,6 +38,12 @@ class SourcedSequence : public Sequence {
   const ScanSource& source() const { return *scans_; }
 
  private:
+  Frame read_frame(std::size_t scan_index, Frame spent) const override {
+    Frame frame = scans_->read(scan_index, std::move(spent));
+    if (has_truth(scan_index)) frame.truth = read_truth(scan_index);
+    return frame;
+  }
+
   std::string name_;
   std::unique_ptr<ScanSource> scans_;
 };

@@ -51,11 +51,11 @@ SequenceProfile profile_sequence(const Sequence& sequence, const RunSettings& se
   pipeline.record_stages(&events);
   Progress progress("profile " + sequence.name(), scans);
   std::vector<std::int64_t> stamps_ns;
+  Frame frame;
   for (std::size_t k = 0; k < scans; ++k) {
     ScanProfile& scan = profile.scans.emplace_back();
     scan.start = Clock::now();
-    Frame frame;
-    scan.read = cost_of([&] { frame = sequence.read(k); });
+    scan.read = cost_of([&] { frame = sequence.read(k, std::move(frame)); });
     if (frame.stamp_ns) stamps_ns.push_back(*frame.stamp_ns);
     scan.stem = frame.stem;
     scan.points = frame.points.size();

@@ -25,7 +25,7 @@ ordered_json to_json(const ScanRow& row) {
   json["tn"] = row.counts->tn;
   json["ignored"] = row.counts->ignored;
   json["unknown_ids"] = row.counts->unknown_ids;
-  json["truth_hash"] = row.truth_hash;
+  json["truth_hash"] = std::string_view(row.truth_hash.data(), row.truth_hash.size());
   return json;
 }
 
@@ -39,7 +39,7 @@ ScanRow row_from_json(const ordered_json& json) {
   if (json.contains("tp")) {
     row.counts = Confusion{json.at("tp"), json.at("fp"),      json.at("fn"),
                            json.at("tn"), json.at("ignored"), json.at("unknown_ids")};
-    row.truth_hash = json.value("truth_hash", "");
+    json.value("truth_hash", "").copy(row.truth_hash.data(), row.truth_hash.size());
   }
   return row;
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/stage_times.hpp"
+#include "datasets/fingerprint.hpp"
 #include "eval/confusion.hpp"
 
 namespace mosbench {
@@ -21,7 +22,7 @@ struct ScanRow {
   std::size_t nonfinite_points = 0;
   std::optional<double> threshold;  ///< Otsu's T, see ScanResult
   std::optional<Confusion> counts;  ///< when the scan has truth
-  std::string truth_hash;           ///< of that truth, see `truth_hash`; empty in older files
+  TruthHash truth_hash{};           ///< of that truth; zeros when an older file does not tell
 };
 
 /// What one scan cost: wall milliseconds, and the memory the process held after it.

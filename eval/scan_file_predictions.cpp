@@ -9,7 +9,6 @@
 #include "datasets/files.hpp"
 #include "datasets/label_file.hpp"
 #include "datasets/pcd_file.hpp"
-#include "datasets/scan_file.hpp"
 #include "datasets/text.hpp"
 #include "eval/prediction_mask.hpp"
 

@@ -45,7 +45,7 @@ std::vector<ScanRow> score_one(const Sequence& sequence, std::size_t k, const Sc
   const std::optional<Confusion> counted = labels.counts(k);
   const std::vector<std::uint32_t> predicted =
       counted ? std::vector<std::uint32_t>{} : labels.read(k);
-  const std::string hash = truth_hash(*frame.truth);
+  const TruthHash hash = truth_hash(*frame.truth);
   std::vector<ScanRow> rows;
   for (const ScoreRule& rule : task.rules) {
     ScanRow& row = rows.emplace_back();

@@ -25,7 +25,6 @@ double milliseconds_since(Clock::time_point start) {
 
 /// What scoring needs of a scan until its labels are final.
 struct PendingScan {
-  std::string stem;
   std::size_t points = 0;
   std::optional<std::vector<std::uint32_t>> truth;
   std::vector<Point> truth_points;  ///< only with truth, and only when the protocol has a range
@@ -42,6 +41,10 @@ class SequenceRun {
         launch_(settings.threads > 1 ? std::launch::async : std::launch::deferred),
         pipeline_(settings.config, settings.variant, settings.threads, sequence.size()) {
     pipeline_.record_scores(settings.keeps_scores);
+    // What stays is allocated before the large buffers that come and go.
+    rows_.scans.resize(sequence.size());
+    rows_.costs.resize(sequence.size());
+    for (std::size_t k = 0; k < sequence.size(); ++k) rows_.scans[k].stem = sequence.stem(k);
   }
 
   SequenceRows run() {
@@ -51,8 +54,7 @@ class SequenceRun {
     for (std::size_t k = 0; k < sequence_.size(); ++k) {
       const Clock::time_point read_start = Clock::now();
       Frame frame = upcoming.get();
-      ScanCost& cost = rows_.costs.emplace_back();
-      cost.read_ms = milliseconds_since(read_start);
+      rows_.costs[k].read_ms = milliseconds_since(read_start);
       if (k + 1 < sequence_.size()) upcoming = start_reading(k + 1);
       push(k, std::move(frame));
       progress.advance();
@@ -67,8 +69,8 @@ class SequenceRun {
  private:
   std::future<Frame> start_reading(std::size_t scan_index) {
     // One reading at a time, so the fingerprint sees the frames in order.
-    return std::async(launch_, [this, scan_index] {
-      Frame frame = sequence_.read(scan_index);
+    return std::async(launch_, [this, scan_index, spent = std::move(spent_)]() mutable {
+      Frame frame = sequence_.read(scan_index, std::move(spent));
       fingerprint_.add(frame);
       return frame;
     });
@@ -77,28 +79,26 @@ class SequenceRun {
   void push(std::size_t scan_index, Frame frame) {
     const Clock::time_point start = Clock::now();
     std::vector<ScanResult> finals = push_scan(pipeline_, sequence_, scan_index, frame);
-    rows_.costs.back().push_ms = milliseconds_since(start);
-    rows_.costs.back().resident_mib = resident_mib();
+    rows_.costs[scan_index].push_ms = milliseconds_since(start);
+    rows_.costs[scan_index].resident_mib = resident_mib();
     remember(std::move(frame));
     for (ScanResult& result : finals) accept(std::move(result));
   }
 
   void remember(Frame frame) {
     PendingScan& scan = pending_.emplace_back();
-    scan.stem = std::move(frame.stem);
     scan.points = frame.points.size();
     scan.truth = std::move(frame.truth);
     if (scan.truth && settings_.protocol->range_rule != RangeRule::kNone) {
       scan.truth_points = std::move(frame.points);
     }
+    spent_ = std::move(frame);
   }
 
   void accept(ScanResult result) {
-    const PendingScan scan = std::move(pending_.front());
-    pending_.pop_front();
+    PendingScan& scan = pending_.front();
     rows_.costs[result.scan_index].stages_ms = result.stage_times;
-    ScanRow& row = rows_.scans.emplace_back();
-    row.stem = scan.stem;
+    ScanRow& row = rows_.scans[result.scan_index];
     row.points = scan.points;
     row.predicted_moving_points =
         static_cast<std::size_t>(std::ranges::count(result.labels, kMovingLabel));
@@ -109,7 +109,9 @@ class SequenceRun {
                               settings_.range);
       row.truth_hash = truth_hash(*scan.truth);
     }
-    write(scan.stem, std::move(result));
+    if (spent_.points.empty()) spent_.points = std::move(scan.truth_points);
+    pending_.pop_front();
+    write(row.stem, std::move(result));
   }
 
   void write(const std::string& stem, ScanResult result) {
@@ -133,6 +135,7 @@ class SequenceRun {
   ContentFingerprint fingerprint_;
   std::deque<PendingScan> pending_;
   std::future<void> writing_;
+  Frame spent_;  ///< gives its memory to a coming frame
   SequenceRows rows_;
 };
 
