@@ -47,6 +47,26 @@ TEST_F(Score, GivesTheNumbersOfTheRunForItsLabelsWhereverTheyLie) {
   }
 }
 
+TEST_F(Score, ReadsScansOfFiveColumnsWhereToldSo) {
+  for (std::size_t k = 0; k < 8; ++k) {
+    const fs::path file = folder_ / "room/velodyne" / (cli::stem(k) + ".bin");
+    std::string wide;
+    for (const Point& point : read_bin(file)) {
+      wide.append(format_bin({&point, 1})).append(sizeof(float), '\0');  // the ring
+    }
+    write_file_atomic(file, wide);
+  }
+  const cli::Answer told = score(folder_ / "out", {"--bin-columns", "5", "--json"});
+  ASSERT_EQ(told.exit_code, 0) << told.err;
+  EXPECT_EQ(nlohmann::json::parse(told.out).at("sequences").at(0).at("summary"),
+            run_.at("sequences").at(0).at("summary"));
+  EXPECT_EQ(score(folder_ / "out").exit_code, 3);
+  const cli::Answer broken_down =
+      cli::run({"breakdown", (folder_ / "room").string(), "--predictions",
+                (folder_ / "out").string(), "--bin-columns", "5"});
+  EXPECT_EQ(broken_down.exit_code, 0) << broken_down.err;
+}
+
 TEST_F(Score, PrintsATableOfTheChosenProtocol) {
   const cli::Answer answer =
       score(folder_ / "out", {"--protocol", "doals-dynablox", "--range", "0.5,20"});
