@@ -2,9 +2,24 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <exception>
 
 namespace mosbench {
+namespace {
+
+/// How long to watch for an event before sleeping until it. To be woken takes about as long, and a
+/// scan has some fifteen stages that begin and end with it.
+constexpr std::chrono::microseconds kWatch{60};
+
+/// Returns when `happened` or a little later; lets other threads run meanwhile.
+template <typename Happened>
+void watch(Happened&& happened) {
+  const auto end = std::chrono::steady_clock::now() + kWatch;
+  while (!happened() && std::chrono::steady_clock::now() < end) std::this_thread::yield();
+}
+
+}  // namespace
 
 unsigned hardware_threads() { return std::max(1U, std::thread::hardware_concurrency()); }
 
@@ -61,6 +76,7 @@ void ThreadPool::for_ranges(std::size_t count, std::size_t grain,
     }
     start_.notify_all();
     job.drain(0);
+    watch([this] { return busy_ == 0; });
     std::unique_lock lock(mutex_);
     job_ = nullptr;  // who wakes only now has nothing left to do and is not waited for
     finish_.wait(lock, [this] { return busy_ == 0; });
@@ -72,6 +88,7 @@ void ThreadPool::serve(unsigned thread) {
   std::size_t served = 0;
   for (;;) {
     Job* job = nullptr;
+    watch([&] { return stop_ || generation_ != served; });
     {
       std::unique_lock lock(mutex_);
       start_.wait(lock, [&] { return stop_ || generation_ != served; });

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
 #include <cstddef>
 #include <functional>
@@ -38,9 +39,10 @@ class ThreadPool {
   std::mutex mutex_;
   std::condition_variable start_, finish_;
   Job* job_ = nullptr;
-  std::size_t generation_ = 0;
-  unsigned busy_ = 0;  // workers at the job
-  bool stop_ = false;
+  // Written under the mutex, so that nobody misses a change; atomic for those who watch without it.
+  std::atomic<std::size_t> generation_ = 0;
+  std::atomic<unsigned> busy_ = 0;  // workers at the job
+  std::atomic<bool> stop_ = false;
   std::vector<std::jthread> workers_;  // last: joined before the members they use are destroyed
 };
 
