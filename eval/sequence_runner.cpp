@@ -25,7 +25,6 @@ double milliseconds_since(Clock::time_point start) {
 
 /// What scoring needs of a scan until its labels are final.
 struct PendingScan {
-  std::size_t points = 0;
   std::optional<std::vector<std::uint32_t>> truth;
   std::vector<Point> truth_points;  ///< only with truth, and only when the protocol has a range
 };
@@ -60,7 +59,7 @@ class SequenceRun {
       progress.advance();
     }
     for (ScanResult& result : pipeline_.finish()) accept(std::move(result));
-    finish_writing();
+    finish_settling();
     rows_.fingerprint = fingerprint_.hex();
     rows_.wall_s = milliseconds_since(start) / 1e3;
     return std::move(rows_);
@@ -87,7 +86,6 @@ class SequenceRun {
 
   void remember(Frame frame) {
     PendingScan& scan = pending_.emplace_back();
-    scan.points = frame.points.size();
     scan.truth = std::move(frame.truth);
     if (scan.truth && settings_.protocol->range_rule != RangeRule::kNone) {
       scan.truth_points = std::move(frame.points);
@@ -96,35 +94,41 @@ class SequenceRun {
   }
 
   void accept(ScanResult result) {
-    PendingScan& scan = pending_.front();
     rows_.costs[result.scan_index].stages_ms = result.stage_times;
+    finish_settling();
+    settling_ = std::async(
+        launch_, [this, scan = std::move(pending_.front()), result = std::move(result)]() mutable {
+          score(scan, result);
+          write(result);
+          return std::move(scan.truth_points);
+        });
+    pending_.pop_front();
+  }
+
+  void score(const PendingScan& scan, const ScanResult& result) {
     ScanRow& row = rows_.scans[result.scan_index];
-    row.points = scan.points;
+    row.points = result.labels.size();
     row.predicted_moving_points =
         static_cast<std::size_t>(std::ranges::count(result.labels, kMovingLabel));
     row.nonfinite_points = result.nonfinite_points;
     row.threshold = result.threshold;
-    if (scan.truth) {
-      row.counts = score_scan(*settings_.protocol, *scan.truth, result.labels, scan.truth_points,
-                              settings_.range);
-      row.truth_hash = truth_hash(*scan.truth);
-    }
-    if (spent_.points.empty()) spent_.points = std::move(scan.truth_points);
-    pending_.pop_front();
-    write(row.stem, std::move(result));
+    if (!scan.truth) return;
+    row.counts = score_scan(*settings_.protocol, *scan.truth, result.labels, scan.truth_points,
+                            settings_.range);
+    row.truth_hash = truth_hash(*scan.truth);
   }
 
-  void write(const std::string& stem, ScanResult result) {
-    finish_writing();
-    writing_ = std::async(launch_, [this, stem, result = std::move(result)] {
-      write_labels(folder_ / "labels" / (stem + ".label"), result.labels);
-      if (!settings_.keeps_scores) return;
-      write_file_atomic(dynamic_score_file(folder_, stem), format_dynamic_scores(result.scores));
-    });
+  void write(const ScanResult& result) const {
+    const std::string& stem = rows_.scans[result.scan_index].stem;
+    write_labels(folder_ / "labels" / (stem + ".label"), result.labels);
+    if (!settings_.keeps_scores) return;
+    write_file_atomic(dynamic_score_file(folder_, stem), format_dynamic_scores(result.scores));
   }
 
-  void finish_writing() {
-    if (writing_.valid()) writing_.get();
+  void finish_settling() {
+    if (!settling_.valid()) return;
+    std::vector<Point> points = settling_.get();
+    if (spent_.points.empty()) spent_.points = std::move(points);
   }
 
   const Sequence& sequence_;
@@ -134,8 +138,8 @@ class SequenceRun {
   Pipeline pipeline_;
   ContentFingerprint fingerprint_;
   std::deque<PendingScan> pending_;
-  std::future<void> writing_;
-  Frame spent_;  ///< gives its memory to a coming frame
+  std::future<std::vector<Point>> settling_;  ///< gives the points back that it scored with
+  Frame spent_;                               ///< gives its memory to a coming frame
   SequenceRows rows_;
 };
 
