@@ -138,7 +138,7 @@ class SequenceRun {
   Pipeline pipeline_;
   ContentFingerprint fingerprint_;
   std::deque<PendingScan> pending_;
-  Frame spent_;                               ///< gives its memory to a coming frame
+  Frame spent_;  ///< gives its memory to a coming frame
   SequenceRows rows_;
   /// Gives the points back that it scored with. Last: its end is awaited before what it uses goes.
   std::future<std::vector<Point>> settling_;
