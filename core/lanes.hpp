@@ -42,6 +42,7 @@ inline __attribute__((always_inline)) void store(const Lanes& lanes, void* to) {
   *static_cast<Unaligned*>(to) = lanes;
 }
 
+/// |x| of each lane.
 template <typename Lanes>
 inline __attribute__((always_inline)) Lanes magnitude(const Lanes& lanes) {
   return lanes < 0 ? -lanes : lanes;

@@ -49,9 +49,9 @@ class Pipeline {
   /// Reading the CPU clock twice per stage costs some microseconds per scan.
   void record_stages(std::vector<StageEvent>* events);
 
-  /// Results of scans pushed from now on hold one dynamic score per point: S of its voxel, which
-  /// Otsu's T is compared with (algorithm step 5c); 0 outside the map and in scans without
-  /// detection. Labels stay as they are; off, which is the default, it costs nothing.
+  /// To be called before the first scan. Results then hold one dynamic score per point: S of its
+  /// voxel, which Otsu's T is compared with (algorithm step 5c); 0 outside the map and in scans
+  /// without detection. Labels stay as they are; off, which is the default, it costs nothing.
   void record_scores(bool record);
 
   /// Voxel blocks of 8x8x8 voxels held in the map, and the bytes of all memory kept between scans.

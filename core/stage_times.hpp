@@ -32,7 +32,7 @@ struct StageEvent {
   Stage stage;
   std::chrono::steady_clock::time_point start;
   double wall_ms;
-  double cpu_ms;  ///< of the whole process, all threads
+  double cpu_ms;  ///< of the whole process, all threads, also while they watch for work
 };
 
 /// CPU time that the process has used so far in all its threads.

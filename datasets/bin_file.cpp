@@ -49,7 +49,9 @@ std::vector<Point> read_bin(const std::filesystem::path& file, std::size_t colum
   if (columns * sizeof(float) != sizeof(Point)) return parse_bin(read_file(file), columns, file);
   const std::uintmax_t size_bytes = size_of(file);
   check_bin_size(size_bytes, columns, file);
-  spent.resize(static_cast<std::size_t>(size_bytes) / sizeof(Point));
+  const auto count = static_cast<std::size_t>(size_bytes) / sizeof(Point);
+  if (spent.capacity() < count) spent = {};  // growing would copy old points
+  spent.resize(count);
   read_file(file, std::as_writable_bytes(std::span(spent)));
   return spent;
 }

@@ -40,11 +40,13 @@ int write_whole(const std::filesystem::path& file, std::string_view bytes) {
   return std::fclose(out.release()) == 0 ? 0 : errno;
 }
 
+void refuse_folder(const std::filesystem::path& file) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(file, ignored)) throw DataError(file, "is a folder", "a file");
+}
+
 OpenFile open_to_read(const std::filesystem::path& file) {
-  std::error_code error;
-  if (std::filesystem::is_directory(file, error)) {
-    throw DataError(file, "is a folder", "a file");
-  }
+  refuse_folder(file);
   OpenFile in(std::fopen(file.c_str(), "rb"));
   if (!in) throw DataError(file, "cannot be opened (" + reason(errno) + ")", "a readable file");
   return in;
@@ -94,8 +96,9 @@ void read_file(const std::filesystem::path& file, std::span<std::byte> bytes) {
 std::uintmax_t size_of(const std::filesystem::path& file) {
   std::error_code error;
   const std::uintmax_t size_bytes = std::filesystem::file_size(file, error);
-  if (error) throw DataError(file, "has no size (" + error.message() + ")", "a readable file");
-  return size_bytes;
+  if (!error) return size_bytes;
+  refuse_folder(file);
+  throw DataError(file, "cannot be opened (" + error.message() + ")", "a readable file");
 }
 
 void write_file_atomic(const std::filesystem::path& file, std::string_view bytes) {

@@ -14,8 +14,8 @@ bool is_there(const std::filesystem::path& path);
 
 /// All bytes of a file; throws DataError when it cannot be read to its end.
 std::string read_file(const std::filesystem::path& file);
-/// Fills `bytes` with a file of just that size, the bytes of `size_of`; throws DataError when it
-/// cannot be read or has another size by now.
+/// Fills `bytes` with a file that is exactly that long; throws DataError when it cannot be read, or
+/// is longer or shorter (as one that changed since `size_of` told).
 void read_file(const std::filesystem::path& file, std::span<std::byte> bytes);
 
 /// Size of a file in bytes; throws DataError.

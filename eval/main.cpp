@@ -103,6 +103,14 @@ std::string answer_to(std::vector<std::string> arguments) {
   mosbench::add_convert_command(app, answer);
   mosbench::add_doctor_command(app, answer);
   mosbench::add_list_command(app, answer);
+  const auto is_first = [&](const CLI::App* command) {
+    return command->check_name(arguments.front());
+  };
+  if (!arguments.empty() && !arguments.front().starts_with('-') &&
+      std::ranges::none_of(app.get_subcommands(nullptr), is_first)) {
+    throw mosbench::UsageError(
+        fmt::format("'{}' is not a command; see mosbench --help", arguments.front()));
+  }
   try {
     std::ranges::reverse(arguments);  // as CLI11 expects them
     app.parse(std::move(arguments));

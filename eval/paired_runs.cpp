@@ -68,7 +68,7 @@ class Pairing {
 
  private:
   void add_pair(const SequenceResult& sequence, const ScanRow& first, const ScanRow& second) {
-    if (first.truth_hash == TruthHash{} || second.truth_hash == TruthHash{}) {
+    if (!first.truth_hash || !second.truth_hash) {
       add_unlike(Kind::kInput, sequence, "scan " + first.stem + " does not say what truth it has");
     } else if (first.truth_hash != second.truth_hash) {
       add_unlike(Kind::kInput, sequence, "the truth of scan " + first.stem + " differs");

@@ -60,6 +60,7 @@ SequenceProfile profile_sequence(const Sequence& sequence, const RunSettings& se
     scan.stem = frame.stem;
     scan.points = frame.points.size();
     scan.method = cost_of([&] { push_scan(pipeline, sequence, k, frame); });
+    scan.end = Clock::now();
     scan.stages = std::move(events);
     events.clear();
     scan.resident_mib = resident_mib();

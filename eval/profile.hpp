@@ -21,7 +21,7 @@ struct Cost {
 struct ScanProfile {
   std::string stem;
   std::size_t points = 0;
-  std::chrono::steady_clock::time_point start;  ///< of reading
+  std::chrono::steady_clock::time_point start, end;  ///< of reading, and of the method
   Cost read;
   Cost method;  ///< the whole push: all stages and what is between them
   std::vector<StageEvent> stages;

@@ -217,7 +217,7 @@ ordered_json profile_trace(const std::vector<SequenceProfile>& profiles) {
                       {"args", {{"name", profiles[process].name}}}});
     for (const ScanProfile& scan : profiles[process].scans) {
       const double start_us = at_us(scan.start);
-      slice(process, "scan " + scan.stem, start_us, scan.read.wall_ms + scan.method.wall_ms,
+      slice(process, "scan " + scan.stem, start_us, (at_us(scan.end) - start_us) * 1e-3,
             {{"points", scan.points}});
       slice(process, "read", start_us, scan.read.wall_ms, {{"cpu_ms", scan.read.cpu_ms}});
       for (const StageEvent& event : scan.stages) {

@@ -1,10 +1,12 @@
 #include "eval/result_file.hpp"
 
 #include <algorithm>
+#include <stdexcept>
 #include <system_error>
 
 #include "datasets/errors.hpp"
 #include "datasets/files.hpp"
+#include "datasets/text.hpp"
 #include "eval/answer_text.hpp"
 
 namespace mosbench {
@@ -25,8 +27,20 @@ ordered_json to_json(const ScanRow& row) {
   json["tn"] = row.counts->tn;
   json["ignored"] = row.counts->ignored;
   json["unknown_ids"] = row.counts->unknown_ids;
-  json["truth_hash"] = std::string_view(row.truth_hash.data(), row.truth_hash.size());
+  if (row.truth_hash) {
+    json["truth_hash"] = std::string_view(row.truth_hash->data(), row.truth_hash->size());
+  }
   return json;
+}
+
+std::optional<TruthHash> truth_hash_from(const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  TruthHash hash;
+  if (text.size() != hash.size()) {
+    throw std::invalid_argument("\"truth_hash\" is " + mosbench::quoted(text) + ", no 16 digits");
+  }
+  std::ranges::copy(text, hash.begin());
+  return hash;
 }
 
 ScanRow row_from_json(const ordered_json& json) {
@@ -39,7 +53,7 @@ ScanRow row_from_json(const ordered_json& json) {
   if (json.contains("tp")) {
     row.counts = Confusion{json.at("tp"), json.at("fp"),      json.at("fn"),
                            json.at("tn"), json.at("ignored"), json.at("unknown_ids")};
-    json.value("truth_hash", "").copy(row.truth_hash.data(), row.truth_hash.size());
+    row.truth_hash = truth_hash_from(json.value("truth_hash", ""));
   }
   return row;
 }
@@ -190,6 +204,8 @@ ResultFile read_result(const std::filesystem::path& file) {
     }
     return result;
   } catch (const ordered_json::exception& error) {
+    throw DataError(file, error.what(), "a result.json of mosbench run");
+  } catch (const std::invalid_argument& error) {
     throw DataError(file, error.what(), "a result.json of mosbench run");
   }
 }

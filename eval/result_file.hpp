@@ -20,9 +20,9 @@ struct ScanRow {
   std::size_t points = 0;
   std::size_t predicted_moving_points = 0;
   std::size_t nonfinite_points = 0;
-  std::optional<double> threshold;  ///< Otsu's T, see ScanResult
-  std::optional<Confusion> counts;  ///< when the scan has truth
-  TruthHash truth_hash{};           ///< of that truth; zeros when an older file does not tell
+  std::optional<double> threshold;      ///< Otsu's T, see ScanResult
+  std::optional<Confusion> counts;      ///< when the scan has truth
+  std::optional<TruthHash> truth_hash;  ///< of that truth; older files do not tell
 };
 
 /// What one scan cost: wall milliseconds, and the memory the process held after it.

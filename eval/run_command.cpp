@@ -4,7 +4,6 @@
 #include <memory>
 
 #include "eval/commands.hpp"
-#include "eval/machine.hpp"
 #include "eval/method_options.hpp"
 #include "eval/run_execute.hpp"
 #include "eval/run_plan.hpp"
@@ -37,7 +36,6 @@ Examples:
   mosbench run sim/00 --config near.json --variant release-2025 --threads 4 --json)";
 
 std::string run(const RunOptions& options) {
-  keep_freed_memory();
   const RunPlan plan = plan_run(options);
   const std::vector<SequenceOutcome> outcomes = execute_run(plan);
   return options.json ? run_report_json(plan, outcomes) : run_report_text(plan, outcomes);

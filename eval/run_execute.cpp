@@ -135,6 +135,7 @@ SequenceOutcome reuse(const RunPlan& plan, const PlannedSequence& planned) {
 }  // namespace
 
 std::vector<SequenceOutcome> execute_run(const RunPlan& plan) {
+  keep_freed_memory();
   const FolderLock lock(plan.out);
   for (const std::string& note : plan.notes) tell(note);
   tell(fmt::format("results go to {}", plan.out.string()));

@@ -6,6 +6,7 @@
 #include "eval/answer_text.hpp"
 #include "eval/benchmark_split.hpp"
 #include "eval/metrics.hpp"
+#include "eval/reading_json.hpp"
 #include "eval/score_table.hpp"
 #include "eval/simulated.hpp"
 #include "eval/summary_json.hpp"
@@ -129,6 +130,7 @@ void write_scores(const Dataset& dataset, const ScoreRule& rule, const MethodNam
                             {{"name", std::string(rule.protocol->name)},
                              {"min_range_m", rule.range.min_m},
                              {"max_range_m", rule.range.max_m}}},
+                           {"reading", to_json(recorded.reading())},
                            {"code", {{"version", std::string(kMosbenchVersion)}}},
                            {"predictions", predictions_json(*sequence.opened)}};
     if (const auto origin = simulated_origin_json(dataset)) header["simulated"] = *origin;

@@ -141,7 +141,7 @@ std::string benchmark_notice(const Protocol& protocol, const std::vector<Split>&
     return fmt::format("the benchmark's number is that of split {}\n", protocol.default_split);
   }
   return fmt::format(
-      "no row is the benchmark's number: it is over split {}, which is not in this data set\n",
+      "no row is the benchmark's number: it is over split {}, which was not scored\n",
       protocol.default_split);
 }
 

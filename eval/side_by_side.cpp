@@ -35,6 +35,9 @@ std::string why(const ProtocolDescription& words, const ScoreRule& rule, const C
   } else if (rule.protocol->range_rule == RangeRule::kTruthAndPrediction && rule.range.max_m > 0) {
     text += fmt::format("; only points at {:g} to {:g} m", rule.range.min_m, rule.range.max_m);
   }
+  if (!rule.protocol->default_split.empty()) {
+    text += fmt::format("; published over split {} alone", rule.protocol->default_split);
+  }
   return text + fmt::format("; truth ids: {}; 0/0 gives {}", words.truth, words.empty_case);
 }
 

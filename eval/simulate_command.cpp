@@ -60,7 +60,9 @@ void add_simulate_command(CLI::App& app, std::string& answer) {
   command->add_option("--scans", simulation.scans, "Scans per sequence")
       ->required()
       ->check(CLI::Range(std::size_t{1}, std::size_t{1000000}));
-  command->add_option("--seed", simulation.seed, "Of everything random")->required();
+  command->add_option("--seed", simulation.seed, "Of everything random")
+      ->required()
+      ->check(CLI::NonNegativeNumber);
   command->add_option("--out", simulation.out, "Becomes the root of the data set")->required();
   command->add_option("--threads", simulation.threads, "Files do not depend on it (default: all)")
       ->check(CLI::Range(1U, 1024U));

@@ -197,21 +197,20 @@ FilledTable fill_table(const PaperTable& table, const std::vector<PublishedCell>
 
 std::vector<std::string> left_out(const PaperTable& table, const std::vector<ResultSet>& runs) {
   std::vector<std::string> sentences;
-  const auto add = [&](const ResultSet& run, const std::string& what) {
-    sentences.push_back(
-        fmt::format("left out of table {}: {} {}", table.name, run.path.string(), what));
-  };
   for (const ResultSet& run : runs) {
-    if (run.front().dataset != table.dataset) {
-      add(run, fmt::format("is of data set {}, not {}", run.front().dataset, table.dataset));
-      continue;
-    }
     for (const SequenceResult& sequence : run.sequences) {
       const bool wanted = std::ranges::any_of(table.columns, [&](const TableColumn& column) {
         return belongs_to(sequence.sequence, column);
       });
-      if (!wanted)
-        add(run, fmt::format("sequence {}, which no column is about", sequence.sequence));
+      std::string why;
+      if (sequence.dataset != table.dataset) {
+        why = fmt::format("is of data set {}, not {}", sequence.dataset, table.dataset);
+      } else if (!wanted) {
+        why = fmt::format("is of sequence {}, which no column is about", sequence.sequence);
+      }
+      if (why.empty()) continue;
+      sentences.push_back(
+          fmt::format("left out of table {}: {} {}", table.name, sequence.file.string(), why));
     }
   }
   return sentences;

@@ -47,7 +47,7 @@ struct FilledTable {
 FilledTable fill_table(const PaperTable& table, const std::vector<PublishedCell>& published,
                        const std::vector<ResultSet>& runs);
 
-/// A sentence on each run, or sequence of a run, that no cell of the table is about.
+/// A sentence on each result that no cell of the table is about.
 std::vector<std::string> left_out(const PaperTable& table, const std::vector<ResultSet>& runs);
 
 }  // namespace mosbench

@@ -138,8 +138,10 @@ std::string table_markdown(const FilledTable& table) {
 }
 
 std::string table_latex(const FilledTable& table) {
-  std::string text = fmt::format("% {}\n\\begin{{tabular}}{{lll{}}}\n", table.table->title,
-                                 std::string(table.table->columns.size(), 'r'));
+  std::string text = fmt::format("% {}\n", table.table->title);
+  if (is_simulated(table)) text += "% measured on SIMULATED data: not comparable\n";
+  text +=
+      fmt::format("\\begin{{tabular}}{{lll{}}}\n", std::string(table.table->columns.size(), 'r'));
   text += "method & setting & protocol";
   for (const TableColumn& column : table.table->columns) {
     text += " & " + escaped(std::string(column.name));

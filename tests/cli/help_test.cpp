@@ -40,21 +40,26 @@ TEST(Version, NamesProgramAndCompiler) {
 }
 
 TEST(Usage, IsRefusedWithExitCode2AndAPrefixedMessage) {
-  for (const std::vector<std::string>& arguments :
-       std::vector<std::vector<std::string>>{{},
-                                             {"rum"},
-                                             {"run"},
-                                             {"run", "x", "--no-such-flag"},
-                                             {"run", "x", "--threads", "0"},
-                                             {"run", "x", "--threads", "many"},
-                                             {"list", "nonsense"},
-                                             {"score", "x"},
-                                             {"simulate", "--layout", "doals"}}) {
+  for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{
+           {},
+           {"rum"},
+           {"run"},
+           {"run", "x", "--no-such-flag"},
+           {"run", "x", "--threads", "0"},
+           {"run", "x", "--threads", "many"},
+           {"list", "nonsense"},
+           {"score", "x"},
+           {"simulate", "--layout", "doals", "--scene", "room", "--out", "x", "--seed", "-1"},
+           {"simulate", "--layout", "doals"}}) {
     const cli::Answer answer = cli::run(arguments);
     EXPECT_EQ(answer.exit_code, 2) << testing::PrintToString(arguments);
     EXPECT_THAT(answer.err, StartsWith("mosbench: ")) << testing::PrintToString(arguments);
     EXPECT_EQ(answer.out, "") << testing::PrintToString(arguments);
   }
+}
+
+TEST(Usage, NamesAnUnknownCommand) {
+  EXPECT_THAT(cli::run({"rum"}).err, HasSubstr("'rum' is not a command"));
 }
 
 TEST(List, ShowsDatasetsPresetsProtocolsAndScenes) {

@@ -75,7 +75,14 @@ TEST_F(Tables, FromSimulatedDataCompareNothingAndNameWhatIsMissing) {
       cli::run({"table", "III", (folder_ / "out-sipailou").string(), "--format", "csv"});
   ASSERT_EQ(other.exit_code, 0) << other.err;
   EXPECT_THAT(other.err, HasSubstr("left out of table III"));
-  EXPECT_THAT(other.err, HasSubstr("is of data set sipailou, not helimos"));
+  EXPECT_THAT(other.err, HasSubstr("06/result.json is of data set sipailou, not helimos"));
+
+  const cli::Answer elsewhere =
+      cli::run({"table", "apollo", (folder_ / "out-sipailou").string(), "--format", "latex"});
+  EXPECT_THAT(elsewhere.err, HasSubstr("left out of table apollo"));
+  const cli::Answer latex =
+      cli::run({"table", "II", (folder_ / "out-sipailou").string(), "--format", "latex"});
+  EXPECT_THAT(latex.out, HasSubstr("% measured on SIMULATED data"));
 
   fs::remove_all(folder_ / "out-helimos/helimos/Ouster");
   const cli::Answer part =

@@ -195,7 +195,8 @@ inline void config(std::string_view text) {
 inline void result(std::string_view bytes) {
   with_file(bytes, [](const std::filesystem::path& file) {
     const SequenceResult read = read_sequence_result(file);
-    for (const ScanRow* row : counted_scans(read)) require(row->counts.has_value());
+    const std::string formatted = format_scored({}, read.scans);
+    require(format_scored({}, read_result(MemoryFile(formatted).path()).rows.scans) == formatted);
   });
 }
 

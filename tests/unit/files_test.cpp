@@ -54,6 +54,25 @@ TEST(ReadFile, TellsAFolderAndAMissingFileApart) {
               AllOf(HasSubstr("absent"), HasSubstr("No such file")));
 }
 
+TEST(ReadFile, IntoBytesWantsAFileOfJustThatLength) {
+  const TempFolder folder;
+  const auto file = folder.write("f", "abc");
+  std::vector<std::byte> bytes(3);
+  read_file(file, bytes);
+  EXPECT_EQ(bytes[2], std::byte{'c'});
+  for (const std::size_t length : {0U, 2U, 4U}) {
+    bytes.resize(length);
+    EXPECT_THAT(message_of<DataError>([&] { read_file(file, bytes); }),
+                HasSubstr("changed while it was read"))
+        << length;
+  }
+  bytes.clear();
+  read_file(folder.write("empty", ""), bytes);
+  EXPECT_THAT(message_of<DataError>([&] { size_of(folder.path()); }), HasSubstr("is a folder"));
+  EXPECT_THAT(message_of<DataError>([&] { size_of(folder / "none"); }),
+              HasSubstr("none: cannot be opened (No such file"));
+}
+
 TEST(ReadFile, ReadsAnEmptyFile) {
   const TempFolder folder;
   EXPECT_EQ(read_file(folder.write("empty", "")), "");

@@ -55,6 +55,18 @@ TEST(BinFile, ReadsBackFromDisk) {
   EXPECT_EQ(format_bin(read_bin(folder / "velodyne/000000.bin")), format_bin(points));
 }
 
+TEST(BinFile, HoldsNoPointOfTheScanWhoseMemoryItTakes) {
+  const TempFolder folder;
+  const std::vector<Point> points = {{1, 2, 3, 4}, {5, 6, 7, 8}};
+  write_bin(folder / "0.bin", points);
+  for (const std::size_t spent : {0U, 1U, 2U, 9U}) {
+    const auto read = read_bin(folder / "0.bin", 4, std::vector<Point>(spent, Point{9, 9, 9, 9}));
+    EXPECT_EQ(format_bin(read), format_bin(points)) << spent;
+  }
+  write_bin(folder / "empty.bin", {});
+  EXPECT_TRUE(read_bin(folder / "empty.bin", 4, points).empty());
+}
+
 TEST(LabelFile, KeepsAll32Bits) {
   const std::string bytes("\xfb\0\x05\0\x09\0\0\0", 8);
   const auto labels = parse_labels(bytes, 2, "a.label");

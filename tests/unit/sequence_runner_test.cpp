@@ -42,8 +42,8 @@ class BrokenSequence : public Sequence {
 };
 
 TEST(SequenceRunner, EndsWithTheErrorOfAScanThatCannotBeRead) {
-  const TempFolder folder;
   for (const unsigned threads : {1U, 2U}) {
+    const TempFolder folder;
     RunSettings settings;
     settings.protocol = &protocol_named("mapmos");
     settings.range = settings.protocol->default_range;
