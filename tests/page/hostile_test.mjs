@@ -12,12 +12,12 @@ let browser;
 before(async () => (browser = await openBrowser()));
 after(() => browser.close());
 
-// Names that the program knows or refuses.
-const KNOWN = ['sipailou', 'paper-2024'];
+// Names and digits that the program refuses in any other form.
+const CHECKED = /^(sipailou|paper-2024|[0-9a-f]{16})$/;
 
 /** Every string of a JSON value replaced. */
 function poisoned(value) {
-  if (typeof value === 'string') return KNOWN.includes(value) ? value : EVIL;
+  if (typeof value === 'string') return CHECKED.test(value) ? value : EVIL;
   if (Array.isArray(value)) return value.map(poisoned);
   if (value === null || typeof value !== 'object') return value;
   return Object.fromEntries(Object.entries(value).map(([key, inner]) => [key, poisoned(inner)]));
