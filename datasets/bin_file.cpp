@@ -26,10 +26,6 @@ std::vector<Point> parse_bin(std::string_view bytes, std::size_t columns,
   check_bin_size(bytes.size(), columns, file);
   const std::size_t record_bytes = columns * sizeof(float);
   std::vector<Point> points(bytes.size() / record_bytes);
-  if (record_bytes == sizeof(Point) && !points.empty()) {
-    std::memcpy(points.data(), bytes.data(), bytes.size());
-    return points;
-  }
   for (std::size_t i = 0; i < points.size(); ++i) {
     std::memcpy(&points[i], bytes.data() + i * record_bytes, sizeof(Point));
   }

@@ -1,7 +1,6 @@
 #include "eval/result_file.hpp"
 
 #include <algorithm>
-#include <stdexcept>
 #include <system_error>
 
 #include "datasets/errors.hpp"
@@ -33,17 +32,21 @@ ordered_json to_json(const ScanRow& row) {
   return json;
 }
 
-std::optional<TruthHash> truth_hash_from(const std::string& text) {
+constexpr const char* kExpected = "a result.json of mosbench run";
+
+std::optional<TruthHash> truth_hash_from(const std::string& text,
+                                         const std::filesystem::path& file) {
   if (text.empty()) return std::nullopt;
   TruthHash hash;
   if (text.size() != hash.size()) {
-    throw std::invalid_argument("\"truth_hash\" is " + mosbench::quoted(text) + ", no 16 digits");
+    throw DataError(file, "\"truth_hash\" is " + mosbench::quoted(text) + ", no 16 digits",
+                    kExpected);
   }
   std::ranges::copy(text, hash.begin());
   return hash;
 }
 
-ScanRow row_from_json(const ordered_json& json) {
+ScanRow row_from_json(const ordered_json& json, const std::filesystem::path& file) {
   ScanRow row;
   row.stem = json.at("stem").get<std::string>();
   row.points = json.at("points").get<std::size_t>();
@@ -53,7 +56,7 @@ ScanRow row_from_json(const ordered_json& json) {
   if (json.contains("tp")) {
     row.counts = Confusion{json.at("tp"), json.at("fp"),      json.at("fn"),
                            json.at("tn"), json.at("ignored"), json.at("unknown_ids")};
-    row.truth_hash = truth_hash_from(json.value("truth_hash", ""));
+    row.truth_hash = truth_hash_from(json.value("truth_hash", ""), file);
   }
   return row;
 }
@@ -192,7 +195,7 @@ ResultFile read_result(const std::filesystem::path& file) {
     ResultFile result;
     result.content = ordered_json::parse(read_file(file));
     for (const ordered_json& row : result.content.at("scans")) {
-      result.rows.scans.push_back(row_from_json(row));
+      result.rows.scans.push_back(row_from_json(row, file));
     }
     result.rows.fingerprint = result.content.value("fingerprint", "");
     // Accepted results (baselines) and scores of others' labels come without a clock.
@@ -204,9 +207,7 @@ ResultFile read_result(const std::filesystem::path& file) {
     }
     return result;
   } catch (const ordered_json::exception& error) {
-    throw DataError(file, error.what(), "a result.json of mosbench run");
-  } catch (const std::invalid_argument& error) {
-    throw DataError(file, error.what(), "a result.json of mosbench run");
+    throw DataError(file, error.what(), kExpected);
   }
 }
 

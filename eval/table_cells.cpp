@@ -151,9 +151,15 @@ TableRow measured_row(const PaperTable& table, const ResultSet& run, const Publi
   return filled;
 }
 
-bool has_values(const PaperTable& table, const ResultSet& run) {
+bool in_any_column(const PaperTable& table, const SequenceResult& sequence) {
   return std::ranges::any_of(table.columns, [&](const TableColumn& column) {
-    return !in_column(run, column).sequences.empty();
+    return belongs_to(sequence.sequence, column);
+  });
+}
+
+bool has_values(const PaperTable& table, const ResultSet& run) {
+  return std::ranges::any_of(run.sequences, [&](const SequenceResult& sequence) {
+    return in_any_column(table, sequence);
   });
 }
 
@@ -199,13 +205,10 @@ std::vector<std::string> left_out(const PaperTable& table, const std::vector<Res
   std::vector<std::string> sentences;
   for (const ResultSet& run : runs) {
     for (const SequenceResult& sequence : run.sequences) {
-      const bool wanted = std::ranges::any_of(table.columns, [&](const TableColumn& column) {
-        return belongs_to(sequence.sequence, column);
-      });
       std::string why;
       if (sequence.dataset != table.dataset) {
         why = fmt::format("is of data set {}, not {}", sequence.dataset, table.dataset);
-      } else if (!wanted) {
+      } else if (!in_any_column(table, sequence)) {
         why = fmt::format("is of sequence {}, which no column is about", sequence.sequence);
       }
       if (why.empty()) continue;
