@@ -5,13 +5,14 @@ namespace mosbench {
 namespace {
 
 /// Every block turns from this scan's occupied voxels to the previous scan's.
-void change_detection_stage(benchmark::State& state, StagedScan& staged, ThreadPool&) {
+void change_detection_stage(benchmark::State& state, StagedScans& staged, ThreadPool&) {
   std::vector<BlockStates> before, after;
   std::size_t expected = 0;
-  for (std::size_t i = 0; i < staged.observed.blocks.size(); ++i) {
-    const BlockMask& observed = staged.observed.masks[i];
-    const BlockMask* now = staged.scan.occupied_in(staged.observed.blocks[i]);
-    const BlockMask* then = staged.previous.occupied_in(staged.observed.blocks[i]);
+  const VoxelList& list = staged.last().observed;
+  for (std::size_t i = 0; i < list.blocks.size(); ++i) {
+    const BlockMask& observed = list.masks[i];
+    const BlockMask* now = staged.last().scan.occupied_in(list.blocks[i]);
+    const BlockMask* then = staged.last_but_one().scan.occupied_in(list.blocks[i]);
     const BlockMask here = now == nullptr ? BlockMask{} : *now & observed;
     const BlockMask there = then == nullptr ? BlockMask{} : *then & observed;
     before.push_back({here, without(observed, here)});

@@ -37,7 +37,7 @@ bool equals_all_pairs(const NearBlocks& near) {
   return same;
 }
 
-void distance_field_stage(benchmark::State& state, StagedScan& staged, ThreadPool&) {
+void distance_field_stage(benchmark::State& state, StagedScans& staged, ThreadPool&) {
   const NearBlocks near(staged);
   BlockDistances distances;
   std::size_t blocks = 0;

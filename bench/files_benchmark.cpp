@@ -27,8 +27,8 @@ class ScratchFile {
   std::filesystem::path path_;
 };
 
-void read_stage(benchmark::State& state, StagedScan& staged, ThreadPool&) {
-  const std::vector<Point>& written = staged.workload.frames.back().points;
+void read_stage(benchmark::State& state, StagedScans& staged, ThreadPool&) {
+  const std::vector<Point>& written = staged.last().frame.points;
   const ScratchFile file(".bin");
   write_bin(file.path(), written);
   std::vector<Point> points;
@@ -37,11 +37,11 @@ void read_stage(benchmark::State& state, StagedScan& staged, ThreadPool&) {
   expect(state, format_bin(points) == format_bin(written));
 }
 
-void write_stage(benchmark::State& state, StagedScan& staged, ThreadPool&) {
+void write_stage(benchmark::State& state, StagedScans& staged, ThreadPool&) {
   const ScratchFile file(".label");
-  for (auto _ : state) write_labels(file.path(), staged.labels);
-  count_items(state, "points", staged.labels.size());
-  expect(state, read_labels(file.path(), staged.labels.size()) == staged.labels);
+  for (auto _ : state) write_labels(file.path(), staged.last().labels);
+  count_items(state, "points", staged.last().labels.size());
+  expect(state, read_labels(file.path(), staged.last().labels.size()) == staged.last().labels);
 }
 
 const RegisterStage read_registered("read", read_stage, false);

@@ -18,7 +18,7 @@ double settled_belief(const Config& config, double squared) {
   return p;
 }
 
-void hmm_stage(benchmark::State& state, StagedScan& staged, ThreadPool&) {
+void hmm_stage(benchmark::State& state, StagedScans& staged, ThreadPool&) {
   const NearBlocks near(staged);
   std::vector<BlockDistances> distances(near.size());
   std::vector<BlockBeliefs> beliefs(near.size());

@@ -1,14 +1,23 @@
 #include "bench/stage_benchmark.hpp"
 #include "core/label_projection.hpp"
+#include "core/selection.hpp"
 
 namespace mosbench {
 namespace {
 
-void labels_stage(benchmark::State& state, StagedScan& staged, ThreadPool&) {
-  std::vector<std::uint32_t> labels;
-  for (auto _ : state) labels = project_labels(staged.scan, staged.moving);
-  count_items(state, "points", labels.size());
-  expect(state, labels == staged.labels);
+void labels_stage(benchmark::State& state, StagedScans& staged, ThreadPool&) {
+  const int min_otsu_score = staged.workload.config.min_otsu_score;
+  measure_stage(
+      state, staged,
+      [&](const StagedScan& s) {
+        return project_labels(s.scan, shows_motion(s.threshold, min_otsu_score)
+                                          ? united(s.dynamic, s.from_region)
+                                          : VoxelSet{});
+      },
+      [](const StagedScan& s, const std::vector<std::uint32_t>& labels) {
+        return labels == s.labels;
+      });
+  count_items(state, "points", mean_points(staged));
 }
 
 const RegisterStage registered("labels", labels_stage, false);

@@ -4,21 +4,33 @@ namespace mosbench {
 namespace {
 
 /// Only the sums at occupied voxels have a meaning.
-bool same_sums(const SumField& sums, const StagedScan& staged) {
-  bool same = true;
-  for (std::size_t i = 0; i < sums.blocks.size(); ++i) {
-    for_each_cell(*staged.scan.occupied_in(sums.blocks[i]), [&](std::uint32_t cell) {
-      same = same && sums.values[i][cell] == staged.sums.values[i][cell];
+bool same_sums(const SumField& sums, const StagedScan& s) {
+  bool same = sums.values.size() == s.sums.values.size();
+  for (std::size_t i = 0; same && i < sums.blocks.size(); ++i) {
+    for_each_cell(*s.scan.occupied_in(sums.blocks[i]), [&](std::uint32_t cell) {
+      same = same && sums.values[i][cell] == s.sums.values[i][cell];
     });
   }
   return same;
 }
 
-void window_stage(benchmark::State& state, StagedScan& staged, ThreadPool&) {
-  SumField sums;
-  for (auto _ : state) sums = staged.window.sums(staged.scan);
-  count_items(state, "voxels", staged.scan.occupied_count);
-  expect(state, sums.values.size() == staged.sums.values.size() && same_sums(sums, staged));
+void window_stage(benchmark::State& state, StagedScans& staged, ThreadPool&) {
+  const std::size_t scans = staged.measured.size(), first = staged.measured.front().k;
+  while (state.KeepRunningBatch(static_cast<benchmark::IterationCount>(scans))) {
+    state.PauseTiming();
+    LocalWindow window(staged.workload.config.local_window_scans);
+    for (std::size_t k = 0; k < first; ++k) window.join(staged.all[k].filtered);
+    for (const StagedScan& s : staged.measured) {
+      ScoreField filtered = s.filtered;
+      const SumField sums = timed_call(state, [&] {
+        window.join(std::move(filtered));
+        return window.sums(s.scan);
+      });
+      expect(state, same_sums(sums, s));
+    }
+    state.ResumeTiming();
+  }
+  count_items(state, "voxels", mean_occupied(staged));
 }
 
 const RegisterStage registered("window", window_stage, false);

@@ -4,11 +4,13 @@
 namespace mosbench {
 namespace {
 
-void median_stage(benchmark::State& state, StagedScan& staged, ThreadPool& pool) {
-  ScoreField filtered;
-  for (auto _ : state) filtered = median_filter(staged.scan, staged.scores, pool);
-  count_items(state, "voxels", staged.scan.occupied_count);
-  expect(state, filtered.values == staged.filtered.values);
+void median_stage(benchmark::State& state, StagedScans& staged, ThreadPool& pool) {
+  measure_stage(
+      state, staged, [&](const StagedScan& s) { return median_filter(s.scan, s.scores, pool); },
+      [](const StagedScan& s, const ScoreField& filtered) {
+        return filtered.values == s.filtered.values;
+      });
+  count_items(state, "voxels", mean_occupied(staged));
 }
 
 const RegisterStage registered("median", median_stage, true);

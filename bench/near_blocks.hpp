@@ -3,18 +3,18 @@
 #include <span>
 #include <vector>
 
-#include "bench/staged_scan.hpp"
+#include "bench/staged_scans.hpp"
 #include "core/distance_field.hpp"
 #include "core/hmm.hpp"
 #include "core/source_grid.hpp"
 
 namespace mosbench {
 
-/// The observed blocks of a scan with a source near, and the masks that their distance fields are
-/// made of.
+/// The observed blocks of the last scan with a source near, and the masks that their distance
+/// fields are made of.
 class NearBlocks {
  public:
-  explicit NearBlocks(const StagedScan& staged);
+  explicit NearBlocks(const StagedScans& staged);
 
   std::size_t size() const { return observed_.size(); }
   std::size_t with_source() const { return with_source_; }

@@ -4,16 +4,18 @@
 namespace mosbench {
 namespace {
 
-void otsu_stage(benchmark::State& state, StagedScan& staged, ThreadPool&) {
+void otsu_stage(benchmark::State& state, StagedScans& staged, ThreadPool&) {
   const int min_otsu_score = staged.workload.config.min_otsu_score;
-  std::optional<double> threshold;
-  VoxelSet dynamic;
-  for (auto _ : state) {
-    threshold = threshold_of(staged.scan, staged.sums);
-    dynamic = select_dynamic(staged.scan, staged.sums, threshold, staged.carried, min_otsu_score);
-  }
-  count_items(state, "voxels", staged.scan.occupied_count);
-  expect(state, threshold == staged.threshold && dynamic.masks == staged.dynamic.masks);
+  measure_stage(
+      state, staged,
+      [&](const StagedScan& s) {
+        return select_dynamic(s.scan, s.sums, threshold_of(s.scan, s.sums), s.carried,
+                              min_otsu_score);
+      },
+      [](const StagedScan& s, const VoxelSet& dynamic) {
+        return dynamic.masks == s.dynamic.masks && threshold_of(s.scan, s.sums) == s.threshold;
+      });
+  count_items(state, "voxels", mean_occupied(staged));
 }
 
 const RegisterStage registered("otsu", otsu_stage, false);

@@ -5,12 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "bench/staged_scan.hpp"
+#include "bench/staged_scans.hpp"
 
 namespace mosbench {
 
-/// Measures one stage on a scan that nobody else uses.
-using StageBenchmark = void (*)(benchmark::State& state, StagedScan& staged, ThreadPool& pool);
+using StageBenchmark = void (*)(benchmark::State& state, StagedScans& staged, ThreadPool& pool);
 
 struct RegisteredStage {
   std::string name;
@@ -38,5 +37,49 @@ inline void count_items(benchmark::State& state, const char* items, std::size_t 
 
 /// Fails the benchmark, and the program in the end, when it did not compute what it should have.
 void expect(benchmark::State& state, bool right);
+
+/// Leaves the processor's own caches as other stages would: with something else in them.
+void displace_caches();
+
+/// One call of a stage, timed by itself while the benchmark's timing is paused. What the result
+/// held is not freed in that time, as the pipeline does not either.
+template <typename Work>
+auto timed_call(benchmark::State& state, Work&& work) {
+  displace_caches();
+  state.ResumeTiming();
+  auto result = work();
+  benchmark::DoNotOptimize(result);
+  state.PauseTiming();
+  return result;
+}
+
+/// Measures `work` on the measured scans in turns; a call of the benchmark is one scan.
+/// `right(scan, result)` tells whether work(scan) has computed what it should.
+template <typename Work, typename Right>
+void measure_stage(benchmark::State& state, const StagedScans& staged, Work&& work, Right&& right) {
+  const std::size_t scans = staged.measured.size();
+  while (state.KeepRunningBatch(static_cast<benchmark::IterationCount>(scans))) {
+    state.PauseTiming();
+    for (const StagedScan& scan : staged.measured) timed_call(state, [&] { return work(scan); });
+    state.ResumeTiming();
+  }
+  for (const StagedScan& scan : staged.measured) expect(state, right(scan, work(scan)));
+}
+
+/// Something of a scan, on average over the measured ones.
+template <typename Number>
+std::size_t mean_of(const StagedScans& staged, Number&& number) {
+  std::size_t sum = 0;
+  for (const StagedScan& scan : staged.measured) sum += number(scan);
+  return sum / staged.measured.size();
+}
+
+inline std::size_t mean_occupied(const StagedScans& staged) {
+  return mean_of(staged, [](const StagedScan& scan) { return scan.scan.occupied_count; });
+}
+
+inline std::size_t mean_points(const StagedScans& staged) {
+  return mean_of(staged, [](const StagedScan& scan) { return scan.frame.points.size(); });
+}
 
 }  // namespace mosbench

@@ -3,50 +3,45 @@
 namespace mosbench {
 namespace {
 
-std::size_t voxels_of(const std::vector<BlockMask>& masks) {
-  std::size_t voxels = 0;
-  for (const BlockMask& mask : masks) voxels += mask.count();
-  return voxels;
-}
-
-/// This scan and the one before in turns, so that states keep changing.
-void map_update_stage(benchmark::State& state, StagedScan& staged, ThreadPool& pool) {
-  const std::size_t voxels =
-      (voxels_of(staged.observed.masks) + voxels_of(staged.previous_observed.masks)) / 2;
-  const std::vector<const VoxelSet*> sources{&staged.scan.measured, &staged.previous.measured};
-  const auto update = [&](VoxelMap& map, std::uint32_t k, ThreadPool& threads) {
-    const bool odd = k % 2 != 0;
-    return map.update(odd ? staged.previous_observed : staged.observed, sources,
-                      (odd ? staged.previous : staged.scan).sensor_m, k, threads);
-  };
-  for (auto _ : state) benchmark::DoNotOptimize(update(staged.map, ++staged.k, pool));
-  count_items(state, "voxels", voxels);
-  state.counters["bytes/map voxel"] = static_cast<double>(staged.map.memory_bytes()) /
-                                      static_cast<double>(staged.map.block_count() * kBlockVoxels);
-  // Threads must not matter: two fresh maps, both scans each.
-  ThreadPool one(1);
-  VoxelMap alone(staged.workload.config, Variant::kPaper2024, staged.grid);
-  VoxelMap together(staged.workload.config, Variant::kPaper2024, staged.grid);
-  for (std::uint32_t k = 0; k < 6; ++k) {
-    expect(state, update(alone, k, one).masks == update(together, k, pool).masks);
+/// The map remembers, so each pass begins before the first scan and measures the last ones.
+void map_update_stage(benchmark::State& state, StagedScans& staged, ThreadPool& pool) {
+  const std::size_t scans = staged.measured.size(), first = staged.measured.front().k;
+  while (state.KeepRunningBatch(static_cast<benchmark::IterationCount>(scans))) {
+    state.PauseTiming();
+    VoxelMap map = staged.map_after(first, pool);
+    for (const StagedScan& s : staged.measured) {
+      const VoxelList changed = timed_call(state, [&] { return staged.update(map, s, pool); });
+      map.evict(s.k);
+      expect(state, voxels_of(changed) == s.state_changes);
+    }
+    state.ResumeTiming();
   }
-  expect(state, alone.block_count() == together.block_count() && alone.block_count() > 0);
+  count_items(state, "voxels",
+              mean_of(staged, [](const StagedScan& s) { return voxels_of(s.observed); }));
+  const VoxelMap& last = staged.maps.back();
+  state.counters["bytes/map voxel"] = static_cast<double>(last.memory_bytes()) /
+                                      static_cast<double>(last.block_count() * kBlockVoxels);
 }
 
 /// One call is one scan; in sixteen every block is looked at once.
-void evict_stage(benchmark::State& state, StagedScan& staged, ThreadPool&) {
+void evict_stage(benchmark::State& state, StagedScans& staged, ThreadPool& pool) {
   constexpr std::uint32_t kScans = 16;
-  const std::size_t blocks = staged.map.block_count();
+  const std::uint32_t k = staged.last().k;
+  VoxelMap map = staged.map_after(k + 1, pool);
+  const std::size_t blocks = map.block_count();
   while (state.KeepRunningBatch(kScans)) {
-    for (std::uint32_t i = 0; i < kScans; ++i) staged.map.evict(staged.k + i);
+    state.PauseTiming();
+    for (std::uint32_t i = 0; i < kScans; ++i) {
+      timed_call(state, [&] { return map.evict(k + i), 0; });
+    }
+    state.ResumeTiming();
   }
   count_items(state, "blocks", blocks / kScans);
-  expect(state, staged.map.block_count() == blocks);
+  expect(state, map.block_count() == blocks);
   // Once everything has expired every block goes.
-  const auto late =
-      staged.k + static_cast<std::uint32_t>(staged.workload.config.global_window_scans) + 2;
-  for (std::uint32_t i = 0; i < kScans; ++i) staged.map.evict(late + i);
-  expect(state, staged.map.block_count() == 0);
+  const auto late = k + static_cast<std::uint32_t>(staged.workload.config.global_window_scans) + 2;
+  for (std::uint32_t i = 0; i < kScans; ++i) map.evict(late + i);
+  expect(state, map.block_count() == 0);
 }
 
 const RegisterStage update_registered("map_update", map_update_stage, true);

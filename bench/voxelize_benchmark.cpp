@@ -3,18 +3,19 @@
 namespace mosbench {
 namespace {
 
-void voxelize_stage(benchmark::State& state, StagedScan& staged, ThreadPool& pool) {
-  const Frame& frame = staged.workload.frames.back();
+void voxelize_stage(benchmark::State& state, StagedScans& staged, ThreadPool& pool) {
   const Config& config = staged.workload.config;
-  VoxelizedScan scan;
-  for (auto _ : state) {
-    scan = voxelize(frame.points, frame.map_from_sensor, staged.grid, config.min_range_m,
-                    config.max_range_m, pool);
-  }
-  count_items(state, "points", frame.points.size());
-  expect(state, scan.measured.masks == staged.scan.measured.masks &&
-                    scan.occupied == staged.scan.occupied &&
-                    scan.voxel_of_point == staged.scan.voxel_of_point);
+  measure_stage(
+      state, staged,
+      [&](const StagedScan& s) {
+        return voxelize(s.frame.points, s.frame.map_from_sensor, staged.grid, config.min_range_m,
+                        config.max_range_m, pool);
+      },
+      [](const StagedScan& s, const VoxelizedScan& scan) {
+        return scan.measured.masks == s.scan.measured.masks && scan.occupied == s.scan.occupied &&
+               scan.voxel_of_point == s.scan.voxel_of_point;
+      });
+  count_items(state, "points", mean_points(staged));
 }
 
 const RegisterStage registered("voxelize", voxelize_stage, true);

@@ -1,0 +1,112 @@
+#include "bench/staged_scans.hpp"
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+#include <utility>
+
+#include "core/label_projection.hpp"
+#include "core/median.hpp"
+#include "core/pipeline.hpp"
+#include "core/selection.hpp"
+
+namespace mosbench {
+namespace {
+
+/// What detection remembers between scans.
+struct Detection {
+  LocalWindow window;
+  DynamicRegion region;
+  VoxelSet carried;
+};
+
+void detect(StagedScan& staged, const Config& config, VoxelMap& map, Detection& detection,
+            ThreadPool& pool) {
+  const int width = config.kernel_width_voxels;
+  const VoxelizedScan& scan = staged.scan;
+  DynamicRegion& region = detection.region;
+  staged.scores = convolve(scan, map.changed_since(staged.k), width, map, staged.k, pool);
+  staged.filtered = median_filter(scan, staged.scores, pool);
+  detection.window.join(staged.filtered);
+  staged.sums = detection.window.sums(scan);
+  staged.threshold = threshold_of(scan, staged.sums);
+  staged.carried = std::move(detection.carried);
+  staged.dynamic =
+      select_dynamic(scan, staged.sums, staged.threshold, staged.carried, config.min_otsu_score);
+  detection.carried = staged.dynamic;
+  staged.beside =
+      beside_unknown(scan, region.blocks(), staged.dynamic.blocks, width, map, staged.k, pool);
+  staged.from_region = region.back_end(scan, staged.beside, width, pool);
+  region.update({scan, staged.dynamic, staged.from_region, staged.beside, staged.threshold},
+                staged.k);
+  staged.moving = shows_motion(staged.threshold, config.min_otsu_score)
+                      ? united(staged.dynamic, staged.from_region)
+                      : VoxelSet{};
+  staged.labels = project_labels(scan, staged.moving);
+}
+
+constexpr std::size_t kMeasuredScans = 8;
+
+}  // namespace
+
+StagedScans::StagedScans(const Workload& chosen)
+    : workload(chosen),
+      grid(grid_around(chosen.frames.front().map_from_sensor.translation(),
+                       chosen.config.voxel_size_m)) {
+  const Config& config = workload.config;
+  ThreadPool pool(1);
+  RaycastScratch scratch;
+  VoxelMap map(config, Variant::kPaper2024, grid);
+  Detection detection{LocalWindow(config.local_window_scans), new_region(), {}};
+  Pipeline pipeline(config, Variant::kPaper2024);
+  for (const Frame& frame : workload.frames) {
+    StagedScan& staged = all.emplace_back(frame, static_cast<std::uint32_t>(all.size()));
+    staged.scan = voxelize(frame.points, frame.map_from_sensor, grid, config.min_range_m,
+                           config.max_range_m, pool);
+    staged.observed = raycast(staged.scan.measured, staged.scan.sensor_voxel, config.voxel_size_m,
+                              config.max_range_m, scratch, pool);
+    staged.state_changes = voxels_of(update(map, staged, pool));
+    map.evict(staged.k);
+    const auto expected = std::move(pipeline.push(frame.points, frame.map_from_sensor)[0].labels);
+    if (staged.k <= static_cast<std::uint32_t>(config.local_window_scans)) {
+      detection.window.join({});
+      continue;
+    }
+    detect(staged, config, map, detection, pool);
+    if (staged.labels != expected) {
+      throw std::logic_error("the stages of the benchmarks are out of order");
+    }
+  }
+  const std::size_t undetected = static_cast<std::size_t>(config.local_window_scans) + 1;
+  measured = std::span(all).last(std::min(kMeasuredScans, all.size() - undetected));
+  for (const StagedScan& staged : measured) maps.push_back(map_after(staged.k + 1, pool));
+}
+
+std::size_t voxels_of(const VoxelList& list) {
+  std::size_t voxels = 0;
+  for (const BlockMask& mask : list.masks) voxels += mask.count();
+  return voxels;
+}
+
+VoxelList StagedScans::update(VoxelMap& map, const StagedScan& staged, ThreadPool& pool) const {
+  static const VoxelSet none;
+  const std::array sources{&staged.scan.measured,
+                           staged.k > 0 ? &all[staged.k - 1].scan.measured : &none};
+  return map.update(staged.observed, sources, staged.scan.sensor_m, staged.k, pool);
+}
+
+VoxelMap StagedScans::map_after(std::size_t scans, ThreadPool& pool) const {
+  VoxelMap map(workload.config, Variant::kPaper2024, grid);
+  for (std::uint32_t k = 0; k < scans; ++k) {
+    update(map, all[k], pool);
+    map.evict(k);
+  }
+  return map;
+}
+
+DynamicRegion StagedScans::new_region() const {
+  const Config& config = workload.config;
+  return {grid, config.max_range_m, config.dynamic_window_scans, config.min_otsu_score};
+}
+
+}  // namespace mosbench

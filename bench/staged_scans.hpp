@@ -1,0 +1,62 @@
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "bench/workloads.hpp"
+#include "core/convolution.hpp"
+#include "core/dynamic_region.hpp"
+#include "core/local_window.hpp"
+#include "core/raycast.hpp"
+#include "core/voxel_map.hpp"
+
+namespace mosbench {
+
+std::size_t voxels_of(const VoxelList& list);
+
+/// A scan with what goes into and comes out of each of its stages but those that remember.
+struct StagedScan {
+  const Frame& frame;
+  std::uint32_t k = 0;
+  VoxelizedScan scan;
+  VoxelList observed;
+  std::size_t state_changes = 0;  ///< voxels
+  ScoreField scores, filtered;
+  SumField sums;
+  std::optional<double> threshold;
+  VoxelSet carried, dynamic, beside, from_region, moving;
+  std::vector<std::uint32_t> labels;
+};
+
+/// The scans of a workload, put through the stages in the order of the pipeline, online,
+/// paper-2024.
+class StagedScans {
+ public:
+  /// Throws std::logic_error when the labels differ from those of Pipeline.
+  explicit StagedScans(const Workload& workload);
+  StagedScans(const StagedScans&) = delete;
+  StagedScans& operator=(const StagedScans&) = delete;
+
+  const Workload& workload;
+  const VoxelGrid grid;
+  std::vector<StagedScan> all;
+  /// The scans that stages are measured on: several, because one alone would stay in the caches
+  /// and be learnt by heart by the branch prediction.
+  std::span<const StagedScan> measured;
+  std::deque<VoxelMap> maps;  ///< after each of the measured scans
+
+  /// The map after a measured scan.
+  VoxelMap& map_of(const StagedScan& scan) { return maps[scan.k - measured.front().k]; }
+  const StagedScan& last() const { return all.back(); }
+  const StagedScan& last_but_one() const { return all[all.size() - 2]; }
+
+  /// Puts a scan into a map that holds the scans before it. Returns the voxels that changed.
+  VoxelList update(VoxelMap& map, const StagedScan& staged, ThreadPool& pool) const;
+  /// A map that holds the first `scans`.
+  VoxelMap map_after(std::size_t scans, ThreadPool& pool) const;
+  DynamicRegion new_region() const;
+};
+
+}  // namespace mosbench
