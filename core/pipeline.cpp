@@ -1,5 +1,6 @@
 #include "core/pipeline.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <deque>
 #include <stdexcept>
@@ -81,7 +82,11 @@ struct Pipeline::State {
         std::optional<std::size_t> sequence_scans)
       : config(method_config), variant(method_variant), pool(threads), scan_count(sequence_scans) {}
 
-  void observe(HeldScan& current, std::uint32_t k);
+  ObservedScan observe(std::span<const Point> points, const Pose& map_from_sensor,
+                       ThreadPool& observing);
+  std::vector<ScanResult> push(ObservedScan observed);
+  void expect_scan() const;
+  void enter_map(const ObservedScan& current, const StageRecord& record, std::uint32_t k);
   void detect(const VoxelizedScan& scan, std::uint32_t k, ScanResult& result,
               const StageRecord& record);
   std::vector<ScanResult> release(std::size_t count);
@@ -90,7 +95,9 @@ struct Pipeline::State {
   Config config;
   Variant variant;
   ThreadPool pool;
+  std::optional<ThreadPool> observing_pool;  ///< for scans that are observed beside
   std::optional<std::size_t> scan_count;
+  std::optional<VoxelGrid> grid;  ///< around the first scan
   RaycastScratch scratch;
   std::optional<Memory> memory;
   std::deque<HeldScan> held;  ///< the last delay + 1 scans, current one last
@@ -101,19 +108,35 @@ struct Pipeline::State {
   bool finished = false;
 };
 
-/// Steps 1 to 3: the scan enters the map.
-void Pipeline::State::observe(HeldScan& current, std::uint32_t k) {
-  const StageRecord record{current.result.stage_times, events};
-  const VoxelizedScan& scan = current.scan;
-  const VoxelList observed = timed(record, Stage::kRaycast, [&] {
-    return raycast(scan.measured, scan.sensor_voxel, config.voxel_size_m, config.max_range_m,
-                   scratch, pool);
+/// Steps 1 and 2.
+ObservedScan Pipeline::State::observe(std::span<const Point> points, const Pose& map_from_sensor,
+                                      ThreadPool& observing) {
+  ObservedScan current;
+  const StageRecord record{current.stage_times, events == nullptr ? nullptr : &current.events};
+  const VoxelGrid around =
+      grid ? *grid : grid_around(map_from_sensor.translation(), config.voxel_size_m);
+  current.scan = timed(record, Stage::kVoxelize, [&] {
+    return voxelize(points, map_from_sensor, around, config.min_range_m, config.max_range_m,
+                    observing);
   });
+  grid = around;
+  current.observed = timed(record, Stage::kRaycast, [&] {
+    return raycast(current.scan.measured, current.scan.sensor_voxel, config.voxel_size_m,
+                   config.max_range_m, scratch, observing);
+  });
+  return current;
+}
+
+/// Step 3.
+void Pipeline::State::enter_map(const ObservedScan& current, const StageRecord& record,
+                                std::uint32_t k) {
+  const VoxelizedScan& scan = current.scan;
+  if (!memory) memory.emplace(config, variant, *grid);
   {
     const StageClock clock(record, Stage::kMapUpdate);
     std::vector<const VoxelSet*> sources{&scan.measured};
     if (config.distance_field_scans == 2) sources.push_back(&previous_measured);
-    memory->map.update(observed, sources, scan.sensor_m, k, pool);
+    memory->map.update(current.observed, sources, scan.sensor_m, k, pool);
   }
   const StageClock clock(record, Stage::kEvict);
   memory->map.evict(k);
@@ -162,6 +185,43 @@ void Pipeline::State::detect(const VoxelizedScan& scan, std::uint32_t k, ScanRes
   if (records_scores) result.scores = project_scores(scan, sums);
 }
 
+void Pipeline::State::expect_scan() const {
+  if (scan_count && pushed >= *scan_count) {
+    throw std::logic_error("pushed more scans than scan_count announced");
+  }
+  if (finished) throw std::logic_error("pushed a scan after finish");
+}
+
+std::vector<ScanResult> Pipeline::State::push(ObservedScan observed) {
+  expect_scan();
+  const auto k = static_cast<std::uint32_t>(pushed);
+  ScanResult taken_in;
+  taken_in.scan_index = pushed;
+  taken_in.nonfinite_points = observed.scan.nonfinite_points;
+  taken_in.stage_times = observed.stage_times;
+  if (events != nullptr)
+    events->insert(events->end(), observed.events.begin(), observed.events.end());
+  enter_map(observed, {taken_in.stage_times, events}, k);
+  previous_measured = observed.scan.measured;
+  held.push_back({std::move(observed.scan), std::move(taken_in)});
+  ++pushed;
+
+  HeldScan& newest = held.back();
+  const StageRecord record{newest.result.stage_times, events};
+  const auto n = static_cast<std::size_t>(config.delay_scans);
+  if (k <= static_cast<std::uint32_t>(config.local_window_scans)) {
+    memory->window.join({});
+  } else if (n == 0) {
+    detect(newest.scan, k, newest.result, record);
+  } else if (k > n) {
+    detect(held.front().scan, k, held.front().result, record);
+    // The authors' program labels the end of a delayed sequence online, and leaves scan N - n
+    // static.
+    if (scan_count && k + n > *scan_count) detect(newest.scan, k, newest.result, record);
+  }
+  return held.size() > n ? release(1) : std::vector<ScanResult>{};
+}
+
 /// Points of a scan in which nothing was looked for are static.
 std::vector<ScanResult> Pipeline::State::release(std::size_t count) {
   std::vector<ScanResult> results;
@@ -191,42 +251,19 @@ Pipeline::Pipeline(Pipeline&&) noexcept = default;
 Pipeline& Pipeline::operator=(Pipeline&&) noexcept = default;
 
 std::vector<ScanResult> Pipeline::push(std::span<const Point> points, const Pose& map_from_sensor) {
-  State& s = *state_;
-  if (s.scan_count && s.pushed >= *s.scan_count) {
-    throw std::logic_error("pushed more scans than scan_count announced");
-  }
-  if (s.finished) throw std::logic_error("pushed a scan after finish");
-  const VoxelGrid grid =
-      s.memory ? s.memory->grid : grid_around(map_from_sensor.translation(), s.config.voxel_size_m);
-  HeldScan current;
-  current.result.scan_index = s.pushed;
-  const StageRecord voxelize_record{current.result.stage_times, s.events};
-  current.scan = timed(voxelize_record, Stage::kVoxelize, [&] {
-    return voxelize(points, map_from_sensor, grid, s.config.min_range_m, s.config.max_range_m,
-                    s.pool);
-  });
-  if (!s.memory) s.memory.emplace(s.config, s.variant, grid);
-  current.result.nonfinite_points = current.scan.nonfinite_points;
-  const auto k = static_cast<std::uint32_t>(s.pushed);
-  s.observe(current, k);
-  s.previous_measured = current.scan.measured;
-  s.held.push_back(std::move(current));
-  ++s.pushed;
+  state_->expect_scan();
+  return state_->push(state_->observe(points, map_from_sensor, state_->pool));
+}
 
-  HeldScan& newest = s.held.back();
-  const StageRecord record{newest.result.stage_times, s.events};
-  const auto n = static_cast<std::size_t>(s.config.delay_scans);
-  if (k <= static_cast<std::uint32_t>(s.config.local_window_scans)) {
-    s.memory->window.join({});
-  } else if (n == 0) {
-    s.detect(newest.scan, k, newest.result, record);
-  } else if (k > n) {
-    s.detect(s.held.front().scan, k, s.held.front().result, record);
-    // The authors' program labels the end of a delayed sequence online, and leaves scan N - n
-    // static.
-    if (s.scan_count && k + n > *s.scan_count) s.detect(newest.scan, k, newest.result, record);
-  }
-  return s.held.size() > n ? s.release(1) : std::vector<ScanResult>{};
+ObservedScan Pipeline::observe(std::span<const Point> points, const Pose& map_from_sensor) {
+  // The other half of the threads is busy with the scan before.
+  if (!state_->observing_pool)
+    state_->observing_pool.emplace(std::max(1U, state_->pool.size() / 2));
+  return state_->observe(points, map_from_sensor, *state_->observing_pool);
+}
+
+std::vector<ScanResult> Pipeline::push(ObservedScan observed) {
+  return state_->push(std::move(observed));
 }
 
 std::vector<ScanResult> Pipeline::finish() {

@@ -10,6 +10,8 @@
 #include "core/config.hpp"
 #include "core/scan.hpp"
 #include "core/stage_times.hpp"
+#include "core/voxel_set.hpp"
+#include "core/voxelize.hpp"
 
 namespace mosbench {
 
@@ -21,6 +23,14 @@ struct ScanResult {
   std::optional<double> threshold;   ///< Otsu's T; nothing when no detection ran or no level exists
   std::size_t nonfinite_points = 0;  ///< NaN or infinite, left out of the map, labelled static
   StageTimes stage_times{};          ///< of the push that took this scan in
+};
+
+/// A scan that is ready to enter the map: what was found about it without the map.
+struct ObservedScan {
+  VoxelizedScan scan;
+  VoxelList observed;  ///< by its rays
+  StageTimes stage_times{};
+  std::vector<StageEvent> events;  ///< see Pipeline::record_stages
 };
 
 /// The whole method: push scans in order, receive labels. Independent pipelines share nothing.
@@ -42,11 +52,18 @@ class Pipeline {
   /// or after `finish`.
   std::vector<ScanResult> push(std::span<const Point> points, const Pose& map_from_sensor);
 
+  /// `push` in two halves: the first, algorithm steps 1 and 2, needs nothing of the scans before.
+  /// It may run in another thread while an earlier scan is pushed, so that two scans are under way;
+  /// scans are still observed one at a time and in order. Throws as `push` does.
+  ObservedScan observe(std::span<const Point> points, const Pose& map_from_sensor);
+  std::vector<ScanResult> push(ObservedScan observed);
+
   /// The labels still held back by the delay, in scan order. Nothing when online.
   std::vector<ScanResult> finish();
 
   /// From now on appends every run of a stage to `events`, which must outlive that; null stops it.
-  /// Reading the CPU clock twice per stage costs some microseconds per scan.
+  /// Reading the CPU clock twice per stage costs some microseconds per scan. To be called while no
+  /// scan is observed.
   void record_stages(std::vector<StageEvent>* events);
 
   /// To be called before the first scan. Results then hold one dynamic score per point: S of its
@@ -54,7 +71,8 @@ class Pipeline {
   /// without detection. Labels stay as they are; off, which is the default, it costs nothing.
   void record_scores(bool record);
 
-  /// Voxel blocks of 8x8x8 voxels held in the map, and the bytes of all memory kept between scans.
+  /// Voxel blocks of 8x8x8 voxels held in the map, and the bytes of all memory kept between scans,
+  /// the latter to be asked while no scan is observed.
   std::size_t map_blocks() const;
   std::size_t memory_bytes() const;
 

@@ -27,8 +27,9 @@ struct ScanRow {
 
 /// What one scan cost: wall milliseconds, and the memory the process held after it.
 struct ScanCost {
-  double read_ms = 0.0;  ///< spent waiting for the scan; with several threads it is read ahead
-  double push_ms = 0.0;  ///< the whole method
+  /// Spent waiting for the scan; with several threads it is read and observed ahead.
+  double read_ms = 0.0;
+  double push_ms = 0.0;  ///< the whole method, also what is done beside the scan before
   StageTimes stages_ms{};
   double resident_mib = 0.0;
 };

@@ -29,6 +29,26 @@ struct PendingScan {
   std::vector<Point> truth_points;  ///< only with truth, and only when the protocol has a range
 };
 
+/// A scan that was read and observed.
+struct ReadyScan {
+  Frame frame;
+  ObservedScan observed;
+  double observe_ms;
+};
+
+/// What `work` returns; its std::range_error becomes a DataError that names the scan.
+template <typename Work>
+auto naming_scan(const Sequence& sequence, std::size_t scan_index, Work&& work) {
+  try {
+    return work();
+  } catch (const std::range_error& error) {
+    const auto own_file = sequence.scan_file(scan_index);
+    throw DataError(
+        own_file.value_or(std::filesystem::path(sequence.name()) / sequence.stem(scan_index)),
+        error.what(), "points and poses within reach of the voxel grid");
+  }
+}
+
 class SequenceRun {
  public:
   SequenceRun(const Sequence& sequence, const RunSettings& settings,
@@ -49,13 +69,13 @@ class SequenceRun {
   SequenceRows run() {
     const Clock::time_point start = Clock::now();
     Progress progress(sequence_.name(), sequence_.size());
-    std::future<Frame> upcoming = start_reading(0);
+    std::future<ReadyScan> upcoming = prepare(0);
     for (std::size_t k = 0; k < sequence_.size(); ++k) {
       const Clock::time_point read_start = Clock::now();
-      Frame frame = upcoming.get();
+      ReadyScan ready = upcoming.get();
       rows_.costs[k].read_ms = milliseconds_since(read_start);
-      if (k + 1 < sequence_.size()) upcoming = start_reading(k + 1);
-      push(k, std::move(frame));
+      if (k + 1 < sequence_.size()) upcoming = prepare(k + 1);
+      push(k, std::move(ready));
       progress.advance();
     }
     for (ScanResult& result : pipeline_.finish()) accept(std::move(result));
@@ -66,21 +86,25 @@ class SequenceRun {
   }
 
  private:
-  std::future<Frame> start_reading(std::size_t scan_index) {
-    // One reading at a time, so the fingerprint sees the frames in order.
+  std::future<ReadyScan> prepare(std::size_t scan_index) {
+    // One scan at a time, so the fingerprint sees the frames in order.
     return std::async(launch_, [this, scan_index, spent = std::move(spent_)]() mutable {
       Frame frame = sequence_.read(scan_index, std::move(spent));
       fingerprint_.add(frame);
-      return frame;
+      const Clock::time_point start = Clock::now();
+      ObservedScan observed = naming_scan(sequence_, scan_index, [&] {
+        return pipeline_.observe(frame.points, frame.map_from_sensor);
+      });
+      return ReadyScan{std::move(frame), std::move(observed), milliseconds_since(start)};
     });
   }
 
-  void push(std::size_t scan_index, Frame frame) {
+  void push(std::size_t scan_index, ReadyScan ready) {
     const Clock::time_point start = Clock::now();
-    std::vector<ScanResult> finals = push_scan(pipeline_, sequence_, scan_index, frame);
-    rows_.costs[scan_index].push_ms = milliseconds_since(start);
+    std::vector<ScanResult> finals = pipeline_.push(std::move(ready.observed));
+    rows_.costs[scan_index].push_ms = ready.observe_ms + milliseconds_since(start);
     rows_.costs[scan_index].resident_mib = resident_mib();
-    remember(std::move(frame));
+    remember(std::move(ready.frame));
     for (ScanResult& result : finals) accept(std::move(result));
   }
 
@@ -153,13 +177,8 @@ SequenceRows run_sequence(const Sequence& sequence, const RunSettings& settings,
 
 std::vector<ScanResult> push_scan(Pipeline& pipeline, const Sequence& sequence,
                                   std::size_t scan_index, const Frame& frame) {
-  try {
-    return pipeline.push(frame.points, frame.map_from_sensor);
-  } catch (const std::range_error& error) {
-    const auto own_file = sequence.scan_file(scan_index);
-    throw DataError(own_file.value_or(std::filesystem::path(sequence.name()) / frame.stem),
-                    error.what(), "points and poses within reach of the voxel grid");
-  }
+  return naming_scan(sequence, scan_index,
+                     [&] { return pipeline.push(frame.points, frame.map_from_sensor); });
 }
 
 bool detection_runs(const Config& config, std::size_t scan_index, std::size_t scan_count) {

@@ -23,9 +23,9 @@ struct RunSettings {
 
 /// Segments a sequence, writes `folder`/labels/<stem>.label for every scan, with `keeps_scores`
 /// also `folder`/scores/<stem>.score, and scores the scans with truth. With more than one thread
-/// the next scan is read and the last one scored and written while a scan is processed; what a
-/// whole run writes and which error is thrown do not depend on it. Holds up to three scans at a
-/// time, and the truth of those whose labels are still delayed. Throws DataError.
+/// the next scan is read and observed and the last one scored and written while a scan enters the
+/// map; what a whole run writes and which error is thrown do not depend on it. Holds up to three
+/// scans at a time, and the truth of those whose labels are still delayed. Throws DataError.
 SequenceRows run_sequence(const Sequence& sequence, const RunSettings& settings,
                           const std::filesystem::path& folder);
 

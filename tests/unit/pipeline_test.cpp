@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <future>
 #include <limits>
 #include <stdexcept>
 #include <thread>
@@ -129,6 +130,34 @@ TEST(Pipeline, RunsInSeveralThreadsAtOnce) {
     }
   }
   EXPECT_THAT(labels, testing::Each(expected));
+}
+
+TEST(Pipeline, ObservesAScanWhileTheOneBeforeIsPushed) {
+  const SmallWorld world = small_world({.seed = 11, .defects = true});
+  for (const int delay : {0, 3}) {
+    const auto expected =
+        labels_of(world, small_config(delay), Variant::kPaper2024, 1, world.scans.size());
+    ASSERT_GT(moving_points(expected), 0U);
+    for (const unsigned threads : {1U, 2U, 5U}) {
+      Pipeline pipeline(small_config(delay), Variant::kPaper2024, threads, world.scans.size());
+      const auto observe = [&](std::size_t k) {
+        return std::async(std::launch::async,
+                          [&, k] { return pipeline.observe(world.scans[k], world.poses[k]); });
+      };
+      std::vector<std::vector<std::uint32_t>> labels;
+      const auto take = [&](std::vector<ScanResult> results) {
+        for (ScanResult& result : results) labels.push_back(std::move(result.labels));
+      };
+      std::future<ObservedScan> upcoming = observe(0);
+      for (std::size_t k = 0; k < world.scans.size(); ++k) {
+        ObservedScan observed = upcoming.get();
+        if (k + 1 < world.scans.size()) upcoming = observe(k + 1);
+        take(pipeline.push(std::move(observed)));
+      }
+      take(pipeline.finish());
+      EXPECT_EQ(labels, expected) << threads << " threads, delay " << delay;
+    }
+  }
 }
 
 /// What is refused leaves no trace: the next scans get the labels they would have had.
