@@ -32,14 +32,53 @@ void append(std::vector<Symptom>& all, std::vector<Symptom> more) {
   std::ranges::move(more, std::back_inserter(all));
 }
 
+/// An error as a finding. It names its file in front, which is `where` then, unless that file lies
+/// elsewhere.
+Symptom symptom_of(const DataError& error, const std::filesystem::path& path) {
+  const std::string message = error.what(), root = path.string();
+  const std::size_t end =
+      message.starts_with(root) ? message.find(": ", root.size()) : message.npos;
+  if (end == message.npos) return {Severity::kError, root, message};
+  return {Severity::kError, message.substr(0, end), message.substr(end + 2)};
+}
+
 /// What a check throws is a finding as well.
 template <typename Check>
-void collect(std::vector<Symptom>& symptoms, const std::string& where, Check&& check) {
+void collect(std::vector<Symptom>& symptoms, const std::filesystem::path& folder, Check&& check) {
   try {
     append(symptoms, check());
   } catch (const DataError& error) {
-    symptoms.push_back({Severity::kError, where, error.what()});
+    symptoms.push_back(symptom_of(error, folder));
   }
+}
+
+std::string sentence_on(const MisplacedRows& rows, const Sequence& sequence) {
+  if (rows.single()) {
+    return fmt::format(
+        "the pose of scan {} (row {}) does not fit between its neighbours: the way jumps there and "
+        "back, and scans overlap better without; expected the poses in the order of the scans",
+        sequence.stem(rows.first), rows.first + 1);
+  }
+  return fmt::format(
+      "the poses of scans {} and {} (rows {} and {}) are exchanged: the other way round the way is "
+      "shorter and scans overlap better; expected the poses in the order of the scans",
+      sequence.stem(rows.first), sequence.stem(rows.second), rows.first + 1, rows.second + 1);
+}
+
+std::string sentence_on_better(const SequenceCheckup& checkup) {
+  const std::vector<std::size_t>& better = checkup.poses->better;
+  const ConventionScore& score = checkup.poses->scores[better.front()];
+  std::vector<std::string> names, remedies;
+  for (const std::size_t i : better) {
+    names.push_back(checkup.conventions[i].name);
+    remedies.push_back(checkup.conventions[i].remedy);
+  }
+  return fmt::format(
+      "the poses fit better as {}{}: scans overlap by {:.2f} instead of {:.2f} in {} of {} pairs; "
+      "{}",
+      fmt::join(names, " or "), better.size() > 1 ? " (these scans cannot tell which)" : "",
+      score.overlap, score.given_overlap, score.pairs_better, score.pairs,
+      fmt::join(remedies, " or "));
 }
 
 void check_sequence(const Sequence& sequence, const std::filesystem::path& folder, DatasetKind kind,
@@ -50,8 +89,8 @@ void check_sequence(const Sequence& sequence, const std::filesystem::path& folde
   part.reading = sequence.reading();
   part.remarks = sequence.remarks();
   part.labelled_scans = scans_with_truth(sequence).size();
-  collect(checkup.symptoms, part.name, [&] { return check_content(sequence, kind, part); });
-  collect(checkup.symptoms, part.name, [&] { return check_poses(sequence, folder, part); });
+  collect(checkup.symptoms, folder, [&] { return check_content(sequence, kind, part); });
+  collect(checkup.symptoms, folder, [&] { return check_poses(sequence, folder, part); });
   if (!simulated) append(checkup.symptoms, check_published(sequence, kind, folder));
 }
 
@@ -66,32 +105,27 @@ std::vector<Symptom> check_poses(const Sequence& sequence, const std::filesystem
                                  SequenceCheckup& checkup) {
   std::vector<Pose> given;
   for (std::size_t i = 0; i < sequence.size(); ++i) given.push_back(sequence.map_from_sensor(i));
+  const std::vector<MisplacedRows> misplaced = misplaced_rows(sequence, given);
+  for (const MisplacedRows& rows : misplaced) given = mended(std::move(given), rows);
   checkup.conventions = other_conventions(given, tr_of(folder), tr_is_applied(checkup.reading));
   checkup.poses = measure_poses(sequence, given, checkup.conventions);
-  if (!checkup.poses) return {};
-  const PoseMeasurement& measured = *checkup.poses;
-  const ConventionScore* best = nullptr;
-  for (const ConventionScore& score : measured.scores) {
-    if (score.beats_given() && measured.is_full(score.overlap) &&
-        (best == nullptr ||
-         score.overlap - score.given_overlap > best->overlap - best->given_overlap)) {
-      best = &score;
-    }
+  if (checkup.poses && !checkup.poses->better.empty()) {
+    // Poses read in another convention make detours of their own.
+    return {{Severity::kWarning, sequence.name(), sentence_on_better(checkup)}};
   }
-  if (best != nullptr) {
-    const PoseConvention& convention = checkup.conventions[best->convention];
-    return {{Severity::kWarning, sequence.name(),
-             fmt::format("the poses fit better as {}: scans overlap by {:.2f} instead of {:.2f} in "
-                         "{} of {} pairs; {}",
-                         convention.name, best->overlap, best->given_overlap, best->pairs_better,
-                         best->pairs, convention.remedy)}};
+  std::vector<Symptom> symptoms;
+  for (const MisplacedRows& rows : misplaced) {
+    symptoms.push_back({Severity::kWarning, sequence.name(), sentence_on(rows, sequence)});
   }
-  if (measured.given_fits()) return {};
-  return {
-      {Severity::kWarning, sequence.name(),
-       fmt::format("the poses do not fit the scans in any convention: scans overlap by {:.2f}, "
-                   "moved by {:.2f} m by {:.2f}; expected the poses of this sequence",
-                   measured.given_overlap, measured.median_correction_m, measured.best_overlap)}};
+  if (checkup.poses && !checkup.poses->given.fits()) {
+    const PoseFit& fit = checkup.poses->given;
+    symptoms.push_back(
+        {Severity::kWarning, sequence.name(),
+         fmt::format("the poses do not fit the scans in any convention: scans overlap by {:.2f}, "
+                     "moved by {:.2f} m by {:.2f}; expected the poses of this sequence",
+                     fit.overlap, fit.median_correction_m, fit.best_overlap)});
+  }
+  return symptoms;
 }
 
 Checkup check_up(const std::filesystem::path& path, const OpenOptions& options) {
@@ -100,7 +134,7 @@ Checkup check_up(const std::filesystem::path& path, const OpenOptions& options) 
   try {
     folders = find_sequences(path, options, checkup.kind);
     for (const SequenceFolder& folder : folders) {
-      collect(checkup.symptoms, folder.name,
+      collect(checkup.symptoms, folder.folder,
               [&] { return check_folder(folder.folder, folder.name); });
     }
     const Dataset dataset = open_dataset(path, options);
@@ -109,7 +143,7 @@ Checkup check_up(const std::filesystem::path& path, const OpenOptions& options) 
       check_sequence(*dataset.sequences[i], folders[i].folder, dataset.kind, simulated, checkup);
     }
   } catch (const DataError& error) {
-    checkup.symptoms.push_back({Severity::kError, path.string(), error.what()});
+    checkup.symptoms.push_back(symptom_of(error, path));
   }
   return checkup;
 }

@@ -8,7 +8,9 @@
 #include <vector>
 
 #include "datasets/dataset.hpp"
+#include "datasets/misplaced_rows.hpp"
 #include "datasets/pose_conventions.hpp"
+#include "datasets/pose_measurement.hpp"
 
 namespace mosbench {
 

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 
@@ -62,7 +63,7 @@ double SurfaceCells::overlap(std::span<const Eigen::Vector3d> points_m,
   return sum / static_cast<double>(points_m.size());
 }
 
-std::vector<Eigen::Vector3d> near_points(std::span<const Point> points, std::size_t most) {
+std::vector<Eigen::Vector3d> near_points(std::span<const Point> points) {
   constexpr double kNearestM = 2.0, kFurthestM = 40.0;
   std::vector<Eigen::Vector3d> near_m;
   for (const Point& point : points) {
@@ -70,9 +71,35 @@ std::vector<Eigen::Vector3d> near_points(std::span<const Point> points, std::siz
     const double range_m = point_m.norm();
     if (range_m >= kNearestM && range_m <= kFurthestM) near_m.push_back(point_m);
   }
-  if (near_m.size() <= most) return near_m;
+  return near_m;
+}
+
+std::vector<Eigen::Vector3d> upright_points(std::span<const Eigen::Vector3d> points_m) {
+  constexpr double kFlatM = 0.5;
+  constexpr std::size_t kFewest = 5000;
+  const auto column_of = [](const Eigen::Vector3d& point_m) {
+    return key_of({point_m.x(), point_m.y(), 0.0});
+  };
+  std::unordered_map<std::uint64_t, std::pair<double, double>> ends_of_column;
+  for (const Eigen::Vector3d& point_m : points_m) {
+    const auto found = ends_of_column.try_emplace(column_of(point_m), point_m.z(), point_m.z());
+    auto& [low_m, high_m] = found.first->second;
+    low_m = std::min(low_m, point_m.z());
+    high_m = std::max(high_m, point_m.z());
+  }
+  std::vector<Eigen::Vector3d> upright_m;
+  for (const Eigen::Vector3d& point_m : points_m) {
+    const auto& [low_m, high_m] = ends_of_column.at(column_of(point_m));
+    if (high_m - low_m >= kFlatM) upright_m.push_back(point_m);
+  }
+  if (upright_m.size() < kFewest) upright_m.assign(points_m.begin(), points_m.end());
+  return upright_m;
+}
+
+std::vector<Eigen::Vector3d> picked(std::span<const Eigen::Vector3d> points_m, std::size_t most) {
+  if (points_m.size() <= most) return {points_m.begin(), points_m.end()};
   std::vector<Eigen::Vector3d> picked_m;
-  for (std::size_t i = 0; i < most; ++i) picked_m.push_back(near_m[i * near_m.size() / most]);
+  for (std::size_t i = 0; i < most; ++i) picked_m.push_back(points_m[i * points_m.size() / most]);
   return picked_m;
 }
 

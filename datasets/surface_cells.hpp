@@ -30,8 +30,15 @@ class SurfaceCells {
   std::unordered_map<std::uint64_t, Cell> cells_;
 };
 
-/// Up to `most` points evenly picked from those at 2 to 40 m, where scans are dense.
-std::vector<Eigen::Vector3d> near_points(std::span<const Point> points, std::size_t most);
+/// The points at 2 to 40 m, where scans are dense.
+std::vector<Eigen::Vector3d> near_points(std::span<const Point> points);
+
+/// Those that stand upright: in columns of the grid that are not flat as the ground is. All when
+/// too few do.
+std::vector<Eigen::Vector3d> upright_points(std::span<const Eigen::Vector3d> points_m);
+
+/// Up to `most` of the points, evenly picked.
+std::vector<Eigen::Vector3d> picked(std::span<const Eigen::Vector3d> points_m, std::size_t most);
 
 /// The motion near `start` with the largest overlap, by a search along the axes, and that overlap.
 struct Alignment {

@@ -39,11 +39,14 @@ std::string poses_text(const SequenceCheckup& sequence) {
   const PoseMeasurement& measured = *sequence.poses;
   std::string text = fmt::format(
       "  overlap         {:.2f} as given, {:.2f} after moving scans by {:.2f} m (median)\n",
-      measured.given_overlap, measured.best_overlap, measured.median_correction_m);
-  for (const ConventionScore& score : measured.scores) {
-    text += fmt::format("                  {:.2f} against {:.2f} as given, if the poses were {}\n",
-                        score.overlap, score.given_overlap,
-                        sequence.conventions[score.convention].name);
+      measured.given.overlap, measured.given.best_overlap, measured.given.median_correction_m);
+  for (std::size_t i = 0; i < measured.scores.size(); ++i) {
+    const ConventionScore& score = measured.scores[i];
+    const std::string what = score.pairs == 0 ? "not to be told from what is given"
+                                              : fmt::format("{:.2f} against {:.2f} as given",
+                                                            score.overlap, score.given_overlap);
+    text += fmt::format("                  {}, if the poses were {}\n", what,
+                        sequence.conventions[i].name);
   }
   return text;
 }
@@ -99,12 +102,13 @@ ordered_json to_json(const SequenceCheckup& sequence) {
     json["label_ids"][std::to_string(id)] = points;
   }
   if (!sequence.poses) return json;
-  ordered_json poses = {{"overlap", sequence.poses->given_overlap},
-                        {"best_overlap", sequence.poses->best_overlap},
-                        {"median_correction_m", sequence.poses->median_correction_m},
+  ordered_json poses = {{"overlap", sequence.poses->given.overlap},
+                        {"best_overlap", sequence.poses->given.best_overlap},
+                        {"median_correction_m", sequence.poses->given.median_correction_m},
                         {"conventions", ordered_json::array()}};
-  for (const ConventionScore& score : sequence.poses->scores) {
-    poses["conventions"].push_back({{"name", sequence.conventions[score.convention].name},
+  for (std::size_t i = 0; i < sequence.poses->scores.size(); ++i) {
+    const ConventionScore& score = sequence.poses->scores[i];
+    poses["conventions"].push_back({{"name", sequence.conventions[i].name},
                                     {"pairs", score.pairs},
                                     {"pairs_better", score.pairs_better},
                                     {"overlap", score.overlap},

@@ -17,9 +17,11 @@ constexpr const char* kFooter =
     R"(Looks for what costs hours when it is noticed late: scans without labels or poses, cut off or frozen
 scans, labels of other ids or beyond the range that is labelled, points in millimetres, stamps out of
 order, splits that name absent scans, counts other than published, and poses in another convention.
-The latter is measured: a dozen pairs of scans are laid over one another under each convention, and the
-one in which their surfaces overlap best is named. A shift by one row can only be told where the
-motion changes from scan to scan. All files are listed, some dozens of scans are read.
+The latter is measured: pairs of scans are laid over one another under each convention, and the one in
+which their surfaces overlap best is named, or those among which the scans cannot tell. Rows of poses
+that are exchanged or off the way are named as well. A shift by one row can only be told where the
+motion changes from scan to scan; the report says when it does not. All files are listed, some dozens
+of scans are read.
 
 Exit codes: 0 nothing found, 1 warnings, 3 the data set cannot be read.
 

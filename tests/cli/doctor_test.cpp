@@ -11,6 +11,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
+using testing::Not;
 
 class DoctorCommand : public testing::Test {
  protected:
@@ -36,6 +37,22 @@ TEST_F(DoctorCommand, EndsWithAVerdictTheNextCommandAndItsExitCode) {
   EXPECT_THAT(unusable.out, HasSubstr("the numbering of the scans lacks 1: 000003"));
   EXPECT_THAT(unusable.out, HasSubstr("12 pose rows for 11 scans"));
   EXPECT_THAT(unusable.out, HasSubstr("Verdict: cannot be used"));
+}
+
+TEST_F(DoctorCommand, NamesAFileOnce) {
+  const fs::path label = folder_ / "room/labels/000003.label";
+  fs::resize_file(label, fs::file_size(label) - 4);
+  const cli::Answer answer = cli::run({"doctor", room()});
+  EXPECT_EQ(answer.exit_code, 3);
+  EXPECT_THAT(answer.out, HasSubstr("error: " + label.string() + ": "));
+  EXPECT_THAT(answer.out, Not(HasSubstr(room() + ": " + room())));
+}
+
+TEST_F(DoctorCommand, SaysWhatASensorThatStandsStillCannotTell) {
+  const cli::Answer answer = cli::run({"doctor", room()});
+  EXPECT_EQ(answer.exit_code, 0);
+  EXPECT_THAT(answer.out,
+              HasSubstr("not to be told from what is given, if the poses were one row later"));
 }
 
 TEST_F(DoctorCommand, PrintsTheSameAsJson) {

@@ -36,8 +36,8 @@ struct Layout {
 
 /// Simulated once per layout; tests that spoil it take a copy.
 fs::path good_copy(const Layout& layout) {
-  static std::map<DatasetKind, std::unique_ptr<TempFolder>> folders;
-  auto& folder = folders[layout.kind];
+  static std::map<std::pair<DatasetKind, std::string>, std::unique_ptr<TempFolder>> folders;
+  auto& folder = folders[{layout.kind, layout.scene}];
   if (!folder) {
     folder = std::make_unique<TempFolder>();
     simulate({.layout = layout.kind,
@@ -75,9 +75,13 @@ INSTANTIATE_TEST_SUITE_P(Layouts, DoctorOnWhatIsGood,
                          testing::Values(Layout{DatasetKind::kDoals, "mall"},
                                          Layout{DatasetKind::kSipailou, "campus"},
                                          Layout{DatasetKind::kHelimos, "street"},
-                                         Layout{DatasetKind::kSemanticKitti, "street"}),
+                                         Layout{DatasetKind::kSemanticKitti, "street"},
+                                         Layout{DatasetKind::kSemanticKitti, "highway"},
+                                         Layout{DatasetKind::kHelimos, "campus"},
+                                         Layout{DatasetKind::kHelimos, "highway"}),
                          [](const auto& layout) {
-                           return std::string(to_string(layout.param.kind));
+                           return std::string(to_string(layout.param.kind)) + "_" +
+                                  layout.param.scene;
                          });
 
 /// A fault and words of the symptom that has to name it.
@@ -92,6 +96,8 @@ struct Fault {
 void PrintTo(const Fault& fault, std::ostream* out) { *out << fault.name; }
 
 constexpr Layout kKitti = {DatasetKind::kSemanticKitti, "street"};
+constexpr Layout kHighway = {DatasetKind::kSemanticKitti, "highway"};
+constexpr Layout kRoom = {DatasetKind::kSipailou, "room"};
 constexpr Layout kCampus = {DatasetKind::kSipailou, "campus"};
 constexpr Layout kSensors = {DatasetKind::kHelimos, "street"};
 const fs::path kKittiSequence = "sequences/08";
@@ -102,6 +108,11 @@ void change_poses(const fs::path& file, const std::function<void(std::vector<Pos
   ASSERT_EQ(poses.size(), kScans);
   change(poses);
   write_poses(file, poses);
+}
+
+void exchange_rows(const fs::path& sequence, std::size_t a, std::size_t b) {
+  change_poses(sequence / "poses.txt",
+               [=](std::vector<Pose>& poses) { std::swap(poses.at(a), poses.at(b)); });
 }
 
 void change_points(const fs::path& folder, const std::function<void(Point&)>& change) {
@@ -151,6 +162,50 @@ const std::vector<Fault>& faults() {
          });
        },
        "the poses fit better as one row later"},
+      {"poses_shifted_by_one_scan_the_other_way", kKitti,
+       [](const fs::path& root) {
+         change_poses(root / kKittiSequence / "poses.txt", [](std::vector<Pose>& poses) {
+           poses.erase(poses.begin());
+           poses.push_back(poses.back());
+         });
+       },
+       "the poses fit better as one row earlier"},
+      {"poses_shifted_by_one_scan_on_a_straight_road", kHighway,
+       [](const fs::path& root) {
+         change_poses(root / kKittiSequence / "poses.txt", [](std::vector<Pose>& poses) {
+           poses.insert(poses.begin(), poses.front());
+           poses.pop_back();
+         });
+       },
+       "the poses fit better as one row later:"},
+      {"inverse_poses_on_a_straight_road", kHighway,
+       [](const fs::path& root) {
+         change_poses(root / kKittiSequence / "poses.txt", [](std::vector<Pose>& poses) {
+           for (Pose& pose : poses) pose = pose.inverse();
+         });
+       },
+       "the poses fit better as sensor_from_map (inverse):"},
+      {"rows_of_neighbours_exchanged", kKitti,
+       [](const fs::path& root) { exchange_rows(root / kKittiSequence, 17, 18); },
+       "the poses of scans 000017 and 000018 (rows 18 and 19) are exchanged"},
+      {"rows_far_apart_exchanged", kKitti,
+       [](const fs::path& root) { exchange_rows(root / kKittiSequence, 5, 31); },
+       "the poses of scans 000005 and 000031 (rows 6 and 32) are exchanged"},
+      {"first_two_rows_exchanged", kKitti,
+       [](const fs::path& root) { exchange_rows(root / kKittiSequence, 0, 1); },
+       "the poses of scans 000000 and 000001 (rows 1 and 2) are exchanged"},
+      {"rows_exchanged_on_a_straight_road", kHighway,
+       [](const fs::path& root) { exchange_rows(root / kKittiSequence, 20, 22); },
+       "the poses of scans 000020 and 000022 (rows 21 and 23) are exchanged"},
+      {"rows_exchanged_at_a_slow_walk", kRoom,
+       [](const fs::path& root) { exchange_rows(root / kCampusSequence, 9, 10); },
+       "(rows 10 and 11) are exchanged"},
+      {"one_row_off_the_way", kKitti,
+       [](const fs::path& root) {
+         change_poses(root / kKittiSequence / "poses.txt",
+                      [](std::vector<Pose>& poses) { poses[12].translation().z() += 3.0; });
+       },
+       "the pose of scan 000012 (row 13) does not fit between its neighbours"},
       {"poses_of_another_sequence", kKitti,
        [](const fs::path& root) {
          change_poses(root / kKittiSequence / "poses.txt", [](std::vector<Pose>& poses) {
@@ -258,6 +313,22 @@ TEST_P(Doctor, FindsThePlantedFault) {
   const Checkup checkup = check_up(folder / "data", {});
   EXPECT_THAT(all_symptoms(checkup), HasSubstr(fault.symptom));
   EXPECT_EQ(checkup.has(Severity::kError), fault.severity == Severity::kError);
+}
+
+TEST(DoctorOnAFewScansOfAStraightRoad, TellsInverseFromTransposedPoses) {
+  const TempFolder folder;
+  simulate({.layout = DatasetKind::kSemanticKitti,
+            .scene = "highway",
+            .scans = 12,
+            .seed = 1,
+            .out = folder / "data",
+            .threads = 2});
+  const fs::path file = folder / "data" / kKittiSequence / "poses.txt";
+  auto poses = read_poses(file);
+  for (Pose& pose : poses) pose = pose.inverse();
+  write_poses(file, poses);
+  const std::string symptoms = all_symptoms(check_up(folder / "data", {}));
+  EXPECT_THAT(symptoms, HasSubstr("the poses fit better as sensor_from_map (inverse):"));
 }
 
 INSTANTIATE_TEST_SUITE_P(Faults, Doctor, testing::ValuesIn(faults()),
