@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <unordered_map>
 
+#include "eval/json_differences.hpp"
+
 namespace mosbench {
 namespace {
 
@@ -12,6 +14,28 @@ using Kind = Unlike::Kind;
 
 std::string range_text(const RangeGate& range) {
   return fmt::format("{:g} to {:g} m", range.min_m, range.max_m);
+}
+
+/// Variant and configuration; null for labels of other methods.
+nlohmann::ordered_json parameters_of(const SequenceResult& result) {
+  const auto config = result.header.find("config");
+  if (config == result.header.end() || !config->is_object()) return nullptr;
+  nlohmann::ordered_json parameters = *config;
+  parameters["variant"] = result.header.value("variant", nlohmann::ordered_json());
+  return parameters;
+}
+
+/// "voxel_size_m: 0.25 -> 0.4, ..." where both runs have parameters; empty when they are equal.
+std::string changed_parameters(const SequenceResult& first, const SequenceResult& second) {
+  const nlohmann::ordered_json before = parameters_of(first);
+  const nlohmann::ordered_json after = parameters_of(second);
+  std::string text;
+  if (before.is_null() || after.is_null()) return text;
+  for (const JsonDifference& change : json_differences(before, after)) {
+    text += fmt::format("{}{}: {} -> {}", text.empty() ? "" : ", ", change.key, change.first,
+                        change.second);
+  }
+  return text;
 }
 
 void compare_rules(const SequenceResult& first, const SequenceResult& second,
@@ -25,11 +49,11 @@ void compare_rules(const SequenceResult& first, const SequenceResult& second,
   differ(Kind::kProtocol, "counted range", range_text(first.range), range_text(second.range));
   differ(Kind::kInput, "data set", first.dataset, second.dataset);
   differ(Kind::kSetting, "method", first.method, second.method);
-  differ(Kind::kSetting, "setting", first.setting, second.setting);
-  if (first.setting == second.setting) {
-    differ(Kind::kSetting, "configuration",
-           first.header.value("config", nlohmann::ordered_json::object()).dump(),
-           second.header.value("config", nlohmann::ordered_json::object()).dump());
+  const std::string changes = changed_parameters(first, second);
+  if (changes.empty()) {
+    differ(Kind::kSetting, "setting", first.setting, second.setting);
+  } else {
+    unlike.push_back({Kind::kSetting, changes});
   }
 }
 

@@ -169,7 +169,7 @@ std::string format_scored(const ordered_json& header, const std::vector<ScanRow>
   return format_members(with_scans(header, scans));
 }
 
-std::vector<std::filesystem::path> result_files(const std::filesystem::path& path) {
+std::vector<std::filesystem::path> find_result_files(const std::filesystem::path& path) {
   std::error_code error;
   if (std::filesystem::is_regular_file(path, error)) return {path};
   std::vector<std::filesystem::path> files;
@@ -183,11 +183,14 @@ std::vector<std::filesystem::path> result_files(const std::filesystem::path& pat
     }
   }
   if (error) throw DataError(path, "cannot be read (" + error.message() + ")", "results");
-  if (files.empty()) {
-    throw DataError(path, "holds no result.json", "results of mosbench run or mosbench score");
-  }
   std::ranges::sort(files);
   return files;
+}
+
+std::vector<std::filesystem::path> result_files(const std::filesystem::path& path) {
+  std::vector<std::filesystem::path> files = find_result_files(path);
+  if (!files.empty()) return files;
+  throw DataError(path, "holds no result.json", "results of mosbench run or mosbench score");
 }
 
 ResultFile read_result(const std::filesystem::path& file) {

@@ -59,7 +59,9 @@ struct ResultFile {
 };
 
 /// Every result.json below a folder (or the file itself), ordered by path, but not those that
-/// killed runs left. Throws DataError when there is none.
+/// killed runs left; empty when there is none. Throws DataError for a path that cannot be read.
+std::vector<std::filesystem::path> find_result_files(const std::filesystem::path& path);
+/// The same where there has to be one: throws DataError when there is none.
 std::vector<std::filesystem::path> result_files(const std::filesystem::path& path);
 
 /// Reads what `format_result` or `format_scored` wrote; throws DataError naming the file for

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "datasets/errors.hpp"
+#include "eval/json_differences.hpp"
 
 namespace mosbench {
 namespace fs = std::filesystem;
@@ -41,33 +42,6 @@ void checked(const fs::path& path, const char* what, Operation&& operation) {
     throw DataError(path, fmt::format("cannot be {} ({})", what, error.message()),
                     "a writable output folder");
   }
-}
-
-std::string differences(const nlohmann::ordered_json& there, const nlohmann::ordered_json& here) {
-  const nlohmann::ordered_json theirs = there.flatten();
-  const nlohmann::ordered_json ours = here.flatten();
-  const auto value = [](const nlohmann::ordered_json& json, const std::string& key) {
-    return json.contains(key) ? json[key].dump() : "nothing";
-  };
-  std::string text;
-  for (const nlohmann::ordered_json* side : {&ours, &theirs}) {
-    for (const auto& [key, unused] : side->items()) {
-      if (side == &theirs && ours.contains(key)) continue;
-      if (value(theirs, key) == value(ours, key)) continue;
-      text += fmt::format("{}{} is {} there and {} now", text.empty() ? "" : "; ", key.substr(1),
-                          value(theirs, key), value(ours, key));
-    }
-  }
-  return text;
-}
-
-nlohmann::ordered_json same_members(const nlohmann::ordered_json& content,
-                                    const nlohmann::ordered_json& identity) {
-  nlohmann::ordered_json members;
-  for (const auto& [key, unused] : identity.items()) {
-    if (content.contains(key)) members[key] = content[key];
-  }
-  return members;
 }
 
 /// Labels and scores both take four bytes per point.
@@ -124,7 +98,7 @@ std::optional<ResultFile> ResultFolder::finished(const Sequence& sequence,
   check_replaceable();
   if (!fs::exists(folder_ / kResult)) return std::nullopt;
   ResultFile result = read_result(folder_ / kResult);
-  const std::string different = differences(same_members(result.content, identity), identity);
+  const std::string different = changed_members(result.content, identity);
   if (!different.empty()) {
     throw UsageError(fmt::format(
         "{}: holds results of another run ({}), expected the same; give another --out, or "

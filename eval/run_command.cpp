@@ -21,7 +21,8 @@ that the threshold is compared with. `mosbench report` then colours points by it
 The same command again skips the sequences that are finished and starts an interrupted one anew: the
 method's memory spans the whole past, so scans cannot be skipped. A sequence appears under DIR when it
 is finished; until then it is written to DIR/<sequence>.partial. Results of another configuration,
-program or input are kept unless --overwrite is given.
+program or input are kept unless --overwrite is given. DIR may hold sequences of one data set and one
+setting only.
 
 Configuration: defaults < preset < --config FILE < --set. FILE holds a JSON object such as
   {"voxel_size_m": 0.25, "max_range_m": 50.0, "delay_scans": 10}

@@ -13,6 +13,7 @@
 #include "eval/presets.hpp"
 #include "eval/reading_json.hpp"
 #include "eval/same_input.hpp"
+#include "eval/shared_folder.hpp"
 #include "mosbench_version.hpp"
 
 namespace mosbench {
@@ -76,6 +77,13 @@ nlohmann::ordered_json identity_of(const RunPlan& plan, const Sequence& sequence
       {"code", {{"version", std::string(kMosbenchVersion)}, {"compiler", std::string(kCompiler)}}}};
 }
 
+/// What the results of all sequences of a run have in common.
+nlohmann::ordered_json shared_rules(const RunPlan& plan) {
+  nlohmann::ordered_json rules = identity_of(plan, *plan.dataset.sequences.front());
+  for (const char* own : {"sequence", "reading", "code"}) rules.erase(own);
+  return rules;
+}
+
 PlannedSequence plan_sequence(const RunPlan& plan, std::size_t position, bool overwrite) {
   const Sequence& sequence = *plan.dataset.sequences[position];
   PlannedSequence planned{position, ResultFolder(plan.out / sequence.name()),
@@ -116,6 +124,7 @@ RunPlan plan_run(const RunOptions& options) {
   RunPlan plan = plan_method(options);
   plan.settings.keeps_scores = options.scores;
   plan.out = options.out.value_or(default_out(plan, options));
+  check_shared_folder(plan, shared_rules(plan));
   for (std::size_t i = 0; i < plan.dataset.sequences.size(); ++i) {
     plan.sequences.push_back(plan_sequence(plan, i, options.overwrite));
   }

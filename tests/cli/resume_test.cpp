@@ -115,6 +115,40 @@ TEST_F(Resume, RefusesResultsOfAnotherConfigurationAndNamesTheDifference) {
   EXPECT_EQ(cli::timeless_result(results()).at("config").at("max_range_m"), 30.0);
 }
 
+/// What `stats` or `bless` of the folder could not tell apart later.
+TEST_F(Resume, RefusesAFolderWithResultsOfAnotherDataSetOrSetting) {
+  for (const char* sequence : {"a/sequences/00", "a/sequences/01", "b/sequences/02"}) {
+    cli::write_small_sequence(folder_ / sequence, 6);
+  }
+  const auto run = [this](const std::string& input, const std::vector<std::string>& more) {
+    std::vector<std::string> words = {"run", (folder_ / input).string(), "--out",
+                                      (folder_ / "out").string()};
+    words.insert(words.end(), more.begin(), more.end());
+    return cli::run(words);
+  };
+  ASSERT_EQ(run("a", {"--sequences", "00"}).exit_code, 0);
+  const auto before = cli::contents(folder_ / "out");
+  const cli::Answer other = run("b", {});
+  EXPECT_EQ(other.exit_code, 2);
+  EXPECT_THAT(other.err, HasSubstr("out/00/result.json"));
+  EXPECT_THAT(other.err, HasSubstr("data set is " + (folder_ / "a").string() + " there and " +
+                                   (folder_ / "b").string() + " now"));
+  for (const std::vector<std::string>& extra : {std::vector<std::string>{}, {"--overwrite"}}) {
+    std::vector<std::string> flags = {"--sequences", "01", "--set", "max_range_m=30"};
+    flags.insert(flags.end(), extra.begin(), extra.end());
+    const cli::Answer setting = run("a", flags);
+    EXPECT_EQ(setting.exit_code, 2);
+    EXPECT_THAT(setting.err, HasSubstr("config/max_range_m is 50.0 there and 30.0 now"));
+  }
+  EXPECT_EQ(cli::contents(folder_ / "out"), before);
+  // Sequences of one data set, however they are named.
+  EXPECT_EQ(run("a/sequences/01", {}).exit_code, 0);
+  EXPECT_EQ(run("a/sequences/00/", {}).exit_code, 0);
+  const cli::Answer all = run("a", {});
+  ASSERT_EQ(all.exit_code, 0) << all.err;
+  EXPECT_THAT(all.err, HasSubstr("01: finished by an earlier run, kept"));
+}
+
 TEST_F(Resume, RefusesOtherInputButNotTouchedInput) {
   ASSERT_EQ(cli::run(command()).exit_code, 0);
   const fs::path scan = folder_ / "room/velodyne/000004.bin";

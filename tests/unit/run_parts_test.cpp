@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "datasets/errors.hpp"
+#include "eval/json_differences.hpp"
 #include "eval/progress.hpp"
 #include "eval/reading_json.hpp"
 #include "eval/score_table.hpp"
@@ -34,6 +35,23 @@ TEST(DetectionRuns, OnTheScansThatTheAuthorsProgramJudges) {
   // Delay 1 reaches back to scan 3 at k = 4 only.
   EXPECT_EQ(judged(1, 3, 7), (std::vector<std::size_t>{3, 4, 5}));
   EXPECT_EQ(judged(10, 3, 6), (std::vector<std::size_t>{4, 5}));
+}
+
+TEST(JsonDifferences, NameWhatDiffersOnEitherSide) {
+  const nlohmann::ordered_json first = {{"a", 1}, {"b", {{"c", 2.5}, {"d", "x"}}}, {"gone", {}}};
+  const nlohmann::ordered_json second = {{"a", 1}, {"b", {{"c", 3.5}, {"d", "x"}}}, {"e", true}};
+  std::string text;
+  for (const JsonDifference& difference : json_differences(first, second)) {
+    text += difference.key + ' ' + difference.first + ' ' + difference.second + '\n';
+  }
+  EXPECT_EQ(text, "b/c 2.5 3.5\ne nothing true\ngone null nothing\n");
+  EXPECT_EQ(changed_members(first, second),
+            "b/c is 2.5 there and 3.5 now; e is nothing there and "
+            "true now");
+  EXPECT_TRUE(json_differences(second, second).empty());
+  const nlohmann::ordered_json empty = nlohmann::ordered_json::object();
+  EXPECT_TRUE(json_differences(empty, empty).empty());
+  EXPECT_EQ(json_differences(empty, {{"a", 1}}).size(), 1U);
 }
 
 TEST(ReadingJson, KeepsWhatTheUserTold) {
