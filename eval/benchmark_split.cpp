@@ -4,6 +4,11 @@
 
 namespace mosbench {
 
+bool picks_scans(const Split& split) {
+  return std::ranges::any_of(split.parts,
+                             [](const SplitPart& part) { return part.stems.has_value(); });
+}
+
 const Split* benchmark_split(const Protocol& protocol, const std::vector<Split>& splits) {
   const auto found = std::ranges::find(splits, protocol.default_split, &Split::name);
   return found == splits.end() ? nullptr : &*found;
@@ -11,8 +16,7 @@ const Split* benchmark_split(const Protocol& protocol, const std::vector<Split>&
 
 const Split* benchmark_scans(const Protocol& protocol, const std::vector<Split>& splits) {
   const Split* split = benchmark_split(protocol, splits);
-  const auto picks = [](const SplitPart& part) { return part.stems.has_value(); };
-  return split != nullptr && std::ranges::any_of(split->parts, picks) ? split : nullptr;
+  return split != nullptr && picks_scans(*split) ? split : nullptr;
 }
 
 std::optional<std::set<std::string>> stems_in_split(const Split& split, std::size_t position) {

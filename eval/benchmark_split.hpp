@@ -12,6 +12,9 @@
 
 namespace mosbench {
 
+/// Whether the split picks scans within sequences.
+bool picks_scans(const Split& split);
+
 /// The split that the protocol's published numbers are over, when the data set has it.
 const Split* benchmark_split(const Protocol& protocol, const std::vector<Split>& splits);
 

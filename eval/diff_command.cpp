@@ -1,9 +1,12 @@
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
-#include <algorithm>
+#include <map>
 #include <memory>
 
 #include "core/thread_pool.hpp"
 #include "datasets/errors.hpp"
+#include "datasets/fingerprint.hpp"
 #include "eval/answer_text.hpp"
 #include "eval/commands.hpp"
 #include "eval/run_diff.hpp"
@@ -15,7 +18,7 @@ namespace {
 constexpr const char* kFooter =
     R"(Lists the scans in which two runs count differently, most changed first. With --data also the moving
 objects of which they find different parts; A and B then have to hold label files, as the folders of
-`mosbench run` do.
+`mosbench run` do, and the data set every sequence of A, with the truth that was scored.
 
 Examples:
   mosbench diff results/runs/online results/runs/delayed
@@ -29,11 +32,36 @@ struct DiffOptions {
   bool json = false;
 };
 
-std::vector<std::size_t> scans_of(const Sequence& sequence, const SequenceResult& result) {
-  std::set<std::string> stems;
-  for (const ScanRow* row : counted_scans(result)) stems.insert(row->stem);
-  std::vector<std::size_t> scans = scans_with_truth(sequence);
-  std::erase_if(scans, [&](std::size_t k) { return !stems.contains(sequence.stem(k)); });
+const Sequence& sequence_named(const Dataset& dataset, const std::string& name) {
+  std::string names;
+  for (const auto& sequence : dataset.sequences) {
+    if (sequence->name() == name) return *sequence;
+    names += (names.empty() ? "" : ", ") + sequence->name();
+  }
+  throw DataError(dataset.root, fmt::format("has no sequence {}, only {}", name, names),
+                  "the data set of the runs in --data");
+}
+
+/// The counted scans of a result. Throws DataError unless they have the truth that was scored.
+std::vector<std::size_t> scans_of(const Dataset& dataset, const Sequence& sequence,
+                                  const SequenceResult& result) {
+  std::map<std::string, std::size_t> labelled;
+  for (const std::size_t k : scans_with_truth(sequence)) labelled[sequence.stem(k)] = k;
+  std::vector<std::size_t> scans;
+  for (const ScanRow* row : counted_scans(result)) {
+    const auto scan = labelled.find(row->stem);
+    const auto refuse = [&](const char* what) {
+      throw DataError(
+          dataset.root,
+          fmt::format("has {} for scan {} of sequence {}", what, row->stem, sequence.name()),
+          "the data set of the runs in --data");
+    };
+    if (scan == labelled.end()) refuse("no truth");
+    if (row->truth_hash && truth_hash(sequence.read_truth(scan->second)) != row->truth_hash) {
+      refuse("another truth");
+    }
+    scans.push_back(scan->second);
+  }
   return scans;
 }
 
@@ -49,14 +77,13 @@ std::vector<ObjectDisagreement> objects_of(const DiffOptions& options, const Res
       open_dataset(*options.root, {dataset_kind_option(options.dataset), {}, {}});
   const BreakdownTask task{first.front().protocol, first.front().range, hardware_threads()};
   std::vector<ObjectDisagreement> objects;
-  for (const auto& sequence : dataset.sequences) {
-    const auto result =
-        std::ranges::find(first.sequences, sequence->name(), &SequenceResult::sequence);
-    if (result == first.sequences.end()) continue;
-    const std::vector<std::size_t> scans = scans_of(*sequence, *result);
+  for (const SequenceResult& result : first.sequences) {
+    if (counted_scans(result).empty()) continue;
+    const Sequence& sequence = sequence_named(dataset, result.sequence);
+    const std::vector<std::size_t> scans = scans_of(dataset, sequence, result);
     for (ObjectDisagreement& object :
-         disagreeing_objects(break_down_run(*sequence, scans, first, task),
-                             break_down_run(*sequence, scans, second, task))) {
+         disagreeing_objects(break_down_run(sequence, scans, first, task),
+                             break_down_run(sequence, scans, second, task))) {
       objects.push_back(std::move(object));
     }
   }
@@ -73,7 +100,9 @@ std::string diff(const DiffOptions& options) {
   }
   const auto objects =
       options.root ? objects_of(options, first, second) : std::vector<ObjectDisagreement>{};
-  if (!options.json) return diff_text(paired, objects, options.top);
+  if (!options.json) {
+    return diff_text(names_apart(options.first, options.second), paired, objects, options.top);
+  }
   return json_text(diff_json(paired, objects, options.top));
 }
 

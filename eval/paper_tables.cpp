@@ -7,6 +7,7 @@
 #include <string>
 
 #include "datasets/errors.hpp"
+#include "datasets/text.hpp"
 
 namespace mosbench {
 
@@ -72,10 +73,23 @@ std::span<const PaperTable> paper_tables() {
 }
 
 const PaperTable& paper_table_named(std::string_view name) {
-  const auto found = std::ranges::find(paper_tables(), name, &PaperTable::name);
+  const auto found = std::ranges::find(
+      paper_tables(), lower_case(std::string(name)),
+      [](const PaperTable& table) { return lower_case(std::string(table.name)); });
   if (found != paper_tables().end()) return *found;
   throw UsageError(
       fmt::format("table: '{}' is not known, expected I, II, III, apollo, moe or mdetector", name));
+}
+
+bool is_about(const TableColumn& column, const std::string& sequence) {
+  return std::ranges::any_of(column.sequences, [&](std::string_view name) {
+    return sequence == name || sequence.starts_with(std::string(name) + '/');
+  });
+}
+
+bool is_about(const PaperTable& table, const std::string& sequence) {
+  return std::ranges::any_of(table.columns,
+                             [&](const TableColumn& column) { return is_about(column, sequence); });
 }
 
 }  // namespace mosbench

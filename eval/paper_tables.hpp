@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -29,7 +30,11 @@ struct PaperTable {
 };
 
 std::span<const PaperTable> paper_tables();
-/// Throws UsageError naming all tables.
+/// In upper or lower case. Throws UsageError naming all tables.
 const PaperTable& paper_table_named(std::string_view name);
+
+/// Whether a number of the sequence belongs in the column, or in any of the table.
+bool is_about(const TableColumn& column, const std::string& sequence);
+bool is_about(const PaperTable& table, const std::string& sequence);
 
 }  // namespace mosbench

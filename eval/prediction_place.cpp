@@ -35,13 +35,19 @@ std::string first_line(const fs::path& file) {
   return line.substr(0, line.find('\n'));
 }
 
-/// The format of one file for a whole sequence.
-Format format_of_file(const fs::path& file) {
+/// The format of one file for a whole sequence; nothing when it begins like none, as a README does.
+std::optional<Format> format_of_file(const fs::path& file) {
   const std::string line = first_line(file);
   if (line.starts_with("CloudNo")) return Format::kDynabloxClouds;
   if (line.find("EvaluatedPoints") != std::string::npos) return Format::kDynabloxScores;
   const auto number = parse_unsigned(trim(std::string_view(line).substr(0, line.find(','))));
-  return number && *number >= kSmallestStamp_ns ? Format::kIndices : Format::kRows;
+  if (!number) return std::nullopt;
+  return *number >= kSmallestStamp_ns ? Format::kIndices : Format::kRows;
+}
+
+/// The same for a file that was named: what is wrong with it then shows when it is read.
+Format format_of_named(const fs::path& file) {
+  return format_of_file(file).value_or(Format::kRows);
 }
 
 std::set<std::string> stems_of(const Sequence& sequence) {
@@ -103,6 +109,9 @@ std::optional<fs::path> table_in(const fs::path& folder, std::optional<Format> w
   }
   std::vector<fs::path> tables = files_with_extension(folder, ".txt");
   for (const fs::path& table : files_with_extension(folder, ".csv")) tables.push_back(table);
+  if (!wanted || tables.size() > 1) {
+    std::erase_if(tables, [](const fs::path& table) { return !format_of_file(table); });
+  }
   if (tables.size() != 1) return std::nullopt;
   return tables.front();
 }
@@ -121,7 +130,7 @@ std::optional<PredictionPlace> look_into(const fs::path& folder, const Sequence&
   }
   const auto table = table_in(folder, std::nullopt);
   if (!table) return std::nullopt;
-  return PredictionPlace{*table, format_of_file(*table)};
+  return PredictionPlace{*table, format_of_named(*table)};
 }
 
 /// The same when the user says what it is.
@@ -164,11 +173,11 @@ PredictionPlace find_predictions(const fs::path& root, const Sequence& sequence,
   for (const char* extension : {".txt", ".csv"}) {
     const fs::path file = root / (sequence.name() + extension);
     if (!found && fs::is_regular_file(file, error)) {
-      found = PredictionPlace{file, format.value_or(format_of_file(file))};
+      found = PredictionPlace{file, format.value_or(format_of_named(file))};
     }
   }
   if (only_sequence && fs::is_regular_file(root, error)) {
-    found = PredictionPlace{root, format.value_or(format_of_file(root))};
+    found = PredictionPlace{root, format.value_or(format_of_named(root))};
   }
   for (const fs::path& folder : candidate_folders(root, sequence.name(), only_sequence)) {
     if (!found) found = format ? look_for(folder, *format) : look_into(folder, sequence);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "datasets/errors.hpp"
+#include "datasets/files.hpp"
 #include "datasets/text.hpp"
 #include "eval/prediction_faults.hpp"
 #include "eval/prediction_place.hpp"
@@ -21,15 +22,28 @@ std::vector<std::string> missing_scans(const Predictions& labels, const Predicti
   for (const std::size_t k : wanted) {
     if (labels.has(k)) continue;
     missing.push_back(sequence.stem(k));
+    if (!format.per_scan) {
+      faults.report(DataError(place.path, "has no row for scan " + sequence.stem(k),
+                              "a row for every scan with truth"));
+      continue;
+    }
     const bool by_position = place.format == PredictionFormat::kLabelByIndex;
     const std::string name = by_position ? fmt::format("{:06d}", k) : sequence.stem(k);
-    faults.report(format.per_scan
-                      ? DataError(place.path / (name + std::string(format.extension)),
-                                  "is not there", "a prediction for every scan with truth")
-                      : DataError(place.path, "has no row for scan " + sequence.stem(k),
-                                  "a row for every scan with truth"));
+    const std::filesystem::path file = place.path / (name + std::string(format.extension));
+    // One that is there was faulty, which has been said.
+    if (is_there(file)) continue;
+    faults.report(DataError(file, "is not there", "a prediction for every scan with truth"));
   }
   return missing;
+}
+
+/// Labels that the user says to be cut by range are read as such, also when none is missing.
+PredictionFormat settle_format(PredictionFormat found, const PredictionOptions& options) {
+  if (!options.mask || found == PredictionFormat::kMaskedLabel) return found;
+  if (found == PredictionFormat::kLabel && !options.format) return PredictionFormat::kMaskedLabel;
+  throw UsageError(fmt::format("--mask: is for format {}, not for {}, expected no --mask",
+                               describe(PredictionFormat::kMaskedLabel).name,
+                               describe(found).name));
 }
 
 }  // namespace
@@ -55,7 +69,8 @@ LabelIdMap parse_id_map(const std::string& text) {
 OpenedPredictions open_predictions(const std::filesystem::path& root, const Sequence& sequence,
                                    const std::vector<std::size_t>& wanted, bool only_sequence,
                                    const PredictionOptions& options) {
-  const PredictionPlace place = find_predictions(root, sequence, only_sequence, options.format);
+  PredictionPlace place = find_predictions(root, sequence, only_sequence, options.format);
+  place.format = settle_format(place.format, options);
   PredictionFaults faults(options.allow_missing);
   OpenedPredictions opened{nullptr, place.format, !options.format, place.path, {}, {}};
   opened.labels = describe(place.format).per_scan

@@ -116,6 +116,7 @@ Report build_report(const std::vector<std::filesystem::path>& inputs,
   if (options.scans.none()) {
     return {page(content, {}), results.size(), {"the file holds no points (--scans none)"}};
   }
+  check_choice(results, options.scans);
   std::vector<ResultScans> sources;
   sources.reserve(results.size());
   for (std::size_t i = 0; i < results.size(); ++i) {

@@ -17,7 +17,8 @@ false points, charts over the scans, tables and provenance. RESULT is a folder t
 wrote, one above it, or a result.json. Results of the same scans can be looked at side by side. Points are read again
 from where the run read them, or from --data.
 
---scans takes a list of K, A-B, every:N and worst:N, counted from 0, or one of
+--scans takes a list of K (that one scan), A-B (from A to B), every:N and worst:N (so many), counted from 0,
+or one of
   auto   the worst tenth first, then scans spread evenly, as many as fit (default)
   all    from the first on, as many as fit
   none   only numbers; needs neither data set nor labels, so results of `mosbench score` do, too

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "datasets/errors.hpp"
 #include "eval/compressed_text.hpp"
 #include "eval/point_planes.hpp"
 #include "eval/progress.hpp"
@@ -127,7 +128,26 @@ std::string left_out(const Cloud& cloud, std::size_t scans) {
   return text;
 }
 
+void check_packed(const std::vector<Cloud>& clouds) {
+  const auto has_room = [](const Cloud& cloud) { return !cloud.full || !cloud.packed.empty(); };
+  if (std::ranges::any_of(clouds, has_room)) return;
+  throw UsageError("--max-mb: has no room for a single scan, expected more, or --scans none");
+}
+
 }  // namespace
+
+void check_choice(const std::vector<FoundResult>& results, const ScanChoice& choice) {
+  std::size_t longest = 0;
+  for (const FoundResult& result : results) {
+    if (!choice.wanted(result.file.rows.scans).empty()) return;
+    longest = std::max(longest, result.file.rows.scans.size());
+  }
+  if (longest == 0) return;
+  throw UsageError(
+      fmt::format("--scans: chooses no scan, expected some of 0 to {}; 0-9 are the first ten, "
+                  "worst:10 the ten worst",
+                  longest - 1));
+}
 
 ReportScans choose_report_scans(const std::vector<FoundResult>& results,
                                 const std::vector<ResultScans>& sources, const ScanChoice& choice,
@@ -136,6 +156,7 @@ ReportScans choose_report_scans(const std::vector<FoundResult>& results,
   report.results.resize(results.size());
   std::vector<Cloud> clouds = group_by_frames(results, choice);
   pack_until_full(clouds, sources, max_bytes);
+  check_packed(clouds);
   for (Cloud& cloud : clouds) {
     std::ranges::sort(cloud.packed, {}, &PackedScan::scan_index);
     const FoundResult& first = results[cloud.members.front()];

@@ -26,8 +26,12 @@ struct ReportScans {
   std::vector<std::string> remarks;
 };
 
+/// Throws UsageError when `choice` wants no scan of any result although they have some.
+void check_choice(const std::vector<FoundResult>& results, const ScanChoice& choice);
+
 /// Takes scans in the order in which they are wanted, from all clouds in turn, until the next would
-/// bring the blocks above `max_bytes`. `sources` are the scans of `results`, one each.
+/// bring the blocks above `max_bytes`; throws UsageError when that leaves none. `sources` are the
+/// scans of `results`, one each.
 ReportScans choose_report_scans(const std::vector<FoundResult>& results,
                                 const std::vector<ResultScans>& sources, const ScanChoice& choice,
                                 std::size_t max_bytes);

@@ -1,10 +1,12 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <array>
 #include <memory>
 
 #include "datasets/errors.hpp"
+#include "datasets/simulated_origin.hpp"
 #include "eval/commands.hpp"
 #include "eval/run_execute.hpp"
 #include "eval/table_report.hpp"
@@ -15,7 +17,8 @@ namespace {
 constexpr const char* kFooter =
     R"(Runs HMM-MOS with every setting that the paper's table needs (DOALS: range 20 m and 120 m; HeLiMOS:
 online and delayed by 10 scans), each to OUT/<preset>, and prints the table. The same command again
-keeps what is finished and runs the rest; part of a data set fills part of the table.
+keeps what is finished and runs the rest; part of a data set fills part of the table. Another data set,
+or one without any sequence of the table, is refused (exit code 3).
 
 Examples:
   mosbench reproduce doals --data ~/doals
@@ -48,9 +51,42 @@ struct ReproduceOptions {
   std::string format = "markdown";
 };
 
+/// Whether what was recognised can be the data set: Sipailou looks like SemanticKITTI, which is
+/// what anything without a mark is taken for.
+bool can_be(DatasetKind found, std::string_view wanted, const std::filesystem::path& root) {
+  if (to_string(found) == wanted) return true;
+  return found == DatasetKind::kSemanticKitti && !simulated_origin(root);
+}
+
+/// Throws DataError unless a sequence of the table is there: else hours went into no cell of it.
+void check_is_in_table(const ReproduceOptions& options, const Recipe& recipe,
+                       const PaperTable& table) {
+  std::optional<DatasetKind> found;
+  std::vector<std::string> names;
+  for (const SequenceFolder& folder :
+       find_sequences(options.root, {.sequences = options.sequences}, found)) {
+    names.push_back(folder.name);
+  }
+  const auto in_table = [&](const std::string& name) { return is_about(table, name); };
+  if (can_be(*found, recipe.dataset, options.root) && std::ranges::any_of(names, in_table)) return;
+  std::vector<std::string_view> wanted;
+  for (const TableColumn& column : table.columns) {
+    for (const std::string_view name : column.sequences) {
+      if (std::ranges::find(wanted, name) == wanted.end()) wanted.push_back(name);
+    }
+  }
+  throw DataError(
+      options.root,
+      fmt::format("holds data set {} with {}", to_string(*found), fmt::join(names, ", ")),
+      fmt::format("{} with one or more of {} for table {}: {}", recipe.dataset,
+                  fmt::join(wanted, ", "), table.name, table.download));
+}
+
 std::string reproduce(const ReproduceOptions& options) {
   const Recipe& recipe = recipe_named(options.name);
+  const PaperTable& table = paper_table_named(recipe.table);
   const TableFormat format = table_format_named(options.format);
+  check_is_in_table(options, recipe, table);
   const std::filesystem::path out = options.out.value_or("results/runs/reproduce-" + options.name);
   std::vector<ResultSet> runs;
   for (const std::string& preset : recipe.presets) {
@@ -64,7 +100,7 @@ std::string reproduce(const ReproduceOptions& options) {
     execute_run(plan_run(run));
     runs.push_back(load_result_set(out / preset));
   }
-  return table_report(paper_table_named(recipe.table), built_in_cells(), runs, format);
+  return table_report(table, built_in_cells(), runs, format);
 }
 
 }  // namespace

@@ -45,6 +45,11 @@ void read_protocol(const ordered_json& header, SequenceResult& result) {
 }
 
 void read_splits(const ordered_json& header, SequenceResult& result) {
+  if (const ordered_json split = header.value("summary_split", ordered_json()); !split.is_null()) {
+    if (split != std::string(result.protocol->default_split)) {
+      result.only_split = split.get<std::string>();
+    }
+  }
   if (!header.contains("splits")) return;
   for (const auto& [name, stems] : header.at("splits").items()) {
     result.splits[name] = stems.get<std::set<std::string>>();
@@ -67,6 +72,12 @@ SequenceResult from_content(const fs::path& file, ResultFile content) {
   read_splits(header, result);
   if (!content.rows.fingerprint.empty()) result.fingerprint = content.rows.fingerprint;
   result.simulated = header.contains("simulated");
+  if (result.simulated) {
+    const ordered_json& origin = header.at("simulated");
+    result.simulated_origin =
+        fmt::format("scene {}, seed {}", origin.at("scene").get<std::string>(),
+                    origin.at("seed").get<std::uint64_t>());
+  }
   if (header.contains("predictions")) {
     result.missing_predictions = header.at("predictions").at("missing").size();
   }
@@ -127,6 +138,35 @@ ResultSet load_result_set(const fs::path& path) {
                               sets[1].front().protocol->name, sets[0].front().file.string(),
                               sets[0].front().setting, sets[0].front().protocol->name),
                   "the results of one run");
+}
+
+std::size_t missing_predictions(const ResultSet& set) {
+  std::size_t missing = 0;
+  for (const SequenceResult& sequence : set.sequences) missing += sequence.missing_predictions;
+  return missing;
+}
+
+std::string incomplete_caveat(std::size_t missing_predictions) {
+  return fmt::format("INCOMPLETE: {} scans without usable prediction are not counted",
+                     missing_predictions);
+}
+
+std::string split_caveat(const std::string& split) {
+  return fmt::format(
+      "only the scans of split {}: not the protocol's number, which is over all labelled scans",
+      split);
+}
+
+std::vector<std::string> caveats(const ResultSet& set) {
+  std::vector<std::string> texts;
+  if (const std::size_t missing = missing_predictions(set); missing > 0) {
+    texts.push_back(incomplete_caveat(missing));
+  }
+  const auto partial = std::ranges::find_if(set.sequences, [](const SequenceResult& sequence) {
+    return sequence.only_split.has_value();
+  });
+  if (partial != set.sequences.end()) texts.push_back(split_caveat(*partial->only_split));
+  return texts;
 }
 
 std::vector<const ScanRow*> counted_scans(const SequenceResult& result) {

@@ -25,7 +25,9 @@ struct SequenceResult {
   RangeGate range;
   std::optional<std::string> fingerprint;  ///< of the frames; nothing when only labels were read
   bool simulated = false;
-  std::size_t missing_predictions = 0;                  ///< scans left out under --allow-missing
+  std::string simulated_origin;           ///< "scene mall, seed 1"
+  std::size_t missing_predictions = 0;    ///< scans left out under --allow-missing
+  std::optional<std::string> only_split;  ///< whose scans alone were scored, not the protocol's own
   std::map<std::string, std::set<std::string>> splits;  ///< stems, of splits that pick scans
   std::vector<ScanRow> scans;
   std::optional<double> method_ms_per_scan;
@@ -50,6 +52,15 @@ std::vector<ResultSet> load_result_sets(const std::filesystem::path& path);
 
 /// The same where there has to be a single run; throws DataError naming two files that differ.
 ResultSet load_result_set(const std::filesystem::path& path);
+
+std::size_t missing_predictions(const ResultSet& set);
+
+/// "INCOMPLETE: ..." for so many scans.
+std::string incomplete_caveat(std::size_t missing_predictions);
+/// "only the scans of split val, ...".
+std::string split_caveat(const std::string& split);
+/// What has to be said wherever numbers of the set are shown.
+std::vector<std::string> caveats(const ResultSet& set);
 
 /// The scans that the protocol counts, in order: those with truth, of the protocol's split where it
 /// picks scans.

@@ -21,8 +21,14 @@ long long change(std::uint64_t from, std::uint64_t to) {
   return static_cast<long long>(to) - static_cast<long long>(from);
 }
 
-std::string scans_text(const std::vector<ScanDisagreement>& scans, std::size_t at_most) {
-  TextTable table({{"scan", kLeft}, {"IoU %"}, {"IoU %"}, {"TP"}, {"FP"}, {"FN"}});
+std::string scans_text(const RunNames& names, const std::vector<ScanDisagreement>& scans,
+                       std::size_t at_most) {
+  TextTable table({{"scan", kLeft},
+                   {names.first + " IoU %"},
+                   {names.second + " IoU %"},
+                   {"TP"},
+                   {"FP"},
+                   {"FN"}});
   for (std::size_t i = 0; i < std::min(at_most, scans.size()); ++i) {
     const PairedRuns::Scan& scan = scans[i].scan;
     const Confusion& first = *scan.first->counts;
@@ -36,11 +42,12 @@ std::string scans_text(const std::vector<ScanDisagreement>& scans, std::size_t a
   return table.str();
 }
 
-std::string objects_text(const std::vector<ObjectDisagreement>& objects, std::size_t at_most) {
+std::string objects_text(const RunNames& names, const std::vector<ObjectDisagreement>& objects,
+                         std::size_t at_most) {
   TextTable table({{"object", kLeft},
                    {"points"},
-                   {"found"},
-                   {"found"},
+                   {names.first + " found"},
+                   {names.second + " found"},
                    {"range m"},
                    {"position in the map m"}});
   for (std::size_t i = 0; i < std::min(at_most, objects.size()); ++i) {
@@ -54,7 +61,18 @@ std::string objects_text(const std::vector<ObjectDisagreement>& objects, std::si
   return table.str();
 }
 
+std::string last_name(const std::filesystem::path& path) {
+  const std::filesystem::path plain = path.lexically_normal();
+  return (plain.has_filename() ? plain : plain.parent_path()).filename().string();
+}
+
 }  // namespace
+
+RunNames names_apart(const std::filesystem::path& first, const std::filesystem::path& second) {
+  RunNames names{last_name(first), last_name(second)};
+  if (names.first == names.second) return {first.string(), second.string()};
+  return names;
+}
 
 std::vector<ScanDisagreement> disagreeing_scans(const PairedRuns& paired) {
   std::vector<ScanDisagreement> scans;
@@ -122,16 +140,16 @@ ordered_json diff_json(const PairedRuns& paired, const std::vector<ObjectDisagre
   return json;
 }
 
-std::string diff_text(const PairedRuns& paired, const std::vector<ObjectDisagreement>& objects,
-                      std::size_t at_most) {
+std::string diff_text(const RunNames& names, const PairedRuns& paired,
+                      const std::vector<ObjectDisagreement>& objects, std::size_t at_most) {
   const std::vector<ScanDisagreement> scans = disagreeing_scans(paired);
   std::string text =
       fmt::format("{} of {} paired scans differ\n", scans.size(), paired.scans.size());
   if (!paired.unlike.empty()) text += "unlike: " + unlike_text(paired.unlike) + '\n';
-  if (!scans.empty()) text += '\n' + scans_text(scans, at_most);
+  if (!scans.empty()) text += '\n' + scans_text(names, scans, at_most);
   if (!objects.empty()) {
     text += fmt::format("\n{} moving objects are found to different parts\n\n", objects.size()) +
-            objects_text(objects, at_most);
+            objects_text(names, objects, at_most);
   }
   return text;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -23,6 +24,14 @@ struct ObjectDisagreement {
   Eigen::Vector3d position_map_m = Eigen::Vector3d::Zero();  ///< in its first scan
 };
 
+/// What two runs are called where both are shown.
+struct RunNames {
+  std::string first, second;
+};
+
+/// The last names of their folders, or the whole paths where those are equal.
+RunNames names_apart(const std::filesystem::path& first, const std::filesystem::path& second);
+
 /// The scans with other counts, most changed first.
 std::vector<ScanDisagreement> disagreeing_scans(const PairedRuns& paired);
 
@@ -35,7 +44,7 @@ std::vector<ObjectDisagreement> disagreeing_objects(const SequenceBreakdown& fir
 nlohmann::ordered_json diff_json(const PairedRuns& paired,
                                  const std::vector<ObjectDisagreement>& objects,
                                  std::size_t at_most);
-std::string diff_text(const PairedRuns& paired, const std::vector<ObjectDisagreement>& objects,
-                      std::size_t at_most);
+std::string diff_text(const RunNames& names, const PairedRuns& paired,
+                      const std::vector<ObjectDisagreement>& objects, std::size_t at_most);
 
 }  // namespace mosbench

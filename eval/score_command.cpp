@@ -24,7 +24,7 @@ DIR/<sequence>.{txt,csv} and, for one sequence, DIR/{predictions,labels} and DIR
 a file. The format is recognised and stated; `mosbench list formats` shows all. Every scan with truth
 needs a prediction; a missing file, one of the wrong size or one without scan is an error, unless
 --allow-missing leaves such scans out and marks the result. Under a protocol that is over a split of
-scans (helimos-test, mapmos) only those scans are scored.
+scans (helimos-test, mapmos) only those scans are scored, and another --split is refused.
 
 --protocol all prints the number of every protocol for the same labels and why they differ.
 --out writes result.json files, which stats, compare and table read.
@@ -86,6 +86,18 @@ ScoreRule one_rule(const ScoreOptions& options, const Dataset& dataset) {
           options.range ? range_option(*options.range, protocol) : protocol.default_range};
 }
 
+/// The split to score, if not everything: under a protocol that is over picked scans no other.
+std::optional<std::string> settle_split(const ScoreTask& task, const Dataset& dataset) {
+  const Protocol& protocol = *task.rules.front().protocol;
+  const Split* benchmark = benchmark_scans(protocol, dataset.splits);
+  if (benchmark == nullptr) return task.split;
+  if (!task.split || *task.split == benchmark->name) return benchmark->name;
+  throw UsageError(fmt::format(
+      "--split: '{}' is not the split of protocol {}, expected {}, or a protocol that `mosbench "
+      "list protocols` says to be over all labelled scans",
+      *task.split, protocol.name, benchmark->name));
+}
+
 PredictionOptions prediction_options(const ScoreOptions& options) {
   PredictionOptions settled = options.task.options;
   if (options.format) settled.format = prediction_format_named(*options.format);
@@ -111,19 +123,18 @@ std::string score(const ScoreOptions& options) {
   ScoreTask task = options.task;
   task.options = prediction_options(options);
   if (task.threads == 0) task.threads = hardware_threads();
-  if (task.split) keep_split(*task.split, dataset);
-  if (options.protocol == "all") return score_all(options, dataset, std::move(task));
-  const ScoreRule rule = one_rule(options, dataset);
-  const bool split_asked = task.split.has_value();
-  if (!split_asked && benchmark_scans(*rule.protocol, dataset.splits) != nullptr) {
-    task.split = std::string(rule.protocol->default_split);
-    keep_split(*task.split, dataset);
+  if (options.protocol == "all") {
+    if (task.split) keep_split(*task.split, dataset);
+    return score_all(options, dataset, std::move(task));
   }
-  task.rules = {rule};
+  task.rules = {one_rule(options, dataset)};
+  const bool split_asked = task.split.has_value();
+  task.split = settle_split(task, dataset);
+  if (task.split) keep_split(*task.split, dataset);
   const std::vector<SequenceScores> scores = score_dataset(dataset, task);
-  if (options.out) write_scores(dataset, rule, options.method, scores, *options.out);
-  return options.json ? score_json(dataset, rule, scores, !split_asked)
-                      : score_text(dataset, rule, scores, !split_asked);
+  if (options.out) write_scores(dataset, task, options.method, scores, *options.out);
+  return options.json ? score_json(dataset, task, scores, !split_asked)
+                      : score_text(dataset, task, scores, !split_asked);
 }
 
 void add_prediction_options(CLI::App& command, ScoreOptions& options) {

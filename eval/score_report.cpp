@@ -7,6 +7,7 @@
 #include "eval/benchmark_split.hpp"
 #include "eval/metrics.hpp"
 #include "eval/reading_json.hpp"
+#include "eval/result_set.hpp"
 #include "eval/score_table.hpp"
 #include "eval/simulated.hpp"
 #include "eval/summary_json.hpp"
@@ -58,6 +59,18 @@ ordered_json predictions_json(const OpenedPredictions& opened) {
           {"remarks", opened.remarks}};
 }
 
+/// The split whose picked scans alone were scored.
+std::optional<std::string> picked_split(const Dataset& dataset, const ScoreTask& task) {
+  if (!task.split || !picks_scans(dataset.splits.front())) return std::nullopt;
+  return task.split;
+}
+
+/// The same when the protocol is not over it.
+std::optional<std::string> other_split(const Dataset& dataset, const ScoreTask& task) {
+  const auto split = picked_split(dataset, task);
+  return split == task.rules.front().protocol->default_split ? std::nullopt : split;
+}
+
 std::vector<Confusion> counts_in(const std::vector<ScanRow>& rows) {
   std::vector<Confusion> counts;
   for (const ScanRow& row : rows) counts.push_back(*row.counts);
@@ -82,26 +95,29 @@ std::vector<std::string> score_remarks(const Dataset& dataset,
                     opened.path.string()));
     for (const std::string& remark : opened.remarks) add(remark);
     if (!opened.missing.empty()) {
-      add(fmt::format("INCOMPLETE: {} scans without usable prediction are not counted",
-                      opened.missing.size()));
+      add(incomplete_caveat(opened.missing.size()));
     }
   }
   return remarks;
 }
 
-std::string score_text(const Dataset& dataset, const ScoreRule& rule,
+std::string score_text(const Dataset& dataset, const ScoreTask& task,
                        const std::vector<SequenceScores>& scores, bool with_sequences) {
+  const ScoreRule& rule = task.rules.front();
+  const auto split = other_split(dataset, task);
   std::string text =
-      fmt::format("protocol {}: {}\n{}{}\n{}", rule.protocol->name, rule.protocol->summary,
-                  benchmark_notice(*rule.protocol, dataset.splits), simulated_notice(dataset),
+      fmt::format("protocol {}: {}\n{}{}{}\n{}", rule.protocol->name, rule.protocol->summary,
+                  benchmark_notice(*rule.protocol, dataset.splits),
+                  split ? split_caveat(*split) + '\n' : "", simulated_notice(dataset),
                   format_rows(*rule.protocol, table_rows(dataset, rule, scores, with_sequences)));
   text += '\n';
   for (const std::string& remark : score_remarks(dataset, scores)) text += remark + '\n';
   return text;
 }
 
-std::string score_json(const Dataset& dataset, const ScoreRule& rule,
+std::string score_json(const Dataset& dataset, const ScoreTask& task,
                        const std::vector<SequenceScores>& scores, bool with_sequences) {
+  const ScoreRule& rule = task.rules.front();
   ordered_json json = {{"dataset", std::string(to_string(dataset.kind))},
                        {"protocol", std::string(rule.protocol->name)},
                        {"min_range_m", rule.range.min_m},
@@ -115,11 +131,15 @@ std::string score_json(const Dataset& dataset, const ScoreRule& rule,
         predictions_json(*sequence.opened);
   }
   json["remarks"] = score_remarks(dataset, scores);
+  if (const auto split = other_split(dataset, task)) {
+    json["remarks"].push_back(split_caveat(*split));
+  }
   return json_text(json);
 }
 
-void write_scores(const Dataset& dataset, const ScoreRule& rule, const MethodName& method,
+void write_scores(const Dataset& dataset, const ScoreTask& task, const MethodName& method,
                   const std::vector<SequenceScores>& scores, const std::filesystem::path& out) {
+  const ScoreRule& rule = task.rules.front();
   for (const SequenceScores& sequence : scores) {
     if (!sequence.opened) continue;
     const Sequence& recorded = *dataset.sequences[sequence.position];
@@ -137,6 +157,7 @@ void write_scores(const Dataset& dataset, const ScoreRule& rule, const MethodNam
     const ordered_json splits = picked_stems(dataset, sequence.position);
     if (!splits.empty()) header["splits"] = splits;
     const std::vector<ScanRow>& rows = sequence.by_rule.front();
+    header["summary_split"] = json_or_null(picked_split(dataset, task));
     header["summary"] = to_json(summarize(*rule.protocol, counts_in(rows)));
     write_file_atomic(out / recorded.name() / "result.json", format_scored(header, rows));
   }

@@ -19,10 +19,10 @@ struct MethodName {
 std::vector<std::string> score_remarks(const Dataset& dataset,
                                        const std::vector<SequenceScores>& scores);
 
-/// The answer of `mosbench score` with one rule.
-std::string score_text(const Dataset& dataset, const ScoreRule& rule,
+/// The answer of `mosbench score` with one rule, the first of the task.
+std::string score_text(const Dataset& dataset, const ScoreTask& task,
                        const std::vector<SequenceScores>& scores, bool with_sequences);
-std::string score_json(const Dataset& dataset, const ScoreRule& rule,
+std::string score_json(const Dataset& dataset, const ScoreTask& task,
                        const std::vector<SequenceScores>& scores, bool with_sequences);
 
 /// The answer of `mosbench score --protocol all`: a row per rule and why it differs.
@@ -34,7 +34,7 @@ nlohmann::ordered_json side_by_side_json(const Dataset& dataset,
 
 /// Writes <out>/<sequence>/result.json, which `table`, `stats` and `compare` read like those of a
 /// run. Throws DataError.
-void write_scores(const Dataset& dataset, const ScoreRule& rule, const MethodName& method,
+void write_scores(const Dataset& dataset, const ScoreTask& task, const MethodName& method,
                   const std::vector<SequenceScores>& scores, const std::filesystem::path& out);
 
 }  // namespace mosbench

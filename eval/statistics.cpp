@@ -61,9 +61,12 @@ ordered_json scan_json(const SequenceResult& sequence, const ScanRow& row) {
 
 std::string headline(const ResultSet& set) {
   const SequenceResult& first = set.front();
-  return fmt::format("{}, {}; data set {}, protocol {}{}", first.method, first.setting,
-                     first.dataset, first.protocol->name,
-                     first.simulated ? "; SIMULATED: not comparable with published numbers" : "");
+  std::string text =
+      fmt::format("{}, {}; data set {}, protocol {}{}", first.method, first.setting, first.dataset,
+                  first.protocol->name,
+                  first.simulated ? "; SIMULATED: not comparable with published numbers" : "");
+  for (const std::string& caveat : caveats(set)) text += "; " + caveat;
+  return text;
 }
 
 }  // namespace
@@ -112,6 +115,8 @@ ordered_json provenance_json(const ResultSet& set) {
   for (const char* key : {"variant", "preset", "config", "code", "predictions", "simulated"}) {
     if (first.header.contains(key)) json[key] = first.header[key];
   }
+  json["missing_predictions"] = missing_predictions(set);
+  if (first.only_split) json["only_split"] = *first.only_split;
   return json;
 }
 

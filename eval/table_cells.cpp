@@ -10,16 +10,10 @@
 namespace mosbench {
 namespace {
 
-bool belongs_to(const std::string& sequence, const TableColumn& column) {
-  return std::ranges::any_of(column.sequences, [&](std::string_view name) {
-    return sequence == name || sequence.starts_with(std::string(name) + '/');
-  });
-}
-
 ResultSet in_column(const ResultSet& run, const TableColumn& column) {
   ResultSet part{run.path, {}};
   for (const SequenceResult& sequence : run.sequences) {
-    if (belongs_to(sequence.sequence, column)) part.sequences.push_back(sequence);
+    if (is_about(column, sequence.sequence)) part.sequences.push_back(sequence);
   }
   return part;
 }
@@ -29,17 +23,13 @@ std::vector<std::string> gaps(const ResultSet& part, const TableColumn& column) 
   std::vector<std::string> gaps;
   for (const std::string_view name : column.sequences) {
     const bool there = std::ranges::any_of(part.sequences, [&](const SequenceResult& result) {
-      return belongs_to(result.sequence, {.name = "", .sequences = {name}, .scans = {}});
+      return is_about({.name = "", .sequences = {name}, .scans = {}}, result.sequence);
     });
     if (!there) gaps.push_back(fmt::format("sequence {} is missing", name));
   }
   std::size_t scans = 0;
-  std::size_t missing = 0;
-  for (const SequenceResult& sequence : part.sequences) {
-    scans += counted_scans(sequence).size();
-    missing += sequence.missing_predictions;
-  }
-  if (missing > 0) gaps.push_back(fmt::format("predictions of {} scans are missing", missing));
+  for (const SequenceResult& sequence : part.sequences) scans += counted_scans(sequence).size();
+  for (std::string& caveat : caveats(part)) gaps.push_back(std::move(caveat));
   const bool known =
       column.scans && !part.sequences.empty() &&
       (column.scans_protocol.empty() || column.scans_protocol == part.front().protocol->name);
@@ -98,6 +88,11 @@ TableCell measured_cell(const PaperTable& table, const TableColumn& column, cons
     if (cell.published) cell.reasons = how_to_fill(table, column, *cell.published);
     return cell;
   }
+  for (const SequenceResult& sequence : part.sequences) {
+    cell.sequences.push_back(sequence.sequence);
+    if (!sequence.simulated) continue;
+    cell.sequences.back() += fmt::format(" (simulated, {})", sequence.simulated_origin);
+  }
   cell.measured = estimate(*run.front().protocol, counts_of(part))[Metric::kIou];
   cell.reasons = row_reasons;
   if (run.front().simulated) cell.reasons.insert(cell.reasons.begin(), "simulated data");
@@ -151,15 +146,9 @@ TableRow measured_row(const PaperTable& table, const ResultSet& run, const Publi
   return filled;
 }
 
-bool in_any_column(const PaperTable& table, const SequenceResult& sequence) {
-  return std::ranges::any_of(table.columns, [&](const TableColumn& column) {
-    return belongs_to(sequence.sequence, column);
-  });
-}
-
 bool has_values(const PaperTable& table, const ResultSet& run) {
   return std::ranges::any_of(run.sequences, [&](const SequenceResult& sequence) {
-    return in_any_column(table, sequence);
+    return is_about(table, sequence.sequence);
   });
 }
 
@@ -208,7 +197,7 @@ std::vector<std::string> left_out(const PaperTable& table, const std::vector<Res
       std::string why;
       if (sequence.dataset != table.dataset) {
         why = fmt::format("is of data set {}, not {}", sequence.dataset, table.dataset);
-      } else if (!in_any_column(table, sequence)) {
+      } else if (!is_about(table, sequence.sequence)) {
         why = fmt::format("is of sequence {}, which no column is about", sequence.sequence);
       }
       if (why.empty()) continue;

@@ -27,7 +27,8 @@ struct TableCell {
   std::optional<Estimate> measured;
   std::optional<double> difference;  ///< measured - published, fraction
   Verdict verdict = Verdict::kPublishedOnly;
-  std::vector<std::string> reasons;  ///< why not comparable, or what to download and run
+  std::vector<std::string> sequences;  ///< measured ones, with the scene of simulated ones
+  std::vector<std::string> reasons;    ///< why not comparable, or what to download and run
 };
 
 /// A method with its setting; `results` names the folder when something was measured.

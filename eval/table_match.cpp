@@ -100,6 +100,7 @@ std::vector<ResultSet> with_splits(const PaperTable& table, const std::vector<Re
     // Both protocols count a scan alike; only the scans differ.
     for (SequenceResult& sequence : test.sequences) {
       sequence.protocol = &protocol_named("helimos-test");
+      sequence.only_split.reset();
     }
   }
   return sets;

@@ -32,13 +32,18 @@ std::string cell_text(const TableCell& cell) {
   return fmt::format("{} {}", text, to_string(cell.verdict));
 }
 
+std::string joined(const std::vector<std::string>& texts, const char* between) {
+  std::string text;
+  for (const std::string& part : texts) text += (text.empty() ? "" : between) + part;
+  return text;
+}
+
 /// Numbered texts, each once.
 class Notes {
  public:
   std::string mark(const std::vector<std::string>& reasons) {
     if (reasons.empty()) return "";
-    std::string text;
-    for (const std::string& reason : reasons) text += (text.empty() ? "" : "; ") + reason;
+    const std::string text = joined(reasons, "; ");
     const auto known = std::ranges::find(texts_, text);
     const auto number = known - texts_.begin() + 1;
     if (known == texts_.end()) texts_.push_back(text);
@@ -59,6 +64,21 @@ class Notes {
 std::string row_setting(const TableRow& row) {
   return row.section.empty() ? row.setting
                              : row.section + (row.setting.empty() ? "" : ", " + row.setting);
+}
+
+/// "results/runs/doals: ST is station/sequence_1, ...; SV is ...", one line per run.
+std::vector<std::string> measured_sequences(const FilledTable& table) {
+  std::vector<std::string> lines;
+  for (const TableRow& row : table.rows) {
+    std::vector<std::string> columns;
+    for (const TableCell& cell : row.cells) {
+      if (!cell.sequences.empty())
+        columns.push_back(cell.column + " is " + joined(cell.sequences, ", "));
+    }
+    const std::string line = row.results + ": " + joined(columns, "; ");
+    if (!columns.empty() && std::ranges::find(lines, line) == lines.end()) lines.push_back(line);
+  }
+  return lines;
 }
 
 bool is_simulated(const FilledTable& table) {
@@ -97,7 +117,8 @@ std::string interval_end(const Estimate& estimate, double Interval::*end) {
 ordered_json to_json(const TableCell& cell) {
   ordered_json json = {{"column", cell.column},
                        {"verdict", std::string(to_string(cell.verdict))},
-                       {"reasons", cell.reasons}};
+                       {"reasons", cell.reasons},
+                       {"sequences", cell.sequences}};
   json["published"] = cell.published ? ordered_json(cell.published->iou()) : ordered_json(nullptr);
   json["published_percent"] = cell.published ? cell.published->iou_percent : "";
   json["note"] = cell.published ? cell.published->note : "";
@@ -132,14 +153,15 @@ std::string table_markdown(const FilledTable& table) {
     }
     text += '\n';
   }
-  return text +
-         "\nCells: published, or published / measured (difference) [95 % interval] verdict.\n\n" +
-         notes.str();
+  text += "\nCells: published, or published / measured (difference) [95 % interval] verdict.\n\n";
+  for (const std::string& line : measured_sequences(table)) text += "- " + line + '\n';
+  return text + notes.str();
 }
 
 std::string table_latex(const FilledTable& table) {
   std::string text = fmt::format("% {}\n", table.table->title);
   if (is_simulated(table)) text += "% measured on SIMULATED data: not comparable\n";
+  for (const std::string& line : measured_sequences(table)) text += "% " + line + '\n';
   text +=
       fmt::format("\\begin{{tabular}}{{lll{}}}\n", std::string(table.table->columns.size(), 'r'));
   text += "method & setting & protocol";
@@ -158,13 +180,11 @@ std::string table_latex(const FilledTable& table) {
 std::string table_csv(const FilledTable& table) {
   std::string text =
       "table,section,method,setting,protocol,column,published_percent,measured_percent,"
-      "difference_points,low_percent,high_percent,verdict,reasons,source,results\n";
+      "difference_points,low_percent,high_percent,verdict,reasons,source,results,"
+      "sequences\n";
   for (const TableRow& row : table.rows) {
     for (const TableCell& cell : row.cells) {
       const Estimate measured = cell.measured.value_or(Estimate{});
-      std::string reasons;
-      for (const std::string& reason : cell.reasons)
-        reasons += (reasons.empty() ? "" : "; ") + reason;
       const std::vector<std::string> cells = {std::string(table.table->name),
                                               row.section,
                                               row.method,
@@ -177,9 +197,10 @@ std::string table_csv(const FilledTable& table) {
                                               interval_end(measured, &Interval::low),
                                               interval_end(measured, &Interval::high),
                                               std::string(to_string(cell.verdict)),
-                                              reasons,
+                                              joined(cell.reasons, "; "),
                                               row.source,
-                                              row.results};
+                                              row.results,
+                                              joined(cell.sequences, "; ")};
       std::string line;
       for (const std::string& value : cells) {
         if (!line.empty()) line += ',';

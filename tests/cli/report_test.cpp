@@ -114,6 +114,24 @@ TEST(Report, StaysBelowTheLimitAndSaysWhatItLeftOut) {
   EXPECT_THAT(out, HasSubstr(cloud.at("left_out").get<std::string>()));
 }
 
+TEST(Report, RefusesALimitWithoutRoomForASingleScan) {
+  const TempFolder folder;
+  const auto report = [&](const std::string& name, const std::string& limit_mb) {
+    return cli::run({"report", small_run() / "runs/mine", "-o", folder / name, "--scans", "0",
+                     "--max-mb", limit_mb});
+  };
+  ASSERT_EQ(report("one.html", "25").exit_code, 0);
+  const auto bytes = static_cast<double>(std::filesystem::file_size(folder / "one.html"));
+  cli::Answer none;
+  for (double limit = bytes - 4e3; limit < bytes + 4e3; limit += 500) {
+    none = report("none.html", std::to_string(limit / 1e6));
+    if (none.err.find("no room for the numbers alone") == std::string::npos) break;
+  }
+  EXPECT_EQ(none.exit_code, 2);
+  EXPECT_THAT(none.err, HasSubstr("--max-mb: has no room for a single scan"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "none.html"));
+}
+
 TEST(Report, TakesTheScansThatAreAskedFor) {
   const TempFolder folder;
   const cli::Answer answer =
@@ -244,6 +262,10 @@ TEST(Report, NamesWhatCannotBeUsed) {
   const cli::Answer choice = cli::run({"report", run, "-o", out, "--scans", "best"});
   EXPECT_EQ(choice.exit_code, 2);
   EXPECT_THAT(choice.err, HasSubstr("--scans: 'best' is not known"));
+  const cli::Answer none = cli::run({"report", run, "-o", out, "--scans", "50"});
+  EXPECT_EQ(none.exit_code, 2);
+  EXPECT_THAT(none.err, HasSubstr("--scans: chooses no scan, expected some of 0 to 7"));
+  EXPECT_FALSE(std::filesystem::exists(out));
   const cli::Answer small = cli::run({"report", run, "-o", out, "--max-mb", "0.2"});
   EXPECT_EQ(small.exit_code, 2);
   EXPECT_THAT(small.err, HasSubstr("no room for the numbers alone"));
@@ -264,36 +286,6 @@ TEST(Report, LeavesNoOpeningBracketOfANameInTheContent) {
   const std::string html = read_file(folder / "r.html");
   EXPECT_THAT(html, Not(HasSubstr("<img")));
   EXPECT_EQ(content_of(html).at("results").at(0).at("result").at("remarks").at(0), evil);
-}
-
-TEST(Render, DrawsAScanWithoutBrowserAndTheSameEachTime) {
-  const TempFolder folder;
-  for (const char* name : {"a.png", "b.png"}) {
-    const cli::Answer answer = cli::run(
-        {"render", small_run() / "runs/mine", "--scan", "6", "-o", folder / name, "--size", "400"});
-    ASSERT_EQ(answer.exit_code, 0) << answer.err;
-    EXPECT_THAT(answer.out, HasSubstr("scan 000006 of 00 in "));
-  }
-  const std::string bytes = read_file(folder / "a.png");
-  EXPECT_TRUE(bytes.starts_with("\x89PNG"));
-  EXPECT_EQ(bytes, read_file(folder / "b.png"));
-  EXPECT_EQ(cli::run({"render", small_run() / "runs", "--scan", "worst", "-o", folder / "w.png"})
-                .exit_code,
-            0);
-}
-
-TEST(Render, RefusesScansAndSequencesThatAreNotThere) {
-  const TempFolder folder;
-  const std::string run = small_run() / "runs";
-  for (const char* scan : {"8", "-1", "best", ""}) {
-    const cli::Answer answer = cli::run({"render", run, "--scan", scan, "-o", folder / "r.png"});
-    EXPECT_EQ(answer.exit_code, 2) << scan;
-    EXPECT_FALSE(std::filesystem::exists(folder / "r.png"));
-  }
-  const cli::Answer answer =
-      cli::run({"render", run, "--sequence", "01", "--scan", "1", "-o", folder / "r.png"});
-  EXPECT_EQ(answer.exit_code, 2);
-  EXPECT_THAT(answer.err, HasSubstr("holds results of 00, expected --sequence to name one"));
 }
 
 }  // namespace

@@ -140,6 +140,35 @@ TEST(ScoreHelimos, CountsTheScansOfTheProtocolsSplitAsTheRunDoes) {
   EXPECT_THAT(score("helimos-all").err, HasSubstr("000001.label: is not there"));
 }
 
+TEST(ScoreHelimos, RefusesAnotherSplitThanTheProtocolsAndMarksThatOfAnOpenOne) {
+  const TempFolder folder;
+  cli::write_small_sequence(folder / "helimos/Velodyne", 8);
+  write_file_atomic(folder / "helimos/test.txt", "6\n7\n");
+  write_file_atomic(folder / "helimos/val.txt", "2\n3\n4\n");
+  fs::create_directories(folder / "mine");
+  fs::copy(folder / "helimos/Velodyne/labels", folder / "mine/Velodyne");
+  const auto score = [&](const std::string& protocol, const std::string& split) {
+    return cli::run({"score", folder / "helimos", "--predictions", folder / "mine", "--protocol",
+                     protocol, "--split", split, "--out", folder / "out"});
+  };
+  for (const char* protocol : {"helimos-test", "mapmos"}) {
+    const cli::Answer refused = score(protocol, "val");
+    EXPECT_EQ(refused.exit_code, 2) << protocol;
+    EXPECT_THAT(refused.err, HasSubstr("--split: 'val' is not the split of protocol")) << protocol;
+    EXPECT_FALSE(fs::exists(folder / "out"));
+  }
+  const cli::Answer val = score("helimos-all", "val");
+  ASSERT_EQ(val.exit_code, 0) << val.err;
+  const std::string mark = "only the scans of split val";
+  EXPECT_THAT(val.out, HasSubstr(mark));
+  EXPECT_EQ(cli::timeless_result(folder / "out/Velodyne").at("summary_split"), "val");
+  EXPECT_THAT(cli::run({"stats", folder / "out"}).out, HasSubstr(mark));
+  EXPECT_THAT(cli::run({"table", "III", folder / "out", "--format", "csv"}).out, HasSubstr(mark));
+  const cli::Answer test = score("helimos-test", "test");
+  ASSERT_EQ(test.exit_code, 0) << test.err;
+  EXPECT_EQ(test.out.find("only the scans"), std::string::npos);
+}
+
 TEST_F(Score, RefusesTheTruthAsPrediction) {
   const cli::Answer answer = score(folder_ / "room");
   EXPECT_EQ(answer.exit_code, 3);

@@ -119,6 +119,9 @@ TEST_F(Tables, OneIsFilledFromASimulatedDoals) {
     const double mean = std::accumulate(ious.begin(), ious.end(), 0.0) / 12.0;
     EXPECT_GT(mean, 0.0) << "the method found nothing";
     EXPECT_NEAR(station.at("measured").get<double>(), mean, 1e-12);
+    EXPECT_EQ(station.at("sequences"),
+              (nlohmann::json{"station/sequence_1 (simulated, scene mall, seed 1)",
+                              "station/sequence_2 (simulated, scene mall, seed 1)"}));
     for (std::size_t c = 1; c < 4; ++c) {
       EXPECT_TRUE(row.at("cells").at(c).at("measured").is_null());
       EXPECT_THAT(row.at("cells").at(c).at("reasons").at(0).get<std::string>(),
@@ -126,6 +129,31 @@ TEST_F(Tables, OneIsFilledFromASimulatedDoals) {
     }
   }
   EXPECT_EQ(filled, 2U);
+  const cli::Answer text = cli::run({"table", "i", (folder_ / "out-doals/doals-20m").string()});
+  ASSERT_EQ(text.exit_code, 0) << text.err;
+  EXPECT_THAT(text.out, HasSubstr("doals-20m: ST is station/sequence_1 (simulated, scene mall"));
+}
+
+TEST_F(Tables, AreNotReproducedFromAnotherDataSet) {
+  simulate("semantickitti", "room");
+  simulate("helimos", "room");
+  simulate("doals", "mall");
+  struct Case {
+    const char *name, *folder, *found, *expected;
+  };
+  for (const Case& wrong :
+       {Case{"sipailou", "semantickitti", "data set semantickitti with 08", "06, 00, 07"},
+        Case{"sipailou", "helimos", "data set helimos with", "06, 00, 07"},
+        Case{"helimos", "semantickitti", "semantickitti", "HeLiMOS"},
+        Case{"doals", "doals", "doals with mall/sequence_1", "station/sequence_1"}}) {
+    const cli::Answer answer =
+        cli::run({"reproduce", wrong.name, "--data", (folder_ / wrong.folder).string(), "--out",
+                  (folder_ / "out").string()});
+    EXPECT_EQ(answer.exit_code, 3) << wrong.name << answer.out;
+    EXPECT_THAT(answer.err, HasSubstr(wrong.found));
+    EXPECT_THAT(answer.err, HasSubstr(wrong.expected));
+    EXPECT_FALSE(fs::exists(folder_ / "out")) << "nothing was run";
+  }
 }
 
 TEST_F(Tables, ArePrintedWithoutResultsInEveryFormat) {

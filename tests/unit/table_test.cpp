@@ -124,8 +124,9 @@ TEST(FillTable, ComparesNothingThatIsOfAnotherKind) {
   ResultSet lost = station(889);
   lost.sequences[0].scans.pop_back();
   lost.sequences[0].missing_predictions = 1;
-  EXPECT_THAT(reasons(lost), ElementsAre("predictions of 1 scans are missing",
-                                         "19 labelled scans, published over 20"));
+  EXPECT_THAT(reasons(lost),
+              ElementsAre("INCOMPLETE: 1 scans without usable prediction are not counted",
+                          "19 labelled scans, published over 20"));
 
   ResultSet coarse = station(889);
   for (SequenceResult& part : coarse.sequences) part.header["config"]["voxel_size_m"] = 0.3;
