@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
+#include "datasets/errors.hpp"
 #include "datasets/files.hpp"
 #include "eval/baseline.hpp"
 #include "eval/commands.hpp"
@@ -15,26 +16,40 @@ namespace {
 constexpr const char* kFooter =
     R"(Copies the results of NEW to BASELINE as those that `mosbench compare` measures against from now on,
 without what depends on the clock and the machine, and prints what changes against the results that
-lay there. Accept them by committing the folder.
+lay there. Accept them by committing the folder. Results of another protocol, method, setting, other scans
+or input than those of the baseline replace it only with --even-if.
 
-Example:
-  mosbench bless results/runs/room results/baseline/room)";
+Examples:
+  mosbench bless results/runs/room results/baseline/room
+  mosbench bless results/runs/room-10cm results/baseline/room --even-if)";
 
 struct BlessOptions {
   std::filesystem::path newer, baseline;
+  bool even_if = false;
 };
 
-std::string change(const ResultSet& newer, const std::filesystem::path& folder) {
-  if (!is_there(folder)) return "a new baseline\n";
-  const ResultSet baseline = load_result_set(folder);
+/// What changes against the baseline that lies there.
+std::string change(const BlessOptions& options, const ResultSet& newer) {
+  if (!is_there(options.baseline)) {
+    std::string text = "a new baseline\n";
+    for (const std::string& caveat : caveats(newer)) text += caveat + '\n';
+    return text;
+  }
+  const ResultSet baseline = load_result_set(options.baseline);
   const PairedRuns paired = pair_runs(baseline, newer);
+  if (!paired.unlike.empty() && !options.even_if) {
+    throw DataError(options.baseline,
+                    "is a baseline of another kind than " + options.newer.string() + ": " +
+                        unlike_text(paired.unlike),
+                    "one of the same kind; --even-if replaces it all the same");
+  }
   if (paired.scans.empty()) return "no scan in common with the baseline before\n";
   return difference_text(baseline, newer, paired);
 }
 
 std::string bless(const BlessOptions& options) {
   const ResultSet newer = load_result_set(options.newer);
-  std::string text = change(newer, options.baseline);
+  const std::string text = change(options, newer);
   accept_baseline(newer, options.baseline);
   return text +
          fmt::format("accepted {} as {}\n", options.newer.string(), options.baseline.string());
@@ -47,6 +62,7 @@ void add_bless_command(CLI::App& app, std::string& answer) {
   CLI::App* command = app.add_subcommand("bless", "Accept results as the new baseline");
   command->add_option("NEW", options->newer, "Results of one run")->required();
   command->add_option("BASELINE", options->baseline, "Folder of accepted results")->required();
+  command->add_flag("--even-if", options->even_if, "Replace a baseline of another kind, too");
   command->footer(kFooter);
   command->callback([options, &answer] { answer = bless(*options); });
 }

@@ -31,15 +31,19 @@ struct CompareOptions {
   bool json = false;
 };
 
-std::string answer_of(const CompareOptions& options, const PairedRuns& paired,
-                      const GateResult& result) {
+std::string answer_of(const CompareOptions& options, const ResultSet& baseline,
+                      const ResultSet& newer, const PairedRuns& paired, const GateResult& result) {
   if (options.json) {
     nlohmann::ordered_json json = to_json(result);
     json["paired_scans"] = paired.scans.size();
+    json["missing_predictions"] = {{"baseline", missing_predictions(baseline)},
+                                   {"new", missing_predictions(newer)}};
     json["unlike"] = unlike_text(paired.unlike);
     return json_text(json);
   }
   std::string text = fmt::format("{} paired scans\n", paired.scans.size());
+  for (const std::string& caveat : caveats(baseline)) text += "baseline: " + caveat + '\n';
+  for (const std::string& caveat : caveats(newer)) text += "new: " + caveat + '\n';
   if (!paired.unlike.empty()) text += "unlike: " + unlike_text(paired.unlike) + '\n';
   return text + '\n' + gate_text(result) + (result.passed() ? "\npass\n" : "\nregression\n");
 }
@@ -59,7 +63,7 @@ std::string compare(const CompareOptions& options) {
   }
   const GateResult result =
       judge(paired, *baseline.front().protocol, options.max_drop_points / 100.0);
-  std::string answer = answer_of(options, paired, result);
+  std::string answer = answer_of(options, baseline, newer, paired, result);
   if (!result.passed()) throw Finding(answer);
   return answer;
 }

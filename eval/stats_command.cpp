@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cstdio>
 #include <memory>
 #include <optional>
 
@@ -35,7 +36,10 @@ struct StatsOptions {
 
 std::string of_one(const StatsOptions& options) {
   const ResultSet set = load_result_set(options.first);
-  if (options.csv) return scan_table_csv(set);
+  if (options.csv) {
+    for (const std::string& caveat : caveats(set)) std::fputs((caveat + '\n').c_str(), stderr);
+    return scan_table_csv(set);
+  }
   if (options.json) return json_text(statistics_json(set, options.per_scan));
   return statistics_text(set);
 }

@@ -12,7 +12,7 @@ gate() {
   "$mosbench" simulate --layout "$2" --scene "$3" --scans "$4" --seed 1 --out "$scratch/$1" 2>&1
   "$mosbench" run "$scratch/$1" --preset "$5" --out "$scratch/runs/$1" 2>&1
   if [ "${BLESS:-0}" = 1 ]; then
-    "$mosbench" bless "$scratch/runs/$1" "results/baseline/$1"
+    "$mosbench" bless "$scratch/runs/$1" "results/baseline/$1" --even-if
   else
     "$mosbench" compare "results/baseline/$1" "$scratch/runs/$1"
   fi

@@ -13,6 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
+using testing::Not;
 
 /// A run of a small sequence that is also the baseline.
 class Compare : public testing::Test {
@@ -92,14 +93,15 @@ TEST_F(Compare, RefusesUnlikeResultsUnlessTold) {
   run_again("coarse", {"--set", "voxel_size_m=0.4"});
   const cli::Answer setting = compare("coarse");
   EXPECT_EQ(setting.exit_code, 3);
-  EXPECT_THAT(setting.err, HasSubstr("voxel 0.4 m"));
+  EXPECT_THAT(setting.err, HasSubstr("voxel_size_m: 0.25 -> 0.4, occupancy_sigma_m: 0.25 -> 0.4"));
+  EXPECT_THAT(setting.err, Not(HasSubstr("max_range_m"))) << "equal on both sides";
   EXPECT_NE(compare("coarse", {"--even-if", "--max-drop", "100"}).exit_code, 3);
 
   run_again("other-protocol", {"--protocol", "mapmos"});
   EXPECT_THAT(compare("other-protocol").err, HasSubstr("protocol is semantickitti-mos and mapmos"));
 
   run_again("later", {"--variant", "release-2025"});
-  EXPECT_THAT(compare("later").err, HasSubstr("release-2025"));
+  EXPECT_THAT(compare("later").err, HasSubstr("variant: \"paper-2024\" -> \"release-2025\""));
 }
 
 TEST_F(Compare, RefusesOtherInputAndOtherScans) {
@@ -134,13 +136,70 @@ TEST_F(Compare, BlessReplacesTheBaselineAndChangesNothingWhenRepeated) {
   ASSERT_EQ(again.exit_code, 0) << again.err;
   EXPECT_THAT(again.out, HasSubstr("12 paired scans"));
   EXPECT_EQ(read_file(accepted), before);
+}
 
+TEST_F(Compare, BlessRefusesToReplaceABaselineOfAnotherKindUnlessTold) {
+  const auto bless = [this](const std::string& newer, const std::vector<std::string>& more = {}) {
+    std::vector<std::string> words = {"bless", (folder_ / newer).string(),
+                                      (folder_ / "baseline").string()};
+    words.insert(words.end(), more.begin(), more.end());
+    return cli::run(words);
+  };
+  const fs::path accepted = folder_ / "baseline/room/result.json";
+  const std::string before = read_file(accepted);
   run_again("coarse", {"--set", "voxel_size_m=0.4"});
-  ASSERT_EQ(
-      cli::run({"bless", (folder_ / "coarse").string(), (folder_ / "baseline").string()}).exit_code,
-      0);
+  const cli::Answer setting = bless("coarse");
+  EXPECT_EQ(setting.exit_code, 3);
+  EXPECT_THAT(setting.err, HasSubstr("voxel_size_m: 0.25 -> 0.4"));
+  EXPECT_THAT(setting.err, HasSubstr("--even-if"));
+  cli::write_small_sequence(folder_ / "hall", 10);
+  const cli::Answer run =
+      cli::run({"run", (folder_ / "hall").string(), "--out", (folder_ / "other").string()});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const cli::Answer other = bless("other");
+  EXPECT_EQ(other.exit_code, 3);
+  EXPECT_THAT(other.err, HasSubstr("sequence room: is only in the first run"));
+  EXPECT_THAT(other.err, HasSubstr("sequence hall: is only in the second run"));
+  EXPECT_EQ(read_file(accepted), before);
+
+  const cli::Answer told = bless("coarse", {"--even-if"});
+  ASSERT_EQ(told.exit_code, 0) << told.err;
   EXPECT_EQ(compare("coarse").exit_code, 0);
   EXPECT_EQ(compare("out").exit_code, 3);
+}
+
+TEST_F(Compare, BlessTakesOtherNumbersOfTheSameKind) {
+  const fs::path result = folder_ / "out/room/result.json";
+  auto json = nlohmann::ordered_json::parse(read_file(result));
+  json.at("scans").at(7)["fp"] = json.at("scans").at(7).at("fp").get<int>() + 5;
+  write_file_atomic(result, json.dump());
+  const cli::Answer bless =
+      cli::run({"bless", (folder_ / "out").string(), (folder_ / "baseline").string()});
+  ASSERT_EQ(bless.exit_code, 0) << bless.err;
+  EXPECT_EQ(compare("out", {"--max-drop", "0"}).exit_code, 0);
+}
+
+TEST_F(Compare, AndStatsRepeatThatPredictionsWereMissing) {
+  const fs::path labels = folder_ / "out/room/labels";
+  fs::remove(labels / "000004.label");
+  const std::string results = (folder_ / "scored").string();
+  const cli::Answer score = cli::run({"score", (folder_ / "room").string(), "--predictions",
+                                      labels.string(), "--allow-missing", "--out", results});
+  ASSERT_EQ(score.exit_code, 0) << score.err;
+  const std::string mark = "INCOMPLETE: 1 scans without usable prediction are not counted";
+  ASSERT_THAT(score.out, HasSubstr(mark));
+
+  EXPECT_THAT(cli::run({"stats", results}).out, HasSubstr(mark));
+  EXPECT_THAT(cli::run({"stats", results, results}).out, HasSubstr(mark));
+  EXPECT_THAT(cli::run({"stats", results, "--csv"}).err, HasSubstr(mark));
+  const auto stats = nlohmann::json::parse(cli::run({"stats", results, "--json"}).out);
+  EXPECT_EQ(stats.at("missing_predictions"), 1);
+  EXPECT_THAT(cli::run({"compare", results, results}).out, HasSubstr("new: " + mark));
+  const auto gate = nlohmann::json::parse(cli::run({"compare", results, results, "--json"}).out);
+  EXPECT_EQ(gate.at("missing_predictions").at("baseline"), 1);
+  EXPECT_EQ(gate.at("missing_predictions").at("new"), 1);
+  EXPECT_THAT(cli::run({"bless", results, (folder_ / "first").string()}).out, HasSubstr(mark));
+  EXPECT_THAT(cli::run({"stats", (folder_ / "out").string()}).out, Not(HasSubstr("INCOMPLETE")));
 }
 
 TEST_F(Compare, StatsGiveIntervalsAndAPairedDifference) {
