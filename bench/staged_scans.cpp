@@ -25,6 +25,11 @@ void detect(StagedScan& staged, const Config& config, VoxelMap& map, Detection& 
   const int width = config.kernel_width_voxels;
   const VoxelizedScan& scan = staged.scan;
   DynamicRegion& region = detection.region;
+  if (scan.occupied_count == 0) {
+    detection.window.join({});
+    staged.labels.assign(staged.frame.points.size(), kStaticLabel);
+    return;
+  }
   staged.scores = convolve(scan, map.changed_since(staged.k), width, map, staged.k, pool);
   staged.filtered = median_filter(scan, staged.scores, pool);
   detection.window.join(staged.filtered);

@@ -119,7 +119,7 @@ ObservedScan Pipeline::State::observe(std::span<const Point> points, const Pose&
     return voxelize(points, map_from_sensor, around, config.min_range_m, config.max_range_m,
                     observing);
   });
-  grid = around;
+  if (!grid) grid = around;  // written once: the scan before may be pushed meanwhile
   current.observed = timed(record, Stage::kRaycast, [&] {
     return raycast(current.scan.measured, current.scan.sensor_voxel, config.voxel_size_m,
                    config.max_range_m, scratch, observing);
@@ -194,6 +194,7 @@ void Pipeline::State::expect_scan() const {
 
 std::vector<ScanResult> Pipeline::State::push(ObservedScan observed) {
   expect_scan();
+  if (!grid) throw std::logic_error("pushed a scan that this pipeline did not observe");
   const auto k = static_cast<std::uint32_t>(pushed);
   ScanResult taken_in;
   taken_in.scan_index = pushed;

@@ -54,7 +54,7 @@ class Pipeline {
 
   /// `push` in two halves: the first, algorithm steps 1 and 2, needs nothing of the scans before.
   /// It may run in another thread while an earlier scan is pushed, so that two scans are under way;
-  /// scans are still observed one at a time and in order. Throws as `push` does.
+  /// scans are still observed one at a time, in order, and pushed here. Throws std::range_error.
   ObservedScan observe(std::span<const Point> points, const Pose& map_from_sensor);
   std::vector<ScanResult> push(ObservedScan observed);
 

@@ -13,10 +13,14 @@ constexpr double kCellSizeM = 1.0;
 constexpr double kThinnestM = 0.08;  // noise and unevenness of a surface
 constexpr std::size_t kFewestPoints = 5;
 
+constexpr double kFarthestCell = 1 << 20;
+constexpr std::uint64_t kNowhere = std::uint64_t{1} << 63U;  // no cell that fits 3 x 21 bits
+
 std::uint64_t key_of(const Eigen::Vector3d& point_m) {
   std::uint64_t key = 0;
   for (int axis = 0; axis < 3; ++axis) {
     const double cell = std::floor(point_m[axis] / kCellSizeM);
+    if (!(std::abs(cell) < kFarthestCell)) return kNowhere;
     key = (key << 21U) | (static_cast<std::uint64_t>(static_cast<std::int64_t>(cell)) & 0x1FFFFFU);
   }
   return key;
@@ -120,7 +124,7 @@ Alignment align(const SurfaceCells& cells, std::span<const Eigen::Vector3d> poin
           candidate.rotate(Eigen::AngleAxisd(0.1 * signed_step, axis));
         }
         const double overlap = cells.overlap(points_m, candidate);
-        if (overlap <= best.overlap + 1e-4) continue;
+        if (!(overlap > best.overlap + 1e-4)) continue;  // nor when it is no number
         best = {candidate, overlap};
         improved = true;
       }

@@ -26,7 +26,7 @@ std::string format_accepted(const SequenceResult& result) {
 }
 
 void accept_baseline(const ResultSet& run, const fs::path& folder) {
-  if (is_there(folder)) {
+  if (is_there(folder) && !find_result_files(folder).empty()) {
     for (const ResultSet& known : load_result_sets(folder)) {
       for (const SequenceResult& sequence : known.sequences) remove_result(sequence.file);
     }

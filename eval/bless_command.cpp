@@ -30,10 +30,13 @@ struct BlessOptions {
 
 /// What changes against the baseline that lies there.
 std::string change(const BlessOptions& options, const ResultSet& newer) {
-  if (!is_there(options.baseline)) {
+  if (!is_there(options.baseline) || find_result_files(options.baseline).empty()) {
     std::string text = "a new baseline\n";
     for (const std::string& caveat : caveats(newer)) text += caveat + '\n';
     return text;
+  }
+  if (options.even_if && load_result_sets(options.baseline).size() > 1) {
+    return "several runs lay there before\n";
   }
   const ResultSet baseline = load_result_set(options.baseline);
   const PairedRuns paired = pair_runs(baseline, newer);

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
 #include <map>
 #include <memory>
 
@@ -18,7 +20,7 @@ namespace {
 constexpr const char* kFooter =
     R"(Lists the scans in which two runs count differently, most changed first. With --data also the moving
 objects of which they find different parts; A and B then have to hold label files, as the folders of
-`mosbench run` do, and the data set every sequence of A, with the truth that was scored.
+`mosbench run` do, and the data set the truth that was scored.
 
 Examples:
   mosbench diff results/runs/online results/runs/delayed
@@ -32,14 +34,14 @@ struct DiffOptions {
   bool json = false;
 };
 
-const Sequence& sequence_named(const Dataset& dataset, const std::string& name) {
-  std::string names;
+/// Null, and told, where the data set does not have it.
+const Sequence* sequence_named(const Dataset& dataset, const std::string& name) {
   for (const auto& sequence : dataset.sequences) {
-    if (sequence->name() == name) return *sequence;
-    names += (names.empty() ? "" : ", ") + sequence->name();
+    if (sequence->name() == name) return sequence.get();
   }
-  throw DataError(dataset.root, fmt::format("has no sequence {}, only {}", name, names),
-                  "the data set of the runs in --data");
+  fmt::print(stderr, "{}: has no sequence {}, whose objects are left out\n", dataset.root.string(),
+             name);
+  return nullptr;
 }
 
 /// The counted scans of a result. Throws DataError unless they have the truth that was scored.
@@ -67,7 +69,8 @@ std::vector<std::size_t> scans_of(const Dataset& dataset, const Sequence& sequen
 
 SequenceBreakdown break_down_run(const Sequence& sequence, const std::vector<std::size_t>& scans,
                                  const ResultSet& run, const BreakdownTask& task) {
-  const OpenedPredictions opened = open_predictions(run.path, sequence, scans, true, {});
+  const bool only_sequence = run.sequences.size() == 1;
+  const OpenedPredictions opened = open_predictions(run.path, sequence, scans, only_sequence, {});
   return break_down(sequence, scans, *opened.labels, task);
 }
 
@@ -77,17 +80,24 @@ std::vector<ObjectDisagreement> objects_of(const DiffOptions& options, const Res
       open_dataset(*options.root, {dataset_kind_option(options.dataset), {}, {}});
   const BreakdownTask task{first.front().protocol, first.front().range, hardware_threads()};
   std::vector<ObjectDisagreement> objects;
+  bool any = false;
   for (const SequenceResult& result : first.sequences) {
-    if (counted_scans(result).empty()) continue;
-    const Sequence& sequence = sequence_named(dataset, result.sequence);
-    const std::vector<std::size_t> scans = scans_of(dataset, sequence, result);
+    const bool in_both = std::ranges::find(second.sequences, result.sequence,
+                                           &SequenceResult::sequence) != second.sequences.end();
+    if (counted_scans(result).empty() || !in_both) continue;
+    const Sequence* sequence = sequence_named(dataset, result.sequence);
+    if (sequence == nullptr) continue;
+    any = true;
+    const std::vector<std::size_t> scans = scans_of(dataset, *sequence, result);
     for (ObjectDisagreement& object :
-         disagreeing_objects(break_down_run(sequence, scans, first, task),
-                             break_down_run(sequence, scans, second, task))) {
+         disagreeing_objects(break_down_run(*sequence, scans, first, task),
+                             break_down_run(*sequence, scans, second, task))) {
       objects.push_back(std::move(object));
     }
   }
-  return objects;
+  if (any) return objects;
+  throw DataError(dataset.root, "has none of the sequences that both runs hold",
+                  "the data set of the runs in --data");
 }
 
 std::string diff(const DiffOptions& options) {

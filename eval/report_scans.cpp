@@ -40,7 +40,8 @@ struct Cloud {
 /// Each result's first wish, then each one's second, ...
 std::vector<std::size_t> wishes_in_turn(const std::vector<std::vector<std::size_t>>& wishes) {
   std::vector<std::size_t> merged;
-  for (std::size_t i = 0; i < wishes.front().size(); ++i) {
+  const auto most = std::ranges::max(wishes, {}, &std::vector<std::size_t>::size).size();
+  for (std::size_t i = 0; i < most; ++i) {
     for (const std::vector<std::size_t>& of_result : wishes) {
       if (i >= of_result.size() || std::ranges::count(merged, of_result[i]) > 0) continue;
       merged.push_back(of_result[i]);

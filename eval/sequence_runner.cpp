@@ -74,6 +74,7 @@ class SequenceRun {
       const Clock::time_point read_start = Clock::now();
       ReadyScan ready = upcoming.get();
       rows_.costs[k].read_ms = milliseconds_since(read_start);
+      if (launch_ == std::launch::deferred) rows_.costs[k].read_ms -= ready.observe_ms;
       if (k + 1 < sequence_.size()) upcoming = prepare(k + 1);
       push(k, std::move(ready));
       progress.advance();

@@ -5,7 +5,8 @@
         [-- --data FOLDER]
 
 Both are measured in one process, in random order; medians over the repetitions are compared. Exit
-code 1 when a stage that takes at least one per cent of the pipeline's time differs by more.
+code 1 when a stage that takes at least one per cent of the pipeline's time differs by more, or when
+nothing was there to compare.
 """
 
 import argparse
@@ -19,7 +20,9 @@ def measure(program, repetitions, arguments):
     """CPU milliseconds of every repetition: {(benchmark, workload, threads): [runs]}."""
     command = [program, "--benchmark_format=json", f"--benchmark_repetitions={repetitions}",
                "--benchmark_enable_random_interleaving=true", *arguments]
-    answer = subprocess.run(command, stdout=subprocess.PIPE, check=True)
+    answer = subprocess.run(command, stdout=subprocess.PIPE, check=False)
+    if answer.returncode != 0:
+        sys.exit(f"check_stages.py: {program}: exit code {answer.returncode}")
     runs = {}
     for run in json.loads(answer.stdout)["benchmarks"]:
         if run["run_type"] != "iteration" or "error_message" in run:
@@ -34,26 +37,27 @@ def median_of(runs, value):
 
 
 def compare(runs, within):
-    """Prints a line for each stage; returns how many of weight differ by more than `within` %."""
-    differing = 0
+    """Prints a line for each stage. Returns how many were compared, and how many of weight differ by
+    more than `within` per cent."""
+    compared = differing = 0
     for (name, workload, threads), of_pipeline in sorted(runs.items()):
         if name != "pipeline":
             continue
         stages = [key.removesuffix("_cpu_ms") for key in of_pipeline[0] if key.endswith("_cpu_ms")]
         in_pipeline = {stage: median_of(of_pipeline, f"{stage}_cpu_ms") for stage in stages}
-        for stage in stages:
-            alone = median_of(runs[(stage, workload, threads)], "cpu_time") \
-                if (stage, workload, threads) in runs else None
-            if alone is None:
+        for stage, ms in in_pipeline.items():
+            of_stage = runs.get((stage, workload, threads))
+            if of_stage is None or ms == 0:
                 continue
-            share = in_pipeline[stage] / sum(in_pipeline.values())
-            ratio = alone / in_pipeline[stage]
+            alone_ms = median_of(of_stage, "cpu_time")
+            share, ratio = ms / sum(in_pipeline.values()), alone_ms / ms
             differs = share >= 0.01 and abs(ratio - 1) * 100 > within
+            compared += 1
             differing += differs
-            print(f"{workload:9} {threads:9} {stage:15} {in_pipeline[stage]:8.3f} ms in the pipeline, "
-                  f"{alone:8.3f} ms alone, ratio {ratio:5.2f}, {share:4.0%} of the time"
+            print(f"{workload:9} {threads:9} {stage:15} {ms:8.3f} ms in the pipeline, "
+                  f"{alone_ms:8.3f} ms alone, ratio {ratio:5.2f}, {share:4.0%} of the time"
                   f"{'  DIFFERS' if differs else ''}", flush=True)
-    return differing
+    return compared, differing
 
 
 def main():
@@ -64,11 +68,10 @@ def main():
     parser.add_argument("--within", type=float, default=10, help="per cent")
     parser.add_argument("arguments", nargs="*", help="further ones for mosbench_bench, after --")
     options = parser.parse_intermixed_args()
-    differing = compare(measure(options.program, options.repetitions, options.arguments),
-                        options.within)
-    if differing:
-        print(f"{differing} stages differ by more than {options.within:g} %")
-    return 1 if differing else 0
+    compared, differing = compare(
+        measure(options.program, options.repetitions, options.arguments), options.within)
+    print(f"{compared} stages compared, {differing} differ by more than {options.within:g} %")
+    return 1 if differing or not compared else 0
 
 
 if __name__ == "__main__":

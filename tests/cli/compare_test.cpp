@@ -138,6 +138,15 @@ TEST_F(Compare, BlessReplacesTheBaselineAndChangesNothingWhenRepeated) {
   EXPECT_EQ(read_file(accepted), before);
 }
 
+TEST_F(Compare, BlessFillsAnEmptyFolder) {
+  fs::create_directories(folder_ / "empty");
+  const cli::Answer answer =
+      cli::run({"bless", (folder_ / "out").string(), (folder_ / "empty").string()});
+  ASSERT_EQ(answer.exit_code, 0) << answer.err;
+  EXPECT_THAT(answer.out, HasSubstr("a new baseline"));
+  EXPECT_TRUE(fs::exists(folder_ / "empty/room/result.json"));
+}
+
 TEST_F(Compare, BlessRefusesToReplaceABaselineOfAnotherKindUnlessTold) {
   const auto bless = [this](const std::string& newer, const std::vector<std::string>& more = {}) {
     std::vector<std::string> words = {"bless", (folder_ / newer).string(),

@@ -42,7 +42,7 @@ TEST_F(Diff, RefusesADataSetThatIsNotTheOneOfTheRuns) {
   cli::write_small_sequence(folder_ / "hall", 12);
   const cli::Answer other = diff("hall");
   EXPECT_EQ(other.exit_code, 3);
-  EXPECT_THAT(other.err, HasSubstr("hall: has no sequence room, only hall"));
+  EXPECT_THAT(other.err, HasSubstr("hall: has none of the sequences that both runs hold"));
 
   cli::write_small_sequence(folder_ / "shorter/room", 9);
   EXPECT_THAT(diff("shorter").err, HasSubstr("has no truth for scan 000009 of sequence room"));

@@ -149,6 +149,20 @@ TEST_F(Resume, RefusesAFolderWithResultsOfAnotherDataSetOrSetting) {
   EXPECT_THAT(all.err, HasSubstr("01: finished by an earlier run, kept"));
 }
 
+TEST_F(Resume, PassesOverResultsThatAreNotOursAndFollowsLinks) {
+  cli::write_small_sequence(folder_ / "disk1/first", 6);
+  cli::write_small_sequence(folder_ / "disk2/second", 6);
+  fs::create_directories(folder_ / "kitti/sequences");
+  fs::create_directory_symlink(folder_ / "disk1/first", folder_ / "kitti/sequences/00");
+  fs::create_directory_symlink(folder_ / "disk2/second", folder_ / "kitti/sequences/01");
+  write_file_atomic(folder_ / "out/other_tool/result.json", "{\"accuracy\": 1}");
+  for (const char* name : {"00", "01"}) {
+    const cli::Answer answer = cli::run({"run", (folder_ / "kitti/sequences" / name).string(),
+                                         "--out", (folder_ / "out").string()});
+    EXPECT_EQ(answer.exit_code, 0) << answer.err;
+  }
+}
+
 TEST_F(Resume, RefusesOtherInputButNotTouchedInput) {
   ASSERT_EQ(cli::run(command()).exit_code, 0);
   const fs::path scan = folder_ / "room/velodyne/000004.bin";

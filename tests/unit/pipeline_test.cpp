@@ -160,6 +160,12 @@ TEST(Pipeline, ObservesAScanWhileTheOneBeforeIsPushed) {
   }
 }
 
+TEST(Pipeline, RefusesAScanThatAnotherObserved) {
+  Pipeline observing(small_config(), Variant::kPaper2024);
+  Pipeline other(small_config(), Variant::kPaper2024);
+  EXPECT_THROW(other.push(observing.observe(kPoints, Pose::Identity())), std::logic_error);
+}
+
 /// What is refused leaves no trace: the next scans get the labels they would have had.
 TEST(Pipeline, RefusedScanLeavesThePipelineAsItWas) {
   const SmallWorld world = small_world({.seed = 7});
