@@ -56,13 +56,11 @@ auto timed(const StageRecord& record, Stage stage, Work&& work) {
 
 /// What the method remembers between scans.
 struct Memory {
-  Memory(const Config& config, Variant variant, const VoxelGrid& voxel_grid)
-      : grid(voxel_grid),
-        map(config, variant, grid),
+  Memory(const Config& config, Variant variant, const VoxelGrid& grid)
+      : map(config, variant, grid),
         window(config.local_window_scans),
         region(grid, config.max_range_m, config.dynamic_window_scans, config.min_otsu_score) {}
 
-  VoxelGrid grid;
   VoxelMap map;
   LocalWindow window;
   DynamicRegion region;
