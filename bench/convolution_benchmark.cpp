@@ -6,9 +6,8 @@ namespace {
 /// On a map that has just been brought up to date, as in the pipeline.
 void convolution_stage(benchmark::State& state, StagedScans& staged, ThreadPool& pool) {
   const int width = staged.workload.config.kernel_width_voxels;
-  const std::size_t scans = staged.measured.size(), first = staged.measured.front().k;
-  while (state.KeepRunningBatch(static_cast<benchmark::IterationCount>(scans))) {
-    state.PauseTiming();
+  const std::size_t first = staged.measured.front().k;
+  measure_passes(state, staged.measured.size(), [&] {
     VoxelMap map = staged.map_after(first, pool);
     for (const StagedScan& s : staged.measured) {
       staged.update(map, s, pool);
@@ -17,8 +16,7 @@ void convolution_stage(benchmark::State& state, StagedScans& staged, ThreadPool&
           state, [&] { return convolve(s.scan, map.changed_since(s.k), width, map, s.k, pool); });
       expect(state, scores.values == s.scores.values);
     }
-    state.ResumeTiming();
-  }
+  });
   count_items(state, "voxels", mean_occupied(staged));
 }
 

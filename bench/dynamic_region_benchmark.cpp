@@ -6,9 +6,8 @@ namespace {
 /// The region remembers, so each pass begins before the first scan and measures the last ones.
 void dynamic_region_stage(benchmark::State& state, StagedScans& staged, ThreadPool& pool) {
   const int width = staged.workload.config.kernel_width_voxels;
-  const std::size_t scans = staged.measured.size(), first = staged.measured.front().k;
-  while (state.KeepRunningBatch(static_cast<benchmark::IterationCount>(scans))) {
-    state.PauseTiming();
+  const std::size_t first = staged.measured.front().k;
+  measure_passes(state, staged.measured.size(), [&] {
     DynamicRegion region = staged.new_region();
     for (std::size_t k = 0; k < first; ++k) {
       const StagedScan& s = staged.all[k];
@@ -25,8 +24,7 @@ void dynamic_region_stage(benchmark::State& state, StagedScans& staged, ThreadPo
       });
       expect(state, from_region.masks == s.from_region.masks);
     }
-    state.ResumeTiming();
-  }
+  });
   count_items(state, "voxels", mean_occupied(staged));
 }
 

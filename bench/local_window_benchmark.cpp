@@ -15,9 +15,8 @@ bool same_sums(const SumField& sums, const StagedScan& s) {
 }
 
 void window_stage(benchmark::State& state, StagedScans& staged, ThreadPool&) {
-  const std::size_t scans = staged.measured.size(), first = staged.measured.front().k;
-  while (state.KeepRunningBatch(static_cast<benchmark::IterationCount>(scans))) {
-    state.PauseTiming();
+  const std::size_t first = staged.measured.front().k;
+  measure_passes(state, staged.measured.size(), [&] {
     LocalWindow window(staged.workload.config.local_window_scans);
     for (std::size_t k = 0; k < first; ++k) window.join(staged.all[k].filtered);
     for (const StagedScan& s : staged.measured) {
@@ -28,8 +27,7 @@ void window_stage(benchmark::State& state, StagedScans& staged, ThreadPool&) {
       });
       expect(state, same_sums(sums, s));
     }
-    state.ResumeTiming();
-  }
+  });
   count_items(state, "voxels", mean_occupied(staged));
 }
 

@@ -20,8 +20,8 @@ bool all_right = true;
 
 void measure(benchmark::State& state, const RegisteredStage& stage, const Workload& workload,
              unsigned threads) {
-  static std::map<const Workload*, StagedScans>
-      staged;  // made once: it takes longer than measuring
+  // Made once: it takes longer than measuring.
+  static std::map<const Workload*, StagedScans> staged;
   ThreadPool pool(threads);
   stage.benchmark(state, staged.try_emplace(&workload, workload).first->second, pool);
 }

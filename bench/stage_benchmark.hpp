@@ -53,16 +53,24 @@ auto timed_call(benchmark::State& state, Work&& work) {
   return result;
 }
 
+/// Runs passes over `scans` scans, each of which is a call of the benchmark. Timing is paused
+/// outside of the pass's timed_calls, one for each scan.
+template <typename Pass>
+void measure_passes(benchmark::State& state, std::size_t scans, Pass&& pass) {
+  while (state.KeepRunningBatch(static_cast<benchmark::IterationCount>(scans))) {
+    state.PauseTiming();
+    pass();
+    state.ResumeTiming();
+  }
+}
+
 /// Measures `work` on the measured scans in turns; a call of the benchmark is one scan.
 /// `right(scan, result)` tells whether work(scan) has computed what it should.
 template <typename Work, typename Right>
 void measure_stage(benchmark::State& state, const StagedScans& staged, Work&& work, Right&& right) {
-  const std::size_t scans = staged.measured.size();
-  while (state.KeepRunningBatch(static_cast<benchmark::IterationCount>(scans))) {
-    state.PauseTiming();
+  measure_passes(state, staged.measured.size(), [&] {
     for (const StagedScan& scan : staged.measured) timed_call(state, [&] { return work(scan); });
-    state.ResumeTiming();
-  }
+  });
   for (const StagedScan& scan : staged.measured) expect(state, right(scan, work(scan)));
 }
 

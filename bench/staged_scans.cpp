@@ -44,10 +44,10 @@ void detect(StagedScan& staged, const Config& config, VoxelMap& map, Detection& 
   staged.from_region = region.back_end(scan, staged.beside, width, pool);
   region.update({scan, staged.dynamic, staged.from_region, staged.beside, staged.threshold},
                 staged.k);
-  staged.moving = shows_motion(staged.threshold, config.min_otsu_score)
-                      ? united(staged.dynamic, staged.from_region)
-                      : VoxelSet{};
-  staged.labels = project_labels(scan, staged.moving);
+  const VoxelSet moving = shows_motion(staged.threshold, config.min_otsu_score)
+                              ? united(staged.dynamic, staged.from_region)
+                              : VoxelSet{};
+  staged.labels = project_labels(scan, moving);
 }
 
 constexpr std::size_t kMeasuredScans = 8;

@@ -26,7 +26,7 @@ struct StagedScan {
   ScoreField scores, filtered;
   SumField sums;
   std::optional<double> threshold;
-  VoxelSet carried, dynamic, beside, from_region, moving;
+  VoxelSet carried, dynamic, beside, from_region;
   std::vector<std::uint32_t> labels;
 };
 

@@ -5,17 +5,15 @@ namespace {
 
 /// The map remembers, so each pass begins before the first scan and measures the last ones.
 void map_update_stage(benchmark::State& state, StagedScans& staged, ThreadPool& pool) {
-  const std::size_t scans = staged.measured.size(), first = staged.measured.front().k;
-  while (state.KeepRunningBatch(static_cast<benchmark::IterationCount>(scans))) {
-    state.PauseTiming();
+  const std::size_t first = staged.measured.front().k;
+  measure_passes(state, staged.measured.size(), [&] {
     VoxelMap map = staged.map_after(first, pool);
     for (const StagedScan& s : staged.measured) {
       const VoxelList changed = timed_call(state, [&] { return staged.update(map, s, pool); });
       map.evict(s.k);
       expect(state, voxels_of(changed) == s.state_changes);
     }
-    state.ResumeTiming();
-  }
+  });
   count_items(state, "voxels",
               mean_of(staged, [](const StagedScan& s) { return voxels_of(s.observed); }));
   const VoxelMap& last = staged.maps.back();
@@ -29,13 +27,11 @@ void evict_stage(benchmark::State& state, StagedScans& staged, ThreadPool& pool)
   const std::uint32_t k = staged.last().k;
   VoxelMap map = staged.map_after(k + 1, pool);
   const std::size_t blocks = map.block_count();
-  while (state.KeepRunningBatch(kScans)) {
-    state.PauseTiming();
+  measure_passes(state, kScans, [&] {
     for (std::uint32_t i = 0; i < kScans; ++i) {
       timed_call(state, [&] { return map.evict(k + i), 0; });
     }
-    state.ResumeTiming();
-  }
+  });
   count_items(state, "blocks", blocks / kScans);
   expect(state, map.block_count() == blocks);
   // Once everything has expired every block goes.
