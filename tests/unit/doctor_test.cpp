@@ -110,6 +110,19 @@ void change_poses(const fs::path& file, const std::function<void(std::vector<Pos
   write_poses(file, poses);
 }
 
+void invert_poses(const fs::path& root) {
+  change_poses(root / kKittiSequence / "poses.txt", [](std::vector<Pose>& poses) {
+    for (Pose& pose : poses) pose = pose.inverse();
+  });
+}
+
+void delay_poses_by_one_scan(const fs::path& root) {
+  change_poses(root / kKittiSequence / "poses.txt", [](std::vector<Pose>& poses) {
+    poses.insert(poses.begin(), poses.front());
+    poses.pop_back();
+  });
+}
+
 void exchange_rows(const fs::path& sequence, std::size_t a, std::size_t b) {
   change_poses(sequence / "poses.txt",
                [=](std::vector<Pose>& poses) { std::swap(poses.at(a), poses.at(b)); });
@@ -140,13 +153,7 @@ const std::vector<Fault>& faults() {
          write_calib(root / kKittiSequence / "calib.txt", Pose::Identity());
        },
        "the poses fit better as the camera's, Tr is missing"},
-      {"inverse_poses", kKitti,
-       [](const fs::path& root) {
-         change_poses(root / kKittiSequence / "poses.txt", [](std::vector<Pose>& poses) {
-           for (Pose& pose : poses) pose = pose.inverse();
-         });
-       },
-       "the poses fit better as sensor_from_map (inverse)"},
+      {"inverse_poses", kKitti, invert_poses, "the poses fit better as sensor_from_map (inverse)"},
       {"transposed_rotations", kKitti,
        [](const fs::path& root) {
          change_poses(root / kKittiSequence / "poses.txt", [](std::vector<Pose>& poses) {
@@ -154,13 +161,7 @@ const std::vector<Fault>& faults() {
          });
        },
        "the poses fit better as with transposed rotations"},
-      {"poses_shifted_by_one_scan", kKitti,
-       [](const fs::path& root) {
-         change_poses(root / kKittiSequence / "poses.txt", [](std::vector<Pose>& poses) {
-           poses.insert(poses.begin(), poses.front());
-           poses.pop_back();
-         });
-       },
+      {"poses_shifted_by_one_scan", kKitti, delay_poses_by_one_scan,
        "the poses fit better as one row later"},
       {"poses_shifted_by_one_scan_the_other_way", kKitti,
        [](const fs::path& root) {
@@ -170,20 +171,9 @@ const std::vector<Fault>& faults() {
          });
        },
        "the poses fit better as one row earlier"},
-      {"poses_shifted_by_one_scan_on_a_straight_road", kHighway,
-       [](const fs::path& root) {
-         change_poses(root / kKittiSequence / "poses.txt", [](std::vector<Pose>& poses) {
-           poses.insert(poses.begin(), poses.front());
-           poses.pop_back();
-         });
-       },
+      {"poses_shifted_by_one_scan_on_a_straight_road", kHighway, delay_poses_by_one_scan,
        "the poses fit better as one row later:"},
-      {"inverse_poses_on_a_straight_road", kHighway,
-       [](const fs::path& root) {
-         change_poses(root / kKittiSequence / "poses.txt", [](std::vector<Pose>& poses) {
-           for (Pose& pose : poses) pose = pose.inverse();
-         });
-       },
+      {"inverse_poses_on_a_straight_road", kHighway, invert_poses,
        "the poses fit better as sensor_from_map (inverse):"},
       {"rows_of_neighbours_exchanged", kKitti,
        [](const fs::path& root) { exchange_rows(root / kKittiSequence, 17, 18); },
