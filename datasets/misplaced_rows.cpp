@@ -17,6 +17,13 @@ Pose midway(const Pose& a, const Pose& b) {
   return middle;
 }
 
+/// What `mended` puts into the row.
+Pose mended_pose(const std::vector<Pose>& poses, const MisplacedRows& rows, std::size_t row) {
+  if (row != rows.first && row != rows.second) return poses[row];
+  if (rows.single()) return midway(poses[row - 1], poses[row + 1]);
+  return poses[row == rows.first ? rows.second : rows.first];
+}
+
 /// How much shorter the way is without the row. Next to nothing on any way that is driven, also in
 /// its turns, as difference_m adds up along it.
 double detour_m(const std::vector<Pose>& poses, std::size_t row) {
@@ -40,10 +47,12 @@ struct Steps {
   double sum_m = 0.0, longest_m = 0.0;
 };
 
-Steps steps_around(const std::vector<Pose>& poses, const MisplacedRows& rows) {
+/// `pose_of(row)` for the pose of each.
+template <typename PoseOf>
+Steps steps_around(const MisplacedRows& rows, std::size_t scans, PoseOf&& pose_of) {
   Steps steps;
-  for (const ScanPair& pair : pairs_around(rows, poses.size())) {
-    const double step_m = difference_m(poses[pair.earlier], poses[pair.later]);
+  for (const ScanPair& pair : pairs_around(rows, scans)) {
+    const double step_m = difference_m(pose_of(pair.earlier), pose_of(pair.later));
     steps.sum_m += step_m;
     steps.longest_m = std::max(steps.longest_m, step_m);
   }
@@ -107,8 +116,10 @@ class Search {
   }
 
   void consider(const MisplacedRows& rows, const Suspect& suspect) {
-    const Steps before = steps_around(poses_, rows),
-                after = steps_around(mended(poses_, rows), rows);
+    const auto given = [&](std::size_t row) { return poses_[row]; };
+    const auto better = [&](std::size_t row) { return mended_pose(poses_, rows, row); };
+    const Steps before = steps_around(rows, poses_.size(), given),
+                after = steps_around(rows, poses_.size(), better);
     double saved_m = before.sum_m - after.sum_m;
     double needed_m = std::max(suspect.step_m, suspect.noise_m);
     if (rows.single()) {
@@ -135,11 +146,9 @@ class Search {
 }  // namespace
 
 std::vector<Pose> mended(std::vector<Pose> poses, const MisplacedRows& rows) {
-  if (rows.single()) {
-    poses[rows.first] = midway(poses[rows.first - 1], poses[rows.first + 1]);
-  } else {
-    std::swap(poses[rows.first], poses[rows.second]);
-  }
+  const Pose first = mended_pose(poses, rows, rows.first);
+  poses[rows.second] = mended_pose(poses, rows, rows.second);
+  poses[rows.first] = first;
   return poses;
 }
 
