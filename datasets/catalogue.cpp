@@ -5,14 +5,10 @@
 #include "datasets/text.hpp"
 
 namespace mosbench {
-namespace {
-
 std::filesystem::path without_slash(const std::filesystem::path& path) {
   const auto normal = std::filesystem::absolute(path).lexically_normal();
   return normal.has_filename() ? normal : normal.parent_path();
 }
-
-}  // namespace
 
 std::string folder_name(const std::filesystem::path& path) {
   return without_slash(path).filename().string();

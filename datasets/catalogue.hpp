@@ -35,6 +35,9 @@ const Catalogue& moe_catalogue();
 const Catalogue& kth_catalogue();
 const Catalogue& mdetector_catalogue();
 
+/// The path from the root, without "." and ".." and a slash at the end.
+std::filesystem::path without_slash(const std::filesystem::path& path);
+
 /// The last name of a path, also of "." and of one that ends with a slash.
 std::string folder_name(const std::filesystem::path& path);
 

@@ -25,11 +25,14 @@ std::string format_accepted(const SequenceResult& result) {
   return format_scored(header, result.scans);
 }
 
+std::vector<ResultSet> accepted_runs(const fs::path& folder) {
+  if (!is_there(folder) || find_result_files(folder).empty()) return {};
+  return load_result_sets(folder);
+}
+
 void accept_baseline(const ResultSet& run, const fs::path& folder) {
-  if (is_there(folder) && !find_result_files(folder).empty()) {
-    for (const ResultSet& known : load_result_sets(folder)) {
-      for (const SequenceResult& sequence : known.sequences) remove_result(sequence.file);
-    }
+  for (const ResultSet& known : accepted_runs(folder)) {
+    for (const SequenceResult& sequence : known.sequences) remove_result(sequence.file);
   }
   for (const SequenceResult& sequence : run.sequences) {
     write_file_atomic(folder / sequence.sequence / "result.json", format_accepted(sequence));

@@ -4,7 +4,6 @@
 #include <memory>
 
 #include "datasets/errors.hpp"
-#include "datasets/files.hpp"
 #include "eval/baseline.hpp"
 #include "eval/commands.hpp"
 #include "eval/paired_runs.hpp"
@@ -30,15 +29,15 @@ struct BlessOptions {
 
 /// What changes against the baseline that lies there.
 std::string change(const BlessOptions& options, const ResultSet& newer) {
-  if (!is_there(options.baseline) || find_result_files(options.baseline).empty()) {
+  const std::vector<ResultSet> known = accepted_runs(options.baseline);
+  if (known.empty()) {
     std::string text = "a new baseline\n";
     for (const std::string& caveat : caveats(newer)) text += caveat + '\n';
     return text;
   }
-  if (options.even_if && load_result_sets(options.baseline).size() > 1) {
-    return "several runs lay there before\n";
-  }
-  const ResultSet baseline = load_result_set(options.baseline);
+  if (known.size() > 1 && options.even_if) return "several runs lay there before\n";
+  // Of several runs, loading one names what they differ in.
+  const ResultSet baseline = known.size() == 1 ? known.front() : load_result_set(options.baseline);
   const PairedRuns paired = pair_runs(baseline, newer);
   if (!paired.unlike.empty() && !options.even_if) {
     throw DataError(options.baseline,

@@ -169,11 +169,13 @@ std::string format_scored(const ordered_json& header, const std::vector<ScanRow>
   return format_members(with_scans(header, scans));
 }
 
-std::vector<std::filesystem::path> find_result_files(const std::filesystem::path& path) {
+std::vector<std::filesystem::path> find_result_files(const std::filesystem::path& path,
+                                                     std::filesystem::directory_options how,
+                                                     int deepest) {
   std::error_code error;
   if (std::filesystem::is_regular_file(path, error)) return {path};
   std::vector<std::filesystem::path> files;
-  for (std::filesystem::recursive_directory_iterator it(path, error), end; !error && it != end;
+  for (std::filesystem::recursive_directory_iterator it(path, how, error), end; !error && it != end;
        it.increment(error)) {
     const bool of_scans = it->path().filename() == "labels" || it->path().filename() == "scores";
     if (of_scans || is_leftover(it->path())) {
@@ -181,6 +183,7 @@ std::vector<std::filesystem::path> find_result_files(const std::filesystem::path
     } else if (it->path().filename() == "result.json") {
       files.push_back(it->path());
     }
+    if (it.depth() >= deepest) it.disable_recursion_pending();
   }
   if (error) throw DataError(path, "cannot be read (" + error.message() + ")", "results");
   std::ranges::sort(files);

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -58,9 +59,13 @@ struct ResultFile {
   SequenceRows rows;
 };
 
-/// Every result.json below a folder (or the file itself), ordered by path, but not those that
-/// killed runs left; empty when there is none. Throws DataError for a path that cannot be read.
-std::vector<std::filesystem::path> find_result_files(const std::filesystem::path& path);
+/// Every result.json below a folder (or the file itself), `deepest` levels of folders at most,
+/// ordered by path, but not those that killed runs left; empty when there is none. Throws
+/// DataError for a path that cannot be read, unless `how` passes over it.
+std::vector<std::filesystem::path> find_result_files(
+    const std::filesystem::path& path,
+    std::filesystem::directory_options how = std::filesystem::directory_options::none,
+    int deepest = std::numeric_limits<int>::max());
 /// The same where there has to be one: throws DataError when there is none.
 std::vector<std::filesystem::path> result_files(const std::filesystem::path& path);
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "datasets/catalogue.hpp"
 #include "eval/answer_text.hpp"
 #include "eval/metrics.hpp"
 #include "eval/text_table.hpp"
@@ -61,15 +62,10 @@ std::string objects_text(const RunNames& names, const std::vector<ObjectDisagree
   return table.str();
 }
 
-std::string last_name(const std::filesystem::path& path) {
-  const std::filesystem::path plain = path.lexically_normal();
-  return (plain.has_filename() ? plain : plain.parent_path()).filename().string();
-}
-
 }  // namespace
 
 RunNames names_apart(const std::filesystem::path& first, const std::filesystem::path& second) {
-  RunNames names{last_name(first), last_name(second)};
+  RunNames names{folder_name(first), folder_name(second)};
   if (names.first == names.second) return {first.string(), second.string()};
   return names;
 }

@@ -7,6 +7,7 @@
 #include <system_error>
 #include <vector>
 
+#include "datasets/catalogue.hpp"
 #include "datasets/errors.hpp"
 #include "eval/json_differences.hpp"
 
@@ -14,19 +15,11 @@ namespace mosbench {
 namespace fs = std::filesystem;
 namespace {
 
-fs::path without_slash(const fs::path& path) {
-  return path.has_filename() ? path : path.parent_path();
-}
-
-fs::path as_written(const fs::path& folder) {
-  return without_slash(fs::absolute(folder).lexically_normal());
-}
-
 /// With symbolic links resolved, as far as they can be.
 fs::path resolved(const fs::path& folder) {
   std::error_code error;
   const fs::path path = fs::weakly_canonical(folder, error);
-  return error ? as_written(folder) : without_slash(path);
+  return without_slash(error ? folder : path);
 }
 
 bool is_in(const fs::path& path, const fs::path& folder) {
@@ -46,23 +39,6 @@ fs::path without_name(fs::path root, fs::path name) {
 bool same_dataset(const fs::path& a, const std::string& sequence_a, const fs::path& b,
                   const std::string& sequence_b) {
   return is_in(a, b) || is_in(b, a) || without_name(a, sequence_a) == without_name(b, sequence_b);
-}
-
-/// Where results of sequences lie in `folder`, also of those in scenes. Others are not looked for:
-/// the folder may be a home.
-std::vector<fs::path> results_of_sequences(const fs::path& folder) {
-  constexpr int kDeepest = 2;
-  std::vector<fs::path> files;
-  std::error_code error;
-  for (fs::recursive_directory_iterator
-           it(folder, fs::directory_options::skip_permission_denied, error),
-       end;
-       !error && it != end; it.increment(error)) {
-    if (it.depth() >= kDeepest) it.disable_recursion_pending();
-    if (it->path().filename() == "result.json") files.push_back(it->path());
-  }
-  std::ranges::sort(files);
-  return files;
 }
 
 /// Nothing when the file is no result of ours.
@@ -87,11 +63,12 @@ std::string other_run(const RunPlan& plan, const nlohmann::ordered_json& rules,
     const fs::path& ours = plan.dataset.root;
     const std::string name = there.at("sequence").get<std::string>();
     const std::string our_name = plan.dataset.sequences.front()->name();
-    if (root.empty() || same_dataset(as_written(root), name, as_written(ours), our_name) ||
+    if (root.empty() || same_dataset(without_slash(root), name, without_slash(ours), our_name) ||
         same_dataset(resolved(root), name, resolved(ours), our_name)) {
       return "";
     }
-    return fmt::format("data set is {} there and {} now", root.string(), as_written(ours).string());
+    return fmt::format("data set is {} there and {} now", root.string(),
+                       without_slash(ours).string());
   } catch (const nlohmann::ordered_json::exception& error) {
     throw DataError(file, error.what(), "a result.json of mosbench");
   }
@@ -101,7 +78,10 @@ std::string other_run(const RunPlan& plan, const nlohmann::ordered_json& rules,
 
 void check_shared_folder(const RunPlan& plan, const nlohmann::ordered_json& rules) {
   if (std::error_code error; !fs::is_directory(plan.out, error)) return;
-  for (const fs::path& file : results_of_sequences(plan.out)) {
+  // Sequences lie there or in scenes. Deeper ones are not looked for: it may be a home.
+  constexpr int kDeepest = 2;
+  for (const fs::path& file :
+       find_result_files(plan.out, fs::directory_options::skip_permission_denied, kDeepest)) {
     const bool planned = std::ranges::any_of(plan.dataset.sequences, [&](const auto& sequence) {
       return plan.out / sequence->name() == file.parent_path();
     });

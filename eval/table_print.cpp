@@ -33,9 +33,7 @@ std::string cell_text(const TableCell& cell) {
 }
 
 std::string joined(const std::vector<std::string>& texts, const char* between) {
-  std::string text;
-  for (const std::string& part : texts) text += (text.empty() ? "" : between) + part;
-  return text;
+  return fmt::format("{}", fmt::join(texts, between));
 }
 
 /// Numbered texts, each once.
