@@ -1,5 +1,6 @@
 #include "core/last_seen.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cassert>
 
@@ -20,21 +21,35 @@ int LastSeen::planes_for(std::uint32_t max_age) {
 
 MOSBENCH_MULTIARCH void LastSeen::stamp(const BlockMask& voxels, std::uint32_t scan_index,
                                         int planes) {
-  for (int plane = 0; plane < planes; ++plane) {
+  const auto write = [&](const BlockMask& to, std::uint32_t index, int plane) {
     BlockMask& bits = bits_[static_cast<std::size_t>(plane)];
-    bits = (scan_index >> plane & 1u) != 0 ? bits | voxels : without(bits, voxels);
+    bits = (index >> plane & 1u) != 0 ? bits | to : without(bits, to);
+  };
+  if (const std::uint32_t upper = scan_index >> kLowPlanes << kLowPlanes; upper != upper_) {
+    for (int plane = kLowPlanes; plane < planes; ++plane) write(recent_, upper_, plane);
+    upper_ = upper;
+    recent_ = {};
   }
+  for (int plane = 0; plane < std::min(kLowPlanes, planes); ++plane) {
+    write(voxels, scan_index, plane);
+  }
+  recent_ = recent_ | voxels;
 }
 
 /// age = scan_index - last_seen, subtracted bit by bit.
 LastSeen::Ages::Ages(const LastSeen& last_seen, std::uint32_t scan_index, int planes)
     : planes_(planes) {
   BlockMask borrow;
-  for (std::size_t plane = 0; plane < static_cast<std::size_t>(planes); ++plane) {
+  for (int plane = 0; plane < planes; ++plane) {
+    const auto at = static_cast<std::size_t>(plane);
     const BlockMask now = all_or_none((scan_index >> plane & 1u) != 0);
-    const BlockMask& then = last_seen.bits_[plane];
+    BlockMask then = last_seen.bits_[at];
+    if (plane >= kLowPlanes) {
+      const BlockMask recent = all_or_none((last_seen.upper_ >> plane & 1u) != 0);
+      then = without(then, last_seen.recent_) | (recent & last_seen.recent_);
+    }
     const BlockMask difference = without(now | then, now & then);
-    bits_[plane] = without(difference | borrow, difference & borrow);
+    bits_[at] = without(difference | borrow, difference & borrow);
     borrow = without(then | borrow, now) | (then & borrow);
   }
 }

@@ -29,8 +29,11 @@ TEST(LastSeen, TellsAgesAsAListOfNumbersDoes) {
     std::uint32_t scan = 3 * oldest + 1;
     for (std::uint32_t& number : numbers) number = scan;
     last_seen.stamp(~BlockMask{}, scan, planes);
-    for (int step = 0; step < 4; ++step) {
-      scan += oldest / 5;
+    const std::uint32_t last = scan + oldest / 5 * 4;
+    while (scan < last) {
+      // Steps within and over the eight scans of the same upper bits.
+      scan += oldest < 64 ? static_cast<std::uint32_t>(random() % 4) : oldest / 5;
+      scan = std::min(scan, last);
       const BlockMask seen = random_mask(random);
       ASSERT_GT(seen.count(), 20u);
       last_seen.stamp(seen, scan, planes);
