@@ -7,12 +7,12 @@ namespace mosbench {
 namespace {
 
 /// Squared distance from a cell of the block in the middle of the cube, over all pairs.
-int nearest(std::span<const BlockMask* const> sources, int reach, const Voxel& cell) {
+int nearest(std::span<const SourceBlock* const> sources, int reach, const Voxel& cell) {
   const int side = 2 * reach + 1;
   int best = 1 << 20;
   for (int i = 0; i < side * side * side; ++i) {
     const BlockIndex block{i % side - reach, i / side % side - reach, i / side / side - reach};
-    for_each_cell(*sources[static_cast<std::size_t>(i)], [&](std::uint32_t source) {
+    for_each_cell(sources[static_cast<std::size_t>(i)]->mask, [&](std::uint32_t source) {
       const Voxel v = voxel_at(block, source);
       const int dx = v.x - cell.x, dy = v.y - cell.y, dz = v.z - cell.z;
       best = std::min(best, dx * dx + dy * dy + dz * dz);
@@ -21,17 +21,20 @@ int nearest(std::span<const BlockMask* const> sources, int reach, const Voxel& c
   return best;
 }
 
-/// Every 97th block, every 61st cell.
+/// Every 97th block, every 61st cell of a layer that is looked at.
 bool equals_all_pairs(const NearBlocks& near) {
   const int exact_below = (near.field().radius() + 1) * (near.field().radius() + 1);
   bool same = true;
+  ColumnDistances column(near.field());
   for (std::size_t i = 0; i < near.size(); i += 97) {
     BlockDistances distances;
-    if (!near.field().squared_distances(near.sources(i), distances)) distances.fill(0xFFFF);
+    near.find_distances(i, column, distances);
     for (std::uint32_t cell = 0; cell < kBlockVoxels; cell += 61) {
+      if (near.observed(i).words[cell / 64] == 0) continue;
       const int expected = nearest(near.sources(i), near.field().reach(), voxel_at({}, cell));
-      same = same && (expected < exact_below ? distances[cell] == expected
-                                             : distances[cell] >= exact_below);
+      same = same && (expected < exact_below
+                          ? distances.near.test(cell) && distances.squared[cell] == expected
+                          : !distances.near.test(cell));
     }
   }
   return same;
@@ -43,8 +46,10 @@ void distance_field_stage(benchmark::State& state, StagedScans& staged, ThreadPo
   std::size_t blocks = 0;
   for (auto _ : state) {
     blocks = 0;
+    ColumnDistances column(near.field());
     for (std::size_t i = 0; i < near.size(); ++i) {
-      blocks += near.field().squared_distances(near.sources(i), distances);
+      near.find_distances(i, column, distances);
+      blocks += distances.near.any();
       benchmark::DoNotOptimize(distances);
     }
   }

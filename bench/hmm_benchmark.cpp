@@ -25,8 +25,9 @@ void hmm_stage(benchmark::State& state, StagedScans& staged, ThreadPool&) {
   std::vector<BlockStates> states(near.size());
   std::vector<BlockMask> seen(near.size()), nonzero(near.size());
   std::size_t voxels = 0;
+  ColumnDistances column(near.field());
   for (std::size_t i = 0; i < near.size(); ++i) {
-    if (!near.field().squared_distances(near.sources(i), distances[i])) distances[i].fill(0xFFFF);
+    near.find_distances(i, column, distances[i]);
     voxels += near.observed(i).count();
   }
   const auto update = [&] {
@@ -41,7 +42,7 @@ void hmm_stage(benchmark::State& state, StagedScans& staged, ThreadPool&) {
   count_items(state, "voxels", voxels);
   for (std::size_t i = 0; i < near.size(); ++i) {
     for_each_cell(near.observed(i) & nonzero[i], [&](std::uint32_t cell) {
-      const double expected = settled_belief(staged.workload.config, distances[i][cell]);
+      const double expected = settled_belief(staged.workload.config, distances[i].squared[cell]);
       expect(state, std::abs(beliefs[i].occupied[cell] - expected) < 1e-3);
     });
   }

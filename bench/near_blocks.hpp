@@ -20,9 +20,15 @@ class NearBlocks {
   std::size_t with_source() const { return with_source_; }
   const BeliefFilter& filter() const { return filter_; }
   const DistanceField& field() const { return field_; }
+  const BlockIndex& block(std::size_t i) const { return *blocks_[i]; }
   const BlockMask& observed(std::size_t i) const { return *observed_[i]; }
-  std::span<const BlockMask* const> sources(std::size_t i) const {
+  std::span<const SourceBlock* const> sources(std::size_t i) const {
     return std::span(sources_).subspan(i * cube_, cube_);
+  }
+
+  /// Those of block i; `column` is for blocks in turns.
+  void find_distances(std::size_t i, ColumnDistances& column, BlockDistances& distances) const {
+    column.find(block(i), observed(i), sources(i), distances);
   }
 
  private:
@@ -31,7 +37,9 @@ class NearBlocks {
   SourceGrid grid_;
   std::size_t cube_;
   std::size_t with_source_ = 0;
-  std::vector<const BlockMask*> observed_, sources_;
+  std::vector<const BlockIndex*> blocks_;
+  std::vector<const BlockMask*> observed_;
+  std::vector<const SourceBlock*> sources_;
 };
 
 }  // namespace mosbench

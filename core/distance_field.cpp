@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kPlane = kBlockSide * kBlockSide;
 
-/// Stands for "no source in reach": not below (radius + 1)^2, and small enough that a square of
+/// Stands for "no source in reach": (radius + 1)^2 is small enough that a square of
 /// (radius + 7)^2 on top does not overflow a byte where bytes are used.
 int far_of(int radius) { return (radius + 1) * (radius + 1); }
 constexpr int kMaxNarrowRadius = 6;
@@ -53,7 +53,16 @@ struct Simd {
   using Row = std::array<Distance, kBlockSide>;
   static constexpr int kPerVector = 32 / static_cast<int>(sizeof(Distance));
   static constexpr int kPerPlane = kPlane / kPerVector;
-  using Plane = Lanes[std::size_t{kPerPlane}];
+  struct Plane {
+    Lanes lanes[std::size_t{kPerPlane}];
+  };
+  /// No source in reach of any cell.
+  static Plane far_plane(const Lanes& far) {
+    Plane plane{};
+    for (Lanes& lanes : plane.lanes) lanes = far;
+    return plane;
+  }
+  static Lanes far_lanes(int radius) { return Lanes{} + static_cast<Distance>(far_of(radius)); }
 };
 
 template <typename Lanes>
@@ -71,114 +80,169 @@ inline __attribute__((always_inline)) typename Simd<Distance>::Lanes repeated(
   return std::bit_cast<typename Simd<Distance>::Lanes>(all);
 }
 
-/// The lowest bit of every byte that is not zero.
+/// Bit i is set where byte i is not zero.
 inline std::uint64_t nonzero_bytes(std::uint64_t word) {
   word |= word >> 4;
   word |= word >> 2;
   word |= word >> 1;
-  return word & 0x0101010101010101u;
+  return (word & 0x0101010101010101u) * 0x0102040810204080u >> 56;
 }
 
 /// The cube of blocks around one, and how far sources matter.
 struct Surroundings {
-  const BlockMask* const* blocks;  ///< (2 reach + 1)^3
-  int radius;
+  const SourceBlock* const* blocks;  ///< (2 reach + 1)^3
+  int radius, reach;
+
+  int side() const { return 2 * reach + 1; }
 };
 
-/// Lowers a plane by the sources of layer z. False when it has none within the radius.
-template <int kReach, typename Distance>
-inline __attribute__((always_inline)) bool lower_plane(
-    const Surroundings& around, int z, const DistanceField::Tables<Distance>& tables, int reach,
-    typename Simd<Distance>::Plane& plane) {
-  const int side = 2 * reach + 1;
-  const BlockMask* const* blocks = around.blocks + ((z >> 3) + reach) * side * side;
-  bool any = false;
-  for (int block_y = -reach; block_y <= reach; ++block_y, blocks += side) {
-    std::array<std::uint64_t, std::size_t{2 * kReach + 1}> words;
+/// A bit for each row or layer of a block and of `radius` on either side.
+std::uint64_t layers_around(int radius) {
+  static_assert(kBlockSide + 2 * kMaxDistanceRadius <= 64);
+  return ~std::uint64_t{0} >> (64 - kBlockSide - 2 * radius);
+}
+
+/// Bit y + radius is set where layer `z` of a square of blocks has a source in row y.
+inline __attribute__((always_inline)) std::uint64_t rows_with_source(
+    const Surroundings& around, const SourceBlock* const* blocks, int z) {
+  std::uint64_t rows = 0;
+  for (int block_y = -around.reach; block_y <= around.reach; ++block_y) {
     std::uint64_t united = 0;
-    for (int block_x = 0; block_x < side; ++block_x) {
-      const std::uint64_t word = blocks[block_x]->words[static_cast<std::size_t>(z & 7)];
-      words[static_cast<std::size_t>(block_x)] = word;
-      united |= word;
-    }
-    for (std::uint64_t rows = nonzero_bytes(united); rows != 0; rows &= rows - 1) {
-      const int shift = std::countr_zero(rows), y = block_y * kBlockSide + shift / 8;
-      if (y < -around.radius || y >= kBlockSide + around.radius) continue;
-      typename Simd<Distance>::Row row = tables.along_x[words[0] >> shift & 0xFFu];
-      for (int block_x = 1; block_x < side; ++block_x) {
-        const auto bits = words[static_cast<std::size_t>(block_x)] >> shift & 0xFFu;
-        const auto& other = tables.along_x[static_cast<std::size_t>(block_x) * 256 + bits];
-        for (std::size_t x = 0; x < kBlockSide; ++x) row[x] = std::min(row[x], other[x]);
-      }
-      const auto lanes = repeated<Distance>(row);
-      const Distance* squares = tables.along_y[static_cast<std::size_t>(y + around.radius)].data();
-      for (int i = 0; i < Simd<Distance>::kPerPlane; ++i) {
-        const auto square =
-            load<typename Simd<Distance>::Lanes>(squares + i * Simd<Distance>::kPerVector);
-        lower(plane[i], lanes + square);
-      }
-      any = true;
-    }
+    for (int block_x = 0; block_x < around.side(); ++block_x) united |= (*blocks++)->rows;
+    const std::uint64_t bits = united >> (8 * z) & 0xFFu;
+    const int first = block_y * kBlockSide + around.radius;
+    rows |= first < 0 ? bits >> -first : bits << first;
   }
-  return any;
+  return rows & layers_around(around.radius);
 }
 
-template <int kReach, typename Distance>
-inline __attribute__((always_inline)) bool transform(const Surroundings& around, int reach,
-                                                     const DistanceField::Tables<Distance>& tables,
-                                                     BlockDistances& distances) {
+/// Squared distances from the cells of a plane to the sources of layer z. False when there are none
+/// within the radius.
+template <typename Distance>
+inline __attribute__((always_inline)) bool fill_plane(const Surroundings& around, int z,
+                                                      const DistanceField::Tables<Distance>& tables,
+                                                      const typename Simd<Distance>::Lanes& far,
+                                                      typename Simd<Distance>::Plane& plane) {
   using Lanes = typename Simd<Distance>::Lanes;
-  const int radius = around.radius;
-  const Lanes far = Lanes{} + static_cast<Distance>(far_of(radius));
-  typename Simd<Distance>::Plane nearest[kBlockSide], plane;
-  for (auto& lanes : nearest) std::fill(std::begin(lanes), std::end(lanes), far);
-  bool any = false;
-  for (int z = -radius; z < kBlockSide + radius; ++z) {
-    std::fill(std::begin(plane), std::end(plane), far);
-    if (!lower_plane<kReach>(around, z, tables, reach, plane)) continue;
-    any = true;
-    for (int out = std::max(0, z - radius); out <= std::min(kBlockSide - 1, z + radius); ++out) {
-      const Lanes square = Lanes{} + static_cast<Distance>((out - z) * (out - z));
-      for (int i = 0; i < Simd<Distance>::kPerPlane; ++i) {
-        lower(nearest[out][i], plane[i] + square);
-      }
+  const int side = around.side();
+  const SourceBlock* const* blocks = around.blocks + ((z >> 3) + around.reach) * side * side;
+  std::uint64_t rows = rows_with_source(around, blocks, z & 7);
+  if (rows == 0) return false;
+  const auto layer = static_cast<std::size_t>(z & 7);
+  auto least = Simd<Distance>::far_plane(far);
+  for (; rows != 0; rows &= rows - 1) {
+    const int place = std::countr_zero(rows), y = place - around.radius;
+    const SourceBlock* const* block = blocks + ((y >> 3) + around.reach) * side;
+    const int shift = (y & 7) * 8;
+    typename Simd<Distance>::Row row = tables.along_x[(*block)->mask.words[layer] >> shift & 0xFFu];
+    for (std::size_t block_x = 1; block_x < static_cast<std::size_t>(side); ++block_x) {
+      const auto bits = block[block_x]->mask.words[layer] >> shift & 0xFFu;
+      const auto& other = tables.along_x[block_x * 256 + bits];
+      for (std::size_t x = 0; x < kBlockSide; ++x) row[x] = std::min(row[x], other[x]);
+    }
+    const auto lanes = repeated<Distance>(row);
+    const Distance* squares = tables.along_y[static_cast<std::size_t>(place)].data();
+    for (int i = 0; i < Simd<Distance>::kPerPlane; ++i) {
+      lower(least.lanes[i], lanes + load<Lanes>(squares + i * Simd<Distance>::kPerVector));
     }
   }
-  const auto* flat = reinterpret_cast<const Distance*>(nearest);
-  if (any) std::copy(flat, flat + kBlockVoxels, distances.begin());
-  return any;
+  plane = least;
+  return true;
 }
 
-MOSBENCH_MULTIARCH bool transform_narrow(const Surroundings& around,
+/// Layers of a column of blocks, counted from `radius` below a block.
+struct LayersAround {
+  ColumnDistances::Layers& layers;
+  int first;  ///< place of the lowest one
+
+  int place(int layer) const { return (first + layer) & (ColumnDistances::kMaxLayers - 1); }
+  std::uint64_t known() const { return std::rotr(layers.known, first); }
+  std::uint64_t filled() const { return std::rotr(layers.filled, first); }
+};
+
+/// Computes those of the `needed` layers that are not known.
+template <typename Distance>
+inline __attribute__((always_inline)) void fill_layers(
+    const Surroundings& around, const DistanceField::Tables<Distance>& tables, std::uint64_t needed,
+    const LayersAround& column) {
+  auto* planes = reinterpret_cast<typename Simd<Distance>::Plane*>(column.layers.planes.data());
+  const auto far = Simd<Distance>::far_lanes(around.radius);
+  for (std::uint64_t left = needed & ~column.known(); left != 0; left &= left - 1) {
+    const int layer = std::countr_zero(left), place = column.place(layer),
+              z = layer - around.radius;
+    const bool filled = fill_plane(around, z, tables, far, planes[place]);
+    column.layers.filled |= std::uint64_t{filled} << place;
+  }
+  column.layers.known |= std::rotl(needed, column.first);
+}
+
+/// The lower envelope along z for one layer of the block. Returns its near cells.
+template <typename Distance>
+inline __attribute__((always_inline)) std::uint64_t envelope_at(const LayersAround& column, int z,
+                                                                int radius,
+                                                                std::uint16_t* distances) {
+  using Lanes = typename Simd<Distance>::Lanes;
+  using Plane = typename Simd<Distance>::Plane;
+  const auto* planes = reinterpret_cast<const Plane*>(column.layers.planes.data());
+  const Lanes far = Simd<Distance>::far_lanes(radius);
+  Plane least = Simd<Distance>::far_plane(far);
+  // Layer z lies at z + radius, and those within the radius at z to z + 2 radius.
+  const std::uint64_t within = ~std::uint64_t{0} >> (63 - 2 * radius);
+  for (std::uint64_t left = column.filled() >> z & within; left != 0; left &= left - 1) {
+    const int i = std::countr_zero(left), offset = i - radius;
+    const Lanes square = Lanes{} + static_cast<Distance>(offset * offset);
+    const Plane& plane = planes[column.place(z + i)];
+    for (int j = 0; j < Simd<Distance>::kPerPlane; ++j)
+      lower(least.lanes[j], plane.lanes[j] + square);
+  }
+  std::uint64_t near = 0;
+  for (int j = 0; j < Simd<Distance>::kPerPlane; ++j) {
+    near |= std::uint64_t{bits_of(least.lanes[j] < far)} << (j * Simd<Distance>::kPerVector);
+  }
+  const auto* flat = reinterpret_cast<const Distance*>(&least);
+  std::copy(flat, flat + kPlane, distances);
+  return near;
+}
+
+template <typename Distance>
+inline __attribute__((always_inline)) void transform(const Surroundings& around,
+                                                     const DistanceField::Tables<Distance>& tables,
+                                                     const BlockMask& wanted,
+                                                     const LayersAround& column,
+                                                     BlockDistances& distances) {
+  std::uint64_t needed = 0;
+  for (std::size_t z = 0; z < kBlockSide; ++z) {
+    if (wanted.words[z] != 0) needed |= ~std::uint64_t{0} >> (63 - 2 * around.radius) << z;
+  }
+  fill_layers(around, tables, needed, column);
+  for (int z = 0; z < kBlockSide; ++z) {
+    std::uint64_t& near = distances.near.words[static_cast<std::size_t>(z)];
+    near = 0;
+    if (wanted.words[static_cast<std::size_t>(z)] == 0) continue;
+    near = envelope_at<Distance>(column, z, around.radius,
+                                 &distances.squared[static_cast<std::size_t>(z) * kPlane]);
+  }
+}
+
+MOSBENCH_MULTIARCH void transform_narrow(const Surroundings& around,
                                          const DistanceField::Tables<std::uint8_t>& tables,
+                                         const BlockMask& wanted, const LayersAround& column,
                                          BlockDistances& distances) {
-  return transform<1>(around, 1, tables, distances);
+  const Surroundings cube{around.blocks, around.radius, 1};  // the compiler unrolls it
+  transform(cube, tables, wanted, column, distances);
 }
 
-MOSBENCH_MULTIARCH bool transform_wide(const Surroundings& around, int reach,
+MOSBENCH_MULTIARCH void transform_wide(const Surroundings& around,
                                        const DistanceField::Tables<std::uint16_t>& tables,
+                                       const BlockMask& wanted, const LayersAround& column,
                                        BlockDistances& distances) {
-  return transform<reach_of(kMaxDistanceRadius)>(around, reach, tables, distances);
+  transform(around, tables, wanted, column, distances);
 }
 
 }  // namespace
 
-MOSBENCH_MULTIARCH BlockMask cells_below(const BlockDistances& distances, std::size_t limit) {
-  using Lanes = std::uint16_t __attribute__((vector_size(16)));
-  const Lanes bound = Lanes{} + static_cast<std::uint16_t>(limit);
-  BlockMask below;
-  for (std::size_t z = 0; z < kBlockSide; ++z) {
-    const std::uint16_t* plane = &distances[z * kPlane];
-    std::uint64_t bits = 0;
-    for (std::size_t y = 0; y < kBlockSide; y += 2) {
-      const auto row = load<Lanes>(plane + y * kBlockSide),
-                 next = load<Lanes>(plane + (y + 1) * kBlockSide);
-      bits |= std::uint64_t{bits_of(ShortLanes(row < bound), ShortLanes(next < bound))}
-              << (y * kBlockSide);
-    }
-    below.words[z] = bits;
-  }
-  return below;
+SourceBlock::SourceBlock(const BlockMask& sources) : mask(sources) {
+  for (std::size_t z = 0; z < kBlockSide; ++z) rows |= nonzero_bytes(mask.words[z]) << (8 * z);
 }
 
 DistanceField::DistanceField(int radius) : radius_(radius), reach_(reach_of(radius)) {
@@ -189,11 +253,24 @@ DistanceField::DistanceField(int radius) : radius_(radius), reach_(reach_of(radi
   }
 }
 
-bool DistanceField::squared_distances(std::span<const BlockMask* const> sources,
-                                      BlockDistances& distances) const {
-  const Surroundings around{sources.data(), radius_};
-  return narrow_.along_x.empty() ? transform_wide(around, reach_, wide_, distances)
-                                 : transform_narrow(around, narrow_, distances);
+void ColumnDistances::find(const BlockIndex& block, const BlockMask& wanted,
+                           std::span<const SourceBlock* const> sources, BlockDistances& distances) {
+  const Surroundings around{sources.data(), field_.radius_, field_.reach_};
+  const auto lowest = static_cast<std::uint32_t>(block.z * kBlockSide - around.radius);
+  const LayersAround column{layers_, static_cast<int>(lowest % kMaxLayers)};
+  const int up = last_ && last_->x == block.x && last_->y == block.y ? block.z - last_->z : 0;
+  const int count = kBlockSide + 2 * around.radius;
+  // The places of those that are not seen from here are those of layers that are new.
+  const std::uint64_t shared =
+      up > 0 && up * kBlockSide < count ? layers_around(around.radius) >> up * kBlockSide : 0;
+  layers_.known &= std::rotl(shared, column.first);
+  layers_.filled &= layers_.known;
+  last_ = block;
+  if (field_.narrow_.along_x.empty()) {
+    transform_wide(around, field_.wide_, wanted, column, distances);
+  } else {
+    transform_narrow(around, field_.narrow_, wanted, column, distances);
+  }
 }
 
 }  // namespace mosbench

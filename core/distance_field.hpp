@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -9,18 +10,27 @@
 
 namespace mosbench {
 
-/// Squared distance in voxels from each cell of a block.
-using BlockDistances = std::array<std::uint16_t, kBlockVoxels>;
+/// Distances from the cells of a block.
+struct BlockDistances {
+  BlockMask near;  ///< cells with a source at less than radius + 1 voxels
+  /// In voxels. (radius + 1)^2 for other cells of a layer with a near one; not set in other layers.
+  std::array<std::uint16_t, kBlockVoxels> squared;
+};
 
-/// Cells with a distance below the limit.
-BlockMask cells_below(const BlockDistances& distances, std::size_t limit);
+/// The source voxels of a block.
+struct SourceBlock {
+  explicit SourceBlock(const BlockMask& sources);
+
+  BlockMask mask;
+  std::uint64_t rows = 0;  ///< byte z, bit y: whether that row has any
+};
 
 /// Widest radius of a distance field, voxels.
 inline constexpr int kMaxDistanceRadius = 28;
 
 /// Squared Euclidean distances d^2 / Delta^2 from every cell of a block to the nearest source
-/// voxel: exact below (radius + 1)^2; what is not below may be any number that is not either.
-/// Separable: rows by look-up, then the lower envelope along y and along z.
+/// voxel, as far as they are below (radius + 1)^2. Separable: rows by look-up, then the lower
+/// envelope along y and along z. Shared by threads.
 class DistanceField {
  public:
   /// `radius` from 0 to kMaxDistanceRadius.
@@ -28,11 +38,6 @@ class DistanceField {
   int radius() const { return radius_; }
   /// Blocks per direction that may hold a source within the radius: 1 or more.
   int reach() const { return reach_; }
-
-  /// `sources` are the masks of the cube of (2 reach + 1)^3 blocks around the block, x fastest.
-  /// False, and no distances, when no source lies within `radius` per axis.
-  bool squared_distances(std::span<const BlockMask* const> sources,
-                         BlockDistances& distances) const;
 
   /// Look-ups of one number type. [block along x * 256 + its eight bits]: squared x distances of
   /// the eight cells of a row. [row + radius]: squared y distances of the 64 cells of a plane.
@@ -43,9 +48,36 @@ class DistanceField {
   };
 
  private:
+  friend class ColumnDistances;
   int radius_, reach_;
   Tables<std::uint8_t> narrow_;  // while (radius + 1)^2 + (radius + 7)^2 fits a byte
   Tables<std::uint16_t> wide_;
+};
+
+/// The distance field of block after block. Of a block above the last one only those layers are
+/// computed that are new.
+class ColumnDistances {
+ public:
+  explicit ColumnDistances(const DistanceField& field) : field_(field) {}
+
+  /// `sources` are the cube of (2 reach + 1)^3 blocks around the block, x fastest; they stay the
+  /// same over the life of this. Looks at layers with a `wanted` cell only; no cell of another one
+  /// is near.
+  void find(const BlockIndex& block, const BlockMask& wanted,
+            std::span<const SourceBlock* const> sources, BlockDistances& distances);
+
+  static constexpr int kMaxLayers = kBlockSide + 2 * kMaxDistanceRadius;
+  static constexpr std::size_t kMaxPlaneBytes = kBlockSide * kBlockSide * sizeof(std::uint16_t);
+  /// Distances from the cells of a plane to the sources of each layer z, at z % kMaxLayers.
+  struct Layers {
+    std::uint64_t known = 0, filled = 0;  ///< computed; having sources
+    alignas(32) std::array<std::uint8_t, kMaxLayers * kMaxPlaneBytes> planes;
+  };
+
+ private:
+  const DistanceField& field_;
+  std::optional<BlockIndex> last_;
+  Layers layers_;
 };
 
 }  // namespace mosbench

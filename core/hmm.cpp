@@ -35,7 +35,7 @@ MOSBENCH_MULTIARCH void filter_cells(const BeliefFilter::Step& step, const Cells
       const std::size_t first = (z * kBlockSide + y) * kBlockSide;
       FloatLanes likelihood;
       for (std::size_t x = 0; x < kLanes; ++x) {
-        likelihood[x] = cells.likelihood[std::min(cells.distances[first + x], step.beyond)];
+        likelihood[x] = cells.likelihood[cells.distances[first + x]];
       }
       const auto belief = load<FloatLanes>(beliefs + first);
       const FloatLanes unseen = FloatLanes{} + 0.5f;
@@ -74,16 +74,16 @@ BeliefFilter::BeliefFilter(double voxel_size_m, double sigma_m, double transitio
     likelihood_.push_back(static_cast<float>(likelihood));
   }
   radius_ = static_cast<int>(std::sqrt(static_cast<double>(likelihood_.size() - 1)));
-  step_.beyond = static_cast<std::uint16_t>(likelihood_.size());
-  likelihood_.push_back(0);
+  // Up to the distance of cells that are not near.
+  likelihood_.resize(static_cast<std::size_t>((radius_ + 1) * (radius_ + 1)) + 1);
 }
 
 void BeliefFilter::update(const BlockMask& observed, const BlockMask& seen,
                           const BlockDistances& distances, BlockMask& nonzero,
                           BlockBeliefs& beliefs, BlockStates& states) const {
-  const BlockMask in_reach = observed & cells_below(distances, likelihood_.size() - 1);
+  const BlockMask in_reach = observed & distances.near;
   update_far(without(observed, in_reach), nonzero, states);
-  filter_cells(step_, {in_reach, seen, nonzero, distances.data(), likelihood_.data()},
+  filter_cells(step_, {in_reach, seen, nonzero, distances.squared.data(), likelihood_.data()},
                beliefs.occupied.data(), states);
   nonzero = nonzero | in_reach;
 }

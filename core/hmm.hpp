@@ -45,13 +45,12 @@ class BeliefFilter {
   /// The numbers of one filter step.
   struct Step {
     float epsilon, keep, min_probability;  ///< keep = 1 - 2 epsilon
-    std::uint16_t beyond = 0;              ///< squared distance from which the likelihood is 0
   };
 
  private:
   int radius_ = 0;
   Step step_;
-  std::vector<float> likelihood_;  // by squared distance in voxels; the last one is 0
+  std::vector<float> likelihood_;  // by squared distance in voxels, up to (radius + 1)^2
 };
 
 }  // namespace mosbench

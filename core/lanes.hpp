@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #if defined(__SSE2__)
 #include <emmintrin.h>
@@ -14,6 +15,9 @@ using FloatLanes = float __attribute__((vector_size(32)));
 using IntLanes = std::int32_t __attribute__((vector_size(32)));
 using UintLanes = std::uint32_t __attribute__((vector_size(32)));
 using ByteLanes = std::uint8_t __attribute__((vector_size(8)));
+/// What comparisons of 32 bytes or 16 numbers give.
+using ByteFlags = std::int8_t __attribute__((vector_size(32)));
+using ShortFlags = std::int16_t __attribute__((vector_size(32)));
 using ShortLanes = std::int16_t __attribute__((vector_size(16)));
 inline constexpr std::size_t kLanes = 8;
 
@@ -54,8 +58,22 @@ inline __attribute__((always_inline)) IntLanes lanes_of(std::uint32_t bits) {
   return (all & IntLanes{1, 2, 4, 8, 16, 32, 64, 128}) != 0;
 }
 
-/// Bit i is set where lane i is -1, first those of `low`, then those of `high`; every lane must be
-/// -1 or 0.
+/// Bit i is set where lane i is -1; every lane must be -1 or 0.
+inline __attribute__((always_inline)) std::uint32_t bits_of(const ByteFlags& lanes) {
+#if defined(__SSE2__)
+  const auto low =
+      __builtin_shufflevector(lanes, lanes, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+  const auto high = __builtin_shufflevector(lanes, lanes, 16, 17, 18, 19, 20, 21, 22, 23, 24, 25,
+                                            26, 27, 28, 29, 30, 31);
+  return static_cast<std::uint32_t>(_mm_movemask_epi8(reinterpret_cast<__m128i>(low))) |
+         static_cast<std::uint32_t>(_mm_movemask_epi8(reinterpret_cast<__m128i>(high))) << 16;
+#else
+  std::uint32_t bits = 0;
+  for (std::size_t i = 0; i < sizeof(lanes); ++i) bits |= std::uint32_t{lanes[i] != 0} << i;
+  return bits;
+#endif
+}
+/// The same of two, first those of `low`.
 inline __attribute__((always_inline)) std::uint32_t bits_of(const ShortLanes& low,
                                                             const ShortLanes& high) {
 #if defined(__SSE2__)
@@ -70,6 +88,10 @@ inline __attribute__((always_inline)) std::uint32_t bits_of(const ShortLanes& lo
   }
   return bits;
 #endif
+}
+inline __attribute__((always_inline)) std::uint32_t bits_of(const ShortFlags& lanes) {
+  return bits_of(__builtin_shufflevector(lanes, lanes, 0, 1, 2, 3, 4, 5, 6, 7),
+                 __builtin_shufflevector(lanes, lanes, 8, 9, 10, 11, 12, 13, 14, 15));
 }
 inline __attribute__((always_inline)) std::uint32_t bits_of(const IntLanes& lanes) {
 #if defined(__SSE2__)

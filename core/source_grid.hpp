@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "core/distance_field.hpp"
 #include "core/voxel_set.hpp"
 
 namespace mosbench {
@@ -29,21 +30,20 @@ class SourceGrid {
     return false;
   }
 
-  /// Fills the masks of the (2 reach + 1)^3 blocks around, x fastest. The block must lie in the
-  /// box.
-  void neighbours(const BlockIndex& block, int reach, std::span<const BlockMask*> masks) const {
+  /// Finds the (2 reach + 1)^3 blocks around, x fastest. The block must lie in the box.
+  void neighbours(const BlockIndex& block, int reach, std::span<const SourceBlock*> around) const {
     const auto width = static_cast<std::size_t>(2 * reach + 1);
     std::size_t i = 0;
     for (int dz = -reach; dz <= reach; ++dz) {
       for (int dy = -reach; dy <= reach; ++dy) {
         const std::size_t first = position({block.x - reach, block.y + dy, block.z + dz});
-        for (std::size_t dx = 0; dx < width; ++dx) masks[i++] = &masks_[slots_[first + dx]];
+        for (std::size_t dx = 0; dx < width; ++dx) around[i++] = &sources_[slots_[first + dx]];
       }
     }
   }
 
  private:
-  static constexpr std::uint32_t kEmpty = 0;  // the slot of a mask without voxels
+  static constexpr std::uint32_t kEmpty = 0;  // the slot of a block without voxels
 
   std::size_t position(const BlockIndex& block) const {
     return (static_cast<std::size_t>(block.z - low_[2]) * sides_[1] +
@@ -55,7 +55,7 @@ class SourceGrid {
   std::array<std::int32_t, 3> low_{};
   std::array<std::size_t, 3> sides_{};
   std::vector<std::uint32_t> slots_;
-  std::vector<BlockMask> masks_;
+  std::vector<SourceBlock> sources_;
 };
 
 }  // namespace mosbench

@@ -7,6 +7,24 @@
 #include "core/source_grid.hpp"
 
 namespace mosbench {
+namespace {
+
+/// Starts bringing memory that is about to be written into the cache.
+void fetch(const void* memory, std::size_t bytes) {
+  constexpr std::size_t kLine = 64;
+  const auto* first = static_cast<const char*>(memory);
+  for (std::size_t at = 0; at < bytes; at += kLine) __builtin_prefetch(first + at, 1);
+}
+
+/// The same for beliefs in the layers of some cells.
+void fetch(const BlockBeliefs& beliefs, const BlockMask& cells) {
+  constexpr std::size_t kLayer = kBlockSide * kBlockSide;
+  for (std::size_t z = 0; z < kBlockSide; ++z) {
+    if (cells.words[z] != 0) fetch(&beliefs.occupied[z * kLayer], kLayer * sizeof(float));
+  }
+}
+
+}  // namespace
 
 VoxelMap::VoxelMap(const Config& config, Variant variant, const VoxelGrid& grid)
     : grid_(grid),
@@ -28,9 +46,9 @@ VoxelMap::VoxelMap(const Config& config, Variant variant, const VoxelGrid& grid)
 
 std::uint32_t VoxelMap::add_block(const BlockIndex& index, std::uint32_t scan_index) {
   const std::uint32_t slot = blocks_.take();
+  if (beliefs_of_.size() < blocks_.capacity()) beliefs_of_.resize(blocks_.capacity(), kNoSlot);
   Block& block = blocks_[slot];
   block.index = index;
-  block.beliefs = kNoSlot;
   block.oldest_seen = block.newest_seen = scan_index;
   block.live = true;
   block.states = {};
@@ -40,7 +58,8 @@ std::uint32_t VoxelMap::add_block(const BlockIndex& index, std::uint32_t scan_in
 
 void VoxelMap::drop_block(std::uint32_t slot) {
   Block& block = blocks_[slot];
-  if (block.beliefs != kNoSlot) beliefs_.give_back(block.beliefs);
+  if (beliefs_of_[slot] != kNoSlot) beliefs_.give_back(beliefs_of_[slot]);
+  beliefs_of_[slot] = kNoSlot;
   table_.erase(block.index);
   block.live = false;
   blocks_.give_back(slot);
@@ -106,22 +125,29 @@ VoxelList VoxelMap::update(const VoxelList& observed, std::span<const VoxelSet* 
     if (slot == kNoSlot) slot = table_.find_or_insert(index, add_block(index, scan_index));
     slots_[i] = slot;
     near[i] = grid.any_around(index, reach);
-    Block& block = blocks_[slot];
-    if (near[i] != 0 && block.beliefs == kNoSlot) block.beliefs = beliefs_.take();
+    if (near[i] != 0 && beliefs_of_[slot] == kNoSlot) beliefs_of_[slot] = beliefs_.take();
   }
 
+  constexpr std::size_t kTouchedBytes = sizeof(Block) - sizeof(LastSeen) + LastSeen::kTouchedBytes;
   std::vector<BlockMask> changed(observed.blocks.size());
   pool.for_ranges(observed.blocks.size(), 64, [&](std::size_t begin, std::size_t end, unsigned) {
-    std::vector<const BlockMask*> masks(static_cast<std::size_t>(side * side * side));
+    std::vector<const SourceBlock*> around(static_cast<std::size_t>(side * side * side));
+    ColumnDistances column(distance_field_);
     BlockDistances distances;
     for (std::size_t i = begin; i < end; ++i) {
       Block& block = blocks_[slots_[i]];
+      if (i + 1 < end) fetch(&blocks_[slots_[i + 1]], kTouchedBytes);
       refresh_block(block, scan_index);
       const BlockStates before = block.states;
-      if (near[i] != 0) grid.neighbours(block.index, reach, masks);
-      if (near[i] != 0 && distance_field_.squared_distances(masks, distances)) {
+      distances.near = {};
+      if (near[i] != 0) {
+        fetch(beliefs_[beliefs_of_[slots_[i]]], observed.masks[i]);
+        grid.neighbours(block.index, reach, around);
+        column.find(block.index, observed.masks[i], around, distances);
+      }
+      if (distances.near.any()) {
         filter_.update(observed.masks[i], block.seen, distances, block.nonzero,
-                       beliefs_[block.beliefs], block.states);
+                       beliefs_[beliefs_of_[slots_[i]]], block.states);
       } else {
         BeliefFilter::update_far(observed.masks[i], block.nonzero, block.states);
       }

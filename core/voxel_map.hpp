@@ -54,17 +54,16 @@ class VoxelMap {
  private:
   struct Block {
     BlockIndex index;
-    std::uint32_t beliefs;      // slot in beliefs_, or kNoSlot while every belief is zero
     std::uint32_t oldest_seen;  // lower bound of last_seen over voxels that age
     std::uint32_t newest_seen;
     bool live = false;
     BlockStates states;
-    BlockMask seen;     // has a record
-    BlockMask fresh;    // seen at newest_seen, not yet in last_seen
-    BlockMask nonzero;  // has a number in beliefs
-    BlockMask stale;    // not seen for w_g scans or more
-    BlockMask ageless;  // release-2025: stale and never to expire
-    LastSeen last_seen;
+    BlockMask seen;      // has a record
+    BlockMask fresh;     // seen at newest_seen, not yet in last_seen
+    BlockMask nonzero;   // has a number in beliefs
+    BlockMask stale;     // not seen for w_g scans or more
+    BlockMask ageless;   // release-2025: stale and never to expire
+    LastSeen last_seen;  // last: most of it is seldom touched
   };
   struct ChangesOfScan {
     std::uint32_t scan_index;
@@ -98,6 +97,9 @@ class VoxelMap {
   BlockTable table_;
   Pool<Block> blocks_;
   Pool<BlockBeliefs> beliefs_;
+  // Slot in beliefs_ by slot of the block, or kNoSlot while every belief is zero. Not in the block:
+  // asking there would fetch it from memory.
+  std::vector<std::uint32_t> beliefs_of_;
   std::deque<ChangesOfScan> changes_;  // the last delay + 1 scans
   std::deque<Eigen::Vector3d>
       sensors_m_;                     // the last delay + kSweepScans positions and the current one

@@ -7,22 +7,30 @@
 namespace mosbench {
 namespace {
 
-/// Any number that stands for "none" where no source is within the radius.
-BlockDistances distances_in_block_zero(const Triples& sources, const DistanceField& field) {
-  const VoxelSet set = voxel_set(sources);
-  const BlockMask empty;
-  const int reach = field.reach();
-  std::vector<const BlockMask*> masks;
-  for (int z = -reach; z <= reach; ++z) {
-    for (int y = -reach; y <= reach; ++y) {
-      for (int x = -reach; x <= reach; ++x) {
-        const BlockMask* mask = set.mask_of({x, y, z});
-        masks.push_back(mask == nullptr ? &empty : mask);
+const BlockMask kAllCells = ~BlockMask{};
+
+/// The cube of blocks around one.
+struct Cube {
+  Cube(const BlockIndex& block, const VoxelSet& set, int reach) {
+    for (int z = -reach; z <= reach; ++z) {
+      for (int y = -reach; y <= reach; ++y) {
+        for (int x = -reach; x <= reach; ++x) {
+          const BlockMask* mask = set.mask_of({block.x + x, block.y + y, block.z + z});
+          blocks.emplace_back(mask == nullptr ? BlockMask{} : *mask);
+        }
       }
     }
+    for (const SourceBlock& source : blocks) sources.push_back(&source);
   }
+
+  std::vector<SourceBlock> blocks;
+  std::vector<const SourceBlock*> sources;
+};
+
+BlockDistances distances_in_block_zero(const Triples& sources, const DistanceField& field) {
+  const Cube cube({}, voxel_set(sources), field.reach());
   BlockDistances distances;
-  if (!field.squared_distances(masks, distances)) distances.fill(0xFFFF);
+  ColumnDistances(field).find({}, kAllCells, cube.sources, distances);
   return distances;
 }
 
@@ -43,11 +51,14 @@ TEST(DistanceField, EqualsAllPairsWithinItsRadius) {
           best = std::min(best, dx * dx + dy * dy + dz * dz);
         }
         const int exact_below = (radius + 1) * (radius + 1);
+        ASSERT_EQ(distances.near.test(cell), best < exact_below);
         if (best < exact_below) {
-          ASSERT_EQ(distances[cell], best) << "radius " << radius << " cell " << cell;
+          ASSERT_EQ(distances.squared[cell], best) << "radius " << radius << " cell " << cell;
           ++near;
         } else {
-          ASSERT_GE(distances[cell], exact_below) << "radius " << radius << " cell " << cell;
+          if (distances.near.words[cell / 64] != 0) {
+            ASSERT_EQ(distances.squared[cell], exact_below);
+          }
           ++far;
         }
       }
@@ -61,27 +72,49 @@ TEST(DistanceField, SourceAtTheRimOfTheRadiusIsSeenAlongEachAxis) {
   for (const int radius : {1, 5, 8, 14, 15, 28}) {
     const DistanceField field(radius);
     const int far = radius * radius;
-    EXPECT_EQ(distances_in_block_zero({{-radius, 0, 0}}, field)[0], far);
-    EXPECT_EQ(distances_in_block_zero({{0, -radius, 0}}, field)[0], far);
-    EXPECT_EQ(distances_in_block_zero({{0, 0, -radius}}, field)[0], far);
-    EXPECT_EQ(distances_in_block_zero({{7 + radius, 7, 7}}, field)[511], far);
-    EXPECT_EQ(distances_in_block_zero({{7, 7 + radius, 7}}, field)[511], far);
-    EXPECT_EQ(distances_in_block_zero({{7, 7, 7 + radius}}, field)[511], far);
+    EXPECT_EQ(distances_in_block_zero({{-radius, 0, 0}}, field).squared[0], far);
+    EXPECT_EQ(distances_in_block_zero({{0, -radius, 0}}, field).squared[0], far);
+    EXPECT_EQ(distances_in_block_zero({{0, 0, -radius}}, field).squared[0], far);
+    EXPECT_EQ(distances_in_block_zero({{7 + radius, 7, 7}}, field).squared[511], far);
+    EXPECT_EQ(distances_in_block_zero({{7, 7 + radius, 7}}, field).squared[511], far);
+    EXPECT_EQ(distances_in_block_zero({{7, 7, 7 + radius}}, field).squared[511], far);
   }
 }
 
-TEST(DistanceField, CellsBelowALimitAreThoseOfTheLoop) {
+/// Whatever the order of blocks and whichever layers were asked for before.
+TEST(ColumnDistances, AreThoseOfEachBlockAlone) {
   std::mt19937 random(35);
-  for (const std::size_t limit : {1U, 36U, 37U, 255U, 840U}) {
-    BlockDistances distances;
-    for (auto& distance : distances) {
-      distance = static_cast<std::uint16_t>(random() % 3 == 0 ? limit : random() % (2 * limit));
+  for (const int radius : {0, 1, 5, 6, 7, 14, 28}) {
+    const DistanceField field(radius);
+    const VoxelSet sources = voxel_set(random_triples(random, 3000, 40));
+    ColumnDistances column(field);
+    BlockDistances distances, alone;
+    BlockIndex block;
+    std::size_t above = 0, near = 0;
+    for (int i = 0; i < 400; ++i) {
+      const BlockIndex last = block;
+      // Mostly up by one, sometimes by more, down or not at all, and sometimes elsewhere.
+      if (random() % 4 != 0) {
+        block.z += random() % 4 != 0 ? 1 : static_cast<int>(random() % 12) - 4;
+      } else {
+        block = {static_cast<int>(random() % 3) - 1, static_cast<int>(random() % 3) - 1, -5};
+      }
+      above += block.x == last.x && block.y == last.y && block.z == last.z + 1;
+      BlockMask wanted;
+      for (auto& word : wanted.words) word = random() % 3 == 0 ? 0 : random() + 1;
+      const Cube cube(block, sources, field.reach());
+      column.find(block, wanted, cube.sources, distances);
+      ColumnDistances(field).find(block, kAllCells, cube.sources, alone);
+      for (std::uint32_t cell = 0; cell < kBlockVoxels; ++cell) {
+        const bool in_layer = wanted.words[cell / 64] != 0;
+        ASSERT_EQ(distances.near.test(cell), in_layer && alone.near.test(cell)) << radius;
+        if (!distances.near.test(cell)) continue;
+        ASSERT_EQ(distances.squared[cell], alone.squared[cell]) << radius;
+        ++near;
+      }
     }
-    const BlockMask below = cells_below(distances, limit);
-    EXPECT_TRUE(below.any());
-    for (std::uint32_t cell = 0; cell < kBlockVoxels; ++cell) {
-      ASSERT_EQ(below.test(cell), distances[cell] < limit) << "limit " << limit;
-    }
+    EXPECT_GT(above, 100U);
+    EXPECT_GT(near, 100U);
   }
 }
 

@@ -71,8 +71,9 @@ TEST(BeliefFilter, FollowsTheThreeStatesOfTheSpecification) {
         const auto kind = random() % 8;
         const int n = kind < 3   ? 0
                       : kind < 6 ? static_cast<int>(random() % static_cast<unsigned>(beyond))
-                                 : beyond + static_cast<int>(random() % 1000);
-        distances[cell] = static_cast<std::uint16_t>(n);
+                                 : beyond;
+        distances.squared[cell] = static_cast<std::uint16_t>(n);
+        if (n < beyond) distances.near.set(cell);
         if (random() % 2 == 0) continue;
         observed.set(cell);
         twins[cell].observe(n, s.voxel_size_m, s.sigma_m, s.epsilon, s.p_min);
@@ -111,8 +112,8 @@ TEST(BeliefFilter, OneHitIsCertainAndOneMissIsFree) {
   BlockMask observed;
   observed.set(0);
   observed.set(1);
-  BlockDistances distances{};
-  distances[1] = 25;
+  BlockDistances distances{.near = observed, .squared = {}};
+  distances.squared[1] = 25;
   Block block;
   block.update(filter, observed, distances);
   EXPECT_EQ(block.belief(0), 1.0F);
@@ -128,7 +129,8 @@ TEST(BeliefFilter, FirstObservationIsTheLikelihood) {
   BlockDistances distances{};
   for (std::uint32_t n = 0; n < 20; ++n) {
     observed.set(n);
-    distances[n] = static_cast<std::uint16_t>(n);
+    distances.near.set(n);
+    distances.squared[n] = static_cast<std::uint16_t>(n);
   }
   Block block;
   block.update(filter, observed, distances);
@@ -146,8 +148,8 @@ TEST(BeliefFilter, StateNeedsMoreThanTheMinimumProbability) {
   const BeliefFilter filter(1.0, sigma_m, 0.25, 0.5);
   BlockMask observed;
   observed.set(0);
-  BlockDistances distances{};
-  distances[0] = 1;
+  BlockDistances distances{.near = observed, .squared = {}};
+  distances.squared[0] = 1;
   Block block;
   block.update(filter, observed, distances);
   ASSERT_EQ(block.belief(0), 0.5F);
