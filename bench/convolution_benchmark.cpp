@@ -10,6 +10,7 @@ void convolution_stage(benchmark::State& state, StagedScans& staged, ThreadPool&
   measure_passes(state, staged.measured.size(), [&] {
     VoxelMap map = staged.map_after(first, pool);
     for (const StagedScan& s : staged.measured) {
+      staged.run_other_stages();
       staged.update(map, s, pool);
       map.evict(s.k);
       const ScoreField scores = timed_call(

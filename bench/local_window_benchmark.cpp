@@ -20,10 +20,12 @@ void window_stage(benchmark::State& state, StagedScans& staged, ThreadPool&) {
     LocalWindow window(staged.workload.config.local_window_scans);
     for (std::size_t k = 0; k < first; ++k) window.join(staged.all[k].filtered);
     for (const StagedScan& s : staged.measured) {
+      staged.run_other_stages();
       ScoreField filtered = s.filtered;
+      const VoxelizedScan scan = s.scan;
       const SumField sums = timed_call(state, [&] {
         window.join(std::move(filtered));
-        return window.sums(s.scan);
+        return window.sums(scan);
       });
       expect(state, same_sums(sums, s));
     }

@@ -1,7 +1,10 @@
+#include <algorithm>
 #include <cstdio>
 #include <cstring>
 #include <exception>
+#include <iterator>
 #include <map>
+#include <string>
 #include <vector>
 
 #include "bench/stage_benchmark.hpp"
@@ -64,19 +67,16 @@ void expect(benchmark::State& state, bool right) {
   state.SkipWithError("wrong answer");
 }
 
-void displace_caches() {
-  constexpr std::size_t kBytes = 2 << 20, kLineBytes = 64;
-  static std::vector<unsigned char> lines(kBytes);
-  for (std::size_t i = 0; i < kBytes; i += kLineBytes) ++lines[i];
-  benchmark::ClobberMemory();
-}
-
 /// Exit code: 0, 1 after a wrong answer, 2 for wrong usage.
 int run(std::vector<char*> arguments) {
   std::vector<Workload> workloads = simulated_workloads();
   if (const char* folder = take_recording_folder(arguments)) {
     workloads.push_back(recorded_workload(folder));
   }
+  // Seconds, unless another number follows. What runs between calls takes many times as long.
+  std::string min_time = "--benchmark_min_time=0.1";
+  arguments.insert(arguments.begin() + std::min<std::ptrdiff_t>(1, std::ssize(arguments)),
+                   min_time.data());
   auto count = static_cast<int>(arguments.size());
   keep_freed_memory();  // as the program does
   benchmark::Initialize(&count, arguments.data());

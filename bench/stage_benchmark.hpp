@@ -38,14 +38,10 @@ inline void count_items(benchmark::State& state, const char* items, std::size_t 
 /// Fails the benchmark, and the program in the end, when it did not compute what it should have.
 void expect(benchmark::State& state, bool right);
 
-/// Leaves the processor's own caches as other stages would: with something else in them.
-void displace_caches();
-
 /// One call of a stage, timed by itself while the benchmark's timing is paused. What the result
 /// held is not freed in that time, as the pipeline does not either.
 template <typename Work>
 auto timed_call(benchmark::State& state, Work&& work) {
-  displace_caches();
   state.ResumeTiming();
   auto result = work();
   benchmark::DoNotOptimize(result);
@@ -67,9 +63,13 @@ void measure_passes(benchmark::State& state, std::size_t scans, Pass&& pass) {
 /// Measures `work` on the measured scans in turns; a call of the benchmark is one scan.
 /// `right(scan, result)` tells whether work(scan) has computed what it should.
 template <typename Work, typename Right>
-void measure_stage(benchmark::State& state, const StagedScans& staged, Work&& work, Right&& right) {
+void measure_stage(benchmark::State& state, StagedScans& staged, Work&& work, Right&& right) {
   measure_passes(state, staged.measured.size(), [&] {
-    for (const StagedScan& scan : staged.measured) timed_call(state, [&] { return work(scan); });
+    for (const StagedScan& scan : staged.measured) {
+      staged.run_other_stages();
+      const StagedScan inputs = scan;  // just written, as by the stage before
+      timed_call(state, [&] { return work(inputs); });
+    }
   });
   for (const StagedScan& scan : staged.measured) expect(state, right(scan, work(scan)));
 }

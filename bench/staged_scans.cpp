@@ -7,7 +7,6 @@
 
 #include "core/label_projection.hpp"
 #include "core/median.hpp"
-#include "core/pipeline.hpp"
 #include "core/selection.hpp"
 
 namespace mosbench {
@@ -84,7 +83,6 @@ StagedScans::StagedScans(const Workload& chosen)
   }
   const std::size_t undetected = static_cast<std::size_t>(config.local_window_scans) + 1;
   measured = std::span(all).last(std::min(kMeasuredScans, all.size() - undetected));
-  for (const StagedScan& staged : measured) maps.push_back(map_after(staged.k + 1, pool));
 }
 
 std::size_t voxels_of(const VoxelList& list) {
@@ -107,6 +105,15 @@ VoxelMap StagedScans::map_after(std::size_t scans, ThreadPool& pool) const {
     map.evict(k);
   }
   return map;
+}
+
+void StagedScans::run_other_stages() {
+  constexpr std::size_t kStride = 4;
+  if (others_ % all.size() == 0) other_.emplace(workload.config, Variant::kPaper2024);
+  const Frame& frame = all[others_++ % all.size()].frame;
+  std::vector<Point> some;
+  for (std::size_t i = 0; i < frame.points.size(); i += kStride) some.push_back(frame.points[i]);
+  other_->push(some, frame.map_from_sensor);
 }
 
 DynamicRegion StagedScans::new_region() const {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <deque>
 #include <optional>
 #include <span>
 #include <vector>
@@ -9,6 +8,7 @@
 #include "core/convolution.hpp"
 #include "core/dynamic_region.hpp"
 #include "core/local_window.hpp"
+#include "core/pipeline.hpp"
 #include "core/raycast.hpp"
 #include "core/voxel_map.hpp"
 
@@ -45,10 +45,7 @@ class StagedScans {
   /// The scans that stages are measured on: several, because one alone would stay in the caches
   /// and be learnt by heart by the branch prediction.
   std::span<const StagedScan> measured;
-  std::deque<VoxelMap> maps;  ///< after each of the measured scans
 
-  /// The map after a measured scan.
-  VoxelMap& map_of(const StagedScan& scan) { return maps[scan.k - measured.front().k]; }
   const StagedScan& last() const { return all.back(); }
   const StagedScan& last_but_one() const { return all[all.size() - 2]; }
 
@@ -57,6 +54,14 @@ class StagedScans {
   /// A map that holds the first `scans`.
   VoxelMap map_after(std::size_t scans, ThreadPool& pool) const;
   DynamicRegion new_region() const;
+
+  /// Leaves caches and branch prediction as between two calls of a stage in the pipeline: puts
+  /// some points of a scan through a pipeline of their own.
+  void run_other_stages();
+
+ private:
+  std::optional<Pipeline> other_;
+  std::size_t others_ = 0;  ///< scans that it has had
 };
 
 }  // namespace mosbench

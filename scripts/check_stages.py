@@ -18,7 +18,8 @@ import sys
 
 def measure(program, repetitions, arguments):
     """CPU milliseconds of every repetition: {(benchmark, workload, threads): [runs]}."""
-    command = [program, "--benchmark_format=json", f"--benchmark_repetitions={repetitions}",
+    command = [program, "--benchmark_format=json", "--benchmark_min_time=0.05",
+               f"--benchmark_repetitions={repetitions}",
                "--benchmark_enable_random_interleaving=true", *arguments]
     answer = subprocess.run(command, stdout=subprocess.PIPE, check=False)
     if answer.returncode != 0:
