@@ -73,7 +73,8 @@ int run(std::vector<char*> arguments) {
   if (const char* folder = take_recording_folder(arguments)) {
     workloads.push_back(recorded_workload(folder));
   }
-  // Seconds, unless another number follows. What runs between calls takes many times as long.
+  // Seconds; a number that the user gives comes later and wins. Short, because what runs between
+  // two calls takes many times as long.
   std::string min_time = "--benchmark_min_time=0.1";
   arguments.insert(arguments.begin() + std::min<std::ptrdiff_t>(1, std::ssize(arguments)),
                    min_time.data());

@@ -10,7 +10,7 @@
 
 namespace mosbench {
 
-/// The observed blocks of the last scan with a source near, and the masks that their distance
+/// The observed blocks of the last scan with a source near, and the sources that their distance
 /// fields are made of.
 class NearBlocks {
  public:

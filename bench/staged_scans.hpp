@@ -18,8 +18,10 @@ std::size_t voxels_of(const VoxelList& list);
 
 /// A scan with what goes into and comes out of each of its stages but those that remember.
 struct StagedScan {
+  StagedScan(const Frame& read, std::uint32_t index) : frame(read), k(index) {}
+
   const Frame& frame;
-  std::uint32_t k = 0;
+  std::uint32_t k;
   VoxelizedScan scan;
   VoxelList observed;
   std::size_t state_changes = 0;  ///< voxels
@@ -55,13 +57,13 @@ class StagedScans {
   VoxelMap map_after(std::size_t scans, ThreadPool& pool) const;
   DynamicRegion new_region() const;
 
-  /// Leaves caches and branch prediction as between two calls of a stage in the pipeline: puts
-  /// some points of a scan through a pipeline of their own.
+  /// Leaves caches and branch prediction much as between two calls of a stage in the pipeline:
+  /// puts some points of a scan through a pipeline of their own.
   void run_other_stages();
 
  private:
   std::optional<Pipeline> other_;
-  std::size_t others_ = 0;  ///< scans that it has had
+  std::size_t others_ = 0;  ///< scans that it and those before it have had
 };
 
 }  // namespace mosbench

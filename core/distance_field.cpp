@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
+#include <type_traits>
 
 #include "core/lanes.hpp"
 #include "core/multiarch.hpp"
@@ -50,6 +51,8 @@ template <typename Distance>
 struct Simd {
   typedef Distance Lanes __attribute__((vector_size(32)));  // a dependent type: no alias
   using Words = std::uint64_t __attribute__((vector_size(32)));
+  /// What a comparison gives, by a name that compilers agree on.
+  using Flags = std::conditional_t<sizeof(Distance) == 1, ByteFlags, ShortFlags>;
   using Row = std::array<Distance, kBlockSide>;
   static constexpr int kPerVector = 32 / static_cast<int>(sizeof(Distance));
   static constexpr int kPerPlane = kPlane / kPerVector;
@@ -98,7 +101,6 @@ struct Surroundings {
 
 /// A bit for each row or layer of a block and of `radius` on either side.
 std::uint64_t layers_around(int radius) {
-  static_assert(kBlockSide + 2 * kMaxDistanceRadius <= 64);
   return ~std::uint64_t{0} >> (64 - kBlockSide - 2 * radius);
 }
 
@@ -155,6 +157,8 @@ struct LayersAround {
   ColumnDistances::Layers& layers;
   int first;  ///< place of the lowest one
 
+  // As many places as a word has bits, so that words of them turn round as places do.
+  static_assert(ColumnDistances::kMaxLayers == 64);
   int place(int layer) const { return (first + layer) & (ColumnDistances::kMaxLayers - 1); }
   std::uint64_t known() const { return std::rotr(layers.known, first); }
   std::uint64_t filled() const { return std::rotr(layers.filled, first); }
@@ -197,7 +201,8 @@ inline __attribute__((always_inline)) std::uint64_t envelope_at(const LayersArou
   }
   std::uint64_t near = 0;
   for (int j = 0; j < Simd<Distance>::kPerPlane; ++j) {
-    near |= std::uint64_t{bits_of(least.lanes[j] < far)} << (j * Simd<Distance>::kPerVector);
+    near |= std::uint64_t{bits_of(typename Simd<Distance>::Flags(least.lanes[j] < far))}
+            << (j * Simd<Distance>::kPerVector);
   }
   const auto* flat = reinterpret_cast<const Distance*>(&least);
   std::copy(flat, flat + kPlane, distances);

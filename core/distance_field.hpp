@@ -13,7 +13,8 @@ namespace mosbench {
 /// Distances from the cells of a block.
 struct BlockDistances {
   BlockMask near;  ///< cells with a source at less than radius + 1 voxels
-  /// In voxels. (radius + 1)^2 for other cells of a layer with a near one; not set in other layers.
+  /// Squared voxels. (radius + 1)^2 for other cells of a layer with a near one; not set in other
+  /// layers.
   std::array<std::uint16_t, kBlockVoxels> squared;
 };
 
@@ -55,7 +56,7 @@ class DistanceField {
 };
 
 /// The distance field of block after block. Of a block above the last one only those layers are
-/// computed that are new.
+/// computed that are new; raycast's list has up to four blocks above one another in a row.
 class ColumnDistances {
  public:
   explicit ColumnDistances(const DistanceField& field) : field_(field) {}

@@ -1,6 +1,5 @@
 #include "core/hmm.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "core/lanes.hpp"

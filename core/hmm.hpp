@@ -14,8 +14,8 @@ struct BlockStates {
   BlockMask occupied, free;
 };
 
-/// p(occupied) of a block's voxels, kept only where it is neither 0 nor still the 0.5 of a voxel
-/// never seen.
+/// p(occupied) of a block's voxels, kept only where a source was in reach when the voxel was seen
+/// last. Elsewhere it is 0, or still the 0.5 of a voxel never seen.
 struct BlockBeliefs {
   alignas(64) std::array<float, kBlockVoxels> occupied;  ///< valid where nonzero
 };

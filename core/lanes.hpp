@@ -7,8 +7,8 @@
 #include <emmintrin.h>
 #endif
 
-/// Eight numbers side by side, as many as a row of a block has cells. A vector type that GCC and
-/// clang cut to the registers of the machine they compile for.
+/// Numbers side by side, mostly eight, as many as a row of a block has cells. Vector types that GCC
+/// and clang cut to the registers of the machine they compile for.
 namespace mosbench {
 
 using FloatLanes = float __attribute__((vector_size(32)));

@@ -20,7 +20,6 @@ class LastSeen {
   /// Planes that tell ages up to `max_age` apart.
   static int planes_for(std::uint32_t max_age);
 
-  /// `scan_index` must not fall from call to call.
   void stamp(const BlockMask& voxels, std::uint32_t scan_index, int planes);
 
   /// Ages at one scan, in the same form.

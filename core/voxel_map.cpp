@@ -252,7 +252,8 @@ VoxelSet VoxelMap::changed_since(std::uint32_t first_scan) const {
 }
 
 std::size_t VoxelMap::memory_bytes() const {
-  return table_.memory_bytes() + blocks_.memory_bytes() + beliefs_.memory_bytes();
+  return table_.memory_bytes() + blocks_.memory_bytes() + beliefs_.memory_bytes() +
+         beliefs_of_.capacity() * sizeof(std::uint32_t);
 }
 
 }  // namespace mosbench

@@ -97,8 +97,8 @@ class VoxelMap {
   BlockTable table_;
   Pool<Block> blocks_;
   Pool<BlockBeliefs> beliefs_;
-  // Slot in beliefs_ by slot of the block, or kNoSlot while every belief is zero. Not in the block:
-  // asking there would fetch it from memory.
+  // Slot in beliefs_ by slot of the block, or kNoSlot while every belief is zero. Not in the block,
+  // which the serial part of `update` would fetch from memory to ask.
   std::vector<std::uint32_t> beliefs_of_;
   std::deque<ChangesOfScan> changes_;  // the last delay + 1 scans
   std::deque<Eigen::Vector3d>

@@ -90,16 +90,20 @@ TEST(ColumnDistances, AreThoseOfEachBlockAlone) {
     ColumnDistances column(field);
     BlockDistances distances, alone;
     BlockIndex block;
-    std::size_t above = 0, near = 0;
+    std::size_t above = 0, far_above = 0, higher_elsewhere = 0, near = 0;
     for (int i = 0; i < 400; ++i) {
       const BlockIndex last = block;
       // Mostly up by one, sometimes by more, down or not at all, and sometimes elsewhere.
-      if (random() % 4 != 0) {
-        block.z += random() % 4 != 0 ? 1 : static_cast<int>(random() % 12) - 4;
+      if (block.z > 12 || random() % 4 == 0) {
+        block = {static_cast<int>(random() % 3) - 1, static_cast<int>(random() % 3) - 1,
+                 static_cast<int>(random() % 11) - 5};
       } else {
-        block = {static_cast<int>(random() % 3) - 1, static_cast<int>(random() % 3) - 1, -5};
+        block.z += random() % 4 != 0 ? 1 : static_cast<int>(random() % 14) - 4;
       }
-      above += block.x == last.x && block.y == last.y && block.z == last.z + 1;
+      const bool same_column = block.x == last.x && block.y == last.y;
+      above += same_column && block.z == last.z + 1;
+      far_above += same_column && (block.z - last.z) * kBlockSide >= kBlockSide + 2 * radius;
+      higher_elsewhere += !same_column && block.z > last.z;
       BlockMask wanted;
       for (auto& word : wanted.words) word = random() % 3 == 0 ? 0 : random() + 1;
       const Cube cube(block, sources, field.reach());
@@ -108,12 +112,14 @@ TEST(ColumnDistances, AreThoseOfEachBlockAlone) {
       for (std::uint32_t cell = 0; cell < kBlockVoxels; ++cell) {
         const bool in_layer = wanted.words[cell / 64] != 0;
         ASSERT_EQ(distances.near.test(cell), in_layer && alone.near.test(cell)) << radius;
-        if (!distances.near.test(cell)) continue;
+        near += distances.near.test(cell);
+        if (distances.near.words[cell / 64] == 0) continue;
         ASSERT_EQ(distances.squared[cell], alone.squared[cell]) << radius;
-        ++near;
       }
     }
-    EXPECT_GT(above, 100U);
+    EXPECT_GT(above, 50U);
+    EXPECT_GT(far_above, 0U) << radius;
+    EXPECT_GT(higher_elsewhere, 10U);
     EXPECT_GT(near, 100U);
   }
 }

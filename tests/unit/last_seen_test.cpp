@@ -17,42 +17,56 @@ BlockMask random_mask(std::mt19937& random) {
   return mask;
 }
 
+/// The same with a number for each voxel.
+struct Numbers {
+  LastSeen last_seen;
+  std::vector<std::uint32_t> of_cell = std::vector<std::uint32_t>(kBlockVoxels);
+
+  void stamp(const BlockMask& voxels, std::uint32_t scan, int planes) {
+    last_seen.stamp(voxels, scan, planes);
+    for_each_cell(voxels, [&](std::uint32_t cell) { of_cell[cell] = scan; });
+  }
+};
+
 TEST(LastSeen, TellsAgesAsAListOfNumbersDoes) {
   std::mt19937 random(7);
   for (const std::uint32_t oldest : {5u, 63u, 700u, 60064u}) {
     const int planes = LastSeen::planes_for(oldest);
     ASSERT_LE(planes, LastSeen::kMaxPlanes);
     ASSERT_GE(std::uint32_t{1} << planes, oldest + 1);
-    LastSeen last_seen;
-    std::vector<std::uint32_t> numbers(kBlockVoxels);
-    // Beyond the wrap of the planes.
-    std::uint32_t scan = 3 * oldest + 1;
-    for (std::uint32_t& number : numbers) number = scan;
-    last_seen.stamp(~BlockMask{}, scan, planes);
-    const std::uint32_t last = scan + oldest / 5 * 4;
-    while (scan < last) {
-      // Steps within and over the eight scans of the same upper bits.
-      scan += oldest < 64 ? static_cast<std::uint32_t>(random() % 4) : oldest / 5;
-      scan = std::min(scan, last);
+    Numbers numbers;
+    // What the block that had this memory before has left.
+    for (std::uint32_t scan = 0; scan < 40; scan += 3) {
+      numbers.stamp(random_mask(random), scan, planes);
+    }
+    // Over the wrap of the planes, and over borders of the upper bits with many stamps in between.
+    const std::uint32_t wrap = 3 * (std::uint32_t{1} << planes), first = wrap - oldest / 2;
+    std::uint32_t scan = first;
+    numbers.stamp(~BlockMask{}, scan, planes);
+    while (scan < first + oldest / 5 * 4) {
+      const std::uint32_t step = random() % 4 == 0 ? oldest / 8 : 1;
+      scan = std::min(scan + step, first + oldest / 5 * 4);
       const BlockMask seen = random_mask(random);
       ASSERT_GT(seen.count(), 20u);
-      last_seen.stamp(seen, scan, planes);
-      for_each_cell(seen, [&](std::uint32_t cell) { numbers[cell] = scan; });
+      numbers.stamp(seen, scan, planes);
     }
+    ASSERT_GT(scan, wrap);
     scan += oldest / 5;
 
-    const LastSeen::Ages ages(last_seen, scan, planes);
+    const LastSeen::Ages ages(numbers.last_seen, scan, planes);
     for (const std::uint32_t age :
          {0u, 1u, oldest / 5, oldest / 5 + 1, oldest, oldest + 1, 70000u}) {
       const BlockMask old = ages.at_least(age);
       for (std::uint32_t cell = 0; cell < kBlockVoxels; ++cell) {
-        ASSERT_EQ(old.test(cell), scan - numbers[cell] >= age) << "age " << age << " cell " << cell;
+        ASSERT_EQ(old.test(cell), scan - numbers.of_cell[cell] >= age)
+            << "age " << age << " cell " << cell;
       }
     }
     const BlockMask some = random_mask(random);
     std::uint32_t greatest = 0;
-    for_each_cell(some,
-                  [&](std::uint32_t cell) { greatest = std::max(greatest, scan - numbers[cell]); });
+    for_each_cell(some, [&](std::uint32_t cell) {
+      greatest = std::max(greatest, scan - numbers.of_cell[cell]);
+    });
     EXPECT_EQ(ages.greatest(some), greatest);
     EXPECT_EQ(ages.greatest({}), 0u);
   }
