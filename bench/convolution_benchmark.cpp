@@ -12,8 +12,7 @@ void convolution_stage(benchmark::State& state, StagedScans& staged, ThreadPool&
     VoxelMap map = staged.map_after(first, pool);
     for (const StagedScan& s : staged.measured) {
       staged.run_other_stages();
-      staged.update(map, s, pool);
-      map.evict(s.k);
+      staged.enter(map, s, pool);
       const ScoreField scores = timed_call(
           state, [&] { return convolve(s.scan, map.changed_since(s.k), width, map, s.k, pool); });
       right = right && scores.values == s.scores.values;

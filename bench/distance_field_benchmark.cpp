@@ -23,7 +23,7 @@ int nearest(std::span<const SourceBlock* const> sources, int reach, const Voxel&
 
 /// Every 97th block, every 61st cell of a layer that is looked at.
 bool equals_all_pairs(const NearBlocks& near) {
-  const int exact_below = (near.field().radius() + 1) * (near.field().radius() + 1);
+  const int exact_below = far_squared(near.field().radius());
   bool same = true;
   ColumnDistances column(near.field());
   for (std::size_t i = 0; i < near.size(); ++i) {

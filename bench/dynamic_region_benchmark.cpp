@@ -18,8 +18,7 @@ void dynamic_region_stage(benchmark::State& state, StagedScans& staged, ThreadPo
     }
     for (const StagedScan& s : staged.measured) {
       staged.run_other_stages();
-      staged.update(map, s, pool);
-      map.evict(s.k);
+      staged.enter(map, s, pool);
       convolve(s.scan, map.changed_since(s.k), width, map, s.k, pool);
       const StagedScan inputs = s;
       const VoxelSet from_region = timed_call(state, [&] {

@@ -98,12 +98,14 @@ VoxelList StagedScans::update(VoxelMap& map, const StagedScan& staged, ThreadPoo
   return map.update(staged.observed, sources, staged.scan.sensor_m, staged.k, pool);
 }
 
+void StagedScans::enter(VoxelMap& map, const StagedScan& staged, ThreadPool& pool) const {
+  update(map, staged, pool);
+  map.evict(staged.k);
+}
+
 VoxelMap StagedScans::map_after(std::size_t scans, ThreadPool& pool) const {
   VoxelMap map(workload.config, Variant::kPaper2024, grid);
-  for (std::uint32_t k = 0; k < scans; ++k) {
-    update(map, all[k], pool);
-    map.evict(k);
-  }
+  for (std::size_t k = 0; k < scans; ++k) enter(map, all[k], pool);
   return map;
 }
 

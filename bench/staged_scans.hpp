@@ -53,6 +53,8 @@ class StagedScans {
 
   /// Puts a scan into a map that holds the scans before it. Returns the voxels that changed.
   VoxelList update(VoxelMap& map, const StagedScan& staged, ThreadPool& pool) const;
+  /// The same, and what is too far or too old leaves the map.
+  void enter(VoxelMap& map, const StagedScan& staged, ThreadPool& pool) const;
   /// A map that holds the first `scans`.
   VoxelMap map_after(std::size_t scans, ThreadPool& pool) const;
   DynamicRegion new_region() const;

@@ -13,9 +13,7 @@ namespace {
 
 constexpr int kPlane = kBlockSide * kBlockSide;
 
-/// Stands for "no source in reach": (radius + 1)^2 is small enough that a square of
-/// (radius + 7)^2 on top does not overflow a byte where bytes are used.
-int far_of(int radius) { return (radius + 1) * (radius + 1); }
+/// A square of (radius + 7)^2 on top of far_squared does not overflow a byte.
 constexpr int kMaxNarrowRadius = 6;
 
 constexpr int reach_of(int radius) { return std::max(1, (radius + kBlockSide - 1) / kBlockSide); }
@@ -27,7 +25,7 @@ DistanceField::Tables<Distance> tables_of(int radius, int reach) {
     for (int bits = 0; bits < 256; ++bits) {
       auto& distances = tables.along_x.emplace_back();
       for (int x = 0; x < kBlockSide; ++x) {
-        int best = far_of(radius);
+        int best = far_squared(radius);
         for (int bit = 0; bit < kBlockSide; ++bit) {
           const int offset = block * kBlockSide + bit - x;
           if ((bits >> bit & 1) != 0) best = std::min(best, offset * offset);
@@ -65,7 +63,9 @@ struct Simd {
     for (Lanes& lanes : plane.lanes) lanes = far;
     return plane;
   }
-  static Lanes far_lanes(int radius) { return Lanes{} + static_cast<Distance>(far_of(radius)); }
+  static Lanes far_lanes(int radius) {
+    return Lanes{} + static_cast<Distance>(far_squared(radius));
+  }
 };
 
 template <typename Lanes>
@@ -99,10 +99,11 @@ struct Surroundings {
   int side() const { return 2 * reach + 1; }
 };
 
-/// A bit for each row or layer of a block and of `radius` on either side.
-std::uint64_t layers_around(int radius) {
-  return ~std::uint64_t{0} >> (64 - kBlockSide - 2 * radius);
-}
+/// 1 to 64 of them.
+std::uint64_t lowest_bits(int count) { return ~std::uint64_t{0} >> (64 - count); }
+
+/// Rows or layers of a block and of `radius` on either side.
+int side_around(int radius) { return kBlockSide + 2 * radius; }
 
 /// Bit y + radius is set where layer `z` of a square of blocks has a source in row y.
 inline __attribute__((always_inline)) std::uint64_t rows_with_source(
@@ -115,7 +116,7 @@ inline __attribute__((always_inline)) std::uint64_t rows_with_source(
     const int first = block_y * kBlockSide + around.radius;
     rows |= first < 0 ? bits >> -first : bits << first;
   }
-  return rows & layers_around(around.radius);
+  return rows & lowest_bits(side_around(around.radius));
 }
 
 /// Squared distances from the cells of a plane to the sources of layer z. False when there are none
@@ -191,7 +192,7 @@ inline __attribute__((always_inline)) std::uint64_t envelope_at(const LayersArou
   const Lanes far = Simd<Distance>::far_lanes(radius);
   Plane least = Simd<Distance>::far_plane(far);
   // Layer z lies at z + radius, and those within the radius at z to z + 2 radius.
-  const std::uint64_t within = ~std::uint64_t{0} >> (63 - 2 * radius);
+  const std::uint64_t within = lowest_bits(2 * radius + 1);
   for (std::uint64_t left = column.filled() >> z & within; left != 0; left &= left - 1) {
     const int i = std::countr_zero(left), offset = i - radius;
     const Lanes square = Lanes{} + static_cast<Distance>(offset * offset);
@@ -217,7 +218,7 @@ inline __attribute__((always_inline)) void transform(const Surroundings& around,
                                                      BlockDistances& distances) {
   std::uint64_t needed = 0;
   for (std::size_t z = 0; z < kBlockSide; ++z) {
-    if (wanted.words[z] != 0) needed |= ~std::uint64_t{0} >> (63 - 2 * around.radius) << z;
+    if (wanted.words[z] != 0) needed |= lowest_bits(2 * around.radius + 1) << z;
   }
   fill_layers(around, tables, needed, column);
   for (int z = 0; z < kBlockSide; ++z) {
@@ -246,8 +247,9 @@ MOSBENCH_MULTIARCH void transform_wide(const Surroundings& around,
 
 }  // namespace
 
-SourceBlock::SourceBlock(const BlockMask& sources) : mask(sources) {
-  for (std::size_t z = 0; z < kBlockSide; ++z) rows |= nonzero_bytes(mask.words[z]) << (8 * z);
+void SourceBlock::add(const BlockMask& sources) {
+  mask = mask | sources;
+  for (std::size_t z = 0; z < kBlockSide; ++z) rows |= nonzero_bytes(sources.words[z]) << (8 * z);
 }
 
 DistanceField::DistanceField(int radius) : radius_(radius), reach_(reach_of(radius)) {
@@ -264,10 +266,9 @@ void ColumnDistances::find(const BlockIndex& block, const BlockMask& wanted,
   const auto lowest = static_cast<std::uint32_t>(block.z * kBlockSide - around.radius);
   const LayersAround column{layers_, static_cast<int>(lowest % kMaxLayers)};
   const int up = last_ && last_->x == block.x && last_->y == block.y ? block.z - last_->z : 0;
-  const int count = kBlockSide + 2 * around.radius;
+  const int kept = side_around(around.radius) - up * kBlockSide;
   // The places of those that are not seen from here are those of layers that are new.
-  const std::uint64_t shared =
-      up > 0 && up * kBlockSide < count ? layers_around(around.radius) >> up * kBlockSide : 0;
+  const std::uint64_t shared = up > 0 && kept > 0 ? lowest_bits(kept) : 0;
   layers_.known &= std::rotl(shared, column.first);
   layers_.filled &= layers_.known;
   last_ = block;

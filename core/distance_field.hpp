@@ -10,17 +10,20 @@
 
 namespace mosbench {
 
+/// Squared voxels; stands for all distances of radius + 1 voxels or more.
+constexpr int far_squared(int radius) { return (radius + 1) * (radius + 1); }
+
 /// Distances from the cells of a block.
 struct BlockDistances {
   BlockMask near;  ///< cells with a source at less than radius + 1 voxels
-  /// Squared voxels. (radius + 1)^2 for other cells of a layer with a near one; not set in other
+  /// Squared voxels. far_squared for other cells of a layer with a near one; not set in other
   /// layers.
   std::array<std::uint16_t, kBlockVoxels> squared;
 };
 
 /// The source voxels of a block.
 struct SourceBlock {
-  explicit SourceBlock(const BlockMask& sources);
+  void add(const BlockMask& sources);
 
   BlockMask mask;
   std::uint64_t rows = 0;  ///< byte z, bit y: whether that row has any

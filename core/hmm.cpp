@@ -74,7 +74,7 @@ BeliefFilter::BeliefFilter(double voxel_size_m, double sigma_m, double transitio
   }
   radius_ = static_cast<int>(std::sqrt(static_cast<double>(likelihood_.size() - 1)));
   // Up to the distance of cells that are not near.
-  likelihood_.resize(static_cast<std::size_t>((radius_ + 1) * (radius_ + 1)) + 1);
+  likelihood_.resize(static_cast<std::size_t>(far_squared(radius_)) + 1);
 }
 
 void BeliefFilter::update(const BlockMask& observed, const BlockMask& seen,

@@ -50,7 +50,7 @@ class BeliefFilter {
  private:
   int radius_ = 0;
   Step step_;
-  std::vector<float> likelihood_;  // by squared distance in voxels, up to (radius + 1)^2
+  std::vector<float> likelihood_;  // by squared distance in voxels, up to far_squared(radius)
 };
 
 }  // namespace mosbench

@@ -22,7 +22,7 @@ SourceGrid::SourceGrid(std::span<const VoxelSet* const> sets, std::span<const Bl
     sides_[axis] = static_cast<std::size_t>(high[axis] - low_[axis] + 1);
   }
   slots_.assign(sides_[0] * sides_[1] * sides_[2], kEmpty);
-  std::vector<BlockMask> masks(1);
+  sources_.emplace_back();
   for (const VoxelSet* set : sets) {
     for (std::size_t i = 0; i < set->block_count(); ++i) {
       const BlockIndex& block = set->blocks[i];
@@ -32,14 +32,12 @@ SourceGrid::SourceGrid(std::span<const VoxelSet* const> sets, std::span<const Bl
       }
       std::uint32_t& slot = slots_[position(block)];
       if (slot == kEmpty) {
-        slot = static_cast<std::uint32_t>(masks.size());
-        masks.emplace_back();
+        slot = static_cast<std::uint32_t>(sources_.size());
+        sources_.emplace_back();
       }
-      masks[slot] = masks[slot] | set->masks[i];
+      sources_[slot].add(set->masks[i]);
     }
   }
-  sources_.reserve(masks.size());
-  for (const BlockMask& mask : masks) sources_.emplace_back(mask);
 }
 
 }  // namespace mosbench

@@ -139,15 +139,13 @@ VoxelList VoxelMap::update(const VoxelList& observed, std::span<const VoxelSet* 
       if (i + 1 < end) fetch(&blocks_[slots_[i + 1]], kTouchedBytes);
       refresh_block(block, scan_index);
       const BlockStates before = block.states;
-      distances.near = {};
       if (near[i] != 0) {
-        fetch(beliefs_[beliefs_of_[slots_[i]]], observed.masks[i]);
+        BlockBeliefs& beliefs = beliefs_[beliefs_of_[slots_[i]]];
+        fetch(beliefs, observed.masks[i]);
         grid.neighbours(block.index, reach, around);
         column.find(block.index, observed.masks[i], around, distances);
-      }
-      if (distances.near.any()) {
-        filter_.update(observed.masks[i], block.seen, distances, block.nonzero,
-                       beliefs_[beliefs_of_[slots_[i]]], block.states);
+        filter_.update(observed.masks[i], block.seen, distances, block.nonzero, beliefs,
+                       block.states);
       } else {
         BeliefFilter::update_far(observed.masks[i], block.nonzero, block.states);
       }

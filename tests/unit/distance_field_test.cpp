@@ -16,7 +16,8 @@ struct Cube {
       for (int y = -reach; y <= reach; ++y) {
         for (int x = -reach; x <= reach; ++x) {
           const BlockMask* mask = set.mask_of({block.x + x, block.y + y, block.z + z});
-          blocks.emplace_back(mask == nullptr ? BlockMask{} : *mask);
+          blocks.emplace_back();
+          if (mask != nullptr) blocks.back().add(*mask);
         }
       }
     }
