@@ -1,5 +1,5 @@
 #include "bench/stage_benchmark.hpp"
-#include "core/change_detection.hpp"
+#include "core/hmm_mos/change_detection.hpp"
 
 namespace mosbench {
 namespace {

@@ -1,6 +1,6 @@
 #include "bench/stage_benchmark.hpp"
-#include "core/label_projection.hpp"
-#include "core/selection.hpp"
+#include "core/hmm_mos/label_projection.hpp"
+#include "core/hmm_mos/selection.hpp"
 
 namespace mosbench {
 namespace {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "bench/stage_benchmark.hpp"
-#include "eval/machine.hpp"
+#include "eval/results/machine.hpp"
 
 namespace mosbench {
 

@@ -1,5 +1,5 @@
 #include "bench/stage_benchmark.hpp"
-#include "core/median.hpp"
+#include "core/hmm_mos/median.hpp"
 
 namespace mosbench {
 namespace {

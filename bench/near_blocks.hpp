@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "bench/staged_scans.hpp"
-#include "core/distance_field.hpp"
-#include "core/hmm.hpp"
-#include "core/source_grid.hpp"
+#include "core/hmm_mos/hmm.hpp"
+#include "core/voxel/distance_field.hpp"
+#include "core/voxel/source_grid.hpp"
 
 namespace mosbench {
 

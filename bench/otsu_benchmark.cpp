@@ -1,5 +1,5 @@
 #include "bench/stage_benchmark.hpp"
-#include "core/selection.hpp"
+#include "core/hmm_mos/selection.hpp"
 
 namespace mosbench {
 namespace {

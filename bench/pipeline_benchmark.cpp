@@ -1,5 +1,5 @@
 #include "bench/stage_benchmark.hpp"
-#include "core/pipeline.hpp"
+#include "core/hmm_mos/pipeline.hpp"
 
 namespace mosbench {
 namespace {

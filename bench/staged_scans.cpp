@@ -5,9 +5,9 @@
 #include <stdexcept>
 #include <utility>
 
-#include "core/label_projection.hpp"
-#include "core/median.hpp"
-#include "core/selection.hpp"
+#include "core/hmm_mos/label_projection.hpp"
+#include "core/hmm_mos/median.hpp"
+#include "core/hmm_mos/selection.hpp"
 
 namespace mosbench {
 namespace {

@@ -5,12 +5,12 @@
 #include <vector>
 
 #include "bench/workloads.hpp"
-#include "core/convolution.hpp"
-#include "core/dynamic_region.hpp"
-#include "core/local_window.hpp"
-#include "core/pipeline.hpp"
-#include "core/raycast.hpp"
-#include "core/voxel_map.hpp"
+#include "core/hmm_mos/convolution.hpp"
+#include "core/hmm_mos/dynamic_region.hpp"
+#include "core/hmm_mos/local_window.hpp"
+#include "core/hmm_mos/pipeline.hpp"
+#include "core/hmm_mos/voxel_map.hpp"
+#include "core/voxel/raycast.hpp"
 
 namespace mosbench {
 

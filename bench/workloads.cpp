@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "datasets/dataset.hpp"
-#include "datasets/errors.hpp"
-#include "datasets/simulator.hpp"
+#include "datasets/files/errors.hpp"
+#include "datasets/layouts/dataset.hpp"
+#include "datasets/simulator/simulator.hpp"
 
 namespace mosbench {
 namespace {

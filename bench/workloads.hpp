@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "core/config.hpp"
-#include "datasets/sequence.hpp"
+#include "core/hmm_mos/config.hpp"
+#include "datasets/sequence/sequence.hpp"
 
 namespace mosbench {
 

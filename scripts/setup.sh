@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # setup.sh [--checks|--page]: installs the Debian packages that building and testing need; with --checks
 # also those of the format, naming and clang checks; with --page what the report's page is tested, linted
-# and built with: a browser, node and the packages of eval/report_page/package-lock.json. Does nothing,
+# and built with: a browser, node and the packages of eval/report/page/package-lock.json. Does nothing,
 # quickly, when all are there.
 # MOSBENCH_WITH_PCL=OFF leaves out PCL, which brings some 400 packages,
 # MOSBENCH_WITH_ROSBAG=OFF the 40 or so of ROS's bag library.
@@ -65,7 +65,7 @@ install_packages() {
 # What the lock file names and no more; the stamp is its copy at the last installation.
 install_page_packages() {
   local folder stamp
-  folder=$(dirname "${BASH_SOURCE[0]}")/../eval/report_page
+  folder=$(dirname "${BASH_SOURCE[0]}")/../eval/report/page
   stamp=$folder/node_modules/.installed-lock.json
   cmp -s "$folder/package-lock.json" "$stamp" && return 0
   echo "setup.sh: installing the packages of the report's page" >&2

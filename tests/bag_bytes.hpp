@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "datasets/byte_cursor.hpp"
-#include "datasets/ros_messages.hpp"
+#include "datasets/files/byte_cursor.hpp"
+#include "datasets/rosbag/ros_messages.hpp"
 
 namespace mosbench {
 

@@ -13,6 +13,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <mosbench/scan.hpp>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <ostream>
@@ -22,8 +23,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "core/config.hpp"
-#include "core/scan.hpp"
+#include "core/hmm_mos/config.hpp"
 
 /// The labels of the authors' own program on four sequences, which lie beside the project where its
 /// owner keeps them. Their files are read here without the project's readers, so that a test that

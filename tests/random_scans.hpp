@@ -4,11 +4,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <mosbench/scan.hpp>
 #include <random>
 #include <span>
 #include <vector>
-
-#include "core/scan.hpp"
 
 namespace mosbench {
 

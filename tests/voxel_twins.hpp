@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "core/voxel_set.hpp"
-#include "core/voxelize.hpp"
+#include "core/voxel/voxel_set.hpp"
+#include "core/voxel/voxelize.hpp"
 
 /// Voxels as plain ordered triples, for twins that share no code with the blocks and masks of core.
 namespace mosbench {

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "datasets/bag_compression.hpp"
-#include "datasets/bag_file.hpp"
-#include "datasets/dataset.hpp"
+#include "datasets/layouts/dataset.hpp"
+#include "datasets/rosbag/bag_compression.hpp"
+#include "datasets/rosbag/bag_file.hpp"
 #include "tests/cli/program.hpp"
 #include "tests/cli/small_sequence.hpp"
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "datasets/label_file.hpp"
+#include "datasets/files/label_file.hpp"
 #include "tests/cli/program.hpp"
 #include "tests/cli/small_sequence.hpp"
 

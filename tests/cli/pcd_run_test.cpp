@@ -3,8 +3,8 @@
 #include <cstdlib>
 #include <string>
 
-#include "datasets/files.hpp"
-#include "datasets/pcd_file.hpp"
+#include "datasets/files/files.hpp"
+#include "datasets/files/pcd_file.hpp"
 #include "tests/cli/program.hpp"
 
 namespace mosbench {

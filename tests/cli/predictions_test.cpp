@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "datasets/bin_file.hpp"
-#include "datasets/label_file.hpp"
-#include "datasets/pcd_file.hpp"
+#include "datasets/files/bin_file.hpp"
+#include "datasets/files/label_file.hpp"
+#include "datasets/files/pcd_file.hpp"
 #include "tests/cli/program.hpp"
 #include "tests/cli/small_sequence.hpp"
 

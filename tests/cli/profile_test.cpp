@@ -5,7 +5,7 @@
 #include <set>
 #include <string_view>
 
-#include "core/stage_times.hpp"
+#include "core/base/stage_times.hpp"
 #include "tests/cli/program.hpp"
 #include "tests/cli/small_sequence.hpp"
 

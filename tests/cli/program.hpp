@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "datasets/files.hpp"
+#include "datasets/files/files.hpp"
 #include "tests/temp_folder.hpp"
 
 /// Runs the built program as a user would.

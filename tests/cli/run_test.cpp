@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "eval/dynamic_score_file.hpp"
+#include "eval/results/dynamic_score_file.hpp"
 #include "tests/cli/program.hpp"
 #include "tests/cli/small_sequence.hpp"
 

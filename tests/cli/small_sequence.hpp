@@ -3,14 +3,14 @@
 #include <cmath>
 #include <cstddef>
 #include <filesystem>
+#include <mosbench/scan.hpp>
 #include <string>
 #include <vector>
 
-#include "core/scan.hpp"
-#include "datasets/bin_file.hpp"
-#include "datasets/files.hpp"
-#include "datasets/label_file.hpp"
-#include "datasets/pose_file.hpp"
+#include "datasets/files/bin_file.hpp"
+#include "datasets/files/files.hpp"
+#include "datasets/files/label_file.hpp"
+#include "datasets/files/pose_file.hpp"
 
 /// A sequence folder in SemanticKITTI's layout, small enough for a test of its own: a box that
 /// crosses a square room around a sensor that stands still.

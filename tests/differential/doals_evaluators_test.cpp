@@ -12,7 +12,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "eval/metrics.hpp"
+#include "eval/protocols/metrics.hpp"
 #include "tests/random_scans.hpp"
 
 namespace mosbench {

@@ -1,4 +1,4 @@
-#include "core/pipeline.hpp"
+#include "core/hmm_mos/pipeline.hpp"
 
 #include <gtest/gtest.h>
 

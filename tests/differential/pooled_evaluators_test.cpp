@@ -14,7 +14,7 @@
 #include <string_view>
 #include <vector>
 
-#include "eval/metrics.hpp"
+#include "eval/protocols/metrics.hpp"
 #include "tests/random_scans.hpp"
 
 namespace mosbench {

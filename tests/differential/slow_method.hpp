@@ -7,6 +7,7 @@
 #include <limits>
 #include <map>
 #include <memory>
+#include <mosbench/scan.hpp>
 #include <optional>
 #include <set>
 #include <span>
@@ -14,8 +15,7 @@
 #include <unordered_set>
 #include <vector>
 
-#include "core/config.hpp"
-#include "core/scan.hpp"
+#include "core/hmm_mos/config.hpp"
 
 namespace mosbench::slow {
 

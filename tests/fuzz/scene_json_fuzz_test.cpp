@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "datasets/errors.hpp"
-#include "datasets/scene_json.hpp"
-#include "datasets/simulator.hpp"
+#include "datasets/files/errors.hpp"
+#include "datasets/simulator/scene_json.hpp"
+#include "datasets/simulator/simulator.hpp"
 
 namespace mosbench {
 namespace {

@@ -8,13 +8,13 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "datasets/bag_compression.hpp"
-#include "datasets/bag_file.hpp"
-#include "datasets/bag_recording.hpp"
-#include "datasets/bin_file.hpp"
-#include "datasets/errors.hpp"
-#include "datasets/files.hpp"
-#include "datasets/ros_messages.hpp"
+#include "datasets/files/bin_file.hpp"
+#include "datasets/files/errors.hpp"
+#include "datasets/files/files.hpp"
+#include "datasets/rosbag/bag_compression.hpp"
+#include "datasets/rosbag/bag_file.hpp"
+#include "datasets/rosbag/bag_recording.hpp"
+#include "datasets/rosbag/ros_messages.hpp"
 #include "tests/temp_folder.hpp"
 
 namespace mosbench {

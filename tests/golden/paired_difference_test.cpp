@@ -1,8 +1,8 @@
 // The authors' labels of the same real scans, online and delayed by ten scans.
 #include <gtest/gtest.h>
 
-#include "eval/bootstrap.hpp"
-#include "eval/confusion.hpp"
+#include "eval/protocols/confusion.hpp"
+#include "eval/statistics/bootstrap.hpp"
 #include "tests/parity_cases.hpp"
 
 namespace mosbench {

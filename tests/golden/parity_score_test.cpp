@@ -6,9 +6,9 @@
 #include <iterator>
 #include <vector>
 
-#include "eval/confusion.hpp"
-#include "eval/metrics.hpp"
-#include "eval/protocol.hpp"
+#include "eval/protocols/confusion.hpp"
+#include "eval/protocols/metrics.hpp"
+#include "eval/protocols/protocol.hpp"
 #include "tests/parity_cases.hpp"
 
 namespace mosbench {

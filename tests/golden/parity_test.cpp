@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/pipeline.hpp"
+#include "core/hmm_mos/pipeline.hpp"
 #include "tests/parity_cases.hpp"
 
 /// The labels of every parity case through Pipeline, point for point.

@@ -6,10 +6,10 @@
 #include <cstring>
 #include <filesystem>
 
-#include "datasets/bin_file.hpp"
-#include "datasets/errors.hpp"
-#include "datasets/kitti_sequence.hpp"
-#include "datasets/pcd_file.hpp"
+#include "datasets/files/bin_file.hpp"
+#include "datasets/files/errors.hpp"
+#include "datasets/files/pcd_file.hpp"
+#include "datasets/layouts/kitti_sequence.hpp"
 #include "tests/temp_folder.hpp"
 
 namespace mosbench {

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 #include <xxhash.h>
 
-#include "datasets/simulator.hpp"
+#include "datasets/simulator/simulator.hpp"
 
 namespace mosbench {
 namespace {

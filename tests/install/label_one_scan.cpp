@@ -1,7 +1,7 @@
 #include <cstdio>
 #include <vector>
 
-#include "core/pipeline.hpp"
+#include "core/hmm_mos/pipeline.hpp"
 
 int main() {
   mosbench::Pipeline pipeline(mosbench::Config{}, mosbench::Variant::kPaper2024);

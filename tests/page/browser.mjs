@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { createRequire } from 'node:module';
 import { pathToFileURL } from 'node:url';
 
-const require = createRequire(new URL('../../eval/report_page/package.json', import.meta.url));
+const require = createRequire(new URL('../../eval/report/page/package.json', import.meta.url));
 const { chromium } = require('playwright-core');
 
 const ARGUMENTS = [

@@ -4,7 +4,7 @@ import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { openBrowser, openReport, refuseComplaints, settled } from './browser.mjs';
 import { freshFolder, mosbench, realSequence, resultOf, simulatedRuns } from './reports.mjs';
-import palette from '../../eval/report_page/palette.json' with { type: 'json' };
+import palette from '../../eval/report/page/palette.json' with { type: 'json' };
 
 // Pictures are drawn without a graphics card here: small ones are enough to count by.
 const SMALL = { width: 480, height: 420 };

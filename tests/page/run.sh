@@ -10,6 +10,6 @@ skip() {
 }
 command -v node >/dev/null || skip "there is no node"
 [ "$(node -p 'parseInt(process.versions.node)')" -ge 20 ] || skip "node $(node --version) is older than 20"
-[ -d "$here/../../eval/report_page/node_modules/playwright-core" ] || skip "there is no playwright-core"
+[ -d "$here/../../eval/report/page/node_modules/playwright-core" ] || skip "there is no playwright-core"
 [ -x "${MOSBENCH_CHROMIUM:-/usr/bin/chromium}" ] || skip "there is no Chromium"
 exec node --test --test-reporter=spec "$@"

@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { test } from 'node:test';
 
-const cwd = new URL('../../eval/report_page/', import.meta.url).pathname;
+const cwd = new URL('../../eval/report/page/', import.meta.url).pathname;
 
 for (const [name, ...command] of [
   ['the linter has nothing to say', 'node', 'node_modules/eslint/bin/eslint.js', '--max-warnings', '0', '.'],

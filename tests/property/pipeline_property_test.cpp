@@ -5,7 +5,7 @@
 #include <numeric>
 #include <random>
 
-#include "core/pipeline.hpp"
+#include "core/hmm_mos/pipeline.hpp"
 #include "tests/small_world.hpp"
 
 namespace mosbench {

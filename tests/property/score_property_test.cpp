@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "eval/metrics.hpp"
+#include "eval/protocols/metrics.hpp"
 #include "tests/random_scans.hpp"
 
 namespace mosbench {

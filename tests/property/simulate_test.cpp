@@ -1,4 +1,4 @@
-#include "datasets/simulate.hpp"
+#include "datasets/simulator/simulate.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,14 +10,14 @@
 #include <stdexcept>
 #include <string>
 
-#include "datasets/built_in_scenes.hpp"
-#include "datasets/dataset.hpp"
-#include "datasets/errors.hpp"
-#include "datasets/files.hpp"
-#include "datasets/scene_json.hpp"
-#include "datasets/simulated_layouts.hpp"
-#include "datasets/simulated_origin.hpp"
-#include "datasets/simulator.hpp"
+#include "datasets/files/errors.hpp"
+#include "datasets/files/files.hpp"
+#include "datasets/layouts/dataset.hpp"
+#include "datasets/layouts/simulated_origin.hpp"
+#include "datasets/simulator/built_in_scenes.hpp"
+#include "datasets/simulator/scene_json.hpp"
+#include "datasets/simulator/simulated_layouts.hpp"
+#include "datasets/simulator/simulator.hpp"
 #include "tests/temp_folder.hpp"
 
 namespace mosbench {

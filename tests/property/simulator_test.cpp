@@ -1,4 +1,4 @@
-#include "datasets/simulator.hpp"
+#include "datasets/simulator/simulator.hpp"
 
 #include <gtest/gtest.h>
 #include <xxhash.h>
@@ -7,10 +7,10 @@
 #include <cmath>
 #include <thread>
 
-#include "datasets/built_in_scenes.hpp"
-#include "datasets/errors.hpp"
-#include "datasets/portable_math.hpp"
-#include "datasets/scene_json.hpp"
+#include "datasets/files/errors.hpp"
+#include "datasets/simulator/built_in_scenes.hpp"
+#include "datasets/simulator/portable_math.hpp"
+#include "datasets/simulator/scene_json.hpp"
 
 namespace mosbench {
 namespace {

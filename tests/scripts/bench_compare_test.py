@@ -9,7 +9,7 @@ import tempfile
 import unittest
 from random import Random
 
-SCRIPTS = pathlib.Path(__file__).resolve().parents[2] / "scripts"
+SCRIPTS = pathlib.Path(__file__).resolve().parents[2] / "scripts/bench"
 sys.path.insert(0, str(SCRIPTS))
 import bench_compare  # noqa: E402
 

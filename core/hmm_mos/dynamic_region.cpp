@@ -1,0 +1,207 @@
+#include "core/hmm_mos/dynamic_region.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "core/hmm_mos/convolution.hpp"
+#include "core/hmm_mos/otsu.hpp"
+#include "core/hmm_mos/selection.hpp"
+#include "core/voxel/halo.hpp"
+
+namespace mosbench {
+
+DynamicRegion::DynamicRegion(const VoxelGrid& grid, double max_range_m, int dynamic_window_scans,
+                             int min_otsu_score)
+    : grid_(grid),
+      evict_radius_m_(2 * max_range_m),
+      dynamic_window_scans_(static_cast<std::uint32_t>(dynamic_window_scans)),
+      min_otsu_score_(min_otsu_score) {}
+
+DynamicRegion::Block* DynamicRegion::find(const BlockIndex& block) {
+  const std::uint32_t slot = table_.find(block);
+  return slot == kNoSlot ? nullptr : &blocks_[slot];
+}
+
+std::vector<BlockIndex> DynamicRegion::blocks() const {
+  std::vector<BlockIndex> live;
+  for (std::uint32_t slot = 0; slot < blocks_.capacity(); ++slot) {
+    if (blocks_[slot].live) live.push_back(blocks_[slot].index);
+  }
+  return live;
+}
+
+VoxelSet DynamicRegion::back_end(const VoxelizedScan& scan, const VoxelSet& beside_unknown,
+                                 int kernel_width_voxels, ThreadPool& pool) const {
+  const int radius = (kernel_width_voxels - 1) / 2;
+  VoxelSet confident;
+  for (std::uint32_t slot = 0; slot < blocks_.capacity(); ++slot) {
+    const Block& block = blocks_[slot];
+    if (!block.live || !block.high_confidence.any()) continue;
+    confident.masks[confident.insert(block.index)] = block.high_confidence;
+  }
+  const std::vector<std::uint32_t> slots = slots_within(scan, confident, radius);
+  std::vector<std::vector<ValueCount>> votes(slots.size());  // per candidate: B, in cell order
+  std::vector<BlockMask> voted(slots.size());
+  pool.for_ranges(slots.size(), 16, [&](std::size_t begin, std::size_t end, unsigned) {
+    HaloRows rows;
+    for (std::size_t i = begin; i < end; ++i) {
+      const BlockIndex& block = scan.measured.blocks[slots[i]];
+      Neighbourhood masks{};
+      for_each_neighbour(block, [&](std::size_t position, const BlockIndex& neighbour) {
+        masks[position] = confident.mask_of(neighbour);
+      });
+      gather_halo(masks, radius, rows);
+      const BlockMask* beside = beside_unknown.mask_of(block);
+      const BlockMask candidates =
+          beside == nullptr ? scan.occupied[slots[i]] : without(scan.occupied[slots[i]], *beside);
+      voted[i] = dilate(rows) & candidates;
+      for_each_cell(voted[i], [&](std::uint32_t cell) {
+        votes[i].push_back({count_around(rows, cell), 1});
+      });
+    }
+  });
+  std::vector<ValueCount> all;
+  for (const auto& some : votes) all.insert(all.end(), some.begin(), some.end());
+  VoxelSet chosen;
+  const std::optional<double> threshold = otsu_threshold(all);
+  if (!threshold) return chosen;
+  for (std::size_t i = 0; i < slots.size(); ++i) {
+    BlockMask above;
+    auto vote = votes[i].begin();
+    for_each_cell(voted[i], [&](std::uint32_t cell) {
+      if ((vote++)->value > *threshold) above.set(cell);
+    });
+    if (above.any()) chosen.masks[chosen.insert(scan.measured.blocks[slots[i]])] = above;
+  }
+  return chosen;
+}
+
+void DynamicRegion::update(const DetectedScan& detected, std::uint32_t scan_index) {
+  visit(detected, scan_index);
+  std::vector<ValueCount> scores;
+  for (std::size_t n = 1; n < count_by_neighbours_.size(); ++n) {
+    scores.push_back({static_cast<std::int32_t>(n), count_by_neighbours_[n]});
+  }
+  threshold_ = otsu_threshold(scores).value_or(threshold_);
+  for (std::uint32_t slot = 0; slot < blocks_.capacity(); ++slot) {
+    Block& block = blocks_[slot];
+    if (!block.live) continue;
+    block.high_confidence = {};
+    for_each_cell(without(block.dynamic, block.beside_unknown), [&](std::uint32_t cell) {
+      if (block.neighbours[cell] > threshold_) block.high_confidence.set(cell);
+    });
+  }
+  evict(detected.scan.sensor_m, scan_index);
+}
+
+/// Step 6.2. A voxel that a first detection at this time has stamped is left alone by a second one.
+void DynamicRegion::visit(const DetectedScan& detected, std::uint32_t scan_index) {
+  const VoxelSet stamped =
+      visited_at_ == scan_index ? std::exchange(visited_, VoxelSet{}) : VoxelSet{};
+  const bool may_join = shows_motion(detected.threshold, min_otsu_score_);
+  visited_.clear();
+  visited_at_ = scan_index;
+  if (may_join) {
+    for (std::size_t i = 0; i < detected.scan.measured.block_count(); ++i) {
+      const BlockIndex& index = detected.scan.measured.blocks[i];
+      const Block* block = find(index);
+      BlockMask fresh = detected.scan.occupied[i];
+      if (block != nullptr) fresh = without(fresh, block->dynamic);
+      if (fresh.any()) visited_.masks[visited_.insert(index)] = fresh;
+    }
+    for (std::size_t i = 0; i < detected.dynamic.block_count(); ++i) {
+      const BlockIndex& index = detected.dynamic.blocks[i];
+      BlockMask joining = detected.dynamic.masks[i];
+      for (const VoxelSet* excluded : {&detected.from_region, &stamped}) {
+        const BlockMask* mask = excluded->mask_of(index);
+        if (mask != nullptr) joining = without(joining, *mask);
+      }
+      if (const Block* block = find(index)) joining = without(joining, block->dynamic);
+      for_each_cell(joining, [&](std::uint32_t cell) { add(voxel_at(index, cell), scan_index); });
+    }
+  }
+  for (std::uint32_t slot = 0; slot < blocks_.capacity(); ++slot) {
+    Block& block = blocks_[slot];
+    if (!block.live) continue;
+    const BlockMask* occupied = detected.scan.occupied_in(block.index);
+    if (occupied == nullptr) continue;
+    BlockMask seen = *occupied & block.dynamic;
+    if (const BlockMask* mask = stamped.mask_of(block.index)) seen = without(seen, *mask);
+    const BlockMask* beside = detected.beside_unknown.mask_of(block.index);
+    block.beside_unknown = without(block.beside_unknown, seen);
+    if (beside != nullptr) block.beside_unknown = block.beside_unknown | (*beside & seen);
+  }
+}
+
+template <typename Visit>
+void DynamicRegion::for_each_dynamic_neighbour(const Voxel& voxel, Visit&& visit) {
+  for (int dz = -1; dz <= 1; ++dz) {
+    for (int dy = -1; dy <= 1; ++dy) {
+      for (int dx = -1; dx <= 1; ++dx) {
+        const Voxel neighbour{voxel.x + dx, voxel.y + dy, voxel.z + dz};
+        Block* block = find(block_of(neighbour));
+        const std::uint32_t cell = cell_of(neighbour);
+        if (block != nullptr && block->dynamic.test(cell)) visit(*block, cell);
+      }
+    }
+  }
+}
+
+void DynamicRegion::add(const Voxel& voxel, std::uint32_t scan_index) {
+  const BlockIndex index = block_of(voxel);
+  std::uint32_t slot = table_.find(index);
+  if (slot == kNoSlot) {
+    slot = table_.find_or_insert(index, blocks_.take());
+    Block& fresh = blocks_[slot];
+    fresh.index = index;
+    fresh.live = true;
+    fresh.dynamic = fresh.beside_unknown = fresh.high_confidence = {};
+  }
+  Block& block = blocks_[slot];
+  const std::uint32_t cell = cell_of(voxel);
+  block.became[cell] = static_cast<std::uint16_t>(scan_index);
+  std::uint8_t neighbours = 1;
+  for_each_dynamic_neighbour(voxel, [&](Block& other, std::uint32_t other_cell) {
+    ++neighbours;
+    --count_by_neighbours_[other.neighbours[other_cell]];
+    ++count_by_neighbours_[++other.neighbours[other_cell]];
+  });
+  block.dynamic.set(cell);
+  block.neighbours[cell] = neighbours;
+  ++count_by_neighbours_[neighbours];
+}
+
+void DynamicRegion::remove(Block& block, std::uint32_t cell) {
+  --count_by_neighbours_[block.neighbours[cell]];
+  BlockMask voxel;
+  voxel.set(cell);
+  block.dynamic = without(block.dynamic, voxel);
+  block.beside_unknown = without(block.beside_unknown, voxel);
+  block.high_confidence = without(block.high_confidence, voxel);
+  for_each_dynamic_neighbour(voxel_at(block.index, cell),
+                             [&](Block& other, std::uint32_t other_cell) {
+                               --count_by_neighbours_[other.neighbours[other_cell]];
+                               ++count_by_neighbours_[--other.neighbours[other_cell]];
+                             });
+}
+
+void DynamicRegion::evict(const Eigen::Vector3d& sensor_m, std::uint32_t scan_index) {
+  for (std::uint32_t slot = 0; slot < blocks_.capacity(); ++slot) {
+    Block& block = blocks_[slot];
+    if (!block.live) continue;
+    BlockMask leaving = without(
+        block.dynamic, within_range(grid_, block.index, block.dynamic, sensor_m, evict_radius_m_));
+    for_each_cell(block.dynamic, [&](std::uint32_t cell) {
+      const auto age = static_cast<std::uint16_t>(scan_index - block.became[cell]);
+      if (age > dynamic_window_scans_) leaving.set(cell);
+    });
+    for_each_cell(leaving, [&](std::uint32_t cell) { remove(block, cell); });
+    if (!block.dynamic.any()) {
+      table_.erase(block.index);
+      block.live = false;
+      blocks_.give_back(slot);
+    }
+  }
+}
+
+}  // namespace mosbench

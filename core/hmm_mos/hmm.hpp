@@ -1,0 +1,56 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "core/voxel/distance_field.hpp"
+#include "core/voxel/voxel.hpp"
+
+namespace mosbench {
+
+/// Most probable states of a block's voxels. In neither mask: unobserved.
+struct BlockStates {
+  BlockMask occupied, free;
+};
+
+/// p(occupied) of a block's voxels, kept only where a source was in reach when the voxel was seen
+/// last. Elsewhere it is 0, or still the 0.5 of a voxel never seen.
+struct BlockBeliefs {
+  alignas(64) std::array<float, kBlockVoxels> occupied;  ///< valid where nonzero
+};
+
+/// The distance, in sigmas, beyond which the likelihood of an occupied voxel cannot change a state.
+double likelihood_reach_sigmas(double transition_epsilon, double min_state_probability);
+
+/// The three-state filter. After its first observation a voxel is never unobserved again, so the
+/// belief is one number, p(occupied); a voxel that was never seen has p = 0.5.
+class BeliefFilter {
+ public:
+  /// epsilon in (0, 0.5), p_min in [0.5, 1); metres.
+  BeliefFilter(double voxel_size_m, double sigma_m, double transition_epsilon,
+               double min_state_probability);
+
+  /// Voxels per axis beyond which a likelihood cannot change a state.
+  int radius() const { return radius_; }
+
+  /// algorithm step 3 for the observed voxels of a block. `seen` are the voxels with a record,
+  /// `nonzero` those of them with a number in `beliefs`; all others have p = 0.
+  void update(const BlockMask& observed, const BlockMask& seen, const BlockDistances& distances,
+              BlockMask& nonzero, BlockBeliefs& beliefs, BlockStates& states) const;
+
+  /// The same for voxels without a source in reach: they are certainly free.
+  static void update_far(const BlockMask& observed, BlockMask& nonzero, BlockStates& states);
+
+  /// The numbers of one filter step.
+  struct Step {
+    float epsilon, keep, min_probability;  ///< keep = 1 - 2 epsilon
+  };
+
+ private:
+  int radius_ = 0;
+  Step step_;
+  std::vector<float> likelihood_;  // by squared distance in voxels, up to far_squared(radius)
+};
+
+}  // namespace mosbench

@@ -1,0 +1,34 @@
+#include "core/hmm_mos/label_projection.hpp"
+
+#include <mosbench/scan.hpp>
+
+namespace mosbench {
+
+std::vector<std::uint32_t> project_labels(const VoxelizedScan& scan, const VoxelSet& moving) {
+  std::vector<std::uint32_t> labels(scan.voxel_of_point.size(), kStaticLabel);
+  if (moving.block_count() == 0) return labels;
+  std::vector<BlockMask> masks(scan.measured.block_count());
+  for (std::size_t i = 0; i < moving.block_count(); ++i) {
+    masks[scan.measured.find(moving.blocks[i])] = moving.masks[i];
+  }
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    const std::uint32_t voxel = scan.voxel_of_point[i];
+    if (voxel == kNoVoxel) continue;
+    if (masks[voxel / kBlockVoxels].test(voxel % kBlockVoxels)) labels[i] = kMovingLabel;
+  }
+  return labels;
+}
+
+std::vector<std::int32_t> project_scores(const VoxelizedScan& scan, const SumField& sums) {
+  std::vector<std::int32_t> scores(scan.voxel_of_point.size(), 0);
+  std::vector<const SumField::Block*> values;
+  for (const BlockIndex& block : scan.measured.blocks) values.push_back(sums.find(block));
+  for (std::size_t i = 0; i < scores.size(); ++i) {
+    const std::uint32_t voxel = scan.voxel_of_point[i];
+    if (voxel == kNoVoxel || values[voxel / kBlockVoxels] == nullptr) continue;
+    scores[i] = (*values[voxel / kBlockVoxels])[voxel % kBlockVoxels];
+  }
+  return scores;
+}
+
+}  // namespace mosbench

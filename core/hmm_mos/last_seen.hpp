@@ -1,0 +1,44 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "core/voxel/voxel.hpp"
+
+namespace mosbench {
+
+/// The number of the scan in which each voxel of a block was seen last, modulo 2^planes. Bit p of
+/// all 512 numbers fills one mask, so that all are written or compared with a few operations for
+/// each bit instead of some for each voxel. The upper bits are the same for eight scans and written
+/// once they are over.
+class LastSeen {
+ public:
+  static constexpr int kMaxPlanes = 16;
+  static constexpr int kLowPlanes = 3;  ///< written by every stamp
+  /// From the beginning, what a stamp mostly touches.
+  static constexpr std::size_t kTouchedBytes = (2 + kLowPlanes) * sizeof(BlockMask);
+  /// Planes that tell ages up to `max_age` apart.
+  static int planes_for(std::uint32_t max_age);
+
+  void stamp(const BlockMask& voxels, std::uint32_t scan_index, int planes);
+
+  /// Ages at one scan, in the same form.
+  class Ages {
+   public:
+    Ages(const LastSeen& last_seen, std::uint32_t scan_index, int planes);
+    BlockMask at_least(std::uint32_t age) const;
+    /// The greatest age among `voxels`; 0 when there is none.
+    std::uint32_t greatest(const BlockMask& voxels) const;
+
+   private:
+    std::array<BlockMask, kMaxPlanes> bits_;
+    int planes_;
+  };
+
+ private:
+  std::uint32_t upper_ = 0;  ///< the scan index without its low bits, of the last stamp
+  BlockMask recent_;         ///< stamped since that changed: their upper bits are not written yet
+  std::array<BlockMask, kMaxPlanes> bits_;
+};
+
+}  // namespace mosbench

@@ -1,0 +1,87 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/voxel/voxel_set.hpp"
+
+namespace mosbench {
+
+/// Squared voxels; stands for all distances of radius + 1 voxels or more.
+constexpr int far_squared(int radius) { return (radius + 1) * (radius + 1); }
+
+/// Distances from the cells of a block.
+struct BlockDistances {
+  BlockMask near;  ///< cells with a source at less than radius + 1 voxels
+  /// Squared voxels. far_squared for other cells of a layer with a near one; not set in other
+  /// layers.
+  std::array<std::uint16_t, kBlockVoxels> squared;
+};
+
+/// The source voxels of a block.
+struct SourceBlock {
+  void add(const BlockMask& sources);
+
+  BlockMask mask;
+  std::uint64_t rows = 0;  ///< byte z, bit y: whether that row has any
+};
+
+/// Widest radius of a distance field, voxels.
+inline constexpr int kMaxDistanceRadius = 28;
+
+/// Squared Euclidean distances d^2 / Delta^2 from every cell of a block to the nearest source
+/// voxel, as far as they are below (radius + 1)^2. Separable: rows by look-up, then the lower
+/// envelope along y and along z. Shared by threads.
+class DistanceField {
+ public:
+  /// `radius` from 0 to kMaxDistanceRadius.
+  explicit DistanceField(int radius);
+  int radius() const { return radius_; }
+  /// Blocks per direction that may hold a source within the radius: 1 or more.
+  int reach() const { return reach_; }
+
+  /// Look-ups of one number type. [block along x * 256 + its eight bits]: squared x distances of
+  /// the eight cells of a row. [row + radius]: squared y distances of the 64 cells of a plane.
+  template <typename Distance>
+  struct Tables {
+    std::vector<std::array<Distance, kBlockSide>> along_x;
+    std::vector<std::array<Distance, kBlockSide * kBlockSide>> along_y;
+  };
+
+ private:
+  friend class ColumnDistances;
+  int radius_, reach_;
+  Tables<std::uint8_t> narrow_;  // while (radius + 1)^2 + (radius + 7)^2 fits a byte
+  Tables<std::uint16_t> wide_;
+};
+
+/// The distance field of block after block. Of a block above the last one only those layers are
+/// computed that are new; raycast's list has up to four blocks above one another in a row.
+class ColumnDistances {
+ public:
+  explicit ColumnDistances(const DistanceField& field) : field_(field) {}
+
+  /// `sources` are the cube of (2 reach + 1)^3 blocks around the block, x fastest; they stay the
+  /// same over the life of this. Looks at layers with a `wanted` cell only; no cell of another one
+  /// is near.
+  void find(const BlockIndex& block, const BlockMask& wanted,
+            std::span<const SourceBlock* const> sources, BlockDistances& distances);
+
+  static constexpr int kMaxLayers = kBlockSide + 2 * kMaxDistanceRadius;
+  static constexpr std::size_t kMaxPlaneBytes = kBlockSide * kBlockSide * sizeof(std::uint16_t);
+  /// Distances from the cells of a plane to the sources of each layer z, at z % kMaxLayers.
+  struct Layers {
+    std::uint64_t known = 0, filled = 0;  ///< computed; having sources
+    alignas(32) std::array<std::uint8_t, kMaxLayers * kMaxPlaneBytes> planes;
+  };
+
+ private:
+  const DistanceField& field_;
+  std::optional<BlockIndex> last_;
+  Layers layers_;
+};
+
+}  // namespace mosbench

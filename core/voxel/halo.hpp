@@ -1,0 +1,49 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "core/voxel/voxel_set.hpp"
+
+namespace mosbench {
+
+/// Widest halo: within the 26 blocks around.
+inline constexpr int kMaxHalo = kBlockSide;
+
+/// A block and `radius` voxels around it as rows along x: bit i of row (z, y) is the voxel
+/// (i - radius, y - radius, z - radius) of the block.
+struct HaloRows {
+  static constexpr int kStride = 3 * kBlockSide;  // whole blocks along y, gathered eight at a time
+
+  int radius = 0;
+  int side = 0;  ///< 8 + 2 radius
+  bool any = false;
+
+  std::uint32_t row(int z, int y) const {
+    return rows[static_cast<std::size_t>(z * kStride + kBlockSide - radius + y)];
+  }
+
+  /// Rows at -8 to 15 along y; z from -radius. Those beyond the halo along y hold anything.
+  alignas(32) std::array<std::uint32_t, std::size_t{kStride} * kStride> rows;
+};
+
+/// Which of a block and its 26 neighbours (bits in the order of for_each_neighbour) may have a
+/// voxel within `radius` per axis of one of the mask's. `radius` from 0 to kMaxHalo.
+std::uint32_t blocks_within(const BlockMask& mask, int radius);
+
+/// Gathers the masks of a block and its 26 neighbours, null ones as empty. `radius` from 0 to
+/// kMaxHalo.
+void gather_halo(const Neighbourhood& masks, int radius, HaloRows& halo);
+
+/// Turns every voxel of the halo over.
+void invert(HaloRows& halo);
+
+/// The voxels of the block that have a set voxel within `radius` per axis.
+BlockMask dilate(const HaloRows& halo);
+
+/// Set voxels in the cube of side 2 radius + 1 around a cell of the block.
+int count_around(const HaloRows& halo, std::uint32_t cell);
+
+}  // namespace mosbench

@@ -1,0 +1,204 @@
+#include "core/voxel/raycast.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <span>
+
+#include "core/base/multiarch.hpp"
+#include "core/base/simd_lanes.hpp"
+
+namespace mosbench {
+namespace {
+
+/// Where rays start, in voxels from the window's low corner.
+using Start = std::array<std::int32_t, 3>;
+
+/// A point that walks a line: per axis the coordinate in the window, as fixed point.
+struct Walk {
+  std::array<std::uint64_t, 3> at, step;
+
+  Walk(const Ray& ray, const Start& sensor) {
+    const Line line(std::max(longest_side(ray), 1));
+    const std::array<std::int32_t, 3> d{ray.dx, ray.dy, ray.dz};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const std::int64_t from = std::int64_t{sensor[axis]} << kLineFraction;
+      const std::int64_t speed = std::abs(d[axis]) * line.reciprocal;
+      // s - floor(a) is floor(s + 1 - a) less the smallest unit.
+      const std::int64_t back = (std::int64_t{1} << kLineFraction) - 1 - line.start;
+      at[axis] = static_cast<std::uint64_t>(from + (d[axis] < 0 ? back : line.start));
+      step[axis] = static_cast<std::uint64_t>(d[axis] < 0 ? -speed : speed);
+    }
+  }
+};
+
+/// Lines are looked at every so many steps for the tiles they cross: at most one per axis between.
+constexpr std::int32_t kTouchStride = RayWindow::kTileSide;
+
+/// One ray of any length.
+void cast(const Ray& ray, const Start& sensor, RayWindow& window) {
+  const Walk walk(ray, sensor);
+  std::uint64_t x = walk.at[0], y = walk.at[1], z = walk.at[2];
+  std::uint32_t tile = 0;
+  for (std::int32_t i = 0; i < ray.visits; ++i) {
+    const std::uint64_t address =
+        address_of<kLineFraction>(x, y, z, window.y_shift(), window.z_shift());
+    window.bits()[address] |= static_cast<std::uint8_t>(1u << (x >> kLineFraction & 7));
+    if (i % kTouchStride == 0 || i == ray.visits - 1) {
+      const auto here = static_cast<std::uint32_t>(address / RayWindow::kTileBytes);
+      window.tiles().touch_between(i == 0 ? here : tile, here);
+      tile = here;
+    }
+    x += walk.step[0];
+    y += walk.step[1];
+    z += walk.step[2];
+  }
+}
+
+/// Eight rays of similar length in step: 32-bit fixed point, increments rounded up, exact while
+/// visits * M < 2^kLaneFraction.
+constexpr int kLaneFraction = 21;
+constexpr std::int32_t kMaxLaneCoordinate = (1 << (32 - kLaneFraction)) - 2;
+using DoubleLanes = double __attribute__((vector_size(8 * kLanes)));
+
+/// Eight Walks of 32 bits.
+struct LaneWalks {
+  UintLanes at[3], step[3];
+  IntLanes last;  ///< step of the last visit
+};
+
+/// ceil(numerator * 2^kLaneFraction / divisor), both at least 0; `per_unit` is 2^kLaneFraction /
+/// divisor. Its rounding may add one where the quotient is whole, which the limit above allows.
+inline __attribute__((always_inline)) IntLanes scaled_ratio(const IntLanes& numerator,
+                                                            const DoubleLanes& per_unit) {
+  const DoubleLanes ratio = __builtin_convertvector(numerator, DoubleLanes) * per_unit;
+  const IntLanes floor = __builtin_convertvector(ratio, IntLanes);
+  const auto cut = __builtin_convertvector(floor, DoubleLanes) < ratio;
+  return floor - __builtin_convertvector(cut, IntLanes);
+}
+
+/// Walks of eight rays.
+inline __attribute__((always_inline)) LaneWalks lane_walks(const ShortRay* rays,
+                                                           const Start& sensor) {
+  static_assert(sizeof(ShortRay) == 8);
+  LaneWalks walks;
+  const auto some = load<IntLanes>(rays), more = load<IntLanes>(rays + 4);
+  const IntLanes xy = __builtin_shufflevector(some, more, 0, 2, 4, 6, 8, 10, 12, 14);
+  const IntLanes z_visits = __builtin_shufflevector(some, more, 1, 3, 5, 7, 9, 11, 13, 15);
+  const IntLanes d[3] = {xy << 16 >> 16, xy >> 16, z_visits << 16 >> 16};
+  walks.last = (z_visits >> 16) - 1;
+  IntLanes longest = IntLanes{} + 1;
+  for (const IntLanes& side : d) longest = magnitude(side) > longest ? magnitude(side) : longest;
+  const DoubleLanes per_unit =
+      static_cast<double>(1 << kLaneFraction) / __builtin_convertvector(longest, DoubleLanes);
+  const IntLanes start = scaled_ratio(longest - 1 - (longest >> 1), per_unit);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const IntLanes speed = scaled_ratio(magnitude(d[axis]), per_unit);
+    const IntLanes offset = d[axis] < 0 ? (1 << kLaneFraction) - 1 - start : start;
+    const IntLanes step = d[axis] < 0 ? -speed : speed;
+    walks.step[axis] = std::bit_cast<UintLanes>(step);
+    walks.at[axis] = std::bit_cast<UintLanes>(offset) +
+                     (static_cast<std::uint32_t>(sensor[axis]) << kLaneFraction);
+  }
+  return walks;
+}
+
+/// Out of the hot loop, and only every kTouchStride steps.
+[[gnu::noinline]] void touch_lanes(const LaneArray& from, const LaneArray& to,
+                                   RayWindow::Tiles tiles) {
+  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    tiles.touch_between(from[lane] / RayWindow::kTileBytes, to[lane] / RayWindow::kTileBytes);
+  }
+}
+
+/// Eight rays, the last one the longest.
+MOSBENCH_MULTIARCH void cast_lanes(const ShortRay* rays, const Start& sensor, RayWindow& window) {
+  const LaneWalks walks = lane_walks(rays, sensor);
+  // Locals: the byte stores below could otherwise change anything behind a reference.
+  std::uint8_t* const bits = window.bits();
+  const RayWindow::Tiles tiles = window.tiles();
+  const int y_shift = window.y_shift(), z_shift = window.z_shift();
+  UintLanes at_x = walks.at[0], at_y = walks.at[1], at_z = walks.at[2];
+  UintLanes step_x = walks.step[0], step_y = walks.step[1], step_z = walks.step[2];
+  const IntLanes last = walks.last;
+  const std::int32_t shortest = rays[0].visits - 1, longest = rays[kLanes - 1].visits - 1;
+  LaneArray address, mark, sampled;
+  for (std::int32_t i = 0; i <= longest; ++i) {
+    store(address_of<kLaneFraction>(at_x, at_y, at_z, y_shift, z_shift), address);
+    // 1 << (x & 7) by way of a float's exponent, as SSE2 cannot shift lanes by different counts.
+    const UintLanes exponent = (at_x << (23 - kLaneFraction) & (7u << 23)) + (127u << 23);
+    store(__builtin_convertvector(std::bit_cast<FloatLanes>(exponent), IntLanes), mark);
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      bits[address[lane]] |= static_cast<std::uint8_t>(mark[lane]);
+    }
+    if (i % kTouchStride == 0 || i == longest) {
+      // All start in the sensor's voxel.
+      touch_lanes(i == 0 ? address : sampled, address, tiles);
+      sampled = address;
+    }
+    if (i >= shortest) {  // rays at their end stand still
+      const UintLanes walking = std::bit_cast<UintLanes>(last > i);
+      step_x &= walking;
+      step_y &= walking;
+      step_z &= walking;
+    }
+    at_x += step_x;
+    at_y += step_y;
+    at_z += step_z;
+  }
+}
+
+void cast_all(const Rays& rays, const Start& sensor, RayWindow& window) {
+  for (const Ray& ray : rays.long_rays) cast(ray, sensor, window);
+  const std::span<const ShortRay> short_rays = rays.short_rays;
+  const std::size_t whole = short_rays.size() / kLanes * kLanes;
+  for (std::size_t i = 0; i < whole; i += kLanes) cast_lanes(&short_rays[i], sensor, window);
+  if (whole == short_rays.size()) return;
+  std::array<ShortRay, kLanes> rest;
+  rest.fill(short_rays.back());
+  std::ranges::copy(short_rays.subspan(whole), rest.begin());
+  cast_lanes(rest.data(), sensor, window);
+}
+
+}  // namespace
+
+std::size_t RaycastScratch::memory_bytes() const {
+  std::size_t bytes = 0;
+  for (const Rays& part : rays) bytes += part.memory_bytes();
+  for (const RayWindow& window : windows) bytes += window.memory_bytes();
+  return bytes;
+}
+
+VoxelList raycast(const VoxelSet& measured, const Voxel& sensor, double voxel_size_m,
+                  double max_range_m, RaycastScratch& scratch, ThreadPool& pool) {
+  if (measured.block_count() == 0) return {};
+  const RaySource source{measured, sensor, voxel_size_m, max_range_m};
+  const RayBounds bounds = bounds_of(source);
+  const Start sensor_index{sensor.x, sensor.y, sensor.z};
+  Start first_block{}, start{};
+  std::array<int, 3> log2_tiles{};
+  bool window_fits_lanes = true;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    first_block[axis] = (sensor_index[axis] + bounds.low[axis]) >> 3;
+    start[axis] = sensor_index[axis] - first_block[axis] * kBlockSide;
+    const std::int32_t highest = start[axis] + bounds.high[axis];
+    log2_tiles[axis] = static_cast<int>(
+        std::bit_width(static_cast<std::uint32_t>(highest / RayWindow::kTileSide)));
+    window_fits_lanes = window_fits_lanes && highest <= kMaxLaneCoordinate;
+  }
+  scratch.windows.resize(pool.size());
+  scratch.rays.resize(pool.size());
+  for (RayWindow& window : scratch.windows) window.lay_out(log2_tiles);
+
+  const std::int64_t short_limit = window_fits_lanes ? std::int64_t{1} << kLaneFraction : 0;
+  // Every share has blocks from all directions, so that all take about as long.
+  const std::size_t shares = pool.size() == 1 ? 1 : std::size_t{4} * pool.size();
+  pool.for_ranges(shares, 1, [&](std::size_t share, std::size_t, unsigned thread) {
+    Rays& rays = scratch.rays[thread];
+    collect_rays(source, {share, shares}, short_limit, rays);
+    cast_all(rays, start, scratch.windows[thread]);
+  });
+  return collect(scratch.windows, {first_block[0], first_block[1], first_block[2]}, pool);
+}
+
+}  // namespace mosbench

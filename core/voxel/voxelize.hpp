@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <mosbench/scan.hpp>
+#include <span>
+#include <vector>
+
+#include "core/base/thread_pool.hpp"
+#include "core/voxel/voxel_set.hpp"
+
+namespace mosbench {
+
+/// Number of a voxel inside a VoxelizedScan: slot of its block * 512 + cell.
+inline constexpr std::uint32_t kNoVoxel = ~std::uint32_t{0};
+
+/// A scan as sets of voxels. `occupied` runs together with `measured.blocks`.
+struct VoxelizedScan {
+  Eigen::Vector3d sensor_m = Eigen::Vector3d::Zero();  ///< in the map frame
+  Voxel sensor_voxel;
+  VoxelSet measured;                          ///< every voxel with a participating point
+  std::vector<BlockMask> occupied;            ///< those with a lower corner within max_range
+  std::vector<std::uint32_t> voxel_of_point;  ///< kNoVoxel for points that do not take part
+  std::size_t occupied_count = 0;
+  std::size_t nonfinite_points = 0;
+
+  const BlockMask* occupied_in(const BlockIndex& block) const {
+    const std::uint32_t slot = measured.find(block);
+    return slot == kNoSlot ? nullptr : &occupied[slot];
+  }
+  std::size_t memory_bytes() const {
+    return measured.memory_bytes() + occupied.capacity() * sizeof(BlockMask) +
+           voxel_of_point.capacity() * sizeof(std::uint32_t);
+  }
+};
+
+/// Whole blocks near the first sensor position, so that voxel indices stay small.
+VoxelGrid grid_around(const Eigen::Vector3d& sensor_m, double voxel_size_m);
+
+/// algorithm step 1: points farther than min_range from the sensor, in the map frame, in voxels.
+/// Throws std::range_error naming the first point whose voxel lies more than 2^19 voxels from the
+/// sensor's or 2^23 from the grid's origin.
+VoxelizedScan voxelize(std::span<const Point> points, const Pose& map_from_sensor,
+                       const VoxelGrid& grid, double min_range_m, double max_range_m,
+                       ThreadPool& pool);
+
+/// The voxel that holds a position of the map frame; throws std::range_error beyond 2^23 voxels
+/// from the grid's origin.
+Voxel voxel_of(const Eigen::Vector3d& position_m, const VoxelGrid& grid);
+
+}  // namespace mosbench

@@ -1,0 +1,118 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "datasets/doctor/doctor.hpp"
+#include "datasets/files/files.hpp"
+#include "datasets/files/folder_listing.hpp"
+#include "datasets/files/scan_file.hpp"
+
+namespace mosbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// "000017, 000019 and 3 more".
+std::string some_of(const std::vector<std::string>& names) {
+  constexpr std::size_t kShown = 5;
+  const std::size_t shown = std::min(kShown, names.size());
+  std::string text = fmt::format(
+      "{}", fmt::join(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(shown), ", "));
+  if (names.size() > shown) text += fmt::format(" and {} more", names.size() - shown);
+  return text;
+}
+
+/// Numbers that a run of numbered scans skips. Stamps as names skip always, so a numbering counts
+/// as one only when most numbers are there.
+std::vector<std::string> gaps_of(const std::vector<StemFile>& scans) {
+  std::set<std::uint64_t> numbers;
+  for (const StemFile& scan : scans) {
+    const auto number = stem_number(scan.stem);
+    if (!number) return {};
+    numbers.insert(*number);
+  }
+  if (numbers.empty() || *numbers.rbegin() - *numbers.begin() >= 2 * numbers.size()) return {};
+  std::vector<std::string> gaps;
+  for (std::uint64_t n = *numbers.begin(); n < *numbers.rbegin(); ++n) {
+    if (!numbers.contains(n)) gaps.push_back(fmt::format("{:0{}}", n, scans.front().stem.size()));
+  }
+  return gaps;
+}
+
+std::vector<std::string> stems_without(const std::vector<StemFile>& files,
+                                       const std::vector<StemFile>& partners) {
+  std::set<std::string> known;
+  for (const StemFile& partner : partners) known.insert(partner.stem);
+  std::vector<std::string> without;
+  for (const StemFile& file : files) {
+    if (!known.contains(file.stem)) without.push_back(file.stem);
+  }
+  return without;
+}
+
+void check_labels(const fs::path& folder, const std::vector<StemFile>& scans,
+                  const std::string& name, std::vector<Symptom>& symptoms) {
+  const auto labels = list_by_stem(folder, {".label"});
+  const auto orphans = stems_without(labels, scans);
+  if (!orphans.empty()) {
+    symptoms.push_back({Severity::kError, name,
+                        fmt::format("{} label files have no scan: {}; expected a scan of the same "
+                                    "name for each",
+                                    orphans.size(), some_of(orphans))});
+  }
+  // Data sets that label part of the scans do so for a minority or at a regular distance.
+  constexpr double kMostlyLabelled = 0.8;
+  const auto unlabelled = stems_without(scans, labels);
+  const auto share = static_cast<double>(labels.size()) / static_cast<double>(scans.size());
+  if (!unlabelled.empty() && share > kMostlyLabelled) {
+    symptoms.push_back({Severity::kWarning, name,
+                        fmt::format("{} of {} scans have no label: {}; expected labels for all or "
+                                    "for a part at regular distances",
+                                    unlabelled.size(), scans.size(), some_of(unlabelled))});
+  }
+}
+
+/// A scan of far fewer points than those around it was cut off while it was copied.
+void check_sizes(const std::vector<StemFile>& scans, const std::string& name,
+                 std::vector<Symptom>& symptoms) {
+  constexpr std::size_t kAround = 3;
+  std::vector<std::uintmax_t> sizes_bytes;
+  for (const StemFile& scan : scans) sizes_bytes.push_back(size_of(scan.file));
+  std::vector<std::string> small;
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    const std::size_t from = i < kAround ? 0 : i - kAround;
+    std::vector<std::uintmax_t> around(
+        sizes_bytes.begin() + static_cast<std::ptrdiff_t>(from),
+        sizes_bytes.begin() + static_cast<std::ptrdiff_t>(std::min(i + kAround + 1, scans.size())));
+    std::ranges::nth_element(around,
+                             around.begin() + static_cast<std::ptrdiff_t>(around.size() / 2));
+    if (10 * sizes_bytes[i] < 6 * around[around.size() / 2]) small.push_back(scans[i].stem);
+  }
+  if (small.empty()) return;
+  symptoms.push_back({Severity::kWarning, name,
+                      fmt::format("{} scans are far smaller than those around them: {}; expected "
+                                  "scans of like size",
+                                  small.size(), some_of(small))});
+}
+
+}  // namespace
+
+std::vector<Symptom> check_folder(const fs::path& folder, const std::string& name) {
+  std::vector<Symptom> symptoms;
+  if (!scan_folder_of(folder)) return symptoms;
+  const auto scans = list_scans(folder);
+  const auto gaps = gaps_of(scans);
+  if (!gaps.empty()) {
+    symptoms.push_back(
+        {Severity::kWarning, name,
+         fmt::format("the numbering of the scans lacks {}: {}; expected all numbers "
+                     "from {} to {}",
+                     gaps.size(), some_of(gaps), scans.front().stem, scans.back().stem)});
+  }
+  if (is_there(folder / "labels")) check_labels(folder / "labels", scans, name, symptoms);
+  check_sizes(scans, name, symptoms);
+  return symptoms;
+}
+
+}  // namespace mosbench

@@ -1,0 +1,59 @@
+#include "datasets/files/bin_file.hpp"
+
+#include <bit>
+#include <cstring>
+
+#include "datasets/files/errors.hpp"
+#include "datasets/files/files.hpp"
+
+namespace mosbench {
+
+static_assert(std::endian::native == std::endian::little, "scans are copied as they are stored");
+
+void check_bin_size(std::uintmax_t size_bytes, std::size_t columns,
+                    const std::filesystem::path& file) {
+  if (size_bytes % (columns * sizeof(float)) == 0) return;
+  throw DataError(file,
+                  std::to_string(size_bytes) + " bytes are no multiple of " +
+                      std::to_string(columns * sizeof(float)) +
+                      ": cut off, or raw data of another layout",
+                  std::to_string(columns) + " float32 per point (x y z intensity" +
+                      (columns > 4 ? " ...)" : ")"));
+}
+
+std::vector<Point> parse_bin(std::string_view bytes, std::size_t columns,
+                             const std::filesystem::path& file) {
+  check_bin_size(bytes.size(), columns, file);
+  const std::size_t record_bytes = columns * sizeof(float);
+  std::vector<Point> points(bytes.size() / record_bytes);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    std::memcpy(&points[i], bytes.data() + i * record_bytes, sizeof(Point));
+  }
+  return points;
+}
+
+std::vector<Point> parse_bin(std::string_view bytes, const std::filesystem::path& file) {
+  return parse_bin(bytes, 4, file);
+}
+
+std::string_view format_bin(std::span<const Point> points) {
+  return {reinterpret_cast<const char*>(points.data()), points.size_bytes()};
+}
+
+std::vector<Point> read_bin(const std::filesystem::path& file, std::size_t columns,
+                            std::vector<Point> spent) {
+  if (columns * sizeof(float) != sizeof(Point)) return parse_bin(read_file(file), columns, file);
+  const std::uintmax_t size_bytes = size_of(file);
+  check_bin_size(size_bytes, columns, file);
+  const auto count = static_cast<std::size_t>(size_bytes) / sizeof(Point);
+  if (spent.capacity() < count) spent = {};  // growing would copy old points
+  spent.resize(count);
+  read_file(file, std::as_writable_bytes(std::span(spent)));
+  return spent;
+}
+
+void write_bin(const std::filesystem::path& file, std::span<const Point> points) {
+  write_file_atomic(file, format_bin(points));
+}
+
+}  // namespace mosbench

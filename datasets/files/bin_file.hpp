@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <mosbench/scan.hpp>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace mosbench {
+
+/// Points of a scan stored as little-endian float32 x y z intensity. No byte is an empty scan; NaN
+/// and infinite values are kept. Throws DataError when the size is no multiple of 16 bytes.
+std::vector<Point> parse_bin(std::string_view bytes, const std::filesystem::path& file);
+/// The same with `columns` float32 per point, of which the first four are kept: nuScenes adds the
+/// ring.
+std::vector<Point> parse_bin(std::string_view bytes, std::size_t columns,
+                             const std::filesystem::path& file);
+/// The bytes of a file, where the points lie.
+std::string_view format_bin(std::span<const Point> points);
+
+/// Throws the DataError of `parse_bin` for a size in bytes that no scan has.
+void check_bin_size(std::uintmax_t size_bytes, std::size_t columns,
+                    const std::filesystem::path& file);
+
+/// As `parse_bin`, into the memory of `spent` where it can.
+std::vector<Point> read_bin(const std::filesystem::path& file, std::size_t columns = 4,
+                            std::vector<Point> spent = {});
+void write_bin(const std::filesystem::path& file, std::span<const Point> points);
+
+}  // namespace mosbench

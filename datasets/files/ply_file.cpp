@@ -1,0 +1,197 @@
+#include "datasets/files/ply_file.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <string>
+#include <utility>
+
+#include "datasets/files/errors.hpp"
+#include "datasets/files/point_records.hpp"
+#include "datasets/files/text.hpp"
+
+namespace mosbench {
+namespace {
+
+constexpr std::uint64_t kMostVertices = 1ULL << 31U;
+constexpr std::size_t kMostProperties = 1000;
+
+struct PlyType {
+  std::string_view name;
+  std::uint8_t datatype;  ///< of CloudField
+  std::uint32_t size_bytes;
+};
+
+constexpr std::array<PlyType, 16> kTypes = {{{"char", 1, 1},
+                                             {"int8", 1, 1},
+                                             {"uchar", 2, 1},
+                                             {"uint8", 2, 1},
+                                             {"short", 3, 2},
+                                             {"int16", 3, 2},
+                                             {"ushort", 4, 2},
+                                             {"uint16", 4, 2},
+                                             {"int", 5, 4},
+                                             {"int32", 5, 4},
+                                             {"uint", 6, 4},
+                                             {"uint32", 6, 4},
+                                             {"float", 7, 4},
+                                             {"float32", 7, 4},
+                                             {"double", 8, 8},
+                                             {"float64", 8, 8}}};
+
+/// The vertices as records of fields, and how they are stored.
+struct PlyHead {
+  CloudHead vertices;
+  bool ascii = false;
+};
+
+class PlyHeadParser {
+ public:
+  PlyHeadParser(std::string_view bytes, const std::filesystem::path& file)
+      : bytes_(bytes), file_(file) {}
+
+  PlyHead run() {
+    if (next_line() != "ply") fail("does not start with \"ply\"", "a PLY file");
+    while (true) {
+      const std::string_view line = next_line();
+      if (line == "end_header") break;
+      take(split_at_blanks(line), line);
+    }
+    if (!has_format_ || !has_vertices_) {
+      fail("its header lacks a format or the element vertex", "both");
+    }
+    CloudHead& head = head_.vertices;
+    head.height = 1;
+    head.records_at_bytes = at_;
+    if (!head_.ascii && (bytes_.size() - at_) / std::max(1U, head.point_step_bytes) < head.width) {
+      fail("ends within its points",
+           std::to_string(head.width) + " of " + std::to_string(head.point_step_bytes) + " bytes");
+    }
+    return head_;
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& wrong, const std::string& expected) const {
+    throw DataError(file_, wrong, expected);
+  }
+
+  std::string_view next_line() {
+    const std::size_t end = bytes_.find('\n', at_);
+    if (end == std::string_view::npos) fail("has no line \"end_header\"", "a PLY file");
+    const std::string_view line = trim(bytes_.substr(at_, end - at_));
+    at_ = end + 1;
+    return line;
+  }
+
+  void take(const std::vector<std::string_view>& words, std::string_view line) {
+    if (words.empty() || words[0] == "comment" || words[0] == "obj_info") return;
+    if (words[0] == "format" && words.size() == 3) {
+      take_format(words[1]);
+    } else if (words[0] == "element" && words.size() == 3) {
+      take_element(words[1], words[2]);
+    } else if (words[0] == "property" && words.size() >= 3) {
+      if (in_vertices_) take_property(words);
+    } else {
+      fail("header line " + quoted(line), "format, element, property or comment");
+    }
+  }
+
+  void take_format(std::string_view format) {
+    if (format != "ascii" && format != "binary_little_endian" && format != "binary_big_endian") {
+      fail("format " + quoted(format), "ascii, binary_little_endian or binary_big_endian");
+    }
+    head_.ascii = format == "ascii";
+    head_.vertices.big_endian = format == "binary_big_endian";
+    has_format_ = true;
+  }
+
+  void take_element(std::string_view name, std::string_view count) {
+    const auto number = parse_unsigned(count);
+    if (!number || *number >= kMostVertices) fail(quoted(count) + " elements", "a whole number");
+    in_vertices_ = name == "vertex";
+    if (in_vertices_ && (has_vertices_ || other_elements_)) {
+      fail("its element vertex is not the first", "vertices first, once");
+    }
+    if (in_vertices_) head_.vertices.width = static_cast<std::uint32_t>(*number);
+    has_vertices_ = has_vertices_ || in_vertices_;
+    other_elements_ = other_elements_ || !in_vertices_;
+  }
+
+  void take_property(const std::vector<std::string_view>& words) {
+    CloudHead& head = head_.vertices;
+    const auto type = std::ranges::find(kTypes, words[1], &PlyType::name);
+    if (type == kTypes.end() || words.size() != 3 || head.fields.size() == kMostProperties) {
+      fail("property " + quoted(words.back()) + " of vertex is no single number",
+           "a type of PLY other than list");
+    }
+    head.fields.push_back({std::string(words[2]), head.point_step_bytes, type->datatype, 1});
+    head.point_step_bytes += type->size_bytes;
+  }
+
+  std::string_view bytes_;
+  const std::filesystem::path& file_;
+  PlyHead head_;
+  std::size_t at_ = 0;
+  bool has_format_ = false, has_vertices_ = false, in_vertices_ = false, other_elements_ = false;
+};
+
+/// Where each of x y z intensity stands in a row; behind the row when there is none.
+std::array<std::size_t, 4> columns_of(const CloudHead& head, const std::filesystem::path& file) {
+  std::array<std::size_t, 4> columns{};
+  constexpr std::array<std::string_view, 4> kNames = {"x", "y", "z", "intensity"};
+  for (std::size_t i = 0; i < kNames.size(); ++i) {
+    const auto field = std::ranges::find(head.fields, kNames[i], &CloudField::name);
+    columns[i] = static_cast<std::size_t>(field - head.fields.begin());
+    if (field == head.fields.end() && kNames[i] != "intensity") {
+      throw DataError(file, "the points have no field " + std::string(kNames[i]),
+                      "fields x y z [intensity]");
+    }
+  }
+  return columns;
+}
+
+std::vector<Point> parse_ascii(const CloudHead& head, std::string_view body,
+                               const std::filesystem::path& file) {
+  const auto columns = columns_of(head, file);
+  std::vector<Point> points;
+  std::size_t at = 0;
+  while (points.size() < head.width) {
+    if (at >= body.size()) {
+      throw DataError(file, std::to_string(points.size()) + " rows of points",
+                      std::to_string(head.width));
+    }
+    const std::size_t end = std::min(body.find('\n', at), body.size());
+    const auto words = split_at_blanks(body.substr(at, end - at));
+    at = end + 1;
+    std::array<float, 4> values{};
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (columns[i] == head.fields.size()) continue;
+      const std::string_view word = columns[i] < words.size() ? words[columns[i]] : "";
+      const auto [stop, error] = std::from_chars(word.data(), word.data() + word.size(), values[i]);
+      if (error != std::errc{} || stop != word.data() + word.size() ||
+          words.size() != head.fields.size()) {
+        throw DataError(file, "point " + std::to_string(points.size()) + " is no row of numbers",
+                        std::to_string(head.fields.size()) + " of them");
+      }
+    }
+    points.push_back({values[0], values[1], values[2], values[3]});
+  }
+  return points;
+}
+
+}  // namespace
+
+std::vector<Point> parse_ply(std::string_view bytes, const std::filesystem::path& file) {
+  const PlyHead head = PlyHeadParser(bytes, file).run();
+  if (head.ascii) {
+    return parse_ascii(head.vertices, bytes.substr(head.vertices.records_at_bytes), file);
+  }
+  if (head.vertices.width == 0) return {};
+  return points_of(head.vertices, bytes, file);
+}
+
+std::size_t ply_point_count(std::string_view bytes, const std::filesystem::path& file) {
+  return PlyHeadParser(bytes, file).run().vertices.points();
+}
+
+}  // namespace mosbench

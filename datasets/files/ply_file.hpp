@@ -1,0 +1,19 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <mosbench/scan.hpp>
+#include <string_view>
+#include <vector>
+
+namespace mosbench {
+
+/// Points of a PLY file, ascii or binary of either byte order: properties x, y, z, and intensity (0
+/// when there is none) of its element "vertex", which has to come first; all others are left aside.
+/// PCL's reader of PLY is not used, it takes a cut off file for a whole one. Throws DataError.
+std::vector<Point> parse_ply(std::string_view bytes, const std::filesystem::path& file);
+
+/// Points by the header, the file's length checked; throws as `parse_ply`.
+std::size_t ply_point_count(std::string_view bytes, const std::filesystem::path& file);
+
+}  // namespace mosbench

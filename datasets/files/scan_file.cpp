@@ -1,0 +1,72 @@
+#include "datasets/files/scan_file.hpp"
+
+#include <system_error>
+#include <utility>
+
+#include "datasets/files/bin_file.hpp"
+#include "datasets/files/errors.hpp"
+#include "datasets/files/files.hpp"
+#include "datasets/files/pcd_file.hpp"
+#include "datasets/files/ply_file.hpp"
+
+namespace mosbench {
+namespace {
+
+constexpr const char* kLayout =
+    "a sequence folder: velodyne/ (or binFiles/) with one .bin per scan, beside it poses.txt and, "
+    "where there is truth, labels/ or indices.csv";
+
+constexpr std::string_view kNuscenesEnd = ".pcd.bin";
+constexpr std::size_t kNuscenesColumns = 5;
+
+bool has_extension(const std::filesystem::path& file, const char* extension) {
+  return file.extension() == extension;
+}
+
+std::size_t columns_of(const std::filesystem::path& file, std::size_t told) {
+  return file.string().ends_with(kNuscenesEnd) ? kNuscenesColumns : told;
+}
+
+}  // namespace
+
+std::optional<std::filesystem::path> scan_folder_of(const std::filesystem::path& sequence_folder) {
+  for (const char* name : {"velodyne", "binFiles", "LIDAR_TOP"}) {
+    std::error_code ignored;
+    const auto folder = sequence_folder / name;
+    if (std::filesystem::is_directory(folder, ignored)) return folder;
+  }
+  return std::nullopt;
+}
+
+std::vector<StemFile> list_scan_folder(const std::filesystem::path& scan_folder) {
+  auto scans = list_by_stem(scan_folder, {".bin", ".pcd", ".ply"});
+  if (scans.empty()) throw DataError(scan_folder, "holds no scan", kLayout);
+  for (StemFile& scan : scans) {
+    if (scan.file.string().ends_with(kNuscenesEnd)) scan.stem.resize(scan.stem.size() - 4);
+  }
+  return scans;
+}
+
+std::vector<StemFile> list_scans(const std::filesystem::path& sequence_folder) {
+  const auto folder = scan_folder_of(sequence_folder);
+  if (!folder) throw DataError(sequence_folder, "has no folder of scans", kLayout);
+  return list_scan_folder(*folder);
+}
+
+std::vector<Point> read_scan(const std::filesystem::path& file, std::size_t bin_columns,
+                             std::vector<Point> spent) {
+  if (has_extension(file, ".pcd")) return read_pcd(file);
+  if (has_extension(file, ".ply")) return parse_ply(read_file(file), file);
+  return read_bin(file, columns_of(file, bin_columns), std::move(spent));
+}
+
+std::size_t scan_point_count(const std::filesystem::path& file, std::size_t bin_columns) {
+  if (has_extension(file, ".pcd")) return pcd_point_count(file);
+  if (has_extension(file, ".ply")) return ply_point_count(read_file(file), file);
+  const std::uintmax_t size_bytes = size_of(file);
+  const std::size_t columns = columns_of(file, bin_columns);
+  check_bin_size(size_bytes, columns, file);
+  return static_cast<std::size_t>(size_bytes) / (columns * sizeof(float));
+}
+
+}  // namespace mosbench

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <mosbench/scan.hpp>
+#include <optional>
+#include <vector>
+
+#include "datasets/files/folder_listing.hpp"
+
+namespace mosbench {
+
+/// The folder of scans in a sequence folder: velodyne/, else binFiles/, else LIDAR_TOP/ (nuScenes),
+/// else nothing.
+std::optional<std::filesystem::path> scan_folder_of(const std::filesystem::path& sequence_folder);
+
+/// The scans (.bin, .pcd, .ply) of `scan_folder` in order. Throws DataError when there are none.
+std::vector<StemFile> list_scan_folder(const std::filesystem::path& scan_folder);
+/// Those of `scan_folder_of`. Throws DataError also when the sequence folder has none.
+std::vector<StemFile> list_scans(const std::filesystem::path& sequence_folder);
+
+/// Points of a scan. A .bin file has `bin_columns` float32 per point, one that ends in .pcd.bin
+/// five as in nuScenes. The memory of `spent` may serve them. Throws DataError.
+std::vector<Point> read_scan(const std::filesystem::path& file, std::size_t bin_columns = 4,
+                             std::vector<Point> spent = {});
+
+/// Points of a scan by its size or header; throws DataError.
+std::size_t scan_point_count(const std::filesystem::path& file, std::size_t bin_columns = 4);
+
+}  // namespace mosbench

@@ -1,0 +1,118 @@
+#include "datasets/layouts/dataset.hpp"
+
+#include <algorithm>
+#include <array>
+#include <system_error>
+#include <utility>
+
+#include "datasets/files/errors.hpp"
+#include "datasets/layouts/catalogue.hpp"
+#include "datasets/layouts/simulated_origin.hpp"
+
+namespace mosbench {
+namespace {
+
+/// In the order in which an untold path is tried: the most telling layout first.
+const std::array<const Catalogue*, 8>& catalogues() {
+  static const std::array<const Catalogue*, 8> all = {
+      &helimos_catalogue(),  &doals_catalogue(),        &moe_catalogue(),
+      &kth_catalogue(),      &apollo_catalogue(),       &mdetector_catalogue(),
+      &sipailou_catalogue(), &semantickitti_catalogue()};
+  return all;
+}
+
+const Catalogue& catalogue_of(DatasetKind kind) {
+  return **std::ranges::find_if(
+      catalogues(), [kind](const Catalogue* catalogue) { return catalogue->kind == kind; });
+}
+
+const Catalogue& recognise(const std::filesystem::path& path, std::vector<std::string>& remarks) {
+  if (const auto origin = simulated_origin(path)) {
+    remarks.push_back("taken for " + std::string(to_string(origin->layout)) +
+                      ": it is simulated in this layout");
+    return catalogue_of(origin->layout);
+  }
+  for (const Catalogue* catalogue : catalogues()) {
+    if (const auto why = catalogue->recognise(path)) {
+      remarks.push_back("taken for " + std::string(to_string(catalogue->kind)) + ": " + *why);
+      return *catalogue;
+    }
+  }
+  throw DataError(
+      path, "holds no sequence",
+      "a data set or one sequence folder (velodyne/ or binFiles/ with scans, poses.txt)");
+}
+
+std::string joined(const std::vector<SequenceFolder>& folders) {
+  std::string names;
+  for (const SequenceFolder& folder : folders) names += (names.empty() ? "" : ", ") + folder.name;
+  return names;
+}
+
+/// Those whose name or alias was asked for, in the data set's order; all when none was.
+std::vector<SequenceFolder> keep(std::vector<SequenceFolder> folders,
+                                 const std::vector<std::string>& names) {
+  if (names.empty()) return folders;
+  const auto has_name = [](const SequenceFolder& folder, const std::string& name) {
+    return !name.empty() && (folder.name == name || folder.alias == name);
+  };
+  for (const std::string& name : names) {
+    if (std::ranges::any_of(folders, [&](const auto& folder) { return has_name(folder, name); })) {
+      continue;
+    }
+    throw UsageError("no sequence \"" + name + "\", expected one of " + joined(folders));
+  }
+  std::erase_if(folders, [&](const SequenceFolder& folder) {
+    return std::ranges::none_of(names, [&](const auto& name) { return has_name(folder, name); });
+  });
+  return folders;
+}
+
+struct Found {
+  const Catalogue& catalogue;
+  std::vector<SequenceFolder> folders;
+};
+
+Found find(const std::filesystem::path& path, const OpenOptions& options,
+           std::vector<std::string>& remarks) {
+  std::error_code error;
+  const std::filesystem::directory_iterator listing(path, error);
+  if (error) {
+    throw DataError(path, "is no folder that can be listed (" + error.message() + ")",
+                    "a data set's root or one sequence folder");
+  }
+  const Catalogue& catalogue =
+      options.kind ? catalogue_of(*options.kind) : recognise(path, remarks);
+  auto found = catalogue.list(path);
+  if (found.empty()) throw DataError(path, "holds no sequence", catalogue.layout);
+  return {catalogue, keep(std::move(found), options.sequences)};
+}
+
+}  // namespace
+
+std::vector<SequenceFolder> find_sequences(const std::filesystem::path& path,
+                                           const OpenOptions& options,
+                                           std::optional<DatasetKind>& kind) {
+  std::vector<std::string> ignored;
+  Found found = find(path, options, ignored);
+  kind = found.catalogue.kind;
+  return std::move(found.folders);
+}
+
+Dataset open_dataset(const std::filesystem::path& path, const OpenOptions& options) {
+  Dataset dataset;
+  const auto [catalogue, folders] = find(path, options, dataset.remarks);
+  dataset.kind = catalogue.kind;
+  dataset.root = path;
+  if (options.reading.poses && folders.size() != 1) {
+    throw UsageError("--poses is for one sequence, not for " + joined(folders) +
+                     ", expected one name in --sequences");
+  }
+  for (const SequenceFolder& folder : folders) {
+    dataset.sequences.push_back(catalogue.open(folder, options.reading));
+  }
+  dataset.splits = catalogue.splits(folders, dataset.sequences, dataset.remarks);
+  return dataset;
+}
+
+}  // namespace mosbench

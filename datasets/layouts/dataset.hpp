@@ -1,0 +1,84 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "datasets/sequence/sequence.hpp"
+
+namespace mosbench {
+
+enum class DatasetKind {
+  kDoals,
+  kSipailou,
+  kHelimos,
+  kSemanticKitti,
+  kApollo,
+  kMoe,
+  kKth,
+  kMdetector
+};
+
+std::string_view to_string(DatasetKind kind);
+/// Nothing when the name is not one of `dataset_kind_names()`.
+std::optional<DatasetKind> dataset_kind_from_string(std::string_view name);
+/// "doals, sipailou, ..."
+std::string dataset_kind_names();
+/// Whether `simulate` and `convert` write the layout: the first four.
+bool is_written(DatasetKind kind);
+
+/// Part of a sequence: the scans with these stems, or all of them.
+struct SplitPart {
+  std::size_t sequence = 0;  ///< position in Dataset::sequences
+  std::optional<std::set<std::string>> stems;
+};
+
+/// Scans that a published number is computed over: Sipailou "test" is sequences 00 and 07, HeLiMOS
+/// "test" the stems of test.txt in each sensor, DOALS "ST" both station sequences.
+struct Split {
+  std::string name;
+  std::vector<SplitPart> parts;
+};
+
+struct Dataset {
+  DatasetKind kind = DatasetKind::kSemanticKitti;
+  std::filesystem::path root;
+  std::vector<std::unique_ptr<Sequence>> sequences;  ///< in the data set's own order
+  std::vector<Split> splits;                         ///< only those with at least one scan here
+  std::vector<std::string> remarks;                  ///< what was assumed about the whole
+};
+
+struct OpenOptions {
+  /// Recognised from the folders when not given.
+  std::optional<DatasetKind> kind = std::nullopt;
+  /// Names to keep; all when empty. DOALS takes the numbers 1 to 8 of the published ones as well.
+  std::vector<std::string> sequences = {};
+  ReadingOptions reading = {};
+};
+
+/// A sequence found on disk and not yet opened.
+struct SequenceFolder {
+  std::string name;  ///< Sequence::name
+  std::filesystem::path folder;
+  std::string alias;  ///< a second name that --sequences takes; may be empty
+};
+
+/// The sequences that `open_dataset` would open, in its order, without opening them; `kind` becomes
+/// what it would recognise. Throws as it does for what it lists.
+std::vector<SequenceFolder> find_sequences(const std::filesystem::path& path,
+                                           const OpenOptions& options,
+                                           std::optional<DatasetKind>& kind);
+
+/// Opens a data set's root or one sequence folder, and of it only the sequences kept. A kind that
+/// is not given is recognised, in this order: folders named after HeLiMOS's sensors; indices.csv or
+/// sequence_N folders (doals); pcd/ beside gt_poses.txt (moe) or gt_cloud.pcd (kth);
+/// velodyne_poses_kitti.txt (apollo); "M-detector" or "sipailou" in a folder name of the path; else
+/// semantickitti. A remark says so. Throws DataError when nothing usable is there, UsageError for a
+/// sequence name that does not exist or a pose file given for several sequences.
+Dataset open_dataset(const std::filesystem::path& path, const OpenOptions& options);
+
+}  // namespace mosbench

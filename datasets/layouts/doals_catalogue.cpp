@@ -1,0 +1,94 @@
+#include "datasets/files/files.hpp"
+#include "datasets/files/folder_listing.hpp"
+#include "datasets/files/scan_file.hpp"
+#include "datasets/layouts/catalogue.hpp"
+#include "datasets/layouts/doals_sequence.hpp"
+
+namespace mosbench {
+namespace {
+
+const DoalsPublished* published_of(const std::filesystem::path& folder) {
+  return find_doals_published(folder_name(parent_folder(folder)), folder_name(folder));
+}
+
+SequenceFolder sequence_folder(std::string name, const std::filesystem::path& folder) {
+  const DoalsPublished* published = published_of(folder);
+  return {std::move(name), folder, published ? std::to_string(published->number) : ""};
+}
+
+bool is_sequence_name(const std::string& name) { return name.starts_with("sequence_"); }
+
+/// The sequence_N folders of one scene, with scans, a bag or neither; `prefix`
+/// goes before their names.
+void list_scene(const std::filesystem::path& scene, const std::string& prefix,
+                std::vector<SequenceFolder>& sequences) {
+  for (const auto& folder : list_folders(scene)) {
+    const std::string name = folder.filename().string();
+    if (!is_sequence_name(name)) continue;
+    sequences.push_back(sequence_folder(prefix + name, folder));
+  }
+}
+
+/// The published scenes' alphabetical order is that of the published numbers.
+std::vector<SequenceFolder> list_doals(const std::filesystem::path& path) {
+  if (scan_folder_of(path) || !list_by_stem(path, {".bag"}).empty())
+    return {sequence_folder(folder_name(path), path)};
+  std::vector<SequenceFolder> sequences;
+  list_scene(path, "", sequences);
+  if (!sequences.empty()) return sequences;
+  for (const auto& scene : list_folders(path)) {
+    list_scene(scene, scene.filename().string() + "/", sequences);
+  }
+  return sequences;
+}
+
+std::unique_ptr<Sequence> open_doals(const SequenceFolder& sequence,
+                                     const ReadingOptions& options) {
+  return std::make_unique<DoalsSequence>(sequence.name, sequence.folder,
+                                         published_of(sequence.folder), options);
+}
+
+/// ST, SV, HG and ND: both sequences of a scene.
+std::vector<Split> doals_splits(const std::vector<SequenceFolder>& folders,
+                                const std::vector<std::unique_ptr<Sequence>>&,
+                                std::vector<std::string>&) {
+  std::vector<Split> splits;
+  for (const std::string_view name : {"ST", "SV", "HG", "ND"}) {
+    Split split{std::string(name), {}};
+    for (std::size_t i = 0; i < folders.size(); ++i) {
+      const std::string scene = folder_name(parent_folder(folders[i].folder));
+      const DoalsPublished* published = find_doals_published(scene, "sequence_1");
+      if (published && published->split == name) split.parts.push_back({i, std::nullopt});
+    }
+    if (!split.parts.empty()) splits.push_back(std::move(split));
+  }
+  return splits;
+}
+
+std::optional<std::string> recognise_doals(const std::filesystem::path& path) {
+  const auto sequences = list_doals(path);
+  for (const SequenceFolder& sequence : sequences) {
+    if (is_there(sequence.folder / "indices.csv")) return "indices.csv is there";
+  }
+  if (sequences.empty() || !is_sequence_name(folder_name(sequences.front().folder))) {
+    return std::nullopt;
+  }
+  return "sequence_N folders are there";
+}
+
+}  // namespace
+
+const Catalogue& doals_catalogue() {
+  static const Catalogue catalogue = {
+      DatasetKind::kDoals,
+      "<scene>/sequence_N with a bag, or velodyne/ or binFiles/ and poses.txt, "
+      "and indices.csv each (DOALS), or one "
+      "such sequence folder",
+      list_doals,
+      open_doals,
+      doals_splits,
+      recognise_doals};
+  return catalogue;
+}
+
+}  // namespace mosbench

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "datasets/files/indices_file.hpp"
+#include "datasets/sequence/sourced_sequence.hpp"
+
+namespace mosbench {
+
+/// One of the eight published DOALS sequences.
+struct DoalsPublished {
+  int number;                         ///< 1 to 8
+  std::string_view scene;             ///< folder of the scene
+  std::string_view sequence;          ///< folder below it
+  std::string_view split;             ///< column of the paper's table: HG, ND, SV, ST
+  std::size_t scans;                  ///< length of the recording
+  std::array<std::size_t, 10> truth;  ///< labelled scans, counted from 1 (evalIndFile.cpp, HMM-MOS)
+};
+
+/// All eight, by number.
+std::span<const DoalsPublished> doals_published();
+
+/// The published sequence that lies in `scene`/`sequence`, or null.
+const DoalsPublished* find_doals_published(std::string_view scene, std::string_view sequence);
+
+/// One DOALS sequence: its bag, or scans exported to velodyne/ or binFiles/ in the raw firing order
+/// with no point dropped and poses.txt; indices.csv with the moving points of the labelled scans.
+/// Exported scans are taken where both are there. Truth is
+/// kMovingLabel for listed points and kStaticLabel for all others. A labelled scan is found by its
+/// exact stamp; without stamps by the published list, if the recording has the published length.
+class DoalsSequence : public SourcedSequence {
+ public:
+  /// `published` is null for a recording of one's own. Throws DataError, also for a stamp or an
+  /// index in indices.csv that no scan has.
+  DoalsSequence(std::string name, const std::filesystem::path& folder,
+                const DoalsPublished* published, const ReadingOptions& options = {});
+
+  bool has_truth(std::size_t scan_index) const override { return truth_.contains(scan_index); }
+  std::vector<std::uint32_t> read_truth(std::size_t scan_index) const override;
+  std::vector<std::filesystem::path> files() const override;
+  std::vector<std::string> remarks() const override;
+
+ private:
+  void open_truth(const DoalsPublished* published);
+  std::vector<std::size_t> scans_by_stamp(std::span<const IndicesRow> rows) const;
+  std::vector<std::size_t> scans_by_list(std::span<const IndicesRow> rows,
+                                         const DoalsPublished* published) const;
+
+  std::filesystem::path indices_file_;
+  std::map<std::size_t, IndicesRow> truth_;  ///< by scan
+  std::vector<std::string> truth_remarks_;
+};
+
+}  // namespace mosbench

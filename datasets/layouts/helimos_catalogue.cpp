@@ -1,0 +1,136 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <span>
+
+#include "datasets/files/errors.hpp"
+#include "datasets/files/files.hpp"
+#include "datasets/files/folder_listing.hpp"
+#include "datasets/files/scan_file.hpp"
+#include "datasets/files/split_file.hpp"
+#include "datasets/files/text.hpp"
+#include "datasets/layouts/catalogue.hpp"
+#include "datasets/layouts/helimos_layout.hpp"
+#include "datasets/layouts/kitti_sequence.hpp"
+
+namespace mosbench {
+namespace {
+
+/// The four recordings end up to this many scans apart (12475 to 12477), and share their split
+/// files.
+constexpr std::uint64_t kLongestTail = 2;
+
+bool is_sensor(const std::string& name) {
+  return std::ranges::find(kHelimosSensors, name) != kHelimosSensors.end();
+}
+
+/// All sensor folders if one has scans: one without is listed, so that opening it says what it
+/// lacks.
+std::vector<SequenceFolder> list_sensors(const std::filesystem::path& root) {
+  std::vector<SequenceFolder> sequences;
+  bool has_scans = false;
+  for (const char* sensor : kHelimosSensors) {
+    if (!is_there(root / sensor)) continue;
+    sequences.push_back({sensor, root / sensor, ""});
+    has_scans = has_scans || scan_folder_of(root / sensor);
+  }
+  return has_scans ? sequences : std::vector<SequenceFolder>{};
+}
+
+/// `root` and the folders below it that are spelt Deskewed_LiDAR in any case.
+std::vector<SequenceFolder> list_deskewed(const std::filesystem::path& root) {
+  if (auto sequences = list_sensors(root); !sequences.empty()) return sequences;
+  for (const auto& folder : list_folders(root)) {
+    if (lower_case(folder.filename().string()) == lower_case(kHelimosScans))
+      return list_sensors(folder);
+  }
+  return {};
+}
+
+std::vector<SequenceFolder> list_helimos(const std::filesystem::path& path) {
+  if (scan_folder_of(path)) return {{folder_name(path), path, ""}};
+  if (auto sequences = list_deskewed(path); !sequences.empty()) return sequences;
+  const auto kaist = path / kHelimosPlace;
+  return std::filesystem::is_directory(kaist) ? list_deskewed(kaist)
+                                              : std::vector<SequenceFolder>{};
+}
+
+std::unique_ptr<Sequence> open_helimos(const SequenceFolder& sequence,
+                                       const ReadingOptions& options) {
+  return std::make_unique<KittiSequence>(sequence.name, sequence.folder, options);
+}
+
+/// The scans of `sequence` that a split file numbers. A number without a scan is an error, as the
+/// score would silently be over another set, except in the tail that a shorter recording lacks.
+std::set<std::string> stems_of_split(const Sequence& sequence, const std::filesystem::path& file,
+                                     std::vector<std::string>& remarks) {
+  std::map<std::uint64_t, std::size_t> scan_of_number;
+  for (std::size_t i = 0; i < sequence.size(); ++i) {
+    if (const auto number = stem_number(sequence.stem(i))) scan_of_number.emplace(*number, i);
+  }
+  const std::uint64_t last = scan_of_number.empty() ? 0 : scan_of_number.rbegin()->first;
+  std::set<std::string> stems;
+  std::size_t beyond = 0;
+  std::size_t unlabelled = 0;
+  for (const std::uint64_t number : read_split(file)) {
+    const auto scan = scan_of_number.find(number);
+    if (scan != scan_of_number.end()) {
+      stems.insert(sequence.stem(scan->second));
+      if (!sequence.has_truth(scan->second)) ++unlabelled;
+    } else if (number > last && number - last <= kLongestTail) {
+      ++beyond;
+    } else {
+      throw DataError(
+          file, fmt::format("names frame {}, which {} does not have", number, sequence.name()),
+          "numbers of scans");
+    }
+  }
+  const auto remark = [&](std::size_t count, const char* fault) {
+    if (count == 0) return;
+    remarks.push_back(fmt::format("{}: {} of the frames in {} {}", sequence.name(), count,
+                                  file.filename().string(), fault));
+  };
+  remark(unlabelled, "have no label and do not count");
+  remark(beyond, "lie behind the end of the recording and are left out");
+  return stems;
+}
+
+std::vector<Split> helimos_splits(const std::vector<SequenceFolder>& folders,
+                                  const std::vector<std::unique_ptr<Sequence>>& sequences,
+                                  std::vector<std::string>& remarks) {
+  std::vector<Split> splits = {{"all", {}}, {"test", {}}, {"val", {}}, {"train", {}}};
+  for (std::size_t i = 0; i < folders.size(); ++i) {
+    splits.front().parts.push_back({i, std::nullopt});
+    for (Split& split : std::span(splits).subspan(1)) {
+      const auto file = parent_folder(folders[i].folder) / (split.name + ".txt");
+      if (!is_there(file)) continue;
+      auto stems = stems_of_split(*sequences[i], file, remarks);
+      if (!stems.empty()) split.parts.push_back({i, std::move(stems)});
+    }
+  }
+  std::erase_if(splits, [](const Split& split) { return split.parts.empty(); });
+  return splits;
+}
+
+std::optional<std::string> recognise_helimos(const std::filesystem::path& path) {
+  const auto sequences = list_helimos(path);
+  if (sequences.empty() || !is_sensor(sequences.front().name)) return std::nullopt;
+  return "the sensor folder " + sequences.front().name + " is there";
+}
+
+}  // namespace
+
+const Catalogue& helimos_catalogue() {
+  static const Catalogue catalogue = {
+      DatasetKind::kHelimos,
+      "Aeva, Avia, Ouster, Velodyne with velodyne/, labels/ and poses.txt each, in "
+      "KAIST05/Deskewed_LiDAR, Deskewed_LiDAR or the folder itself (HeLiMOS), or one such folder",
+      list_helimos,
+      open_helimos,
+      helimos_splits,
+      recognise_helimos};
+  return catalogue;
+}
+
+}  // namespace mosbench

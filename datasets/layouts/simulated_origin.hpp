@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "datasets/layouts/dataset.hpp"
+
+namespace mosbench {
+
+/// What made a simulated data set; kept in `simulated.json` at its root, so that numbers from it
+/// never pass for those of the real one.
+struct SimulatedOrigin {
+  DatasetKind layout = DatasetKind::kSemanticKitti;
+  std::string scene;              ///< its name
+  std::string scene_fingerprint;  ///< hash of the whole scene
+  std::size_t scans = 0;
+  std::uint64_t seed = 0;
+
+  bool operator==(const SimulatedOrigin&) const = default;
+};
+
+inline constexpr std::string_view kSimulatedMarker = "simulated.json";
+
+/// The origin of the data set that `path` belongs to, sought there and up to four folders above;
+/// nothing for recorded data. Throws DataError for a marker that cannot be read.
+std::optional<SimulatedOrigin> simulated_origin(const std::filesystem::path& path);
+
+SimulatedOrigin parse_simulated_origin(std::string_view text, const std::filesystem::path& file);
+std::string format_simulated_origin(const SimulatedOrigin& origin);
+
+}  // namespace mosbench

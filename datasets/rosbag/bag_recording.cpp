@@ -1,0 +1,161 @@
+#include "datasets/rosbag/bag_recording.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "datasets/files/errors.hpp"
+#include "datasets/files/folder_listing.hpp"
+#include "datasets/rosbag/bag_topics.hpp"
+#include "datasets/rosbag/point_cloud2.hpp"
+#include "datasets/sequence/pose_source.hpp"
+
+namespace mosbench {
+namespace {
+
+/// Enough for what stands before the points; a field takes some 20 bytes.
+constexpr std::size_t kHeadBytes = 4096;
+/// Scans last 0.1 s; a time beyond this is none since the scan's stamp.
+constexpr std::int64_t kLongestScanNs = 1'000'000'000;
+
+std::int64_t reference_ns(const TimedCloud& cloud) {
+  return cloud.stamp_ns + (cloud.times_ns.empty() ? 0 : cloud.times_ns.front());
+}
+
+}  // namespace
+
+std::optional<std::filesystem::path> bag_of(const std::filesystem::path& folder) {
+  const auto bags = list_by_stem(folder, {".bag"});
+  if (bags.empty()) return std::nullopt;
+  if (bags.size() > 1) {
+    throw DataError(folder, fmt::format("holds {} bags", bags.size()), "one per sequence");
+  }
+  return bags.front().file;
+}
+
+BagRecording::BagRecording(const std::filesystem::path& bag, const ReadingOptions& options)
+    : bag_(bag), undistorts_(options.undistort), files_{bag} {
+  const std::string topic = cloud_topic(bag_, options.topic);
+  list_scans(topic);
+  reading_.emplace_back("scan_files", fmt::format("{}, topic {}", bag.filename().string(), topic));
+  open_poses(options);
+  state_undistortion();
+}
+
+void BagRecording::list_scans(const std::string& topic) {
+  for (const BagMessage& message : bag_.messages(topic)) {
+    const CloudHead head = parse_cloud_head(bag_.read(message, kHeadBytes), bag_.path());
+    scans_.push_back(
+        {message, scans_.size(), head.stamp_ns, head.points(), has_times(head), head.frame});
+  }
+  if (scans_.empty()) {
+    throw DataError(bag_.path(), "topic " + topic + " holds no message", "one per scan");
+  }
+  for (const Scan& scan : scans_) {
+    stamps_ns_.push_back(scan.stamp_ns);
+    if (scan.frame == scans_.front().frame) continue;
+    throw DataError(bag_.path(),
+                    fmt::format("topic {} has scans in the frames {} and {}", topic,
+                                scans_.front().frame, scan.frame),
+                    "one sensor");
+  }
+}
+
+void BagRecording::open_poses(const ReadingOptions& options) {
+  if (options.poses) {
+    open_pose_file(options);
+  } else {
+    open_transforms(options);
+  }
+}
+
+void BagRecording::open_pose_file(const ReadingOptions& options) {
+  SettledPoses settled =
+      settle_poses(bag_.path().parent_path(), "poses.txt", options, {scans_.size(), stamps_ns_});
+  std::vector<std::pair<std::int64_t, Pose>> stamped;
+  for (std::size_t i = 0; i < scans_.size(); ++i) {
+    stamped.emplace_back(stamps_ns_[i], settled.map_from_sensor[i]);
+  }
+  pose_at_ = [track = PoseTrack(std::move(stamped))](std::int64_t stamp_ns) {
+    return track.at(stamp_ns);
+  };
+  leaves_last_ = true;
+  files_.insert(files_.end(), settled.files.begin(), settled.files.end());
+  remarks_.insert(remarks_.end(), settled.remarks.begin(), settled.remarks.end());
+  reading_.insert(reading_.end(), settled.reading.begin(), settled.reading.end());
+}
+
+void BagRecording::open_transforms(const ReadingOptions& options) {
+  BagTransforms transforms = bag_transforms(bag_, options.map_frame, scans_.front().frame);
+  reading_.emplace_back("poses", transforms.source);
+  remarks_.push_back("poses from the bag: " + transforms.source);
+  pose_at_ = [chain = std::move(transforms.map_from_sensor)](std::int64_t stamp_ns) {
+    return chain.at(stamp_ns);
+  };
+  leave_out_uncovered();
+}
+
+bool BagRecording::covered(const Scan& scan) const {
+  if (!pose_at_(scan.stamp_ns)) return false;
+  if (!undistorts_ || !scan.timed || pose_at_(scan.stamp_ns + kLongestScanNs)) return true;
+  const TimedCloud cloud = parse_cloud(bag_.read(scan.message), bag_.path());
+  return cloud.times_ns.empty() || (pose_at_(cloud.stamp_ns + std::ranges::max(cloud.times_ns)) &&
+                                    pose_at_(cloud.stamp_ns + std::ranges::min(cloud.times_ns)));
+}
+
+void BagRecording::leave_out_uncovered() {
+  const std::size_t all = scans_.size();
+  std::erase_if(scans_, [this](const Scan& scan) { return !covered(scan); });
+  if (scans_.empty()) {
+    throw DataError(bag_.path(), fmt::format("no transform covers any of its {} scans", all),
+                    "poses while the scans are taken, or --poses FILE");
+  }
+  if (scans_.size() == all) return;
+  stamps_ns_.clear();
+  for (const Scan& scan : scans_) stamps_ns_.push_back(scan.stamp_ns);
+  remarks_.push_back(fmt::format("{} of {} scans are left out: no transform covers them{}",
+                                 all - scans_.size(), all,
+                                 undistorts_ ? " from first to last point" : ""));
+}
+
+void BagRecording::state_undistortion() {
+  const bool timed = scans_.front().timed;
+  reading_.emplace_back("undistortion", !timed         ? "none, the points have no times"
+                                        : !undistorts_ ? "none, as told"
+                                        : leaves_last_ ? "by the points' times, the last scan not"
+                                                       : "by the points' times");
+  remarks_.push_back("undistortion: " + reading_.back().second);
+}
+
+std::string BagRecording::stem(std::size_t scan_index) const {
+  return fmt::format("{:06}", scans_.at(scan_index).number);
+}
+
+Frame BagRecording::read_frame(std::size_t scan_index, Frame /*spent*/) const {
+  const Scan& scan = scans_.at(scan_index);
+  TimedCloud cloud = parse_cloud(bag_.read(scan.message), bag_.path());
+  for (const std::int64_t time_ns : cloud.times_ns) {
+    if (time_ns < -kLongestScanNs || time_ns > kLongestScanNs) {
+      throw DataError(bag_.path(), scan.number,
+                      fmt::format("a point was measured {} ns after the scan's stamp", time_ns),
+                      "times within a second of it");
+    }
+  }
+  const bool last = leaves_last_ && scan_index + 1 == scans_.size();
+  const bool moves = undistorts_ && !cloud.times_ns.empty() && !last;
+  const std::int64_t at_ns = moves && !leaves_last_ ? reference_ns(cloud) : cloud.stamp_ns;
+  const auto pose = pose_at_(at_ns);
+  if (!pose ||
+      (moves && !undistort(cloud.points, cloud.times_ns, cloud.stamp_ns, at_ns, pose_at_))) {
+    throw DataError(bag_.path(), scan.number, "no pose covers the scan",
+                    "poses while it was taken");
+  }
+  Frame frame;
+  frame.stem = stem(scan_index);
+  frame.points = std::move(cloud.points);
+  frame.map_from_sensor = *pose;
+  frame.stamp_ns = cloud.stamp_ns;
+  return frame;
+}
+
+}  // namespace mosbench

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "datasets/rosbag/bag_file.hpp"
+#include "datasets/rosbag/transform_tree.hpp"
+
+namespace mosbench {
+
+/// The PointCloud2 topic that was asked for, else DOALS's, else the only one. Throws DataError that
+/// lists the topics there are.
+std::string cloud_topic(const BagFile& bag, const std::optional<std::string>& asked);
+
+struct BagTransforms {
+  TransformTree::Chain map_from_sensor;
+  std::string source;  ///< "/tf, map from os1_lidar"
+};
+
+/// From the sensor's frame to `map_frame`; when that is not given, to "map" if it is among the
+/// frames above, else to the root. /tf with /tf_static first, then topics of TransformStamped.
+/// Throws DataError that lists the frames there are.
+BagTransforms bag_transforms(const BagFile& bag, const std::optional<std::string>& map_frame,
+                             const std::string& sensor_frame);
+
+}  // namespace mosbench

@@ -1,0 +1,151 @@
+#include "datasets/rosbag/bag_writer.hpp"
+
+#include <rosbag/bag.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <utility>
+
+#include "datasets/files/errors.hpp"
+#include "datasets/rosbag/ros_messages.hpp"
+
+namespace mosbench {
+namespace {
+
+/// What a bag tells of a type beside its name; definitions without comments have the same sum.
+struct MessageType {
+  std::string_view name;
+  const char* md5;
+  const char* definition;
+};
+
+#define MOSBENCH_RULE \
+  "================================================================================\n"
+#define MOSBENCH_HEADER \
+  MOSBENCH_RULE "MSG: std_msgs/Header\nuint32 seq\ntime stamp\nstring frame_id\n"
+
+constexpr std::array<MessageType, 2> kTypes = {
+    {{kPointCloud2, "1158d486dd51d683ce2f1be655c3c181",
+      "Header header\nuint32 height\nuint32 width\nPointField[] fields\nbool is_bigendian\n"
+      "uint32 point_step\nuint32 row_step\nuint8[] data\nbool is_dense\n\n" MOSBENCH_HEADER
+      "\n" MOSBENCH_RULE
+      "MSG: sensor_msgs/PointField\nuint8 INT8=1\nuint8 UINT8=2\nuint8 INT16=3\nuint8 UINT16=4\n"
+      "uint8 INT32=5\nuint8 UINT32=6\nuint8 FLOAT32=7\nuint8 FLOAT64=8\nstring name\n"
+      "uint32 offset\nuint8 datatype\nuint32 count\n"},
+     {kTfMessage, "94810edda583a504dfda3829e70d7eec",
+      "geometry_msgs/TransformStamped[] transforms\n\n" MOSBENCH_RULE
+      "MSG: geometry_msgs/TransformStamped\nHeader header\nstring child_frame_id\n"
+      "Transform transform\n\n" MOSBENCH_HEADER "\n" MOSBENCH_RULE
+      "MSG: geometry_msgs/Transform\nVector3 translation\nQuaternion rotation\n\n" MOSBENCH_RULE
+      "MSG: geometry_msgs/Vector3\nfloat64 x\nfloat64 y\nfloat64 z\n\n" MOSBENCH_RULE
+      "MSG: geometry_msgs/Quaternion\nfloat64 x\nfloat64 y\nfloat64 z\nfloat64 w\n"}}};
+
+#undef MOSBENCH_HEADER
+#undef MOSBENCH_RULE
+
+/// A message whose bytes are there already.
+struct SerializedMessage {
+  std::string_view bytes;
+  const MessageType* type = nullptr;
+};
+
+rosbag::CompressionType compression_of(const std::string& name) {
+  if (name == "none") return rosbag::compression::Uncompressed;
+  if (name == "lz4") return rosbag::compression::LZ4;
+  if (name == "bz2") return rosbag::compression::BZ2;
+  throw UsageError("--compression: '" + name + "' is not known, expected none, lz4 or bz2");
+}
+
+}  // namespace
+}  // namespace mosbench
+
+namespace ros {
+namespace message_traits {
+
+template <>
+struct MD5Sum<mosbench::SerializedMessage> {
+  static const char* value(const mosbench::SerializedMessage& message) { return message.type->md5; }
+};
+
+template <>
+struct DataType<mosbench::SerializedMessage> {
+  static const char* value(const mosbench::SerializedMessage& message) {
+    return message.type->name.data();
+  }
+};
+
+template <>
+struct Definition<mosbench::SerializedMessage> {
+  static const char* value(const mosbench::SerializedMessage& message) {
+    return message.type->definition;
+  }
+};
+
+}  // namespace message_traits
+
+namespace serialization {
+
+template <>
+struct Serializer<mosbench::SerializedMessage> {
+  template <typename Stream>
+  static void write(Stream& stream, const mosbench::SerializedMessage& message) {
+    std::memcpy(stream.advance(static_cast<uint32_t>(message.bytes.size())), message.bytes.data(),
+                message.bytes.size());
+  }
+  static uint32_t serializedLength(const mosbench::SerializedMessage& message) {
+    return static_cast<uint32_t>(message.bytes.size());
+  }
+};
+
+}  // namespace serialization
+}  // namespace ros
+
+namespace mosbench {
+namespace {
+
+/// The library throws its own exceptions and those of the plugin loader behind it.
+template <typename Call>
+void checked(const std::filesystem::path& file, Call&& call) {
+  try {
+    call();
+  } catch (const std::exception& error) {
+    throw DataError(file, std::string("cannot be written (") + error.what() + ")",
+                    "a writable output folder with free space");
+  }
+}
+
+}  // namespace
+
+BagWriter::BagWriter(std::filesystem::path file, const std::string& compression)
+    : file_(std::move(file)), partial_(file_), bag_(std::make_unique<rosbag::Bag>()) {
+  const rosbag::CompressionType type = compression_of(compression);
+  partial_ += ".partial";
+  checked(file_, [&] {
+    if (file_.has_parent_path()) std::filesystem::create_directories(file_.parent_path());
+    bag_->open(partial_.string(), rosbag::bagmode::Write);
+    bag_->setCompression(type);
+  });
+}
+
+BagWriter::~BagWriter() = default;
+
+void BagWriter::write(const std::string& topic, std::int64_t stamp_ns, std::string_view type,
+                      std::string_view message) {
+  if (stamp_ns < 0) throw DataError(file_, "a stamp to be written is negative", "stamps from 0");
+  const auto known = std::ranges::find(kTypes, type, &MessageType::name);
+  const SerializedMessage serialized{message, &*known};
+  ros::Time time;
+  // The time of recording, which the library wants above 0; that of the message is its own.
+  time.fromNSec(static_cast<std::uint64_t>(std::max<std::int64_t>(stamp_ns, 1)));
+  checked(file_, [&] { bag_->write(topic, time, serialized); });
+}
+
+void BagWriter::close() {
+  checked(file_, [&] {
+    bag_->close();
+    std::filesystem::rename(partial_, file_);
+  });
+}
+
+}  // namespace mosbench

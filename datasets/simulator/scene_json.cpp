@@ -1,0 +1,310 @@
+#include "datasets/simulator/scene_json.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <vector>
+
+#include "datasets/files/errors.hpp"
+#include "datasets/files/files.hpp"
+#include "datasets/files/nearest_name.hpp"
+#include "datasets/simulator/scene_fields.hpp"
+#include "datasets/simulator/sensor_model.hpp"
+#include "datasets/simulator/trajectory.hpp"
+
+namespace mosbench {
+namespace {
+
+// Ordered, so that a written scene reads in the order of its field lists.
+using Json = nlohmann::ordered_json;
+
+// Where in which file a value stands.
+struct Place {
+  const std::filesystem::path& file;
+  std::string path;
+
+  Place key(std::string_view name) const {
+    return {file, path.empty() ? std::string(name) : fmt::format("{}.{}", path, name)};
+  }
+  Place element(std::size_t i) const { return {file, fmt::format("{}[{}]", path, i)}; }
+  [[noreturn]] void refuse(std::string_view wrong, const std::string& expected) const {
+    throw DataError(file, fmt::format("{}: {}", path.empty() ? "scene" : path, wrong), expected);
+  }
+};
+
+std::string shown(const Json& value) {
+  // Not printed whole: a list nested a million times would print itself by recursion.
+  if (value.is_array()) return "a list";
+  if (value.is_object()) return "an object";
+  const std::string text = value.dump(-1, ' ', true, Json::error_handler_t::replace);
+  return text.size() <= 40 ? text : text.substr(0, 37) + "...";
+}
+
+template <typename Record>
+void read(const Json& value, Record& record, const FieldRule& rule, const Place& place);
+
+void read(const Json& value, bool& member, const FieldRule&, const Place& place) {
+  if (!value.is_boolean()) place.refuse(shown(value) + " is no truth value", "true or false");
+  member = value.get<bool>();
+}
+
+void read(const Json& value, std::string& member, const FieldRule&, const Place& place) {
+  if (!value.is_string()) place.refuse(shown(value) + " is no text", "a string");
+  member = value.get<std::string>();
+}
+
+void check_range(const Json& value, double number, const FieldRule& rule, const Place& place) {
+  if (!(number >= rule.lowest && number <= rule.highest)) {
+    place.refuse(shown(value) + " is out of range",
+                 fmt::format("{} to {}", rule.lowest, rule.highest));
+  }
+}
+
+void read(const Json& value, double& member, const FieldRule& rule, const Place& place) {
+  if (!value.is_number()) place.refuse(shown(value) + " is no number", "a number");
+  check_range(value, value.get<double>(), rule, place);
+  member = value.get<double>();
+}
+
+void read(const Json& value, std::int64_t& member, const FieldRule& rule, const Place& place) {
+  if (!value.is_number_integer()) place.refuse(shown(value) + " is no whole number", "an integer");
+  check_range(value, value.get<double>(), rule, place);
+  member = value.get<std::int64_t>();
+}
+
+void require_list(const Json& value, const Place& place) {
+  if (!value.is_array()) place.refuse(shown(value) + " is no list", "a list [...]");
+}
+
+template <std::size_t kCount>
+void read(const Json& value, std::array<double, kCount>& member, const FieldRule& rule,
+          const Place& place) {
+  require_list(value, place);
+  if (value.size() != kCount) {
+    place.refuse(fmt::format("has {} numbers", value.size()), fmt::format("{} numbers", kCount));
+  }
+  for (std::size_t i = 0; i < kCount; ++i) read(value[i], member[i], rule, place.element(i));
+}
+
+template <typename Element>
+void read(const Json& value, std::vector<Element>& member, const FieldRule& rule,
+          const Place& place) {
+  require_list(value, place);
+  member.clear();
+  for (std::size_t i = 0; i < value.size(); ++i) {
+    read(value[i], member.emplace_back(), rule, place.element(i));
+  }
+}
+
+template <typename Optional>
+void read(const Json& value, std::optional<Optional>& member, const FieldRule& rule,
+          const Place& place) {
+  read(value, member.emplace(), rule, place);
+}
+
+template <typename Enum>
+requires std::is_enum_v<Enum>
+void read(const Json& value, Enum& member, const FieldRule& rule, const Place& place) {
+  std::string name;
+  read(value, name, rule, place);
+  std::vector<std::string_view> known;
+  for (const auto& [enumerator, its_name] : names_of(Enum{})) {
+    if (its_name == name) {
+      member = enumerator;
+      return;
+    }
+    known.push_back(its_name);
+  }
+  place.refuse(
+      shown(value) + " is unknown",
+      fmt::format("one of {}, such as \"{}\"", fmt::join(known, ", "), nearest_name(name, known)));
+}
+
+void check_record(const auto&, const Place&) {}
+
+void check_record(const Route& route, const Place& place) {
+  if (route.after != AfterRoute::kStay && !(route_duration_s(route) > 0.0)) {
+    place.refuse("its legs take no time", "legs to walk, or \"after\": \"stay\"");
+  }
+}
+
+void check_record(const Ego& ego, const Place& place) {
+  const Route& route = ego.route;
+  if (route.after == AfterRoute::kRestart && route.legs.back().to_m != route.from_m) {
+    place.key("route").refuse("the carrier would jump from the last leg's end to the start",
+                              "a last leg that ends at from_m");
+  }
+}
+
+void check_record(const Structure& structure, const Place& place) {
+  const auto& size_m = structure.size_m;
+  const bool round = structure.shape == Shape::kBox || size_m[0] == size_m[1];
+  const bool ball = structure.shape != Shape::kSphere || size_m[0] == size_m[2];
+  if (!round || !ball) {
+    place.key("size_m").refuse("is not round", "equal extents for a cylinder (x, y) or a sphere");
+  }
+}
+
+void check_record(const Door& door, const Place& place) {
+  if (2.0 * door.swing_s > door.period_s) {
+    place.key("period_s").refuse("is shorter than opening and closing", "at least 2 * swing_s");
+  }
+}
+
+void check_record(const Scene& scene, const Place& place) {
+  if (scene.name.empty() || scene.name.size() > 64 ||
+      scene.name.find_first_not_of(
+          "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-") !=
+          std::string::npos) {
+    place.key("name").refuse("cannot name a folder", "1 to 64 letters, digits, - or _");
+  }
+  if (scene.sensor && !sensor_kind_from_string(*scene.sensor)) {
+    place.key("sensor").refuse(fmt::format("\"{}\" is unknown", *scene.sensor),
+                               fmt::format("one of {}", fmt::join(sensor_names(), ", ")));
+  }
+}
+
+void check_keys(const Json& value, const auto& record, const Place& place) {
+  std::vector<std::string_view> known;
+  visit_fields(record,
+               [&](std::string_view key, const auto&, const FieldRule&) { known.push_back(key); });
+  for (const auto& [key, ignored] : value.items()) {
+    if (std::find(known.begin(), known.end(), key) == known.end()) {
+      place.refuse(fmt::format("unknown key {}", shown(Json(key))),
+                   fmt::format("a known key such as \"{}\"", nearest_name(key, known)));
+    }
+  }
+}
+
+template <typename Record>
+void read(const Json& value, Record& record, const FieldRule&, const Place& place) {
+  if (!value.is_object()) place.refuse(shown(value) + " is no record", "an object {...}");
+  check_keys(value, record, place);
+  visit_fields(record, [&](std::string_view key, auto& member, const FieldRule& rule) {
+    const auto found = value.find(std::string(key));
+    if (found != value.end()) {
+      read(*found, member, rule, place.key(key));
+    } else if (rule.required) {
+      place.refuse(fmt::format("has no \"{}\"", key), "this key");
+    }
+  });
+  check_record(record, place);
+}
+
+// The JSON library keeps one of two equal keys; a scene that says two things says nothing.
+class RepeatedKeys {
+ public:
+  explicit RepeatedKeys(const std::filesystem::path& file) : file_(file) {}
+
+  bool operator()(int, Json::parse_event_t event, Json& parsed) {
+    if (event == Json::parse_event_t::object_start) open_.emplace_back();
+    if (event == Json::parse_event_t::object_end) open_.pop_back();
+    if (event == Json::parse_event_t::key &&
+        !open_.back().insert(parsed.get<std::string>()).second) {
+      throw DataError(file_, fmt::format("key {} is there twice in one record", shown(parsed)),
+                      "each key once");
+    }
+    return true;
+  }
+
+ private:
+  const std::filesystem::path& file_;
+  std::vector<std::set<std::string>> open_;
+};
+
+Json parse_json(std::string_view text, const std::filesystem::path& file) {
+  try {
+    return Json::parse(text, RepeatedKeys(file));
+  } catch (const Json::exception& error) {
+    throw DataError(file, fmt::format("is no JSON ({})", error.what()), "one JSON object");
+  }
+}
+
+Json to_json(const auto& value) { return value; }
+
+Json to_json(const auto& value) requires std::is_enum_v<std::remove_cvref_t<decltype(value)>> {
+  for (const auto& [enumerator, name] : names_of(value)) {
+    if (enumerator == value) return std::string(name);
+  }
+  return {};
+}
+
+template <typename Record>
+concept HasFields = requires(const Record& record) {
+  visit_fields(record, [](std::string_view, const auto&, const FieldRule&) {});
+};
+
+template <HasFields Record>
+Json to_json(const Record& record);
+
+template <typename Element>
+Json to_json(const std::vector<Element>& elements) {
+  Json list = Json::array();
+  for (const Element& element : elements) list.push_back(to_json(element));
+  return list;
+}
+
+template <typename Value>
+Json to_json(const std::optional<Value>& value) {
+  return value ? to_json(*value) : Json();
+}
+
+template <HasFields Record>
+Json to_json(const Record& record) {
+  Json object = Json::object();
+  visit_fields(record, [&](std::string_view key, const auto& member, const FieldRule&) {
+    Json value = to_json(member);
+    if (!value.is_null()) object[std::string(key)] = std::move(value);
+  });
+  return object;
+}
+
+}  // namespace
+
+Scene parse_scene(std::string_view text, const std::filesystem::path& file) {
+  Scene scene;
+  read(parse_json(text, file), scene, FieldRule{}, Place{file, ""});
+  return scene;
+}
+
+std::string format_scene(const Scene& scene) { return to_json(scene).dump(2) + "\n"; }
+
+Scene read_scene(const std::filesystem::path& file) { return parse_scene(read_file(file), file); }
+
+std::string example_scene_json() {
+  return R"({
+  "name": "crossing",
+  "scan_period_s": 0.1,
+  "ego": {
+    "carrier": "ground-robot",
+    "sensor_height_m": 0.9,
+    "route": {
+      "from_m": [0, 0],
+      "legs": [{"to_m": [12, 0], "speed_m_s": 1.0}, {"to_m": [12, 8], "speed_m_s": 0.8, "wait_s": 2}]
+    }
+  },
+  "ground": [{"height_m": 0, "slope_x": 0.01}],
+  "structures": [
+    {"shape": "box", "center_m": [6, 9, 2], "size_m": [20, 0.3, 4]},
+    {"shape": "box", "center_m": [6, -6, 2], "size_m": [20, 0.3, 4], "yaw_rad": 0.1},
+    {"shape": "cylinder", "center_m": [4, 3, 2], "size_m": [0.3, 0.3, 4]},
+    {"shape": "sphere", "center_m": [15, 4, 3], "size_m": [3, 3, 3], "density": 0.35}
+  ],
+  "movers": [
+    {"kind": "pedestrian", "route": {
+      "from_m": [3, 6], "after": "return",
+      "legs": [{"to_m": [10, 6], "speed_m_s": 1.3}, {"to_m": [10, -4], "speed_m_s": 1.1, "wait_s": 2}]}},
+    {"kind": "cyclist", "route": {
+      "from_m": [-10, -3], "after": "restart", "legs": [{"to_m": [40, -3], "speed_m_s": 4}]}},
+    {"kind": "car", "route": {
+      "from_m": [30, -4], "start_s": 1, "legs": [{"to_m": [-30, -4], "speed_m_s": 7}]}}
+  ],
+  "doors": [{"hinge_m": [8, 8.7], "width_m": 1.1, "closed_yaw_rad": 0, "open_yaw_rad": -1.4}],
+  "balls": [{"from_m": [9, 4, 1.5], "velocity_m_s": [-3, 1, 4]}]
+}
+)";
+}
+
+}  // namespace mosbench

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "datasets/simulator/scene.hpp"
+#include "datasets/simulator/scene_cast.hpp"
+
+namespace mosbench {
+
+enum class Substance : std::uint8_t {
+  kGround,
+  kBuilding,
+  kPole,
+  kVegetation,
+  kMoverBody,
+  kDoor,
+  kBall
+};
+
+/// What is true of one part of a scene at one instant.
+struct OwnerState {
+  Substance substance = Substance::kGround;
+  MoverKind mover = MoverKind::kPedestrian;  ///< of a kMoverBody
+  bool labelled = true;
+  bool moving = false;                 ///< its speed exceeds 0.5 m/s, of a vehicle 1.0 m/s
+  bool dynamic_by_appearance = false;  ///< an annotator calls it dynamic although it stands
+  double speed_m_s = 0.0;
+};
+
+/// A scene at one instant: its bodies and, per owner number of a body, what is true of it. Owner 0
+/// is the ground; then follow structures, movers, doors and balls in the scene's order.
+struct SceneSnapshot {
+  std::vector<Solid> solids;
+  std::vector<OwnerState> owners;
+};
+
+SceneSnapshot snapshot(const Scene& scene, double time_s);
+
+}  // namespace mosbench

@@ -1,0 +1,164 @@
+#include "datasets/simulator/sensor_model.hpp"
+
+#include <array>
+#include <utility>
+
+#include "datasets/simulator/portable_math.hpp"
+
+namespace mosbench {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kRadPerDeg = kPi / 180.0;
+
+constexpr std::array<std::pair<SensorKind, std::string_view>, 6> kNames = {{
+    {SensorKind::kOs1_64, "os1-64"},
+    {SensorKind::kOs2_128, "os2-128"},
+    {SensorKind::kVlp16, "vlp-16"},
+    {SensorKind::kHdl64e, "hdl-64e"},
+    {SensorKind::kAvia, "avia"},
+    {SensorKind::kAeva, "aeva"},
+}};
+
+// Elevations of the highest and lowest ring, and the horizontal field of view.
+struct FieldOfView {
+  double top_rad, bottom_rad, width_rad;
+};
+
+FieldOfView field_of_view(SensorKind kind) {
+  switch (kind) {
+    case SensorKind::kOs1_64:
+      return {16.61 * kRadPerDeg, -16.61 * kRadPerDeg, 2 * kPi};
+    case SensorKind::kOs2_128:
+      return {11.25 * kRadPerDeg, -11.25 * kRadPerDeg, 2 * kPi};
+    case SensorKind::kVlp16:
+      return {15.0 * kRadPerDeg, -15.0 * kRadPerDeg, 2 * kPi};
+    case SensorKind::kHdl64e:
+      return {2.0 * kRadPerDeg, -24.8 * kRadPerDeg, 2 * kPi};
+    case SensorKind::kAvia:
+      return {38.6 * kRadPerDeg, -38.6 * kRadPerDeg, 70.4 * kRadPerDeg};
+    case SensorKind::kAeva:
+      return {9.6 * kRadPerDeg, -9.6 * kRadPerDeg, 120.0 * kRadPerDeg};
+  }
+  return {};
+}
+
+Eigen::Vector3d direction(SinCos azimuth, SinCos elevation) {
+  return {elevation.cos * azimuth.cos, elevation.cos * azimuth.sin, elevation.sin};
+}
+
+std::vector<Eigen::Vector3d> raster(const SensorModel& sensor) {
+  const FieldOfView view = field_of_view(sensor.kind);
+  const double columns = static_cast<double>(sensor.columns);
+  const double ring_step_rad =
+      (view.top_rad - view.bottom_rad) / static_cast<double>(sensor.rings - 1);
+  std::vector<SinCos> elevations;
+  for (std::size_t ring = 0; ring < sensor.rings; ++ring) {
+    elevations.push_back(sin_cos(view.top_rad - static_cast<double>(ring) * ring_step_rad));
+  }
+  std::vector<Eigen::Vector3d> rays;
+  rays.reserve(sensor.slots());
+  for (std::size_t column = 0; column < sensor.columns; ++column) {
+    // Clockwise seen from above, the seam of a full turn at the back.
+    const double turn = 0.5 - (static_cast<double>(column) + 0.5) / columns;
+    const SinCos azimuth = sin_cos(turn * view.width_rad);
+    for (const SinCos& elevation : elevations) rays.push_back(direction(azimuth, elevation));
+  }
+  return rays;
+}
+
+// Two counter-rotating prisms bend the beam twice. The turns per scan are incommensurable with the
+// scan and with each other, which is why the pattern never repeats; six lasers lie side by side.
+std::vector<Eigen::Vector3d> rosette(const SensorModel& sensor, std::size_t scan_index) {
+  constexpr double kFirstTurnsPerScan = 12.1832, kSecondTurnsPerScan = -7.5297;
+  constexpr double kLaserSpacingRad = 0.0045;
+  const FieldOfView view = field_of_view(sensor.kind);
+  const double spread_rad = kLaserSpacingRad * static_cast<double>(sensor.rings - 1) / 2;
+  const double half_width_rad = view.width_rad / 2 - spread_rad;
+  std::vector<Eigen::Vector3d> rays;
+  rays.reserve(sensor.slots());
+  for (std::size_t column = 0; column < sensor.columns; ++column) {
+    const double scans = static_cast<double>(scan_index) +
+                         static_cast<double>(column) / static_cast<double>(sensor.columns);
+    const SinCos first = sin_cos(2 * kPi * kFirstTurnsPerScan * scans);
+    const SinCos second = sin_cos(2 * kPi * kSecondTurnsPerScan * scans);
+    const SinCos elevation = sin_cos(view.top_rad * 0.5 * (first.sin + second.sin));
+    const double azimuth_rad = half_width_rad * 0.5 * (first.cos + second.cos) - spread_rad;
+    for (std::size_t laser = 0; laser < sensor.rings; ++laser) {
+      const double offset_rad = static_cast<double>(laser) * kLaserSpacingRad;
+      rays.push_back(direction(sin_cos(azimuth_rad + offset_rad), elevation));
+    }
+  }
+  return rays;
+}
+
+}  // namespace
+
+std::string_view to_string(SensorKind kind) {
+  for (const auto& [named, name] : kNames) {
+    if (named == kind) return name;
+  }
+  return {};
+}
+
+std::optional<SensorKind> sensor_kind_from_string(std::string_view name) {
+  for (const auto& [kind, known] : kNames) {
+    if (known == name) return kind;
+  }
+  return std::nullopt;
+}
+
+std::vector<std::string_view> sensor_names() {
+  std::vector<std::string_view> names;
+  for (const auto& entry : kNames) names.push_back(entry.second);
+  return names;
+}
+
+SensorModel sensor_model(SensorKind kind) {
+  switch (kind) {
+    case SensorKind::kOs1_64:
+      return {.kind = kind};
+    case SensorKind::kOs2_128:
+      return {.kind = kind,
+              .columns = 1024,
+              .rings = 128,
+              .min_range_m = 0.8,
+              .max_range_m = 210.0,
+              .range_noise_m = 0.03,
+              .mount_m = {0.0, 0.0, 0.2}};
+    case SensorKind::kVlp16:
+      return {.kind = kind,
+              .columns = 1800,
+              .rings = 16,
+              .min_range_m = 0.5,
+              .max_range_m = 100.0,
+              .range_noise_m = 0.02,
+              .mount_m = {-0.6, 0.0, 0.0}};
+    case SensorKind::kHdl64e:
+      return {.kind = kind, .columns = 2000, .rings = 64, .min_range_m = 0.9};
+    case SensorKind::kAvia:
+      return {.kind = kind,
+              .columns = 4000,
+              .rings = 6,
+              .min_range_m = 1.0,
+              .max_range_m = 190.0,
+              .mount_m = {0.5, 0.3, 0.0}};
+    case SensorKind::kAeva:
+      return {.kind = kind,
+              .columns = 800,
+              .rings = 64,
+              .min_range_m = 1.0,
+              .max_range_m = 150.0,
+              .range_noise_m = 0.03,
+              .mount_m = {0.5, -0.3, 0.0}};
+  }
+  return {};
+}
+
+std::vector<Eigen::Vector3d> beam_directions(const SensorModel& sensor, std::size_t scan_index) {
+  return repeats_every_scan(sensor) ? raster(sensor) : rosette(sensor, scan_index);
+}
+
+bool repeats_every_scan(const SensorModel& sensor) { return sensor.kind != SensorKind::kAvia; }
+
+}  // namespace mosbench

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+
+#include "datasets/layouts/dataset.hpp"
+#include "datasets/simulator/scene.hpp"
+
+namespace mosbench {
+
+struct SimulateOptions {
+  DatasetKind layout = DatasetKind::kSemanticKitti;
+  std::string scene;  ///< name of a built-in scene, or the path of a .json file
+  std::size_t scans = 0;
+  std::uint64_t seed = 1;
+  std::filesystem::path out;  ///< becomes the data set's root
+  unsigned threads = 0;       ///< 0: as many as the machine has; the files do not depend on it
+};
+
+/// Writes a simulated data set in the layout of a real one, each file as a whole and the poses
+/// last: what a killed run leaves cannot be opened and is completed by the same call. Throws
+/// UsageError when `out` holds anything but a simulation of the same parameters, DataError for a
+/// bad scene file or an unwritable folder. `progress` is called with the scans done and to do,
+/// never from two threads at once.
+void simulate(const SimulateOptions& options,
+              const std::function<void(std::size_t done, std::size_t total)>& progress = {});
+
+/// The scene of a built-in name or of a path that ends in .json or contains a slash.
+Scene load_scene(const std::string& name_or_file);
+
+}  // namespace mosbench

@@ -1,0 +1,176 @@
+#include "datasets/simulator/simulated_layouts.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "datasets/files/errors.hpp"
+#include "datasets/files/point_range.hpp"
+#include "datasets/layouts/helimos_layout.hpp"
+
+namespace mosbench {
+namespace {
+
+bool is_vehicle(const OwnerState& owner) {
+  return owner.substance == Substance::kMoverBody &&
+         (owner.mover == MoverKind::kCar || owner.mover == MoverKind::kTruck);
+}
+
+std::uint32_t sipailou_label(const OwnerState& owner, double range_m) {
+  constexpr double kNearest_m = 3.0, kFarthest_m = 50.0;
+  constexpr std::uint32_t kMovingVehicle = 252;
+  if (!owner.labelled || range_m < kNearest_m || range_m > kFarthest_m) return 0;
+  if (!owner.moving) return kStaticLabel;
+  return is_vehicle(owner) ? kMovingVehicle : kMovingLabel;
+}
+
+std::uint32_t helimos_label(const OwnerState& owner, double range_m) {
+  constexpr double kFarthest_m = 80.0;
+  if (!owner.labelled || range_m > kFarthest_m) return 0;
+  return owner.moving ? kMovingLabel : kStaticLabel;
+}
+
+// The class ids of semantic-kitti.yaml.
+std::uint32_t kitti_mover_class(const OwnerState& owner) {
+  switch (owner.mover) {
+    case MoverKind::kPedestrian:
+      return owner.moving ? 254 : 30;
+    case MoverKind::kCyclist:
+      return owner.moving ? 253 : 31;
+    case MoverKind::kCar:
+      return owner.moving ? 252 : 10;
+    case MoverKind::kTruck:
+      return owner.moving ? 258 : 18;
+  }
+  return 0;
+}
+
+std::uint32_t kitti_class(const OwnerState& owner) {
+  if (!owner.labelled) return 0;
+  switch (owner.substance) {
+    case Substance::kGround:
+      return 40;
+    case Substance::kBuilding:
+      return 50;
+    case Substance::kPole:
+      return 80;
+    case Substance::kVegetation:
+      return 70;
+    case Substance::kMoverBody:
+      return kitti_mover_class(owner);
+    case Substance::kDoor:
+    case Substance::kBall:
+      return owner.moving ? 259 : 99;
+  }
+  return 0;
+}
+
+std::uint32_t kitti_label(const OwnerState& owner, std::uint32_t owner_number) {
+  constexpr std::uint32_t kInstanceBits = 16, kInstances = 65536;
+  const bool movable = owner.substance >= Substance::kMoverBody;
+  return kitti_class(owner) | (movable ? (owner_number % kInstances) << kInstanceBits : 0U);
+}
+
+SensorKind sensor_of(const Scene& scene, SensorKind usual) {
+  return scene.sensor ? sensor_kind_from_string(*scene.sensor).value_or(usual) : usual;
+}
+
+std::vector<SimulatedRecording> helimos_recordings() {
+  constexpr std::array<SensorKind, kHelimosSensors.size()> kModels = {
+      SensorKind::kAeva, SensorKind::kAvia, SensorKind::kOs2_128, SensorKind::kVlp16};
+  std::vector<SimulatedRecording> recordings;
+  for (std::size_t i = 0; i < kModels.size(); ++i) {
+    recordings.push_back({helimos_folder() / kHelimosSensors[i], kModels[i]});
+  }
+  return recordings;
+}
+
+[[noreturn]] void refuse_sensor(const Scene& scene, const std::string& why) {
+  throw UsageError("scene '" + scene.name + "' asks for sensor '" + *scene.sensor + "', but " +
+                   why);
+}
+
+}  // namespace
+
+std::vector<SimulatedRecording> recordings_of(DatasetKind layout, const Scene& scene) {
+  switch (layout) {
+    case DatasetKind::kDoals:
+      if (sensor_of(scene, SensorKind::kOs1_64) == SensorKind::kAvia) {
+        refuse_sensor(scene, "layout doals needs one with rings; expected e.g. os1-64");
+      }
+      return {{std::filesystem::path(scene.name) / "sequence_1",
+               sensor_of(scene, SensorKind::kOs1_64)}};
+    case DatasetKind::kSipailou:
+      return {{"sequences/06", sensor_of(scene, SensorKind::kAvia)}};
+    case DatasetKind::kHelimos:
+      if (scene.sensor || scene.columns) {
+        throw UsageError("scene '" + scene.name +
+                         "' sets \"sensor\" or \"columns\", but layout helimos has four sensors of "
+                         "its own; leave these keys out");
+      }
+      return helimos_recordings();
+    case DatasetKind::kSemanticKitti:
+      return {{"sequences/08", sensor_of(scene, SensorKind::kHdl64e)}};
+    default:
+      throw UsageError("layout " + std::string(to_string(layout)) + " is read only");
+  }
+}
+
+std::set<std::size_t> labelled_scans(DatasetKind layout, std::size_t scans) {
+  // The method detects nothing in the first scans; labels there would measure nothing.
+  constexpr std::size_t kFirst = 4, kDoalsScans = 10, kHelimosStep = 4;
+  std::set<std::size_t> labelled;
+  if (layout == DatasetKind::kDoals) {
+    for (std::size_t i = 1; i <= kDoalsScans; ++i) {
+      const std::size_t end = i * scans / kDoalsScans;
+      if (end > kFirst) labelled.insert(end - 1);
+    }
+  } else if (layout == DatasetKind::kHelimos) {
+    for (std::size_t i = kFirst; i < scans; i += kHelimosStep) labelled.insert(i);
+  } else {
+    for (std::size_t i = 0; i < scans; ++i) labelled.insert(i);
+  }
+  if (labelled.empty() && scans > 0) labelled.insert(scans - 1);
+  return labelled;
+}
+
+SplitNumbers helimos_splits(const std::set<std::size_t>& labelled) {
+  const std::size_t block = std::max<std::size_t>(1, labelled.size() * 16 / 100);
+  SplitNumbers splits;
+  std::size_t position = 0;
+  for (const std::size_t number : labelled) {
+    const std::size_t from_end = labelled.size() - position++;
+    auto& split = from_end <= block       ? splits.test
+                  : from_end <= 2 * block ? splits.val
+                                          : splits.train;
+    split.insert(number);
+  }
+  return splits;
+}
+
+std::uint32_t layout_label(DatasetKind layout, const SimulatedScan& scan, std::size_t point) {
+  const std::uint32_t owner_number = scan.owners[point];
+  const OwnerState& owner = scan.scene.owners[owner_number];
+  switch (layout) {
+    case DatasetKind::kSipailou:
+      return sipailou_label(owner, range_m(scan.points[point]));
+    case DatasetKind::kHelimos:
+      return helimos_label(owner, range_m(scan.points[point]));
+    case DatasetKind::kSemanticKitti:
+      return kitti_label(owner, owner_number);
+    default:
+      break;
+  }
+  return moving_label(scan, point);
+}
+
+std::vector<std::uint32_t> doals_dynamic_indices(const SimulatedScan& scan) {
+  std::vector<std::uint32_t> dynamic;
+  for (std::uint32_t i = 0; i < scan.points.size(); ++i) {
+    if (scan.owners[i] == SimulatedScan::kNoReturn) continue;
+    const OwnerState& owner = scan.scene.owners[scan.owners[i]];
+    if (owner.moving || owner.dynamic_by_appearance) dynamic.push_back(i);
+  }
+  return dynamic;
+}
+
+}  // namespace mosbench

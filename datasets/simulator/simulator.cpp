@@ -1,0 +1,109 @@
+#include "datasets/simulator/simulator.hpp"
+
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "datasets/files/errors.hpp"
+#include "datasets/files/nearest_name.hpp"
+#include "datasets/simulator/built_in_scenes.hpp"
+#include "datasets/simulator/portable_math.hpp"
+#include "datasets/simulator/trajectory.hpp"
+
+namespace mosbench {
+namespace {
+
+constexpr std::int64_t kFirstStamp_ns = 1'600'000'000'000'000'000;
+
+SensorModel with_scene_keys(SensorModel sensor, const Scene& scene) {
+  if (scene.columns) sensor.columns = static_cast<std::size_t>(*scene.columns);
+  if (scene.range_noise_m) sensor.range_noise_m = *scene.range_noise_m;
+  if (scene.dropout_probability) sensor.dropout_probability = *scene.dropout_probability;
+  return sensor;
+}
+
+Pose sensor_pose(const Scene& scene, const SensorModel& sensor, double time_s) {
+  Pose pose = ego_pose(scene, time_s);
+  const Eigen::Vector3d mount_m = rotated(pose.linear(), sensor.mount_m);
+  pose.translation() += mount_m;
+  return pose;
+}
+
+float intensity_of(std::uint32_t owner) {
+  return static_cast<float>(0.1 + 0.8 * uniform(scatter_bits(owner)));
+}
+
+}  // namespace
+
+Simulator::Simulator(Scene scene, const SensorModel& sensor, std::uint64_t seed)
+    : scene_(std::move(scene)), sensor_(with_scene_keys(sensor, scene_)), seed_(seed) {
+  if (repeats_every_scan(sensor_)) directions_ = beam_directions(sensor_, 0);
+}
+
+SimulatedScan Simulator::scan(std::size_t scan_index) const {
+  const double time_s = static_cast<double>(scan_index) * scene_.scan_period_s;
+  SimulatedScan result;
+  result.scene = snapshot(scene_, time_s);
+  result.map_from_sensor = sensor_pose(scene_, sensor_, time_s);
+  result.stamp_ns = kFirstStamp_ns + std::llround(time_s * 1e9);
+  result.points.assign(sensor_.slots(), Point{});
+  result.owners.assign(sensor_.slots(), SimulatedScan::kNoReturn);
+
+  const std::vector<Eigen::Vector3d> own_directions =
+      directions_.empty() ? beam_directions(sensor_, scan_index) : std::vector<Eigen::Vector3d>{};
+  const std::vector<Eigen::Vector3d>& directions =
+      directions_.empty() ? own_directions : directions_;
+  const Eigen::Matrix3d rotation = result.map_from_sensor.linear();
+  const SceneCast cast(scene_.ground, 0, result.scene.solids, result.map_from_sensor.translation(),
+                       sensor_.max_range_m);
+  const std::uint64_t scan_seed =
+      random_word(random_word(seed_, scan_index), static_cast<std::uint64_t>(sensor_.kind));
+  for (std::size_t slot = 0; slot < directions.size(); ++slot) {
+    const std::uint64_t ray_word = random_word(scan_seed, slot);
+    if (uniform(scatter_bits(ray_word)) < sensor_.dropout_probability) continue;
+    const auto hit = cast.first_hit(rotated(rotation, directions[slot]), ray_word);
+    if (!hit) continue;
+    const double range_m =
+        hit->range_m + sensor_.range_noise_m * nearly_normal(scatter_bits(~ray_word));
+    if (range_m < sensor_.min_range_m) continue;
+    const Eigen::Vector3d point_m = range_m * directions[slot];
+    result.points[slot] = {static_cast<float>(point_m.x()), static_cast<float>(point_m.y()),
+                           static_cast<float>(point_m.z()), intensity_of(hit->owner)};
+    result.owners[slot] = hit->owner;
+  }
+  return result;
+}
+
+std::uint32_t moving_label(const SimulatedScan& scan, std::size_t point) {
+  if (scan.owners[point] == SimulatedScan::kNoReturn) return 0;
+  const OwnerState& owner = scan.scene.owners[scan.owners[point]];
+  if (!owner.labelled) return 0;
+  return owner.moving ? kMovingLabel : kStaticLabel;
+}
+
+Frame Simulator::frame(std::size_t scan_index) const {
+  SimulatedScan simulated = scan(scan_index);
+  Frame frame;
+  frame.stem = std::to_string(scan_index);
+  frame.stem.insert(0, frame.stem.size() < 6 ? 6 - frame.stem.size() : 0, '0');
+  frame.map_from_sensor = simulated.map_from_sensor;
+  frame.stamp_ns = simulated.stamp_ns;
+  frame.truth.emplace();
+  frame.truth->reserve(simulated.points.size());
+  for (std::size_t i = 0; i < simulated.points.size(); ++i) {
+    frame.truth->push_back(moving_label(simulated, i));
+  }
+  frame.points = std::move(simulated.points);
+  return frame;
+}
+
+Simulator built_in_simulator(std::string_view scene, std::string_view sensor, std::uint64_t seed) {
+  const auto kind = sensor_kind_from_string(sensor);
+  if (!kind) {
+    throw UsageError("'" + std::string(sensor) + "' is no sensor, expected one such as '" +
+                     std::string(nearest_name(sensor, sensor_names())) + "'");
+  }
+  return Simulator(built_in_scene(scene), sensor_model(*kind), seed);
+}
+
+}  // namespace mosbench

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "datasets/sequence/sequence.hpp"
+#include "datasets/simulator/scene.hpp"
+#include "datasets/simulator/scene_snapshot.hpp"
+#include "datasets/simulator/sensor_model.hpp"
+
+namespace mosbench {
+
+/// One instantaneous scan with everything known about it. One point per ray in firing order; a ray
+/// without return is (0,0,0,0) and belongs to `kNoReturn`.
+struct SimulatedScan {
+  static constexpr std::uint32_t kNoReturn = 0xFFFFFFFF;
+
+  std::vector<Point> points;
+  std::vector<std::uint32_t> owners;  ///< per point, an index into `scene.owners` or kNoReturn
+  SceneSnapshot scene;
+  Pose map_from_sensor = Pose::Identity();
+  std::int64_t stamp_ns = 0;
+};
+
+/// Ray casting of a scene by one sensor. A scan depends on nothing but scene, sensor, seed and its
+/// index: the same bits on every machine, in any order, from any number of threads.
+class Simulator {
+ public:
+  /// Keys of the scene about the sensor (noise, columns) override the model's.
+  Simulator(Scene scene, const SensorModel& sensor, std::uint64_t seed);
+
+  SimulatedScan scan(std::size_t scan_index) const;
+
+  /// The scan as a reader would give it: every ray kept, truth moving 251, static 9, and 0 where
+  /// there is no return or no label.
+  Frame frame(std::size_t scan_index) const;
+
+  const SensorModel& sensor() const { return sensor_; }
+  const Scene& scene() const { return scene_; }
+
+ private:
+  Scene scene_;
+  SensorModel sensor_;
+  std::uint64_t seed_;
+  std::vector<Eigen::Vector3d> directions_;  // of sensors that repeat every scan
+};
+
+/// 251, 9 or, without a label or return, 0.
+std::uint32_t moving_label(const SimulatedScan& scan, std::size_t point);
+
+/// A built-in scene seen by the sensor of that name. Throws UsageError for unknown names.
+Simulator built_in_simulator(std::string_view scene, std::string_view sensor, std::uint64_t seed);
+
+}  // namespace mosbench

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <mosbench/scan.hpp>
+#include <span>
+
+#include "datasets/simulator/scene.hpp"
+
+namespace mosbench {
+
+/// Where a route is at one instant.
+struct RouteState {
+  Eigen::Vector2d position_m = Eigen::Vector2d::Zero();
+  Eigen::Vector2d heading = Eigen::Vector2d::UnitX();  ///< unit vector, also while standing
+  double speed_m_s = 0.0;
+  double travelled_m = 0.0;  ///< since the start of the route's current pass
+};
+
+RouteState route_state(const Route& route, double time_s);
+
+/// Duration of one pass over the legs.
+double route_duration_s(const Route& route);
+
+/// Highest of the planes; 0 without any.
+double ground_height_m(std::span<const GroundPlane> ground, double x_m, double y_m);
+
+/// The carrier's frame at the sensor's height (x ahead, z up), with corners rounded and the bobbing
+/// and swaying of its kind.
+Pose ego_pose(const Scene& scene, double time_s);
+
+}  // namespace mosbench

@@ -1,0 +1,143 @@
+#include "eval/breakdown/breakdown.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+
+#include "core/base/thread_pool.hpp"
+#include "eval/results/progress.hpp"
+
+namespace mosbench {
+namespace {
+
+/// What is kept of a scan's false positives: thousands of single points say nothing one by one.
+constexpr std::size_t kFalseClustersPerScan = 50;
+constexpr double kScanPeriod_s = 0.1;  ///< where there are no stamps
+
+std::vector<ScanBreakdown> per_scan(const Sequence& sequence, const std::vector<std::size_t>& scans,
+                                    const Predictions& predictions, const BreakdownTask& task) {
+  std::vector<ScanBreakdown> parts(scans.size());
+  ThreadPool pool(task.threads);
+  Progress progress("break down " + sequence.name(), scans.size());
+  std::mutex progress_mutex;
+  pool.for_ranges(scans.size(), 1, [&](std::size_t begin, std::size_t end, unsigned) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Frame frame = sequence.read(scans[i]);
+      parts[i] = break_down_scan(*task.protocol, task.range, frame, predictions.read(scans[i]));
+      if (parts[i].false_positives.size() > kFalseClustersPerScan) {
+        parts[i].false_positives.resize(kFalseClustersPerScan);
+      }
+      const std::lock_guard lock(progress_mutex);
+      progress.advance();
+    }
+  });
+  return parts;
+}
+
+/// Seconds of the scans at `scans` by their stamps; nothing unless all have one, each later than
+/// the one before.
+std::optional<std::vector<double>> stamped_times_s(const Sequence& sequence,
+                                                   const std::vector<std::size_t>& scans) {
+  std::vector<double> times_s;
+  std::optional<std::int64_t> first_ns;
+  for (const std::size_t k : scans) {
+    const std::optional<std::int64_t> stamp_ns = sequence.stamp_ns(k);
+    if (!stamp_ns) return std::nullopt;
+    if (!first_ns) first_ns = stamp_ns;
+    times_s.push_back(static_cast<double>(*stamp_ns - *first_ns) * 1e-9);
+    if (times_s.size() > 1 && times_s.back() <= times_s[times_s.size() - 2]) return std::nullopt;
+  }
+  return times_s;
+}
+
+template <std::size_t size>
+void add(const std::array<Confusion, size>& part, std::array<Confusion, size>& sum) {
+  for (std::size_t b = 0; b < size; ++b) sum[b] += part[b];
+}
+
+/// Bins between edges; the last one is open.
+class Bins {
+ public:
+  Bins(std::vector<double> edges, const char* unit) : edges_(std::move(edges)) {
+    for (std::size_t b = 0; b < edges_.size(); ++b) {
+      bins_.push_back({b + 1 < edges_.size()
+                           ? fmt::format("{:g} to {:g} {}", edges_[b], edges_[b + 1], unit)
+                           : fmt::format("from {:g} {}", edges_[b], unit)});
+    }
+  }
+  RecallBin& at(double value) {
+    std::size_t b = 0;
+    while (b + 1 < edges_.size() && value >= edges_[b + 1]) ++b;
+    return bins_[b];
+  }
+  std::vector<RecallBin> take() { return std::move(bins_); }
+
+ private:
+  std::vector<double> edges_;
+  std::vector<RecallBin> bins_;
+};
+
+void add(const ObjectTrack& object, RecallBin& bin) {
+  ++bin.objects;
+  bin.tp += object.found();
+  bin.fn += object.points() - object.found();
+}
+
+}  // namespace
+
+SequenceBreakdown break_down(const Sequence& sequence, const std::vector<std::size_t>& scans,
+                             const Predictions& predictions, const BreakdownTask& task) {
+  SequenceBreakdown breakdown;
+  breakdown.sequence = sequence.name();
+  breakdown.scans = scans;
+  for (std::size_t k = 0; k < sequence.size(); ++k) breakdown.stems.push_back(sequence.stem(k));
+  const auto times_s = stamped_times_s(sequence, scans);
+  breakdown.stamped = times_s.has_value();
+  std::vector<ScanObjects> objects;
+  std::vector<ScanBreakdown> parts = per_scan(sequence, scans, predictions, task);
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    add(parts[i].by_range, breakdown.by_range);
+    add(parts[i].by_height, breakdown.by_height);
+    const double time_s = times_s ? (*times_s)[i] : static_cast<double>(scans[i]) * kScanPeriod_s;
+    objects.push_back({scans[i], time_s, std::move(parts[i].objects)});
+    for (const ScanCluster& cluster : parts[i].false_positives) {
+      breakdown.false_positives.push_back({scans[i], cluster});
+    }
+  }
+  breakdown.objects = link_objects(objects);
+  std::ranges::stable_sort(breakdown.false_positives, std::ranges::greater{},
+                           [](const FalseCluster& found) { return found.cluster.points; });
+  return breakdown;
+}
+
+std::vector<RecallBin> recall_by_size(const std::vector<ObjectTrack>& objects) {
+  Bins bins({0.0, 0.5, 1.0, 2.0, 4.0, 8.0}, "m");
+  for (const ObjectTrack& object : objects) add(object, bins.at(object.largest_size_m()));
+  return bins.take();
+}
+
+std::vector<RecallBin> recall_by_speed(const std::vector<ObjectTrack>& objects) {
+  Bins bins({0.0, 0.5, 1.0, 2.0, 5.0, 10.0}, "m/s");
+  for (const ObjectTrack& object : objects) {
+    if (const auto speed_m_s = object.speed_m_s()) add(object, bins.at(*speed_m_s));
+  }
+  return bins.take();
+}
+
+std::vector<RecallBin> recall_by_age(const std::vector<ObjectTrack>& objects) {
+  Bins bins({0.0, 1.0, 4.0, 10.0, 30.0, 100.0}, "scans");
+  for (const ObjectTrack& object : objects) {
+    for (const Sighting& sighting : object.sightings) {
+      const std::size_t age = sighting.scan_index - object.sightings.front().scan_index;
+      RecallBin& bin = bins.at(static_cast<double>(age));
+      ++bin.objects;
+      bin.tp += sighting.cluster.found;
+      bin.fn += sighting.cluster.points - sighting.cluster.found;
+    }
+  }
+  return bins.take();
+}
+
+}  // namespace mosbench

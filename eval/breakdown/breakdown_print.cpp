@@ -1,0 +1,203 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "eval/breakdown/breakdown.hpp"
+#include "eval/protocols/metrics.hpp"
+#include "eval/results/answer_text.hpp"
+#include "eval/results/text_table.hpp"
+
+namespace mosbench {
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json metrics_json(const Confusion& counts) {
+  return {{"tp", counts.tp},
+          {"fp", counts.fp},
+          {"fn", counts.fn},
+          {"tn", counts.tn},
+          {"ignored", counts.ignored},
+          {"iou", json_or_null(moving_iou(counts))},
+          {"precision", json_or_null(precision(counts))},
+          {"recall", json_or_null(recall(counts))}};
+}
+
+template <std::size_t size>
+ordered_json bins_json(const std::array<double, size>& edges,
+                       const std::array<Confusion, size>& bins) {
+  ordered_json json = ordered_json::array();
+  for (std::size_t b = 0; b < size; ++b) {
+    ordered_json bin = {
+        {"from_m", edges[b] < -1e9 ? ordered_json(nullptr) : ordered_json(edges[b])}};
+    bin["to_m"] = b + 1 < size ? ordered_json(edges[b + 1]) : ordered_json(nullptr);
+    bin.update(metrics_json(bins[b]));
+    json.push_back(std::move(bin));
+  }
+  return json;
+}
+
+ordered_json recall_json(const std::vector<RecallBin>& bins) {
+  ordered_json json = ordered_json::array();
+  for (const RecallBin& bin : bins) {
+    json.push_back({{"name", bin.name}, {"objects", bin.objects}, {"tp", bin.tp}, {"fn", bin.fn}});
+  }
+  return json;
+}
+
+ordered_json position(const Eigen::Vector3d& position_m) {
+  return {position_m.x(), position_m.y(), position_m.z()};
+}
+
+std::vector<const ObjectTrack*> worst_first(const std::vector<ObjectTrack>& objects) {
+  std::vector<const ObjectTrack*> sorted;
+  for (const ObjectTrack& object : objects) sorted.push_back(&object);
+  std::ranges::stable_sort(sorted, std::ranges::greater{}, [](const ObjectTrack* object) {
+    return object->points() - object->found();
+  });
+  return sorted;
+}
+
+ordered_json object_json(const SequenceBreakdown& breakdown, const ObjectTrack& object) {
+  const Sighting& first = object.sightings.front();
+  const Sighting& last = object.sightings.back();
+  return {{"first_scan", breakdown.stems[first.scan_index]},
+          {"last_scan", breakdown.stems[last.scan_index]},
+          {"instance", first.cluster.instance},
+          {"sightings", object.sightings.size()},
+          {"points", object.points()},
+          {"tp", object.found()},
+          {"recall", object.recall()},
+          {"mean_range_m", object.mean_range_m()},
+          {"largest_size_m", object.largest_size_m()},
+          {"speed_m_s", json_or_null(object.speed_m_s())},
+          {"detection_delay_scans", json_or_null(object.detection_delay_scans())},
+          {"first_position_map_m", position(first.cluster.centre_map_m)},
+          {"last_position_map_m", position(last.cluster.centre_map_m)}};
+}
+
+std::string percent(const std::optional<double>& value) {
+  return value ? fmt::format("{:.1f}", *value * 100.0) : "";
+}
+
+template <std::size_t size>
+std::string bins_text(const char* title, const std::array<double, size>& edges,
+                      const std::array<Confusion, size>& bins) {
+  TextTable table({{title, TextTable::kLeft},
+                   {"IoU %"},
+                   {"precision %"},
+                   {"recall %"},
+                   {"TP"},
+                   {"FP"},
+                   {"FN"}});
+  for (std::size_t b = 0; b < size; ++b) {
+    if (bins[b].tp + bins[b].fp + bins[b].fn == 0) continue;
+    const std::string from = edges[b] < -1e9 ? "below" : fmt::format("{:g} to", edges[b]);
+    const std::string name = b + 1 < size ? fmt::format("{} {:g} m", from, edges[b + 1])
+                                          : fmt::format("from {:g} m", edges[b]);
+    table.add_row({name, percent(moving_iou(bins[b])), percent(precision(bins[b])),
+                   percent(recall(bins[b])), fmt::format("{}", bins[b].tp),
+                   fmt::format("{}", bins[b].fp), fmt::format("{}", bins[b].fn)});
+  }
+  return table.str() + '\n';
+}
+
+std::string recall_text(const char* title, const std::vector<RecallBin>& bins) {
+  TextTable table({{title, TextTable::kLeft}, {"objects"}, {"recall %"}, {"TP"}, {"FN"}});
+  for (const RecallBin& bin : bins) {
+    if (bin.objects == 0) continue;
+    const double recall = static_cast<double>(bin.tp) / static_cast<double>(bin.tp + bin.fn);
+    table.add_row({bin.name, fmt::format("{}", bin.objects), percent(recall),
+                   fmt::format("{}", bin.tp), fmt::format("{}", bin.fn)});
+  }
+  return table.str() + '\n';
+}
+
+std::string objects_text(const SequenceBreakdown& breakdown, std::size_t at_most) {
+  TextTable table({{"worst objects", TextTable::kLeft},
+                   {"scans"},
+                   {"points"},
+                   {"recall %"},
+                   {"range m"},
+                   {"size m"},
+                   {"m/s"},
+                   {"delay"},
+                   {"position in the map m"}});
+  const std::vector<const ObjectTrack*> sorted = worst_first(breakdown.objects);
+  for (std::size_t i = 0; i < std::min(at_most, sorted.size()); ++i) {
+    const ObjectTrack& object = *sorted[i];
+    const Sighting& first = object.sightings.front();
+    const auto speed_m_s = object.speed_m_s();
+    const auto delay = object.detection_delay_scans();
+    table.add_row({"from " + breakdown.stems[first.scan_index],
+                   fmt::format("{}", object.sightings.size()), fmt::format("{}", object.points()),
+                   percent(object.recall()), fmt::format("{:.1f}", object.mean_range_m()),
+                   fmt::format("{:.1f}", object.largest_size_m()),
+                   speed_m_s ? fmt::format("{:.1f}", *speed_m_s) : "",
+                   delay ? fmt::format("{}", *delay) : "never",
+                   position_text(first.cluster.centre_map_m)});
+  }
+  return table.str() + '\n';
+}
+
+std::string false_positives_text(const SequenceBreakdown& breakdown, std::size_t at_most) {
+  TextTable table({{"worst false positives", TextTable::kLeft},
+                   {"points"},
+                   {"range m"},
+                   {"size m"},
+                   {"position in the map m"}});
+  const auto& clusters = breakdown.false_positives;
+  for (std::size_t i = 0; i < std::min(at_most, clusters.size()); ++i) {
+    const ScanCluster& cluster = clusters[i].cluster;
+    table.add_row({"scan " + breakdown.stems[clusters[i].scan_index],
+                   fmt::format("{}", cluster.points), fmt::format("{:.1f}", cluster.range_m),
+                   fmt::format("{:.1f}", cluster.size_m), position_text(cluster.centre_map_m)});
+  }
+  return table.str();
+}
+
+}  // namespace
+
+ordered_json to_json(const SequenceBreakdown& breakdown, std::size_t at_most) {
+  ordered_json json = {{"name", breakdown.sequence},
+                       {"scans", breakdown.scans.size()},
+                       {"by_range", bins_json(kRangeEdges_m, breakdown.by_range)},
+                       {"by_height", bins_json(kHeightEdges_m, breakdown.by_height)},
+                       {"by_object_size", recall_json(recall_by_size(breakdown.objects))},
+                       {"by_object_speed", recall_json(recall_by_speed(breakdown.objects))},
+                       {"by_object_age", recall_json(recall_by_age(breakdown.objects))},
+                       {"speed_clock", breakdown.stamped ? "stamps" : "10 Hz assumed"},
+                       {"object_count", breakdown.objects.size()},
+                       {"objects", ordered_json::array()},
+                       {"false_positive_clusters", ordered_json::array()}};
+  const std::vector<const ObjectTrack*> sorted = worst_first(breakdown.objects);
+  for (std::size_t i = 0; i < std::min(at_most, sorted.size()); ++i) {
+    json["objects"].push_back(object_json(breakdown, *sorted[i]));
+  }
+  const auto& clusters = breakdown.false_positives;
+  for (std::size_t i = 0; i < std::min(at_most, clusters.size()); ++i) {
+    const ScanCluster& cluster = clusters[i].cluster;
+    json["false_positive_clusters"].push_back({{"scan", breakdown.stems[clusters[i].scan_index]},
+                                               {"points", cluster.points},
+                                               {"range_m", cluster.range_m},
+                                               {"size_m", cluster.size_m},
+                                               {"position_map_m", position(cluster.centre_map_m)}});
+  }
+  return json;
+}
+
+std::string breakdown_text(const SequenceBreakdown& breakdown, std::size_t at_most) {
+  return fmt::format("sequence {}: {} scans, {} moving objects, speeds {}\n\n", breakdown.sequence,
+                     breakdown.scans.size(), breakdown.objects.size(),
+                     breakdown.stamped
+                         ? "by the scans' stamps"
+                         : "as if scans came at 10 Hz, as not all have rising stamps") +
+         bins_text("range", kRangeEdges_m, breakdown.by_range) +
+         bins_text("height above sensor", kHeightEdges_m, breakdown.by_height) +
+         recall_text("object size", recall_by_size(breakdown.objects)) +
+         recall_text("object speed", recall_by_speed(breakdown.objects)) +
+         recall_text("scans since first seen", recall_by_age(breakdown.objects)) +
+         objects_text(breakdown, at_most) + false_positives_text(breakdown, at_most);
+}
+
+}  // namespace mosbench

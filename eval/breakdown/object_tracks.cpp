@@ -1,0 +1,151 @@
+#include "eval/breakdown/object_tracks.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <tuple>
+
+#include "eval/statistics/quantiles.hpp"
+
+namespace mosbench {
+namespace {
+
+constexpr double kGate_m = 2.0;
+constexpr std::size_t kLongestGap_scans = 5;
+constexpr double kStretch_s = 1.0 - 1e-6;  ///< stamps are rounded
+constexpr std::size_t kFoundPart = 10;     ///< a tenth of the points makes a detection
+
+/// Where a track would be in a scan if it went on as between its last two sightings.
+Eigen::Vector3d expected_at(const ObjectTrack& track, std::size_t scan_index) {
+  const Sighting& last = track.sightings.back();
+  if (track.sightings.size() < 2) return last.cluster.centre_map_m;
+  const Sighting& before = track.sightings[track.sightings.size() - 2];
+  const double step = static_cast<double>(scan_index - last.scan_index) /
+                      static_cast<double>(last.scan_index - before.scan_index);
+  return last.cluster.centre_map_m +
+         step * (last.cluster.centre_map_m - before.cluster.centre_map_m);
+}
+
+bool is_open(const ObjectTrack& track, const ScanCluster& cluster, std::size_t scan_index) {
+  const Sighting& last = track.sightings.back();
+  if (last.cluster.instance != cluster.instance || last.scan_index == scan_index) return false;
+  return cluster.instance != 0 || scan_index - last.scan_index <= kLongestGap_scans;
+}
+
+struct Pair {
+  double distance_m;
+  std::size_t track, cluster;
+};
+
+/// Pairs that may be linked, nearest first.
+std::vector<Pair> candidate_pairs(const std::vector<ObjectTrack>& tracks, const ScanObjects& scan) {
+  std::vector<Pair> pairs;
+  for (std::size_t t = 0; t < tracks.size(); ++t) {
+    for (std::size_t c = 0; c < scan.objects.size(); ++c) {
+      const ScanCluster& cluster = scan.objects[c];
+      if (!is_open(tracks[t], cluster, scan.scan_index)) continue;
+      const double distance_m =
+          (expected_at(tracks[t], scan.scan_index) - cluster.centre_map_m).norm();
+      if (cluster.instance != 0 || distance_m <= kGate_m) pairs.push_back({distance_m, t, c});
+    }
+  }
+  std::ranges::sort(pairs, {}, [](const Pair& pair) {
+    return std::tuple(pair.distance_m, pair.track, pair.cluster);
+  });
+  return pairs;
+}
+
+void extend(std::vector<ObjectTrack>& tracks, const ScanObjects& scan) {
+  const std::size_t known = tracks.size();
+  std::vector<bool> track_used(known, false);
+  std::vector<bool> cluster_used(scan.objects.size(), false);
+  for (const Pair& pair : candidate_pairs(tracks, scan)) {
+    if (track_used[pair.track] || cluster_used[pair.cluster]) continue;
+    track_used[pair.track] = cluster_used[pair.cluster] = true;
+    tracks[pair.track].sightings.push_back(
+        {scan.scan_index, scan.time_s, scan.objects[pair.cluster]});
+  }
+  for (std::size_t c = 0; c < scan.objects.size(); ++c) {
+    if (!cluster_used[c]) tracks.push_back({{{scan.scan_index, scan.time_s, scan.objects[c]}}});
+  }
+}
+
+double speed_between(const Sighting& from, const Sighting& to) {
+  return (to.cluster.centre_map_m - from.cluster.centre_map_m).norm() / (to.time_s - from.time_s);
+}
+
+bool may_go_on(const ObjectTrack& track, std::size_t scan_index) {
+  const Sighting& last = track.sightings.back();
+  return last.cluster.instance != 0 || scan_index - last.scan_index <= kLongestGap_scans;
+}
+
+}  // namespace
+
+std::size_t ObjectTrack::points() const {
+  std::size_t points = 0;
+  for (const Sighting& sighting : sightings) points += sighting.cluster.points;
+  return points;
+}
+
+std::size_t ObjectTrack::found() const {
+  std::size_t found = 0;
+  for (const Sighting& sighting : sightings) found += sighting.cluster.found;
+  return found;
+}
+
+double ObjectTrack::mean_range_m() const {
+  double sum_m = 0.0;
+  for (const Sighting& sighting : sightings) sum_m += sighting.cluster.range_m;
+  return sum_m / static_cast<double>(sightings.size());
+}
+
+double ObjectTrack::largest_size_m() const {
+  double largest_m = 0.0;
+  for (const Sighting& sighting : sightings) {
+    largest_m = std::max(largest_m, sighting.cluster.size_m);
+  }
+  return largest_m;
+}
+
+std::optional<double> ObjectTrack::speed_m_s() const {
+  if (sightings.size() < 2) return std::nullopt;
+  std::vector<double> speeds_m_s;
+  std::size_t later = 0;
+  for (const Sighting& from : sightings) {
+    while (later < sightings.size() && sightings[later].time_s - from.time_s < kStretch_s) ++later;
+    if (later == sightings.size()) break;
+    speeds_m_s.push_back(speed_between(from, sightings[later]));
+  }
+  if (speeds_m_s.empty()) return speed_between(sightings.front(), sightings.back());
+  std::ranges::sort(speeds_m_s);
+  return sorted_quantile(speeds_m_s, 0.5);
+}
+
+std::optional<std::size_t> ObjectTrack::detection_delay_scans() const {
+  for (const Sighting& sighting : sightings) {
+    const ScanCluster& cluster = sighting.cluster;
+    if (cluster.found > 0 && cluster.found * kFoundPart >= cluster.points) {
+      return sighting.scan_index - sightings.front().scan_index;
+    }
+  }
+  return std::nullopt;
+}
+
+std::vector<ObjectTrack> link_objects(std::span<const ScanObjects> scans) {
+  std::vector<ObjectTrack> finished;
+  std::vector<ObjectTrack> open;
+  for (const ScanObjects& scan : scans) {
+    // Closed tracks are set aside, so that long sequences do not compare with all of their past.
+    const auto closed = std::stable_partition(
+        open.begin(), open.end(),
+        [&](const ObjectTrack& track) { return may_go_on(track, scan.scan_index); });
+    std::move(closed, open.end(), std::back_inserter(finished));
+    open.erase(closed, open.end());
+    extend(open, scan);
+  }
+  std::ranges::move(open, std::back_inserter(finished));
+  std::ranges::stable_sort(
+      finished, {}, [](const ObjectTrack& track) { return track.sightings.front().scan_index; });
+  return finished;
+}
+
+}  // namespace mosbench

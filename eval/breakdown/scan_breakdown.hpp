@@ -1,0 +1,44 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "datasets/sequence/sequence.hpp"
+#include "eval/protocols/confusion.hpp"
+
+namespace mosbench {
+
+/// Bins [edge, next edge) of the distance from the sensor, metres; the last one is open.
+inline constexpr std::array kRangeEdges_m = {0.0, 5.0, 10.0, 20.0, 30.0, 40.0, 50.0, 75.0, 100.0};
+/// Bins of the height above the sensor in the map's upward direction; the first one is open below.
+inline constexpr std::array kHeightEdges_m = {-1e30, -2.0, -1.5, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0};
+
+/// Points of one scan that belong to one thing.
+struct ScanCluster {
+  std::uint32_t instance = 0;  ///< from the upper bits of the truth; 0 when there is none
+  std::size_t points = 0;
+  std::size_t found = 0;  ///< of them predicted moving
+  Eigen::Vector3d centre_map_m = Eigen::Vector3d::Zero();
+  double range_m = 0.0;  ///< of the centre from the sensor
+  double size_m = 0.0;   ///< diagonal of the box around the points
+};
+
+/// Where in one scan the labels are right and wrong.
+struct ScanBreakdown {
+  std::array<Confusion, kRangeEdges_m.size()> by_range;
+  std::array<Confusion, kHeightEdges_m.size()> by_height;
+  std::vector<ScanCluster> objects;          ///< of moving truth, largest first
+  std::vector<ScanCluster> false_positives;  ///< largest first; `found` equals `points`
+};
+
+/// Takes a labelled scan apart by the protocol's rules. Moving truth is grouped by the instance in
+/// the upper 16 bits of its labels, or where there is none by clusters of 0.5 m cells.
+ScanBreakdown break_down_scan(const Protocol& protocol, const RangeGate& limits, const Frame& frame,
+                              std::span<const std::uint32_t> prediction);
+
+}  // namespace mosbench

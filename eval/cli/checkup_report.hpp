@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+
+#include "datasets/doctor/doctor.hpp"
+
+namespace mosbench {
+
+/// What `mosbench doctor` prints: per sequence what was seen, then what is wrong, the verdict and
+/// the command to run next on `input`.
+std::string checkup_text(const Checkup& checkup, const std::string& input);
+std::string checkup_json(const Checkup& checkup);
+
+}  // namespace mosbench

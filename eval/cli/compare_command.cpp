@@ -1,0 +1,89 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "datasets/files/errors.hpp"
+#include "eval/cli/commands.hpp"
+#include "eval/results/answer_text.hpp"
+#include "eval/statistics/gate.hpp"
+#include "eval/statistics/paired_runs.hpp"
+
+namespace mosbench {
+namespace {
+
+constexpr const char* kCompareFooter =
+    R"(BASELINE and NEW are folders of results (mosbench run, mosbench score --out, mosbench bless). Both runs'
+scans are paired. A sequence, or all together, regresses when its IoU drops by more than --max-drop and
+by more than the 95 % interval of the paired difference leaves open. Runs with another protocol, method,
+setting, other scans or input are refused; --even-if compares the scans that both have all the same.
+
+Exit codes: 0 pass, 1 regression, 2 wrong usage, 3 unusable or unlike results.
+
+Examples:
+  mosbench compare results/baseline/room results/runs/room
+  mosbench compare results/baseline/room results/runs/room --max-drop 0.1 --json)";
+
+struct CompareFlags {
+  std::filesystem::path baseline, newer;
+  double max_drop_points = 0.5;
+  bool even_if = false;
+  bool json = false;
+};
+
+std::string answer_of(const CompareFlags& options, const ResultSet& baseline,
+                      const ResultSet& newer, const PairedRuns& paired, const GateResult& result) {
+  if (options.json) {
+    nlohmann::ordered_json json = to_json(result);
+    json["paired_scans"] = paired.scans.size();
+    json["missing_predictions"] = {{"baseline", missing_predictions(baseline)},
+                                   {"new", missing_predictions(newer)}};
+    json["unlike"] = unlike_text(paired.unlike);
+    return json_text(json);
+  }
+  std::string text = fmt::format("{} paired scans\n", paired.scans.size());
+  for (const std::string& caveat : caveats(baseline)) text += "baseline: " + caveat + '\n';
+  for (const std::string& caveat : caveats(newer)) text += "new: " + caveat + '\n';
+  if (!paired.unlike.empty()) text += "unlike: " + unlike_text(paired.unlike) + '\n';
+  return text + '\n' + gate_text(result) + (result.passed() ? "\npass\n" : "\nregression\n");
+}
+
+std::string compare(const CompareFlags& options) {
+  const ResultSet baseline = load_result_set(options.baseline);
+  const ResultSet newer = load_result_set(options.newer);
+  const PairedRuns paired = pair_runs(baseline, newer);
+  if (!paired.unlike.empty() && !options.even_if) {
+    throw DataError(options.newer,
+                    "is not like " + options.baseline.string() + ": " + unlike_text(paired.unlike),
+                    "results of the same kind; --even-if compares all the same");
+  }
+  if (paired.scans.empty()) {
+    throw DataError(options.newer, "shares no counted scan with " + options.baseline.string(),
+                    "results over the same scans");
+  }
+  const GateResult result =
+      judge(paired, *baseline.front().protocol, options.max_drop_points / 100.0);
+  std::string answer = answer_of(options, baseline, newer, paired, result);
+  if (!result.passed()) throw Finding(answer);
+  return answer;
+}
+
+}  // namespace
+
+void add_compare_command(CLI::App& app, std::string& answer) {
+  auto options = std::make_shared<CompareFlags>();
+  CLI::App* command = app.add_subcommand("compare", "Fail when IoU dropped against a baseline");
+  command->add_option("BASELINE", options->baseline, "Accepted results")->required();
+  command->add_option("NEW", options->newer, "Results to judge")->required();
+  command
+      ->add_option("--max-drop", options->max_drop_points,
+                   "IoU in percentage points that may be lost")
+      ->check(CLI::Range(0.0, 100.0))
+      ->capture_default_str();
+  command->add_flag("--even-if", options->even_if, "Compare results of different kinds, too");
+  command->add_flag("--json", options->json, "Print JSON instead of a table");
+  command->footer(kCompareFooter);
+  command->callback([options, &answer] { answer = compare(*options); });
+}
+
+}  // namespace mosbench

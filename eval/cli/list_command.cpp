@@ -1,0 +1,119 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "datasets/simulator/built_in_scenes.hpp"
+#include "eval/cli/commands.hpp"
+#include "eval/cli/dataset_catalogue.hpp"
+#include "eval/predictions/prediction_format.hpp"
+#include "eval/protocols/protocol_list.hpp"
+#include "eval/results/text_table.hpp"
+#include "eval/runs/presets.hpp"
+
+namespace mosbench {
+namespace {
+
+constexpr const char* kListFooter = R"(Examples:
+  mosbench list
+  mosbench list presets
+  mosbench list datasets)";
+
+std::string datasets_text() {
+  std::string text;
+  for (const CataloguedDataset& dataset : catalogued_datasets()) {
+    text += fmt::format("{} ({})\n", to_string(dataset.kind), dataset.title);
+    for (const auto& [what, value] :
+         {std::pair{"content", dataset.content}, std::pair{"size", dataset.size},
+          std::pair{"published", dataset.published}, std::pair{"licence", dataset.licence}}) {
+      text += fmt::format("  {:<10}{}\n", what, value);
+    }
+    text += fmt::format("  {:<10}{}\n", "folders", dataset.folders.front());
+    for (const std::string_view line : dataset.folders.subspan(1)) {
+      text += fmt::format("  {:<10}{}\n", "", line);
+    }
+  }
+  return text;
+}
+
+std::string presets_text() {
+  TextTable table({{"preset", TextTable::kLeft},
+                   {"data set", TextTable::kLeft},
+                   {"voxel m"},
+                   {"range m"},
+                   {"delay"},
+                   {"protocol", TextTable::kLeft},
+                   {"from", TextTable::kLeft}});
+  for (const Preset& preset : presets()) {
+    table.add_row(
+        {std::string(preset.name), std::string(to_string(preset.kind)),
+         fmt::format("{:.2f}", preset.config.voxel_size_m),
+         fmt::format("{:g} to {:g}", preset.config.min_range_m, preset.config.max_range_m),
+         fmt::format("{}", preset.config.delay_scans), std::string(preset.protocol),
+         std::string(preset.source)});
+  }
+  return table.str() +
+         "All others as in the paper: transition_epsilon 0.005, min_state_probability 0.99,\n"
+         "kernel_width_voxels 5, min_otsu_score 3, local_window_scans 3, dynamic_window_scans "
+         "100,\n"
+         "global_window_scans 300, occupancy_sigma_m as voxel_size_m.\n";
+}
+
+std::string protocols_text() {
+  std::string text;
+  for (const ProtocolDescription& protocol : describe_protocols()) {
+    text += fmt::format("{}\n", protocol.name);
+    for (const auto& [what, value] :
+         {std::pair{"rule", &protocol.summary}, std::pair{"truth", &protocol.truth},
+          std::pair{"moving", &protocol.prediction}, std::pair{"range", &protocol.range},
+          std::pair{"average", &protocol.aggregation}, std::pair{"0/0", &protocol.empty_case},
+          std::pair{"source", &protocol.source}}) {
+      text += fmt::format("  {:<10}{}\n", what, *value);
+    }
+  }
+  return text;
+}
+
+std::string scenes_text() {
+  TextTable table({{"scene", TextTable::kLeft}, {"what", TextTable::kLeft}});
+  for (const SceneSummary& scene : built_in_scenes()) {
+    table.add_row({std::string(scene.name), std::string(scene.content)});
+  }
+  return table.str();
+}
+
+std::string formats_text() {
+  TextTable table(
+      {{"format", TextTable::kLeft}, {"files", TextTable::kLeft}, {"what", TextTable::kLeft}});
+  for (const DescribedFormat& format : prediction_formats()) {
+    table.add_row({std::string(format.name), format.per_scan ? "one per scan" : "one per sequence",
+                   std::string(format.description)});
+  }
+  return table.str();
+}
+
+std::string list(const std::string& what) {
+  if (what == "formats") return formats_text();
+  if (what == "datasets") return datasets_text();
+  if (what == "presets") return presets_text();
+  if (what == "protocols") return protocols_text();
+  if (what == "scenes") return scenes_text();
+  return fmt::format(
+      "Data sets\n\n{}\nPresets\n\n{}\nProtocols\n\n{}\nScenes\n\n{}\nFormats of predictions\n\n{}",
+      datasets_text(), presets_text(), protocols_text(), scenes_text(), formats_text());
+}
+
+}  // namespace
+
+void add_list_command(CLI::App& app, std::string& answer) {
+  auto what = std::make_shared<std::string>("all");
+  CLI::App* command =
+      app.add_subcommand("list", "Data sets, presets, protocols and scenes that are known");
+  command->add_option("WHAT", *what, "datasets, presets, protocols, scenes, formats or all")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"all", "datasets", "presets", "protocols", "scenes", "formats"}));
+  command->footer(kListFooter);
+  command->callback([what, &answer] { answer = list(*what); });
+}
+
+}  // namespace mosbench

@@ -1,0 +1,69 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <limits>
+#include <memory>
+
+#include "datasets/files/files.hpp"
+#include "eval/cli/commands.hpp"
+#include "eval/cli/method_options.hpp"
+#include "eval/cli/profile_report.hpp"
+#include "eval/results/answer_text.hpp"
+#include "eval/results/machine.hpp"
+
+namespace mosbench {
+namespace {
+
+constexpr const char* kProfileFooter =
+    R"(Segments the scans one after the other, without writing labels or scoring, and prints per stage the
+wall time (min, median, p95, max), its share and the CPU time of all threads; then memory over the
+scans and how many times faster than the sensor it ran. On a busy machine trust CPU times and shares;
+with several threads CPU times hold up to 60 us per stage and thread of watching for work.
+
+--json writes the same numbers and those of each scan. --trace writes a file for ui.perfetto.dev or
+chrome://tracing, with a slice for every stage of every scan.
+
+Examples:
+  mosbench profile ~/kitti/sequences/08 --scans 200 --threads 1
+  mosbench profile sim/00 --set max_range_m=120 --json profile.json --trace trace.json)";
+
+struct ProfileFlags {
+  RunOptions method;
+  std::size_t scans = std::numeric_limits<std::size_t>::max();
+  std::optional<std::filesystem::path> json, trace;
+};
+
+void write(const std::optional<std::filesystem::path>& file, const nlohmann::ordered_json& json) {
+  if (!file) return;
+  write_file_atomic(*file, json_text(json));
+}
+
+std::string profile(const ProfileFlags& options) {
+  keep_freed_memory();
+  const RunPlan plan = plan_method(options.method);
+  for (const std::string& note : plan.notes) std::fputs((note + '\n').c_str(), stderr);
+  std::vector<SequenceProfile> profiles;
+  for (const auto& sequence : plan.dataset.sequences) {
+    profiles.push_back(profile_sequence(*sequence, plan.settings, options.scans));
+  }
+  write(options.json, profile_json(plan, profiles));
+  if (options.trace) write(options.trace, profile_trace(profiles));
+  return profile_text(plan, profiles);
+}
+
+}  // namespace
+
+void add_profile_command(CLI::App& app, std::string& answer) {
+  auto options = std::make_shared<ProfileFlags>();
+  CLI::App* command = app.add_subcommand("profile", "Show where the time of a run goes");
+  add_method_options(*command, options->method);
+  command->add_option("--scans", options->scans, "Only the first so many of each sequence")
+      ->check(CLI::Range(std::size_t{1}, std::size_t{1000000}))
+      ->default_str("all");
+  command->add_option("--json", options->json, "Write the numbers to this file");
+  command->add_option("--trace", options->trace, "Write a trace to this file");
+  command->footer(kProfileFooter);
+  command->callback([options, &answer] { answer = profile(*options); });
+}
+
+}  // namespace mosbench

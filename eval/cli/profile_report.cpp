@@ -1,0 +1,242 @@
+#include "eval/cli/profile_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "eval/results/config_json.hpp"
+#include "eval/results/machine.hpp"
+#include "eval/results/simulated.hpp"
+#include "eval/results/text_table.hpp"
+#include "mosbench_version.hpp"
+
+namespace mosbench {
+namespace {
+
+using nlohmann::ordered_json;
+
+/// One line of the table: costs of every scan, wall and CPU side by side.
+struct CostRow {
+  std::string name;
+  std::vector<double> wall_ms, cpu_ms;
+
+  void add(const Cost& cost) {
+    wall_ms.push_back(cost.wall_ms);
+    cpu_ms.push_back(cost.cpu_ms);
+  }
+};
+
+double sum(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0);
+}
+
+double mean(const std::vector<double>& values) {
+  return sum(values) / static_cast<double>(values.size());
+}
+
+/// Read, the stages in order, what lies between them, and the whole.
+std::vector<CostRow> cost_rows(const SequenceProfile& profile) {
+  std::vector<CostRow> rows;
+  for (const std::string_view name : kStageNames) rows.push_back({std::string(name), {}, {}});
+  CostRow read{"read", {}, {}}, between{"between stages", {}, {}}, whole{"method", {}, {}};
+  for (const ScanProfile& scan : profile.scans) {
+    std::array<Cost, kStageNames.size()> stages{};
+    Cost rest = scan.method;
+    for (const StageEvent& event : scan.stages) {
+      Cost& cost = stages[static_cast<std::size_t>(event.stage)];
+      cost.wall_ms += event.wall_ms;
+      cost.cpu_ms += event.cpu_ms;
+      rest.wall_ms -= event.wall_ms;
+      rest.cpu_ms -= event.cpu_ms;
+    }
+    for (std::size_t stage = 0; stage < stages.size(); ++stage) rows[stage].add(stages[stage]);
+    read.add(scan.read);
+    between.add({std::max(0.0, rest.wall_ms), std::max(0.0, rest.cpu_ms)});
+    whole.add(scan.method);
+  }
+  rows.insert(rows.begin(), std::move(read));
+  rows.push_back(std::move(between));
+  rows.push_back(std::move(whole));
+  return rows;
+}
+
+std::string stage_table(const SequenceProfile& profile) {
+  using Align = TextTable::Align;
+  TextTable table({{"stage", Align::kLeft},
+                   {"min"},
+                   {"median"},
+                   {"p95"},
+                   {"max"},
+                   {"share"},
+                   {"CPU median"},
+                   {"CPU mean"}});
+  const std::vector<CostRow> rows = cost_rows(profile);
+  const double whole_ms = sum(rows.back().wall_ms);
+  for (const CostRow& row : rows) {
+    const bool is_whole = &row == &rows.back();
+    if (is_whole) table.add_rule();
+    table.add_row(
+        {row.name, fmt::format("{:.3f}", quantile(row.wall_ms, 0)),
+         fmt::format("{:.3f}", quantile(row.wall_ms, 0.5)),
+         fmt::format("{:.3f}", quantile(row.wall_ms, 0.95)),
+         fmt::format("{:.3f}", quantile(row.wall_ms, 1)),
+         row.name == "read" ? "" : fmt::format("{:.1f} %", 100 * sum(row.wall_ms) / whole_ms),
+         fmt::format("{:.3f}", quantile(row.cpu_ms, 0.5)),
+         fmt::format("{:.3f}", mean(row.cpu_ms))});
+  }
+  return table.str();
+}
+
+/// First, last and eight scans between.
+std::string memory_table(const SequenceProfile& profile) {
+  TextTable table({{"scan"}, {"resident MiB"}, {"method MiB"}, {"map blocks"}});
+  const std::size_t last = profile.scans.size() - 1;
+  const std::size_t steps = std::min<std::size_t>(last, 9);
+  for (std::size_t i = 0; i <= steps; ++i) {
+    const std::size_t k = steps == 0 ? 0 : last * i / steps;
+    const ScanProfile& scan = profile.scans[k];
+    table.add_row({std::to_string(k), fmt::format("{:.1f}", scan.resident_mib),
+                   fmt::format("{:.1f}", static_cast<double>(scan.method_bytes) / 1048576.0),
+                   std::to_string(scan.map_blocks)});
+  }
+  return table.str();
+}
+
+double scan_ms(const SequenceProfile& profile) {
+  double total_ms = 0;
+  for (const ScanProfile& scan : profile.scans) total_ms += scan.read.wall_ms + scan.method.wall_ms;
+  return total_ms / static_cast<double>(profile.scans.size());
+}
+
+double points_per_s(const SequenceProfile& profile) {
+  double points = 0, wall_ms = 0;
+  for (const ScanProfile& scan : profile.scans) {
+    points += static_cast<double>(scan.points);
+    wall_ms += scan.method.wall_ms;
+  }
+  return points / (wall_ms * 1e-3);
+}
+
+double real_time_factor(const SequenceProfile& profile) {
+  return profile.period_ms.value_or(kUsualPeriod_ms) / scan_ms(profile);
+}
+
+std::string speed_line(const SequenceProfile& profile) {
+  return fmt::format(
+      "{:.2f} ms per scan with reading, {:.2f} million points/s, {:.1f} times real time at {:g} ms "
+      "per scan{}\n",
+      scan_ms(profile), points_per_s(profile) * 1e-6, real_time_factor(profile),
+      profile.period_ms.value_or(kUsualPeriod_ms),
+      profile.period_ms ? "" : " (assumed: the sequence has no stamps)");
+}
+
+ordered_json sequence_json(const SequenceProfile& profile) {
+  ordered_json stages = ordered_json::object();
+  for (const CostRow& row : cost_rows(profile)) {
+    const auto spread = [](const std::vector<double>& values) {
+      return ordered_json{{"min", quantile(values, 0)},
+                          {"median", quantile(values, 0.5)},
+                          {"p95", quantile(values, 0.95)},
+                          {"max", quantile(values, 1)},
+                          {"mean", mean(values)}};
+    };
+    stages[row.name] = {{"wall_ms", spread(row.wall_ms)}, {"cpu_ms", spread(row.cpu_ms)}};
+  }
+  ordered_json scans = ordered_json::array();
+  for (const ScanProfile& scan : profile.scans) {
+    ordered_json& entry = scans.emplace_back();
+    entry = {{"stem", scan.stem},
+             {"points", scan.points},
+             {"read_ms", scan.read.wall_ms},
+             {"method_wall_ms", scan.method.wall_ms},
+             {"method_cpu_ms", scan.method.cpu_ms},
+             {"resident_mib", scan.resident_mib},
+             {"method_bytes", scan.method_bytes},
+             {"map_blocks", scan.map_blocks}};
+  }
+  return {{"sequence", profile.name},
+          {"threads", profile.threads},
+          {"period_ms", profile.period_ms ? ordered_json(*profile.period_ms) : ordered_json()},
+          {"ms_per_scan", scan_ms(profile)},
+          {"points_per_s", points_per_s(profile)},
+          {"real_time_factor", real_time_factor(profile)},
+          {"stages", std::move(stages)},
+          {"scans", std::move(scans)}};
+}
+
+}  // namespace
+
+std::string profile_text(const RunPlan& plan, const std::vector<SequenceProfile>& profiles) {
+  std::string text = simulated_notice(plan.dataset);
+  for (const SequenceProfile& profile : profiles) {
+    text +=
+        fmt::format("{}: {} scans, {} thread{}; milliseconds per scan\n{}\n{}\n{}\n", profile.name,
+                    profile.scans.size(), profile.threads, profile.threads == 1 ? "" : "s",
+                    stage_table(profile), memory_table(profile), speed_line(profile));
+  }
+  return text;
+}
+
+ordered_json profile_json(const RunPlan& plan, const std::vector<SequenceProfile>& profiles) {
+  ordered_json json = {
+      {"dataset", std::string(to_string(plan.dataset.kind))},
+      {"variant", std::string(to_string(plan.settings.variant))},
+      {"preset", plan.preset},
+      {"config", to_json(plan.settings.config, plan.settings.variant)},
+      {"code", {{"version", std::string(kMosbenchVersion)}, {"compiler", std::string(kCompiler)}}},
+      {"machine", machine_json()}};
+  if (const auto origin = simulated_origin_json(plan.dataset)) json["simulated"] = *origin;
+  json["sequences"] = ordered_json::array();
+  for (const SequenceProfile& profile : profiles) {
+    json["sequences"].push_back(sequence_json(profile));
+  }
+  return json;
+}
+
+ordered_json profile_trace(const std::vector<SequenceProfile>& profiles) {
+  ordered_json events = ordered_json::array();
+  const auto origin = profiles.front().scans.front().start;
+  const auto at_us = [&](std::chrono::steady_clock::time_point time) {
+    return std::chrono::duration<double, std::micro>(time - origin).count();
+  };
+  const auto slice = [&](std::size_t process, const std::string& name, double start_us,
+                         double wall_ms, ordered_json arguments) {
+    events.push_back({{"name", name},
+                      {"ph", "X"},
+                      {"pid", process},
+                      {"tid", 1},
+                      {"ts", start_us},
+                      {"dur", wall_ms * 1e3},
+                      {"args", std::move(arguments)}});
+  };
+  for (std::size_t process = 0; process < profiles.size(); ++process) {
+    events.push_back({{"name", "process_name"},
+                      {"ph", "M"},
+                      {"pid", process},
+                      {"args", {{"name", profiles[process].name}}}});
+    for (const ScanProfile& scan : profiles[process].scans) {
+      const double start_us = at_us(scan.start);
+      slice(process, "scan " + scan.stem, start_us, (at_us(scan.end) - start_us) * 1e-3,
+            {{"points", scan.points}});
+      slice(process, "read", start_us, scan.read.wall_ms, {{"cpu_ms", scan.read.cpu_ms}});
+      for (const StageEvent& event : scan.stages) {
+        slice(process, std::string(kStageNames[static_cast<std::size_t>(event.stage)]),
+              at_us(event.start), event.wall_ms, {{"cpu_ms", event.cpu_ms}});
+      }
+      events.push_back({{"name", "memory"},
+                        {"ph", "C"},
+                        {"pid", process},
+                        {"ts", start_us},
+                        {"args", {{"resident MiB", scan.resident_mib}}}});
+      events.push_back({{"name", "map"},
+                        {"ph", "C"},
+                        {"pid", process},
+                        {"ts", start_us},
+                        {"args", {{"blocks", scan.map_blocks}}}});
+    }
+  }
+  return {{"displayTimeUnit", "ms"}, {"traceEvents", std::move(events)}};
+}
+
+}  // namespace mosbench

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "eval/runs/profile.hpp"
+
+namespace mosbench {
+
+/// A period is assumed where a sequence has no stamps.
+inline constexpr double kUsualPeriod_ms = 100;
+
+/// Tables of cost per stage, memory over scans and real-time factor, for people.
+std::string profile_text(const RunPlan& plan, const std::vector<SequenceProfile>& profiles);
+
+/// The same numbers and those of each scan; `stages` in milliseconds per scan.
+nlohmann::ordered_json profile_json(const RunPlan& plan,
+                                    const std::vector<SequenceProfile>& profiles);
+
+/// Chrome's trace event format, for Perfetto or chrome://tracing: a slice for each stage of each
+/// scan, counters for resident memory and map blocks.
+nlohmann::ordered_json profile_trace(const std::vector<SequenceProfile>& profiles);
+
+}  // namespace mosbench

@@ -1,0 +1,109 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <memory>
+#include <optional>
+
+#include "datasets/files/errors.hpp"
+#include "datasets/files/files.hpp"
+#include "eval/cli/commands.hpp"
+#include "eval/protocols/metrics.hpp"
+#include "eval/report/birds_eye.hpp"
+#include "eval/report/scan_choice.hpp"
+
+namespace mosbench {
+namespace {
+
+constexpr const char* kRenderFooter =
+    R"(Draws one scan from above, without browser or graphics card: true and false points, their counts, range
+rings in metres. K counts from 0; "worst" is the scan with most false points. Points are read again
+from where the run read them, or from --data.
+
+Examples:
+  mosbench render results/runs/sim --scan 20 -o scan.png
+  mosbench render results/runs/doals --sequence hauptgebaeude/sequence_1 --scan worst -o worst.png
+  mosbench render results/runs/08 --scan 120 -o dark.png --dark --range 30 --size 1600)";
+
+struct RenderFlags {
+  std::filesystem::path input, out;
+  std::optional<std::filesystem::path> dataset_root;
+  std::optional<std::string> sequence;
+  std::string scan;
+  BirdsEyeOptions picture;
+};
+
+FoundResult choose_result(const RenderFlags& options) {
+  std::vector<FoundResult> results = find_results(options.input);
+  std::string names;
+  for (const FoundResult& result : results) names += (names.empty() ? "" : ", ") + result.name;
+  if (options.sequence) {
+    std::erase_if(results,
+                  [&](const FoundResult& result) { return result.name != *options.sequence; });
+  }
+  if (results.size() == 1) return std::move(results.front());
+  throw UsageError(fmt::format("{}: holds results of {}, expected --sequence to name one",
+                               options.input.string(), names));
+}
+
+std::size_t choose_scan(const std::string& text, const std::vector<ScanRow>& rows) {
+  if (text == "worst" && !rows.empty()) return worst_first(rows).front();
+  std::size_t scan = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), scan);
+  if (error == std::errc() && end == text.data() + text.size() && scan < rows.size()) return scan;
+  throw UsageError(fmt::format("--scan: '{}' is no scan, expected worst or 0 to {}", text,
+                               static_cast<std::ptrdiff_t>(rows.size()) - 1));
+}
+
+std::vector<std::string> title_of(const FoundResult& result, std::size_t scan_index) {
+  const ScanRow& row = result.file.rows.scans[scan_index];
+  std::vector<std::string> lines = {
+      fmt::format("{}, scan {} ({})", result.name, scan_index, row.stem)};
+  if (row.counts) {
+    const auto percent = [](const std::optional<double>& value) {
+      return value ? fmt::format("{:.1f} %", 100.0 * *value) : std::string("undefined");
+    };
+    lines.push_back(fmt::format("IoU {}, precision {}, recall {}", percent(moving_iou(*row.counts)),
+                                percent(precision(*row.counts)), percent(recall(*row.counts))));
+  } else {
+    lines.emplace_back("without truth");
+  }
+  if (result.file.content.contains("simulated")) lines.emplace_back("simulated");
+  return lines;
+}
+
+std::string render(RenderFlags& options) {
+  const FoundResult result = choose_result(options);
+  const std::size_t scan_index = choose_scan(options.scan, result.file.rows.scans);
+  const ResultScans scans(result, options.dataset_root);
+  options.picture.title = title_of(result, scan_index);
+  const Picture picture = birds_eye(scans.read(scan_index), options.picture);
+  write_file_atomic(options.out, picture.png());
+  return fmt::format("scan {} of {} in {}\n", result.file.rows.scans[scan_index].stem, result.name,
+                     options.out.string());
+}
+
+}  // namespace
+
+void add_render_command(CLI::App& app, std::string& answer) {
+  auto options = std::make_shared<RenderFlags>();
+  CLI::App* command = app.add_subcommand("render", "Draw a scan of a result from above");
+  command->add_option("RESULT", options->input, "Folder of mosbench run")->required();
+  command->add_option("--scan", options->scan, "K, or worst")->required();
+  command->add_option("-o,--out", options->out, "The PNG file to write")->required();
+  command->add_option("--sequence", options->sequence, "Which, when RESULT holds several");
+  command->add_option("--data", options->dataset_root,
+                      "Where the scans are (default: where the run read them)");
+  command
+      ->add_option("--range", options->picture.range_m,
+                   "Metres from the sensor to the edge (default: what holds 98 % of the points)")
+      ->check(CLI::Range(1.0, 1000.0));
+  command->add_option("--size", options->picture.size_pixels, "Width and height, pixels")
+      ->check(CLI::Range(200, 8000))
+      ->capture_default_str();
+  command->add_flag("--dark", options->picture.dark, "Light points on a dark ground");
+  command->footer(kRenderFooter);
+  command->callback([options, &answer] { answer = render(*options); });
+}
+
+}  // namespace mosbench

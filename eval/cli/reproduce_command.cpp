@@ -1,0 +1,126 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <memory>
+
+#include "datasets/files/errors.hpp"
+#include "datasets/layouts/simulated_origin.hpp"
+#include "eval/cli/commands.hpp"
+#include "eval/runs/run_execute.hpp"
+#include "eval/tables/table_report.hpp"
+
+namespace mosbench {
+namespace {
+
+constexpr const char* kReproduceFooter =
+    R"(Runs HMM-MOS with every setting that the paper's table needs (DOALS: range 20 m and 120 m; HeLiMOS:
+online and delayed by 10 scans), each to OUT/<preset>, and prints the table. The same command again
+keeps what is finished and runs the rest; part of a data set fills part of the table. Another data set,
+or one without any sequence of the table, is refused (exit code 3).
+
+Examples:
+  mosbench reproduce doals --data ~/doals
+  mosbench reproduce helimos --data ~/HeLiMOS/KAIST05/Deskewed_LiDAR --out results/runs/helimos)";
+
+/// What one table needs.
+struct Recipe {
+  std::string_view dataset;
+  std::string_view table;
+  std::vector<std::string> presets;
+};
+
+const Recipe& recipe_named(const std::string& name) {
+  static const std::array<Recipe, 3> kRecipes = {
+      Recipe{"doals", "I", {"doals-20m", "doals-120m"}}, Recipe{"sipailou", "II", {"sipailou"}},
+      Recipe{"helimos", "III", {"helimos", "helimos-delayed"}}};
+  for (const Recipe& recipe : kRecipes) {
+    if (recipe.dataset == name) return recipe;
+  }
+  throw UsageError(
+      fmt::format("reproduce: '{}' is not known, expected doals, sipailou or helimos", name));
+}
+
+struct ReproduceFlags {
+  std::string name;
+  std::filesystem::path root;
+  std::optional<std::filesystem::path> out;
+  std::vector<std::string> sequences;
+  unsigned threads = 0;
+  std::string format = "markdown";
+};
+
+/// Whether what was recognised can be the data set: Sipailou looks like SemanticKITTI, which is
+/// what anything without a mark is taken for.
+bool can_be(DatasetKind found, std::string_view wanted, const std::filesystem::path& root) {
+  if (to_string(found) == wanted) return true;
+  return found == DatasetKind::kSemanticKitti && !simulated_origin(root);
+}
+
+/// Throws DataError unless a sequence of the table is there: else hours went into no cell of it.
+void check_is_in_table(const ReproduceFlags& options, const Recipe& recipe,
+                       const PaperTable& table) {
+  std::optional<DatasetKind> found;
+  std::vector<std::string> names;
+  for (const SequenceFolder& folder :
+       find_sequences(options.root, {.sequences = options.sequences}, found)) {
+    names.push_back(folder.name);
+  }
+  const auto in_table = [&](const std::string& name) { return is_about(table, name); };
+  if (can_be(*found, recipe.dataset, options.root) && std::ranges::any_of(names, in_table)) return;
+  std::vector<std::string_view> wanted;
+  for (const TableColumn& column : table.columns) {
+    for (const std::string_view name : column.sequences) {
+      if (std::ranges::find(wanted, name) == wanted.end()) wanted.push_back(name);
+    }
+  }
+  throw DataError(
+      options.root,
+      fmt::format("holds data set {} with {}", to_string(*found), fmt::join(names, ", ")),
+      fmt::format("{} with one or more of {} for table {}: {}", recipe.dataset,
+                  fmt::join(wanted, ", "), table.name, table.download));
+}
+
+std::string reproduce(const ReproduceFlags& options) {
+  const Recipe& recipe = recipe_named(options.name);
+  const PaperTable& table = paper_table_named(recipe.table);
+  const TableFormat format = table_format_named(options.format);
+  check_is_in_table(options, recipe, table);
+  const std::filesystem::path out = options.out.value_or("results/runs/reproduce-" + options.name);
+  std::vector<ResultSet> runs;
+  for (const std::string& preset : recipe.presets) {
+    RunOptions run;
+    run.input = options.root;
+    run.dataset = options.name;
+    run.sequences = options.sequences;
+    run.preset = preset;
+    run.out = out / preset;
+    run.threads = options.threads;
+    execute_run(plan_run(run));
+    runs.push_back(load_result_set(out / preset));
+  }
+  return table_report(table, built_in_cells(), runs, format);
+}
+
+}  // namespace
+
+void add_reproduce_command(CLI::App& app, std::string& answer) {
+  auto options = std::make_shared<ReproduceFlags>();
+  CLI::App* command = app.add_subcommand("reproduce", "Run all that a table of the paper needs");
+  command->add_option("DATASET", options->name, "doals, sipailou or helimos")->required();
+  command->add_option("--data", options->root, "Root of the data set")->required();
+  command->add_option("--out", options->out,
+                      "Where results go (default: results/runs/reproduce-...)");
+  command->add_option("--sequences", options->sequences, "Names to run, a,b (default: all)")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  command->add_option("--threads", options->threads, "Results do not depend on it (default: all)")
+      ->check(CLI::Range(1U, 1024U));
+  command->add_option("--format", options->format, "markdown, csv, latex or json")
+      ->capture_default_str();
+  command->footer(kReproduceFooter);
+  command->callback([options, &answer] { answer = reproduce(*options); });
+}
+
+}  // namespace mosbench

@@ -1,0 +1,63 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "eval/cli/commands.hpp"
+#include "eval/cli/method_options.hpp"
+#include "eval/cli/run_report.hpp"
+#include "eval/runs/run_execute.hpp"
+#include "eval/runs/run_plan.hpp"
+
+namespace mosbench {
+namespace {
+
+constexpr const char* kRunFooter =
+    R"(Writes DIR/<sequence>/labels/<stem>.label (uint32, 9 static or 251 moving, one per point) and
+DIR/<sequence>/result.json, and prints IoU, precision, recall and ms per scan where there is truth.
+--scores adds DIR/<sequence>/scores/<stem>.score (int32, one per point): the number of votes for motion
+that the threshold is compared with. `mosbench report` then colours points by it.
+
+The same command again skips the sequences that are finished and starts an interrupted one anew: the
+method's memory spans the whole past, so scans cannot be skipped. A sequence appears under DIR when it
+is finished; until then it is written to DIR/<sequence>.partial. Results of another configuration,
+program or input are kept unless --overwrite is given. DIR may hold sequences of one data set and one
+setting only.
+
+Configuration: defaults < preset < --config FILE < --set. FILE holds a JSON object such as
+  {"voxel_size_m": 0.25, "max_range_m": 50.0, "delay_scans": 10}
+occupancy_sigma_m follows voxel_size_m when it is not set. `mosbench list presets` shows the presets.
+
+Examples:
+  mosbench run ~/sipailou-livox-kitti
+  mosbench run ~/doals --preset doals-120m --sequences station/sequence_1,station/sequence_2
+  mosbench run ~/HeLiMOS/KAIST05/Deskewed_LiDAR --preset helimos-delayed --protocol helimos-test
+  mosbench run ~/kitti/sequences/08 --set max_range_m=30 voxel_size_m=0.2 --out results/runs/08-near
+  mosbench run ~/kitti/sequences/08 --scores --out results/runs/08-scores
+  mosbench run sim/00 --config near.json --variant release-2025 --threads 4 --json)";
+
+std::string run(const RunOptions& options) {
+  const RunPlan plan = plan_run(options);
+  const std::vector<SequenceOutcome> outcomes = execute_run(plan);
+  return options.json ? run_report_json(plan, outcomes) : run_report_text(plan, outcomes);
+}
+
+}  // namespace
+
+void add_run_command(CLI::App& app, std::string& answer) {
+  auto options = std::make_shared<RunOptions>();
+  CLI::App* command = app.add_subcommand("run", "Segment sequences and score the result");
+  add_method_options(*command, *options);
+  command->add_option("--protocol", options->protocol, "How to score (default: by preset)");
+  command->add_option("--range", options->range,
+                      "MIN,MAX in metres, for protocols that limit it (default: the run's own)");
+  command->add_option("--out", options->out,
+                      "Where results go (default: results/runs/<data>-<preset>-<variant>)");
+  command->add_flag("--scores", options->scores, "Also write every point's dynamic score");
+  command->add_flag("--overwrite", options->overwrite, "Run anew and replace what is in --out");
+  command->add_flag("--json", options->json, "Print JSON instead of a table");
+  command->footer(kRunFooter);
+  command->callback([options, &answer] { answer = run(*options); });
+}
+
+}  // namespace mosbench

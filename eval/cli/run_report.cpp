@@ -1,0 +1,87 @@
+#include "eval/cli/run_report.hpp"
+
+#include <fmt/format.h>
+
+#include "eval/results/answer_text.hpp"
+#include "eval/results/config_json.hpp"
+#include "eval/results/simulated.hpp"
+#include "eval/tables/score_table.hpp"
+
+namespace mosbench {
+namespace {
+
+std::vector<ScoredSequence> scored(const RunPlan& plan,
+                                   const std::vector<SequenceOutcome>& outcomes) {
+  std::vector<ScoredSequence> sequences;
+  for (std::size_t i = 0; i < outcomes.size(); ++i) {
+    ScoredSequence& sequence = sequences.emplace_back();
+    sequence.name = plan.dataset.sequences[i]->name();
+    sequence.method_ms_per_scan = method_ms_per_scan(outcomes[i].rows);
+    for (const ScanRow& row : outcomes[i].rows.scans) {
+      sequence.scans.push_back({row.stem, row.counts});
+    }
+  }
+  return sequences;
+}
+
+std::vector<ScoreRow> rows_of(const RunPlan& plan, const std::vector<SequenceOutcome>& outcomes) {
+  return score_rows(*plan.settings.protocol, plan.dataset.splits, scored(plan, outcomes));
+}
+
+std::string method_line(const RunPlan& plan) {
+  const Config& config = plan.settings.config;
+  const std::string mode =
+      config.delay_scans == 0 ? "online" : fmt::format("delayed by {} scans", config.delay_scans);
+  return fmt::format("HMM-MOS {}, preset {}: voxel {:g} m, range {:g} to {:g} m, {}",
+                     to_string(plan.settings.variant), plan.preset, config.voxel_size_m,
+                     config.min_range_m, config.max_range_m, mode);
+}
+
+std::string protocol_line(const RunPlan& plan) {
+  const Protocol& protocol = *plan.settings.protocol;
+  const RangeGate& range = plan.settings.range;
+  std::string line = fmt::format("protocol {}: {}", protocol.name, protocol.summary);
+  if (protocol.range_rule != RangeRule::kNone) {
+    line += range.max_m > 0 ? fmt::format(" ({:g} to {:g} m)", range.min_m, range.max_m)
+                            : fmt::format(" (from {:g} m)", range.min_m);
+  }
+  return line;
+}
+
+}  // namespace
+
+std::string run_report_text(const RunPlan& plan, const std::vector<SequenceOutcome>& outcomes) {
+  std::string text =
+      fmt::format("{} data set {}\n{}\n{}\n", to_string(plan.dataset.kind),
+                  plan.dataset.root.string(), method_line(plan), protocol_line(plan));
+  text += benchmark_notice(*plan.settings.protocol, plan.dataset.splits);
+  text += simulated_notice(plan.dataset);
+  text += '\n' + format_rows(*plan.settings.protocol, rows_of(plan, outcomes)) + '\n';
+  for (std::size_t i = 0; i < outcomes.size(); ++i) {
+    for (const std::string& remark : outcomes[i].remarks) {
+      text += fmt::format("{}: {}\n", plan.dataset.sequences[i]->name(), remark);
+    }
+  }
+  return text + fmt::format("results in {}\n", plan.out.string());
+}
+
+std::string run_report_json(const RunPlan& plan, const std::vector<SequenceOutcome>& outcomes) {
+  nlohmann::ordered_json json = {{"dataset", std::string(to_string(plan.dataset.kind))},
+                                 {"variant", std::string(to_string(plan.settings.variant))},
+                                 {"preset", plan.preset},
+                                 {"protocol", std::string(plan.settings.protocol->name)},
+                                 {"min_range_m", plan.settings.range.min_m},
+                                 {"max_range_m", plan.settings.range.max_m},
+                                 {"config", to_json(plan.settings.config, plan.settings.variant)},
+                                 {"out", plan.out.string()}};
+  if (const auto origin = simulated_origin_json(plan.dataset)) json["simulated"] = *origin;
+  json.update(rows_json(rows_of(plan, outcomes)));
+  for (std::size_t i = 0; i < outcomes.size(); ++i) {
+    json["sequences"][i]["folder"] = outcomes[i].folder.string();
+    json["sequences"][i]["reused"] = outcomes[i].reused;
+    json["sequences"][i]["remarks"] = outcomes[i].remarks;
+  }
+  return json_text(json);
+}
+
+}  // namespace mosbench

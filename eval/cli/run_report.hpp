@@ -1,0 +1,16 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "eval/runs/run_execute.hpp"
+
+namespace mosbench {
+
+/// What `mosbench run` answers: how it was run, the table, the remarks on each sequence.
+std::string run_report_text(const RunPlan& plan, const std::vector<SequenceOutcome>& outcomes);
+
+/// The same as one JSON object.
+std::string run_report_json(const RunPlan& plan, const std::vector<SequenceOutcome>& outcomes);
+
+}  // namespace mosbench

@@ -1,0 +1,184 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "core/base/thread_pool.hpp"
+#include "datasets/files/errors.hpp"
+#include "eval/cli/commands.hpp"
+#include "eval/cli/reading_flags.hpp"
+#include "eval/protocols/benchmark_split.hpp"
+#include "eval/results/answer_text.hpp"
+#include "eval/results/machine.hpp"
+#include "eval/runs/presets.hpp"
+#include "eval/runs/run_plan.hpp"
+#include "eval/tables/score_report.hpp"
+
+namespace mosbench {
+namespace {
+
+constexpr const char* kScoreFooter =
+    R"(Scores predictions of any origin as `mosbench run` scores its own. They are looked for in
+DIR/<sequence>/{predictions,labels}, DIR/<sequence>, DIR/sequences/<sequence>/predictions,
+DIR/<sequence>.{txt,csv} and, for one sequence, DIR/{predictions,labels} and DIR itself, which may be
+a file. The format is recognised and stated; `mosbench list formats` shows all. Every scan with truth
+needs a prediction; a missing file, one of the wrong size or one without scan is an error, unless
+--allow-missing leaves such scans out and marks the result. Under a protocol that is over a split of
+scans (helimos-test, mapmos) only those scans are scored, and another --split is refused.
+
+--protocol all prints the number of every protocol for the same labels and why they differ.
+--out writes result.json files, which stats, compare and table read.
+
+Examples:
+  mosbench score ~/sipailou-livox-kitti --predictions motionbev --protocol sipailou --split test
+  mosbench score ~/doals --predictions results/runs/doals --protocol doals-dynablox --range 0.5,20
+  mosbench score ~/doals/station/sequence_1 --predictions clouds.csv --level object
+  mosbench score ~/HeLiMOS/KAIST05/Deskewed_LiDAR --predictions 4dmos --protocol helimos-test \
+    --method 4DMOS --setting delayed --out results/runs/4dmos-delayed
+  mosbench score ~/kitti/sequences/08 --predictions mapmos/sequences/08/predictions --mask 0,50 --json
+  mosbench score ~/kitti/sequences/08 --predictions mine --protocol all)";
+
+struct ScoreFlags {
+  std::filesystem::path input;
+  std::string dataset = "auto";
+  std::vector<std::string> sequences;
+  ScoreTask task;
+  std::optional<std::string> protocol, range, format, mask, id_map;
+  std::string level = "object";
+  MethodName method{"unnamed", ""};
+  ReadingOptions reading;
+  std::optional<std::filesystem::path> out;
+  bool json = false;
+};
+
+void keep_split(const std::string& name, Dataset& dataset) {
+  std::string known;
+  for (const Split& split : dataset.splits) {
+    if (split.name == name) {
+      dataset.splits = {Split(split)};
+      return;
+    }
+    known += (known.empty() ? "" : ", ") + split.name;
+  }
+  throw UsageError(fmt::format("--split: '{}' is not in {}, expected {}", name,
+                               dataset.root.string(), known.empty() ? "no --split" : known));
+}
+
+/// MIN,MAX where any protocol may be meant.
+RangeGate mask_option(const std::string& text) {
+  return range_option(text, protocol_named("mapmos"));
+}
+
+std::vector<ScoreRule> all_rules(const ScoreFlags& options) {
+  std::vector<ScoreRule> rules;
+  for (const Protocol& protocol : protocols()) {
+    const bool ranged = options.range && protocol.range_rule != RangeRule::kNone;
+    rules.push_back(
+        {&protocol, ranged ? range_option(*options.range, protocol) : protocol.default_range});
+  }
+  return rules;
+}
+
+ScoreRule one_rule(const ScoreFlags& options, const Dataset& dataset) {
+  const Protocol& protocol =
+      protocol_named(options.protocol.value_or(std::string(default_preset(dataset.kind).protocol)));
+  return {&protocol,
+          options.range ? range_option(*options.range, protocol) : protocol.default_range};
+}
+
+/// The split to score, if not everything: under a protocol that is over picked scans no other.
+std::optional<std::string> settle_split(const ScoreTask& task, const Dataset& dataset) {
+  const Protocol& protocol = *task.rules.front().protocol;
+  const Split* benchmark = benchmark_scans(protocol, dataset.splits);
+  if (benchmark == nullptr) return task.split;
+  if (!task.split || *task.split == benchmark->name) return benchmark->name;
+  throw UsageError(fmt::format(
+      "--split: '{}' is not the split of protocol {}, expected {}, or a protocol that `mosbench "
+      "list protocols` says to be over all labelled scans",
+      *task.split, protocol.name, benchmark->name));
+}
+
+PredictionOptions prediction_options(const ScoreFlags& options) {
+  PredictionOptions settled = options.task.options;
+  if (options.format) settled.format = prediction_format_named(*options.format);
+  if (options.mask) settled.mask = mask_option(*options.mask);
+  if (options.id_map) settled.id_map = parse_id_map(*options.id_map);
+  settled.level = dynablox_level_named(options.level);
+  return settled;
+}
+
+std::string score_all(const ScoreFlags& options, const Dataset& dataset, ScoreTask task) {
+  if (options.out)
+    throw UsageError("--out: takes one protocol's results, expected no --protocol all");
+  task.rules = all_rules(options);
+  const std::vector<SequenceScores> scores = score_dataset(dataset, task);
+  return options.json ? json_text(side_by_side_json(dataset, task.rules, scores))
+                      : side_by_side_text(dataset, task.rules, scores);
+}
+
+std::string score(const ScoreFlags& options) {
+  keep_freed_memory();
+  Dataset dataset = open_dataset(
+      options.input, {dataset_kind_option(options.dataset), options.sequences, options.reading});
+  ScoreTask task = options.task;
+  task.options = prediction_options(options);
+  if (task.threads == 0) task.threads = hardware_threads();
+  if (options.protocol == "all") {
+    if (task.split) keep_split(*task.split, dataset);
+    return score_all(options, dataset, std::move(task));
+  }
+  task.rules = {one_rule(options, dataset)};
+  const bool split_asked = task.split.has_value();
+  task.split = settle_split(task, dataset);
+  if (task.split) keep_split(*task.split, dataset);
+  const std::vector<SequenceScores> scores = score_dataset(dataset, task);
+  if (options.out) write_scores(dataset, task, options.method, scores, *options.out);
+  return options.json ? score_json(dataset, task, scores, !split_asked)
+                      : score_text(dataset, task, scores, !split_asked);
+}
+
+void add_prediction_options(CLI::App& command, ScoreFlags& options) {
+  command.add_option("--predictions", options.task.predictions, "Folder or file of predictions")
+      ->required();
+  command.add_option("--format", options.format, "Of the predictions (default: recognised)");
+  command.add_option("--mask", options.mask,
+                     "MIN,MAX in metres that the method cut its labels by (default: found out)");
+  command.add_option("--id-map", options.id_map, "Meaning of the predicted ids: 0:0,1:9,2:251");
+  command.add_option("--level", options.level, "Of Dynablox's files: point, cluster or object")
+      ->capture_default_str();
+  command.add_flag("--allow-missing", options.task.options.allow_missing,
+                   "Leave out scans whose prediction is missing or faulty; marks the result");
+}
+
+}  // namespace
+
+void add_score_command(CLI::App& app, std::string& answer) {
+  auto options = std::make_shared<ScoreFlags>();
+  options->task.threads = 0;
+  CLI::App* command = app.add_subcommand("score", "Score predictions of any origin");
+  command->add_option("DATA", options->input, "Root of a data set, or one sequence folder")
+      ->required();
+  add_prediction_options(*command, *options);
+  command->add_option("--protocol", options->protocol,
+                      "How to score, or all (default: by data set)");
+  command->add_option("--dataset", options->dataset, "auto, " + dataset_kind_names())
+      ->capture_default_str();
+  command->add_option("--sequences", options->sequences, "Names to score, a,b (default: all)")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  command->add_option("--split", options->task.split, "Only the scans of this split");
+  command->add_option("--range", options->range,
+                      "MIN,MAX in metres, for protocols that limit it (default: the protocol's)");
+  command->add_option("--method", options->method.name, "Whose labels these are, for --out");
+  command->add_option("--setting", options->method.setting, "How the method was set, for --out");
+  command->add_option("--out", options->out, "Folder for DIR/<sequence>/result.json");
+  command
+      ->add_option("--threads", options->task.threads, "Results do not depend on it (default: all)")
+      ->check(CLI::Range(1U, 1024U));
+  command->add_flag("--json", options->json, "Print JSON instead of a table");
+  add_reading_flags(*command, options->reading);
+  command->footer(kScoreFooter);
+  command->callback([options, &answer] { answer = score(*options); });
+}
+
+}  // namespace mosbench

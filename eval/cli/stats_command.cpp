@@ -1,0 +1,80 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+#include <optional>
+
+#include "datasets/files/errors.hpp"
+#include "eval/cli/commands.hpp"
+#include "eval/results/answer_text.hpp"
+#include "eval/statistics/statistics.hpp"
+
+namespace mosbench {
+namespace {
+
+constexpr const char* kStatsFooter =
+    R"(RUN and SECOND are folders that `mosbench run` or `mosbench score --out` wrote, or single result.json
+files. With one run: IoU, precision, recall and F1 of each sequence and of all, with 95 % intervals.
+With two: what the second changes, paired scan by scan, with interval, p-value and the smallest change
+that so many scans could show. The runs may differ in method and setting; protocol, scans and truth have
+to be the same.
+
+Examples:
+  mosbench stats results/runs/kitti
+  mosbench stats results/runs/kitti results/runs/kitti-delayed
+  mosbench stats results/runs/kitti --csv > scans.csv
+  mosbench stats results/runs/kitti --per-scan --json)";
+
+struct StatsFlags {
+  std::filesystem::path first;
+  std::optional<std::filesystem::path> second;
+  bool per_scan = false;
+  bool csv = false;
+  bool json = false;
+};
+
+std::string of_one(const StatsFlags& options) {
+  const ResultSet set = load_result_set(options.first);
+  if (options.csv) {
+    for (const std::string& caveat : caveats(set)) std::fputs((caveat + '\n').c_str(), stderr);
+    return scan_table_csv(set);
+  }
+  if (options.json) return json_text(statistics_json(set, options.per_scan));
+  return statistics_text(set);
+}
+
+std::string of_two(const StatsFlags& options) {
+  if (options.csv || options.per_scan) {
+    throw UsageError("--csv and --per-scan: are of one run, expected no SECOND");
+  }
+  const ResultSet first = load_result_set(options.first);
+  const ResultSet second = load_result_set(*options.second);
+  PairedRuns paired = pair_runs(first, second);
+  std::erase_if(paired.unlike,
+                [](const Unlike& unlike) { return unlike.kind == Unlike::Kind::kSetting; });
+  if (!paired.unlike.empty()) {
+    throw DataError(second.path,
+                    "is not like " + first.path.string() + ": " + unlike_text(paired.unlike),
+                    "the same protocol, scans and truth");
+  }
+  return options.json ? json_text(difference_json(first, second, paired))
+                      : difference_text(first, second, paired);
+}
+
+}  // namespace
+
+void add_stats_command(CLI::App& app, std::string& answer) {
+  auto options = std::make_shared<StatsFlags>();
+  CLI::App* command = app.add_subcommand("stats", "Intervals of a run, or of what another changes");
+  command->add_option("RUN", options->first, "Results of a run")->required();
+  command->add_option("SECOND", options->second, "Results of another run on the same scans");
+  command->add_flag("--per-scan", options->per_scan, "With --json: also the counts of each scan");
+  command->add_flag("--csv", options->csv, "Print the counts of each scan as CSV");
+  command->add_flag("--json", options->json, "Print JSON instead of a table");
+  command->footer(kStatsFooter);
+  command->callback(
+      [options, &answer] { answer = options->second ? of_two(*options) : of_one(*options); });
+}
+
+}  // namespace mosbench

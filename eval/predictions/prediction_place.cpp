@@ -1,0 +1,197 @@
+#include "eval/predictions/prediction_place.hpp"
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <set>
+#include <system_error>
+
+#include "datasets/files/errors.hpp"
+#include "datasets/files/text.hpp"
+
+namespace mosbench {
+namespace fs = std::filesystem;
+namespace {
+
+using Format = PredictionFormat;
+
+constexpr std::uint64_t kSmallestStamp_ns = 1'000'000'000'000;
+
+std::vector<fs::path> candidate_folders(const fs::path& root, const std::string& name,
+                                        bool only_sequence) {
+  std::vector<fs::path> folders = {root / name / "predictions", root / name / "labels", root / name,
+                                   root / "sequences" / name / "predictions"};
+  if (only_sequence) {
+    folders.insert(folders.end(), {root / "predictions", root / "labels", root});
+  }
+  return folders;
+}
+
+std::string first_line(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::string line(4096, '\0');
+  stream.read(line.data(), static_cast<std::streamsize>(line.size()));
+  line.resize(static_cast<std::size_t>(std::max<std::streamsize>(0, stream.gcount())));
+  return line.substr(0, line.find('\n'));
+}
+
+/// The format of one file for a whole sequence; nothing when it begins like none, as a README does.
+std::optional<Format> format_of_file(const fs::path& file) {
+  const std::string line = first_line(file);
+  if (line.starts_with("CloudNo")) return Format::kDynabloxClouds;
+  if (line.find("EvaluatedPoints") != std::string::npos) return Format::kDynabloxScores;
+  const auto number = parse_unsigned(trim(std::string_view(line).substr(0, line.find(','))));
+  if (!number) return std::nullopt;
+  return *number >= kSmallestStamp_ns ? Format::kIndices : Format::kRows;
+}
+
+/// The same for a file that was named: what is wrong with it then shows when it is read.
+Format format_of_named(const fs::path& file) {
+  return format_of_file(file).value_or(Format::kRows);
+}
+
+std::set<std::string> stems_of(const Sequence& sequence) {
+  std::set<std::string> stems;
+  for (std::size_t k = 0; k < sequence.size(); ++k) stems.insert(sequence.stem(k));
+  return stems;
+}
+
+/// By position only when no file has the name of a scan and the positions are all there.
+bool are_positions(const std::vector<fs::path>& files, const Sequence& sequence) {
+  const std::set<std::string> stems = stems_of(sequence);
+  std::set<std::uint64_t> positions;
+  for (const fs::path& file : files) {
+    const auto position = parse_unsigned(file.stem().string());
+    if (stems.contains(file.stem().string()) || !position || *position >= sequence.size()) {
+      return false;
+    }
+    positions.insert(*position);
+  }
+  return positions.size() == sequence.size();
+}
+
+/// Most files shorter than their scans, none longer: written for points within a range.
+bool are_masked(const std::vector<fs::path>& files, const Sequence& sequence) {
+  std::set<std::string> names;
+  for (const fs::path& file : files) names.insert(file.filename().string());
+  std::size_t paired = 0;
+  std::size_t shorter = 0;
+  for (std::size_t k = 0; k < sequence.size(); ++k) {
+    if (!names.contains(sequence.stem(k) + ".label")) continue;
+    std::error_code error;
+    const auto bytes =
+        fs::file_size(files.front().parent_path() / (sequence.stem(k) + ".label"), error);
+    const std::uintmax_t full_bytes = sequence.point_count(k) * sizeof(std::uint32_t);
+    if (error || bytes > full_bytes || bytes % sizeof(std::uint32_t) != 0) return false;
+    ++paired;
+    shorter += bytes < full_bytes ? 1 : 0;
+  }
+  return shorter >= 2 && 2 * shorter > paired;
+}
+
+Format label_format(const std::vector<fs::path>& files, const Sequence& sequence) {
+  if (are_positions(files, sequence)) return Format::kLabelByIndex;
+  return are_masked(files, sequence) ? Format::kMaskedLabel : Format::kLabel;
+}
+
+bool names_a_scan(const std::vector<fs::path>& files, const Sequence& sequence) {
+  const std::set<std::string> stems = stems_of(sequence);
+  return std::ranges::any_of(
+      files, [&](const fs::path& file) { return stems.contains(file.stem().string()); });
+}
+
+/// The one file for the whole sequence in a folder: one that Dynablox names, in the wanted format
+/// if there is one, else the only table.
+std::optional<fs::path> table_in(const fs::path& folder, std::optional<Format> wanted) {
+  for (const char* name : {"clouds.csv", "scores.csv"}) {
+    const fs::path file = folder / name;
+    if (fs::is_regular_file(file) && (!wanted || format_of_file(file) == *wanted)) return file;
+  }
+  std::vector<fs::path> tables = files_with_extension(folder, ".txt");
+  for (const fs::path& table : files_with_extension(folder, ".csv")) tables.push_back(table);
+  if (!wanted || tables.size() > 1) {
+    std::erase_if(tables, [](const fs::path& table) { return !format_of_file(table); });
+  }
+  if (tables.size() != 1) return std::nullopt;
+  return tables.front();
+}
+
+/// What a folder holds for the sequence, if anything.
+std::optional<PredictionPlace> look_into(const fs::path& folder, const Sequence& sequence) {
+  if (const auto labels = files_with_extension(folder, ".label"); !labels.empty()) {
+    return PredictionPlace{folder, label_format(labels, sequence)};
+  }
+  constexpr std::array kPerScan = {std::pair{".pcd", Format::kPcd},
+                                   std::pair{".txt", Format::kText},
+                                   std::pair{".csv", Format::kCsv}};
+  for (const auto& [extension, format] : kPerScan) {
+    const auto files = files_with_extension(folder, extension);
+    if (!files.empty() && names_a_scan(files, sequence)) return PredictionPlace{folder, format};
+  }
+  const auto table = table_in(folder, std::nullopt);
+  if (!table) return std::nullopt;
+  return PredictionPlace{*table, format_of_named(*table)};
+}
+
+/// The same when the user says what it is.
+std::optional<PredictionPlace> look_for(const fs::path& folder, PredictionFormat format) {
+  const DescribedFormat& wanted = describe(format);
+  if (wanted.per_scan) {
+    if (files_with_extension(folder, wanted.extension).empty()) return std::nullopt;
+    return PredictionPlace{folder, format};
+  }
+  const auto table = table_in(folder, format);
+  if (!table) return std::nullopt;
+  return PredictionPlace{*table, format};
+}
+
+bool is_truth(const fs::path& path, const Sequence& sequence) {
+  return std::ranges::any_of(sequence.files(), [&](const fs::path& file) {
+    std::error_code error;
+    if (fs::equivalent(file, path, error)) return true;
+    return file.extension() == ".label" && fs::equivalent(file.parent_path(), path, error);
+  });
+}
+
+}  // namespace
+
+std::vector<fs::path> files_with_extension(const fs::path& folder, std::string_view extension) {
+  std::error_code error;
+  std::vector<fs::path> files;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+    const std::string name = it->path().filename().string();
+    if (it->path().extension() == extension && !name.starts_with('.')) files.push_back(it->path());
+  }
+  std::ranges::sort(files);
+  return files;
+}
+
+PredictionPlace find_predictions(const fs::path& root, const Sequence& sequence, bool only_sequence,
+                                 std::optional<PredictionFormat> format) {
+  std::optional<PredictionPlace> found;
+  std::error_code error;
+  for (const char* extension : {".txt", ".csv"}) {
+    const fs::path file = root / (sequence.name() + extension);
+    if (!found && fs::is_regular_file(file, error)) {
+      found = PredictionPlace{file, format.value_or(format_of_named(file))};
+    }
+  }
+  if (only_sequence && fs::is_regular_file(root, error)) {
+    found = PredictionPlace{root, format.value_or(format_of_named(root))};
+  }
+  for (const fs::path& folder : candidate_folders(root, sequence.name(), only_sequence)) {
+    if (!found) found = format ? look_for(folder, *format) : look_into(folder, sequence);
+  }
+  if (!found) {
+    throw DataError(root, "no predictions for sequence " + sequence.name(),
+                    "label files in <sequence>/predictions or <sequence>/labels, or another "
+                    "format that `mosbench list formats` shows");
+  }
+  if (is_truth(found->path, sequence)) {
+    throw DataError(found->path, "holds the truth of sequence " + sequence.name(),
+                    "a folder of predictions");
+  }
+  return *found;
+}
+
+}  // namespace mosbench

@@ -1,0 +1,213 @@
+#include "eval/predictions/scan_file_predictions.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "datasets/files/files.hpp"
+#include "datasets/files/label_file.hpp"
+#include "datasets/files/pcd_file.hpp"
+#include "datasets/files/text.hpp"
+#include "eval/predictions/prediction_mask.hpp"
+
+namespace mosbench {
+namespace fs = std::filesystem;
+namespace {
+
+using Format = PredictionFormat;
+using Files = std::map<std::size_t, fs::path>;  // by scan
+
+constexpr std::size_t kScansToGuessFrom = 5;
+
+/// The ids that a network numbers 0 unlabelled, 1 static, 2 moving.
+const LabelIdMap kLearningIds = {{0, 0}, {1, 9}, {2, 251}};
+
+/// KTH writes 0 or 1 as intensity, ERASOR the label's number.
+std::uint32_t label_of_intensity(float intensity, const fs::path& file) {
+  if (intensity == 1.0F) return kMovingLabel;
+  if (intensity == 0.0F) return kStaticLabel;
+  if (intensity > 1.0F && intensity < 4294967040.0F && intensity == std::floor(intensity)) {
+    return static_cast<std::uint32_t>(intensity);
+  }
+  throw DataError(file, fmt::format("has intensity {}", intensity), "0, 1 or a label id");
+}
+
+std::vector<std::uint32_t> read_pcd_labels(const fs::path& file, std::size_t point_count) {
+  std::vector<std::uint32_t> labels;
+  for (const Point& point : read_pcd(file)) {
+    labels.push_back(label_of_intensity(point.intensity, file));
+  }
+  if (labels.size() == point_count) return labels;
+  throw DataError(file, fmt::format("has {} points", labels.size()),
+                  fmt::format("those of its scan, {}", point_count));
+}
+
+/// The labels of a file that holds as many as it likes.
+std::vector<std::uint32_t> read_any_labels(const fs::path& file) {
+  const std::string bytes = read_file(file);
+  return parse_labels(bytes, bytes.size() / sizeof(std::uint32_t), file);
+}
+
+class ScanFiles : public Predictions {
+ public:
+  ScanFiles(const Sequence& sequence, Format format, Files files)
+      : sequence_(sequence), format_(format), files_(std::move(files)) {}
+
+  bool has(std::size_t scan_index) const override { return files_.contains(scan_index); }
+
+  std::vector<std::uint32_t> read(std::size_t scan_index) const override {
+    const fs::path& file = files_.at(scan_index);
+    std::vector<std::uint32_t> labels = read_stored(file, scan_index);
+    if (!id_map_.empty()) {
+      for (std::uint32_t& label : labels) label = mapped(label, file);
+    }
+    return labels;
+  }
+
+  const Files& files() const { return files_; }
+  void set_mask(const RangeGate& mask) { mask_ = mask; }
+  void set_id_map(const LabelIdMap& map) { id_map_ = map; }
+
+ private:
+  std::vector<std::uint32_t> read_stored(const fs::path& file, std::size_t scan_index) const {
+    const std::size_t points = sequence_.point_count(scan_index);
+    switch (format_) {
+      case Format::kText:
+        return parse_point_text(read_file(file), points, file);
+      case Format::kCsv:
+        return parse_point_csv(read_file(file), points, file);
+      case Format::kPcd:
+        return read_pcd_labels(file, points);
+      case Format::kMaskedLabel:
+        return spread_over_scan(read_any_labels(file), sequence_.read(scan_index).points, mask_,
+                                file);
+      default:
+        return read_labels(file, points);
+    }
+  }
+
+  std::uint32_t mapped(std::uint32_t label, const fs::path& file) const {
+    const auto found = id_map_.find(static_cast<std::uint16_t>(label & 0xFFFFU));
+    if (found != id_map_.end()) return found->second;
+    throw DataError(file, fmt::format("has id {}", label & 0xFFFFU), "one that the id map maps");
+  }
+
+  const Sequence& sequence_;
+  Format format_;
+  Files files_;
+  RangeGate mask_;
+  LabelIdMap id_map_;
+};
+
+/// The scan that a file belongs to by its name.
+std::map<std::string, std::size_t> scans_by_name(const Sequence& sequence, Format format) {
+  std::map<std::string, std::size_t> scans;
+  for (std::size_t k = 0; k < sequence.size(); ++k) {
+    scans[format == Format::kLabelByIndex ? fmt::format("{:06d}", k) : sequence.stem(k)] = k;
+  }
+  return scans;
+}
+
+bool has_right_size(const fs::path& file, Format format, std::size_t points,
+                    PredictionFaults& faults) {
+  if (format != Format::kLabel && format != Format::kLabelByIndex) return true;
+  try {
+    check_label_size(size_of(file), points, file);
+    return true;
+  } catch (const DataError& fault) {
+    faults.report(fault);
+    return false;
+  }
+}
+
+Files pair(const PredictionPlace& place, const Sequence& sequence, PredictionFaults& faults) {
+  const auto scans = scans_by_name(sequence, place.format);
+  Files files;
+  for (const fs::path& file : files_with_extension(place.path, describe(place.format).extension)) {
+    const auto scan = scans.find(file.stem().string());
+    if (scan == scans.end()) {
+      faults.report(DataError(file, "belongs to no scan of sequence " + sequence.name(),
+                              "only labels named like its scans"));
+    } else if (has_right_size(file, place.format, sequence.point_count(scan->second), faults)) {
+      files[scan->second] = file;
+    }
+  }
+  return files;
+}
+
+std::vector<std::size_t> sample_of(const std::vector<std::size_t>& wanted, const Files& files) {
+  std::vector<std::size_t> sample;
+  for (const std::size_t k : wanted) {
+    if (files.contains(k)) sample.push_back(k);
+  }
+  // From the middle of the sequence, where motion is likely to be found.
+  if (sample.size() > kScansToGuessFrom) {
+    sample.erase(sample.begin(), sample.begin() + static_cast<std::ptrdiff_t>(
+                                                      (sample.size() - kScansToGuessFrom) / 2));
+    sample.resize(kScansToGuessFrom);
+  }
+  return sample;
+}
+
+RangeGate settle_mask(const Files& files, const Sequence& sequence,
+                      const std::vector<std::size_t>& sample) {
+  std::vector<MaskedScan> scans;
+  for (const std::size_t k : sample) {
+    scans.push_back(
+        {files.at(k), size_of(files.at(k)) / sizeof(std::uint32_t), sequence.read(k).points});
+  }
+  return find_mask(scans);
+}
+
+/// Whether files hold a network's class numbers in place of label ids.
+std::optional<LabelIdMap> guess_id_map(const ScanFiles& labels, const fs::path& folder,
+                                       const std::vector<std::size_t>& sample) {
+  std::set<std::uint32_t> ids;
+  for (const std::size_t k : sample) {
+    for (const std::uint32_t label : labels.read(k)) ids.insert(label & 0xFFFFU);
+  }
+  if (ids.empty() || *ids.rbegin() > 2 || *ids.rbegin() == 0) return std::nullopt;
+  if (ids.contains(2)) return kLearningIds;
+  throw DataError(folder, "holds no other ids than 0 and 1",
+                  "label ids, or --id-map to say what they mean (0:9,1:251)");
+}
+
+std::string id_map_text(const LabelIdMap& map) {
+  std::string text;
+  for (const auto& [from, to] : map) {
+    text += fmt::format("{}{}:{}", text.empty() ? "" : ",", from, to);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::unique_ptr<Predictions> open_scan_files(const PredictionPlace& place, const Sequence& sequence,
+                                             const std::vector<std::size_t>& wanted,
+                                             const PredictionOptions& options,
+                                             PredictionFaults& faults,
+                                             std::vector<std::string>& remarks) {
+  auto labels = std::make_unique<ScanFiles>(sequence, place.format, pair(place, sequence, faults));
+  const std::vector<std::size_t> sample = sample_of(wanted, labels->files());
+  if (sample.empty()) return labels;
+  if (place.format == Format::kMaskedLabel) {
+    const RangeGate mask =
+        options.mask ? *options.mask : settle_mask(labels->files(), sequence, sample);
+    labels->set_mask(mask);
+    remarks.push_back("labels are for points " + mask_text(mask) +
+                      " only; all others count as static");
+  }
+  if (options.id_map) {
+    labels->set_id_map(*options.id_map);
+  } else if (describe(place.format).extension == ".label") {
+    if (const auto guessed = guess_id_map(*labels, place.path, sample)) {
+      labels->set_id_map(*guessed);
+      remarks.push_back("ids 0, 1 and 2 taken for a network's classes: " + id_map_text(*guessed));
+    }
+  }
+  return labels;
+}
+
+}  // namespace mosbench

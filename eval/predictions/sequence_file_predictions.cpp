@@ -1,0 +1,159 @@
+#include "eval/predictions/sequence_file_predictions.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "datasets/files/files.hpp"
+#include "datasets/files/indices_file.hpp"
+
+namespace mosbench {
+namespace fs = std::filesystem;
+namespace {
+
+void check_rows(std::size_t rows, const std::vector<std::size_t>& scans, const fs::path& file) {
+  if (rows == scans.size()) return;
+  throw DataError(file, fmt::format("has {} scans", rows),
+                  fmt::format("one for each labelled scan of the sequence, {}", scans.size()));
+}
+
+class IndexRows : public Predictions {
+ public:
+  IndexRows(const Sequence& sequence, std::map<std::size_t, IndicesRow> rows)
+      : sequence_(sequence), rows_(std::move(rows)) {}
+  bool has(std::size_t scan_index) const override { return rows_.contains(scan_index); }
+  std::vector<std::uint32_t> read(std::size_t scan_index) const override {
+    std::vector<std::uint32_t> labels(sequence_.point_count(scan_index), kStaticLabel);
+    for (const std::uint32_t index : rows_.at(scan_index).moving) labels.at(index) = kMovingLabel;
+    return labels;
+  }
+
+ private:
+  const Sequence& sequence_;
+  std::map<std::size_t, IndicesRow> rows_;
+};
+
+std::unique_ptr<Predictions> open_rows(const fs::path& file, const Sequence& sequence,
+                                       PredictionFaults& faults) {
+  std::map<std::size_t, IndicesRow> rows;
+  for (IndicesRow& row : read_indices(file)) {
+    const auto number = static_cast<std::size_t>(row.stamp_ns);
+    if (number == 0 || number > sequence.size()) {
+      faults.report(DataError(file, row.line, fmt::format("is of scan {}", number),
+                              fmt::format("scans 1 to {}", sequence.size())));
+      continue;
+    }
+    check_indices(row, sequence.point_count(number - 1), file);
+    rows[number - 1] = std::move(row);
+  }
+  return std::make_unique<IndexRows>(sequence, std::move(rows));
+}
+
+/// By exact stamp where the scans have stamps, else in order.
+std::unique_ptr<Predictions> open_indices(const fs::path& file, const Sequence& sequence,
+                                          PredictionFaults& faults) {
+  const std::vector<std::size_t> scans = scans_with_truth(sequence);
+  std::vector<IndicesRow> found = read_indices(file);
+  std::map<std::int64_t, std::size_t> by_stamp;
+  for (const std::size_t k : scans) {
+    if (const auto stamp_ns = sequence.read(k).stamp_ns) by_stamp[*stamp_ns] = k;
+  }
+  if (by_stamp.empty()) check_rows(found.size(), scans, file);
+  std::map<std::size_t, IndicesRow> rows;
+  for (std::size_t r = 0; r < found.size(); ++r) {
+    const auto stamped = by_stamp.find(found[r].stamp_ns);
+    if (!by_stamp.empty() && stamped == by_stamp.end()) {
+      faults.report(DataError(file, found[r].line, fmt::format("has stamp {}", found[r].stamp_ns),
+                              "that of a labelled scan"));
+      continue;
+    }
+    const std::size_t k = by_stamp.empty() ? scans[r] : stamped->second;
+    check_indices(found[r], sequence.point_count(k), file);
+    rows[k] = std::move(found[r]);
+  }
+  return std::make_unique<IndexRows>(sequence, std::move(rows));
+}
+
+class Clouds : public Predictions {
+ public:
+  explicit Clouds(std::map<std::size_t, std::vector<std::uint32_t>> clouds)
+      : clouds_(std::move(clouds)) {}
+  bool has(std::size_t scan_index) const override { return clouds_.contains(scan_index); }
+  std::vector<std::uint32_t> read(std::size_t scan_index) const override {
+    return clouds_.at(scan_index);
+  }
+
+ private:
+  std::map<std::size_t, std::vector<std::uint32_t>> clouds_;
+};
+
+std::unique_ptr<Predictions> open_clouds(const fs::path& file, const Sequence& sequence,
+                                         DynabloxLevel level) {
+  const std::vector<std::size_t> scans = scans_with_truth(sequence);
+  auto parsed = parse_dynablox_clouds(read_file(file), level, file);
+  check_rows(parsed.size(), scans, file);
+  std::map<std::size_t, std::vector<std::uint32_t>> clouds;
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    if (parsed[i].size() != sequence.point_count(scans[i])) {
+      throw DataError(file, fmt::format("has {} points in cloud {}", parsed[i].size(), i),
+                      fmt::format("those of scan {}, {}", sequence.stem(scans[i]),
+                                  sequence.point_count(scans[i])));
+    }
+    clouds[scans[i]] = std::move(parsed[i]);
+  }
+  return std::make_unique<Clouds>(std::move(clouds));
+}
+
+class CountedScans : public Predictions {
+ public:
+  CountedScans(fs::path file, std::map<std::size_t, Confusion> scans)
+      : file_(std::move(file)), scans_(std::move(scans)) {}
+  bool has(std::size_t scan_index) const override { return scans_.contains(scan_index); }
+  std::vector<std::uint32_t> read(std::size_t) const override {
+    throw DataError(file_, "holds counts, no labels", "labels for what was asked");
+  }
+  std::optional<Confusion> counts(std::size_t scan_index) const override {
+    return scans_.at(scan_index);
+  }
+
+ private:
+  fs::path file_;
+  std::map<std::size_t, Confusion> scans_;
+};
+
+std::unique_ptr<Predictions> open_scores(const fs::path& file, const Sequence& sequence,
+                                         DynabloxLevel level) {
+  const std::vector<std::size_t> scans = scans_with_truth(sequence);
+  const auto scores = parse_dynablox_scores(read_file(file), level, file);
+  check_rows(scores.size(), scans, file);
+  std::map<std::size_t, Confusion> counts;
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    if (scores[i].total_points != sequence.point_count(scans[i])) {
+      throw DataError(file, i + 2, fmt::format("is of {} points", scores[i].total_points),
+                      fmt::format("those of scan {}, {}", sequence.stem(scans[i]),
+                                  sequence.point_count(scans[i])));
+    }
+    counts[scans[i]] = scores[i].counts;
+  }
+  return std::make_unique<CountedScans>(file, std::move(counts));
+}
+
+}  // namespace
+
+std::unique_ptr<Predictions> open_sequence_file(const PredictionPlace& place,
+                                                const Sequence& sequence,
+                                                const PredictionOptions& options,
+                                                PredictionFaults& faults) {
+  switch (place.format) {
+    case PredictionFormat::kIndices:
+      return open_indices(place.path, sequence, faults);
+    case PredictionFormat::kDynabloxClouds:
+      return open_clouds(place.path, sequence, options.level);
+    case PredictionFormat::kDynabloxScores:
+      return open_scores(place.path, sequence, options.level);
+    default:
+      return open_rows(place.path, sequence, faults);
+  }
+}
+
+}  // namespace mosbench

@@ -1,0 +1,266 @@
+#include "eval/protocols/protocol.hpp"
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <vector>
+
+#include "datasets/files/errors.hpp"
+#include "datasets/files/nearest_name.hpp"
+
+namespace mosbench {
+namespace {
+
+constexpr auto kIgnored = TruthClass::kIgnored;
+constexpr auto kStatic = TruthClass::kStatic;
+constexpr auto kMoving = TruthClass::kMoving;
+
+// The learning_map of semantic-kitti-mos.yaml. An id outside it falls to class 0 like the
+// unlabelled points, by way of a zero-filled look-up table; ids from 359 on crash the original
+// program.
+constexpr std::array kSemanticKittiIds = {
+    IdRange{0, 1, kIgnored},  IdRange{9, 11, kStatic},  IdRange{13, 13, kStatic},
+    IdRange{15, 16, kStatic}, IdRange{18, 18, kStatic}, IdRange{20, 20, kStatic},
+    IdRange{30, 32, kStatic}, IdRange{40, 40, kStatic}, IdRange{44, 44, kStatic},
+    IdRange{48, 52, kStatic}, IdRange{60, 60, kStatic}, IdRange{70, 72, kStatic},
+    IdRange{80, 81, kStatic}, IdRange{99, 99, kStatic}, IdRange{251, 259, kMoving}};
+constexpr IdMap kSemanticKitti{kSemanticKittiIds, kIgnored};
+
+// livox-SEU-MOS.yaml: class 0 is static there, so unlabelled and unknown ids are static truth.
+constexpr std::array kSipailouIds = {IdRange{0, 0, kStatic}, IdRange{9, 9, kStatic},
+                                     IdRange{251, 252, kMoving}};
+constexpr IdMap kSipailou{kSipailouIds, kStatic};
+
+// DOALS lists moving points only: the reader hands them over as 251, all others as static.
+constexpr std::array kAbove250Ids = {IdRange{0, 250, kStatic}, IdRange{251, 65535, kMoving}};
+constexpr IdMap kAbove250{kAbove250Ids, kStatic};
+
+constexpr std::array kHelimosIds = {IdRange{0, 1, kIgnored}, IdRange{2, 250, kStatic},
+                                    IdRange{251, 65535, kMoving}};
+constexpr IdMap kMapmosHelimos{kHelimosIds, kStatic};
+
+constexpr std::array kTrackingIds = {IdRange{0, 2, kIgnored}, IdRange{3, 250, kStatic},
+                                     IdRange{251, 65535, kMoving}};
+constexpr IdMap kMapmosTracking{kTrackingIds, kStatic};
+
+constexpr std::array kMdetectorIds = {IdRange{0, 250, kStatic}, IdRange{251, 65534, kMoving},
+                                      IdRange{65535, 65535, kIgnored}};
+constexpr IdMap kMdetector{kMdetectorIds, kStatic};
+
+constexpr std::array kNuscenesIds = {
+    IdRange{0, 250, kStatic}, IdRange{251, 999, TruthClass::kAlwaysNegative},
+    IdRange{1000, 65534, kMoving}, IdRange{65535, 65535, kIgnored}};
+constexpr IdMap kMdetectorNuscenes{kNuscenesIds, kStatic};
+
+constexpr RangeGate kNoLimits{0.0, -1.0};
+constexpr PrintStyle kFraction{.percent = false, .digits = 3};
+constexpr PrintStyle kPercent1{.percent = true, .digits = 1};
+constexpr PrintStyle kPercent2{.percent = true, .digits = 2};
+constexpr PrintStyle kPercent3{.percent = true, .digits = 3};
+constexpr PrintStyle kSixSignificant{.percent = false, .digits = 6, .significant = true};
+
+constexpr std::string_view kEvaluateMos = "PRBonn/semantic-kitti-api@a9c749e:evaluate_mos.py";
+constexpr std::string_view kMapmosSource = "PRBonn/MapMOS@4092d93:src/mapmos/pipeline.py";
+
+constexpr std::array kProtocols = {
+    Protocol{.name = "doals-hmm",
+             .summary = "mean of per-scan IoU; the range cuts the truth, not the prediction",
+             .source = "vb44/HMM-MOS@ff47321:benchmarking/evaluation/src/evalIndFile.cpp",
+             .truth = kAbove250,
+             .prediction = kAbove250,
+             .range_rule = RangeRule::kTruthOnly,
+             .default_range = {0.5, 20.0},
+             .range_arithmetic = Arithmetic::kDouble,
+             .aggregation = Aggregation::kMeanOfScans,
+             .empty_case = EmptyCase::kNan,
+             .metric_arithmetic = Arithmetic::kDouble,
+             .print = kPercent2,
+             .file_significant_digits = 0,
+             .program_print = kPercent2,
+             .default_split = ""},
+    Protocol{.name = "doals-dynablox",
+             .summary = "mean of per-scan IoU; the range cuts truth and prediction",
+             .source = "ethz-asl/dynablox@58d8a59:dynablox/src/evaluation/evaluator.cpp",
+             .truth = kAbove250,
+             .prediction = kAbove250,
+             .range_rule = RangeRule::kTruthAndPrediction,
+             .default_range = {0.5, 20.0},
+             .range_arithmetic = Arithmetic::kFloat,
+             .aggregation = Aggregation::kMeanOfScans,
+             .empty_case = EmptyCase::kOne,
+             .metric_arithmetic = Arithmetic::kFloat,
+             .print = kPercent1,
+             .file_significant_digits = 6,
+             .program_print = kPercent1,
+             .default_split = ""},
+    Protocol{.name = "semantickitti-mos",
+             .summary = "pooled over all points; unlabelled and unknown truth is ignored",
+             .source = kEvaluateMos,
+             .truth = kSemanticKitti,
+             .prediction = kSemanticKitti,
+             .range_rule = RangeRule::kNone,
+             .default_range = kNoLimits,
+             .range_arithmetic = Arithmetic::kDouble,
+             .aggregation = Aggregation::kPooled,
+             .empty_case = EmptyCase::kEpsilon,
+             .metric_arithmetic = Arithmetic::kDouble,
+             .print = kFraction,
+             .file_significant_digits = 0,
+             .program_print = kFraction,
+             .default_split = "valid"},
+    Protocol{.name = "sipailou",
+             .summary = "pooled over all points; unlabelled and unknown truth is static",
+             .source = "xieKKKi/MotionBEV@233a348:config/livox-SEU-MOS.yaml",
+             .truth = kSipailou,
+             .prediction = kSipailou,
+             .range_rule = RangeRule::kNone,
+             .default_range = kNoLimits,
+             .range_arithmetic = Arithmetic::kDouble,
+             .aggregation = Aggregation::kPooled,
+             .empty_case = EmptyCase::kEpsilon,
+             .metric_arithmetic = Arithmetic::kDouble,
+             .print = kFraction,
+             .file_significant_digits = 0,
+             .program_print = kFraction,
+             .default_split = "test"},
+    Protocol{.name = "helimos-all",
+             .summary = "pooled per sensor over every labelled scan; unlabelled truth is ignored",
+             .source = kEvaluateMos,
+             .truth = kSemanticKitti,
+             .prediction = kSemanticKitti,
+             .range_rule = RangeRule::kNone,
+             .default_range = kNoLimits,
+             .range_arithmetic = Arithmetic::kDouble,
+             .aggregation = Aggregation::kMeanOfSequences,
+             .empty_case = EmptyCase::kEpsilon,
+             .metric_arithmetic = Arithmetic::kDouble,
+             .print = kPercent2,
+             .file_significant_digits = 0,
+             .program_print = kFraction,
+             .default_split = ""},
+    Protocol{.name = "helimos-test",
+             .summary = "pooled per sensor over the scans of test.txt; unlabelled truth is ignored",
+             .source = kEvaluateMos,
+             .truth = kSemanticKitti,
+             .prediction = kSemanticKitti,
+             .range_rule = RangeRule::kNone,
+             .default_range = kNoLimits,
+             .range_arithmetic = Arithmetic::kDouble,
+             .aggregation = Aggregation::kMeanOfSequences,
+             .empty_case = EmptyCase::kEpsilon,
+             .metric_arithmetic = Arithmetic::kDouble,
+             .print = kPercent2,
+             .file_significant_digits = 0,
+             .program_print = kFraction,
+             .default_split = "test"},
+    Protocol{.name = "mapmos",
+             .summary = "pooled; truth ids 0 and 1 ignored, above 250 moving, all between static",
+             .source = kMapmosSource,
+             .truth = kMapmosHelimos,
+             .prediction = kAbove250,
+             .range_rule = RangeRule::kTruthAndPrediction,
+             .default_range = kNoLimits,
+             .range_arithmetic = Arithmetic::kDouble,
+             .aggregation = Aggregation::kPooled,
+             .empty_case = EmptyCase::kNanWithoutTruth,
+             .metric_arithmetic = Arithmetic::kFloat,
+             .print = kPercent2,
+             .file_significant_digits = 0,
+             .program_print = kPercent3,
+             .default_split = "test"},
+    Protocol{.name = "mapmos-apollo",
+             .summary = "pooled; nothing ignored: truth ids up to 250 static, above moving",
+             .source = "PRBonn/MapMOS@4092d93:src/mapmos/datasets/apollo.py",
+             .truth = kAbove250,
+             .prediction = kAbove250,
+             .range_rule = RangeRule::kTruthAndPrediction,
+             .default_range = kNoLimits,
+             .range_arithmetic = Arithmetic::kDouble,
+             .aggregation = Aggregation::kPooled,
+             .empty_case = EmptyCase::kNanWithoutTruth,
+             .metric_arithmetic = Arithmetic::kFloat,
+             .print = kPercent2,
+             .file_significant_digits = 0,
+             .program_print = kPercent3,
+             .default_split = ""},
+    Protocol{.name = "mapmos-kitti-tracking",
+             .summary = "pooled; truth ids 0 to 2 ignored, above 250 moving, all between static",
+             .source = "PRBonn/MapMOS@4092d93:src/mapmos/datasets/kitti_tracking.py",
+             .truth = kMapmosTracking,
+             .prediction = kAbove250,
+             .range_rule = RangeRule::kTruthAndPrediction,
+             .default_range = kNoLimits,
+             .range_arithmetic = Arithmetic::kDouble,
+             .aggregation = Aggregation::kPooled,
+             .empty_case = EmptyCase::kNanWithoutTruth,
+             .metric_arithmetic = Arithmetic::kFloat,
+             .print = kPercent2,
+             .file_significant_digits = 0,
+             .program_print = kPercent3,
+             .default_split = ""},
+    Protocol{.name = "moe",
+             .summary = "pooled per sequence, mean of sequences; nothing is ignored",
+             .source = "DeepDuke/MOE-Dataset:README.md",
+             .truth = kAbove250,
+             .prediction = kAbove250,
+             .range_rule = RangeRule::kNone,
+             .default_range = kNoLimits,
+             .range_arithmetic = Arithmetic::kDouble,
+             .aggregation = Aggregation::kMeanOfSequences,
+             .empty_case = EmptyCase::kNan,
+             .metric_arithmetic = Arithmetic::kDouble,
+             .print = kFraction,
+             .file_significant_digits = 0,
+             .program_print = kFraction,
+             .default_split = ""},
+    Protocol{.name = "mdetector",
+             .summary = "pooled per sequence; ids from 251 moving, 65535 ignored",
+             .source = "hku-mars/M-detector@5ce002f:src/cal_recall_multi.cpp",
+             .truth = kMdetector,
+             .prediction = kMdetector,
+             .range_rule = RangeRule::kNone,
+             .default_range = kNoLimits,
+             .range_arithmetic = Arithmetic::kDouble,
+             .aggregation = Aggregation::kMeanOfSequences,
+             .empty_case = EmptyCase::kNan,
+             .metric_arithmetic = Arithmetic::kFloat,
+             .print = kPercent1,
+             .file_significant_digits = 0,
+             .program_print = kSixSignificant,
+             .default_split = ""},
+    Protocol{.name = "mdetector-nuscenes",
+             .summary = "as mdetector, but truth ids 251 to 999 are always true negatives",
+             .source = "hku-mars/M-detector@5ce002f:src/cal_recall_multi.cpp",
+             .truth = kMdetectorNuscenes,
+             .prediction = kMdetector,
+             .range_rule = RangeRule::kNone,
+             .default_range = kNoLimits,
+             .range_arithmetic = Arithmetic::kDouble,
+             .aggregation = Aggregation::kMeanOfSequences,
+             .empty_case = EmptyCase::kNan,
+             .metric_arithmetic = Arithmetic::kFloat,
+             .print = kPercent1,
+             .file_significant_digits = 0,
+             .program_print = kSixSignificant,
+             .default_split = ""},
+};
+
+}  // namespace
+
+std::span<const Protocol> protocols() { return kProtocols; }
+
+const Protocol* find_protocol(std::string_view name) {
+  const auto found = std::ranges::find(kProtocols, name, &Protocol::name);
+  return found == kProtocols.end() ? nullptr : &*found;
+}
+
+const Protocol& protocol_named(std::string_view name) {
+  if (const Protocol* protocol = find_protocol(name)) return *protocol;
+  std::vector<std::string_view> names;
+  for (const Protocol& protocol : kProtocols) names.push_back(protocol.name);
+  throw UsageError("protocol: \"" + std::string(name) + "\" does not exist, expected a name that " +
+                   "`mosbench list` shows, such as \"" + std::string(nearest_name(name, names)) +
+                   "\"");
+}
+
+}  // namespace mosbench

@@ -1,0 +1,37 @@
+#include "eval/report/palette.hpp"
+
+#include <charconv>
+#include <nlohmann/json.hpp>
+
+#include "eval/report/report_asset.hpp"
+
+namespace mosbench {
+namespace {
+
+/// Of "#rrggbb".
+Colour colour_from(const std::string& text) {
+  const auto channel = [&text](std::size_t start) {
+    std::uint8_t value = 0;
+    std::from_chars(text.data() + start, text.data() + start + 2, value, 16);
+    return value;
+  };
+  return {channel(1), channel(3), channel(5)};
+}
+
+}  // namespace
+
+Palette palette(bool dark) {
+  const char* theme = dark ? "dark" : "light";
+  const auto json = nlohmann::json::parse(palette_asset());
+  const auto colour = [&](const nlohmann::json& entry) { return colour_from(entry.at(theme)); };
+  Palette palette{
+      {}, {}, colour(json.at("background")), colour(json.at("text")), colour(json.at("guide"))};
+  for (std::size_t i = 0; i < palette.outcomes.size(); ++i) {
+    const nlohmann::json& outcome = json.at("outcomes").at(i);
+    palette.outcomes[i] = colour(outcome);
+    palette.names[i] = outcome.at("name");
+  }
+  return palette;
+}
+
+}  // namespace mosbench

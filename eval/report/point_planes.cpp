@@ -1,0 +1,74 @@
+#include "eval/report/point_planes.hpp"
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+namespace mosbench {
+namespace {
+
+constexpr double kMaxSteps = 32767.0;
+constexpr unsigned kNotDrawable = 8;
+
+double steps(float position_m) {
+  return std::round(static_cast<double>(position_m) / kPositionStep_m);
+}
+
+std::uint16_t zigzag(std::uint16_t difference) {
+  const bool negative = (difference & 0x8000U) != 0;
+  const unsigned doubled = static_cast<unsigned>(difference) << 1;
+  return static_cast<std::uint16_t>(negative ? ~doubled : doubled);
+}
+
+}  // namespace
+
+bool is_drawable(const Point& point) {
+  const bool at_sensor = point.x == 0.0F && point.y == 0.0F && point.z == 0.0F;
+  bool reachable = !at_sensor;
+  for (const float position_m : {point.x, point.y, point.z}) {
+    reachable = reachable && std::abs(steps(position_m)) <= kMaxSteps;  // false for NaN
+  }
+  return reachable;
+}
+
+std::string position_planes(std::span<const Point> points) {
+  const std::size_t n = points.size();
+  std::string planes(6 * n, '\0');
+  std::array<std::uint16_t, 3> before{};
+  for (std::size_t i = 0; i < n; ++i) {
+    if (!is_drawable(points[i])) continue;
+    const std::array<float, 3> position_m = {points[i].x, points[i].y, points[i].z};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto now =
+          static_cast<std::uint16_t>(static_cast<std::int16_t>(steps(position_m[axis])));
+      const std::uint16_t code = zigzag(static_cast<std::uint16_t>(now - before[axis]));
+      planes[axis * n + i] = static_cast<char>(code & 0xFFU);
+      planes[(3 + axis) * n + i] = static_cast<char>(code >> 8);
+      before[axis] = now;
+    }
+  }
+  return planes;
+}
+
+std::string outcome_plane(std::span<const PointOutcome> outcomes, std::span<const Point> points) {
+  std::string plane;
+  plane.reserve(outcomes.size());
+  for (std::size_t i = 0; i < outcomes.size(); ++i) {
+    const unsigned drawn = is_drawable(points[i]) ? 0 : kNotDrawable;
+    plane += static_cast<char>(static_cast<unsigned>(outcomes[i]) | drawn);
+  }
+  return plane;
+}
+
+std::string score_planes(std::span<const std::int32_t> scores) {
+  std::string planes;
+  planes.reserve(4 * scores.size());
+  for (unsigned bits = 0; bits < 32; bits += 8) {
+    for (const std::int32_t score : scores) {
+      planes += static_cast<char>(static_cast<std::uint32_t>(score) >> bits & 0xFFU);
+    }
+  }
+  return planes;
+}
+
+}  // namespace mosbench

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdint>
+#include <mosbench/scan.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "eval/protocols/confusion.hpp"
+
+namespace mosbench {
+
+/// Resolution of positions in a report, metres.
+inline constexpr double kPositionStep_m = 0.01;
+
+/// Whether a position can be drawn: finite, within 327.67 m along each axis, and no empty return at
+/// the sensor's own place.
+bool is_drawable(const Point& point);
+
+/// Positions as multiples of kPositionStep_m: each axis as the difference to the drawable point
+/// before, zigzag-coded in 16 bits; first the low bytes of all x, of all y, of all z, then the high
+/// ones. Neighbours in a scan are neighbours in space, so that most bytes are alike.
+std::string position_planes(std::span<const Point> points);
+
+/// One byte per point: its PointOutcome, plus 8 when it is not drawable.
+std::string outcome_plane(std::span<const PointOutcome> outcomes, std::span<const Point> points);
+
+/// Four bytes per point: the lowest of all scores, then the next ones. Most are 0.
+std::string score_planes(std::span<const std::int32_t> scores);
+
+}  // namespace mosbench

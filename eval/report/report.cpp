@@ -1,0 +1,138 @@
+#include "eval/report/report.hpp"
+
+#include <fmt/format.h>
+
+#include "datasets/files/errors.hpp"
+#include "eval/protocols/protocol.hpp"
+#include "eval/report/point_planes.hpp"
+#include "eval/report/report_asset.hpp"
+#include "eval/report/report_numbers.hpp"
+#include "eval/report/report_scans.hpp"
+#include "mosbench_version.hpp"
+
+namespace mosbench {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr std::size_t kBytesAroundBlock = 64;
+
+/// Without "<" no string of the content can close the element that holds it or open another.
+std::string script_json(const ordered_json& json) {
+  const std::string text = json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+  std::string escaped;
+  escaped.reserve(text.size());
+  for (const char c : text) {
+    if (c == '<') {
+      escaped += "\\u003c";
+    } else {
+      escaped += c;
+    }
+  }
+  return escaped;
+}
+
+/// results/runs/mine/00 of sequence 00 is run "mine"; the folder's own name when it is called
+/// otherwise.
+std::string run_name(const FoundResult& result) {
+  std::filesystem::path run = std::filesystem::absolute(result.folder / "").lexically_normal();
+  run = run.parent_path();
+  const std::filesystem::path last = run.filename();
+  std::filesystem::path sequence = result.name;
+  while (!sequence.empty() && run.filename() == sequence.filename()) {
+    run = run.parent_path();
+    sequence = sequence.parent_path();
+  }
+  return sequence.empty() && run.has_filename() ? run.filename().string() : last.string();
+}
+
+ordered_json result_json(const FoundResult& result) {
+  const ordered_json& content = result.file.content;
+  ordered_json json = {{"run", run_name(result)}, {"folder", result.folder.string()}};
+  const ordered_json name = content.value("/protocol/name"_json_pointer, ordered_json());
+  if (const Protocol* protocol =
+          name.is_string() ? find_protocol(name.get<std::string>()) : nullptr) {
+    json["protocol_summary"] = protocol->summary;
+  }
+  json["estimates"] = estimates_of(result);
+  json["result"] = content;
+  return json;
+}
+
+std::vector<FoundResult> find_all(const std::vector<std::filesystem::path>& inputs) {
+  std::vector<FoundResult> results;
+  for (const std::filesystem::path& input : inputs) {
+    for (FoundResult& result : find_results(input)) results.push_back(std::move(result));
+  }
+  return results;
+}
+
+ordered_json content_without_points(const std::vector<std::filesystem::path>& inputs,
+                                    const std::vector<FoundResult>& results,
+                                    const ReportOptions& options) {
+  ordered_json json = {{"format", 1},
+                       {"version", std::string(kMosbenchVersion)},
+                       {"position_step_m", kPositionStep_m},
+                       {"max_mb", options.max_mb},
+                       {"tables", covered_tables(inputs)},
+                       {"clouds", ordered_json::array()},
+                       {"results", ordered_json::array()}};
+  for (const FoundResult& result : results) json["results"].push_back(result_json(result));
+  return json;
+}
+
+std::size_t room_for_points(const ordered_json& content, const std::vector<FoundResult>& results,
+                            const ReportOptions& options) {
+  std::size_t scans = 0;
+  for (const FoundResult& result : results) scans += result.file.rows.scans.size();
+  const std::size_t taken =
+      report_asset().size() + script_json(content).size() + scans * 6 * kBytesAroundBlock;
+  const double room = options.max_mb * 1e6 - static_cast<double>(taken);
+  if (room > 0.0) return static_cast<std::size_t>(room);
+  throw UsageError(
+      fmt::format("--max-mb: {:g} MB have no room for the numbers alone, expected {:.1f}",
+                  options.max_mb, static_cast<double>(taken) / 1e6));
+}
+
+std::string page(const ordered_json& content, const std::vector<std::string>& blocks) {
+  const auto [before, behind] = report_asset_parts();
+  std::string html(before);
+  html += "<script type=\"application/json\" id=\"report\">" + script_json(content) + "</script>\n";
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    html += fmt::format("<script type=\"text/plain\" id=\"block-{}\">", i);
+    html += blocks[i];
+    html += "</script>\n";
+  }
+  html += behind;
+  return html;
+}
+
+}  // namespace
+
+Report build_report(const std::vector<std::filesystem::path>& inputs,
+                    const ReportOptions& options) {
+  const std::vector<FoundResult> results = find_all(inputs);
+  ordered_json content = content_without_points(inputs, results, options);
+  if (options.scans.none()) {
+    return {page(content, {}), results.size(), {"the file holds no points (--scans none)"}};
+  }
+  check_choice(results, options.scans);
+  std::vector<ResultScans> sources;
+  sources.reserve(results.size());
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    sources.emplace_back(results[i], options.dataset_root);
+    content["results"][i]["breakdown"] = breakdown_of(sources[i]);
+    content["results"][i]["protocols"] = protocols_of(sources[i]);
+  }
+  const ReportScans scans = choose_report_scans(results, sources, options.scans,
+                                                room_for_points(content, results, options));
+  content["clouds"] = scans.clouds;
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    content["results"][i]["cloud"] = scans.results[i].cloud;
+    content["results"][i]["outcomes"] = scans.results[i].outcome_blocks;
+    content["results"][i]["scores"] = scans.results[i].score_blocks;
+  }
+  return {page(content, scans.blocks), results.size(), scans.remarks};
+}
+
+}  // namespace mosbench

@@ -1,0 +1,189 @@
+#include "eval/report/report_scans.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "datasets/files/errors.hpp"
+#include "eval/report/compressed_text.hpp"
+#include "eval/report/point_planes.hpp"
+#include "eval/results/progress.hpp"
+
+namespace mosbench {
+namespace {
+
+using nlohmann::ordered_json;
+
+struct PackedScan {
+  std::size_t scan_index;
+  ordered_json header;
+  std::string positions;
+  std::vector<std::string> outcomes;  ///< per member of the cloud
+  std::vector<std::string> scores;    ///< per member, empty where the run kept none
+
+  std::size_t bytes() const {
+    std::size_t sum = positions.size();
+    for (const std::string& plane : outcomes) sum += plane.size();
+    for (const std::string& planes : scores) sum += planes.size();
+    return sum;
+  }
+};
+
+struct Cloud {
+  std::vector<std::size_t> members;  ///< positions in the results
+  std::vector<std::size_t> wanted;
+  std::size_t tried = 0;  ///< of wanted
+  std::vector<PackedScan> packed;
+  bool full = false;
+};
+
+/// Each result's first wish, then each one's second, ...
+std::vector<std::size_t> wishes_in_turn(const std::vector<std::vector<std::size_t>>& wishes) {
+  std::vector<std::size_t> merged;
+  const auto most = std::ranges::max(wishes, {}, &std::vector<std::size_t>::size).size();
+  for (std::size_t i = 0; i < most; ++i) {
+    for (const std::vector<std::size_t>& of_result : wishes) {
+      if (i >= of_result.size() || std::ranges::count(merged, of_result[i]) > 0) continue;
+      merged.push_back(of_result[i]);
+    }
+  }
+  return merged;
+}
+
+std::vector<Cloud> group_by_frames(const std::vector<FoundResult>& results,
+                                   const ScanChoice& choice) {
+  std::vector<Cloud> clouds;
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    const auto same = std::ranges::find_if(clouds, [&](const Cloud& cloud) {
+      const FoundResult& first = results[cloud.members.front()];
+      return first.name == results[i].name &&
+             first.file.rows.fingerprint == results[i].file.rows.fingerprint;
+    });
+    Cloud& cloud = same == clouds.end() ? clouds.emplace_back() : *same;
+    cloud.members.push_back(i);
+  }
+  for (Cloud& cloud : clouds) {
+    std::vector<std::vector<std::size_t>> wishes;
+    for (const std::size_t i : cloud.members) {
+      wishes.push_back(choice.wanted(results[i].file.rows.scans));
+    }
+    cloud.wanted = wishes_in_turn(wishes);
+  }
+  return clouds;
+}
+
+ordered_json pose_json(const Pose& pose) {
+  ordered_json numbers = ordered_json::array();
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 4; ++column) numbers.push_back(pose.matrix()(row, column));
+  }
+  return numbers;
+}
+
+PackedScan pack(const Cloud& cloud, const std::vector<ResultScans>& sources,
+                std::size_t scan_index) {
+  PackedScan packed{scan_index, {}, {}, {}, {}};
+  for (const std::size_t member : cloud.members) {
+    const JudgedScan scan = sources[member].read(scan_index);
+    if (packed.positions.empty()) {
+      packed.header = {{"index", scan_index},
+                       {"stem", scan.frame.stem},
+                       {"points", scan.frame.points.size()},
+                       {"map_from_sensor", pose_json(scan.frame.map_from_sensor)}};
+      packed.positions = compressed_text(position_planes(scan.frame.points));
+    }
+    packed.outcomes.push_back(compressed_text(outcome_plane(scan.outcomes, scan.frame.points)));
+    packed.scores.push_back(
+        sources[member].has_scores() ? compressed_text(score_planes(scan.scores)) : "");
+  }
+  return packed;
+}
+
+void pack_until_full(std::vector<Cloud>& clouds, const std::vector<ResultScans>& sources,
+                     std::size_t max_bytes) {
+  std::size_t wanted = 0, bytes = 0;
+  for (const Cloud& cloud : clouds) wanted += cloud.wanted.size();
+  Progress progress("report", wanted);
+  bool any = true;
+  while (any) {
+    any = false;
+    for (Cloud& cloud : clouds) {
+      if (cloud.full || cloud.tried == cloud.wanted.size()) continue;
+      PackedScan scan = pack(cloud, sources, cloud.wanted[cloud.tried++]);
+      cloud.full = bytes + scan.bytes() > max_bytes;
+      if (cloud.full) continue;
+      any = true;
+      bytes += scan.bytes();
+      cloud.packed.push_back(std::move(scan));
+      progress.advance();
+    }
+  }
+}
+
+std::string left_out(const Cloud& cloud, std::size_t scans) {
+  const std::size_t shown = cloud.packed.size();
+  if (shown == scans) return "";
+  std::string text = fmt::format("the points of {} of {} scans are in the file", shown, scans);
+  if (cloud.wanted.size() < scans) text += fmt::format("; --scans chose {}", cloud.wanted.size());
+  if (cloud.full) text += "; the others would take it above --max-mb";
+  return text;
+}
+
+void check_packed(const std::vector<Cloud>& clouds) {
+  const auto has_room = [](const Cloud& cloud) { return !cloud.full || !cloud.packed.empty(); };
+  if (std::ranges::any_of(clouds, has_room)) return;
+  throw UsageError("--max-mb: has no room for a single scan, expected more, or --scans none");
+}
+
+}  // namespace
+
+void check_choice(const std::vector<FoundResult>& results, const ScanChoice& choice) {
+  std::size_t longest = 0;
+  for (const FoundResult& result : results) {
+    if (!choice.wanted(result.file.rows.scans).empty()) return;
+    longest = std::max(longest, result.file.rows.scans.size());
+  }
+  if (longest == 0) return;
+  throw UsageError(
+      fmt::format("--scans: chooses no scan, expected some of 0 to {}; 0-9 are the first ten, "
+                  "worst:10 the ten worst",
+                  longest - 1));
+}
+
+ReportScans choose_report_scans(const std::vector<FoundResult>& results,
+                                const std::vector<ResultScans>& sources, const ScanChoice& choice,
+                                std::size_t max_bytes) {
+  ReportScans report;
+  report.results.resize(results.size());
+  std::vector<Cloud> clouds = group_by_frames(results, choice);
+  pack_until_full(clouds, sources, max_bytes);
+  check_packed(clouds);
+  for (Cloud& cloud : clouds) {
+    std::ranges::sort(cloud.packed, {}, &PackedScan::scan_index);
+    const FoundResult& first = results[cloud.members.front()];
+    const std::string remark = left_out(cloud, first.file.rows.scans.size());
+    if (!remark.empty()) report.remarks.push_back(first.name + ": " + remark);
+    ordered_json json = {{"sequence", first.name},
+                         {"scans_in_sequence", first.file.rows.scans.size()},
+                         {"left_out", remark},
+                         {"scans", ordered_json::array()}};
+    for (const std::size_t i : cloud.members) report.results[i].cloud = report.clouds.size();
+    for (PackedScan& scan : cloud.packed) {
+      scan.header["positions"] = report.blocks.size();
+      json["scans"].push_back(std::move(scan.header));
+      report.blocks.push_back(std::move(scan.positions));
+      for (std::size_t m = 0; m < cloud.members.size(); ++m) {
+        ReportScans::OfResult& result = report.results[cloud.members[m]];
+        result.outcome_blocks.push_back(report.blocks.size());
+        report.blocks.push_back(std::move(scan.outcomes[m]));
+        if (scan.scores[m].empty()) continue;
+        result.score_blocks.push_back(report.blocks.size());
+        report.blocks.push_back(std::move(scan.scores[m]));
+      }
+    }
+    report.clouds.push_back(std::move(json));
+  }
+  return report;
+}
+
+}  // namespace mosbench

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstddef>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "eval/report/report.hpp"
+#include "eval/report/result_scans.hpp"
+
+namespace mosbench {
+
+/// The part of a report that holds points. Results of the same frames share one cloud, so that runs
+/// can be compared point by point and positions are stored once.
+struct ReportScans {
+  nlohmann::ordered_json clouds = nlohmann::ordered_json::array();
+  /// Per result its cloud, and per scan of that cloud the block with the outcomes, and the one with
+  /// the dynamic scores when the run kept them.
+  struct OfResult {
+    std::size_t cloud = 0;
+    std::vector<std::size_t> outcome_blocks;
+    std::vector<std::size_t> score_blocks;
+  };
+  std::vector<OfResult> results;
+  std::vector<std::string> blocks;  ///< see compressed_text
+  std::vector<std::string> remarks;
+};
+
+/// Throws UsageError when `choice` wants no scan of any result although they have some.
+void check_choice(const std::vector<FoundResult>& results, const ScanChoice& choice);
+
+/// Takes scans in the order in which they are wanted, from all clouds in turn, until the next would
+/// bring the blocks above `max_bytes`; throws UsageError when that leaves none. `sources` are the
+/// scans of `results`, one each.
+ReportScans choose_report_scans(const std::vector<FoundResult>& results,
+                                const std::vector<ResultScans>& sources, const ScanChoice& choice,
+                                std::size_t max_bytes);
+
+}  // namespace mosbench

@@ -1,0 +1,158 @@
+#include "eval/report/result_scans.hpp"
+
+#include <fmt/format.h>
+
+#include "datasets/files/errors.hpp"
+#include "datasets/files/files.hpp"
+#include "datasets/files/label_file.hpp"
+#include "datasets/sequence/fingerprint.hpp"
+#include "eval/results/dynamic_score_file.hpp"
+#include "eval/results/reading_json.hpp"
+#include "eval/results/same_input.hpp"
+
+namespace mosbench {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr const char* kResult = "result.json";
+constexpr const char* kLabels = "labels";
+
+/// Calls `read` on the content of result.json; what it misses there becomes a DataError.
+template <typename Read>
+auto from_json(const FoundResult& result, Read&& read) {
+  try {
+    return read(result.file.content);
+  } catch (const nlohmann::ordered_json::exception& error) {
+    throw DataError(result.folder / kResult, error.what(), "a result.json of mosbench run");
+  } catch (const UsageError& error) {
+    throw DataError(result.folder / kResult, error.what(), "a result.json of this mosbench");
+  }
+}
+
+void check_has_labels(const FoundResult& result) {
+  const bool scored = result.file.content.contains("predictions");
+  if (!scored && is_there(result.folder / kLabels)) return;
+  throw DataError(
+      result.folder / kResult,
+      scored ? "is of mosbench score, which keeps no labels beside it" : "has no labels/ beside it",
+      "a folder of mosbench run to show points of; of others mosbench report "
+      "--scans none shows the numbers");
+}
+
+Dataset open_dataset_of(const FoundResult& result, std::optional<fs::path> root) {
+  check_has_labels(result);
+  return from_json(result, [&](const nlohmann::ordered_json& json) {
+    const auto kind = dataset_kind_from_string(json.at("dataset").get<std::string>());
+    const nlohmann::ordered_json& recorded = json.at("timing");
+    if (!root && recorded.contains("dataset_root")) {
+      root = recorded.at("dataset_root").get<std::string>();
+    }
+    if (!kind || !root || !is_there(*root)) {
+      throw DataError(result.folder / kResult,
+                      root ? fmt::format("was made from {}, which is not there", root->string())
+                           : "does not say where its data set lies",
+                      "the data set's folder in --data");
+    }
+    return open_dataset(*root, {kind, {result.name}, told_from_json(recorded)});
+  });
+}
+
+/// What is read in another way than the result states; older ones do not record all flags.
+std::string read_otherwise(const FoundResult& result, const Sequence& sequence) {
+  const auto before = result.file.content.value("reading", nlohmann::ordered_json::object());
+  // The path of a told pose file may be spelt otherwise; the file stamp knows which file it is.
+  const bool told_poses = result.file.content.at("timing").contains("poses");
+  std::string text;
+  for (const auto& [what, how] : sequence.reading()) {
+    const std::string was = before.value(what, how);
+    if (was == how || (told_poses && what == "poses")) continue;
+    text += fmt::format("; {} was \"{}\" and is \"{}\" now", what, was, how);
+  }
+  return text;
+}
+
+void check_same_scans(const FoundResult& result, const Dataset& dataset) {
+  const Sequence& sequence = *dataset.sequences.front();
+  const std::vector<ScanRow>& rows = result.file.rows.scans;
+  bool same = rows.size() == sequence.size() && rows.size() == result.file.rows.costs.size();
+  for (std::size_t k = 0; same && k < rows.size(); ++k) same = rows[k].stem == sequence.stem(k);
+  const std::string otherwise = read_otherwise(result, sequence);
+  // The same files give other frames when they are read in another way.
+  const auto stamp = otherwise.empty() ? std::optional(file_stamp(sequence)) : std::nullopt;
+  if (same && same_input(sequence, stamp, result.file)) return;
+  throw DataError(result.folder / kResult,
+                  fmt::format("was made from other scans, poses or labels than {} holds in {}{}",
+                              sequence.name(), dataset.root.string(), otherwise),
+                  "the data set of the run in --data");
+}
+
+bool same_counts(const OutcomeCounts& counts, const std::optional<Confusion>& recorded) {
+  if (!recorded) return true;
+  Confusion confusion = to_confusion(counts);
+  confusion.unknown_ids = recorded->unknown_ids;
+  return confusion == *recorded;
+}
+
+std::vector<PointOutcome> outcomes_without_truth(const std::vector<std::uint32_t>& labels) {
+  std::vector<PointOutcome> outcomes;
+  for (const std::uint32_t label : labels) {
+    outcomes.push_back(label == kMovingLabel ? PointOutcome::kIgnoredMoving
+                                             : PointOutcome::kIgnoredStatic);
+  }
+  return outcomes;
+}
+
+}  // namespace
+
+std::vector<FoundResult> find_results(const fs::path& path) {
+  std::vector<FoundResult> results;
+  for (const fs::path& file : result_files(path)) {
+    FoundResult result{file.parent_path(), "", read_result(file)};
+    result.name = from_json(
+        result, [](const auto& json) { return json.at("sequence").template get<std::string>(); });
+    results.push_back(std::move(result));
+  }
+  return results;
+}
+
+ResultScans::ResultScans(const FoundResult& result, const std::optional<fs::path>& dataset_root)
+    : result_(result),
+      dataset_(open_dataset_of(result, dataset_root)),
+      rule_{},
+      label_folder_(result.folder / kLabels),
+      has_scores_(is_there(result.folder / "scores")) {
+  from_json(result, [&](const nlohmann::ordered_json& json) {
+    const nlohmann::ordered_json& protocol = json.at("protocol");
+    rule_ = {&protocol_named(protocol.at("name").get<std::string>()),
+             {protocol.at("min_range_m"), protocol.at("max_range_m")}};
+    check_same_scans(result, dataset_);
+  });
+}
+
+JudgedScan ResultScans::read(std::size_t scan_index) const {
+  JudgedScan scan{sequence().read(scan_index), {}, {}};
+  const fs::path label_file = label_folder_ / (scan.frame.stem + ".label");
+  const std::vector<std::uint32_t> labels = read_labels(label_file, scan.frame.points.size());
+  const std::optional<Confusion>& recorded = result_.file.rows.scans[scan_index].counts;
+  if (scan.frame.truth && recorded) {
+    const bool gated = rule_.protocol->range_rule != RangeRule::kNone;
+    scan.outcomes = point_outcomes(
+        *rule_.protocol, *scan.frame.truth, labels,
+        gated ? std::span<const Point>(scan.frame.points) : std::span<const Point>(), rule_.range);
+  } else {
+    scan.outcomes = outcomes_without_truth(labels);
+  }
+  OutcomeCounts counts{};
+  for (const PointOutcome outcome : scan.outcomes) ++counts[static_cast<std::size_t>(outcome)];
+  if (!same_counts(counts, recorded)) {
+    throw DataError(label_file, "does not give the counts in result.json",
+                    "the label file of that run");
+  }
+  if (has_scores_) {
+    const fs::path file = dynamic_score_file(result_.folder, scan.frame.stem);
+    scan.scores = parse_dynamic_scores(read_file(file), scan.frame.points.size(), file);
+  }
+  return scan;
+}
+
+}  // namespace mosbench

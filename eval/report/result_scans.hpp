@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "datasets/layouts/dataset.hpp"
+#include "eval/protocols/confusion.hpp"
+#include "eval/results/result_file.hpp"
+#include "eval/runs/score_execute.hpp"
+
+namespace mosbench {
+
+/// A folder of `mosbench run` with its result.json.
+struct FoundResult {
+  std::filesystem::path folder;
+  std::string name;  ///< the sequence's
+  ResultFile file;
+};
+
+/// The results at `path` and in the folders below it, ordered by path. Throws DataError when there
+/// is none.
+std::vector<FoundResult> find_results(const std::filesystem::path& path);
+
+/// One scan with what became of each of its points.
+struct JudgedScan {
+  Frame frame;
+  std::vector<PointOutcome> outcomes;  ///< kIgnoredStatic or kIgnoredMoving without truth
+  std::vector<std::int32_t> scores;    ///< dynamic ones, empty unless the run kept them
+};
+
+/// The scans of a result: points and truth from the data set, labels from the result's folder.
+class ResultScans {
+ public:
+  /// Opens the data set at `dataset_root`, else where the run read it, as the run was told to read
+  /// it. Throws DataError when it is not there or not what the run read, when the result has no
+  /// labels beside it, and when result.json does not say how it was scored.
+  ResultScans(const FoundResult& result, const std::optional<std::filesystem::path>& dataset_root);
+
+  const Dataset& dataset() const { return dataset_; }
+  const std::filesystem::path& label_folder() const { return label_folder_; }
+  /// How the run was scored.
+  const ScoreRule& rule() const { return rule_; }
+  const Sequence& sequence() const { return *dataset_.sequences.front(); }
+  /// Whether the run kept dynamic scores.
+  bool has_scores() const { return has_scores_; }
+  /// Throws DataError when the labels do not give the counts of result.json.
+  JudgedScan read(std::size_t scan_index) const;
+
+ private:
+  const FoundResult& result_;
+  Dataset dataset_;
+  ScoreRule rule_;
+  std::filesystem::path label_folder_;
+  bool has_scores_;
+};
+
+}  // namespace mosbench

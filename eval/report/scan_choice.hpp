@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "eval/results/result_file.hpp"
+
+namespace mosbench {
+
+/// Which scans of a sequence to show, as the user wrote it: "auto", "all", "none", or a list of
+/// "K", "A-B", "every:N" and "worst:N", counting from 0.
+class ScanChoice {
+ public:
+  /// Throws UsageError naming --scans for anything else.
+  explicit ScanChoice(const std::string& text);
+
+  bool none() const { return parts_.empty(); }
+  /// Scan indices, the most wanted first, none twice; those behind the sequence's end are left out.
+  /// "auto" wants the worst tenth first, then scans spread evenly and ever more densely.
+  std::vector<std::size_t> wanted(const std::vector<ScanRow>& rows) const;
+
+ private:
+  struct Part {
+    enum class Kind { kAuto, kRange, kEvery, kWorst } kind;
+    std::size_t first = 0;
+    std::size_t last = 0;  ///< inclusive; of kEvery and kWorst the number is `first`
+  };
+  static Part parse(const std::string& word);
+
+  std::vector<Part> parts_;
+};
+
+/// Scan indices, most false points (FP + FN) first, equal ones in order; scans without truth last.
+std::vector<std::size_t> worst_first(const std::vector<ScanRow>& rows);
+
+}  // namespace mosbench

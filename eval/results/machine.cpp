@@ -1,0 +1,55 @@
+#include "eval/results/machine.hpp"
+
+#include <sys/utsname.h>
+#include <unistd.h>
+#if defined(__GLIBC__)
+#include <malloc.h>
+#endif
+
+#include <fstream>
+#include <string>
+#include <thread>
+
+namespace mosbench {
+namespace {
+
+std::string processor_name() {
+  std::ifstream cpuinfo("/proc/cpuinfo");
+  for (std::string line; std::getline(cpuinfo, line);) {
+    const std::size_t colon = line.find(": ");
+    if (line.starts_with("model name") && colon != std::string::npos) {
+      return line.substr(colon + 2);
+    }
+  }
+  return "unknown";
+}
+
+double page_mib() { return static_cast<double>(sysconf(_SC_PAGESIZE)) / 1048576.0; }
+
+}  // namespace
+
+nlohmann::ordered_json machine_json() {
+  utsname system{};
+  uname(&system);
+  return {{"processor", processor_name()},
+          {"logical_cores", std::thread::hardware_concurrency()},
+          {"memory_mib", static_cast<double>(sysconf(_SC_PHYS_PAGES)) * page_mib()},
+          {"system", std::string(system.sysname) + " " + system.machine}};
+}
+
+void keep_freed_memory() {
+#if defined(__GLIBC__)
+  mallopt(M_MMAP_THRESHOLD, 32 << 20);
+  mallopt(M_TRIM_THRESHOLD, 64 << 20);
+#endif
+}
+
+double resident_mib() {
+  std::ifstream statm("/proc/self/statm");
+  double total_pages = 0.0;
+  double resident_pages = 0.0;
+  statm >> total_pages >> resident_pages;
+  return statm ? resident_pages * page_mib() : 0.0;
+}
+
+}  // namespace mosbench

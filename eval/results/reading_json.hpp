@@ -1,0 +1,27 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string_view>
+
+#include "datasets/sequence/reading_options.hpp"
+
+namespace mosbench {
+
+/// "lidar" or "camera", as --pose-frame takes them; nothing for other words.
+std::optional<PoseFrame> pose_frame_named(std::string_view word);
+/// Whether "sensor-from-map" or "map-from-sensor" was said to --pose-direction; nothing for other
+/// words.
+std::optional<bool> poses_inverse_named(std::string_view word);
+
+/// What the user told about reading: members named as the flags of `mosbench run`, none for what
+/// was not told. A pose file's path is absolute.
+nlohmann::ordered_json told_json(const ReadingOptions& options);
+/// Reads what `told_json` wrote, passing over other members. Throws UsageError for words that are
+/// not known, a JSON exception for members of another type.
+ReadingOptions told_from_json(const nlohmann::ordered_json& json);
+
+/// How a sequence was read, a member per statement.
+nlohmann::ordered_json to_json(const ReadingStatement& reading);
+
+}  // namespace mosbench

@@ -1,0 +1,220 @@
+#include "eval/results/result_file.hpp"
+
+#include <algorithm>
+#include <system_error>
+
+#include "datasets/files/errors.hpp"
+#include "datasets/files/files.hpp"
+#include "datasets/files/text.hpp"
+#include "eval/results/answer_text.hpp"
+
+namespace mosbench {
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json to_json(const ScanRow& row) {
+  ordered_json json = {{"stem", row.stem},
+                       {"points", row.points},
+                       {"predicted_moving_points", row.predicted_moving_points},
+                       {"nonfinite_points", row.nonfinite_points},
+                       {"threshold", json_or_null(row.threshold)}};
+  if (!row.counts) return json;
+  json["tp"] = row.counts->tp;
+  json["fp"] = row.counts->fp;
+  json["fn"] = row.counts->fn;
+  json["tn"] = row.counts->tn;
+  json["ignored"] = row.counts->ignored;
+  json["unknown_ids"] = row.counts->unknown_ids;
+  if (row.truth_hash) {
+    json["truth_hash"] = std::string_view(row.truth_hash->data(), row.truth_hash->size());
+  }
+  return json;
+}
+
+constexpr const char* kExpected = "a result.json of mosbench run";
+
+std::optional<TruthHash> truth_hash_from(const std::string& text,
+                                         const std::filesystem::path& file) {
+  if (text.empty()) return std::nullopt;
+  TruthHash hash;
+  if (text.size() != hash.size()) {
+    throw DataError(file, "\"truth_hash\" is " + mosbench::quoted(text) + ", no 16 digits",
+                    kExpected);
+  }
+  std::ranges::copy(text, hash.begin());
+  return hash;
+}
+
+ScanRow row_from_json(const ordered_json& json, const std::filesystem::path& file) {
+  ScanRow row;
+  row.stem = json.at("stem").get<std::string>();
+  row.points = json.at("points").get<std::size_t>();
+  row.predicted_moving_points = json.at("predicted_moving_points").get<std::size_t>();
+  row.nonfinite_points = json.at("nonfinite_points").get<std::size_t>();
+  if (!json.at("threshold").is_null()) row.threshold = json.at("threshold").get<double>();
+  if (json.contains("tp")) {
+    row.counts = Confusion{json.at("tp"), json.at("fp"),      json.at("fn"),
+                           json.at("tn"), json.at("ignored"), json.at("unknown_ids")};
+    row.truth_hash = truth_hash_from(json.value("truth_hash", ""), file);
+  }
+  return row;
+}
+
+// One array per scan, its meaning in "scan_columns": a tenth of the size of named members.
+ordered_json to_json(const ScanCost& cost) {
+  ordered_json json = {cost.read_ms, cost.push_ms, cost.resident_mib};
+  for (const double stage_ms : cost.stages_ms) json.push_back(stage_ms);
+  return json;
+}
+
+ScanCost cost_from_json(const ordered_json& json) {
+  ScanCost cost;
+  cost.read_ms = json.at(0);
+  cost.push_ms = json.at(1);
+  cost.resident_mib = json.at(2);
+  for (std::size_t s = 0; s < cost.stages_ms.size(); ++s) cost.stages_ms[s] = json.at(3 + s);
+  return cost;
+}
+
+ordered_json cost_columns() {
+  ordered_json columns = {"read_ms", "push_ms", "resident_mib"};
+  for (const std::string_view stage : kStageNames) columns.push_back(std::string(stage) + "_ms");
+  return columns;
+}
+
+ordered_json mean_stages_ms(const SequenceRows& rows) {
+  ordered_json means = ordered_json::object();
+  if (rows.costs.empty()) return means;
+  for (std::size_t s = 0; s < kStageNames.size(); ++s) {
+    double sum_ms = 0.0;
+    for (const ScanCost& cost : rows.costs) sum_ms += cost.stages_ms[s];
+    means[std::string(kStageNames[s])] = sum_ms / static_cast<double>(rows.costs.size());
+  }
+  return means;
+}
+
+ordered_json timing(const SequenceRows& rows, unsigned threads, const ordered_json& clock_header) {
+  ordered_json json = clock_header;
+  json["threads"] = threads;
+  json["wall_s"] = rows.wall_s;
+  json["method_ms_per_scan"] = json_or_null(method_ms_per_scan(rows));
+  json["stage_ms_per_scan"] = mean_stages_ms(rows);
+  json["scan_columns"] = cost_columns();
+  json["scans"] = ordered_json::array();
+  for (const ScanCost& cost : rows.costs) json["scans"].push_back(to_json(cost));
+  return json;
+}
+
+// Indented like dump(1), but with one line per scan.
+std::string dump(const ordered_json& json) {
+  return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+}
+
+void append_members(const ordered_json& object, const std::string& indent, std::string& text) {
+  for (const auto& [key, value] : object.items()) {
+    text += indent + ordered_json(key).dump() + ": ";
+    if (key == "scans") {
+      text += "[";
+      for (std::size_t i = 0; i < value.size(); ++i) {
+        text += (i == 0 ? "\n" : ",\n") + indent + " " + dump(value[i]);
+      }
+      text += "\n" + indent + "]";
+    } else if (value.is_object() && !value.empty()) {
+      text += "{\n";
+      append_members(value, indent + " ", text);
+      text += indent + "}";
+    } else {
+      text += dump(value);
+    }
+    text += ",\n";
+  }
+  text.erase(text.size() - 2, 1);
+}
+
+std::string format_members(const ordered_json& json) {
+  std::string text = "{\n";
+  append_members(json, " ", text);
+  return text + "}\n";
+}
+
+ordered_json with_scans(ordered_json json, const std::vector<ScanRow>& scans) {
+  json["scans"] = ordered_json::array();
+  for (const ScanRow& row : scans) json["scans"].push_back(to_json(row));
+  return json;
+}
+
+/// What a killed run left, or one that is about to be replaced.
+bool is_leftover(const std::filesystem::path& folder) {
+  return folder.extension() == ".partial" || folder.extension() == ".replaced";
+}
+
+}  // namespace
+
+std::optional<double> method_ms_per_scan(const SequenceRows& rows) {
+  if (rows.costs.empty()) return std::nullopt;
+  double sum_ms = 0.0;
+  for (const ScanCost& cost : rows.costs) sum_ms += cost.push_ms;
+  return sum_ms / static_cast<double>(rows.costs.size());
+}
+
+std::string format_result(const ordered_json& header, const SequenceRows& rows, unsigned threads,
+                          const ordered_json& clock_header) {
+  ordered_json json = with_scans(header, rows.scans);
+  json["timing"] = timing(rows, threads, clock_header);
+  return format_members(json);
+}
+
+std::string format_scored(const ordered_json& header, const std::vector<ScanRow>& scans) {
+  return format_members(with_scans(header, scans));
+}
+
+std::vector<std::filesystem::path> find_result_files(const std::filesystem::path& path,
+                                                     std::filesystem::directory_options how,
+                                                     int deepest) {
+  std::error_code error;
+  if (std::filesystem::is_regular_file(path, error)) return {path};
+  std::vector<std::filesystem::path> files;
+  for (std::filesystem::recursive_directory_iterator it(path, how, error), end; !error && it != end;
+       it.increment(error)) {
+    const bool of_scans = it->path().filename() == "labels" || it->path().filename() == "scores";
+    if (of_scans || is_leftover(it->path())) {
+      it.disable_recursion_pending();
+    } else if (it->path().filename() == "result.json") {
+      files.push_back(it->path());
+    }
+    if (it.depth() >= deepest) it.disable_recursion_pending();
+  }
+  if (error) throw DataError(path, "cannot be read (" + error.message() + ")", "results");
+  std::ranges::sort(files);
+  return files;
+}
+
+std::vector<std::filesystem::path> result_files(const std::filesystem::path& path) {
+  std::vector<std::filesystem::path> files = find_result_files(path);
+  if (!files.empty()) return files;
+  throw DataError(path, "holds no result.json", "results of mosbench run or mosbench score");
+}
+
+ResultFile read_result(const std::filesystem::path& file) {
+  try {
+    ResultFile result;
+    result.content = ordered_json::parse(read_file(file));
+    for (const ordered_json& row : result.content.at("scans")) {
+      result.rows.scans.push_back(row_from_json(row, file));
+    }
+    result.rows.fingerprint = result.content.value("fingerprint", "");
+    // Accepted results (baselines) and scores of others' labels come without a clock.
+    if (!result.content.contains("timing")) return result;
+    const ordered_json& clocked = result.content.at("timing");
+    result.rows.wall_s = clocked.at("wall_s");
+    for (const ordered_json& cost : clocked.at("scans")) {
+      result.rows.costs.push_back(cost_from_json(cost));
+    }
+    return result;
+  } catch (const ordered_json::exception& error) {
+    throw DataError(file, error.what(), kExpected);
+  }
+}
+
+}  // namespace mosbench

@@ -1,0 +1,155 @@
+#include "eval/results/result_folder.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <set>
+#include <system_error>
+#include <vector>
+
+#include "datasets/files/errors.hpp"
+#include "eval/results/json_differences.hpp"
+
+namespace mosbench {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr const char* kLabels = "labels";
+constexpr const char* kScores = "scores";
+constexpr const char* kResult = "result.json";
+
+std::vector<fs::path> entries(const fs::path& folder) {
+  std::error_code error;
+  std::vector<fs::path> paths;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+    paths.push_back(it->path());
+  }
+  if (error && error != std::errc::no_such_file_or_directory) {
+    throw DataError(folder, "cannot be listed (" + error.message() + ")", "a readable folder");
+  }
+  return paths;
+}
+
+template <typename Operation>
+void checked(const fs::path& path, const char* what, Operation&& operation) {
+  std::error_code error;
+  operation(error);
+  if (error) {
+    throw DataError(path, fmt::format("cannot be {} ({})", what, error.message()),
+                    "a writable output folder");
+  }
+}
+
+/// Labels and scores both take four bytes per point.
+bool all_present(const fs::path& folder, const char* extension, const ResultFile& result) {
+  for (const ScanRow& row : result.rows.scans) {
+    std::error_code error;
+    const auto size = fs::file_size(folder / (row.stem + extension), error);
+    if (error || size != row.points * sizeof(std::uint32_t)) return false;
+  }
+  return true;
+}
+
+void refuse_extra(const fs::path& folder, const char* extension, const Sequence& sequence) {
+  std::set<std::string> expected;
+  for (std::size_t k = 0; k < sequence.size(); ++k) expected.insert(sequence.stem(k) + extension);
+  for (const fs::path& file : entries(folder)) {
+    if (expected.contains(file.filename().string())) continue;
+    throw UsageError(fmt::format(
+        "{}: belongs to no scan of the sequence, expected only {} files of its scans; remove it, "
+        "or replace the results with --overwrite",
+        file.string(), extension));
+  }
+}
+
+}  // namespace
+
+fs::path ResultFolder::with_suffix(const char* suffix) const {
+  fs::path path = folder_;
+  path += suffix;
+  return path;
+}
+
+void ResultFolder::check_replaceable() const {
+  const std::vector<fs::path> found = entries(folder_);
+  bool has_result = found.empty();
+  for (const fs::path& path : found) {
+    has_result = has_result || path.filename() == kResult;
+    if (path.filename() != kResult && path.filename() != kLabels && path.filename() != kScores) {
+      throw UsageError(path.string() +
+                       ": was not written by mosbench run, expected --out to name a folder of "
+                       "its own");
+    }
+  }
+  if (!has_result) {
+    throw UsageError(folder_.string() +
+                     ": holds labels but no result.json of mosbench run, expected --out to name a "
+                     "folder of its own");
+  }
+}
+
+std::optional<ResultFile> ResultFolder::finished(const Sequence& sequence,
+                                                 const nlohmann::ordered_json& identity,
+                                                 bool with_scores) const {
+  check_replaceable();
+  if (!fs::exists(folder_ / kResult)) return std::nullopt;
+  ResultFile result = read_result(folder_ / kResult);
+  const std::string different = changed_members(result.content, identity);
+  if (!different.empty()) {
+    throw UsageError(fmt::format(
+        "{}: holds results of another run ({}), expected the same; give another --out, or "
+        "--overwrite to replace them",
+        folder_.string(), different));
+  }
+  refuse_extra(folder_ / kLabels, ".label", sequence);
+  refuse_extra(folder_ / kScores, ".score", sequence);
+  if (result.rows.scans.size() != sequence.size()) return std::nullopt;
+  if (!all_present(folder_ / kLabels, ".label", result)) return std::nullopt;
+  if (with_scores && !all_present(folder_ / kScores, ".score", result)) return std::nullopt;
+  return result;
+}
+
+fs::path ResultFolder::begin() const {
+  const fs::path partial = with_suffix(".partial");
+  for (const fs::path& leftover : {partial, with_suffix(".replaced")}) {
+    checked(leftover, "removed", [&](std::error_code& error) { fs::remove_all(leftover, error); });
+  }
+  checked(partial, "made",
+          [&](std::error_code& error) { fs::create_directories(partial / kLabels, error); });
+  return partial;
+}
+
+void ResultFolder::publish() const {
+  const fs::path replaced = with_suffix(".replaced");
+  if (fs::exists(folder_)) {
+    checked(folder_, "moved",
+            [&](std::error_code& error) { fs::rename(folder_, replaced, error); });
+  }
+  checked(folder_, "put in place", [&](std::error_code& error) {
+    fs::rename(with_suffix(".partial"), folder_, error);
+    std::error_code ignored;
+    if (error) fs::rename(replaced, folder_, ignored);
+  });
+  checked(replaced, "removed", [&](std::error_code& error) { fs::remove_all(replaced, error); });
+}
+
+FolderLock::FolderLock(const fs::path& folder) : descriptor_(-1) {
+  checked(folder, "made", [&](std::error_code& error) { fs::create_directories(folder, error); });
+  descriptor_ = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor_ < 0) {
+    throw DataError(folder, fmt::format("cannot be opened ({})", std::strerror(errno)),
+                    "a writable output folder");
+  }
+  if (flock(descriptor_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
+  close(descriptor_);
+  throw UsageError(folder.string() +
+                   ": another mosbench run is writing there, expected one at a time");
+}
+
+FolderLock::~FolderLock() { close(descriptor_); }
+
+}  // namespace mosbench

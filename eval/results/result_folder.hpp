@@ -1,0 +1,59 @@
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "datasets/sequence/sequence.hpp"
+#include "eval/results/result_file.hpp"
+
+namespace mosbench {
+
+/// The folder <out>/<sequence> of a run: labels/<stem>.label, scores/<stem>.score when they were
+/// asked for, and result.json. It appears as a whole when the sequence is done; until then
+/// everything lies in `<folder>.partial`, which the next run clears. So a killed or failed run
+/// never mixes with earlier results.
+class ResultFolder {
+ public:
+  explicit ResultFolder(std::filesystem::path folder) : folder_(std::move(folder)) {}
+
+  const std::filesystem::path& path() const { return folder_; }
+
+  /// The finished result when it answers the same question: the members of `identity` are equal in
+  /// its result.json, and every scan has its label file, and its score file when `with_scores`.
+  /// Nothing when there is no folder or such files are missing or have the wrong size, so that the
+  /// sequence has to be run. Throws UsageError naming what differs when something else lies there.
+  std::optional<ResultFile> finished(const Sequence& sequence,
+                                     const nlohmann::ordered_json& identity,
+                                     bool with_scores) const;
+
+  /// Throws UsageError unless the folder is absent or holds nothing but a run's result, so that
+  /// --overwrite never takes away anything else.
+  void check_replaceable() const;
+
+  /// Makes an empty folder for new results and returns it. Throws DataError.
+  std::filesystem::path begin() const;
+  /// Puts what `begin` made in place of the folder. Throws DataError.
+  void publish() const;
+
+ private:
+  std::filesystem::path with_suffix(const char* suffix) const;
+
+  std::filesystem::path folder_;
+};
+
+/// Holds a folder for one run until destroyed, also against other processes.
+class FolderLock {
+ public:
+  /// Makes the folder when missing. Throws DataError when that fails, UsageError when another run
+  /// holds it.
+  explicit FolderLock(const std::filesystem::path& folder);
+  ~FolderLock();
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+
+ private:
+  int descriptor_;
+};
+
+}  // namespace mosbench

@@ -1,0 +1,194 @@
+#include "eval/results/result_set.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "datasets/files/errors.hpp"
+
+namespace mosbench {
+namespace fs = std::filesystem;
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr const char* kOwnMethod = "HMM-MOS";
+
+std::string own_setting(const ordered_json& header) {
+  const ordered_json& config = header.at("config");
+  const int delay_scans = config.at("delay_scans");
+  return fmt::format("{}, voxel {:g} m, range {:g} to {:g} m, {}",
+                     header.at("variant").get<std::string>(),
+                     config.at("voxel_size_m").get<double>(),
+                     config.at("min_range_m").get<double>(), config.at("max_range_m").get<double>(),
+                     delay_scans == 0 ? "online" : fmt::format("delayed by {} scans", delay_scans));
+}
+
+void read_method(const ordered_json& header, SequenceResult& result) {
+  if (!header.contains("method")) {
+    result.method = kOwnMethod;
+    result.setting = own_setting(header);
+    return;
+  }
+  result.method = header.at("method").at("name");
+  result.setting = header.at("method").at("setting");
+}
+
+void read_protocol(const ordered_json& header, SequenceResult& result) {
+  const ordered_json& protocol = header.at("protocol");
+  result.protocol = find_protocol(protocol.at("name").get<std::string>());
+  if (result.protocol == nullptr) {
+    throw DataError(result.file, "names protocol " + protocol.at("name").dump(),
+                    "one that `mosbench list protocols` shows");
+  }
+  result.range = {protocol.at("min_range_m"), protocol.at("max_range_m")};
+}
+
+void read_splits(const ordered_json& header, SequenceResult& result) {
+  if (const ordered_json split = header.value("summary_split", ordered_json()); !split.is_null()) {
+    if (split != std::string(result.protocol->default_split)) {
+      result.only_split = split.get<std::string>();
+    }
+  }
+  if (!header.contains("splits")) return;
+  for (const auto& [name, stems] : header.at("splits").items()) {
+    result.splits[name] = stems.get<std::set<std::string>>();
+  }
+}
+
+SequenceResult from_content(const fs::path& file, ResultFile content) {
+  SequenceResult result;
+  result.file = file;
+  result.scans = std::move(content.rows.scans);
+  result.method_ms_per_scan = method_ms_per_scan(content.rows);
+  result.header = std::move(content.content);
+  result.header.erase("scans");
+  result.header.erase("timing");
+  const ordered_json& header = result.header;
+  result.sequence = header.at("sequence");
+  result.dataset = header.at("dataset");
+  read_method(header, result);
+  read_protocol(header, result);
+  read_splits(header, result);
+  if (!content.rows.fingerprint.empty()) result.fingerprint = content.rows.fingerprint;
+  result.simulated = header.contains("simulated");
+  if (result.simulated) {
+    const ordered_json& origin = header.at("simulated");
+    result.simulated_origin =
+        fmt::format("scene {}, seed {}", origin.at("scene").get<std::string>(),
+                    origin.at("seed").get<std::uint64_t>());
+  }
+  if (header.contains("predictions")) {
+    result.missing_predictions = header.at("predictions").at("missing").size();
+  }
+  return result;
+}
+
+bool same_run(const SequenceResult& a, const SequenceResult& b) {
+  return a.dataset == b.dataset && a.method == b.method && a.setting == b.setting &&
+         a.protocol == b.protocol && a.range == b.range &&
+         a.header.value("config", ordered_json()) == b.header.value("config", ordered_json());
+}
+
+void add_to_runs(SequenceResult result, std::vector<ResultSet>& sets, const fs::path& path) {
+  const auto set = std::ranges::find_if(
+      sets, [&](const ResultSet& known) { return same_run(known.front(), result); });
+  if (set == sets.end()) {
+    sets.push_back({path, {std::move(result)}});
+    return;
+  }
+  const auto twin = std::ranges::find(set->sequences, result.sequence, &SequenceResult::sequence);
+  if (twin != set->sequences.end()) {
+    throw DataError(result.file,
+                    "scores sequence " + result.sequence + " like " + twin->file.string(),
+                    "one result per sequence of a run");
+  }
+  set->sequences.push_back(std::move(result));
+}
+
+}  // namespace
+
+SequenceResult sequence_result(const fs::path& file, ResultFile content) {
+  try {
+    return from_content(file, std::move(content));
+  } catch (const ordered_json::exception& error) {
+    throw DataError(file, error.what(), "a result.json of mosbench");
+  }
+}
+
+SequenceResult read_sequence_result(const fs::path& file) {
+  return sequence_result(file, read_result(file));
+}
+
+std::vector<ResultSet> load_result_sets(const fs::path& path) {
+  std::vector<ResultSet> sets;
+  for (const fs::path& file : result_files(path)) {
+    add_to_runs(read_sequence_result(file), sets, path);
+  }
+  for (ResultSet& set : sets) std::ranges::sort(set.sequences, {}, &SequenceResult::sequence);
+  return sets;
+}
+
+ResultSet load_result_set(const fs::path& path) {
+  std::vector<ResultSet> sets = load_result_sets(path);
+  if (sets.size() == 1) return std::move(sets.front());
+  throw DataError(path,
+                  fmt::format("holds {} runs: {} ({}, {}) differs from {} ({}, {})", sets.size(),
+                              sets[1].front().file.string(), sets[1].front().setting,
+                              sets[1].front().protocol->name, sets[0].front().file.string(),
+                              sets[0].front().setting, sets[0].front().protocol->name),
+                  "the results of one run");
+}
+
+std::size_t missing_predictions(const ResultSet& set) {
+  std::size_t missing = 0;
+  for (const SequenceResult& sequence : set.sequences) missing += sequence.missing_predictions;
+  return missing;
+}
+
+std::string incomplete_caveat(std::size_t missing_predictions) {
+  return fmt::format("INCOMPLETE: {} scans without usable prediction are not counted",
+                     missing_predictions);
+}
+
+std::string split_caveat(const std::string& split) {
+  return fmt::format(
+      "only the scans of split {}: not the protocol's number, which is over all labelled scans",
+      split);
+}
+
+std::vector<std::string> caveats(const ResultSet& set) {
+  std::vector<std::string> texts;
+  if (const std::size_t missing = missing_predictions(set); missing > 0) {
+    texts.push_back(incomplete_caveat(missing));
+  }
+  const auto partial = std::ranges::find_if(set.sequences, [](const SequenceResult& sequence) {
+    return sequence.only_split.has_value();
+  });
+  if (partial != set.sequences.end()) texts.push_back(split_caveat(*partial->only_split));
+  return texts;
+}
+
+std::vector<const ScanRow*> counted_scans(const SequenceResult& result) {
+  const auto split = result.splits.find(std::string(result.protocol->default_split));
+  std::vector<const ScanRow*> scans;
+  for (const ScanRow& row : result.scans) {
+    if (!row.counts) continue;
+    if (split == result.splits.end() || split->second.contains(row.stem)) scans.push_back(&row);
+  }
+  return scans;
+}
+
+SequenceCounts counts_of(const SequenceResult& result) {
+  SequenceCounts counts;
+  for (const ScanRow* row : counted_scans(result)) counts.push_back(*row->counts);
+  return counts;
+}
+
+std::vector<SequenceCounts> counts_of(const ResultSet& set) {
+  std::vector<SequenceCounts> counts;
+  for (const SequenceResult& result : set.sequences) counts.push_back(counts_of(result));
+  return counts;
+}
+
+}  // namespace mosbench

@@ -1,0 +1,75 @@
+#include "eval/runs/profile.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/hmm_mos/pipeline.hpp"
+#include "eval/results/machine.hpp"
+#include "eval/results/progress.hpp"
+
+namespace mosbench {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// What `work` costs.
+template <typename Work>
+Cost cost_of(Work&& work) {
+  const Clock::time_point start = Clock::now();
+  const double cpu_start_ms = process_cpu_ms();
+  work();
+  const double wall_ms = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+  return {wall_ms, process_cpu_ms() - cpu_start_ms};
+}
+
+std::optional<double> median_period_ms(const std::vector<std::int64_t>& stamps_ns) {
+  std::vector<double> periods_ms;
+  for (std::size_t i = 1; i < stamps_ns.size(); ++i) {
+    periods_ms.push_back(static_cast<double>(stamps_ns[i] - stamps_ns[i - 1]) * 1e-6);
+  }
+  if (periods_ms.empty()) return std::nullopt;
+  const double median_ms = quantile(periods_ms, 0.5);
+  return median_ms > 0 ? std::optional(median_ms) : std::nullopt;
+}
+
+}  // namespace
+
+double quantile(std::vector<double> values, double q) {
+  const auto rank =
+      static_cast<std::size_t>(std::max(1.0, std::ceil(q * static_cast<double>(values.size()))));
+  std::ranges::sort(values);
+  return values[rank - 1];
+}
+
+SequenceProfile profile_sequence(const Sequence& sequence, const RunSettings& settings,
+                                 std::size_t most_scans) {
+  SequenceProfile profile{sequence.name(), settings.threads, std::nullopt, {}};
+  const std::size_t scans = std::min(sequence.size(), most_scans);
+  // The whole length: the end of a delayed sequence is labelled in another way.
+  Pipeline pipeline(settings.config, settings.variant, settings.threads, sequence.size());
+  std::vector<StageEvent> events;
+  pipeline.record_stages(&events);
+  Progress progress("profile " + sequence.name(), scans);
+  std::vector<std::int64_t> stamps_ns;
+  Frame frame;
+  for (std::size_t k = 0; k < scans; ++k) {
+    ScanProfile& scan = profile.scans.emplace_back();
+    scan.start = Clock::now();
+    scan.read = cost_of([&] { frame = sequence.read(k, std::move(frame)); });
+    if (frame.stamp_ns) stamps_ns.push_back(*frame.stamp_ns);
+    scan.stem = frame.stem;
+    scan.points = frame.points.size();
+    scan.method = cost_of([&] { push_scan(pipeline, sequence, k, frame); });
+    scan.end = Clock::now();
+    scan.stages = std::move(events);
+    events.clear();
+    scan.resident_mib = resident_mib();
+    scan.map_blocks = pipeline.map_blocks();
+    scan.method_bytes = pipeline.memory_bytes();
+    progress.advance();
+  }
+  profile.period_ms = median_period_ms(stamps_ns);
+  return profile;
+}
+
+}  // namespace mosbench

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/base/stage_times.hpp"
+#include "datasets/sequence/sequence.hpp"
+#include "eval/runs/run_plan.hpp"
+
+namespace mosbench {
+
+/// Wall and process CPU time, milliseconds.
+struct Cost {
+  double wall_ms = 0, cpu_ms = 0;
+};
+
+/// What one scan cost from reading its file to its labels. Nothing is written or scored.
+struct ScanProfile {
+  std::string stem;
+  std::size_t points = 0;
+  std::chrono::steady_clock::time_point start, end;  ///< of reading, and of the method
+  Cost read;
+  Cost method;  ///< the whole push: all stages and what is between them
+  std::vector<StageEvent> stages;
+  double resident_mib = 0;  ///< of the process
+  std::size_t map_blocks = 0, method_bytes = 0;
+};
+
+struct SequenceProfile {
+  std::string name;
+  unsigned threads = 1;
+  std::optional<double> period_ms;  ///< median distance of the stamps; nothing without stamps
+  std::vector<ScanProfile> scans;
+};
+
+/// Segments the first `most_scans` scans of a sequence, one after the other, and measures. Throws
+/// DataError.
+SequenceProfile profile_sequence(const Sequence& sequence, const RunSettings& settings,
+                                 std::size_t most_scans);
+
+/// Of a not empty list, q from 0 to 1: the nearest rank.
+double quantile(std::vector<double> values, double q);
+
+}  // namespace mosbench

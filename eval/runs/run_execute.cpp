@@ -1,0 +1,149 @@
+#include "eval/runs/run_execute.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <system_error>
+
+#include "datasets/files/files.hpp"
+#include "eval/protocols/benchmark_split.hpp"
+#include "eval/protocols/metrics.hpp"
+#include "eval/protocols/summary_json.hpp"
+#include "eval/results/machine.hpp"
+#include "eval/results/reading_json.hpp"
+#include "eval/results/simulated.hpp"
+
+namespace mosbench {
+namespace fs = std::filesystem;
+namespace {
+
+using nlohmann::ordered_json;
+
+void tell(const std::string& line) { std::fputs((line + '\n').c_str(), stderr); }
+
+std::vector<std::string> scans_without_detection(const Config& config, const Sequence& sequence) {
+  std::vector<std::string> stems;
+  for (std::size_t k = 0; k < sequence.size(); ++k) {
+    if (!detection_runs(config, k, sequence.size())) stems.push_back(sequence.stem(k));
+  }
+  return stems;
+}
+
+std::string tail_remark(const Config& config, const Sequence& sequence) {
+  const auto delay = static_cast<std::size_t>(config.delay_scans);
+  if (sequence.size() <= delay) {
+    return fmt::format("shorter than the delay of {} scans: every scan is judged online", delay);
+  }
+  return fmt::format(
+      "the last {} scans have no {} later ones: scan {} is labelled static and those after it are "
+      "judged online, as the authors' program does",
+      delay, delay, sequence.stem(sequence.size() - delay));
+}
+
+std::vector<std::string> all_remarks(const RunSettings& settings, const Sequence& sequence,
+                                     const SequenceRows& rows) {
+  std::vector<std::string> remarks = sequence.remarks();
+  const std::size_t unjudged = scans_without_detection(settings.config, sequence).size();
+  remarks.push_back(fmt::format("{} of {} scans are labelled static without detection", unjudged,
+                                sequence.size()));
+  if (settings.config.delay_scans > 0) remarks.push_back(tail_remark(settings.config, sequence));
+  std::size_t nonfinite_points = 0;
+  std::uint64_t unknown_ids = 0;
+  for (const ScanRow& row : rows.scans) {
+    nonfinite_points += row.nonfinite_points;
+    if (row.counts) unknown_ids += row.counts->unknown_ids;
+  }
+  if (nonfinite_points > 0) {
+    remarks.push_back(
+        fmt::format("{} points are NaN or infinite: left out of the map and labelled static",
+                    nonfinite_points));
+  }
+  if (unknown_ids > 0) {
+    remarks.push_back(
+        fmt::format("{} points have a label id that protocol {} does not know: counted as it says",
+                    unknown_ids, settings.protocol->name));
+  }
+  return remarks;
+}
+
+ordered_json header(const RunPlan& plan, const PlannedSequence& planned, const SequenceRows& rows,
+                    const std::vector<std::string>& remarks) {
+  const Sequence& sequence = *plan.dataset.sequences[planned.position];
+  ordered_json json = planned.identity;
+  json["preset"] = plan.preset;
+  if (const auto origin = simulated_origin_json(plan.dataset)) {
+    json["simulated"] = *origin;
+  }
+  json["fingerprint"] = rows.fingerprint;
+  json["machine"] = machine_json();
+  json["remarks"] = remarks;
+  json["scans_without_detection"] = scans_without_detection(plan.settings.config, sequence);
+  const Split* benchmark = benchmark_scans(*plan.settings.protocol, plan.dataset.splits);
+  const auto stems =
+      benchmark == nullptr ? std::nullopt : stems_in_split(*benchmark, planned.position);
+  std::vector<Confusion> counts;
+  for (const ScanRow& row : rows.scans) {
+    if (row.counts && (!stems || stems->contains(row.stem))) counts.push_back(*row.counts);
+  }
+  if (const ordered_json splits = picked_stems(plan.dataset, planned.position); !splits.empty()) {
+    json["splits"] = splits;
+  }
+  json["summary_split"] =
+      benchmark == nullptr ? ordered_json(nullptr) : ordered_json(benchmark->name);
+  json["summary"] =
+      counts.empty() ? ordered_json(nullptr) : to_json(summarize(*plan.settings.protocol, counts));
+  return json;
+}
+
+/// Where and how `report` and `render` find the points again; folders are this machine's.
+ordered_json clock_header(const RunPlan& plan, const PlannedSequence& planned) {
+  ordered_json json = {{"file_stamp", planned.stamp},
+                       {"dataset_root", fs::absolute(plan.dataset.root).string()}};
+  json.update(told_json(plan.reading));
+  return json;
+}
+
+SequenceOutcome run_now(const RunPlan& plan, const PlannedSequence& planned) {
+  const Sequence& sequence = *plan.dataset.sequences[planned.position];
+  const fs::path partial = planned.folder.begin();
+  try {
+    SequenceOutcome outcome;
+    outcome.rows = run_sequence(sequence, plan.settings, partial);
+    outcome.remarks = all_remarks(plan.settings, sequence, outcome.rows);
+    outcome.folder = planned.folder.path();
+    write_file_atomic(
+        partial / "result.json",
+        format_result(header(plan, planned, outcome.rows, outcome.remarks), outcome.rows,
+                      plan.settings.threads, clock_header(plan, planned)));
+    planned.folder.publish();
+    return outcome;
+  } catch (...) {
+    // Unless the program is killed, a failed run leaves nothing behind; a full disk gets room back.
+    std::error_code ignored;
+    fs::remove_all(partial, ignored);
+    throw;
+  }
+}
+
+SequenceOutcome reuse(const RunPlan& plan, const PlannedSequence& planned) {
+  const Sequence& sequence = *plan.dataset.sequences[planned.position];
+  tell(fmt::format("{}: finished by an earlier run, kept", sequence.name()));
+  return {planned.finished->rows, all_remarks(plan.settings, sequence, planned.finished->rows),
+          planned.folder.path(), true};
+}
+
+}  // namespace
+
+std::vector<SequenceOutcome> execute_run(const RunPlan& plan) {
+  keep_freed_memory();
+  const FolderLock lock(plan.out);
+  for (const std::string& note : plan.notes) tell(note);
+  tell(fmt::format("results go to {}", plan.out.string()));
+  std::vector<SequenceOutcome> outcomes;
+  for (const PlannedSequence& planned : plan.sequences) {
+    outcomes.push_back(planned.finished ? reuse(plan, planned) : run_now(plan, planned));
+  }
+  return outcomes;
+}
+
+}  // namespace mosbench

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "datasets/layouts/dataset.hpp"
+#include "eval/results/result_folder.hpp"
+#include "eval/runs/sequence_runner.hpp"
+
+namespace mosbench {
+
+/// What the user asked of `mosbench run`, as typed.
+struct RunOptions {
+  std::filesystem::path input;
+  std::string dataset = "auto";
+  std::vector<std::string> sequences;
+  std::optional<std::string> preset, variant, protocol, range;
+  std::optional<std::filesystem::path> config_file, out;
+  ReadingOptions reading = {};
+  std::vector<std::string> assignments;
+  unsigned threads = 0;  ///< 0: one per logical core
+  bool overwrite = false;
+  bool scores = false;
+  bool json = false;
+};
+
+/// One sequence of a run: where its results go, and the results when they are there already.
+struct PlannedSequence {
+  std::size_t position;  ///< in Dataset::sequences
+  ResultFolder folder;
+  nlohmann::ordered_json identity;  ///< what two runs must share to have the same results
+  std::string stamp;                ///< of the input files, see `file_stamp`
+  std::optional<ResultFile> finished;
+};
+
+/// Everything decided before the first scan is read.
+struct RunPlan {
+  Dataset dataset;
+  std::string preset;
+  RunSettings settings;
+  std::filesystem::path out;
+  ReadingOptions reading;  ///< as the user told
+  std::vector<PlannedSequence> sequences;
+  std::vector<std::string> notes;  ///< choices made for the user, plain sentences
+};
+
+/// Opens the data set and settles the configuration (defaults < preset < file < --set): a plan
+/// without sequences. Throws UsageError and DataError.
+RunPlan plan_method(const RunOptions& options);
+
+/// The same, and looks at what earlier runs left. Writes nothing. Throws UsageError and DataError.
+RunPlan plan_run(const RunOptions& options);
+
+/// "auto" is nothing. Throws UsageError for a name that is no data set kind.
+std::optional<DatasetKind> dataset_kind_option(const std::string& name);
+
+/// "MIN,MAX" in metres, MAX -1 for no limit. Throws UsageError, also for a limit that the protocol
+/// does not know.
+RangeGate range_option(const std::string& text, const Protocol& protocol);
+
+}  // namespace mosbench

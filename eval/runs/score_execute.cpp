@@ -1,0 +1,113 @@
+#include "eval/runs/score_execute.hpp"
+
+#include <algorithm>
+#include <mutex>
+
+#include "core/base/thread_pool.hpp"
+#include "datasets/files/errors.hpp"
+#include "datasets/sequence/fingerprint.hpp"
+#include "eval/protocols/benchmark_split.hpp"
+#include "eval/results/progress.hpp"
+
+namespace mosbench {
+namespace {
+
+bool looks_at_ranges(const ScoreTask& task) {
+  return std::ranges::any_of(task.rules, [](const ScoreRule& rule) {
+    return rule.protocol->range_rule != RangeRule::kNone;
+  });
+}
+
+std::vector<std::size_t> wanted_scans(const Dataset& dataset, std::size_t position,
+                                      const ScoreTask& task) {
+  const Sequence& sequence = *dataset.sequences[position];
+  std::vector<std::size_t> wanted = scans_with_truth(sequence);
+  if (!task.split) return wanted;
+  const auto stems =
+      stems_in_split(*std::ranges::find(dataset.splits, *task.split, &Split::name), position);
+  std::erase_if(wanted, [&](std::size_t k) { return stems && !stems->contains(sequence.stem(k)); });
+  return wanted;
+}
+
+/// Truth and, where a rule looks at ranges, points of a scan.
+Frame read_truth_of(const Sequence& sequence, std::size_t k, bool with_points) {
+  if (with_points) return sequence.read(k);
+  Frame frame;
+  frame.stem = sequence.stem(k);
+  frame.truth = sequence.read_truth(k);
+  return frame;
+}
+
+/// One row per rule.
+std::vector<ScanRow> score_one(const Sequence& sequence, std::size_t k, const ScoreTask& task,
+                               const Predictions& labels, bool with_points) {
+  const Frame frame = read_truth_of(sequence, k, with_points);
+  const std::optional<Confusion> counted = labels.counts(k);
+  const std::vector<std::uint32_t> predicted =
+      counted ? std::vector<std::uint32_t>{} : labels.read(k);
+  const TruthHash hash = truth_hash(*frame.truth);
+  std::vector<ScanRow> rows;
+  for (const ScoreRule& rule : task.rules) {
+    ScanRow& row = rows.emplace_back();
+    row.stem = frame.stem;
+    row.points = frame.truth->size();
+    row.truth_hash = hash;
+    row.counts =
+        counted ? *counted
+                : score_scan(*rule.protocol, *frame.truth, predicted, frame.points, rule.range);
+    row.predicted_moving_points = row.counts->tp + row.counts->fp;
+  }
+  return rows;
+}
+
+void score_scans(const Sequence& sequence, const std::vector<std::size_t>& scans,
+                 const ScoreTask& task, ThreadPool& pool, SequenceScores& scores) {
+  const bool with_points = looks_at_ranges(task);
+  for (auto& rows : scores.by_rule) rows.resize(scans.size());
+  Progress progress("score " + sequence.name(), scans.size());
+  std::mutex progress_mutex;
+  pool.for_ranges(scans.size(), 1, [&](std::size_t begin, std::size_t end, unsigned) {
+    for (std::size_t i = begin; i < end; ++i) {
+      std::vector<ScanRow> rows =
+          score_one(sequence, scans[i], task, *scores.opened->labels, with_points);
+      for (std::size_t r = 0; r < rows.size(); ++r) scores.by_rule[r][i] = std::move(rows[r]);
+      const std::lock_guard lock(progress_mutex);
+      progress.advance();
+    }
+  });
+}
+
+SequenceScores score_sequence(const Dataset& dataset, std::size_t position, const ScoreTask& task,
+                              ThreadPool& pool) {
+  const Sequence& sequence = *dataset.sequences[position];
+  SequenceScores scores{position, std::nullopt, {}};
+  scores.by_rule.resize(task.rules.size());
+  const std::vector<std::size_t> wanted = wanted_scans(dataset, position, task);
+  if (wanted.empty()) return scores;
+  scores.opened = open_predictions(task.predictions, sequence, wanted,
+                                   dataset.sequences.size() == 1, task.options);
+  std::vector<std::size_t> scans;
+  for (const std::size_t k : wanted) {
+    if (scores.opened->labels->has(k)) scans.push_back(k);
+  }
+  score_scans(sequence, scans, task, pool, scores);
+  return scores;
+}
+
+}  // namespace
+
+std::vector<SequenceScores> score_dataset(const Dataset& dataset, const ScoreTask& task) {
+  ThreadPool pool(task.threads);
+  std::vector<SequenceScores> sequences;
+  std::size_t scans = 0;
+  for (std::size_t i = 0; i < dataset.sequences.size(); ++i) {
+    sequences.push_back(score_sequence(dataset, i, task, pool));
+    scans += sequences.back().by_rule.front().size();
+  }
+  if (scans == 0) {
+    throw DataError(dataset.root, "no scan to score has truth", "labels beside the scans");
+  }
+  return sequences;
+}
+
+}  // namespace mosbench

@@ -1,0 +1,97 @@
+#include "eval/runs/shared_folder.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <system_error>
+#include <vector>
+
+#include "datasets/files/errors.hpp"
+#include "datasets/layouts/catalogue.hpp"
+#include "eval/results/json_differences.hpp"
+
+namespace mosbench {
+namespace fs = std::filesystem;
+namespace {
+
+/// With symbolic links resolved, as far as they can be.
+fs::path resolved(const fs::path& folder) {
+  std::error_code error;
+  const fs::path path = fs::weakly_canonical(folder, error);
+  return without_slash(error ? folder : path);
+}
+
+bool is_in(const fs::path& path, const fs::path& folder) {
+  return std::ranges::mismatch(folder, path).in1 == folder.end();
+}
+
+/// `root` without the name of the sequence at its end: what holds all sequences, also where a
+/// single one's folder was given.
+fs::path without_name(fs::path root, fs::path name) {
+  while (!name.empty() && root.filename() == name.filename()) {
+    root = root.parent_path();
+    name = name.parent_path();
+  }
+  return root;
+}
+
+bool same_dataset(const fs::path& a, const std::string& sequence_a, const fs::path& b,
+                  const std::string& sequence_b) {
+  return is_in(a, b) || is_in(b, a) || without_name(a, sequence_a) == without_name(b, sequence_b);
+}
+
+/// Nothing when the file is no result of ours.
+std::optional<nlohmann::ordered_json> content_of(const fs::path& file) {
+  try {
+    return read_result(file).content;
+  } catch (const DataError&) {
+    return std::nullopt;
+  }
+}
+
+/// Empty when the results can stand beside those of the plan.
+std::string other_run(const RunPlan& plan, const nlohmann::ordered_json& rules,
+                      const fs::path& file) {
+  const std::optional<nlohmann::ordered_json> content = content_of(file);
+  if (!content) return "";
+  const nlohmann::ordered_json& there = *content;
+  try {
+    const std::string changed = changed_members(there, rules);
+    if (!changed.empty() || !there.contains("timing")) return changed;
+    const fs::path root = there.at("timing").value("dataset_root", "");
+    const fs::path& ours = plan.dataset.root;
+    const std::string name = there.at("sequence").get<std::string>();
+    const std::string our_name = plan.dataset.sequences.front()->name();
+    if (root.empty() || same_dataset(without_slash(root), name, without_slash(ours), our_name) ||
+        same_dataset(resolved(root), name, resolved(ours), our_name)) {
+      return "";
+    }
+    return fmt::format("data set is {} there and {} now", root.string(),
+                       without_slash(ours).string());
+  } catch (const nlohmann::ordered_json::exception& error) {
+    throw DataError(file, error.what(), "a result.json of mosbench");
+  }
+}
+
+}  // namespace
+
+void check_shared_folder(const RunPlan& plan, const nlohmann::ordered_json& rules) {
+  if (std::error_code error; !fs::is_directory(plan.out, error)) return;
+  // Sequences lie there or in scenes. Deeper ones are not looked for: it may be a home.
+  constexpr int kDeepest = 2;
+  for (const fs::path& file :
+       find_result_files(plan.out, fs::directory_options::skip_permission_denied, kDeepest)) {
+    const bool planned = std::ranges::any_of(plan.dataset.sequences, [&](const auto& sequence) {
+      return plan.out / sequence->name() == file.parent_path();
+    });
+    const std::string other = planned ? "" : other_run(plan, rules, file);
+    if (other.empty()) continue;
+    throw UsageError(fmt::format(
+        "{}: holds results of another run ({}: {}), expected those of one data set and setting; "
+        "give another --out",
+        plan.out.string(), file.string(), other));
+  }
+}
+
+}  // namespace mosbench

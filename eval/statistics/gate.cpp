@@ -1,0 +1,91 @@
+#include "eval/statistics/gate.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "eval/results/answer_text.hpp"
+#include "eval/results/text_table.hpp"
+
+namespace mosbench {
+namespace {
+
+std::optional<double> iou_of(const Protocol& protocol, std::span<const SequenceCounts> sequences) {
+  const double iou = aggregate(protocol, sequences)[static_cast<std::size_t>(Metric::kIou)];
+  if (std::isnan(iou)) return std::nullopt;
+  return iou;
+}
+
+GateCheck check(std::string name, const Protocol& protocol, std::span<const SequenceCounts> first,
+                std::span<const SequenceCounts> second, double max_drop) {
+  GateCheck check;
+  check.name = std::move(name);
+  check.baseline = iou_of(protocol, first);
+  check.newer = iou_of(protocol, second);
+  check.tolerance = max_drop;
+  if (!check.baseline || !check.newer) {
+    check.passed = !check.baseline;
+    return check;
+  }
+  check.difference = paired_difference(protocol, first, second)[Metric::kIou];
+  const double value = *check.difference.value;
+  if (check.difference.interval) {
+    check.tolerance = std::max(max_drop, check.difference.interval->high - value);
+  }
+  check.passed = value >= -check.tolerance;
+  return check;
+}
+
+}  // namespace
+
+bool GateResult::passed() const { return std::ranges::all_of(checks, &GateCheck::passed); }
+
+GateResult judge(const PairedRuns& paired, const Protocol& protocol, double max_drop) {
+  GateResult result;
+  std::size_t scan = 0;
+  for (std::size_t s = 0; s < paired.first.size(); ++s) {
+    if (paired.first[s].empty()) continue;
+    result.checks.push_back(check(paired.scans[scan].sequence, protocol, {&paired.first[s], 1},
+                                  {&paired.second[s], 1}, max_drop));
+    scan += paired.first[s].size();
+  }
+  if (result.checks.size() > 1) {
+    result.checks.push_back(check("all", protocol, paired.first, paired.second, max_drop));
+  }
+  return result;
+}
+
+std::string gate_text(const GateResult& result) {
+  TextTable table({{"sequence", TextTable::Align::kLeft},
+                   {"baseline IoU %"},
+                   {"new IoU %"},
+                   {"difference"},
+                   {"tolerance"},
+                   {"p"},
+                   {"verdict"}});
+  for (const GateCheck& check : result.checks) {
+    table.add_row({check.name, percent_text(check.baseline), percent_text(check.newer),
+                   percent_text(check.difference.value, "{:+.2f}"), percent_text(check.tolerance),
+                   check.difference.p_value ? fmt::format("{:.4f}", *check.difference.p_value) : "",
+                   check.passed ? "pass" : "REGRESSION"});
+  }
+  return table.str();
+}
+
+nlohmann::ordered_json to_json(const GateResult& result) {
+  nlohmann::ordered_json json = {{"passed", result.passed()},
+                                 {"checks", nlohmann::ordered_json::array()}};
+  for (const GateCheck& check : result.checks) {
+    json["checks"].push_back({{"name", check.name},
+                              {"baseline_iou", json_or_null(check.baseline)},
+                              {"new_iou", json_or_null(check.newer)},
+                              {"difference", json_or_null(check.difference.value)},
+                              {"p_value", json_or_null(check.difference.p_value)},
+                              {"tolerance", check.tolerance},
+                              {"passed", check.passed}});
+  }
+  return json;
+}
+
+}  // namespace mosbench

@@ -1,0 +1,142 @@
+#include "eval/statistics/paired_runs.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <unordered_map>
+
+#include "eval/results/json_differences.hpp"
+
+namespace mosbench {
+namespace {
+
+using Kind = Unlike::Kind;
+
+std::string range_text(const RangeGate& range) {
+  return fmt::format("{:g} to {:g} m", range.min_m, range.max_m);
+}
+
+/// Variant and configuration; null for labels of other methods.
+nlohmann::ordered_json parameters_of(const SequenceResult& result) {
+  const auto config = result.header.find("config");
+  if (config == result.header.end() || !config->is_object()) return nullptr;
+  nlohmann::ordered_json parameters = *config;
+  parameters["variant"] = result.header.value("variant", nlohmann::ordered_json());
+  return parameters;
+}
+
+/// "voxel_size_m: 0.25 -> 0.4, ..." where both runs have parameters; empty when they are equal.
+std::string changed_parameters(const SequenceResult& first, const SequenceResult& second) {
+  const nlohmann::ordered_json before = parameters_of(first);
+  const nlohmann::ordered_json after = parameters_of(second);
+  std::string text;
+  if (before.is_null() || after.is_null()) return text;
+  for (const JsonDifference& change : json_differences(before, after)) {
+    text += fmt::format("{}{}: {} -> {}", text.empty() ? "" : ", ", change.key, change.first,
+                        change.second);
+  }
+  return text;
+}
+
+void compare_rules(const SequenceResult& first, const SequenceResult& second,
+                   std::vector<Unlike>& unlike) {
+  const auto differ = [&unlike](Kind kind, const char* what, const std::string& a,
+                                const std::string& b) {
+    if (a != b) unlike.push_back({kind, fmt::format("{} is {} and {}", what, a, b)});
+  };
+  differ(Kind::kProtocol, "protocol", std::string(first.protocol->name),
+         std::string(second.protocol->name));
+  differ(Kind::kProtocol, "counted range", range_text(first.range), range_text(second.range));
+  differ(Kind::kInput, "data set", first.dataset, second.dataset);
+  differ(Kind::kSetting, "method", first.method, second.method);
+  const std::string changes = changed_parameters(first, second);
+  if (changes.empty()) {
+    differ(Kind::kSetting, "setting", first.setting, second.setting);
+  } else {
+    unlike.push_back({Kind::kSetting, changes});
+  }
+}
+
+class Pairing {
+ public:
+  explicit Pairing(PairedRuns& paired) : paired_(paired) {}
+
+  void add(const SequenceResult& first, const SequenceResult& second) {
+    if (first.fingerprint && second.fingerprint && first.fingerprint != second.fingerprint) {
+      add_unlike(Kind::kInput, first, "fingerprints of the scans differ");
+    }
+    if (first.missing_predictions != second.missing_predictions) {
+      add_unlike(Kind::kScans, first, "predictions are missing for different numbers of scans");
+    }
+    std::unordered_map<std::string, const ScanRow*> others;
+    for (const ScanRow* row : counted_scans(second)) others.emplace(row->stem, row);
+    paired_.first.emplace_back();
+    paired_.second.emplace_back();
+    for (const ScanRow* row : counted_scans(first)) {
+      const auto other = others.find(row->stem);
+      if (other == others.end()) {
+        add_unlike(Kind::kScans, first, "scan " + row->stem + " is only in the first run");
+        continue;
+      }
+      add_pair(first, *row, *other->second);
+      others.erase(other);
+    }
+    for (const auto& [stem, row] : others) {
+      add_unlike(Kind::kScans, first, "scan " + stem + " is only in the second run");
+    }
+  }
+
+  void add_unlike(Kind kind, const SequenceResult& sequence, const std::string& text) {
+    paired_.unlike.push_back({kind, fmt::format("sequence {}: {}", sequence.sequence, text)});
+  }
+
+ private:
+  void add_pair(const SequenceResult& sequence, const ScanRow& first, const ScanRow& second) {
+    if (!first.truth_hash || !second.truth_hash) {
+      add_unlike(Kind::kInput, sequence, "scan " + first.stem + " does not say what truth it has");
+    } else if (first.truth_hash != second.truth_hash) {
+      add_unlike(Kind::kInput, sequence, "the truth of scan " + first.stem + " differs");
+    }
+    paired_.scans.push_back({sequence.sequence, first.stem, &first, &second});
+    paired_.first.back().push_back(*first.counts);
+    paired_.second.back().push_back(*second.counts);
+  }
+
+  PairedRuns& paired_;
+};
+
+}  // namespace
+
+PairedRuns pair_runs(const ResultSet& first, const ResultSet& second) {
+  PairedRuns paired;
+  compare_rules(first.front(), second.front(), paired.unlike);
+  Pairing pairing(paired);
+  const auto named = [](const ResultSet& set, const std::string& name) {
+    return std::ranges::find(set.sequences, name, &SequenceResult::sequence);
+  };
+  for (const SequenceResult& sequence : first.sequences) {
+    const auto other = named(second, sequence.sequence);
+    if (other == second.sequences.end()) {
+      pairing.add_unlike(Kind::kScans, sequence, "is only in the first run");
+    } else {
+      pairing.add(sequence, *other);
+    }
+  }
+  for (const SequenceResult& sequence : second.sequences) {
+    if (named(first, sequence.sequence) == first.sequences.end()) {
+      pairing.add_unlike(Kind::kScans, sequence, "is only in the second run");
+    }
+  }
+  return paired;
+}
+
+std::string unlike_text(const std::vector<Unlike>& unlike, std::size_t at_most) {
+  std::string text;
+  for (std::size_t i = 0; i < std::min(at_most, unlike.size()); ++i) {
+    text += (i == 0 ? "" : "; ") + unlike[i].text;
+  }
+  if (unlike.size() > at_most) text += fmt::format("; and {} more", unlike.size() - at_most);
+  return text;
+}
+
+}  // namespace mosbench

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "eval/results/result_set.hpp"
+
+namespace mosbench {
+
+/// One way in which two runs are not of the same kind.
+struct Unlike {
+  enum class Kind { kProtocol, kSetting, kScans, kInput };
+  Kind kind;
+  std::string text;  ///< "sequence 00: scan 000017 is only in the first run"
+};
+
+/// Two runs with the scans that both have.
+struct PairedRuns {
+  struct Scan {
+    std::string sequence, stem;
+    const ScanRow* first;
+    const ScanRow* second;
+  };
+  std::vector<Scan> scans;                    ///< by sequence, in the order of the first run
+  std::vector<SequenceCounts> first, second;  ///< the same, per sequence
+  std::vector<Unlike> unlike;                 ///< why a difference may not be due to the labels
+};
+
+/// Pairs by names of sequences and stems of scans. The runs must outlive the result.
+PairedRuns pair_runs(const ResultSet& first, const ResultSet& second);
+
+/// The first `at_most` texts, joined by "; ", and how many more there are;
+/// empty when there is nothing.
+std::string unlike_text(const std::vector<Unlike>& unlike, std::size_t at_most = 5);
+
+}  // namespace mosbench

@@ -1,0 +1,222 @@
+#include "eval/statistics/statistics.hpp"
+
+#include <fmt/format.h>
+
+#include "eval/protocols/metrics.hpp"
+#include "eval/results/answer_text.hpp"
+#include "eval/results/text_table.hpp"
+
+namespace mosbench {
+namespace {
+
+using nlohmann::ordered_json;
+
+template <typename Value>
+ordered_json spread_json(const Value& value) {
+  return {{"value", json_or_null(value.value)},
+          {"standard_error", json_or_null(value.standard_error)},
+          {"low", value.interval ? ordered_json(value.interval->low) : ordered_json(nullptr)},
+          {"high", value.interval ? ordered_json(value.interval->high) : ordered_json(nullptr)}};
+}
+
+std::string interval_text(const std::optional<Interval>& interval, const char* style = "{:.2f}") {
+  if (!interval) return "none";
+  return fmt::format("[{}, {}]", percent_text(interval->low, style),
+                     percent_text(interval->high, style));
+}
+
+std::vector<std::string> estimate_cells(const std::string& name, std::size_t scans,
+                                        const Estimates& estimates) {
+  std::vector<std::string> cells = {name, fmt::format("{}", scans)};
+  for (const Estimate& metric : estimates.metrics) {
+    cells.push_back(percent_text(metric.value));
+    cells.push_back(interval_text(metric.interval));
+  }
+  std::size_t longest = 0;
+  for (const std::size_t length : estimates.block_lengths_scans)
+    longest = std::max(longest, length);
+  cells.push_back(fmt::format("{}", longest));
+  return cells;
+}
+
+std::string optional_cell(const std::optional<double>& value) {
+  return value ? fmt::format("{:.17g}", *value) : "";
+}
+
+ordered_json scan_json(const SequenceResult& sequence, const ScanRow& row) {
+  const Confusion& counts = *row.counts;
+  return {{"sequence", sequence.sequence},
+          {"scan", row.stem},
+          {"points", row.points},
+          {"tp", counts.tp},
+          {"fp", counts.fp},
+          {"fn", counts.fn},
+          {"tn", counts.tn},
+          {"ignored", counts.ignored},
+          {"iou", json_or_null(moving_iou(counts))},
+          {"precision", json_or_null(precision(counts))},
+          {"recall", json_or_null(recall(counts))},
+          {"f1", json_or_null(f1(counts))}};
+}
+
+std::string headline(const ResultSet& set) {
+  const SequenceResult& first = set.front();
+  std::string text =
+      fmt::format("{}, {}; data set {}, protocol {}{}", first.method, first.setting, first.dataset,
+                  first.protocol->name,
+                  first.simulated ? "; SIMULATED: not comparable with published numbers" : "");
+  for (const std::string& caveat : caveats(set)) text += "; " + caveat;
+  return text;
+}
+
+}  // namespace
+
+RunStatistics run_statistics(const ResultSet& set) {
+  const std::vector<SequenceCounts> counts = counts_of(set);
+  const Protocol& protocol = *set.front().protocol;
+  RunStatistics statistics;
+  for (const SequenceCounts& sequence : counts) {
+    statistics.sequences.push_back(estimate(protocol, {&sequence, 1}));
+  }
+  statistics.all = estimate(protocol, counts);
+  return statistics;
+}
+
+ordered_json to_json(const Estimates& estimates) {
+  ordered_json json;
+  for (std::size_t m = 0; m < kMetricNames.size(); ++m) {
+    json[std::string(kMetricNames[m])] = spread_json(estimates.metrics[m]);
+  }
+  json["block_lengths_scans"] = estimates.block_lengths_scans;
+  return json;
+}
+
+ordered_json to_json(const Differences& differences) {
+  ordered_json json;
+  for (std::size_t m = 0; m < kMetricNames.size(); ++m) {
+    const Difference& metric = differences.metrics[m];
+    ordered_json& value = json[std::string(kMetricNames[m])] = spread_json(metric);
+    value["p_value"] = json_or_null(metric.p_value);
+    value["smallest_detectable"] = json_or_null(metric.smallest_detectable);
+  }
+  json["block_lengths_scans"] = differences.block_lengths_scans;
+  return json;
+}
+
+ordered_json provenance_json(const ResultSet& set) {
+  const SequenceResult& first = set.front();
+  ordered_json json = {{"path", set.path.string()},
+                       {"method", first.method},
+                       {"setting", first.setting},
+                       {"dataset", first.dataset},
+                       {"protocol", std::string(first.protocol->name)},
+                       {"min_range_m", first.range.min_m},
+                       {"max_range_m", first.range.max_m}};
+  for (const char* key : {"variant", "preset", "config", "code", "predictions", "simulated"}) {
+    if (first.header.contains(key)) json[key] = first.header[key];
+  }
+  json["missing_predictions"] = missing_predictions(set);
+  if (first.only_split) json["only_split"] = *first.only_split;
+  return json;
+}
+
+ordered_json statistics_json(const ResultSet& set, bool per_scan) {
+  const RunStatistics statistics = run_statistics(set);
+  ordered_json json = provenance_json(set);
+  json["confidence"] = BootstrapOptions{}.confidence;
+  json["sequences"] = ordered_json::array();
+  for (std::size_t s = 0; s < set.sequences.size(); ++s) {
+    const SequenceResult& sequence = set.sequences[s];
+    json["sequences"].push_back({{"name", sequence.sequence},
+                                 {"scans", counted_scans(sequence).size()},
+                                 {"fingerprint", sequence.fingerprint.value_or("")},
+                                 {"metrics", to_json(statistics.sequences[s])}});
+  }
+  json["all"] = to_json(statistics.all);
+  if (!per_scan) return json;
+  json["scans"] = ordered_json::array();
+  for (const SequenceResult& sequence : set.sequences) {
+    for (const ScanRow* row : counted_scans(sequence)) {
+      json["scans"].push_back(scan_json(sequence, *row));
+    }
+  }
+  return json;
+}
+
+std::string scan_table_csv(const ResultSet& set) {
+  std::string csv = "sequence,scan,points,tp,fp,fn,tn,ignored,iou,precision,recall,f1\n";
+  for (const SequenceResult& sequence : set.sequences) {
+    for (const ScanRow* row : counted_scans(sequence)) {
+      const Confusion& counts = *row->counts;
+      csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}\n", sequence.sequence, row->stem,
+                         row->points, counts.tp, counts.fp, counts.fn, counts.tn, counts.ignored,
+                         optional_cell(moving_iou(counts)), optional_cell(precision(counts)),
+                         optional_cell(recall(counts)), optional_cell(f1(counts)));
+    }
+  }
+  return csv;
+}
+
+std::string statistics_text(const ResultSet& set) {
+  const RunStatistics statistics = run_statistics(set);
+  TextTable table({{"sequence", TextTable::Align::kLeft},
+                   {"scans"},
+                   {"IoU %"},
+                   {"95 %"},
+                   {"precision %"},
+                   {"95 %"},
+                   {"recall %"},
+                   {"95 %"},
+                   {"F1 %"},
+                   {"95 %"},
+                   {"block"}});
+  std::size_t scans = 0;
+  for (std::size_t s = 0; s < set.sequences.size(); ++s) {
+    const std::size_t counted = counted_scans(set.sequences[s]).size();
+    scans += counted;
+    table.add_row(estimate_cells(set.sequences[s].sequence, counted, statistics.sequences[s]));
+  }
+  table.add_rule();
+  table.add_row(estimate_cells("all", scans, statistics.all));
+  return fmt::format(
+      "{}\n\n{}\n95 % intervals by bootstrap over blocks of that many neighbouring scans\n",
+      headline(set), table.str());
+}
+
+ordered_json difference_json(const ResultSet& first, const ResultSet& second,
+                             const PairedRuns& paired) {
+  return {{"first", provenance_json(first)},
+          {"second", provenance_json(second)},
+          {"confidence", BootstrapOptions{}.confidence},
+          {"paired_scans", paired.scans.size()},
+          {"unlike", unlike_text(paired.unlike)},
+          {"difference",
+           to_json(paired_difference(*first.front().protocol, paired.first, paired.second))}};
+}
+
+std::string difference_text(const ResultSet& first, const ResultSet& second,
+                            const PairedRuns& paired) {
+  const Differences differences =
+      paired_difference(*first.front().protocol, paired.first, paired.second);
+  TextTable table({{"second - first", TextTable::Align::kLeft},
+                   {"difference"},
+                   {"95 %"},
+                   {"p"},
+                   {"detectable"}});
+  for (std::size_t m = 0; m < kMetricNames.size(); ++m) {
+    const Difference& metric = differences.metrics[m];
+    table.add_row({std::string(kMetricNames[m]), percent_text(metric.value, "{:+.2f}"),
+                   interval_text(metric.interval, "{:+.2f}"),
+                   metric.p_value ? fmt::format("{:.4f}", *metric.p_value) : "none",
+                   percent_text(metric.smallest_detectable)});
+  }
+  std::string text = fmt::format("first:  {}\nsecond: {}\n{} paired scans", headline(first),
+                                 headline(second), paired.scans.size());
+  if (!paired.unlike.empty()) text += "; " + unlike_text(paired.unlike);
+  return text + "\n\n" + table.str() +
+         "\nin percentage points; detectable: the true difference that as many scans like these\n"
+         "show at 5 % significance with a probability of 80 %, and n times as many divided by\n"
+         "the root of n\n";
+}
+
+}  // namespace mosbench

@@ -1,0 +1,166 @@
+#include "eval/tables/score_report.hpp"
+
+#include <fmt/format.h>
+
+#include "datasets/files/files.hpp"
+#include "eval/protocols/benchmark_split.hpp"
+#include "eval/protocols/metrics.hpp"
+#include "eval/protocols/summary_json.hpp"
+#include "eval/results/answer_text.hpp"
+#include "eval/results/reading_json.hpp"
+#include "eval/results/result_set.hpp"
+#include "eval/results/simulated.hpp"
+#include "eval/tables/score_table.hpp"
+#include "mosbench_version.hpp"
+
+namespace mosbench {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr std::size_t kNamedScans = 5;
+
+std::vector<ScoreRow> table_rows(const Dataset& dataset, const ScoreRule& rule,
+                                 const std::vector<SequenceScores>& scores, bool with_sequences) {
+  std::vector<ScoredSequence> sequences;
+  for (const SequenceScores& sequence : scores) {
+    ScoredSequence& scored = sequences.emplace_back();
+    scored.name = dataset.sequences[sequence.position]->name();
+    for (const ScanRow& row : sequence.by_rule.front()) {
+      scored.scans.push_back({row.stem, row.counts});
+    }
+  }
+  std::vector<ScoreRow> rows = score_rows(*rule.protocol, dataset.splits, sequences);
+  if (!with_sequences) {
+    std::erase_if(rows, [](const ScoreRow& row) { return row.kind == ScoreRow::Kind::kSequence; });
+  }
+  return rows;
+}
+
+/// Names the scans without truth, as a label file that got lost would show nowhere else.
+std::string truth_remark(const Sequence& sequence) {
+  std::string names;
+  std::size_t without = 0;
+  for (std::size_t k = 0; k < sequence.size(); ++k) {
+    if (sequence.has_truth(k)) continue;
+    if (++without <= kNamedScans) names += (names.empty() ? "" : ", ") + sequence.stem(k);
+  }
+  if (without == 0) return "";
+  if (without > kNamedScans) names += ", ...";
+  return fmt::format("{} of {} scans have no truth and are not scored: {}", without,
+                     sequence.size(), names);
+}
+
+ordered_json predictions_json(const OpenedPredictions& opened) {
+  return {{"format", std::string(describe(opened.format).name)},
+          {"guessed", opened.guessed},
+          {"path", opened.path.string()},
+          {"missing", opened.missing},
+          {"remarks", opened.remarks}};
+}
+
+/// The split whose picked scans alone were scored.
+std::optional<std::string> picked_split(const Dataset& dataset, const ScoreTask& task) {
+  if (!task.split || !picks_scans(dataset.splits.front())) return std::nullopt;
+  return task.split;
+}
+
+/// The same when the protocol is not over it.
+std::optional<std::string> other_split(const Dataset& dataset, const ScoreTask& task) {
+  const auto split = picked_split(dataset, task);
+  return split == task.rules.front().protocol->default_split ? std::nullopt : split;
+}
+
+std::vector<Confusion> counts_in(const std::vector<ScanRow>& rows) {
+  std::vector<Confusion> counts;
+  for (const ScanRow& row : rows) counts.push_back(*row.counts);
+  return counts;
+}
+
+}  // namespace
+
+std::vector<std::string> score_remarks(const Dataset& dataset,
+                                       const std::vector<SequenceScores>& scores) {
+  std::vector<std::string> remarks;
+  for (const SequenceScores& sequence : scores) {
+    const Sequence& recorded = *dataset.sequences[sequence.position];
+    const auto add = [&](const std::string& text) {
+      remarks.push_back(recorded.name() + ": " + text);
+    };
+    if (const std::string text = truth_remark(recorded); !text.empty()) add(text);
+    if (!sequence.opened) continue;
+    const OpenedPredictions& opened = *sequence.opened;
+    add(fmt::format("predictions in format {}{}: {}", describe(opened.format).name,
+                    opened.guessed ? " (recognised; --format overrides)" : "",
+                    opened.path.string()));
+    for (const std::string& remark : opened.remarks) add(remark);
+    if (!opened.missing.empty()) {
+      add(incomplete_caveat(opened.missing.size()));
+    }
+  }
+  return remarks;
+}
+
+std::string score_text(const Dataset& dataset, const ScoreTask& task,
+                       const std::vector<SequenceScores>& scores, bool with_sequences) {
+  const ScoreRule& rule = task.rules.front();
+  const auto split = other_split(dataset, task);
+  std::string text =
+      fmt::format("protocol {}: {}\n{}{}{}\n{}", rule.protocol->name, rule.protocol->summary,
+                  benchmark_notice(*rule.protocol, dataset.splits),
+                  split ? split_caveat(*split) + '\n' : "", simulated_notice(dataset),
+                  format_rows(*rule.protocol, table_rows(dataset, rule, scores, with_sequences)));
+  text += '\n';
+  for (const std::string& remark : score_remarks(dataset, scores)) text += remark + '\n';
+  return text;
+}
+
+std::string score_json(const Dataset& dataset, const ScoreTask& task,
+                       const std::vector<SequenceScores>& scores, bool with_sequences) {
+  const ScoreRule& rule = task.rules.front();
+  ordered_json json = {{"dataset", std::string(to_string(dataset.kind))},
+                       {"protocol", std::string(rule.protocol->name)},
+                       {"min_range_m", rule.range.min_m},
+                       {"max_range_m", rule.range.max_m}};
+  if (const auto origin = simulated_origin_json(dataset)) json["simulated"] = *origin;
+  json.update(rows_json(table_rows(dataset, rule, scores, with_sequences)));
+  json["predictions"] = ordered_json::object();
+  for (const SequenceScores& sequence : scores) {
+    if (!sequence.opened) continue;
+    json["predictions"][dataset.sequences[sequence.position]->name()] =
+        predictions_json(*sequence.opened);
+  }
+  json["remarks"] = score_remarks(dataset, scores);
+  if (const auto split = other_split(dataset, task)) {
+    json["remarks"].push_back(split_caveat(*split));
+  }
+  return json_text(json);
+}
+
+void write_scores(const Dataset& dataset, const ScoreTask& task, const MethodName& method,
+                  const std::vector<SequenceScores>& scores, const std::filesystem::path& out) {
+  const ScoreRule& rule = task.rules.front();
+  for (const SequenceScores& sequence : scores) {
+    if (!sequence.opened) continue;
+    const Sequence& recorded = *dataset.sequences[sequence.position];
+    ordered_json header = {{"sequence", recorded.name()},
+                           {"dataset", std::string(to_string(dataset.kind))},
+                           {"method", {{"name", method.name}, {"setting", method.setting}}},
+                           {"protocol",
+                            {{"name", std::string(rule.protocol->name)},
+                             {"min_range_m", rule.range.min_m},
+                             {"max_range_m", rule.range.max_m}}},
+                           {"reading", to_json(recorded.reading())},
+                           {"code", {{"version", std::string(kMosbenchVersion)}}},
+                           {"predictions", predictions_json(*sequence.opened)}};
+    if (const auto origin = simulated_origin_json(dataset)) header["simulated"] = *origin;
+    const ordered_json splits = picked_stems(dataset, sequence.position);
+    if (!splits.empty()) header["splits"] = splits;
+    const std::vector<ScanRow>& rows = sequence.by_rule.front();
+    header["summary_split"] = json_or_null(picked_split(dataset, task));
+    header["summary"] = to_json(summarize(*rule.protocol, counts_in(rows)));
+    write_file_atomic(out / recorded.name() / "result.json", format_scored(header, rows));
+  }
+}
+
+}  // namespace mosbench

@@ -1,0 +1,163 @@
+#include "eval/tables/score_table.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "eval/protocols/benchmark_split.hpp"
+#include "eval/protocols/summary_json.hpp"
+#include "eval/results/text_table.hpp"
+
+namespace mosbench {
+namespace {
+
+using Stems = std::optional<std::set<std::string>>;
+
+/// The counts of the scans with truth among those named by `stems`, and how many are named.
+std::vector<Confusion> counts_of(const ScoredSequence& sequence, const Stems& stems,
+                                 std::size_t& scans) {
+  std::vector<Confusion> counts;
+  for (const ScoredSequence::Scan& scan : sequence.scans) {
+    if (stems && !stems->contains(scan.stem)) continue;
+    ++scans;
+    if (scan.counts) counts.push_back(*scan.counts);
+  }
+  return counts;
+}
+
+ScoreRow sequence_row(const Protocol& protocol, const ScoredSequence& sequence,
+                      std::size_t position, const Split* benchmark) {
+  ScoreRow row;
+  row.name = sequence.name;
+  row.method_ms_per_scan = sequence.method_ms_per_scan;
+  if (benchmark != nullptr) row.split = benchmark->name;
+  const Stems stems = benchmark == nullptr ? std::nullopt : stems_in_split(*benchmark, position);
+  row.summary = summarize(protocol, counts_of(sequence, stems, row.scans));
+  return row;
+}
+
+std::optional<double> mean_ms(const Split& split, const std::vector<ScoredSequence>& sequences) {
+  double sum_ms = 0.0;
+  std::size_t scans = 0;
+  for (const SplitPart& part : split.parts) {
+    const ScoredSequence& sequence = sequences[part.sequence];
+    if (!sequence.method_ms_per_scan) return std::nullopt;
+    sum_ms += *sequence.method_ms_per_scan * static_cast<double>(sequence.scans.size());
+    scans += sequence.scans.size();
+  }
+  if (scans == 0) return std::nullopt;
+  return sum_ms / static_cast<double>(scans);
+}
+
+void add_split(const Protocol& protocol, const Split& split,
+               const std::vector<ScoredSequence>& sequences, std::vector<ScoreRow>& rows) {
+  ScoreRow whole;
+  whole.kind = ScoreRow::Kind::kSplit;
+  whole.name = split.name;
+  whole.method_ms_per_scan = mean_ms(split, sequences);
+  std::vector<Confusion> pooled;
+  std::vector<Summary> summaries;
+  for (const SplitPart& part : split.parts) {
+    const ScoredSequence& sequence = sequences[part.sequence];
+    ScoreRow row;
+    row.kind = ScoreRow::Kind::kPart;
+    row.name = sequence.name + " " + split.name;
+    const std::vector<Confusion> counts = counts_of(sequence, part.stems, row.scans);
+    row.summary = summarize(protocol, counts);
+    pooled.insert(pooled.end(), counts.begin(), counts.end());
+    summaries.push_back(row.summary);
+    whole.scans += row.scans;
+    if (part.stems) rows.push_back(std::move(row));
+  }
+  whole.summary = protocol.aggregation == Aggregation::kMeanOfSequences
+                      ? mean_of_sequences(protocol, summaries)
+                      : summarize(protocol, pooled);
+  rows.push_back(std::move(whole));
+}
+
+std::string count_text(std::uint64_t count) { return fmt::format("{}", count); }
+
+std::string row_title(const ScoreRow& row) {
+  if (row.kind == ScoreRow::Kind::kSplit) return "split " + row.name;
+  return row.split.empty() ? row.name : fmt::format("{} ({} scans)", row.name, row.split);
+}
+
+std::vector<std::string> cells(const Protocol& protocol, const ScoreRow& row, bool with_ms) {
+  const Summary& summary = row.summary;
+  std::vector<std::string> cells = {row_title(row), count_text(row.scans),
+                                    count_text(summary.scans)};
+  if (summary.scans == 0) {
+    cells.insert(cells.end(), {"no truth", "", "", "", "", "", "", ""});
+  } else {
+    for (const auto& metric : {summary.iou, summary.precision, summary.recall, summary.f1}) {
+      cells.push_back(format_value(protocol, metric));
+    }
+    for (const std::uint64_t count : {summary.pooled.tp, summary.pooled.fp, summary.pooled.fn}) {
+      cells.push_back(count_text(count));
+    }
+    cells.push_back(summary.published_text);
+  }
+  if (with_ms) {
+    cells.push_back(row.method_ms_per_scan ? fmt::format("{:.1f}", *row.method_ms_per_scan) : "");
+  }
+  return cells;
+}
+
+}  // namespace
+
+std::vector<ScoreRow> score_rows(const Protocol& protocol, const std::vector<Split>& splits,
+                                 const std::vector<ScoredSequence>& sequences) {
+  std::vector<ScoreRow> rows;
+  const Split* benchmark = benchmark_scans(protocol, splits);
+  for (std::size_t i = 0; i < sequences.size(); ++i) {
+    rows.push_back(sequence_row(protocol, sequences[i], i, benchmark));
+  }
+  for (const Split& split : splits) add_split(protocol, split, sequences, rows);
+  return rows;
+}
+
+std::string format_rows(const Protocol& protocol, const std::vector<ScoreRow>& rows) {
+  const bool with_ms = std::ranges::any_of(
+      rows, [](const ScoreRow& row) { return row.method_ms_per_scan.has_value(); });
+  std::vector<TextTable::Column> columns = {{"sequence", TextTable::Align::kLeft}};
+  for (const char* title : {"scans", "labelled", "IoU", "precision", "recall", "F1", "TP", "FP",
+                            "FN", "as published"}) {
+    columns.push_back({title});
+  }
+  if (with_ms) columns.push_back({"ms/scan"});
+  TextTable table(std::move(columns));
+  bool ruled = false;
+  for (const ScoreRow& row : rows) {
+    if (row.kind != ScoreRow::Kind::kSequence && !ruled) table.add_rule();
+    ruled = ruled || row.kind != ScoreRow::Kind::kSequence;
+    table.add_row(cells(protocol, row, with_ms));
+  }
+  return table.str();
+}
+
+std::string benchmark_notice(const Protocol& protocol, const std::vector<Split>& splits) {
+  if (protocol.default_split.empty()) return "";
+  if (benchmark_split(protocol, splits) != nullptr) {
+    return fmt::format("the benchmark's number is that of split {}\n", protocol.default_split);
+  }
+  return fmt::format(
+      "no row is the benchmark's number: it is over split {}, which was not scored\n",
+      protocol.default_split);
+}
+
+nlohmann::ordered_json rows_json(const std::vector<ScoreRow>& rows) {
+  nlohmann::ordered_json json = {{"sequences", nlohmann::ordered_json::array()},
+                                 {"parts", nlohmann::ordered_json::array()},
+                                 {"splits", nlohmann::ordered_json::array()}};
+  constexpr std::array kLists = {"sequences", "parts", "splits"};
+  for (const ScoreRow& row : rows) {
+    nlohmann::ordered_json object = {{"name", row.name}, {"scans", row.scans}};
+    if (!row.split.empty()) object["split"] = row.split;
+    object["summary"] = row.summary.scans == 0 ? nullptr : to_json(row.summary);
+    if (row.method_ms_per_scan) object["method_ms_per_scan"] = *row.method_ms_per_scan;
+    json[kLists.at(static_cast<std::size_t>(row.kind))].push_back(std::move(object));
+  }
+  return json;
+}
+
+}  // namespace mosbench

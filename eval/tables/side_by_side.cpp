@@ -1,0 +1,117 @@
+#include <fmt/format.h>
+
+#include "eval/protocols/metrics.hpp"
+#include "eval/protocols/protocol_list.hpp"
+#include "eval/results/answer_text.hpp"
+#include "eval/results/simulated.hpp"
+#include "eval/results/text_table.hpp"
+#include "eval/tables/score_report.hpp"
+
+namespace mosbench {
+namespace {
+
+using nlohmann::ordered_json;
+
+/// One protocol's number for all scored scans.
+struct ProtocolRow {
+  std::string name;
+  Summary summary;
+  std::string reason;
+};
+
+std::string why(const ProtocolDescription& words, const ScoreRule& rule, const Confusion& pooled) {
+  std::string text = words.aggregation;
+  if (pooled.ignored > 0) {
+    text += fmt::format(
+        "; ignores {:.1f} % of the points",
+        100.0 * static_cast<double>(pooled.ignored) / static_cast<double>(pooled.points()));
+  } else {
+    text += "; ignores no point";
+  }
+  text += fmt::format("; moving truth {} points", pooled.tp + pooled.fn);
+  if (rule.protocol->range_rule == RangeRule::kTruthOnly) {
+    text += fmt::format("; truth beyond {:g} to {:g} m static, predictions there count",
+                        rule.range.min_m, rule.range.max_m);
+  } else if (rule.protocol->range_rule == RangeRule::kTruthAndPrediction && rule.range.max_m > 0) {
+    text += fmt::format("; only points at {:g} to {:g} m", rule.range.min_m, rule.range.max_m);
+  }
+  if (!rule.protocol->default_split.empty()) {
+    text += fmt::format("; published over split {} alone", rule.protocol->default_split);
+  }
+  return text + fmt::format("; truth ids: {}; 0/0 gives {}", words.truth, words.empty_case);
+}
+
+Summary summary_of(const Protocol& protocol, const std::vector<SequenceScores>& scores,
+                   std::size_t rule) {
+  std::vector<Confusion> all;
+  std::vector<Summary> sequences;
+  for (const SequenceScores& sequence : scores) {
+    std::vector<Confusion> counts;
+    for (const ScanRow& row : sequence.by_rule[rule]) counts.push_back(*row.counts);
+    if (counts.empty()) continue;
+    sequences.push_back(summarize(protocol, counts));
+    all.insert(all.end(), counts.begin(), counts.end());
+  }
+  return protocol.aggregation == Aggregation::kMeanOfSequences
+             ? mean_of_sequences(protocol, sequences)
+             : summarize(protocol, all);
+}
+
+std::vector<ProtocolRow> protocol_rows(const std::vector<ScoreRule>& rules,
+                                       const std::vector<SequenceScores>& scores) {
+  const std::vector<ProtocolDescription> words = describe_protocols();
+  std::vector<ProtocolRow> rows;
+  for (std::size_t r = 0; r < rules.size(); ++r) {
+    ProtocolRow row{std::string(rules[r].protocol->name), summary_of(*rules[r].protocol, scores, r),
+                    ""};
+    const auto described = std::ranges::find(words, row.name, &ProtocolDescription::name);
+    row.reason = why(*described, rules[r], row.summary.pooled);
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+}  // namespace
+
+std::string side_by_side_text(const Dataset& dataset, const std::vector<ScoreRule>& rules,
+                              const std::vector<SequenceScores>& scores) {
+  TextTable table({{"protocol", TextTable::Align::kLeft},
+                   {"IoU %"},
+                   {"as published"},
+                   {"TP"},
+                   {"FP"},
+                   {"FN"},
+                   {"why", TextTable::Align::kLeft}});
+  for (const ProtocolRow& row : protocol_rows(rules, scores)) {
+    const Confusion& pooled = row.summary.pooled;
+    table.add_row({row.name, percent_text(row.summary.iou), row.summary.published_text,
+                   fmt::format("{}", pooled.tp), fmt::format("{}", pooled.fp),
+                   fmt::format("{}", pooled.fn), row.reason});
+  }
+  std::string text = "the same labels by every protocol, over all scored scans\n" +
+                     simulated_notice(dataset) + '\n' + table.str() + '\n';
+  for (const std::string& remark : score_remarks(dataset, scores)) text += remark + '\n';
+  return text;
+}
+
+ordered_json side_by_side_json(const Dataset& dataset, const std::vector<ScoreRule>& rules,
+                               const std::vector<SequenceScores>& scores) {
+  ordered_json json = {{"dataset", std::string(to_string(dataset.kind))},
+                       {"protocols", ordered_json::array()},
+                       {"remarks", score_remarks(dataset, scores)}};
+  if (const auto origin = simulated_origin_json(dataset)) json["simulated"] = *origin;
+  for (const ProtocolRow& row : protocol_rows(rules, scores)) {
+    json["protocols"].push_back({{"name", row.name},
+                                 {"iou", json_or_null(row.summary.iou)},
+                                 {"published_text", row.summary.published_text},
+                                 {"tp", row.summary.pooled.tp},
+                                 {"fp", row.summary.pooled.fp},
+                                 {"fn", row.summary.pooled.fn},
+                                 {"tn", row.summary.pooled.tn},
+                                 {"ignored", row.summary.pooled.ignored},
+                                 {"why", row.reason}});
+  }
+  return json;
+}
+
+}  // namespace mosbench

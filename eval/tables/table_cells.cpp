@@ -1,0 +1,211 @@
+#include "eval/tables/table_cells.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "eval/tables/table_match.hpp"
+
+namespace mosbench {
+namespace {
+
+ResultSet in_column(const ResultSet& run, const TableColumn& column) {
+  ResultSet part{run.path, {}};
+  for (const SequenceResult& sequence : run.sequences) {
+    if (is_about(column, sequence.sequence)) part.sequences.push_back(sequence);
+  }
+  return part;
+}
+
+/// What of the column's scans the run does not hold.
+std::vector<std::string> gaps(const ResultSet& part, const TableColumn& column) {
+  std::vector<std::string> gaps;
+  for (const std::string_view name : column.sequences) {
+    const bool there = std::ranges::any_of(part.sequences, [&](const SequenceResult& result) {
+      return is_about({.name = "", .sequences = {name}, .scans = {}}, result.sequence);
+    });
+    if (!there) gaps.push_back(fmt::format("sequence {} is missing", name));
+  }
+  std::size_t scans = 0;
+  for (const SequenceResult& sequence : part.sequences) scans += counted_scans(sequence).size();
+  for (std::string& caveat : caveats(part)) gaps.push_back(std::move(caveat));
+  const bool known =
+      column.scans && !part.sequences.empty() &&
+      (column.scans_protocol.empty() || column.scans_protocol == part.front().protocol->name);
+  if (known && scans != *column.scans) {
+    gaps.push_back(fmt::format("{} labelled scans, published over {}", scans, *column.scans));
+  }
+  return gaps;
+}
+
+/// Half of the last digit that was printed, as a fraction.
+double rounding(const PublishedCell& cell) {
+  const std::size_t point = cell.iou_percent.find('.');
+  const std::size_t digits = point == std::string::npos ? 0 : cell.iou_percent.size() - point - 1;
+  return 0.5 * std::pow(10.0, -static_cast<double>(digits)) / 100.0;
+}
+
+Verdict judge(const TableCell& cell) {
+  if (!cell.published) return Verdict::kMeasuredOnly;
+  if (!cell.reasons.empty()) return Verdict::kNotComparable;
+  const double published = cell.published->iou();
+  const double slack = rounding(*cell.published) + 1e-12;
+  const Interval interval =
+      cell.measured->interval.value_or(Interval{*cell.measured->value, *cell.measured->value});
+  const bool within = interval.low - slack <= published && published <= interval.high + slack;
+  return within ? Verdict::kWithin : Verdict::kOutside;
+}
+
+/// The command that gives a row.
+std::string command_for(const PaperTable& table, const PublishedCell& cell) {
+  if (!is_own(cell)) return "then: mosbench score DIR --predictions LABELS --method " + cell.method;
+  if (cell.variant.empty()) return "no variant of this program is that one";
+  if (cell.variant == "paper-2024") return "then: " + std::string(table.command);
+  return fmt::format(
+      "then: mosbench run DIR --variant {} --set voxel_size_m={:g} max_range_m={:g} --protocol {}",
+      cell.variant, cell.voxel_size_m.value_or(0.2), cell.max_range_m.value_or(120.0),
+      cell.protocol);
+}
+
+std::vector<std::string> how_to_fill(const PaperTable& table, const TableColumn& column,
+                                     const PublishedCell& cell) {
+  std::string sequences;
+  for (const std::string_view name : column.sequences) {
+    sequences += (sequences.empty() ? "" : ", ") + std::string(name);
+  }
+  return {fmt::format("needs {} of {}; {}", sequences, table.download, command_for(table, cell))};
+}
+
+TableCell measured_cell(const PaperTable& table, const TableColumn& column, const ResultSet& run,
+                        const std::vector<std::string>& row_reasons,
+                        std::optional<PublishedCell> published) {
+  TableCell cell;
+  cell.column = column.name;
+  cell.published = std::move(published);
+  const ResultSet part = in_column(run, column);
+  if (part.sequences.empty()) {
+    if (cell.published) cell.reasons = how_to_fill(table, column, *cell.published);
+    return cell;
+  }
+  for (const SequenceResult& sequence : part.sequences) {
+    cell.sequences.push_back(sequence.sequence);
+    if (!sequence.simulated) continue;
+    cell.sequences.back() += fmt::format(" (simulated, {})", sequence.simulated_origin);
+  }
+  cell.measured = estimate(*run.front().protocol, counts_of(part))[Metric::kIou];
+  cell.reasons = row_reasons;
+  if (run.front().simulated) cell.reasons.insert(cell.reasons.begin(), "simulated data");
+  for (std::string& gap : gaps(part, column)) cell.reasons.push_back(std::move(gap));
+  if (!cell.measured->value) {
+    cell.reasons.push_back("IoU is undefined");
+  } else if (cell.published) {
+    cell.difference = *cell.measured->value - cell.published->iou();
+  }
+  cell.verdict = judge(cell);
+  return cell;
+}
+
+/// The published cell of a row's column.
+std::optional<PublishedCell> find_cell(const PublishedRow& row, std::string_view column) {
+  const auto found = std::ranges::find(row.cells, column, &PublishedCell::column);
+  if (found == row.cells.end()) return std::nullopt;
+  return *found;
+}
+
+TableRow published_row(const PaperTable& table, const PublishedRow& row) {
+  const PublishedCell& first = row.cells.front();
+  TableRow filled{first.section, first.method, first.setting, first.protocol, first.source, "", {}};
+  for (const TableColumn& column : table.columns) {
+    TableCell cell;
+    cell.column = column.name;
+    cell.published = find_cell(row, column.name);
+    if (is_own(first)) cell.reasons = how_to_fill(table, column, first);
+    filled.cells.push_back(std::move(cell));
+  }
+  return filled;
+}
+
+TableRow measured_row(const PaperTable& table, const ResultSet& run, const PublishedRow* row) {
+  const SequenceResult& first = run.front();
+  const bool same_rules =
+      row != nullptr && row->cells.front().protocol == std::string(first.protocol->name);
+  TableRow filled{same_rules ? row->cells.front().section : "",
+                  first.method,
+                  first.setting,
+                  std::string(first.protocol->name),
+                  row == nullptr ? "" : row->cells.front().source,
+                  run.path.string(),
+                  {}};
+  const std::vector<std::string> reasons =
+      row == nullptr ? std::vector<std::string>{} : mismatches(run, row->cells.front());
+  for (const TableColumn& column : table.columns) {
+    filled.cells.push_back(measured_cell(
+        table, column, run, reasons, row == nullptr ? std::nullopt : find_cell(*row, column.name)));
+  }
+  return filled;
+}
+
+bool has_values(const PaperTable& table, const ResultSet& run) {
+  return std::ranges::any_of(run.sequences, [&](const SequenceResult& sequence) {
+    return is_about(table, sequence.sequence);
+  });
+}
+
+}  // namespace
+
+std::string_view to_string(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::kPublishedOnly:
+      return "not measured";
+    case Verdict::kMeasuredOnly:
+      return "not published";
+    case Verdict::kWithin:
+      return "within";
+    case Verdict::kOutside:
+      return "outside";
+    case Verdict::kNotComparable:
+      break;
+  }
+  return "not comparable";
+}
+
+FilledTable fill_table(const PaperTable& table, const std::vector<PublishedCell>& published,
+                       const std::vector<ResultSet>& runs) {
+  FilledTable filled{&table, {}};
+  const std::vector<PublishedRow> rows = published_rows(table, published);
+  std::vector<std::vector<ResultSet>> beside(rows.size());
+  std::vector<ResultSet> alone;
+  for (ResultSet& run : with_splits(table, runs)) {
+    if (!has_values(table, run)) continue;
+    const auto nearest = nearest_row(run, rows);
+    (nearest ? beside[*nearest] : alone).push_back(std::move(run));
+  }
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    if (beside[r].empty()) filled.rows.push_back(published_row(table, rows[r]));
+    for (const ResultSet& run : beside[r])
+      filled.rows.push_back(measured_row(table, run, &rows[r]));
+  }
+  for (const ResultSet& run : alone) filled.rows.push_back(measured_row(table, run, nullptr));
+  return filled;
+}
+
+std::vector<std::string> left_out(const PaperTable& table, const std::vector<ResultSet>& runs) {
+  std::vector<std::string> sentences;
+  for (const ResultSet& run : runs) {
+    for (const SequenceResult& sequence : run.sequences) {
+      std::string why;
+      if (sequence.dataset != table.dataset) {
+        why = fmt::format("is of data set {}, not {}", sequence.dataset, table.dataset);
+      } else if (!is_about(table, sequence.sequence)) {
+        why = fmt::format("is of sequence {}, which no column is about", sequence.sequence);
+      }
+      if (why.empty()) continue;
+      sentences.push_back(
+          fmt::format("left out of table {}: {} {}", table.name, sequence.file.string(), why));
+    }
+  }
+  return sentences;
+}
+
+}  // namespace mosbench

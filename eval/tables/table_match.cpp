@@ -1,0 +1,109 @@
+#include "eval/tables/table_match.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "datasets/files/text.hpp"
+
+namespace mosbench {
+namespace {
+
+constexpr std::string_view kOwn = "HMM-MOS";
+
+void differ(const char* what, double measured, const std::optional<double>& published,
+            std::vector<std::string>& reasons) {
+  if (published && measured != *published) {
+    reasons.push_back(fmt::format("{} {:g}, published {:g}", what, measured, *published));
+  }
+}
+
+void own_mismatches(const nlohmann::ordered_json& header, const PublishedCell& cell,
+                    std::vector<std::string>& reasons) {
+  const std::string variant = header.value("variant", "");
+  if (variant != cell.variant) {
+    reasons.push_back(fmt::format("variant {}, published {}", variant,
+                                  cell.variant.empty() ? "another" : cell.variant));
+  }
+  const auto config = header.value("config", nlohmann::ordered_json::object());
+  differ("voxel size in m", config.value("voxel_size_m", 0.0), cell.voxel_size_m, reasons);
+  differ("range in m", config.value("max_range_m", 0.0), cell.max_range_m, reasons);
+  differ("delay in scans", config.value("delay_scans", 0),
+         cell.delay_scans ? std::optional<double>(*cell.delay_scans) : std::nullopt, reasons);
+}
+
+}  // namespace
+
+std::vector<PublishedRow> published_rows(const PaperTable& table,
+                                         const std::vector<PublishedCell>& published) {
+  std::vector<PublishedRow> rows;
+  for (const PublishedCell& cell : published) {
+    if (cell.table != table.name) continue;
+    const auto row = std::ranges::find_if(rows, [&](const PublishedRow& known) {
+      const PublishedCell& first = known.cells.front();
+      return first.section == cell.section && first.method == cell.method &&
+             first.setting == cell.setting && first.source == cell.source;
+    });
+    if (row == rows.end()) {
+      rows.push_back({{cell}});
+    } else {
+      row->cells.push_back(cell);
+    }
+  }
+  return rows;
+}
+
+bool is_own(const PublishedCell& cell) { return cell.method == kOwn; }
+
+std::vector<std::string> mismatches(const ResultSet& run, const PublishedCell& cell) {
+  const SequenceResult& first = run.front();
+  std::vector<std::string> reasons;
+  if (is_own(cell)) {
+    own_mismatches(first.header, cell, reasons);
+  } else if (lower_case(first.setting) != lower_case(cell.setting)) {
+    reasons.push_back(fmt::format("setting '{}', published '{}'", first.setting, cell.setting));
+  }
+  if (first.protocol->name != cell.protocol) {
+    reasons.push_back(
+        fmt::format("protocol {}, published {}", first.protocol->name, cell.protocol));
+  }
+  return reasons;
+}
+
+std::optional<std::size_t> nearest_row(const ResultSet& run,
+                                       const std::vector<PublishedRow>& rows) {
+  std::optional<std::size_t> nearest;
+  std::size_t fewest = 0;
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    const PublishedCell& cell = rows[r].cells.front();
+    if (lower_case(cell.method) != lower_case(run.front().method)) continue;
+    const std::size_t count = mismatches(run, cell).size();
+    if (nearest && count >= fewest) continue;
+    nearest = r;
+    fewest = count;
+  }
+  return nearest;
+}
+
+std::vector<ResultSet> with_splits(const PaperTable& table, const std::vector<ResultSet>& runs) {
+  std::vector<ResultSet> sets;
+  for (const ResultSet& run : runs) {
+    if (run.front().dataset != table.dataset) continue;
+    sets.push_back(run);
+    const bool has_test = std::ranges::any_of(run.sequences, [](const SequenceResult& sequence) {
+      return sequence.splits.contains("test");
+    });
+    if (run.front().protocol->name != "helimos-all" || !has_test) continue;
+    ResultSet& test = sets.emplace_back(run);
+    std::erase_if(test.sequences,
+                  [](const SequenceResult& sequence) { return !sequence.splits.contains("test"); });
+    // Both protocols count a scan alike; only the scans differ.
+    for (SequenceResult& sequence : test.sequences) {
+      sequence.protocol = &protocol_named("helimos-test");
+      sequence.only_split.reset();
+    }
+  }
+  return sets;
+}
+
+}  // namespace mosbench

@@ -1,0 +1,11 @@
+#!/usr/bin/env bash
+# check_format.sh: every tracked C++ file is formatted as .clang-format says, by clang-format 14
+# (other versions format differently).
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/../.."
+version=$(clang-format --version)
+[[ $version == *"version 14."* ]] || { echo "clang-format 14 is needed, this is: $version" >&2; exit 1; }
+mapfile -t sources < <(git ls-files '*.cpp' '*.hpp')
+[ ${#sources[@]} -gt 0 ] || { echo "no sources are tracked" >&2; exit 1; }
+clang-format --dry-run -Werror "${sources[@]}"
+echo "format of ${#sources[@]} files checked"

@@ -1,0 +1,28 @@
+#!/usr/bin/env bash
+# check_install.sh [BUILD_FOLDER]: installs a built tree (build/release) into a new prefix, builds a
+# program outside the project against it with find_package(mosbench) and checks what it prints.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/../.."
+build=${1:-build/release}
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+
+cmake --install "$build" --prefix "$scratch/prefix" >"$scratch/install.log"
+cp -r tests/install "$scratch/consumer"
+cmake -S "$scratch/consumer" -B "$scratch/consumer/build" -G Ninja \
+  -DCMAKE_PREFIX_PATH="$scratch/prefix" -DCMAKE_BUILD_TYPE=Release >/dev/null
+cmake --build "$scratch/consumer/build" >/dev/null
+labels=$("$scratch/consumer/build/label_one_scan" | paste -sd ' ')
+# The first scan of a sequence has nothing to have moved from.
+[ "$labels" = "9 9 9" ] || { echo "the installed library labels '$labels', expected '9 9 9'" >&2; exit 1; }
+"$scratch/prefix/bin/mosbench" --help >/dev/null
+# The module that reads .pcd scans must be found from where the program was installed.
+if ls "$scratch"/prefix/lib*/mosbench/mosbench_pcl.so "$scratch"/prefix/lib/*/mosbench/mosbench_pcl.so >/dev/null 2>&1; then
+  mkdir -p "$scratch/sequence/velodyne"
+  printf '%s\n' 'VERSION .7' 'FIELDS x y z' 'SIZE 4 4 4' 'TYPE F F F' 'COUNT 1 1 1' 'WIDTH 1' 'HEIGHT 1' \
+    'VIEWPOINT 0 0 0 1 0 0 0' 'POINTS 1' 'DATA ascii' '5 1 0' >"$scratch/sequence/velodyne/000000.pcd"
+  echo 1 0 0 0 0 1 0 0 0 0 1 0 >"$scratch/sequence/poses.txt"
+  "$scratch/prefix/bin/mosbench" run "$scratch/sequence" --dataset semantickitti --out "$scratch/run" >/dev/null 2>&1 ||
+    { echo "the installed program does not read a .pcd scan" >&2; exit 1; }
+fi
+echo "installed, found by find_package(mosbench), linked and run"

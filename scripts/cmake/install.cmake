@@ -1,0 +1,25 @@
+# What `cmake --install` puts where: the program, and the method as mosbench::core for
+# find_package(mosbench).
+include(CMakePackageConfigHelpers)
+
+set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/mosbench)
+foreach(room interface base voxel hmm_mos core)
+  set_target_properties(mosbench_${room} PROPERTIES EXPORT_NAME ${room})
+  install(TARGETS mosbench_${room} EXPORT mosbench
+          FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/mosbench)
+endforeach()
+install(EXPORT mosbench NAMESPACE mosbench:: FILE mosbenchTargets.cmake DESTINATION ${package_dir})
+if(TARGET mosbench)
+  install(TARGETS mosbench)
+  if(TARGET mosbench_pcl)
+    install(TARGETS mosbench_pcl LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/mosbench)
+  endif()
+endif()
+
+configure_package_config_file(scripts/cmake/mosbenchConfig.cmake.in
+  ${PROJECT_BINARY_DIR}/generated/mosbenchConfig.cmake INSTALL_DESTINATION ${package_dir})
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/generated/mosbenchConfigVersion.cmake
+                                 COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/generated/mosbenchConfig.cmake
+              ${PROJECT_BINARY_DIR}/generated/mosbenchConfigVersion.cmake
+        DESTINATION ${package_dir})

@@ -1,0 +1,322 @@
+#include "core/hmm_mos/pipeline.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <future>
+#include <limits>
+#include <stdexcept>
+#include <thread>
+
+#include "tests/small_world.hpp"
+
+namespace mosbench {
+namespace {
+
+Config small_config(int delay_scans = 0) {
+  Config config;
+  config.voxel_size_m = 0.4;
+  config.min_range_m = 0.3;
+  config.max_range_m = 5.0;
+  config.kernel_width_voxels = 3;
+  config.min_otsu_score = 1;
+  config.delay_scans = delay_scans;
+  return config;
+}
+
+std::vector<std::size_t> indices(const std::vector<ScanResult>& results) {
+  std::vector<std::size_t> scan_indices;
+  for (const ScanResult& result : results) scan_indices.push_back(result.scan_index);
+  return scan_indices;
+}
+
+const std::vector<Point> kPoints(10, Point{2, 1, 0, 0});
+
+TEST(Pipeline, OnlineReturnsEachScanAtOnce) {
+  Pipeline pipeline(small_config(), Variant::kPaper2024);
+  for (std::size_t k = 0; k < 6; ++k) {
+    const std::vector<ScanResult> results = pipeline.push(kPoints, Pose::Identity());
+    EXPECT_THAT(indices(results), testing::ElementsAre(k));
+    EXPECT_EQ(results[0].labels, std::vector<std::uint32_t>(10, kStaticLabel));
+    EXPECT_EQ(results[0].threshold, std::nullopt);
+  }
+  EXPECT_TRUE(pipeline.finish().empty());
+}
+
+TEST(Pipeline, DelayHoldsScansBackAndFinishReleasesThem) {
+  Pipeline pipeline(small_config(3), Variant::kPaper2024, 1, 6);
+  for (std::size_t k = 0; k < 6; ++k) {
+    const std::vector<ScanResult> results = pipeline.push(kPoints, Pose::Identity());
+    if (k < 3) {
+      EXPECT_TRUE(results.empty());
+    } else {
+      EXPECT_THAT(indices(results), testing::ElementsAre(k - 3));
+    }
+  }
+  EXPECT_THAT(indices(pipeline.finish()), testing::ElementsAre(3, 4, 5));
+  EXPECT_TRUE(pipeline.finish().empty());
+}
+
+TEST(Pipeline, DelayLongerThanTheSequenceLabelsEverythingStatic) {
+  const SmallWorld world = small_world({.seed = 3, .scans = 12});
+  ASSERT_GT(moving_points(labels_of(world, small_config(), Variant::kPaper2024)), 0U);
+  const auto labels = labels_of(world, small_config(50), Variant::kPaper2024, 1, 12);
+  EXPECT_EQ(labels.size(), 12U);
+  EXPECT_EQ(moving_points(labels), 0U);
+}
+
+TEST(Pipeline, RefusesMoreScansThanAnnounced) {
+  Pipeline pipeline(small_config(), Variant::kPaper2024, 1, 2);
+  pipeline.push(kPoints, Pose::Identity());
+  pipeline.push(kPoints, Pose::Identity());
+  EXPECT_THROW(pipeline.push(kPoints, Pose::Identity()), std::logic_error);
+}
+
+TEST(Pipeline, RefusesScansAfterFinish) {
+  Pipeline pipeline(small_config(2), Variant::kPaper2024);
+  pipeline.push(kPoints, Pose::Identity());
+  pipeline.finish();
+  EXPECT_THROW(pipeline.push(kPoints, Pose::Identity()), std::logic_error);
+}
+
+TEST(Pipeline, RefusesImpossibleSettings) {
+  EXPECT_THROW(Pipeline(small_config(), Variant::kPaper2024, 0), std::invalid_argument);
+  EXPECT_THROW(Pipeline(small_config(1), Variant::kRelease2025), std::invalid_argument);
+  Config config = small_config();
+  config.kernel_width_voxels = 4;
+  EXPECT_THROW(Pipeline(config, Variant::kPaper2024), std::invalid_argument);
+  EXPECT_NO_THROW(Pipeline(small_config(), Variant::kRelease2025));
+}
+
+TEST(Pipeline, MovesWithItsState) {
+  const SmallWorld world = small_world({.seed = 3, .scans = 12});
+  const auto expected = labels_of(world, small_config(), Variant::kPaper2024);
+  ASSERT_GT(moving_points(expected), 0U);
+  Pipeline pipeline(small_config(), Variant::kPaper2024);
+  for (std::size_t k = 0; k < 12; ++k) {
+    if (k == 5) {
+      Pipeline other(std::move(pipeline));
+      pipeline = std::move(other);
+    }
+    EXPECT_EQ(pipeline.push(world.scans[k], world.poses[k])[0].labels, expected[k]);
+  }
+}
+
+TEST(Pipeline, InterleavedPipelinesAreIndependent) {
+  const SmallWorld a = small_world({.seed = 4}), b = small_world({.seed = 5, .walk_m = 0.3});
+  const auto expected_a = labels_of(a, small_config(), Variant::kPaper2024);
+  const auto expected_b = labels_of(b, small_config(), Variant::kRelease2025);
+  ASSERT_GT(moving_points(expected_a), 0U);
+  ASSERT_GT(moving_points(expected_b), 0U);
+  Pipeline first(small_config(), Variant::kPaper2024, 2);
+  Pipeline second(small_config(), Variant::kRelease2025, 3);
+  for (std::size_t k = 0; k < a.scans.size(); ++k) {
+    EXPECT_EQ(first.push(a.scans[k], a.poses[k])[0].labels, expected_a[k]);
+    EXPECT_EQ(second.push(b.scans[k], b.poses[k])[0].labels, expected_b[k]);
+  }
+}
+
+TEST(Pipeline, RunsInSeveralThreadsAtOnce) {
+  const SmallWorld world = small_world({.seed = 6});
+  const auto expected = labels_of(world, small_config(2), Variant::kPaper2024, 1, 16);
+  ASSERT_GT(moving_points(expected), 0U);
+  std::vector<std::vector<std::vector<std::uint32_t>>> labels(3);
+  {
+    std::vector<std::jthread> threads;
+    for (auto& own : labels) {
+      threads.emplace_back(
+          [&] { own = labels_of(world, small_config(2), Variant::kPaper2024, 2, 16); });
+    }
+  }
+  EXPECT_THAT(labels, testing::Each(expected));
+}
+
+TEST(Pipeline, ObservesAScanWhileTheOneBeforeIsPushed) {
+  const SmallWorld world = small_world({.seed = 11, .defects = true});
+  for (const int delay : {0, 3}) {
+    const auto expected =
+        labels_of(world, small_config(delay), Variant::kPaper2024, 1, world.scans.size());
+    ASSERT_GT(moving_points(expected), 0U);
+    for (const unsigned threads : {1U, 2U, 5U}) {
+      Pipeline pipeline(small_config(delay), Variant::kPaper2024, threads, world.scans.size());
+      const auto observe = [&](std::size_t k) {
+        return std::async(std::launch::async,
+                          [&, k] { return pipeline.observe(world.scans[k], world.poses[k]); });
+      };
+      std::vector<std::vector<std::uint32_t>> labels;
+      const auto take = [&](std::vector<ScanResult> results) {
+        for (ScanResult& result : results) labels.push_back(std::move(result.labels));
+      };
+      std::future<ObservedScan> upcoming = observe(0);
+      for (std::size_t k = 0; k < world.scans.size(); ++k) {
+        ObservedScan observed = upcoming.get();
+        if (k + 1 < world.scans.size()) upcoming = observe(k + 1);
+        take(pipeline.push(std::move(observed)));
+      }
+      take(pipeline.finish());
+      EXPECT_EQ(labels, expected) << threads << " threads, delay " << delay;
+    }
+  }
+}
+
+TEST(Pipeline, RefusesAScanThatAnotherObserved) {
+  Pipeline observing(small_config(), Variant::kPaper2024);
+  Pipeline other(small_config(), Variant::kPaper2024);
+  EXPECT_THROW(other.push(observing.observe(kPoints, Pose::Identity())), std::logic_error);
+}
+
+/// What is refused leaves no trace: the next scans get the labels they would have had.
+TEST(Pipeline, RefusedScanLeavesThePipelineAsItWas) {
+  const SmallWorld world = small_world({.seed = 7});
+  const auto expected = labels_of(world, small_config(), Variant::kPaper2024, 2);
+  ASSERT_GT(moving_points(expected), 0U);
+  std::vector<Point> overflowing = world.scans[0];
+  overflowing[100].x = 1e8F;
+  overflowing[300].x = 1e8F;
+  Pose not_a_number = Pose::Identity();
+  not_a_number.translation().x() = std::nan("");
+  Pipeline pipeline(small_config(), Variant::kPaper2024, 2);
+  for (std::size_t k = 0; k < world.scans.size(); ++k) {
+    EXPECT_THROW(pipeline.push(world.scans[k], not_a_number), std::range_error);
+    try {
+      pipeline.push(overflowing, world.poses[k]);
+      FAIL() << "no error";
+    } catch (const std::range_error& error) {
+      EXPECT_THAT(error.what(), testing::HasSubstr("point 100"));
+    }
+    const std::vector<ScanResult> results = pipeline.push(world.scans[k], world.poses[k]);
+    EXPECT_EQ(results[0].labels, expected[k]);
+    EXPECT_EQ(results[0].scan_index, k);
+  }
+}
+
+TEST(Pipeline, ReportsNonfinitePointsAndTheThreshold) {
+  SmallWorld world = small_world({.seed = 8});
+  world.scans[9][4].y = std::numeric_limits<float>::infinity();
+  world.scans[9][5].z = std::numeric_limits<float>::quiet_NaN();
+  Pipeline pipeline(small_config(), Variant::kPaper2024);
+  std::size_t with_threshold = 0;
+  for (std::size_t k = 0; k < world.scans.size(); ++k) {
+    const ScanResult result = pipeline.push(world.scans[k], world.poses[k])[0];
+    EXPECT_EQ(result.nonfinite_points, k == 9 ? 2U : 0U);
+    with_threshold += result.threshold.has_value();
+    EXPECT_TRUE(k > 3 || !result.threshold) << "the window is not full";
+    // Spec 5h: no moving point without a threshold above the minimum.
+    EXPECT_TRUE(moving_points({result.labels}) == 0 || result.threshold.value_or(0) > 1.0);
+  }
+  EXPECT_GT(with_threshold, 5U);
+}
+
+TEST(Pipeline, StagesTakeTime) {
+  const SmallWorld world = small_world({.seed = 9});
+  Pipeline pipeline(small_config(), Variant::kPaper2024);
+  StageTimes total{};
+  for (std::size_t k = 0; k < world.scans.size(); ++k) {
+    const ScanResult result = pipeline.push(world.scans[k], world.poses[k])[0];
+    for (std::size_t stage = 0; stage < total.size(); ++stage) {
+      EXPECT_GE(result.stage_times[stage], 0.0);
+      total[stage] += result.stage_times[stage];
+    }
+  }
+  for (std::size_t stage = 0; stage < total.size(); ++stage) {
+    EXPECT_GT(total[stage], 0.0) << kStageNames[stage];
+  }
+}
+
+TEST(Pipeline, RecordsEveryStageInItsOrderWhileAsked) {
+  const SmallWorld world = small_world({.seed = 9});
+  Pipeline pipeline(small_config(), Variant::kPaper2024);
+  std::vector<StageEvent> events;
+  for (std::size_t k = 0; k < world.scans.size(); ++k) {
+    events.clear();
+    pipeline.record_stages(k == 8 ? nullptr : &events);
+    const ScanResult result = pipeline.push(world.scans[k], world.poses[k])[0];
+    if (k == 8) {
+      EXPECT_TRUE(events.empty());
+    } else if (k > 3) {
+      StageTimes sums{};
+      for (std::size_t i = 0; i < events.size(); ++i) {
+        sums[static_cast<std::size_t>(events[i].stage)] += events[i].wall_ms;
+        EXPECT_GE(events[i].cpu_ms, 0.0);
+        if (i > 0) {
+          EXPECT_GE(events[i].start, events[i - 1].start);
+        }
+      }
+      EXPECT_EQ(events.size(), kStageNames.size());
+      EXPECT_EQ(sums, result.stage_times);
+    }
+  }
+}
+
+/// One voxel on the way to a wall is free until scan 6, then occupied. With a kernel of one voxel
+/// its change is one vote in scan 6, which a window of two scans holds in scans 6 and 7.
+TEST(Pipeline, ScoresOfAPointAreTheVotesInTheWindowOfItsVoxel) {
+  Config config = small_config();
+  config.kernel_width_voxels = 1;
+  config.local_window_scans = 2;
+  const Point wall{4.1F, 0.1F, 0.1F, 0}, arrived{2.1F, 0.1F, 0.1F, 0}, near{0.1F, 0.1F, 0.1F, 0};
+  Pipeline pipeline(config, Variant::kPaper2024);
+  pipeline.record_scores(true);
+  std::vector<std::vector<std::int32_t>> scores;
+  for (int k = 0; k < 9; ++k) {
+    std::vector<Point> points = {wall, near};
+    if (k >= 6) points.push_back(arrived);
+    scores.push_back(pipeline.push(points, Pose::Identity()).front().scores);
+  }
+  for (std::size_t k = 0; k < 6; ++k) {
+    EXPECT_EQ(scores[k], (std::vector<std::int32_t>{0, 0})) << k;
+  }
+  EXPECT_EQ(scores[6], (std::vector<std::int32_t>{0, 0, 1}));
+  EXPECT_EQ(scores[7], (std::vector<std::int32_t>{0, 0, 1}));
+  EXPECT_EQ(scores[8], (std::vector<std::int32_t>{0, 0, 0}));
+}
+
+TEST(Pipeline, ScoresAreOnlyThereWhenAskedForAndChangeNoLabel) {
+  const SmallWorld world = small_world({.seed = 10});
+  for (const int delay : {0, 3}) {
+    Pipeline with(small_config(delay), Variant::kPaper2024, 1, world.scans.size());
+    with.record_scores(true);
+    Pipeline without(small_config(delay), Variant::kPaper2024, 1, world.scans.size());
+    const std::vector<ScanResult> scored = results_of(with, world);
+    const std::vector<ScanResult> plain = results_of(without, world);
+    std::size_t above = 0, moving = 0;
+    for (std::size_t k = 0; k < scored.size(); ++k) {
+      EXPECT_EQ(scored[k].labels, plain[k].labels);
+      EXPECT_TRUE(plain[k].scores.empty());
+      ASSERT_EQ(scored[k].scores.size(), world.scans[k].size());
+      moving += moving_points({plain[k].labels});
+      if (!scored[k].threshold || *scored[k].threshold <= 1.0) continue;
+      // Spec 5d: what lies above the threshold is dynamic.
+      for (std::size_t i = 0; i < scored[k].scores.size(); ++i) {
+        if (scored[k].scores[i] <= *scored[k].threshold) continue;
+        EXPECT_EQ(scored[k].labels[i], kMovingLabel);
+        ++above;
+      }
+    }
+    EXPECT_GT(above, 20U);
+    EXPECT_GT(moving, above);
+  }
+}
+
+TEST(Pipeline, HoldsNothingBeforeTheFirstScan) {
+  Pipeline pipeline(small_config(), Variant::kPaper2024);
+  EXPECT_EQ(pipeline.map_blocks(), 0U);
+  EXPECT_EQ(pipeline.memory_bytes(), 0U);
+  EXPECT_TRUE(pipeline.finish().empty());
+}
+
+TEST(Pipeline, CountsTheScansItHoldsAmongItsMemory) {
+  const std::vector<Point> many(10'000, Point{2, 1, 0, 0});
+  Pipeline online(small_config(), Variant::kPaper2024);
+  Pipeline delayed(small_config(8), Variant::kPaper2024);
+  for (int k = 0; k < 8; ++k) {
+    online.push(many, Pose::Identity());
+    delayed.push(many, Pose::Identity());
+  }
+  // A voxel number for each point of eight scans; labels come when they are final.
+  EXPECT_GE(delayed.memory_bytes(), online.memory_bytes() + 8 * 10'000 * 4);
+}
+
+}  // namespace
+}  // namespace mosbench

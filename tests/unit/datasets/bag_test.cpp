@@ -1,0 +1,277 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <string>
+
+#include "datasets/files/errors.hpp"
+#include "datasets/files/files.hpp"
+#include "datasets/layouts/doals_sequence.hpp"
+#include "datasets/rosbag/bag_compression.hpp"
+#include "datasets/rosbag/bag_file.hpp"
+#include "datasets/rosbag/bag_recording.hpp"
+#include "datasets/rosbag/bag_writer.hpp"
+#include "tests/bag_bytes.hpp"
+#include "tests/temp_folder.hpp"
+
+namespace mosbench {
+namespace {
+
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+constexpr std::int64_t kStart = 1'500'000'000'000'000'000;
+constexpr std::int64_t kPeriod = 100'000'000;
+
+Pose at_x(double x_m) {
+  Pose pose = Pose::Identity();
+  pose.translation().x() = x_m;
+  return pose;
+}
+
+const std::vector<Point> kPoints = {{1, 2, 3, 4}, {0, 0, 0, 0}, {5, 6, 7, 8}};
+
+/// Three scans and four transforms, the sensor going 1 m per scan.
+BagBytes good_bag(const std::vector<std::uint32_t>& times_ns = {}) {
+  BagBytes bag;
+  bag.connections = {{"/os1_cloud_node/points", std::string(kPointCloud2)},
+                     {"/tf", std::string(kTfMessage)}};
+  for (std::int64_t i = 0; i < 4; ++i) {
+    const std::int64_t stamp_ns = kStart + i * kPeriod;
+    std::vector<BagEntry> chunk = {{1, stamp_ns, tf_at(stamp_ns, at_x(static_cast<double>(i)))}};
+    if (i < 3) chunk.push_back({0, stamp_ns, timed_cloud(stamp_ns, kPoints, times_ns)});
+    bag.chunks.push_back(chunk);
+  }
+  return bag;
+}
+
+class Bag : public testing::Test {
+ protected:
+  std::filesystem::path write(const std::string& bytes) const {
+    return folder_.write("s.bag", bytes);
+  }
+  std::string error_of(const BagBytes& bag, const ReadingOptions& options = {}) const {
+    return error_of(bag.str(), options);
+  }
+  std::string error_of(const std::string& bytes, const ReadingOptions& options = {}) const {
+    const auto file = write(bytes);
+    return message_of<DataError>([&] {
+      const BagRecording recording(file, options);
+      for (std::size_t i = 0; i < recording.size(); ++i) recording.read(i);
+    });
+  }
+
+  TempFolder folder_;
+};
+
+TEST_F(Bag, GivesScansInOrderWithTheirPosesAndStamps) {
+  const BagRecording recording(write(good_bag().str()), {});
+  ASSERT_EQ(recording.size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Frame frame = recording.read(i);
+    EXPECT_EQ(frame.stem, "00000" + std::to_string(i));
+    EXPECT_EQ(frame.stamp_ns, kStart + static_cast<std::int64_t>(i) * kPeriod);
+    EXPECT_EQ(frame.map_from_sensor.translation().x(), static_cast<double>(i));
+    ASSERT_EQ(frame.points.size(), 3U);
+    EXPECT_EQ(frame.points[2].z, 7.0F);
+  }
+}
+
+TEST_F(Bag, MovesEveryPointToWhereTheFirstWasMeasuredAndKeepsCountAndOrder) {
+  const BagRecording recording(write(good_bag({20'000'000, 20'000'000, 70'000'000}).str()), {});
+  const Frame frame = recording.read(1);
+  EXPECT_DOUBLE_EQ(frame.map_from_sensor.translation().x(), 1.2);
+  ASSERT_EQ(frame.points.size(), 3U);
+  EXPECT_EQ(frame.points[0].x, 1.0F);
+  EXPECT_EQ(frame.points[1].x, 0.0F);
+  EXPECT_FLOAT_EQ(frame.points[2].x, 5.5F);  // half a metre further on
+  EXPECT_EQ(frame.points[2].y, 6.0F);
+  EXPECT_EQ(frame.stamp_ns, kStart + kPeriod);
+}
+
+TEST_F(Bag, MovesMissingReturnsToo) {
+  const BagRecording recording(write(good_bag({0, 50'000'000, 0}).str()), {});
+  EXPECT_FLOAT_EQ(recording.read(0).points[1].x, 0.5F);
+}
+
+TEST_F(Bag, KeepsRawScansWhenTold) {
+  const BagRecording recording(write(good_bag({0, 50'000'000, 0}).str()), {.undistort = false});
+  EXPECT_EQ(recording.read(0).points[1].x, 0.0F);
+}
+
+TEST_F(Bag, CountsScansThatNoTransformCovers) {
+  BagBytes bag = good_bag({0, 0, 60'000'000});
+  bag.chunks.pop_back();
+  const BagRecording recording(write(bag.str()), {});
+  EXPECT_EQ(recording.size(), 2U);
+  EXPECT_THAT(recording.remarks(), Contains(HasSubstr("1 of 3 scans are left out")));
+  EXPECT_EQ(recording.stamps_ns().size(), 2U);
+}
+
+TEST_F(Bag, TakesPosesOfTransformStampedOrOfAFile) {
+  BagBytes bag = good_bag();
+  bag.connections[1] = {"/T_map_os1_lidar", std::string(kTransformStamped)};
+  for (auto& chunk : bag.chunks) chunk[0].message.erase(0, 4);  // the count of a TFMessage
+  const BagRecording stamped(write(bag.str()), {});
+  EXPECT_EQ(stamped.read(2).map_from_sensor.translation().x(), 2.0);
+  const auto poses = folder_.write("p.csv", "-1,0,0,0,0,0,1\n-2,0,0,0,0,0,1\n-3,0,0,0,0,0,1\n");
+  const BagRecording told(write(bag.str()), {.poses = poses});
+  EXPECT_EQ(told.read(2).map_from_sensor.translation().x(), 3.0);
+}
+
+TEST_F(Bag, ReadsThroughAChainOfFrames) {
+  BagBytes bag = good_bag();
+  bag.connections.push_back({"/tf_static", std::string(kTfMessage)});
+  bag.chunks[0].push_back({2, kStart, format_tf_message({{kStart, "world", "/map", at_x(100.0)}})});
+  const BagRecording to_map(write(bag.str()), {});
+  EXPECT_EQ(to_map.read(1).map_from_sensor.translation().x(), 1.0);
+  const BagRecording to_world(write(bag.str()), {.map_frame = "world"});
+  EXPECT_EQ(to_world.read(1).map_from_sensor.translation().x(), 101.0);
+}
+
+TEST_F(Bag, IsTheScansOfADoalsSequence) {
+  write(good_bag().str());
+  folder_.write("indices.csv", std::to_string(kStart + kPeriod) + ",2\n");
+  const DoalsSequence sequence("s", folder_.path(), nullptr);
+  EXPECT_EQ(sequence.size(), 3U);
+  EXPECT_TRUE(sequence.has_truth(1));
+  EXPECT_THAT(*sequence.read(1).truth, ElementsAre(kStaticLabel, kStaticLabel, kMovingLabel));
+  folder_.write("indices.csv", std::to_string(kStart + 1) + ",2\n");
+  EXPECT_THAT(message_of<DataError>([&] { DoalsSequence("s", folder_.path(), nullptr); }),
+              HasSubstr("0 scans have the stamp"));
+}
+
+TEST_F(Bag, NamesWhatItLacks) {
+  BagBytes bag = good_bag();
+  EXPECT_THAT(error_of(bag, {.topic = "/points"}),
+              testing::AllOf(HasSubstr("no PointCloud2 topic /points"),
+                             HasSubstr("/os1_cloud_node/points (sensor_msgs/PointCloud2)")));
+  EXPECT_THAT(error_of(bag, {.map_frame = "odom"}),
+              testing::AllOf(HasSubstr("no transforms lead from odom to lidar"),
+                             HasSubstr("--poses FILE")));
+  BagBytes two_topics = bag;
+  two_topics.connections = {{"/a", std::string(kPointCloud2)}, {"/b", std::string(kPointCloud2)}};
+  EXPECT_THAT(error_of(two_topics), HasSubstr("several PointCloud2 topics: /a, /b"));
+  BagBytes no_message = bag;
+  for (auto& chunk : no_message.chunks) chunk.resize(1);
+  EXPECT_THAT(error_of(no_message), HasSubstr("holds no message"));
+  BagBytes nothing;
+  EXPECT_THAT(error_of(nothing), HasSubstr("holds no sensor_msgs/PointCloud2 but nothing"));
+  BagBytes late = bag;
+  late.chunks.resize(1);
+  late.chunks[0][0].message = tf_at(kStart + 5 * kPeriod, at_x(0));
+  EXPECT_THAT(error_of(late), HasSubstr("no transform covers any of its 1 scans"));
+}
+
+TEST_F(Bag, RefusesWhatIsDamaged) {
+  const std::string good = good_bag().str();
+  ASSERT_EQ(error_of(good), "nothing thrown");
+  EXPECT_THAT(error_of(std::string()), HasSubstr("does not start as a ROS bag does"));
+  EXPECT_THAT(error_of("#ROSBAG V1.2\n"), HasSubstr("does not start as a ROS bag does"));
+  EXPECT_THAT(error_of(good.substr(0, good.size() - 1)), HasSubstr("is cut off"));
+  EXPECT_THAT(error_of(good.substr(0, good.size() / 2)), HasSubstr("is cut off"));
+  BagBytes bag = good_bag();
+  bag.compression = "zstd";
+  EXPECT_THAT(error_of(bag), HasSubstr("compressed by \"zstd\""));
+  bag = good_bag();
+  bag.closed = false;
+  EXPECT_THAT(error_of(bag), HasSubstr("rosbag reindex"));
+  bag = good_bag();
+  bag.more_header_fields = {{"encryptor", "rosbag/AesCbcEncryptor"}};
+  EXPECT_THAT(error_of(bag), HasSubstr("is encrypted"));
+  bag = good_bag();
+  bag.connections.pop_back();
+  EXPECT_THAT(error_of(bag), HasSubstr("connection 1 of a message is missing"));
+  bag = good_bag();
+  bag.offset_error_bytes = 1;
+  EXPECT_THAT(error_of(bag), testing::Not("nothing thrown"));
+  bag.offset_error_bytes = 1 << 20;
+  EXPECT_THAT(error_of(bag), HasSubstr("points behind its chunk"));
+}
+
+TEST_F(Bag, RefusesAChunkThatIsNotCompressedAsItSays) {
+  if (!has_rosbag()) GTEST_SKIP() << "this build is without librosbag_storage";
+  for (const char* compression : {"bz2", "lz4"}) {
+    BagBytes bag = good_bag();
+    bag.compression = compression;
+    EXPECT_THAT(error_of(bag), HasSubstr("a chunk is damaged")) << compression;
+  }
+}
+
+TEST_F(Bag, RefusesCloudsWithoutXyzOrWithOddTypes) {
+  const auto error_with = [&](const std::function<void(CloudHead&)>& spoil) {
+    const std::string good = timed_cloud(kStart, kPoints, {});
+    CloudHead head = parse_cloud_head(good, "f");
+    const std::string records = good.substr(head.records_at_bytes, head.records_bytes);
+    spoil(head);
+    BagBytes bag = good_bag();
+    for (auto& chunk : bag.chunks) {
+      if (chunk.size() > 1) chunk[1].message = format_cloud(head, records);
+    }
+    return error_of(bag);
+  };
+  EXPECT_THAT(error_with([](CloudHead& head) { head.fields[1].name = "Y"; }),
+              HasSubstr("have no field y"));
+  EXPECT_THAT(error_with([](CloudHead& head) { head.fields[1].datatype = 9; }),
+              HasSubstr("datatype 9"));
+  EXPECT_THAT(error_with([](CloudHead& head) { head.fields[1].count = 3; }), HasSubstr("count 3"));
+  EXPECT_THAT(error_with([](CloudHead& head) { head.fields[1].offset_bytes = 17; }),
+              HasSubstr("lies beyond them"));
+  EXPECT_THAT(error_with([](CloudHead& head) { head.width = 4; }), HasSubstr("4 x 1 points"));
+}
+
+TEST_F(Bag, FindsFieldsAtAnyOffsetAndOfAnyType) {
+  CloudHead head;
+  head.frame = "lidar";
+  head.height = 2;
+  head.width = 1;
+  head.fields = {{"z", 1, 3, 1}, {"x", 4, 8, 1}, {"y", 12, 2, 1}};
+  head.point_step_bytes = 13;
+  head.row_step_bytes = 16;  // rows may be padded
+  ByteSink records;
+  for (const double x : {1.5, -2.5}) {
+    records.put(std::uint8_t{0});
+    records.put(std::int16_t{-300});
+    records.put(std::uint8_t{0});
+    records.put(x);
+    records.put(std::uint8_t{200});
+    records.put_bytes("...");
+  }
+  BagBytes bag = good_bag();
+  bag.chunks[0][1].message = format_cloud(head, std::move(records).bytes());
+  bag.chunks.resize(1);
+  bag.chunks[0].push_back({1, 0, tf_at(0, at_x(0.0))});
+  const Frame frame = BagRecording(write(bag.str()), {}).read(0);
+  ASSERT_EQ(frame.points.size(), 2U);
+  EXPECT_EQ(frame.points[1].x, -2.5F);
+  EXPECT_EQ(frame.points[1].y, 200.0F);
+  EXPECT_EQ(frame.points[1].z, -300.0F);
+  EXPECT_EQ(frame.points[1].intensity, 0.0F);
+}
+
+TEST_F(Bag, WrittenByTheLibraryGivesBackWhatWentIn) {
+  if (!has_rosbag()) GTEST_SKIP() << "this build is without librosbag_storage";
+  for (const char* compression : {"none", "lz4", "bz2"}) {
+    const auto file = folder_ / (std::string(compression) + ".bag");
+    BagWriter writer(file, compression);
+    for (std::int64_t i = 0; i < 200; ++i) {
+      const std::int64_t stamp_ns = kStart + i * kPeriod;
+      writer.write("/tf", stamp_ns, kTfMessage, tf_at(stamp_ns, at_x(static_cast<double>(i))));
+      std::vector<Point> points(1000, Point{static_cast<float>(i), 1, 2, 3});
+      writer.write("/p", stamp_ns, kPointCloud2, timed_cloud(stamp_ns, points, {}));
+    }
+    EXPECT_FALSE(is_there(file));
+    writer.close();
+    const BagRecording recording(file, {});
+    ASSERT_EQ(recording.size(), 200U) << compression;
+    const Frame frame = recording.read(199);
+    EXPECT_EQ(frame.map_from_sensor.translation().x(), 199.0);
+    EXPECT_EQ(frame.points.at(999).x, 199.0F);
+  }
+  EXPECT_THAT(message_of<UsageError>([&] { BagWriter(folder_ / "z.bag", "zip"); }),
+              HasSubstr("none, lz4 or bz2"));
+}
+
+}  // namespace
+}  // namespace mosbench

@@ -1,0 +1,328 @@
+#include "datasets/doctor/doctor.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "datasets/files/bin_file.hpp"
+#include "datasets/files/calib_file.hpp"
+#include "datasets/files/files.hpp"
+#include "datasets/files/label_file.hpp"
+#include "datasets/files/pose_file.hpp"
+#include "datasets/files/times_file.hpp"
+#include "datasets/layouts/simulated_origin.hpp"
+#include "datasets/simulator/simulate.hpp"
+#include "tests/temp_folder.hpp"
+
+namespace mosbench {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+constexpr std::size_t kScans = 40;
+
+struct Layout {
+  DatasetKind kind;
+  const char* scene;
+};
+
+/// Simulated once per layout; tests that spoil it take a copy.
+fs::path good_copy(const Layout& layout) {
+  static std::map<std::pair<DatasetKind, std::string>, std::unique_ptr<TempFolder>> folders;
+  auto& folder = folders[{layout.kind, layout.scene}];
+  if (!folder) {
+    folder = std::make_unique<TempFolder>();
+    simulate({.layout = layout.kind,
+              .scene = layout.scene,
+              .scans = kScans,
+              .seed = 3,
+              .out = *folder / "data",
+              .threads = 2});
+  }
+  return *folder / "data";
+}
+
+std::string all_symptoms(const Checkup& checkup) {
+  std::string text;
+  for (const Symptom& symptom : checkup.symptoms)
+    text += symptom.where + ": " + symptom.what + "\n";
+  return text;
+}
+
+class DoctorOnWhatIsGood : public testing::TestWithParam<Layout> {};
+
+TEST_P(DoctorOnWhatIsGood, IsQuiet) {
+  const fs::path root = good_copy(GetParam());
+  const Checkup checkup = check_up(root, {});
+  EXPECT_EQ(all_symptoms(checkup), "");
+  EXPECT_EQ(checkup.kind, GetParam().kind);
+  ASSERT_FALSE(checkup.sequences.empty());
+  for (const SequenceCheckup& sequence : checkup.sequences) {
+    EXPECT_EQ(sequence.scans, kScans);
+    EXPECT_TRUE(sequence.poses) << sequence.name;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Layouts, DoctorOnWhatIsGood,
+                         testing::Values(Layout{DatasetKind::kDoals, "mall"},
+                                         Layout{DatasetKind::kSipailou, "campus"},
+                                         Layout{DatasetKind::kHelimos, "street"},
+                                         Layout{DatasetKind::kSemanticKitti, "street"},
+                                         Layout{DatasetKind::kSemanticKitti, "highway"},
+                                         Layout{DatasetKind::kHelimos, "campus"},
+                                         Layout{DatasetKind::kHelimos, "highway"}),
+                         [](const auto& layout) {
+                           return std::string(to_string(layout.param.kind)) + "_" +
+                                  layout.param.scene;
+                         });
+
+/// A fault and words of the symptom that has to name it.
+struct Fault {
+  const char* name;
+  Layout layout;
+  std::function<void(const fs::path& root)> plant;
+  const char* symptom;
+  Severity severity = Severity::kWarning;
+};
+
+void PrintTo(const Fault& fault, std::ostream* out) { *out << fault.name; }
+
+constexpr Layout kKitti = {DatasetKind::kSemanticKitti, "street"};
+constexpr Layout kHighway = {DatasetKind::kSemanticKitti, "highway"};
+constexpr Layout kRoom = {DatasetKind::kSipailou, "room"};
+constexpr Layout kCampus = {DatasetKind::kSipailou, "campus"};
+constexpr Layout kSensors = {DatasetKind::kHelimos, "street"};
+const fs::path kKittiSequence = "sequences/08";
+const fs::path kCampusSequence = "sequences/06";
+
+void change_poses(const fs::path& file, const std::function<void(std::vector<Pose>&)>& change) {
+  auto poses = read_poses(file);
+  ASSERT_EQ(poses.size(), kScans);
+  change(poses);
+  write_poses(file, poses);
+}
+
+void invert_poses(const fs::path& root) {
+  change_poses(root / kKittiSequence / "poses.txt", [](std::vector<Pose>& poses) {
+    for (Pose& pose : poses) pose = pose.inverse();
+  });
+}
+
+void delay_poses_by_one_scan(const fs::path& root) {
+  change_poses(root / kKittiSequence / "poses.txt", [](std::vector<Pose>& poses) {
+    poses.insert(poses.begin(), poses.front());
+    poses.pop_back();
+  });
+}
+
+void exchange_rows(const fs::path& sequence, std::size_t a, std::size_t b) {
+  change_poses(sequence / "poses.txt",
+               [=](std::vector<Pose>& poses) { std::swap(poses.at(a), poses.at(b)); });
+}
+
+void change_points(const fs::path& folder, const std::function<void(Point&)>& change) {
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    auto points = read_bin(entry.path());
+    for (Point& point : points) change(point);
+    write_bin(entry.path(), points);
+  }
+}
+
+void change_labels(const fs::path& sequence,
+                   const std::function<std::uint32_t(std::uint32_t, const Point&)>& change) {
+  for (const auto& entry : fs::directory_iterator(sequence / "labels")) {
+    const auto points = read_bin(sequence / "velodyne" / (entry.path().stem().string() + ".bin"));
+    auto labels = read_labels(entry.path(), points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) labels[i] = change(labels[i], points[i]);
+    write_labels(entry.path(), labels);
+  }
+}
+
+const std::vector<Fault>& faults() {
+  static const std::vector<Fault> all = {
+      {"camera_poses_without_tr", kKitti,
+       [](const fs::path& root) {
+         write_calib(root / kKittiSequence / "calib.txt", Pose::Identity());
+       },
+       "the poses fit better as the camera's, Tr is missing"},
+      {"inverse_poses", kKitti, invert_poses, "the poses fit better as sensor_from_map (inverse)"},
+      {"transposed_rotations", kKitti,
+       [](const fs::path& root) {
+         change_poses(root / kKittiSequence / "poses.txt", [](std::vector<Pose>& poses) {
+           for (Pose& pose : poses) pose.linear().transposeInPlace();
+         });
+       },
+       "the poses fit better as with transposed rotations"},
+      {"poses_shifted_by_one_scan", kKitti, delay_poses_by_one_scan,
+       "the poses fit better as one row later"},
+      {"poses_shifted_by_one_scan_the_other_way", kKitti,
+       [](const fs::path& root) {
+         change_poses(root / kKittiSequence / "poses.txt", [](std::vector<Pose>& poses) {
+           poses.erase(poses.begin());
+           poses.push_back(poses.back());
+         });
+       },
+       "the poses fit better as one row earlier"},
+      {"poses_shifted_by_one_scan_on_a_straight_road", kHighway, delay_poses_by_one_scan,
+       "the poses fit better as one row later:"},
+      {"inverse_poses_on_a_straight_road", kHighway, invert_poses,
+       "the poses fit better as sensor_from_map (inverse):"},
+      {"rows_of_neighbours_exchanged", kKitti,
+       [](const fs::path& root) { exchange_rows(root / kKittiSequence, 17, 18); },
+       "the poses of scans 000017 and 000018 (rows 18 and 19) are exchanged"},
+      {"rows_far_apart_exchanged", kKitti,
+       [](const fs::path& root) { exchange_rows(root / kKittiSequence, 5, 31); },
+       "the poses of scans 000005 and 000031 (rows 6 and 32) are exchanged"},
+      {"first_two_rows_exchanged", kKitti,
+       [](const fs::path& root) { exchange_rows(root / kKittiSequence, 0, 1); },
+       "the poses of scans 000000 and 000001 (rows 1 and 2) are exchanged"},
+      {"rows_exchanged_on_a_straight_road", kHighway,
+       [](const fs::path& root) { exchange_rows(root / kKittiSequence, 20, 22); },
+       "the poses of scans 000020 and 000022 (rows 21 and 23) are exchanged"},
+      {"rows_exchanged_at_a_slow_walk", kRoom,
+       [](const fs::path& root) { exchange_rows(root / kCampusSequence, 9, 10); },
+       "(rows 10 and 11) are exchanged"},
+      {"one_row_off_the_way", kKitti,
+       [](const fs::path& root) {
+         change_poses(root / kKittiSequence / "poses.txt",
+                      [](std::vector<Pose>& poses) { poses[12].translation().z() += 3.0; });
+       },
+       "the pose of scan 000012 (row 13) does not fit between its neighbours"},
+      {"poses_of_another_sequence", kKitti,
+       [](const fs::path& root) {
+         change_poses(root / kKittiSequence / "poses.txt", [](std::vector<Pose>& poses) {
+           for (std::size_t i = 0; i < poses.size(); ++i) {
+             const double angle = 0.05 * static_cast<double>(i);
+             poses[i] = Pose::Identity();
+             poses[i].rotate(Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitY()));
+             poses[i].translation() = Eigen::Vector3d(20.0 * std::sin(angle), 0, angle);
+           }
+         });
+       },
+       "the poses do not fit the scans in any convention"},
+      {"one_scan_missing", kKitti,
+       [](const fs::path& root) { fs::remove(root / kKittiSequence / "velodyne/000017.bin"); },
+       "000017", Severity::kError},
+      {"one_label_missing", kKitti,
+       [](const fs::path& root) { fs::remove(root / kKittiSequence / "labels/000017.label"); },
+       "1 of 40 scans have no label: 000017"},
+      {"truncated_scan", kKitti,
+       [](const fs::path& root) {
+         const fs::path scan = root / kKittiSequence / "velodyne/000017.bin";
+         fs::resize_file(scan, fs::file_size(scan) / 32 * 16);
+       },
+       "1 scans are far smaller than those around them: 000017", Severity::kError},
+      {"labels_of_raw_classes", kCampus,
+       [](const fs::path& root) {
+         change_labels(root / kCampusSequence,
+                       [](std::uint32_t label, const Point&) { return label == 9 ? 40U : label; });
+       },
+       "the labels hold the ids 40"},
+      {"labels_of_a_network", kKitti,
+       [](const fs::path& root) {
+         change_labels(root / kKittiSequence, [](std::uint32_t label, const Point&) {
+           return (label & 0xFFFFU) > 250U ? 2U : 1U;
+         });
+       },
+       "as the classes of a network"},
+      {"points_in_millimetres", kKitti,
+       [](const fs::path& root) {
+         change_points(root / kKittiSequence / "velodyne", [](Point& point) {
+           point = {1e3F * point.x, 1e3F * point.y, 1e3F * point.z, point.intensity};
+         });
+       },
+       "are these millimetres?"},
+      {"x_and_y_swapped", kKitti,
+       [](const fs::path& root) {
+         change_points(root / kKittiSequence / "velodyne",
+                       [](Point& point) { std::swap(point.x, point.y); });
+       },
+       "x and y of the points are swapped"},
+      {"frozen_scan", kKitti,
+       [](const fs::path& root) {
+         const fs::path scans = root / kKittiSequence / "velodyne";
+         const fs::path labels = root / kKittiSequence / "labels";
+         fs::copy_file(scans / "000016.bin", scans / "000017.bin",
+                       fs::copy_options::overwrite_existing);
+         fs::copy_file(labels / "000016.label", labels / "000017.label",
+                       fs::copy_options::overwrite_existing);
+       },
+       "scans hold the same points: 000017 as 000016"},
+      {"stamps_out_of_order", kKitti,
+       [](const fs::path& root) {
+         auto stamps_ns = read_times(root / kKittiSequence / "times.txt");
+         std::swap(stamps_ns.at(20), stamps_ns.at(21));
+         write_times(root / kKittiSequence / "times.txt", stamps_ns);
+       },
+       "1 stamps are not behind the one before, first that of scan 000021"},
+      {"split_naming_absent_scans", kSensors,
+       [](const fs::path& root) {
+         const fs::path split = root / "KAIST05/Deskewed_LiDAR/test.txt";
+         write_file_atomic(split, read_file(split) + "4711\n");
+       },
+       "names frame 4711", Severity::kError},
+      {"labels_beyond_the_range", kCampus,
+       [](const fs::path& root) {
+         change_labels(root / kCampusSequence, [](std::uint32_t label, const Point& point) {
+           return std::hypot(point.x, point.y, point.z) > 60.0F ? 9U : label;
+         });
+       },
+       "labelled points lie outside of 3 to 50 m"},
+      {"nan_points", kKitti,
+       [](const fs::path& root) {
+         change_points(root / kKittiSequence / "velodyne", [](Point& point) {
+           if (point.x > 30.0F) point.x = std::numeric_limits<float>::quiet_NaN();
+         });
+       },
+       "are NaN or infinite"},
+      {"label_without_scan", kKitti,
+       [](const fs::path& root) {
+         fs::copy_file(root / kKittiSequence / "labels/000003.label",
+                       root / kKittiSequence / "labels/000099.label");
+       },
+       "1 label files have no scan: 000099", Severity::kError},
+  };
+  return all;
+}
+
+class Doctor : public testing::TestWithParam<Fault> {};
+
+TEST_P(Doctor, FindsThePlantedFault) {
+  const Fault& fault = GetParam();
+  const TempFolder folder;
+  fs::copy(good_copy(fault.layout), folder / "data", fs::copy_options::recursive);
+  fault.plant(folder / "data");
+  const Checkup checkup = check_up(folder / "data", {});
+  EXPECT_THAT(all_symptoms(checkup), HasSubstr(fault.symptom));
+  EXPECT_EQ(checkup.has(Severity::kError), fault.severity == Severity::kError);
+}
+
+TEST(DoctorOnAFewScansOfAStraightRoad, TellsInverseFromTransposedPoses) {
+  const TempFolder folder;
+  simulate({.layout = DatasetKind::kSemanticKitti,
+            .scene = "highway",
+            .scans = 12,
+            .seed = 1,
+            .out = folder / "data",
+            .threads = 2});
+  const fs::path file = folder / "data" / kKittiSequence / "poses.txt";
+  auto poses = read_poses(file);
+  for (Pose& pose : poses) pose = pose.inverse();
+  write_poses(file, poses);
+  const std::string symptoms = all_symptoms(check_up(folder / "data", {}));
+  EXPECT_THAT(symptoms, HasSubstr("the poses fit better as sensor_from_map (inverse):"));
+}
+
+INSTANTIATE_TEST_SUITE_P(Faults, Doctor, testing::ValuesIn(faults()),
+                         [](const auto& fault) { return std::string(fault.param.name); });
+
+}  // namespace
+}  // namespace mosbench

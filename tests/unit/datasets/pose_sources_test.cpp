@@ -1,0 +1,150 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "datasets/files/bin_file.hpp"
+#include "datasets/files/errors.hpp"
+#include "datasets/files/pose_list.hpp"
+#include "datasets/sequence/pose_track.hpp"
+#include "datasets/sequence/recording.hpp"
+#include "datasets/sequence/undistort.hpp"
+#include "tests/temp_folder.hpp"
+
+namespace mosbench {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+using testing::Pair;
+
+/// A quarter turn about z with the sensor at (1, 2, 3).
+constexpr const char* kQuarterTurn = "0 -1 0 1 1 0 0 2 0 0 1 3";
+
+TEST(PoseList, ReadsEachFormatAndTellsItFromTheRow) {
+  const PoseList kitti = parse_pose_list(std::string(kQuarterTurn) + "\n", std::nullopt, "f");
+  const PoseList tum = parse_pose_list(
+      "# stamp tx ty tz qx qy qz qw\n0.5 1 2 3 0 0 0.70710678118654752 0.70710678118654752\n",
+      std::nullopt, "f");
+  const PoseList rollout = parse_pose_list(
+      "1, 2, 3, 0, 0, 0.70710678118654752, 0.70710678118654752\n", std::nullopt, "f");
+  EXPECT_EQ(kitti.format, PoseFormat::kKitti);
+  EXPECT_EQ(tum.format, PoseFormat::kTum);
+  EXPECT_EQ(rollout.format, PoseFormat::kRollout);
+  ASSERT_EQ(tum.stamps_ns.size(), 1U);
+  EXPECT_EQ(tum.stamps_ns[0], 500'000'000);
+  for (const PoseList* list : {&tum, &rollout}) {
+    ASSERT_EQ(list->poses.size(), 1U);
+    EXPECT_TRUE(list->poses[0].matrix().isApprox(kitti.poses[0].matrix(), 1e-12));
+  }
+}
+
+TEST(PoseList, RefusesRowsThatAreNoPose) {
+  const auto error_of = [](const char* text) {
+    return message_of<DataError>([&] { parse_pose_list(text, std::nullopt, "f"); });
+  };
+  EXPECT_THAT(error_of("1,2,3,0,0,0\n"), HasSubstr("f:1: 6 numbers in the row"));
+  EXPECT_THAT(error_of("1,2,3,0,0,0,2\n"), HasSubstr("quaternion is not of length 1"));
+  EXPECT_THAT(error_of("1,2,x,0,0,0,1\n"), HasSubstr("\"x\" is no finite number"));
+  EXPECT_THAT(error_of("0 1 2 3 0 0 0 1\n0 1 2 3 0 0 0 1\n"),
+              HasSubstr("f:2: its stamp is not behind"));
+  EXPECT_THAT(error_of("t 1 2 3 0 0 0 1\n"), HasSubstr("no time in seconds"));
+}
+
+Pose at_x(double x_m) {
+  Pose pose = Pose::Identity();
+  pose.translation().x() = x_m;
+  return pose;
+}
+
+TEST(PoseTrack, InterpolatesBetweenNeighboursAndNeverBeyondTheEnds) {
+  Pose turned = at_x(4.0);
+  turned.linear() = Eigen::AngleAxisd(0.2, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  const PoseTrack track({{200, turned}, {100, at_x(2.0)}});
+  EXPECT_EQ(track.at(100)->matrix(), at_x(2.0).matrix());
+  EXPECT_EQ(track.at(200)->matrix(), turned.matrix());
+  const Pose middle = *track.at(150);
+  EXPECT_DOUBLE_EQ(middle.translation().x(), 3.0);
+  EXPECT_TRUE(middle.linear().isApprox(
+      Eigen::AngleAxisd(0.1, Eigen::Vector3d::UnitZ()).toRotationMatrix(), 1e-12));
+  EXPECT_FALSE(track.at(99));
+  EXPECT_FALSE(track.at(201));
+  EXPECT_FALSE(PoseTrack().at(0));
+}
+
+TEST(Undistort, SaysWhenAPoseIsMissing) {
+  const PoseTrack track({{0, at_x(0.0)}, {100, at_x(1.0)}});
+  const PoseAt pose_at = [&](std::int64_t stamp_ns) { return track.at(stamp_ns); };
+  std::vector<Point> points(2, Point{1, 1, 1, 1});
+  EXPECT_FALSE(undistort(points, std::vector<std::int64_t>{0, 101}, 0, 0, pose_at));
+  EXPECT_FALSE(undistort(points, std::vector<std::int64_t>{0, 100}, 0, -1, pose_at));
+  points = {{1, 1, 1, 1}, {1, 1, 1, 1}};
+  EXPECT_TRUE(undistort(points, std::vector<std::int64_t>{0, 100}, 0, 0, pose_at));
+  EXPECT_EQ(points[0].x, 1.0F);
+  EXPECT_EQ(points[1].x, 2.0F);
+}
+
+/// Three empty scans at 10.0, 10.1 and 10.2 s.
+class PoseSources : public testing::Test {
+ protected:
+  PoseSources() {
+    for (const char* stem : {"000000", "000001", "000002"}) {
+      write_bin(folder_ / "velodyne" / (std::string(stem) + ".bin"), {});
+    }
+    folder_.write("times.txt", "10.0\n10.1\n10.2\n");
+    folder_.write("calib.txt", "Tr: 0 -1 0 0 0 0 -1 0 1 0 0 0\n");
+  }
+  Recording open(const ReadingOptions& options) const { return {folder_.path(), options}; }
+  double x_of(const Recording& recording, std::size_t scan_index) const {
+    return recording.read(scan_index).map_from_sensor.translation().x();
+  }
+
+  TempFolder folder_;
+};
+
+TEST_F(PoseSources, TakeStampedPosesAtTheScansStamps) {
+  const auto poses = folder_.write(
+      "tum.txt", "9.9 0 0 0 0 0 0 1\n10.1 2 0 0 0 0 0 1\n10.3 4 0 0 0 0 0 1\n11 9 0 0 0 0 0 1\n");
+  const Recording recording = open({.poses = poses});
+  EXPECT_DOUBLE_EQ(x_of(recording, 0), 1.0);
+  EXPECT_EQ(x_of(recording, 1), 2.0);
+  EXPECT_DOUBLE_EQ(x_of(recording, 2), 3.0);
+  EXPECT_THAT(recording.reading(), Contains(Pair("pose_format", "tum")));
+  EXPECT_THAT(recording.reading(), Contains(Pair("pose_frame", "lidar")));
+  EXPECT_THAT(recording.reading(), Contains(Pair("pose_pairing", "by stamp, 2 of 3 interpolated")));
+  const auto late = folder_.write("late.txt", "10.1 2 0 0 0 0 0 1\n10.3 4 0 0 0 0 0 1\n");
+  EXPECT_THAT(message_of<DataError>([&] { open({.poses = late}); }),
+              testing::AllOf(HasSubstr("no pose around the scan of 10.0"),
+                             HasSubstr("10.100000 to 10.300000 s")));
+}
+
+TEST_F(PoseSources, InvertRolloutsAndWhateverIsToldToBeInverse) {
+  const auto rollout = folder_.write("none.csv", "1,0,0,0,0,0,1\n2,0,0,0,0,0,1\n3,0,0,0,0,0,1\n");
+  EXPECT_EQ(x_of(open({.poses = rollout}), 2), -3.0);
+  EXPECT_EQ(x_of(open({.poses = rollout, .poses_inverse = false}), 2), 3.0);
+  EXPECT_THAT(open({.poses = rollout}).reading(),
+              Contains(Pair("pose_direction", "sensor_from_map, inverted")));
+}
+
+TEST_F(PoseSources, TurnCameraPosesByTrUnlessToldOtherwise) {
+  const std::string row = "1 0 0 0 0 1 0 0 0 0 1 5\n";  // 5 m along the camera's axis
+  folder_.write("poses.txt", row + row + row);
+  EXPECT_EQ(x_of(open({}), 0), 5.0);
+  EXPECT_EQ(x_of(open({.pose_frame = PoseFrame::kLidar}), 0), 0.0);
+  EXPECT_THAT(open({}).reading(),
+              Contains(Pair("pose_frame", "camera, turned into the lidar's by Tr of calib.txt")));
+  const auto tum = folder_.write("tum.txt", "9 0 0 5 0 0 0 1\n11 0 0 5 0 0 0 1\n");
+  EXPECT_EQ(x_of(open({.poses = tum, .pose_frame = PoseFrame::kCamera}), 0), 5.0);
+  std::filesystem::remove(folder_ / "calib.txt");
+  EXPECT_THAT(message_of<DataError>([&] { open({.pose_frame = PoseFrame::kCamera}); }),
+              HasSubstr("calib.txt: does not exist"));
+}
+
+TEST_F(PoseSources, RefuseAnotherNumberOfRows) {
+  const auto poses = folder_.write("p.csv", "1,0,0,0,0,0,1\n");
+  EXPECT_THAT(message_of<DataError>([&] { open({.poses = poses}); }),
+              HasSubstr("1 pose rows for 3 scans"));
+}
+
+}  // namespace
+}  // namespace mosbench

@@ -1,0 +1,340 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <set>
+
+#include "datasets/files/bin_file.hpp"
+#include "datasets/files/calib_file.hpp"
+#include "datasets/files/errors.hpp"
+#include "datasets/files/label_file.hpp"
+#include "datasets/files/pose_file.hpp"
+#include "datasets/files/times_file.hpp"
+#include "datasets/layouts/doals_sequence.hpp"
+#include "datasets/layouts/kitti_sequence.hpp"
+#include "datasets/sequence/fingerprint.hpp"
+#include "tests/temp_folder.hpp"
+
+namespace mosbench {
+namespace {
+
+using testing::AllOf;
+using testing::Contains;
+using testing::Each;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
+
+std::vector<Point> points_of(std::size_t count) {
+  std::vector<Point> points;
+  for (std::size_t i = 0; i < count; ++i) points.push_back({static_cast<float>(i), 1, 2, 3});
+  return points;
+}
+
+Pose at(double x_m) {
+  Pose pose = Pose::Identity();
+  pose.translation().x() = x_m;
+  return pose;
+}
+
+/// Scans of 3, 4, 5, ... points with the given stems, and a pose for each.
+void write_recording(const TempFolder& folder, const std::vector<std::string>& stems,
+                     const std::string& scan_folder = "velodyne") {
+  std::vector<Pose> poses;
+  for (std::size_t i = 0; i < stems.size(); ++i) {
+    write_bin(folder / (scan_folder + "/" + stems[i] + ".bin"), points_of(3 + i));
+    poses.push_back(at(0.5 * static_cast<double>(i)));
+  }
+  write_poses(folder / "poses.txt", poses);
+}
+
+std::string kitti_error(const TempFolder& folder) {
+  return message_of<DataError>([&] { KittiSequence("s", folder.path()); });
+}
+
+TEST(KittiSequence, ReadsScansPosesTimesAndLabelsForPartOfTheScans) {
+  const TempFolder folder;
+  write_recording(folder, {"000000", "000001", "000002"});
+  write_times(folder / "times.txt", std::vector<std::int64_t>{0, 100000000, 1582193985123456789});
+  write_labels(folder / "labels/000001.label", std::vector<std::uint32_t>{0, 9, 251, 0x500fb});
+  const KittiSequence sequence("08", folder.path());
+  EXPECT_EQ(sequence.name(), "08");
+  ASSERT_EQ(sequence.size(), 3U);
+  EXPECT_EQ(sequence.point_count(2), 5U);
+  EXPECT_FALSE(sequence.has_truth(0));
+  EXPECT_TRUE(sequence.has_truth(1));
+
+  const Frame frame = sequence.read(1);
+  EXPECT_EQ(frame.stem, "000001");
+  EXPECT_EQ(format_bin(frame.points), format_bin(points_of(4)));
+  EXPECT_EQ(frame.map_from_sensor.matrix(), at(0.5).matrix());
+  EXPECT_EQ(frame.stamp_ns, 100000000);
+  ASSERT_TRUE(frame.truth.has_value());
+  EXPECT_THAT(*frame.truth, ElementsAre(0U, 9U, 251U, 0x500fbU));
+  EXPECT_EQ(sequence.read_truth(1), *frame.truth);
+
+  EXPECT_FALSE(sequence.read(0).truth.has_value());
+  EXPECT_THAT(message_of<DataError>([&] { sequence.read_truth(0); }),
+              AllOf(HasSubstr("000000.bin"), HasSubstr("no truth")));
+  EXPECT_EQ(sequence.read(2).stamp_ns, 1582193985123456789);
+  EXPECT_THAT(sequence.remarks(), Contains("labels for 1 of 3 scans"));
+  EXPECT_EQ(sequence.files().size(), 6U);
+}
+
+TEST(KittiSequence, OrdersScansByTheValueOfTheirStem) {
+  const TempFolder folder;
+  write_recording(folder, {"10", "9", "0100"});
+  const KittiSequence sequence("s", folder.path());
+  EXPECT_EQ(sequence.stem(0), "9");
+  EXPECT_EQ(sequence.stem(1), "10");
+  EXPECT_EQ(sequence.stem(2), "0100");
+}
+
+TEST(KittiSequence, OrdersScansByTextWhenAStemIsNoNumber) {
+  const TempFolder folder;
+  write_recording(folder, {"10", "9", "first"});
+  const KittiSequence sequence("s", folder.path());
+  EXPECT_EQ(sequence.stem(0), "10");
+  EXPECT_EQ(sequence.stem(2), "first");
+}
+
+TEST(KittiSequence, RefusesTwoScansWithTheSameNumber) {
+  const TempFolder folder;
+  write_recording(folder, {"7", "007"});
+  EXPECT_THAT(kitti_error(folder), HasSubstr("same scan"));
+}
+
+TEST(KittiSequence, PassesOverHiddenAndForeignFiles) {
+  const TempFolder folder;
+  write_recording(folder, {"000000"});
+  folder.write("velodyne/._000000.bin", "metadata of another system");
+  folder.write("velodyne/000001.bin.partial", "half a scan");
+  EXPECT_EQ(KittiSequence("s", folder.path()).size(), 1U);
+}
+
+TEST(KittiSequence, TakesPosesBitForBitWhenTrIsTheIdentityOrMissing) {
+  const TempFolder folder;
+  write_recording(folder, {"0", "1"});
+  folder.write("poses.txt", "1 0 0 0.1 0 1 0 0.2 0 0 1 0.3\n1 0 0 1e-17 0 1 0 7 0 0 1 9\n");
+  const KittiSequence without("s", folder.path());
+  EXPECT_THAT(without.remarks(), Contains(HasSubstr("no calib.txt")));
+  write_calib(folder / "calib.txt", Pose::Identity());
+  const KittiSequence with("s", folder.path());
+  for (const KittiSequence* sequence : {&without, &with}) {
+    EXPECT_EQ(sequence->read(0).map_from_sensor.translation(), Eigen::Vector3d(0.1, 0.2, 0.3));
+    EXPECT_EQ(sequence->read(1).map_from_sensor.translation(), Eigen::Vector3d(1e-17, 7, 9));
+  }
+  EXPECT_THAT(with.remarks(), Each(Not(HasSubstr("calib"))));
+}
+
+TEST(KittiSequence, TurnsCameraPosesIntoLidarPosesAndSaysSo) {
+  const TempFolder folder;
+  write_recording(folder, {"0"});
+  folder.write("poses.txt", "1 0 0 0 0 1 0 0 0 0 1 5\n");
+  folder.write("calib.txt", "Tr: 0 -1 0 0 0 0 -1 0 1 0 0 0\n");
+  const KittiSequence sequence("s", folder.path());
+  EXPECT_EQ(sequence.read(0).map_from_sensor.translation(), Eigen::Vector3d(5, 0, 0));
+  EXPECT_THAT(sequence.remarks(), Contains(HasSubstr("Tr^-1 * P * Tr")));
+}
+
+TEST(KittiSequence, TakesAnotherPoseFile) {
+  const TempFolder folder;
+  write_recording(folder, {"0"});
+  std::filesystem::remove(folder / "poses.txt");
+  write_poses(folder / "elsewhere.txt", std::vector<Pose>{at(7)});
+  const KittiSequence sequence("s", folder.path(),
+                               ReadingOptions{.poses = folder / "elsewhere.txt"});
+  EXPECT_EQ(sequence.read(0).map_from_sensor.translation().x(), 7.0);
+}
+
+TEST(KittiSequence, NamesWhatIsMissing) {
+  const TempFolder folder;
+  EXPECT_THAT(kitti_error(folder), AllOf(HasSubstr("no folder of scans"), HasSubstr("velodyne/")));
+  std::filesystem::create_directories(folder / "velodyne");
+  EXPECT_THAT(kitti_error(folder), AllOf(HasSubstr("holds no scan"), HasSubstr(".bin")));
+  write_bin(folder / "velodyne/0.bin", points_of(1));
+  EXPECT_THAT(kitti_error(folder), AllOf(HasSubstr("poses.txt"), HasSubstr("--poses")));
+}
+
+TEST(KittiSequence, NamesBothCountsWhenPosesOrTimesDoNotFit) {
+  const TempFolder folder;
+  write_recording(folder, {"0", "1"});
+  write_poses(folder / "poses.txt", std::vector<Pose>{at(0)});
+  EXPECT_THAT(kitti_error(folder), HasSubstr("poses.txt: 1 pose rows for 2 scans"));
+  write_poses(folder / "poses.txt", std::vector<Pose>{at(0), at(1), at(2)});
+  EXPECT_THAT(kitti_error(folder), HasSubstr("poses.txt: 3 pose rows for 2 scans"));
+  write_poses(folder / "poses.txt", std::vector<Pose>{at(0), at(1)});
+  folder.write("times.txt", "0\n0.1\n0.2\n");
+  EXPECT_THAT(kitti_error(folder), HasSubstr("times.txt: 3 times for 2 scans"));
+}
+
+TEST(KittiSequence, ChecksSizesAndPairsOfFilesWhenOpened) {
+  const TempFolder folder;
+  write_recording(folder, {"0", "1"});
+  write_labels(folder / "labels/0.label", std::vector<std::uint32_t>{9, 9});
+  EXPECT_THAT(kitti_error(folder), AllOf(HasSubstr("0.label: has 8 bytes"), HasSubstr("3 points")));
+  std::filesystem::remove(folder / "labels/0.label");
+  write_labels(folder / "labels/2.label", std::vector<std::uint32_t>{9});
+  EXPECT_THAT(kitti_error(folder), HasSubstr("2.label: belongs to no scan"));
+  std::filesystem::remove(folder / "labels/2.label");
+  folder.write("velodyne/1.bin", "seventeen bytes..");
+  EXPECT_THAT(kitti_error(folder), HasSubstr("1.bin: 17 bytes are no multiple of 16"));
+}
+
+TEST(KittiSequence, NoticesAScanThatChangedAfterOpening) {
+  const TempFolder folder;
+  write_recording(folder, {"0"});
+  const KittiSequence sequence("s", folder.path());
+  write_bin(folder / "velodyne/0.bin", points_of(9));
+  EXPECT_THAT(message_of<DataError>([&] { sequence.read(0); }), HasSubstr("changed since"));
+}
+
+TEST(DoalsSequence, FindsTheLabelledScansByStampAndKeepsRawOrder) {
+  const TempFolder folder;
+  write_recording(folder, {"000000", "000001", "000002"}, "binFiles");
+  folder.write("times.txt", "1582193985.1\n1582193985.200000001\n1582193985.3\n");
+  folder.write("indices.csv", "1582193985200000001,3,0,3\n1582193985300000000\n");
+  const DoalsSequence sequence("a/sequence_1", folder.path(), nullptr);
+  EXPECT_FALSE(sequence.has_truth(0));
+  ASSERT_TRUE(sequence.has_truth(1));
+  EXPECT_THAT(sequence.read_truth(1), ElementsAre(251U, 9U, 9U, 251U));
+  EXPECT_EQ(sequence.read(1).truth, sequence.read_truth(1));
+  EXPECT_EQ(format_bin(sequence.read(1).points), format_bin(points_of(4)));
+  EXPECT_THAT(sequence.read_truth(2), Each(9U));
+}
+
+TEST(DoalsSequence, TakesScanNamesInNanosecondsAsStamps) {
+  const TempFolder folder;
+  write_recording(folder, {"1582193985123456788", "1582193985123456789"});
+  folder.write("indices.csv", "1582193985123456789,1\n");
+  const DoalsSequence sequence("s", folder.path(), nullptr);
+  EXPECT_FALSE(sequence.has_truth(0));
+  EXPECT_TRUE(sequence.has_truth(1));
+}
+
+TEST(DoalsSequence, NeverTakesTheNearestStamp) {
+  const TempFolder folder;
+  write_recording(folder, {"0", "1"});
+  folder.write("times.txt", "1.000000000\n1.100000000\n");
+  folder.write("indices.csv", "1000000000,1\n1100000001,1\n");
+  const auto error_of_opening = [&] {
+    return message_of<DataError>([&] { DoalsSequence("s", folder.path(), nullptr); });
+  };
+  EXPECT_THAT(error_of_opening(), HasSubstr("indices.csv:2: 0 scans have the stamp 1100000001"));
+  folder.write("times.txt", "1\n1\n");
+  EXPECT_THAT(error_of_opening(), HasSubstr("indices.csv:1: 2 scans have the stamp 1000000000"));
+}
+
+TEST(DoalsSequence, RefusesAnIndexBeyondItsScan) {
+  const TempFolder folder;
+  write_recording(folder, {"0", "1"});
+  folder.write("times.txt", "1\n2\n");
+  folder.write("indices.csv", "1000000000,2\n2000000000,4\n");
+  EXPECT_THAT(message_of<DataError>([&] { DoalsSequence("s", folder.path(), nullptr); }),
+              HasSubstr("indices.csv:2: index 4 is beyond the scan"));
+}
+
+TEST(DoalsSequence, UsesThePublishedListOnlyForTheWholePublishedRecording) {
+  const TempFolder folder;
+  const DoalsPublished* published = find_doals_published("shopville", "sequence_1");
+  ASSERT_NE(published, nullptr);
+  std::string poses;
+  for (std::size_t i = 0; i < published->scans; ++i) {
+    folder.write("velodyne/" + std::to_string(i) + ".bin", "");
+    poses += "1 0 0 0 0 1 0 0 0 0 1 0\n";
+  }
+  folder.write("poses.txt", poses);
+  std::string rows;
+  for (int row = 1; row <= 10; ++row) rows += std::to_string(row) + "\n";
+  folder.write("indices.csv", rows);
+  const DoalsSequence sequence("shopville/sequence_1", folder.path(), published);
+  for (std::size_t i = 0; i < sequence.size(); ++i) {
+    const auto& list = published->truth;
+    EXPECT_EQ(sequence.has_truth(i), std::find(list.begin(), list.end(), i + 1) != list.end()) << i;
+  }
+  EXPECT_THAT(sequence.remarks(), Contains(HasSubstr("DOALS sequence 5")));
+
+  EXPECT_THAT(message_of<DataError>([&] { DoalsSequence("s", folder.path(), nullptr); }),
+              HasSubstr("stamps cannot be matched"));
+  EXPECT_THAT(message_of<DataError>([&] {
+                DoalsSequence("s", folder.path(), find_doals_published("station", "sequence_1"));
+              }),
+              AllOf(HasSubstr("10 rows for 1068 scans"), HasSubstr("2008 scans")));
+}
+
+TEST(DoalsSequence, KnowsTheEightPublishedRecordings) {
+  std::size_t scans = 0;
+  for (const DoalsPublished& published : doals_published()) {
+    scans += published.scans;
+    EXPECT_TRUE(std::is_sorted(published.truth.begin(), published.truth.end()));
+    EXPECT_LE(published.truth.back(), published.scans);
+  }
+  EXPECT_EQ(doals_published().size(), 8U);
+  EXPECT_EQ(scans, 12825U);
+}
+
+TEST(DoalsSequence, HasNoTruthWithoutIndices) {
+  const TempFolder folder;
+  write_recording(folder, {"0"});
+  const DoalsSequence sequence("s", folder.path(), nullptr);
+  EXPECT_FALSE(sequence.has_truth(0));
+  EXPECT_THAT(message_of<DataError>([&] { sequence.read_truth(0); }), HasSubstr("no truth"));
+  EXPECT_THAT(sequence.remarks(), Contains(HasSubstr("no indices.csv")));
+}
+
+Frame sample_frame() {
+  Frame frame;
+  frame.stem = "000000";
+  frame.points = points_of(4);
+  frame.stamp_ns = 5;
+  frame.truth = std::vector<std::uint32_t>{9, 9, 251, 0};
+  return frame;
+}
+
+std::string fingerprint_of(const std::vector<Frame>& frames) {
+  ContentFingerprint fingerprint;
+  for (const Frame& frame : frames) fingerprint.add(frame);
+  return fingerprint.hex();
+}
+
+TEST(ContentFingerprint, ChangesWithEverythingThatDecidesResults) {
+  const std::string original = fingerprint_of({sample_frame()});
+  EXPECT_EQ(original.size(), 32U);
+  EXPECT_EQ(fingerprint_of({sample_frame()}), original);
+  std::set<std::string> seen = {original, fingerprint_of({}),
+                                fingerprint_of({sample_frame(), sample_frame()})};
+  const auto expect_new = [&](auto&& change) {
+    Frame frame = sample_frame();
+    change(frame);
+    EXPECT_TRUE(seen.insert(fingerprint_of({frame})).second);
+  };
+  expect_new([](Frame& frame) { frame.stem = "000001"; });
+  expect_new([](Frame& frame) { frame.points[3].intensity = 4; });
+  expect_new([](Frame& frame) { frame.points.pop_back(); });
+  expect_new([](Frame& frame) { frame.map_from_sensor.translation().z() = 1e-17; });
+  expect_new([](Frame& frame) { frame.stamp_ns = 6; });
+  expect_new([](Frame& frame) { frame.stamp_ns.reset(); });
+  expect_new([](Frame& frame) { (*frame.truth)[0] = 251; });
+  expect_new([](Frame& frame) { frame.truth.reset(); });
+}
+
+TEST(FileStamp, ChangesOnlyWhenAFileDoes) {
+  const TempFolder folder;
+  write_recording(folder, {"0", "1"});
+  const auto stamp = [&] { return file_stamp(KittiSequence("s", folder.path())); };
+  const std::string original = stamp();
+  EXPECT_EQ(original.size(), 32U);
+  EXPECT_EQ(stamp(), original);
+  const auto scan = folder / "velodyne/1.bin";
+  const auto written = std::filesystem::last_write_time(scan);
+  std::filesystem::last_write_time(scan, written + std::chrono::seconds(1));
+  EXPECT_NE(stamp(), original);
+  std::filesystem::last_write_time(scan, written);
+  EXPECT_EQ(stamp(), original);
+  folder.write("times.txt", "0\n1\n");
+  EXPECT_NE(stamp(), original);
+}
+
+}  // namespace
+}  // namespace mosbench

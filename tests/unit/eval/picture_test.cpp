@@ -1,0 +1,111 @@
+#include "eval/report/picture.hpp"
+
+#include <gtest/gtest.h>
+#include <png.h>
+
+#include <limits>
+
+#include "eval/report/birds_eye.hpp"
+#include "eval/report/palette.hpp"
+
+namespace mosbench {
+namespace {
+
+constexpr Colour kBlack{0, 0, 0};
+constexpr Colour kRed{200, 0, 0};
+
+std::size_t pixels_of(const Picture& picture, Colour colour) {
+  std::size_t count = 0;
+  for (std::size_t y = 0; y < picture.height(); ++y) {
+    for (std::size_t x = 0; x < picture.width(); ++x) count += picture.at(x, y) == colour ? 1U : 0U;
+  }
+  return count;
+}
+
+TEST(Picture, FillsADiscAboutItsMiddle) {
+  Picture picture(40, 40, kBlack);
+  picture.disc(20.0, 20.0, 8.0, kRed);
+  EXPECT_EQ(picture.at(20, 20), kRed);
+  EXPECT_EQ(picture.at(20, 13), kRed);
+  EXPECT_EQ(picture.at(20, 8), kBlack);
+  EXPECT_EQ(picture.at(27, 27), kBlack);
+}
+
+TEST(Picture, DrawsNothingOutside) {
+  Picture picture(10, 10, kBlack);
+  picture.disc(-100.0, 5.0, 3.0, kRed);
+  picture.disc(1e9, 1e9, 3.0, kRed);
+  picture.text(-500, 3, "far", kRed);
+  picture.rectangle(10, 10, 5, 5, kRed);
+  EXPECT_EQ(pixels_of(picture, kBlack), 100U);
+}
+
+TEST(Picture, WritesLettersThatDifferAndNothingForABlank) {
+  const auto lit = [](const char* text) {
+    Picture picture(Picture::kGlyphWidth, Picture::kGlyphHeight, kBlack);
+    picture.text(0, 0, text, {255, 255, 255});
+    return picture.width() * picture.height() - pixels_of(picture, kBlack);
+  };
+  EXPECT_EQ(lit(" "), 0U);
+  EXPECT_GT(lit("."), 0U);
+  EXPECT_GT(lit("M"), 3 * lit("."));
+  EXPECT_EQ(lit("\xff"), lit("?"));
+}
+
+TEST(Picture, IsAPngFileOfTheSamePixels) {
+  Picture picture(30, 20, kBlack);
+  picture.rectangle(3, 4, 5, 6, kRed);
+  const std::string bytes = picture.png();
+  png_image image{};
+  image.version = PNG_IMAGE_VERSION;
+  ASSERT_NE(png_image_begin_read_from_memory(&image, bytes.data(), bytes.size()), 0);
+  ASSERT_EQ(image.width, 30U);
+  ASSERT_EQ(image.height, 20U);
+  image.format = PNG_FORMAT_RGB;
+  std::vector<std::uint8_t> pixels(PNG_IMAGE_SIZE(image));
+  ASSERT_NE(png_image_finish_read(&image, nullptr, pixels.data(), 0, nullptr), 0);
+  const std::size_t inside = 3 * (30 * 5 + 4);
+  EXPECT_EQ(pixels[inside], 200);
+  EXPECT_EQ(pixels[0], 0);
+}
+
+TEST(Palette, IsThatOfThePage) {
+  EXPECT_EQ(palette(false).outcomes[0], (Colour{0x00, 0x72, 0xB2}));
+  EXPECT_EQ(palette(true).names[1], "false positive");
+}
+
+/// One point per outcome, ahead of the sensor and apart from each other.
+JudgedScan row_of_outcomes() {
+  JudgedScan scan;
+  for (std::size_t i = 0; i < 6; ++i) {
+    scan.frame.points.push_back({4.0F + static_cast<float>(i), 0.0F, 0.0F, 0.0F});
+    scan.outcomes.push_back(static_cast<PointOutcome>(i));
+  }
+  return scan;
+}
+
+TEST(BirdsEye, DrawsEachPointWhereItIsInTheColourOfItsOutcome) {
+  BirdsEyeOptions options;
+  options.size_pixels = 1000;
+  options.range_m = 20.0;
+  const Picture picture = birds_eye(row_of_outcomes(), options);
+  const Palette colours = palette(false);
+  for (const std::size_t i : {0U, 1U, 2U, 5U}) {
+    const std::size_t up = 500 - 25 * (4 + i);
+    EXPECT_EQ(picture.at(500, up), colours.outcomes[i]) << i;
+  }
+}
+
+TEST(BirdsEye, DrawsAScanWithoutPointsAndWithImpossibleOnes) {
+  JudgedScan scan;
+  EXPECT_EQ(birds_eye(scan, {}).width(), 1000U);
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+  scan.frame.points = {{kNan, 0, 0, 0}, {1e30F, 0, 0, 0}, {0, 0, 0, 0}};
+  scan.outcomes.assign(3, PointOutcome::kFalsePositive);
+  const Picture picture = birds_eye(scan, {});
+  // Only in the key to the colours.
+  EXPECT_LT(pixels_of(picture, palette(false).outcomes[1]), 120U);
+}
+
+}  // namespace
+}  // namespace mosbench

@@ -1,0 +1,119 @@
+#include "eval/protocols/protocol.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <limits>
+#include <set>
+#include <string>
+#include <string_view>
+
+#include "datasets/files/errors.hpp"
+#include "datasets/files/nearest_name.hpp"
+#include "eval/protocols/protocol_list.hpp"
+
+namespace mosbench {
+namespace {
+
+TEST(Protocols, HoldEveryBenchmarkThatIsPromised) {
+  for (const std::string_view name :
+       {"doals-hmm", "doals-dynablox", "semantickitti-mos", "sipailou", "helimos-all",
+        "helimos-test", "mapmos", "mapmos-apollo", "mapmos-kitti-tracking", "moe", "mdetector",
+        "mdetector-nuscenes"}) {
+    ASSERT_NE(find_protocol(name), nullptr) << name;
+    EXPECT_EQ(find_protocol(name)->name, name);
+  }
+}
+
+TEST(Protocols, AreCompleteRowsWithUniqueNames) {
+  std::set<std::string_view> names;
+  for (const Protocol& protocol : protocols()) {
+    EXPECT_TRUE(names.insert(protocol.name).second) << protocol.name;
+    EXPECT_FALSE(protocol.summary.empty()) << protocol.name;
+    EXPECT_NE(protocol.source.find(':'), std::string_view::npos) << protocol.name;
+    const LabelTable truth(protocol.truth);
+    const LabelTable prediction(protocol.prediction);
+    EXPECT_EQ(truth[9], TruthClass::kStatic) << protocol.name;
+    EXPECT_EQ(prediction[9], TruthClass::kStatic) << protocol.name;
+    EXPECT_EQ(prediction[251], TruthClass::kMoving) << protocol.name;
+  }
+}
+
+TEST(Protocols, AreNotFoundByAnotherName) {
+  EXPECT_EQ(find_protocol("helimos"), nullptr);
+  EXPECT_EQ(find_protocol(""), nullptr);
+}
+
+TEST(Protocols, SuggestTheNearestNameForAnUnknownOne) {
+  try {
+    protocol_named("semantickiti-mos");
+    FAIL() << "no error";
+  } catch (const UsageError& error) {
+    EXPECT_STREQ(error.what(),
+                 "protocol: \"semantickiti-mos\" does not exist, expected a name that "
+                 "`mosbench list` shows, such as \"semantickitti-mos\"");
+  }
+}
+
+TEST(Protocols, AreDescribedInWords) {
+  const auto rows = describe_protocols();
+  ASSERT_EQ(rows.size(), protocols().size());
+  EXPECT_EQ(rows[0].name, "doals-hmm");
+  EXPECT_EQ(rows[0].truth, "0-250 static, 251-65535 moving");
+  EXPECT_EQ(rows[0].prediction, "251-65535");
+  EXPECT_EQ(rows[0].range, "truth only, 0.5 to 20 m by default");
+  EXPECT_EQ(rows[0].aggregation, "mean of scans");
+  EXPECT_EQ(rows[0].empty_case, "NaN");
+  const auto& sipailou = rows[3];
+  EXPECT_EQ(sipailou.name, "sipailou");
+  EXPECT_EQ(sipailou.truth, "0 9 static, 251-252 moving, others static");
+  EXPECT_EQ(sipailou.range, "none");
+  EXPECT_EQ(sipailou.split, "test");
+  EXPECT_EQ(rows[0].split, "all labelled scans");
+  const auto& mapmos = rows[6];
+  EXPECT_EQ(mapmos.name, "mapmos");
+  EXPECT_EQ(mapmos.range, "truth and prediction, no limit by default");
+}
+
+TEST(RangeGate, IncludesBothEnds) {
+  const RangeGate gate{0.5, 20.0};
+  EXPECT_TRUE(gate.contains(0.5));
+  EXPECT_TRUE(gate.contains(20.0));
+  EXPECT_FALSE(gate.contains(0.49999999));
+  EXPECT_FALSE(gate.contains(20.0000001));
+}
+
+TEST(RangeGate, HasNoUpperLimitWhenItIsNegativeOrZero) {
+  const double infinity = std::numeric_limits<double>::infinity();
+  EXPECT_TRUE((RangeGate{0.0, -1.0}.contains(1e9)));
+  EXPECT_TRUE((RangeGate{0.0, 0.0}.contains(infinity)));
+  EXPECT_FALSE((RangeGate{0.0, 20.0}.contains(infinity)));
+}
+
+TEST(RangeGate, NeverContainsARangeThatIsNotANumber) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE((RangeGate{0.0, -1.0}.contains(nan)));
+  EXPECT_FALSE((RangeGate{0.5, 20.0}.contains(nan)));
+}
+
+TEST(NearestName, IsTheOneWithTheFewestEdits) {
+  const std::array<std::string_view, 3> names = {"sipailou", "helimos", "doals"};
+  EXPECT_EQ(nearest_name("sipalou", names), "sipailou");
+  EXPECT_EQ(nearest_name("heliMOS", names), "helimos");
+  EXPECT_EQ(nearest_name("DOALS", names), "doals");
+  EXPECT_EQ(nearest_name("doal", names), "doals");
+}
+
+TEST(NearestName, WeighsInsertedDeletedAndReplacedCharactersAlike) {
+  const std::array<std::string_view, 2> insertion = {"xoxl", "doals"};
+  EXPECT_EQ(nearest_name("doal", insertion), "doals");
+  const std::array<std::string_view, 2> deletion = {"xoxlsx", "doals"};
+  EXPECT_EQ(nearest_name("doalss", deletion), "doals");
+  const std::array<std::string_view, 2> replacement = {"d", "doals"};
+  EXPECT_EQ(nearest_name("doakx", replacement), "doals");
+}
+
+TEST(NearestName, IsEmptyWithoutCandidates) { EXPECT_EQ(nearest_name("doals", {}), ""); }
+
+}  // namespace
+}  // namespace mosbench

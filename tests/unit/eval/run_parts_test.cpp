@@ -1,0 +1,175 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include "datasets/files/errors.hpp"
+#include "eval/results/json_differences.hpp"
+#include "eval/results/progress.hpp"
+#include "eval/results/reading_json.hpp"
+#include "eval/results/text_table.hpp"
+#include "eval/runs/sequence_runner.hpp"
+#include "eval/tables/score_table.hpp"
+
+namespace mosbench {
+namespace {
+
+std::vector<std::size_t> judged(int delay_scans, int local_window_scans, std::size_t scan_count) {
+  Config config;
+  config.delay_scans = delay_scans;
+  config.local_window_scans = local_window_scans;
+  std::vector<std::size_t> scans;
+  for (std::size_t k = 0; k < scan_count; ++k) {
+    if (detection_runs(config, k, scan_count)) scans.push_back(k);
+  }
+  return scans;
+}
+
+// Worked by hand from section 4 of the algorithm.
+TEST(DetectionRuns, OnTheScansThatTheAuthorsProgramJudges) {
+  EXPECT_EQ(judged(0, 3, 7), (std::vector<std::size_t>{4, 5, 6}));
+  // Scan 0 never, scan N - n = 6 static, the others by the delayed detection or their own.
+  EXPECT_EQ(judged(4, 3, 10), (std::vector<std::size_t>{1, 2, 3, 4, 5, 7, 8, 9}));
+  // Delay 1 reaches back to scan 3 at k = 4 only.
+  EXPECT_EQ(judged(1, 3, 7), (std::vector<std::size_t>{3, 4, 5}));
+  EXPECT_EQ(judged(10, 3, 6), (std::vector<std::size_t>{4, 5}));
+}
+
+TEST(JsonDifferences, NameWhatDiffersOnEitherSide) {
+  const nlohmann::ordered_json first = {{"a", 1}, {"b", {{"c", 2.5}, {"d", "x"}}}, {"gone", {}}};
+  const nlohmann::ordered_json second = {{"a", 1}, {"b", {{"c", 3.5}, {"d", "x"}}}, {"e", true}};
+  std::string text;
+  for (const JsonDifference& difference : json_differences(first, second)) {
+    text += difference.key + ' ' + difference.first + ' ' + difference.second + '\n';
+  }
+  EXPECT_EQ(text, "b/c 2.5 3.5\ne nothing true\ngone null nothing\n");
+  EXPECT_EQ(changed_members(first, second),
+            "b/c is 2.5 there and 3.5 now; e is nothing there and "
+            "true now");
+  EXPECT_TRUE(json_differences(second, second).empty());
+  const nlohmann::ordered_json empty = nlohmann::ordered_json::object();
+  EXPECT_TRUE(json_differences(empty, empty).empty());
+  EXPECT_EQ(json_differences(empty, {{"a", 1}}).size(), 1U);
+}
+
+TEST(ReadingJson, KeepsWhatTheUserTold) {
+  const ReadingOptions told = {.poses = "/somewhere/p.csv",
+                               .pose_format = PoseFormat::kTum,
+                               .pose_frame = PoseFrame::kCamera,
+                               .poses_inverse = false,
+                               .topic = "/os1",
+                               .map_frame = "map",
+                               .undistort = false,
+                               .bin_columns = 5};
+  const nlohmann::ordered_json json = told_json(told);
+  const ReadingOptions read = told_from_json(json);
+  EXPECT_EQ(read.poses, told.poses);
+  EXPECT_EQ(read.pose_format, told.pose_format);
+  EXPECT_EQ(read.pose_frame, told.pose_frame);
+  EXPECT_EQ(read.poses_inverse, told.poses_inverse);
+  EXPECT_EQ(read.topic, told.topic);
+  EXPECT_EQ(read.map_frame, told.map_frame);
+  EXPECT_EQ(read.undistort, told.undistort);
+  EXPECT_EQ(read.bin_columns, told.bin_columns);
+  EXPECT_EQ(told_json(read), json);
+  EXPECT_TRUE(told_json({}).empty());
+  EXPECT_TRUE(told_json(told_from_json({{"file_stamp", "ab"}})).empty());
+}
+
+TEST(ReadingJson, RefusesWordsItDoesNotKnow) {
+  for (const char* key : {"pose_format", "pose_frame", "pose_direction"}) {
+    EXPECT_THROW(told_from_json({{key, "sideways"}}), UsageError) << key;
+  }
+}
+
+TEST(ReadingJson, RefusesColumnsThatNoScanFileHas) {
+  for (const char* columns : {"0", "1", "-4", "4.5", "\"5\"", "null", "4611686018427387904"}) {
+    const auto json = nlohmann::ordered_json::parse(columns);
+    EXPECT_THROW(told_from_json({{"bin_columns", json}}), UsageError) << columns;
+  }
+}
+
+TEST(TextTable, AlignsColumnsAndEndsLinesAtTheirLastCell) {
+  TextTable table({{"name", TextTable::Align::kLeft}, {"IoU"}});
+  table.add_row({"a", "0.5"});
+  table.add_rule();
+  table.add_row({"longer"});
+  EXPECT_EQ(table.str(),
+            "name    IoU\n"
+            "------  ---\n"
+            "a       0.5\n"
+            "------  ---\n"
+            "longer\n");
+}
+
+TEST(DurationText, ChangesItsUnitWithTheLength) {
+  EXPECT_EQ(duration_text(0.2), "0 s");
+  EXPECT_EQ(duration_text(59.4), "59 s");
+  EXPECT_EQ(duration_text(185.0), "3 min 05 s");
+  EXPECT_EQ(duration_text(7620.0), "2 h 07 min");
+}
+
+Confusion counts(std::uint64_t tp, std::uint64_t fp, std::uint64_t fn) {
+  Confusion confusion;
+  confusion.tp = tp;
+  confusion.fp = fp;
+  confusion.fn = fn;
+  return confusion;
+}
+
+const std::vector<ScoredSequence> kTwoSequences = {
+    {"a", {{"0", counts(1, 0, 1)}, {"1", std::nullopt}, {"2", counts(3, 1, 0)}}, 10.0},
+    {"b", {{"0", counts(90, 5, 5)}}, 30.0}};
+
+TEST(ScoreRows, PoolASplitOverItsSequences) {
+  const Split split{"test", {{0, std::nullopt}, {1, std::nullopt}}};
+  const auto rows = score_rows(protocol_named("sipailou"), {split}, kTwoSequences);
+  ASSERT_EQ(rows.size(), 3U);
+  EXPECT_DOUBLE_EQ(rows[0].summary.iou.value(), 4.0 / 6.0);
+  EXPECT_EQ(rows[0].scans, 3U);
+  EXPECT_EQ(rows[0].summary.scans, 2U);
+  EXPECT_EQ(rows[2].kind, ScoreRow::Kind::kSplit);
+  EXPECT_DOUBLE_EQ(rows[2].summary.iou.value(), 94.0 / 106.0);
+  EXPECT_DOUBLE_EQ(rows[2].method_ms_per_scan.value(), 15.0);
+}
+
+TEST(ScoreRows, AverageSensorsWhereTheProtocolDoes) {
+  const Split split{"test", {{0, std::set<std::string>{"2"}}, {1, std::nullopt}}};
+  const auto rows = score_rows(protocol_named("helimos-test"), {split}, kTwoSequences);
+  ASSERT_EQ(rows.size(), 4U);
+  EXPECT_EQ(rows[2].kind, ScoreRow::Kind::kPart);
+  EXPECT_DOUBLE_EQ(rows[2].summary.iou.value(), 0.75);
+  EXPECT_DOUBLE_EQ(rows[0].summary.iou.value(), 0.75) << "of the scans of the split";
+  EXPECT_EQ(rows[0].split, "test");
+  EXPECT_DOUBLE_EQ(rows[3].summary.iou.value(), (0.75 + 0.9) / 2.0);
+}
+
+TEST(ScoreRows, CoverWholeSequencesWhereTheSplitPicksNone) {
+  const Split whole{"test", {{0, std::nullopt}}};
+  const Split picked{"test", {{0, std::set<std::string>{"2"}}}};
+  EXPECT_EQ(score_rows(protocol_named("helimos-test"), {whole}, kTwoSequences)[0].split, "");
+  EXPECT_EQ(score_rows(protocol_named("helimos-all"), {picked}, kTwoSequences)[0].split, "");
+  const auto rows = score_rows(protocol_named("helimos-test"), {picked}, kTwoSequences);
+  EXPECT_EQ(rows[1].scans, 0U) << "sequence b has no scan in the split";
+}
+
+TEST(BenchmarkNotice, SaysWhichRowHoldsTheNumberOrThatNoneDoes) {
+  const Split split{"test", {{0, std::nullopt}}};
+  EXPECT_EQ(benchmark_notice(protocol_named("sipailou"), {split}),
+            "the benchmark's number is that of split test\n");
+  EXPECT_THAT(benchmark_notice(protocol_named("sipailou"), {}),
+              testing::StartsWith("no row is the benchmark's number"));
+  EXPECT_EQ(benchmark_notice(protocol_named("helimos-all"), {}), "");
+}
+
+TEST(ScoreRows, WithoutTruthShowNoNumber) {
+  const auto rows =
+      score_rows(protocol_named("sipailou"), {}, {{"a", {{"0", std::nullopt}}, std::nullopt}});
+  EXPECT_NE(format_rows(protocol_named("sipailou"), rows).find("no truth"), std::string::npos);
+  EXPECT_TRUE(rows_json(rows).at("sequences").at(0).at("summary").is_null());
+}
+
+}  // namespace
+}  // namespace mosbench

@@ -1,0 +1,213 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "datasets/files/errors.hpp"
+#include "eval/tables/table_cells.hpp"
+#include "eval/tables/table_match.hpp"
+#include "eval/tables/table_print.hpp"
+#include "tests/temp_folder.hpp"
+
+namespace mosbench {
+namespace {
+
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+const std::vector<PublishedCell>& published() {
+  static const std::vector<PublishedCell> cells = built_in_cells();
+  return cells;
+}
+
+/// `scans` labelled scans of 1000 moving points, of which `found` plus or minus a few are.
+SequenceResult sequence(const std::string& name, std::size_t scans, std::uint64_t found) {
+  SequenceResult result;
+  result.sequence = name;
+  result.dataset = "doals";
+  result.method = "HMM-MOS";
+  result.setting = "as the paper";
+  result.protocol = &protocol_named("doals-hmm");
+  result.header = {{"variant", "paper-2024"},
+                   {"config", {{"voxel_size_m", 0.2}, {"max_range_m", 20.0}, {"delay_scans", 0}}}};
+  for (std::size_t k = 0; k < scans; ++k) {
+    Confusion counts;
+    counts.tp = found + 20 * (k % 2) - 10;
+    counts.fn = 1000 - counts.tp;
+    ScanRow& row = result.scans.emplace_back();
+    row.stem = std::to_string(k);
+    row.counts = counts;
+  }
+  return result;
+}
+
+ResultSet station(std::uint64_t found) {
+  return {"runs/doals",
+          {sequence("station/sequence_1", 10, found), sequence("station/sequence_2", 10, found)}};
+}
+
+TableCell cell_of(const FilledTable& table, std::size_t column = 0) {
+  for (const TableRow& row : table.rows) {
+    if (!row.results.empty()) return row.cells.at(column);
+  }
+  throw std::runtime_error("no measured row");
+}
+
+FilledTable filled(const std::vector<ResultSet>& runs, const char* table = "I") {
+  return fill_table(paper_table_named(table), published(), runs);
+}
+
+TEST(Published, HoldsTheTablesWithTheirSources) {
+  EXPECT_GT(published().size(), 150U);
+  for (const PublishedCell& cell : published()) {
+    EXPECT_FALSE(cell.protocol.empty()) << cell.table << cell.method;
+    EXPECT_FALSE(cell.source.empty()) << cell.table << cell.method;
+    EXPECT_GT(cell.iou(), 0.0);
+    EXPECT_LT(cell.iou(), 1.0);
+    const auto& columns = paper_table_named(cell.table).columns;
+    EXPECT_THAT(columns, Contains(testing::Field(&TableColumn::name, cell.column)));
+  }
+}
+
+TEST(Published, RefusesWhatIsNoTable) {
+  const std::string text(built_in_published());
+  EXPECT_THAT(message_of<DataError>([&] { parse_published("a,b\n", "f.csv"); }),
+              HasSubstr("f.csv:1: has another header"));
+  EXPECT_THAT(message_of<DataError>([&] { parse_published(text + "I,x\n", "f.csv"); }),
+              HasSubstr("has 2 cells"));
+  EXPECT_THAT(
+      message_of<DataError>([&] { parse_published(text + "I,,m,s,,,,,ST,much,p,s,\n", "f.csv"); }),
+      HasSubstr("says \"much\""));
+}
+
+// The average of HeLiMOS's published rows is that of their four sensors.
+TEST(Published, AgreesWithItsAverages) {
+  std::size_t checked = 0;
+  for (const PublishedRow& row : published_rows(paper_table_named("III"), published())) {
+    if (row.cells.size() != 5) continue;
+    const double mean =
+        (row.cells[0].iou() + row.cells[1].iou() + row.cells[2].iou() + row.cells[3].iou()) / 4.0;
+    EXPECT_NEAR(mean, row.cells[4].iou(), 0.00101) << row.cells[0].method;
+    ++checked;
+  }
+  EXPECT_EQ(checked, 6U);
+}
+
+TEST(FillTable, SaysWithinWhereThePublishedValueLiesInTheInterval) {
+  const TableCell cell = cell_of(filled({station(889)}));
+  EXPECT_EQ(cell.verdict, Verdict::kWithin) << testing::PrintToString(cell.reasons);
+  EXPECT_NEAR(cell.measured->value.value(), 0.889, 1e-12);
+  EXPECT_NEAR(cell.difference.value(), 0.0, 1e-12);
+  EXPECT_EQ(cell.published->iou_percent, "88.9");
+  EXPECT_THAT(cell.reasons, IsEmpty());
+}
+
+TEST(FillTable, SaysOutsideWhereItDoesNot) {
+  EXPECT_EQ(cell_of(filled({station(860)})).verdict, Verdict::kOutside);
+}
+
+TEST(FillTable, ComparesNothingThatIsOfAnotherKind) {
+  const auto reasons = [](const ResultSet& run) {
+    const FilledTable table = filled({run});
+    EXPECT_EQ(cell_of(table).verdict, Verdict::kNotComparable);
+    return cell_of(table).reasons;
+  };
+  ResultSet simulated = station(889);
+  for (SequenceResult& part : simulated.sequences) part.simulated = true;
+  EXPECT_THAT(reasons(simulated), ElementsAre("simulated data"));
+
+  ResultSet half = station(889);
+  half.sequences.pop_back();
+  EXPECT_THAT(reasons(half), ElementsAre("sequence station/sequence_2 is missing",
+                                         "10 labelled scans, published over 20"));
+
+  ResultSet lost = station(889);
+  lost.sequences[0].scans.pop_back();
+  lost.sequences[0].missing_predictions = 1;
+  EXPECT_THAT(reasons(lost),
+              ElementsAre("INCOMPLETE: 1 scans without usable prediction are not counted",
+                          "19 labelled scans, published over 20"));
+
+  ResultSet coarse = station(889);
+  for (SequenceResult& part : coarse.sequences) part.header["config"]["voxel_size_m"] = 0.3;
+  EXPECT_THAT(reasons(coarse), ElementsAre("voxel size in m 0.3, published 0.2"));
+
+  ResultSet other = station(889);
+  for (SequenceResult& part : other.sequences) part.protocol = &protocol_named("doals-dynablox");
+  EXPECT_THAT(reasons(other), ElementsAre("protocol doals-dynablox, published doals-hmm"));
+}
+
+TEST(FillTable, SaysHowToFillWhatIsEmpty) {
+  for (const PaperTable& table : paper_tables()) {
+    const FilledTable empty = fill_table(table, published(), {});
+    ASSERT_FALSE(empty.rows.empty()) << table.name;
+    for (const TableRow& row : empty.rows) {
+      for (const TableCell& cell : row.cells) {
+        EXPECT_EQ(cell.verdict, Verdict::kPublishedOnly);
+        if (row.method != "HMM-MOS") continue;
+        EXPECT_THAT(cell.reasons.front(), testing::ContainsRegex("mosbench |no variant"));
+      }
+    }
+  }
+  const TableCell shopville = cell_of(filled({station(889)}), 1);
+  EXPECT_EQ(shopville.verdict, Verdict::kPublishedOnly);
+  EXPECT_THAT(shopville.reasons.front(), HasSubstr("shopville/sequence_1"));
+}
+
+TEST(FillTable, TakesRowsOfAnyMethod) {
+  ResultSet dynablox = station(800);
+  ResultSet own = station(700);
+  for (SequenceResult& part : dynablox.sequences) {
+    part.method = "Dynablox";
+    part.setting = "";
+    part.protocol = &protocol_named("doals-dynablox");
+  }
+  for (SequenceResult& part : own.sequences) part.method = "Mine";
+  const FilledTable table = filled({dynablox, own});
+  const TableRow& last = table.rows.back();
+  EXPECT_EQ(last.method, "Mine");
+  EXPECT_EQ(last.cells[0].verdict, Verdict::kMeasuredOnly);
+  EXPECT_THAT(table.rows,
+              Contains(testing::AllOf(testing::Field(&TableRow::method, "Dynablox"),
+                                      testing::Field(&TableRow::results, "runs/doals"))));
+}
+
+TEST(FillTable, AveragesSensorsAndCountsBothFrameSetsOfHelimos) {
+  ResultSet run{"runs/helimos", {}};
+  for (const auto& [name, found] : {std::pair{"Aeva", 500U}, std::pair{"Avia", 600U},
+                                    std::pair{"Ouster", 700U}, std::pair{"Velodyne", 400U}}) {
+    SequenceResult part = sequence(name, 40, found);
+    part.dataset = "helimos";
+    part.protocol = &protocol_named("helimos-all");
+    part.header["config"] = {{"voxel_size_m", 0.25}, {"max_range_m", 50.0}, {"delay_scans", 0}};
+    part.splits["test"] = {"1", "3"};
+    run.sequences.push_back(part);
+  }
+  const FilledTable table = filled({run}, "III");
+  std::vector<double> averages;
+  for (const TableRow& row : table.rows) {
+    if (!row.results.empty()) averages.push_back(row.cells.at(4).measured->value.value());
+  }
+  ASSERT_EQ(averages.size(), 2U);
+  EXPECT_NEAR(averages[0], 0.55, 1e-12);
+  EXPECT_NEAR(averages[1], 0.56, 1e-12) << "the odd scans find 10 points more";
+  EXPECT_EQ(table.rows.size(), 9U);
+}
+
+TEST(TablePrint, GivesEachFormatTheSameNumbers) {
+  const FilledTable table = filled({station(880)});
+  EXPECT_THAT(table_markdown(table), HasSubstr("88.9 / 88.0 (-0.9) [87."));
+  EXPECT_THAT(table_markdown(table), HasSubstr("] outside |"));
+  EXPECT_THAT(table_latex(table), HasSubstr("88.9 / 88.0 (-0.9)"));
+  EXPECT_THAT(table_latex(table), HasSubstr("\\begin{tabular}{lllrrrr}"));
+  EXPECT_THAT(table_csv(table), HasSubstr(",doals-hmm,ST,88.9,88,-0.9,"));
+  const auto json = to_json(table);
+  EXPECT_EQ(json.at("columns").size(), 4U);
+  for (const auto& row : json.at("rows")) {
+    if (row.at("results") == "") continue;
+    EXPECT_EQ(row.at("cells").at(0).at("verdict"), "outside");
+  }
+}
+
+}  // namespace
+}  // namespace mosbench
