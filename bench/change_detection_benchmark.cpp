@@ -2,6 +2,7 @@
 #include "core/hmm_mos/change_detection.hpp"
 
 namespace mosbench {
+using namespace hmm_mos;
 namespace {
 
 /// Every block turns from this scan's occupied voxels to the previous scan's.

@@ -3,6 +3,7 @@
 #include "core/hmm_mos/selection.hpp"
 
 namespace mosbench {
+using namespace hmm_mos;
 namespace {
 
 void labels_stage(benchmark::State& state, StagedScans& staged, ThreadPool&) {

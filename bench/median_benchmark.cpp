@@ -2,6 +2,7 @@
 #include "core/hmm_mos/median.hpp"
 
 namespace mosbench {
+using namespace hmm_mos;
 namespace {
 
 void median_stage(benchmark::State& state, StagedScans& staged, ThreadPool& pool) {

@@ -9,6 +9,7 @@
 #include "core/voxel/source_grid.hpp"
 
 namespace mosbench {
+using namespace hmm_mos;
 
 /// The observed blocks of the last scan with a source near, and the sources that their distance
 /// fields are made of.

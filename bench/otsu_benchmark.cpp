@@ -2,6 +2,7 @@
 #include "core/hmm_mos/selection.hpp"
 
 namespace mosbench {
+using namespace hmm_mos;
 namespace {
 
 void otsu_stage(benchmark::State& state, StagedScans& staged, ThreadPool&) {

@@ -10,6 +10,7 @@
 #include "core/hmm_mos/selection.hpp"
 
 namespace mosbench {
+using namespace hmm_mos;
 namespace {
 
 /// What detection remembers between scans.
@@ -60,9 +61,9 @@ StagedScans::StagedScans(const Workload& chosen)
   const Config& config = workload.config;
   ThreadPool pool(1);
   RaycastScratch scratch;
-  VoxelMap map(config, Variant::kPaper2024, grid);
+  VoxelMap map(config, grid);
   Detection detection{LocalWindow(config.local_window_scans), new_region(), {}};
-  Pipeline pipeline(config, Variant::kPaper2024);
+  Pipeline pipeline(config);
   for (const Frame& frame : workload.frames) {
     StagedScan& staged = all.emplace_back(frame, static_cast<std::uint32_t>(all.size()));
     staged.scan = voxelize(frame.points, frame.map_from_sensor, grid, config.min_range_m,
@@ -104,14 +105,14 @@ void StagedScans::enter(VoxelMap& map, const StagedScan& staged, ThreadPool& poo
 }
 
 VoxelMap StagedScans::map_after(std::size_t scans, ThreadPool& pool) const {
-  VoxelMap map(workload.config, Variant::kPaper2024, grid);
+  VoxelMap map(workload.config, grid);
   for (std::size_t k = 0; k < scans; ++k) enter(map, all[k], pool);
   return map;
 }
 
 void StagedScans::run_other_stages() {
   constexpr std::size_t kStride = 4;
-  if (others_ % all.size() == 0) other_.emplace(workload.config, Variant::kPaper2024);
+  if (others_ % all.size() == 0) other_.emplace(workload.config);
   const Frame& frame = all[others_++ % all.size()].frame;
   std::vector<Point> some;
   for (std::size_t i = 0; i < frame.points.size(); i += kStride) some.push_back(frame.points[i]);

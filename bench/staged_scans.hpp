@@ -13,6 +13,7 @@
 #include "core/voxel/raycast.hpp"
 
 namespace mosbench {
+using namespace hmm_mos;
 
 std::size_t voxels_of(const VoxelList& list);
 

@@ -8,6 +8,7 @@
 #include "datasets/sequence/sequence.hpp"
 
 namespace mosbench {
+using namespace hmm_mos;
 
 /// Scans to measure on, with the configuration they are segmented by.
 struct Workload {

@@ -20,7 +20,7 @@
 #include <set>
 #include <stdexcept>
 #include <string>
-#include <type_traits>
+#include <variant>
 #include <vector>
 
 #include "core/hmm_mos/config.hpp"
@@ -29,6 +29,7 @@
 /// owner keeps them. Their files are read here without the project's readers, so that a test that
 /// compares with them does not depend on what it may be testing.
 namespace mosbench::parity {
+using namespace hmm_mos;
 
 struct Counts {
   std::uint64_t tp, fp, fn;
@@ -41,7 +42,6 @@ inline void PrintTo(const Counts& counts, std::ostream* out) {
 
 struct ParityCase {
   std::string name, sequence;
-  Variant variant;
   Config config;
   std::size_t scans, points, predicted_moving_points;
   Counts truth_unlabelled_ignored, truth_unlabelled_static;
@@ -114,23 +114,14 @@ inline Counts parse_counts(const nlohmann::json& json) {
 
 /// Every key has to be a field; a field without key keeps its default (release-2025 has no dynamic
 /// window).
-inline Config parse_config(const nlohmann::json& json) {
-  Config config;
-  std::set<std::string> known;
-  visit_fields(config, [&](std::string_view name, auto& value, FieldRange) {
-    known.emplace(name);
-    if (!json.contains(name)) return;
-    using Value = std::remove_reference_t<decltype(value)>;
-    if constexpr (std::is_same_v<Value, std::optional<double>>) {
-      value = json.at(std::string(name)).get<double>();
-    } else {
-      value = json.at(std::string(name)).get<Value>();
-    }
-  });
-  for (const auto& item : json.items()) {
-    if (!known.contains(item.key())) throw std::runtime_error("case.json: " + item.key());
+inline Config parse_config(const nlohmann::json& json, const std::string& variant) {
+  Settings settings = settings_of(Config{});
+  settings.set("variant", variant);
+  for (const auto& [key, value] : json.items()) {
+    const bool whole = std::holds_alternative<int>(settings.find(key)->value);
+    settings.set(key, whole ? SettingValue(value.get<int>()) : SettingValue(value.get<double>()));
   }
-  return config;
+  return config_of<Config>(settings);
 }
 
 inline ParityCase parse_case(const std::filesystem::path& file) {
@@ -139,8 +130,7 @@ inline ParityCase parse_case(const std::filesystem::path& file) {
   ParityCase parity{
       .name = json.at("case").get<std::string>(),
       .sequence = json.at("sequence").get<std::string>(),
-      .variant = variant_from_string(json.at("variant").get<std::string>()).value(),
-      .config = parse_config(json.at("config")),
+      .config = parse_config(json.at("config"), json.at("variant").get<std::string>()),
       .scans = json.at("scans").get<std::size_t>(),
       .points = json.at("points").get<std::size_t>(),
       .predicted_moving_points = json.at("predicted_moving_points").get<std::size_t>(),

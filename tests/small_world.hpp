@@ -15,6 +15,7 @@
 /// Seeded sequences of a few hundred points per scan: a room with boxes that move through it, cast
 /// ray by ray. Small enough for methods that compare all pairs.
 namespace mosbench {
+using namespace hmm_mos;
 
 struct SmallWorld {
   std::vector<std::vector<Point>> scans;
@@ -150,11 +151,16 @@ inline SmallWorld small_world(const SmallWorldOptions& options) {
   return world;
 }
 
-/// All results of a pipeline in scan order.
-inline std::vector<ScanResult> results_of(Pipeline& pipeline, const SmallWorld& world) {
-  std::vector<ScanResult> all;
-  const auto take = [&](std::vector<ScanResult> results) {
-    for (ScanResult& result : results) all.push_back(std::move(result));
+inline Config of_variant(Config config, Variant variant) {
+  config.variant = variant;
+  return config;
+}
+
+/// All results of a method in scan order.
+inline std::vector<LabelledScan> results_of(Method& pipeline, const SmallWorld& world) {
+  std::vector<LabelledScan> all;
+  const auto take = [&](std::vector<LabelledScan> results) {
+    for (LabelledScan& result : results) all.push_back(std::move(result));
   };
   for (std::size_t k = 0; k < world.scans.size(); ++k) {
     take(pipeline.push(world.scans[k], world.poses[k]));
@@ -167,9 +173,10 @@ inline std::vector<ScanResult> results_of(Pipeline& pipeline, const SmallWorld& 
 inline std::vector<std::vector<std::uint32_t>> labels_of(
     const SmallWorld& world, const Config& config, Variant variant, unsigned threads = 1,
     std::optional<std::size_t> scan_count = std::nullopt) {
-  Pipeline pipeline(config, variant, threads, scan_count);
+  Pipeline pipeline(of_variant(config, variant), {threads, scan_count});
   std::vector<std::vector<std::uint32_t>> labels;
-  for (ScanResult& result : results_of(pipeline, world)) labels.push_back(std::move(result.labels));
+  for (LabelledScan& result : results_of(pipeline, world))
+    labels.push_back(std::move(result.labels));
   return labels;
 }
 

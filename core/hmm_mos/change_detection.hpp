@@ -2,7 +2,7 @@
 
 #include "core/hmm_mos/hmm.hpp"
 
-namespace mosbench {
+namespace mosbench::hmm_mos {
 
 /// Voxels that turned from free to occupied or back; becoming known for the first time is no
 /// change.
@@ -10,4 +10,4 @@ inline BlockMask detect_changes(const BlockStates& before, const BlockStates& af
   return (before.free & after.occupied) | (before.occupied & after.free);
 }
 
-}  // namespace mosbench
+}  // namespace mosbench::hmm_mos

@@ -8,22 +8,8 @@
 #include "core/voxel/distance_field.hpp"
 #include "core/voxel/raycast.hpp"
 
-namespace mosbench {
+namespace mosbench::hmm_mos {
 namespace {
-
-template <typename Number>
-void check_field(std::string_view name, Number value, FieldRange range) {
-  const double number = static_cast<double>(value);
-  if (std::isfinite(number) && number >= range.lowest && number <= range.highest) return;
-  std::ostringstream message;
-  message << name << ": " << number << " is out of range, expected " << range.lowest << " to "
-          << range.highest;
-  throw std::invalid_argument(message.str());
-}
-
-void check_field(std::string_view name, const std::optional<double>& value, FieldRange range) {
-  if (value) check_field(name, *value, range);
-}
 
 void check_voxels(std::string_view name, double voxels, double most) {
   if (voxels <= most) return;
@@ -34,21 +20,8 @@ void check_voxels(std::string_view name, double voxels, double most) {
 
 }  // namespace
 
-std::string_view to_string(Variant variant) {
-  return variant == Variant::kPaper2024 ? "paper-2024" : "release-2025";
-}
-
-std::optional<Variant> variant_from_string(std::string_view name) {
-  for (const Variant variant : {Variant::kPaper2024, Variant::kRelease2025}) {
-    if (name == to_string(variant)) return variant;
-  }
-  return std::nullopt;
-}
-
 void check(const Config& config) {
-  visit_fields(config, [](std::string_view name, const auto& value, FieldRange range) {
-    check_field(name, value, range);
-  });
+  check_ranges(config);
   if (config.kernel_width_voxels % 2 == 0) {
     throw std::invalid_argument(
         "kernel_width_voxels: " + std::to_string(config.kernel_width_voxels) +
@@ -63,6 +36,10 @@ void check(const Config& config) {
       likelihood_reach_sigmas(config.transition_epsilon, config.min_state_probability);
   check_voxels("occupancy_sigma_m", config.sigma_m() / config.voxel_size_m,
                kMaxDistanceRadius / reach_per_sigma);
+  if (config.variant == Variant::kRelease2025 && config.delay_scans != 0) {
+    throw std::invalid_argument("delay_scans: " + std::to_string(config.delay_scans) +
+                                " in release-2025, which has no delay, expected 0");
+  }
 }
 
-}  // namespace mosbench
+}  // namespace mosbench::hmm_mos

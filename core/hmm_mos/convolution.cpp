@@ -6,7 +6,7 @@
 
 #include "core/voxel/halo.hpp"
 
-namespace mosbench {
+namespace mosbench::hmm_mos {
 namespace {
 
 /// Map slots of the 27 blocks around each scan block, refreshed; 27 entries per scan block.
@@ -169,4 +169,4 @@ VoxelSet beside_unknown(const VoxelizedScan& scan, std::span<const BlockIndex> b
   return beside;
 }
 
-}  // namespace mosbench
+}  // namespace mosbench::hmm_mos

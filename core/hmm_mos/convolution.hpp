@@ -9,7 +9,7 @@
 #include "core/voxel/voxel_field.hpp"
 #include "core/voxel/voxelize.hpp"
 
-namespace mosbench {
+namespace mosbench::hmm_mos {
 
 /// algorithm step 5a: the spatial score of every occupied voxel of the scan, max(0, votes) over the
 /// m^3 neighbours: +1 for an occupied voxel that changed, -1 for a voxel that is not known.
@@ -31,4 +31,4 @@ std::vector<std::uint32_t> slots_around(const VoxelizedScan& scan,
 std::vector<std::uint32_t> slots_within(const VoxelizedScan& scan, const VoxelSet& voxels,
                                         int radius);
 
-}  // namespace mosbench
+}  // namespace mosbench::hmm_mos

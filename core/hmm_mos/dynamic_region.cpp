@@ -8,7 +8,7 @@
 #include "core/hmm_mos/selection.hpp"
 #include "core/voxel/halo.hpp"
 
-namespace mosbench {
+namespace mosbench::hmm_mos {
 
 DynamicRegion::DynamicRegion(const VoxelGrid& grid, double max_range_m, int dynamic_window_scans,
                              int min_otsu_score)
@@ -204,4 +204,4 @@ void DynamicRegion::evict(const Eigen::Vector3d& sensor_m, std::uint32_t scan_in
   }
 }
 
-}  // namespace mosbench
+}  // namespace mosbench::hmm_mos

@@ -10,7 +10,7 @@
 #include "core/voxel/voxel_set.hpp"
 #include "core/voxel/voxelize.hpp"
 
-namespace mosbench {
+namespace mosbench::hmm_mos {
 
 /// What detection found about a scan; the masks of `beside_unknown` need to be right only where
 /// the scan's voxels are dynamic or lie within a block of the region.
@@ -70,4 +70,4 @@ class DynamicRegion {
   std::uint32_t visited_at_ = 0;
 };
 
-}  // namespace mosbench
+}  // namespace mosbench::hmm_mos

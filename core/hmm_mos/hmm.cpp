@@ -5,7 +5,7 @@
 #include "core/base/multiarch.hpp"
 #include "core/base/simd_lanes.hpp"
 
-namespace mosbench {
+namespace mosbench::hmm_mos {
 namespace {
 
 /// One observation at likelihood L leaves even a certainly occupied voxel at p < L / epsilon. Below
@@ -93,4 +93,4 @@ void BeliefFilter::update_far(const BlockMask& observed, BlockMask& nonzero, Blo
   nonzero = without(nonzero, observed);
 }
 
-}  // namespace mosbench
+}  // namespace mosbench::hmm_mos

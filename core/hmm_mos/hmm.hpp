@@ -7,7 +7,7 @@
 #include "core/voxel/distance_field.hpp"
 #include "core/voxel/voxel.hpp"
 
-namespace mosbench {
+namespace mosbench::hmm_mos {
 
 /// Most probable states of a block's voxels. In neither mask: unobserved.
 struct BlockStates {
@@ -53,4 +53,4 @@ class BeliefFilter {
   std::vector<float> likelihood_;  // by squared distance in voxels, up to far_squared(radius)
 };
 
-}  // namespace mosbench
+}  // namespace mosbench::hmm_mos

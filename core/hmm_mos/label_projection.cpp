@@ -2,7 +2,7 @@
 
 #include <mosbench/scan.hpp>
 
-namespace mosbench {
+namespace mosbench::hmm_mos {
 
 std::vector<std::uint32_t> project_labels(const VoxelizedScan& scan, const VoxelSet& moving) {
   std::vector<std::uint32_t> labels(scan.voxel_of_point.size(), kStaticLabel);
@@ -19,16 +19,16 @@ std::vector<std::uint32_t> project_labels(const VoxelizedScan& scan, const Voxel
   return labels;
 }
 
-std::vector<std::int32_t> project_scores(const VoxelizedScan& scan, const SumField& sums) {
-  std::vector<std::int32_t> scores(scan.voxel_of_point.size(), 0);
+std::vector<float> project_scores(const VoxelizedScan& scan, const SumField& sums) {
+  std::vector<float> scores(scan.voxel_of_point.size(), 0);
   std::vector<const SumField::Block*> values;
   for (const BlockIndex& block : scan.measured.blocks) values.push_back(sums.find(block));
   for (std::size_t i = 0; i < scores.size(); ++i) {
     const std::uint32_t voxel = scan.voxel_of_point[i];
     if (voxel == kNoVoxel || values[voxel / kBlockVoxels] == nullptr) continue;
-    scores[i] = (*values[voxel / kBlockVoxels])[voxel % kBlockVoxels];
+    scores[i] = static_cast<float>((*values[voxel / kBlockVoxels])[voxel % kBlockVoxels]);
   }
   return scores;
 }
 
-}  // namespace mosbench
+}  // namespace mosbench::hmm_mos

@@ -6,7 +6,7 @@
 
 #include "core/base/multiarch.hpp"
 
-namespace mosbench {
+namespace mosbench::hmm_mos {
 namespace {
 
 BlockMask all_or_none(bool all) { return all ? ~BlockMask{} : BlockMask{}; }
@@ -77,4 +77,4 @@ std::uint32_t LastSeen::Ages::greatest(const BlockMask& voxels) const {
   return age;
 }
 
-}  // namespace mosbench
+}  // namespace mosbench::hmm_mos

@@ -5,7 +5,7 @@
 
 #include "core/voxel/voxel.hpp"
 
-namespace mosbench {
+namespace mosbench::hmm_mos {
 
 /// The number of the scan in which each voxel of a block was seen last, modulo 2^planes. Bit p of
 /// all 512 numbers fills one mask, so that all are written or compared with a few operations for
@@ -41,4 +41,4 @@ class LastSeen {
   std::array<BlockMask, kMaxPlanes> bits_;
 };
 
-}  // namespace mosbench
+}  // namespace mosbench::hmm_mos

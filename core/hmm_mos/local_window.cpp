@@ -2,7 +2,7 @@
 
 #include <utility>
 
-namespace mosbench {
+namespace mosbench::hmm_mos {
 
 void LocalWindow::join(ScoreField scores) {
   window_.push_back(std::move(scores));
@@ -35,4 +35,4 @@ std::size_t LocalWindow::memory_bytes() const {
   return bytes;
 }
 
-}  // namespace mosbench
+}  // namespace mosbench::hmm_mos

@@ -6,7 +6,7 @@
 #include "core/voxel/voxel_field.hpp"
 #include "core/voxel/voxelize.hpp"
 
-namespace mosbench {
+namespace mosbench::hmm_mos {
 
 /// The filtered scores of the last w_l scans.
 class LocalWindow {
@@ -26,4 +26,4 @@ class LocalWindow {
   std::deque<ScoreField> window_;
 };
 
-}  // namespace mosbench
+}  // namespace mosbench::hmm_mos

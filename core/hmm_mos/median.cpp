@@ -6,7 +6,7 @@
 #include "core/hmm_mos/convolution.hpp"
 #include "core/voxel/halo.hpp"
 
-namespace mosbench {
+namespace mosbench::hmm_mos {
 namespace {
 
 constexpr int kSide = kBlockSide + 2;
@@ -106,4 +106,4 @@ ScoreField median_filter(const VoxelizedScan& scan, const ScoreField& scores, Th
   return field;
 }
 
-}  // namespace mosbench
+}  // namespace mosbench::hmm_mos

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace mosbench {
+namespace mosbench::hmm_mos {
 namespace {
 
 constexpr int kBins = 100;
@@ -67,4 +67,4 @@ std::optional<double> otsu_threshold(std::span<const ValueCount> values) {
   return limits.low + static_cast<double>(*level - 1) * (limits.high - limits.low) / kBins;
 }
 
-}  // namespace mosbench
+}  // namespace mosbench::hmm_mos

@@ -5,7 +5,7 @@
 #include <optional>
 #include <span>
 
-namespace mosbench {
+namespace mosbench::hmm_mos {
 
 /// So many voxels have this value.
 struct ValueCount {
@@ -17,4 +17,4 @@ struct ValueCount {
 /// value may come in several entries. Nothing when no level separates the values.
 std::optional<double> otsu_threshold(std::span<const ValueCount> values);
 
-}  // namespace mosbench
+}  // namespace mosbench::hmm_mos

@@ -1,10 +1,15 @@
 #include "core/hmm_mos/pipeline.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <deque>
+#include <optional>
 #include <stdexcept>
+#include <string>
+#include <utility>
 
+#include "core/base/rigid.hpp"
+#include "core/base/stage_clock.hpp"
+#include "core/base/thread_pool.hpp"
 #include "core/hmm_mos/convolution.hpp"
 #include "core/hmm_mos/dynamic_region.hpp"
 #include "core/hmm_mos/label_projection.hpp"
@@ -15,49 +20,20 @@
 #include "core/voxel/raycast.hpp"
 #include "core/voxel/voxelize.hpp"
 
-namespace mosbench {
+namespace mosbench::hmm_mos {
 namespace {
 
-/// Where the times of a scan's stages go.
-struct StageRecord {
-  StageTimes& times;
-  std::vector<StageEvent>* events;  ///< may be null
+/// A scan that is ready to enter the map.
+struct ObservedScan final : Observed {
+  VoxelizedScan scan;
+  VoxelList observed;  ///< by its rays
+  std::vector<StageTime> stages;
 };
-
-/// Adds the time of its life to a stage.
-class StageClock {
- public:
-  StageClock(const StageRecord& record, Stage stage)
-      : record_(record),
-        event_{stage, std::chrono::steady_clock::now(), 0,
-               record.events != nullptr ? process_cpu_ms() : 0} {}
-  ~StageClock() {
-    const auto life = std::chrono::steady_clock::now() - event_.start;
-    event_.wall_ms = std::chrono::duration<double, std::milli>(life).count();
-    record_.times[static_cast<std::size_t>(event_.stage)] += event_.wall_ms;
-    if (record_.events == nullptr) return;
-    event_.cpu_ms = process_cpu_ms() - event_.cpu_ms;
-    record_.events->push_back(event_);
-  }
-  StageClock(const StageClock&) = delete;
-  StageClock& operator=(const StageClock&) = delete;
-
- private:
-  StageRecord record_;
-  StageEvent event_;
-};
-
-/// Runs one stage and returns its value.
-template <typename Work>
-auto timed(const StageRecord& record, Stage stage, Work&& work) {
-  const StageClock clock(record, stage);
-  return work();
-}
 
 /// What the method remembers between scans.
 struct Memory {
-  Memory(const Config& config, Variant variant, const VoxelGrid& grid)
-      : map(config, variant, grid),
+  Memory(const Config& config, const VoxelGrid& grid)
+      : map(config, grid),
         window(config.local_window_scans),
         region(grid, config.max_range_m, config.dynamic_window_scans, config.min_otsu_score) {}
 
@@ -70,212 +46,199 @@ struct Memory {
 /// A scan whose labels are not final yet.
 struct HeldScan {
   VoxelizedScan scan;
-  ScanResult result;
+  LabelledScan result;
 };
 
 }  // namespace
 
 struct Pipeline::State {
-  State(const Config& method_config, Variant method_variant, unsigned threads,
-        std::optional<std::size_t> sequence_scans)
-      : config(method_config), variant(method_variant), pool(threads), scan_count(sequence_scans) {}
+  State(const Config& method_config, const RunContext& run)
+      : config(method_config), context(run), pool(run.threads) {}
 
-  ObservedScan observe(std::span<const Point> points, const Pose& map_from_sensor,
-                       ThreadPool& observing);
-  std::vector<ScanResult> push(ObservedScan observed);
+  std::unique_ptr<ObservedScan> observe(std::span<const Point> points, const Pose& map_from_sensor,
+                                        ThreadPool& observing);
+  std::vector<LabelledScan> push(ObservedScan& observed);
   void expect_scan() const;
   void enter_map(const ObservedScan& current, const StageRecord& record, std::uint32_t k);
-  void detect(const VoxelizedScan& scan, std::uint32_t k, ScanResult& result,
-              const StageRecord& record);
-  std::vector<ScanResult> release(std::size_t count);
+  void detect(HeldScan& held_scan, std::uint32_t k);
+  std::vector<LabelledScan> release(std::size_t count);
   std::size_t memory_bytes() const;
 
   Config config;
-  Variant variant;
+  RunContext context;
   ThreadPool pool;
   std::optional<ThreadPool> observing_pool;  ///< for scans that are observed beside
-  std::optional<std::size_t> scan_count;
-  std::optional<VoxelGrid> grid;  ///< around the first scan
+  std::optional<VoxelGrid> grid;             ///< around the first scan
   RaycastScratch scratch;
   std::optional<Memory> memory;
   std::deque<HeldScan> held;  ///< the last delay + 1 scans, current one last
   VoxelSet previous_measured;
-  std::vector<StageEvent>* events = nullptr;
-  bool records_scores = false;
   std::size_t pushed = 0;
   bool finished = false;
 };
 
-/// Steps 1 and 2.
-ObservedScan Pipeline::State::observe(std::span<const Point> points, const Pose& map_from_sensor,
-                                      ThreadPool& observing) {
-  ObservedScan current;
-  const StageRecord record{current.stage_times, events == nullptr ? nullptr : &current.events};
+/// P'_M and P'_obs: what can be found without the scans before.
+std::unique_ptr<ObservedScan> Pipeline::State::observe(std::span<const Point> points,
+                                                       const Pose& map_from_sensor,
+                                                       ThreadPool& observing) {
+  check_rigid(map_from_sensor);
+  auto current = std::make_unique<ObservedScan>();
+  const StageRecord record{current->stages, context.cpu_times};
   const VoxelGrid around =
       grid ? *grid : grid_around(map_from_sensor.translation(), config.voxel_size_m);
-  current.scan = timed(record, Stage::kVoxelize, [&] {
+  current->scan = timed(record, "voxelize", [&] {
     return voxelize(points, map_from_sensor, around, config.min_range_m, config.max_range_m,
                     observing);
   });
   if (!grid) grid = around;  // written once: the scan before may be pushed meanwhile
-  current.observed = timed(record, Stage::kRaycast, [&] {
-    return raycast(current.scan.measured, current.scan.sensor_voxel, config.voxel_size_m,
+  current->observed = timed(record, "raycast", [&] {
+    return raycast(current->scan.measured, current->scan.sensor_voxel, config.voxel_size_m,
                    config.max_range_m, scratch, observing);
   });
   return current;
 }
 
-/// Step 3.
+/// The beliefs x and states S of observed voxels; voxels out of range or unobserved for w_g leave.
 void Pipeline::State::enter_map(const ObservedScan& current, const StageRecord& record,
                                 std::uint32_t k) {
   const VoxelizedScan& scan = current.scan;
-  if (!memory) memory.emplace(config, variant, *grid);
+  if (!memory) memory.emplace(config, *grid);
   {
-    const StageClock clock(record, Stage::kMapUpdate);
+    const StageClock clock(record, "map_update");
     std::vector<const VoxelSet*> sources{&scan.measured};
     if (config.distance_field_scans == 2) sources.push_back(&previous_measured);
     memory->map.update(current.observed, sources, scan.sensor_m, k, pool);
   }
-  const StageClock clock(record, Stage::kEvict);
+  const StageClock clock(record, "evict");
   memory->map.evict(k);
 }
 
-/// Steps 5 and 6 on `scan` with the map as it is after scan k.
-void Pipeline::State::detect(const VoxelizedScan& scan, std::uint32_t k, ScanResult& result,
-                             const StageRecord& record) {
+/// Finds what moves in a scan with the map as it is after scan k.
+void Pipeline::State::detect(HeldScan& held_scan, std::uint32_t k) {
+  const VoxelizedScan& scan = held_scan.scan;
+  LabelledScan& result = held_scan.result;
+  const StageRecord record{result.stages, context.cpu_times};
   LocalWindow& window = memory->window;
   DynamicRegion& region = memory->region;
+  result.judged = true;
   result.threshold.reset();
   if (scan.occupied_count == 0) {
     window.join({});
     return;
   }
   const int width = config.kernel_width_voxels;
-  ScoreField scores = timed(record, Stage::kConvolution, [&] {
+  ScoreField scores = timed(record, "convolution", [&] {
     const VoxelSet changed =
         memory->map.changed_since(k - static_cast<std::uint32_t>(config.delay_scans));
     return convolve(scan, changed, width, memory->map, k, pool);
   });
-  scores = timed(record, Stage::kMedian, [&] { return median_filter(scan, scores, pool); });
-  const SumField sums = timed(record, Stage::kWindow, [&] {
+  scores = timed(record, "median", [&] { return median_filter(scan, scores, pool); });
+  const SumField sums = timed(record, "window", [&] {
     window.join(std::move(scores));
     return window.sums(scan);
   });
   VoxelSet& dynamic = memory->carried;
   {
-    const StageClock clock(record, Stage::kOtsu);
+    const StageClock clock(record, "otsu");
     result.threshold = threshold_of(scan, sums);
     dynamic = select_dynamic(scan, sums, result.threshold, dynamic, config.min_otsu_score);
   }
   VoxelSet from_region;
-  if (variant == Variant::kPaper2024) {
-    const StageClock clock(record, Stage::kDynamicRegion);
+  if (config.variant == Variant::kPaper2024) {
+    const StageClock clock(record, "dynamic_region");
     const VoxelSet beside =
         beside_unknown(scan, region.blocks(), dynamic.blocks, width, memory->map, k, pool);
     from_region = region.back_end(scan, beside, width, pool);
     region.update({scan, dynamic, from_region, beside, result.threshold}, k);
   }
-  const StageClock clock(record, Stage::kLabels);
+  const StageClock clock(record, "labels");
   const VoxelSet moving = shows_motion(result.threshold, config.min_otsu_score)
                               ? united(dynamic, from_region)
                               : VoxelSet{};
   result.labels = project_labels(scan, moving);
-  if (records_scores) result.scores = project_scores(scan, sums);
+  if (context.scores) result.scores = project_scores(scan, sums);
 }
 
 void Pipeline::State::expect_scan() const {
-  if (scan_count && pushed >= *scan_count) {
+  if (context.scan_count && pushed >= *context.scan_count) {
     throw std::logic_error("pushed more scans than scan_count announced");
   }
   if (finished) throw std::logic_error("pushed a scan after finish");
 }
 
-std::vector<ScanResult> Pipeline::State::push(ObservedScan observed) {
+std::vector<LabelledScan> Pipeline::State::push(ObservedScan& observed) {
   expect_scan();
   if (!grid) throw std::logic_error("pushed a scan that this pipeline did not observe");
   const auto k = static_cast<std::uint32_t>(pushed);
-  ScanResult taken_in;
+  LabelledScan taken_in;
   taken_in.scan_index = pushed;
   taken_in.nonfinite_points = observed.scan.nonfinite_points;
-  taken_in.stage_times = observed.stage_times;
-  if (events != nullptr)
-    events->insert(events->end(), observed.events.begin(), observed.events.end());
-  enter_map(observed, {taken_in.stage_times, events}, k);
+  taken_in.stages = std::move(observed.stages);
+  enter_map(observed, {taken_in.stages, context.cpu_times}, k);
   previous_measured = observed.scan.measured;
   held.push_back({std::move(observed.scan), std::move(taken_in)});
   ++pushed;
 
-  HeldScan& newest = held.back();
-  const StageRecord record{newest.result.stage_times, events};
   const auto n = static_cast<std::size_t>(config.delay_scans);
   if (k <= static_cast<std::uint32_t>(config.local_window_scans)) {
     memory->window.join({});
   } else if (n == 0) {
-    detect(newest.scan, k, newest.result, record);
+    detect(held.back(), k);
   } else if (k > n) {
-    detect(held.front().scan, k, held.front().result, record);
+    detect(held.front(), k);
     // The authors' program labels the end of a delayed sequence online, and leaves scan N - n
     // static.
-    if (scan_count && k + n > *scan_count) detect(newest.scan, k, newest.result, record);
+    if (context.scan_count && k + n > *context.scan_count) detect(held.back(), k);
   }
-  return held.size() > n ? release(1) : std::vector<ScanResult>{};
+  return held.size() > n ? release(1) : std::vector<LabelledScan>{};
 }
 
 /// Points of a scan in which nothing was looked for are static.
-std::vector<ScanResult> Pipeline::State::release(std::size_t count) {
-  std::vector<ScanResult> results;
+std::vector<LabelledScan> Pipeline::State::release(std::size_t count) {
+  std::vector<LabelledScan> results;
   for (; count > 0; --count) {
     const std::size_t points = held.front().scan.voxel_of_point.size();
-    ScanResult& result = results.emplace_back(std::move(held.front().result));
+    LabelledScan& result = results.emplace_back(std::move(held.front().result));
     held.pop_front();
     result.labels.resize(points, kStaticLabel);
-    if (records_scores) result.scores.resize(points, 0);
+    if (context.scores) result.scores.resize(points, 0);
   }
   return results;
 }
 
-Pipeline::Pipeline(const Config& config, Variant variant, unsigned threads,
-                   std::optional<std::size_t> scan_count) {
+Pipeline::Pipeline(const Config& config, const RunContext& context) {
   check(config);
-  if (variant == Variant::kRelease2025 && config.delay_scans != 0) {
-    throw std::invalid_argument("delay_scans: " + std::to_string(config.delay_scans) +
-                                " in release-2025, which has no delay, expected 0");
-  }
-  if (threads == 0) throw std::invalid_argument("threads: 0, expected at least 1");
-  state_ = std::make_unique<State>(config, variant, threads, scan_count);
+  if (context.threads == 0) throw std::invalid_argument("threads: 0, expected at least 1");
+  state_ = std::make_unique<State>(config, context);
 }
 
 Pipeline::~Pipeline() = default;
 Pipeline::Pipeline(Pipeline&&) noexcept = default;
 Pipeline& Pipeline::operator=(Pipeline&&) noexcept = default;
 
-std::vector<ScanResult> Pipeline::push(std::span<const Point> points, const Pose& map_from_sensor) {
+std::vector<LabelledScan> Pipeline::push(std::span<const Point> points,
+                                         const Pose& map_from_sensor) {
   state_->expect_scan();
-  return state_->push(state_->observe(points, map_from_sensor, state_->pool));
+  return state_->push(*state_->observe(points, map_from_sensor, state_->pool));
 }
 
-ObservedScan Pipeline::observe(std::span<const Point> points, const Pose& map_from_sensor) {
+std::unique_ptr<Observed> Pipeline::observe(std::span<const Point> points,
+                                            const Pose& map_from_sensor) {
   // The other half of the threads is busy with the scan before.
   if (!state_->observing_pool)
     state_->observing_pool.emplace(std::max(1U, state_->pool.size() / 2));
   return state_->observe(points, map_from_sensor, *state_->observing_pool);
 }
 
-std::vector<ScanResult> Pipeline::push(ObservedScan observed) {
-  return state_->push(std::move(observed));
+std::vector<LabelledScan> Pipeline::push(std::unique_ptr<Observed> observed) {
+  auto* scan = dynamic_cast<ObservedScan*>(observed.get());
+  if (scan == nullptr) throw std::logic_error("pushed a scan that this pipeline did not observe");
+  return state_->push(*scan);
 }
 
-std::vector<ScanResult> Pipeline::finish() {
+std::vector<LabelledScan> Pipeline::finish() {
   state_->finished = true;
   return state_->release(state_->held.size());
-}
-
-void Pipeline::record_stages(std::vector<StageEvent>* events) { state_->events = events; }
-
-void Pipeline::record_scores(bool record) { state_->records_scores = record; }
-
-std::size_t Pipeline::map_blocks() const {
-  return state_->memory ? state_->memory->map.block_count() : 0;
 }
 
 std::size_t Pipeline::State::memory_bytes() const {
@@ -283,12 +246,30 @@ std::size_t Pipeline::State::memory_bytes() const {
   std::size_t bytes = scratch.memory_bytes() + previous_measured.memory_bytes();
   for (const HeldScan& scan : held) {
     bytes += scan.scan.memory_bytes() + scan.result.labels.capacity() * sizeof(std::uint32_t) +
-             scan.result.scores.capacity() * sizeof(std::int32_t);
+             scan.result.scores.capacity() * sizeof(float);
   }
   return bytes + memory->map.memory_bytes() + memory->window.memory_bytes() +
          memory->region.memory_bytes() + memory->carried.memory_bytes();
 }
 
-std::size_t Pipeline::memory_bytes() const { return state_->memory_bytes(); }
+MemoryUse Pipeline::memory() const {
+  return {state_->memory_bytes(), state_->memory ? state_->memory->map.block_count() : 0};
+}
 
-}  // namespace mosbench
+std::vector<std::string> Pipeline::remarks() const {
+  return remarks_on_delay(state_->config, state_->context);
+}
+
+std::vector<std::string> remarks_on_delay(const Config& config, const RunContext& context) {
+  const auto delay = static_cast<std::size_t>(config.delay_scans);
+  if (delay == 0 || !context.scan_count) return {};
+  const std::string scans = std::to_string(delay) + " scans";
+  if (*context.scan_count <= delay) {
+    return {"shorter than the delay of " + scans + ": every scan is labelled static"};
+  }
+  return {"the last " + scans + " have no " + std::to_string(delay) +
+          " later ones: the first of them is labelled static and the others are judged online, as "
+          "the authors' program does"};
+}
+
+}  // namespace mosbench::hmm_mos

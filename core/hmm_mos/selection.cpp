@@ -3,7 +3,7 @@
 #include "core/hmm_mos/convolution.hpp"
 #include "core/voxel/halo.hpp"
 
-namespace mosbench {
+namespace mosbench::hmm_mos {
 
 std::optional<double> threshold_of(const VoxelizedScan& scan, const SumField& sums) {
   std::vector<ValueCount> values;
@@ -59,4 +59,4 @@ VoxelSet united(VoxelSet some, const VoxelSet& more) {
   return some;
 }
 
-}  // namespace mosbench
+}  // namespace mosbench::hmm_mos

@@ -9,7 +9,7 @@
 #include "core/voxel/voxel_field.hpp"
 #include "core/voxel/voxelize.hpp"
 
-namespace mosbench {
+namespace mosbench::hmm_mos {
 
 /// Otsu's threshold T on S(v) of all occupied voxels.
 std::optional<double> threshold_of(const VoxelizedScan& scan, const SumField& sums);
@@ -29,4 +29,4 @@ VoxelSet select_dynamic(const VoxelizedScan& scan, const SumField& sums,
 /// The voxels in either set.
 VoxelSet united(VoxelSet some, const VoxelSet& more);
 
-}  // namespace mosbench
+}  // namespace mosbench::hmm_mos

@@ -6,7 +6,7 @@
 #include "core/hmm_mos/change_detection.hpp"
 #include "core/voxel/source_grid.hpp"
 
-namespace mosbench {
+namespace mosbench::hmm_mos {
 namespace {
 
 /// Starts bringing memory that is about to be written into the cache.
@@ -26,9 +26,9 @@ void fetch(const BlockBeliefs& beliefs, const BlockMask& cells) {
 
 }  // namespace
 
-VoxelMap::VoxelMap(const Config& config, Variant variant, const VoxelGrid& grid)
+VoxelMap::VoxelMap(const Config& config, const VoxelGrid& grid)
     : grid_(grid),
-      variant_(variant),
+      variant_(config.variant),
       filter_(config.voxel_size_m, config.sigma_m(), config.transition_epsilon,
               config.min_state_probability),
       distance_field_(filter_.radius()),
@@ -37,7 +37,7 @@ VoxelMap::VoxelMap(const Config& config, Variant variant, const VoxelGrid& grid)
       // were younger than w_g + 2 then.
       age_planes_(LastSeen::planes_for(2 * global_window_scans_ + 4 * kSweepScans)),
       delay_scans_(static_cast<std::uint32_t>(config.delay_scans)),
-      evict_radius_m_((variant == Variant::kPaper2024 ? 2.0 : 1.5) * config.max_range_m) {
+      evict_radius_m_((config.variant == Variant::kPaper2024 ? 2.0 : 1.5) * config.max_range_m) {
   // What detection asks of the map lies within max_range plus the kernel of a sensor position.
   const double asked_m =
       config.max_range_m + (config.kernel_width_voxels + 2) * config.voxel_size_m * std::sqrt(3.0);
@@ -254,4 +254,4 @@ std::size_t VoxelMap::memory_bytes() const {
          beliefs_of_.capacity() * sizeof(std::uint32_t);
 }
 
-}  // namespace mosbench
+}  // namespace mosbench::hmm_mos

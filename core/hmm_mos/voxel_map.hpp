@@ -14,13 +14,13 @@
 #include "core/voxel/raycast.hpp"
 #include "core/voxel/voxel_set.hpp"
 
-namespace mosbench {
+namespace mosbench::hmm_mos {
 
 /// The occupancy map: beliefs, states and ages of every voxel seen in the last w_g scans within the
 /// eviction radius.
 class VoxelMap {
  public:
-  VoxelMap(const Config& config, Variant variant, const VoxelGrid& grid);
+  VoxelMap(const Config& config, const VoxelGrid& grid);
 
   /// algorithm step 3 up to eviction. `sources` are the measured sets whose union the distance
   /// field refers to; `sensor_m` is this scan's position. Returns the voxels whose state changed.
@@ -107,4 +107,4 @@ class VoxelMap {
   std::vector<std::uint32_t> slots_;  // of the observed blocks
 };
 
-}  // namespace mosbench
+}  // namespace mosbench::hmm_mos

@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <memory>
+#include <mosbench/method.hpp>
 
 #include "datasets/simulator/built_in_scenes.hpp"
 #include "eval/cli/commands.hpp"
@@ -16,6 +18,7 @@ namespace {
 
 constexpr const char* kListFooter = R"(Examples:
   mosbench list
+  mosbench list methods
   mosbench list presets
   mosbench list datasets)";
 
@@ -45,18 +48,36 @@ std::string presets_text() {
                    {"protocol", TextTable::kLeft},
                    {"from", TextTable::kLeft}});
   for (const Preset& preset : presets()) {
-    table.add_row(
-        {std::string(preset.name), std::string(to_string(preset.kind)),
-         fmt::format("{:.2f}", preset.config.voxel_size_m),
-         fmt::format("{:g} to {:g}", preset.config.min_range_m, preset.config.max_range_m),
-         fmt::format("{}", preset.config.delay_scans), std::string(preset.protocol),
-         std::string(preset.source)});
+    const auto value = [&](std::string_view setting) {
+      return to_string(std::ranges::find(preset.values, setting, &PresetValue::setting)->value);
+    };
+    table.add_row({std::string(preset.name), std::string(to_string(preset.kind)),
+                   value("voxel_size_m"),
+                   fmt::format("{} to {}", value("min_range_m"), value("max_range_m")),
+                   value("delay_scans"), std::string(preset.protocol), std::string(preset.source)});
   }
-  return table.str() +
-         "All others as in the paper: transition_epsilon 0.005, min_state_probability 0.99,\n"
-         "kernel_width_voxels 5, min_otsu_score 3, local_window_scans 3, dynamic_window_scans "
-         "100,\n"
-         "global_window_scans 300, occupancy_sigma_m as voxel_size_m.\n";
+  return table.str() + "All other settings keep the defaults that `mosbench list methods` shows.\n";
+}
+
+std::string default_text(const Setting& setting) {
+  return setting.is_set ? to_string(setting.value) : fmt::format("as {}", setting.follows);
+}
+
+std::string methods_text() {
+  std::string text;
+  for (const MethodKind& method : methods()) {
+    text += fmt::format("{}: {}\n{}\n", method.name, method.summary, method.source);
+    TextTable table({{"  setting", TextTable::kLeft},
+                     {"default"},
+                     {"legal", TextTable::kLeft},
+                     {"meaning", TextTable::kLeft}});
+    for (const Setting& setting : method.defaults.all()) {
+      table.add_row({fmt::format("  {}", setting.name), default_text(setting),
+                     legal_values(setting), std::string(setting.meaning)});
+    }
+    text += table.str() + "\n";
+  }
+  return text;
 }
 
 std::string protocols_text() {
@@ -95,23 +116,28 @@ std::string formats_text() {
 std::string list(const std::string& what) {
   if (what == "formats") return formats_text();
   if (what == "datasets") return datasets_text();
+  if (what == "methods") return methods_text();
   if (what == "presets") return presets_text();
   if (what == "protocols") return protocols_text();
   if (what == "scenes") return scenes_text();
   return fmt::format(
-      "Data sets\n\n{}\nPresets\n\n{}\nProtocols\n\n{}\nScenes\n\n{}\nFormats of predictions\n\n{}",
-      datasets_text(), presets_text(), protocols_text(), scenes_text(), formats_text());
+      "Data sets\n\n{}\nMethods\n\n{}\nPresets\n\n{}\nProtocols\n\n{}\nScenes\n\n{}\nFormats of "
+      "predictions\n\n{}",
+      datasets_text(), methods_text(), presets_text(), protocols_text(), scenes_text(),
+      formats_text());
 }
 
 }  // namespace
 
 void add_list_command(CLI::App& app, std::string& answer) {
   auto what = std::make_shared<std::string>("all");
-  CLI::App* command =
-      app.add_subcommand("list", "Data sets, presets, protocols and scenes that are known");
-  command->add_option("WHAT", *what, "datasets, presets, protocols, scenes, formats or all")
+  CLI::App* command = app.add_subcommand(
+      "list", "Data sets, methods, presets, protocols and scenes that are known");
+  command
+      ->add_option("WHAT", *what, "datasets, methods, presets, protocols, scenes, formats or all")
       ->capture_default_str()
-      ->check(CLI::IsMember({"all", "datasets", "presets", "protocols", "scenes", "formats"}));
+      ->check(CLI::IsMember(
+          {"all", "datasets", "methods", "presets", "protocols", "scenes", "formats"}));
   command->footer(kListFooter);
   command->callback([what, &answer] { answer = list(*what); });
 }

@@ -12,10 +12,12 @@ void add_method_options(CLI::App& command, RunOptions& options) {
   command.add_option("--sequences", options.sequences, "Names to run, a,b (default: all)")
       ->delimiter(',')
       ->allow_extra_args(false);
+  command.add_option("--method", options.method,
+                     "One that `mosbench list methods` shows (default: hmm-mos)");
   command.add_option("--preset", options.preset, "Published settings (default: by data set)");
   command.add_option("--variant", options.variant,
-                     "paper-2024 (default) or release-2025, the authors' later program");
-  command.add_option("--config", options.config_file, "JSON object of configuration keys");
+                     "Short for --set variant=NAME: paper-2024 (default) or release-2025");
+  command.add_option("--config", options.config_file, "JSON object of settings of the method");
   command.add_option("--set", options.assignments, "key=value ..., over everything else")
       ->allow_extra_args(false);
   add_reading_flags(command, options.reading);

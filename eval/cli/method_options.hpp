@@ -6,7 +6,8 @@
 
 namespace mosbench {
 
-/// The arguments that say what is segmented and how: DATA, --dataset, --sequences, --preset,
+/// The arguments that say what is segmented and how: DATA, --dataset, --sequences, --method,
+/// --preset,
 /// --variant, --config, --set, --threads and the flags of `add_reading_flags`.
 void add_method_options(CLI::App& command, RunOptions& options);
 

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <numeric>
 
-#include "eval/results/config_json.hpp"
 #include "eval/results/machine.hpp"
+#include "eval/results/settings_json.hpp"
 #include "eval/results/simulated.hpp"
 #include "eval/results/text_table.hpp"
 #include "mosbench_version.hpp"
@@ -38,13 +38,14 @@ double mean(const std::vector<double>& values) {
 /// Read, the stages in order, what lies between them, and the whole.
 std::vector<CostRow> cost_rows(const SequenceProfile& profile) {
   std::vector<CostRow> rows;
-  for (const std::string_view name : kStageNames) rows.push_back({std::string(name), {}, {}});
+  for (const std::string_view name : profile.stages) rows.push_back({std::string(name), {}, {}});
   CostRow read{"read", {}, {}}, between{"between stages", {}, {}}, whole{"method", {}, {}};
   for (const ScanProfile& scan : profile.scans) {
-    std::array<Cost, kStageNames.size()> stages{};
+    std::vector<Cost> stages(profile.stages.size());
     Cost rest = scan.method;
-    for (const StageEvent& event : scan.stages) {
-      Cost& cost = stages[static_cast<std::size_t>(event.stage)];
+    for (const StageTime& event : scan.stages) {
+      const auto place = std::ranges::find(profile.stages, event.name) - profile.stages.begin();
+      Cost& cost = stages[static_cast<std::size_t>(place)];
       cost.wall_ms += event.wall_ms;
       cost.cpu_ms += event.cpu_ms;
       rest.wall_ms -= event.wall_ms;
@@ -181,9 +182,9 @@ std::string profile_text(const RunPlan& plan, const std::vector<SequenceProfile>
 ordered_json profile_json(const RunPlan& plan, const std::vector<SequenceProfile>& profiles) {
   ordered_json json = {
       {"dataset", std::string(to_string(plan.dataset.kind))},
-      {"variant", std::string(to_string(plan.settings.variant))},
+      {"method", std::string(plan.settings.method->name)},
       {"preset", plan.preset},
-      {"config", to_json(plan.settings.config, plan.settings.variant)},
+      {"config", to_json(plan.settings.method_settings)},
       {"code", {{"version", std::string(kMosbenchVersion)}, {"compiler", std::string(kCompiler)}}},
       {"machine", machine_json()}};
   if (const auto origin = simulated_origin_json(plan.dataset)) json["simulated"] = *origin;
@@ -220,9 +221,9 @@ ordered_json profile_trace(const std::vector<SequenceProfile>& profiles) {
       slice(process, "scan " + scan.stem, start_us, (at_us(scan.end) - start_us) * 1e-3,
             {{"points", scan.points}});
       slice(process, "read", start_us, scan.read.wall_ms, {{"cpu_ms", scan.read.cpu_ms}});
-      for (const StageEvent& event : scan.stages) {
-        slice(process, std::string(kStageNames[static_cast<std::size_t>(event.stage)]),
-              at_us(event.start), event.wall_ms, {{"cpu_ms", event.cpu_ms}});
+      for (const StageTime& event : scan.stages) {
+        slice(process, std::string(event.name), at_us(event.start), event.wall_ms,
+              {{"cpu_ms", event.cpu_ms}});
       }
       events.push_back({{"name", "memory"},
                         {"ph", "C"},

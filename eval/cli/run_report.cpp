@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "eval/results/answer_text.hpp"
-#include "eval/results/config_json.hpp"
+#include "eval/results/settings_json.hpp"
 #include "eval/results/simulated.hpp"
 #include "eval/tables/score_table.hpp"
 
@@ -29,12 +29,9 @@ std::vector<ScoreRow> rows_of(const RunPlan& plan, const std::vector<SequenceOut
 }
 
 std::string method_line(const RunPlan& plan) {
-  const Config& config = plan.settings.config;
-  const std::string mode =
-      config.delay_scans == 0 ? "online" : fmt::format("delayed by {} scans", config.delay_scans);
-  return fmt::format("HMM-MOS {}, preset {}: voxel {:g} m, range {:g} to {:g} m, {}",
-                     to_string(plan.settings.variant), plan.preset, config.voxel_size_m,
-                     config.min_range_m, config.max_range_m, mode);
+  const RunSettings& settings = plan.settings;
+  return fmt::format("{}, preset {}: {}", settings.method->title, plan.preset,
+                     describe_settings(to_json(settings.method_settings), settings.method->name));
 }
 
 std::string protocol_line(const RunPlan& plan) {
@@ -67,12 +64,12 @@ std::string run_report_text(const RunPlan& plan, const std::vector<SequenceOutco
 
 std::string run_report_json(const RunPlan& plan, const std::vector<SequenceOutcome>& outcomes) {
   nlohmann::ordered_json json = {{"dataset", std::string(to_string(plan.dataset.kind))},
-                                 {"variant", std::string(to_string(plan.settings.variant))},
+                                 {"method", std::string(plan.settings.method->name)},
                                  {"preset", plan.preset},
                                  {"protocol", std::string(plan.settings.protocol->name)},
                                  {"min_range_m", plan.settings.range.min_m},
                                  {"max_range_m", plan.settings.range.max_m},
-                                 {"config", to_json(plan.settings.config, plan.settings.variant)},
+                                 {"config", to_json(plan.settings.method_settings)},
                                  {"out", plan.out.string()}};
   if (const auto origin = simulated_origin_json(plan.dataset)) json["simulated"] = *origin;
   json.update(rows_json(rows_of(plan, outcomes)));

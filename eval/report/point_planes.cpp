@@ -60,12 +60,12 @@ std::string outcome_plane(std::span<const PointOutcome> outcomes, std::span<cons
   return plane;
 }
 
-std::string score_planes(std::span<const std::int32_t> scores) {
+std::string score_planes(std::span<const float> scores) {
   std::string planes;
   planes.reserve(4 * scores.size());
   for (unsigned bits = 0; bits < 32; bits += 8) {
-    for (const std::int32_t score : scores) {
-      planes += static_cast<char>(static_cast<std::uint32_t>(score) >> bits & 0xFFU);
+    for (const float score : scores) {
+      planes += static_cast<char>(std::bit_cast<std::uint32_t>(score) >> bits & 0xFFU);
     }
   }
   return planes;

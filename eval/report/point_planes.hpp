@@ -25,7 +25,8 @@ std::string position_planes(std::span<const Point> points);
 /// One byte per point: its PointOutcome, plus 8 when it is not drawable.
 std::string outcome_plane(std::span<const PointOutcome> outcomes, std::span<const Point> points);
 
-/// Four bytes per point: the lowest of all scores, then the next ones. Most are 0.
-std::string score_planes(std::span<const std::int32_t> scores);
+/// Returns four bytes per point, the bits of its float32 score: the lowest bytes of all scores,
+/// then the next ones. Most are 0.
+std::string score_planes(std::span<const float> scores);
 
 }  // namespace mosbench

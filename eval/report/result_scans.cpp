@@ -150,7 +150,9 @@ JudgedScan ResultScans::read(std::size_t scan_index) const {
   }
   if (has_scores_) {
     const fs::path file = dynamic_score_file(result_.folder, scan.frame.stem);
-    scan.scores = parse_dynamic_scores(read_file(file), scan.frame.points.size(), file);
+    const bool whole = result_.file.content.value("format", 1) < 2;
+    scan.scores = parse_dynamic_scores(read_file(file), scan.frame.points.size(),
+                                       whole ? ScoreNumbers::kInt32 : ScoreNumbers::kFloat32, file);
   }
   return scan;
 }

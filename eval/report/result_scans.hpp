@@ -28,7 +28,7 @@ std::vector<FoundResult> find_results(const std::filesystem::path& path);
 struct JudgedScan {
   Frame frame;
   std::vector<PointOutcome> outcomes;  ///< kIgnoredStatic or kIgnoredMoving without truth
-  std::vector<std::int32_t> scores;    ///< dynamic ones, empty unless the run kept them
+  std::vector<float> scores;           ///< dynamic ones, empty unless the run kept them
 };
 
 /// The scans of a result: points and truth from the data set, labels from the result's folder.

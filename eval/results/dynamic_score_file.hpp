@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <filesystem>
 #include <span>
 #include <string>
@@ -10,12 +9,16 @@
 
 namespace mosbench {
 
-/// Dynamic scores (ScanResult::scores) stored as little-endian int32, one per point, none negative.
-/// Throws DataError unless there are exactly `point_count`.
-std::vector<std::int32_t> parse_dynamic_scores(std::string_view bytes, std::size_t point_count,
-                                               const std::filesystem::path& file);
-/// The bytes of a file, where the scores lie.
-std::string_view format_dynamic_scores(std::span<const std::int32_t> scores);
+/// How the numbers of a score file are stored: little-endian int32 in results of format 1, float32
+/// since.
+enum class ScoreNumbers { kInt32, kFloat32 };
+
+/// Reads LabelledScan::scores, one per point. Throws DataError unless there are exactly
+/// `point_count`, all finite.
+std::vector<float> parse_dynamic_scores(std::string_view bytes, std::size_t point_count,
+                                        ScoreNumbers numbers, const std::filesystem::path& file);
+/// Returns the bytes of a file, float32, without copying the scores.
+std::string_view format_dynamic_scores(std::span<const float> scores);
 
 /// scores/<stem>.score of a run's folder.
 std::filesystem::path dynamic_score_file(const std::filesystem::path& folder,

@@ -7,6 +7,7 @@
 #include "datasets/files/files.hpp"
 #include "datasets/files/text.hpp"
 #include "eval/results/answer_text.hpp"
+#include "eval/results/result_format.hpp"
 
 namespace mosbench {
 namespace {
@@ -62,34 +63,50 @@ ScanRow row_from_json(const ordered_json& json, const std::filesystem::path& fil
 }
 
 // One array per scan, its meaning in "scan_columns": a tenth of the size of named members.
-ordered_json to_json(const ScanCost& cost) {
+constexpr std::size_t kCostColumns = 3;
+
+ordered_json to_json(const ScanCost& cost, std::size_t stages) {
   ordered_json json = {cost.read_ms, cost.push_ms, cost.resident_mib};
-  for (const double stage_ms : cost.stages_ms) json.push_back(stage_ms);
+  for (std::size_t s = 0; s < stages; ++s) {
+    json.push_back(s < cost.stages_ms.size() ? cost.stages_ms[s] : 0.0);
+  }
   return json;
 }
 
-ScanCost cost_from_json(const ordered_json& json) {
+ScanCost cost_from_json(const ordered_json& json, std::size_t stages) {
   ScanCost cost;
   cost.read_ms = json.at(0);
   cost.push_ms = json.at(1);
   cost.resident_mib = json.at(2);
-  for (std::size_t s = 0; s < cost.stages_ms.size(); ++s) cost.stages_ms[s] = json.at(3 + s);
+  for (std::size_t s = 0; s < stages; ++s) cost.stages_ms.push_back(json.at(kCostColumns + s));
   return cost;
 }
 
-ordered_json cost_columns() {
+ordered_json cost_columns(const SequenceRows& rows) {
   ordered_json columns = {"read_ms", "push_ms", "resident_mib"};
-  for (const std::string_view stage : kStageNames) columns.push_back(std::string(stage) + "_ms");
+  for (const std::string& stage : rows.stages) columns.push_back(stage + "_ms");
   return columns;
+}
+
+std::vector<std::string> stages_of(const ordered_json& columns) {
+  std::vector<std::string> stages;
+  for (std::size_t i = kCostColumns; i < columns.size(); ++i) {
+    std::string stage = columns.at(i);
+    if (stage.ends_with("_ms")) stage.resize(stage.size() - 3);
+    stages.push_back(std::move(stage));
+  }
+  return stages;
 }
 
 ordered_json mean_stages_ms(const SequenceRows& rows) {
   ordered_json means = ordered_json::object();
   if (rows.costs.empty()) return means;
-  for (std::size_t s = 0; s < kStageNames.size(); ++s) {
+  for (std::size_t s = 0; s < rows.stages.size(); ++s) {
     double sum_ms = 0.0;
-    for (const ScanCost& cost : rows.costs) sum_ms += cost.stages_ms[s];
-    means[std::string(kStageNames[s])] = sum_ms / static_cast<double>(rows.costs.size());
+    for (const ScanCost& cost : rows.costs) {
+      if (s < cost.stages_ms.size()) sum_ms += cost.stages_ms[s];
+    }
+    means[rows.stages[s]] = sum_ms / static_cast<double>(rows.costs.size());
   }
   return means;
 }
@@ -100,9 +117,10 @@ ordered_json timing(const SequenceRows& rows, unsigned threads, const ordered_js
   json["wall_s"] = rows.wall_s;
   json["method_ms_per_scan"] = json_or_null(method_ms_per_scan(rows));
   json["stage_ms_per_scan"] = mean_stages_ms(rows);
-  json["scan_columns"] = cost_columns();
+  json["scan_columns"] = cost_columns(rows);
   json["scans"] = ordered_json::array();
-  for (const ScanCost& cost : rows.costs) json["scans"].push_back(to_json(cost));
+  for (const ScanCost& cost : rows.costs)
+    json["scans"].push_back(to_json(cost, rows.stages.size()));
   return json;
 }
 
@@ -150,6 +168,16 @@ bool is_leftover(const std::filesystem::path& folder) {
 }
 
 }  // namespace
+
+void add_stages(const std::vector<StageTime>& stages, SequenceRows& rows, ScanCost& cost) {
+  for (const StageTime& stage : stages) {
+    const auto found = std::ranges::find(rows.stages, stage.name);
+    const auto position = static_cast<std::size_t>(found - rows.stages.begin());
+    if (found == rows.stages.end()) rows.stages.emplace_back(stage.name);
+    if (cost.stages_ms.size() <= position) cost.stages_ms.resize(position + 1);
+    cost.stages_ms[position] += stage.wall_ms;
+  }
+}
 
 std::optional<double> method_ms_per_scan(const SequenceRows& rows) {
   if (rows.costs.empty()) return std::nullopt;
@@ -199,7 +227,7 @@ std::vector<std::filesystem::path> result_files(const std::filesystem::path& pat
 ResultFile read_result(const std::filesystem::path& file) {
   try {
     ResultFile result;
-    result.content = ordered_json::parse(read_file(file));
+    result.content = in_present_format(ordered_json::parse(read_file(file)), file);
     for (const ordered_json& row : result.content.at("scans")) {
       result.rows.scans.push_back(row_from_json(row, file));
     }
@@ -208,8 +236,9 @@ ResultFile read_result(const std::filesystem::path& file) {
     if (!result.content.contains("timing")) return result;
     const ordered_json& clocked = result.content.at("timing");
     result.rows.wall_s = clocked.at("wall_s");
+    result.rows.stages = stages_of(clocked.at("scan_columns"));
     for (const ordered_json& cost : clocked.at("scans")) {
-      result.rows.costs.push_back(cost_from_json(cost));
+      result.rows.costs.push_back(cost_from_json(cost, result.rows.stages.size()));
     }
     return result;
   } catch (const ordered_json::exception& error) {

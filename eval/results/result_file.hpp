@@ -3,12 +3,12 @@
 #include <cstddef>
 #include <filesystem>
 #include <limits>
+#include <mosbench/method.hpp>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "core/base/stage_times.hpp"
 #include "datasets/sequence/fingerprint.hpp"
 #include "eval/protocols/confusion.hpp"
 
@@ -21,7 +21,8 @@ struct ScanRow {
   std::size_t points = 0;
   std::size_t predicted_moving_points = 0;
   std::size_t nonfinite_points = 0;
-  std::optional<double> threshold;      ///< Otsu's T, see ScanResult
+  bool judged = true;  ///< false: the method labelled all points static without looking
+  std::optional<double> threshold;      ///< see LabelledScan
   std::optional<Confusion> counts;      ///< when the scan has truth
   std::optional<TruthHash> truth_hash;  ///< of that truth; older files do not tell
 };
@@ -30,18 +31,23 @@ struct ScanRow {
 struct ScanCost {
   /// Spent waiting for the scan; with several threads it is read and observed ahead.
   double read_ms = 0.0;
-  double push_ms = 0.0;  ///< the whole method, also what is done beside the scan before
-  StageTimes stages_ms{};
+  double push_ms = 0.0;           ///< the whole method, also what is done beside the scan before
+  std::vector<double> stages_ms;  ///< as SequenceRows::stages; those after its end are 0
   double resident_mib = 0.0;
 };
 
 /// Everything per scan of one sequence, in scan order.
 struct SequenceRows {
   std::vector<ScanRow> scans;
-  std::vector<ScanCost> costs;  ///< as many as scans
+  std::vector<ScanCost> costs;      ///< as many as scans
+  std::vector<std::string> stages;  ///< names, in the order in which they first ran
   double wall_s = 0.0;
-  std::string fingerprint;  ///< of the frames, see ContentFingerprint
+  std::string fingerprint;           ///< of the frames, see ContentFingerprint
+  std::vector<std::string> remarks;  ///< of the method, see Method::remarks
 };
+
+/// Adds the times of a scan's stages to `cost`, and their names to `rows`.
+void add_stages(const std::vector<StageTime>& stages, SequenceRows& rows, ScanCost& cost);
 
 /// Mean of ScanCost::push_ms; nothing without scans.
 std::optional<double> method_ms_per_scan(const SequenceRows& rows);

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "datasets/files/errors.hpp"
+#include "eval/results/settings_json.hpp"
 
 namespace mosbench {
 namespace fs = std::filesystem;
@@ -12,26 +13,15 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr const char* kOwnMethod = "HMM-MOS";
-
-std::string own_setting(const ordered_json& header) {
-  const ordered_json& config = header.at("config");
-  const int delay_scans = config.at("delay_scans");
-  return fmt::format("{}, voxel {:g} m, range {:g} to {:g} m, {}",
-                     header.at("variant").get<std::string>(),
-                     config.at("voxel_size_m").get<double>(),
-                     config.at("min_range_m").get<double>(), config.at("max_range_m").get<double>(),
-                     delay_scans == 0 ? "online" : fmt::format("delayed by {} scans", delay_scans));
-}
-
+/// Results of `mosbench run` hold the settings themselves, those of `mosbench score` what the user
+/// calls them.
 void read_method(const ordered_json& header, SequenceResult& result) {
-  if (!header.contains("method")) {
-    result.method = kOwnMethod;
-    result.setting = own_setting(header);
-    return;
-  }
-  result.method = header.at("method").at("name");
-  result.setting = header.at("method").at("setting");
+  const ordered_json& method = header.at("method");
+  result.method = method.at("name");
+  result.setting =
+      method.contains("setting")
+          ? method.at("setting").get<std::string>()
+          : describe_settings(header.at("config"), method.at("kind").get<std::string>());
 }
 
 void read_protocol(const ordered_json& header, SequenceResult& result) {

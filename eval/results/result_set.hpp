@@ -19,7 +19,7 @@ struct SequenceResult {
   nlohmann::ordered_json header;  ///< all of the file but scans and timing
   std::string sequence;
   std::string dataset;
-  std::string method;   ///< "HMM-MOS" for `mosbench run`
+  std::string method;   ///< its title: "HMM-MOS"
   std::string setting;  ///< of the method, in words: "paper-2024, voxel 0.2 m, ..."
   const Protocol* protocol = nullptr;
   RangeGate range;

@@ -12,13 +12,12 @@
 namespace mosbench {
 namespace {
 
-Config settings(double voxel_size_m, double min_range_m, double max_range_m, int delay_scans = 0) {
-  Config config;
-  config.voxel_size_m = voxel_size_m;
-  config.min_range_m = min_range_m;
-  config.max_range_m = max_range_m;
-  config.delay_scans = delay_scans;
-  return config;
+std::vector<PresetValue> settings(double voxel_size_m, double min_range_m, double max_range_m,
+                                  int delay_scans = 0) {
+  return {{"voxel_size_m", voxel_size_m},
+          {"min_range_m", min_range_m},
+          {"max_range_m", max_range_m},
+          {"delay_scans", delay_scans}};
 }
 
 }  // namespace

@@ -1,18 +1,25 @@
 #pragma once
 
+#include <mosbench/settings.hpp>
 #include <span>
 #include <string_view>
+#include <vector>
 
-#include "core/hmm_mos/config.hpp"
 #include "datasets/layouts/dataset.hpp"
 
 namespace mosbench {
 
-/// Published settings of the method for a data set, and how its numbers are computed there.
+struct PresetValue {
+  std::string_view setting;
+  SettingValue value;
+};
+
+/// Published settings for a data set, and how its numbers are computed there. Methods take the
+/// values of the settings that they have; the others keep their defaults.
 struct Preset {
   std::string_view name;
   DatasetKind kind;
-  Config config;
+  std::vector<PresetValue> values;
   std::string_view protocol;  ///< name of a row of the protocol table
   std::string_view source;    ///< where the settings come from
 };

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <memory>
+#include <mosbench/method.hpp>
 
-#include "core/hmm_mos/pipeline.hpp"
+#include "core/base/stage_clock.hpp"
 #include "eval/results/machine.hpp"
 #include "eval/results/progress.hpp"
 
@@ -32,6 +35,18 @@ std::optional<double> median_period_ms(const std::vector<std::int64_t>& stamps_n
   return median_ms > 0 ? std::optional(median_ms) : std::nullopt;
 }
 
+/// Gives every stage to the scan in whose push it ran: a delayed one runs later than its own.
+void add_stages(const std::vector<StageTime>& stages, SequenceProfile& profile) {
+  for (const StageTime& stage : stages) {
+    const auto later =
+        std::ranges::upper_bound(profile.scans, stage.start, {}, &ScanProfile::start);
+    std::prev(later)->stages.push_back(stage);
+    if (std::ranges::find(profile.stages, stage.name) == profile.stages.end()) {
+      profile.stages.push_back(stage.name);
+    }
+  }
+}
+
 }  // namespace
 
 double quantile(std::vector<double> values, double q) {
@@ -43,12 +58,13 @@ double quantile(std::vector<double> values, double q) {
 
 SequenceProfile profile_sequence(const Sequence& sequence, const RunSettings& settings,
                                  std::size_t most_scans) {
-  SequenceProfile profile{sequence.name(), settings.threads, std::nullopt, {}};
+  SequenceProfile profile{sequence.name(), settings.threads, std::nullopt, {}, {}};
   const std::size_t scans = std::min(sequence.size(), most_scans);
   // The whole length: the end of a delayed sequence is labelled in another way.
-  Pipeline pipeline(settings.config, settings.variant, settings.threads, sequence.size());
-  std::vector<StageEvent> events;
-  pipeline.record_stages(&events);
+  const std::unique_ptr<Method> method = settings.method->make(
+      settings.method_settings,
+      {.threads = settings.threads, .scan_count = sequence.size(), .cpu_times = true});
+  std::vector<LabelledScan> finals;
   Progress progress("profile " + sequence.name(), scans);
   std::vector<std::int64_t> stamps_ns;
   Frame frame;
@@ -59,15 +75,16 @@ SequenceProfile profile_sequence(const Sequence& sequence, const RunSettings& se
     if (frame.stamp_ns) stamps_ns.push_back(*frame.stamp_ns);
     scan.stem = frame.stem;
     scan.points = frame.points.size();
-    scan.method = cost_of([&] { push_scan(pipeline, sequence, k, frame); });
+    scan.method = cost_of([&] { finals = push_scan(*method, sequence, k, frame); });
     scan.end = Clock::now();
-    scan.stages = std::move(events);
-    events.clear();
+    for (const LabelledScan& final_scan : finals) add_stages(final_scan.stages, profile);
     scan.resident_mib = resident_mib();
-    scan.map_blocks = pipeline.map_blocks();
-    scan.method_bytes = pipeline.memory_bytes();
+    const MemoryUse memory = method->memory();
+    scan.map_blocks = memory.map_blocks;
+    scan.method_bytes = memory.bytes;
     progress.advance();
   }
+  for (const LabelledScan& final_scan : method->finish()) add_stages(final_scan.stages, profile);
   profile.period_ms = median_period_ms(stamps_ns);
   return profile;
 }

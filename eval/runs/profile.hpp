@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "core/base/stage_times.hpp"
 #include "datasets/sequence/sequence.hpp"
 #include "eval/runs/run_plan.hpp"
 
@@ -24,7 +23,7 @@ struct ScanProfile {
   std::chrono::steady_clock::time_point start, end;  ///< of reading, and of the method
   Cost read;
   Cost method;  ///< the whole push: all stages and what is between them
-  std::vector<StageEvent> stages;
+  std::vector<StageTime> stages;
   double resident_mib = 0;  ///< of the process
   std::size_t map_blocks = 0, method_bytes = 0;
 };
@@ -34,6 +33,7 @@ struct SequenceProfile {
   unsigned threads = 1;
   std::optional<double> period_ms;  ///< median distance of the stamps; nothing without stamps
   std::vector<ScanProfile> scans;
+  std::vector<std::string_view> stages;  ///< in the order in which they first ran
 };
 
 /// Segments the first `most_scans` scans of a sequence, one after the other, and measures. Throws

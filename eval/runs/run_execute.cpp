@@ -11,6 +11,7 @@
 #include "eval/protocols/summary_json.hpp"
 #include "eval/results/machine.hpp"
 #include "eval/results/reading_json.hpp"
+#include "eval/results/result_format.hpp"
 #include "eval/results/simulated.hpp"
 
 namespace mosbench {
@@ -21,32 +22,20 @@ using nlohmann::ordered_json;
 
 void tell(const std::string& line) { std::fputs((line + '\n').c_str(), stderr); }
 
-std::vector<std::string> scans_without_detection(const Config& config, const Sequence& sequence) {
+std::vector<std::string> scans_without_detection(const SequenceRows& rows) {
   std::vector<std::string> stems;
-  for (std::size_t k = 0; k < sequence.size(); ++k) {
-    if (!detection_runs(config, k, sequence.size())) stems.push_back(sequence.stem(k));
+  for (const ScanRow& row : rows.scans) {
+    if (!row.judged) stems.push_back(row.stem);
   }
   return stems;
-}
-
-std::string tail_remark(const Config& config, const Sequence& sequence) {
-  const auto delay = static_cast<std::size_t>(config.delay_scans);
-  if (sequence.size() <= delay) {
-    return fmt::format("shorter than the delay of {} scans: every scan is judged online", delay);
-  }
-  return fmt::format(
-      "the last {} scans have no {} later ones: scan {} is labelled static and those after it are "
-      "judged online, as the authors' program does",
-      delay, delay, sequence.stem(sequence.size() - delay));
 }
 
 std::vector<std::string> all_remarks(const RunSettings& settings, const Sequence& sequence,
                                      const SequenceRows& rows) {
   std::vector<std::string> remarks = sequence.remarks();
-  const std::size_t unjudged = scans_without_detection(settings.config, sequence).size();
-  remarks.push_back(fmt::format("{} of {} scans are labelled static without detection", unjudged,
-                                sequence.size()));
-  if (settings.config.delay_scans > 0) remarks.push_back(tail_remark(settings.config, sequence));
+  remarks.push_back(fmt::format("{} of {} scans are labelled static without detection",
+                                scans_without_detection(rows).size(), sequence.size()));
+  remarks.insert(remarks.end(), rows.remarks.begin(), rows.remarks.end());
   std::size_t nonfinite_points = 0;
   std::uint64_t unknown_ids = 0;
   for (const ScanRow& row : rows.scans) {
@@ -69,7 +58,8 @@ std::vector<std::string> all_remarks(const RunSettings& settings, const Sequence
 ordered_json header(const RunPlan& plan, const PlannedSequence& planned, const SequenceRows& rows,
                     const std::vector<std::string>& remarks) {
   const Sequence& sequence = *plan.dataset.sequences[planned.position];
-  ordered_json json = planned.identity;
+  ordered_json json = {{"format", kResultFormat}};
+  json.update(planned.identity);
   json["preset"] = plan.preset;
   if (const auto origin = simulated_origin_json(plan.dataset)) {
     json["simulated"] = *origin;
@@ -77,7 +67,7 @@ ordered_json header(const RunPlan& plan, const PlannedSequence& planned, const S
   json["fingerprint"] = rows.fingerprint;
   json["machine"] = machine_json();
   json["remarks"] = remarks;
-  json["scans_without_detection"] = scans_without_detection(plan.settings.config, sequence);
+  json["scans_without_detection"] = scans_without_detection(rows);
   const Split* benchmark = benchmark_scans(*plan.settings.protocol, plan.dataset.splits);
   const auto stems =
       benchmark == nullptr ? std::nullopt : stems_in_split(*benchmark, planned.position);
@@ -128,7 +118,8 @@ SequenceOutcome run_now(const RunPlan& plan, const PlannedSequence& planned) {
 SequenceOutcome reuse(const RunPlan& plan, const PlannedSequence& planned) {
   const Sequence& sequence = *plan.dataset.sequences[planned.position];
   tell(fmt::format("{}: finished by an earlier run, kept", sequence.name()));
-  return {planned.finished->rows, all_remarks(plan.settings, sequence, planned.finished->rows),
+  return {planned.finished->rows,
+          planned.finished->content.at("remarks").get<std::vector<std::string>>(),
           planned.folder.path(), true};
 }
 

@@ -6,12 +6,12 @@
 #include <stdexcept>
 
 #include "core/base/thread_pool.hpp"
-#include "core/hmm_mos/pipeline.hpp"
 #include "datasets/files/errors.hpp"
+#include "datasets/files/nearest_name.hpp"
 #include "datasets/sequence/fingerprint.hpp"
-#include "eval/results/config_json.hpp"
 #include "eval/results/reading_json.hpp"
 #include "eval/results/same_input.hpp"
+#include "eval/results/settings_json.hpp"
 #include "eval/runs/presets.hpp"
 #include "eval/runs/shared_folder.hpp"
 #include "mosbench_version.hpp"
@@ -19,6 +19,15 @@
 namespace mosbench {
 namespace fs = std::filesystem;
 namespace {
+
+const MethodKind& choose_method(const RunOptions& options) {
+  const std::string name = options.method.value_or(std::string(methods().front().name));
+  if (const MethodKind* method = find_method(name)) return *method;
+  std::vector<std::string_view> names;
+  for (const MethodKind& method : methods()) names.push_back(method.name);
+  throw UsageError(fmt::format("--method: '{}' is not known, expected one of {} (nearest: {})",
+                               name, fmt::join(names, ", "), nearest_name(name, names)));
+}
 
 const Preset& choose_preset(const RunOptions& options, DatasetKind kind, RunPlan& plan) {
   if (options.preset) return preset_named(*options.preset);
@@ -28,38 +37,61 @@ const Preset& choose_preset(const RunOptions& options, DatasetKind kind, RunPlan
   return preset;
 }
 
-Config settle_config(const RunOptions& options, const Preset& preset, Variant variant) {
-  Config config = preset.config;
-  if (options.config_file) apply_config_file(*options.config_file, config);
-  for (const std::string& assignment : options.assignments) {
-    apply_config_assignment(assignment, config);
+/// --variant is the short form of --set variant=NAME.
+void apply_variant(const std::string& name, const MethodKind& method, Settings& settings) {
+  if (settings.find("variant") == nullptr) {
+    throw UsageError(
+        fmt::format("--variant: method {} has no variants, expected none", method.name));
   }
   try {
-    const Pipeline refuses_what_does_not_go_together(config, variant);
+    settings.set("variant", name);
+  } catch (const std::invalid_argument&) {
+    throw UsageError(fmt::format("--variant: '{}' is not known, expected {}", name,
+                                 fmt::join(settings.find("variant")->choices, " or ")));
+  }
+}
+
+Settings choose_settings(const RunOptions& options, const Preset& preset,
+                         const MethodKind& method) {
+  Settings settings = method.defaults;
+  for (const PresetValue& value : preset.values) {
+    if (settings.find(value.setting) != nullptr) settings.set(value.setting, value.value);
+  }
+  if (options.config_file) apply_settings_file(*options.config_file, settings);
+  if (options.variant) apply_variant(*options.variant, method, settings);
+  for (const std::string& assignment : options.assignments) {
+    apply_setting_assignment(assignment, settings);
+  }
+  try {
+    method.check(settings);
   } catch (const std::invalid_argument& error) {
     throw UsageError(fmt::format("configuration: {}", error.what()));
   }
-  return config;
+  return settings;
 }
 
-Variant parse_variant(const std::optional<std::string>& name) {
-  if (!name) return Variant::kPaper2024;
-  if (const std::optional<Variant> variant = variant_from_string(*name)) return *variant;
-  throw UsageError(
-      fmt::format("--variant: '{}' is not known, expected paper-2024 or release-2025", *name));
-}
-
-RangeGate choose_range(const RunOptions& options, const Protocol& protocol, const Config& config) {
+RangeGate choose_range(const RunOptions& options, const Protocol& protocol,
+                       const Settings& settings) {
   if (options.range) return range_option(*options.range, protocol);
   // A benchmark with a range limit is scored over the range it was run at.
   const bool limited = protocol.range_rule != RangeRule::kNone && protocol.default_range.max_m > 0;
-  return limited ? RangeGate{config.min_range_m, config.max_range_m} : protocol.default_range;
+  const bool known =
+      settings.find("min_range_m") != nullptr && settings.find("max_range_m") != nullptr;
+  return limited && known
+             ? RangeGate{settings.number("min_range_m"), settings.number("max_range_m")}
+             : protocol.default_range;
 }
 
 fs::path default_out(const RunPlan& plan, const RunOptions& options) {
   const fs::path folder = fs::absolute(options.input / "").lexically_normal().parent_path();
-  return fs::path("results/runs") / fmt::format("{}-{}-{}", folder.filename().string(), plan.preset,
-                                                to_string(plan.settings.variant));
+  const RunSettings& settings = plan.settings;
+  const bool has_variant = settings.method_settings.find("variant") != nullptr;
+  // The default method's folders are named by its variant.
+  const std::string_view kind = settings.method == &methods().front() && has_variant
+                                    ? settings.method_settings.choice("variant")
+                                    : settings.method->name;
+  return fs::path("results/runs") /
+         fmt::format("{}-{}-{}", folder.filename().string(), plan.preset, kind);
 }
 
 nlohmann::ordered_json identity_of(const RunPlan& plan, const Sequence& sequence) {
@@ -68,12 +100,14 @@ nlohmann::ordered_json identity_of(const RunPlan& plan, const Sequence& sequence
       {"sequence", sequence.name()},
       {"dataset", std::string(to_string(plan.dataset.kind))},
       {"reading", to_json(sequence.reading())},
-      {"variant", std::string(to_string(settings.variant))},
+      {"method",
+       {{"name", std::string(settings.method->title)},
+        {"kind", std::string(settings.method->name)}}},
       {"protocol",
        {{"name", std::string(settings.protocol->name)},
         {"min_range_m", settings.range.min_m},
         {"max_range_m", settings.range.max_m}}},
-      {"config", to_json(settings.config, settings.variant)},
+      {"config", to_json(settings.method_settings)},
       {"code", {{"version", std::string(kMosbenchVersion)}, {"compiler", std::string(kCompiler)}}}};
 }
 
@@ -107,16 +141,17 @@ PlannedSequence plan_sequence(const RunPlan& plan, std::size_t position, bool ov
 
 RunPlan plan_method(const RunOptions& options) {
   RunPlan plan;
-  plan.settings.variant = parse_variant(options.variant);
+  plan.settings.method = &choose_method(options);
   plan.settings.threads = options.threads > 0 ? options.threads : hardware_threads();
   plan.dataset = open_dataset(
       options.input, {dataset_kind_option(options.dataset), options.sequences, options.reading});
   const Preset& preset = choose_preset(options, plan.dataset.kind, plan);
   plan.reading = options.reading;
   plan.preset = preset.name;
-  plan.settings.config = settle_config(options, preset, plan.settings.variant);
+  plan.settings.method_settings = choose_settings(options, preset, *plan.settings.method);
   plan.settings.protocol = &protocol_named(options.protocol.value_or(std::string(preset.protocol)));
-  plan.settings.range = choose_range(options, *plan.settings.protocol, plan.settings.config);
+  plan.settings.range =
+      choose_range(options, *plan.settings.protocol, plan.settings.method_settings);
   return plan;
 }
 

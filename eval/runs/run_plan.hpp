@@ -17,7 +17,7 @@ struct RunOptions {
   std::filesystem::path input;
   std::string dataset = "auto";
   std::vector<std::string> sequences;
-  std::optional<std::string> preset, variant, protocol, range;
+  std::optional<std::string> method, preset, variant, protocol, range;
   std::optional<std::filesystem::path> config_file, out;
   ReadingOptions reading = {};
   std::vector<std::string> assignments;
@@ -47,7 +47,7 @@ struct RunPlan {
   std::vector<std::string> notes;  ///< choices made for the user, plain sentences
 };
 
-/// Opens the data set and settles the configuration (defaults < preset < file < --set): a plan
+/// Opens the data set and chooses method, settings (defaults < preset < file < --set): a plan
 /// without sequences. Throws UsageError and DataError.
 RunPlan plan_method(const RunOptions& options);
 

@@ -32,7 +32,7 @@ struct PendingScan {
 /// A scan that was read and observed.
 struct ReadyScan {
   Frame frame;
-  ObservedScan observed;
+  std::unique_ptr<Observed> observed;
   double observe_ms;
 };
 
@@ -58,8 +58,10 @@ class SequenceRun {
         folder_(folder),
         // A deferred task runs inside get(), on this thread: one thread then means one thread.
         launch_(settings.threads > 1 ? std::launch::async : std::launch::deferred),
-        pipeline_(settings.config, settings.variant, settings.threads, sequence.size()) {
-    pipeline_.record_scores(settings.keeps_scores);
+        method_(
+            settings.method->make(settings.method_settings, {.threads = settings.threads,
+                                                             .scan_count = sequence.size(),
+                                                             .scores = settings.keeps_scores})) {
     // What stays is allocated before the large buffers that come and go.
     rows_.scans.resize(sequence.size());
     rows_.costs.resize(sequence.size());
@@ -79,9 +81,10 @@ class SequenceRun {
       push(k, std::move(ready));
       progress.advance();
     }
-    for (ScanResult& result : pipeline_.finish()) accept(std::move(result));
+    for (LabelledScan& result : method_->finish()) accept(std::move(result));
     finish_settling();
     rows_.fingerprint = fingerprint_.hex();
+    rows_.remarks = method_->remarks();
     rows_.wall_s = milliseconds_since(start) / 1e3;
     return std::move(rows_);
   }
@@ -93,8 +96,8 @@ class SequenceRun {
       Frame frame = sequence_.read(scan_index, std::move(spent));
       fingerprint_.add(frame);
       const Clock::time_point start = Clock::now();
-      ObservedScan observed = naming_scan(sequence_, scan_index, [&] {
-        return pipeline_.observe(frame.points, frame.map_from_sensor);
+      std::unique_ptr<Observed> observed = naming_scan(sequence_, scan_index, [&] {
+        return method_->observe(frame.points, frame.map_from_sensor);
       });
       return ReadyScan{std::move(frame), std::move(observed), milliseconds_since(start)};
     });
@@ -102,11 +105,11 @@ class SequenceRun {
 
   void push(std::size_t scan_index, ReadyScan ready) {
     const Clock::time_point start = Clock::now();
-    std::vector<ScanResult> finals = pipeline_.push(std::move(ready.observed));
+    std::vector<LabelledScan> finals = method_->push(std::move(ready.observed));
     rows_.costs[scan_index].push_ms = ready.observe_ms + milliseconds_since(start);
     rows_.costs[scan_index].resident_mib = resident_mib();
     remember(std::move(ready.frame));
-    for (ScanResult& result : finals) accept(std::move(result));
+    for (LabelledScan& result : finals) accept(std::move(result));
   }
 
   void remember(Frame frame) {
@@ -118,8 +121,8 @@ class SequenceRun {
     spent_ = std::move(frame);
   }
 
-  void accept(ScanResult result) {
-    rows_.costs[result.scan_index].stages_ms = result.stage_times;
+  void accept(LabelledScan result) {
+    add_stages(result.stages, rows_, rows_.costs[result.scan_index]);
     finish_settling();
     settling_ = std::async(
         launch_, [this, scan = std::move(pending_.front()), result = std::move(result)]() mutable {
@@ -130,20 +133,21 @@ class SequenceRun {
     pending_.pop_front();
   }
 
-  void score(const PendingScan& scan, const ScanResult& result) {
+  void score(const PendingScan& scan, const LabelledScan& result) {
     ScanRow& row = rows_.scans[result.scan_index];
     row.points = result.labels.size();
     row.predicted_moving_points =
         static_cast<std::size_t>(std::ranges::count(result.labels, kMovingLabel));
     row.nonfinite_points = result.nonfinite_points;
     row.threshold = result.threshold;
+    row.judged = result.judged;
     if (!scan.truth) return;
     row.counts = score_scan(*settings_.protocol, *scan.truth, result.labels, scan.truth_points,
                             settings_.range);
     row.truth_hash = truth_hash(*scan.truth);
   }
 
-  void write(const ScanResult& result) const {
+  void write(const LabelledScan& result) const {
     const std::string& stem = rows_.scans[result.scan_index].stem;
     write_labels(folder_ / "labels" / (stem + ".label"), result.labels);
     if (!settings_.keeps_scores) return;
@@ -160,7 +164,7 @@ class SequenceRun {
   const RunSettings& settings_;
   const std::filesystem::path& folder_;
   std::launch launch_;
-  Pipeline pipeline_;
+  std::unique_ptr<Method> method_;
   ContentFingerprint fingerprint_;
   std::deque<PendingScan> pending_;
   Frame spent_;  ///< gives its memory to a coming frame
@@ -176,18 +180,10 @@ SequenceRows run_sequence(const Sequence& sequence, const RunSettings& settings,
   return SequenceRun(sequence, settings, folder).run();
 }
 
-std::vector<ScanResult> push_scan(Pipeline& pipeline, const Sequence& sequence,
-                                  std::size_t scan_index, const Frame& frame) {
+std::vector<LabelledScan> push_scan(Method& method, const Sequence& sequence,
+                                    std::size_t scan_index, const Frame& frame) {
   return naming_scan(sequence, scan_index,
-                     [&] { return pipeline.push(frame.points, frame.map_from_sensor); });
-}
-
-bool detection_runs(const Config& config, std::size_t scan_index, std::size_t scan_count) {
-  const auto delay = static_cast<std::size_t>(config.delay_scans);
-  const auto window = static_cast<std::size_t>(config.local_window_scans);
-  if (delay == 0 || scan_index + delay > scan_count) return scan_index > window;
-  if (scan_index + delay == scan_count) return false;
-  return scan_index > 0 && scan_index + delay > window;
+                     [&] { return method.push(frame.points, frame.map_from_sensor); });
 }
 
 }  // namespace mosbench

@@ -1,10 +1,9 @@
 #pragma once
 
 #include <filesystem>
+#include <mosbench/method.hpp>
 #include <vector>
 
-#include "core/hmm_mos/config.hpp"
-#include "core/hmm_mos/pipeline.hpp"
 #include "datasets/sequence/sequence.hpp"
 #include "eval/protocols/protocol.hpp"
 #include "eval/results/result_file.hpp"
@@ -13,12 +12,12 @@ namespace mosbench {
 
 /// How every sequence of one `mosbench run` is segmented and scored.
 struct RunSettings {
-  Config config;
-  Variant variant = Variant::kPaper2024;
+  const MethodKind* method = nullptr;
+  Settings method_settings;
   const Protocol* protocol = nullptr;
   RangeGate range;
   unsigned threads = 1;
-  bool keeps_scores = false;  ///< also writes every point's dynamic score
+  bool keeps_scores = false;  ///< also writes every point's score
 };
 
 /// Segments a sequence, writes `folder`/labels/<stem>.label for every scan, with `keeps_scores`
@@ -31,10 +30,7 @@ SequenceRows run_sequence(const Sequence& sequence, const RunSettings& settings,
 
 /// Pushes one scan of `sequence`. Throws DataError naming the scan's file, or where it has none of
 /// its own the scan, for points and poses beyond the voxel grid.
-std::vector<ScanResult> push_scan(Pipeline& pipeline, const Sequence& sequence,
-                                  std::size_t scan_index, const Frame& frame);
-
-/// Whether the method looks for motion in scan `scan_index` of `scan_count` (algorithm, section 4).
-bool detection_runs(const Config& config, std::size_t scan_index, std::size_t scan_count);
+std::vector<LabelledScan> push_scan(Method& method, const Sequence& sequence,
+                                    std::size_t scan_index, const Frame& frame);
 
 }  // namespace mosbench

@@ -16,13 +16,9 @@ std::string range_text(const RangeGate& range) {
   return fmt::format("{:g} to {:g} m", range.min_m, range.max_m);
 }
 
-/// Variant and configuration; null for labels of other methods.
+/// Null for labels of other programs.
 nlohmann::ordered_json parameters_of(const SequenceResult& result) {
-  const auto config = result.header.find("config");
-  if (config == result.header.end() || !config->is_object()) return nullptr;
-  nlohmann::ordered_json parameters = *config;
-  parameters["variant"] = result.header.value("variant", nlohmann::ordered_json());
-  return parameters;
+  return result.header.value("config", nlohmann::ordered_json());
 }
 
 /// "voxel_size_m: 0.25 -> 0.4, ..." where both runs have parameters; empty when they are equal.

@@ -112,7 +112,7 @@ ordered_json provenance_json(const ResultSet& set) {
                        {"protocol", std::string(first.protocol->name)},
                        {"min_range_m", first.range.min_m},
                        {"max_range_m", first.range.max_m}};
-  for (const char* key : {"variant", "preset", "config", "code", "predictions", "simulated"}) {
+  for (const char* key : {"preset", "config", "code", "predictions", "simulated"}) {
     if (first.header.contains(key)) json[key] = first.header[key];
   }
   json["missing_predictions"] = missing_predictions(set);

@@ -20,12 +20,12 @@ void differ(const char* what, double measured, const std::optional<double>& publ
 
 void own_mismatches(const nlohmann::ordered_json& header, const PublishedCell& cell,
                     std::vector<std::string>& reasons) {
-  const std::string variant = header.value("variant", "");
+  const auto config = header.value("config", nlohmann::ordered_json::object());
+  const std::string variant = config.value("variant", "");
   if (variant != cell.variant) {
     reasons.push_back(fmt::format("variant {}, published {}", variant,
                                   cell.variant.empty() ? "another" : cell.variant));
   }
-  const auto config = header.value("config", nlohmann::ordered_json::object());
   differ("voxel size in m", config.value("voxel_size_m", 0.0), cell.voxel_size_m, reasons);
   differ("range in m", config.value("max_range_m", 0.0), cell.max_range_m, reasons);
   differ("delay in scans", config.value("delay_scans", 0),

@@ -5,12 +5,15 @@
 #include <set>
 #include <string_view>
 
-#include "core/base/stage_times.hpp"
 #include "tests/cli/program.hpp"
 #include "tests/cli/small_sequence.hpp"
 
 namespace mosbench {
 namespace {
+
+constexpr std::string_view kStageNames[] = {"voxelize",       "raycast", "map_update", "evict",
+                                            "convolution",    "median",  "window",     "otsu",
+                                            "dynamic_region", "labels"};
 
 using nlohmann::json;
 using testing::HasSubstr;

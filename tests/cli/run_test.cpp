@@ -71,7 +71,8 @@ TEST_F(Run, WritesOneScorePerPointWhenAskedAndTheSameLabels) {
     const std::string label_name = "room/labels/" + cli::stem(k) + ".label";
     EXPECT_EQ(read_file(folder_ / "out" / label_name), read_file(folder_ / "plain" / label_name));
     const fs::path file = dynamic_score_file(folder_ / "out/room", cli::stem(k));
-    const auto scores = parse_dynamic_scores(read_file(file), cli::kPointsPerScan, file);
+    const auto scores =
+        parse_dynamic_scores(read_file(file), cli::kPointsPerScan, ScoreNumbers::kFloat32, file);
     const auto& threshold = json.at("scans").at(k).at("threshold");
     if (threshold.is_null() || threshold.get<double>() <= 3.0) continue;
     const auto labels = read_labels(folder_ / "out" / label_name, cli::kPointsPerScan);
@@ -103,14 +104,16 @@ TEST_F(Run, RecordsTheEffectiveConfigurationWithTheKeysOfTheParityCases) {
   std::vector<std::string> keys;
   const auto json = result("out");
   for (const auto& [key, value] : json.at("config").items()) keys.push_back(key);
-  EXPECT_THAT(
-      keys, testing::ElementsAre("voxel_size_m", "occupancy_sigma_m", "min_range_m", "max_range_m",
-                                 "delay_scans", "local_window_scans", "global_window_scans",
-                                 "kernel_width_voxels", "min_state_probability", "min_otsu_score",
-                                 "transition_epsilon", "dynamic_window_scans"));
+  EXPECT_THAT(keys, testing::ElementsAre(
+                        "variant", "voxel_size_m", "occupancy_sigma_m", "min_range_m",
+                        "max_range_m", "delay_scans", "local_window_scans", "global_window_scans",
+                        "kernel_width_voxels", "min_state_probability", "min_otsu_score",
+                        "transition_epsilon", "dynamic_window_scans", "distance_field_scans"));
   EXPECT_EQ(json.at("config").at("occupancy_sigma_m"), 0.3);
   EXPECT_EQ(json.at("config").at("delay_scans"), 2);
-  EXPECT_EQ(json.at("variant"), "paper-2024");
+  EXPECT_EQ(json.at("config").at("variant"), "paper-2024");
+  EXPECT_EQ(json.at("method").at("kind"), "hmm-mos");
+  EXPECT_EQ(json.at("format"), 2);
   EXPECT_EQ(json.at("protocol").at("name"), "semantickitti-mos");
   EXPECT_THAT(json.at("remarks").dump(), HasSubstr("the last 2 scans have no 2 later ones"));
   EXPECT_EQ(json.at("scans_without_detection").back(), cli::stem(kScans - 2));

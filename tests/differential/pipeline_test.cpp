@@ -5,11 +5,12 @@
 #include <sstream>
 #include <string>
 
-#include "tests/differential/slow_method.hpp"
+#include "core/hmm_mos/reference.hpp"
 #include "tests/small_world.hpp"
 
 /// The core against the slow twin, label for label and score for score, on small seeded worlds.
 namespace mosbench {
+using namespace hmm_mos;
 namespace {
 
 /// Totals over the comparisons of one test, so that it cannot pass on scans without motion.
@@ -17,16 +18,11 @@ struct Tally {
   std::size_t sequences = 0, with_motion = 0, moving_points = 0;
 };
 
-std::string to_text(const Config& config, Variant variant) {
+std::string to_text(const Config& config) {
   std::ostringstream text;
-  text << to_string(variant);
-  visit_fields(config, [&](std::string_view name, const auto& value, FieldRange) {
-    if constexpr (std::is_same_v<std::decay_t<decltype(value)>, std::optional<double>>) {
-      if (value) text << ' ' << name << ' ' << *value;
-    } else {
-      text << ' ' << name << ' ' << value;
-    }
-  });
+  for (const Setting& setting : settings_of(config).all()) {
+    if (setting.is_set) text << ' ' << setting.name << ' ' << to_string(setting.value);
+  }
   return text.str();
 }
 
@@ -35,25 +31,22 @@ enum class Length { kKnown, kUnknown };
 void expect_equal_labels(const SmallWorld& world, const Config& config, Variant variant,
                          Tally& tally, Length length = Length::kKnown, unsigned threads = 1) {
   const bool known = length == Length::kKnown;
-  slow::Method twin(config, variant,
-                    known ? static_cast<int>(world.scans.size()) : slow::Method::kNever);
-  const std::vector<std::vector<bool>> expected = twin.run(world.scans, world.poses);
-  Pipeline pipeline(config, variant, threads,
-                    known ? std::optional(world.scans.size()) : std::nullopt);
-  pipeline.record_scores(true);
+  const std::optional<std::size_t> scan_count =
+      known ? std::optional(world.scans.size()) : std::nullopt;
+  Reference twin(of_variant(config, variant), {.scan_count = scan_count, .scores = true});
+  Pipeline pipeline(of_variant(config, variant), {threads, scan_count, true});
+  const std::vector<LabelledScan> expected = results_of(twin, world);
+  const std::vector<LabelledScan> results = results_of(pipeline, world);
+  ASSERT_EQ(results.size(), world.scans.size());
+  ASSERT_EQ(results.size(), expected.size());
   std::vector<std::vector<std::uint32_t>> labels;
-  for (ScanResult& result : results_of(pipeline, world)) {
-    ASSERT_EQ(result.scores, twin.scores().at(labels.size())) << to_text(config, variant);
-    labels.push_back(std::move(result.labels));
-  }
-  ASSERT_EQ(labels.size(), expected.size());
-  for (std::size_t k = 0; k < labels.size(); ++k) {
-    ASSERT_EQ(labels[k].size(), expected[k].size());
-    for (std::size_t i = 0; i < labels[k].size(); ++i) {
-      ASSERT_EQ(labels[k][i], expected[k][i] ? kMovingLabel : kStaticLabel)
-          << "scan " << k << " point " << i << " of " << labels[k].size() << ": "
-          << to_text(config, variant);
-    }
+  for (std::size_t k = 0; k < results.size(); ++k) {
+    ASSERT_EQ(results[k].labels.size(), world.scans[k].size());
+    ASSERT_EQ(results[k].labels, expected[k].labels) << "scan " << k << ": " << to_text(config);
+    ASSERT_EQ(results[k].scores, expected[k].scores) << "scan " << k << ": " << to_text(config);
+    ASSERT_EQ(results[k].judged, expected[k].judged);
+    ASSERT_EQ(results[k].nonfinite_points, expected[k].nonfinite_points);
+    labels.push_back(results[k].labels);
   }
   const std::size_t moving = moving_points(labels);
   ++tally.sequences;

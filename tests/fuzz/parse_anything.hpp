@@ -21,9 +21,9 @@
 #include "datasets/rosbag/point_cloud2.hpp"
 #include "datasets/simulator/scene_json.hpp"
 #include "eval/predictions/prediction_text.hpp"
-#include "eval/results/config_json.hpp"
 #include "eval/results/dynamic_score_file.hpp"
 #include "eval/results/result_set.hpp"
+#include "eval/results/settings_json.hpp"
 #include "eval/tables/published.hpp"
 #include "tests/fuzz/memory_file.hpp"
 
@@ -49,7 +49,8 @@ inline void label(std::string_view bytes) {
 inline void dynamic_scores(std::string_view bytes) {
   if (bytes.empty()) return;
   const std::size_t point_count = static_cast<unsigned char>(bytes.front());
-  const auto scores = parse_dynamic_scores(bytes.substr(1), point_count, "f");
+  const auto scores =
+      parse_dynamic_scores(bytes.substr(1), point_count, ScoreNumbers::kFloat32, "f");
   require(scores.size() == point_count && format_dynamic_scores(scores) == bytes.substr(1));
 }
 
@@ -180,15 +181,15 @@ inline void scene(std::string_view text) {
 }
 
 inline void config(std::string_view text) {
-  Config parsed;
+  Settings parsed = methods().front().defaults;
   try {
-    apply_config_text(text, "f", parsed);
+    apply_settings_text(text, "f", parsed);
   } catch (const UsageError& error) {
     throw DataError(error.what());
   }
-  Config again;
-  apply_config_text(to_json(parsed, Variant::kPaper2024).dump(), "f", again);
-  require(to_json(again, Variant::kPaper2024) == to_json(parsed, Variant::kPaper2024));
+  Settings again = methods().front().defaults;
+  apply_settings_text(to_json(parsed).dump(), "f", again);
+  require(to_json(again) == to_json(parsed));
 }
 
 /// A result.json.

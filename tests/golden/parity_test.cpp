@@ -24,7 +24,7 @@ constexpr std::array<unsigned, 6> kThreads = {1, 2, 7, 1, 2, 7};
 class Comparison {
  public:
   Comparison(const ParityCase& parity, unsigned threads)
-      : threads_(threads), pipeline_(parity.config, parity.variant, threads, parity.scans) {}
+      : threads_(threads), pipeline_(parity.config, {threads, parity.scans}) {}
 
   void push(const std::vector<Point>& points, const Pose& pose) {
     take(pipeline_.push(points, pose));
@@ -51,8 +51,8 @@ class Comparison {
   }
 
  private:
-  void take(std::vector<ScanResult> results) {
-    for (ScanResult& result : results) {
+  void take(std::vector<LabelledScan> results) {
+    for (LabelledScan& result : results) {
       EXPECT_EQ(result.scan_index, labels_.size());
       labels_.push_back(std::move(result.labels));
     }

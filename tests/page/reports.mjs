@@ -31,7 +31,7 @@ export function resultOf(folder) {
 /** Dynamic scores of one scan of a run, from the file that --scores writes. */
 export function scoresOf(folder, stem) {
   const bytes = readFileSync(join(folder, 'scores', `${stem}.score`));
-  return Array.from({ length: bytes.length / 4 }, (_, i) => bytes.readInt32LE(4 * i));
+  return Array.from({ length: bytes.length / 4 }, (_, i) => bytes.readFloatLE(4 * i));
 }
 
 /** Simulates and segments part of a campus; two runs that differ in their delay, the first with scores. */

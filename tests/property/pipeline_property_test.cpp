@@ -9,6 +9,7 @@
 #include "tests/small_world.hpp"
 
 namespace mosbench {
+using namespace hmm_mos;
 namespace {
 
 constexpr Variant kVariants[] = {Variant::kPaper2024, Variant::kRelease2025};
@@ -163,7 +164,7 @@ TEST(Memory, StaysBoundedOverTwoThousandScans) {
                                           .elevations = 6,
                                           .moving_boxes = 3,
                                           .walk_m = 0.0});
-    Pipeline pipeline(config, variant);
+    Pipeline pipeline(of_variant(config, variant));
     std::size_t blocks_early = 0, blocks_late = 0, bytes_early = 0, bytes_late = 0;
     for (std::size_t k = 0; k < 2000; ++k) {
       Pose pose = world.poses[k % 100];
@@ -171,15 +172,15 @@ TEST(Memory, StaysBoundedOverTwoThousandScans) {
       pipeline.push(world.scans[k % 100], pose);
       std::size_t& blocks = k < 400 ? blocks_early : blocks_late;
       std::size_t& bytes = k < 400 ? bytes_early : bytes_late;
-      blocks = std::max(blocks, pipeline.map_blocks());
-      bytes = std::max(bytes, pipeline.memory_bytes());
+      blocks = std::max(blocks, pipeline.memory().map_blocks);
+      bytes = std::max(bytes, pipeline.memory().bytes);
     }
     EXPECT_GT(blocks_early, 8U);
     EXPECT_LE(blocks_late, blocks_early + blocks_early / 4);
     EXPECT_LE(bytes_late, bytes_early + bytes_early / 4);
     // Once nothing is seen for longer than w_g, the map is empty again.
     for (std::size_t k = 0; k < 100; ++k) pipeline.push({}, world.poses[0]);
-    EXPECT_EQ(pipeline.map_blocks(), 0U);
+    EXPECT_EQ(pipeline.memory().map_blocks, 0U);
   }
 }
 

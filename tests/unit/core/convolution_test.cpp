@@ -7,12 +7,13 @@
 #include "tests/voxel_twins.hpp"
 
 namespace mosbench {
+using namespace hmm_mos;
 namespace {
 
 /// A map in which exactly the given voxels are known at scan 1.
 class KnownVoxels {
  public:
-  explicit KnownVoxels(const Triples& known) : map_(config(), Variant::kPaper2024, grid()) {
+  explicit KnownVoxels(const Triples& known) : map_(config(), grid()) {
     const VoxelSet set = voxel_set(known);
     ThreadPool pool(1);
     map_.update({set.blocks, set.masks}, {}, Eigen::Vector3d::Zero(), 1, pool);

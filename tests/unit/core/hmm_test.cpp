@@ -8,6 +8,7 @@
 #include "core/hmm_mos/change_detection.hpp"
 
 namespace mosbench {
+using namespace hmm_mos;
 namespace {
 
 /// The belief of the specification, all three states in double precision.

@@ -7,6 +7,7 @@
 #include <vector>
 
 namespace mosbench {
+using namespace hmm_mos;
 namespace {
 
 BlockMask random_mask(std::mt19937& random) {

@@ -8,6 +8,7 @@
 #include "tests/voxel_twins.hpp"
 
 namespace mosbench {
+using namespace hmm_mos;
 namespace {
 
 using Scores = std::map<Triple, int>;

@@ -8,6 +8,7 @@
 #include <vector>
 
 namespace mosbench {
+using namespace hmm_mos;
 namespace {
 
 /// algorithm step 5d word by word on the plain list of values.

@@ -12,6 +12,7 @@
 #include "tests/small_world.hpp"
 
 namespace mosbench {
+using namespace hmm_mos;
 namespace {
 
 Config small_config(int delay_scans = 0) {
@@ -25,18 +26,18 @@ Config small_config(int delay_scans = 0) {
   return config;
 }
 
-std::vector<std::size_t> indices(const std::vector<ScanResult>& results) {
+std::vector<std::size_t> indices(const std::vector<LabelledScan>& results) {
   std::vector<std::size_t> scan_indices;
-  for (const ScanResult& result : results) scan_indices.push_back(result.scan_index);
+  for (const LabelledScan& result : results) scan_indices.push_back(result.scan_index);
   return scan_indices;
 }
 
 const std::vector<Point> kPoints(10, Point{2, 1, 0, 0});
 
 TEST(Pipeline, OnlineReturnsEachScanAtOnce) {
-  Pipeline pipeline(small_config(), Variant::kPaper2024);
+  Pipeline pipeline(small_config());
   for (std::size_t k = 0; k < 6; ++k) {
-    const std::vector<ScanResult> results = pipeline.push(kPoints, Pose::Identity());
+    const std::vector<LabelledScan> results = pipeline.push(kPoints, Pose::Identity());
     EXPECT_THAT(indices(results), testing::ElementsAre(k));
     EXPECT_EQ(results[0].labels, std::vector<std::uint32_t>(10, kStaticLabel));
     EXPECT_EQ(results[0].threshold, std::nullopt);
@@ -45,9 +46,9 @@ TEST(Pipeline, OnlineReturnsEachScanAtOnce) {
 }
 
 TEST(Pipeline, DelayHoldsScansBackAndFinishReleasesThem) {
-  Pipeline pipeline(small_config(3), Variant::kPaper2024, 1, 6);
+  Pipeline pipeline(small_config(3), {1, 6});
   for (std::size_t k = 0; k < 6; ++k) {
-    const std::vector<ScanResult> results = pipeline.push(kPoints, Pose::Identity());
+    const std::vector<LabelledScan> results = pipeline.push(kPoints, Pose::Identity());
     if (k < 3) {
       EXPECT_TRUE(results.empty());
     } else {
@@ -67,33 +68,33 @@ TEST(Pipeline, DelayLongerThanTheSequenceLabelsEverythingStatic) {
 }
 
 TEST(Pipeline, RefusesMoreScansThanAnnounced) {
-  Pipeline pipeline(small_config(), Variant::kPaper2024, 1, 2);
+  Pipeline pipeline(small_config(), {1, 2});
   pipeline.push(kPoints, Pose::Identity());
   pipeline.push(kPoints, Pose::Identity());
   EXPECT_THROW(pipeline.push(kPoints, Pose::Identity()), std::logic_error);
 }
 
 TEST(Pipeline, RefusesScansAfterFinish) {
-  Pipeline pipeline(small_config(2), Variant::kPaper2024);
+  Pipeline pipeline(small_config(2));
   pipeline.push(kPoints, Pose::Identity());
   pipeline.finish();
   EXPECT_THROW(pipeline.push(kPoints, Pose::Identity()), std::logic_error);
 }
 
 TEST(Pipeline, RefusesImpossibleSettings) {
-  EXPECT_THROW(Pipeline(small_config(), Variant::kPaper2024, 0), std::invalid_argument);
-  EXPECT_THROW(Pipeline(small_config(1), Variant::kRelease2025), std::invalid_argument);
+  EXPECT_THROW(Pipeline(small_config(), {0}), std::invalid_argument);
+  EXPECT_THROW(Pipeline(of_variant(small_config(1), Variant::kRelease2025)), std::invalid_argument);
   Config config = small_config();
   config.kernel_width_voxels = 4;
-  EXPECT_THROW(Pipeline(config, Variant::kPaper2024), std::invalid_argument);
-  EXPECT_NO_THROW(Pipeline(small_config(), Variant::kRelease2025));
+  EXPECT_THROW(Pipeline{config}, std::invalid_argument);
+  EXPECT_NO_THROW(Pipeline(of_variant(small_config(), Variant::kRelease2025)));
 }
 
 TEST(Pipeline, MovesWithItsState) {
   const SmallWorld world = small_world({.seed = 3, .scans = 12});
   const auto expected = labels_of(world, small_config(), Variant::kPaper2024);
   ASSERT_GT(moving_points(expected), 0U);
-  Pipeline pipeline(small_config(), Variant::kPaper2024);
+  Pipeline pipeline(small_config());
   for (std::size_t k = 0; k < 12; ++k) {
     if (k == 5) {
       Pipeline other(std::move(pipeline));
@@ -109,8 +110,8 @@ TEST(Pipeline, InterleavedPipelinesAreIndependent) {
   const auto expected_b = labels_of(b, small_config(), Variant::kRelease2025);
   ASSERT_GT(moving_points(expected_a), 0U);
   ASSERT_GT(moving_points(expected_b), 0U);
-  Pipeline first(small_config(), Variant::kPaper2024, 2);
-  Pipeline second(small_config(), Variant::kRelease2025, 3);
+  Pipeline first(small_config(), {2});
+  Pipeline second(of_variant(small_config(), Variant::kRelease2025), {3});
   for (std::size_t k = 0; k < a.scans.size(); ++k) {
     EXPECT_EQ(first.push(a.scans[k], a.poses[k])[0].labels, expected_a[k]);
     EXPECT_EQ(second.push(b.scans[k], b.poses[k])[0].labels, expected_b[k]);
@@ -139,18 +140,18 @@ TEST(Pipeline, ObservesAScanWhileTheOneBeforeIsPushed) {
         labels_of(world, small_config(delay), Variant::kPaper2024, 1, world.scans.size());
     ASSERT_GT(moving_points(expected), 0U);
     for (const unsigned threads : {1U, 2U, 5U}) {
-      Pipeline pipeline(small_config(delay), Variant::kPaper2024, threads, world.scans.size());
+      Pipeline pipeline(small_config(delay), {threads, world.scans.size()});
       const auto observe = [&](std::size_t k) {
         return std::async(std::launch::async,
                           [&, k] { return pipeline.observe(world.scans[k], world.poses[k]); });
       };
       std::vector<std::vector<std::uint32_t>> labels;
-      const auto take = [&](std::vector<ScanResult> results) {
-        for (ScanResult& result : results) labels.push_back(std::move(result.labels));
+      const auto take = [&](std::vector<LabelledScan> results) {
+        for (LabelledScan& result : results) labels.push_back(std::move(result.labels));
       };
-      std::future<ObservedScan> upcoming = observe(0);
+      std::future<std::unique_ptr<Observed>> upcoming = observe(0);
       for (std::size_t k = 0; k < world.scans.size(); ++k) {
-        ObservedScan observed = upcoming.get();
+        std::unique_ptr<Observed> observed = upcoming.get();
         if (k + 1 < world.scans.size()) upcoming = observe(k + 1);
         take(pipeline.push(std::move(observed)));
       }
@@ -161,8 +162,8 @@ TEST(Pipeline, ObservesAScanWhileTheOneBeforeIsPushed) {
 }
 
 TEST(Pipeline, RefusesAScanThatAnotherObserved) {
-  Pipeline observing(small_config(), Variant::kPaper2024);
-  Pipeline other(small_config(), Variant::kPaper2024);
+  Pipeline observing(small_config());
+  Pipeline other(small_config());
   EXPECT_THROW(other.push(observing.observe(kPoints, Pose::Identity())), std::logic_error);
 }
 
@@ -176,7 +177,7 @@ TEST(Pipeline, RefusedScanLeavesThePipelineAsItWas) {
   overflowing[300].x = 1e8F;
   Pose not_a_number = Pose::Identity();
   not_a_number.translation().x() = std::nan("");
-  Pipeline pipeline(small_config(), Variant::kPaper2024, 2);
+  Pipeline pipeline(small_config(), {2});
   for (std::size_t k = 0; k < world.scans.size(); ++k) {
     EXPECT_THROW(pipeline.push(world.scans[k], not_a_number), std::range_error);
     try {
@@ -185,7 +186,7 @@ TEST(Pipeline, RefusedScanLeavesThePipelineAsItWas) {
     } catch (const std::range_error& error) {
       EXPECT_THAT(error.what(), testing::HasSubstr("point 100"));
     }
-    const std::vector<ScanResult> results = pipeline.push(world.scans[k], world.poses[k]);
+    const std::vector<LabelledScan> results = pipeline.push(world.scans[k], world.poses[k]);
     EXPECT_EQ(results[0].labels, expected[k]);
     EXPECT_EQ(results[0].scan_index, k);
   }
@@ -195,10 +196,10 @@ TEST(Pipeline, ReportsNonfinitePointsAndTheThreshold) {
   SmallWorld world = small_world({.seed = 8});
   world.scans[9][4].y = std::numeric_limits<float>::infinity();
   world.scans[9][5].z = std::numeric_limits<float>::quiet_NaN();
-  Pipeline pipeline(small_config(), Variant::kPaper2024);
+  Pipeline pipeline(small_config());
   std::size_t with_threshold = 0;
   for (std::size_t k = 0; k < world.scans.size(); ++k) {
-    const ScanResult result = pipeline.push(world.scans[k], world.poses[k])[0];
+    const LabelledScan result = pipeline.push(world.scans[k], world.poses[k])[0];
     EXPECT_EQ(result.nonfinite_points, k == 9 ? 2U : 0U);
     with_threshold += result.threshold.has_value();
     EXPECT_TRUE(k > 3 || !result.threshold) << "the window is not full";
@@ -208,45 +209,70 @@ TEST(Pipeline, ReportsNonfinitePointsAndTheThreshold) {
   EXPECT_GT(with_threshold, 5U);
 }
 
-TEST(Pipeline, StagesTakeTime) {
+TEST(Pipeline, TimesEveryStageInItsOrder) {
   const SmallWorld world = small_world({.seed = 9});
-  Pipeline pipeline(small_config(), Variant::kPaper2024);
-  StageTimes total{};
-  for (std::size_t k = 0; k < world.scans.size(); ++k) {
-    const ScanResult result = pipeline.push(world.scans[k], world.poses[k])[0];
-    for (std::size_t stage = 0; stage < total.size(); ++stage) {
-      EXPECT_GE(result.stage_times[stage], 0.0);
-      total[stage] += result.stage_times[stage];
+  for (const bool cpu_times : {false, true}) {
+    Pipeline pipeline(small_config(), {.cpu_times = cpu_times});
+    double cpu_ms = 0;
+    for (std::size_t k = 0; k < world.scans.size(); ++k) {
+      const LabelledScan result = pipeline.push(world.scans[k], world.poses[k])[0];
+      std::vector<std::string_view> names;
+      for (std::size_t i = 0; i < result.stages.size(); ++i) {
+        const StageTime& stage = result.stages[i];
+        names.push_back(stage.name);
+        EXPECT_GT(stage.wall_ms, 0.0);
+        cpu_ms += stage.cpu_ms;
+        if (i > 0) {
+          EXPECT_GE(stage.start, result.stages[i - 1].start);
+        }
+      }
+      std::vector<std::string_view> expected = {"voxelize", "raycast", "map_update", "evict"};
+      if (k > 3) {
+        expected.insert(expected.end(),
+                        {"convolution", "median", "window", "otsu", "dynamic_region", "labels"});
+      }
+      EXPECT_EQ(names, expected) << k;
     }
-  }
-  for (std::size_t stage = 0; stage < total.size(); ++stage) {
-    EXPECT_GT(total[stage], 0.0) << kStageNames[stage];
+    EXPECT_EQ(cpu_ms > 0, cpu_times);
   }
 }
 
-TEST(Pipeline, RecordsEveryStageInItsOrderWhileAsked) {
-  const SmallWorld world = small_world({.seed = 9});
-  Pipeline pipeline(small_config(), Variant::kPaper2024);
-  std::vector<StageEvent> events;
-  for (std::size_t k = 0; k < world.scans.size(); ++k) {
-    events.clear();
-    pipeline.record_stages(k == 8 ? nullptr : &events);
-    const ScanResult result = pipeline.push(world.scans[k], world.poses[k])[0];
-    if (k == 8) {
-      EXPECT_TRUE(events.empty());
-    } else if (k > 3) {
-      StageTimes sums{};
-      for (std::size_t i = 0; i < events.size(); ++i) {
-        sums[static_cast<std::size_t>(events[i].stage)] += events[i].wall_ms;
-        EXPECT_GE(events[i].cpu_ms, 0.0);
-        if (i > 0) {
-          EXPECT_GE(events[i].start, events[i - 1].start);
-        }
-      }
-      EXPECT_EQ(events.size(), kStageNames.size());
-      EXPECT_EQ(sums, result.stage_times);
-    }
+std::vector<std::size_t> judged(int delay_scans, int local_window_scans, std::size_t scan_count) {
+  Config config = small_config(delay_scans);
+  config.local_window_scans = local_window_scans;
+  const SmallWorld world = small_world({.seed = 9, .scans = static_cast<int>(scan_count)});
+  Pipeline pipeline(config, {1, scan_count});
+  std::vector<std::size_t> scans;
+  for (const LabelledScan& result : results_of(pipeline, world)) {
+    if (result.judged) scans.push_back(result.scan_index);
   }
+  return scans;
+}
+
+// Worked by hand.
+TEST(Pipeline, JudgesTheScansThatTheAuthorsProgramJudges) {
+  EXPECT_EQ(judged(0, 3, 7), (std::vector<std::size_t>{4, 5, 6}));
+  // Scan 0 never, scan N - n = 6 static, the others by the delayed detection or their own.
+  EXPECT_EQ(judged(4, 3, 10), (std::vector<std::size_t>{1, 2, 3, 4, 5, 7, 8, 9}));
+  // Delay 1 reaches back to scan 3 at k = 4 only.
+  EXPECT_EQ(judged(1, 3, 7), (std::vector<std::size_t>{3, 4, 5}));
+  EXPECT_EQ(judged(10, 3, 6), (std::vector<std::size_t>{}));
+}
+
+TEST(Pipeline, RefusesPosesThatAreNotRigid) {
+  Pipeline pipeline(small_config());
+  const std::vector<Point> points = {{2, 0, 0, 0}};
+  Pose scaled = Pose::Identity();
+  scaled.linear() *= 3;
+  Pose mirrored = Pose::Identity();
+  mirrored.linear()(2, 2) = -1;
+  Pose nowhere = Pose::Identity();
+  nowhere.translation().x() = std::nan("");
+  for (const Pose& pose : {scaled, mirrored, nowhere}) {
+    EXPECT_THROW(pipeline.push(points, pose), std::range_error);
+    EXPECT_THROW((void)pipeline.observe(points, pose), std::range_error);
+  }
+  EXPECT_EQ(pipeline.push(points, Pose::Identity()).size(), 1U) << "goes on after a refusal";
 }
 
 /// One voxel on the way to a wall is free until scan 6, then occupied. With a kernel of one voxel
@@ -256,30 +282,28 @@ TEST(Pipeline, ScoresOfAPointAreTheVotesInTheWindowOfItsVoxel) {
   config.kernel_width_voxels = 1;
   config.local_window_scans = 2;
   const Point wall{4.1F, 0.1F, 0.1F, 0}, arrived{2.1F, 0.1F, 0.1F, 0}, near{0.1F, 0.1F, 0.1F, 0};
-  Pipeline pipeline(config, Variant::kPaper2024);
-  pipeline.record_scores(true);
-  std::vector<std::vector<std::int32_t>> scores;
+  Pipeline pipeline(config, {.scores = true});
+  std::vector<std::vector<float>> scores;
   for (int k = 0; k < 9; ++k) {
     std::vector<Point> points = {wall, near};
     if (k >= 6) points.push_back(arrived);
     scores.push_back(pipeline.push(points, Pose::Identity()).front().scores);
   }
   for (std::size_t k = 0; k < 6; ++k) {
-    EXPECT_EQ(scores[k], (std::vector<std::int32_t>{0, 0})) << k;
+    EXPECT_EQ(scores[k], (std::vector<float>{0, 0})) << k;
   }
-  EXPECT_EQ(scores[6], (std::vector<std::int32_t>{0, 0, 1}));
-  EXPECT_EQ(scores[7], (std::vector<std::int32_t>{0, 0, 1}));
-  EXPECT_EQ(scores[8], (std::vector<std::int32_t>{0, 0, 0}));
+  EXPECT_EQ(scores[6], (std::vector<float>{0, 0, 1}));
+  EXPECT_EQ(scores[7], (std::vector<float>{0, 0, 1}));
+  EXPECT_EQ(scores[8], (std::vector<float>{0, 0, 0}));
 }
 
 TEST(Pipeline, ScoresAreOnlyThereWhenAskedForAndChangeNoLabel) {
   const SmallWorld world = small_world({.seed = 10});
   for (const int delay : {0, 3}) {
-    Pipeline with(small_config(delay), Variant::kPaper2024, 1, world.scans.size());
-    with.record_scores(true);
-    Pipeline without(small_config(delay), Variant::kPaper2024, 1, world.scans.size());
-    const std::vector<ScanResult> scored = results_of(with, world);
-    const std::vector<ScanResult> plain = results_of(without, world);
+    Pipeline with(small_config(delay), {1, world.scans.size(), true});
+    Pipeline without(small_config(delay), {1, world.scans.size()});
+    const std::vector<LabelledScan> scored = results_of(with, world);
+    const std::vector<LabelledScan> plain = results_of(without, world);
     std::size_t above = 0, moving = 0;
     for (std::size_t k = 0; k < scored.size(); ++k) {
       EXPECT_EQ(scored[k].labels, plain[k].labels);
@@ -300,22 +324,22 @@ TEST(Pipeline, ScoresAreOnlyThereWhenAskedForAndChangeNoLabel) {
 }
 
 TEST(Pipeline, HoldsNothingBeforeTheFirstScan) {
-  Pipeline pipeline(small_config(), Variant::kPaper2024);
-  EXPECT_EQ(pipeline.map_blocks(), 0U);
-  EXPECT_EQ(pipeline.memory_bytes(), 0U);
+  Pipeline pipeline(small_config());
+  EXPECT_EQ(pipeline.memory().map_blocks, 0U);
+  EXPECT_EQ(pipeline.memory().bytes, 0U);
   EXPECT_TRUE(pipeline.finish().empty());
 }
 
 TEST(Pipeline, CountsTheScansItHoldsAmongItsMemory) {
   const std::vector<Point> many(10'000, Point{2, 1, 0, 0});
-  Pipeline online(small_config(), Variant::kPaper2024);
-  Pipeline delayed(small_config(8), Variant::kPaper2024);
+  Pipeline online(small_config());
+  Pipeline delayed(small_config(8));
   for (int k = 0; k < 8; ++k) {
     online.push(many, Pose::Identity());
     delayed.push(many, Pose::Identity());
   }
   // A voxel number for each point of eight scans; labels come when they are final.
-  EXPECT_GE(delayed.memory_bytes(), online.memory_bytes() + 8 * 10'000 * 4);
+  EXPECT_GE(delayed.memory().bytes, online.memory().bytes + 8 * 10'000 * 4);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "tests/voxel_twins.hpp"
 
 namespace mosbench {
+using namespace hmm_mos;
 namespace {
 
 using Sums = std::map<Triple, int>;
@@ -151,8 +152,8 @@ TEST(ProjectScores, PointsTakeTheSumOverTheWindowAtTheirVoxel) {
   window.join(field_of<ScoreField>({{{101, 0, 0}, 1000}}));
   window.join(field_of<ScoreField>({{{101, 0, 0}, 40}, {{100, 0, 0}, 7}, {{102, 0, 0}, 9}}));
   window.join(field_of<ScoreField>({{{101, 0, 0}, 2}}));
-  EXPECT_EQ(project_scores(scan, window.sums(scan)), (std::vector<std::int32_t>{42, 0, 0, 7, 42}));
-  EXPECT_EQ(project_scores(scan, {}), std::vector<std::int32_t>(5, 0));
+  EXPECT_EQ(project_scores(scan, window.sums(scan)), (std::vector<float>{42, 0, 0, 7, 42}));
+  EXPECT_EQ(project_scores(scan, {}), std::vector<float>(5, 0));
 }
 
 TEST(ProjectLabels, PointsTakeTheLabelOfTheirVoxel) {

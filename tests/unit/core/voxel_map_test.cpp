@@ -6,9 +6,11 @@
 #include <cmath>
 #include <unordered_map>
 
+#include "tests/small_world.hpp"
 #include "tests/voxel_twins.hpp"
 
 namespace mosbench {
+using namespace hmm_mos;
 namespace {
 
 struct TripleHash {
@@ -111,7 +113,7 @@ void expect_equal_to_twin(const Journey& journey, Seen& seen) {
   std::mt19937 random(journey.seed);
   const auto uniform = [&] { return static_cast<double>(random()) / 4294967296.0; };
   const VoxelGrid grid{.voxel_size_m = config.voxel_size_m};
-  VoxelMap map(config, journey.variant, grid);
+  VoxelMap map(of_variant(config, journey.variant), grid);
   MapTwin twin(config, journey.variant);
   ThreadPool pool(journey.threads);
   const Triples places = random_triples(random, 700, 22);
@@ -242,7 +244,8 @@ TEST(VoxelMap, EqualsTheTwinForWideSigma) {
 /// Observes one voxel and returns whether it is known.
 class OneVoxel {
  public:
-  OneVoxel(int w_g, Variant variant) : map_(config(w_g), variant, VoxelGrid{.voxel_size_m = 0.2}) {}
+  OneVoxel(int w_g, Variant variant)
+      : map_(of_variant(config(w_g), variant), VoxelGrid{.voxel_size_m = 0.2}) {}
 
   void scan(std::uint32_t k, bool see) {
     const VoxelSet seen = see ? voxel_set({{1, 2, 3}}) : VoxelSet{};

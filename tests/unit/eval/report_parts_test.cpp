@@ -77,21 +77,27 @@ TEST(PointPlanes, MarkPointsThatHaveNoPlace) {
 }
 
 TEST(PointPlanes, HoldScoresByteByByte) {
-  EXPECT_EQ(score_planes(std::vector<std::int32_t>{1, 0x01020304}),
-            std::string({1, 4, 0, 3, 0, 2, 0, 1}));
+  // 3.0F is 0x40400000, 1.0F is 0x3f800000.
+  EXPECT_EQ(score_planes(std::vector<float>{3.0F, 1.0F}),
+            std::string("\x00\x00\x00\x00\x40\x80\x40\x3f", 8));
   EXPECT_EQ(score_planes({}), "");
 }
 
-TEST(DynamicScores, AreOneIntegerPerPointAndNotNegative) {
-  const std::vector<std::int32_t> scores = {0, 7, 3375};
+TEST(DynamicScores, AreOneFiniteNumberPerPoint) {
+  const std::vector<float> scores = {0, 7, -1.5F};
   const std::string bytes(format_dynamic_scores(scores));
-  EXPECT_EQ(bytes, std::string({0, 0, 0, 0, 7, 0, 0, 0, 0x2f, 0x0d, 0, 0}));
-  EXPECT_EQ(parse_dynamic_scores(bytes, 3, "f"), scores);
-  EXPECT_TRUE(parse_dynamic_scores("", 0, "f").empty());
-  EXPECT_THROW(parse_dynamic_scores(bytes, 2, "f"), DataError);
-  EXPECT_THROW(
-      parse_dynamic_scores(format_dynamic_scores(std::vector<std::int32_t>{5, -1}), 2, "f"),
-      DataError);
+  constexpr auto kFloat32 = ScoreNumbers::kFloat32;
+  EXPECT_EQ(parse_dynamic_scores(bytes, 3, kFloat32, "f"), scores);
+  EXPECT_TRUE(parse_dynamic_scores("", 0, kFloat32, "f").empty());
+  EXPECT_THROW(parse_dynamic_scores(bytes, 2, kFloat32, "f"), DataError);
+  const std::vector<float> bad = {1, std::numeric_limits<float>::quiet_NaN()};
+  EXPECT_THROW(parse_dynamic_scores(format_dynamic_scores(bad), 2, kFloat32, "f"), DataError);
+}
+
+TEST(DynamicScores, OfTheFirstFormatAreWholeNumbers) {
+  const std::string bytes({0, 0, 0, 0, 7, 0, 0, 0, 0x2f, 0x0d, 0, 0});
+  EXPECT_EQ(parse_dynamic_scores(bytes, 3, ScoreNumbers::kInt32, "f"),
+            (std::vector<float>{0, 7, 3375}));
 }
 
 TEST(CompressedText, IsZlibInBase64) {

@@ -10,32 +10,10 @@
 #include "eval/results/progress.hpp"
 #include "eval/results/reading_json.hpp"
 #include "eval/results/text_table.hpp"
-#include "eval/runs/sequence_runner.hpp"
 #include "eval/tables/score_table.hpp"
 
 namespace mosbench {
 namespace {
-
-std::vector<std::size_t> judged(int delay_scans, int local_window_scans, std::size_t scan_count) {
-  Config config;
-  config.delay_scans = delay_scans;
-  config.local_window_scans = local_window_scans;
-  std::vector<std::size_t> scans;
-  for (std::size_t k = 0; k < scan_count; ++k) {
-    if (detection_runs(config, k, scan_count)) scans.push_back(k);
-  }
-  return scans;
-}
-
-// Worked by hand from section 4 of the algorithm.
-TEST(DetectionRuns, OnTheScansThatTheAuthorsProgramJudges) {
-  EXPECT_EQ(judged(0, 3, 7), (std::vector<std::size_t>{4, 5, 6}));
-  // Scan 0 never, scan N - n = 6 static, the others by the delayed detection or their own.
-  EXPECT_EQ(judged(4, 3, 10), (std::vector<std::size_t>{1, 2, 3, 4, 5, 7, 8, 9}));
-  // Delay 1 reaches back to scan 3 at k = 4 only.
-  EXPECT_EQ(judged(1, 3, 7), (std::vector<std::size_t>{3, 4, 5}));
-  EXPECT_EQ(judged(10, 3, 6), (std::vector<std::size_t>{4, 5}));
-}
 
 TEST(JsonDifferences, NameWhatDiffersOnEitherSide) {
   const nlohmann::ordered_json first = {{"a", 1}, {"b", {{"c", 2.5}, {"d", "x"}}}, {"gone", {}}};

@@ -45,6 +45,8 @@ TEST(SequenceRunner, EndsWithTheErrorOfAScanThatCannotBeRead) {
   for (const unsigned threads : {1U, 2U}) {
     const TempFolder folder;
     RunSettings settings;
+    settings.method = &methods().front();
+    settings.method_settings = settings.method->defaults;
     settings.protocol = &protocol_named("mapmos");
     settings.range = settings.protocol->default_range;
     settings.threads = threads;

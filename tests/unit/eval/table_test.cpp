@@ -28,8 +28,11 @@ SequenceResult sequence(const std::string& name, std::size_t scans, std::uint64_
   result.method = "HMM-MOS";
   result.setting = "as the paper";
   result.protocol = &protocol_named("doals-hmm");
-  result.header = {{"variant", "paper-2024"},
-                   {"config", {{"voxel_size_m", 0.2}, {"max_range_m", 20.0}, {"delay_scans", 0}}}};
+  result.header = {{"config",
+                    {{"variant", "paper-2024"},
+                     {"voxel_size_m", 0.2},
+                     {"max_range_m", 20.0},
+                     {"delay_scans", 0}}}};
   for (std::size_t k = 0; k < scans; ++k) {
     Confusion counts;
     counts.tp = found + 20 * (k % 2) - 10;
@@ -179,7 +182,10 @@ TEST(FillTable, AveragesSensorsAndCountsBothFrameSetsOfHelimos) {
     SequenceResult part = sequence(name, 40, found);
     part.dataset = "helimos";
     part.protocol = &protocol_named("helimos-all");
-    part.header["config"] = {{"voxel_size_m", 0.25}, {"max_range_m", 50.0}, {"delay_scans", 0}};
+    part.header["config"] = {{"variant", "paper-2024"},
+                             {"voxel_size_m", 0.25},
+                             {"max_range_m", 50.0},
+                             {"delay_scans", 0}};
     part.splits["test"] = {"1", "3"};
     run.sequences.push_back(part);
   }

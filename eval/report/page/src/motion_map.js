@@ -19,7 +19,7 @@ export function movingPoints(scan, origin) {
   const moving = {
     positions_m: new Float32Array(3 * points),
     outcomes: new Uint8Array(points),
-    scores: scan.scores ? new Int32Array(points) : null,
+    scores: scan.scores ? new Float32Array(points) : null,
     eye: toMap(scan.pose, 0, 0, 0, origin),
   };
   let next = 0;
@@ -40,7 +40,7 @@ export function join(parts) {
     stem: `${parts.length} scans`,
     positions_m: new Float32Array(3 * points),
     outcomes: new Uint8Array(points),
-    scores: parts.every((part) => part.scores) ? new Int32Array(points) : null,
+    scores: parts.every((part) => part.scores) ? new Float32Array(points) : null,
     drawable: new Uint8Array(points).fill(1),
     path: parts.map((part) => part.eye),
     pose: null,

@@ -14,7 +14,7 @@ export async function readBlock(index, root = document) {
   return new Uint8Array(await new Response(stream).arrayBuffer());
 }
 
-/** Positions in metres, x y z per point, from the planes that eval/point_planes.cpp describes. */
+/** Positions in metres, x y z per point, from the planes that eval/report/point_planes.cpp describes. */
 export function positionsFromPlanes(planes, step_m) {
   const points = planes.length / 6;
   const positions_m = new Float32Array(3 * points);
@@ -29,11 +29,12 @@ export function positionsFromPlanes(planes, step_m) {
   return positions_m;
 }
 
-/** Dynamic scores, from the planes that eval/point_planes.cpp describes. */
+/** Dynamic scores, from the planes that eval/report/point_planes.cpp describes. */
 export function scoresFromPlanes(planes) {
   const points = planes.length / 4;
-  return Int32Array.from({ length: points }, (_, i) =>
+  const bits = Uint32Array.from({ length: points }, (_, i) =>
     planes[i] | (planes[points + i] << 8) | (planes[2 * points + i] << 16) | (planes[3 * points + i] << 24));
+  return new Float32Array(bits.buffer);
 }
 
 /** Splits a plane of outcomes into what each point counts as and whether it has a position. */

@@ -19,7 +19,7 @@ export function pointDetails(scans, pane, point, runs) {
   judged.forEach((s, p) => {
     const run = judged.length > 1 ? runs[p] : null;
     rows.push([run ?? 'outcome', OUTCOMES[s.outcomes[point]].name]);
-    if (s.scores) rows.push([run ? `${run}, dynamic score` : 'dynamic score', count(s.scores[point])]);
+    if (s.scores) rows.push([run ? `${run}, dynamic score` : 'dynamic score', fixed(s.scores[point], Number.isInteger(s.scores[point]) ? 0 : 3)]);
   });
   return element('dl', {}, ...rows.flatMap(([name, value]) => [element('dt', {}, name), element('dd', {}, value)]));
 }

@@ -25,7 +25,7 @@ test('positions wrap around in 16 bits as they were packed', () => {
 
 test('scores are put together from their bytes', () => {
   // The vector of the C++ test PointPlanes.HoldScoresByteByByte.
-  assert.deepEqual([...scoresFromPlanes(Uint8Array.from([1, 4, 0, 3, 0, 2, 0, 1]))], [1, 0x01020304]);
+  assert.deepEqual([...scoresFromPlanes(Uint8Array.from([0, 0, 0, 0, 0x40, 0x80, 0x40, 0x3f]))], [3, 1]);
 });
 
 test('outcomes keep their number apart from whether they have a place', () => {

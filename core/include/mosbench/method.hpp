@@ -1,0 +1,111 @@
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <mosbench/scan.hpp>
+#include <mosbench/settings.hpp>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace mosbench {
+
+/// One run of a stage of a method.
+struct StageTime {
+  std::string_view name;  ///< of static storage
+  std::chrono::steady_clock::time_point start;
+  double wall_ms = 0;
+  double cpu_ms = 0;  ///< of the whole process, all threads; 0 unless RunContext::cpu_times
+};
+
+/// One scan whose labels are final.
+struct LabelledScan {
+  std::size_t scan_index = 0;         ///< counts pushed scans from 0
+  std::vector<std::uint32_t> labels;  ///< kStaticLabel or kMovingLabel, one per pushed point
+  std::vector<float> scores;          ///< larger: more likely to move; empty unless asked for
+  std::optional<double> threshold;    ///< that the scores were compared with, if there is one
+  bool judged = false;                ///< false: too little past or future, all points are static
+  std::size_t nonfinite_points = 0;   ///< NaN or infinite: left out and labelled static
+  std::vector<StageTime> stages;      ///< in the order in which they ran; a name may recur
+};
+
+/// A scan after the work that needs no scans before it. What is in it is known to its method alone.
+class Observed {
+ public:
+  virtual ~Observed() = default;
+};
+
+/// What a method keeps between scans.
+struct MemoryUse {
+  std::size_t bytes = 0;
+  std::size_t map_blocks = 0;  ///< blocks or cells of its map
+};
+
+/// A method that segments moving points online: scans are pushed in order, labels come out. Methods
+/// share nothing with one another, and labels are the same bits for any number of threads.
+class Method {
+ public:
+  virtual ~Method() = default;
+
+  /// Does what needs no scans before it. May run while another thread pushes the previous scan;
+  /// scans are observed one after the other, in order. Throws std::range_error naming the point
+  /// when a coordinate is out of reach of the map, and for a pose that is not rigid.
+  virtual std::unique_ptr<Observed> observe(std::span<const Point> points,
+                                            const Pose& map_from_sensor) = 0;
+
+  /// Takes an observed scan in and returns the scans whose labels became final, in order: this one
+  /// when online; none or earlier ones when delayed. Throws std::logic_error beyond
+  /// RunContext::scan_count scans, after `finish`, and for a scan that another method observed.
+  virtual std::vector<LabelledScan> push(std::unique_ptr<Observed> observed) = 0;
+
+  /// The same for a scan that was not observed before.
+  virtual std::vector<LabelledScan> push(std::span<const Point> points,
+                                         const Pose& map_from_sensor) {
+    return push(observe(points, map_from_sensor));
+  }
+
+  /// Returns the labels still held back by a delay, in order. Nothing can be pushed after it.
+  virtual std::vector<LabelledScan> finish() { return {}; }
+
+  /// To be asked while no scan is observed.
+  virtual MemoryUse memory() const { return {}; }
+
+  /// Returns what a reader of the labels should know about them, in plain sentences.
+  virtual std::vector<std::string> remarks() const { return {}; }
+};
+
+/// Under which conditions a method runs. Labels depend on scan_count alone.
+struct RunContext {
+  unsigned threads = 1;
+  /// Length of the sequence when it is known: the end of a delayed run may be labelled in another
+  /// way.
+  std::optional<std::size_t> scan_count = std::nullopt;
+  bool scores = false;     ///< results hold a score per point
+  bool cpu_times = false;  ///< stages hold their CPU time, too
+};
+
+/// One method that can be run by name.
+struct MethodKind {
+  std::string_view name;    ///< "hmm-mos"
+  std::string_view title;   ///< as tables print it: "HMM-MOS"
+  std::string_view source;  ///< the paper
+  std::string_view summary;
+  Settings defaults;
+  /// Throws std::invalid_argument "<setting>: <what is wrong>, <what was expected>" for values that
+  /// do not go together.
+  void (*check)(const Settings& settings);
+  /// Checks, then makes. Also throws std::invalid_argument for 0 threads.
+  std::unique_ptr<Method> (*make)(const Settings& settings, const RunContext& context);
+};
+
+/// All methods, the default one first.
+std::span<const MethodKind> methods();
+
+/// Returns nullptr when there is no method of this name.
+const MethodKind* find_method(std::string_view name);
+
+}  // namespace mosbench

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace mosbench {
+
+/// Value of a setting: a whole number, a number, or one of a list of names.
+using SettingValue = std::variant<int, double, std::string>;
+
+/// One parameter of a method. Its unit is the end of its name (`_m`, `_scans`, ...).
+struct Setting {
+  std::string_view name;
+  SettingValue value;                     ///< its alternative is the type of the setting
+  std::string_view meaning;               ///< one line, with the paper's symbol
+  double lowest = 0, highest = 0;         ///< closed interval; unused for names
+  std::vector<std::string_view> choices;  ///< of names
+  std::string_view follows;  ///< the setting whose value is taken while this one is not set
+  bool is_set = true;        ///< false: the value is that of `follows`
+};
+
+/// The parameters of a method with their values, in the order in which they are shown.
+class Settings {
+ public:
+  Settings() = default;
+  explicit Settings(std::vector<Setting> settings);
+
+  std::span<const Setting> all() const { return settings_; }
+  const Setting* find(std::string_view name) const;
+
+  /// The effective value. Throw std::invalid_argument for an unknown name or another type; `number`
+  /// also gives whole numbers.
+  double number(std::string_view name) const;
+  int whole(std::string_view name) const;
+  const std::string& choice(std::string_view name) const;
+
+  /// Throws std::invalid_argument "<name>: <what is wrong>, <what was expected>" for an unknown
+  /// name (with the nearest known one), a value of another type or outside its range or choices. A
+  /// whole number is taken where a number is expected.
+  void set(std::string_view name, const SettingValue& value);
+
+ private:
+  Setting& at(std::string_view name);
+
+  std::vector<Setting> settings_;
+};
+
+/// Returns "0.1 to 1000", or "paper-2024 or release-2025".
+std::string legal_values(const Setting& setting);
+
+/// "0.2" or "paper-2024".
+std::string to_string(const SettingValue& value);
+
+}  // namespace mosbench

@@ -1,0 +1,155 @@
+#include "eval/results/settings_json.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <mosbench/method.hpp>
+#include <optional>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "datasets/files/errors.hpp"
+#include "datasets/files/nearest_name.hpp"
+
+namespace mosbench {
+namespace {
+
+using nlohmann::json;
+
+std::vector<std::string_view> names_of(const Settings& settings) {
+  std::vector<std::string_view> names;
+  for (const Setting& setting : settings.all()) names.push_back(setting.name);
+  return names;
+}
+
+/// Nothing for a value that no setting can have.
+std::optional<SettingValue> setting_value(const json& value) {
+  if (value.is_string()) return value.get<std::string>();
+  if (!value.is_number()) return std::nullopt;
+  const auto number = value.get<double>();
+  // What does not fit an int is outside every range, and so is its nearest number.
+  const bool fits = std::abs(number) < 2e9;
+  if (value.is_number_integer() && fits) return value.get<int>();
+  return number;
+}
+
+void apply_value(std::string_view key, const json& value, std::string_view origin,
+                 Settings& settings) {
+  const Setting* setting = settings.find(key);
+  if (setting == nullptr) {
+    const std::vector<std::string_view> names = names_of(settings);
+    throw UsageError(fmt::format("{}: key '{}' is not known, expected one of {} (nearest: {})",
+                                 origin, key, fmt::join(names, ", "), nearest_name(key, names)));
+  }
+  const std::optional<SettingValue> wanted = setting_value(value);
+  try {
+    if (!wanted) {
+      const std::string text = value.dump(-1, ' ', false, json::error_handler_t::replace);
+      throw std::invalid_argument(
+          fmt::format("{}: {} is not a number, expected {}", key, text, legal_values(*setting)));
+    }
+    settings.set(key, *wanted);
+  } catch (const std::invalid_argument& error) {
+    throw UsageError(fmt::format("{}: {}", origin, error.what()));
+  }
+}
+
+json parse_without_repeated_keys(std::string_view text, std::string_view origin) {
+  std::set<std::string> seen;
+  const auto refuse_repeated = [&](int depth, json::parse_event_t event, json& parsed) {
+    if (event == json::parse_event_t::key && depth == 1 &&
+        !seen.insert(parsed.get<std::string>()).second) {
+      throw UsageError(fmt::format("{}: key {} appears twice, expected once", origin,
+                                   parsed.dump(-1, ' ', false, json::error_handler_t::replace)));
+    }
+    return true;
+  };
+  try {
+    return json::parse(text, refuse_repeated);
+  } catch (const json::exception& error) {
+    throw UsageError(fmt::format("{}: {}, expected a JSON object", origin, error.what()));
+  }
+}
+
+}  // namespace
+
+void apply_settings_text(std::string_view text, std::string_view origin, Settings& settings) {
+  const json object = parse_without_repeated_keys(text, origin);
+  if (!object.is_object()) {
+    throw UsageError(fmt::format("{}: holds a {}, expected a JSON object with configuration keys",
+                                 origin, object.type_name()));
+  }
+  for (const auto& [key, value] : object.items()) apply_value(key, value, origin, settings);
+}
+
+void apply_settings_file(const std::filesystem::path& file, Settings& settings) {
+  std::ifstream stream(file, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  if (!stream || std::filesystem::is_directory(file)) {
+    throw UsageError(file.string() + ": cannot be read, expected a JSON object");
+  }
+  apply_settings_text(text, file.string(), settings);
+}
+
+void apply_setting_assignment(std::string_view assignment, Settings& settings) {
+  const std::string origin = fmt::format("--set {}", assignment);
+  const std::size_t equals = assignment.find('=');
+  if (equals == std::string_view::npos || equals == 0) {
+    throw UsageError(origin + ": has no key and value, expected key=value");
+  }
+  const std::string_view value = assignment.substr(equals + 1);
+  json parsed = json::parse(value, nullptr, false);
+  if (parsed.is_discarded()) parsed = std::string(value);
+  apply_value(assignment.substr(0, equals), parsed, origin, settings);
+}
+
+nlohmann::ordered_json to_json(const Settings& settings) {
+  nlohmann::ordered_json object = nlohmann::ordered_json::object();
+  for (const Setting& setting : settings.all()) {
+    nlohmann::ordered_json& value = object[std::string(setting.name)];
+    if (!setting.choices.empty()) {
+      value = settings.choice(setting.name);
+    } else if (std::holds_alternative<int>(setting.value)) {
+      value = settings.whole(setting.name);
+    } else {
+      value = settings.number(setting.name);
+    }
+  }
+  return object;
+}
+
+std::string describe_settings(const nlohmann::ordered_json& config, std::string_view method) {
+  const MethodKind* kind = find_method(method);
+  const nlohmann::ordered_json defaults =
+      kind == nullptr ? nlohmann::ordered_json::object() : to_json(kind->defaults);
+  std::vector<std::string> parts;
+  std::set<std::string_view> said = {"occupancy_sigma_m"};  // follows the voxel size
+  const auto has = [&](const char* key) {
+    said.insert(key);
+    return config.contains(key);
+  };
+  if (has("variant")) parts.push_back(config.at("variant").get<std::string>());
+  if (has("voxel_size_m")) {
+    parts.push_back(fmt::format("voxel {:g} m", config.at("voxel_size_m").get<double>()));
+  }
+  if (has("min_range_m") && has("max_range_m")) {
+    parts.push_back(fmt::format("range {:g} to {:g} m", config.at("min_range_m").get<double>(),
+                                config.at("max_range_m").get<double>()));
+  }
+  if (has("delay_scans")) {
+    const int delay_scans = config.at("delay_scans");
+    parts.push_back(delay_scans == 0 ? "online" : fmt::format("delayed by {} scans", delay_scans));
+  }
+  for (const auto& [key, value] : config.items()) {
+    if (said.contains(key) || !defaults.contains(key) || defaults.at(key) == value) continue;
+    parts.push_back(
+        fmt::format("{} {}", key, value.is_string() ? value.get<std::string>() : value.dump()));
+  }
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+}  // namespace mosbench

@@ -1,0 +1,125 @@
+#include "eval/results/settings_json.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <mosbench/method.hpp>
+
+#include "datasets/files/errors.hpp"
+#include "eval/protocols/protocol.hpp"
+#include "eval/runs/presets.hpp"
+#include "tests/temp_folder.hpp"
+
+namespace mosbench {
+namespace {
+
+using testing::HasSubstr;
+
+Settings defaults() { return find_method("hmm-mos")->defaults; }
+
+std::string refusal(std::string_view text) {
+  return message_of<UsageError>([&] {
+    Settings settings = defaults();
+    apply_settings_text(text, "near.json", settings);
+  });
+}
+
+TEST(SettingsJson, WritesWhatItReads) {
+  Settings settings = defaults();
+  settings.set("variant", std::string("release-2025"));
+  settings.set("voxel_size_m", 0.1);
+  settings.set("occupancy_sigma_m", 0.3);
+  settings.set("delay_scans", 7);
+  settings.set("distance_field_scans", 1);
+  Settings read = defaults();
+  apply_settings_text(to_json(settings).dump(), "written", read);
+  EXPECT_EQ(to_json(read), to_json(settings));
+  EXPECT_EQ(read.whole("distance_field_scans"), 1);
+  EXPECT_EQ(read.choice("variant"), "release-2025");
+}
+
+TEST(SettingsJson, HoldsEverySettingAlsoThoseThatKeepTheirDefault) {
+  const Settings settings = defaults();
+  const nlohmann::ordered_json json = to_json(settings);
+  ASSERT_EQ(json.size(), settings.all().size());
+  for (const Setting& setting : settings.all()) {
+    EXPECT_TRUE(json.contains(std::string(setting.name))) << setting.name;
+  }
+}
+
+TEST(SettingsJson, LetsSigmaFollowTheVoxelSizeUntilItIsSet) {
+  Settings settings = defaults();
+  apply_setting_assignment("voxel_size_m=0.4", settings);
+  EXPECT_EQ(to_json(settings).at("occupancy_sigma_m"), 0.4);
+  apply_setting_assignment("occupancy_sigma_m=0.1", settings);
+  apply_setting_assignment("voxel_size_m=0.5", settings);
+  EXPECT_EQ(to_json(settings).at("occupancy_sigma_m"), 0.1);
+}
+
+TEST(SettingsJson, TakesAWholeNumberForALength) {
+  Settings settings = defaults();
+  apply_settings_text(R"({"max_range_m": 50})", "near.json", settings);
+  EXPECT_EQ(settings.number("max_range_m"), 50.0);
+}
+
+TEST(SettingsJson, TakesAVariantByItsName) {
+  Settings settings = defaults();
+  apply_setting_assignment("variant=release-2025", settings);
+  EXPECT_EQ(settings.choice("variant"), "release-2025");
+  EXPECT_EQ(refusal(R"({"variant": "release"})"),
+            "near.json: variant: release is not known, expected paper-2024 or release-2025");
+  EXPECT_EQ(refusal(R"({"variant": 3})"),
+            "near.json: variant: 3 is not known, expected paper-2024 or release-2025");
+}
+
+TEST(SettingsJson, DescribesWhatUsersAskForAndWhatIsNotTheDefault) {
+  Settings settings = defaults();
+  settings.set("min_otsu_score", 4);
+  EXPECT_EQ(describe_settings(to_json(settings), "hmm-mos"),
+            "paper-2024, voxel 0.2 m, range 0.5 to 20 m, online, min_otsu_score 4");
+  EXPECT_EQ(describe_settings({{"cells", 3}}, "a method of tomorrow"), "");
+}
+
+TEST(SettingsJson, NamesFileKeyAndExpectation) {
+  EXPECT_THAT(refusal(R"({"max_rang_m": 50})"),
+              HasSubstr("near.json: key 'max_rang_m' is not known"));
+  EXPECT_THAT(refusal(R"({"max_rang_m": 50})"), HasSubstr("nearest: max_range_m"));
+  EXPECT_EQ(refusal(R"({"max_range_m": true})"),
+            "near.json: max_range_m: true is not a number, expected 0.1 to 1000");
+  EXPECT_EQ(refusal(R"({"max_range_m": null})"),
+            "near.json: max_range_m: null is not a number, expected 0.1 to 1000");
+  EXPECT_EQ(refusal(R"({"min_otsu_score": 3.0})"),
+            "near.json: min_otsu_score: 3.0 is not a whole number, expected 0 to 1000000");
+  EXPECT_EQ(refusal(R"({"max_range_m": 1e400})").substr(0, 10), "near.json:");
+  EXPECT_THAT(refusal("nonsense"), HasSubstr("expected a JSON object"));
+  EXPECT_THAT(refusal("\xff\xfe"), HasSubstr("expected a JSON object"));
+  EXPECT_THAT(refusal("{\"\xff\": 1}"), HasSubstr("expected a JSON object"));
+}
+
+double value_of(std::string_view preset, std::string_view setting) {
+  Settings settings = defaults();
+  for (const PresetValue& value : preset_named(preset).values) {
+    settings.set(value.setting, value.value);
+  }
+  return settings.number(setting);
+}
+
+TEST(Presets, HaveThePapersSettingsAndAKnownProtocol) {
+  for (const Preset& preset : presets()) {
+    Settings settings = defaults();
+    for (const PresetValue& value : preset.values) settings.set(value.setting, value.value);
+    EXPECT_NO_THROW(find_method("hmm-mos")->check(settings)) << preset.name;
+    EXPECT_NE(find_protocol(preset.protocol), nullptr) << preset.name;
+    EXPECT_EQ(&preset_named(preset.name), &preset);
+  }
+  EXPECT_EQ(value_of("doals-20m", "max_range_m"), 20.0);
+  EXPECT_EQ(value_of("doals-120m", "max_range_m"), 120.0);
+  EXPECT_EQ(value_of("sipailou", "min_range_m"), 3.0);
+  EXPECT_EQ(value_of("helimos", "voxel_size_m"), 0.25);
+  EXPECT_EQ(value_of("helimos-delayed", "delay_scans"), 10);
+  EXPECT_EQ(default_preset(DatasetKind::kHelimos).name, "helimos");
+  EXPECT_EQ(default_preset(DatasetKind::kDoals).name, "doals-20m");
+}
+
+}  // namespace
+}  // namespace mosbench
