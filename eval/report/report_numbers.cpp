@@ -80,8 +80,9 @@ ordered_json covered_tables(const std::vector<std::filesystem::path>& inputs) {
   const auto published = built_in_cells();
   ordered_json tables = ordered_json::array();
   for (const PaperTable& table : paper_tables()) {
-    const bool about_these = std::ranges::any_of(
-        runs, [&](const ResultSet& run) { return run.front().dataset == table.dataset; });
+    const bool about_these = std::ranges::any_of(runs, [&](const ResultSet& run) {
+      return run.front().dataset == to_string(table.dataset);
+    });
     if (!about_these) continue;
     const FilledTable filled = fill_table(table, published, runs);
     if (is_measured(filled)) tables.push_back(to_json(filled));

@@ -37,7 +37,7 @@ std::span<const Preset> presets() {
              "paper, Table III, delayed by 10 scans"},
       Preset{"semantickitti", DatasetKind::kSemanticKitti, settings(0.25, 1.5, 50.0),
              "semantickitti-mos", "ours, the authors publish none: as helimos"},
-      Preset{"apollo", DatasetKind::kApollo, settings(0.25, 0.5, 120.0), "mapmos-apollo",
+      Preset{"apollo", DatasetKind::kApollo, settings(0.25, 0.5, 120.0), "semantickitti-mos",
              "authors' config of Apollo (2024)"},
       Preset{"moe", DatasetKind::kMoe, settings(0.20, 0.0, 120.0), "moe",
              "authors' config of MOE (2025)"},

@@ -7,6 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "datasets/layouts/dataset.hpp"
+
 namespace mosbench {
 
 /// A column of a published table: which sequences it is over and how many labelled scans they have
@@ -22,11 +24,10 @@ struct TableColumn {
 struct PaperTable {
   std::string_view name;
   std::string_view title;
-  std::string_view dataset;  ///< as result files name it
+  DatasetKind dataset;
   std::string_view averaging;
   std::vector<TableColumn> columns;
   std::string_view download;  ///< what to get, and from whom
-  std::string_view command;   ///< that fills the rows of HMM-MOS
 };
 
 std::span<const PaperTable> paper_tables();

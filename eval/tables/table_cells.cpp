@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "eval/tables/fill_command.hpp"
 #include "eval/tables/table_match.hpp"
 
 namespace mosbench {
@@ -57,35 +58,21 @@ Verdict judge(const TableCell& cell) {
   return within ? Verdict::kWithin : Verdict::kOutside;
 }
 
-/// The command that gives a row.
-std::string command_for(const PaperTable& table, const PublishedCell& cell) {
-  if (!is_own(cell)) return "then: mosbench score DIR --predictions LABELS --method " + cell.method;
-  if (cell.variant.empty()) return "no variant of this program is that one";
-  if (cell.variant == "paper-2024") return "then: " + std::string(table.command);
-  return fmt::format(
-      "then: mosbench run DIR --variant {} --set voxel_size_m={:g} max_range_m={:g} --protocol {}",
-      cell.variant, cell.voxel_size_m.value_or(0.2), cell.max_range_m.value_or(120.0),
-      cell.protocol);
-}
-
-std::vector<std::string> how_to_fill(const PaperTable& table, const TableColumn& column,
-                                     const PublishedCell& cell) {
-  std::string sequences;
-  for (const std::string_view name : column.sequences) {
-    sequences += (sequences.empty() ? "" : ", ") + std::string(name);
-  }
-  return {fmt::format("needs {} of {}; {}", sequences, table.download, command_for(table, cell))};
+/// The published cell of a row's column.
+std::optional<PublishedCell> find_cell(const PublishedRow& row, std::string_view column) {
+  const auto found = std::ranges::find(row.cells, column, &PublishedCell::column);
+  if (found == row.cells.end()) return std::nullopt;
+  return *found;
 }
 
 TableCell measured_cell(const PaperTable& table, const TableColumn& column, const ResultSet& run,
-                        const std::vector<std::string>& row_reasons,
-                        std::optional<PublishedCell> published) {
+                        const PublishedRow* row) {
   TableCell cell;
   cell.column = column.name;
-  cell.published = std::move(published);
+  if (row != nullptr) cell.published = find_cell(*row, column.name);
   const ResultSet part = in_column(run, column);
   if (part.sequences.empty()) {
-    if (cell.published) cell.reasons = how_to_fill(table, column, *cell.published);
+    if (cell.published) cell.reasons = {how_to_fill(table, column, *cell.published)};
     return cell;
   }
   for (const SequenceResult& sequence : part.sequences) {
@@ -94,7 +81,7 @@ TableCell measured_cell(const PaperTable& table, const TableColumn& column, cons
     cell.sequences.back() += fmt::format(" (simulated, {})", sequence.simulated_origin);
   }
   cell.measured = estimate(*run.front().protocol, counts_of(part))[Metric::kIou];
-  cell.reasons = row_reasons;
+  if (row != nullptr) cell.reasons = mismatches(run, cell.published.value_or(row->cells.front()));
   if (run.front().simulated) cell.reasons.insert(cell.reasons.begin(), "simulated data");
   for (std::string& gap : gaps(part, column)) cell.reasons.push_back(std::move(gap));
   if (!cell.measured->value) {
@@ -106,13 +93,6 @@ TableCell measured_cell(const PaperTable& table, const TableColumn& column, cons
   return cell;
 }
 
-/// The published cell of a row's column.
-std::optional<PublishedCell> find_cell(const PublishedRow& row, std::string_view column) {
-  const auto found = std::ranges::find(row.cells, column, &PublishedCell::column);
-  if (found == row.cells.end()) return std::nullopt;
-  return *found;
-}
-
 TableRow published_row(const PaperTable& table, const PublishedRow& row) {
   const PublishedCell& first = row.cells.front();
   TableRow filled{first.section, first.method, first.setting, first.protocol, first.source, "", {}};
@@ -120,7 +100,7 @@ TableRow published_row(const PaperTable& table, const PublishedRow& row) {
     TableCell cell;
     cell.column = column.name;
     cell.published = find_cell(row, column.name);
-    if (is_own(first)) cell.reasons = how_to_fill(table, column, first);
+    if (is_own(first)) cell.reasons = {how_to_fill(table, column, cell.published.value_or(first))};
     filled.cells.push_back(std::move(cell));
   }
   return filled;
@@ -137,11 +117,8 @@ TableRow measured_row(const PaperTable& table, const ResultSet& run, const Publi
                   row == nullptr ? "" : row->cells.front().source,
                   run.path.string(),
                   {}};
-  const std::vector<std::string> reasons =
-      row == nullptr ? std::vector<std::string>{} : mismatches(run, row->cells.front());
   for (const TableColumn& column : table.columns) {
-    filled.cells.push_back(measured_cell(
-        table, column, run, reasons, row == nullptr ? std::nullopt : find_cell(*row, column.name)));
+    filled.cells.push_back(measured_cell(table, column, run, row));
   }
   return filled;
 }
@@ -195,8 +172,8 @@ std::vector<std::string> left_out(const PaperTable& table, const std::vector<Res
   for (const ResultSet& run : runs) {
     for (const SequenceResult& sequence : run.sequences) {
       std::string why;
-      if (sequence.dataset != table.dataset) {
-        why = fmt::format("is of data set {}, not {}", sequence.dataset, table.dataset);
+      if (sequence.dataset != to_string(table.dataset)) {
+        why = fmt::format("is of data set {}, not {}", sequence.dataset, to_string(table.dataset));
       } else if (!is_about(table, sequence.sequence)) {
         why = fmt::format("is of sequence {}, which no column is about", sequence.sequence);
       }

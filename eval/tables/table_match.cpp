@@ -88,7 +88,7 @@ std::optional<std::size_t> nearest_row(const ResultSet& run,
 std::vector<ResultSet> with_splits(const PaperTable& table, const std::vector<ResultSet>& runs) {
   std::vector<ResultSet> sets;
   for (const ResultSet& run : runs) {
-    if (run.front().dataset != table.dataset) continue;
+    if (run.front().dataset != to_string(table.dataset)) continue;
     sets.push_back(run);
     const bool has_test = std::ranges::any_of(run.sequences, [](const SequenceResult& sequence) {
       return sequence.splits.contains("test");

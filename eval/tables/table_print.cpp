@@ -216,7 +216,6 @@ ordered_json to_json(const FilledTable& table) {
                        {"title", std::string(table.table->title)},
                        {"averaging", std::string(table.table->averaging)},
                        {"download", std::string(table.table->download)},
-                       {"command", std::string(table.table->command)},
                        {"simulated", is_simulated(table)},
                        {"columns", ordered_json::array()},
                        {"rows", ordered_json::array()}};

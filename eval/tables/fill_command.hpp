@@ -1,0 +1,16 @@
+#pragma once
+
+#include <string>
+
+#include "eval/tables/paper_tables.hpp"
+#include "eval/tables/published.hpp"
+
+namespace mosbench {
+
+/// Returns what to download and the command whose results then fill `column` of the row that
+/// `published` belongs to: for HMM-MOS `mosbench run` with the preset of the table's data set that
+/// comes nearest to the published settings, for other methods `mosbench score`.
+std::string how_to_fill(const PaperTable& table, const TableColumn& column,
+                        const PublishedCell& published);
+
+}  // namespace mosbench
