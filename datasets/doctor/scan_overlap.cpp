@@ -1,6 +1,8 @@
 #include "datasets/doctor/scan_overlap.hpp"
 
-#include <algorithm>
+#include <utility>
+
+#include "datasets/files/quantile.hpp"
 
 namespace mosbench {
 
@@ -15,9 +17,7 @@ double difference_m(const Pose& a, const Pose& b) {
 }
 
 double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
+  return quantile(std::move(values), 0.5, QuantileRule::kUpper);
 }
 
 const ScanOverlap::Scan& ScanOverlap::at(std::size_t scan_index) {

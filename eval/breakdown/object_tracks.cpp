@@ -4,7 +4,7 @@
 #include <iterator>
 #include <tuple>
 
-#include "eval/statistics/quantiles.hpp"
+#include "datasets/files/quantile.hpp"
 
 namespace mosbench {
 namespace {
@@ -116,8 +116,7 @@ std::optional<double> ObjectTrack::speed_m_s() const {
     speeds_m_s.push_back(speed_between(from, sightings[later]));
   }
   if (speeds_m_s.empty()) return speed_between(sightings.front(), sightings.back());
-  std::ranges::sort(speeds_m_s);
-  return sorted_quantile(speeds_m_s, 0.5);
+  return quantile(std::move(speeds_m_s), 0.5, QuantileRule::kInterpolated);
 }
 
 std::optional<std::size_t> ObjectTrack::detection_delay_scans() const {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "datasets/files/quantile.hpp"
 #include "eval/results/machine.hpp"
 #include "eval/results/settings_json.hpp"
 #include "eval/results/simulated.hpp"
@@ -26,6 +27,10 @@ struct CostRow {
     cpu_ms.push_back(cost.cpu_ms);
   }
 };
+
+double ranked(const std::vector<double>& values, double q) {
+  return quantile(values, q, QuantileRule::kNearestRank);
+}
 
 double sum(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0);
@@ -78,13 +83,12 @@ std::string stage_table(const SequenceProfile& profile) {
     const bool is_whole = &row == &rows.back();
     if (is_whole) table.add_rule();
     table.add_row(
-        {row.name, fmt::format("{:.3f}", quantile(row.wall_ms, 0)),
-         fmt::format("{:.3f}", quantile(row.wall_ms, 0.5)),
-         fmt::format("{:.3f}", quantile(row.wall_ms, 0.95)),
-         fmt::format("{:.3f}", quantile(row.wall_ms, 1)),
+        {row.name, fmt::format("{:.3f}", ranked(row.wall_ms, 0)),
+         fmt::format("{:.3f}", ranked(row.wall_ms, 0.5)),
+         fmt::format("{:.3f}", ranked(row.wall_ms, 0.95)),
+         fmt::format("{:.3f}", ranked(row.wall_ms, 1)),
          row.name == "read" ? "" : fmt::format("{:.1f} %", 100 * sum(row.wall_ms) / whole_ms),
-         fmt::format("{:.3f}", quantile(row.cpu_ms, 0.5)),
-         fmt::format("{:.3f}", mean(row.cpu_ms))});
+         fmt::format("{:.3f}", ranked(row.cpu_ms, 0.5)), fmt::format("{:.3f}", mean(row.cpu_ms))});
   }
   return table.str();
 }
@@ -136,10 +140,10 @@ ordered_json sequence_json(const SequenceProfile& profile) {
   ordered_json stages = ordered_json::object();
   for (const CostRow& row : cost_rows(profile)) {
     const auto spread = [](const std::vector<double>& values) {
-      return ordered_json{{"min", quantile(values, 0)},
-                          {"median", quantile(values, 0.5)},
-                          {"p95", quantile(values, 0.95)},
-                          {"max", quantile(values, 1)},
+      return ordered_json{{"min", ranked(values, 0)},
+                          {"median", ranked(values, 0.5)},
+                          {"p95", ranked(values, 0.95)},
+                          {"max", ranked(values, 1)},
                           {"mean", mean(values)}};
     };
     stages[row.name] = {{"wall_ms", spread(row.wall_ms)}, {"cpu_ms", spread(row.cpu_ms)}};

@@ -2,53 +2,51 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <vector>
 
+#include "eval/protocols/scan_sums.hpp"
+
 namespace mosbench {
 namespace {
 
-std::optional<double> ratio(std::uint64_t part, std::uint64_t whole) {
-  if (whole == 0) return std::nullopt;
-  return static_cast<double>(part) / static_cast<double>(whole);
+std::optional<double> defined(double value) {
+  if (std::isnan(value)) return std::nullopt;
+  return value;
 }
 
-using Metric = std::optional<double> (*)(const Confusion&);
+std::optional<double> metric_of(const Confusion& counts, Metric metric) {
+  return defined(metrics_of(counts)[static_cast<std::size_t>(metric)]);
+}
 
-/// The values of those scans that have one.
-std::vector<double> defined_values(std::span<const Confusion> scans, Metric metric) {
-  std::vector<double> values;
-  for (const Confusion& scan : scans) {
-    if (const std::optional<double> value = metric(scan)) values.push_back(*value);
+constexpr std::array kSummaryMetrics = {&Summary::iou, &Summary::precision, &Summary::recall,
+                                        &Summary::f1};
+
+void set_metrics(const MetricValues& values, Summary& summary) {
+  for (std::size_t m = 0; m < values.size(); ++m) summary.*kSummaryMetrics[m] = defined(values[m]);
+}
+
+MetricValues values_of(const Summary& summary) {
+  MetricValues values{};
+  for (std::size_t m = 0; m < values.size(); ++m) {
+    values[m] = (summary.*kSummaryMetrics[m]).value_or(std::numeric_limits<double>::quiet_NaN());
   }
   return values;
 }
 
-std::optional<double> mean(std::span<const double> values) {
-  if (values.empty()) return std::nullopt;
-  double sum = 0.0;
-  for (const double value : values) sum += value;
-  return sum / static_cast<double>(values.size());
-}
-
-std::optional<double> population_deviation(std::span<const double> values) {
-  const std::optional<double> centre = mean(values);
-  if (!centre) return std::nullopt;
+/// Population standard deviation of the IoU of those scans that have one.
+double iou_deviation(std::span<const Confusion> scans, double mean) {
   double squares = 0.0;
-  for (const double value : values) squares += (value - *centre) * (value - *centre);
-  return std::sqrt(squares / static_cast<double>(values.size()));
-}
-
-/// Nothing as soon as one of the values is nothing.
-std::optional<double> mean_of_all(std::span<const Summary> sequences,
-                                  std::optional<double> Summary::*metric) {
-  std::vector<double> values;
-  for (const Summary& sequence : sequences) {
-    if (!(sequence.*metric)) return std::nullopt;
-    values.push_back(*(sequence.*metric));
+  double defined_scans = 0.0;
+  for (const Confusion& scan : scans) {
+    if (const std::optional<double> iou = moving_iou(scan)) {
+      squares += (*iou - mean) * (*iou - mean);
+      defined_scans += 1.0;
+    }
   }
-  return mean(values);
+  return std::sqrt(squares / defined_scans);
 }
 
 /// Whether the protocol's own program finds anything to divide by.
@@ -109,40 +107,29 @@ double published_iou(const Protocol& protocol, std::span<const Confusion> scans,
 }  // namespace
 
 std::optional<double> moving_iou(const Confusion& counts) {
-  return ratio(counts.tp, counts.tp + counts.fp + counts.fn);
+  return metric_of(counts, Metric::kIou);
 }
 
 std::optional<double> precision(const Confusion& counts) {
-  return ratio(counts.tp, counts.tp + counts.fp);
+  return metric_of(counts, Metric::kPrecision);
 }
 
-std::optional<double> recall(const Confusion& counts) {
-  return ratio(counts.tp, counts.tp + counts.fn);
-}
+std::optional<double> recall(const Confusion& counts) { return metric_of(counts, Metric::kRecall); }
 
-std::optional<double> f1(const Confusion& counts) {
-  return ratio(2 * counts.tp, 2 * counts.tp + counts.fp + counts.fn);
-}
+std::optional<double> f1(const Confusion& counts) { return metric_of(counts, Metric::kF1); }
 
 Summary summarize(const Protocol& protocol, std::span<const Confusion> per_scan) {
   Summary summary;
   summary.scans = per_scan.size();
+  ScanTerms sums{};
   for (const Confusion& scan : per_scan) {
     summary.pooled += scan;
+    sums += scan_terms(protocol, scan);
     if (!moving_iou(scan)) ++summary.undefined_scans;
   }
-  if (protocol.aggregation == Aggregation::kMeanOfScans) {
-    const std::vector<double> ious = defined_values(per_scan, moving_iou);
-    summary.iou = mean(ious);
-    summary.iou_deviation = population_deviation(ious);
-    summary.precision = mean(defined_values(per_scan, precision));
-    summary.recall = mean(defined_values(per_scan, recall));
-    summary.f1 = mean(defined_values(per_scan, f1));
-  } else if (has_value(protocol, summary.pooled)) {
-    summary.iou = moving_iou(summary.pooled);
-    summary.precision = precision(summary.pooled);
-    summary.recall = recall(summary.pooled);
-    summary.f1 = f1(summary.pooled);
+  set_metrics(metrics_of(protocol, sums), summary);
+  if (protocol.aggregation == Aggregation::kMeanOfScans && summary.iou) {
+    summary.iou_deviation = iou_deviation(per_scan, *summary.iou);
   }
   summary.published_iou = published_iou(protocol, per_scan, summary.pooled);
   summary.published_text = print(summary.published_iou, protocol.program_print);
@@ -152,16 +139,15 @@ Summary summarize(const Protocol& protocol, std::span<const Confusion> per_scan)
 Summary mean_of_sequences(const Protocol& protocol, std::span<const Summary> sequences) {
   Summary average;
   double published_sum = 0.0;
+  std::vector<MetricValues> values;
   for (const Summary& sequence : sequences) {
+    values.push_back(values_of(sequence));
     average.pooled += sequence.pooled;
     average.scans += sequence.scans;
     average.undefined_scans += sequence.undefined_scans;
     published_sum += sequence.published_iou;
   }
-  average.iou = mean_of_all(sequences, &Summary::iou);
-  average.precision = mean_of_all(sequences, &Summary::precision);
-  average.recall = mean_of_all(sequences, &Summary::recall);
-  average.f1 = mean_of_all(sequences, &Summary::f1);
+  set_metrics(mean_of(values), average);
   average.published_iou = published_sum / static_cast<double>(sequences.size());
   average.published_text = print(average.published_iou, protocol.program_print);
   return average;

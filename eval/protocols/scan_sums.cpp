@@ -1,8 +1,7 @@
 #include "eval/protocols/scan_sums.hpp"
 
+#include <cmath>
 #include <limits>
-
-#include "eval/protocols/metrics.hpp"
 
 namespace mosbench {
 namespace {
@@ -11,20 +10,26 @@ constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
 
 double ratio(double part, double whole) { return whole > 0.0 ? part / whole : kUndefined; }
 
-void add(const ScanTerms& terms, ScanTerms& sums) {
-  for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += terms[i];
-}
-
-MetricValues pooled_metrics(const Protocol& protocol, const ScanTerms& sums) {
-  const auto [tp, fp, fn] = std::array{sums[0], sums[1], sums[2]};
-  if (tp + fn == 0.0 && protocol.empty_case == EmptyCase::kNanWithoutTruth) {
-    return {kUndefined, kUndefined, kUndefined, kUndefined};
-  }
+MetricValues metrics_of_counts(double tp, double fp, double fn) {
   return {ratio(tp, tp + fp + fn), ratio(tp, tp + fp), ratio(tp, tp + fn),
           ratio(2.0 * tp, 2.0 * tp + fp + fn)};
 }
 
 }  // namespace
+
+MetricValues metrics_of(const Confusion& counts) {
+  return metrics_of_counts(static_cast<double>(counts.tp), static_cast<double>(counts.fp),
+                           static_cast<double>(counts.fn));
+}
+
+MetricValues mean_of(std::span<const MetricValues> values) {
+  MetricValues means{};
+  for (std::size_t m = 0; m < means.size(); ++m) {
+    for (const MetricValues& value : values) means[m] += value[m];
+    means[m] = ratio(means[m], static_cast<double>(values.size()));
+  }
+  return means;
+}
 
 ScanTerms scan_terms(const Protocol& protocol, const Confusion& scan) {
   if (protocol.aggregation != Aggregation::kMeanOfScans) {
@@ -32,17 +37,29 @@ ScanTerms scan_terms(const Protocol& protocol, const Confusion& scan) {
             static_cast<double>(scan.fn)};
   }
   ScanTerms terms{};
-  const std::array values = {moving_iou(scan), precision(scan), recall(scan), f1(scan)};
+  const MetricValues values = metrics_of(scan);
   for (std::size_t m = 0; m < values.size(); ++m) {
-    if (!values[m]) continue;
-    terms[2 * m] = *values[m];
+    if (std::isnan(values[m])) continue;
+    terms[2 * m] = values[m];
     terms[2 * m + 1] = 1.0;
   }
   return terms;
 }
 
+ScanTerms& operator+=(ScanTerms& sums, const ScanTerms& terms) {
+  for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += terms[i];
+  return sums;
+}
+
 MetricValues metrics_of(const Protocol& protocol, const ScanTerms& sums) {
-  if (protocol.aggregation != Aggregation::kMeanOfScans) return pooled_metrics(protocol, sums);
+  if (protocol.aggregation != Aggregation::kMeanOfScans) {
+    const auto [tp, fp, fn] = std::array{sums[0], sums[1], sums[2]};
+    const bool nothing_moves = tp + fn == 0.0;
+    if (nothing_moves && protocol.empty_case == EmptyCase::kNanWithoutTruth) {
+      return {kUndefined, kUndefined, kUndefined, kUndefined};
+    }
+    return metrics_of_counts(tp, fp, fn);
+  }
   MetricValues values{};
   for (std::size_t m = 0; m < values.size(); ++m) values[m] = ratio(sums[2 * m], sums[2 * m + 1]);
   return values;
@@ -52,7 +69,7 @@ RunningSums::RunningSums(const Protocol& protocol, const SequenceCounts& scans)
     : sums_(scans.size() + 1, ScanTerms{}) {
   for (std::size_t k = 0; k < scans.size(); ++k) {
     sums_[k + 1] = sums_[k];
-    add(scan_terms(protocol, scans[k]), sums_[k + 1]);
+    sums_[k + 1] += scan_terms(protocol, scans[k]);
   }
 }
 
@@ -69,24 +86,19 @@ void RunningSums::add_block(std::size_t first, std::size_t count, ScanTerms& sum
 
 MetricValues aggregate_sums(const Protocol& protocol, std::span<const ScanTerms> sums) {
   if (protocol.aggregation == Aggregation::kMeanOfSequences) {
-    MetricValues means{};
-    for (const ScanTerms& sequence : sums) {
-      const MetricValues values = metrics_of(protocol, sequence);
-      for (std::size_t m = 0; m < means.size(); ++m) {
-        means[m] += values[m] / static_cast<double>(sums.size());
-      }
-    }
-    return means;
+    std::vector<MetricValues> values;
+    for (const ScanTerms& sequence : sums) values.push_back(metrics_of(protocol, sequence));
+    return mean_of(values);
   }
   ScanTerms all{};
-  for (const ScanTerms& sequence : sums) add(sequence, all);
+  for (const ScanTerms& sequence : sums) all += sequence;
   return metrics_of(protocol, all);
 }
 
 MetricValues aggregate(const Protocol& protocol, std::span<const SequenceCounts> sequences) {
   std::vector<ScanTerms> sums(sequences.size(), ScanTerms{});
   for (std::size_t s = 0; s < sequences.size(); ++s) {
-    for (const Confusion& scan : sequences[s]) add(scan_terms(protocol, scan), sums[s]);
+    for (const Confusion& scan : sequences[s]) sums[s] += scan_terms(protocol, scan);
   }
   return aggregate_sums(protocol, sums);
 }

@@ -18,6 +18,13 @@ inline constexpr std::array<std::string_view, 4> kMetricNames = {"iou", "precisi
 /// Fractions 0..1 by Metric, NaN where undefined.
 using MetricValues = std::array<double, kMetricNames.size()>;
 
+/// Moving IoU tp / (tp + fp + fn), precision tp / (tp + fp), recall tp / (tp + fn) and
+/// F1 2 tp / (2 tp + fp + fn); NaN where the denominator is 0.
+MetricValues metrics_of(const Confusion& counts);
+
+/// The plain means of each metric; NaN as soon as one value is, and without any.
+MetricValues mean_of(std::span<const MetricValues> values);
+
 /// Counts of the scans of one sequence that have truth, in scan order.
 using SequenceCounts = std::vector<Confusion>;
 
@@ -27,6 +34,7 @@ using SequenceCounts = std::vector<Confusion>;
 using ScanTerms = std::array<double, 2 * kMetricNames.size()>;
 
 ScanTerms scan_terms(const Protocol& protocol, const Confusion& scan);
+ScanTerms& operator+=(ScanTerms& sums, const ScanTerms& terms);
 /// The metrics of scans that add up to `sums`.
 MetricValues metrics_of(const Protocol& protocol, const ScanTerms& sums);
 
@@ -45,8 +53,7 @@ class RunningSums {
   std::vector<ScanTerms> sums_;
 };
 
-/// The metrics of a whole run as the protocol aggregates scans and sequences; the same as
-/// `summarize` and `mean_of_sequences` give.
+/// The metrics of a whole run as the protocol aggregates scans and sequences.
 MetricValues aggregate(const Protocol& protocol, std::span<const SequenceCounts> sequences);
 
 /// The metrics of sequences whose scans add up to `sums`, one each.

@@ -1,12 +1,12 @@
 #include "eval/runs/profile.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <memory>
 #include <mosbench/method.hpp>
 
 #include "core/base/stage_clock.hpp"
+#include "datasets/files/quantile.hpp"
 #include "eval/results/machine.hpp"
 #include "eval/results/progress.hpp"
 
@@ -31,7 +31,7 @@ std::optional<double> median_period_ms(const std::vector<std::int64_t>& stamps_n
     periods_ms.push_back(static_cast<double>(stamps_ns[i] - stamps_ns[i - 1]) * 1e-6);
   }
   if (periods_ms.empty()) return std::nullopt;
-  const double median_ms = quantile(periods_ms, 0.5);
+  const double median_ms = quantile(periods_ms, 0.5, QuantileRule::kNearestRank);
   return median_ms > 0 ? std::optional(median_ms) : std::nullopt;
 }
 
@@ -48,13 +48,6 @@ void add_stages(const std::vector<StageTime>& stages, SequenceProfile& profile) 
 }
 
 }  // namespace
-
-double quantile(std::vector<double> values, double q) {
-  const auto rank =
-      static_cast<std::size_t>(std::max(1.0, std::ceil(q * static_cast<double>(values.size()))));
-  std::ranges::sort(values);
-  return values[rank - 1];
-}
 
 SequenceProfile profile_sequence(const Sequence& sequence, const RunSettings& settings,
                                  std::size_t most_scans) {

@@ -41,7 +41,4 @@ struct SequenceProfile {
 SequenceProfile profile_sequence(const Sequence& sequence, const RunSettings& settings,
                                  std::size_t most_scans);
 
-/// Of a not empty list, q from 0 to 1: the nearest rank.
-double quantile(std::vector<double> values, double q);
-
 }  // namespace mosbench
