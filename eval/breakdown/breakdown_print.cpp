@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "eval/breakdown/breakdown.hpp"
+#include "eval/protocols/counts_json.hpp"
 #include "eval/protocols/metrics.hpp"
 #include "eval/results/answer_text.hpp"
 #include "eval/results/text_table.hpp"
@@ -13,14 +14,11 @@ namespace {
 using nlohmann::ordered_json;
 
 ordered_json metrics_json(const Confusion& counts) {
-  return {{"tp", counts.tp},
-          {"fp", counts.fp},
-          {"fn", counts.fn},
-          {"tn", counts.tn},
-          {"ignored", counts.ignored},
-          {"iou", json_or_null(moving_iou(counts))},
-          {"precision", json_or_null(precision(counts))},
-          {"recall", json_or_null(recall(counts))}};
+  ordered_json json = counts_json(counts);
+  json["iou"] = json_or_null(moving_iou(counts));
+  json["precision"] = json_or_null(precision(counts));
+  json["recall"] = json_or_null(recall(counts));
+  return json;
 }
 
 template <std::size_t size>
@@ -77,7 +75,7 @@ ordered_json object_json(const SequenceBreakdown& breakdown, const ObjectTrack& 
 }
 
 std::string percent(const std::optional<double>& value) {
-  return value ? fmt::format("{:.1f}", *value * 100.0) : "";
+  return value ? percent_text(value, "{:.1f}") : "";
 }
 
 template <std::size_t size>

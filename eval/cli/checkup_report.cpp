@@ -4,6 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "eval/results/answer_text.hpp"
+
 namespace mosbench {
 namespace {
 
@@ -145,7 +147,7 @@ std::string checkup_json(const Checkup& checkup) {
                                 {"where", symptom.where},
                                 {"what", symptom.what}});
   }
-  return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+  return json_text(json);
 }
 
 }  // namespace mosbench

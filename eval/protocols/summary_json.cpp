@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "eval/protocols/counts_json.hpp"
+
 namespace mosbench {
 namespace {
 
@@ -12,22 +14,18 @@ nlohmann::ordered_json number(const std::optional<double>& value) {
 }  // namespace
 
 nlohmann::ordered_json to_json(const Summary& summary) {
-  const Confusion& pooled = summary.pooled;
-  return {{"iou", number(summary.iou)},
-          {"precision", number(summary.precision)},
-          {"recall", number(summary.recall)},
-          {"f1", number(summary.f1)},
-          {"iou_deviation", number(summary.iou_deviation)},
-          {"published_iou", number(summary.published_iou)},
-          {"published_text", summary.published_text},
-          {"tp", pooled.tp},
-          {"fp", pooled.fp},
-          {"fn", pooled.fn},
-          {"tn", pooled.tn},
-          {"ignored", pooled.ignored},
-          {"unknown_ids", pooled.unknown_ids},
-          {"labelled_scans", summary.scans},
-          {"undefined_scans", summary.undefined_scans}};
+  nlohmann::ordered_json json = {{"iou", number(summary.iou)},
+                                 {"precision", number(summary.precision)},
+                                 {"recall", number(summary.recall)},
+                                 {"f1", number(summary.f1)},
+                                 {"iou_deviation", number(summary.iou_deviation)},
+                                 {"published_iou", number(summary.published_iou)},
+                                 {"published_text", summary.published_text}};
+  json.update(counts_json(summary.pooled));
+  json["unknown_ids"] = summary.pooled.unknown_ids;
+  json["labelled_scans"] = summary.scans;
+  json["undefined_scans"] = summary.undefined_scans;
+  return json;
 }
 
 }  // namespace mosbench

@@ -6,6 +6,7 @@
 #include "datasets/files/errors.hpp"
 #include "datasets/files/files.hpp"
 #include "datasets/files/text.hpp"
+#include "eval/protocols/counts_json.hpp"
 #include "eval/results/answer_text.hpp"
 #include "eval/results/result_format.hpp"
 
@@ -21,11 +22,7 @@ ordered_json to_json(const ScanRow& row) {
                        {"nonfinite_points", row.nonfinite_points},
                        {"threshold", json_or_null(row.threshold)}};
   if (!row.counts) return json;
-  json["tp"] = row.counts->tp;
-  json["fp"] = row.counts->fp;
-  json["fn"] = row.counts->fn;
-  json["tn"] = row.counts->tn;
-  json["ignored"] = row.counts->ignored;
+  json.update(counts_json(*row.counts));
   json["unknown_ids"] = row.counts->unknown_ids;
   if (row.truth_hash) {
     json["truth_hash"] = std::string_view(row.truth_hash->data(), row.truth_hash->size());

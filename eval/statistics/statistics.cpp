@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
-#include "eval/protocols/metrics.hpp"
+#include <cmath>
+
+#include "eval/protocols/counts_json.hpp"
 #include "eval/results/answer_text.hpp"
+#include "eval/results/csv.hpp"
 #include "eval/results/text_table.hpp"
 
 namespace mosbench {
@@ -39,24 +42,15 @@ std::vector<std::string> estimate_cells(const std::string& name, std::size_t sca
   return cells;
 }
 
-std::string optional_cell(const std::optional<double>& value) {
-  return value ? fmt::format("{:.17g}", *value) : "";
-}
-
 ordered_json scan_json(const SequenceResult& sequence, const ScanRow& row) {
-  const Confusion& counts = *row.counts;
-  return {{"sequence", sequence.sequence},
-          {"scan", row.stem},
-          {"points", row.points},
-          {"tp", counts.tp},
-          {"fp", counts.fp},
-          {"fn", counts.fn},
-          {"tn", counts.tn},
-          {"ignored", counts.ignored},
-          {"iou", json_or_null(moving_iou(counts))},
-          {"precision", json_or_null(precision(counts))},
-          {"recall", json_or_null(recall(counts))},
-          {"f1", json_or_null(f1(counts))}};
+  ordered_json json = {{"sequence", sequence.sequence}, {"scan", row.stem}, {"points", row.points}};
+  json.update(counts_json(*row.counts));
+  const MetricValues values = metrics_of(*row.counts);
+  for (std::size_t m = 0; m < values.size(); ++m) {
+    json[std::string(kMetricNames[m])] =
+        std::isnan(values[m]) ? ordered_json(nullptr) : ordered_json(values[m]);
+  }
+  return json;
 }
 
 std::string headline(const ResultSet& set) {
@@ -148,10 +142,15 @@ std::string scan_table_csv(const ResultSet& set) {
   for (const SequenceResult& sequence : set.sequences) {
     for (const ScanRow* row : counted_scans(sequence)) {
       const Confusion& counts = *row->counts;
-      csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}\n", sequence.sequence, row->stem,
-                         row->points, counts.tp, counts.fp, counts.fn, counts.tn, counts.ignored,
-                         optional_cell(moving_iou(counts)), optional_cell(precision(counts)),
-                         optional_cell(recall(counts)), optional_cell(f1(counts)));
+      std::vector<std::string> cells = {sequence.sequence, row->stem};
+      for (const std::uint64_t count : {std::uint64_t{row->points}, counts.tp, counts.fp, counts.fn,
+                                        counts.tn, counts.ignored}) {
+        cells.push_back(fmt::format("{}", count));
+      }
+      for (const double value : metrics_of(counts)) {
+        cells.push_back(std::isnan(value) ? "" : fmt::format("{:.17g}", value));
+      }
+      csv += csv_row(cells);
     }
   }
   return csv;

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "eval/protocols/counts_json.hpp"
 #include "eval/protocols/metrics.hpp"
 #include "eval/protocols/protocol_list.hpp"
 #include "eval/results/answer_text.hpp"
@@ -101,15 +102,12 @@ ordered_json side_by_side_json(const Dataset& dataset, const std::vector<ScoreRu
                        {"remarks", score_remarks(dataset, scores)}};
   if (const auto origin = simulated_origin_json(dataset)) json["simulated"] = *origin;
   for (const ProtocolRow& row : protocol_rows(rules, scores)) {
-    json["protocols"].push_back({{"name", row.name},
-                                 {"iou", json_or_null(row.summary.iou)},
-                                 {"published_text", row.summary.published_text},
-                                 {"tp", row.summary.pooled.tp},
-                                 {"fp", row.summary.pooled.fp},
-                                 {"fn", row.summary.pooled.fn},
-                                 {"tn", row.summary.pooled.tn},
-                                 {"ignored", row.summary.pooled.ignored},
-                                 {"why", row.reason}});
+    ordered_json protocol = {{"name", row.name},
+                             {"iou", json_or_null(row.summary.iou)},
+                             {"published_text", row.summary.published_text}};
+    protocol.update(counts_json(row.summary.pooled));
+    protocol["why"] = row.reason;
+    json["protocols"].push_back(std::move(protocol));
   }
   return json;
 }

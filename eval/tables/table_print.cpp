@@ -5,14 +5,13 @@
 #include <algorithm>
 
 #include "eval/results/answer_text.hpp"
+#include "eval/results/csv.hpp"
 #include "eval/results/text_table.hpp"
 
 namespace mosbench {
 namespace {
 
 using nlohmann::ordered_json;
-
-std::string percent(double value) { return fmt::format("{:.1f}", value * 100.0); }
 
 bool is_measured(const TableCell& cell) {
   return cell.verdict != Verdict::kPublishedOnly && cell.measured;
@@ -23,11 +22,11 @@ std::string cell_text(const TableCell& cell) {
   const std::string published = cell.published ? cell.published->iou_percent : "";
   if (!is_measured(cell)) return published.empty() ? "-" : published;
   std::string text = published.empty() ? "" : published + " / ";
-  text += cell.measured->value ? percent(*cell.measured->value) : "undefined";
+  text += percent_text(cell.measured->value, "{:.1f}");
   if (cell.difference) text += fmt::format(" ({:+.1f})", *cell.difference * 100.0);
   if (cell.measured->interval) {
-    text += fmt::format(" [{}, {}]", percent(cell.measured->interval->low),
-                        percent(cell.measured->interval->high));
+    text += fmt::format(" [{}, {}]", percent_text(cell.measured->interval->low, "{:.1f}"),
+                        percent_text(cell.measured->interval->high, "{:.1f}"));
   }
   return fmt::format("{} {}", text, to_string(cell.verdict));
 }
@@ -95,13 +94,6 @@ std::string escaped(const std::string& text) {
     escaped += c;
   }
   return escaped;
-}
-
-/// Commas would be columns.
-std::string csv_cell(std::string text) {
-  std::ranges::replace(text, ',', ';');
-  std::ranges::replace(text, '\n', ' ');
-  return text;
 }
 
 std::string optional_percent(const std::optional<double>& value) {
@@ -199,13 +191,7 @@ std::string table_csv(const FilledTable& table) {
                                               row.source,
                                               row.results,
                                               joined(cell.sequences, "; ")};
-      std::string line;
-      for (const std::string& value : cells) {
-        if (!line.empty()) line += ',';
-        line += csv_cell(value);
-      }
-      text += line;
-      text += '\n';
+      text += csv_row(cells);
     }
   }
   return text;
