@@ -9,7 +9,7 @@ set -euo pipefail
 
 packages=(g++ cmake ninja-build pkg-config git xz-utils jq bsdextrautils python3
   libeigen3-dev libfmt-dev nlohmann-json3-dev libcli11-dev libxxhash-dev
-  zlib1g-dev libpng-dev
+  zlib1g-dev libpng-dev libboost-dev
   libgtest-dev libgmock-dev libbenchmark-dev)
 [ "${MOSBENCH_WITH_PCL:-ON}" = OFF ] || packages+=(libpcl-dev)
 [ "${MOSBENCH_WITH_ROSBAG:-ON}" = OFF ] || packages+=(librosbag-storage-dev)

@@ -6,9 +6,10 @@
 #include <random>
 #include <stdexcept>
 
+#include "datasets/files/quantile.hpp"
 #include "eval/protocols/metrics.hpp"
 #include "eval/statistics/block_length.hpp"
-#include "eval/statistics/quantiles.hpp"
+#include "eval/statistics/distributions.hpp"
 
 namespace mosbench {
 namespace {
@@ -78,7 +79,7 @@ void draw(const std::vector<Drawn>& drawn, std::mt19937_64& random,
   }
 }
 
-/// What the bootstrap gives of one number: its distribution, sorted.
+/// What the bootstrap gives of one number.
 struct Distribution {
   Series sorted;
   double standard_error = 0.0;
@@ -116,8 +117,8 @@ std::optional<double> reach(const std::vector<Drawn>& drawn, double confidence) 
 
 Interval interval_of(const Distribution& distribution, double ends) {
   const double tail = normal_probability(-ends);
-  return {sorted_quantile(distribution.sorted, tail),
-          sorted_quantile(distribution.sorted, 1.0 - tail)};
+  return {quantile(distribution.sorted, tail, QuantileRule::kInterpolated),
+          quantile(distribution.sorted, 1.0 - tail, QuantileRule::kInterpolated)};
 }
 
 /// `ends` as of `reach`. What cannot be told stays unset.

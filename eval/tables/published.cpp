@@ -8,6 +8,10 @@
 #include "datasets/files/text.hpp"
 
 namespace mosbench {
+
+/// The text of results/published.csv, embedded by CMakeLists.txt.
+std::string_view built_in_published();
+
 namespace {
 
 constexpr std::string_view kHeader =

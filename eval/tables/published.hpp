@@ -32,8 +32,7 @@ struct PublishedCell {
 std::vector<PublishedCell> parse_published(std::string_view text,
                                            const std::filesystem::path& file);
 
-/// The text of results/published.csv when the program was built.
-std::string_view built_in_published();
+/// The rows of results/published.csv as they were when the program was built.
 std::vector<PublishedCell> built_in_cells();
 
 }  // namespace mosbench

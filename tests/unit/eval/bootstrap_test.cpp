@@ -8,7 +8,7 @@
 
 #include "eval/protocols/metrics.hpp"
 #include "eval/statistics/block_length.hpp"
-#include "eval/statistics/quantiles.hpp"
+#include "eval/statistics/distributions.hpp"
 
 namespace mosbench {
 namespace {
@@ -55,16 +55,21 @@ std::vector<double> autoregressive(unsigned seed, std::size_t scans, double memo
   return series;
 }
 
-TEST(Quantiles, EqualTheTables) {
-  EXPECT_NEAR(normal_quantile(0.975), 1.959963985, 1e-8);
-  EXPECT_NEAR(normal_probability(-1.0), 0.158655254, 1e-9);
-  EXPECT_NEAR(student_quantile(0.975, 1.0), 12.70620474, 1e-5);
-  EXPECT_NEAR(student_quantile(0.975, 9.0), 2.262157163, 1e-6);
-  EXPECT_NEAR(student_quantile(0.025, 30.0), -2.042272456, 1e-6);
-  EXPECT_NEAR(student_quantile(0.975, 1e6), 1.959966, 1e-5);
-  const std::vector<double> sorted = {1.0, 2.0, 4.0};
-  EXPECT_DOUBLE_EQ(sorted_quantile(sorted, 0.25), 1.5);
-  EXPECT_DOUBLE_EQ(sorted_quantile(sorted, 1.0), 4.0);
+// The numbers are of printed tables and of mpmath with 30 digits.
+TEST(Distributions, EqualTheTables) {
+  EXPECT_NEAR(normal_quantile(0.975), 1.959963984540054, 1e-9);
+  EXPECT_NEAR(normal_quantile(0.8), 0.8416212335729143, 1e-9);
+  EXPECT_NEAR(normal_probability(-1.0), 0.15865525393145705, 1e-9);
+  EXPECT_NEAR(student_quantile(0.975, 1.0), 12.706204736174698, 1e-9);
+  EXPECT_NEAR(student_quantile(0.975, 9.0), 2.262157162798205, 1e-9);
+  EXPECT_NEAR(student_quantile(0.025, 30.0), -2.0422724563012378, 1e-9);
+  EXPECT_NEAR(student_quantile(0.975, 1e6), 1.9599663566, 1e-9);
+  // Tangent, the inverse of the distribution function at one degree of freedom; t^2 = 2 q^2 / (1 -
+  // q^2) at two.
+  for (const double q : {0.1, 0.5, 0.9}) {
+    EXPECT_NEAR(student_quantile(0.5 + 0.5 * q, 1.0), std::tan(0.5 * std::numbers::pi * q), 1e-9);
+    EXPECT_NEAR(student_quantile(0.5 + 0.5 * q, 2.0), q * std::sqrt(2.0 / (1.0 - q * q)), 1e-9);
+  }
 }
 
 TEST(BlockLength, IsOneForNoiseAndGrowsWithTheMemory) {
