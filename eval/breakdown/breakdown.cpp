@@ -12,9 +12,10 @@
 namespace mosbench {
 namespace {
 
-/// What is kept of a scan's false positives: thousands of single points say nothing one by one.
+/// Largest clusters of false positives that are kept per scan; the rest are mostly single points.
 constexpr std::size_t kFalseClustersPerScan = 50;
-constexpr double kScanPeriod_s = 0.1;  ///< where there are no stamps
+/// Assumed without stamps: the LiDARs of all supported data sets turn at 10 Hz.
+constexpr double kScanPeriod_s = 0.1;
 
 std::vector<ScanBreakdown> per_scan(const Sequence& sequence, const std::vector<std::size_t>& scans,
                                     const Predictions& predictions, const BreakdownTask& task) {
@@ -36,8 +37,8 @@ std::vector<ScanBreakdown> per_scan(const Sequence& sequence, const std::vector<
   return parts;
 }
 
-/// Seconds of the scans at `scans` by their stamps; nothing unless all have one, each later than
-/// the one before.
+/// Returns the scan times in seconds since the first; nullopt unless every scan has a stamp and the
+/// stamps increase.
 std::optional<std::vector<double>> stamped_times_s(const Sequence& sequence,
                                                    const std::vector<std::size_t>& scans) {
   std::vector<double> times_s;
@@ -57,7 +58,7 @@ void add(const std::array<Confusion, size>& part, std::array<Confusion, size>& s
   for (std::size_t b = 0; b < size; ++b) sum[b] += part[b];
 }
 
-/// Bins between edges; the last one is open.
+/// Bins between edges; the last one has no upper end.
 class Bins {
  public:
   Bins(std::vector<double> edges, const char* unit) : edges_(std::move(edges)) {

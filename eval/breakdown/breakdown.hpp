@@ -11,50 +11,50 @@
 
 namespace mosbench {
 
-/// A cluster of false positives with the scan it lies in.
+/// A cluster of false positives and its scan.
 struct FalseCluster {
   std::size_t scan_index;
   ScanCluster cluster;
 };
 
-/// Where the labels of one sequence are right and wrong.
+/// Counts of one sequence by range, height and object.
 struct SequenceBreakdown {
   std::string sequence;
   std::vector<std::string> stems;  ///< of all scans, by scan index
-  std::vector<std::size_t> scans;  ///< scored ones
-  bool stamped = false;            ///< speeds are by the scans' stamps, else as if at 10 Hz
+  std::vector<std::size_t> scans;  ///< indices of the scored scans
+  bool stamped = false;            ///< speeds use the scans' stamps; otherwise 10 Hz is assumed
   std::array<Confusion, kRangeEdges_m.size()> by_range;
   std::array<Confusion, kHeightEdges_m.size()> by_height;
   std::vector<ObjectTrack> objects;
   std::vector<FalseCluster> false_positives;  ///< worst first
 };
 
-/// How scans are looked at.
+/// Rules and threads of a breakdown.
 struct BreakdownTask {
   const Protocol* protocol;
   RangeGate range;
   unsigned threads = 1;
 };
 
-/// Takes apart the scans at `scans`, which have truth and a prediction. The same for any number of
-/// threads. Throws DataError.
+/// Breaks down the scans at `scans`, which have truth and a prediction. Returns the same for any
+/// number of threads. Throws DataError.
 SequenceBreakdown break_down(const Sequence& sequence, const std::vector<std::size_t>& scans,
                              const Predictions& predictions, const BreakdownTask& task);
 
-/// One bin of objects or of sightings.
+/// Recall in one bin of objects or of sightings.
 struct RecallBin {
   std::string name;  ///< "1 to 2 m"
   std::size_t objects = 0;
   std::uint64_t tp = 0, fn = 0;
 };
 
-/// Recall of moving points by a property of the object they belong to.
+/// Return the recall of moving points by a property of their object.
 std::vector<RecallBin> recall_by_size(const std::vector<ObjectTrack>& objects);
 std::vector<RecallBin> recall_by_speed(const std::vector<ObjectTrack>& objects);
-/// By the number of scans since the object was first seen.
+/// Bins sightings by the number of scans since the object was first seen.
 std::vector<RecallBin> recall_by_age(const std::vector<ObjectTrack>& objects);
 
-/// Objects and false positives beyond the worst `at_most` are counted but not listed.
+/// List the worst `at_most` objects and false positives; all are counted.
 nlohmann::ordered_json to_json(const SequenceBreakdown& breakdown, std::size_t at_most);
 std::string breakdown_text(const SequenceBreakdown& breakdown, std::size_t at_most);
 

@@ -23,14 +23,14 @@ struct CellHash {
   }
 };
 
-/// Points farther out than any sensor sees would overflow the cell's index.
+/// Coordinates beyond this, far outside any map, would overflow the cell's index.
 constexpr double kFarthest_m = 1e9;
 
 bool is_usable(const Eigen::Vector3d& point) {
   return point.allFinite() && point.cwiseAbs().maxCoeff() < kFarthest_m;
 }
 
-/// Sets that are merged; the smallest member stands for its set.
+/// Disjoint sets (union-find); the smallest member represents its set.
 class Sets {
  public:
   explicit Sets(std::size_t count) : parent_(count) {

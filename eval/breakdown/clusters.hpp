@@ -7,11 +7,12 @@
 
 namespace mosbench {
 
-/// Positions of `points` (metres) that belong together.
+/// Indices of points that form one cluster.
 using Cluster = std::vector<std::uint32_t>;
 
-/// Groups points whose cells of `cell_m` touch, edges and corners included; largest first, the
-/// first point deciding between equals. Points that are not finite are in no cluster.
+/// Groups points (metres) whose cells of edge length `cell_m` are equal or touch, also at an edge
+/// or a corner. Largest cluster first, equal ones by their first point. Points that are not finite
+/// are in no cluster.
 std::vector<Cluster> cluster_points(std::span<const Eigen::Vector3d> points, double cell_m);
 
 }  // namespace mosbench

@@ -9,12 +9,20 @@
 namespace mosbench {
 namespace {
 
-constexpr double kGate_m = 2.0;
+/// Largest distance between a cluster and the predicted position of its track, for truth without
+/// instances. The prediction has constant velocity, so only acceleration and the change of what is
+/// seen of an object count: 2 m is half a car, and less than the gap between two cars in traffic.
+constexpr double kLinkLinkGate_m = 2.0;
+/// Longest occlusion over which a track without instance goes on: half a second at 10 Hz, after
+/// which the predicted position of a turning car is wrong by about kLinkLinkGate_m.
 constexpr std::size_t kLongestGap_scans = 5;
-constexpr double kStretch_s = 1.0 - 1e-6;  ///< stamps are rounded
-constexpr std::size_t kFoundPart = 10;     ///< a tenth of the points makes a detection
+/// Time over which a speed is measured: within a second a pedestrian walks farther than its centre
+/// shifts because other parts of it are seen. Less a little, because stamps are rounded.
+constexpr double kSpeedBaseline_s = 1.0 - 1e-6;
+/// An object counts as detected in a scan when a tenth of its points is found.
+constexpr std::size_t kPointsPerFound = 10;
 
-/// Where a track would be in a scan if it went on as between its last two sightings.
+/// Predicts the position of a track at constant velocity from its last two sightings.
 Eigen::Vector3d expected_at(const ObjectTrack& track, std::size_t scan_index) {
   const Sighting& last = track.sightings.back();
   if (track.sightings.size() < 2) return last.cluster.centre_map_m;
@@ -36,7 +44,7 @@ struct Pair {
   std::size_t track, cluster;
 };
 
-/// Pairs that may be linked, nearest first.
+/// Returns the pairs that may be linked, nearest first.
 std::vector<Pair> candidate_pairs(const std::vector<ObjectTrack>& tracks, const ScanObjects& scan) {
   std::vector<Pair> pairs;
   for (std::size_t t = 0; t < tracks.size(); ++t) {
@@ -45,7 +53,7 @@ std::vector<Pair> candidate_pairs(const std::vector<ObjectTrack>& tracks, const 
       if (!is_open(tracks[t], cluster, scan.scan_index)) continue;
       const double distance_m =
           (expected_at(tracks[t], scan.scan_index) - cluster.centre_map_m).norm();
-      if (cluster.instance != 0 || distance_m <= kGate_m) pairs.push_back({distance_m, t, c});
+      if (cluster.instance != 0 || distance_m <= kLinkGate_m) pairs.push_back({distance_m, t, c});
     }
   }
   std::ranges::sort(pairs, {}, [](const Pair& pair) {
@@ -111,7 +119,8 @@ std::optional<double> ObjectTrack::speed_m_s() const {
   std::vector<double> speeds_m_s;
   std::size_t later = 0;
   for (const Sighting& from : sightings) {
-    while (later < sightings.size() && sightings[later].time_s - from.time_s < kStretch_s) ++later;
+    while (later < sightings.size() && sightings[later].time_s - from.time_s < kSpeedBaseline_s)
+      ++later;
     if (later == sightings.size()) break;
     speeds_m_s.push_back(speed_between(from, sightings[later]));
   }
@@ -122,7 +131,7 @@ std::optional<double> ObjectTrack::speed_m_s() const {
 std::optional<std::size_t> ObjectTrack::detection_delay_scans() const {
   for (const Sighting& sighting : sightings) {
     const ScanCluster& cluster = sighting.cluster;
-    if (cluster.found > 0 && cluster.found * kFoundPart >= cluster.points) {
+    if (cluster.found > 0 && cluster.found * kPointsPerFound >= cluster.points) {
       return sighting.scan_index - sightings.front().scan_index;
     }
   }
@@ -133,7 +142,7 @@ std::vector<ObjectTrack> link_objects(std::span<const ScanObjects> scans) {
   std::vector<ObjectTrack> finished;
   std::vector<ObjectTrack> open;
   for (const ScanObjects& scan : scans) {
-    // Closed tracks are set aside, so that long sequences do not compare with all of their past.
+    // Finished tracks are moved out, so that the cost per scan does not grow with the sequence.
     const auto closed = std::stable_partition(
         open.begin(), open.end(),
         [&](const ObjectTrack& track) { return may_go_on(track, scan.scan_index); });

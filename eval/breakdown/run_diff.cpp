@@ -143,7 +143,8 @@ std::string diff_text(const RunNames& names, const PairedRuns& paired,
   if (!paired.unlike.empty()) text += "unlike: " + unlike_text(paired.unlike) + '\n';
   if (!scans.empty()) text += '\n' + scans_text(names, scans, at_most);
   if (!objects.empty()) {
-    text += fmt::format("\n{} moving objects are found to different parts\n\n", objects.size()) +
+    text += fmt::format("\n{} moving objects have different numbers of found points\n\n",
+                        objects.size()) +
             objects_text(names, objects, at_most);
   }
   return text;

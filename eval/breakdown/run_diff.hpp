@@ -13,10 +13,10 @@ namespace mosbench {
 /// A scan in which two runs count differently.
 struct ScanDisagreement {
   PairedRuns::Scan scan;
-  std::uint64_t changed_points = 0;  ///< at least so many points changed: of tp plus of fp
+  std::uint64_t changed_points = 0;  ///< change of tp plus change of fp: a lower bound
 };
 
-/// A moving object of which two runs find different parts.
+/// A moving object of which two runs find different numbers of points.
 struct ObjectDisagreement {
   std::string sequence, first_scan, last_scan;
   std::size_t points = 0, first_found = 0, second_found = 0;
@@ -24,23 +24,23 @@ struct ObjectDisagreement {
   Eigen::Vector3d position_map_m = Eigen::Vector3d::Zero();  ///< in its first scan
 };
 
-/// What two runs are called where both are shown.
+/// Short names of two runs.
 struct RunNames {
   std::string first, second;
 };
 
-/// The last names of their folders, or the whole paths where those are equal.
+/// Returns the last components of both paths, or the whole paths where those are equal.
 RunNames names_apart(const std::filesystem::path& first, const std::filesystem::path& second);
 
-/// The scans with other counts, most changed first.
+/// Returns the scans whose counts differ, most changed first.
 std::vector<ScanDisagreement> disagreeing_scans(const PairedRuns& paired);
 
-/// The objects found to different parts, most changed first. Both break down the same truth; throws
-/// std::invalid_argument otherwise.
+/// Returns the objects of which different numbers of points are found, most changed first. Throws
+/// std::invalid_argument unless both break down the same truth.
 std::vector<ObjectDisagreement> disagreeing_objects(const SequenceBreakdown& first,
                                                     const SequenceBreakdown& second);
 
-/// Everything about the worst `at_most` of each; `objects` is empty without points at hand.
+/// Describe the worst `at_most` of each; `objects` is empty when the points are not available.
 nlohmann::ordered_json diff_json(const PairedRuns& paired,
                                  const std::vector<ObjectDisagreement>& objects,
                                  std::size_t at_most);

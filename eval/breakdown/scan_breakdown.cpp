@@ -8,7 +8,9 @@
 namespace mosbench {
 namespace {
 
-constexpr double kCell_m = 0.5;
+/// Cells of clusters: larger than the gaps between returns on an object up to about 50 m, smaller
+/// than the distance between two pedestrians.
+constexpr double kClusterCell_m = 0.5;
 
 template <std::size_t size>
 std::size_t bin_of(const std::array<double, size>& edges, double value) {
@@ -23,7 +25,7 @@ std::array<Confusion, size> to_confusions(const std::array<OutcomeCounts, size>&
   return confusions;
 }
 
-/// Points of one kind: where they are in the map, and whether they are predicted moving.
+/// Positions of points of one kind, and whether each is predicted moving.
 struct Selection {
   std::vector<Eigen::Vector3d> positions_map_m;
   std::vector<bool> found;
@@ -53,7 +55,7 @@ ScanCluster describe(const Selection& selection, const Cluster& members, std::ui
   return cluster;
 }
 
-/// All members of a selection that have a position.
+/// Indices of the points that have a finite position.
 Cluster finite_members(const Selection& selection) {
   Cluster members;
   for (std::size_t i = 0; i < selection.positions_map_m.size(); ++i) {
@@ -94,15 +96,16 @@ ScanBreakdown break_down_scan(const Protocol& protocol, const RangeGate& limits,
   breakdown.by_range = to_confusions(by_range);
   breakdown.by_height = to_confusions(by_height);
   for (const auto& [instance, selection] : moving) {
-    std::vector<Cluster> groups = instance == 0 ? cluster_points(selection.positions_map_m, kCell_m)
-                                                : std::vector<Cluster>{finite_members(selection)};
+    std::vector<Cluster> groups = instance == 0
+                                      ? cluster_points(selection.positions_map_m, kClusterCell_m)
+                                      : std::vector<Cluster>{finite_members(selection)};
     for (const Cluster& members : groups) {
       if (members.empty()) continue;
       breakdown.objects.push_back(describe(selection, members, instance, sensor));
     }
   }
   std::ranges::stable_sort(breakdown.objects, std::ranges::greater{}, &ScanCluster::points);
-  for (const Cluster& members : cluster_points(false_positives.positions_map_m, kCell_m)) {
+  for (const Cluster& members : cluster_points(false_positives.positions_map_m, kClusterCell_m)) {
     breakdown.false_positives.push_back(describe(false_positives, members, 0, sensor));
   }
   return breakdown;

@@ -13,22 +13,23 @@
 
 namespace mosbench {
 
-/// Bins [edge, next edge) of the distance from the sensor, metres; the last one is open.
+/// Bins [edge, next edge) of the distance from the sensor, metres; the last one has no upper end.
 inline constexpr std::array kRangeEdges_m = {0.0, 5.0, 10.0, 20.0, 30.0, 40.0, 50.0, 75.0, 100.0};
-/// Bins of the height above the sensor in the map's upward direction; the first one is open below.
+/// Bins of the height above the sensor in the map's upward direction; the first one has no lower
+/// end.
 inline constexpr std::array kHeightEdges_m = {-1e30, -2.0, -1.5, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0};
 
-/// Points of one scan that belong to one thing.
+/// A group of points in one scan: one object, or one cluster of false positives.
 struct ScanCluster {
   std::uint32_t instance = 0;  ///< from the upper bits of the truth; 0 when there is none
   std::size_t points = 0;
-  std::size_t found = 0;  ///< of them predicted moving
+  std::size_t found = 0;  ///< points of it that are predicted moving
   Eigen::Vector3d centre_map_m = Eigen::Vector3d::Zero();
   double range_m = 0.0;  ///< of the centre from the sensor
   double size_m = 0.0;   ///< diagonal of the box around the points
 };
 
-/// Where in one scan the labels are right and wrong.
+/// Counts of one scan by range, height and object.
 struct ScanBreakdown {
   std::array<Confusion, kRangeEdges_m.size()> by_range;
   std::array<Confusion, kHeightEdges_m.size()> by_height;
@@ -36,8 +37,8 @@ struct ScanBreakdown {
   std::vector<ScanCluster> false_positives;  ///< largest first; `found` equals `points`
 };
 
-/// Takes a labelled scan apart by the protocol's rules. Moving truth is grouped by the instance in
-/// the upper 16 bits of its labels, or where there is none by clusters of 0.5 m cells.
+/// Breaks down a labelled scan by the protocol's rules. Moving truth is grouped by the instance in
+/// the upper 16 bits of its labels or, without instances, into clusters of 0.5 m cells.
 ScanBreakdown break_down_scan(const Protocol& protocol, const RangeGate& limits, const Frame& frame,
                               std::span<const std::uint32_t> prediction);
 

@@ -7,7 +7,7 @@
 #include "eval/cli/commands.hpp"
 #include "eval/statistics/baseline.hpp"
 #include "eval/statistics/paired_runs.hpp"
-#include "eval/statistics/statistics.hpp"
+#include "eval/statistics/statistics_report.hpp"
 
 namespace mosbench {
 namespace {

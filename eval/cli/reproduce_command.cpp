@@ -67,7 +67,7 @@ void check_is_in_table(const ReproduceFlags& options, const Recipe& recipe,
        find_sequences(options.root, {.sequences = options.sequences}, found)) {
     names.push_back(folder.name);
   }
-  const auto in_table = [&](const std::string& name) { return is_about(table, name); };
+  const auto in_table = [&](const std::string& name) { return contains(table, name); };
   if (can_be(*found, recipe.dataset, options.root) && std::ranges::any_of(names, in_table)) return;
   std::vector<std::string_view> wanted;
   for (const TableColumn& column : table.columns) {

@@ -24,8 +24,8 @@ std::vector<ScoredSequence> scored(const RunPlan& plan,
   return sequences;
 }
 
-std::vector<ScoreRow> rows_of(const RunPlan& plan, const std::vector<SequenceOutcome>& outcomes) {
-  return score_rows(*plan.settings.protocol, plan.dataset.splits, scored(plan, outcomes));
+std::vector<SummaryRow> rows_of(const RunPlan& plan, const std::vector<SequenceOutcome>& outcomes) {
+  return summary_rows(*plan.settings.protocol, plan.dataset.splits, scored(plan, outcomes));
 }
 
 std::string method_line(const RunPlan& plan) {
@@ -51,7 +51,7 @@ std::string run_report_text(const RunPlan& plan, const std::vector<SequenceOutco
   std::string text =
       fmt::format("{} data set {}\n{}\n{}\n", to_string(plan.dataset.kind),
                   plan.dataset.root.string(), method_line(plan), protocol_line(plan));
-  text += benchmark_notice(*plan.settings.protocol, plan.dataset.splits);
+  text += benchmark_remark(*plan.settings.protocol, plan.dataset.splits);
   text += simulated_notice(plan.dataset);
   text += '\n' + format_rows(*plan.settings.protocol, rows_of(plan, outcomes)) + '\n';
   for (std::size_t i = 0; i < outcomes.size(); ++i) {

@@ -8,7 +8,7 @@
 #include "datasets/files/errors.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/results/answer_text.hpp"
-#include "eval/statistics/statistics.hpp"
+#include "eval/statistics/statistics_report.hpp"
 
 namespace mosbench {
 namespace {

@@ -7,7 +7,7 @@
 
 namespace mosbench {
 
-/// How somebody's predictions lie on disk (protocols, section 8).
+/// File formats of predictions; eval/README.md describes them.
 enum class PredictionFormat : std::uint8_t {
   kLabel,
   kLabelByIndex,
@@ -31,7 +31,7 @@ struct DescribedFormat {
 
 std::span<const DescribedFormat> prediction_formats();
 const DescribedFormat& describe(PredictionFormat format);
-/// Throws UsageError that names all formats.
+/// Throws UsageError naming all formats.
 PredictionFormat prediction_format_named(std::string_view name);
 
 }  // namespace mosbench

@@ -12,6 +12,7 @@
 namespace mosbench {
 namespace {
 
+// Limits that configurations of published methods use.
 constexpr std::array kLowest_m = {0.0, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0};
 constexpr std::array kHighest_m = {-1.0, 20.0, 25.0, 30.0,  40.0,  50.0,  60.0,
                                    70.0, 75.0, 80.0, 100.0, 120.0, 150.0, 200.0};
@@ -23,7 +24,7 @@ std::vector<double> ranges_of(const MaskedScan& scan) {
   return ranges_m;
 }
 
-/// First and one past the last of the sorted ranges that are within the mask.
+/// Returns the first and one past the last position of the sorted ranges within the mask.
 std::pair<std::size_t, std::size_t> within(const std::vector<double>& ranges_m,
                                            const RangeGate& mask) {
   const auto first = std::ranges::lower_bound(ranges_m, mask.min_m);
@@ -59,7 +60,7 @@ RangeGate find_mask(std::span<const MaskedScan> scans) {
   if (found) return *found;
   throw DataError(
       scans.front().file,
-      fmt::format("has {} labels for {} points, and no usual range limits leave so many",
+      fmt::format("has {} labels for {} points, and no common range limits leave that many",
                   scans.front().labels, scans.front().points.size()),
       "a label per point, or --mask MIN,MAX");
 }

@@ -11,23 +11,23 @@
 
 namespace mosbench {
 
-/// A scan and how many labels a method that cuts the range wrote for it.
+/// A scan and the number of labels that a method with a range limit wrote for it.
 struct MaskedScan {
   std::filesystem::path file;
   std::size_t labels;
   std::vector<Point> points;
 };
 
-/// The range limits, among those that programs are known to use, which leave as many points of
+/// Finds the range limits, among those that methods commonly use, that leave as many points of
 /// every scan as there are labels. Throws DataError when none does, or when several do that leave
-/// other points.
+/// different points.
 RangeGate find_mask(std::span<const MaskedScan> scans);
 
-/// "3 to 50 m" or "from 3 m".
+/// Returns "3 to 50 m" or "from 3 m".
 std::string mask_text(const RangeGate& mask);
 
-/// One label per point from labels of the points within `mask` only, static for the rest. Throws
-/// DataError when there are more or fewer labels than such points.
+/// Returns one label per point: those given for the points within `mask`, static for the rest.
+/// Throws DataError when their numbers differ.
 std::vector<std::uint32_t> spread_over_scan(std::span<const std::uint32_t> labels,
                                             std::span<const Point> points, const RangeGate& mask,
                                             const std::filesystem::path& file);

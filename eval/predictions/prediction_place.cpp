@@ -15,6 +15,7 @@ namespace {
 
 using Format = PredictionFormat;
 
+/// Above any scan number, below any stamp in ns since 1970 (this is 17 minutes after midnight).
 constexpr std::uint64_t kSmallestStamp_ns = 1'000'000'000'000;
 
 std::vector<fs::path> candidate_folders(const fs::path& root, const std::string& name,
@@ -35,7 +36,8 @@ std::string first_line(const fs::path& file) {
   return line.substr(0, line.find('\n'));
 }
 
-/// The format of one file for a whole sequence; nothing when it begins like none, as a README does.
+/// Recognises the format of a file for a whole sequence by its first line; nullopt for others, such
+/// as a README.
 std::optional<Format> format_of_file(const fs::path& file) {
   const std::string line = first_line(file);
   if (line.starts_with("CloudNo")) return Format::kDynabloxClouds;
@@ -45,7 +47,7 @@ std::optional<Format> format_of_file(const fs::path& file) {
   return *number >= kSmallestStamp_ns ? Format::kIndices : Format::kRows;
 }
 
-/// The same for a file that was named: what is wrong with it then shows when it is read.
+/// Recognises the format of a file that the user named; reading it reports what is wrong with it.
 Format format_of_named(const fs::path& file) {
   return format_of_file(file).value_or(Format::kRows);
 }
@@ -56,7 +58,7 @@ std::set<std::string> stems_of(const Sequence& sequence) {
   return stems;
 }
 
-/// By position only when no file has the name of a scan and the positions are all there.
+/// Whether files are named by position: none is named like a scan, and every position is there.
 bool are_positions(const std::vector<fs::path>& files, const Sequence& sequence) {
   const std::set<std::string> stems = stems_of(sequence);
   std::set<std::uint64_t> positions;
@@ -70,7 +72,8 @@ bool are_positions(const std::vector<fs::path>& files, const Sequence& sequence)
   return positions.size() == sequence.size();
 }
 
-/// Most files shorter than their scans, none longer: written for points within a range.
+/// Whether labels were written for points within a range only: most files are shorter than their
+/// scans, none is longer.
 bool are_masked(const std::vector<fs::path>& files, const Sequence& sequence) {
   std::set<std::string> names;
   for (const fs::path& file : files) names.insert(file.filename().string());
@@ -100,8 +103,8 @@ bool names_a_scan(const std::vector<fs::path>& files, const Sequence& sequence) 
       files, [&](const fs::path& file) { return stems.contains(file.stem().string()); });
 }
 
-/// The one file for the whole sequence in a folder: one that Dynablox names, in the wanted format
-/// if there is one, else the only table.
+/// Finds the one file for a whole sequence in a folder: a file with one of Dynablox's names, of the
+/// wanted format if one is wanted, otherwise the only table.
 std::optional<fs::path> table_in(const fs::path& folder, std::optional<Format> wanted) {
   for (const char* name : {"clouds.csv", "scores.csv"}) {
     const fs::path file = folder / name;
@@ -116,8 +119,8 @@ std::optional<fs::path> table_in(const fs::path& folder, std::optional<Format> w
   return tables.front();
 }
 
-/// What a folder holds for the sequence, if anything.
-std::optional<PredictionPlace> look_into(const fs::path& folder, const Sequence& sequence) {
+/// Recognises the predictions of the sequence in a folder, if there are any.
+std::optional<PredictionPlace> recognise_in(const fs::path& folder, const Sequence& sequence) {
   if (const auto labels = files_with_extension(folder, ".label"); !labels.empty()) {
     return PredictionPlace{folder, label_format(labels, sequence)};
   }
@@ -133,8 +136,8 @@ std::optional<PredictionPlace> look_into(const fs::path& folder, const Sequence&
   return PredictionPlace{*table, format_of_named(*table)};
 }
 
-/// The same when the user says what it is.
-std::optional<PredictionPlace> look_for(const fs::path& folder, PredictionFormat format) {
+/// Finds predictions of a given format.
+std::optional<PredictionPlace> find_format_in(const fs::path& folder, PredictionFormat format) {
   const DescribedFormat& wanted = describe(format);
   if (wanted.per_scan) {
     if (files_with_extension(folder, wanted.extension).empty()) return std::nullopt;
@@ -180,7 +183,7 @@ PredictionPlace find_predictions(const fs::path& root, const Sequence& sequence,
     found = PredictionPlace{root, format.value_or(format_of_named(root))};
   }
   for (const fs::path& folder : candidate_folders(root, sequence.name(), only_sequence)) {
-    if (!found) found = format ? look_for(folder, *format) : look_into(folder, sequence);
+    if (!found) found = format ? find_format_in(folder, *format) : recognise_in(folder, sequence);
   }
   if (!found) {
     throw DataError(root, "no predictions for sequence " + sequence.name(),

@@ -140,14 +140,14 @@ std::vector<std::vector<std::uint32_t>> parse_dynablox_clouds(std::string_view t
   return clouds;
 }
 
-std::vector<DynabloxScore> parse_dynablox_scores(std::string_view text, DynabloxLevel level,
-                                                 const fs::path& file) {
+std::vector<DynabloxCounts> parse_dynablox_counts(std::string_view text, DynabloxLevel level,
+                                                  const fs::path& file) {
   // timestamp; IoU, Precision, Recall, TP, TN, FP, FN per level; EvaluatedPoints, TotalPoints.
   constexpr std::size_t kPerLevel = 7;
   constexpr std::size_t kColumns = 1 + 3 * kPerLevel + 2;
   const std::vector<TextLine> lines = lines_with_header(text, file);
   const std::size_t tp = 1 + static_cast<std::size_t>(level) * kPerLevel + 3;
-  std::vector<DynabloxScore> scores;
+  std::vector<DynabloxCounts> scores;
   for (std::size_t i = 1; i < lines.size(); ++i) {
     const auto fields = split_at_commas(lines[i].text);
     if (fields.size() != kColumns) {
@@ -155,7 +155,7 @@ std::vector<DynabloxScore> parse_dynablox_scores(std::string_view text, Dynablox
                       fmt::format("{}", kColumns));
     }
     const auto at = [&](std::size_t column) { return number_at(fields, column, lines[i], file); };
-    DynabloxScore score{.stamp_ns = at(0), .counts = {}, .total_points = at(kColumns - 1)};
+    DynabloxCounts score{.stamp_ns = at(0), .counts = {}, .total_points = at(kColumns - 1)};
     score.counts.tp = at(tp);
     score.counts.tn = at(tp + 1);
     score.counts.fp = at(tp + 2);

@@ -16,30 +16,30 @@ enum class DynabloxLevel : std::uint8_t { kPoint, kCluster, kObject };
 /// Throws UsageError for a name that is not point, cluster or object.
 DynabloxLevel dynablox_level_named(std::string_view name);
 
-/// Labels (9 or 251) of a text file with a row per point: "0" or "1", or "moveable moving class".
-/// Throws DataError with the line.
+/// Parses labels (9 or 251) from a text file with a row per point: "0" or "1", or "moveable moving
+/// class". Throws DataError with the line.
 std::vector<std::uint32_t> parse_point_text(std::string_view text, std::size_t point_count,
                                             const std::filesystem::path& file);
 
-/// Labels of a CSV file with a row per point and a header that names a column `label` (ids) or
-/// `moving` (0 or 1); other columns are left aside. Throws DataError with the line.
+/// Parses labels from a CSV file with a row per point and a header with a column `label` (ids) or
+/// `moving` (0 or 1); other columns are ignored. Throws DataError with the line.
 std::vector<std::uint32_t> parse_point_csv(std::string_view text, std::size_t point_count,
                                            const std::filesystem::path& file);
 
-/// Labels per cloud of Dynablox's clouds.csv, by CloudNo, which counts from 0. Throws DataError.
+/// Parses the labels of each cloud of Dynablox's clouds.csv, by CloudNo from 0. Throws DataError.
 std::vector<std::vector<std::uint32_t>> parse_dynablox_clouds(std::string_view text,
                                                               DynabloxLevel level,
                                                               const std::filesystem::path& file);
 
-/// A row of Dynablox's scores.csv.
-struct DynabloxScore {
+/// Counts in a row of Dynablox's scores.csv.
+struct DynabloxCounts {
   std::uint64_t stamp_ns = 0;
   Confusion counts;
   std::uint64_t total_points = 0;
 };
 
 /// Throws DataError with the line, also when the counts do not add up to EvaluatedPoints.
-std::vector<DynabloxScore> parse_dynablox_scores(std::string_view text, DynabloxLevel level,
-                                                 const std::filesystem::path& file);
+std::vector<DynabloxCounts> parse_dynablox_counts(std::string_view text, DynabloxLevel level,
+                                                  const std::filesystem::path& file);
 
 }  // namespace mosbench

@@ -5,7 +5,7 @@
 #include "datasets/files/errors.hpp"
 #include "datasets/files/files.hpp"
 #include "datasets/files/text.hpp"
-#include "eval/predictions/prediction_faults.hpp"
+#include "eval/predictions/prediction_errors.hpp"
 #include "eval/predictions/prediction_place.hpp"
 #include "eval/predictions/scan_file_predictions.hpp"
 #include "eval/predictions/sequence_file_predictions.hpp"
@@ -16,28 +16,28 @@ namespace {
 std::vector<std::string> missing_scans(const Predictions& labels, const PredictionPlace& place,
                                        const Sequence& sequence,
                                        const std::vector<std::size_t>& wanted,
-                                       PredictionFaults& faults) {
+                                       PredictionErrors& errors) {
   std::vector<std::string> missing;
   const DescribedFormat& format = describe(place.format);
   for (const std::size_t k : wanted) {
     if (labels.has(k)) continue;
     missing.push_back(sequence.stem(k));
     if (!format.per_scan) {
-      faults.report(DataError(place.path, "has no row for scan " + sequence.stem(k),
+      errors.report(DataError(place.path, "has no row for scan " + sequence.stem(k),
                               "a row for every scan with truth"));
       continue;
     }
     const bool by_position = place.format == PredictionFormat::kLabelByIndex;
     const std::string name = by_position ? fmt::format("{:06d}", k) : sequence.stem(k);
     const std::filesystem::path file = place.path / (name + std::string(format.extension));
-    // One that is there was faulty, which has been said.
+    // A file that exists was bad, which has been reported.
     if (is_there(file)) continue;
-    faults.report(DataError(file, "is not there", "a prediction for every scan with truth"));
+    errors.report(DataError(file, "is not there", "a prediction for every scan with truth"));
   }
   return missing;
 }
 
-/// Labels that the user says to be cut by range are read as such, also when none is missing.
+/// Labels with a given mask are read as cut by range even if no file is shorter than its scan.
 PredictionFormat settle_format(PredictionFormat found, const PredictionOptions& options) {
   if (!options.mask || found == PredictionFormat::kMaskedLabel) return found;
   if (found == PredictionFormat::kLabel && !options.format) return PredictionFormat::kMaskedLabel;
@@ -71,13 +71,13 @@ OpenedPredictions open_predictions(const std::filesystem::path& root, const Sequ
                                    const PredictionOptions& options) {
   PredictionPlace place = find_predictions(root, sequence, only_sequence, options.format);
   place.format = settle_format(place.format, options);
-  PredictionFaults faults(options.allow_missing);
+  PredictionErrors errors(options.allow_missing);
   OpenedPredictions opened{nullptr, place.format, !options.format, place.path, {}, {}};
   opened.labels = describe(place.format).per_scan
-                      ? open_scan_files(place, sequence, wanted, options, faults, opened.remarks)
-                      : open_sequence_file(place, sequence, options, faults);
-  opened.missing = missing_scans(*opened.labels, place, sequence, wanted, faults);
-  opened.remarks.insert(opened.remarks.end(), faults.texts().begin(), faults.texts().end());
+                      ? open_scan_files(place, sequence, wanted, options, errors, opened.remarks)
+                      : open_sequence_file(place, sequence, options, errors);
+  opened.missing = missing_scans(*opened.labels, place, sequence, wanted, errors);
+  opened.remarks.insert(opened.remarks.end(), errors.texts().begin(), errors.texts().end());
   return opened;
 }
 

@@ -16,45 +16,47 @@
 
 namespace mosbench {
 
-/// Label ids as a network numbers them -> as the data set does.
+/// From a network's class numbers to the data set's label ids.
 using LabelIdMap = std::map<std::uint16_t, std::uint16_t>;
 
-/// What the user says about predictions; what is not said is found out.
+/// What the user specified about predictions; the rest is recognised.
 struct PredictionOptions {
   std::optional<PredictionFormat> format;
   std::optional<RangeGate> mask;
   std::optional<LabelIdMap> id_map;
   DynabloxLevel level = DynabloxLevel::kObject;
-  bool allow_missing = false;  ///< scans with faulty files are left out instead of an error
+  bool allow_missing = false;  ///< leave out scans with bad files instead of throwing
 };
 
-/// Labels that somebody predicted for one sequence.
+/// Predicted labels of one sequence.
 class Predictions {
  public:
   virtual ~Predictions() = default;
   virtual bool has(std::size_t scan_index) const = 0;
-  /// Raw labels, one per point of the scan. Safe to call from several threads. Throws DataError.
+  /// Reads raw labels, one per point of the scan. Safe to call from several threads. Throws
+  /// DataError.
   virtual std::vector<std::uint32_t> read(std::size_t scan_index) const = 0;
-  /// For formats that hold counts in place of labels.
+  /// Returns the scan's counts for formats that hold counts instead of labels.
   virtual std::optional<Confusion> counts(std::size_t) const { return std::nullopt; }
 };
 
 struct OpenedPredictions {
   std::unique_ptr<Predictions> labels;
   PredictionFormat format;
-  bool guessed;                      ///< the format; false when the user named it
-  std::filesystem::path path;        ///< file or folder
-  std::vector<std::string> remarks;  ///< what was found out or, under allow_missing, passed over
+  bool guessed;                ///< the format; false when the user named it
+  std::filesystem::path path;  ///< file or folder
+  std::vector<std::string>
+      remarks;  ///< what was recognised and, with allow_missing, what was left out
   std::vector<std::string> missing;  ///< stems of wanted scans without a usable prediction
 };
 
-/// "0:0,1:9,2:251". Throws UsageError.
+/// Parses "0:0,1:9,2:251". Throws UsageError.
 LabelIdMap parse_id_map(const std::string& text);
 
-/// Finds the predictions of a sequence below `root`, which may be the file or folder itself for an
-/// `only_sequence`, recognises their format and pairs them with the scans. Unless allow_missing,
+/// Finds the predictions of a sequence below `root` (or `root` itself for an `only_sequence`),
+/// recognises their format and pairs them with the scans. Unless allow_missing,
 /// throws DataError naming the file when one of the `wanted` scans has no prediction, a file
-/// belongs to no scan or has another size than its scan, or when `root` holds the truth.
+/// matches no scan or has another size than its scan, or when `root` holds the truth.
 OpenedPredictions open_predictions(const std::filesystem::path& root, const Sequence& sequence,
                                    const std::vector<std::size_t>& wanted, bool only_sequence,
                                    const PredictionOptions& options);

@@ -21,7 +21,7 @@ using Files = std::map<std::size_t, fs::path>;  // by scan
 
 constexpr std::size_t kScansToGuessFrom = 5;
 
-/// The ids that a network numbers 0 unlabelled, 1 static, 2 moving.
+/// Classes of semantic-kitti-mos.yaml: 0 unlabelled, 1 static, 2 moving.
 const LabelIdMap kLearningIds = {{0, 0}, {1, 9}, {2, 251}};
 
 /// KTH writes 0 or 1 as intensity, ERASOR the label's number.
@@ -44,7 +44,7 @@ std::vector<std::uint32_t> read_pcd_labels(const fs::path& file, std::size_t poi
                   fmt::format("those of its scan, {}", point_count));
 }
 
-/// The labels of a file that holds as many as it likes.
+/// Reads the labels of a file of any length.
 std::vector<std::uint32_t> read_any_labels(const fs::path& file) {
   const std::string bytes = read_file(file);
   return parse_labels(bytes, bytes.size() / sizeof(std::uint32_t), file);
@@ -101,7 +101,7 @@ class ScanFiles : public Predictions {
   LabelIdMap id_map_;
 };
 
-/// The scan that a file belongs to by its name.
+/// Maps file stems to scan indices.
 std::map<std::string, std::size_t> scans_by_name(const Sequence& sequence, Format format) {
   std::map<std::string, std::size_t> scans;
   for (std::size_t k = 0; k < sequence.size(); ++k) {
@@ -111,26 +111,26 @@ std::map<std::string, std::size_t> scans_by_name(const Sequence& sequence, Forma
 }
 
 bool has_right_size(const fs::path& file, Format format, std::size_t points,
-                    PredictionFaults& faults) {
+                    PredictionErrors& errors) {
   if (format != Format::kLabel && format != Format::kLabelByIndex) return true;
   try {
     check_label_size(size_of(file), points, file);
     return true;
-  } catch (const DataError& fault) {
-    faults.report(fault);
+  } catch (const DataError& error) {
+    errors.report(error);
     return false;
   }
 }
 
-Files pair(const PredictionPlace& place, const Sequence& sequence, PredictionFaults& faults) {
+Files pair(const PredictionPlace& place, const Sequence& sequence, PredictionErrors& errors) {
   const auto scans = scans_by_name(sequence, place.format);
   Files files;
   for (const fs::path& file : files_with_extension(place.path, describe(place.format).extension)) {
     const auto scan = scans.find(file.stem().string());
     if (scan == scans.end()) {
-      faults.report(DataError(file, "belongs to no scan of sequence " + sequence.name(),
+      errors.report(DataError(file, "belongs to no scan of sequence " + sequence.name(),
                               "only labels named like its scans"));
-    } else if (has_right_size(file, place.format, sequence.point_count(scan->second), faults)) {
+    } else if (has_right_size(file, place.format, sequence.point_count(scan->second), errors)) {
       files[scan->second] = file;
     }
   }
@@ -142,7 +142,7 @@ std::vector<std::size_t> sample_of(const std::vector<std::size_t>& wanted, const
   for (const std::size_t k : wanted) {
     if (files.contains(k)) sample.push_back(k);
   }
-  // From the middle of the sequence, where motion is likely to be found.
+  // From the middle of the sequence, where motion is most likely.
   if (sample.size() > kScansToGuessFrom) {
     sample.erase(sample.begin(), sample.begin() + static_cast<std::ptrdiff_t>(
                                                       (sample.size() - kScansToGuessFrom) / 2));
@@ -151,8 +151,8 @@ std::vector<std::size_t> sample_of(const std::vector<std::size_t>& wanted, const
   return sample;
 }
 
-RangeGate settle_mask(const Files& files, const Sequence& sequence,
-                      const std::vector<std::size_t>& sample) {
+RangeGate mask_of_sample(const Files& files, const Sequence& sequence,
+                         const std::vector<std::size_t>& sample) {
   std::vector<MaskedScan> scans;
   for (const std::size_t k : sample) {
     scans.push_back(
@@ -161,7 +161,7 @@ RangeGate settle_mask(const Files& files, const Sequence& sequence,
   return find_mask(scans);
 }
 
-/// Whether files hold a network's class numbers in place of label ids.
+/// Returns the id map when the files hold class numbers instead of label ids.
 std::optional<LabelIdMap> guess_id_map(const ScanFiles& labels, const fs::path& folder,
                                        const std::vector<std::size_t>& sample) {
   std::set<std::uint32_t> ids;
@@ -171,7 +171,7 @@ std::optional<LabelIdMap> guess_id_map(const ScanFiles& labels, const fs::path& 
   if (ids.empty() || *ids.rbegin() > 2 || *ids.rbegin() == 0) return std::nullopt;
   if (ids.contains(2)) return kLearningIds;
   throw DataError(folder, "holds no other ids than 0 and 1",
-                  "label ids, or --id-map to say what they mean (0:9,1:251)");
+                  "label ids, or --id-map with their meaning (0:9,1:251)");
 }
 
 std::string id_map_text(const LabelIdMap& map) {
@@ -187,17 +187,16 @@ std::string id_map_text(const LabelIdMap& map) {
 std::unique_ptr<Predictions> open_scan_files(const PredictionPlace& place, const Sequence& sequence,
                                              const std::vector<std::size_t>& wanted,
                                              const PredictionOptions& options,
-                                             PredictionFaults& faults,
+                                             PredictionErrors& errors,
                                              std::vector<std::string>& remarks) {
-  auto labels = std::make_unique<ScanFiles>(sequence, place.format, pair(place, sequence, faults));
+  auto labels = std::make_unique<ScanFiles>(sequence, place.format, pair(place, sequence, errors));
   const std::vector<std::size_t> sample = sample_of(wanted, labels->files());
   if (sample.empty()) return labels;
   if (place.format == Format::kMaskedLabel) {
     const RangeGate mask =
-        options.mask ? *options.mask : settle_mask(labels->files(), sequence, sample);
+        options.mask ? *options.mask : mask_of_sample(labels->files(), sequence, sample);
     labels->set_mask(mask);
-    remarks.push_back("labels are for points " + mask_text(mask) +
-                      " only; all others count as static");
+    remarks.push_back("labels are for points " + mask_text(mask) + " only; all others are static");
   }
   if (options.id_map) {
     labels->set_id_map(*options.id_map);

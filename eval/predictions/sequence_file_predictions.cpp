@@ -34,12 +34,12 @@ class IndexRows : public Predictions {
 };
 
 std::unique_ptr<Predictions> open_rows(const fs::path& file, const Sequence& sequence,
-                                       PredictionFaults& faults) {
+                                       PredictionErrors& errors) {
   std::map<std::size_t, IndicesRow> rows;
   for (IndicesRow& row : read_indices(file)) {
     const auto number = static_cast<std::size_t>(row.stamp_ns);
     if (number == 0 || number > sequence.size()) {
-      faults.report(DataError(file, row.line, fmt::format("is of scan {}", number),
+      errors.report(DataError(file, row.line, fmt::format("is of scan {}", number),
                               fmt::format("scans 1 to {}", sequence.size())));
       continue;
     }
@@ -49,9 +49,9 @@ std::unique_ptr<Predictions> open_rows(const fs::path& file, const Sequence& seq
   return std::make_unique<IndexRows>(sequence, std::move(rows));
 }
 
-/// By exact stamp where the scans have stamps, else in order.
+/// Pairs rows by exact stamp where the scans have stamps, otherwise in order.
 std::unique_ptr<Predictions> open_indices(const fs::path& file, const Sequence& sequence,
-                                          PredictionFaults& faults) {
+                                          PredictionErrors& errors) {
   const std::vector<std::size_t> scans = scans_with_truth(sequence);
   std::vector<IndicesRow> found = read_indices(file);
   std::map<std::int64_t, std::size_t> by_stamp;
@@ -63,7 +63,7 @@ std::unique_ptr<Predictions> open_indices(const fs::path& file, const Sequence& 
   for (std::size_t r = 0; r < found.size(); ++r) {
     const auto stamped = by_stamp.find(found[r].stamp_ns);
     if (!by_stamp.empty() && stamped == by_stamp.end()) {
-      faults.report(DataError(file, found[r].line, fmt::format("has stamp {}", found[r].stamp_ns),
+      errors.report(DataError(file, found[r].line, fmt::format("has stamp {}", found[r].stamp_ns),
                               "that of a labelled scan"));
       continue;
     }
@@ -110,7 +110,7 @@ class CountedScans : public Predictions {
       : file_(std::move(file)), scans_(std::move(scans)) {}
   bool has(std::size_t scan_index) const override { return scans_.contains(scan_index); }
   std::vector<std::uint32_t> read(std::size_t) const override {
-    throw DataError(file_, "holds counts, no labels", "labels for what was asked");
+    throw DataError(file_, "holds counts, no labels", "labels, which this command needs");
   }
   std::optional<Confusion> counts(std::size_t scan_index) const override {
     return scans_.at(scan_index);
@@ -124,7 +124,7 @@ class CountedScans : public Predictions {
 std::unique_ptr<Predictions> open_scores(const fs::path& file, const Sequence& sequence,
                                          DynabloxLevel level) {
   const std::vector<std::size_t> scans = scans_with_truth(sequence);
-  const auto scores = parse_dynablox_scores(read_file(file), level, file);
+  const auto scores = parse_dynablox_counts(read_file(file), level, file);
   check_rows(scores.size(), scans, file);
   std::map<std::size_t, Confusion> counts;
   for (std::size_t i = 0; i < scans.size(); ++i) {
@@ -143,16 +143,16 @@ std::unique_ptr<Predictions> open_scores(const fs::path& file, const Sequence& s
 std::unique_ptr<Predictions> open_sequence_file(const PredictionPlace& place,
                                                 const Sequence& sequence,
                                                 const PredictionOptions& options,
-                                                PredictionFaults& faults) {
+                                                PredictionErrors& errors) {
   switch (place.format) {
     case PredictionFormat::kIndices:
-      return open_indices(place.path, sequence, faults);
+      return open_indices(place.path, sequence, errors);
     case PredictionFormat::kDynabloxClouds:
       return open_clouds(place.path, sequence, options.level);
     case PredictionFormat::kDynabloxScores:
       return open_scores(place.path, sequence, options.level);
     default:
-      return open_rows(place.path, sequence, faults);
+      return open_rows(place.path, sequence, errors);
   }
 }
 

@@ -3,17 +3,17 @@
 #include <memory>
 #include <vector>
 
-#include "eval/predictions/prediction_faults.hpp"
+#include "eval/predictions/prediction_errors.hpp"
 #include "eval/predictions/prediction_place.hpp"
 #include "eval/predictions/predictions.hpp"
 
 namespace mosbench {
 
-/// Predictions of a whole sequence in one file: HMM-MOS's rows, indices.csv, Dynablox's clouds.csv
-/// and scores.csv. Rows of no scan go to `faults`. Throws DataError.
+/// Opens predictions of a whole sequence in one file: HMM-MOS's rows, indices.csv, Dynablox's
+/// clouds.csv and scores.csv. Rows that match no scan go to `errors`. Throws DataError.
 std::unique_ptr<Predictions> open_sequence_file(const PredictionPlace& place,
                                                 const Sequence& sequence,
                                                 const PredictionOptions& options,
-                                                PredictionFaults& faults);
+                                                PredictionErrors& errors);
 
 }  // namespace mosbench

@@ -15,15 +15,16 @@ namespace mosbench {
 /// Whether the split picks scans within sequences.
 bool picks_scans(const Split& split);
 
-/// The split that the protocol's published numbers are over, when the data set has it.
+/// Returns the split that the protocol's published numbers are over; null when the data set lacks
+/// it.
 const Split* benchmark_split(const Protocol& protocol, const std::vector<Split>& splits);
 
-/// The same when it picks scans within sequences (HeLiMOS test), so that a number of a whole
-/// sequence would not be the protocol's.
+/// Returns the same split if it picks scans within sequences (HeLiMOS test): a number over a whole
+/// sequence would then not be the protocol's.
 const Split* benchmark_scans(const Protocol& protocol, const std::vector<Split>& splits);
 
-/// The scans of the sequence at `position` that belong to the split: all of them (nothing), or
-/// those with these stems, none when the sequence is no part of it.
+/// Returns the stems of the sequence at `position` that belong to the split: nullopt for all of
+/// them, an empty set when the sequence is not part of it.
 std::optional<std::set<std::string>> stems_in_split(const Split& split, std::size_t position);
 
 /// {"test": [stems], ...} for the splits that pick scans of the sequence at `position`.

@@ -32,14 +32,14 @@ void check_limits(const RangeGate& limits) {
   }
 }
 
-/// The limits in the number type in which the program compares.
+/// Rounds the limits to the number type in which the protocol's own program compares.
 RangeGate rounded(const RangeGate& limits, Arithmetic arithmetic) {
   if (arithmetic == Arithmetic::kDouble) return limits;
   return {static_cast<double>(static_cast<float>(limits.min_m)),
           static_cast<double>(static_cast<float>(limits.max_m))};
 }
 
-/// What the truth class turns into when the point is out of range.
+/// Returns the truth class of a point that is out of range.
 TruthClass class_out_of_range(RangeRule rule, TruthClass inside) {
   if (rule == RangeRule::kTruthAndPrediction) return TruthClass::kIgnored;
   return inside == TruthClass::kMoving ? TruthClass::kStatic : inside;

@@ -28,7 +28,7 @@ struct Confusion {
   bool operator==(const Confusion&) const = default;
 };
 
-/// What one point counts as.
+/// How one point is counted.
 enum class PointOutcome : std::uint8_t {
   kTruePositive,
   kFalsePositive,
@@ -41,27 +41,29 @@ enum class PointOutcome : std::uint8_t {
 /// Points per PointOutcome.
 using OutcomeCounts = std::array<std::uint64_t, 6>;
 
-/// The same counts without the split of the ignored ones; unknown_ids stays 0.
+/// Adds up the two kinds of ignored points; unknown_ids stays 0.
 Confusion to_confusion(const OutcomeCounts& counts);
 
-/// Counts one scan by the protocol's rules; `truth` and `prediction` are raw labels, one per point.
-/// `points` (sensor frame) may be empty when the protocol has no range rule; `limits` then do not
-/// matter. Throws std::invalid_argument when sizes differ or the limits are no interval.
+/// Counts the points of one scan by the protocol's rules. `truth` and `prediction` are raw labels,
+/// one per point. `points` (sensor frame) may be empty when the protocol has no range rule;
+/// `limits` are then unused. Throws std::invalid_argument when sizes differ or the limits are not
+/// an interval.
 Confusion score_scan(const Protocol& protocol, std::span<const std::uint32_t> truth,
                      std::span<const std::uint32_t> prediction, std::span<const Point> points,
                      const RangeGate& limits);
 
-/// The same with the protocol's default limits.
+/// Counts the points within the protocol's default limits.
 Confusion score_scan(const Protocol& protocol, std::span<const std::uint32_t> truth,
                      std::span<const std::uint32_t> prediction, std::span<const Point> points);
 
-/// The outcome of every point under the rules of `score_scan`, in stored order.
+/// Returns the outcome of every point under the rules of `score_scan`, in stored order.
 std::vector<PointOutcome> point_outcomes(const Protocol& protocol,
                                          std::span<const std::uint32_t> truth,
                                          std::span<const std::uint32_t> prediction,
                                          std::span<const Point> points, const RangeGate& limits);
 
-/// Distance of a point from the sensor as the protocol's own program computes it, metres.
+/// Returns the distance of a point from the sensor in metres, computed in the number type of the
+/// protocol's own program.
 double range_m(const Point& point, Arithmetic arithmetic);
 
 }  // namespace mosbench

@@ -6,7 +6,7 @@
 
 namespace mosbench {
 
-/// {"tp", "fp", "fn", "tn", "ignored"}, as every JSON of the program names counts of points.
+/// Returns {"tp", "fp", "fn", "tn", "ignored"}, the names that every JSON of the program uses.
 nlohmann::ordered_json counts_json(const Confusion& counts);
 
 }  // namespace mosbench

@@ -7,7 +7,7 @@
 
 namespace mosbench {
 
-/// What the truth of a point counts as.
+/// How a point's truth is counted.
 enum class TruthClass : std::uint8_t {
   kIgnored,        ///< not counted at all
   kStatic,         ///< true negative or false positive
@@ -21,14 +21,14 @@ struct IdRange {
   TruthClass becomes;
 };
 
-/// Which class a label id means. Only the lower 16 bits of a label are its id; the upper ones hold
-/// an instance number.
+/// Maps label ids to classes. The lower 16 bits of a label are its id, the upper 16 an instance
+/// number.
 struct IdMap {
-  std::span<const IdRange> ranges;  ///< where two overlap, the later one holds
+  std::span<const IdRange> ranges;  ///< where two overlap, the later one applies
   TruthClass unknown;               ///< class of the ids in no range; they are counted as unknown
 };
 
-/// An IdMap spread out over all 65536 ids, so that one point costs one look-up.
+/// An IdMap expanded to all 65536 ids, so that each point costs one look-up.
 class LabelTable {
  public:
   explicit LabelTable(const IdMap& map);

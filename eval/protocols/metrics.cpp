@@ -49,7 +49,7 @@ double iou_deviation(std::span<const Confusion> scans, double mean) {
   return std::sqrt(squares / defined_scans);
 }
 
-/// Whether the protocol's own program finds anything to divide by.
+/// Whether the denominator of the protocol's own program is not 0.
 bool has_value(const Protocol& protocol, const Confusion& counts) {
   const bool truth_moves = counts.tp + counts.fn > 0;
   return truth_moves || (counts.fp > 0 && protocol.empty_case != EmptyCase::kNanWithoutTruth);
@@ -79,7 +79,7 @@ double published_ratio(const Protocol& protocol, const Confusion& counts) {
   return static_cast<double>(counts.tp) / (static_cast<double>(all) + epsilon);
 }
 
-/// What is left of a scan's value in the file from which the program averages.
+/// Rounds a scan's value as the file does from which the protocol's own program averages.
 double as_in_file(const Protocol& protocol, double value) {
   if (protocol.file_significant_digits == 0) return value;
   return std::stod(fmt::format("{:.{}g}", value, protocol.file_significant_digits));

@@ -9,38 +9,39 @@
 
 namespace mosbench {
 
-/// tp / (tp + fp + fn), 0..1. Nothing when there is neither a moving truth nor prediction point.
+/// Returns tp / (tp + fp + fn), 0..1; nullopt when no point moves, neither in the truth nor in the
+/// prediction.
 std::optional<double> moving_iou(const Confusion& counts);
-/// tp / (tp + fp), 0..1. Nothing when no point is predicted moving.
+/// Returns tp / (tp + fp), 0..1; nullopt when no point is predicted moving.
 std::optional<double> precision(const Confusion& counts);
-/// tp / (tp + fn), 0..1. Nothing when no truth point moves.
+/// Returns tp / (tp + fn), 0..1; nullopt when no truth point moves.
 std::optional<double> recall(const Confusion& counts);
-/// 2 tp / (2 tp + fp + fn), 0..1. Nothing where moving_iou has no value.
+/// Returns 2 tp / (2 tp + fp + fn), 0..1; nullopt where moving_iou is.
 std::optional<double> f1(const Confusion& counts);
 
-/// Several scans as one row of a table. Metrics are fractions 0..1.
+/// Metrics of several scans together. Metrics are fractions 0..1.
 struct Summary {
   /// Aggregated as the protocol says. A mean of scans is taken over the scans that have a value;
-  /// `undefined_scans` tells how many have not. A mean of sequences needs a value of each.
+  /// `undefined_scans` is how many have none. A mean of sequences needs a value of each.
   std::optional<double> iou, precision, recall, f1;
   /// Population standard deviation of the scans' IoU, for protocols that average scans.
   std::optional<double> iou_deviation;
-  /// The moving IoU that the protocol's own program computes, with its arithmetic and its way with
-  /// empty denominators, in percent where that program prints percent; NaN where it gives NaN.
+  /// The moving IoU that the protocol's own program computes, with its arithmetic and its treatment
+  /// of empty denominators, in percent where that program prints percent; NaN where it gives NaN.
   double published_iou = 0.0;
-  std::string published_text;  ///< the same as that program prints it: "89.22", "0.000", "nan"
+  std::string published_text;  ///< as that program prints it: "89.22", "0.000", "nan"
   Confusion pooled;
   std::size_t scans = 0;
-  std::size_t undefined_scans = 0;  ///< scans with neither a moving truth nor prediction point
+  std::size_t undefined_scans = 0;  ///< scans without any moving point, true or predicted
 };
 
-/// One sequence, or all sequences of a split that the protocol pools.
+/// Summarises one sequence, or all sequences of a split that the protocol pools.
 Summary summarize(const Protocol& protocol, std::span<const Confusion> per_scan);
 
-/// The plain mean over sequences (HeLiMOS's "Avg"): metrics are nothing when one sequence has none.
+/// Averages sequences (HeLiMOS's "Avg"): a metric is nullopt when one sequence lacks it.
 Summary mean_of_sequences(const Protocol& protocol, std::span<const Summary> sequences);
 
-/// "62.29 %", "0.623" or "undefined", as the protocol's tables print a fraction.
+/// Returns "62.29 %", "0.623" or "undefined", as the protocol's tables print a fraction.
 std::string format_value(const Protocol& protocol, std::optional<double> value);
 
 }  // namespace mosbench

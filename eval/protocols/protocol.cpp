@@ -15,9 +15,9 @@ constexpr auto kIgnored = TruthClass::kIgnored;
 constexpr auto kStatic = TruthClass::kStatic;
 constexpr auto kMoving = TruthClass::kMoving;
 
-// The learning_map of semantic-kitti-mos.yaml. An id outside it falls to class 0 like the
-// unlabelled points, by way of a zero-filled look-up table; ids from 359 on crash the original
-// program.
+// The learning_map of semantic-kitti-mos.yaml. Ids outside it become class 0, as
+// unlabelled points do, because the look-up table is filled with zeros; ids from 359 on crash the
+// original program.
 constexpr std::array kSemanticKittiIds = {
     IdRange{0, 1, kIgnored},  IdRange{9, 11, kStatic},  IdRange{13, 13, kStatic},
     IdRange{15, 16, kStatic}, IdRange{18, 18, kStatic}, IdRange{20, 20, kStatic},

@@ -8,10 +8,10 @@
 
 namespace mosbench {
 
-/// What a point outside the range limits means.
+/// How a point outside the range limits is counted.
 enum class RangeRule : std::uint8_t {
-  kNone,       ///< there are no limits; the points of a scan are not needed
-  kTruthOnly,  ///< its truth is not moving, yet a moving prediction there is a false positive
+  kNone,               ///< there are no limits; the points' coordinates are not needed
+  kTruthOnly,          ///< its truth becomes static; a moving prediction there is a false positive
   kTruthAndPrediction  ///< it is ignored
 };
 
@@ -27,17 +27,17 @@ struct RangeGate {
   bool operator==(const RangeGate&) const = default;
 };
 
-/// How counts of many scans become one number.
+/// How the counts of many scans are combined into one number.
 enum class Aggregation : std::uint8_t {
   kPooled,          ///< metric of the summed counts of all scans, whatever their sequence
   kMeanOfScans,     ///< mean of the scans' metrics
   kMeanOfSequences  ///< pooled within a sequence; the average is the plain mean of the sequences
 };
 
-/// What the protocol's own program gives where the moving IoU has no value.
+/// What the protocol's own program returns where the moving IoU is 0/0.
 enum class EmptyCase : std::uint8_t {
   kNan,              ///< 0/0
-  kNanWithoutTruth,  ///< NaN as soon as no truth point moves, also with false positives
+  kNanWithoutTruth,  ///< NaN whenever no truth point moves, even with false positives
   kOne,              ///< a perfect score
   kEpsilon           ///< 0: the denominator is enlarged by 1e-15
 };
@@ -45,22 +45,22 @@ enum class EmptyCase : std::uint8_t {
 /// The number type in which the protocol's own program computes.
 enum class Arithmetic : std::uint8_t { kDouble, kFloat };
 
-/// How a fraction 0..1 is printed: as it is or in percent, with so many decimals or significant
-/// digits.
+/// How a fraction 0..1 is printed: as a fraction or in percent, with a number of decimals or of
+/// significant digits.
 struct PrintStyle {
   bool percent = false;
   int digits = 3;
   bool significant = false;
 };
 
-/// The rules of one benchmark. A protocol is a row of data: nothing else in the program asks which
-/// protocol it is dealing with.
+/// The rules of one benchmark. A protocol is a row of data: no other code asks which protocol it
+/// has.
 struct Protocol {
   std::string_view name;
-  std::string_view summary;  ///< what sets it apart, one line
+  std::string_view summary;  ///< how it differs from the others, one line
   std::string_view source;   ///< owner/repository@commit:path of the program it reproduces
   IdMap truth;
-  IdMap prediction;  ///< kMoving is a moving prediction, every other class is none
+  IdMap prediction;  ///< kMoving is a moving prediction, every other class a static one
   RangeRule range_rule;
   RangeGate default_range;
   Arithmetic range_arithmetic;
@@ -68,7 +68,7 @@ struct Protocol {
   EmptyCase empty_case;
   Arithmetic metric_arithmetic;
   PrintStyle print;             ///< of its published tables
-  int file_significant_digits;  ///< of the scans' values its program averages; 0: all digits
+  int file_significant_digits;  ///< of the scan values that its program averages; 0: all digits
   PrintStyle program_print;     ///< of its own program
   std::string_view
       default_split;  ///< of the data set it is published for; empty: all labelled scans
@@ -77,10 +77,10 @@ struct Protocol {
 /// All protocols in the order in which they are listed.
 std::span<const Protocol> protocols();
 
-/// Nothing when no protocol has this name.
+/// Returns null when no protocol has this name.
 const Protocol* find_protocol(std::string_view name);
 
-/// The protocol of this name. Throws UsageError naming the nearest one otherwise.
+/// Returns the protocol of this name. Throws UsageError naming the nearest one if there is none.
 const Protocol& protocol_named(std::string_view name);
 
 }  // namespace mosbench

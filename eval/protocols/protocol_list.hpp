@@ -7,7 +7,7 @@
 
 namespace mosbench {
 
-/// A protocol in words, one cell per column of `mosbench list`.
+/// A protocol in words, one member per line of `mosbench list protocols`.
 struct ProtocolDescription {
   std::string name;
   std::string truth;        ///< "0-1 ignored, 9 static, 251-259 moving, others ignored"

@@ -14,8 +14,8 @@ namespace {
 constexpr int kMargin = 12;
 constexpr int kLine = Picture::kGlyphHeight + 2;
 
-/// Background first, then what is to be seen, in stored order: where both right and wrong points
-/// lie above each other, the picture shows what there is more of.
+/// Whether a point is drawn over the background. Such points are drawn in stored order: where right
+/// and wrong ones overlap, the picture shows the more frequent kind.
 bool stands_out(PointOutcome outcome) {
   return outcome != PointOutcome::kTrueNegative && outcome != PointOutcome::kIgnoredStatic;
 }
@@ -33,7 +33,7 @@ double reach_m(const JudgedScan& scan) {
   return 5.0 * std::max(1.0, std::ceil(*most / 5.0));
 }
 
-/// Between rings: a round number of metres that gives three to eight of them.
+/// Returns a round number of metres that gives three to eight rings.
 double ring_step_m(double range_m) {
   double step_m = 1.0;
   for (const double factor : {2.0, 2.5, 2.0, 2.0, 2.5, 2.0}) {
@@ -88,7 +88,7 @@ class BirdsEye {
     }
   }
 
-  /// Lines of text on a ground of their own; returns its height.
+  /// Draws lines of text on a filled box; returns its height in pixels.
   int draw_box(int x, int y, const std::vector<std::string>& lines, int indent = 0) {
     std::size_t longest = 0;
     for (const std::string& line : lines) longest = std::max(longest, line.size());

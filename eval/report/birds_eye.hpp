@@ -11,12 +11,12 @@ namespace mosbench {
 /// How a scan is drawn from above.
 struct BirdsEyeOptions {
   std::size_t size_pixels = 1000;  ///< width and height
-  double range_m = 0.0;  ///< from the sensor to the edge; 0: what holds 98 % of the points
+  double range_m = 0.0;  ///< from the sensor to the edge; 0: the range of 98 % of the points
   bool dark = false;
   std::vector<std::string> title;  ///< lines in the upper left corner
 };
 
-/// A scan seen from above, the sensor in the middle and looking up: each point in the colour of its
+/// Draws a scan from above, the sensor in the middle and facing up: each point in the colour of its
 /// outcome, false ones on top, with counts of all points, range rings and a scale.
 Picture birds_eye(const JudgedScan& scan, const BirdsEyeOptions& options);
 

@@ -8,7 +8,7 @@
 namespace mosbench {
 namespace {
 
-constexpr int kLevel = 6;  // level 9 takes thrice the time for 1 % less
+constexpr int kLevel = 6;  // level 9 takes three times as long for 1 % less
 
 std::string deflated(std::string_view bytes) {
   uLongf size = compressBound(bytes.size());

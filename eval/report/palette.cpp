@@ -8,7 +8,7 @@
 namespace mosbench {
 namespace {
 
-/// Of "#rrggbb".
+/// Parses "#rrggbb".
 Colour colour_from(const std::string& text) {
   const auto channel = [&text](std::size_t start) {
     std::uint8_t value = 0;

@@ -7,8 +7,8 @@
 
 namespace mosbench {
 
-/// Colours of a light or dark picture, the same as those of the report's page. Those of outcomes
-/// are told apart with any colour vision.
+/// Colours of a light or dark picture, equal to those of the report's page. The colours of outcomes
+/// can be distinguished with any colour vision.
 struct Palette {
   std::array<Colour, 6> outcomes;    ///< by PointOutcome
   std::array<std::string, 6> names;  ///< of the outcomes

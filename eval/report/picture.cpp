@@ -16,7 +16,7 @@ constexpr int kFirstGlyph = 32;
 constexpr int kGlyphs = 95;
 static_assert(sizeof(Colour) == 3);
 
-/// Brightness of the glyphs side by side, without the header of their file.
+/// Brightness of the glyphs in one row, without the header of their file.
 std::string_view glyph_levels() {
   const std::string_view file = glyphs_asset();
   constexpr std::size_t kBytes =

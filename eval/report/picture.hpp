@@ -13,8 +13,8 @@ struct Colour {
   bool operator==(const Colour&) const = default;
 };
 
-/// A picture in memory. Coordinates are pixels from the upper left corner; what lies outside is not
-/// drawn. Edges are smoothed.
+/// A picture in memory. Coordinates are pixels from the upper left corner; what is outside is not
+/// drawn. Edges are antialiased.
 class Picture {
  public:
   static constexpr int kGlyphWidth = 10;
@@ -29,10 +29,10 @@ class Picture {
   void disc(double x, double y, double radius, Colour colour);
   void ring(double x, double y, double radius, Colour colour);
   void rectangle(int x, int y, int width, int height, Colour colour, double opacity = 1.0);
-  /// ASCII with (x, y) its upper left corner; other characters become "?".
+  /// Draws ASCII text with (x, y) as its upper left corner; other characters become "?".
   void text(int x, int y, std::string_view text, Colour colour);
 
-  /// The picture as the bytes of a PNG file.
+  /// Returns the bytes of a PNG file.
   std::string png() const;
 
  private:

@@ -13,19 +13,19 @@ namespace mosbench {
 /// Resolution of positions in a report, metres.
 inline constexpr double kPositionStep_m = 0.01;
 
-/// Whether a position can be drawn: finite, within 327.67 m along each axis, and no empty return at
-/// the sensor's own place.
+/// Whether a point can be drawn: finite, within 327.67 m along each axis, and not a missing return
+/// at the origin.
 bool is_drawable(const Point& point);
 
-/// Positions as multiples of kPositionStep_m: each axis as the difference to the drawable point
-/// before, zigzag-coded in 16 bits; first the low bytes of all x, of all y, of all z, then the high
-/// ones. Neighbours in a scan are neighbours in space, so that most bytes are alike.
+/// Encodes positions as multiples of kPositionStep_m: per axis the difference from the previous
+/// drawable point, zigzag-coded in 16 bits; first the low bytes of all x, of all y, of all z, then
+/// the high ones. Consecutive points are close in space, so most bytes are small and compress well.
 std::string position_planes(std::span<const Point> points);
 
-/// One byte per point: its PointOutcome, plus 8 when it is not drawable.
+/// Encodes one byte per point: its PointOutcome, plus 8 when it is not drawable.
 std::string outcome_plane(std::span<const PointOutcome> outcomes, std::span<const Point> points);
 
-/// Returns four bytes per point, the bits of its float32 score: the lowest bytes of all scores,
+/// Encodes four bytes per point, the bits of its float32 score: the lowest bytes of all scores,
 /// then the next ones. Most are 0.
 std::string score_planes(std::span<const float> scores);
 

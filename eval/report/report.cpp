@@ -17,7 +17,7 @@ using nlohmann::ordered_json;
 
 constexpr std::size_t kBytesAroundBlock = 64;
 
-/// Without "<" no string of the content can close the element that holds it or open another.
+/// Escapes "<", so that no string of the content can close its element or open another.
 std::string script_json(const ordered_json& json) {
   const std::string text = json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
   std::string escaped;
@@ -32,8 +32,8 @@ std::string script_json(const ordered_json& json) {
   return escaped;
 }
 
-/// results/runs/mine/00 of sequence 00 is run "mine"; the folder's own name when it is called
-/// otherwise.
+/// Returns "mine" for results/runs/mine/00 of sequence 00; the folder's own name if it is not named
+/// like its sequence.
 std::string run_name(const FoundResult& result) {
   std::filesystem::path run = std::filesystem::absolute(result.folder / "").lexically_normal();
   run = run.parent_path();

@@ -11,21 +11,21 @@
 namespace mosbench {
 
 struct ReportOptions {
-  std::optional<std::filesystem::path> dataset_root;  ///< else where each run read its scans
+  std::optional<std::filesystem::path> dataset_root;  ///< default: where each run read its scans
   ScanChoice scans{"auto"};
   double max_mb = 25.0;  ///< of the file, 1e6 bytes; scans are left out to stay below
 };
 
-/// A page and what has to be said about it.
+/// A page and remarks about it.
 struct Report {
   std::string html;
   std::size_t results = 0;
-  std::vector<std::string> remarks;  ///< one sentence per sequence of which scans were left out
+  std::vector<std::string> remarks;  ///< a sentence for each sequence with scans left out
 };
 
-/// One self-contained page about the results in and below `inputs`. Equal results and scans give
-/// equal bytes. Throws DataError as find_results and ResultScans do, UsageError when `max_mb` has
-/// no room for the numbers alone.
+/// Builds one self-contained page about the results in and below `inputs`. Equal results and scans
+/// give equal bytes. Throws DataError as find_results and ResultScans do, UsageError when the
+/// numbers alone exceed `max_mb`.
 Report build_report(const std::vector<std::filesystem::path>& inputs, const ReportOptions& options);
 
 }  // namespace mosbench

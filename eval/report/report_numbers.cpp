@@ -5,7 +5,7 @@
 #include "core/base/thread_pool.hpp"
 #include "datasets/files/errors.hpp"
 #include "eval/breakdown/breakdown.hpp"
-#include "eval/statistics/statistics.hpp"
+#include "eval/statistics/statistics_report.hpp"
 #include "eval/tables/score_report.hpp"
 #include "eval/tables/table_print.hpp"
 
@@ -14,9 +14,9 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr std::size_t kListed = 50;  // objects and false positives
+constexpr std::size_t kListed = 50;  // objects, and false positives
 
-/// Every protocol over its own range, the run's over that of the run.
+/// Every protocol with its default range, that of the run with the run's range.
 std::vector<ScoreRule> rules_beside(const ScoreRule& own) {
   std::vector<ScoreRule> rules;
   for (const Protocol& protocol : protocols()) {
@@ -32,8 +32,8 @@ bool is_measured(const FilledTable& table) {
   });
 }
 
-/// Runs of recorded data; none from where the same sequence was run twice the same way, as it is
-/// not told which one a table should hold.
+/// Returns the runs of recorded data; none of a folder that holds the same sequence and run twice,
+/// because it is unclear which of the two a table should show.
 std::vector<ResultSet> recorded_runs(const std::vector<std::filesystem::path>& inputs) {
   std::vector<ResultSet> runs;
   for (const std::filesystem::path& input : inputs) {

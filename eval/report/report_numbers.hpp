@@ -9,18 +9,18 @@
 
 namespace mosbench {
 
-/// Metrics of a result with their intervals, as `mosbench stats` gives them; null without truth.
+/// Returns the metrics of a result with intervals, as `mosbench stats` does; null without truth.
 nlohmann::ordered_json estimates_of(const FoundResult& result);
 
-/// Where the labels are right and wrong, as `mosbench breakdown` tells it; null without truth.
+/// Returns the breakdown of a result, as `mosbench breakdown` does; null without truth.
 nlohmann::ordered_json breakdown_of(const ResultScans& scans);
 
-/// The labels by the rules of every protocol, as `mosbench score --protocol all` puts them side by
-/// side; null without truth.
+/// Returns the summary of a result under every protocol, as `mosbench score --protocol all` does;
+/// null without truth.
 nlohmann::ordered_json protocols_of(const ResultScans& scans);
 
-/// The published tables that have a cell measured by the results below `inputs`; simulated ones
-/// fill none.
+/// Returns the published tables with at least one cell measured by the results below `inputs`;
+/// results on simulated data are not used.
 nlohmann::ordered_json covered_tables(const std::vector<std::filesystem::path>& inputs);
 
 }  // namespace mosbench

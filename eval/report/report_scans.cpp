@@ -37,12 +37,13 @@ struct Cloud {
   bool full = false;
 };
 
-/// Each result's first wish, then each one's second, ...
-std::vector<std::size_t> wishes_in_turn(const std::vector<std::vector<std::size_t>>& wishes) {
+/// Merges lists round robin: the first of each list, then the second of each, ...
+std::vector<std::size_t> merged_round_robin(
+    const std::vector<std::vector<std::size_t>>& wanted_lists) {
   std::vector<std::size_t> merged;
-  const auto most = std::ranges::max(wishes, {}, &std::vector<std::size_t>::size).size();
+  const auto most = std::ranges::max(wanted_lists, {}, &std::vector<std::size_t>::size).size();
   for (std::size_t i = 0; i < most; ++i) {
-    for (const std::vector<std::size_t>& of_result : wishes) {
+    for (const std::vector<std::size_t>& of_result : wanted_lists) {
       if (i >= of_result.size() || std::ranges::count(merged, of_result[i]) > 0) continue;
       merged.push_back(of_result[i]);
     }
@@ -63,11 +64,11 @@ std::vector<Cloud> group_by_frames(const std::vector<FoundResult>& results,
     cloud.members.push_back(i);
   }
   for (Cloud& cloud : clouds) {
-    std::vector<std::vector<std::size_t>> wishes;
+    std::vector<std::vector<std::size_t>> wanted_lists;
     for (const std::size_t i : cloud.members) {
-      wishes.push_back(choice.wanted(results[i].file.rows.scans));
+      wanted_lists.push_back(choice.wanted(results[i].file.rows.scans));
     }
-    cloud.wanted = wishes_in_turn(wishes);
+    cloud.wanted = merged_round_robin(wanted_lists);
   }
   return clouds;
 }
@@ -93,8 +94,8 @@ PackedScan pack(const Cloud& cloud, const std::vector<ResultScans>& sources,
       packed.positions = compressed_text(position_planes(scan.frame.points));
     }
     packed.outcomes.push_back(compressed_text(outcome_plane(scan.outcomes, scan.frame.points)));
-    packed.scores.push_back(
-        sources[member].has_scores() ? compressed_text(score_planes(scan.scores)) : "");
+    packed.scores.push_back(sources[member].has_scores() ? compressed_text(score_planes(scan.scores))
+                                                       : "");
   }
   return packed;
 }

@@ -10,8 +10,8 @@
 
 namespace mosbench {
 
-/// The part of a report that holds points. Results of the same frames share one cloud, so that runs
-/// can be compared point by point and positions are stored once.
+/// The points of a report. Results of the same frames share one cloud, so that runs can be compared
+/// point by point and positions are stored once.
 struct ReportScans {
   nlohmann::ordered_json clouds = nlohmann::ordered_json::array();
   /// Per result its cloud, and per scan of that cloud the block with the outcomes, and the one with
@@ -29,9 +29,9 @@ struct ReportScans {
 /// Throws UsageError when `choice` wants no scan of any result although they have some.
 void check_choice(const std::vector<FoundResult>& results, const ScanChoice& choice);
 
-/// Takes scans in the order in which they are wanted, from all clouds in turn, until the next would
-/// bring the blocks above `max_bytes`; throws UsageError when that leaves none. `sources` are the
-/// scans of `results`, one each.
+/// Takes scans in the order in which they are wanted, from all clouds alternately, until the next
+/// one would exceed `max_bytes`; throws UsageError when that leaves none. `sources` are the scans
+/// of `results`, one each.
 ReportScans choose_report_scans(const std::vector<FoundResult>& results,
                                 const std::vector<ResultScans>& sources, const ScanChoice& choice,
                                 std::size_t max_bytes);

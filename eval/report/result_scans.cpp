@@ -17,7 +17,7 @@ namespace {
 constexpr const char* kResult = "result.json";
 constexpr const char* kLabels = "labels";
 
-/// Calls `read` on the content of result.json; what it misses there becomes a DataError.
+/// Calls `read` on the content of result.json; a missing member becomes a DataError.
 template <typename Read>
 auto from_json(const FoundResult& result, Read&& read) {
   try {
@@ -34,7 +34,7 @@ void check_has_labels(const FoundResult& result) {
   if (!scored && is_there(result.folder / kLabels)) return;
   throw DataError(
       result.folder / kResult,
-      scored ? "is of mosbench score, which keeps no labels beside it" : "has no labels/ beside it",
+      scored ? "is of mosbench score, which keeps no labels next to it" : "has no labels/ next to it",
       "a folder of mosbench run to show points of; of others mosbench report "
       "--scans none shows the numbers");
 }
@@ -50,17 +50,18 @@ Dataset open_dataset_of(const FoundResult& result, std::optional<fs::path> root)
     if (!kind || !root || !is_there(*root)) {
       throw DataError(result.folder / kResult,
                       root ? fmt::format("was made from {}, which is not there", root->string())
-                           : "does not say where its data set lies",
+                           : "does not say where its data set is",
                       "the data set's folder in --data");
     }
     return open_dataset(*root, {kind, {result.name}, told_from_json(recorded)});
   });
 }
 
-/// What is read in another way than the result states; older ones do not record all flags.
+/// Lists how the sequence is read differently from what the result states; older results do not
+/// record all flags.
 std::string read_otherwise(const FoundResult& result, const Sequence& sequence) {
   const auto before = result.file.content.value("reading", nlohmann::ordered_json::object());
-  // The path of a told pose file may be spelt otherwise; the file stamp knows which file it is.
+  // The same pose file may be given by another path; the file stamp identifies it.
   const bool told_poses = result.file.content.at("timing").contains("poses");
   std::string text;
   for (const auto& [what, how] : sequence.reading()) {
@@ -77,7 +78,7 @@ void check_same_scans(const FoundResult& result, const Dataset& dataset) {
   bool same = rows.size() == sequence.size() && rows.size() == result.file.rows.costs.size();
   for (std::size_t k = 0; same && k < rows.size(); ++k) same = rows[k].stem == sequence.stem(k);
   const std::string otherwise = read_otherwise(result, sequence);
-  // The same files give other frames when they are read in another way.
+  // Other reading options give other frames from the same files.
   const auto stamp = otherwise.empty() ? std::optional(file_stamp(sequence)) : std::nullopt;
   if (same && same_input(sequence, stamp, result.file)) return;
   throw DataError(result.folder / kResult,

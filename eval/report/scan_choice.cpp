@@ -32,7 +32,7 @@ std::uint64_t false_points(const ScanRow& row) {
   return row.counts ? row.counts->fp + row.counts->fn : 0;
 }
 
-/// 0, n-1, then the middles of ever shorter gaps.
+/// Returns 0, n-1, then the middles of ever shorter gaps.
 std::vector<std::size_t> spread(std::size_t n) {
   std::vector<std::size_t> order;
   if (n > 0) order.push_back(0);

@@ -8,7 +8,7 @@
 
 namespace mosbench {
 
-/// Which scans of a sequence to show, as the user wrote it: "auto", "all", "none", or a list of
+/// Scans of a sequence to show, as the user wrote them: "auto", "all", "none", or a list of
 /// "K", "A-B", "every:N" and "worst:N", counting from 0.
 class ScanChoice {
  public:
@@ -16,8 +16,8 @@ class ScanChoice {
   explicit ScanChoice(const std::string& text);
 
   bool none() const { return parts_.empty(); }
-  /// Scan indices, the most wanted first, none twice; those behind the sequence's end are left out.
-  /// "auto" wants the worst tenth first, then scans spread evenly and ever more densely.
+  /// Returns scan indices in order of preference without duplicates; those after the sequence's end
+  /// are left out. "auto" prefers the worst tenth, then scans spread evenly and ever more densely.
   std::vector<std::size_t> wanted(const std::vector<ScanRow>& rows) const;
 
  private:
@@ -31,7 +31,8 @@ class ScanChoice {
   std::vector<Part> parts_;
 };
 
-/// Scan indices, most false points (FP + FN) first, equal ones in order; scans without truth last.
+/// Returns scan indices by falling number of false points (FP + FN), equal ones in order; scans
+/// without truth last.
 std::vector<std::size_t> worst_first(const std::vector<ScanRow>& rows);
 
 }  // namespace mosbench

@@ -58,6 +58,14 @@ const Preset& preset_named(std::string_view name) {
                                name, fmt::join(names, ", "), nearest_name(name, names)));
 }
 
+Settings settings_of(const Preset& preset, const MethodKind& method) {
+  Settings settings = method.defaults;
+  for (const PresetValue& value : preset.values) {
+    if (settings.find(value.setting) != nullptr) settings.set(value.setting, value.value);
+  }
+  return settings;
+}
+
 const Preset& default_preset(DatasetKind kind) {
   return *std::ranges::find(presets(), kind, &Preset::kind);
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <mosbench/method.hpp>
 #include <mosbench/settings.hpp>
 #include <span>
 #include <string_view>
@@ -28,6 +29,9 @@ std::span<const Preset> presets();
 
 /// Throws UsageError naming the known presets.
 const Preset& preset_named(std::string_view name);
+
+/// Returns the method's defaults with the preset's values for the settings that the method has.
+Settings settings_of(const Preset& preset, const MethodKind& method);
 
 /// What `mosbench run` takes when the user names none: the online preset of the data set.
 const Preset& default_preset(DatasetKind kind);

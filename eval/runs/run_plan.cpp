@@ -53,10 +53,7 @@ void apply_variant(const std::string& name, const MethodKind& method, Settings& 
 
 Settings choose_settings(const RunOptions& options, const Preset& preset,
                          const MethodKind& method) {
-  Settings settings = method.defaults;
-  for (const PresetValue& value : preset.values) {
-    if (settings.find(value.setting) != nullptr) settings.set(value.setting, value.value);
-  }
+  Settings settings = settings_of(preset, method);
   if (options.config_file) apply_settings_file(*options.config_file, settings);
   if (options.variant) apply_variant(*options.variant, method, settings);
   for (const std::string& assignment : options.assignments) {

@@ -7,15 +7,15 @@
 namespace mosbench {
 namespace {
 
-/// The length with the least error of the variance still underestimates it. Intervals that shall
-/// hold what they promise take longer blocks, at the price of knowing the variance less well, for
-/// which Student's t makes up.
+/// The automatic length minimises the mean squared error of the variance, which it still
+/// underestimates. Blocks twice as long give intervals with the promised coverage; the variance is
+/// then less certain, which Student's t accounts for.
 constexpr double kForCoverage = 2.0;
 
-/// Fewer blocks say nothing of how different they are.
+/// With fewer blocks their variance cannot be estimated.
 constexpr std::size_t kFewestBlocks = 6;
 
-/// Covariances of the series with itself shifted by 0, 1, ... `lags` places.
+/// Autocovariances at lags 0, 1, ... `lags`.
 std::vector<double> autocovariances(std::span<const double> series, std::size_t lags) {
   double mean = 0.0;
   for (const double value : series) mean += value;
@@ -30,7 +30,7 @@ std::vector<double> autocovariances(std::span<const double> series, std::size_t 
   return covariances;
 }
 
-/// The smallest lag behind which `run` correlations in a row are as small as those of noise.
+/// Returns the smallest lag after which `run` correlations in a row are as small as those of noise.
 std::size_t last_correlated_lag(const std::vector<double>& covariances, std::size_t run,
                                 double threshold) {
   std::size_t quiet = 0;

@@ -5,10 +5,10 @@
 
 namespace mosbench {
 
-/// How many neighbouring scans have to be drawn together so that a bootstrap keeps what ties scans
-/// to their neighbours: the automatic choice for the circular block bootstrap from the
-/// autocorrelation of `series` (Politis and White 2004, corrected by Patton, Politis and White
-/// 2009). At least 1, at most a sixth of the series.
+/// Returns how many consecutive scans a bootstrap has to draw together to keep their
+/// autocorrelation: twice the automatic choice for the circular block bootstrap of Politis and
+/// White (2004, corrected by Patton, Politis and White 2009). At least 1, at most a sixth of the
+/// series.
 std::size_t block_length(std::span<const double> series);
 
 }  // namespace mosbench

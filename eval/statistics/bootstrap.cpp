@@ -16,13 +16,13 @@ namespace {
 
 constexpr double kPower = 0.8;
 constexpr double kSignificance = 0.05;
-/// Of the replicates a metric may be undefined in before it gets no interval.
+/// A metric that is undefined in a larger share of the replicates gets no interval.
 constexpr double kUndefinedShare = 0.05;
 
 using Series = std::vector<double>;
 using Sequences = std::span<const SequenceCounts>;
 
-/// By how much a scan moves the IoU: what the autocorrelation has to be taken of.
+/// Influence of each scan on the IoU; its autocorrelation determines the block length.
 Series iou_influence(const Protocol& protocol, const SequenceCounts& scans, double iou) {
   Series series;
   series.reserve(scans.size());
@@ -37,7 +37,7 @@ Series iou_influence(const Protocol& protocol, const SequenceCounts& scans, doub
   return series;
 }
 
-/// One sequence of one run, or of two runs that are drawn together.
+/// One sequence of a run, or of two runs whose scans are drawn together.
 struct Drawn {
   std::vector<RunningSums> runs;
   std::size_t block_scans = 1;
@@ -62,14 +62,15 @@ std::vector<Drawn> prepare(const Protocol& protocol, std::span<const Sequences> 
   return drawn;
 }
 
-/// Draws every sequence once; `sums` gets one list of sums per run.
+/// Draws every sequence once; `sums` receives one list of sums per run.
 void draw(const std::vector<Drawn>& drawn, std::mt19937_64& random,
           std::vector<std::vector<ScanTerms>>& sums) {
   for (std::size_t s = 0; s < drawn.size(); ++s) {
     for (std::vector<ScanTerms>& run : sums) run[s] = {};
     const std::size_t scans = drawn[s].runs.front().scans();
     for (std::size_t done = 0; done < scans; done += drawn[s].block_scans) {
-      // Not std::uniform_int_distribution: what it makes of a seed differs between libraries.
+      // Not std::uniform_int_distribution: its numbers for a seed differ between standard
+      // libraries.
       const std::size_t first = random() % scans;
       const std::size_t count = std::min(drawn[s].block_scans, scans - done);
       for (std::size_t r = 0; r < sums.size(); ++r) {
@@ -79,7 +80,7 @@ void draw(const std::vector<Drawn>& drawn, std::mt19937_64& random,
   }
 }
 
-/// What the bootstrap gives of one number.
+/// Bootstrap distribution of one number.
 struct Distribution {
   Series sorted;
   double standard_error = 0.0;
@@ -100,9 +101,10 @@ std::optional<Distribution> distribution(Series replicates, std::size_t asked) {
       std::sqrt(squares / static_cast<double>(std::max<std::size_t>(1, asked - 1)))};
 }
 
-/// How many standard errors make one end of the interval, where the bootstrap takes its blocks for
-/// all there are. Nothing for fewer than two blocks.
-std::optional<double> reach(const std::vector<Drawn>& drawn, double confidence) {
+/// Half-width of the interval in standard errors, corrected for few blocks: Student's t for their
+/// number, and the bootstrap's variance is too small by (blocks - 1) / blocks. nullopt for fewer
+/// than two blocks.
+std::optional<double> half_width(const std::vector<Drawn>& drawn, double confidence) {
   double blocks = 0.0;
   double freedom = 0.0;
   for (const Drawn& sequence : drawn) {
@@ -121,9 +123,9 @@ Interval interval_of(const Distribution& distribution, double ends) {
           quantile(distribution.sorted, 1.0 - tail, QuantileRule::kInterpolated)};
 }
 
-/// `ends` as of `reach`. What cannot be told stays unset.
-void settle(double value, const std::optional<Distribution>& spread,
-            const std::optional<double>& ends, Estimate& metric) {
+/// Sets what is defined; `ends` is a half_width().
+void set_estimate(double value, const std::optional<Distribution>& spread,
+                  const std::optional<double>& ends, Estimate& metric) {
   if (std::isnan(value)) return;
   metric.value = value;
   if (!ends || !spread) return;
@@ -131,7 +133,7 @@ void settle(double value, const std::optional<Distribution>& spread,
   metric.interval = interval_of(*spread, *ends);
 }
 
-/// `replicate(sums)` per metric for as many draws as asked; undefined ones are left out.
+/// Returns `replicate(sums)` per metric for each draw; undefined values are left out.
 std::array<Series, kMetricNames.size()> replicates(
     const std::vector<Drawn>& drawn, std::size_t runs, const BootstrapOptions& options,
     const std::function<MetricValues(const std::vector<std::vector<ScanTerms>>&)>& replicate) {
@@ -158,7 +160,7 @@ double p_value(const Distribution& distribution, double value, double widening) 
   if (value == 0.0) return 1.0;
   std::size_t beyond = 0;
   for (const double replicate : distribution.sorted) {
-    // Rounding must not tell a replicate from the value it equals.
+    // A replicate that equals the value up to rounding counts as beyond it.
     if (std::abs(replicate - value) * widening >= std::abs(value) * (1.0 - 1e-9)) ++beyond;
   }
   return (1.0 + static_cast<double>(beyond)) /
@@ -181,11 +183,12 @@ Estimates estimate(const Protocol& protocol, Sequences sequences, const Bootstra
   const std::vector<Drawn> drawn = prepare(protocol, runs);
   estimates.block_lengths_scans = block_lengths(drawn);
   const MetricValues values = aggregate(protocol, sequences);
-  const std::optional<double> ends = reach(drawn, options.confidence);
+  const std::optional<double> ends = half_width(drawn, options.confidence);
   const auto series = replicates(
       drawn, 1, options, [&](const auto& sums) { return aggregate_sums(protocol, sums.front()); });
   for (std::size_t m = 0; m < values.size(); ++m) {
-    settle(values[m], distribution(series[m], options.replicates), ends, estimates.metrics[m]);
+    set_estimate(values[m], distribution(series[m], options.replicates), ends,
+                 estimates.metrics[m]);
   }
   return estimates;
 }
@@ -202,8 +205,8 @@ Differences paired_difference(const Protocol& protocol, Sequences first, Sequenc
     return of;
   };
   const MetricValues values = minus(aggregate(protocol, second), aggregate(protocol, first));
-  const std::optional<double> ends = reach(drawn, options.confidence);
-  const std::optional<double> significant = reach(drawn, 1.0 - kSignificance);
+  const std::optional<double> ends = half_width(drawn, options.confidence);
+  const std::optional<double> significant = half_width(drawn, 1.0 - kSignificance);
   const double widening = ends.value_or(0.0) / normal_quantile(0.5 + 0.5 * options.confidence);
   const auto series = replicates(drawn, 2, options, [&](const auto& sums) {
     return minus(aggregate_sums(protocol, sums[1]), aggregate_sums(protocol, sums[0]));
@@ -211,7 +214,7 @@ Differences paired_difference(const Protocol& protocol, Sequences first, Sequenc
   for (std::size_t m = 0; m < values.size(); ++m) {
     Difference& metric = differences.metrics[m];
     const auto spread = distribution(series[m], options.replicates);
-    settle(values[m], spread, ends, metric);
+    set_estimate(values[m], spread, ends, metric);
     if (!metric.interval) continue;
     metric.p_value = p_value(*spread, values[m], widening);
     metric.smallest_detectable = (*significant + normal_quantile(kPower)) * spread->standard_error;

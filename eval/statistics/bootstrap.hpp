@@ -16,18 +16,18 @@ struct Interval {
   bool operator==(const Interval&) const = default;
 };
 
-/// How a bootstrap is drawn. The same options and scans give the same intervals everywhere.
+/// Options of the bootstrap. The same options and scans give the same intervals on every machine.
 struct BootstrapOptions {
   std::size_t replicates = 2000;
   std::uint64_t seed = 1;
   double confidence = 0.95;
 };
 
-/// A metric with what its scans tell about its accuracy.
+/// A metric with its uncertainty.
 struct Estimate {
-  std::optional<double> value;           ///< fraction; nothing where undefined
+  std::optional<double> value;           ///< fraction; nullopt where undefined
   std::optional<double> standard_error;  ///< of the bootstrap
-  std::optional<Interval> interval;  ///< nothing with fewer than two independent blocks of scans
+  std::optional<Interval> interval;  ///< nullopt with fewer than two independent blocks of scans
 };
 
 /// The four metrics of a run, by Metric.
@@ -39,17 +39,17 @@ struct Estimates {
   }
 };
 
-/// Intervals by drawing scans with replacement, each sequence by itself and in circular blocks of
-/// neighbours as long as its autocorrelation asks (see `block_length`). Percentile intervals,
-/// widened for few blocks as Student's t is against the normal distribution (Hesterberg 2015).
+/// Estimates intervals by a circular block bootstrap: scans are drawn with replacement within each
+/// sequence, in blocks of `block_length` consecutive scans. Percentile intervals, widened for few
+/// blocks by the ratio of Student's t to the normal distribution (Hesterberg 2015).
 Estimates estimate(const Protocol& protocol, std::span<const SequenceCounts> sequences,
                    const BootstrapOptions& options = {});
 
 /// One metric of a second run minus that of a first on the same scans.
 struct Difference : Estimate {
   std::optional<double> p_value;  ///< two-sided, of "the runs are equally good"
-  /// The true difference that scans like these would show at 5 % significance with a probability
-  /// of 80 %; for n times the scans divide by the root of n.
+  /// The true difference that as many scans like these show at 5 % significance with 80 %
+  /// probability; with n times the scans it is smaller by the square root of n.
   std::optional<double> smallest_detectable;
 };
 
@@ -61,8 +61,8 @@ struct Differences {
   }
 };
 
-/// The paired difference: both runs are drawn with the same scans. `first` and `second` hold the
-/// same scans in the same order; throws std::invalid_argument otherwise.
+/// Estimates the paired difference: each replicate draws the same scans of both runs. `first` and
+/// `second` hold the same scans in the same order; throws std::invalid_argument otherwise.
 Differences paired_difference(const Protocol& protocol, std::span<const SequenceCounts> first,
                               std::span<const SequenceCounts> second,
                               const BootstrapOptions& options = {});

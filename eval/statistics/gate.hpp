@@ -10,12 +10,12 @@
 
 namespace mosbench {
 
-/// What the gate finds for one sequence, or for all together.
+/// Result of the gate for one sequence, or for all together.
 struct GateCheck {
   std::string name;                       ///< of the sequence, or "all"
   std::optional<double> baseline, newer;  ///< IoU, fractions
   Difference difference;                  ///< newer - baseline
-  double tolerance = 0.0;                 ///< the drop that is let pass, fraction
+  double tolerance = 0.0;                 ///< largest drop that passes, fraction
   bool passed = false;
 };
 
@@ -24,9 +24,9 @@ struct GateResult {
   bool passed() const;
 };
 
-/// Whether the IoU of the second run is lower than that of the first by more than the larger of
-/// `max_drop` (fraction) and what the scans' paired 95 % interval leaves open. A run whose IoU
-/// became undefined did not pass; one that was and is undefined did.
+/// Checks that the IoU of the second run is not lower than that of the first by more than the
+/// larger of `max_drop` (fraction) and the half-width of the paired 95 % interval. A run whose IoU
+/// became undefined fails; one whose IoU was undefined passes.
 GateResult judge(const PairedRuns& paired, const Protocol& protocol, double max_drop);
 
 std::string gate_text(const GateResult& result);

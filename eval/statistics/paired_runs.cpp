@@ -16,12 +16,12 @@ std::string range_text(const RangeGate& range) {
   return fmt::format("{:g} to {:g} m", range.min_m, range.max_m);
 }
 
-/// Null for labels of other programs.
+/// Returns the settings of the method; null for labels of other programs.
 nlohmann::ordered_json parameters_of(const SequenceResult& result) {
   return result.header.value("config", nlohmann::ordered_json());
 }
 
-/// "voxel_size_m: 0.25 -> 0.4, ..." where both runs have parameters; empty when they are equal.
+/// Returns "voxel_size_m: 0.25 -> 0.4, ..."; empty when the parameters are equal or unknown.
 std::string changed_parameters(const SequenceResult& first, const SequenceResult& second) {
   const nlohmann::ordered_json before = parameters_of(first);
   const nlohmann::ordered_json after = parameters_of(second);
@@ -89,7 +89,7 @@ class Pairing {
  private:
   void add_pair(const SequenceResult& sequence, const ScanRow& first, const ScanRow& second) {
     if (!first.truth_hash || !second.truth_hash) {
-      add_unlike(Kind::kInput, sequence, "scan " + first.stem + " does not say what truth it has");
+      add_unlike(Kind::kInput, sequence, "scan " + first.stem + " does not state its truth");
     } else if (first.truth_hash != second.truth_hash) {
       add_unlike(Kind::kInput, sequence, "the truth of scan " + first.stem + " differs");
     }

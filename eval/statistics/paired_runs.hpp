@@ -7,7 +7,7 @@
 
 namespace mosbench {
 
-/// One way in which two runs are not of the same kind.
+/// One respect in which two runs differ besides their labels.
 struct Unlike {
   enum class Kind { kProtocol, kSetting, kScans, kInput };
   Kind kind;
@@ -22,15 +22,14 @@ struct PairedRuns {
     const ScanRow* second;
   };
   std::vector<Scan> scans;                    ///< by sequence, in the order of the first run
-  std::vector<SequenceCounts> first, second;  ///< the same, per sequence
+  std::vector<SequenceCounts> first, second;  ///< their counts, per sequence
   std::vector<Unlike> unlike;                 ///< why a difference may not be due to the labels
 };
 
 /// Pairs by names of sequences and stems of scans. The runs must outlive the result.
 PairedRuns pair_runs(const ResultSet& first, const ResultSet& second);
 
-/// The first `at_most` texts, joined by "; ", and how many more there are;
-/// empty when there is nothing.
+/// Joins the first `at_most` texts by "; " and adds the number of the others; empty for none.
 std::string unlike_text(const std::vector<Unlike>& unlike, std::size_t at_most = 5);
 
 }  // namespace mosbench

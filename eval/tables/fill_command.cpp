@@ -9,51 +9,63 @@
 namespace mosbench {
 namespace {
 
-/// "key=value" for each published setting that the preset has otherwise.
-std::vector<std::string> other_settings(const Preset& preset, const PublishedCell& published) {
+/// Returns "key=value" for each published setting that the preset has otherwise.
+std::vector<std::string> other_settings(const Preset& preset, const MethodKind& method,
+                                        const PublishedCell& published) {
+  const Settings ours = settings_of(preset, method);
   std::vector<std::string> assignments;
-  const auto compare = [&](const char* key, double ours, const std::optional<double>& theirs) {
-    if (theirs && *theirs != ours) assignments.push_back(fmt::format("{}={:g}", key, *theirs));
+  const auto compare = [&](const char* name, const std::optional<double>& theirs) {
+    if (theirs && *theirs != ours.number(name)) {
+      assignments.push_back(fmt::format("{}={:g}", name, *theirs));
+    }
   };
-  compare("voxel_size_m", preset.config.voxel_size_m, published.voxel_size_m);
-  compare("max_range_m", preset.config.max_range_m, published.max_range_m);
-  compare("delay_scans", preset.config.delay_scans, published.delay_scans);
+  compare("voxel_size_m", published.voxel_size_m);
+  compare("max_range_m", published.max_range_m);
+  compare("delay_scans", published.delay_scans);
+  if (published.variant != ours.choice("variant")) {
+    assignments.push_back("variant=" + published.variant);
+  }
   return assignments;
 }
 
-const Preset& nearest_preset(DatasetKind dataset, const PublishedCell& published) {
+const Preset& nearest_preset(DatasetKind dataset, const MethodKind& method,
+                             const PublishedCell& published) {
+  const auto count = [&](const Preset& preset) {
+    return other_settings(preset, method, published).size();
+  };
   const Preset* nearest = &default_preset(dataset);
   for (const Preset& preset : presets()) {
-    if (preset.kind != dataset) continue;
-    const std::size_t count = other_settings(preset, published).size();
-    if (count < other_settings(*nearest, published).size()) nearest = &preset;
+    if (preset.kind == dataset && count(preset) < count(*nearest)) nearest = &preset;
   }
   return *nearest;
 }
 
 std::string run_command(const PaperTable& table, const TableColumn& column,
-                        const PublishedCell& published) {
-  const Preset& preset = nearest_preset(table.dataset, published);
+                        const PublishedCell& published, const MethodKind& method) {
+  const Preset& preset = nearest_preset(table.dataset, method, published);
   std::string command =
       fmt::format("mosbench run DIR --dataset {} --sequences {} --preset {}",
                   to_string(table.dataset), fmt::join(column.sequences, ","), preset.name);
-  if (published.variant != "paper-2024") command += " --variant " + published.variant;
+  if (&method != &methods().front()) command += fmt::format(" --method {}", method.name);
   if (preset.protocol != published.protocol) command += " --protocol " + published.protocol;
-  const std::vector<std::string> assignments = other_settings(preset, published);
+  const std::vector<std::string> assignments = other_settings(preset, method, published);
   if (assignments.empty()) return command;
   return command + fmt::format(" --set {}", fmt::join(assignments, " "));
 }
 
-std::string command_for(const PaperTable& table, const TableColumn& column,
-                        const PublishedCell& published) {
-  if (is_own(published)) {
-    if (published.variant.empty()) return "no variant of this program is that one";
-    return "then: " + run_command(table, column, published);
-  }
-  std::string command = fmt::format("then: mosbench score DIR --dataset {} --predictions LABELS",
-                                    to_string(table.dataset));
+std::string score_command(const PaperTable& table, const PublishedCell& published) {
+  std::string command =
+      fmt::format("mosbench score DIR --dataset {} --predictions LABELS", to_string(table.dataset));
   if (find_protocol(published.protocol) != nullptr) command += " --protocol " + published.protocol;
   return command + " --method " + published.method;
+}
+
+std::string command_for(const PaperTable& table, const TableColumn& column,
+                        const PublishedCell& published) {
+  const MethodKind* method = own_method(published);
+  if (method == nullptr) return "then: " + score_command(table, published);
+  if (published.variant.empty()) return "no variant of this program is that one";
+  return "then: " + run_command(table, column, published, *method);
 }
 
 }  // namespace

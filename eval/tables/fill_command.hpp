@@ -8,8 +8,8 @@
 namespace mosbench {
 
 /// Returns what to download and the command whose results then fill `column` of the row that
-/// `published` belongs to: for HMM-MOS `mosbench run` with the preset of the table's data set that
-/// comes nearest to the published settings, for other methods `mosbench score`.
+/// `published` belongs to: for methods of mosbench `mosbench run` with the preset of the table's
+/// data set that comes nearest to the published settings, for other methods `mosbench score`.
 std::string how_to_fill(const PaperTable& table, const TableColumn& column,
                         const PublishedCell& published);
 

@@ -73,15 +73,15 @@ const PaperTable& paper_table_named(std::string_view name) {
       fmt::format("table: '{}' is not known, expected I, II, III, apollo, moe or mdetector", name));
 }
 
-bool is_about(const TableColumn& column, const std::string& sequence) {
+bool contains(const TableColumn& column, const std::string& sequence) {
   return std::ranges::any_of(column.sequences, [&](std::string_view name) {
     return sequence == name || sequence.starts_with(std::string(name) + '/');
   });
 }
 
-bool is_about(const PaperTable& table, const std::string& sequence) {
+bool contains(const PaperTable& table, const std::string& sequence) {
   return std::ranges::any_of(table.columns,
-                             [&](const TableColumn& column) { return is_about(column, sequence); });
+                             [&](const TableColumn& column) { return contains(column, sequence); });
 }
 
 }  // namespace mosbench

@@ -11,31 +11,31 @@
 
 namespace mosbench {
 
-/// A column of a published table: which sequences it is over and how many labelled scans they have
-/// in the real data set.
+/// A column of a published table: its sequences and their number of labelled scans in the real data
+/// set.
 struct TableColumn {
   std::string_view name;
-  std::vector<std::string_view> sequences;  ///< names, or a folder that holds any number of them
-  std::optional<std::size_t> scans;         ///< under `scans_protocol`, where that is known
+  std::vector<std::string_view> sequences;  ///< names, or folders of several sequences
+  std::optional<std::size_t> scans;         ///< under `scans_protocol`, where known
   std::string_view scans_protocol = "";     ///< empty: under every protocol
 };
 
-/// How a published table is built from result files, and how its empty cells are filled.
+/// How a published table is filled from result files.
 struct PaperTable {
   std::string_view name;
   std::string_view title;
   DatasetKind dataset;
   std::string_view averaging;
   std::vector<TableColumn> columns;
-  std::string_view download;  ///< what to get, and from whom
+  std::string_view download;  ///< what to download, and where
 };
 
 std::span<const PaperTable> paper_tables();
-/// In upper or lower case. Throws UsageError naming all tables.
+/// Ignores case. Throws UsageError naming all tables.
 const PaperTable& paper_table_named(std::string_view name);
 
-/// Whether a number of the sequence belongs in the column, or in any of the table.
-bool is_about(const TableColumn& column, const std::string& sequence);
-bool is_about(const PaperTable& table, const std::string& sequence);
+/// Whether the column, or any column of the table, contains the sequence.
+bool contains(const TableColumn& column, const std::string& sequence);
+bool contains(const PaperTable& table, const std::string& sequence);
 
 }  // namespace mosbench

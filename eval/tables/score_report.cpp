@@ -20,8 +20,8 @@ using nlohmann::ordered_json;
 
 constexpr std::size_t kNamedScans = 5;
 
-std::vector<ScoreRow> table_rows(const Dataset& dataset, const ScoreRule& rule,
-                                 const std::vector<SequenceScores>& scores, bool with_sequences) {
+std::vector<SummaryRow> table_rows(const Dataset& dataset, const ScoreRule& rule,
+                                   const std::vector<SequenceScores>& scores, bool with_sequences) {
   std::vector<ScoredSequence> sequences;
   for (const SequenceScores& sequence : scores) {
     ScoredSequence& scored = sequences.emplace_back();
@@ -30,14 +30,15 @@ std::vector<ScoreRow> table_rows(const Dataset& dataset, const ScoreRule& rule,
       scored.scans.push_back({row.stem, row.counts});
     }
   }
-  std::vector<ScoreRow> rows = score_rows(*rule.protocol, dataset.splits, sequences);
+  std::vector<SummaryRow> rows = summary_rows(*rule.protocol, dataset.splits, sequences);
   if (!with_sequences) {
-    std::erase_if(rows, [](const ScoreRow& row) { return row.kind == ScoreRow::Kind::kSequence; });
+    std::erase_if(rows,
+                  [](const SummaryRow& row) { return row.kind == SummaryRow::Kind::kSequence; });
   }
   return rows;
 }
 
-/// Names the scans without truth, as a label file that got lost would show nowhere else.
+/// Names the scans without truth: a lost label file would show nowhere else.
 std::string truth_remark(const Sequence& sequence) {
   std::string names;
   std::size_t without = 0;
@@ -59,13 +60,13 @@ ordered_json predictions_json(const OpenedPredictions& opened) {
           {"remarks", opened.remarks}};
 }
 
-/// The split whose picked scans alone were scored.
+/// Returns the split that picks scans and to which scoring was limited.
 std::optional<std::string> picked_split(const Dataset& dataset, const ScoreTask& task) {
   if (!task.split || !picks_scans(dataset.splits.front())) return std::nullopt;
   return task.split;
 }
 
-/// The same when the protocol is not over it.
+/// Returns it if it is not the protocol's own split.
 std::optional<std::string> other_split(const Dataset& dataset, const ScoreTask& task) {
   const auto split = picked_split(dataset, task);
   return split == task.rules.front().protocol->default_split ? std::nullopt : split;
@@ -107,7 +108,7 @@ std::string score_text(const Dataset& dataset, const ScoreTask& task,
   const auto split = other_split(dataset, task);
   std::string text =
       fmt::format("protocol {}: {}\n{}{}{}\n{}", rule.protocol->name, rule.protocol->summary,
-                  benchmark_notice(*rule.protocol, dataset.splits),
+                  benchmark_remark(*rule.protocol, dataset.splits),
                   split ? split_caveat(*split) + '\n' : "", simulated_notice(dataset),
                   format_rows(*rule.protocol, table_rows(dataset, rule, scores, with_sequences)));
   text += '\n';

@@ -9,31 +9,31 @@
 
 namespace mosbench {
 
-/// Whose labels were scored, as the user says.
+/// Method whose labels are scored, as named by the user.
 struct MethodName {
   std::string name;
   std::string setting;
 };
 
-/// What was found out about the predictions and what is missing, one line each.
+/// Returns one line for each thing recognised about the predictions and for what is missing.
 std::vector<std::string> score_remarks(const Dataset& dataset,
                                        const std::vector<SequenceScores>& scores);
 
-/// The answer of `mosbench score` with one rule, the first of the task.
+/// Format the answer of `mosbench score` for one rule, the first of the task.
 std::string score_text(const Dataset& dataset, const ScoreTask& task,
                        const std::vector<SequenceScores>& scores, bool with_sequences);
 std::string score_json(const Dataset& dataset, const ScoreTask& task,
                        const std::vector<SequenceScores>& scores, bool with_sequences);
 
-/// The answer of `mosbench score --protocol all`: a row per rule and why it differs.
+/// Format the answer of `mosbench score --protocol all`: a row per rule and why it differs.
 std::string side_by_side_text(const Dataset& dataset, const std::vector<ScoreRule>& rules,
                               const std::vector<SequenceScores>& scores);
 nlohmann::ordered_json side_by_side_json(const Dataset& dataset,
                                          const std::vector<ScoreRule>& rules,
                                          const std::vector<SequenceScores>& scores);
 
-/// Writes <out>/<sequence>/result.json, which `table`, `stats` and `compare` read like those of a
-/// run. Throws DataError.
+/// Writes <out>/<sequence>/result.json, which `table`, `stats` and `compare` read as they read
+/// those of a run. Throws DataError.
 void write_scores(const Dataset& dataset, const ScoreTask& task, const MethodName& method,
                   const std::vector<SequenceScores>& scores, const std::filesystem::path& out);
 

@@ -25,9 +25,9 @@ std::vector<Confusion> counts_of(const ScoredSequence& sequence, const Stems& st
   return counts;
 }
 
-ScoreRow sequence_row(const Protocol& protocol, const ScoredSequence& sequence,
-                      std::size_t position, const Split* benchmark) {
-  ScoreRow row;
+SummaryRow sequence_row(const Protocol& protocol, const ScoredSequence& sequence,
+                        std::size_t position, const Split* benchmark) {
+  SummaryRow row;
   row.name = sequence.name;
   row.method_ms_per_scan = sequence.method_ms_per_scan;
   if (benchmark != nullptr) row.split = benchmark->name;
@@ -50,17 +50,17 @@ std::optional<double> mean_ms(const Split& split, const std::vector<ScoredSequen
 }
 
 void add_split(const Protocol& protocol, const Split& split,
-               const std::vector<ScoredSequence>& sequences, std::vector<ScoreRow>& rows) {
-  ScoreRow whole;
-  whole.kind = ScoreRow::Kind::kSplit;
+               const std::vector<ScoredSequence>& sequences, std::vector<SummaryRow>& rows) {
+  SummaryRow whole;
+  whole.kind = SummaryRow::Kind::kSplit;
   whole.name = split.name;
   whole.method_ms_per_scan = mean_ms(split, sequences);
   std::vector<Confusion> pooled;
   std::vector<Summary> summaries;
   for (const SplitPart& part : split.parts) {
     const ScoredSequence& sequence = sequences[part.sequence];
-    ScoreRow row;
-    row.kind = ScoreRow::Kind::kPart;
+    SummaryRow row;
+    row.kind = SummaryRow::Kind::kPart;
     row.name = sequence.name + " " + split.name;
     const std::vector<Confusion> counts = counts_of(sequence, part.stems, row.scans);
     row.summary = summarize(protocol, counts);
@@ -77,12 +77,12 @@ void add_split(const Protocol& protocol, const Split& split,
 
 std::string count_text(std::uint64_t count) { return fmt::format("{}", count); }
 
-std::string row_title(const ScoreRow& row) {
-  if (row.kind == ScoreRow::Kind::kSplit) return "split " + row.name;
+std::string row_title(const SummaryRow& row) {
+  if (row.kind == SummaryRow::Kind::kSplit) return "split " + row.name;
   return row.split.empty() ? row.name : fmt::format("{} ({} scans)", row.name, row.split);
 }
 
-std::vector<std::string> cells(const Protocol& protocol, const ScoreRow& row, bool with_ms) {
+std::vector<std::string> cells(const Protocol& protocol, const SummaryRow& row, bool with_ms) {
   const Summary& summary = row.summary;
   std::vector<std::string> cells = {row_title(row), count_text(row.scans),
                                     count_text(summary.scans)};
@@ -105,9 +105,9 @@ std::vector<std::string> cells(const Protocol& protocol, const ScoreRow& row, bo
 
 }  // namespace
 
-std::vector<ScoreRow> score_rows(const Protocol& protocol, const std::vector<Split>& splits,
-                                 const std::vector<ScoredSequence>& sequences) {
-  std::vector<ScoreRow> rows;
+std::vector<SummaryRow> summary_rows(const Protocol& protocol, const std::vector<Split>& splits,
+                                     const std::vector<ScoredSequence>& sequences) {
+  std::vector<SummaryRow> rows;
   const Split* benchmark = benchmark_scans(protocol, splits);
   for (std::size_t i = 0; i < sequences.size(); ++i) {
     rows.push_back(sequence_row(protocol, sequences[i], i, benchmark));
@@ -116,9 +116,9 @@ std::vector<ScoreRow> score_rows(const Protocol& protocol, const std::vector<Spl
   return rows;
 }
 
-std::string format_rows(const Protocol& protocol, const std::vector<ScoreRow>& rows) {
+std::string format_rows(const Protocol& protocol, const std::vector<SummaryRow>& rows) {
   const bool with_ms = std::ranges::any_of(
-      rows, [](const ScoreRow& row) { return row.method_ms_per_scan.has_value(); });
+      rows, [](const SummaryRow& row) { return row.method_ms_per_scan.has_value(); });
   std::vector<TextTable::Column> columns = {{"sequence", TextTable::Align::kLeft}};
   for (const char* title : {"scans", "labelled", "IoU", "precision", "recall", "F1", "TP", "FP",
                             "FN", "as published"}) {
@@ -127,15 +127,15 @@ std::string format_rows(const Protocol& protocol, const std::vector<ScoreRow>& r
   if (with_ms) columns.push_back({"ms/scan"});
   TextTable table(std::move(columns));
   bool ruled = false;
-  for (const ScoreRow& row : rows) {
-    if (row.kind != ScoreRow::Kind::kSequence && !ruled) table.add_rule();
-    ruled = ruled || row.kind != ScoreRow::Kind::kSequence;
+  for (const SummaryRow& row : rows) {
+    if (row.kind != SummaryRow::Kind::kSequence && !ruled) table.add_rule();
+    ruled = ruled || row.kind != SummaryRow::Kind::kSequence;
     table.add_row(cells(protocol, row, with_ms));
   }
   return table.str();
 }
 
-std::string benchmark_notice(const Protocol& protocol, const std::vector<Split>& splits) {
+std::string benchmark_remark(const Protocol& protocol, const std::vector<Split>& splits) {
   if (protocol.default_split.empty()) return "";
   if (benchmark_split(protocol, splits) != nullptr) {
     return fmt::format("the benchmark's number is that of split {}\n", protocol.default_split);
@@ -145,12 +145,12 @@ std::string benchmark_notice(const Protocol& protocol, const std::vector<Split>&
       protocol.default_split);
 }
 
-nlohmann::ordered_json rows_json(const std::vector<ScoreRow>& rows) {
+nlohmann::ordered_json rows_json(const std::vector<SummaryRow>& rows) {
   nlohmann::ordered_json json = {{"sequences", nlohmann::ordered_json::array()},
                                  {"parts", nlohmann::ordered_json::array()},
                                  {"splits", nlohmann::ordered_json::array()}};
   constexpr std::array kLists = {"sequences", "parts", "splits"};
-  for (const ScoreRow& row : rows) {
+  for (const SummaryRow& row : rows) {
     nlohmann::ordered_json object = {{"name", row.name}, {"scans", row.scans}};
     if (!row.split.empty()) object["split"] = row.split;
     object["summary"] = row.summary.scans == 0 ? nullptr : to_json(row.summary);

@@ -12,19 +12,19 @@
 
 namespace mosbench {
 
-/// Counts of one sequence, wherever its labels came from.
+/// Counts of one sequence, of a run or of scored predictions.
 struct ScoredSequence {
   struct Scan {
     std::string stem;
-    std::optional<Confusion> counts;  ///< nothing without truth
+    std::optional<Confusion> counts;  ///< nullopt without truth
   };
   std::string name;
   std::vector<Scan> scans;
   std::optional<double> method_ms_per_scan;
 };
 
-/// A sequence, the part of a sequence that belongs to a split, or a whole split.
-struct ScoreRow {
+/// Row for a sequence, for the part of a sequence that belongs to a split, or for a whole split.
+struct SummaryRow {
   enum class Kind { kSequence, kPart, kSplit };
   Kind kind = Kind::kSequence;
   std::string name;
@@ -34,20 +34,20 @@ struct ScoreRow {
   std::optional<double> method_ms_per_scan;
 };
 
-/// A row per sequence, then per split a row for each part that does not cover its sequence and one
-/// that aggregates the parts as the protocol says. `sequences` as in the data set, one each. Where
-/// the protocol's split picks scans, the sequences' rows are over those scans and say so.
-std::vector<ScoreRow> score_rows(const Protocol& protocol, const std::vector<Split>& splits,
-                                 const std::vector<ScoredSequence>& sequences);
+/// Returns a row per sequence, then per split a row for each part that does not cover its sequence
+/// and one that aggregates the parts as the protocol says. `sequences` are in the data set's order.
+/// Where the protocol's split picks scans, the rows of sequences are over those scans and say so.
+std::vector<SummaryRow> summary_rows(const Protocol& protocol, const std::vector<Split>& splits,
+                                     const std::vector<ScoredSequence>& sequences);
 
-/// The table that `run` and `score` print; the column of milliseconds only when a row has some.
-std::string format_rows(const Protocol& protocol, const std::vector<ScoreRow>& rows);
+/// Formats the table of `run` and `score`, with a column of milliseconds if a row has some.
+std::string format_rows(const Protocol& protocol, const std::vector<SummaryRow>& rows);
 
-/// The line that says which row holds the number of the benchmark, or that none does; empty when
-/// the protocol knows no split.
-std::string benchmark_notice(const Protocol& protocol, const std::vector<Split>& splits);
+/// Returns a line that names the row with the benchmark's number, or says that none has it; empty
+/// when the protocol has no split.
+std::string benchmark_remark(const Protocol& protocol, const std::vector<Split>& splits);
 
 /// {"sequences": [...], "parts": [...], "splits": [...]}, undefined metrics as null.
-nlohmann::ordered_json rows_json(const std::vector<ScoreRow>& rows);
+nlohmann::ordered_json rows_json(const std::vector<SummaryRow>& rows);
 
 }  // namespace mosbench

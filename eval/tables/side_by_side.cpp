@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// One protocol's number for all scored scans.
+/// Summary of all scored scans under one protocol.
 struct ProtocolRow {
   std::string name;
   Summary summary;

@@ -14,17 +14,17 @@ namespace {
 ResultSet in_column(const ResultSet& run, const TableColumn& column) {
   ResultSet part{run.path, {}};
   for (const SequenceResult& sequence : run.sequences) {
-    if (is_about(column, sequence.sequence)) part.sequences.push_back(sequence);
+    if (contains(column, sequence.sequence)) part.sequences.push_back(sequence);
   }
   return part;
 }
 
-/// What of the column's scans the run does not hold.
+/// Lists what the run lacks of the column's scans.
 std::vector<std::string> gaps(const ResultSet& part, const TableColumn& column) {
   std::vector<std::string> gaps;
   for (const std::string_view name : column.sequences) {
     const bool there = std::ranges::any_of(part.sequences, [&](const SequenceResult& result) {
-      return is_about({.name = "", .sequences = {name}, .scans = {}}, result.sequence);
+      return contains({.name = "", .sequences = {name}, .scans = {}}, result.sequence);
     });
     if (!there) gaps.push_back(fmt::format("sequence {} is missing", name));
   }
@@ -40,7 +40,7 @@ std::vector<std::string> gaps(const ResultSet& part, const TableColumn& column) 
   return gaps;
 }
 
-/// Half of the last digit that was printed, as a fraction.
+/// Half a unit of the last printed digit, as a fraction.
 double rounding(const PublishedCell& cell) {
   const std::size_t point = cell.iou_percent.find('.');
   const std::size_t digits = point == std::string::npos ? 0 : cell.iou_percent.size() - point - 1;
@@ -58,7 +58,7 @@ Verdict judge(const TableCell& cell) {
   return within ? Verdict::kWithin : Verdict::kOutside;
 }
 
-/// The published cell of a row's column.
+/// Finds the published cell of a column.
 std::optional<PublishedCell> find_cell(const PublishedRow& row, std::string_view column) {
   const auto found = std::ranges::find(row.cells, column, &PublishedCell::column);
   if (found == row.cells.end()) return std::nullopt;
@@ -100,7 +100,8 @@ TableRow published_row(const PaperTable& table, const PublishedRow& row) {
     TableCell cell;
     cell.column = column.name;
     cell.published = find_cell(row, column.name);
-    if (is_own(first)) cell.reasons = {how_to_fill(table, column, cell.published.value_or(first))};
+    if (own_method(first) != nullptr)
+      cell.reasons = {how_to_fill(table, column, cell.published.value_or(first))};
     filled.cells.push_back(std::move(cell));
   }
   return filled;
@@ -125,7 +126,7 @@ TableRow measured_row(const PaperTable& table, const ResultSet& run, const Publi
 
 bool has_values(const PaperTable& table, const ResultSet& run) {
   return std::ranges::any_of(run.sequences, [&](const SequenceResult& sequence) {
-    return is_about(table, sequence.sequence);
+    return contains(table, sequence.sequence);
   });
 }
 
@@ -151,19 +152,19 @@ FilledTable fill_table(const PaperTable& table, const std::vector<PublishedCell>
                        const std::vector<ResultSet>& runs) {
   FilledTable filled{&table, {}};
   const std::vector<PublishedRow> rows = published_rows(table, published);
-  std::vector<std::vector<ResultSet>> beside(rows.size());
-  std::vector<ResultSet> alone;
+  std::vector<std::vector<ResultSet>> of_row(rows.size());
+  std::vector<ResultSet> unmatched;
   for (ResultSet& run : with_splits(table, runs)) {
     if (!has_values(table, run)) continue;
     const auto nearest = nearest_row(run, rows);
-    (nearest ? beside[*nearest] : alone).push_back(std::move(run));
+    (nearest ? of_row[*nearest] : unmatched).push_back(std::move(run));
   }
   for (std::size_t r = 0; r < rows.size(); ++r) {
-    if (beside[r].empty()) filled.rows.push_back(published_row(table, rows[r]));
-    for (const ResultSet& run : beside[r])
+    if (of_row[r].empty()) filled.rows.push_back(published_row(table, rows[r]));
+    for (const ResultSet& run : of_row[r])
       filled.rows.push_back(measured_row(table, run, &rows[r]));
   }
-  for (const ResultSet& run : alone) filled.rows.push_back(measured_row(table, run, nullptr));
+  for (const ResultSet& run : unmatched) filled.rows.push_back(measured_row(table, run, nullptr));
   return filled;
 }
 
@@ -174,8 +175,8 @@ std::vector<std::string> left_out(const PaperTable& table, const std::vector<Res
       std::string why;
       if (sequence.dataset != to_string(table.dataset)) {
         why = fmt::format("is of data set {}, not {}", sequence.dataset, to_string(table.dataset));
-      } else if (!is_about(table, sequence.sequence)) {
-        why = fmt::format("is of sequence {}, which no column is about", sequence.sequence);
+      } else if (!contains(table, sequence.sequence)) {
+        why = fmt::format("is of sequence {}, which is in no column", sequence.sequence);
       }
       if (why.empty()) continue;
       sentences.push_back(

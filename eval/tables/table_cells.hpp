@@ -11,13 +11,13 @@
 
 namespace mosbench {
 
-/// How a measured value stands to the published one.
+/// How a measured value compares with the published one.
 enum class Verdict {
   kPublishedOnly,  ///< nothing was measured
   kMeasuredOnly,   ///< nothing was published
   kWithin,         ///< the published value lies in the interval, up to its rounding
   kOutside,
-  kNotComparable  ///< the two are of different things; `reasons` says which
+  kNotComparable  ///< they differ in what `reasons` lists
 };
 std::string_view to_string(Verdict verdict);
 
@@ -31,7 +31,7 @@ struct TableCell {
   std::vector<std::string> reasons;    ///< why not comparable, or what to download and run
 };
 
-/// A method with its setting; `results` names the folder when something was measured.
+/// One method and setting; `results` is the folder of the measured results.
 struct TableRow {
   std::string section, method, setting, protocol, source, results;
   std::vector<TableCell> cells;  ///< one per column of the table
@@ -42,13 +42,13 @@ struct FilledTable {
   std::vector<TableRow> rows;
 };
 
-/// The published rows, each run beside the row of its method that it comes nearest to in variant,
-/// voxel size, range, delay and protocol; runs of methods without published row stand by themselves
-/// at the end. A HeLiMOS run over all labelled scans gives the numbers of the test split, too.
+/// Fills the published rows: each run goes to the row of its method that is nearest in variant,
+/// voxel size, range, delay and protocol; runs of methods without a published row follow at the
+/// end. A HeLiMOS run over all labelled scans also gives the numbers of the test split.
 FilledTable fill_table(const PaperTable& table, const std::vector<PublishedCell>& published,
                        const std::vector<ResultSet>& runs);
 
-/// A sentence on each result that no cell of the table is about.
+/// Returns a sentence for each result that belongs in no cell of the table.
 std::vector<std::string> left_out(const PaperTable& table, const std::vector<ResultSet>& runs);
 
 }  // namespace mosbench

@@ -9,8 +9,6 @@
 namespace mosbench {
 namespace {
 
-constexpr std::string_view kOwn = "HMM-MOS";
-
 void differ(const char* what, double measured, const std::optional<double>& published,
             std::vector<std::string>& reasons) {
   if (published && measured != *published) {
@@ -53,12 +51,15 @@ std::vector<PublishedRow> published_rows(const PaperTable& table,
   return rows;
 }
 
-bool is_own(const PublishedCell& cell) { return cell.method == kOwn; }
+const MethodKind* own_method(const PublishedCell& cell) {
+  const auto found = std::ranges::find(methods(), cell.method, &MethodKind::title);
+  return found == methods().end() ? nullptr : &*found;
+}
 
 std::vector<std::string> mismatches(const ResultSet& run, const PublishedCell& cell) {
   const SequenceResult& first = run.front();
   std::vector<std::string> reasons;
-  if (is_own(cell)) {
+  if (own_method(cell) != nullptr) {
     own_mismatches(first.header, cell, reasons);
   } else if (lower_case(first.setting) != lower_case(cell.setting)) {
     reasons.push_back(fmt::format("setting '{}', published '{}'", first.setting, cell.setting));
@@ -97,7 +98,7 @@ std::vector<ResultSet> with_splits(const PaperTable& table, const std::vector<Re
     ResultSet& test = sets.emplace_back(run);
     std::erase_if(test.sequences,
                   [](const SequenceResult& sequence) { return !sequence.splits.contains("test"); });
-    // Both protocols count a scan alike; only the scans differ.
+    // Both protocols count a scan in the same way; only the set of scans differs.
     for (SequenceResult& sequence : test.sequences) {
       sequence.protocol = &protocol_named("helimos-test");
       sequence.only_split.reset();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <mosbench/method.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,22 +16,22 @@ struct PublishedRow {
   std::vector<PublishedCell> cells;  ///< at least one
 };
 
-/// The rows of a table in the order in which they were published.
+/// Returns the rows of a table in the order of publication.
 std::vector<PublishedRow> published_rows(const PaperTable& table,
                                          const std::vector<PublishedCell>& published);
 
-/// Whether the row is of the method that `mosbench run` implements.
-bool is_own(const PublishedCell& cell);
+/// Returns the method of `mosbench run` that the row is of; null for other programs.
+const MethodKind* own_method(const PublishedCell& cell);
 
-/// In what the run differs from how the published number came about: variant, voxel size, range,
-/// delay, setting in words, protocol.
+/// Lists how the run differs from the published one: variant, voxel size, range, delay, setting in
+/// words, protocol.
 std::vector<std::string> mismatches(const ResultSet& run, const PublishedCell& cell);
 
-/// The row of the run's method with the fewest mismatches; the first of equals.
+/// Returns the row of the run's method with the fewest mismatches; the first of equal ones.
 std::optional<std::size_t> nearest_row(const ResultSet& run, const std::vector<PublishedRow>& rows);
 
-/// The runs of the table's data set, and for each HeLiMOS run over all labelled scans the same
-/// labels counted over the test split.
+/// Returns the runs of the table's data set and, for each HeLiMOS run over all labelled scans, the
+/// same labels counted over the test split.
 std::vector<ResultSet> with_splits(const PaperTable& table, const std::vector<ResultSet>& runs);
 
 }  // namespace mosbench

@@ -17,7 +17,7 @@ bool is_measured(const TableCell& cell) {
   return cell.verdict != Verdict::kPublishedOnly && cell.measured;
 }
 
-/// Everything but the reasons.
+/// Formats a cell without its reasons.
 std::string cell_text(const TableCell& cell) {
   const std::string published = cell.published ? cell.published->iou_percent : "";
   if (!is_measured(cell)) return published.empty() ? "-" : published;
@@ -35,7 +35,7 @@ std::string joined(const std::vector<std::string>& texts, const char* between) {
   return fmt::format("{}", fmt::join(texts, between));
 }
 
-/// Numbered texts, each once.
+/// Numbered footnotes without duplicates.
 class Notes {
  public:
   std::string mark(const std::vector<std::string>& reasons) {

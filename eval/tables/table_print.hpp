@@ -7,12 +7,12 @@
 
 namespace mosbench {
 
-/// A row per method; where something was measured, the cell reads
-/// "published / measured (difference) [95 % interval] verdict". Reasons follow as notes.
+/// Formats a row per method; a measured cell reads "published / measured (difference) [95 %
+/// interval] verdict". Reasons follow as notes.
 std::string table_markdown(const FilledTable& table);
-/// A tabular of the same cells without reasons.
+/// Formats a tabular of the same cells without reasons.
 std::string table_latex(const FilledTable& table);
-/// A line per cell with everything known of it.
+/// Formats a line per cell with all of its members.
 std::string table_csv(const FilledTable& table);
 /// {"table", "title", "averaging", "columns": [...], "rows": [{..., "cells": [...]}]}; fractions.
 nlohmann::ordered_json to_json(const FilledTable& table);

@@ -110,7 +110,7 @@ inline void predictions(std::string_view bytes) {
       }
       return;
     case 's':
-      for (const DynabloxScore& score : parse_dynablox_scores(text, DynabloxLevel::kPoint, "f")) {
+      for (const DynabloxCounts& score : parse_dynablox_counts(text, DynabloxLevel::kPoint, "f")) {
         require(score.counts.points() == score.total_points);
       }
       return;

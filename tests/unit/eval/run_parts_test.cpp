@@ -103,21 +103,21 @@ const std::vector<ScoredSequence> kTwoSequences = {
 
 TEST(ScoreRows, PoolASplitOverItsSequences) {
   const Split split{"test", {{0, std::nullopt}, {1, std::nullopt}}};
-  const auto rows = score_rows(protocol_named("sipailou"), {split}, kTwoSequences);
+  const auto rows = summary_rows(protocol_named("sipailou"), {split}, kTwoSequences);
   ASSERT_EQ(rows.size(), 3U);
   EXPECT_DOUBLE_EQ(rows[0].summary.iou.value(), 4.0 / 6.0);
   EXPECT_EQ(rows[0].scans, 3U);
   EXPECT_EQ(rows[0].summary.scans, 2U);
-  EXPECT_EQ(rows[2].kind, ScoreRow::Kind::kSplit);
+  EXPECT_EQ(rows[2].kind, SummaryRow::Kind::kSplit);
   EXPECT_DOUBLE_EQ(rows[2].summary.iou.value(), 94.0 / 106.0);
   EXPECT_DOUBLE_EQ(rows[2].method_ms_per_scan.value(), 15.0);
 }
 
 TEST(ScoreRows, AverageSensorsWhereTheProtocolDoes) {
   const Split split{"test", {{0, std::set<std::string>{"2"}}, {1, std::nullopt}}};
-  const auto rows = score_rows(protocol_named("helimos-test"), {split}, kTwoSequences);
+  const auto rows = summary_rows(protocol_named("helimos-test"), {split}, kTwoSequences);
   ASSERT_EQ(rows.size(), 4U);
-  EXPECT_EQ(rows[2].kind, ScoreRow::Kind::kPart);
+  EXPECT_EQ(rows[2].kind, SummaryRow::Kind::kPart);
   EXPECT_DOUBLE_EQ(rows[2].summary.iou.value(), 0.75);
   EXPECT_DOUBLE_EQ(rows[0].summary.iou.value(), 0.75) << "of the scans of the split";
   EXPECT_EQ(rows[0].split, "test");
@@ -127,24 +127,24 @@ TEST(ScoreRows, AverageSensorsWhereTheProtocolDoes) {
 TEST(ScoreRows, CoverWholeSequencesWhereTheSplitPicksNone) {
   const Split whole{"test", {{0, std::nullopt}}};
   const Split picked{"test", {{0, std::set<std::string>{"2"}}}};
-  EXPECT_EQ(score_rows(protocol_named("helimos-test"), {whole}, kTwoSequences)[0].split, "");
-  EXPECT_EQ(score_rows(protocol_named("helimos-all"), {picked}, kTwoSequences)[0].split, "");
-  const auto rows = score_rows(protocol_named("helimos-test"), {picked}, kTwoSequences);
+  EXPECT_EQ(summary_rows(protocol_named("helimos-test"), {whole}, kTwoSequences)[0].split, "");
+  EXPECT_EQ(summary_rows(protocol_named("helimos-all"), {picked}, kTwoSequences)[0].split, "");
+  const auto rows = summary_rows(protocol_named("helimos-test"), {picked}, kTwoSequences);
   EXPECT_EQ(rows[1].scans, 0U) << "sequence b has no scan in the split";
 }
 
 TEST(BenchmarkNotice, SaysWhichRowHoldsTheNumberOrThatNoneDoes) {
   const Split split{"test", {{0, std::nullopt}}};
-  EXPECT_EQ(benchmark_notice(protocol_named("sipailou"), {split}),
+  EXPECT_EQ(benchmark_remark(protocol_named("sipailou"), {split}),
             "the benchmark's number is that of split test\n");
-  EXPECT_THAT(benchmark_notice(protocol_named("sipailou"), {}),
+  EXPECT_THAT(benchmark_remark(protocol_named("sipailou"), {}),
               testing::StartsWith("no row is the benchmark's number"));
-  EXPECT_EQ(benchmark_notice(protocol_named("helimos-all"), {}), "");
+  EXPECT_EQ(benchmark_remark(protocol_named("helimos-all"), {}), "");
 }
 
 TEST(ScoreRows, WithoutTruthShowNoNumber) {
   const auto rows =
-      score_rows(protocol_named("sipailou"), {}, {{"a", {{"0", std::nullopt}}, std::nullopt}});
+      summary_rows(protocol_named("sipailou"), {}, {{"a", {{"0", std::nullopt}}, std::nullopt}});
   EXPECT_NE(format_rows(protocol_named("sipailou"), rows).find("no truth"), std::string::npos);
   EXPECT_TRUE(rows_json(rows).at("sequences").at(0).at("summary").is_null());
 }

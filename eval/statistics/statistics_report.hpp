@@ -9,9 +9,9 @@
 
 namespace mosbench {
 
-/// One run with its uncertainty: each sequence by itself, and all as the protocol aggregates them.
+/// Metrics of a run with intervals: each sequence alone, and all as the protocol aggregates them.
 struct RunStatistics {
-  std::vector<Estimates> sequences;  ///< as in the set
+  std::vector<Estimates> sequences;  ///< in the order of the set
   Estimates all;
 };
 
@@ -19,20 +19,20 @@ RunStatistics run_statistics(const ResultSet& set);
 
 /// {"iou": {"value", "standard_error", "low", "high"}, ...}, undefined as null.
 nlohmann::ordered_json to_json(const Estimates& estimates);
-/// The same with "p_value" and "smallest_detectable".
+/// Adds "p_value" and "smallest_detectable" to the same members.
 nlohmann::ordered_json to_json(const Differences& differences);
 
-/// Who predicted, by what rules it was scored, and whether the input is simulated.
+/// Returns method, protocol, range, data set and whether the input is simulated.
 nlohmann::ordered_json provenance_json(const ResultSet& set);
 
-/// Provenance, the estimates of each sequence and of all; with `per_scan` also the scans' counts
-/// and metrics.
+/// Returns provenance and the estimates of each sequence and of all; with `per_scan` also counts and
+/// metrics of each scan.
 nlohmann::ordered_json statistics_json(const ResultSet& set, bool per_scan);
-/// A row per counted scan: sequence, scan, points, counts and metrics; empty cells where undefined.
+/// Formats a row per counted scan: sequence, scan, points, counts and metrics; undefined ones empty.
 std::string scan_table_csv(const ResultSet& set);
 std::string statistics_text(const ResultSet& set);
 
-/// The second run minus the first.
+/// Describes the second run minus the first.
 nlohmann::ordered_json difference_json(const ResultSet& first, const ResultSet& second,
                                        const PairedRuns& paired);
 std::string difference_text(const ResultSet& first, const ResultSet& second,

@@ -1,4 +1,4 @@
-#include "eval/statistics/statistics.hpp"
+#include "eval/statistics/statistics_report.hpp"
 
 #include <fmt/format.h>
 
@@ -178,7 +178,7 @@ std::string statistics_text(const ResultSet& set) {
   table.add_rule();
   table.add_row(estimate_cells("all", scans, statistics.all));
   return fmt::format(
-      "{}\n\n{}\n95 % intervals by bootstrap over blocks of that many neighbouring scans\n",
+      "{}\n\n{}\n95 % intervals by bootstrap; block: how many consecutive scans are drawn together\n",
       headline(set), table.str());
 }
 
@@ -213,9 +213,8 @@ std::string difference_text(const ResultSet& first, const ResultSet& second,
                                  headline(second), paired.scans.size());
   if (!paired.unlike.empty()) text += "; " + unlike_text(paired.unlike);
   return text + "\n\n" + table.str() +
-         "\nin percentage points; detectable: the true difference that as many scans like these\n"
-         "show at 5 % significance with a probability of 80 %, and n times as many divided by\n"
-         "the root of n\n";
+         "\nin percentage points; detectable: the true difference that as many scans like these show\n"
+         "at 5 % significance with 80 % probability; n times as many scans divide it by sqrt(n)\n";
 }
 
 }  // namespace mosbench
