@@ -4,12 +4,12 @@
 # and built with: a browser, node and the packages of eval/report/page/package-lock.json. Does nothing,
 # quickly, when all are there.
 # MOSBENCH_WITH_PCL=OFF leaves out PCL, which brings some 400 packages,
-# MOSBENCH_WITH_ROSBAG=OFF the 40 or so of ROS's bag library.
+# MOSBENCH_WITH_ROSBAG=OFF the 40 or so of ROS's bag library, which only writing bags needs.
 set -euo pipefail
 
 packages=(g++ cmake ninja-build pkg-config git xz-utils jq bsdextrautils python3
   libeigen3-dev libfmt-dev nlohmann-json3-dev libcli11-dev libxxhash-dev
-  zlib1g-dev libpng-dev libboost-dev
+  zlib1g-dev libpng-dev libbz2-dev liblz4-dev libboost-dev
   libgtest-dev libgmock-dev libbenchmark-dev)
 [ "${MOSBENCH_WITH_PCL:-ON}" = OFF ] || packages+=(libpcl-dev)
 [ "${MOSBENCH_WITH_ROSBAG:-ON}" = OFF ] || packages+=(librosbag-storage-dev)

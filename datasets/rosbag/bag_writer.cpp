@@ -13,7 +13,7 @@
 namespace mosbench {
 namespace {
 
-/// What a bag tells of a type beside its name; definitions without comments have the same sum.
+/// How a bag describes a message type. MD5 sums ignore the comments of a definition.
 struct MessageType {
   std::string_view name;
   const char* md5;
@@ -44,7 +44,7 @@ constexpr std::array<MessageType, 2> kTypes = {
 #undef MOSBENCH_HEADER
 #undef MOSBENCH_RULE
 
-/// A message whose bytes are there already.
+/// A message that is already serialized.
 struct SerializedMessage {
   std::string_view bytes;
   const MessageType* type = nullptr;
@@ -104,7 +104,7 @@ struct Serializer<mosbench::SerializedMessage> {
 namespace mosbench {
 namespace {
 
-/// The library throws its own exceptions and those of the plugin loader behind it.
+/// Turns the exceptions of the library and of its plugin loader into DataError.
 template <typename Call>
 void checked(const std::filesystem::path& file, Call&& call) {
   try {
@@ -116,6 +116,8 @@ void checked(const std::filesystem::path& file, Call&& call) {
 }
 
 }  // namespace
+
+bool writes_bags() { return true; }
 
 BagWriter::BagWriter(std::filesystem::path file, const std::string& compression)
     : file_(std::move(file)), partial_(file_), bag_(std::make_unique<rosbag::Bag>()) {
@@ -136,7 +138,7 @@ void BagWriter::write(const std::string& topic, std::int64_t stamp_ns, std::stri
   const auto known = std::ranges::find(kTypes, type, &MessageType::name);
   const SerializedMessage serialized{message, &*known};
   ros::Time time;
-  // The time of recording, which the library wants above 0; that of the message is its own.
+  // This is the time of recording, which the library wants above 0; the message has its own stamp.
   time.fromNSec(static_cast<std::uint64_t>(std::max<std::int64_t>(stamp_ns, 1)));
   checked(file_, [&] { bag_->write(topic, time, serialized); });
 }

@@ -1,5 +1,4 @@
 #include "datasets/files/errors.hpp"
-#include "datasets/rosbag/bag_compression.hpp"
 #include "datasets/rosbag/bag_writer.hpp"
 
 namespace rosbag {
@@ -7,25 +6,13 @@ class Bag {};
 }  // namespace rosbag
 
 namespace mosbench {
-namespace {
 
-[[noreturn]] void refuse(const std::filesystem::path& file, const char* what) {
-  throw DataError(file, what,
-                  "a build with it (install librosbag-storage-dev, configure with "
-                  "-DMOSBENCH_WITH_ROSBAG=ON)");
-}
-
-}  // namespace
-
-bool has_rosbag() { return false; }
-
-std::string decompress_chunk(std::string_view, std::string_view, std::uint32_t,
-                             const std::filesystem::path& file) {
-  refuse(file, "is compressed, which this build without ROS's bag library does not read");
-}
+bool writes_bags() { return false; }
 
 BagWriter::BagWriter(std::filesystem::path file, const std::string&) {
-  refuse(file, "cannot be written by this build without ROS's bag library");
+  throw DataError(file, "this build writes no bags",
+                  "a build with librosbag_storage (install librosbag-storage-dev, configure with "
+                  "-DMOSBENCH_WITH_ROSBAG=ON)");
 }
 BagWriter::~BagWriter() = default;
 void BagWriter::write(const std::string&, std::int64_t, std::string_view, std::string_view) {}

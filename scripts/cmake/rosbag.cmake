@@ -19,7 +19,7 @@ foreach(library rosbag_storage roslz4 bz2 rostime roscpp_serialization cpp_commo
   if(NOT MOSBENCH_LIB_${library} OR NOT MOSBENCH_DIR_OF_rosbag_bag_h)
     message(FATAL_ERROR "ROS's bag library is not complete (${library}): install the Debian package "
             "librosbag-storage-dev, or configure with -DMOSBENCH_WITH_ROSBAG=OFF, "
-            "which reads uncompressed bags only and writes none")
+            "which reads bags but writes none")
   endif()
   target_link_libraries(mosbench_ros INTERFACE ${MOSBENCH_LIB_${library}})
 endforeach()

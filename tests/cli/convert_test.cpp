@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "datasets/layouts/dataset.hpp"
-#include "datasets/rosbag/bag_compression.hpp"
+#include "datasets/rosbag/bag_writer.hpp"
 #include "datasets/rosbag/bag_file.hpp"
 #include "tests/cli/program.hpp"
 #include "tests/cli/small_sequence.hpp"
@@ -69,7 +69,7 @@ class Convert : public testing::Test {
 };
 
 TEST_F(Convert, MakesABagOfSeveralChunksThatReadsAndScoresAsTheExportedScans) {
-  if (!has_rosbag()) GTEST_SKIP() << "this build is without librosbag_storage";
+  if (!writes_bags()) GTEST_SKIP() << "this build is without librosbag_storage";
   const std::string exported = simulate("doals");
   const nlohmann::json expected = scores(exported, "out");
   ASSERT_GT(expected.dump().size(), 20U);
@@ -109,7 +109,7 @@ TEST_F(Convert, TurnsEveryLayoutIntoEveryOther) {
 }
 
 TEST_F(Convert, MakesABagOfScansWithoutStamps) {
-  if (!has_rosbag()) GTEST_SKIP() << "this build is without librosbag_storage";
+  if (!writes_bags()) GTEST_SKIP() << "this build is without librosbag_storage";
   cli::write_small_sequence(folder_ / "room", 3);
   const cli::Answer answer = convert((folder_ / "room").string(), "doals-bag", "bags");
   ASSERT_EQ(answer.exit_code, 0) << answer.err;

@@ -1,5 +1,7 @@
+#include <bzlib.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <lz4frame.h>
 
 #include <functional>
 #include <string>
@@ -191,11 +193,58 @@ TEST_F(Bag, RefusesWhatIsDamaged) {
 }
 
 TEST_F(Bag, RefusesAChunkThatIsNotCompressedAsItSays) {
-  if (!has_rosbag()) GTEST_SKIP() << "this build is without librosbag_storage";
   for (const char* compression : {"bz2", "lz4"}) {
     BagBytes bag = good_bag();
     bag.compression = compression;
     EXPECT_THAT(error_of(bag), HasSubstr("a chunk is damaged")) << compression;
+  }
+}
+
+/// A text of 26 times 4000 bytes, so that the compressors have several blocks to write.
+std::string long_text() {
+  std::string text;
+  for (char letter = 'a'; letter <= 'z'; ++letter) text.append(4000, letter);
+  return text;
+}
+
+std::string compressed_bz2(std::string text) {
+  std::string packed(text.size() + 1000, '\0');
+  auto size_bytes = static_cast<unsigned>(packed.size());
+  EXPECT_EQ(BZ2_bzBuffToBuffCompress(packed.data(), &size_bytes, text.data(),
+                                     static_cast<unsigned>(text.size()), 9, 0, 0),
+            BZ_OK);
+  packed.resize(size_bytes);
+  return packed;
+}
+
+std::string compressed_lz4(const std::string& text) {
+  LZ4F_preferences_t preferences{};
+  preferences.frameInfo.contentChecksumFlag = LZ4F_contentChecksumEnabled;
+  std::string packed(LZ4F_compressFrameBound(text.size(), &preferences), '\0');
+  const std::size_t size_bytes = LZ4F_compressFrame(packed.data(), packed.size(), text.data(),
+                                                    text.size(), &preferences);
+  EXPECT_FALSE(LZ4F_isError(size_bytes));
+  packed.resize(size_bytes);
+  return packed;
+}
+
+TEST(BagChunk, IsDecompressedToExactlyTheBytesThatWentIn) {
+  const std::string text = long_text();
+  for (const char* compression : {"bz2", "lz4"}) {
+    const std::string packed =
+        std::string_view(compression) == "bz2" ? compressed_bz2(text) : compressed_lz4(text);
+    ASSERT_LT(packed.size(), text.size() / 10) << compression;
+    const auto decompress = [&](const std::string& bytes, std::size_t size_bytes) {
+      return decompress_chunk(compression, bytes, static_cast<std::uint32_t>(size_bytes), "f.bag");
+    };
+    EXPECT_EQ(decompress(packed, text.size()), text) << compression;
+    EXPECT_THROW(decompress(packed, text.size() - 1), DataError) << compression;
+    EXPECT_THROW(decompress(packed, text.size() + 1), DataError) << compression;
+    EXPECT_THROW(decompress(packed.substr(0, packed.size() - 1), text.size()), DataError);
+    EXPECT_THROW(decompress("", text.size()), DataError) << compression;
+    std::string spoilt = packed;
+    spoilt[spoilt.size() / 2] = static_cast<char>(spoilt[spoilt.size() / 2] ^ 1);
+    EXPECT_THROW(decompress(spoilt, text.size()), DataError) << compression;
   }
 }
 
@@ -251,7 +300,7 @@ TEST_F(Bag, FindsFieldsAtAnyOffsetAndOfAnyType) {
 }
 
 TEST_F(Bag, WrittenByTheLibraryGivesBackWhatWentIn) {
-  if (!has_rosbag()) GTEST_SKIP() << "this build is without librosbag_storage";
+  if (!writes_bags()) GTEST_SKIP() << "this build is without librosbag_storage";
   for (const char* compression : {"none", "lz4", "bz2"}) {
     const auto file = folder_ / (std::string(compression) + ".bag");
     BagWriter writer(file, compression);
