@@ -1,5 +1,6 @@
 #include "datasets/files/files.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -81,6 +82,27 @@ std::string read_file(const std::filesystem::path& file) {
   }
   check_reading(in.get(), file);
   bytes.resize(used);
+  return bytes;
+}
+
+std::string read_head(const std::filesystem::path& file, std::string_view last_line) {
+  constexpr std::size_t kStepBytes = 4096;
+  const OpenFile in = open_to_read(file);
+  std::string start_of_last(1, '\n');
+  start_of_last += last_line;
+  std::string bytes;
+  std::size_t searched = 0;
+  while (true) {
+    const std::size_t used = bytes.size();
+    bytes.resize(used + kStepBytes);
+    bytes.resize(used + std::fread(bytes.data() + used, 1, kStepBytes, in.get()));
+    const std::size_t last = bytes.find(start_of_last, searched);
+    const bool has_last = last != bytes.npos && bytes.find('\n', last + 1) != bytes.npos;
+    if (has_last || bytes.size() < used + kStepBytes) break;
+    // The line may lie across two steps.
+    searched = std::min(last, bytes.size() - std::min(bytes.size(), start_of_last.size()));
+  }
+  check_reading(in.get(), file);
   return bytes;
 }
 

@@ -14,6 +14,9 @@ bool is_there(const std::filesystem::path& path);
 
 /// All bytes of a file; throws DataError when it cannot be read to its end.
 std::string read_file(const std::filesystem::path& file);
+/// Reads the start of a file to the end of the first line that begins with `last_line`, or some
+/// bytes further; the whole file when there is no such line. Throws as `read_file`.
+std::string read_head(const std::filesystem::path& file, std::string_view last_line);
 /// Fills `bytes` with a file that is exactly that long; throws DataError when it cannot be read, or
 /// is longer or shorter (as one that changed since `size_of` told).
 void read_file(const std::filesystem::path& file, std::span<std::byte> bytes);

@@ -1,31 +1,35 @@
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <mosbench/scan.hpp>
+#include <optional>
 #include <vector>
 
 #include "datasets/files/pcd_header.hpp"
+#include "datasets/files/pcl_reader.hpp"
 
 namespace mosbench {
 
-/// Whether this build reads .pcd scans (MOSBENCH_WITH_PCL).
-bool reads_pcd();
+/// A .pcd scan whose points may have labels.
+struct PcdScan {
+  std::vector<Point> points;
+  std::optional<std::vector<std::uint32_t>> labels;  ///< one per point, of the field "label"
+};
 
-/// A .pcd scan read through PCL: fields x, y, z, and intensity (0 when there is none); all other
-/// fields are left aside. Throws DataError for what PCL cannot read, and always in a build without
-/// PCL (MOSBENCH_WITH_PCL=OFF).
-std::vector<Point> read_pcd(const std::filesystem::path& file);
-
-/// What the header of a .pcd scan tells, the file checked; throws as `read_pcd`.
+/// Reads the header alone, and checks it against the size of the file. Throws DataError, in a build
+/// without PCL (MOSBENCH_WITH_PCL=OFF) always.
 PcdHeader read_pcd_header(const std::filesystem::path& file);
 
-/// Whether each point has a field "label", and its values; throw as `read_pcd`.
-bool pcd_has_labels(const std::filesystem::path& file);
-std::vector<std::uint32_t> read_pcd_labels(const std::filesystem::path& file);
+/// Reads a .pcd scan once, unpacked by PCL: fields x, y, z, intensity (0 when there is none) and
+/// label; all other fields are ignored. Throws DataError for what PCL cannot read and for labels
+/// that are no whole numbers of 32 bits, and as `read_pcd_header`.
+PcdScan read_pcd_scan(const std::filesystem::path& file);
 
-/// Points of a .pcd scan by its header, the file checked; throws as `read_pcd`.
-std::size_t pcd_point_count(const std::filesystem::path& file);
+/// The points alone; throws as `read_pcd_scan`.
+std::vector<Point> read_pcd(const std::filesystem::path& file);
+
+/// The labels alone; throws as `read_pcd_scan`, and when the points have no field "label".
+std::vector<std::uint32_t> read_pcd_labels(const std::filesystem::path& file);
 
 }  // namespace mosbench

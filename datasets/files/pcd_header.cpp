@@ -20,9 +20,9 @@ namespace {
 constexpr std::uint64_t kMostPoints = 1ULL << 31;
 constexpr std::uint64_t kMostValues = 1ULL << 16;  // bytes of a point, numbers of a line
 
-class PcdCheck {
+class PcdHeaderParser {
  public:
-  PcdCheck(std::string_view bytes, const std::filesystem::path& file)
+  PcdHeaderParser(std::string_view bytes, const std::filesystem::path& file)
       : bytes_(bytes), file_(file) {}
 
   PcdHeader run() {
@@ -31,11 +31,11 @@ class PcdCheck {
     const std::uint64_t width = number_of("WIDTH", kMostPoints);
     const std::uint64_t height = number_of("HEIGHT", kMostPoints);
     const std::uint64_t points = number_of("POINTS", kMostPoints);
-    if (width * height != points) fail("POINTS is not WIDTH * HEIGHT", "as many");
+    if (width * height != points) fail("POINTS is not WIDTH * HEIGHT", "their product");
     header_.points = static_cast<std::size_t>(points);
     header_.has_labels = std::ranges::find(lines_["FIELDS"], "label") != lines_["FIELDS"].end();
     if (lines_.contains("VIEWPOINT")) header_.viewpoint = viewpoint();
-    check_body(words_of("DATA", 1).front());
+    header_.storage = storage();
     return header_;
   }
 
@@ -44,7 +44,7 @@ class PcdCheck {
     throw DataError(file_, wrong, expected);
   }
 
-  /// Takes lines up to and with DATA, which ends the header.
+  /// Reads lines up to and with DATA, which ends the header.
   void read_lines() {
     std::size_t at = 0;
     while (at < bytes_.size()) {
@@ -80,7 +80,7 @@ class PcdCheck {
     return as_number(words_of(key, 1).front(), largest);
   }
 
-  /// tx ty tz qw qx qy qz.
+  /// Reads tx ty tz qw qx qy qz.
   Pose viewpoint() const {
     const auto& words = words_of("VIEWPOINT", 7);
     std::array<double, 7> numbers{};
@@ -113,73 +113,91 @@ class PcdCheck {
         fail("field " + quoted(fields->second[i]) + " has no type of PCD",
              "F of 4 or 8, I or U of 1, 2, 4 or 8 bytes, COUNT from 1");
       }
-      point_bytes_ += size_bytes * repeats;
-      point_values_ += repeats;
+      header_.point_bytes += size_bytes * repeats;
+      header_.point_values += repeats;
     }
-    if (point_bytes_ > kMostValues) fail("has points of too many bytes", "at most 65536");
+    if (header_.point_bytes > kMostValues) fail("has points of too many bytes", "at most 65536");
   }
 
-  void check_body(std::string_view kind) const {
-    const std::string_view body = bytes_.substr(header_.body_offset_bytes);
-    const std::uint64_t wanted_bytes = header_.points * point_bytes_;
-    if (kind == "ascii") {
-      check_ascii(body);
-    } else if (kind == "binary") {
-      if (body.size() < wanted_bytes) fail_short(body.size(), wanted_bytes);
-    } else if (kind == "binary_compressed") {
-      check_compressed(body, wanted_bytes);
-    } else {
-      fail("DATA " + quoted(kind), "ascii, binary or binary_compressed");
-    }
-  }
-
-  [[noreturn]] void fail_short(std::size_t bytes, std::uint64_t wanted_bytes) const {
-    fail(std::to_string(bytes) + " bytes behind the header",
-         std::to_string(wanted_bytes) + " for its " + std::to_string(header_.points) + " points");
-  }
-
-  void check_compressed(std::string_view body, std::uint64_t wanted_bytes) const {
-    std::uint32_t sizes[2] = {0, 0};  // compressed, uncompressed
-    if (body.size() < sizeof(sizes)) fail_short(body.size(), sizeof(sizes));
-    std::memcpy(sizes, body.data(), sizeof(sizes));
-    if (body.size() - sizeof(sizes) < sizes[0]) fail_short(body.size(), sizeof(sizes) + sizes[0]);
-    if (sizes[1] != wanted_bytes) fail_short(sizes[1], wanted_bytes);
-  }
-
-  void check_ascii(std::string_view body) const {
-    std::size_t rows = 0;
-    for (const TextLine& line : split_lines(body, file_)) {
-      const auto words = split_at_blanks(line.text);
-      if (words.size() != point_values_) {
-        fail("point " + std::to_string(rows) + " has " + std::to_string(words.size()) + " values",
-             std::to_string(point_values_));
-      }
-      for (const std::string_view word : words) {
-        double ignored = 0.0;  // nan is a number here
-        const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), ignored);
-        if (error != std::errc{} || end != word.data() + word.size()) {
-          fail("point " + std::to_string(rows) + ": " + quoted(word) + " is no number", "numbers");
-        }
-      }
-      ++rows;
-    }
-    if (rows != header_.points) {
-      fail(std::to_string(rows) + " rows of points", std::to_string(header_.points));
-    }
+  PcdStorage storage() const {
+    const std::string_view kind = words_of("DATA", 1).front();
+    if (kind == "ascii") return PcdStorage::kAscii;
+    if (kind == "binary") return PcdStorage::kBinary;
+    if (kind == "binary_compressed") return PcdStorage::kCompressed;
+    fail("DATA " + quoted(kind), "ascii, binary or binary_compressed");
   }
 
   std::string_view bytes_;
   const std::filesystem::path& file_;
   std::map<std::string_view, std::vector<std::string_view>> lines_;
   PcdHeader header_;
-  std::uint64_t point_bytes_ = 0;
-  std::uint64_t point_values_ = 0;
 };
+
+void check_body_size(const PcdHeader& header, std::uintmax_t body_bytes,
+                     std::uintmax_t wanted_bytes, const std::filesystem::path& file) {
+  if (body_bytes >= wanted_bytes) return;
+  throw DataError(
+      file, std::to_string(body_bytes) + " bytes behind the header",
+      std::to_string(wanted_bytes) + " for its " + std::to_string(header.points) + " points");
+}
+
+void check_compressed(const PcdHeader& header, std::string_view body,
+                      const std::filesystem::path& file) {
+  std::array<std::uint32_t, 2> sizes_bytes{};  // compressed, uncompressed
+  check_body_size(header, body.size(), sizeof(sizes_bytes), file);
+  std::memcpy(sizes_bytes.data(), body.data(), sizeof(sizes_bytes));
+  check_body_size(header, body.size(), sizeof(sizes_bytes) + sizes_bytes[0], file);
+  const std::uintmax_t wanted_bytes = header.points * header.point_bytes;
+  if (sizes_bytes[1] == wanted_bytes) return;
+  throw DataError(file, std::to_string(sizes_bytes[1]) + " bytes of compressed points",
+                  std::to_string(wanted_bytes) + " for its " + std::to_string(header.points));
+}
+
+bool is_number(std::string_view word) {
+  double ignored = 0.0;  // "nan" is a number here
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), ignored);
+  return error == std::errc{} && end == word.data() + word.size();
+}
+
+void check_ascii(const PcdHeader& header, std::string_view body,
+                 const std::filesystem::path& file) {
+  std::size_t rows = 0;
+  for (const TextLine& line : split_lines(body, file)) {
+    const auto words = split_at_blanks(line.text);
+    const std::string point = "point " + std::to_string(rows++);
+    if (words.size() != header.point_values) {
+      throw DataError(file, point + " has " + std::to_string(words.size()) + " values",
+                      std::to_string(header.point_values));
+    }
+    const auto wrong = std::ranges::find_if_not(words, is_number);
+    if (wrong != words.end()) {
+      throw DataError(file, point + ": " + quoted(*wrong) + " is no number", "numbers");
+    }
+  }
+  if (rows != header.points) {
+    throw DataError(file, std::to_string(rows) + " rows of points", std::to_string(header.points));
+  }
+}
 
 }  // namespace
 
-PcdHeader check_pcd(std::string_view bytes, const std::filesystem::path& file) {
-  return PcdCheck(bytes, file).run();
+PcdHeader parse_pcd_header(std::string_view bytes, const std::filesystem::path& file) {
+  return PcdHeaderParser(bytes, file).run();
+}
+
+void check_pcd_size(const PcdHeader& header, std::uintmax_t file_bytes,
+                    const std::filesystem::path& file) {
+  if (header.storage != PcdStorage::kBinary) return;
+  check_body_size(header, file_bytes - std::min<std::uintmax_t>(file_bytes, header.body_offset_bytes),
+                  std::uintmax_t{header.points} * header.point_bytes, file);
+}
+
+void check_pcd_body(const PcdHeader& header, std::string_view bytes,
+                    const std::filesystem::path& file) {
+  const std::string_view body = bytes.substr(header.body_offset_bytes);
+  if (header.storage == PcdStorage::kAscii) check_ascii(header, body, file);
+  if (header.storage == PcdStorage::kBinary) check_pcd_size(header, bytes.size(), file);
+  if (header.storage == PcdStorage::kCompressed) check_compressed(header, body, file);
 }
 
 }  // namespace mosbench

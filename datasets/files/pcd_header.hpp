@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <mosbench/scan.hpp>
 #include <optional>
@@ -8,17 +9,33 @@
 
 namespace mosbench {
 
+/// How the points behind the header of a PCD file are stored.
+enum class PcdStorage : std::uint8_t { kAscii, kBinary, kCompressed };
+
 /// What the header of a PCD file says of its points.
 struct PcdHeader {
   std::size_t points = 0;
+  std::size_t point_bytes = 0;        ///< of one point, all fields
+  std::size_t point_values = 0;       ///< numbers of one point, all fields
   std::size_t body_offset_bytes = 0;  ///< where the line after DATA starts
-  bool has_labels = false;            ///< there is a field "label"
-  std::optional<Pose> viewpoint;      ///< of the sensor, when the header tells
+  PcdStorage storage = PcdStorage::kAscii;
+  bool has_labels = false;        ///< there is a field "label"
+  std::optional<Pose> viewpoint;  ///< map_from_sensor, when the header has one
 };
 
-/// Checks a whole PCD file: every line of the header that is needed, and that the data behind it
-/// are all there. PCL's own reader crashes on files without a header and takes text for zeros, so
-/// no file goes to it unchecked. Throws DataError.
-PcdHeader check_pcd(std::string_view bytes, const std::filesystem::path& file);
+/// Parses the header of a PCD file from `bytes`, which reach at least to the end of the line DATA.
+/// Throws DataError for a missing or wrong line.
+PcdHeader parse_pcd_header(std::string_view bytes, const std::filesystem::path& file);
+
+/// Throws DataError when a file of this size is too short for the points of a binary body; the
+/// other bodies' sizes are not known from the header.
+void check_pcd_size(const PcdHeader& header, std::uintmax_t file_bytes,
+                    const std::filesystem::path& file);
+
+/// Checks that all points of `header` are behind it in `bytes`, the whole file. PCL's own reader
+/// crashes on files without a header and reads text as zeros, so it only gets checked files.
+/// Throws DataError.
+void check_pcd_body(const PcdHeader& header, std::string_view bytes,
+                    const std::filesystem::path& file);
 
 }  // namespace mosbench

@@ -2,28 +2,25 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
+
+#include "datasets/files/point_records.hpp"
 
 namespace mosbench {
 
-/// A point cloud as it lies in a file: records of `point_step_bytes` with fields at offsets.
-struct RawCloud {
-  struct Field {
-    std::string name;
-    std::uint32_t offset_bytes = 0;
-    std::uint8_t datatype =
-        0;  ///< 1 to 8: int8, uint8, int16, uint16, int32, uint32, float32, float64
-    std::uint32_t count = 0;
-  };
-  std::vector<Field> fields;
-  std::vector<std::uint8_t> bytes;
-  std::size_t point_step_bytes = 0;
+/// The points of a PCD file, unpacked: records of `head.point_step_bytes` with fields at offsets.
+struct PclCloud {
+  CloudHead head;  ///< fields and point step
+  std::vector<std::uint8_t> records;
 };
 
-/// What the module mosbench_pcl, which alone is linked with PCL, offers under the name
-/// kPclModuleFunction: reads a checked .pcd file; the answer is empty or why it could not be read.
-using ReadPcdCloud = std::string(const char* file, RawCloud& cloud);
+/// The function of the module mosbench_pcl, which is the only one linked with PCL, by the name
+/// kPclModuleFunction: unpacks a checked .pcd file whose body starts at `body_offset_bytes`.
+/// Returns an empty text or why that failed.
+using UnpackPcd = std::string(std::string_view bytes, std::size_t body_offset_bytes,
+                              PclCloud& cloud);
 inline constexpr const char* kPclModule = "mosbench_pcl.so";
-inline constexpr const char* kPclModuleFunction = "mosbench_read_pcd_cloud";
+inline constexpr const char* kPclModuleFunction = "mosbench_unpack_pcd";
 
 }  // namespace mosbench

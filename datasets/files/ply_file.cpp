@@ -47,8 +47,9 @@ struct PlyHead {
 
 class PlyHeadParser {
  public:
-  PlyHeadParser(std::string_view bytes, const std::filesystem::path& file)
-      : bytes_(bytes), file_(file) {}
+  PlyHeadParser(std::string_view bytes, std::uintmax_t file_bytes,
+                const std::filesystem::path& file)
+      : bytes_(bytes), file_bytes_(file_bytes), file_(file) {}
 
   PlyHead run() {
     if (next_line() != "ply") fail("does not start with \"ply\"", "a PLY file");
@@ -63,7 +64,7 @@ class PlyHeadParser {
     CloudHead& head = head_.vertices;
     head.height = 1;
     head.records_at_bytes = at_;
-    if (!head_.ascii && (bytes_.size() - at_) / std::max(1U, head.point_step_bytes) < head.width) {
+    if (!head_.ascii && (std::max<std::uintmax_t>(file_bytes_, at_) - at_) / std::max(1U, head.point_step_bytes) < head.width) {
       fail("ends within its points",
            std::to_string(head.width) + " of " + std::to_string(head.point_step_bytes) + " bytes");
     }
@@ -129,6 +130,7 @@ class PlyHeadParser {
   }
 
   std::string_view bytes_;
+  std::uintmax_t file_bytes_;
   const std::filesystem::path& file_;
   PlyHead head_;
   std::size_t at_ = 0;
@@ -182,7 +184,7 @@ std::vector<Point> parse_ascii(const CloudHead& head, std::string_view body,
 }  // namespace
 
 std::vector<Point> parse_ply(std::string_view bytes, const std::filesystem::path& file) {
-  const PlyHead head = PlyHeadParser(bytes, file).run();
+  const PlyHead head = PlyHeadParser(bytes, bytes.size(), file).run();
   if (head.ascii) {
     return parse_ascii(head.vertices, bytes.substr(head.vertices.records_at_bytes), file);
   }
@@ -190,8 +192,9 @@ std::vector<Point> parse_ply(std::string_view bytes, const std::filesystem::path
   return points_of(head.vertices, bytes, file);
 }
 
-std::size_t ply_point_count(std::string_view bytes, const std::filesystem::path& file) {
-  return PlyHeadParser(bytes, file).run().vertices.points();
+std::size_t ply_point_count(std::string_view head, std::uintmax_t file_bytes,
+                            const std::filesystem::path& file) {
+  return PlyHeadParser(head, file_bytes, file).run().vertices.points();
 }
 
 }  // namespace mosbench

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <mosbench/scan.hpp>
 #include <string_view>
@@ -13,7 +14,9 @@ namespace mosbench {
 /// PCL's reader of PLY is not used, it takes a cut off file for a whole one. Throws DataError.
 std::vector<Point> parse_ply(std::string_view bytes, const std::filesystem::path& file);
 
-/// Points by the header, the file's length checked; throws as `parse_ply`.
-std::size_t ply_point_count(std::string_view bytes, const std::filesystem::path& file);
+/// Returns the number of points that the header in `head`, the start of a file of `file_bytes`
+/// bytes, says there are, checked against that size; throws as `parse_ply`.
+std::size_t ply_point_count(std::string_view head, std::uintmax_t file_bytes,
+                            const std::filesystem::path& file);
 
 }  // namespace mosbench

@@ -61,8 +61,10 @@ std::vector<Point> read_scan(const std::filesystem::path& file, std::size_t bin_
 }
 
 std::size_t scan_point_count(const std::filesystem::path& file, std::size_t bin_columns) {
-  if (has_extension(file, ".pcd")) return pcd_point_count(file);
-  if (has_extension(file, ".ply")) return ply_point_count(read_file(file), file);
+  if (has_extension(file, ".pcd")) return read_pcd_header(file).points;
+  if (has_extension(file, ".ply")) {
+    return ply_point_count(read_head(file, "end_header"), size_of(file), file);
+  }
   const std::uintmax_t size_bytes = size_of(file);
   const std::size_t columns = columns_of(file, bin_columns);
   check_bin_size(size_bytes, columns, file);

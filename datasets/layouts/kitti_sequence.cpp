@@ -49,7 +49,7 @@ void KittiSequence::open_labels(const std::filesystem::path& folder) {
 void KittiSequence::open_label_fields() {
   for (std::size_t i = 0; i < size(); ++i) {
     const std::filesystem::path file = source().file(i);
-    if (file.extension() != ".pcd" || !pcd_has_labels(file)) return;
+    if (file.extension() != ".pcd" || !read_pcd_header(file).has_labels) return;
   }
   labels_in_scans_ = true;
   label_remark_ = "labels from the field \"label\" of the scans";

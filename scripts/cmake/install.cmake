@@ -8,6 +8,7 @@ foreach(room interface base voxel hmm_mos core)
   install(TARGETS mosbench_${room} EXPORT mosbench
           FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/mosbench)
 endforeach()
+install(FILES core/include/mosbench/pcl.hpp DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/mosbench/mosbench)
 install(EXPORT mosbench NAMESPACE mosbench:: FILE mosbenchTargets.cmake DESTINATION ${package_dir})
 if(TARGET mosbench)
   install(TARGETS mosbench)

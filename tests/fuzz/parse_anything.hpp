@@ -91,7 +91,10 @@ inline void split(std::string_view text) {
 }
 
 inline void pcd(std::string_view bytes) {
-  require(check_pcd(bytes, "f").body_offset_bytes <= bytes.size());
+  const PcdHeader header = parse_pcd_header(bytes, "f");
+  require(header.body_offset_bytes <= bytes.size());
+  check_pcd_body(header, bytes, "f");
+  check_pcd_size(header, bytes.size(), "f");
 }
 
 /// The first byte chooses the format, the second is a number of points.
@@ -120,7 +123,7 @@ inline void predictions(std::string_view bytes) {
 }
 
 inline void ply(std::string_view bytes) {
-  require(parse_ply(bytes, "f").size() == ply_point_count(bytes, "f"));
+  require(parse_ply(bytes, "f").size() == ply_point_count(bytes, bytes.size(), "f"));
 }
 
 /// The first byte is the number of points.

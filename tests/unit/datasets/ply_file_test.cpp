@@ -41,7 +41,7 @@ TEST(PlyFile, FindsPropertiesByNameInEveryFormat) {
   for (const std::string& bytes : {ascii, little}) {
     const auto points = parse_ply(bytes, "f");
     ASSERT_EQ(points.size(), 2U);
-    EXPECT_EQ(ply_point_count(bytes, "f"), 2U);
+    EXPECT_EQ(ply_point_count(bytes, bytes.size(), "f"), 2U);
     EXPECT_EQ(points[0].x, 2.0F);
     EXPECT_EQ(points[0].y, -3.0F);
     EXPECT_EQ(points[0].z, 1.5F);

@@ -1,0 +1,46 @@
+// Labels clouds of PCL: here a wall, and in front of it a box that moves by 0.5 m from scan to scan.
+// Prints how many points of each cloud move.
+
+#include <cstdio>
+#include <mosbench/pcl.hpp>
+
+#include "core/hmm_mos/pipeline.hpp"
+
+namespace {
+
+pcl::PointCloud<pcl::PointXYZI> scan_of_wall_and_box(int scan_index) {
+  pcl::PointCloud<pcl::PointXYZI> cloud;
+  const auto add = [&](float x, float y, float z) {
+    pcl::PointXYZI point;
+    point.x = x;
+    point.y = y;
+    point.z = z;
+    cloud.push_back(point);
+  };
+  const float box_y_m = 0.5F * static_cast<float>(scan_index) - 5.0F;
+  for (int column = -100; column < 100; ++column) {
+    for (int row = -10; row < 10; ++row) {
+      const float y_m = 0.1F * static_cast<float>(column), z_m = 0.1F * static_cast<float>(row);
+      const bool behind_box = y_m > 2 * box_y_m && y_m < 2 * (box_y_m + 1.0F);
+      if (!behind_box) add(10.0F, y_m, z_m);
+      if (behind_box) add(5.0F, y_m / 2, z_m / 2);
+    }
+  }
+  return cloud;
+}
+
+}  // namespace
+
+int main() {
+  mosbench::Pipeline pipeline(mosbench::Config{}, mosbench::Variant::kPaper2024);
+  for (int scan_index = 0; scan_index < 20; ++scan_index) {
+    const pcl::PointCloud<pcl::PointXYZI> cloud = scan_of_wall_and_box(scan_index);
+    const auto labelled = pipeline.push(mosbench::from_pcl(cloud), mosbench::Pose::Identity());
+    for (const auto& scan : labelled) {
+      const pcl::PointCloud<pcl::PointXYZL> labels = mosbench::labelled_cloud(cloud, scan.labels);
+      std::size_t moving = 0;
+      for (const pcl::PointXYZL& point : labels) moving += point.label == mosbench::kMovingLabel;
+      std::printf("scan %d: %zu of %zu points move\n", scan_index, moving, labels.size());
+    }
+  }
+}
