@@ -41,15 +41,15 @@ std::string_view format_bin(std::span<const Point> points) {
 }
 
 std::vector<Point> read_bin(const std::filesystem::path& file, std::size_t columns,
-                            std::vector<Point> spent) {
+                            std::vector<Point> reused) {
   if (columns * sizeof(float) != sizeof(Point)) return parse_bin(read_file(file), columns, file);
   const std::uintmax_t size_bytes = size_of(file);
   check_bin_size(size_bytes, columns, file);
   const auto count = static_cast<std::size_t>(size_bytes) / sizeof(Point);
-  if (spent.capacity() < count) spent = {};  // growing would copy old points
-  spent.resize(count);
-  read_file(file, std::as_writable_bytes(std::span(spent)));
-  return spent;
+  if (reused.capacity() < count) reused = {};  // growing would copy old points
+  reused.resize(count);
+  read_file(file, std::as_writable_bytes(std::span(reused)));
+  return reused;
 }
 
 void write_bin(const std::filesystem::path& file, std::span<const Point> points) {

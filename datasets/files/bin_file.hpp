@@ -24,9 +24,9 @@ std::string_view format_bin(std::span<const Point> points);
 void check_bin_size(std::uintmax_t size_bytes, std::size_t columns,
                     const std::filesystem::path& file);
 
-/// As `parse_bin`, into the memory of `spent` where it can.
+/// Reads a file as `parse_bin` does, into the memory of `reused` where it can.
 std::vector<Point> read_bin(const std::filesystem::path& file, std::size_t columns = 4,
-                            std::vector<Point> spent = {});
+                            std::vector<Point> reused = {});
 void write_bin(const std::filesystem::path& file, std::span<const Point> points);
 
 }  // namespace mosbench

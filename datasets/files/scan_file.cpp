@@ -54,21 +54,24 @@ std::vector<StemFile> list_scans(const std::filesystem::path& sequence_folder) {
 }
 
 std::vector<Point> read_scan(const std::filesystem::path& file, std::size_t bin_columns,
-                             std::vector<Point> spent) {
+                             std::vector<Point> reused) {
   if (has_extension(file, ".pcd")) return read_pcd(file);
   if (has_extension(file, ".ply")) return parse_ply(read_file(file), file);
-  return read_bin(file, columns_of(file, bin_columns), std::move(spent));
+  return read_bin(file, columns_of(file, bin_columns), std::move(reused));
 }
 
-std::size_t scan_point_count(const std::filesystem::path& file, std::size_t bin_columns) {
-  if (has_extension(file, ".pcd")) return read_pcd_header(file).points;
+ScanHead read_scan_head(const std::filesystem::path& file, std::size_t bin_columns) {
+  if (has_extension(file, ".pcd")) {
+    const PcdHeader header = read_pcd_header(file);
+    return {header.points, header.has_labels};
+  }
   if (has_extension(file, ".ply")) {
-    return ply_point_count(read_head(file, "end_header"), size_of(file), file);
+    return {ply_point_count(read_head(file, "end_header"), size_of(file), file)};
   }
   const std::uintmax_t size_bytes = size_of(file);
   const std::size_t columns = columns_of(file, bin_columns);
   check_bin_size(size_bytes, columns, file);
-  return static_cast<std::size_t>(size_bytes) / (columns * sizeof(float));
+  return {static_cast<std::size_t>(size_bytes) / (columns * sizeof(float))};
 }
 
 }  // namespace mosbench

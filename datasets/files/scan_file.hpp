@@ -20,12 +20,18 @@ std::vector<StemFile> list_scan_folder(const std::filesystem::path& scan_folder)
 /// Those of `scan_folder_of`. Throws DataError also when the sequence folder has none.
 std::vector<StemFile> list_scans(const std::filesystem::path& sequence_folder);
 
-/// Points of a scan. A .bin file has `bin_columns` float32 per point, one that ends in .pcd.bin
-/// five as in nuScenes. The memory of `spent` may serve them. Throws DataError.
+/// Reads the points of a scan into the memory of `reused` where it can. A .bin file has
+/// `bin_columns` float32 per point, one that ends in .pcd.bin five as in nuScenes. Throws DataError.
 std::vector<Point> read_scan(const std::filesystem::path& file, std::size_t bin_columns = 4,
-                             std::vector<Point> spent = {});
+                             std::vector<Point> reused = {});
 
-/// Points of a scan by its size or header; throws DataError.
-std::size_t scan_point_count(const std::filesystem::path& file, std::size_t bin_columns = 4);
+/// What the size or the header of a scan file says.
+struct ScanHead {
+  std::size_t points = 0;
+  bool has_labels = false;  ///< the points have a field "label"
+};
+
+/// Reads no more than the header of a scan. Throws DataError.
+ScanHead read_scan_head(const std::filesystem::path& file, std::size_t bin_columns = 4);
 
 }  // namespace mosbench

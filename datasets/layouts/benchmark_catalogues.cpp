@@ -43,8 +43,8 @@ std::unique_ptr<Sequence> open_apollo(const SequenceFolder& sequence,
                                       const ReadingOptions& options) {
   SequenceLayout layout;
   if (is_there(sequence.folder / kApolloPoses)) {
-    layout.places.poses_file = kApolloPoses;
-    layout.places.poses_of_lidar = true;
+    layout.folder.poses_file = kApolloPoses;
+    layout.folder.poses_of_lidar = true;
   }
   return std::make_unique<KittiSequence>(sequence.name, sequence.folder, options, layout);
 }

@@ -8,8 +8,8 @@
 #include "datasets/files/errors.hpp"
 #include "datasets/files/files.hpp"
 #include "datasets/files/scan_file.hpp"
-#include "datasets/rosbag/bag_recording.hpp"
-#include "datasets/sequence/recording.hpp"
+#include "datasets/rosbag/bag_sequence.hpp"
+#include "datasets/sequence/folder_sequence.hpp"
 
 namespace mosbench {
 namespace {
@@ -55,12 +55,14 @@ constexpr std::array<DoalsPublished, 8> kPublished = {{
      {149, 319, 489, 659, 829, 999, 1169, 1339, 1509, 1679}},
 }};
 
-std::unique_ptr<ScanSource> open_scans(const std::filesystem::path& folder,
-                                       const ReadingOptions& options) {
+std::unique_ptr<Sequence> open_scans(std::string name, const std::filesystem::path& folder,
+                                     const ReadingOptions& options) {
   if (!scan_folder_of(folder)) {
-    if (const auto bag = bag_of(folder)) return std::make_unique<BagRecording>(*bag, options);
+    if (const auto bag = bag_of(folder)) {
+      return std::make_unique<BagSequence>(std::move(name), *bag, options);
+    }
   }
-  return std::make_unique<Recording>(folder, options);
+  return std::make_unique<FolderSequence>(std::move(name), folder, options);
 }
 
 }  // namespace
@@ -76,21 +78,22 @@ const DoalsPublished* find_doals_published(std::string_view scene, std::string_v
 
 DoalsSequence::DoalsSequence(std::string name, const std::filesystem::path& folder,
                              const DoalsPublished* published, const ReadingOptions& options)
-    : SourcedSequence(std::move(name), open_scans(folder, options)),
+    : SequenceAround(open_scans(std::move(name), folder, options)),
       indices_file_(folder / "indices.csv") {
   open_truth(published);
 }
 
 void DoalsSequence::open_truth(const DoalsPublished* published) {
+  Recording& recording = mutable_recording();
   if (!is_there(indices_file_)) {
-    truth_remarks_.push_back("no indices.csv: there is no truth");
+    recording.remarks.push_back("no indices.csv: there is no truth");
     return;
   }
   const auto rows = read_indices(indices_file_);
-  const bool has_stamps = !source().stamps_ns().empty();
+  const bool has_stamps = scan(0).stamp_ns.has_value();
   const auto scans = has_stamps ? scans_by_stamp(rows) : scans_by_list(rows, published);
   if (!has_stamps) {
-    truth_remarks_.push_back(
+    recording.remarks.push_back(
         fmt::format("no stamps: the rows of indices.csv belong to the labelled scans published for "
                     "DOALS sequence {}",
                     published->number));
@@ -98,12 +101,19 @@ void DoalsSequence::open_truth(const DoalsPublished* published) {
   for (std::size_t i = 0; i < rows.size(); ++i) {
     check_indices(rows[i], point_count(scans[i]), indices_file_);
     truth_.emplace(scans[i], rows[i]);
+    recording.scans[scans[i]].has_truth = true;
   }
+  recording.truth_files = {indices_file_};
+}
+
+void DoalsSequence::read(std::size_t scan_index, Frame& frame) const {
+  SequenceAround::read(scan_index, frame);
+  add_truth(scan_index, frame);
 }
 
 std::vector<std::size_t> DoalsSequence::scans_by_stamp(std::span<const IndicesRow> rows) const {
   std::multimap<std::int64_t, std::size_t> scan_of_stamp;
-  for (std::size_t i = 0; i < size(); ++i) scan_of_stamp.emplace(source().stamps_ns()[i], i);
+  for (std::size_t i = 0; i < size(); ++i) scan_of_stamp.emplace(*stamp_ns(i), i);
   std::vector<std::size_t> scans;
   for (const IndicesRow& row : rows) {
     const auto same = scan_of_stamp.count(row.stamp_ns);
@@ -139,24 +149,10 @@ std::vector<std::size_t> DoalsSequence::scans_by_list(std::span<const IndicesRow
 
 std::vector<std::uint32_t> DoalsSequence::read_truth(std::size_t scan_index) const {
   const auto row = truth_.find(scan_index);
-  if (row == truth_.end()) {
-    throw DataError(source().file(scan_index), "has no truth", "a labelled scan");
-  }
+  if (row == truth_.end()) refuse_truth(scan_index);
   std::vector<std::uint32_t> labels(point_count(scan_index), kStaticLabel);
   for (const std::uint32_t index : row->second.moving) labels[index] = kMovingLabel;
   return labels;
-}
-
-std::vector<std::filesystem::path> DoalsSequence::files() const {
-  std::vector<std::filesystem::path> files = source().files();
-  if (is_there(indices_file_)) files.push_back(indices_file_);
-  return files;
-}
-
-std::vector<std::string> DoalsSequence::remarks() const {
-  std::vector<std::string> remarks = source().remarks();
-  remarks.insert(remarks.end(), truth_remarks_.begin(), truth_remarks_.end());
-  return remarks;
 }
 
 }  // namespace mosbench

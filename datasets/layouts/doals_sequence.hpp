@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "datasets/files/indices_file.hpp"
-#include "datasets/sequence/sourced_sequence.hpp"
+#include "datasets/sequence/sequence.hpp"
 
 namespace mosbench {
 
@@ -32,20 +32,19 @@ const DoalsPublished* find_doals_published(std::string_view scene, std::string_v
 
 /// One DOALS sequence: its bag, or scans exported to velodyne/ or binFiles/ in the raw firing order
 /// with no point dropped and poses.txt; indices.csv with the moving points of the labelled scans.
-/// Exported scans are taken where both are there. Truth is
+/// With both, the exported scans are read. Truth is
 /// kMovingLabel for listed points and kStaticLabel for all others. A labelled scan is found by its
 /// exact stamp; without stamps by the published list, if the recording has the published length.
-class DoalsSequence : public SourcedSequence {
+class DoalsSequence : public SequenceAround {
  public:
-  /// `published` is null for a recording of one's own. Throws DataError, also for a stamp or an
+  /// `published` is null for a recording that is none of the published ones. Throws DataError, also for a stamp or an
   /// index in indices.csv that no scan has.
   DoalsSequence(std::string name, const std::filesystem::path& folder,
                 const DoalsPublished* published, const ReadingOptions& options = {});
 
-  bool has_truth(std::size_t scan_index) const override { return truth_.contains(scan_index); }
+  using Sequence::read;
+  void read(std::size_t scan_index, Frame& frame) const override;
   std::vector<std::uint32_t> read_truth(std::size_t scan_index) const override;
-  std::vector<std::filesystem::path> files() const override;
-  std::vector<std::string> remarks() const override;
 
  private:
   void open_truth(const DoalsPublished* published);
@@ -55,7 +54,6 @@ class DoalsSequence : public SourcedSequence {
 
   std::filesystem::path indices_file_;
   std::map<std::size_t, IndicesRow> truth_;  ///< by scan
-  std::vector<std::string> truth_remarks_;
 };
 
 }  // namespace mosbench

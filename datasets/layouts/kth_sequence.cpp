@@ -20,52 +20,42 @@ std::vector<std::uint32_t> truth_of(const std::vector<Point>& points) {
 
 }  // namespace
 
-KthSequence::KthSequence(std::string name, const std::filesystem::path& folder)
-    : name_(std::move(name)), scans_(list_scan_folder(folder / "pcd")) {
-  for (const StemFile& scan : scans_) {
+KthSequence::KthSequence(std::string name, const std::filesystem::path& folder) {
+  Recording& recording = mutable_recording();
+  recording.name = std::move(name);
+  for (StemFile& scan : list_scan_folder(folder / "pcd")) {
     const PcdHeader header = read_pcd_header(scan.file);
     if (!header.viewpoint) {
       throw DataError(scan.file, "has no line VIEWPOINT", "the sensor's pose there");
     }
-    poses_.push_back(*header.viewpoint);
-    point_counts_.push_back(header.points);
+    ScanEntry& entry = recording.scans.emplace_back();
+    entry.stem = std::move(scan.stem);
+    entry.file = std::move(scan.file);
+    entry.map_from_sensor = *header.viewpoint;
+    entry.points = header.points;
+    entry.has_truth = true;
   }
+  recording.remarks = {"points are turned from the map's into the sensor's frame by VIEWPOINT",
+                       "intensity is taken as truth (1 is moving) and not passed on"};
+  recording.reading = {{"scan_files", ".pcd of pcd/, in the map's frame"},
+                       {"poses", "VIEWPOINT of each scan"},
+                       {"pose_direction", "map_from_sensor"},
+                       {"pose_frame", "lidar"}};
 }
 
-Frame KthSequence::read_frame(std::size_t scan_index, Frame /*spent*/) const {
-  Frame frame;
-  frame.stem = stem(scan_index);
-  frame.points = read_pcd(scans_[scan_index].file);
-  frame.map_from_sensor = poses_[scan_index];
+void KthSequence::read(std::size_t scan_index, Frame& frame) const {
+  describe(scan_index, frame);
+  frame.points = read_pcd(*scan_file(scan_index));
   frame.truth = truth_of(frame.points);
   const Pose sensor_from_map = frame.map_from_sensor.inverse();
   for (Point& point : frame.points) {
     const Eigen::Vector3d p = sensor_from_map * Eigen::Vector3d(point.x, point.y, point.z);
     point = {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z()), 0.0F};
   }
-  return frame;
 }
 
 std::vector<std::uint32_t> KthSequence::read_truth(std::size_t scan_index) const {
-  return truth_of(read_pcd(scans_.at(scan_index).file));
-}
-
-std::vector<std::filesystem::path> KthSequence::files() const {
-  std::vector<std::filesystem::path> files;
-  for (const StemFile& scan : scans_) files.push_back(scan.file);
-  return files;
-}
-
-std::vector<std::string> KthSequence::remarks() const {
-  return {"points are turned from the map's into the sensor's frame by VIEWPOINT",
-          "intensity is taken as truth (1 is moving) and not passed on"};
-}
-
-ReadingStatement KthSequence::reading() const {
-  return {{"scan_files", ".pcd of pcd/, in the map's frame"},
-          {"poses", "VIEWPOINT of each scan"},
-          {"pose_direction", "map_from_sensor"},
-          {"pose_frame", "lidar"}};
+  return truth_of(read_pcd(*scan_file(scan_index)));
 }
 
 }  // namespace mosbench

@@ -1,59 +1,41 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <mosbench/scan.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "datasets/files/folder_listing.hpp"
-#include "datasets/sequence/scan_source.hpp"
+#include "datasets/sequence/reading_options.hpp"
 
 namespace mosbench {
 
-/// Where a layout keeps the scans and the poses of a sequence.
-struct RecordingPlaces {
-  std::filesystem::path scan_folder;  ///< within the sequence folder; found by name when empty
-  std::string poses_file = "poses.txt";
-  bool poses_of_lidar = false;  ///< calib.txt is not applied to poses_file
+/// What is known of a scan before it is read.
+struct ScanEntry {
+  std::string stem;                           ///< file name without extension
+  std::optional<std::filesystem::path> file;  ///< the one that holds this scan and nothing else
+  std::optional<std::int64_t> stamp_ns;
+  Pose map_from_sensor = Pose::Identity();  ///< LiDAR frame, at the scan's stamp
+  std::size_t points = 0;
+  bool has_truth = false;
 };
 
-/// A sequence folder with one file per scan, poses in a text file and, where told, stamps. Opening
-/// checks scan sizes and all counts.
-class Recording : public ScanSource {
- public:
-  /// Poses are settled as `settle_poses` tells. Throws DataError.
-  Recording(const std::filesystem::path& folder, const ReadingOptions& options,
-            const RecordingPlaces& places = {});
-
-  std::size_t size() const override { return scans_.size(); }
-  std::string stem(std::size_t scan_index) const override { return scans_.at(scan_index).stem; }
-  std::filesystem::path file(std::size_t scan_index) const override {
-    return scans_.at(scan_index).file;
-  }
-  bool has_own_files() const override { return true; }
-  std::size_t point_count(std::size_t scan_index) const override {
-    return point_counts_.at(scan_index);
-  }
-  /// From times.txt, else from stems that are nanoseconds.
-  const std::vector<std::int64_t>& stamps_ns() const override { return stamps_ns_; }
-  Pose map_from_sensor(std::size_t scan_index) const override { return poses_.at(scan_index); }
-  /// Scans, poses, calibration and times.
-  std::vector<std::filesystem::path> files() const override;
-  std::vector<std::string> remarks() const override { return remarks_; }
-  ReadingStatement reading() const override { return reading_; }
-
- private:
-  Frame read_frame(std::size_t scan_index, Frame spent) const override;
-  void open_stamps(const std::filesystem::path& folder);
-
-  std::vector<StemFile> scans_;
-  std::size_t bin_columns_;
-  std::vector<std::size_t> point_counts_;
-  std::vector<Pose> poses_;
-  std::vector<std::int64_t> stamps_ns_;
-  std::vector<std::filesystem::path> side_files_;
-  std::vector<std::string> remarks_;
-  ReadingStatement reading_;
+/// What is known of a sequence once it is opened.
+struct Recording {
+  std::string name;  ///< folder for results, relative, unique in a data set
+  std::vector<ScanEntry> scans;
+  /// Files that decide what is read besides those of single scans: bag, poses, calibration, times.
+  std::vector<std::filesystem::path> files;
+  std::vector<std::filesystem::path> truth_files;
+  /// Plain sentences on what was assumed or found odd (pose frame, missing labels).
+  std::vector<std::string> remarks;
+  /// What was read in which convention; two runs on the same files may differ in it.
+  ReadingStatement reading;
 };
+
+/// Returns every file that decides the content, for fingerprints: `files`, scans, `truth_files`.
+std::vector<std::filesystem::path> files_of(const Recording& recording);
 
 }  // namespace mosbench

@@ -1,6 +1,25 @@
 #include "datasets/sequence/sequence.hpp"
 
+#include "datasets/files/errors.hpp"
+
 namespace mosbench {
+
+void Sequence::describe(std::size_t scan_index, Frame& frame) const {
+  const ScanEntry& entry = scan(scan_index);
+  frame.stem = entry.stem;
+  frame.map_from_sensor = entry.map_from_sensor;
+  frame.stamp_ns = entry.stamp_ns;
+}
+
+void Sequence::add_truth(std::size_t scan_index, Frame& frame) const {
+  frame.truth.reset();
+  if (has_truth(scan_index)) frame.truth = read_truth(scan_index);
+}
+
+void Sequence::refuse_truth(std::size_t scan_index) const {
+  const std::filesystem::path place = std::filesystem::path(name()) / stem(scan_index);
+  throw DataError(scan_file(scan_index).value_or(place), "has no truth", "a labelled scan");
+}
 
 std::vector<std::size_t> scans_with_truth(const Sequence& sequence) {
   std::vector<std::size_t> scans;

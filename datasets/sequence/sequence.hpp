@@ -3,13 +3,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <mosbench/scan.hpp>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "datasets/sequence/reading_options.hpp"
+#include "datasets/sequence/recording.hpp"
 
 namespace mosbench {
 
@@ -17,47 +18,92 @@ namespace mosbench {
 struct Frame {
   std::string stem;                                 ///< file name without extension; names outputs
   std::vector<Point> points;                        ///< sensor frame, stored order, nothing dropped
-  Pose map_from_sensor = Pose::Identity();          ///< lidar frame
-  std::optional<std::int64_t> stamp_ns;             ///< when the data set tells
+  Pose map_from_sensor = Pose::Identity();          ///< LiDAR frame
+  std::optional<std::int64_t> stamp_ns;             ///< when the data set has stamps
   std::optional<std::vector<std::uint32_t>> truth;  ///< raw label ids, one per point, when labelled
 };
 
 /// An ordered recording of one sensor. Opening it checks everything that needs no scan to be read
-/// (pairing of files, counts of poses, file sizes); reading a scan checks the scan.
+/// (pairing of files, numbers of poses, file sizes) and leaves it in `recording()`; reading a scan
+/// checks the scan. A data set implements `read` and `read_truth`.
 class Sequence {
  public:
   virtual ~Sequence() = default;
+  Sequence(const Sequence&) = delete;
+  Sequence& operator=(const Sequence&) = delete;
 
-  virtual std::string name() const = 0;  ///< folder for results, relative, unique in a data set
-  virtual std::size_t size() const = 0;  ///< scans
-  virtual std::string stem(std::size_t scan_index) const = 0;
-  virtual bool has_truth(std::size_t scan_index) const = 0;
-  /// The file that holds this scan and nothing else, when there is one.
-  virtual std::optional<std::filesystem::path> scan_file(std::size_t scan_index) const = 0;
-  /// The frame's pose and stamp without its points.
-  virtual Pose map_from_sensor(std::size_t scan_index) const = 0;
-  virtual std::optional<std::int64_t> stamp_ns(std::size_t scan_index) const = 0;
-  /// Safe to call from several threads. The memory of `spent` may serve the frame. Throws
-  /// DataError.
-  Frame read(std::size_t scan_index, Frame spent = {}) const {
-    return read_frame(scan_index, std::move(spent));
-  }
-  /// The truth of a labelled scan without its points when the format allows; throws DataError.
+  /// Reads a scan into `frame`, whose memory is used again and whose content is lost. Safe to call
+  /// from several threads. Throws DataError.
+  virtual void read(std::size_t scan_index, Frame& frame) const = 0;
+  /// Reads the truth of a labelled scan, without its points where the format allows; one raw label
+  /// id per point. Safe to call from several threads. Throws DataError.
   virtual std::vector<std::uint32_t> read_truth(std::size_t scan_index) const = 0;
-  /// Number of points of a scan without reading them.
-  virtual std::size_t point_count(std::size_t scan_index) const = 0;
-  /// Every file that decides the content, for fingerprints: scans, poses, calibration, truth.
-  virtual std::vector<std::filesystem::path> files() const = 0;
-  /// Plain sentences on what was assumed or found odd while opening (pose frame, missing labels).
-  virtual std::vector<std::string> remarks() const = 0;
-  /// What was read in which convention; two runs on the same files may differ in it.
-  virtual ReadingStatement reading() const = 0;
+
+  Frame read(std::size_t scan_index) const {
+    Frame frame;
+    read(scan_index, frame);
+    return frame;
+  }
+
+  /// What is known without reading a scan.
+  const Recording& recording() const { return recording_; }
+  const ScanEntry& scan(std::size_t scan_index) const { return recording_.scans.at(scan_index); }
+  const std::string& name() const { return recording_.name; }
+  std::size_t size() const { return recording_.scans.size(); }
+  const std::string& stem(std::size_t scan_index) const { return scan(scan_index).stem; }
+  bool has_truth(std::size_t scan_index) const { return scan(scan_index).has_truth; }
+  const std::optional<std::filesystem::path>& scan_file(std::size_t scan_index) const {
+    return scan(scan_index).file;
+  }
+  const Pose& map_from_sensor(std::size_t scan_index) const {
+    return scan(scan_index).map_from_sensor;
+  }
+  std::optional<std::int64_t> stamp_ns(std::size_t scan_index) const {
+    return scan(scan_index).stamp_ns;
+  }
+  std::size_t point_count(std::size_t scan_index) const { return scan(scan_index).points; }
+  std::vector<std::filesystem::path> files() const { return files_of(recording_); }
+  const std::vector<std::string>& remarks() const { return recording_.remarks; }
+  const ReadingStatement& reading() const { return recording_.reading; }
+
+ protected:
+  Sequence() = default;
+  explicit Sequence(Recording recording) : recording_(std::move(recording)) {}
+  /// For constructors, which find out what the recording holds.
+  Recording& mutable_recording() { return recording_; }
+
+  /// Fills in what the recording knows of the frame: stem, pose, stamp.
+  void describe(std::size_t scan_index, Frame& frame) const;
+  /// Sets the frame's truth: that of `read_truth`, or none.
+  void add_truth(std::size_t scan_index, Frame& frame) const;
+  [[noreturn]] void refuse_truth(std::size_t scan_index) const;
 
  private:
-  virtual Frame read_frame(std::size_t scan_index, Frame spent) const = 0;
+  Recording recording_;
 };
 
-/// The indices of the labelled scans, in order.
+/// A sequence that reads another one and changes something of it. A derived class overrides what it
+/// changes; what it changes of the recording it does in its constructor.
+class SequenceAround : public Sequence {
+ public:
+  using Sequence::read;
+  void read(std::size_t scan_index, Frame& frame) const override {
+    inner_->read(scan_index, frame);
+  }
+  std::vector<std::uint32_t> read_truth(std::size_t scan_index) const override {
+    return inner_->read_truth(scan_index);
+  }
+
+ protected:
+  explicit SequenceAround(std::unique_ptr<Sequence> inner)
+      : Sequence(inner->recording()), inner_(std::move(inner)) {}
+  const Sequence& inner() const { return *inner_; }
+
+ private:
+  std::unique_ptr<Sequence> inner_;
+};
+
+/// Returns the indices of the labelled scans, in order.
 std::vector<std::size_t> scans_with_truth(const Sequence& sequence);
 
 }  // namespace mosbench

@@ -64,7 +64,7 @@ SequenceProfile profile_sequence(const Sequence& sequence, const RunSettings& se
   for (std::size_t k = 0; k < scans; ++k) {
     ScanProfile& scan = profile.scans.emplace_back();
     scan.start = Clock::now();
-    scan.read = cost_of([&] { frame = sequence.read(k, std::move(frame)); });
+    scan.read = cost_of([&] { sequence.read(k, frame); });
     if (frame.stamp_ns) stamps_ns.push_back(*frame.stamp_ns);
     scan.stem = frame.stem;
     scan.points = frame.points.size();

@@ -92,8 +92,8 @@ class SequenceRun {
  private:
   std::future<ReadyScan> prepare(std::size_t scan_index) {
     // One scan at a time, so the fingerprint sees the frames in order.
-    return std::async(launch_, [this, scan_index, spent = std::move(spent_)]() mutable {
-      Frame frame = sequence_.read(scan_index, std::move(spent));
+    return std::async(launch_, [this, scan_index, frame = std::move(spent_)]() mutable {
+      sequence_.read(scan_index, frame);
       fingerprint_.add(frame);
       const Clock::time_point start = Clock::now();
       std::unique_ptr<Observed> observed = naming_scan(sequence_, scan_index, [&] {

@@ -17,7 +17,7 @@
 #include "datasets/files/pose_list.hpp"
 #include "datasets/files/split_file.hpp"
 #include "datasets/files/times_file.hpp"
-#include "datasets/rosbag/bag_recording.hpp"
+#include "datasets/rosbag/bag_sequence.hpp"
 #include "datasets/rosbag/point_cloud2.hpp"
 #include "datasets/simulator/scene_json.hpp"
 #include "eval/predictions/prediction_text.hpp"
@@ -171,7 +171,7 @@ void with_file(std::string_view bytes, Read&& read) {
 /// A whole bag with all its scans.
 inline void bag(std::string_view bytes) {
   with_file(bytes, [](const std::filesystem::path& file) {
-    const BagRecording recording(file, {});
+    const BagSequence recording("s", file, {});
     for (std::size_t i = 0; i < recording.size(); ++i) {
       require(recording.read(i).points.size() == recording.point_count(i));
     }

@@ -12,7 +12,7 @@
 #include "datasets/files/errors.hpp"
 #include "datasets/files/files.hpp"
 #include "datasets/rosbag/bag_file.hpp"
-#include "datasets/rosbag/bag_recording.hpp"
+#include "datasets/rosbag/bag_sequence.hpp"
 #include "datasets/rosbag/ros_messages.hpp"
 #include "tests/temp_folder.hpp"
 
@@ -53,7 +53,7 @@ class RealBag : public testing::TestWithParam<const char*> {
 };
 
 TEST_P(RealBag, GivesTheRecordedScansBitForBit) {
-  const BagRecording recording(bag(), {.undistort = false});
+  const BagSequence recording("s", bag(), {.undistort = false});
   const auto& scans = expected_.at("scans");
   ASSERT_GE(scans.size(), 3U);
   ASSERT_EQ(recording.size(), scans.size());
@@ -67,14 +67,14 @@ TEST_P(RealBag, GivesTheRecordedScansBitForBit) {
 }
 
 TEST_P(RealBag, GivesTheRecordedPoses) {
-  const BagRecording recording(bag(), {.undistort = false});
+  const BagSequence recording("s", bag(), {.undistort = false});
   const auto& transforms = expected_.at("tf");
   ASSERT_GE(transforms.size(), 3U);
   for (std::size_t i = 0; i < transforms.size(); ++i) {
     const Pose pose = recording.read(i).map_from_sensor;
     const auto t = transforms[i].at("t").get<std::array<double, 3>>();
     const auto q = transforms[i].at("q_xyzw").get<std::array<double, 4>>();
-    EXPECT_EQ(recording.stamps_ns()[i], transforms[i].at("stamp_ns").get<std::int64_t>());
+    EXPECT_EQ(recording.stamp_ns(i), transforms[i].at("stamp_ns").get<std::int64_t>());
     EXPECT_EQ(pose.translation(), Eigen::Vector3d(t[0], t[1], t[2]));
     const Eigen::Quaterniond stored(q[3], q[0], q[1], q[2]);
     EXPECT_EQ(pose.linear(), stored.normalized().toRotationMatrix());
@@ -107,8 +107,8 @@ INSTANTIATE_TEST_SUITE_P(Bags, RealBag,
 TEST(RealBagWithTimes, IsUndistortedAndLeavesOutTheScanThatTheTransformsDoNotCover) {
   const auto bag = shared_folder() / "real/rosbag/ouster48_lz4.bag";
   if (!std::filesystem::exists(bag)) GTEST_SKIP() << bag << " is not there";
-  const BagRecording raw(bag, {.undistort = false});
-  const BagRecording recording(bag, {});
+  const BagSequence raw("s", bag, {.undistort = false});
+  const BagSequence recording("s", bag, {});
   ASSERT_EQ(raw.size(), 3U);
   ASSERT_EQ(recording.size(), 2U);
   EXPECT_THAT(recording.remarks(),
@@ -129,7 +129,7 @@ TEST(RealBagWithTimes, IsUndistortedAndLeavesOutTheScanThatTheTransformsDoNotCov
 TEST(RealBagWithoutScans, SaysWhatItHoldsInstead) {
   const auto bag = shared_folder() / "real/rosbag/robot_without_pointcloud2.bag";
   if (!std::filesystem::exists(bag)) GTEST_SKIP() << bag << " is not there";
-  EXPECT_THAT(message_of<DataError>([&] { BagRecording(bag, {}); }),
+  EXPECT_THAT(message_of<DataError>([&] { BagSequence("s", bag, {}); }),
               AllOf(HasSubstr("holds no sensor_msgs/PointCloud2 but /scan"),
                     HasSubstr("expected scans as PointCloud2")));
 }

@@ -7,7 +7,7 @@
 #include "datasets/files/errors.hpp"
 #include "datasets/files/pose_list.hpp"
 #include "datasets/sequence/pose_track.hpp"
-#include "datasets/sequence/recording.hpp"
+#include "datasets/sequence/folder_sequence.hpp"
 #include "datasets/sequence/undistort.hpp"
 #include "tests/temp_folder.hpp"
 
@@ -94,8 +94,10 @@ class PoseSources : public testing::Test {
     folder_.write("times.txt", "10.0\n10.1\n10.2\n");
     folder_.write("calib.txt", "Tr: 0 -1 0 0 0 0 -1 0 1 0 0 0\n");
   }
-  Recording open(const ReadingOptions& options) const { return {folder_.path(), options}; }
-  double x_of(const Recording& recording, std::size_t scan_index) const {
+  FolderSequence open(const ReadingOptions& options) const {
+    return {"s", folder_.path(), options};
+  }
+  double x_of(const FolderSequence& recording, std::size_t scan_index) const {
     return recording.read(scan_index).map_from_sensor.translation().x();
   }
 
@@ -105,7 +107,7 @@ class PoseSources : public testing::Test {
 TEST_F(PoseSources, TakeStampedPosesAtTheScansStamps) {
   const auto poses = folder_.write(
       "tum.txt", "9.9 0 0 0 0 0 0 1\n10.1 2 0 0 0 0 0 1\n10.3 4 0 0 0 0 0 1\n11 9 0 0 0 0 0 1\n");
-  const Recording recording = open({.poses = poses});
+  const FolderSequence recording = open({.poses = poses});
   EXPECT_DOUBLE_EQ(x_of(recording, 0), 1.0);
   EXPECT_EQ(x_of(recording, 1), 2.0);
   EXPECT_DOUBLE_EQ(x_of(recording, 2), 3.0);

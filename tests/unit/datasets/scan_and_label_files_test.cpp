@@ -59,9 +59,9 @@ TEST(BinFile, HoldsNoPointOfTheScanWhoseMemoryItTakes) {
   const TempFolder folder;
   const std::vector<Point> points = {{1, 2, 3, 4}, {5, 6, 7, 8}};
   write_bin(folder / "0.bin", points);
-  for (const std::size_t spent : {0U, 1U, 2U, 9U}) {
-    const auto read = read_bin(folder / "0.bin", 4, std::vector<Point>(spent, Point{9, 9, 9, 9}));
-    EXPECT_EQ(format_bin(read), format_bin(points)) << spent;
+  for (const std::size_t reused : {0U, 1U, 2U, 9U}) {
+    const auto read = read_bin(folder / "0.bin", 4, std::vector<Point>(reused, Point{9, 9, 9, 9}));
+    EXPECT_EQ(format_bin(read), format_bin(points)) << reused;
   }
   write_bin(folder / "empty.bin", {});
   EXPECT_TRUE(read_bin(folder / "empty.bin", 4, points).empty());

@@ -283,6 +283,40 @@ TEST(DoalsSequence, HasNoTruthWithoutIndices) {
   EXPECT_THAT(sequence.remarks(), Contains(HasSubstr("no indices.csv")));
 }
 
+/// Every point one metre further on; the rest as in the sequence it is around.
+class Shifted : public SequenceAround {
+ public:
+  explicit Shifted(std::unique_ptr<Sequence> inner) : SequenceAround(std::move(inner)) {}
+  using Sequence::read;
+  void read(std::size_t scan_index, Frame& frame) const override {
+    SequenceAround::read(scan_index, frame);
+    for (Point& point : frame.points) point.x += 1.0F;
+  }
+};
+
+TEST(SequenceAround, ChangesWhatItOverridesAndNothingElse) {
+  const TempFolder folder;
+  const Point point{1, 2, 3, 4};
+  write_bin(folder / "velodyne/000000.bin", {&point, 1});
+  folder.write("poses.txt", "1 0 0 7 0 1 0 0 0 0 1 0\n");
+  const std::uint32_t label = kMovingLabel;
+  write_labels(folder / "labels/000000.label", {&label, 1});
+  const KittiSequence plain("s", folder.path());
+  const Shifted shifted(std::make_unique<KittiSequence>("s", folder.path()));
+  Frame frame;
+  frame.points.resize(100);
+  frame.truth.emplace(100, 0U);
+  shifted.read(0, frame);
+  ASSERT_EQ(frame.points.size(), 1U);
+  EXPECT_EQ(frame.points[0].x, 2.0F);
+  EXPECT_EQ(frame.points[0].y, 2.0F);
+  EXPECT_EQ(frame.map_from_sensor.translation().x(), 7.0);
+  EXPECT_EQ(frame.truth, plain.read(0).truth);
+  EXPECT_EQ(shifted.read_truth(0), plain.read_truth(0));
+  EXPECT_EQ(shifted.files(), plain.files());
+  EXPECT_EQ(shifted.name(), "s");
+}
+
 Frame sample_frame() {
   Frame frame;
   frame.stem = "000000";

@@ -9,35 +9,28 @@
 namespace mosbench {
 namespace {
 
-/// Labelled scans of one wall, of which the last cannot be read.
+constexpr std::size_t kPoints = 200'000;
+
+/// Six labelled scans of one wall, of which the last cannot be read.
 class BrokenSequence : public Sequence {
  public:
-  std::string name() const override { return "broken"; }
-  std::size_t size() const override { return 6; }
-  std::string stem(std::size_t scan_index) const override { return std::to_string(scan_index); }
-  bool has_truth(std::size_t) const override { return true; }
-  std::optional<std::filesystem::path> scan_file(std::size_t) const override { return {}; }
-  Pose map_from_sensor(std::size_t) const override { return Pose::Identity(); }
-  std::optional<std::int64_t> stamp_ns(std::size_t) const override { return {}; }
+  BrokenSequence() {
+    mutable_recording().name = "broken";
+    for (int k = 0; k < 6; ++k) {
+      ScanEntry& entry = mutable_recording().scans.emplace_back();
+      entry.stem = std::to_string(k);
+      entry.points = kPoints;
+      entry.has_truth = true;
+    }
+  }
+  void read(std::size_t scan_index, Frame& frame) const override {
+    if (scan_index + 1 == size()) throw DataError("last.bin", "is broken", "a scan");
+    describe(scan_index, frame);
+    frame.points.assign(kPoints, Point{2, 1, 0, 0});
+    add_truth(scan_index, frame);
+  }
   std::vector<std::uint32_t> read_truth(std::size_t) const override {
     return std::vector<std::uint32_t>(kPoints, kStaticLabel);
-  }
-  std::size_t point_count(std::size_t) const override { return kPoints; }
-  std::vector<std::filesystem::path> files() const override { return {}; }
-  std::vector<std::string> remarks() const override { return {}; }
-  ReadingStatement reading() const override { return {}; }
-
-  static constexpr std::size_t kPoints = 200'000;
-
- private:
-  Frame read_frame(std::size_t scan_index, Frame spent) const override {
-    if (scan_index + 1 == size()) throw DataError("last.bin", "is broken", "a scan");
-    Frame frame;
-    frame.stem = stem(scan_index);
-    frame.points = std::move(spent.points);
-    frame.points.assign(kPoints, Point{2, 1, 0, 0});
-    frame.truth = read_truth(scan_index);
-    return frame;
   }
 };
 

@@ -1,4 +1,4 @@
-#include "datasets/rosbag/bag_recording.hpp"
+#include "datasets/rosbag/bag_sequence.hpp"
 
 #include <fmt/format.h>
 
@@ -9,13 +9,14 @@
 #include "datasets/rosbag/bag_topics.hpp"
 #include "datasets/rosbag/point_cloud2.hpp"
 #include "datasets/sequence/pose_source.hpp"
+#include "datasets/sequence/pose_track.hpp"
 
 namespace mosbench {
 namespace {
 
-/// Enough for what stands before the points; a field takes some 20 bytes.
+/// Bytes of a message that hold all that is before the points; a field takes some 20 bytes.
 constexpr std::size_t kHeadBytes = 4096;
-/// Scans last 0.1 s; a time beyond this is none since the scan's stamp.
+/// Scans last 0.1 s; a longer time is not measured from the scan's stamp.
 constexpr std::int64_t kLongestScanNs = 1'000'000'000;
 
 std::int64_t reference_ns(const TimedCloud& cloud) {
@@ -33,16 +34,32 @@ std::optional<std::filesystem::path> bag_of(const std::filesystem::path& folder)
   return bags.front().file;
 }
 
-BagRecording::BagRecording(const std::filesystem::path& bag, const ReadingOptions& options)
-    : bag_(bag), undistorts_(options.undistort), files_{bag} {
+BagSequence::BagSequence(std::string name, const std::filesystem::path& bag,
+                         const ReadingOptions& options)
+    : bag_(bag), undistorts_(options.undistort) {
+  Recording& recording = mutable_recording();
+  recording.name = std::move(name);
+  recording.files = {bag};
   const std::string topic = cloud_topic(bag_, options.topic);
   list_scans(topic);
-  reading_.emplace_back("scan_files", fmt::format("{}, topic {}", bag.filename().string(), topic));
-  open_poses(options);
+  recording.reading.emplace_back("scan_files",
+                                 fmt::format("{}, topic {}", bag.filename().string(), topic));
+  options.poses ? open_pose_file(options) : open_transforms(options);
   state_undistortion();
+  enter_scans();
 }
 
-void BagRecording::list_scans(const std::string& topic) {
+void BagSequence::enter_scans() {
+  for (const Scan& scan : scans_) {
+    ScanEntry& entry = mutable_recording().scans.emplace_back();
+    entry.stem = fmt::format("{:06}", scan.number);
+    entry.stamp_ns = scan.stamp_ns;
+    entry.map_from_sensor = *pose_at_(scan.stamp_ns);
+    entry.points = scan.points;
+  }
+}
+
+void BagSequence::list_scans(const std::string& topic) {
   for (const BagMessage& message : bag_.messages(topic)) {
     const CloudHead head = parse_cloud_head(bag_.read(message, kHeadBytes), bag_.path());
     scans_.push_back(
@@ -52,7 +69,6 @@ void BagRecording::list_scans(const std::string& topic) {
     throw DataError(bag_.path(), "topic " + topic + " holds no message", "one per scan");
   }
   for (const Scan& scan : scans_) {
-    stamps_ns_.push_back(scan.stamp_ns);
     if (scan.frame == scans_.front().frame) continue;
     throw DataError(bag_.path(),
                     fmt::format("topic {} has scans in the frames {} and {}", topic,
@@ -61,41 +77,36 @@ void BagRecording::list_scans(const std::string& topic) {
   }
 }
 
-void BagRecording::open_poses(const ReadingOptions& options) {
-  if (options.poses) {
-    open_pose_file(options);
-  } else {
-    open_transforms(options);
-  }
-}
-
-void BagRecording::open_pose_file(const ReadingOptions& options) {
-  SettledPoses settled =
-      settle_poses(bag_.path().parent_path(), "poses.txt", options, {scans_.size(), stamps_ns_});
+void BagSequence::open_pose_file(const ReadingOptions& options) {
+  std::vector<std::int64_t> stamps_ns;
+  for (const Scan& scan : scans_) stamps_ns.push_back(scan.stamp_ns);
+  const SettledPoses poses =
+      settle_poses(bag_.path().parent_path(), "poses.txt", options, {scans_.size(), stamps_ns});
   std::vector<std::pair<std::int64_t, Pose>> stamped;
   for (std::size_t i = 0; i < scans_.size(); ++i) {
-    stamped.emplace_back(stamps_ns_[i], settled.map_from_sensor[i]);
+    stamped.emplace_back(stamps_ns[i], poses.map_from_sensor[i]);
   }
   pose_at_ = [track = PoseTrack(std::move(stamped))](std::int64_t stamp_ns) {
     return track.at(stamp_ns);
   };
   leaves_last_ = true;
-  files_.insert(files_.end(), settled.files.begin(), settled.files.end());
-  remarks_.insert(remarks_.end(), settled.remarks.begin(), settled.remarks.end());
-  reading_.insert(reading_.end(), settled.reading.begin(), settled.reading.end());
+  Recording& recording = mutable_recording();
+  recording.files.insert(recording.files.end(), poses.files.begin(), poses.files.end());
+  recording.remarks.insert(recording.remarks.end(), poses.remarks.begin(), poses.remarks.end());
+  recording.reading.insert(recording.reading.end(), poses.reading.begin(), poses.reading.end());
 }
 
-void BagRecording::open_transforms(const ReadingOptions& options) {
+void BagSequence::open_transforms(const ReadingOptions& options) {
   BagTransforms transforms = bag_transforms(bag_, options.map_frame, scans_.front().frame);
-  reading_.emplace_back("poses", transforms.source);
-  remarks_.push_back("poses from the bag: " + transforms.source);
+  mutable_recording().reading.emplace_back("poses", transforms.source);
+  mutable_recording().remarks.push_back("poses from the bag: " + transforms.source);
   pose_at_ = [chain = std::move(transforms.map_from_sensor)](std::int64_t stamp_ns) {
     return chain.at(stamp_ns);
   };
   leave_out_uncovered();
 }
 
-bool BagRecording::covered(const Scan& scan) const {
+bool BagSequence::covered(const Scan& scan) const {
   if (!pose_at_(scan.stamp_ns)) return false;
   if (!undistorts_ || !scan.timed || pose_at_(scan.stamp_ns + kLongestScanNs)) return true;
   const TimedCloud cloud = parse_cloud(bag_.read(scan.message), bag_.path());
@@ -103,7 +114,7 @@ bool BagRecording::covered(const Scan& scan) const {
                                     pose_at_(cloud.stamp_ns + std::ranges::min(cloud.times_ns)));
 }
 
-void BagRecording::leave_out_uncovered() {
+void BagSequence::leave_out_uncovered() {
   const std::size_t all = scans_.size();
   std::erase_if(scans_, [this](const Scan& scan) { return !covered(scan); });
   if (scans_.empty()) {
@@ -111,27 +122,22 @@ void BagRecording::leave_out_uncovered() {
                     "poses while the scans are taken, or --poses FILE");
   }
   if (scans_.size() == all) return;
-  stamps_ns_.clear();
-  for (const Scan& scan : scans_) stamps_ns_.push_back(scan.stamp_ns);
-  remarks_.push_back(fmt::format("{} of {} scans are left out: no transform covers them{}",
-                                 all - scans_.size(), all,
-                                 undistorts_ ? " from first to last point" : ""));
+  mutable_recording().remarks.push_back(
+      fmt::format("{} of {} scans are left out: no transform covers them{}", all - scans_.size(),
+                  all, undistorts_ ? " from first to last point" : ""));
 }
 
-void BagRecording::state_undistortion() {
+void BagSequence::state_undistortion() {
   const bool timed = scans_.front().timed;
-  reading_.emplace_back("undistortion", !timed         ? "none, the points have no times"
-                                        : !undistorts_ ? "none, as told"
-                                        : leaves_last_ ? "by the points' times, the last scan not"
-                                                       : "by the points' times");
-  remarks_.push_back("undistortion: " + reading_.back().second);
+  const std::string how = !timed         ? "none, the points have no times"
+                          : !undistorts_ ? "none, as told"
+                          : leaves_last_ ? "by the points' times, the last scan not"
+                                         : "by the points' times";
+  mutable_recording().reading.emplace_back("undistortion", how);
+  mutable_recording().remarks.push_back("undistortion: " + how);
 }
 
-std::string BagRecording::stem(std::size_t scan_index) const {
-  return fmt::format("{:06}", scans_.at(scan_index).number);
-}
-
-Frame BagRecording::read_frame(std::size_t scan_index, Frame /*spent*/) const {
+void BagSequence::read(std::size_t scan_index, Frame& frame) const {
   const Scan& scan = scans_.at(scan_index);
   TimedCloud cloud = parse_cloud(bag_.read(scan.message), bag_.path());
   for (const std::int64_t time_ns : cloud.times_ns) {
@@ -150,12 +156,14 @@ Frame BagRecording::read_frame(std::size_t scan_index, Frame /*spent*/) const {
     throw DataError(bag_.path(), scan.number, "no pose covers the scan",
                     "poses while it was taken");
   }
-  Frame frame;
-  frame.stem = stem(scan_index);
+  describe(scan_index, frame);
   frame.points = std::move(cloud.points);
   frame.map_from_sensor = *pose;
-  frame.stamp_ns = cloud.stamp_ns;
-  return frame;
+  frame.truth.reset();
+}
+
+std::vector<std::uint32_t> BagSequence::read_truth(std::size_t scan_index) const {
+  refuse_truth(scan_index);
 }
 
 }  // namespace mosbench

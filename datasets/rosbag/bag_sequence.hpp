@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "datasets/rosbag/bag_file.hpp"
+#include "datasets/sequence/sequence.hpp"
+#include "datasets/sequence/undistort.hpp"
+
+namespace mosbench {
+
+/// Returns the one .bag in a folder; nothing without any. Throws DataError for several.
+std::optional<std::filesystem::path> bag_of(const std::filesystem::path& folder);
+
+/// The scans of one topic of a ROS 1 bag. Poses are those of its tf tree (/tf, /tf_static), else of
+/// its TransformStamped topics, unless `options.poses` names a file. Scans whose points have times
+/// are undistorted; their frames then have the pose at the first point's time. Scans that no
+/// transform covers are left out and counted in the remarks. It has no truth of its own.
+class BagSequence : public Sequence {
+ public:
+  /// Throws DataError for what is no bag, has no such topic or no scan in it, or no transforms from
+  /// the scans' frame to the map's.
+  BagSequence(std::string name, const std::filesystem::path& bag, const ReadingOptions& options);
+
+  using Sequence::read;
+  void read(std::size_t scan_index, Frame& frame) const override;
+  std::vector<std::uint32_t> read_truth(std::size_t scan_index) const override;
+
+ private:
+  struct Scan {
+    BagMessage message;
+    std::size_t number = 0;  ///< in its topic, from 0
+    std::int64_t stamp_ns = 0;
+    std::size_t points = 0;
+    bool timed = false;
+    std::string frame;
+  };
+
+  void list_scans(const std::string& topic);
+  void open_transforms(const ReadingOptions& options);
+  void open_pose_file(const ReadingOptions& options);
+  bool covered(const Scan& scan) const;
+  void leave_out_uncovered();
+  void state_undistortion();
+  void enter_scans();
+
+  BagFile bag_;
+  std::vector<Scan> scans_;
+  PoseAt pose_at_;
+  /// With a pose file the last scan is not undistorted: no pose follows its own.
+  bool leaves_last_ = false;
+  bool undistorts_ = true;
+};
+
+}  // namespace mosbench

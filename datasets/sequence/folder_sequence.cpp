@@ -1,0 +1,113 @@
+#include "datasets/sequence/folder_sequence.hpp"
+
+#include <fmt/format.h>
+
+#include <limits>
+#include <utility>
+
+#include "datasets/files/errors.hpp"
+#include "datasets/files/files.hpp"
+#include "datasets/files/scan_file.hpp"
+#include "datasets/files/times_file.hpp"
+#include "datasets/sequence/pose_source.hpp"
+
+namespace mosbench {
+namespace {
+
+/// A stem of this value or above is a time in nanoseconds (11 days and more), not a scan's number.
+constexpr std::uint64_t kSmallestStampStem = 1'000'000'000'000'000;
+
+void check_rows(std::size_t rows, const char* what, std::size_t scans,
+                 const std::filesystem::path& file) {
+  if (rows == scans) return;
+  throw DataError(file, fmt::format("{} {} for {} scans", rows, what, scans), "one per scan");
+}
+
+std::vector<std::int64_t> stamps_from_stems(const std::vector<ScanEntry>& scans) {
+  std::vector<std::int64_t> stamps_ns;
+  for (const ScanEntry& scan : scans) {
+    const auto number = stem_number(scan.stem);
+    if (!number || *number < kSmallestStampStem ||
+        *number > static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max())) {
+      return {};
+    }
+    stamps_ns.push_back(static_cast<std::int64_t>(*number));
+  }
+  return stamps_ns;
+}
+
+}  // namespace
+
+FolderSequence::FolderSequence(std::string name, const std::filesystem::path& folder,
+                               const ReadingOptions& asked, const FolderLayout& layout)
+    : bin_columns_(asked.bin_columns) {
+  ReadingOptions options = asked;
+  if (layout.poses_of_lidar && !options.poses && options.pose_frame == PoseFrame::kByCalib) {
+    options.pose_frame = PoseFrame::kLidar;
+  }
+  Recording& recording = mutable_recording();
+  recording.name = std::move(name);
+  list_scans(folder, layout);
+  const std::vector<std::int64_t> stamps_ns = read_stamps(folder);
+  SettledPoses poses =
+      settle_poses(folder, std::string(layout.poses_file), options, {size(), stamps_ns});
+  for (std::size_t k = 0; k < size(); ++k) {
+    recording.scans[k].map_from_sensor = poses.map_from_sensor[k];
+    if (!stamps_ns.empty()) recording.scans[k].stamp_ns = stamps_ns[k];
+  }
+  recording.files.insert(recording.files.begin(), poses.files.begin(), poses.files.end());
+  recording.remarks = std::move(poses.remarks);
+  recording.reading.insert(recording.reading.end(), poses.reading.begin(), poses.reading.end());
+}
+
+void FolderSequence::list_scans(const std::filesystem::path& folder, const FolderLayout& layout) {
+  Recording& recording = mutable_recording();
+  std::vector<StemFile> scans = layout.scan_folder.empty()
+                                    ? mosbench::list_scans(folder)
+                                    : list_scan_folder(folder / layout.scan_folder);
+  const std::filesystem::path& first = scans.front().file;
+  recording.reading = {{"scan_files", fmt::format("{} of {}/", first.extension().string(),
+                                                  first.parent_path().filename().string())}};
+  if (bin_columns_ != ReadingOptions{}.bin_columns) {
+    recording.reading.emplace_back("bin_columns", std::to_string(bin_columns_));
+  }
+  recording.scans.reserve(scans.size());
+  for (StemFile& scan : scans) {
+    const ScanHead head = read_scan_head(scan.file, bin_columns_);
+    labels_in_scans_ = labels_in_scans_ && head.has_labels;
+    ScanEntry& entry = recording.scans.emplace_back();
+    entry.stem = std::move(scan.stem);
+    entry.file = std::move(scan.file);
+    entry.points = head.points;
+  }
+}
+
+/// Returns one stamp per scan, or none.
+std::vector<std::int64_t> FolderSequence::read_stamps(const std::filesystem::path& folder) {
+  const std::filesystem::path times = folder / "times.txt";
+  if (!is_there(times)) return stamps_from_stems(recording().scans);
+  std::vector<std::int64_t> stamps_ns = read_times(times);
+  check_rows(stamps_ns.size(), "times", size(), times);
+  mutable_recording().files.push_back(times);
+  return stamps_ns;
+}
+
+void FolderSequence::check_count(std::size_t scan_index, std::size_t points) const {
+  const ScanEntry& entry = scan(scan_index);
+  if (points == entry.points) return;
+  throw DataError(*entry.file, "changed since the sequence was opened",
+                  fmt::format("{} points", entry.points));
+}
+
+void FolderSequence::read(std::size_t scan_index, Frame& frame) const {
+  frame.points = read_scan(*scan(scan_index).file, bin_columns_, std::move(frame.points));
+  check_count(scan_index, frame.points.size());
+  describe(scan_index, frame);
+  add_truth(scan_index, frame);
+}
+
+std::vector<std::uint32_t> FolderSequence::read_truth(std::size_t scan_index) const {
+  refuse_truth(scan_index);
+}
+
+}  // namespace mosbench

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "datasets/sequence/sequence.hpp"
+
+namespace mosbench {
+
+/// Where a layout keeps the scans and the poses of a sequence.
+struct FolderLayout {
+  std::string_view scan_folder = {};  ///< within the sequence folder; found by name when empty
+  std::string_view poses_file = "poses.txt";
+  bool poses_of_lidar = false;  ///< calib.txt is not applied to poses_file
+};
+
+/// A sequence folder with one file per scan, poses in a text file, and stamps in times.txt or in
+/// the names of the scans where there are any. Opening checks scan sizes and all counts. It has no
+/// truth of its own.
+class FolderSequence : public Sequence {
+ public:
+  /// Poses are read as `settle_poses` says. Throws DataError.
+  FolderSequence(std::string name, const std::filesystem::path& folder,
+                 const ReadingOptions& options, const FolderLayout& layout = {});
+
+  using Sequence::read;
+  void read(std::size_t scan_index, Frame& frame) const override;
+  std::vector<std::uint32_t> read_truth(std::size_t scan_index) const override;
+
+ protected:
+  /// Throws DataError when a scan has another number of points than at opening.
+  void check_count(std::size_t scan_index, std::size_t points) const;
+  /// Whether the points of every scan have a field "label".
+  bool labels_in_scans() const { return labels_in_scans_; }
+
+ private:
+  void list_scans(const std::filesystem::path& folder, const FolderLayout& layout);
+  std::vector<std::int64_t> read_stamps(const std::filesystem::path& folder);
+
+  std::size_t bin_columns_;
+  bool labels_in_scans_ = true;
+};
+
+}  // namespace mosbench
