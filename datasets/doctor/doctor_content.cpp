@@ -11,39 +11,12 @@
 #include "datasets/doctor/doctor.hpp"
 #include "datasets/files/files.hpp"
 #include "datasets/files/point_range.hpp"
+#include "datasets/layouts/layout.hpp"
 
 namespace mosbench {
 namespace {
 
 constexpr std::size_t kScansRead = 24;
-
-/// What a data set's files hold.
-struct Expected {
-  std::set<std::uint32_t> ids;                  ///< none: any
-  double furthest_m = 0.0;                      ///< that the sensor measures
-  double label_min_m = 0.0, label_max_m = 0.0;  ///< beyond, id 0 alone; no limits when equal
-};
-
-Expected expected_of(DatasetKind kind) {
-  switch (kind) {
-    case DatasetKind::kDoals:
-      return {{kStaticLabel, kMovingLabel}, 150.0};
-    case DatasetKind::kSipailou:
-      return {{0, 9, 251, 252}, 450.0, 3.0, 50.0};
-    case DatasetKind::kHelimos:
-      return {{0, 9, 251}, 450.0};
-    case DatasetKind::kMoe:
-    case DatasetKind::kKth:
-      return {{kStaticLabel, kMovingLabel}, 450.0};
-    case DatasetKind::kMdetector:
-      return {{}, 450.0};  // ids are class * 1000 + instance
-    default:
-      // semantic-kitti-mos.yaml
-      return {{0,  1,  9,  10, 11, 13, 15, 16, 18, 20,  30,  31,  32,  40,  44,  48,  49,  50,
-               51, 52, 60, 70, 71, 72, 80, 81, 99, 251, 252, 253, 254, 255, 256, 257, 258, 259},
-              200.0};
-  }
-}
 
 /// Size and the bytes at both ends.
 std::string ends_of_file(const std::filesystem::path& file) {
@@ -65,7 +38,7 @@ bool same_points(const std::vector<Point>& a, const std::vector<Point>& b) {
 class ContentCheck {
  public:
   ContentCheck(const Sequence& sequence, DatasetKind kind, SequenceCheckup& checkup)
-      : sequence_(sequence), expected_(expected_of(kind)), checkup_(checkup) {}
+      : sequence_(sequence), expected_(layout_of(kind).files), checkup_(checkup) {}
 
   std::vector<Symptom> run() {
     checkup_.points_of_range.assign(range_bins_m().size(), 0);
@@ -107,7 +80,7 @@ class ContentCheck {
         const auto bin = std::ranges::lower_bound(range_bins_m(), range_m);
         ++checkup_.points_of_range[std::min(static_cast<std::size_t>(bin - range_bins_m().begin()),
                                             range_bins_m().size() - 1)];
-        if (range_m > expected_.furthest_m) ++beyond_sensor_;
+        if (range_m > expected_.sensor_range_m) ++beyond_sensor_;
       }
       if (frame.truth) look_at_label((*frame.truth)[i], range_m);
     }
@@ -137,7 +110,7 @@ class ContentCheck {
       find(
           fmt::format("{} of {} points are further than the {:g} m that the sensor measures; "
                       "expected metres (are these millimetres?)",
-                      beyond_sensor_, returns, expected_.furthest_m));
+                      beyond_sensor_, returns, expected_.sensor_range_m));
     }
     if (returns > 0 && checkup_.points_of_range.front() * 100 > returns * 99) {
       find(fmt::format("nearly all points are nearer than {:g} m; expected metres",
@@ -147,9 +120,9 @@ class ContentCheck {
 
   void tell_of_labels() {
     std::vector<std::uint32_t> unknown;
-    bool learning_classes = !checkup_.points_of_id.empty() && !expected_.ids.empty();
+    bool learning_classes = !checkup_.points_of_id.empty() && !expected_.label_ids.empty();
     for (const auto& [id, unused] : checkup_.points_of_id) {
-      if (!expected_.ids.empty() && !expected_.ids.contains(id)) unknown.push_back(id);
+      if (!expected_.label_ids.empty() && !expected_.label_ids.contains(id)) unknown.push_back(id);
       learning_classes = learning_classes && id <= 2;
     }
     const bool only_unlabelled =
@@ -158,10 +131,10 @@ class ContentCheck {
       find(
           fmt::format("the labels are {}, as the classes of a network; expected the ids of the "
                       "data set ({})",
-                      fmt::join(ids_present(), ", "), shortened(expected_.ids)));
+                      fmt::join(ids_present(), ", "), shortened(expected_.label_ids)));
     } else if (!unknown.empty()) {
       find(fmt::format("the labels hold the ids {}; expected only those of the data set ({})",
-                       fmt::join(unknown, ", "), shortened(expected_.ids)));
+                       fmt::join(unknown, ", "), shortened(expected_.label_ids)));
     }
     if (only_unlabelled) find("all labels of the scans read are 0; expected labelled points");
     if (labels_beyond_ > 0) {
@@ -235,7 +208,7 @@ class ContentCheck {
   }
 
   const Sequence& sequence_;
-  Expected expected_;
+  const LayoutContent& expected_;
   SequenceCheckup& checkup_;
   std::size_t beyond_sensor_ = 0, labels_beyond_ = 0;
   std::vector<Symptom> symptoms_;

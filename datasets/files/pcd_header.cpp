@@ -188,7 +188,8 @@ PcdHeader parse_pcd_header(std::string_view bytes, const std::filesystem::path& 
 void check_pcd_size(const PcdHeader& header, std::uintmax_t file_bytes,
                     const std::filesystem::path& file) {
   if (header.storage != PcdStorage::kBinary) return;
-  check_body_size(header, file_bytes - std::min<std::uintmax_t>(file_bytes, header.body_offset_bytes),
+  check_body_size(header,
+                  file_bytes - std::min<std::uintmax_t>(file_bytes, header.body_offset_bytes),
                   std::uintmax_t{header.points} * header.point_bytes, file);
 }
 

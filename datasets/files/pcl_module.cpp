@@ -34,9 +34,9 @@ std::string unpack(std::string_view bytes, std::size_t body_offset_bytes, PclClo
     std::istringstream body(std::string(bytes.substr(body_offset_bytes)));
     result = reader.readBodyASCII(body, read, version);
   } else {
-    result = reader.readBodyBinary(reinterpret_cast<const unsigned char*>(bytes.data()), read,
-                                   version, storage == kCompressed,
-                                   static_cast<unsigned int>(body_offset_bytes));
+    result =
+        reader.readBodyBinary(reinterpret_cast<const unsigned char*>(bytes.data()), read, version,
+                              storage == kCompressed, static_cast<unsigned int>(body_offset_bytes));
   }
   if (result < 0) return "PCL does not read its points";
   for (const pcl::PCLPointField& field : read.fields) {

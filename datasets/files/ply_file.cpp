@@ -64,7 +64,9 @@ class PlyHeadParser {
     CloudHead& head = head_.vertices;
     head.height = 1;
     head.records_at_bytes = at_;
-    if (!head_.ascii && (std::max<std::uintmax_t>(file_bytes_, at_) - at_) / std::max(1U, head.point_step_bytes) < head.width) {
+    if (!head_.ascii &&
+        (std::max<std::uintmax_t>(file_bytes_, at_) - at_) / std::max(1U, head.point_step_bytes) <
+            head.width) {
       fail("ends within its points",
            std::to_string(head.width) + " of " + std::to_string(head.point_step_bytes) + " bytes");
     }

@@ -21,7 +21,8 @@ std::vector<StemFile> list_scan_folder(const std::filesystem::path& scan_folder)
 std::vector<StemFile> list_scans(const std::filesystem::path& sequence_folder);
 
 /// Reads the points of a scan into the memory of `reused` where it can. A .bin file has
-/// `bin_columns` float32 per point, one that ends in .pcd.bin five as in nuScenes. Throws DataError.
+/// `bin_columns` float32 per point, one that ends in .pcd.bin five as in nuScenes. Throws
+/// DataError.
 std::vector<Point> read_scan(const std::filesystem::path& file, std::size_t bin_columns = 4,
                              std::vector<Point> reused = {});
 

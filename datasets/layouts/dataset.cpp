@@ -1,41 +1,29 @@
 #include "datasets/layouts/dataset.hpp"
 
 #include <algorithm>
-#include <array>
 #include <system_error>
 #include <utility>
 
 #include "datasets/files/errors.hpp"
-#include "datasets/layouts/catalogue.hpp"
+#include "datasets/layouts/layout.hpp"
 #include "datasets/layouts/simulated_origin.hpp"
 
 namespace mosbench {
 namespace {
 
-/// In the order in which an untold path is tried: the most telling layout first.
-const std::array<const Catalogue*, 8>& catalogues() {
-  static const std::array<const Catalogue*, 8> all = {
-      &helimos_catalogue(),  &doals_catalogue(),        &moe_catalogue(),
-      &kth_catalogue(),      &apollo_catalogue(),       &mdetector_catalogue(),
-      &sipailou_catalogue(), &semantickitti_catalogue()};
-  return all;
-}
-
-const Catalogue& catalogue_of(DatasetKind kind) {
-  return **std::ranges::find_if(
-      catalogues(), [kind](const Catalogue* catalogue) { return catalogue->kind == kind; });
-}
-
-const Catalogue& recognise(const std::filesystem::path& path, std::vector<std::string>& remarks) {
+const Layout& recognise(const std::filesystem::path& path, std::vector<std::string>& remarks) {
   if (const auto origin = simulated_origin(path)) {
     remarks.push_back("taken for " + std::string(to_string(origin->layout)) +
                       ": it is simulated in this layout");
-    return catalogue_of(origin->layout);
+    return layout_of(origin->layout);
   }
-  for (const Catalogue* catalogue : catalogues()) {
-    if (const auto why = catalogue->recognise(path)) {
-      remarks.push_back("taken for " + std::string(to_string(catalogue->kind)) + ": " + *why);
-      return *catalogue;
+  for (const Evidence evidence : {Evidence::kFolders, Evidence::kName, Evidence::kNone}) {
+    for (const Layout* layout : layouts()) {
+      if (layout->evidence != evidence) continue;
+      if (const auto why = layout->recognise(path)) {
+        remarks.push_back("taken for " + std::string(layout->name) + ": " + *why);
+        return *layout;
+      }
     }
   }
   throw DataError(
@@ -69,7 +57,7 @@ std::vector<SequenceFolder> keep(std::vector<SequenceFolder> folders,
 }
 
 struct Found {
-  const Catalogue& catalogue;
+  const Layout& layout;
   std::vector<SequenceFolder> folders;
 };
 
@@ -81,11 +69,10 @@ Found find(const std::filesystem::path& path, const OpenOptions& options,
     throw DataError(path, "is no folder that can be listed (" + error.message() + ")",
                     "a data set's root or one sequence folder");
   }
-  const Catalogue& catalogue =
-      options.kind ? catalogue_of(*options.kind) : recognise(path, remarks);
-  auto found = catalogue.list(path);
-  if (found.empty()) throw DataError(path, "holds no sequence", catalogue.layout);
-  return {catalogue, keep(std::move(found), options.sequences)};
+  const Layout& layout = options.kind ? layout_of(*options.kind) : recognise(path, remarks);
+  auto found = layout.list(path);
+  if (found.empty()) throw DataError(path, "holds no sequence", std::string(layout.expected));
+  return {layout, keep(std::move(found), options.sequences)};
 }
 
 }  // namespace
@@ -95,23 +82,25 @@ std::vector<SequenceFolder> find_sequences(const std::filesystem::path& path,
                                            std::optional<DatasetKind>& kind) {
   std::vector<std::string> ignored;
   Found found = find(path, options, ignored);
-  kind = found.catalogue.kind;
+  kind = found.layout.kind;
   return std::move(found.folders);
 }
 
 Dataset open_dataset(const std::filesystem::path& path, const OpenOptions& options) {
   Dataset dataset;
-  const auto [catalogue, folders] = find(path, options, dataset.remarks);
-  dataset.kind = catalogue.kind;
+  const auto [layout, folders] = find(path, options, dataset.remarks);
+  dataset.kind = layout.kind;
   dataset.root = path;
   if (options.reading.poses && folders.size() != 1) {
     throw UsageError("--poses is for one sequence, not for " + joined(folders) +
                      ", expected one name in --sequences");
   }
   for (const SequenceFolder& folder : folders) {
-    dataset.sequences.push_back(catalogue.open(folder, options.reading));
+    dataset.sequences.push_back(layout.open(folder, options.reading));
   }
-  dataset.splits = catalogue.splits(folders, dataset.sequences, dataset.remarks);
+  if (layout.splits != nullptr) {
+    dataset.splits = layout.splits(folders, dataset.sequences, dataset.remarks);
+  }
   return dataset;
 }
 

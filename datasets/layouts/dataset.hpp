@@ -28,7 +28,7 @@ std::string_view to_string(DatasetKind kind);
 std::optional<DatasetKind> dataset_kind_from_string(std::string_view name);
 /// "doals, sipailou, ..."
 std::string dataset_kind_names();
-/// Whether `simulate` and `convert` write the layout: the first four.
+/// Whether `simulate` and `convert` write the layout.
 bool is_written(DatasetKind kind);
 
 /// Part of a sequence: the scans with these stems, or all of them.
@@ -74,9 +74,9 @@ std::vector<SequenceFolder> find_sequences(const std::filesystem::path& path,
                                            std::optional<DatasetKind>& kind);
 
 /// Opens a data set's root or one sequence folder, and of it only the sequences kept. A kind that
-/// is not given is recognised, in this order: folders named after HeLiMOS's sensors; indices.csv or
-/// sequence_N folders (doals); pcd/ beside gt_poses.txt (moe) or gt_cloud.pcd (kth);
-/// velodyne_poses_kitti.txt (apollo); "M-detector" or "sipailou" in a folder name of the path; else
+/// is not given is recognised, in this order: indices.csv or sequence_N folders (doals); folders
+/// named after HeLiMOS's sensors; velodyne_poses_kitti.txt (apollo); pcd/ next to gt_poses.txt
+/// (moe) or gt_cloud.pcd (kth); "sipailou" or "M-detector" in a folder name of the path; else
 /// semantickitti. A remark says so. Throws DataError when nothing usable is there, UsageError for a
 /// sequence name that does not exist or a pose file given for several sequences.
 Dataset open_dataset(const std::filesystem::path& path, const OpenOptions& options);

@@ -37,8 +37,8 @@ const DoalsPublished* find_doals_published(std::string_view scene, std::string_v
 /// exact stamp; without stamps by the published list, if the recording has the published length.
 class DoalsSequence : public SequenceAround {
  public:
-  /// `published` is null for a recording that is none of the published ones. Throws DataError, also for a stamp or an
-  /// index in indices.csv that no scan has.
+  /// `published` is null for a recording that is none of the published ones. Throws DataError, also
+  /// for a stamp or an index in indices.csv that no scan has.
   DoalsSequence(std::string name, const std::filesystem::path& folder,
                 const DoalsPublished* published, const ReadingOptions& options = {});
 

@@ -1,5 +1,6 @@
 #include "datasets/layouts/sequence_writer.hpp"
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -20,24 +21,33 @@ namespace fs = std::filesystem;
 
 class KittiWriter : public SequenceWriter {
  public:
-  explicit KittiWriter(const fs::path& folder) : folder_(folder) {}
+  KittiWriter(const fs::path& folder, const WriteOptions& options)
+      : folder_(folder),
+        camera_from_lidar_(options.camera_from_lidar),
+        stamps_ns_(options.scans),
+        poses_(options.scans, Pose::Identity()) {}
 
-  void add(const Frame& frame) override {
+  void write(std::size_t scan_index, const Frame& frame) override {
     write_bin(folder_ / "velodyne" / (frame.stem + ".bin"), frame.points);
     if (frame.truth) write_labels(folder_ / "labels" / (frame.stem + ".label"), *frame.truth);
-    if (frame.stamp_ns) stamps_ns_.push_back(*frame.stamp_ns);
-    poses_.push_back(frame.map_from_sensor);
+    stamps_ns_[scan_index] = frame.stamp_ns;
+    poses_[scan_index] = frame.map_from_sensor;
   }
 
   void finish() override {
-    if (stamps_ns_.size() == poses_.size()) write_times(folder_ / "times.txt", stamps_ns_);
-    write_calib(folder_ / "calib.txt", Pose::Identity());
+    std::vector<std::int64_t> times_ns;
+    for (const auto& stamp_ns : stamps_ns_) {
+      if (stamp_ns) times_ns.push_back(*stamp_ns);
+    }
+    if (times_ns.size() == poses_.size()) write_times(folder_ / "times.txt", times_ns);
+    write_calib(folder_ / "calib.txt", camera_from_lidar_);
     write_poses(folder_ / "poses.txt", poses_);
   }
 
  private:
   fs::path folder_;
-  std::vector<std::int64_t> stamps_ns_;
+  Pose camera_from_lidar_;
+  std::vector<std::optional<std::int64_t>> stamps_ns_;
   std::vector<Pose> poses_;
 };
 
@@ -49,37 +59,45 @@ bool is_moving(std::uint32_t label) {
 /// Stamps and truth as DOALS has them.
 class DoalsRows {
  public:
-  /// The frame's stamp.
-  std::int64_t add(const Frame& frame) {
+  explicit DoalsRows(std::size_t scans) : stamps_ns_(scans), rows_(scans) {}
+
+  /// Returns the frame's stamp.
+  std::int64_t add(std::size_t scan_index, const Frame& frame) {
     constexpr std::int64_t kPeriodNs = 100'000'000;
-    stamps_ns_.push_back(
-        frame.stamp_ns.value_or(static_cast<std::int64_t>(stamps_ns_.size()) * kPeriodNs));
-    if (!frame.truth) return stamps_ns_.back();
-    IndicesRow& row = rows_.emplace_back();
-    row.stamp_ns = stamps_ns_.back();
+    const std::int64_t stamp_ns =
+        frame.stamp_ns.value_or(static_cast<std::int64_t>(scan_index) * kPeriodNs);
+    stamps_ns_[scan_index] = stamp_ns;
+    if (!frame.truth) return stamp_ns;
+    IndicesRow& row = rows_[scan_index].emplace();
+    row.stamp_ns = stamp_ns;
     for (std::uint32_t i = 0; i < frame.truth->size(); ++i) {
       if (is_moving((*frame.truth)[i])) row.moving.push_back(i);
     }
-    return row.stamp_ns;
+    return stamp_ns;
   }
   const std::vector<std::int64_t>& stamps_ns() const { return stamps_ns_; }
   void write(const fs::path& folder) const {
-    if (!rows_.empty()) write_indices(folder / "indices.csv", rows_);
+    std::vector<IndicesRow> labelled;
+    for (const auto& row : rows_) {
+      if (row) labelled.push_back(*row);
+    }
+    if (!labelled.empty()) write_indices(folder / "indices.csv", labelled);
   }
 
  private:
   std::vector<std::int64_t> stamps_ns_;
-  std::vector<IndicesRow> rows_;
+  std::vector<std::optional<IndicesRow>> rows_;  ///< of the labelled scans
 };
 
 class DoalsWriter : public SequenceWriter {
  public:
-  explicit DoalsWriter(const fs::path& folder) : folder_(folder) {}
+  DoalsWriter(const fs::path& folder, std::size_t scans)
+      : folder_(folder), rows_(scans), poses_(scans, Pose::Identity()) {}
 
-  void add(const Frame& frame) override {
+  void write(std::size_t scan_index, const Frame& frame) override {
     write_bin(folder_ / "velodyne" / (frame.stem + ".bin"), frame.points);
-    rows_.add(frame);
-    poses_.push_back(frame.map_from_sensor);
+    rows_.add(scan_index, frame);
+    poses_[scan_index] = frame.map_from_sensor;
   }
 
   void finish() override {
@@ -96,8 +114,8 @@ class DoalsWriter : public SequenceWriter {
 
 constexpr const char* kLidarFrame = "os1_lidar";
 
-/// x y z intensity float32 and t uint32, as far as DOALS's driver has the same; a scan is taken at
-/// one instant, so every t is 0.
+/// Returns a message with x y z intensity float32 and t uint32, fields that DOALS's driver has too;
+/// a scan is taken at one instant, so every t is 0.
 std::string cloud_message(std::span<const Point> points, std::int64_t stamp_ns) {
   constexpr std::uint32_t kStepBytes = 20;
   constexpr std::uint8_t kUint32 = 6, kFloat32 = 7;
@@ -123,11 +141,11 @@ std::string cloud_message(std::span<const Point> points, std::int64_t stamp_ns) 
 
 class DoalsBagWriter : public SequenceWriter {
  public:
-  DoalsBagWriter(const fs::path& folder, const std::string& compression)
-      : folder_(folder), bag_(folder / "bag.bag", compression) {}
+  DoalsBagWriter(const fs::path& folder, const WriteOptions& options)
+      : folder_(folder), bag_(folder / "bag.bag", options.compression), rows_(options.scans) {}
 
-  void add(const Frame& frame) override {
-    const std::int64_t stamp_ns = rows_.add(frame);
+  void write(std::size_t scan_index, const Frame& frame) override {
+    const std::int64_t stamp_ns = rows_.add(scan_index, frame);
     bag_.write("/tf", stamp_ns, kTfMessage,
                format_tf_message({{stamp_ns, "map", kLidarFrame, frame.map_from_sensor}}));
     bag_.write("/os1_cloud_node/points", stamp_ns, kPointCloud2,
@@ -147,17 +165,15 @@ class DoalsBagWriter : public SequenceWriter {
 
 }  // namespace
 
-std::unique_ptr<SequenceWriter> write_as_kitti(const fs::path& folder) {
-  return std::make_unique<KittiWriter>(folder);
+std::unique_ptr<SequenceWriter> write_as_kitti(const fs::path& folder,
+                                               const WriteOptions& options) {
+  return std::make_unique<KittiWriter>(folder, options);
 }
 
-std::unique_ptr<SequenceWriter> write_as_doals(const fs::path& folder) {
-  return std::make_unique<DoalsWriter>(folder);
-}
-
-std::unique_ptr<SequenceWriter> write_as_doals_bag(const fs::path& folder,
-                                                   const std::string& compression) {
-  return std::make_unique<DoalsBagWriter>(folder, compression);
+std::unique_ptr<SequenceWriter> write_as_doals(const fs::path& folder,
+                                               const WriteOptions& options) {
+  if (options.as_bag) return std::make_unique<DoalsBagWriter>(folder, options);
+  return std::make_unique<DoalsWriter>(folder, options.scans);
 }
 
 }  // namespace mosbench

@@ -18,7 +18,7 @@ namespace {
 constexpr std::uint64_t kSmallestStampStem = 1'000'000'000'000'000;
 
 void check_rows(std::size_t rows, const char* what, std::size_t scans,
-                 const std::filesystem::path& file) {
+                const std::filesystem::path& file) {
   if (rows == scans) return;
   throw DataError(file, fmt::format("{} {} for {} scans", rows, what, scans), "one per scan");
 }

@@ -4,24 +4,17 @@
 #include <xxhash.h>
 
 #include <algorithm>
-#include <atomic>
-#include <exception>
+#include <memory>
 #include <mutex>
+#include <set>
 #include <system_error>
-#include <thread>
 #include <vector>
 
 #include "core/base/thread_pool.hpp"
-#include "datasets/files/bin_file.hpp"
-#include "datasets/files/calib_file.hpp"
 #include "datasets/files/errors.hpp"
 #include "datasets/files/files.hpp"
-#include "datasets/files/indices_file.hpp"
-#include "datasets/files/label_file.hpp"
-#include "datasets/files/pose_file.hpp"
-#include "datasets/files/split_file.hpp"
-#include "datasets/files/times_file.hpp"
 #include "datasets/layouts/helimos_layout.hpp"
+#include "datasets/layouts/layout.hpp"
 #include "datasets/layouts/simulated_origin.hpp"
 #include "datasets/simulator/built_in_scenes.hpp"
 #include "datasets/simulator/portable_math.hpp"
@@ -36,7 +29,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kMostScans = 1'000'000;
 
-// KITTI's cameras look along the car: camera x is lidar -y, camera y lidar -z, camera z lidar x.
+/// KITTI's cameras look along the car: camera x is lidar -y, camera y lidar -z, camera z lidar x.
 Pose camera_from_lidar(DatasetKind layout) {
   Pose tr = Pose::Identity();
   if (layout != DatasetKind::kSemanticKitti) return tr;
@@ -54,13 +47,14 @@ SimulatedOrigin origin_of(const SimulateOptions& options, const Scene& scene) {
           .seed = options.seed};
 }
 
-// A killed run may have got no further than the first bytes of the marker.
+/// Returns whether a folder is empty but for the first bytes of the marker, which a killed run may
+/// have left.
 bool holds_nothing(const fs::path& folder) {
   const std::string partial_marker = std::string(kSimulatedMarker) + ".partial";
   std::error_code error;
   fs::directory_iterator entries(folder, error);
   if (error == std::errc::no_such_file_or_directory) return true;
-  if (error) throw DataError(folder, "cannot be looked into", "a folder for the simulation");
+  if (error) throw DataError(folder, "cannot be listed", "a folder for the simulation");
   return std::all_of(fs::begin(entries), fs::end(entries), [&](const fs::directory_entry& entry) {
     return entry.path().filename() == partial_marker;
   });
@@ -95,117 +89,61 @@ std::string readme(const SimulatedOrigin& origin) {
           : "Truth is by speed: above 0.5 m/s is moving, for vehicles above 1.0 m/s.\n");
 }
 
-// Writes one sensor's folder. Scans may be written in any order by several threads.
-class RecordingWriter {
+/// Makes the frames of one recording as its layout stores them.
+class RecordingFrames {
  public:
-  RecordingWriter(const SimulateOptions& options, const Scene& scene,
-                  const SimulatedRecording& recording)
+  RecordingFrames(const SimulateOptions& options, const Scene& scene, SensorKind sensor)
       : layout_(options.layout),
-        folder_(options.out / recording.folder),
-        simulator_(scene, sensor_model(recording.sensor), options.seed),
-        labelled_(labelled_scans(options.layout, options.scans)),
-        poses_(options.scans, Pose::Identity()),
-        stamps_ns_(options.scans),
-        indices_(options.scans) {}
+        simulator_(scene, sensor_model(sensor), options.seed),
+        labelled_(labelled_scans(options.layout, options.scans)) {}
 
-  void write_scan(std::size_t scan_index) {
+  Frame frame(std::size_t scan_index) const {
     const SimulatedScan scan = simulator_.scan(scan_index);
-    poses_[scan_index] = scan.map_from_sensor;
-    stamps_ns_[scan_index] = scan.stamp_ns;
-    const std::string stem = fmt::format("{:06}", scan_index);
-    const fs::path bin = folder_ / "velodyne" / (stem + ".bin");
+    Frame frame;
+    frame.stem = fmt::format("{:06}", scan_index);
+    frame.map_from_sensor = stored_pose(scan.map_from_sensor);
+    frame.stamp_ns = stored_stamp_ns(scan.stamp_ns);
     const bool labelled = labelled_.contains(scan_index);
     if (layout_ == DatasetKind::kDoals) {
-      write_bin(bin, scan.points);
-      if (labelled) indices_[scan_index] = {scan.stamp_ns, doals_dynamic_indices(scan)};
-      return;
+      frame.points = scan.points;
+      if (labelled) frame.truth = doals_truth(scan);
+      return frame;
     }
-    std::vector<Point> points;
-    std::vector<std::uint32_t> labels;
+    if (labelled) frame.truth.emplace();
     for (std::size_t i = 0; i < scan.points.size(); ++i) {
       if (scan.owners[i] == SimulatedScan::kNoReturn) continue;
-      points.push_back(scan.points[i]);
-      labels.push_back(layout_label(layout_, scan, i));
+      frame.points.push_back(scan.points[i]);
+      if (labelled) frame.truth->push_back(layout_label(layout_, scan, i));
     }
-    write_bin(bin, points);
-    if (labelled) write_labels(folder_ / "labels" / (stem + ".label"), labels);
-  }
-
-  /// Everything that comes after the scans, the poses last.
-  void finish() const {
-    if (layout_ == DatasetKind::kDoals) {
-      std::vector<IndicesRow> rows;
-      for (const std::size_t scan_index : labelled_) rows.push_back(indices_[scan_index]);
-      write_indices(folder_ / "indices.csv", rows);
-      write_times(folder_ / "times.txt", stamps_ns_);
-    } else {
-      write_calib(folder_ / "calib.txt", camera_from_lidar(layout_));
-    }
-    if (layout_ == DatasetKind::kSemanticKitti) {
-      write_times(folder_ / "times.txt", times_since_first_ns());
-    }
-    write_poses(folder_ / "poses.txt", stored_poses());
+    return frame;
   }
 
  private:
-  std::vector<std::int64_t> times_since_first_ns() const {
-    std::vector<std::int64_t> times_ns = stamps_ns_;
-    for (std::int64_t& time_ns : times_ns) time_ns -= stamps_ns_.front();
-    return times_ns;
+  /// Sipailou and HeLiMOS have no times.txt, that of SemanticKITTI starts at 0.
+  std::optional<std::int64_t> stored_stamp_ns(std::int64_t stamp_ns) const {
+    if (layout_ == DatasetKind::kDoals) return stamp_ns;
+    if (layout_ == DatasetKind::kSemanticKitti) return stamp_ns - simulator_.stamp_ns(0);
+    return std::nullopt;
   }
 
-  // HeLiMOS's poses stand in a global frame, those of the other sets begin at the identity.
-  std::vector<Pose> stored_poses() const {
-    if (layout_ == DatasetKind::kHelimos) return poses_;
+  /// Poses of HeLiMOS are in a global frame, those of the other sets begin at the identity.
+  Pose stored_pose(const Pose& pose) const {
+    if (layout_ == DatasetKind::kHelimos) return pose;
     const Pose tr = camera_from_lidar(layout_);
-    const Pose lidar_from_camera = inverse_of(tr);
-    const Pose first_from_map = inverse_of(poses_.front());
-    std::vector<Pose> stored;
-    for (const Pose& pose : poses_) {
-      stored.push_back(compose(compose(tr, compose(first_from_map, pose)), lidar_from_camera));
-    }
-    return stored;
+    const Pose first_from_map = inverse_of(simulator_.map_from_sensor(0));
+    return compose(compose(tr, compose(first_from_map, pose)), inverse_of(tr));
   }
 
   DatasetKind layout_;
-  fs::path folder_;
   Simulator simulator_;
   std::set<std::size_t> labelled_;
-  std::vector<Pose> poses_;
-  std::vector<std::int64_t> stamps_ns_;
-  std::vector<IndicesRow> indices_;
 };
 
-// Calls work(0) to work(count - 1) from several threads and passes on the first exception.
-void for_each_in_parallel(std::size_t count, unsigned threads,
-                          const std::function<void(std::size_t)>& work) {
-  std::atomic<std::size_t> next = 0;
-  std::exception_ptr failure;
-  std::mutex failure_mutex;
-  const auto take_work = [&] {
-    try {
-      for (std::size_t i = next++; i < count; i = next++) work(i);
-    } catch (...) {
-      const std::lock_guard lock(failure_mutex);
-      if (!failure) failure = std::current_exception();
-      next = count;
-    }
-  };
-  {
-    std::vector<std::jthread> others;
-    for (unsigned i = 1; i < threads; ++i) others.emplace_back(take_work);
-    take_work();
-  }
-  if (failure) std::rethrow_exception(failure);
-}
-
-void write_splits(const SimulateOptions& options) {
-  const SplitNumbers splits = helimos_splits(labelled_scans(options.layout, options.scans));
-  const fs::path folder = options.out / helimos_folder();
-  if (!splits.train.empty()) write_split(folder / "train.txt", splits.train);
-  if (!splits.val.empty()) write_split(folder / "val.txt", splits.val);
-  write_split(folder / "test.txt", splits.test);
-}
+/// A recording and what writes it.
+struct RecordingWriter {
+  RecordingFrames frames;
+  std::unique_ptr<SequenceWriter> files;
+};
 
 void check(const SimulateOptions& options) {
   if (options.scans < 1 || options.scans > kMostScans) {
@@ -228,9 +166,13 @@ void simulate(const SimulateOptions& options,
   check(options);
   const Scene scene = load_scene(options.scene);
   const SimulatedOrigin origin = origin_of(options, scene);
+  const WriteOptions writing = {.scans = options.scans,
+                                .camera_from_lidar = camera_from_lidar(options.layout)};
   std::vector<RecordingWriter> writers;
   for (const SimulatedRecording& recording : recordings_of(options.layout, scene)) {
-    writers.emplace_back(options, scene, recording);
+    writers.push_back(
+        {RecordingFrames(options, scene, recording.sensor),
+         layout_of(options.layout).writer->open(options.out / recording.folder, writing)});
   }
   claim_folder(options.out, origin);
   write_file_atomic(options.out / "README.txt", readme(origin));
@@ -239,15 +181,20 @@ void simulate(const SimulateOptions& options,
   const std::size_t total = writers.size() * options.scans;
   std::size_t done = 0;
   std::mutex progress_mutex;
-  const unsigned threads = options.threads > 0 ? options.threads : hardware_threads();
-  for_each_in_parallel(total, threads, [&](std::size_t i) {
-    writers[i / options.scans].write_scan(i % options.scans);
+  ThreadPool pool(options.threads > 0 ? options.threads : hardware_threads());
+  pool.for_ranges(total, 1, [&](std::size_t i, std::size_t, unsigned) {
+    const RecordingWriter& writer = writers[i / options.scans];
+    const std::size_t scan_index = i % options.scans;
+    writer.files->write(scan_index, writer.frames.frame(scan_index));
     if (!progress) return;
     const std::lock_guard lock(progress_mutex);
     progress(++done, total);
   });
-  if (options.layout == DatasetKind::kHelimos) write_splits(options);
-  for (const RecordingWriter& writer : writers) writer.finish();
+  if (options.layout == DatasetKind::kHelimos) {
+    write_helimos_splits(options.out,
+                         simulated_splits(labelled_scans(options.layout, options.scans)));
+  }
+  for (const RecordingWriter& writer : writers) writer.files->finish();
 }
 
 }  // namespace mosbench

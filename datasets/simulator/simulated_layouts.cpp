@@ -133,16 +133,14 @@ std::set<std::size_t> labelled_scans(DatasetKind layout, std::size_t scans) {
   return labelled;
 }
 
-SplitNumbers helimos_splits(const std::set<std::size_t>& labelled) {
+HelimosSplits simulated_splits(const std::set<std::size_t>& labelled) {
   const std::size_t block = std::max<std::size_t>(1, labelled.size() * 16 / 100);
-  SplitNumbers splits;
+  HelimosSplits splits;
   std::size_t position = 0;
   for (const std::size_t number : labelled) {
     const std::size_t from_end = labelled.size() - position++;
-    auto& split = from_end <= block       ? splits.test
-                  : from_end <= 2 * block ? splits.val
-                                          : splits.train;
-    split.insert(number);
+    const char* split = from_end <= block ? "test" : from_end <= 2 * block ? "val" : "train";
+    splits[split].insert(number);
   }
   return splits;
 }
@@ -163,14 +161,14 @@ std::uint32_t layout_label(DatasetKind layout, const SimulatedScan& scan, std::s
   return moving_label(scan, point);
 }
 
-std::vector<std::uint32_t> doals_dynamic_indices(const SimulatedScan& scan) {
-  std::vector<std::uint32_t> dynamic;
-  for (std::uint32_t i = 0; i < scan.points.size(); ++i) {
+std::vector<std::uint32_t> doals_truth(const SimulatedScan& scan) {
+  std::vector<std::uint32_t> truth(scan.points.size(), kStaticLabel);
+  for (std::size_t i = 0; i < truth.size(); ++i) {
     if (scan.owners[i] == SimulatedScan::kNoReturn) continue;
     const OwnerState& owner = scan.scene.owners[scan.owners[i]];
-    if (owner.moving || owner.dynamic_by_appearance) dynamic.push_back(i);
+    if (owner.moving || owner.dynamic_by_appearance) truth[i] = kMovingLabel;
   }
-  return dynamic;
+  return truth;
 }
 
 }  // namespace mosbench

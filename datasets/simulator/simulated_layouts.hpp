@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "datasets/layouts/dataset.hpp"
+#include "datasets/layouts/helimos_layout.hpp"
 #include "datasets/simulator/simulator.hpp"
 
 namespace mosbench {
@@ -26,18 +27,16 @@ std::vector<SimulatedRecording> recordings_of(DatasetKind layout, const Scene& s
 /// every fourth for HeLiMOS; all otherwise. Never empty.
 std::set<std::size_t> labelled_scans(DatasetKind layout, std::size_t scans);
 
-/// Blocks of 68, 16 and 16 % of HeLiMOS's labelled scans; the test block is never empty.
-struct SplitNumbers {
-  std::set<std::uint64_t> train, val, test;
-};
-SplitNumbers helimos_splits(const std::set<std::size_t>& labelled);
+/// Returns blocks of 68, 16 and 16 % of HeLiMOS's labelled scans; the test block is never empty.
+HelimosSplits simulated_splits(const std::set<std::size_t>& labelled);
 
 /// The label file's value of a point that has a return.
 /// Sipailou: 9, 251 or for vehicles 252 within 3..50 m, else 0. HeLiMOS: 9 or 251 within 80 m, else
 /// 0. SemanticKITTI: its class ids, with the owner as instance of movable things.
 std::uint32_t layout_label(DatasetKind layout, const SimulatedScan& scan, std::size_t point);
 
-/// DOALS's truth, by appearance: points of what moves and of what looks as if it could.
-std::vector<std::uint32_t> doals_dynamic_indices(const SimulatedScan& scan);
+/// Returns DOALS's truth, by appearance: moving are the points of what moves and of what looks as
+/// if it could, static all others.
+std::vector<std::uint32_t> doals_truth(const SimulatedScan& scan);
 
 }  // namespace mosbench

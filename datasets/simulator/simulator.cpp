@@ -40,12 +40,23 @@ Simulator::Simulator(Scene scene, const SensorModel& sensor, std::uint64_t seed)
   if (repeats_every_scan(sensor_)) directions_ = beam_directions(sensor_, 0);
 }
 
+double Simulator::time_s(std::size_t scan_index) const {
+  return static_cast<double>(scan_index) * scene_.scan_period_s;
+}
+
+Pose Simulator::map_from_sensor(std::size_t scan_index) const {
+  return sensor_pose(scene_, sensor_, time_s(scan_index));
+}
+
+std::int64_t Simulator::stamp_ns(std::size_t scan_index) const {
+  return kFirstStamp_ns + std::llround(time_s(scan_index) * 1e9);
+}
+
 SimulatedScan Simulator::scan(std::size_t scan_index) const {
-  const double time_s = static_cast<double>(scan_index) * scene_.scan_period_s;
   SimulatedScan result;
-  result.scene = snapshot(scene_, time_s);
-  result.map_from_sensor = sensor_pose(scene_, sensor_, time_s);
-  result.stamp_ns = kFirstStamp_ns + std::llround(time_s * 1e9);
+  result.scene = snapshot(scene_, time_s(scan_index));
+  result.map_from_sensor = map_from_sensor(scan_index);
+  result.stamp_ns = stamp_ns(scan_index);
   result.points.assign(sensor_.slots(), Point{});
   result.owners.assign(sensor_.slots(), SimulatedScan::kNoReturn);
 

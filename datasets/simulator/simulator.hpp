@@ -37,10 +37,16 @@ class Simulator {
   /// there is no return or no label.
   Frame frame(std::size_t scan_index) const;
 
+  /// Pose and stamp of a scan without its points.
+  Pose map_from_sensor(std::size_t scan_index) const;
+  std::int64_t stamp_ns(std::size_t scan_index) const;
+
   const SensorModel& sensor() const { return sensor_; }
   const Scene& scene() const { return scene_; }
 
  private:
+  double time_s(std::size_t scan_index) const;
+
   Scene scene_;
   SensorModel sensor_;
   std::uint64_t seed_;

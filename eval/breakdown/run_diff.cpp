@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "datasets/layouts/catalogue.hpp"
+#include "datasets/layouts/folder_search.hpp"
 #include "eval/protocols/metrics.hpp"
 #include "eval/results/answer_text.hpp"
 #include "eval/results/text_table.hpp"

@@ -36,9 +36,9 @@ struct ConvertFlags {
 
 std::string convert_dataset(ConvertFlags options) {
   ConvertOptions& conversion = options.conversion;
-  conversion.as_bag = options.layout == "doals-bag";
+  conversion.writing.as_bag = options.layout == "doals-bag";
   conversion.layout =
-      conversion.as_bag ? DatasetKind::kDoals : *dataset_kind_from_string(options.layout);
+      conversion.writing.as_bag ? DatasetKind::kDoals : *dataset_kind_from_string(options.layout);
   const Dataset dataset = open_dataset(
       options.input, {dataset_kind_option(options.dataset), options.sequences, options.reading});
   std::optional<Progress> progress;
@@ -71,7 +71,7 @@ void add_convert_command(CLI::App& app, std::string& answer) {
   command->add_option("--sequences", options->sequences, "Names to convert, a,b (default: all)")
       ->delimiter(',')
       ->allow_extra_args(false);
-  command->add_option("--compression", options->conversion.compression, "none, lz4 or bz2")
+  command->add_option("--compression", options->conversion.writing.compression, "none, lz4 or bz2")
       ->capture_default_str()
       ->check(CLI::IsMember({"none", "lz4", "bz2"}));
   add_reading_flags(*command, options->reading);

@@ -4,10 +4,11 @@
 #include <algorithm>
 #include <memory>
 #include <mosbench/method.hpp>
+#include <span>
 
+#include "datasets/layouts/layout.hpp"
 #include "datasets/simulator/built_in_scenes.hpp"
 #include "eval/cli/commands.hpp"
-#include "eval/cli/dataset_catalogue.hpp"
 #include "eval/predictions/prediction_format.hpp"
 #include "eval/protocols/protocol_list.hpp"
 #include "eval/results/text_table.hpp"
@@ -24,15 +25,15 @@ constexpr const char* kListFooter = R"(Examples:
 
 std::string datasets_text() {
   std::string text;
-  for (const CataloguedDataset& dataset : catalogued_datasets()) {
-    text += fmt::format("{} ({})\n", to_string(dataset.kind), dataset.title);
+  for (const Layout* row : layouts()) {
+    text += fmt::format("{} ({})\n", row->name, row->title);
     for (const auto& [what, value] :
-         {std::pair{"content", dataset.content}, std::pair{"size", dataset.size},
-          std::pair{"published", dataset.published}, std::pair{"licence", dataset.licence}}) {
+         {std::pair{"content", row->content}, std::pair{"size", row->size},
+          std::pair{"published", row->published}, std::pair{"licence", row->licence}}) {
       text += fmt::format("  {:<10}{}\n", what, value);
     }
-    text += fmt::format("  {:<10}{}\n", "folders", dataset.folders.front());
-    for (const std::string_view line : dataset.folders.subspan(1)) {
+    text += fmt::format("  {:<10}{}\n", "folders", row->folders.front());
+    for (const std::string_view line : std::span(row->folders).subspan(1)) {
       text += fmt::format("  {:<10}{}\n", "", line);
     }
   }

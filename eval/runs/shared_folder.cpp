@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "datasets/files/errors.hpp"
-#include "datasets/layouts/catalogue.hpp"
+#include "datasets/layouts/folder_search.hpp"
 #include "eval/results/json_differences.hpp"
 
 namespace mosbench {

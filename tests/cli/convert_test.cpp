@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "datasets/layouts/dataset.hpp"
-#include "datasets/rosbag/bag_writer.hpp"
 #include "datasets/rosbag/bag_file.hpp"
+#include "datasets/rosbag/bag_writer.hpp"
 #include "tests/cli/program.hpp"
 #include "tests/cli/small_sequence.hpp"
 

@@ -1,5 +1,5 @@
-// Labels clouds of PCL: here a wall, and in front of it a box that moves by 0.5 m from scan to scan.
-// Prints how many points of each cloud move.
+// Labels clouds of PCL: a wall 10 m away, and 5 m away a box that moves by 0.5 m from scan to scan.
+// Prints how many points of each cloud are labelled as moving.
 
 #include <cstdio>
 #include <mosbench/pcl.hpp>
@@ -19,9 +19,10 @@ pcl::PointCloud<pcl::PointXYZI> scan_of_wall_and_box(int scan_index) {
   };
   const float box_y_m = 0.5F * static_cast<float>(scan_index) - 5.0F;
   for (int column = -100; column < 100; ++column) {
-    for (int row = -10; row < 10; ++row) {
+    for (int row = -30; row < 30; ++row) {
       const float y_m = 0.1F * static_cast<float>(column), z_m = 0.1F * static_cast<float>(row);
-      const bool behind_box = y_m > 2 * box_y_m && y_m < 2 * (box_y_m + 1.0F);
+      const bool behind_box =
+          y_m > 2 * box_y_m && y_m < 2 * (box_y_m + 1.0F) && row > -10 && row < 10;
       if (!behind_box) add(10.0F, y_m, z_m);
       if (behind_box) add(5.0F, y_m / 2, z_m / 2);
     }

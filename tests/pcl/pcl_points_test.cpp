@@ -68,8 +68,9 @@ TEST(PclPoints, TakeNoOtherNumberOfLabels) {
   pcl::PointCloud<pcl::PointXYZL> cloud;
   cloud.resize(2);
   const std::vector<std::uint32_t> labels = {kMovingLabel, kStaticLabel, kStaticLabel};
-  EXPECT_THAT([&] { set_labels(labels, cloud); },
-              ThrowsMessage<std::invalid_argument>(HasSubstr("3 labels, expected one for each of 2")));
+  EXPECT_THAT(
+      [&] { set_labels(labels, cloud); },
+      ThrowsMessage<std::invalid_argument>(HasSubstr("3 labels, expected one for each of 2")));
   set_labels(std::span(labels).first(2), cloud);
   EXPECT_EQ(cloud[0].label, kMovingLabel);
   EXPECT_THROW(labelled_cloud(two_points(), labels), std::invalid_argument);

@@ -229,10 +229,10 @@ TEST(SimulatedDoals, ListsAPersonWhoStandsStillAsDynamic) {
   const Simulator simulator(scene, sensor_model(SensorKind::kOs1_64), 1);
   const SimulatedScan scan = simulator.scan(3);
   const auto owner_of_pedestrian = static_cast<std::uint32_t>(1 + scene.structures.size());
-  const auto dynamic = doals_dynamic_indices(scan);
+  const std::vector<std::uint32_t> truth = doals_truth(scan);
   std::size_t of_pedestrian = 0;
-  for (const std::uint32_t i : dynamic) {
-    if (scan.owners[i] != owner_of_pedestrian) continue;
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    if (truth[i] != kMovingLabel || scan.owners[i] != owner_of_pedestrian) continue;
     ++of_pedestrian;
     EXPECT_EQ(moving_label(scan, i), kStaticLabel);
   }
@@ -249,13 +249,13 @@ TEST(SimulatedDoals, LabelsTenScansByStampOrFewerWhenShort) {
 TEST(SimulatedHelimos, LabelsPartOfTheScansAndSplitsThemInBlocks) {
   const auto labelled = labelled_scans(DatasetKind::kHelimos, 200);
   EXPECT_EQ(labelled.size(), 49U);
-  const SplitNumbers splits = helimos_splits(labelled);
-  EXPECT_EQ(splits.test.size(), 7U);
-  EXPECT_EQ(splits.val.size(), 7U);
-  EXPECT_EQ(splits.train.size(), 35U);
-  EXPECT_LT(*splits.train.rbegin(), *splits.val.begin());
-  EXPECT_LT(*splits.val.rbegin(), *splits.test.begin());
-  EXPECT_EQ(helimos_splits({7}).test, (std::set<std::uint64_t>{7}));
+  HelimosSplits splits = simulated_splits(labelled);
+  EXPECT_EQ(splits["test"].size(), 7U);
+  EXPECT_EQ(splits["val"].size(), 7U);
+  EXPECT_EQ(splits["train"].size(), 35U);
+  EXPECT_LT(*splits["train"].rbegin(), *splits["val"].begin());
+  EXPECT_LT(*splits["val"].rbegin(), *splits["test"].begin());
+  EXPECT_EQ(simulated_splits({7}), (HelimosSplits{{"test", {7}}}));
 }
 
 TEST(SimulatedSipailou, LabelsOnlyFromThreeToFiftyMetres) {

@@ -42,10 +42,11 @@ std::vector<Point> from_pcl(const pcl::PointCloud<T>& cloud) {
 /// Writes one label per point into the field `label` of T. Throws std::invalid_argument for another
 /// number of labels than points.
 template <PclPoint T>
-  requires requires(T& point, std::uint32_t label) { point.label = label; }
+requires requires(T& point, std::uint32_t label) { point.label = label; }
 void set_labels(std::span<const std::uint32_t> labels, pcl::PointCloud<T>& cloud) {
   if (labels.size() != cloud.size()) {
-    throw std::invalid_argument(std::to_string(labels.size()) + " labels, expected one for each of " +
+    throw std::invalid_argument(std::to_string(labels.size()) +
+                                " labels, expected one for each of " +
                                 std::to_string(cloud.size()) + " points");
   }
   for (std::size_t i = 0; i < labels.size(); ++i) cloud[i].label = labels[i];

@@ -221,8 +221,8 @@ std::string compressed_lz4(const std::string& text) {
   LZ4F_preferences_t preferences{};
   preferences.frameInfo.contentChecksumFlag = LZ4F_contentChecksumEnabled;
   std::string packed(LZ4F_compressFrameBound(text.size(), &preferences), '\0');
-  const std::size_t size_bytes = LZ4F_compressFrame(packed.data(), packed.size(), text.data(),
-                                                    text.size(), &preferences);
+  const std::size_t size_bytes =
+      LZ4F_compressFrame(packed.data(), packed.size(), text.data(), text.size(), &preferences);
   EXPECT_FALSE(LZ4F_isError(size_bytes));
   packed.resize(size_bytes);
   return packed;

@@ -3,7 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "datasets/files/errors.hpp"
+#include "datasets/layouts/layout.hpp"
 #include "tests/temp_folder.hpp"
 
 namespace mosbench {
@@ -51,13 +54,29 @@ std::string error_of(const std::filesystem::path& path, const OpenOptions& optio
   return message_of<Error>([&] { open_dataset(path, options); });
 }
 
-TEST(DatasetKind, NamesReadBackAsThemselves) {
-  for (const char* name : {"doals", "sipailou", "helimos", "semantickitti"}) {
-    const auto kind = dataset_kind_from_string(name);
-    ASSERT_TRUE(kind.has_value()) << name;
-    EXPECT_EQ(to_string(*kind), name);
+TEST(Layouts, HaveOneCompleteRowPerDataSet) {
+  std::set<DatasetKind> kinds;
+  for (const Layout* row : layouts()) {
+    EXPECT_TRUE(kinds.insert(row->kind).second) << row->name;
+    EXPECT_EQ(&layout_of(row->kind), row);
+    EXPECT_EQ(dataset_kind_from_string(row->name), row->kind);
+    EXPECT_EQ(to_string(row->kind), row->name);
+    for (const std::string_view text : {row->title, row->content, row->size, row->published,
+                                        row->licence, row->folders.front(), row->expected}) {
+      EXPECT_FALSE(text.empty()) << row->name;
+    }
+    EXPECT_GT(row->files.sensor_range_m, 0.0) << row->name;
   }
+  EXPECT_EQ(kinds.size(), 8U);
   EXPECT_EQ(dataset_kind_from_string("kitti"), std::nullopt);
+}
+
+TEST(Layouts, AreWrittenForFourDataSets) {
+  std::vector<std::string_view> written;
+  for (const Layout* row : layouts()) {
+    if (row->writer) written.push_back(row->name);
+  }
+  EXPECT_THAT(written, ElementsAre("doals", "sipailou", "helimos", "semantickitti"));
 }
 
 TEST(OpenDataset, FindsSemanticKittiWithAndWithoutTheFolderSequences) {

@@ -6,8 +6,8 @@
 #include "datasets/files/bin_file.hpp"
 #include "datasets/files/errors.hpp"
 #include "datasets/files/pose_list.hpp"
-#include "datasets/sequence/pose_track.hpp"
 #include "datasets/sequence/folder_sequence.hpp"
+#include "datasets/sequence/pose_track.hpp"
 #include "datasets/sequence/undistort.hpp"
 #include "tests/temp_folder.hpp"
 

@@ -1,3 +1,5 @@
+#include "datasets/layouts/helimos_layout.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,9 +12,8 @@
 #include "datasets/files/scan_file.hpp"
 #include "datasets/files/split_file.hpp"
 #include "datasets/files/text.hpp"
-#include "datasets/layouts/catalogue.hpp"
-#include "datasets/layouts/helimos_layout.hpp"
-#include "datasets/layouts/kitti_sequence.hpp"
+#include "datasets/layouts/folder_search.hpp"
+#include "datasets/layouts/layout.hpp"
 
 namespace mosbench {
 namespace {
@@ -54,11 +55,6 @@ std::vector<SequenceFolder> list_helimos(const std::filesystem::path& path) {
   const auto kaist = path / kHelimosPlace;
   return std::filesystem::is_directory(kaist) ? list_deskewed(kaist)
                                               : std::vector<SequenceFolder>{};
-}
-
-std::unique_ptr<Sequence> open_helimos(const SequenceFolder& sequence,
-                                       const ReadingOptions& options) {
-  return std::make_unique<KittiSequence>(sequence.name, sequence.folder, options);
 }
 
 /// The scans of `sequence` that a split file numbers. A number without a scan is an error, as the
@@ -119,18 +115,53 @@ std::optional<std::string> recognise_helimos(const std::filesystem::path& path) 
   return "the sensor folder " + sequences.front().name + " is there";
 }
 
+std::filesystem::path helimos_sequence_folder(const std::string& name, std::size_t position) {
+  if (is_sensor(name)) return helimos_folder() / name;
+  if (position < kHelimosSensors.size()) return helimos_folder() / kHelimosSensors[position];
+  throw UsageError("--layout helimos has room for 4 sequences, not for " + name +
+                   ", expected fewer in --sequences");
+}
+
 }  // namespace
 
-const Catalogue& helimos_catalogue() {
-  static const Catalogue catalogue = {
-      DatasetKind::kHelimos,
-      "Aeva, Avia, Ouster, Velodyne with velodyne/, labels/ and poses.txt each, in "
-      "KAIST05/Deskewed_LiDAR, Deskewed_LiDAR or the folder itself (HeLiMOS), or one such folder",
-      list_helimos,
-      open_helimos,
-      helimos_splits,
-      recognise_helimos};
-  return catalogue;
+void write_helimos_splits(const std::filesystem::path& root, const HelimosSplits& splits) {
+  for (const auto& [name, numbers] : splits) {
+    if (!numbers.empty()) write_split(root / helimos_folder() / (name + ".txt"), numbers);
+  }
+}
+
+const Layout& helimos_layout() {
+  static const Layout row = {
+      .kind = DatasetKind::kHelimos,
+      .name = "helimos",
+      .title = "HeLiMOS, IROS 2024",
+      .content = "Aeva, Livox Avia, Ouster OS2-128 and Velodyne VLP-16 on one car",
+      .size = "about 35 GB zipped, some 12476 scans per sensor",
+      .published = "github.com/url-kaist/HeLiMOS-PointCloud-Toolbox",
+      .licence = "CC BY-NC-SA 4.0 for the HeLiPR data it is made of",
+      .folders = {"<root>/ (KAIST05/Deskewed_LiDAR of the download)",
+                  "  train.txt val.txt test.txt     scan numbers of the splits",
+                  "  {Aeva,Avia,Ouster,Velodyne}/velodyne/%06d.bin",
+                  "  {Aeva,Avia,Ouster,Velodyne}/labels/%06d.label   for part of the scans",
+                  "  {Aeva,Avia,Ouster,Velodyne}/poses.txt           the HMM-MOS authors publish "
+                  "theirs",
+                  "  {Aeva,Avia,Ouster,Velodyne}/calib.txt"},
+      .files =
+          {.label_ids = {0, 9, 251},
+           .sensor_range_m = 450.0,
+           // Rows of the pose files that the authors of HMM-MOS publish.
+           .published = {{"Velodyne", 12477}, {"Ouster", 12477}, {"Avia", 12476}, {"Aeva", 12475}}},
+      .expected =
+          "Aeva, Avia, Ouster, Velodyne with velodyne/, labels/ and poses.txt each, in "
+          "KAIST05/Deskewed_LiDAR, Deskewed_LiDAR or the folder itself (HeLiMOS), or one "
+          "such folder",
+      .list = list_helimos,
+      .open = open_kitti,
+      .splits = helimos_splits,
+      .evidence = Evidence::kFolders,
+      .recognise = recognise_helimos,
+      .writer = LayoutWriter{write_as_kitti, helimos_sequence_folder}};
+  return row;
 }
 
 }  // namespace mosbench

@@ -1,8 +1,9 @@
 #include "datasets/files/files.hpp"
 #include "datasets/files/folder_listing.hpp"
 #include "datasets/files/scan_file.hpp"
-#include "datasets/layouts/catalogue.hpp"
 #include "datasets/layouts/doals_sequence.hpp"
+#include "datasets/layouts/folder_search.hpp"
+#include "datasets/layouts/layout.hpp"
 
 namespace mosbench {
 namespace {
@@ -18,8 +19,8 @@ SequenceFolder sequence_folder(std::string name, const std::filesystem::path& fo
 
 bool is_sequence_name(const std::string& name) { return name.starts_with("sequence_"); }
 
-/// The sequence_N folders of one scene, with scans, a bag or neither; `prefix`
-/// goes before their names.
+/// Adds the sequence_N folders of one scene, with scans, a bag or neither; `prefix` goes before
+/// their names.
 void list_scene(const std::filesystem::path& scene, const std::string& prefix,
                 std::vector<SequenceFolder>& sequences) {
   for (const auto& folder : list_folders(scene)) {
@@ -29,7 +30,7 @@ void list_scene(const std::filesystem::path& scene, const std::string& prefix,
   }
 }
 
-/// The published scenes' alphabetical order is that of the published numbers.
+/// Lists in alphabetical order, which for the published scenes is that of the published numbers.
 std::vector<SequenceFolder> list_doals(const std::filesystem::path& path) {
   if (scan_folder_of(path) || !list_by_stem(path, {".bag"}).empty())
     return {sequence_folder(folder_name(path), path)};
@@ -76,19 +77,55 @@ std::optional<std::string> recognise_doals(const std::filesystem::path& path) {
   return "sequence_N folders are there";
 }
 
+/// Keeps the name of a DOALS sequence, others become the scene of a sequence_1.
+std::filesystem::path doals_folder(const std::string& name, std::size_t) {
+  if (is_sequence_name(std::filesystem::path(name).filename().string())) return name;
+  return std::filesystem::path(flat_name(name)) / "sequence_1";
+}
+
+std::vector<PublishedCount> published_counts() {
+  constexpr std::size_t kSlots = 131072;
+  std::vector<PublishedCount> counts;
+  for (const DoalsPublished& published : doals_published()) {
+    counts.push_back({std::string(published.scene) + "/" + std::string(published.sequence),
+                      published.scans, kSlots});
+  }
+  return counts;
+}
+
 }  // namespace
 
-const Catalogue& doals_catalogue() {
-  static const Catalogue catalogue = {
-      DatasetKind::kDoals,
-      "<scene>/sequence_N with a bag, or velodyne/ or binFiles/ and poses.txt, "
-      "and indices.csv each (DOALS), or one "
-      "such sequence folder",
-      list_doals,
-      open_doals,
-      doals_splits,
-      recognise_doals};
-  return catalogue;
+const Layout& doals_layout() {
+  static const Layout row = {
+      .kind = DatasetKind::kDoals,
+      .name = "doals",
+      .title = "Urban Dynamic Objects LiDAR, ICRA 2021",
+      .content = "hand-held Ouster OS1-64 in 4 places, 10 labelled scans in each of 8 sequences",
+      .size = "12825 scans, 8 bags",
+      .published = "DOI 10.3929/ethz-c-000788171",
+      .licence = kUnknownLicence,
+      .folders =
+          {"<root>/{hauptgebaeude,niederdorf,shopville,station}/sequence_{1,2}/",
+           "  *.bag                          as published: /os1_cloud_node/points and /tf",
+           "  indices.csv                    stamp in ns, then the moving points of a labelled "
+           "scan",
+           "or instead of the bag",
+           "  velodyne/*.bin (or binFiles/)  x y z intensity float32, all 131072 points in firing "
+           "order",
+           "  poses.txt                      12 numbers a row, lidar frame"},
+      .files = {.label_ids = {kStaticLabel, kMovingLabel},
+                .sensor_range_m = 150.0,
+                .published = published_counts()},
+      .expected =
+          "<scene>/sequence_N with a bag, or velodyne/ or binFiles/ and poses.txt, and "
+          "indices.csv each (DOALS), or one such sequence folder",
+      .list = list_doals,
+      .open = open_doals,
+      .splits = doals_splits,
+      .evidence = Evidence::kFolders,
+      .recognise = recognise_doals,
+      .writer = LayoutWriter{write_as_doals, doals_folder}};
+  return row;
 }
 
 }  // namespace mosbench

@@ -1,0 +1,107 @@
+#include "datasets/layouts/folder_search.hpp"
+
+#include <algorithm>
+
+#include "datasets/files/files.hpp"
+#include "datasets/files/folder_listing.hpp"
+#include "datasets/files/scan_file.hpp"
+#include "datasets/files/text.hpp"
+#include "datasets/layouts/kitti_sequence.hpp"
+
+namespace mosbench {
+
+std::filesystem::path without_slash(const std::filesystem::path& path) {
+  const auto normal = std::filesystem::absolute(path).lexically_normal();
+  return normal.has_filename() ? normal : normal.parent_path();
+}
+
+std::string folder_name(const std::filesystem::path& path) {
+  return without_slash(path).filename().string();
+}
+
+std::filesystem::path parent_folder(const std::filesystem::path& path) {
+  return without_slash(path).parent_path();
+}
+
+std::optional<std::string> folder_with_word(const std::filesystem::path& path,
+                                            std::initializer_list<const char*> words) {
+  for (const auto& part : std::filesystem::absolute(path).lexically_normal()) {
+    const std::string name = lower_case(part.string());
+    for (const char* word : words) {
+      if (name.find(word) != std::string::npos) return part.string();
+    }
+  }
+  return std::nullopt;
+}
+
+bool ends_with(const std::filesystem::path& path, const std::filesystem::path& end) {
+  const std::filesystem::path whole = without_slash(path);
+  const auto names = std::distance(whole.begin(), whole.end());
+  const auto wanted = std::distance(end.begin(), end.end());
+  return wanted <= names &&
+         std::equal(end.begin(), end.end(), std::next(whole.begin(), names - wanted));
+}
+
+std::vector<SequenceFolder> list_with(const std::filesystem::path& path,
+                                      const std::filesystem::path& mark) {
+  if (is_there(path / mark)) return {{folder_name(path), path, ""}};
+  const auto below = path / "sequences";
+  std::vector<SequenceFolder> sequences;
+  for (const auto& folder : list_folders(std::filesystem::is_directory(below) ? below : path)) {
+    if (is_there(folder / mark)) sequences.push_back({folder.filename().string(), folder, ""});
+  }
+  return sequences;
+}
+
+std::vector<SequenceFolder> list_kitti(const std::filesystem::path& path) {
+  if (scan_folder_of(path)) return {{folder_name(path), path, ""}};
+  const auto below = path / "sequences";
+  std::vector<SequenceFolder> sequences;
+  for (const auto& folder : list_folders(std::filesystem::is_directory(below) ? below : path)) {
+    const std::string name = folder.filename().string();
+    if (scan_folder_of(folder) || stem_number(name)) sequences.push_back({name, folder, ""});
+  }
+  return sequences;
+}
+
+bool any_holds(const std::vector<SequenceFolder>& sequences, const char* file) {
+  return std::ranges::any_of(sequences, [file](const SequenceFolder& sequence) {
+    return is_there(sequence.folder / file);
+  });
+}
+
+std::unique_ptr<Sequence> open_kitti(const SequenceFolder& sequence,
+                                     const ReadingOptions& options) {
+  return std::make_unique<KittiSequence>(sequence.name, sequence.folder, options);
+}
+
+std::set<std::uint32_t> semantickitti_label_ids() {
+  return {0,  1,  9,  10, 11, 13, 15, 16, 18, 20,  30,  31,  32,  40,  44,  48,  49,  50,
+          51, 52, 60, 70, 71, 72, 80, 81, 99, 251, 252, 253, 254, 255, 256, 257, 258, 259};
+}
+
+std::string flat_name(std::string name) {
+  std::ranges::replace(name, '/', '_');
+  return name;
+}
+
+std::filesystem::path kitti_folder(const std::string& name, std::size_t) {
+  return std::filesystem::path("sequences") / flat_name(name);
+}
+
+std::vector<Split> splits_of_names(const std::vector<NamedSplit>& named,
+                                   const std::vector<SequenceFolder>& folders) {
+  std::vector<Split> splits;
+  for (const NamedSplit& candidate : named) {
+    Split split{candidate.name, {}};
+    for (std::size_t i = 0; i < folders.size(); ++i) {
+      if (std::ranges::find(candidate.sequences, folders[i].name) != candidate.sequences.end()) {
+        split.parts.push_back({i, std::nullopt});
+      }
+    }
+    if (!split.parts.empty()) splits.push_back(std::move(split));
+  }
+  return splits;
+}
+
+}  // namespace mosbench

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <filesystem>
+#include <initializer_list>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "datasets/layouts/dataset.hpp"
+
+namespace mosbench {
+
+/// The path from the root, without "." and ".." and a slash at the end.
+std::filesystem::path without_slash(const std::filesystem::path& path);
+
+/// The last name of a path, also of "." and of one that ends with a slash.
+std::string folder_name(const std::filesystem::path& path);
+
+/// The folder in which a sequence folder lies.
+std::filesystem::path parent_folder(const std::filesystem::path& path);
+
+/// The first name in the whole path that contains one of `words` in any case; nothing without one.
+/// `words` are in lower case.
+std::optional<std::string> folder_with_word(const std::filesystem::path& path,
+                                            std::initializer_list<const char*> words);
+
+/// Whether the names at the end of a path are those of `end`.
+bool ends_with(const std::filesystem::path& path, const std::filesystem::path& end);
+
+/// Lists the folders that hold `mark`: `path` itself, else those below it or below its sequences/.
+std::vector<SequenceFolder> list_with(const std::filesystem::path& path,
+                                      const std::filesystem::path& mark);
+
+/// Lists sequences in SemanticKITTI's folders. A numbered folder without scans is listed too, so
+/// that opening it says what it lacks.
+std::vector<SequenceFolder> list_kitti(const std::filesystem::path& path);
+
+bool any_holds(const std::vector<SequenceFolder>& sequences, const char* file);
+
+/// Splits that consist of whole sequences given by name; those without any sequence are left out.
+struct NamedSplit {
+  const char* name;
+  std::vector<std::string> sequences;
+};
+std::vector<Split> splits_of_names(const std::vector<NamedSplit>& named,
+                                   const std::vector<SequenceFolder>& folders);
+
+/// The label ids of semantic-kitti-mos.yaml.
+std::set<std::uint32_t> semantickitti_label_ids();
+
+/// Opens a KittiSequence with the default places of its files.
+std::unique_ptr<Sequence> open_kitti(const SequenceFolder& sequence, const ReadingOptions& options);
+
+/// Returns sequences/NAME, a slash in the name as "_".
+std::filesystem::path kitti_folder(const std::string& name, std::size_t position);
+
+/// Returns `name` with "_" for each slash.
+std::string flat_name(std::string name);
+
+}  // namespace mosbench

@@ -1,0 +1,98 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <set>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "datasets/layouts/dataset.hpp"
+#include "datasets/layouts/sequence_writer.hpp"
+
+namespace mosbench {
+
+/// How sure a path is that looks like a data set, the surest first.
+enum class Evidence : std::uint8_t {
+  kFolders,  ///< files or folders that no other data set has
+  kName,     ///< a word in the path
+  kNone      ///< readable, and nothing of another data set
+};
+
+/// Number of scans that the authors of a data set publish for one of its sequences.
+struct PublishedCount {
+  std::string folder;  ///< the end of the sequence folder's path: "08", "station/sequence_1"
+  std::size_t scans = 0;
+  std::size_t points = 0;  ///< in every scan; 0 where that varies
+};
+
+/// What the files of a data set hold, for the doctor.
+struct LayoutContent {
+  std::set<std::uint32_t> label_ids = {};  ///< that the truth may hold; empty: any
+  double sensor_range_m = 0.0;             ///< farthest return
+  /// Labelled points have this range, others id 0; no limits when both are equal.
+  double label_min_m = 0.0, label_max_m = 0.0;
+  std::vector<PublishedCount> published = {};
+};
+
+/// How a data set is written by `simulate` and `convert`.
+struct LayoutWriter {
+  std::unique_ptr<SequenceWriter> (*open)(const std::filesystem::path& folder,
+                                          const WriteOptions& options);
+  /// The folder of a sequence below the root; `position` is its place in the source, from 0.
+  std::filesystem::path (*folder)(const std::string& name, std::size_t position);
+};
+
+/// All facts about one data set. Adding one: a value of DatasetKind, a file with its row, and the
+/// row in `layouts()`.
+struct Layout {
+  DatasetKind kind;
+  std::string_view name;  ///< in --dataset, presets and results
+
+  // What somebody has to know to get it and to lay it out as it is read here.
+  std::string_view title;
+  std::string_view content;
+  std::string_view size;
+  std::string_view published;  ///< where its authors publish it
+  std::string_view licence;
+  std::vector<std::string_view> folders;  ///< lines of a listing, the first is the root
+
+  LayoutContent files;
+  std::string_view expected;  ///< what an error says was expected at a path
+
+  /// Lists the sequences below a root, or the one of a sequence folder; empty when `path` is
+  /// neither.
+  std::vector<SequenceFolder> (*list)(const std::filesystem::path& path);
+  std::unique_ptr<Sequence> (*open)(const SequenceFolder& sequence, const ReadingOptions& options);
+  /// Returns the splits of opened sequences; `folders` runs parallel to `sequences`. May add
+  /// remarks. Null for a data set without splits.
+  std::vector<Split> (*splits)(const std::vector<SequenceFolder>& folders,
+                               const std::vector<std::unique_ptr<Sequence>>& sequences,
+                               std::vector<std::string>& remarks);
+  Evidence evidence;
+  /// Why `path` looks like this data set; nothing if it does not.
+  std::optional<std::string> (*recognise)(const std::filesystem::path& path);
+  std::optional<LayoutWriter> writer;  ///< nothing for a data set that is only read
+};
+
+const Layout& doals_layout();
+const Layout& sipailou_layout();
+const Layout& helimos_layout();
+const Layout& semantickitti_layout();
+const Layout& apollo_layout();
+const Layout& moe_layout();
+const Layout& kth_layout();
+const Layout& mdetector_layout();
+
+/// Returns all rows, in the order in which they are listed.
+std::span<const Layout* const> layouts();
+const Layout& layout_of(DatasetKind kind);
+
+inline constexpr std::string_view kUnknownLicence =
+    "not known to mosbench, see where it is published";
+
+}  // namespace mosbench

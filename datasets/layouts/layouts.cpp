@@ -1,0 +1,36 @@
+#include <algorithm>
+#include <array>
+
+#include "datasets/layouts/layout.hpp"
+
+namespace mosbench {
+
+std::span<const Layout* const> layouts() {
+  static const std::array all = {&doals_layout(),         &sipailou_layout(), &helimos_layout(),
+                                 &semantickitti_layout(), &apollo_layout(),   &moe_layout(),
+                                 &kth_layout(),           &mdetector_layout()};
+  return all;
+}
+
+const Layout& layout_of(DatasetKind kind) {
+  return **std::ranges::find(layouts(), kind, [](const Layout* row) { return row->kind; });
+}
+
+std::string_view to_string(DatasetKind kind) { return layout_of(kind).name; }
+
+std::string dataset_kind_names() {
+  std::string names;
+  for (const Layout* row : layouts()) names += (names.empty() ? "" : ", ") + std::string(row->name);
+  return names;
+}
+
+bool is_written(DatasetKind kind) { return layout_of(kind).writer.has_value(); }
+
+std::optional<DatasetKind> dataset_kind_from_string(std::string_view name) {
+  for (const Layout* row : layouts()) {
+    if (row->name == name) return row->kind;
+  }
+  return std::nullopt;
+}
+
+}  // namespace mosbench

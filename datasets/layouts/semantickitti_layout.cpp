@@ -1,0 +1,57 @@
+#include "datasets/layouts/folder_search.hpp"
+#include "datasets/layouts/layout.hpp"
+
+namespace mosbench {
+namespace {
+
+std::vector<Split> semantickitti_splits(const std::vector<SequenceFolder>& folders,
+                                        const std::vector<std::unique_ptr<Sequence>>&,
+                                        std::vector<std::string>&) {
+  return splits_of_names(
+      {{"train", {"00", "01", "02", "03", "04", "05", "06", "07", "09", "10"}},
+       {"valid", {"08"}},
+       {"test", {"11", "12", "13", "14", "15", "16", "17", "18", "19", "20", "21"}}},
+      folders);
+}
+
+std::optional<std::string> recognise_semantickitti(const std::filesystem::path& path) {
+  if (list_kitti(path).empty()) return std::nullopt;
+  return "it has the layout and nothing of another data set";
+}
+
+}  // namespace
+
+const Layout& semantickitti_layout() {
+  static const Layout row = {
+      .kind = DatasetKind::kSemanticKitti,
+      .name = "semantickitti",
+      .title = "SemanticKITTI-MOS, and data laid out like it",
+      .content = "Velodyne HDL-64E on a car",
+      .size = "43552 scans in 22 sequences, about 80 GB",
+      .published = "semantic-kitti.org",
+      .licence = "CC BY-NC-SA 4.0",
+      .folders = {"<root>/sequences/00 ... 21/", "  velodyne/%06d.bin",
+                  "  labels/%06d.label  for 00 to 10",
+                  "  poses.txt          camera frame, turned into the lidar's by Tr of calib.txt",
+                  "  calib.txt times.txt"},
+      .files = {.label_ids = semantickitti_label_ids(),
+                .sensor_range_m = 200.0,
+                // Rows of the pose files that the authors of MotionBEV publish.
+                .published = {{"00", 4541}, {"01", 1101}, {"02", 4661}, {"03", 801},  {"04", 271},
+                              {"05", 2761}, {"06", 1101}, {"07", 1101}, {"08", 4071}, {"09", 1591},
+                              {"10", 1201}, {"11", 921},  {"12", 1061}, {"13", 3281}, {"14", 631},
+                              {"15", 1901}, {"16", 1731}, {"17", 491},  {"18", 1801}, {"19", 4981},
+                              {"20", 831},  {"21", 2721}}},
+      .expected =
+          "sequences/NN or NN with velodyne/, labels/, poses.txt and calib.txt each "
+          "(SemanticKITTI), or one such sequence folder",
+      .list = list_kitti,
+      .open = open_kitti,
+      .splits = semantickitti_splits,
+      .evidence = Evidence::kNone,
+      .recognise = recognise_semantickitti,
+      .writer = LayoutWriter{write_as_kitti, kitti_folder}};
+  return row;
+}
+
+}  // namespace mosbench
