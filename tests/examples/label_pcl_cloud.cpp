@@ -2,9 +2,9 @@
 // Prints how many points of each cloud are labelled as moving.
 
 #include <cstdio>
+#include <memory>
+#include <mosbench/method.hpp>
 #include <mosbench/pcl.hpp>
-
-#include "core/hmm_mos/pipeline.hpp"
 
 namespace {
 
@@ -33,10 +33,11 @@ pcl::PointCloud<pcl::PointXYZI> scan_of_wall_and_box(int scan_index) {
 }  // namespace
 
 int main() {
-  mosbench::Pipeline pipeline(mosbench::Config{}, mosbench::Variant::kPaper2024);
+  const mosbench::MethodKind& kind = *mosbench::find_method("hmm-mos");
+  const std::unique_ptr<mosbench::Method> method = kind.make(kind.defaults, {});
   for (int scan_index = 0; scan_index < 20; ++scan_index) {
     const pcl::PointCloud<pcl::PointXYZI> cloud = scan_of_wall_and_box(scan_index);
-    const auto labelled = pipeline.push(mosbench::from_pcl(cloud), mosbench::Pose::Identity());
+    const auto labelled = method->push(mosbench::from_pcl(cloud), mosbench::Pose::Identity());
     for (const auto& scan : labelled) {
       const pcl::PointCloud<pcl::PointXYZL> labels = mosbench::labelled_cloud(cloud, scan.labels);
       std::size_t moving = 0;
