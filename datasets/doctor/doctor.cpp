@@ -19,7 +19,7 @@ bool tr_is_applied(const ReadingStatement& reading) {
   });
 }
 
-/// Tr of calib.txt unless it is the identity or cannot be read.
+/// Returns Tr of calib.txt, or nothing when it is the identity or there is no such file.
 std::optional<Pose> tr_of(const std::filesystem::path& folder) {
   const auto file = folder / "calib.txt";
   if (!is_there(file)) return std::nullopt;
@@ -32,8 +32,8 @@ void append(std::vector<Symptom>& all, std::vector<Symptom> more) {
   std::ranges::move(more, std::back_inserter(all));
 }
 
-/// An error as a finding. It names its file in front, which is `where` then, unless that file lies
-/// elsewhere.
+/// Turns an error into a symptom. The file that it names first becomes `where` if it is below
+/// `path`.
 Symptom symptom_of(const DataError& error, const std::filesystem::path& path) {
   const std::string message = error.what(), root = path.string();
   const std::size_t end =
@@ -42,7 +42,7 @@ Symptom symptom_of(const DataError& error, const std::filesystem::path& path) {
   return {Severity::kError, message.substr(0, end), message.substr(end + 2)};
 }
 
-/// What a check throws is a finding as well.
+/// Adds what a check returns, or the error that it throws.
 template <typename Check>
 void collect(std::vector<Symptom>& symptoms, const std::filesystem::path& folder, Check&& check) {
   try {
@@ -55,13 +55,15 @@ void collect(std::vector<Symptom>& symptoms, const std::filesystem::path& folder
 std::string sentence_on(const MisplacedRows& rows, const Sequence& sequence) {
   if (rows.single()) {
     return fmt::format(
-        "the pose of scan {} (row {}) does not fit between its neighbours: the way jumps there and "
-        "back, and scans overlap better without; expected the poses in the order of the scans",
+        "the pose of scan {} (row {}) does not fit between its neighbours: the trajectory jumps "
+        "there "
+        "and back, and scans overlap better without; expected the poses in the order of the scans",
         sequence.stem(rows.first), rows.first + 1);
   }
   return fmt::format(
-      "the poses of scans {} and {} (rows {} and {}) are exchanged: the other way round the way is "
-      "shorter and scans overlap better; expected the poses in the order of the scans",
+      "the poses of scans {} and {} (rows {} and {}) are exchanged: the other way round the "
+      "trajectory "
+      "is shorter and scans overlap better; expected the poses in the order of the scans",
       sequence.stem(rows.first), sequence.stem(rows.second), rows.first + 1, rows.second + 1);
 }
 
@@ -76,7 +78,7 @@ std::string sentence_on_better(const SequenceCheckup& checkup) {
   return fmt::format(
       "the poses fit better as {}{}: scans overlap by {:.2f} instead of {:.2f} in {} of {} pairs; "
       "{}",
-      fmt::join(names, " or "), better.size() > 1 ? " (these scans cannot tell which)" : "",
+      fmt::join(names, " or "), better.size() > 1 ? " (these scans do not decide which)" : "",
       score.overlap, score.given_overlap, score.pairs_better, score.pairs,
       fmt::join(remedies, " or "));
 }
@@ -110,7 +112,7 @@ std::vector<Symptom> check_poses(const Sequence& sequence, const std::filesystem
   checkup.conventions = other_conventions(given, tr_of(folder), tr_is_applied(checkup.reading));
   checkup.poses = measure_poses(sequence, given, checkup.conventions);
   if (checkup.poses && !checkup.poses->better.empty()) {
-    // Poses read in another convention make detours of their own.
+    // Poses in another convention have detours of their own.
     return {{Severity::kWarning, sequence.name(), sentence_on_better(checkup)}};
   }
   std::vector<Symptom> symptoms;

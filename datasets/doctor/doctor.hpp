@@ -14,7 +14,7 @@
 
 namespace mosbench {
 
-/// A warning leaves numbers doubtful; with an error there are none.
+/// With a warning results are doubtful, with an error there are none.
 enum class Severity { kWarning, kError };
 
 struct Symptom {
@@ -23,7 +23,7 @@ struct Symptom {
   std::string what;   ///< a plain sentence with what was found and what was expected
 };
 
-/// What was seen of one sequence, for the user to compare with what he knows of it.
+/// What was found in one sequence, for users to compare with what they know of it.
 struct SequenceCheckup {
   std::string name;
   std::size_t scans = 0, labelled_scans = 0, scans_read = 0;
@@ -36,7 +36,7 @@ struct SequenceCheckup {
   std::optional<PoseMeasurement> poses;
 };
 
-/// Upper ends of the bins of SequenceCheckup::points_of_range, the last without end.
+/// Returns the upper ends of the bins of SequenceCheckup::points_of_range; the last is open.
 const std::vector<double>& range_bins_m();
 
 struct Checkup {
@@ -47,24 +47,24 @@ struct Checkup {
   bool has(Severity severity) const;
 };
 
-/// Looks for what is wrong with a data set. Files are listed and measured all, read in part: some
-/// dozens of scans per sequence. What keeps the data set from being opened is an error among the
-/// symptoms, nothing is thrown for it; throws UsageError as `open_dataset`.
+/// Checks a data set. All files are listed and their sizes checked, some dozens of scans per
+/// sequence are read. A reason why the data set cannot be opened is an error among the symptoms and
+/// not thrown; throws UsageError as `open_dataset`.
 Checkup check_up(const std::filesystem::path& path, const OpenOptions& options);
 
-/// Checks of a sequence folder that need not open it: gaps in the numbering of scans, labels and
-/// poses in another number than scans, files of odd sizes.
+/// Checks a sequence folder without opening it: gaps in the numbering of scans, label files without
+/// scan, missing labels, files of odd sizes.
 std::vector<Symptom> check_folder(const std::filesystem::path& folder, const std::string& name);
 
-/// Checks that read part of the scans; they fill `checkup`, too.
+/// Checks points, labels and stamps of some of the scans, and fills in `checkup`.
 std::vector<Symptom> check_content(const Sequence& sequence, DatasetKind kind,
                                    SequenceCheckup& checkup);
 
-/// Checks of the poses by how well scans overlap.
+/// Checks the poses by the overlap of scans, and fills in `checkup`.
 std::vector<Symptom> check_poses(const Sequence& sequence, const std::filesystem::path& folder,
                                  SequenceCheckup& checkup);
 
-/// Checks of the number of scans against what the data set's authors published.
+/// Checks the number of scans against what the data set's authors published.
 std::vector<Symptom> check_published(const Sequence& sequence, DatasetKind kind,
                                      const std::filesystem::path& folder);
 

@@ -16,9 +16,18 @@
 namespace mosbench {
 namespace {
 
+/// Scans read per sequence, half of them labelled ones: a checkup takes seconds.
 constexpr std::size_t kScansRead = 24;
+/// A smaller share of returns among the points comes from a wrong export, whatever the scene.
+constexpr double kLeastReturns = 0.05;
+/// A larger share of points beyond the sensor's range comes from another unit than metres, in which
+/// nearly all points are beyond it; single outliers are fewer.
+constexpr double kMostBeyond = 0.01;
+/// A larger share of returns in the first bin of ranges (0.5 m) comes from a larger unit than
+/// metres.
+constexpr double kMostNear = 0.99;
 
-/// Size and the bytes at both ends.
+/// Returns size and the bytes at both ends.
 std::string ends_of_file(const std::filesystem::path& file) {
   constexpr std::uintmax_t kEndBytes = 2048;
   const std::uintmax_t size_bytes = size_of(file);
@@ -42,20 +51,20 @@ class ContentCheck {
 
   std::vector<Symptom> run() {
     checkup_.points_of_range.assign(range_bins_m().size(), 0);
-    for (const std::size_t scan_index : sampled_scans()) look_at(scan_index);
-    tell_of_returns();
-    tell_of_labels();
+    for (const std::size_t scan_index : sampled_scans()) count_scan(scan_index);
+    check_returns();
+    check_ids();
     check_stamps();
     check_frozen();
     return std::move(symptoms_);
   }
 
  private:
-  void find(std::string what) {
+  void warn(std::string what) {
     symptoms_.push_back({Severity::kWarning, sequence_.name(), std::move(what)});
   }
 
-  /// Evenly spread ones, and as many of those that are labelled.
+  /// Returns evenly spread scans, and as many of the labelled ones.
   std::set<std::size_t> sampled_scans() const {
     const std::vector<std::size_t> labelled = scans_with_truth(sequence_);
     std::set<std::size_t> sampled;
@@ -66,7 +75,7 @@ class ContentCheck {
     return sampled;
   }
 
-  void look_at(std::size_t scan_index) {
+  void count_scan(std::size_t scan_index) {
     const Frame frame = sequence_.read(scan_index);
     ++checkup_.scans_read;
     for (std::size_t i = 0; i < frame.points.size(); ++i) {
@@ -82,11 +91,11 @@ class ContentCheck {
                                             range_bins_m().size() - 1)];
         if (range_m > expected_.sensor_range_m) ++beyond_sensor_;
       }
-      if (frame.truth) look_at_label((*frame.truth)[i], range_m);
+      if (frame.truth) count_label((*frame.truth)[i], range_m);
     }
   }
 
-  void look_at_label(std::uint32_t label, double range_m) {
+  void count_label(std::uint32_t label, double range_m) {
     constexpr double kToleranceM = 0.1;
     const std::uint32_t id = label & 0xFFFFU;
     ++checkup_.points_of_id[id];
@@ -97,28 +106,31 @@ class ContentCheck {
     }
   }
 
-  void tell_of_returns() {
+  void check_returns() {
     const std::size_t returns = checkup_.points - checkup_.zero_points - checkup_.nonfinite_points;
     if (checkup_.nonfinite_points > 0) {
-      find(fmt::format("{} of {} points are NaN or infinite; expected numbers",
+      warn(fmt::format("{} of {} points are NaN or infinite; expected numbers",
                        checkup_.nonfinite_points, checkup_.points));
     }
-    if (returns * 20 < checkup_.points) {
-      find(fmt::format("{} of {} points are returns; expected most", returns, checkup_.points));
+    const auto share = [](std::size_t part, std::size_t whole) {
+      return static_cast<double>(part) / static_cast<double>(std::max<std::size_t>(whole, 1));
+    };
+    if (checkup_.points > 0 && share(returns, checkup_.points) < kLeastReturns) {
+      warn(fmt::format("{} of {} points are returns; expected most", returns, checkup_.points));
     }
-    if (beyond_sensor_ * 100 > returns) {
-      find(
-          fmt::format("{} of {} points are further than the {:g} m that the sensor measures; "
+    if (share(beyond_sensor_, returns) > kMostBeyond) {
+      warn(
+          fmt::format("{} of {} points are farther than the {:g} m that the sensor measures; "
                       "expected metres (are these millimetres?)",
                       beyond_sensor_, returns, expected_.sensor_range_m));
     }
-    if (returns > 0 && checkup_.points_of_range.front() * 100 > returns * 99) {
-      find(fmt::format("nearly all points are nearer than {:g} m; expected metres",
+    if (share(checkup_.points_of_range.front(), returns) > kMostNear) {
+      warn(fmt::format("nearly all points are nearer than {:g} m; expected metres",
                        range_bins_m().front()));
     }
   }
 
-  void tell_of_labels() {
+  void check_ids() {
     std::vector<std::uint32_t> unknown;
     bool learning_classes = !checkup_.points_of_id.empty() && !expected_.label_ids.empty();
     for (const auto& [id, unused] : checkup_.points_of_id) {
@@ -128,17 +140,17 @@ class ContentCheck {
     const bool only_unlabelled =
         checkup_.points_of_id.size() == 1 && checkup_.points_of_id.contains(0);
     if (learning_classes && !only_unlabelled) {
-      find(
+      warn(
           fmt::format("the labels are {}, as the classes of a network; expected the ids of the "
                       "data set ({})",
                       fmt::join(ids_present(), ", "), shortened(expected_.label_ids)));
     } else if (!unknown.empty()) {
-      find(fmt::format("the labels hold the ids {}; expected only those of the data set ({})",
+      warn(fmt::format("the labels hold the ids {}; expected only those of the data set ({})",
                        fmt::join(unknown, ", "), shortened(expected_.label_ids)));
     }
-    if (only_unlabelled) find("all labels of the scans read are 0; expected labelled points");
+    if (only_unlabelled) warn("all labels of the scans read are 0; expected labelled points");
     if (labels_beyond_ > 0) {
-      find(
+      warn(
           fmt::format("{} labelled points lie outside of {:g} to {:g} m; expected id 0 there, as "
                       "published",
                       labels_beyond_, expected_.label_min_m, expected_.label_max_m));
@@ -169,13 +181,13 @@ class ContentCheck {
       if (backward++ == 0) first = sequence_.stem(i);
     }
     if (backward == 0) return;
-    find(
-        fmt::format("{} stamps are not behind the one before, first that of scan {}; expected them "
-                    "in order",
+    warn(
+        fmt::format("{} stamps are not later than the one before, first that of scan {}; expected "
+                    "them in order",
                     backward, first));
   }
 
-  /// Scans of one size and the same bytes at both ends are compared as a whole.
+  /// Compares scans of the same size and the same bytes at both ends as a whole.
   void check_frozen() {
     std::unordered_map<std::string, std::size_t> scan_of_ends;
     std::vector<std::string> repeated;
@@ -188,11 +200,12 @@ class ContentCheck {
       if (repeated.size() == 3) break;
     }
     if (repeated.empty()) return;
-    find(fmt::format("scans hold the same points: {}; expected every scan once",
+    warn(fmt::format("scans hold the same points: {}; expected every scan once",
                      fmt::join(repeated, ", ")));
   }
 
-  /// Of scans in a file of their own. Those of a bag are compared with the next one, some of them.
+  /// Returns a key per scan; scans of equal keys are compared. Scans in a file of their own have
+  /// the ends of the file, some scans of a bag that of the next one.
   std::vector<std::pair<std::string, std::size_t>> ends_of_scans() const {
     std::vector<std::pair<std::string, std::size_t>> ends;
     for (std::size_t i = 0; i < sequence_.size(); ++i) {

@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// "000017, 000019 and 3 more".
+/// Returns "000017, 000019 and 3 more".
 std::string some_of(const std::vector<std::string>& names) {
   constexpr std::size_t kShown = 5;
   const std::size_t shown = std::min(kShown, names.size());
@@ -23,8 +23,7 @@ std::string some_of(const std::vector<std::string>& names) {
   return text;
 }
 
-/// Numbers that a run of numbered scans skips. Stamps as names skip always, so a numbering counts
-/// as one only when most numbers are there.
+/// Returns the numbers that numbered scans skip; none when most are skipped, as in stamps.
 std::vector<std::string> gaps_of(const std::vector<StemFile>& scans) {
   std::set<std::uint64_t> numbers;
   for (const StemFile& scan : scans) {
@@ -61,7 +60,8 @@ void check_labels(const fs::path& folder, const std::vector<StemFile>& scans,
                                     "name for each",
                                     orphans.size(), some_of(orphans))});
   }
-  // Data sets that label part of the scans do so for a minority or at a regular distance.
+  // Share above which missing labels are no choice: data sets that label part of the scans label a
+  // minority.
   constexpr double kMostlyLabelled = 0.8;
   const auto unlabelled = stems_without(scans, labels);
   const auto share = static_cast<double>(labels.size()) / static_cast<double>(scans.size());
@@ -73,10 +73,11 @@ void check_labels(const fs::path& folder, const std::vector<StemFile>& scans,
   }
 }
 
-/// A scan of far fewer points than those around it was cut off while it was copied.
+/// Warns of scans far smaller than those around them: they were cut off while they were copied.
 void check_sizes(const std::vector<StemFile>& scans, const std::string& name,
                  std::vector<Symptom>& symptoms) {
-  constexpr std::size_t kAround = 3;
+  constexpr std::size_t kAround = 3;      // scans on either side
+  constexpr double kSmallestShare = 0.6;  // of the median, far below what scenes change
   std::vector<std::uintmax_t> sizes_bytes;
   for (const StemFile& scan : scans) sizes_bytes.push_back(size_of(scan.file));
   std::vector<std::string> small;
@@ -87,7 +88,9 @@ void check_sizes(const std::vector<StemFile>& scans, const std::string& name,
         sizes_bytes.begin() + static_cast<std::ptrdiff_t>(std::min(i + kAround + 1, scans.size())));
     std::ranges::nth_element(around,
                              around.begin() + static_cast<std::ptrdiff_t>(around.size() / 2));
-    if (10 * sizes_bytes[i] < 6 * around[around.size() / 2]) small.push_back(scans[i].stem);
+    const auto usual_bytes = static_cast<double>(around[around.size() / 2]);
+    if (static_cast<double>(sizes_bytes[i]) < kSmallestShare * usual_bytes)
+      small.push_back(scans[i].stem);
   }
   if (small.empty()) return;
   symptoms.push_back({Severity::kWarning, name,

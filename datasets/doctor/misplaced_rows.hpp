@@ -8,23 +8,23 @@
 
 namespace mosbench {
 
-/// Two rows of a pose file that were exchanged, or a single one (`first` == `second`) that lies
-/// off the way between its neighbours. From 0.
+/// Two rows of a pose file that were exchanged, or a single one (`first` == `second`) that is away
+/// from the trajectory of its neighbours. Counted from 0.
 struct MisplacedRows {
   std::size_t first = 0, second = 0;
 
   bool single() const { return first == second; }
 };
 
-/// The poses with the two rows exchanged, or with the single one put midway between its neighbours.
+/// Returns the poses with the two rows exchanged, or the single one midway between its neighbours.
 std::vector<Pose> mended(std::vector<Pose> poses, const MisplacedRows& rows);
 
-/// The rows, worst first, without which the way is shorter by more than a usual step and clearly
-/// more than its usual detours. Looks at the poses alone, so that a real jerk is among them.
+/// Returns rows (worst first) whose removal shortens the trajectory by more than a typical step and
+/// clearly more than a typical detour. Only poses are examined, so a real jerk may be among them.
 std::vector<MisplacedRows> suspected_rows(std::vector<Pose> poses);
 
-/// Those suspected rows without which scans overlap better as well. Reads the scans around the
-/// suspected rows, none when there are none. Throws DataError.
+/// Returns the suspected rows without which scans overlap better, too. Reads the scans around the
+/// suspected rows only. Throws DataError.
 std::vector<MisplacedRows> misplaced_rows(const Sequence& sequence, const std::vector<Pose>& poses);
 
 }  // namespace mosbench

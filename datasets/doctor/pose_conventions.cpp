@@ -51,7 +51,7 @@ std::vector<PoseConvention> other_conventions(const std::vector<Pose>& given,
     conventions.push_back(changed(
         camera_from_lidar ? "the camera's, Tr to be applied" : "the camera's, Tr is missing",
         camera_from_lidar ? "run with --pose-frame camera"
-                          : "put the data set's calib.txt with its Tr beside the poses",
+                          : "put the data set's calib.txt with its Tr next to the poses",
         given, [&](std::size_t i) { return lidar_pose(given[i], tr); }));
   }
   conventions.push_back(changed("sensor_from_map (inverse)",
@@ -71,7 +71,7 @@ std::vector<PoseConvention> other_conventions(const std::vector<Pose>& given,
                                 given, [&](std::size_t i) { return given[i > 0 ? i - 1 : 0]; }));
   conventions.back().shifts_rows = true;
   conventions.push_back(changed("right, but x and y of the points are swapped",
-                                "export the scans anew with x before y", given,
+                                "export the scans again with x before y", given,
                                 [&](std::size_t i) { return given[i]; }));
   conventions.back().swaps_xy = true;
   return conventions;

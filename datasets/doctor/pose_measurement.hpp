@@ -9,22 +9,22 @@
 
 namespace mosbench {
 
-/// How well scans that are some metres apart overlap under a convention, 0 to 1, against the given
-/// poses on the same scans, which are those where the two differ most.
+/// Overlap (0 to 1) of scans some metres apart under a convention and under the given poses, on the
+/// pairs where the two differ most.
 struct ConventionScore {
-  std::size_t pairs = 0;  ///< none when the two differ nowhere: these poses cannot tell
+  std::size_t pairs = 0;  ///< none when the two differ nowhere
   double overlap = 0.0;
   double given_overlap = 0.0;
-  std::size_t pairs_better = 0;  ///< where the convention overlaps more than the given poses
+  std::size_t pairs_better = 0;  ///< where the convention overlaps more
 };
 
-/// How well the upright surfaces of scans spread over the sequence overlap.
+/// Overlap of the upright surfaces of scans that are spread over the sequence.
 struct PoseFit {
   double overlap = 0.0;
   double best_overlap = 0.0;         ///< after moving the scans to where they overlap best
   double median_correction_m = 0.0;  ///< by which they were moved
 
-  /// If not, scans could be moved to fit far better: the poses are not of these scans.
+  /// Returns false when scans moved elsewhere overlap far better: the poses are not of these scans.
   bool fits() const;
 };
 
@@ -32,14 +32,14 @@ struct PoseFit {
 struct PoseMeasurement {
   PoseFit given;
   std::vector<ConventionScore> scores;  ///< one per convention that was measured
-  /// The conventions that fit where the given poses do not, best first. Several when these scans
-  /// cannot tell which of them it is.
+  /// The conventions that fit better than the given poses, best first. Several when these scans do
+  /// not decide between them.
   std::vector<std::size_t> better;
   std::size_t scans_read = 0;
 };
 
-/// Reads some dozens of scans, whatever the length of the sequence. Nothing when it is too short or
-/// its scans are too poor in points to tell. Throws DataError.
+/// Reads some dozens of scans, whatever the length of the sequence. Returns nothing when it is too
+/// short or its scans have too few points. Throws DataError.
 std::optional<PoseMeasurement> measure_poses(const Sequence& sequence,
                                              const std::vector<Pose>& given,
                                              const std::vector<PoseConvention>& conventions);

@@ -11,32 +11,32 @@
 
 namespace mosbench {
 
-/// Two scans, `later` being some scans behind `earlier`.
+/// Two scans of a sequence.
 struct ScanPair {
   std::size_t earlier = 0, later = 0;
 };
 
 Pose relative(const std::vector<Pose>& poses, const ScanPair& pair);
 
-/// How far the two motions put a point at 10 m from one another, about.
+/// Returns about how far apart the two motions put a point 10 m away, metres.
 double difference_m(const Pose& a, const Pose& b);
 
-/// Of at least one value; the upper one of the two in the middle.
+/// Median of a non-empty list; for even sizes the upper middle value.
 double median(std::vector<double> values);
 
-/// Scans of a sequence read once and kept in the forms that laying them over one another needs.
+/// Scans of a sequence, each read once, in the forms that are needed to compare them.
 class ScanOverlap {
  public:
   explicit ScanOverlap(const Sequence& sequence) : sequence_(sequence) {}
 
-  /// Whether both scans have points enough to tell. This and the others throw DataError.
-  bool can_tell(const ScanPair& pair) { return at(pair.later).moved_m.size() >= kFewestPoints; }
-  /// Of the later scan with the surfaces of the earlier one, see SurfaceCells.
+  /// Returns whether the later scan has enough points. This and the others throw DataError.
+  bool has_points(const ScanPair& pair) { return at(pair.later).moved_m.size() >= kFewestPoints; }
+  /// Returns the overlap of the later scan with the surfaces of the earlier one, see SurfaceCells.
   double overlap(const ScanPair& pair, const Pose& motion) {
     return at(pair.earlier).cells.overlap(at(pair.later).moved_m, motion);
   }
-  /// The same of what stands upright. The rings of a sparse sensor on the ground stay where they
-  /// are when the sensor moves, and speak for standing still.
+  /// The same for upright surfaces. Rings of a sparse sensor on the ground move with the sensor, so
+  /// they overlap best as if it stood still.
   double upright_overlap(const ScanPair& pair, const Pose& motion) {
     return at(pair.earlier).upright.overlap(at(pair.later).upright_m, motion);
   }

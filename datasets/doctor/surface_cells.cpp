@@ -120,7 +120,7 @@ Alignment align(const SurfaceCells& cells, std::span<const Eigen::Vector3d> poin
         if (direction < 6) {
           candidate.translation() += signed_step * axis;
         } else {
-          // A tenth of a radian moves points at 10 m by a metre.
+          // A tenth of a radian moves points 10 m away by a metre.
           candidate.rotate(Eigen::AngleAxisd(0.1 * signed_step, axis));
         }
         const double overlap = cells.overlap(points_m, candidate);

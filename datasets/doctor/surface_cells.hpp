@@ -9,16 +9,16 @@
 namespace mosbench {
 
 /// The surfaces of a scan as one normal distribution per cell of a grid (the NDT of Biber and
-/// Strasser, 2003). Unlike the distance to the nearest point it does not take the rings of a
-/// sparse sensor on the ground for a reason to stand still.
+/// Strasser, 2003). Unlike the distance to the nearest point it does not favour standing still
+/// because of the rings of a sparse sensor on the ground.
 class SurfaceCells {
  public:
   explicit SurfaceCells(std::span<const Eigen::Vector3d> points_m);
 
   bool empty() const { return cells_.empty(); }
 
-  /// How well points of another scan lie on the surfaces: mean over the points of a likelihood that
-  /// is 1 in the middle of a surface and 0 where there is none.
+  /// Returns how well points of another scan lie on the surfaces: the mean over the points of a
+  /// likelihood that is 1 in the middle of a surface and 0 where there is none.
   double overlap(std::span<const Eigen::Vector3d> points_m, const Pose& cells_from_points) const;
 
  private:
@@ -29,21 +29,22 @@ class SurfaceCells {
   std::unordered_map<std::uint64_t, Cell> cells_;
 };
 
-/// The points at 2 to 40 m, where scans are dense.
+/// Returns the points at 2 to 40 m, where scans are dense.
 std::vector<Eigen::Vector3d> near_points(std::span<const Point> points);
 
-/// Those that stand upright: in columns of the grid that are not flat as the ground is. All when
-/// too few do.
+/// Returns the points of upright surfaces: in columns of the grid that are not flat like the
+/// ground; all points when there are too few of them.
 std::vector<Eigen::Vector3d> upright_points(std::span<const Eigen::Vector3d> points_m);
 
-/// Up to `most` of the points, evenly picked.
+/// Returns up to `most` of the points, evenly picked.
 std::vector<Eigen::Vector3d> picked(std::span<const Eigen::Vector3d> points_m, std::size_t most);
 
-/// The motion near `start` with the largest overlap, by a search along the axes, and that overlap.
+/// A motion and the overlap under it.
 struct Alignment {
   Pose cells_from_points = Pose::Identity();
   double overlap = 0.0;
 };
+/// Returns the motion near `start` with the largest overlap, by a search along the axes.
 Alignment align(const SurfaceCells& cells, std::span<const Eigen::Vector3d> points_m,
                 const Pose& start);
 

@@ -10,17 +10,17 @@
 
 namespace mosbench {
 
-/// Points of a scan stored as little-endian float32 x y z intensity. No byte is an empty scan; NaN
-/// and infinite values are kept. Throws DataError when the size is no multiple of 16 bytes.
+/// Returns the points of a scan stored as little-endian float32 x y z intensity, metres. No bytes
+/// are an empty scan; NaN and infinite values are kept. Throws DataError when the size is no
+/// multiple of 16 bytes.
 std::vector<Point> parse_bin(std::string_view bytes, const std::filesystem::path& file);
-/// The same with `columns` float32 per point, of which the first four are kept: nuScenes adds the
-/// ring.
+/// Parses `columns` float32 per point and keeps the first four: nuScenes adds the ring.
 std::vector<Point> parse_bin(std::string_view bytes, std::size_t columns,
                              const std::filesystem::path& file);
-/// The bytes of a file, where the points lie.
+/// Returns the points' own memory as the bytes of a file.
 std::string_view format_bin(std::span<const Point> points);
 
-/// Throws the DataError of `parse_bin` for a size in bytes that no scan has.
+/// Throws the DataError of `parse_bin` when no scan has this size.
 void check_bin_size(std::uintmax_t size_bytes, std::size_t columns,
                     const std::filesystem::path& file);
 

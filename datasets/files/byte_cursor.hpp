@@ -12,8 +12,8 @@
 
 namespace mosbench {
 
-/// Takes little-endian values off the front of a buffer. Throws DataError with `what` the buffer
-/// is, in `file`, instead of reading past its end.
+/// Reads little-endian values one after the other from a buffer. Instead of reading past its end it
+/// throws DataError that says `what` in `file` ends early.
 class ByteCursor {
  public:
   ByteCursor(std::string_view bytes, const std::filesystem::path& file, std::string what)
@@ -37,7 +37,7 @@ class ByteCursor {
     return taken;
   }
 
-  /// Bytes behind a uint32 that counts them.
+  /// Reads a uint32 and as many bytes.
   std::string_view take_counted() { return take_bytes(take<std::uint32_t>()); }
 
   std::string_view rest() const { return rest_; }
@@ -48,7 +48,7 @@ class ByteCursor {
   std::string what_;
 };
 
-/// Puts little-endian values at the end of a buffer: the inverse of ByteCursor.
+/// Appends little-endian values to a buffer: the inverse of ByteCursor.
 class ByteSink {
  public:
   template <typename Value>

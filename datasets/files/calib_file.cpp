@@ -44,7 +44,7 @@ bool is_identity(const Pose& pose) { return pose.matrix() == Pose::Identity().ma
 
 Pose lidar_pose(const Pose& pose, const Pose& camera_from_lidar) {
   if (is_identity(camera_from_lidar)) return pose;
-  // The general inverse: published Tr have rounded rotations, whose transpose is no inverse.
+  // The general inverse: published Tr have rounded rotations, whose transpose is not their inverse.
   return Pose(camera_from_lidar.inverse(Eigen::Affine) * pose * camera_from_lidar);
 }
 

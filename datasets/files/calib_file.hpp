@@ -7,17 +7,18 @@
 
 namespace mosbench {
 
-/// The matrix "Tr:" of a KITTI calibration, camera_from_lidar; other lines are not looked at.
+/// Returns the matrix "Tr:" of a KITTI calibration, camera_from_lidar; other lines are ignored.
 /// Throws DataError when there is none, two, or one that is no rigid motion.
 Pose parse_calib(std::string_view text, const std::filesystem::path& file);
-/// P0 to P3 as identity, then Tr.
+/// Formats P0 to P3 as identity, then Tr.
 std::string format_calib(const Pose& camera_from_lidar);
 
-/// Whether a pose is the identity to the last bit, as Tr of data sets whose poses are the lidar's.
+/// Returns whether a pose is the identity to the last bit, as is Tr of data sets whose poses are
+/// the LiDAR's.
 bool is_identity(const Pose& pose);
 
-/// KITTI stores map_from_camera in poses.txt; this is the lidar's pose, Tr^-1 * P * Tr. The pose
-/// itself, bit for bit, when Tr is the identity.
+/// Turns a pose of poses.txt, which KITTI stores as map_from_camera, into the LiDAR's: Tr^-1 * P *
+/// Tr. Returns the pose unchanged, bit for bit, when Tr is the identity.
 Pose lidar_pose(const Pose& pose, const Pose& camera_from_lidar);
 
 Pose read_calib(const std::filesystem::path& file);

@@ -6,19 +6,19 @@
 
 namespace mosbench {
 
-/// Something on disk is not what it has to be. The program ends with exit code 3.
+/// A file or folder is not what it has to be. The program ends with exit code 3.
 class DataError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
   /// Message "<file>: <what is wrong>, expected <what was expected>".
   DataError(const std::filesystem::path& file, const std::string& wrong,
             const std::string& expected);
-  /// The same with a line (from 1) or record index behind the file's name: "<file>:<line>: ...".
+  /// The same with a line (from 1) or record index after the file's name: "<file>:<line>: ...".
   DataError(const std::filesystem::path& file, std::size_t line, const std::string& wrong,
             const std::string& expected);
 };
 
-/// A flag, key or value the user gave is wrong. The program ends with exit code 2.
+/// A flag, key or value given by the user is wrong. The program ends with exit code 2.
 class UsageError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -24,17 +24,17 @@ void make_parent_folder(const std::filesystem::path& file) {
   std::error_code error;
   std::filesystem::create_directories(file.parent_path(), error);
   if (error) {
-    throw DataError(file, "its folder cannot be made (" + error.message() + ")",
+    throw DataError(file, "its folder cannot be created (" + error.message() + ")",
                     "a writable output folder");
   }
 }
 
-/// Nothing when written, else the errno of the first step that failed. A full disk may show only
-/// when the buffers are flushed, hence the check of fclose.
+/// Returns 0, or the errno of the first step that failed. A full disk may be reported only when the
+/// buffers are flushed, hence the check of fclose.
 int write_whole(const std::filesystem::path& file, std::string_view bytes) {
   OpenFile out(std::fopen(file.c_str(), "wb"));
   if (!out) return errno;
-  // An empty view may point nowhere, which fwrite must not be given.
+  // An empty view may be null, which fwrite does not accept.
   if (!bytes.empty() && std::fwrite(bytes.data(), 1, bytes.size(), out.get()) != bytes.size()) {
     return errno;
   }
@@ -70,7 +70,7 @@ std::string read_file(const std::filesystem::path& file) {
   std::string bytes;
   std::error_code error;
   const auto size_on_disk = std::filesystem::file_size(file, error);
-  // One byte more than the file, so that its end is met without growing the buffer.
+  // One byte more than the file, so that its end is reached without growing the buffer.
   std::size_t room = error ? 65536 : static_cast<std::size_t>(size_on_disk) + 1;
   std::size_t used = 0;
   while (true) {
@@ -99,7 +99,7 @@ std::string read_head(const std::filesystem::path& file, std::string_view last_l
     const std::size_t last = bytes.find(start_of_last, searched);
     const bool has_last = last != bytes.npos && bytes.find('\n', last + 1) != bytes.npos;
     if (has_last || bytes.size() < used + kStepBytes) break;
-    // The line may lie across two steps.
+    // The line may be split between two steps.
     searched = std::min(last, bytes.size() - std::min(bytes.size(), start_of_last.size()));
   }
   check_reading(in.get(), file);

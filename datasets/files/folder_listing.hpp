@@ -15,17 +15,17 @@ struct StemFile {
   std::string stem;  ///< file name without extension
 };
 
-/// The value of a stem of digits ("000017", a time stamp), or nothing.
+/// Returns the value of a stem of digits ("000017", a time stamp), or nothing.
 std::optional<std::uint64_t> stem_number(std::string_view stem);
 
-/// The files of `folder` with one of `extensions` (".bin"), hidden ones aside, by the value of the
-/// stem when all stems are numbers, by text otherwise. Throws DataError when the folder cannot be
-/// read and when two files have the same stem or number.
+/// Lists the files of `folder` with one of `extensions` (".bin") that are not hidden, ordered by
+/// the value of the stem when all stems are numbers, else by text. Throws DataError when the folder
+/// cannot be read and when two files have the same stem or number.
 std::vector<StemFile> list_by_stem(const std::filesystem::path& folder,
                                    std::initializer_list<std::string_view> extensions);
 
-/// The folders below `folder` in the order of `list_by_stem`, hidden ones aside; links are
-/// followed. None when it cannot be read: a search passes over what is closed to it.
+/// Lists the folders in `folder` that are not hidden, in the order of `list_by_stem`; links are
+/// followed. Returns none when it cannot be read: a search skips what it may not read.
 std::vector<std::filesystem::path> list_folders(const std::filesystem::path& folder);
 
 }  // namespace mosbench

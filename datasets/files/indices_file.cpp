@@ -25,7 +25,7 @@ IndicesRow parse_row(const TextLine& line, const std::filesystem::path& file) {
   IndicesRow row;
   row.line = line.number;
   std::string_view rest = line.text;
-  // The published readers let a comma end the row.
+  // The published readers accept a comma at the end of a row.
   if (rest.ends_with(',')) rest.remove_suffix(1);
   const auto next_field = [&rest] {
     const auto comma = rest.find(',');

@@ -17,8 +17,8 @@ struct IndicesRow {
   std::size_t line = 0;               ///< in its file, from 1; not needed for writing
 };
 
-/// Rows "stamp_ns,index,index,...". A row without index is a scan in which nothing moves. Throws
-/// DataError with the line for text, a negative number or a stamp that was there before.
+/// Parses rows "stamp_ns,index,index,...". A row without index is a scan in which nothing moves.
+/// Throws DataError with the line for text, a negative number or a repeated stamp.
 std::vector<IndicesRow> parse_indices(std::string_view text, const std::filesystem::path& file);
 std::string format_indices(std::span<const IndicesRow> rows);
 

@@ -10,11 +10,11 @@
 
 namespace mosbench {
 
-/// Raw label ids stored as little-endian uint32, one per point: the class in the lower 16 bits, an
-/// instance above. Throws DataError unless there are exactly `point_count`.
+/// Returns raw label ids stored as little-endian uint32, one per point: the class in the lower 16
+/// bits, an instance in the upper ones. Throws DataError unless there are exactly `point_count`.
 std::vector<std::uint32_t> parse_labels(std::string_view bytes, std::size_t point_count,
                                         const std::filesystem::path& file);
-/// The bytes of a file, where the labels lie.
+/// Returns the labels' own memory as the bytes of a file.
 std::string_view format_labels(std::span<const std::uint32_t> labels);
 
 /// Throws the DataError of `parse_labels` for a size in bytes that does not fit the scan.

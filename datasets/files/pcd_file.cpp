@@ -26,7 +26,7 @@ struct PcdRecords {
   }
 };
 
-/// Reads and checks the whole file; there is nothing in the records of one without points.
+/// Reads and checks the whole file; the records of a file without points are empty.
 PcdRecords read_records(const std::filesystem::path& file) {
   require_pcl(file);
   const std::string bytes = read_file(file);

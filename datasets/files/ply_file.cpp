@@ -39,7 +39,7 @@ constexpr std::array<PlyType, 16> kTypes = {{{"char", 1, 1},
                                              {"double", 8, 8},
                                              {"float64", 8, 8}}};
 
-/// The vertices as records of fields, and how they are stored.
+/// Describes the vertices as records of fields.
 struct PlyHead {
   CloudHead vertices;
   bool ascii = false;
@@ -56,7 +56,7 @@ class PlyHeadParser {
     while (true) {
       const std::string_view line = next_line();
       if (line == "end_header") break;
-      take(split_at_blanks(line), line);
+      parse_line(split_at_blanks(line), line);
     }
     if (!has_format_ || !has_vertices_) {
       fail("its header lacks a format or the element vertex", "both");
@@ -86,20 +86,20 @@ class PlyHeadParser {
     return line;
   }
 
-  void take(const std::vector<std::string_view>& words, std::string_view line) {
+  void parse_line(const std::vector<std::string_view>& words, std::string_view line) {
     if (words.empty() || words[0] == "comment" || words[0] == "obj_info") return;
     if (words[0] == "format" && words.size() == 3) {
-      take_format(words[1]);
+      parse_format(words[1]);
     } else if (words[0] == "element" && words.size() == 3) {
-      take_element(words[1], words[2]);
+      parse_element(words[1], words[2]);
     } else if (words[0] == "property" && words.size() >= 3) {
-      if (in_vertices_) take_property(words);
+      if (in_vertices_) parse_property(words);
     } else {
       fail("header line " + quoted(line), "format, element, property or comment");
     }
   }
 
-  void take_format(std::string_view format) {
+  void parse_format(std::string_view format) {
     if (format != "ascii" && format != "binary_little_endian" && format != "binary_big_endian") {
       fail("format " + quoted(format), "ascii, binary_little_endian or binary_big_endian");
     }
@@ -108,7 +108,7 @@ class PlyHeadParser {
     has_format_ = true;
   }
 
-  void take_element(std::string_view name, std::string_view count) {
+  void parse_element(std::string_view name, std::string_view count) {
     const auto number = parse_unsigned(count);
     if (!number || *number >= kMostVertices) fail(quoted(count) + " elements", "a whole number");
     in_vertices_ = name == "vertex";
@@ -120,7 +120,7 @@ class PlyHeadParser {
     other_elements_ = other_elements_ || !in_vertices_;
   }
 
-  void take_property(const std::vector<std::string_view>& words) {
+  void parse_property(const std::vector<std::string_view>& words) {
     CloudHead& head = head_.vertices;
     const auto type = std::ranges::find(kTypes, words[1], &PlyType::name);
     if (type == kTypes.end() || words.size() != 3 || head.fields.size() == kMostProperties) {
@@ -139,7 +139,7 @@ class PlyHeadParser {
   bool has_format_ = false, has_vertices_ = false, in_vertices_ = false, other_elements_ = false;
 };
 
-/// Where each of x y z intensity stands in a row; behind the row when there is none.
+/// Returns the columns of x, y, z and intensity in a row; one past the last when there is none.
 std::array<std::size_t, 4> columns_of(const CloudHead& head, const std::filesystem::path& file) {
   std::array<std::size_t, 4> columns{};
   constexpr std::array<std::string_view, 4> kNames = {"x", "y", "z", "intensity"};

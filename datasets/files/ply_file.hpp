@@ -9,13 +9,14 @@
 
 namespace mosbench {
 
-/// Points of a PLY file, ascii or binary of either byte order: properties x, y, z, and intensity (0
-/// when there is none) of its element "vertex", which has to come first; all others are left aside.
-/// PCL's reader of PLY is not used, it takes a cut off file for a whole one. Throws DataError.
+/// Parses the points of a PLY file, ascii or binary of either byte order: properties x, y, z, and
+/// intensity (0 when there is none) of its element "vertex", which has to come first; all others
+/// are ignored. PCL's reader of PLY is not used: it accepts files that are cut off. Throws
+/// DataError.
 std::vector<Point> parse_ply(std::string_view bytes, const std::filesystem::path& file);
 
-/// Returns the number of points that the header in `head`, the start of a file of `file_bytes`
-/// bytes, says there are, checked against that size; throws as `parse_ply`.
+/// Returns the number of points by the header in `head`, the start of a file of `file_bytes` bytes,
+/// and checks it against that size; throws as `parse_ply`.
 std::size_t ply_point_count(std::string_view head, std::uintmax_t file_bytes,
                             const std::filesystem::path& file);
 

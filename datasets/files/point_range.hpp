@@ -5,7 +5,7 @@
 
 namespace mosbench {
 
-/// Distance of a point from the sensor, metres; computed in double.
+/// Returns the distance of a point from the sensor, metres, computed in double.
 inline double range_m(const Point& point) {
   const double x = point.x, y = point.y, z = point.z;
   return std::sqrt(x * x + y * y + z * z);

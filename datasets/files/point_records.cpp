@@ -11,7 +11,7 @@
 namespace mosbench {
 namespace {
 
-/// A value of a point by its stored type, converted.
+/// Reads a value of a point and converts it from its stored type.
 template <typename Stored, typename Wanted>
 Wanted load(const char* bytes, bool big_endian) {
   std::array<char, sizeof(Stored)> raw;
@@ -41,7 +41,7 @@ constexpr StoredType stored_type() {
   return {sizeof(Stored), load<Stored, float>, load<Stored, double>, load<Stored, std::int64_t>};
 }
 
-/// By sensor_msgs/PointField's numbers, from 1.
+/// In the order of sensor_msgs/PointField's numbers, which start at 1.
 constexpr std::array<StoredType, 8> kStoredTypes = {
     stored_type<std::int8_t>(),   stored_type<std::uint8_t>(), stored_type<std::int16_t>(),
     stored_type<std::uint16_t>(), stored_type<std::int32_t>(), stored_type<std::uint32_t>(),
@@ -64,7 +64,7 @@ const StoredType& type_of(const CloudHead& head, const CloudField& field,
   return type;
 }
 
-/// Where each point's record starts.
+/// Calls `visit(point, record)` for each point with the start of its record.
 template <typename Visit>
 void for_each_record(const CloudHead& head, std::string_view message, Visit&& visit) {
   std::size_t point = 0;
@@ -113,7 +113,7 @@ const CloudField* find_field(const CloudHead& head, std::string_view name) {
 
 std::vector<Point> points_of(const CloudHead& head, std::string_view bytes,
                              const std::filesystem::path& file) {
-  // A byte per point at least, so memory is taken only for what the file is long enough to hold.
+  // With at least a byte per point no more memory is allocated than the file is long.
   if (head.point_step_bytes == 0) {
     throw DataError(file, "has points of 0 bytes", "fields x y z [intensity]");
   }

@@ -32,7 +32,7 @@ struct CloudHead {
   std::size_t points() const { return std::size_t{height} * width; }
 };
 
-/// Returns nullptr when there is none of this name.
+/// Returns nullptr when no field has this name.
 const CloudField* find_field(const CloudHead& head, std::string_view name);
 
 /// Returns the points that `head` describes in `bytes`, which reach at least to the end of the
@@ -41,7 +41,7 @@ const CloudField* find_field(const CloudHead& head, std::string_view name);
 std::vector<Point> points_of(const CloudHead& head, std::string_view bytes,
                              const std::filesystem::path& file);
 
-/// One value per record. Throw DataError when the field is no single number within the record.
+/// Return one value per record. Throw DataError when the field is no single number within it.
 std::vector<double> numbers_of(const CloudHead& head, const CloudField& field,
                                std::string_view bytes, const std::filesystem::path& file);
 /// Values that are no number, or beyond 10^18, become -1.

@@ -7,11 +7,11 @@
 
 namespace mosbench {
 
-/// Deviation from length 1 that rounding in a text file explains.
+/// Deviation from length 1 that rounding in a text file can cause.
 inline constexpr double kQuaternionTolerance = 1e-3;
 
-/// The pose of a translation and a quaternion in the order x y z w, normalized; nothing when a
-/// number is not finite or the quaternion is not of length 1.
+/// Returns the pose of a translation and a quaternion (x y z w), which is normalized; nothing when
+/// a number is not finite or the quaternion is not of length 1.
 inline std::optional<Pose> pose_of(const Eigen::Vector3d& translation_m,
                                    const Eigen::Vector4d& xyzw) {
   if (!translation_m.allFinite() || !(std::abs(xyzw.norm() - 1.0) <= kQuaternionTolerance)) {

@@ -13,8 +13,8 @@ namespace mosbench {
 namespace {
 
 constexpr const char* kLayout =
-    "a sequence folder: velodyne/ (or binFiles/) with one .bin per scan, beside it poses.txt and, "
-    "where there is truth, labels/ or indices.csv";
+    "a sequence folder: velodyne/ (or binFiles/) with one .bin per scan, next to it poses.txt "
+    "and, where there is truth, labels/ or indices.csv";
 
 constexpr std::string_view kNuscenesEnd = ".pcd.bin";
 constexpr std::size_t kNuscenesColumns = 5;
@@ -23,8 +23,8 @@ bool has_extension(const std::filesystem::path& file, const char* extension) {
   return file.extension() == extension;
 }
 
-std::size_t columns_of(const std::filesystem::path& file, std::size_t told) {
-  return file.string().ends_with(kNuscenesEnd) ? kNuscenesColumns : told;
+std::size_t columns_of(const std::filesystem::path& file, std::size_t asked) {
+  return file.string().ends_with(kNuscenesEnd) ? kNuscenesColumns : asked;
 }
 
 }  // namespace

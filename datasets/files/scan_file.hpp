@@ -11,13 +11,14 @@
 
 namespace mosbench {
 
-/// The folder of scans in a sequence folder: velodyne/, else binFiles/, else LIDAR_TOP/ (nuScenes),
-/// else nothing.
+/// Returns the folder of scans in a sequence folder: velodyne/, else binFiles/, else LIDAR_TOP/
+/// (nuScenes), else nothing.
 std::optional<std::filesystem::path> scan_folder_of(const std::filesystem::path& sequence_folder);
 
-/// The scans (.bin, .pcd, .ply) of `scan_folder` in order. Throws DataError when there are none.
+/// Lists the scans (.bin, .pcd, .ply) of `scan_folder` in order. Throws DataError when there are
+/// none.
 std::vector<StemFile> list_scan_folder(const std::filesystem::path& scan_folder);
-/// Those of `scan_folder_of`. Throws DataError also when the sequence folder has none.
+/// Lists those of `scan_folder_of`. Throws DataError also when there is no such folder.
 std::vector<StemFile> list_scans(const std::filesystem::path& sequence_folder);
 
 /// Reads the points of a scan into the memory of `reused` where it can. A .bin file has

@@ -8,8 +8,8 @@
 
 namespace mosbench {
 
-/// Frame numbers of a HeLiMOS split (train.txt, val.txt, test.txt), one per line. Throws DataError
-/// with the line for anything but a number, and for a file without numbers.
+/// Parses the frame numbers of a HeLiMOS split (train.txt, val.txt, test.txt), one per line. Throws
+/// DataError with the line for anything but a number, and for a file without numbers.
 std::set<std::uint64_t> parse_split(std::string_view text, const std::filesystem::path& file);
 std::string format_split(const std::set<std::uint64_t>& numbers);
 

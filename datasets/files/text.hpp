@@ -16,29 +16,29 @@ struct TextLine {
   std::string_view text;
 };
 
-/// The lines up to the last that is not blank, as views into `text`. Throws DataError naming the
-/// line for a blank one in between.
+/// Returns the lines up to the last that is not blank, as views into `text`. Throws DataError
+/// naming the line when one before it is blank.
 std::vector<TextLine> split_lines(std::string_view text, const std::filesystem::path& file);
 
-/// The parts between blanks and tabs.
+/// Splits a line at blanks and tabs; no part is empty.
 std::vector<std::string_view> split_at_blanks(std::string_view line);
 
-/// The parts between commas, trimmed: one more than there are commas.
+/// Splits a line at commas and trims the parts: one more than there are commas.
 std::vector<std::string_view> split_at_commas(std::string_view line);
 
-/// `text` without blanks, tabs and carriage returns at both ends.
+/// Returns `text` without blanks, tabs and carriage returns at both ends.
 std::string_view trim(std::string_view text);
 
-/// The whole of `text` as a finite double, or nothing.
+/// Returns the whole of `text` as a finite double, or nothing.
 std::optional<double> parse_double(std::string_view text);
 
-/// The whole of `text` as a decimal number without sign, or nothing.
+/// Returns the whole of `text` as a decimal number without sign, or nothing.
 std::optional<std::uint64_t> parse_unsigned(std::string_view text);
 
-/// ASCII letters in lower case, other bytes as they are.
+/// Returns `text` with ASCII letters in lower case and other bytes unchanged.
 std::string lower_case(std::string text);
 
-/// `text` in quotes for an error message: cut when long, unprintable bytes as '?'.
+/// Returns `text` in quotes for an error message: cut when long, unprintable bytes as '?'.
 std::string quoted(std::string_view text);
 
 }  // namespace mosbench

@@ -51,12 +51,12 @@ std::optional<Decimal> parse_decimal(std::string_view text) {
   return decimal;
 }
 
-/// The first `count` digits as a number (zeros beyond the last), or nothing beyond 63 bits.
+/// Returns the first `count` digits as a number (zeros after the last), or nothing beyond 63 bits.
 std::optional<std::uint64_t> leading_number(const std::string& digits, std::int64_t count) {
   std::uint64_t value = 0;
   for (std::int64_t i = 0; i < count; ++i) {
     const auto position = static_cast<std::size_t>(i);
-    // Only zeros follow, and zero stays zero: no need to walk a long exponent.
+    // Only zeros follow, and zero stays zero: no need to go through a long exponent.
     if (position >= digits.size() && value == 0) return 0;
     const auto digit =
         position < digits.size() ? static_cast<std::uint64_t>(digits[position] - '0') : 0U;

@@ -10,13 +10,14 @@
 
 namespace mosbench {
 
-/// A decimal number of seconds (with or without exponent) as nanoseconds, by digits and so exact;
-/// digits behind the ninth decimal round half away from zero. Nothing for text or beyond 64 bits.
+/// Returns a decimal number of seconds (with or without exponent) as nanoseconds, exact because it
+/// works on the digits; those after the ninth decimal round half away from zero. Returns nothing
+/// for text or beyond 64 bits.
 std::optional<std::int64_t> parse_seconds_as_ns(std::string_view text);
 
-/// times.txt: one time in seconds per scan. Throws DataError with the line.
+/// Parses times.txt: one time in seconds per scan. Throws DataError with the line.
 std::vector<std::int64_t> parse_times(std::string_view text, const std::filesystem::path& file);
-/// Seconds with nine decimals.
+/// Formats seconds with nine decimals.
 std::string format_times(std::span<const std::int64_t> stamps_ns);
 
 std::vector<std::int64_t> read_times(const std::filesystem::path& file);

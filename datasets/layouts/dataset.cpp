@@ -13,7 +13,7 @@ namespace {
 
 const Layout& recognise(const std::filesystem::path& path, std::vector<std::string>& remarks) {
   if (const auto origin = simulated_origin(path)) {
-    remarks.push_back("taken for " + std::string(to_string(origin->layout)) +
+    remarks.push_back("recognised as " + std::string(to_string(origin->layout)) +
                       ": it is simulated in this layout");
     return layout_of(origin->layout);
   }
@@ -21,7 +21,7 @@ const Layout& recognise(const std::filesystem::path& path, std::vector<std::stri
     for (const Layout* layout : layouts()) {
       if (layout->evidence != evidence) continue;
       if (const auto why = layout->recognise(path)) {
-        remarks.push_back("taken for " + std::string(layout->name) + ": " + *why);
+        remarks.push_back("recognised as " + std::string(layout->name) + ": " + *why);
         return *layout;
       }
     }
@@ -37,9 +37,10 @@ std::string joined(const std::vector<SequenceFolder>& folders) {
   return names;
 }
 
-/// Those whose name or alias was asked for, in the data set's order; all when none was.
-std::vector<SequenceFolder> keep(std::vector<SequenceFolder> folders,
-                                 const std::vector<std::string>& names) {
+/// Returns the folders whose name or alias is in `names`, in the data set's order; all when `names`
+/// is empty.
+std::vector<SequenceFolder> keep_named(std::vector<SequenceFolder> folders,
+                                       const std::vector<std::string>& names) {
   if (names.empty()) return folders;
   const auto has_name = [](const SequenceFolder& folder, const std::string& name) {
     return !name.empty() && (folder.name == name || folder.alias == name);
@@ -56,13 +57,13 @@ std::vector<SequenceFolder> keep(std::vector<SequenceFolder> folders,
   return folders;
 }
 
-struct Found {
+struct ListedSequences {
   const Layout& layout;
   std::vector<SequenceFolder> folders;
 };
 
-Found find(const std::filesystem::path& path, const OpenOptions& options,
-           std::vector<std::string>& remarks) {
+ListedSequences list_sequences(const std::filesystem::path& path, const OpenOptions& options,
+                               std::vector<std::string>& remarks) {
   std::error_code error;
   const std::filesystem::directory_iterator listing(path, error);
   if (error) {
@@ -72,7 +73,7 @@ Found find(const std::filesystem::path& path, const OpenOptions& options,
   const Layout& layout = options.kind ? layout_of(*options.kind) : recognise(path, remarks);
   auto found = layout.list(path);
   if (found.empty()) throw DataError(path, "holds no sequence", std::string(layout.expected));
-  return {layout, keep(std::move(found), options.sequences)};
+  return {layout, keep_named(std::move(found), options.sequences)};
 }
 
 }  // namespace
@@ -81,14 +82,14 @@ std::vector<SequenceFolder> find_sequences(const std::filesystem::path& path,
                                            const OpenOptions& options,
                                            std::optional<DatasetKind>& kind) {
   std::vector<std::string> ignored;
-  Found found = find(path, options, ignored);
-  kind = found.layout.kind;
-  return std::move(found.folders);
+  ListedSequences listed = list_sequences(path, options, ignored);
+  kind = listed.layout.kind;
+  return std::move(listed.folders);
 }
 
 Dataset open_dataset(const std::filesystem::path& path, const OpenOptions& options) {
   Dataset dataset;
-  const auto [layout, folders] = find(path, options, dataset.remarks);
+  const auto [layout, folders] = list_sequences(path, options, dataset.remarks);
   dataset.kind = layout.kind;
   dataset.root = path;
   if (options.reading.poses && folders.size() != 1) {

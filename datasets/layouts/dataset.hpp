@@ -24,11 +24,11 @@ enum class DatasetKind {
 };
 
 std::string_view to_string(DatasetKind kind);
-/// Nothing when the name is not one of `dataset_kind_names()`.
+/// Returns nothing when the name is not one of `dataset_kind_names()`.
 std::optional<DatasetKind> dataset_kind_from_string(std::string_view name);
-/// "doals, sipailou, ..."
+/// Returns "doals, sipailou, ...".
 std::string dataset_kind_names();
-/// Whether `simulate` and `convert` write the layout.
+/// Returns whether `simulate` and `convert` write the layout.
 bool is_written(DatasetKind kind);
 
 /// Part of a sequence: the scans with these stems, or all of them.
@@ -49,13 +49,13 @@ struct Dataset {
   std::filesystem::path root;
   std::vector<std::unique_ptr<Sequence>> sequences;  ///< in the data set's own order
   std::vector<Split> splits;                         ///< only those with at least one scan here
-  std::vector<std::string> remarks;                  ///< what was assumed about the whole
+  std::vector<std::string> remarks;                  ///< what was assumed about the whole data set
 };
 
 struct OpenOptions {
   /// Recognised from the folders when not given.
   std::optional<DatasetKind> kind = std::nullopt;
-  /// Names to keep; all when empty. DOALS takes the numbers 1 to 8 of the published ones as well.
+  /// Names to keep; all when empty. The published sequences of DOALS have the numbers 1 to 8, too.
   std::vector<std::string> sequences = {};
   ReadingOptions reading = {};
 };
@@ -64,11 +64,11 @@ struct OpenOptions {
 struct SequenceFolder {
   std::string name;  ///< Sequence::name
   std::filesystem::path folder;
-  std::string alias;  ///< a second name that --sequences takes; may be empty
+  std::string alias;  ///< a second name for --sequences; may be empty
 };
 
-/// The sequences that `open_dataset` would open, in its order, without opening them; `kind` becomes
-/// what it would recognise. Throws as it does for what it lists.
+/// Lists the sequences that `open_dataset` would open, in its order, without opening them; sets
+/// `kind` to what it would recognise. Throws as it does for folders that cannot be listed.
 std::vector<SequenceFolder> find_sequences(const std::filesystem::path& path,
                                            const OpenOptions& options,
                                            std::optional<DatasetKind>& kind);

@@ -49,7 +49,7 @@ std::unique_ptr<Sequence> open_doals(const SequenceFolder& sequence,
                                          published_of(sequence.folder), options);
 }
 
-/// ST, SV, HG and ND: both sequences of a scene.
+/// Returns ST, SV, HG and ND: both sequences of a scene.
 std::vector<Split> doals_splits(const std::vector<SequenceFolder>& folders,
                                 const std::vector<std::unique_ptr<Sequence>>&,
                                 std::vector<std::string>&) {
@@ -77,7 +77,7 @@ std::optional<std::string> recognise_doals(const std::filesystem::path& path) {
   return "sequence_N folders are there";
 }
 
-/// Keeps the name of a DOALS sequence, others become the scene of a sequence_1.
+/// Returns the name of a DOALS sequence unchanged; another name becomes a scene with a sequence_1.
 std::filesystem::path doals_folder(const std::string& name, std::size_t) {
   if (is_sequence_name(std::filesystem::path(name).filename().string())) return name;
   return std::filesystem::path(flat_name(name)) / "sequence_1";

@@ -10,21 +10,21 @@
 
 namespace mosbench {
 
-/// The path from the root, without "." and ".." and a slash at the end.
+/// Returns the path from the root, without "." and ".." and a slash at the end.
 std::filesystem::path without_slash(const std::filesystem::path& path);
 
-/// The last name of a path, also of "." and of one that ends with a slash.
+/// Returns the last name of a path, also of "." and of one that ends with a slash.
 std::string folder_name(const std::filesystem::path& path);
 
-/// The folder in which a sequence folder lies.
+/// Returns the folder that a sequence folder is in.
 std::filesystem::path parent_folder(const std::filesystem::path& path);
 
-/// The first name in the whole path that contains one of `words` in any case; nothing without one.
+/// Returns the first name in the whole path that contains one of `words` in any case, or nothing.
 /// `words` are in lower case.
 std::optional<std::string> folder_with_word(const std::filesystem::path& path,
                                             std::initializer_list<const char*> words);
 
-/// Whether the names at the end of a path are those of `end`.
+/// Returns whether the names at the end of a path are those of `end`.
 bool ends_with(const std::filesystem::path& path, const std::filesystem::path& end);
 
 /// Lists the folders that hold `mark`: `path` itself, else those below it or below its sequences/.
@@ -37,21 +37,22 @@ std::vector<SequenceFolder> list_kitti(const std::filesystem::path& path);
 
 bool any_holds(const std::vector<SequenceFolder>& sequences, const char* file);
 
-/// Splits that consist of whole sequences given by name; those without any sequence are left out.
+/// A split that consists of whole sequences.
 struct NamedSplit {
   const char* name;
   std::vector<std::string> sequences;
 };
+/// Returns the splits of which at least one sequence is in `folders`.
 std::vector<Split> splits_of_names(const std::vector<NamedSplit>& named,
                                    const std::vector<SequenceFolder>& folders);
 
-/// The label ids of semantic-kitti-mos.yaml.
+/// Returns the label ids of semantic-kitti-mos.yaml.
 std::set<std::uint32_t> semantickitti_label_ids();
 
 /// Opens a KittiSequence with the default places of its files.
 std::unique_ptr<Sequence> open_kitti(const SequenceFolder& sequence, const ReadingOptions& options);
 
-/// Returns sequences/NAME, a slash in the name as "_".
+/// Returns sequences/NAME, with "_" for each slash in the name.
 std::filesystem::path kitti_folder(const std::string& name, std::size_t position);
 
 /// Returns `name` with "_" for each slash.

@@ -18,7 +18,7 @@
 namespace mosbench {
 namespace {
 
-/// The four recordings end up to this many scans apart (12475 to 12477), and share their split
+/// The four recordings differ by up to this many scans (12475 to 12477) and share their split
 /// files.
 constexpr std::uint64_t kLongestTail = 2;
 
@@ -26,8 +26,8 @@ bool is_sensor(const std::string& name) {
   return std::ranges::find(kHelimosSensors, name) != kHelimosSensors.end();
 }
 
-/// All sensor folders if one has scans: one without is listed, so that opening it says what it
-/// lacks.
+/// Lists all sensor folders if one has scans: one without is listed too, so that opening it says
+/// what it lacks.
 std::vector<SequenceFolder> list_sensors(const std::filesystem::path& root) {
   std::vector<SequenceFolder> sequences;
   bool has_scans = false;
@@ -39,7 +39,7 @@ std::vector<SequenceFolder> list_sensors(const std::filesystem::path& root) {
   return has_scans ? sequences : std::vector<SequenceFolder>{};
 }
 
-/// `root` and the folders below it that are spelt Deskewed_LiDAR in any case.
+/// Lists the sensors in `root`, else in its folder Deskewed_LiDAR, spelt in any case.
 std::vector<SequenceFolder> list_deskewed(const std::filesystem::path& root) {
   if (auto sequences = list_sensors(root); !sequences.empty()) return sequences;
   for (const auto& folder : list_folders(root)) {
@@ -57,8 +57,9 @@ std::vector<SequenceFolder> list_helimos(const std::filesystem::path& path) {
                                               : std::vector<SequenceFolder>{};
 }
 
-/// The scans of `sequence` that a split file numbers. A number without a scan is an error, as the
-/// score would silently be over another set, except in the tail that a shorter recording lacks.
+/// Returns the stems of the scans whose numbers are in a split file. A number without a scan is an
+/// error, as the score would silently be over another set, except in the tail that a shorter
+/// recording lacks.
 std::set<std::string> stems_of_split(const Sequence& sequence, const std::filesystem::path& file,
                                      std::vector<std::string>& remarks) {
   std::map<std::uint64_t, std::size_t> scan_of_number;
@@ -88,7 +89,7 @@ std::set<std::string> stems_of_split(const Sequence& sequence, const std::filesy
                                   file.filename().string(), fault));
   };
   remark(unlabelled, "have no label and do not count");
-  remark(beyond, "lie behind the end of the recording and are left out");
+  remark(beyond, "lie after the end of the recording and are left out");
   return stems;
 }
 

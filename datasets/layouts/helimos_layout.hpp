@@ -15,7 +15,7 @@ inline constexpr const char* kHelimosScans = "Deskewed_LiDAR";
 inline constexpr std::array<const char*, 4> kHelimosSensors = {"Aeva", "Avia", "Ouster",
                                                                "Velodyne"};
 
-/// The folder of the sensors and of the split files, relative to the root.
+/// Returns the folder of the sensors and of the split files, relative to the root.
 inline std::filesystem::path helimos_folder() {
   return std::filesystem::path(kHelimosPlace) / kHelimosScans;
 }

@@ -16,11 +16,11 @@
 
 namespace mosbench {
 
-/// How sure a path is that looks like a data set, the surest first.
+/// What shows that a path is a data set, the surest first.
 enum class Evidence : std::uint8_t {
   kFolders,  ///< files or folders that no other data set has
   kName,     ///< a word in the path
-  kNone      ///< readable, and nothing of another data set
+  kNone      ///< that it can be read, and is no other data set
 };
 
 /// Number of scans that the authors of a data set publish for one of its sequences.
@@ -43,7 +43,8 @@ struct LayoutContent {
 struct LayoutWriter {
   std::unique_ptr<SequenceWriter> (*open)(const std::filesystem::path& folder,
                                           const WriteOptions& options);
-  /// The folder of a sequence below the root; `position` is its place in the source, from 0.
+  /// Returns the folder of a sequence below the root; `position` is its place in the source, from
+  /// 0.
   std::filesystem::path (*folder)(const std::string& name, std::size_t position);
 };
 
@@ -53,7 +54,7 @@ struct Layout {
   DatasetKind kind;
   std::string_view name;  ///< in --dataset, presets and results
 
-  // What somebody has to know to get it and to lay it out as it is read here.
+  // What users have to know to get it and to arrange its folders.
   std::string_view title;
   std::string_view content;
   std::string_view size;
@@ -74,7 +75,7 @@ struct Layout {
                                const std::vector<std::unique_ptr<Sequence>>& sequences,
                                std::vector<std::string>& remarks);
   Evidence evidence;
-  /// Why `path` looks like this data set; nothing if it does not.
+  /// Returns why `path` looks like this data set, or nothing if it does not.
   std::optional<std::string> (*recognise)(const std::filesystem::path& path);
   std::optional<LayoutWriter> writer;  ///< nothing for a data set that is only read
 };

@@ -56,7 +56,7 @@ bool is_moving(std::uint32_t label) {
   return id >= kMovingLabel && id <= 259U;
 }
 
-/// Stamps and truth as DOALS has them.
+/// Collects stamps and truth as DOALS stores them.
 class DoalsRows {
  public:
   explicit DoalsRows(std::size_t scans) : stamps_ns_(scans), rows_(scans) {}

@@ -11,8 +11,8 @@
 
 namespace mosbench {
 
-/// What made a simulated data set; kept in `simulated.json` at its root, so that numbers from it
-/// never pass for those of the real one.
+/// What made a simulated data set. It is stored in `simulated.json` at its root, so that results
+/// from it are never mistaken for those of the real one.
 struct SimulatedOrigin {
   DatasetKind layout = DatasetKind::kSemanticKitti;
   std::string scene;              ///< its name
@@ -25,8 +25,8 @@ struct SimulatedOrigin {
 
 inline constexpr std::string_view kSimulatedMarker = "simulated.json";
 
-/// The origin of the data set that `path` belongs to, sought there and up to four folders above;
-/// nothing for recorded data. Throws DataError for a marker that cannot be read.
+/// Returns the origin of the data set that `path` belongs to, searched there and up to four folders
+/// above; nothing for recorded data. Throws DataError for a marker that cannot be read.
 std::optional<SimulatedOrigin> simulated_origin(const std::filesystem::path& path);
 
 SimulatedOrigin parse_simulated_origin(std::string_view text, const std::filesystem::path& file);

@@ -24,7 +24,7 @@ BagFile::BagFile(const std::filesystem::path& file) : file_(file), in_(file, std
   file_bytes_ = std::filesystem::file_size(file, error);
   if (error || !in_) throw DataError(file, "cannot be opened", "a readable file");
   if (bytes_at(0, std::min<std::uint64_t>(file_bytes_, kVersionLine.size())) != kVersionLine) {
-    throw DataError(file, "does not start as a ROS bag does",
+    throw DataError(file, "does not start like a ROS bag",
                     "\"#ROSBAG V2.0\" (rosbag migrate "
                     "turns older ones into it)");
   }
@@ -32,7 +32,7 @@ BagFile::BagFile(const std::filesystem::path& file) : file_(file), in_(file, std
       bytes_at(kVersionLine.size(),
                std::min<std::uint64_t>(file_bytes_ - kVersionLine.size(), kMostHeaderBytes));
   ByteCursor cursor(head, file_, "the bag");
-  const BagRecord record = take_bag_record(cursor, file_);
+  const BagRecord record = read_bag_record(cursor, file_);
   if (record.fields.op() != BagOp::kBagHeader) {
     throw DataError(file, "its first record is no bag header", kBag);
   }
@@ -112,7 +112,7 @@ void BagFile::add_chunk(std::string_view header, std::uint64_t content_at_bytes,
       (chunk.compression == "none" && chunk.size_bytes != chunk.stored_bytes)) {
     throw DataError(
         file_,
-        fmt::format("a chunk of {} bytes says it has {}", chunk.stored_bytes, chunk.size_bytes),
+        fmt::format("a chunk of {} bytes claims to have {}", chunk.stored_bytes, chunk.size_bytes),
         fmt::format("its size, at most {}", kMostChunkBytes));
   }
   chunks_.push_back(std::move(chunk));
@@ -131,7 +131,7 @@ void BagFile::add_index(std::string_view header, std::string_view content) {
     const std::uint64_t nanoseconds = cursor.take<std::uint32_t>();
     const auto offset_bytes = cursor.take<std::uint32_t>();
     if (offset_bytes >= chunks_.back().size_bytes) {
-      throw DataError(file_, "an index entry points behind its chunk", kBag);
+      throw DataError(file_, "an index entry points beyond its chunk", kBag);
     }
     messages_.push_back({fields.u32("conn"),
                          static_cast<std::int64_t>(seconds * 1'000'000'000U + nanoseconds),

@@ -12,14 +12,14 @@
 
 namespace mosbench {
 
-/// One topic of a bag as one publisher filled it.
+/// One topic of one publisher.
 struct BagConnection {
   std::uint32_t id = 0;
   std::string topic;
   std::string type;  ///< "sensor_msgs/PointCloud2"
 };
 
-/// Where a message lies.
+/// Where a message is stored.
 struct BagMessage {
   std::uint32_t connection = 0;
   std::int64_t recorded_ns = 0;  ///< when it was recorded, not the stamp of its header
@@ -27,21 +27,21 @@ struct BagMessage {
   std::uint32_t offset_bytes = 0;  ///< of its record in the uncompressed chunk
 };
 
-/// A ROS 1 bag of version 2.0, read without ROS. Opening walks from record to record by their
-/// headers, so its cost depends on the number of chunks, not on their size; what every header says
-/// is checked against the file before it is used. One chunk at a time is in memory.
+/// A ROS 1 bag of version 2.0, read without ROS. Opening reads the headers of the records only, so
+/// its cost depends on the number of chunks, not on their size; every header is checked against the
+/// file before it is used. One chunk at a time is in memory.
 class BagFile {
  public:
-  /// Throws DataError for what is no such bag, is cut off, encrypted or was never closed.
+  /// Throws DataError for a file that is no such bag, is cut off, encrypted or was never closed.
   explicit BagFile(const std::filesystem::path& file);
 
   const std::filesystem::path& path() const { return file_; }
   const std::vector<BagConnection>& connections() const { return connections_; }
   std::vector<BagConnection> connections_of_type(std::string_view type) const;
-  /// Messages of a topic in the order in which they were recorded.
+  /// Returns the messages of a topic in the order in which they were recorded.
   std::vector<BagMessage> messages(std::string_view topic) const;
-  /// The bytes of a message; of an uncompressed chunk no more than `most_bytes` of them are read.
-  /// Safe to call from several threads. Throws DataError.
+  /// Returns the bytes of a message, from an uncompressed chunk no more than `most_bytes`. Safe to
+  /// call from several threads. Throws DataError.
   std::string read(const BagMessage& message, std::size_t most_bytes = SIZE_MAX) const;
 
  private:

@@ -55,7 +55,7 @@ std::int64_t BagFields::stamp_ns(std::string_view name) const {
   return static_cast<std::int64_t>(seconds * 1'000'000'000U + (halves >> 32U));
 }
 
-BagRecord take_bag_record(ByteCursor& cursor, const std::filesystem::path& file) {
+BagRecord read_bag_record(ByteCursor& cursor, const std::filesystem::path& file) {
   const BagFields fields(cursor.take_counted(), file);
   return {fields, cursor.take_counted()};
 }

@@ -10,7 +10,7 @@
 
 namespace mosbench {
 
-/// What a record of a ROS 1 bag (version 2.0) is: the value of its header's field "op".
+/// The kinds of records of a ROS 1 bag (version 2.0): values of the header's field "op".
 enum class BagOp : std::uint8_t {
   kMessage = 2,
   kBagHeader = 3,
@@ -51,7 +51,7 @@ struct BagRecord {
   std::string_view content;
 };
 
-/// Takes a whole record; throws DataError.
-BagRecord take_bag_record(ByteCursor& cursor, const std::filesystem::path& file);
+/// Reads a whole record; throws DataError.
+BagRecord read_bag_record(ByteCursor& cursor, const std::filesystem::path& file);
 
 }  // namespace mosbench

@@ -14,7 +14,7 @@
 namespace mosbench {
 namespace {
 
-/// Bytes of a message that hold all that is before the points; a field takes some 20 bytes.
+/// Enough bytes of a message for all that precedes the points; a field takes some 20 bytes.
 constexpr std::size_t kHeadBytes = 4096;
 /// Scans last 0.1 s; a longer time is not measured from the scan's stamp.
 constexpr std::int64_t kLongestScanNs = 1'000'000'000;
@@ -80,8 +80,8 @@ void BagSequence::list_scans(const std::string& topic) {
 void BagSequence::open_pose_file(const ReadingOptions& options) {
   std::vector<std::int64_t> stamps_ns;
   for (const Scan& scan : scans_) stamps_ns.push_back(scan.stamp_ns);
-  const SettledPoses poses =
-      settle_poses(bag_.path().parent_path(), "poses.txt", options, {scans_.size(), stamps_ns});
+  const SensorPoses poses = read_sensor_poses(bag_.path().parent_path(), "poses.txt", options,
+                                              {scans_.size(), stamps_ns});
   std::vector<std::pair<std::int64_t, Pose>> stamped;
   for (std::size_t i = 0; i < scans_.size(); ++i) {
     stamped.emplace_back(stamps_ns[i], poses.map_from_sensor[i]);

@@ -21,8 +21,8 @@ std::optional<std::filesystem::path> bag_of(const std::filesystem::path& folder)
 /// transform covers are left out and counted in the remarks. It has no truth of its own.
 class BagSequence : public Sequence {
  public:
-  /// Throws DataError for what is no bag, has no such topic or no scan in it, or no transforms from
-  /// the scans' frame to the map's.
+  /// Throws DataError for a file that is no bag, has no such topic, no scan in it, or no transforms
+  /// from the scans' frame to the map's.
   BagSequence(std::string name, const std::filesystem::path& bag, const ReadingOptions& options);
 
   using Sequence::read;

@@ -35,7 +35,7 @@ std::string all_topics(const BagFile& bag) {
   return topics.empty() ? "nothing" : listed(topics);
 }
 
-/// The transforms of a bag by the topics they come from.
+/// Transforms of a bag and the topics that they come from.
 struct Transforms {
   std::vector<StampedTransform> changing, always;
   std::set<std::string> topics;

@@ -8,8 +8,8 @@
 
 namespace mosbench {
 
-/// The PointCloud2 topic that was asked for, else DOALS's, else the only one. Throws DataError that
-/// lists the topics there are.
+/// Returns the PointCloud2 topic that was asked for, else that of DOALS, else the only one. Throws
+/// DataError that lists the topics of the bag.
 std::string cloud_topic(const BagFile& bag, const std::optional<std::string>& asked);
 
 struct BagTransforms {
@@ -17,9 +17,9 @@ struct BagTransforms {
   std::string source;  ///< "/tf, map from os1_lidar"
 };
 
-/// From the sensor's frame to `map_frame`; when that is not given, to "map" if it is among the
-/// frames above, else to the root. /tf with /tf_static first, then topics of TransformStamped.
-/// Throws DataError that lists the frames there are.
+/// Returns the transforms from the sensor's frame to `map_frame`; when that is not given, to "map"
+/// if it is among the ancestors, else to the root. Searches /tf with /tf_static first, then topics
+/// of TransformStamped. Throws DataError that lists the frames of the bag.
 BagTransforms bag_transforms(const BagFile& bag, const std::optional<std::string>& map_frame,
                              const std::string& sensor_frame);
 

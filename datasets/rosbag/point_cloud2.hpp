@@ -11,21 +11,21 @@
 
 namespace mosbench {
 
-/// The points of a PointCloud2 in the order in which they lie in memory, none dropped.
+/// The points of a PointCloud2 in the order of its records, none dropped.
 struct TimedCloud {
   std::int64_t stamp_ns = 0;
   std::vector<Point> points;
-  /// When each was measured, since the stamp; empty when the message does not tell. From field "t"
-  /// (integer nanoseconds, Ouster) or "time" (float seconds, Velodyne).
+  /// When each point was measured, since the stamp: field "t" (integer nanoseconds, Ouster) or
+  /// "time" (float seconds, Velodyne). Empty without such a field.
   std::vector<std::int64_t> times_ns;
 };
 
-/// Fields are found by name, at any offset and of any numeric type; intensity is 0 when there is
-/// none. Throws DataError when x, y or z is missing or no single number, or a field lies beyond
-/// the point.
+/// Parses a whole message. Fields may have any offset and any numeric type; intensity is 0 when
+/// there is none. Throws DataError when x, y or z is missing or no single number, or a field lies
+/// beyond the point.
 TimedCloud parse_cloud(std::string_view message, const std::filesystem::path& file);
 
-/// Whether `head` names a field from which `parse_cloud` takes times.
+/// Returns whether `head` names a field that `parse_cloud` reads times from.
 bool has_times(const CloudHead& head);
 
 }  // namespace mosbench

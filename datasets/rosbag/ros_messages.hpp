@@ -11,7 +11,7 @@
 
 namespace mosbench {
 
-/// The types of messages that are understood; other ones in a bag are passed over.
+/// The message types that are read; messages of other types are skipped.
 inline constexpr std::string_view kPointCloud2 = "sensor_msgs/PointCloud2";
 inline constexpr std::string_view kTfMessage = "tf2_msgs/TFMessage";
 inline constexpr std::string_view kOldTfMessage = "tf/tfMessage";
@@ -25,15 +25,15 @@ struct StampedTransform {
   Pose parent_from_child = Pose::Identity();
 };
 
-/// Messages as ROS 1 serializes them. `file` is for the DataError about bytes that are cut off,
-/// numbers that are not finite, and a quaternion that is not of length 1.
+/// Parse messages as ROS 1 serializes them. Throw DataError naming `file` for bytes that are cut
+/// off, numbers that are not finite, and a quaternion that is not of length 1.
 StampedTransform parse_transform(std::string_view bytes, const std::filesystem::path& file);
 std::vector<StampedTransform> parse_tf_message(std::string_view bytes,
                                                const std::filesystem::path& file);
 std::string format_tf_message(const std::vector<StampedTransform>& transforms);
 
-/// Needs the message only up to its points. Throws DataError also when the sizes contradict one
-/// another.
+/// Parses a message up to its points; no more of it has to be given. Throws DataError also when the
+/// sizes contradict each other.
 CloudHead parse_cloud_head(std::string_view bytes, const std::filesystem::path& file);
 std::string format_cloud(const CloudHead& head, std::string_view records);
 

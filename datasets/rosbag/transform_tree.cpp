@@ -34,7 +34,7 @@ TransformTree::TransformTree(const std::vector<StampedTransform>& transforms,
 std::vector<std::string> TransformTree::ancestors(const std::string& frame) const {
   std::vector<std::string> frames = {frame};
   auto edge = edge_of_child_.find(frame);
-  // A damaged bag may hold a loop of parents.
+  // Parents may form a loop in a damaged bag.
   while (edge != edge_of_child_.end() &&
          std::ranges::find(frames, edge->second.parent) == frames.end()) {
     frames.push_back(edge->second.parent);

@@ -19,7 +19,7 @@ void add_value(XXH3_state_t& state, const Value& value) {
   XXH3_128bits_update(&state, &value, sizeof(value));
 }
 
-/// The count goes first, so that no two sequences of fields give the same bytes.
+/// Adds the count first, so that no two sequences of fields give the same bytes.
 template <typename Range>
 void add_range(XXH3_state_t& state, const Range& range) {
   add_value(state, static_cast<std::uint64_t>(range.size()));

@@ -13,12 +13,12 @@ struct XXH3_state_s;
 namespace mosbench {
 
 /// XXH3-128 over everything of a sequence that decides results: stems, points, poses, stamps and
-/// truth of its frames in order, all bit for bit. Built while the frames are read.
+/// truth of its frames in order, bit for bit. Frames are added while they are read.
 class ContentFingerprint {
  public:
   ContentFingerprint();
   void add(const Frame& frame);
-  /// 32 hexadecimal digits for the frames added so far.
+  /// Returns 32 hexadecimal digits for the frames added so far.
   std::string hex() const;
 
  private:
@@ -28,17 +28,16 @@ class ContentFingerprint {
   std::unique_ptr<XXH3_state_s, FreeState> state_;
 };
 
-/// 16 hexadecimal digits. No string: thousands of small ones, kept while large buffers come and go,
-/// would hole the heap.
+/// 16 hexadecimal digits. A fixed array: thousands of small strings would fragment the heap.
 using TruthHash = std::array<char, 16>;
 
-/// XXH3-64 over the raw labels of one scan: tells whether two results were scored against the same
-/// truth.
+/// Returns XXH3-64 over the raw labels of one scan, which shows whether two results were scored
+/// against the same truth.
 TruthHash truth_hash(std::span<const std::uint32_t> labels);
 
-/// 32 hexadecimal digits over names, sizes and modification times of a sequence's files: equal when
-/// nothing was touched since, and cheap, as no scan is read. Not comparable between machines.
-/// Throws DataError when a file is gone.
+/// Returns 32 hexadecimal digits over names, sizes and modification times of a sequence's files:
+/// equal when nothing was modified since, and cheap, as no scan is read. Not comparable between
+/// machines. Throws DataError when a file is gone.
 std::string file_stamp(const Sequence& sequence);
 
 }  // namespace mosbench

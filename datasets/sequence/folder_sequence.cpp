@@ -49,8 +49,8 @@ FolderSequence::FolderSequence(std::string name, const std::filesystem::path& fo
   recording.name = std::move(name);
   list_scans(folder, layout);
   const std::vector<std::int64_t> stamps_ns = read_stamps(folder);
-  SettledPoses poses =
-      settle_poses(folder, std::string(layout.poses_file), options, {size(), stamps_ns});
+  SensorPoses poses =
+      read_sensor_poses(folder, std::string(layout.poses_file), options, {size(), stamps_ns});
   for (std::size_t k = 0; k < size(); ++k) {
     recording.scans[k].map_from_sensor = poses.map_from_sensor[k];
     if (!stamps_ns.empty()) recording.scans[k].stamp_ns = stamps_ns[k];

@@ -23,7 +23,7 @@ struct FolderLayout {
 /// truth of its own.
 class FolderSequence : public Sequence {
  public:
-  /// Poses are read as `settle_poses` says. Throws DataError.
+  /// Reads poses by `read_sensor_poses`. Throws DataError.
   FolderSequence(std::string name, const std::filesystem::path& folder,
                  const ReadingOptions& options, const FolderLayout& layout = {});
 

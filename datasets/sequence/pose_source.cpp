@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Poses at the stamps of the scans, and of how many no pose has the very stamp.
+/// Returns poses at the scan stamps; `interpolated` counts the stamps without an exact match.
 std::vector<Pose> at_scan_stamps(const PoseList& list, const PosedScans& scans,
                                  std::size_t& interpolated, const fs::path& file) {
   std::vector<std::pair<std::int64_t, Pose>> stamped;
@@ -43,31 +43,31 @@ std::vector<Pose> at_scan_stamps(const PoseList& list, const PosedScans& scans,
   return poses;
 }
 
-class Settling {
+class SensorPoseReader {
  public:
-  Settling(const fs::path& folder, const ReadingOptions& options, fs::path file)
+  SensorPoseReader(const fs::path& folder, const ReadingOptions& options, fs::path file)
       : folder_(folder), options_(options), file_(std::move(file)) {}
 
-  SettledPoses run(const PosedScans& scans) {
+  SensorPoses run(const PosedScans& scans) {
     const PoseList list = read_pose_list(file_, options_.pose_format);
-    settled_.files.push_back(file_);
+    result_.files.push_back(file_);
     state("poses", options_.poses ? file_.string() : file_.filename().string());
     state("pose_format", std::string(to_string(list.format)));
     pair_with_scans(list, scans);
-    turn_round(options_.poses_inverse.value_or(list.format == PoseFormat::kRollout));
+    invert_if(options_.poses_inverse.value_or(list.format == PoseFormat::kRollout));
     move_to_lidar(list.format);
-    return std::move(settled_);
+    return std::move(result_);
   }
 
  private:
   void state(const char* what, std::string how) {
-    settled_.reading.emplace_back(what, std::move(how));
+    result_.reading.emplace_back(what, std::move(how));
   }
 
   void pair_with_scans(const PoseList& list, const PosedScans& scans) {
     if (!list.stamps_ns.empty() && !scans.stamps_ns.empty()) {
       std::size_t interpolated = 0;
-      settled_.map_from_sensor = at_scan_stamps(list, scans, interpolated, file_);
+      result_.map_from_sensor = at_scan_stamps(list, scans, interpolated, file_);
       state("pose_pairing",
             fmt::format("by stamp, {} of {} interpolated", interpolated, scans.count));
       return;
@@ -77,16 +77,16 @@ class Settling {
                       fmt::format("{} pose rows for {} scans", list.poses.size(), scans.count),
                       "one per scan");
     }
-    settled_.map_from_sensor = list.poses;
+    result_.map_from_sensor = list.poses;
     state("pose_pairing", "row by row");
   }
 
-  void turn_round(bool inverse) {
+  void invert_if(bool inverse) {
     state("pose_direction", inverse ? "sensor_from_map, inverted" : "map_from_sensor");
     if (!inverse) return;
-    for (Pose& pose : settled_.map_from_sensor) pose = pose.inverse();
-    settled_.remarks.push_back(file_.filename().string() +
-                               " is taken as sensor_from_map: its poses are inverted");
+    for (Pose& pose : result_.map_from_sensor) pose = pose.inverse();
+    result_.remarks.push_back(file_.filename().string() +
+                              " is read as sensor_from_map: its poses are inverted");
   }
 
   void move_to_lidar(PoseFormat format) {
@@ -95,12 +95,12 @@ class Settling {
       if (options_.pose_frame == PoseFrame::kCamera) {
         throw DataError(calib, "does not exist", "Tr there, as the poses are those of a camera");
       }
-      settled_.remarks.push_back("no calib.txt: the poses are taken as the lidar's");
+      result_.remarks.push_back("no calib.txt: the poses are read as the lidar's");
       state("pose_frame", "lidar");
       return;
     }
     const Pose camera_from_lidar = read_calib(calib);
-    settled_.files.push_back(calib);
+    result_.files.push_back(calib);
     const bool of_camera =
         options_.pose_frame == PoseFrame::kCamera ||
         (options_.pose_frame == PoseFrame::kByCalib && format == PoseFormat::kKitti);
@@ -108,10 +108,10 @@ class Settling {
       state("pose_frame", "lidar");
       return;
     }
-    for (Pose& pose : settled_.map_from_sensor) pose = lidar_pose(pose, camera_from_lidar);
+    for (Pose& pose : result_.map_from_sensor) pose = lidar_pose(pose, camera_from_lidar);
     state("pose_frame", "camera, turned into the lidar's by Tr of calib.txt");
-    settled_.remarks.push_back(fmt::format(
-        "calib.txt holds a Tr other than the identity: {} is taken as camera poses, lidar pose = "
+    result_.remarks.push_back(fmt::format(
+        "calib.txt holds a Tr other than the identity: {} is read as camera poses, lidar pose = "
         "Tr^-1 * P * Tr (KITTI)",
         file_.filename().string()));
   }
@@ -119,23 +119,23 @@ class Settling {
   const fs::path& folder_;
   const ReadingOptions& options_;
   fs::path file_;
-  SettledPoses settled_;
+  SensorPoses result_;
 };
 
 }  // namespace
 
-SettledPoses settle_poses(const fs::path& folder, const std::string& own_file,
-                          const ReadingOptions& options, const PosedScans& scans) {
+SensorPoses read_sensor_poses(const fs::path& folder, const std::string& own_file,
+                              const ReadingOptions& options, const PosedScans& scans) {
   const fs::path file = options.poses.value_or(folder / own_file);
   if (!options.poses && !is_there(file)) {
     throw DataError(file, "does not exist",
                     "one pose per scan there, or in a file given by --poses");
   }
-  SettledPoses settled = Settling(folder, options, file).run(scans);
+  SensorPoses poses = SensorPoseReader(folder, options, file).run(scans);
   if (options.poses) {
-    settled.remarks.insert(settled.remarks.begin(), "poses from " + file.string());
+    poses.remarks.insert(poses.remarks.begin(), "poses from " + file.string());
   }
-  return settled;
+  return poses;
 }
 
 }  // namespace mosbench

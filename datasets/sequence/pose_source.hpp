@@ -11,25 +11,25 @@
 
 namespace mosbench {
 
-/// The lidar's poses of a sequence, and how they were come by.
-struct SettledPoses {
+/// LiDAR poses of a sequence and where they came from.
+struct SensorPoses {
   std::vector<Pose> map_from_sensor;  ///< one per scan
   std::vector<std::filesystem::path> files;
   std::vector<std::string> remarks;
   ReadingStatement reading;
 };
 
-/// The scans that poses are wanted for.
+/// The scans that need poses.
 struct PosedScans {
   std::size_t count = 0;
   std::span<const std::int64_t> stamps_ns;  ///< one per scan, or none
 };
 
-/// Reads `options.poses`, else `folder`/`own_file`, and turns the poses into the lidar's by
-/// `folder`/calib.txt. Poses with stamps are taken at the scans' stamps, in between neighbours
-/// interpolated; without stamps, row by row. Throws DataError when counts differ or the stamps of
-/// the poses do not cover a scan.
-SettledPoses settle_poses(const std::filesystem::path& folder, const std::string& own_file,
-                          const ReadingOptions& options, const PosedScans& scans);
+/// Reads `options.poses`, else `folder`/`own_file`, and turns the poses into the LiDAR's by
+/// `folder`/calib.txt. Poses with stamps are interpolated to the scans' stamps; without stamps rows
+/// and scans are paired in order. Throws DataError when counts differ or the stamps of the poses do
+/// not cover a scan.
+SensorPoses read_sensor_poses(const std::filesystem::path& folder, const std::string& own_file,
+                              const ReadingOptions& options, const PosedScans& scans);
 
 }  // namespace mosbench

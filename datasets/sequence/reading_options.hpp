@@ -11,21 +11,21 @@
 
 namespace mosbench {
 
-/// Whose motion a pose file tells.
+/// The sensor that the poses of a file belong to.
 enum class PoseFrame : std::uint8_t {
   kByCalib,  ///< KITTI rows: the camera's when calib.txt holds a Tr other than the identity, else
              ///< the lidar's; other formats: the lidar's
   kLidar,
-  kCamera  ///< of the frame that Tr of calib.txt leads to
+  kCamera  ///< the camera of Tr in calib.txt
 };
 
-/// What the user told about how a sequence is to be read.
+/// What the user specified about how a sequence is to be read.
 struct ReadingOptions {
-  /// Instead of the sequence's own poses.
+  /// A pose file to use instead of the sequence's own.
   std::optional<std::filesystem::path> poses = std::nullopt;
-  std::optional<PoseFormat> pose_format = std::nullopt;  ///< told from the file when not set
+  std::optional<PoseFormat> pose_format = std::nullopt;  ///< recognised when not set
   PoseFrame pose_frame = PoseFrame::kByCalib;
-  /// Whether the poses are sensor_from_map; when not set, only those of PoseFormat::kRollout.
+  /// Whether the poses are sensor_from_map; when not set, only those of PoseFormat::kRollout are.
   std::optional<bool> poses_inverse = std::nullopt;
   std::optional<std::string> topic = std::nullopt;      ///< of a bag's PointCloud2
   std::optional<std::string> map_frame = std::nullopt;  ///< of a bag's tf tree

@@ -32,7 +32,7 @@ class Sequence {
   Sequence(const Sequence&) = delete;
   Sequence& operator=(const Sequence&) = delete;
 
-  /// Reads a scan into `frame`, whose memory is used again and whose content is lost. Safe to call
+  /// Reads a scan into `frame`, whose content is replaced and whose memory is reused. Safe to call
   /// from several threads. Throws DataError.
   virtual void read(std::size_t scan_index, Frame& frame) const = 0;
   /// Reads the truth of a labelled scan, without its points where the format allows; one raw label
@@ -69,12 +69,12 @@ class Sequence {
  protected:
   Sequence() = default;
   explicit Sequence(Recording recording) : recording_(std::move(recording)) {}
-  /// For constructors, which find out what the recording holds.
+  /// For constructors, which fill in what they find out.
   Recording& mutable_recording() { return recording_; }
 
-  /// Fills in what the recording knows of the frame: stem, pose, stamp.
+  /// Fills in what is known without reading: stem, pose, stamp.
   void describe(std::size_t scan_index, Frame& frame) const;
-  /// Sets the frame's truth: that of `read_truth`, or none.
+  /// Sets the frame's truth to that of `read_truth`, or to none.
   void add_truth(std::size_t scan_index, Frame& frame) const;
   [[noreturn]] void refuse_truth(std::size_t scan_index) const;
 

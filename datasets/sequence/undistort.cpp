@@ -18,7 +18,7 @@ bool undistort(std::span<Point> points, std::span<const std::int64_t> times_ns,
   const std::optional<Pose> reference = map_from_sensor(reference_ns);
   if (!reference) return false;
   const Pose reference_from_map = reference->inverse();
-  // A column of a spinning sensor shares its time.
+  // All points of a column of a spinning sensor have the same time.
   std::unordered_map<std::int64_t, Pose> reference_from_time;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const std::int64_t at_ns = stamp_ns + times_ns[i];

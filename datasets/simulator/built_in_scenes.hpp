@@ -12,10 +12,10 @@ struct SceneSummary {
   std::string_view content;  ///< one line for lists
 };
 
-/// The scenes that need no file, in the order in which to show them.
+/// Returns the scenes that need no file, in the order in which they are listed.
 std::vector<SceneSummary> built_in_scenes();
 
-/// Throws UsageError, with the nearest name, for a name that is not in the list.
+/// Returns a scene by name. Throws UsageError with the nearest name for an unknown one.
 Scene built_in_scene(std::string_view name);
 
 }  // namespace mosbench

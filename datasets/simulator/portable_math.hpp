@@ -7,8 +7,8 @@
 
 namespace mosbench {
 
-/// Sine and cosine from additions and multiplications only. libm's differ in the last bit between
-/// machines and versions, and a simulation has to be the same bits everywhere.
+/// Sine and cosine by additions and multiplications only. Those of libm differ in the last bit
+/// between machines and versions, and a simulation has to be the same bits everywhere.
 struct SinCos {
   double sin, cos;
 };
@@ -57,17 +57,17 @@ constexpr std::uint64_t scatter_bits(std::uint64_t x) {
   return x ^ (x >> 31);
 }
 
-/// A random word that depends on nothing but its arguments, so that results cannot depend on the
+/// Returns a random word that depends on its arguments only, so that results cannot depend on the
 /// order in which scans and rays are computed.
 constexpr std::uint64_t random_word(std::uint64_t seed, std::uint64_t counter) {
   return scatter_bits(scatter_bits(seed) ^ counter);
 }
 
-/// Uniform in [0, 1), 53 bits.
+/// Returns a number uniform in [0, 1), 53 bits.
 constexpr double uniform(std::uint64_t word) { return static_cast<double>(word >> 11) * 0x1p-53; }
 
-/// Mean 0, standard deviation 1: the sum of four uniform 16-bit numbers, hence bounded by
-/// kNormalBound.
+/// Returns a number of mean 0 and standard deviation 1: the sum of four uniform 16-bit numbers,
+/// hence bounded by kNormalBound.
 constexpr double nearly_normal(std::uint64_t word) {
   const std::uint64_t sum =
       (word & 0xFFFF) + ((word >> 16) & 0xFFFF) + ((word >> 32) & 0xFFFF) + (word >> 48);
@@ -77,8 +77,8 @@ constexpr double nearly_normal(std::uint64_t word) {
 
 inline constexpr double kNormalBound = 3.4642;  // sqrt(12), rounded up
 
-// The products of poses, element by element: Eigen's may add in another order, or fuse, on another
-// machine.
+/// Products of poses, element by element: Eigen may add in another order, or fuse, on another
+/// machine.
 inline Eigen::Vector3d rotated(const Eigen::Matrix3d& r, const Eigen::Vector3d& v) {
   return {r(0, 0) * v.x() + r(0, 1) * v.y() + r(0, 2) * v.z(),
           r(1, 0) * v.x() + r(1, 1) * v.y() + r(1, 2) * v.z(),

@@ -15,11 +15,11 @@ struct Leg {
   double wait_s = 0.0;
 };
 
-/// What happens when a route's last leg is done: stand there, walk it back and forth, or jump to
+/// What happens at the end of a route's last leg: stand there, walk it back and forth, or jump to
 /// its start.
 enum class AfterRoute : std::uint8_t { kStay, kReturn, kRestart };
 
-/// A way over the ground with piecewise constant speed, begun at `start_s`.
+/// A path over the ground with piecewise constant speed that starts at `start_s`.
 struct Route {
   std::array<double, 2> from_m{};
   std::vector<Leg> legs{};
@@ -54,12 +54,12 @@ struct Structure {
   std::array<double, 3> size_m{};  ///< full extents; cylinders stand upright
   double yaw_rad = 0.0;
   double density = 1.0;
-  bool labelled = true;  ///< without label its points have truth 0
+  bool labelled = true;  ///< if not, its points have truth 0
 };
 
 enum class MoverKind : std::uint8_t { kPedestrian, kCyclist, kCar, kTruck };
 
-/// Somebody who follows a route over the ground.
+/// A person or vehicle that follows a route over the ground.
 struct Mover {
   MoverKind kind = MoverKind::kPedestrian;
   Route route;

@@ -8,26 +8,27 @@
 
 namespace mosbench {
 
-/// Adds the things of which the built-in scenes are made. Places that do not matter are drawn from
-/// a generator with a fixed start, so a built-in scene is always the same.
+/// Adds the parts of the built-in scenes. Positions that do not matter are drawn from a generator
+/// with a fixed seed, so a built-in scene is always the same.
 class SceneBuilder {
  public:
   explicit SceneBuilder(Scene& scene, std::uint64_t start) : scene_(scene), seed_(start) {}
 
-  /// Uniform in [lowest, highest), in whole hundredths. Not twice in one call's arguments:
-  /// compilers differ in which they evaluate first.
+  /// Returns a number uniform in [lowest, highest), in whole hundredths. Not to be called twice in
+  /// the arguments of one call: compilers differ in which they evaluate first.
   double draw(double lowest, double highest);
 
   void box(std::array<double, 2> center_m, double floor_m, std::array<double, 3> size_m,
            double yaw_rad = 0.0);
   void pole(std::array<double, 2> at_m, double diameter_m, double height_m);
   void hedge(std::array<double, 2> center_m, std::array<double, 3> size_m);
-  /// A trunk and a crown that lets part of the rays through.
+  /// Adds a trunk and a crown that lets part of the rays through.
   void tree(std::array<double, 2> at_m);
-  /// Four walls of a rectangle, `gap_m` wide open in the middle of the one at low y.
+  /// Adds the four walls of a rectangle, with a gap of `gap_m` in the middle of the one at low y.
   void room_walls(std::array<double, 2> low_m, std::array<double, 2> high_m, double height_m,
                   double gap_m);
-  /// Walks between points at `speed_m_s`, back and forth, standing `wait_s` before each leg.
+  /// Adds somebody who walks between points at `speed_m_s`, back and forth, standing `wait_s`
+  /// before each leg.
   void wanderer(MoverKind kind, const std::vector<std::array<double, 2>>& points_m,
                 double speed_m_s, double wait_s, double start_s = 0.0);
   void mover(MoverKind kind, const Route& route);
@@ -40,8 +41,9 @@ class SceneBuilder {
   std::uint64_t drawn_ = 0;
 };
 
-/// The closed way through the corners of a rectangle, counter-clockwise unless `clockwise`, begun
-/// at `fraction` of its length; every leg at `speed_m_s`, after standing `wait_s` at each corner.
+/// Returns the closed path through the corners of a rectangle, counter-clockwise unless
+/// `clockwise`, that starts at `fraction` of its length; every leg at `speed_m_s`, after standing
+/// `wait_s` at each corner.
 Route rectangle_route(std::array<double, 2> low_m, std::array<double, 2> high_m, bool clockwise,
                       double fraction, double speed_m_s, double wait_s = 0.0);
 

@@ -12,8 +12,8 @@ namespace {
 constexpr int kSectors = 720;
 constexpr double kFullTurn = 4.0;
 
-// Grows with the azimuth like the angle does, from 0 at +x by 1 per quarter turn, without
-// trigonometry. Opposite directions differ by exactly 2.
+/// Grows with the azimuth like the angle, from 0 at +x by 1 per quarter turn, without
+/// trigonometry. Opposite directions differ by exactly 2.
 double diamond_angle(double x, double y) {
   const double sum = std::abs(x) + std::abs(y);
   if (sum == 0.0) return 0.0;
@@ -21,7 +21,8 @@ double diamond_angle(double x, double y) {
   return x < 0.0 ? 2.0 - y / sum : 3.0 + x / sum;
 }
 
-// First and last sector that a footprint covers; wraps when last >= kSectors or first < 0.
+/// Returns the first and last sector that a footprint covers; wraps when last >= kSectors or first
+/// < 0.
 struct SectorRange {
   int first, last;
 };
@@ -54,7 +55,7 @@ struct Interval {
 };
 constexpr Interval kMissed{1.0, 0.0};
 
-// Where a ray is between two parallel planes at +-half.
+/// Returns where a ray is between two parallel planes at +-half.
 Interval between(double origin, double direction, double half) {
   if (direction == 0.0) return std::abs(origin) < half ? Interval{-1e300, 1e300} : kMissed;
   const double inverse = 1.0 / direction;
@@ -66,7 +67,7 @@ Interval both(const Interval& a, const Interval& b) {
   return {std::max(a.enter_m, b.enter_m), std::min(a.leave_m, b.leave_m)};
 }
 
-// Solutions of a t^2 + 2 b t + c < 0.
+/// Returns the solutions of a t^2 + 2 b t + c < 0.
 Interval inside_quadric(double a, double b, double c) {
   const double discriminant = b * b - a * c;
   if (discriminant <= 0.0 || a == 0.0) {
@@ -104,8 +105,8 @@ double nearest_horizontally_m(const Solid& solid, const Eigen::Vector3d& origin_
   return std::sqrt(dx * dx + dy * dy);
 }
 
-// Leaves stay where they are from scan to scan: a cell of the body is occupied or not for ever.
-// Half of the rays slip past the leaves of an occupied cell.
+/// Leaves stay in place from scan to scan: a cell of the body is occupied or not for ever. Half of
+/// the rays pass the leaves of an occupied cell.
 bool leaf_stops(const Solid& solid, const Eigen::Vector3d& in_body_m, std::uint64_t ray_word,
                 std::uint64_t step) {
   constexpr double kCellsPerMetre = 5.0;

@@ -18,7 +18,7 @@ struct Solid {
   Eigen::Vector3d half_size_m = Eigen::Vector3d::Ones();
   Eigen::Vector2d axis = Eigen::Vector2d::UnitX();  ///< unit vector of a box's x
   double density = 1.0;                             ///< as Structure::density
-  std::uint32_t owner = 0;                          ///< what the caller makes of it
+  std::uint32_t owner = 0;                          ///< meaning is the caller's
 };
 
 struct RayHit {

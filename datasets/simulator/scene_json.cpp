@@ -20,7 +20,7 @@ namespace {
 // Ordered, so that a written scene reads in the order of its field lists.
 using Json = nlohmann::ordered_json;
 
-// Where in which file a value stands.
+/// The place of a value: file and path in the JSON.
 struct Place {
   const std::filesystem::path& file;
   std::string path;

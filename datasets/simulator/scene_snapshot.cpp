@@ -10,13 +10,13 @@
 namespace mosbench {
 namespace {
 
-// The speeds above which the field's data sets call an object moving.
+/// The speeds above which data sets of the field label an object as moving.
 constexpr double kMovingSpeed_m_s = 0.5;
 constexpr double kMovingVehicleSpeed_m_s = 1.0;
 
 Eigen::Vector3d to_vector(const std::array<double, 3>& v) { return {v[0], v[1], v[2]}; }
 
-// Collects the bodies of one owner, placed by its position on the ground and its heading.
+/// Collects the bodies of one owner, placed by its position on the ground and its heading.
 class Builder {
  public:
   Builder(SceneSnapshot& snapshot, const Eigen::Vector3d& base_m, const Eigen::Vector2d& axis)
@@ -162,7 +162,7 @@ void place(SceneSnapshot& snapshot, const Door& door, const Scene& scene, double
                              .speed_m_s = speed_m_s});
 }
 
-// Seconds of free flight until the ball touches the first of the planes.
+/// Returns the seconds of free flight until the ball touches the first of the planes.
 double flight_duration_s(const Ball& ball, std::span<const GroundPlane> ground) {
   constexpr double kGravity_m_s2 = 9.81;
   static constexpr GroundPlane kFlat{};

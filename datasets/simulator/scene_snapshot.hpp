@@ -19,7 +19,7 @@ enum class Substance : std::uint8_t {
   kBall
 };
 
-/// What is true of one part of a scene at one instant.
+/// The state of one part of a scene at one instant.
 struct OwnerState {
   Substance substance = Substance::kGround;
   MoverKind mover = MoverKind::kPedestrian;  ///< of a kMoverBody
@@ -29,8 +29,8 @@ struct OwnerState {
   double speed_m_s = 0.0;
 };
 
-/// A scene at one instant: its bodies and, per owner number of a body, what is true of it. Owner 0
-/// is the ground; then follow structures, movers, doors and balls in the scene's order.
+/// A scene at one instant: its bodies and the state of each owner by the number in its bodies.
+/// Owner 0 is the ground; then follow structures, movers, doors and balls in the scene's order.
 struct SceneSnapshot {
   std::vector<Solid> solids;
   std::vector<OwnerState> owners;

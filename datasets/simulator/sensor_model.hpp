@@ -12,7 +12,7 @@ namespace mosbench {
 
 enum class SensorKind : std::uint8_t { kOs1_64, kOs2_128, kVlp16, kHdl64e, kAvia, kAeva };
 
-/// Where a sensor sits on its carrier and what its returns are like.
+/// The mounting of a sensor on its carrier and the properties of its returns.
 struct SensorModel {
   SensorKind kind = SensorKind::kOs1_64;
   std::size_t columns = 2048;  ///< firings per scan; those of a rosette fire 6 lasers each
@@ -27,16 +27,16 @@ struct SensorModel {
 };
 
 std::string_view to_string(SensorKind kind);
-/// Nothing when the name is not one of `sensor_names()`.
+/// Returns nothing when the name is not one of `sensor_names()`.
 std::optional<SensorKind> sensor_kind_from_string(std::string_view name);
 std::vector<std::string_view> sensor_names();
 
-/// The sensor as it is sold: OS1-64 2048 columns, OS2-128 1024, VLP-16 1800, HDL-64E 2000, Livox
-/// Avia 24,000 points, Aeva Aeries II 64 x 800.
+/// Returns the sensor as it is sold: OS1-64 2048 columns, OS2-128 1024, VLP-16 1800, HDL-64E 2000,
+/// Livox Avia 24,000 points, Aeva Aeries II 64 x 800.
 SensorModel sensor_model(SensorKind kind);
 
-/// Unit vectors of all rays of a scan in firing order, slot = column * rings + ring, in the sensor
-/// frame (x ahead). Only the Avia's rosette depends on the scan: it does not repeat.
+/// Returns unit vectors of all rays of a scan in firing order, slot = column * rings + ring, in the
+/// sensor frame (x ahead). Only the Avia's rosette depends on the scan: it does not repeat.
 std::vector<Eigen::Vector3d> beam_directions(const SensorModel& sensor, std::size_t scan_index);
 bool repeats_every_scan(const SensorModel& sensor);
 

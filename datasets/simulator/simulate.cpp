@@ -79,7 +79,7 @@ void claim_folder(const fs::path& out, const SimulatedOrigin& origin) {
 std::string readme(const SimulatedOrigin& origin) {
   return fmt::format(
       "These scans are simulated. Nothing in this folder was recorded by a sensor, and no number\n"
-      "computed from it may stand beside those published for the real data set.\n\n"
+      "computed from it may be shown next to those published for the real data set.\n\n"
       "Scene \"{}\" is in scene.json. To make the same files again:\n"
       "mosbench simulate --layout {} --scene scene.json --scans {} --seed {} --out DIR\n"
       "{}",

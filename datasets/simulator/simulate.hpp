@@ -20,7 +20,7 @@ struct SimulateOptions {
   unsigned threads = 0;       ///< 0: as many as the machine has; the files do not depend on it
 };
 
-/// Writes a simulated data set in the layout of a real one, each file as a whole and the poses
+/// Writes a simulated data set in the layout of a real one, each file atomically and the poses
 /// last: what a killed run leaves cannot be opened and is completed by the same call. Throws
 /// UsageError when `out` holds anything but a simulation of the same parameters, DataError for a
 /// bad scene file or an unwritable folder. `progress` is called with the scans done and to do,
@@ -28,7 +28,7 @@ struct SimulateOptions {
 void simulate(const SimulateOptions& options,
               const std::function<void(std::size_t done, std::size_t total)>& progress = {});
 
-/// The scene of a built-in name or of a path that ends in .json or contains a slash.
+/// Returns the scene of a built-in name, or of a file when the name ends in .json or has a slash.
 Scene load_scene(const std::string& name_or_file);
 
 }  // namespace mosbench

@@ -18,19 +18,20 @@ struct SimulatedRecording {
   SensorKind sensor;
 };
 
-/// The recordings that a layout consists of: DOALS an OS1-64, Sipailou an Avia (sequence 06, its
-/// valid split), HeLiMOS its four sensors, SemanticKITTI an HDL-64E (sequence 08, its valid split).
-/// A sensor named by the scene replaces the layout's. Throws UsageError where that cannot be.
+/// Returns the recordings that a layout consists of: DOALS an OS1-64, Sipailou an Avia (sequence
+/// 06, its valid split), HeLiMOS its four sensors, SemanticKITTI an HDL-64E (sequence 08, its valid
+/// split). A sensor named by the scene replaces that of the layout. Throws UsageError where it may
+/// not.
 std::vector<SimulatedRecording> recordings_of(DatasetKind layout, const Scene& scene);
 
-/// Indices of the scans that get labels: ten for DOALS, the last scan included, from the fifth on;
-/// every fourth for HeLiMOS; all otherwise. Never empty.
+/// Returns the indices of the scans that get labels: ten for DOALS, the last scan included, from
+/// the fifth on; every fourth for HeLiMOS; all otherwise. Never empty.
 std::set<std::size_t> labelled_scans(DatasetKind layout, std::size_t scans);
 
 /// Returns blocks of 68, 16 and 16 % of HeLiMOS's labelled scans; the test block is never empty.
 HelimosSplits simulated_splits(const std::set<std::size_t>& labelled);
 
-/// The label file's value of a point that has a return.
+/// Returns the value in the label file of a point that has a return.
 /// Sipailou: 9, 251 or for vehicles 252 within 3..50 m, else 0. HeLiMOS: 9 or 251 within 80 m, else
 /// 0. SemanticKITTI: its class ids, with the owner as instance of movable things.
 std::uint32_t layout_label(DatasetKind layout, const SimulatedScan& scan, std::size_t point);

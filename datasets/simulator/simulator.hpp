@@ -28,16 +28,16 @@ struct SimulatedScan {
 /// index: the same bits on every machine, in any order, from any number of threads.
 class Simulator {
  public:
-  /// Keys of the scene about the sensor (noise, columns) override the model's.
+  /// Values of the scene for the sensor (noise, columns) override the model's.
   Simulator(Scene scene, const SensorModel& sensor, std::uint64_t seed);
 
   SimulatedScan scan(std::size_t scan_index) const;
 
-  /// The scan as a reader would give it: every ray kept, truth moving 251, static 9, and 0 where
-  /// there is no return or no label.
+  /// Returns the scan as a reader would: every ray kept, truth 251 for moving, 9 for static, and 0
+  /// where there is no return or no label.
   Frame frame(std::size_t scan_index) const;
 
-  /// Pose and stamp of a scan without its points.
+  /// Return pose and stamp of a scan without computing its points.
   Pose map_from_sensor(std::size_t scan_index) const;
   std::int64_t stamp_ns(std::size_t scan_index) const;
 
@@ -53,10 +53,11 @@ class Simulator {
   std::vector<Eigen::Vector3d> directions_;  // of sensors that repeat every scan
 };
 
-/// 251, 9 or, without a label or return, 0.
+/// Returns 251, 9 or, without a label or return, 0.
 std::uint32_t moving_label(const SimulatedScan& scan, std::size_t point);
 
-/// A built-in scene seen by the sensor of that name. Throws UsageError for unknown names.
+/// Returns a simulator of a built-in scene and the sensor of that name. Throws UsageError for
+/// unknown names.
 Simulator built_in_simulator(std::string_view scene, std::string_view sensor, std::uint64_t seed);
 
 }  // namespace mosbench

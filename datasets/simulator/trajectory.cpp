@@ -37,7 +37,7 @@ RouteState state_on_first_pass(const Route& route, double time_s) {
   return state;
 }
 
-// Small periodic deviations of a carrier from its smooth way.
+/// Small periodic deviations of a carrier from its smooth path.
 struct Sway {
   double amplitude = 0.0, frequency_hz = 0.0;
   double at(double time_s) const {
@@ -73,7 +73,7 @@ Eigen::Matrix3d rotation(SinCos yaw, SinCos pitch, SinCos roll) {
   return r;
 }
 
-// The mean over two seconds, of a car three: nobody turns on the spot.
+/// Returns the mean over two seconds, of a car three: nobody changes direction instantly.
 RouteState smoothed_state(const Ego& ego, double time_s) {
   constexpr int kHalfSamples = 16;
   const double sample_step_s = (ego.carrier == Carrier::kCar ? 1.5 : 1.0) / kHalfSamples;

@@ -8,7 +8,7 @@
 
 namespace mosbench {
 
-/// Where a route is at one instant.
+/// Position and motion on a route at one instant.
 struct RouteState {
   Eigen::Vector2d position_m = Eigen::Vector2d::Zero();
   Eigen::Vector2d heading = Eigen::Vector2d::UnitX();  ///< unit vector, also while standing
@@ -18,14 +18,14 @@ struct RouteState {
 
 RouteState route_state(const Route& route, double time_s);
 
-/// Duration of one pass over the legs.
+/// Returns the duration of one pass over the legs.
 double route_duration_s(const Route& route);
 
-/// Highest of the planes; 0 without any.
+/// Returns the height of the highest plane; 0 without planes.
 double ground_height_m(std::span<const GroundPlane> ground, double x_m, double y_m);
 
-/// The carrier's frame at the sensor's height (x ahead, z up), with corners rounded and the bobbing
-/// and swaying of its kind.
+/// Returns the carrier's frame at the sensor's height (x ahead, z up), with rounded corners and the
+/// bobbing and swaying of its kind.
 Pose ego_pose(const Scene& scene, double time_s);
 
 }  // namespace mosbench

@@ -169,8 +169,8 @@ TEST_F(Bag, NamesWhatItLacks) {
 TEST_F(Bag, RefusesWhatIsDamaged) {
   const std::string good = good_bag().str();
   ASSERT_EQ(error_of(good), "nothing thrown");
-  EXPECT_THAT(error_of(std::string()), HasSubstr("does not start as a ROS bag does"));
-  EXPECT_THAT(error_of("#ROSBAG V1.2\n"), HasSubstr("does not start as a ROS bag does"));
+  EXPECT_THAT(error_of(std::string()), HasSubstr("does not start like a ROS bag"));
+  EXPECT_THAT(error_of("#ROSBAG V1.2\n"), HasSubstr("does not start like a ROS bag"));
   EXPECT_THAT(error_of(good.substr(0, good.size() - 1)), HasSubstr("is cut off"));
   EXPECT_THAT(error_of(good.substr(0, good.size() / 2)), HasSubstr("is cut off"));
   BagBytes bag = good_bag();
@@ -189,7 +189,7 @@ TEST_F(Bag, RefusesWhatIsDamaged) {
   bag.offset_error_bytes = 1;
   EXPECT_THAT(error_of(bag), testing::Not("nothing thrown"));
   bag.offset_error_bytes = 1 << 20;
-  EXPECT_THAT(error_of(bag), HasSubstr("points behind its chunk"));
+  EXPECT_THAT(error_of(bag), HasSubstr("points beyond its chunk"));
 }
 
 TEST_F(Bag, RefusesAChunkThatIsNotCompressedAsItSays) {

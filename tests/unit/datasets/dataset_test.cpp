@@ -88,7 +88,7 @@ TEST(OpenDataset, FindsSemanticKittiWithAndWithoutTheFolderSequences) {
     EXPECT_EQ(dataset.kind, DatasetKind::kSemanticKitti);
     EXPECT_THAT(names(dataset), ElementsAre("00", "08", "11"));
     EXPECT_THAT(splits(dataset), ElementsAre("train: 00", "valid: 08", "test: 11"));
-    EXPECT_THAT(dataset.remarks, Contains(HasSubstr("taken for semantickitti")));
+    EXPECT_THAT(dataset.remarks, Contains(HasSubstr("recognised as semantickitti")));
   }
 }
 
@@ -190,7 +190,7 @@ TEST(OpenDataset, PairsHelimosSplitsByNumberAlsoForOneSensorFolder) {
                           "val: Aeva/000000 Velodyne/000000", "train: Aeva/000003"));
   EXPECT_THAT(dataset.remarks,
               AllOf(Contains("Aeva: 1 of the frames in test.txt have no label and do not count"),
-                    Contains("Velodyne: 1 of the frames in train.txt lie behind the end of the "
+                    Contains("Velodyne: 1 of the frames in train.txt lie after the end of the "
                              "recording and are left out")));
   const Dataset one = open_dataset(root / "Velodyne", {});
   EXPECT_EQ(one.kind, DatasetKind::kHelimos);

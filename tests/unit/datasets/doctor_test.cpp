@@ -262,7 +262,7 @@ const std::vector<Fault>& faults() {
          std::swap(stamps_ns.at(20), stamps_ns.at(21));
          write_times(root / kKittiSequence / "times.txt", stamps_ns);
        },
-       "1 stamps are not behind the one before, first that of scan 000021"},
+       "1 stamps are not later than the one before, first that of scan 000021"},
       {"split_naming_absent_scans", kSensors,
        [](const fs::path& root) {
          const fs::path split = root / "KAIST05/Deskewed_LiDAR/test.txt";
