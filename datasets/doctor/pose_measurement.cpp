@@ -29,7 +29,7 @@ constexpr std::size_t kPairsBetter = 5, kOfPairs = 6;
 constexpr double kLeastGain = 0.015;
 /// The same for a shift: 0.006 or more, while a wrong one lost 0.003 or more.
 constexpr double kLeastShiftGain = 0.003;
-/// Conventions within this share of the best overlap cannot be told from it by these scans.
+/// Conventions within this share of the best overlap are as good: these scans do not decide between them.
 constexpr double kSameShare = 0.97;
 
 /// Returns a distance in scans at which scans are some metres apart, but still overlap.
