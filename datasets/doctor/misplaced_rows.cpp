@@ -31,7 +31,7 @@ constexpr double kStepShare = 0.75;
 constexpr double kEndFactor = 2.0;
 /// Overlap per pair of scans that mended rows have to gain. Right exchanges gained 0.007 (campus,
 /// Avia, 0.16 m per scan) to 0.1 and more, single rows at least 0.1, wrong exchanges lost 0.007.
-constexpr double kLeastGain = 0.005;
+constexpr double kLeastRowGain = 0.005;
 
 Pose midway(const Pose& a, const Pose& b) {
   Pose middle = Pose::Identity();
@@ -198,7 +198,7 @@ std::vector<MisplacedRows> misplaced_rows(const Sequence& sequence,
       gain -= scans.overlap(pair, relative(before, pair));
       pairs += 1.0;
     }
-    if (gain <= kLeastGain * pairs) continue;
+    if (gain <= kLeastRowGain * pairs) continue;
     misplaced.push_back(rows);
     before = std::move(after);
   }

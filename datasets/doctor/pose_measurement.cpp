@@ -26,10 +26,11 @@ constexpr std::size_t kFewestTellingPairs = 3, kFewestShiftPairs = 6;
 constexpr std::size_t kPairsBetter = 5, kOfPairs = 6;
 /// Mean overlap that the right convention has to gain. It gained 0.028 or more (0.013 on the
 /// highway with the VLP-16), while every other one lost 0.013 or more against right poses.
-constexpr double kLeastGain = 0.015;
+constexpr double kLeastConventionGain = 0.015;
 /// The same for a shift: 0.006 or more, while a wrong one lost 0.003 or more.
 constexpr double kLeastShiftGain = 0.003;
-/// Conventions within this share of the best overlap are as good: these scans do not decide between them.
+/// Conventions within this share of the best overlap are as good: these scans do not decide between
+/// them.
 constexpr double kSameShare = 0.97;
 
 /// Returns a distance in scans at which scans are some metres apart, but still overlap.
@@ -147,7 +148,7 @@ class Measuring {
     const ConventionScore& score = result_.scores[index];
     return score.pairs >= (shift ? kFewestShiftPairs : kFewestTellingPairs) &&
            kOfPairs * score.pairs_better >= kPairsBetter * score.pairs &&
-           score.overlap > score.given_overlap + (shift ? kLeastShiftGain : kLeastGain);
+           score.overlap > score.given_overlap + (shift ? kLeastShiftGain : kLeastConventionGain);
   }
 
   /// Collects, among the conventions that beat the given poses, those with the largest overlap on

@@ -99,6 +99,24 @@ TEST_F(PcdFile, RefusesWhatIsNoPointCloudWithXyz) {
               HasSubstr("absent.pcd"));
 }
 
+TEST_F(PcdFile, IsOpenedByItsHeaderAndCheckedAsAWholeWhenRead) {
+  const TempFolder folder;
+  std::string text = kTwoPoints;
+  folder.write("velodyne/000000.pcd", text.replace(text.find("6 5 4"), 5, "6 x 4"));
+  folder.write("poses.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n");
+  const KittiSequence sequence("s", folder.path());
+  EXPECT_EQ(sequence.point_count(0), 2U);
+  EXPECT_THAT(message_of<DataError>([&] { sequence.read(0); }), HasSubstr("\"x\" is no number"));
+}
+
+TEST_F(PcdFile, IsRefusedByItsSizeWhenABinaryBodyIsCutOff) {
+  const TempFolder folder;
+  std::string text = kTwoPoints;
+  const auto file = folder.write("0.pcd", text.replace(text.find("ascii"), 5, "binary"));
+  EXPECT_THAT(message_of<DataError>([&] { read_pcd_header(file); }),
+              HasSubstr("12 bytes behind the header"));
+}
+
 TEST_F(PcdFile, IsAScanOfASequenceLikeAnyOther) {
   const TempFolder folder;
   folder.write("velodyne/000000.pcd", kTwoPoints);

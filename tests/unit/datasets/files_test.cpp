@@ -73,6 +73,27 @@ TEST(ReadFile, IntoBytesWantsAFileOfJustThatLength) {
               HasSubstr("none: cannot be opened (No such file"));
 }
 
+TEST(ReadHead, EndsAfterTheLastLineOfTheHeadWhereverThatLies) {
+  const TempFolder folder;
+  // Around 4096 bytes, which are read at a time, the line lies before, across and after the step.
+  for (const std::size_t before : {0U, 10U, 4080U, 4090U, 4095U, 4096U, 4097U, 9000U}) {
+    const std::string head = std::string(before, 'c') + "\nDATA ascii\n";
+    const auto file = folder.write("f", head + std::string(100'000, '7'));
+    const std::string read = read_head(file, "DATA");
+    ASSERT_GE(read.size(), head.size()) << before;
+    EXPECT_LE(read.size(), head.size() + 2 * 4096) << before;
+    EXPECT_TRUE(read.starts_with(head)) << before;
+  }
+}
+
+TEST(ReadHead, IsTheWholeFileWithoutThatLine) {
+  const TempFolder folder;
+  const std::string bytes = "a\n# DATA\n" + std::string(10'000, 'b') + "\nDATA";
+  EXPECT_EQ(read_head(folder.write("f", bytes), "DATA"), bytes);
+  EXPECT_EQ(read_head(folder.write("empty", ""), "DATA"), "");
+  EXPECT_THROW(read_head(folder / "missing", "DATA"), DataError);
+}
+
 TEST(ReadFile, ReadsAnEmptyFile) {
   const TempFolder folder;
   EXPECT_EQ(read_file(folder.write("empty", "")), "");
