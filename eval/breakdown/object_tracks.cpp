@@ -12,9 +12,9 @@ namespace {
 /// Largest distance between a cluster and the predicted position of its track, for truth without
 /// instances. The prediction has constant velocity, so only acceleration and the change of what is
 /// seen of an object count: 2 m is half a car, and less than the gap between two cars in traffic.
-constexpr double kLinkLinkGate_m = 2.0;
+constexpr double kLinkGate_m = 2.0;
 /// Longest occlusion over which a track without instance goes on: half a second at 10 Hz, after
-/// which the predicted position of a turning car is wrong by about kLinkLinkGate_m.
+/// which the predicted position of a turning car is wrong by about kLinkGate_m.
 constexpr std::size_t kLongestGap_scans = 5;
 /// Time over which a speed is measured: within a second a pedestrian walks farther than its centre
 /// shifts because other parts of it are seen. Less a little, because stamps are rounded.
