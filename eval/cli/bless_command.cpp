@@ -32,7 +32,7 @@ std::string change(const BlessFlags& options, const ResultSet& newer) {
   const std::vector<ResultSet> known = accepted_runs(options.baseline);
   if (known.empty()) {
     std::string text = "a new baseline\n";
-    for (const std::string& caveat : caveats(newer)) text += caveat + '\n';
+    for (const std::string& warning : warnings(newer)) text += warning + '\n';
     return text;
   }
   if (known.size() > 1 && options.even_if) return "several runs lay there before\n";

@@ -79,7 +79,7 @@ std::string breakdown(const BreakdownFlags& options) {
     }
     return json_text(json);
   }
-  std::string text = fmt::format("protocol {}\n{}", task.protocol->name, simulated_notice(dataset));
+  std::string text = fmt::format("protocol {}\n{}", task.protocol->name, simulated_remark(dataset));
   for (const SequenceBreakdown& part : breakdowns) text += '\n' + breakdown_text(part, options.top);
   return text;
 }

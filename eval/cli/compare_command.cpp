@@ -42,8 +42,8 @@ std::string answer_of(const CompareFlags& options, const ResultSet& baseline,
     return json_text(json);
   }
   std::string text = fmt::format("{} paired scans\n", paired.scans.size());
-  for (const std::string& caveat : caveats(baseline)) text += "baseline: " + caveat + '\n';
-  for (const std::string& caveat : caveats(newer)) text += "new: " + caveat + '\n';
+  for (const std::string& warning : warnings(baseline)) text += "baseline: " + warning + '\n';
+  for (const std::string& warning : warnings(newer)) text += "new: " + warning + '\n';
   if (!paired.unlike.empty()) text += "unlike: " + unlike_text(paired.unlike) + '\n';
   return text + '\n' + gate_text(result) + (result.passed() ? "\npass\n" : "\nregression\n");
 }

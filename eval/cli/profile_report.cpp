@@ -173,7 +173,7 @@ ordered_json sequence_json(const SequenceProfile& profile) {
 }  // namespace
 
 std::string profile_text(const RunPlan& plan, const std::vector<SequenceProfile>& profiles) {
-  std::string text = simulated_notice(plan.dataset);
+  std::string text = simulated_remark(plan.dataset);
   for (const SequenceProfile& profile : profiles) {
     text +=
         fmt::format("{}: {} scans, {} thread{}; milliseconds per scan\n{}\n{}\n{}\n", profile.name,

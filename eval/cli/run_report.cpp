@@ -52,7 +52,7 @@ std::string run_report_text(const RunPlan& plan, const std::vector<SequenceOutco
       fmt::format("{} data set {}\n{}\n{}\n", to_string(plan.dataset.kind),
                   plan.dataset.root.string(), method_line(plan), protocol_line(plan));
   text += benchmark_remark(*plan.settings.protocol, plan.dataset.splits);
-  text += simulated_notice(plan.dataset);
+  text += simulated_remark(plan.dataset);
   text += '\n' + format_rows(*plan.settings.protocol, rows_of(plan, outcomes)) + '\n';
   for (std::size_t i = 0; i < outcomes.size(); ++i) {
     for (const std::string& remark : outcomes[i].remarks) {

@@ -37,7 +37,7 @@ struct StatsFlags {
 std::string of_one(const StatsFlags& options) {
   const ResultSet set = load_result_set(options.first);
   if (options.csv) {
-    for (const std::string& caveat : caveats(set)) std::fputs((caveat + '\n').c_str(), stderr);
+    for (const std::string& warning : warnings(set)) std::fputs((warning + '\n').c_str(), stderr);
     return scan_table_csv(set);
   }
   if (options.json) return json_text(statistics_json(set, options.per_scan));

@@ -136,26 +136,26 @@ std::size_t missing_predictions(const ResultSet& set) {
   return missing;
 }
 
-std::string incomplete_caveat(std::size_t missing_predictions) {
+std::string incomplete_warning(std::size_t missing_predictions) {
   return fmt::format("INCOMPLETE: {} scans without usable prediction are not counted",
                      missing_predictions);
 }
 
-std::string split_caveat(const std::string& split) {
+std::string split_warning(const std::string& split) {
   return fmt::format(
       "only the scans of split {}: not the protocol's number, which is over all labelled scans",
       split);
 }
 
-std::vector<std::string> caveats(const ResultSet& set) {
+std::vector<std::string> warnings(const ResultSet& set) {
   std::vector<std::string> texts;
   if (const std::size_t missing = missing_predictions(set); missing > 0) {
-    texts.push_back(incomplete_caveat(missing));
+    texts.push_back(incomplete_warning(missing));
   }
   const auto partial = std::ranges::find_if(set.sequences, [](const SequenceResult& sequence) {
     return sequence.only_split.has_value();
   });
-  if (partial != set.sequences.end()) texts.push_back(split_caveat(*partial->only_split));
+  if (partial != set.sequences.end()) texts.push_back(split_warning(*partial->only_split));
   return texts;
 }
 

@@ -56,11 +56,11 @@ ResultSet load_result_set(const std::filesystem::path& path);
 std::size_t missing_predictions(const ResultSet& set);
 
 /// "INCOMPLETE: ..." for so many scans.
-std::string incomplete_caveat(std::size_t missing_predictions);
+std::string incomplete_warning(std::size_t missing_predictions);
 /// "only the scans of split val, ...".
-std::string split_caveat(const std::string& split);
+std::string split_warning(const std::string& split);
 /// What has to be said wherever numbers of the set are shown.
-std::vector<std::string> caveats(const ResultSet& set);
+std::vector<std::string> warnings(const ResultSet& set);
 
 /// The scans that the protocol counts, in order: those with truth, of the protocol's split where it
 /// picks scans.

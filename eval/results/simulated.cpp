@@ -23,7 +23,7 @@ std::optional<nlohmann::ordered_json> simulated_origin_json(const Dataset& datas
                                 {"notice", notice(*origin)}};
 }
 
-std::string simulated_notice(const Dataset& dataset) {
+std::string simulated_remark(const Dataset& dataset) {
   const std::optional<SimulatedOrigin> origin = simulated_origin(dataset.root);
   return origin ? notice(*origin) + '\n' : std::string();
 }

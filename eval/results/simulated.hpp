@@ -12,6 +12,6 @@ namespace mosbench {
 std::optional<nlohmann::ordered_json> simulated_origin_json(const Dataset& dataset);
 
 /// The line with which every answer about simulated data begins; empty for real data.
-std::string simulated_notice(const Dataset& dataset);
+std::string simulated_remark(const Dataset& dataset);
 
 }  // namespace mosbench

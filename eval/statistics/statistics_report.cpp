@@ -59,7 +59,7 @@ std::string headline(const ResultSet& set) {
       fmt::format("{}, {}; data set {}, protocol {}{}", first.method, first.setting, first.dataset,
                   first.protocol->name,
                   first.simulated ? "; SIMULATED: not comparable with published numbers" : "");
-  for (const std::string& caveat : caveats(set)) text += "; " + caveat;
+  for (const std::string& warning : warnings(set)) text += "; " + warning;
   return text;
 }
 
@@ -178,7 +178,8 @@ std::string statistics_text(const ResultSet& set) {
   table.add_rule();
   table.add_row(estimate_cells("all", scans, statistics.all));
   return fmt::format(
-      "{}\n\n{}\n95 % intervals by bootstrap; block: how many consecutive scans are drawn together\n",
+      "{}\n\n{}\n95 % intervals by bootstrap; block: how many consecutive scans are drawn "
+      "together\n",
       headline(set), table.str());
 }
 
@@ -213,7 +214,8 @@ std::string difference_text(const ResultSet& first, const ResultSet& second,
                                  headline(second), paired.scans.size());
   if (!paired.unlike.empty()) text += "; " + unlike_text(paired.unlike);
   return text + "\n\n" + table.str() +
-         "\nin percentage points; detectable: the true difference that as many scans like these show\n"
+         "\nin percentage points; detectable: the true difference that as many scans like these "
+         "show\n"
          "at 5 % significance with 80 % probability; n times as many scans divide it by sqrt(n)\n";
 }
 

@@ -96,7 +96,7 @@ std::vector<std::string> score_remarks(const Dataset& dataset,
                     opened.path.string()));
     for (const std::string& remark : opened.remarks) add(remark);
     if (!opened.missing.empty()) {
-      add(incomplete_caveat(opened.missing.size()));
+      add(incomplete_warning(opened.missing.size()));
     }
   }
   return remarks;
@@ -109,7 +109,7 @@ std::string score_text(const Dataset& dataset, const ScoreTask& task,
   std::string text =
       fmt::format("protocol {}: {}\n{}{}{}\n{}", rule.protocol->name, rule.protocol->summary,
                   benchmark_remark(*rule.protocol, dataset.splits),
-                  split ? split_caveat(*split) + '\n' : "", simulated_notice(dataset),
+                  split ? split_warning(*split) + '\n' : "", simulated_remark(dataset),
                   format_rows(*rule.protocol, table_rows(dataset, rule, scores, with_sequences)));
   text += '\n';
   for (const std::string& remark : score_remarks(dataset, scores)) text += remark + '\n';
@@ -133,7 +133,7 @@ std::string score_json(const Dataset& dataset, const ScoreTask& task,
   }
   json["remarks"] = score_remarks(dataset, scores);
   if (const auto split = other_split(dataset, task)) {
-    json["remarks"].push_back(split_caveat(*split));
+    json["remarks"].push_back(split_warning(*split));
   }
   return json_text(json);
 }

@@ -90,7 +90,7 @@ std::string side_by_side_text(const Dataset& dataset, const std::vector<ScoreRul
                    fmt::format("{}", pooled.fn), row.reason});
   }
   std::string text = "the same labels by every protocol, over all scored scans\n" +
-                     simulated_notice(dataset) + '\n' + table.str() + '\n';
+                     simulated_remark(dataset) + '\n' + table.str() + '\n';
   for (const std::string& remark : score_remarks(dataset, scores)) text += remark + '\n';
   return text;
 }

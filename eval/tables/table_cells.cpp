@@ -30,7 +30,7 @@ std::vector<std::string> gaps(const ResultSet& part, const TableColumn& column) 
   }
   std::size_t scans = 0;
   for (const SequenceResult& sequence : part.sequences) scans += counted_scans(sequence).size();
-  for (std::string& caveat : caveats(part)) gaps.push_back(std::move(caveat));
+  for (std::string& warning : warnings(part)) gaps.push_back(std::move(warning));
   const bool known =
       column.scans && !part.sequences.empty() &&
       (column.scans_protocol.empty() || column.scans_protocol == part.front().protocol->name);

@@ -3,13 +3,18 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <filesystem>
 #include <limits>
+#include <map>
 #include <set>
+#include <sstream>
 #include <string>
 #include <string_view>
 
 #include "datasets/files/errors.hpp"
+#include "datasets/files/files.hpp"
 #include "datasets/files/nearest_name.hpp"
+#include "eval/predictions/prediction_format.hpp"
 #include "eval/protocols/protocol_list.hpp"
 
 namespace mosbench {
@@ -114,6 +119,49 @@ TEST(NearestName, WeighsInsertedDeletedAndReplacedCharactersAlike) {
 }
 
 TEST(NearestName, IsEmptyWithoutCandidates) { EXPECT_EQ(nearest_name("doals", {}), ""); }
+
+/// The sections of a Markdown file by their heading of third level.
+std::map<std::string, std::string> sections_of(const std::string& markdown) {
+  std::map<std::string, std::string> sections;
+  std::string* section = nullptr;
+  std::istringstream lines(markdown);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with("#")) {
+      section = line.starts_with("### ") ? &sections[line.substr(4)] : nullptr;
+    } else if (section != nullptr) {
+      *section += line + '\n';
+    }
+  }
+  return sections;
+}
+
+std::string source_file(const char* name) {
+  return read_file(std::filesystem::path(MOSBENCH_SOURCE_DIR) / name);
+}
+
+TEST(Protocols, AreDescribedInTheirReadmeByTheFactsOfTheirRows) {
+  const auto sections = sections_of(source_file("eval/protocols/README.md"));
+  EXPECT_EQ(sections.size(), protocols().size());
+  for (const ProtocolDescription& protocol : describe_protocols()) {
+    ASSERT_TRUE(sections.contains(protocol.name)) << protocol.name;
+    const std::string& text = sections.at(protocol.name);
+    for (const std::string& fact :
+         {"- truth: " + protocol.truth, "- predicted moving: " + protocol.prediction,
+          "- range: " + protocol.range, "- average: " + protocol.aggregation,
+          "- scans: " + protocol.split, "- 0/0: " + protocol.empty_case,
+          "- source: " + protocol.source}) {
+      EXPECT_NE(text.find(fact + '\n'), std::string::npos) << protocol.name << ": " << fact;
+    }
+  }
+}
+
+TEST(PredictionFormats, AreAllDescribedInTheReadme) {
+  const std::string readme = source_file("eval/README.md");
+  for (const DescribedFormat& format : prediction_formats()) {
+    EXPECT_NE(readme.find("| `" + std::string(format.name) + "` |"), std::string::npos)
+        << format.name;
+  }
+}
 
 }  // namespace
 }  // namespace mosbench
