@@ -14,9 +14,11 @@ namespace {
 
 constexpr const char* kCompareFooter =
     R"(BASELINE and NEW are folders of results (mosbench run, mosbench score --out, mosbench bless). Both runs'
-scans are paired. A sequence, or all together, regresses when its IoU drops by more than --max-drop and
-by more than the 95 % interval of the paired difference leaves open. Runs with another protocol, method,
-setting, other scans or input are refused; --even-if compares the scans that both have all the same.
+scans are paired. A sequence, or all together, regresses when its IoU drops by more than --max-drop: both
+runs label the same scans, so no drop is chance. The 95 % interval of the paired difference is shown as a
+note: it says whether other scans like these would show the drop. With --statistical a drop must also exceed
+the half-width of that interval. Runs with another protocol, method, setting, other scans or input are
+refused; --even-if compares the scans that both have nevertheless.
 
 Exit codes: 0 pass, 1 regression, 2 wrong usage, 3 unusable or unlike results.
 
@@ -27,6 +29,7 @@ Examples:
 struct CompareFlags {
   std::filesystem::path baseline, newer;
   double max_drop_points = 0.5;
+  bool statistical = false;
   bool even_if = false;
   bool json = false;
 };
@@ -62,7 +65,8 @@ std::string compare(const CompareFlags& options) {
                     "results over the same scans");
   }
   const GateResult result =
-      judge(paired, *baseline.front().protocol, options.max_drop_points / 100.0);
+      judge(paired, *baseline.front().protocol, options.max_drop_points / 100.0,
+            options.statistical ? GateRule::kStatistical : GateRule::kMaxDrop);
   std::string answer = answer_of(options, baseline, newer, paired, result);
   if (!result.passed()) throw Finding(answer);
   return answer;
@@ -80,6 +84,8 @@ void add_compare_command(CLI::App& app, std::string& answer) {
                    "IoU in percentage points that may be lost")
       ->check(CLI::Range(0.0, 100.0))
       ->capture_default_str();
+  command->add_flag("--statistical", options->statistical,
+                    "Fail only when the drop also exceeds what its 95 % interval leaves open");
   command->add_flag("--even-if", options->even_if, "Compare results of different kinds, too");
   command->add_flag("--json", options->json, "Print JSON instead of a table");
   command->footer(kCompareFooter);

@@ -22,18 +22,12 @@ ordered_json spread_json(const Value& value) {
           {"high", value.interval ? ordered_json(value.interval->high) : ordered_json(nullptr)}};
 }
 
-std::string interval_text(const std::optional<Interval>& interval, const char* style = "{:.2f}") {
-  if (!interval) return "none";
-  return fmt::format("[{}, {}]", percent_text(interval->low, style),
-                     percent_text(interval->high, style));
-}
-
 std::vector<std::string> estimate_cells(const std::string& name, std::size_t scans,
                                         const Estimates& estimates) {
   std::vector<std::string> cells = {name, fmt::format("{}", scans)};
   for (const Estimate& metric : estimates.metrics) {
     cells.push_back(percent_text(metric.value));
-    cells.push_back(interval_text(metric.interval));
+    cells.push_back(interval_text(metric.interval, "{:.2f}"));
   }
   std::size_t longest = 0;
   for (const std::size_t length : estimates.block_lengths_scans)
@@ -64,6 +58,12 @@ std::string headline(const ResultSet& set) {
 }
 
 }  // namespace
+
+std::string interval_text(const std::optional<Interval>& interval, const char* style) {
+  if (!interval) return "none";
+  return fmt::format("[{}, {}]", percent_text(interval->low, style),
+                     percent_text(interval->high, style));
+}
 
 RunStatistics run_statistics(const ResultSet& set) {
   const std::vector<SequenceCounts> counts = counts_of(set);

@@ -17,6 +17,9 @@ struct RunStatistics {
 
 RunStatistics run_statistics(const ResultSet& set);
 
+/// Returns "[62.10, 63.95]" in percent, "none" without interval; `style` is that of fmt.
+std::string interval_text(const std::optional<Interval>& interval, const char* style);
+
 /// {"iou": {"value", "standard_error", "low", "high"}, ...}, undefined as null.
 nlohmann::ordered_json to_json(const Estimates& estimates);
 /// Adds "p_value" and "smallest_detectable" to the same members.
@@ -25,10 +28,11 @@ nlohmann::ordered_json to_json(const Differences& differences);
 /// Returns method, protocol, range, data set and whether the input is simulated.
 nlohmann::ordered_json provenance_json(const ResultSet& set);
 
-/// Returns provenance and the estimates of each sequence and of all; with `per_scan` also counts and
-/// metrics of each scan.
+/// Returns provenance and the estimates of each sequence and of all; with `per_scan` also counts
+/// and metrics of each scan.
 nlohmann::ordered_json statistics_json(const ResultSet& set, bool per_scan);
-/// Formats a row per counted scan: sequence, scan, points, counts and metrics; undefined ones empty.
+/// Formats a row per counted scan: sequence, scan, points, counts and metrics; undefined ones
+/// empty.
 std::string scan_table_csv(const ResultSet& set);
 std::string statistics_text(const ResultSet& set);
 

@@ -89,6 +89,35 @@ TEST_F(Compare, CatchesThreePercentOfTheMovingPointsFlipped) {
   EXPECT_EQ(compare_to_whole("whole", "0").exit_code, 0);
 }
 
+TEST_F(Compare, LetsTheMaxDropAloneDecideUnlessItIsStatistical) {
+  score_changed("whole", [](std::size_t) { return false; });
+  // All lost points are in the first scans, so that other scans might show no drop at all.
+  score_changed("early", [](std::size_t moving) { return moving < 60; });
+  const auto compare_to_whole = [this](const std::vector<std::string>& more) {
+    std::vector<std::string> words = {"compare", (folder_ / "whole/results").string(),
+                                      (folder_ / "early/results").string()};
+    words.insert(words.end(), more.begin(), more.end());
+    return cli::run(words);
+  };
+  const cli::Answer answer = compare_to_whole({"--json"});
+  ASSERT_EQ(answer.exit_code, 1) << answer.err << answer.out;
+  const auto check = nlohmann::json::parse(answer.out).at("checks").at(0);
+  const double drop = -check.at("difference").get<double>();
+  ASSERT_GT(drop, 0.005);
+  EXPECT_GE(check.at("high").get<double>(), -1e-9) << "other scans may show none";
+  EXPECT_DOUBLE_EQ(check.at("tolerance").get<double>(), 0.005);
+
+  const cli::Answer statistical = compare_to_whole({"--json", "--statistical"});
+  EXPECT_EQ(statistical.exit_code, 0) << statistical.err << statistical.out;
+  const auto wide = nlohmann::json::parse(statistical.out).at("checks").at(0);
+  EXPECT_GE(wide.at("tolerance").get<double>(), drop);
+  EXPECT_EQ(wide.at("low"), check.at("low"));
+
+  EXPECT_THAT(compare_to_whole({}).out, HasSubstr("it does not decide (--statistical)"));
+  EXPECT_EQ(compare_to_whole({"--max-drop", std::to_string(100.0 * drop + 0.01)}).exit_code, 0);
+  EXPECT_EQ(compare_to_whole({"--max-drop", std::to_string(100.0 * drop - 0.01)}).exit_code, 1);
+}
+
 TEST_F(Compare, RefusesUnlikeResultsUnlessTold) {
   run_again("coarse", {"--set", "voxel_size_m=0.4"});
   const cli::Answer setting = compare("coarse");
