@@ -142,7 +142,6 @@ std::unique_ptr<Scan> observed_scan(const Config& c, std::span<const Point> poin
     scan->measured.insert(scan->voxel_of_point.back().emplace(voxel_at(p.x(), p.y(), p.z())));
   }
   const Voxel s = voxel_at(scan->sensor_m.x(), scan->sensor_m.y(), scan->sensor_m.z());
-  const Eigen::Vector3d corner_m = c.voxel_size_m * Eigen::Vector3d(s.x, s.y, s.z);
   for (const Voxel& v : scan->measured) {
     if (distance_sq_m2(v, c.voxel_size_m, scan->sensor_m) <= squared(c.max_range_m))
       scan->occupied[v] = {};
