@@ -57,7 +57,6 @@ std::vector<std::string> all_remarks(const RunSettings& settings, const Sequence
 
 ordered_json header(const RunPlan& plan, const PlannedSequence& planned, const SequenceRows& rows,
                     const std::vector<std::string>& remarks) {
-  const Sequence& sequence = *plan.dataset.sequences[planned.position];
   ordered_json json = {{"format", kResultFormat}};
   json.update(planned.identity);
   json["preset"] = plan.preset;
