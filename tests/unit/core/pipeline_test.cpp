@@ -240,7 +240,7 @@ TEST(Pipeline, TimesEveryStageInItsOrder) {
 std::vector<std::size_t> judged(int delay_scans, int local_window_scans, std::size_t scan_count) {
   Config config = small_config(delay_scans);
   config.local_window_scans = local_window_scans;
-  const SmallWorld world = small_world({.seed = 9, .scans = static_cast<int>(scan_count)});
+  const SmallWorld world = small_world({.seed = 9, .scans = scan_count});
   Pipeline pipeline(config, {1, scan_count});
   std::vector<std::size_t> scans;
   for (const LabelledScan& result : results_of(pipeline, world)) {
