@@ -101,10 +101,28 @@ std::optional<Distribution> distribution(Series replicates, std::size_t asked) {
       std::sqrt(squares / static_cast<double>(std::max<std::size_t>(1, asked - 1)))};
 }
 
-/// Half-width of the interval in standard errors, corrected for few blocks: Student's t for their
-/// number, and the bootstrap's variance is too small by (blocks - 1) / blocks. nullopt for fewer
-/// than two blocks.
-std::optional<double> half_width(const std::vector<Drawn>& drawn, double confidence) {
+/// Correction of the percentile interval for few blocks: its ends are as far out as those of
+/// Student's t with `freedom`, not of the normal distribution, and the bootstrap's standard error
+/// is too small by the factor `widening`.
+struct FewBlocks {
+  double freedom = 0.0;
+  double widening = 1.0;
+
+  /// Half-width of the interval in standard errors of the bootstrap.
+  double half_width(double confidence) const {
+    return student_quantile(0.5 + 0.5 * confidence, freedom) * widening;
+  }
+  /// Share of replicates beyond each end of the interval.
+  double tail(double confidence) const { return normal_probability(-half_width(confidence)); }
+  /// The significance 1 - confidence of the interval with this share of replicates beyond each end.
+  double significance(double tail) const {
+    if (tail >= 0.5) return 1.0;
+    return 2.0 * student_probability(normal_quantile(tail) / widening, freedom);
+  }
+};
+
+/// Returns nothing for fewer than two blocks.
+std::optional<FewBlocks> few_blocks(const std::vector<Drawn>& drawn) {
   double blocks = 0.0;
   double freedom = 0.0;
   for (const Drawn& sequence : drawn) {
@@ -114,23 +132,27 @@ std::optional<double> half_width(const std::vector<Drawn>& drawn, double confide
     freedom += scans / static_cast<double>(sequence.block_scans) - 1.0;
   }
   if (freedom < 1.0) return std::nullopt;
-  return student_quantile(0.5 + 0.5 * confidence, freedom) * std::sqrt(blocks / (blocks - 1.0));
+  return FewBlocks{freedom, std::sqrt(blocks / (blocks - 1.0))};
 }
 
-Interval interval_of(const Distribution& distribution, double ends) {
-  const double tail = normal_probability(-ends);
-  return {quantile(distribution.sorted, tail, QuantileRule::kInterpolated),
-          quantile(distribution.sorted, 1.0 - tail, QuantileRule::kInterpolated)};
+/// Returns nothing where the ends lie beyond all but the outermost replicate: so few blocks that no
+/// number of replicates of them reaches as far as the interval should.
+std::optional<Interval> interval_of(const Distribution& distribution, const FewBlocks& blocks,
+                                    double confidence) {
+  const double tail = blocks.tail(confidence);
+  if (tail * static_cast<double>(distribution.sorted.size()) < 1.0) return std::nullopt;
+  return Interval{quantile(distribution.sorted, tail, QuantileRule::kInterpolated),
+                  quantile(distribution.sorted, 1.0 - tail, QuantileRule::kInterpolated)};
 }
 
-/// Sets what is defined; `ends` is a half_width().
+/// Sets what is defined.
 void set_estimate(double value, const std::optional<Distribution>& spread,
-                  const std::optional<double>& ends, Estimate& metric) {
+                  const std::optional<FewBlocks>& blocks, double confidence, Estimate& metric) {
   if (std::isnan(value)) return;
   metric.value = value;
-  if (!ends || !spread) return;
-  metric.standard_error = spread->standard_error;
-  metric.interval = interval_of(*spread, *ends);
+  if (!blocks || !spread) return;
+  metric.interval = interval_of(*spread, *blocks, confidence);
+  if (metric.interval) metric.standard_error = spread->standard_error;
 }
 
 /// Returns `replicate(sums)` per metric for each draw; undefined values are left out.
@@ -156,15 +178,26 @@ std::vector<std::size_t> block_lengths(const std::vector<Drawn>& drawn) {
   return lengths;
 }
 
-double p_value(const Distribution& distribution, double value, double widening) {
-  if (value == 0.0) return 1.0;
-  std::size_t beyond = 0;
-  for (const double replicate : distribution.sorted) {
-    // A replicate that equals the value up to rounding counts as beyond it.
-    if (std::abs(replicate - value) * widening >= std::abs(value) * (1.0 - 1e-9)) ++beyond;
-  }
-  return (1.0 + static_cast<double>(beyond)) /
-         (1.0 + static_cast<double>(distribution.sorted.size()));
+/// The largest q whose interpolated quantile is at most 0.
+double share_up_to_zero(std::span<const double> sorted) {
+  const auto above = std::ranges::upper_bound(sorted, 0.0);
+  if (above == sorted.begin()) return 0.0;
+  if (above == sorted.end()) return 1.0;
+  const double below = *(above - 1);
+  const double position =
+      static_cast<double>(above - 1 - sorted.begin()) - below / (*above - below);
+  return position / static_cast<double>(sorted.size() - 1);
+}
+
+/// Inverts the interval: the significance at which 0 becomes one of its ends. Below it 0 is inside,
+/// above it outside, so that interval and p-value never contradict each other.
+double p_value(const Distribution& distribution, const FewBlocks& blocks) {
+  Series negated;
+  for (const double value : distribution.sorted) negated.push_back(-value);
+  std::ranges::reverse(negated);
+  const double resolution = 1.0 / (1.0 + static_cast<double>(distribution.sorted.size()));
+  const double tail = std::min(share_up_to_zero(distribution.sorted), share_up_to_zero(negated));
+  return blocks.significance(std::max(tail, resolution));
 }
 
 void check_same_scans(Sequences first, Sequences second) {
@@ -183,11 +216,11 @@ Estimates estimate(const Protocol& protocol, Sequences sequences, const Bootstra
   const std::vector<Drawn> drawn = prepare(protocol, runs);
   estimates.block_lengths_scans = block_lengths(drawn);
   const MetricValues values = aggregate(protocol, sequences);
-  const std::optional<double> ends = half_width(drawn, options.confidence);
+  const std::optional<FewBlocks> blocks = few_blocks(drawn);
   const auto series = replicates(
       drawn, 1, options, [&](const auto& sums) { return aggregate_sums(protocol, sums.front()); });
   for (std::size_t m = 0; m < values.size(); ++m) {
-    set_estimate(values[m], distribution(series[m], options.replicates), ends,
+    set_estimate(values[m], distribution(series[m], options.replicates), blocks, options.confidence,
                  estimates.metrics[m]);
   }
   return estimates;
@@ -205,19 +238,19 @@ Differences paired_difference(const Protocol& protocol, Sequences first, Sequenc
     return of;
   };
   const MetricValues values = minus(aggregate(protocol, second), aggregate(protocol, first));
-  const std::optional<double> ends = half_width(drawn, options.confidence);
-  const std::optional<double> significant = half_width(drawn, 1.0 - kSignificance);
-  const double widening = ends.value_or(0.0) / normal_quantile(0.5 + 0.5 * options.confidence);
+  const std::optional<FewBlocks> blocks = few_blocks(drawn);
   const auto series = replicates(drawn, 2, options, [&](const auto& sums) {
     return minus(aggregate_sums(protocol, sums[1]), aggregate_sums(protocol, sums[0]));
   });
   for (std::size_t m = 0; m < values.size(); ++m) {
     Difference& metric = differences.metrics[m];
     const auto spread = distribution(series[m], options.replicates);
-    set_estimate(values[m], spread, ends, metric);
+    set_estimate(values[m], spread, blocks, options.confidence, metric);
     if (!metric.interval) continue;
-    metric.p_value = p_value(*spread, values[m], widening);
-    metric.smallest_detectable = (*significant + normal_quantile(kPower)) * spread->standard_error;
+    metric.p_value = p_value(*spread, *blocks);
+    metric.smallest_detectable =
+        (blocks->half_width(1.0 - kSignificance) + normal_quantile(kPower)) *
+        spread->standard_error;
   }
   return differences;
 }

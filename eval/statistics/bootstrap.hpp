@@ -27,7 +27,7 @@ struct BootstrapOptions {
 struct Estimate {
   std::optional<double> value;           ///< fraction; nullopt where undefined
   std::optional<double> standard_error;  ///< of the bootstrap
-  std::optional<Interval> interval;  ///< nullopt with fewer than two independent blocks of scans
+  std::optional<Interval> interval;      ///< nullopt for fewer than about five blocks of scans
 };
 
 /// The four metrics of a run, by Metric.
@@ -41,13 +41,15 @@ struct Estimates {
 
 /// Estimates intervals by a circular block bootstrap: scans are drawn with replacement within each
 /// sequence, in blocks of `block_length` consecutive scans. Percentile intervals, widened for few
-/// blocks by the ratio of Student's t to the normal distribution (Hesterberg 2015).
+/// blocks by the ratio of Student's t to the normal distribution (Hesterberg 2015). Too few blocks,
+/// of which no replicate reaches that far, give no interval.
 Estimates estimate(const Protocol& protocol, std::span<const SequenceCounts> sequences,
                    const BootstrapOptions& options = {});
 
 /// One metric of a second run minus that of a first on the same scans.
 struct Difference : Estimate {
-  std::optional<double> p_value;  ///< two-sided, of "the runs are equally good"
+  std::optional<double> p_value;  ///< two-sided; below 1 - confidence exactly where 0 is outside
+                                  ///< the interval; never below what the replicates resolve
   /// The true difference that as many scans like these show at 5 % significance with 80 %
   /// probability; with n times the scans it is smaller by the square root of n.
   std::optional<double> smallest_detectable;

@@ -12,6 +12,10 @@ double normal_quantile(double probability) {
   return boost::math::quantile(boost::math::normal(), probability);
 }
 
+double student_probability(double t, double freedom) {
+  return boost::math::cdf(boost::math::students_t(freedom), t);
+}
+
 double student_quantile(double probability, double freedom) {
   return boost::math::quantile(boost::math::students_t(freedom), probability);
 }
