@@ -1,0 +1,31 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace mosbench::odometry {
+
+using Vector6d = Eigen::Matrix<double, 6, 1>;
+
+/// A function of six numbers to be minimised.
+class Objective {
+ public:
+  virtual ~Objective() = default;
+  virtual double value(const Vector6d& at) = 0;
+  virtual Vector6d gradient(const Vector6d& at) = 0;
+  /// Derivative of value(at + step * direction) by `step`.
+  virtual double slope(const Vector6d& at, const Vector6d& direction, double step) = 0;
+};
+
+struct Minimum {
+  Vector6d at;
+  double value = 0;
+  int steps = 0;
+  bool settled = false;  ///< false: stopped by the limit of steps
+};
+
+/// Minimises by the method of Broyden, Fletcher, Goldfarb and Shanno with Fletcher's line search (Practical
+/// Methods of Optimization, 2.6.2 and 2.6.4), step for step as dlib 19.24 does, which SiMpLE's authors use.
+/// Stops when a step changes the value by less than `tolerance`.
+Minimum minimise(Objective& objective, const Vector6d& start, double tolerance);
+
+}  // namespace mosbench::odometry

@@ -1,0 +1,150 @@
+#include <algorithm>
+#include <cmath>
+
+#include "core/odometry/engine.hpp"
+#include "core/odometry/rigid_motion.hpp"
+#include "core/odometry/thinning.hpp"
+
+namespace mosbench::odometry {
+namespace {
+
+// Voxels of the points that enter the map and of those that are aligned, of the edge of the map's.
+constexpr double kMapShare = 0.5, kAlignedShare = 1.5;
+constexpr std::size_t kChunkPoints = 512;  // fixed, so that sums do not depend on threads
+
+using Matrix6d = Eigen::Matrix<double, 6, 6>;
+using Vector6d = Eigen::Matrix<double, 6, 1>;
+
+/// Normal equations of one Gauss-Newton step, rotation before translation, and what is said about the result.
+struct Sums {
+  Matrix6d information = Matrix6d::Zero();
+  Vector6d pull = Vector6d::Zero();
+  double weight = 0, squares_m2 = 0;
+  std::size_t matched = 0;
+
+  void add(const Eigen::Vector3d& q, const Eigen::Vector3d& residual, double w) {
+    Eigen::Matrix<double, 3, 6> jacobian;
+    jacobian << 0, q.z(), -q.y(), 1, 0, 0, -q.z(), 0, q.x(), 0, 1, 0, q.y(), -q.x(), 0, 0, 0, 1;
+    information += w * jacobian.transpose() * jacobian;
+    pull += w * jacobian.transpose() * residual;
+    weight += w;
+    squares_m2 += w * residual.squaredNorm();
+    ++matched;
+  }
+  void add(const Sums& other) {
+    information += other.information;
+    pull += other.pull;
+    weight += other.weight;
+    squares_m2 += other.squares_m2;
+    matched += other.matched;
+  }
+};
+
+/// Point-to-point registration with an adaptive threshold: KISS-ICP (RA-L 2023).
+class Kiss : public Engine {
+ public:
+  Kiss(const KissConfig& config, ThreadPool& pool)
+      : config_(config),
+        pool_(pool),
+        map_(config.voxel_size_m),
+        squares_m2_(config.initial_threshold_m * config.initial_threshold_m) {}
+
+  void take(std::span<const Eigen::Vector3d> points_m) override {
+    for_map_ = first_of_cells(points_m, kMapShare * config_.voxel_size_m);
+    taken_ = first_of_cells(for_map_, kAlignedShare * config_.voxel_size_m);
+  }
+  std::span<const Eigen::Vector3d> taken() const override { return taken_; }
+  double spacing_m() const override { return kAlignedShare * config_.voxel_size_m; }
+
+  Alignment align(const Pose& seed) const override {
+    Alignment result{.map_from_sensor = seed, .settled = false};
+    Sums sums;
+    for (int step = 0; step < config_.max_iterations && !result.settled; ++step) {
+      sums = sums_at(result.map_from_sensor);
+      // Too few points to hold all six numbers leave some as they are.
+      const Vector6d change = sums.information.ldlt().solve(-sums.pull);
+      if (sums.matched < 3 || !change.allFinite()) break;
+      Pose moved = Pose::Identity();
+      moved.linear() = rotation_about(change.head<3>());
+      moved.translation() = change.tail<3>();
+      result.map_from_sensor = rigid(moved * result.map_from_sensor);
+      result.settled = change.norm() < config_.convergence;
+    }
+    result.overlap = static_cast<double>(sums.matched) / static_cast<double>(taken_.size());
+    result.effective_points = sums.weight * sigma_m() * sigma_m();
+    if (sums.weight > 0) result.residual_m = std::sqrt(sums.squares_m2 / sums.weight);
+    return result;
+  }
+
+  void enter(const Pose& map_from_sensor) override {
+    const double apart_m = config_.voxel_size_m / std::sqrt(config_.max_points_per_voxel);
+    for (const Eigen::Vector3d& p : for_map_) {
+      const Eigen::Vector3d q = map_from_sensor * p;
+      int points = 0;
+      bool near = false;
+      map_.for_each_in_cell(q, [&](const Eigen::Vector3d& other) {
+        ++points;
+        near = near || (other - q).squaredNorm() < apart_m * apart_m;
+      });
+      if (points < config_.max_points_per_voxel && !near) map_.insert(q);
+    }
+    map_.keep_within(map_from_sensor.translation(), config_.scan.max_range_m);
+  }
+
+  void learn(const Pose& predicted_from_found) override {
+    const double turn_rad = rotation_vector_of(predicted_from_found).norm();
+    const double error_m = predicted_from_found.translation().norm() +
+                           2 * config_.scan.max_range_m * std::sin(turn_rad / 2);
+    if (!(error_m > config_.min_motion_m)) return;
+    squares_m2_ += error_m * error_m;
+    ++errors_;
+  }
+
+  std::size_t map_points() const override { return map_.size(); }
+  std::size_t memory_bytes() const override {
+    return map_.memory_bytes() +
+           (taken_.capacity() + for_map_.capacity()) * sizeof(Eigen::Vector3d);
+  }
+
+ private:
+  double sigma_m() const { return std::sqrt(squares_m2_ / static_cast<double>(errors_)); }
+
+  Sums sums_at(const Pose& pose) const {
+    std::vector<Sums> chunks((taken_.size() + kChunkPoints - 1) / kChunkPoints);
+    pool_.for_ranges(taken_.size(), kChunkPoints, [&](std::size_t begin, std::size_t end, unsigned) {
+      chunks[begin / kChunkPoints] = sums_of(begin, end, pose);
+    });
+    Sums all;
+    for (const Sums& chunk : chunks) all.add(chunk);
+    return all;
+  }
+
+  Sums sums_of(std::size_t begin, std::size_t end, const Pose& pose) const {
+    const double sigma = sigma_m();
+    Sums sums;
+    for (std::size_t i = begin; i < end; ++i) {
+      const Eigen::Vector3d q = pose * taken_[i];
+      const Neighbour neighbour = map_.nearest_in_27_cells(q);
+      if (!(neighbour.distance_m < 3 * sigma)) continue;
+      // Geman and McClure's weight.
+      const double spread = sigma + neighbour.distance_m * neighbour.distance_m;
+      sums.add(q, q - neighbour.point_m, sigma * sigma / (spread * spread));
+    }
+    return sums;
+  }
+
+  KissConfig config_;
+  ThreadPool& pool_;
+  PointGrid map_;
+  std::vector<Eigen::Vector3d> for_map_, taken_;
+  double squares_m2_;  // of the prediction's errors
+  int errors_ = 1;
+};
+
+}  // namespace
+
+std::unique_ptr<Engine> make_engine(const KissConfig& config, ThreadPool& pool) {
+  return std::make_unique<Kiss>(config, pool);
+}
+
+}  // namespace mosbench::odometry

@@ -1,0 +1,132 @@
+#include "core/odometry/simple_cost.hpp"
+
+#include <cmath>
+
+namespace mosbench::odometry {
+namespace {
+
+constexpr double kDifference = 1e-7;      // of radians and of metres
+constexpr std::size_t kChunkPoints = 512;  // fixed, so that sums do not depend on threads
+
+double falloff_per_m2(double sigma_m) { return std::pow(sigma_m, -2) / 2; }
+
+/// The derivatives of R = Rz(yaw) Ry(pitch) Rx(roll) by the three angles.
+std::array<Eigen::Matrix3d, 3> rotation_derivatives(const Vector6d& state) {
+  const double cr = std::cos(state[0]), sr = std::sin(state[0]);
+  const double cp = std::cos(state[1]), sp = std::sin(state[1]);
+  const double cy = std::cos(state[2]), sy = std::sin(state[2]);
+  std::array<Eigen::Matrix3d, 3> by;
+  by[0] << 0, cy * sp * cr + sy * sr, -cy * sp * sr + sy * cr,  //
+      0, sy * sp * cr - cy * sr, -sy * sp * sr - cy * cr,       //
+      0, cp * cr, -cp * sr;
+  by[1] << -cy * sp, cy * cp * sr, cy * cp * cr,  //
+      -sy * sp, sy * cp * sr, sy * cp * cr,       //
+      -cp, -sp * sr, -sp * cr;
+  by[2] << -sy * cp, -sy * sp * sr - cy * cr, -sy * sp * cr + cy * sr,  //
+      cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr,          //
+      0, 0, 0;
+  return by;
+}
+
+}  // namespace
+
+NumericCost::NumericCost(const SimpleProblem& problem, ThreadPool& pool)
+    : problem_(problem),
+      pool_(pool),
+      nearest_(problem.points_m.size(), problem.map, problem.reach_m),
+      closeness_(problem.points_m.size()) {}
+
+double NumericCost::value(const Vector6d& at) {
+  const Pose pose = pose_of(at);
+  const double falloff = falloff_per_m2(problem_.sigma_m);
+  pool_.for_ranges(closeness_.size(), kChunkPoints,
+                   [&](std::size_t begin, std::size_t end, unsigned) {
+                     for (std::size_t i = begin; i < end; ++i) {
+                       const Eigen::Vector3d q = moved(pose, problem_.points_m[i]);
+                       const Eigen::Vector3d r = q - nearest_.nearest(i, q);
+                       closeness_[i] =
+                           std::exp(-(r.x() * r.x() + r.y() * r.y() + r.z() * r.z()) * falloff);
+                     }
+                   });
+  double sum = 0;
+  for (const double closeness : closeness_) sum += closeness;
+  return -sum;
+}
+
+Vector6d NumericCost::gradient(const Vector6d& at) {
+  Vector6d gradient;
+  for (Eigen::Index i = 0; i < 6; ++i) {
+    Vector6d low = at, high = at;
+    low[i] -= kDifference;
+    high[i] += kDifference;
+    gradient[i] = (value(high) - value(low)) / (high[i] - low[i]);
+  }
+  return gradient;
+}
+
+double NumericCost::slope(const Vector6d& at, const Vector6d& direction, double step) {
+  const double low = step - kDifference, high = step + kDifference;
+  return (value(at + high * direction) - value(at + low * direction)) / (high - low);
+}
+
+AnalyticCost::AnalyticCost(const SimpleProblem& problem, ThreadPool& pool)
+    : problem_(problem),
+      pool_(pool),
+      nearest_(problem.points_m.size(), problem.map, problem.reach_m),
+      chunks_((problem.points_m.size() + kChunkPoints - 1) / kChunkPoints) {}
+
+AnalyticCost::Sums AnalyticCost::sums_of(std::size_t begin, std::size_t end, const Pose& pose) {
+  const double falloff = falloff_per_m2(problem_.sigma_m);
+  Sums sums;
+  for (std::size_t i = begin; i < end; ++i) {
+    const Eigen::Vector3d& p = problem_.points_m[i];
+    const Eigen::Vector3d q = moved(pose, p);
+    const Eigen::Vector3d residual = q - nearest_.nearest(i, q);
+    const double closeness = std::exp(-falloff * residual.squaredNorm());
+    const Eigen::Vector3d pull = closeness * residual;
+    sums.closeness += closeness;
+    sums.residual += pull;
+    sums.moment += pull * p.transpose();
+  }
+  return sums;
+}
+
+void AnalyticCost::evaluate(const Vector6d& at) {
+  if (evaluated_at_ == at) return;
+  const Pose pose = pose_of(at);
+  pool_.for_ranges(problem_.points_m.size(), kChunkPoints,
+                   [&](std::size_t begin, std::size_t end, unsigned) {
+                     chunks_[begin / kChunkPoints] = sums_of(begin, end, pose);
+                   });
+  Sums all;
+  for (const Sums& chunk : chunks_) {
+    all.closeness += chunk.closeness;
+    all.residual += chunk.residual;
+    all.moment += chunk.moment;
+  }
+  const double scale = 2 * falloff_per_m2(problem_.sigma_m);
+  const std::array<Eigen::Matrix3d, 3> by_angle = rotation_derivatives(at);
+  for (std::size_t j = 0; j < 3; ++j) {
+    gradient_[static_cast<Eigen::Index>(j)] = scale * all.moment.cwiseProduct(by_angle[j]).sum();
+  }
+  gradient_.tail<3>() = scale * all.residual;
+  value_ = -all.closeness;
+  evaluated_at_ = at;
+}
+
+double AnalyticCost::value(const Vector6d& at) {
+  evaluate(at);
+  return value_;
+}
+
+Vector6d AnalyticCost::gradient(const Vector6d& at) {
+  evaluate(at);
+  return gradient_;
+}
+
+double AnalyticCost::slope(const Vector6d& at, const Vector6d& direction, double step) {
+  evaluate(at + step * direction);
+  return gradient_.dot(direction);
+}
+
+}  // namespace mosbench::odometry

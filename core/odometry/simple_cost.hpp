@@ -1,0 +1,68 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/base/thread_pool.hpp"
+#include "core/odometry/bfgs.hpp"
+#include "core/odometry/correspondences.hpp"
+#include "core/odometry/rigid_motion.hpp"
+
+namespace mosbench::odometry {
+
+/// What SiMpLE's cost needs: scan points in the sensor frame, the map, and sigma.
+struct SimpleProblem {
+  std::span<const Eigen::Vector3d> points_m;
+  const PointGrid& map;
+  double sigma_m;
+  double reach_m;  ///< neighbours farther than this count nothing; at least 10 sigma
+};
+
+/// f(m) = -sum_i exp(-|q_i - n_i|^2 / (2 sigma^2)) with q_i = R(m) p_i + t(m) and n_i its nearest map point.
+/// Derivatives are central differences with steps of 1e-7, as in the authors' program, and the sum runs in
+/// the order of the points.
+class NumericCost : public Objective {
+ public:
+  NumericCost(const SimpleProblem& problem, ThreadPool& pool);
+  double value(const Vector6d& at) override;
+  Vector6d gradient(const Vector6d& at) override;
+  double slope(const Vector6d& at, const Vector6d& direction, double step) override;
+
+ private:
+  SimpleProblem problem_;
+  ThreadPool& pool_;
+  Correspondences nearest_;
+  std::vector<double> closeness_;
+};
+
+/// The same cost with the exact derivative, nearest neighbours held fixed.
+class AnalyticCost : public Objective {
+ public:
+  AnalyticCost(const SimpleProblem& problem, ThreadPool& pool);
+  double value(const Vector6d& at) override;
+  Vector6d gradient(const Vector6d& at) override;
+  double slope(const Vector6d& at, const Vector6d& direction, double step) override;
+
+ private:
+  /// Sums over the points of a chunk, with w_i their closeness and r_i = q_i - n_i.
+  struct Sums {
+    double closeness = 0;                                   // w_i
+    Eigen::Vector3d residual = Eigen::Vector3d::Zero();     // w_i r_i
+    Eigen::Matrix3d moment = Eigen::Matrix3d::Zero();       // w_i r_i p_i'
+  };
+  void evaluate(const Vector6d& at);
+  Sums sums_of(std::size_t begin, std::size_t end, const Pose& pose);
+
+  SimpleProblem problem_;
+  ThreadPool& pool_;
+  Correspondences nearest_;
+  std::vector<Sums> chunks_;
+  std::optional<Vector6d> evaluated_at_;
+  double value_ = 0;
+  Vector6d gradient_;
+};
+
+}  // namespace mosbench::odometry
