@@ -81,7 +81,8 @@ Minimum minimise(Objective& objective, const Vector6d& start, double tolerance) 
       minimum.value = objective.value(minimum.at + step * direction);
       return StepValue{step, minimum.value, objective.slope(minimum.at, direction, step)};
     };
-    minimum.at += line_search(trial, here, kLeastValue) * direction;
+    minimum.at +=
+        line_search(trial, here, {kLeastValue, objective.first_step(direction)}) * direction;
   }
   return minimum;
 }

@@ -14,6 +14,8 @@ class Objective {
   virtual Vector6d gradient(const Vector6d& at) = 0;
   /// Derivative of value(at + step * direction) by `step`.
   virtual double slope(const Vector6d& at, const Vector6d& direction, double step) = 0;
+  /// The first step to try along a direction, in (0, 1].
+  virtual double first_step(const Vector6d& /*direction*/) const { return 1; }
 };
 
 struct Minimum {
@@ -23,9 +25,9 @@ struct Minimum {
   bool settled = false;  ///< false: stopped by the limit of steps
 };
 
-/// Minimises by the method of Broyden, Fletcher, Goldfarb and Shanno with Fletcher's line search (Practical
-/// Methods of Optimization, 2.6.2 and 2.6.4), step for step as dlib 19.24 does, which SiMpLE's authors use.
-/// Stops when a step changes the value by less than `tolerance`.
+/// Minimises by the method of Broyden, Fletcher, Goldfarb and Shanno with Fletcher's line search
+/// (Practical Methods of Optimization, 2.6.2 and 2.6.4), step for step as dlib 19.24 does, which
+/// SiMpLE's authors use. Stops when a step changes the value by less than `tolerance`.
 Minimum minimise(Objective& objective, const Vector6d& start, double tolerance);
 
 }  // namespace mosbench::odometry

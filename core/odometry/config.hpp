@@ -7,13 +7,13 @@
 
 namespace mosbench::odometry {
 
-/// How the derivatives of SiMpLE's cost are found: by central differences as the authors' program does, or
-/// by the formula with nearest neighbours held fixed.
+/// How the derivatives of SiMpLE's cost are found: by central differences as the authors' program
+/// does, or by the formula with nearest neighbours held fixed.
 enum class Gradient { kNumeric, kAnalytic };
 inline constexpr std::array<std::string_view, 2> kGradientNames = {"numeric", "analytic"};
 
-/// What scans with a time per point are corrected by: nothing, the motion of the scan before, or the motion
-/// that a first registration found, followed by a second one.
+/// What scans with a time per point are corrected by: nothing, the motion of the scan before, or
+/// the motion that a first registration found, followed by a second one.
 enum class Deskew { kNone, kVelocity, kPoses };
 inline constexpr std::array<std::string_view, 3> kDeskewNames = {"none", "velocity", "poses"};
 
@@ -30,7 +30,8 @@ struct ScanConfig {
   int min_points = 100;
   double min_overlap = 0.3;
   double min_geometry = 0.002;
-  double max_acceleration_m_s2 = 30.0;
+  double max_acceleration_m_s2 = 3.0;
+  double max_jump_m = 0.3;
 };
 
 template <typename AnyConfig, typename Visitor>
@@ -52,7 +53,9 @@ void visit_scan_fields(AnyConfig& config, Visitor&& visit) {
   visit("min_geometry", config.min_geometry, FieldRange{0.0, 1.0},
         "poses of scans whose surfaces constrain a direction less are doubted");
   visit("max_acceleration_m_s2", config.max_acceleration_m_s2, FieldRange{0.01, 10000.0},
-        "poses that mean more than this are doubted");
+        "of the sensor between scans");
+  visit("max_jump_m", config.max_jump_m, FieldRange{0.0, 1000.0},
+        "poses farther off constant velocity than this and the acceleration are doubted");
 }
 
 /// SiMpLE (IJRR 2024); the defaults are the authors' of their online settings.
@@ -66,7 +69,7 @@ struct SimpleConfig {
 };
 
 template <typename AnyConfig, typename Visitor>
-  requires requires(AnyConfig& config) { config.scan_radius_m; }
+requires requires(AnyConfig& config) { config.scan_radius_m; }
 void visit_fields(AnyConfig& config, Visitor&& visit) {
   visit("gradient", config.gradient, kGradientNames,
         "derivatives as the authors' program takes them, or by formula and fast");
@@ -93,7 +96,7 @@ struct KissConfig {
 };
 
 template <typename AnyConfig, typename Visitor>
-  requires requires(AnyConfig& config) { config.max_points_per_voxel; }
+requires requires(AnyConfig& config) { config.max_points_per_voxel; }
 void visit_fields(AnyConfig& config, Visitor&& visit) {
   visit("voxel_size_m", config.voxel_size_m, FieldRange{0.05, 100.0}, "edge of the map's voxels");
   visit("max_points_per_voxel", config.max_points_per_voxel, FieldRange{1, 1000},
@@ -109,8 +112,8 @@ void visit_fields(AnyConfig& config, Visitor&& visit) {
   visit_scan_fields(config.scan, visit);
 }
 
-/// Throw std::invalid_argument "<key>: <what is wrong>, <what was expected>" for a field outside its range
-/// and for range limits that leave nothing.
+/// Throw std::invalid_argument "<key>: <what is wrong>, <what was expected>" for a field outside
+/// its range and for range limits that leave nothing.
 void check(const SimpleConfig& config);
 void check(const KissConfig& config);
 

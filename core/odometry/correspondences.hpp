@@ -9,16 +9,16 @@
 
 namespace mosbench::odometry {
 
-/// The nearest map point of every scan point while a pose is searched for. A scan point that moved less than
-/// half the gap between its nearest and its second nearest map point keeps its nearest one, so that most
-/// questions need no search; the answers are the same as with one.
+/// The nearest map point of every scan point while a pose is searched for. A scan point that moved
+/// less than half the gap between its nearest and its second nearest map point keeps its nearest
+/// one, so that most questions need no search; the answers are the same as with one.
 class Correspondences {
  public:
   /// Neighbours farther than `reach_m` may be left out. The map must outlive this and not change.
   Correspondences(std::size_t points, const PointGrid& map, double reach_m);
 
-  /// The nearest map point of point `i`, which now lies at `position_m`; a point very far away when there is
-  /// none within reach. Different points may be asked for from different threads.
+  /// The nearest map point of point `i`, which now lies at `position_m`; a point very far away when
+  /// there is none within reach. Different points may be asked for from different threads.
   const Eigen::Vector3d& nearest(std::size_t i, const Eigen::Vector3d& position_m) {
     Tracked& tracked = tracked_[i];
     if (!((position_m - tracked.asked_m).squaredNorm() < tracked.free_sq_m2)) {

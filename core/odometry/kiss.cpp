@@ -15,28 +15,46 @@ constexpr std::size_t kChunkPoints = 512;  // fixed, so that sums do not depend 
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 
-/// Normal equations of one Gauss-Newton step, rotation before translation, and what is said about the result.
+/// What a Gauss-Newton step needs of the matched points q with residuals r and weights w.
 struct Sums {
-  Matrix6d information = Matrix6d::Zero();
-  Vector6d pull = Vector6d::Zero();
-  double weight = 0, squares_m2 = 0;
   std::size_t matched = 0;
+  double weight = 0, squares_m2 = 0;                   // w, w r'r
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  // w q
+  Eigen::Vector3d residual = Eigen::Vector3d::Zero();  // w r
+  Eigen::Vector3d torque = Eigen::Vector3d::Zero();    // w q x r
+  Eigen::Matrix3d moment = Eigen::Matrix3d::Zero();    // w q q'
 
-  void add(const Eigen::Vector3d& q, const Eigen::Vector3d& residual, double w) {
-    Eigen::Matrix<double, 3, 6> jacobian;
-    jacobian << 0, q.z(), -q.y(), 1, 0, 0, -q.z(), 0, q.x(), 0, 1, 0, q.y(), -q.x(), 0, 0, 0, 1;
-    information += w * jacobian.transpose() * jacobian;
-    pull += w * jacobian.transpose() * residual;
-    weight += w;
-    squares_m2 += w * residual.squaredNorm();
+  void add(const Eigen::Vector3d& q, const Eigen::Vector3d& r, double w) {
     ++matched;
+    weight += w;
+    squares_m2 += w * r.squaredNorm();
+    position += w * q;
+    residual += w * r;
+    torque += w * q.cross(r);
+    moment += w * q * q.transpose();
   }
   void add(const Sums& other) {
-    information += other.information;
-    pull += other.pull;
+    matched += other.matched;
     weight += other.weight;
     squares_m2 += other.squares_m2;
-    matched += other.matched;
+    position += other.position;
+    residual += other.residual;
+    torque += other.torque;
+    moment += other.moment;
+  }
+
+  /// The small rotation and translation of the map's frame that minimise sum w |r + omega x q +
+  /// t|^2.
+  Vector6d step() const {
+    Matrix6d normal;
+    normal.topLeftCorner<3, 3>() = moment.trace() * Eigen::Matrix3d::Identity() - moment;
+    normal.topRightCorner<3, 3>() << 0, -position.z(), position.y(), position.z(), 0, -position.x(),
+        -position.y(), position.x(), 0;
+    normal.bottomLeftCorner<3, 3>() = normal.topRightCorner<3, 3>().transpose();
+    normal.bottomRightCorner<3, 3>() = weight * Eigen::Matrix3d::Identity();
+    Vector6d right;
+    right << -torque, -residual;
+    return normal.ldlt().solve(right);
   }
 };
 
@@ -61,8 +79,7 @@ class Kiss : public Engine {
     Sums sums;
     for (int step = 0; step < config_.max_iterations && !result.settled; ++step) {
       sums = sums_at(result.map_from_sensor);
-      // Too few points to hold all six numbers leave some as they are.
-      const Vector6d change = sums.information.ldlt().solve(-sums.pull);
+      const Vector6d change = sums.step();
       if (sums.matched < 3 || !change.allFinite()) break;
       Pose moved = Pose::Identity();
       moved.linear() = rotation_about(change.head<3>());
@@ -111,9 +128,10 @@ class Kiss : public Engine {
 
   Sums sums_at(const Pose& pose) const {
     std::vector<Sums> chunks((taken_.size() + kChunkPoints - 1) / kChunkPoints);
-    pool_.for_ranges(taken_.size(), kChunkPoints, [&](std::size_t begin, std::size_t end, unsigned) {
-      chunks[begin / kChunkPoints] = sums_of(begin, end, pose);
-    });
+    pool_.for_ranges(taken_.size(), kChunkPoints,
+                     [&](std::size_t begin, std::size_t end, unsigned) {
+                       chunks[begin / kChunkPoints] = sums_of(begin, end, pose);
+                     });
     Sums all;
     for (const Sums& chunk : chunks) all.add(chunk);
     return all;

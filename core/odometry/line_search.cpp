@@ -8,8 +8,8 @@ namespace mosbench::odometry {
 namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-constexpr double kEnoughDecrease = 0.01;    // rho
-constexpr double kEnoughFlattening = 0.9;   // sigma
+constexpr double kEnoughDecrease = 0.01;                 // rho
+constexpr double kEnoughFlattening = 0.9;                // sigma
 constexpr double kLeastGrowth = 1.4, kMostGrowth = 9.0;  // tau 1 of the book, split in two
 constexpr double kNearFirst = 0.1, kNearLast = 0.5;      // tau 2 and tau 3
 constexpr int kMaxTrials = 100;
@@ -34,13 +34,17 @@ double cubic_minimiser(const StepValue& from, const StepValue& to, double limit)
 
 class Search {
  public:
-  Search(const std::function<StepValue(double)>& at, const StepValue& start, double least_value)
-      : at_(at), start_(start), most_((least_value - start.value) / (kEnoughDecrease * start.slope)) {}
+  Search(const std::function<StepValue(double)>& at, const StepValue& start,
+         const LineSearchOptions& options)
+      : at_(at),
+        start_(start),
+        first_(options.first_step),
+        most_((options.least_value - start.value) / (kEnoughDecrease * start.slope)) {}
 
   double run() {
     if (std::abs(start_.slope) <= std::abs(start_.value) * kEpsilon) return 0;
     StepValue last = start_;
-    double step = within(0, 0.65 * most_, most_ < 0 ? -1.0 : 1.0);
+    double step = within(0, 0.65 * most_, most_ < 0 ? -first_ : first_);
     while (true) {
       const StepValue trial = try_step(step);
       if (too_high(trial) || trial.value >= last.value) return section(last, trial);
@@ -100,6 +104,7 @@ class Search {
 
   const std::function<StepValue(double)>& at_;
   const StepValue start_;
+  const double first_;
   const double most_;  // no step beyond this can be needed
   int trials_ = 0;
 };
@@ -107,8 +112,8 @@ class Search {
 }  // namespace
 
 double line_search(const std::function<StepValue(double)>& at, const StepValue& start,
-                   double least_value) {
-  return Search(at, start, least_value).run();
+                   const LineSearchOptions& options) {
+  return Search(at, start, options).run();
 }
 
 }  // namespace mosbench::odometry

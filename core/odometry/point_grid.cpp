@@ -43,7 +43,9 @@ std::size_t PointGrid::memory_bytes() const {
 }
 
 PointGrid::Cell PointGrid::cell_of(const Eigen::Vector3d& position_m) const {
-  const auto index = [&](double m) { return static_cast<std::int64_t>(std::floor(m * cells_per_m_)); };
+  const auto index = [&](double m) {
+    return static_cast<std::int64_t>(std::floor(m * cells_per_m_));
+  };
   return {index(position_m.x()), index(position_m.y()), index(position_m.z())};
 }
 
@@ -158,7 +160,8 @@ Neighbour PointGrid::nearest(const Eigen::Vector3d& position_m, double reach_m) 
   double searched_m = distance_out_of_27_cells(position_m);
   // Cubes grow until one holds its own nearest point.
   while (neighbour.distance_m > searched_m && searched_m < reach_m) {
-    searched_m = std::isfinite(neighbour.distance_m) ? neighbour.distance_m * 1.25 : 2.0 * searched_m;
+    searched_m =
+        std::isfinite(neighbour.distance_m) ? neighbour.distance_m * 1.25 : 2.0 * searched_m;
     searched_m = std::min(searched_m, reach_m * 1.25);
     neighbour = search_cube(position_m, searched_m);
     if (neighbour.others_m > searched_m) return neighbour;  // has seen all points

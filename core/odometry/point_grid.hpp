@@ -20,8 +20,9 @@ struct Neighbour {
   double others_m = 0;
 };
 
-/// Points in cubic cells, found by a hash of blocks of 4x4x4 cells. Positions may be anywhere: indices wrap
-/// after 2^23 cells, which is right as long as the points lie less than half of that apart.
+/// Points in cubic cells, found by a hash of blocks of 4x4x4 cells. Positions may be anywhere:
+/// indices wrap after 2^23 cells, which is right as long as the points lie less than half of that
+/// apart.
 class PointGrid {
  public:
   explicit PointGrid(double cell_m);
@@ -36,7 +37,8 @@ class PointGrid {
   /// Keeps the points with |point - centre| < radius.
   void keep_within(const Eigen::Vector3d& centre_m, double radius_m);
 
-  /// Whether |point - position| < radius for a point, which is copied to `found`. At most a cell's edge.
+  /// Whether |point - position| < radius for a point, which is copied to `found`. At most a cell's
+  /// edge.
   bool any_within(const Eigen::Vector3d& position_m, double radius_m, Eigen::Vector3d& found) const;
 
   /// Whether a point lies in the cell of the position.

@@ -65,7 +65,8 @@ inline Pose predicted(const Pose& previous, const Pose& last) {
   return next;
 }
 
-/// The nearest rigid pose, without the rounding that products leave. Prediction doubles it every scan.
+/// The nearest rigid pose, without the rounding that products leave. Prediction doubles it every
+/// scan.
 inline Pose rigid(const Pose& pose) {
   Pose result = Pose::Identity();
   result.linear() = Eigen::Quaterniond(pose.linear()).normalized().toRotationMatrix();

@@ -1,12 +1,16 @@
 #include "core/odometry/simple_cost.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace mosbench::odometry {
 namespace {
 
-constexpr double kDifference = 1e-7;      // of radians and of metres
+constexpr double kDifference = 1e-7;       // of radians and of metres
 constexpr std::size_t kChunkPoints = 512;  // fixed, so that sums do not depend on threads
+
+// How far points move on average in the first trial of a search, at most.
+constexpr double kFirstMotionSigmas = 1.0;
 
 double falloff_per_m2(double sigma_m) { return std::pow(sigma_m, -2) / 2; }
 
@@ -39,15 +43,14 @@ NumericCost::NumericCost(const SimpleProblem& problem, ThreadPool& pool)
 double NumericCost::value(const Vector6d& at) {
   const Pose pose = pose_of(at);
   const double falloff = falloff_per_m2(problem_.sigma_m);
-  pool_.for_ranges(closeness_.size(), kChunkPoints,
-                   [&](std::size_t begin, std::size_t end, unsigned) {
-                     for (std::size_t i = begin; i < end; ++i) {
-                       const Eigen::Vector3d q = moved(pose, problem_.points_m[i]);
-                       const Eigen::Vector3d r = q - nearest_.nearest(i, q);
-                       closeness_[i] =
-                           std::exp(-(r.x() * r.x() + r.y() * r.y() + r.z() * r.z()) * falloff);
-                     }
-                   });
+  pool_.for_ranges(
+      closeness_.size(), kChunkPoints, [&](std::size_t begin, std::size_t end, unsigned) {
+        for (std::size_t i = begin; i < end; ++i) {
+          const Eigen::Vector3d q = moved(pose, problem_.points_m[i]);
+          const Eigen::Vector3d r = q - nearest_.nearest(i, q);
+          closeness_[i] = std::exp(-(r.x() * r.x() + r.y() * r.y() + r.z() * r.z()) * falloff);
+        }
+      });
   double sum = 0;
   for (const double closeness : closeness_) sum += closeness;
   return -sum;
@@ -73,7 +76,10 @@ AnalyticCost::AnalyticCost(const SimpleProblem& problem, ThreadPool& pool)
     : problem_(problem),
       pool_(pool),
       nearest_(problem.points_m.size(), problem.map, problem.reach_m),
-      chunks_((problem.points_m.size() + kChunkPoints - 1) / kChunkPoints) {}
+      chunks_((problem.points_m.size() + kChunkPoints - 1) / kChunkPoints) {
+  for (const Eigen::Vector3d& p : problem_.points_m) mean_range_m_ += p.norm();
+  mean_range_m_ /= static_cast<double>(std::max<std::size_t>(problem_.points_m.size(), 1));
+}
 
 AnalyticCost::Sums AnalyticCost::sums_of(std::size_t begin, std::size_t end, const Pose& pose) {
   const double falloff = falloff_per_m2(problem_.sigma_m);
@@ -112,6 +118,11 @@ void AnalyticCost::evaluate(const Vector6d& at) {
   gradient_.tail<3>() = scale * all.residual;
   value_ = -all.closeness;
   evaluated_at_ = at;
+}
+
+double AnalyticCost::first_step(const Vector6d& direction) const {
+  const double motion_m = direction.head<3>().norm() * mean_range_m_ + direction.tail<3>().norm();
+  return std::min(1.0, kFirstMotionSigmas * problem_.sigma_m / std::max(motion_m, kDifference));
 }
 
 double AnalyticCost::value(const Vector6d& at) {

@@ -21,9 +21,9 @@ struct SimpleProblem {
   double reach_m;  ///< neighbours farther than this count nothing; at least 10 sigma
 };
 
-/// f(m) = -sum_i exp(-|q_i - n_i|^2 / (2 sigma^2)) with q_i = R(m) p_i + t(m) and n_i its nearest map point.
-/// Derivatives are central differences with steps of 1e-7, as in the authors' program, and the sum runs in
-/// the order of the points.
+/// f(m) = -sum_i exp(-|q_i - n_i|^2 / (2 sigma^2)) with q_i = R(m) p_i + t(m) and n_i its nearest
+/// map point. Derivatives are central differences with steps of 1e-7, as in the authors' program,
+/// and the sum runs in the order of the points.
 class NumericCost : public Objective {
  public:
   NumericCost(const SimpleProblem& problem, ThreadPool& pool);
@@ -45,13 +45,16 @@ class AnalyticCost : public Objective {
   double value(const Vector6d& at) override;
   Vector6d gradient(const Vector6d& at) override;
   double slope(const Vector6d& at, const Vector6d& direction, double step) override;
+  /// The gradient is the sum over thousands of points, so that a step of 1 along it leads nowhere
+  /// near.
+  double first_step(const Vector6d& direction) const override;
 
  private:
   /// Sums over the points of a chunk, with w_i their closeness and r_i = q_i - n_i.
   struct Sums {
-    double closeness = 0;                                   // w_i
-    Eigen::Vector3d residual = Eigen::Vector3d::Zero();     // w_i r_i
-    Eigen::Matrix3d moment = Eigen::Matrix3d::Zero();       // w_i r_i p_i'
+    double closeness = 0;                                // w_i
+    Eigen::Vector3d residual = Eigen::Vector3d::Zero();  // w_i r_i
+    Eigen::Matrix3d moment = Eigen::Matrix3d::Zero();    // w_i r_i p_i'
   };
   void evaluate(const Vector6d& at);
   Sums sums_of(std::size_t begin, std::size_t end, const Pose& pose);
@@ -59,6 +62,7 @@ class AnalyticCost : public Objective {
   SimpleProblem problem_;
   ThreadPool& pool_;
   Correspondences nearest_;
+  double mean_range_m_ = 0;
   std::vector<Sums> chunks_;
   std::optional<Vector6d> evaluated_at_;
   double value_ = 0;

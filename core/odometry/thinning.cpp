@@ -7,10 +7,9 @@ namespace mosbench::odometry {
 std::vector<std::size_t> insert_apart(std::span<const Eigen::Vector3d> points_m, double radius_m,
                                       PointGrid& grid) {
   std::vector<std::size_t> inserted;
-  // Points next to one another in a file mostly lie next to one another: the point that was in the way of
-  // the one before is tried first.
-  Eigen::Vector3d in_the_way =
-      Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
+  // Points next to one another in a file mostly lie next to one another: the point that was in the
+  // way of the one before is tried first.
+  Eigen::Vector3d in_the_way = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
   for (std::size_t i = 0; i < points_m.size(); ++i) {
     const Eigen::Vector3d& point_m = points_m[i];
     if ((in_the_way - point_m).squaredNorm() < radius_m * radius_m) continue;

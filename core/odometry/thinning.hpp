@@ -11,8 +11,9 @@ namespace mosbench::odometry {
 /// The points, in order, that have no kept point nearer than `radius_m` (strictly) before them.
 std::vector<Eigen::Vector3d> thinned(std::span<const Eigen::Vector3d> points_m, double radius_m);
 
-/// Inserts in order those points that have no point of the grid nearer than `radius_m` (strictly), which is
-/// at most the edge of its cells. Returns the positions of the inserted ones in `points_m`.
+/// Inserts in order those points that have no point of the grid nearer than `radius_m` (strictly),
+/// which is at most the edge of its cells. Returns the positions of the inserted ones in
+/// `points_m`.
 std::vector<std::size_t> insert_apart(std::span<const Eigen::Vector3d> points_m, double radius_m,
                                       PointGrid& grid);
 

@@ -18,6 +18,7 @@ MAY_INCLUDE = {
     "core/base": {"core/include"},
     "core/voxel": {"core/include", "core/base"},
     "core/hmm_mos": {"core/include", "core/base", "core/voxel"},
+    "core/odometry": {"core/include", "core/base", "core/voxel"},
     "core": {"core/include", "core/base", "core/hmm_mos"},
     "datasets/files": {"core/include"},
     "datasets/sequence": {"core/include", "datasets/files"},

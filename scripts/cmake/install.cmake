@@ -3,7 +3,7 @@
 include(CMakePackageConfigHelpers)
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/mosbench)
-foreach(room interface base voxel hmm_mos core)
+foreach(room interface base voxel hmm_mos odometry core)
   set_target_properties(mosbench_${room} PROPERTIES EXPORT_NAME ${room})
   install(TARGETS mosbench_${room} EXPORT mosbench
           FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/mosbench)

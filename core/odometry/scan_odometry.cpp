@@ -1,0 +1,132 @@
+#include "core/odometry/scan_odometry.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <stdexcept>
+
+#include "core/odometry/deskew.hpp"
+#include "core/odometry/rigid_motion.hpp"
+
+namespace mosbench::odometry {
+namespace {
+
+// Predictions beyond this come of a lost pose and would only lead farther away.
+constexpr double kMostMotion_m = 100.0;
+constexpr double kMostPeriods = 20.0;
+
+void add_doubt(ScanPose& pose, const std::string& doubt) {
+  if (doubt.empty()) return;
+  if (pose.doubtful()) pose.doubt += "; ";
+  pose.doubt += doubt;
+}
+
+template <typename... Parts>
+std::string text(const Parts&... parts) {
+  std::ostringstream stream;
+  stream.precision(3);
+  (stream << ... << parts);
+  return stream.str();
+}
+
+std::string weak_motion(const Certainty& certainty) {
+  const Eigen::Vector3d turn = certainty.weakest_direction.head<3>();
+  const Eigen::Vector3d shift = certainty.weakest_direction.tail<3>();
+  const bool turns = turn.norm() > shift.norm();
+  const Eigen::Vector3d axis = (turns ? turn : shift).normalized();
+  return text("its surfaces hardly constrain ", turns ? "turns about" : "motion along", " (",
+              std::round(axis.x() * 100) / 100, ", ", std::round(axis.y() * 100) / 100, ", ",
+              std::round(axis.z() * 100) / 100, ") of the sensor's frame");
+}
+
+}  // namespace
+
+Pose ScanOdometry::predict(double periods) const {
+  const Pose motion = previous_.inverse() * last_;
+  if (!(motion.translation().norm() * periods <= kMostMotion_m)) return last_;
+  if (periods == 1) return predicted(previous_, last_);
+  return rigid(last_ * part_of(motion, std::min(periods, kMostPeriods)));
+}
+
+void ScanOdometry::take(const ScanPoints& scan, const ScanTimes& times, const Pose& motion,
+                        std::int64_t period_ns) {
+  if (config_.deskew == Deskew::kNone || times.point_times_ns.empty()) {
+    engine_->take(scan.points_m);
+  } else {
+    engine_->take(deskewed(scan, times.point_times_ns, motion, period_ns));
+  }
+}
+
+Alignment ScanOdometry::align(const ScanPoints& scan, const ScanTimes& times, const Pose& seed,
+                              std::int64_t period_ns) {
+  const Alignment first = engine_->align(seed);
+  if (config_.deskew != Deskew::kPoses || times.point_times_ns.empty()) return first;
+  take(scan, times, last_.inverse() * first.map_from_sensor, period_ns);
+  return engine_->align(first.map_from_sensor);
+}
+
+ScanPose ScanOdometry::judged(const Alignment& alignment, const Pose& seed,
+                              double plausible_m) const {
+  ScanPose pose{.map_from_sensor = alignment.map_from_sensor, .doubt = {}};
+  const Certainty certainty =
+      certainty_of(surface_information(engine_->taken(), engine_->spacing_m()),
+                   alignment.residual_m, alignment.effective_points);
+  Eigen::Matrix<double, 6, 6> turn = Eigen::Matrix<double, 6, 6>::Zero();
+  turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() = pose.map_from_sensor.linear();
+  pose.covariance = turn * certainty.covariance * turn.transpose();
+  pose.geometry = certainty.weakest;
+  pose.condition = certainty.condition;
+  pose.overlap = alignment.overlap;
+  if (!alignment.settled) add_doubt(pose, "registration did not settle");
+  if (pose.overlap < config_.min_overlap) {
+    add_doubt(pose, text("only ", std::round(pose.overlap * 100), " % of it overlap the map"));
+  }
+  if (pose.geometry < config_.min_geometry) add_doubt(pose, weak_motion(certainty));
+  const double surprise_m = (seed.inverse() * pose.map_from_sensor).translation().norm();
+  if (surprise_m > plausible_m) {
+    add_doubt(pose, text("it lies ", surprise_m, " m off constant velocity"));
+  }
+  return pose;
+}
+
+double ScanOdometry::plausible_jump_m(const ScanClock::Interval& interval) const {
+  // Nothing is known of the velocity before the second scan.
+  if (poses_ < 2) return std::numeric_limits<double>::infinity();
+  const double passed_s = static_cast<double>(interval.period_ns) * 1e-9 * interval.periods;
+  return config_.max_jump_m + config_.max_acceleration_m_s2 * passed_s * passed_s;
+}
+
+ScanPose ScanOdometry::push(std::span<const Point> points, const ScanTimes& times) {
+  if (!times.point_times_ns.empty() && times.point_times_ns.size() != points.size()) {
+    throw std::invalid_argument(text("point_times_ns: ", times.point_times_ns.size(), " times of ",
+                                     points.size(), " points, expected one per point"));
+  }
+  const ScanClock::Interval interval = clock_.tick(times.stamp_ns);
+  const bool first = poses_ == 0;
+  const Pose seed = first ? Pose::Identity() : predict(interval.periods);
+  const ScanPoints scan = points_in_range(points, config_);
+  take(scan, times, previous_.inverse() * last_, interval.period_ns);
+
+  ScanPose pose{.map_from_sensor = seed, .doubt = {}};
+  const bool enough = engine_->taken().size() >= static_cast<std::size_t>(config_.min_points);
+  if (enough && engine_->map_points() > 0) {
+    const Alignment alignment = align(scan, times, seed, interval.period_ns);
+    engine_->learn(alignment.map_from_sensor.inverse() * seed);
+    pose = judged(alignment, seed, plausible_jump_m(interval));
+  } else if (enough && !first) {
+    add_doubt(pose, "no scan before it could be used");
+  } else if (!enough) {
+    add_doubt(pose, text("only ", engine_->taken().size(), " points between min_range_m and ",
+                         "max_range_m after thinning"));
+  }
+  pose.registered_points = engine_->taken().size();
+  add_doubt(pose, interval.doubt);
+  if (enough) engine_->enter(pose.map_from_sensor);
+  previous_ = first ? pose.map_from_sensor : last_;
+  last_ = pose.map_from_sensor;
+  poses_ = std::min(poses_ + 1, 2);
+  return pose;
+}
+
+}  // namespace mosbench::odometry

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <memory>
+#include <mosbench/odometry.hpp>
+#include <span>
+#include <string>
+
+#include "core/base/thread_pool.hpp"
+#include "core/odometry/config.hpp"
+#include "core/odometry/engine.hpp"
+#include "core/odometry/scan_clock.hpp"
+#include "core/odometry/scan_points.hpp"
+#include "core/odometry/surface_information.hpp"
+
+namespace mosbench::odometry {
+
+/// Odometry by any engine: takes points in range, corrects them for the sensor's motion, predicts
+/// by constant velocity, registers, and judges the result.
+class ScanOdometry : public Odometry {
+ public:
+  /// Throws std::invalid_argument for 0 threads.
+  template <typename Config>
+  ScanOdometry(const Config& config, unsigned threads)
+      : config_(config.scan),
+        pool_(threads),
+        engine_(make_engine(config, pool_)),
+        clock_(config.scan.scan_period_s) {}
+
+  ScanPose push(std::span<const Point> points, const ScanTimes& times) override;
+  std::size_t map_points() const override { return engine_->map_points(); }
+  std::size_t memory_bytes() const override { return engine_->memory_bytes(); }
+
+ private:
+  Pose predict(double periods) const;
+  void take(const ScanPoints& scan, const ScanTimes& times, const Pose& motion,
+            std::int64_t period_ns);
+  Alignment align(const ScanPoints& scan, const ScanTimes& times, const Pose& seed,
+                  std::int64_t period_ns);
+  double plausible_jump_m(const ScanClock::Interval& interval) const;
+  ScanPose judged(const Alignment& alignment, const Pose& seed, double plausible_m) const;
+
+  ScanConfig config_;
+  ThreadPool pool_;
+  std::unique_ptr<Engine> engine_;
+  ScanClock clock_;
+  Pose previous_ = Pose::Identity(), last_ = Pose::Identity();
+  int poses_ = 0;  // up to 2
+};
+
+}  // namespace mosbench::odometry

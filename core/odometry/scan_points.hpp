@@ -1,0 +1,27 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <mosbench/scan.hpp>
+#include <span>
+#include <vector>
+
+#include "core/odometry/config.hpp"
+
+namespace mosbench::odometry {
+
+/// The points of a scan that take part; the two arrays run together.
+struct ScanPoints {
+  std::vector<Eigen::Vector3d> points_m;
+  std::vector<std::size_t> rows;  ///< in the scan
+};
+
+/// Points with min^2 < x^2 + y^2 + z^2 < max^2, which leaves out NaN, raised by KITTI's correction
+/// if asked for.
+ScanPoints points_in_range(std::span<const Point> points, const ScanConfig& config);
+
+/// Rotates a point by 0.205 degrees about p x (0,0,1), which mends the intrinsic calibration of
+/// KITTI's HDL-64E. Points above the sensor stay.
+Eigen::Vector3d raised(const Eigen::Vector3d& point_m);
+
+}  // namespace mosbench::odometry

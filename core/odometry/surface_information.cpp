@@ -1,0 +1,100 @@
+#include "core/odometry/surface_information.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <optional>
+
+#include "core/odometry/point_grid.hpp"
+
+namespace mosbench::odometry {
+namespace {
+
+constexpr std::size_t kSamples = 512;
+constexpr double kReachSpacings = 2.5;
+constexpr std::size_t kFewestNeighbours = 5;
+// Variance across a surface that is noise, and the ratio of extents below which points are a line.
+constexpr double kNoise_m = 0.03, kLine = 0.1;
+constexpr double kLeastStrength = 1e-9;
+
+using Matrix6d = Eigen::Matrix<double, 6, 6>;
+
+struct Spread {
+  std::size_t points = 0;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
+
+  Eigen::Matrix3d covariance() const {
+    const auto n = static_cast<double>(points);
+    const Eigen::Vector3d mean = sum / n;
+    return squares / n - mean * mean.transpose();
+  }
+};
+
+/// Directions in which the neighbourhood holds a point in place, 1 across a surface; nothing when
+/// too few points or a line do not tell.
+std::optional<Eigen::Matrix3d> hold(const PointGrid& grid, const Eigen::Vector3d& at_m,
+                                    double reach_m) {
+  Spread spread;
+  grid.for_each_near(at_m, reach_m, [&](const Eigen::Vector3d& point_m) {
+    const Eigen::Vector3d offset_m = point_m - at_m;
+    if (!(offset_m.squaredNorm() < reach_m * reach_m)) return;
+    ++spread.points;
+    spread.sum += offset_m;
+    spread.squares += offset_m * offset_m.transpose();
+  });
+  if (spread.points < kFewestNeighbours) return std::nullopt;
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen;
+  eigen.computeDirect(spread.covariance());
+  const Eigen::Array3d variances = eigen.eigenvalues().array().max(0.0);
+  if (!(variances[1] > kLine * kLine * variances[2])) return std::nullopt;
+  const Eigen::Array3d noisy = variances + kNoise_m * kNoise_m;
+  const Eigen::Vector3d strength = noisy[0] / noisy;
+  return eigen.eigenvectors() * strength.asDiagonal() * eigen.eigenvectors().transpose();
+}
+
+Eigen::Matrix<double, 3, 6> point_motion(const Eigen::Vector3d& p) {
+  Eigen::Matrix<double, 3, 6> jacobian;
+  jacobian << 0, p.z(), -p.y(), 1, 0, 0, -p.z(), 0, p.x(), 0, 1, 0, p.y(), -p.x(), 0, 0, 0, 1;
+  return jacobian;
+}
+
+}  // namespace
+
+Certainty certainty_of(const SurfaceInformation& information, double residual_m,
+                       double effective_points) {
+  Matrix6d to_radians = Matrix6d::Identity();
+  to_radians.diagonal().head<3>() /= std::max(information.mean_range_m, kNoise_m);
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(to_radians * information.mean * to_radians);
+  const Eigen::Array<double, 6, 1> strengths = eigen.eigenvalues().array().max(kLeastStrength);
+  const Matrix6d inverse = eigen.eigenvectors() * strengths.inverse().matrix().asDiagonal() *
+                           eigen.eigenvectors().transpose();
+  const double variance_m2 = residual_m * residual_m / std::max(effective_points, 1.0);
+  return {.covariance = variance_m2 * (to_radians * inverse * to_radians),
+          .weakest = std::max(eigen.eigenvalues()[0], 0.0),
+          .condition = strengths[5] / strengths[0],
+          .weakest_direction = eigen.eigenvectors().col(0)};
+}
+
+SurfaceInformation surface_information(std::span<const Eigen::Vector3d> points_m,
+                                       double spacing_m) {
+  SurfaceInformation information;
+  if (points_m.empty()) return information;
+  PointGrid grid(spacing_m);
+  for (const Eigen::Vector3d& p : points_m) grid.insert(p);
+  const std::size_t step = (points_m.size() + kSamples - 1) / kSamples;
+  for (std::size_t i = 0; i < points_m.size(); i += step) {
+    const Eigen::Vector3d& p = points_m[i];
+    ++information.samples;
+    information.mean_range_m += p.norm();
+    if (const auto held = hold(grid, p, kReachSpacings * spacing_m)) {
+      const Eigen::Matrix<double, 3, 6> jacobian = point_motion(p);
+      information.mean += jacobian.transpose() * *held * jacobian;
+    }
+  }
+  const auto samples = static_cast<double>(information.samples);
+  information.mean /= samples;
+  information.mean_range_m /= samples;
+  return information;
+}
+
+}  // namespace mosbench::odometry

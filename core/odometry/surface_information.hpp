@@ -1,0 +1,38 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <span>
+
+namespace mosbench::odometry {
+
+/// What the surfaces of a scan say about a small motion of the sensor.
+struct SurfaceInformation {
+  /// Mean over the sampled points of J' M J with J = [-[p]x, I]: rotation (rad) before translation
+  /// (m), in the sensor's frame. M is n n' on a plane with normal n, nearly the identity in a
+  /// thicket, and nothing on a single line of points, which may belong to any surface through it.
+  Eigen::Matrix<double, 6, 6> mean = Eigen::Matrix<double, 6, 6>::Zero();
+  double mean_range_m = 0;
+  std::size_t samples = 0;
+};
+
+/// How well a pose is known.
+struct Certainty {
+  /// Rotation (rad) before translation (m), in the sensor's frame. Finite in any case: directions
+  /// that nothing constrains are given a large variance.
+  Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
+  /// Smallest eigenvalue of the information with rotations measured by how far they move a point at
+  /// the mean range, the largest by the smallest, and the direction of the smallest.
+  double weakest = 0, condition = 0;
+  Eigen::Matrix<double, 6, 1> weakest_direction = Eigen::Matrix<double, 6, 1>::Zero();
+};
+
+/// Of a scan with these surfaces whose points, as many as `effective_points`, lie `residual_m` off
+/// the map.
+Certainty certainty_of(const SurfaceInformation& information, double residual_m,
+                       double effective_points);
+
+/// `points_m` are about `spacing_m` apart. Takes some hundred of them as samples.
+SurfaceInformation surface_information(std::span<const Eigen::Vector3d> points_m, double spacing_m);
+
+}  // namespace mosbench::odometry
