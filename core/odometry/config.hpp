@@ -29,7 +29,7 @@ struct ScanConfig {
   double scan_period_s = 0.1;
   int min_points = 100;
   double min_overlap = 0.3;
-  double min_geometry = 0.002;
+  double min_geometry = 0.015;
   double max_acceleration_m_s2 = 3.0;
   double max_jump_m = 0.3;
 };

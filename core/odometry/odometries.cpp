@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <mosbench/odometry.hpp>
+#include <stdexcept>
 
 #include "core/odometry/config.hpp"
 #include "core/odometry/scan_odometry.hpp"
@@ -24,6 +25,7 @@ OdometryKind kind_of(std::string_view name, std::string_view title, std::string_
           .make = [](const Settings& settings, unsigned threads) -> std::unique_ptr<Odometry> {
             const auto config = config_of<Config>(settings);
             check(config);
+            if (threads == 0) throw std::invalid_argument("threads: 0, expected at least 1");
             return std::make_unique<ScanOdometry>(config, threads);
           }};
 }

@@ -18,7 +18,6 @@ namespace mosbench::odometry {
 /// by constant velocity, registers, and judges the result.
 class ScanOdometry : public Odometry {
  public:
-  /// Throws std::invalid_argument for 0 threads.
   template <typename Config>
   ScanOdometry(const Config& config, unsigned threads)
       : config_(config.scan),

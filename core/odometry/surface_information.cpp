@@ -14,6 +14,9 @@ constexpr double kReachSpacings = 2.5;
 constexpr std::size_t kFewestNeighbours = 5;
 // Variance across a surface that is noise, and the ratio of extents below which points are a line.
 constexpr double kNoise_m = 0.03, kLine = 0.1;
+// Ratio of variances from which on a direction of larger extent holds a point as well: that of a
+// thicket.
+constexpr double kEdge = 1.0 / 3.0;
 constexpr double kLeastStrength = 1e-9;
 
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
@@ -48,7 +51,8 @@ std::optional<Eigen::Matrix3d> hold(const PointGrid& grid, const Eigen::Vector3d
   const Eigen::Array3d variances = eigen.eigenvalues().array().max(0.0);
   if (!(variances[1] > kLine * kLine * variances[2])) return std::nullopt;
   const Eigen::Array3d noisy = variances + kNoise_m * kNoise_m;
-  const Eigen::Vector3d strength = noisy[0] / noisy;
+  // Where two walls meet, points spread least along the one or the other, and most along the edge.
+  const Eigen::Vector3d strength = ((noisy[0] / noisy - kEdge) / (1 - kEdge)).max(0.0);
   return eigen.eigenvectors() * strength.asDiagonal() * eigen.eigenvectors().transpose();
 }
 
@@ -58,21 +62,41 @@ Eigen::Matrix<double, 3, 6> point_motion(const Eigen::Vector3d& p) {
   return jacobian;
 }
 
+/// What is known of one half of the six numbers when the other half is free.
+Eigen::Matrix3d marginal(const Matrix6d& information, Eigen::Index half, Eigen::Index other) {
+  const Eigen::Matrix3d cross = information.block<3, 3>(half, other);
+  const Eigen::Matrix3d rest =
+      information.block<3, 3>(other, other) + kLeastStrength * Eigen::Matrix3d::Identity();
+  return information.block<3, 3>(half, half) - cross * rest.inverse() * cross.transpose();
+}
+
+using Eigen3d = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>;
+
 }  // namespace
 
 Certainty certainty_of(const SurfaceInformation& information, double residual_m,
                        double effective_points) {
+  // Rotations by how far they move a point at the mean range, so that numbers are of one size.
   Matrix6d to_radians = Matrix6d::Identity();
   to_radians.diagonal().head<3>() /= std::max(information.mean_range_m, kNoise_m);
-  const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(to_radians * information.mean * to_radians);
+  const Matrix6d scaled = to_radians * information.mean * to_radians;
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(scaled);
   const Eigen::Array<double, 6, 1> strengths = eigen.eigenvalues().array().max(kLeastStrength);
   const Matrix6d inverse = eigen.eigenvectors() * strengths.inverse().matrix().asDiagonal() *
                            eigen.eigenvectors().transpose();
   const double variance_m2 = residual_m * residual_m / std::max(effective_points, 1.0);
-  return {.covariance = variance_m2 * (to_radians * inverse * to_radians),
-          .weakest = std::max(eigen.eigenvalues()[0], 0.0),
-          .condition = strengths[5] / strengths[0],
-          .weakest_direction = eigen.eigenvectors().col(0)};
+  Certainty certainty{.covariance = variance_m2 * (to_radians * inverse * to_radians),
+                      .condition = strengths[5] / strengths[0]};
+  const Eigen3d turns(marginal(scaled, 0, 3)), shifts(marginal(scaled, 3, 0));
+  const double turn = turns.eigenvalues()[0] / std::max(turns.eigenvalues()[2], kLeastStrength);
+  const double shift = shifts.eigenvalues()[0];
+  certainty.weakest = std::max(std::min(turn, shift), 0.0);
+  if (turn < shift) {
+    certainty.weakest_direction.head<3>() = turns.eigenvectors().col(0);
+  } else {
+    certainty.weakest_direction.tail<3>() = shifts.eigenvectors().col(0);
+  }
+  return certainty;
 }
 
 SurfaceInformation surface_information(std::span<const Eigen::Vector3d> points_m,

@@ -21,9 +21,14 @@ struct Certainty {
   /// Rotation (rad) before translation (m), in the sensor's frame. Finite in any case: directions
   /// that nothing constrains are given a large variance.
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
-  /// Smallest eigenvalue of the information with rotations measured by how far they move a point at
-  /// the mean range, the largest by the smallest, and the direction of the smallest.
-  double weakest = 0, condition = 0;
+  /// Of the information with rotations measured by how far they move a point at the mean range:
+  /// largest by smallest eigenvalue, at most some 1e9.
+  double condition = 0;
+  /// What is known of the least known motion: of shifts, with turns left free, as a share of what a
+  /// point that is held fast knows; of turns, with shifts left free, by the best known turn. 0
+  /// to 1.
+  double weakest = 0;
+  /// That motion: a unit vector in one half, zeros in the other.
   Eigen::Matrix<double, 6, 1> weakest_direction = Eigen::Matrix<double, 6, 1>::Zero();
 };
 

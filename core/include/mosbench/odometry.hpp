@@ -28,8 +28,9 @@ struct ScanPose {
   /// Of a small rotation (rad, rows 0 to 2) and a translation (m) of the pose in the map's frame,
   /// from the surfaces that the scan shows and the residuals of its points.
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
-  /// How much the surfaces of the scan constrain the least constrained motion: 1/3 when surfaces
-  /// face all ways, 0 in a corridor without ends. Rotations count by the mean range.
+  /// How much the surfaces of the scan constrain the least constrained motion: 0 for the shift
+  /// along a corridor without ends or the turn in a round room, up to 1/3 when surfaces face all
+  /// ways.
   double geometry = 0;
   double condition =
       0;  ///< of the covariance's inverse: largest by smallest eigenvalue, at most 1e9

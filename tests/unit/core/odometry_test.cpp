@@ -1,0 +1,170 @@
+#include <gmock/gmock.h>
+
+#include <limits>
+#include <stdexcept>
+
+#include "tests/odometry_scenes.hpp"
+
+namespace mosbench {
+namespace {
+
+using testing::HasSubstr;
+
+class EveryOdometry : public testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Kinds, EveryOdometry, testing::Values("simple", "kiss"));
+
+std::vector<ScanPose> drive(Odometry& odometry, const std::vector<SceneBox>& scene, int scans,
+                            const Eigen::Vector3d& step_m) {
+  std::vector<ScanPose> poses;
+  for (int k = 0; k < scans; ++k) {
+    poses.push_back(odometry.push(scene_points(scene, pose_at(k * step_m, 0), k)));
+  }
+  return poses;
+}
+
+TEST_P(EveryOdometry, FollowsADriveThroughAStreet) {
+  const auto odometry = make_odometry(GetParam());
+  for (int k = 0; k < 15; ++k) {
+    // Speeds up to 8 m/s.
+    const double x = k < 8 ? 0.05 * k * k : 3.2 + 0.8 * (k - 8);
+    const Pose truth = pose_at({x, 0.01 * k * k, 0}, 0.01 * k);
+    const std::vector<Point> points = scene_points(street(), truth, k);
+    ASSERT_GT(points.size(), 5000u);
+    const ScanPose pose = odometry->push(points);
+    EXPECT_EQ(pose.doubt, "") << k;
+    EXPECT_LT((pose.map_from_sensor.translation() - truth.translation()).norm(), 0.12) << k;
+    EXPECT_TRUE(is_finite(pose));
+    if (k == 0) continue;
+    EXPECT_GT(pose.overlap, 0.8);
+    EXPECT_GT(pose.geometry, 0.005);
+  }
+}
+
+TEST_P(EveryOdometry, DoubtsPosesInACorridorAndNamesTheDirection) {
+  const auto odometry = make_odometry(GetParam());
+  const std::vector<ScanPose> poses = drive(*odometry, corridor(), 4, {0.3, 0, 0});
+  for (std::size_t k = 1; k < poses.size(); ++k) {
+    EXPECT_TRUE(is_finite(poses[k]));
+    EXPECT_THAT(poses[k].doubt, HasSubstr("motion along"));
+    EXPECT_GT(poses[k].covariance(3, 3), 20 * poses[k].covariance(4, 4));
+  }
+}
+
+TEST_P(EveryOdometry, DoubtsPosesInAnEmptyField) {
+  const auto odometry = make_odometry(GetParam());
+  for (const ScanPose& pose : drive(*odometry, field(), 4, {0.3, 0, 0})) {
+    EXPECT_TRUE(is_finite(pose));
+    if (pose.overlap == 0) continue;  // the first
+    EXPECT_THAT(pose.doubt, HasSubstr("its surfaces hardly constrain"));
+  }
+}
+
+TEST_P(EveryOdometry, KeepsConstantVelocityOverScansWithoutPoints) {
+  const auto odometry = make_odometry(GetParam());
+  drive(*odometry, street(), 6, {0.5, 0, 0});
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const ScanPose empty = odometry->push({});
+  const ScanPose broken = odometry->push(std::vector<Point>(500, Point{nan, nan, nan, nan}));
+  EXPECT_NEAR(empty.map_from_sensor.translation().x(), 3.0, 0.1);
+  EXPECT_NEAR(broken.map_from_sensor.translation().x(), 3.5, 0.1);
+  EXPECT_THAT(empty.doubt, HasSubstr("only 0 points"));
+  EXPECT_THAT(broken.doubt, HasSubstr("only 0 points"));
+  const ScanPose back = odometry->push(scene_points(street(), pose_at({4.0, 0, 0}, 0), 8));
+  EXPECT_EQ(back.doubt, "");
+  EXPECT_NEAR(back.map_from_sensor.translation().x(), 4.0, 0.1);
+}
+
+TEST_P(EveryOdometry, StaysAtTheStartWhenRangeLimitsLeaveNothing) {
+  const auto odometry = make_odometry(GetParam(), {{"min_range_m", 900.0}, {"max_range_m", 901.0}});
+  for (const ScanPose& pose : drive(*odometry, street(), 3, {1, 0, 0})) {
+    EXPECT_TRUE(pose.map_from_sensor.isApprox(Pose::Identity()));
+    EXPECT_THAT(pose.doubt, HasSubstr("only 0 points between min_range_m and max_range_m"));
+  }
+  EXPECT_EQ(odometry->map_points(), 0u);
+}
+
+TEST_P(EveryOdometry, StartsAtTheFirstScanThatHasPoints) {
+  const auto odometry = make_odometry(GetParam());
+  EXPECT_TRUE(odometry->push({}).doubtful());
+  EXPECT_THAT(odometry->push(scene_points(street(), Pose::Identity(), 1)).doubt,
+              HasSubstr("no scan before it could be used"));
+  EXPECT_EQ(odometry->push(scene_points(street(), pose_at({0.1, 0, 0}, 0), 2)).doubt, "");
+}
+
+TEST_P(EveryOdometry, DoubtsAJumpToAnotherPlace) {
+  const auto odometry = make_odometry(GetParam());
+  drive(*odometry, street(), 5, {0.2, 0, 0});
+  const ScanPose far = odometry->push(scene_points(street(), pose_at({400, 300, 0}, 1), 5));
+  EXPECT_TRUE(is_finite(far));
+  const ScanPose jump = odometry->push(scene_points(street(), pose_at({2.2, 0, 0}, 0), 6));
+  EXPECT_TRUE(jump.doubtful() || far.doubtful());
+}
+
+TEST_P(EveryOdometry, PredictsFartherOverAGapAndSaysSo) {
+  const auto odometry = make_odometry(GetParam());
+  std::int64_t stamp_ns = 0;
+  for (int k = 0; k < 6; ++k, stamp_ns += 100'000'000) {
+    odometry->push(scene_points(street(), pose_at({0.5 * k, 0, 0}, 0), k), {stamp_ns});
+  }
+  const ScanPose pose =
+      odometry->push(scene_points(street(), pose_at({4.5, 0, 0}, 0), 6), {stamp_ns + 300'000'000});
+  EXPECT_NEAR(pose.map_from_sensor.translation().x(), 4.5, 0.1);
+  EXPECT_THAT(pose.doubt, HasSubstr("after the scan before"));
+  EXPECT_THAT(odometry->push({}, {stamp_ns}).doubt, HasSubstr("its stamp is not after"));
+}
+
+TEST_P(EveryOdometry, CorrectsScansForTheMotionOfTheSensor) {
+  std::vector<double> errors_m;
+  for (const char* deskew : {"none", "velocity", "poses"}) {
+    const auto odometry = make_odometry(GetParam(), {{"deskew", std::string(deskew)}});
+    double error_m = 0;
+    for (int k = 0; k < 10; ++k) {
+      // Speeds up at a rate that one scan after another follows.
+      const double x = 0.075 * k * k;
+      const Eigen::Vector3d motion_m(0.15 * k, 0, 0);
+      const SceneScan scan = scene_scan(street(), pose_at({x, 0, 0}, 0),
+                                        {.motion_m = motion_m, .seed = static_cast<unsigned>(k)});
+      const ScanPose pose = odometry->push(scan.points, {std::nullopt, scan.point_times_ns});
+      error_m = std::max(error_m, std::abs(pose.map_from_sensor.translation().x() - x));
+    }
+    errors_m.push_back(error_m);
+  }
+  EXPECT_GT(errors_m[0], 0.15);
+  EXPECT_LT(errors_m[1], 0.7 * errors_m[0]);
+  EXPECT_LE(errors_m[2], errors_m[1] + 0.01);
+}
+
+TEST_P(EveryOdometry, RefusesTimesThatAreNotOnePerPoint) {
+  const auto odometry = make_odometry(GetParam());
+  const std::vector<std::int64_t> times_ns = {1, 2, 3};
+  EXPECT_THROW(odometry->push({}, {std::nullopt, times_ns}), std::invalid_argument);
+}
+
+TEST_P(EveryOdometry, RefusesSettingsThatDoNotGoTogether) {
+  EXPECT_THROW(make_odometry(GetParam(), {{"min_range_m", 80.0}, {"max_range_m", 80.0}}),
+               std::invalid_argument);
+  EXPECT_THROW(make_odometry(GetParam(), {}, 0), std::invalid_argument);
+}
+
+TEST(Odometries, AreFoundByName) {
+  EXPECT_EQ(odometries().front().name, "simple");
+  EXPECT_EQ(find_odometry("kiss")->title, "KISS-ICP");
+  EXPECT_EQ(find_odometry("icp"), nullptr);
+}
+
+TEST(OdometryPresets, AreThoseOfTheAuthors) {
+  EXPECT_EQ(odometry_presets().size(), 6u);
+  for (const OdometryPreset& preset : odometry_presets()) {
+    Settings settings = find_odometry(preset.odometry)->defaults;
+    for (const auto& [key, value] : preset.settings) settings.set(key, value);
+    find_odometry(preset.odometry)->check(settings);
+    const bool offline = preset.name == "kitti-offline";
+    EXPECT_EQ(settings.number("map_radius_m"), offline ? 0.5 : 2.0);
+    EXPECT_EQ(settings.number("tolerance"), offline ? 1e-6 : 1e-3);
+    EXPECT_EQ(settings.choice("kitti_correction") == "on", preset.name.starts_with("kitti"));
+    EXPECT_EQ(settings.number("sigma_m") == 12, preset.name == "uq-vlp16");
+  }
+}
+
+}  // namespace
+}  // namespace mosbench
