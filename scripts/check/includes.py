@@ -31,6 +31,7 @@ MAY_INCLUDE = {
     "eval/results": {"core/include", "datasets/", "eval/protocols"},
     "eval/runs": THREADS | {"datasets/", "eval/protocols", "eval/predictions", "eval/results"},
     "eval/statistics": {"core/include", "datasets/", "eval/protocols", "eval/results"},
+    "eval/trajectory": {"core/include", "datasets/", "eval/results"},
     "eval/breakdown": THREADS | {"datasets/"} | NUMBERS,
     "eval/tables": {"core/include", "datasets/"} | NUMBERS,
     "eval/report": THREADS | {"datasets/", "eval/breakdown", "eval/tables"} | NUMBERS,

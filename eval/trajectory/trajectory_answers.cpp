@@ -1,0 +1,202 @@
+#include <fmt/format.h>
+
+#include <numbers>
+
+#include "eval/results/answer_text.hpp"
+#include "eval/results/text_table.hpp"
+#include "eval/trajectory/trajectory_scores.hpp"
+
+namespace mosbench {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr double kDegrees = 180 / std::numbers::pi;
+
+/// The segments of all sequences, or the mean of the sequences' means.
+struct Overall {
+  std::optional<MeanSegmentError> pooled, mean_of_sequences;
+};
+
+Overall overall(std::span<const TrajectoryScore> scores,
+                std::vector<SegmentError> TrajectoryScore::*segments) {
+  std::vector<SegmentError> all, means;
+  for (const TrajectoryScore& score : scores) {
+    const std::vector<SegmentError>& own = score.*segments;
+    all.insert(all.end(), own.begin(), own.end());
+    if (const auto mean = mean_of(own)) {
+      means.push_back({.first = 0,
+                       .last = 0,
+                       .length_m = 0,
+                       .translation = mean->translation,
+                       .rotation_rad_per_m = mean->rotation_rad_per_m});
+    }
+  }
+  return {mean_of(all), mean_of(means)};
+}
+
+std::string translation_text(const std::optional<MeanSegmentError>& mean) {
+  return mean ? fmt::format("{:.6g}", 100 * mean->translation) : "-";
+}
+std::string rotation_text(const std::optional<MeanSegmentError>& mean) {
+  return mean ? fmt::format("{:.6g}", 100 * kDegrees * mean->rotation_rad_per_m) : "-";
+}
+std::string rmse_text(const std::vector<double>& errors, double factor) {
+  const auto summary = summary_of(errors);
+  return summary ? fmt::format("{:.4f}", factor * summary->rmse) : "-";
+}
+
+std::vector<std::string> row_of(const TrajectoryScore& score) {
+  const auto kitti = mean_of(score.kitti), brief = mean_of(score.brief);
+  return {score.name,
+          std::to_string(score.poses),
+          fmt::format("{:.1f}", score.path_m),
+          std::to_string(score.kitti.size()),
+          translation_text(kitti),
+          rotation_text(kitti),
+          translation_text(brief),
+          rotation_text(brief),
+          rmse_text(score.absolute.translation_m, 1),
+          rmse_text(score.absolute.rotation_rad, kDegrees),
+          rmse_text(score.relative.translation_m, 1),
+          rmse_text(score.relative.rotation_rad, kDegrees)};
+}
+
+std::vector<std::string> overall_row(const char* name, const std::optional<MeanSegmentError>& kitti,
+                                     const std::optional<MeanSegmentError>& brief) {
+  return {name,
+          "",
+          "",
+          kitti ? std::to_string(kitti->segments) : "-",
+          translation_text(kitti),
+          rotation_text(kitti),
+          translation_text(brief),
+          rotation_text(brief)};
+}
+
+std::string relative_name(const RelativePairs& pairs) {
+  const std::string delta = pairs.delta_m ? fmt::format("{} m", *pairs.delta_m)
+                                          : fmt::format("{} scans", pairs.delta_scans);
+  return delta + (pairs.all ? ", from every pose" : ", one after the other");
+}
+
+ordered_json mean_json(const std::optional<MeanSegmentError>& mean) {
+  if (!mean) return nullptr;
+  return {{"segments", mean->segments},
+          {"translation", mean->translation},
+          {"rotation_rad_per_m", mean->rotation_rad_per_m}};
+}
+
+ordered_json summary_json(const std::vector<double>& errors) {
+  const auto summary = summary_of(errors);
+  if (!summary) return nullptr;
+  return {{"count", summary->count},   {"rmse", summary->rmse},     {"mean", summary->mean},
+          {"median", summary->median}, {"std", summary->deviation}, {"min", summary->least},
+          {"max", summary->most},      {"sse", summary->squares}};
+}
+
+ordered_json errors_json(const PoseErrors& errors) {
+  return {{"translation_m", summary_json(errors.translation_m)},
+          {"rotation_rad", summary_json(errors.rotation_rad)}};
+}
+
+ordered_json segments_json(const std::vector<SegmentError>& errors) {
+  ordered_json rows = ordered_json::array();
+  for (const SegmentError& error : errors) {
+    rows.push_back({{"first", error.first},
+                    {"last", error.last},
+                    {"length_m", error.length_m},
+                    {"translation", error.translation},
+                    {"rotation_rad_per_m", error.rotation_rad_per_m}});
+  }
+  return rows;
+}
+
+ordered_json score_json(const TrajectoryScore& score, bool per_pose) {
+  ordered_json json = {{"name", score.name},
+                       {"poses", score.poses},
+                       {"path_m", score.path_m},
+                       {"kitti", mean_json(mean_of(score.kitti))},
+                       {"short_segments", mean_json(mean_of(score.brief))},
+                       {"scale", score.scale},
+                       {"absolute", errors_json(score.absolute)},
+                       {"relative", errors_json(score.relative)},
+                       {"remarks", score.remarks}};
+  if (per_pose) {
+    json["per_pose"] = {{"translation_m", score.absolute.translation_m},
+                        {"rotation_rad", score.absolute.rotation_rad}};
+    json["per_segment"] = segments_json(score.kitti);
+  }
+  return json;
+}
+
+ordered_json overall_json(const Overall& all) {
+  return {{"pooled", mean_json(all.pooled)},
+          {"mean_of_sequences", mean_json(all.mean_of_sequences)}};
+}
+
+}  // namespace
+
+std::string trajectory_text(std::span<const TrajectoryScore> scores, const ScoringRules& rules) {
+  TextTable table({{"sequence", TextTable::kLeft},
+                   {"poses"},
+                   {"path m"},
+                   {"segments"},
+                   {"KITTI %"},
+                   {"deg/100 m"},
+                   {"5-50 m %"},
+                   {"deg/100 m"},
+                   {"APE m"},
+                   {"APE deg"},
+                   {"RPE m"},
+                   {"RPE deg"}});
+  for (const TrajectoryScore& score : scores) table.add_row(row_of(score));
+  if (scores.size() > 1) {
+    const Overall kitti = overall(scores, &TrajectoryScore::kitti);
+    const Overall brief = overall(scores, &TrajectoryScore::brief);
+    table.add_rule();
+    table.add_row(overall_row("all segments", kitti.pooled, brief.pooled));
+    table.add_row(
+        overall_row("mean of sequences", kitti.mean_of_sequences, brief.mean_of_sequences));
+  }
+  std::string text = table.str();
+  text += fmt::format(
+      "\nKITTI: segments of 100 to 800 m from every tenth pose; 5-50 m: of 5, 10, 20 and 50 m from "
+      "every "
+      "pose, not comparable with KITTI's. Neither is aligned.\n"
+      "APE and RPE: root mean square; alignment {}; RPE over {}.\n",
+      to_string(rules.alignment), relative_name(rules.relative));
+  for (const TrajectoryScore& score : scores) {
+    if (rules.alignment == PathAlignment::kSimilarity) {
+      text += fmt::format("{}: scaled by {:.6f}\n", score.name, score.scale);
+    }
+    for (const std::string& remark : score.remarks) {
+      text += fmt::format("{}: {}\n", score.name, remark);
+    }
+  }
+  return text;
+}
+
+ordered_json trajectory_json(std::span<const TrajectoryScore> scores, const ScoringRules& rules,
+                             bool per_pose) {
+  ordered_json sequences = ordered_json::array();
+  for (const TrajectoryScore& score : scores) sequences.push_back(score_json(score, per_pose));
+  return {{"alignment", to_string(rules.alignment)},
+          {"relative_pairs", relative_name(rules.relative)},
+          {"kitti", overall_json(overall(scores, &TrajectoryScore::kitti))},
+          {"short_segments", overall_json(overall(scores, &TrajectoryScore::brief))},
+          {"sequences", sequences}};
+}
+
+std::string trajectory_csv(std::span<const TrajectoryScore> scores) {
+  std::string csv = "sequence,pose,ape_m,ape_rad\n";
+  for (const TrajectoryScore& score : scores) {
+    for (std::size_t i = 0; i < score.poses; ++i) {
+      csv += fmt::format("{},{},{},{}\n", score.name, i, score.absolute.translation_m[i],
+                         score.absolute.rotation_rad[i]);
+    }
+  }
+  return csv;
+}
+
+}  // namespace mosbench

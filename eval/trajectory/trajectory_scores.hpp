@@ -1,0 +1,45 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "eval/trajectory/alignment.hpp"
+#include "eval/trajectory/pose_errors.hpp"
+#include "eval/trajectory/segment_errors.hpp"
+#include "eval/trajectory/trajectory.hpp"
+
+namespace mosbench {
+
+/// How good one estimate is.
+struct TrajectoryScore {
+  std::string name;
+  std::size_t poses = 0;
+  double path_m = 0;  ///< of the truth
+  std::vector<SegmentError> kitti, brief;
+  double scale = 1;  ///< that the estimate was multiplied with
+  PoseErrors absolute, relative;
+  std::vector<std::string> remarks;
+};
+
+struct ScoringRules {
+  PathAlignment alignment = PathAlignment::kNone;
+  RelativePairs relative;
+};
+
+/// Throws DataError where the alignment is undefined.
+TrajectoryScore score_of(const TrajectoryPair& pair, const ScoringRules& rules);
+
+/// A table of the sequences, all of them pooled and their mean; below it what was paired and
+/// aligned how.
+std::string trajectory_text(std::span<const TrajectoryScore> scores, const ScoringRules& rules);
+/// Numbers in metres, radians and fractions; with `per_pose` also the errors of every pose and
+/// segment.
+nlohmann::ordered_json trajectory_json(std::span<const TrajectoryScore> scores,
+                                       const ScoringRules& rules, bool per_pose);
+/// One row per pose and sequence: absolute errors.
+std::string trajectory_csv(std::span<const TrajectoryScore> scores);
+
+}  // namespace mosbench
