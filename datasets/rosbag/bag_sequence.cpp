@@ -36,7 +36,7 @@ std::optional<std::filesystem::path> bag_of(const std::filesystem::path& folder)
 
 BagSequence::BagSequence(std::string name, const std::filesystem::path& bag,
                          const ReadingOptions& options)
-    : bag_(bag), undistorts_(options.undistort) {
+    : bag_(bag), undistorts_(options.undistort), unposed_(options.poses_by_odometry) {
   Recording& recording = mutable_recording();
   recording.name = std::move(name);
   recording.files = {bag};
@@ -44,7 +44,7 @@ BagSequence::BagSequence(std::string name, const std::filesystem::path& bag,
   list_scans(topic);
   recording.reading.emplace_back("scan_files",
                                  fmt::format("{}, topic {}", bag.filename().string(), topic));
-  options.poses ? open_pose_file(options) : open_transforms(options);
+  options.poses || unposed_ ? open_pose_file(options) : open_transforms(options);
   state_undistortion();
   enter_scans();
 }
@@ -148,7 +148,7 @@ void BagSequence::read(std::size_t scan_index, Frame& frame) const {
     }
   }
   const bool last = leaves_last_ && scan_index + 1 == scans_.size();
-  const bool moves = undistorts_ && !cloud.times_ns.empty() && !last;
+  const bool moves = undistorts_ && !unposed_ && !cloud.times_ns.empty() && !last;
   const std::int64_t at_ns = moves && !leaves_last_ ? reference_ns(cloud) : cloud.stamp_ns;
   const auto pose = pose_at_(at_ns);
   if (!pose ||
@@ -159,6 +159,7 @@ void BagSequence::read(std::size_t scan_index, Frame& frame) const {
   describe(scan_index, frame);
   frame.points = std::move(cloud.points);
   frame.map_from_sensor = *pose;
+  if (undistorts_ && unposed_) frame.point_times_ns = std::move(cloud.times_ns);
   frame.truth.reset();
 }
 

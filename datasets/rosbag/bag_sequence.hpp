@@ -53,6 +53,8 @@ class BagSequence : public Sequence {
   /// With a pose file the last scan is not undistorted: no pose follows its own.
   bool leaves_last_ = false;
   bool undistorts_ = true;
+  /// Poses are found later; scans keep their points' times.
+  bool unposed_ = false;
 };
 
 }  // namespace mosbench

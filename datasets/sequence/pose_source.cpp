@@ -126,10 +126,17 @@ class SensorPoseReader {
 
 SensorPoses read_sensor_poses(const fs::path& folder, const std::string& own_file,
                               const ReadingOptions& options, const PosedScans& scans) {
+  if (options.poses_by_odometry) {
+    return {.map_from_sensor = std::vector<Pose>(scans.count, Pose::Identity()),
+            .files = {},
+            .remarks = {},
+            .reading = {{"poses", "none"}}};
+  }
   const fs::path file = options.poses.value_or(folder / own_file);
   if (!options.poses && !is_there(file)) {
-    throw DataError(file, "does not exist",
-                    "one pose per scan there, or in a file given by --poses");
+    throw DataError(
+        file, "does not exist",
+        "one pose per scan there, in a file given by --poses, or found by --odometry simple");
   }
   SensorPoses poses = SensorPoseReader(folder, options, file).run(scans);
   if (options.poses) {

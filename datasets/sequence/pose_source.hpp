@@ -28,7 +28,7 @@ struct PosedScans {
 /// Reads `options.poses`, else `folder`/`own_file`, and turns the poses into the LiDAR's by
 /// `folder`/calib.txt. Poses with stamps are interpolated to the scans' stamps; without stamps rows
 /// and scans are paired in order. Throws DataError when counts differ or the stamps of the poses do
-/// not cover a scan.
+/// not cover a scan. Identities where `options.poses_by_odometry` is set.
 SensorPoses read_sensor_poses(const std::filesystem::path& folder, const std::string& own_file,
                               const ReadingOptions& options, const PosedScans& scans);
 

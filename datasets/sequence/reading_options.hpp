@@ -23,6 +23,8 @@ enum class PoseFrame : std::uint8_t {
 struct ReadingOptions {
   /// A pose file to use instead of the sequence's own.
   std::optional<std::filesystem::path> poses = std::nullopt;
+  /// Read no poses: every scan gets the identity, for `PosedSequence` to put others in their place.
+  bool poses_by_odometry = false;
   std::optional<PoseFormat> pose_format = std::nullopt;  ///< recognised when not set
   PoseFrame pose_frame = PoseFrame::kByCalib;
   /// Whether the poses are sensor_from_map; when not set, only those of PoseFormat::kRollout are.

@@ -9,6 +9,7 @@ void Sequence::describe(std::size_t scan_index, Frame& frame) const {
   frame.stem = entry.stem;
   frame.map_from_sensor = entry.map_from_sensor;
   frame.stamp_ns = entry.stamp_ns;
+  frame.point_times_ns.clear();
 }
 
 void Sequence::add_truth(std::size_t scan_index, Frame& frame) const {

@@ -16,10 +16,13 @@ namespace mosbench {
 
 /// One scan as a data set gives it.
 struct Frame {
-  std::string stem;                                 ///< file name without extension; names outputs
-  std::vector<Point> points;                        ///< sensor frame, stored order, nothing dropped
-  Pose map_from_sensor = Pose::Identity();          ///< LiDAR frame
-  std::optional<std::int64_t> stamp_ns;             ///< when the data set has stamps
+  std::string stem;                         ///< file name without extension; names outputs
+  std::vector<Point> points;                ///< sensor frame, stored order, nothing dropped
+  Pose map_from_sensor = Pose::Identity();  ///< LiDAR frame
+  std::optional<std::int64_t> stamp_ns;     ///< when the data set has stamps
+  /// When each point was measured after the stamp; empty unless the data set has such times and has
+  /// not moved the points by them.
+  std::vector<std::int64_t> point_times_ns;
   std::optional<std::vector<std::uint32_t>> truth;  ///< raw label ids, one per point, when labelled
 };
 

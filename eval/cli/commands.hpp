@@ -31,6 +31,7 @@ void add_reproduce_command(CLI::App& app, std::string& answer);
 void add_breakdown_command(CLI::App& app, std::string& answer);
 void add_diff_command(CLI::App& app, std::string& answer);
 void add_stats_command(CLI::App& app, std::string& answer);
+void add_odometry_command(CLI::App& app, std::string& answer);
 void add_trajectory_command(CLI::App& app, std::string& answer);
 void add_doctor_command(CLI::App& app, std::string& answer);
 void add_list_command(CLI::App& app, std::string& answer);

@@ -100,6 +100,7 @@ std::string answer_to(std::vector<std::string> arguments) {
   mosbench::add_compare_command(app, answer);
   mosbench::add_bless_command(app, answer);
   mosbench::add_stats_command(app, answer);
+  mosbench::add_odometry_command(app, answer);
   mosbench::add_trajectory_command(app, answer);
   mosbench::add_convert_command(app, answer);
   mosbench::add_doctor_command(app, answer);

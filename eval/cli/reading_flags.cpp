@@ -36,6 +36,10 @@ void add_reading_flags(CLI::App& command, ReadingOptions& options) {
   add_choice(command, "--pose-direction", {"map-from-sensor", "sensor-from-map"},
              "The latter are inverted (default: sensor-from-map for dynablox only)",
              [&](const std::string& name) { options.poses_inverse = poses_inverse_named(name); });
+  add_scan_flags(command, options);
+}
+
+void add_scan_flags(CLI::App& command, ReadingOptions& options) {
   command.add_option("--topic", options.topic, "PointCloud2 topic of a bag")->group(kGroup);
   command.add_option("--map-frame", options.map_frame, "Frame of a bag's tf tree to put scans in")
       ->group(kGroup);

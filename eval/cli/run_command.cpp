@@ -28,13 +28,32 @@ Configuration: defaults < preset < --config FILE < --set. FILE holds a JSON obje
   {"voxel_size_m": 0.25, "max_range_m": 50.0, "delay_scans": 10}
 occupancy_sigma_m follows voxel_size_m when it is not set. `mosbench list presets` shows the presets.
 
+--odometry finds the poses before the method sees a scan and writes them to DIR/<sequence>/poses.txt;
+its settings are part of the configuration. Poses that it doubts are named in the remarks.
+
 Examples:
   mosbench run ~/sipailou-livox-kitti
   mosbench run ~/doals --preset doals-120m --sequences station/sequence_1,station/sequence_2
   mosbench run ~/HeLiMOS/KAIST05/Deskewed_LiDAR --preset helimos-delayed --protocol helimos-test
   mosbench run ~/kitti/sequences/08 --set max_range_m=30 voxel_size_m=0.2 --out results/runs/08-near
   mosbench run ~/kitti/sequences/08 --scores --out results/runs/08-scores
+  mosbench run ~/folder-with-a-bag --odometry simple --odometry-set min_range_m=1
   mosbench run sim/00 --config near.json --variant release-2025 --threads 4 --json)";
+
+void add_odometry_flags(CLI::App& command, OdometryOptions& odometry) {
+  constexpr const char* kGroup = "Poses found from the scans";
+  command
+      .add_option("--odometry", odometry.kind,
+                  "simple or kiss: find the poses instead of reading them")
+      ->group(kGroup);
+  command.add_option("--odometry-preset", odometry.preset, "Settings that its authors published")
+      ->group(kGroup);
+  command.add_option("--odometry-config", odometry.config_file, "JSON object of its settings")
+      ->group(kGroup);
+  command.add_option("--odometry-set", odometry.assignments, "key=value, one per flag")
+      ->allow_extra_args(false)
+      ->group(kGroup);
+}
 
 std::string run(const RunOptions& options) {
   const RunPlan plan = plan_run(options);
@@ -53,6 +72,7 @@ void add_run_command(CLI::App& app, std::string& answer) {
                       "MIN,MAX in metres, for protocols that limit it (default: the run's own)");
   command->add_option("--out", options->out,
                       "Where results go (default: results/runs/<data>-<preset>-<variant>)");
+  add_odometry_flags(*command, options->odometry);
   command->add_flag("--scores", options->scores, "Also write every point's dynamic score");
   command->add_flag("--overwrite", options->overwrite, "Run anew and replace what is in --out");
   command->add_flag("--json", options->json, "Print JSON instead of a table");

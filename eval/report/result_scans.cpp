@@ -5,7 +5,9 @@
 #include "datasets/files/errors.hpp"
 #include "datasets/files/files.hpp"
 #include "datasets/files/label_file.hpp"
+#include "datasets/files/pose_file.hpp"
 #include "datasets/sequence/fingerprint.hpp"
+#include "datasets/sequence/posed_sequence.hpp"
 #include "eval/results/dynamic_score_file.hpp"
 #include "eval/results/reading_json.hpp"
 #include "eval/results/same_input.hpp"
@@ -32,11 +34,30 @@ auto from_json(const FoundResult& result, Read&& read) {
 void check_has_labels(const FoundResult& result) {
   const bool scored = result.file.content.contains("predictions");
   if (!scored && is_there(result.folder / kLabels)) return;
-  throw DataError(
-      result.folder / kResult,
-      scored ? "is of mosbench score, which keeps no labels next to it" : "has no labels/ next to it",
-      "a folder of mosbench run to show points of; of others mosbench report "
-      "--scans none shows the numbers");
+  throw DataError(result.folder / kResult,
+                  scored ? "is of mosbench score, which keeps no labels next to it"
+                         : "has no labels/ next to it",
+                  "a folder of mosbench run to show points of; of others mosbench report "
+                  "--scans none shows the numbers");
+}
+
+/// The poses that odometry found stand next to the labels.
+void take_found_poses(const FoundResult& result, Dataset& dataset) {
+  ReadingStatement how;
+  for (const auto& [what, said] : result.file.content.at("reading").items()) {
+    if (what.starts_with("pose")) how.emplace_back(what, said.get<std::string>());
+  }
+  for (std::unique_ptr<Sequence>& sequence : dataset.sequences) {
+    auto posed = std::make_unique<PosedSequence>(std::move(sequence), how);
+    const fs::path file = result.folder / "poses.txt";
+    const std::vector<Pose> poses = read_poses(file);
+    if (poses.size() != posed->size()) {
+      throw DataError(file, fmt::format("{} poses for {} scans", poses.size(), posed->size()),
+                      "one per scan");
+    }
+    posed->set_poses(poses, "poses found by odometry");
+    sequence = std::move(posed);
+  }
 }
 
 Dataset open_dataset_of(const FoundResult& result, std::optional<fs::path> root) {
@@ -53,7 +74,10 @@ Dataset open_dataset_of(const FoundResult& result, std::optional<fs::path> root)
                            : "does not say where its data set is",
                       "the data set's folder in --data");
     }
-    return open_dataset(*root, {kind, {result.name}, told_from_json(recorded)});
+    const ReadingOptions reading = told_from_json(recorded);
+    Dataset dataset = open_dataset(*root, {kind, {result.name}, reading});
+    if (reading.poses_by_odometry) take_found_poses(result, dataset);
+    return dataset;
   });
 }
 

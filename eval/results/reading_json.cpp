@@ -50,6 +50,7 @@ std::optional<bool> poses_inverse_named(std::string_view word) {
 ordered_json told_json(const ReadingOptions& options) {
   ordered_json json = ordered_json::object();
   if (options.poses) json["poses"] = std::filesystem::absolute(*options.poses).string();
+  if (options.poses_by_odometry) json["odometry"] = true;
   if (options.pose_format) json["pose_format"] = std::string(to_string(*options.pose_format));
   if (options.pose_frame != PoseFrame::kByCalib) {
     json["pose_frame"] = options.pose_frame == PoseFrame::kCamera ? "camera" : "lidar";
@@ -68,6 +69,7 @@ ordered_json told_json(const ReadingOptions& options) {
 ReadingOptions told_from_json(const ordered_json& json) {
   ReadingOptions options;
   take<std::string>(json, "poses", options.poses);
+  options.poses_by_odometry = json.value("odometry", false);
   take_word(json, "pose_format", options.pose_format, pose_format_from_string);
   take_word(json, "pose_frame", options.pose_frame, pose_frame_named);
   take_word(json, "pose_direction", options.poses_inverse, poses_inverse_named);

@@ -6,10 +6,13 @@
 #include <system_error>
 
 #include "datasets/files/files.hpp"
+#include "datasets/files/pose_file.hpp"
+#include "datasets/sequence/posed_sequence.hpp"
 #include "eval/protocols/benchmark_split.hpp"
 #include "eval/protocols/metrics.hpp"
 #include "eval/protocols/summary_json.hpp"
 #include "eval/results/machine.hpp"
+#include "eval/results/progress.hpp"
 #include "eval/results/reading_json.hpp"
 #include "eval/results/result_format.hpp"
 #include "eval/results/simulated.hpp"
@@ -92,11 +95,25 @@ ordered_json clock_header(const RunPlan& plan, const PlannedSequence& planned) {
   return json;
 }
 
+/// Settles the poses of a sequence before its method sees a scan, and writes them next to the
+/// labels.
+void find_poses(const RunPlan& plan, const PlannedSequence& planned, const fs::path& folder) {
+  auto& sequence = dynamic_cast<PosedSequence&>(*plan.dataset.sequences[planned.position]);
+  Progress progress(fmt::format("{} of {}", plan.odometry->kind->title, sequence.name()),
+                    sequence.size());
+  const std::vector<ScanPose> poses =
+      estimate_poses(sequence.unposed(), *plan.odometry, plan.settings.threads,
+                     [&progress] { progress.advance(); });
+  write_poses(folder / "poses.txt", poses_of(poses));
+  sequence.set_poses(poses_of(poses), odometry_remark(sequence, *plan.odometry, poses));
+}
+
 SequenceOutcome run_now(const RunPlan& plan, const PlannedSequence& planned) {
   const Sequence& sequence = *plan.dataset.sequences[planned.position];
   const fs::path partial = planned.folder.begin();
   try {
     SequenceOutcome outcome;
+    if (plan.odometry) find_poses(plan, planned, partial);
     outcome.rows = run_sequence(sequence, plan.settings, partial);
     outcome.remarks = all_remarks(plan.settings, sequence, outcome.rows);
     outcome.folder = planned.folder.path();

@@ -134,16 +134,32 @@ PlannedSequence plan_sequence(const RunPlan& plan, std::size_t position, bool ov
   return planned;
 }
 
+/// Poses are read, or, where the user names an odometry, found.
+void choose_poses(const RunOptions& options, RunPlan& plan) {
+  const OdometryOptions& odometry = options.odometry;
+  if (!odometry.kind) {
+    if (!odometry.preset && !odometry.config_file && odometry.assignments.empty()) return;
+    throw UsageError("--odometry: is missing, expected simple or kiss before its settings");
+  }
+  if (options.reading.poses) {
+    throw UsageError("--poses and --odometry: say where poses come from, expected one of them");
+  }
+  plan.odometry = choose_odometry(odometry);
+  plan.reading.poses_by_odometry = true;
+}
+
 }  // namespace
 
 RunPlan plan_method(const RunOptions& options) {
   RunPlan plan;
   plan.settings.method = &choose_method(options);
   plan.settings.threads = options.threads > 0 ? options.threads : hardware_threads();
-  plan.dataset = open_dataset(
-      options.input, {dataset_kind_option(options.dataset), options.sequences, options.reading});
-  const Preset& preset = choose_preset(options, plan.dataset.kind, plan);
   plan.reading = options.reading;
+  choose_poses(options, plan);
+  plan.dataset = open_dataset(
+      options.input, {dataset_kind_option(options.dataset), options.sequences, plan.reading});
+  if (plan.odometry) expect_poses(plan.dataset, *plan.odometry);
+  const Preset& preset = choose_preset(options, plan.dataset.kind, plan);
   plan.preset = preset.name;
   plan.settings.method_settings = choose_settings(options, preset, *plan.settings.method);
   plan.settings.protocol = &protocol_named(options.protocol.value_or(std::string(preset.protocol)));

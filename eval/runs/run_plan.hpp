@@ -8,6 +8,7 @@
 
 #include "datasets/layouts/dataset.hpp"
 #include "eval/results/result_folder.hpp"
+#include "eval/runs/odometry_choice.hpp"
 #include "eval/runs/sequence_runner.hpp"
 
 namespace mosbench {
@@ -20,6 +21,7 @@ struct RunOptions {
   std::optional<std::string> method, preset, variant, protocol, range;
   std::optional<std::filesystem::path> config_file, out;
   ReadingOptions reading = {};
+  OdometryOptions odometry;  ///< poses are found by it when a kind is named
   std::vector<std::string> assignments;
   unsigned threads = 0;  ///< 0: one per logical core
   bool overwrite = false;
@@ -42,7 +44,8 @@ struct RunPlan {
   std::string preset;
   RunSettings settings;
   std::filesystem::path out;
-  ReadingOptions reading;  ///< as the user told
+  std::optional<OdometryChoice> odometry;  ///< finds the poses of every sequence that is run
+  ReadingOptions reading;                  ///< as the user told
   std::vector<PlannedSequence> sequences;
   std::vector<std::string> notes;  ///< choices made for the user, plain sentences
 };

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "datasets/sequence/pose_track.hpp"
+#include "datasets/sequence/sequence.hpp"
+
+namespace mosbench {
+
+/// A sequence opened with `ReadingOptions::poses_by_odometry` whose poses are found later. Scans
+/// whose points have times are undistorted by the poses, the last one not.
+class PosedSequence : public SequenceAround {
+ public:
+  /// `how` replaces what the inner sequence states about poses. Poses are the identity until
+  /// `set_poses`.
+  PosedSequence(std::unique_ptr<Sequence> inner, const ReadingStatement& how);
+
+  /// One pose per scan. `remark` is what a reader of results should know about them. To be called
+  /// before scans are read from several threads.
+  void set_poses(const std::vector<Pose>& map_from_sensor, std::string remark);
+
+  /// The sequence as it is without poses.
+  const Sequence& unposed() const { return inner(); }
+
+  using SequenceAround::read;
+  void read(std::size_t scan_index, Frame& frame) const override;
+
+ private:
+  PoseTrack track_;  // empty without stamps
+};
+
+}  // namespace mosbench
