@@ -5,7 +5,7 @@ namespace mosbench {
 using namespace hmm_mos;
 namespace {
 
-/// Every block turns from this scan's occupied voxels to the previous scan's.
+/// In every block the occupied voxels change from this scan's to the previous scan's.
 void change_detection_stage(benchmark::State& state, StagedScans& staged, ThreadPool&) {
   std::vector<BlockStates> before, after;
   std::size_t expected = 0;

@@ -3,7 +3,7 @@
 namespace mosbench {
 namespace {
 
-/// On a map that has just been brought up to date, as in the pipeline.
+/// Measures on a map that was just updated, as in the pipeline.
 void convolution_stage(benchmark::State& state, StagedScans& staged, ThreadPool& pool) {
   const int width = staged.workload.config.kernel_width_voxels;
   const std::size_t first = staged.measured.front().k;

@@ -6,7 +6,8 @@
 namespace mosbench {
 namespace {
 
-/// Squared distance from a cell of the block in the middle of the cube, over all pairs.
+/// Returns the squared distance from a cell of the middle block to the nearest source, over all
+/// pairs.
 int nearest(std::span<const SourceBlock* const> sources, int reach, const Voxel& cell) {
   const int side = 2 * reach + 1;
   int best = 1 << 20;
@@ -21,7 +22,7 @@ int nearest(std::span<const SourceBlock* const> sources, int reach, const Voxel&
   return best;
 }
 
-/// Every 97th block, every 61st cell of a layer that is looked at.
+/// Checks every 61st wanted cell of every 97th block.
 bool equals_all_pairs(const NearBlocks& near) {
   const int exact_below = far_squared(near.field().radius());
   bool same = true;

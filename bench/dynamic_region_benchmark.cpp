@@ -3,7 +3,7 @@
 namespace mosbench {
 namespace {
 
-/// The region remembers, so each pass begins before the first scan and measures the last ones.
+/// The region has memory, so each pass starts before the first scan and measures the last ones.
 void dynamic_region_stage(benchmark::State& state, StagedScans& staged, ThreadPool& pool) {
   const int width = staged.workload.config.kernel_width_voxels;
   const std::size_t first = staged.measured.front().k;
@@ -13,7 +13,7 @@ void dynamic_region_stage(benchmark::State& state, StagedScans& staged, ThreadPo
     DynamicRegion region = staged.new_region();
     for (std::size_t k = 0; k < first; ++k) {
       const StagedScan& s = staged.all[k];
-      if (s.labels.empty()) continue;  // no detection yet
+      if (s.labels.empty()) continue;  // not judged yet
       region.update({s.scan, s.dynamic, s.from_region, s.beside, s.threshold}, s.k);
     }
     for (const StagedScan& s : staged.measured) {

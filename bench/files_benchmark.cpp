@@ -9,7 +9,7 @@
 namespace mosbench {
 namespace {
 
-/// A file that goes away with its benchmark.
+/// A file that is deleted with its benchmark.
 class ScratchFile {
  public:
   explicit ScratchFile(const char* extension)

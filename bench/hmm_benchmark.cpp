@@ -6,7 +6,7 @@
 namespace mosbench {
 namespace {
 
-/// The belief of a voxel that was at a distance of `squared` voxels in every one of many scans.
+/// Returns the belief of a voxel whose squared distance was `squared` voxels in each of many scans.
 double settled_belief(const Config& config, double squared) {
   const double ratio = config.voxel_size_m / config.sigma_m(), epsilon = config.transition_epsilon;
   const double likelihood = std::exp(-squared * ratio * ratio / 2);

@@ -3,7 +3,7 @@
 namespace mosbench {
 namespace {
 
-/// Only the sums at occupied voxels have a meaning.
+/// Compares the sums at occupied voxels; others have no meaning.
 bool same_sums(const SumField& sums, const StagedScan& s) {
   bool same = sums.values.size() == s.sums.values.size();
   for (std::size_t i = 0; same && i < sums.blocks.size(); ++i) {

@@ -23,7 +23,7 @@ bool all_right = true;
 
 void measure(benchmark::State& state, const RegisteredStage& stage, const Workload& workload,
              unsigned threads) {
-  // Made once: it takes longer than measuring.
+  // Made once, because making it takes longer than measuring.
   static std::map<const Workload*, StagedScans> staged;
   ThreadPool pool(threads);
   stage.benchmark(state, staged.try_emplace(&workload, workload).first->second, pool);
@@ -47,7 +47,7 @@ void register_all(const std::vector<Workload>& workloads) {
   }
 }
 
-/// Takes `--data FOLDER` out of the arguments; null when it is not there.
+/// Removes `--data FOLDER` from the arguments; null when it is not given.
 const char* take_recording_folder(std::vector<char*>& arguments) {
   for (std::size_t i = 1; i + 1 < arguments.size(); ++i) {
     if (std::strcmp(arguments[i], "--data") != 0) continue;
@@ -73,8 +73,8 @@ int run(std::vector<char*> arguments) {
   if (const char* folder = take_recording_folder(arguments)) {
     workloads.push_back(recorded_workload(folder));
   }
-  // Seconds; a number that the user gives comes later and wins. Short, because what runs between
-  // two calls takes many times as long.
+  // Seconds; an argument of the user comes later and wins. Short, because what runs between two
+  // calls takes many times as long.
   std::string min_time = "--benchmark_min_time=0.1";
   arguments.insert(arguments.begin() + std::min<std::ptrdiff_t>(1, std::ssize(arguments)),
                    min_time.data());

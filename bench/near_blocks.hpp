@@ -11,8 +11,8 @@
 namespace mosbench {
 using namespace hmm_mos;
 
-/// The observed blocks of the last scan with a source near, and the sources that their distance
-/// fields are made of.
+/// The observed blocks of the last scan that have a source within reach, and the sources of their
+/// distance fields.
 class NearBlocks {
  public:
   explicit NearBlocks(const StagedScans& staged);
@@ -27,7 +27,7 @@ class NearBlocks {
     return std::span(sources_).subspan(i * cube_, cube_);
   }
 
-  /// Those of block i; `column` is for blocks in turns.
+  /// Computes the distances of block i; `column` must be given the blocks in order.
   void find_distances(std::size_t i, ColumnDistances& column, BlockDistances& distances) const {
     column.find(block(i), observed(i), sources(i), distances);
   }

@@ -8,8 +8,9 @@ namespace mosbench {
 using namespace hmm_mos;
 namespace {
 
-/// All scans of the workload from the first; one call is one scan on average. Counters hold the
-/// stages' CPU milliseconds per scan over the scans that their own benchmarks are about.
+/// Measures all scans of the workload from the first; one call is one scan on average. Counters
+/// hold the stages' CPU milliseconds per scan, over the scans on which the stages are measured
+/// alone.
 void pipeline_stage(benchmark::State& state, StagedScans& staged, ThreadPool& pool) {
   const std::size_t first_measured = staged.measured.front().k;
   std::map<std::string, double> sum_ms;

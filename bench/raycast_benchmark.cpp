@@ -3,7 +3,7 @@
 namespace mosbench {
 namespace {
 
-/// Voxels visited by the rays, each ray's own.
+/// Counts the voxels that rays visit, counted once per ray.
 std::size_t steps_of(const StagedScan& s, const Config& config) {
   Rays rays;
   collect_rays({s.scan.measured, s.scan.sensor_voxel, config.voxel_size_m, config.max_range_m}, {},

@@ -17,7 +17,7 @@ struct RegisteredStage {
   bool parallel;  ///< measured with one and with two threads
 };
 
-/// All that were registered, in the order of their files.
+/// All registered stages, in the order of their files.
 std::vector<RegisteredStage>& registered_stages();
 
 /// A static object of this type adds a stage to the program.
@@ -38,8 +38,8 @@ inline void count_items(benchmark::State& state, const char* items, std::size_t 
 /// Fails the benchmark, and the program in the end, when it did not compute what it should have.
 void expect(benchmark::State& state, bool right);
 
-/// One call of a stage, timed by itself while the benchmark's timing is paused. What the result
-/// held is not freed in that time, as the pipeline does not either.
+/// Runs one call of a stage, timed alone while the benchmark's timing is paused. The time to free
+/// what the result held before is left out, as in the pipeline.
 template <typename Work>
 auto timed_call(benchmark::State& state, Work&& work) {
   state.ResumeTiming();
@@ -50,7 +50,7 @@ auto timed_call(benchmark::State& state, Work&& work) {
 }
 
 /// Runs passes over `scans` scans, each of which is a call of the benchmark. Timing is paused
-/// outside of the pass's timed_calls, one for each scan.
+/// outside the pass's timed_calls, one for each scan.
 template <typename Pass>
 void measure_passes(benchmark::State& state, std::size_t scans, Pass&& pass) {
   while (state.KeepRunningBatch(static_cast<benchmark::IterationCount>(scans))) {
@@ -60,8 +60,8 @@ void measure_passes(benchmark::State& state, std::size_t scans, Pass&& pass) {
   }
 }
 
-/// Measures `work` on the measured scans in turns; a call of the benchmark is one scan.
-/// `right(scan, result)` tells whether work(scan) has computed what it should.
+/// Measures `work` on the measured scans one after another; a call of the benchmark is one scan.
+/// `right(scan, result)` returns whether work(scan) has computed what it should.
 template <typename Work, typename Right>
 void measure_stage(benchmark::State& state, StagedScans& staged, Work&& work, Right&& right) {
   measure_passes(state, staged.measured.size(), [&] {
@@ -74,7 +74,7 @@ void measure_stage(benchmark::State& state, StagedScans& staged, Work&& work, Ri
   for (const StagedScan& scan : staged.measured) expect(state, right(scan, work(scan)));
 }
 
-/// Something of a scan, on average over the measured ones.
+/// Returns the mean of a quantity over the measured scans.
 template <typename Number>
 std::size_t mean_of(const StagedScans& staged, Number&& number) {
   std::size_t sum = 0;

@@ -17,7 +17,7 @@ using namespace hmm_mos;
 
 std::size_t voxels_of(const VoxelList& list);
 
-/// A scan with what goes into and comes out of each of its stages but those that remember.
+/// A scan with the inputs and outputs of each of its stages without memory.
 struct StagedScan {
   StagedScan(const Frame& read, std::uint32_t index) : frame(read), k(index) {}
 
@@ -45,8 +45,8 @@ class StagedScans {
   const Workload& workload;
   const VoxelGrid grid;
   std::vector<StagedScan> all;
-  /// The scans that stages are measured on: several, because one alone would stay in the caches
-  /// and be learnt by heart by the branch prediction.
+  /// The scans that stages are measured on: several, because one alone would stay in the caches and
+  /// be memorised by the branch predictor.
   std::span<const StagedScan> measured;
 
   const StagedScan& last() const { return all.back(); }
@@ -54,19 +54,19 @@ class StagedScans {
 
   /// Puts a scan into a map that holds the scans before it. Returns the voxels that changed.
   VoxelList update(VoxelMap& map, const StagedScan& staged, ThreadPool& pool) const;
-  /// The same, and what is too far or too old leaves the map.
+  /// The same; then voxels that are too far or too old leave the map.
   void enter(VoxelMap& map, const StagedScan& staged, ThreadPool& pool) const;
-  /// A map that holds the first `scans`.
+  /// Returns a map that holds the first `scans`.
   VoxelMap map_after(std::size_t scans, ThreadPool& pool) const;
   DynamicRegion new_region() const;
 
-  /// Leaves caches and branch prediction much as between two calls of a stage in the pipeline:
-  /// puts some points of a scan through a pipeline of their own.
+  /// Brings caches and branch predictor into about the state they have between two calls of a stage
+  /// in the pipeline, by running a separate pipeline on some points of a scan.
   void run_other_stages();
 
  private:
   std::optional<Pipeline> other_;
-  std::size_t others_ = 0;  ///< scans that it and those before it have had
+  std::size_t others_ = 0;  ///< scans pushed into it and its predecessors
 };
 
 }  // namespace mosbench

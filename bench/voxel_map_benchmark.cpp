@@ -3,7 +3,7 @@
 namespace mosbench {
 namespace {
 
-/// The map remembers, so each pass begins before the first scan and measures the last ones.
+/// The map has memory, so each pass starts before the first scan and measures the last ones.
 void map_update_stage(benchmark::State& state, StagedScans& staged, ThreadPool& pool) {
   const std::size_t first = staged.measured.front().k;
   bool right = true;
@@ -25,7 +25,7 @@ void map_update_stage(benchmark::State& state, StagedScans& staged, ThreadPool& 
                                       static_cast<double>(last.block_count() * kBlockVoxels);
 }
 
-/// One call is one scan; in sixteen every block is looked at once.
+/// One call is one scan; in sixteen scans every block is visited once.
 void evict_stage(benchmark::State& state, StagedScans& staged, ThreadPool& pool) {
   constexpr std::uint32_t kScans = 16;
   const std::uint32_t k = staged.last().k;

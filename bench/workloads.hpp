@@ -10,7 +10,7 @@
 namespace mosbench {
 using namespace hmm_mos;
 
-/// Scans to measure on, with the configuration they are segmented by.
+/// Scans to measure on, with the configuration that segments them.
 struct Workload {
   std::string name;
   Config config;

@@ -7,22 +7,22 @@
 #include <emmintrin.h>
 #endif
 
-/// Numbers side by side, mostly eight, as many as a row of a block has cells. Vector types that GCC
-/// and clang cut to the registers of the machine they compile for.
+/// Vectors of mostly eight numbers, as many as a row of a block has cells. GCC and clang split
+/// these types into registers of the target machine.
 namespace mosbench {
 
 using FloatLanes = float __attribute__((vector_size(32)));
 using IntLanes = std::int32_t __attribute__((vector_size(32)));
 using UintLanes = std::uint32_t __attribute__((vector_size(32)));
 using ByteLanes = std::uint8_t __attribute__((vector_size(8)));
-/// What comparisons of 32 bytes or 16 numbers give.
+/// Results of comparing 32 bytes or 16 numbers.
 using ByteFlags = std::int8_t __attribute__((vector_size(32)));
 using ShortFlags = std::int16_t __attribute__((vector_size(32)));
 using ShortLanes = std::int16_t __attribute__((vector_size(16)));
 inline constexpr std::size_t kLanes = 8;
 
-/// Where lanes are laid down to be taken one by one. Not by memcpy, which GCC 12 cuts into halves
-/// by way of general registers, at several times the cost.
+/// Memory into which lanes are stored to be loaded one at a time. Not by memcpy, which GCC 12
+/// splits into halves through general registers, at several times the cost.
 struct alignas(32) LaneArray : std::array<std::uint32_t, kLanes> {};
 
 template <typename Lanes>
@@ -30,11 +30,11 @@ inline __attribute__((always_inline)) void store(const Lanes& lanes, LaneArray& 
   static_assert(sizeof(Lanes) == sizeof(array));
   typedef Lanes Aliasing __attribute__((may_alias));
   *reinterpret_cast<Aliasing*>(array.data()) = lanes;
-  // Taken from a register a lane costs two operations, loaded one: keep the compiler to loads.
+  // A lane extracted from a register costs two operations, a loaded one: force loads.
   __asm__("" : "+m"(array));
 }
 
-/// Lanes from any address.
+/// Loads lanes from any address.
 template <typename Lanes>
 inline __attribute__((always_inline)) Lanes load(const void* from) {
   typedef Lanes Unaligned __attribute__((may_alias, aligned(1)));
@@ -46,7 +46,7 @@ inline __attribute__((always_inline)) void store(const Lanes& lanes, void* to) {
   *static_cast<Unaligned*>(to) = lanes;
 }
 
-/// |x| of each lane.
+/// Returns |x| of each lane.
 template <typename Lanes>
 inline __attribute__((always_inline)) Lanes magnitude(const Lanes& lanes) {
   return lanes < 0 ? -lanes : lanes;
@@ -73,7 +73,7 @@ inline __attribute__((always_inline)) std::uint32_t bits_of(const ByteFlags& lan
   return bits;
 #endif
 }
-/// The same of two, first those of `low`.
+/// The same for two vectors, `low` first.
 inline __attribute__((always_inline)) std::uint32_t bits_of(const ShortLanes& low,
                                                             const ShortLanes& high) {
 #if defined(__SSE2__)

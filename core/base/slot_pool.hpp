@@ -7,7 +7,7 @@
 
 namespace mosbench {
 
-/// Slots of one type that are taken and given back without moving the others.
+/// Slots of one type that are taken and returned without moving the others.
 template <typename Value>
 class Pool {
  public:
@@ -16,7 +16,7 @@ class Pool {
     return chunks_[slot / kChunk][slot % kChunk];
   }
 
-  /// A slot whose content is left over from its last use.
+  /// Returns a free slot; its content is left over from its last use.
   std::uint32_t take() {
     if (free_.empty()) {
       const auto first = static_cast<std::uint32_t>(chunks_.size()) * kChunk;

@@ -6,16 +6,16 @@
 
 namespace mosbench {
 
-/// CPU time that the process has used so far in all its threads.
+/// Returns the CPU time that all threads of the process have used so far.
 double process_cpu_ms();
 
-/// Where the times of a scan's stages go.
+/// The list that the times of a scan's stages are appended to.
 struct StageRecord {
   std::vector<StageTime>& stages;
   bool cpu_times;  ///< reading that clock costs a microsecond per stage
 };
 
-/// Appends the time of its life as one run of a stage.
+/// Measures its own lifetime and appends it as one run of a stage.
 class StageClock {
  public:
   StageClock(const StageRecord& record, std::string_view stage);

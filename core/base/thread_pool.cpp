@@ -8,8 +8,8 @@
 namespace mosbench {
 namespace {
 
-/// How long to watch for an event before sleeping until it. To be woken takes about as long, and a
-/// scan has some fifteen stages that begin and end with it.
+/// Time to spin before blocking. Waking a thread takes about as long, and a scan has some fifteen
+/// parallel regions.
 constexpr std::chrono::microseconds kWatch{60};
 
 /// Returns when `happened` or a little later; lets other threads run meanwhile.
@@ -78,7 +78,7 @@ void ThreadPool::for_ranges(std::size_t count, std::size_t grain,
     job.drain(0);
     watch([this] { return busy_ == 0; });
     std::unique_lock lock(mutex_);
-    job_ = nullptr;  // who wakes only now has nothing left to do and is not waited for
+    job_ = nullptr;  // a thread that wakes only now has nothing left to do and is not waited for
     finish_.wait(lock, [this] { return busy_ == 0; });
   }
   if (job.error) std::rethrow_exception(job.error);

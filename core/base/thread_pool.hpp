@@ -11,11 +11,11 @@
 
 namespace mosbench {
 
-/// Logical cores of the machine; 1 when that cannot be told.
+/// Returns the logical cores of the machine; 1 when unknown.
 unsigned hardware_threads();
 
 /// Worker threads created once. Work is cut into fixed chunks with disjoint outputs, so results do
-/// not depend on which thread takes which chunk.
+/// not depend on which thread computes which chunk.
 class ThreadPool {
  public:
   /// `threads` counts the calling thread: 1 starts no worker.
@@ -39,7 +39,8 @@ class ThreadPool {
   std::mutex mutex_;
   std::condition_variable start_, finish_;
   Job* job_ = nullptr;
-  // Written under the mutex, so that nobody misses a change; atomic for those who watch without it.
+  // Written under the mutex, so that no thread misses a change; atomic for those that spin without
+  // it.
   std::atomic<std::size_t> generation_ = 0;
   std::atomic<unsigned> busy_ = 0;  // workers at the job
   std::atomic<bool> stop_ = false;

@@ -31,7 +31,7 @@ void check(const Config& config) {
     throw std::invalid_argument("min_range_m: not below max_range_m, expected min < max");
   }
   check_voxels("max_range_m", config.max_range_m / config.voxel_size_m, kMaxRangeVoxels);
-  // The distance field reaches as far as a likelihood can matter.
+  // The distance field reaches as far as a likelihood can change a state.
   const double reach_per_sigma =
       likelihood_reach_sigmas(config.transition_epsilon, config.min_state_probability);
   check_voxels("occupancy_sigma_m", config.sigma_m() / config.voxel_size_m,

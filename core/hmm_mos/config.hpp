@@ -14,7 +14,8 @@ namespace mosbench::hmm_mos {
 enum class Variant { kPaper2024, kRelease2025 };
 inline constexpr std::array<std::string_view, 2> kVariantNames = {"paper-2024", "release-2025"};
 
-/// Every parameter of the method; the defaults are the paper's (DOALS, 20 m).
+/// Every parameter of the method, with the paper's symbol (III); the defaults are the paper's for
+/// DOALS at 20 m.
 struct Config {
   Variant variant = Variant::kPaper2024;
   double voxel_size_m = 0.20;               ///< Delta

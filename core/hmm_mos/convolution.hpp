@@ -11,19 +11,21 @@
 
 namespace mosbench::hmm_mos {
 
-/// algorithm step 5a: the spatial score of every occupied voxel of the scan, max(0, votes) over the
-/// m^3 neighbours: +1 for an occupied voxel that changed, -1 for a voxel that is not known.
-/// `changed` are the changes that count for this scan; `map` is refreshed where it is asked.
+/// Returns K_m * P'_chg at the occupied voxels of the scan (paper, III): the number of changed,
+/// occupied voxels among the m^3 around each, less one for each voxel that is not known (the
+/// authors' program; the paper does not mention it), at least 0. `changed` are the changes that
+/// count for this scan; `map` is refreshed where it is asked.
 ScoreField convolve(const VoxelizedScan& scan, const VoxelSet& changed, int kernel_width_voxels,
                     VoxelMap& map, std::uint32_t scan_index, ThreadPool& pool);
 
-/// Occupied voxels in and beside the blocks of either list that have an unknown voxel among their
-/// m^3 neighbours.
+/// Returns the occupied voxels with an unknown voxel among the m^3 around them, as far as they lie
+/// in or next to a block of either list. The authors' program keeps them out of the dynamic region.
 VoxelSet beside_unknown(const VoxelizedScan& scan, std::span<const BlockIndex> blocks,
                         std::span<const BlockIndex> more_blocks, int kernel_width_voxels,
                         VoxelMap& map, std::uint32_t scan_index, ThreadPool& pool);
 
-/// Slots of scan.measured of the given blocks and of all their neighbours, without repeats.
+/// Returns the slots of scan.measured of the given blocks and of all their neighbours, without
+/// repeats.
 std::vector<std::uint32_t> slots_around(const VoxelizedScan& scan,
                                         std::span<const BlockIndex> blocks);
 

@@ -94,7 +94,8 @@ void DynamicRegion::update(const DetectedScan& detected, std::uint32_t scan_inde
   evict(detected.scan.sensor_m, scan_index);
 }
 
-/// Step 6.2. A voxel that a first detection at this time has stamped is left alone by a second one.
+/// Adds the scan's dynamic voxels. A voxel that a first detection at this time has visited is not
+/// changed by a second one.
 void DynamicRegion::visit(const DetectedScan& detected, std::uint32_t scan_index) {
   const VoxelSet stamped =
       visited_at_ == scan_index ? std::exchange(visited_, VoxelSet{}) : VoxelSet{};

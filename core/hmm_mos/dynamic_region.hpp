@@ -12,8 +12,8 @@
 
 namespace mosbench::hmm_mos {
 
-/// What detection found about a scan; the masks of `beside_unknown` need to be right only where
-/// the scan's voxels are dynamic or lie within a block of the region.
+/// What detection found in a scan. `beside_unknown` need be complete only in and next to the blocks
+/// of the region and of `dynamic`.
 struct DetectedScan {
   const VoxelizedScan& scan;
   const VoxelSet& dynamic;      ///< before the back-end added any
@@ -22,19 +22,24 @@ struct DetectedScan {
   std::optional<double> threshold;  ///< T
 };
 
-/// The voxels found dynamic in the last w_d scans (paper-2024 only). Voxels that are not dynamic
-/// need no record: nothing depends on them beyond the scan in which they are visited.
+/// The dynamic window of the paper (III): voxels found dynamic in the last w_d scans, here called
+/// the region (paper-2024 only). High-confidence voxels are those of its voxels, not beside unknown
+/// ones, with more dynamic ones among the 27 around them than Otsu's threshold T_R on these counts.
+/// Voxels that are not dynamic need no record: nothing depends on them beyond the scan that visits
+/// them.
 class DynamicRegion {
  public:
   DynamicRegion(const VoxelGrid& grid, double max_range_m, int dynamic_window_scans,
                 int min_otsu_score);
 
-  /// algorithm step 5g: of `candidates` (occupied voxels not beside unknown), those with more
-  /// high-confidence voxels among their m^3 neighbours than Otsu's threshold.
+  /// Returns the scan's occupied voxels that are not in `beside_unknown` and have more
+  /// high-confidence voxels among the m^3 around them than Otsu's threshold on these counts.
   VoxelSet back_end(const VoxelizedScan& scan, const VoxelSet& beside_unknown,
                     int kernel_width_voxels, ThreadPool& pool) const;
 
-  /// algorithm step 6 at time `scan_index`; may be called twice with the same time.
+  /// Takes in the dynamic voxels of a scan that was judged at time `scan_index`; forgets those
+  /// older than w_d scans or beyond twice the range. The end of a delayed run calls it twice with
+  /// the same time.
   void update(const DetectedScan& detected, std::uint32_t scan_index);
 
   /// Blocks with any dynamic voxel.
@@ -66,7 +71,7 @@ class DynamicRegion {
   Pool<Block> blocks_;
   std::array<std::size_t, 28> count_by_neighbours_{};  // of all dynamic voxels
   double threshold_ = 0;                               // T_R, kept while no level is found
-  VoxelSet visited_;  // occupied, not dynamic voxels that visited_at_ has seen
+  VoxelSet visited_;  // occupied, non-dynamic voxels of scan `visited_at_`
   std::uint32_t visited_at_ = 0;
 };
 

@@ -9,7 +9,8 @@ namespace mosbench::hmm_mos {
 namespace {
 
 /// One observation at likelihood L leaves even a certainly occupied voxel at p < L / epsilon. Below
-/// this L that lies thousands of times under 1 - p_min: no state can depend on it.
+/// the L returned, this posterior is under 3.2e-4 (1 - p_min), so treating it as 0 cannot change a
+/// state.
 double negligible_likelihood(double transition_epsilon, double min_state_probability) {
   return transition_epsilon * (1 - min_state_probability) * 3.2e-4;
 }
@@ -20,7 +21,7 @@ struct Cells {
   const float* likelihood;
 };
 
-/// The filter for rows of eight cells; those out of reach keep what they have.
+/// Filters rows of eight cells; cells out of reach keep their belief and state.
 MOSBENCH_MULTIARCH void filter_cells(const BeliefFilter::Step& step, const Cells& cells,
                                      float* beliefs, BlockStates& states) {
   for (std::size_t z = 0; z < kBlockSide; ++z) {
@@ -41,7 +42,8 @@ MOSBENCH_MULTIARCH void filter_cells(const BeliefFilter::Step& step, const Cells
       const FloatLanes prior = lanes_of(row_of(cells.nonzero))
                                    ? belief
                                    : (lanes_of(row_of(cells.seen)) ? FloatLanes{} : unseen);
-      // x <- A x, then x <- normalize(diag(0, L, 1 - L) x), written for p(occupied) alone.
+      // x_k = eta B A x_{k-1} (paper, III): q = (A x)_occupied, B = diag(0, L, 1 - L), eta
+      // normalises.
       const FloatLanes q = step.epsilon + step.keep * prior;
       const FloatLanes hit = likelihood * q;
       const FloatLanes p = hit / (hit + (1.0f - likelihood) * (1.0f - q));
@@ -68,12 +70,12 @@ BeliefFilter::BeliefFilter(double voxel_size_m, double sigma_m, double transitio
   const double negligible = negligible_likelihood(transition_epsilon, min_state_probability);
   const double ratio = voxel_size_m / sigma_m;
   for (int n = 0;; ++n) {
-    const double likelihood = std::exp(-n * ratio * ratio / 2);  // L = exp(-d^2 / (2 sigma^2))
+    const double likelihood = std::exp(-n * ratio * ratio / 2);  // L = exp(-d^2 / (2 sigma_o^2))
     if (likelihood < negligible) break;
     likelihood_.push_back(static_cast<float>(likelihood));
   }
   radius_ = static_cast<int>(std::sqrt(static_cast<double>(likelihood_.size() - 1)));
-  // Up to the distance of cells that are not near.
+  // Zeroes, up to the distance of cells that are not near.
   likelihood_.resize(static_cast<std::size_t>(far_squared(radius_)) + 1);
 }
 

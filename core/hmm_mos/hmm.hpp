@@ -9,7 +9,7 @@
 
 namespace mosbench::hmm_mos {
 
-/// Most probable states of a block's voxels. In neither mask: unobserved.
+/// States S of a block's voxels. In neither mask: unobserved.
 struct BlockStates {
   BlockMask occupied, free;
 };
@@ -20,11 +20,13 @@ struct BlockBeliefs {
   alignas(64) std::array<float, kBlockVoxels> occupied;  ///< valid where nonzero
 };
 
-/// The distance, in sigmas, beyond which the likelihood of an occupied voxel cannot change a state.
+/// Returns the distance, in sigmas, beyond which the likelihood of an occupied voxel cannot change
+/// a state.
 double likelihood_reach_sigmas(double transition_epsilon, double min_state_probability);
 
-/// The three-state filter. After its first observation a voxel is never unobserved again, so the
-/// belief is one number, p(occupied); a voxel that was never seen has p = 0.5.
+/// The three-state hidden Markov model of the paper (III). After its first observation a voxel is
+/// never unobserved again, so the belief x is one number, p(occupied); a voxel that was never seen
+/// has p = 0.5.
 class BeliefFilter {
  public:
   /// epsilon in (0, 0.5), p_min in [0.5, 1); metres.
@@ -34,7 +36,8 @@ class BeliefFilter {
   /// Voxels per axis beyond which a likelihood cannot change a state.
   int radius() const { return radius_; }
 
-  /// algorithm step 3 for the observed voxels of a block. `seen` are the voxels with a record,
+  /// x_k = eta B A x_{k-1}, B = diag(0, L, 1 - L), L = exp(-d^2 / (2 sigma_o^2)), and S where p >
+  /// p_min (paper, III), for the observed voxels of a block. `seen` are the voxels with a record,
   /// `nonzero` those of them with a number in `beliefs`; all others have p = 0.
   void update(const BlockMask& observed, const BlockMask& seen, const BlockDistances& distances,
               BlockMask& nonzero, BlockBeliefs& beliefs, BlockStates& states) const;

@@ -9,10 +9,11 @@
 
 namespace mosbench::hmm_mos {
 
-/// algorithm step 5h: kMovingLabel for points in a voxel of `moving`, kStaticLabel for all others.
+/// Returns a label per point (paper, III: points take the label of their voxel): kMovingLabel in
+/// voxels of `moving`, kStaticLabel elsewhere.
 std::vector<std::uint32_t> project_labels(const VoxelizedScan& scan, const VoxelSet& moving);
 
-/// S of every point's voxel (algorithm step 5c); 0 where the scan has no voxel or the field none.
+/// Returns L^dyn of every point's voxel; 0 where the point has no voxel or the voxel no score.
 std::vector<float> project_scores(const VoxelizedScan& scan, const SumField& sums);
 
 }  // namespace mosbench::hmm_mos

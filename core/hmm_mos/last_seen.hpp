@@ -7,17 +7,17 @@
 
 namespace mosbench::hmm_mos {
 
-/// The number of the scan in which each voxel of a block was seen last, modulo 2^planes. Bit p of
-/// all 512 numbers fills one mask, so that all are written or compared with a few operations for
-/// each bit instead of some for each voxel. The upper bits are the same for eight scans and written
-/// once they are over.
+/// The index of the scan in which each voxel of a block was seen last, modulo 2^planes: what w_g
+/// (paper, III) is compared with. Bit p of all 512 numbers fills one mask, so that all numbers are
+/// written or compared with a few operations per bit instead of some per voxel. The upper bits are
+/// the same for eight scans and written after these.
 class LastSeen {
  public:
   static constexpr int kMaxPlanes = 16;
   static constexpr int kLowPlanes = 3;  ///< written by every stamp
-  /// From the beginning, what a stamp mostly touches.
+  /// Bytes from the beginning that most stamps touch.
   static constexpr std::size_t kTouchedBytes = (2 + kLowPlanes) * sizeof(BlockMask);
-  /// Planes that tell ages up to `max_age` apart.
+  /// Returns how many planes distinguish ages up to `max_age`.
   static int planes_for(std::uint32_t max_age);
 
   void stamp(const BlockMask& voxels, std::uint32_t scan_index, int planes);

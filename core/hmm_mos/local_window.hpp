@@ -8,15 +8,16 @@
 
 namespace mosbench::hmm_mos {
 
-/// The filtered scores of the last w_l scans.
+/// The local window of the paper (III): the filtered votes of the last w_l scans, whose sum is the
+/// dynamic score L^dyn = sum over w_l of K_m * P'_chg.
 class LocalWindow {
  public:
   explicit LocalWindow(int scans) : scans_(static_cast<std::size_t>(scans)) {}
 
-  /// algorithm step 5c: a scan joins, the oldest leaves.
+  /// Takes the votes of a scan in; those of the oldest scan leave.
   void join(ScoreField scores);
 
-  /// S(v): the sum over the window at the occupied voxels of the scan.
+  /// Returns L^dyn at the occupied voxels of the scan.
   SumField sums(const VoxelizedScan& scan) const;
 
   std::size_t memory_bytes() const;

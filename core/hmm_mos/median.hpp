@@ -6,8 +6,9 @@
 
 namespace mosbench::hmm_mos {
 
-/// algorithm step 5b: the median of the unfiltered scores of each occupied voxel and its up to 26
-/// occupied neighbours; of an even number the mean of the two middle ones, truncated.
+/// Returns, for each occupied voxel, the median of the scores of itself and its up to 26 occupied
+/// neighbours; of an even number the mean of the two middle ones, truncated. A step of the authors'
+/// program that the paper's section III does not mention.
 ScoreField median_filter(const VoxelizedScan& scan, const ScoreField& scores, ThreadPool& pool);
 
 }  // namespace mosbench::hmm_mos

@@ -55,7 +55,7 @@ std::optional<double> otsu_threshold(std::span<const ValueCount> values) {
     if (below > 0 && above > 0) {
       const double gap = moment_below / below - (moment - moment_below) / above;
       const double between = below * above * (gap * gap);
-      if (between >= best) {  // later ties win
+      if (between >= best) {  // the highest of equal levels wins
         best = between;
         level = i + 1;
       }

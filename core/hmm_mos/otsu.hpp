@@ -7,14 +7,16 @@
 
 namespace mosbench::hmm_mos {
 
-/// So many voxels have this value.
+/// `count` voxels have the value `value`.
 struct ValueCount {
   std::int32_t value = 0;
   std::size_t count = 0;
 };
 
-/// algorithm step 5d: Otsu's threshold over 100 bins between the least and the greatest value. A
-/// value may come in several entries. Nothing when no level separates the values.
+/// Returns Otsu's threshold T (paper, III), the level that maximises the variance between the
+/// classes w0 w1 (mu0 - mu1)^2, of 100 bins between the least and the greatest value; among equal
+/// levels the highest. A value may come in several entries. nullopt when all values are equal. (N.
+/// Otsu, "A Threshold Selection Method from Gray-Level Histograms", 1979.)
 std::optional<double> otsu_threshold(std::span<const ValueCount> values);
 
 }  // namespace mosbench::hmm_mos

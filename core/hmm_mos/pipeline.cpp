@@ -67,7 +67,7 @@ struct Pipeline::State {
   Config config;
   RunContext context;
   ThreadPool pool;
-  std::optional<ThreadPool> observing_pool;  ///< for scans that are observed beside
+  std::optional<ThreadPool> observing_pool;  ///< for scans observed during a push
   std::optional<VoxelGrid> grid;             ///< around the first scan
   RaycastScratch scratch;
   std::optional<Memory> memory;
@@ -77,7 +77,7 @@ struct Pipeline::State {
   bool finished = false;
 };
 
-/// P'_M and P'_obs: what can be found without the scans before.
+/// Finds P'_M and P'_obs, which need no earlier scan.
 std::unique_ptr<ObservedScan> Pipeline::State::observe(std::span<const Point> points,
                                                        const Pose& map_from_sensor,
                                                        ThreadPool& observing) {
@@ -90,7 +90,7 @@ std::unique_ptr<ObservedScan> Pipeline::State::observe(std::span<const Point> po
     return voxelize(points, map_from_sensor, around, config.min_range_m, config.max_range_m,
                     observing);
   });
-  if (!grid) grid = around;  // written once: the scan before may be pushed meanwhile
+  if (!grid) grid = around;  // written once: the previous scan may be pushed meanwhile
   current->observed = timed(record, "raycast", [&] {
     return raycast(current->scan.measured, current->scan.sensor_voxel, config.voxel_size_m,
                    config.max_range_m, scratch, observing);
@@ -98,7 +98,8 @@ std::unique_ptr<ObservedScan> Pipeline::State::observe(std::span<const Point> po
   return current;
 }
 
-/// The beliefs x and states S of observed voxels; voxels out of range or unobserved for w_g leave.
+/// Updates beliefs x and states S of observed voxels; voxels out of range or unobserved for w_g
+/// leave.
 void Pipeline::State::enter_map(const ObservedScan& current, const StageRecord& record,
                                 std::uint32_t k) {
   const VoxelizedScan& scan = current.scan;
@@ -193,7 +194,7 @@ std::vector<LabelledScan> Pipeline::State::push(ObservedScan& observed) {
   return held.size() > n ? release(1) : std::vector<LabelledScan>{};
 }
 
-/// Points of a scan in which nothing was looked for are static.
+/// Returns the oldest held scans; points of scans that were not judged are static.
 std::vector<LabelledScan> Pipeline::State::release(std::size_t count) {
   std::vector<LabelledScan> results;
   for (; count > 0; --count) {
@@ -224,7 +225,7 @@ std::vector<LabelledScan> Pipeline::push(std::span<const Point> points,
 
 std::unique_ptr<Observed> Pipeline::observe(std::span<const Point> points,
                                             const Pose& map_from_sensor) {
-  // The other half of the threads is busy with the scan before.
+  // The other half of the threads pushes the previous scan.
   if (!state_->observing_pool)
     state_->observing_pool.emplace(std::max(1U, state_->pool.size() / 2));
   return state_->observe(points, map_from_sensor, *state_->observing_pool);

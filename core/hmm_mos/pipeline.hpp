@@ -10,8 +10,8 @@
 
 namespace mosbench::hmm_mos {
 
-/// The whole method, section III of the paper. Scores are the votes S of a point's voxel, which
-/// Otsu's T is compared with; 0 outside the map and in scans without detection.
+/// The whole method (paper, III). Scores are L^dyn of a point's voxel, which Otsu's T is compared
+/// with; 0 outside the map and in scans that are not judged.
 class Pipeline final : public Method {
  public:
   /// With a scan_count a delayed run labels its last scans as the authors' program does; without it
@@ -35,7 +35,7 @@ class Pipeline final : public Method {
   std::unique_ptr<State> state_;
 };
 
-/// Says how the end of a delayed sequence is labelled; empty when online or of unknown length.
+/// Describes how the end of a delayed sequence is labelled; empty when online or of unknown length.
 std::vector<std::string> remarks_on_delay(const Config& config, const RunContext& context);
 
 }  // namespace mosbench::hmm_mos

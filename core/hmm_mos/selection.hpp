@@ -11,22 +11,22 @@
 
 namespace mosbench::hmm_mos {
 
-/// Otsu's threshold T on S(v) of all occupied voxels.
+/// Returns Otsu's threshold T on the scores L^dyn of all occupied voxels (paper, III).
 std::optional<double> threshold_of(const VoxelizedScan& scan, const SumField& sums);
 
-/// Steps 5h and 6.2: whether a scan with this T shows any motion at all.
+/// Returns whether a scan with this T has moving points at all: T > otsu_min (paper, III).
 inline bool shows_motion(std::optional<double> threshold, int min_otsu_score) {
   return threshold.value_or(0.0) > min_otsu_score;
 }
 
-/// algorithm steps 5d to 5f: occupied voxels with S > T and those of `carried` with S >
-/// min_otsu_score, then all occupied voxels in their 27-neighbourhoods. The result is a set of the
-/// scan's occupied voxels.
+/// Returns the dynamic voxels of a scan: occupied voxels with L^dyn > T and, as the authors'
+/// program does, those of `carried` with L^dyn > min_otsu_score; then, by nearest-neighbour
+/// dilation (paper, III), all occupied voxels among the 27 around each of them.
 VoxelSet select_dynamic(const VoxelizedScan& scan, const SumField& sums,
                         std::optional<double> threshold, const VoxelSet& carried,
                         int min_otsu_score);
 
-/// The voxels in either set.
+/// Returns the voxels in either set.
 VoxelSet united(VoxelSet some, const VoxelSet& more);
 
 }  // namespace mosbench::hmm_mos

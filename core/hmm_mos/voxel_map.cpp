@@ -65,7 +65,7 @@ void VoxelMap::drop_block(std::uint32_t slot) {
   blocks_.give_back(slot);
 }
 
-/// Takes records away as if the voxels had never been seen.
+/// Removes records as if the voxels had never been seen.
 void VoxelMap::forget(Block& block, const BlockMask& voxels) {
   block.seen = without(block.seen, voxels);
   block.fresh = without(block.fresh, voxels);
@@ -76,7 +76,7 @@ void VoxelMap::forget(Block& block, const BlockMask& voxels) {
   block.states.free = without(block.states.free, voxels);
 }
 
-/// Writes down when voxels that may not be seen again were seen last.
+/// Records when voxels that may not be seen again were seen last.
 void VoxelMap::stamp_fresh(Block& block, const BlockMask& voxels) {
   block.last_seen.stamp(voxels, block.newest_seen, age_planes_);
 }
@@ -170,7 +170,7 @@ VoxelList VoxelMap::update(const VoxelList& observed, std::span<const VoxelSet* 
   return changes;
 }
 
-/// Keeps the recent positions and tells whether lazy eviction is still invisible.
+/// Keeps the recent positions and finds out whether amortised eviction still changes nothing.
 void VoxelMap::note_sensor(const Eigen::Vector3d& sensor_m, std::uint32_t scan_index) {
   double path_m = 0;
   for (std::size_t i = 1; i < sensors_m_.size(); ++i) {
@@ -224,7 +224,7 @@ void VoxelMap::evict_from_block(std::uint32_t slot, std::size_t first_sensor,
   if (!block.seen.any()) drop_block(slot);
 }
 
-/// A record that expired takes its last change along: one that is made anew has never changed.
+/// An expired record loses its last change; a new record starts as "never changed".
 void VoxelMap::drop_expired_changes(std::uint32_t scan_index) {
   for (ChangesOfScan& changes : changes_) {
     if (scan_index - changes.scan_index < global_window_scans_ + 2) return;

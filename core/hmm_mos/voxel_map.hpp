@@ -16,24 +16,25 @@
 
 namespace mosbench::hmm_mos {
 
-/// The occupancy map: beliefs, states and ages of every voxel seen in the last w_g scans within the
-/// eviction radius.
+/// The map M of the paper (III): beliefs x, states S and ages of the voxels observed in the last
+/// w_g scans within the eviction radius.
 class VoxelMap {
  public:
   VoxelMap(const Config& config, const VoxelGrid& grid);
 
-  /// algorithm step 3 up to eviction. `sources` are the measured sets whose union the distance
-  /// field refers to; `sensor_m` is this scan's position. Returns the voxels whose state changed.
+  /// One step x_k = eta B A x_{k-1} of the observed voxels, and their states (paper, III).
+  /// `sources` are the measured sets whose union the distance field refers to; `sensor_m` is this
+  /// scan's position. Returns the voxels whose state changed.
   VoxelList update(const VoxelList& observed, std::span<const VoxelSet* const> sources,
                    const Eigen::Vector3d& sensor_m, std::uint32_t scan_index, ThreadPool& pool);
 
-  /// The rest of step 3, after `update`: drops what lies beyond the eviction radius of this scan's
-  /// sensor or was not seen for more than w_g scans. Most blocks are looked at only every
-  /// kSweepScans scans; nobody can tell, because the sensor cannot come back to them in that time:
-  /// when it moves too fast for that, every block is looked at in every scan.
+  /// To be called after `update`: removes voxels that lie beyond the eviction radius of this scan's
+  /// sensor or were not observed for more than w_g scans (paper, III). Eviction is amortised: a
+  /// block is visited once in kSweepScans scans. Results are unchanged as long as the sensor moves
+  /// less than safe_path_m_ meanwhile; otherwise all blocks are visited.
   void evict(std::uint32_t scan_index);
 
-  /// Brings the ages of these blocks up to date, so that `known` answers for `scan_index`.
+  /// Updates the ages of these blocks, so that `known` answers for `scan_index`.
   void refresh(std::span<const std::uint32_t> slots, std::uint32_t scan_index, ThreadPool& pool);
 
   std::uint32_t find(const BlockIndex& block) const { return table_.find(block); }

@@ -49,7 +49,7 @@ template <typename Distance>
 struct Simd {
   typedef Distance Lanes __attribute__((vector_size(32)));  // a dependent type: no alias
   using Words = std::uint64_t __attribute__((vector_size(32)));
-  /// What a comparison gives, by a name that compilers agree on.
+  /// The type of a comparison's result, by a name that compilers agree on.
   using Flags = std::conditional_t<sizeof(Distance) == 1, ByteFlags, ShortFlags>;
   using Row = std::array<Distance, kBlockSide>;
   static constexpr int kPerVector = 32 / static_cast<int>(sizeof(Distance));
@@ -73,7 +73,7 @@ inline __attribute__((always_inline)) void lower(Lanes& least, const Lanes& othe
   least = other < least ? other : least;
 }
 
-/// A row as often as it fits in a vector.
+/// Repeats a row as often as it fits into a vector.
 template <typename Distance>
 inline __attribute__((always_inline)) typename Simd<Distance>::Lanes repeated(
     const typename Simd<Distance>::Row& row) {
@@ -91,7 +91,7 @@ inline std::uint64_t nonzero_bytes(std::uint64_t word) {
   return (word & 0x0101010101010101u) * 0x0102040810204080u >> 56;
 }
 
-/// The cube of blocks around one, and how far sources matter.
+/// The cube of blocks around a block, and how far sources matter.
 struct Surroundings {
   const SourceBlock* const* blocks;  ///< (2 reach + 1)^3
   int radius, reach;
@@ -99,7 +99,7 @@ struct Surroundings {
   int side() const { return 2 * reach + 1; }
 };
 
-/// 1 to 64 of them.
+/// Returns a word whose lowest `count` bits are set, 1 to 64.
 std::uint64_t lowest_bits(int count) { return ~std::uint64_t{0} >> (64 - count); }
 
 /// Rows or layers of a block and of `radius` on either side.
@@ -158,7 +158,7 @@ struct LayersAround {
   ColumnDistances::Layers& layers;
   int first;  ///< place of the lowest one
 
-  // As many places as a word has bits, so that words of them turn round as places do.
+  // As many places as a word has bits, so that rotating a word rotates the places.
   static_assert(ColumnDistances::kMaxLayers == 64);
   int place(int layer) const { return (first + layer) & (ColumnDistances::kMaxLayers - 1); }
   std::uint64_t known() const { return std::rotr(layers.known, first); }
@@ -267,7 +267,7 @@ void ColumnDistances::find(const BlockIndex& block, const BlockMask& wanted,
   const LayersAround column{layers_, static_cast<int>(lowest % kMaxLayers)};
   const int up = last_ && last_->x == block.x && last_->y == block.y ? block.z - last_->z : 0;
   const int kept = side_around(around.radius) - up * kBlockSide;
-  // The places of those that are not seen from here are those of layers that are new.
+  // Slots of layers outside this block's reach are reused for the new layers.
   const std::uint64_t shared = up > 0 && kept > 0 ? lowest_bits(kept) : 0;
   layers_.known &= std::rotl(shared, column.first);
   layers_.filled &= layers_.known;

@@ -10,7 +10,7 @@
 
 namespace mosbench {
 
-/// Squared voxels; stands for all distances of radius + 1 voxels or more.
+/// Squared voxels; stands for every distance of radius + 1 voxels or more.
 constexpr int far_squared(int radius) { return (radius + 1) * (radius + 1); }
 
 /// Distances from the cells of a block.
@@ -32,9 +32,12 @@ struct SourceBlock {
 /// Widest radius of a distance field, voxels.
 inline constexpr int kMaxDistanceRadius = 28;
 
-/// Squared Euclidean distances d^2 / Delta^2 from every cell of a block to the nearest source
-/// voxel, as far as they are below (radius + 1)^2. Separable: rows by look-up, then the lower
-/// envelope along y and along z. Shared by threads.
+/// Squared Euclidean distances d_i^2 / Delta^2 (EDF; paper, III) from every cell of a block to the
+/// nearest source voxel, as far as they are below (radius + 1)^2. Exact and separable, one axis
+/// after the other, as in P. Felzenszwalb and D. Huttenlocher, "Distance Transforms of Sampled
+/// Functions", 2012: min over u of |v - u|^2 = min over z of ((v_z - z)^2 + min over y of ((v_y -
+/// y)^2 + min over x of (v_x - x)^2)). Within so small a radius the minimum along x is a look-up,
+/// and those along y and z try every offset. Shared by threads.
 class DistanceField {
  public:
   /// `radius` from 0 to kMaxDistanceRadius.
@@ -58,8 +61,9 @@ class DistanceField {
   Tables<std::uint16_t> wide_;
 };
 
-/// The distance field of block after block. Of a block above the last one only those layers are
-/// computed that are new; raycast's list has up to four blocks above one another in a row.
+/// Computes the distance field of one block after another. For a block above the last one, layers
+/// that both need are reused; raycast's list has up to four blocks of a column in a row, from
+/// below.
 class ColumnDistances {
  public:
   explicit ColumnDistances(const DistanceField& field) : field_(field) {}

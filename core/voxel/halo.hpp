@@ -29,21 +29,21 @@ struct HaloRows {
   alignas(32) std::array<std::uint32_t, std::size_t{kStride} * kStride> rows;
 };
 
-/// Which of a block and its 26 neighbours (bits in the order of for_each_neighbour) may have a
-/// voxel within `radius` per axis of one of the mask's. `radius` from 0 to kMaxHalo.
+/// Returns which of a block and its 26 neighbours (bits in the order of for_each_neighbour) may
+/// have a voxel within `radius` per axis of one of the mask's. `radius` from 0 to kMaxHalo.
 std::uint32_t blocks_within(const BlockMask& mask, int radius);
 
 /// Gathers the masks of a block and its 26 neighbours, null ones as empty. `radius` from 0 to
 /// kMaxHalo.
 void gather_halo(const Neighbourhood& masks, int radius, HaloRows& halo);
 
-/// Turns every voxel of the halo over.
+/// Inverts the halo.
 void invert(HaloRows& halo);
 
-/// The voxels of the block that have a set voxel within `radius` per axis.
+/// Returns the voxels of the block that have a set voxel within `radius` per axis.
 BlockMask dilate(const HaloRows& halo);
 
-/// Set voxels in the cube of side 2 radius + 1 around a cell of the block.
+/// Counts the set voxels in the cube of side 2 radius + 1 around a cell of the block.
 int count_around(const HaloRows& halo, std::uint32_t cell);
 
 }  // namespace mosbench

@@ -20,7 +20,7 @@ std::vector<std::uint32_t> touched_tiles(const std::vector<std::uint8_t>& touche
   return tiles;
 }
 
-/// Takes a block's bits out of a window.
+/// Returns a block's bits and clears them in the window.
 BlockMask take(std::uint8_t* bytes) {
   BlockMask mask;
   std::memcpy(mask.words.data(), bytes, sizeof(mask.words));

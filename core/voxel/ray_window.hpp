@@ -13,8 +13,8 @@
 namespace mosbench {
 
 /// Bits of a box of voxels around the sensor, a byte for eight voxels along x, in tiles of 4x4x4
-/// blocks (one page each). Numbers of tiles are powers of two, so that an address is put together
-/// by shifting coordinates:
+/// blocks (one page each). Numbers of tiles are powers of two, so that shifted coordinates make an
+/// address:
 ///   y0-2 z0-2 z3-4 y3-4 x3-4 | x5.. y5.. z5..   (lowest address bit first; x0-2 is the bit)
 class RayWindow {
  public:
@@ -36,7 +36,7 @@ class RayWindow {
     void touch_between(std::uint32_t a, std::uint32_t b) const {
       const std::uint32_t x = (a ^ b) & x_tiles_, y = (a ^ b) & y_tiles_,
                           z = (a ^ b) & ~(x_tiles_ | y_tiles_);
-      // Seven stores are cheaper than guessing wrongly how many axes differ.
+      // Seven unconditional stores cost less than one mispredicted branch.
       for (const std::uint32_t crossed : {x, y, z, x | y, x | z, y | z, x | y | z}) {
         touched_[a ^ crossed] = 1;
       }
@@ -88,8 +88,8 @@ inline __attribute__((always_inline)) Number address_of(const Number& x, const N
          ((y >> (kFraction + 5) << y_shift) + (z >> (kFraction + 5) << z_shift));
 }
 
-/// What all windows of one layout hold, as blocks; leaves them zero. `first_block` is the block at
-/// the windows' low corner.
+/// Returns the voxels of all windows of one layout and clears the windows. `first_block` is the
+/// block at their low corner.
 VoxelList collect(std::span<RayWindow> windows, const BlockIndex& first_block, ThreadPool& pool);
 
 }  // namespace mosbench

@@ -32,7 +32,8 @@ struct Walk {
   }
 };
 
-/// Lines are looked at every so many steps for the tiles they cross: at most one per axis between.
+/// The tile of a ray is sampled every kTouchStride steps; in between it changes by at most one per
+/// axis.
 constexpr std::int32_t kTouchStride = RayWindow::kTileSide;
 
 /// One ray of any length.

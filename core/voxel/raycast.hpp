@@ -19,9 +19,12 @@ struct RaycastScratch {
   std::size_t memory_bytes() const;
 };
 
-/// algorithm step 2: the voxels on the integer lines from the sensor's voxel to every measured
-/// voxel, as far as |(s - q) Delta|^2 <= max_range^2. `max_range_m / voxel_size_m` must not exceed
-/// kMaxRangeVoxels.
+/// Returns P'_obs (paper, III): the voxels q on Bresenham's lines from the sensor's voxel s to
+/// every measured voxel v, as far as |(s - q) Delta|^2 <= max_range^2. With d = |v - s| per axis, M
+/// = max(d) and an error e = M / 2 per axis, a line has M + 1 voxels; after each of them, per axis:
+///   e -= d;  if (e < 0) { e += M; q moves by one towards v; }
+/// Below, the same in closed form (Line), eight lines at a time. `max_range_m / voxel_size_m` must
+/// not exceed kMaxRangeVoxels.
 VoxelList raycast(const VoxelSet& measured, const Voxel& sensor, double voxel_size_m,
                   double max_range_m, RaycastScratch& scratch, ThreadPool& pool);
 

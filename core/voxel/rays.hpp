@@ -31,8 +31,8 @@ struct Rays {
   std::size_t memory_bytes() const;
 };
 
-/// The line in closed form. With M the longest side and h = M / 2, an axis has moved
-/// floor((i d + M - 1 - h) / M) times after i steps: the authors' error terms unrolled. The
+/// Bresenham's line in closed form. With M the longest side and h = M / 2, an axis has moved
+/// floor((i d + M - 1 - h) / M) times after i steps: the error terms of raycast.hpp, summed. The
 /// quotient is taken in fixed point with a reciprocal rounded up, exact while (i + 1) M^2 <
 /// 2^kLineFraction.
 inline constexpr int kLineFraction = 50;
@@ -56,8 +56,8 @@ struct BlockShare {
 };
 
 /// One ray per measured voxel of the share. A ray is short when visits * longest side is below
-/// `short_limit`. Short rays of one number of visits are ordered so that neighbours in the list are
-/// not neighbours in space: rays cast in step must not wait for each other's bytes.
+/// `short_limit`. The eight short rays that are cast together are taken from different regions, so
+/// that they do not write to the same cache lines.
 void collect_rays(const RaySource& source, BlockShare share, std::int64_t short_limit, Rays& rays);
 
 /// A box around every voxel that will be visited, relative to the sensor's voxel.

@@ -17,7 +17,7 @@ BlockMask within_range(const VoxelGrid& grid, const BlockIndex& block, const Blo
     farthest_sq_m2 += farthest * farthest;
   }
   const double range_sq_m2 = range_m * range_m;
-  // The bounds round differently from the voxels' own sums: near the limit every voxel is asked.
+  // Bounds are rounded differently from the voxels' own sums: near the limit each voxel is tested.
   if (farthest_sq_m2 < range_sq_m2 * (1 - 1e-9)) return mask;
   if (nearest_sq_m2 > range_sq_m2 * (1 + 1e-9)) return {};
   BlockMask inside;

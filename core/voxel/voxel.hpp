@@ -49,7 +49,7 @@ struct alignas(64) BlockMask {
     return bits != 0;
   }
   std::size_t count() const {
-    // In line: without a flag for newer machines std::popcount is a call for each word.
+    // Without a flag for newer machines std::popcount would be a call for each word.
     std::uint64_t total = 0;
     for (std::uint64_t word : words) {
       word -= word >> 1 & 0x5555555555555555u;

@@ -17,7 +17,7 @@ namespace {
 constexpr double kReachFromOrigin = 1 << 23;
 constexpr double kReachFromSensor = 1 << 19;
 
-// Points without a voxel carry the reason in x.
+// Instead of a coordinate x, points without a voxel have a reason.
 constexpr std::int32_t kTooNear = std::numeric_limits<std::int32_t>::min();
 constexpr std::int32_t kNonfinite = kTooNear + 1;
 constexpr std::int32_t kOverflow = kTooNear + 2;
@@ -42,8 +42,8 @@ using Choice = std::int64_t __attribute__((vector_size(32)));
 #endif
 static_assert(FLT_EVAL_METHOD == 0, "doubles must be rounded to doubles (x86: SSE2)");
 
-/// std::floor of numbers below 2^51 by adding one whose last bit is worth one; larger ones, far
-/// beyond any grid, stay as they are.
+/// Computes std::floor of numbers below 2^51 by adding a number whose last bit is worth one. Larger
+/// ones, far beyond any grid, are returned unchanged.
 inline __attribute__((always_inline)) Doubles floor_of(const Doubles& lanes) {
   constexpr double kWhole = 6755399441055744.0;  // 1.5 * 2^52
   const Doubles nearest = (lanes + kWhole) - kWhole;
@@ -57,7 +57,8 @@ inline __attribute__((always_inline)) Doubles greatest(const Doubles& a, const D
   return ab > c ? ab : c;
 }
 
-/// The voxels of four points, to be the chunk's from `first` on.
+/// P_M = T_{M->S} P_S and P'_M = floor(P_M / Delta) (paper, III) of four points, written to the
+/// chunk from `first` on.
 inline __attribute__((always_inline)) void project_four(const Point* points,
                                                         const Projection& projection,
                                                         std::size_t first, ProjectedChunk& chunk) {
@@ -74,7 +75,7 @@ inline __attribute__((always_inline)) void project_four(const Point* points,
   const auto x = __builtin_convertvector(__builtin_shufflevector(xy01, xy23, 0, 1, 4, 5), Doubles);
   const auto y = __builtin_convertvector(__builtin_shufflevector(xy01, xy23, 2, 3, 6, 7), Doubles);
   const auto z = __builtin_convertvector(__builtin_shufflevector(z01, z23, 0, 1, 4, 5), Doubles);
-  // Order of additions as in the authors' program.
+  // Additions in the order of the authors' program: the same roundings.
   const Doubles px = ((r[0] * x + r[1] * y) + r[2] * z) + t[0];
   const Doubles py = ((r[3] * x + r[4] * y) + r[5] * z) + t[1];
   const Doubles pz = ((r[6] * x + r[7] * y) + r[8] * z) + t[2];
@@ -97,7 +98,7 @@ inline __attribute__((always_inline)) void project_four(const Point* points,
   store(__builtin_convertvector(fits ? vz : Doubles{}, Ints), &chunk.z[first]);
 }
 
-/// At most kChunk points.
+/// Finds the voxels of at most kChunk points.
 MOSBENCH_MULTIARCH void project(std::span<const Point> points, const Projection& projection,
                                 ProjectedChunk& chunk) {
   const std::size_t whole = points.size() / 4 * 4;

@@ -34,18 +34,18 @@ struct VoxelizedScan {
   }
 };
 
-/// Whole blocks near the first sensor position, so that voxel indices stay small.
+/// Returns a grid whose origin is near the first sensor position, so that voxel indices stay small.
 VoxelGrid grid_around(const Eigen::Vector3d& sensor_m, double voxel_size_m);
 
-/// algorithm step 1: points farther than min_range from the sensor, in the map frame, in voxels.
-/// Throws std::range_error naming the first point whose voxel lies more than 2^19 voxels from the
-/// sensor's or 2^23 from the grid's origin.
+/// Finds the measured voxels P'_M = floor(P_M / Delta) of P_M = T_{M->S} P_S (paper, III), from the
+/// points farther than min_range from the sensor. Throws std::range_error naming the first point
+/// whose voxel lies more than 2^19 voxels from the sensor's or 2^23 from the grid's origin.
 VoxelizedScan voxelize(std::span<const Point> points, const Pose& map_from_sensor,
                        const VoxelGrid& grid, double min_range_m, double max_range_m,
                        ThreadPool& pool);
 
-/// The voxel that holds a position of the map frame; throws std::range_error beyond 2^23 voxels
-/// from the grid's origin.
+/// Returns the voxel that holds a position of the map frame. Throws std::range_error beyond 2^23
+/// voxels from the grid's origin.
 Voxel voxel_of(const Eigen::Vector3d& position_m, const VoxelGrid& grid);
 
 }  // namespace mosbench

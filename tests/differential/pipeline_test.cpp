@@ -286,7 +286,7 @@ TEST(PipelineAgainstTheSlowTwin, AgreesWhenVoxelsLieExactlyAtTheLimits) {
   EXPECT_GE(tally.with_motion, 5U);
 }
 
-/// Everything at once: what no list of cases would think of.
+/// All settings drawn at random, in combinations that no list of cases would contain.
 TEST(PipelineAgainstTheSlowTwin, AgreesOnRandomConfigurations) {
   Tally tally;
   for (unsigned seed = 2000; seed < 2080; ++seed) {

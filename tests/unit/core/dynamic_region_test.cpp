@@ -32,7 +32,7 @@ std::optional<double> threshold_of(const std::vector<int>& values) {
   return otsu_threshold(entries);
 }
 
-/// algorithm steps 5g and 6 with a record for every voxel ever visited.
+/// The dynamic region of the authors' program, with a record for every voxel ever visited.
 class RegionTwin {
  public:
   RegionTwin(double max_range_m, int w_d, int otsu_min)
@@ -116,14 +116,14 @@ class RegionTwin {
   double threshold_ = 0;
 };
 
-/// The core's region beside its twin.
+/// The core's region next to its twin.
 class Both {
  public:
   Both(double max_range_m, int w_d, int otsu_min)
       : core_({.voxel_size_m = kVoxelSize_m}, max_range_m, w_d, otsu_min),
         twin_(max_range_m, w_d, otsu_min) {}
 
-  /// Step 5g, asserted equal.
+  /// Returns the voxels that the region adds, asserted to be equal.
   Triples back_end(const Detection& detection, int kernel_width) {
     const Triples expected = twin_.back_end(detection, kernel_width / 2);
     EXPECT_EQ(triples(core_.back_end(scan_of(detection.occupied),

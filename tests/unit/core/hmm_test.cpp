@@ -11,7 +11,7 @@ namespace mosbench {
 using namespace hmm_mos;
 namespace {
 
-/// The belief of the specification, all three states in double precision.
+/// The belief of the paper (III), all three states in double precision.
 struct ThreeStates {
   double unobserved = 1, occupied = 0, free = 0;
   enum class State { kUnobserved, kOccupied, kFree } state = State::kUnobserved;
@@ -55,7 +55,7 @@ const Setting kSettings[] = {{0.2, 0.2, 0.005, 0.99},   {0.25, 0.25, 0.005, 0.99
                              {0.2, 0.8, 0.01, 0.9},     {0.2, 0.1, 0.2, 0.6},
                              {0.25, 0.25, 0.001, 0.5},  {0.2, 0.2, 0.005, 0.99999}};
 
-TEST(BeliefFilter, FollowsTheThreeStatesOfTheSpecification) {
+TEST(BeliefFilter, FollowsTheThreeStatesOfThePaper) {
   std::mt19937 random(41);
   for (const Setting& s : kSettings) {
     const BeliefFilter filter(s.voxel_size_m, s.sigma_m, s.epsilon, s.p_min);

@@ -11,7 +11,7 @@ namespace mosbench {
 using namespace hmm_mos;
 namespace {
 
-/// algorithm step 5d word by word on the plain list of values.
+/// Otsu's threshold as the authors' program computes it, on the plain list of values.
 std::optional<double> literal_otsu(const std::vector<int>& values) {
   if (values.empty()) return std::nullopt;
   const double lo = *std::min_element(values.begin(), values.end());

@@ -203,7 +203,7 @@ TEST(Pipeline, ReportsNonfinitePointsAndTheThreshold) {
     EXPECT_EQ(result.nonfinite_points, k == 9 ? 2U : 0U);
     with_threshold += result.threshold.has_value();
     EXPECT_TRUE(k > 3 || !result.threshold) << "the window is not full";
-    // Spec 5h: no moving point without a threshold above the minimum.
+    // No point moves without a threshold above the minimum.
     EXPECT_TRUE(moving_points({result.labels}) == 0 || result.threshold.value_or(0) > 1.0);
   }
   EXPECT_GT(with_threshold, 5U);
@@ -311,7 +311,7 @@ TEST(Pipeline, ScoresAreOnlyThereWhenAskedForAndChangeNoLabel) {
       ASSERT_EQ(scored[k].scores.size(), world.scans[k].size());
       moving += moving_points({plain[k].labels});
       if (!scored[k].threshold || *scored[k].threshold <= 1.0) continue;
-      // Spec 5d: what lies above the threshold is dynamic.
+      // Voxels above the threshold are dynamic.
       for (std::size_t i = 0; i < scored[k].scores.size(); ++i) {
         if (scored[k].scores[i] <= *scored[k].threshold) continue;
         EXPECT_EQ(scored[k].labels[i], kMovingLabel);

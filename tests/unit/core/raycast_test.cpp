@@ -11,7 +11,7 @@
 namespace mosbench {
 namespace {
 
-/// algorithm step 2 word by word; stops at the first voxel beyond the range.
+/// Bresenham's line as raycast.hpp states it; stops at the first voxel beyond the range.
 void walk(const Triple& s, const Triple& v, double voxel_size_m, double max_range_m,
           Triples& observed) {
   Triple d{}, g{}, e{}, q = s;

@@ -19,7 +19,7 @@ struct TripleHash {
   }
 };
 
-/// algorithm step 3 on single voxels.
+/// The update and eviction of the paper's map (III) on single voxels.
 class MapTwin {
  public:
   MapTwin(const Config& config, Variant variant) : config_(config), variant_(variant) {}
