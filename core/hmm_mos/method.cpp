@@ -13,9 +13,12 @@ constexpr std::string_view kSource =
 
 void check_settings(const Settings& settings) { check(config_of<Config>(settings)); }
 
-template <typename AnyMethod>
-std::unique_ptr<Method> make(const Settings& settings, const RunContext& context) {
-  return std::make_unique<AnyMethod>(config_of<Config>(settings), context);
+std::unique_ptr<Method> make_fast(const Settings& settings, const RunContext& context) {
+  return std::make_unique<Pipeline>(config_of<Config>(settings), context);
+}
+
+std::unique_ptr<Method> make_slow(const Settings& settings, const RunContext& context) {
+  return make_reference(config_of<Config>(settings), context);
 }
 
 }  // namespace
@@ -27,7 +30,7 @@ MethodKind method_kind() {
           "a three-state hidden Markov model per voxel, changes convolved over space and time",
           settings_of(Config{}),
           check_settings,
-          make<Pipeline>};
+          make_fast};
 }
 
 MethodKind reference_kind() {
@@ -37,7 +40,7 @@ MethodKind reference_kind() {
           "the same labels, step by step as the paper has it; some hundred times slower",
           settings_of(Config{}),
           check_settings,
-          make<Reference>};
+          make_slow};
 }
 
 }  // namespace mosbench::hmm_mos

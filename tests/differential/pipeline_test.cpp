@@ -33,9 +33,10 @@ void expect_equal_labels(const SmallWorld& world, const Config& config, Variant 
   const bool known = length == Length::kKnown;
   const std::optional<std::size_t> scan_count =
       known ? std::optional(world.scans.size()) : std::nullopt;
-  Reference twin(of_variant(config, variant), {.scan_count = scan_count, .scores = true});
+  const auto twin =
+      make_reference(of_variant(config, variant), {.scan_count = scan_count, .scores = true});
   Pipeline pipeline(of_variant(config, variant), {threads, scan_count, true});
-  const std::vector<LabelledScan> expected = results_of(twin, world);
+  const std::vector<LabelledScan> expected = results_of(*twin, world);
   const std::vector<LabelledScan> results = results_of(pipeline, world);
   ASSERT_EQ(results.size(), world.scans.size());
   ASSERT_EQ(results.size(), expected.size());
