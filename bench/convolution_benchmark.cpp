@@ -13,9 +13,8 @@ void convolution_stage(benchmark::State& state, StagedScans& staged, ThreadPool&
     for (const StagedScan& s : staged.measured) {
       staged.run_other_stages();
       staged.enter(map, s, pool);
-      const ScoreField scores = timed_call(
-          state, [&] { return convolve(s.scan, map.changed_since(s.k), width, map, s.k, pool); });
-      right = right && scores.values == s.scores.values;
+      const VoteField votes = timed_call(state, [&] { return votes_for(s, map, width, pool); });
+      right = right && votes.values == s.votes.values;
     }
   });
   expect(state, right);

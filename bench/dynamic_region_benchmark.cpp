@@ -19,11 +19,10 @@ void dynamic_region_stage(benchmark::State& state, StagedScans& staged, ThreadPo
     for (const StagedScan& s : staged.measured) {
       staged.run_other_stages();
       staged.enter(map, s, pool);
-      convolve(s.scan, map.changed_since(s.k), width, map, s.k, pool);
+      votes_for(s, map, width, pool);
       const StagedScan inputs = s;
       const VoxelSet from_region = timed_call(state, [&] {
-        const VoxelSet beside = beside_unknown(inputs.scan, region.blocks(), inputs.dynamic.blocks,
-                                               width, map, s.k, pool);
+        const VoxelSet beside = beside_unknown_of(inputs, region, map, width, pool);
         VoxelSet chosen = region.back_end(inputs.scan, beside, width, pool);
         region.update({inputs.scan, inputs.dynamic, chosen, beside, s.threshold}, s.k);
         return chosen;

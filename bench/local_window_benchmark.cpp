@@ -22,7 +22,7 @@ void window_stage(benchmark::State& state, StagedScans& staged, ThreadPool&) {
     for (std::size_t k = 0; k < first; ++k) window.join(staged.all[k].filtered);
     for (const StagedScan& s : staged.measured) {
       staged.run_other_stages();
-      ScoreField filtered = s.filtered;
+      VoteField filtered = s.filtered;
       const VoxelizedScan scan = s.scan;
       const SumField sums = timed_call(state, [&] {
         window.join(std::move(filtered));

@@ -8,7 +8,7 @@ namespace {
 void median_stage(benchmark::State& state, StagedScans& staged, ThreadPool& pool) {
   measure_stage(
       state, staged, [&](const StagedScan& s) { return median_filter(s.scan, s.scores, pool); },
-      [](const StagedScan& s, const ScoreField& filtered) {
+      [](const StagedScan& s, const VoteField& filtered) {
         return filtered.values == s.filtered.values;
       });
   count_items(state, "voxels", mean_occupied(staged));

@@ -5,9 +5,11 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/hmm_mos/dilation.hpp"
 #include "core/hmm_mos/label_projection.hpp"
 #include "core/hmm_mos/median.hpp"
-#include "core/hmm_mos/selection.hpp"
+#include "core/hmm_mos/threshold.hpp"
+#include "core/voxel/neighbourhood.hpp"
 
 namespace mosbench {
 using namespace hmm_mos;
@@ -30,17 +32,18 @@ void detect(StagedScan& staged, const Config& config, VoxelMap& map, Detection& 
     staged.labels.assign(staged.frame.points.size(), kStaticLabel);
     return;
   }
-  staged.scores = convolve(scan, map.changed_since(staged.k), width, map, staged.k, pool);
-  staged.filtered = median_filter(scan, staged.scores, pool);
+  staged.votes = votes_for(staged, map, width, pool);
+  staged.filtered = median_filter(scan, staged.votes, pool);
   detection.window.join(staged.filtered);
   staged.sums = detection.window.sums(scan);
   staged.threshold = threshold_of(scan, staged.sums);
   staged.carried = std::move(detection.carried);
-  staged.dynamic =
-      select_dynamic(scan, staged.sums, staged.threshold, staged.carried, config.min_otsu_score);
+  staged.dynamic = dilate_occupied(
+      scan,
+      above_threshold(scan, staged.sums, staged.threshold, staged.carried, config.min_otsu_score),
+      pool);
   detection.carried = staged.dynamic;
-  staged.beside =
-      beside_unknown(scan, region.blocks(), staged.dynamic.blocks, width, map, staged.k, pool);
+  staged.beside = beside_unknown_of(staged, region, map, width, pool);
   staged.from_region = region.back_end(scan, staged.beside, width, pool);
   region.update({scan, staged.dynamic, staged.from_region, staged.beside, staged.threshold},
                 staged.k);
@@ -84,6 +87,22 @@ StagedScans::StagedScans(const Workload& chosen)
   }
   const std::size_t undetected = static_cast<std::size_t>(config.local_window_scans) + 1;
   measured = std::span(all).last(std::min(kMeasuredScans, all.size() - undetected));
+}
+
+VoteField votes_for(const StagedScan& staged, VoxelMap& map, int kernel_width_voxels,
+                    ThreadPool& pool) {
+  const VoxelizedScan& scan = staged.scan;
+  const VoxelSet changed = scan.occupied_among(map.changed_since(staged.k));
+  const auto slots = slots_within(scan, changed, radius_of(kernel_width_voxels));
+  const VoxelSet known = map.known_at(staged.k, blocks_of(scan, slots), pool);
+  return convolve(scan, changed, known, kernel_width_voxels, pool);
+}
+
+VoxelSet beside_unknown_of(const StagedScan& staged, const DynamicRegion& region, VoxelMap& map,
+                           int kernel_width_voxels, ThreadPool& pool) {
+  const auto slots = slots_around(staged.scan, region.blocks_with(staged.dynamic));
+  const VoxelSet known = map.known_at(staged.k, blocks_of(staged.scan, slots), pool);
+  return beside_unknown(staged.scan, slots, known, kernel_width_voxels, pool);
 }
 
 std::size_t voxels_of(const VoxelList& list) {

@@ -26,12 +26,20 @@ struct StagedScan {
   VoxelizedScan scan;
   VoxelList observed;
   std::size_t state_changes = 0;  ///< voxels
-  ScoreField scores, filtered;
+  VoteField votes, filtered;
   SumField sums;
   std::optional<double> threshold;
   VoxelSet carried, dynamic, beside, from_region;
   std::vector<std::uint32_t> labels;
 };
+
+/// Returns the votes for the voxels of a scan that was just entered into the map.
+VoteField votes_for(const StagedScan& staged, VoxelMap& map, int kernel_width_voxels,
+                    ThreadPool& pool);
+
+/// Returns the voxels beside unknown ones, where the region asks for them.
+VoxelSet beside_unknown_of(const StagedScan& staged, const DynamicRegion& region, VoxelMap& map,
+                           int kernel_width_voxels, ThreadPool& pool);
 
 /// The scans of a workload, put through the stages in the order of the pipeline, online,
 /// paper-2024.

@@ -9,7 +9,7 @@ namespace mosbench {
 
 /// Slots of one type that are taken and returned without moving the others.
 template <typename Value>
-class Pool {
+class SlotPool {
  public:
   Value& operator[](std::uint32_t slot) { return chunks_[slot / kChunk][slot % kChunk]; }
   const Value& operator[](std::uint32_t slot) const {

@@ -5,8 +5,8 @@
 
 #include "core/hmm_mos/convolution.hpp"
 #include "core/hmm_mos/otsu.hpp"
-#include "core/hmm_mos/selection.hpp"
-#include "core/voxel/halo.hpp"
+#include "core/hmm_mos/threshold.hpp"
+#include "core/voxel/neighbourhood.hpp"
 
 namespace mosbench::hmm_mos {
 
@@ -22,17 +22,18 @@ DynamicRegion::Block* DynamicRegion::find(const BlockIndex& block) {
   return slot == kNoSlot ? nullptr : &blocks_[slot];
 }
 
-std::vector<BlockIndex> DynamicRegion::blocks() const {
-  std::vector<BlockIndex> live;
+std::vector<BlockIndex> DynamicRegion::blocks_with(const VoxelSet& dynamic) const {
+  std::vector<BlockIndex> blocks;
   for (std::uint32_t slot = 0; slot < blocks_.capacity(); ++slot) {
-    if (blocks_[slot].live) live.push_back(blocks_[slot].index);
+    if (blocks_[slot].live) blocks.push_back(blocks_[slot].index);
   }
-  return live;
+  blocks.insert(blocks.end(), dynamic.blocks.begin(), dynamic.blocks.end());
+  return blocks;
 }
 
 VoxelSet DynamicRegion::back_end(const VoxelizedScan& scan, const VoxelSet& beside_unknown,
                                  int kernel_width_voxels, ThreadPool& pool) const {
-  const int radius = (kernel_width_voxels - 1) / 2;
+  const int radius = radius_of(kernel_width_voxels);
   VoxelSet confident;
   for (std::uint32_t slot = 0; slot < blocks_.capacity(); ++slot) {
     const Block& block = blocks_[slot];
@@ -40,49 +41,38 @@ VoxelSet DynamicRegion::back_end(const VoxelizedScan& scan, const VoxelSet& besi
     confident.masks[confident.insert(block.index)] = block.high_confidence;
   }
   const std::vector<std::uint32_t> slots = slots_within(scan, confident, radius);
-  std::vector<std::vector<ValueCount>> votes(slots.size());  // per candidate: B, in cell order
+  std::vector<std::vector<ValueCount>> votes(slots.size());  // per candidate, in cell order
   std::vector<BlockMask> voted(slots.size());
-  pool.for_ranges(slots.size(), 16, [&](std::size_t begin, std::size_t end, unsigned) {
-    HaloRows rows;
-    for (std::size_t i = begin; i < end; ++i) {
-      const BlockIndex& block = scan.measured.blocks[slots[i]];
-      Neighbourhood masks{};
-      for_each_neighbour(block, [&](std::size_t position, const BlockIndex& neighbour) {
-        masks[position] = confident.mask_of(neighbour);
-      });
-      gather_halo(masks, radius, rows);
-      const BlockMask* beside = beside_unknown.mask_of(block);
-      const BlockMask candidates =
-          beside == nullptr ? scan.occupied[slots[i]] : without(scan.occupied[slots[i]], *beside);
-      voted[i] = dilate(rows) & candidates;
-      for_each_cell(voted[i], [&](std::uint32_t cell) {
-        votes[i].push_back({count_around(rows, cell), 1});
-      });
-    }
-  });
+  for_each_block_near(confident, radius, scan, slots, pool,
+                      [&](std::size_t i, const HaloRows& rows, const BlockMask& reach) {
+                        const BlockMask* beside =
+                            beside_unknown.mask_of(scan.measured.blocks[slots[i]]);
+                        voted[i] = beside == nullptr ? reach : without(reach, *beside);
+                        for_each_cell(voted[i], [&](std::uint32_t cell) {
+                          votes[i].push_back({count_around(rows, cell), 1});
+                        });
+                      });
   std::vector<ValueCount> all;
   for (const auto& some : votes) all.insert(all.end(), some.begin(), some.end());
-  VoxelSet chosen;
   const std::optional<double> threshold = otsu_threshold(all);
-  if (!threshold) return chosen;
+  if (!threshold) return {};
+  std::vector<BlockMask> above(slots.size());
   for (std::size_t i = 0; i < slots.size(); ++i) {
-    BlockMask above;
     auto vote = votes[i].begin();
     for_each_cell(voted[i], [&](std::uint32_t cell) {
-      if ((vote++)->value > *threshold) above.set(cell);
+      if ((vote++)->value > *threshold) above[i].set(cell);
     });
-    if (above.any()) chosen.masks[chosen.insert(scan.measured.blocks[slots[i]])] = above;
   }
-  return chosen;
+  return set_of(scan, slots, above);
 }
 
 void DynamicRegion::update(const DetectedScan& detected, std::uint32_t scan_index) {
   visit(detected, scan_index);
-  std::vector<ValueCount> scores;
+  std::vector<ValueCount> counts;
   for (std::size_t n = 1; n < count_by_neighbours_.size(); ++n) {
-    scores.push_back({static_cast<std::int32_t>(n), count_by_neighbours_[n]});
+    counts.push_back({static_cast<std::int32_t>(n), count_by_neighbours_[n]});
   }
-  threshold_ = otsu_threshold(scores).value_or(threshold_);
+  threshold_ = otsu_threshold(counts).value_or(threshold_);
   for (std::uint32_t slot = 0; slot < blocks_.capacity(); ++slot) {
     Block& block = blocks_[slot];
     if (!block.live) continue;

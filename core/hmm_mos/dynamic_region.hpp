@@ -42,8 +42,9 @@ class DynamicRegion {
   /// the same time.
   void update(const DetectedScan& detected, std::uint32_t scan_index);
 
-  /// Blocks with any dynamic voxel.
-  std::vector<BlockIndex> blocks() const;
+  /// Returns the blocks of the region and those of `dynamic`; some may come twice. In and next to
+  /// them `back_end` and `update` ask for `beside_unknown`.
+  std::vector<BlockIndex> blocks_with(const VoxelSet& dynamic) const;
   std::size_t memory_bytes() const { return blocks_.memory_bytes() + table_.memory_bytes(); }
 
  private:
@@ -68,7 +69,7 @@ class DynamicRegion {
   std::uint32_t dynamic_window_scans_;
   int min_otsu_score_;
   BlockTable table_;
-  Pool<Block> blocks_;
+  SlotPool<Block> blocks_;
   std::array<std::size_t, 28> count_by_neighbours_{};  // of all dynamic voxels
   double threshold_ = 0;                               // T_R, kept while no level is found
   VoxelSet visited_;  // occupied, non-dynamic voxels of scan `visited_at_`

@@ -4,8 +4,8 @@
 
 namespace mosbench::hmm_mos {
 
-void LocalWindow::join(ScoreField scores) {
-  window_.push_back(std::move(scores));
+void LocalWindow::join(VoteField votes) {
+  window_.push_back(std::move(votes));
   if (window_.size() > scans_) window_.pop_front();
 }
 
@@ -15,8 +15,8 @@ SumField LocalWindow::sums(const VoxelizedScan& scan) const {
     const BlockIndex& block = scan.measured.blocks[slot];
     SumField::Block sum;
     bool any = false;
-    for (const ScoreField& scores : window_) {
-      const ScoreField::Block* values = scores.find(block);
+    for (const VoteField& votes : window_) {
+      const VoteField::Block* values = votes.find(block);
       if (values == nullptr) continue;
       if (!any) sum.fill(0);
       for_each_cell(scan.occupied[slot], [&](std::uint32_t cell) { sum[cell] += (*values)[cell]; });
@@ -29,8 +29,8 @@ SumField LocalWindow::sums(const VoxelizedScan& scan) const {
 
 std::size_t LocalWindow::memory_bytes() const {
   std::size_t bytes = 0;
-  for (const ScoreField& scores : window_) {
-    bytes += scores.values.capacity() * sizeof(ScoreField::Block) + scores.table.memory_bytes();
+  for (const VoteField& votes : window_) {
+    bytes += votes.values.capacity() * sizeof(VoteField::Block) + votes.table.memory_bytes();
   }
   return bytes;
 }

@@ -15,7 +15,7 @@ class LocalWindow {
   explicit LocalWindow(int scans) : scans_(static_cast<std::size_t>(scans)) {}
 
   /// Takes the votes of a scan in; those of the oldest scan leave.
-  void join(ScoreField scores);
+  void join(VoteField votes);
 
   /// Returns L^dyn at the occupied voxels of the scan.
   SumField sums(const VoxelizedScan& scan) const;
@@ -24,7 +24,7 @@ class LocalWindow {
 
  private:
   std::size_t scans_;
-  std::deque<ScoreField> window_;
+  std::deque<VoteField> window_;
 };
 
 }  // namespace mosbench::hmm_mos

@@ -3,22 +3,21 @@
 #include <algorithm>
 #include <array>
 
-#include "core/hmm_mos/convolution.hpp"
-#include "core/voxel/halo.hpp"
+#include "core/voxel/neighbourhood.hpp"
 
 namespace mosbench::hmm_mos {
 namespace {
 
 constexpr int kSide = kBlockSide + 2;
 
-/// Scores of a block and one voxel around it; -1 where no voxel is occupied.
-class ScoreHalo {
+/// Votes of a block and one voxel around it; -1 where no voxel is occupied.
+class VoteHalo {
  public:
-  ScoreHalo(const VoxelizedScan& scan, const ScoreField& scores, const BlockIndex& centre) {
+  VoteHalo(const VoxelizedScan& scan, const VoteField& votes, const BlockIndex& centre) {
     values_.fill(-1);
     for_each_neighbour(centre, [&](std::size_t, const BlockIndex& block) {
       const BlockMask* occupied = scan.occupied_in(block);
-      if (occupied != nullptr) copy(*occupied, scores.find(block), block, centre);
+      if (occupied != nullptr) copy(*occupied, votes.find(block), block, centre);
     });
   }
 
@@ -48,58 +47,49 @@ class ScoreHalo {
     return static_cast<std::size_t>((z * kSide + y) * kSide + x);
   }
 
-  void copy(const BlockMask& occupied, const ScoreField::Block* scores, const BlockIndex& block,
+  void copy(const BlockMask& occupied, const VoteField::Block* votes, const BlockIndex& block,
             const BlockIndex& centre) {
     for_each_cell(occupied, [&](std::uint32_t cell) {
       const Voxel v = voxel_at(block, cell);
       const int x = v.x - centre.x * kBlockSide + 1, y = v.y - centre.y * kBlockSide + 1,
                 z = v.z - centre.z * kBlockSide + 1;
       if (x < 0 || y < 0 || z < 0 || x >= kSide || y >= kSide || z >= kSide) return;
-      values_[position(x, y, z)] = scores == nullptr ? std::int16_t{0} : (*scores)[cell];
+      values_[position(x, y, z)] = votes == nullptr ? std::int16_t{0} : (*votes)[cell];
     });
   }
 
   std::array<std::int16_t, kSide * kSide * kSide> values_;
 };
 
-BlockMask nonzero(const ScoreField::Block& scores) {
+BlockMask nonzero(const VoteField::Block& votes) {
   BlockMask mask;
   for (std::uint32_t cell = 0; cell < kBlockVoxels; ++cell) {
-    if (scores[cell] != 0) mask.set(cell);
+    if (votes[cell] != 0) mask.set(cell);
   }
   return mask;
 }
 
 }  // namespace
 
-ScoreField median_filter(const VoxelizedScan& scan, const ScoreField& scores, ThreadPool& pool) {
-  VoxelSet scored;
-  for (std::size_t i = 0; i < scores.blocks.size(); ++i) {
-    scored.masks[scored.insert(scores.blocks[i])] = nonzero(scores.values[i]);
+VoteField median_filter(const VoxelizedScan& scan, const VoteField& votes, ThreadPool& pool) {
+  VoxelSet voted;
+  for (std::size_t i = 0; i < votes.blocks.size(); ++i) {
+    voted.masks[voted.insert(votes.blocks[i])] = nonzero(votes.values[i]);
   }
-  const std::vector<std::uint32_t> slots = slots_within(scan, scored, 1);
-  std::vector<ScoreField::Block> filtered(slots.size());
+  const std::vector<std::uint32_t> slots = slots_within(scan, voted, 1);
+  std::vector<VoteField::Block> filtered(slots.size());
   std::vector<std::uint8_t> any(slots.size());
-  pool.for_ranges(slots.size(), 16, [&](std::size_t begin, std::size_t end, unsigned) {
-    HaloRows rows;
-    for (std::size_t i = begin; i < end; ++i) {
-      const BlockIndex& block = scan.measured.blocks[slots[i]];
-      filtered[i].fill(0);
-      Neighbourhood masks{};
-      for_each_neighbour(block, [&](std::size_t position, const BlockIndex& neighbour) {
-        masks[position] = scored.mask_of(neighbour);
-      });
-      gather_halo(masks, 1, rows);
-      const BlockMask in_reach = dilate(rows) & scan.occupied[slots[i]];
-      if (!in_reach.any()) continue;
-      const ScoreHalo halo(scan, scores, block);
-      for_each_cell(in_reach, [&](std::uint32_t cell) {
-        filtered[i][cell] = halo.median_at(cell);
-        any[i] |= filtered[i][cell] != 0;
-      });
-    }
-  });
-  ScoreField field;
+  for_each_block_near(voted, 1, scan, slots, pool,
+                      [&](std::size_t i, const HaloRows&, const BlockMask& reach) {
+                        filtered[i].fill(0);
+                        if (!reach.any()) return;
+                        const VoteHalo halo(scan, votes, scan.measured.blocks[slots[i]]);
+                        for_each_cell(reach, [&](std::uint32_t cell) {
+                          filtered[i][cell] = halo.median_at(cell);
+                          any[i] |= filtered[i][cell] != 0;
+                        });
+                      });
+  VoteField field;
   for (std::size_t i = 0; i < slots.size(); ++i) {
     if (any[i] != 0) field.add(scan.measured.blocks[slots[i]], filtered[i]);
   }

@@ -6,9 +6,9 @@
 
 namespace mosbench::hmm_mos {
 
-/// Returns, for each occupied voxel, the median of the scores of itself and its up to 26 occupied
+/// Returns, for each occupied voxel, the median of the votes of itself and its up to 26 occupied
 /// neighbours; of an even number the mean of the two middle ones, truncated. A step of the authors'
 /// program that the paper's section III does not mention.
-ScoreField median_filter(const VoxelizedScan& scan, const ScoreField& scores, ThreadPool& pool);
+VoteField median_filter(const VoxelizedScan& scan, const VoteField& votes, ThreadPool& pool);
 
 }  // namespace mosbench::hmm_mos

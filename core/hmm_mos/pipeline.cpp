@@ -11,12 +11,14 @@
 #include "core/base/stage_clock.hpp"
 #include "core/base/thread_pool.hpp"
 #include "core/hmm_mos/convolution.hpp"
+#include "core/hmm_mos/dilation.hpp"
 #include "core/hmm_mos/dynamic_region.hpp"
 #include "core/hmm_mos/label_projection.hpp"
 #include "core/hmm_mos/local_window.hpp"
 #include "core/hmm_mos/median.hpp"
-#include "core/hmm_mos/selection.hpp"
+#include "core/hmm_mos/threshold.hpp"
 #include "core/hmm_mos/voxel_map.hpp"
+#include "core/voxel/neighbourhood.hpp"
 #include "core/voxel/raycast.hpp"
 #include "core/voxel/voxelize.hpp"
 
@@ -128,27 +130,32 @@ void Pipeline::State::detect(HeldScan& held_scan, std::uint32_t k) {
     return;
   }
   const int width = config.kernel_width_voxels;
-  ScoreField scores = timed(record, "convolution", [&] {
-    const VoxelSet changed =
-        memory->map.changed_since(k - static_cast<std::uint32_t>(config.delay_scans));
-    return convolve(scan, changed, width, memory->map, k, pool);
+  VoteField votes = timed(record, "convolution", [&] {
+    const VoxelSet changed = scan.occupied_among(
+        memory->map.changed_since(k - static_cast<std::uint32_t>(config.delay_scans)));
+    const std::vector<BlockIndex> voted_for =
+        blocks_of(scan, slots_within(scan, changed, radius_of(width)));
+    const VoxelSet known = memory->map.known_at(k, voted_for, pool);
+    return convolve(scan, changed, known, width, pool);
   });
-  scores = timed(record, "median", [&] { return median_filter(scan, scores, pool); });
+  votes = timed(record, "median", [&] { return median_filter(scan, votes, pool); });
   const SumField sums = timed(record, "window", [&] {
-    window.join(std::move(scores));
+    window.join(std::move(votes));
     return window.sums(scan);
   });
   VoxelSet& dynamic = memory->carried;
   {
     const StageClock clock(record, "otsu");
     result.threshold = threshold_of(scan, sums);
-    dynamic = select_dynamic(scan, sums, result.threshold, dynamic, config.min_otsu_score);
+    dynamic = above_threshold(scan, sums, result.threshold, dynamic, config.min_otsu_score);
+    dynamic = dilate_occupied(scan, dynamic, pool);
   }
   VoxelSet from_region;
   if (config.variant == Variant::kPaper2024) {
     const StageClock clock(record, "dynamic_region");
-    const VoxelSet beside =
-        beside_unknown(scan, region.blocks(), dynamic.blocks, width, memory->map, k, pool);
+    const std::vector<std::uint32_t> slots = slots_around(scan, region.blocks_with(dynamic));
+    const VoxelSet known = memory->map.known_at(k, blocks_of(scan, slots), pool);
+    const VoxelSet beside = beside_unknown(scan, slots, known, width, pool);
     from_region = region.back_end(scan, beside, width, pool);
     region.update({scan, dynamic, from_region, beside, result.threshold}, k);
   }

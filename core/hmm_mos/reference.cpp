@@ -158,7 +158,7 @@ class Reference final : public Method {
     join_window(std::move(medians));
     for (auto& [v, voxel] : scan.occupied)
       for (const MapOf<int>& earlier : window_)
-        if (const int* sum = find(earlier, v)) voxel.score += *sum;
+        if (const int* votes = find(earlier, v)) voxel.sum += *votes;
   }
 
   void join_window(MapOf<int> medians) {
@@ -168,13 +168,13 @@ class Reference final : public Method {
 
   /// L^dyn > T by Otsu, or dynamic in the last detection and L^dyn > otsu_min; then dilation.
   void select(Scan& scan) {
-    std::vector<double> scores;
-    for (const auto& [v, voxel] : scan.occupied) scores.push_back(voxel.score);
-    const std::optional<double> threshold = scan.result.threshold = otsu(scores);
+    std::vector<double> sums;
+    for (const auto& [v, voxel] : scan.occupied) sums.push_back(voxel.sum);
+    const std::optional<double> threshold = scan.result.threshold = otsu(sums);
     SetOf dilated;
     for (const auto& [v, voxel] : scan.occupied) {
-      const bool above = threshold && voxel.score > *threshold;
-      if (!above && !(carried_.contains(v) && voxel.score > c_.min_otsu_score)) continue;
+      const bool above = threshold && voxel.sum > *threshold;
+      if (!above && !(carried_.contains(v) && voxel.sum > c_.min_otsu_score)) continue;
       for_neighbours(v, 1, [&](const Voxel& u) {
         if (scan.occupied.contains(u)) dilated.insert(u);
       });
@@ -206,7 +206,7 @@ class Reference final : public Method {
       const ScanVoxel* voxel = v ? find(scan.occupied, *v) : nullptr;
       if (voxel == nullptr) continue;
       if (moves(scan) && voxel->dynamic) scan.result.labels[i] = kMovingLabel;
-      if (context_.scores) scan.result.scores[i] = static_cast<float>(voxel->score);
+      if (context_.scores) scan.result.scores[i] = static_cast<float>(voxel->sum);
     }
   }
 

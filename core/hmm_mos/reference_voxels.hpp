@@ -40,7 +40,7 @@ struct Cell {
 
 /// A voxel of P'_M within the range limit.
 struct ScanVoxel {
-  int votes = 0, score = 0;  // K_m * P'_chg, L^dyn
+  int votes = 0, sum = 0;  // K_m * P'_chg, L^dyn
   bool beside_unknown = false, dynamic = false, from_region = false;
 };
 

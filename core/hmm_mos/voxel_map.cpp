@@ -101,11 +101,33 @@ void VoxelMap::refresh_block(Block& block, std::uint32_t scan_index) {
   block.oldest_seen = scan_index - ages.greatest(without(block.seen, block.ageless));
 }
 
-void VoxelMap::refresh(std::span<const std::uint32_t> slots, std::uint32_t scan_index,
-                       ThreadPool& pool) {
-  pool.for_ranges(slots.size(), 256, [&](std::size_t begin, std::size_t end, unsigned) {
-    for (std::size_t i = begin; i < end; ++i) refresh_block(blocks_[slots[i]], scan_index);
+VoxelSet VoxelMap::known_at(std::uint32_t scan_index, std::span<const BlockIndex> blocks,
+                            ThreadPool& pool) {
+  std::vector<std::uint32_t> around(blocks.size() * 27);
+  pool.for_ranges(blocks.size(), 64, [&](std::size_t begin, std::size_t end, unsigned) {
+    for (std::size_t i = begin; i < end; ++i) {
+      for_each_neighbour(blocks[i], [&](std::size_t position, const BlockIndex& block) {
+        around[i * 27 + position] = table_.find(block);
+      });
+    }
   });
+  VoxelSet known;
+  std::vector<std::uint32_t> asked;
+  std::vector<std::uint8_t> taken(blocks_.capacity());
+  for (const std::uint32_t slot : around) {
+    if (slot == kNoSlot || taken[slot] != 0) continue;
+    taken[slot] = 1;
+    asked.push_back(slot);
+    known.insert(blocks_[slot].index);
+  }
+  pool.for_ranges(asked.size(), 256, [&](std::size_t begin, std::size_t end, unsigned) {
+    for (std::size_t i = begin; i < end; ++i) {
+      Block& block = blocks_[asked[i]];
+      refresh_block(block, scan_index);
+      known.masks[i] = without(block.states.occupied | block.states.free, block.stale);
+    }
+  });
+  return known;
 }
 
 VoxelList VoxelMap::update(const VoxelList& observed, std::span<const VoxelSet* const> sources,

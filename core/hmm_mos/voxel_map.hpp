@@ -11,7 +11,6 @@
 #include "core/hmm_mos/config.hpp"
 #include "core/hmm_mos/hmm.hpp"
 #include "core/hmm_mos/last_seen.hpp"
-#include "core/voxel/raycast.hpp"
 #include "core/voxel/voxel_set.hpp"
 
 namespace mosbench::hmm_mos {
@@ -34,22 +33,15 @@ class VoxelMap {
   /// less than safe_path_m_ meanwhile; otherwise all blocks are visited.
   void evict(std::uint32_t scan_index);
 
-  /// Updates the ages of these blocks, so that `known` answers for `scan_index`.
-  void refresh(std::span<const std::uint32_t> slots, std::uint32_t scan_index, ThreadPool& pool);
-
-  std::uint32_t find(const BlockIndex& block) const { return table_.find(block); }
-  /// Voxels with a state, seen less than w_g scans ago; valid after `refresh` of the slot.
-  BlockMask known(std::uint32_t slot) const {
-    const Block& block = blocks_[slot];
-    return without(block.states.occupied | block.states.free, block.stale);
-  }
+  /// Returns the known voxels at `scan_index`, those with a state that were observed less than w_g
+  /// scans ago, of these blocks and all their neighbours. Not const, because ages are kept lazily
+  /// and updated here.
+  VoxelSet known_at(std::uint32_t scan_index, std::span<const BlockIndex> blocks, ThreadPool& pool);
 
   /// Voxels whose last change is at `first_scan` or later, by block.
   VoxelSet changed_since(std::uint32_t first_scan) const;
 
   std::size_t block_count() const { return blocks_.in_use(); }
-  /// Every slot is below.
-  std::size_t slot_count() const { return blocks_.capacity(); }
   std::size_t memory_bytes() const;
 
  private:
@@ -96,8 +88,8 @@ class VoxelMap {
   double evict_radius_m_;
   double safe_path_m_;
   BlockTable table_;
-  Pool<Block> blocks_;
-  Pool<BlockBeliefs> beliefs_;
+  SlotPool<Block> blocks_;
+  SlotPool<BlockBeliefs> beliefs_;
   // Slot in beliefs_ by slot of the block, or kNoSlot while every belief is zero. Not in the block,
   // which the serial part of `update` would fetch from memory to ask.
   std::vector<std::uint32_t> beliefs_of_;

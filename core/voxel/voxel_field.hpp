@@ -29,8 +29,8 @@ struct SparseField {
   }
 };
 
-/// Spatial scores are at most m^3 = 3375 votes.
-using ScoreField = SparseField<std::int16_t>;
+/// Votes for a voxel, at most m^3 = 3375.
+using VoteField = SparseField<std::int16_t>;
 /// Their sums over the local window.
 using SumField = SparseField<std::int32_t>;
 

@@ -69,4 +69,23 @@ void VoxelSet::clear() {
   table.clear();
 }
 
+VoxelSet united(VoxelSet some, const VoxelSet& more) {
+  for (std::size_t i = 0; i < more.block_count(); ++i) {
+    BlockMask& mask = some.masks[some.insert(more.blocks[i])];
+    mask = mask | more.masks[i];
+  }
+  return some;
+}
+
+VoxelSet in_both(const VoxelSet& some, const VoxelSet& others) {
+  VoxelSet both;
+  for (std::size_t i = 0; i < some.block_count(); ++i) {
+    const BlockMask* other = others.mask_of(some.blocks[i]);
+    if (other == nullptr) continue;
+    const BlockMask mask = some.masks[i] & *other;
+    if (mask.any()) both.masks[both.insert(some.blocks[i])] = mask;
+  }
+  return both;
+}
+
 }  // namespace mosbench

@@ -89,6 +89,12 @@ struct VoxelSet {
   }
 };
 
+/// Returns the voxels in either set.
+VoxelSet united(VoxelSet some, const VoxelSet& more);
+
+/// Returns the voxels in both sets.
+VoxelSet in_both(const VoxelSet& some, const VoxelSet& others);
+
 /// Calls visit(position 0..26, block) for a block and its 26 neighbours, x fastest; 13 is itself.
 template <typename Visit>
 void for_each_neighbour(const BlockIndex& block, Visit&& visit) {

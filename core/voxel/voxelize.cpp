@@ -172,6 +172,17 @@ void merge(std::vector<Part>& parts, std::span<std::uint32_t> voxel_of_point) {
 
 }  // namespace
 
+VoxelSet VoxelizedScan::occupied_among(const VoxelSet& voxels) const {
+  VoxelSet both;
+  for (std::size_t i = 0; i < voxels.block_count(); ++i) {
+    const BlockMask* occupied_here = occupied_in(voxels.blocks[i]);
+    if (occupied_here == nullptr) continue;
+    const BlockMask mask = *occupied_here & voxels.masks[i];
+    if (mask.any()) both.masks[both.insert(voxels.blocks[i])] = mask;
+  }
+  return both;
+}
+
 VoxelGrid grid_around(const Eigen::Vector3d& sensor_m, double voxel_size_m) {
   VoxelGrid grid{.voxel_size_m = voxel_size_m};
   for (int axis = 0; axis < 3; ++axis) {

@@ -28,6 +28,8 @@ struct VoxelizedScan {
     const std::uint32_t slot = measured.find(block);
     return slot == kNoSlot ? nullptr : &occupied[slot];
   }
+  /// Returns the voxels of a set that are occupied.
+  VoxelSet occupied_among(const VoxelSet& voxels) const;
   std::size_t memory_bytes() const {
     return measured.memory_bytes() + occupied.capacity() * sizeof(BlockMask) +
            voxel_of_point.capacity() * sizeof(std::uint32_t);

@@ -91,7 +91,7 @@ TEST(BlockMask, CombinesBitByBit) {
 
 TEST(Pool, SlotsInUseAreDistinctAndKeepTheirPlace) {
   std::mt19937 random(83);
-  Pool<int> pool;
+  SlotPool<int> pool;
   std::map<std::uint32_t, const int*> in_use;
   for (int step = 0; step < 5000; ++step) {
     if (in_use.empty() || random() % 5 < (step < 2500 ? 4U : 1U)) {
@@ -116,7 +116,7 @@ TEST(Pool, SlotsInUseAreDistinctAndKeepTheirPlace) {
 }
 
 TEST(Pool, FreedSlotsAreUsedAgain) {
-  Pool<int> pool;
+  SlotPool<int> pool;
   for (int i = 0; i < 10'000; ++i) pool.give_back(pool.take());
   EXPECT_EQ(pool.in_use(), 0U);
   EXPECT_LE(pool.capacity(), 256U);

@@ -4,36 +4,15 @@
 
 #include <algorithm>
 
+#include "core/voxel/neighbourhood.hpp"
 #include "tests/voxel_twins.hpp"
 
 namespace mosbench {
 using namespace hmm_mos;
 namespace {
 
-/// A map in which exactly the given voxels are known at scan 1.
-class KnownVoxels {
- public:
-  explicit KnownVoxels(const Triples& known) : map_(config(), grid()) {
-    const VoxelSet set = voxel_set(known);
-    ThreadPool pool(1);
-    map_.update({set.blocks, set.masks}, {}, Eigen::Vector3d::Zero(), 1, pool);
-    map_.evict(1);
-  }
-  VoxelMap& map() { return map_; }
-
- private:
-  static Config config() {
-    Config config;
-    config.voxel_size_m = 0.1;
-    return config;
-  }
-  static VoxelGrid grid() { return {.voxel_size_m = 0.1}; }
-
-  VoxelMap map_;
-};
-
 struct Around {
-  int score = 0;
+  int votes = 0;
   bool beside_unknown = false;
 };
 
@@ -42,13 +21,13 @@ Around triple_loop(const Triple& v, int radius, const Triples& occupied, const T
   Around around;
   for_cube(v, radius, [&](const Triple& u) {
     if (!known.contains(u)) {
-      --around.score;
+      --around.votes;
       around.beside_unknown = true;
     } else if (occupied.contains(u) && changed.contains(u)) {
-      ++around.score;
+      ++around.votes;
     }
   });
-  around.score = std::max(around.score, 0);
+  around.votes = std::max(around.votes, 0);
   return around;
 }
 
@@ -59,29 +38,28 @@ Triples full_cube(int reach) {
 }
 
 TEST(Convolution, CountsVotesAroundAVoxel) {
-  KnownVoxels known(full_cube(12));
   const Triples occupied{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {-2, 2, -2}, {0, 9, 0}};
   const Triples changed{{1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {-2, 2, -2}, {5, 5, 5}};
   ThreadPool pool(1);
-  const ScoreField scores =
-      convolve(scan_of(occupied), voxel_set(changed), 5, known.map(), 1, pool);
-  EXPECT_EQ(value_at(scores, {0, 0, 0}), 3);
-  EXPECT_EQ(value_at(scores, {1, 0, 0}), 3);
-  EXPECT_EQ(value_at(scores, {-2, 2, -2}), 1);
-  EXPECT_EQ(value_at(scores, {0, 9, 0}), 0);
-  EXPECT_EQ(value_at(scores, {5, 5, 5}), 0) << "changed but not occupied";
+  const VoxelizedScan scan = scan_of(occupied);
+  const VoteField votes =
+      convolve(scan, scan.occupied_among(voxel_set(changed)), voxel_set(full_cube(12)), 5, pool);
+  EXPECT_EQ(value_at(votes, {0, 0, 0}), 3);
+  EXPECT_EQ(value_at(votes, {1, 0, 0}), 3);
+  EXPECT_EQ(value_at(votes, {-2, 2, -2}), 1);
+  EXPECT_EQ(value_at(votes, {0, 9, 0}), 0);
+  EXPECT_EQ(value_at(votes, {5, 5, 5}), 0) << "changed but not occupied";
 }
 
 TEST(Convolution, UnknownNeighboursVoteAgainst) {
   Triples known_voxels = full_cube(4);
   known_voxels.erase({1, 1, 1});
   known_voxels.erase({0, 1, 0});
-  KnownVoxels known(known_voxels);
   const Triples occupied{{0, 0, 0}, {1, 0, 0}, {0, 0, 1}};
   ThreadPool pool(1);
-  const ScoreField scores =
-      convolve(scan_of(occupied), voxel_set(occupied), 3, known.map(), 1, pool);
-  EXPECT_EQ(value_at(scores, {0, 0, 0}), 1);
+  const VoteField votes =
+      convolve(scan_of(occupied), voxel_set(occupied), voxel_set(known_voxels), 3, pool);
+  EXPECT_EQ(value_at(votes, {0, 0, 0}), 1);
 }
 
 TEST(Convolution, EqualsTheTripleLoopForEveryKernel) {
@@ -96,22 +74,18 @@ TEST(Convolution, EqualsTheTripleLoopForEveryKernel) {
       for (const Triple& v : full_cube(9)) {
         if (random() % 3 == 0) changed.insert(v);
       }
-      KnownVoxels known(known_voxels);
+      const VoxelSet known = voxel_set(known_voxels);
       ThreadPool pool(round % 2 == 0 ? 1 : 3);
       const VoxelizedScan scan = scan_of(occupied, {{9, 9, 9}, {-12, 0, 0}});
-      const ScoreField scores = convolve(scan, voxel_set(changed), width, known.map(), 1, pool);
-      // Every other block from either list.
-      std::vector<BlockIndex> even, odd;
-      for (const BlockIndex& block : scan.measured.blocks) {
-        (even.size() > odd.size() ? odd : even).push_back(block);
-      }
-      const Triples beside_voxels =
-          triples(beside_unknown(scan, even, odd, width, known.map(), 1, pool));
+      const VoteField votes =
+          convolve(scan, scan.occupied_among(voxel_set(changed)), known, width, pool);
+      const auto slots = slots_around(scan, scan.measured.blocks);
+      const Triples beside_voxels = triples(beside_unknown(scan, slots, known, width, pool));
       for (const Triple& v : occupied) {
         const Around expected = triple_loop(v, radius, occupied, changed, known_voxels);
-        ASSERT_EQ(value_at(scores, v), expected.score) << "width " << width;
+        ASSERT_EQ(value_at(votes, v), expected.votes) << "width " << width;
         ASSERT_EQ(beside_voxels.contains(v), expected.beside_unknown) << "width " << width;
-        positive += expected.score > 0;
+        positive += expected.votes > 0;
         unknown += expected.beside_unknown;
       }
       EXPECT_TRUE(std::includes(occupied.begin(), occupied.end(), beside_voxels.begin(),

@@ -140,7 +140,8 @@ class Both {
                  k);
     twin_.update(detection, static_cast<int>(k));
     std::set<Triple> blocks;
-    for (const BlockIndex& block : core_.blocks()) blocks.insert({block.x, block.y, block.z});
+    for (const BlockIndex& block : core_.blocks_with({}))
+      blocks.insert({block.x, block.y, block.z});
     EXPECT_EQ(blocks, twin_.dynamic_blocks()) << "scan " << k;
   }
 
@@ -210,10 +211,10 @@ TEST(DynamicRegion, VoxelsLeaveWhenTheyBecameDynamicMoreThanWdScansAgo) {
   region.update({scan, voxel, none, none, 9.0}, 10);
   for (std::uint32_t k = 11; k <= 15; ++k) {
     region.update({scan, none, none, none, 9.0}, k);
-    EXPECT_EQ(region.blocks().size(), 1U) << k;
+    EXPECT_EQ(region.blocks_with({}).size(), 1U) << k;
   }
   region.update({scan, none, none, none, 9.0}, 16);
-  EXPECT_TRUE(region.blocks().empty());
+  EXPECT_TRUE(region.blocks_with({}).empty());
 }
 
 TEST(DynamicRegion, NothingJoinsWhenTheThresholdIsNotAboveTheMinimum) {
@@ -221,11 +222,11 @@ TEST(DynamicRegion, NothingJoinsWhenTheThresholdIsNotAboveTheMinimum) {
   const VoxelSet voxel = voxel_set({{1, 1, 1}}), none;
   const VoxelizedScan scan = scan_of({{1, 1, 1}});
   region.update({scan, voxel, none, none, 3.0}, 10);
-  EXPECT_TRUE(region.blocks().empty());
+  EXPECT_TRUE(region.blocks_with({}).empty());
   region.update({scan, voxel, voxel, none, 9.0}, 11);
-  EXPECT_TRUE(region.blocks().empty()) << "chosen by the region itself";
+  EXPECT_TRUE(region.blocks_with({}).empty()) << "chosen by the region itself";
   region.update({scan, voxel, none, none, 3.01}, 12);
-  EXPECT_EQ(region.blocks().size(), 1U);
+  EXPECT_EQ(region.blocks_with({}).size(), 1U);
 }
 
 }  // namespace

@@ -13,15 +13,15 @@ namespace {
 
 using Scores = std::map<Triple, int>;
 
-ScoreField field_of(const Scores& scores) {
-  std::map<Triple, ScoreField::Block> blocks;
+VoteField field_of(const Scores& scores) {
+  std::map<Triple, VoteField::Block> blocks;
   for (const auto& [v, score] : scores) {
     const Voxel voxel{v[0], v[1], v[2]};
     const BlockIndex index = block_of(voxel);
     auto& block = blocks.try_emplace({index.x, index.y, index.z}).first->second;
     block[cell_of(voxel)] = static_cast<std::int16_t>(score);
   }
-  ScoreField field;
+  VoteField field;
   for (const auto& [index, block] : blocks) field.add({index[0], index[1], index[2]}, block);
   return field;
 }
@@ -61,7 +61,7 @@ TEST(Median, EqualsTheSortOfUnfilteredNeighbours) {
       if (random() % 10 < 7) scores[v] = static_cast<int>(random() % 125);
     }
     ThreadPool pool(round % 2 == 0 ? 1 : 3);
-    const ScoreField filtered = median_filter(scan_of(occupied), field_of(scores), pool);
+    const VoteField filtered = median_filter(scan_of(occupied), field_of(scores), pool);
     for (const Triple& v : occupied) {
       std::vector<int> around;
       for_cube(v, 1, [&](const Triple& u) {

@@ -148,14 +148,7 @@ void expect_equal_to_twin(const Journey& journey, Seen& seen) {
 
     const int first_scan = std::max(1, k - config.delay_scans);
     const VoxelSet changed = map.changed_since(static_cast<std::uint32_t>(first_scan));
-    std::vector<std::uint32_t> slots;
-    for (const Triple& v : places) {
-      const std::uint32_t slot = map.find(block_of({v[0], v[1], v[2]}));
-      if (slot != kNoSlot) slots.push_back(slot);
-    }
-    std::sort(slots.begin(), slots.end());
-    slots.erase(std::unique(slots.begin(), slots.end()), slots.end());
-    map.refresh(slots, scan_index, pool);
+    const VoxelSet known_voxels = map.known_at(scan_index, voxel_set(places).blocks, pool);
     const auto delayed = static_cast<std::size_t>(std::max(0, k - config.delay_scans));
     for (const Triple& v : places) {
       const Eigen::Vector3d corner_m = Eigen::Vector3d(v[0], v[1], v[2]) * config.voxel_size_m;
@@ -164,8 +157,7 @@ void expect_equal_to_twin(const Journey& journey, Seen& seen) {
         continue;
       }
       const Voxel voxel{v[0], v[1], v[2]};
-      const std::uint32_t slot = map.find(block_of(voxel));
-      const bool known = slot != kNoSlot && map.known(slot).test(cell_of(voxel));
+      const bool known = known_voxels.contains(voxel);
       ASSERT_EQ(known, twin.known(v, k)) << "scan " << k;
       if (twin.has_record(v)) {
         ASSERT_EQ(changed.contains(voxel), twin.changed_since(v, first_scan)) << "scan " << k;
@@ -253,10 +245,7 @@ class OneVoxel {
     map_.evict(k);
   }
   bool known(std::uint32_t k) {
-    const std::uint32_t slot = map_.find({0, 0, 0});
-    if (slot == kNoSlot) return false;
-    map_.refresh(std::vector{slot}, k, pool_);
-    return map_.known(slot).test(cell_of({1, 2, 3}));
+    return map_.known_at(k, std::vector{BlockIndex{0, 0, 0}}, pool_).contains({1, 2, 3});
   }
   std::size_t blocks() const { return map_.block_count(); }
 

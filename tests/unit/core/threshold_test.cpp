@@ -1,9 +1,10 @@
-#include "core/hmm_mos/selection.hpp"
+#include "core/hmm_mos/threshold.hpp"
 
 #include <gtest/gtest.h>
 
 #include <map>
 
+#include "core/hmm_mos/dilation.hpp"
 #include "core/hmm_mos/label_projection.hpp"
 #include "core/hmm_mos/local_window.hpp"
 #include "tests/voxel_twins.hpp"
@@ -41,11 +42,11 @@ Triples dilated(const Triples& selected, const Triples& occupied) {
 TEST(LocalWindow, SumsTheLastScansAtOccupiedVoxelsOnly) {
   LocalWindow window(2);
   const VoxelizedScan scan = scan_of({{0, 0, 0}, {9, 0, 0}}, {{1, 0, 0}});
-  window.join(field_of<ScoreField>({{{0, 0, 0}, 100}}));
-  window.join(field_of<ScoreField>({{{0, 0, 0}, 5}, {{1, 0, 0}, 7}}));
+  window.join(field_of<VoteField>({{{0, 0, 0}, 100}}));
+  window.join(field_of<VoteField>({{{0, 0, 0}, 5}, {{1, 0, 0}, 7}}));
   EXPECT_EQ(value_at(window.sums(scan), {0, 0, 0}), 105);
   EXPECT_EQ(value_at(window.sums(scan), {1, 0, 0}), 0);
-  window.join(field_of<ScoreField>({{{0, 0, 0}, 1}, {{9, 0, 0}, 3}}));
+  window.join(field_of<VoteField>({{{0, 0, 0}, 1}, {{9, 0, 0}, 3}}));
   EXPECT_EQ(value_at(window.sums(scan), {0, 0, 0}), 6);
   EXPECT_EQ(value_at(window.sums(scan), {9, 0, 0}), 3);
   window.join({});
@@ -63,7 +64,7 @@ TEST(LocalWindow, EqualsAListOfMaps) {
       for (const Triple& v : random_triples(random, 300, 8)) {
         scores[v] = static_cast<int>(random() % 343);
       }
-      window.join(field_of<ScoreField>(scores));
+      window.join(field_of<VoteField>(scores));
       twin.push_back(scores);
       const Triples occupied = random_triples(random, 900, 10);
       const SumField sums = window.sums(scan_of(occupied));
@@ -87,6 +88,14 @@ TEST(Threshold, CountsOccupiedVoxelsWithoutSumAsZeros) {
   EXPECT_EQ(threshold_of(scan_of({{0, 0, 0}, {1, 0, 0}}),
                          field_of<SumField>({{{0, 0, 0}, 10}, {{1, 0, 0}, 110}})),
             109.0);
+}
+
+VoxelSet select_dynamic(const VoxelizedScan& scan, const SumField& sums,
+                        std::optional<double> threshold, const VoxelSet& carried,
+                        int min_otsu_score) {
+  ThreadPool pool(2);
+  return dilate_occupied(scan, above_threshold(scan, sums, threshold, carried, min_otsu_score),
+                         pool);
 }
 
 TEST(SelectDynamic, TakesSumsStrictlyAboveTheThresholdAndDilatesOnce) {
@@ -149,9 +158,9 @@ VoxelizedScan scan_of_five_points() {
 TEST(ProjectScores, PointsTakeTheSumOverTheWindowAtTheirVoxel) {
   const VoxelizedScan scan = scan_of_five_points();
   LocalWindow window(2);
-  window.join(field_of<ScoreField>({{{101, 0, 0}, 1000}}));
-  window.join(field_of<ScoreField>({{{101, 0, 0}, 40}, {{100, 0, 0}, 7}, {{102, 0, 0}, 9}}));
-  window.join(field_of<ScoreField>({{{101, 0, 0}, 2}}));
+  window.join(field_of<VoteField>({{{101, 0, 0}, 1000}}));
+  window.join(field_of<VoteField>({{{101, 0, 0}, 40}, {{100, 0, 0}, 7}, {{102, 0, 0}, 9}}));
+  window.join(field_of<VoteField>({{{101, 0, 0}, 2}}));
   EXPECT_EQ(project_scores(scan, window.sums(scan)), (std::vector<float>{42, 0, 0, 7, 42}));
   EXPECT_EQ(project_scores(scan, {}), std::vector<float>(5, 0));
 }
