@@ -13,10 +13,10 @@ namespace mosbench {
 namespace {
 
 constexpr const char* kBlessFooter =
-    R"(Copies the results of NEW to BASELINE as those that `mosbench compare` measures against from now on,
-without what depends on the clock and the machine, and prints what changes against the results that
-lay there. Accept them by committing the folder. Results of another protocol, method, setting, other scans
-or input than those of the baseline replace it only with --even-if.
+    R"(Copies the results of NEW to BASELINE, so that `mosbench compare` measures against them from now on,
+and prints what changes against the baseline before. What depends on the clock and the machine is left
+out. Commit the folder to accept the results. A baseline of another protocol, method, setting, scans or
+input is replaced only with --even-if.
 
 Examples:
   mosbench bless results/runs/room results/baseline/room
@@ -27,7 +27,7 @@ struct BlessFlags {
   bool even_if = false;
 };
 
-/// What changes against the baseline that lies there.
+/// Says what changes against the baseline before.
 std::string change(const BlessFlags& options, const ResultSet& newer) {
   const std::vector<ResultSet> known = accepted_runs(options.baseline);
   if (known.empty()) {
@@ -35,7 +35,7 @@ std::string change(const BlessFlags& options, const ResultSet& newer) {
     for (const std::string& warning : warnings(newer)) text += warning + '\n';
     return text;
   }
-  if (known.size() > 1 && options.even_if) return "several runs lay there before\n";
+  if (known.size() > 1 && options.even_if) return "several runs were there before\n";
   // Of several runs, loading one names what they differ in.
   const ResultSet baseline = known.size() == 1 ? known.front() : load_result_set(options.baseline);
   const PairedRuns paired = pair_runs(baseline, newer);
@@ -43,7 +43,7 @@ std::string change(const BlessFlags& options, const ResultSet& newer) {
     throw DataError(options.baseline,
                     "is a baseline of another kind than " + options.newer.string() + ": " +
                         unlike_text(paired.unlike),
-                    "one of the same kind; --even-if replaces it all the same");
+                    "one of the same kind; --even-if replaces it anyway");
   }
   if (paired.scans.empty()) return "no scan in common with the baseline before\n";
   return difference_text(baseline, newer, paired);
@@ -59,14 +59,15 @@ std::string bless(const BlessFlags& options) {
 
 }  // namespace
 
-void add_bless_command(CLI::App& app, std::string& answer) {
+CommandRun add_bless(CLI::App& command) {
   auto options = std::make_shared<BlessFlags>();
-  CLI::App* command = app.add_subcommand("bless", "Accept results as the new baseline");
-  command->add_option("NEW", options->newer, "Results of one run")->required();
-  command->add_option("BASELINE", options->baseline, "Folder of accepted results")->required();
-  command->add_flag("--even-if", options->even_if, "Replace a baseline of another kind, too");
-  command->footer(kBlessFooter);
-  command->callback([options, &answer] { answer = bless(*options); });
+  command.add_option("NEW", options->newer, "Results of one run")->type_name("DIR")->required();
+  command.add_option("BASELINE", options->baseline, "Folder of accepted results")
+      ->type_name("DIR")
+      ->required();
+  command.add_flag("--even-if", options->even_if, "Also replace a baseline of another kind");
+  command.footer(kBlessFooter);
+  return [options] { return Answer{bless(*options)}; };
 }
 
 }  // namespace mosbench

@@ -7,7 +7,7 @@
 #include "datasets/files/errors.hpp"
 #include "eval/breakdown/breakdown.hpp"
 #include "eval/cli/commands.hpp"
-#include "eval/cli/reading_flags.hpp"
+#include "eval/cli/dataset_flags.hpp"
 #include "eval/results/answer_text.hpp"
 #include "eval/results/simulated.hpp"
 #include "eval/runs/presets.hpp"
@@ -17,11 +17,11 @@ namespace mosbench {
 namespace {
 
 constexpr const char* kBreakdownFooter =
-    R"(Shows where predictions are right and wrong: by range, by height above the sensor, by the size, speed
-and age of moving objects; the objects that lost most points and the largest false positives, worst
-first, with scan and position. Objects are the instances of the truth where it has some, else clusters
-of moving points linked over scans. An object is detected once a tenth of its points is found. Speeds are
-in the map's frame, by the scans' stamps or, where not all have rising ones, as if at 10 Hz.
+    R"(Shows where predictions are right and wrong: by range, by height above the sensor, and by the size,
+speed and age of moving objects. Lists the objects that lost most points and the largest false
+positives, worst first, with scan and position. Objects are the instances of the truth if it has any,
+else clusters of moving points linked over scans. An object is detected once a tenth of its points is
+found. Speeds are in the map frame; if the stamps of the scans do not rise, 10 Hz is assumed.
 
 Examples:
   mosbench breakdown ~/kitti/sequences/08 --predictions results/runs/kitti
@@ -86,29 +86,29 @@ std::string breakdown(const BreakdownFlags& options) {
 
 }  // namespace
 
-void add_breakdown_command(CLI::App& app, std::string& answer) {
+CommandRun add_breakdown(CLI::App& command) {
   auto options = std::make_shared<BreakdownFlags>();
-  CLI::App* command = app.add_subcommand("breakdown", "Where predictions are right and wrong");
-  command->add_option("DATA", options->input, "Root of a data set, or one sequence folder")
+  add_dataset_flags(command, options->input, options->dataset, options->sequences,
+                    options->reading);
+  command
+      .add_option("--predictions", options->predictions,
+                  "Folder or file of predictions, as for `mosbench score`")
+      ->type_name("PATH")
       ->required();
-  command->add_option("--predictions", options->predictions, "As of mosbench score")->required();
-  command->add_option("--format", options->format, "Of the predictions (default: recognised)");
-  command->add_option("--protocol", options->protocol,
-                      "Rules of truth and range (default: by data set)");
-  command->add_option("--range", options->range, "MIN,MAX in metres, for protocols that limit it");
-  command->add_option("--dataset", options->dataset, "auto, " + dataset_kind_names())
+  command.add_option("--format", options->format, "Of the predictions (default: recognised)")
+      ->type_name("FORMAT");
+  command
+      .add_option("--protocol", options->protocol,
+                  "Rules of truth and range (default: by data set)")
+      ->type_name("PROTOCOL");
+  command.add_option("--range", options->range, "In metres, for protocols that limit it")
+      ->type_name("MIN,MAX");
+  command.add_option("--top", options->top, "How many objects and false positives to list")
       ->capture_default_str();
-  command->add_option("--sequences", options->sequences, "Names to look at, a,b (default: all)")
-      ->delimiter(',')
-      ->allow_extra_args(false);
-  command->add_option("--top", options->top, "How many objects and false positives to list")
-      ->capture_default_str();
-  command->add_option("--threads", options->threads, "Results do not depend on it (default: all)")
-      ->check(CLI::Range(1U, 1024U));
-  command->add_flag("--json", options->json, "Print JSON instead of tables");
-  add_reading_flags(*command, options->reading);
-  command->footer(kBreakdownFooter);
-  command->callback([options, &answer] { answer = breakdown(*options); });
+  add_threads_flag(command, options->threads);
+  command.add_flag("--json", options->json, "Print JSON instead of tables");
+  command.footer(kBreakdownFooter);
+  return [options] { return Answer{breakdown(*options)}; };
 }
 
 }  // namespace mosbench

@@ -1,39 +1,55 @@
 #pragma once
 
-#include <CLI/App.hpp>
-#include <stdexcept>
+#include <functional>
+#include <span>
 #include <string>
+#include <string_view>
+
+namespace CLI {
+class App;
+}
 
 namespace mosbench {
 
-/// A comparison or check that came out bad: `what()` belongs on stdout, and the program ends with
-/// `exit_code`.
-class Finding : public std::runtime_error {
- public:
-  explicit Finding(const std::string& answer, int code = 1)
-      : std::runtime_error(answer), exit_code(code) {}
-  int exit_code;
+/// What a command prints on stdout, and the exit code of the program.
+struct Answer {
+  std::string text;
+  int exit_code = 0;
 };
 
-/// Each adds one sub-command to `app`. When it is the chosen one, parsing runs it and leaves what
-/// belongs on stdout in `answer`. Errors are thrown: UsageError, DataError.
-void add_convert_command(CLI::App& app, std::string& answer);
-void add_simulate_command(CLI::App& app, std::string& answer);
-void add_run_command(CLI::App& app, std::string& answer);
-void add_profile_command(CLI::App& app, std::string& answer);
-void add_score_command(CLI::App& app, std::string& answer);
-void add_report_command(CLI::App& app, std::string& answer);
-void add_render_command(CLI::App& app, std::string& answer);
-void add_bless_command(CLI::App& app, std::string& answer);
-void add_compare_command(CLI::App& app, std::string& answer);
-void add_table_command(CLI::App& app, std::string& answer);
-void add_reproduce_command(CLI::App& app, std::string& answer);
-void add_breakdown_command(CLI::App& app, std::string& answer);
-void add_diff_command(CLI::App& app, std::string& answer);
-void add_stats_command(CLI::App& app, std::string& answer);
-void add_odometry_command(CLI::App& app, std::string& answer);
-void add_trajectory_command(CLI::App& app, std::string& answer);
-void add_doctor_command(CLI::App& app, std::string& answer);
-void add_list_command(CLI::App& app, std::string& answer);
+/// Runs a command with the flags that were parsed. Throws UsageError and DataError.
+using CommandRun = std::function<Answer()>;
+
+/// One command of the program.
+struct Command {
+  std::string_view name;
+  std::string_view help;  ///< one line
+  /// Adds the command's flags to its parser and returns what runs it after the parsing.
+  CommandRun (*add)(CLI::App& command);
+};
+
+/// All commands, in the order in which --help shows them.
+std::span<const Command> commands();
+
+CommandRun add_bless(CLI::App& command);
+CommandRun add_breakdown(CLI::App& command);
+CommandRun add_compare(CLI::App& command);
+CommandRun add_completion(CLI::App& command);
+CommandRun add_convert(CLI::App& command);
+CommandRun add_diff(CLI::App& command);
+CommandRun add_doctor(CLI::App& command);
+CommandRun add_help(CLI::App& command);
+CommandRun add_list(CLI::App& command);
+CommandRun add_odometry(CLI::App& command);
+CommandRun add_profile(CLI::App& command);
+CommandRun add_render(CLI::App& command);
+CommandRun add_report(CLI::App& command);
+CommandRun add_reproduce(CLI::App& command);
+CommandRun add_run(CLI::App& command);
+CommandRun add_score(CLI::App& command);
+CommandRun add_simulate(CLI::App& command);
+CommandRun add_stats(CLI::App& command);
+CommandRun add_table(CLI::App& command);
+CommandRun add_trajectory(CLI::App& command);
 
 }  // namespace mosbench

@@ -13,12 +13,12 @@ namespace mosbench {
 namespace {
 
 constexpr const char* kCompareFooter =
-    R"(BASELINE and NEW are folders of results (mosbench run, mosbench score --out, mosbench bless). Both runs'
-scans are paired. A sequence, or all together, regresses when its IoU drops by more than --max-drop: both
-runs label the same scans, so no drop is chance. The 95 % interval of the paired difference is shown as a
-note: it says whether other scans like these would show the drop. With --statistical a drop must also exceed
-the half-width of that interval. Runs with another protocol, method, setting, other scans or input are
-refused; --even-if compares the scans that both have nevertheless.
+    R"(BASELINE and NEW are folders of results (mosbench run, mosbench score --out, mosbench bless). Their
+scans are paired. A sequence, or all of them together, regresses when its IoU drops by more than
+--max-drop: both runs label the same scans, so no drop is chance. The 95 % interval of the paired
+difference is shown as a note; it says whether other scans like these would show the drop. With
+--statistical a drop must also exceed the half-width of that interval. Runs of another protocol, method,
+setting, scans or input are refused; --even-if compares the scans that both have.
 
 Exit codes: 0 pass, 1 regression, 2 wrong usage, 3 unusable or unlike results.
 
@@ -51,14 +51,14 @@ std::string answer_of(const CompareFlags& options, const ResultSet& baseline,
   return text + '\n' + gate_text(result) + (result.passed() ? "\npass\n" : "\nregression\n");
 }
 
-std::string compare(const CompareFlags& options) {
+Answer compare(const CompareFlags& options) {
   const ResultSet baseline = load_result_set(options.baseline);
   const ResultSet newer = load_result_set(options.newer);
   const PairedRuns paired = pair_runs(baseline, newer);
   if (!paired.unlike.empty() && !options.even_if) {
     throw DataError(options.newer,
                     "is not like " + options.baseline.string() + ": " + unlike_text(paired.unlike),
-                    "results of the same kind; --even-if compares all the same");
+                    "results of the same kind; --even-if compares them anyway");
   }
   if (paired.scans.empty()) {
     throw DataError(options.newer, "shares no counted scan with " + options.baseline.string(),
@@ -67,29 +67,28 @@ std::string compare(const CompareFlags& options) {
   const GateResult result =
       judge(paired, *baseline.front().protocol, options.max_drop_points / 100.0,
             options.statistical ? GateRule::kStatistical : GateRule::kMaxDrop);
-  std::string answer = answer_of(options, baseline, newer, paired, result);
-  if (!result.passed()) throw Finding(answer);
-  return answer;
+  return {answer_of(options, baseline, newer, paired, result), result.passed() ? 0 : 1};
 }
 
 }  // namespace
 
-void add_compare_command(CLI::App& app, std::string& answer) {
+CommandRun add_compare(CLI::App& command) {
   auto options = std::make_shared<CompareFlags>();
-  CLI::App* command = app.add_subcommand("compare", "Fail when IoU dropped against a baseline");
-  command->add_option("BASELINE", options->baseline, "Accepted results")->required();
-  command->add_option("NEW", options->newer, "Results to judge")->required();
+  command.add_option("BASELINE", options->baseline, "Accepted results")
+      ->type_name("DIR")
+      ->required();
+  command.add_option("NEW", options->newer, "Results to judge")->type_name("DIR")->required();
   command
-      ->add_option("--max-drop", options->max_drop_points,
-                   "IoU in percentage points that may be lost")
+      .add_option("--max-drop", options->max_drop_points,
+                  "Percentage points of IoU that may be lost")
       ->check(CLI::Range(0.0, 100.0))
       ->capture_default_str();
-  command->add_flag("--statistical", options->statistical,
-                    "Fail only when the drop also exceeds what its 95 % interval leaves open");
-  command->add_flag("--even-if", options->even_if, "Compare results of different kinds, too");
-  command->add_flag("--json", options->json, "Print JSON instead of a table");
-  command->footer(kCompareFooter);
-  command->callback([options, &answer] { answer = compare(*options); });
+  command.add_flag("--statistical", options->statistical,
+                   "Fail only when the drop also exceeds what its 95 % interval leaves open");
+  command.add_flag("--even-if", options->even_if, "Also compare results of different kinds");
+  command.add_flag("--json", options->json, "Print JSON instead of a table");
+  command.footer(kCompareFooter);
+  return [options] { return compare(*options); };
 }
 
 }  // namespace mosbench

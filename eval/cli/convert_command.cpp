@@ -7,7 +7,7 @@
 #include "datasets/files/errors.hpp"
 #include "datasets/layouts/convert.hpp"
 #include "eval/cli/commands.hpp"
-#include "eval/cli/reading_flags.hpp"
+#include "eval/cli/dataset_flags.hpp"
 #include "eval/results/progress.hpp"
 #include "eval/runs/run_plan.hpp"
 
@@ -15,10 +15,10 @@ namespace mosbench {
 namespace {
 
 constexpr const char* kConvertFooter =
-    R"(Writes scans, the lidar's poses, stamps and truth of DATA in another layout, so that other programs
-can read them. Points keep their bits and their order. Truth becomes .label files with the source's
-ids, or, in DOALS's layouts, rows of indices.csv with the points of ids 251 to 259; scans without stamps
-get ones 0.1 s apart there.
+    R"(Writes the scans, LiDAR poses, stamps and truth of DATA in another layout, for other programs. Points
+keep their bits and their order. Truth becomes .label files with the ids of the source. In the layouts
+of DOALS it becomes rows of indices.csv with the points of ids 251 to 259, and scans without stamps get
+stamps 0.1 s apart.
 
 Examples:
   mosbench convert ~/doals/station/sequence_1 --layout semantickitti --out ~/doals-kitti
@@ -54,29 +54,21 @@ std::string convert_dataset(ConvertFlags options) {
 
 }  // namespace
 
-void add_convert_command(CLI::App& app, std::string& answer) {
+CommandRun add_convert(CLI::App& command) {
   auto options = std::make_shared<ConvertFlags>();
-  CLI::App* command = app.add_subcommand("convert", "Write a data set in another layout");
-  command->add_option("DATA", options->input, "Root of a data set, or one sequence folder")
-      ->required();
-  command
-      ->add_option("--layout", options->layout,
-                   "doals, doals-bag, sipailou, helimos or semantickitti")
+  add_dataset_flags(command, options->input, options->dataset, options->sequences,
+                    options->reading);
+  command.add_option("--layout", options->layout, "Layout to write")
       ->required()
       ->check(CLI::IsMember({"doals", "doals-bag", "sipailou", "helimos", "semantickitti"}));
-  command->add_option("--out", options->conversion.out, "Becomes the root of the data set")
+  command.add_option("--out", options->conversion.out, "Root of the data set to write")
+      ->type_name("DIR")
       ->required();
-  command->add_option("--dataset", options->dataset, "What DATA is, see run")
-      ->capture_default_str();
-  command->add_option("--sequences", options->sequences, "Names to convert, a,b (default: all)")
-      ->delimiter(',')
-      ->allow_extra_args(false);
-  command->add_option("--compression", options->conversion.writing.compression, "none, lz4 or bz2")
+  command.add_option("--compression", options->conversion.writing.compression, "Of the bag")
       ->capture_default_str()
       ->check(CLI::IsMember({"none", "lz4", "bz2"}));
-  add_reading_flags(*command, options->reading);
-  command->footer(kConvertFooter);
-  command->callback([options, &answer] { answer = convert_dataset(*options); });
+  command.footer(kConvertFooter);
+  return [options] { return Answer{convert_dataset(*options)}; };
 }
 
 }  // namespace mosbench

@@ -11,6 +11,7 @@
 #include "datasets/sequence/fingerprint.hpp"
 #include "eval/breakdown/run_diff.hpp"
 #include "eval/cli/commands.hpp"
+#include "eval/cli/dataset_flags.hpp"
 #include "eval/results/answer_text.hpp"
 #include "eval/runs/run_plan.hpp"
 
@@ -18,9 +19,9 @@ namespace mosbench {
 namespace {
 
 constexpr const char* kDiffFooter =
-    R"(Lists the scans in which two runs count differently, most changed first. With --data also the moving
-objects of which they find different parts; A and B then have to hold label files, as the folders of
-`mosbench run` do, and the data set the truth that was scored.
+    R"(Lists the scans whose counts differ between two runs, most changed first. With --data it also lists
+the moving objects of which they find different parts; A and B then must hold label files, as the
+folders of `mosbench run` do, and the data set must hold the truth that was scored.
 
 Examples:
   mosbench diff results/runs/online results/runs/delayed
@@ -34,17 +35,18 @@ struct DiffFlags {
   bool json = false;
 };
 
-/// Null, and told, where the data set does not have it.
+/// Returns null, and says so on stderr, when the data set does not have it.
 const Sequence* sequence_named(const Dataset& dataset, const std::string& name) {
   for (const auto& sequence : dataset.sequences) {
     if (sequence->name() == name) return sequence.get();
   }
-  fmt::print(stderr, "{}: has no sequence {}, whose objects are left out\n", dataset.root.string(),
+  fmt::print(stderr, "{}: has no sequence {}; its objects are left out\n", dataset.root.string(),
              name);
   return nullptr;
 }
 
-/// The counted scans of a result. Throws DataError unless they have the truth that was scored.
+/// Returns the counted scans of a result. Throws DataError unless they have the truth that was
+/// scored.
 std::vector<std::size_t> scans_of(const Dataset& dataset, const Sequence& sequence,
                                   const SequenceResult& result) {
   std::map<std::string, std::size_t> labelled;
@@ -118,19 +120,18 @@ std::string diff(const DiffFlags& options) {
 
 }  // namespace
 
-void add_diff_command(CLI::App& app, std::string& answer) {
+CommandRun add_diff(CLI::App& command) {
   auto options = std::make_shared<DiffFlags>();
-  CLI::App* command = app.add_subcommand("diff", "Scans and objects on which two runs disagree");
-  command->add_option("A", options->first, "Results of a run")->required();
-  command->add_option("B", options->second, "Results of another")->required();
-  command->add_option("--data", options->root, "The data set, to look at objects");
-  command->add_option("--dataset", options->dataset, "auto, " + dataset_kind_names())
+  command.add_option("A", options->first, "Results of a run")->type_name("DIR")->required();
+  command.add_option("B", options->second, "Results of another run")->type_name("DIR")->required();
+  command.add_option("--data", options->root, "Data set of both; also lists objects")
+      ->type_name("DIR");
+  add_dataset_kind_flag(command, options->dataset);
+  command.add_option("--top", options->top, "How many scans and objects to list")
       ->capture_default_str();
-  command->add_option("--top", options->top, "How many scans and objects to list")
-      ->capture_default_str();
-  command->add_flag("--json", options->json, "Print JSON instead of tables");
-  command->footer(kDiffFooter);
-  command->callback([options, &answer] { answer = diff(*options); });
+  command.add_flag("--json", options->json, "Print JSON instead of tables");
+  command.footer(kDiffFooter);
+  return [options] { return Answer{diff(*options)}; };
 }
 
 }  // namespace mosbench

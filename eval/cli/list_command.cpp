@@ -130,17 +130,15 @@ std::string list(const std::string& what) {
 
 }  // namespace
 
-void add_list_command(CLI::App& app, std::string& answer) {
+CommandRun add_list(CLI::App& command) {
   auto what = std::make_shared<std::string>("all");
-  CLI::App* command = app.add_subcommand(
-      "list", "Data sets, methods, presets, protocols and scenes that are known");
   command
-      ->add_option("WHAT", *what, "datasets, methods, presets, protocols, scenes, formats or all")
+      .add_option("WHAT", *what, "datasets, methods, presets, protocols, scenes, formats or all")
       ->capture_default_str()
       ->check(CLI::IsMember(
           {"all", "datasets", "methods", "presets", "protocols", "scenes", "formats"}));
-  command->footer(kListFooter);
-  command->callback([what, &answer] { answer = list(*what); });
+  command.footer(kListFooter);
+  return [what] { return Answer{list(*what)}; };
 }
 
 }  // namespace mosbench

@@ -1,28 +1,67 @@
 #include "eval/cli/method_options.hpp"
 
-#include "eval/cli/reading_flags.hpp"
+#include <algorithm>
+
+#include "eval/cli/dataset_flags.hpp"
 
 namespace mosbench {
+namespace {
+
+bool looks_like_assignment(const std::string& argument) {
+  const std::size_t equals = argument.find('=');
+  if (equals == std::string::npos || equals == 0) return false;
+  return std::all_of(argument.begin(), argument.begin() + static_cast<std::ptrdiff_t>(equals),
+                     [](char c) { return c == '_' || (c >= 'a' && c <= 'z'); });
+}
+
+void append_split(const std::string& assignments, std::vector<std::string>& list) {
+  for (std::size_t begin = 0; begin <= assignments.size();) {
+    const std::size_t end = std::min(assignments.find(',', begin), assignments.size());
+    list.push_back(assignments.substr(begin, end - begin));
+    begin = end + 1;
+  }
+}
+
+}  // namespace
+
+// --set takes one argument; what follows it as in `--set a=1 b=2 DATA` goes to a positional option
+// of its own, defined before DATA, that accepts assignments only.
+void add_set_flag(CLI::App& command, std::vector<std::string>& assignments) {
+  CLI::Option* set = command.add_option_function<std::vector<std::string>>(
+      "--set", [](const auto&) {}, "Settings, which win over all others");
+  set->type_name("KEY=VALUE,...")->allow_extra_args(false)->check([](const std::string& text) {
+    return text.find('=') != std::string::npos ? "" : text + " has no value, expected key=value";
+  });
+  CLI::Option* further = command.add_option_function<std::vector<std::string>>(
+      "SETTING", [](const auto&) {}, "Further settings of --set");
+  further->group("")->check([set](const std::string& text) {
+    return set->count() > 0 && looks_like_assignment(text) ? "" : "is no setting";
+  });
+  command.validate_positionals();
+  // Where a setting is given twice, the later one counts.
+  command.final_callback([&command, &assignments, set, further] {
+    std::size_t of_flag = 0, positional = 0;
+    for (const CLI::Option* option : command.parse_order()) {
+      if (option == set) append_split(set->results().at(of_flag++), assignments);
+      if (option == further) append_split(further->results().at(positional++), assignments);
+    }
+  });
+}
 
 void add_method_options(CLI::App& command, RunOptions& options) {
-  command.add_option("DATA", options.input, "Root of a data set, or one sequence folder")
-      ->required();
-  command.add_option("--dataset", options.dataset, "auto, " + dataset_kind_names())
-      ->capture_default_str();
-  command.add_option("--sequences", options.sequences, "Names to run, a,b (default: all)")
-      ->delimiter(',')
-      ->allow_extra_args(false);
-  command.add_option("--method", options.method,
-                     "One that `mosbench list methods` shows (default: hmm-mos)");
-  command.add_option("--preset", options.preset, "Published settings (default: by data set)");
+  add_set_flag(command, options.assignments);
+  add_dataset_flags(command, options.input, options.dataset, options.sequences, options.reading);
+  command
+      .add_option("--method", options.method,
+                  "Method that segments, see `mosbench list methods` (default: hmm-mos)")
+      ->type_name("METHOD");
+  command.add_option("--preset", options.preset, "Published settings (default: by data set)")
+      ->type_name("PRESET");
   command.add_option("--variant", options.variant,
                      "Short for --set variant=NAME: paper-2024 (default) or release-2025");
-  command.add_option("--config", options.config_file, "JSON object of settings of the method");
-  command.add_option("--set", options.assignments, "key=value ..., over everything else")
-      ->allow_extra_args(false);
-  add_reading_flags(command, options.reading);
-  command.add_option("--threads", options.threads, "Results do not depend on it (default: all)")
-      ->check(CLI::Range(1U, 1024U));
+  command.add_option("--config", options.config_file, "JSON object of settings of the method")
+      ->type_name("FILE");
+  add_threads_flag(command, options.threads);
 }
 
 }  // namespace mosbench

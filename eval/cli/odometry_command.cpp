@@ -10,7 +10,8 @@
 #include "datasets/files/pose_file.hpp"
 #include "datasets/files/pose_list.hpp"
 #include "eval/cli/commands.hpp"
-#include "eval/cli/reading_flags.hpp"
+#include "eval/cli/dataset_flags.hpp"
+#include "eval/cli/method_options.hpp"
 #include "eval/results/answer_text.hpp"
 #include "eval/results/progress.hpp"
 #include "eval/results/settings_json.hpp"
@@ -135,7 +136,7 @@ nlohmann::ordered_json found_json(const FoundPoses& found) {
           {"scans", scans}};
 }
 
-std::string odometry_answer(OdometryFlags flags) {
+Answer odometry_answer(OdometryFlags flags) {
   const OdometryChoice choice = choose_odometry(flags.odometry);
   flags.reading.poses_by_odometry = true;
   const Dataset dataset = open_dataset(
@@ -157,37 +158,29 @@ std::string odometry_answer(OdometryFlags flags) {
                       {"settings", to_json(choice.settings)},
                       {"sequences", sequences}});
   }
-  if (doubtful > 0) throw Finding(text);
-  return text;
+  return {text, doubtful > 0 ? 1 : 0};
 }
 
 }  // namespace
 
-void add_odometry_command(CLI::App& app, std::string& answer) {
+CommandRun add_odometry(CLI::App& command) {
   auto flags = std::make_shared<OdometryFlags>();
-  CLI::App* command = app.add_subcommand("odometry", "Find the poses of scans");
-  command->add_option("DATA", flags->input, "Root of a data set, or one sequence folder")
+  add_set_flag(command, flags->odometry.assignments);
+  add_scan_dataset_flags(command, flags->input, flags->dataset, flags->sequences, flags->reading);
+  command.add_option("-o,--out", flags->out, "File of poses; of several sequences a folder")
+      ->type_name("FILE")
       ->required();
-  command->add_option("-o,--out", flags->out, "File of poses; of several sequences a folder")
-      ->required();
-  command->add_option("--dataset", flags->dataset, "auto, " + dataset_kind_names())
-      ->capture_default_str();
-  command->add_option("--sequences", flags->sequences, "Names to take, a,b (default: all)")
-      ->delimiter(',')
-      ->allow_extra_args(false);
-  command->add_option("--odometry", flags->odometry.kind, "simple (default) or kiss");
-  command->add_option("--preset", flags->odometry.preset, "Settings that authors published");
-  command->add_option("--config", flags->odometry.config_file, "JSON object of settings");
-  command->add_option("--set", flags->odometry.assignments, "key=value ..., over everything else")
-      ->allow_extra_args(false);
-  command->add_option("--format", flags->format, "kitti or tum (default: by the file's name)")
+  command.add_option("--odometry", flags->odometry.kind, "simple (default) or kiss");
+  command.add_option("--preset", flags->odometry.preset, "Settings that authors published")
+      ->type_name("PRESET");
+  command.add_option("--config", flags->odometry.config_file, "JSON object of settings")
+      ->type_name("FILE");
+  command.add_option("--format", flags->format, "kitti or tum (default: by the file's name)")
       ->check(CLI::IsMember({"kitti", "tum"}));
-  add_scan_flags(*command, flags->reading);
-  command->add_option("--threads", flags->threads, "Results do not depend on it (default: all)")
-      ->check(CLI::Range(1U, 1024U));
-  command->add_flag("--json", flags->json, "Print JSON instead of text");
-  command->footer(kOdometryFooter);
-  command->callback([flags, &answer] { answer = odometry_answer(*flags); });
+  add_threads_flag(command, flags->threads);
+  command.add_flag("--json", flags->json, "Print JSON instead of text");
+  command.footer(kOdometryFooter);
+  return [flags] { return odometry_answer(*flags); };
 }
 
 }  // namespace mosbench

@@ -15,12 +15,12 @@ namespace mosbench {
 namespace {
 
 constexpr const char* kProfileFooter =
-    R"(Segments the scans one after the other, without writing labels or scoring, and prints per stage the
-wall time (min, median, p95, max), its share and the CPU time of all threads; then memory over the
-scans and how many times faster than the sensor it ran. On a busy machine trust CPU times and shares;
-with several threads CPU times hold up to 60 us per stage and thread of watching for work.
+    R"(Segments the scans one after the other, without writing labels or scoring. Prints the wall time of
+each stage (min, median, p95, max), its share and the CPU time of all threads; then memory over the
+scans, and how many times faster than the sensor it ran. On a busy machine trust CPU times and shares;
+with several threads, CPU times include up to 60 us per stage and thread of waiting for work.
 
---json writes the same numbers and those of each scan. --trace writes a file for ui.perfetto.dev or
+--json writes the same numbers, and those of each scan. --trace writes a file for ui.perfetto.dev or
 chrome://tracing, with a slice for every stage of every scan.
 
 Examples:
@@ -53,17 +53,16 @@ std::string profile(const ProfileFlags& options) {
 
 }  // namespace
 
-void add_profile_command(CLI::App& app, std::string& answer) {
+CommandRun add_profile(CLI::App& command) {
   auto options = std::make_shared<ProfileFlags>();
-  CLI::App* command = app.add_subcommand("profile", "Show where the time of a run goes");
-  add_method_options(*command, options->method);
-  command->add_option("--scans", options->scans, "Only the first so many of each sequence")
+  add_method_options(command, options->method);
+  command.add_option("--scans", options->scans, "Only the first N scans of each sequence")
       ->check(CLI::Range(std::size_t{1}, std::size_t{1000000}))
       ->default_str("all");
-  command->add_option("--json", options->json, "Write the numbers to this file");
-  command->add_option("--trace", options->trace, "Write a trace to this file");
-  command->footer(kProfileFooter);
-  command->callback([options, &answer] { answer = profile(*options); });
+  command.add_option("--json", options->json, "Write the numbers to this file")->type_name("FILE");
+  command.add_option("--trace", options->trace, "Write a trace to this file")->type_name("FILE");
+  command.footer(kProfileFooter);
+  return [options] { return Answer{profile(*options)}; };
 }
 
 }  // namespace mosbench

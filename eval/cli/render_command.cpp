@@ -16,9 +16,9 @@ namespace mosbench {
 namespace {
 
 constexpr const char* kRenderFooter =
-    R"(Draws one scan from above, without browser or graphics card: true and false points, their counts, range
-rings in metres. K counts from 0; "worst" is the scan with most false points. Points are read again
-from where the run read them, or from --data.
+    R"(Draws one scan from above, without browser or graphics card: true and false points, their counts,
+range rings in metres. K counts from 0; "worst" is the scan with the most false points. Points are
+read again from where the run read them, or from --data.
 
 Examples:
   mosbench render results/runs/sim --scan 20 -o scan.png
@@ -51,8 +51,8 @@ std::size_t choose_scan(const std::string& text, const std::vector<ScanRow>& row
   std::size_t scan = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), scan);
   if (error == std::errc() && end == text.data() + text.size() && scan < rows.size()) return scan;
-  throw UsageError(fmt::format("--scan: '{}' is no scan, expected worst or 0 to {}", text,
-                               static_cast<std::ptrdiff_t>(rows.size()) - 1));
+  throw UsageError(fmt::format("--scan: '{}' is no scan of the result, expected worst or 0 to {}",
+                               text, static_cast<std::ptrdiff_t>(rows.size()) - 1));
 }
 
 std::vector<std::string> title_of(const FoundResult& result, std::size_t scan_index) {
@@ -85,25 +85,31 @@ std::string render(RenderFlags& options) {
 
 }  // namespace
 
-void add_render_command(CLI::App& app, std::string& answer) {
+CommandRun add_render(CLI::App& command) {
   auto options = std::make_shared<RenderFlags>();
-  CLI::App* command = app.add_subcommand("render", "Draw a scan of a result from above");
-  command->add_option("RESULT", options->input, "Folder of mosbench run")->required();
-  command->add_option("--scan", options->scan, "K, or worst")->required();
-  command->add_option("-o,--out", options->out, "The PNG file to write")->required();
-  command->add_option("--sequence", options->sequence, "Which, when RESULT holds several");
-  command->add_option("--data", options->dataset_root,
-                      "Where the scans are (default: where the run read them)");
+  command.add_option("RESULT", options->input, "Folder that `mosbench run` wrote")
+      ->type_name("DIR")
+      ->required();
+  command.add_option("--scan", options->scan, "Number of the scan from 0, or worst")
+      ->type_name("K")
+      ->required();
+  command.add_option("-o,--out", options->out, "PNG file to write")->type_name("FILE")->required();
+  command.add_option("--sequence", options->sequence, "Sequence, where RESULT holds several")
+      ->type_name("NAME");
   command
-      ->add_option("--range", options->picture.range_m,
-                   "Metres from the sensor to the edge (default: what holds 98 % of the points)")
+      .add_option("--data", options->dataset_root,
+                  "Folder of the data set (default: where the run read it)")
+      ->type_name("DIR");
+  command
+      .add_option("--range", options->picture.range_m,
+                  "Metres from the sensor to the edge (default: what holds 98 % of the points)")
       ->check(CLI::Range(1.0, 1000.0));
-  command->add_option("--size", options->picture.size_pixels, "Width and height, pixels")
+  command.add_option("--size", options->picture.size_pixels, "Width and height in pixels")
       ->check(CLI::Range(200, 8000))
       ->capture_default_str();
-  command->add_flag("--dark", options->picture.dark, "Light points on a dark ground");
-  command->footer(kRenderFooter);
-  command->callback([options, &answer] { answer = render(*options); });
+  command.add_flag("--dark", options->picture.dark, "Draw light points on a dark ground");
+  command.footer(kRenderFooter);
+  return [options] { return Answer{render(*options)}; };
 }
 
 }  // namespace mosbench

@@ -12,17 +12,17 @@ namespace mosbench {
 namespace {
 
 constexpr const char* kReportFooter =
-    R"(Writes one HTML file that opens in any browser without network or server: the scans in 3-D with true and
-false points, charts over the scans, tables and provenance. RESULT is a folder that `mosbench run`
-wrote, one above it, or a result.json. Results of the same scans can be looked at side by side. Points are read again
-from where the run read them, or from --data.
+    R"(Writes one HTML file that opens in any browser without network or server: the scans in 3-D with
+true and false points, charts over the scans, tables and provenance. RESULT is a folder that
+`mosbench run` wrote, the folder above it, or a result.json. Results of the same scans can be viewed
+side by side. Points are read again from where the run read them, or from --data.
 
---scans takes a list of K (that one scan), A-B (from A to B), every:N and worst:N (so many), counted from 0,
-or one of
+--scans takes a list of K (that scan), A-B (from A to B), every:N (each N-th) and worst:N (the N worst),
+counted from 0, or one of
   auto   the worst tenth first, then scans spread evenly, as many as fit (default)
-  all    from the first on, as many as fit
-  none   only numbers; needs neither data set nor labels, so results of `mosbench score` do, too
-What was left out stands in the file.
+  all    from the first scan on, as many as fit
+  none   numbers only; needs neither data set nor labels, and takes results of `mosbench score`
+The file says what was left out.
 
 Examples:
   mosbench report results/runs/doals -o report.html
@@ -50,19 +50,24 @@ std::string write_report(ReportFlags& options) {
 
 }  // namespace
 
-void add_report_command(CLI::App& app, std::string& answer) {
+CommandRun add_report(CLI::App& command) {
   auto options = std::make_shared<ReportFlags>();
-  CLI::App* command = app.add_subcommand("report", "Write an HTML page to look at results");
-  command->add_option("RESULT", options->inputs, "Folders of mosbench run")->required();
-  command->add_option("-o,--out", options->out, "The file to write")->required();
-  command->add_option("--data", options->report.dataset_root,
-                      "Where the scans are (default: where the run read them)");
-  command->add_option("--scans", options->scans, "Scans to show in 3-D")->capture_default_str();
-  command->add_option("--max-mb", options->report.max_mb, "Largest file, 1e6 bytes")
+  command.add_option("RESULT", options->inputs, "Folders that `mosbench run` wrote")
+      ->type_name("DIR")
+      ->required();
+  command.add_option("-o,--out", options->out, "HTML file to write")->type_name("FILE")->required();
+  command
+      .add_option("--data", options->report.dataset_root,
+                  "Folder of the data set (default: where the run read it)")
+      ->type_name("DIR");
+  command.add_option("--scans", options->scans, "Scans to show in 3-D")
+      ->type_name("SCANS")
+      ->capture_default_str();
+  command.add_option("--max-mb", options->report.max_mb, "Largest size of the file, 1e6 bytes")
       ->check(CLI::Range(0.1, 1000.0))
       ->capture_default_str();
-  command->footer(kReportFooter);
-  command->callback([options, &answer] { answer = write_report(*options); });
+  command.footer(kReportFooter);
+  return [options] { return Answer{write_report(*options)}; };
 }
 
 }  // namespace mosbench

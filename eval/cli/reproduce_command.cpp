@@ -8,6 +8,7 @@
 #include "datasets/files/errors.hpp"
 #include "datasets/layouts/simulated_origin.hpp"
 #include "eval/cli/commands.hpp"
+#include "eval/cli/dataset_flags.hpp"
 #include "eval/runs/run_execute.hpp"
 #include "eval/tables/table_report.hpp"
 
@@ -17,14 +18,14 @@ namespace {
 constexpr const char* kReproduceFooter =
     R"(Runs HMM-MOS with every setting that the paper's table needs (DOALS: range 20 m and 120 m; HeLiMOS:
 online and delayed by 10 scans), each to OUT/<preset>, and prints the table. The same command again
-keeps what is finished and runs the rest; part of a data set fills part of the table. Another data set,
+keeps what is finished and runs the rest. Part of a data set fills part of the table. Another data set,
 or one without any sequence of the table, is refused (exit code 3).
 
 Examples:
   mosbench reproduce doals --data ~/doals
   mosbench reproduce helimos --data ~/HeLiMOS/KAIST05/Deskewed_LiDAR --out results/runs/helimos)";
 
-/// What one table needs.
+/// Presets that one table needs.
 struct Recipe {
   std::string_view dataset;
   std::string_view table;
@@ -51,14 +52,15 @@ struct ReproduceFlags {
   std::string format = "markdown";
 };
 
-/// Whether what was recognised can be the data set: Sipailou looks like SemanticKITTI, which is
-/// what anything without a mark is taken for.
+/// Says whether the recognised layout can be the wanted data set: Sipailou looks like
+/// SemanticKITTI, the layout of anything without a mark of its own.
 bool can_be(DatasetKind found, std::string_view wanted, const std::filesystem::path& root) {
   if (to_string(found) == wanted) return true;
   return found == DatasetKind::kSemanticKitti && !simulated_origin(root);
 }
 
-/// Throws DataError unless a sequence of the table is there: else hours went into no cell of it.
+/// Throws DataError unless a sequence of the table is there, before hours are spent on no cell of
+/// it.
 void check_is_in_table(const ReproduceFlags& options, const Recipe& recipe,
                        const PaperTable& table) {
   std::optional<DatasetKind> found;
@@ -105,22 +107,23 @@ std::string reproduce(const ReproduceFlags& options) {
 
 }  // namespace
 
-void add_reproduce_command(CLI::App& app, std::string& answer) {
+CommandRun add_reproduce(CLI::App& command) {
   auto options = std::make_shared<ReproduceFlags>();
-  CLI::App* command = app.add_subcommand("reproduce", "Run all that a table of the paper needs");
-  command->add_option("DATASET", options->name, "doals, sipailou or helimos")->required();
-  command->add_option("--data", options->root, "Root of the data set")->required();
-  command->add_option("--out", options->out,
-                      "Where results go (default: results/runs/reproduce-...)");
-  command->add_option("--sequences", options->sequences, "Names to run, a,b (default: all)")
+  command.add_option("DATASET", options->name, "doals, sipailou or helimos")->required();
+  command.add_option("--data", options->root, "Root of the data set")->type_name("DIR")->required();
+  command
+      .add_option("--out", options->out,
+                  "Folder of the results (default: results/runs/reproduce-...)")
+      ->type_name("DIR");
+  command.add_option("--sequences", options->sequences, "Only these sequences, a,b (default: all)")
+      ->type_name("NAMES")
       ->delimiter(',')
       ->allow_extra_args(false);
-  command->add_option("--threads", options->threads, "Results do not depend on it (default: all)")
-      ->check(CLI::Range(1U, 1024U));
-  command->add_option("--format", options->format, "markdown, csv, latex or json")
+  add_threads_flag(command, options->threads);
+  command.add_option("--format", options->format, "markdown, csv, latex or json")
       ->capture_default_str();
-  command->footer(kReproduceFooter);
-  command->callback([options, &answer] { answer = reproduce(*options); });
+  command.footer(kReproduceFooter);
+  return [options] { return Answer{reproduce(*options)}; };
 }
 
 }  // namespace mosbench

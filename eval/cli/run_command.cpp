@@ -13,20 +13,20 @@ namespace mosbench {
 namespace {
 
 constexpr const char* kRunFooter =
-    R"(Writes DIR/<sequence>/labels/<stem>.label (uint32, 9 static or 251 moving, one per point) and
-DIR/<sequence>/result.json, and prints IoU, precision, recall and ms per scan where there is truth.
---scores adds DIR/<sequence>/scores/<stem>.score (int32, one per point): the number of votes for motion
-that the threshold is compared with. `mosbench report` then colours points by it.
+    R"(Writes DIR/<sequence>/labels/<stem>.label (uint32 per point, 9 static, 251 moving) and
+DIR/<sequence>/result.json, and prints IoU, precision and recall, if there is truth, and ms per scan.
+--scores adds DIR/<sequence>/scores/<stem>.score (float32 per point): what the method compares with
+its threshold; larger means more likely to move. `mosbench report` then colours points by it.
 
-The same command again skips the sequences that are finished and starts an interrupted one anew: the
-method's memory spans the whole past, so scans cannot be skipped. A sequence appears under DIR when it
-is finished; until then it is written to DIR/<sequence>.partial. Results of another configuration,
-program or input are kept unless --overwrite is given. DIR may hold sequences of one data set and one
-setting only.
+The same command again skips the sequences that are finished and starts an interrupted one again
+from its first scan, because the method's memory spans the whole past. A sequence appears under DIR
+when it is finished; until then it is written to DIR/<sequence>.partial. Results of other settings,
+another program or other input are kept unless --overwrite is given. DIR may hold sequences of one
+data set, one method and one setting only.
 
-Configuration: defaults < preset < --config FILE < --set. FILE holds a JSON object such as
+Settings: defaults < --preset < --config FILE < --set. FILE holds a JSON object such as
   {"voxel_size_m": 0.25, "max_range_m": 50.0, "delay_scans": 10}
-occupancy_sigma_m follows voxel_size_m when it is not set. `mosbench list presets` shows the presets.
+`mosbench list methods` shows all settings, `mosbench list presets` the presets.
 
 --odometry finds the poses before the method sees a scan and writes them to DIR/<sequence>/poses.txt;
 its settings are part of the configuration. Poses that it doubts are named in the remarks.
@@ -35,7 +35,7 @@ Examples:
   mosbench run ~/sipailou-livox-kitti
   mosbench run ~/doals --preset doals-120m --sequences station/sequence_1,station/sequence_2
   mosbench run ~/HeLiMOS/KAIST05/Deskewed_LiDAR --preset helimos-delayed --protocol helimos-test
-  mosbench run ~/kitti/sequences/08 --set max_range_m=30 voxel_size_m=0.2 --out results/runs/08-near
+  mosbench run ~/kitti/sequences/08 --set max_range_m=30,voxel_size_m=0.2 --out results/runs/08-near
   mosbench run ~/kitti/sequences/08 --scores --out results/runs/08-scores
   mosbench run ~/folder-with-a-bag --odometry simple --odometry-set min_range_m=1
   mosbench run sim/00 --config near.json --variant release-2025 --threads 4 --json)";
@@ -63,21 +63,25 @@ std::string run(const RunOptions& options) {
 
 }  // namespace
 
-void add_run_command(CLI::App& app, std::string& answer) {
+CommandRun add_run(CLI::App& command) {
   auto options = std::make_shared<RunOptions>();
-  CLI::App* command = app.add_subcommand("run", "Segment sequences and score the result");
-  add_method_options(*command, *options);
-  command->add_option("--protocol", options->protocol, "How to score (default: by preset)");
-  command->add_option("--range", options->range,
-                      "MIN,MAX in metres, for protocols that limit it (default: the run's own)");
-  command->add_option("--out", options->out,
-                      "Where results go (default: results/runs/<data>-<preset>-<variant>)");
-  add_odometry_flags(*command, options->odometry);
-  command->add_flag("--scores", options->scores, "Also write every point's dynamic score");
-  command->add_flag("--overwrite", options->overwrite, "Run anew and replace what is in --out");
-  command->add_flag("--json", options->json, "Print JSON instead of a table");
-  command->footer(kRunFooter);
-  command->callback([options, &answer] { answer = run(*options); });
+  add_method_options(command, *options);
+  command.add_option("--protocol", options->protocol, "How to score (default: by preset)")
+      ->type_name("PROTOCOL");
+  command
+      .add_option("--range", options->range,
+                  "In metres, for protocols that limit it (default: that of the run)")
+      ->type_name("MIN,MAX");
+  command
+      .add_option("--out", options->out,
+                  "Folder of the results (default: results/runs/<data>-<preset>-<variant>)")
+      ->type_name("DIR");
+  add_odometry_flags(command, options->odometry);
+  command.add_flag("--scores", options->scores, "Also write the score of every point");
+  command.add_flag("--overwrite", options->overwrite, "Run again and replace what is in --out");
+  command.add_flag("--json", options->json, "Print JSON instead of a table");
+  command.footer(kRunFooter);
+  return [options] { return Answer{run(*options)}; };
 }
 
 }  // namespace mosbench

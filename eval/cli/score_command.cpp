@@ -6,7 +6,7 @@
 #include "core/base/thread_pool.hpp"
 #include "datasets/files/errors.hpp"
 #include "eval/cli/commands.hpp"
-#include "eval/cli/reading_flags.hpp"
+#include "eval/cli/dataset_flags.hpp"
 #include "eval/protocols/benchmark_split.hpp"
 #include "eval/results/answer_text.hpp"
 #include "eval/results/machine.hpp"
@@ -18,15 +18,15 @@ namespace mosbench {
 namespace {
 
 constexpr const char* kScoreFooter =
-    R"(Scores predictions of any origin as `mosbench run` scores its own. They are looked for in
+    R"(Scores the predictions of any method as `mosbench run` scores its own. They are searched for in
 DIR/<sequence>/{predictions,labels}, DIR/<sequence>, DIR/sequences/<sequence>/predictions,
 DIR/<sequence>.{txt,csv} and, for one sequence, DIR/{predictions,labels} and DIR itself, which may be
-a file. The format is recognised and stated; `mosbench list formats` shows all. Every scan with truth
-needs a prediction; a missing file, one of the wrong size or one without scan is an error, unless
+a file. The format is recognised and printed; `mosbench list formats` shows all. Every scan with truth
+needs a prediction; a missing file, one of the wrong size or one without a scan is an error, unless
 --allow-missing leaves such scans out and marks the result. Under a protocol that is over a split of
-scans (helimos-test, mapmos) only those scans are scored, and another --split is refused.
+scans (helimos-test, mapmos), only those scans are scored and another --split is refused.
 
---protocol all prints the number of every protocol for the same labels and why they differ.
+--protocol all prints the number of every protocol for the same labels, and why they differ.
 --out writes result.json files, which stats, compare and table read.
 
 Examples:
@@ -64,7 +64,7 @@ void keep_split(const std::string& name, Dataset& dataset) {
                                dataset.root.string(), known.empty() ? "no --split" : known));
 }
 
-/// MIN,MAX where any protocol may be meant.
+/// Reads MIN,MAX for any protocol.
 RangeGate mask_option(const std::string& text) {
   return range_option(text, protocol_named("mapmos"));
 }
@@ -86,16 +86,17 @@ ScoreRule one_rule(const ScoreFlags& options, const Dataset& dataset) {
           options.range ? range_option(*options.range, protocol) : protocol.default_range};
 }
 
-/// The split to score, if not everything: under a protocol that is over picked scans no other.
+/// Returns the split to score, or nothing for all scans. A protocol that is over the scans of a
+/// split takes no other.
 std::optional<std::string> settle_split(const ScoreTask& task, const Dataset& dataset) {
   const Protocol& protocol = *task.rules.front().protocol;
   const Split* benchmark = benchmark_scans(protocol, dataset.splits);
   if (benchmark == nullptr) return task.split;
   if (!task.split || *task.split == benchmark->name) return benchmark->name;
-  throw UsageError(fmt::format(
-      "--split: '{}' is not the split of protocol {}, expected {}, or a protocol that `mosbench "
-      "list protocols` says to be over all labelled scans",
-      *task.split, protocol.name, benchmark->name));
+  throw UsageError(
+      fmt::format("--split: '{}' is not the split of protocol {}, expected {}, or a protocol over "
+                  "all labelled scans (`mosbench list protocols`)",
+                  *task.split, protocol.name, benchmark->name));
 }
 
 PredictionOptions prediction_options(const ScoreFlags& options) {
@@ -109,7 +110,7 @@ PredictionOptions prediction_options(const ScoreFlags& options) {
 
 std::string score_all(const ScoreFlags& options, const Dataset& dataset, ScoreTask task) {
   if (options.out)
-    throw UsageError("--out: takes one protocol's results, expected no --protocol all");
+    throw UsageError("--out: keeps the results of one protocol, expected no --protocol all");
   task.rules = all_rules(options);
   const std::vector<SequenceScores> scores = score_dataset(dataset, task);
   return options.json ? json_text(side_by_side_json(dataset, task.rules, scores))
@@ -139,11 +140,17 @@ std::string score(const ScoreFlags& options) {
 
 void add_prediction_options(CLI::App& command, ScoreFlags& options) {
   command.add_option("--predictions", options.task.predictions, "Folder or file of predictions")
+      ->type_name("PATH")
       ->required();
-  command.add_option("--format", options.format, "Of the predictions (default: recognised)");
-  command.add_option("--mask", options.mask,
-                     "MIN,MAX in metres that the method cut its labels by (default: found out)");
-  command.add_option("--id-map", options.id_map, "Meaning of the predicted ids: 0:0,1:9,2:251");
+  command.add_option("--format", options.format, "Of the predictions (default: recognised)")
+      ->type_name("FORMAT");
+  command
+      .add_option("--mask", options.mask,
+                  "Range in metres that the method cut its labels by (default: found out)")
+      ->type_name("MIN,MAX");
+  command
+      .add_option("--id-map", options.id_map, "Meaning of the predicted ids, such as 0:0,1:9,2:251")
+      ->type_name("MAP");
   command.add_option("--level", options.level, "Of Dynablox's files: point, cluster or object")
       ->capture_default_str();
   command.add_flag("--allow-missing", options.task.options.allow_missing,
@@ -152,33 +159,30 @@ void add_prediction_options(CLI::App& command, ScoreFlags& options) {
 
 }  // namespace
 
-void add_score_command(CLI::App& app, std::string& answer) {
+CommandRun add_score(CLI::App& command) {
   auto options = std::make_shared<ScoreFlags>();
   options->task.threads = 0;
-  CLI::App* command = app.add_subcommand("score", "Score predictions of any origin");
-  command->add_option("DATA", options->input, "Root of a data set, or one sequence folder")
-      ->required();
-  add_prediction_options(*command, *options);
-  command->add_option("--protocol", options->protocol,
-                      "How to score, or all (default: by data set)");
-  command->add_option("--dataset", options->dataset, "auto, " + dataset_kind_names())
-      ->capture_default_str();
-  command->add_option("--sequences", options->sequences, "Names to score, a,b (default: all)")
-      ->delimiter(',')
-      ->allow_extra_args(false);
-  command->add_option("--split", options->task.split, "Only the scans of this split");
-  command->add_option("--range", options->range,
-                      "MIN,MAX in metres, for protocols that limit it (default: the protocol's)");
-  command->add_option("--method", options->method.name, "Whose labels these are, for --out");
-  command->add_option("--setting", options->method.setting, "How the method was set, for --out");
-  command->add_option("--out", options->out, "Folder for DIR/<sequence>/result.json");
+  add_dataset_flags(command, options->input, options->dataset, options->sequences,
+                    options->reading);
+  add_prediction_options(command, *options);
   command
-      ->add_option("--threads", options->task.threads, "Results do not depend on it (default: all)")
-      ->check(CLI::Range(1U, 1024U));
-  command->add_flag("--json", options->json, "Print JSON instead of a table");
-  add_reading_flags(*command, options->reading);
-  command->footer(kScoreFooter);
-  command->callback([options, &answer] { answer = score(*options); });
+      .add_option("--protocol", options->protocol, "How to score, or all (default: by data set)")
+      ->type_name("PROTOCOL");
+  command.add_option("--split", options->task.split, "Only the scans of this split")
+      ->type_name("NAME");
+  command
+      .add_option("--range", options->range,
+                  "In metres, for protocols that limit it (default: that of the protocol)")
+      ->type_name("MIN,MAX");
+  command.add_option("--method", options->method.name, "Name of the method, kept by --out")
+      ->type_name("NAME");
+  command.add_option("--setting", options->method.setting, "Setting of the method, kept by --out")
+      ->type_name("TEXT");
+  command.add_option("--out", options->out, "Write DIR/<sequence>/result.json")->type_name("DIR");
+  add_threads_flag(command, options->task.threads);
+  command.add_flag("--json", options->json, "Print JSON instead of a table");
+  command.footer(kScoreFooter);
+  return [options] { return Answer{score(*options)}; };
 }
 
 }  // namespace mosbench

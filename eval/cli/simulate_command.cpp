@@ -7,6 +7,7 @@
 #include "datasets/files/errors.hpp"
 #include "datasets/simulator/simulate.hpp"
 #include "eval/cli/commands.hpp"
+#include "eval/cli/dataset_flags.hpp"
 #include "eval/results/progress.hpp"
 
 namespace mosbench {
@@ -14,10 +15,9 @@ namespace {
 
 constexpr const char* kSimulateFooter =
     R"(Writes a data set with exact truth in the layout of a real one. The same scene, seed and number of
-scans give the same files, whatever the number of threads. `mosbench list scenes` shows the scenes
-that need no file; FILE is a scene of your own in JSON. Every data set is written with its scene as
-scene.json: simulate one scan of a scene that comes near, change that file and pass it. A key that is
-missing, unknown or out of range is named.
+scans give the same files for any number of threads. `mosbench list scenes` shows the built-in scenes.
+For a scene of your own, simulate one scan of a similar one, edit the scene.json that is written next
+to the scans, and pass that file as SCENE. Errors name the key that is missing, unknown or out of range.
 
 Examples:
   mosbench simulate --layout semantickitti --scene street --scans 40 --seed 1 --out sim/street
@@ -50,24 +50,27 @@ std::string simulate_dataset(SimulateFlags options) {
 
 }  // namespace
 
-void add_simulate_command(CLI::App& app, std::string& answer) {
+CommandRun add_simulate(CLI::App& command) {
   auto options = std::make_shared<SimulateFlags>();
   SimulateOptions& simulation = options->simulation;
-  CLI::App* command = app.add_subcommand("simulate", "Write a simulated data set with exact truth");
-  command->add_option("--layout", options->layout, "doals, sipailou, helimos or semantickitti")
+  command.add_option("--layout", options->layout, "doals, sipailou, helimos or semantickitti")
+      ->type_name("LAYOUT")
       ->required();
-  command->add_option("--scene", simulation.scene, "Name of a scene, or a JSON file")->required();
-  command->add_option("--scans", simulation.scans, "Scans per sequence")
+  command.add_option("--scene", simulation.scene, "Name of a scene, or a JSON file")
+      ->type_name("SCENE")
+      ->required();
+  command.add_option("--scans", simulation.scans, "Scans per sequence")
       ->required()
       ->check(CLI::Range(std::size_t{1}, std::size_t{1000000}));
-  command->add_option("--seed", simulation.seed, "Of everything random")
+  command.add_option("--seed", simulation.seed, "Seed of everything random")
       ->required()
       ->check(CLI::NonNegativeNumber);
-  command->add_option("--out", simulation.out, "Becomes the root of the data set")->required();
-  command->add_option("--threads", simulation.threads, "Files do not depend on it (default: all)")
-      ->check(CLI::Range(1U, 1024U));
-  command->footer(kSimulateFooter);
-  command->callback([options, &answer] { answer = simulate_dataset(*options); });
+  command.add_option("--out", simulation.out, "Root of the data set to write")
+      ->type_name("DIR")
+      ->required();
+  add_threads_flag(command, simulation.threads);
+  command.footer(kSimulateFooter);
+  return [options] { return Answer{simulate_dataset(*options)}; };
 }
 
 }  // namespace mosbench

@@ -17,8 +17,8 @@ constexpr const char* kStatsFooter =
     R"(RUN and SECOND are folders that `mosbench run` or `mosbench score --out` wrote, or single result.json
 files. With one run: IoU, precision, recall and F1 of each sequence and of all, with 95 % intervals.
 With two: what the second changes, paired scan by scan, with interval, p-value and the smallest change
-that so many scans could show. The runs may differ in method and setting; protocol, scans and truth have
-to be the same.
+that this number of scans can show. The runs may differ in method and setting; protocol, scans and
+truth must be the same.
 
 Examples:
   mosbench stats results/runs/kitti
@@ -46,7 +46,7 @@ std::string of_one(const StatsFlags& options) {
 
 std::string of_two(const StatsFlags& options) {
   if (options.csv || options.per_scan) {
-    throw UsageError("--csv and --per-scan: are of one run, expected no SECOND");
+    throw UsageError("--csv and --per-scan: show one run, expected no SECOND");
   }
   const ResultSet first = load_result_set(options.first);
   const ResultSet second = load_result_set(*options.second);
@@ -64,17 +64,16 @@ std::string of_two(const StatsFlags& options) {
 
 }  // namespace
 
-void add_stats_command(CLI::App& app, std::string& answer) {
+CommandRun add_stats(CLI::App& command) {
   auto options = std::make_shared<StatsFlags>();
-  CLI::App* command = app.add_subcommand("stats", "Intervals of a run, or of what another changes");
-  command->add_option("RUN", options->first, "Results of a run")->required();
-  command->add_option("SECOND", options->second, "Results of another run on the same scans");
-  command->add_flag("--per-scan", options->per_scan, "With --json: also the counts of each scan");
-  command->add_flag("--csv", options->csv, "Print the counts of each scan as CSV");
-  command->add_flag("--json", options->json, "Print JSON instead of a table");
-  command->footer(kStatsFooter);
-  command->callback(
-      [options, &answer] { answer = options->second ? of_two(*options) : of_one(*options); });
+  command.add_option("RUN", options->first, "Results of a run")->type_name("DIR")->required();
+  command.add_option("SECOND", options->second, "Results of another run on the same scans")
+      ->type_name("DIR");
+  command.add_flag("--per-scan", options->per_scan, "With --json: also the counts of each scan");
+  command.add_flag("--csv", options->csv, "Print the counts of each scan as CSV");
+  command.add_flag("--json", options->json, "Print JSON instead of a table");
+  command.footer(kStatsFooter);
+  return [options] { return Answer{options->second ? of_two(*options) : of_one(*options)}; };
 }
 
 }  // namespace mosbench

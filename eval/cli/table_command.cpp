@@ -11,13 +11,13 @@ namespace mosbench {
 namespace {
 
 constexpr const char* kTableFooter =
-    R"(Prints a published table with what was measured here beside it: published, measured, difference, 95 %
-interval, and a verdict: within (the published value lies in the interval), outside, or not comparable
-with the reasons (simulated data, another protocol, variant or setting, scans missing). Cells without
+    R"(Prints a published table with the values measured here next to it: published, measured, difference,
+95 % interval, and a verdict: within (the published value lies in the interval), outside, or not
+comparable, with the reasons (simulated data, another protocol or setting, missing scans). Cells without
 results say what to download and which command fills them.
 
-RESULTS are folders that `mosbench run` or `mosbench score --out` wrote; a method that `score --method`
-named becomes a row, too. Published numbers come from results/published.csv.
+RESULTS are folders that `mosbench run` or `mosbench score --out` wrote; a method named by
+`score --method` becomes a row, too. Published numbers come from results/published.csv.
 
 Examples:
   mosbench table I
@@ -45,18 +45,18 @@ std::string table(const TableFlags& options) {
 
 }  // namespace
 
-void add_table_command(CLI::App& app, std::string& answer) {
+CommandRun add_table(CLI::App& command) {
   auto options = std::make_shared<TableFlags>();
-  CLI::App* command =
-      app.add_subcommand("table", "A published table with measured values beside it");
-  command->add_option("TABLE", options->name, "I, II, III, apollo, moe or mdetector")->required();
-  command->add_option("RESULTS", options->results, "Folders of results");
-  command->add_option("--published", options->published,
-                      "Published numbers in place of the built-in");
-  command->add_option("--format", options->format, "markdown, csv, latex or json")
+  command.add_option("TABLE", options->name, "I, II, III, apollo, moe or mdetector")->required();
+  command.add_option("RESULTS", options->results, "Folders of results")->type_name("DIR");
+  command
+      .add_option("--published", options->published,
+                  "CSV of published numbers, instead of the built-in ones")
+      ->type_name("FILE");
+  command.add_option("--format", options->format, "markdown, csv, latex or json")
       ->capture_default_str();
-  command->footer(kTableFooter);
-  command->callback([options, &answer] { answer = table(*options); });
+  command.footer(kTableFooter);
+  return [options] { return Answer{table(*options)}; };
 }
 
 }  // namespace mosbench

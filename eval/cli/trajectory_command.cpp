@@ -68,35 +68,34 @@ std::string trajectory_answer(const TrajectoryFlags& flags) {
 
 }  // namespace
 
-void add_trajectory_command(CLI::App& app, std::string& answer) {
+CommandRun add_trajectory(CLI::App& command) {
   auto flags = std::make_shared<TrajectoryFlags>();
-  CLI::App* command = app.add_subcommand("trajectory", "Errors of estimated poses");
-  command->add_option("ESTIMATE", flags->estimate, "File or folder of estimated poses")->required();
-  command->add_option("--truth", flags->truth, "File or folder of true poses")->required();
-  command->add_option("--align", flags->alignment, "Before APE and RPE; default none")
+  command.add_option("ESTIMATE", flags->estimate, "File or folder of estimated poses")->required();
+  command.add_option("--truth", flags->truth, "File or folder of true poses")->required();
+  command.add_option("--align", flags->alignment, "Before APE and RPE; default none")
       ->check(CLI::IsMember({"none", "origin", "rigid", "similarity"}));
-  command->add_option("--camera", flags->camera, "Which of the two is in KITTI's camera frame")
+  command.add_option("--camera", flags->camera, "Which of the two is in KITTI's camera frame")
       ->check(CLI::IsMember({"neither", "estimate", "truth"}));
-  command->add_option("--calib", flags->calib, "KITTI's calib.txt with Tr of the lidar");
+  command.add_option("--calib", flags->calib, "KITTI's calib.txt with Tr of the lidar");
   command
-      ->add_option("--format", flags->format, "Of both files; told from the first row if not given")
+      .add_option("--format", flags->format, "Of both files; told from the first row if not given")
       ->check(CLI::IsMember({"kitti", "tum", "dynablox"}));
   command
-      ->add_option("--max-time-difference-s", flags->max_time_difference_s,
-                   "Between the stamps of a pair; default 0.01")
+      .add_option("--max-time-difference-s", flags->max_time_difference_s,
+                  "Between the stamps of a pair; default 0.01")
       ->check(CLI::Range(0.0, 1e6));
   CLI::Option* scans =
-      command->add_option("--delta", flags->relative.delta_scans, "Scans of RPE; default 1")
+      command.add_option("--delta", flags->relative.delta_scans, "Scans of RPE; default 1")
           ->check(CLI::Range(1, 1000000));
-  command->add_option("--delta-m", flags->relative.delta_m, "Metres of RPE, of the estimated path")
+  command.add_option("--delta-m", flags->relative.delta_m, "Metres of RPE, of the estimated path")
       ->check(CLI::Range(1e-3, 1e9))
       ->excludes(scans);
-  command->add_flag("--all-pairs", flags->relative.all, "RPE from every pose");
-  command->add_flag("--per-pose", flags->per_pose, "With --json: errors of every pose and segment");
-  command->add_flag("--csv", flags->csv, "Print the absolute errors of every pose as CSV");
-  command->add_flag("--json", flags->json, "Print JSON instead of a table");
-  command->footer(kTrajectoryFooter);
-  command->callback([flags, &answer] { answer = trajectory_answer(*flags); });
+  command.add_flag("--all-pairs", flags->relative.all, "RPE from every pose");
+  command.add_flag("--per-pose", flags->per_pose, "With --json: errors of every pose and segment");
+  command.add_flag("--csv", flags->csv, "Print the absolute errors of every pose as CSV");
+  command.add_flag("--json", flags->json, "Print JSON instead of a table");
+  command.footer(kTrajectoryFooter);
+  return [flags] { return Answer{trajectory_answer(*flags)}; };
 }
 
 }  // namespace mosbench

@@ -1,0 +1,120 @@
+#include "eval/cli/command_line.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <mosbench/method.hpp>
+
+#include "datasets/files/errors.hpp"
+#include "datasets/files/nearest_name.hpp"
+#include "eval/cli/help_text.hpp"
+#include "mosbench_version.hpp"
+
+namespace mosbench {
+namespace {
+
+constexpr const char* kProgramFooter = R"(Examples:
+  mosbench simulate --layout semantickitti --scene street --scans 40 --seed 1 --out sim
+  mosbench run sim --out results/runs/sim
+  mosbench score sim --predictions results/runs/sim --protocol semantickitti-mos
+  mosbench report results/runs/sim -o report.html
+  mosbench render results/runs/sim --scan 20 -o scan.png
+  mosbench list protocols
+
+Exit codes: 0 done, 1 done and the finding is bad (a regression, a warning), 2 wrong usage or
+configuration, 3 unusable files, 70 a fault of mosbench itself.
+`mosbench help COMMAND` shows the flags of a command with examples.)";
+
+/// The parser of the program, and what runs each of its commands.
+struct Program {
+  CLI::App app{
+      "Finds the moving points in LiDAR scans, and scores the labels of any method by each "
+      "benchmark's own rules.",
+      "mosbench"};
+  std::map<const CLI::App*, CommandRun> runs;
+
+  Program() {
+    app.formatter(std::make_shared<HelpText>());
+    app.set_version_flag("-V,--version",
+                         fmt::format("mosbench {} ({})", kMosbenchVersion, kCompiler),
+                         "Print version and compiler, and exit");
+    app.set_help_flag("-h,--help", "Print this help, and exit");
+    app.footer(kProgramFooter);
+    app.require_subcommand(1);
+    for (const Command& row : commands()) {
+      CLI::App* command = app.add_subcommand(std::string(row.name), std::string(row.help));
+      command->group("Commands");
+      runs[command] = row.add(*command);
+    }
+  }
+};
+
+void refuse_unknown_command(const std::vector<std::string>& arguments) {
+  if (arguments.empty()) {
+    throw UsageError("no command was given; see mosbench --help");
+  }
+  if (!arguments.front().starts_with('-')) check_command_name(arguments.front());
+}
+
+/// Returns a hint to --set delay_scans for --delay; nothing for what begins no name of a setting.
+std::string as_setting(const CLI::App& command, std::string flag) {
+  if (command.get_option_no_throw("--set") == nullptr) return {};
+  flag.erase(0, flag.find_first_not_of('-'));
+  std::ranges::replace(flag, '-', '_');
+  for (const Setting& setting : methods().front().defaults.all()) {
+    if (setting.name.starts_with(flag)) {
+      return fmt::format("a setting of the method: --set {}=...", setting.name);
+    }
+  }
+  return {};
+}
+
+/// Throws UsageError naming the first argument that the command does not know, if there is one.
+void refuse_unknown_arguments(const CLI::App& command, const std::string& name) {
+  std::vector<std::string> unknown = command.remaining(true);
+  const auto is_flag = [](const std::string& argument) { return argument.starts_with('-'); };
+  std::ranges::stable_partition(unknown, is_flag);
+  if (unknown.empty()) return;
+  const std::string word = unknown.front().substr(0, unknown.front().find('='));
+  if (!is_flag(word)) {
+    throw UsageError(
+        fmt::format("{}: is one argument too many; see {} --help", unknown.front(), name));
+  }
+  std::vector<std::string> flags;
+  for (const CLI::Option* option : command.get_options()) {
+    if (option->nonpositional()) flags.push_back(option->get_name());
+  }
+  const std::vector<std::string_view> candidates(flags.begin(), flags.end());
+  std::string hint = as_setting(command, word);
+  if (hint.empty()) hint = fmt::format("nearest: {}", nearest_name(word, candidates));
+  throw UsageError(fmt::format("{}: is no flag of {} ({}); see {} --help", word, name, hint, name));
+}
+
+}  // namespace
+
+Answer answer_to(std::vector<std::string> arguments) {
+  refuse_unknown_command(arguments);
+  Program program;
+  const auto chosen = [&] {
+    const auto commands = program.app.get_subcommands();
+    return commands.empty() ? &program.app : commands.front();
+  };
+  try {
+    std::ranges::reverse(arguments);  // as CLI11 expects them
+    program.app.parse(std::move(arguments));
+  } catch (const CLI::CallForVersion& version) {
+    return {std::string(version.what()) + '\n'};
+  } catch (const CLI::CallForHelp&) {
+    return {help_of(*chosen())};
+  } catch (const CLI::ParseError& error) {
+    const std::string name = full_name(*chosen());
+    refuse_unknown_arguments(*chosen(), name);
+    throw UsageError(fmt::format("{}; see {} --help", error.what(), name));
+  }
+  return program.runs.at(chosen())();
+}
+
+}  // namespace mosbench

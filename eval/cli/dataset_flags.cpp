@@ -1,0 +1,90 @@
+#include "eval/cli/dataset_flags.hpp"
+
+#include <CLI/CLI.hpp>
+#include <functional>
+
+#include "eval/results/reading_json.hpp"
+#include "eval/runs/run_plan.hpp"
+
+namespace mosbench {
+namespace {
+
+constexpr const char* kReadingGroup = "Reading";
+
+/// Adds an option whose text is one of `names`; `take` puts it in its place.
+void add_choice(CLI::App& command, const std::string& flag, const std::vector<std::string>& names,
+                const std::string& description, std::function<void(const std::string&)> take) {
+  command.add_option_function<std::string>(flag, std::move(take), description)
+      ->check(CLI::IsMember(names))
+      ->group(kReadingGroup);
+}
+
+void add_pose_flags(CLI::App& command, ReadingOptions& options) {
+  command.add_option("--poses", options.poses, "Pose file to take instead of the sequence's own")
+      ->type_name("FILE")
+      ->group(kReadingGroup);
+  add_choice(
+      command, "--pose-format", {"kitti", "tum", "dynablox"},
+      "Rows of 12 numbers, stamped rows with a quaternion, or Dynablox's rollout CSV (default: "
+      "recognised)",
+      [&](const std::string& name) { options.pose_format = pose_format_from_string(name); });
+  add_choice(command, "--pose-frame", {"lidar", "camera"},
+             "Sensor that the poses are of; Tr of calib.txt turns those of the camera into the "
+             "lidar's (default: camera if calib.txt has a Tr and the poses are KITTI rows)",
+             [&](const std::string& name) { options.pose_frame = pose_frame_named(name).value(); });
+  add_choice(command, "--pose-direction", {"map-from-sensor", "sensor-from-map"},
+             "sensor-from-map poses are inverted (default: sensor-from-map for dynablox only)",
+             [&](const std::string& name) { options.poses_inverse = poses_inverse_named(name); });
+}
+
+void add_scan_flags(CLI::App& command, ReadingOptions& options) {
+  command.add_option("--topic", options.topic, "PointCloud2 topic of a bag")
+      ->type_name("TOPIC")
+      ->group(kReadingGroup);
+  command.add_option("--map-frame", options.map_frame, "Map frame in the tf tree of a bag")
+      ->type_name("FRAME")
+      ->group(kReadingGroup);
+  command
+      .add_flag_callback(
+          "--raw-scans", [&] { options.undistort = false; }, "Do not undistort the scans of a bag")
+      ->group(kReadingGroup);
+  command
+      .add_option("--bin-columns", options.bin_columns,
+                  "float32 per point in .bin files: 4, or 5 as in nuScenes")
+      ->check(CLI::IsMember({4, 5}))
+      ->group(kReadingGroup);
+}
+
+}  // namespace
+
+void add_dataset_flags(CLI::App& command, std::filesystem::path& input, std::string& dataset,
+                       std::vector<std::string>& sequences, ReadingOptions& reading) {
+  add_scan_dataset_flags(command, input, dataset, sequences, reading);
+  add_pose_flags(command, reading);
+}
+
+void add_scan_dataset_flags(CLI::App& command, std::filesystem::path& input, std::string& dataset,
+                            std::vector<std::string>& sequences, ReadingOptions& reading) {
+  command.add_option("DATA", input, "Root of a data set, or one sequence folder")
+      ->type_name("DIR")
+      ->required();
+  add_dataset_kind_flag(command, dataset);
+  command.add_option("--sequences", sequences, "Only these sequences, a,b (default: all)")
+      ->type_name("NAMES")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  add_scan_flags(command, reading);
+}
+
+void add_dataset_kind_flag(CLI::App& command, std::string& dataset) {
+  command.add_option("--dataset", dataset, "Layout of DATA: auto, " + dataset_kind_names())
+      ->type_name("DATASET")
+      ->capture_default_str();
+}
+
+void add_threads_flag(CLI::App& command, unsigned& threads) {
+  command.add_option("--threads", threads, "Threads; results do not depend on it (default: all)")
+      ->check(CLI::Range(1U, 1024U));
+}
+
+}  // namespace mosbench

@@ -1,0 +1,96 @@
+#include "eval/cli/help_text.hpp"
+
+#include <fmt/format.h>
+
+#include <sstream>
+#include <vector>
+
+#include "datasets/files/errors.hpp"
+#include "datasets/files/nearest_name.hpp"
+#include "eval/cli/commands.hpp"
+
+namespace mosbench {
+namespace {
+
+constexpr std::size_t kColumns = 100;
+
+/// Returns "FILE", "N" or "{kitti,tum}": what follows a flag.
+std::string value_name(const CLI::Option& option) {
+  const std::string type = option.get_type_name();
+  const std::size_t colon = type.find(':');
+  const std::string name = type.substr(0, colon);
+  if (colon != std::string::npos && type[colon + 1] == '{') return type.substr(colon + 1);
+  return name == "UINT" || name == "INT" || name == "FLOAT" ? "N" : name;
+}
+
+/// Breaks a text between words so that it ends before the last column; all but its first line are
+/// indented.
+std::string wrapped(const std::string& text, std::size_t indent) {
+  std::istringstream words(text);
+  std::string lines, word;
+  for (std::size_t column = indent; words >> word; column += word.size() + 1) {
+    if (column > indent && column + word.size() > kColumns) {
+      lines += '\n' + std::string(indent, ' ');
+      column = indent;
+    } else if (column > indent) {
+      lines += ' ';
+    }
+    lines += word;
+  }
+  return lines;
+}
+
+std::string description_of(const CLI::Option& option, bool is_positional) {
+  std::string text = option.get_description();
+  if (!option.get_default_str().empty()) text += " (default: " + option.get_default_str() + ")";
+  if (option.get_required() && !is_positional) text += " (required)";
+  return text;
+}
+
+}  // namespace
+
+HelpText::HelpText() { label("Positionals", "Arguments"); }
+
+std::string HelpText::make_usage(const CLI::App* app, std::string name) const {
+  std::string usage = "\nUsage: " + name + (app->get_parent() == nullptr ? " COMMAND" : "");
+  for (const CLI::Option* option : app->get_options()) {
+    if (option->get_positional() && !option->get_group().empty()) {
+      usage += ' ' + make_option_usage(option);
+    }
+  }
+  return usage + " [OPTIONS]\n";
+}
+
+std::string HelpText::make_option(const CLI::Option* option, bool is_positional) const {
+  std::string left = "  " + make_option_name(option, is_positional);
+  if (!is_positional && option->get_type_size() != 0) left += ' ' + value_name(*option);
+  const std::size_t indent = get_column_width();
+  left += left.size() < indent ? std::string(indent - left.size(), ' ')
+                               : '\n' + std::string(indent, ' ');
+  return left + wrapped(description_of(*option, is_positional), indent) + '\n';
+}
+
+std::string full_name(const CLI::App& command) {
+  const CLI::App* parent = command.get_parent();
+  return parent == nullptr ? command.get_name() : parent->get_name() + ' ' + command.get_name();
+}
+
+std::string help_of(const CLI::App& command) {
+  const CLI::App* parent = command.get_parent();
+  std::string text = command.help(parent == nullptr ? "" : parent->get_name());
+  // The groups of options come two blank lines apart.
+  for (std::size_t at = 0; (at = text.find("\n\n\n", at)) != std::string::npos;) text.erase(at, 1);
+  return text;
+}
+
+void check_command_name(const std::string& name) {
+  std::vector<std::string_view> names;
+  for (const Command& command : commands()) {
+    if (command.name == name) return;
+    names.push_back(command.name);
+  }
+  throw UsageError(fmt::format("'{}' is not a command (nearest: {}); see mosbench --help", name,
+                               nearest_name(name, names)));
+}
+
+}  // namespace mosbench

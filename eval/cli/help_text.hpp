@@ -1,0 +1,24 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+namespace mosbench {
+
+/// Lays out --help: every text is wrapped at 100 columns, and defaults stand behind it.
+class HelpText : public CLI::Formatter {
+ public:
+  HelpText();
+  std::string make_usage(const CLI::App* app, std::string name) const override;
+  std::string make_option(const CLI::Option* option, bool is_positional) const override;
+};
+
+/// Returns "mosbench", or "mosbench run" of the command run.
+std::string full_name(const CLI::App& command);
+
+std::string help_of(const CLI::App& command);
+
+/// Throws UsageError naming the nearest command when there is none of this name.
+void check_command_name(const std::string& name);
+
+}  // namespace mosbench
