@@ -170,7 +170,7 @@ TEST(Report, SaysThatScoresHaveNoLabelsToShow) {
   std::filesystem::copy(lost, folder / "result.json");
   const cli::Answer without = cli::run({"report", folder / "result.json", "-o", folder / "r.html"});
   EXPECT_EQ(without.exit_code, 3);
-  EXPECT_THAT(without.err, HasSubstr("result.json: has no labels/ beside it"));
+  EXPECT_THAT(without.err, HasSubstr("result.json: has no labels/ next to it"));
 }
 
 /// A copy of the small sequence that only flags make readable: poses elsewhere and turned round,
