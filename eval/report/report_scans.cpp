@@ -94,8 +94,8 @@ PackedScan pack(const Cloud& cloud, const std::vector<ResultScans>& sources,
       packed.positions = compressed_text(position_planes(scan.frame.points));
     }
     packed.outcomes.push_back(compressed_text(outcome_plane(scan.outcomes, scan.frame.points)));
-    packed.scores.push_back(sources[member].has_scores() ? compressed_text(score_planes(scan.scores))
-                                                       : "");
+    packed.scores.push_back(
+        sources[member].has_scores() ? compressed_text(score_planes(scan.scores)) : "");
   }
   return packed;
 }

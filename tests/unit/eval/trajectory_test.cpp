@@ -137,15 +137,13 @@ TEST(TrajectoryPairs, AreMatchedByStamps) {
   write_file_atomic(folder / "a.tum",
                     "10.0 0 0 0 0 0 0 1\n10.1 1 0 0 0 0 0 1\n10.2 2 0 0 0 0 0 1\n");
   write_file_atomic(folder / "b.tum", "10.104 7 0 0 0 0 0 1\n10.3 9 0 0 0 0 0 1\n");
-  const TrajectoryPair pair =
-      read_trajectory_pair(folder / "a.tum", folder / "b.tum", {});
+  const TrajectoryPair pair = read_trajectory_pair(folder / "a.tum", folder / "b.tum", {});
   ASSERT_EQ(pair.estimate.size(), 1u);
   EXPECT_EQ(pair.estimate[0].translation().x(), 1);
   EXPECT_EQ(pair.truth[0].translation().x(), 7);
   TrajectoryOptions strict;
   strict.max_time_difference_s = 0.001;
-  EXPECT_THROW(read_trajectory_pair(folder / "a.tum", folder / "b.tum", strict),
-               DataError);
+  EXPECT_THROW(read_trajectory_pair(folder / "a.tum", folder / "b.tum", strict), DataError);
 }
 
 TEST(TrajectoryPairs, OfUnlikeLengthAreRefused) {
