@@ -27,13 +27,17 @@ class Engine {
 
   /// Takes the points of the next scan: in range, sensor frame, in file order. Thins them.
   virtual void take(std::span<const Eigen::Vector3d> points_m) = 0;
-  /// The thinned points that are to be aligned, at least some `spacing_m` apart.
+  /// The thinned points that are to be aligned.
   virtual std::span<const Eigen::Vector3d> taken() const = 0;
+  /// Points of the taken scan that show its surfaces, about `spacing_m` apart.
+  virtual std::span<const Eigen::Vector3d> surfaces() const = 0;
   virtual double spacing_m() const = 0;
   /// Finds the pose of the taken scan. The map must not be empty.
   virtual Alignment align(const Pose& seed) const = 0;
   /// Enters the taken scan into the map and forgets what is out of range of it.
   virtual void enter(const Pose& map_from_sensor) = 0;
+  /// Empties the map.
+  virtual void forget() = 0;
   /// Says how far a predicted pose was off the one that was found.
   virtual void learn(const Pose& /*predicted_from_found*/) {}
 

@@ -72,7 +72,8 @@ class Kiss : public Engine {
     taken_ = first_of_cells(for_map_, kAlignedShare * config_.voxel_size_m);
   }
   std::span<const Eigen::Vector3d> taken() const override { return taken_; }
-  double spacing_m() const override { return kAlignedShare * config_.voxel_size_m; }
+  std::span<const Eigen::Vector3d> surfaces() const override { return for_map_; }
+  double spacing_m() const override { return kMapShare * config_.voxel_size_m; }
 
   Alignment align(const Pose& seed) const override {
     Alignment result{.map_from_sensor = seed, .settled = false};
@@ -107,6 +108,8 @@ class Kiss : public Engine {
     }
     map_.keep_within(map_from_sensor.translation(), config_.scan.max_range_m);
   }
+
+  void forget() override { map_.clear(); }
 
   void learn(const Pose& predicted_from_found) override {
     const double turn_rad = rotation_vector_of(predicted_from_found).norm();

@@ -60,17 +60,35 @@ void ScanOdometry::take(const ScanPoints& scan, const ScanTimes& times, const Po
 
 Alignment ScanOdometry::align(const ScanPoints& scan, const ScanTimes& times, const Pose& seed,
                               std::int64_t period_ns) {
+  const bool timed = config_.deskew != Deskew::kNone && !times.point_times_ns.empty();
+  if (timed && poses_ == 1 && !first_times_ns_.empty()) {
+    return align_with_first(scan, times, seed, period_ns);
+  }
   const Alignment first = engine_->align(seed);
   if (config_.deskew != Deskew::kPoses || times.point_times_ns.empty()) return first;
   take(scan, times, last_.inverse() * first.map_from_sensor, period_ns);
   return engine_->align(first.map_from_sensor);
 }
 
+Alignment ScanOdometry::align_with_first(const ScanPoints& scan, const ScanTimes& times,
+                                         const Pose& seed, std::int64_t period_ns) {
+  // Two scans that are skewed alike are registered as well as straight ones. With the motion
+  // between them both are corrected: points of a skewed first scan in the map would shift all later
+  // scans.
+  const Pose found = engine_->align(seed).map_from_sensor;
+  const Pose motion = last_.inverse() * found;
+  engine_->forget();
+  take(first_scan_, {std::nullopt, first_times_ns_}, motion, period_ns);
+  engine_->enter(last_);
+  take(scan, times, motion, period_ns);
+  return engine_->align(found);
+}
+
 ScanPose ScanOdometry::judged(const Alignment& alignment, const Pose& seed,
                               double plausible_m) const {
   ScanPose pose{.map_from_sensor = alignment.map_from_sensor, .doubt = {}};
   const Certainty certainty =
-      certainty_of(surface_information(engine_->taken(), engine_->spacing_m()),
+      certainty_of(surface_information(engine_->surfaces(), engine_->spacing_m()),
                    alignment.residual_m, alignment.effective_points);
   Eigen::Matrix<double, 6, 6> turn = Eigen::Matrix<double, 6, 6>::Zero();
   turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() = pose.map_from_sensor.linear();
@@ -88,6 +106,13 @@ ScanPose ScanOdometry::judged(const Alignment& alignment, const Pose& seed,
     add_doubt(pose, text("it lies ", surprise_m, " m off constant velocity"));
   }
   return pose;
+}
+
+void ScanOdometry::keep_first(const ScanPoints& scan, const ScanTimes& times) {
+  first_scan_ = scan;
+  first_times_ns_.clear();
+  if (scan.points_m.empty()) return;
+  first_times_ns_.assign(times.point_times_ns.begin(), times.point_times_ns.end());
 }
 
 double ScanOdometry::plausible_jump_m(const ScanClock::Interval& interval) const {
@@ -123,6 +148,7 @@ ScanPose ScanOdometry::push(std::span<const Point> points, const ScanTimes& time
   pose.registered_points = engine_->taken().size();
   add_doubt(pose, interval.doubt);
   if (enough) engine_->enter(pose.map_from_sensor);
+  keep_first(first && enough ? scan : ScanPoints{}, times);
   previous_ = first ? pose.map_from_sensor : last_;
   last_ = pose.map_from_sensor;
   poses_ = std::min(poses_ + 1, 2);

@@ -35,6 +35,9 @@ class ScanOdometry : public Odometry {
             std::int64_t period_ns);
   Alignment align(const ScanPoints& scan, const ScanTimes& times, const Pose& seed,
                   std::int64_t period_ns);
+  Alignment align_with_first(const ScanPoints& scan, const ScanTimes& times, const Pose& seed,
+                             std::int64_t period_ns);
+  void keep_first(const ScanPoints& scan, const ScanTimes& times);
   double plausible_jump_m(const ScanClock::Interval& interval) const;
   ScanPose judged(const Alignment& alignment, const Pose& seed, double plausible_m) const;
 
@@ -44,6 +47,9 @@ class ScanOdometry : public Odometry {
   ScanClock clock_;
   Pose previous_ = Pose::Identity(), last_ = Pose::Identity();
   int poses_ = 0;  // up to 2
+  // Kept until the motion is known that it has to be corrected by.
+  ScanPoints first_scan_;
+  std::vector<std::int64_t> first_times_ns_;
 };
 
 }  // namespace mosbench::odometry

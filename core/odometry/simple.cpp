@@ -21,6 +21,7 @@ class Simple : public Engine {
     taken_ = thinned(points_m, config_.scan_radius_m);
   }
   std::span<const Eigen::Vector3d> taken() const override { return taken_; }
+  std::span<const Eigen::Vector3d> surfaces() const override { return taken_; }
   double spacing_m() const override { return config_.scan_radius_m; }
 
   Alignment align(const Pose& seed) const override {
@@ -44,6 +45,8 @@ class Simple : public Engine {
     insert_apart(in_map, config_.map_radius_m, map_);
     map_.keep_within(map_from_sensor.translation(), config_.scan.max_range_m);
   }
+
+  void forget() override { map_.clear(); }
 
   std::size_t map_points() const override { return map_.size(); }
   std::size_t memory_bytes() const override {

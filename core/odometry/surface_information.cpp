@@ -4,14 +4,14 @@
 #include <algorithm>
 #include <optional>
 
-#include "core/odometry/point_grid.hpp"
+#include "core/odometry/thinning.hpp"
 
 namespace mosbench::odometry {
 namespace {
 
 constexpr std::size_t kSamples = 512;
 constexpr double kReachSpacings = 2.5;
-constexpr std::size_t kFewestNeighbours = 5;
+constexpr std::size_t kFewestNeighbours = 9;
 // Variance across a surface that is noise, and the ratio of extents below which points are a line.
 constexpr double kNoise_m = 0.03, kLine = 0.1;
 // Ratio of variances from which on a direction of larger extent holds a point as well: that of a
@@ -87,9 +87,8 @@ Certainty certainty_of(const SurfaceInformation& information, double residual_m,
   const double variance_m2 = residual_m * residual_m / std::max(effective_points, 1.0);
   Certainty certainty{.covariance = variance_m2 * (to_radians * inverse * to_radians),
                       .condition = strengths[5] / strengths[0]};
-  const Eigen3d turns(marginal(scaled, 0, 3)), shifts(marginal(scaled, 3, 0));
-  const double turn = turns.eigenvalues()[0] / std::max(turns.eigenvalues()[2], kLeastStrength);
-  const double shift = shifts.eigenvalues()[0];
+  const Eigen3d turns(marginal(information.mean, 0, 3)), shifts(marginal(information.mean, 3, 0));
+  const double turn = turns.eigenvalues()[0], shift = shifts.eigenvalues()[0];
   certainty.weakest = std::max(std::min(turn, shift), 0.0);
   if (turn < shift) {
     certainty.weakest_direction.head<3>() = turns.eigenvectors().col(0);
@@ -104,18 +103,18 @@ SurfaceInformation surface_information(std::span<const Eigen::Vector3d> points_m
   SurfaceInformation information;
   if (points_m.empty()) return information;
   PointGrid grid(spacing_m);
-  for (const Eigen::Vector3d& p : points_m) grid.insert(p);
+  insert_apart(points_m, spacing_m, grid);
   const std::size_t step = (points_m.size() + kSamples - 1) / kSamples;
   for (std::size_t i = 0; i < points_m.size(); i += step) {
     const Eigen::Vector3d& p = points_m[i];
-    ++information.samples;
-    information.mean_range_m += p.norm();
     if (const auto held = hold(grid, p, kReachSpacings * spacing_m)) {
       const Eigen::Matrix<double, 3, 6> jacobian = point_motion(p);
+      ++information.samples;
+      information.mean_range_m += p.norm();
       information.mean += jacobian.transpose() * *held * jacobian;
     }
   }
-  const auto samples = static_cast<double>(information.samples);
+  const auto samples = static_cast<double>(std::max<std::size_t>(information.samples, 1));
   information.mean /= samples;
   information.mean_range_m /= samples;
   return information;

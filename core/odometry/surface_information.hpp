@@ -24,9 +24,8 @@ struct Certainty {
   /// Of the information with rotations measured by how far they move a point at the mean range:
   /// largest by smallest eigenvalue, at most some 1e9.
   double condition = 0;
-  /// What is known of the least known motion: of shifts, with turns left free, as a share of what a
-  /// point that is held fast knows; of turns, with shifts left free, by the best known turn. 0
-  /// to 1.
+  /// What is known of the least known motion as a share of what a point that is held fast knows: of
+  /// shifts with turns left free, and of turns, by a lever of 1 m, with shifts left free.
   double weakest = 0;
   /// That motion: a unit vector in one half, zeros in the other.
   Eigen::Matrix<double, 6, 1> weakest_direction = Eigen::Matrix<double, 6, 1>::Zero();
@@ -37,7 +36,7 @@ struct Certainty {
 Certainty certainty_of(const SurfaceInformation& information, double residual_m,
                        double effective_points);
 
-/// `points_m` are about `spacing_m` apart. Takes some hundred of them as samples.
+/// Looks at points `spacing_m` apart. Takes some hundred of them as samples.
 SurfaceInformation surface_information(std::span<const Eigen::Vector3d> points_m, double spacing_m);
 
 }  // namespace mosbench::odometry

@@ -5,6 +5,10 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
+#include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <set>
@@ -21,6 +25,8 @@ namespace {
 constexpr const char* kLabels = "labels";
 constexpr const char* kScores = "scores";
 constexpr const char* kResult = "result.json";
+// What a run writes; poses.txt where it found them.
+constexpr std::array<const char*, 4> kWritten = {kLabels, kScores, kResult, "poses.txt"};
 
 std::vector<fs::path> entries(const fs::path& folder) {
   std::error_code error;
@@ -79,7 +85,7 @@ void ResultFolder::check_replaceable() const {
   bool has_result = found.empty();
   for (const fs::path& path : found) {
     has_result = has_result || path.filename() == kResult;
-    if (path.filename() != kResult && path.filename() != kLabels && path.filename() != kScores) {
+    if (std::ranges::find(kWritten, path.filename()) == kWritten.end()) {
       throw UsageError(path.string() +
                        ": was not written by mosbench run, expected --out to name a folder of "
                        "its own");
