@@ -22,8 +22,8 @@ void hmm_stage(benchmark::State& state, StagedScans& staged, ThreadPool&) {
   const NearBlocks near(staged);
   std::vector<BlockDistances> distances(near.size());
   std::vector<BlockBeliefs> beliefs(near.size());
+  std::vector<BeliefNumbers> numbers(near.size());
   std::vector<BlockStates> states(near.size());
-  std::vector<BlockMask> seen(near.size()), nonzero(near.size());
   std::size_t voxels = 0;
   ColumnDistances column(near.field());
   for (std::size_t i = 0; i < near.size(); ++i) {
@@ -32,18 +32,16 @@ void hmm_stage(benchmark::State& state, StagedScans& staged, ThreadPool&) {
   }
   const auto update = [&] {
     for (std::size_t i = 0; i < near.size(); ++i) {
-      near.filter().update(near.observed(i), seen[i], distances[i], nonzero[i], beliefs[i],
-                           states[i]);
-      seen[i] = near.observed(i);
+      near.filter().update(near.observed(i), distances[i], beliefs[i], numbers[i], states[i]);
     }
   };
   for (int scan = 0; scan < 100; ++scan) update();
   for (auto _ : state) update();
   count_items(state, "voxels", voxels);
   for (std::size_t i = 0; i < near.size(); ++i) {
-    for_each_cell(near.observed(i) & nonzero[i], [&](std::uint32_t cell) {
+    for_each_cell(near.observed(i) & distances[i].near, [&](std::uint32_t cell) {
       const double expected = settled_belief(staged.workload.config, distances[i].squared[cell]);
-      expect(state, std::abs(beliefs[i].occupied[cell] - expected) < 1e-3);
+      expect(state, std::abs(beliefs[i].at(cell, numbers[i]) - expected) < 1e-3);
     });
   }
 }

@@ -7,7 +7,7 @@ namespace {
 
 void median_stage(benchmark::State& state, StagedScans& staged, ThreadPool& pool) {
   measure_stage(
-      state, staged, [&](const StagedScan& s) { return median_filter(s.scan, s.scores, pool); },
+      state, staged, [&](const StagedScan& s) { return median_filter(s.scan, s.votes, pool); },
       [](const StagedScan& s, const VoteField& filtered) {
         return filtered.values == s.filtered.values;
       });

@@ -18,15 +18,13 @@ DynamicRegion::DynamicRegion(const VoxelGrid& grid, double max_range_m, int dyna
       min_otsu_score_(min_otsu_score) {}
 
 DynamicRegion::Block* DynamicRegion::find(const BlockIndex& block) {
-  const std::uint32_t slot = table_.find(block);
+  const std::uint32_t slot = blocks_.find(block);
   return slot == kNoSlot ? nullptr : &blocks_[slot];
 }
 
 std::vector<BlockIndex> DynamicRegion::blocks_with(const VoxelSet& dynamic) const {
   std::vector<BlockIndex> blocks;
-  for (std::uint32_t slot = 0; slot < blocks_.capacity(); ++slot) {
-    if (blocks_[slot].live) blocks.push_back(blocks_[slot].index);
-  }
+  blocks_.for_each_slot([&](std::uint32_t slot) { blocks.push_back(blocks_.index_of(slot)); });
   blocks.insert(blocks.end(), dynamic.blocks.begin(), dynamic.blocks.end());
   return blocks;
 }
@@ -35,11 +33,10 @@ VoxelSet DynamicRegion::back_end(const VoxelizedScan& scan, const VoxelSet& besi
                                  int kernel_width_voxels, ThreadPool& pool) const {
   const int radius = radius_of(kernel_width_voxels);
   VoxelSet confident;
-  for (std::uint32_t slot = 0; slot < blocks_.capacity(); ++slot) {
-    const Block& block = blocks_[slot];
-    if (!block.live || !block.high_confidence.any()) continue;
-    confident.masks[confident.insert(block.index)] = block.high_confidence;
-  }
+  blocks_.for_each_slot([&](std::uint32_t slot) {
+    const BlockMask& voxels = blocks_[slot].high_confidence;
+    if (voxels.any()) confident.masks[confident.insert(blocks_.index_of(slot))] = voxels;
+  });
   const std::vector<std::uint32_t> slots = slots_within(scan, confident, radius);
   std::vector<std::vector<ValueCount>> votes(slots.size());  // per candidate, in cell order
   std::vector<BlockMask> voted(slots.size());
@@ -73,14 +70,13 @@ void DynamicRegion::update(const DetectedScan& detected, std::uint32_t scan_inde
     counts.push_back({static_cast<std::int32_t>(n), count_by_neighbours_[n]});
   }
   threshold_ = otsu_threshold(counts).value_or(threshold_);
-  for (std::uint32_t slot = 0; slot < blocks_.capacity(); ++slot) {
+  blocks_.for_each_slot([&](std::uint32_t slot) {
     Block& block = blocks_[slot];
-    if (!block.live) continue;
     block.high_confidence = {};
     for_each_cell(without(block.dynamic, block.beside_unknown), [&](std::uint32_t cell) {
       if (block.neighbours[cell] > threshold_) block.high_confidence.set(cell);
     });
-  }
+  });
   evict(detected.scan.sensor_m, scan_index);
 }
 
@@ -111,17 +107,17 @@ void DynamicRegion::visit(const DetectedScan& detected, std::uint32_t scan_index
       for_each_cell(joining, [&](std::uint32_t cell) { add(voxel_at(index, cell), scan_index); });
     }
   }
-  for (std::uint32_t slot = 0; slot < blocks_.capacity(); ++slot) {
+  blocks_.for_each_slot([&](std::uint32_t slot) {
     Block& block = blocks_[slot];
-    if (!block.live) continue;
-    const BlockMask* occupied = detected.scan.occupied_in(block.index);
-    if (occupied == nullptr) continue;
+    const BlockIndex& index = blocks_.index_of(slot);
+    const BlockMask* occupied = detected.scan.occupied_in(index);
+    if (occupied == nullptr) return;
     BlockMask seen = *occupied & block.dynamic;
-    if (const BlockMask* mask = stamped.mask_of(block.index)) seen = without(seen, *mask);
-    const BlockMask* beside = detected.beside_unknown.mask_of(block.index);
+    if (const BlockMask* mask = stamped.mask_of(index)) seen = without(seen, *mask);
+    const BlockMask* beside = detected.beside_unknown.mask_of(index);
     block.beside_unknown = without(block.beside_unknown, seen);
     if (beside != nullptr) block.beside_unknown = block.beside_unknown | (*beside & seen);
-  }
+  });
 }
 
 template <typename Visit>
@@ -139,16 +135,9 @@ void DynamicRegion::for_each_dynamic_neighbour(const Voxel& voxel, Visit&& visit
 }
 
 void DynamicRegion::add(const Voxel& voxel, std::uint32_t scan_index) {
-  const BlockIndex index = block_of(voxel);
-  std::uint32_t slot = table_.find(index);
-  if (slot == kNoSlot) {
-    slot = table_.find_or_insert(index, blocks_.take());
-    Block& fresh = blocks_[slot];
-    fresh.index = index;
-    fresh.live = true;
-    fresh.dynamic = fresh.beside_unknown = fresh.high_confidence = {};
-  }
+  const auto [slot, added] = blocks_.find_or_add(block_of(voxel));
   Block& block = blocks_[slot];
+  if (added) block.dynamic = block.beside_unknown = block.high_confidence = {};
   const std::uint32_t cell = cell_of(voxel);
   block.became[cell] = static_cast<std::uint16_t>(scan_index);
   std::uint8_t neighbours = 1;
@@ -162,14 +151,15 @@ void DynamicRegion::add(const Voxel& voxel, std::uint32_t scan_index) {
   ++count_by_neighbours_[neighbours];
 }
 
-void DynamicRegion::remove(Block& block, std::uint32_t cell) {
+void DynamicRegion::remove(std::uint32_t slot, std::uint32_t cell) {
+  Block& block = blocks_[slot];
   --count_by_neighbours_[block.neighbours[cell]];
   BlockMask voxel;
   voxel.set(cell);
   block.dynamic = without(block.dynamic, voxel);
   block.beside_unknown = without(block.beside_unknown, voxel);
   block.high_confidence = without(block.high_confidence, voxel);
-  for_each_dynamic_neighbour(voxel_at(block.index, cell),
+  for_each_dynamic_neighbour(voxel_at(blocks_.index_of(slot), cell),
                              [&](Block& other, std::uint32_t other_cell) {
                                --count_by_neighbours_[other.neighbours[other_cell]];
                                ++count_by_neighbours_[--other.neighbours[other_cell]];
@@ -177,22 +167,18 @@ void DynamicRegion::remove(Block& block, std::uint32_t cell) {
 }
 
 void DynamicRegion::evict(const Eigen::Vector3d& sensor_m, std::uint32_t scan_index) {
-  for (std::uint32_t slot = 0; slot < blocks_.capacity(); ++slot) {
-    Block& block = blocks_[slot];
-    if (!block.live) continue;
+  blocks_.for_each_slot([&](std::uint32_t slot) {
+    const Block& block = blocks_[slot];
     BlockMask leaving = without(
-        block.dynamic, within_range(grid_, block.index, block.dynamic, sensor_m, evict_radius_m_));
+        block.dynamic,
+        within_range(grid_, blocks_.index_of(slot), block.dynamic, sensor_m, evict_radius_m_));
     for_each_cell(block.dynamic, [&](std::uint32_t cell) {
       const auto age = static_cast<std::uint16_t>(scan_index - block.became[cell]);
       if (age > dynamic_window_scans_) leaving.set(cell);
     });
-    for_each_cell(leaving, [&](std::uint32_t cell) { remove(block, cell); });
-    if (!block.dynamic.any()) {
-      table_.erase(block.index);
-      block.live = false;
-      blocks_.give_back(slot);
-    }
-  }
+    for_each_cell(leaving, [&](std::uint32_t cell) { remove(slot, cell); });
+    if (!block.dynamic.any()) blocks_.erase(slot);
+  });
 }
 
 }  // namespace mosbench::hmm_mos

@@ -5,9 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "core/base/slot_pool.hpp"
 #include "core/base/thread_pool.hpp"
-#include "core/voxel/voxel_set.hpp"
+#include "core/voxel/block_map.hpp"
 #include "core/voxel/voxelize.hpp"
 
 namespace mosbench::hmm_mos {
@@ -45,12 +44,10 @@ class DynamicRegion {
   /// Returns the blocks of the region and those of `dynamic`; some may come twice. In and next to
   /// them `back_end` and `update` ask for `beside_unknown`.
   std::vector<BlockIndex> blocks_with(const VoxelSet& dynamic) const;
-  std::size_t memory_bytes() const { return blocks_.memory_bytes() + table_.memory_bytes(); }
+  std::size_t memory_bytes() const { return blocks_.memory_bytes(); }
 
  private:
   struct Block {
-    BlockIndex index;
-    bool live = false;
     BlockMask dynamic, beside_unknown, high_confidence;
     std::array<std::uint8_t, kBlockVoxels> neighbours;  // dynamic voxels among the 27
     std::array<std::uint16_t, kBlockVoxels> became;     // scan modulo 2^16
@@ -58,7 +55,7 @@ class DynamicRegion {
 
   void visit(const DetectedScan& detected, std::uint32_t scan_index);
   void add(const Voxel& voxel, std::uint32_t scan_index);
-  void remove(Block& block, std::uint32_t cell);
+  void remove(std::uint32_t slot, std::uint32_t cell);
   template <typename Visit>
   void for_each_dynamic_neighbour(const Voxel& voxel, Visit&& visit);
   void evict(const Eigen::Vector3d& sensor_m, std::uint32_t scan_index);
@@ -68,8 +65,7 @@ class DynamicRegion {
   double evict_radius_m_;
   std::uint32_t dynamic_window_scans_;
   int min_otsu_score_;
-  BlockTable table_;
-  SlotPool<Block> blocks_;
+  BlockMap<Block> blocks_;
   std::array<std::size_t, 28> count_by_neighbours_{};  // of all dynamic voxels
   double threshold_ = 0;                               // T_R, kept while no level is found
   VoxelSet visited_;  // occupied, non-dynamic voxels of scan `visited_at_`

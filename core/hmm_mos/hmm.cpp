@@ -16,7 +16,7 @@ double negligible_likelihood(double transition_epsilon, double min_state_probabi
 }
 
 struct Cells {
-  const BlockMask &in_reach, &seen, &nonzero;
+  const BlockMask &in_reach, &seen, &numbered;
   const std::uint16_t* distances;
   const float* likelihood;
 };
@@ -39,7 +39,7 @@ MOSBENCH_MULTIARCH void filter_cells(const BeliefFilter::Step& step, const Cells
       }
       const auto belief = load<FloatLanes>(beliefs + first);
       const FloatLanes unseen = FloatLanes{} + 0.5f;
-      const FloatLanes prior = lanes_of(row_of(cells.nonzero))
+      const FloatLanes prior = lanes_of(row_of(cells.numbered))
                                    ? belief
                                    : (lanes_of(row_of(cells.seen)) ? FloatLanes{} : unseen);
       // x_k = eta B A x_{k-1} (paper, III): q = (A x)_occupied, B = diag(0, L, 1 - L), eta
@@ -79,20 +79,25 @@ BeliefFilter::BeliefFilter(double voxel_size_m, double sigma_m, double transitio
   likelihood_.resize(static_cast<std::size_t>(far_squared(radius_)) + 1);
 }
 
-void BeliefFilter::update(const BlockMask& observed, const BlockMask& seen,
-                          const BlockDistances& distances, BlockMask& nonzero,
-                          BlockBeliefs& beliefs, BlockStates& states) const {
+void BeliefFilter::update(const BlockMask& observed, const BlockDistances& distances,
+                          BlockBeliefs& beliefs, BeliefNumbers& numbers,
+                          BlockStates& states) const {
   const BlockMask in_reach = observed & distances.near;
-  update_far(without(observed, in_reach), nonzero, states);
-  filter_cells(step_, {in_reach, seen, nonzero, distances.squared.data(), likelihood_.data()},
-               beliefs.occupied.data(), states);
-  nonzero = nonzero | in_reach;
+  update_far(without(observed, in_reach), beliefs, states);
+  filter_cells(
+      step_,
+      {in_reach, beliefs.seen_, beliefs.numbered_, distances.squared.data(), likelihood_.data()},
+      numbers.occupied.data(), states);
+  beliefs.seen_ = beliefs.seen_ | in_reach;
+  beliefs.numbered_ = beliefs.numbered_ | in_reach;
 }
 
-void BeliefFilter::update_far(const BlockMask& observed, BlockMask& nonzero, BlockStates& states) {
+void BeliefFilter::update_far(const BlockMask& observed, BlockBeliefs& beliefs,
+                              BlockStates& states) {
   states.occupied = without(states.occupied, observed);
   states.free = states.free | observed;
-  nonzero = without(nonzero, observed);
+  beliefs.seen_ = beliefs.seen_ | observed;
+  beliefs.numbered_ = without(beliefs.numbered_, observed);
 }
 
 }  // namespace mosbench::hmm_mos

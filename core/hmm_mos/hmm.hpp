@@ -14,10 +14,29 @@ struct BlockStates {
   BlockMask occupied, free;
 };
 
-/// p(occupied) of a block's voxels, kept only where a source was in reach when the voxel was seen
-/// last. Elsewhere it is 0, or still the 0.5 of a voxel never seen.
-struct BlockBeliefs {
-  alignas(64) std::array<float, kBlockVoxels> occupied;  ///< valid where nonzero
+/// Memory for the numbers of a block's beliefs.
+struct BeliefNumbers {
+  alignas(64) std::array<float, kBlockVoxels> occupied;
+};
+
+/// The beliefs p(occupied) of a block's voxels. Only voxels with a source in reach when they were
+/// seen last have a number; the others are at 0, or still at the 0.5 of a voxel never seen.
+class BlockBeliefs {
+ public:
+  const BlockMask& seen() const { return seen_; }
+  /// Returns p(occupied); `numbers` are those that the block was updated with.
+  float at(std::uint32_t cell, const BeliefNumbers& numbers) const {
+    return numbered_.test(cell) ? numbers.occupied[cell] : seen_.test(cell) ? 0.0F : 0.5F;
+  }
+  /// Makes voxels never seen.
+  void forget(const BlockMask& voxels) {
+    seen_ = without(seen_, voxels);
+    numbered_ = without(numbered_, voxels);
+  }
+
+ private:
+  friend class BeliefFilter;
+  BlockMask seen_, numbered_;
 };
 
 /// Returns the distance, in sigmas, beyond which the likelihood of an occupied voxel cannot change
@@ -37,13 +56,12 @@ class BeliefFilter {
   int radius() const { return radius_; }
 
   /// x_k = eta B A x_{k-1}, B = diag(0, L, 1 - L), L = exp(-d^2 / (2 sigma_o^2)), and S where p >
-  /// p_min (paper, III), for the observed voxels of a block. `seen` are the voxels with a record,
-  /// `nonzero` those of them with a number in `beliefs`; all others have p = 0.
-  void update(const BlockMask& observed, const BlockMask& seen, const BlockDistances& distances,
-              BlockMask& nonzero, BlockBeliefs& beliefs, BlockStates& states) const;
+  /// p_min (paper, III), for the observed voxels of a block, whose `numbers` are always the same.
+  void update(const BlockMask& observed, const BlockDistances& distances, BlockBeliefs& beliefs,
+              BeliefNumbers& numbers, BlockStates& states) const;
 
   /// The same for voxels without a source in reach: they are certainly free.
-  static void update_far(const BlockMask& observed, BlockMask& nonzero, BlockStates& states);
+  static void update_far(const BlockMask& observed, BlockBeliefs& beliefs, BlockStates& states);
 
   /// The numbers of one filter step.
   struct Step {

@@ -2,16 +2,17 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <span>
 #include <vector>
 
 #include "core/base/slot_pool.hpp"
 #include "core/base/thread_pool.hpp"
+#include "core/hmm_mos/change_log.hpp"
 #include "core/hmm_mos/config.hpp"
+#include "core/hmm_mos/eviction.hpp"
 #include "core/hmm_mos/hmm.hpp"
 #include "core/hmm_mos/last_seen.hpp"
-#include "core/voxel/voxel_set.hpp"
+#include "core/voxel/block_map.hpp"
 
 namespace mosbench::hmm_mos {
 
@@ -27,10 +28,8 @@ class VoxelMap {
   VoxelList update(const VoxelList& observed, std::span<const VoxelSet* const> sources,
                    const Eigen::Vector3d& sensor_m, std::uint32_t scan_index, ThreadPool& pool);
 
-  /// To be called after `update`: removes voxels that lie beyond the eviction radius of this scan's
-  /// sensor or were not observed for more than w_g scans (paper, III). Eviction is amortised: a
-  /// block is visited once in kSweepScans scans. Results are unchanged as long as the sensor moves
-  /// less than safe_path_m_ meanwhile; otherwise all blocks are visited.
+  /// To be called after `update`: removes voxels out of range (see Eviction) and those not observed
+  /// for more than w_g scans (paper, III).
   void evict(std::uint32_t scan_index);
 
   /// Returns the known voxels at `scan_index`, those with a state that were observed less than w_g
@@ -38,65 +37,45 @@ class VoxelMap {
   /// and updated here.
   VoxelSet known_at(std::uint32_t scan_index, std::span<const BlockIndex> blocks, ThreadPool& pool);
 
-  /// Voxels whose last change is at `first_scan` or later, by block.
-  VoxelSet changed_since(std::uint32_t first_scan) const;
+  /// Returns P'_chg since `first_scan`: voxels whose last change is at that scan or later.
+  VoxelSet changed_since(std::uint32_t first_scan) const { return changes_.since(first_scan); }
 
-  std::size_t block_count() const { return blocks_.in_use(); }
+  std::size_t block_count() const { return blocks_.size(); }
   std::size_t memory_bytes() const;
 
  private:
   struct Block {
-    BlockIndex index;
     std::uint32_t oldest_seen;  // lower bound of last_seen over voxels that age
     std::uint32_t newest_seen;
-    bool live = false;
     BlockStates states;
-    BlockMask seen;      // has a record
+    BlockBeliefs beliefs;
     BlockMask fresh;     // seen at newest_seen, not yet in last_seen
-    BlockMask nonzero;   // has a number in beliefs
     BlockMask stale;     // not seen for w_g scans or more
     BlockMask ageless;   // release-2025: stale and never to expire
     LastSeen last_seen;  // last: most of it is seldom touched
   };
-  struct ChangesOfScan {
-    std::uint32_t scan_index;
-    VoxelList voxels;
-  };
 
-  std::uint32_t add_block(const BlockIndex& index, std::uint32_t scan_index);
-  void drop_block(std::uint32_t slot);
+  std::uint32_t find_or_add(const BlockIndex& index, std::uint32_t scan_index);
   void refresh_block(Block& block, std::uint32_t scan_index);
   void stamp_fresh(Block& block, const BlockMask& voxels);
   static void forget(Block& block, const BlockMask& voxels);
-  void note_sensor(const Eigen::Vector3d& sensor_m, std::uint32_t scan_index);
-  void sweep(std::uint32_t first_slot, std::uint32_t stride, std::size_t first_sensor,
-             std::size_t last_sensor, std::uint32_t scan_index);
-  void evict_from_block(std::uint32_t slot, std::size_t first_sensor, std::size_t last_sensor,
-                        std::uint32_t scan_index);
+  void run(const Sweep& sweep, std::uint32_t scan_index);
+  void drop_block(std::uint32_t slot);
 
-  void drop_expired_changes(std::uint32_t scan_index);
-
-  static constexpr std::uint32_t kSweepScans = 16;
-
-  VoxelGrid grid_;
   Variant variant_;
   BeliefFilter filter_;
   DistanceField distance_field_;
+  Eviction eviction_;
+  ChangeLog changes_;
   std::uint32_t global_window_scans_;
+  std::uint32_t evicted_after_;  // age at which an update no longer finds the record: it left after
+                                 // the scan before, at age w_g + 1
   int age_planes_;
-  std::uint32_t delay_scans_;
-  double evict_radius_m_;
-  double safe_path_m_;
-  BlockTable table_;
-  SlotPool<Block> blocks_;
-  SlotPool<BlockBeliefs> beliefs_;
-  // Slot in beliefs_ by slot of the block, or kNoSlot while every belief is zero. Not in the block,
-  // which the serial part of `update` would fetch from memory to ask.
-  std::vector<std::uint32_t> beliefs_of_;
-  std::deque<ChangesOfScan> changes_;  // the last delay + 1 scans
-  std::deque<Eigen::Vector3d>
-      sensors_m_;                     // the last delay + kSweepScans positions and the current one
-  bool fast_ = false;                 // the sensor moved farther than safe_path_m_ over these
+  BlockMap<Block> blocks_;
+  SlotPool<BeliefNumbers> numbers_;
+  // Slot in numbers_ by slot of the block, or kNoSlot while no voxel has a number. Not in the
+  // block, which the serial part of `update` would fetch from memory to ask.
+  std::vector<std::uint32_t> numbers_of_;
   std::vector<std::uint32_t> slots_;  // of the observed blocks
 };
 

@@ -33,18 +33,15 @@ struct ThreeStates {
 
 /// What the map keeps of a block for the filter.
 struct Block {
-  BlockMask seen, nonzero;
   BlockBeliefs beliefs;
+  BeliefNumbers numbers;
   BlockStates states;
 
   void update(const BeliefFilter& filter, const BlockMask& observed,
               const BlockDistances& distances) {
-    filter.update(observed, seen, distances, nonzero, beliefs, states);
-    seen = seen | observed;
+    filter.update(observed, distances, beliefs, numbers, states);
   }
-  float belief(std::uint32_t cell) const {
-    return nonzero.test(cell) ? beliefs.occupied[cell] : seen.test(cell) ? 0.0F : 0.5F;
-  }
+  float belief(std::uint32_t cell) const { return beliefs.at(cell, numbers); }
 };
 
 struct Setting {
@@ -62,7 +59,7 @@ TEST(BeliefFilter, FollowsTheThreeStatesOfThePaper) {
     const int beyond = (filter.radius() + 1) * (filter.radius() + 1);
     std::vector<ThreeStates> twins(kBlockVoxels);
     Block block;
-    block.beliefs.occupied.fill(0.75F);  // read where it is not valid would show
+    block.numbers.occupied.fill(0.75F);  // read where it is not valid would show
     std::size_t occupied = 0, free = 0;
     for (int scan = 0; scan < 200; ++scan) {
       BlockMask observed;
@@ -82,7 +79,7 @@ TEST(BeliefFilter, FollowsTheThreeStatesOfThePaper) {
       block.update(filter, observed, distances);
       for (std::uint32_t cell = 0; cell < kBlockVoxels; ++cell) {
         const ThreeStates& twin = twins[cell];
-        if (!block.seen.test(cell)) continue;
+        if (!block.beliefs.seen().test(cell)) continue;
         ASSERT_NEAR(twin.occupied + twin.free, 1.0, 1e-12);
         // A likelihood taken as zero leaves p < L / epsilon < 3.2e-4 (1 - p_min), and then shifts a
         // prior by as much; a few roundings of single precision come on top.
@@ -158,16 +155,22 @@ TEST(BeliefFilter, StateNeedsMoreThanTheMinimumProbability) {
 }
 
 TEST(BeliefFilter, FarFromEverySourceIsFree) {
-  BlockMask observed, nonzero;
+  const BeliefFilter filter(0.25, 0.25, 0.005, 0.99);
+  BlockMask both, observed;
+  both.set(3);
+  both.set(4);
   observed.set(3);
-  nonzero.set(3);
-  nonzero.set(4);
-  BlockStates states{.occupied = nonzero, .free = {}};
-  BeliefFilter::update_far(observed, nonzero, states);
-  EXPECT_FALSE(nonzero.test(3));
-  EXPECT_TRUE(nonzero.test(4));
-  EXPECT_TRUE(states.free.test(3) && states.occupied.test(4));
-  EXPECT_FALSE(states.occupied.test(3) || states.free.test(4));
+  Block block;
+  block.update(filter, both, {.near = both, .squared = {}});
+  ASSERT_EQ(block.belief(3), 1.0F);
+  BeliefFilter::update_far(observed, block.beliefs, block.states);
+  EXPECT_EQ(block.belief(3), 0.0F);
+  EXPECT_EQ(block.belief(4), 1.0F);
+  EXPECT_EQ(block.belief(5), 0.5F) << "never seen";
+  EXPECT_TRUE(block.states.free.test(3) && block.states.occupied.test(4));
+  EXPECT_FALSE(block.states.occupied.test(3) || block.states.free.test(4));
+  block.beliefs.forget(both);
+  EXPECT_EQ(block.belief(4), 0.5F) << "as if never seen";
 }
 
 TEST(ChangeDetection, OnlySwitchesBetweenFreeAndOccupiedCount) {
