@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# build.sh PRESET [cmake --build arguments]: configures and builds, with ccache where it is there.
-# MOSBENCH_WITH_PCL, MOSBENCH_WITH_ROSBAG, MOSBENCH_WARNINGS_AS_ERRORS and MOSBENCH_BUILD_TESTS are passed on when set.
+# build.sh PRESET [cmake --build arguments]: configures and builds, with ccache if it is installed.
+# MOSBENCH_WITH_PCL, MOSBENCH_WITH_ROSBAG, MOSBENCH_WARNINGS_AS_ERRORS and MOSBENCH_BUILD_TESTS are passed on if set.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 [ $# -ge 1 ] || { echo "usage: build.sh PRESET [cmake --build arguments]" >&2; exit 2; }

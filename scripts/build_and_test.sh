@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# build_and_test.sh PRESET [ctest arguments]: configures, builds, runs the tests and closes with
+# build_and_test.sh PRESET [ctest arguments]: configures, builds, runs the tests and ends with
 # "N passed, N failed, N skipped". Exit code 1 when a test failed or none ran.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # build_report.sh [--check]: makes eval/report/page/page.html, the page that `mosbench report` fills in,
-# from eval/report/page/src. Needed after a change there; building mosbench takes the file as it is and
-# needs no node. With --check nothing is written: exit code 1 when the file is not what src makes, or
-# when the linter or a unit test of the page complains.
+# from eval/report/page/src. Run it after a change there; building mosbench takes the file as it is and
+# needs no node. With --check it writes nothing, and ends with exit code 1 when the file differs from what
+# src makes, or when the linter or a unit test of the page complains.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 scripts/setup.sh --page

@@ -1,7 +1,6 @@
 #!/usr/bin/env bash
-# demo.sh: installs what is missing, builds release, simulates a small sequence for each data set's
-# layout, segments and scores them, prints one table and writes the report of all. Leaves everything in
-# build/demo.
+# demo.sh: installs missing packages, builds release, simulates a small sequence in the layout of each of
+# four data sets, segments and scores them, prints one table and writes a report of all to build/demo.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 scripts/setup.sh
@@ -11,14 +10,14 @@ demo=build/demo
 rm -rf "$demo"
 mkdir -p "$demo"
 
-# show LAYOUT SCENE SCANS PRESET: one data set from the scene to a row of the table per sequence.
+# show LAYOUT SCENE SCANS PRESET: takes one data set from the scene to a row of the table per sequence.
 show() {
   local data=$demo/$1 runs=$demo/runs/$1 run=$demo/$1-run.json score=$demo/$1-score.json
   "$mosbench" simulate --layout "$1" --scene "$2" --scans "$3" --seed 1 --out "$data" >&2
   "$mosbench" run "$data" --preset "$4" --scores --out "$runs" --json >"$run"
   "$mosbench" score "$data" --predictions "$runs" --json \
     --protocol "$(jq -r .protocol "$run")" >"$score"
-  # The label files scored once more must give what the run said.
+  # Scoring the label files again must give the numbers of the run.
   if ! cmp -s <(jq '[.sequences[].summary]' "$run") <(jq '[.sequences[].summary]' "$score"); then
     echo "demo.sh: run and score differ, see $run and $score" >&2
     exit 1
@@ -38,9 +37,9 @@ show helimos street 60 helimos
 show semantickitti highway 60 semantickitti
 
 echo
-echo "Simulated sequences: they show that everything works, not how the method does on real ones."
+echo "Simulated sequences: they show that everything works, not how well the method does on real ones."
 column -t -s $'\t' -R 4,6,7,8,9 "$demo/table.tsv"
 
-# Seven results: the worst and some others of each one's scans, so that the file opens quickly. The
-# command says what it leaves out.
+# Of each of the seven results the worst scans and some others, so that the file opens quickly. The command
+# says what it leaves out.
 "$mosbench" report "$demo"/runs/* -o "$demo/report.html" --max-mb 15

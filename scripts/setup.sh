@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
-# setup.sh [--checks|--page]: installs the Debian packages that building and testing need; with --checks
-# also those of the format, naming and clang checks; with --page what the report's page is tested, linted
-# and built with: a browser, node and the packages of eval/report/page/package-lock.json. Does nothing,
-# quickly, when all are there.
+# setup.sh [--checks|--page]: installs the Debian packages for building and testing; with --checks also
+# those of the format and clang checks and of the API pages; with --page also what tests, lints and builds
+# the report's page: a browser, node and the packages of eval/report/page/package-lock.json. Returns
+# quickly when all are installed.
 # MOSBENCH_WITH_PCL=OFF leaves out PCL, which brings some 400 packages,
 # MOSBENCH_WITH_ROSBAG=OFF the 40 or so of ROS's bag library, which only writing bags needs.
 set -euo pipefail
 
-packages=(g++ cmake ninja-build pkg-config git xz-utils jq bsdextrautils python3
+packages=(g++ cmake ninja-build pkg-config git xz-utils jq bsdextrautils python3 help2man
   libeigen3-dev libfmt-dev nlohmann-json3-dev libcli11-dev libxxhash-dev
   zlib1g-dev libpng-dev libbz2-dev liblz4-dev libboost-dev
   libgtest-dev libgmock-dev libbenchmark-dev)
@@ -15,7 +15,7 @@ packages=(g++ cmake ninja-build pkg-config git xz-utils jq bsdextrautils python3
 [ "${MOSBENCH_WITH_ROSBAG:-ON}" = OFF ] || packages+=(librosbag-storage-dev)
 case "${1:-}" in
   "") ;;
-  --checks) packages+=(clang clang-format clang-tidy) ;;
+  --checks) packages+=(clang clang-format clang-tidy doxygen) ;;
   --page)
     packages+=(chromium fonts-dejavu-core util-linux)
     command -v npm >/dev/null || packages+=(nodejs npm)
@@ -42,7 +42,7 @@ install_packages() {
   if [ "$(id -u)" != 0 ]; then
     command -v sudo >/dev/null || give_up "neither root nor sudo"
     as_root=(sudo)
-    # Without a terminal a password prompt would wait for ever.
+    # Without a terminal a password prompt would wait forever.
     [ -t 0 ] || as_root=(sudo -n)
   fi
 
@@ -62,7 +62,7 @@ install_packages() {
   done
 }
 
-# What the lock file names and no more; the stamp is its copy at the last installation.
+# Installs what the lock file names and nothing else; the stamp is its copy at the last installation.
 install_page_packages() {
   local folder stamp
   folder=$(dirname "${BASH_SOURCE[0]}")/../eval/report/page

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# test.sh [ctest arguments]: installs what is missing, builds release and runs every test.
+# test.sh [ctest arguments]: installs missing packages, builds release and runs every test.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 "$here/setup.sh" --page

@@ -87,6 +87,8 @@ std::vector<std::string> words_of(const CLI::Option& option) {
   return words;
 }
 
+bool is_flag(const CLI::Option& option) { return option.get_items_expected_max() == 0; }
+
 /// Returns the flags of a command as typed: {"-o", "--out"}; none of a positional argument.
 std::vector<std::string> flags_of(const CLI::Option& option) {
   std::vector<std::string> flags;
@@ -103,7 +105,7 @@ std::string bash_completion(const CLI::App& program) {
       const std::vector<std::string> possible = words_of(*option);
       for (const std::string& flag : flags_of(*option)) {
         words.push_back(flag);
-        if (option->get_type_size() == 0) continue;
+        if (is_flag(*option)) continue;
         values +=
             fmt::format("      '{} {}') words='{}' ;;\n", row.name, flag, fmt::join(possible, " "));
       }
@@ -130,7 +132,7 @@ std::string zsh_argument(const CLI::Option& option) {
   }
   std::string arguments;
   for (const std::string& flag : flags_of(option)) {
-    const std::string value = option.get_type_size() == 0 ? "" : fmt::format(":value:{}", action);
+    const std::string value = is_flag(option) ? "" : fmt::format(":value:{}", action);
     arguments +=
         fmt::format(" \\\n        '{}[{}]{}'", flag, plain(option.get_description()), value);
   }

@@ -62,11 +62,13 @@ std::string HelpText::make_usage(const CLI::App* app, std::string name) const {
 }
 
 std::string HelpText::make_option(const CLI::Option* option, bool is_positional) const {
-  std::string left = "  " + make_option_name(option, is_positional);
-  if (!is_positional && option->get_type_size() != 0) left += ' ' + value_name(*option);
+  std::string left = "  ";
+  for (const char c : make_option_name(option, is_positional))
+    left += c == ',' ? ", " : std::string(1, c);
+  if (!is_positional && option->get_items_expected_max() > 0) left += ' ' + value_name(*option);
   const std::size_t indent = get_column_width();
-  left += left.size() < indent ? std::string(indent - left.size(), ' ')
-                               : '\n' + std::string(indent, ' ');
+  left += left.size() + 2 <= indent ? std::string(indent - left.size(), ' ')
+                                    : '\n' + std::string(indent, ' ');
   return left + wrapped(description_of(*option, is_positional), indent) + '\n';
 }
 

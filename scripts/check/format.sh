@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# check_format.sh: every tracked C++ file is formatted as .clang-format says, by clang-format 14
+# format.sh: checks that every tracked C++ file is formatted as .clang-format says, by clang-format 14
 # (other versions format differently).
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# check_gate.sh [MOSBENCH]: segments the simulated sequences of results/baseline anew and fails when
-# their IoU dropped. With BLESS=1 the new results are accepted instead; commit them then.
+# gate.sh [MOSBENCH]: segments the simulated sequences of results/baseline again and fails when their IoU
+# dropped. With BLESS=1 it accepts the new results instead; commit them.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 mosbench=${1:-build/release/eval/mosbench}

@@ -37,6 +37,7 @@ MAY_INCLUDE = {
     "eval/report": THREADS | {"datasets/", "eval/breakdown", "eval/tables"} | NUMBERS,
     "eval/cli": THREADS | {"datasets/", "eval/"},
     "bench": {"core/", "datasets/", "eval/"},
+    "tests/examples": {"core/include"},
     "tests": {"core/", "datasets/", "eval/", "bench", "tests/"},
 }
 ABOVE_CORE = {"datasets", "eval", "bench", "tests"}

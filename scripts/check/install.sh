@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# check_install.sh [BUILD_FOLDER]: installs a built tree (build/release) into a new prefix, builds a
-# program outside the project against it with find_package(mosbench) and checks what it prints.
+# install.sh [BUILD_FOLDER]: installs a built tree (build/release) into a new prefix, builds a program
+# outside the project against it with find_package(mosbench), and checks what it prints.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 build=${1:-build/release}
@@ -16,6 +16,13 @@ labels=$("$scratch/consumer/build/label_one_scan" | paste -sd ' ')
 # The first scan of a sequence has nothing to have moved from.
 [ "$labels" = "9 9 9" ] || { echo "the installed library labels '$labels', expected '9 9 9'" >&2; exit 1; }
 "$scratch/prefix/bin/mosbench" --help >/dev/null
+for file in bash-completion/completions/mosbench zsh/site-functions/_mosbench; do
+  [ -s "$scratch/prefix/share/$file" ] || { echo "share/$file is not installed" >&2; exit 1; }
+done
+if command -v help2man >/dev/null; then
+  grep -q '^\.SH EXAMPLES' "$scratch/prefix/share/man/man1/mosbench-run.1" ||
+    { echo "there is no manual page with examples of mosbench run" >&2; exit 1; }
+fi
 # The module that reads .pcd scans must be found from where the program was installed.
 if ls "$scratch"/prefix/lib*/mosbench/mosbench_pcl.so "$scratch"/prefix/lib/*/mosbench/mosbench_pcl.so >/dev/null 2>&1; then
   mkdir -p "$scratch/sequence/velodyne"

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""No name in the C++ sources or among the file names says nothing: util, helper, data, tmp, ..."""
+"""Checks that no name in the C++ sources or among the file names says nothing: util, helper, tmp, ..."""
 
 import pathlib
 import re
@@ -7,11 +7,9 @@ import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-BANNED = {"util", "utils", "helper", "helpers", "manager", "handler", "data", "info", "tmp"}
-# The exit code's name: 3, data; a trait of ROS.
-ALLOWED = {"DataError", "DataType"}
-# Not looked at: literals, comments, preprocessor lines, test names (sentences), and names behind
-# . -> :: (members of other libraries, or ours, which are seen where they are declared).
+BANNED = {"util", "utils", "helper", "helpers", "manager", "handler", "tmp"}
+# Left out: literals, comments, preprocessor lines, test names (sentences), and names behind . -> ::
+# (members of other libraries, or ours, which are checked where they are declared).
 NOISE = re.compile(
     r'R"(?P<tag>\w*)\(.*?\)(?P=tag)"|"(?:\\.|[^"\\\n])*"|//[^\n]*|/\*.*?\*/'
     r"|(?:\.|->|::)\s*\w+|\bTEST(?:_[FP])?\([^)]*\)|^\s*#[^\n]*",
@@ -22,8 +20,6 @@ WORD = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+")
 
 
 def banned_words(identifier):
-    if identifier in ALLOWED:
-        return set()
     return BANNED & {word.lower() for word in WORD.findall(identifier)}
 
 

@@ -23,7 +23,7 @@ def measure(program, repetitions, arguments):
                "--benchmark_enable_random_interleaving=true", *arguments]
     answer = subprocess.run(command, stdout=subprocess.PIPE, check=False)
     if answer.returncode != 0:
-        sys.exit(f"check_stages.py: {program}: exit code {answer.returncode}")
+        sys.exit(f"stages.py: {program}: exit code {answer.returncode}")
     runs = {}
     for run in json.loads(answer.stdout)["benchmarks"]:
         if run["run_type"] != "iteration" or "error_message" in run:

@@ -1,41 +1,53 @@
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdio>
+#include <sstream>
+
+#include "eval/cli/commands.hpp"
 #include "tests/cli/program.hpp"
 
 namespace mosbench {
 namespace {
 
+using testing::ContainsRegex;
 using testing::HasSubstr;
 using testing::StartsWith;
 
-TEST(Help, ShowsExamplesAtEachLevel) {
-  for (const std::vector<std::string>& arguments : {std::vector<std::string>{"--help"},
-                                                    {"run", "--help"},
-                                                    {"profile", "--help"},
-                                                    {"score", "--help"},
-                                                    {"simulate", "--help"},
-                                                    {"table", "--help"},
-                                                    {"reproduce", "--help"},
-                                                    {"stats", "--help"},
-                                                    {"breakdown", "--help"},
-                                                    {"diff", "--help"},
-                                                    {"compare", "--help"},
-                                                    {"list", "--help"}}) {
-    const cli::Answer answer = cli::run(arguments);
-    EXPECT_EQ(answer.exit_code, 0) << arguments.front();
-    EXPECT_THAT(answer.out, HasSubstr("Examples:\n  mosbench ")) << arguments.front();
-    EXPECT_EQ(answer.err, "");
+TEST(Help, OfTheProgramNamesEveryCommand) {
+  const cli::Answer answer = cli::run({"--help"});
+  EXPECT_EQ(answer.exit_code, 0);
+  EXPECT_THAT(answer.out, HasSubstr("Usage: mosbench COMMAND [OPTIONS]\n"));
+  EXPECT_THAT(answer.out, HasSubstr("Examples:\n  mosbench "));
+  for (const Command& command : commands()) {
+    EXPECT_THAT(answer.out, ContainsRegex(fmt::format("\n  {} +{}\n", command.name, command.help)));
   }
+  EXPECT_EQ(cli::run({"help"}).out, answer.out);
 }
 
-TEST(Help, OfRunSaysThatAnInterruptedSequenceStartsAnew) {
-  EXPECT_THAT(cli::run({"run", "--help"}).out, HasSubstr("starts an interrupted one anew"));
+TEST(Help, OfEveryCommandShowsUsageAndExamplesWithin110Columns) {
+  ASSERT_GE(commands().size(), 16U);
+  for (const Command& command : commands()) {
+    const std::string name(command.name);
+    const cli::Answer answer = cli::run({name, "--help"});
+    EXPECT_EQ(answer.exit_code, 0) << name;
+    EXPECT_EQ(answer.err, "") << name;
+    EXPECT_THAT(answer.out, StartsWith(command.help)) << name;
+    EXPECT_THAT(answer.out, HasSubstr("Usage: mosbench " + name + " ")) << name;
+    EXPECT_THAT(answer.out, HasSubstr("Examples:\n  mosbench " + name)) << name;
+    EXPECT_EQ(cli::run({"help", name}).out, answer.out) << name;
+    std::istringstream lines(answer.out);
+    for (std::string line; std::getline(lines, line);) {
+      EXPECT_LE(line.size(), 110U) << name << ": " << line;
+    }
+  }
 }
 
 TEST(Version, NamesProgramAndCompiler) {
   const cli::Answer answer = cli::run({"--version"});
   EXPECT_EQ(answer.exit_code, 0);
+  EXPECT_EQ(cli::run({"-V"}).out, answer.out);
   EXPECT_THAT(answer.out, testing::MatchesRegex("mosbench [0-9].* \\(.+\\)\n"));
 }
 
@@ -58,8 +70,57 @@ TEST(Usage, IsRefusedWithExitCode2AndAPrefixedMessage) {
   }
 }
 
-TEST(Usage, NamesAnUnknownCommand) {
-  EXPECT_THAT(cli::run({"rum"}).err, HasSubstr("'rum' is not a command"));
+TEST(Usage, NamesTheNearestWordToAnUnknownOne) {
+  struct Mistake {
+    std::vector<std::string> arguments;
+    const char* error;
+  };
+  for (const Mistake& mistake : std::vector<Mistake>{
+           {{"rum"}, "'rum' is not a command (nearest: run); see mosbench --help"},
+           {{"help", "rum"}, "'rum' is not a command (nearest: run)"},
+           {{"score", "x", "--predictons", "y"},
+            "--predictons: is no flag of mosbench score (nearest: --predictions); see mosbench "
+            "score --help"},
+           {{"run", "x", "--treads=2"},
+            "--treads: is no flag of mosbench run (nearest: --threads)"},
+           {{"run", "x", "--delay", "10"}, "(a setting of the method: --set delay_scans=...)"},
+           {{"run", "x", "y"}, "y: is one argument too many"}}) {
+    const cli::Answer answer = cli::run(mistake.arguments);
+    EXPECT_EQ(answer.exit_code, 2) << mistake.error;
+    EXPECT_THAT(answer.err, HasSubstr(mistake.error));
+  }
+}
+
+/// Returns what bash offers after `words` when its last one is being typed.
+std::string completed(const std::string& script, const std::string& words) {
+  const TempFolder folder;
+  const auto file = folder.write("mosbench", script);
+  const std::string command = fmt::format(
+      "bash -c 'source {}; COMP_WORDS=({}); COMP_CWORD=$((${{#COMP_WORDS[@]}} - 1)); _mosbench; "
+      "echo ${{COMPREPLY[@]}}'",
+      file.string(), words);
+  std::string answer;
+  FILE* pipe = popen(command.c_str(), "r");
+  for (int c = 0; (c = std::fgetc(pipe)) != EOF;) answer += static_cast<char>(c);
+  EXPECT_EQ(pclose(pipe), 0) << command;
+  return answer;
+}
+
+TEST(Completion, OffersCommandsFlagsAndTheirValuesInBash) {
+  const std::string script = cli::run({"completion", "bash"}).out;
+  EXPECT_EQ(completed(script, "mosbench re"), "report render reproduce\n");
+  EXPECT_EQ(completed(script, "mosbench run --pre"), "--preset\n");
+  EXPECT_EQ(completed(script, "mosbench run DATA --preset doals-"), "doals-20m doals-120m\n");
+  EXPECT_EQ(completed(script, "mosbench list me"), "methods\n");
+  EXPECT_EQ(completed(script, "mosbench run --out d"), "\n");
+}
+
+TEST(Completion, KnowsEveryCommandInZsh) {
+  const std::string script = cli::run({"completion", "zsh"}).out;
+  EXPECT_THAT(script, StartsWith("#compdef mosbench\n"));
+  for (const Command& command : commands()) {
+    EXPECT_THAT(script, HasSubstr(fmt::format("\n    {})\n      _arguments", command.name)));
+  }
 }
 
 TEST(List, ShowsDatasetsPresetsProtocolsAndScenes) {

@@ -16,9 +16,9 @@ namespace mosbench {
 
 /// One run of a stage of a method.
 struct StageTime {
-  std::string_view name;  ///< of static storage
-  std::chrono::steady_clock::time_point start;
-  double wall_ms = 0;
+  std::string_view name;                        ///< of static storage
+  std::chrono::steady_clock::time_point start;  ///< when it began
+  double wall_ms = 0;                           ///< from start to end
   double cpu_ms = 0;  ///< of the whole process, all threads; 0 unless RunContext::cpu_times
 };
 
@@ -41,7 +41,7 @@ class Observed {
 
 /// What a method keeps between scans.
 struct MemoryUse {
-  std::size_t bytes = 0;
+  std::size_t bytes = 0;       ///< of its containers
   std::size_t map_blocks = 0;  ///< blocks or cells of its map
 };
 
@@ -80,7 +80,7 @@ class Method {
 
 /// Under which conditions a method runs. Labels depend on scan_count alone.
 struct RunContext {
-  unsigned threads = 1;
+  unsigned threads = 1;  ///< at least 1
   /// Length of the sequence when it is known: the end of a delayed run may be labelled in another
   /// way.
   std::optional<std::size_t> scan_count = std::nullopt;
@@ -90,11 +90,11 @@ struct RunContext {
 
 /// One method that can be run by name.
 struct MethodKind {
-  std::string_view name;    ///< "hmm-mos"
-  std::string_view title;   ///< as tables print it: "HMM-MOS"
-  std::string_view source;  ///< the paper
-  std::string_view summary;
-  Settings defaults;
+  std::string_view name;     ///< "hmm-mos"
+  std::string_view title;    ///< as tables print it: "HMM-MOS"
+  std::string_view source;   ///< the paper
+  std::string_view summary;  ///< one line
+  Settings defaults;         ///< the values of the paper
   /// Throws std::invalid_argument "<setting>: <what is wrong>, <what was expected>" for values that
   /// do not go together.
   void (*check)(const Settings& settings);

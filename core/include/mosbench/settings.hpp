@@ -14,10 +14,11 @@ using SettingValue = std::variant<int, double, std::string>;
 
 /// One parameter of a method. Its unit is the end of its name (`_m`, `_scans`, ...).
 struct Setting {
-  std::string_view name;
+  std::string_view name;                  ///< as in --set and result.json
   SettingValue value;                     ///< its alternative is the type of the setting
   std::string_view meaning;               ///< one line, with the paper's symbol
-  double lowest = 0, highest = 0;         ///< closed interval; unused for names
+  double lowest = 0;                      ///< legal; unused for names
+  double highest = 0;                     ///< legal; unused for names
   std::vector<std::string_view> choices;  ///< of names
   std::string_view follows;  ///< the setting whose value is taken while this one is not set
   bool is_set = true;        ///< false: the value is that of `follows`
@@ -27,15 +28,20 @@ struct Setting {
 class Settings {
  public:
   Settings() = default;
+  /// Takes the settings of a method with their defaults.
   explicit Settings(std::vector<Setting> settings);
 
+  /// Returns all settings in their order.
   std::span<const Setting> all() const { return settings_; }
+  /// Returns nullptr when there is no setting of this name.
   const Setting* find(std::string_view name) const;
 
-  /// The effective value. Throw std::invalid_argument for an unknown name or another type; `number`
-  /// also gives whole numbers.
+  /// Returns the effective value of a number, whole or not. Throws std::invalid_argument for an
+  /// unknown name or another type.
   double number(std::string_view name) const;
+  /// Does the same for a whole number.
   int whole(std::string_view name) const;
+  /// Does the same for one of a list of names.
   const std::string& choice(std::string_view name) const;
 
   /// Throws std::invalid_argument "<name>: <what is wrong>, <what was expected>" for an unknown

@@ -1,0 +1,21 @@
+#!/usr/bin/env bash
+# man_pages.sh MOSBENCH FOLDER: writes mosbench.1 and a page per command, mosbench-run.1 and so on, from
+# the program's own --help. Needs help2man.
+set -euo pipefail
+[ $# = 2 ] || { echo "usage: man_pages.sh MOSBENCH FOLDER" >&2; exit 2; }
+mosbench=$1 folder=$2
+version=$("$mosbench" --version | cut -d' ' -f2)
+mkdir -p "$folder"
+
+# page NAME DESCRIPTION WORDS...: the page of a command line.
+page() {
+  local name=$1 description=$2
+  shift 2
+  help2man --no-info --name "$description" --version-string "$version" --source "mosbench $version" \
+    "$*" | sed -E "s/^\.TH MOSBENCH/.TH ${name^^}/; s/^mosbench.* \\\\-/$name \\\\-/" >"$folder/$name.1"
+}
+
+page mosbench "moving object segmentation in LiDAR scans" "$mosbench"
+"$mosbench" completion commands | while IFS=$'\t' read -r name description; do
+  page "mosbench-$name" "$description" "$mosbench" "$name"
+done
