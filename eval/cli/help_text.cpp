@@ -78,8 +78,9 @@ std::string full_name(const CLI::App& command) {
 }
 
 std::string help_of(const CLI::App& command) {
-  const CLI::App* parent = command.get_parent();
-  std::string text = command.help(parent == nullptr ? "" : parent->get_name());
+  // App::help would show the help of the chosen command instead.
+  std::string text =
+      command.get_formatter()->make_help(&command, full_name(command), CLI::AppFormatMode::Normal);
   // The groups of options come two blank lines apart.
   for (std::size_t at = 0; (at = text.find("\n\n\n", at)) != std::string::npos;) text.erase(at, 1);
   return text;

@@ -22,7 +22,8 @@ to the scans, and pass that file as SCENE. Errors name the key that is missing, 
 Examples:
   mosbench simulate --layout semantickitti --scene street --scans 40 --seed 1 --out sim/street
   mosbench simulate --layout doals --scene mall --scans 100 --seed 7 --out sim/doals
-  mosbench simulate --layout helimos --scene street --scans 1 --seed 1 --out near && cp near/scene.json my_street.json
+  mosbench simulate --layout helimos --scene street --scans 1 --seed 1 --out near
+  cp near/scene.json my_street.json
   mosbench simulate --layout helimos --scene my_street.json --scans 200 --seed 1 --out sim/helimos)";
 
 struct SimulateFlags {
