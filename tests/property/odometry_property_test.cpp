@@ -61,7 +61,7 @@ TEST_P(AnyOdometry, StaysFiniteWhateverIsPushed) {
                  Eigen::Matrix3d::Identity())
                     .norm(),
                 1e-9);
-      doubtful += pose.doubtful() ? 1 : 0;
+      if (pose.doubtful()) ++doubtful;
     }
   }
   EXPECT_GT(doubtful, 20u);
