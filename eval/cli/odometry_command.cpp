@@ -22,20 +22,21 @@ namespace mosbench {
 namespace {
 
 constexpr const char* kOdometryFooter =
-    R"(Finds the pose of every scan from the scans alone and writes them: rows of 12 numbers as KITTI's, or
-"stamp x y z qx qy qz qw" (TUM) where FILE ends in .tum or --format says so. The map's frame is that of
-the first scan. Of several sequences, FILE is a folder, and each is written to FILE/<sequence>.txt.
+    R"(Finds the poses of the scans from the scans alone and writes them: rows of 12 numbers (KITTI), or
+"stamp x y z qx qy qz qw" (TUM) if FILE ends in .tum or --format says so. The map frame is that of the
+first scan. For several sequences FILE is a folder, and each is written to FILE/<sequence>.txt.
 
 A pose is doubtful when registration was not possible, little of the scan overlaps the map, the surfaces
-hardly constrain some motion (corridor, empty field), or it lies far off constant velocity. Doubtful poses
-are written all the same, listed in the answer, and make the exit code 1.
+hardly constrain some motion (corridor, empty field), or the pose lies far off constant velocity.
+Doubtful poses are written anyway, listed in the answer, and make the exit code 1.
 
-Settings: defaults < --preset < --config FILE < --set, as of methods. --json prints them, and per scan the
-pose, its covariance (rotation in rad before translation in m, map frame), condition, overlap and doubt.
+Settings: defaults < --preset < --config FILE < --set, as for methods. --json prints them and, per scan,
+the pose, its covariance (rotation in rad, then translation in m, map frame), condition, overlap and
+doubt.
 
 Examples:
   mosbench odometry ~/kitti/sequences/04 -o poses.txt --preset kitti-online
-  mosbench odometry ~/folder-with-a-bag -o poses.tum --set min_range_m=1 max_range_m=60
+  mosbench odometry ~/folder-with-a-bag -o poses.tum --set min_range_m=1,max_range_m=60
   mosbench odometry ~/kitti/sequences/04 -o kiss.txt --odometry kiss --json > kiss.json
   mosbench trajectory poses.txt --truth truth.txt)";
 
@@ -167,15 +168,16 @@ CommandRun add_odometry(CLI::App& command) {
   auto flags = std::make_shared<OdometryFlags>();
   add_set_flag(command, flags->odometry.assignments);
   add_scan_dataset_flags(command, flags->input, flags->dataset, flags->sequences, flags->reading);
-  command.add_option("-o,--out", flags->out, "File of poses; of several sequences a folder")
+  command
+      .add_option("-o,--out", flags->out, "File of poses to write; a folder for several sequences")
       ->type_name("FILE")
       ->required();
-  command.add_option("--odometry", flags->odometry.kind, "simple (default) or kiss");
+  command.add_option("--odometry", flags->odometry.kind, "simple or kiss (default: simple)");
   command.add_option("--preset", flags->odometry.preset, "Settings that authors published")
       ->type_name("PRESET");
   command.add_option("--config", flags->odometry.config_file, "JSON object of settings")
       ->type_name("FILE");
-  command.add_option("--format", flags->format, "kitti or tum (default: by the file's name)")
+  command.add_option("--format", flags->format, "Of the file (default: by its name)")
       ->check(CLI::IsMember({"kitti", "tum"}));
   add_threads_flag(command, flags->threads);
   command.add_flag("--json", flags->json, "Print JSON instead of text");

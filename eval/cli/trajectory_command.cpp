@@ -15,18 +15,18 @@ namespace {
 
 constexpr const char* kTrajectoryFooter =
     R"(ESTIMATE and TRUTH are files of poses (KITTI: 12 numbers a row; TUM: stamp and quaternion; Dynablox
-rollouts), or two folders whose files go by the same names. Rows are paired by stamps where both files
-have them, else one by one.
+rollouts), or two folders with files of the same names. Rows are paired by stamps if both files have
+them, else one by one.
 
-Printed are the errors of KITTI's odometry benchmark, those of segments of 5 to 50 m for paths too short
-for it, and the absolute and relative pose errors (APE, RPE). Alignment is stated in every answer.
+Prints the errors of KITTI's odometry benchmark, those of segments of 5 to 50 m for paths that are too
+short for it, and the absolute and relative pose errors (APE, RPE). Every answer states the alignment.
 
-KITTI's truth is in the camera's frame. Where the estimate is the lidar's, say so:
+The truth of KITTI is in the camera frame. For an estimate in the LiDAR frame add
   --camera truth --calib calib.txt
 
 Examples:
   mosbench trajectory poses.txt --truth truth.txt
-  mosbench trajectory results --truth dataset/poses --camera truth --calib dataset/sequences/00/calib.txt
+  mosbench trajectory results --truth poses --camera truth --calib dataset/sequences/00/calib.txt
   mosbench trajectory poses.tum --truth truth.tum --align rigid --delta-m 10 --all-pairs)";
 
 struct TrajectoryFlags {
@@ -70,27 +70,36 @@ std::string trajectory_answer(const TrajectoryFlags& flags) {
 
 CommandRun add_trajectory(CLI::App& command) {
   auto flags = std::make_shared<TrajectoryFlags>();
-  command.add_option("ESTIMATE", flags->estimate, "File or folder of estimated poses")->required();
-  command.add_option("--truth", flags->truth, "File or folder of true poses")->required();
-  command.add_option("--align", flags->alignment, "Before APE and RPE; default none")
+  command.add_option("ESTIMATE", flags->estimate, "File or folder of estimated poses")
+      ->type_name("PATH")
+      ->required();
+  command.add_option("--truth", flags->truth, "File or folder of true poses")
+      ->type_name("PATH")
+      ->required();
+  command.add_option("--align", flags->alignment, "Alignment before APE and RPE (default: none)")
       ->check(CLI::IsMember({"none", "origin", "rigid", "similarity"}));
-  command.add_option("--camera", flags->camera, "Which of the two is in KITTI's camera frame")
-      ->check(CLI::IsMember({"neither", "estimate", "truth"}));
-  command.add_option("--calib", flags->calib, "KITTI's calib.txt with Tr of the lidar");
   command
-      .add_option("--format", flags->format, "Of both files; told from the first row if not given")
+      .add_option("--camera", flags->camera,
+                  "Which of the two is in the camera frame (default: neither)")
+      ->check(CLI::IsMember({"neither", "estimate", "truth"}));
+  command.add_option("--calib", flags->calib, "calib.txt of KITTI with the Tr of the LiDAR")
+      ->type_name("FILE");
+  command.add_option("--format", flags->format, "Of both files (default: recognised)")
       ->check(CLI::IsMember({"kitti", "tum", "dynablox"}));
   command
       .add_option("--max-time-difference-s", flags->max_time_difference_s,
-                  "Between the stamps of a pair; default 0.01")
+                  "Between the stamps of a pair (default: 0.01)")
       ->check(CLI::Range(0.0, 1e6));
-  CLI::Option* scans =
-      command.add_option("--delta", flags->relative.delta_scans, "Scans of RPE; default 1")
-          ->check(CLI::Range(1, 1000000));
-  command.add_option("--delta-m", flags->relative.delta_m, "Metres of RPE, of the estimated path")
+  CLI::Option* scans = command
+                           .add_option("--delta", flags->relative.delta_scans,
+                                       "Scans between the poses of RPE (default: 1)")
+                           ->check(CLI::Range(1, 1000000));
+  command
+      .add_option("--delta-m", flags->relative.delta_m,
+                  "Metres of the estimated path between the poses of RPE")
       ->check(CLI::Range(1e-3, 1e9))
       ->excludes(scans);
-  command.add_flag("--all-pairs", flags->relative.all, "RPE from every pose");
+  command.add_flag("--all-pairs", flags->relative.all, "Start a pair of RPE at every pose");
   command.add_flag("--per-pose", flags->per_pose, "With --json: errors of every pose and segment");
   command.add_flag("--csv", flags->csv, "Print the absolute errors of every pose as CSV");
   command.add_flag("--json", flags->json, "Print JSON instead of a table");
