@@ -17,7 +17,7 @@ namespace mosbench {
 
 /// When a scan was measured, as far as that is known.
 struct ScanTimes {
-  std::optional<std::int64_t> stamp_ns;
+  std::optional<std::int64_t> stamp_ns;  ///< when the scan began
   /// When each point was measured after the stamp; one per point or none.
   std::span<const std::int64_t> point_times_ns = {};
 };
@@ -39,6 +39,7 @@ struct ScanPose {
   std::size_t registered_points = 0;  ///< points after thinning
   std::string doubt;                  ///< why the pose is not to be trusted; empty when it is
 
+  /// Says whether there is a doubt.
   bool doubtful() const { return !doubt.empty(); }
 };
 
@@ -53,17 +54,19 @@ class Odometry {
   /// Throws std::invalid_argument when there are point times but not one per point.
   virtual ScanPose push(std::span<const Point> points, const ScanTimes& times = {}) = 0;
 
+  /// Returns how many points the map holds.
   virtual std::size_t map_points() const = 0;
+  /// Returns the bytes of its containers.
   virtual std::size_t memory_bytes() const = 0;
 };
 
 /// One kind of odometry that can be run by name.
 struct OdometryKind {
-  std::string_view name;    ///< "simple"
-  std::string_view title;   ///< "SiMpLE"
-  std::string_view source;  ///< the paper
-  std::string_view summary;
-  Settings defaults;
+  std::string_view name;     ///< "simple"
+  std::string_view title;    ///< "SiMpLE"
+  std::string_view source;   ///< the paper
+  std::string_view summary;  ///< one line
+  Settings defaults;         ///< as published
   /// Throws std::invalid_argument "<setting>: <what is wrong>, <what was expected>".
   void (*check)(const Settings& settings);
   /// Checks, then makes. Also throws std::invalid_argument for 0 threads.
@@ -77,11 +80,12 @@ const OdometryKind* find_odometry(std::string_view name);
 
 /// Settings that authors published for a sensor or data set.
 struct OdometryPreset {
-  std::string_view name;      ///< "kitti-online"
-  std::string_view odometry;  ///< the kind's name
-  std::vector<std::pair<std::string_view, SettingValue>> settings;
+  std::string_view name;                                            ///< "kitti-online"
+  std::string_view odometry;                                        ///< the kind's name
+  std::vector<std::pair<std::string_view, SettingValue>> settings;  ///< over the defaults
 };
 
+/// Returns all presets of all kinds.
 std::span<const OdometryPreset> odometry_presets();
 
 }  // namespace mosbench

@@ -149,7 +149,7 @@ TEST(Protocols, AreDescribedInTheirReadmeByTheFactsOfTheirRows) {
          {"- truth: " + protocol.truth, "- predicted moving: " + protocol.prediction,
           "- range: " + protocol.range, "- average: " + protocol.aggregation,
           "- scans: " + protocol.split, "- 0/0: " + protocol.empty_case,
-          "- source: " + protocol.source}) {
+          "- source: `" + protocol.source + "`"}) {
       EXPECT_NE(text.find(fact + '\n'), std::string::npos) << protocol.name << ": " << fact;
     }
   }
