@@ -7,12 +7,15 @@ mosbench=$1 folder=$2
 version=$("$mosbench" --version | cut -d' ' -f2)
 mkdir -p "$folder"
 
-# page NAME DESCRIPTION WORDS...: the page of a command line.
+# page NAME DESCRIPTION WORDS...: writes the page of a command line. The edits name it as man does, and keep
+# the lines of the examples apart.
 page() {
   local name=$1 description=$2
   shift 2
-  help2man --no-info --name "$description" --version-string "$version" --source "mosbench $version" \
-    "$*" | sed -E "s/^\.TH MOSBENCH/.TH ${name^^}/; s/^mosbench.* \\\\-/$name \\\\-/" >"$folder/$name.1"
+  help2man --no-info --name "$description" --version-string "$version" --source "mosbench $version" "$*" |
+    sed -E -e "s/^\.TH MOSBENCH/.TH ${name^^}/" \
+      -e "/^\.SH NAME/ { n; s/^.* \\\\-/$name \\\\-/ }" \
+      -e '/^\.SH EXAMPLES/,$ { s/^\.IP/.IP\n.nf/; s/^\.PP/.fi\n.PP/ }' >"$folder/$name.1"
 }
 
 page mosbench "moving object segmentation in LiDAR scans" "$mosbench"
