@@ -59,7 +59,7 @@ std::vector<SequenceBreakdown> all_breakdowns(const BreakdownFlags& options, con
     breakdowns.push_back(break_down(*sequence, scans, *opened.labels, task));
   }
   if (!breakdowns.empty()) return breakdowns;
-  throw DataError(dataset.root, "no scan has truth", "labels beside the scans");
+  throw DataError(dataset.root, "no scan has truth", "labels next to the scans");
 }
 
 std::string breakdown(const BreakdownFlags& options) {

@@ -44,7 +44,7 @@ std::string poses_text(const SequenceCheckup& sequence) {
       measured.given.overlap, measured.given.best_overlap, measured.given.median_correction_m);
   for (std::size_t i = 0; i < measured.scores.size(); ++i) {
     const ConventionScore& score = measured.scores[i];
-    const std::string what = score.pairs == 0 ? "not to be told from what is given"
+    const std::string what = score.pairs == 0 ? "cannot be decided from these scans"
                                               : fmt::format("{:.2f} against {:.2f} as given",
                                                             score.overlap, score.given_overlap);
     text += fmt::format("                  {}, if the poses were {}\n", what,

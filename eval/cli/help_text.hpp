@@ -5,7 +5,7 @@
 
 namespace mosbench {
 
-/// Lays out --help: every text is wrapped at 100 columns, and defaults stand behind it.
+/// Lays out --help: wraps the texts of options at 100 columns and appends their defaults.
 class HelpText : public CLI::Formatter {
  public:
   HelpText();

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Tells whether one build of mosbench is slower than another, on a machine that others use too.
+"""Says whether one build of mosbench is slower than another, on a machine that others use, too.
 
-Both programs run the same command in turns, A B B A B A A B ..., so that whatever else the machine
-does falls on both alike; what is compared is the CPU time of the whole process. The ratio of each
-pair has the machine's mood divided out; of their logarithms the median is taken, with a confidence
-interval from order statistics, which no single bad pair can move.
+Both programs run the same command alternately, A B B A B A A B ..., so that other load on the machine
+affects both alike. The CPU times of the whole processes are compared. The ratio within a pair cancels
+how busy the machine was; the median of the ratios' logarithms is taken, with a confidence interval from
+order statistics, which no single bad pair can move.
 
 Exit codes: 0 not slower, 1 slower by more than the threshold beyond doubt, 2 wrong usage, 3 a
 program failed.

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Each room includes only the rooms below it; core neither reads nor prints."""
+"""Checks that each room includes only the rooms below it, and that core neither reads nor prints."""
 
 import pathlib
 import re
@@ -8,11 +8,11 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 DATASETS = {"datasets/files", "datasets/sequence", "datasets/layouts"}
-# What eval takes of core besides the public face: threads and clocks.
+# What eval uses of core apart from the public face: threads and clocks.
 THREADS = {"core/include", "core/base"}
 NUMBERS = {"eval/protocols", "eval/predictions", "eval/results", "eval/runs", "eval/statistics"}
-# Which rooms the files of a room may include besides those of their own. A name with a slash at the end
-# stands for all rooms below it.
+# Rooms that the files of a room may include in addition to their own. A name with a slash at the end means
+# all rooms below it.
 MAY_INCLUDE = {
     "core/include": set(),
     "core/base": {"core/include"},

@@ -52,7 +52,7 @@ TEST_F(DoctorCommand, SaysWhatASensorThatStandsStillCannotTell) {
   const cli::Answer answer = cli::run({"doctor", room()});
   EXPECT_EQ(answer.exit_code, 0);
   EXPECT_THAT(answer.out,
-              HasSubstr("not to be told from what is given, if the poses were one row later"));
+              HasSubstr("cannot be decided from these scans, if the poses were one row later"));
 }
 
 TEST_F(DoctorCommand, PrintsTheSameAsJson) {
