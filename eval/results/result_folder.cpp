@@ -7,8 +7,6 @@
 
 #include <algorithm>
 #include <array>
-#include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cstring>
 #include <set>

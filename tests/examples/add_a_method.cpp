@@ -1,6 +1,7 @@
-// A method of one's own, against the public interface alone: a point moves when its voxel was empty in all
-// scans before. To run it as `mosbench run --method new-voxels`, put the class and new_voxels() into a
-// folder core/new_voxels and the row into core/methods.cpp; presets, --set, tables and reports follow.
+// A method of one's own, against the public interface alone: a point moves when its voxel was empty
+// in all scans before. To run it as `mosbench run --method new-voxels`, put the class and
+// new_voxels() into a folder core/new_voxels and the row into core/methods.cpp; presets, --set,
+// tables and reports follow.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -93,7 +94,8 @@ int main() {
     for (int i = 0; i < 10; ++i) points.push_back({5.0F, 0.5F * static_cast<float>(i), 0, 0});
     points.push_back({3.0F, static_cast<float>(k), 0, 0});
     for (const mosbench::LabelledScan& scan : method->push(points, mosbench::Pose::Identity())) {
-      const auto moving = std::count(scan.labels.begin(), scan.labels.end(), mosbench::kMovingLabel);
+      const auto moving =
+          std::count(scan.labels.begin(), scan.labels.end(), mosbench::kMovingLabel);
       std::printf("scan %zu: %td of %zu points move\n", scan.scan_index, moving, points.size());
     }
   }

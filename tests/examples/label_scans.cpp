@@ -1,5 +1,6 @@
-// label_scans SEQUENCE OUT: segments SEQUENCE/velodyne/*.bin with the poses of SEQUENCE/poses.txt (map
-// from LiDAR, 12 numbers a row) and writes OUT/<scan>.label, a uint32 per point. Needs mosbench::core only.
+// label_scans SEQUENCE OUT: segments SEQUENCE/velodyne/*.bin with the poses of SEQUENCE/poses.txt
+// (map from LiDAR, 12 numbers a row) and writes OUT/<scan>.label, a uint32 per point. Needs
+// mosbench::core only.
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
