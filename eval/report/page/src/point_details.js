@@ -1,5 +1,5 @@
 import { element } from './dom.js';
-import { count, fixed } from './format.js';
+import { fixed } from './format.js';
 import { toMap } from './motion_map.js';
 import { OUTCOMES } from './theme.js';
 
