@@ -95,7 +95,7 @@ VoteField votes_for(const StagedScan& staged, VoxelMap& map, int kernel_width_vo
   const VoxelSet changed = scan.occupied_among(map.changed_since(staged.k));
   const auto slots = slots_within(scan, changed, radius_of(kernel_width_voxels));
   const VoxelSet known = map.known_at(staged.k, blocks_of(scan, slots), pool);
-  return convolve(scan, changed, known, kernel_width_voxels, pool);
+  return convolve(scan, slots, changed, known, kernel_width_voxels, pool);
 }
 
 VoxelSet beside_unknown_of(const StagedScan& staged, const DynamicRegion& region, VoxelMap& map,

@@ -6,13 +6,13 @@
 
 namespace mosbench::hmm_mos {
 
-VoteField convolve(const VoxelizedScan& scan, const VoxelSet& changed, const VoxelSet& known,
-                   int kernel_width_voxels, ThreadPool& pool) {
+VoteField convolve(const VoxelizedScan& scan, std::span<const std::uint32_t> slots,
+                   const VoxelSet& changed, const VoxelSet& known, int kernel_width_voxels,
+                   ThreadPool& pool) {
   const int radius = radius_of(kernel_width_voxels);
   const int volume = kernel_width_voxels * kernel_width_voxels * kernel_width_voxels;
   // With a delay of w_g scans or more a voxel may be forgotten since it changed.
   const VoxelSet voters = in_both(changed, known);
-  const std::vector<std::uint32_t> slots = slots_within(scan, changed, radius);
   std::vector<VoteField::Block> votes(slots.size());
   std::vector<std::uint8_t> any(slots.size());
   for_each_block_near(voters, radius, scan, slots, pool,

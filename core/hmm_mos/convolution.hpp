@@ -14,10 +14,12 @@ constexpr int radius_of(int kernel_width_voxels) { return (kernel_width_voxels -
 
 /// Returns K_m * P'_chg at the occupied voxels of the scan (paper, III): the number of `changed`
 /// voxels among the m^3 around each, less one for each voxel that is not known (the authors'
-/// program; the paper does not mention it), at least 0. `changed` are occupied voxels of the scan;
-/// `known` need be complete only in and next to slots_within(scan, changed, radius).
-VoteField convolve(const VoxelizedScan& scan, const VoxelSet& changed, const VoxelSet& known,
-                   int kernel_width_voxels, ThreadPool& pool);
+/// program; the paper does not mention it), at least 0. `changed` are occupied voxels of the scan,
+/// `slots` are slots_within(scan, changed, radius), and `known` must be complete in and next to
+/// these blocks.
+VoteField convolve(const VoxelizedScan& scan, std::span<const std::uint32_t> slots,
+                   const VoxelSet& changed, const VoxelSet& known, int kernel_width_voxels,
+                   ThreadPool& pool);
 
 /// Returns the occupied voxels of the blocks `slots` of the scan with an unknown voxel among the
 /// m^3 around them; `known` must be complete in and next to these blocks. The authors' program

@@ -133,10 +133,9 @@ void Pipeline::State::detect(HeldScan& held_scan, std::uint32_t k) {
   VoteField votes = timed(record, "convolution", [&] {
     const VoxelSet changed = scan.occupied_among(
         memory->map.changed_since(k - static_cast<std::uint32_t>(config.delay_scans)));
-    const std::vector<BlockIndex> voted_for =
-        blocks_of(scan, slots_within(scan, changed, radius_of(width)));
-    const VoxelSet known = memory->map.known_at(k, voted_for, pool);
-    return convolve(scan, changed, known, width, pool);
+    const std::vector<std::uint32_t> slots = slots_within(scan, changed, radius_of(width));
+    const VoxelSet known = memory->map.known_at(k, blocks_of(scan, slots), pool);
+    return convolve(scan, slots, changed, known, width, pool);
   });
   votes = timed(record, "median", [&] { return median_filter(scan, votes, pool); });
   const SumField sums = timed(record, "window", [&] {

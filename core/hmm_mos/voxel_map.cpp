@@ -98,15 +98,16 @@ VoxelSet VoxelMap::known_at(std::uint32_t scan_index, std::span<const BlockIndex
       });
     }
   });
-  VoxelSet known;
   std::vector<std::uint32_t> asked;
   std::vector<std::uint8_t> taken(blocks_.slot_count());
   for (const std::uint32_t slot : around) {
     if (slot == kNoSlot || taken[slot] != 0) continue;
     taken[slot] = 1;
     asked.push_back(slot);
-    known.insert(blocks_.index_of(slot));
   }
+  VoxelSet known;
+  known.reserve(asked.size());
+  for (const std::uint32_t slot : asked) known.insert(blocks_.index_of(slot));
   pool.for_ranges(asked.size(), 256, [&](std::size_t begin, std::size_t end, unsigned) {
     for (std::size_t i = begin; i < end; ++i) {
       Block& block = blocks_[asked[i]];

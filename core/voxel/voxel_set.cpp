@@ -35,6 +35,11 @@ void BlockTable::erase(const BlockIndex& block) {
   --size_;
 }
 
+void BlockTable::reserve(std::size_t blocks) {
+  const std::size_t capacity = std::bit_ceil(2 * blocks + 1);
+  if (capacity > entries_.size()) rehash(capacity);
+}
+
 void BlockTable::clear() {
   if (size_ == 0) return;
   std::fill(entries_.begin(), entries_.end(), Entry{kEmpty, kNoSlot});
@@ -61,6 +66,12 @@ std::uint32_t VoxelSet::insert(const BlockIndex& block) {
     masks.emplace_back();
   }
   return slot;
+}
+
+void VoxelSet::reserve(std::size_t block_count) {
+  blocks.reserve(block_count);
+  masks.reserve(block_count);
+  table.reserve(block_count);
 }
 
 void VoxelSet::clear() {

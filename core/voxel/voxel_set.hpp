@@ -30,6 +30,8 @@ class BlockTable {
   std::uint32_t find_or_insert(const BlockIndex& block, std::uint32_t fresh);
   /// Does nothing when the block is absent.
   void erase(const BlockIndex& block);
+  /// Makes room for so many blocks.
+  void reserve(std::size_t blocks);
   void clear();
   std::size_t size() const { return size_; }
   std::size_t memory_bytes() const { return entries_.capacity() * sizeof(Entry); }
@@ -82,6 +84,8 @@ struct VoxelSet {
     const BlockMask* mask = mask_of(block_of(v));
     return mask != nullptr && mask->test(cell_of(v));
   }
+  /// Makes room for so many blocks.
+  void reserve(std::size_t block_count);
   void clear();
   std::size_t memory_bytes() const {
     return blocks.capacity() * sizeof(BlockIndex) + masks.capacity() * sizeof(BlockMask) +

@@ -10,6 +10,12 @@
 namespace mosbench {
 namespace {
 
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool kSanitized = true;
+#else
+constexpr bool kSanitized = false;
+#endif
+
 struct Golden {
   const char* sequence;
   double min_range_m, max_range_m;
@@ -70,11 +76,13 @@ void expect_the_authors_poses(const Golden& golden, const std::string& gradient,
 
 TEST_P(SimpleGolden, NumericGradientGivesThePosesOfTheAuthorsProgram) {
   if (!parity::shared_parity_folder()) GTEST_SKIP() << parity::kSkipMessage;
+  if (kSanitized) GTEST_SKIP() << "sanitized builds take minutes for these";
   expect_the_authors_poses(GetParam(), "numeric", GetParam().numeric_m, GetParam().numeric_degrees);
 }
 
 TEST_P(SimpleGolden, AnalyticGradientGivesNearlyTheSamePoses) {
   if (!parity::shared_parity_folder()) GTEST_SKIP() << parity::kSkipMessage;
+  if (kSanitized) GTEST_SKIP() << "sanitized builds take minutes for these";
   expect_the_authors_poses(GetParam(), "analytic", GetParam().analytic_m,
                            GetParam().analytic_degrees);
 }

@@ -11,6 +11,13 @@ namespace mosbench {
 using namespace hmm_mos;
 namespace {
 
+VoteField convolved(const VoxelizedScan& scan, const VoxelSet& changed, const Triples& known,
+                    int width, ThreadPool& pool) {
+  const VoxelSet changed_here = scan.occupied_among(changed);
+  const auto slots = slots_within(scan, changed_here, radius_of(width));
+  return convolve(scan, slots, changed_here, voxel_set(known), width, pool);
+}
+
 struct Around {
   int votes = 0;
   bool beside_unknown = false;
@@ -42,8 +49,7 @@ TEST(Convolution, CountsVotesAroundAVoxel) {
   const Triples changed{{1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {-2, 2, -2}, {5, 5, 5}};
   ThreadPool pool(1);
   const VoxelizedScan scan = scan_of(occupied);
-  const VoteField votes =
-      convolve(scan, scan.occupied_among(voxel_set(changed)), voxel_set(full_cube(12)), 5, pool);
+  const VoteField votes = convolved(scan, voxel_set(changed), full_cube(12), 5, pool);
   EXPECT_EQ(value_at(votes, {0, 0, 0}), 3);
   EXPECT_EQ(value_at(votes, {1, 0, 0}), 3);
   EXPECT_EQ(value_at(votes, {-2, 2, -2}), 1);
@@ -57,8 +63,7 @@ TEST(Convolution, UnknownNeighboursVoteAgainst) {
   known_voxels.erase({0, 1, 0});
   const Triples occupied{{0, 0, 0}, {1, 0, 0}, {0, 0, 1}};
   ThreadPool pool(1);
-  const VoteField votes =
-      convolve(scan_of(occupied), voxel_set(occupied), voxel_set(known_voxels), 3, pool);
+  const VoteField votes = convolved(scan_of(occupied), voxel_set(occupied), known_voxels, 3, pool);
   EXPECT_EQ(value_at(votes, {0, 0, 0}), 1);
 }
 
@@ -77,8 +82,7 @@ TEST(Convolution, EqualsTheTripleLoopForEveryKernel) {
       const VoxelSet known = voxel_set(known_voxels);
       ThreadPool pool(round % 2 == 0 ? 1 : 3);
       const VoxelizedScan scan = scan_of(occupied, {{9, 9, 9}, {-12, 0, 0}});
-      const VoteField votes =
-          convolve(scan, scan.occupied_among(voxel_set(changed)), known, width, pool);
+      const VoteField votes = convolved(scan, voxel_set(changed), known_voxels, width, pool);
       const auto slots = slots_around(scan, scan.measured.blocks);
       const Triples beside_voxels = triples(beside_unknown(scan, slots, known, width, pool));
       for (const Triple& v : occupied) {
