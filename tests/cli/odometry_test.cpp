@@ -53,7 +53,9 @@ TEST_F(OdometryCommand, FindsPosesThatTheTrajectoryCommandFindsGood) {
     const ordered_json json = ordered_json::parse(score.out);
     EXPECT_EQ(json.at("alignment"), "origin");
     EXPECT_GT(json.at("sequences")[0].at("path_m"), 3.0);
-    EXPECT_LT(json.at("sequences")[0].at("absolute").at("translation_m").at("max"), 0.6);
+    // Point to point finds little to hold on to on the simulated road.
+    const double most_m = std::string_view(kind) == "simple" ? 0.3 : 0.6;
+    EXPECT_LT(json.at("sequences")[0].at("absolute").at("translation_m").at("max"), most_m);
     const cli::Answer table = run({"trajectory", path("poses.txt"), "--truth", truth_.string()});
     EXPECT_THAT(table.out, HasSubstr("alignment none"));
     const cli::Answer rows =
