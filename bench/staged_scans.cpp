@@ -16,13 +16,13 @@ using namespace hmm_mos;
 namespace {
 
 /// What detection remembers between scans.
-struct Detection {
+struct DetectionMemory {
   LocalWindow window;
   DynamicRegion region;
   VoxelSet carried;
 };
 
-void detect(StagedScan& staged, const Config& config, VoxelMap& map, Detection& detection,
+void detect(StagedScan& staged, const Config& config, VoxelMap& map, DetectionMemory& detection,
             ThreadPool& pool) {
   const int width = config.kernel_width_voxels;
   const VoxelizedScan& scan = staged.scan;
@@ -65,7 +65,7 @@ StagedScans::StagedScans(const Workload& chosen)
   ThreadPool pool(1);
   RaycastScratch scratch;
   VoxelMap map(config, grid);
-  Detection detection{LocalWindow(config.local_window_scans), new_region(), {}};
+  DetectionMemory detection{LocalWindow(config.local_window_scans), new_region(), {}};
   Pipeline pipeline(config);
   for (const Frame& frame : workload.frames) {
     StagedScan& staged = all.emplace_back(frame, static_cast<std::uint32_t>(all.size()));

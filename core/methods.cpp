@@ -1,14 +1,21 @@
 #include <algorithm>
 #include <mosbench/method.hpp>
 
+#include "core/dufomap/method.hpp"
+#include "core/dynablox/method.hpp"
 #include "core/hmm_mos/method.hpp"
+#include "core/hmm_mos_plus/method.hpp"
+#include "core/octomap/method.hpp"
+#include "core/underwood/method.hpp"
+#include "core/yoon/method.hpp"
 
 namespace mosbench {
 
 std::span<const MethodKind> methods() {
   static const std::vector<MethodKind> kMethods = {
-      hmm_mos::method_kind(),
-      hmm_mos::reference_kind(),
+      hmm_mos::method_kind(),  hmm_mos::reference_kind(), hmm_mos_plus::method_kind(),
+      dynablox::method_kind(), underwood::method_kind(),  dufomap::method_kind(),
+      octomap::method_kind(),  yoon::method_kind(),
   };
   return kMethods;
 }

@@ -1,8 +1,11 @@
 #!/usr/bin/env bash
 # demo.sh: installs missing packages, builds release, simulates a small sequence in the layout of each of
 # four data sets, segments and scores them, prints one table and writes a report of all to build/demo.
+# Leaves out what it does not need, unless MOSBENCH_WITH_PCL or MOSBENCH_WITH_ROSBAG is ON, and says so.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
+export MOSBENCH_WITH_PCL=${MOSBENCH_WITH_PCL:-OFF} MOSBENCH_WITH_ROSBAG=${MOSBENCH_WITH_ROSBAG:-OFF}
+export MOSBENCH_BUILD_TESTS=OFF MOSBENCH_BUILD_BENCH=OFF
 scripts/setup.sh
 scripts/build.sh release --target mosbench
 mosbench=build/release/eval/mosbench
@@ -43,3 +46,8 @@ column -t -s $'\t' -R 4,6,7,8,9 "$demo/table.tsv"
 # Of each of the seven results the worst scans and some others, so that the file opens quickly. The command
 # says what it leaves out.
 "$mosbench" report "$demo"/runs/* -o "$demo/report.html" --max-mb 15
+
+echo
+echo "Left out of this build: the tests; scripts/test.sh installs and builds everything."
+[ "$MOSBENCH_WITH_PCL" != OFF ] || echo "  Reading .pcd scans needs PCL: MOSBENCH_WITH_PCL=ON scripts/demo.sh (400 packages more)"
+[ "$MOSBENCH_WITH_ROSBAG" != OFF ] || echo "  Writing bags needs ROS's library: MOSBENCH_WITH_ROSBAG=ON scripts/demo.sh (40 packages more)"

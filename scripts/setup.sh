@@ -1,27 +1,37 @@
 #!/usr/bin/env bash
-# setup.sh [--checks|--page]: installs the Debian packages for building and testing; with --checks also
-# those of the format and clang checks and of the API pages; with --page also what tests, lints and builds
-# the report's page: a browser, node and the packages of eval/report/page/package-lock.json. Returns
-# quickly when all are installed.
+# setup.sh [--python|--tests|--checks|--package|--page]: installs the Debian packages for building and
+# testing; with --python also those of the Python package, its tests and its examples; with --checks those
+# of the format and clang checks and of the API pages; with --package those that make and check Debian
+# packages; with --page what tests, lints and builds the report's page: a browser, node and the packages of
+# eval/report/page/package-lock.json; --tests is --python and --page. Returns quickly when all are installed.
 # MOSBENCH_WITH_PCL=OFF leaves out PCL, which brings some 400 packages,
-# MOSBENCH_WITH_ROSBAG=OFF the 40 or so of ROS's bag library, which only writing bags needs.
+# MOSBENCH_WITH_ROSBAG=OFF the 40 or so of ROS's bag library, which only writing bags needs,
+# MOSBENCH_WITH_OCTOMAP=OFF the two of OctoMap, for the method of that name,
+# MOSBENCH_BUILD_TESTS=OFF the libraries of tests and benchmarks, and what makes manual pages.
 set -euo pipefail
 
-packages=(g++ cmake ninja-build pkg-config git xz-utils jq bsdextrautils python3 help2man
-  libeigen3-dev libfmt-dev nlohmann-json3-dev libcli11-dev libxxhash-dev
-  zlib1g-dev libpng-dev libbz2-dev liblz4-dev libboost-dev
-  libgtest-dev libgmock-dev libbenchmark-dev)
+packages=(g++ cmake ninja-build pkg-config git xz-utils jq bsdextrautils python3
+  libeigen3-dev libfmt-dev nlohmann-json3-dev libcli11-dev libxxhash-dev libutfcpp-dev
+  zlib1g-dev libpng-dev libbz2-dev liblz4-dev libboost-dev)
+[ "${MOSBENCH_BUILD_TESTS:-ON}" = OFF ] || packages+=(libgtest-dev libgmock-dev libbenchmark-dev help2man)
 [ "${MOSBENCH_WITH_PCL:-ON}" = OFF ] || packages+=(libpcl-dev)
 [ "${MOSBENCH_WITH_ROSBAG:-ON}" = OFF ] || packages+=(librosbag-storage-dev)
+[ "${MOSBENCH_WITH_OCTOMAP:-ON}" = OFF ] || packages+=(liboctomap-dev)
 case "${1:-}" in
-  "") ;;
-  --checks) packages+=(clang clang-format clang-tidy doxygen) ;;
-  --page)
-    packages+=(chromium fonts-dejavu-core util-linux)
-    command -v npm >/dev/null || packages+=(nodejs npm)
+  "" | --page) ;;
+  --python | --tests)
+    packages+=(pybind11-dev python3-dev python3-numpy python3-pytest python3-h5py python3-matplotlib
+      python3-pandas python3-pip python3-setuptools python3-wheel)
     ;;
-  *) echo "usage: setup.sh [--checks|--page]" >&2; exit 2 ;;
+  --checks) packages+=(clang clang-format clang-tidy doxygen) ;;
+  --package) packages+=(pybind11-dev python3-dev python3-numpy dpkg-dev lintian mmdebstrap) ;;
+  *) echo "usage: setup.sh [--python|--tests|--checks|--package|--page]" >&2; exit 2 ;;
 esac
+with_page=$(case "${1:-}" in --page | --tests) echo 1 ;; esac)
+if [ -n "$with_page" ]; then
+  packages+=(chromium fonts-dejavu-core util-linux)
+  command -v npm >/dev/null || packages+=(nodejs npm)
+fi
 
 give_up() {
   echo "setup.sh: $1; these Debian packages must be installed first:" >&2
@@ -78,4 +88,4 @@ install_page_packages() {
 }
 
 install_packages
-if [ "${1:-}" = --page ]; then install_page_packages; fi
+if [ -n "$with_page" ]; then install_page_packages; fi

@@ -81,14 +81,16 @@ class FileLock {
   int descriptor_;
 };
 
-inline void run(std::string program, std::string argument) {
-  std::array<char*, 3> arguments = {program.data(), argument.data(), nullptr};
+inline void run(std::string program, std::vector<std::string> words) {
+  std::vector<char*> arguments = {program.data()};
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
   pid_t child = 0;
   int status = -1;
   const int failed =
       posix_spawn(&child, program.c_str(), nullptr, nullptr, arguments.data(), environ);
   if (failed != 0 || waitpid(child, &status, 0) != child || status != 0) {
-    throw std::runtime_error(program + " " + argument + ": failed");
+    throw std::runtime_error(program + " " + words.front() + ": failed");
   }
 }
 
@@ -101,7 +103,7 @@ inline std::optional<std::filesystem::path> parity_root() {
     if (!shared) return std::nullopt;
     const std::filesystem::path binary = MOSBENCH_BINARY_DIR;
     const FileLock lock(binary / "parity.lock");
-    run((*shared / "unpack.sh").string(), (binary / "parity").string());
+    run((*shared / "unpack.sh").string(), {(binary / "parity").string()});
     return binary / "parity";
   }();
   return root;

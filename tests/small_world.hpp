@@ -36,6 +36,16 @@ struct SmallWorldOptions {
   bool defects = false;  ///< empty scans, all too near or too far, NaN, infinite, duplicate points
 };
 
+/// A config for such a world.
+inline Config small_world_config() {
+  Config config;
+  config.voxel_size_m = 0.4;
+  config.min_range_m = 0.3;
+  config.max_range_m = 5.0;
+  config.kernel_width_voxels = 3;
+  return config;
+}
+
 struct Box {
   Eigen::Vector3d low, high;
 };

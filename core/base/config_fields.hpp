@@ -10,13 +10,11 @@
 #include <utility>
 #include <vector>
 
-/// Turns the config struct of a method into Settings and back. A config has one list of its fields:
-///   template <typename AnyConfig, typename Visitor>
-///   void visit_fields(AnyConfig& config, Visitor&& visit) {
-///     visit("voxel_size_m", config.voxel_size_m, FieldRange{0.01, 10.0}, "Delta, edge of a
-///     voxel"); visit("variant", config.variant, kVariantNames, "...");  // an enum, its names in
-///     order
-///   }
+/// Turns the config struct of a method into Settings and back. A config has one list of its fields,
+/// visit_fields(config, visit), with one of these calls per field:
+///
+///     visit("voxel_size_m", config.voxel_size_m, FieldRange{0.01, 10.0}, "edge of a voxel");
+///     visit("variant", config.variant, kVariantNames, "an enum with its names in order");
 namespace mosbench {
 
 /// Closed interval of the legal values of a number. `follows` names the field whose value stands
@@ -86,6 +84,13 @@ void check_ranges(const Config& config) {
   for (const Setting& setting : values.all()) {
     if (setting.is_set) settings.set(setting.name, setting.value);
   }
+}
+
+/// Returns the config. Throws std::invalid_argument as its `check` does.
+template <typename Config>
+const Config& checked(const Config& config) {
+  check(config);
+  return config;
 }
 
 }  // namespace mosbench

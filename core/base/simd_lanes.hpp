@@ -105,4 +105,10 @@ inline __attribute__((always_inline)) std::uint32_t bits_of(const IntLanes& lane
 #endif
 }
 
+/// Returns a plane of eight rows of bits, with row y replaced by `bits`.
+inline __attribute__((always_inline)) std::uint64_t with_row(std::uint64_t word, std::size_t y,
+                                                             std::uint32_t bits) {
+  return (word & ~(std::uint64_t{0xFF} << (8 * y))) | std::uint64_t{bits} << (8 * y);
+}
+
 }  // namespace mosbench

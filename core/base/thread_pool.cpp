@@ -19,6 +19,14 @@ void watch(Happened&& happened) {
   while (!happened() && std::chrono::steady_clock::now() < end) std::this_thread::yield();
 }
 
+void stop(std::mutex& mutex, std::atomic<bool>& stopped, std::condition_variable& start) {
+  {
+    const std::lock_guard lock(mutex);
+    stopped = true;
+  }
+  start.notify_all();
+}
+
 }  // namespace
 
 unsigned hardware_threads() { return std::max(1U, std::thread::hardware_concurrency()); }
@@ -50,18 +58,17 @@ struct ThreadPool::Job {
 };
 
 ThreadPool::ThreadPool(unsigned threads) {
-  for (unsigned thread = 1; thread < threads; ++thread) {
-    workers_.emplace_back([this, thread] { serve(thread); });
+  try {
+    for (unsigned thread = 1; thread < threads; ++thread) {
+      workers_.emplace_back([this, thread] { serve(thread); });
+    }
+  } catch (...) {
+    stop(mutex_, stop_, start_);  // or they would be waited for without end
+    throw;
   }
 }
 
-ThreadPool::~ThreadPool() {
-  {
-    const std::lock_guard lock(mutex_);
-    stop_ = true;
-  }
-  start_.notify_all();
-}
+ThreadPool::~ThreadPool() { stop(mutex_, stop_, start_); }
 
 void ThreadPool::for_ranges(std::size_t count, std::size_t grain,
                             const std::function<void(std::size_t, std::size_t, unsigned)>& work) {

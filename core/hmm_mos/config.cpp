@@ -1,24 +1,14 @@
 #include "core/hmm_mos/config.hpp"
 
-#include <cmath>
-#include <sstream>
 #include <stdexcept>
+#include <string>
 
+#include "core/base/range_limits.hpp"
 #include "core/hmm_mos/hmm.hpp"
 #include "core/voxel/distance_field.hpp"
 #include "core/voxel/raycast.hpp"
 
 namespace mosbench::hmm_mos {
-namespace {
-
-void check_voxels(std::string_view name, double voxels, double most) {
-  if (voxels <= most) return;
-  std::ostringstream message;
-  message << name << ": " << voxels << " voxels of voxel_size_m, expected at most " << most;
-  throw std::invalid_argument(message.str());
-}
-
-}  // namespace
 
 void check(const Config& config) {
   check_ranges(config);
@@ -27,14 +17,13 @@ void check(const Config& config) {
         "kernel_width_voxels: " + std::to_string(config.kernel_width_voxels) +
         " is even, expected an odd width");
   }
-  if (config.min_range_m >= config.max_range_m) {
-    throw std::invalid_argument("min_range_m: not below max_range_m, expected min < max");
-  }
-  check_voxels("max_range_m", config.max_range_m / config.voxel_size_m, kMaxRangeVoxels);
+  check_range_limits(config.min_range_m, config.max_range_m);
+  check_voxels("max_range_m", config.max_range_m / config.voxel_size_m, "voxel_size_m",
+               kMaxRangeVoxels);
   // The distance field reaches as far as a likelihood can change a state.
   const double reach_per_sigma =
       likelihood_reach_sigmas(config.transition_epsilon, config.min_state_probability);
-  check_voxels("occupancy_sigma_m", config.sigma_m() / config.voxel_size_m,
+  check_voxels("occupancy_sigma_m", config.sigma_m() / config.voxel_size_m, "voxel_size_m",
                kMaxDistanceRadius / reach_per_sigma);
   if (config.variant == Variant::kRelease2025 && config.delay_scans != 0) {
     throw std::invalid_argument("delay_scans: " + std::to_string(config.delay_scans) +

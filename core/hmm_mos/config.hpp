@@ -22,7 +22,7 @@ struct Config {
   std::optional<double> occupancy_sigma_m;  ///< sigma_o; the voxel size when not set
   double min_range_m = 0.5;                 ///< points at or nearer than this never take part
   double max_range_m = 20.0;                ///< voxels farther than this are not observed
-  int delay_scans = 0;                      ///< n; 0 is online
+  int delay_scans = 0;                      ///< n; 0 is online, as release-2025 always is
   int local_window_scans = 3;               ///< w_l
   int global_window_scans = 300;            ///< w_g
   int dynamic_window_scans = 100;           ///< w_d, paper-2024 only
@@ -48,7 +48,7 @@ void visit_fields(AnyConfig& config, Visitor&& visit) {
   visit("max_range_m", config.max_range_m, FieldRange{0.1, 1000.0},
         "voxels farther than this are not observed");
   visit("delay_scans", config.delay_scans, FieldRange{0, 1000},
-        "n, labels are decided this many scans later; 0 is online; paper-2024 only");
+        "n, labels are decided this many scans later; 0 is online");
   visit("local_window_scans", config.local_window_scans, FieldRange{1, 1000},
         "w_l, scans whose votes are added up");
   visit("global_window_scans", config.global_window_scans, FieldRange{1, 30000},
@@ -58,7 +58,7 @@ void visit_fields(AnyConfig& config, Visitor&& visit) {
   visit("min_state_probability", config.min_state_probability, FieldRange{0.5, 0.999999},
         "p_min, a voxel takes a state above this probability");
   visit("min_otsu_score", config.min_otsu_score, FieldRange{0, 1000000},
-        "otsu_min, scans whose threshold is not above it have no moving point");
+        "otsu_min, a scan has moving points only if its threshold exceeds this");
   visit("transition_epsilon", config.transition_epsilon, FieldRange{1e-6, 0.499},
         "epsilon of the transition matrix");
   visit("dynamic_window_scans", config.dynamic_window_scans, FieldRange{1, 30000},

@@ -5,16 +5,23 @@
 namespace mosbench::hmm_mos {
 
 std::vector<std::uint32_t> project_labels(const VoxelizedScan& scan, const VoxelSet& moving) {
-  std::vector<std::uint32_t> labels(scan.voxel_of_point.size(), kStaticLabel);
-  if (moving.block_count() == 0) return labels;
+  if (moving.block_count() == 0) {
+    return std::vector<std::uint32_t>(scan.voxel_of_point.size(), kStaticLabel);
+  }
   std::vector<BlockMask> masks(scan.measured.block_count());
   for (std::size_t i = 0; i < moving.block_count(); ++i) {
     masks[scan.measured.find(moving.blocks[i])] = moving.masks[i];
   }
+  return project_labels(scan, masks);
+}
+
+std::vector<std::uint32_t> project_labels(const VoxelizedScan& scan,
+                                          std::span<const BlockMask> moving) {
+  std::vector<std::uint32_t> labels(scan.voxel_of_point.size(), kStaticLabel);
   for (std::size_t i = 0; i < labels.size(); ++i) {
     const std::uint32_t voxel = scan.voxel_of_point[i];
     if (voxel == kNoVoxel) continue;
-    if (masks[voxel / kBlockVoxels].test(voxel % kBlockVoxels)) labels[i] = kMovingLabel;
+    if (moving[voxel / kBlockVoxels].test(voxel % kBlockVoxels)) labels[i] = kMovingLabel;
   }
   return labels;
 }

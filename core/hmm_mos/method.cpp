@@ -1,5 +1,6 @@
 #include "core/hmm_mos/method.hpp"
 
+#include "core/base/method_row.hpp"
 #include "core/hmm_mos/config.hpp"
 #include "core/hmm_mos/pipeline.hpp"
 #include "core/hmm_mos/reference.hpp"
@@ -10,12 +11,6 @@ namespace {
 constexpr std::string_view kSource =
     "Bhandari, James, Phillips, McAree: Moving Object Segmentation in Point Cloud Data using "
     "Hidden Markov Models, 2024, arXiv:2410.18638";
-
-void check_settings(const Settings& settings) { check(config_of<Config>(settings)); }
-
-std::unique_ptr<Method> make_fast(const Settings& settings, const RunContext& context) {
-  return std::make_unique<Pipeline>(config_of<Config>(settings), context);
-}
 
 std::unique_ptr<Method> make_slow(const Settings& settings, const RunContext& context) {
   return make_reference(config_of<Config>(settings), context);
@@ -29,18 +24,19 @@ MethodKind method_kind() {
           kSource,
           "a three-state hidden Markov model per voxel, changes convolved over space and time",
           settings_of(Config{}),
-          check_settings,
-          make_fast};
+          check_settings<Config>,
+          make_method<Pipeline, Config>};
 }
 
 MethodKind reference_kind() {
   return {"hmm-mos-reference",
           "HMM-MOS (reference)",
           kSource,
-          "the same labels, step by step as the paper has it; some hundred times slower",
+          "the same labels, step by step as in the paper; up to thousands of times slower",
           settings_of(Config{}),
-          check_settings,
-          make_slow};
+          check_settings<Config>,
+          make_slow,
+          true};
 }
 
 }  // namespace mosbench::hmm_mos

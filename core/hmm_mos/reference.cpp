@@ -2,9 +2,9 @@
 
 #include <deque>
 #include <limits>
-#include <stdexcept>
 #include <utility>
 
+#include "core/base/push_order.hpp"
 #include "core/base/rigid.hpp"
 #include "core/hmm_mos/pipeline.hpp"
 #include "core/hmm_mos/reference_voxels.hpp"
@@ -13,8 +13,8 @@ namespace mosbench::hmm_mos {
 namespace reference {
 namespace {
 
-struct Scan final : Observed {
-  std::vector<std::optional<Voxel>> voxel_of_point;
+struct Scan final : NumberedScan {
+  PointVoxels voxels;
   SetOf measured, observed;   // P'_M, P'_obs
   MapOf<ScanVoxel> occupied;  // P'_M within the range limit
   Eigen::Vector3d sensor_m = Eigen::Vector3d::Zero();
@@ -23,47 +23,38 @@ struct Scan final : Observed {
 
 class Reference final : public Method {
  public:
-  Reference(const Config& config, const RunContext& context) : c_(config), context_(context) {}
+  Reference(const Config& config, const RunContext& context)
+      : c_(config), context_(checked(context)), order_(context.scan_count) {}
 
-  /// P_M = T_{M->S} P_S; P'_M = floor(P_M / Delta); P'_obs: voxels on the lines from sensor to
-  /// P'_M.
+  /// P'_obs: voxels on the lines from the sensor to P'_M.
   std::unique_ptr<Observed> observe(std::span<const Point> points, const Pose& t) override {
     check_rigid(t);
     auto scan = std::make_unique<Scan>();
     scan->sensor_m = t.translation();
-    for (const Point& point : points) {
-      scan->voxel_of_point.emplace_back();
-      const bool finite = std::isfinite(double{point.x} + point.y + point.z);
-      scan->result.nonfinite_points += !finite;
-      Eigen::Vector3d p;
-      for (int row = 0; row < 3; ++row)
-        p[row] = ((t(row, 0) * point.x + t(row, 1) * point.y) + t(row, 2) * point.z) + t(row, 3);
-      const Eigen::Vector3d ray = p - scan->sensor_m;
-      if (finite && norm_sq(ray.x(), ray.y(), ray.z()) > squared(c_.min_range_m))
-        scan->measured.insert(scan->voxel_of_point.back().emplace(voxel_at(p)));
-    }
-    const Voxel s = voxel_at(scan->sensor_m);
+    scan->voxels = voxels_of(points, t, c_.min_range_m, c_.voxel_size_m);
+    scan->result.nonfinite_points = scan->voxels.nonfinite_points;
+    for (const std::optional<Voxel>& v : scan->voxels.of_point)
+      if (v) scan->measured.insert(*v);
+    const Voxel s = voxel_at(scan->sensor_m, c_.voxel_size_m);
     for (const Voxel& v : scan->measured) {
       if (distance_sq_m2(v, scan->sensor_m) <= squared(c_.max_range_m)) scan->occupied[v] = {};
-      for (const Voxel& q : line(s, v))
-        if (distance_sq_m2({s.x - q.x, s.y - q.y, s.z - q.z}, Eigen::Vector3d::Zero()) <=
-            squared(c_.max_range_m))
-          scan->observed.insert(q);
+      for (const Voxel& q : line(s, v)) {
+        const double d_sq = distance_sq_m2({s.x - q.x, s.y - q.y, s.z - q.z}, {0, 0, 0});
+        if (d_sq <= squared(c_.max_range_m)) scan->observed.insert(q);
+      }
     }
+    order_.number(*scan);
     return scan;
   }
 
   /// Scan k enters M; scan k - n is judged.
   using Method::push;
   std::vector<LabelledScan> push(std::unique_ptr<Observed> observed) override {
-    auto* scan = dynamic_cast<Scan*>(observed.get());
-    if (scan == nullptr) throw std::logic_error("pushed a scan that this method did not observe");
+    auto* scan = &order_.take<Scan>(observed.get());
     const int n = c_.delay_scans, scan_count = static_cast<int>(context_.scan_count.value_or(0));
-    if (finished_ || (context_.scan_count && k_ + 1 >= scan_count))
-      throw std::logic_error("pushed too many scans");
     scan->result.scan_index = static_cast<std::size_t>(++k_);
-    scan->result.labels.assign(scan->voxel_of_point.size(), kStaticLabel);
-    if (context_.scores) scan->result.scores.assign(scan->voxel_of_point.size(), 0);
+    scan->result.labels.assign(scan->voxels.of_point.size(), kStaticLabel);
+    if (context_.scores) scan->result.scores.assign(scan->voxels.of_point.size(), 0);
     SetOf sources = std::exchange(previous_measured_, scan->measured);
     if (c_.distance_field_scans == 1) sources.clear();
     sources.insert(scan->measured.begin(), scan->measured.end());
@@ -81,7 +72,7 @@ class Reference final : public Method {
   }
 
   std::vector<LabelledScan> finish() override {
-    finished_ = true;
+    order_.finish();
     return release(0);
   }
 
@@ -115,9 +106,9 @@ class Reference final : public Method {
   void forget(const Eigen::Vector3d& sensor_m) {
     std::erase_if(map_, [&](const auto& entry) {
       const int seen = entry.second.last_seen, w_g = c_.global_window_scans;
-      const bool expired = seen < k_ - w_g && (paper_ ? k_ > w_g : seen > w_g);
-      const double radius_m = (paper_ ? 2.0 : 1.5) * c_.max_range_m;
-      return expired || distance_sq_m2(entry.first, sensor_m) > squared(radius_m);
+      const double d_sq = distance_sq_m2(entry.first, sensor_m);
+      return d_sq > squared((paper_ ? 2.0 : 1.5) * c_.max_range_m) ||
+             (seen < k_ - w_g && (paper_ ? k_ > w_g : seen > w_g));
     });
   }
 
@@ -201,8 +192,8 @@ class Reference final : public Method {
 
   /// Points take the label of their voxel; a scan has moving points where T > otsu_min.
   void label(Scan& scan) const {
-    for (std::size_t i = 0; i < scan.voxel_of_point.size(); ++i) {
-      const std::optional<Voxel>& v = scan.voxel_of_point[i];
+    for (std::size_t i = 0; i < scan.voxels.of_point.size(); ++i) {
+      const std::optional<Voxel>& v = scan.voxels.of_point[i];
       const ScanVoxel* voxel = v ? find(scan.occupied, *v) : nullptr;
       if (voxel == nullptr) continue;
       if (moves(scan) && voxel->dynamic) scan.result.labels[i] = kMovingLabel;
@@ -239,14 +230,9 @@ class Reference final : public Method {
   }
 
   std::vector<LabelledScan> release(std::size_t kept) {
-    std::vector<LabelledScan> results;
-    for (; held_.size() > kept; held_.pop_front())
-      results.push_back(std::move(held_.front().result));
-    return results;
-  }
-  Voxel voxel_at(const Eigen::Vector3d& p) const {
-    const auto index = [&](double m) { return static_cast<int>(std::floor(m / c_.voxel_size_m)); };
-    return {index(p.x()), index(p.y()), index(p.z())};
+    std::vector<LabelledScan> done;
+    for (; held_.size() > kept; held_.pop_front()) done.push_back(std::move(held_.front().result));
+    return done;
   }
   /// |v Delta - t|^2, from the voxel's lower corner.
   double distance_sq_m2(const Voxel& v, const Eigen::Vector3d& t) const {
@@ -271,7 +257,7 @@ class Reference final : public Method {
   MapOf<RegionVoxel> region_;      // dynamic voxels of the last w_d scans
   double region_threshold_ = 0;
   std::deque<Scan> held_;  // the last n + 1 scans
-  bool finished_ = false;
+  PushOrder order_;
 };
 
 }  // namespace

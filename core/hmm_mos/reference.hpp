@@ -7,10 +7,9 @@
 
 namespace mosbench::hmm_mos {
 
-/// Makes the method that follows the paper's section III step by step, in double precision, with
-/// hash maps of single voxels, comparisons of all pairs and triple loops. Labels equal those of
-/// Pipeline, with which it shares the config and nothing else. Throws std::invalid_argument as
-/// `check` does.
+/// Makes the method that follows the paper's section III step by step: hash maps of single voxels,
+/// all pairs, triple loops. Its labels equal those of Pipeline, with which it shares the config and
+/// nothing else. Throws std::invalid_argument as `check` does.
 std::unique_ptr<Method> make_reference(const Config& config, const RunContext& context = {});
 
 }  // namespace mosbench::hmm_mos

@@ -1,10 +1,14 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdlib>
+#include <mosbench/scan.hpp>
 #include <optional>
+#include <span>
+#include <stdexcept>
 #include <unordered_map>
 #include <unordered_set>
 #include <vector>
@@ -52,6 +56,39 @@ struct RegionVoxel {
 
 inline double squared(double value) { return value * value; }
 inline double norm_sq(double x, double y, double z) { return squared(x) + squared(y) + squared(z); }
+
+/// Returns floor(p / size). Throws std::range_error for what no int holds with room for neighbours.
+inline Voxel voxel_at(const Eigen::Vector3d& p_m, double size_m) {
+  const Eigen::Array3d index = (p_m.array() / size_m).floor();
+  if (!(index.abs().maxCoeff() < 1e9)) {
+    throw std::range_error("coordinate: its voxel index overflows, expected one below 1e9");
+  }
+  return {static_cast<int>(index.x()), static_cast<int>(index.y()), static_cast<int>(index.z())};
+}
+
+/// The voxels of a scan's points; none for points that do not take part.
+struct PointVoxels {
+  std::vector<std::optional<Voxel>> of_point;
+  std::size_t nonfinite_points = 0;
+};
+
+/// P_M = T_{M->S} P_S; P'_M = floor(P_M / Delta).
+inline PointVoxels voxels_of(std::span<const Point> points, const Pose& t, double min_range_m,
+                             double size_m) {
+  PointVoxels voxels;
+  for (const Point& point : points) {
+    voxels.of_point.emplace_back();
+    const bool finite = std::isfinite(double{point.x} + point.y + point.z);
+    voxels.nonfinite_points += !finite;
+    Eigen::Vector3d p;
+    for (int row = 0; row < 3; ++row)
+      p[row] = ((t(row, 0) * point.x + t(row, 1) * point.y) + t(row, 2) * point.z) + t(row, 3);
+    const Eigen::Vector3d ray = p - t.translation();
+    if (finite && norm_sq(ray.x(), ray.y(), ray.z()) > squared(min_range_m))
+      voxels.of_point.back() = voxel_at(p, size_m);
+  }
+  return voxels;
+}
 
 /// Calls visit(neighbour) for the (2 radius + 1)^3 voxels around v, itself included.
 template <typename Visit>

@@ -10,7 +10,8 @@ namespace mosbench::hmm_mos {
 /// Returns Otsu's threshold T on L^dyn of all occupied voxels (paper, III).
 std::optional<double> threshold_of(const VoxelizedScan& scan, const SumField& sums);
 
-/// Returns whether a scan with this T has moving points at all: T > otsu_min (paper, III).
+/// Returns whether a scan with this T has moving points at all: T > otsu_min, as the authors'
+/// program asks.
 inline bool shows_motion(std::optional<double> threshold, int min_otsu_score) {
   return threshold.value_or(0.0) > min_otsu_score;
 }

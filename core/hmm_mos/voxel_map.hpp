@@ -2,17 +2,21 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <deque>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "core/base/slot_pool.hpp"
 #include "core/base/thread_pool.hpp"
+#include "core/hmm_mos/block_history.hpp"
 #include "core/hmm_mos/change_log.hpp"
 #include "core/hmm_mos/config.hpp"
 #include "core/hmm_mos/eviction.hpp"
 #include "core/hmm_mos/hmm.hpp"
 #include "core/hmm_mos/last_seen.hpp"
 #include "core/voxel/block_map.hpp"
+#include "core/voxel/source_grid.hpp"
 
 namespace mosbench::hmm_mos {
 
@@ -20,7 +24,10 @@ namespace mosbench::hmm_mos {
 /// w_g scans within the eviction radius.
 class VoxelMap {
  public:
-  VoxelMap(const Config& config, const VoxelGrid& grid);
+  /// The paper's method needs no history.
+  enum class Keeps { kStates, kStatesAndHistory };
+
+  VoxelMap(const Config& config, const VoxelGrid& grid, Keeps keeps = Keeps::kStates);
 
   /// One step x_k = eta B A x_{k-1} of the observed voxels, and their states (paper, III).
   /// `sources` are the measured sets whose union the distance field refers to; `sensor_m` is this
@@ -40,6 +47,15 @@ class VoxelMap {
   /// Returns P'_chg since `first_scan`: voxels whose last change is at that scan or later.
   VoxelSet changed_since(std::uint32_t first_scan) const { return changes_.since(first_scan); }
 
+  /// The states S of a block's known voxels, and how all its voxels came to theirs.
+  struct Past {
+    BlockStates known;
+    const BlockHistory& history;
+  };
+  /// Returns that of a block at `scan_index`, nullopt where there is none; for maps that keep it.
+  /// Not const as `known_at` is not.
+  std::optional<Past> past_at(std::uint32_t scan_index, const BlockIndex& index);
+
   std::size_t block_count() const { return blocks_.size(); }
   std::size_t memory_bytes() const;
 
@@ -56,9 +72,13 @@ class VoxelMap {
   };
 
   std::uint32_t find_or_add(const BlockIndex& index, std::uint32_t scan_index);
-  void refresh_block(Block& block, std::uint32_t scan_index);
+  void refresh_block(std::uint32_t slot, std::uint32_t scan_index);
   void stamp_fresh(Block& block, const BlockMask& voxels);
-  static void forget(Block& block, const BlockMask& voxels);
+  void mark_seen(Block& block, const BlockMask& voxels, std::uint32_t scan_index);
+  void forget_changes_of_expired(std::uint32_t scan_index);
+  std::vector<std::uint8_t> allocate(std::span<const BlockIndex> blocks, const SourceGrid& grid,
+                                     std::uint32_t scan_index);
+  void forget(std::uint32_t slot, const BlockMask& voxels);
   void run(const Sweep& sweep, std::uint32_t scan_index);
   void drop_block(std::uint32_t slot);
 
@@ -76,7 +96,9 @@ class VoxelMap {
   // Slot in numbers_ by slot of the block, or kNoSlot while no voxel has a number. Not in the
   // block, which the serial part of `update` would fetch from memory to ask.
   std::vector<std::uint32_t> numbers_of_;
-  std::vector<std::uint32_t> slots_;  // of the observed blocks
+  bool keeps_history_;
+  std::deque<BlockHistory> histories_;  // by slot of the block, or none at all
+  std::vector<std::uint32_t> slots_;    // of the observed blocks
 };
 
 }  // namespace mosbench::hmm_mos

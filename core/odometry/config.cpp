@@ -1,26 +1,17 @@
 #include "core/odometry/config.hpp"
 
-#include <stdexcept>
+#include "core/base/range_limits.hpp"
 
 namespace mosbench::odometry {
-namespace {
-
-void check_window(const ScanConfig& scan) {
-  if (scan.min_range_m >= scan.max_range_m) {
-    throw std::invalid_argument("min_range_m: not below max_range_m, expected min < max");
-  }
-}
-
-}  // namespace
 
 void check(const SimpleConfig& config) {
   check_ranges(config);
-  check_window(config.scan);
+  check_range_limits(config.scan.min_range_m, config.scan.max_range_m);
 }
 
 void check(const KissConfig& config) {
   check_ranges(config);
-  check_window(config.scan);
+  check_range_limits(config.scan.min_range_m, config.scan.max_range_m);
 }
 
 }  // namespace mosbench::odometry

@@ -8,7 +8,8 @@
 namespace mosbench::odometry {
 namespace {
 
-constexpr double kMostPeriods = 3.0;
+// No point is moved by more than the motion of these many periods.
+constexpr double kFarthestPeriods = 3.0;
 
 }  // namespace
 
@@ -25,7 +26,7 @@ std::vector<Eigen::Vector3d> deskewed(const ScanPoints& scan,
     if (at_ns != time_ns) {
       at_ns = time_ns;
       const double periods = static_cast<double>(time_ns) / static_cast<double>(period_ns);
-      const double share = std::clamp(periods, -kMostPeriods, kMostPeriods);
+      const double share = std::clamp(periods, -kFarthestPeriods, kFarthestPeriods);
       moved_by.linear() = rotation_about(share * turn_rad);
       moved_by.translation() = share * motion.translation();
     }

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <memory>
 #include <mosbench/scan.hpp>
+#include <optional>
 #include <span>
 
 #include "core/base/thread_pool.hpp"
@@ -11,13 +12,14 @@
 
 namespace mosbench::odometry {
 
+/// Points that are summed at a time: fixed, so that sums do not depend on threads.
+inline constexpr std::size_t kChunkPoints = 512;
+
 /// What came of aligning a scan with the map.
 struct Alignment {
   Pose map_from_sensor = Pose::Identity();
-  double overlap = 0;           ///< share of the scan's points that lie where the map has points
-  double effective_points = 0;  ///< sum of the weights that points had in the end
-  double residual_m = 0;        ///< weighted root mean square distance to the map
-  bool settled = true;          ///< false: stopped by its limit of steps
+  double overlap = 0;   ///< share of the scan's points that lie where the map has points
+  bool settled = true;  ///< false: stopped by its limit of steps
 };
 
 /// A way to align scans with a map of points that it keeps.
@@ -34,6 +36,13 @@ class Engine {
   virtual double spacing_m() const = 0;
   /// Finds the pose of the taken scan. The map must not be empty.
   virtual Alignment align(const Pose& seed) const = 0;
+  /// Returns the pose that some of the points find from a seed. From `probe_m` beside the pose that
+  /// all of them found they come back to it, unless there are several: on flat ground the points of
+  /// equal beams fit wherever the sensor is.
+  virtual Pose settled_from(const Pose& seed) const = 0;
+  virtual double probe_m() const = 0;
+  /// The map point nearest to a position in the map's frame; nothing where there is none near.
+  virtual std::optional<Eigen::Vector3d> nearest(const Eigen::Vector3d& position_m) const = 0;
   /// Enters the taken scan into the map and forgets what is out of range of it.
   virtual void enter(const Pose& map_from_sensor) = 0;
   /// Empties the map.

@@ -10,15 +10,16 @@ namespace {
 
 // Voxels of the points that enter the map and of those that are aligned, of the edge of the map's.
 constexpr double kMapShare = 0.5, kAlignedShare = 1.5;
-constexpr std::size_t kChunkPoints = 512;  // fixed, so that sums do not depend on threads
+constexpr double kProbeShare = 0.5;  // how far beside a pose it is looked for, of that edge
 
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 using Vector6d = Eigen::Matrix<double, 6, 1>;
+using Points = std::span<const Eigen::Vector3d>;
 
 /// What a Gauss-Newton step needs of the matched points q with residuals r and weights w.
 struct Sums {
   std::size_t matched = 0;
-  double weight = 0, squares_m2 = 0;                   // w, w r'r
+  double weight = 0;                                   // w
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  // w q
   Eigen::Vector3d residual = Eigen::Vector3d::Zero();  // w r
   Eigen::Vector3d torque = Eigen::Vector3d::Zero();    // w q x r
@@ -27,7 +28,6 @@ struct Sums {
   void add(const Eigen::Vector3d& q, const Eigen::Vector3d& r, double w) {
     ++matched;
     weight += w;
-    squares_m2 += w * r.squaredNorm();
     position += w * q;
     residual += w * r;
     torque += w * q.cross(r);
@@ -36,7 +36,6 @@ struct Sums {
   void add(const Sums& other) {
     matched += other.matched;
     weight += other.weight;
-    squares_m2 += other.squares_m2;
     position += other.position;
     residual += other.residual;
     torque += other.torque;
@@ -70,28 +69,20 @@ class Kiss : public Engine {
   void take(std::span<const Eigen::Vector3d> points_m) override {
     for_map_ = first_of_cells(points_m, kMapShare * config_.voxel_size_m);
     taken_ = first_of_cells(for_map_, kAlignedShare * config_.voxel_size_m);
+    some_ = every_nth(taken_, 4);
   }
   std::span<const Eigen::Vector3d> taken() const override { return taken_; }
   std::span<const Eigen::Vector3d> surfaces() const override { return for_map_; }
   double spacing_m() const override { return kMapShare * config_.voxel_size_m; }
 
-  Alignment align(const Pose& seed) const override {
-    Alignment result{.map_from_sensor = seed, .settled = false};
-    Sums sums;
-    for (int step = 0; step < config_.max_iterations && !result.settled; ++step) {
-      sums = sums_at(result.map_from_sensor);
-      const Vector6d change = sums.step();
-      if (sums.matched < 3 || !change.allFinite()) break;
-      Pose moved = Pose::Identity();
-      moved.linear() = rotation_about(change.head<3>());
-      moved.translation() = change.tail<3>();
-      result.map_from_sensor = rigid(moved * result.map_from_sensor);
-      result.settled = change.norm() < config_.convergence;
-    }
-    result.overlap = static_cast<double>(sums.matched) / static_cast<double>(taken_.size());
-    result.effective_points = sums.weight * sigma_m() * sigma_m();
-    if (sums.weight > 0) result.residual_m = std::sqrt(sums.squares_m2 / sums.weight);
-    return result;
+  Alignment align(const Pose& seed) const override { return align(taken_, seed); }
+  Pose settled_from(const Pose& seed) const override { return align(some_, seed).map_from_sensor; }
+  double probe_m() const override { return kProbeShare * config_.voxel_size_m; }
+
+  std::optional<Eigen::Vector3d> nearest(const Eigen::Vector3d& position_m) const override {
+    const Neighbour neighbour = map_.nearest_in_27_cells(position_m);
+    if (!std::isfinite(neighbour.distance_m)) return std::nullopt;
+    return neighbour.point_m;
   }
 
   void enter(const Pose& map_from_sensor) override {
@@ -123,28 +114,46 @@ class Kiss : public Engine {
   std::size_t map_points() const override { return map_.size(); }
   std::size_t memory_bytes() const override {
     return map_.memory_bytes() +
-           (taken_.capacity() + for_map_.capacity()) * sizeof(Eigen::Vector3d);
+           (taken_.capacity() + for_map_.capacity() + some_.capacity()) * sizeof(Eigen::Vector3d);
   }
 
  private:
   double sigma_m() const { return std::sqrt(squares_m2_ / static_cast<double>(errors_)); }
 
-  Sums sums_at(const Pose& pose) const {
-    std::vector<Sums> chunks((taken_.size() + kChunkPoints - 1) / kChunkPoints);
-    pool_.for_ranges(taken_.size(), kChunkPoints,
-                     [&](std::size_t begin, std::size_t end, unsigned) {
-                       chunks[begin / kChunkPoints] = sums_of(begin, end, pose);
-                     });
+  Alignment align(Points points_m, const Pose& seed) const {
+    Alignment result{.map_from_sensor = seed, .settled = false};
+    std::size_t matched = 0;
+    for (int step = 0; step < config_.max_iterations && !result.settled; ++step) {
+      const Sums sums = sums_at(points_m, result.map_from_sensor);
+      const Vector6d change = sums.step();
+      matched = sums.matched;
+      if (matched < 3 || !change.allFinite()) break;
+      Pose moved = Pose::Identity();
+      moved.linear() = rotation_about(change.head<3>());
+      moved.translation() = change.tail<3>();
+      result.map_from_sensor = rigid(moved * result.map_from_sensor);
+      result.settled = change.norm() < config_.convergence;
+    }
+    result.overlap = static_cast<double>(matched) / static_cast<double>(points_m.size());
+    return result;
+  }
+
+  Sums sums_at(Points points_m, const Pose& pose) const {
+    std::vector<Sums> chunks((points_m.size() + kChunkPoints - 1) / kChunkPoints);
+    pool_.for_ranges(
+        points_m.size(), kChunkPoints, [&](std::size_t begin, std::size_t end, unsigned) {
+          chunks[begin / kChunkPoints] = sums_of(points_m.subspan(begin, end - begin), pose);
+        });
     Sums all;
     for (const Sums& chunk : chunks) all.add(chunk);
     return all;
   }
 
-  Sums sums_of(std::size_t begin, std::size_t end, const Pose& pose) const {
+  Sums sums_of(Points points_m, const Pose& pose) const {
     const double sigma = sigma_m();
     Sums sums;
-    for (std::size_t i = begin; i < end; ++i) {
-      const Eigen::Vector3d q = pose * taken_[i];
+    for (const Eigen::Vector3d& p : points_m) {
+      const Eigen::Vector3d q = pose * p;
       const Neighbour neighbour = map_.nearest_in_27_cells(q);
       if (!(neighbour.distance_m < 3 * sigma)) continue;
       // Geman and McClure's weight.
@@ -157,7 +166,7 @@ class Kiss : public Engine {
   KissConfig config_;
   ThreadPool& pool_;
   PointGrid map_;
-  std::vector<Eigen::Vector3d> for_map_, taken_;
+  std::vector<Eigen::Vector3d> for_map_, taken_, some_;
   double squares_m2_;  // of the prediction's errors
   int errors_ = 1;
 };

@@ -14,7 +14,7 @@ namespace {
 
 // Predictions beyond this come of a lost pose and would only lead farther away.
 constexpr double kMostMotion_m = 100.0;
-constexpr double kMostPeriods = 20.0;
+constexpr double kMostMissedPeriods = 20.0;
 
 void add_doubt(ScanPose& pose, const std::string& doubt) {
   if (doubt.empty()) return;
@@ -46,16 +46,31 @@ Pose ScanOdometry::predict(double periods) const {
   const Pose motion = previous_.inverse() * last_;
   if (!(motion.translation().norm() * periods <= kMostMotion_m)) return last_;
   if (periods == 1) return predicted(previous_, last_);
-  return rigid(last_ * part_of(motion, std::min(periods, kMostPeriods)));
+  return rigid(last_ * part_of(motion, std::min(periods, kMostMissedPeriods)));
 }
 
 void ScanOdometry::take(const ScanPoints& scan, const ScanTimes& times, const Pose& motion,
                         std::int64_t period_ns) {
-  if (config_.deskew == Deskew::kNone || times.point_times_ns.empty()) {
-    engine_->take(scan.points_m);
-  } else {
-    engine_->take(deskewed(scan, times.point_times_ns, motion, period_ns));
+  const bool straight = config_.deskew == Deskew::kNone || times.point_times_ns.empty();
+  last_scan_ = {straight ? scan.points_m : deskewed(scan, times.point_times_ns, motion, period_ns),
+                scan.rows};
+  engine_->take(last_scan_.points_m);
+}
+
+void ScanOdometry::enter_last() {
+  if (enters_) engine_->enter(last_);
+  enters_ = false;
+}
+
+void ScanOdometry::leave_out(std::span<const std::uint8_t> moving) {
+  if (moving.size() != last_points_) {
+    throw std::invalid_argument(text("moving: ", moving.size(), " numbers for ", last_points_,
+                                     " points, expected one per point"));
   }
+  if (std::ranges::none_of(moving, [](std::uint8_t moves) { return moves != 0; })) return;
+  last_scan_ = without(last_scan_, moving);
+  engine_->take(last_scan_.points_m);
+  if (!first_scan_.points_m.empty()) first_scan_ = without(first_scan_, moving);
 }
 
 Alignment ScanOdometry::align(const ScanPoints& scan, const ScanTimes& times, const Pose& seed,
@@ -84,12 +99,39 @@ Alignment ScanOdometry::align_with_first(const ScanPoints& scan, const ScanTimes
   return engine_->align(found);
 }
 
+Certainty ScanOdometry::certainty_at(const Pose& map_from_sensor) const {
+  const auto samples = surface_samples(engine_->surfaces(), engine_->spacing_m());
+  std::vector<std::optional<Eigen::Vector3d>> offsets_m;
+  offsets_m.reserve(samples.size());
+  for (const SurfaceSample& sample : samples) {
+    const Eigen::Vector3d q = moved(map_from_sensor, sample.point_m);
+    auto& offset_m = offsets_m.emplace_back(engine_->nearest(q));
+    if (offset_m) offset_m = map_from_sensor.linear().transpose() * (q - *offset_m);
+  }
+  return certainty_of(samples, offsets_m);
+}
+
+void ScanOdometry::doubt_unless_it_comes_back(const Eigen::Vector3d& weakest_shift,
+                                              ScanPose& pose) const {
+  Pose beside = pose.map_from_sensor;
+  const double shift_m = engine_->probe_m();
+  beside.translation() += beside.linear() * (shift_m * weakest_shift);
+  const auto off_m = [&](const Pose& settled) -> Eigen::Vector3d {
+    return settled.translation() - pose.map_from_sensor.translation();
+  };
+  if (off_m(engine_->settled_from(beside)).norm() < shift_m / 2) return;
+  // Some of the points may be too few.
+  const Eigen::Vector3d all_off_m = off_m(engine_->align(beside).map_from_sensor);
+  if (all_off_m.norm() < shift_m / 2) return;
+  add_doubt(pose, text("registration from ", shift_m, " m beside it settles ", all_off_m.norm(),
+                       " m off it"));
+  pose.covariance.bottomRightCorner<3, 3>() += all_off_m * all_off_m.transpose();
+}
+
 ScanPose ScanOdometry::judged(const Alignment& alignment, const Pose& seed,
                               double plausible_m) const {
   ScanPose pose{.map_from_sensor = alignment.map_from_sensor, .doubt = {}};
-  const Certainty certainty =
-      certainty_of(surface_information(engine_->surfaces(), engine_->spacing_m()),
-                   alignment.residual_m, alignment.effective_points);
+  const Certainty certainty = certainty_at(pose.map_from_sensor);
   Eigen::Matrix<double, 6, 6> turn = Eigen::Matrix<double, 6, 6>::Zero();
   turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() = pose.map_from_sensor.linear();
   pose.covariance = turn * certainty.covariance * turn.transpose();
@@ -101,6 +143,7 @@ ScanPose ScanOdometry::judged(const Alignment& alignment, const Pose& seed,
     add_doubt(pose, text("only ", std::round(pose.overlap * 100), " % of it overlap the map"));
   }
   if (pose.geometry < config_.min_geometry) add_doubt(pose, weak_motion(certainty));
+  doubt_unless_it_comes_back(certainty.weakest_shift, pose);
   const double surprise_m = (seed.inverse() * pose.map_from_sensor).translation().norm();
   if (surprise_m > plausible_m) {
     add_doubt(pose, text("it lies ", surprise_m, " m off constant velocity"));
@@ -127,6 +170,8 @@ ScanPose ScanOdometry::push(std::span<const Point> points, const ScanTimes& time
     throw std::invalid_argument(text("point_times_ns: ", times.point_times_ns.size(), " times of ",
                                      points.size(), " points, expected one per point"));
   }
+  enter_last();
+  last_points_ = points.size();
   const ScanClock::Interval interval = clock_.tick(times.stamp_ns);
   const bool first = poses_ == 0;
   const Pose seed = first ? Pose::Identity() : predict(interval.periods);
@@ -147,7 +192,7 @@ ScanPose ScanOdometry::push(std::span<const Point> points, const ScanTimes& time
   }
   pose.registered_points = engine_->taken().size();
   add_doubt(pose, interval.doubt);
-  if (enough) engine_->enter(pose.map_from_sensor);
+  enters_ = enough;
   keep_first(first && enough ? scan : ScanPoints{}, times);
   previous_ = first ? pose.map_from_sensor : last_;
   last_ = pose.map_from_sensor;

@@ -8,9 +8,9 @@
 #include "core/base/thread_pool.hpp"
 #include "core/odometry/config.hpp"
 #include "core/odometry/engine.hpp"
+#include "core/odometry/pose_certainty.hpp"
 #include "core/odometry/scan_clock.hpp"
 #include "core/odometry/scan_points.hpp"
-#include "core/odometry/surface_information.hpp"
 
 namespace mosbench::odometry {
 
@@ -26,6 +26,7 @@ class ScanOdometry : public Odometry {
         clock_(config.scan.scan_period_s) {}
 
   ScanPose push(std::span<const Point> points, const ScanTimes& times) override;
+  void leave_out(std::span<const std::uint8_t> moving) override;
   std::size_t map_points() const override { return engine_->map_points(); }
   std::size_t memory_bytes() const override { return engine_->memory_bytes(); }
 
@@ -38,7 +39,10 @@ class ScanOdometry : public Odometry {
   Alignment align_with_first(const ScanPoints& scan, const ScanTimes& times, const Pose& seed,
                              std::int64_t period_ns);
   void keep_first(const ScanPoints& scan, const ScanTimes& times);
+  void enter_last();
   double plausible_jump_m(const ScanClock::Interval& interval) const;
+  Certainty certainty_at(const Pose& map_from_sensor) const;
+  void doubt_unless_it_comes_back(const Eigen::Vector3d& weakest_shift, ScanPose& pose) const;
   ScanPose judged(const Alignment& alignment, const Pose& seed, double plausible_m) const;
 
   ScanConfig config_;
@@ -47,6 +51,11 @@ class ScanOdometry : public Odometry {
   ScanClock clock_;
   Pose previous_ = Pose::Identity(), last_ = Pose::Identity();
   int poses_ = 0;  // up to 2
+  // The last scan as it was aligned, and of how many points. It enters the map when the next one
+  // comes, so that its moving points can be left out before.
+  ScanPoints last_scan_;
+  std::size_t last_points_ = 0;
+  bool enters_ = false;
   // Kept until the motion is known that it has to be corrected by.
   ScanPoints first_scan_;
   std::vector<std::int64_t> first_times_ns_;

@@ -32,4 +32,14 @@ ScanPoints points_in_range(std::span<const Point> points, const ScanConfig& conf
   return kept;
 }
 
+ScanPoints without(const ScanPoints& scan, std::span<const std::uint8_t> moving) {
+  ScanPoints kept;
+  for (std::size_t i = 0; i < scan.rows.size(); ++i) {
+    if (moving[scan.rows[i]] != 0) continue;
+    kept.points_m.push_back(scan.points_m[i]);
+    kept.rows.push_back(scan.rows[i]);
+  }
+  return kept;
+}
+
 }  // namespace mosbench::odometry

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <cstdint>
 #include <mosbench/scan.hpp>
 #include <span>
 #include <vector>
@@ -23,5 +24,8 @@ ScanPoints points_in_range(std::span<const Point> points, const ScanConfig& conf
 /// Rotates a point by 0.205 degrees about p x (0,0,1), which mends the intrinsic calibration of
 /// KITTI's HDL-64E. Points above the sensor stay.
 Eigen::Vector3d raised(const Eigen::Vector3d& point_m);
+
+/// The points whose row of the scan is not marked as moving.
+ScanPoints without(const ScanPoints& scan, std::span<const std::uint8_t> moving);
 
 }  // namespace mosbench::odometry

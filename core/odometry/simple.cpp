@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cmath>
 
 #include "core/odometry/engine.hpp"
 #include "core/odometry/simple_cost.hpp"
@@ -10,6 +9,8 @@ namespace {
 
 // exp(-10^2 / 2) = 2e-22: farther neighbours change no digit of the cost.
 constexpr double kReachSigmas = 10.0;
+// Fewer may well settle elsewhere than all points do.
+constexpr std::size_t kProbePoints = 1500;
 
 /// SiMpLE: Simple Mapping and Localisation Estimation (IJRR 2024).
 class Simple : public Engine {
@@ -19,23 +20,30 @@ class Simple : public Engine {
 
   void take(std::span<const Eigen::Vector3d> points_m) override {
     taken_ = thinned(points_m, config_.scan_radius_m);
+    some_ = every_nth(taken_, std::clamp<std::size_t>(taken_.size() / kProbePoints, 1, 4));
   }
   std::span<const Eigen::Vector3d> taken() const override { return taken_; }
   std::span<const Eigen::Vector3d> surfaces() const override { return taken_; }
   double spacing_m() const override { return config_.scan_radius_m; }
 
   Alignment align(const Pose& seed) const override {
-    const SimpleProblem problem{
-        .points_m = taken_,
-        .map = map_,
-        .sigma_m = config_.sigma_m,
-        .reach_m = std::max(kReachSigmas * config_.sigma_m, config_.map_radius_m)};
-    if (config_.gradient == Gradient::kNumeric) {
-      NumericCost cost(problem, pool_);
-      return aligned(minimise(cost, angles_of(seed), config_.tolerance));
-    }
-    AnalyticCost cost(problem, pool_);
-    return aligned(minimise(cost, angles_of(seed), config_.tolerance));
+    const Minimum minimum = minimum_from(seed, taken_);
+    Alignment result{.map_from_sensor = pose_of(minimum.at), .settled = minimum.settled};
+    const auto overlapping = std::ranges::count_if(taken_, [&](const Eigen::Vector3d& p) {
+      return nearest(moved(result.map_from_sensor, p)).has_value();
+    });
+    result.overlap = static_cast<double>(overlapping) / static_cast<double>(taken_.size());
+    return result;
+  }
+  Pose settled_from(const Pose& seed) const override {
+    return pose_of(minimum_from(seed, some_).at);
+  }
+  double probe_m() const override { return std::min(config_.sigma_m, config_.map_radius_m / 4); }
+
+  std::optional<Eigen::Vector3d> nearest(const Eigen::Vector3d& position_m) const override {
+    const Neighbour neighbour = map_.nearest(position_m, config_.map_radius_m);
+    if (!(neighbour.distance_m < config_.map_radius_m)) return std::nullopt;
+    return neighbour.point_m;
   }
 
   void enter(const Pose& map_from_sensor) override {
@@ -50,35 +58,28 @@ class Simple : public Engine {
 
   std::size_t map_points() const override { return map_.size(); }
   std::size_t memory_bytes() const override {
-    return map_.memory_bytes() + taken_.capacity() * sizeof(Eigen::Vector3d);
+    return map_.memory_bytes() + (taken_.capacity() + some_.capacity()) * sizeof(Eigen::Vector3d);
   }
 
  private:
-  Alignment aligned(const Minimum& minimum) const {
-    Alignment result{.map_from_sensor = pose_of(minimum.at), .settled = minimum.settled};
-    std::size_t overlapping = 0;
-    double squares_m2 = 0;
-    for (const Eigen::Vector3d& p : taken_) {
-      const double distance_m =
-          map_.nearest(moved(result.map_from_sensor, p), config_.map_radius_m).distance_m;
-      if (!(distance_m < config_.map_radius_m)) continue;
-      ++overlapping;
-      const double sigmas = distance_m / config_.sigma_m;
-      const double weight = std::exp(-0.5 * sigmas * sigmas);
-      result.effective_points += weight;
-      squares_m2 += weight * distance_m * distance_m;
+  Minimum minimum_from(const Pose& seed, std::span<const Eigen::Vector3d> points_m) const {
+    const SimpleProblem problem{
+        .points_m = points_m,
+        .map = map_,
+        .sigma_m = config_.sigma_m,
+        .reach_m = std::max(kReachSigmas * config_.sigma_m, config_.map_radius_m)};
+    if (config_.gradient == Gradient::kNumeric) {
+      NumericCost cost(problem, pool_);
+      return minimise(cost, angles_of(seed), config_.tolerance);
     }
-    result.overlap = static_cast<double>(overlapping) / static_cast<double>(taken_.size());
-    if (result.effective_points > 0) {
-      result.residual_m = std::sqrt(squares_m2 / result.effective_points);
-    }
-    return result;
+    AnalyticCost cost(problem, pool_);
+    return minimise(cost, angles_of(seed), config_.tolerance);
   }
 
   SimpleConfig config_;
   ThreadPool& pool_;
   PointGrid map_;
-  std::vector<Eigen::Vector3d> taken_;
+  std::vector<Eigen::Vector3d> taken_, some_;
 };
 
 }  // namespace

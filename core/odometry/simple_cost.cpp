@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/odometry/engine.hpp"
+
 namespace mosbench::odometry {
 namespace {
 
-constexpr double kDifference = 1e-7;       // of radians and of metres
-constexpr std::size_t kChunkPoints = 512;  // fixed, so that sums do not depend on threads
+constexpr double kDifference = 1e-7;  // of radians and of metres
 
 // How far points move on average in the first trial of a search, at most.
 constexpr double kFirstMotionSigmas = 1.0;

@@ -40,4 +40,10 @@ std::vector<Eigen::Vector3d> first_of_cells(std::span<const Eigen::Vector3d> poi
   return kept;
 }
 
+std::vector<Eigen::Vector3d> every_nth(std::span<const Eigen::Vector3d> points_m, std::size_t n) {
+  std::vector<Eigen::Vector3d> kept;
+  for (std::size_t i = 0; i < points_m.size(); i += n) kept.push_back(points_m[i]);
+  return kept;
+}
+
 }  // namespace mosbench::odometry

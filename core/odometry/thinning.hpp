@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -20,5 +21,8 @@ std::vector<std::size_t> insert_apart(std::span<const Eigen::Vector3d> points_m,
 /// The first point of every cell of edge `cell_m`, in order.
 std::vector<Eigen::Vector3d> first_of_cells(std::span<const Eigen::Vector3d> points_m,
                                             double cell_m);
+
+/// The first point and every n-th after it.
+std::vector<Eigen::Vector3d> every_nth(std::span<const Eigen::Vector3d> points_m, std::size_t n);
 
 }  // namespace mosbench::odometry

@@ -225,7 +225,7 @@ VoxelizedScan voxelize(std::span<const Point> points, const Pose& map_from_senso
   projection.sensor_voxel[1] = scan.sensor_voxel.y;
   projection.sensor_voxel[2] = scan.sensor_voxel.z;
   projection.voxel_size_m = grid.voxel_size_m;
-  projection.min_range_sq_m2 = min_range_m * min_range_m;
+  projection.min_range_sq_m2 = min_range_m * std::abs(min_range_m);
 
   scan.voxel_of_point.resize(points.size());
   std::vector<Part> parts(pool.size());

@@ -40,8 +40,9 @@ struct VoxelizedScan {
 VoxelGrid grid_around(const Eigen::Vector3d& sensor_m, double voxel_size_m);
 
 /// Finds the measured voxels P'_M = floor(P_M / Delta) of P_M = T_{M->S} P_S (paper, III), from the
-/// points farther than min_range from the sensor. Throws std::range_error naming the first point
-/// whose voxel lies more than 2^19 voxels from the sensor's or 2^23 from the grid's origin.
+/// points farther than min_range from the sensor, which is negative to take all. Throws
+/// std::range_error naming the first point whose voxel lies more than 2^19 voxels from the sensor's
+/// or 2^23 from the grid's origin.
 VoxelizedScan voxelize(std::span<const Point> points, const Pose& map_from_sensor,
                        const VoxelGrid& grid, double min_range_m, double max_range_m,
                        ThreadPool& pool);

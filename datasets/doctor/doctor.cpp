@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "datasets/doctor/row_patterns.hpp"
 #include "datasets/files/calib_file.hpp"
 #include "datasets/files/errors.hpp"
 #include "datasets/files/files.hpp"
@@ -52,6 +53,18 @@ void collect(std::vector<Symptom>& symptoms, const std::filesystem::path& folder
   }
 }
 
+/// Returns the median time from scan to scan; nothing without stamps in order.
+std::optional<double> usual_step_s(const Sequence& sequence) {
+  std::vector<double> steps_s;
+  for (std::size_t i = 1; i < sequence.size(); ++i) {
+    const auto before = sequence.stamp_ns(i - 1), after = sequence.stamp_ns(i);
+    if (before && after) steps_s.push_back(1e-9 * static_cast<double>(*after - *before));
+  }
+  if (steps_s.empty()) return std::nullopt;
+  const double step_s = median(std::move(steps_s));
+  return step_s > 0.0 ? std::optional(step_s) : std::nullopt;
+}
+
 std::string sentence_on(const MisplacedRows& rows, const Sequence& sequence) {
   if (rows.single()) {
     return fmt::format(
@@ -67,22 +80,6 @@ std::string sentence_on(const MisplacedRows& rows, const Sequence& sequence) {
       sequence.stem(rows.first), sequence.stem(rows.second), rows.first + 1, rows.second + 1);
 }
 
-std::string sentence_on_better(const SequenceCheckup& checkup) {
-  const std::vector<std::size_t>& better = checkup.poses->better;
-  const ConventionScore& score = checkup.poses->scores[better.front()];
-  std::vector<std::string> names, remedies;
-  for (const std::size_t i : better) {
-    names.push_back(checkup.conventions[i].name);
-    remedies.push_back(checkup.conventions[i].remedy);
-  }
-  return fmt::format(
-      "the poses fit better as {}{}: scans overlap by {:.2f} instead of {:.2f} in {} of {} pairs; "
-      "{}",
-      fmt::join(names, " or "), better.size() > 1 ? " (these scans do not decide which)" : "",
-      score.overlap, score.given_overlap, score.pairs_better, score.pairs,
-      fmt::join(remedies, " or "));
-}
-
 void check_sequence(const Sequence& sequence, const std::filesystem::path& folder, DatasetKind kind,
                     bool simulated, Checkup& checkup) {
   SequenceCheckup& part = checkup.sequences.emplace_back();
@@ -93,7 +90,8 @@ void check_sequence(const Sequence& sequence, const std::filesystem::path& folde
   part.labelled_scans = scans_with_truth(sequence).size();
   collect(checkup.symptoms, folder, [&] { return check_content(sequence, kind, part); });
   collect(checkup.symptoms, folder, [&] { return check_poses(sequence, folder, part); });
-  if (!simulated) append(checkup.symptoms, check_published(sequence, kind, folder));
+  collect(checkup.symptoms, folder, [&] { return check_labels_by_scans(sequence, part); });
+  if (!simulated) append(checkup.symptoms, check_published(sequence, kind, folder, part));
 }
 
 }  // namespace
@@ -105,27 +103,56 @@ bool Checkup::has(Severity severity) const {
 
 std::vector<Symptom> check_poses(const Sequence& sequence, const std::filesystem::path& folder,
                                  SequenceCheckup& checkup) {
+  constexpr std::size_t kFewestScans = 6, kSpots = 6;
   std::vector<Pose> given;
-  for (std::size_t i = 0; i < sequence.size(); ++i) given.push_back(sequence.map_from_sensor(i));
-  const std::vector<MisplacedRows> misplaced = misplaced_rows(sequence, given);
-  for (const MisplacedRows& rows : misplaced) given = mended(std::move(given), rows);
-  checkup.conventions = other_conventions(given, tr_of(folder), tr_is_applied(checkup.reading));
-  checkup.poses = measure_poses(sequence, given, checkup.conventions);
-  if (checkup.poses && !checkup.poses->better.empty()) {
-    // Poses in another convention have detours of their own.
-    return {{Severity::kWarning, sequence.name(), sentence_on_better(checkup)}};
+  std::vector<std::string> stems;
+  for (const ScanEntry& scan : sequence.recording().scans) {
+    given.push_back(scan.map_from_sensor);
+    stems.push_back(scan.stem);
   }
+  if (given.size() < kFewestScans || checkup.is_partly_turned) return {};
+  const MisplacedRowsFound misplaced = misplaced_rows(sequence, given);
+  checkup.measures["row_gain"] = misplaced.largest_gain;
+  for (const MisplacedRows& rows : misplaced.rows) given = mended(std::move(given), rows);
+  std::vector<std::size_t> spots = odd_steps(given, kSpots);
+  for (const RowRange& run : equal_rows(given)) {
+    if (spots.size() < 2 * kSpots) spots.push_back((run.first + run.last) / 2);
+  }
+  const auto diagnose_from = [&](const std::vector<MotionGuess>& guesses) {
+    return diagnose(given, measure_motions(sequence, given, spots, guesses),
+                    other_conventions(given, tr_of(folder), tr_is_applied(checkup.reading)),
+                    {stems, usual_step_s(sequence)});
+  };
+  checkup.poses = diagnose_from({});
+  const auto tries = worth_another_try(checkup.poses->conventions, checkup.poses->scores);
+  std::vector<MotionGuess> guesses;
+  for (const PoseConvention& convention : tries) {
+    guesses.push_back([&convention](const ScanPair& pair) { return convention.motion(pair); });
+  }
+  if (!guesses.empty()) checkup.poses = diagnose_from(guesses);
+  checkup.measures.merge(checkup.poses->measures);
+  std::ranges::copy(checkup.poses->remarks, std::back_inserter(checkup.remarks));
   std::vector<Symptom> symptoms;
-  for (const MisplacedRows& rows : misplaced) {
+  for (const std::string& finding : checkup.poses->findings) {
+    symptoms.push_back({Severity::kWarning, sequence.name(), finding});
+  }
+  // Poses in another convention have detours of their own.
+  if (!symptoms.empty()) return symptoms;
+  for (const MisplacedRows& rows : misplaced.rows) {
     symptoms.push_back({Severity::kWarning, sequence.name(), sentence_on(rows, sequence)});
   }
-  if (checkup.poses && !checkup.poses->given.fits()) {
-    const PoseFit& fit = checkup.poses->given;
-    symptoms.push_back(
-        {Severity::kWarning, sequence.name(),
-         fmt::format("the poses do not fit the scans in any convention: scans overlap by {:.2f}, "
-                     "moved by {:.2f} m by {:.2f}; expected the poses of this sequence",
-                     fit.overlap, fit.median_correction_m, fit.best_overlap)});
+  return symptoms;
+}
+
+std::vector<Symptom> check_labels_by_scans(const Sequence& sequence, SequenceCheckup& checkup) {
+  if (!checkup.poses || !checkup.poses->findings.empty()) return {};
+  std::vector<Pose> poses;
+  for (const ScanEntry& scan : sequence.recording().scans) poses.push_back(scan.map_from_sensor);
+  checkup.truth = check_truth(sequence, poses, checkup.poses->fits);
+  std::ranges::copy(checkup.truth->remarks, std::back_inserter(checkup.remarks));
+  std::vector<Symptom> symptoms;
+  for (const std::string& finding : checkup.truth->findings) {
+    symptoms.push_back({Severity::kWarning, sequence.name(), finding});
   }
   return symptoms;
 }

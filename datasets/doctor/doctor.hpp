@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "datasets/doctor/misplaced_rows.hpp"
-#include "datasets/doctor/pose_conventions.hpp"
-#include "datasets/doctor/pose_measurement.hpp"
+#include "datasets/doctor/pose_diagnosis.hpp"
+#include "datasets/doctor/truth_check.hpp"
 #include "datasets/layouts/dataset.hpp"
 
 namespace mosbench {
@@ -32,8 +32,11 @@ struct SequenceCheckup {
   std::map<std::uint32_t, std::size_t> points_of_id;  ///< label ids of the scans read
   std::vector<std::size_t> points_of_range;           ///< per bin of `range_bins_m`
   std::size_t points = 0, zero_points = 0, nonfinite_points = 0;
-  std::vector<PoseConvention> conventions;
-  std::optional<PoseMeasurement> poses;
+  bool is_partly_turned = false;  ///< some scans are upside down: they do not fit one another
+  /// What thresholds are compared with, see scripts/check/doctor_margins.py.
+  std::map<std::string, double> measures;
+  std::optional<PoseDiagnosis> poses;
+  std::optional<TruthCheck> truth;  ///< none where the poses are wrong
 };
 
 /// Returns the upper ends of the bins of SequenceCheckup::points_of_range; the last is open.
@@ -64,8 +67,13 @@ std::vector<Symptom> check_content(const Sequence& sequence, DatasetKind kind,
 std::vector<Symptom> check_poses(const Sequence& sequence, const std::filesystem::path& folder,
                                  SequenceCheckup& checkup);
 
-/// Checks the number of scans against what the data set's authors published.
+/// Checks the labels by what other scans see, where no symptom speaks against the poses, and fills
+/// in `checkup`.
+std::vector<Symptom> check_labels_by_scans(const Sequence& sequence, SequenceCheckup& checkup);
+
+/// Checks the number of scans against what the data set's authors published. Fewer are an excerpt
+/// and get a remark in `checkup`.
 std::vector<Symptom> check_published(const Sequence& sequence, DatasetKind kind,
-                                     const std::filesystem::path& folder);
+                                     const std::filesystem::path& folder, SequenceCheckup& checkup);
 
 }  // namespace mosbench

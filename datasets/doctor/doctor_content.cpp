@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <fstream>
@@ -9,6 +10,7 @@
 #include <unordered_map>
 
 #include "datasets/doctor/doctor.hpp"
+#include "datasets/doctor/registration.hpp"
 #include "datasets/files/files.hpp"
 #include "datasets/files/point_range.hpp"
 #include "datasets/layouts/layout.hpp"
@@ -26,6 +28,33 @@ constexpr double kMostBeyond = 0.01;
 /// A larger share of returns in the first bin of ranges (0.5 m) comes from a larger unit than
 /// metres.
 constexpr double kMostNear = 0.99;
+
+/// Share of zeros between two returns above which they were zeroed: a sensor loses few single
+/// returns (up to 0.05), while whole regions have none.
+constexpr double kMostLostBetween = 0.1;
+/// Seconds between scans; less and more come from another unit.
+constexpr double kShortestStepS = 0.01, kLongestStepS = 10.0;
+/// A step in time so many times longer than usual is a gap, not a lost scan or two.
+constexpr double kGapSteps = 10.0;
+/// Share of the flat surfaces around the sensor that may be above it, unless it hangs upside down.
+constexpr double kMostAbove = 0.8;
+/// Single scans are upside down in which more are above it, of at least this many, while as many
+/// scans have at most this share there.
+constexpr std::size_t kFewestFlatOfScan = 100, kFewestTurned = 2;
+constexpr double kMostAboveUpright = 0.2;
+/// With fewer flat places nothing is concluded from them.
+constexpr std::size_t kFewestFlat = 500;
+/// Share of the points beyond the sensor's range that are near its pose in the map.
+constexpr double kMostNearPlace = 0.5;
+/// Share of the points that are in range only with their bytes in reverse order.
+constexpr double kMostReversed = 0.5;
+/// A return is at least so far away.
+constexpr double kNearestReturnM = 0.3;
+
+/// Returns the value with its bytes in reverse order.
+float reversed(float value) {
+  return std::bit_cast<float>(__builtin_bswap32(std::bit_cast<std::uint32_t>(value)));
+}
 
 /// Returns size and the bytes at both ends.
 std::string ends_of_file(const std::filesystem::path& file) {
@@ -55,6 +84,7 @@ class ContentCheck {
     check_returns();
     check_ids();
     check_stamps();
+    check_gaps();
     check_frozen();
     return std::move(symptoms_);
   }
@@ -63,6 +93,8 @@ class ContentCheck {
   void warn(std::string what) {
     symptoms_.push_back({Severity::kWarning, sequence_.name(), std::move(what)});
   }
+
+  double measure(const char* name, double value) { return checkup_.measures[name] = value; }
 
   /// Returns evenly spread scans, and as many of the labelled ones.
   std::set<std::size_t> sampled_scans() const {
@@ -78,9 +110,13 @@ class ContentCheck {
   void count_scan(std::size_t scan_index) {
     const Frame frame = sequence_.read(scan_index);
     ++checkup_.scans_read;
+    count_lost(frame.points);
+    count_flat(frame.points, scan_index);
+    const Eigen::Vector3d place_m = sequence_.map_from_sensor(scan_index).translation();
     for (std::size_t i = 0; i < frame.points.size(); ++i) {
       const double range_m = mosbench::range_m(frame.points[i]);
       ++checkup_.points;
+      count_byte_order(frame.points[i], range_m);
       if (!std::isfinite(range_m)) {
         ++checkup_.nonfinite_points;
       } else if (range_m == 0.0) {
@@ -89,10 +125,54 @@ class ContentCheck {
         const auto bin = std::ranges::lower_bound(range_bins_m(), range_m);
         ++checkup_.points_of_range[std::min(static_cast<std::size_t>(bin - range_bins_m().begin()),
                                             range_bins_m().size() - 1)];
-        if (range_m > expected_.sensor_range_m) ++beyond_sensor_;
+        if (range_m > expected_.sensor_range_m) {
+          ++beyond_sensor_;
+          const Point& point = frame.points[i];
+          if ((Eigen::Vector3d(point.x, point.y, point.z) - place_m).norm() <
+              expected_.sensor_range_m) {
+            ++near_place_;
+          }
+        }
       }
       if (frame.truth) count_label((*frame.truth)[i], range_m);
     }
+  }
+
+  void count_byte_order(const Point& point, double range_m) {
+    const auto is_in_range = [&](double range) {
+      return range > kNearestReturnM && range < expected_.sensor_range_m;
+    };
+    if (is_in_range(range_m)) {
+      ++in_range_;
+    } else if (is_in_range(mosbench::range_m(
+                   {reversed(point.x), reversed(point.y), reversed(point.z), 0.0F}))) {
+      ++reversed_;
+    }
+  }
+
+  /// Counts zeros that stand alone between returns.
+  void count_lost(const std::vector<Point>& points) {
+    for (std::size_t i = 1; i + 1 < points.size(); ++i) {
+      if (range_m(points[i - 1]) == 0.0 || range_m(points[i + 1]) == 0.0) continue;
+      ++between_returns_;
+      if (range_m(points[i]) == 0.0) ++lost_between_;
+    }
+  }
+
+  void count_flat(const std::vector<Point>& points, std::size_t scan_index) {
+    constexpr double kNearM = 10.0;
+    std::size_t flat = 0, above = 0;
+    for (const Eigen::Vector3d& point_m : sparse_ground_m(points)) {
+      if (point_m.norm() > kNearM) continue;
+      ++flat;
+      if (point_m.z() > 0.0) ++above;
+    }
+    flat_ += flat;
+    flat_above_ += above;
+    if (flat < kFewestFlatOfScan) return;
+    const double share = static_cast<double>(above) / static_cast<double>(flat);
+    if (share > kMostAbove) turned_.push_back(scan_index);
+    if (share < kMostAboveUpright) ++upright_;
   }
 
   void count_label(std::uint32_t label, double range_m) {
@@ -108,26 +188,65 @@ class ContentCheck {
 
   void check_returns() {
     const std::size_t returns = checkup_.points - checkup_.zero_points - checkup_.nonfinite_points;
+    const auto share = [](std::size_t part, std::size_t whole) {
+      return static_cast<double>(part) / static_cast<double>(std::max<std::size_t>(whole, 1));
+    };
+    const double beyond = measure("beyond_sensor", share(beyond_sensor_, returns));
+    const double near = measure("nearest", share(checkup_.points_of_range.front(), returns));
+    const double measured = measure("returns", share(returns, checkup_.points));
+    const double lost = measure("lost_between", share(lost_between_, between_returns_));
+    if (measure("plausible_reversed", share(reversed_, checkup_.points)) > kMostReversed) {
+      warn(fmt::format(
+          "{:.0f} % of the points are in range when their bytes are reversed, {:.0f} % "
+          "as they are; expected little-endian floats",
+          100.0 * share(reversed_, checkup_.points), 100.0 * share(in_range_, checkup_.points)));
+      return;
+    }
     if (checkup_.nonfinite_points > 0) {
       warn(fmt::format("{} of {} points are NaN or infinite; expected numbers",
                        checkup_.nonfinite_points, checkup_.points));
     }
-    const auto share = [](std::size_t part, std::size_t whole) {
-      return static_cast<double>(part) / static_cast<double>(std::max<std::size_t>(whole, 1));
-    };
-    if (checkup_.points > 0 && share(returns, checkup_.points) < kLeastReturns) {
+    if (checkup_.points > 0 && measured < kLeastReturns) {
       warn(fmt::format("{} of {} points are returns; expected most", returns, checkup_.points));
     }
-    if (share(beyond_sensor_, returns) > kMostBeyond) {
+    if (lost > kMostLostBetween) {
+      warn(fmt::format("{:.0f} % of the points between two returns are (0, 0, 0); expected returns",
+                       100.0 * lost));
+    }
+    if (flat_ > kFewestFlat && measure("flat_above", share(flat_above_, flat_)) > kMostAbove) {
+      warn(
+          fmt::format("{:.0f} % of the flat surfaces within 10 m are above the sensor; expected "
+                      "the ground below it (are the points upside down, z with the wrong sign?)",
+                      100.0 * share(flat_above_, flat_)));
+    }
+    check_turned();
+    if (beyond > kMostBeyond && share(near_place_, beyond_sensor_) > kMostNearPlace) {
+      warn(
+          fmt::format("{} of {} points are farther than the {:g} m that the sensor measures, but "
+                      "near its pose; expected points in the sensor's frame (are these in the "
+                      "map's?)",
+                      beyond_sensor_, returns, expected_.sensor_range_m));
+    } else if (beyond > kMostBeyond) {
       warn(
           fmt::format("{} of {} points are farther than the {:g} m that the sensor measures; "
-                      "expected metres (are these millimetres?)",
+                      "expected metres (are these millimetres or feet?)",
                       beyond_sensor_, returns, expected_.sensor_range_m));
     }
-    if (share(checkup_.points_of_range.front(), returns) > kMostNear) {
+    if (near > kMostNear) {
       warn(fmt::format("nearly all points are nearer than {:g} m; expected metres",
                        range_bins_m().front()));
     }
+  }
+
+  /// Checks whether only some scans are upside down: with none upright, all are.
+  void check_turned() {
+    if (turned_.size() < kFewestTurned || upright_ < kFewestTurned) return;
+    checkup_.is_partly_turned = true;
+    warn(
+        fmt::format("in {} of {} scans read, first {}, the flat surfaces within 10 m are above the "
+                    "sensor, in others below; expected the ground below it (has z the wrong sign "
+                    "there? the poses were not checked)",
+                    turned_.size(), checkup_.scans_read, sequence_.stem(turned_.front())));
   }
 
   void check_ids() {
@@ -187,6 +306,35 @@ class ContentCheck {
                     backward, first));
   }
 
+  /// Checks the time from scan to scan.
+  void check_gaps() {
+    std::vector<double> steps_s;
+    std::vector<std::size_t> scans;
+    for (std::size_t i = 1; i < sequence_.size(); ++i) {
+      const auto before = sequence_.stamp_ns(i - 1);
+      const auto after = sequence_.stamp_ns(i);
+      if (!before || !after || *after <= *before) continue;
+      steps_s.push_back(1e-9 * static_cast<double>(*after - *before));
+      scans.push_back(i);
+    }
+    if (steps_s.empty()) return;
+    const double usual_s = measure("step_s", median(steps_s));
+    if (usual_s < kShortestStepS || usual_s > kLongestStepS) {
+      warn(
+          fmt::format("stamps are {:g} s apart (median); expected seconds, about 0.1 from scan to "
+                      "scan",
+                      usual_s));
+      return;
+    }
+    const auto longest = std::ranges::max_element(steps_s);
+    if (measure("gap_steps", *longest / usual_s) <= kGapSteps) return;
+    warn(
+        fmt::format("scan {} comes {:.2f} s after the one before it, others {:.2f} s; expected no "
+                    "gap in time",
+                    sequence_.stem(scans[static_cast<std::size_t>(longest - steps_s.begin())]),
+                    *longest, usual_s));
+  }
+
   /// Compares scans of the same size and the same bytes at both ends as a whole.
   void check_frozen() {
     std::unordered_map<std::string, std::size_t> scan_of_ends;
@@ -223,7 +371,11 @@ class ContentCheck {
   const Sequence& sequence_;
   const LayoutContent& expected_;
   SequenceCheckup& checkup_;
-  std::size_t beyond_sensor_ = 0, labels_beyond_ = 0;
+  std::vector<std::size_t> turned_;  ///< scans that are upside down
+  std::size_t upright_ = 0;
+  std::size_t beyond_sensor_ = 0, near_place_ = 0, labels_beyond_ = 0;
+  std::size_t in_range_ = 0, reversed_ = 0;
+  std::size_t between_returns_ = 0, lost_between_ = 0, flat_ = 0, flat_above_ = 0;
   std::vector<Symptom> symptoms_;
 };
 

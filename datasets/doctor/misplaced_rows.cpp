@@ -184,10 +184,9 @@ std::vector<MisplacedRows> suspected_rows(std::vector<Pose> poses) {
   return suspected;
 }
 
-std::vector<MisplacedRows> misplaced_rows(const Sequence& sequence,
-                                          const std::vector<Pose>& poses) {
+MisplacedRowsFound misplaced_rows(const Sequence& sequence, const std::vector<Pose>& poses) {
   ScanOverlap scans(sequence);
-  std::vector<MisplacedRows> misplaced;
+  MisplacedRowsFound found;
   std::vector<Pose> before = poses;
   for (const MisplacedRows& rows : suspected_rows(poses)) {
     std::vector<Pose> after = mended(before, rows);
@@ -198,11 +197,12 @@ std::vector<MisplacedRows> misplaced_rows(const Sequence& sequence,
       gain -= scans.overlap(pair, relative(before, pair));
       pairs += 1.0;
     }
+    if (pairs > 0.0) found.largest_gain = std::max(found.largest_gain, gain / pairs);
     if (gain <= kLeastRowGain * pairs) continue;
-    misplaced.push_back(rows);
+    found.rows.push_back(rows);
     before = std::move(after);
   }
-  return misplaced;
+  return found;
 }
 
 }  // namespace mosbench

@@ -25,11 +25,8 @@ const ScanOverlap::Scan& ScanOverlap::at(std::size_t scan_index) {
   auto& scan = scans_[scan_index];
   if (!scan) {
     const std::vector<Eigen::Vector3d> near_m = near_points(sequence_.read(scan_index).points);
-    const std::vector<Eigen::Vector3d> upright_m = upright_points(near_m);
-    scan =
-        std::make_unique<Scan>(Scan{picked(near_m, kMovedPoints), picked(upright_m, kMovedPoints),
-                                    SurfaceCells(picked(near_m, kSurfacePoints)),
-                                    SurfaceCells(picked(upright_m, kSurfacePoints))});
+    scan = std::make_unique<Scan>(
+        Scan{picked(near_m, kMovedPoints), SurfaceCells(picked(near_m, kSurfacePoints))});
   }
   return *scan;
 }

@@ -35,21 +35,12 @@ class ScanOverlap {
   double overlap(const ScanPair& pair, const Pose& motion) {
     return at(pair.earlier).cells.overlap(at(pair.later).moved_m, motion);
   }
-  /// The same for upright surfaces. Rings of a sparse sensor on the ground move with the sensor, so
-  /// they overlap best as if it stood still.
-  double upright_overlap(const ScanPair& pair, const Pose& motion) {
-    return at(pair.earlier).upright.overlap(at(pair.later).upright_m, motion);
-  }
-  Alignment align_upright(const ScanPair& pair, const Pose& start) {
-    return align(at(pair.earlier).upright, at(pair.later).upright_m, start);
-  }
-  std::size_t scans_read() const { return scans_.size(); }
 
  private:
   static constexpr std::size_t kFewestPoints = 200;
   struct Scan {
-    std::vector<Eigen::Vector3d> moved_m, upright_m;
-    SurfaceCells cells, upright;
+    std::vector<Eigen::Vector3d> moved_m;
+    SurfaceCells cells;
   };
   const Scan& at(std::size_t scan_index);
 

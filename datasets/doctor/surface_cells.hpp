@@ -15,8 +15,6 @@ class SurfaceCells {
  public:
   explicit SurfaceCells(std::span<const Eigen::Vector3d> points_m);
 
-  bool empty() const { return cells_.empty(); }
-
   /// Returns how well points of another scan lie on the surfaces: the mean over the points of a
   /// likelihood that is 1 in the middle of a surface and 0 where there is none.
   double overlap(std::span<const Eigen::Vector3d> points_m, const Pose& cells_from_points) const;
@@ -32,20 +30,7 @@ class SurfaceCells {
 /// Returns the points at 2 to 40 m, where scans are dense.
 std::vector<Eigen::Vector3d> near_points(std::span<const Point> points);
 
-/// Returns the points of upright surfaces: in columns of the grid that are not flat like the
-/// ground; all points when there are too few of them.
-std::vector<Eigen::Vector3d> upright_points(std::span<const Eigen::Vector3d> points_m);
-
 /// Returns up to `most` of the points, evenly picked.
 std::vector<Eigen::Vector3d> picked(std::span<const Eigen::Vector3d> points_m, std::size_t most);
-
-/// A motion and the overlap under it.
-struct Alignment {
-  Pose cells_from_points = Pose::Identity();
-  double overlap = 0.0;
-};
-/// Returns the motion near `start` with the largest overlap, by a search along the axes.
-Alignment align(const SurfaceCells& cells, std::span<const Eigen::Vector3d> points_m,
-                const Pose& start);
 
 }  // namespace mosbench

@@ -17,6 +17,10 @@ std::vector<Point> parse_bin(std::string_view bytes, const std::filesystem::path
 /// Parses `columns` float32 per point and keeps the first four: nuScenes adds the ring.
 std::vector<Point> parse_bin(std::string_view bytes, std::size_t columns,
                              const std::filesystem::path& file);
+/// Returns the number after x y z intensity of every point: seconds after the stamp of its scan, in
+/// nanoseconds. Throws DataError also for times that are not within a second.
+std::vector<std::int64_t> parse_bin_times(std::string_view bytes, std::size_t columns,
+                                          const std::filesystem::path& file);
 /// Returns the points' own memory as the bytes of a file.
 std::string_view format_bin(std::span<const Point> points);
 

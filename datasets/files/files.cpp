@@ -1,5 +1,8 @@
 #include "datasets/files/files.hpp"
 
+#include <fcntl.h>
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
@@ -8,6 +11,7 @@
 #include <system_error>
 
 #include "datasets/files/errors.hpp"
+#include "datasets/files/file_descriptor.hpp"
 
 namespace mosbench {
 namespace {
@@ -19,38 +23,23 @@ using OpenFile = std::unique_ptr<std::FILE, FileCloser>;
 
 std::string reason(int error_number) { return std::strerror(error_number); }
 
-void make_parent_folder(const std::filesystem::path& file) {
-  if (!file.has_parent_path()) return;
-  std::error_code error;
-  std::filesystem::create_directories(file.parent_path(), error);
-  if (error) {
-    throw DataError(file, "its folder cannot be created (" + error.message() + ")",
-                    "a writable output folder");
-  }
-}
-
-/// Returns 0, or the errno of the first step that failed. A full disk may be reported only when the
-/// buffers are flushed, hence the check of fclose.
-int write_whole(const std::filesystem::path& file, std::string_view bytes) {
-  OpenFile out(std::fopen(file.c_str(), "wb"));
-  if (!out) return errno;
-  // An empty view may be null, which fwrite does not accept.
-  if (!bytes.empty() && std::fwrite(bytes.data(), 1, bytes.size(), out.get()) != bytes.size()) {
-    return errno;
-  }
-  return std::fclose(out.release()) == 0 ? 0 : errno;
-}
-
 void refuse_folder(const std::filesystem::path& file) {
   std::error_code ignored;
   if (std::filesystem::is_directory(file, ignored)) throw DataError(file, "is a folder", "a file");
 }
 
+/// Does not wait for what may never come, as from a FIFO.
 OpenFile open_to_read(const std::filesystem::path& file) {
-  refuse_folder(file);
-  OpenFile in(std::fopen(file.c_str(), "rb"));
-  if (!in) throw DataError(file, "cannot be opened (" + reason(errno) + ")", "a readable file");
-  return in;
+  FileDescriptor opened(open(file.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
+  struct stat found {};
+  if (!opened.is_open() || fstat(opened.number(), &found) != 0) {
+    throw DataError(file, "cannot be opened (" + reason(errno) + ")", "a readable file");
+  }
+  if (S_ISDIR(found.st_mode)) throw DataError(file, "is a folder", "a file");
+  if (!S_ISREG(found.st_mode)) {
+    throw DataError(file, "is a pipe or device", "a regular file; write its bytes to one first");
+  }
+  return OpenFile(fdopen(opened.release(), "rb"));
 }
 
 void check_reading(std::FILE* in, const std::filesystem::path& file) {
@@ -121,19 +110,6 @@ std::uintmax_t size_of(const std::filesystem::path& file) {
   if (!error) return size_bytes;
   refuse_folder(file);
   throw DataError(file, "cannot be opened (" + error.message() + ")", "a readable file");
-}
-
-void write_file_atomic(const std::filesystem::path& file, std::string_view bytes) {
-  make_parent_folder(file);
-  std::filesystem::path partial = file;
-  partial += ".partial";
-  int failure = write_whole(partial, bytes);
-  if (failure == 0 && std::rename(partial.c_str(), file.c_str()) != 0) failure = errno;
-  if (failure == 0) return;
-  std::error_code ignored;
-  std::filesystem::remove(partial, ignored);
-  throw DataError(file, "cannot be written (" + reason(failure) + ")",
-                  "a writable output folder with free space");
 }
 
 }  // namespace mosbench

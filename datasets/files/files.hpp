@@ -24,10 +24,15 @@ void read_file(const std::filesystem::path& file, std::span<std::byte> bytes);
 /// Returns the size of a file in bytes; throws DataError.
 std::uintmax_t size_of(const std::filesystem::path& file);
 
-/// Replaces `file` as a whole: readers see the old bytes or the new ones, also after a killed run.
-/// Creates missing folders. The bytes are written to `<file>.partial` first; the next write
-/// replaces what a killed one left there. One writer per file at a time. Throws DataError naming
-/// `file`.
+/// Replaces `file` as a whole: readers see the old bytes or the new ones, also after a killed run
+/// (PartialFile says how). Makes missing folders. Follows symbolic links: what they lead to is
+/// replaced. A FIFO, a device and everything in /dev and /proc is never replaced but written.
+/// Throws DataError naming `file`.
 void write_file_atomic(const std::filesystem::path& file, std::string_view bytes);
+/// The same, and returns only when bytes and name are on the disk, to survive a power cut.
+void commit_file(const std::filesystem::path& file, std::string_view bytes);
+
+/// Writes to stdout. Nothing is wrong when its reader went away, as `head` does. Throws DataError.
+void write_stdout(std::string_view bytes);
 
 }  // namespace mosbench

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "datasets/files/errors.hpp"
+#include "datasets/files/shown_text.hpp"
 #include "datasets/files/text.hpp"
 
 namespace mosbench {
@@ -52,7 +53,7 @@ std::vector<StemFile> list_by_stem(const std::filesystem::path& folder,
   for (const auto& entry : visible_entries(folder, error)) {
     const std::string extension = entry.path().extension().string();
     if (std::ranges::find(extensions, extension) == extensions.end()) continue;
-    files.push_back({entry.path(), entry.path().stem().string()});
+    files.push_back({entry.path(), shown_in_line(entry.path().stem().string())});
   }
   if (error) {
     throw DataError(folder, "cannot be listed (" + error.message() + ")", "a readable folder");

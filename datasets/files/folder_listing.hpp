@@ -12,7 +12,7 @@ namespace mosbench {
 
 struct StemFile {
   std::filesystem::path file;
-  std::string stem;  ///< file name without extension
+  std::string stem;  ///< file name without extension, as `shown_in_line`: what results call it
 };
 
 /// Returns the value of a stem of digits ("000017", a time stamp), or nothing.

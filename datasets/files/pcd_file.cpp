@@ -7,6 +7,7 @@
 #include "datasets/files/errors.hpp"
 #include "datasets/files/files.hpp"
 #include "datasets/files/point_records.hpp"
+#include "datasets/files/point_times.hpp"
 
 namespace mosbench {
 namespace {
@@ -61,6 +62,14 @@ std::optional<std::vector<std::uint32_t>> labels_of(const PcdRecords& records,
   return labels;
 }
 
+std::vector<double> times_of(const PcdRecords& records, const std::filesystem::path& file) {
+  const CloudHead& head = records.cloud.head;
+  if (head.points() == 0) return {};
+  const CloudField* field = find_time_field(head);
+  if (field == nullptr) throw DataError(file, "the points have no times", kTimeFields);
+  return numbers_of(head, *field, records.bytes(), file);
+}
+
 }  // namespace
 
 PcdHeader read_pcd_header(const std::filesystem::path& file) {
@@ -70,9 +79,10 @@ PcdHeader read_pcd_header(const std::filesystem::path& file) {
   return header;
 }
 
-PcdScan read_pcd_scan(const std::filesystem::path& file) {
+PcdScan read_pcd_scan(const std::filesystem::path& file, bool timed) {
   const PcdRecords records = read_records(file);
-  return {points_of(records, file), labels_of(records, file)};
+  return {points_of(records, file), labels_of(records, file),
+          timed ? times_of(records, file) : std::vector<double>()};
 }
 
 std::vector<Point> read_pcd(const std::filesystem::path& file) {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "datasets/files/errors.hpp"
+#include "datasets/files/point_times.hpp"
 #include "datasets/files/quaternion.hpp"
 #include "datasets/files/text.hpp"
 
@@ -19,6 +20,9 @@ namespace {
 
 constexpr std::uint64_t kMostPoints = 1ULL << 31;
 constexpr std::uint64_t kMostValues = 1ULL << 16;  // bytes of a point, numbers of a line
+constexpr std::size_t kShownBytes = 40;
+constexpr std::array<std::string_view, 10> kKnownLines = {
+    "VERSION", "FIELDS", "SIZE", "TYPE", "COUNT", "WIDTH", "HEIGHT", "VIEWPOINT", "POINTS", "DATA"};
 
 class PcdHeaderParser {
  public:
@@ -33,7 +37,9 @@ class PcdHeaderParser {
     const std::uint64_t points = number_of("POINTS", kMostPoints);
     if (width * height != points) fail("POINTS is not WIDTH * HEIGHT", "their product");
     header_.points = static_cast<std::size_t>(points);
-    header_.has_labels = std::ranges::find(lines_["FIELDS"], "label") != lines_["FIELDS"].end();
+    const auto& fields = lines_["FIELDS"];
+    header_.has_labels = std::ranges::find(fields, "label") != fields.end();
+    header_.has_times = std::ranges::any_of(fields, is_time_field);
     if (lines_.contains("VIEWPOINT")) header_.viewpoint = viewpoint();
     header_.storage = storage();
     return header_;
@@ -47,18 +53,32 @@ class PcdHeaderParser {
   /// Reads lines up to and with DATA, which ends the header.
   void read_lines() {
     std::size_t at = 0;
-    while (at < bytes_.size()) {
+    for (std::size_t number = 1; at < bytes_.size() && !lines_.contains("DATA"); ++number) {
       const std::size_t end = std::min(bytes_.find('\n', at), bytes_.size());
-      const auto words = split_at_blanks(bytes_.substr(at, end - at));
+      read_line(bytes_.substr(at, end - at), number);
       at = std::min(end + 1, bytes_.size());
-      if (words.empty() || words.front().starts_with('#')) continue;
-      lines_[words.front()].assign(words.begin() + 1, words.end());
-      if (words.front() == "DATA") break;
     }
     header_.body_offset_bytes = at;
     if (!lines_.contains("DATA")) {
       fail("has no header that ends with DATA", "a PCD file, version 0.7");
     }
+  }
+
+  /// Refuses what PCL's reader would take otherwise: it ends the header at a line that it does not
+  /// know, even a blank one, and takes the last of two equal ones.
+  void read_line(std::string_view line, std::size_t number) {
+    if (line.empty()) return;
+    const auto words = split_at_blanks(line);
+    if (!words.empty() && words.front().starts_with('#')) return;
+    if (words.empty() || std::ranges::find(kKnownLines, words.front()) == kKnownLines.end()) {
+      throw DataError(file_, number,
+                      quoted(line.substr(0, kShownBytes)) + " is no line of a PCD header",
+                      "a PCD file, version 0.7");
+    }
+    if (lines_.contains(words.front())) {
+      throw DataError(file_, number, std::string(words.front()) + " is there twice", "once");
+    }
+    lines_[words.front()].assign(words.begin() + 1, words.end());
   }
 
   const std::vector<std::string_view>& words_of(std::string_view key, std::size_t count) const {

@@ -20,6 +20,7 @@ struct PcdHeader {
   std::size_t body_offset_bytes = 0;  ///< where the line after DATA starts
   PcdStorage storage = PcdStorage::kAscii;
   bool has_labels = false;        ///< there is a field "label"
+  bool has_times = false;         ///< there is a field of `is_time_field`
   std::optional<Pose> viewpoint;  ///< map_from_sensor, when the header has one
 };
 

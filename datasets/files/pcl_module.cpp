@@ -29,6 +29,7 @@ std::string unpack(std::string_view bytes, std::size_t body_offset_bytes, PclClo
   if (reader.readHeader(header, read, origin, orientation, version, storage, offset_bytes) < 0) {
     return "PCL does not read its header";
   }
+  if (read.fields.empty()) return "PCL finds no fields in its header";
   int result = 0;
   if (storage == kAscii) {
     std::istringstream body(std::string(bytes.substr(body_offset_bytes)));

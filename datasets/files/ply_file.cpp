@@ -8,6 +8,7 @@
 
 #include "datasets/files/errors.hpp"
 #include "datasets/files/point_records.hpp"
+#include "datasets/files/point_times.hpp"
 #include "datasets/files/text.hpp"
 
 namespace mosbench {
@@ -139,6 +140,37 @@ class PlyHeadParser {
   bool has_format_ = false, has_vertices_ = false, in_vertices_ = false, other_elements_ = false;
 };
 
+using Row = std::vector<std::string_view>;
+
+/// Calls `visit(point, row)` for the row of each point of an ascii body.
+template <typename Visit>
+void for_each_row(const CloudHead& head, std::string_view body, const std::filesystem::path& file,
+                  Visit&& visit) {
+  std::size_t at = 0;
+  for (std::size_t point = 0; point < head.width; ++point) {
+    if (at >= body.size()) {
+      throw DataError(file, std::to_string(point) + " rows of points", std::to_string(head.width));
+    }
+    const std::size_t end = std::min(body.find('\n', at), body.size());
+    visit(point, split_at_blanks(body.substr(at, end - at)));
+    at = end + 1;
+  }
+}
+
+template <typename Number>
+Number number_in(const Row& row, std::size_t column, std::size_t point, const CloudHead& head,
+                 const std::filesystem::path& file) {
+  Number value{};
+  const std::string_view word = column < row.size() ? row[column] : "";
+  const auto [stop, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (error != std::errc{} || stop != word.data() + word.size() ||
+      row.size() != head.fields.size()) {
+    throw DataError(file, "point " + std::to_string(point) + " is no row of numbers",
+                    std::to_string(head.fields.size()) + " of them");
+  }
+  return value;
+}
+
 /// Returns the columns of x, y, z and intensity in a row; one past the last when there is none.
 std::array<std::size_t, 4> columns_of(const CloudHead& head, const std::filesystem::path& file) {
   std::array<std::size_t, 4> columns{};
@@ -158,28 +190,14 @@ std::vector<Point> parse_ascii(const CloudHead& head, std::string_view body,
                                const std::filesystem::path& file) {
   const auto columns = columns_of(head, file);
   std::vector<Point> points;
-  std::size_t at = 0;
-  while (points.size() < head.width) {
-    if (at >= body.size()) {
-      throw DataError(file, std::to_string(points.size()) + " rows of points",
-                      std::to_string(head.width));
-    }
-    const std::size_t end = std::min(body.find('\n', at), body.size());
-    const auto words = split_at_blanks(body.substr(at, end - at));
-    at = end + 1;
+  for_each_row(head, body, file, [&](std::size_t point, const Row& row) {
     std::array<float, 4> values{};
     for (std::size_t i = 0; i < values.size(); ++i) {
       if (columns[i] == head.fields.size()) continue;
-      const std::string_view word = columns[i] < words.size() ? words[columns[i]] : "";
-      const auto [stop, error] = std::from_chars(word.data(), word.data() + word.size(), values[i]);
-      if (error != std::errc{} || stop != word.data() + word.size() ||
-          words.size() != head.fields.size()) {
-        throw DataError(file, "point " + std::to_string(points.size()) + " is no row of numbers",
-                        std::to_string(head.fields.size()) + " of them");
-      }
+      values[i] = number_in<float>(row, columns[i], point, head, file);
     }
     points.push_back({values[0], values[1], values[2], values[3]});
-  }
+  });
   return points;
 }
 
@@ -194,9 +212,24 @@ std::vector<Point> parse_ply(std::string_view bytes, const std::filesystem::path
   return points_of(head.vertices, bytes, file);
 }
 
-std::size_t ply_point_count(std::string_view head, std::uintmax_t file_bytes,
-                            const std::filesystem::path& file) {
-  return PlyHeadParser(head, file_bytes, file).run().vertices.points();
+std::vector<double> parse_ply_times(std::string_view bytes, const std::filesystem::path& file) {
+  const auto [head, ascii] = PlyHeadParser(bytes, bytes.size(), file).run();
+  const CloudField* field = find_time_field(head);
+  if (field == nullptr) throw DataError(file, "the points have no times", kTimeFields);
+  if (!ascii) return numbers_of(head, *field, bytes, file);
+  const auto column = static_cast<std::size_t>(field - head.fields.data());
+  std::vector<double> times;
+  for_each_row(head, bytes.substr(head.records_at_bytes), file,
+               [&](std::size_t point, const Row& row) {
+                 times.push_back(number_in<double>(row, column, point, head, file));
+               });
+  return times;
+}
+
+PlySummary parse_ply_summary(std::string_view head, std::uintmax_t file_bytes,
+                             const std::filesystem::path& file) {
+  const CloudHead vertices = PlyHeadParser(head, file_bytes, file).run().vertices;
+  return {vertices.points(), find_time_field(vertices) != nullptr};
 }
 
 }  // namespace mosbench

@@ -15,9 +15,19 @@ namespace mosbench {
 /// DataError.
 std::vector<Point> parse_ply(std::string_view bytes, const std::filesystem::path& file);
 
-/// Returns the number of points by the header in `head`, the start of a file of `file_bytes` bytes,
-/// and checks it against that size; throws as `parse_ply`.
-std::size_t ply_point_count(std::string_view head, std::uintmax_t file_bytes,
-                            const std::filesystem::path& file);
+/// Returns one number per point as stored, of the property that `find_time_field` names. Throws as
+/// `parse_ply`, and when there is none.
+std::vector<double> parse_ply_times(std::string_view bytes, const std::filesystem::path& file);
+
+/// What the header of a PLY file says of its points.
+struct PlySummary {
+  std::size_t points = 0;
+  bool has_times = false;
+};
+
+/// Reads the header in `head`, the start of a file of `file_bytes` bytes, and checks it against
+/// that size; throws as `parse_ply`.
+PlySummary parse_ply_summary(std::string_view head, std::uintmax_t file_bytes,
+                             const std::filesystem::path& file);
 
 }  // namespace mosbench

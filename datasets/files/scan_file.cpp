@@ -8,6 +8,7 @@
 #include "datasets/files/files.hpp"
 #include "datasets/files/pcd_file.hpp"
 #include "datasets/files/ply_file.hpp"
+#include "datasets/files/point_times.hpp"
 
 namespace mosbench {
 namespace {
@@ -60,18 +61,36 @@ std::vector<Point> read_scan(const std::filesystem::path& file, std::size_t bin_
   return read_bin(file, columns_of(file, bin_columns), std::move(reused));
 }
 
+TimedScan read_timed_scan(const std::filesystem::path& file, std::size_t bin_columns,
+                          std::optional<std::int64_t> stamp_ns) {
+  if (has_extension(file, ".pcd")) {
+    PcdScan scan = read_pcd_scan(file, true);
+    return {std::move(scan.points), times_after_stamp_ns(scan.times, stamp_ns, file)};
+  }
+  const std::string bytes = read_file(file);
+  if (has_extension(file, ".ply")) {
+    return {parse_ply(bytes, file),
+            times_after_stamp_ns(parse_ply_times(bytes, file), stamp_ns, file)};
+  }
+  const std::size_t columns = columns_of(file, bin_columns);
+  return {parse_bin(bytes, columns, file), parse_bin_times(bytes, columns, file)};
+}
+
 ScanHead read_scan_head(const std::filesystem::path& file, std::size_t bin_columns) {
   if (has_extension(file, ".pcd")) {
     const PcdHeader header = read_pcd_header(file);
-    return {header.points, header.has_labels};
+    return {header.points, header.has_labels, header.has_times};
   }
   if (has_extension(file, ".ply")) {
-    return {ply_point_count(read_head(file, "end_header"), size_of(file), file)};
+    const PlySummary summary =
+        parse_ply_summary(read_head(file, "end_header"), size_of(file), file);
+    return {.points = summary.points, .has_times = summary.has_times};
   }
   const std::uintmax_t size_bytes = size_of(file);
   const std::size_t columns = columns_of(file, bin_columns);
   check_bin_size(size_bytes, columns, file);
-  return {static_cast<std::size_t>(size_bytes) / (columns * sizeof(float))};
+  return {.points = static_cast<std::size_t>(size_bytes) / (columns * sizeof(float)),
+          .has_times = columns > 4};
 }
 
 }  // namespace mosbench

@@ -27,10 +27,20 @@ std::vector<StemFile> list_scans(const std::filesystem::path& sequence_folder);
 std::vector<Point> read_scan(const std::filesystem::path& file, std::size_t bin_columns = 4,
                              std::vector<Point> reused = {});
 
+struct TimedScan {
+  std::vector<Point> points;
+  std::vector<std::int64_t> times_ns;  ///< of each point after the scan's stamp
+};
+/// Reads a scan whose points have times: of a .bin file in seconds after x y z intensity, of a .pcd
+/// or .ply file in the field `find_time_field`, see `times_after_stamp_ns`. Throws DataError.
+TimedScan read_timed_scan(const std::filesystem::path& file, std::size_t bin_columns,
+                          std::optional<std::int64_t> stamp_ns);
+
 /// What the size or the header of a scan file says.
 struct ScanHead {
   std::size_t points = 0;
   bool has_labels = false;  ///< the points have a field "label"
+  bool has_times = false;   ///< the points have times, or a fifth column that may be
 };
 
 /// Reads no more than the header of a scan. Throws DataError.

@@ -1,27 +1,24 @@
 #include "datasets/layouts/convert.hpp"
 
-#include <system_error>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <vector>
 
 #include "datasets/files/errors.hpp"
 #include "datasets/files/files.hpp"
 #include "datasets/files/folder_listing.hpp"
+#include "datasets/files/folder_lock.hpp"
 #include "datasets/layouts/helimos_layout.hpp"
 #include "datasets/layouts/layout.hpp"
 #include "datasets/layouts/simulated_origin.hpp"
+#include "datasets/layouts/unfinished_conversion.hpp"
+#include "datasets/sequence/fingerprint.hpp"
+#include "datasets/sequence/pose_source.hpp"
 
 namespace mosbench {
 namespace {
 
 namespace fs = std::filesystem;
-
-void refuse_filled(const fs::path& out) {
-  std::error_code error;
-  fs::directory_iterator entries(out, error);
-  if (error == std::errc::no_such_file_or_directory) return;
-  if (error) throw DataError(out, "cannot be listed", "a folder for the data set");
-  if (entries == fs::directory_iterator()) return;
-  throw UsageError(out.string() + ": holds files already, expected an empty folder in --out");
-}
 
 HelimosSplits split_numbers(const Dataset& dataset) {
   HelimosSplits splits;
@@ -37,15 +34,48 @@ HelimosSplits split_numbers(const Dataset& dataset) {
   return splits;
 }
 
-}  // namespace
+std::vector<fs::path> sequence_folders(const Dataset& dataset, const Layout& layout) {
+  std::vector<fs::path> folders;
+  for (std::size_t i = 0; i < dataset.sequences.size(); ++i) {
+    folders.push_back(layout.writer->folder(dataset.sequences[i]->name(), i));
+  }
+  return folders;
+}
 
-void convert(const Dataset& dataset, const ConvertOptions& options,
-             const std::function<void(std::size_t done, std::size_t total)>& progress) {
-  const Layout& layout = layout_of(options.layout);
-  if (!layout.writer) throw UsageError("layout " + std::string(layout.name) + " is read only");
-  refuse_filled(options.out);
-  std::size_t total = 0;
-  for (const auto& sequence : dataset.sequences) total += sequence->size();
+/// Returns every file that may be written, named from the root.
+std::set<fs::path> expected_files(const Dataset& dataset, const std::vector<fs::path>& folders) {
+  std::set<fs::path> files = {kSimulatedMarker};
+  for (std::size_t i = 0; i < folders.size(); ++i) {
+    for (const char* name :
+         {"times.txt", "calib.txt", "poses.txt", "indices.csv", "bag.bag", kPoseOriginFile}) {
+      files.insert(folders[i] / name);
+    }
+    for (const char* split : {"train.txt", "val.txt", "test.txt"}) {
+      files.insert(folders[i].parent_path() / split);
+    }
+    const Sequence& sequence = *dataset.sequences[i];
+    for (std::size_t k = 0; k < sequence.size(); ++k) {
+      files.insert(folders[i] / "velodyne" / (sequence.stem(k) + ".bin"));
+      files.insert(folders[i] / "labels" / (sequence.stem(k) + ".label"));
+    }
+  }
+  return files;
+}
+
+/// Says what is converted to what.
+std::string statement_of(const Dataset& dataset, const ConvertOptions& options) {
+  nlohmann::ordered_json json = {{"layout", to_string(options.layout)},
+                                 {"as_bag", options.writing.as_bag},
+                                 {"compression", options.writing.compression}};
+  for (const auto& sequence : dataset.sequences) {
+    json["sequences"].push_back({{"name", sequence->name()},
+                                 {"reading", sequence->reading()},
+                                 {"file_stamp", file_stamp(*sequence)}});
+  }
+  return json.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+void write_shared_files(const Dataset& dataset, const ConvertOptions& options) {
   if (auto origin = simulated_origin(dataset.root)) {
     origin->layout = options.layout;
     write_file_atomic(options.out / kSimulatedMarker, format_simulated_origin(*origin));
@@ -53,20 +83,56 @@ void convert(const Dataset& dataset, const ConvertOptions& options,
   if (options.layout == DatasetKind::kHelimos) {
     write_helimos_splits(options.out, split_numbers(dataset));
   }
+}
+
+void convert_sequence(const Sequence& sequence, SequenceWriter& writer,
+                      const std::function<void()>& advance) {
+  Frame frame;
+  for (std::size_t k = 0; k < sequence.size(); ++k) {
+    sequence.read(k, frame);
+    writer.write(k, frame);
+    advance();
+  }
+  writer.finish();
+}
+
+}  // namespace
+
+void convert(const Dataset& dataset, const ConvertOptions& options,
+             const std::function<void(std::size_t done, std::size_t total)>& progress) {
+  const Layout& layout = layout_of(options.layout);
+  if (!layout.writer) throw UsageError("layout " + std::string(layout.name) + " is read only");
+  const std::vector<fs::path> folders = sequence_folders(dataset, layout);
+  const FolderLock lock(options.out);
+  const UnfinishedConversion unfinished(options.out, statement_of(dataset, options),
+                                        expected_files(dataset, folders));
+  std::size_t total = 0;
+  for (const auto& sequence : dataset.sequences) total += sequence->size();
   std::size_t done = 0;
-  for (std::size_t i = 0; i < dataset.sequences.size(); ++i) {
-    const Sequence& sequence = *dataset.sequences[i];
-    WriteOptions writing = options.writing;
-    writing.scans = sequence.size();
-    const auto writer =
-        layout.writer->open(options.out / layout.writer->folder(sequence.name(), i), writing);
-    Frame frame;
-    for (std::size_t k = 0; k < sequence.size(); ++k) {
-      sequence.read(k, frame);
-      writer->write(k, frame);
-      if (progress) progress(++done, total);
+  const auto advance = [&] {
+    if (progress) progress(++done, total);
+  };
+  try {
+    write_shared_files(dataset, options);
+    for (std::size_t i = 0; i < dataset.sequences.size(); ++i) {
+      const Sequence& sequence = *dataset.sequences[i];
+      const fs::path folder = options.out / folders[i];
+      WriteOptions writing = options.writing;
+      writing.scans = sequence.size();
+      const fs::path pose_file = folder / last_file_of(writing);
+      // Finished by a conversion that was killed.
+      if (is_there(pose_file) && is_there(folder / kPoseOriginFile)) {
+        for (std::size_t k = 0; k < sequence.size(); ++k) advance();
+      } else {
+        if (options.before_sequence) options.before_sequence(i);
+        convert_sequence(sequence, *layout.writer->open(folder, writing), advance);
+        write_pose_origin(pose_file, pose_origin_of(sequence.reading()));
+      }
     }
-    writer->finish();
+    unfinished.finish();
+  } catch (...) {
+    unfinished.give_up();
+    throw;
   }
 }
 

@@ -14,12 +14,15 @@ struct ConvertOptions {
   DatasetKind layout = DatasetKind::kSemanticKitti;  ///< one that `simulate` writes, too
   WriteOptions writing = {};
   std::filesystem::path out;  ///< becomes the data set's root
+  /// Called with the position of a sequence before its first scan is read, if it is to be written.
+  std::function<void(std::size_t sequence)> before_sequence = {};
 };
 
 /// Writes every frame of a data set in the layout, with the LiDAR's own poses, and for HeLiMOS the
-/// splits that the source has. Simulated data stay marked as such. Throws UsageError when `out` is
-/// not empty, the layout is only read, or it has no room for a sequence. `progress` is called with
-/// the scans done and to do.
+/// splits that the source has. Simulated data stay marked as such. After a kill the same conversion
+/// goes on with the first sequence that is not finished. Throws UsageError when `out` holds
+/// anything else, the layout is only read, or it has no room for a sequence. `progress` is called
+/// with the scans done and to do.
 void convert(const Dataset& dataset, const ConvertOptions& options,
              const std::function<void(std::size_t done, std::size_t total)>& progress = {});
 

@@ -1,12 +1,19 @@
 #include "datasets/layouts/dataset.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <system_error>
 #include <utility>
 
 #include "datasets/files/errors.hpp"
+#include "datasets/files/files.hpp"
+#include "datasets/layouts/folder_search.hpp"
 #include "datasets/layouts/layout.hpp"
 #include "datasets/layouts/simulated_origin.hpp"
+#include "datasets/layouts/unfinished_conversion.hpp"
+#include "datasets/sequence/azimuth_times.hpp"
+#include "datasets/sequence/scan_deskewer.hpp"
 
 namespace mosbench {
 namespace {
@@ -65,15 +72,72 @@ struct ListedSequences {
 ListedSequences list_sequences(const std::filesystem::path& path, const OpenOptions& options,
                                std::vector<std::string>& remarks) {
   std::error_code error;
-  const std::filesystem::directory_iterator listing(path, error);
+  if (!is_bag(path)) {
+    const std::filesystem::directory_iterator listing(path, error);
+  }
   if (error) {
     throw DataError(path, "is no folder that can be listed (" + error.message() + ")",
-                    "a data set's root or one sequence folder");
+                    "a data set's root, one sequence folder or a .bag file");
+  }
+  if (is_unfinished_conversion(path)) {
+    throw DataError(path, "holds part of a data set (mosbench convert was stopped)",
+                    "the same command to be run to its end");
   }
   const Layout& layout = options.kind ? layout_of(*options.kind) : recognise(path, remarks);
   auto found = layout.list(path);
   if (found.empty()) throw DataError(path, "holds no sequence", std::string(layout.expected));
   return {layout, keep_named(std::move(found), options.sequences)};
+}
+
+/// A bag says whether its points have times, which only it may have without --point-times.
+bool says_undistortion(const Sequence& sequence) {
+  return std::ranges::any_of(sequence.reading(),
+                             [](const auto& line) { return line.first == "undistortion"; });
+}
+
+/// The sequence with the times of its points, and deskewed by them unless its poses are found
+/// later.
+std::unique_ptr<Sequence> with_point_times(std::unique_ptr<Sequence> sequence,
+                                           const ReadingOptions& reading) {
+  if (!reading.undistorts()) return sequence;
+  if (reading.deskew && !reading.point_times && !says_undistortion(*sequence)) {
+    throw UsageError("--deskew: the points of " + sequence->name() +
+                     " have no times, expected --point-times column or azimuth");
+  }
+  if (reading.point_times == PointTimes::kAzimuth) {
+    sequence = std::make_unique<AzimuthTimes>(std::move(sequence));
+  }
+  const Deskew by = reading.deskew.value_or(Deskew::kPoses);
+  const bool has_times = reading.point_times || by == Deskew::kVelocity;
+  if (reading.poses_by_odometry || !has_times) return sequence;
+  return std::make_unique<DeskewedSequence>(std::move(sequence), by);
+}
+
+/// The file of a sequence's poses in a folder as `mosbench odometry` and `run --odometry` write it.
+std::filesystem::path pose_file_in(const std::filesystem::path& folder, const std::string& name) {
+  for (const std::string& file : {name + ".txt", name + ".tum", name + "/poses.txt"}) {
+    if (is_there(folder / file)) return folder / file;
+  }
+  throw DataError(folder, "holds no poses of sequence " + name,
+                  fmt::format("{0}.txt, {0}.tum or {0}/poses.txt there, as mosbench odometry and "
+                              "mosbench run --odometry write them",
+                              name));
+}
+
+ReadingOptions reading_of(const SequenceFolder& sequence, ReadingOptions reading) {
+  std::error_code ignored;
+  if (reading.poses && std::filesystem::is_directory(*reading.poses, ignored)) {
+    reading.poses = pose_file_in(*reading.poses, sequence.name);
+  }
+  return reading;
+}
+
+void check_pose_file(const ReadingOptions& reading, const std::vector<SequenceFolder>& folders) {
+  std::error_code ignored;
+  if (!reading.poses || folders.size() == 1) return;
+  if (std::filesystem::is_directory(*reading.poses, ignored)) return;
+  throw UsageError("--poses is for one sequence, not for " + joined(folders) +
+                   ", expected one name in --sequences, or a folder with a file for each");
 }
 
 }  // namespace
@@ -92,12 +156,10 @@ Dataset open_dataset(const std::filesystem::path& path, const OpenOptions& optio
   const auto [layout, folders] = list_sequences(path, options, dataset.remarks);
   dataset.kind = layout.kind;
   dataset.root = path;
-  if (options.reading.poses && folders.size() != 1) {
-    throw UsageError("--poses is for one sequence, not for " + joined(folders) +
-                     ", expected one name in --sequences");
-  }
+  check_pose_file(options.reading, folders);
   for (const SequenceFolder& folder : folders) {
-    dataset.sequences.push_back(layout.open(folder, options.reading));
+    const ReadingOptions reading = reading_of(folder, options.reading);
+    dataset.sequences.push_back(with_point_times(layout.open(folder, reading), reading));
   }
   if (layout.splits != nullptr) {
     dataset.splits = layout.splits(folders, dataset.sequences, dataset.remarks);

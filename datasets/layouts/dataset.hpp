@@ -73,12 +73,13 @@ std::vector<SequenceFolder> find_sequences(const std::filesystem::path& path,
                                            const OpenOptions& options,
                                            std::optional<DatasetKind>& kind);
 
-/// Opens a data set's root or one sequence folder, and of it only the sequences kept. A kind that
-/// is not given is recognised, in this order: indices.csv or sequence_N folders (doals); folders
-/// named after HeLiMOS's sensors; velodyne_poses_kitti.txt (apollo); pcd/ next to gt_poses.txt
-/// (moe) or gt_cloud.pcd (kth); "sipailou" or "M-detector" in a folder name of the path; else
-/// semantickitti. A remark says so. Throws DataError when nothing usable is there, UsageError for a
-/// sequence name that does not exist or a pose file given for several sequences.
+/// Opens a data set's root, one sequence folder or one bag, and of it only the sequences kept. A
+/// kind that is not given is recognised, in this order: a bag, indices.csv or sequence_N folders
+/// (doals); folders named after HeLiMOS's sensors; velodyne_poses_kitti.txt (apollo); pcd/ next to
+/// gt_poses.txt (moe) or gt_cloud.pcd (kth); "sipailou" or "M-detector" in a folder name of the
+/// path; else semantickitti. A remark says so. Throws DataError when nothing usable is there,
+/// UsageError for a sequence name that does not exist or a pose file given for several sequences.
+/// For poses in a folder each sequence takes NAME.txt, NAME.tum or NAME/poses.txt.
 Dataset open_dataset(const std::filesystem::path& path, const OpenOptions& options);
 
 }  // namespace mosbench

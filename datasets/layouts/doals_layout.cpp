@@ -32,6 +32,7 @@ void list_scene(const std::filesystem::path& scene, const std::string& prefix,
 
 /// Lists in alphabetical order, which for the published scenes is that of the published numbers.
 std::vector<SequenceFolder> list_doals(const std::filesystem::path& path) {
+  if (is_bag(path)) return {{path.stem().string(), path, ""}};
   if (scan_folder_of(path) || !list_by_stem(path, {".bag"}).empty())
     return {sequence_folder(folder_name(path), path)};
   std::vector<SequenceFolder> sequences;
@@ -67,14 +68,17 @@ std::vector<Split> doals_splits(const std::vector<SequenceFolder>& folders,
 }
 
 std::optional<std::string> recognise_doals(const std::filesystem::path& path) {
+  if (is_bag(path)) return "it is a bag";
   const auto sequences = list_doals(path);
   for (const SequenceFolder& sequence : sequences) {
     if (is_there(sequence.folder / "indices.csv")) return "indices.csv is there";
   }
-  if (sequences.empty() || !is_sequence_name(folder_name(sequences.front().folder))) {
-    return std::nullopt;
+  if (sequences.empty()) return std::nullopt;
+  if (is_sequence_name(folder_name(sequences.front().folder))) {
+    return "sequence_N folders are there";
   }
-  return "sequence_N folders are there";
+  if (!list_by_stem(path, {".bag"}).empty()) return "a bag is there";
+  return std::nullopt;
 }
 
 /// Returns the name of a DOALS sequence unchanged; another name becomes a scene with a sequence_1.
@@ -118,7 +122,7 @@ const Layout& doals_layout() {
                 .published = published_counts()},
       .expected =
           "<scene>/sequence_N with a bag, or velodyne/ or binFiles/ and poses.txt, and "
-          "indices.csv each (DOALS), or one such sequence folder",
+          "indices.csv each (DOALS), or one such sequence folder, or a bag",
       .list = list_doals,
       .open = open_doals,
       .splits = doals_splits,

@@ -8,6 +8,7 @@
 #include "datasets/files/errors.hpp"
 #include "datasets/files/files.hpp"
 #include "datasets/files/scan_file.hpp"
+#include "datasets/layouts/folder_search.hpp"
 #include "datasets/rosbag/bag_sequence.hpp"
 #include "datasets/sequence/folder_sequence.hpp"
 
@@ -57,6 +58,7 @@ constexpr std::array<DoalsPublished, 8> kPublished = {{
 
 std::unique_ptr<Sequence> open_scans(std::string name, const std::filesystem::path& folder,
                                      const ReadingOptions& options) {
+  if (is_bag(folder)) return std::make_unique<BagSequence>(std::move(name), folder, options);
   if (!scan_folder_of(folder)) {
     if (const auto bag = bag_of(folder)) {
       return std::make_unique<BagSequence>(std::move(name), *bag, options);
@@ -79,7 +81,7 @@ const DoalsPublished* find_doals_published(std::string_view scene, std::string_v
 DoalsSequence::DoalsSequence(std::string name, const std::filesystem::path& folder,
                              const DoalsPublished* published, const ReadingOptions& options)
     : SequenceAround(open_scans(std::move(name), folder, options)),
-      indices_file_(folder / "indices.csv") {
+      indices_file_((is_bag(folder) ? folder.parent_path() : folder) / "indices.csv") {
   open_truth(published);
 }
 
@@ -89,7 +91,11 @@ void DoalsSequence::open_truth(const DoalsPublished* published) {
     recording.remarks.push_back("no indices.csv: there is no truth");
     return;
   }
-  const auto rows = read_indices(indices_file_);
+  std::vector<IndicesRow> rows = read_indices(indices_file_);
+  std::erase_if(rows, [&](const IndicesRow& row) {
+    return std::ranges::find(recording.left_out, row.stamp_ns, &ScanEntry::stamp_ns) !=
+           recording.left_out.end();
+  });
   const bool has_stamps = scan(0).stamp_ns.has_value();
   const auto scans = has_stamps ? scans_by_stamp(rows) : scans_by_list(rows, published);
   if (!has_stamps) {

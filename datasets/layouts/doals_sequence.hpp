@@ -30,11 +30,12 @@ std::span<const DoalsPublished> doals_published();
 /// Returns the published sequence in `scene`/`sequence`, or null.
 const DoalsPublished* find_doals_published(std::string_view scene, std::string_view sequence);
 
-/// One DOALS sequence: its bag, or scans exported to velodyne/ or binFiles/ in the raw firing order
-/// with no point dropped and poses.txt; indices.csv with the moving points of the labelled scans.
-/// With both, the exported scans are read. Truth is kMovingLabel for listed points and kStaticLabel
-/// for all others. A labelled scan is identified by its exact stamp; without stamps by the
-/// published list, if the recording has the published length.
+/// One DOALS sequence: its folder with the bag, or the bag, or scans exported to velodyne/ or
+/// binFiles/ in the raw firing order with no point dropped and poses.txt; indices.csv with the
+/// moving points of the labelled scans. With both, the exported scans are read. Truth is
+/// kMovingLabel for listed points and kStaticLabel for all others. A labelled scan is identified by
+/// its exact stamp; without stamps by the published list, if the recording has the published
+/// length.
 class DoalsSequence : public SequenceAround {
  public:
   /// `published` is null for a recording that is none of the published ones. Throws DataError, also

@@ -19,6 +19,11 @@ std::string folder_name(const std::filesystem::path& path) {
   return without_slash(path).filename().string();
 }
 
+bool is_bag(const std::filesystem::path& path) {
+  std::error_code ignored;
+  return path.extension() == ".bag" && std::filesystem::is_regular_file(path, ignored);
+}
+
 std::filesystem::path parent_folder(const std::filesystem::path& path) {
   return without_slash(path).parent_path();
 }

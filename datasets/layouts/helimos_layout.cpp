@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <span>
 
 #include "datasets/files/errors.hpp"
@@ -66,15 +67,22 @@ std::set<std::string> stems_of_split(const Sequence& sequence, const std::filesy
   for (std::size_t i = 0; i < sequence.size(); ++i) {
     if (const auto number = stem_number(sequence.stem(i))) scan_of_number.emplace(*number, i);
   }
+  std::set<std::uint64_t> without_pose;
+  for (const ScanEntry& scan : sequence.recording().left_out) {
+    if (const auto number = stem_number(scan.stem)) without_pose.insert(*number);
+  }
   const std::uint64_t last = scan_of_number.empty() ? 0 : scan_of_number.rbegin()->first;
   std::set<std::string> stems;
   std::size_t beyond = 0;
+  std::size_t poseless = 0;
   std::size_t unlabelled = 0;
   for (const std::uint64_t number : read_split(file)) {
     const auto scan = scan_of_number.find(number);
     if (scan != scan_of_number.end()) {
       stems.insert(sequence.stem(scan->second));
       if (!sequence.has_truth(scan->second)) ++unlabelled;
+    } else if (without_pose.contains(number)) {
+      ++poseless;
     } else if (number > last && number - last <= kLongestTail) {
       ++beyond;
     } else {
@@ -89,6 +97,7 @@ std::set<std::string> stems_of_split(const Sequence& sequence, const std::filesy
                                   file.filename().string(), fault));
   };
   remark(unlabelled, "have no label and do not count");
+  remark(poseless, "have no pose and are left out");
   remark(beyond, "lie after the end of the recording and are left out");
   return stems;
 }

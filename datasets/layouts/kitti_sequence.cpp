@@ -9,6 +9,7 @@
 #include "datasets/files/files.hpp"
 #include "datasets/files/folder_listing.hpp"
 #include "datasets/files/pcd_file.hpp"
+#include "datasets/files/point_times.hpp"
 
 namespace mosbench {
 
@@ -31,8 +32,10 @@ void KittiSequence::pair_labels() {
   Recording& recording = mutable_recording();
   std::unordered_map<std::string, std::size_t> scan_of_stem;
   for (std::size_t k = 0; k < size(); ++k) scan_of_stem.emplace(stem(k), k);
+  label_files_.resize(size());
   for (StemFile& label : list_by_stem(label_folder_, {layout_.label_extension})) {
     const auto scan = scan_of_stem.find(label.stem);
+    if (scan == scan_of_stem.end() && is_left_out(recording, label.stem)) continue;
     if (scan == scan_of_stem.end()) {
       throw DataError(label.file, "belongs to no scan", "a scan of the same name");
     }
@@ -40,6 +43,7 @@ void KittiSequence::pair_labels() {
       layout_.check_size(size_of(label.file), point_count(scan->second), label.file);
     }
     recording.scans[scan->second].has_truth = true;
+    label_files_[scan->second] = label.file;
     recording.truth_files.push_back(std::move(label.file));
   }
   if (recording.truth_files.size() < size()) {
@@ -52,19 +56,19 @@ void KittiSequence::read(std::size_t scan_index, Frame& frame) const {
   if (!has_truth(scan_index) || !label_folder_.empty()) {
     return FolderSequence::read(scan_index, frame);
   }
-  PcdScan scan = read_pcd_scan(*scan_file(scan_index));
+  const std::filesystem::path& file = *scan_file(scan_index);
+  PcdScan scan = read_pcd_scan(file, times_in_column());
   check_count(scan_index, scan.points.size());
   describe(scan_index, frame);
   frame.points = std::move(scan.points);
+  frame.point_times_ns = times_after_stamp_ns(scan.times, frame.stamp_ns, file);
   frame.truth = std::move(scan.labels);
 }
 
 std::vector<std::uint32_t> KittiSequence::read_truth(std::size_t scan_index) const {
   if (!has_truth(scan_index)) refuse_truth(scan_index);
   if (label_folder_.empty()) return read_pcd_labels(*scan_file(scan_index));
-  std::filesystem::path file = label_folder_ / stem(scan_index);
-  file += layout_.label_extension;
-  return layout_.read_labels(file, point_count(scan_index));
+  return layout_.read_labels(label_files_[scan_index], point_count(scan_index));
 }
 
 }  // namespace mosbench

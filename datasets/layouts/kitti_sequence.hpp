@@ -42,7 +42,8 @@ class KittiSequence : public FolderSequence {
   void pair_labels();
 
   SequenceLayout layout_;
-  std::filesystem::path label_folder_;  ///< empty when the labels are in the scans
+  std::filesystem::path label_folder_;              ///< empty when the labels are in the scans
+  std::vector<std::filesystem::path> label_files_;  ///< by scan; empty for those without
 };
 
 }  // namespace mosbench

@@ -1,5 +1,7 @@
 #include "datasets/layouts/kth_sequence.hpp"
 
+#include <fmt/format.h>
+
 #include <utility>
 
 #include "datasets/files/errors.hpp"
@@ -9,10 +11,18 @@
 namespace mosbench {
 namespace {
 
-std::vector<std::uint32_t> truth_of(const std::vector<Point>& points) {
+/// Returns the labels that intensities stand for. Scans that are not the benchmark's hold
+/// reflectances there, which are no truth.
+std::vector<std::uint32_t> truth_of(const std::vector<Point>& points,
+                                    const std::filesystem::path& file) {
   std::vector<std::uint32_t> truth;
   truth.reserve(points.size());
   for (const Point& point : points) {
+    if (point.intensity != 0.0F && point.intensity != 1.0F) {
+      throw DataError(file, fmt::format("point {} has intensity {}", truth.size(), point.intensity),
+                      "0 (static) or 1 (dynamic), as KTH's truth; --dataset semantickitti reads "
+                      "other scans");
+    }
     truth.push_back(point.intensity == 1.0F ? kMovingLabel : kStaticLabel);
   }
   return truth;
@@ -22,7 +32,7 @@ std::vector<std::uint32_t> truth_of(const std::vector<Point>& points) {
 
 KthSequence::KthSequence(std::string name, const std::filesystem::path& folder) {
   Recording& recording = mutable_recording();
-  recording.name = std::move(name);
+  recording.name = SequenceName(std::move(name), folder);
   for (StemFile& scan : list_scan_folder(folder / "pcd")) {
     const PcdHeader header = read_pcd_header(scan.file);
     if (!header.viewpoint) {
@@ -46,7 +56,7 @@ KthSequence::KthSequence(std::string name, const std::filesystem::path& folder) 
 void KthSequence::read(std::size_t scan_index, Frame& frame) const {
   describe(scan_index, frame);
   frame.points = read_pcd(*scan_file(scan_index));
-  frame.truth = truth_of(frame.points);
+  frame.truth = truth_of(frame.points, *scan_file(scan_index));
   const Pose sensor_from_map = frame.map_from_sensor.inverse();
   for (Point& point : frame.points) {
     const Eigen::Vector3d p = sensor_from_map * Eigen::Vector3d(point.x, point.y, point.z);
@@ -55,7 +65,7 @@ void KthSequence::read(std::size_t scan_index, Frame& frame) const {
 }
 
 std::vector<std::uint32_t> KthSequence::read_truth(std::size_t scan_index) const {
-  return truth_of(read_pcd(*scan_file(scan_index)));
+  return truth_of(read_pcd(*scan_file(scan_index)), *scan_file(scan_index));
 }
 
 }  // namespace mosbench

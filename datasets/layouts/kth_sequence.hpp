@@ -11,7 +11,8 @@ namespace mosbench {
 
 /// One sequence of KTH's DynamicMap_Benchmark: pcd/*.pcd with points in the map's frame, the
 /// sensor's pose in VIEWPOINT, and in intensity 1 for what is dynamic. Frames have the points in
-/// the sensor's frame and without intensity, which is the truth and hidden from a method.
+/// the sensor's frame and without intensity, which is the truth and hidden from a method. Reading
+/// throws DataError for an intensity other than 0 and 1.
 class KthSequence : public Sequence {
  public:
   /// Throws DataError when a scan has no VIEWPOINT.

@@ -1,11 +1,38 @@
+#include "datasets/files/folder_listing.hpp"
+#include "datasets/files/text.hpp"
 #include "datasets/layouts/folder_search.hpp"
 #include "datasets/layouts/layout.hpp"
 
 namespace mosbench {
 namespace {
 
+/// Returns the set in whose folder a sequence lies, as the published tables name it, or nothing.
+std::optional<std::string> mdetector_set(const std::filesystem::path& sequence) {
+  std::filesystem::path folder = parent_folder(sequence);
+  if (folder.filename() == "sequences") folder = parent_folder(folder);
+  const std::string name = lower_case(folder.filename().string());
+  for (const char* set : {"Avia", "KITTI", "nuScenes", "Waymo"}) {
+    if (name.find(lower_case(set)) != std::string::npos) return set;
+  }
+  return std::nullopt;
+}
+
+/// Lists the sequences of one set or, in a folder of sets, of all. All sets number theirs from 0000
+/// on, so that names begin with the set: KITTI/0000.
 std::vector<SequenceFolder> list_mdetector(const std::filesystem::path& path) {
-  return list_with(path, "velodyne");
+  std::vector<SequenceFolder> sequences = list_with(path, "velodyne");
+  if (sequences.empty()) {
+    for (const std::filesystem::path& set : list_folders(path)) {
+      const auto of_set = list_with(set, "velodyne");
+      sequences.insert(sequences.end(), of_set.begin(), of_set.end());
+    }
+  }
+  for (SequenceFolder& sequence : sequences) {
+    if (const auto set = mdetector_set(sequence.folder)) {
+      sequence.name = *set + '/' + sequence.name;
+    }
+  }
+  return sequences;
 }
 
 std::optional<std::string> recognise_mdetector(const std::filesystem::path& path) {
@@ -27,9 +54,11 @@ const Layout& mdetector_layout() {
       .size = "45, 20, 10 and 44 sequences, scans in bags",
       .published = "github.com/hku-mars/M-detector",
       .licence = kUnknownLicence,
-      .folders = {"<root>/sequences/0000/, M-detector in some folder's name",
-                  "  velodyne/*.bin   scans exported from its bag (mosbench convert)",
-                  "  labels/*.label   int32, 251 and above dynamic, 65535 ignored", "  poses.txt"},
+      .folders =
+          {"<root>/<set>/sequences/0000/, M-detector in some folder's name; set: avia, kitti,",
+           "  nuscenes or waymo",
+           "  velodyne/*.bin   scans exported from its bag (mosbench convert)",
+           "  labels/*.label   int32, 251 and above dynamic, 65535 ignored", "  poses.txt"},
       // Any id: they are class * 1000 + instance.
       .files = {.sensor_range_m = 450.0},
       .expected =

@@ -7,6 +7,8 @@
 #include "datasets/files/bin_file.hpp"
 #include "datasets/files/byte_cursor.hpp"
 #include "datasets/files/calib_file.hpp"
+#include "datasets/files/disk_sync.hpp"
+#include "datasets/files/files.hpp"
 #include "datasets/files/indices_file.hpp"
 #include "datasets/files/label_file.hpp"
 #include "datasets/files/pose_file.hpp"
@@ -18,6 +20,12 @@ namespace mosbench {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// Writes poses.txt, by which a sequence can be opened, when all else is on the disk.
+void write_poses_last(const fs::path& folder, const std::vector<Pose>& poses) {
+  sync_file_system_of(folder);
+  commit_file(folder / "poses.txt", format_poses(poses));
+}
 
 class KittiWriter : public SequenceWriter {
  public:
@@ -41,7 +49,7 @@ class KittiWriter : public SequenceWriter {
     }
     if (times_ns.size() == poses_.size()) write_times(folder_ / "times.txt", times_ns);
     write_calib(folder_ / "calib.txt", camera_from_lidar_);
-    write_poses(folder_ / "poses.txt", poses_);
+    write_poses_last(folder_, poses_);
   }
 
  private:
@@ -103,7 +111,7 @@ class DoalsWriter : public SequenceWriter {
   void finish() override {
     rows_.write(folder_);
     write_times(folder_ / "times.txt", rows_.stamps_ns());
-    write_poses(folder_ / "poses.txt", poses_);
+    write_poses_last(folder_, poses_);
   }
 
  private:
@@ -164,6 +172,10 @@ class DoalsBagWriter : public SequenceWriter {
 };
 
 }  // namespace
+
+const char* last_file_of(const WriteOptions& options) {
+  return options.as_bag ? "bag.bag" : "poses.txt";
+}
 
 std::unique_ptr<SequenceWriter> write_as_kitti(const fs::path& folder,
                                                const WriteOptions& options) {

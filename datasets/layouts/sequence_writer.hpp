@@ -28,6 +28,9 @@ struct WriteOptions {
   std::string compression = "lz4";  ///< of the bag's chunks: none, lz4, bz2
 };
 
+/// Returns the name of the file that appears when all of a sequence is on the disk.
+const char* last_file_of(const WriteOptions& options);
+
 /// Writes velodyne/, labels/ for frames with truth, times.txt when all frames have stamps,
 /// calib.txt and poses.txt.
 std::unique_ptr<SequenceWriter> write_as_kitti(const std::filesystem::path& folder,

@@ -5,6 +5,7 @@
 
 #include "datasets/files/errors.hpp"
 #include "datasets/files/files.hpp"
+#include "datasets/files/json_text.hpp"
 
 namespace mosbench {
 namespace {
@@ -22,7 +23,7 @@ std::string format_simulated_origin(const SimulatedOrigin& origin) {
 
 SimulatedOrigin parse_simulated_origin(std::string_view text, const std::filesystem::path& file) {
   try {
-    const Json marker = Json::parse(text);
+    const Json marker = parse_json(text, file);
     const auto layout = dataset_kind_from_string(marker.at("layout").get<std::string>());
     if (!layout) throw DataError(file, "its layout is unknown", "a marker written by mosbench");
     return {.layout = *layout,

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "datasets/files/errors.hpp"
+#include "datasets/files/files.hpp"
 #include "datasets/rosbag/bag_compression.hpp"
 #include "datasets/rosbag/bag_record.hpp"
 
@@ -19,10 +20,9 @@ constexpr const char* kBag = "a closed ROS bag of version 2.0";
 
 }  // namespace
 
-BagFile::BagFile(const std::filesystem::path& file) : file_(file), in_(file, std::ios::binary) {
-  std::error_code error;
-  file_bytes_ = std::filesystem::file_size(file, error);
-  if (error || !in_) throw DataError(file, "cannot be opened", "a readable file");
+BagFile::BagFile(const std::filesystem::path& file)
+    : file_(file), file_bytes_(size_of(file)), in_(file, std::ios::binary) {
+  if (!in_) throw DataError(file, "cannot be opened", "a readable file");
   if (bytes_at(0, std::min<std::uint64_t>(file_bytes_, kVersionLine.size())) != kVersionLine) {
     throw DataError(file, "does not start like a ROS bag",
                     "\"#ROSBAG V2.0\" (rosbag migrate "

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "datasets/files/errors.hpp"
 #include "datasets/files/folder_listing.hpp"
@@ -36,34 +37,45 @@ std::optional<std::filesystem::path> bag_of(const std::filesystem::path& folder)
 
 BagSequence::BagSequence(std::string name, const std::filesystem::path& bag,
                          const ReadingOptions& options)
-    : bag_(bag), undistorts_(options.undistort), unposed_(options.poses_by_odometry) {
+    : bag_(bag),
+      undistorts_(options.undistorts()),
+      keeps_times_(options.poses_by_odometry || options.deskew == Deskew::kVelocity),
+      by_azimuth_(options.point_times == PointTimes::kAzimuth) {
+  if (options.point_times == PointTimes::kColumn) {
+    throw UsageError("--point-times column: " + bag.string() + " is a bag, expected .bin files");
+  }
   Recording& recording = mutable_recording();
-  recording.name = std::move(name);
+  recording.name = SequenceName(std::move(name), bag.parent_path());
   recording.files = {bag};
   const std::string topic = cloud_topic(bag_, options.topic);
   list_scans(topic);
   recording.reading.emplace_back("scan_files",
                                  fmt::format("{}, topic {}", bag.filename().string(), topic));
-  options.poses || unposed_ ? open_pose_file(options) : open_transforms(options);
+  options.poses || options.poses_by_odometry ? open_pose_file(options) : open_transforms(options);
   state_undistortion();
   enter_scans();
 }
 
+ScanEntry BagSequence::entry_of(const Scan& scan) {
+  ScanEntry entry;
+  entry.stem = fmt::format("{:06}", scan.number);
+  entry.stamp_ns = scan.stamp_ns;
+  entry.points = scan.points;
+  return entry;
+}
+
 void BagSequence::enter_scans() {
   for (const Scan& scan : scans_) {
-    ScanEntry& entry = mutable_recording().scans.emplace_back();
-    entry.stem = fmt::format("{:06}", scan.number);
-    entry.stamp_ns = scan.stamp_ns;
+    ScanEntry& entry = mutable_recording().scans.emplace_back(entry_of(scan));
     entry.map_from_sensor = *pose_at_(scan.stamp_ns);
-    entry.points = scan.points;
   }
 }
 
 void BagSequence::list_scans(const std::string& topic) {
   for (const BagMessage& message : bag_.messages(topic)) {
     const CloudHead head = parse_cloud_head(bag_.read(message, kHeadBytes), bag_.path());
-    scans_.push_back(
-        {message, scans_.size(), head.stamp_ns, head.points(), has_times(head), head.frame});
+    scans_.push_back({message, scans_.size(), head.stamp_ns, head.points(),
+                      has_times(head) && !by_azimuth_, head.frame});
   }
   if (scans_.empty()) {
     throw DataError(bag_.path(), "topic " + topic + " holds no message", "one per scan");
@@ -82,9 +94,15 @@ void BagSequence::open_pose_file(const ReadingOptions& options) {
   for (const Scan& scan : scans_) stamps_ns.push_back(scan.stamp_ns);
   const SensorPoses poses = read_sensor_poses(bag_.path().parent_path(), "poses.txt", options,
                                               {scans_.size(), stamps_ns});
+  std::vector<Scan> scans = std::exchange(scans_, {});
   std::vector<std::pair<std::int64_t, Pose>> stamped;
-  for (std::size_t i = 0; i < scans_.size(); ++i) {
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    if (std::ranges::binary_search(poses.unknown, i)) {
+      mutable_recording().left_out.push_back(entry_of(scans[i]));
+      continue;
+    }
     stamped.emplace_back(stamps_ns[i], poses.map_from_sensor[i]);
+    scans_.push_back(std::move(scans[i]));
   }
   pose_at_ = [track = PoseTrack(std::move(stamped))](std::int64_t stamp_ns) {
     return track.at(stamp_ns);
@@ -99,6 +117,7 @@ void BagSequence::open_pose_file(const ReadingOptions& options) {
 void BagSequence::open_transforms(const ReadingOptions& options) {
   BagTransforms transforms = bag_transforms(bag_, options.map_frame, scans_.front().frame);
   mutable_recording().reading.emplace_back("poses", transforms.source);
+  state_pose_origin(bag_.path(), mutable_recording().reading, mutable_recording().remarks);
   mutable_recording().remarks.push_back("poses from the bag: " + transforms.source);
   pose_at_ = [chain = std::move(transforms.map_from_sensor)](std::int64_t stamp_ns) {
     return chain.at(stamp_ns);
@@ -129,7 +148,8 @@ void BagSequence::leave_out_uncovered() {
 
 void BagSequence::state_undistortion() {
   const bool timed = scans_.front().timed;
-  const std::string how = !timed         ? "none, the points have no times"
+  const std::string how = by_azimuth_    ? "not by the points' times"
+                          : !timed       ? "none, the points have no times"
                           : !undistorts_ ? "none, as told"
                           : leaves_last_ ? "by the points' times, the last scan not"
                                          : "by the points' times";
@@ -140,6 +160,7 @@ void BagSequence::state_undistortion() {
 void BagSequence::read(std::size_t scan_index, Frame& frame) const {
   const Scan& scan = scans_.at(scan_index);
   TimedCloud cloud = parse_cloud(bag_.read(scan.message), bag_.path());
+  if (by_azimuth_) cloud.times_ns.clear();
   for (const std::int64_t time_ns : cloud.times_ns) {
     if (time_ns < -kLongestScanNs || time_ns > kLongestScanNs) {
       throw DataError(bag_.path(), scan.number,
@@ -148,7 +169,7 @@ void BagSequence::read(std::size_t scan_index, Frame& frame) const {
     }
   }
   const bool last = leaves_last_ && scan_index + 1 == scans_.size();
-  const bool moves = undistorts_ && !unposed_ && !cloud.times_ns.empty() && !last;
+  const bool moves = undistorts_ && !keeps_times_ && !cloud.times_ns.empty() && !last;
   const std::int64_t at_ns = moves && !leaves_last_ ? reference_ns(cloud) : cloud.stamp_ns;
   const auto pose = pose_at_(at_ns);
   if (!pose ||
@@ -159,7 +180,7 @@ void BagSequence::read(std::size_t scan_index, Frame& frame) const {
   describe(scan_index, frame);
   frame.points = std::move(cloud.points);
   frame.map_from_sensor = *pose;
-  if (undistorts_ && unposed_) frame.point_times_ns = std::move(cloud.times_ns);
+  if (undistorts_ && keeps_times_) frame.point_times_ns = std::move(cloud.times_ns);
   frame.truth.reset();
 }
 

@@ -45,6 +45,7 @@ class BagSequence : public Sequence {
   bool covered(const Scan& scan) const;
   void leave_out_uncovered();
   void state_undistortion();
+  static ScanEntry entry_of(const Scan& scan);
   void enter_scans();
 
   BagFile bag_;
@@ -53,8 +54,11 @@ class BagSequence : public Sequence {
   /// With a pose file the last scan is not undistorted: no pose follows its own.
   bool leaves_last_ = false;
   bool undistorts_ = true;
-  /// Poses are found later; scans keep their points' times.
-  bool unposed_ = false;
+  /// Points are moved later, by poses that are found later or by the velocity; their times are
+  /// kept.
+  bool keeps_times_ = false;
+  /// The points' own times do not count.
+  bool by_azimuth_ = false;
 };
 
 }  // namespace mosbench

@@ -118,10 +118,13 @@ BagTransforms bag_transforms(const BagFile& bag, const std::optional<std::string
   if (auto found = find_chain(tf, bag, map_frame, sensor_frame)) return *found;
   const Transforms stamped = stamped_transforms(bag);
   if (auto found = find_chain(stamped, bag, map_frame, sensor_frame)) return *found;
-  throw DataError(bag.path(),
-                  "no transforms lead from " + map_frame.value_or("a map") + " to " + sensor_frame +
-                      " (/tf: " + frames_of(tf) + "; TransformStamped: " + frames_of(stamped) + ")",
-                  "such a chain, or --poses FILE, and --map-frame if the map is called otherwise");
+  throw DataError(
+      bag.path(),
+      "no transforms lead from " + map_frame.value_or("a map") + " to " + sensor_frame +
+          " (/tf: " + frames_of(tf) + "; TransformStamped: " + frames_of(stamped) + ")",
+      "such a chain, or --poses FILE, and --map-frame if the map is called otherwise; or "
+      "poses found from the scans: mosbench run " +
+          bag.path().parent_path().string() + " --odometry simple");
 }
 
 }  // namespace mosbench

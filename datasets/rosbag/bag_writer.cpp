@@ -5,9 +5,13 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <limits>
 #include <utility>
+#include <vector>
 
+#include "datasets/files/disk_sync.hpp"
 #include "datasets/files/errors.hpp"
+#include "datasets/files/partial_file.hpp"
 #include "datasets/rosbag/ros_messages.hpp"
 
 namespace mosbench {
@@ -104,10 +108,18 @@ struct Serializer<mosbench::SerializedMessage> {
 namespace mosbench {
 namespace {
 
+/// Asks for the memory that the library's buffers may need next: it ends the program where they
+/// find none.
+void expect_memory(std::size_t message_bytes) {
+  constexpr std::size_t kChunkBytes = 1 << 20;
+  std::string().reserve(4 * (kChunkBytes + message_bytes));
+}
+
 /// Turns the exceptions of the library and of its plugin loader into DataError.
 template <typename Call>
-void checked(const std::filesystem::path& file, Call&& call) {
+void checked(const std::filesystem::path& file, std::size_t message_bytes, Call&& call) {
   try {
+    expect_memory(message_bytes);
     call();
   } catch (const std::exception& error) {
     throw DataError(file, std::string("cannot be written (") + error.what() + ")",
@@ -120,33 +132,61 @@ void checked(const std::filesystem::path& file, Call&& call) {
 bool writes_bags() { return true; }
 
 BagWriter::BagWriter(std::filesystem::path file, const std::string& compression)
-    : file_(std::move(file)), partial_(file_), bag_(std::make_unique<rosbag::Bag>()) {
+    : file_(std::move(file)), partial_(partial_of(file_)) {
   const rosbag::CompressionType type = compression_of(compression);
-  partial_ += ".partial";
-  checked(file_, [&] {
-    if (file_.has_parent_path()) std::filesystem::create_directories(file_.parent_path());
-    bag_->open(partial_.string(), rosbag::bagmode::Write);
-    bag_->setCompression(type);
-  });
+  try {
+    checked(file_, 0, [&] {
+      if (file_.has_parent_path()) std::filesystem::create_directories(file_.parent_path());
+      bag_.reset(new rosbag::Bag);  // loads a library
+      bag_->open(partial_.string(), rosbag::bagmode::Write);
+      bag_->setCompression(type);
+    });
+  } catch (const DataError&) {
+    remove_partial();
+    throw;
+  }
 }
 
-BagWriter::~BagWriter() = default;
+void BagWriter::BagEnd::operator()(rosbag::Bag* bag) const {
+  try {
+    bag->close();
+    delete bag;
+  } catch (const std::exception&) {
+    // Its destructor would close it once more, and end the program with the exception.
+    static auto* const kept = new std::vector<rosbag::Bag*>;
+    kept->push_back(bag);
+  }
+}
+
+BagWriter::~BagWriter() { remove_partial(); }
+
+void BagWriter::remove_partial() {
+  bag_.reset();
+  std::error_code ignored;
+  std::filesystem::remove(partial_, ignored);
+}
 
 void BagWriter::write(const std::string& topic, std::int64_t stamp_ns, std::string_view type,
                       std::string_view message) {
   if (stamp_ns < 0) throw DataError(file_, "a stamp to be written is negative", "stamps from 0");
+  if (stamp_ns / 1'000'000'000 > std::numeric_limits<std::uint32_t>::max()) {
+    throw DataError(file_, "a stamp to be written is beyond 2^32 s",
+                    "seconds of 32 bits, as in bags");
+  }
   const auto known = std::ranges::find(kTypes, type, &MessageType::name);
   const SerializedMessage serialized{message, &*known};
   ros::Time time;
   // This is the time of recording, which the library wants above 0; the message has its own stamp.
   time.fromNSec(static_cast<std::uint64_t>(std::max<std::int64_t>(stamp_ns, 1)));
-  checked(file_, [&] { bag_->write(topic, time, serialized); });
+  checked(file_, message.size(), [&] { bag_->write(topic, time, serialized); });
 }
 
 void BagWriter::close() {
-  checked(file_, [&] {
+  checked(file_, 0, [&] {
     bag_->close();
+    sync_file_system_of(partial_.parent_path());
     std::filesystem::rename(partial_, file_);
+    sync_names_of(file_.parent_path());
   });
 }
 

@@ -15,8 +15,8 @@ namespace mosbench {
 /// Returns whether this build writes bags (MOSBENCH_WITH_ROSBAG).
 bool writes_bags();
 
-/// Writes a ROS 1 bag through librosbag_storage. It is named `<file>.partial` until it
-/// is closed.
+/// Writes a ROS 1 bag through librosbag_storage. It has the name partial_of(file)
+/// until it is closed, and is removed if it is not.
 class BagWriter {
  public:
   /// `compression` is none, lz4 or bz2. Throws UsageError for another one, DataError when the file
@@ -32,8 +32,14 @@ class BagWriter {
   void close();
 
  private:
+  void remove_partial();
+
   std::filesystem::path file_, partial_;
-  std::unique_ptr<rosbag::Bag> bag_;
+  /// Closes a bag and deletes it.
+  struct BagEnd {
+    void operator()(rosbag::Bag* bag) const;
+  };
+  std::unique_ptr<rosbag::Bag, BagEnd> bag_;
 };
 
 }  // namespace mosbench

@@ -14,6 +14,7 @@ BagWriter::BagWriter(std::filesystem::path file, const std::string&) {
                   "a build with librosbag_storage (install librosbag-storage-dev, configure with "
                   "-DMOSBENCH_WITH_ROSBAG=ON)");
 }
+void BagWriter::BagEnd::operator()(rosbag::Bag*) const {}
 BagWriter::~BagWriter() = default;
 void BagWriter::write(const std::string&, std::int64_t, std::string_view, std::string_view) {}
 void BagWriter::close() {}

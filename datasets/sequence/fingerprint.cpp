@@ -1,14 +1,18 @@
 #include "datasets/sequence/fingerprint.hpp"
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <xxhash.h>
 
+#include <cerrno>
 #include <cstdint>
+#include <cstring>
+#include <fstream>
 #include <new>
-#include <system_error>
 #include <type_traits>
 
 #include "datasets/files/errors.hpp"
+#include "datasets/files/files.hpp"
 
 namespace mosbench {
 namespace {
@@ -27,23 +31,36 @@ void add_range(XXH3_state_t& state, const Range& range) {
   XXH3_128bits_update(&state, range.data(), range.size() * sizeof(*range.data()));
 }
 
+/// Copies may keep size and time of modification; no program can set the time of the last change of
+/// the inode.
+std::string state_of(const std::filesystem::path& file) {
+  struct stat state = {};
+  if (stat(file.c_str(), &state) != 0) {
+    throw DataError(file, fmt::format("is gone ({})", std::strerror(errno)), "a readable file");
+  }
+  return fmt::format("{} {} {}.{:09} {}.{:09}", state.st_size, state.st_ino, state.st_mtim.tv_sec,
+                     state.st_mtim.tv_nsec, state.st_ctim.tv_sec, state.st_ctim.tv_nsec);
+}
+
 }  // namespace
 
 void ContentFingerprint::FreeState::operator()(XXH3_state_s* state) const { XXH3_freeState(state); }
 
-ContentFingerprint::ContentFingerprint() : state_(XXH3_createState()) {
+ContentFingerprint::ContentFingerprint(Of of) : of_(of), state_(XXH3_createState()) {
   if (!state_) throw std::bad_alloc();
   XXH3_128bits_reset(state_.get());
+}
+
+void ContentFingerprint::add_pose(const Pose& pose) {
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 4; ++column) add_value(*state_, pose.matrix()(row, column));
+  }
 }
 
 void ContentFingerprint::add(const Frame& frame) {
   add_range(*state_, frame.stem);
   add_range(*state_, frame.points);
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 4; ++column) {
-      add_value(*state_, frame.map_from_sensor.matrix()(row, column));
-    }
-  }
+  if (of_ == Of::kAll) add_pose(frame.map_from_sensor);
   add_value(*state_, static_cast<std::uint64_t>(frame.stamp_ns.has_value()));
   if (frame.stamp_ns) add_value(*state_, *frame.stamp_ns);
   add_value(*state_, static_cast<std::uint64_t>(frame.truth.has_value()));
@@ -55,8 +72,28 @@ std::string ContentFingerprint::hex() const {
   return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
 }
 
-TruthHash truth_hash(std::span<const std::uint32_t> labels) {
-  TruthHash hash;
+std::string hash_of_file(const std::filesystem::path& file) {
+  constexpr std::uintmax_t kEndBytes = 16U << 20U;
+  const std::uintmax_t size_bytes = size_of(file);
+  std::string bytes = std::to_string(size_bytes) + "\n";
+  if (size_bytes <= 2 * kEndBytes) {
+    bytes += read_file(file);
+  } else {
+    std::ifstream in(file, std::ios::binary);
+    for (const std::uintmax_t from : {std::uintmax_t{0}, size_bytes - kEndBytes}) {
+      const std::size_t so_far = bytes.size();
+      bytes.resize(so_far + kEndBytes);
+      in.seekg(static_cast<std::streamoff>(from));
+      in.read(bytes.data() + so_far, static_cast<std::streamsize>(kEndBytes));
+    }
+    if (!in) throw DataError(file, "cannot be read", "a readable file");
+  }
+  const XXH128_hash_t hash = XXH3_128bits(bytes.data(), bytes.size());
+  return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
+}
+
+LabelHash hash_of_labels(std::span<const std::uint32_t> labels) {
+  LabelHash hash;
   fmt::format_to_n(hash.data(), hash.size(), "{:016x}",
                    XXH3_64bits(labels.data(), labels.size_bytes()));
   return hash;
@@ -65,14 +102,8 @@ TruthHash truth_hash(std::span<const std::uint32_t> labels) {
 std::string file_stamp(const Sequence& sequence) {
   std::string listing;
   for (const std::filesystem::path& file : sequence.files()) {
-    std::error_code error;
-    const auto size_bytes = std::filesystem::file_size(file, error);
-    if (error) throw DataError(file, "is gone (" + error.message() + ")", "a readable file");
-    const auto changed = std::filesystem::last_write_time(file, error);
-    if (error) throw DataError(file, "is gone (" + error.message() + ")", "a readable file");
-    listing +=
-        fmt::format("{}\n{} {}\n", std::filesystem::absolute(file).lexically_normal().string(),
-                    size_bytes, static_cast<std::int64_t>(changed.time_since_epoch().count()));
+    listing += fmt::format("{}\n{}\n", std::filesystem::absolute(file).lexically_normal().string(),
+                           state_of(file));
   }
   const XXH128_hash_t hash = XXH3_128bits(listing.data(), listing.size());
   return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);

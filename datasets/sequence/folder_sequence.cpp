@@ -2,14 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
 #include <utility>
 
 #include "datasets/files/errors.hpp"
 #include "datasets/files/files.hpp"
+#include "datasets/files/point_times.hpp"
 #include "datasets/files/scan_file.hpp"
 #include "datasets/files/times_file.hpp"
-#include "datasets/sequence/pose_source.hpp"
 
 namespace mosbench {
 namespace {
@@ -40,24 +41,33 @@ std::vector<std::int64_t> stamps_from_stems(const std::vector<ScanEntry>& scans)
 
 FolderSequence::FolderSequence(std::string name, const std::filesystem::path& folder,
                                const ReadingOptions& asked, const FolderLayout& layout)
-    : bin_columns_(asked.bin_columns) {
+    : bin_columns_(asked.bin_columns),
+      times_in_column_(asked.undistorts() && asked.point_times == PointTimes::kColumn) {
   ReadingOptions options = asked;
   if (layout.poses_of_lidar && !options.poses && options.pose_frame == PoseFrame::kByCalib) {
     options.pose_frame = PoseFrame::kLidar;
   }
   Recording& recording = mutable_recording();
-  recording.name = std::move(name);
+  recording.name = SequenceName(std::move(name), folder);
   list_scans(folder, layout);
   const std::vector<std::int64_t> stamps_ns = read_stamps(folder);
   SensorPoses poses =
       read_sensor_poses(folder, std::string(layout.poses_file), options, {size(), stamps_ns});
-  for (std::size_t k = 0; k < size(); ++k) {
-    recording.scans[k].map_from_sensor = poses.map_from_sensor[k];
-    if (!stamps_ns.empty()) recording.scans[k].stamp_ns = stamps_ns[k];
-  }
+  for (std::size_t k = 0; k < stamps_ns.size(); ++k) recording.scans[k].stamp_ns = stamps_ns[k];
+  take_poses(poses);
   recording.files.insert(recording.files.begin(), poses.files.begin(), poses.files.end());
   recording.remarks = std::move(poses.remarks);
   recording.reading.insert(recording.reading.end(), poses.reading.begin(), poses.reading.end());
+}
+
+void FolderSequence::take_poses(const SensorPoses& poses) {
+  Recording& recording = mutable_recording();
+  std::vector<ScanEntry> scans = std::exchange(recording.scans, {});
+  for (std::size_t k = 0; k < scans.size(); ++k) {
+    scans[k].map_from_sensor = poses.map_from_sensor[k];
+    const bool leaves_out = std::ranges::binary_search(poses.unknown, k);
+    (leaves_out ? recording.left_out : recording.scans).push_back(std::move(scans[k]));
+  }
 }
 
 void FolderSequence::list_scans(const std::filesystem::path& folder, const FolderLayout& layout) {
@@ -71,10 +81,20 @@ void FolderSequence::list_scans(const std::filesystem::path& folder, const Folde
   if (bin_columns_ != ReadingOptions{}.bin_columns) {
     recording.reading.emplace_back("bin_columns", std::to_string(bin_columns_));
   }
+  if (times_in_column_) {
+    recording.reading.emplace_back("point_times",
+                                   first.extension() == ".bin" ? "fifth column" : "field of times");
+  }
   recording.scans.reserve(scans.size());
   for (StemFile& scan : scans) {
     const ScanHead head = read_scan_head(scan.file, bin_columns_);
     labels_in_scans_ = labels_in_scans_ && head.has_labels;
+    if (times_in_column_ && !head.has_times) {
+      throw DataError(scan.file, "holds no times of points",
+                      fmt::format("{} in .pcd and .ply files, --bin-columns 5 for .bin files, with "
+                                  "--point-times column",
+                                  kTimeFields));
+    }
     ScanEntry& entry = recording.scans.emplace_back();
     entry.stem = std::move(scan.stem);
     entry.file = std::move(scan.file);
@@ -100,9 +120,17 @@ void FolderSequence::check_count(std::size_t scan_index, std::size_t points) con
 }
 
 void FolderSequence::read(std::size_t scan_index, Frame& frame) const {
-  frame.points = read_scan(*scan(scan_index).file, bin_columns_, std::move(frame.points));
+  const std::filesystem::path& file = *scan(scan_index).file;
+  TimedScan timed;
+  if (times_in_column_) {
+    timed = read_timed_scan(file, bin_columns_, stamp_ns(scan_index));
+  } else {
+    timed.points = read_scan(file, bin_columns_, std::move(frame.points));
+  }
+  frame.points = std::move(timed.points);
   check_count(scan_index, frame.points.size());
   describe(scan_index, frame);
+  frame.point_times_ns = std::move(timed.times_ns);
   add_truth(scan_index, frame);
 }
 

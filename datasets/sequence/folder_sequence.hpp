@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "datasets/sequence/pose_source.hpp"
 #include "datasets/sequence/sequence.hpp"
 
 namespace mosbench {
@@ -36,12 +37,16 @@ class FolderSequence : public Sequence {
   void check_count(std::size_t scan_index, std::size_t points) const;
   /// Whether the points of every scan have a field "label".
   bool labels_in_scans() const { return labels_in_scans_; }
+  /// Whether the times of points are to be read from the scans.
+  bool times_in_column() const { return times_in_column_; }
 
  private:
   void list_scans(const std::filesystem::path& folder, const FolderLayout& layout);
   std::vector<std::int64_t> read_stamps(const std::filesystem::path& folder);
+  void take_poses(const SensorPoses& poses);
 
   std::size_t bin_columns_;
+  bool times_in_column_;
   bool labels_in_scans_ = true;
 };
 

@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "datasets/files/calib_file.hpp"
 #include "datasets/files/errors.hpp"
 #include "datasets/files/files.hpp"
+#include "datasets/sequence/fingerprint.hpp"
+#include "datasets/sequence/pose_frame_mark.hpp"
 #include "datasets/sequence/pose_track.hpp"
 
 namespace mosbench {
@@ -14,33 +17,27 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Returns poses at the scan stamps; `interpolated` counts the stamps without an exact match.
-std::vector<Pose> at_scan_stamps(const PoseList& list, const PosedScans& scans,
-                                 std::size_t& interpolated, const fs::path& file) {
+double seconds(std::int64_t time_ns) { return static_cast<double>(time_ns) * 1e-9; }
+
+PoseTrack track_of(const PoseList& list) {
   std::vector<std::pair<std::int64_t, Pose>> stamped;
   for (std::size_t i = 0; i < list.poses.size(); ++i) {
     stamped.emplace_back(list.stamps_ns[i], list.poses[i]);
   }
-  const PoseTrack track(std::move(stamped));
-  std::vector<Pose> poses;
-  for (const std::int64_t stamp_ns : scans.stamps_ns) {
-    const auto pose = track.at(stamp_ns);
-    if (!pose) {
-      throw DataError(file,
-                      fmt::format("holds no pose around the scan of {:.6f} s",
-                                  static_cast<double>(stamp_ns) * 1e-9),
-                      track.empty() ? "poses"
-                                    : fmt::format("stamps that cover all scans, not {:.6f} to "
-                                                  "{:.6f} s",
-                                                  static_cast<double>(track.first_ns()) * 1e-9,
-                                                  static_cast<double>(track.last_ns()) * 1e-9));
-    }
-    if (!std::binary_search(list.stamps_ns.begin(), list.stamps_ns.end(), stamp_ns)) {
-      ++interpolated;
-    }
-    poses.push_back(*pose);
-  }
-  return poses;
+  return PoseTrack(std::move(stamped));
+}
+
+Pose pose_at(const PoseTrack& track, std::int64_t stamp_ns, const fs::path& file) {
+  if (const auto pose = track.at(stamp_ns)) return *pose;
+  throw DataError(file, fmt::format("holds no pose around the scan of {:.6f} s", seconds(stamp_ns)),
+                  track.empty() ? "poses"
+                                : fmt::format("stamps that cover all scans, not {:.6f} to {:.6f} s",
+                                              seconds(track.first_ns()), seconds(track.last_ns())));
+}
+
+std::string hash_line(const fs::path& pose_file) {
+  return fmt::format("XXH3-128 of {}: {}\n", pose_file.filename().string(),
+                     hash_of_file(pose_file));
 }
 
 class SensorPoseReader {
@@ -56,6 +53,7 @@ class SensorPoseReader {
     pair_with_scans(list, scans);
     invert_if(options_.poses_inverse.value_or(list.format == PoseFormat::kRollout));
     move_to_lidar(list.format);
+    if (!options_.poses) state_pose_origin(file_, result_.reading, result_.remarks);
     return std::move(result_);
   }
 
@@ -66,10 +64,7 @@ class SensorPoseReader {
 
   void pair_with_scans(const PoseList& list, const PosedScans& scans) {
     if (!list.stamps_ns.empty() && !scans.stamps_ns.empty()) {
-      std::size_t interpolated = 0;
-      result_.map_from_sensor = at_scan_stamps(list, scans, interpolated, file_);
-      state("pose_pairing",
-            fmt::format("by stamp, {} of {} interpolated", interpolated, scans.count));
+      interpolate(track_of(list), scans);
       return;
     }
     if (list.poses.size() != scans.count) {
@@ -79,6 +74,37 @@ class SensorPoseReader {
     }
     result_.map_from_sensor = list.poses;
     state("pose_pairing", "row by row");
+  }
+
+  /// Takes the poses at the stamps of the scans.
+  void interpolate(const PoseTrack& track, const PosedScans& scans) {
+    std::size_t interpolated = 0;
+    for (const std::int64_t stamp_ns : scans.stamps_ns) {
+      result_.map_from_sensor.push_back(pose_at(track, stamp_ns, file_));
+      const std::int64_t gap_ns = track.gap_ns(stamp_ns);
+      if (gap_ns == 0) continue;
+      if (static_cast<double>(gap_ns) <= std::round(options_.max_pose_gap_s * 1e9)) {
+        ++interpolated;
+      } else {
+        result_.unknown.push_back(result_.map_from_sensor.size() - 1);
+      }
+    }
+    std::string how = fmt::format("by stamp, {} of {} interpolated", interpolated, scans.count);
+    if (!result_.unknown.empty()) how += "; " + state_gaps(scans);
+    state("pose_pairing", std::move(how));
+  }
+
+  std::string state_gaps(const PosedScans& scans) {
+    const std::string gaps =
+        fmt::format("lie between poses more than {:g} s apart", options_.max_pose_gap_s);
+    if (result_.unknown.size() == scans.count) {
+      throw DataError(file_, "all scans " + gaps, "more poses, or a longer --max-pose-gap-s");
+    }
+    const std::string left_out =
+        fmt::format("{} of {} scans are left out", result_.unknown.size(), scans.count);
+    result_.remarks.push_back(fmt::format("{}: they {} in {} (--max-pose-gap-s)", left_out, gaps,
+                                          file_.filename().string()));
+    return left_out;
   }
 
   void invert_if(bool inverse) {
@@ -101,11 +127,15 @@ class SensorPoseReader {
     }
     const Pose camera_from_lidar = read_calib(calib);
     result_.files.push_back(calib);
-    const bool of_camera =
-        options_.pose_frame == PoseFrame::kCamera ||
-        (options_.pose_frame == PoseFrame::kByCalib && format == PoseFormat::kKitti);
+    const bool by_calib =
+        options_.pose_frame == PoseFrame::kByCalib && format == PoseFormat::kKitti;
+    const bool of_camera = options_.pose_frame == PoseFrame::kCamera || by_calib;
     if (!of_camera || is_identity(camera_from_lidar)) {
       state("pose_frame", "lidar");
+      return;
+    }
+    if (by_calib && is_marked_as_lidars(file_)) {
+      state("pose_frame", "lidar, as the .frame beside the file says");
       return;
     }
     for (Pose& pose : result_.map_from_sensor) pose = lidar_pose(pose, camera_from_lidar);
@@ -124,10 +154,42 @@ class SensorPoseReader {
 
 }  // namespace
 
+std::string pose_origin_of(const ReadingStatement& reading) {
+  std::string origin;
+  for (const auto& [what, how] : reading) {
+    if (what == "pose_origin") return how;  // of poses that were converted before
+    if (what != "poses" && !what.starts_with("pose_")) continue;
+    origin += fmt::format("{}{}: {}", origin.empty() ? "" : "; ", what, how);
+  }
+  std::ranges::replace(origin, '\n', ' ');
+  return origin;
+}
+
+void write_pose_origin(const fs::path& pose_file, const std::string& origin) {
+  write_file_atomic(pose_file.parent_path() / kPoseOriginFile,
+                    origin + "\n" + hash_line(pose_file));
+}
+
+void state_pose_origin(const fs::path& pose_file, ReadingStatement& reading,
+                       std::vector<std::string>& remarks) {
+  const fs::path file = pose_file.parent_path() / kPoseOriginFile;
+  if (!is_there(file)) return;
+  const std::string text = read_file(file);
+  const std::string origin = text.substr(0, text.find('\n'));
+  if (text == origin + "\n" + hash_line(pose_file)) {
+    reading.emplace_back("pose_origin", origin);
+  } else {
+    remarks.push_back(fmt::format(
+        "{} was not written for {} as it is now: where these poses came from is not known",
+        kPoseOriginFile, pose_file.filename().string()));
+  }
+}
+
 SensorPoses read_sensor_poses(const fs::path& folder, const std::string& own_file,
                               const ReadingOptions& options, const PosedScans& scans) {
   if (options.poses_by_odometry) {
     return {.map_from_sensor = std::vector<Pose>(scans.count, Pose::Identity()),
+            .unknown = {},
             .files = {},
             .remarks = {},
             .reading = {{"poses", "none"}}};
@@ -136,7 +198,10 @@ SensorPoses read_sensor_poses(const fs::path& folder, const std::string& own_fil
   if (!options.poses && !is_there(file)) {
     throw DataError(
         file, "does not exist",
-        "one pose per scan there, in a file given by --poses, or found by --odometry simple");
+        fmt::format(
+            "one pose per scan there, or in a file given by --poses; or found from the scans: "
+            "mosbench run {} --odometry simple",
+            folder.string()));
   }
   SensorPoses poses = SensorPoseReader(folder, options, file).run(scans);
   if (options.poses) {

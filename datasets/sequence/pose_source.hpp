@@ -14,6 +14,7 @@ namespace mosbench {
 /// LiDAR poses of a sequence and where they came from.
 struct SensorPoses {
   std::vector<Pose> map_from_sensor;  ///< one per scan
+  std::vector<std::size_t> unknown;   ///< scans, in order, whose pose above says nothing
   std::vector<std::filesystem::path> files;
   std::vector<std::string> remarks;
   ReadingStatement reading;
@@ -27,9 +28,25 @@ struct PosedScans {
 
 /// Reads `options.poses`, else `folder`/`own_file`, and turns the poses into the LiDAR's by
 /// `folder`/calib.txt. Poses with stamps are interpolated to the scans' stamps; without stamps rows
-/// and scans are paired in order. Throws DataError when counts differ or the stamps of the poses do
-/// not cover a scan. Identities where `options.poses_by_odometry` is set.
+/// and scans are paired in order. Scans between poses more than `options.max_pose_gap_s` apart have
+/// no pose. Throws DataError when counts differ, when the stamps of the poses do not cover a scan,
+/// or when no scan has a pose. Identities where `options.poses_by_odometry` is set.
 SensorPoses read_sensor_poses(const std::filesystem::path& folder, const std::string& own_file,
                               const ReadingOptions& options, const PosedScans& scans);
+
+/// Beside poses that `convert` wrote: a line that says where they came from, and one with the hash
+/// of the file that holds them.
+inline constexpr const char* kPoseOriginFile = "pose_origin.txt";
+
+/// Returns the first line for the poses of a sequence that was read so.
+std::string pose_origin_of(const ReadingStatement& reading);
+
+/// Writes both lines beside `pose_file`, which is complete.
+void write_pose_origin(const std::filesystem::path& pose_file, const std::string& origin);
+
+/// Adds the line beside `pose_file`, if there is one, to what is said of the poses; a remark in its
+/// place where the file is not the one that the line was written for.
+void state_pose_origin(const std::filesystem::path& pose_file, ReadingStatement& reading,
+                       std::vector<std::string>& remarks);
 
 }  // namespace mosbench

@@ -20,11 +20,21 @@ bool PoseTrack::covers(std::int64_t from_ns, std::int64_t to_ns) const {
   return always_ || (first_ns() <= from_ns && to_ns <= last_ns());
 }
 
+PoseTrack::Stamped::const_iterator PoseTrack::not_before(std::int64_t stamp_ns) const {
+  return std::ranges::lower_bound(poses_, stamp_ns, {},
+                                  [](const auto& stamped) { return stamped.first; });
+}
+
+std::int64_t PoseTrack::gap_ns(std::int64_t stamp_ns) const {
+  if (always_ || !covers(stamp_ns, stamp_ns)) return 0;
+  const auto after = not_before(stamp_ns);
+  return after->first == stamp_ns ? 0 : after->first - std::prev(after)->first;
+}
+
 std::optional<Pose> PoseTrack::at(std::int64_t stamp_ns) const {
   if (!covers(stamp_ns, stamp_ns)) return std::nullopt;
   if (always_) return poses_.front().second;
-  const auto after = std::ranges::lower_bound(poses_, stamp_ns, {},
-                                              [](const auto& stamped) { return stamped.first; });
+  const auto after = not_before(stamp_ns);
   if (after->first == stamp_ns) return after->second;
   const auto& [before_ns, before] = *std::prev(after);
   const double share =

@@ -23,9 +23,16 @@ class PoseTrack {
   /// neighbours: positions linearly, rotations on the shortest arc. Returns nothing outside the
   /// track: no pose is extrapolated.
   std::optional<Pose> at(std::int64_t stamp_ns) const;
+  /// Returns the time between the two poses that `at` interpolates; 0 for a stored pose and outside
+  /// the track.
+  std::int64_t gap_ns(std::int64_t stamp_ns) const;
 
  private:
-  std::vector<std::pair<std::int64_t, Pose>> poses_;
+  using Stamped = std::vector<std::pair<std::int64_t, Pose>>;
+  /// The first pose that is not before a time.
+  Stamped::const_iterator not_before(std::int64_t stamp_ns) const;
+
+  Stamped poses_;
   bool always_ = false;
 };
 

@@ -4,18 +4,19 @@
 #include <string>
 #include <vector>
 
-#include "datasets/sequence/pose_track.hpp"
+#include "datasets/sequence/scan_deskewer.hpp"
 #include "datasets/sequence/sequence.hpp"
 
 namespace mosbench {
 
 /// A sequence opened with `ReadingOptions::poses_by_odometry` whose poses are found later. Scans
-/// whose points have times are undistorted by the poses, the last one not.
+/// whose points have times are undistorted by the poses.
 class PosedSequence : public SequenceAround {
  public:
   /// `how` replaces what the inner sequence states about poses. Poses are the identity until
   /// `set_poses`.
-  PosedSequence(std::unique_ptr<Sequence> inner, const ReadingStatement& how);
+  PosedSequence(std::unique_ptr<Sequence> inner, const ReadingStatement& how,
+                Deskew deskew = Deskew::kPoses);
 
   /// One pose per scan. `remark` is what a reader of results should know about them. To be called
   /// before scans are read from several threads.
@@ -28,7 +29,8 @@ class PosedSequence : public SequenceAround {
   void read(std::size_t scan_index, Frame& frame) const override;
 
  private:
-  PoseTrack track_;  // empty without stamps
+  Deskew deskew_;
+  ScanDeskewer deskewer_;
 };
 
 }  // namespace mosbench

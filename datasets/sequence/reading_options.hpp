@@ -13,15 +13,29 @@ namespace mosbench {
 
 /// The sensor that the poses of a file belong to.
 enum class PoseFrame : std::uint8_t {
-  kByCalib,  ///< KITTI rows: the camera's when calib.txt holds a Tr other than the identity, else
-             ///< the lidar's; other formats: the lidar's
+  kByCalib,  ///< KITTI rows: the camera's when calib.txt holds a Tr other than the identity and no
+             ///< mark beside the file says otherwise, else the lidar's; other formats: the lidar's
   kLidar,
   kCamera  ///< the camera of Tr in calib.txt
 };
 
+/// The motion of the sensor by which scans are corrected whose points have times.
+enum class Deskew : std::uint8_t {
+  kNone,
+  kVelocity,  ///< that since the scan before
+  kPoses      ///< that between the poses around each point
+};
+
+/// Where the times of points come from when the scans do not say.
+enum class PointTimes : std::uint8_t {
+  kColumn,  ///< the fifth float32 of each point in .bin files, seconds after the scan's stamp; a
+            ///< field of .pcd and .ply files, see `times_after_stamp_ns`
+  kAzimuth  ///< the direction of each point, as the sensor of KITTI turns
+};
+
 /// What the user specified about how a sequence is to be read.
 struct ReadingOptions {
-  /// A pose file to use instead of the sequence's own.
+  /// A pose file to use instead of the sequence's own, or a folder with one per sequence.
   std::optional<std::filesystem::path> poses = std::nullopt;
   /// Read no poses: every scan gets the identity, for `PosedSequence` to put others in their place.
   bool poses_by_odometry = false;
@@ -29,10 +43,17 @@ struct ReadingOptions {
   PoseFrame pose_frame = PoseFrame::kByCalib;
   /// Whether the poses are sensor_from_map; when not set, only those of PoseFormat::kRollout are.
   std::optional<bool> poses_inverse = std::nullopt;
+  /// Scans between stamped poses farther apart than this are left out.
+  double max_pose_gap_s = 0.5;
   std::optional<std::string> topic = std::nullopt;      ///< of a bag's PointCloud2
   std::optional<std::string> map_frame = std::nullopt;  ///< of a bag's tf tree
-  bool undistort = true;                                ///< scans of a bag whose points have times
-  std::size_t bin_columns = 4;                          ///< float32 per point in .bin files
+  /// When not set: by the poses, except that odometry registers scans as its own setting says.
+  std::optional<Deskew> deskew = std::nullopt;
+  std::optional<PointTimes> point_times = std::nullopt;  ///< when not set, those of a bag's points
+  std::size_t bin_columns = 4;                           ///< float32 per point in .bin files
+
+  /// Whether points with times are to be moved.
+  bool undistorts() const { return deskew != Deskew::kNone; }
 };
 
 /// How a sequence was read, for results: (what, how) in a fixed order.

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "datasets/sequence/reading_options.hpp"
+#include "datasets/sequence/sequence_name.hpp"
 
 namespace mosbench {
 
@@ -24,8 +25,9 @@ struct ScanEntry {
 
 /// What is known of a sequence once it is opened.
 struct Recording {
-  std::string name;  ///< folder for results, relative, unique in a data set
+  SequenceName name;  ///< unique in a data set
   std::vector<ScanEntry> scans;
+  std::vector<ScanEntry> left_out;  ///< scans on disk whose pose is not known; without truth
   /// Files that decide what is read besides those of single scans: bag, poses, calibration, times.
   std::vector<std::filesystem::path> files;
   std::vector<std::filesystem::path> truth_files;
@@ -34,6 +36,9 @@ struct Recording {
   /// What was read in which convention; two runs on the same files may differ in it.
   ReadingStatement reading;
 };
+
+/// Returns whether a stem is that of a scan that was left out.
+bool is_left_out(const Recording& recording, const std::string& stem);
 
 /// Returns every file that decides the content, for fingerprints: `files`, scans, `truth_files`.
 std::vector<std::filesystem::path> files_of(const Recording& recording);

@@ -51,7 +51,7 @@ class Sequence {
   /// What is known without reading a scan.
   const Recording& recording() const { return recording_; }
   const ScanEntry& scan(std::size_t scan_index) const { return recording_.scans.at(scan_index); }
-  const std::string& name() const { return recording_.name; }
+  const std::string& name() const { return recording_.name.text(); }
   std::size_t size() const { return recording_.scans.size(); }
   const std::string& stem(std::size_t scan_index) const { return scan(scan_index).stem; }
   bool has_truth(std::size_t scan_index) const { return scan(scan_index).has_truth; }

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
-#include <set>
 #include <vector>
 
 #include "datasets/files/errors.hpp"
 #include "datasets/files/files.hpp"
+#include "datasets/files/json_text.hpp"
 #include "datasets/files/nearest_name.hpp"
 #include "datasets/simulator/scene_fields.hpp"
 #include "datasets/simulator/sensor_model.hpp"
@@ -191,35 +191,6 @@ void read(const Json& value, Record& record, const FieldRule&, const Place& plac
     }
   });
   check_record(record, place);
-}
-
-// The JSON library keeps one of two equal keys; a scene that says two things says nothing.
-class RepeatedKeys {
- public:
-  explicit RepeatedKeys(const std::filesystem::path& file) : file_(file) {}
-
-  bool operator()(int, Json::parse_event_t event, Json& parsed) {
-    if (event == Json::parse_event_t::object_start) open_.emplace_back();
-    if (event == Json::parse_event_t::object_end) open_.pop_back();
-    if (event == Json::parse_event_t::key &&
-        !open_.back().insert(parsed.get<std::string>()).second) {
-      throw DataError(file_, fmt::format("key {} is there twice in one record", shown(parsed)),
-                      "each key once");
-    }
-    return true;
-  }
-
- private:
-  const std::filesystem::path& file_;
-  std::vector<std::set<std::string>> open_;
-};
-
-Json parse_json(std::string_view text, const std::filesystem::path& file) {
-  try {
-    return Json::parse(text, RepeatedKeys(file));
-  } catch (const Json::exception& error) {
-    throw DataError(file, fmt::format("is no JSON ({})", error.what()), "one JSON object");
-  }
 }
 
 Json to_json(const auto& value) { return value; }

@@ -13,6 +13,7 @@
 #include "core/base/thread_pool.hpp"
 #include "datasets/files/errors.hpp"
 #include "datasets/files/files.hpp"
+#include "datasets/files/partial_file.hpp"
 #include "datasets/layouts/helimos_layout.hpp"
 #include "datasets/layouts/layout.hpp"
 #include "datasets/layouts/simulated_origin.hpp"
@@ -50,13 +51,12 @@ SimulatedOrigin origin_of(const SimulateOptions& options, const Scene& scene) {
 /// Returns whether a folder is empty but for the first bytes of the marker, which a killed run may
 /// have left.
 bool holds_nothing(const fs::path& folder) {
-  const std::string partial_marker = std::string(kSimulatedMarker) + ".partial";
   std::error_code error;
   fs::directory_iterator entries(folder, error);
   if (error == std::errc::no_such_file_or_directory) return true;
   if (error) throw DataError(folder, "cannot be listed", "a folder for the simulation");
   return std::all_of(fs::begin(entries), fs::end(entries), [&](const fs::directory_entry& entry) {
-    return entry.path().filename() == partial_marker;
+    return is_partial_of(entry.path().filename(), std::string(kSimulatedMarker));
   });
 }
 
@@ -181,7 +181,7 @@ void simulate(const SimulateOptions& options,
   const std::size_t total = writers.size() * options.scans;
   std::size_t done = 0;
   std::mutex progress_mutex;
-  ThreadPool pool(options.threads > 0 ? options.threads : hardware_threads());
+  ThreadPool pool(options.threads);
   pool.for_ranges(total, 1, [&](std::size_t i, std::size_t, unsigned) {
     const RecordingWriter& writer = writers[i / options.scans];
     const std::size_t scan_index = i % options.scans;

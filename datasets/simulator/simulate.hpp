@@ -6,6 +6,7 @@
 #include <functional>
 #include <string>
 
+#include "core/base/thread_pool.hpp"
 #include "datasets/layouts/dataset.hpp"
 #include "datasets/simulator/scene.hpp"
 
@@ -16,8 +17,8 @@ struct SimulateOptions {
   std::string scene;  ///< name of a built-in scene, or the path of a .json file
   std::size_t scans = 0;
   std::uint64_t seed = 1;
-  std::filesystem::path out;  ///< becomes the data set's root
-  unsigned threads = 0;       ///< 0: as many as the machine has; the files do not depend on it
+  std::filesystem::path out;              ///< becomes the data set's root
+  unsigned threads = hardware_threads();  ///< the files do not depend on it
 };
 
 /// Writes a simulated data set in the layout of a real one, each file atomically and the poses

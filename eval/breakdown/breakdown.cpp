@@ -81,7 +81,7 @@ class Bins {
 };
 
 void add(const ObjectTrack& object, RecallBin& bin) {
-  ++bin.objects;
+  ++bin.count;
   bin.tp += object.found();
   bin.fn += object.points() - object.found();
 }
@@ -133,7 +133,7 @@ std::vector<RecallBin> recall_by_age(const std::vector<ObjectTrack>& objects) {
     for (const Sighting& sighting : object.sightings) {
       const std::size_t age = sighting.scan_index - object.sightings.front().scan_index;
       RecallBin& bin = bins.at(static_cast<double>(age));
-      ++bin.objects;
+      ++bin.count;
       bin.tp += sighting.cluster.found;
       bin.fn += sighting.cluster.points - sighting.cluster.found;
     }

@@ -43,8 +43,8 @@ SequenceBreakdown break_down(const Sequence& sequence, const std::vector<std::si
 
 /// Recall in one bin of objects or of sightings.
 struct RecallBin {
-  std::string name;  ///< "1 to 2 m"
-  std::size_t objects = 0;
+  std::string name;       ///< "1 to 2 m"
+  std::size_t count = 0;  ///< of objects or of sightings
   std::uint64_t tp = 0, fn = 0;
 };
 

@@ -35,10 +35,11 @@ ordered_json bins_json(const std::array<double, size>& edges,
   return json;
 }
 
-ordered_json recall_json(const std::vector<RecallBin>& bins) {
+/// `counted` is what the bins count: objects or sightings.
+ordered_json recall_json(const char* counted, const std::vector<RecallBin>& bins) {
   ordered_json json = ordered_json::array();
   for (const RecallBin& bin : bins) {
-    json.push_back({{"name", bin.name}, {"objects", bin.objects}, {"tp", bin.tp}, {"fn", bin.fn}});
+    json.push_back({{"name", bin.name}, {counted, bin.count}, {"tp", bin.tp}, {"fn", bin.fn}});
   }
   return json;
 }
@@ -100,12 +101,13 @@ std::string bins_text(const char* title, const std::array<double, size>& edges,
   return table.str() + '\n';
 }
 
-std::string recall_text(const char* title, const std::vector<RecallBin>& bins) {
-  TextTable table({{title, TextTable::kLeft}, {"objects"}, {"recall %"}, {"TP"}, {"FN"}});
+std::string recall_text(const char* title, const char* counted,
+                        const std::vector<RecallBin>& bins) {
+  TextTable table({{title, TextTable::kLeft}, {counted}, {"recall %"}, {"TP"}, {"FN"}});
   for (const RecallBin& bin : bins) {
-    if (bin.objects == 0) continue;
+    if (bin.count == 0) continue;
     const double recall = static_cast<double>(bin.tp) / static_cast<double>(bin.tp + bin.fn);
-    table.add_row({bin.name, fmt::format("{}", bin.objects), percent(recall),
+    table.add_row({bin.name, fmt::format("{}", bin.count), percent(recall),
                    fmt::format("{}", bin.tp), fmt::format("{}", bin.fn)});
   }
   return table.str() + '\n';
@@ -157,17 +159,18 @@ std::string false_positives_text(const SequenceBreakdown& breakdown, std::size_t
 }  // namespace
 
 ordered_json to_json(const SequenceBreakdown& breakdown, std::size_t at_most) {
-  ordered_json json = {{"name", breakdown.sequence},
-                       {"scans", breakdown.scans.size()},
-                       {"by_range", bins_json(kRangeEdges_m, breakdown.by_range)},
-                       {"by_height", bins_json(kHeightEdges_m, breakdown.by_height)},
-                       {"by_object_size", recall_json(recall_by_size(breakdown.objects))},
-                       {"by_object_speed", recall_json(recall_by_speed(breakdown.objects))},
-                       {"by_object_age", recall_json(recall_by_age(breakdown.objects))},
-                       {"speed_clock", breakdown.stamped ? "stamps" : "10 Hz assumed"},
-                       {"object_count", breakdown.objects.size()},
-                       {"objects", ordered_json::array()},
-                       {"false_positive_clusters", ordered_json::array()}};
+  ordered_json json = {
+      {"name", breakdown.sequence},
+      {"scans", breakdown.scans.size()},
+      {"by_range", bins_json(kRangeEdges_m, breakdown.by_range)},
+      {"by_height", bins_json(kHeightEdges_m, breakdown.by_height)},
+      {"by_object_size", recall_json("objects", recall_by_size(breakdown.objects))},
+      {"by_object_speed", recall_json("objects", recall_by_speed(breakdown.objects))},
+      {"by_object_age", recall_json("sightings", recall_by_age(breakdown.objects))},
+      {"speed_clock", breakdown.stamped ? "stamps" : "10 Hz assumed"},
+      {"object_count", breakdown.objects.size()},
+      {"objects", ordered_json::array()},
+      {"false_positive_clusters", ordered_json::array()}};
   const std::vector<const ObjectTrack*> sorted = worst_first(breakdown.objects);
   for (std::size_t i = 0; i < std::min(at_most, sorted.size()); ++i) {
     json["objects"].push_back(object_json(breakdown, *sorted[i]));
@@ -192,9 +195,9 @@ std::string breakdown_text(const SequenceBreakdown& breakdown, std::size_t at_mo
                          : "as if scans came at 10 Hz, as not all have rising stamps") +
          bins_text("range", kRangeEdges_m, breakdown.by_range) +
          bins_text("height above sensor", kHeightEdges_m, breakdown.by_height) +
-         recall_text("object size", recall_by_size(breakdown.objects)) +
-         recall_text("object speed", recall_by_speed(breakdown.objects)) +
-         recall_text("scans since first seen", recall_by_age(breakdown.objects)) +
+         recall_text("object size", "objects", recall_by_size(breakdown.objects)) +
+         recall_text("object speed", "objects", recall_by_speed(breakdown.objects)) +
+         recall_text("scans since first seen", "sightings", recall_by_age(breakdown.objects)) +
          objects_text(breakdown, at_most) + false_positives_text(breakdown, at_most);
 }
 

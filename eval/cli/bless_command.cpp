@@ -4,6 +4,9 @@
 #include <memory>
 
 #include "datasets/files/errors.hpp"
+#include "datasets/files/folder_lock.hpp"
+#include "datasets/files/folder_relation.hpp"
+#include "datasets/files/replace_folder.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/statistics/baseline.hpp"
 #include "eval/statistics/paired_runs.hpp"
@@ -16,11 +19,11 @@ constexpr const char* kBlessFooter =
     R"(Copies the results of NEW to BASELINE, so that `mosbench compare` measures against them from now on,
 and prints what changes against the baseline before. What depends on the clock and the machine is left
 out. Commit the folder to accept the results. A baseline of another protocol, method, setting, scans or
-input is replaced only with --even-if.
+input is replaced only with --even-if. Whenever bless is stopped, the old or the new baseline is whole.
 
 Examples:
-  mosbench bless results/runs/room results/baseline/room
-  mosbench bless results/runs/room-10cm results/baseline/room --even-if)";
+  mosbench bless results/runs/highway results/baseline/highway-online
+  mosbench bless results/runs/highway-10cm results/baseline/highway-online --even-if)";
 
 struct BlessFlags {
   std::filesystem::path newer, baseline;
@@ -51,6 +54,9 @@ std::string change(const BlessFlags& options, const ResultSet& newer) {
 
 std::string bless(const BlessFlags& options) {
   const ResultSet newer = load_result_set(options.newer);
+  refuse_overlap(newer, options.baseline);
+  restore_folder(resolved(options.baseline));
+  const FolderLock lock(options.baseline);
   const std::string text = change(options, newer);
   accept_baseline(newer, options.baseline);
   return text +

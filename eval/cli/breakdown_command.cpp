@@ -34,7 +34,7 @@ struct BreakdownFlags {
   std::optional<std::string> protocol, range, format;
   ReadingOptions reading;
   std::size_t top = 10;
-  unsigned threads = 0;
+  unsigned threads = hardware_threads();
   bool json = false;
 };
 
@@ -43,7 +43,7 @@ BreakdownTask settle(const BreakdownFlags& options, const Dataset& dataset) {
       protocol_named(options.protocol.value_or(std::string(default_preset(dataset.kind).protocol)));
   return {&protocol,
           options.range ? range_option(*options.range, protocol) : protocol.default_range,
-          options.threads > 0 ? options.threads : hardware_threads()};
+          options.threads};
 }
 
 std::vector<SequenceBreakdown> all_breakdowns(const BreakdownFlags& options, const Dataset& dataset,

@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cstdlib>
 #include <nlohmann/json.hpp>
+#include <vector>
 
 #include "eval/results/answer_text.hpp"
 
@@ -11,21 +14,25 @@ namespace {
 
 using nlohmann::ordered_json;
 
+/// Returns the bins of which anything is seen at the precision that is printed.
 std::string ranges_text(const SequenceCheckup& sequence) {
   std::size_t returns = 0;
   for (const std::size_t points : sequence.points_of_range) returns += points;
-  std::string text;
+  std::vector<std::string> bins;
   double from_m = 0.0;
   for (std::size_t bin = 0; bin < sequence.points_of_range.size(); ++bin) {
     const double share = returns == 0 ? 0.0
                                       : 100.0 * static_cast<double>(sequence.points_of_range[bin]) /
                                             static_cast<double>(returns);
     const bool last = bin + 1 == sequence.points_of_range.size();
-    text += fmt::format("{}{:g}{} m {:.1f} %", text.empty() ? "" : ", ", from_m,
-                        last ? "+" : fmt::format("-{:g}", range_bins_m()[bin]), share);
+    constexpr double kShown = 0.05;
+    if (share >= kShown) {
+      bins.push_back(fmt::format("{:g}{} m {:.1f} %", from_m,
+                                 last ? "+" : fmt::format("-{:g}", range_bins_m()[bin]), share));
+    }
     from_m = range_bins_m()[bin];
   }
-  return text;
+  return bins.empty() ? "no returns" : fmt::format("{}", fmt::join(bins, ", "));
 }
 
 std::string ids_text(const SequenceCheckup& sequence) {
@@ -36,37 +43,84 @@ std::string ids_text(const SequenceCheckup& sequence) {
   return text.empty() ? "none read" : text;
 }
 
-std::string poses_text(const SequenceCheckup& sequence) {
-  if (!sequence.poses) return "  overlap         not measured: too few scans or points\n";
-  const PoseMeasurement& measured = *sequence.poses;
-  std::string text = fmt::format(
-      "  overlap         {:.2f} as given, {:.2f} after moving scans by {:.2f} m (median)\n",
-      measured.given.overlap, measured.given.best_overlap, measured.given.median_correction_m);
-  for (std::size_t i = 0; i < measured.scores.size(); ++i) {
-    const ConventionScore& score = measured.scores[i];
-    const std::string what = score.pairs == 0 ? "cannot be decided from these scans"
-                                              : fmt::format("{:.2f} against {:.2f} as given",
-                                                            score.overlap, score.given_overlap);
-    text += fmt::format("                  {}, if the poses were {}\n", what,
-                        sequence.conventions[i].name);
+/// Returns whether the measured motions contradict one another.
+bool cannot_be_told(const PoseDiagnosis& poses) { return poses.disagreement > 1.0; }
+
+std::string names_text(const std::vector<std::string>& names) {
+  constexpr std::size_t kShown = 3;
+  const auto shown = static_cast<std::ptrdiff_t>(std::min(kShown, names.size()));
+  std::string text = fmt::format("{}", fmt::join(names.begin(), names.begin() + shown, "; "));
+  if (names.size() > kShown) text += fmt::format("; and {} more", names.size() - kShown);
+  return text;
+}
+
+/// Says how near the nearest other convention comes, and which ones no motion tells apart.
+std::string conventions_text(const PoseDiagnosis& poses) {
+  std::vector<std::string> not_told;
+  std::size_t tried = 0, nearest = 0;
+  for (std::size_t i = 0; i < poses.scores.size(); ++i) {
+    if (std::abs(poses.conventions[i].rows_later) > 1) continue;
+    if (poses.scores[i].pairs == 0) {
+      not_told.push_back(poses.conventions[i].name);
+    } else if (++tried == 1 || poses.scores[i].off_m < poses.scores[nearest].off_m) {
+      nearest = i;
+    }
+  }
+  std::string text;
+  if (tried > 0) {
+    text += fmt::format(
+        "  conventions     {} others tried: the nearest ({}) is {:.2f} m off the scans' motion, "
+        "the given one {:.2f} m\n",
+        tried, poses.conventions[nearest].name, poses.scores[nearest].off_m,
+        poses.scores[nearest].given_off_m);
+  }
+  if (!not_told.empty()) {
+    text += fmt::format("  not checked     {} (the same motions here)\n", names_text(not_told));
   }
   return text;
 }
 
+std::string poses_text(const SequenceCheckup& sequence) {
+  if (!sequence.poses) {
+    return fmt::format(
+        "  overlap         not measured: {}\n",
+        sequence.is_partly_turned ? "the scans do not fit one another" : "too few scans or points");
+  }
+  const PoseDiagnosis& poses = *sequence.poses;
+  std::string text = fmt::format(
+      "  overlap         {:.2f} as given, {:.2f} after moving scans by {:.2f} m (median over {} "
+      "scans)\n",
+      poses.overlap, poses.best_overlap, poses.median_correction_m, poses.scans_read);
+  text += conventions_text(poses);
+  if (cannot_be_told(poses)) {
+    text +=
+        "                  scans overlap too little to measure their motion well: small faults "
+        "cannot be told\n";
+  }
+  return text;
+}
+
+std::string truth_text(const SequenceCheckup& sequence) {
+  if (!sequence.truth || sequence.truth->moving == 0) return "";
+  const TruthCheck& truth = *sequence.truth;
+  return fmt::format(
+      "  moving labels   {:.0f} % of their points leave their place within a second, {:.1f} % of "
+      "the static ones\n",
+      100.0 * truth.moving_leaves, 100.0 * truth.still_leaves);
+}
+
 std::string sequence_text(const SequenceCheckup& sequence) {
-  std::string text =
-      fmt::format("{}: {} scans, {} labelled, {} read\n", sequence.name, sequence.scans,
-                  sequence.labelled_scans,
-                  sequence.scans_read + (sequence.poses ? sequence.poses->scans_read : 0));
+  std::string text = fmt::format("{}: {} scans, {} labelled\n", sequence.name, sequence.scans,
+                                 sequence.labelled_scans);
   for (const auto& [what, how] : sequence.reading) text += fmt::format("  {:<16}{}\n", what, how);
   for (const std::string& remark : sequence.remarks)
     text += fmt::format("  note            {}\n", remark);
-  text += fmt::format("  returns         {} of {} points; {} NaN or infinite\n",
+  text += fmt::format("  returns         {} of {} points in {} scans; {} NaN or infinite\n",
                       sequence.points - sequence.zero_points - sequence.nonfinite_points,
-                      sequence.points, sequence.nonfinite_points);
+                      sequence.points, sequence.scans_read, sequence.nonfinite_points);
   text += fmt::format("  range           {}\n  label ids       {}\n", ranges_text(sequence),
                       ids_text(sequence));
-  return text + poses_text(sequence);
+  return text + poses_text(sequence) + truth_text(sequence);
 }
 
 std::string verdict(const Checkup& checkup, const std::string& input) {
@@ -80,14 +134,20 @@ std::string verdict(const Checkup& checkup, const std::string& input) {
            "Then\n  mosbench run " +
            input + "\n";
   }
-  return "Verdict: nothing wrong was found. Next\n  mosbench run " + input + "\n";
+  const bool unsure = std::ranges::any_of(checkup.sequences, [](const SequenceCheckup& sequence) {
+    return sequence.poses && !sequence.poses->fits && cannot_be_told(*sequence.poses) &&
+           sequence.poses->overlap < sequence.poses->best_overlap;
+  });
+  return fmt::format("Verdict: nothing wrong was found{}. Next\n  mosbench run {}\n",
+                     unsure ? "; whether the poses fit cannot be told from these scans" : "",
+                     input);
 }
 
 const char* severity_text(Severity severity) {
   return severity == Severity::kError ? "error" : "warning";
 }
 
-ordered_json to_json(const SequenceCheckup& sequence) {
+ordered_json checkup_json(const SequenceCheckup& sequence) {
   ordered_json json = {{"name", sequence.name},
                        {"scans", sequence.scans},
                        {"labelled_scans", sequence.labelled_scans},
@@ -98,25 +158,35 @@ ordered_json to_json(const SequenceCheckup& sequence) {
                        {"remarks", sequence.remarks},
                        {"label_ids", ordered_json::object()},
                        {"points_of_range", sequence.points_of_range},
-                       {"poses", nullptr}};
+                       {"poses", nullptr},
+                       {"truth", nullptr}};
   for (const auto& [what, how] : sequence.reading) json["reading"][what] = how;
   for (const auto& [id, points] : sequence.points_of_id) {
     json["label_ids"][std::to_string(id)] = points;
   }
+  json["measures"] = sequence.measures;
   if (!sequence.poses) return json;
-  ordered_json poses = {{"overlap", sequence.poses->given.overlap},
-                        {"best_overlap", sequence.poses->given.best_overlap},
-                        {"median_correction_m", sequence.poses->given.median_correction_m},
+  ordered_json poses = {{"overlap", sequence.poses->overlap},
+                        {"best_overlap", sequence.poses->best_overlap},
+                        {"median_correction_m", sequence.poses->median_correction_m},
+                        {"unsound", sequence.poses->unsound},
+                        {"disagreement", sequence.poses->disagreement},
                         {"conventions", ordered_json::array()}};
   for (std::size_t i = 0; i < sequence.poses->scores.size(); ++i) {
     const ConventionScore& score = sequence.poses->scores[i];
-    poses["conventions"].push_back({{"name", sequence.conventions[i].name},
+    poses["conventions"].push_back({{"name", sequence.poses->conventions[i].name},
                                     {"pairs", score.pairs},
-                                    {"pairs_better", score.pairs_better},
-                                    {"overlap", score.overlap},
-                                    {"given_overlap", score.given_overlap}});
+                                    {"gain", score.gain},
+                                    {"off_m", score.off_m},
+                                    {"given_off_m", score.given_off_m}});
   }
   json["poses"] = poses;
+  if (!sequence.truth) return json;
+  json["truth"] = {{"moving_points", sequence.truth->moving},
+                   {"static_points", sequence.truth->still},
+                   {"moving_leaves", sequence.truth->moving_leaves},
+                   {"static_leaves", sequence.truth->still_leaves},
+                   {"purity", sequence.truth->purity}};
   return json;
 }
 
@@ -140,7 +210,7 @@ std::string checkup_json(const Checkup& checkup) {
                        {"symptoms", ordered_json::array()}};
   if (checkup.kind) json["dataset"] = std::string(to_string(*checkup.kind));
   for (const SequenceCheckup& sequence : checkup.sequences) {
-    json["sequences"].push_back(to_json(sequence));
+    json["sequences"].push_back(checkup_json(sequence));
   }
   for (const Symptom& symptom : checkup.symptoms) {
     json["symptoms"].push_back({{"severity", severity_text(symptom.severity)},

@@ -7,7 +7,7 @@
 namespace mosbench {
 
 /// What `mosbench doctor` prints: per sequence what was seen, then what is wrong, the verdict and
-/// the command to run next on `input`.
+/// the command to run next on `input`, words of a shell.
 std::string checkup_text(const Checkup& checkup, const std::string& input);
 std::string checkup_json(const Checkup& checkup);
 

@@ -25,8 +25,18 @@ constexpr const char* kProgramFooter = R"(Examples:
   mosbench list protocols
 
 Exit codes: 0 done, 1 done and the finding is bad (a regression, a warning), 2 wrong usage or
-configuration, 3 unusable files, 70 a fault of mosbench itself.
+configuration, 3 unusable files or too little memory or threads, 70 a fault of mosbench itself.
 `mosbench help COMMAND` shows the flags of a command with examples.)";
+
+/// Otherwise `run DATA --out --json` would write into a folder "--json".
+void refuse_flags_as_values(CLI::App& command) {
+  const auto complaint = [](const std::string& value) {
+    return value.starts_with("--") ? value + " is a flag, expected a value" : std::string();
+  };
+  for (CLI::Option* option : command.get_options()) {
+    if (option->nonpositional() && option->get_items_expected_max() > 0) option->check(complaint);
+  }
+}
 
 /// The parser of the program, and what runs each of its commands.
 struct Program {
@@ -48,6 +58,7 @@ struct Program {
       CLI::App* command = app.add_subcommand(std::string(row.name), std::string(row.help));
       command->group("Commands");
       runs[command] = row.add(*command);
+      refuse_flags_as_values(*command);
     }
   }
 };
@@ -64,9 +75,11 @@ std::string as_setting(const CLI::App& command, std::string flag) {
   if (command.get_option_no_throw("--set") == nullptr) return {};
   flag.erase(0, flag.find_first_not_of('-'));
   std::ranges::replace(flag, '-', '_');
-  for (const Setting& setting : methods().front().defaults.all()) {
-    if (setting.name.starts_with(flag)) {
-      return fmt::format("a setting of the method: --set {}=...", setting.name);
+  for (const MethodKind& method : methods()) {
+    for (const Setting& setting : method.defaults.all()) {
+      if (setting.name.starts_with(flag)) {
+        return fmt::format("a setting of {}: --set {}=...", method.name, setting.name);
+      }
     }
   }
   return {};

@@ -23,8 +23,8 @@ setting, scans or input are refused; --even-if compares the scans that both have
 Exit codes: 0 pass, 1 regression, 2 wrong usage, 3 unusable or unlike results.
 
 Examples:
-  mosbench compare results/baseline/room results/runs/room
-  mosbench compare results/baseline/room results/runs/room --max-drop 0.1 --json)";
+  mosbench compare results/baseline/highway-online results/runs/highway
+  mosbench compare results/baseline/highway-online results/runs/highway --max-drop 0.1 --json)";
 
 struct CompareFlags {
   std::filesystem::path baseline, newer;

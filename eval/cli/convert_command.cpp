@@ -4,10 +4,12 @@
 #include <memory>
 #include <optional>
 
+#include "core/base/thread_pool.hpp"
 #include "datasets/files/errors.hpp"
 #include "datasets/layouts/convert.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/cli/dataset_flags.hpp"
+#include "eval/cli/odometry_flags.hpp"
 #include "eval/results/progress.hpp"
 #include "eval/runs/run_plan.hpp"
 
@@ -24,14 +26,17 @@ Examples:
   mosbench convert ~/doals/station/sequence_1 --layout semantickitti --out ~/doals-kitti
   mosbench convert ~/doals --sequences 1,2 --layout doals --out ~/doals-bin
   mosbench convert sim/doals --layout doals-bag --compression lz4 --out sim/bags
-  mosbench convert ~/kitti --sequences 08 --poses suma.txt --layout semantickitti --out ~/kitti-suma)";
+  mosbench convert ~/kitti --sequences 08 --poses suma.txt --layout semantickitti --out ~/kitti-suma
+  mosbench convert ~/folder-with-a-bag --odometry simple --layout semantickitti --out ~/posed)";
 
 struct ConvertFlags {
   std::filesystem::path input;
   std::string dataset = "auto", layout;
   std::vector<std::string> sequences;
   ReadingOptions reading;
+  OdometryOptions odometry;
   ConvertOptions conversion;
+  unsigned threads = hardware_threads();
 };
 
 std::string convert_dataset(ConvertFlags options) {
@@ -39,8 +44,17 @@ std::string convert_dataset(ConvertFlags options) {
   conversion.writing.as_bag = options.layout == "doals-bag";
   conversion.layout =
       conversion.writing.as_bag ? DatasetKind::kDoals : *dataset_kind_from_string(options.layout);
-  const Dataset dataset = open_dataset(
+  const std::optional<OdometryChoice> odometry = named_odometry(options.odometry, options.reading);
+  options.reading.poses_by_odometry = odometry.has_value();
+  Dataset dataset = open_dataset(
       options.input, {dataset_kind_option(options.dataset), options.sequences, options.reading});
+  if (odometry) {
+    const OdometryChoice choice = with_filter(*odometry, options.odometry, dataset.kind);
+    expect_poses(dataset, choice);
+    conversion.before_sequence = [&dataset, choice, &options](std::size_t i) {
+      find_poses(*dataset.sequences[i], choice, options.threads);
+    };
+  }
   std::optional<Progress> progress;
   std::size_t scans = 0;
   convert(dataset, conversion, [&](std::size_t done, std::size_t total) {
@@ -67,6 +81,8 @@ CommandRun add_convert(CLI::App& command) {
   command.add_option("--compression", options->conversion.writing.compression, "Of the bag")
       ->capture_default_str()
       ->check(CLI::IsMember({"none", "lz4", "bz2"}));
+  add_odometry_flags(command, options->odometry);
+  add_threads_flag(command, options->threads);
   command.footer(kConvertFooter);
   return [options] { return Answer{convert_dataset(*options)}; };
 }

@@ -1,8 +1,11 @@
 #include "eval/cli/dataset_flags.hpp"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <functional>
 
+#include "datasets/files/errors.hpp"
+#include "datasets/files/text.hpp"
 #include "eval/results/reading_json.hpp"
 #include "eval/runs/run_plan.hpp"
 
@@ -20,7 +23,10 @@ void add_choice(CLI::App& command, const std::string& flag, const std::vector<st
 }
 
 void add_pose_flags(CLI::App& command, ReadingOptions& options) {
-  command.add_option("--poses", options.poses, "Pose file to take instead of the sequence's own")
+  command
+      .add_option(
+          "--poses", options.poses,
+          "Pose file to take instead of the sequence's own, or a folder with one per sequence")
       ->type_name("FILE")
       ->group(kReadingGroup);
   add_choice(
@@ -30,11 +36,40 @@ void add_pose_flags(CLI::App& command, ReadingOptions& options) {
       [&](const std::string& name) { options.pose_format = pose_format_from_string(name); });
   add_choice(command, "--pose-frame", {"lidar", "camera"},
              "Sensor that the poses are of; Tr of calib.txt turns those of the camera into the "
-             "lidar's (default: camera if calib.txt has a Tr and the poses are KITTI rows)",
+             "lidar's (default: camera if calib.txt has a Tr and the poses are KITTI rows, unless "
+             "`mosbench odometry` wrote them)",
              [&](const std::string& name) { options.pose_frame = pose_frame_named(name).value(); });
   add_choice(command, "--pose-direction", {"map-from-sensor", "sensor-from-map"},
              "sensor-from-map poses are inverted (default: sensor-from-map for dynablox only)",
              [&](const std::string& name) { options.poses_inverse = poses_inverse_named(name); });
+  command
+      .add_option("--max-pose-gap-s", options.max_pose_gap_s,
+                  "Scans between stamped poses farther apart are left out")
+      ->type_name("SECONDS")
+      ->check([](const std::string& text) {
+        const auto gap_s = parse_double(text);
+        return gap_s && *gap_s >= 0.0 ? "" : text + " is no time, expected seconds";
+      })
+      ->capture_default_str()
+      ->group(kReadingGroup);
+}
+
+void add_deskew_flags(CLI::App& command, ReadingOptions& options) {
+  add_choice(command, "--point-times", {"column", "azimuth"},
+             "When points were measured: fifth column of .bin files, in seconds after the stamp, a "
+             "field of .pcd and .ply files, or "
+             "azimuth as KITTI's sensor turns (default: what a bag says)",
+             [&](const std::string& name) { options.point_times = point_times_named(name); });
+  add_choice(command, "--deskew", {"none", "velocity", "poses"},
+             "Move points that have times to where the sensor saw them at the stamp, by the motion "
+             "since the scan before or by the poses around (default: poses; to register scans: "
+             "velocity)",
+             [&](const std::string& name) { options.deskew = deskew_named(name); });
+  command
+      .add_flag_callback(
+          "--raw-scans", [&] { options.deskew = Deskew::kNone; }, "The same as --deskew none")
+      ->excludes("--deskew")
+      ->group(kReadingGroup);
 }
 
 void add_scan_flags(CLI::App& command, ReadingOptions& options) {
@@ -44,15 +79,17 @@ void add_scan_flags(CLI::App& command, ReadingOptions& options) {
   command.add_option("--map-frame", options.map_frame, "Map frame in the tf tree of a bag")
       ->type_name("FRAME")
       ->group(kReadingGroup);
-  command
-      .add_flag_callback(
-          "--raw-scans", [&] { options.undistort = false; }, "Do not undistort the scans of a bag")
-      ->group(kReadingGroup);
+  add_deskew_flags(command, options);
   command
       .add_option("--bin-columns", options.bin_columns,
-                  "float32 per point in .bin files: 4, or 5 as in nuScenes")
+                  "float32 per point in .bin files: 4, or 5 (ring of nuScenes, times)")
       ->check(CLI::IsMember({4, 5}))
       ->group(kReadingGroup);
+}
+
+void add_reading_flags(CLI::App& command, ReadingOptions& options) {
+  add_scan_flags(command, options);
+  add_pose_flags(command, options);
 }
 
 }  // namespace
@@ -65,7 +102,7 @@ void add_dataset_flags(CLI::App& command, std::filesystem::path& input, std::str
 
 void add_scan_dataset_flags(CLI::App& command, std::filesystem::path& input, std::string& dataset,
                             std::vector<std::string>& sequences, ReadingOptions& reading) {
-  command.add_option("DATA", input, "Root of a data set, or one sequence folder")
+  command.add_option("DATA", input, "Root of a data set, one sequence folder, or a bag")
       ->type_name("DIR")
       ->required();
   add_dataset_kind_flag(command, dataset);
@@ -74,6 +111,32 @@ void add_scan_dataset_flags(CLI::App& command, std::filesystem::path& input, std
       ->delimiter(',')
       ->allow_extra_args(false);
   add_scan_flags(command, reading);
+}
+
+std::vector<std::string> reading_names() {
+  ReadingOptions reading;
+  CLI::App command;
+  add_reading_flags(command, reading);
+  std::vector<std::string> names;
+  for (const CLI::Option* option : command.get_options()) {
+    if (option->get_group() != kReadingGroup) continue;
+    std::string& name = names.emplace_back(option->get_name().substr(2));
+    std::ranges::replace(name, '-', '_');
+  }
+  return names;
+}
+
+ReadingOptions reading_of(std::vector<std::string> flags) {
+  ReadingOptions reading;
+  CLI::App command;
+  add_reading_flags(command, reading);
+  std::ranges::reverse(flags);  // as CLI11 expects them
+  try {
+    command.parse(std::move(flags));
+  } catch (const CLI::ParseError& error) {
+    throw UsageError(error.what());
+  }
+  return reading;
 }
 
 void add_dataset_kind_flag(CLI::App& command, std::string& dataset) {

@@ -18,10 +18,16 @@ void add_dataset_flags(CLI::App& command, std::filesystem::path& input, std::str
 void add_scan_dataset_flags(CLI::App& command, std::filesystem::path& input, std::string& dataset,
                             std::vector<std::string>& sequences, ReadingOptions& reading);
 
+/// Returns what flags of the group Reading say, without a command. Throws UsageError.
+ReadingOptions reading_of(std::vector<std::string> flags);
+
+/// Returns the names of these flags in the words of Python: "pose_frame".
+std::vector<std::string> reading_names();
+
 /// Adds --dataset alone.
 void add_dataset_kind_flag(CLI::App& command, std::string& dataset);
 
-/// Adds --threads; 0 stands for all.
+/// Adds --threads; without it, `threads` stays as it is.
 void add_threads_flag(CLI::App& command, unsigned& threads);
 
 }  // namespace mosbench

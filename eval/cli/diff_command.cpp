@@ -2,7 +2,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cstdio>
 #include <map>
 #include <memory>
 
@@ -13,6 +12,7 @@
 #include "eval/cli/commands.hpp"
 #include "eval/cli/dataset_flags.hpp"
 #include "eval/results/answer_text.hpp"
+#include "eval/results/tell.hpp"
 #include "eval/runs/run_plan.hpp"
 
 namespace mosbench {
@@ -40,8 +40,8 @@ const Sequence* sequence_named(const Dataset& dataset, const std::string& name) 
   for (const auto& sequence : dataset.sequences) {
     if (sequence->name() == name) return sequence.get();
   }
-  fmt::print(stderr, "{}: has no sequence {}; its objects are left out\n", dataset.root.string(),
-             name);
+  tell(
+      fmt::format("{}: has no sequence {}; its objects are left out", dataset.root.string(), name));
   return nullptr;
 }
 
@@ -61,7 +61,7 @@ std::vector<std::size_t> scans_of(const Dataset& dataset, const Sequence& sequen
           "the data set of the runs in --data");
     };
     if (scan == labelled.end()) refuse("no truth");
-    if (row->truth_hash && truth_hash(sequence.read_truth(scan->second)) != row->truth_hash) {
+    if (row->truth_hash && hash_of_labels(sequence.read_truth(scan->second)) != row->truth_hash) {
       refuse("another truth");
     }
     scans.push_back(scan->second);
@@ -69,10 +69,26 @@ std::vector<std::size_t> scans_of(const Dataset& dataset, const Sequence& sequen
   return scans;
 }
 
+/// Throws DataError unless labels are those that a run wrote and counted.
+void check_labels(const Sequence& sequence, const std::vector<std::size_t>& scans,
+                  const OpenedPredictions& opened, const SequenceResult& result) {
+  // Results of `mosbench score` do not say what its labels were.
+  if (result.header.contains("predictions")) return;
+  for (const std::size_t k : scans) {
+    const auto row = std::ranges::find(result.scans, sequence.stem(k), &ScanRow::stem);
+    if (row == result.scans.end() || are_labels_of(*row, opened.labels->read(k))) continue;
+    throw DataError(opened.path / (row->stem + ".label"), "does not give the counts in result.json",
+                    "the label file of that run");
+  }
+}
+
 SequenceBreakdown break_down_run(const Sequence& sequence, const std::vector<std::size_t>& scans,
                                  const ResultSet& run, const BreakdownTask& task) {
   const bool only_sequence = run.sequences.size() == 1;
   const OpenedPredictions opened = open_predictions(run.path, sequence, scans, only_sequence, {});
+  const auto result = std::ranges::find(run.sequences, sequence.name(),
+                                        [](const auto& one) { return one.sequence.text(); });
+  check_labels(sequence, scans, opened, *result);
   return break_down(sequence, scans, *opened.labels, task);
 }
 

@@ -6,6 +6,8 @@
 #include <mosbench/method.hpp>
 #include <span>
 
+#include "datasets/files/errors.hpp"
+#include "datasets/files/nearest_name.hpp"
 #include "datasets/layouts/layout.hpp"
 #include "datasets/simulator/built_in_scenes.hpp"
 #include "eval/cli/commands.hpp"
@@ -20,6 +22,7 @@ namespace {
 constexpr const char* kListFooter = R"(Examples:
   mosbench list
   mosbench list methods
+  mosbench list methods dynablox
   mosbench list presets
   mosbench list datasets)";
 
@@ -64,21 +67,31 @@ std::string default_text(const Setting& setting) {
   return setting.is_set ? to_string(setting.value) : fmt::format("as {}", setting.follows);
 }
 
+/// Returns the unit with which the name of a setting ends; empty for numbers without one.
+std::string unit_of(const Setting& setting) {
+  const std::string_view last = setting.name.substr(setting.name.rfind('_') + 1);
+  constexpr std::string_view kUnits[] = {"m",     "s",      "rad",    "deg",
+                                         "scans", "voxels", "points", "ranges"};
+  return std::ranges::find(kUnits, last) != std::end(kUnits) ? std::string(last) : "";
+}
+
+std::string method_text(const MethodKind& method) {
+  TextTable table({{"  setting", TextTable::kLeft},
+                   {"default"},
+                   {"unit", TextTable::kLeft},
+                   {"legal", TextTable::kLeft},
+                   {"meaning", TextTable::kLeft}});
+  for (const Setting& setting : method.defaults.all()) {
+    table.add_row({fmt::format("  {}", setting.name), default_text(setting), unit_of(setting),
+                   legal_values(setting), std::string(setting.meaning)});
+  }
+  return fmt::format("{}: {}\n{}\n{}\n", method.name, method.summary, method.source, table.str());
+}
+
 std::string methods_text() {
   std::string text;
-  for (const MethodKind& method : methods()) {
-    text += fmt::format("{}: {}\n{}\n", method.name, method.summary, method.source);
-    TextTable table({{"  setting", TextTable::kLeft},
-                     {"default"},
-                     {"legal", TextTable::kLeft},
-                     {"meaning", TextTable::kLeft}});
-    for (const Setting& setting : method.defaults.all()) {
-      table.add_row({fmt::format("  {}", setting.name), default_text(setting),
-                     legal_values(setting), std::string(setting.meaning)});
-    }
-    text += table.str() + "\n";
-  }
-  return text;
+  for (const MethodKind& method : methods()) text += method_text(method);
+  return text + "exec:COMMAND: a program of yours labels the scans, see `mosbench run --help`\n";
 }
 
 std::string protocols_text() {
@@ -131,14 +144,31 @@ std::string list(const std::string& what) {
 }  // namespace
 
 CommandRun add_list(CLI::App& command) {
-  auto what = std::make_shared<std::string>("all");
+  struct Listed {
+    std::string what = "all", name;
+  };
+  auto listed = std::make_shared<Listed>();
   command
-      .add_option("WHAT", *what, "datasets, methods, presets, protocols, scenes, formats or all")
+      .add_option("WHAT", listed->what,
+                  "datasets, methods, presets, protocols, scenes, formats or all")
       ->capture_default_str()
       ->check(CLI::IsMember(
           {"all", "datasets", "methods", "presets", "protocols", "scenes", "formats"}));
+  command.add_option("NAME", listed->name, "One of the methods");
   command.footer(kListFooter);
-  return [what] { return Answer{list(*what)}; };
+  return [listed] {
+    if (listed->name.empty()) return Answer{list(listed->what)};
+    if (listed->what != "methods") {
+      throw UsageError(
+          fmt::format("{}: is one argument too many, expected a name after methods", listed->name));
+    }
+    const MethodKind* method = find_method(listed->name);
+    if (method != nullptr) return Answer{method_text(*method)};
+    std::vector<std::string_view> names;
+    for (const MethodKind& kind : methods()) names.push_back(kind.name);
+    throw UsageError(fmt::format("{}: is no method, expected one of {} (nearest: {})", listed->name,
+                                 fmt::join(names, ", "), nearest_name(listed->name, names)));
+  };
 }
 
 }  // namespace mosbench

@@ -1,6 +1,7 @@
 #include "eval/cli/method_options.hpp"
 
 #include <algorithm>
+#include <cstring>
 
 #include "eval/cli/dataset_flags.hpp"
 
@@ -11,7 +12,7 @@ bool looks_like_assignment(const std::string& argument) {
   const std::size_t equals = argument.find('=');
   if (equals == std::string::npos || equals == 0) return false;
   return std::all_of(argument.begin(), argument.begin() + static_cast<std::ptrdiff_t>(equals),
-                     [](char c) { return c == '_' || (c >= 'a' && c <= 'z'); });
+                     [](char c) { return std::strchr("_.-", c) || (c >= 'a' && c <= 'z'); });
 }
 
 void append_split(const std::string& assignments, std::vector<std::string>& list) {
@@ -53,7 +54,8 @@ void add_method_options(CLI::App& command, RunOptions& options) {
   add_dataset_flags(command, options.input, options.dataset, options.sequences, options.reading);
   command
       .add_option("--method", options.method,
-                  "Method that segments, see `mosbench list methods` (default: hmm-mos)")
+                  "Method that segments, see `mosbench list methods`; for run also A,B or all "
+                  "(default: hmm-mos)")
       ->type_name("METHOD");
   command.add_option("--preset", options.preset, "Published settings (default: by data set)")
       ->type_name("PRESET");

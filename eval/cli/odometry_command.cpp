@@ -7,16 +7,24 @@
 #include "core/base/thread_pool.hpp"
 #include "datasets/files/errors.hpp"
 #include "datasets/files/files.hpp"
-#include "datasets/files/pose_file.hpp"
-#include "datasets/files/pose_list.hpp"
+#include "datasets/files/folder_lock.hpp"
+#include "datasets/sequence/fingerprint.hpp"
+#include "datasets/sequence/pose_frame_mark.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/cli/dataset_flags.hpp"
 #include "eval/cli/method_options.hpp"
+#include "eval/cli/odometry_flags.hpp"
+#include "eval/cli/output_file.hpp"
 #include "eval/results/answer_text.hpp"
-#include "eval/results/progress.hpp"
+#include "eval/results/machine.hpp"
+#include "eval/results/reading_json.hpp"
 #include "eval/results/settings_json.hpp"
+#include "eval/results/shell_text.hpp"
+#include "eval/results/tell.hpp"
+#include "eval/runs/found_poses.hpp"
 #include "eval/runs/odometry_choice.hpp"
 #include "eval/runs/run_plan.hpp"
+#include "mosbench_version.hpp"
 
 namespace mosbench {
 namespace {
@@ -24,11 +32,22 @@ namespace {
 constexpr const char* kOdometryFooter =
     R"(Finds the poses of the scans from the scans alone and writes them: rows of 12 numbers (KITTI), or
 "stamp x y z qx qy qz qw" (TUM) if FILE ends in .tum or --format says so. The map frame is that of the
-first scan. For several sequences FILE is a folder, and each is written to FILE/<sequence>.txt.
+first scan. They are the LiDAR's, also where the data set's own are a camera's: beside KITTI's rows, which
+do not tell, FILE.frame says so to the commands that read FILE. For several sequences FILE is a folder,
+and each is written to FILE/<sequence>.txt with a record in FILE/<sequence>.json. The same command again,
+after a kill, keeps the finished ones and starts the interrupted one again from its first scan.
+
+Scans whose points have times (those of bags, or by --point-times) are corrected for the motion of the
+sensor before they are registered: by the motion since the scan before (--deskew velocity, the default),
+or by the one that a first registration found (poses).
+
+--drop-moving also runs hmm-mos with the preset of the data set; what it finds moving in a scan stays out
+of the map that the next scans are registered to.
 
 A pose is doubtful when registration was not possible, little of the scan overlaps the map, the surfaces
-hardly constrain some motion (corridor, empty field), or the pose lies far off constant velocity.
-Doubtful poses are written anyway, listed in the answer, and make the exit code 1.
+hardly constrain some motion (corridor, empty field), registration from a little beside it settles
+elsewhere (flat ground, too fast), or the pose lies far off constant velocity. Doubtful poses are
+written anyway, listed in the answer, and set the exit code to 1.
 
 Settings: defaults < --preset < --config FILE < --set, as for methods. --json prints them and, per scan,
 the pose, its covariance (rotation in rad, then translation in m, map frame), condition, overlap and
@@ -36,9 +55,10 @@ doubt.
 
 Examples:
   mosbench odometry ~/kitti/sequences/04 -o poses.txt --preset kitti-online
-  mosbench odometry ~/folder-with-a-bag -o poses.tum --set min_range_m=1,max_range_m=60
+  mosbench odometry ~/drive.bag -o poses.tum --set min_range_m=1,max_range_m=60
+  mosbench odometry ~/kitti-raw/0005 -o poses.txt --point-times azimuth --deskew poses
   mosbench odometry ~/kitti/sequences/04 -o kiss.txt --odometry kiss --json > kiss.json
-  mosbench trajectory poses.txt --truth truth.txt)";
+  mosbench trajectory poses.txt --truth ~/kitti/sequences/04 --align origin)";
 
 struct OdometryFlags {
   std::filesystem::path input, out;
@@ -47,111 +67,119 @@ struct OdometryFlags {
   ReadingOptions reading;
   OdometryOptions odometry;
   std::optional<std::string> format;
-  unsigned threads = 0;
+  unsigned threads = hardware_threads();
   bool json = false;
-};
-
-struct FoundPoses {
-  const Sequence& sequence;
-  std::filesystem::path file;
-  std::vector<ScanPose> poses;
 };
 
 bool writes_tum(const OdometryFlags& flags) {
   return flags.format ? *flags.format == "tum" : flags.out.extension() == ".tum";
 }
 
-std::string tum_rows(const Sequence& sequence, const std::vector<ScanPose>& poses) {
-  std::string rows;
-  for (std::size_t k = 0; k < poses.size(); ++k) {
-    const auto stamp_ns = sequence.stamp_ns(k);
-    if (!stamp_ns) {
-      throw UsageError(fmt::format("--format tum: the scans of {} have no stamps, expected kitti",
-                                   sequence.name()));
-    }
-    const Pose& pose = poses[k].map_from_sensor;
-    const Eigen::Quaterniond q = Eigen::Quaterniond(pose.linear()).normalized();
-    const bool negative = *stamp_ns < 0;
-    const std::uint64_t ns =
-        negative ? -static_cast<std::uint64_t>(*stamp_ns) : static_cast<std::uint64_t>(*stamp_ns);
-    rows += fmt::format("{}{}.{:09} {} {} {} {} {} {} {}\n", negative ? "-" : "",
-                        ns / 1'000'000'000, ns % 1'000'000'000, pose.translation().x(),
-                        pose.translation().y(), pose.translation().z(), q.x(), q.y(), q.z(), q.w());
-  }
-  return rows;
+/// What two records must share for their poses to be the same.
+nlohmann::ordered_json record_identity(const Sequence& sequence, const OdometryChoice& choice) {
+  ReadingStatement reading = sequence.reading();
+  for (auto& statement : statement_of(choice)) reading.push_back(std::move(statement));
+  return {
+      {"sequence", sequence.name()},
+      {"reading", to_json(reading)},
+      {"file_stamp", file_stamp(sequence)},
+      {"code", {{"version", std::string(kMosbenchVersion)}, {"compiler", std::string(kCompiler)}}}};
 }
 
-FoundPoses find_poses(const Sequence& sequence, const std::filesystem::path& file,
-                      const OdometryChoice& choice, const OdometryFlags& flags) {
-  Progress progress(fmt::format("{} of {}", choice.kind->title, sequence.name()), sequence.size());
-  const unsigned threads = flags.threads > 0 ? flags.threads : hardware_threads();
+/// The scans of a record that an earlier call left when it had written the pose file, if the same
+/// question was asked and the file still holds these poses.
+std::optional<nlohmann::ordered_json> recorded_scans(const std::filesystem::path& record,
+                                                     const nlohmann::ordered_json& identity,
+                                                     const FoundPoses& none, bool as_tum) {
+  if (!is_there(record) || !is_there(none.file)) return std::nullopt;
+  try {
+    nlohmann::ordered_json json = nlohmann::ordered_json::parse(read_file(record));
+    if (json.at("identity") != identity) return std::nullopt;
+    FoundPoses found{none.sequence, none.file, std::move(json.at("scans"))};
+    const bool whole = found.scans.size() == found.sequence.size();
+    (void)found_text(found, "");  // throws where something is missing
+    if (!whole || pose_rows(found, as_tum) != read_file(found.file)) return std::nullopt;
+    return std::move(found.scans);
+  } catch (const nlohmann::json::exception&) {
+    return std::nullopt;  // not what this program wrote
+  }
+}
+
+/// Whether a file of this name lies beside others: stdout and pipes do not.
+bool lies_in_a_folder(const std::filesystem::path& file) {
+  std::error_code ignored;
+  const auto status = std::filesystem::status(file, ignored);
+  const std::string place = std::filesystem::absolute(file).lexically_normal().string();
+  return file != "-" && !place.starts_with("/dev/") && !place.starts_with("/proc/") &&
+         (!std::filesystem::exists(status) || std::filesystem::is_regular_file(status));
+}
+
+/// KITTI's rows do not say that they are the lidar's, which a calib.txt would take for the
+/// camera's.
+void write_pose_file(const std::filesystem::path& file, const std::string& rows, bool as_tum) {
+  if (!as_tum && lies_in_a_folder(file)) mark_as_lidars(file, rows);
+  write_output(file, rows);
+}
+
+FoundPoses find_poses_of(const Sequence& sequence, const std::filesystem::path& file,
+                         const OdometryChoice& choice, const OdometryFlags& flags) {
   FoundPoses found{sequence, file,
-                   estimate_poses(sequence, choice, threads, [&progress] { progress.advance(); })};
-  write_file_atomic(file, writes_tum(flags) ? tum_rows(sequence, found.poses)
-                                            : format_poses(poses_of(found.poses)));
+                   scans_json(sequence, estimate_poses(sequence, choice, flags.threads))};
+  write_pose_file(file, pose_rows(found, writes_tum(flags)), writes_tum(flags));
   return found;
 }
 
-std::string found_text(const FoundPoses& found, const OdometryChoice& choice) {
-  constexpr std::size_t kListed = 10;
-  const std::size_t doubtful = doubtful_count(found.poses);
-  std::string text =
-      fmt::format("{}: {} poses by {} in {}, {} doubtful\n", found.sequence.name(),
-                  found.poses.size(), choice.kind->title, found.file.string(), doubtful);
-  std::size_t listed = 0;
-  for (std::size_t k = 0; k < found.poses.size() && listed < kListed; ++k) {
-    if (!found.poses[k].doubtful()) continue;
-    text += fmt::format("  scan {}: {}\n", found.sequence.stem(k), found.poses[k].doubt);
-    ++listed;
+/// One of several sequences: with a record beside its poses, so that a call after a kill goes on
+/// with the first sequence that is not finished.
+FoundPoses find_or_keep(const Sequence& sequence, const OdometryChoice& choice,
+                        const OdometryFlags& flags) {
+  const std::filesystem::path stem = flags.out / sequence.name();
+  const std::filesystem::path file = stem.string() + (writes_tum(flags) ? ".tum" : ".txt");
+  const std::filesystem::path record = stem.string() + ".json";
+  const nlohmann::ordered_json identity = record_identity(sequence, choice);
+  if (auto scans = recorded_scans(record, identity, {sequence, file, {}}, writes_tum(flags))) {
+    tell(fmt::format("{}: finished by an earlier call, kept", sequence.name()));
+    return {sequence, file, std::move(*scans)};
   }
-  if (doubtful > listed) text += fmt::format("  and {} more\n", doubtful - listed);
-  return text;
+  FoundPoses found = find_poses_of(sequence, file, choice, flags);
+  commit_file(record, json_text({{"identity", identity}, {"scans", found.scans}}));
+  return found;
 }
 
-template <typename Matrix>
-nlohmann::ordered_json rows_json(const Matrix& matrix) {
-  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
-  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
-    nlohmann::ordered_json& row = rows.emplace_back(nlohmann::ordered_json::array());
-    for (Eigen::Index j = 0; j < matrix.cols(); ++j) row.push_back(matrix(i, j));
-  }
-  return rows;
-}
-
-nlohmann::ordered_json found_json(const FoundPoses& found) {
-  nlohmann::ordered_json scans = nlohmann::ordered_json::array();
-  for (std::size_t k = 0; k < found.poses.size(); ++k) {
-    const ScanPose& pose = found.poses[k];
-    scans.push_back({{"stem", found.sequence.stem(k)},
-                     {"map_from_sensor", rows_json(pose.map_from_sensor.matrix().topRows<3>())},
-                     {"covariance", rows_json(pose.covariance)},
-                     {"geometry", pose.geometry},
-                     {"condition", pose.condition},
-                     {"overlap", pose.overlap},
-                     {"registered_points", pose.registered_points},
-                     {"doubt", pose.doubtful() ? nlohmann::ordered_json(pose.doubt) : nullptr}});
-  }
-  return {{"sequence", found.sequence.name()},
-          {"file", found.file.string()},
-          {"doubtful", doubtful_count(found.poses)},
-          {"scans", scans}};
+/// The command that uses the poses: of the sensor itself, also where the layout's own are a
+/// camera's.
+std::string next_command(const OdometryFlags& flags) {
+  ReadingOptions reading = flags.reading;
+  reading.poses = flags.out;
+  reading.poses_by_odometry = false;
+  reading.pose_frame = PoseFrame::kLidar;
+  return fmt::format("use them with\n  mosbench run {}{}\n", shell_word(flags.input.string()),
+                     told_flags(reading));
 }
 
 Answer odometry_answer(OdometryFlags flags) {
-  const OdometryChoice choice = choose_odometry(flags.odometry);
+  OdometryChoice choice = choose_odometry(flags.odometry, flags.reading);
   flags.reading.poses_by_odometry = true;
   const Dataset dataset = open_dataset(
       flags.input, {dataset_kind_option(flags.dataset), flags.sequences, flags.reading});
+  choice = with_filter(std::move(choice), flags.odometry, dataset.kind);
+  for (const auto& sequence : dataset.sequences) {
+    if (writes_tum(flags)) check_stamps_of_tum(*sequence);
+  }
+  const bool single = dataset.sequences.size() == 1;
+  if (flags.out == "-" && !single) {
+    throw UsageError("-o -: has no room for several sequences, expected a folder");
+  }
+  const std::optional<FolderLock> lock =
+      single ? std::nullopt : std::make_optional<FolderLock>(flags.out);
   std::string text;
   nlohmann::ordered_json sequences = nlohmann::ordered_json::array();
   std::size_t doubtful = 0;
   for (const auto& sequence : dataset.sequences) {
-    const bool single = dataset.sequences.size() == 1;
-    const std::filesystem::path file =
-        single ? flags.out : flags.out / (sequence->name() + (writes_tum(flags) ? ".tum" : ".txt"));
-    const FoundPoses found = find_poses(*sequence, file, choice, flags);
-    doubtful += doubtful_count(found.poses);
-    text += found_text(found, choice);
+    const FoundPoses found = single ? find_poses_of(*sequence, flags.out, choice, flags)
+                                    : find_or_keep(*sequence, choice, flags);
+    doubtful += doubtful_scans(found);
+    text += found_text(found, choice.kind->title);
     if (flags.json) sequences.push_back(found_json(found));
   }
   if (flags.json) {
@@ -159,7 +187,8 @@ Answer odometry_answer(OdometryFlags flags) {
                       {"settings", to_json(choice.settings)},
                       {"sequences", sequences}});
   }
-  return {text, doubtful > 0 ? 1 : 0};
+  if (!flags.json && flags.out != "-") text += next_command(flags);
+  return answer_beside(flags.out, text, doubtful > 0 ? 1 : 0);
 }
 
 }  // namespace
@@ -169,7 +198,8 @@ CommandRun add_odometry(CLI::App& command) {
   add_set_flag(command, flags->odometry.assignments);
   add_scan_dataset_flags(command, flags->input, flags->dataset, flags->sequences, flags->reading);
   command
-      .add_option("-o,--out", flags->out, "File of poses to write; a folder for several sequences")
+      .add_option("-o,--out", flags->out,
+                  "File of poses to write (- is stdout); a folder for several sequences")
       ->type_name("FILE")
       ->required();
   command.add_option("--odometry", flags->odometry.kind, "simple or kiss (default: simple)");
@@ -177,6 +207,7 @@ CommandRun add_odometry(CLI::App& command) {
       ->type_name("PRESET");
   command.add_option("--config", flags->odometry.config_file, "JSON object of settings")
       ->type_name("FILE");
+  add_drop_moving_flag(command, flags->odometry);
   command.add_option("--format", flags->format, "Of the file (default: by its name)")
       ->check(CLI::IsMember({"kitti", "tum"}));
   add_threads_flag(command, flags->threads);

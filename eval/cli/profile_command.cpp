@@ -4,12 +4,14 @@
 #include <limits>
 #include <memory>
 
-#include "datasets/files/files.hpp"
+#include "datasets/files/errors.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/cli/method_options.hpp"
+#include "eval/cli/output_file.hpp"
 #include "eval/cli/profile_report.hpp"
 #include "eval/results/answer_text.hpp"
 #include "eval/results/machine.hpp"
+#include "eval/results/tell.hpp"
 
 namespace mosbench {
 namespace {
@@ -33,22 +35,21 @@ struct ProfileFlags {
   std::optional<std::filesystem::path> json, trace;
 };
 
-void write(const std::optional<std::filesystem::path>& file, const nlohmann::ordered_json& json) {
-  if (!file) return;
-  write_file_atomic(*file, json_text(json));
-}
-
-std::string profile(const ProfileFlags& options) {
+Answer profile(const ProfileFlags& options) {
+  if (options.json == "-" && options.trace == "-") {
+    throw UsageError("--json and --trace: both go to stdout, expected one of them to name a file");
+  }
   keep_freed_memory();
   const RunPlan plan = plan_method(options.method);
-  for (const std::string& note : plan.notes) std::fputs((note + '\n').c_str(), stderr);
+  for (const std::string& note : plan.notes) tell(note);
   std::vector<SequenceProfile> profiles;
   for (const auto& sequence : plan.dataset.sequences) {
     profiles.push_back(profile_sequence(*sequence, plan.settings, options.scans));
   }
-  write(options.json, profile_json(plan, profiles));
-  if (options.trace) write(options.trace, profile_trace(profiles));
-  return profile_text(plan, profiles);
+  if (options.json) write_output(*options.json, json_text(profile_json(plan, profiles)));
+  if (options.trace) write_output(*options.trace, json_text(profile_trace(profiles)));
+  const std::string text = profile_text(plan, profiles);
+  return answer_beside(options.trace == "-" ? "-" : options.json.value_or(""), text);
 }
 
 }  // namespace
@@ -59,10 +60,12 @@ CommandRun add_profile(CLI::App& command) {
   command.add_option("--scans", options->scans, "Only the first N scans of each sequence")
       ->check(CLI::Range(std::size_t{1}, std::size_t{1000000}))
       ->default_str("all");
-  command.add_option("--json", options->json, "Write the numbers to this file")->type_name("FILE");
-  command.add_option("--trace", options->trace, "Write a trace to this file")->type_name("FILE");
+  command.add_option("--json", options->json, "Write the numbers to this file; - is stdout")
+      ->type_name("FILE");
+  command.add_option("--trace", options->trace, "Write a trace to this file; - is stdout")
+      ->type_name("FILE");
   command.footer(kProfileFooter);
-  return [options] { return Answer{profile(*options)}; };
+  return [options] { return profile(*options); };
 }
 
 }  // namespace mosbench

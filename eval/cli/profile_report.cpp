@@ -101,9 +101,11 @@ std::string memory_table(const SequenceProfile& profile) {
   for (std::size_t i = 0; i <= steps; ++i) {
     const std::size_t k = steps == 0 ? 0 : last * i / steps;
     const ScanProfile& scan = profile.scans[k];
-    table.add_row({std::to_string(k), fmt::format("{:.1f}", scan.resident_mib),
-                   fmt::format("{:.1f}", static_cast<double>(scan.method_bytes) / 1048576.0),
-                   std::to_string(scan.map_blocks)});
+    const auto& memory = scan.memory;
+    table.add_row(
+        {std::to_string(k), fmt::format("{:.1f}", scan.resident_mib),
+         memory ? fmt::format("{:.1f}", static_cast<double>(memory->bytes) / 1048576.0) : "n/a",
+         memory ? std::to_string(memory->map_blocks) : "n/a"});
   }
   return table.str();
 }
@@ -157,8 +159,8 @@ ordered_json sequence_json(const SequenceProfile& profile) {
              {"method_wall_ms", scan.method.wall_ms},
              {"method_cpu_ms", scan.method.cpu_ms},
              {"resident_mib", scan.resident_mib},
-             {"method_bytes", scan.method_bytes},
-             {"map_blocks", scan.map_blocks}};
+             {"method_bytes", scan.memory ? ordered_json(scan.memory->bytes) : ordered_json()},
+             {"map_blocks", scan.memory ? ordered_json(scan.memory->map_blocks) : ordered_json()}};
   }
   return {{"sequence", profile.name},
           {"threads", profile.threads},
@@ -234,11 +236,12 @@ ordered_json profile_trace(const std::vector<SequenceProfile>& profiles) {
                         {"pid", process},
                         {"ts", start_us},
                         {"args", {{"resident MiB", scan.resident_mib}}}});
+      if (!scan.memory) continue;
       events.push_back({{"name", "map"},
                         {"ph", "C"},
                         {"pid", process},
                         {"ts", start_us},
-                        {"args", {{"blocks", scan.map_blocks}}}});
+                        {"args", {{"blocks", scan.memory->map_blocks}}}});
     }
   }
   return {{"displayTimeUnit", "ms"}, {"traceEvents", std::move(events)}};

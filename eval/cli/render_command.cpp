@@ -6,8 +6,8 @@
 #include <optional>
 
 #include "datasets/files/errors.hpp"
-#include "datasets/files/files.hpp"
 #include "eval/cli/commands.hpp"
+#include "eval/cli/output_file.hpp"
 #include "eval/protocols/metrics.hpp"
 #include "eval/report/birds_eye.hpp"
 #include "eval/report/scan_choice.hpp"
@@ -36,10 +36,12 @@ struct RenderFlags {
 FoundResult choose_result(const RenderFlags& options) {
   std::vector<FoundResult> results = find_results(options.input);
   std::string names;
-  for (const FoundResult& result : results) names += (names.empty() ? "" : ", ") + result.name;
+  for (const FoundResult& result : results)
+    names += (names.empty() ? "" : ", ") + result.name.text();
   if (options.sequence) {
-    std::erase_if(results,
-                  [&](const FoundResult& result) { return result.name != *options.sequence; });
+    std::erase_if(results, [&](const FoundResult& result) {
+      return result.name.text() != *options.sequence;
+    });
   }
   if (results.size() == 1) return std::move(results.front());
   throw UsageError(fmt::format("{}: holds results of {}, expected --sequence to name one",
@@ -58,7 +60,7 @@ std::size_t choose_scan(const std::string& text, const std::vector<ScanRow>& row
 std::vector<std::string> title_of(const FoundResult& result, std::size_t scan_index) {
   const ScanRow& row = result.file.rows.scans[scan_index];
   std::vector<std::string> lines = {
-      fmt::format("{}, scan {} ({})", result.name, scan_index, row.stem)};
+      fmt::format("{}, scan {} ({})", result.name.text(), scan_index, row.stem)};
   if (row.counts) {
     const auto percent = [](const std::optional<double>& value) {
       return value ? fmt::format("{:.1f} %", 100.0 * *value) : std::string("undefined");
@@ -72,15 +74,16 @@ std::vector<std::string> title_of(const FoundResult& result, std::size_t scan_in
   return lines;
 }
 
-std::string render(RenderFlags& options) {
+Answer render(RenderFlags& options) {
   const FoundResult result = choose_result(options);
   const std::size_t scan_index = choose_scan(options.scan, result.file.rows.scans);
   const ResultScans scans(result, options.dataset_root);
   options.picture.title = title_of(result, scan_index);
   const Picture picture = birds_eye(scans.read(scan_index), options.picture);
-  write_file_atomic(options.out, picture.png());
-  return fmt::format("scan {} of {} in {}\n", result.file.rows.scans[scan_index].stem, result.name,
-                     options.out.string());
+  write_output(options.out, picture.png());
+  return answer_beside(options.out,
+                       fmt::format("scan {} of {} in {}\n", result.file.rows.scans[scan_index].stem,
+                                   result.name.text(), options.out.string()));
 }
 
 }  // namespace
@@ -93,7 +96,9 @@ CommandRun add_render(CLI::App& command) {
   command.add_option("--scan", options->scan, "Number of the scan from 0, or worst")
       ->type_name("K")
       ->required();
-  command.add_option("-o,--out", options->out, "PNG file to write")->type_name("FILE")->required();
+  command.add_option("-o,--out", options->out, "PNG file to write; - is stdout")
+      ->type_name("FILE")
+      ->required();
   command.add_option("--sequence", options->sequence, "Sequence, where RESULT holds several")
       ->type_name("NAME");
   command
@@ -109,7 +114,7 @@ CommandRun add_render(CLI::App& command) {
       ->capture_default_str();
   command.add_flag("--dark", options->picture.dark, "Draw light points on a dark ground");
   command.footer(kRenderFooter);
-  return [options] { return Answer{render(*options)}; };
+  return [options] { return render(*options); };
 }
 
 }  // namespace mosbench

@@ -4,8 +4,8 @@
 #include <memory>
 
 #include "datasets/files/errors.hpp"
-#include "datasets/files/files.hpp"
 #include "eval/cli/commands.hpp"
+#include "eval/cli/output_file.hpp"
 #include "eval/report/report.hpp"
 
 namespace mosbench {
@@ -37,15 +37,15 @@ struct ReportFlags {
   ReportOptions report;
 };
 
-std::string write_report(ReportFlags& options) {
+Answer write_report(ReportFlags& options) {
   options.report.scans = ScanChoice(options.scans);
   const Report report = build_report(options.inputs, options.report);
-  write_file_atomic(options.out, report.html);
+  write_output(options.out, report.html);
   std::string text = fmt::format("report of {} {} in {}, {:.1f} MB\n", report.results,
                                  report.results == 1 ? "result" : "results", options.out.string(),
                                  static_cast<double>(report.html.size()) / 1e6);
   for (const std::string& remark : report.remarks) text += remark + '\n';
-  return text;
+  return answer_beside(options.out, text);
 }
 
 }  // namespace
@@ -55,7 +55,9 @@ CommandRun add_report(CLI::App& command) {
   command.add_option("RESULT", options->inputs, "Folders that `mosbench run` wrote")
       ->type_name("DIR")
       ->required();
-  command.add_option("-o,--out", options->out, "HTML file to write")->type_name("FILE")->required();
+  command.add_option("-o,--out", options->out, "HTML file to write; - is stdout")
+      ->type_name("FILE")
+      ->required();
   command
       .add_option("--data", options->report.dataset_root,
                   "Folder of the data set (default: where the run read it)")
@@ -67,7 +69,7 @@ CommandRun add_report(CLI::App& command) {
       ->check(CLI::Range(0.1, 1000.0))
       ->capture_default_str();
   command.footer(kReportFooter);
-  return [options] { return Answer{write_report(*options)}; };
+  return [options] { return write_report(*options); };
 }
 
 }  // namespace mosbench

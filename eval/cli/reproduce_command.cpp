@@ -5,11 +5,14 @@
 #include <array>
 #include <memory>
 
+#include "core/base/thread_pool.hpp"
 #include "datasets/files/errors.hpp"
 #include "datasets/layouts/simulated_origin.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/cli/dataset_flags.hpp"
+#include "eval/results/tell.hpp"
 #include "eval/runs/run_execute.hpp"
+#include "eval/tables/table_match.hpp"
 #include "eval/tables/table_report.hpp"
 
 namespace mosbench {
@@ -17,9 +20,10 @@ namespace {
 
 constexpr const char* kReproduceFooter =
     R"(Runs HMM-MOS with every setting that the paper's table needs (DOALS: range 20 m and 120 m; HeLiMOS:
-online and delayed by 10 scans), each to OUT/<preset>, and prints the table. The same command again
-keeps what is finished and runs the rest. Part of a data set fills part of the table. Another data set,
-or one without any sequence of the table, is refused (exit code 3).
+online and delayed by 10 scans), each to OUT/<preset>, and every other method of mosbench that has a row in
+the table (DOALS: Dynablox, by its own protocol), to OUT/<preset>-<method>, and prints the table. The same
+command again keeps what is finished and runs the rest. Part of a data set fills part of the table.
+Another data set, or one without any sequence of the table, is refused (exit code 3).
 
 Examples:
   mosbench reproduce doals --data ~/doals
@@ -43,12 +47,32 @@ const Recipe& recipe_named(const std::string& name) {
       fmt::format("reproduce: '{}' is not known, expected doals, sipailou or helimos", name));
 }
 
+/// A method of a table's row, and the protocol of that row.
+struct TableMethod {
+  const MethodKind* kind;
+  std::optional<std::string> protocol;  ///< nothing: that of the preset
+};
+
+/// The paper's method, then every other method of mosbench that has a row in the table.
+std::vector<TableMethod> methods_of(const PaperTable& table,
+                                    const std::vector<PublishedCell>& cells) {
+  std::vector<TableMethod> found = {{&methods().front(), std::nullopt}};
+  for (const PublishedCell& cell : cells) {
+    const MethodKind* kind = cell.table == table.name ? own_method(cell) : nullptr;
+    if (kind == nullptr || std::ranges::find(found, kind, &TableMethod::kind) != found.end()) {
+      continue;
+    }
+    found.push_back({kind, cell.protocol});
+  }
+  return found;
+}
+
 struct ReproduceFlags {
   std::string name;
   std::filesystem::path root;
   std::optional<std::filesystem::path> out;
   std::vector<std::string> sequences;
-  unsigned threads = 0;
+  unsigned threads = hardware_threads();
   std::string format = "markdown";
 };
 
@@ -84,25 +108,38 @@ void check_is_in_table(const ReproduceFlags& options, const Recipe& recipe,
                   fmt::join(wanted, ", "), table.name, table.download));
 }
 
+RunOptions options_of(const ReproduceFlags& options, const std::string& preset,
+                      const TableMethod& method, const std::filesystem::path& out) {
+  const bool is_papers = method.kind == &methods().front();
+  RunOptions run;
+  run.input = options.root;
+  run.dataset = options.name;
+  run.sequences = options.sequences;
+  run.preset = preset;
+  run.method = std::string(method.kind->name);
+  run.protocol = method.protocol;
+  run.out = out / (is_papers ? preset : fmt::format("{}-{}", preset, method.kind->name));
+  run.threads = options.threads;
+  return run;
+}
+
 std::string reproduce(const ReproduceFlags& options) {
   const Recipe& recipe = recipe_named(options.name);
   const PaperTable& table = paper_table_named(recipe.table);
   const TableFormat format = table_format_named(options.format);
   check_is_in_table(options, recipe, table);
   const std::filesystem::path out = options.out.value_or("results/runs/reproduce-" + options.name);
+  const std::vector<PublishedCell> cells = built_in_cells();
   std::vector<ResultSet> runs;
-  for (const std::string& preset : recipe.presets) {
-    RunOptions run;
-    run.input = options.root;
-    run.dataset = options.name;
-    run.sequences = options.sequences;
-    run.preset = preset;
-    run.out = out / preset;
-    run.threads = options.threads;
-    execute_run(plan_run(run));
-    runs.push_back(load_result_set(out / preset));
+  for (const TableMethod& method : methods_of(table, cells)) {
+    for (const std::string& preset : recipe.presets) {
+      const RunOptions run = options_of(options, preset, method, out);
+      tell(fmt::format("method {}, preset {}", method.kind->name, preset));
+      execute_run(plan_run(run));
+      runs.push_back(load_result_set(*run.out));
+    }
   }
-  return table_report(table, built_in_cells(), runs, format);
+  return table_report(table, cells, runs, format);
 }
 
 }  // namespace

@@ -5,7 +5,11 @@
 
 #include "eval/cli/commands.hpp"
 #include "eval/cli/method_options.hpp"
+#include "eval/cli/odometry_flags.hpp"
+#include "eval/cli/run_methods.hpp"
 #include "eval/cli/run_report.hpp"
+#include "eval/results/answer_text.hpp"
+#include "eval/runs/method_choice.hpp"
 #include "eval/runs/run_execute.hpp"
 #include "eval/runs/run_plan.hpp"
 
@@ -19,17 +23,33 @@ DIR/<sequence>/result.json, and prints IoU, precision and recall, if there is tr
 its threshold; larger means more likely to move. `mosbench report` then colours points by it.
 
 The same command again skips the sequences that are finished and starts an interrupted one again
-from its first scan, because the method's memory spans the whole past. A sequence appears under DIR
+from its first scan, because a label may depend on every earlier scan. A sequence appears under DIR
 when it is finished; until then it is written to DIR/<sequence>.partial. Results of other settings,
 another program or other input are kept unless --overwrite is given. DIR may hold sequences of one
-data set, one method and one setting only.
+data set, one method and one setting only. Input counts as the same while names, sizes, inodes and
+times of its files are; otherwise, and with --verify, all of it is read and compared.
+
+--method all, or a list as in dynablox,yoon, runs one method after the other, each to DIR/<method>/<sequence>,
+with the same protocol. all is every method of `mosbench list methods` but hmm-mos-reference. All of it is
+checked before the first scan: a setting of --set, --config or --variant that one of the methods lacks is
+refused; --set METHOD.KEY=VALUE sets one method's. A method that fails then leaves the others as they are;
+the exit code is that of the first failure. `mosbench leaderboard DIR` compares them.
+
+--method exec:COMMAND starts a program of yours for each sequence, hands it the scans with their poses over
+stdin, and takes its labels from stdout (results/FORMATS.md has the messages, tests/examples/exec a
+client in Python and one in C++). In a list it comes last, as the command may hold commas. Finished
+sequences are kept, also when the program behind the command has changed: --overwrite runs them again.
 
 Settings: defaults < --preset < --config FILE < --set. FILE holds a JSON object such as
   {"voxel_size_m": 0.25, "max_range_m": 50.0, "delay_scans": 10}
 `mosbench list methods` shows all settings, `mosbench list presets` the presets.
 
 --odometry finds the poses before the method sees a scan and writes them to DIR/<sequence>/poses.txt;
-its settings are part of the configuration. Poses that it doubts are named in the remarks.
+its settings are part of the configuration. Poses that it doubts are counted on stderr and in the
+remarks, in capitals where they are the most; unlike that of `mosbench odometry`, the exit code stays 0,
+because the labels are written. With
+--drop-moving the method runs, online, beside the odometry, and what it finds moving in a scan stays
+out of the map that the next scans are registered to.
 
 Examples:
   mosbench run ~/sipailou-livox-kitti
@@ -37,28 +57,19 @@ Examples:
   mosbench run ~/HeLiMOS/KAIST05/Deskewed_LiDAR --preset helimos-delayed --protocol helimos-test
   mosbench run ~/kitti/sequences/08 --set max_range_m=30,voxel_size_m=0.2 --out results/runs/08-near
   mosbench run ~/kitti/sequences/08 --scores --out results/runs/08-scores
-  mosbench run ~/folder-with-a-bag --odometry simple --odometry-set min_range_m=1
+  mosbench run ~/kitti/sequences/08 --method all --out results/runs/08
+  mosbench run ~/kitti/sequences/08 --method hmm-mos,dynablox --set max_range_m=30,dynablox.level=point
+  mosbench run ~/kitti/sequences/08 --method "exec:python3 my_network.py" --set timeout_s=120
+  mosbench run ~/drive.bag --odometry simple --odometry-set min_range_m=1
+  mosbench run ~/kitti-raw/0005 --point-times azimuth --deskew poses
   mosbench run sim/00 --config near.json --variant release-2025 --threads 4 --json)";
 
-void add_odometry_flags(CLI::App& command, OdometryOptions& odometry) {
-  constexpr const char* kGroup = "Poses found from the scans";
-  command
-      .add_option("--odometry", odometry.kind,
-                  "simple or kiss: find the poses instead of reading them")
-      ->group(kGroup);
-  command.add_option("--odometry-preset", odometry.preset, "Settings that its authors published")
-      ->group(kGroup);
-  command.add_option("--odometry-config", odometry.config_file, "JSON object of its settings")
-      ->group(kGroup);
-  command.add_option("--odometry-set", odometry.assignments, "key=value, one per flag")
-      ->allow_extra_args(false)
-      ->group(kGroup);
-}
-
-std::string run(const RunOptions& options) {
+Answer run(const RunOptions& options) {
+  if (options.method && names_several_methods(*options.method)) return run_methods(options);
   const RunPlan plan = plan_run(options);
   const std::vector<SequenceOutcome> outcomes = execute_run(plan);
-  return options.json ? run_report_json(plan, outcomes) : run_report_text(plan, outcomes);
+  return {options.json ? json_text(run_report_json(plan, outcomes))
+                       : run_report_text(plan, outcomes)};
 }
 
 }  // namespace
@@ -70,18 +81,21 @@ CommandRun add_run(CLI::App& command) {
       ->type_name("PROTOCOL");
   command
       .add_option("--range", options->range,
-                  "In metres, for protocols that limit it (default: that of the run)")
+                  "Scoring range in metres, for protocols with a limit (default: the method's)")
       ->type_name("MIN,MAX");
   command
       .add_option("--out", options->out,
-                  "Folder of the results (default: results/runs/<data>-<preset>-<variant>)")
+                  "Folder of the results (default: results/runs/<data>-<preset>-<variant>, with "
+                  "--odometry also -<kind>)")
       ->type_name("DIR");
   add_odometry_flags(command, options->odometry);
   command.add_flag("--scores", options->scores, "Also write the score of every point");
   command.add_flag("--overwrite", options->overwrite, "Run again and replace what is in --out");
+  command.add_flag("--verify", options->verify,
+                   "Read all input of finished sequences again, not only its sizes and times");
   command.add_flag("--json", options->json, "Print JSON instead of a table");
   command.footer(kRunFooter);
-  return [options] { return Answer{run(*options)}; };
+  return [options] { return run(*options); };
 }
 
 }  // namespace mosbench

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "eval/results/answer_text.hpp"
+#include "eval/protocols/protocol_list.hpp"
 #include "eval/results/settings_json.hpp"
 #include "eval/results/simulated.hpp"
 #include "eval/tables/score_table.hpp"
@@ -36,13 +36,9 @@ std::string method_line(const RunPlan& plan) {
 
 std::string protocol_line(const RunPlan& plan) {
   const Protocol& protocol = *plan.settings.protocol;
-  const RangeGate& range = plan.settings.range;
-  std::string line = fmt::format("protocol {}: {}", protocol.name, protocol.summary);
-  if (protocol.range_rule != RangeRule::kNone) {
-    line += range.max_m > 0 ? fmt::format(" ({:g} to {:g} m)", range.min_m, range.max_m)
-                            : fmt::format(" (from {:g} m)", range.min_m);
-  }
-  return line;
+  const std::string range = counted_range_text(protocol, plan.settings.range);
+  return fmt::format("protocol {}: {}{}", protocol.name, protocol.summary,
+                     range.empty() ? "" : " (" + range + ")");
 }
 
 }  // namespace
@@ -53,7 +49,7 @@ std::string run_report_text(const RunPlan& plan, const std::vector<SequenceOutco
                   plan.dataset.root.string(), method_line(plan), protocol_line(plan));
   text += benchmark_remark(*plan.settings.protocol, plan.dataset.splits);
   text += simulated_remark(plan.dataset);
-  text += '\n' + format_rows(*plan.settings.protocol, rows_of(plan, outcomes)) + '\n';
+  text += '\n' + format_rows(rows_of(plan, outcomes)) + '\n';
   for (std::size_t i = 0; i < outcomes.size(); ++i) {
     for (const std::string& remark : outcomes[i].remarks) {
       text += fmt::format("{}: {}\n", plan.dataset.sequences[i]->name(), remark);
@@ -62,7 +58,8 @@ std::string run_report_text(const RunPlan& plan, const std::vector<SequenceOutco
   return text + fmt::format("results in {}\n", plan.out.string());
 }
 
-std::string run_report_json(const RunPlan& plan, const std::vector<SequenceOutcome>& outcomes) {
+nlohmann::ordered_json run_report_json(const RunPlan& plan,
+                                       const std::vector<SequenceOutcome>& outcomes) {
   nlohmann::ordered_json json = {{"dataset", std::string(to_string(plan.dataset.kind))},
                                  {"method", std::string(plan.settings.method->name)},
                                  {"preset", plan.preset},
@@ -78,7 +75,7 @@ std::string run_report_json(const RunPlan& plan, const std::vector<SequenceOutco
     json["sequences"][i]["reused"] = outcomes[i].reused;
     json["sequences"][i]["remarks"] = outcomes[i].remarks;
   }
-  return json_text(json);
+  return json;
 }
 
 }  // namespace mosbench

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@ namespace mosbench {
 std::string run_report_text(const RunPlan& plan, const std::vector<SequenceOutcome>& outcomes);
 
 /// The same as one JSON object.
-std::string run_report_json(const RunPlan& plan, const std::vector<SequenceOutcome>& outcomes);
+nlohmann::ordered_json run_report_json(const RunPlan& plan,
+                                       const std::vector<SequenceOutcome>& outcomes);
 
 }  // namespace mosbench

@@ -2,9 +2,11 @@
 
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <optional>
 
 #include "core/base/thread_pool.hpp"
 #include "datasets/files/errors.hpp"
+#include "datasets/files/folder_lock.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/cli/dataset_flags.hpp"
 #include "eval/protocols/benchmark_split.hpp"
@@ -123,7 +125,6 @@ std::string score(const ScoreFlags& options) {
       options.input, {dataset_kind_option(options.dataset), options.sequences, options.reading});
   ScoreTask task = options.task;
   task.options = prediction_options(options);
-  if (task.threads == 0) task.threads = hardware_threads();
   if (options.protocol == "all") {
     if (task.split) keep_split(*task.split, dataset);
     return score_all(options, dataset, std::move(task));
@@ -132,6 +133,11 @@ std::string score(const ScoreFlags& options) {
   const bool split_asked = task.split.has_value();
   task.split = settle_split(task, dataset);
   if (task.split) keep_split(*task.split, dataset);
+  std::optional<FolderLock> lock;
+  if (options.out) {
+    lock.emplace(*options.out);
+    check_scored_folders(dataset, *options.out);
+  }
   const std::vector<SequenceScores> scores = score_dataset(dataset, task);
   if (options.out) write_scores(dataset, task, options.method, scores, *options.out);
   return options.json ? score_json(dataset, task, scores, !split_asked)
@@ -142,11 +148,11 @@ void add_prediction_options(CLI::App& command, ScoreFlags& options) {
   command.add_option("--predictions", options.task.predictions, "Folder or file of predictions")
       ->type_name("PATH")
       ->required();
-  command.add_option("--format", options.format, "Of the predictions (default: recognised)")
+  command.add_option("--format", options.format, "Format of the predictions (default: recognised)")
       ->type_name("FORMAT");
   command
       .add_option("--mask", options.mask,
-                  "Range in metres that the method cut its labels by (default: found out)")
+                  "Range in metres within which the method wrote labels (default: detected)")
       ->type_name("MIN,MAX");
   command
       .add_option("--id-map", options.id_map, "Meaning of the predicted ids, such as 0:0,1:9,2:251")
@@ -161,7 +167,7 @@ void add_prediction_options(CLI::App& command, ScoreFlags& options) {
 
 CommandRun add_score(CLI::App& command) {
   auto options = std::make_shared<ScoreFlags>();
-  options->task.threads = 0;
+  options->task.threads = hardware_threads();
   add_dataset_flags(command, options->input, options->dataset, options->sequences,
                     options->reading);
   add_prediction_options(command, *options);

@@ -1,13 +1,13 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <cstdio>
 #include <memory>
 #include <optional>
 
 #include "datasets/files/errors.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/results/answer_text.hpp"
+#include "eval/results/tell.hpp"
 #include "eval/statistics/statistics_report.hpp"
 
 namespace mosbench {
@@ -17,8 +17,8 @@ constexpr const char* kStatsFooter =
     R"(RUN and SECOND are folders that `mosbench run` or `mosbench score --out` wrote, or single result.json
 files. With one run: IoU, precision, recall and F1 of each sequence and of all, with 95 % intervals.
 With two: what the second changes, paired scan by scan, with interval, p-value and the smallest change
-that this number of scans can show. The runs may differ in method and setting; protocol, scans and
-truth must be the same.
+that this number of scans can show. The runs may differ in method, setting and poses; protocol, scans
+and truth must be the same.
 
 Examples:
   mosbench stats results/runs/kitti
@@ -37,7 +37,7 @@ struct StatsFlags {
 std::string of_one(const StatsFlags& options) {
   const ResultSet set = load_result_set(options.first);
   if (options.csv) {
-    for (const std::string& warning : warnings(set)) std::fputs((warning + '\n').c_str(), stderr);
+    for (const std::string& warning : warnings(set)) tell(warning);
     return scan_table_csv(set);
   }
   if (options.json) return json_text(statistics_json(set, options.per_scan));
@@ -53,9 +53,10 @@ std::string of_two(const StatsFlags& options) {
   PairedRuns paired = pair_runs(first, second);
   std::erase_if(paired.unlike,
                 [](const Unlike& unlike) { return unlike.kind == Unlike::Kind::kSetting; });
-  if (!paired.unlike.empty()) {
-    throw DataError(second.path,
-                    "is not like " + first.path.string() + ": " + unlike_text(paired.unlike),
+  std::vector<Unlike> refused = paired.unlike;
+  std::erase_if(refused, [](const Unlike& unlike) { return unlike.kind == Unlike::Kind::kPoses; });
+  if (!refused.empty()) {
+    throw DataError(second.path, "is not like " + first.path.string() + ": " + unlike_text(refused),
                     "the same protocol, scans and truth");
   }
   return options.json ? json_text(difference_json(first, second, paired))

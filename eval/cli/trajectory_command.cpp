@@ -7,7 +7,10 @@
 #include "datasets/files/calib_file.hpp"
 #include "datasets/files/errors.hpp"
 #include "eval/cli/commands.hpp"
+#include "eval/cli/output_file.hpp"
+#include "eval/cli/trajectory_plot.hpp"
 #include "eval/results/answer_text.hpp"
+#include "eval/trajectory/path_comparison.hpp"
 #include "eval/trajectory/trajectory_scores.hpp"
 
 namespace mosbench {
@@ -15,22 +18,31 @@ namespace {
 
 constexpr const char* kTrajectoryFooter =
     R"(ESTIMATE and TRUTH are files of poses (KITTI: 12 numbers a row; TUM: stamp and quaternion; Dynablox
-rollouts), or two folders with files of the same names. Rows are paired by stamps if both files have
-them, else one by one.
+rollouts), folders with files of the same names as `mosbench odometry` writes them, folders of `mosbench run
+--odometry`, or data sets, whose poses are the LiDAR's. Rows are paired by stamps if both sides have them,
+else one by one.
 
 Prints the errors of KITTI's odometry benchmark, those of segments of 5 to 50 m for paths that are too
 short for it, and the absolute and relative pose errors (APE, RPE). Every answer states the alignment.
 
-The truth of KITTI is in the camera frame. For an estimate in the LiDAR frame add
+With OTHER, a second estimate of the same poses, also prints how much better or worse it is: differences
+paired by segments, their 95 % intervals and p-values, and the difference that as many poses would show.
+
+--plot draws the paths from above and the distance to the truth over the way, as PNG; of folders with
+several sequences to FILE/<sequence>.png.
+
+A poses.txt of KITTI is in the camera frame. For an estimate in the LiDAR frame add
   --camera truth --calib calib.txt
 
 Examples:
-  mosbench trajectory poses.txt --truth truth.txt
+  mosbench trajectory poses.txt --truth ~/kitti/sequences/04
   mosbench trajectory results --truth poses --camera truth --calib dataset/sequences/00/calib.txt
+  mosbench trajectory simple.txt kiss.txt --truth truth.txt --align origin --plot paths.png
   mosbench trajectory poses.tum --truth truth.tum --align rigid --delta-m 10 --all-pairs)";
 
 struct TrajectoryFlags {
   std::filesystem::path estimate, truth;
+  std::optional<std::filesystem::path> other, plot;
   std::optional<std::filesystem::path> calib;
   std::string camera = "neither", alignment = "none";
   std::optional<std::string> format;
@@ -53,27 +65,90 @@ TrajectoryOptions trajectory_options(const TrajectoryFlags& flags) {
   return options;
 }
 
-std::string trajectory_answer(const TrajectoryFlags& flags) {
+/// The estimates of all sequences with their scores.
+struct ScoredEstimates {
+  std::vector<TrajectoryPair> pairs;
+  std::vector<TrajectoryScore> scores;
+};
+
+ScoredEstimates scored_estimates(const std::filesystem::path& estimates,
+                                 const TrajectoryFlags& flags, const ScoringRules& rules) {
+  ScoredEstimates scored{read_trajectory_pairs(estimates, flags.truth, trajectory_options(flags)),
+                         {}};
+  for (const TrajectoryPair& pair : scored.pairs) scored.scores.push_back(score_of(pair, rules));
+  return scored;
+}
+
+std::string answer_of_one(const ScoredEstimates& one, const TrajectoryFlags& flags,
+                          const ScoringRules& rules) {
+  if (flags.csv) return trajectory_csv(one.scores);
+  if (flags.json) return json_text(trajectory_json(one.scores, rules, flags.per_pose));
+  return trajectory_text(one.scores, rules);
+}
+
+std::string answer_of_two(const ScoredEstimates& first, const ScoredEstimates& second,
+                          const TrajectoryFlags& flags, const ScoringRules& rules) {
+  check_same_truth(first.pairs, second.pairs);
+  const std::vector<PathDifference> differences = compare_paths(first.scores, second.scores);
+  if (flags.csv) return path_differences_csv(differences);
+  if (flags.json) {
+    return json_text({{"first", trajectory_json(first.scores, rules, flags.per_pose)},
+                      {"second", trajectory_json(second.scores, rules, flags.per_pose)},
+                      {"confidence", kConfidence},
+                      {"difference", path_differences_json(differences)}});
+  }
+  return fmt::format("first: {}\n{}\nsecond: {}\n{}\n{}", flags.estimate.string(),
+                     trajectory_text(first.scores, rules), flags.other->string(),
+                     trajectory_text(second.scores, rules), path_differences_text(differences));
+}
+
+void write_plots(const std::vector<TrajectoryScore>& first,
+                 const std::vector<TrajectoryScore>* second, const std::filesystem::path& out,
+                 PathAlignment alignment) {
+  for (std::size_t s = 0; s < first.size(); ++s) {
+    std::vector<const TrajectoryScore*> estimates = {&first[s]};
+    if (second != nullptr) estimates.push_back(&(*second)[s]);
+    write_output(first.size() == 1 ? out : out / (first[s].name + ".png"),
+                 trajectory_plot(estimates, alignment).png());
+  }
+}
+
+void check_plot(const TrajectoryFlags& flags) {
+  for (const auto& input : {flags.estimate, flags.truth, flags.other.value_or("")}) {
+    std::error_code ignored;
+    if (!std::filesystem::equivalent(input, *flags.plot, ignored)) continue;
+    throw UsageError("--plot " + flags.plot->string() + ": is a file of poses, expected another");
+  }
+}
+
+Answer trajectory_answer(const TrajectoryFlags& flags) {
+  if (flags.other && flags.relative.delta_m) {
+    throw UsageError(
+        "--delta-m: cuts each estimate by its own path, expected --delta for two estimates");
+  }
+  if (flags.plot) check_plot(flags);
   const ScoringRules rules{.alignment = *path_alignment_from_string(flags.alignment),
                            .relative = flags.relative};
-  std::vector<TrajectoryScore> scores;
-  for (const TrajectoryPair& pair :
-       read_trajectory_pairs(flags.estimate, flags.truth, trajectory_options(flags))) {
-    scores.push_back(score_of(pair, rules));
-  }
-  if (flags.csv) return trajectory_csv(scores);
-  if (flags.json) return json_text(trajectory_json(scores, rules, flags.per_pose));
-  return trajectory_text(scores, rules);
+  const ScoredEstimates first = scored_estimates(flags.estimate, flags, rules);
+  std::optional<ScoredEstimates> second;
+  if (flags.other) second = scored_estimates(*flags.other, flags, rules);
+  const std::string text =
+      second ? answer_of_two(first, *second, flags, rules) : answer_of_one(first, flags, rules);
+  if (!flags.plot) return {text};
+  write_plots(first.scores, second ? &second->scores : nullptr, *flags.plot, rules.alignment);
+  return answer_beside(*flags.plot, text);
 }
 
 }  // namespace
 
 CommandRun add_trajectory(CLI::App& command) {
   auto flags = std::make_shared<TrajectoryFlags>();
-  command.add_option("ESTIMATE", flags->estimate, "File or folder of estimated poses")
+  command.add_option("ESTIMATE", flags->estimate, "File or folder of estimated poses, or data set")
       ->type_name("PATH")
       ->required();
-  command.add_option("--truth", flags->truth, "File or folder of true poses")
+  command.add_option("OTHER", flags->other, "Second file or folder of estimated poses, to compare")
+      ->type_name("PATH");
+  command.add_option("--truth", flags->truth, "File or folder of true poses, or data set")
       ->type_name("PATH")
       ->required();
   command.add_option("--align", flags->alignment, "Alignment before APE and RPE (default: none)")
@@ -101,10 +176,14 @@ CommandRun add_trajectory(CLI::App& command) {
       ->excludes(scans);
   command.add_flag("--all-pairs", flags->relative.all, "Start a pair of RPE at every pose");
   command.add_flag("--per-pose", flags->per_pose, "With --json: errors of every pose and segment");
-  command.add_flag("--csv", flags->csv, "Print the absolute errors of every pose as CSV");
+  command.add_option("--plot", flags->plot, "PNG file to draw the paths and their errors to")
+      ->type_name("FILE");
+  command.add_flag(
+      "--csv", flags->csv,
+      "Print the absolute errors of every pose as CSV; of two estimates the differences");
   command.add_flag("--json", flags->json, "Print JSON instead of a table");
   command.footer(kTrajectoryFooter);
-  return [flags] { return Answer{trajectory_answer(*flags)}; };
+  return [flags] { return trajectory_answer(*flags); };
 }
 
 }  // namespace mosbench

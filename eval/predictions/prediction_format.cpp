@@ -26,6 +26,8 @@ constexpr std::array kFormats = {
                     "intensity 0 or 1 (KTH) or a label id (ERASOR) per point"},
     DescribedFormat{Format::kCsv, "csv", ".csv", true,
                     "a row per point with a column label (id) or moving (0 or 1)"},
+    DescribedFormat{Format::kNpy, "npy", ".npy", true,
+                    "a confidence 0 to 1 per point, moving above 0.5 (4DMOS, also in its folders)"},
     DescribedFormat{Format::kRows, "rows", "", false,
                     "scan number from 1, then its moving points: HMM-MOS on DOALS"},
     DescribedFormat{Format::kIndices, "indices", ".csv", false,

@@ -15,6 +15,7 @@ enum class PredictionFormat : std::uint8_t {
   kText,
   kPcd,
   kCsv,
+  kNpy,
   kRows,
   kIndices,
   kDynabloxClouds,

@@ -1,5 +1,7 @@
 #include "eval/predictions/prediction_place.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <fstream>
@@ -7,6 +9,7 @@
 #include <system_error>
 
 #include "datasets/files/errors.hpp"
+#include "datasets/files/folder_listing.hpp"
 #include "datasets/files/text.hpp"
 
 namespace mosbench {
@@ -15,13 +18,15 @@ namespace {
 
 using Format = PredictionFormat;
 
-/// Above any scan number, below any stamp in ns since 1970 (this is 17 minutes after midnight).
-constexpr std::uint64_t kSmallestStamp_ns = 1'000'000'000'000;
+/// No sequence has as many scans, and as many ns (10 ms) no two scans are apart.
+constexpr std::uint64_t kMostScans = 10'000'000;
 
 std::vector<fs::path> candidate_folders(const fs::path& root, const std::string& name,
                                         bool only_sequence) {
   std::vector<fs::path> folders = {root / name / "predictions", root / name / "labels", root / name,
                                    root / "sequences" / name / "predictions"};
+  // 4DMOS's confidences.
+  for (const fs::path& parent : {root / "confidences", root}) folders.push_back(parent / name);
   if (only_sequence) {
     folders.insert(folders.end(), {root / "predictions", root / "labels", root});
   }
@@ -36,15 +41,31 @@ std::string first_line(const fs::path& file) {
   return line.substr(0, line.find('\n'));
 }
 
-/// Recognises the format of a file for a whole sequence by its first line; nullopt for others, such
-/// as a README.
+/// Returns the number that each line begins with; stops at the first line that does not.
+std::vector<std::uint64_t> first_numbers(const fs::path& file) {
+  std::vector<std::uint64_t> numbers;
+  std::ifstream stream(file, std::ios::binary);
+  for (std::string line; std::getline(stream, line);) {
+    const auto number = parse_unsigned(trim(std::string_view(line).substr(0, line.find(','))));
+    if (!number) break;
+    numbers.push_back(*number);
+  }
+  return numbers;
+}
+
+/// Recognises the format of a file for a whole sequence; nullopt for others, such as a README.
+/// Rows begin with scan numbers from 1, indices with stamps in ns, which may begin at 0.
 std::optional<Format> format_of_file(const fs::path& file) {
+  std::error_code ignored;
+  if (!fs::is_regular_file(file, ignored)) return std::nullopt;  // a FIFO may never have a line
   const std::string line = first_line(file);
   if (line.starts_with("CloudNo")) return Format::kDynabloxClouds;
   if (line.find("EvaluatedPoints") != std::string::npos) return Format::kDynabloxScores;
-  const auto number = parse_unsigned(trim(std::string_view(line).substr(0, line.find(','))));
-  if (!number) return std::nullopt;
-  return *number >= kSmallestStamp_ns ? Format::kIndices : Format::kRows;
+  const std::vector<std::uint64_t> numbers = first_numbers(file);
+  if (numbers.empty()) return std::nullopt;
+  const bool are_stamps = std::ranges::any_of(
+      numbers, [](std::uint64_t number) { return number == 0 || number > kMostScans; });
+  return are_stamps ? Format::kIndices : Format::kRows;
 }
 
 /// Recognises the format of a file that the user named; reading it reports what is wrong with it.
@@ -124,6 +145,8 @@ std::optional<PredictionPlace> recognise_in(const fs::path& folder, const Sequen
   if (const auto labels = files_with_extension(folder, ".label"); !labels.empty()) {
     return PredictionPlace{folder, label_format(labels, sequence)};
   }
+  if (!prediction_files({folder, Format::kNpy}).empty())
+    return PredictionPlace{folder, Format::kNpy};
   constexpr std::array kPerScan = {std::pair{".pcd", Format::kPcd},
                                    std::pair{".txt", Format::kText},
                                    std::pair{".csv", Format::kCsv}};
@@ -140,7 +163,7 @@ std::optional<PredictionPlace> recognise_in(const fs::path& folder, const Sequen
 std::optional<PredictionPlace> find_format_in(const fs::path& folder, PredictionFormat format) {
   const DescribedFormat& wanted = describe(format);
   if (wanted.per_scan) {
-    if (files_with_extension(folder, wanted.extension).empty()) return std::nullopt;
+    if (prediction_files({folder, format}).empty()) return std::nullopt;
     return PredictionPlace{folder, format};
   }
   const auto table = table_in(folder, format);
@@ -158,6 +181,15 @@ bool is_truth(const fs::path& path, const Sequence& sequence) {
 
 }  // namespace
 
+void check_positions(const fs::path& path, const Sequence& sequence) {
+  const std::size_t left_out = sequence.recording().left_out.size();
+  if (left_out == 0) return;
+  throw DataError(path,
+                  fmt::format("names scans by their position, and {} of sequence {} are left out",
+                              left_out, sequence.name()),
+                  "files named like the scans, or poses for all scans");
+}
+
 std::vector<fs::path> files_with_extension(const fs::path& folder, std::string_view extension) {
   std::error_code error;
   std::vector<fs::path> files;
@@ -169,10 +201,29 @@ std::vector<fs::path> files_with_extension(const fs::path& folder, std::string_v
   return files;
 }
 
+std::vector<NamedFile> prediction_files(const PredictionPlace& place) {
+  std::vector<NamedFile> files;
+  const std::string_view extension = describe(place.format).extension;
+  for (const fs::path& file : files_with_extension(place.path, extension)) {
+    files.push_back({file.stem().string(), file});
+  }
+  if (place.format != Format::kNpy || !files.empty()) return files;
+  for (const fs::path& folder : list_folders(place.path)) {
+    const std::string scan = folder.filename().string();
+    for (const fs::path& file : files_with_extension(folder, extension)) {
+      if (file.filename().string().starts_with(scan + "_dt_")) files.push_back({scan, file});
+    }
+  }
+  return files;
+}
+
 PredictionPlace find_predictions(const fs::path& root, const Sequence& sequence, bool only_sequence,
                                  std::optional<PredictionFormat> format) {
   std::optional<PredictionPlace> found;
   std::error_code error;
+  if (!fs::exists(root, error)) {
+    throw DataError(root, "does not exist", "a folder or file of predictions");
+  }
   for (const char* extension : {".txt", ".csv"}) {
     const fs::path file = root / (sequence.name() + extension);
     if (!found && fs::is_regular_file(file, error)) {

@@ -22,6 +22,20 @@ struct PredictionPlace {
 PredictionPlace find_predictions(const std::filesystem::path& root, const Sequence& sequence,
                                  bool only_sequence, std::optional<PredictionFormat> format);
 
+/// A file of predictions with the name by which its scan is found.
+struct NamedFile {
+  std::string stem;
+  std::filesystem::path file;
+};
+
+/// Lists the files per scan of a place. 4DMOS keeps confidences in a folder per scan, in which
+/// SCAN_dt_*.npy are those for earlier scans as well; the scan's own, without delay, is listed.
+std::vector<NamedFile> prediction_files(const PredictionPlace& place);
+
+/// Throws DataError where predictions that name scans by position may mean other ones, because some
+/// are left out.
+void check_positions(const std::filesystem::path& path, const Sequence& sequence);
+
 /// Lists the files of `folder` with this extension, without hidden ones, sorted; empty when the
 /// folder cannot be read.
 std::vector<std::filesystem::path> files_with_extension(const std::filesystem::path& folder,

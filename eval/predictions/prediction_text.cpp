@@ -155,7 +155,7 @@ std::vector<DynabloxCounts> parse_dynablox_counts(std::string_view text, Dynablo
                       fmt::format("{}", kColumns));
     }
     const auto at = [&](std::size_t column) { return number_at(fields, column, lines[i], file); };
-    DynabloxCounts score{.stamp_ns = at(0), .counts = {}, .total_points = at(kColumns - 1)};
+    DynabloxCounts score{.counts = {}, .total_points = at(kColumns - 1)};
     score.counts.tp = at(tp);
     score.counts.tn = at(tp + 1);
     score.counts.fp = at(tp + 2);
@@ -174,6 +174,18 @@ std::vector<DynabloxCounts> parse_dynablox_counts(std::string_view text, Dynablo
     scores.push_back(score);
   }
   return scores;
+}
+
+std::vector<std::uint64_t> parse_dynablox_stamps_ns(std::string_view text, const fs::path& file) {
+  const std::vector<TextLine> lines = lines_with_header(text, file);
+  if (split_at_commas(lines.front().text).front() != "timestamp") {
+    throw DataError(file, 1, "does not begin with timestamp", "the header that Dynablox writes");
+  }
+  std::vector<std::uint64_t> stamps_ns;
+  for (std::size_t i = 1; i < lines.size(); ++i) {
+    stamps_ns.push_back(number_at(split_at_commas(lines[i].text), 0, lines[i], file));
+  }
+  return stamps_ns;
 }
 
 }  // namespace mosbench

@@ -33,7 +33,6 @@ std::vector<std::vector<std::uint32_t>> parse_dynablox_clouds(std::string_view t
 
 /// Counts in a row of Dynablox's scores.csv.
 struct DynabloxCounts {
-  std::uint64_t stamp_ns = 0;
   Confusion counts;
   std::uint64_t total_points = 0;
 };
@@ -41,5 +40,10 @@ struct DynabloxCounts {
 /// Throws DataError with the line, also when the counts do not add up to EvaluatedPoints.
 std::vector<DynabloxCounts> parse_dynablox_counts(std::string_view text, DynabloxLevel level,
                                                   const std::filesystem::path& file);
+
+/// Parses the first column of Dynablox's scores.csv, whatever levels it evaluated. Throws DataError
+/// with the line.
+std::vector<std::uint64_t> parse_dynablox_stamps_ns(std::string_view text,
+                                                    const std::filesystem::path& file);
 
 }  // namespace mosbench

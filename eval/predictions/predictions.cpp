@@ -13,26 +13,61 @@
 namespace mosbench {
 namespace {
 
+/// Positions first to last in a list, both inclusive.
+struct Run {
+  std::size_t first, last;
+};
+
+/// Returns where `is_in` holds without a gap.
+template <typename Condition>
+std::vector<Run> runs_of(std::size_t size, const Condition& is_in) {
+  std::vector<Run> runs;
+  for (std::size_t i = 0; i < size; ++i) {
+    if (!is_in(i)) continue;
+    if (!runs.empty() && runs.back().last + 1 == i) {
+      runs.back().last = i;
+    } else {
+      runs.push_back({i, i});
+    }
+  }
+  return runs;
+}
+
+DataError no_rows(const PredictionPlace& place, const std::string& first, const std::string& last) {
+  const std::string scans = first == last ? "scan " + first : "scans " + first + " to " + last;
+  return {place.path, "has no row for " + scans, "a row for every scan with truth"};
+}
+
+DataError no_files(const std::filesystem::path& first, const std::filesystem::path& last) {
+  const std::string wrong = first == last ? "is not there"
+                                          : fmt::format("is not there, nor what follows up to {}",
+                                                        last.filename().string());
+  return {first, wrong, "a prediction for every scan with truth"};
+}
+
+/// Returns the stems of wanted scans without prediction and reports each stretch of them.
 std::vector<std::string> missing_scans(const Predictions& labels, const PredictionPlace& place,
                                        const Sequence& sequence,
                                        const std::vector<std::size_t>& wanted,
                                        PredictionErrors& errors) {
-  std::vector<std::string> missing;
   const DescribedFormat& format = describe(place.format);
-  for (const std::size_t k : wanted) {
-    if (labels.has(k)) continue;
-    missing.push_back(sequence.stem(k));
-    if (!format.per_scan) {
-      errors.report(DataError(place.path, "has no row for scan " + sequence.stem(k),
-                              "a row for every scan with truth"));
-      continue;
-    }
+  const auto stem = [&](std::size_t i) { return sequence.stem(wanted[i]); };
+  const auto file = [&](std::size_t i) {
     const bool by_position = place.format == PredictionFormat::kLabelByIndex;
-    const std::string name = by_position ? fmt::format("{:06d}", k) : sequence.stem(k);
-    const std::filesystem::path file = place.path / (name + std::string(format.extension));
-    // A file that exists was bad, which has been reported.
-    if (is_there(file)) continue;
-    errors.report(DataError(file, "is not there", "a prediction for every scan with truth"));
+    const std::string name = by_position ? fmt::format("{:06d}", wanted[i]) : stem(i);
+    return place.path / (name + std::string(format.extension));
+  };
+  // A file that exists was bad, which has been reported.
+  const auto is_unreported = [&](std::size_t i) {
+    return !labels.has(wanted[i]) && !(format.per_scan && is_there(file(i)));
+  };
+  for (const Run& run : runs_of(wanted.size(), is_unreported)) {
+    errors.report(format.per_scan ? no_files(file(run.first), file(run.last))
+                                  : no_rows(place, stem(run.first), stem(run.last)));
+  }
+  std::vector<std::string> missing;
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    if (!labels.has(wanted[i])) missing.push_back(stem(i));
   }
   return missing;
 }
@@ -66,6 +101,11 @@ LabelIdMap parse_id_map(const std::string& text) {
       "--id-map: '{}' is no map of ids, expected FROM:TO,... such as 0:0,1:9,2:251", text));
 }
 
+DataError OpenedPredictions::with_format(const DataError& error) const {
+  return DataError(fmt::format("{} (read in format {}{})", error.what(), describe(format).name,
+                               guessed ? ", recognised; --format overrides" : ""));
+}
+
 OpenedPredictions open_predictions(const std::filesystem::path& root, const Sequence& sequence,
                                    const std::vector<std::size_t>& wanted, bool only_sequence,
                                    const PredictionOptions& options) {
@@ -73,10 +113,14 @@ OpenedPredictions open_predictions(const std::filesystem::path& root, const Sequ
   place.format = settle_format(place.format, options);
   PredictionErrors errors(options.allow_missing);
   OpenedPredictions opened{nullptr, place.format, !options.format, place.path, {}, {}};
-  opened.labels = describe(place.format).per_scan
-                      ? open_scan_files(place, sequence, wanted, options, errors, opened.remarks)
-                      : open_sequence_file(place, sequence, options, errors);
-  opened.missing = missing_scans(*opened.labels, place, sequence, wanted, errors);
+  try {
+    opened.labels = describe(place.format).per_scan
+                        ? open_scan_files(place, sequence, wanted, options, errors, opened.remarks)
+                        : open_sequence_file(place, sequence, options, errors);
+    opened.missing = missing_scans(*opened.labels, place, sequence, wanted, errors);
+  } catch (const DataError& error) {
+    throw opened.with_format(error);
+  }
   opened.remarks.insert(opened.remarks.end(), errors.texts().begin(), errors.texts().end());
   return opened;
 }

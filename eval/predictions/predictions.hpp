@@ -6,10 +6,13 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "datasets/files/errors.hpp"
 #include "datasets/sequence/sequence.hpp"
+#include "eval/predictions/predicted_ids.hpp"
 #include "eval/predictions/prediction_format.hpp"
 #include "eval/predictions/prediction_text.hpp"
 #include "eval/protocols/protocol.hpp"
@@ -38,6 +41,8 @@ class Predictions {
   virtual std::vector<std::uint32_t> read(std::size_t scan_index) const = 0;
   /// Returns the scan's counts for formats that hold counts instead of labels.
   virtual std::optional<Confusion> counts(std::size_t) const { return std::nullopt; }
+  /// Returns the ids in the files of the wanted scans; none for formats without ids.
+  virtual std::span<const PredictedId> ids() const { return {}; }
 };
 
 struct OpenedPredictions {
@@ -48,6 +53,8 @@ struct OpenedPredictions {
   std::vector<std::string>
       remarks;  ///< what was recognised and, with allow_missing, what was left out
   std::vector<std::string> missing;  ///< stems of wanted scans without a usable prediction
+  /// Returns the error with the format in which the predictions were read.
+  DataError with_format(const DataError& error) const;
 };
 
 /// Parses "0:0,1:9,2:251". Throws UsageError.

@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "datasets/files/files.hpp"
+#include "datasets/files/folder_listing.hpp"
 #include "datasets/files/label_file.hpp"
 #include "datasets/files/pcd_file.hpp"
+#include "datasets/files/shown_text.hpp"
 #include "datasets/files/text.hpp"
+#include "eval/predictions/npy_file.hpp"
 #include "eval/predictions/prediction_mask.hpp"
 
 namespace mosbench {
@@ -66,7 +68,9 @@ class ScanFiles : public Predictions {
     return labels;
   }
 
+  std::span<const PredictedId> ids() const override { return ids_; }
   const Files& files() const { return files_; }
+  void set_ids(std::vector<PredictedId> ids) { ids_ = std::move(ids); }
   void set_mask(const RangeGate& mask) { mask_ = mask; }
   void set_id_map(const LabelIdMap& map) { id_map_ = map; }
 
@@ -80,6 +84,8 @@ class ScanFiles : public Predictions {
         return parse_point_csv(read_file(file), points, file);
       case Format::kPcd:
         return read_pcd_labels(file, points);
+      case Format::kNpy:
+        return read_npy_labels(file, points);
       case Format::kMaskedLabel:
         return spread_over_scan(read_any_labels(file), sequence_.read(scan_index).points, mask_,
                                 file);
@@ -99,39 +105,75 @@ class ScanFiles : public Predictions {
   Files files_;
   RangeGate mask_;
   LabelIdMap id_map_;
+  std::vector<PredictedId> ids_;
 };
 
-/// Maps file stems to scan indices.
-std::map<std::string, std::size_t> scans_by_name(const Sequence& sequence, Format format) {
-  std::map<std::string, std::size_t> scans;
-  for (std::size_t k = 0; k < sequence.size(); ++k) {
-    scans[format == Format::kLabelByIndex ? fmt::format("{:06d}", k) : sequence.stem(k)] = k;
+/// Returns the scan that a file is named after, or nothing.
+class ScanOfFile {
+ public:
+  ScanOfFile(const Sequence& sequence, Format format)
+      : by_position_(format == Format::kLabelByIndex) {
+    for (std::size_t k = 0; k < sequence.size(); ++k) scans_[name_of(sequence.stem(k), k)] = k;
   }
-  return scans;
+  std::optional<std::size_t> operator()(const std::string& stem) const {
+    const auto found = scans_.find(name_of(stem, stem_number(stem)));
+    if (found == scans_.end()) return std::nullopt;
+    return found->second;
+  }
+
+ private:
+  /// Names by position may have any number of zeros in front: 0, 000000.
+  std::string name_of(const std::string& stem, std::optional<std::uint64_t> number) const {
+    return by_position_ && number ? fmt::format("{}", *number) : stem;
+  }
+  bool by_position_;
+  std::map<std::string, std::size_t> scans_;
+};
+
+/// Returns " (it fits scan 000000, 10 earlier)" for the nearest scan of that many bytes of labels
+/// within 10 scans; empty when there is none.
+std::string fitting_scan(const Sequence& sequence, std::size_t scan_index, std::uintmax_t bytes) {
+  for (std::size_t n = 1; n <= 10; ++n) {
+    for (const bool later : {false, true}) {
+      if (later ? scan_index + n >= sequence.size() : scan_index < n) continue;
+      const std::size_t other = later ? scan_index + n : scan_index - n;
+      if (sequence.point_count(other) * sizeof(std::uint32_t) != bytes) continue;
+      return fmt::format(" (it fits scan {}, {} {})", sequence.stem(other), n,
+                         later ? "later" : "earlier");
+    }
+  }
+  return "";
 }
 
-bool has_right_size(const fs::path& file, Format format, std::size_t points,
-                    PredictionErrors& errors) {
+bool has_right_size(const fs::path& file, Format format, const Sequence& sequence,
+                    std::size_t scan_index, PredictionErrors& errors) {
   if (format != Format::kLabel && format != Format::kLabelByIndex) return true;
+  const std::uintmax_t bytes = size_of(file);
   try {
-    check_label_size(size_of(file), points, file);
+    check_label_size(bytes, sequence.point_count(scan_index), file);
     return true;
   } catch (const DataError& error) {
-    errors.report(error);
+    errors.report(DataError(error.what() + fitting_scan(sequence, scan_index, bytes)));
     return false;
   }
 }
 
 Files pair(const PredictionPlace& place, const Sequence& sequence, PredictionErrors& errors) {
-  const auto scans = scans_by_name(sequence, place.format);
+  if (place.format == Format::kLabelByIndex) check_positions(place.path, sequence);
+  const ScanOfFile scan_of(sequence, place.format);
   Files files;
-  for (const fs::path& file : files_with_extension(place.path, describe(place.format).extension)) {
-    const auto scan = scans.find(file.stem().string());
-    if (scan == scans.end()) {
+  for (const auto& [name, file] : prediction_files(place)) {
+    const std::string stem = shown_in_line(name);
+    const std::optional<std::size_t> scan = scan_of(stem);
+    if (!scan && is_left_out(sequence.recording(), stem)) continue;
+    if (!scan) {
       errors.report(DataError(file, "belongs to no scan of sequence " + sequence.name(),
                               "only labels named like its scans"));
-    } else if (has_right_size(file, place.format, sequence.point_count(scan->second), errors)) {
-      files[scan->second] = file;
+    } else if (files.contains(*scan)) {
+      errors.report(DataError(file, "is of the same scan as " + files.at(*scan).string(),
+                              "one file per scan"));
+    } else if (has_right_size(file, place.format, sequence, *scan, errors)) {
+      files[*scan] = file;
     }
   }
   return files;
@@ -161,17 +203,33 @@ RangeGate mask_of_sample(const Files& files, const Sequence& sequence,
   return find_mask(scans);
 }
 
-/// Returns the id map when the files hold class numbers instead of label ids.
-std::optional<LabelIdMap> guess_id_map(const ScanFiles& labels, const fs::path& folder,
-                                       const std::vector<std::size_t>& sample) {
-  std::set<std::uint32_t> ids;
-  for (const std::size_t k : sample) {
-    for (const std::uint32_t label : labels.read(k)) ids.insert(label & 0xFFFFU);
+std::vector<PredictedId> ids_of_wanted(const Files& files, const std::vector<std::size_t>& wanted) {
+  std::vector<fs::path> wanted_files;
+  for (const std::size_t k : wanted) {
+    if (const auto file = files.find(k); file != files.end()) wanted_files.push_back(file->second);
   }
-  if (ids.empty() || *ids.rbegin() > 2 || *ids.rbegin() == 0) return std::nullopt;
-  if (ids.contains(2)) return kLearningIds;
+  return ids_in(wanted_files);
+}
+
+/// Returns the id map when the files hold class numbers instead of label ids.
+std::optional<LabelIdMap> guess_id_map(const std::vector<PredictedId>& ids,
+                                       const fs::path& folder) {
+  if (ids.empty() || ids.back().id > 2 || ids.back().id == 0) return std::nullopt;
+  if (ids.back().id == 2) return kLearningIds;
   throw DataError(folder, "holds no other ids than 0 and 1",
                   "label ids, or --id-map with their meaning (0:9,1:251)");
+}
+
+/// Throws DataError for the first id that the map does not name.
+void check_mapped(const std::vector<PredictedId>& ids, const LabelIdMap& map) {
+  std::vector<std::string> known;
+  for (const auto& [from, to] : map) known.push_back(fmt::format("{}", from));
+  for (const PredictedId& id : ids) {
+    if (map.contains(id.id)) continue;
+    throw DataError(id.first_file,
+                    fmt::format("holds id {} ({} points in all files)", id.id, id.points),
+                    "only ids that the id map names: " + fmt::format("{}", fmt::join(known, ", ")));
+  }
 }
 
 std::string id_map_text(const LabelIdMap& map) {
@@ -198,14 +256,19 @@ std::unique_ptr<Predictions> open_scan_files(const PredictionPlace& place, const
     labels->set_mask(mask);
     remarks.push_back("labels are for points " + mask_text(mask) + " only; all others are static");
   }
+  const bool has_ids = describe(place.format).extension == ".label";
+  std::vector<PredictedId> ids;
+  if (has_ids) ids = ids_of_wanted(labels->files(), wanted);
   if (options.id_map) {
+    check_mapped(ids, *options.id_map);
     labels->set_id_map(*options.id_map);
-  } else if (describe(place.format).extension == ".label") {
-    if (const auto guessed = guess_id_map(*labels, place.path, sample)) {
+  } else if (has_ids) {
+    if (const auto guessed = guess_id_map(ids, place.path)) {
       labels->set_id_map(*guessed);
       remarks.push_back("ids 0, 1 and 2 taken for a network's classes: " + id_map_text(*guessed));
     }
   }
+  labels->set_ids(std::move(ids));
   return labels;
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "datasets/files/files.hpp"
 #include "datasets/files/indices_file.hpp"
@@ -35,6 +36,7 @@ class IndexRows : public Predictions {
 
 std::unique_ptr<Predictions> open_rows(const fs::path& file, const Sequence& sequence,
                                        PredictionErrors& errors) {
+  check_positions(file, sequence);
   std::map<std::size_t, IndicesRow> rows;
   for (IndicesRow& row : read_indices(file)) {
     const auto number = static_cast<std::size_t>(row.stamp_ns);
@@ -74,6 +76,26 @@ std::unique_ptr<Predictions> open_indices(const fs::path& file, const Sequence& 
   return std::make_unique<IndexRows>(sequence, std::move(rows));
 }
 
+/// Throws DataError unless the rows of Dynablox's scores.csv are of the labelled scans, in order:
+/// all sequences of DOALS have ten, of as many points.
+void check_stamps(const std::vector<std::uint64_t>& stamps_ns, const Sequence& sequence,
+                  const std::vector<std::size_t>& scans, const fs::path& file) {
+  for (std::size_t i = 0; i < std::min(stamps_ns.size(), scans.size()); ++i) {
+    const auto expected_ns = sequence.stamp_ns(scans[i]);
+    if (!expected_ns) {
+      throw DataError(file,
+                      fmt::format("cannot be compared with sequence {}, whose scans have no stamps",
+                                  sequence.name()),
+                      "times.txt beside the scans, or scans named by their time in ns");
+    }
+    if (std::cmp_equal(stamps_ns[i], *expected_ns)) continue;
+    throw DataError(
+        file, i + 2, fmt::format("has stamp {}", stamps_ns[i]),
+        fmt::format("that of labelled scan {}, {}", sequence.stem(scans[i]), *expected_ns));
+  }
+  check_rows(stamps_ns.size(), scans, file);
+}
+
 class Clouds : public Predictions {
  public:
   explicit Clouds(std::map<std::size_t, std::vector<std::uint32_t>> clouds)
@@ -92,6 +114,12 @@ std::unique_ptr<Predictions> open_clouds(const fs::path& file, const Sequence& s
   const std::vector<std::size_t> scans = scans_with_truth(sequence);
   auto parsed = parse_dynablox_clouds(read_file(file), level, file);
   check_rows(parsed.size(), scans, file);
+  // Dynablox writes a row there for every cloud here, which has no stamp itself.
+  const fs::path scores = fs::path(file).replace_filename("scores.csv");
+  if (!is_there(scores)) {
+    throw DataError(scores, "does not exist", "the stamps of the clouds in clouds.csv");
+  }
+  check_stamps(parse_dynablox_stamps_ns(read_file(scores), scores), sequence, scans, scores);
   std::map<std::size_t, std::vector<std::uint32_t>> clouds;
   for (std::size_t i = 0; i < scans.size(); ++i) {
     if (parsed[i].size() != sequence.point_count(scans[i])) {
@@ -124,8 +152,9 @@ class CountedScans : public Predictions {
 std::unique_ptr<Predictions> open_scores(const fs::path& file, const Sequence& sequence,
                                          DynabloxLevel level) {
   const std::vector<std::size_t> scans = scans_with_truth(sequence);
-  const auto scores = parse_dynablox_counts(read_file(file), level, file);
-  check_rows(scores.size(), scans, file);
+  const std::string text = read_file(file);
+  const auto scores = parse_dynablox_counts(text, level, file);
+  check_stamps(parse_dynablox_stamps_ns(text, file), sequence, scans, file);
   std::map<std::size_t, Confusion> counts;
   for (std::size_t i = 0; i < scans.size(); ++i) {
     if (scores[i].total_points != sequence.point_count(scans[i])) {

@@ -153,10 +153,4 @@ Summary mean_of_sequences(const Protocol& protocol, std::span<const Summary> seq
   return average;
 }
 
-std::string format_value(const Protocol& protocol, std::optional<double> value) {
-  if (!value) return "undefined";
-  return protocol.print.percent ? print(*value * 100.0, protocol.print) + " %"
-                                : print(*value, protocol.print);
-}
-
 }  // namespace mosbench

@@ -41,7 +41,4 @@ Summary summarize(const Protocol& protocol, std::span<const Confusion> per_scan)
 /// Averages sequences (HeLiMOS's "Avg"): a metric is nullopt when one sequence lacks it.
 Summary mean_of_sequences(const Protocol& protocol, std::span<const Summary> sequences);
 
-/// Returns "62.29 %", "0.623" or "undefined", as the protocol's tables print a fraction.
-std::string format_value(const Protocol& protocol, std::optional<double> value);
-
 }  // namespace mosbench

@@ -67,7 +67,6 @@ struct Protocol {
   Aggregation aggregation;
   EmptyCase empty_case;
   Arithmetic metric_arithmetic;
-  PrintStyle print;             ///< of its published tables
   int file_significant_digits;  ///< of the scan values that its program averages; 0: all digits
   PrintStyle program_print;     ///< of its own program
   std::string_view

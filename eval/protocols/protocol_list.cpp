@@ -110,4 +110,10 @@ std::vector<ProtocolDescription> describe_protocols() {
   return rows;
 }
 
+std::string counted_range_text(const Protocol& protocol, const RangeGate& range) {
+  if (protocol.range_rule == RangeRule::kNone) return "";
+  return range.max_m > 0 ? fmt::format("{:g} to {:g} m", range.min_m, range.max_m)
+                         : fmt::format("from {:g} m", range.min_m);
+}
+
 }  // namespace mosbench

@@ -23,4 +23,8 @@ struct ProtocolDescription {
 /// All protocols, in the order of `protocols()`.
 std::vector<ProtocolDescription> describe_protocols();
 
+/// Returns "0.5 to 20 m" or "from 0.5 m" of the points that count; empty when the protocol does not
+/// limit the range.
+std::string counted_range_text(const Protocol& protocol, const RangeGate& range);
+
 }  // namespace mosbench

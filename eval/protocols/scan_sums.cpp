@@ -8,25 +8,34 @@ namespace {
 
 constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
 
-double ratio(double part, double whole) { return whole > 0.0 ? part / whole : kUndefined; }
+double value_of(const Ratio& ratio) {
+  return ratio.whole > 0.0 ? ratio.part / ratio.whole : kUndefined;
+}
 
-MetricValues metrics_of_counts(double tp, double fp, double fn) {
-  return {ratio(tp, tp + fp + fn), ratio(tp, tp + fp), ratio(tp, tp + fn),
-          ratio(2.0 * tp, 2.0 * tp + fp + fn)};
+using Ratios = std::array<Ratio, kMetricNames.size()>;
+
+Ratios ratios_of_counts(double tp, double fp, double fn) {
+  return {{{tp, tp + fp + fn}, {tp, tp + fp}, {tp, tp + fn}, {2.0 * tp, 2.0 * tp + fp + fn}}};
+}
+
+MetricValues values_of(const Ratios& ratios) {
+  MetricValues values{};
+  for (std::size_t m = 0; m < values.size(); ++m) values[m] = value_of(ratios[m]);
+  return values;
 }
 
 }  // namespace
 
 MetricValues metrics_of(const Confusion& counts) {
-  return metrics_of_counts(static_cast<double>(counts.tp), static_cast<double>(counts.fp),
-                           static_cast<double>(counts.fn));
+  return values_of(ratios_of_counts(static_cast<double>(counts.tp), static_cast<double>(counts.fp),
+                                    static_cast<double>(counts.fn)));
 }
 
 MetricValues mean_of(std::span<const MetricValues> values) {
   MetricValues means{};
   for (std::size_t m = 0; m < means.size(); ++m) {
     for (const MetricValues& value : values) means[m] += value[m];
-    means[m] = ratio(means[m], static_cast<double>(values.size()));
+    means[m] = value_of({means[m], static_cast<double>(values.size())});
   }
   return means;
 }
@@ -51,37 +60,22 @@ ScanTerms& operator+=(ScanTerms& sums, const ScanTerms& terms) {
   return sums;
 }
 
-MetricValues metrics_of(const Protocol& protocol, const ScanTerms& sums) {
+std::array<Ratio, kMetricNames.size()> ratios_of(const Protocol& protocol, const ScanTerms& sums) {
   if (protocol.aggregation != Aggregation::kMeanOfScans) {
-    const auto [tp, fp, fn] = std::array{sums[0], sums[1], sums[2]};
-    const bool nothing_moves = tp + fn == 0.0;
-    if (nothing_moves && protocol.empty_case == EmptyCase::kNanWithoutTruth) {
-      return {kUndefined, kUndefined, kUndefined, kUndefined};
-    }
-    return metrics_of_counts(tp, fp, fn);
+    return ratios_of_counts(sums[0], sums[1], sums[2]);
   }
-  MetricValues values{};
-  for (std::size_t m = 0; m < values.size(); ++m) values[m] = ratio(sums[2 * m], sums[2 * m + 1]);
-  return values;
+  Ratios ratios{};
+  for (std::size_t m = 0; m < ratios.size(); ++m) ratios[m] = {sums[2 * m], sums[2 * m + 1]};
+  return ratios;
 }
 
-RunningSums::RunningSums(const Protocol& protocol, const SequenceCounts& scans)
-    : sums_(scans.size() + 1, ScanTerms{}) {
-  for (std::size_t k = 0; k < scans.size(); ++k) {
-    sums_[k + 1] = sums_[k];
-    sums_[k + 1] += scan_terms(protocol, scans[k]);
+MetricValues metrics_of(const Protocol& protocol, const ScanTerms& sums) {
+  const bool pooled = protocol.aggregation != Aggregation::kMeanOfScans;
+  const bool nothing_moves = pooled && sums[0] + sums[2] == 0.0;
+  if (nothing_moves && protocol.empty_case == EmptyCase::kNanWithoutTruth) {
+    return {kUndefined, kUndefined, kUndefined, kUndefined};
   }
-}
-
-void RunningSums::add_range(std::size_t first, std::size_t end, ScanTerms& sums) const {
-  for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += sums_[end][i] - sums_[first][i];
-}
-
-void RunningSums::add_block(std::size_t first, std::size_t count, ScanTerms& sums) const {
-  const std::size_t end = first + count;
-  if (end <= scans()) return add_range(first, end, sums);
-  add_range(first, scans(), sums);
-  add_range(0, end - scans(), sums);
+  return values_of(ratios_of(protocol, sums));
 }
 
 MetricValues aggregate_sums(const Protocol& protocol, std::span<const ScanTerms> sums) {

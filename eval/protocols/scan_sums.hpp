@@ -35,23 +35,14 @@ using ScanTerms = std::array<double, 2 * kMetricNames.size()>;
 
 ScanTerms scan_terms(const Protocol& protocol, const Confusion& scan);
 ScanTerms& operator+=(ScanTerms& sums, const ScanTerms& terms);
+/// A metric is part / whole; both are sums over scans.
+struct Ratio {
+  double part, whole;
+};
+/// Returns the ratio behind each metric of scans whose terms add up to `sums`.
+std::array<Ratio, kMetricNames.size()> ratios_of(const Protocol& protocol, const ScanTerms& sums);
 /// Returns the metrics of scans whose terms add up to `sums`.
 MetricValues metrics_of(const Protocol& protocol, const ScanTerms& sums);
-
-/// Cumulative terms of a sequence: the sum over any block of scans is one subtraction.
-class RunningSums {
- public:
-  RunningSums(const Protocol& protocol, const SequenceCounts& scans);
-
-  std::size_t scans() const { return sums_.size() - 1; }
-  /// Adds the terms of `count` <= scans() scans from `first` on, continuing at scan 0 after the
-  /// last.
-  void add_block(std::size_t first, std::size_t count, ScanTerms& sums) const;
-
- private:
-  void add_range(std::size_t first, std::size_t end, ScanTerms& sums) const;
-  std::vector<ScanTerms> sums_;
-};
 
 /// Returns the metrics of a whole run, aggregated as the protocol says.
 MetricValues aggregate(const Protocol& protocol, std::span<const SequenceCounts> sequences);

@@ -3,6 +3,7 @@
 #include <charconv>
 #include <nlohmann/json.hpp>
 
+#include "datasets/files/json_text.hpp"
 #include "eval/report/report_asset.hpp"
 
 namespace mosbench {
@@ -22,12 +23,14 @@ Colour colour_from(const std::string& text) {
 
 Palette palette(bool dark) {
   const char* theme = dark ? "dark" : "light";
-  const auto json = nlohmann::json::parse(palette_asset());
-  const auto colour = [&](const nlohmann::json& entry) { return colour_from(entry.at(theme)); };
+  const auto json = parse_json(palette_asset(), "palette.json");
+  const auto colour = [&](const nlohmann::ordered_json& entry) {
+    return colour_from(entry.at(theme));
+  };
   Palette palette{
       {}, {}, colour(json.at("background")), colour(json.at("text")), colour(json.at("guide"))};
   for (std::size_t i = 0; i < palette.outcomes.size(); ++i) {
-    const nlohmann::json& outcome = json.at("outcomes").at(i);
+    const nlohmann::ordered_json& outcome = json.at("outcomes").at(i);
     palette.outcomes[i] = colour(outcome);
     palette.names[i] = outcome.at("name");
   }

@@ -64,6 +64,29 @@ void Picture::ring(double x, double y, double radius, Colour colour) {
   }
 }
 
+void Picture::line(double from_x, double from_y, double to_x, double to_y, double width,
+                   Colour colour) {
+  const double along_x = to_x - from_x, along_y = to_y - from_y;
+  const double square = along_x * along_x + along_y * along_y;
+  if (!std::isfinite(square)) return;
+  const double reach = width / 2 + 1;
+  const auto first = [&](double a, double b, std::size_t size) {
+    return floor_pixel(std::clamp(std::min(a, b) - reach, 0.0, static_cast<double>(size)));
+  };
+  const auto last = [&](double a, double b, std::size_t size) {
+    return floor_pixel(std::clamp(std::max(a, b) + reach, -1.0, static_cast<double>(size) - 1));
+  };
+  for (int row = first(from_y, to_y, height_); row <= last(from_y, to_y, height_); ++row) {
+    for (int column = first(from_x, to_x, width_); column <= last(from_x, to_x, width_); ++column) {
+      const double x = column + 0.5 - from_x, y = row + 0.5 - from_y;
+      const double share =
+          square > 0 ? std::clamp((x * along_x + y * along_y) / square, 0.0, 1.0) : 0.0;
+      const double distance = std::hypot(x - share * along_x, y - share * along_y);
+      blend(column, row, colour, std::clamp(width / 2 + 0.5 - distance, 0.0, 1.0));
+    }
+  }
+}
+
 void Picture::rectangle(int x, int y, int width, int height, Colour colour, double opacity) {
   for (int row = y; row < y + height; ++row) {
     for (int column = x; column < x + width; ++column) blend(column, row, colour, opacity);

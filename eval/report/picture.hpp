@@ -28,6 +28,7 @@ class Picture {
 
   void disc(double x, double y, double radius, Colour colour);
   void ring(double x, double y, double radius, Colour colour);
+  void line(double from_x, double from_y, double to_x, double to_y, double width, Colour colour);
   void rectangle(int x, int y, int width, int height, Colour colour, double opacity = 1.0);
   /// Draws ASCII text with (x, y) as its upper left corner; other characters become "?".
   void text(int x, int y, std::string_view text, Colour colour);

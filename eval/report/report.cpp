@@ -7,6 +7,7 @@
 #include "eval/report/point_planes.hpp"
 #include "eval/report/report_asset.hpp"
 #include "eval/report/report_numbers.hpp"
+#include "eval/report/report_path.hpp"
 #include "eval/report/report_scans.hpp"
 #include "mosbench_version.hpp"
 
@@ -38,7 +39,7 @@ std::string run_name(const FoundResult& result) {
   std::filesystem::path run = std::filesystem::absolute(result.folder / "").lexically_normal();
   run = run.parent_path();
   const std::filesystem::path last = run.filename();
-  std::filesystem::path sequence = result.name;
+  std::filesystem::path sequence = result.name.folder();
   while (!sequence.empty() && run.filename() == sequence.filename()) {
     run = run.parent_path();
     sequence = sequence.parent_path();
@@ -123,6 +124,7 @@ Report build_report(const std::vector<std::filesystem::path>& inputs,
     sources.emplace_back(results[i], options.dataset_root);
     content["results"][i]["breakdown"] = breakdown_of(sources[i]);
     content["results"][i]["protocols"] = protocols_of(sources[i]);
+    content["results"][i]["path"] = path_of(results[i], sources[i]);
   }
   const ReportScans scans = choose_report_scans(results, sources, options.scans,
                                                 room_for_points(content, results, options));

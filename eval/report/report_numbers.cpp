@@ -5,6 +5,7 @@
 #include "core/base/thread_pool.hpp"
 #include "datasets/files/errors.hpp"
 #include "eval/breakdown/breakdown.hpp"
+#include "eval/statistics/scan_spacing.hpp"
 #include "eval/statistics/statistics_report.hpp"
 #include "eval/tables/score_report.hpp"
 #include "eval/tables/table_print.hpp"
@@ -54,7 +55,7 @@ ordered_json estimates_of(const FoundResult& result) {
   const SequenceResult read = sequence_result(result.folder / "result.json", result.file);
   const std::vector<SequenceCounts> counts = {counts_of(read)};
   if (counts.front().empty()) return nullptr;
-  return to_json(estimate(*read.protocol, counts));
+  return to_json(estimate(*read.protocol, counts, spacing_of(read)));
 }
 
 ordered_json breakdown_of(const ResultScans& scans) {

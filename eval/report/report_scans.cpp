@@ -163,8 +163,8 @@ ReportScans choose_report_scans(const std::vector<FoundResult>& results,
     std::ranges::sort(cloud.packed, {}, &PackedScan::scan_index);
     const FoundResult& first = results[cloud.members.front()];
     const std::string remark = left_out(cloud, first.file.rows.scans.size());
-    if (!remark.empty()) report.remarks.push_back(first.name + ": " + remark);
-    ordered_json json = {{"sequence", first.name},
+    if (!remark.empty()) report.remarks.push_back(first.name.text() + ": " + remark);
+    ordered_json json = {{"sequence", first.name.text()},
                          {"scans_in_sequence", first.file.rows.scans.size()},
                          {"left_out", remark},
                          {"scans", ordered_json::array()}};

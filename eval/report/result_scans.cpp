@@ -42,13 +42,14 @@ void check_has_labels(const FoundResult& result) {
 }
 
 /// The poses that odometry found stand next to the labels.
-void take_found_poses(const FoundResult& result, Dataset& dataset) {
+void take_found_poses(const FoundResult& result, Deskew deskew, Dataset& dataset) {
   ReadingStatement how;
   for (const auto& [what, said] : result.file.content.at("reading").items()) {
-    if (what.starts_with("pose")) how.emplace_back(what, said.get<std::string>());
+    if (what.starts_with("pose") || what == "deskew")
+      how.emplace_back(what, said.get<std::string>());
   }
   for (std::unique_ptr<Sequence>& sequence : dataset.sequences) {
-    auto posed = std::make_unique<PosedSequence>(std::move(sequence), how);
+    auto posed = std::make_unique<PosedSequence>(std::move(sequence), how, deskew);
     const fs::path file = result.folder / "poses.txt";
     const std::vector<Pose> poses = read_poses(file);
     if (poses.size() != posed->size()) {
@@ -76,7 +77,9 @@ Dataset open_dataset_of(const FoundResult& result, std::optional<fs::path> root)
     }
     const ReadingOptions reading = told_from_json(recorded);
     Dataset dataset = open_dataset(*root, {kind, {result.name}, reading});
-    if (reading.poses_by_odometry) take_found_poses(result, dataset);
+    if (reading.poses_by_odometry) {
+      take_found_poses(result, reading.deskew.value_or(Deskew::kPoses), dataset);
+    }
     return dataset;
   });
 }
@@ -132,9 +135,9 @@ std::vector<PointOutcome> outcomes_without_truth(const std::vector<std::uint32_t
 std::vector<FoundResult> find_results(const fs::path& path) {
   std::vector<FoundResult> results;
   for (const fs::path& file : result_files(path)) {
-    FoundResult result{file.parent_path(), "", read_result(file)};
+    FoundResult result{file.parent_path(), {}, read_result(file)};
     result.name = from_json(
-        result, [](const auto& json) { return json.at("sequence").template get<std::string>(); });
+        result, [&](const auto& json) { return SequenceName(json.at("sequence"), file); });
     results.push_back(std::move(result));
   }
   return results;
@@ -158,7 +161,8 @@ JudgedScan ResultScans::read(std::size_t scan_index) const {
   JudgedScan scan{sequence().read(scan_index), {}, {}};
   const fs::path label_file = label_folder_ / (scan.frame.stem + ".label");
   const std::vector<std::uint32_t> labels = read_labels(label_file, scan.frame.points.size());
-  const std::optional<Confusion>& recorded = result_.file.rows.scans[scan_index].counts;
+  const ScanRow& row = result_.file.rows.scans[scan_index];
+  const std::optional<Confusion>& recorded = row.counts;
   if (scan.frame.truth && recorded) {
     const bool gated = rule_.protocol->range_rule != RangeRule::kNone;
     scan.outcomes = point_outcomes(
@@ -169,7 +173,7 @@ JudgedScan ResultScans::read(std::size_t scan_index) const {
   }
   OutcomeCounts counts{};
   for (const PointOutcome outcome : scan.outcomes) ++counts[static_cast<std::size_t>(outcome)];
-  if (!same_counts(counts, recorded)) {
+  if (!same_counts(counts, recorded) || !are_labels_of(row, labels)) {
     throw DataError(label_file, "does not give the counts in result.json",
                     "the label file of that run");
   }

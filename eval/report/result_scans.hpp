@@ -16,7 +16,7 @@ namespace mosbench {
 /// A folder of `mosbench run` with its result.json.
 struct FoundResult {
   std::filesystem::path folder;
-  std::string name;  ///< of the sequence
+  SequenceName name;  ///< of the sequence
   ResultFile file;
 };
 

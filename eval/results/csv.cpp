@@ -1,5 +1,7 @@
 #include "eval/results/csv.hpp"
 
+#include <fmt/format.h>
+
 #include <string_view>
 
 #include "datasets/files/text.hpp"
@@ -33,6 +35,10 @@ std::string csv_row(std::span<const std::string> cells) {
     line += csv_cell(cell);
   }
   return line + '\n';
+}
+
+std::string csv_percent(const std::optional<double>& fraction) {
+  return fraction ? fmt::format("{:.6g}", *fraction * 100.0) : "";
 }
 
 }  // namespace mosbench

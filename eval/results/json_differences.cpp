@@ -37,11 +37,21 @@ std::vector<JsonDifference> json_differences(const ordered_json& first,
 
 std::string changed_members(const ordered_json& there, const ordered_json& now) {
   ordered_json same_keys;
-  for (const auto& [key, unused] : now.items()) {
+  ordered_json compared = now;
+  // Settings of another method are no changes of these.
+  if (there.contains("method") && now.contains("method") && there["method"] != now["method"]) {
+    compared.erase("config");
+  }
+  for (const auto& [key, unused] : compared.items()) {
     if (there.contains(key)) same_keys[key] = there[key];
   }
+  for (ordered_json* side : {&same_keys, &compared}) {
+    // How long a program may take decides no label.
+    const auto config = side->find("config");
+    if (config != side->end() && config->is_object()) config->erase("timeout_s");
+  }
   std::string text;
-  for (const JsonDifference& difference : json_differences(same_keys, now)) {
+  for (const JsonDifference& difference : json_differences(same_keys, compared)) {
     text += fmt::format("{}{} is {} there and {} now", text.empty() ? "" : "; ", difference.key,
                         difference.first, difference.second);
   }

@@ -17,7 +17,7 @@ std::vector<JsonDifference> json_differences(const nlohmann::ordered_json& first
                                              const nlohmann::ordered_json& second);
 
 /// "config/max_range_m is 50.0 there and 30.0 now; ..." of the members that `now` has; empty when
-/// `there` has the same.
+/// `there` has the same. The member `config` counts only where both are of one `method`.
 std::string changed_members(const nlohmann::ordered_json& there, const nlohmann::ordered_json& now);
 
 }  // namespace mosbench

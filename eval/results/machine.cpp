@@ -44,6 +44,12 @@ void keep_freed_memory() {
 #endif
 }
 
+void give_back_memory() {
+#if defined(__GLIBC__)
+  malloc_trim(0);
+#endif
+}
+
 double resident_mib() {
   std::ifstream statm("/proc/self/statm");
   double total_pages = 0.0;

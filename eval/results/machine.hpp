@@ -7,11 +7,14 @@ namespace mosbench {
 /// Processor, logical cores, memory and operating system, as far as they can be read.
 nlohmann::ordered_json machine_json();
 
-/// Tells the C library to keep memory that is freed for the next scan, which needs as much again,
-/// instead of having the system take its pages back and clear new ones. Where something small is
-/// kept of every scan, make room for it first: between large buffers it would hole the heap, and
-/// the process would grow.
+/// Makes the C library keep freed memory for the next scan, which needs as much again; otherwise
+/// the system takes its pages back and clears new ones. Whoever keeps something small of every scan
+/// reserves the memory for it first: between large buffers it would split the heap, and the process
+/// would grow.
 void keep_freed_memory();
+
+/// Gives memory that was kept back to the system, so that what is held next shows what needs it.
+void give_back_memory();
 
 /// Memory this process holds at the moment, MiB; 0 where it cannot be read.
 double resident_mib();

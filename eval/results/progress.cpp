@@ -6,6 +6,9 @@
 #include <cmath>
 #include <cstdio>
 
+#include "datasets/files/shown_text.hpp"
+#include "eval/results/caller.hpp"
+
 namespace mosbench {
 namespace {
 
@@ -14,14 +17,15 @@ constexpr std::chrono::milliseconds kPipeInterval{5000};
 
 }  // namespace
 
-Progress::Progress(std::string title, std::size_t scans)
-    : title_(std::move(title)), scans_(scans), terminal_(isatty(STDERR_FILENO) == 1) {}
+Progress::Progress(const std::string& title, std::size_t scans)
+    : title_(shown_in_line(title)), scans_(scans), terminal_(isatty(STDERR_FILENO) == 1) {}
 
 Progress::~Progress() {
   if (line_open_) std::fputc('\n', stderr);
 }
 
 void Progress::advance() {
+  caller().at_each_scan();
   ++done_;
   const Clock::time_point now = Clock::now();
   const bool due = now - printed_ >= (terminal_ ? kTerminalInterval : kPipeInterval);
@@ -30,6 +34,7 @@ void Progress::advance() {
 
 void Progress::print(Clock::time_point now) {
   printed_ = now;
+  if (caller().quiet) return;
   const double elapsed_s = std::chrono::duration<double>(now - start_).count();
   const double scan_s = elapsed_s / static_cast<double>(done_);
   const std::string line =

@@ -10,7 +10,7 @@ namespace mosbench {
 /// seconds elsewhere.
 class Progress {
  public:
-  Progress(std::string title, std::size_t scans);
+  Progress(const std::string& title, std::size_t scans);
   /// Ends the terminal line so that whatever follows starts on its own.
   ~Progress();
   Progress(const Progress&) = delete;

@@ -2,7 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "datasets/files/errors.hpp"
+#include "datasets/sequence/scan_deskewer.hpp"
+#include "eval/results/shell_text.hpp"
 
 namespace mosbench {
 namespace {
@@ -47,6 +51,19 @@ std::optional<bool> poses_inverse_named(std::string_view word) {
   return std::nullopt;
 }
 
+std::optional<Deskew> deskew_named(std::string_view word) {
+  for (const Deskew deskew : {Deskew::kNone, Deskew::kVelocity, Deskew::kPoses}) {
+    if (to_string(deskew) == word) return deskew;
+  }
+  return std::nullopt;
+}
+
+std::optional<PointTimes> point_times_named(std::string_view word) {
+  if (word == "column") return PointTimes::kColumn;
+  if (word == "azimuth") return PointTimes::kAzimuth;
+  return std::nullopt;
+}
+
 ordered_json told_json(const ReadingOptions& options) {
   ordered_json json = ordered_json::object();
   if (options.poses) json["poses"] = std::filesystem::absolute(*options.poses).string();
@@ -58,10 +75,16 @@ ordered_json told_json(const ReadingOptions& options) {
   if (options.poses_inverse) {
     json["pose_direction"] = *options.poses_inverse ? "sensor-from-map" : "map-from-sensor";
   }
+  const ReadingOptions usual;
+  if (options.max_pose_gap_s != usual.max_pose_gap_s) {
+    json["max_pose_gap_s"] = options.max_pose_gap_s;
+  }
   if (options.topic) json["topic"] = *options.topic;
   if (options.map_frame) json["map_frame"] = *options.map_frame;
-  const ReadingOptions usual;
-  if (options.undistort != usual.undistort) json["raw_scans"] = !options.undistort;
+  if (options.deskew) json["deskew"] = std::string(to_string(*options.deskew));
+  if (options.point_times) {
+    json["point_times"] = options.point_times == PointTimes::kColumn ? "column" : "azimuth";
+  }
   if (options.bin_columns != usual.bin_columns) json["bin_columns"] = options.bin_columns;
   return json;
 }
@@ -73,11 +96,28 @@ ReadingOptions told_from_json(const ordered_json& json) {
   take_word(json, "pose_format", options.pose_format, pose_format_from_string);
   take_word(json, "pose_frame", options.pose_frame, pose_frame_named);
   take_word(json, "pose_direction", options.poses_inverse, poses_inverse_named);
+  take<double>(json, "max_pose_gap_s", options.max_pose_gap_s);
   take<std::string>(json, "topic", options.topic);
   take<std::string>(json, "map_frame", options.map_frame);
-  options.undistort = !json.value("raw_scans", false);
+  if (json.value("raw_scans", false)) options.deskew = Deskew::kNone;  // of earlier results
+  take_word(json, "deskew", options.deskew, deskew_named);
+  take_word(json, "point_times", options.point_times, point_times_named);
   take_bin_columns(json, options);
   return options;
+}
+
+std::string told_flags(const ReadingOptions& options) {
+  ordered_json told = told_json(options);
+  if (options.poses) told["poses"] = options.poses->string();
+  told.erase("odometry");
+  std::string flags;
+  for (const auto& [key, value] : told.items()) {
+    std::string flag = key;
+    std::ranges::replace(flag, '_', '-');
+    const std::string word = value.is_string() ? value.get<std::string>() : value.dump();
+    flags += fmt::format(" --{} {}", flag, shell_word(word));
+  }
+  return flags;
 }
 
 ordered_json to_json(const ReadingStatement& reading) {

@@ -1,10 +1,16 @@
 #include "eval/results/result_file.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <set>
+#include <string>
 #include <system_error>
 
 #include "datasets/files/errors.hpp"
 #include "datasets/files/files.hpp"
+#include "datasets/files/json_text.hpp"
+#include "datasets/files/label_file.hpp"
 #include "datasets/files/text.hpp"
 #include "eval/protocols/counts_json.hpp"
 #include "eval/results/answer_text.hpp"
@@ -15,47 +21,83 @@ namespace {
 
 using nlohmann::ordered_json;
 
+std::string dump(const ordered_json& json) {
+  return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+}
+
+std::string_view text_of(const LabelHash& hash) { return {hash.data(), hash.size()}; }
+
 ordered_json to_json(const ScanRow& row) {
   ordered_json json = {{"stem", row.stem},
                        {"points", row.points},
                        {"predicted_moving_points", row.predicted_moving_points},
                        {"nonfinite_points", row.nonfinite_points},
                        {"threshold", json_or_null(row.threshold)}};
+  if (row.label_hash) json["label_hash"] = text_of(*row.label_hash);
   if (!row.counts) return json;
   json.update(counts_json(*row.counts));
   json["unknown_ids"] = row.counts->unknown_ids;
   if (row.truth_hash) {
-    json["truth_hash"] = std::string_view(row.truth_hash->data(), row.truth_hash->size());
+    json["truth_hash"] = text_of(*row.truth_hash);
   }
   return json;
 }
 
 constexpr const char* kExpected = "a result.json of mosbench run";
 
-std::optional<TruthHash> truth_hash_from(const std::string& text,
-                                         const std::filesystem::path& file) {
+std::optional<LabelHash> hash_from(const ordered_json& json, const std::string& name,
+                                   const std::filesystem::path& file) {
+  const std::string text = json.value(name, "");
   if (text.empty()) return std::nullopt;
-  TruthHash hash;
+  LabelHash hash;
   if (text.size() != hash.size()) {
-    throw DataError(file, "\"truth_hash\" is " + mosbench::quoted(text) + ", no 16 digits",
+    throw DataError(file, '"' + name + "\" is " + mosbench::quoted(text) + ", no 16 digits",
                     kExpected);
   }
   std::ranges::copy(text, hash.begin());
   return hash;
 }
 
+/// Conversions of JSON numbers would cut fractions off and let negative ones wrap around.
+std::uint64_t count_from(const ordered_json& json, const char* name,
+                         const std::filesystem::path& file) {
+  const ordered_json& count = json.at(name);
+  if (count.is_number_unsigned()) return count.get<std::uint64_t>();
+  throw DataError(file,
+                  fmt::format("\"{}\" of scan {} is {}", name, json.at("stem").dump(), dump(count)),
+                  "a number of points");
+}
+
+void check_sums(const ScanRow& row, const std::filesystem::path& file) {
+  const Confusion counts = row.counts.value_or(Confusion{.ignored = row.points});
+  // No sum can wrap to a match: every part is at most the points.
+  const bool fits =
+      std::max({counts.tp, counts.fp, counts.fn, counts.tn, counts.ignored,
+                std::uint64_t{row.nonfinite_points}, std::uint64_t{row.predicted_moving_points}}) <=
+          row.points &&
+      counts.points() == row.points && counts.tp + counts.fp <= row.predicted_moving_points;
+  if (fits) return;
+  throw DataError(
+      file, fmt::format("the counts of scan \"{}\" do not fit its {} points", row.stem, row.points),
+      "tp + fp + fn + tn + ignored = points, and tp + fp <= predicted_moving_points <= "
+      "points");
+}
+
 ScanRow row_from_json(const ordered_json& json, const std::filesystem::path& file) {
+  const auto count = [&](const char* name) { return count_from(json, name, file); };
   ScanRow row;
   row.stem = json.at("stem").get<std::string>();
-  row.points = json.at("points").get<std::size_t>();
-  row.predicted_moving_points = json.at("predicted_moving_points").get<std::size_t>();
-  row.nonfinite_points = json.at("nonfinite_points").get<std::size_t>();
+  row.points = count("points");
+  row.predicted_moving_points = count("predicted_moving_points");
+  row.nonfinite_points = count("nonfinite_points");
   if (!json.at("threshold").is_null()) row.threshold = json.at("threshold").get<double>();
+  row.label_hash = hash_from(json, "label_hash", file);
   if (json.contains("tp")) {
-    row.counts = Confusion{json.at("tp"), json.at("fp"),      json.at("fn"),
-                           json.at("tn"), json.at("ignored"), json.at("unknown_ids")};
-    row.truth_hash = truth_hash_from(json.value("truth_hash", ""), file);
+    row.counts = Confusion{count("tp"), count("fp"),      count("fn"),
+                           count("tn"), count("ignored"), count("unknown_ids")};
+    row.truth_hash = hash_from(json, "truth_hash", file);
   }
+  check_sums(row, file);
   return row;
 }
 
@@ -122,10 +164,6 @@ ordered_json timing(const SequenceRows& rows, unsigned threads, const ordered_js
 }
 
 // Indented like dump(1), but with one line per scan.
-std::string dump(const ordered_json& json) {
-  return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
-}
-
 void append_members(const ordered_json& object, const std::string& indent, std::string& text) {
   for (const auto& [key, value] : object.items()) {
     text += indent + ordered_json(key).dump() + ": ";
@@ -159,12 +197,41 @@ ordered_json with_scans(ordered_json json, const std::vector<ScanRow>& scans) {
   return json;
 }
 
-/// What a killed run left, or one that is about to be replaced.
-bool is_leftover(const std::filesystem::path& folder) {
-  return folder.extension() == ".partial" || folder.extension() == ".replaced";
+/// Returns whether the result in a folder is of a sequence of that name.
+bool holds_own_result(const std::filesystem::path& folder) {
+  try {
+    const ordered_json content = read_result(folder / "result.json").content;
+    const std::string name = content.value("sequence", "");
+    return std::filesystem::path(name).filename() == folder.filename();
+  } catch (const std::exception&) {
+    return false;
+  }
+}
+
+/// Returns whether no result is to be looked for in a folder: a run keeps its labels or scores
+/// there, or was killed, or is about to replace it. A sequence may be called like that, too.
+bool is_passed_over(const std::filesystem::path& folder) {
+  if (folder.filename() == "labels" || folder.filename() == "scores") {
+    return is_there(folder.parent_path() / "result.json");
+  }
+  const bool leftover = folder.extension() == ".partial" || folder.extension() == ".replaced";
+  return leftover && !holds_own_result(folder);
+}
+
+/// Scores of others' labels name no such scans.
+void mark_unjudged(ResultFile& result) {
+  if (!result.content.contains("scans_without_detection")) return;
+  const std::set<std::string> stems = result.content.at("scans_without_detection");
+  for (ScanRow& row : result.rows.scans) row.judged = !stems.contains(row.stem);
 }
 
 }  // namespace
+
+bool are_labels_of(const ScanRow& row, std::span<const std::uint32_t> labels) {
+  if (row.label_hash) return hash_of_labels(labels) == row.label_hash;
+  const auto moving = static_cast<std::size_t>(std::ranges::count(labels, kMovingLabel));
+  return moving == row.predicted_moving_points;
+}
 
 void add_stages(const std::vector<StageTime>& stages, SequenceRows& rows, ScanCost& cost) {
   for (const StageTime& stage : stages) {
@@ -202,8 +269,7 @@ std::vector<std::filesystem::path> find_result_files(const std::filesystem::path
   std::vector<std::filesystem::path> files;
   for (std::filesystem::recursive_directory_iterator it(path, how, error), end; !error && it != end;
        it.increment(error)) {
-    const bool of_scans = it->path().filename() == "labels" || it->path().filename() == "scores";
-    if (of_scans || is_leftover(it->path())) {
+    if (is_passed_over(it->path())) {
       it.disable_recursion_pending();
     } else if (it->path().filename() == "result.json") {
       files.push_back(it->path());
@@ -224,11 +290,13 @@ std::vector<std::filesystem::path> result_files(const std::filesystem::path& pat
 ResultFile read_result(const std::filesystem::path& file) {
   try {
     ResultFile result;
-    result.content = in_present_format(ordered_json::parse(read_file(file)), file);
+    result.content = in_present_format(parse_json(read_file(file), file), file);
     for (const ordered_json& row : result.content.at("scans")) {
       result.rows.scans.push_back(row_from_json(row, file));
     }
+    mark_unjudged(result);
     result.rows.fingerprint = result.content.value("fingerprint", "");
+    result.rows.fingerprint_without_poses = result.content.value("fingerprint_without_poses", "");
     // Accepted results (baselines) and scores of others' labels come without a clock.
     if (!result.content.contains("timing")) return result;
     const ordered_json& clocked = result.content.at("timing");

@@ -6,6 +6,7 @@
 #include <mosbench/method.hpp>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -24,7 +25,8 @@ struct ScanRow {
   bool judged = true;  ///< false: the method labelled all points static without looking
   std::optional<double> threshold;      ///< see LabelledScan
   std::optional<Confusion> counts;      ///< when the scan has truth
-  std::optional<TruthHash> truth_hash;  ///< of that truth; older files do not tell
+  std::optional<LabelHash> truth_hash;  ///< of that truth; older files do not tell
+  std::optional<LabelHash> label_hash;  ///< of the labels that a run wrote; likewise
 };
 
 /// What one scan cost: wall milliseconds, and the memory the process held after it.
@@ -42,9 +44,13 @@ struct SequenceRows {
   std::vector<ScanCost> costs;      ///< as many as scans
   std::vector<std::string> stages;  ///< names, in the order in which they first ran
   double wall_s = 0.0;
-  std::string fingerprint;           ///< of the frames, see ContentFingerprint
-  std::vector<std::string> remarks;  ///< of the method, see Method::remarks
+  std::string fingerprint;                ///< of the frames, see ContentFingerprint
+  std::string fingerprint_without_poses;  ///< empty in older results
+  std::vector<std::string> remarks;       ///< of the method, see Method::remarks
 };
+
+/// Returns whether labels are those that the row of a run counts.
+bool are_labels_of(const ScanRow& row, std::span<const std::uint32_t> labels);
 
 /// Adds the times of a scan's stages to `cost`, and their names to `rows`.
 void add_stages(const std::vector<StageTime>& stages, SequenceRows& rows, ScanCost& cost);

@@ -1,19 +1,16 @@
 #include "eval/results/result_folder.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
-#include <cstring>
 #include <set>
 #include <system_error>
 #include <vector>
 
 #include "datasets/files/errors.hpp"
+#include "datasets/files/label_file.hpp"
+#include "datasets/files/replace_folder.hpp"
 #include "eval/results/json_differences.hpp"
 
 namespace mosbench {
@@ -23,8 +20,9 @@ namespace {
 constexpr const char* kLabels = "labels";
 constexpr const char* kScores = "scores";
 constexpr const char* kResult = "result.json";
-// What a run writes; poses.txt where it found them.
-constexpr std::array<const char*, 4> kWritten = {kLabels, kScores, kResult, "poses.txt"};
+// What a run writes; poses.txt with its mark where it found them.
+constexpr std::array<const char*, 5> kWritten = {kLabels, kScores, kResult, "poses.txt",
+                                                 "poses.txt.frame"};
 
 std::vector<fs::path> entries(const fs::path& folder) {
   std::error_code error;
@@ -117,43 +115,31 @@ std::optional<ResultFile> ResultFolder::finished(const Sequence& sequence,
   return result;
 }
 
-fs::path ResultFolder::begin() const {
-  const fs::path partial = with_suffix(".partial");
-  for (const fs::path& leftover : {partial, with_suffix(".replaced")}) {
+void ResultFolder::check_labels(const ResultFile& result) const {
+  for (const ScanRow& row : result.rows.scans) {
+    const fs::path file = folder_ / kLabels / (row.stem + ".label");
+    if (are_labels_of(row, read_labels(file, row.points))) continue;
+    throw UsageError(fmt::format(
+        "{}: was changed after the run, expected the labels that result.json counts; give another "
+        "--out, or --overwrite to replace the results",
+        file.string()));
+  }
+}
+
+void ResultFolder::remove_leftovers() const {
+  for (const fs::path& leftover : {with_suffix(".partial"), replaced_by(folder_)}) {
     checked(leftover, "removed", [&](std::error_code& error) { fs::remove_all(leftover, error); });
   }
+}
+
+fs::path ResultFolder::begin() const {
+  remove_leftovers();
+  const fs::path partial = with_suffix(".partial");
   checked(partial, "made",
           [&](std::error_code& error) { fs::create_directories(partial / kLabels, error); });
   return partial;
 }
 
-void ResultFolder::publish() const {
-  const fs::path replaced = with_suffix(".replaced");
-  if (fs::exists(folder_)) {
-    checked(folder_, "moved",
-            [&](std::error_code& error) { fs::rename(folder_, replaced, error); });
-  }
-  checked(folder_, "put in place", [&](std::error_code& error) {
-    fs::rename(with_suffix(".partial"), folder_, error);
-    std::error_code ignored;
-    if (error) fs::rename(replaced, folder_, ignored);
-  });
-  checked(replaced, "removed", [&](std::error_code& error) { fs::remove_all(replaced, error); });
-}
-
-FolderLock::FolderLock(const fs::path& folder) : descriptor_(-1) {
-  checked(folder, "made", [&](std::error_code& error) { fs::create_directories(folder, error); });
-  descriptor_ = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor_ < 0) {
-    throw DataError(folder, fmt::format("cannot be opened ({})", std::strerror(errno)),
-                    "a writable output folder");
-  }
-  if (flock(descriptor_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
-  close(descriptor_);
-  throw UsageError(folder.string() +
-                   ": another mosbench run is writing there, expected one at a time");
-}
-
-FolderLock::~FolderLock() { close(descriptor_); }
+void ResultFolder::publish() const { replace_folder(with_suffix(".partial"), folder_); }
 
 }  // namespace mosbench

@@ -27,10 +27,16 @@ class ResultFolder {
                                      const nlohmann::ordered_json& identity,
                                      bool with_scores) const;
 
+  /// Throws UsageError naming a label file whose labels are not those that `result`, which lies
+  /// there, counts.
+  void check_labels(const ResultFile& result) const;
+
   /// Throws UsageError unless the folder is absent or holds nothing but a run's result, so that
   /// --overwrite never takes away anything else.
   void check_replaceable() const;
 
+  /// Removes what a killed run left beside the folder. Throws DataError.
+  void remove_leftovers() const;
   /// Makes an empty folder for new results and returns it. Throws DataError.
   std::filesystem::path begin() const;
   /// Puts what `begin` made in place of the folder. Throws DataError.
@@ -40,20 +46,6 @@ class ResultFolder {
   std::filesystem::path with_suffix(const char* suffix) const;
 
   std::filesystem::path folder_;
-};
-
-/// Holds a folder for one run until destroyed, also against other processes.
-class FolderLock {
- public:
-  /// Makes the folder when missing. Throws DataError when that fails, UsageError when another run
-  /// holds it.
-  explicit FolderLock(const std::filesystem::path& folder);
-  ~FolderLock();
-  FolderLock(const FolderLock&) = delete;
-  FolderLock& operator=(const FolderLock&) = delete;
-
- private:
-  int descriptor_;
 };
 
 }  // namespace mosbench

@@ -27,10 +27,13 @@ void upgrade_method(ordered_json& content) {
 }  // namespace
 
 ordered_json in_present_format(ordered_json content, const std::filesystem::path& file) {
-  const int format = content.is_object() ? content.value("format", 1) : 1;
-  if (format > kResultFormat || format < 1) {
-    throw DataError(file, fmt::format("has format {}", format),
-                    fmt::format("format 1 to {}; a newer mosbench wrote it", kResultFormat));
+  const ordered_json stated =
+      content.is_object() ? content.value("format", ordered_json(1U)) : ordered_json(1U);
+  const auto format = stated.is_number_unsigned() ? stated.get<std::uint64_t>() : 0;
+  if (format < 1 || format > kResultFormat) {
+    throw DataError(file, fmt::format("has format {}", stated.dump()),
+                    fmt::format("a whole number from 1 to {}{}", kResultFormat,
+                                format > 0 ? "; a newer mosbench wrote it" : ""));
   }
   if (format < 2) upgrade_method(content);
   return content;

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <stdexcept>
 
 #include "datasets/files/errors.hpp"
+#include "eval/protocols/counts_json.hpp"
 #include "eval/results/settings_json.hpp"
 
 namespace mosbench {
@@ -18,10 +20,17 @@ using nlohmann::ordered_json;
 void read_method(const ordered_json& header, SequenceResult& result) {
   const ordered_json& method = header.at("method");
   result.method = method.at("name");
-  result.setting =
-      method.contains("setting")
-          ? method.at("setting").get<std::string>()
-          : describe_settings(header.at("config"), method.at("kind").get<std::string>());
+  if (method.contains("setting")) {
+    result.setting = method.at("setting").get<std::string>();
+    return;
+  }
+  const auto kind = method.at("kind").get<std::string>();
+  try {
+    check_recorded_settings(header.at("config"), kind);
+  } catch (const std::invalid_argument& error) {
+    throw DataError(fmt::format("{}: config: {}", result.file.string(), error.what()));
+  }
+  result.setting = describe_settings(header.at("config"), kind);
 }
 
 void read_protocol(const ordered_json& header, SequenceResult& result) {
@@ -46,21 +55,50 @@ void read_splits(const ordered_json& header, SequenceResult& result) {
   }
 }
 
+/// Throws DataError where a summary is not that of the scans, as in a file that was edited.
+void check_summary(const SequenceResult& result) {
+  const ordered_json summary = result.header.value("summary", ordered_json());
+  if (!summary.is_object()) return;
+  Confusion pooled;
+  for (const ScanRow* row : counted_scans(result)) pooled += *row->counts;
+  const ordered_json added_up = counts_json(pooled);
+  for (const auto& [name, count] : added_up.items()) {
+    if (!summary.contains(name) || summary.at(name) == count) continue;
+    throw DataError(result.file,
+                    fmt::format("\"{}\" of its scans add up to {}, that of its summary is {}", name,
+                                count.dump(), summary.at(name).dump()),
+                    "a result.json that nobody has changed");
+  }
+}
+
+/// Results of `mosbench score` cost nothing.
+void read_cost(const ResultFile& content, SequenceResult& result) {
+  result.method_ms_per_scan = method_ms_per_scan(content.rows);
+  for (const ScanCost& cost : content.rows.costs) {
+    result.most_resident_mib = std::max(result.most_resident_mib, std::optional(cost.resident_mib));
+  }
+  if (!content.content.contains("timing")) return;
+  const ordered_json& timing = content.content.at("timing");
+  if (timing.contains("threads")) result.threads = timing.at("threads").get<unsigned>();
+}
+
 SequenceResult from_content(const fs::path& file, ResultFile content) {
   SequenceResult result;
   result.file = file;
   result.scans = std::move(content.rows.scans);
-  result.method_ms_per_scan = method_ms_per_scan(content.rows);
+  read_cost(content, result);
   result.header = std::move(content.content);
   result.header.erase("scans");
   result.header.erase("timing");
   const ordered_json& header = result.header;
-  result.sequence = header.at("sequence");
+  result.sequence = SequenceName(header.at("sequence"), file);
   result.dataset = header.at("dataset");
   read_method(header, result);
   read_protocol(header, result);
   read_splits(header, result);
+  check_summary(result);
   if (!content.rows.fingerprint.empty()) result.fingerprint = content.rows.fingerprint;
+  result.fingerprint_without_poses = content.rows.fingerprint_without_poses;
   result.simulated = header.contains("simulated");
   if (result.simulated) {
     const ordered_json& origin = header.at("simulated");
@@ -68,15 +106,27 @@ SequenceResult from_content(const fs::path& file, ResultFile content) {
         fmt::format("scene {}, seed {}", origin.at("scene").get<std::string>(),
                     origin.at("seed").get<std::uint64_t>());
   }
+  if (header.contains("machine")) {
+    result.processor = header.at("machine").value("processor", result.processor);
+  }
   if (header.contains("predictions")) {
     result.missing_predictions = header.at("predictions").at("missing").size();
   }
   return result;
 }
 
+/// Settings of the odometry that found the poses; nothing for those that were given.
+ordered_json odometry_of(const SequenceResult& result) {
+  const ordered_json reading = result.header.value("reading", ordered_json::object());
+  ordered_json odometry;
+  for (const char* name : {"pose_odometry", "pose_map"}) odometry[name] = reading.value(name, "");
+  if (reading.contains("pose_odometry")) odometry["poses"] = reading.at("poses");
+  return odometry;
+}
+
 bool same_run(const SequenceResult& a, const SequenceResult& b) {
   return a.dataset == b.dataset && a.method == b.method && a.setting == b.setting &&
-         a.protocol == b.protocol && a.range == b.range &&
+         a.protocol == b.protocol && a.range == b.range && odometry_of(a) == odometry_of(b) &&
          a.header.value("config", ordered_json()) == b.header.value("config", ordered_json());
 }
 
@@ -90,10 +140,16 @@ void add_to_runs(SequenceResult result, std::vector<ResultSet>& sets, const fs::
   const auto twin = std::ranges::find(set->sequences, result.sequence, &SequenceResult::sequence);
   if (twin != set->sequences.end()) {
     throw DataError(result.file,
-                    "scores sequence " + result.sequence + " like " + twin->file.string(),
+                    "scores sequence " + result.sequence.text() + " like " + twin->file.string(),
                     "one result per sequence of a run");
   }
   set->sequences.push_back(std::move(result));
+}
+
+/// Names the file and what tells its run from others.
+std::string run_text(const SequenceResult& result) {
+  return fmt::format("{} ({}; {}; {})", result.file.string(), result.method, result.setting,
+                     result.protocol->name);
 }
 
 }  // namespace
@@ -123,10 +179,8 @@ ResultSet load_result_set(const fs::path& path) {
   std::vector<ResultSet> sets = load_result_sets(path);
   if (sets.size() == 1) return std::move(sets.front());
   throw DataError(path,
-                  fmt::format("holds {} runs: {} ({}, {}) differs from {} ({}, {})", sets.size(),
-                              sets[1].front().file.string(), sets[1].front().setting,
-                              sets[1].front().protocol->name, sets[0].front().file.string(),
-                              sets[0].front().setting, sets[0].front().protocol->name),
+                  fmt::format("holds {} runs: {} differs from {}", sets.size(),
+                              run_text(sets[1].front()), run_text(sets[0].front())),
                   "the results of one run");
 }
 

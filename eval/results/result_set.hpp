@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "datasets/sequence/sequence_name.hpp"
 #include "eval/protocols/protocol.hpp"
 #include "eval/protocols/scan_sums.hpp"
 #include "eval/results/result_file.hpp"
@@ -17,13 +18,14 @@ namespace mosbench {
 struct SequenceResult {
   std::filesystem::path file;
   nlohmann::ordered_json header;  ///< all of the file but scans and timing
-  std::string sequence;
+  SequenceName sequence;
   std::string dataset;
   std::string method;   ///< its title: "HMM-MOS"
   std::string setting;  ///< of the method, in words: "paper-2024, voxel 0.2 m, ..."
   const Protocol* protocol = nullptr;
   RangeGate range;
   std::optional<std::string> fingerprint;  ///< of the frames; nothing when only labels were read
+  std::string fingerprint_without_poses;   ///< empty where it is not known
   bool simulated = false;
   std::string simulated_origin;           ///< "scene mall, seed 1"
   std::size_t missing_predictions = 0;    ///< scans left out under --allow-missing
@@ -31,6 +33,9 @@ struct SequenceResult {
   std::map<std::string, std::set<std::string>> splits;  ///< stems, of splits that pick scans
   std::vector<ScanRow> scans;
   std::optional<double> method_ms_per_scan;
+  std::optional<double> most_resident_mib;  ///< of the process after a scan
+  std::optional<unsigned> threads;          ///< that the method was run with
+  std::string processor = "unknown";
 };
 
 /// Sequences scored by the same rules with labels from one method and setting.

@@ -3,9 +3,8 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <mosbench/method.hpp>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 #include <stdexcept>
@@ -13,12 +12,14 @@
 #include <vector>
 
 #include "datasets/files/errors.hpp"
+#include "datasets/files/files.hpp"
+#include "datasets/files/json_text.hpp"
 #include "datasets/files/nearest_name.hpp"
 
 namespace mosbench {
 namespace {
 
-using nlohmann::json;
+using json = nlohmann::ordered_json;
 
 std::vector<std::string_view> names_of(const Settings& settings) {
   std::vector<std::string_view> names;
@@ -31,10 +32,25 @@ std::optional<SettingValue> setting_value(const json& value) {
   if (value.is_string()) return value.get<std::string>();
   if (!value.is_number()) return std::nullopt;
   const auto number = value.get<double>();
-  // What does not fit an int is outside every range, and so is its nearest number.
+  // What does not fit an int is outside every range.
   const bool fits = std::abs(number) < 2e9;
   if (value.is_number_integer() && fits) return value.get<int>();
   return number;
+}
+
+/// Throws std::invalid_argument for a value of another type or outside its range.
+void set_value(const Setting& setting, const json& value, Settings& settings) {
+  const auto refuse = [&](std::string_view wrong) {
+    const std::string text = value.dump(-1, ' ', false, json::error_handler_t::replace);
+    throw std::invalid_argument(
+        fmt::format("{}: {} {}, expected {}", setting.name, text, wrong, legal_values(setting)));
+  };
+  const std::optional<SettingValue> wanted = setting_value(value);
+  if (!wanted) refuse("is not a number");
+  if (value.is_number_integer() && !std::holds_alternative<int>(*wanted)) {
+    refuse("is out of range");
+  }
+  settings.set(setting.name, *wanted);
 }
 
 void apply_value(std::string_view key, const json& value, std::string_view origin,
@@ -45,40 +61,26 @@ void apply_value(std::string_view key, const json& value, std::string_view origi
     throw UsageError(fmt::format("{}: key '{}' is not known, expected one of {} (nearest: {})",
                                  origin, key, fmt::join(names, ", "), nearest_name(key, names)));
   }
-  const std::optional<SettingValue> wanted = setting_value(value);
   try {
-    if (!wanted) {
-      const std::string text = value.dump(-1, ' ', false, json::error_handler_t::replace);
-      throw std::invalid_argument(
-          fmt::format("{}: {} is not a number, expected {}", key, text, legal_values(*setting)));
-    }
-    settings.set(key, *wanted);
+    set_value(*setting, value, settings);
   } catch (const std::invalid_argument& error) {
     throw UsageError(fmt::format("{}: {}", origin, error.what()));
   }
 }
 
-json parse_without_repeated_keys(std::string_view text, std::string_view origin) {
-  std::set<std::string> seen;
-  const auto refuse_repeated = [&](int depth, json::parse_event_t event, json& parsed) {
-    if (event == json::parse_event_t::key && depth == 1 &&
-        !seen.insert(parsed.get<std::string>()).second) {
-      throw UsageError(fmt::format("{}: key {} appears twice, expected once", origin,
-                                   parsed.dump(-1, ' ', false, json::error_handler_t::replace)));
-    }
-    return true;
-  };
+/// What is wrong with a configuration is wrong usage.
+json parse_settings(std::string_view text, std::string_view origin) {
   try {
-    return json::parse(text, refuse_repeated);
-  } catch (const json::exception& error) {
-    throw UsageError(fmt::format("{}: {}, expected a JSON object", origin, error.what()));
+    return parse_json(text, origin);
+  } catch (const DataError& error) {
+    throw UsageError(error.what());
   }
 }
 
 }  // namespace
 
 void apply_settings_text(std::string_view text, std::string_view origin, Settings& settings) {
-  const json object = parse_without_repeated_keys(text, origin);
+  const json object = parse_settings(text, origin);
   if (!object.is_object()) {
     throw UsageError(fmt::format("{}: holds a {}, expected a JSON object with configuration keys",
                                  origin, object.type_name()));
@@ -87,10 +89,11 @@ void apply_settings_text(std::string_view text, std::string_view origin, Setting
 }
 
 void apply_settings_file(const std::filesystem::path& file, Settings& settings) {
-  std::ifstream stream(file, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-  if (!stream || std::filesystem::is_directory(file)) {
-    throw UsageError(file.string() + ": cannot be read, expected a JSON object");
+  std::string text;
+  try {
+    text = read_file(file);
+  } catch (const DataError& error) {
+    throw UsageError(error.what());
   }
   apply_settings_text(text, file.string(), settings);
 }
@@ -102,8 +105,11 @@ void apply_setting_assignment(std::string_view assignment, Settings& settings) {
     throw UsageError(origin + ": has no key and value, expected key=value");
   }
   const std::string_view value = assignment.substr(equals + 1);
-  json parsed = json::parse(value, nullptr, false);
-  if (parsed.is_discarded()) parsed = std::string(value);
+  json parsed = std::string(value);
+  try {
+    parsed = parse_json(value, origin);
+  } catch (const DataError&) {  // a name
+  }
   apply_value(assignment.substr(0, equals), parsed, origin, settings);
 }
 
@@ -122,12 +128,22 @@ nlohmann::ordered_json to_json(const Settings& settings) {
   return object;
 }
 
+void check_recorded_settings(const nlohmann::ordered_json& config, std::string_view method) {
+  const MethodKind* kind = find_method(method);
+  if (kind == nullptr) return;
+  Settings settings = kind->defaults;
+  for (const auto& [key, value] : config.items()) {
+    // A setting of another version is not known.
+    if (const Setting* setting = settings.find(key)) set_value(*setting, value, settings);
+  }
+}
+
 std::string describe_settings(const nlohmann::ordered_json& config, std::string_view method) {
   const MethodKind* kind = find_method(method);
   const nlohmann::ordered_json defaults =
       kind == nullptr ? nlohmann::ordered_json::object() : to_json(kind->defaults);
   std::vector<std::string> parts;
-  std::set<std::string_view> said = {"occupancy_sigma_m"};  // follows the voxel size
+  std::set<std::string_view> said;
   const auto has = [&](const char* key) {
     said.insert(key);
     return config.contains(key);
@@ -145,10 +161,15 @@ std::string describe_settings(const nlohmann::ordered_json& config, std::string_
     parts.push_back(delay_scans == 0 ? "online" : fmt::format("delayed by {} scans", delay_scans));
   }
   for (const auto& [key, value] : config.items()) {
-    if (said.contains(key) || !defaults.contains(key) || defaults.at(key) == value) continue;
+    const Setting* setting = kind == nullptr ? nullptr : kind->defaults.find(key);
+    const bool follows = setting != nullptr && !setting->follows.empty();
+    const std::string usual(follows ? setting->follows : std::string_view(key));
+    const auto& usual_in = follows ? config : defaults;
+    if (said.contains(key) || (usual_in.contains(usual) && usual_in.at(usual) == value)) continue;
     parts.push_back(
         fmt::format("{} {}", key, value.is_string() ? value.get<std::string>() : value.dump()));
   }
+  if (parts.empty()) return config.empty() ? "" : "default settings";
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 

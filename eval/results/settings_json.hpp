@@ -22,6 +22,10 @@ void apply_setting_assignment(std::string_view assignment, Settings& settings);
 /// Returns every setting with its effective value, in the order of the method.
 nlohmann::ordered_json to_json(const Settings& settings);
 
+/// Throws std::invalid_argument naming the first of the settings in a result that its method cannot
+/// have: a value of the wrong type or outside its range.
+void check_recorded_settings(const nlohmann::ordered_json& config, std::string_view method);
+
 /// Returns the settings of a result in one line: those that every user asks for, then those that
 /// differ from the method's defaults.
 std::string describe_settings(const nlohmann::ordered_json& config, std::string_view method);

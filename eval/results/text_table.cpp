@@ -4,10 +4,13 @@
 
 #include <algorithm>
 
+#include "datasets/files/shown_text.hpp"
+
 namespace mosbench {
 
 void TextTable::add_row(std::vector<std::string> cells) {
   cells.resize(columns_.size());
+  for (std::string& cell : cells) cell = shown_in_line(cell);
   rows_.push_back(std::move(cells));
 }
 

@@ -8,7 +8,12 @@
 #include "datasets/files/errors.hpp"
 #include "datasets/files/nearest_name.hpp"
 #include "datasets/sequence/posed_sequence.hpp"
+#include "datasets/sequence/scan_deskewer.hpp"
+#include "eval/results/progress.hpp"
 #include "eval/results/settings_json.hpp"
+#include "eval/results/tell.hpp"
+#include "eval/runs/presets.hpp"
+#include "eval/runs/sequence_runner.hpp"
 
 namespace mosbench {
 namespace {
@@ -34,14 +39,62 @@ void apply_odometry_preset(const std::string& name, const OdometryKind& kind, Se
   for (const auto& [key, value] : preset.settings) settings.set(key, value);
 }
 
+std::string settings_text(const Settings& settings) {
+  std::vector<std::string> words;
+  for (const Setting& setting : settings.all()) {
+    words.push_back(fmt::format("{}={}", setting.name, to_string(setting.value)));
+  }
+  return fmt::format("{}", fmt::join(words, " "));
+}
+
+/// "poses found by SiMpLE", and how many of them are doubtful with the first; loudly where most
+/// are.
+std::string odometry_remark(const Sequence& sequence, const OdometryChoice& choice,
+                            const std::vector<ScanPose>& scans) {
+  std::string remark = fmt::format("poses found by {}", choice.kind->title);
+  const auto first = std::ranges::find_if(scans, &ScanPose::doubtful);
+  if (first == scans.end()) return remark;
+  const auto k = static_cast<std::size_t>(first - scans.begin());
+  const std::size_t doubtful = doubtful_count(scans);
+  const char* loud = 2 * doubtful > scans.size()
+                         ? "MOST POSES ARE DOUBTFUL, and labels made with them are, too: "
+                         : "";
+  return loud + remark +
+         fmt::format("; {} of {} are doubtful, first that of scan {}: {}", doubtful, scans.size(),
+                     sequence.stem(k), first->doubt);
+}
+
+/// Which points of a scan move, as seen from the pose that was just found.
+std::vector<std::uint8_t> moving_points(Method& method, const MovingFilter& filter,
+                                        const Sequence& sequence, std::size_t k,
+                                        const Frame& frame) {
+  const std::vector<LabelledScan> labelled = push_scan(method, sequence, k, frame);
+  if (labelled.empty() || labelled.back().scan_index != k) {
+    throw UsageError(fmt::format("--drop-moving: {} labels scans later, expected an online method",
+                                 filter.method->name));
+  }
+  std::vector<std::uint8_t> moving;
+  for (const std::uint32_t label : labelled.back().labels) moving.push_back(label == kMovingLabel);
+  return moving;
+}
+
 }  // namespace
 
-OdometryChoice choose_odometry(const OdometryOptions& options) {
+bool OdometryOptions::says_anything() const {
+  return preset || config_file || !assignments.empty() || drop_moving;
+}
+
+OdometryChoice choose_odometry(const OdometryOptions& options, const ReadingOptions& reading) {
   const std::string name = options.kind.value_or(std::string(odometries().front().name));
   OdometryChoice choice{.kind = &row_named(odometries(), name, "--odometry"), .settings = {}};
   choice.settings = choice.kind->defaults;
   if (options.preset) apply_odometry_preset(*options.preset, *choice.kind, choice.settings);
   if (options.config_file) apply_settings_file(*options.config_file, choice.settings);
+  if (reading.deskew) {
+    choice.deskew = *reading.deskew;
+    choice.says_deskew = true;
+    choice.settings.set("deskew", std::string(to_string(choice.deskew)));
+  }
   for (const std::string& assignment : options.assignments) {
     apply_setting_assignment(assignment, choice.settings);
   }
@@ -53,31 +106,87 @@ OdometryChoice choose_odometry(const OdometryOptions& options) {
   return choice;
 }
 
-ReadingStatement statement_of(const OdometryChoice& choice) {
-  std::vector<std::string> settings;
-  for (const Setting& setting : choice.settings.all()) {
-    settings.push_back(fmt::format("{}={}", setting.name, to_string(setting.value)));
+std::optional<OdometryChoice> named_odometry(const OdometryOptions& odometry,
+                                             const ReadingOptions& reading) {
+  if (!odometry.kind) {
+    if (!odometry.says_anything()) return std::nullopt;
+    throw UsageError("--odometry: is missing, expected simple or kiss before its settings");
   }
-  return {{"poses", fmt::format("odometry {}", choice.kind->name)},
-          {"pose_odometry", fmt::format("{}", fmt::join(settings, " "))}};
+  if (reading.poses) {
+    throw UsageError("--poses and --odometry: say where poses come from, expected one of them");
+  }
+  return choose_odometry(odometry, reading);
+}
+
+MovingFilter moving_filter(const MethodKind& method, Settings settings) {
+  if (settings.find("delay_scans") != nullptr) settings.set("delay_scans", 0);
+  try {
+    method.check(settings);
+  } catch (const std::invalid_argument& error) {
+    throw UsageError(fmt::format("--drop-moving: needs method {} with delay_scans=0: {}",
+                                 method.name, error.what()));
+  }
+  return {&method, std::move(settings)};
+}
+
+OdometryChoice with_filter(OdometryChoice choice, const OdometryOptions& options,
+                           DatasetKind kind) {
+  const MethodKind& method = methods().front();
+  if (options.drop_moving) {
+    choice.filter = moving_filter(method, settings_of(default_preset(kind), method));
+  }
+  return choice;
+}
+
+ReadingStatement statement_of(const OdometryChoice& choice) {
+  ReadingStatement statement = {{"poses", fmt::format("odometry {}", choice.kind->name)},
+                                {"pose_odometry", settings_text(choice.settings)}};
+  if (choice.says_deskew) statement.emplace_back("deskew", to_string(choice.deskew));
+  if (choice.filter) {
+    statement.emplace_back(
+        "pose_map", fmt::format("without what {} finds moving: {}", choice.filter->method->name,
+                                settings_text(choice.filter->settings)));
+  }
+  return statement;
 }
 
 void expect_poses(Dataset& dataset, const OdometryChoice& choice) {
   for (std::unique_ptr<Sequence>& sequence : dataset.sequences) {
-    sequence = std::make_unique<PosedSequence>(std::move(sequence), statement_of(choice));
+    sequence =
+        std::make_unique<PosedSequence>(std::move(sequence), statement_of(choice), choice.deskew);
   }
 }
 
 std::vector<ScanPose> estimate_poses(const Sequence& sequence, const OdometryChoice& choice,
-                                     unsigned threads, const std::function<void()>& advance) {
+                                     unsigned threads) {
+  Progress progress(fmt::format("{} of {}", choice.kind->title, sequence.name()), sequence.size());
   const std::unique_ptr<Odometry> odometry = choice.kind->make(choice.settings, threads);
+  const auto& filter = choice.filter;
+  const std::unique_ptr<Method> method =
+      filter ? filter->method->make(filter->settings,
+                                    {.threads = threads, .scan_count = sequence.size()})
+             : nullptr;
   std::vector<ScanPose> poses;
   Frame frame;
   for (std::size_t k = 0; k < sequence.size(); ++k) {
     sequence.read(k, frame);
     poses.push_back(odometry->push(frame.points, {frame.stamp_ns, frame.point_times_ns}));
-    advance();
+    if (method) {
+      frame.map_from_sensor = poses.back().map_from_sensor;
+      odometry->leave_out(moving_points(*method, *filter, sequence, k, frame));
+    }
+    progress.advance();
   }
+  return poses;
+}
+
+std::vector<Pose> find_poses(Sequence& sequence, const OdometryChoice& choice, unsigned threads) {
+  auto& posed = dynamic_cast<PosedSequence&>(sequence);
+  const std::vector<ScanPose> scans = estimate_poses(posed.unposed(), choice, threads);
+  std::vector<Pose> poses = poses_of(scans);
+  const std::string remark = odometry_remark(sequence, choice, scans);
+  tell(fmt::format("{}: {}", sequence.name(), remark));
+  posed.set_poses(poses, remark);
   return poses;
 }
 
@@ -89,16 +198,6 @@ std::vector<Pose> poses_of(const std::vector<ScanPose>& scans) {
 
 std::size_t doubtful_count(const std::vector<ScanPose>& scans) {
   return static_cast<std::size_t>(std::ranges::count_if(scans, &ScanPose::doubtful));
-}
-
-std::string odometry_remark(const Sequence& sequence, const OdometryChoice& choice,
-                            const std::vector<ScanPose>& scans) {
-  std::string remark = fmt::format("poses found by {}", choice.kind->title);
-  const auto first = std::ranges::find_if(scans, &ScanPose::doubtful);
-  if (first == scans.end()) return remark;
-  const auto k = static_cast<std::size_t>(first - scans.begin());
-  return remark + fmt::format("; {} of {} are doubtful, first that of scan {}: {}",
-                              doubtful_count(scans), scans.size(), sequence.stem(k), first->doubt);
 }
 
 }  // namespace mosbench

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
+#include <mosbench/method.hpp>
 #include <mosbench/odometry.hpp>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -17,16 +17,39 @@ struct OdometryOptions {
   std::optional<std::string> kind, preset;
   std::optional<std::filesystem::path> config_file;
   std::vector<std::string> assignments;
+  bool drop_moving = false;
+
+  /// Whether anything was said without a kind.
+  bool says_anything() const;
+};
+
+/// An online method whose moving points stay out of the map that scans are registered to.
+struct MovingFilter {
+  const MethodKind* method = nullptr;
+  Settings settings;
 };
 
 struct OdometryChoice {
   const OdometryKind* kind = nullptr;
   Settings settings;
+  std::optional<MovingFilter> filter = std::nullopt;
+  Deskew deskew = Deskew::kPoses;  ///< of the scans once their poses are found
+  bool says_deskew = false;        ///< whether the user did
 };
 
-/// Settings are defaults < preset < file < assignments. The preset's kind is taken when none is
-/// named. Throws UsageError.
-OdometryChoice choose_odometry(const OdometryOptions& options);
+/// Settings are defaults < preset < file < deskewing of `reading` < assignments. The preset's kind
+/// is taken when none is named. Throws UsageError.
+OdometryChoice choose_odometry(const OdometryOptions& options, const ReadingOptions& reading);
+
+/// The choice when a kind is named; `options.poses` is then refused. Throws UsageError.
+std::optional<OdometryChoice> named_odometry(const OdometryOptions& odometry,
+                                             const ReadingOptions& reading);
+
+/// The method with these settings, but without a delay.
+MovingFilter moving_filter(const MethodKind& method, Settings settings);
+
+/// The choice with the default method as a filter, as it is set for the data set, if asked for.
+OdometryChoice with_filter(OdometryChoice choice, const OdometryOptions& options, DatasetKind kind);
 
 /// Which odometry with which settings, for the statement on how a sequence was read.
 ReadingStatement statement_of(const OdometryChoice& choice);
@@ -34,15 +57,14 @@ ReadingStatement statement_of(const OdometryChoice& choice);
 /// Wraps every sequence of a data set that was opened without poses into a PosedSequence.
 void expect_poses(Dataset& dataset, const OdometryChoice& choice);
 
-/// Finds the poses of a sequence from its scans, telling `advance` of each. The same for any number
-/// of threads. Throws DataError.
+/// Finds the poses of a sequence from its scans and tells how far it is. The same for any number of
+/// threads. Throws DataError, and UsageError for a filter that labels scans later.
 std::vector<ScanPose> estimate_poses(const Sequence& sequence, const OdometryChoice& choice,
-                                     unsigned threads, const std::function<void()>& advance);
+                                     unsigned threads);
+
+/// Finds and sets the poses of a sequence that `expect_poses` wrapped. Returns them.
+std::vector<Pose> find_poses(Sequence& sequence, const OdometryChoice& choice, unsigned threads);
 
 std::vector<Pose> poses_of(const std::vector<ScanPose>& scans);
 std::size_t doubtful_count(const std::vector<ScanPose>& scans);
-/// "poses by SiMpLE", and how many of them are doubtful with the first.
-std::string odometry_remark(const Sequence& sequence, const OdometryChoice& choice,
-                            const std::vector<ScanPose>& scans);
-
 }  // namespace mosbench

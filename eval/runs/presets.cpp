@@ -20,14 +20,33 @@ std::vector<PresetValue> settings(double voxel_size_m, double min_range_m, doubl
           {"delay_scans", delay_scans}};
 }
 
+/// The same for DOALS, whose sensor Dynablox's authors describe so (their default.yaml).
+std::vector<PresetValue> doals_settings(double max_range_m) {
+  std::vector<PresetValue> values = settings(0.20, 0.5, max_range_m);
+  values.push_back({"range_image_rows", 64});
+  values.push_back({"range_image_columns", 2048});
+  values.push_back({"field_of_view_down_deg", -33.22222 / 2});
+  values.push_back({"field_of_view_up_deg", 33.22222 / 2});
+  return values;
+}
+
+/// The same for the authors' later program, with which they measured these data sets.
+std::vector<PresetValue> later_settings(double voxel_size_m, double min_range_m,
+                                        double max_range_m) {
+  std::vector<PresetValue> values = settings(voxel_size_m, min_range_m, max_range_m);
+  values.push_back({"variant", "release-2025"});
+  values.push_back({"local_window_scans", 5});
+  return values;
+}
+
 }  // namespace
 
 std::span<const Preset> presets() {
   // The first preset of a kind is its default.
   static const std::array kPresets = {
-      Preset{"doals-20m", DatasetKind::kDoals, settings(0.20, 0.5, 20.0), "doals-hmm",
+      Preset{"doals-20m", DatasetKind::kDoals, doals_settings(20.0), "doals-hmm",
              "paper, Table I, rows (20m)"},
-      Preset{"doals-120m", DatasetKind::kDoals, settings(0.20, 0.5, 120.0), "doals-hmm",
+      Preset{"doals-120m", DatasetKind::kDoals, doals_settings(120.0), "doals-hmm",
              "paper, Table I, full range"},
       Preset{"sipailou", DatasetKind::kSipailou, settings(0.25, 3.0, 50.0), "sipailou",
              "paper, Table II"},
@@ -39,11 +58,11 @@ std::span<const Preset> presets() {
              "semantickitti-mos", "ours, the authors publish none: as helimos"},
       Preset{"apollo", DatasetKind::kApollo, settings(0.25, 0.5, 120.0), "semantickitti-mos",
              "authors' config of Apollo (2024)"},
-      Preset{"moe", DatasetKind::kMoe, settings(0.20, 0.0, 120.0), "moe",
+      Preset{"moe", DatasetKind::kMoe, later_settings(0.20, 0.0, 120.0), "moe",
              "authors' config of MOE (2025)"},
       Preset{"kth", DatasetKind::kKth, settings(0.25, 1.5, 50.0), "semantickitti-mos",
              "ours, the authors publish none: as helimos"},
-      Preset{"mdetector", DatasetKind::kMdetector, settings(0.20, 0.0, 120.0), "mdetector",
+      Preset{"mdetector", DatasetKind::kMdetector, later_settings(0.20, 0.0, 120.0), "mdetector",
              "authors' config of M-detector's sets (2025)"},
   };
   return kPresets;
@@ -61,7 +80,13 @@ const Preset& preset_named(std::string_view name) {
 Settings settings_of(const Preset& preset, const MethodKind& method) {
   Settings settings = method.defaults;
   for (const PresetValue& value : preset.values) {
-    if (settings.find(value.setting) != nullptr) settings.set(value.setting, value.value);
+    if (settings.find(value.setting) == nullptr) continue;
+    try {
+      settings.set(value.setting, value.value);
+    } catch (const std::invalid_argument& error) {
+      throw UsageError(fmt::format("--preset {}: does not suit method {}: {}", preset.name,
+                                   method.name, error.what()));
+    }
   }
   return settings;
 }

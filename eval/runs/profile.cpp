@@ -40,7 +40,9 @@ void add_stages(const std::vector<StageTime>& stages, SequenceProfile& profile) 
   for (const StageTime& stage : stages) {
     const auto later =
         std::ranges::upper_bound(profile.scans, stage.start, {}, &ScanProfile::start);
-    std::prev(later)->stages.push_back(stage);
+    // A stage that does not say when it began is the last scan's.
+    ScanProfile& scan = later == profile.scans.begin() ? profile.scans.back() : *std::prev(later);
+    scan.stages.push_back(stage);
     if (std::ranges::find(profile.stages, stage.name) == profile.stages.end()) {
       profile.stages.push_back(stage.name);
     }
@@ -54,9 +56,9 @@ SequenceProfile profile_sequence(const Sequence& sequence, const RunSettings& se
   SequenceProfile profile{sequence.name(), settings.threads, std::nullopt, {}, {}};
   const std::size_t scans = std::min(sequence.size(), most_scans);
   // The whole length: the end of a delayed sequence is labelled in another way.
-  const std::unique_ptr<Method> method = settings.method->make(
-      settings.method_settings,
-      {.threads = settings.threads, .scan_count = sequence.size(), .cpu_times = true});
+  RunContext context = context_of(sequence, settings);
+  context.cpu_times = true;
+  const std::unique_ptr<Method> method = settings.method->make(settings.method_settings, context);
   std::vector<LabelledScan> finals;
   Progress progress("profile " + sequence.name(), scans);
   std::vector<std::int64_t> stamps_ns;
@@ -72,9 +74,7 @@ SequenceProfile profile_sequence(const Sequence& sequence, const RunSettings& se
     scan.end = Clock::now();
     for (const LabelledScan& final_scan : finals) add_stages(final_scan.stages, profile);
     scan.resident_mib = resident_mib();
-    const MemoryUse memory = method->memory();
-    scan.map_blocks = memory.map_blocks;
-    scan.method_bytes = memory.bytes;
+    scan.memory = method->memory();
     progress.advance();
   }
   for (const LabelledScan& final_scan : method->finish()) add_stages(final_scan.stages, profile);

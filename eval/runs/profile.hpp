@@ -24,8 +24,8 @@ struct ScanProfile {
   Cost read;
   Cost method;  ///< the whole push: all stages and what is between them
   std::vector<StageTime> stages;
-  double resident_mib = 0;  ///< of the process
-  std::size_t map_blocks = 0, method_bytes = 0;
+  double resident_mib = 0;          ///< of the process
+  std::optional<MemoryUse> memory;  ///< of the method; nothing when it does not measure it
 };
 
 struct SequenceProfile {

@@ -2,28 +2,28 @@
 
 #include <fmt/format.h>
 
-#include <cstdio>
 #include <system_error>
 
+#include "datasets/doctor/pose_frame_doubt.hpp"
 #include "datasets/files/files.hpp"
+#include "datasets/files/folder_lock.hpp"
 #include "datasets/files/pose_file.hpp"
-#include "datasets/sequence/posed_sequence.hpp"
+#include "datasets/sequence/pose_frame_mark.hpp"
+#include "eval/exec/exec_method.hpp"
 #include "eval/protocols/benchmark_split.hpp"
 #include "eval/protocols/metrics.hpp"
 #include "eval/protocols/summary_json.hpp"
 #include "eval/results/machine.hpp"
-#include "eval/results/progress.hpp"
 #include "eval/results/reading_json.hpp"
 #include "eval/results/result_format.hpp"
 #include "eval/results/simulated.hpp"
+#include "eval/results/tell.hpp"
 
 namespace mosbench {
 namespace fs = std::filesystem;
 namespace {
 
 using nlohmann::ordered_json;
-
-void tell(const std::string& line) { std::fputs((line + '\n').c_str(), stderr); }
 
 std::vector<std::string> scans_without_detection(const SequenceRows& rows) {
   std::vector<std::string> stems;
@@ -36,8 +36,10 @@ std::vector<std::string> scans_without_detection(const SequenceRows& rows) {
 std::vector<std::string> all_remarks(const RunSettings& settings, const Sequence& sequence,
                                      const SequenceRows& rows) {
   std::vector<std::string> remarks = sequence.remarks();
-  remarks.push_back(fmt::format("{} of {} scans are labelled static without detection",
-                                scans_without_detection(rows).size(), sequence.size()));
+  if (const std::size_t unjudged = scans_without_detection(rows).size(); unjudged > 0) {
+    remarks.push_back(fmt::format("{} of {} scans are labelled static without detection", unjudged,
+                                  sequence.size()));
+  }
   remarks.insert(remarks.end(), rows.remarks.begin(), rows.remarks.end());
   std::size_t nonfinite_points = 0;
   std::uint64_t unknown_ids = 0;
@@ -67,9 +69,12 @@ ordered_json header(const RunPlan& plan, const PlannedSequence& planned, const S
     json["simulated"] = *origin;
   }
   json["fingerprint"] = rows.fingerprint;
+  json["fingerprint_without_poses"] = rows.fingerprint_without_poses;
   json["machine"] = machine_json();
   json["remarks"] = remarks;
   json["scans_without_detection"] = scans_without_detection(rows);
+  const Recording& recording = plan.dataset.sequences[planned.position]->recording();
+  for (const ScanEntry& scan : recording.left_out) json["scans_left_out"].push_back(scan.stem);
   const Split* benchmark = benchmark_scans(*plan.settings.protocol, plan.dataset.splits);
   const auto stems =
       benchmark == nullptr ? std::nullopt : stems_in_split(*benchmark, planned.position);
@@ -95,17 +100,19 @@ ordered_json clock_header(const RunPlan& plan, const PlannedSequence& planned) {
   return json;
 }
 
-/// Settles the poses of a sequence before its method sees a scan, and writes them next to the
-/// labels.
-void find_poses(const RunPlan& plan, const PlannedSequence& planned, const fs::path& folder) {
-  auto& sequence = dynamic_cast<PosedSequence&>(*plan.dataset.sequences[planned.position]);
-  Progress progress(fmt::format("{} of {}", plan.odometry->kind->title, sequence.name()),
-                    sequence.size());
-  const std::vector<ScanPose> poses =
-      estimate_poses(sequence.unposed(), *plan.odometry, plan.settings.threads,
-                     [&progress] { progress.advance(); });
-  write_poses(folder / "poses.txt", poses_of(poses));
-  sequence.set_poses(poses_of(poses), odometry_remark(sequence, *plan.odometry, poses));
+void keep_poses(const std::vector<Pose>& poses, const fs::path& file) {
+  const std::string rows = format_poses(poses);
+  mark_as_lidars(file, rows);
+  write_file_atomic(file, rows);
+}
+
+/// What the scans say about the frame of poses of a file, where nobody said it.
+std::vector<std::string> doubts_about_poses(const RunPlan& plan, const Sequence& sequence) {
+  if (!plan.reading.poses || plan.reading.pose_frame != PoseFrame::kByCalib) return {};
+  const std::optional<std::string> doubt = doubt_about_pose_frame(sequence);
+  if (!doubt) return {};
+  tell(fmt::format("{}: {}", sequence.name(), *doubt));
+  return {*doubt};
 }
 
 SequenceOutcome run_now(const RunPlan& plan, const PlannedSequence& planned) {
@@ -113,9 +120,15 @@ SequenceOutcome run_now(const RunPlan& plan, const PlannedSequence& planned) {
   const fs::path partial = planned.folder.begin();
   try {
     SequenceOutcome outcome;
-    if (plan.odometry) find_poses(plan, planned, partial);
+    if (plan.odometry) {
+      keep_poses(find_poses(*plan.dataset.sequences[planned.position], *plan.odometry,
+                            plan.settings.threads),
+                 partial / "poses.txt");
+    }
+    const std::vector<std::string> doubts = doubts_about_poses(plan, sequence);
     outcome.rows = run_sequence(sequence, plan.settings, partial);
     outcome.remarks = all_remarks(plan.settings, sequence, outcome.rows);
+    outcome.remarks.insert(outcome.remarks.begin(), doubts.begin(), doubts.end());
     outcome.folder = planned.folder.path();
     write_file_atomic(
         partial / "result.json",
@@ -133,7 +146,10 @@ SequenceOutcome run_now(const RunPlan& plan, const PlannedSequence& planned) {
 
 SequenceOutcome reuse(const RunPlan& plan, const PlannedSequence& planned) {
   const Sequence& sequence = *plan.dataset.sequences[planned.position];
-  tell(fmt::format("{}: finished by an earlier run, kept", sequence.name()));
+  planned.folder.remove_leftovers();
+  const bool is_program = plan.settings.method->name == kExecKind;
+  tell(fmt::format("{}: finished by an earlier run, kept{}", sequence.name(),
+                   is_program ? "; if the program has changed, --overwrite runs it again" : ""));
   return {planned.finished->rows,
           planned.finished->content.at("remarks").get<std::vector<std::string>>(),
           planned.folder.path(), true};
@@ -143,6 +159,7 @@ SequenceOutcome reuse(const RunPlan& plan, const PlannedSequence& planned) {
 
 std::vector<SequenceOutcome> execute_run(const RunPlan& plan) {
   keep_freed_memory();
+  give_back_memory();  // of a run of another method
   const FolderLock lock(plan.out);
   for (const std::string& note : plan.notes) tell(note);
   tell(fmt::format("results go to {}", plan.out.string()));

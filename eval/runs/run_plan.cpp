@@ -2,16 +2,17 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <stdexcept>
 
-#include "core/base/thread_pool.hpp"
 #include "datasets/files/errors.hpp"
-#include "datasets/files/nearest_name.hpp"
 #include "datasets/sequence/fingerprint.hpp"
+#include "eval/protocols/benchmark_split.hpp"
 #include "eval/results/reading_json.hpp"
 #include "eval/results/same_input.hpp"
 #include "eval/results/settings_json.hpp"
+#include "eval/runs/method_choice.hpp"
 #include "eval/runs/presets.hpp"
 #include "eval/runs/shared_folder.hpp"
 #include "mosbench_version.hpp"
@@ -19,15 +20,6 @@
 namespace mosbench {
 namespace fs = std::filesystem;
 namespace {
-
-const MethodKind& choose_method(const RunOptions& options) {
-  const std::string name = options.method.value_or(std::string(methods().front().name));
-  if (const MethodKind* method = find_method(name)) return *method;
-  std::vector<std::string_view> names;
-  for (const MethodKind& method : methods()) names.push_back(method.name);
-  throw UsageError(fmt::format("--method: '{}' is not known, expected one of {} (nearest: {})",
-                               name, fmt::join(names, ", "), nearest_name(name, names)));
-}
 
 const Preset& choose_preset(const RunOptions& options, DatasetKind kind, RunPlan& plan) {
   if (options.preset) return preset_named(*options.preset);
@@ -41,7 +33,7 @@ const Preset& choose_preset(const RunOptions& options, DatasetKind kind, RunPlan
 void apply_variant(const std::string& name, const MethodKind& method, Settings& settings) {
   if (settings.find("variant") == nullptr) {
     throw UsageError(
-        fmt::format("--variant: method {} has no variants, expected none", method.name));
+        fmt::format("--variant: method {} has no variants, leave the flag out", method.name));
   }
   try {
     settings.set("variant", name);
@@ -87,8 +79,11 @@ fs::path default_out(const RunPlan& plan, const RunOptions& options) {
   const std::string_view kind = settings.method == &methods().front() && has_variant
                                     ? settings.method_settings.choice("variant")
                                     : settings.method->name;
-  return fs::path("results/runs") /
-         fmt::format("{}-{}-{}", folder.filename().string(), plan.preset, kind);
+  // A run with other poses has results of its own.
+  const std::string poses = plan.odometry ? fmt::format("-{}", plan.odometry->kind->name) : "";
+  const std::string data = fmt::format("{}-{}", folder.filename().string(), plan.preset);
+  const std::string method = options.one_of_several ? "" : fmt::format("-{}", kind);
+  return fs::path("results/runs") / (data + method + poses);
 }
 
 nlohmann::ordered_json identity_of(const RunPlan& plan, const Sequence& sequence) {
@@ -115,66 +110,105 @@ nlohmann::ordered_json shared_rules(const RunPlan& plan) {
   return rules;
 }
 
-PlannedSequence plan_sequence(const RunPlan& plan, std::size_t position, bool overwrite) {
+/// Throws UsageError unless a finished result is of the input that there is now and as it was
+/// written.
+void check_unchanged(const RunPlan& plan, const PlannedSequence& planned, bool verify) {
+  const Sequence& sequence = *plan.dataset.sequences[planned.position];
+  const ResultFile& result = *planned.finished;
+  const auto refuse = [&](const std::string& other) {
+    throw UsageError(
+        fmt::format("{}: holds results of other {} than {} has now, expected the "
+                    "same; give another --out, or --overwrite to replace them",
+                    planned.folder.path().string(), other, sequence.name()));
+  };
+  const nlohmann::ordered_json none = nlohmann::ordered_json::object();
+  if (result.content.value("splits", none) != picked_stems(plan.dataset, planned.position)) {
+    refuse("split files");
+  }
+  const auto stamp = verify ? std::nullopt : std::optional(planned.stamp);
+  if (!same_input(sequence, stamp, result)) refuse("input files");
+  planned.folder.check_labels(result);
+}
+
+PlannedSequence plan_sequence(const RunPlan& plan, std::size_t position,
+                              const RunOptions& options) {
   const Sequence& sequence = *plan.dataset.sequences[position];
   PlannedSequence planned{position, ResultFolder(plan.out / sequence.name()),
                           identity_of(plan, sequence), file_stamp(sequence), std::nullopt};
-  if (overwrite) {
+  if (options.overwrite) {
     planned.folder.check_replaceable();
     return planned;
   }
   planned.finished =
       planned.folder.finished(sequence, planned.identity, plan.settings.keeps_scores);
-  if (planned.finished && !same_input(sequence, planned.stamp, *planned.finished)) {
-    throw UsageError(fmt::format(
-        "{}: holds results of other input files than {} has now, expected the same; give another "
-        "--out, or --overwrite to replace them",
-        planned.folder.path().string(), sequence.name()));
-  }
+  if (planned.finished) check_unchanged(plan, planned, options.verify);
   return planned;
 }
 
-/// Poses are read, or, where the user names an odometry, found.
-void choose_poses(const RunOptions& options, RunPlan& plan) {
-  const OdometryOptions& odometry = options.odometry;
-  if (!odometry.kind) {
-    if (!odometry.preset && !odometry.config_file && odometry.assignments.empty()) return;
-    throw UsageError("--odometry: is missing, expected simple or kiss before its settings");
+/// Names what a preset changes of the paper's method, but not of this one.
+void note_lacking_settings(const Preset& preset, RunPlan& plan) {
+  const MethodKind& method = *plan.settings.method;
+  const Settings& of_paper = methods().front().defaults;
+  std::vector<std::string_view> lacking;
+  for (const PresetValue& value : preset.values) {
+    if (method.defaults.find(value.setting) || !of_paper.find(value.setting)) continue;
+    Settings changed = of_paper;
+    changed.set(value.setting, value.value);
+    if (to_json(changed) != to_json(of_paper)) lacking.push_back(value.setting);
   }
-  if (options.reading.poses) {
-    throw UsageError("--poses and --odometry: say where poses come from, expected one of them");
-  }
-  plan.odometry = choose_odometry(odometry);
-  plan.reading.poses_by_odometry = true;
+  if (lacking.empty()) return;
+  plan.notes.push_back(fmt::format("preset {}: method {} has no {}, it runs without", preset.name,
+                                   method.name, fmt::join(lacking, ", ")));
+}
+
+/// A preset sets what a method has; of a method that has none of it, only the protocol is left.
+void note_preset_without_settings(const Preset& preset, RunPlan& plan) {
+  const MethodKind& method = *plan.settings.method;
+  const bool has_any = std::ranges::any_of(preset.values, [&](const PresetValue& value) {
+    return method.defaults.find(value.setting) != nullptr;
+  });
+  if (has_any) return note_lacking_settings(preset, plan);
+  plan.notes.push_back(
+      fmt::format("method {} has none of the settings of preset {}: it chooses the protocol alone",
+                  method.name, preset.name));
 }
 
 }  // namespace
 
 RunPlan plan_method(const RunOptions& options) {
   RunPlan plan;
-  plan.settings.method = &choose_method(options);
-  plan.settings.threads = options.threads > 0 ? options.threads : hardware_threads();
+  plan.settings.method =
+      &method_named(options.method.value_or(std::string(methods().front().name)));
+  plan.settings.threads = options.threads;
   plan.reading = options.reading;
-  choose_poses(options, plan);
+  plan.odometry = named_odometry(options.odometry, options.reading);
+  plan.reading.poses_by_odometry = plan.odometry.has_value();
   plan.dataset = open_dataset(
       options.input, {dataset_kind_option(options.dataset), options.sequences, plan.reading});
-  if (plan.odometry) expect_poses(plan.dataset, *plan.odometry);
   const Preset& preset = choose_preset(options, plan.dataset.kind, plan);
   plan.preset = preset.name;
+  note_preset_without_settings(preset, plan);
   plan.settings.method_settings = choose_settings(options, preset, *plan.settings.method);
   plan.settings.protocol = &protocol_named(options.protocol.value_or(std::string(preset.protocol)));
   plan.settings.range =
       choose_range(options, *plan.settings.protocol, plan.settings.method_settings);
+  if (!plan.odometry) return plan;
+  if (options.odometry.drop_moving) {
+    plan.odometry->filter = moving_filter(*plan.settings.method, plan.settings.method_settings);
+  }
+  expect_poses(plan.dataset, *plan.odometry);
   return plan;
 }
 
 RunPlan plan_run(const RunOptions& options) {
   RunPlan plan = plan_method(options);
   plan.settings.keeps_scores = options.scores;
+  plan.settings.is_one_of_several = options.one_of_several;
   plan.out = options.out.value_or(default_out(plan, options));
+  if (options.one_of_several) plan.out /= plan.settings.method->name;
   check_shared_folder(plan, shared_rules(plan));
   for (std::size_t i = 0; i < plan.dataset.sequences.size(); ++i) {
-    plan.sequences.push_back(plan_sequence(plan, i, options.overwrite));
+    plan.sequences.push_back(plan_sequence(plan, i, options));
   }
   return plan;
 }

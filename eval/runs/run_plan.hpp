@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/thread_pool.hpp"
 #include "datasets/layouts/dataset.hpp"
 #include "eval/results/result_folder.hpp"
 #include "eval/runs/odometry_choice.hpp"
@@ -23,10 +24,12 @@ struct RunOptions {
   ReadingOptions reading = {};
   OdometryOptions odometry;  ///< poses are found by it when a kind is named
   std::vector<std::string> assignments;
-  unsigned threads = 0;  ///< 0: one per logical core
+  unsigned threads = hardware_threads();
   bool overwrite = false;
+  bool verify = false;  ///< read all input of finished sequences again
   bool scores = false;
   bool json = false;
+  bool one_of_several = false;  ///< results go to a folder of the method below `out`
 };
 
 /// One sequence of a run: where its results go, and the results when they are there already.

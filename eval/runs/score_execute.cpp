@@ -1,5 +1,7 @@
 #include "eval/runs/score_execute.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <mutex>
 
@@ -8,6 +10,7 @@
 #include "datasets/sequence/fingerprint.hpp"
 #include "eval/protocols/benchmark_split.hpp"
 #include "eval/results/progress.hpp"
+#include "eval/runs/label_shift.hpp"
 
 namespace mosbench {
 namespace {
@@ -45,7 +48,7 @@ std::vector<ScanRow> score_one(const Sequence& sequence, std::size_t k, const Sc
   const std::optional<Confusion> counted = labels.counts(k);
   const std::vector<std::uint32_t> predicted =
       counted ? std::vector<std::uint32_t>{} : labels.read(k);
-  const TruthHash hash = truth_hash(*frame.truth);
+  const LabelHash hash = hash_of_labels(*frame.truth);
   std::vector<ScanRow> rows;
   for (const ScoreRule& rule : task.rules) {
     ScanRow& row = rows.emplace_back();
@@ -58,6 +61,20 @@ std::vector<ScanRow> score_one(const Sequence& sequence, std::size_t k, const Sc
     row.predicted_moving_points = row.counts->tp + row.counts->fp;
   }
   return rows;
+}
+
+/// Dynablox's own counts are by one protocol at one range, whatever was asked.
+void check_rules_of_counts(const OpenedPredictions& opened, const ScoreTask& task) {
+  if (opened.format != PredictionFormat::kDynabloxScores) return;
+  const Protocol& own = protocol_named("doals-dynablox");
+  for (const ScoreRule& rule : task.rules) {
+    if (rule.protocol == &own && rule.range == own.default_range) continue;
+    throw UsageError(fmt::format(
+        "--protocol: {} holds counts by protocol {} at {:g} to {:g} m, expected that protocol and "
+        "range, not {} at {:g} to {:g} m; the labels in clouds.csv can be scored by all",
+        opened.path.string(), own.name, own.default_range.min_m, own.default_range.max_m,
+        rule.protocol->name, rule.range.min_m, rule.range.max_m));
+  }
 }
 
 void score_scans(const Sequence& sequence, const std::vector<std::size_t>& scans,
@@ -77,6 +94,20 @@ void score_scans(const Sequence& sequence, const std::vector<std::size_t>& scans
   });
 }
 
+/// Adds remarks when nothing or most is predicted moving, and when labels fit other scans better.
+void add_doubts(const Sequence& sequence, const std::vector<std::size_t>& scans,
+                const ScoreRule& rule, SequenceScores& scores) {
+  Confusion all;
+  for (const ScanRow& row : scores.by_rule.front()) all += *row.counts;
+  OpenedPredictions& opened = *scores.opened;
+  const std::string remark = strange_share(all.tp + all.fp, all.points() - all.ignored,
+                                           opened.labels->ids(), *rule.protocol);
+  if (!remark.empty()) opened.remarks.push_back(remark);
+  if (opened.format == PredictionFormat::kDynabloxScores) return;
+  const std::string shift = shift_remark(sequence, scans, *opened.labels, rule);
+  if (!shift.empty()) opened.remarks.push_back(shift);
+}
+
 SequenceScores score_sequence(const Dataset& dataset, std::size_t position, const ScoreTask& task,
                               ThreadPool& pool) {
   const Sequence& sequence = *dataset.sequences[position];
@@ -86,11 +117,17 @@ SequenceScores score_sequence(const Dataset& dataset, std::size_t position, cons
   if (wanted.empty()) return scores;
   scores.opened = open_predictions(task.predictions, sequence, wanted,
                                    dataset.sequences.size() == 1, task.options);
+  check_rules_of_counts(*scores.opened, task);
   std::vector<std::size_t> scans;
   for (const std::size_t k : wanted) {
     if (scores.opened->labels->has(k)) scans.push_back(k);
   }
-  score_scans(sequence, scans, task, pool, scores);
+  try {
+    score_scans(sequence, scans, task, pool, scores);
+    add_doubts(sequence, scans, task.rules.front(), scores);
+  } catch (const DataError& error) {
+    throw scores.opened->with_format(error);
+  }
   return scores;
 }
 

@@ -1,5 +1,7 @@
 #include "eval/runs/sequence_runner.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <deque>
@@ -10,6 +12,7 @@
 #include "datasets/files/files.hpp"
 #include "datasets/files/label_file.hpp"
 #include "datasets/sequence/fingerprint.hpp"
+#include "eval/exec/program_error.hpp"
 #include "eval/results/dynamic_score_file.hpp"
 #include "eval/results/machine.hpp"
 #include "eval/results/progress.hpp"
@@ -25,6 +28,7 @@ double milliseconds_since(Clock::time_point start) {
 
 /// What scoring needs of a scan until its labels are final.
 struct PendingScan {
+  std::size_t points = 0;
   std::optional<std::vector<std::uint32_t>> truth;
   std::vector<Point> truth_points;  ///< only with truth, and only when the protocol has a range
 };
@@ -36,16 +40,20 @@ struct ReadyScan {
   double observe_ms;
 };
 
-/// What `work` returns; its std::range_error becomes a DataError that names the scan.
+/// What `work` returns; its std::range_error or ProgramError becomes a DataError that names the
+/// scan.
 template <typename Work>
 auto naming_scan(const Sequence& sequence, std::size_t scan_index, Work&& work) {
+  const auto scan = [&] {
+    const auto own_file = sequence.scan_file(scan_index);
+    return own_file.value_or(std::filesystem::path(sequence.name()) / sequence.stem(scan_index));
+  };
   try {
     return work();
   } catch (const std::range_error& error) {
-    const auto own_file = sequence.scan_file(scan_index);
-    throw DataError(
-        own_file.value_or(std::filesystem::path(sequence.name()) / sequence.stem(scan_index)),
-        error.what(), "points and poses within reach of the voxel grid");
+    throw DataError(scan(), error.what(), "points and poses within reach of the voxel grid");
+  } catch (const ProgramError& error) {
+    throw DataError(scan(), error.wrong(), error.expected());
   }
 }
 
@@ -58,10 +66,7 @@ class SequenceRun {
         folder_(folder),
         // A deferred task runs inside get(), on this thread: one thread then means one thread.
         launch_(settings.threads > 1 ? std::launch::async : std::launch::deferred),
-        method_(
-            settings.method->make(settings.method_settings, {.threads = settings.threads,
-                                                             .scan_count = sequence.size(),
-                                                             .scores = settings.keeps_scores})) {
+        method_(settings.method->make(settings.method_settings, context_of(sequence, settings))) {
     // What stays is allocated before the large buffers that come and go.
     rows_.scans.resize(sequence.size());
     rows_.costs.resize(sequence.size());
@@ -70,7 +75,7 @@ class SequenceRun {
 
   SequenceRows run() {
     const Clock::time_point start = Clock::now();
-    Progress progress(sequence_.name(), sequence_.size());
+    Progress progress(progress_title(), sequence_.size());
     std::future<ReadyScan> upcoming = prepare(0);
     for (std::size_t k = 0; k < sequence_.size(); ++k) {
       const Clock::time_point read_start = Clock::now();
@@ -81,20 +86,31 @@ class SequenceRun {
       push(k, std::move(ready));
       progress.advance();
     }
-    for (LabelledScan& result : method_->finish()) accept(std::move(result));
+    const std::size_t last = sequence_.size() - 1;
+    for (LabelledScan& result : naming_scan(sequence_, last, [&] { return method_->finish(); })) {
+      accept(std::move(result));
+    }
     finish_settling();
+    if (!pending_.empty()) fault(fmt::format("leaves {} scans without labels", pending_.size()));
     rows_.fingerprint = fingerprint_.hex();
+    rows_.fingerprint_without_poses = fingerprint_without_poses_.hex();
     rows_.remarks = method_->remarks();
     rows_.wall_s = milliseconds_since(start) / 1e3;
     return std::move(rows_);
   }
 
  private:
+  std::string progress_title() const {
+    const std::string& name = sequence_.name();
+    return settings_.is_one_of_several ? fmt::format("{}, {}", settings_.method->name, name) : name;
+  }
+
   std::future<ReadyScan> prepare(std::size_t scan_index) {
-    // One scan at a time, so the fingerprint sees the frames in order.
+    // One scan at a time, so the fingerprints see the frames in order.
     return std::async(launch_, [this, scan_index, frame = std::move(spent_)]() mutable {
       sequence_.read(scan_index, frame);
       fingerprint_.add(frame);
+      fingerprint_without_poses_.add(frame);
       const Clock::time_point start = Clock::now();
       std::unique_ptr<Observed> observed = naming_scan(sequence_, scan_index, [&] {
         return method_->observe(frame.points, frame.map_from_sensor);
@@ -105,7 +121,8 @@ class SequenceRun {
 
   void push(std::size_t scan_index, ReadyScan ready) {
     const Clock::time_point start = Clock::now();
-    std::vector<LabelledScan> finals = method_->push(std::move(ready.observed));
+    std::vector<LabelledScan> finals = naming_scan(
+        sequence_, scan_index, [&] { return method_->push(std::move(ready.observed)); });
     rows_.costs[scan_index].push_ms = ready.observe_ms + milliseconds_since(start);
     rows_.costs[scan_index].resident_mib = resident_mib();
     remember(std::move(ready.frame));
@@ -114,6 +131,7 @@ class SequenceRun {
 
   void remember(Frame frame) {
     PendingScan& scan = pending_.emplace_back();
+    scan.points = frame.points.size();
     scan.truth = std::move(frame.truth);
     if (scan.truth && settings_.protocol->range_rule != RangeRule::kNone) {
       scan.truth_points = std::move(frame.points);
@@ -121,7 +139,26 @@ class SequenceRun {
     spent_ = std::move(frame);
   }
 
+  /// A method is code of others: what it must not return is a fault of it, never a number.
+  void check(const LabelledScan& result) {
+    if (pending_.empty() || result.scan_index != accepted_) {
+      fault(fmt::format("labels scan {}, expected {}", result.scan_index, accepted_));
+    }
+    const std::size_t points = pending_.front().points;
+    const std::size_t scores = settings_.keeps_scores ? points : result.scores.size();
+    if (result.labels.size() != points || result.scores.size() != scores) {
+      fault(fmt::format("has {} labels and {} scores for the {} points of scan {}",
+                        result.labels.size(), result.scores.size(), points, accepted_));
+    }
+    ++accepted_;
+  }
+
+  [[noreturn]] void fault(const std::string& wrong) const {
+    throw std::logic_error(fmt::format("method {} {}", settings_.method->name, wrong));
+  }
+
   void accept(LabelledScan result) {
+    check(result);
     add_stages(result.stages, rows_, rows_.costs[result.scan_index]);
     finish_settling();
     settling_ = std::async(
@@ -141,10 +178,11 @@ class SequenceRun {
     row.nonfinite_points = result.nonfinite_points;
     row.threshold = result.threshold;
     row.judged = result.judged;
+    row.label_hash = hash_of_labels(result.labels);
     if (!scan.truth) return;
     row.counts = score_scan(*settings_.protocol, *scan.truth, result.labels, scan.truth_points,
                             settings_.range);
-    row.truth_hash = truth_hash(*scan.truth);
+    row.truth_hash = hash_of_labels(*scan.truth);
   }
 
   void write(const LabelledScan& result) const {
@@ -166,14 +204,26 @@ class SequenceRun {
   std::launch launch_;
   std::unique_ptr<Method> method_;
   ContentFingerprint fingerprint_;
+  ContentFingerprint fingerprint_without_poses_{ContentFingerprint::Of::kAllButPoses};
   std::deque<PendingScan> pending_;
-  Frame spent_;  ///< gives its memory to a coming frame
+  std::size_t accepted_ = 0;  ///< results
+  Frame spent_;               ///< gives its memory to a coming frame
   SequenceRows rows_;
   /// Gives the points back that it scored with. Last: its end is awaited before what it uses goes.
   std::future<std::vector<Point>> settling_;
 };
 
 }  // namespace
+
+RunContext context_of(const Sequence& sequence, const RunSettings& settings) {
+  RunContext context{
+      .threads = settings.threads, .scan_count = sequence.size(), .scores = settings.keeps_scores};
+  for (const ScanEntry& scan : sequence.recording().scans) {
+    if (scan.stamp_ns) context.stamps_ns.push_back(*scan.stamp_ns);
+  }
+  if (context.stamps_ns.size() != sequence.size()) context.stamps_ns.clear();
+  return context;
+}
 
 SequenceRows run_sequence(const Sequence& sequence, const RunSettings& settings,
                           const std::filesystem::path& folder) {

@@ -17,8 +17,12 @@ struct RunSettings {
   const Protocol* protocol = nullptr;
   RangeGate range;
   unsigned threads = 1;
-  bool keeps_scores = false;  ///< also writes every point's score
+  bool keeps_scores = false;       ///< also writes every point's score
+  bool is_one_of_several = false;  ///< progress then names the method
 };
+
+/// Returns the conditions under which the method of `settings` runs on a sequence.
+RunContext context_of(const Sequence& sequence, const RunSettings& settings);
 
 /// Segments a sequence, writes `folder`/labels/<stem>.label for every scan, with `keeps_scores`
 /// also `folder`/scores/<stem>.score, and scores the scans with truth. With more than one thread

@@ -8,23 +8,13 @@
 #include <vector>
 
 #include "datasets/files/errors.hpp"
+#include "datasets/files/folder_relation.hpp"
 #include "datasets/layouts/folder_search.hpp"
 #include "eval/results/json_differences.hpp"
 
 namespace mosbench {
 namespace fs = std::filesystem;
 namespace {
-
-/// With symbolic links resolved, as far as they can be.
-fs::path resolved(const fs::path& folder) {
-  std::error_code error;
-  const fs::path path = fs::weakly_canonical(folder, error);
-  return without_slash(error ? folder : path);
-}
-
-bool is_in(const fs::path& path, const fs::path& folder) {
-  return std::ranges::mismatch(folder, path).in1 == folder.end();
-}
 
 /// `root` without the name of the sequence at its end: what holds all sequences, also where a
 /// single one's folder was given.

@@ -1,20 +1,59 @@
 #include "eval/statistics/baseline.hpp"
 
 #include <algorithm>
+#include <map>
+#include <set>
 #include <system_error>
 
 #include "datasets/files/errors.hpp"
 #include "datasets/files/files.hpp"
+#include "datasets/files/folder_lock.hpp"
+#include "datasets/files/folder_relation.hpp"
+#include "datasets/files/partial_file.hpp"
+#include "datasets/files/replace_folder.hpp"
 
 namespace mosbench {
 namespace fs = std::filesystem;
 namespace {
 
-void remove_result(const fs::path& file) {
+/// What changes in a baseline; files are named from its folder.
+struct BaselineChange {
+  std::map<fs::path, std::string> written;  ///< with their bytes
+  std::vector<fs::path> superseded;
+};
+
+BaselineChange change_of(const ResultSet& run, const fs::path& folder) {
+  BaselineChange change;
+  std::set<fs::path> accepted;
+  for (const SequenceResult& sequence : run.sequences) {
+    const fs::path file = sequence.sequence.folder() / "result.json";
+    accepted.insert(file);
+    std::string bytes = format_accepted(sequence);
+    if (!is_there(folder / file) || read_file(folder / file) != bytes) {
+      change.written[file] = std::move(bytes);
+    }
+  }
+  for (const fs::path& file : find_result_files(folder)) {
+    const fs::path name = file.lexically_relative(folder);
+    if (!accepted.contains(name)) change.superseded.push_back(name);
+  }
+  return change;
+}
+
+/// Makes a folder with the files of another. The same bytes have two names then, where links are
+/// possible; the writes that follow replace names, not bytes.
+void make_twin(const fs::path& folder, const fs::path& twin) {
+  constexpr auto kAll = fs::copy_options::recursive | fs::copy_options::copy_symlinks;
   std::error_code error;
-  fs::remove(file, error);
-  if (error)
-    throw DataError(file, "cannot be removed (" + error.message() + ")", "a writable file");
+  fs::copy(folder, twin, kAll | fs::copy_options::create_hard_links, error);
+  if (!error) return;
+  fs::remove_all(twin);
+  fs::copy(folder, twin, kAll);
+}
+
+void apply(const BaselineChange& change, const fs::path& folder) {
+  for (const auto& [file, bytes] : change.written) write_file_atomic(folder / file, bytes);
+  for (const fs::path& file : change.superseded) fs::remove(folder / file);
 }
 
 }  // namespace
@@ -30,12 +69,40 @@ std::vector<ResultSet> accepted_runs(const fs::path& folder) {
   return load_result_sets(folder);
 }
 
-void accept_baseline(const ResultSet& run, const fs::path& folder) {
-  for (const ResultSet& known : accepted_runs(folder)) {
-    for (const SequenceResult& sequence : known.sequences) remove_result(sequence.file);
+void refuse_overlap(const ResultSet& newer, const fs::path& folder) {
+  const fs::path baseline = resolved(folder);
+  const bool is_file = newer.path.filename() == "result.json";
+  const fs::path results = resolved(is_file ? newer.path.parent_path() : newer.path);
+  if (is_in(baseline, results) || is_in(results, baseline)) {
+    throw UsageError(folder.string() + ": overlaps with the results in " + newer.path.string() +
+                     ", expected a folder apart from them");
   }
-  for (const SequenceResult& sequence : run.sequences) {
-    write_file_atomic(folder / sequence.sequence / "result.json", format_accepted(sequence));
+  for (const SequenceResult& sequence : newer.sequences) {
+    const fs::path place = folder / sequence.sequence.folder();
+    if (is_in(resolved(place / "result.json"), baseline)) continue;
+    throw UsageError(place.string() + ": is a link that leads out of the baseline, expected none");
+  }
+}
+
+void accept_baseline(const ResultSet& run, const fs::path& folder) {
+  const fs::path baseline = resolved(folder);
+  const fs::path fresh = partial_of(baseline);
+  fs::remove_all(fresh);  // what a killed one left
+  const BaselineChange change = change_of(run, baseline);
+  if (change.superseded.empty() && change.written.size() <= 1) {
+    for (const auto& [file, bytes] : change.written) commit_file(baseline / file, bytes);
+    return;
+  }
+  // Several files change at the same moment only with the folder that they are in.
+  try {
+    make_twin(baseline, fresh);
+    const FolderLock lock(fresh);  // goes on holding the baseline under its name
+    apply(change, fresh);
+    replace_folder(fresh, baseline);
+  } catch (...) {
+    std::error_code ignored;
+    fs::remove_all(fresh, ignored);
+    throw;
   }
 }
 

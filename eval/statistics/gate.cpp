@@ -24,7 +24,8 @@ std::optional<double> iou_of(const Protocol& protocol, std::span<const SequenceC
 }
 
 GateCheck check(std::string name, const Protocol& protocol, std::span<const SequenceCounts> first,
-                std::span<const SequenceCounts> second, double max_drop, GateRule rule) {
+                std::span<const SequenceCounts> second, Spacing spacing, double max_drop,
+                GateRule rule) {
   GateCheck check;
   check.name = std::move(name);
   check.baseline = iou_of(protocol, first);
@@ -34,7 +35,7 @@ GateCheck check(std::string name, const Protocol& protocol, std::span<const Sequ
     check.passed = !check.baseline;
     return check;
   }
-  check.difference = paired_difference(protocol, first, second)[Metric::kIou];
+  check.difference = paired_difference(protocol, first, second, spacing)[Metric::kIou];
   const double value = *check.difference.value;
   if (rule == GateRule::kStatistical && check.difference.interval) {
     check.tolerance = std::max(max_drop, check.difference.interval->high - value);
@@ -54,11 +55,12 @@ GateResult judge(const PairedRuns& paired, const Protocol& protocol, double max_
   for (std::size_t s = 0; s < paired.first.size(); ++s) {
     if (paired.first[s].empty()) continue;
     result.checks.push_back(check(paired.scans[scan].sequence, protocol, {&paired.first[s], 1},
-                                  {&paired.second[s], 1}, max_drop, rule));
+                                  {&paired.second[s], 1}, paired.spacing, max_drop, rule));
     scan += paired.first[s].size();
   }
   if (result.checks.size() > 1) {
-    result.checks.push_back(check("all", protocol, paired.first, paired.second, max_drop, rule));
+    result.checks.push_back(
+        check("all", protocol, paired.first, paired.second, paired.spacing, max_drop, rule));
   }
   return result;
 }
@@ -76,7 +78,7 @@ std::string gate_text(const GateResult& result) {
     table.add_row({check.name, percent_text(check.baseline), percent_text(check.newer),
                    percent_text(check.difference.value, "{:+.2f}"),
                    interval_text(check.difference.interval, "{:+.2f}"),
-                   percent_text(check.tolerance),
+                   percent_text(check.tolerance, "{:.2f}"),
                    check.difference.p_value ? fmt::format("{:.4f}", *check.difference.p_value) : "",
                    check.passed ? "pass" : "REGRESSION"});
   }
@@ -84,7 +86,12 @@ std::string gate_text(const GateResult& result) {
       result.rule == GateRule::kStatistical
           ? "\n95 %: interval of the difference; a drop within its half-width passes\n"
           : "\n95 %: what other scans like these would show; it does not decide (--statistical)\n";
-  return table.str() + note;
+  std::string text = table.str() + note;
+  for (const GateCheck& check : result.checks) {
+    if (check.difference.no_interval.empty()) continue;
+    text += fmt::format("no interval for {}: {}\n", check.name, check.difference.no_interval);
+  }
+  return text;
 }
 
 nlohmann::ordered_json to_json(const GateResult& result) {
@@ -100,6 +107,9 @@ nlohmann::ordered_json to_json(const GateResult& result) {
          {"difference", json_or_null(check.difference.value)},
          {"low", interval ? ordered_json(interval->low) : ordered_json(nullptr)},
          {"high", interval ? ordered_json(interval->high) : ordered_json(nullptr)},
+         {"no_interval", check.difference.no_interval.empty()
+                             ? ordered_json(nullptr)
+                             : ordered_json(check.difference.no_interval)},
          {"p_value", json_or_null(check.difference.p_value)},
          {"tolerance", check.tolerance},
          {"passed", check.passed}});

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "eval/statistics/bootstrap.hpp"
+#include "eval/statistics/intervals.hpp"
 #include "eval/statistics/paired_runs.hpp"
 
 namespace mosbench {

@@ -6,6 +6,7 @@
 #include <unordered_map>
 
 #include "eval/results/json_differences.hpp"
+#include "eval/statistics/scan_spacing.hpp"
 
 namespace mosbench {
 namespace {
@@ -21,13 +22,16 @@ nlohmann::ordered_json parameters_of(const SequenceResult& result) {
   return result.header.value("config", nlohmann::ordered_json());
 }
 
-/// Returns "voxel_size_m: 0.25 -> 0.4, ..."; empty when the parameters are equal or unknown.
+/// Returns "voxel_size_m: 0.25 -> 0.4, ..."; empty when the parameters are equal or unknown. Of two
+/// methods only what both have is compared.
 std::string changed_parameters(const SequenceResult& first, const SequenceResult& second) {
   const nlohmann::ordered_json before = parameters_of(first);
   const nlohmann::ordered_json after = parameters_of(second);
   std::string text;
   if (before.is_null() || after.is_null()) return text;
   for (const JsonDifference& change : json_differences(before, after)) {
+    const bool of_both = before.contains(change.key) && after.contains(change.key);
+    if (first.method != second.method && !of_both) continue;
     text += fmt::format("{}{}: {} -> {}", text.empty() ? "" : ", ", change.key, change.first,
                         change.second);
   }
@@ -46,9 +50,9 @@ void compare_rules(const SequenceResult& first, const SequenceResult& second,
   differ(Kind::kInput, "data set", first.dataset, second.dataset);
   differ(Kind::kSetting, "method", first.method, second.method);
   const std::string changes = changed_parameters(first, second);
-  if (changes.empty()) {
+  if (changes.empty() && first.method == second.method) {
     differ(Kind::kSetting, "setting", first.setting, second.setting);
-  } else {
+  } else if (!changes.empty()) {
     unlike.push_back({Kind::kSetting, changes});
   }
 }
@@ -58,9 +62,7 @@ class Pairing {
   explicit Pairing(PairedRuns& paired) : paired_(paired) {}
 
   void add(const SequenceResult& first, const SequenceResult& second) {
-    if (first.fingerprint && second.fingerprint && first.fingerprint != second.fingerprint) {
-      add_unlike(Kind::kInput, first, "fingerprints of the scans differ");
-    }
+    compare_frames(first, second);
     if (first.missing_predictions != second.missing_predictions) {
       add_unlike(Kind::kScans, first, "predictions are missing for different numbers of scans");
     }
@@ -83,10 +85,23 @@ class Pairing {
   }
 
   void add_unlike(Kind kind, const SequenceResult& sequence, const std::string& text) {
-    paired_.unlike.push_back({kind, fmt::format("sequence {}: {}", sequence.sequence, text)});
+    paired_.unlike.push_back(
+        {kind, fmt::format("sequence {}: {}", sequence.sequence.text(), text)});
   }
 
  private:
+  void compare_frames(const SequenceResult& first, const SequenceResult& second) {
+    if (!first.fingerprint || !second.fingerprint || first.fingerprint == second.fingerprint) {
+      return;
+    }
+    const std::string& without_poses = first.fingerprint_without_poses;
+    if (!without_poses.empty() && without_poses == second.fingerprint_without_poses) {
+      add_unlike(Kind::kPoses, first, "the poses differ, the scans do not");
+    } else {
+      add_unlike(Kind::kInput, first, "fingerprints of the scans differ");
+    }
+  }
+
   void add_pair(const SequenceResult& sequence, const ScanRow& first, const ScanRow& second) {
     if (!first.truth_hash || !second.truth_hash) {
       add_unlike(Kind::kInput, sequence, "scan " + first.stem + " does not state its truth");
@@ -105,9 +120,10 @@ class Pairing {
 
 PairedRuns pair_runs(const ResultSet& first, const ResultSet& second) {
   PairedRuns paired;
+  paired.spacing = spacing_of(first);
   compare_rules(first.front(), second.front(), paired.unlike);
   Pairing pairing(paired);
-  const auto named = [](const ResultSet& set, const std::string& name) {
+  const auto named = [](const ResultSet& set, const SequenceName& name) {
     return std::ranges::find(set.sequences, name, &SequenceResult::sequence);
   };
   for (const SequenceResult& sequence : first.sequences) {

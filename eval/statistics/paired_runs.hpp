@@ -4,12 +4,13 @@
 #include <vector>
 
 #include "eval/results/result_set.hpp"
+#include "eval/statistics/uncertainty.hpp"
 
 namespace mosbench {
 
 /// One respect in which two runs differ besides their labels.
 struct Unlike {
-  enum class Kind { kProtocol, kSetting, kScans, kInput };
+  enum class Kind { kProtocol, kSetting, kScans, kPoses, kInput };
   Kind kind;
   std::string text;  ///< "sequence 00: scan 000017 is only in the first run"
 };
@@ -24,6 +25,7 @@ struct PairedRuns {
   std::vector<Scan> scans;                    ///< by sequence, in the order of the first run
   std::vector<SequenceCounts> first, second;  ///< their counts, per sequence
   std::vector<Unlike> unlike;                 ///< why a difference may not be due to the labels
+  Spacing spacing = Spacing::kNear;           ///< of the scans
 };
 
 /// Pairs by names of sequences and stems of scans. The runs must outlive the result.

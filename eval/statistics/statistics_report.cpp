@@ -8,6 +8,7 @@
 #include "eval/results/answer_text.hpp"
 #include "eval/results/csv.hpp"
 #include "eval/results/text_table.hpp"
+#include "eval/statistics/scan_spacing.hpp"
 
 namespace mosbench {
 namespace {
@@ -19,7 +20,9 @@ ordered_json spread_json(const Value& value) {
   return {{"value", json_or_null(value.value)},
           {"standard_error", json_or_null(value.standard_error)},
           {"low", value.interval ? ordered_json(value.interval->low) : ordered_json(nullptr)},
-          {"high", value.interval ? ordered_json(value.interval->high) : ordered_json(nullptr)}};
+          {"high", value.interval ? ordered_json(value.interval->high) : ordered_json(nullptr)},
+          {"no_interval",
+           value.no_interval.empty() ? ordered_json(nullptr) : ordered_json(value.no_interval)}};
 }
 
 std::vector<std::string> estimate_cells(const std::string& name, std::size_t scans,
@@ -27,17 +30,24 @@ std::vector<std::string> estimate_cells(const std::string& name, std::size_t sca
   std::vector<std::string> cells = {name, fmt::format("{}", scans)};
   for (const Estimate& metric : estimates.metrics) {
     cells.push_back(percent_text(metric.value));
-    cells.push_back(interval_text(metric.interval, "{:.2f}"));
+    cells.push_back(interval_text(metric.interval, "{:.1f}"));
   }
-  std::size_t longest = 0;
-  for (const std::size_t length : estimates.block_lengths_scans)
-    longest = std::max(longest, length);
-  cells.push_back(fmt::format("{}", longest));
   return cells;
 }
 
+/// Says per row why its IoU has no interval; empty where all have one.
+std::string no_intervals(const std::vector<std::pair<std::string, const Estimate*>>& rows) {
+  std::string text;
+  for (const auto& [name, metric] : rows) {
+    if (metric->no_interval.empty()) continue;
+    text += fmt::format("no interval for {}: {}\n", name, metric->no_interval);
+  }
+  return text;
+}
+
 ordered_json scan_json(const SequenceResult& sequence, const ScanRow& row) {
-  ordered_json json = {{"sequence", sequence.sequence}, {"scan", row.stem}, {"points", row.points}};
+  ordered_json json = {
+      {"sequence", sequence.sequence.text()}, {"scan", row.stem}, {"points", row.points}};
   json.update(counts_json(*row.counts));
   const MetricValues values = metrics_of(*row.counts);
   for (std::size_t m = 0; m < values.size(); ++m) {
@@ -69,10 +79,11 @@ RunStatistics run_statistics(const ResultSet& set) {
   const std::vector<SequenceCounts> counts = counts_of(set);
   const Protocol& protocol = *set.front().protocol;
   RunStatistics statistics;
-  for (const SequenceCounts& sequence : counts) {
-    statistics.sequences.push_back(estimate(protocol, {&sequence, 1}));
+  for (std::size_t s = 0; s < counts.size(); ++s) {
+    statistics.sequences.push_back(
+        estimate(protocol, {&counts[s], 1}, spacing_of(set.sequences[s])));
   }
-  statistics.all = estimate(protocol, counts);
+  statistics.all = estimate(protocol, counts, spacing_of(set));
   return statistics;
 }
 
@@ -81,19 +92,21 @@ ordered_json to_json(const Estimates& estimates) {
   for (std::size_t m = 0; m < kMetricNames.size(); ++m) {
     json[std::string(kMetricNames[m])] = spread_json(estimates.metrics[m]);
   }
-  json["block_lengths_scans"] = estimates.block_lengths_scans;
+  return json;
+}
+
+ordered_json to_json(const Difference& difference) {
+  ordered_json json = spread_json(difference);
+  json["p_value"] = json_or_null(difference.p_value);
+  json["smallest_detectable"] = json_or_null(difference.smallest_detectable);
   return json;
 }
 
 ordered_json to_json(const Differences& differences) {
   ordered_json json;
   for (std::size_t m = 0; m < kMetricNames.size(); ++m) {
-    const Difference& metric = differences.metrics[m];
-    ordered_json& value = json[std::string(kMetricNames[m])] = spread_json(metric);
-    value["p_value"] = json_or_null(metric.p_value);
-    value["smallest_detectable"] = json_or_null(metric.smallest_detectable);
+    json[std::string(kMetricNames[m])] = to_json(differences.metrics[m]);
   }
-  json["block_lengths_scans"] = differences.block_lengths_scans;
   return json;
 }
 
@@ -117,11 +130,11 @@ ordered_json provenance_json(const ResultSet& set) {
 ordered_json statistics_json(const ResultSet& set, bool per_scan) {
   const RunStatistics statistics = run_statistics(set);
   ordered_json json = provenance_json(set);
-  json["confidence"] = BootstrapOptions{}.confidence;
+  json["confidence"] = kConfidence;
   json["sequences"] = ordered_json::array();
   for (std::size_t s = 0; s < set.sequences.size(); ++s) {
     const SequenceResult& sequence = set.sequences[s];
-    json["sequences"].push_back({{"name", sequence.sequence},
+    json["sequences"].push_back({{"name", sequence.sequence.text()},
                                  {"scans", counted_scans(sequence).size()},
                                  {"fingerprint", sequence.fingerprint.value_or("")},
                                  {"metrics", to_json(statistics.sequences[s])}});
@@ -167,37 +180,37 @@ std::string statistics_text(const ResultSet& set) {
                    {"recall %"},
                    {"95 %"},
                    {"F1 %"},
-                   {"95 %"},
-                   {"block"}});
+                   {"95 %"}});
+  std::vector<std::pair<std::string, const Estimate*>> ious;
   std::size_t scans = 0;
   for (std::size_t s = 0; s < set.sequences.size(); ++s) {
     const std::size_t counted = counted_scans(set.sequences[s]).size();
     scans += counted;
     table.add_row(estimate_cells(set.sequences[s].sequence, counted, statistics.sequences[s]));
+    ious.emplace_back(set.sequences[s].sequence, &statistics.sequences[s][Metric::kIou]);
   }
+  ious.emplace_back("all", &statistics.all[Metric::kIou]);
   table.add_rule();
   table.add_row(estimate_cells("all", scans, statistics.all));
-  return fmt::format(
-      "{}\n\n{}\n95 % intervals by bootstrap; block: how many consecutive scans are drawn "
-      "together\n",
-      headline(set), table.str());
+  return fmt::format("{}\n\n{}\n95 %: where the value of many more scans like these would be\n{}",
+                     headline(set), table.str(), no_intervals(ious));
 }
 
 ordered_json difference_json(const ResultSet& first, const ResultSet& second,
                              const PairedRuns& paired) {
   return {{"first", provenance_json(first)},
           {"second", provenance_json(second)},
-          {"confidence", BootstrapOptions{}.confidence},
+          {"confidence", kConfidence},
           {"paired_scans", paired.scans.size()},
           {"unlike", unlike_text(paired.unlike)},
-          {"difference",
-           to_json(paired_difference(*first.front().protocol, paired.first, paired.second))}};
+          {"difference", to_json(paired_difference(*first.front().protocol, paired.first,
+                                                   paired.second, paired.spacing))}};
 }
 
 std::string difference_text(const ResultSet& first, const ResultSet& second,
                             const PairedRuns& paired) {
   const Differences differences =
-      paired_difference(*first.front().protocol, paired.first, paired.second);
+      paired_difference(*first.front().protocol, paired.first, paired.second, paired.spacing);
   TextTable table({{"second - first", TextTable::Align::kLeft},
                    {"difference"},
                    {"95 %"},
@@ -208,7 +221,7 @@ std::string difference_text(const ResultSet& first, const ResultSet& second,
     table.add_row({std::string(kMetricNames[m]), percent_text(metric.value, "{:+.2f}"),
                    interval_text(metric.interval, "{:+.2f}"),
                    metric.p_value ? fmt::format("{:.4f}", *metric.p_value) : "none",
-                   percent_text(metric.smallest_detectable)});
+                   percent_text(metric.smallest_detectable, "{:.2f}")});
   }
   std::string text = fmt::format("first:  {}\nsecond: {}\n{} paired scans", headline(first),
                                  headline(second), paired.scans.size());
@@ -216,7 +229,8 @@ std::string difference_text(const ResultSet& first, const ResultSet& second,
   return text + "\n\n" + table.str() +
          "\nin percentage points; detectable: the true difference that as many scans like these "
          "show\n"
-         "at 5 % significance with 80 % probability; n times as many scans divide it by sqrt(n)\n";
+         "at 5 % significance with 80 % probability; n times as many scans divide it by sqrt(n)\n" +
+         no_intervals({{"the difference", &differences[Metric::kIou]}});
 }
 
 }  // namespace mosbench

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "eval/results/result_set.hpp"
-#include "eval/statistics/bootstrap.hpp"
+#include "eval/statistics/intervals.hpp"
 #include "eval/statistics/paired_runs.hpp"
 
 namespace mosbench {
@@ -23,6 +23,7 @@ std::string interval_text(const std::optional<Interval>& interval, const char* s
 /// {"iou": {"value", "standard_error", "low", "high"}, ...}, undefined as null.
 nlohmann::ordered_json to_json(const Estimates& estimates);
 /// Adds "p_value" and "smallest_detectable" to the same members.
+nlohmann::ordered_json to_json(const Difference& difference);
 nlohmann::ordered_json to_json(const Differences& differences);
 
 /// Returns method, protocol, range, data set and whether the input is simulated.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "eval/protocols/protocol.hpp"
+#include "eval/results/shell_text.hpp"
 #include "eval/runs/presets.hpp"
 #include "eval/tables/table_match.hpp"
 
@@ -22,8 +23,9 @@ std::vector<std::string> other_settings(const Preset& preset, const MethodKind& 
   compare("voxel_size_m", published.voxel_size_m);
   compare("max_range_m", published.max_range_m);
   compare("delay_scans", published.delay_scans);
-  if (published.variant != ours.choice("variant")) {
-    assignments.push_back("variant=" + published.variant);
+  const auto& [setting, value] = variant_of(published);
+  if (!value.empty() && value != ours.choice(setting)) {
+    assignments.push_back(fmt::format("{}={}", setting, value));
   }
   return assignments;
 }
@@ -47,7 +49,8 @@ std::string run_command(const PaperTable& table, const TableColumn& column,
       fmt::format("mosbench run DIR --dataset {} --sequences {} --preset {}",
                   to_string(table.dataset), fmt::join(column.sequences, ","), preset.name);
   if (&method != &methods().front()) command += fmt::format(" --method {}", method.name);
-  if (preset.protocol != published.protocol) command += " --protocol " + published.protocol;
+  if (preset.protocol != published.protocol)
+    command += " --protocol " + shell_word(published.protocol);
   const std::vector<std::string> assignments = other_settings(preset, method, published);
   if (assignments.empty()) return command;
   return command + fmt::format(" --set {}", fmt::join(assignments, " "));
@@ -56,15 +59,17 @@ std::string run_command(const PaperTable& table, const TableColumn& column,
 std::string score_command(const PaperTable& table, const PublishedCell& published) {
   std::string command =
       fmt::format("mosbench score DIR --dataset {} --predictions LABELS", to_string(table.dataset));
-  if (find_protocol(published.protocol) != nullptr) command += " --protocol " + published.protocol;
-  return command + " --method " + published.method;
+  if (find_protocol(published.protocol) != nullptr)
+    command += " --protocol " + shell_word(published.protocol);
+  return command + " --method " + shell_word(published.method);
 }
 
 std::string command_for(const PaperTable& table, const TableColumn& column,
                         const PublishedCell& published) {
   const MethodKind* method = own_method(published);
   if (method == nullptr) return "then: " + score_command(table, published);
-  if (published.variant.empty()) return "no variant of this program is that one";
+  const bool has_variants = method->defaults.find("variant") != nullptr;
+  if (has_variants && published.variant.empty()) return "no variant of this program is that one";
   return "then: " + run_command(table, column, published, *method);
 }
 

@@ -37,6 +37,12 @@ std::optional<double> optional_number(const std::string& cell, const TextLine& l
 
 double PublishedCell::iou() const { return parse_double(iou_percent).value() / 100.0; }
 
+PublishedVariant variant_of(const PublishedCell& cell) {
+  const std::size_t equals = cell.variant.find('=');
+  if (equals == std::string::npos) return {"variant", cell.variant};
+  return {cell.variant.substr(0, equals), cell.variant.substr(equals + 1)};
+}
+
 std::vector<PublishedCell> parse_published(std::string_view text,
                                            const std::filesystem::path& file) {
   const std::vector<TextLine> lines = split_lines(text, file);

@@ -14,7 +14,8 @@ struct PublishedCell {
   std::string section;  ///< part of the table: "range 20 m", "test split"
   std::string method;
   std::string setting;  ///< in words
-  /// HMM-MOS rows only, where the source states it.
+  /// Only of methods of mosbench, where the source states it: a value of the setting `variant`, or
+  /// a setting and its value as in "level=object".
   std::string variant;
   std::optional<double> voxel_size_m, max_range_m;
   std::optional<int> delay_scans;
@@ -26,6 +27,12 @@ struct PublishedCell {
 
   double iou() const;  ///< fraction
 };
+
+/// A setting of a method and its value.
+struct PublishedVariant {
+  std::string setting, value;
+};
+PublishedVariant variant_of(const PublishedCell& cell);
 
 /// Parses results/published.csv, which has no quotes, hence no commas within cells. Throws
 /// DataError with the line.

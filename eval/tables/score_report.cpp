@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include "datasets/files/errors.hpp"
 #include "datasets/files/files.hpp"
+#include "datasets/files/partial_file.hpp"
 #include "eval/protocols/benchmark_split.hpp"
 #include "eval/protocols/metrics.hpp"
 #include "eval/protocols/summary_json.hpp"
@@ -72,6 +74,20 @@ std::optional<std::string> other_split(const Dataset& dataset, const ScoreTask& 
   return split == task.rules.front().protocol->default_split ? std::nullopt : split;
 }
 
+/// Throws UsageError unless a folder is absent or holds nothing but a result.json of scores.
+void refuse_other_results(const std::filesystem::path& folder) {
+  constexpr const char* kResultFile = "result.json";
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
+    const std::string name = entry.path().filename();
+    if (is_partial_of(name, kResultFile)) continue;
+    if (name == kResultFile && read_result(entry.path()).content.contains("predictions")) continue;
+    throw UsageError(
+        entry.path().string() +
+        ": was not written by mosbench score, expected --out to name a folder of its own");
+  }
+}
+
 std::vector<Confusion> counts_in(const std::vector<ScanRow>& rows) {
   std::vector<Confusion> counts;
   for (const ScanRow& row : rows) counts.push_back(*row.counts);
@@ -106,11 +122,10 @@ std::string score_text(const Dataset& dataset, const ScoreTask& task,
                        const std::vector<SequenceScores>& scores, bool with_sequences) {
   const ScoreRule& rule = task.rules.front();
   const auto split = other_split(dataset, task);
-  std::string text =
-      fmt::format("protocol {}: {}\n{}{}{}\n{}", rule.protocol->name, rule.protocol->summary,
-                  benchmark_remark(*rule.protocol, dataset.splits),
-                  split ? split_warning(*split) + '\n' : "", simulated_remark(dataset),
-                  format_rows(*rule.protocol, table_rows(dataset, rule, scores, with_sequences)));
+  std::string text = fmt::format(
+      "protocol {}: {}\n{}{}{}\n{}", rule.protocol->name, rule.protocol->summary,
+      benchmark_remark(*rule.protocol, dataset.splits), split ? split_warning(*split) + '\n' : "",
+      simulated_remark(dataset), format_rows(table_rows(dataset, rule, scores, with_sequences)));
   text += '\n';
   for (const std::string& remark : score_remarks(dataset, scores)) text += remark + '\n';
   return text;
@@ -138,6 +153,10 @@ std::string score_json(const Dataset& dataset, const ScoreTask& task,
   return json_text(json);
 }
 
+void check_scored_folders(const Dataset& dataset, const std::filesystem::path& out) {
+  for (const auto& sequence : dataset.sequences) refuse_other_results(out / sequence->name());
+}
+
 void write_scores(const Dataset& dataset, const ScoreTask& task, const MethodName& method,
                   const std::vector<SequenceScores>& scores, const std::filesystem::path& out) {
   const ScoreRule& rule = task.rules.front();
@@ -160,7 +179,7 @@ void write_scores(const Dataset& dataset, const ScoreTask& task, const MethodNam
     const std::vector<ScanRow>& rows = sequence.by_rule.front();
     header["summary_split"] = json_or_null(picked_split(dataset, task));
     header["summary"] = to_json(summarize(*rule.protocol, counts_in(rows)));
-    write_file_atomic(out / recorded.name() / "result.json", format_scored(header, rows));
+    commit_file(out / recorded.name() / "result.json", format_scored(header, rows));
   }
 }
 

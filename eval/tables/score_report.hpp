@@ -32,6 +32,9 @@ nlohmann::ordered_json side_by_side_json(const Dataset& dataset,
                                          const std::vector<ScoreRule>& rules,
                                          const std::vector<SequenceScores>& scores);
 
+/// Throws UsageError where <out>/<sequence> holds anything that `write_scores` did not write.
+void check_scored_folders(const Dataset& dataset, const std::filesystem::path& out);
+
 /// Writes <out>/<sequence>/result.json, which `table`, `stats` and `compare` read as they read
 /// those of a run. Throws DataError.
 void write_scores(const Dataset& dataset, const ScoreTask& task, const MethodName& method,

@@ -6,6 +6,7 @@
 
 #include "eval/protocols/benchmark_split.hpp"
 #include "eval/protocols/summary_json.hpp"
+#include "eval/results/answer_text.hpp"
 #include "eval/results/text_table.hpp"
 
 namespace mosbench {
@@ -82,7 +83,7 @@ std::string row_title(const SummaryRow& row) {
   return row.split.empty() ? row.name : fmt::format("{} ({} scans)", row.name, row.split);
 }
 
-std::vector<std::string> cells(const Protocol& protocol, const SummaryRow& row, bool with_ms) {
+std::vector<std::string> cells(const SummaryRow& row, bool with_ms) {
   const Summary& summary = row.summary;
   std::vector<std::string> cells = {row_title(row), count_text(row.scans),
                                     count_text(summary.scans)};
@@ -90,7 +91,7 @@ std::vector<std::string> cells(const Protocol& protocol, const SummaryRow& row, 
     cells.insert(cells.end(), {"no truth", "", "", "", "", "", "", ""});
   } else {
     for (const auto& metric : {summary.iou, summary.precision, summary.recall, summary.f1}) {
-      cells.push_back(format_value(protocol, metric));
+      cells.push_back(percent_text(metric));
     }
     for (const std::uint64_t count : {summary.pooled.tp, summary.pooled.fp, summary.pooled.fn}) {
       cells.push_back(count_text(count));
@@ -116,12 +117,12 @@ std::vector<SummaryRow> summary_rows(const Protocol& protocol, const std::vector
   return rows;
 }
 
-std::string format_rows(const Protocol& protocol, const std::vector<SummaryRow>& rows) {
+std::string format_rows(const std::vector<SummaryRow>& rows) {
   const bool with_ms = std::ranges::any_of(
       rows, [](const SummaryRow& row) { return row.method_ms_per_scan.has_value(); });
   std::vector<TextTable::Column> columns = {{"sequence", TextTable::Align::kLeft}};
-  for (const char* title : {"scans", "labelled", "IoU", "precision", "recall", "F1", "TP", "FP",
-                            "FN", "as published"}) {
+  for (const char* title : {"scans", "labelled", "IoU %", "precision %", "recall %", "F1 %", "TP",
+                            "FP", "FN", "benchmark's rounding"}) {
     columns.push_back({title});
   }
   if (with_ms) columns.push_back({"ms/scan"});
@@ -130,13 +131,13 @@ std::string format_rows(const Protocol& protocol, const std::vector<SummaryRow>&
   for (const SummaryRow& row : rows) {
     if (row.kind != SummaryRow::Kind::kSequence && !ruled) table.add_rule();
     ruled = ruled || row.kind != SummaryRow::Kind::kSequence;
-    table.add_row(cells(protocol, row, with_ms));
+    table.add_row(cells(row, with_ms));
   }
   return table.str();
 }
 
 std::string benchmark_remark(const Protocol& protocol, const std::vector<Split>& splits) {
-  if (protocol.default_split.empty()) return "";
+  if (protocol.default_split.empty() || splits.empty()) return "";
   if (benchmark_split(protocol, splits) != nullptr) {
     return fmt::format("the benchmark's number is that of split {}\n", protocol.default_split);
   }

@@ -41,7 +41,7 @@ std::vector<SummaryRow> summary_rows(const Protocol& protocol, const std::vector
                                      const std::vector<ScoredSequence>& sequences);
 
 /// Formats the table of `run` and `score`, with a column of milliseconds if a row has some.
-std::string format_rows(const Protocol& protocol, const std::vector<SummaryRow>& rows);
+std::string format_rows(const std::vector<SummaryRow>& rows);
 
 /// Returns a line that names the row with the benchmark's number, or says that none has it; empty
 /// when the protocol has no split.

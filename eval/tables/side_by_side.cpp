@@ -78,7 +78,7 @@ std::string side_by_side_text(const Dataset& dataset, const std::vector<ScoreRul
                               const std::vector<SequenceScores>& scores) {
   TextTable table({{"protocol", TextTable::Align::kLeft},
                    {"IoU %"},
-                   {"as published"},
+                   {"benchmark's rounding"},
                    {"TP"},
                    {"FP"},
                    {"FN"},

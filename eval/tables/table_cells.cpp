@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "eval/statistics/scan_spacing.hpp"
 #include "eval/tables/fill_command.hpp"
 #include "eval/tables/table_match.hpp"
 
@@ -52,10 +53,11 @@ Verdict judge(const TableCell& cell) {
   if (!cell.reasons.empty()) return Verdict::kNotComparable;
   const double published = cell.published->iou();
   const double slack = rounding(*cell.published) + 1e-12;
-  const Interval interval =
-      cell.measured->interval.value_or(Interval{*cell.measured->value, *cell.measured->value});
+  const double value = *cell.measured->value;
+  const Interval interval = cell.measured->interval.value_or(Interval{value, value});
   const bool within = interval.low - slack <= published && published <= interval.high + slack;
-  return within ? Verdict::kWithin : Verdict::kOutside;
+  if (within) return Verdict::kWithin;
+  return cell.measured->interval ? Verdict::kOutside : Verdict::kNotComparable;
 }
 
 /// Finds the published cell of a column.
@@ -80,7 +82,7 @@ TableCell measured_cell(const PaperTable& table, const TableColumn& column, cons
     if (!sequence.simulated) continue;
     cell.sequences.back() += fmt::format(" (simulated, {})", sequence.simulated_origin);
   }
-  cell.measured = estimate(*run.front().protocol, counts_of(part))[Metric::kIou];
+  cell.measured = estimate(*run.front().protocol, counts_of(part), spacing_of(part))[Metric::kIou];
   if (row != nullptr) cell.reasons = mismatches(run, cell.published.value_or(row->cells.front()));
   if (run.front().simulated) cell.reasons.insert(cell.reasons.begin(), "simulated data");
   for (std::string& gap : gaps(part, column)) cell.reasons.push_back(std::move(gap));
@@ -90,6 +92,8 @@ TableCell measured_cell(const PaperTable& table, const TableColumn& column, cons
     cell.difference = *cell.measured->value - cell.published->iou();
   }
   cell.verdict = judge(cell);
+  if (cell.verdict == Verdict::kNotComparable && cell.reasons.empty())
+    cell.reasons.push_back("no interval: " + cell.measured->no_interval);
   return cell;
 }
 
@@ -176,7 +180,7 @@ std::vector<std::string> left_out(const PaperTable& table, const std::vector<Res
       if (sequence.dataset != to_string(table.dataset)) {
         why = fmt::format("is of data set {}, not {}", sequence.dataset, to_string(table.dataset));
       } else if (!contains(table, sequence.sequence)) {
-        why = fmt::format("is of sequence {}, which is in no column", sequence.sequence);
+        why = fmt::format("is of sequence {}, which is in no column", sequence.sequence.text());
       }
       if (why.empty()) continue;
       sentences.push_back(

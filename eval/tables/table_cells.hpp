@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "eval/results/result_set.hpp"
-#include "eval/statistics/bootstrap.hpp"
+#include "eval/statistics/intervals.hpp"
 #include "eval/tables/paper_tables.hpp"
 #include "eval/tables/published.hpp"
 

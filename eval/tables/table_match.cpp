@@ -16,18 +16,30 @@ void differ(const char* what, double measured, const std::optional<double>& publ
   }
 }
 
-void own_mismatches(const nlohmann::ordered_json& header, const PublishedCell& cell,
+void own_mismatches(const nlohmann::ordered_json& config, const PublishedCell& cell,
                     std::vector<std::string>& reasons) {
-  const auto config = header.value("config", nlohmann::ordered_json::object());
-  const std::string variant = config.value("variant", "");
-  if (variant != cell.variant) {
-    reasons.push_back(fmt::format("variant {}, published {}", variant,
-                                  cell.variant.empty() ? "another" : cell.variant));
+  const PublishedVariant published = variant_of(cell);
+  const std::string value = config.value(published.setting, "");
+  if (value != published.value) {
+    reasons.push_back(fmt::format("{} {}, published {}", published.setting, value,
+                                  published.value.empty() ? "another" : published.value));
+  }
+  if (cell.variant.empty() && !cell.max_range_m && !config.contains("variant")) {
+    reasons.emplace_back("the settings of the published run are not stated");
   }
   differ("voxel size in m", config.value("voxel_size_m", 0.0), cell.voxel_size_m, reasons);
   differ("range in m", config.value("max_range_m", 0.0), cell.max_range_m, reasons);
   differ("delay in scans", config.value("delay_scans", 0),
          cell.delay_scans ? std::optional<double>(*cell.delay_scans) : std::nullopt, reasons);
+}
+
+/// Compares what the user of `mosbench score` says of the labels of another program.
+void scored_mismatches(const SequenceResult& result, const PublishedCell& cell,
+                       std::vector<std::string>& reasons) {
+  if (lower_case(result.setting) != lower_case(cell.setting)) {
+    reasons.push_back(fmt::format("setting '{}', published '{}'", result.setting, cell.setting));
+  }
+  differ("range in m", result.range.max_m, cell.max_range_m, reasons);
 }
 
 }  // namespace
@@ -52,17 +64,20 @@ std::vector<PublishedRow> published_rows(const PaperTable& table,
 }
 
 const MethodKind* own_method(const PublishedCell& cell) {
-  const auto found = std::ranges::find(methods(), cell.method, &MethodKind::title);
+  const std::string title = lower_case(cell.method);
+  const auto found = std::ranges::find_if(methods(), [&](const MethodKind& method) {
+    return lower_case(std::string(method.title)) == title;
+  });
   return found == methods().end() ? nullptr : &*found;
 }
 
 std::vector<std::string> mismatches(const ResultSet& run, const PublishedCell& cell) {
   const SequenceResult& first = run.front();
   std::vector<std::string> reasons;
-  if (own_method(cell) != nullptr) {
-    own_mismatches(first.header, cell, reasons);
-  } else if (lower_case(first.setting) != lower_case(cell.setting)) {
-    reasons.push_back(fmt::format("setting '{}', published '{}'", first.setting, cell.setting));
+  if (first.header.contains("config")) {
+    own_mismatches(first.header.at("config"), cell, reasons);
+  } else {
+    scored_mismatches(first, cell, reasons);
   }
   if (first.protocol->name != cell.protocol) {
     reasons.push_back(

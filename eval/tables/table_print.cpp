@@ -6,6 +6,8 @@
 
 #include "eval/results/answer_text.hpp"
 #include "eval/results/csv.hpp"
+#include "eval/results/latex.hpp"
+#include "eval/results/markdown.hpp"
 #include "eval/results/text_table.hpp"
 
 namespace mosbench {
@@ -27,6 +29,8 @@ std::string cell_text(const TableCell& cell) {
   if (cell.measured->interval) {
     text += fmt::format(" [{}, {}]", percent_text(cell.measured->interval->low, "{:.1f}"),
                         percent_text(cell.measured->interval->high, "{:.1f}"));
+  } else if (!cell.measured->no_interval.empty()) {
+    text += " [no interval]";
   }
   return fmt::format("{} {}", text, to_string(cell.verdict));
 }
@@ -49,7 +53,7 @@ class Notes {
   std::string str() const {
     std::string text;
     for (std::size_t i = 0; i < texts_.size(); ++i) {
-      text += fmt::format("- ({}) {}\n", i + 1, texts_[i]);
+      text += fmt::format("- ({}) {}\n", i + 1, markdown_text(texts_[i]));
     }
     return text;
   }
@@ -61,6 +65,16 @@ class Notes {
 std::string row_setting(const TableRow& row) {
   return row.section.empty() ? row.setting
                              : row.section + (row.setting.empty() ? "" : ", " + row.setting);
+}
+
+std::vector<std::string> column_titles(const FilledTable& table) {
+  std::vector<std::string> titles = {"method", "setting", "protocol"};
+  for (const TableColumn& column : table.table->columns) titles.emplace_back(column.name);
+  return titles;
+}
+
+std::vector<std::string> row_titles(const TableRow& row) {
+  return {row.method, row_setting(row), row.protocol};
 }
 
 /// "results/runs/doals: ST is station/sequence_1, ...; SV is ...", one line per run.
@@ -87,21 +101,8 @@ bool is_simulated(const FilledTable& table) {
   return false;
 }
 
-std::string escaped(const std::string& text) {
-  std::string escaped;
-  for (const char c : text) {
-    if (std::string_view("&%$#_{}").find(c) != std::string_view::npos) escaped += '\\';
-    escaped += c;
-  }
-  return escaped;
-}
-
-std::string optional_percent(const std::optional<double>& value) {
-  return value ? fmt::format("{:.6g}", *value * 100.0) : "";
-}
-
 std::string interval_end(const Estimate& estimate, double Interval::*end) {
-  return estimate.interval ? fmt::format("{:.6g}", (*estimate.interval).*end * 100.0) : "";
+  return estimate.interval ? csv_percent((*estimate.interval).*end) : "";
 }
 
 ordered_json to_json(const TableCell& cell) {
@@ -117,6 +118,8 @@ ordered_json to_json(const TableCell& cell) {
   json["difference"] = json_or_null(cell.difference);
   json["low"] = measured.interval ? ordered_json(measured.interval->low) : ordered_json(nullptr);
   json["high"] = measured.interval ? ordered_json(measured.interval->high) : ordered_json(nullptr);
+  json["no_interval"] =
+      measured.no_interval.empty() ? ordered_json(nullptr) : ordered_json(measured.no_interval);
   return json;
 }
 
@@ -128,41 +131,38 @@ std::string table_markdown(const FilledTable& table) {
   if (is_simulated(table)) {
     text += "Measured on SIMULATED data: not comparable with the published numbers.\n";
   }
-  text += "\n| method | setting | protocol |";
-  std::string rule = "|---|---|---|";
-  for (const TableColumn& column : table.table->columns) {
-    text += fmt::format(" {} |", column.name);
-    rule += "---|";
-  }
-  text += '\n' + rule + '\n';
+  const std::vector<std::string> titles = column_titles(table);
+  text += '\n' + markdown_row(titles) + '|';
+  for (std::size_t i = 0; i < titles.size(); ++i) text += "---|";
+  text += '\n';
   Notes notes;
   for (const TableRow& row : table.rows) {
-    text += fmt::format("| {} | {} | {} |", row.method, row_setting(row), row.protocol);
+    std::vector<std::string> cells = row_titles(row);
     for (const TableCell& cell : row.cells) {
-      text += fmt::format(" {}{} |", cell_text(cell), notes.mark(cell.reasons));
+      cells.push_back(cell_text(cell) + notes.mark(cell.reasons));
     }
-    text += '\n';
+    text += markdown_row(cells);
   }
   text += "\nCells: published, or published / measured (difference) [95 % interval] verdict.\n\n";
-  for (const std::string& line : measured_sequences(table)) text += "- " + line + '\n';
+  for (const std::string& line : measured_sequences(table)) {
+    text += "- " + markdown_text(line) + '\n';
+  }
   return text + notes.str();
 }
 
 std::string table_latex(const FilledTable& table) {
   std::string text = fmt::format("% {}\n", table.table->title);
   if (is_simulated(table)) text += "% measured on SIMULATED data: not comparable\n";
-  for (const std::string& line : measured_sequences(table)) text += "% " + line + '\n';
+  for (const std::string& line : measured_sequences(table)) {
+    text += "% " + latex_text(line) + '\n';
+  }
   text +=
       fmt::format("\\begin{{tabular}}{{lll{}}}\n", std::string(table.table->columns.size(), 'r'));
-  text += "method & setting & protocol";
-  for (const TableColumn& column : table.table->columns) {
-    text += " & " + escaped(std::string(column.name));
-  }
-  text += " \\\\\n\\hline\n";
+  text += latex_row(column_titles(table)) + "\\hline\n";
   for (const TableRow& row : table.rows) {
-    text += escaped(row.method) + " & " + escaped(row_setting(row)) + " & " + escaped(row.protocol);
-    for (const TableCell& cell : row.cells) text += " & " + escaped(cell_text(cell));
-    text += " \\\\\n";
+    std::vector<std::string> cells = row_titles(row);
+    for (const TableCell& cell : row.cells) cells.push_back(cell_text(cell));
+    text += latex_row(cells);
   }
   return text + "\\end{tabular}\n";
 }
@@ -182,8 +182,8 @@ std::string table_csv(const FilledTable& table) {
                                               row.protocol,
                                               cell.column,
                                               cell.published ? cell.published->iou_percent : "",
-                                              optional_percent(measured.value),
-                                              optional_percent(cell.difference),
+                                              csv_percent(measured.value),
+                                              csv_percent(cell.difference),
                                               interval_end(measured, &Interval::low),
                                               interval_end(measured, &Interval::high),
                                               std::string(to_string(cell.verdict)),

@@ -2,10 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <cstdio>
-
 #include "datasets/files/errors.hpp"
 #include "eval/results/answer_text.hpp"
+#include "eval/results/tell.hpp"
 #include "eval/tables/table_print.hpp"
 
 namespace mosbench {
@@ -21,9 +20,7 @@ TableFormat table_format_named(std::string_view name) {
 
 std::string table_report(const PaperTable& table, const std::vector<PublishedCell>& published,
                          const std::vector<ResultSet>& runs, TableFormat format) {
-  for (const std::string& sentence : left_out(table, runs)) {
-    std::fputs((sentence + '\n').c_str(), stderr);
-  }
+  for (const std::string& sentence : left_out(table, runs)) tell(sentence);
   const FilledTable filled = fill_table(table, published, runs);
   switch (format) {
     case TableFormat::kCsv:

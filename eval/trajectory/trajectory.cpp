@@ -4,22 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <set>
 
 #include "datasets/files/errors.hpp"
+#include "eval/trajectory/frame_check.hpp"
+#include "eval/trajectory/pose_paths.hpp"
 
 namespace mosbench {
 namespace {
-
-PoseList read_in_map_frame(const std::filesystem::path& file, std::optional<PoseFormat> format) {
-  PoseList list = read_pose_list(file, format);
-  if (list.poses.empty()) throw DataError(file, "holds no pose", "one row per scan");
-  if (list.format == PoseFormat::kRollout) {
-    for (Pose& pose : list.poses) pose = pose.inverse();
-  }
-  return list;
-}
 
 void to_camera(std::vector<Pose>& poses, const Pose& camera_from_lidar) {
   const Pose lidar_from_camera = camera_from_lidar.inverse();
@@ -65,21 +56,32 @@ void pair_by_time(const PoseList& estimate, const PoseList& truth,
                                      truth.poses.size()));
 }
 
-bool holds_poses(const std::filesystem::path& file) {
-  const std::filesystem::path extension = file.extension();
-  return extension == ".txt" || extension == ".csv" || extension == ".tum";
+void check_camera(const PosePath& path, bool is_camera, const char* flag) {
+  if (!is_camera || !path.of_data_set) return;
+  throw UsageError(fmt::format(
+      "--camera {}: the poses of {} are read as the lidar's, expected this of files only", flag,
+      path.place.string()));
 }
 
-std::map<std::string, std::filesystem::path> pose_files_of(const std::filesystem::path& folder) {
-  std::map<std::string, std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    if (!entry.is_regular_file() || !holds_poses(entry.path())) continue;
-    if (!files.emplace(entry.path().stem().string(), entry.path()).second) {
-      throw DataError(entry.path(), "another file has the same name but for its extension",
-                      "one file of poses per sequence");
-    }
+TrajectoryPair paired(PosePath estimate, PosePath truth, const TrajectoryOptions& options) {
+  check_camera(estimate, options.camera == CameraFrame::kEstimate, "estimate");
+  check_camera(truth, options.camera == CameraFrame::kTruth, "truth");
+  TrajectoryPair pair{.name = estimate.name, .estimate = {}, .truth = {}, .remarks = {}};
+  if (!estimate.list.stamps_ns.empty() && !truth.list.stamps_ns.empty()) {
+    pair_by_time(estimate.list, truth.list, estimate.place, options.max_time_difference_s, pair);
+  } else if (estimate.list.poses.size() != truth.list.poses.size()) {
+    throw DataError(estimate.place, fmt::format("holds {} poses", estimate.list.poses.size()),
+                    fmt::format("{} as in {}, or stamps in both as in .tum files",
+                                truth.list.poses.size(), truth.place.string()));
+  } else {
+    pair.estimate = std::move(estimate.list.poses);
+    pair.truth = std::move(truth.list.poses);
+    pair.remarks.emplace_back("poses are paired row by row");
   }
-  return files;
+  if (options.camera == CameraFrame::kEstimate) to_camera(pair.truth, *options.camera_from_lidar);
+  if (options.camera == CameraFrame::kTruth) to_camera(pair.estimate, *options.camera_from_lidar);
+  if (auto remark = frame_remark(pair, options)) pair.remarks.push_back(std::move(*remark));
+  return pair;
 }
 
 }  // namespace
@@ -92,48 +94,25 @@ std::vector<double> path_lengths_m(const std::vector<Pose>& poses) {
   return lengths_m;
 }
 
-TrajectoryPair read_trajectory_pair(const std::filesystem::path& estimate,
-                                    const std::filesystem::path& truth,
-                                    const TrajectoryOptions& options) {
-  PoseList estimated = read_in_map_frame(estimate, options.format);
-  PoseList known = read_in_map_frame(truth, options.format);
-  TrajectoryPair pair{.name = estimate.stem().string(), .estimate = {}, .truth = {}, .remarks = {}};
-  if (!estimated.stamps_ns.empty() && !known.stamps_ns.empty()) {
-    pair_by_time(estimated, known, estimate, options.max_time_difference_s, pair);
-  } else if (estimated.poses.size() != known.poses.size()) {
-    throw DataError(
-        estimate, fmt::format("holds {} poses", estimated.poses.size()),
-        fmt::format("{} as in {}, or stamps in both files", known.poses.size(), truth.string()));
-  } else {
-    pair.estimate = std::move(estimated.poses);
-    pair.truth = std::move(known.poses);
-    pair.remarks.emplace_back("poses are paired row by row");
-  }
-  if (options.camera == CameraFrame::kEstimate) to_camera(pair.truth, *options.camera_from_lidar);
-  if (options.camera == CameraFrame::kTruth) to_camera(pair.estimate, *options.camera_from_lidar);
-  return pair;
-}
-
 std::vector<TrajectoryPair> read_trajectory_pairs(const std::filesystem::path& estimates,
                                                   const std::filesystem::path& truths,
                                                   const TrajectoryOptions& options) {
-  const bool folders = std::filesystem::is_directory(estimates);
-  if (folders != std::filesystem::is_directory(truths)) {
-    throw DataError(truths, folders ? "is no folder" : "is a folder",
-                    "two files or two folders of files");
+  std::vector<PosePath> estimated = read_pose_paths(estimates, options.format);
+  std::vector<PosePath> known = read_pose_paths(truths, options.format);
+  if (estimated.size() == 1 && known.size() == 1) {
+    return {paired(std::move(estimated.front()), std::move(known.front()), options)};
   }
-  if (!folders) return {read_trajectory_pair(estimates, truths, options)};
-  const auto known = pose_files_of(truths);
   std::vector<TrajectoryPair> pairs;
-  for (const auto& [name, file] : pose_files_of(estimates)) {
-    const auto truth = known.find(name);
+  for (PosePath& estimate : estimated) {
+    const auto truth = std::ranges::find(known, estimate.name, &PosePath::name);
     if (truth == known.end()) {
-      throw DataError(file, "has no truth of its name in " + truths.string(),
-                      "a file of poses of the same name");
+      throw DataError(
+          estimate.place,
+          fmt::format("\"{}\" has no truth of its name in {}", estimate.name, truths.string()),
+          "poses of the same name there");
     }
-    pairs.push_back(read_trajectory_pair(file, truth->second, options));
+    pairs.push_back(paired(std::move(estimate), std::move(*truth), options));
   }
-  if (pairs.empty()) throw DataError(estimates, "holds no poses", "files .txt, .csv or .tum");
   return pairs;
 }
 

@@ -28,16 +28,12 @@ struct TrajectoryPair {
   std::vector<std::string> remarks;  ///< how poses were paired
 };
 
-/// Poses with stamps in both files are paired by time: for each of the shorter list the nearest of
-/// the longer one, if near enough. Otherwise row by row. Poses of Dynablox's rollouts are inverted;
-/// those of the lidar are taken to the camera where the other file is the camera's. Throws
-/// DataError for files that differ in their number of rows, have no common stamps, or hold no pose.
-TrajectoryPair read_trajectory_pair(const std::filesystem::path& estimate,
-                                    const std::filesystem::path& truth,
-                                    const TrajectoryOptions& options);
-
-/// One pair of files; of two folders, all .txt, .csv and .tum files of the estimates' with the file
-/// of the same stem, in the order of their names. Throws DataError for an estimate without truth.
+/// The poses of two places, see `read_pose_paths`: one and one, whatever their names, else those of
+/// the same name, in the order of the estimates. Poses with stamps on both sides are paired by
+/// time: for each of the shorter list the nearest of the longer one, if near enough. Otherwise row
+/// by row. Poses of the lidar are taken to the camera where the other file is the camera's. Throws
+/// DataError for an estimate without truth, another number of rows, and no common stamps;
+/// UsageError where a data set is said to be the camera's.
 std::vector<TrajectoryPair> read_trajectory_pairs(const std::filesystem::path& estimates,
                                                   const std::filesystem::path& truths,
                                                   const TrajectoryOptions& options);

@@ -1,8 +1,10 @@
 #include <fmt/format.h>
 
 #include <numbers>
+#include <vector>
 
 #include "eval/results/answer_text.hpp"
+#include "eval/results/csv.hpp"
 #include "eval/results/text_table.hpp"
 #include "eval/trajectory/trajectory_scores.hpp"
 
@@ -192,8 +194,9 @@ std::string trajectory_csv(std::span<const TrajectoryScore> scores) {
   std::string csv = "sequence,pose,ape_m,ape_rad\n";
   for (const TrajectoryScore& score : scores) {
     for (std::size_t i = 0; i < score.poses; ++i) {
-      csv += fmt::format("{},{},{},{}\n", score.name, i, score.absolute.translation_m[i],
-                         score.absolute.rotation_rad[i]);
+      csv += csv_row(std::vector{score.name, fmt::to_string(i),
+                                 fmt::to_string(score.absolute.translation_m[i]),
+                                 fmt::to_string(score.absolute.rotation_rad[i])});
     }
   }
   return csv;

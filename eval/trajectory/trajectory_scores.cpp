@@ -15,6 +15,12 @@ std::string_view what_is_missing(PathAlignment alignment) {
                                             : "similarity alignment is undefined";
 }
 
+std::vector<Eigen::Vector3d> positions_m(const std::vector<Pose>& poses) {
+  std::vector<Eigen::Vector3d> positions;
+  for (const Pose& pose : poses) positions.emplace_back(pose.translation());
+  return positions;
+}
+
 }  // namespace
 
 TrajectoryScore score_of(const TrajectoryPair& pair, const ScoringRules& rules) {
@@ -32,6 +38,8 @@ TrajectoryScore score_of(const TrajectoryPair& pair, const ScoringRules& rules) 
                         .scale = estimate->scale,
                         .absolute = absolute_errors(pair.truth, estimate->poses),
                         .relative = relative_errors(pair.truth, estimate->poses, rules.relative),
+                        .truth_m = positions_m(pair.truth),
+                        .estimate_m = positions_m(estimate->poses),
                         .remarks = pair.remarks};
   const double apart_m =
       (pair.truth.front().translation() - estimate->poses.front().translation()).norm();

@@ -21,6 +21,7 @@ struct TrajectoryScore {
   std::vector<SegmentError> kitti, brief;
   double scale = 1;  ///< that the estimate was multiplied with
   PoseErrors absolute, relative;
+  std::vector<Eigen::Vector3d> truth_m, estimate_m;  ///< positions, aligned
   std::vector<std::string> remarks;
 };
 

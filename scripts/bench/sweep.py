@@ -3,7 +3,7 @@
 
 Simulates a drive on the highway with an OS2-128, thins it to fewer beams, profiles the method over
 it one setting at a time and prints a table with the exponent b of cost = a * setting^b, fitted to
-the medians. --write puts the table between the sweep marks of README.md and the plot into
+the medians. --write puts the table between the sweep marks of bench/NOTES.md and the plot into
 results/sweep.svg.
 """
 
@@ -31,9 +31,10 @@ def arguments():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--program", default=str(ROOT / "build/release/eval/mosbench"))
+    parser.add_argument("--method", default="hmm-mos", help="to measure (default: hmm-mos)")
     parser.add_argument("--scans", type=int, default=30, help="of the drive (default: 30)")
     parser.add_argument("--rounds", type=int, default=3, help="over all settings (default: 3)")
-    parser.add_argument("--write", action="store_true", help="into README.md and results/sweep.svg")
+    parser.add_argument("--write", action="store_true", help="into bench/NOTES.md and results/sweep.svg")
     chosen = parser.parse_args()
     if chosen.rounds < 1:
         parser.error("--rounds: expected at least 1")
@@ -67,10 +68,10 @@ def simulate(program, scans, folder):
             (target / "velodyne" / scan.name).write_bytes(thinned)
 
 
-def profile(program, folder, setting):
+def profile(program, method, folder, setting):
     report = folder / "profile.json"
     subprocess.run([program, "profile", folder / str(setting["beams"]), "--dataset", "semantickitti",
-                    "--threads", str(setting["threads"]), "--json", report, "--set",
+                    "--method", method, "--threads", str(setting["threads"]), "--json", report, "--set",
                     f"max_range_m={setting['range']}", f"voxel_size_m={setting['voxel']}"],
                    check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     return json.loads(report.read_text())
@@ -91,7 +92,7 @@ def exponent(values, costs):
             / sum((a - mean_x) ** 2 for a in x))
 
 
-def measure(program, scans, rounds):
+def measure(program, method, scans, rounds):
     """The least of the medians of several rounds, each round over all settings, and the machine."""
     costs = {(variable, value): [] for variable, values in SWEEPS.items() for value in values}
     with tempfile.TemporaryDirectory() as name:
@@ -99,7 +100,7 @@ def measure(program, scans, rounds):
         simulate(program, scans, folder)
         for turn in range(rounds):
             for (variable, value), found in costs.items():
-                report = profile(program, folder, {**BASE, variable: value})
+                report = profile(program, method, folder, {**BASE, variable: value})
                 found.append(cost_ms(report, variable))
             print(f"round {turn + 1}/{rounds}", file=sys.stderr, flush=True)
     rows = {variable: (values, [min(costs[variable, value]) for value in values])
@@ -115,8 +116,8 @@ def growth(variable, values, costs):
 
 def table(rows, machine, scans, rounds):
     lines = [f"Simulated highway, {scans} scans (the map is still filling), {machine}: milliseconds per scan of the "
-             "method alone,", f"CPU time (wall time for threads), least median of {rounds} rounds. What is not "
-             f"swept: range {BASE['range']} m, voxel {BASE['voxel']} m, {BASE['beams']} beams, "
+             "method alone,", f"CPU time, or wall time in the row of threads; the lowest of {rounds} medians. While one "
+             f"is varied, the others stay at {BASE['range']} m, {BASE['voxel']} m, {BASE['beams']} beams, "
              f"{BASE['threads']} thread.", "",
              "| swept | settings | ms per scan | growth |", "|---|---|---|---|"]
     for variable, (values, costs) in rows.items():
@@ -150,19 +151,19 @@ def plot(rows):
 
 
 def write(text, picture):
-    readme = ROOT / "README.md"
-    content = readme.read_text()
+    notes = ROOT / "bench/NOTES.md"
+    content = notes.read_text()
     if any(content.count(mark) != 1 for mark in MARKS):
-        sys.exit(f"{readme}: lacks the sweep marks, expected {MARKS[0]} and {MARKS[1]} once each")
+        sys.exit(f"{notes}: lacks the sweep marks, expected {MARKS[0]} and {MARKS[1]} once each")
     before, rest = content.split(MARKS[0])
     after = rest.split(MARKS[1])[1]
     (ROOT / "results/sweep.svg").write_text(picture)
-    readme.write_text(f"{before}{MARKS[0]}\n{text}\n\n![cost per scan](results/sweep.svg)\n{MARKS[1]}{after}")
+    notes.write_text(f"{before}{MARKS[0]}\n{text}\n\n![cost per scan](../results/sweep.svg)\n{MARKS[1]}{after}")
 
 
 def main():
     chosen = arguments()
-    rows, machine = measure(chosen.program, chosen.scans, chosen.rounds)
+    rows, machine = measure(chosen.program, chosen.method, chosen.scans, chosen.rounds)
     text = table(rows, machine, chosen.scans, chosen.rounds)
     print(text)
     if chosen.write:

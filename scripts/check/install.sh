@@ -8,6 +8,11 @@ scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 
 cmake --install "$build" --prefix "$scratch/prefix" >"$scratch/install.log"
+# <mosbench/...> and nothing else.
+public=$(cd core/include && find . -name '*.hpp' | sort)
+installed=$(cd "$scratch/prefix/include/mosbench" && find . -name '*.hpp' | sort)
+[ "$public" = "$installed" ] ||
+  { echo "other headers are installed than those of core/include:" >&2; diff <(echo "$public") <(echo "$installed") >&2; exit 1; }
 cp -r tests/install "$scratch/consumer"
 cmake -S "$scratch/consumer" -B "$scratch/consumer/build" -G Ninja \
   -DCMAKE_PREFIX_PATH="$scratch/prefix" -DCMAKE_BUILD_TYPE=Release >/dev/null

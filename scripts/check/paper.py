@@ -6,7 +6,7 @@ import re
 import sys
 
 FOLDER = pathlib.Path(__file__).resolve().parents[2] / "core"
-DEFINITIONS = 14  # rows of the table of section III
+DEFINITIONS = 16  # rows of the table of section III
 REFERENCE = re.compile(r"\[`([\w/.]+):(\w+)`\]\(([^)\s]+)\)")
 LINK = re.compile(r"\]\(([^)\s]+)\)")
 COMMENT_OR_STRING = re.compile(r'//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\\n])*"', re.DOTALL)

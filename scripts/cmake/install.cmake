@@ -3,17 +3,22 @@
 include(CMakePackageConfigHelpers)
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/mosbench)
-foreach(room interface base voxel hmm_mos odometry core)
+foreach(room interface ${MOSBENCH_CORE_ROOMS} core)
   set_target_properties(mosbench_${room} PROPERTIES EXPORT_NAME ${room})
+  # An exported library must say where its headers would go. Those of rooms are not public.
+  set(unless_public COMPONENT internal EXCLUDE_FROM_ALL)
+  if(room STREQUAL interface)
+    set(unless_public)
+  endif()
   install(TARGETS mosbench_${room} EXPORT mosbench
-          FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/mosbench)
+          FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/mosbench ${unless_public})
 endforeach()
 install(FILES core/include/mosbench/pcl.hpp DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/mosbench/mosbench)
 install(EXPORT mosbench NAMESPACE mosbench:: FILE mosbenchTargets.cmake DESTINATION ${package_dir})
 if(TARGET mosbench)
   install(TARGETS mosbench)
   if(TARGET mosbench_pcl)
-    install(TARGETS mosbench_pcl LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/mosbench)
+    install(TARGETS mosbench_pcl LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/mosbench COMPONENT pcl)
   endif()
 endif()
 

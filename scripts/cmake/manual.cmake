@@ -9,8 +9,9 @@ add_custom_command(
   DEPENDS mosbench
   VERBATIM)
 file(MAKE_DIRECTORY ${manual})
-install(FILES ${manual}/mosbench DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
-install(FILES ${manual}/_mosbench DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
+# Where the program alone was built, there is no manual to install.
+install(FILES ${manual}/mosbench DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions OPTIONAL)
+install(FILES ${manual}/_mosbench DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions OPTIONAL)
 
 find_program(MOSBENCH_HELP2MAN help2man)
 mark_as_advanced(MOSBENCH_HELP2MAN)
@@ -21,6 +22,6 @@ if(MOSBENCH_HELP2MAN)
     COMMAND ${PROJECT_SOURCE_DIR}/scripts/docs/man_pages.sh $<TARGET_FILE:mosbench> ${manual}/man1
     DEPENDS mosbench ${PROJECT_SOURCE_DIR}/scripts/docs/man_pages.sh
     VERBATIM)
-  install(DIRECTORY ${manual}/man1 DESTINATION ${CMAKE_INSTALL_MANDIR})
+  install(DIRECTORY ${manual}/man1 DESTINATION ${CMAKE_INSTALL_MANDIR} OPTIONAL)
 endif()
 add_custom_target(manual ALL DEPENDS ${made})

@@ -1,9 +1,15 @@
-# mosbench_library(ROOM [UNITY] [OPTIONS ...] [EXCLUDE ...] [DEPENDS ...] [PRIVATE ...])
+# mosbench_library(ROOM [OPTIONS ...] [EXCLUDE ...] [DEPENDS ...] [PRIVATE ...])
 # Makes the library mosbench_ROOM of every .cpp of the calling folder. DEPENDS names rooms and imported
-# targets that its headers need, PRIVATE those that only its sources need. UNITY compiles eight files at a
-# time: most of a file's time is spent in the headers of JSON, fmt and Eigen.
+# targets that its headers need, PRIVATE those that only its sources need. The files of a room are compiled
+# together: most of a file's time is spent in the headers of JSON, fmt and Eigen. With MOSBENCH_WITH_PYTHON
+# rooms can be linked into a shared library; calls within them stay direct and may be inlined.
+set(MOSBENCH_FILES_AT_A_TIME 40 CACHE STRING "Files of a room that are compiled together")
+add_library(mosbench_room_options INTERFACE)
+if(MOSBENCH_WITH_PYTHON)
+  target_compile_options(mosbench_room_options INTERFACE -fno-semantic-interposition)
+endif()
 function(mosbench_library room)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "UNITY" "" "OPTIONS;EXCLUDE;DEPENDS;PRIVATE")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "OPTIONS;EXCLUDE;DEPENDS;PRIVATE")
   file(GLOB sources RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} CONFIGURE_DEPENDS *.cpp)
   file(GLOB headers RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} CONFIGURE_DEPENDS *.hpp)
   list(REMOVE_ITEM sources ${arg_EXCLUDE} "")
@@ -13,13 +19,13 @@ function(mosbench_library room)
   target_compile_features(${target} PUBLIC cxx_std_20)
   target_compile_options(${target} PRIVATE ${arg_OPTIONS})
   target_sources(${target} PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES ${headers})
-  if(arg_UNITY)
-    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
-  endif()
+  set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ${MOSBENCH_WITH_PYTHON}
+                        UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${MOSBENCH_FILES_AT_A_TIME})
   mosbench_targets(depends ${arg_DEPENDS})
   mosbench_targets(private ${arg_PRIVATE})
   target_link_libraries(${target} PUBLIC ${depends}
-                        PRIVATE $<BUILD_INTERFACE:mosbench_options> ${private})
+                        PRIVATE $<BUILD_INTERFACE:mosbench_options> $<BUILD_INTERFACE:mosbench_room_options>
+                        ${private})
 endfunction()
 
 # Rooms by their name, other targets as they are.

@@ -236,7 +236,7 @@ TEST_F(BadOutput, ThatIsFullLeavesNothingHalfWritten) {
   const cli::Answer answer = cli::run(command(), full_after_4_kib);
   EXPECT_EQ(answer.exit_code, 3);
   EXPECT_THAT(answer.err, HasSubstr("000000.label: cannot be written"));
-  EXPECT_TRUE(fs::is_empty(folder_ / "out"));
+  EXPECT_TRUE(!fs::exists(folder_ / "out") || fs::is_empty(folder_ / "out"));
 }
 
 }  // namespace

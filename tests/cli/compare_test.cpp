@@ -12,6 +12,8 @@ namespace mosbench {
 namespace {
 
 namespace fs = std::filesystem;
+constexpr const char* kTooFew =
+    "12 scans, expected at least 100 in a row, or 20 that are 10 s apart";
 using testing::HasSubstr;
 using testing::Not;
 
@@ -89,9 +91,8 @@ TEST_F(Compare, CatchesThreePercentOfTheMovingPointsFlipped) {
   EXPECT_EQ(compare_to_whole("whole", "0").exit_code, 0);
 }
 
-TEST_F(Compare, LetsTheMaxDropAloneDecideUnlessItIsStatistical) {
+TEST_F(Compare, LetsTheMaxDropAloneDecide) {
   score_changed("whole", [](std::size_t) { return false; });
-  // All lost points are in the first scans, so that other scans might show no drop at all.
   score_changed("early", [](std::size_t moving) { return moving < 60; });
   const auto compare_to_whole = [this](const std::vector<std::string>& more) {
     std::vector<std::string> words = {"compare", (folder_ / "whole/results").string(),
@@ -104,16 +105,15 @@ TEST_F(Compare, LetsTheMaxDropAloneDecideUnlessItIsStatistical) {
   const auto check = nlohmann::json::parse(answer.out).at("checks").at(0);
   const double drop = -check.at("difference").get<double>();
   ASSERT_GT(drop, 0.005);
-  EXPECT_GE(check.at("high").get<double>(), -1e-9) << "other scans may show none";
+  EXPECT_EQ(check.at("low"), nullptr);
+  EXPECT_EQ(check.at("no_interval"), kTooFew);
   EXPECT_DOUBLE_EQ(check.at("tolerance").get<double>(), 0.005);
 
-  const cli::Answer statistical = compare_to_whole({"--json", "--statistical"});
-  EXPECT_EQ(statistical.exit_code, 0) << statistical.err << statistical.out;
-  const auto wide = nlohmann::json::parse(statistical.out).at("checks").at(0);
-  EXPECT_GE(wide.at("tolerance").get<double>(), drop);
-  EXPECT_EQ(wide.at("low"), check.at("low"));
-
+  // Without an interval --statistical widens nothing.
+  EXPECT_EQ(compare_to_whole({"--statistical"}).exit_code, 1);
   EXPECT_THAT(compare_to_whole({}).out, HasSubstr("it does not decide (--statistical)"));
+  EXPECT_THAT(compare_to_whole({}).out,
+              HasSubstr("no interval for room: 12 scans, expected at least 100"));
   EXPECT_EQ(compare_to_whole({"--max-drop", std::to_string(100.0 * drop + 0.01)}).exit_code, 0);
   EXPECT_EQ(compare_to_whole({"--max-drop", std::to_string(100.0 * drop - 0.01)}).exit_code, 1);
 }
@@ -131,6 +131,39 @@ TEST_F(Compare, RefusesUnlikeResultsUnlessTold) {
 
   run_again("later", {"--variant", "release-2025"});
   EXPECT_THAT(compare("later").err, HasSubstr("variant: \"paper-2024\" -> \"release-2025\""));
+}
+
+TEST_F(Compare, NamesOnlySettingsThatBothMethodsHave) {
+  run_again("underwood", {"--method", "underwood", "--set", "max_range_m=20"});
+  const cli::Answer answer = compare("underwood");
+  EXPECT_EQ(answer.exit_code, 3);
+  EXPECT_THAT(answer.err, HasSubstr("method is HMM-MOS and Underwood et al.; max_range_m: "));
+  EXPECT_THAT(answer.err, Not(HasSubstr("nothing"))) << "settings of one method only";
+  const cli::Answer again = cli::run({"run", (folder_ / "room").string(), "--method", "underwood",
+                                      "--out", (folder_ / "out").string()});
+  EXPECT_EQ(again.exit_code, 2);
+  EXPECT_THAT(again.err, HasSubstr("method/kind is \"hmm-mos\" there and \"underwood\" now"));
+  EXPECT_THAT(again.err, Not(HasSubstr("config/")));
+}
+
+TEST_F(Compare, StatsComparesRunsWithOtherPosesAndSaysSo) {
+  std::string poses = read_file(folder_ / "room/poses.txt");
+  const std::size_t row = poses.rfind('\n', poses.size() - 2) + 1;
+  const std::size_t x = [&] {
+    std::size_t at = row;
+    for (int words = 0; words < 3; ++words) at = poses.find(' ', at) + 1;
+    return at;
+  }();
+  poses.replace(x, poses.find(' ', x) - x, "0.25");
+  write_file_atomic(folder_ / "other.txt", poses);
+  run_again("moved", {"--poses", (folder_ / "other.txt").string()});
+  const cli::Answer stats =
+      cli::run({"stats", (folder_ / "out").string(), (folder_ / "moved").string()});
+  EXPECT_EQ(stats.exit_code, 0) << stats.err;
+  EXPECT_THAT(stats.out, HasSubstr("sequence room: the poses differ, the scans do not"));
+  const cli::Answer gate = compare("moved");
+  EXPECT_EQ(gate.exit_code, 3) << "a gate is about the code";
+  EXPECT_THAT(gate.err, HasSubstr("the poses differ, the scans do not"));
 }
 
 TEST_F(Compare, RefusesOtherInputAndOtherScans) {
@@ -209,7 +242,14 @@ TEST_F(Compare, BlessRefusesToReplaceABaselineOfAnotherKindUnlessTold) {
 TEST_F(Compare, BlessTakesOtherNumbersOfTheSameKind) {
   const fs::path result = folder_ / "out/room/result.json";
   auto json = nlohmann::ordered_json::parse(read_file(result));
-  json.at("scans").at(7)["fp"] = json.at("scans").at(7).at("fp").get<int>() + 5;
+  const auto add = [](nlohmann::ordered_json& counts, const char* name, int points) {
+    counts[name] = counts.at(name).get<int>() + points;
+  };
+  for (nlohmann::ordered_json* counts : {&json.at("scans").at(7), &json.at("summary")}) {
+    add(*counts, "fp", 5);
+    add(*counts, "tn", -5);
+  }
+  add(json.at("scans").at(7), "predicted_moving_points", 5);
   write_file_atomic(result, json.dump());
   const cli::Answer bless =
       cli::run({"bless", (folder_ / "out").string(), (folder_ / "baseline").string()});
@@ -240,13 +280,16 @@ TEST_F(Compare, AndStatsRepeatThatPredictionsWereMissing) {
   EXPECT_THAT(cli::run({"stats", (folder_ / "out").string()}).out, Not(HasSubstr("INCOMPLETE")));
 }
 
-TEST_F(Compare, StatsGiveIntervalsAndAPairedDifference) {
+TEST_F(Compare, StatsGiveMetricsAndAPairedDifference) {
   const cli::Answer one = cli::run({"stats", (folder_ / "out").string(), "--json", "--per-scan"});
   ASSERT_EQ(one.exit_code, 0) << one.err;
   const auto json = nlohmann::json::parse(one.out);
   const auto iou = json.at("all").at("iou");
-  EXPECT_LE(iou.at("low"), iou.at("value"));
-  EXPECT_GE(iou.at("high"), iou.at("value"));
+  EXPECT_GT(iou.at("value"), 0.0);
+  EXPECT_EQ(iou.at("low"), nullptr);
+  EXPECT_EQ(iou.at("no_interval"), kTooFew);
+  EXPECT_THAT(cli::run({"stats", (folder_ / "out").string()}).out,
+              HasSubstr("no interval for all: 12 scans, expected at least 100"));
   ASSERT_EQ(json.at("scans").size(), 12U);
   EXPECT_EQ(json.at("scans").at(5).at("scan"), "000005");
 

@@ -2,8 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <thread>
 #include <vector>
 
+#include "datasets/files/errors.hpp"
 #include "datasets/layouts/dataset.hpp"
 #include "datasets/rosbag/bag_file.hpp"
 #include "datasets/rosbag/bag_writer.hpp"
@@ -14,6 +16,7 @@ namespace mosbench {
 namespace {
 
 using testing::HasSubstr;
+using testing::StartsWith;
 
 /// Points, stamps, truth and, within `pose_error`, poses of two data sets are the same.
 void expect_same_frames(const std::filesystem::path& a, const std::filesystem::path& b,
@@ -122,8 +125,128 @@ TEST_F(Convert, RefusesAFilledFolderAndAnUnknownLayout) {
   folder_.write("out/keep", "mine");
   const cli::Answer filled = convert(input, "doals", "out");
   EXPECT_EQ(filled.exit_code, 2);
-  EXPECT_THAT(filled.err, HasSubstr("holds files already"));
+  EXPECT_THAT(filled.err, HasSubstr("keep: is no file of this conversion"));
   EXPECT_EQ(convert(input, "kitti", "other").exit_code, 2);
+}
+
+TEST_F(Convert, GoesOnAfterAKillToTheFilesOfAnUndisturbedOne) {
+  for (const char* name : {"00", "01"}) {
+    cli::write_small_sequence(folder_ / "data/sequences" / name, 40);
+  }
+  const std::string data = (folder_ / "data").string();
+  const std::vector<std::string> by_odometry = {"--odometry", "kiss"};
+  ASSERT_EQ(convert(data, "semantickitti", "whole", by_odometry).exit_code, 0);
+  const auto whole = cli::contents(folder_ / "whole");
+
+  const std::vector<std::string> disturbed = {
+      "convert", data, "--layout", "semantickitti", "--out", folder_ / "cut", "--odometry", "kiss"};
+  const TempFolder streams;
+  const pid_t child = cli::start(disturbed, streams.path());
+  while (!std::filesystem::exists(folder_ / "cut/sequences/01/velodyne/000004.bin") &&
+         waitpid(child, nullptr, WNOHANG) == 0) {
+    std::this_thread::yield();
+  }
+  ASSERT_EQ(kill(child, SIGKILL), 0);
+  ASSERT_EQ(cli::wait_for(child), 128 + SIGKILL);
+  ASSERT_TRUE(std::filesystem::exists(folder_ / "cut/sequences/00/poses.txt"));
+  ASSERT_FALSE(std::filesystem::exists(folder_ / "cut/sequences/01/poses.txt"));
+
+  EXPECT_THAT(message_of<DataError>([&] { open_dataset(folder_ / "cut", {}); }),
+              HasSubstr("holds part of a data set"));
+  const cli::Answer other = convert(data, "doals", "cut");
+  EXPECT_EQ(other.exit_code, 2);
+  EXPECT_THAT(other.err, HasSubstr("unfinished conversion of other files or to another layout"));
+  folder_.write("cut/sequences/01/velodyne/mine.bin", "mine");
+  const cli::Answer foreign = cli::run(disturbed);
+  EXPECT_EQ(foreign.exit_code, 2);
+  EXPECT_THAT(foreign.err, HasSubstr("mine.bin: is no file of this conversion"));
+  std::filesystem::remove(folder_ / "cut/sequences/01/velodyne/mine.bin");
+
+  const auto finished = std::filesystem::last_write_time(folder_ / "cut/sequences/00/poses.txt");
+  const cli::Answer again = cli::run(disturbed);
+  ASSERT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_EQ(cli::contents(folder_ / "cut"), whole);
+  EXPECT_EQ(std::filesystem::last_write_time(folder_ / "cut/sequences/00/poses.txt"), finished);
+  EXPECT_EQ(cli::run(disturbed).exit_code, 2) << "nor over a finished one";
+}
+
+TEST_F(Convert, LeavesNothingWhereThereIsNoRoom) {
+  cli::write_small_sequence(folder_ / "room", 6);
+  const std::string room = (folder_ / "room").string();
+  for (const char* layout : {"semantickitti", "doals-bag"}) {
+    if (layout == std::string("doals-bag") && !writes_bags()) continue;
+    for (const char* compression : {"none", "lz4", "bz2"}) {
+      const cli::Answer answer = cli::run({"convert", room, "--layout", layout, "--compression",
+                                           compression, "--out", (folder_ / "new").string()},
+                                          [] {
+                                            const struct rlimit small { 20'000, 20'000 };
+                                            setrlimit(RLIMIT_FSIZE, &small);
+                                          });
+      EXPECT_EQ(answer.exit_code, 3) << layout << compression;
+      EXPECT_THAT(answer.err, HasSubstr("cannot be written"));
+      EXPECT_FALSE(std::filesystem::exists(folder_ / "new")) << layout << compression;
+    }
+  }
+}
+
+TEST_F(Convert, GoesOnWhereTooFewFilesCouldBeOpened) {
+  cli::write_small_sequence(folder_ / "room", 3);
+  for (const char* layout : {"semantickitti", "doals-bag"}) {
+    if (layout == std::string("doals-bag") && !writes_bags()) continue;
+    int failures = 0;
+    for (rlim_t files = 3; files < 16; ++files) {
+      const std::string out = layout + std::to_string(files);
+      const cli::Answer limited = cli::run(
+          {"convert", folder_ / "room", "--layout", layout, "--out", (folder_ / out).string()},
+          [files] {
+            const struct rlimit few { files, files };
+            setrlimit(RLIMIT_NOFILE, &few);
+          });
+      if (limited.exit_code == 0) continue;
+      ++failures;
+      const cli::Answer again = convert((folder_ / "room").string(), layout, out.c_str());
+      EXPECT_EQ(again.exit_code, 0) << files << " files: " << limited.err << again.err;
+    }
+    EXPECT_GE(failures, 3) << layout;
+  }
+}
+
+TEST_F(Convert, RefusesStampsThatABagCannotHold) {
+  if (!writes_bags()) GTEST_SKIP() << "this build is without librosbag_storage";
+  cli::write_small_sequence(folder_ / "room", 2);
+  folder_.write("room/times.txt", "1\n4294967296\n");
+  const cli::Answer answer = convert((folder_ / "room").string(), "doals-bag", "bags");
+  EXPECT_EQ(answer.exit_code, 3);
+  EXPECT_THAT(answer.err, HasSubstr("bag.bag: a stamp to be written is beyond 2^32 s"));
+}
+
+TEST_F(Convert, KeepsWherePosesCameFrom) {
+  const std::string source = simulate("sipailou", "4");
+  ASSERT_EQ(convert(source, "semantickitti", "posed", {"--odometry", "simple"}).exit_code, 0);
+  const auto origin = [](const std::filesystem::path& root) {
+    const Dataset dataset = open_dataset(root, {});
+    for (const auto& [what, how] : dataset.sequences.at(0)->reading()) {
+      if (what == "pose_origin") return how;
+    }
+    return std::string();
+  };
+  EXPECT_THAT(origin(folder_ / "posed"), StartsWith("poses: odometry simple; pose_odometry: "));
+  ASSERT_EQ(convert((folder_ / "posed").string(), "sipailou", "twice").exit_code, 0);
+  EXPECT_EQ(origin(folder_ / "twice"), origin(folder_ / "posed"));
+}
+
+TEST_F(Convert, SaysThatPosesWereReplacedWhoseOriginWasKept) {
+  const std::string source = simulate("sipailou", "4");
+  ASSERT_EQ(convert(source, "semantickitti", "posed", {"--odometry", "simple"}).exit_code, 0);
+  const std::filesystem::path sequence = folder_ / "posed/sequences/06";
+  std::string other_poses;
+  for (int row = 0; row < 4; ++row) other_poses += "1 0 0 0 0 1 0 0 0 0 1 0\n";
+  folder_.write("posed/sequences/06/poses.txt", other_poses);
+  EXPECT_THAT(cli::run({"doctor", sequence.string()}).out,
+              HasSubstr("pose_origin.txt was not written for poses.txt as it is now"));
+  ASSERT_EQ(cli::run({"run", sequence.string(), "--out", (folder_ / "o").string()}).exit_code, 0);
+  const auto result = cli::timeless_result(folder_ / "o/06");
+  EXPECT_FALSE(result.at("reading").contains("pose_origin")) << result.at("reading");
 }
 
 TEST_F(Convert, StatesInTheResultHowASequenceWasRead) {

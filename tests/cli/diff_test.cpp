@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 
 #include "datasets/files/label_file.hpp"
@@ -55,6 +56,18 @@ TEST_F(Diff, RefusesADataSetThatIsNotTheOneOfTheRuns) {
   const cli::Answer changed = diff("changed");
   EXPECT_EQ(changed.exit_code, 3);
   EXPECT_THAT(changed.err, HasSubstr("has another truth for scan 000005 of sequence room"));
+}
+
+TEST_F(Diff, RefusesLabelsThatWereChangedAfterTheRun) {
+  const std::filesystem::path file = folder_ / "delay_0/room/labels/000009.label";
+  auto labels = read_labels(file, cli::kPointsPerScan);
+  // As many move as before.
+  std::reverse(labels.begin(), labels.end());
+  ASSERT_NE(labels, read_labels(file, cli::kPointsPerScan));
+  write_labels(file, labels);
+  const cli::Answer answer = diff("room");
+  EXPECT_EQ(answer.exit_code, 3) << answer.out;
+  EXPECT_THAT(answer.err, HasSubstr("000009.label: does not give the counts in result.json"));
 }
 
 }  // namespace

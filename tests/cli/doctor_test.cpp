@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 
 #include "tests/cli/program.hpp"
@@ -39,6 +40,18 @@ TEST_F(DoctorCommand, EndsWithAVerdictTheNextCommandAndItsExitCode) {
   EXPECT_THAT(unusable.out, HasSubstr("Verdict: cannot be used"));
 }
 
+TEST_F(DoctorCommand, KeepsTheReadingFlagsInTheNextCommand) {
+  fs::rename(folder_ / "room/poses.txt", folder_ / "my poses.txt");
+  const std::string poses = (folder_ / "my poses.txt").string();
+  const cli::Answer answer =
+      cli::run({"doctor", room(), "--poses", poses, "--pose-frame", "lidar", "--dataset",
+                "semantickitti", "--sequences", "room", "--deskew", "none"});
+  EXPECT_EQ(answer.exit_code, 0) << answer.out << answer.err;
+  EXPECT_THAT(answer.out, HasSubstr("\n  mosbench run " + room() +
+                                    " --dataset semantickitti --sequences room --poses '" + poses +
+                                    "' --pose-frame lidar --deskew none\n"));
+}
+
 TEST_F(DoctorCommand, NamesAFileOnce) {
   const fs::path label = folder_ / "room/labels/000003.label";
   fs::resize_file(label, fs::file_size(label) - 4);
@@ -51,8 +64,16 @@ TEST_F(DoctorCommand, NamesAFileOnce) {
 TEST_F(DoctorCommand, SaysWhatASensorThatStandsStillCannotTell) {
   const cli::Answer answer = cli::run({"doctor", room()});
   EXPECT_EQ(answer.exit_code, 0);
-  EXPECT_THAT(answer.out,
-              HasSubstr("cannot be decided from these scans, if the poses were one row later"));
+  EXPECT_THAT(answer.out, HasSubstr("  not checked     the camera's, Tr is missing; "));
+  EXPECT_THAT(answer.out, HasSubstr(" more (the same motions here)\n"));
+}
+
+TEST_F(DoctorCommand, IsShortOnSoundData) {
+  const cli::Answer answer = cli::run({"doctor", room()});
+  EXPECT_LE(std::ranges::count(answer.out, '\n'), 19) << answer.out;
+  EXPECT_THAT(answer.out, HasSubstr("room: 12 scans, 12 labelled\n"));
+  EXPECT_THAT(answer.out, HasSubstr(" points in 12 scans; 0 NaN or infinite\n"));
+  EXPECT_THAT(answer.out, HasSubstr("  range           3-10 m 100.0 %\n"));
 }
 
 TEST_F(DoctorCommand, PrintsTheSameAsJson) {

@@ -13,6 +13,7 @@ namespace {
 
 using testing::ContainsRegex;
 using testing::HasSubstr;
+using testing::Not;
 using testing::StartsWith;
 
 TEST(Help, OfTheProgramNamesEveryCommand) {
@@ -83,7 +84,8 @@ TEST(Usage, NamesTheNearestWordToAnUnknownOne) {
             "score --help"},
            {{"run", "x", "--treads=2"},
             "--treads: is no flag of mosbench run (nearest: --threads)"},
-           {{"run", "x", "--delay", "10"}, "(a setting of the method: --set delay_scans=...)"},
+           {{"run", "x", "--delay", "10"}, "(a setting of hmm-mos: --set delay_scans=...)"},
+           {{"run", "x", "--out", "--json"}, "--out: --json is a flag, expected a value"},
            {{"run", "x", "y"}, "y: is one argument too many"}}) {
     const cli::Answer answer = cli::run(mistake.arguments);
     EXPECT_EQ(answer.exit_code, 2) << mistake.error;
@@ -121,6 +123,18 @@ TEST(Completion, KnowsEveryCommandInZsh) {
   for (const Command& command : commands()) {
     EXPECT_THAT(script, HasSubstr(fmt::format("\n    {})\n      _arguments", command.name)));
   }
+}
+
+TEST(List, ShowsTheSettingsOfOneMethodWithUnits) {
+  const cli::Answer one = cli::run({"list", "methods", "underwood"});
+  EXPECT_EQ(one.exit_code, 0) << one.err;
+  EXPECT_THAT(cli::run({"list", "methods"}).out, HasSubstr(one.out));
+  EXPECT_THAT(one.out, ContainsRegex("neighbour_angle_rad +0.0157 +rad +0.002 to 0.5 "));
+  EXPECT_THAT(one.out, Not(HasSubstr("dynablox")));
+  const cli::Answer unknown = cli::run({"list", "methods", "underwod"});
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_THAT(unknown.err, HasSubstr("(nearest: underwood)"));
+  EXPECT_EQ(cli::run({"list", "presets", "underwood"}).exit_code, 2);
 }
 
 TEST(List, ShowsDatasetsPresetsProtocolsAndScenes) {

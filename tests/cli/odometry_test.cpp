@@ -1,9 +1,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <string>
 #include <vector>
 
+#include "datasets/files/files.hpp"
 #include "datasets/files/pose_file.hpp"
 #include "tests/cli/program.hpp"
 #include "tests/cli/small_sequence.hpp"
@@ -12,6 +14,7 @@ namespace mosbench {
 namespace {
 
 using nlohmann::ordered_json;
+using testing::AllOf;
 using testing::HasSubstr;
 
 class OdometryCommand : public testing::Test {
@@ -64,6 +67,97 @@ TEST_F(OdometryCommand, FindsPosesThatTheTrajectoryCommandFindsGood) {
   }
 }
 
+TEST_F(OdometryCommand, PrintsTheCommandThatReadsItsPosesAsTheLidars) {
+  const cli::Answer found = run({"odometry", path("sim"), "-o", path("poses.txt")});
+  EXPECT_THAT(found.out, HasSubstr("mosbench run " + path("sim") + " --poses " + path("poses.txt") +
+                                   " --pose-frame lidar\n"));
+}
+
+TEST_F(OdometryCommand, MarksItsPosesAsTheLidarsForCommandsThatReadThem) {
+  ASSERT_LE(run({"odometry", path("sim"), "-o", path("poses.txt")}).exit_code, 1);
+  const auto labels_by = [&](const std::string& poses, const char* out) {
+    const cli::Answer answer = run({"run", path("sim"), "--poses", poses, "--out", path(out)});
+    EXPECT_EQ(answer.exit_code, 0) << answer.err;
+    return answer.err;
+  };
+  const char* doubt = "08: THE POSES FIT AS THOSE OF THE LIDAR";
+  EXPECT_THAT(labels_by(path("poses.txt"), "marked"), testing::Not(HasSubstr(doubt)));
+  EXPECT_THAT(labels_by(truth_.string(), "camera"), testing::Not(HasSubstr(doubt)));
+  EXPECT_EQ(cli::timeless_result(folder_ / "marked/08").at("reading").at("pose_frame"),
+            "lidar, as the .frame beside the file says");
+  // A copy has no mark, and that of other content says nothing.
+  std::filesystem::copy(folder_ / "poses.txt", folder_ / "copied.txt");
+  EXPECT_THAT(labels_by(path("copied.txt"), "copied"), HasSubstr(doubt));
+  const ordered_json remarks = cli::timeless_result(folder_ / "copied/08").at("remarks");
+  EXPECT_THAT(remarks.at(0).get<std::string>(), HasSubstr("expected --pose-frame lidar"));
+  std::filesystem::copy(truth_, folder_ / "poses.txt",
+                        std::filesystem::copy_options::overwrite_existing);
+  labels_by(path("poses.txt"), "overwritten");
+  EXPECT_EQ(cli::contents(folder_ / "overwritten/08/labels"),
+            cli::contents(folder_ / "camera/08/labels"));
+}
+
+TEST_F(OdometryCommand, ComparesTwoEstimatesAndDrawsThem) {
+  for (const char* kind : {"simple", "kiss"}) {
+    ASSERT_LE(run({"odometry", path("sim"), "-o", path(kind), "--odometry", kind}).exit_code, 1);
+  }
+  std::vector<std::string> command = {"trajectory",    path("simple"), path("kiss"),   "--truth",
+                                      truth_.string(), "--align",      "origin",       "--camera",
+                                      "truth",         "--calib",      calib_.string()};
+  const auto asked = [&](std::vector<std::string> flags) {
+    flags.insert(flags.begin(), command.begin(), command.end());
+    return run(flags);
+  };
+  const cli::Answer text = asked({"--plot", path("paths.png")});
+  ASSERT_EQ(text.exit_code, 0) << text.err;
+  EXPECT_THAT(text.out, HasSubstr("first: " + path("simple")));
+  EXPECT_THAT(text.out, HasSubstr("no interval for RPE m: 7 scans, expected at least 100"));
+  EXPECT_THAT(text.out, HasSubstr("no interval for APE m: one bad motion shifts all later"));
+  EXPECT_EQ(read_file(folder_ / "paths.png").substr(1, 3), "PNG");
+  const ordered_json json = ordered_json::parse(asked({"--json"}).out);
+  const ordered_json& rpe = json.at("difference").at("relative_translation_m");
+  EXPECT_DOUBLE_EQ(rpe.at("value"), rpe.at("second").get<double>() - rpe.at("first").get<double>());
+  EXPECT_EQ(json.at("second").at("sequences")[0].at("name"), "kiss");
+  EXPECT_EQ(json.at("confidence"), 0.95);
+  EXPECT_THAT(asked({"--csv"}).out, AllOf(HasSubstr("error,first,second,difference,low,high"),
+                                          HasSubstr("\nrelative_translation_m,")));
+  command[2] = truth_.string();
+  EXPECT_EQ(asked({}).exit_code, 0);
+  std::ofstream(folder_ / "short") << "1 0 0 0 0 1 0 0 0 0 1 0\n";
+  command[2] = path("short");
+  EXPECT_EQ(asked({}).exit_code, 3);
+}
+
+TEST_F(OdometryCommand, SaysWhenTheOtherFrameFitsFarBetter) {
+  const cli::Answer found = run({"odometry", path("sim"), "-o", path("poses.txt")});
+  ASSERT_LE(found.exit_code, 1);
+  const cli::Answer mixed = run({"trajectory", path("poses.txt"), "--truth", truth_.string()});
+  EXPECT_THAT(mixed.out, HasSubstr("if the truth is the camera's: --camera truth --calib FILE"));
+  const cli::Answer right = run({"trajectory", path("poses.txt"), "--truth", truth_.string(),
+                                 "--camera", "truth", "--calib", calib_.string()});
+  EXPECT_THAT(right.out, testing::Not(HasSubstr("--camera")));
+}
+
+TEST_F(OdometryCommand, TakesTheTimesOfPointsFromTheirAzimuth) {
+  std::vector<std::string> command = {"run",      path("sim"),  "--odometry",    "simple",
+                                      "--out",    path("runs"), "--point-times", "azimuth",
+                                      "--deskew", "velocity"};
+  const cli::Answer answer = run(command);
+  ASSERT_EQ(answer.exit_code, 0) << answer.err;
+  const ordered_json json = cli::timeless_result(folder_ / "runs" / "08");
+  EXPECT_EQ(json.at("reading").at("deskew"), "velocity");
+  EXPECT_EQ(json.at("reading").at("point_times"), "by azimuth, a turn in 0.1 s");
+  EXPECT_THAT(std::string(json.at("reading").at("pose_odometry")), HasSubstr("deskew=velocity"));
+  const cli::Answer report =
+      run({"report", path("runs"), "-o", path("report.html"), "--scans", "2"});
+  EXPECT_EQ(report.exit_code, 0) << report.err;
+  command.push_back("--raw-scans");
+  EXPECT_EQ(run(command).exit_code, 2);
+  const cli::Answer next =
+      run({"odometry", path("sim"), "-o", path("poses.txt"), "--point-times", "azimuth"});
+  EXPECT_THAT(next.out, HasSubstr(" --pose-frame lidar --point-times azimuth\n"));
+}
+
 TEST_F(OdometryCommand, PrintsCovarianceAndWritesTum) {
   const cli::Answer found = run({"odometry", path("sim"), "-o", path("poses.tum"), "--json"});
   ASSERT_EQ(found.exit_code, 0) << found.out << found.err;
@@ -91,6 +185,10 @@ TEST_F(OdometryCommand, EndsWithOneWhenPosesAreDoubtful) {
 }
 
 TEST_F(OdometryCommand, RefusesWhatIsWrong) {
+  const cli::Answer limits =
+      run({"odometry", path("sim"), "-o", path("p.txt"), "--set", "min_range_m=50,max_range_m=50"});
+  EXPECT_EQ(limits.exit_code, 2);
+  EXPECT_THAT(limits.err, HasSubstr("max_range_m"));
   EXPECT_EQ(run({"odometry", path("sim"), "-o", path("p.txt"), "--odometry", "icp"}).exit_code, 2);
   EXPECT_EQ(run({"odometry", path("sim"), "-o", path("p.txt"), "--preset", "kitti"}).exit_code, 2);
   EXPECT_EQ(run({"odometry", path("sim"), "-o", path("p.txt"), "--set", "sigma_m=-1"}).exit_code,
@@ -103,7 +201,8 @@ TEST_F(OdometryCommand, RefusesWhatIsWrong) {
 TEST_F(OdometryCommand, IsOfferedWherePosesAreMissing) {
   const cli::Answer answer = run({"run", path("sim"), "--out", path("runs")});
   EXPECT_EQ(answer.exit_code, 3);
-  EXPECT_THAT(answer.err, HasSubstr("--odometry simple"));
+  EXPECT_THAT(answer.err,
+              HasSubstr("mosbench run " + calib_.parent_path().string() + " --odometry simple"));
 }
 
 TEST_F(OdometryCommand, GivesARunItsPosesAndItsIdentity) {
@@ -139,6 +238,144 @@ TEST_F(OdometryCommand, GivesARunItsPosesAndItsIdentity) {
   std::vector<std::string> other = with_odometry;
   other[3] = "kiss";
   EXPECT_EQ(run(other).exit_code, 2);
+}
+
+TEST_F(OdometryCommand, KeepsSequencesThatAnEarlierCallFinished) {
+  const std::filesystem::path first = calib_.parent_path();
+  std::filesystem::copy(first, first.parent_path() / "09",
+                        std::filesystem::copy_options::recursive);
+  const std::vector<std::string> command = {"odometry", path("sim"), "-o", path("poses")};
+  const cli::Answer whole = run(command);
+  ASSERT_LE(whole.exit_code, 1) << whole.err;
+  const auto files = cli::contents(folder_ / "poses");
+  ASSERT_EQ(files.size(), 6u);  // poses, their mark and a record of each
+  // As a kill leaves it, and with a pose file that somebody edited.
+  std::filesystem::remove(folder_ / "poses" / "09.json");
+  const cli::Answer rest = run(command);
+  EXPECT_THAT(rest.err, HasSubstr("08: finished by an earlier call, kept"));
+  EXPECT_THAT(rest.err, testing::Not(HasSubstr("09: finished")));
+  EXPECT_EQ(rest.out, whole.out);
+  EXPECT_EQ(rest.exit_code, whole.exit_code);
+  EXPECT_EQ(cli::contents(folder_ / "poses"), files);
+  std::ofstream(folder_ / "poses" / "08.txt", std::ios::app) << "1 0 0 0 0 1 0 0 0 0 1 0\n";
+  EXPECT_THAT(run(command).err, testing::Not(HasSubstr("08: finished")));
+  EXPECT_EQ(cli::contents(folder_ / "poses"), files);
+  std::vector<std::string> other = command;
+  other.insert(other.end(), {"--set", "max_range_m=50"});
+  EXPECT_THAT(run(other).err, testing::Not(HasSubstr("finished")));
+}
+
+TEST_F(OdometryCommand, GivesRunsAFolderWithThePosesOfSeveralSequences) {
+  const std::filesystem::path first = calib_.parent_path();
+  std::filesystem::copy(first, first.parent_path() / "09",
+                        std::filesystem::copy_options::recursive);
+  const cli::Answer found = run({"odometry", path("sim"), "-o", path("poses")});
+  EXPECT_THAT(found.out, HasSubstr("--poses " + path("poses")));
+  ASSERT_EQ(run({"run", path("sim"), "--odometry", "simple", "--out", path("found")}).exit_code, 0);
+  for (const char* poses : {"poses", "found"}) {
+    const std::string out = path("read") + poses;
+    const cli::Answer read = run({"run", path("sim"), "--poses", path(poses), "--out", out});
+    ASSERT_EQ(read.exit_code, 0) << read.err;
+    for (const char* sequence : {"08", "09"}) {
+      EXPECT_EQ(cli::contents(std::filesystem::path(out) / sequence / "labels"),
+                cli::contents(folder_ / "found" / sequence / "labels"));
+    }
+  }
+  std::filesystem::remove(folder_ / "poses" / "09.txt");
+  const cli::Answer lacking =
+      run({"run", path("sim"), "--poses", path("poses"), "--out", path("lacking")});
+  EXPECT_EQ(lacking.exit_code, 3);
+  EXPECT_THAT(lacking.err, HasSubstr("holds no poses of sequence 09"));
+  const cli::Answer file =
+      run({"run", path("sim"), "--poses", path("poses/08.txt"), "--out", path("lacking")});
+  EXPECT_EQ(file.exit_code, 2);
+  EXPECT_THAT(file.err, HasSubstr("or a folder with a file for each"));
+}
+
+TEST_F(OdometryCommand, ScoresPosesAgainstThoseOfADataSet) {
+  ASSERT_LE(run({"odometry", path("sim"), "-o", path("poses.txt")}).exit_code, 1);
+  std::filesystem::copy(truth_, calib_.parent_path() / "poses.txt");
+  const auto scores = [&](std::vector<std::string> words) {
+    words.insert(words.begin(), {"trajectory", path("poses.txt"), "--align", "origin", "--json"});
+    const cli::Answer answer = run(words);
+    EXPECT_EQ(answer.exit_code, 0) << answer.err;
+    return ordered_json::parse(answer.out).at("sequences")[0].at("relative");
+  };
+  const ordered_json by_hand =
+      scores({"--truth", truth_.string(), "--camera", "truth", "--calib", calib_.string()});
+  const ordered_json by_data_set = scores({"--truth", path("sim")});
+  EXPECT_NEAR(by_hand.at("translation_m").at("rmse"), by_data_set.at("translation_m").at("rmse"),
+              1e-3);  // the camera is elsewhere and turns with the sensor
+  const cli::Answer camera = run({"trajectory", path("poses.txt"), "--truth", path("sim"),
+                                  "--camera", "truth", "--calib", calib_.string()});
+  EXPECT_EQ(camera.exit_code, 2);
+  EXPECT_THAT(camera.err, HasSubstr("are read as the lidar's"));
+}
+
+TEST_F(OdometryCommand, LeavesMovingPointsOutOfTheMapAndSaysSo) {
+  const cli::Answer found = run({"odometry", path("sim"), "-o", path("poses.txt"), "--drop-moving",
+                                 "--set", "min_range_m=3"});
+  ASSERT_LE(found.exit_code, 1) << found.err;
+  const cli::Answer answer =
+      run({"run", path("sim"), "--odometry", "simple", "--odometry-set", "min_range_m=3",
+           "--drop-moving", "--set", "delay_scans=2", "--out", path("runs")});
+  ASSERT_EQ(answer.exit_code, 0) << answer.err;
+  const ordered_json json = cli::timeless_result(folder_ / "runs" / "08");
+  EXPECT_THAT(std::string(json.at("reading").at("pose_map")), HasSubstr("hmm-mos finds moving"));
+  EXPECT_THAT(std::string(json.at("reading").at("pose_map")), HasSubstr("delay_scans=0"));
+  EXPECT_EQ(run({"run", path("sim"), "--drop-moving", "--out", path("runs")}).exit_code, 2);
+  const cli::Answer votes =
+      run({"run", path("sim"), "--odometry", "simple", "--drop-moving", "--method", "underwood",
+           "--set", "delay_scans=5,min_votes=2", "--out", path("votes")});
+  EXPECT_EQ(votes.exit_code, 2);
+  EXPECT_THAT(votes.err, HasSubstr("--drop-moving: needs method underwood with delay_scans=0"));
+}
+
+TEST_F(OdometryCommand, GivesAConversionItsPoses) {
+  ASSERT_LE(run({"odometry", path("sim"), "-o", path("poses.txt")}).exit_code, 1);
+  const cli::Answer answer = run({"convert", path("sim"), "--odometry", "simple", "--layout",
+                                  "semantickitti", "--out", path("posed")});
+  ASSERT_EQ(answer.exit_code, 0) << answer.err;
+  EXPECT_THAT(answer.err, HasSubstr("poses found by SiMpLE"));
+  const auto expected = read_poses(path("poses.txt"));
+  const auto written = read_poses(folder_ / "posed" / "sequences" / "08" / "poses.txt");
+  ASSERT_EQ(written.size(), 8u);
+  for (std::size_t k = 0; k < 8; ++k) EXPECT_TRUE(written[k].isApprox(expected[k], 1e-9));
+  EXPECT_GT(written.back().translation().norm(), 1.0);
+}
+
+TEST_F(OdometryCommand, LabelsTheScansOfAFolderWithNothingButABag) {
+  ASSERT_EQ(run({"convert", path("sim"), "--poses", truth_.string(), "--layout", "doals-bag",
+                 "--out", path("bags")})
+                .exit_code,
+            0);
+  std::filesystem::path bag;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder_ / "bags")) {
+    if (entry.path().extension() == ".bag") bag = entry.path();
+  }
+  ASSERT_FALSE(bag.empty());
+  std::filesystem::create_directory(folder_ / "mine");
+  std::filesystem::rename(bag, folder_ / "mine" / "drive.bag");
+  const cli::Answer answer =
+      run({"run", path("mine"), "--odometry", "simple", "--out", path("runs")});
+  ASSERT_EQ(answer.exit_code, 0) << answer.err;
+  EXPECT_EQ(read_poses(folder_ / "runs" / "mine" / "poses.txt").size(), 8u);
+  // The bag itself is the same sequence, and its own poses are there to compare with.
+  ASSERT_EQ(run({"run", path("mine/drive.bag"), "--odometry", "simple", "--out", path("other")})
+                .exit_code,
+            0);
+  EXPECT_EQ(cli::contents(folder_ / "other/drive/labels"),
+            cli::contents(folder_ / "runs/mine/labels"));
+  EXPECT_EQ(run({"report", path("other"), "-o", path("report.html")}).exit_code, 0);
+  EXPECT_LE(run({"doctor", path("mine/drive.bag")}).exit_code, 1);
+  const cli::Answer score = run({"trajectory", path("other"), "--truth", path("mine/drive.bag"),
+                                 "--align", "origin", "--json"});
+  ASSERT_EQ(score.exit_code, 0) << score.err;
+  const ordered_json error = ordered_json::parse(score.out).at("sequences")[0].at("absolute");
+  EXPECT_LT(error.at("translation_m").at("max"), 0.3);
+  const cli::Answer none = run({"run", path("mine/none.bag"), "--out", path("other")});
+  EXPECT_EQ(none.exit_code, 3);
+  EXPECT_THAT(none.err, HasSubstr("or a .bag file"));
 }
 
 TEST_F(OdometryCommand, IsRefusedNextToAPoseFileAndWithoutAName) {

@@ -1,8 +1,11 @@
 // What users give in place of predictions, or say wrongly about them.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
+#include <cstring>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tests/cli/program.hpp"
@@ -28,8 +31,34 @@ class PredictionMistakes : public testing::Test {
     return cli::run(words);
   }
 
+  /// Writes labels of 6 scans, of which `id_of` gives each, by scan and whether the point moves.
+  template <typename IdOf>
+  fs::path write_ids(const std::string& name, const IdOf& id_of) const {
+    for (std::size_t k = 0; k < 6; ++k) {
+      const std::string file = cli::stem(k) + ".label";
+      auto labels = read_labels(folder_ / "room/labels" / file, cli::kPointsPerScan);
+      for (std::uint32_t& label : labels) label = id_of(k, label == kMovingLabel);
+      write_labels(folder_ / name / file, labels);
+    }
+    return folder_ / name;
+  }
+
   TempFolder folder_;
 };
+
+TEST_F(PredictionMistakes, APipeIsRefusedWithoutWaitingForIt) {
+  fs::create_directories(folder_ / "pipes");
+  for (const char* name : {"indices.csv", "clouds.csv", "room.txt"}) {
+    const fs::path pipe = folder_ / "pipes" / name;
+    ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+    for (const fs::path& given : {pipe.parent_path(), pipe}) {
+      const cli::Answer answer = score(given);
+      EXPECT_EQ(answer.exit_code, 3) << given;
+      EXPECT_THAT(answer.err, HasSubstr("pipes"));
+    }
+    fs::remove(pipe);
+  }
+}
 
 TEST_F(PredictionMistakes, AMaskThatFitsNoScanIsRefusedWithItsCounts) {
   for (const char* mask : {"4,20", "500,600"}) {
@@ -78,6 +107,89 @@ TEST_F(PredictionMistakes, AFaultyFileIsReportedOnce) {
   EXPECT_THAT(answer.out, HasSubstr("000003.label: has 100 bytes"));
   EXPECT_THAT(answer.out, Not(HasSubstr("000003.label: is not there")));
   EXPECT_THAT(answer.out, HasSubstr("INCOMPLETE: 1 scans"));
+}
+
+// The five scans in the middle of the sequence have only zeros.
+TEST_F(PredictionMistakes, ClassesAreRecognisedInTheFirstScanAlone) {
+  const auto in_first = [](std::uint32_t id) {
+    return [id](std::size_t k, bool moving) { return k == 0 && moving ? id : 0U; };
+  };
+  const cli::Answer binary = score(write_ids("binary", in_first(1)));
+  EXPECT_EQ(binary.exit_code, 3);
+  EXPECT_THAT(binary.err, HasSubstr("binary: holds no other ids than 0 and 1"));
+  const cli::Answer classes = score(write_ids("classes", in_first(2)));
+  EXPECT_EQ(classes.exit_code, 0) << classes.err;
+  EXPECT_THAT(classes.out, HasSubstr("taken for a network's classes"));
+  EXPECT_THAT(classes.out, Not(HasSubstr("no point is predicted moving")));
+}
+
+TEST_F(PredictionMistakes, AnIdOutsideTheIdMapIsRefusedWithItsCount) {
+  const fs::path odd =
+      write_ids("odd", [](std::size_t k, bool moving) { return k == 4 && moving ? 7U : 1U; });
+  const cli::Answer answer = score(odd, {"--id-map", "0:0,1:9,2:251"});
+  EXPECT_EQ(answer.exit_code, 3);
+  EXPECT_THAT(answer.err, testing::ContainsRegex("000004.label: holds id 7 \\([0-9]+ points in all "
+                                                 "files\\), expected only ids that the id map "
+                                                 "names: 0, 1, 2 \\(read in format label"));
+}
+
+TEST_F(PredictionMistakes, IdsOfWhichNoneIsMovingAreListed) {
+  const cli::Answer roads =
+      score(write_ids("roads", [](std::size_t, bool moving) { return moving ? 10U : 40U; }));
+  EXPECT_EQ(roads.exit_code, 0) << roads.err;
+  EXPECT_THAT(roads.out,
+              testing::ContainsRegex("no point is predicted moving; the files hold ids 10 "
+                                     "\\([0-9,]+ points\\), 40 \\([0-9,]+ points\\); "
+                                     "under protocol semantickitti-mos ids 251 to 25"));
+  const cli::Answer swapped =
+      score(write_ids("swapped", [](std::size_t, bool moving) { return moving ? 9U : 251U; }));
+  EXPECT_EQ(swapped.exit_code, 0);
+  EXPECT_THAT(swapped.out, HasSubstr("% of the points are predicted moving; the files hold ids 9"));
+  EXPECT_THAT(score(folder_ / "room/../mine").out, Not(HasSubstr("predicted moving")));
+}
+
+TEST_F(PredictionMistakes, LabelsOfAnotherEncodingAreRefusedByName) {
+  const auto float_of = [](float number) {
+    std::uint32_t bits = 0;
+    std::memcpy(&bits, &number, sizeof(bits));
+    return bits;
+  };
+  for (const auto& [standing, moving] :
+       {std::pair{0.0F, 1.0F}, std::pair{9.0F, 251.0F}, std::pair{0.125F, 0.875F}}) {
+    const fs::path floats = write_ids(
+        "floats", [&](std::size_t, bool moves) { return float_of(moves ? moving : standing); });
+    const cli::Answer answer = score(floats);
+    EXPECT_EQ(answer.exit_code, 3);
+    EXPECT_THAT(answer.err, HasSubstr("000000.label: holds float32, expected a little-endian"));
+  }
+  const fs::path reversed = write_ids(
+      "reversed", [](std::size_t, bool moving) { return moving ? 0xFB000000U : 0x09000000U; });
+  EXPECT_THAT(score(reversed).err, HasSubstr("000000.label: holds big-endian uint32"));
+  const fs::path reversed_instances = write_ids("reversed_instances", [](std::size_t, bool moving) {
+    return moving ? 0xFB000300U : 0x09000000U;
+  });
+  EXPECT_THAT(score(reversed_instances).err, HasSubstr("000000.label: holds big-endian uint32"));
+  // Instances of unlabelled points are legal.
+  const fs::path instances =
+      write_ids("instances", [](std::size_t, bool moving) { return moving ? 3U << 16U : 0U; });
+  EXPECT_EQ(score(instances).exit_code, 0);
+}
+
+TEST_F(PredictionMistakes, AFolderThatDoesNotExistIsSaidToBeSo) {
+  const cli::Answer answer = score(folder_ / "nowhere");
+  EXPECT_EQ(answer.exit_code, 3);
+  EXPECT_THAT(answer.err, HasSubstr("nowhere: does not exist, expected a folder or file of pred"));
+}
+
+TEST_F(PredictionMistakes, MissingFilesAreToldAsOneRange) {
+  for (const char* name : {"000001.label", "000002.label", "000003.label", "000005.label"})
+    fs::remove(folder_ / "mine" / name);
+  const cli::Answer answer = score(folder_ / "mine", {"--allow-missing"});
+  ASSERT_EQ(answer.exit_code, 0) << answer.err;
+  EXPECT_THAT(answer.out,
+              HasSubstr("000001.label: is not there, nor what follows up to 000003.label"));
+  EXPECT_THAT(answer.out, HasSubstr("000005.label: is not there, expected"));
+  EXPECT_THAT(answer.out, Not(HasSubstr("000002.label")));
 }
 
 }  // namespace

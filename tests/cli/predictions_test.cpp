@@ -11,6 +11,7 @@
 #include "datasets/files/bin_file.hpp"
 #include "datasets/files/label_file.hpp"
 #include "datasets/files/pcd_file.hpp"
+#include "datasets/files/times_file.hpp"
 #include "tests/cli/program.hpp"
 #include "tests/cli/small_sequence.hpp"
 
@@ -43,6 +44,15 @@ class PredictionsTest : public testing::Test {
       labels[i] = labels[i] == kMovingLabel ? kStaticLabel : kMovingLabel;
     }
     return labels;
+  }
+
+  static std::int64_t stamp_ns(std::size_t k) {
+    return 1582000000000000000 + 100000000 * static_cast<std::int64_t>(k);
+  }
+  void give_stamps() const {
+    std::vector<std::int64_t> stamps_ns;
+    for (std::size_t k = 0; k < kScans; ++k) stamps_ns.push_back(stamp_ns(k));
+    write_times(folder_ / "room/times.txt", stamps_ns);
   }
 
   void write(const std::string& folder, const std::function<std::string(std::string)>& name,
@@ -189,6 +199,7 @@ TEST_F(PredictionsTest, InOneFileGiveTheSameNumbers) {
 }
 
 TEST_F(PredictionsTest, OfDynabloxAreReadAtEachLevelAndItsOwnCountsTaken) {
+  give_stamps();
   std::string clouds =
       "CloudNo,X,Y,Z,Distance,PointDynamic,ClusterDynamic,ObjectDynamic,GTDynamic,"
       "ReadyForEvaluation,ClusterID\n";
@@ -200,11 +211,14 @@ TEST_F(PredictionsTest, OfDynabloxAreReadAtEachLevelAndItsOwnCountsTaken) {
       const std::string moving = label == kMovingLabel ? "1" : "0";
       clouds += std::to_string(k) + ",1.5,-2,0,3.25,0," + moving + ",0,0,1,-1\n";
     }
-    scores +=
-        std::to_string(k) + ",0.5,0.5,0.5,0,8640,0,0,0.5,0.5,0.5,0,8640,0,0,0.5,1,0.5,7,8600,";
+    scores += std::to_string(stamp_ns(k)) +
+              ",0.5,0.5,0.5,0,8640,0,0,0.5,0.5,0.5,0,8640,0,0,0.5,1,0.5,7,8600,";
     scores += "0,7,8614,8640\n";
   }
   folder_.write("dynablox/clouds.csv", clouds);
+  EXPECT_THAT(score(folder_ / "dynablox").err,
+              HasSubstr("scores.csv: does not exist, expected the stamps of the clouds"));
+  folder_.write("dynablox/scores.csv", scores);
   const cli::Answer cluster = score(folder_ / "dynablox", {"--level", "cluster"});
   ASSERT_EQ(cluster.exit_code, 0) << cluster.err;
   EXPECT_EQ(summary(cluster), expected_);
@@ -212,14 +226,57 @@ TEST_F(PredictionsTest, OfDynabloxAreReadAtEachLevelAndItsOwnCountsTaken) {
   EXPECT_EQ(summary(score(folder_ / "dynablox")).at("tp"), 0) << "object level is the default";
 
   folder_.write("scores/scores.csv", scores);
-  const cli::Answer counted = score(folder_ / "scores");
+  const cli::Answer counted = score(folder_ / "scores", {"--protocol", "doals-dynablox"});
   ASSERT_EQ(counted.exit_code, 0) << counted.err;
   EXPECT_EQ(summary(counted).at("tp"), 7 * kScans);
   EXPECT_EQ(summary(counted).at("iou"), 0.5);
   EXPECT_EQ(format(counted), "dynablox-scores");
 
+  for (const std::vector<std::string>& other : std::vector<std::vector<std::string>>{
+           {"--protocol", "mapmos", "--range", "0,3"},
+           {"--protocol", "all"},
+           {"--protocol", "doals-hmm"},
+           {"--protocol", "doals-dynablox", "--range", "0.5,30"}}) {
+    const cli::Answer refused = score(folder_ / "scores", other);
+    EXPECT_EQ(refused.exit_code, 2);
+    EXPECT_THAT(refused.err,
+                HasSubstr("scores.csv holds counts by protocol doals-dynablox at 0.5 to 20 m"));
+  }
+
   folder_.write("dynablox/clouds.csv", clouds.substr(0, clouds.rfind("7,1.5")));
   EXPECT_THAT(score(folder_ / "dynablox").err, HasSubstr("has 8639 points in cloud 7"));
+}
+
+/// All sequences of DOALS have ten labelled scans of as many points.
+TEST_F(PredictionsTest, OfDynabloxForAnotherSequenceAreRefused) {
+  std::string scores = "timestamp,EvaluatedPoints,TotalPoints\n";
+  std::string counted = "timestamp,p,p,p,p,p,p,p,c,c,c,c,c,c,c,o,o,o,o,o,o,o,EvaluatedPoints,T\n";
+  std::string clouds = "CloudNo,ObjectDynamic\n";
+  for (std::size_t k = 0; k < kScans; ++k) {
+    const std::string stamp = std::to_string(k == 3 ? 7 : stamp_ns(k));
+    scores += stamp + ",8640,8640\n";
+    counted += stamp + ",1,1,1,0,8640,0,0,1,1,1,0,8640,0,0,1,1,1,0,8640,0,0,8640,8640\n";
+    for (std::size_t i = 0; i < cli::kPointsPerScan; ++i) clouds += std::to_string(k) + ",0\n";
+  }
+  folder_.write("clouds/clouds.csv", clouds);
+  folder_.write("clouds/scores.csv", scores);
+  folder_.write("scores/scores.csv", counted);
+  const auto error_of = [&](const char* folder) {
+    const cli::Answer answer = score(folder_ / folder, {"--protocol", "doals-dynablox"});
+    EXPECT_EQ(answer.exit_code, 3);
+    return answer.err;
+  };
+  for (const char* folder : {"clouds", "scores"}) {
+    EXPECT_THAT(error_of(folder), HasSubstr("scores.csv: cannot be compared with sequence room"));
+  }
+  give_stamps();
+  for (const char* folder : {"clouds", "scores"}) {
+    EXPECT_THAT(error_of(folder),
+                HasSubstr("scores.csv:5: has stamp 7, expected that of labelled scan 000003, "
+                          "1582000000300000000"));
+  }
+  folder_.write("clouds/scores.csv", scores.substr(0, scores.rfind("15820")));
+  EXPECT_THAT(error_of("clouds"), HasSubstr("expected that of labelled scan 000003"));
 }
 
 TEST_F(PredictionsTest, NamedByPositionAreRecognised) {
@@ -283,7 +340,7 @@ TEST_F(PredictionsTest, WithClassNumbersAreMappedOrRefused) {
   classes("binary", 0, 1);
   EXPECT_THAT(score(folder_ / "binary").err, HasSubstr("holds no other ids than 0 and 1"));
   EXPECT_EQ(summary(score(folder_ / "binary", {"--id-map", "0:9,1:251"})), expected_);
-  EXPECT_THAT(score(folder_ / "binary", {"--id-map", "1:251"}).err, HasSubstr("has id 0"));
+  EXPECT_THAT(score(folder_ / "binary", {"--id-map", "1:251"}).err, HasSubstr("holds id 0"));
   EXPECT_EQ(score(folder_ / "binary", {"--id-map", "1=251"}).exit_code, 2);
 }
 
@@ -371,6 +428,53 @@ TEST_F(PredictionsTest, GiveTheSameResultFileForAnyNumberOfThreads) {
     ASSERT_EQ(score(folder_ / "labels", more).exit_code, 0);
   }
   EXPECT_EQ(read_file(folder_ / "1/room/result.json"), read_file(folder_ / "3/room/result.json"));
+}
+
+/// A .npy file of float32 numbers.
+std::string npy(const std::vector<float>& numbers) {
+  std::string header = "{'descr': '<f4', 'fortran_order': False, 'shape': (" +
+                       std::to_string(numbers.size()) + ",), }";
+  header.resize(118, ' ');
+  header.back() = '\n';
+  std::string bytes = "\x93NUMPY";
+  bytes += {'\1', '\0', static_cast<char>(header.size()), '\0'};
+  bytes += header;
+  return bytes.append(reinterpret_cast<const char*>(numbers.data()),
+                      numbers.size() * sizeof(float));
+}
+
+std::string confidences(const std::vector<std::uint32_t>& labels) {
+  std::vector<float> numbers;
+  for (const std::uint32_t label : labels) numbers.push_back(label == kMovingLabel ? 0.7F : 0.5F);
+  return npy(numbers);
+}
+
+TEST_F(PredictionsTest, OfConfidencesAreMovingAboveOneHalf) {
+  const auto file_of = [](const std::string& stem) { return stem + ".npy"; };
+  write("confident", file_of, confidences);
+  EXPECT_EQ(summary(score(folder_ / "confident")), expected_);
+  EXPECT_EQ(format(score(folder_ / "confident")), "npy");
+  // As 4DMOS leaves them: a folder per scan, with what it says of earlier scans as well.
+  write(
+      "4dmos/confidences/room",
+      [](const std::string& stem) { return stem + "/" + stem + "_dt_1e-01.npy"; }, confidences);
+  for (std::size_t k = 1; k < kScans; ++k) {
+    const std::string earlier = cli::stem(k) + "/" + cli::stem(k - 1) + "_dt_1e-01.npy";
+    write_file_atomic(folder_ / "4dmos/confidences/room" / earlier, npy({0.9F}));
+  }
+  EXPECT_EQ(summary(score(folder_ / "4dmos")), expected_);
+  write_file_atomic(folder_ / "confident/000003.npy", npy({0.5F, 1.5F}));
+  EXPECT_THAT(score(folder_ / "confident").err,
+              HasSubstr("000003.npy: holds 2 numbers, expected one for each of the 8640 points"));
+  write_file_atomic(folder_ / "confident/000003.npy", "no array");
+  EXPECT_THAT(score(folder_ / "confident").err, HasSubstr("000003.npy: is no .npy file"));
+}
+
+TEST_F(PredictionsTest, NamedByPositionMayHaveNoLeadingZeros) {
+  write(
+      "short", [](const std::string& stem) { return std::to_string(std::stoi(stem)) + ".label"; },
+      [](const auto& labels) { return std::string(format_labels(labels)); });
+  EXPECT_EQ(summary(score(folder_ / "short", {"--format", "label-index"})), expected_);
 }
 
 }  // namespace

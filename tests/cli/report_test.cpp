@@ -47,6 +47,38 @@ TEST(Report, HoldsTheResultAndAllScansThatFit) {
   EXPECT_EQ(content.at("clouds").at(0).at("left_out"), "");
 }
 
+TEST(Report, HoldsTheWayOfTheSensorAndHowFarOtherPosesAreOffThoseOfTheDataSet) {
+  const TempFolder folder;
+  cli::write_small_sequence(folder / "room/00", 4);
+  // A camera's poses, as Tr says: its x ahead is the lidar's y.
+  write_file_atomic(folder / "room/00/calib.txt", "Tr: 0 1 0 0 -1 0 0 0 0 0 1 0\n");
+  std::vector<Pose> own(4, Pose::Identity()), drifting(4, Pose::Identity());
+  for (int k = 0; k < 4; ++k) {
+    own[static_cast<std::size_t>(k)].translation().x() = 0.3 * k;
+    drifting[static_cast<std::size_t>(k)].translation() = Eigen::Vector3d(7, 0.3 * k, 0.1 * k);
+  }
+  write_poses(folder / "room/00/poses.txt", own);
+  write_poses(folder / "drifting.txt", drifting);
+  const auto run = [&](const char* out, std::vector<std::string> poses) {
+    std::vector<std::string> words = {"run", folder / "room/00", "--out", folder / out};
+    words.insert(words.end(), poses.begin(), poses.end());
+    ASSERT_EQ(cli::run(words).exit_code, 0);
+  };
+  run("own", {});
+  run("other", {"--poses", folder / "drifting.txt", "--pose-frame", "lidar"});
+  const auto answer =
+      cli::run({"report", folder / "own", folder / "other", "-o", folder / "r.html"});
+  ASSERT_EQ(answer.exit_code, 0) << answer.err;
+  const auto results = content_of(read_file(folder / "r.html")).at("results");
+  const auto way = nlohmann::ordered_json::parse("[[0,0],[0,0.3],[0,0.6],[0,0.9]]");
+  EXPECT_EQ(results.at(0).at("path"), nlohmann::ordered_json({{"run_m", way}}));
+  const auto& other = results.at(1).at("path");
+  EXPECT_EQ(other.at("run_m"), way);
+  EXPECT_EQ(other.at("own_m"), way);
+  EXPECT_EQ(other.at("way_m"), nlohmann::ordered_json({0.0, 0.3, 0.6, 0.9}));
+  EXPECT_EQ(other.at("off_m"), nlohmann::ordered_json({0.0, 0.1, 0.2, 0.3}));
+}
+
 TEST(Report, PassesOverWhatKilledRunsLeft) {
   const TempFolder folder;
   for (const char* name : {"00", "00.partial", "00.replaced"}) {

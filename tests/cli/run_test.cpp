@@ -97,6 +97,14 @@ TEST_F(Run, PrintsTheScoresAndWhatItChose) {
   EXPECT_THAT(answer.out, Not(HasSubstr("simulated data")));
 }
 
+TEST_F(Run, SaysNothingOfUnjudgedScansWhereThereAreNone) {
+  std::vector<std::string> words = command("out");
+  words.insert(words.end(), {"--method", "dufomap", "--set", "when=final"});
+  const cli::Answer answer = cli::run(words);
+  ASSERT_EQ(answer.exit_code, 0) << answer.err;
+  EXPECT_THAT(answer.out + answer.err, Not(HasSubstr("without detection")));
+}
+
 TEST_F(Run, RecordsTheEffectiveConfigurationWithTheKeysOfTheParityCases) {
   const cli::Answer answer =
       cli::run(command("out", {"--set", "voxel_size_m=0.3", "delay_scans=2"}));
@@ -212,9 +220,9 @@ TEST_F(Run, RefusesAWrongConfigurationWithExitCode2) {
            {{"--set", "delay_scans=2", "--variant", "release-2025"}, "delay_scans"},
            {{"--config", not_json}, "a.json"},
            {{"--config", array}, "b.json: holds a array"},
-           {{"--config", twice}, "c.json: key \"delay_scans\" appears twice"},
+           {{"--config", twice}, "c.json: key \"delay_scans\" is there twice"},
            {{"--config", wrong_type}, "d.json: delay_scans: \"2\" is not a whole number"},
-           {{"--config", (folder_ / "absent.json").string()}, "absent.json: cannot be read"},
+           {{"--config", (folder_ / "absent.json").string()}, "absent.json: cannot be opened"},
            {{"--preset", "doals-20"}, "nearest: doals-20m"},
            {{"--variant", "paper"}, "expected paper-2024 or release-2025"},
            {{"--dataset", "kitti"}, "expected auto, doals"},

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "datasets/files/folder_lock.hpp"
 #include "tests/cli/program.hpp"
 #include "tests/cli/small_sequence.hpp"
 
@@ -184,6 +185,26 @@ TEST_F(Score, RefusesWhatCannotBeScored) {
   const cli::Answer no_truth = score(folder_ / "out");
   EXPECT_EQ(no_truth.exit_code, 3);
   EXPECT_THAT(no_truth.err, HasSubstr("no scan to score has truth"));
+}
+
+TEST_F(Score, NeverWritesOverARunOrBesideAnotherWriter) {
+  const auto before = cli::contents(folder_ / "out");
+  const std::string run = (folder_ / "out").string();
+  const cli::Answer refused = score(labels(), {"--out", run});
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("was not written by mosbench score"));
+  EXPECT_EQ(cli::contents(folder_ / "out"), before);
+  fs::rename(labels(), folder_ / "mine");
+  EXPECT_EQ(score(folder_ / "mine", {"--out", run}).exit_code, 2) << "nor over its numbers alone";
+
+  const std::string scored = (folder_ / "scored").string();
+  for (int again = 0; again < 2; ++again) {
+    EXPECT_EQ(score(folder_ / "mine", {"--out", scored}).exit_code, 0) << again;
+  }
+  const FolderLock lock(scored);
+  const cli::Answer second = score(folder_ / "mine", {"--out", scored});
+  EXPECT_EQ(second.exit_code, 2);
+  EXPECT_THAT(second.err, HasSubstr("another mosbench is writing there"));
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <memory>
 #include <mosbench/method.hpp>
+#include <optional>
 #include <set>
 #include <stdexcept>
 #include <tuple>
@@ -16,9 +17,9 @@ namespace {
 
 using Voxel = std::tuple<long, long, long>;
 
-/// A scan as voxels, one per point.
+/// A scan as voxels, one per point; none for a point that is not finite.
 struct Voxels : mosbench::Observed {
-  std::vector<Voxel> of_points;
+  std::vector<std::optional<Voxel>> of_points;
 };
 
 class NewVoxels : public mosbench::Method {
@@ -34,8 +35,10 @@ class NewVoxels : public mosbench::Method {
     for (const mosbench::Point& point : points) {
       const Eigen::Vector3d p =
           map_from_sensor * Eigen::Vector3d(point.x, point.y, point.z) / voxel_size_m_;
-      if (!p.allFinite()) throw std::range_error("a coordinate is not finite");
-      voxels->of_points.emplace_back(std::lround(p.x()), std::lround(p.y()), std::lround(p.z()));
+      auto& voxel = voxels->of_points.emplace_back();
+      if (!p.allFinite()) continue;
+      if (p.cwiseAbs().maxCoeff() > 1e9) throw std::range_error("a point is out of reach");
+      voxel.emplace(std::lround(p.x()), std::lround(p.y()), std::lround(p.z()));
     }
     return voxels;
   }
@@ -43,20 +46,30 @@ class NewVoxels : public mosbench::Method {
   std::vector<mosbench::LabelledScan> push(std::unique_ptr<mosbench::Observed> observed) override {
     const auto* voxels = dynamic_cast<const Voxels*>(observed.get());
     if (voxels == nullptr) throw std::logic_error("another method observed this scan");
+    if (finished_) throw std::logic_error("pushed a scan after finish");
     mosbench::LabelledScan scan;
     scan.scan_index = scan_count_++;
     scan.judged = scan.scan_index > 0;  // the first scan has nothing to have moved from
-    for (const Voxel& voxel : voxels->of_points) {
-      const bool moves = scan.judged && !seen_.contains(voxel);
+    for (const auto& voxel : voxels->of_points) {
+      const bool moves = scan.judged && voxel && !seen_.contains(*voxel);
       scan.labels.push_back(moves ? mosbench::kMovingLabel : mosbench::kStaticLabel);
+      scan.nonfinite_points += !voxel;
     }
-    seen_.insert(voxels->of_points.begin(), voxels->of_points.end());
+    for (const auto& voxel : voxels->of_points) {
+      if (voxel) seen_.insert(*voxel);
+    }
     return {scan};
+  }
+
+  std::vector<mosbench::LabelledScan> finish() override {
+    finished_ = true;
+    return {};
   }
 
  private:
   double voxel_size_m_;
   std::size_t scan_count_ = 0;
+  bool finished_ = false;
   std::set<Voxel> seen_;
 };
 

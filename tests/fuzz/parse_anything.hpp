@@ -13,6 +13,7 @@
 #include "datasets/files/moe_labels.hpp"
 #include "datasets/files/pcd_header.hpp"
 #include "datasets/files/ply_file.hpp"
+#include "datasets/files/point_times.hpp"
 #include "datasets/files/pose_file.hpp"
 #include "datasets/files/pose_list.hpp"
 #include "datasets/files/split_file.hpp"
@@ -123,7 +124,12 @@ inline void predictions(std::string_view bytes) {
 }
 
 inline void ply(std::string_view bytes) {
-  require(parse_ply(bytes, "f").size() == ply_point_count(bytes, bytes.size(), "f"));
+  const PlySummary summary = parse_ply_summary(bytes, bytes.size(), "f");
+  require(parse_ply(bytes, "f").size() == summary.points);
+  if (!summary.has_times) return;
+  const auto stored = parse_ply_times(bytes, "f");
+  require(stored.size() == summary.points);
+  require(times_after_stamp_ns(stored, std::nullopt, "f").size() == summary.points);
 }
 
 /// The first byte is the number of points.

@@ -53,7 +53,7 @@ class RealBag : public testing::TestWithParam<const char*> {
 };
 
 TEST_P(RealBag, GivesTheRecordedScansBitForBit) {
-  const BagSequence recording("s", bag(), {.undistort = false});
+  const BagSequence recording("s", bag(), {.deskew = Deskew::kNone});
   const auto& scans = expected_.at("scans");
   ASSERT_GE(scans.size(), 3U);
   ASSERT_EQ(recording.size(), scans.size());
@@ -67,7 +67,7 @@ TEST_P(RealBag, GivesTheRecordedScansBitForBit) {
 }
 
 TEST_P(RealBag, GivesTheRecordedPoses) {
-  const BagSequence recording("s", bag(), {.undistort = false});
+  const BagSequence recording("s", bag(), {.deskew = Deskew::kNone});
   const auto& transforms = expected_.at("tf");
   ASSERT_GE(transforms.size(), 3U);
   for (std::size_t i = 0; i < transforms.size(); ++i) {
@@ -107,7 +107,7 @@ INSTANTIATE_TEST_SUITE_P(Bags, RealBag,
 TEST(RealBagWithTimes, IsUndistortedAndLeavesOutTheScanThatTheTransformsDoNotCover) {
   const auto bag = shared_folder() / "real/rosbag/ouster48_lz4.bag";
   if (!std::filesystem::exists(bag)) GTEST_SKIP() << bag << " is not there";
-  const BagSequence raw("s", bag, {.undistort = false});
+  const BagSequence raw("s", bag, {.deskew = Deskew::kNone});
   const BagSequence recording("s", bag, {});
   ASSERT_EQ(raw.size(), 3U);
   ASSERT_EQ(recording.size(), 2U);

@@ -5,16 +5,11 @@
 
 #include "tests/odometry_scenes.hpp"
 #include "tests/parity_cases.hpp"
+#include "tests/sanitizers.hpp"
 
 /// The poses of SiMpLE's own program on the four sequences of the parity cases.
 namespace mosbench {
 namespace {
-
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kSanitized = true;
-#else
-constexpr bool kSanitized = false;
-#endif
 
 struct Golden {
   const char* sequence;

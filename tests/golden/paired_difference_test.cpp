@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "eval/protocols/confusion.hpp"
-#include "eval/statistics/bootstrap.hpp"
+#include "eval/statistics/intervals.hpp"
 #include "tests/parity_cases.hpp"
 
 namespace mosbench {
@@ -34,8 +34,10 @@ TEST(PairedDifference, OfOnlineAndDelayedLabelsOfRealScansIsFound) {
   const Difference iou = paired_difference(protocol, online, delayed)[Metric::kIou];
   const double expected = aggregate(protocol, delayed)[0] - aggregate(protocol, online)[0];
   EXPECT_DOUBLE_EQ(iou.value.value(), expected);
-  EXPECT_LT(iou.interval->low, expected);
-  EXPECT_GT(iou.interval->high, expected);
+  // Five seconds of one street cannot tell what other streets would show.
+  EXPECT_FALSE(iou.interval);
+  EXPECT_FALSE(iou.p_value);
+  EXPECT_EQ(iou.no_interval, "50 scans, expected at least 100 in a row, or 20 that are 10 s apart");
 }
 
 }  // namespace

@@ -1,24 +1,19 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <string>
 #include <vector>
 
 #include "core/hmm_mos/pipeline.hpp"
 #include "tests/parity_cases.hpp"
+#include "tests/sanitizers.hpp"
 
 /// The labels of every parity case through Pipeline, point for point.
 namespace mosbench::parity {
 namespace {
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kSanitized = true;
-constexpr std::array<unsigned, 1> kThreads = {2};
-#else
-constexpr bool kSanitized = false;
-constexpr std::array<unsigned, 6> kThreads = {1, 2, 7, 1, 2, 7};
-#endif
+const std::vector<unsigned> kThreads =
+    kSanitized ? std::vector<unsigned>{2} : std::vector<unsigned>{1, 2, 7, 1, 2, 7};
 
 /// The labels that one pipeline has released so far against those expected.
 class Comparison {

@@ -26,9 +26,10 @@ TEST(KittiErrors, AreThePublishedOnesToEveryDigit) {
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no folder odometry beside parity";
   for (const PublishedError& published : kPublished) {
     const std::string sequence = published.sequence;
-    const TrajectoryPair pair = read_trajectory_pair(
+    const std::vector<TrajectoryPair> pairs = read_trajectory_pairs(
         folder / ("simple_" + std::string(published.mode) + "_" + sequence + ".txt"),
         folder / ("truth_" + sequence + ".txt"), {});
+    const TrajectoryPair& pair = pairs.front();
     const auto mean = mean_of(segment_errors(pair.truth, pair.estimate, kitti_segments()));
     ASSERT_TRUE(mean);
     EXPECT_EQ(fmt::format("{:.6g}", 100 * mean->translation), published.translation_percent);

@@ -29,6 +29,8 @@ test('strings of result.json stay text wherever they are shown', async () => {
   mkdirSync(hostile);
   const result = poisoned(JSON.parse(readFileSync(join(run, '06/result.json'), 'utf8')));
   result.config['<b onclick=1>'] = EVIL;
+  // The program refuses a name that leads through folders.
+  result.sequence = EVIL.replaceAll('/', '');
   writeFileSync(join(hostile, 'result.json'), JSON.stringify(result));
   const file = join(folder, 'hostile.html');
   mosbench('report', hostile, '-o', file, '--scans', 'none');

@@ -44,6 +44,12 @@ export function simulatedRuns(folder, scans = 24) {
   return [join(folder, 'online'), join(folder, 'delayed')];
 }
 
+/** A third run of the same scans, with poses that odometry finds. */
+export function runWithFoundPoses(folder) {
+  mosbench('run', join(folder, 'sim'), '--odometry', 'simple', '--out', join(folder, 'found'));
+  return join(folder, 'found');
+}
+
 /** The folder of KITTI's drive 0005 as the golden tests unpack it; null where it is not there. */
 export function realSequence() {
   const shared = process.env.MOSBENCH_SHARED ?? resolve(MOSBENCH_SOURCE_DIR, '../shared');

@@ -5,7 +5,7 @@ import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { DESKTOP, PHONE, openBrowser, openReport, refuseComplaints, settled } from './browser.mjs';
 import { assertLooksLikeKept } from './pictures.mjs';
-import { artefacts, freshFolder, mosbench, resultOf, scoresOf, simulatedRuns } from './reports.mjs';
+import { artefacts, freshFolder, mosbench, resultOf, runWithFoundPoses, scoresOf, simulatedRuns } from './reports.mjs';
 
 const folder = freshFolder();
 const both = join(folder, 'both.html');
@@ -128,6 +128,10 @@ test('intervals, ranges, objects and protocols are those that the program tells'
   const answer = (...args) => JSON.parse(mosbench(...args, '--json'));
   const [run, dataset] = [join(folder, 'online'), join(folder, 'sim')];
   assert.deepEqual(content.estimates.iou, answer('stats', run).sequences[0].metrics.iou);
+  const why = content.estimates.iou.no_interval;
+  assert.ok(why, 'so few scans have no interval');
+  assert.ok((await page.locator('.tiles').textContent()).includes(`no interval: ${why}`));
+  assert.equal(await page.getByTitle(`no interval: ${why}`).first().textContent(), `${(100 * content.estimates.iou.value).toFixed(1)} % no interval`);
   const breakdown = answer('breakdown', dataset, '--predictions', run, '--top', '50').sequences[0];
   assert.deepEqual(content.breakdown, breakdown);
   const own = content.protocols.find(({ name }) => name === online.protocol.name);
@@ -138,6 +142,28 @@ test('intervals, ranges, objects and protocols are those that the program tells'
   const objects = await page.evaluate(() => mosbenchReport.charts.numbers('objects'));
   assert.deepEqual([...objects.recall].sort(), breakdown.objects.map(({ recall }) => recall).sort());
   assert.ok(await page.getByText('Worst objects').isVisible());
+  refuseComplaints(page);
+});
+
+test('the way of the sensor stands beside that of the data set, with the distance over the way driven', async () => {
+  const report = join(folder, 'found.html');
+  mosbench('report', join(folder, 'online'), runWithFoundPoses(folder), '-o', report, '--scans', '0-2');
+  const page = await openReport(browser, report, { viewport: { width: 700, height: 640 } });
+  const numbers = (key) => page.evaluate((k) => mosbenchReport.charts.numbers(k), key);
+  const scores = JSON.parse(mosbench('trajectory', join(folder, 'found'), '--truth', join(folder, 'sim'), '--align', 'origin', '--json', '--per-pose'));
+  const off = scores.sequences[0].per_pose.translation_m.map((m) => Math.round(1000 * m) / 1000);
+  assert.ok(Math.max(...off) > 0, 'odometry is not exact');
+  assert.deepEqual(await numbers('drift'), { found: off });
+  const both_paths = await numbers('path');
+  assert.deepEqual(Object.keys(both_paths), ['poses of the data set', 'online', 'found']);
+  assert.deepEqual(both_paths.online, both_paths['poses of the data set']);
+  assert.equal(await page.locator('[data-chart=path] polyline').count(), 3);
+  const dot = () => page.locator('[data-chart=path] circle').first().evaluate((c) => [c.getAttribute('cx'), -c.getAttribute('cy')].map(Number));
+  await page.evaluate(() => mosbenchReport.transport.go(2));
+  assert.deepEqual(await dot(), both_paths.online[2]);
+  await assertLooksLikeKept(browser, 'path', await page.locator('[data-chart=path]').screenshot());
+  await page.selectOption('[aria-label="charts beside"]', '');
+  assert.equal(await numbers('drift'), null);
   refuseComplaints(page);
 });
 

@@ -14,12 +14,9 @@ namespace {
 
 constexpr Variant kVariants[] = {Variant::kPaper2024, Variant::kRelease2025};
 
-Config small_config() {
-  Config config;
+Config finer_config() {
+  Config config = small_world_config();
   config.voxel_size_m = 0.25;
-  config.min_range_m = 0.3;
-  config.max_range_m = 5.0;
-  config.kernel_width_voxels = 3;
   config.min_otsu_score = 1;
   return config;
 }
@@ -29,9 +26,9 @@ TEST(StaticWorld, HasNoMovingPointForAStaticNoiselessSensor) {
     const SmallWorld world = small_world(
         {.seed = seed, .scans = 25, .moving_boxes = 0, .jitter_rad = 0.0, .walk_m = 0.0});
     for (const Variant variant : kVariants) {
-      EXPECT_EQ(moving_points(labels_of(world, small_config(), variant)), 0U);
+      EXPECT_EQ(moving_points(labels_of(world, finer_config(), variant)), 0U);
     }
-    Config delayed = small_config();
+    Config delayed = finer_config();
     delayed.delay_scans = 4;
     EXPECT_EQ(moving_points(labels_of(world, delayed, Variant::kPaper2024, 1, 25)), 0U);
   }
@@ -58,7 +55,7 @@ TEST(WholeVoxelTranslation, ChangesNoLabel) {
   for (unsigned seed = 10; seed < 16; ++seed) {
     SmallWorld world = on_a_lattice(small_world({.seed = seed}));
     for (const Variant variant : kVariants) {
-      const auto expected = labels_of(world, small_config(), variant);
+      const auto expected = labels_of(world, finer_config(), variant);
       moving += moving_points(expected);
       // Whole blocks of eight voxels, odd numbers of voxels, across the origin.
       for (const Eigen::Vector3d& voxels :
@@ -66,7 +63,7 @@ TEST(WholeVoxelTranslation, ChangesNoLabel) {
             Eigen::Vector3d{1, -3, 5}, Eigen::Vector3d{-1001, 7, -13}}) {
         SmallWorld moved = world;
         for (Pose& pose : moved.poses) pose.translation() += voxels * 0.25;
-        ASSERT_EQ(labels_of(moved, small_config(), variant), expected);
+        ASSERT_EQ(labels_of(moved, finer_config(), variant), expected);
       }
     }
   }
@@ -88,8 +85,8 @@ TEST(PointOrder, PermutesLabelsAndChangesNoneOfThem) {
       for (std::size_t i = 0; i < order.size(); ++i) scan[i] = original[order[i]];
     }
     for (const Variant variant : kVariants) {
-      const auto expected = labels_of(world, small_config(), variant);
-      const auto labels = labels_of(shuffled, small_config(), variant, 3);
+      const auto expected = labels_of(world, finer_config(), variant);
+      const auto labels = labels_of(shuffled, finer_config(), variant, 3);
       moving += moving_points(expected);
       for (std::size_t k = 0; k < labels.size(); ++k) {
         for (std::size_t i = 0; i < labels[k].size(); ++i) {
@@ -110,8 +107,8 @@ TEST(RepeatedPoints, ChangeNoLabel) {
       const std::vector<Point> once = scan;
       scan.insert(scan.end(), once.begin(), once.end());
     }
-    const auto expected = labels_of(world, small_config(), Variant::kPaper2024);
-    const auto labels = labels_of(doubled, small_config(), Variant::kPaper2024);
+    const auto expected = labels_of(world, finer_config(), Variant::kPaper2024);
+    const auto labels = labels_of(doubled, finer_config(), Variant::kPaper2024);
     moving += moving_points(expected);
     for (std::size_t k = 0; k < labels.size(); ++k) {
       auto twice = expected[k];
@@ -127,10 +124,10 @@ TEST(ThreadCountAndRepetition, ChangeNothing) {
   for (unsigned seed = 30; seed < 34; ++seed) {
     const SmallWorld world = small_world({.seed = seed, .azimuths = 60, .elevations = 30});
     for (const Variant variant : kVariants) {
-      const auto expected = labels_of(world, small_config(), variant, 1);
+      const auto expected = labels_of(world, finer_config(), variant, 1);
       moving += moving_points(expected);
       for (const unsigned threads : {1U, 2U, 7U}) {
-        ASSERT_EQ(labels_of(world, small_config(), variant, threads), expected);
+        ASSERT_EQ(labels_of(world, finer_config(), variant, threads), expected);
       }
     }
   }
@@ -139,7 +136,7 @@ TEST(ThreadCountAndRepetition, ChangeNothing) {
 
 TEST(Labels, AreStaticOrMovingForEveryPointOfEveryScan) {
   const SmallWorld world = small_world({.seed = 40, .scans = 30, .defects = true});
-  const auto labels = labels_of(world, small_config(), Variant::kPaper2024);
+  const auto labels = labels_of(world, finer_config(), Variant::kPaper2024);
   ASSERT_EQ(labels.size(), world.scans.size());
   for (std::size_t k = 0; k < labels.size(); ++k) {
     ASSERT_EQ(labels[k].size(), world.scans[k].size());
@@ -152,7 +149,7 @@ TEST(Labels, AreStaticOrMovingForEveryPointOfEveryScan) {
 /// A sensor that goes on for ever past walls that repeat: what lies behind has to be given back.
 TEST(Memory, StaysBoundedOverTwoThousandScans) {
   for (const Variant variant : kVariants) {
-    Config config = small_config();
+    Config config = finer_config();
     config.voxel_size_m = 0.4;
     config.max_range_m = 2.5;
     config.global_window_scans = 60;
@@ -172,15 +169,15 @@ TEST(Memory, StaysBoundedOverTwoThousandScans) {
       pipeline.push(world.scans[k % 100], pose);
       std::size_t& blocks = k < 400 ? blocks_early : blocks_late;
       std::size_t& bytes = k < 400 ? bytes_early : bytes_late;
-      blocks = std::max(blocks, pipeline.memory().map_blocks);
-      bytes = std::max(bytes, pipeline.memory().bytes);
+      blocks = std::max(blocks, pipeline.memory()->map_blocks);
+      bytes = std::max(bytes, pipeline.memory()->bytes);
     }
     EXPECT_GT(blocks_early, 8U);
     EXPECT_LE(blocks_late, blocks_early + blocks_early / 4);
     EXPECT_LE(bytes_late, bytes_early + bytes_early / 4);
     // Once nothing is seen for longer than w_g, the map is empty again.
     for (std::size_t k = 0; k < 100; ++k) pipeline.push({}, world.poses[0]);
-    EXPECT_EQ(pipeline.memory().map_blocks, 0U);
+    EXPECT_EQ(pipeline.memory()->map_blocks, 0U);
   }
 }
 

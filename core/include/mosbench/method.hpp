@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <mosbench/scan.hpp>
 #include <mosbench/settings.hpp>
@@ -27,10 +28,13 @@ struct LabelledScan {
   std::size_t scan_index = 0;         ///< counts pushed scans from 0
   std::vector<std::uint32_t> labels;  ///< kStaticLabel or kMovingLabel, one per pushed point
   std::vector<float> scores;          ///< larger: more likely to move; empty unless asked for
-  std::optional<double> threshold;    ///< that the scores were compared with, if there is one
-  bool judged = false;                ///< false: too little past or future, all points are static
-  std::size_t nonfinite_points = 0;   ///< NaN or infinite: left out and labelled static
-  std::vector<StageTime> stages;      ///< in the order in which they ran; a name may recur
+  /// Number of the moving object that each point belongs to, from 1 and the same in all scans, 0
+  /// for none; empty when the method finds no objects.
+  std::vector<std::uint32_t> objects;
+  std::optional<double> threshold;   ///< that the scores were compared with, if there is one
+  bool judged = false;               ///< false: too little past or future, all points are static
+  std::size_t nonfinite_points = 0;  ///< NaN or infinite: left out and labelled static
+  std::vector<StageTime> stages;     ///< in the order in which they ran; a name may recur
 };
 
 /// A scan after the work that needs no scans before it. What is in it is known to its method alone.
@@ -71,14 +75,14 @@ class Method {
   /// Returns the labels still held back by a delay, in order. Nothing can be pushed after it.
   virtual std::vector<LabelledScan> finish() { return {}; }
 
-  /// To be asked while no scan is observed.
-  virtual MemoryUse memory() const { return {}; }
+  /// Returns nullopt when the method does not measure it. To be asked while no scan is observed.
+  virtual std::optional<MemoryUse> memory() const { return std::nullopt; }
 
   /// Returns what a reader of the labels should know about them, in plain sentences.
   virtual std::vector<std::string> remarks() const { return {}; }
 };
 
-/// Under which conditions a method runs. Labels depend on scan_count alone.
+/// Under which conditions a method runs. Labels depend on scan_count and stamps_ns alone.
 struct RunContext {
   unsigned threads = 1;  ///< at least 1
   /// Length of the sequence when it is known: the end of a delayed run may be labelled in another
@@ -86,6 +90,8 @@ struct RunContext {
   std::optional<std::size_t> scan_count = std::nullopt;
   bool scores = false;     ///< results hold a score per point
   bool cpu_times = false;  ///< stages hold their CPU time, too
+  /// When each scan was measured, ns since 1970 or since the start; empty when unknown.
+  std::vector<std::int64_t> stamps_ns = {};
 };
 
 /// One method that can be run by name.
@@ -99,7 +105,9 @@ struct MethodKind {
   /// do not go together.
   void (*check)(const Settings& settings);
   /// Checks, then makes. Also throws std::invalid_argument for 0 threads.
-  std::unique_ptr<Method> (*make)(const Settings& settings, const RunContext& context);
+  std::function<std::unique_ptr<Method>(const Settings& settings, const RunContext& context)> make;
+  /// The labels of another method from slower, simpler code: for tests, not for a benchmark.
+  bool is_twin = false;
 };
 
 /// All methods, the default one first.

@@ -26,7 +26,7 @@ struct ScanTimes {
 struct ScanPose {
   Pose map_from_sensor = Pose::Identity();  ///< the map's frame is that of the first scan
   /// Of a small rotation (rad, rows 0 to 2) and a translation (m) of the pose in the map's frame,
-  /// from the surfaces that the scan shows and the residuals of its points.
+  /// from how far the scan's surfaces scatter about those of the map.
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
   /// How much the surfaces of the scan constrain the least constrained motion: 0 for the shift
   /// along a corridor without ends or the turn in a round room, up to 1/3 when surfaces face all
@@ -54,7 +54,12 @@ class Odometry {
   /// Throws std::invalid_argument when there are point times but not one per point.
   virtual ScanPose push(std::span<const Point> points, const ScanTimes& times = {}) = 0;
 
-  /// Returns how many points the map holds.
+  /// Keeps points of the last pushed scan, those that are not 0 here, out of the map, as they move.
+  /// To be called before the next scan is pushed. Throws std::invalid_argument unless there is one
+  /// number per point of that scan.
+  virtual void leave_out(std::span<const std::uint8_t> moving) = 0;
+
+  /// Returns how many points the map holds; those of the last scan enter it with the next push.
   virtual std::size_t map_points() const = 0;
   /// Returns the bytes of its containers.
   virtual std::size_t memory_bytes() const = 0;

@@ -45,8 +45,8 @@ class Settings {
   const std::string& choice(std::string_view name) const;
 
   /// Throws std::invalid_argument "<name>: <what is wrong>, <what was expected>" for an unknown
-  /// name (with the nearest known one), a value of another type or outside its range or choices. A
-  /// whole number is taken where a number is expected.
+  /// name, a value of another type or outside its range or choices. A whole number is taken where
+  /// a number is expected.
   void set(std::string_view name, const SettingValue& value);
 
  private:

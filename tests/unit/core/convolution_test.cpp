@@ -67,6 +67,17 @@ TEST(Convolution, UnknownNeighboursVoteAgainst) {
   EXPECT_EQ(value_at(votes, {0, 0, 0}), 1);
 }
 
+TEST(Convolution, ASumBelowZeroIsNoVote) {
+  Triples known_voxels = full_cube(4);
+  for (const Triple& v : Triples{{0, 1, 0}, {0, -1, 0}, {0, 0, 1}}) known_voxels.erase(v);
+  ThreadPool pool(1);
+  const VoxelizedScan scan = scan_of({{0, 0, 0}, {1, 0, 0}});
+  const VoteField votes = convolved(scan, voxel_set({{1, 0, 0}}), known_voxels, 3, pool);
+  EXPECT_EQ(value_at(votes, {0, 0, 0}), 0);
+  EXPECT_EQ(value_at(votes, {1, 0, 0}), 0);
+  EXPECT_TRUE(votes.blocks.empty());
+}
+
 TEST(Convolution, EqualsTheTripleLoopForEveryKernel) {
   std::mt19937 random(91);
   std::size_t positive = 0, unknown = 0;

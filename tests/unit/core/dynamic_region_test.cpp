@@ -217,6 +217,33 @@ TEST(DynamicRegion, VoxelsLeaveWhenTheyBecameDynamicMoreThanWdScansAgo) {
   EXPECT_TRUE(region.blocks_with({}).empty());
 }
 
+/// Voxels without neighbours around places that are apart: n of them around the n-th.
+Triples crowds_of(int places) {
+  Triples voxels;
+  for (int place = 1; place <= places; ++place) {
+    int left = place;
+    for_cube({0, 0, 0}, 2, [&](const Triple& v) {
+      if (left-- > 0) voxels.insert({16 * place + 2 * v[0], 2 * v[1], 2 * v[2]});
+    });
+  }
+  return voxels;
+}
+
+// Votes from 1 to 101 have bins of one vote, so that the threshold in their middle is a vote.
+TEST(DynamicRegion, AddsNoVoxelWithAsManyVotesAsTheThreshold) {
+  constexpr int kPlaces = 101, kKernelWidth = 9;
+  Both regions(1000.0, 100, 3);
+  regions.update(detection(crowds_of(kPlaces), crowds_of(kPlaces)), 7);
+  Triples middles;
+  std::vector<int> votes;
+  for (int place = 1; place <= kPlaces; ++place) {
+    middles.insert({16 * place, 0, 0});
+    votes.push_back(place);
+  }
+  ASSERT_EQ(threshold_of(votes), 51.0);
+  EXPECT_EQ(regions.back_end(detection(middles, {}), kKernelWidth).size(), 50U);
+}
+
 TEST(DynamicRegion, NothingJoinsWhenTheThresholdIsNotAboveTheMinimum) {
   DynamicRegion region({.voxel_size_m = kVoxelSize_m}, 10.0, 5, 3);
   const VoxelSet voxel = voxel_set({{1, 1, 1}}), none;

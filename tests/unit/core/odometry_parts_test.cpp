@@ -4,10 +4,12 @@
 
 #include "core/odometry/bfgs.hpp"
 #include "core/odometry/deskew.hpp"
+#include "core/odometry/engine.hpp"
+#include "core/odometry/pose_certainty.hpp"
 #include "core/odometry/rigid_motion.hpp"
 #include "core/odometry/scan_clock.hpp"
 #include "core/odometry/simple_cost.hpp"
-#include "core/odometry/surface_information.hpp"
+#include "core/odometry/surface_samples.hpp"
 #include "core/odometry/thinning.hpp"
 
 namespace mosbench::odometry {
@@ -48,6 +50,65 @@ TEST(OdometryPointGrid, ForgetsPointsAtOrBeyondARadius) {
   PointGrid other(1.0);
   EXPECT_FALSE(std::isfinite(other.nearest({20, 0, 0}, 3).distance_m));
   EXPECT_DOUBLE_EQ(grid.nearest({7, 0, 0}, 3).distance_m, 7 - 4.9);
+}
+
+/// Returns how many of the corners of a cube inside one voxel of 1 m a KISS map keeps.
+std::size_t kept_in_one_voxel(int max_points_per_voxel) {
+  KissConfig config;
+  config.max_points_per_voxel = max_points_per_voxel;
+  ThreadPool pool(1);
+  const auto engine = make_engine(config, pool);
+  for (int corner = 0; corner < 8; ++corner) {
+    const auto side_m = [&](int axis) { return (corner >> axis & 1) == 0 ? 0.1 : 0.9; };
+    const std::vector<Eigen::Vector3d> points = {{side_m(0), side_m(1), side_m(2)}};
+    engine->take(points);
+    engine->enter(Pose::Identity());
+  }
+  return engine->map_points();
+}
+
+TEST(KissMap, HoldsAtMostItsPointsInAVoxel) {
+  EXPECT_EQ(kept_in_one_voxel(20), 8U);
+  EXPECT_EQ(kept_in_one_voxel(3), 3U);
+}
+
+std::vector<Eigen::Vector3d> lattice(std::size_t count) {
+  std::vector<Eigen::Vector3d> points;
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto n = static_cast<double>(i);
+    points.emplace_back(std::fmod(n, 5.0), std::fmod(std::floor(n / 5), 5.0), std::floor(n / 25));
+    points.back() = points.back() * 3.0 + Eigen::Vector3d::Constant(0.5);
+  }
+  return points;
+}
+
+/// Returns the overlap of 50 points of the map and one 1.2 m beside, after predictions that were
+/// off by 0.2 m.
+double kiss_overlap_after(int predictions) {
+  std::vector<Eigen::Vector3d> points = lattice(50);
+  ThreadPool pool(1);
+  const auto engine = make_engine(KissConfig(), pool);
+  engine->take(points);
+  engine->enter(Pose::Identity());
+  points.emplace_back(1.7, 0.5, 0.5);
+  engine->take(points);
+  const Pose off(Eigen::Translation3d(0.2, 0, 0));
+  for (int i = 0; i < predictions; ++i) engine->learn(off);
+  return engine->align(Pose::Identity()).overlap;
+}
+
+TEST(KissThreshold, FallsWithTheErrorsOfPredictionsAndLimitsCorrespondences) {
+  EXPECT_DOUBLE_EQ(kiss_overlap_after(0), 1);            // 3 sigma = 6 m
+  EXPECT_DOUBLE_EQ(kiss_overlap_after(100), 50 / 51.0);  // 3 sigma = 0.85 m
+}
+
+TEST(SimpleOverlap, IsTheShareOfPointsNearTheMap) {
+  ThreadPool pool(1);
+  const auto engine = make_engine(SimpleConfig(), pool);
+  engine->take(lattice(50));
+  engine->enter(Pose::Identity());
+  engine->take(lattice(75));  // the last 25 lie 3 m above the map
+  EXPECT_NEAR(engine->align(Pose::Identity()).overlap, 50 / 75.0, 1e-12);
 }
 
 struct CostCase {
@@ -192,28 +253,55 @@ TEST(ScanClock, FindsGapsAndStampsThatDoNotRise) {
   EXPECT_EQ(clock.tick(3'600'000'000).doubt, "");
 }
 
-TEST(SurfaceInformation, OfAFloorSaysNothingOfShiftsAlongItAndTurnsAboutItsNormal) {
+std::vector<Eigen::Vector3d> floor_points() {
   std::vector<Eigen::Vector3d> floor;
   for (int x = -20; x <= 20; ++x) {
     for (int y = -20; y <= 20; ++y) floor.emplace_back(0.5 * x, 0.5 * y, -1.5);
   }
-  const SurfaceInformation information = surface_information(floor, 0.5);
-  EXPECT_NEAR(information.mean(5, 5), 1, 0.05);
-  EXPECT_LT(information.mean(3, 3), 0.01);
-  EXPECT_LT(information.mean(4, 4), 0.01);
-  EXPECT_GT(information.mean(0, 0), 1);
-  const Certainty certainty = certainty_of(information, 0.1, 100);
+  return floor;
+}
+
+TEST(PoseCertainty, OfAFloorSaysNothingOfShiftsAlongItAndTurnsAboutItsNormal) {
+  const std::vector<SurfaceSample> samples = surface_samples(floor_points(), 0.5);
+  ASSERT_GT(samples.size(), 300u);
+  for (const SurfaceSample& sample : samples) {
+    EXPECT_NEAR(sample.hold(2, 2), 1, 0.05);
+    EXPECT_LT(sample.hold(0, 0) + sample.hold(1, 1), 0.02);
+  }
+  // The floor lies 0.1 m above the map's here and 0.1 m below there.
+  std::vector<std::optional<Eigen::Vector3d>> offsets_m;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    offsets_m.emplace_back(Eigen::Vector3d(0, 0, i % 2 == 0 ? 0.1 : -0.1));
+  }
+  const Certainty certainty = certainty_of(samples, offsets_m);
   EXPECT_LT(certainty.weakest, 0.01);
+  EXPECT_LT(std::abs(certainty.weakest_shift.z()), 0.01);
   EXPECT_TRUE(certainty.covariance.allFinite());
-  EXPECT_NEAR(certainty.covariance(5, 5), 0.1 * 0.1 / 100, 5e-5);
+  const auto points = static_cast<double>(samples.size());
+  EXPECT_NEAR(certainty.covariance(5, 5), (0.1 * 0.1 + 0.02 * 0.02) / points, 0.1 * 0.01 / points);
   EXPECT_GT(certainty.covariance(3, 3), 100 * certainty.covariance(5, 5));
 }
 
-TEST(SurfaceInformation, OfALineOfPointsIsNothing) {
+TEST(PoseCertainty, CountsTheMotionThatSurfacesAskFor) {
+  const std::vector<SurfaceSample> samples = surface_samples(floor_points(), 0.5);
+  const auto spread_m = [&](double above_m) {
+    const std::vector<std::optional<Eigen::Vector3d>> offsets_m(samples.size(),
+                                                                Eigen::Vector3d(0.4, 0.3, above_m));
+    return std::sqrt(certainty_of(samples, offsets_m).covariance(5, 5));
+  };
+  // Along the floor an offset says nothing; a surface 0.4 m off is another, so that nothing is
+  // known.
+  EXPECT_LT(spread_m(0), 0.01);
+  EXPECT_NEAR(spread_m(0.2), 0.2, 0.01);
+  EXPECT_GT(spread_m(0.4), 10);
+}
+
+TEST(SurfaceSamples, AreNotTakenOfALineOfPoints) {
   std::vector<Eigen::Vector3d> line;
   for (int x = -20; x <= 20; ++x) line.emplace_back(0.5 * x, 3, 0);
-  EXPECT_EQ(surface_information(line, 0.5).mean.norm(), 0);
-  EXPECT_EQ(surface_information({}, 0.5).samples, 0u);
+  EXPECT_TRUE(surface_samples(line, 0.5).empty());
+  EXPECT_TRUE(surface_samples({}, 0.5).empty());
+  EXPECT_TRUE(certainty_of({}, {}).covariance.allFinite());
 }
 
 }  // namespace

@@ -59,6 +59,27 @@ TEST_P(EveryOdometry, DoubtsPosesInAnEmptyField) {
   }
 }
 
+TEST(Kiss, DoubtsThatItHardlyMovesOverFlatGroundThatEqualBeamsDrawTheirRingsOn) {
+  const auto odometry = make_odometry("kiss");
+  std::vector<SceneBox> scene = field();
+  for (int i = -4; i < 8; ++i) scene.push_back({{20.0 * i, 7, -2}, {20.0 * i + 0.4, 7.4, 2}});
+  for (int i = -4; i < 8; ++i) scene.push_back({{17.0 * i, -9, -2}, {17.0 * i + 4, -8.6, 0}});
+  int wrong = 0, doubted = 0;
+  Pose before = Pose::Identity();
+  for (int k = 0; k < 12; ++k) {
+    const SceneScan scan = scene_scan(scene, pose_at({1.5 * k, 0, 0}, 0), {.jitter_rad = 0});
+    const ScanPose pose = odometry->push(scan.points);
+    const double moved_m = (before.inverse() * pose.map_from_sensor).translation().x();
+    before = pose.map_from_sensor;
+    if (k == 0 || moved_m > 1) continue;
+    ++wrong;
+    doubted += pose.doubtful() ? 1 : 0;
+    EXPECT_TRUE(is_finite(pose));
+  }
+  EXPECT_GE(wrong, 8);  // KISS-ICP does so
+  EXPECT_GE(doubted, wrong - 2);
+}
+
 TEST_P(EveryOdometry, KeepsConstantVelocityOverScansWithoutPoints) {
   const auto odometry = make_odometry(GetParam());
   drive(*odometry, street(), 6, {0.5, 0, 0});
@@ -72,6 +93,49 @@ TEST_P(EveryOdometry, KeepsConstantVelocityOverScansWithoutPoints) {
   const ScanPose back = odometry->push(scene_points(street(), pose_at({4.0, 0, 0}, 0), 8));
   EXPECT_EQ(back.doubt, "");
   EXPECT_NEAR(back.map_from_sensor.translation().x(), 4.0, 0.1);
+}
+
+TEST_P(EveryOdometry, LeavesOutPointsThatMove) {
+  // A wall that drives ahead of the sensor, and a second odometry that never sees it.
+  const auto all = make_odometry(GetParam()), without = make_odometry(GetParam()),
+             left_out = make_odometry(GetParam());
+  double worst_m = 0;
+  for (int k = 0; k < 12; ++k) {
+    const Pose truth = pose_at({0.6 * k, 0, 0}, 0);
+    const std::vector<Point> street_points = scene_points(street(), truth, k);
+    std::vector<Point> points = street_points;
+    for (int i = 0; i < 2000; ++i) {
+      points.push_back({6.0F, -4.0F + 0.1F * static_cast<float>(i % 80),
+                        -1.7F + 0.1F * static_cast<float>(i / 80), 0});
+    }
+    std::vector<std::uint8_t> moving(street_points.size(), 0);
+    moving.resize(points.size(), 1);
+    all->push(points);
+    without->push(street_points);
+    const ScanPose pose = left_out->push(points);
+    left_out->leave_out(moving);
+    worst_m = std::max(worst_m, (pose.map_from_sensor.translation() - truth.translation()).norm());
+  }
+  EXPECT_LT(worst_m, 0.15);
+  all->push({});
+  without->push({});
+  left_out->push({});
+  EXPECT_EQ(left_out->map_points() == all->map_points(), false);
+  EXPECT_NEAR(static_cast<double>(left_out->map_points()),
+              static_cast<double>(without->map_points()),
+              0.02 * static_cast<double>(without->map_points()));
+  EXPECT_THROW(left_out->leave_out(std::vector<std::uint8_t>(3, 1)), std::invalid_argument);
+}
+
+TEST_P(EveryOdometry, IsNotChangedByLeavingOutNothing) {
+  const auto plain = make_odometry(GetParam()), asked = make_odometry(GetParam());
+  for (int k = 0; k < 4; ++k) {
+    const std::vector<Point> points = scene_points(street(), pose_at({0.5 * k, 0, 0}, 0), k);
+    const Pose expected = plain->push(points).map_from_sensor;
+    EXPECT_EQ(asked->push(points).map_from_sensor.matrix(), expected.matrix());
+    asked->leave_out(std::vector<std::uint8_t>(points.size(), 0));
+  }
+  EXPECT_EQ(plain->map_points(), asked->map_points());
 }
 
 TEST_P(EveryOdometry, StaysAtTheStartWhenRangeLimitsLeaveNothing) {

@@ -169,7 +169,7 @@ TEST(ProjectLabels, PointsTakeTheLabelOfTheirVoxel) {
   VoxelizedScan scan = scan_of_five_points();
   EXPECT_EQ(project_labels(scan, voxel_set({{101, 0, 0}})),
             (std::vector<std::uint32_t>{251, 9, 9, 9, 251}));
-  EXPECT_EQ(project_labels(scan, {}), std::vector<std::uint32_t>(5, 9));
+  EXPECT_EQ(project_labels(scan, VoxelSet{}), std::vector<std::uint32_t>(5, 9));
   scan.voxel_of_point.clear();
   EXPECT_TRUE(project_labels(scan, voxel_set({{101, 0, 0}})).empty());
 }

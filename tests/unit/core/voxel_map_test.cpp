@@ -170,7 +170,7 @@ void expect_equal_to_twin(const Journey& journey, Seen& seen) {
   seen.expired += twin.expired;
 }
 
-Config small_config() {
+Config journey_config() {
   Config config;
   config.voxel_size_m = 0.25;
   config.max_range_m = 3.0;
@@ -185,7 +185,7 @@ TEST(VoxelMap, EqualsAnUnorderedMapOverRandomScans) {
     for (const int w_g : {1, 3, 10, 300}) {
       for (const int delay : {0, 4}) {
         if (variant == Variant::kRelease2025 && delay != 0) continue;
-        Journey journey{.config = small_config(), .variant = variant, .seed = ++seed};
+        Journey journey{.config = journey_config(), .variant = variant, .seed = ++seed};
         journey.config.global_window_scans = w_g;
         if (w_g < 10) journey.scans = 300;  // numbers of scans wrap round in 128 or 256
         journey.config.delay_scans = delay;
@@ -207,7 +207,7 @@ TEST(VoxelMap, ForgetsWhatTheSensorLeftBehind) {
   for (const Variant variant : {Variant::kPaper2024, Variant::kRelease2025}) {
     for (const double jump_m : {0.0, 2.0, 4.0, 7.0, 50.0}) {
       for (const double step_m : {0.02, 0.2, 1.0}) {
-        Journey journey{.config = small_config(),
+        Journey journey{.config = journey_config(),
                         .variant = variant,
                         .step_m = step_m,
                         .jump_m = jump_m,
@@ -225,7 +225,7 @@ TEST(VoxelMap, ForgetsWhatTheSensorLeftBehind) {
 TEST(VoxelMap, EqualsTheTwinForWideSigma) {
   Seen seen;
   for (const double ratio : {0.3, 2.0, 4.0}) {
-    Journey journey{.config = small_config(), .seed = 300};
+    Journey journey{.config = journey_config(), .seed = 300};
     journey.config.occupancy_sigma_m = ratio * journey.config.voxel_size_m;
     journey.config.min_state_probability = 0.8;
     expect_equal_to_twin(journey, seen);

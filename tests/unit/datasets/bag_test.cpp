@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <lz4frame.h>
 
+#include <cmath>
 #include <functional>
 #include <string>
 
@@ -13,6 +14,7 @@
 #include "datasets/rosbag/bag_file.hpp"
 #include "datasets/rosbag/bag_sequence.hpp"
 #include "datasets/rosbag/bag_writer.hpp"
+#include "datasets/rosbag/point_cloud2.hpp"
 #include "tests/bag_bytes.hpp"
 #include "tests/temp_folder.hpp"
 
@@ -98,7 +100,8 @@ TEST_F(Bag, MovesMissingReturnsToo) {
 }
 
 TEST_F(Bag, KeepsRawScansWhenTold) {
-  const BagSequence recording("s", write(good_bag({0, 50'000'000, 0}).str()), {.undistort = false});
+  const BagSequence recording("s", write(good_bag({0, 50'000'000, 0}).str()),
+                              {.deskew = Deskew::kNone});
   EXPECT_EQ(recording.read(0).points[1].x, 0.0F);
 }
 
@@ -125,11 +128,15 @@ TEST_F(Bag, TakesPosesOfTransformStampedOrOfAFile) {
 TEST_F(Bag, ReadsThroughAChainOfFrames) {
   BagBytes bag = good_bag();
   bag.connections.push_back({"/tf_static", std::string(kTfMessage)});
-  bag.chunks[0].push_back({2, kStart, format_tf_message({{kStart, "world", "/map", at_x(100.0)}})});
+  Pose map_in_world = at_x(100.0);
+  map_in_world.linear() = Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  bag.chunks[0].push_back(
+      {2, kStart, format_tf_message({{kStart, "world", "/map", map_in_world}})});
   const BagSequence to_map("s", write(bag.str()), {});
   EXPECT_EQ(to_map.read(1).map_from_sensor.translation().x(), 1.0);
   const BagSequence to_world("s", write(bag.str()), {.map_frame = "world"});
-  EXPECT_EQ(to_world.read(1).map_from_sensor.translation().x(), 101.0);
+  const Eigen::Vector3d sensor_m = to_world.read(1).map_from_sensor.translation();
+  EXPECT_TRUE(sensor_m.isApprox(Eigen::Vector3d(100, 1, 0), 1e-12)) << sensor_m.transpose();
 }
 
 TEST_F(Bag, IsTheScansOfADoalsSequence) {
@@ -297,6 +304,19 @@ TEST_F(Bag, FindsFieldsAtAnyOffsetAndOfAnyType) {
   EXPECT_EQ(frame.points[1].y, 200.0F);
   EXPECT_EQ(frame.points[1].z, -300.0F);
   EXPECT_EQ(frame.points[1].intensity, 0.0F);
+}
+
+TEST(PointCloud2, GivesTimesOfVelodyneInNanoseconds) {
+  CloudHead head;
+  head.height = 1;
+  head.width = 2;
+  head.fields = {{"x", 0, 7, 1}, {"y", 4, 7, 1}, {"z", 8, 7, 1}, {"time", 12, 7, 1}};
+  head.point_step_bytes = 16;
+  head.row_step_bytes = 32;
+  ByteSink records;
+  for (const float time_s : {0.0F, 0.25F}) records.put(Point{1, 2, 3, time_s});
+  const TimedCloud cloud = parse_cloud(format_cloud(head, std::move(records).bytes()), "f");
+  EXPECT_THAT(cloud.times_ns, ElementsAre(0, 250'000'000));
 }
 
 TEST_F(Bag, WrittenByTheLibraryGivesBackWhatWentIn) {

@@ -89,6 +89,20 @@ TEST_F(PcdReaders, ReadKthInTheSensorsFrameWithoutItsTruthInIntensity) {
               HasSubstr("VIEWPOINT is no pose"));
 }
 
+/// Scans of another program hold reflectances there.
+TEST_F(PcdReaders, RefuseIntensitiesThatAreNoTruthOfKth) {
+  for (const char* intensity : {"0.37", "2", "-1", "nan", "0.999999"}) {
+    folder_.write("kth/07/pcd/000001.pcd", pcd("x y z intensity", kOrigin,
+                                               "1 2 3 1\n4 5 6 " + std::string(intensity) + "\n"));
+    const Dataset dataset = open_dataset(folder_ / "kth", {.kind = DatasetKind::kKth});
+    const Sequence& sequence = *dataset.sequences.at(0);
+    const auto wanted = HasSubstr("000001.pcd: point 1 has intensity " + std::string(intensity) +
+                                  ", expected 0 (static) or 1 (dynamic)");
+    EXPECT_THAT(message_of<DataError>([&] { sequence.read(0); }), wanted);
+    EXPECT_THAT(message_of<DataError>([&] { sequence.read_truth(0); }), wanted);
+  }
+}
+
 TEST_F(PcdReaders, TakeLabelsFromAFieldOfThatName) {
   folder_.write("s/velodyne/000000.pcd", pcd("x y z label", kOrigin, "1 2 3 251\n4 5 6 9\n"));
   folder_.write("s/poses.txt", kIdentityRow);

@@ -1,13 +1,16 @@
 #include "datasets/doctor/doctor.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <cmath>
 #include <functional>
 #include <limits>
 #include <map>
 #include <memory>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -123,6 +126,19 @@ void delay_poses_by_one_scan(const fs::path& root) {
   });
 }
 
+/// Changes the poses of the lidar, which are stored as the camera's.
+void change_lidar_poses(const fs::path& root,
+                        const std::function<void(std::size_t row, Pose& pose)>& change) {
+  const Pose tr = read_calib(root / kKittiSequence / "calib.txt");
+  change_poses(root / kKittiSequence / "poses.txt", [&](std::vector<Pose>& poses) {
+    for (std::size_t row = 0; row < poses.size(); ++row) {
+      Pose pose = lidar_pose(poses[row], tr);
+      change(row, pose);
+      poses[row] = tr * pose * tr.inverse();
+    }
+  });
+}
+
 void exchange_rows(const fs::path& sequence, std::size_t a, std::size_t b) {
   change_poses(sequence / "poses.txt",
                [=](std::vector<Pose>& poses) { std::swap(poses.at(a), poses.at(b)); });
@@ -160,7 +176,7 @@ const std::vector<Fault>& faults() {
            for (Pose& pose : poses) pose.linear().transposeInPlace();
          });
        },
-       "the poses fit better as with transposed rotations"},
+       "the poses fit better with transposed rotations"},
       {"poses_shifted_by_one_scan", kKitti, delay_poses_by_one_scan,
        "the poses fit better as one row later"},
       {"poses_shifted_by_one_scan_the_other_way", kKitti,
@@ -208,6 +224,98 @@ const std::vector<Fault>& faults() {
          });
        },
        "the poses do not fit the scans in any convention"},
+      {"all_poses_equal", kKitti,
+       [](const fs::path& root) {
+         change_lidar_poses(root, [](std::size_t, Pose& pose) { pose = Pose::Identity(); });
+       },
+       "all poses are equal, but the scans show that the sensor moves"},
+      {"frozen_rows", kKitti,
+       [](const fs::path& root) {
+         change_poses(root / kKittiSequence / "poses.txt", [](std::vector<Pose>& poses) {
+           for (std::size_t i = 21; i < 27; ++i) poses[i] = poses[20];
+         });
+       },
+       "the poses are frozen: rows 21 to 27"},
+      {"sensor_turned", kKitti,
+       [](const fs::path& root) {
+         change_lidar_poses(root, [](std::size_t, Pose& pose) {
+           pose.rotate(Eigen::AngleAxisd(0.0873, Eigen::Vector3d::UnitZ()));
+         });
+       },
+       "mounted with 5.0 degrees yaw:"},
+      {"poses_too_long", kKitti,
+       [](const fs::path& root) {
+         change_lidar_poses(root, [](std::size_t, Pose& pose) { pose.translation() *= 1.1; });
+       },
+       "times as long:"},
+      {"noisy_poses", kKitti,
+       [](const fs::path& root) {
+         std::mt19937 random(3);
+         std::normal_distribution<double> noise_m(0.0, 0.1);
+         change_lidar_poses(root, [&](std::size_t, Pose& pose) {
+           pose.translation() += Eigen::Vector3d(noise_m(random), noise_m(random), noise_m(random));
+         });
+       },
+       "the poses scatter by"},
+      {"poses_that_jump", kKitti,
+       [](const fs::path& root) {
+         change_lidar_poses(root, [](std::size_t row, Pose& pose) {
+           if (row >= 20) pose.translation() += Eigen::Vector3d(3.0, 0.0, 0.0);
+         });
+       },
+       "between scans 000019 and 000020 the poses move by"},
+      {"poses_three_rows_late", kKitti,
+       [](const fs::path& root) {
+         change_poses(root / kKittiSequence / "poses.txt", [](std::vector<Pose>& poses) {
+           poses.insert(poses.begin(), 3, poses.front());
+           poses.resize(kScans);
+         });
+       },
+       "the poses fit better as 3 rows later:"},
+      {"shuffled_labels", kKitti,
+       [](const fs::path& root) {
+         std::mt19937 random(3);
+         std::vector<std::uint32_t> before;
+         change_labels(root / kKittiSequence, [&](std::uint32_t label, const Point&) {
+           before.push_back(label);
+           return before[random() % before.size()];
+         });
+       },
+       "the labels do not fit the scans"},
+      {"exchanged_labels", kKitti,
+       [](const fs::path& root) {
+         change_labels(root / kKittiSequence, [](std::uint32_t label, const Point&) {
+           return (label & 0xFFFFU) > 250U ? 40U : 252U;
+         });
+       },
+       "are static and moving exchanged?"},
+      {"stamps_in_milliseconds", kKitti,
+       [](const fs::path& root) {
+         auto stamps_ns = read_times(root / kKittiSequence / "times.txt");
+         for (auto& stamp_ns : stamps_ns) stamp_ns *= 1000;
+         write_times(root / kKittiSequence / "times.txt", stamps_ns);
+       },
+       "stamps are 100 s apart (median); expected seconds"},
+      {"a_gap_in_time", kKitti,
+       [](const fs::path& root) {
+         auto stamps_ns = read_times(root / kKittiSequence / "times.txt");
+         for (std::size_t i = 20; i < stamps_ns.size(); ++i) stamps_ns[i] += 5'000'000'000;
+         write_times(root / kKittiSequence / "times.txt", stamps_ns);
+       },
+       "scan 000020 comes 5.10 s after the one before it"},
+      {"points_upside_down", kKitti,
+       [](const fs::path& root) {
+         change_points(root / kKittiSequence / "velodyne", [](Point& point) { point.z *= -1.0F; });
+       },
+       "upside down"},
+      {"zeroed_points", kKitti,
+       [](const fs::path& root) {
+         std::mt19937 random(3);
+         change_points(root / kKittiSequence / "velodyne", [&](Point& point) {
+           if (random() % 10 < 3) point = {0.0F, 0.0F, 0.0F, point.intensity};
+         });
+       },
+       "of the points between two returns are (0, 0, 0)"},
       {"one_scan_missing", kKitti,
        [](const fs::path& root) { fs::remove(root / kKittiSequence / "velodyne/000017.bin"); },
        "000017", Severity::kError},
@@ -239,13 +347,13 @@ const std::vector<Fault>& faults() {
            point = {1e3F * point.x, 1e3F * point.y, 1e3F * point.z, point.intensity};
          });
        },
-       "are these millimetres?"},
+       "are these millimetres"},
       {"x_and_y_swapped", kKitti,
        [](const fs::path& root) {
          change_points(root / kKittiSequence / "velodyne",
                        [](Point& point) { std::swap(point.x, point.y); });
        },
-       "x and y of the points are swapped"},
+       "with x and y of the points swapped"},
       {"frozen_scan", kKitti,
        [](const fs::path& root) {
          const fs::path scans = root / kKittiSequence / "velodyne";
@@ -283,6 +391,81 @@ const std::vector<Fault>& faults() {
          });
        },
        "are NaN or infinite"},
+      {"reversed_bytes", kKitti,
+       [](const fs::path& root) {
+         const auto reversed = [](float value) {
+           return std::bit_cast<float>(__builtin_bswap32(std::bit_cast<std::uint32_t>(value)));
+         };
+         change_points(root / kKittiSequence / "velodyne", [&](Point& point) {
+           point = {reversed(point.x), reversed(point.y), reversed(point.z),
+                    reversed(point.intensity)};
+         });
+       },
+       "expected little-endian floats"},
+      {"radians_for_degrees", kSensors,
+       [](const fs::path& root) {
+         change_poses(
+             root / "KAIST05/Deskewed_LiDAR/Ouster/poses.txt", [](std::vector<Pose>& poses) {
+               for (Pose& pose : poses) {
+                 const Eigen::AngleAxisd turn(pose.linear());
+                 pose.linear() =
+                     Eigen::AngleAxisd(turn.angle() * M_PI / 180.0, turn.axis()).toRotationMatrix();
+               }
+             });
+       },
+       "in radians that were taken for degrees"},
+      {"four_frozen_rows", kCampus,
+       [](const fs::path& root) {
+         change_poses(root / kCampusSequence / "poses.txt", [](std::vector<Pose>& poses) {
+           for (std::size_t row = 21; row < 24; ++row) poses[row] = poses[20];
+         });
+       },
+       "the poses are frozen: rows 21 to 24"},
+      {"a_lost_pose_made_up_for", kKitti,
+       [](const fs::path& root) {
+         change_poses(root / kKittiSequence / "poses.txt", [](std::vector<Pose>& poses) {
+           poses.erase(poses.begin() + static_cast<std::ptrdiff_t>(kScans / 2));
+           poses.push_back(poses.back());
+         });
+       },
+       "1 row earlier than before: expected one pose per scan (was a pose lost there?)"},
+      {"frozen_from_half_on", kKitti,
+       [](const fs::path& root) {
+         change_poses(root / kKittiSequence / "poses.txt", [](std::vector<Pose>& poses) {
+           for (std::size_t row = kScans / 2; row < kScans; ++row) poses[row] = poses[kScans / 2];
+         });
+       },
+       "the poses are frozen: rows"},
+      {"turned_rotations", kKitti,
+       [](const fs::path& root) {
+         std::mt19937 bits(5);
+         std::normal_distribution<double> turn_rad(0.0, 0.05);
+         change_lidar_poses(root, [&](std::size_t, Pose& pose) {
+           pose.rotate(Eigen::AngleAxisd(turn_rad(bits), Eigen::Vector3d::UnitZ()));
+         });
+       },
+       "the poses do not fit the scans in any convention"},
+      {"every_second_scan_upside_down", kKitti,
+       [](const fs::path& root) {
+         for (std::size_t scan = 0; scan < kScans; scan += 2) {
+           const fs::path file = root / kKittiSequence / fmt::format("velodyne/{:06}.bin", scan);
+           auto points = read_bin(file);
+           for (Point& point : points) point.z = -point.z;
+           write_bin(file, points);
+         }
+       },
+       "the flat surfaces within 10 m are above the sensor, in others below"},
+      {"scattered_poses", kCampus,
+       [](const fs::path& root) {
+         std::mt19937 bits(5);
+         std::normal_distribution<double> noise_m(0.0, 0.1);
+         change_poses(root / kCampusSequence / "poses.txt", [&](std::vector<Pose>& poses) {
+           for (Pose& pose : poses) {
+             pose.translation() += Eigen::Vector3d(noise_m(bits), noise_m(bits), noise_m(bits));
+           }
+         });
+       },
+       "the poses scatter by 0."},
       {"label_without_scan", kKitti,
        [](const fs::path& root) {
          fs::copy_file(root / kKittiSequence / "labels/000003.label",
@@ -305,6 +488,30 @@ TEST_P(Doctor, FindsThePlantedFault) {
   EXPECT_EQ(checkup.has(Severity::kError), fault.severity == Severity::kError);
 }
 
+TEST(DoctorOnAnExcerpt, IsQuietAboutFewerScansThanPublished) {
+  const TempFolder folder;
+  fs::copy(good_copy(kKitti), folder / "data", fs::copy_options::recursive);
+  fs::remove(folder / "data/simulated.json");
+  const Checkup checkup = check_up(folder / "data", {});
+  EXPECT_EQ(all_symptoms(checkup), "");
+  ASSERT_EQ(checkup.sequences.size(), 1U);
+  EXPECT_THAT(checkup.sequences.front().remarks,
+              testing::Contains("has 40 of the 4071 scans that are published"));
+}
+
+TEST(DoctorOnAnExcerpt, NotesThatNothingMovesWithoutAWarning) {
+  const TempFolder folder;
+  fs::copy(good_copy(kKitti), folder / "data", fs::copy_options::recursive);
+  change_labels(folder / "data" / kKittiSequence, [](std::uint32_t, const Point&) { return 40U; });
+  const Checkup checkup = check_up(folder / "data", {});
+  EXPECT_EQ(all_symptoms(checkup), "");
+  ASSERT_EQ(checkup.sequences.size(), 1U);
+  EXPECT_THAT(
+      checkup.sequences.front().remarks,
+      testing::Contains("no point of 40 labelled scans is labelled moving: the IoU of these "
+                        "labels is undefined"));
+}
+
 TEST(DoctorOnAFewScansOfAStraightRoad, TellsInverseFromTransposedPoses) {
   const TempFolder folder;
   simulate({.layout = DatasetKind::kSemanticKitti,
@@ -319,6 +526,67 @@ TEST(DoctorOnAFewScansOfAStraightRoad, TellsInverseFromTransposedPoses) {
   write_poses(file, poses);
   const std::string symptoms = all_symptoms(check_up(folder / "data", {}));
   EXPECT_THAT(symptoms, HasSubstr("the poses fit better as sensor_from_map (inverse):"));
+}
+
+/// A wall 8 m ahead and, before it, a box that moves sideways by half a metre per scan.
+std::vector<Point> wall_and_box(std::size_t scan) {
+  std::vector<Point> points;
+  for (int column = -60; column < 60; ++column) {
+    for (int row = -10; row < 20; ++row) {
+      const float y = 0.1F * static_cast<float>(column), z = 0.1F * static_cast<float>(row);
+      points.push_back({8.0F, y, z, 0.0F});
+      const float box_y_m = 0.5F * static_cast<float>(scan) - 5.0F;
+      if (std::abs(y) < 0.4F && z < 0.8F) points.push_back({4.0F, box_y_m + y, z, 0.0F});
+    }
+  }
+  return points;
+}
+
+TEST(DoctorBeforeAWall, IsQuietAboutASensorThatStandsWhileSomethingMoves) {
+  const TempFolder folder;
+  const fs::path sequence = folder / "own";
+  fs::create_directories(sequence / "velodyne");
+  std::vector<std::int64_t> stamps_ns;
+  for (std::size_t scan = 0; scan < 20; ++scan) {
+    write_bin(sequence / "velodyne" / fmt::format("{:06}.bin", scan), wall_and_box(scan));
+    stamps_ns.push_back(static_cast<std::int64_t>(scan) * 100'000'000);
+  }
+  write_times(sequence / "times.txt", stamps_ns);
+  write_poses(sequence / "poses.txt", std::vector<Pose>(20, Pose::Identity()));
+  EXPECT_EQ(all_symptoms(check_up(sequence, {.kind = DatasetKind::kSemanticKitti})), "");
+}
+
+/// A corridor without doors: nothing holds a scan along it.
+std::vector<Point> corridor() {
+  std::vector<Point> points;
+  for (int beam = -8; beam < 8; ++beam) {
+    for (int step = 0; step < 720; ++step) {
+      const double around = M_PI / 360.0 * step, up = M_PI / 90.0 * beam;
+      const double range_m = 1.1 / std::max(std::abs(std::sin(around)), 0.03);
+      points.push_back({static_cast<float>(range_m * std::cos(around)),
+                        static_cast<float>(range_m * std::sin(around)),
+                        static_cast<float>(range_m * std::tan(up)), 0.0F});
+    }
+  }
+  return points;
+}
+
+TEST(DoctorInACorridor, IsQuietAboutAMotionThatScansCannotShow) {
+  const TempFolder folder;
+  const fs::path sequence = folder / "own";
+  fs::create_directories(sequence / "velodyne");
+  std::vector<Pose> poses(30, Pose::Identity());
+  for (std::size_t scan = 0; scan < poses.size(); ++scan) {
+    std::vector<Point> points = corridor();
+    points.resize(points.size() - scan);  // no two scans are the same
+    write_bin(sequence / "velodyne" / fmt::format("{:06}.bin", scan), points);
+    poses[scan].translation().x() = 0.1 * static_cast<double>(scan);
+  }
+  write_poses(sequence / "poses.txt", poses);
+  const Checkup checkup = check_up(sequence, {.kind = DatasetKind::kSemanticKitti});
+  for (const Symptom& symptom : checkup.symptoms) {
+    EXPECT_THAT(symptom.what, testing::Not(HasSubstr("times as long"))) << "a wrong advice";
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Faults, Doctor, testing::ValuesIn(faults()),

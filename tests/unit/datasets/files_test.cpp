@@ -2,8 +2,16 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/sysmacros.h>
+
+#include <csignal>
+#include <future>
+#include <iterator>
 
 #include "datasets/files/errors.hpp"
+#include "datasets/files/partial_file.hpp"
 #include "tests/temp_folder.hpp"
 
 namespace mosbench {
@@ -20,13 +28,109 @@ TEST(WriteFileAtomic, ReadsBackByteForByteInMissingFolders) {
   EXPECT_EQ(read_file(file), bytes);
 }
 
-TEST(WriteFileAtomic, ReplacesAndLeavesNothingBeside) {
+std::vector<std::string> names_in(const std::filesystem::path& folder) {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    names.push_back(entry.path().filename().string());
+  }
+  std::ranges::sort(names);
+  return names;
+}
+
+TEST(WriteFileAtomic, ReplacesAndTakesOverWhatAKilledRunLeft) {
   const TempFolder folder;
   const auto file = folder.write("result.json", "old and longer");
-  folder.write("result.json.partial", "left by a killed run");
+  folder.write(partial_of("result.json").native(), "left by a killed run, longest of all");
   write_file_atomic(file, "new");
   EXPECT_EQ(read_file(file), "new");
-  EXPECT_FALSE(std::filesystem::exists(folder / "result.json.partial"));
+  EXPECT_THAT(names_in(folder.path()), testing::ElementsAre("result.json"));
+  commit_file(folder / "a/b/c.json", "committed");
+  EXPECT_EQ(read_file(folder / "a/b/c.json"), "committed");
+  EXPECT_THAT(names_in(folder / "a/b"), testing::ElementsAre("c.json"));
+}
+
+TEST(WriteFileAtomic, LeavesFilesOfOthersThatAreNamedAsIfInPart) {
+  const TempFolder folder;
+  const auto others = folder.write("report.html.partial", "a download");
+  write_file_atomic(folder / "report.html", "new");
+  EXPECT_EQ(read_file(others), "a download");
+}
+
+TEST(WriteFileAtomic, HasAFileOfItsOwnForEachOfTwoWriters) {
+  const TempFolder folder;
+  const auto file = folder.write("f", "old");
+  PartialFile slow(file);
+  slow.write("slow");
+  write_file_atomic(file, "fast");
+  EXPECT_EQ(read_file(file), "fast");
+  EXPECT_THAT(names_in(folder.path()), testing::ElementsAre("f", "f.mosbench.partial"));
+  slow.put_in_place_of(file);
+  EXPECT_EQ(read_file(file), "slow");
+  EXPECT_THAT(names_in(folder.path()), testing::ElementsAre("f"));
+}
+
+TEST(WriteFileAtomic, GivesAWholeFileWhoeverOfManyWritersIsLast) {
+  const TempFolder folder;
+  const auto file = folder / "f";
+  constexpr std::size_t kBytes = 20'000;
+  std::vector<std::future<void>> writers;
+  for (char letter = 'a'; letter < 'i'; ++letter) {
+    writers.push_back(std::async(std::launch::async, [&file, letter] {
+      for (int round = 0; round < 50; ++round) {
+        write_file_atomic(file, std::string(kBytes, letter));
+      }
+    }));
+  }
+  for (auto& writer : writers) writer.get();
+  const std::string bytes = read_file(file);
+  EXPECT_EQ(bytes, std::string(kBytes, bytes.at(0)));
+  EXPECT_THAT(names_in(folder.path()), testing::ElementsAre("f"));
+}
+
+TEST(WriteFileAtomic, FollowsLinksAndKeepsThem) {
+  namespace fs = std::filesystem;
+  const TempFolder folder;
+  folder.write("disk/result.json", "old");
+  fs::create_symlink("disk/result.json", folder / "link");
+  fs::create_symlink(folder / "link", folder / "link_to_link");
+  write_file_atomic(folder / "link_to_link", "new");
+  EXPECT_EQ(read_file(folder / "disk/result.json"), "new");
+  EXPECT_TRUE(fs::is_symlink(folder / "link") && fs::is_symlink(folder / "link_to_link"));
+  EXPECT_THAT(names_in(folder / "disk"), testing::ElementsAre("result.json"));
+  fs::create_symlink("disk/absent", folder / "dangling");
+  write_file_atomic(folder / "dangling", "made");
+  EXPECT_EQ(read_file(folder / "disk/absent"), "made");
+  fs::create_symlink("loop", folder / "loop");
+  EXPECT_THAT(message_of<DataError>([&] { write_file_atomic(folder / "loop", "x"); }),
+              HasSubstr("symbolic links"));
+}
+
+TEST(WriteFileAtomic, WritesIntoAFifoInsteadOfReplacingIt) {
+  const TempFolder folder;
+  const auto fifo = folder / "fifo";
+  ASSERT_EQ(mkfifo(fifo.c_str(), 0600), 0);
+  std::filesystem::create_symlink("fifo", folder / "link");
+  for (const auto& name : {fifo, folder / "link"}) {
+    auto reader = std::async(std::launch::async, [&fifo] {
+      std::ifstream in(fifo);
+      return std::string{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+    });
+    commit_file(name, "bytes");
+    EXPECT_EQ(reader.get(), "bytes");
+    EXPECT_TRUE(std::filesystem::is_fifo(fifo));
+  }
+}
+
+TEST(WriteFileAtomic, WritesToADeviceInsteadOfReplacingIt) {
+  const TempFolder folder;
+  const auto device = folder / "null";  // the null device under another name
+  if (mknod(device.c_str(), S_IFCHR | 0600, makedev(1, 3)) != 0) {
+    GTEST_SKIP() << "devices cannot be made here";
+  }
+  if (!std::ofstream(device)) GTEST_SKIP() << "devices cannot be opened here";
+  write_file_atomic(device, "bytes");
+  EXPECT_TRUE(std::filesystem::is_character_file(device));
+  EXPECT_THAT(names_in(folder.path()), testing::ElementsAre("null"));
 }
 
 TEST(WriteFileAtomic, NamesTheFileWhenItsFolderIsAFile) {
@@ -37,14 +141,21 @@ TEST(WriteFileAtomic, NamesTheFileWhenItsFolderIsAFile) {
   EXPECT_THAT(message, AllOf(HasSubstr("taken/result.json"), HasSubstr("expected a writable")));
 }
 
-TEST(WriteFileAtomic, KeepsTheOldFileAndSaysWhyOnAFullDisk) {
-  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "this system has no /dev/full";
+TEST(WriteFileAtomic, KeepsTheOldFileAndSaysWhyWhenThereIsNoRoom) {
   const TempFolder folder;
   const auto file = folder.write("result.json", "old");
-  std::filesystem::create_symlink("/dev/full", folder / "result.json.partial");
-  const auto message = message_of<DataError>([&] { write_file_atomic(file, "new"); });
-  EXPECT_THAT(message, AllOf(HasSubstr("result.json"), HasSubstr("No space left")));
+  struct rlimit before {};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+  const struct rlimit small { 1000, before.rlim_max };
+  const auto signal_before = std::signal(SIGXFSZ, SIG_IGN);
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
+  const auto message =
+      message_of<DataError>([&] { write_file_atomic(file, std::string(2000, 'x')); });
+  setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, signal_before);
+  EXPECT_THAT(message, AllOf(HasSubstr("result.json"), HasSubstr("File too large")));
   EXPECT_EQ(read_file(file), "old");
+  EXPECT_THAT(names_in(folder.path()), testing::ElementsAre("result.json"));
 }
 
 TEST(ReadFile, TellsAFolderAndAMissingFileApart) {

@@ -7,6 +7,8 @@
 #include <cstring>
 #include <filesystem>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "datasets/files/bin_file.hpp"
 #include "datasets/files/byte_cursor.hpp"
@@ -41,7 +43,7 @@ TEST(PlyFile, FindsPropertiesByNameInEveryFormat) {
   for (const std::string& bytes : {ascii, little}) {
     const auto points = parse_ply(bytes, "f");
     ASSERT_EQ(points.size(), 2U);
-    EXPECT_EQ(ply_point_count(bytes, bytes.size(), "f"), 2U);
+    EXPECT_EQ(parse_ply_summary(bytes, bytes.size(), "f").points, 2U);
     EXPECT_EQ(points[0].x, 2.0F);
     EXPECT_EQ(points[0].y, -3.0F);
     EXPECT_EQ(points[0].z, 1.5F);
@@ -52,6 +54,25 @@ TEST(PlyFile, FindsPropertiesByNameInEveryFormat) {
                                  "property float z\n") +
                           std::string("\x3f\x80\0\0\0\0\0\0\0\0\0\0", 12) + std::string(12, '\0');
   EXPECT_EQ(parse_ply(big, "f")[0].x, 1.0F);
+}
+
+TEST(PlyFile, KnowsTheWidthOfEveryTypeByBothItsNames) {
+  const std::vector<std::pair<std::string, std::size_t>> widths_bytes = {
+      {"char", 1},  {"uchar", 1},  {"short", 2},   {"ushort", 2}, {"int", 4},   {"uint", 4},
+      {"int8", 1},  {"uint8", 1},  {"int16", 2},   {"uint16", 2}, {"float", 4}, {"double", 8},
+      {"int32", 4}, {"uint32", 4}, {"float32", 4}, {"float64", 8}};
+  for (const auto& [type, width_bytes] : widths_bytes) {
+    const std::string point =
+        std::string(width_bytes, '\0') + std::string("\0\0\x80\x3f\0\0\0\0\0\0\0\0", 12);
+    const auto points =
+        parse_ply(header("binary_little_endian", "property " + type +
+                                                     " ring\nproperty float x\n"
+                                                     "property float y\nproperty float z\n") +
+                      point + point,
+                  "f");
+    ASSERT_EQ(points.size(), 2U) << type;
+    EXPECT_EQ(points[1].x, 1.0F) << type;
+  }
 }
 
 TEST(PlyFile, RefusesWhatIsNoneOrCutOff) {

@@ -63,10 +63,10 @@ TEST(PoseTrack, InterpolatesBetweenNeighboursAndNeverBeyondTheEnds) {
   const PoseTrack track({{200, turned}, {100, at_x(2.0)}});
   EXPECT_EQ(track.at(100)->matrix(), at_x(2.0).matrix());
   EXPECT_EQ(track.at(200)->matrix(), turned.matrix());
-  const Pose middle = *track.at(150);
-  EXPECT_DOUBLE_EQ(middle.translation().x(), 3.0);
-  EXPECT_TRUE(middle.linear().isApprox(
-      Eigen::AngleAxisd(0.1, Eigen::Vector3d::UnitZ()).toRotationMatrix(), 1e-12));
+  const Pose quarter = *track.at(125);
+  EXPECT_DOUBLE_EQ(quarter.translation().x(), 2.5);
+  EXPECT_TRUE(quarter.linear().isApprox(
+      Eigen::AngleAxisd(0.05, Eigen::Vector3d::UnitZ()).toRotationMatrix(), 1e-12));
   EXPECT_FALSE(track.at(99));
   EXPECT_FALSE(track.at(201));
   EXPECT_FALSE(PoseTrack().at(0));
@@ -120,6 +120,29 @@ TEST_F(PoseSources, TakeStampedPosesAtTheScansStamps) {
                              HasSubstr("10.100000 to 10.300000 s")));
 }
 
+TEST_F(PoseSources, LeaveOutScansInGapsOfThePoses) {
+  const auto gap = folder_.write("gap.txt", "10 1 0 0 0 0 0 1\n10.6 7 0 0 0 0 0 1\n");
+  const FolderSequence recording = open({.poses = gap});
+  ASSERT_EQ(recording.size(), 1U);
+  EXPECT_EQ(recording.stem(0), "000000");
+  EXPECT_EQ(x_of(recording, 0), 1.0);
+  ASSERT_EQ(recording.recording().left_out.size(), 2U);
+  EXPECT_EQ(recording.recording().left_out[1].stem, "000002");
+  EXPECT_THAT(recording.remarks(),
+              Contains("2 of 3 scans are left out: they lie between poses more than 0.5 s apart in "
+                       "gap.txt (--max-pose-gap-s)"));
+  EXPECT_THAT(
+      recording.reading(),
+      Contains(Pair("pose_pairing", "by stamp, 0 of 3 interpolated; 2 of 3 scans are left out")));
+  EXPECT_EQ(open({.poses = gap, .max_pose_gap_s = 0.6}).size(), 3U);
+  EXPECT_EQ(open({.poses = gap, .max_pose_gap_s = 0.59}).size(), 1U);
+  const auto wide = folder_.write("wide.txt", "9 1 0 0 0 0 0 1\n12 7 0 0 0 0 0 1\n");
+  EXPECT_THAT(
+      message_of<DataError>([&] { open({.poses = wide}); }),
+      HasSubstr("wide.txt: all scans lie between poses more than 0.5 s apart, expected more "
+                "poses, or a longer --max-pose-gap-s"));
+}
+
 TEST_F(PoseSources, InvertRolloutsAndWhateverIsToldToBeInverse) {
   const auto rollout = folder_.write("none.csv", "1,0,0,0,0,0,1\n2,0,0,0,0,0,1\n3,0,0,0,0,0,1\n");
   EXPECT_EQ(x_of(open({.poses = rollout}), 2), -3.0);
@@ -135,7 +158,7 @@ TEST_F(PoseSources, TurnCameraPosesByTrUnlessToldOtherwise) {
   EXPECT_EQ(x_of(open({.pose_frame = PoseFrame::kLidar}), 0), 0.0);
   EXPECT_THAT(open({}).reading(),
               Contains(Pair("pose_frame", "camera, turned into the lidar's by Tr of calib.txt")));
-  const auto tum = folder_.write("tum.txt", "9 0 0 5 0 0 0 1\n11 0 0 5 0 0 0 1\n");
+  const auto tum = folder_.write("tum.txt", "9.9 0 0 5 0 0 0 1\n10.3 0 0 5 0 0 0 1\n");
   EXPECT_EQ(x_of(open({.poses = tum, .pose_frame = PoseFrame::kCamera}), 0), 5.0);
   std::filesystem::remove(folder_ / "calib.txt");
   EXPECT_THAT(message_of<DataError>([&] { open({.pose_frame = PoseFrame::kCamera}); }),

@@ -127,7 +127,7 @@ TEST(SceneJson, RefusesTextThatIsNoJsonAndRepeatedKeys) {
   EXPECT_THAT(error_of("{"), StartsWith("s.json: is no JSON ("));
   EXPECT_THAT(error_of(""), StartsWith("s.json: is no JSON ("));
   EXPECT_THAT(error_of(R"({"name": "a", "name": "b"})"),
-              HasSubstr("key \"name\" is there twice in one record"));
+              HasSubstr("key \"name\" is there twice in one object"));
 }
 
 TEST(SceneJson, NamesAFileThatIsNotThere) {

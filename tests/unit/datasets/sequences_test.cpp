@@ -364,10 +364,13 @@ TEST(FileStamp, ChangesOnlyWhenAFileDoes) {
   const auto written = std::filesystem::last_write_time(scan);
   std::filesystem::last_write_time(scan, written + std::chrono::seconds(1));
   EXPECT_NE(stamp(), original);
+  // As copies do that keep the time of modification.
   std::filesystem::last_write_time(scan, written);
-  EXPECT_EQ(stamp(), original);
+  const std::string copied = stamp();
+  EXPECT_NE(copied, original);
+  EXPECT_EQ(stamp(), copied);
   folder.write("times.txt", "0\n1\n");
-  EXPECT_NE(stamp(), original);
+  EXPECT_NE(stamp(), copied);
 }
 
 }  // namespace

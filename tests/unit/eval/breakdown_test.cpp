@@ -139,7 +139,7 @@ TEST(RecallBins, CountObjectsBySpeedAndSightingsByAge) {
   const std::vector<ObjectTrack> tracks = link_objects(std::vector<ScanObjects>{
       {0, 0.0, {cluster_at(0.0, 10, 0)}}, {1, 0.1, {cluster_at(0.3, 10, 5)}}});
   EXPECT_EQ(recall_by_speed(tracks)[3].name, "2 to 5 m/s");
-  EXPECT_EQ(recall_by_speed(tracks)[3].objects, 1U);
+  EXPECT_EQ(recall_by_speed(tracks)[3].count, 1U);
   EXPECT_EQ(recall_by_speed(tracks)[3].tp, 5U);
   EXPECT_EQ(recall_by_age(tracks)[0].fn, 10U);
   EXPECT_EQ(recall_by_age(tracks)[1].tp, 5U);

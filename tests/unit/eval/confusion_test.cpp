@@ -72,6 +72,13 @@ TEST(ScoreScan, TakesAnUnknownSemanticKittiPredictionAsNotMoving) {
   EXPECT_EQ(counts, (Confusion{.fn = 1, .tn = 1, .unknown_ids = 2}));
 }
 
+TEST(ScoreScan, TakesAllIdsFrom251To259AsMovingUnderSemanticKitti) {
+  for (std::uint32_t id = 251; id <= 259; ++id) {
+    EXPECT_EQ(score("semantickitti-mos", {id}, {id}), kTruePositive) << id;
+  }
+  EXPECT_EQ(score("semantickitti-mos", {260}, {251}).ignored, 1U);
+}
+
 TEST(ScoreScan, TakesUnknownSipailouIdsAsStatic) {
   const Confusion counts = score("sipailou", {1, 253}, {251, 253});
   EXPECT_EQ(counts, (Confusion{.fp = 1, .tn = 1, .unknown_ids = 2}));

@@ -85,7 +85,6 @@ TEST(Summary, OfNoScanIsUndefinedForEveryProtocol) {
     EXPECT_EQ(summary.iou, std::nullopt) << protocol.name;
     EXPECT_EQ(summary.precision, std::nullopt) << protocol.name;
     EXPECT_EQ(summary.scans, 0U) << protocol.name;
-    EXPECT_EQ(format_value(protocol, summary.iou), "undefined") << protocol.name;
   }
 }
 
@@ -127,13 +126,6 @@ TEST(MeanOfSequences, IsUndefinedWhenOneSequenceIs) {
   EXPECT_EQ(average.iou, std::nullopt);
   EXPECT_EQ(average.published_text, "nan");
   EXPECT_EQ(mean_of_sequences(protocol, {}).iou, std::nullopt);
-}
-
-TEST(FormatValue, PrintsPercentOrFractionAsTheTablesDo) {
-  EXPECT_EQ(format_value(protocol_named("doals-hmm"), 0.622949), "62.29 %");
-  EXPECT_EQ(format_value(protocol_named("doals-dynablox"), 0.622949), "62.3 %");
-  EXPECT_EQ(format_value(protocol_named("semantickitti-mos"), 0.622949), "0.623");
-  EXPECT_EQ(format_value(protocol_named("semantickitti-mos"), std::nullopt), "undefined");
 }
 
 }  // namespace

@@ -3,9 +3,12 @@
 #include <gtest/gtest.h>
 #include <png.h>
 
+#include <algorithm>
+#include <array>
 #include <limits>
 
 #include "eval/report/birds_eye.hpp"
+#include "eval/report/line_chart.hpp"
 #include "eval/report/palette.hpp"
 
 namespace mosbench {
@@ -38,6 +41,56 @@ TEST(Picture, DrawsNothingOutside) {
   picture.text(-500, 3, "far", kRed);
   picture.rectangle(10, 10, 5, 5, kRed);
   EXPECT_EQ(pixels_of(picture, kBlack), 100U);
+}
+
+TEST(Picture, DrawsLinesOfTheirWidthAndCutsThemAtTheEdge) {
+  Picture picture(40, 40, kBlack);
+  picture.line(10.0, 5.0, 10.0, 35.0, 4.0, kRed);
+  EXPECT_EQ(picture.at(9, 20), kRed);
+  EXPECT_EQ(picture.at(10, 6), kRed);
+  EXPECT_EQ(picture.at(14, 20), kBlack);
+  EXPECT_EQ(picture.at(10, 2), kBlack);
+  picture.line(-1e6, 20.0, 1e6, 20.0, 2.0, kRed);
+  EXPECT_EQ(picture.at(39, 20), kRed);
+  picture.line(25.0, 30.0, 25.0, 30.0, 6.0, kRed);
+  EXPECT_EQ(picture.at(25, 30), kRed);
+}
+
+TEST(LineCharts, ShowEveryPointOfEveryCurveAndKeepShapes) {
+  const Colour blue{0, 0, 200};
+  const LineChart chart{
+      "c", "x", "y", true, {{"r", kRed, {{0, 0}, {30, 0}}}, {"b", blue, {{0, 10}, {0, 0}}}}};
+  const Picture picture = line_charts(std::array{chart, chart, LineChart{}}, 400);
+  EXPECT_EQ(picture.width(), 1200U);
+  EXPECT_EQ(picture.height(), 400U);
+  // Below the curves' names.
+  const auto extent = [&](Colour colour, std::size_t from_x) {
+    std::size_t low_x = 9999, high_x = 0, low_y = 9999, high_y = 0;
+    for (std::size_t y = 70; y < 400; ++y) {
+      for (std::size_t x = from_x; x < from_x + 400; ++x) {
+        if (picture.at(x, y) != colour) continue;
+        low_x = std::min(low_x, x);
+        high_x = std::max(high_x, x);
+        low_y = std::min(low_y, y);
+        high_y = std::max(high_y, y);
+      }
+    }
+    return std::array<double, 2>{static_cast<double>(high_x) - static_cast<double>(low_x),
+                                 static_cast<double>(high_y) - static_cast<double>(low_y)};
+  };
+  for (const std::size_t from_x : {0U, 400U}) {
+    ASSERT_GT(extent(kRed, from_x)[0], 150);
+    EXPECT_LT(extent(kRed, from_x)[1], 4);
+    EXPECT_NEAR(extent(blue, from_x)[1] / extent(kRed, from_x)[0], 1.0 / 3, 0.03);
+  }
+}
+
+TEST(LineCharts, AreDrawnOfPointsFarAwayAndOfNumbersThatDoNotFit) {
+  for (const double far : {1e15, 1e200, 1e308}) {
+    const LineChart chart{"c", "x", "y", true, {{"r", kRed, {{far, 0}, {far, 1}, {-far, 2}}}}};
+    const LineChart still{"c", "x", "y", true, {{"r", kRed, {{far, 0}, {far, 0}}}}};
+    EXPECT_EQ(line_charts(std::array{chart, still}, 300).width(), 600U);
+  }
 }
 
 TEST(Picture, WritesLettersThatDifferAndNothingForABlank) {

@@ -37,9 +37,11 @@ TEST(ReadingJson, KeepsWhatTheUserTold) {
                                .pose_format = PoseFormat::kTum,
                                .pose_frame = PoseFrame::kCamera,
                                .poses_inverse = false,
+                               .max_pose_gap_s = 1.5,
                                .topic = "/os1",
                                .map_frame = "map",
-                               .undistort = false,
+                               .deskew = Deskew::kVelocity,
+                               .point_times = PointTimes::kColumn,
                                .bin_columns = 5};
   const nlohmann::ordered_json json = told_json(told);
   const ReadingOptions read = told_from_json(json);
@@ -47,9 +49,12 @@ TEST(ReadingJson, KeepsWhatTheUserTold) {
   EXPECT_EQ(read.pose_format, told.pose_format);
   EXPECT_EQ(read.pose_frame, told.pose_frame);
   EXPECT_EQ(read.poses_inverse, told.poses_inverse);
+  EXPECT_EQ(read.max_pose_gap_s, told.max_pose_gap_s);
   EXPECT_EQ(read.topic, told.topic);
   EXPECT_EQ(read.map_frame, told.map_frame);
-  EXPECT_EQ(read.undistort, told.undistort);
+  EXPECT_EQ(read.deskew, told.deskew);
+  EXPECT_EQ(read.point_times, told.point_times);
+  EXPECT_EQ(told_from_json(told_json({.deskew = Deskew::kNone})).deskew, Deskew::kNone);
   EXPECT_EQ(read.bin_columns, told.bin_columns);
   EXPECT_EQ(told_json(read), json);
   EXPECT_TRUE(told_json({}).empty());
@@ -57,7 +62,7 @@ TEST(ReadingJson, KeepsWhatTheUserTold) {
 }
 
 TEST(ReadingJson, RefusesWordsItDoesNotKnow) {
-  for (const char* key : {"pose_format", "pose_frame", "pose_direction"}) {
+  for (const char* key : {"pose_format", "pose_frame", "pose_direction", "deskew", "point_times"}) {
     EXPECT_THROW(told_from_json({{key, "sideways"}}), UsageError) << key;
   }
 }
@@ -137,15 +142,17 @@ TEST(BenchmarkNotice, SaysWhichRowHoldsTheNumberOrThatNoneDoes) {
   const Split split{"test", {{0, std::nullopt}}};
   EXPECT_EQ(benchmark_remark(protocol_named("sipailou"), {split}),
             "the benchmark's number is that of split test\n");
-  EXPECT_THAT(benchmark_remark(protocol_named("sipailou"), {}),
+  const Split other{"valid", {{0, std::nullopt}}};
+  EXPECT_THAT(benchmark_remark(protocol_named("sipailou"), {other}),
               testing::StartsWith("no row is the benchmark's number"));
+  EXPECT_EQ(benchmark_remark(protocol_named("sipailou"), {}), "") << "sequences of no benchmark";
   EXPECT_EQ(benchmark_remark(protocol_named("helimos-all"), {}), "");
 }
 
 TEST(ScoreRows, WithoutTruthShowNoNumber) {
   const auto rows =
       summary_rows(protocol_named("sipailou"), {}, {{"a", {{"0", std::nullopt}}, std::nullopt}});
-  EXPECT_NE(format_rows(protocol_named("sipailou"), rows).find("no truth"), std::string::npos);
+  EXPECT_NE(format_rows(rows).find("no truth"), std::string::npos);
   EXPECT_TRUE(rows_json(rows).at("sequences").at(0).at("summary").is_null());
 }
 

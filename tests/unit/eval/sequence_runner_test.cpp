@@ -15,7 +15,7 @@ constexpr std::size_t kPoints = 200'000;
 class BrokenSequence : public Sequence {
  public:
   BrokenSequence() {
-    mutable_recording().name = "broken";
+    mutable_recording().name = SequenceName("broken", "broken");
     for (int k = 0; k < 6; ++k) {
       ScanEntry& entry = mutable_recording().scans.emplace_back();
       entry.stem = std::to_string(k);
@@ -48,6 +48,64 @@ TEST(SequenceRunner, EndsWithTheErrorOfAScanThatCannotBeRead) {
     EXPECT_NE(error.find("last.bin"), std::string::npos) << error;
     EXPECT_TRUE(std::filesystem::exists(folder.path() / "labels/3.label"));
   }
+}
+
+/// Returns fewer labels than points, or none at all.
+class BrokenMethod : public Method {
+ public:
+  explicit BrokenMethod(bool silent) : silent_(silent) {}
+  using Method::push;
+  std::unique_ptr<Observed> observe(std::span<const Point>, const Pose&) override {
+    return std::make_unique<Observed>();
+  }
+  std::vector<LabelledScan> push(std::unique_ptr<Observed>) override {
+    if (silent_) return {};
+    LabelledScan scan;
+    scan.labels.assign(3, kStaticLabel);
+    return {scan};
+  }
+
+ private:
+  bool silent_;
+};
+
+/// Two scans of one point.
+class TwoScans : public Sequence {
+ public:
+  TwoScans() {
+    mutable_recording().name = SequenceName("two", "two");
+    for (const char* stem : {"a", "b"}) {
+      ScanEntry& entry = mutable_recording().scans.emplace_back();
+      entry.stem = stem;
+      entry.points = 1;
+    }
+  }
+  void read(std::size_t scan_index, Frame& frame) const override {
+    describe(scan_index, frame);
+    frame.points.assign(1, Point{2, 1, 0, 0});
+  }
+  std::vector<std::uint32_t> read_truth(std::size_t) const override { return {}; }
+};
+
+TEST(SequenceRunner, RefusesAMethodThatLabelsOtherThanItWasGiven) {
+  MethodKind kind = methods().front();
+  kind.name = "broken";
+  RunSettings settings;
+  settings.method = &kind;
+  settings.protocol = &protocol_named("mapmos");
+  const TempFolder folder;
+  kind.make = [](const Settings&, const RunContext&) -> std::unique_ptr<Method> {
+    return std::make_unique<BrokenMethod>(false);
+  };
+  EXPECT_EQ(
+      message_of<std::logic_error>([&] { run_sequence(TwoScans(), settings, folder.path()); }),
+      "method broken has 3 labels and 0 scores for the 1 points of scan 0");
+  kind.make = [](const Settings&, const RunContext&) -> std::unique_ptr<Method> {
+    return std::make_unique<BrokenMethod>(true);
+  };
+  EXPECT_EQ(
+      message_of<std::logic_error>([&] { run_sequence(TwoScans(), settings, folder.path()); }),
+      "method broken leaves 2 scans without labels");
 }
 
 }  // namespace

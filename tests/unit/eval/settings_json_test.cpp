@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <mosbench/method.hpp>
+#include <set>
 
 #include "datasets/files/errors.hpp"
 #include "eval/protocols/protocol.hpp"
@@ -77,7 +78,11 @@ TEST(SettingsJson, DescribesWhatUsersAskForAndWhatIsNotTheDefault) {
   settings.set("min_otsu_score", 4);
   EXPECT_EQ(describe_settings(to_json(settings), "hmm-mos"),
             "paper-2024, voxel 0.2 m, range 0.5 to 20 m, online, min_otsu_score 4");
-  EXPECT_EQ(describe_settings({{"cells", 3}}, "a method of tomorrow"), "");
+  settings.set("occupancy_sigma_m", 0.3);
+  EXPECT_EQ(describe_settings(to_json(settings), "hmm-mos"),
+            "paper-2024, voxel 0.2 m, range 0.5 to 20 m, online, occupancy_sigma_m 0.3, "
+            "min_otsu_score 4");
+  EXPECT_EQ(describe_settings({{"cells", 3}}, "a method of tomorrow"), "cells 3");
 }
 
 TEST(SettingsJson, NamesFileKeyAndExpectation) {
@@ -90,6 +95,8 @@ TEST(SettingsJson, NamesFileKeyAndExpectation) {
             "near.json: max_range_m: null is not a number, expected 0.1 to 1000");
   EXPECT_EQ(refusal(R"({"min_otsu_score": 3.0})"),
             "near.json: min_otsu_score: 3.0 is not a whole number, expected 0 to 1000000");
+  EXPECT_EQ(refusal(R"({"delay_scans": 4294967298})"),
+            "near.json: delay_scans: 4294967298 is out of range, expected 0 to 1000");
   EXPECT_EQ(refusal(R"({"max_range_m": 1e400})").substr(0, 10), "near.json:");
   EXPECT_THAT(refusal("nonsense"), HasSubstr("expected a JSON object"));
   EXPECT_THAT(refusal("\xff\xfe"), HasSubstr("expected a JSON object"));
@@ -97,28 +104,43 @@ TEST(SettingsJson, NamesFileKeyAndExpectation) {
 }
 
 double value_of(std::string_view preset, std::string_view setting) {
-  Settings settings = defaults();
-  for (const PresetValue& value : preset_named(preset).values) {
-    settings.set(value.setting, value.value);
-  }
-  return settings.number(setting);
+  return settings_of(preset_named(preset), *find_method("hmm-mos")).number(setting);
 }
 
 TEST(Presets, HaveThePapersSettingsAndAKnownProtocol) {
   for (const Preset& preset : presets()) {
-    Settings settings = defaults();
-    for (const PresetValue& value : preset.values) settings.set(value.setting, value.value);
-    EXPECT_NO_THROW(find_method("hmm-mos")->check(settings)) << preset.name;
+    std::set<std::string_view> taken;
+    for (const MethodKind& method : methods()) {
+      EXPECT_NO_THROW(method.check(settings_of(preset, method))) << preset.name << method.name;
+      for (const Setting& setting : method.defaults.all()) taken.insert(setting.name);
+    }
+    for (const PresetValue& value : preset.values) EXPECT_TRUE(taken.contains(value.setting));
     EXPECT_NE(find_protocol(preset.protocol), nullptr) << preset.name;
     EXPECT_EQ(&preset_named(preset.name), &preset);
   }
   EXPECT_EQ(value_of("doals-20m", "max_range_m"), 20.0);
   EXPECT_EQ(value_of("doals-120m", "max_range_m"), 120.0);
+  const Settings dynablox = settings_of(preset_named("doals-20m"), *find_method("dynablox"));
+  EXPECT_EQ(dynablox.whole("range_image_columns"), 2048);
+  EXPECT_NEAR(dynablox.number("field_of_view_up_deg"), 16.61, 0.01);
   EXPECT_EQ(value_of("sipailou", "min_range_m"), 3.0);
   EXPECT_EQ(value_of("helimos", "voxel_size_m"), 0.25);
   EXPECT_EQ(value_of("helimos-delayed", "delay_scans"), 10);
   EXPECT_EQ(default_preset(DatasetKind::kHelimos).name, "helimos");
   EXPECT_EQ(default_preset(DatasetKind::kDoals).name, "doals-20m");
+}
+
+// The published rows of these two data sets are of the authors' later program only.
+TEST(Presets, OfMoeAndMdetectorAreThoseOfThePublishedRows) {
+  for (const char* name : {"moe", "mdetector"}) {
+    const Settings settings = settings_of(preset_named(name), methods().front());
+    EXPECT_EQ(settings.choice("variant"), "release-2025") << name;
+    EXPECT_EQ(std::get<int>(settings.find("local_window_scans")->value), 5);
+  }
+  const auto variant_of = [](const char* preset) {
+    return std::string(settings_of(preset_named(preset), methods().front()).choice("variant"));
+  };
+  EXPECT_EQ(variant_of("apollo"), "paper-2024");
 }
 
 }  // namespace

@@ -21,9 +21,10 @@ const std::vector<PublishedCell>& published() {
 }
 
 /// `scans` labelled scans of 1000 moving points, of which `found` plus or minus a few are.
-SequenceResult sequence(const std::string& name, std::size_t scans, std::uint64_t found) {
+SequenceResult sequence(const std::string& name, std::size_t scans, std::uint64_t found,
+                        std::size_t apart_scans = 1) {
   SequenceResult result;
-  result.sequence = name;
+  result.sequence = SequenceName(name, name);
   result.dataset = "doals";
   result.method = "HMM-MOS";
   result.setting = "as the paper";
@@ -38,15 +39,27 @@ SequenceResult sequence(const std::string& name, std::size_t scans, std::uint64_
     counts.tp = found + 20 * (k % 2) - 10;
     counts.fn = 1000 - counts.tp;
     ScanRow& row = result.scans.emplace_back();
-    row.stem = std::to_string(k);
+    row.stem = std::to_string(k * apart_scans);
     row.counts = counts;
   }
   return result;
 }
 
-ResultSet station(std::uint64_t found) {
+/// Labelled scans of DOALS are 100 to 200 scans apart.
+ResultSet station(std::uint64_t found, std::size_t apart_scans = 200) {
   return {"runs/doals",
-          {sequence("station/sequence_1", 10, found), sequence("station/sequence_2", 10, found)}};
+          {sequence("station/sequence_1", 10, found, apart_scans),
+           sequence("station/sequence_2", 10, found, apart_scans)}};
+}
+
+/// The sequence of Sipailou's validation, of which enough scans are labelled for an interval.
+ResultSet valid(std::uint64_t found) {
+  SequenceResult result = sequence("06", 3191, found);
+  result.dataset = "sipailou";
+  result.protocol = &protocol_named("sipailou");
+  result.header["config"]["voxel_size_m"] = 0.25;
+  result.header["config"]["max_range_m"] = 50.0;
+  return {"runs/sipailou", {result}};
 }
 
 TableCell cell_of(const FilledTable& table, std::size_t column = 0) {
@@ -109,7 +122,21 @@ TEST(FillTable, SaysWithinWhereThePublishedValueLiesInTheInterval) {
 }
 
 TEST(FillTable, SaysOutsideWhereItDoesNot) {
-  EXPECT_EQ(cell_of(filled({station(860)})).verdict, Verdict::kOutside);
+  const TableCell cell = cell_of(filled({valid(880)}, "II"));
+  EXPECT_EQ(cell.verdict, Verdict::kOutside) << testing::PrintToString(cell.reasons);
+}
+
+TEST(FillTable, JudgesTheTwentyScansOfTableI) {
+  EXPECT_EQ(cell_of(filled({station(885)})).verdict, Verdict::kWithin);
+  const TableCell cell = cell_of(filled({station(860)}));
+  EXPECT_EQ(cell.verdict, Verdict::kOutside) << testing::PrintToString(cell.reasons);
+  EXPECT_LT(cell.measured->interval.value().high, 0.889);
+}
+
+TEST(FillTable, JudgesNoDifferenceWhereScansAreTooFewForAnInterval) {
+  const TableCell cell = cell_of(filled({station(860, 1)}));
+  EXPECT_EQ(cell.verdict, Verdict::kNotComparable);
+  EXPECT_THAT(cell.reasons, testing::ElementsAre(HasSubstr("no interval: 20 scans")));
 }
 
 TEST(FillTable, ComparesNothingThatIsOfAnotherKind) {
@@ -178,6 +205,59 @@ TEST(FillTable, TakesRowsOfAnyMethod) {
                                       testing::Field(&TableRow::results, "runs/doals"))));
 }
 
+/// Two ranges of the paper's table differ in no other setting.
+TEST(FillTable, PutsRunsOfPeersBesideThePublishedCellsOfTheirRange) {
+  for (const auto& [range_m, section] :
+       {std::pair{20.0, "range 20 m"}, std::pair{120.0, "full range"}}) {
+    ResultSet run = station(880);
+    for (SequenceResult& part : run.sequences) {
+      part.method = "Dynablox";
+      part.protocol = &protocol_named("doals-dynablox");
+      part.header["config"] = {
+          {"level", "object"}, {"voxel_size_m", 0.2}, {"max_range_m", range_m}};
+    }
+    const FilledTable table = filled({run});
+    const auto row = std::ranges::find(table.rows, "runs/doals", &TableRow::results);
+    ASSERT_NE(row, table.rows.end());
+    EXPECT_EQ(row->section, section);
+    EXPECT_EQ(row->protocol, "doals-dynablox");
+    EXPECT_THAT(row->cells[0].reasons, IsEmpty());
+    EXPECT_EQ(row->cells[0].published->iou_percent, range_m < 100 ? "87.3" : "86.2");
+    EXPECT_EQ(row->cells[0].verdict, Verdict::kOutside);
+    for (SequenceResult& part : run.sequences) part.header["config"]["level"] = "point";
+    EXPECT_THAT(cell_of(filled({run})).reasons, ElementsAre("level point, published object"));
+  }
+}
+
+TEST(FillTable, SaysHowToRunPeersThatMosbenchHas) {
+  const FilledTable table = filled({});
+  std::size_t found = 0;
+  for (const TableRow& row : table.rows) {
+    if (row.method != "Dynablox") continue;
+    ++found;
+    const bool near = row.section == "range 20 m";
+    EXPECT_THAT(row.cells[0].reasons.front(),
+                HasSubstr(std::string("mosbench run DIR --dataset doals --sequences "
+                                      "station/sequence_1,station/sequence_2 --preset ") +
+                          (near ? "doals-20m" : "doals-120m") +
+                          " --method dynablox --protocol doals-dynablox"));
+  }
+  EXPECT_EQ(found, 2U);
+}
+
+/// MOE's page names no setting of the methods that it lists.
+TEST(FillTable, ComparesNothingWithAPeerWhoseSettingsAreNotStated) {
+  ResultSet run{"runs/moe", {sequence("00", 40, 400)}};
+  run.sequences[0].dataset = "moe";
+  run.sequences[0].method = "OctoMap";
+  run.sequences[0].protocol = &protocol_named("moe");
+  run.sequences[0].header["config"] = {{"voxel_size_m", 0.2}, {"max_range_m", 120.0}};
+  const TableCell cell = cell_of(filled({run}, "moe"));
+  EXPECT_EQ(cell.published.value().iou_percent, "32.8");
+  EXPECT_EQ(cell.verdict, Verdict::kNotComparable);
+  EXPECT_THAT(cell.reasons, Contains("the settings of the published run are not stated"));
+}
+
 TEST(FillTable, AveragesSensorsAndCountsBothFrameSetsOfHelimos) {
   ResultSet run{"runs/helimos", {}};
   for (const auto& [name, found] : {std::pair{"Aeva", 500U}, std::pair{"Avia", 600U},
@@ -204,14 +284,14 @@ TEST(FillTable, AveragesSensorsAndCountsBothFrameSetsOfHelimos) {
 }
 
 TEST(TablePrint, GivesEachFormatTheSameNumbers) {
-  const FilledTable table = filled({station(880)});
-  EXPECT_THAT(table_markdown(table), HasSubstr("88.9 / 88.0 (-0.9) [87."));
+  const FilledTable table = filled({valid(880)}, "II");
+  EXPECT_THAT(table_markdown(table), HasSubstr("85.6 / 88.0 (+2.4) [8"));
   EXPECT_THAT(table_markdown(table), HasSubstr("] outside |"));
-  EXPECT_THAT(table_latex(table), HasSubstr("88.9 / 88.0 (-0.9)"));
-  EXPECT_THAT(table_latex(table), HasSubstr("\\begin{tabular}{lllrrrr}"));
-  EXPECT_THAT(table_csv(table), HasSubstr(",doals-hmm,ST,88.9,88,-0.9,"));
+  EXPECT_THAT(table_latex(table), HasSubstr("85.6 / 88.0 (+2.4)"));
+  EXPECT_THAT(table_latex(table), HasSubstr("\\begin{tabular}{lllrr}"));
+  EXPECT_THAT(table_csv(table), HasSubstr(",sipailou,valid,85.6,87.999"));
   const auto json = to_json(table);
-  EXPECT_EQ(json.at("columns").size(), 4U);
+  EXPECT_EQ(json.at("columns").size(), 2U);
   for (const auto& row : json.at("rows")) {
     if (row.at("results") == "") continue;
     EXPECT_EQ(row.at("cells").at(0).at("verdict"), "outside");

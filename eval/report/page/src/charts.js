@@ -3,6 +3,8 @@ import { Chart } from './chart.js';
 import { choice } from './choice.js';
 import { comparisonCharts, runNames } from './comparison_charts.js';
 import { element } from './dom.js';
+import { driftChart } from './path_charts.js';
+import { pathsOf, PathView } from './path_view.js';
 import { resultsOfSameScans } from './same_scans.js';
 import { countsChart, memoryChart, metricsChart, stagesChart, thresholdChart } from './scan_charts.js';
 
@@ -44,10 +46,16 @@ export class Charts {
     const overScans = compared === null ? OVER_SCANS.map((make) => make(entry)).filter(Boolean) : comparisonCharts([entry, this.content.results[compared]]);
     const overBins = OVER_BINS.map((make) => make(entry)).filter(Boolean);
     const ofRun = (note) => (compared === null ? note : `of ${entry.run}; ${note}`);
+    const entries = compared === null ? [entry] : [entry, this.content.results[compared]];
+    const names = compared === null ? [entry.run] : runNames(entries);
+    const drift = driftChart(entries, names);
     this.charts = [
       ...overScans.map((chart) => ({ x, go: this.go, ...chart })),
       ...overBins.map((chart) => ({ ...chart, note: ofRun(chart.note) })),
+      ...(drift ? [drift] : []),
     ].map((chart) => new Chart(this.state, chart));
+    const paths = pathsOf(entries, names);
+    if (paths.length > 0) this.charts.push(new PathView(this.state, paths));
     this.node.replaceChildren(...this.#partnerChoice(result, compared), ...this.charts.map(({ node }) => node));
   }
 

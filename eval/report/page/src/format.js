@@ -17,3 +17,8 @@ export function fixed(number, digits, unit = '') {
 export function intervalOf(estimate) {
   return estimate && estimate.low !== null && estimate.low !== undefined ? [estimate.low, estimate.high] : null;
 }
+
+/** Why an estimate has no interval: "no interval: 12 scans, expected ..."; null where it has one or no value. */
+export function whyNoInterval(estimate) {
+  return estimate?.no_interval ? `no interval: ${estimate.no_interval}` : null;
+}

@@ -1,4 +1,4 @@
-import { count, fixed, intervalOf, percent } from './format.js';
+import { count, fixed, intervalOf, percent, whyNoInterval } from './format.js';
 import { hasCounts, iou, precision, recall } from './metrics.js';
 import { OUTCOMES, SERIES } from './theme.js';
 
@@ -39,7 +39,7 @@ export function metricsChart({ result, estimates }) {
   return {
     key: 'metrics',
     title: 'IoU, precision, recall',
-    note: interval ? 'the band is the 95 % interval of the whole' : 'the dashed line is the whole',
+    note: interval ? 'the band is the 95 % interval of the whole' : ['the dashed line is the whole', whyNoInterval(estimates?.iou)].filter(Boolean).join('; '),
     series,
     options: { text: percent, bands, ...percentAxis() },
   };

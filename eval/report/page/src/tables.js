@@ -1,5 +1,5 @@
 import { element, table } from './dom.js';
-import { count, fixed, intervalOf, percent } from './format.js';
+import { count, fixed, intervalOf, percent, whyNoInterval } from './format.js';
 import { iou, worstScans } from './metrics.js';
 
 const AT_MOST = 12;
@@ -10,6 +10,8 @@ function block(title, note, body) {
 
 function withInterval(value, estimate) {
   const ends = intervalOf(estimate);
+  const why = whyNoInterval(estimate);
+  if (why) return element('span', { title: why }, percent(value), element('span', { class: 'hint' }, ' no interval'));
   if (!ends) return percent(value);
   return element('span', {}, percent(value), element('span', { class: 'hint' }, ` ${(100 * ends[0]).toFixed(1)}–${(100 * ends[1]).toFixed(1)}`));
 }
@@ -23,7 +25,7 @@ export function summaryTable(content, choose) {
       : ['no truth', '', '', '', '', '', '', ''];
     return [run, result.sequence, result.protocol.name, result.config?.variant, count(result.scans.length), ...judged, fixed(result.timing?.method_ms_per_scan, 1)];
   });
-  const titles = ['run', 'sequence', 'protocol', 'variant', 'scans', 'IoU', 'precision', 'recall', 'F1', 'TP', 'FP', 'FN', 'as published', 'ms/scan'];
+  const titles = ['run', 'sequence', 'protocol', 'variant', 'scans', 'IoU', 'precision', 'recall', 'F1', 'TP', 'FP', 'FN', "benchmark's rounding", 'ms/scan'];
   return block('Results', content.results.length > 1 ? 'A click on a row shows it above.' : null, table(titles, rows, { leftColumns: 4, onRow: choose }));
 }
 
@@ -64,12 +66,13 @@ export function protocolsTable(entry) {
   const cells = rows.map(({ name, iou: value, published_text: text, tp, fp, fn, why }) => [
     element(name === own ? 'strong' : 'span', {}, name), percent(value), text, count(tp), count(fp), count(fn), element('span', { class: 'why' }, why),
   ]);
-  return block('By every protocol', 'The same labels, counted by the rules of each benchmark. The run was scored by the one in bold.', table(['protocol', 'IoU', 'as published', 'TP', 'FP', 'FN', 'why'], cells));
+  return block('By every protocol', 'The same labels, counted by the rules of each benchmark. The run was scored by the one in bold.', table(['protocol', 'IoU', "benchmark's rounding", 'TP', 'FP', 'FN', 'why'], cells));
 }
 
-function paperCell({ published_percent: published, measured, low, high, verdict, reasons }) {
+function paperCell({ published_percent: published, measured, low, high, no_interval: noInterval, verdict, reasons }) {
   if (measured === null || measured === undefined) return published || '–';
-  const interval = low === null ? '' : ` [${(100 * low).toFixed(1)}, ${(100 * high).toFixed(1)}]`;
+  const missing = noInterval ? ' [no interval]' : '';
+  const interval = low === null ? missing : ` [${(100 * low).toFixed(1)}, ${(100 * high).toFixed(1)}]`;
   return element('span', { title: (reasons ?? []).join('; ') }, `${published || '–'} / `, element('strong', {}, `${(100 * measured).toFixed(1)}${interval}`), element('span', { class: 'hint' }, ` ${verdict}`));
 }
 

@@ -1,5 +1,5 @@
 import { element } from './dom.js';
-import { count, fixed, intervalOf, percent } from './format.js';
+import { count, fixed, intervalOf, percent, whyNoInterval } from './format.js';
 
 function tile(name, value, note) {
   return element('div', { class: 'tile' }, element('span', { class: 'tile-name' }, name), element('span', { class: 'tile-value' }, value),
@@ -8,7 +8,7 @@ function tile(name, value, note) {
 
 function interval(estimate) {
   const ends = intervalOf(estimate);
-  return ends && `95 %: ${(100 * ends[0]).toFixed(1)} to ${percent(ends[1])}`;
+  return ends ? `95 %: ${(100 * ends[0]).toFixed(1)} to ${percent(ends[1])}` : whyNoInterval(estimate);
 }
 
 /** The numbers one asks for first. */
@@ -19,7 +19,7 @@ export function tiles(state, content) {
     const { summary, timing, scans } = result;
     const judged = summary
       ? [
-          tile('IoU', percent(summary.iou), interval(estimates?.iou) ?? `as published: ${summary.published_text}`),
+          tile('IoU', percent(summary.iou), interval(estimates?.iou) ?? `benchmark's rounding: ${summary.published_text}`),
           tile('precision', percent(summary.precision), interval(estimates?.precision) ?? `${count(summary.fp)} false positives`),
           tile('recall', percent(summary.recall), interval(estimates?.recall) ?? `${count(summary.fn)} false negatives`),
         ]

@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { comparisonCharts, runNames } from '../src/comparison_charts.js';
-import { count, fixed, intervalOf, percent } from '../src/format.js';
+import { count, fixed, intervalOf, percent, whyNoInterval } from '../src/format.js';
 import { iou, precision, recall, worstScans } from '../src/metrics.js';
 import { flatten } from '../src/provenance.js';
 import { resultsOfSameScans } from '../src/same_scans.js';
@@ -29,6 +29,15 @@ test('numbers read well, and nothing is not zero', () => {
 
 test('an estimate without interval has none', () => {
   assert.deepEqual([intervalOf({ value: 1, low: null, high: null }), intervalOf(null), intervalOf({ low: 0, high: 1 })], [null, null, [0, 1]]);
+});
+
+test('a missing interval says why, in numbers and below the chart', () => {
+  const iouOf = { value: 0.5, low: null, high: null, no_interval: '12 scans, expected at least 100' };
+  assert.equal(whyNoInterval(iouOf), 'no interval: 12 scans, expected at least 100');
+  assert.deepEqual([whyNoInterval({ low: 0, high: 1, no_interval: null }), whyNoInterval(undefined)], [null, null]);
+  const result = { scans: [{ tp: 1, fp: 1, fn: 0 }], summary: { iou: 0.5 } };
+  assert.equal(metricsChart({ result, estimates: { iou: iouOf } }).note, 'the dashed line is the whole; no interval: 12 scans, expected at least 100');
+  assert.equal(metricsChart({ result, estimates: null }).note, 'the dashed line is the whole');
 });
 
 test('provenance names nested values by their path', () => {

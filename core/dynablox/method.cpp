@@ -1,0 +1,20 @@
+#include "core/dynablox/method.hpp"
+
+#include "core/base/method_row.hpp"
+#include "core/dynablox/config.hpp"
+#include "core/dynablox/pipeline.hpp"
+
+namespace mosbench::dynablox {
+
+MethodKind method_kind() {
+  return {"dynablox",
+          "Dynablox",
+          "Schmid, Andersson, Sulser, Pfreundschuh, Siegwart: Dynablox: Real-time Detection of "
+          "Diverse Dynamic Objects in Complex Environments, RA-L 2023, arXiv:2304.10049",
+          "clusters of points in space that a volumetric map has seen free for long",
+          settings_of(Config{}),
+          check_settings<Config>,
+          make_method<Pipeline, Config>};
+}
+
+}  // namespace mosbench::dynablox

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <mosbench/scan.hpp>
+#include <optional>
+#include <span>
+
+#include "core/dynablox/config.hpp"
+
+namespace mosbench::dynablox {
+
+/// How a sensor's directions are arranged in rows and columns. Row 0 is the highest; columns run
+/// clockwise seen from above, from 0 at x > 0, y = 0 on.
+struct SensorModel {
+  int rows = 0;           ///< V
+  int columns = 0;        ///< H, in a full turn
+  double down_deg = 0;    ///< elevation of the lowest row
+  double up_deg = 0;      ///< elevation of row 0
+  bool has_beams = true;  ///< false: pixels of 1 degree, as rosettes have no rows
+
+  bool operator==(const SensorModel&) const = default;
+  /// Returns the rays that meet a voxel at 1 m, K = (v H / 2 pi) (v V / field of view).
+  double rays_per_voxel_at_1m(double voxel_size_m) const;
+};
+
+/// Returns the model that is configured; nullopt when anything of it is to be measured.
+std::optional<SensorModel> configured_sensor(const Config& config);
+
+/// Returns a model with what is configured, and the rest from the returns of a scan beyond
+/// min_range_m; nullopt when these are too few (1000) to tell. Within half a degree of azimuth the
+/// elevations of a spinning sensor are a comb: rows have its median spacing, and there are as many
+/// columns as the fullest row has returns. Where spacings scatter as at random, the sensor has no
+/// rows and gets pixels of 1 degree.
+std::optional<SensorModel> measured_sensor(std::span<const Point> points, const Config& config);
+
+}  // namespace mosbench::dynablox

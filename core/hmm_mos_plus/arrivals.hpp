@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstdint>
+
+#include "core/base/thread_pool.hpp"
+#include "core/hmm_mos/voxel_map.hpp"
+#include "core/hmm_mos_plus/config.hpp"
+#include "core/hmm_mos_plus/scan_masks.hpp"
+
+namespace mosbench::hmm_mos_plus {
+
+/// What a scan's occupied voxels are by their history.
+struct ArrivalClasses {
+  ScanMasks seeds;    ///< arrived of late, apart from settled surfaces and in known space
+  ScanMasks fresh;    ///< arrived just now: among the seeds, a sign that an object still moves
+  ScanMasks settled;  ///< there for longer: no object grows into them
+};
+
+/// Returns the classes of scan k, with the map as it is after it.
+ArrivalClasses classify(const VoxelizedScan& scan, hmm_mos::VoxelMap& map, std::uint32_t k,
+                        const Config& config, ThreadPool& pool);
+
+/// For a scan that is judged later, with the map as it is after scan k: its voxels that are free by
+/// then departed. They are not settled, and fresh seeds as far as they pass a seed's tests.
+void add_departures(const VoxelizedScan& scan, hmm_mos::VoxelMap& map, std::uint32_t k,
+                    const Config& config, ThreadPool& pool, ArrivalClasses& classes);
+
+}  // namespace mosbench::hmm_mos_plus

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+#include "core/base/config_fields.hpp"
+#include "core/hmm_mos/block_history.hpp"
+#include "core/hmm_mos/config.hpp"
+
+namespace mosbench::hmm_mos_plus {
+
+/// The settings of the paper's method that this one has, too: those of its map.
+inline constexpr std::array<std::string_view, 9> kMapSettings = {
+    "voxel_size_m",          "occupancy_sigma_m",  "min_range_m",
+    "max_range_m",           "delay_scans",        "global_window_scans",
+    "min_state_probability", "transition_epsilon", "distance_field_scans"};
+
+/// The paper's map with distances to the current scan alone.
+inline hmm_mos::Config paper_map() {
+  hmm_mos::Config config;
+  config.distance_field_scans = 1;
+  return config;
+}
+
+/// Every parameter; README.md of this folder says what they are worth.
+struct Config {
+  hmm_mos::Config map = paper_map();
+  int seed_age_scans = 10;
+  int object_age_scans = 10;
+  int max_unknown_voxels = 15;
+  int ground_radius_voxels = 2;
+  int ground_layers_voxels = 1;
+  int min_seeds_voxels = 3;
+  double min_seed_share = 0.1;
+  int fresh_age_scans = 2;
+  double min_fresh_share = 0.2;
+  double max_extent_m = 10.0;
+  double max_height_m = 4.5;
+};
+
+/// The one list of fields, as config_fields.hpp describes it.
+template <typename AnyConfig, typename Visitor>
+void visit_fields(AnyConfig& config, Visitor&& visit) {
+  hmm_mos::visit_fields(config.map, [&](std::string_view name, auto& field, const auto& legal,
+                                        std::string_view meaning) {
+    if (std::ranges::find(kMapSettings, name) != kMapSettings.end()) {
+      visit(name, field, legal, meaning);
+    }
+  });
+  constexpr double kMaxAge = hmm_mos::BlockHistory::kMaxAgeScans;
+  visit("seed_age_scans", config.seed_age_scans, FieldRange{0, kMaxAge},
+        "a voxel that arrived in free space is a seed for so long; 10 are 1 s at 10 Hz");
+  visit("object_age_scans", config.object_age_scans, FieldRange{0, kMaxAge},
+        "a voxel that arrived may be part of an object for so long although it is settled");
+  visit("max_unknown_voxels", config.max_unknown_voxels, FieldRange{0, 125},
+        "a seed has at most so many unknown ones among the 125 voxels around it");
+  visit("ground_radius_voxels", config.ground_radius_voxels, FieldRange{0, kBlockSide},
+        "the ground is the lowest voxel in the columns within this distance");
+  visit("ground_layers_voxels", config.ground_layers_voxels, FieldRange{0, 100},
+        "voxels at most this high above the ground connect nothing");
+  visit("min_seeds_voxels", config.min_seeds_voxels, FieldRange{1, 100000},
+        "an object has at least so many seeds");
+  visit("min_seed_share", config.min_seed_share, FieldRange{0.0, 1.0},
+        "an object's voxels are seeds by at least this share");
+  visit("fresh_age_scans", config.fresh_age_scans, FieldRange{0, kMaxAge},
+        "a seed is fresh for so long; from seed_age_scans on every seed is");
+  visit("min_fresh_share", config.min_fresh_share, FieldRange{0.0, 1.0},
+        "of an object's seeds, at least this share is fresh: those of a parked car grow old");
+  visit("max_extent_m", config.max_extent_m, FieldRange{0.0, 1000.0},
+        "an object is at most so long along x and y of the map");
+  visit("max_height_m", config.max_height_m, FieldRange{0.0, 1000.0},
+        "an object is at most so high");
+}
+
+/// Throws std::invalid_argument "<key>: <what is wrong>, <what was expected>" for the first field
+/// outside its range, and as hmm_mos::check does.
+void check(const Config& config);
+
+}  // namespace mosbench::hmm_mos_plus

@@ -1,0 +1,107 @@
+#include "core/hmm_mos_plus/pipeline.hpp"
+
+#include <utility>
+
+#include "core/base/stage_clock.hpp"
+#include "core/hmm_mos/label_projection.hpp"
+#include "core/hmm_mos_plus/ground.hpp"
+#include "core/hmm_mos_plus/objects.hpp"
+
+namespace mosbench::hmm_mos_plus {
+namespace {
+
+/// Returns the scores of a scan's points.
+std::vector<float> seed_shares(const VoxelizedScan& scan,
+                               const std::vector<Component>& components) {
+  std::vector<float> of_voxel(scan.measured.block_count() * kBlockVoxels);
+  for (const Component& component : components) {
+    for (const std::uint32_t voxel : component.voxels) {
+      of_voxel[voxel] = static_cast<float>(component.seed_share);
+    }
+  }
+  std::vector<float> scores;
+  for (const std::uint32_t voxel : scan.voxel_of_point) {
+    scores.push_back(voxel == kNoVoxel ? 0 : of_voxel[voxel]);
+  }
+  return scores;
+}
+
+}  // namespace
+
+Pipeline::Pipeline(const Config& config, const RunContext& context)
+    : MappedMethod(checked(config).map, context, hmm_mos::VoxelMap::Keeps::kStatesAndHistory),
+      config_(config) {}
+
+std::vector<LabelledScan> Pipeline::entered(hmm_mos::ObservedScan& current) {
+  HeldScan& held = held_.emplace_back();
+  held.result = begun_result(current, mapping().k());
+  held.scan = std::move(current.scan);
+  const StageRecord record{held.result.stages, context().cpu_times};
+  held.classes = timed(record, "arrivals", [&] {
+    return classify(held.scan, mapping().map(), mapping().k(), config_, mapping().pool());
+  });
+  const auto n = static_cast<std::size_t>(config_.map.delay_scans);
+  return held_.size() > n ? release(1) : std::vector<LabelledScan>{};
+}
+
+/// Labels a held scan with the map as it is now.
+void Pipeline::judge(HeldScan& held) {
+  const VoxelizedScan& scan = held.scan;
+  LabelledScan& result = held.result;
+  const StageRecord record{result.stages, context().cpu_times};
+  if (config_.map.delay_scans > 0) {
+    const StageClock clock(record, "departures");
+    add_departures(scan, mapping().map(), mapping().k(), config_, mapping().pool(), held.classes);
+  }
+  ScanMasks low = timed(record, "ground", [&] {
+    return low_voxels(scan, config_.ground_radius_voxels, config_.ground_layers_voxels);
+  });
+  const ScanMasks moving =
+      timed(record, "objects", [&] { return moving_voxels(held, std::move(low)); });
+  const StageClock clock(record, "labels");
+  result.labels = hmm_mos::project_labels(scan, moving);
+  result.threshold = config_.min_seed_share;
+  result.judged = true;
+}
+
+/// Returns the voxels of objects that move, feet included, and scores the scan's points. `low` are
+/// the voxels near the ground.
+ScanMasks Pipeline::moving_voxels(HeldScan& held, ScanMasks low) {
+  const VoxelizedScan& scan = held.scan;
+  ScanMasks moving(low.size()), others(low.size());
+  for (std::size_t i = 0; i < others.size(); ++i) {
+    others[i] = without(scan.occupied[i], held.classes.settled[i] | low[i]);
+    low[i] = without(low[i], held.classes.settled[i]);
+  }
+  const std::vector<Component> components = components_of(scan, held.classes, others, config_);
+  for (const Component& component : components) {
+    if (!component.moves) continue;
+    for (const std::uint32_t voxel : component.voxels) {
+      moving[voxel / kBlockVoxels].set(voxel % kBlockVoxels);
+    }
+  }
+  const ScanMasks feet = feet_of(scan, moving, low);
+  for (std::size_t i = 0; i < feet.size(); ++i) moving[i] = moving[i] | feet[i];
+  if (context().scores) held.result.scores = seed_shares(scan, components);
+  return moving;
+}
+
+std::vector<LabelledScan> Pipeline::release(std::size_t count) {
+  std::vector<LabelledScan> results;
+  for (; count > 0; --count) {
+    judge(held_.front());
+    results.push_back(std::move(held_.front().result));
+    held_.pop_front();
+  }
+  return results;
+}
+
+std::size_t Pipeline::held_bytes() const {
+  std::size_t bytes = 0;
+  for (const HeldScan& held : held_) {
+    bytes += held.scan.memory_bytes() + 3 * held.classes.seeds.capacity() * sizeof(BlockMask);
+  }
+  return bytes;
+}
+
+}  // namespace mosbench::hmm_mos_plus

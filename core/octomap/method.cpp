@@ -1,0 +1,36 @@
+#include "core/octomap/method.hpp"
+
+#include <stdexcept>
+#include <string>
+
+#include "core/octomap/config.hpp"
+#include "core/octomap/pipeline.hpp"
+
+namespace mosbench::octomap {
+namespace {
+
+void check_settings(const Settings& settings) {
+  if (!how_to_build().empty())
+    throw std::invalid_argument("octomap: " + std::string(how_to_build()));
+  check(config_of<Config>(settings));
+}
+
+std::unique_ptr<Method> make(const Settings& settings, const RunContext& context) {
+  return make_pipeline(config_of<Config>(settings), context);
+}
+
+}  // namespace
+
+MethodKind method_kind() {
+  return {"octomap",
+          "OctoMap",
+          "Hornung, Wurm, Bennewitz, Stachniss, Burgard: OctoMap: An Efficient Probabilistic 3D "
+          "Mapping Framework Based on Octrees, Autonomous Robots 2013",
+          how_to_build().empty() ? "points in voxels that OctoMap's map of log-odds holds free"
+                                 : how_to_build(),
+          settings_of(Config{}),
+          check_settings,
+          make};
+}
+
+}  // namespace mosbench::octomap

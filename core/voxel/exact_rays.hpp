@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "core/voxel/grid_walk.hpp"
+#include "core/voxel/ray_window.hpp"
+
+namespace mosbench {
+
+/// A line through a window, from a voxel on.
+struct ExactRay {
+  BorderCrossings crossings;
+  double length_m;
+  std::uint64_t start, end;  ///< bits of the window
+  std::uint32_t steps;       ///< about as many voxels; rays of similar length are walked together
+};
+
+/// How far rays go.
+enum class RayEnd {
+  /// Up to, not including, the voxel `end`, or as long as the next border is within the length
+  /// (OctoMap's computeRayKeys, which adds its first voxel always).
+  kBeforeEnd,
+  /// While the next border is nearer than the length, up to and including the first voxel that is
+  /// set in a second window (UFOMap's computeRay).
+  kAtHit
+};
+
+/// Marks the voxels that the rays cross in `window`, eight rays in step. `hits` has the same
+/// layout, and is not read for kBeforeEnd. Afterwards every ray also marks the voxels up to the
+/// first one that is `beyond_voxels` from its last along one axis.
+void cast_exact(std::span<const ExactRay> rays, RayEnd until, const RayWindow& hits,
+                int beyond_voxels, RayWindow& window);
+
+}  // namespace mosbench

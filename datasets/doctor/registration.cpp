@@ -1,0 +1,257 @@
+#include "datasets/doctor/registration.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <unordered_set>
+
+#include "datasets/doctor/cell_moments.hpp"
+#include "datasets/doctor/surface_cells.hpp"
+
+namespace mosbench {
+namespace {
+
+constexpr double kColumnM = 1.0;
+constexpr std::size_t kFewestOfSurface = 5;
+constexpr double kThinM = 0.05;
+constexpr double kCoarseM = 0.4;
+/// A surface is spread along a direction when its deviation is larger, metres.
+constexpr double kSpreadM = 0.12;
+constexpr double kNone = 1e12;
+
+using Columns = std::unordered_map<std::uint64_t, std::pair<double, double>>;
+
+std::uint64_t column_key(const Eigen::Vector3d& point_m) {
+  return cube_key({point_m.x(), point_m.y(), 0.0}, kColumnM);
+}
+
+Columns columns_of(std::span<const Eigen::Vector3d> points_m) {
+  Columns columns;
+  for (const Eigen::Vector3d& point_m : points_m) {
+    auto& [low_m, high_m] =
+        columns.try_emplace(column_key(point_m), point_m.z(), point_m.z()).first->second;
+    low_m = std::min(low_m, point_m.z());
+    high_m = std::max(high_m, point_m.z());
+  }
+  return columns;
+}
+
+bool is_flat(const Columns& columns, const Eigen::Vector3d& point_m) {
+  constexpr double kFlatM = 0.5;
+  const auto column = columns.find(column_key(point_m));
+  return column != columns.end() && column->second.second - column->second.first < kFlatM;
+}
+
+HoldingSurfaces::Surface surface_of(const CellMoments& cell, bool flat) {
+  HoldingSurfaces::Surface surface;
+  surface.mean_m = cell.mean_m();
+  const Eigen::Matrix3d covariance = cell.covariance_m2();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(covariance);
+  surface.directions = eigen.eigenvectors();
+  const Eigen::Vector3d variance_m2 = eigen.eigenvalues().cwiseMax(0.0);
+  const double spread_m2 = kSpreadM * kSpreadM;
+  surface.variance_m2 = variance_m2;
+  if (variance_m2[0] > spread_m2) return surface;  // a bush
+  if (variance_m2[1] > spread_m2) {                // a plane
+    surface.variance_m2 = {variance_m2[0], kNone, kNone};
+    return surface;
+  }
+  const Eigen::Vector3d line = surface.directions.col(2);
+  if (std::abs(line.z()) > 0.8) {  // a pole
+    surface.variance_m2 = {variance_m2[0], variance_m2[1], kNone};
+    return surface;
+  }
+  // One ring: on the ground it holds in height, on a wall across.
+  const Eigen::Vector3d across = line.cross(Eigen::Vector3d::UnitZ()).normalized();
+  surface.directions.col(0) = flat ? Eigen::Vector3d::UnitZ() : across;
+  surface.directions.col(1) = flat ? across : Eigen::Vector3d::UnitZ();
+  const double held = surface.directions.col(0).dot(covariance * surface.directions.col(0));
+  surface.variance_m2 = {std::max(held, 0.0), kNone, kNone};
+  return surface;
+}
+
+Eigen::Matrix3d crossing(const Eigen::Vector3d& v) {
+  Eigen::Matrix3d cross;
+  cross << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
+  return cross;
+}
+
+Pose stepped(const Vector6& step, const Pose& pose) {
+  Pose moved = pose;
+  const Eigen::Vector3d rotation = step.tail<3>();
+  const double angle = rotation.norm();
+  if (angle > 1e-12) {
+    moved.prerotate(Eigen::AngleAxisd(angle, rotation / angle));
+  }
+  moved.pretranslate(Eigen::Vector3d(step.head<3>()));
+  return moved;
+}
+
+struct Normal {
+  Matrix6 information = Matrix6::Zero();
+  Vector6 gradient = Vector6::Zero();
+};
+
+void add_points(const HoldingSurfaces& surfaces, std::span<const Eigen::Vector3d> points_m,
+                const Pose& motion, double thickness_m, Normal& sums) {
+  for (const Eigen::Vector3d& point_m : points_m) {
+    const Eigen::Vector3d moved_m = motion * point_m;
+    const auto* surface = surfaces.at(moved_m);
+    if (surface == nullptr) continue;
+    const Eigen::Vector3d offset_m = moved_m - surface->mean_m;
+    const Eigen::Matrix3d information = surface->information(thickness_m);
+    const Eigen::Vector3d pull = information * offset_m;
+    const double weight = std::exp(-0.5 * offset_m.dot(pull));
+    if (weight < 1e-3) continue;
+    Eigen::Matrix<double, 3, 6> jacobian;
+    jacobian << Eigen::Matrix3d::Identity(), -crossing(moved_m);
+    sums.information.noalias() += weight * jacobian.transpose() * information * jacobian;
+    sums.gradient.noalias() += weight * jacobian.transpose() * pull;
+  }
+}
+
+Normal normal_at(const HoldingSurfaces& surfaces, const SparseScan& scan, const Pose& motion,
+                 double thickness_m) {
+  Normal sums;
+  add_points(surfaces, scan.upright_m, motion, thickness_m, sums);
+  add_points(surfaces, scan.ground_m, motion, thickness_m, sums);
+  // Directions that nothing holds stay where they are.
+  sums.information.diagonal().array() += 1e-3;
+  return sums;
+}
+
+std::vector<Eigen::Vector3d> thinned(const std::vector<Eigen::Vector3d>& points_m, double size_m,
+                                     std::size_t most) {
+  std::unordered_set<std::uint64_t> taken;
+  std::vector<Eigen::Vector3d> kept_m;
+  for (const Eigen::Vector3d& point_m : points_m) {
+    if (taken.insert(cube_key(point_m, size_m)).second) kept_m.push_back(point_m);
+  }
+  return picked(kept_m, most);
+}
+
+/// Gives each upright point its share of what holds the scan sideways.
+void weigh(SparseScan& scan, const HoldingSurfaces& surfaces) {
+  std::vector<Eigen::Matrix2d> holds;
+  Eigen::Matrix2d all = Eigen::Matrix2d::Identity() * 1e-6;
+  for (const Eigen::Vector3d& point_m : scan.upright_m) {
+    const auto* surface = surfaces.at(point_m);
+    holds.emplace_back(Eigen::Matrix2d::Zero());
+    if (surface == nullptr) continue;
+    holds.back() = kThinM * kThinM * surface->information(kThinM).topLeftCorner<2, 2>();
+    all += holds.back();
+  }
+  const Eigen::Matrix2d shares = all.inverse();
+  for (const Eigen::Matrix2d& hold : holds) scan.leverage.push_back(0.5 * (shares * hold).trace());
+}
+
+SparseScan sparse(const std::vector<Eigen::Vector3d>& near_m, const HoldingSurfaces& surfaces) {
+  constexpr double kUprightCellM = 0.4, kGroundCellM = 1.0;
+  constexpr std::size_t kUpright = 1500, kGround = 500;
+  const Columns columns = columns_of(near_m);
+  std::vector<Eigen::Vector3d> upright_m, ground_m;
+  for (const Eigen::Vector3d& point_m : near_m) {
+    (is_flat(columns, point_m) ? ground_m : upright_m).push_back(point_m);
+  }
+  SparseScan scan{
+      thinned(upright_m, kUprightCellM, kUpright), {}, thinned(ground_m, kGroundCellM, kGround)};
+  weigh(scan, surfaces);
+  return scan;
+}
+
+}  // namespace
+
+Eigen::Matrix3d HoldingSurfaces::Surface::information(double thickness_m) const {
+  const Eigen::Vector3d weights =
+      (variance_m2.array() + thickness_m * thickness_m).inverse().matrix();
+  return directions * weights.asDiagonal() * directions.transpose();
+}
+
+HoldingSurfaces::HoldingSurfaces(std::span<const Eigen::Vector3d> points_m, double cell_m)
+    : cell_m_(cell_m) {
+  const Columns columns = columns_of(points_m);
+  for (const auto& [key, cell] : moments_of_cells(points_m, cell_m_)) {
+    if (cell.count < kFewestOfSurface) continue;
+    surfaces_.emplace(key, surface_of(cell, is_flat(columns, cell.mean_m())));
+  }
+}
+
+const HoldingSurfaces::Surface* HoldingSurfaces::at(const Eigen::Vector3d& point_m) const {
+  const auto found = surfaces_.find(cube_key(point_m, cell_m_));
+  return found == surfaces_.end() ? nullptr : &found->second;
+}
+
+std::vector<Eigen::Vector3d> sparse_ground_m(std::span<const Point> points) {
+  const std::vector<Eigen::Vector3d> near_m = near_points(points);
+  const Columns columns = columns_of(near_m);
+  std::vector<Eigen::Vector3d> ground_m;
+  for (const Eigen::Vector3d& point_m : near_m) {
+    if (is_flat(columns, point_m)) ground_m.push_back(point_m);
+  }
+  return thinned(ground_m, kColumnM, ground_m.size());
+}
+
+RegisteredScan registered_scan(std::span<const Point> points, double cell_m) {
+  constexpr std::size_t kSurfacePoints = 40000;
+  const std::vector<Eigen::Vector3d> near_m = near_points(points);
+  HoldingSurfaces surfaces(picked(near_m, kSurfacePoints), cell_m);
+  SparseScan scan = sparse(near_m, surfaces);
+  return {std::move(surfaces), std::move(scan)};
+}
+
+double upright_overlap(const HoldingSurfaces& earlier, const SparseScan& later, const Pose& motion,
+                       std::size_t step, double thickness_m) {
+  double sum = 0.0, whole = 0.0;
+  for (std::size_t i = 0; i < later.upright_m.size(); i += step) {
+    whole += later.leverage[i];
+    const Eigen::Vector3d moved_m = motion * later.upright_m[i];
+    const auto* surface = earlier.at(moved_m);
+    if (surface == nullptr) continue;
+    const Eigen::Vector3d offset_m = moved_m - surface->mean_m;
+    sum += later.leverage[i] *
+           std::exp(-0.5 * offset_m.dot(surface->information(thickness_m) * offset_m));
+  }
+  return whole > 0.0 ? sum / whole : 0.0;
+}
+
+Registration registered(const HoldingSurfaces& earlier, const SparseScan& later,
+                        const Pose& start) {
+  constexpr int kMostSteps = 12;
+  constexpr double kStillM = 1e-3;
+  Registration result;
+  result.motion = start;
+  for (const double thickness_m : {kCoarseM, 2.0 * kThinM, kThinM}) {
+    for (int step = 0; step < kMostSteps; ++step) {
+      const Normal normal = normal_at(earlier, later, result.motion, thickness_m);
+      const Vector6 change = -normal.information.ldlt().solve(normal.gradient);
+      if (!change.allFinite() || change.norm() > 5.0) break;
+      result.motion = stepped(change, result.motion);
+      if (change.norm() < kStillM) break;
+    }
+  }
+  result.covariance = normal_at(earlier, later, result.motion, kThinM).information.inverse();
+  result.overlap = upright_overlap(earlier, later, result.motion, 1, kThinM);
+  return result;
+}
+
+Pose searched_start(const HoldingSurfaces& earlier, const SparseScan& later, double reach_m) {
+  constexpr double kStepM = 0.5;
+  constexpr std::size_t kEvery = 4;
+  Pose best = Pose::Identity();
+  double best_overlap = 0.0;
+  const int reach = static_cast<int>(reach_m / kStepM);
+  for (int x = -reach; x <= reach; ++x) {
+    for (int y = -reach; y <= reach; ++y) {
+      Pose start = Pose::Identity();
+      start.translation() = Eigen::Vector3d(kStepM * x, kStepM * y, 0.0);
+      const double overlap = upright_overlap(earlier, later, start, kEvery, kCoarseM);
+      if (overlap <= best_overlap) continue;
+      best_overlap = overlap;
+      best = start;
+    }
+  }
+  return best;
+}
+
+}  // namespace mosbench

@@ -1,0 +1,54 @@
+#include "datasets/sequence/sequence_name.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+#include "datasets/files/errors.hpp"
+#include "datasets/files/shown_text.hpp"
+
+namespace mosbench {
+namespace {
+
+constexpr std::size_t kLongest_bytes = 255;
+constexpr std::ptrdiff_t kMostSlashes = 1;
+constexpr std::array<std::string_view, 3> kOfResults = {"labels", "scores", "result.json"};
+
+bool is_of_results(std::string_view part) {
+  return std::ranges::find(kOfResults, part) != kOfResults.end() || part.ends_with(".partial") ||
+         part.ends_with(".replaced");
+}
+
+void check_part(std::string_view part, const std::string& text, const std::filesystem::path& file) {
+  const auto refuse = [&](const char* expected) {
+    throw DataError(file, fmt::format("names the sequence \"{}\"", shown_in_line(text)), expected);
+  };
+  if (part.empty() || part == "." || part == "..") refuse("a folder below that of results");
+  if (part.size() > kLongest_bytes) refuse("at most 255 bytes");
+  if (!is_printable(part)) refuse("UTF-8 without control characters");
+  if (is_of_results(part)) {
+    refuse(
+        "another name: results use labels, scores, result.json, *.partial and *.replaced "
+        "themselves");
+  }
+}
+
+}  // namespace
+
+SequenceName::SequenceName(std::string text, const std::filesystem::path& file)
+    : text_(std::move(text)) {
+  if (std::ranges::count(text_, '/') > kMostSlashes) {
+    throw DataError(file, fmt::format("names the sequence \"{}\"", shown_in_line(text_)),
+                    "one folder, or a scene and a folder");
+  }
+  for (std::string_view rest = text_;;) {
+    const std::size_t slash = rest.find('/');
+    check_part(rest.substr(0, slash), text_, file);
+    if (slash == std::string_view::npos) return;
+    rest.remove_prefix(slash + 1);
+  }
+}
+
+}  // namespace mosbench

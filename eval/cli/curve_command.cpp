@@ -1,0 +1,63 @@
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <optional>
+
+#include "eval/cli/commands.hpp"
+#include "eval/cli/output_file.hpp"
+#include "eval/report/curve_report.hpp"
+#include "eval/results/answer_text.hpp"
+
+namespace mosbench {
+namespace {
+
+constexpr const char* kCurveFooter =
+    R"(RUN is a folder that `mosbench run --scores` wrote: the points, the truth and the score of every point
+are read again, all scans that the protocol counts are pooled. A point counts as moving from a threshold
+of its score on; sweeping it gives precision over recall, its area (average precision: precision times
+the rise of recall, summed) and the threshold with the best IoU on these scans. The labels of the run
+need not lie on the curve, because methods do more than compare a score. Results without scores and
+those of `mosbench score` are refused (exit code 3).
+
+Examples:
+  mosbench curve results/runs/street     # of mosbench run sim/street --scores --out results/runs/street
+  mosbench curve results/runs/street --format csv -o street.png > street.csv)";
+
+struct CurveFlags {
+  std::filesystem::path run;
+  std::optional<std::filesystem::path> dataset_root, picture;
+  std::string format = "text";
+};
+
+std::string formatted(const CurveReport& report, const std::string& format) {
+  if (format == "csv") return curve_csv(report);
+  if (format == "json") return json_text(curve_json(report));
+  return curve_text(report);
+}
+
+Answer curve(const CurveFlags& options) {
+  const CurveReport report = curve_of_run(options.run, options.dataset_root);
+  if (options.picture) write_output(*options.picture, curve_picture(report).png());
+  return answer_beside(options.picture.value_or(""), formatted(report, options.format));
+}
+
+}  // namespace
+
+CommandRun add_curve(CLI::App& command) {
+  auto options = std::make_shared<CurveFlags>();
+  command.add_option("RUN", options->run, "Folder that `mosbench run --scores` wrote")
+      ->type_name("DIR")
+      ->required();
+  command
+      .add_option("--data", options->dataset_root,
+                  "Folder of the data set (default: where the run read it)")
+      ->type_name("DIR");
+  command.add_option("--format", options->format, "How to print it")
+      ->check(CLI::IsMember({"text", "csv", "json"}))
+      ->capture_default_str();
+  command.add_option("-o,--out", options->picture, "PNG file to draw the curve to; - is stdout")
+      ->type_name("FILE");
+  command.footer(kCurveFooter);
+  return [options] { return curve(*options); };
+}
+
+}  // namespace mosbench

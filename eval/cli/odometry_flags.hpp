@@ -1,0 +1,15 @@
+#pragma once
+
+#include <CLI/App.hpp>
+
+#include "eval/runs/odometry_choice.hpp"
+
+namespace mosbench {
+
+/// Adds --odometry and the flags of its settings to a command that otherwise reads poses. What they
+/// fill must outlive the parsing.
+void add_odometry_flags(CLI::App& command, OdometryOptions& odometry);
+/// Adds --drop-moving alone.
+void add_drop_moving_flag(CLI::App& command, OdometryOptions& odometry);
+
+}  // namespace mosbench

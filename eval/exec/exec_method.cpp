@@ -1,0 +1,200 @@
+#include "eval/exec/exec_method.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <list>
+#include <mutex>
+#include <stdexcept>
+#include <utility>
+
+#include "eval/exec/child_process.hpp"
+#include "eval/exec/pipe_messages.hpp"
+#include "eval/exec/program_error.hpp"
+
+namespace mosbench {
+namespace {
+
+/// A scan until the program gets it.
+struct WaitingScan : Observed {
+  WaitingScan(std::span<const Point> all, const Pose& pose)
+      : points(all.begin(), all.end()), map_from_sensor(pose) {}
+  std::vector<Point> points;
+  Pose map_from_sensor;
+};
+
+std::size_t nonfinite_points(const std::vector<Point>& points) {
+  return static_cast<std::size_t>(std::ranges::count_if(points, [](const Point& point) {
+    return !std::isfinite(point.x) || !std::isfinite(point.y) || !std::isfinite(point.z);
+  }));
+}
+
+class ExecMethod : public Method {
+ public:
+  ExecMethod(const std::string& command, double timeout_s, RunContext context)
+      : timeout_s_(timeout_s),
+        context_(std::move(context)),
+        greeting_{context_.scan_count.value_or(0), context_.scores},
+        program_(command) {
+    if (context_.threads == 0) throw std::invalid_argument("threads: is 0, expected at least 1");
+  }
+
+  using Method::push;
+  std::unique_ptr<Observed> observe(std::span<const Point> points,
+                                    const Pose& map_from_sensor) override {
+    return std::make_unique<WaitingScan>(points, map_from_sensor);
+  }
+
+  std::vector<LabelledScan> push(std::unique_ptr<Observed> observed) override {
+    const auto* scan = dynamic_cast<const WaitingScan*>(observed.get());
+    if (scan == nullptr) throw std::logic_error("exec: the scan was observed by another method");
+    if (ended_ || (context_.scan_count && scans_ >= *context_.scan_count)) {
+      throw std::logic_error("exec: gets more scans than were announced");
+    }
+    if (scans_ == 0) greet();
+    std::vector<LabelledScan> results(1);
+    label(*scan, results.front());
+    ++scans_;
+    return results;
+  }
+
+  std::vector<LabelledScan> finish() override {
+    if (std::exchange(ended_, true)) return {};
+    const auto deadline = new_deadline();
+    program_.end(deadline);
+    expect_silence();
+    const std::string end = program_.how_it_ended(deadline);
+    if (end.empty()) {
+      remarks_.push_back(fmt::format(
+          "the program still ran {:g} s after its last scan, and was killed", timeout_s_));
+    } else if (end != "ended with exit code 0") {
+      remarks_.push_back(fmt::format("the program {} after its last scan", end));
+    }
+    return {};
+  }
+
+  std::vector<std::string> remarks() const override { return remarks_; }
+
+ private:
+  ChildProcess::Deadline new_deadline() const {
+    return std::chrono::steady_clock::now() +
+           std::chrono::round<std::chrono::steady_clock::duration>(
+               std::chrono::duration<double>(timeout_s_));
+  }
+
+  void greet() {
+    const auto deadline = new_deadline();
+    await(greeting_message(greeting_), kHeaderBytes, kReadyBytes, deadline);
+    check_ready_header(parse_header(program_.take(kHeaderBytes)));
+    await({}, kReadyBytes, 0, deadline);
+    sends_scores_ = parse_ready(program_.take(kReadyBytes), greeting_);
+    expect_silence();
+  }
+
+  void label(const WaitingScan& scan, LabelledScan& result) {
+    const std::size_t points = scan.points.size();
+    const auto deadline = new_deadline();
+    const std::size_t bytes = label_bytes(points, sends_scores_);
+    await(scan_message({scans_, stamp_ns(), scan.points, scan.map_from_sensor}), kHeaderBytes,
+          bytes, deadline);
+    check_label_header(parse_header(program_.take(kHeaderBytes)), points, sends_scores_);
+    await({}, bytes, 0, deadline);
+    LabelMessage message = parse_labels(program_.take(bytes), scans_, points, sends_scores_);
+    expect_silence();
+    result.scan_index = scans_;
+    result.labels = std::move(message.labels);
+    if (context_.scores) result.scores = std::move(message.scores);
+    result.judged = true;
+    result.nonfinite_points = nonfinite_points(scan.points);
+  }
+
+  std::int64_t stamp_ns() const {
+    return scans_ < context_.stamps_ns.size() ? context_.stamps_ns[scans_] : ScanMessage::kNoStamp;
+  }
+
+  /// Sends, and waits until so many bytes are there, of which at most `further` bytes may follow.
+  void await(std::string_view outgoing, std::size_t bytes, std::size_t further,
+             ChildProcess::Deadline deadline) {
+    const std::size_t unread = program_.exchange(outgoing, bytes, bytes + further, deadline);
+    const std::size_t got = program_.inbox().size();
+    if (got >= bytes && (unread == 0 || got > bytes + further)) return;
+    if (!program_.is_closed()) {
+      throw ProgramError(fmt::format("the program gave {} of {} bytes within {:g} s, and left {} "
+                                     "bytes of its input unread",
+                                     got, bytes, timeout_s_, unread),
+                         "an answer in time, or a longer --set timeout_s");
+    }
+    std::string end = program_.how_it_ended(deadline);
+    if (end.empty()) end = "closed its stdout";
+    throw ProgramError(
+        got >= bytes
+            ? fmt::format("the program {} and left {} bytes of its input unread", end, unread)
+            : fmt::format("the program {} after {} of {} bytes", end, got, bytes),
+        "an answer to every scan; what it wrote to stderr stands above");
+  }
+
+  /// More than an answer was asked for: its labels may be shifted.
+  void expect_silence() const {
+    if (program_.inbox().empty()) return;
+    throw ProgramError(fmt::format("the program wrote {} bytes or more behind its answer",
+                                   program_.inbox().size()),
+                       "one answer to each message and nothing else on stdout");
+  }
+
+  double timeout_s_;
+  RunContext context_;
+  Greeting greeting_;
+  ChildProcess program_;
+  std::size_t scans_ = 0;
+  bool sends_scores_ = false, ended_ = false;
+  std::vector<std::string> remarks_;
+};
+
+Settings default_settings() {
+  Setting timeout;
+  timeout.name = "timeout_s";
+  timeout.value = 60.0;
+  timeout.meaning = "the program answers its start and every scan within this time";
+  timeout.lowest = 0.01;
+  timeout.highest = 86400.0;
+  return Settings({timeout});
+}
+
+/// The row keeps views of the title.
+struct NamedKind {
+  std::string command, title;
+  MethodKind kind;
+};
+
+MethodKind kind_of(const NamedKind& named) {
+  return {.name = kExecKind,
+          .title = named.title,
+          .source = "a program of the user",
+          .summary = "labels of a program of the user, over a pipe",
+          .defaults = default_settings(),
+          .check = [](const Settings&) {},
+          .make = [command = named.command](const Settings& settings,
+                                            const RunContext& context) -> std::unique_ptr<Method> {
+            return std::make_unique<ExecMethod>(command, settings.number("timeout_s"), context);
+          }};
+}
+
+}  // namespace
+
+const MethodKind& exec_method(const std::string& command) {
+  if (command.empty()) {
+    throw UsageError("--method exec: names no program, expected exec:COMMAND");
+  }
+  static std::mutex mutex;
+  static std::list<NamedKind> kinds;
+  const std::lock_guard lock(mutex);
+  const auto known = std::ranges::find(kinds, command, &NamedKind::command);
+  if (known != kinds.end()) return known->kind;
+  NamedKind& named = kinds.emplace_back(NamedKind{command, "exec:" + command, {}});
+  named.kind = kind_of(named);
+  return named.kind;
+}
+
+}  // namespace mosbench

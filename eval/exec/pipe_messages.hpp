@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <mosbench/scan.hpp>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace mosbench {
+
+/// The messages between mosbench and a program that labels scans, as results/FORMATS.md describes
+/// them: a header of 16 bytes, then a payload; little endian, without padding.
+inline constexpr std::uint32_t kPipeVersion = 1;
+inline constexpr std::size_t kHeaderBytes = 16;
+inline constexpr std::size_t kReadyBytes = 8;  ///< of the payload of MOSready
+
+/// What a header says.
+struct MessageHeader {
+  std::string tag;                  ///< 8 bytes, "MOSlabel"
+  std::uint64_t payload_bytes = 0;  ///< that follow
+};
+
+/// What mosbench says first.
+struct Greeting {
+  std::uint64_t scans = 0;  ///< of the sequence; 0: not known
+  bool wants_scores = false;
+};
+
+/// One scan on its way to the program.
+struct ScanMessage {
+  std::uint64_t scan_index = 0;
+  std::int64_t stamp_ns = kNoStamp;
+  std::span<const Point> points;
+  Pose map_from_sensor = Pose::Identity();
+
+  static constexpr std::int64_t kNoStamp = INT64_MIN;
+};
+
+/// What the program answers to a scan.
+struct LabelMessage {
+  std::vector<std::uint32_t> labels;
+  std::vector<float> scores;  ///< empty without
+};
+
+std::string greeting_message(const Greeting& greeting);
+std::string scan_message(const ScanMessage& scan);
+
+/// Takes kHeaderBytes bytes.
+MessageHeader parse_header(std::string_view bytes);
+
+/// Checks the header of the answer to a greeting. Throws ProgramError.
+void check_ready_header(const MessageHeader& header);
+/// Returns whether scores will come. Throws ProgramError for another version, or when scores are
+/// wanted and will not come.
+bool parse_ready(std::string_view payload, const Greeting& greeting);
+
+/// Returns the size of the payload of MOSlabel.
+std::size_t label_bytes(std::size_t points, bool with_scores);
+/// Checks the header of the answer to a scan of so many points. Throws ProgramError.
+void check_label_header(const MessageHeader& header, std::size_t points, bool with_scores);
+/// Throws ProgramError for another scan, for labels other than 9 and 251 and for scores that are
+/// not finite.
+LabelMessage parse_labels(std::string_view payload, std::uint64_t scan_index, std::size_t points,
+                          bool with_scores);
+
+}  // namespace mosbench

@@ -1,0 +1,222 @@
+#include <fmt/format.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <mosbench/method.hpp>
+#include <mosbench/odometry.hpp>
+#include <mutex>
+#include <stdexcept>
+
+#include "datasets/files/nearest_name.hpp"
+#include "eval/python/arrays.hpp"
+#include "eval/python/bindings.hpp"
+#include "eval/results/machine.hpp"
+#include "eval/results/settings_json.hpp"
+#include "eval/runs/method_choice.hpp"
+#include "eval/runs/presets.hpp"
+
+namespace mosbench::python {
+namespace {
+
+[[noreturn]] void refuse_name(std::string_view what, const std::string& name, const auto& kinds) {
+  std::vector<std::string_view> known;
+  for (const auto& kind : kinds) known.push_back(kind.name);
+  throw py::value_error(fmt::format("{}: '{}' is not known, expected one of {} (nearest: {})", what,
+                                    name, fmt::join(known, ", "), nearest_name(name, known)));
+}
+
+const MethodKind& method_named(const std::string& name) {
+  if (const MethodKind* kind = find_method(name)) return *kind;
+  refuse_name("method", name, methods());
+}
+
+const OdometryKind& odometry_named(const std::string& name) {
+  if (const OdometryKind* kind = find_odometry(name)) return *kind;
+  refuse_name("odometry", name, odometries());
+}
+
+/// Returns the defaults of a method, or of odometry, with the values of a preset.
+Settings base_settings(const std::string& method, const std::optional<std::string>& preset) {
+  const MethodKind& kind = method_named(method);
+  return preset ? settings_of(preset_named(*preset), kind) : kind.defaults;
+}
+
+Settings odometry_settings(const std::string& name, const std::optional<std::string>& preset) {
+  Settings settings = odometry_named(name).defaults;
+  if (!preset) return settings;
+  for (const OdometryPreset& row : odometry_presets()) {
+    if (row.name != *preset || row.odometry != name) continue;
+    for (const auto& [setting, value] : row.settings) settings.set(setting, value);
+    return settings;
+  }
+  throw py::value_error(fmt::format("preset: '{}' is none of odometry {}", *preset, name));
+}
+
+/// Returns the values that are set, in the method's order.
+py::dict dict_of(const Settings& settings) {
+  py::dict values;
+  for (const Setting& setting : settings.all()) {
+    if (setting.is_set) values[py::str(std::string(setting.name))] = py::cast(setting.value);
+  }
+  return values;
+}
+
+py::list descriptions_of(const Settings& settings) {
+  py::list rows;
+  for (const Setting& setting : settings.all()) {
+    py::dict row;
+    row["name"] = std::string(setting.name);
+    row["default"] = setting.is_set ? py::cast(setting.value) : py::none();
+    row["legal"] = legal_values(setting);
+    row["meaning"] = std::string(setting.meaning);
+    rows.append(row);
+  }
+  return rows;
+}
+
+py::dict result_of(LabelledScan&& scan, bool with_scores) {
+  py::dict stages;
+  for (const StageTime& stage : scan.stages) {
+    const py::str name(std::string(stage.name));
+    const double before = stages.contains(name) ? stages[name].cast<double>() : 0.0;
+    stages[name] = before + stage.wall_ms;
+  }
+  py::dict result;
+  result["index"] = scan.scan_index;
+  result["labels"] = array_of(std::move(scan.labels));
+  result["scores"] = with_scores ? py::object(array_of(std::move(scan.scores))) : py::none();
+  const bool has_objects = !scan.objects.empty();
+  result["objects"] = has_objects ? py::object(array_of(std::move(scan.objects))) : py::none();
+  result["threshold"] = scan.threshold;
+  result["judged"] = scan.judged;
+  result["stages_ms"] = stages;
+  return result;
+}
+
+/// A method that Python threads may push to: the lock is what a thread without the GIL needs.
+class LockedMethod {
+ public:
+  LockedMethod(const std::string& name, const Settings& settings, unsigned threads,
+               std::optional<std::size_t> scan_count, bool scores)
+      : scores_(scores),
+        method_(method_named(name).make(
+            settings, {.threads = threads, .scan_count = scan_count, .scores = scores})) {
+    keep_freed_memory();
+  }
+
+  py::list push(const py::array& array, const py::array& matrix) {
+    const ArrayPoints points(array);
+    const Pose pose = pose_of(matrix);
+    return take([&] { return method_->push(points.span(padded_), pose); });
+  }
+  py::list finish() {
+    return take([&] { return method_->finish(); });
+  }
+  std::vector<std::string> remarks() const { return method_->remarks(); }
+  std::optional<std::size_t> memory_bytes() const {
+    const std::optional<MemoryUse> memory = method_->memory();
+    return memory ? std::optional(memory->bytes) : std::nullopt;
+  }
+
+ private:
+  template <typename Work>
+  py::list take(Work&& work) {
+    std::vector<LabelledScan> scans;
+    {
+      const py::gil_scoped_release released;
+      const std::lock_guard lock(mutex_);
+      scans = work();
+    }
+    py::list results;
+    for (LabelledScan& scan : scans) results.append(result_of(std::move(scan), scores_));
+    return results;
+  }
+
+  bool scores_;
+  std::vector<Point> padded_;
+  std::mutex mutex_;
+  std::unique_ptr<Method> method_;
+};
+
+/// The same for odometry.
+class LockedOdometry {
+ public:
+  LockedOdometry(const std::string& name, const Settings& settings, unsigned threads)
+      : odometry_(odometry_named(name).make(settings, threads)) {}
+
+  py::dict push(const py::array& array, std::optional<std::int64_t> stamp_ns,
+                const std::vector<std::int64_t>& point_times_ns) {
+    const ArrayPoints points(array);
+    ScanPose pose;
+    {
+      const py::gil_scoped_release released;
+      const std::lock_guard lock(mutex_);
+      pose = odometry_->push(points.span(padded_), {stamp_ns, point_times_ns});
+    }
+    py::array_t<double> covariance({6, 6});
+    for (int row = 0; row < 6; ++row) {
+      for (int column = 0; column < 6; ++column) {
+        covariance.mutable_at(row, column) = pose.covariance(row, column);
+      }
+    }
+    py::dict result;
+    result["pose"] = matrix_of(pose.map_from_sensor);
+    result["covariance"] = covariance;
+    result["geometry"] = pose.geometry;
+    result["condition"] = pose.condition;
+    result["overlap"] = pose.overlap;
+    result["doubt"] = pose.doubt;
+    return result;
+  }
+
+ private:
+  std::vector<Point> padded_;
+  std::mutex mutex_;
+  std::unique_ptr<Odometry> odometry_;
+};
+
+}  // namespace
+
+void bind_methods(py::module_& module) {
+  module.attr("STATIC_LABEL") = kStaticLabel;
+  module.attr("MOVING_LABEL") = kMovingLabel;
+  py::class_<Settings>(module, "Settings")
+      .def("set",
+           [](Settings& settings, const std::string& name, const SettingValue& value) {
+             if (settings.find(name) == nullptr) refuse_name("setting", name, settings.all());
+             settings.set(name, value);
+           })
+      .def("load", [](Settings& settings,
+                      const std::filesystem::path& file) { apply_settings_file(file, settings); })
+      .def("to_dict", dict_of)
+      .def("describe", descriptions_of)
+      .def("__copy__", [](const Settings& settings) { return Settings(settings); });
+  module.def("method_names", [] {
+    std::vector<std::string> names;
+    for (const MethodKind& kind : methods()) names.emplace_back(kind.name);
+    return names;
+  });
+  module.def("names_several_methods", names_several_methods);
+  module.def("preset_names", [] {
+    std::vector<std::string> names;
+    for (const Preset& preset : presets()) names.emplace_back(preset.name);
+    return names;
+  });
+  module.def("method_settings", base_settings);
+  module.def("odometry_settings", odometry_settings);
+  module.def("check_settings", [](const std::string& method, const Settings& settings) {
+    method_named(method).check(settings);
+  });
+  py::class_<LockedMethod>(module, "Method")
+      .def(py::init<const std::string&, const Settings&, unsigned, std::optional<std::size_t>,
+                    bool>())
+      .def("push", &LockedMethod::push)
+      .def("finish", &LockedMethod::finish)
+      .def("remarks", &LockedMethod::remarks)
+      .def("memory_bytes", &LockedMethod::memory_bytes);
+  py::class_<LockedOdometry>(module, "Odometry")
+      .def(py::init<const std::string&, const Settings&, unsigned>())
+      .def("push", &LockedOdometry::push);
+}
+
+}  // namespace mosbench::python

@@ -1,0 +1,183 @@
+"""Readers of data sets."""
+
+from __future__ import annotations
+
+import dataclasses
+import os
+import pathlib
+from typing import Any, Iterator, Optional, Sequence as List, Union
+
+import numpy as np
+
+from mosbench import _mosbench
+from mosbench.flags import plain_errors, reading_flags
+
+PathLike = Union[str, os.PathLike]
+SCAN_S = 0.1  #: how long a scan is taken to last where nothing says it
+
+
+@dataclasses.dataclass(frozen=True)
+class Opened:
+    """How a data set was opened, for commands to open it again."""
+
+    path: str
+    dataset: str
+    sequences: tuple[str, ...]  #: all when empty
+    reading: dict[str, Any]
+
+
+@dataclasses.dataclass(frozen=True)
+class Scan:
+    """One scan as its data set gives it."""
+
+    index: int  #: in the sequence, from 0
+    stem: str  #: file name without extension
+    points: np.ndarray  #: float32 (N, 4): x, y, z in metres in the sensor frame, intensity
+    pose: np.ndarray  #: float64 (4, 4), map_from_sensor
+    stamp_ns: Optional[int]  #: when it was measured; None when the data set has no stamps
+    point_times_ns: Optional[np.ndarray]  #: int64 (N,), when each point was measured after the stamp
+    truth: Optional[np.ndarray]  #: uint32 (N,), raw labels: id, and in the upper 16 bits instance; None without
+
+    @property
+    def truth_ids(self) -> Optional[np.ndarray]:
+        """uint32 (N,), the ids of truth alone: of SemanticKITTI, 251 to 259 move."""
+        return None if self.truth is None else self.truth & 0xFFFF
+
+    @property
+    def stamp(self) -> Optional[float]:
+        """stamp_ns in seconds; a float64 holds today's date to a quarter of a microsecond."""
+        return None if self.stamp_ns is None else self.stamp_ns * 1e-9
+
+
+class Sequence:
+    """Scans of one sensor in order; reads each when it is asked for.
+
+    Also a data set as KISS-ICP takes them: `sequence[i]` is (points (N, 3) float64, times (N,) 0 to 1),
+    `gt_poses` is (K, 4, 4).
+    """
+
+    def __init__(self, opened: Any, opened_by: "Opened"):
+        self._opened = opened
+        self.opened_by = dataclasses.replace(opened_by, sequences=(self.name,))
+
+    @property
+    def name(self) -> str:
+        """Folder of its results; unique in its data set."""
+        return self._opened.name
+
+    @property
+    def remarks(self) -> list[str]:
+        """What was assumed or found odd."""
+        return self._opened.remarks
+
+    @property
+    def gt_poses(self) -> np.ndarray:
+        """float64 (K, 4, 4), map_from_sensor."""
+        return self._opened.poses
+
+    def scan(self, index: int) -> Scan:
+        """Reads a scan; negative indices count from the end."""
+        count = len(self)
+        if not -count <= index < count:
+            raise IndexError(f"{self.name}: has {count} scans, not one at {index}")
+        return Scan(**self._opened.read(index % count))
+
+    def __len__(self) -> int:
+        return len(self._opened)
+
+    def __iter__(self) -> Iterator[Scan]:
+        return (self.scan(index) for index in range(len(self)))
+
+    def __getitem__(self, index: int) -> tuple[np.ndarray, np.ndarray]:
+        scan = self.scan(index)
+        times = np.zeros(0)
+        if scan.point_times_ns is not None:
+            last_ns = max(int(scan.point_times_ns.max(initial=0)), 1)
+            times = scan.point_times_ns / last_ns
+        return scan.points[:, :3].astype(np.float64), times
+
+    def __repr__(self) -> str:
+        return f"<mosbench.Sequence {self.name}: {len(self)} scans>"
+
+
+class Dataset:
+    """All sequences of a data set, by name or number; iterates over their scans one after the other."""
+
+    def __init__(self, opened: Any, opened_by: "Opened"):
+        self._opened = opened
+        self.opened_by = dataclasses.replace(opened_by, dataset=opened.kind)
+        self.sequences: list[Sequence] = [Sequence(one, self.opened_by) for one in opened.sequences()]
+
+    @property
+    def kind(self) -> str:
+        """Layout: "semantickitti", "doals", ..."""
+        return self._opened.kind
+
+    @property
+    def root(self) -> pathlib.Path:
+        """Folder of the data set."""
+        return pathlib.Path(self._opened.root)
+
+    @property
+    def remarks(self) -> list[str]:
+        """What was assumed about the whole data set."""
+        return self._opened.remarks
+
+    def __getitem__(self, name: Union[str, int]) -> Sequence:
+        if isinstance(name, (int, np.integer)):
+            return self.sequences[name]
+        for sequence in self.sequences:
+            if sequence.name == name:
+                return sequence
+        known = ", ".join(sequence.name for sequence in self.sequences)
+        raise KeyError(f"{self.root} has no sequence {name}, expected one of {known}")
+
+    def __len__(self) -> int:
+        return len(self.sequences)
+
+    def __iter__(self) -> Iterator[Scan]:
+        return (scan for sequence in self.sequences for scan in sequence)
+
+    def __repr__(self) -> str:
+        return f"<mosbench.Dataset {self.kind} at {self.root}: {len(self)} sequences>"
+
+
+def seconds_after_stamp(times: Any, count: int, index: int) -> Optional[np.ndarray]:
+    """The times that KISS-ICP's data sets give beside points, 0 to 1 over a scan or in any unit, as (N,) seconds.
+
+    A scan is taken to begin at its stamp and to last 0.1 s. None where there are no times.
+    Raises ValueError for another count and for times that are not finite.
+    """
+    times = np.asarray(times, dtype=np.float64).ravel()
+    if times.size == 0:
+        return None
+    if times.size != count or not np.isfinite(times).all():
+        raise ValueError(f"scan {index}: has {times.size} times for {count} points, expected a finite one for each")
+    low, high = times.min(), times.max()
+    if low < 0 or high > 1:
+        times = (times - low) / (high - low or 1.0)
+    return SCAN_S * times
+
+
+def open(
+    path: PathLike,
+    sequence: Optional[str] = None,
+    *,
+    dataset: str = "auto",
+    sequences: List[str] = (),
+    poses: Union[PathLike, bool, None] = None,
+    **reading: Any,
+) -> Union[Dataset, Sequence]:
+    """Opens a data set, or with `sequence`, or of a folder with a single one, that sequence.
+
+    poses: a file to take instead of the sequence's own; False: read none, every pose is the identity.
+    reading: as READING lists them.
+    Raises OSError for what cannot be read, ValueError for a sequence that is not there.
+    """
+    several = [sequences] if isinstance(sequences, str) else [str(name) for name in sequences]
+    names = several if sequence is None else [sequence]
+    with_poses = poses is not False
+    given = {"poses": poses or None, **reading}
+    found = plain_errors(_mosbench.open, os.fspath(path), dataset, names, reading_flags(given), with_poses)
+    opened = Dataset(found, Opened(os.path.abspath(path), dataset, tuple(names), given))
+    return opened.sequences[0] if len(opened) == 1 and not several else opened

@@ -1,0 +1,60 @@
+"""Flags of the program out of arguments of Python."""
+
+from __future__ import annotations
+
+import os
+import re
+from typing import Any, Callable, Mapping
+
+#: How data are read; `mosbench run --help` says what each means.
+READING = (
+    "poses",  # file to take instead of the sequence's own
+    "pose_format",  # "kitti", "tum" or "dynablox"
+    "pose_frame",  # "lidar" or "camera"
+    "pose_direction",  # "map-from-sensor" or "sensor-from-map"
+    "max_pose_gap_s",
+    "topic",  # of a bag
+    "map_frame",  # of a bag's tf tree
+    "raw_scans",  # True: as deskew="none"
+    "point_times",  # "column" or "azimuth"
+    "deskew",  # "none", "velocity" or "poses"
+    "bin_columns",  # 4 or 5 float32 per point
+)
+
+
+def flags(**values: Any) -> list[str]:
+    """Returns --name=value of those that are given; true alone gives --name."""
+    arguments = []
+    for name, value in values.items():
+        flag = "--" + name.replace("_", "-")
+        if value is None or value is False:
+            continue
+        if value is True:
+            arguments.append(flag)
+        elif isinstance(value, (list, tuple)):
+            arguments.append(f"{flag}={','.join(map(str, value))}")
+        else:
+            arguments.append(f"{flag}={os.fspath(value) if isinstance(value, os.PathLike) else value}")
+    return arguments
+
+
+def reading_flags(reading: Mapping[str, Any]) -> list[str]:
+    """Returns the flags of READING. Raises TypeError for another name, as Python does."""
+    for name in reading:
+        if name not in READING:
+            raise TypeError(f"got an unexpected keyword argument {name!r}, expected one of {', '.join(READING)}")
+    return flags(**reading)
+
+
+def _in_python(message: str) -> str:
+    """Returns a message of the program with arguments where it names flags."""
+    message = re.sub(r"; see mosbench [\w ]*--help", "", message)
+    return re.sub(r"(?<![\w-])--([a-z][a-z-]*)", lambda match: match[1].replace("-", "_"), message)
+
+
+def plain_errors(call: Callable[..., Any], *arguments: Any) -> Any:
+    """Calls; ValueError and OSError come in the words of Python."""
+    try:
+        return call(*arguments)
+    except (ValueError, OSError) as error:
+        raise type(error)(_in_python(str(error))) from None

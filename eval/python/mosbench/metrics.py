@@ -1,0 +1,53 @@
+"""Scores of arrays of labels."""
+
+from __future__ import annotations
+
+from typing import Any, Optional
+
+import numpy as np
+
+from mosbench import _mosbench
+from mosbench.arrays import as_array
+
+
+def _label_array(values: Any, name: str) -> np.ndarray:
+    labels = as_array(values)
+    if labels.dtype != bool and labels.size and 0 < labels.max() <= 2 and labels.min() >= 0:
+        raise ValueError(f"{name}: holds no other ids than 0, 1 and 2, which are classes of a network; "
+                         "expected bool, or label ids")
+    return labels
+
+
+def _counted_arrays(predicted: Any, truth: Any, points: Any) -> tuple:
+    return (
+        _label_array(predicted, "predicted"),
+        _label_array(truth, "truth"),
+        None if points is None else as_array(points),
+    )
+
+
+def confusion(
+    predicted: Any, truth: Any, protocol: str = "semantickitti-mos", points: Any = None
+) -> dict[str, int]:
+    """Returns the counts tp, fp, fn, tn, ignored and unknown_ids of one scan.
+
+    predicted, truth: label ids (N,) as the protocol knows them, or bool (N,), true for moving.
+    points: (N, 3) or (N, 4), needed by protocols that limit the range.
+    """
+    predicted, truth, points = _counted_arrays(predicted, truth, points)
+    return _mosbench.count(predicted, truth, protocol, points)
+
+
+def metrics(
+    predicted: Any, truth: Any, protocol: str = "semantickitti-mos", points: Any = None
+) -> dict[str, Optional[float]]:
+    """Returns iou, precision, recall and f1 of moving points, 0 to 1; None where they are 0/0."""
+    predicted, truth, points = _counted_arrays(predicted, truth, points)
+    return _mosbench.metrics(predicted, truth, protocol, points)
+
+
+def iou(
+    predicted: Any, truth: Any, protocol: str = "semantickitti-mos", points: Any = None
+) -> Optional[float]:
+    """Returns the IoU of moving points, 0 to 1; None when nothing moves in either."""
+    return metrics(predicted, truth, protocol, points)["iou"]

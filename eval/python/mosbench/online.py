@@ -1,0 +1,222 @@
+"""Methods and odometry, scan by scan."""
+
+from __future__ import annotations
+
+import copy
+import dataclasses
+import os
+from typing import Any, Iterable, Mapping, Optional, Union
+
+import numpy as np
+
+from mosbench import _mosbench
+from mosbench.arrays import as_array
+from mosbench.datasets import open as open_data
+from mosbench.datasets import seconds_after_stamp
+
+SettingValue = Union[int, float, str]
+
+
+class Config:
+    """A method and its settings. Settings carry their unit in their name, as in `voxel_size_m`."""
+
+    def __init__(self, method: str = "hmm-mos", **settings: SettingValue):
+        """Takes the method's defaults with these settings over them."""
+        self._method = method
+        self._settings = _mosbench.method_settings(method, None)
+        self._set(settings)
+
+    @classmethod
+    def preset(cls, name: str, method: str = "hmm-mos") -> "Config":
+        """Returns the published settings of this name; `mosbench.presets()` lists them."""
+        return cls._of(method, _mosbench.method_settings(method, name))
+
+    @classmethod
+    def load(cls, file: Union[str, os.PathLike], method: str = "hmm-mos") -> "Config":
+        """Returns the defaults with the settings of a JSON object over them, as `--config` does."""
+        settings = _mosbench.method_settings(method, None)
+        with open(file, "rb"):
+            pass  # OSError where there is no such file; ValueError is for what is in it
+        settings.load(os.fspath(file))
+        _mosbench.check_settings(method, settings)
+        return cls._of(method, settings)
+
+    @classmethod
+    def _of(cls, method: str, settings: Any) -> "Config":
+        config = cls.__new__(cls)
+        config._method, config._settings = method, settings
+        return config
+
+    def replace(self, **settings: SettingValue) -> "Config":
+        """Returns a copy with other values of some settings."""
+        replaced = self._of(self._method, copy.copy(self._settings))
+        replaced._set(settings)
+        return replaced
+
+    def _set(self, settings: Mapping[str, SettingValue]) -> None:
+        for name, value in settings.items():
+            self._settings.set(name, value.item() if isinstance(value, np.generic) else value)
+        _mosbench.check_settings(self._method, self._settings)
+
+    @property
+    def method(self) -> str:
+        """Name of the method."""
+        return self._method
+
+    def to_dict(self) -> dict[str, SettingValue]:
+        """Returns every setting that has a value of its own, in the method's order."""
+        return self._settings.to_dict()
+
+    def describe(self) -> list[dict[str, Any]]:
+        """Returns name, value, legal values and meaning of every setting."""
+        return self._settings.describe()
+
+    def __getitem__(self, name: str) -> SettingValue:
+        return self.to_dict()[name]
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Config):
+            return NotImplemented
+        return self._method == other._method and self.to_dict() == other.to_dict()
+
+    def __repr__(self) -> str:
+        values = ", ".join(f"{name}={value!r}" for name, value in self.to_dict().items())
+        return f"Config({self._method!r}, {values})"
+
+
+@dataclasses.dataclass(frozen=True)
+class Labels:
+    """The final labels of one scan."""
+
+    index: int  #: which pushed scan, from 0
+    labels: np.ndarray  #: uint32 (N,): 9 static, 251 moving
+    scores: Optional[np.ndarray]  #: float32 (N,), larger is more likely to move; None unless asked for
+    objects: Optional[np.ndarray]
+    """uint32 (N,): number of the moving object, from 1 and the same in all scans, 0 for none; None when
+    the method finds no objects."""
+    threshold: Optional[float]  #: that the method compared scores with
+    judged: bool  #: False: too little past or future, all points are labelled static
+    stages_ms: dict[str, float]  #: wall time of each stage
+
+    @property
+    def moving(self) -> np.ndarray:
+        """bool (N,)."""
+        return self.labels == _mosbench.MOVING_LABEL
+
+
+class MOS:
+    """Segments scans that are pushed in order. Labels are the same bits for any number of threads."""
+
+    def __init__(
+        self,
+        config: Union[Config, Mapping[str, SettingValue], None] = None,
+        method: Optional[str] = None,
+        *,
+        threads: int = 1,
+        scan_count: Optional[int] = None,
+        scores: bool = False,
+    ):
+        """Takes a config, or settings by name over the method's defaults ("hmm-mos" when none is named).
+
+        A config is of one method: `Config.preset(name, method=...)` and `Config(method, ...)` make one.
+        `scan_count` is the length of the sequence where it is known: the end of a delayed run may be
+        labelled in another way.
+        """
+        if not isinstance(config, Config):
+            if isinstance(config, (str, os.PathLike)):
+                raise ValueError("config: is a text, expected settings by name, Config.preset(...) or Config.load(...)")
+            config = Config(method or "hmm-mos", **dict(config or {}))
+        elif method not in (None, config.method):
+            raise ValueError(f"method: is {method}, expected {config.method} as config has it")
+        self._config = config
+        self._method = _mosbench.Method(config.method, config._settings, threads, scan_count, scores)
+
+    @property
+    def config(self) -> Config:
+        """The settings that it runs with."""
+        return self._config
+
+    def push(self, points: Any, pose: Any) -> list[Labels]:
+        """Takes a scan in and returns the scans whose labels became final.
+
+        points: (N, 3) or (N, 4), sensor frame, metres; float32 (N, 4) in C order is not copied.
+        pose: (4, 4), map_from_sensor.
+        """
+        return [Labels(**scan) for scan in self._method.push(as_array(points), as_array(pose))]
+
+    def finish(self) -> list[Labels]:
+        """Returns what a delay still holds back. Nothing can be pushed after it."""
+        return [Labels(**scan) for scan in self._method.finish()]
+
+    @property
+    def remarks(self) -> list[str]:
+        """What a reader of the labels should know about them."""
+        return self._method.remarks()
+
+    @property
+    def memory_bytes(self) -> Optional[int]:
+        """Of the method's containers; None when it does not measure them."""
+        return self._method.memory_bytes()
+
+
+@dataclasses.dataclass(frozen=True)
+class OdometryPose:
+    """The pose of one scan."""
+
+    pose: np.ndarray  #: (4, 4), map_from_sensor; the map's frame is that of the first scan
+    covariance: np.ndarray  #: (6, 6), rotation (rad), then translation (m), in the map's frame
+    geometry: float  #: how much the surfaces constrain the least constrained motion, 0 to 1/3
+    condition: float  #: of the covariance's inverse
+    overlap: float  #: share of the points that lie where the map has points
+    doubt: str  #: why the pose is not to be trusted; empty when it is
+
+
+class Odometry:
+    """Finds the pose of each scan from the scans alone, in order."""
+
+    def __init__(
+        self,
+        kind: str = "simple",
+        preset: Optional[str] = None,
+        *,
+        threads: int = 1,
+        **settings: SettingValue,
+    ):
+        """kind: "simple" (SiMpLE) or "kiss" (KISS-ICP)."""
+        values = _mosbench.odometry_settings(kind, preset)
+        for name, value in settings.items():
+            values.set(name, value)
+        self._odometry = _mosbench.Odometry(kind, values, threads)
+
+    def push(
+        self, points: Any, stamp_ns: Optional[int] = None, point_times_ns: Any = None
+    ) -> OdometryPose:
+        """points: as MOS.push; point_times_ns: (N,) after the stamp, for moving the points by them."""
+        times = [] if point_times_ns is None else as_array(point_times_ns).astype(np.int64).tolist()
+        return OdometryPose(**self._odometry.push(as_array(points), stamp_ns, times))
+
+
+def odometry(scans: Iterable[Any], kind: str = "simple", **options: Any) -> np.ndarray:
+    """Returns the poses (K, 4, 4) of scans in order.
+
+    scans: arrays of points, a sequence of `mosbench.open`, the folder of one, or an object with
+    `len` and `[i] -> (points (N, 3), times)` as KISS-ICP takes data sets; times of points are used
+    unless deskew="none" is among the options.
+    """
+    if isinstance(scans, (str, os.PathLike)):
+        scans = open_data(scans, poses=False)
+    if len(sequences := getattr(scans, "sequences", ())) > 1:
+        names = ", ".join(sequence.name for sequence in sequences)
+        raise ValueError(f"scans: are {len(sequences)} sequences, expected one, as data[name]: {names}")
+    engine = Odometry(kind, **options)
+    poses = []
+    for index, scan in enumerate(scans):
+        if hasattr(scan, "points"):
+            found = engine.push(scan.points, scan.stamp_ns, scan.point_times_ns)
+        elif isinstance(scan, tuple):
+            times_s = seconds_after_stamp(scan[1], len(scan[0]), index)
+            found = engine.push(scan[0], None, None if times_s is None else np.rint(1e9 * times_s))
+        else:
+            found = engine.push(scan)
+        poses.append(found.pose)
+    return np.stack(poses) if poses else np.empty((0, 4, 4))

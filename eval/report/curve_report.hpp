@@ -1,0 +1,32 @@
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "eval/report/picture.hpp"
+#include "eval/report/score_curve.hpp"
+#include "eval/results/result_set.hpp"
+
+namespace mosbench {
+
+/// A run with the curve of all its counted scans.
+struct CurveReport {
+  ResultSet run;
+  ScoreCurve curve;
+};
+
+/// Reads scans, truth, labels and scores of the run again. Throws DataError as ResultScans does,
+/// where the run kept no scores, where no scan has truth, and where no point moves.
+CurveReport curve_of_run(const std::filesystem::path& path,
+                         const std::optional<std::filesystem::path>& dataset_root);
+
+std::string curve_text(const CurveReport& report);
+/// Formats a line per point of the thinned curve.
+std::string curve_csv(const CurveReport& report);
+nlohmann::ordered_json curve_json(const CurveReport& report);
+/// Draws precision over recall, and where the labels of the run are.
+Picture curve_picture(const CurveReport& report);
+
+}  // namespace mosbench

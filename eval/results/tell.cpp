@@ -1,0 +1,14 @@
+#include "eval/results/tell.hpp"
+
+#include <cstdio>
+
+#include "datasets/files/shown_text.hpp"
+#include "eval/results/caller.hpp"
+
+namespace mosbench {
+
+void tell(std::string_view line) {
+  if (!caller().quiet) std::fputs((shown(line) + '\n').c_str(), stderr);
+}
+
+}  // namespace mosbench

@@ -1,0 +1,112 @@
+#include "eval/runs/found_poses.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "datasets/files/errors.hpp"
+#include "datasets/files/pose_file.hpp"
+
+namespace mosbench {
+namespace {
+
+std::string tum_rows(const Sequence& sequence, const std::vector<Pose>& poses) {
+  std::string rows;
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    const std::int64_t stamp_ns = sequence.stamp_ns(k).value();
+    const Pose& pose = poses[k];
+    const Eigen::Quaterniond q = Eigen::Quaterniond(pose.linear()).normalized();
+    const bool negative = stamp_ns < 0;
+    const std::uint64_t ns =
+        negative ? -static_cast<std::uint64_t>(stamp_ns) : static_cast<std::uint64_t>(stamp_ns);
+    rows += fmt::format("{}{}.{:09} {} {} {} {} {} {} {}\n", negative ? "-" : "",
+                        ns / 1'000'000'000, ns % 1'000'000'000, pose.translation().x(),
+                        pose.translation().y(), pose.translation().z(), q.x(), q.y(), q.z(), q.w());
+  }
+  return rows;
+}
+
+template <typename Matrix>
+nlohmann::ordered_json rows_json(const Matrix& matrix) {
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
+    nlohmann::ordered_json& row = rows.emplace_back(nlohmann::ordered_json::array());
+    for (Eigen::Index j = 0; j < matrix.cols(); ++j) row.push_back(matrix(i, j));
+  }
+  return rows;
+}
+
+}  // namespace
+
+void check_stamps_of_tum(const Sequence& sequence) {
+  for (std::size_t k = 0; k < sequence.size(); ++k) {
+    const auto stamp_ns = sequence.stamp_ns(k);
+    if (!stamp_ns) {
+      throw UsageError(fmt::format("--format tum: the scans of {} have no stamps, expected kitti",
+                                   sequence.name()));
+    }
+    if (k == 0 || *stamp_ns > *sequence.stamp_ns(k - 1)) continue;
+    throw UsageError(
+        fmt::format("--format tum: the stamp of scan {} of {} is not after that of the one before, "
+                    "expected kitti, which has no stamps",
+                    sequence.stem(k), sequence.name()));
+  }
+}
+
+nlohmann::ordered_json scans_json(const Sequence& sequence, const std::vector<ScanPose>& poses) {
+  nlohmann::ordered_json scans = nlohmann::ordered_json::array();
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    const ScanPose& pose = poses[k];
+    scans.push_back({{"stem", sequence.stem(k)},
+                     {"map_from_sensor", rows_json(pose.map_from_sensor.matrix().topRows<3>())},
+                     {"covariance", rows_json(pose.covariance)},
+                     {"geometry", pose.geometry},
+                     {"condition", pose.condition},
+                     {"overlap", pose.overlap},
+                     {"registered_points", pose.registered_points},
+                     {"doubt", pose.doubtful() ? nlohmann::ordered_json(pose.doubt) : nullptr}});
+  }
+  return scans;
+}
+
+std::string pose_rows(const FoundPoses& found, bool as_tum) {
+  std::vector<Pose> poses;
+  for (const auto& scan : found.scans) {
+    Pose& pose = poses.emplace_back(Pose::Identity());
+    for (std::size_t i = 0; i < 12; ++i) {
+      pose.matrix()(static_cast<Eigen::Index>(i / 4), static_cast<Eigen::Index>(i % 4)) =
+          scan.at("map_from_sensor").at(i / 4).at(i % 4).get<double>();
+    }
+  }
+  return as_tum ? tum_rows(found.sequence, poses) : format_poses(poses);
+}
+
+std::size_t doubtful_scans(const FoundPoses& found) {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      found.scans, [](const auto& scan) { return !scan.at("doubt").is_null(); }));
+}
+
+std::string found_text(const FoundPoses& found, std::string_view odometry) {
+  constexpr std::size_t kListed = 10;
+  const std::size_t doubtful = doubtful_scans(found);
+  std::string text = fmt::format("{}: {} poses by {} in {}, {} doubtful\n", found.sequence.name(),
+                                 found.scans.size(), odometry, found.file.string(), doubtful);
+  std::size_t listed = 0;
+  for (const auto& scan : found.scans) {
+    if (scan.at("doubt").is_null() || listed == kListed) continue;
+    text += fmt::format("  scan {}: {}\n", scan.at("stem").get<std::string>(),
+                        scan.at("doubt").get<std::string>());
+    ++listed;
+  }
+  if (doubtful > listed) text += fmt::format("  and {} more\n", doubtful - listed);
+  return text;
+}
+
+nlohmann::ordered_json found_json(const FoundPoses& found) {
+  return {{"sequence", found.sequence.name()},
+          {"file", found.file.string()},
+          {"doubtful", doubtful_scans(found)},
+          {"scans", found.scans}};
+}
+
+}  // namespace mosbench

@@ -1,0 +1,170 @@
+#include "eval/tables/leaderboard.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "datasets/files/errors.hpp"
+#include "eval/statistics/paired_runs.hpp"
+#include "eval/statistics/scan_spacing.hpp"
+
+namespace mosbench {
+namespace {
+
+void check_has_truth(const ResultSet& run) {
+  for (const SequenceResult& sequence : run.sequences) {
+    if (!counted_scans(sequence).empty()) continue;
+    throw DataError(sequence.file, "has no scan with truth", "a run that was scored");
+  }
+}
+
+/// Methods are ranked with the poses that they were run with.
+bool may_differ(const Unlike& unlike) {
+  return unlike.kind == Unlike::Kind::kSetting || unlike.kind == Unlike::Kind::kPoses;
+}
+
+void check_is_like(const ResultSet& first, const ResultSet& run) {
+  std::vector<Unlike> unlike = pair_runs(first, run).unlike;
+  std::erase_if(unlike, [](const Unlike& other) {
+    return may_differ(other) || other.kind == Unlike::Kind::kScans;
+  });
+  if (unlike.empty()) return;
+  throw DataError(run.front().file,
+                  "is not like " + first.front().file.string() + ": " + unlike_text(unlike),
+                  "runs with the same protocol, range, scans and truth");
+}
+
+std::vector<std::string> sequences_of(const std::vector<ResultSet>& runs) {
+  std::set<SequenceName> names;
+  for (const ResultSet& run : runs) {
+    for (const SequenceResult& sequence : run.sequences) names.insert(sequence.sequence);
+  }
+  std::vector<std::string> texts;
+  for (const SequenceName& name : names) texts.push_back(name.text());
+  return texts;
+}
+
+/// Mean over all scans; nothing where a sequence was not timed, as of `mosbench score`.
+std::optional<double> ms_per_scan(const ResultSet& run) {
+  double sum_ms = 0.0, scans = 0.0;
+  for (const SequenceResult& sequence : run.sequences) {
+    if (!sequence.method_ms_per_scan) return std::nullopt;
+    const auto count = static_cast<double>(sequence.scans.size());
+    sum_ms += count * *sequence.method_ms_per_scan;
+    scans += count;
+  }
+  return sum_ms / scans;
+}
+
+std::optional<double> memory_mb(const ResultSet& run) {
+  std::optional<double> most_mib;
+  for (const SequenceResult& sequence : run.sequences) {
+    most_mib = std::max(most_mib, sequence.most_resident_mib);
+  }
+  return most_mib ? std::optional(*most_mib * 1.048576) : std::nullopt;
+}
+
+LeaderboardRow row_of(const ResultSet& run, const std::vector<std::string>& sequences) {
+  LeaderboardRow row;
+  row.run = &run;
+  const Protocol& protocol = *run.front().protocol;
+  bool is_complete = missing_predictions(run) == 0;
+  for (const std::string& name : sequences) {
+    const auto found = std::ranges::find(run.sequences, name, [](const SequenceResult& sequence) {
+      return sequence.sequence.text();
+    });
+    is_complete = is_complete && found != run.sequences.end();
+    std::optional<Estimates>& estimates = row.sequences.emplace_back();
+    if (found == run.sequences.end()) continue;
+    const SequenceCounts counts = counts_of(*found);
+    estimates = estimate(protocol, {&counts, 1}, spacing_of(*found));
+  }
+  if (is_complete) row.all = estimate(protocol, counts_of(run), spacing_of(run));
+  row.ms_per_scan = ms_per_scan(run);
+  row.memory_mb = memory_mb(run);
+  return row;
+}
+
+std::optional<double> iou_of(const LeaderboardRow& row) {
+  return row.all ? (*row.all)[Metric::kIou].value : std::nullopt;
+}
+
+/// Whether `other` is at least as good and as fast, and better in one.
+bool beats(const LeaderboardRow& other, const LeaderboardRow& row) {
+  if (!iou_of(other) || !other.ms_per_scan) return false;
+  const bool as_good = *iou_of(other) >= *iou_of(row) && *other.ms_per_scan <= *row.ms_per_scan;
+  return as_good && (*iou_of(other) > *iou_of(row) || *other.ms_per_scan < *row.ms_per_scan);
+}
+
+void mark_front(std::vector<LeaderboardRow>& rows) {
+  for (LeaderboardRow& row : rows) {
+    row.is_on_front =
+        iou_of(row) && row.ms_per_scan &&
+        std::ranges::none_of(rows, [&](const LeaderboardRow& other) { return beats(other, row); });
+  }
+}
+
+/// Says what is wrong with the scans of a run beside those of the best.
+void compare_with_best(const LeaderboardRow& best, LeaderboardRow& row,
+                       std::vector<std::string>& remarks) {
+  PairedRuns paired = pair_runs(*best.run, *row.run);
+  for (const Unlike& unlike : paired.unlike) {
+    if (unlike.kind != Unlike::Kind::kPoses) continue;
+    remarks.push_back(fmt::format("{} and {}: {}", best.run->front().method,
+                                  row.run->front().method, unlike_text({unlike})));
+  }
+  std::erase_if(paired.unlike, may_differ);
+  if (paired.unlike.empty()) {
+    row.to_best = paired_difference(*best.run->front().protocol, paired.first, paired.second,
+                                    paired.spacing)[Metric::kIou];
+    return;
+  }
+  remarks.push_back(fmt::format("{} is not compared with {}: {}", row.run->front().method,
+                                best.run->front().method, unlike_text(paired.unlike)));
+}
+
+/// Says in which respect the times of the runs cannot be compared.
+void remark_on_times(const std::vector<ResultSet>& runs, std::vector<std::string>& remarks) {
+  std::set<unsigned> threads;
+  std::set<std::string> processors;
+  for (const ResultSet& run : runs) {
+    for (const SequenceResult& sequence : run.sequences) {
+      if (!sequence.threads) continue;
+      threads.insert(*sequence.threads);
+      processors.insert(sequence.processor);
+    }
+  }
+  if (threads.size() > 1) {
+    remarks.push_back(fmt::format("ms per scan are of different numbers of threads: {}",
+                                  fmt::join(threads, ", ")));
+  }
+  if (processors.size() > 1) {
+    remarks.push_back(
+        fmt::format("ms per scan are of different processors: {}", fmt::join(processors, ", ")));
+  }
+}
+
+}  // namespace
+
+Leaderboard leaderboard_of(const std::vector<ResultSet>& runs) {
+  Leaderboard board;
+  board.sequences = sequences_of(runs);
+  for (const ResultSet& run : runs) {
+    check_has_truth(run);
+    check_is_like(runs.front(), run);
+    board.rows.push_back(row_of(run, board.sequences));
+    for (const std::string& warning : warnings(run)) {
+      board.remarks.push_back(fmt::format("{}: {}", run.front().method, warning));
+    }
+  }
+  std::ranges::stable_sort(board.rows, std::greater(), iou_of);
+  mark_front(board.rows);
+  remark_on_times(runs, board.remarks);
+  for (std::size_t i = 1; board.rows.front().all && i < board.rows.size(); ++i) {
+    compare_with_best(board.rows.front(), board.rows[i], board.remarks);
+  }
+  return board;
+}
+
+}  // namespace mosbench

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "eval/results/result_set.hpp"
+#include "eval/statistics/intervals.hpp"
+
+namespace mosbench {
+
+/// One run among others on the same scans.
+struct LeaderboardRow {
+  const ResultSet* run = nullptr;
+  std::vector<std::optional<Estimates>> sequences;  ///< one per sequence of the leaderboard
+  std::optional<Estimates> all;       ///< as the protocol aggregates; only where no scan is missing
+  std::optional<double> ms_per_scan;  ///< of the method, mean of all scans
+  std::optional<double> memory_mb;    ///< most that the process held, 1e6 bytes
+  bool is_on_front = false;           ///< no other run is as good and as fast, and better in one
+  std::optional<Difference> to_best;  ///< of IoU, to that of the first row, on the same scans
+};
+
+/// Runs on the same scans, the best first. The runs must outlive it.
+struct Leaderboard {
+  std::vector<std::string> sequences;  ///< every sequence that a run has
+  std::vector<LeaderboardRow> rows;    ///< by IoU, then those without
+  std::vector<std::string> remarks;    ///< what a reader should know, plain sentences
+};
+
+/// Throws DataError naming the run that is of another protocol, range or input than the first.
+Leaderboard leaderboard_of(const std::vector<ResultSet>& runs);
+
+}  // namespace mosbench

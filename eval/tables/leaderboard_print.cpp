@@ -1,0 +1,198 @@
+#include "eval/tables/leaderboard_print.hpp"
+
+#include <fmt/format.h>
+
+#include <map>
+
+#include "eval/protocols/protocol_list.hpp"
+#include "eval/results/answer_text.hpp"
+#include "eval/results/csv.hpp"
+#include "eval/results/latex.hpp"
+#include "eval/results/text_table.hpp"
+#include "eval/statistics/statistics_report.hpp"
+
+namespace mosbench {
+namespace {
+
+using nlohmann::ordered_json;
+
+std::string percent_of(const std::optional<Estimates>& estimates, Metric metric) {
+  return estimates ? percent_text((*estimates)[metric].value) : "-";
+}
+
+std::string number_text(const std::optional<double>& number) {
+  return number ? fmt::format("{:.1f}", *number) : "-";
+}
+
+/// "-2.1 [-3.0, -1.2]", "-2.1 [none]", "best" or "-".
+std::string to_best_text(const Leaderboard& board, const LeaderboardRow& row) {
+  if (&row == &board.rows.front()) return row.all ? "best" : "-";
+  if (!row.to_best) return "-";
+  const std::string value = percent_text(row.to_best->value, "{:+.2f}");
+  const std::string interval = interval_text(row.to_best->interval, "{:+.2f}");
+  return fmt::format("{} {}", value, interval == "none" ? "[none]" : interval);
+}
+
+/// A sequence's own column would repeat that of all where there is but one.
+bool shows_sequences(const Leaderboard& board) { return board.sequences.size() > 1; }
+
+std::vector<TextTable::Column> columns_of(const Leaderboard& board) {
+  std::vector<TextTable::Column> columns = {
+      {"", TextTable::kLeft}, {"method", TextTable::kLeft}, {"IoU %"}, {"95 %"}};
+  if (shows_sequences(board)) {
+    for (const std::string& name : board.sequences) columns.push_back({name});
+  }
+  for (const char* title : {"precision %", "recall %", "ms/scan", "MB", "front", "IoU to best"}) {
+    columns.push_back({title});
+  }
+  return columns;
+}
+
+std::vector<std::string> cells_of_row(const Leaderboard& board, std::size_t r) {
+  const LeaderboardRow& row = board.rows[r];
+  std::vector<std::string> cells = {
+      fmt::format("{}", r + 1), row.run->front().method, percent_of(row.all, Metric::kIou),
+      row.all ? interval_text((*row.all)[Metric::kIou].interval, "{:.1f}") : "-"};
+  if (shows_sequences(board)) {
+    for (const auto& estimates : row.sequences) {
+      cells.push_back(percent_of(estimates, Metric::kIou));
+    }
+  }
+  for (const Metric metric : {Metric::kPrecision, Metric::kRecall}) {
+    cells.push_back(percent_of(row.all, metric));
+  }
+  cells.push_back(number_text(row.ms_per_scan));
+  cells.push_back(number_text(row.memory_mb));
+  cells.emplace_back(row.is_on_front ? "*" : "");
+  cells.push_back(to_best_text(board, row));
+  return cells;
+}
+
+std::string rules_text(const Leaderboard& board) {
+  const SequenceResult& first = board.rows.front().run->front();
+  const std::string range = counted_range_text(*first.protocol, first.range);
+  return fmt::format("data set {}, protocol {}{}{}", first.dataset, first.protocol->name,
+                     range.empty() ? "" : ", " + range,
+                     first.simulated ? "; SIMULATED: not comparable with published numbers" : "");
+}
+
+/// Says per row which run it is, and per reason which differences have no interval.
+std::string row_notes(const Leaderboard& board) {
+  std::string text;
+  std::map<std::string, std::vector<std::size_t>> without_interval;
+  for (std::size_t r = 0; r < board.rows.size(); ++r) {
+    const LeaderboardRow& row = board.rows[r];
+    text += fmt::format("{}: {}, {} ({})\n", r + 1, row.run->front().method,
+                        row.run->front().setting, row.run->front().file.string());
+    if (!row.to_best || row.to_best->no_interval.empty()) continue;
+    without_interval[row.to_best->no_interval].push_back(r + 1);
+  }
+  for (const auto& [why, rows] : without_interval) {
+    text += fmt::format("no interval of the difference of {}: {}\n", fmt::join(rows, ", "), why);
+  }
+  return text;
+}
+
+std::string remarks_text(const Leaderboard& board) {
+  std::string text;
+  for (const std::string& remark : board.remarks) text += remark + '\n';
+  return text;
+}
+
+std::string csv_number(const std::optional<double>& number) {
+  return number ? fmt::format("{:.6g}", *number) : "";
+}
+
+/// Value, low and high.
+void add_csv(const Estimate& estimate, std::vector<std::string>& cells) {
+  cells.push_back(csv_percent(estimate.value));
+  const auto& interval = estimate.interval;
+  cells.push_back(interval ? csv_percent(interval->low) : "");
+  cells.push_back(interval ? csv_percent(interval->high) : "");
+}
+
+std::string csv_line(const LeaderboardRow& row, const std::string& sequence,
+                     const std::optional<Estimates>& estimates) {
+  const SequenceResult& first = row.run->front();
+  std::vector<std::string> cells = {first.method, first.setting, first.file.string(), sequence};
+  for (const Metric metric : {Metric::kIou, Metric::kPrecision, Metric::kRecall}) {
+    add_csv(estimates ? (*estimates)[metric] : Estimate{}, cells);
+  }
+  const bool is_all = sequence == "all";
+  cells.push_back(is_all ? csv_number(row.ms_per_scan) : "");
+  cells.push_back(is_all ? csv_number(row.memory_mb) : "");
+  cells.emplace_back(is_all && row.is_on_front ? "1" : "");
+  const Difference to_best = is_all ? row.to_best.value_or(Difference{}) : Difference{};
+  add_csv(to_best, cells);
+  cells.push_back(csv_number(to_best.p_value));
+  cells.push_back(to_best.no_interval);
+  return csv_row(cells);
+}
+
+ordered_json to_json(const Leaderboard& board, const LeaderboardRow& row) {
+  ordered_json json = provenance_json(*row.run);
+  json["all"] = row.all ? to_json(*row.all) : ordered_json(nullptr);
+  json["sequences"] = ordered_json::array();
+  for (std::size_t s = 0; s < board.sequences.size(); ++s) {
+    json["sequences"].push_back(
+        {{"name", board.sequences[s]},
+         {"metrics", row.sequences[s] ? to_json(*row.sequences[s]) : ordered_json(nullptr)}});
+  }
+  json["ms_per_scan"] = json_or_null(row.ms_per_scan);
+  json["memory_mb"] = json_or_null(row.memory_mb);
+  json["on_front"] = row.is_on_front;
+  json["to_best"] = nullptr;
+  if (row.to_best) json["to_best"] = to_json(*row.to_best);
+  return json;
+}
+
+}  // namespace
+
+std::string leaderboard_text(const Leaderboard& board) {
+  TextTable table(columns_of(board));
+  for (std::size_t r = 0; r < board.rows.size(); ++r) table.add_row(cells_of_row(board, r));
+  return fmt::format(
+      "{}\n\n{}\n* front: no other run is as good and as fast, and better in one of both\n"
+      "to best: paired difference of IoU in percentage points, with its 95 % interval\n\n{}{}",
+      rules_text(board), table.str(), row_notes(board), remarks_text(board));
+}
+
+std::string leaderboard_latex(const Leaderboard& board) {
+  std::string text = "% " + latex_text(rules_text(board)) + '\n';
+  for (const std::string& remark : board.remarks) text += "% " + latex_text(remark) + '\n';
+  std::vector<std::string> titles;
+  for (const TextTable::Column& column : columns_of(board)) titles.push_back(column.title);
+  text += fmt::format("\\begin{{tabular}}{{rl{}}}\n", std::string(titles.size() - 2, 'r'));
+  text += latex_row(titles) + "\\hline\n";
+  for (std::size_t r = 0; r < board.rows.size(); ++r) text += latex_row(cells_of_row(board, r));
+  return text + "\\end{tabular}\n";
+}
+
+std::string leaderboard_csv(const Leaderboard& board) {
+  std::string csv =
+      "method,setting,results,sequence,iou_percent,iou_low_percent,iou_high_percent,"
+      "precision_percent,precision_low_percent,precision_high_percent,recall_percent,"
+      "recall_low_percent,recall_high_percent,ms_per_scan,memory_mb,on_front,to_best_points,"
+      "to_best_low_points,to_best_high_points,to_best_p_value,no_interval\n";
+  for (const LeaderboardRow& row : board.rows) {
+    csv += csv_line(row, "all", row.all);
+    for (std::size_t s = 0; s < board.sequences.size(); ++s) {
+      csv += csv_line(row, board.sequences[s], row.sequences[s]);
+    }
+  }
+  return csv;
+}
+
+ordered_json to_json(const Leaderboard& board) {
+  const SequenceResult& first = board.rows.front().run->front();
+  ordered_json json = {
+      {"dataset", first.dataset},         {"protocol", std::string(first.protocol->name)},
+      {"min_range_m", first.range.min_m}, {"max_range_m", first.range.max_m},
+      {"simulated", first.simulated},     {"confidence", kConfidence},
+      {"sequences", board.sequences},     {"rows", ordered_json::array()},
+      {"remarks", board.remarks}};
+  for (const LeaderboardRow& row : board.rows) json["rows"].push_back(to_json(board, row));
+  return json;
+}
+
+}  // namespace mosbench

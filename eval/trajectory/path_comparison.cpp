@@ -1,0 +1,259 @@
+#include "eval/trajectory/path_comparison.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "datasets/files/errors.hpp"
+#include "eval/results/answer_text.hpp"
+#include "eval/results/csv.hpp"
+#include "eval/results/text_table.hpp"
+
+namespace mosbench {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kPercent = 100.0, kDegreesPerRad = 180.0 / std::numbers::pi;
+
+using Scores = std::span<const TrajectoryScore>;
+
+/// What a pose adds to two sums of errors, and how many errors begin there.
+struct Start {
+  double first = 0, second = 0, errors = 0;
+};
+/// The starts of one sequence, in order.
+using Starts = std::vector<Start>;
+
+Starts segment_starts(const std::vector<SegmentError>& first,
+                      const std::vector<SegmentError>& second, double SegmentError::*error) {
+  Starts starts;
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    if (i == 0 || first[i].first != first[i - 1].first) starts.emplace_back();
+    starts.back().first += first[i].*error;
+    starts.back().second += second[i].*error;
+    starts.back().errors += 1;
+  }
+  return starts;
+}
+
+Starts square_starts(const std::vector<double>& first, const std::vector<double>& second) {
+  Starts starts;
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    starts.push_back({first[i] * first[i], second[i] * second[i], 1});
+  }
+  return starts;
+}
+
+Start sum_of(const std::vector<Starts>& sequences) {
+  Start sum;
+  for (const Starts& starts : sequences) {
+    for (const Start& start : starts) {
+      sum.first += start.first;
+      sum.second += start.second;
+      sum.errors += start.errors;
+    }
+  }
+  return sum;
+}
+
+/// What each start adds to the error of the second value minus the first. A value is a mean, or a
+/// function of one with these slopes there (delta method).
+std::vector<ScanErrors> start_errors(const std::vector<Starts>& sequences, const Start& sum,
+                                     double first_slope, double second_slope) {
+  std::vector<ScanErrors> errors;
+  for (const Starts& starts : sequences) {
+    if (starts.empty()) continue;
+    ScanErrors& own = errors.emplace_back();
+    for (const Start& start : starts) {
+      const double share = start.errors / sum.errors;
+      own.error.push_back(
+          second_slope * (start.second / sum.errors - share * sum.second / sum.errors) -
+          first_slope * (start.first / sum.errors - share * sum.first / sum.errors));
+      own.weight.push_back(share);
+      own.moving.push_back(0);  // nothing but the errors shows how long starts stay alike
+    }
+  }
+  return errors;
+}
+
+PathDifference mean_difference(PathDifference named, const std::vector<Starts>& sequences) {
+  const Start sum = sum_of(sequences);
+  if (sum.errors == 0 || !std::isfinite(sum.first + sum.second)) return named;
+  named.first = sum.first / sum.errors;
+  named.second = sum.second / sum.errors;
+  named.difference = difference_of(*named.second - *named.first, start_errors(sequences, sum, 1, 1),
+                                   Spacing::kNear, {-kInfinity, kInfinity});
+  return named;
+}
+
+PathDifference root_difference(PathDifference named, const std::vector<Starts>& sequences) {
+  const Start sum = sum_of(sequences);
+  if (sum.errors == 0 || !std::isfinite(sum.first + sum.second)) return named;
+  named.first = std::sqrt(sum.first / sum.errors);
+  named.second = std::sqrt(sum.second / sum.errors);
+  const auto slope = [](double root) { return root > 0 ? 0.5 / root : 0; };
+  named.difference =
+      difference_of(*named.second - *named.first,
+                    start_errors(sequences, sum, slope(*named.first), slope(*named.second)),
+                    Spacing::kNear, {-kInfinity, kInfinity});
+  return named;
+}
+
+std::vector<Starts> segments_of(Scores first, Scores second,
+                                std::vector<SegmentError> TrajectoryScore::*segments,
+                                double SegmentError::*error) {
+  std::vector<Starts> sequences;
+  for (std::size_t s = 0; s < first.size(); ++s) {
+    sequences.push_back(segment_starts(first[s].*segments, second[s].*segments, error));
+  }
+  return sequences;
+}
+
+/// Nothing where the pairs of one estimate are not those of the other.
+std::vector<Starts> squares_of(Scores first, Scores second, PoseErrors TrajectoryScore::*errors,
+                               std::vector<double> PoseErrors::*error) {
+  std::vector<Starts> sequences;
+  for (std::size_t s = 0; s < first.size(); ++s) {
+    const std::vector<double>& one = first[s].*errors.*error;
+    const std::vector<double>& other = second[s].*errors.*error;
+    if (one.size() != other.size()) return {};
+    sequences.push_back(square_starts(one, other));
+  }
+  return sequences;
+}
+
+std::string number_text(const PathDifference& row, const std::optional<double>& value) {
+  return value ? fmt::format("{:.4f}", row.shown_factor * *value) : "-";
+}
+
+std::string interval_of(const PathDifference& row) {
+  if (!row.difference.interval) return row.difference.value ? "none" : "-";
+  return fmt::format("[{:+.4f}, {:+.4f}]", row.shown_factor * row.difference.interval->low,
+                     row.shown_factor * row.difference.interval->high);
+}
+
+template <typename Bound>
+std::optional<double> bound_of(const Difference& difference, Bound bound) {
+  return difference.interval ? std::optional((*difference.interval).*bound) : std::nullopt;
+}
+
+}  // namespace
+
+void check_same_truth(std::span<const TrajectoryPair> first,
+                      std::span<const TrajectoryPair> second) {
+  if (first.size() != second.size()) {
+    throw DataError(fmt::format("{} and {} estimates, expected two of every sequence", first.size(),
+                                second.size()));
+  }
+  for (std::size_t s = 0; s < first.size(); ++s) {
+    const auto same = [](const Pose& a, const Pose& b) { return a.matrix() == b.matrix(); };
+    const bool folders = first.size() > 1;
+    if ((!folders || first[s].name == second[s].name) &&
+        std::ranges::equal(first[s].truth, second[s].truth, same)) {
+      continue;
+    }
+    throw DataError(
+        fmt::format("{} and {} are paired with other true poses, expected estimates of "
+                    "the same scans",
+                    first[s].name, second[s].name));
+  }
+}
+
+std::vector<PathDifference> compare_paths(Scores first, Scores second) {
+  using Score = TrajectoryScore;
+  const auto segments = [&](std::string_view name, std::string_view title, double factor,
+                            std::vector<SegmentError> Score::*of, double SegmentError::*error) {
+    return mean_difference({name, title, factor, {}, {}, {}},
+                           segments_of(first, second, of, error));
+  };
+  const auto roots = [&](std::string_view name, std::string_view title, double factor,
+                         PoseErrors Score::*of, std::vector<double> PoseErrors::*error) {
+    return root_difference({name, title, factor, {}, {}, {}}, squares_of(first, second, of, error));
+  };
+  constexpr double kPer100m = 100 * kDegreesPerRad;
+  std::vector<PathDifference> rows = {
+      segments("kitti_translation", "KITTI %", kPercent, &Score::kitti, &SegmentError::translation),
+      segments("kitti_rotation_rad_per_m", "KITTI deg/100 m", kPer100m, &Score::kitti,
+               &SegmentError::rotation_rad_per_m),
+      segments("short_translation", "5-50 m %", kPercent, &Score::brief,
+               &SegmentError::translation),
+      segments("short_rotation_rad_per_m", "5-50 m deg/100 m", kPer100m, &Score::brief,
+               &SegmentError::rotation_rad_per_m),
+      roots("relative_translation_m", "RPE m", 1, &Score::relative, &PoseErrors::translation_m),
+      roots("relative_rotation_rad", "RPE deg", kDegreesPerRad, &Score::relative,
+            &PoseErrors::rotation_rad),
+      roots("absolute_translation_m", "APE m", 1, &Score::absolute, &PoseErrors::translation_m),
+      roots("absolute_rotation_rad", "APE deg", kDegreesPerRad, &Score::absolute,
+            &PoseErrors::rotation_rad)};
+  for (PathDifference& row : rows) {
+    if (!row.name.starts_with("absolute") || !row.difference.value) continue;
+    row.difference = {};
+    row.difference.value = *row.second - *row.first;
+    row.difference.no_interval = "one bad motion shifts all later positions";
+  }
+  return rows;
+}
+
+std::string path_differences_text(std::span<const PathDifference> differences) {
+  TextTable table({{"", TextTable::kLeft},
+                   {"first"},
+                   {"second"},
+                   {"difference"},
+                   {"95 % interval"},
+                   {"p"},
+                   {"detectable"}});
+  std::string reasons;
+  for (const PathDifference& row : differences) {
+    const Difference& found = row.difference;
+    table.add_row({std::string(row.title), number_text(row, row.first),
+                   number_text(row, row.second),
+                   found.value ? fmt::format("{:+.4f}", row.shown_factor * *found.value) : "-",
+                   interval_of(row), found.p_value ? fmt::format("{:.4f}", *found.p_value) : "-",
+                   number_text(row, found.smallest_detectable)});
+    if (found.no_interval.empty()) continue;
+    reasons += fmt::format("no interval for {}: {}\n", row.title, found.no_interval);
+  }
+  return table.str() +
+         "\nDifference: second - first, paired by segments and motions; below 0 the second is "
+         "better. Scans: the poses where they begin.\n" +
+         reasons;
+}
+
+nlohmann::ordered_json path_differences_json(std::span<const PathDifference> differences) {
+  nlohmann::ordered_json rows = nlohmann::ordered_json::object();
+  for (const PathDifference& row : differences) {
+    const Difference& found = row.difference;
+    rows[std::string(row.name)] = {
+        {"first", json_or_null(row.first)},
+        {"second", json_or_null(row.second)},
+        {"value", json_or_null(found.value)},
+        {"standard_error", json_or_null(found.standard_error)},
+        {"low", json_or_null(bound_of(found, &Interval::low))},
+        {"high", json_or_null(bound_of(found, &Interval::high))},
+        {"no_interval", found.no_interval.empty() ? nlohmann::ordered_json(nullptr)
+                                                  : nlohmann::ordered_json(found.no_interval)},
+        {"p_value", json_or_null(found.p_value)},
+        {"smallest_detectable", json_or_null(found.smallest_detectable)}};
+  }
+  return rows;
+}
+
+std::string path_differences_csv(std::span<const PathDifference> differences) {
+  std::string csv = "error,first,second,difference,low,high,p_value,no_interval\n";
+  const auto cell = [](const std::optional<double>& value) {
+    return value ? fmt::to_string(*value) : "";
+  };
+  for (const PathDifference& row : differences) {
+    const Difference& found = row.difference;
+    csv += csv_row(std::vector{std::string(row.name), cell(row.first), cell(row.second),
+                               cell(found.value), cell(bound_of(found, &Interval::low)),
+                               cell(bound_of(found, &Interval::high)), cell(found.p_value),
+                               found.no_interval});
+  }
+  return csv;
+}
+
+}  // namespace mosbench

@@ -1,0 +1,681 @@
+#!/usr/bin/env python3
+"""Plants faults into sound sequences and counts what `mosbench doctor` makes of each.
+
+    scripts/check/doctor_plants.py                 # the scenes on which thresholds were chosen
+    scripts/check/doctor_plants.py --scenes judged # other worlds, seeds and sensors
+    scripts/check/doctor_plants.py --scenes sound  # 40 sequences in which nothing may be found
+    scripts/check/doctor_plants.py --fault jump_3m --fault noise_10cm
+    scripts/check/doctor_plants.py --record plants.jsonl   # also for scripts/check/doctor_margins.py
+
+Takes minutes. Prints per scene and fault: named, found (something else that is no advice), WRONG (advice that does
+not fit), noted (in a remark, where the fault may be sound), missed, or silent where the fault changes no motion by
+5 cm or 0.3 degrees; with the measures that the doctor compares with its thresholds: deviation of the poses ("unsound";
+1 is noise of 5 cm) and of measured motions among themselves, best gain in likelihood of another convention, and how
+pure and how moving the moving labels are. Sound sequences show how near to the thresholds these come. Exit code 1 when an advice was wrong or an alarm false.
+"""
+
+import argparse
+import array
+import concurrent.futures
+import json
+import math
+import pathlib
+import random
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+KITTI = ROOT.parent / "shared/parity/kitti_0005.tar.xz"
+KITTI_SCANS = 50
+# Layout, scene, scans, seed, folder of the sequence that is examined.
+SCENES = {
+    "chosen": [
+        ("semantickitti", "street", 50, 11, "sequences/08"),
+        ("doals", "mall", 60, 11, "mall/sequence_1"),
+        ("sipailou", "campus", 60, 11, "sequences/06"),
+        ("helimos", "street", 40, 13, "KAIST05/Deskewed_LiDAR/Ouster"),
+        ("semantickitti", "highway", 50, 11, "sequences/08"),
+        ("helimos", "highway", 50, 21, "KAIST05/Deskewed_LiDAR/Aeva"),
+    ],
+    "judged": [
+        ("semantickitti", "campus", 50, 31, "sequences/08"),
+        ("doals", "street", 50, 32, "street/sequence_1"),
+        ("sipailou", "street", 50, 33, "sequences/06"),
+        ("helimos", "campus", 50, 34, "KAIST05/Deskewed_LiDAR/Velodyne"),
+        ("helimos", "highway", 50, 35, "KAIST05/Deskewed_LiDAR/Aeva"),
+        ("kitti", "kitti_0005", KITTI_SCANS, 0, "."),
+    ],
+}
+
+
+# --- Poses: 12 numbers of a row as a 3 x 4 matrix.
+
+
+def product(a, b):
+    rotation = [[sum(a[i][k] * b[k][j] for k in range(3)) for j in range(3)] for i in range(3)]
+    return [rotation[i] + [sum(a[i][k] * b[k][3] for k in range(3)) + a[i][3]] for i in range(3)]
+
+
+def inverse(a):
+    turned = [[a[j][i] for j in range(3)] for i in range(3)]
+    return [turned[i] + [-sum(turned[i][k] * a[k][3] for k in range(3))] for i in range(3)]
+
+
+def motion(x=0.0, y=0.0, z=0.0, yaw=0.0, pitch=0.0):
+    c, s, d, t = math.cos(yaw), math.sin(yaw), math.cos(pitch), math.sin(pitch)
+    return [[c * d, -s, c * t, x], [s * d, c, s * t, y], [-t, 0.0, d, z]]
+
+
+def with_rotation(pose, rotation):
+    return [list(rotation[i][:3]) + [pose[i][3]] for i in range(3)]
+
+
+def moved(pose, x, y, z):
+    return [pose[i][:3] + [(x, y, z)[i]] for i in range(3)]
+
+
+def position(pose):
+    return [pose[i][3] for i in range(3)]
+
+
+IDENTITY = motion()
+
+
+class Copy:
+    """A sequence folder whose scans are links until they are changed."""
+
+    def __init__(self, sound, folder):
+        self.folder = folder
+        folder.mkdir(parents=True)
+        for path in sorted(sound.iterdir()):
+            if path.is_dir():
+                (folder / path.name).symlink_to(path)
+            else:
+                shutil.copy(path, folder / path.name)
+        self.random = random.Random(7)
+
+    def own(self, name):
+        path = self.folder / name
+        if path.is_symlink():
+            source = path.resolve()
+            path.unlink()
+            shutil.copytree(source, path)
+        return sorted(path.iterdir())
+
+    def tr(self):
+        path = self.folder / "calib.txt"
+        if not path.exists():
+            return IDENTITY
+        for line in path.read_text().splitlines():
+            if line.startswith("Tr"):
+                numbers = [float(word) for word in line.split(":")[1].split()]
+                return [numbers[4 * i : 4 * i + 4] for i in range(3)]
+        return IDENTITY
+
+    def stored_poses(self):
+        rows = [[float(word) for word in row.split()] for row in (self.folder / "poses.txt").read_text().splitlines()]
+        return [[row[4 * i : 4 * i + 4] for i in range(3)] for row in rows]
+
+    def store(self, poses):
+        lines = (" ".join(repr(float(value)) for line in pose for value in line) for pose in poses)
+        (self.folder / "poses.txt").write_text("\n".join(lines) + "\n")
+
+    def change_stored(self, change):
+        self.store(change(self.stored_poses()))
+
+    def change_poses(self, change):
+        """Changes the poses of the lidar."""
+        tr = self.tr()
+        back = inverse(tr)
+        poses = change([product(product(back, pose), tr) for pose in self.stored_poses()])
+        self.store([product(product(tr, pose), back) for pose in poses])
+
+    def change_points(self, change):
+        for path in self.own("velodyne"):
+            values = array.array("f", path.read_bytes())
+            change(values)
+            path.write_bytes(values.tobytes())
+
+    def change_labels(self, change):
+        paths = self.own("labels")
+        all_labels = [array.array("I", path.read_bytes()) for path in paths]
+        for path, labels in zip(paths, change(all_labels)):
+            path.write_bytes(labels.tobytes())
+
+    def change_times(self, change):
+        (self.folder / "indices.csv").unlink(missing_ok=True)  # it names scans by their stamps
+        path = self.folder / "times.txt"
+        stamps = change([float(row) for row in path.read_text().split()])
+        path.write_text("".join(f"{stamp:.9f}\n" for stamp in stamps))
+
+
+# --- Faults. Each takes a Copy.
+
+
+def every(change):
+    return lambda copy: copy.change_poses(lambda poses: [change(pose) for pose in poses])
+
+
+def stored(change):
+    return lambda copy: copy.change_stored(lambda poses: [change(pose) for pose in poses])
+
+
+def shifted(rows):
+    def change(poses):
+        if rows > 0:
+            return [poses[0]] * rows + poses[:-rows]
+        return poses[-rows:] + [poses[-1]] * -rows
+
+    return lambda copy: copy.change_stored(change)
+
+
+def frozen(first, count):
+    def change(poses):
+        begin = int(first * len(poses))
+        return [poses[begin] if begin <= k < begin + count else pose for k, pose in enumerate(poses)]
+
+    return lambda copy: copy.change_stored(change)
+
+
+def lose_scan(copy):
+    """A scan in the middle is lost and the last row cut, so that the numbers agree."""
+    rows = len(copy.stored_poses())
+    (copy.folder / "indices.csv").unlink(missing_ok=True)
+    for name in ("velodyne", "labels"):
+        if not (copy.folder / name).exists():
+            continue
+        paths = copy.own(name)
+        if len(paths) < rows:
+            shutil.rmtree(copy.folder / name)
+            continue
+        for path, after in zip(paths[rows // 2 :], paths[rows // 2 + 1 :]):
+            after.replace(path)
+    copy.change_stored(lambda poses: poses[:-1])
+    if (copy.folder / "times.txt").exists():
+        copy.change_times(lambda stamps: stamps[:-1])
+
+
+def jumped(length):
+    """Moves the second half of the way on, in the direction of the sensor's x axis there."""
+
+    def change(poses):
+        half = len(poses) // 2
+        ahead = [poses[half][i][0] * length for i in range(3)]
+        moved_half = [moved(pose, *(position(pose)[i] + ahead[i] for i in range(3))) for pose in poses[half:]]
+        return poses[:half] + moved_half
+
+    return lambda copy: copy.change_poses(change)
+
+
+def noisy(metres, degrees=0.0):
+    def plant(copy):
+        draw = copy.random.gauss
+
+        def change(pose):
+            at = [value + draw(0.0, metres) for value in position(pose)]
+            turn = motion(yaw=math.radians(draw(0.0, degrees)), pitch=math.radians(draw(0.0, degrees)))
+            return moved(product(pose, turn), *at)
+
+        copy.change_poses(lambda poses: [change(pose) for pose in poses])
+
+    return plant
+
+
+def scaled(factor):
+    return stored(lambda pose: moved(pose, *(factor * value for value in position(pose))))
+
+
+def quaternion(rotation):
+    """x y z w of a rotation."""
+    m = rotation
+    w = math.sqrt(max(0.0, 1.0 + m[0][0] + m[1][1] + m[2][2])) / 2.0
+    x = math.copysign(math.sqrt(max(0.0, 1.0 + m[0][0] - m[1][1] - m[2][2])) / 2.0, m[2][1] - m[1][2])
+    y = math.copysign(math.sqrt(max(0.0, 1.0 - m[0][0] + m[1][1] - m[2][2])) / 2.0, m[0][2] - m[2][0])
+    z = math.copysign(math.sqrt(max(0.0, 1.0 - m[0][0] - m[1][1] + m[2][2])) / 2.0, m[1][0] - m[0][1])
+    return x, y, z, w
+
+
+def rotation_of(x, y, z, w):
+    return [
+        [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+        [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+        [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
+    ]
+
+
+def w_first(pose):
+    x, y, z, w = quaternion(pose)
+    return with_rotation(pose, rotation_of(w, x, y, z))
+
+
+def transposed(pose):
+    return with_rotation(pose, [[pose[j][i] for j in range(3)] for i in range(3)])
+
+
+def other_way(copy):
+    """Poses of another way: as fast, but winding."""
+
+    def change(poses):
+        step = math.dist(position(poses[0]), position(poses[-1])) / len(poses) + 0.05
+        return [
+            motion(30.0 * step * math.sin(k / 20), 30.0 * step * math.cos(k / 15), 0.0, k / 15 + 0.5 * math.sin(k / 6))
+            for k in range(len(poses))
+        ]
+
+    copy.change_poses(change)
+
+
+def points_in_map(copy):
+    tr = copy.tr()
+    poses = [product(product(inverse(tr), pose), tr) for pose in copy.stored_poses()]
+    start = inverse(poses[0])
+    for path, pose in zip(copy.own("velodyne"), poses):
+        values = array.array("f", path.read_bytes())
+        (a, b, c, x), (d, e, f, y), (g, h, i, z) = product(start, pose)
+        px, py, pz = values[0::4], values[1::4], values[2::4]
+        values[0::4] = array.array("f", (a * u + b * v + c * w + x for u, v, w in zip(px, py, pz)))
+        values[1::4] = array.array("f", (d * u + e * v + f * w + y for u, v, w in zip(px, py, pz)))
+        values[2::4] = array.array("f", (g * u + h * v + i * w + z for u, v, w in zip(px, py, pz)))
+        path.write_bytes(values.tobytes())
+
+
+def swap_xy(values):
+    values[0::4], values[1::4] = values[1::4], values[0::4]
+
+
+def negated(column):
+    def change(values):
+        values[column::4] = array.array("f", (-value for value in values[column::4]))
+
+    return change
+
+
+def zeroed(share):
+    def plant(copy):
+        def change(values):
+            for i in range(0, len(values), 4):
+                if copy.random.random() < share:
+                    values[i] = values[i + 1] = values[i + 2] = 0.0
+
+        copy.change_points(change)
+
+    return plant
+
+
+def times(factor):
+    def change(values):
+        for column in range(3):
+            values[column::4] = array.array("f", (factor * value for value in values[column::4]))
+
+    return lambda copy: copy.change_points(change)
+
+
+def intensity_first(values):
+    values[0::4], values[1::4], values[2::4], values[3::4] = values[3::4], values[0::4], values[1::4], values[2::4]
+
+
+def camera_axes(values):
+    """x right, y down, z forward."""
+    values[0::4], values[1::4], values[2::4] = (
+        array.array("f", (-value for value in values[1::4])),
+        array.array("f", (-value for value in values[2::4])),
+        values[0::4],
+    )
+
+
+def cut_scan(copy):
+    """Half of a scan and of its labels."""
+    for name, item_bytes in (("velodyne", 16), ("labels", 4)):
+        if not (copy.folder / name).exists():
+            continue
+        stem = sorted((copy.folder / "velodyne").iterdir())[15].stem
+        for path in copy.own(name):
+            if path.stem == stem:
+                path.write_bytes(path.read_bytes()[: path.stat().st_size // item_bytes // 2 * item_bytes])
+
+
+def turned_less(pose):
+    """Angles in radians, taken for degrees."""
+    x, y, z, w = quaternion(pose)
+    angle = 2.0 * math.acos(max(-1.0, min(1.0, w)))
+    sine = math.sin(angle / 2.0) or 1.0
+    half = math.radians(angle) / 2.0
+    return with_rotation(pose, rotation_of(*(math.sin(half) * part / sine for part in (x, y, z)), math.cos(half)))
+
+
+def exchanged(poses):
+    row = len(poses) // 3
+    return poses[:row] + [poses[row + 1], poses[row]] + poses[row + 2 :]
+
+
+def one_off(poses):
+    row = 2 * len(poses) // 3
+    x, y, z = position(poses[row])
+    return poses[:row] + [moved(poses[row], x + 1.4, y + 1.4, z)] + poses[row + 1 :]
+
+
+def shuffled(poses):
+    return random.Random(5).sample(poses, len(poses))
+
+
+def fitted(labels, count):
+    return array.array("I", list(labels[:count]) + [0] * (count - len(labels)))
+
+
+def labels_of(later):
+    """Labels of the labelled scan that comes so many later."""
+
+    def change(all_labels):
+        count = len(all_labels)
+        return [fitted(all_labels[(k + later) % count], len(labels)) for k, labels in enumerate(all_labels)]
+
+    return lambda copy: copy.change_labels(change)
+
+
+def shuffle_labels(copy):
+    def change(all_labels):
+        for labels in all_labels:
+            shuffled = list(labels)
+            copy.random.shuffle(shuffled)
+            yield array.array("I", shuffled)
+
+    copy.change_labels(lambda all_labels: list(change(all_labels)))
+
+
+def is_moving(label):
+    return 251 <= label & 0xFFFF <= 259
+
+
+def relabelled(change):
+    return lambda copy: copy.change_labels(
+        lambda all_labels: [array.array("I", (change(label) for label in labels)) for labels in all_labels]
+    )
+
+
+def swapped_label(label):
+    if label & 0xFFFF == 0:
+        return label
+    return 9 if is_moving(label) else 251
+
+
+def change_indices(change):
+    """Changes the rows [stamp, indices...] of DOALS's truth."""
+
+    def plant(copy):
+        path = copy.folder / "indices.csv"
+        rows = [row.split(",") for row in path.read_text().splitlines()]
+        path.write_text("".join(",".join(row) + "\n" for row in change(rows, copy.random)))
+
+    return plant
+
+
+def is_harmless(copy, before):
+    """Whether a fault of poses leaves all motions over 1 and 8 scans as they are, up to 5 cm and 0.3 degrees."""
+    after = copy.stored_poses()
+    if len(after) != len(before) or after == before:
+        return False
+    for stride in (1, 8):
+        for k in range(len(before) - stride):
+            sound = product(inverse(before[k]), before[k + stride])
+            planted = product(inverse(after[k]), after[k + stride])
+            if math.dist(position(sound), position(planted)) > 0.05:
+                return False
+            if max(abs(sound[i][j] - planted[i][j]) for i in range(3) for j in range(3)) > math.radians(0.3):
+                return False
+    return True
+
+
+def smallest_scan(folder):
+    """The smallest size of a scan, as share of the median of the three on either side and its own."""
+    sizes = [path.stat().st_size for path in sorted((folder / "velodyne").iterdir())]
+    around = (sorted(sizes[max(0, k - 3) : k + 4]) for k in range(len(sizes)))
+    return min(size / part[len(part) // 2] for size, part in zip(sizes, around))
+
+
+NEUTRAL = re.compile(r"do not fit the scans in any convention|cannot be told|far smaller")
+# Name: how it is planted, what the doctor has to say.
+FAULTS = {
+    "identity": (stored(lambda pose: IDENTITY), "all poses are equal"),
+    "frozen_10_rows": (frozen(0.4, 10), "poses are frozen"),
+    "frozen_4_rows": (frozen(0.7, 4), "poses are frozen"),
+    "yaw_5": (every(lambda pose: product(pose, motion(yaw=math.radians(5)))), "mounted with .* yaw"),
+    "yaw_90": (every(lambda pose: product(pose, motion(yaw=math.radians(90)))), "mounted with .* yaw"),
+    "yaw_180": (every(lambda pose: product(pose, motion(yaw=math.radians(180)))), "mounted with .* yaw"),
+    "pitch_5": (every(lambda pose: product(pose, motion(pitch=math.radians(5)))), "mounted with .* pitch"),
+    "lever_2m": (every(lambda pose: product(pose, motion(x=2.0))), "lever arm"),
+    "lever_xz": (every(lambda pose: product(pose, motion(x=2.0, z=1.0))), "lever arm"),
+    "scale_1.1": (scaled(1.1), "times as long"),
+    "millimetres": (scaled(1000.0), "times as long|millimetres"),
+    "feet": (scaled(3.281), "times as long|feet"),
+    "lost_scan": (lose_scan, "lost"),
+    "noise_10cm": (noisy(0.10), "scatter"),
+    "noise_20cm": (noisy(0.20), "scatter"),
+    "jump_3m": (jumped(3.0), "poses jump"),
+    "jump_1m": (jumped(1.0), "poses jump"),
+    "shift_1": (shifted(1), "as one row later"),
+    "shift_-1": (shifted(-1), "as one row earlier"),
+    "shift_2": (shifted(2), "as 2 rows later"),
+    "shift_3": (shifted(3), "as 3 rows later"),
+    "shift_-3": (shifted(-3), "as 3 rows earlier"),
+    "shift_5": (shifted(5), "as 5 rows later"),
+    "shift_10": (shifted(10), "as 10 rows later"),
+    "inverse": (stored(inverse), "inverse"),
+    "transposed": (stored(transposed), "transposed"),
+    "no_rotation": (stored(lambda pose: with_rotation(pose, IDENTITY)), "same rotation"),
+    "w_first": (every(w_first), "w as the first"),
+    "translation_xy_swapped": (every(lambda p: moved(p, p[1][3], p[0][3], p[2][3])), "x and y of their trans"),
+    "translation_y_mirrored": (every(lambda p: moved(p, p[0][3], -p[1][3], p[2][3])), "sign of y of their trans"),
+    "translation_z_zero": (every(lambda p: moved(p, p[0][3], p[1][3], 0.0)), "same z"),
+    "other_way": (other_way, "do not fit"),
+    "reversed": (lambda copy: copy.change_stored(lambda poses: poses[::-1]), "reverse"),
+    "points_in_map": (points_in_map, "in the map's"),
+    "points_xy_swapped": (lambda copy: copy.change_points(swap_xy), "x and y of the points"),
+    "points_y_mirrored": (lambda copy: copy.change_points(negated(1)), "points mirrored"),
+    "points_z_flipped": (lambda copy: copy.change_points(negated(2)), "upside down"),
+    "zero_points": (zeroed(0.3), "returns"),
+    "points_mm": (times(1000.0), "metres"),
+    "points_km": (times(0.001), "metres"),
+    "big_endian": (lambda copy: copy.change_points(lambda values: values.byteswap()), "little-endian"),
+    "intensity_first": (lambda copy: copy.change_points(intensity_first), "do not fit|columns"),
+    "camera_axes": (lambda copy: copy.change_points(camera_axes), "camera's axes"),
+    "cut_scan": (cut_scan, "far smaller"),
+    "radians": (every(turned_less), "radians"),
+    "rows_exchanged": (lambda copy: copy.change_stored(exchanged), "exchanged"),
+    "row_off": (lambda copy: copy.change_poses(one_off), "does not fit between"),
+    "rows_shuffled": (lambda copy: copy.change_stored(shuffled), "do not fit"),
+    "stamps_ms": (lambda copy: copy.change_times(lambda t: [1e3 * s for s in t]), "seconds"),
+    "stamps_gap": (
+        lambda copy: copy.change_times(lambda t: [s + (5.0 if k >= len(t) // 2 else 0.0) for k, s in enumerate(t)]),
+        "comes .* s after",
+    ),
+    "labels_next": (labels_of(1), "labels do not fit|moving"),
+    "labels_far": (labels_of(7), "labels do not fit|moving"),
+    "labels_shuffled": (shuffle_labels, "labels do not fit|moving"),
+    "labels_swapped": (relabelled(swapped_label), "labels .*(swapped|exchanged)"),
+    "labels_static": (relabelled(lambda label: 9 if label & 0xFFFF else label), "no point .*moving"),
+    "labels_moving": (relabelled(lambda label: 251), "labels"),
+    "indices_next": (
+        change_indices(lambda rows, _: [[row[0]] + after[1:] for row, after in zip(rows, rows[1:] + rows[:1])]),
+        "labels do not fit|moving",
+    ),
+    "indices_shuffled": (
+        change_indices(
+            lambda rows, rng: [row[:1] + [str(i) for i in sorted(rng.sample(range(131072), len(row) - 1))] for row in rows]
+        ),
+        "labels do not fit|moving",
+    ),
+}
+NOTED = {"labels_static"}  # faults that may be sound: a note names them, no symptom
+NEEDS = {"stamps": "times.txt", "labels": "labels", "indices": "indices.csv"}
+
+
+def sound_scenes():
+    """Worlds, sensors, numbers of scans and noise, 40 in all."""
+    worlds = [
+        ("semantickitti", "street", 40, "sequences/08"),
+        ("semantickitti", "highway", 40, "sequences/08"),
+        ("semantickitti", "campus", 40, "sequences/08"),
+        ("semantickitti", "mall", 12, "sequences/08"),
+        ("doals", "mall", 40, "mall/sequence_1"),
+        ("doals", "campus", 40, "campus/sequence_1"),
+        ("doals", "street", 20, "street/sequence_1"),
+        ("sipailou", "campus", 60, "sequences/06"),
+        ("sipailou", "street", 40, "sequences/06"),
+        ("sipailou", "room", 30, "sequences/06"),
+    ]
+    worlds += [("helimos", world, 40, f"KAIST05/Deskewed_LiDAR/{sensor}")
+               for world in ("street", "highway", "campus") for sensor in ("Aeva", "Avia", "Ouster", "Velodyne")]
+    return worlds
+
+
+def remarks(answer):
+    return [remark for sequence in answer["sequences"] for remark in sequence["remarks"]]
+
+
+def judged(answer, name, harmless):
+    texts = [symptom["what"] for symptom in answer["symptoms"]]
+    expected = FAULTS[name][1]
+    if any(re.search(expected, text) for text in texts):
+        return "named" if all(re.search(expected, t) or NEUTRAL.search(t) for t in texts) else "named+"
+    if not texts and name in NOTED and any(re.search(expected, text) for text in remarks(answer)):
+        return "noted"
+    if not texts:
+        return "silent" if harmless else "missed"
+    return "found" if all(NEUTRAL.search(text) for text in texts) else "WRONG"
+
+
+class Run:
+    def __init__(self, program, work):
+        self.program, self.work = program, work
+
+    def sound_folder(self, layout, scene, scans, seed, folder):
+        if layout == "kitti":
+            if not KITTI.exists():
+                return None
+            if not (self.work / scene).exists():
+                subprocess.run(["tar", "-xJf", str(KITTI), "-C", str(self.work)], check=True)
+            return self.work / scene
+        out = self.work / f"{layout}-{scene}-{scans}-{seed}"
+        arguments = ["--layout", layout, "--scene", scene, "--scans", str(scans), "--seed", str(seed), "--out", str(out)]
+        subprocess.run([self.program, "simulate", *arguments], check=True, capture_output=True)
+        return out / folder
+
+    def answer(self, folder, layout):
+        kind = "semantickitti" if layout == "kitti" else layout
+        done = subprocess.run(
+            [self.program, "doctor", str(folder), "--dataset", kind, "--json"], capture_output=True, text=True
+        )
+        if not done.stdout.startswith("{"):
+            return {"symptoms": [{"what": "FAILED: " + done.stderr.strip()}], "sequences": []}
+        return json.loads(done.stdout)
+
+    def planted(self, layout, sound, plant, relative):
+        """Returns the doctor's answer, and whether the fault changes no motion by much."""
+        with tempfile.TemporaryDirectory(dir=self.work) as root:
+            folder = pathlib.Path(root) / relative if relative != "." else pathlib.Path(root) / "own"
+            copy = Copy(sound, folder)
+            before = copy.stored_poses()
+            plant(copy)
+            answer = self.answer(folder, layout)
+            for sequence in answer["sequences"]:
+                sequence.setdefault("measures", {})["smallest_scan"] = smallest_scan(folder)
+            return answer, is_harmless(copy, before)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--program", default=str(ROOT / "build/release/eval/mosbench"))
+    parser.add_argument("--scenes", choices=["chosen", "judged", "sound"], default="chosen")
+    parser.add_argument("--only", help="a word in the name of the scene")
+    parser.add_argument("--fault", action="append", choices=sorted(FAULTS))
+    parser.add_argument("--seeds-from", type=int, default=0, help="added to the seeds of the scenes")
+    parser.add_argument("--work", type=pathlib.Path, help="folder that keeps the simulated scenes")
+    parser.add_argument("--record", type=pathlib.Path, help="file to which a JSON object per case is appended")
+    flags = parser.parse_args()
+    with tempfile.TemporaryDirectory() as temporary:
+        work = flags.work or pathlib.Path(temporary)
+        work.mkdir(parents=True, exist_ok=True)
+        run = Run(flags.program, work)
+        sys.exit(check_sound(run, flags) if flags.scenes == "sound" else check_faults(run, flags))
+
+
+def record(flags, case, verdict, answer):
+    """Appends what doctor_margins.py reads."""
+    if not flags.record:
+        return
+    sequence = answer["sequences"][0] if answer["sequences"] else {}
+    truth = sequence.get("truth")
+    row = {"case": case, "verdict": verdict, "truth": truth, "measures": sequence.get("measures", {})}
+    with flags.record.open("a") as file:
+        file.write(json.dumps(row) + "\n")
+
+
+def check_sound(run, flags):
+    alarms = 0
+    sequences = [(world, noise) for world in sound_scenes() for noise in (0.0, 0.05)][:40]
+    for number, ((layout, scene, scans, relative), noise) in enumerate(sequences):
+        if flags.only and flags.only not in f"{layout}-{scene}-{relative}":
+            continue
+        sound = run.sound_folder(layout, scene, scans, 41 + flags.seeds_from + number // 2, relative)
+        plant = noisy(noise, 2.0 * noise) if noise else (lambda copy: None)
+        answer, _ = run.planted(layout, sound, plant, relative)
+        texts = [symptom["what"] for symptom in answer["symptoms"]]
+        alarms += bool(texts)
+        shown = measures(answer)
+        record(flags, "sound", "alarm" if texts else "silent", answer)
+        print(f"{layout:14} {scene:8} {pathlib.Path(relative).name:9} noise {100 * noise:.0f} cm  "
+              f"{shown}  {'; '.join(texts) or 'nothing found'}", flush=True)
+    print(f"{alarms} false alarms in {len(sequences)} sequences")
+    return 1 if alarms else 0
+
+
+def measures(answer):
+    """The numbers that thresholds are compared with."""
+    sequence = answer["sequences"][0] if answer["sequences"] else {}
+    poses, truth = sequence.get("poses"), sequence.get("truth")
+    text = f"unsound {poses['unsound']:6.3f} of {poses['disagreement']:6.3f}" if poses else "not measured"
+    if poses and poses.get("conventions"):
+        text += f" gain {max(row['gain'] for row in poses['conventions']):6.1f}"
+    if truth:
+        text += f" purity {truth['purity']:.3f} leaves {truth['moving_leaves']:.3f} {truth['static_leaves']:.4f}"
+    return text
+
+
+def check_faults(run, flags):
+    counts = {}
+    for layout, scene, scans, seed, relative in SCENES[flags.scenes]:
+        if flags.only and flags.only not in f"{layout}-{scene}-{relative}":
+            continue
+        sound = run.sound_folder(layout, scene, scans, seed + flags.seeds_from, relative)
+        if sound is None:
+            print(f"{scene}: skipped, {KITTI.name} is not there")
+            continue
+        count = counts.setdefault(f"{layout}-{scene}", {})
+
+        def examine(name):
+            plant, _ = FAULTS[name]
+            needed = next((file for word, file in NEEDS.items() if name.startswith(word)), None)
+            if needed and not (sound / needed).exists():
+                return name, None, []
+            answer, harmless = run.planted(layout, sound, plant, relative)
+            return name, judged(answer, name, harmless), answer
+
+        with concurrent.futures.ThreadPoolExecutor(2) as pool:
+            for name, verdict, answer in pool.map(examine, flags.fault or FAULTS):
+                if verdict is None:
+                    continue
+                count[verdict] = count.get(verdict, 0) + 1
+                texts = "; ".join(symptom["what"] for symptom in answer["symptoms"])
+                print(f"{layout:14} {scene:10} {name:24} {verdict:7} {measures(answer)}  {texts[:400]}", flush=True)
+                record(flags, name, verdict, answer)
+    print()
+    for scene, count in counts.items():
+        print(f"{scene:24}" + "  ".join(f"{verdict} {number}" for verdict, number in sorted(count.items())))
+    return 1 if any("WRONG" in count for count in counts.values()) else 0
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,145 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "datasets/files/folder_lock.hpp"
+#include "tests/cli/program.hpp"
+#include "tests/cli/small_sequence.hpp"
+
+namespace mosbench {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+using Files = std::vector<std::pair<std::string, std::string>>;
+
+/// Two runs of two sequences each, of which one is the same, and a baseline of the first.
+class Bless : public testing::Test {
+ protected:
+  Bless() {
+    for (const char* name : {"00", "01", "02"}) {
+      cli::write_small_sequence(folder_ / "data/sequences" / name, 6);
+    }
+    run("first", "00,01");
+    run("second", "01,02");
+    expect_blessed("first");
+    folder_.write("baseline/README.md", "why these numbers");
+  }
+  void run(const char* out, const char* sequences) const {
+    const cli::Answer answer = cli::run({"run", (folder_ / "data").string(), "--sequences",
+                                         sequences, "--out", (folder_ / out).string()});
+    ASSERT_EQ(answer.exit_code, 0) << answer.err;
+  }
+  fs::path baseline() const { return folder_ / "baseline"; }
+  std::vector<std::string> command(const std::string& newer) const {
+    return {"bless", (folder_ / newer).string(), baseline().string(), "--even-if"};
+  }
+  void expect_blessed(const std::string& newer) const {
+    const cli::Answer answer = cli::run(command(newer));
+    ASSERT_EQ(answer.exit_code, 0) << answer.err;
+  }
+  /// Paths of all that lies beside the baseline and is named like it.
+  std::vector<std::string> beside() const {
+    std::vector<std::string> names;
+    for (const auto& entry : fs::directory_iterator(folder_.path())) {
+      const std::string name = entry.path().filename();
+      if (name.starts_with("baseline")) names.push_back(name);
+    }
+    return names;
+  }
+  std::vector<fs::path> sequences() const {
+    std::vector<fs::path> names;
+    for (const char* name : {"00", "01", "02"}) {
+      if (fs::exists(baseline() / name / "result.json")) names.emplace_back(name);
+    }
+    return names;
+  }
+
+  TempFolder folder_;
+};
+
+TEST_F(Bless, ReplacesAllSequencesAndKeepsOtherFiles) {
+  ASSERT_THAT(sequences(), ElementsAre("00", "01"));
+  expect_blessed("second");
+  EXPECT_THAT(sequences(), ElementsAre("01", "02"));
+  EXPECT_EQ(read_file(baseline() / "README.md"), "why these numbers");
+  EXPECT_THAT(beside(), ElementsAre("baseline"));
+}
+
+TEST_F(Bless, KeepsTheOldBaselineWhereTheNewOneHasNoRoom) {
+  const Files before = cli::contents(baseline());
+  const cli::Answer answer = cli::run(command("second"), [] {
+    const struct rlimit small { 1000, 1000 };
+    setrlimit(RLIMIT_FSIZE, &small);
+  });
+  EXPECT_EQ(answer.exit_code, 3);
+  EXPECT_EQ(cli::contents(baseline()), before);
+  EXPECT_THAT(beside(), ElementsAre("baseline"));
+}
+
+TEST_F(Bless, LeavesTheOldOrTheNewBaselineWheneverItIsKilled) {
+  const std::string old_bytes = read_file(baseline() / "00/result.json");
+  expect_blessed("second");
+  const Files fresh = cli::contents(baseline());
+  const std::string fresh_bytes = read_file(baseline() / "02/result.json");
+  int killed = 0;
+  for (int round = 0; round < 16; ++round) {
+    expect_blessed("first");
+    ASSERT_THAT(sequences(), ElementsAre("00", "01"));
+    const TempFolder streams;
+    const pid_t child = cli::start(command("second"), streams.path());
+    std::this_thread::sleep_for(std::chrono::milliseconds(4 * round));
+    kill(child, SIGKILL);
+    killed += cli::wait_for(child) == 128 + SIGKILL ? 1 : 0;
+    const auto left = sequences();
+    ASSERT_THAT(left, testing::AnyOf(ElementsAre("00", "01"), ElementsAre("01", "02")));
+    EXPECT_EQ(read_file(baseline() / (left.front() == "00" ? "00" : "02") / "result.json"),
+              left.front() == "00" ? old_bytes : fresh_bytes);
+    EXPECT_EQ(read_file(baseline() / "README.md"), "why these numbers");
+    EXPECT_EQ(cli::run({"stats", baseline().string()}).exit_code, 0) << "round " << round;
+    expect_blessed("second");
+    ASSERT_EQ(cli::contents(baseline()), fresh) << "round " << round;
+  }
+  EXPECT_GT(killed, 0);
+  EXPECT_THAT(beside(), ElementsAre("baseline"));
+}
+
+TEST_F(Bless, RefusesFoldersThatOverlap) {
+  fs::create_directory_symlink(folder_ / "first", folder_ / "link");
+  const Files before = cli::contents(folder_ / "first");
+  const std::vector<std::pair<std::string, std::string>> overlapping = {
+      {"first", "first"}, {"first", "."},      {"first", "first/00"},
+      {"first", "link"},  {"link", "first/x"}, {"first/00/result.json", "first"}};
+  for (const auto& [newer, into] : overlapping) {
+    const cli::Answer answer =
+        cli::run({"bless", (folder_ / newer).string(), (folder_ / into).string(), "--even-if"});
+    EXPECT_EQ(answer.exit_code, 2) << newer << " " << into;
+    EXPECT_THAT(answer.err, HasSubstr("overlaps with the results"));
+    EXPECT_EQ(cli::contents(folder_ / "first"), before);
+  }
+  fs::create_directories(folder_ / "linked");
+  fs::create_directory_symlink(folder_ / "first/00", folder_ / "linked/00");
+  const cli::Answer answer =
+      cli::run({"bless", (folder_ / "first").string(), (folder_ / "linked").string()});
+  EXPECT_EQ(answer.exit_code, 2);
+  EXPECT_THAT(answer.err, HasSubstr("leads out of the baseline"));
+  EXPECT_EQ(cli::contents(folder_ / "first"), before);
+}
+
+TEST_F(Bless, WaitsForNoOtherWriter) {
+  const Files before = cli::contents(baseline());
+  const FolderLock lock(baseline());
+  const cli::Answer answer = cli::run(command("second"));
+  EXPECT_EQ(answer.exit_code, 2);
+  EXPECT_THAT(answer.err, HasSubstr("baseline: another mosbench is writing there"));
+  EXPECT_EQ(cli::contents(baseline()), before);
+}
+
+}  // namespace
+}  // namespace mosbench

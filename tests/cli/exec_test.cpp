@@ -1,0 +1,199 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <fstream>
+#include <string>
+#include <thread>
+
+#include "tests/cli/program.hpp"
+#include "tests/cli/small_sequence.hpp"
+
+namespace mosbench {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+// Answers as a shell prints them. A scan of the small sequence has 8640 points, its labels 34,576
+// bytes with index and count.
+static_assert(cli::kPointsPerScan == 8640);
+const std::string kHello = "head -c 40 > /dev/null; ";
+const std::string kReady = kHello + R"(printf 'MOSready\10\0\0\0\0\0\0\0\1\0\0\0\0\0\0\0'; )";
+const std::string kScan = "head -c 138376 > /dev/null; ";
+const std::string kLabel = R"(printf 'MOSlabel\20\207\0\0\0\0\0\0'; )";
+const std::string kFirst = R"(printf '\0\0\0\0\0\0\0\0\300\41\0\0\0\0\0\0'; )";
+const std::string kLabels =
+    "head -c 34560 /dev/zero | tr '\\0' '\\11' | sed 's/\\t\\t\\t\\t/\\t\\x00\\x00\\x00/g'; ";
+
+/// Whether a `sleep` of so many seconds runs on the machine.
+bool sleeps(const std::string& seconds) {
+  const std::string sleeping = std::string("sleep") + '\0' + seconds + '\0';
+  for (const auto& entry : fs::directory_iterator("/proc")) {
+    std::ifstream file(entry.path() / "cmdline", std::ios::binary);
+    const std::string line{std::istreambuf_iterator<char>(file), {}};
+    if (line == sleeping) return true;
+  }
+  return false;
+}
+
+/// The same, but a process that was killed has a moment to go.
+bool stays_asleep(const std::string& seconds) {
+  for (int i = 0; i < 500 && sleeps(seconds); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  return sleeps(seconds);
+}
+
+class Exec : public testing::Test {
+ protected:
+  Exec() { cli::write_small_sequence(folder_ / "room", 4); }
+
+  std::vector<std::string> command(const std::string& program, const std::string& out = "out",
+                                   const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> words = {"run",   folder_ / "room", "--method", "exec:" + program,
+                                      "--out", folder_ / out};
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  }
+  static std::string client() { return std::string(MOSBENCH_BINARY_DIR) + "/examples/exec_client"; }
+
+  TempFolder folder_;
+};
+
+TEST_F(Exec, TakesTheLabelsOfAProgramAndKeepsThem) {
+  const cli::Answer answer = cli::run(command(client(), "out", {"--threads", "1", "--scores"}));
+  ASSERT_EQ(answer.exit_code, 0) << answer.err;
+  const auto result = cli::timeless_result(folder_ / "out/room");
+  EXPECT_EQ(result.at("method").at("name"), "exec:" + client());
+  EXPECT_EQ(result.at("method").at("kind"), "exec");
+  EXPECT_EQ(result.at("config"), (nlohmann::json{{"timeout_s", 60.0}}));
+  EXPECT_GT(result.at("summary").at("tp").get<int>(), 50) << "the box moves into new voxels";
+  EXPECT_THAT(cli::run(command(client())).err, HasSubstr("finished by an earlier run, kept"));
+  EXPECT_THAT(cli::run(command(client(), "out", {"--set", "timeout_s=90"})).err,
+              HasSubstr("kept; if the program has changed, --overwrite runs it again"));
+  const cli::Answer other = cli::run(command("true; " + client()));
+  EXPECT_EQ(other.exit_code, 2) << "another program is another method";
+  const cli::Answer threads =
+      cli::run(command(client(), "threads", {"--threads", "3", "--scores"}));
+  ASSERT_EQ(threads.exit_code, 0) << threads.err;
+  EXPECT_EQ(cli::contents(folder_ / "threads"), cli::contents(folder_ / "out"));
+}
+
+TEST_F(Exec, PassesOnWhatTheProgramSaysOnStderr) {
+  EXPECT_THAT(cli::run(command("echo weights are read >&2; " + client())).err,
+              HasSubstr("weights are read\n"));
+}
+
+TEST_F(Exec, RemarksOnAProgramThatFailsAfterItsLastScan) {
+  const cli::Answer answer = cli::run(command(client() + "; exit 5"));
+  ASSERT_EQ(answer.exit_code, 0) << answer.err;
+  EXPECT_THAT(answer.out, HasSubstr("the program ended with exit code 5 after its last scan"));
+}
+
+struct Fault {
+  std::string name, program, error;
+  std::vector<std::string> more = {};
+};
+
+void PrintTo(const Fault& fault, std::ostream* out) { *out << fault.name; }
+
+class ExecFault : public Exec, public testing::WithParamInterface<Fault> {};
+
+INSTANTIATE_TEST_SUITE_P(
+    Programs, ExecFault,
+    testing::Values(
+        Fault{"ends", "exit 3", "the program ended with exit code 3 after 0 of 16 bytes"},
+        Fault{"isNotThere", "/nowhere/client", "ended with exit code 127"},
+        Fault{"crashes", "kill -SEGV $$", "was ended by signal 11 after 0 of 16 bytes"},
+        Fault{"hangs",
+              "sleep 1000",
+              "gave 0 of 16 bytes within 0.3 s, and left 0 bytes of its "
+              "input unread",
+              {"--set", "timeout_s=0.3"}},
+        Fault{"leavesItsGroup",
+              "exec python3 -c 'import os, time; os.setpgid(0, os.getpgid(os.getppid())); "
+              "time.sleep(1000)'",
+              "gave 0 of 16 bytes within 0.3 s",
+              {"--set", "timeout_s=0.3"}},
+        Fault{"doesNotRead",
+              kReady + "sleep 1000",
+              "of its input unread",
+              {"--set", "timeout_s=0.3"}},
+        Fault{"closesItsStdout",
+              kReady + "exec >&-; sleep 1000",
+              "the program closed its stdout after 0 of 16 bytes",
+              {"--set", "timeout_s=0.3"}},
+        Fault{"printsText", "echo Loading the weights of a large network",
+              "the program answers \"Loading \", expected a message MOSready on stdout, and other "
+              "text on stderr"},
+        Fault{"floods", "yes", "the program answers"},
+        Fault{"hasAnotherVersion",
+              kHello + R"(printf 'MOSready\10\0\0\0\0\0\0\0\2\0\0\0\0\0\0\0'; cat > /dev/null)",
+              "the program speaks version 2, expected version 1"},
+        Fault{"hasNoScores",
+              kReady + "cat > /dev/null",
+              "the program gives no scores, expected scores, or a run without --scores",
+              {"--scores"}},
+        Fault{"announcesTooMuch",
+              kReady + kScan + R"(printf 'MOSlabel\377\377\377\377\377\377\377\177'; cat)",
+              "the program announces 9223372036854775807 bytes in MOSlabel, expected 34576 bytes"},
+        Fault{"writesTooLittle", kReady + kScan + kLabel + kFirst + "head -c 100 /dev/zero",
+              "the program ended with exit code 0 after 116 of 34576 bytes"},
+        Fault{"writesTooMuch",
+              kReady + kScan + kLabel + kFirst + kLabels + "yes | head -c 9000; cat > /dev/null",
+              "the program "},
+        Fault{"labelsAnotherScan",
+              kReady + kScan + kLabel + R"(printf '\2'; head -c 34575 /dev/zero; cat > /dev/null)",
+              "the program labels 0 points of scan 2, expected the 8640 points of scan 0"},
+        Fault{"givesAnotherLabel",
+              kReady + kScan + kLabel + kFirst + "head -c 34560 /dev/zero; cat > /dev/null",
+              "the program gives point 0 the label 0, expected 9 (static) or 251 (moving)"}),
+    [](const auto& fault) { return fault.param.name; });
+
+TEST_P(ExecFault, IsAnErrorThatNamesTheScan) {
+  const cli::Answer answer = cli::run(command(GetParam().program, "out", GetParam().more));
+  EXPECT_EQ(answer.exit_code, 3) << answer.out;
+  EXPECT_THAT(answer.err, HasSubstr(GetParam().error));
+  const bool is_later = GetParam().name == "writesTooMuch";
+  EXPECT_THAT(answer.err, testing::ContainsRegex(is_later ? "00000[01].bin: " : "000000.bin: "));
+  EXPECT_FALSE(fs::exists(folder_ / "out/room"));
+  EXPECT_FALSE(fs::exists(folder_ / "out/room.partial"));
+}
+
+/// Five minutes and what no other test sleeps for.
+std::string own_seconds() { return "300." + std::to_string(1000000 + getpid()); }
+
+TEST_F(Exec, LeavesNoProcessBehind) {
+  const std::string seconds = own_seconds();
+  ASSERT_EQ(cli::run(command("sleep " + seconds + " & " + client())).exit_code, 0);
+  EXPECT_FALSE(stays_asleep(seconds)) << "a process of the program after a good run";
+  const std::string hanging = "sleep " + seconds + " & sleep " + seconds + "; :";
+  ASSERT_EQ(cli::run(command(hanging, "late", {"--set", "timeout_s=0.2"})).exit_code, 3);
+  EXPECT_FALSE(stays_asleep(seconds)) << "processes of a program that hangs";
+}
+
+TEST_F(Exec, LeavesNoProcessBehindWhenItIsKilledItself) {
+  const std::string seconds = own_seconds();
+  for (const int signal : {SIGKILL, SIGTERM, SIGINT}) {
+    const TempFolder streams;
+    const pid_t mosbench = cli::start(command("sleep " + seconds + "; :"), streams.path());
+    for (int i = 0; i < 1000 && !sleeps(seconds); ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    ASSERT_TRUE(sleeps(seconds));
+    ASSERT_EQ(kill(mosbench, signal), 0);
+    ASSERT_EQ(cli::wait_for(mosbench), 128 + signal);
+    EXPECT_FALSE(stays_asleep(seconds)) << signal;
+  }
+}
+
+TEST_F(Exec, IsRefusedWithoutAProgram) {
+  const cli::Answer answer = cli::run(command(""));
+  EXPECT_EQ(answer.exit_code, 2);
+  EXPECT_THAT(answer.err, HasSubstr("names no program, expected exec:COMMAND"));
+}
+
+}  // namespace
+}  // namespace mosbench

@@ -1,0 +1,146 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <mosbench/method.hpp>
+
+#include "datasets/files/bin_file.hpp"
+#include "eval/runs/method_choice.hpp"
+#include "tests/cli/program.hpp"
+#include "tests/cli/small_sequence.hpp"
+
+namespace mosbench {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+/// Runs of several methods on a small room.
+class RunMethods : public testing::Test {
+ protected:
+  RunMethods() { cli::write_small_sequence(folder_ / "room", 8); }
+
+  cli::Answer run(const std::string& methods, const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> words = {"run",   folder_ / "room", "--method",
+                                      methods, "--out",          folder_ / "out"};
+    words.insert(words.end(), more.begin(), more.end());
+    return cli::run(words);
+  }
+
+  TempFolder folder_;
+};
+
+TEST_F(RunMethods, GiveTheFilesOfEachMethodRunAlone) {
+  const cli::Answer answer = run("hmm-mos,underwood", {"--set", "max_range_m=15"});
+  ASSERT_EQ(answer.exit_code, 0) << answer.err;
+  for (const char* method : {"hmm-mos", "underwood"}) {
+    const fs::path alone = folder_ / "alone" / method;
+    ASSERT_EQ(cli::run({"run", folder_ / "room", "--method", method, "--out", alone, "--set",
+                        "max_range_m=15"})
+                  .exit_code,
+              0);
+    EXPECT_EQ(cli::contents(folder_ / "out" / method), cli::contents(alone));
+    EXPECT_THAT(answer.err, HasSubstr(std::string(method) + ", room: scan 8/8"));
+  }
+  EXPECT_THAT(answer.err, HasSubstr("method underwood (2 of 2)"));
+  EXPECT_THAT(answer.out, HasSubstr("results in " + (folder_ / "out/underwood").string()));
+}
+
+TEST_F(RunMethods, TakeSettingsOfTheirOwn) {
+  const cli::Answer answer =
+      run("hmm-mos,underwood",
+          {"--set", "max_range_m=15,underwood.max_range_m=9", "hmm-mos.voxel_size_m=0.3"});
+  ASSERT_EQ(answer.exit_code, 0) << answer.err;
+  const auto config = [this](const char* method) {
+    return cli::timeless_result(folder_ / "out" / method / "room").at("config");
+  };
+  EXPECT_EQ(config("hmm-mos").at("max_range_m"), 15.0);
+  EXPECT_EQ(config("hmm-mos").at("voxel_size_m"), 0.3);
+  EXPECT_EQ(config("underwood").at("max_range_m"), 9.0);
+}
+
+TEST_F(RunMethods, AreKeptWhereTheyAreFinished) {
+  ASSERT_EQ(run("underwood").exit_code, 0) << "a single method goes to the folder itself";
+  EXPECT_TRUE(fs::exists(folder_ / "out/room/result.json"));
+  fs::remove_all(folder_ / "out");
+  ASSERT_EQ(run("underwood,yoon").exit_code, 0);
+  fs::remove_all(folder_ / "out/yoon/room");
+  const cli::Answer again = run("underwood,yoon", {"--json"});
+  ASSERT_EQ(again.exit_code, 0) << again.err;
+  const auto methods = nlohmann::json::parse(again.out).at("methods");
+  ASSERT_EQ(methods.size(), 2U);
+  EXPECT_EQ(methods.at(0).at("method"), "underwood");
+  EXPECT_TRUE(methods.at(0).at("sequences").at(0).at("reused").get<bool>());
+  EXPECT_FALSE(methods.at(1).at("sequences").at(0).at("reused").get<bool>());
+}
+
+TEST_F(RunMethods, LeaveTheOthersWhereOneFails) {
+  const fs::path scan = folder_ / "room/velodyne/000003.bin";
+  std::vector<Point> points = read_bin(scan);
+  points.front().x = 9e5F;  // metres
+  write_bin(scan, points);
+  const cli::Answer answer = run("hmm-mos,underwood", {"--json"});
+  EXPECT_EQ(answer.exit_code, 3);
+  const auto methods = nlohmann::json::parse(answer.out).at("methods");
+  EXPECT_THAT(methods.at(0).at("failure").get<std::string>(), HasSubstr("000003.bin"));
+  EXPECT_THAT(answer.err, HasSubstr("mosbench: method hmm-mos failed: "));
+  EXPECT_FALSE(methods.at(1).contains("failure")) << methods.at(1);
+  EXPECT_FALSE(fs::exists(folder_ / "out/hmm-mos/room"));
+  EXPECT_TRUE(fs::exists(folder_ / "out/underwood/room/result.json"));
+}
+
+TEST_F(RunMethods, AreRefusedBeforeTheFirstScan) {
+  struct Mistake {
+    const char *methods, *setting, *error;
+  };
+  for (const Mistake& mistake :
+       {Mistake{"underwood,yooon", "max_range_m=9", "'yooon' is not known"},
+        Mistake{"underwood,", "max_range_m=9", "'' is not known"},
+        Mistake{"yoon,underwood,yoon", "max_range_m=9", "names yoon twice"},
+        Mistake{"hmm-mos,underwood", "yoon.max_range_m=3",
+                "--set yoon.max_range_m=3: method 'yoon' is not run, expected one of hmm-mos, "
+                "underwood"},
+        Mistake{"hmm-mos,underwood", "voxel_size_m=0.3",
+                "method underwood: --set voxel_size_m=0.3: key 'voxel_size_m' is not known"}}) {
+    const cli::Answer answer = run(mistake.methods, {"--set", mistake.setting});
+    EXPECT_EQ(answer.exit_code, 2) << mistake.methods;
+    EXPECT_THAT(answer.err, HasSubstr(mistake.error));
+    EXPECT_FALSE(fs::exists(folder_ / "out")) << mistake.methods;
+  }
+}
+
+TEST_F(RunMethods, StandInTheLeaderboard) {
+  ASSERT_EQ(run("underwood,hmm-mos", {"--set", "underwood.reference_offset_scans=3"}).exit_code, 0);
+  const cli::Answer json = cli::run({"leaderboard", folder_ / "out", "--format", "json"});
+  ASSERT_EQ(json.exit_code, 0) << json.err;
+  const auto rows = nlohmann::json::parse(json.out).at("rows");
+  ASSERT_EQ(rows.size(), 2U);
+  for (const auto& row : rows) {
+    EXPECT_GT(row.at("ms_per_scan").get<double>(), 0.0);
+    EXPECT_GT(row.at("memory_mb").get<double>(), 0.0);
+    EXPECT_GT(row.at("all").at("iou").at("value").get<double>(), 0.0) << row;
+  }
+  const cli::Answer text = cli::run({"leaderboard", folder_ / "out"});
+  EXPECT_THAT(text.out, HasSubstr("Underwood et al."));
+  EXPECT_THAT(text.out, HasSubstr("no interval of the difference of 2: 8 scans"));
+  ASSERT_EQ(cli::run({"run", folder_ / "room", "--protocol", "mapmos", "--out", folder_ / "other"})
+                .exit_code,
+            0);
+  const cli::Answer refused = cli::run({"leaderboard", folder_ / "out", folder_ / "other"});
+  EXPECT_EQ(refused.exit_code, 3);
+  EXPECT_THAT(refused.err, HasSubstr("protocol is semantickitti-mos and mapmos"));
+}
+
+TEST(MethodChoice, OfAllIsEveryMethodOfThisBuildButTwins) {
+  const MethodChoice all = chosen_methods("all");
+  std::vector<std::string> expected;
+  for (const MethodKind& kind : methods()) {
+    const bool is_left_out = kind.is_twin || (!all.notes.empty() && kind.name == "octomap");
+    if (!is_left_out) expected.emplace_back(kind.name);
+  }
+  EXPECT_EQ(all.names, expected);
+  EXPECT_GE(expected.size(), 6U);
+  EXPECT_TRUE(find_method("hmm-mos-reference")->is_twin);
+}
+
+}  // namespace
+}  // namespace mosbench

@@ -1,0 +1,144 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <mosbench/method.hpp>
+#include <mosbench/odometry.hpp>
+
+#include "datasets/files/errors.hpp"
+#include "eval/results/settings_json.hpp"
+#include "eval/runs/run_plan.hpp"
+#include "tests/cli/program.hpp"
+#include "tests/cli/small_sequence.hpp"
+
+namespace mosbench {
+namespace {
+
+/// Legal values other than that of the setting.
+std::vector<SettingValue> other_values(const Setting& setting) {
+  std::vector<SettingValue> values;
+  if (const auto* whole = std::get_if<int>(&setting.value)) {
+    for (const int value : {*whole + 1, *whole - 1, *whole + 2, *whole + 4}) {
+      if (value >= setting.lowest && value <= setting.highest) values.emplace_back(value);
+    }
+  } else if (const auto* number = std::get_if<double>(&setting.value)) {
+    for (const double value : {1.25 * *number, 0.75 * *number, setting.highest, setting.lowest}) {
+      if (value == *number || value < setting.lowest || value > setting.highest) continue;
+      values.emplace_back(value);
+    }
+  } else {
+    for (const std::string_view choice : setting.choices) {
+      if (choice != std::get<std::string>(setting.value)) values.emplace_back(std::string(choice));
+    }
+  }
+  return values;
+}
+
+std::string assignment_of(const Setting& setting, const SettingValue& value) {
+  return std::string(setting.name) + "=" + to_string(value);
+}
+
+class RunSettings : public testing::Test {
+ protected:
+  RunSettings() { cli::write_small_sequence(folder_ / "room", 2); }
+
+  nlohmann::ordered_json result_of(const std::vector<std::string>& flags) const {
+    std::vector<std::string> words = {"run", (folder_ / "room").string(), "--overwrite", "--out",
+                                      (folder_ / "out").string()};
+    words.insert(words.end(), flags.begin(), flags.end());
+    const cli::Answer answer = cli::run(words);
+    EXPECT_EQ(answer.exit_code, 0) << answer.err;
+    return nlohmann::ordered_json::parse(read_file(folder_ / "out/room/result.json"));
+  }
+
+  /// Returns what results of a plan say about the method; nothing where the value contradicts the
+  /// other settings.
+  std::optional<nlohmann::ordered_json> planned(const MethodKind& method, const Setting& setting,
+                                                const SettingValue& value) const {
+    RunOptions options;
+    options.input = folder_ / "room";
+    options.out = folder_ / "planned";
+    options.method = std::string(method.name);
+    options.assignments = {assignment_of(setting, value)};
+    // More votes than one need more references than the default.
+    if (setting.name == "min_votes") options.assignments.push_back("references=3");
+    try {
+      return plan_run(options).sequences.at(0).identity.at("config");
+    } catch (const UsageError&) {
+      return std::nullopt;
+    }
+  }
+
+  TempFolder folder_;
+};
+
+TEST_F(RunSettings, OfEveryMethodStandInItsResult) {
+  for (const MethodKind& method : methods()) {
+    const auto config = result_of({"--method", std::string(method.name)}).at("config");
+    EXPECT_EQ(config.size(), method.defaults.all().size()) << method.name;
+    for (const Setting& setting : method.defaults.all()) {
+      EXPECT_TRUE(config.contains(std::string(setting.name))) << method.name << setting.name;
+    }
+  }
+}
+
+TEST_F(RunSettings, StandInTheResultWithTheValueThatWasGiven) {
+  const auto json = result_of({"--set", "voxel_size_m=0.3,max_range_m=17,delay_scans=1"});
+  EXPECT_EQ(json.at("config").at("voxel_size_m"), 0.3);
+  EXPECT_EQ(json.at("config").at("max_range_m"), 17.0);
+  EXPECT_EQ(json.at("config").at("delay_scans"), 1);
+  for (const MethodKind& method : methods()) {
+    for (const Setting& setting : method.defaults.all()) {
+      std::size_t accepted = 0;
+      for (const SettingValue& value : other_values(setting)) {
+        const auto config = planned(method, setting, value);
+        if (!config) continue;
+        ++accepted;
+        Settings expected = method.defaults;
+        apply_setting_assignment(assignment_of(setting, value), expected);
+        EXPECT_EQ(config->at(std::string(setting.name)),
+                  to_json(expected).at(std::string(setting.name)))
+            << method.name << ": " << setting.name;
+      }
+      EXPECT_GT(accepted, 0U) << method.name << ": " << setting.name;
+    }
+  }
+}
+
+TEST_F(RunSettings, OfAPresetThatAMethodLacksAreNamed) {
+  RunOptions options;
+  options.input = folder_ / "room";
+  options.preset = "helimos-delayed";
+  options.method = "yoon";
+  EXPECT_THAT(plan_run(options).notes,
+              testing::Contains("preset helimos-delayed: method yoon has no voxel_size_m, "
+                                "delay_scans, it runs without"));
+  options.method = "hmm-mos";
+  EXPECT_THAT(plan_run(options).notes,
+              testing::Not(testing::Contains(testing::HasSubstr("runs without"))));
+}
+
+TEST_F(RunSettings, OfOdometryStandInTheResultToo) {
+  for (const OdometryKind& kind : odometries()) {
+    const auto json = result_of({"--odometry", std::string(kind.name)});
+    const std::string statement = json.at("reading").at("pose_odometry");
+    for (const Setting& setting : kind.defaults.all()) {
+      const std::string words =
+          " " + std::string(setting.name) + "=" + to_string(setting.value) + " ";
+      EXPECT_NE((" " + statement + " ").find(words), std::string::npos) << statement << words;
+    }
+  }
+}
+
+TEST_F(RunSettings, OfScoringAndReadingStandInTheResultToo) {
+  const auto json = result_of({"--protocol", "doals-hmm", "--range", "1,9", "--preset", "doals-20m",
+                               "--pose-direction", "sensor-from-map"});
+  EXPECT_EQ(json.at("protocol").at("name"), "doals-hmm");
+  EXPECT_EQ(json.at("protocol").at("min_range_m"), 1.0);
+  EXPECT_EQ(json.at("protocol").at("max_range_m"), 9.0);
+  EXPECT_EQ(json.at("preset"), "doals-20m");
+  EXPECT_EQ(json.at("reading").at("pose_direction"), "sensor_from_map, inverted");
+}
+
+}  // namespace
+}  // namespace mosbench

@@ -1,0 +1,119 @@
+#include <gtest/gtest.h>
+
+#include <array>
+#include <random>
+
+#include "core/hmm_mos_plus/pipeline.hpp"
+#include "tests/plus_twin.hpp"
+#include "tests/small_world.hpp"
+
+/// hmm-mos-plus against its slow twin, label for label and score for score.
+namespace mosbench {
+namespace {
+
+hmm_mos_plus::Config small_plus() {
+  hmm_mos_plus::Config config;
+  config.map.voxel_size_m = 0.25;
+  config.map.min_range_m = 0.3;
+  config.map.max_range_m = 5.0;
+  config.max_unknown_voxels = 60;  // few rays leave much unknown
+  return config;
+}
+
+struct PlusTally {
+  std::size_t sequences = 0, moving_points = 0, scored_points = 0;
+};
+
+void expect_twins_labels(const SmallWorld& world, const hmm_mos_plus::Config& config,
+                         PlusTally& tally, unsigned threads = 1) {
+  plus_twin::PlusTwin twin(config);
+  hmm_mos_plus::Pipeline pipeline(config, {.threads = threads, .scores = true});
+  const std::vector<LabelledScan> expected = results_of(twin, world);
+  const std::vector<LabelledScan> results = results_of(pipeline, world);
+  ASSERT_EQ(results.size(), world.scans.size());
+  ASSERT_EQ(expected.size(), world.scans.size());
+  for (std::size_t k = 0; k < results.size(); ++k) {
+    ASSERT_EQ(results[k].scan_index, k);
+    ASSERT_EQ(results[k].labels, expected[k].labels) << "scan " << k;
+    ASSERT_EQ(results[k].scores, expected[k].scores) << "scan " << k;
+    ASSERT_EQ(results[k].nonfinite_points, expected[k].nonfinite_points);
+    ASSERT_TRUE(results[k].judged);
+    tally.moving_points +=
+        static_cast<std::size_t>(std::ranges::count(results[k].labels, kMovingLabel));
+    tally.scored_points += static_cast<std::size_t>(
+        std::ranges::count_if(results[k].scores, [](float score) { return score > 0; }));
+  }
+  ++tally.sequences;
+}
+
+TEST(PlusAgainstItsTwin, AgreesOnlineAndForEveryDelay) {
+  PlusTally tally;
+  for (unsigned seed = 0; seed < 6; ++seed) {
+    for (const int delay : {0, 1, 4, 30}) {
+      hmm_mos_plus::Config config = small_plus();
+      config.map.delay_scans = delay;
+      expect_twins_labels(small_world({.seed = seed, .scans = 24, .defects = seed % 3 == 2}),
+                          config, tally);
+    }
+  }
+  EXPECT_EQ(tally.sequences, 24U);
+  EXPECT_GT(tally.moving_points, 2000U);
+  EXPECT_GT(tally.scored_points, tally.moving_points / 2);
+}
+
+TEST(PlusAgainstItsTwin, AgreesWhenVoxelsExpireAndLeave) {
+  PlusTally tally;
+  for (unsigned seed = 50; seed < 54; ++seed) {
+    hmm_mos_plus::Config config = small_plus();
+    config.map.global_window_scans = seed % 2 == 0 ? 3 : 6;
+    config.map.max_range_m = 3.0;
+    expect_twins_labels(
+        small_world(
+            {.seed = seed,
+             .scans = 30,
+             .jumps_m = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {9, 0, 0}, {0, 0, 0}}}),
+        config, tally);
+  }
+  EXPECT_EQ(tally.sequences, 4U);
+}
+
+TEST(PlusAgainstItsTwin, AgreesOnRandomConfigurations) {
+  PlusTally tally;
+  for (unsigned seed = 100; seed < 130; ++seed) {
+    std::mt19937 random(seed);
+    const auto one_of = [&](auto... choices) {
+      const std::array list = {choices...};
+      return list[random() % list.size()];
+    };
+    hmm_mos_plus::Config config = small_plus();
+    config.map.voxel_size_m = one_of(0.25, 0.3, 0.4);
+    config.map.max_range_m = one_of(2.5, 4.0, 6.0);
+    config.map.delay_scans = one_of(0, 0, 1, 3);
+    config.map.global_window_scans = one_of(4, 9, 300);
+    config.map.min_state_probability = one_of(0.6, 0.9, 0.99);
+    config.seed_age_scans = one_of(0, 2, 10);
+    config.object_age_scans = one_of(0, 10, 30, 100);
+    config.max_unknown_voxels = one_of(15, 40, 80, 125);
+    config.ground_radius_voxels = one_of(0, 2, 8);
+    config.ground_layers_voxels = one_of(0, 1, 3);
+    config.min_seeds_voxels = one_of(1, 3, 5);
+    config.min_seed_share = one_of(0.0, 0.1, 0.5);
+    config.fresh_age_scans = one_of(0, 2, 30);
+    config.min_fresh_share = one_of(0.0, 0.2, 0.7);
+    config.max_extent_m = one_of(0.8, 2.0, 10.0);
+    config.max_height_m = one_of(0.5, 1.0, 4.5);
+    const SmallWorld world = small_world({.seed = seed,
+                                          .scans = 20,
+                                          .moving_boxes = one_of(1, 2, 3),
+                                          .noise_m = one_of(0.0, 0.05),
+                                          .walk_m = one_of(0.0, 0.1, 0.4),
+                                          .origin_m = {one_of(0.0, 446'123.4), -31.7, 412.3},
+                                          .defects = one_of(0, 1) == 1});
+    expect_twins_labels(world, config, tally, one_of(1U, 3U));
+  }
+  EXPECT_EQ(tally.sequences, 30U);
+  EXPECT_GT(tally.moving_points, 500U);
+}
+
+}  // namespace
+}  // namespace mosbench

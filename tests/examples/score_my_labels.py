@@ -1,0 +1,39 @@
+#!/usr/bin/env python3
+"""Scores the labels of a network by a benchmark's rules, scan by scan and as a whole.
+
+Here the "network" calls moving what is nearer than 15 m and, under a sensor at 1.7 m, above 30 cm.
+"""
+
+import pathlib
+import tempfile
+
+import numpy as np
+
+import mosbench
+
+
+def network(points: np.ndarray) -> np.ndarray:
+    return (points[:, 2] > -1.4) & (np.linalg.norm(points[:, :2], axis=1) < 15.0)
+
+
+def main(folder: pathlib.Path) -> None:
+    data = mosbench.simulate(folder / "street", scene="street", scans=20)
+    predictions = folder / "predictions"
+    predictions.mkdir()
+    for scan in mosbench.open(data):
+        moving = network(scan.points)
+        print(scan.stem, "IoU", mosbench.iou(moving, scan.truth, protocol="semantickitti-mos"))
+        labels = np.where(moving, mosbench.MOVING_LABEL, mosbench.STATIC_LABEL)
+        labels.astype(np.uint32).tofile(predictions / f"{scan.stem}.label")
+
+    mine = mosbench.score(data, predictions, protocol="semantickitti-mos", method="my network", out=folder / "mine")
+    theirs = mosbench.run(data, preset="semantickitti", out=folder / "hmm-mos")
+    print(mine)
+    print(theirs)
+    difference = mosbench.stats(mine, theirs)["difference"]["iou"]["value"]
+    print(f"HMM-MOS is better by {100 * difference:.1f} points of IoU")
+
+
+if __name__ == "__main__":
+    with tempfile.TemporaryDirectory() as scratch:
+        main(pathlib.Path(scratch))

@@ -1,0 +1,216 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <limits>
+#include <memory>
+#include <mosbench/method.hpp>
+#include <vector>
+
+#include "core/hmm_mos/reference_voxels.hpp"
+#include "core/hmm_mos_plus/config.hpp"
+
+/// The method of core/hmm_mos_plus as its README reads: single voxels in hash maps, comparisons of
+/// all pairs, double precision.
+namespace mosbench::plus_twin {
+using namespace hmm_mos::reference;
+using hmm_mos::reference::Voxel;
+
+/// A voxel of the map.
+struct Cell {
+  double occupied = 0, free = 0, unobserved = 1;  // belief
+  Occupancy state = kUnobserved;
+  int last_seen = 0, free_scans = 0, occupied_scans = 0, arrived_at = 0;
+  bool arrived = false, sure = false;
+};
+
+struct Scan final : Observed {
+  PointVoxels voxels;
+  SetOf measured, observed, occupied, seeds, fresh, settled;
+  Eigen::Vector3d sensor_m = Eigen::Vector3d::Zero();
+  LabelledScan result;
+};
+
+class PlusTwin final : public Method {
+ public:
+  explicit PlusTwin(const hmm_mos_plus::Config& config) : c_(config) {}
+
+  std::unique_ptr<Observed> observe(std::span<const Point> points, const Pose& t) override {
+    auto scan = std::make_unique<Scan>();
+    scan->sensor_m = t.translation();
+    scan->voxels = voxels_of(points, t, c_.map.min_range_m, c_.map.voxel_size_m);
+    scan->result.nonfinite_points = scan->voxels.nonfinite_points;
+    for (const std::optional<Voxel>& v : scan->voxels.of_point) {
+      if (v) scan->measured.insert(*v);
+    }
+    const Voxel s = voxel_at(scan->sensor_m, c_.map.voxel_size_m);
+    for (const Voxel& v : scan->measured) {
+      if (distance_sq_m2(v, scan->sensor_m) <= squared(c_.map.max_range_m))
+        scan->occupied.insert(v);
+      for (const Voxel& q : line(s, v))
+        if (distance_sq_m2({s.x - q.x, s.y - q.y, s.z - q.z}, Eigen::Vector3d::Zero()) <=
+            squared(c_.map.max_range_m))
+          scan->observed.insert(q);
+    }
+    return scan;
+  }
+
+  using Method::push;
+  std::vector<LabelledScan> push(std::unique_ptr<Observed> observed) override {
+    auto& scan = dynamic_cast<Scan&>(*observed);
+    scan.result.scan_index = static_cast<std::size_t>(++k_);
+    for (const Voxel& v : scan.observed) update(v, scan.measured);
+    std::erase_if(map_, [&](const auto& entry) {
+      const bool expired = k_ > c_.map.global_window_scans &&
+                           entry.second.last_seen < k_ - c_.map.global_window_scans;
+      return expired ||
+             distance_sq_m2(entry.first, scan.sensor_m) > squared(2 * c_.map.max_range_m);
+    });
+    for (const Voxel& v : scan.occupied) {
+      const Cell* cell = find(map_, v);
+      if (cell == nullptr || cell->state != kOccupied) continue;
+      if (young(*cell) && may_be_seed(v)) scan.seeds.insert(v);
+      if (young(*cell) && k_ - cell->arrived_at <= c_.fresh_age_scans) scan.fresh.insert(v);
+      if (cell->occupied_scans >= 8 &&
+          !(cell->arrived && k_ - cell->arrived_at <= c_.object_age_scans))
+        scan.settled.insert(v);
+    }
+    held_.push_back(std::move(scan));
+    return release(static_cast<std::size_t>(c_.map.delay_scans));
+  }
+
+  std::vector<LabelledScan> finish() override { return release(0); }
+
+ private:
+  /// A step of the hidden Markov model and of the history.
+  void update(const Voxel& v, const SetOf& sources) {
+    double d_sq = std::numeric_limits<double>::max();
+    for (const Voxel& u : sources) d_sq = std::min(d_sq, norm_sq(v.x - u.x, v.y - u.y, v.z - u.z));
+    const double e = c_.map.transition_epsilon;
+    const double l =
+        std::exp(-squared(c_.map.voxel_size_m) * d_sq / (2 * squared(c_.map.sigma_m())));
+    Cell& c = map_[v];
+    const double occupied = l * (e * c.unobserved + (1 - e) * c.occupied + e * c.free);
+    const double free = (1 - l) * (e * c.unobserved + e * c.occupied + (1 - e) * c.free);
+    c.unobserved = 0, c.occupied = occupied / (occupied + free), c.free = free / (occupied + free);
+    const Occupancy before = c.state;
+    if (std::max(c.occupied, c.free) > c_.map.min_state_probability)
+      c.state = c.free > c.occupied ? kFree : kOccupied;
+    c.last_seen = k_;
+    if (c.state == kOccupied && before == kOccupied) ++c.occupied_scans;
+    if (c.state == kFree && before == kFree) ++c.free_scans;
+    if (c.state == kOccupied && before != kOccupied) {
+      c.arrived = before == kFree, c.sure = c.arrived && c.free_scans >= 3;
+      c.arrived_at = k_, c.free_scans = 0, c.occupied_scans = 1;
+    }
+    if (c.state == kFree && before != kFree) {
+      c.arrived = c.sure = false;
+      c.occupied_scans = 0, c.free_scans = 1;
+    }
+  }
+
+  bool young(const Cell& c) const { return c.sure && k_ - c.arrived_at <= c_.seed_age_scans; }
+
+  bool is_known(const Cell* c) const {
+    return c != nullptr && c->state != kUnobserved &&
+           k_ - c->last_seen < c_.map.global_window_scans;
+  }
+
+  /// Apart from settled surfaces, in known space.
+  bool may_be_seed(const Voxel& v) const {
+    const int firm = count_neighbours(v, 1, [&](const Voxel& u) {
+      const Cell* c = find(map_, u);
+      return is_known(c) && c->state == kOccupied && c->occupied_scans >= 8 && !young(*c);
+    });
+    const int unknown =
+        count_neighbours(v, 2, [&](const Voxel& u) { return !is_known(find(map_, u)); });
+    return firm == 0 && unknown <= c_.max_unknown_voxels;
+  }
+
+  void add_departures(Scan& scan) const {
+    for (const Voxel& v : scan.occupied) {
+      const Cell* cell = find(map_, v);
+      if (!is_known(cell) || cell->state != kFree) continue;
+      scan.settled.erase(v);
+      scan.fresh.insert(v);
+      if (may_be_seed(v)) scan.seeds.insert(v);
+    }
+  }
+
+  bool is_low(const Voxel& v, const SetOf& occupied) const {
+    return std::all_of(occupied.begin(), occupied.end(), [&](const Voxel& u) {
+      return std::abs(u.x - v.x) > c_.ground_radius_voxels ||
+             std::abs(u.y - v.y) > c_.ground_radius_voxels || v.z <= u.z + c_.ground_layers_voxels;
+    });
+  }
+
+  void judge(Scan& scan) const {
+    if (c_.map.delay_scans > 0) add_departures(scan);
+    SetOf left = scan.seeds, low, objects;
+    for (const Voxel& v : scan.occupied) {
+      if (scan.settled.contains(v)) continue;
+      (is_low(v, scan.occupied) ? low : left).insert(v);
+    }
+    MapOf<float> shares;
+    for (const Voxel& seed : scan.seeds) {
+      std::vector<Voxel> members;
+      if (left.erase(seed) > 0) members.push_back(seed);
+      for (std::size_t next = 0; next < members.size(); ++next)
+        for_neighbours(Voxel(members[next]), 1, [&](const Voxel& u) {
+          if (left.erase(u) > 0) members.push_back(u);
+        });
+      if (members.empty()) continue;
+      const auto is_seed = [&](const Voxel& v) { return scan.seeds.contains(v); };
+      const auto is_fresh = [&](const Voxel& v) { return is_seed(v) && scan.fresh.contains(v); };
+      const auto seeds = static_cast<double>(std::ranges::count_if(members, is_seed));
+      const auto fresh = static_cast<double>(std::ranges::count_if(members, is_fresh));
+      const double share = seeds / static_cast<double>(members.size());
+      for (const Voxel& v : members) shares[v] = static_cast<float>(share);
+      if (share >= c_.min_seed_share && fresh >= c_.min_fresh_share * seeds &&
+          seeds >= c_.min_seeds_voxels && has_size_of_object(members))
+        objects.insert(members.begin(), members.end());
+    }
+    SetOf moving = objects;
+    for (const Voxel& v : low)
+      for_neighbours({v.x, v.y, v.z + 1}, 1, [&](const Voxel& u) {
+        if (u.z == v.z + 1 && objects.contains(u)) moving.insert(v);
+      });
+    for (const auto& v : scan.voxels.of_point) {
+      scan.result.labels.push_back(v && moving.contains(*v) ? kMovingLabel : kStaticLabel);
+      const float* share = v ? find(shares, *v) : nullptr;
+      scan.result.scores.push_back(share == nullptr ? 0 : *share);
+    }
+  }
+
+  bool has_size_of_object(const std::vector<Voxel>& members) const {
+    for (const Voxel& a : members)
+      for (const Voxel& b : members)
+        if ((a.x - b.x) * c_.map.voxel_size_m > c_.max_extent_m ||
+            (a.y - b.y) * c_.map.voxel_size_m > c_.max_extent_m ||
+            (a.z - b.z) * c_.map.voxel_size_m > c_.max_height_m)
+          return false;
+    return true;
+  }
+
+  std::vector<LabelledScan> release(std::size_t held) {
+    std::vector<LabelledScan> results;
+    for (; held_.size() > held; held_.pop_front()) {
+      judge(held_.front());
+      results.push_back(std::move(held_.front().result));
+    }
+    return results;
+  }
+
+  double distance_sq_m2(const Voxel& v, const Eigen::Vector3d& p) const {
+    const double size = c_.map.voxel_size_m;
+    return norm_sq(v.x * size - p.x(), v.y * size - p.y(), v.z * size - p.z());
+  }
+
+  hmm_mos_plus::Config c_;
+  MapOf<Cell> map_;
+  std::deque<Scan> held_;
+  int k_ = -1;
+};
+
+}  // namespace mosbench::plus_twin

@@ -1,0 +1,114 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+#include "tests/small_world.hpp"
+
+/// What must hold for every method of the table, on random sequences.
+namespace mosbench {
+namespace {
+
+class EveryMethodOnSmallWorlds : public testing::TestWithParam<std::string> {
+ protected:
+  /// Limits every method has suit the small world; all else is as by default.
+  std::unique_ptr<Method> make(const RunContext& context) const {
+    const MethodKind* kind = find_method(GetParam());
+    Settings settings = kind->defaults;
+    settings.set("min_range_m", 0.3);
+    settings.set("max_range_m", 4.0);
+    if (settings.find("resolution_m") != nullptr) settings.set("resolution_m", 0.4);
+    // Random rays need wider neighbourhoods than beams.
+    if (settings.find("neighbour_angle_rad") != nullptr) settings.set("neighbour_angle_rad", 0.3);
+    for (const char* name : {"reference_offset_scans", "window_scans"}) {
+      if (settings.find(name) != nullptr) settings.set(name, 3);
+    }
+    return kind->make(settings, context);
+  }
+};
+
+std::vector<SmallWorld> small_worlds() {
+  std::vector<SmallWorld> worlds;
+  for (unsigned seed = 70; seed < 73; ++seed) {
+    worlds.push_back(small_world({.seed = seed, .scans = 14, .defects = seed == 72}));
+  }
+  return worlds;
+}
+
+TEST_P(EveryMethodOnSmallWorlds, GivesTheSameLabelsAndScoresForAnyNumberOfThreads) {
+  for (const SmallWorld& world : small_worlds()) {
+    const auto expected = results_of(*make({.scores = true}), world);
+    ASSERT_EQ(expected.size(), world.scans.size());
+    for (const unsigned threads : {2U, 5U}) {
+      const auto results = results_of(*make({.threads = threads, .scores = true}), world);
+      ASSERT_EQ(results.size(), expected.size());
+      for (std::size_t k = 0; k < results.size(); ++k) {
+        ASSERT_EQ(results[k].labels, expected[k].labels) << "scan " << k;
+        ASSERT_EQ(results[k].scores, expected[k].scores) << "scan " << k;
+      }
+    }
+  }
+}
+
+TEST_P(EveryMethodOnSmallWorlds, GivesTheSameLabelsWithAndWithoutScores) {
+  for (const SmallWorld& world : small_worlds()) {
+    const auto plain = results_of(*make({}), world);
+    const auto scored = results_of(*make({.scores = true}), world);
+    for (std::size_t k = 0; k < plain.size(); ++k) ASSERT_EQ(plain[k].labels, scored[k].labels);
+  }
+}
+
+TEST_P(EveryMethodOnSmallWorlds, NeverLabelsPointsMovingThatAreTooNearOrNotFinite) {
+  std::size_t left_out = 0;
+  for (const SmallWorld& world : small_worlds()) {
+    const auto results = results_of(*make({}), world);
+    for (std::size_t k = 0; k < results.size(); ++k) {
+      for (std::size_t i = 0; i < world.scans[k].size(); ++i) {
+        const Point& p = world.scans[k][i];
+        if (std::sqrt(p.x * p.x + p.y * p.y + p.z * p.z) > 0.3F) continue;
+        ++left_out;
+        ASSERT_EQ(results[k].labels[i], kStaticLabel) << "scan " << k << " point " << i;
+      }
+    }
+  }
+  EXPECT_GT(left_out, 0U);
+}
+
+TEST_P(EveryMethodOnSmallWorlds, KeepsItsMemoryBoundedWhileItTravels) {
+  const auto method = make({});
+  if (!method->memory()) GTEST_SKIP() << "does not measure its memory";
+  const SmallWorld world = small_world({.seed = 75, .scans = 20});
+  std::size_t early_bytes = 0;
+  for (std::size_t k = 0; k < 160; ++k) {
+    Pose pose = world.poses[k % 20];
+    pose.translation().x() += 3.0 * static_cast<double>(k);
+    method->push(world.scans[k % 20], pose);
+    if (k == 60) early_bytes = method->memory()->bytes;
+  }
+  ASSERT_GT(early_bytes, 1000U);
+  EXPECT_LT(method->memory()->bytes, early_bytes + early_bytes / 2);
+}
+
+std::vector<std::string> method_names() {
+  std::vector<std::string> known;
+  for (const MethodKind& kind : methods()) {
+    try {
+      kind.check(kind.defaults);
+      known.emplace_back(kind.name);
+    } catch (const std::invalid_argument&) {
+      // Its library is not in this build.
+    }
+  }
+  return known;
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, EveryMethodOnSmallWorlds, testing::ValuesIn(method_names()),
+                         [](const auto& row) {
+                           std::string name = row.param;
+                           std::erase(name, '-');
+                           return name;
+                         });
+
+}  // namespace
+}  // namespace mosbench

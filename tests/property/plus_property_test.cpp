@@ -1,0 +1,155 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/hmm_mos_plus/pipeline.hpp"
+#include "tests/small_world.hpp"
+
+namespace mosbench {
+namespace {
+
+hmm_mos_plus::Config plus_of_a_room(int delay_scans = 0) {
+  hmm_mos_plus::Config config;
+  config.map.voxel_size_m = 0.25;
+  config.map.min_range_m = 0.3;
+  config.map.max_range_m = 5.0;
+  config.map.delay_scans = delay_scans;
+  config.max_unknown_voxels = 60;  // few rays leave much unknown
+  return config;
+}
+
+std::vector<std::vector<std::uint32_t>> plus_labels(const SmallWorld& world,
+                                                    const hmm_mos_plus::Config& config,
+                                                    unsigned threads = 1) {
+  hmm_mos_plus::Pipeline pipeline(config, {.threads = threads});
+  std::vector<std::vector<std::uint32_t>> labels;
+  for (LabelledScan& result : results_of(pipeline, world))
+    labels.push_back(std::move(result.labels));
+  return labels;
+}
+
+TEST(PlusInAStaticWorld, HasNoMovingPointForAStaticNoiselessSensor) {
+  for (unsigned seed = 0; seed < 6; ++seed) {
+    const SmallWorld world = small_world(
+        {.seed = seed, .scans = 25, .moving_boxes = 0, .jitter_rad = 0.0, .walk_m = 0.0});
+    for (const int delay : {0, 4})
+      EXPECT_EQ(moving_points(plus_labels(world, plus_of_a_room(delay))), 0U);
+  }
+}
+
+TEST(PlusThreads, ChangeNoLabel) {
+  std::size_t moving = 0;
+  for (unsigned seed = 20; seed < 24; ++seed) {
+    const SmallWorld world = small_world({.seed = seed, .defects = seed % 2 == 0});
+    for (const int delay : {0, 3}) {
+      const auto expected = plus_labels(world, plus_of_a_room(delay));
+      moving += moving_points(expected);
+      EXPECT_EQ(plus_labels(world, plus_of_a_room(delay), 3), expected);
+    }
+  }
+  EXPECT_GT(moving, 500U);
+}
+
+/// Poses and points are multiples of 2^-10, so that sums and voxel corners are exact.
+TEST(PlusShiftedByWholeVoxels, ChangesNoLabel) {
+  std::size_t moving = 0;
+  for (unsigned seed = 30; seed < 34; ++seed) {
+    SmallWorld world = small_world({.seed = seed});
+    for (std::size_t k = 0; k < world.scans.size(); ++k) {
+      world.poses[k].linear().setIdentity();
+      for (double& t : world.poses[k].translation()) t = std::round(t * 1024) / 1024;
+      for (Point& p : world.scans[k]) {
+        p = {std::round(p.x * 1024) / 1024, std::round(p.y * 1024) / 1024,
+             std::round(p.z * 1024) / 1024, 0.0F};
+      }
+    }
+    const auto expected = plus_labels(world, plus_of_a_room());
+    moving += moving_points(expected);
+    for (const Eigen::Vector3d& voxels :
+         {Eigen::Vector3d{8, 16, -24}, Eigen::Vector3d{1, -3, 5}, Eigen::Vector3d{-1001, 7, -13}}) {
+      SmallWorld moved = world;
+      for (Pose& pose : moved.poses) pose.translation() += voxels * 0.25;
+      ASSERT_EQ(plus_labels(moved, plus_of_a_room()), expected);
+    }
+  }
+  EXPECT_GT(moving, 500U);
+}
+
+TEST(PlusWithoutSeeds, HasNoMovingPoint) {
+  const SmallWorld world = small_world({.seed = 40});
+  ASSERT_GT(moving_points(plus_labels(world, plus_of_a_room())), 50U);
+  hmm_mos_plus::Config config = plus_of_a_room();
+  config.max_unknown_voxels = 0;
+  config.seed_age_scans = 0;
+  config.min_seeds_voxels = 100000;
+  EXPECT_EQ(moving_points(plus_labels(world, config)), 0U);
+}
+
+/// A wall, and a box before it from the tenth scan on.
+SmallWorld world_with_a_box_that_stays() {
+  SmallWorld world;
+  for (std::size_t k = 0; k < 30; ++k) {
+    std::vector<Point>& scan = world.scans.emplace_back();
+    world.poses.push_back(Pose::Identity());
+    for (float y = -0.6F; y < 0.6F; y += 0.02F) {
+      for (float z = -0.6F; z < 0.6F; z += 0.02F) {
+        const float x = k >= 10 && std::abs(y) < 0.15F && std::abs(z) < 0.15F ? 2.0F : 4.0F;
+        scan.push_back({x, x * y, x * z, 0.0F});
+      }
+    }
+  }
+  return world;
+}
+
+std::size_t scans_with_motion(const std::vector<std::vector<std::uint32_t>>& labels) {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      labels, [](const auto& of_scan) { return std::ranges::count(of_scan, kMovingLabel) > 0; }));
+}
+
+TEST(PlusObjectsThatStay, MoveAsLongAsTheirSeedsAreFresh) {
+  const SmallWorld world = world_with_a_box_that_stays();
+  hmm_mos_plus::Config config = plus_of_a_room();
+  EXPECT_EQ(scans_with_motion(plus_labels(world, config)), 3U);
+  config.fresh_age_scans = 5;
+  EXPECT_EQ(scans_with_motion(plus_labels(world, config)), 6U);
+  config.min_fresh_share = 0.0;
+  EXPECT_EQ(scans_with_motion(plus_labels(world, config)), 11U);
+}
+
+TEST(PlusScores, AreAtTheThresholdOrAboveWhereAPointMovesButForFeet) {
+  hmm_mos_plus::Config config = plus_of_a_room();
+  config.ground_layers_voxels = 0;
+  std::size_t moving = 0, below = 0;
+  for (unsigned seed = 50; seed < 54; ++seed) {
+    hmm_mos_plus::Pipeline pipeline(config, {.scores = true});
+    for (const LabelledScan& scan : results_of(pipeline, small_world({.seed = seed}))) {
+      ASSERT_EQ(scan.scores.size(), scan.labels.size());
+      ASSERT_EQ(scan.threshold, config.min_seed_share);
+      for (std::size_t i = 0; i < scan.labels.size(); ++i) {
+        ASSERT_GE(scan.scores[i], 0.0F);
+        ASSERT_LE(scan.scores[i], 1.0F);
+        if (scan.labels[i] != kMovingLabel) continue;
+        ++moving;
+        below += scan.scores[i] < static_cast<float>(config.min_seed_share);
+      }
+    }
+  }
+  EXPECT_GT(moving, 200U);
+  EXPECT_LT(below * 2, moving);
+}
+
+TEST(PlusMemory, StaysBoundedOverALongRun) {
+  SmallWorld world = small_world({.seed = 60, .scans = 30});
+  hmm_mos_plus::Pipeline pipeline(plus_of_a_room(2), {});
+  std::size_t early_bytes = 0;
+  for (std::size_t k = 0; k < 400; ++k) {
+    pipeline.push(world.scans[k % 30], world.poses[k % 30]);
+    if (k == 60) early_bytes = pipeline.memory()->bytes;
+  }
+  ASSERT_GT(early_bytes, 100'000U);
+  EXPECT_LT(pipeline.memory()->bytes, early_bytes + early_bytes / 2);
+}
+
+}  // namespace
+}  // namespace mosbench

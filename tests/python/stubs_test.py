@@ -1,0 +1,43 @@
+"""What type checkers and readers are told about the package is what the package has."""
+
+import ast
+import inspect
+import pathlib
+
+import mosbench
+from mosbench import _mosbench
+
+STUBS = pathlib.Path(mosbench.__file__).with_name("_mosbench.pyi")
+
+
+def public(names):
+    return {name for name in names if not name.startswith("_")}
+
+
+def members(node):
+    """Names that a class of the stubs declares."""
+    return {one.name if isinstance(one, ast.FunctionDef) else one.target.id for one in node.body}
+
+
+def test_stubs_declare_what_the_module_has():
+    stated = {}
+    for node in ast.parse(STUBS.read_text()).body:
+        if isinstance(node, (ast.FunctionDef, ast.ClassDef)):
+            stated[node.name] = node
+        elif isinstance(node, ast.AnnAssign):
+            stated[node.target.id] = node
+    assert public(stated) == public(vars(_mosbench))
+    for name, node in stated.items():
+        if isinstance(node, ast.ClassDef):
+            assert public(members(node)) == public(vars(getattr(_mosbench, name))), name
+
+
+def test_the_package_is_marked_as_typed_and_says_what_everything_is():
+    assert STUBS.with_name("py.typed").exists()
+    for name in mosbench.__all__:
+        value = getattr(mosbench, name)
+        if inspect.isclass(value) or inspect.isfunction(value):
+            assert value.__doc__, name
+            for member, one in vars(value).items():
+                if inspect.isfunction(one) and not member.startswith("_"):
+                    assert one.__doc__, f"{name}.{member}"

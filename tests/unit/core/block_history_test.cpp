@@ -1,0 +1,97 @@
+#include "core/hmm_mos/block_history.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string_view>
+
+namespace mosbench::hmm_mos {
+namespace {
+
+BlockMask one_voxel() {
+  BlockMask mask;
+  mask.set(77);
+  return mask;
+}
+
+/// One voxel that is seen free ('f') or occupied ('o') scan by scan; '.' is not observed.
+struct OneVoxel {
+  BlockHistory history;
+  BlockStates states;
+  std::uint32_t scan = 0;
+
+  void see(std::string_view states_seen) {
+    for (const char seen : states_seen) {
+      const BlockStates before = states;
+      if (seen == 'f') states = {.occupied = {}, .free = one_voxel()};
+      if (seen == 'o') states = {.occupied = one_voxel(), .free = {}};
+      const BlockMask observed = seen == '.' ? BlockMask{} : one_voxel();
+      history.update(observed, before, states, scan++);
+    }
+  }
+  /// Asked in the scan that was seen last.
+  bool arrived(std::uint32_t scans) const { return history.arrived_within(scans, scan - 1).any(); }
+  bool sure(std::uint32_t scans) const { return history.sure_within(scans, scan - 1).any(); }
+};
+
+TEST(BlockHistory, CallsAnArrivalSureAfterThreeFreeScans) {
+  OneVoxel twice, thrice, unseen;
+  twice.see("ffo");
+  thrice.see("f.f.fo");
+  unseen.see("oo");
+  EXPECT_TRUE(twice.arrived(0));
+  EXPECT_FALSE(twice.sure(0));
+  EXPECT_TRUE(thrice.sure(0));
+  EXPECT_FALSE(unseen.arrived(10));
+}
+
+TEST(BlockHistory, CountsTheAgeOfAnArrivalInAllScans) {
+  OneVoxel voxel;
+  voxel.see("fffo..o");
+  EXPECT_TRUE(voxel.sure(3));
+  EXPECT_FALSE(voxel.sure(2));
+}
+
+TEST(BlockHistory, SettlesAVoxelAfterEightOccupiedScansUntilItIsFree) {
+  OneVoxel voxel;
+  voxel.see("ooooooo");
+  EXPECT_FALSE(voxel.history.settled().any());
+  voxel.see(".o");
+  EXPECT_TRUE(voxel.history.settled().any());
+  voxel.see("ooooooooooo");
+  EXPECT_TRUE(voxel.history.settled().any());
+  voxel.see("f");
+  EXPECT_FALSE(voxel.history.settled().any());
+  voxel.see("o");
+  EXPECT_FALSE(voxel.history.settled().any());
+}
+
+TEST(BlockHistory, ForgetsAVoxelWholly) {
+  OneVoxel voxel;
+  voxel.see("fffo");
+  voxel.history.forget(one_voxel());
+  voxel.states = {};
+  EXPECT_FALSE(voxel.arrived(100));
+  voxel.see("fo");
+  EXPECT_TRUE(voxel.arrived(0));
+  EXPECT_FALSE(voxel.sure(0));
+}
+
+TEST(BlockHistory, NeverMakesAnOldArrivalYoungAgain) {
+  OneVoxel watched;
+  watched.see("fffo");
+  for (std::uint32_t k = 0; k < 70'000; ++k) {
+    watched.see("o");
+    ASSERT_EQ(watched.arrived(BlockHistory::kMaxAgeScans), k < BlockHistory::kMaxAgeScans) << k;
+  }
+  for (std::uint32_t pause = BlockHistory::kMaxAgeScans + 1; pause < 66'000; pause += 251) {
+    OneVoxel alone;
+    alone.see("fffo");
+    alone.scan += pause;
+    ASSERT_FALSE(alone.arrived(BlockHistory::kMaxAgeScans)) << pause;
+    alone.see(".");
+    ASSERT_FALSE(alone.arrived(BlockHistory::kMaxAgeScans)) << pause;
+  }
+}
+
+}  // namespace
+}  // namespace mosbench::hmm_mos

@@ -1,0 +1,122 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <mosbench/method.hpp>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+/// What Method promises, of every method in the table.
+namespace mosbench {
+namespace {
+
+const std::vector<Point> kWall = {{4, 0, 0, 0}, {4, 1, 0, 0}, {4, 2, 0, 0}, {4, -1, 1, 0}};
+
+class EveryMethod : public testing::TestWithParam<std::string> {
+ protected:
+  std::unique_ptr<Method> make(const RunContext& context = {}) const {
+    const MethodKind* kind = find_method(GetParam());
+    return kind->make(kind->defaults, context);
+  }
+};
+
+TEST_P(EveryMethod, RefusesZeroThreads) {
+  EXPECT_THROW(make({.threads = 0}), std::invalid_argument);
+}
+
+TEST_P(EveryMethod, LabelsEveryPointOfEveryScanOnceAndInOrder) {
+  for (const bool scores : {false, true}) {
+    const auto method = make({.scan_count = 8, .scores = scores});
+    std::vector<LabelledScan> finals;
+    for (std::size_t k = 0; k < 8; ++k) {
+      const auto count = static_cast<std::ptrdiff_t>(k % (kWall.size() + 1));
+      const std::vector<Point> points(kWall.begin(), kWall.begin() + count);
+      for (LabelledScan& scan : method->push(points, Pose::Identity())) {
+        finals.push_back(std::move(scan));
+      }
+    }
+    for (LabelledScan& scan : method->finish()) finals.push_back(std::move(scan));
+    ASSERT_EQ(finals.size(), 8U);
+    for (std::size_t k = 0; k < finals.size(); ++k) {
+      EXPECT_EQ(finals[k].scan_index, k);
+      EXPECT_EQ(finals[k].labels.size(), k % (kWall.size() + 1));
+      EXPECT_EQ(finals[k].scores.size(), scores ? finals[k].labels.size() : 0U);
+      for (const std::uint32_t label : finals[k].labels) EXPECT_EQ(label, kStaticLabel);
+    }
+  }
+}
+
+TEST_P(EveryMethod, LeavesOutAndCountsWhatIsNotFinite) {
+  const auto method = make();
+  std::vector<Point> points = kWall;
+  points.push_back({std::nanf(""), 0, 0, 0});
+  points.push_back({0, std::numeric_limits<float>::infinity(), 0, 0});
+  std::vector<LabelledScan> finals = method->push(points, Pose::Identity());
+  if (finals.empty()) finals = method->finish();
+  ASSERT_EQ(finals.size(), 1U);
+  EXPECT_EQ(finals.front().nonfinite_points, 2U);
+  ASSERT_EQ(finals.front().labels.size(), points.size());
+  EXPECT_EQ(finals.front().labels.back(), kStaticLabel);
+}
+
+TEST_P(EveryMethod, RefusesWhatIsOutOfReachAndPosesThatAreNotRigid) {
+  const auto method = make();
+  std::vector<Point> points = kWall;
+  points.push_back({1e30F, 0, 0, 0});
+  EXPECT_THROW(method->observe(points, Pose::Identity()), std::range_error);
+  Pose scaled = Pose::Identity();
+  scaled.linear() *= 3.0;
+  EXPECT_THROW(method->observe(kWall, scaled), std::range_error);
+  Pose undefined = Pose::Identity();
+  undefined.translation().y() = std::nan("");
+  EXPECT_THROW(method->push(kWall, undefined), std::range_error);
+  EXPECT_NO_THROW(method->push(kWall, Pose::Identity()));
+}
+
+TEST_P(EveryMethod, RefusesScansBeyondTheirCountAndAfterTheEnd) {
+  const auto counted = make({.scan_count = 1});
+  counted->push(kWall, Pose::Identity());
+  EXPECT_THROW(counted->push(kWall, Pose::Identity()), std::logic_error);
+  const auto ended = make();
+  ended->push(kWall, Pose::Identity());
+  ended->finish();
+  EXPECT_THROW(ended->push(kWall, Pose::Identity()), std::logic_error);
+}
+
+TEST_P(EveryMethod, RefusesScansThatAnotherObservedAndThoseOutOfOrder) {
+  const auto one = make();
+  const auto other = make();
+  one->push(kWall, Pose::Identity());
+  other->push(kWall, Pose::Identity());
+  EXPECT_THROW(one->push(other->observe(kWall, Pose::Identity())), std::logic_error);
+  EXPECT_THROW(one->push(nullptr), std::logic_error);
+  auto earlier = one->observe(kWall, Pose::Identity());
+  auto later = one->observe(kWall, Pose::Identity());
+  EXPECT_NO_THROW(one->push(std::move(later)));
+  EXPECT_THROW(one->push(std::move(earlier)), std::logic_error);
+}
+
+std::vector<std::string> names() {
+  std::vector<std::string> known;
+  for (const MethodKind& kind : methods()) {
+    try {
+      kind.check(kind.defaults);
+      known.emplace_back(kind.name);
+    } catch (const std::invalid_argument& error) {
+      // A library may be missing, and nothing else.
+      EXPECT_THAT(error.what(), testing::HasSubstr("this build has no"));
+    }
+  }
+  return known;
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, EveryMethod, testing::ValuesIn(names()), [](const auto& row) {
+  std::string name = row.param;
+  std::erase(name, '-');
+  return name;
+});
+
+}  // namespace
+}  // namespace mosbench

@@ -1,0 +1,73 @@
+#include "eval/statistics/gate.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+namespace mosbench {
+namespace {
+
+/// 400 scans of 1,000 moving points, of which the second run loses 300 in every twentieth.
+struct DropInFewScans : testing::Test {
+  DropInFewScans() {
+    for (std::size_t k = 0; k < 400; ++k) {
+      names_.push_back({"street", std::to_string(k), nullptr, nullptr});
+      Confusion counts;
+      counts.tp = 800 + k * 7 % 31;
+      counts.fn = 1000 - counts.tp;
+      first_.push_back(counts);
+      if (k % 20 == 0) counts.tp -= 300;
+      counts.fn = 1000 - counts.tp;
+      second_.push_back(counts);
+    }
+  }
+  GateResult judged(GateRule rule) const {
+    return judge({names_, {first_}, {second_}, {}}, protocol_named("sipailou"), 0.005, rule);
+  }
+  std::vector<PairedRuns::Scan> names_;
+  SequenceCounts first_, second_;
+};
+
+TEST_F(DropInFewScans, FailsByTheMaxDropAlone) {
+  const GateResult result = judged(GateRule::kMaxDrop);
+  ASSERT_EQ(result.checks.size(), 1U);
+  EXPECT_NEAR(result.checks[0].difference.value.value(), -0.015, 1e-9);
+  ASSERT_TRUE(result.checks[0].difference.interval);
+  EXPECT_EQ(result.checks[0].tolerance, 0.005);
+  EXPECT_FALSE(result.passed());
+}
+
+TEST_F(DropInFewScans, IsComparedWithTheIntervalByTheStatisticalRule) {
+  const GateCheck check = judged(GateRule::kStatistical).checks.at(0);
+  const Interval interval = check.difference.interval.value();
+  EXPECT_NEAR(check.tolerance, std::max(0.005, 0.5 * (interval.high - interval.low)), 1e-12);
+  EXPECT_EQ(check.passed, check.difference.p_value.value() >= 0.05);
+}
+
+TEST(Gate, FailsWhereAnIouBecomesUndefinedAndPassesWhereItWas) {
+  const Confusion false_alarm{.fp = 1}, nothing{.tn = 1};
+  const auto passes = [](const Confusion& first, const Confusion& second) {
+    const PairedRuns paired{{{"street", "0", nullptr, nullptr}}, {{first}}, {{second}}, {}};
+    return judge(paired, protocol_named("sipailou"), 0.005, GateRule::kMaxDrop).passed();
+  };
+  EXPECT_FALSE(passes(false_alarm, nothing));
+  EXPECT_TRUE(passes(nothing, false_alarm));
+  EXPECT_TRUE(passes(nothing, nothing));
+}
+
+TEST(Gate, SaysWhyThereIsNoInterval) {
+  const Confusion counts{.tp = 1};
+  const PairedRuns paired{{{"street", "0", nullptr, nullptr}}, {{counts}}, {{counts}}, {}};
+  const GateResult result =
+      judge(paired, protocol_named("sipailou"), 0.005, GateRule::kStatistical);
+  EXPECT_TRUE(result.passed());
+  EXPECT_THAT(gate_text(result),
+              testing::HasSubstr("no interval for street: 1 scans, expected at least 100"));
+  EXPECT_EQ(to_json(result).at("checks").at(0).at("low"), nullptr);
+}
+
+}  // namespace
+}  // namespace mosbench

@@ -1,0 +1,156 @@
+#include "eval/tables/leaderboard.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "datasets/files/errors.hpp"
+#include "eval/tables/leaderboard_print.hpp"
+#include "tests/temp_folder.hpp"
+
+namespace mosbench {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+/// `scans` scans of 1000 moving points, of which `found` plus or minus a few are; 200 scans apart.
+SequenceResult scored(const std::string& name, std::size_t scans, std::uint64_t found) {
+  SequenceResult result;
+  result.sequence = SequenceName(name, name);
+  result.file = name + "/result.json";
+  result.dataset = "semantickitti";
+  result.protocol = &protocol_named("semantickitti-mos");
+  result.fingerprint = "of " + name;
+  result.header = nlohmann::ordered_json::object();
+  for (std::size_t k = 0; k < scans; ++k) {
+    Confusion counts;
+    counts.tp = found + 7 * (k % 3) - 7;
+    counts.fn = 1000 - counts.tp;
+    ScanRow& row = result.scans.emplace_back();
+    row.stem = std::to_string(k * 200);
+    row.counts = counts;
+    row.truth_hash = LabelHash{};
+  }
+  return result;
+}
+
+ResultSet run_of(const std::string& method, std::uint64_t found, std::optional<double> ms,
+                 std::size_t scans = 40) {
+  ResultSet run{"runs/" + method, {scored("00", scans, found), scored("01", scans, found - 100)}};
+  for (SequenceResult& sequence : run.sequences) {
+    sequence.method = method;
+    sequence.method_ms_per_scan = ms;
+    if (!ms) continue;
+    sequence.most_resident_mib = 100.0;
+    sequence.threads = 1;
+  }
+  return run;
+}
+
+TEST(Leaderboard, RanksByIouAndMarksTheFrontOfIouAgainstTime) {
+  const std::vector<ResultSet> runs = {run_of("fast", 600, 5.0), run_of("beaten", 590, 20.0),
+                                       run_of("best", 900, 50.0), run_of("twin", 600, 5.0),
+                                       run_of("untimed", 700, std::nullopt)};
+  const Leaderboard board = leaderboard_of(runs);
+  std::vector<std::string> order, front;
+  for (const LeaderboardRow& row : board.rows) {
+    order.push_back(row.run->front().method);
+    if (row.is_on_front) front.push_back(order.back());
+  }
+  EXPECT_THAT(order, ElementsAre("best", "untimed", "fast", "twin", "beaten"));
+  EXPECT_THAT(front, ElementsAre("best", "fast", "twin"));
+  EXPECT_THAT(board.sequences, ElementsAre("00", "01"));
+  EXPECT_THAT(board.remarks, IsEmpty());
+  const LeaderboardRow& best = board.rows.front();
+  EXPECT_NEAR((*best.all)[Metric::kIou].value.value(), 0.85, 1e-3);
+  EXPECT_NEAR((*best.sequences[1])[Metric::kIou].value.value(), 0.80, 1e-3);
+  EXPECT_EQ(best.ms_per_scan, 50.0);
+  EXPECT_NEAR(best.memory_mb.value(), 104.8576, 1e-9);
+  EXPECT_FALSE(board.rows[1].memory_mb);
+}
+
+TEST(Leaderboard, GivesThePairedDifferenceToTheBestWithItsInterval) {
+  const std::vector<ResultSet> runs = {run_of("a", 900, 1.0), run_of("b", 850, 2.0)};
+  const Leaderboard board = leaderboard_of(runs);
+  EXPECT_FALSE(board.rows[0].to_best);
+  const Difference& difference = board.rows[1].to_best.value();
+  EXPECT_NEAR(difference.value.value(), -0.05, 1e-9);
+  ASSERT_TRUE(difference.interval) << difference.no_interval;
+  EXPECT_LE(difference.interval->low, -0.05 + 1e-9);
+  EXPECT_GE(difference.interval->high, -0.05 - 1e-9);
+  EXPECT_THAT(leaderboard_text(board), HasSubstr("-5.00 ["));
+}
+
+TEST(Leaderboard, SaysWhyThereIsNoIntervalOfADifference) {
+  const std::vector<ResultSet> runs = {run_of("a", 900, 1.0, 3), run_of("b", 850, 2.0, 3)};
+  const std::string text = leaderboard_text(leaderboard_of(runs));
+  EXPECT_THAT(text, HasSubstr("-5.00 [none]"));
+  EXPECT_THAT(text, HasSubstr("no interval of the difference of 2: 6 scans"));
+}
+
+TEST(Leaderboard, RanksNoRunThatLacksASequence) {
+  std::vector<ResultSet> runs = {run_of("whole", 500, 1.0), run_of("half", 900, 2.0)};
+  runs[1].sequences.pop_back();
+  const Leaderboard board = leaderboard_of(runs);
+  EXPECT_EQ(board.rows[1].run->front().method, "half");
+  EXPECT_FALSE(board.rows[1].all);
+  EXPECT_FALSE(board.rows[1].is_on_front);
+  EXPECT_FALSE(board.rows[1].to_best);
+  EXPECT_TRUE(board.rows[1].sequences[0]);
+  EXPECT_FALSE(board.rows[1].sequences[1]);
+  EXPECT_THAT(board.remarks, ElementsAre("half is not compared with whole: sequence 01: is only "
+                                         "in the first run"));
+}
+
+TEST(Leaderboard, RanksNoRunThatLacksPredictions) {
+  std::vector<ResultSet> runs = {run_of("whole", 500, 1.0), run_of("gaps", 900, 2.0)};
+  runs[1].sequences[0].scans.pop_back();
+  runs[1].sequences[0].missing_predictions = 1;
+  const Leaderboard board = leaderboard_of(runs);
+  EXPECT_EQ(board.rows[1].run->front().method, "gaps");
+  EXPECT_FALSE(board.rows[1].all);
+  EXPECT_THAT(board.remarks.front(), HasSubstr("gaps: INCOMPLETE: 1 scans"));
+}
+
+TEST(Leaderboard, RefusesRunsOfAnotherKind) {
+  const auto refusal = [](auto&& change) {
+    std::vector<ResultSet> runs = {run_of("a", 900, 1.0), run_of("b", 850, 2.0)};
+    for (SequenceResult& sequence : runs[1].sequences) change(sequence);
+    return message_of<DataError>([&] { leaderboard_of(runs); });
+  };
+  EXPECT_THAT(refusal([](auto& run) { run.protocol = &protocol_named("mapmos"); }),
+              HasSubstr("protocol is semantickitti-mos and mapmos"));
+  EXPECT_THAT(refusal([](auto& run) { run.range.max_m = 50; }), HasSubstr("counted range"));
+  EXPECT_THAT(refusal([](auto& run) { run.fingerprint = "other"; }), HasSubstr("fingerprints"));
+  EXPECT_THAT(refusal([](auto& run) { run.scans[0].truth_hash->fill('1'); }),
+              HasSubstr("the truth of scan 0 differs"));
+  EXPECT_THAT(refusal([](auto& run) { run.scans.clear(); }), HasSubstr("no scan with truth"));
+}
+
+TEST(Leaderboard, RemarksOnTimesOfOtherThreadsAndProcessors) {
+  std::vector<ResultSet> runs = {run_of("a", 900, 1.0), run_of("b", 850, 2.0)};
+  for (SequenceResult& sequence : runs[1].sequences) {
+    sequence.threads = 2;
+    sequence.processor = "other";
+  }
+  EXPECT_THAT(leaderboard_of(runs).remarks,
+              ElementsAre("ms per scan are of different numbers of threads: 1, 2",
+                          "ms per scan are of different processors: other, unknown"));
+}
+
+TEST(Leaderboard, IsPrintedInEveryFormat) {
+  const std::vector<ResultSet> runs = {run_of("a_b", 900, 1.0), run_of("c", 850, 2.0)};
+  const Leaderboard board = leaderboard_of(runs);
+  const auto json = to_json(board);
+  EXPECT_EQ(json.at("rows").at(0).at("method"), "a_b");
+  EXPECT_NEAR(json.at("rows").at(1).at("to_best").at("value").get<double>(), -0.05, 1e-9);
+  EXPECT_TRUE(json.at("rows").at(0).at("on_front").get<bool>());
+  EXPECT_THAT(leaderboard_latex(board), HasSubstr("1 & a\\_b & 85.0"));
+  const std::string csv = leaderboard_csv(board);
+  EXPECT_EQ(std::ranges::count(csv, '\n'), 7);
+  EXPECT_THAT(csv, HasSubstr("\na_b,,00/result.json,all,84.9825,"));
+}
+
+}  // namespace
+}  // namespace mosbench
