@@ -11,7 +11,7 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr std::size_t kScans = 12;
+constexpr std::size_t kScansOfBreakdown = 12;
 
 nlohmann::json breakdown(const TempFolder& folder) {
   const cli::Answer answer =
@@ -23,7 +23,7 @@ nlohmann::json breakdown(const TempFolder& folder) {
 // The box goes 0.2 m from scan to scan.
 TEST(Breakdown, TellsSpeedsByTheStampsOrAsIfAt10Hz) {
   const TempFolder folder;
-  cli::write_small_sequence(folder / "room", kScans);
+  cli::write_small_sequence(folder / "room", kScansOfBreakdown);
   std::filesystem::copy(folder / "room/labels", folder / "predicted");
   const nlohmann::json unstamped = breakdown(folder);
   ASSERT_EQ(unstamped.at("object_count"), 1) << unstamped;
@@ -31,7 +31,7 @@ TEST(Breakdown, TellsSpeedsByTheStampsOrAsIfAt10Hz) {
   EXPECT_NEAR(unstamped.at("objects").at(0).at("speed_m_s").get<double>(), 2.0, 0.1);
 
   std::string times;
-  for (std::size_t k = 0; k < kScans; ++k)
+  for (std::size_t k = 0; k < kScansOfBreakdown; ++k)
     times += std::to_string(0.25 * static_cast<double>(k)) + '\n';
   folder.write("room/times.txt", times);
   const nlohmann::json stamped = breakdown(folder);

@@ -15,7 +15,7 @@ namespace {
 using nlohmann::ordered_json;
 using testing::HasSubstr;
 
-constexpr int kScans = 10;
+constexpr int kScansOfDeskew = 10;
 
 double way_m(int k) { return 0.075 * k * k; }
 
@@ -25,7 +25,7 @@ class SkewedDrive : public testing::Test {
   void SetUp() override {
     std::vector<Pose> truth;
     std::string times;
-    for (int k = 0; k < kScans; ++k) {
+    for (int k = 0; k < kScansOfDeskew; ++k) {
       truth.push_back(pose_at({way_m(k), 0, 0}, 0));
       const SceneScan scan = scene_scan(
           street(), truth.back(),
@@ -86,7 +86,7 @@ TEST_F(SkewedDrive, IsConvertedWithItsPointsWhereTheStampSawThem) {
     ++scans;
     if (moved[i].second != stored[i].second) ++other;
   }
-  EXPECT_EQ(scans, static_cast<std::size_t>(kScans));
+  EXPECT_EQ(scans, static_cast<std::size_t>(kScansOfDeskew));
   EXPECT_EQ(other, scans - 1);  // no pose follows the last one
 }
 

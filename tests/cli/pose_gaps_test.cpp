@@ -14,16 +14,16 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-constexpr std::size_t kScans = 12;
+constexpr std::size_t kScansWithGaps = 12;
 
 /// Scans every 0.1 s, and stamped poses of which those of 0.3 to 0.8 s are lost.
 class PoseGaps : public testing::Test {
  protected:
   PoseGaps() {
-    cli::write_small_sequence(folder_ / "room", kScans);
+    cli::write_small_sequence(folder_ / "room", kScansWithGaps);
     std::string poses;
     std::vector<std::int64_t> stamps_ns;
-    for (std::size_t k = 0; k < kScans; ++k) {
+    for (std::size_t k = 0; k < kScansWithGaps; ++k) {
       stamps_ns.push_back(static_cast<std::int64_t>(k) * 100'000'000);
       const std::string stamp = std::to_string(k / 10) + '.' + std::to_string(k % 10);
       if (k < 3 || k > 8) poses += stamp + " 0 0 0 0 0 0 1\n";
@@ -76,7 +76,7 @@ TEST_F(PoseGaps, AreLeftOutByEveryCommandThatReadsPoses) {
   const cli::Answer longer = ask("run", {"--out", folder_ / "longer", "--max-pose-gap-s", "0.7"});
   ASSERT_EQ(longer.exit_code, 0) << longer.err;
   EXPECT_THAT(longer.out, Not(HasSubstr("left out")));
-  EXPECT_EQ(cli::timeless_result(folder_ / "longer/room").at("scans").size(), kScans);
+  EXPECT_EQ(cli::timeless_result(folder_ / "longer/room").at("scans").size(), kScansWithGaps);
   const cli::Answer report =
       cli::run({"report", folder_ / "longer", "-o", folder_ / "report.html"});
   EXPECT_EQ(report.exit_code, 0) << report.err;

@@ -21,13 +21,13 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-constexpr std::size_t kScans = 8;
+constexpr std::size_t kScansPredicted = 8;
 
 class PredictionsTest : public testing::Test {
  protected:
   PredictionsTest() {
-    cli::write_small_sequence(folder_ / "room", kScans);
-    for (std::size_t k = 0; k < kScans; ++k) predicted_.push_back(wrong_in_places(k));
+    cli::write_small_sequence(folder_ / "room", kScansPredicted);
+    for (std::size_t k = 0; k < kScansPredicted; ++k) predicted_.push_back(wrong_in_places(k));
     write(
         "labels", [](const std::string& stem) { return stem + ".label"; },
         [](const std::vector<std::uint32_t>& labels) {
@@ -51,13 +51,13 @@ class PredictionsTest : public testing::Test {
   }
   void give_stamps() const {
     std::vector<std::int64_t> stamps_ns;
-    for (std::size_t k = 0; k < kScans; ++k) stamps_ns.push_back(stamp_ns(k));
+    for (std::size_t k = 0; k < kScansPredicted; ++k) stamps_ns.push_back(stamp_ns(k));
     write_times(folder_ / "room/times.txt", stamps_ns);
   }
 
   void write(const std::string& folder, const std::function<std::string(std::string)>& name,
              const std::function<std::string(const std::vector<std::uint32_t>&)>& bytes) const {
-    for (std::size_t k = 0; k < kScans; ++k) {
+    for (std::size_t k = 0; k < kScansPredicted; ++k) {
       write_file_atomic(folder_ / folder / name(cli::stem(k)), bytes(predicted_[k]));
     }
   }
@@ -172,7 +172,7 @@ TEST_F(PredictionsTest, OfKthInTheIntensityOfPcdFilesGiveTheSameNumbers) {
 TEST_F(PredictionsTest, InOneFileGiveTheSameNumbers) {
   std::string rows;
   std::string indices;
-  for (std::size_t k = 0; k < kScans; ++k) {
+  for (std::size_t k = 0; k < kScansPredicted; ++k) {
     std::string moving;
     for (std::size_t i = 0; i < predicted_[k].size(); ++i) {
       if (predicted_[k][i] == kMovingLabel) moving += ',' + std::to_string(i);
@@ -206,7 +206,7 @@ TEST_F(PredictionsTest, OfDynabloxAreReadAtEachLevelAndItsOwnCountsTaken) {
   std::string scores =
       "timestamp,point_IoU,point_Precision,point_Recall,point_TP,point_TN,point_FP,point_FN";
   scores += ",c,c,c,c,c,c,c,o,o,o,o,o,o,o,EvaluatedPoints,TotalPoints\n";
-  for (std::size_t k = 0; k < kScans; ++k) {
+  for (std::size_t k = 0; k < kScansPredicted; ++k) {
     for (const std::uint32_t label : predicted_[k]) {
       const std::string moving = label == kMovingLabel ? "1" : "0";
       clouds += std::to_string(k) + ",1.5,-2,0,3.25,0," + moving + ",0,0,1,-1\n";
@@ -228,7 +228,7 @@ TEST_F(PredictionsTest, OfDynabloxAreReadAtEachLevelAndItsOwnCountsTaken) {
   folder_.write("scores/scores.csv", scores);
   const cli::Answer counted = score(folder_ / "scores", {"--protocol", "doals-dynablox"});
   ASSERT_EQ(counted.exit_code, 0) << counted.err;
-  EXPECT_EQ(summary(counted).at("tp"), 7 * kScans);
+  EXPECT_EQ(summary(counted).at("tp"), 7 * kScansPredicted);
   EXPECT_EQ(summary(counted).at("iou"), 0.5);
   EXPECT_EQ(format(counted), "dynablox-scores");
 
@@ -252,7 +252,7 @@ TEST_F(PredictionsTest, OfDynabloxForAnotherSequenceAreRefused) {
   std::string scores = "timestamp,EvaluatedPoints,TotalPoints\n";
   std::string counted = "timestamp,p,p,p,p,p,p,p,c,c,c,c,c,c,c,o,o,o,o,o,o,o,EvaluatedPoints,T\n";
   std::string clouds = "CloudNo,ObjectDynamic\n";
-  for (std::size_t k = 0; k < kScans; ++k) {
+  for (std::size_t k = 0; k < kScansPredicted; ++k) {
     const std::string stamp = std::to_string(k == 3 ? 7 : stamp_ns(k));
     scores += stamp + ",8640,8640\n";
     counted += stamp + ",1,1,1,0,8640,0,0,1,1,1,0,8640,0,0,1,1,1,0,8640,0,0,8640,8640\n";
@@ -280,7 +280,7 @@ TEST_F(PredictionsTest, OfDynabloxForAnotherSequenceAreRefused) {
 }
 
 TEST_F(PredictionsTest, NamedByPositionAreRecognised) {
-  for (std::size_t k = kScans; k-- > 0;) {
+  for (std::size_t k = kScansPredicted; k-- > 0;) {
     for (const char* name : {"room/velodyne/", "room/labels/"}) {
       const std::string extension = std::string(name).ends_with("velodyne/") ? ".bin" : ".label";
       fs::rename(folder_ / (name + cli::stem(k) + extension),
@@ -298,7 +298,7 @@ TEST_F(PredictionsTest, NamedByPositionAreRecognised) {
 }
 
 TEST_F(PredictionsTest, CutByRangeAreSpreadOverTheirScans) {
-  for (std::size_t k = 0; k < kScans; ++k) {
+  for (std::size_t k = 0; k < kScansPredicted; ++k) {
     const std::vector<Point> points = read_bin(folder_ / "room/velodyne" / (cli::stem(k) + ".bin"));
     std::vector<std::uint32_t> kept;
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -324,7 +324,7 @@ TEST_F(PredictionsTest, CutByRangeAreSpreadOverTheirScans) {
 
 TEST_F(PredictionsTest, WithClassNumbersAreMappedOrRefused) {
   const auto classes = [this](const char* folder, std::uint32_t standing, std::uint32_t moving) {
-    for (std::size_t k = 0; k < kScans; ++k) {
+    for (std::size_t k = 0; k < kScansPredicted; ++k) {
       std::vector<std::uint32_t> ids;
       for (const std::uint32_t label : predicted_[k]) {
         ids.push_back(label == kMovingLabel ? moving : standing);
@@ -345,7 +345,7 @@ TEST_F(PredictionsTest, WithClassNumbersAreMappedOrRefused) {
 }
 
 TEST_F(PredictionsTest, NoLostCutRenamedOrDoubledPredictionGoesUnnoticed) {
-  for (std::size_t k = 0; k < kScans; ++k) {
+  for (std::size_t k = 0; k < kScansPredicted; ++k) {
     const std::string name = cli::stem(k) + ".label";
     const fs::path file = folder_ / "labels" / name;
     const std::string bytes = read_file(file);
@@ -371,7 +371,7 @@ TEST_F(PredictionsTest, NoLostCutRenamedOrDoubledPredictionGoesUnnoticed) {
 }
 
 TEST_F(PredictionsTest, NoLostCutRenamedOrDoubledTruthGoesUnnoticed) {
-  for (std::size_t k = 0; k < kScans; ++k) {
+  for (std::size_t k = 0; k < kScansPredicted; ++k) {
     const std::string name = cli::stem(k) + ".label";
     const fs::path file = folder_ / "room/labels" / name;
     const std::string bytes = read_file(file);
@@ -399,7 +399,7 @@ TEST_F(PredictionsTest, MissingOnesAreMarkedWhenAllowed) {
   const cli::Answer answer =
       score(folder_ / "labels", {"--allow-missing", "--out", (folder_ / "out").string()});
   ASSERT_EQ(answer.exit_code, 0) << answer.err;
-  EXPECT_EQ(summary(answer).at("labelled_scans"), kScans - 2);
+  EXPECT_EQ(summary(answer).at("labelled_scans"), kScansPredicted - 2);
   const auto opened = nlohmann::json::parse(answer.out).at("predictions").at("room");
   EXPECT_EQ(opened.at("missing"), (nlohmann::json{"000002", "000003"}));
   EXPECT_THAT(answer.out, HasSubstr("000100.label: belongs to no scan"));
@@ -458,7 +458,7 @@ TEST_F(PredictionsTest, OfConfidencesAreMovingAboveOneHalf) {
   write(
       "4dmos/confidences/room",
       [](const std::string& stem) { return stem + "/" + stem + "_dt_1e-01.npy"; }, confidences);
-  for (std::size_t k = 1; k < kScans; ++k) {
+  for (std::size_t k = 1; k < kScansPredicted; ++k) {
     const std::string earlier = cli::stem(k) + "/" + cli::stem(k - 1) + "_dt_1e-01.npy";
     write_file_atomic(folder_ / "4dmos/confidences/room" / earlier, npy({0.9F}));
   }

@@ -18,11 +18,11 @@ constexpr std::string_view kStageNames[] = {"voxelize",       "raycast", "map_up
 using nlohmann::json;
 using testing::HasSubstr;
 
-constexpr std::size_t kScans = 12;
+constexpr std::size_t kScansProfiled = 12;
 
 /// Profiles a small sequence once; the files are in `folder`.
 cli::Answer profile_small(const TempFolder& folder, const std::vector<std::string>& more = {}) {
-  cli::write_small_sequence(folder.path() / "room", kScans);
+  cli::write_small_sequence(folder.path() / "room", kScansProfiled);
   std::vector<std::string> arguments = {"profile",   (folder.path() / "room").string(),
                                         "--threads", "1",
                                         "--json",    (folder.path() / "profile.json").string(),
@@ -47,7 +47,7 @@ TEST(Profile, StagesAddUpToTheMethodAndSpreadsAreInOrder) {
   ASSERT_EQ(profile_small(folder).exit_code, 0);
   const json whole = json::parse(read_file(folder.path() / "profile.json"));
   const json& sequence = whole["sequences"][0];
-  ASSERT_EQ(sequence["scans"].size(), kScans);
+  ASSERT_EQ(sequence["scans"].size(), kScansProfiled);
   for (const char* clock : {"wall_ms", "cpu_ms"}) {
     double sum_ms = 0;
     for (const auto& [name, cost] : sequence["stages"].items()) {
@@ -90,14 +90,14 @@ TEST(Profile, TraceHoldsEachStageInsideItsScan) {
       ++slices[event["name"]];
     }
   }
-  EXPECT_EQ(scans, kScans);
-  EXPECT_EQ(slices["read"], kScans);
+  EXPECT_EQ(scans, kScansProfiled);
+  EXPECT_EQ(slices["read"], kScansProfiled);
   // Detection starts when the window is full.
   const std::set<std::string_view> always = {"voxelize", "raycast", "map_update", "evict"};
   for (const std::string_view stage : kStageNames) {
-    EXPECT_EQ(slices[std::string(stage)], always.contains(stage) ? kScans : kScans - 4) << stage;
+    EXPECT_EQ(slices[std::string(stage)], always.contains(stage) ? kScansProfiled : kScansProfiled - 4) << stage;
   }
-  EXPECT_EQ(counters, 2 * kScans);
+  EXPECT_EQ(counters, 2 * kScansProfiled);
 }
 
 TEST(Profile, StopsAfterTheScansAskedFor) {
@@ -124,8 +124,8 @@ TEST(Profile, RefusesWhatRunRefuses) {
 
 TEST(Profile, NamesTheFileOfAScanThatIsOutOfReach) {
   const TempFolder folder;
-  cli::write_small_sequence(folder.path() / "room", kScans);
-  std::vector<Pose> poses(kScans, Pose::Identity());
+  cli::write_small_sequence(folder.path() / "room", kScansProfiled);
+  std::vector<Pose> poses(kScansProfiled, Pose::Identity());
   poses[7].translation().x() = 1e9;
   write_poses(folder.path() / "room/poses.txt", poses);
   const cli::Answer answer = cli::run({"profile", (folder.path() / "room").string()});

@@ -16,11 +16,11 @@ namespace fs = std::filesystem;
 using testing::HasSubstr;
 using testing::Not;
 
-constexpr std::size_t kScans = 12;
+constexpr std::size_t kScansOfRun = 12;
 
 class Run : public testing::Test {
  protected:
-  Run() { cli::write_small_sequence(folder_ / "room", kScans); }
+  Run() { cli::write_small_sequence(folder_ / "room", kScansOfRun); }
 
   std::vector<std::string> command(const std::string& out,
                                    const std::vector<std::string>& more = {}) const {
@@ -41,7 +41,7 @@ TEST_F(Run, WritesOneLabelPerPointNamedLikeTheScan) {
   const cli::Answer answer = cli::run(command("out"));
   ASSERT_EQ(answer.exit_code, 0) << answer.err;
   std::size_t moving = 0;
-  for (std::size_t k = 0; k < kScans; ++k) {
+  for (std::size_t k = 0; k < kScansOfRun; ++k) {
     const auto labels =
         read_labels(folder_ / "out/room/labels" / (cli::stem(k) + ".label"), cli::kPointsPerScan);
     for (const std::uint32_t label : labels) {
@@ -51,7 +51,7 @@ TEST_F(Run, WritesOneLabelPerPointNamedLikeTheScan) {
   }
   EXPECT_GT(moving, 0U);
   const auto json = result("out");
-  ASSERT_EQ(json.at("scans").size(), kScans);
+  ASSERT_EQ(json.at("scans").size(), kScansOfRun);
   std::size_t recorded = 0;
   for (const auto& scan : json.at("scans")) {
     recorded += scan.at("predicted_moving_points").get<std::size_t>();
@@ -67,7 +67,7 @@ TEST_F(Run, WritesOneScorePerPointWhenAskedAndTheSameLabels) {
   EXPECT_FALSE(fs::exists(folder_ / "plain/room/scores"));
   const auto json = result("out");
   std::size_t above = 0;
-  for (std::size_t k = 0; k < kScans; ++k) {
+  for (std::size_t k = 0; k < kScansOfRun; ++k) {
     const std::string label_name = "room/labels/" + cli::stem(k) + ".label";
     EXPECT_EQ(read_file(folder_ / "out" / label_name), read_file(folder_ / "plain" / label_name));
     const fs::path file = dynamic_score_file(folder_ / "out/room", cli::stem(k));
@@ -124,7 +124,7 @@ TEST_F(Run, RecordsTheEffectiveConfigurationWithTheKeysOfTheParityCases) {
   EXPECT_EQ(json.at("format"), 2);
   EXPECT_EQ(json.at("protocol").at("name"), "semantickitti-mos");
   EXPECT_THAT(json.at("remarks").dump(), HasSubstr("the last 2 scans have no 2 later ones"));
-  EXPECT_EQ(json.at("scans_without_detection").back(), cli::stem(kScans - 2));
+  EXPECT_EQ(json.at("scans_without_detection").back(), cli::stem(kScansOfRun - 2));
   EXPECT_EQ(json.at("fingerprint").get<std::string>().size(), 32U);
   for (const char* key : {"code", "machine", "summary", "timing"}) {
     EXPECT_TRUE(json.contains(key)) << key;
@@ -155,7 +155,7 @@ TEST_F(Run, GivesTheSameBytesForAnyThreadCount) {
       ASSERT_EQ(answer.exit_code, 0) << answer.err;
       written.push_back(cli::contents(folder_ / (name + threads)));
     }
-    ASSERT_EQ(written[0].size(), kScans + 3);
+    ASSERT_EQ(written[0].size(), kScansOfRun + 3);
     EXPECT_EQ(written[0], written[1]);
     EXPECT_EQ(written[0], written[2]);
   }
@@ -168,7 +168,7 @@ TEST_F(Run, JsonAnswerIsOnePureObject) {
   EXPECT_EQ(json.at("protocol"), "sipailou");
   const auto summary = json.at("sequences").at(0).at("summary");
   EXPECT_EQ(summary, result("out").at("summary"));
-  EXPECT_EQ(summary.at("labelled_scans"), kScans);
+  EXPECT_EQ(summary.at("labelled_scans"), kScansOfRun);
   const double tp = summary.at("tp");
   EXPECT_DOUBLE_EQ(summary.at("iou"),
                    tp / (tp + summary.at("fp").get<double>() + summary.at("fn").get<double>()));

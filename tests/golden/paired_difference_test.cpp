@@ -8,7 +8,7 @@
 namespace mosbench {
 namespace {
 
-SequenceCounts counts_of(const std::string& name) {
+SequenceCounts per_scan_counts(const std::string& name) {
   for (const parity::ParityCase& parity : parity::parity_cases()) {
     if (parity.name != name) continue;
     SequenceCounts counts;
@@ -27,8 +27,8 @@ SequenceCounts counts_of(const std::string& name) {
 TEST(PairedDifference, OfOnlineAndDelayedLabelsOfRealScansIsFound) {
   if (!parity::shared_parity_folder()) GTEST_SKIP() << parity::kSkipMessage;
   const Protocol& protocol = protocol_named("semantickitti-mos");
-  const std::vector<SequenceCounts> online = {counts_of("kitti_r50")};
-  const std::vector<SequenceCounts> delayed = {counts_of("kitti_r50_delay10")};
+  const std::vector<SequenceCounts> online = {per_scan_counts("kitti_r50")};
+  const std::vector<SequenceCounts> delayed = {per_scan_counts("kitti_r50_delay10")};
   ASSERT_EQ(online[0].size(), 50U);
   EXPECT_NEAR(estimate(protocol, online)[Metric::kIou].value.value(), 0.6229043109387876, 1e-15);
   const Difference iou = paired_difference(protocol, online, delayed)[Metric::kIou];

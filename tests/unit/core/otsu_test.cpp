@@ -49,7 +49,7 @@ std::optional<double> literal_otsu(const std::vector<int>& values) {
   return lo + (level - 1) * (hi - lo) / 100;
 }
 
-std::optional<double> threshold_of(const std::vector<int>& values) {
+std::optional<double> otsu_of(const std::vector<int>& values) {
   std::vector<ValueCount> entries;
   for (const int value : values) entries.push_back({value, 1});
   return otsu_threshold(entries);
@@ -57,26 +57,26 @@ std::optional<double> threshold_of(const std::vector<int>& values) {
 
 TEST(Otsu, NothingToSeparateHasNoThreshold) {
   EXPECT_EQ(otsu_threshold({}), std::nullopt);
-  EXPECT_EQ(threshold_of({7}), std::nullopt);
-  EXPECT_EQ(threshold_of({4, 4, 4, 4}), std::nullopt);
+  EXPECT_EQ(otsu_of({7}), std::nullopt);
+  EXPECT_EQ(otsu_of({4, 4, 4, 4}), std::nullopt);
   EXPECT_EQ(otsu_threshold(std::vector<ValueCount>{{5, 3}, {9, 0}, {1, 0}}), std::nullopt);
 }
 
 /// Between two values every level separates them equally well: the last one wins, which is bin
 /// 99's.
 TEST(Otsu, LaterTiesWin) {
-  EXPECT_EQ(threshold_of({0, 100}), 99.0);
-  EXPECT_EQ(threshold_of({0, 0, 0, 10}), 0 + 99 * 10.0 / 100);
-  EXPECT_EQ(threshold_of({-50, 150}), -50 + 99 * 2.0);
+  EXPECT_EQ(otsu_of({0, 100}), 99.0);
+  EXPECT_EQ(otsu_of({0, 0, 0, 10}), 0 + 99 * 10.0 / 100);
+  EXPECT_EQ(otsu_of({-50, 150}), -50 + 99 * 2.0);
 }
 
 /// Values 0 0 1 100: bins 0 0 0 99. Levels 2 to 99 tie, so T = 99 selects the one at 100 alone.
 TEST(Otsu, HandWorkedHistogram) {
-  EXPECT_EQ(threshold_of({0, 0, 1, 100}), 99.0);
+  EXPECT_EQ(otsu_of({0, 0, 1, 100}), 99.0);
   // 0 0 0 50 50 100: bins 0 and 49 and 99. Splitting below 50: 3*3*(74.. - ..)^2; see the twin.
   const std::vector<int> three{0, 0, 0, 50, 50, 100};
   // Weights 3 | 3, means 0 and (49 + 49 + 99) / 3: 9 * 65.67^2 = 38809 against 5 * 79.4^2 = 31522.
-  EXPECT_EQ(threshold_of(three), 49.0);
+  EXPECT_EQ(otsu_of(three), 49.0);
 }
 
 TEST(Otsu, CountsAreRepetitions) {
@@ -98,7 +98,7 @@ TEST(Otsu, EqualsTheLiteralTranscription) {
       value = base + static_cast<int>(random() % 3 == 0 ? random() % spread : random() % 3);
     }
     const std::optional<double> expected = literal_otsu(values);
-    ASSERT_EQ(threshold_of(values), expected) << "round " << round;
+    ASSERT_EQ(otsu_of(values), expected) << "round " << round;
     with_level += expected.has_value();
     above_lowest += expected.value_or(0) > base + 1;
   }
@@ -111,7 +111,7 @@ TEST(Otsu, ValuesOnBinEdgesBelongToTheLowerBin) {
   for (const int high : {50, 100, 200, 300, 700, 1000}) {
     for (int middle = 1; middle < high; ++middle) {
       const std::vector<int> values{0, 0, 0, middle, middle, high};
-      ASSERT_EQ(threshold_of(values), literal_otsu(values)) << middle << " of " << high;
+      ASSERT_EQ(otsu_of(values), literal_otsu(values)) << middle << " of " << high;
     }
   }
 }

@@ -27,7 +27,7 @@ using testing::HasSubstr;
 using testing::Key;
 using testing::Pair;
 
-constexpr int kScans = 6, kPoints = 720;
+constexpr int kScansSwept = 6, kPointsOfTurn = 720;
 constexpr double kPeriod_s = 0.1;
 
 /// A sensor that drives a curve, 5 m/s at first.
@@ -46,14 +46,14 @@ struct Drive {
 
 /// A point of a scan as the sensor sees it when it is measured.
 Eigen::Vector3d measured(int i) {
-  const double azimuth_rad = 2 * std::numbers::pi * (i + 0.5) / kPoints - std::numbers::pi;
+  const double azimuth_rad = 2 * std::numbers::pi * (i + 0.5) / kPointsOfTurn - std::numbers::pi;
   const double range_m = 8 + i % 13;
   return {range_m * std::cos(azimuth_rad), range_m * std::sin(azimuth_rad), 0.1 * (i % 7)};
 }
 /// When it is measured, after the stamp: behind first, then clockwise.
-double turned_s(int i) { return kPeriod_s * (0.5 - (i + 0.5) / kPoints); }
+double turned_s(int i) { return kPeriod_s * (0.5 - (i + 0.5) / kPointsOfTurn); }
 /// The same, with the stamp at the beginning.
-double begun_s(int i) { return kPeriod_s * i / kPoints; }
+double begun_s(int i) { return kPeriod_s * i / kPointsOfTurn; }
 
 class DeskewedScans : public testing::Test {
  protected:
@@ -63,9 +63,9 @@ class DeskewedScans : public testing::Test {
     time_s_ = time_s;
     std::string times;
     std::vector<Pose> poses;
-    for (int k = 0; k < kScans; ++k) {
+    for (int k = 0; k < kScansSwept; ++k) {
       std::string bytes;
-      for (int i = 0; i < kPoints; ++i) {
+      for (int i = 0; i < kPointsOfTurn; ++i) {
         const Eigen::Vector3f p = measured(i).cast<float>();
         const float row[] = {p.x(), p.y(), p.z(), 0.5F, static_cast<float>(time_s(i))};
         bytes.append(reinterpret_cast<const char*>(row), (with_column ? 5 : 4) * sizeof(float));
@@ -79,7 +79,7 @@ class DeskewedScans : public testing::Test {
   }
   /// Writes the scans again as files of this extension with their times in a field.
   void turn_into(const std::string& extension, const std::string& field, double per_s) const {
-    for (int k = 0; k < kScans; ++k) {
+    for (int k = 0; k < kScansSwept; ++k) {
       const std::filesystem::path bin =
           folder_ / "s/velodyne" / ("00000" + std::to_string(k) + ".bin");
       const std::string bytes = read_file(bin);
@@ -114,9 +114,9 @@ class DeskewedScans : public testing::Test {
     double worst = 0;
     for (int k = first; k <= last; ++k) {
       const Frame frame = dataset.sequences.at(0)->read(static_cast<std::size_t>(k));
-      EXPECT_EQ(frame.points.size(), static_cast<std::size_t>(kPoints));
+      EXPECT_EQ(frame.points.size(), static_cast<std::size_t>(kPointsOfTurn));
       const Pose stamp_from_map = drive_.at(k * kPeriod_s).inverse();
-      for (int i = 0; i < kPoints; ++i) {
+      for (int i = 0; i < kPointsOfTurn; ++i) {
         const Point& p = frame.points[static_cast<std::size_t>(i)];
         const Eigen::Vector3d seen =
             stamp_from_map * drive_.at(k * kPeriod_s + time_s_(i)) * measured(i);
@@ -144,12 +144,12 @@ ReadingOptions by_azimuth(std::optional<Deskew> deskew) {
 
 TEST_F(DeskewedScans, ComeBackWithinAMillimetreByTimesInTheFifthColumn) {
   write({}, begun_s, true);
-  ASSERT_GT(worst_m(by_column(Deskew::kNone), 0, kScans - 1), 0.45);
-  EXPECT_LT(worst_m(by_column(Deskew::kVelocity), 0, kScans - 1), 1e-3);
-  EXPECT_LT(worst_m(by_column(Deskew::kPoses), 0, kScans - 2), 1e-3);
-  EXPECT_LT(worst_m(by_column(std::nullopt), 0, kScans - 2), 1e-3);
+  ASSERT_GT(worst_m(by_column(Deskew::kNone), 0, kScansSwept - 1), 0.45);
+  EXPECT_LT(worst_m(by_column(Deskew::kVelocity), 0, kScansSwept - 1), 1e-3);
+  EXPECT_LT(worst_m(by_column(Deskew::kPoses), 0, kScansSwept - 2), 1e-3);
+  EXPECT_LT(worst_m(by_column(std::nullopt), 0, kScansSwept - 2), 1e-3);
   // No pose follows the last one.
-  EXPECT_GT(worst_m(by_column(Deskew::kPoses), kScans - 1, kScans - 1), 0.45);
+  EXPECT_GT(worst_m(by_column(Deskew::kPoses), kScansSwept - 1, kScansSwept - 1), 0.45);
 }
 
 TEST_F(DeskewedScans, ComeBackWithinAMillimetreByTimesInAFieldOfEveryUnit) {
@@ -161,9 +161,9 @@ TEST_F(DeskewedScans, ComeBackWithinAMillimetreByTimesInAFieldOfEveryUnit) {
       write({}, begun_s, true);
       turn_into(extension, field, per_s);
       ReadingOptions reading = by_column(Deskew::kPoses);
-      EXPECT_LT(worst_m(reading, 0, kScans - 2), 1e-3) << field << extension;
+      EXPECT_LT(worst_m(reading, 0, kScansSwept - 2), 1e-3) << field << extension;
       reading.deskew = Deskew::kNone;
-      EXPECT_GT(worst_m(reading, 0, kScans - 2), 0.45);
+      EXPECT_GT(worst_m(reading, 0, kScansSwept - 2), 0.45);
       reading.deskew = std::nullopt;
       EXPECT_THAT(open_dataset(folder_ / "s", {.reading = reading}).sequences[0]->reading(),
                   Contains(Pair("point_times", "field of times")));
@@ -173,19 +173,19 @@ TEST_F(DeskewedScans, ComeBackWithinAMillimetreByTimesInAFieldOfEveryUnit) {
 
 TEST_F(DeskewedScans, ComeBackWithinMillimetresByTheirAzimuths) {
   write({}, turned_s, false);
-  ASSERT_GT(worst_m(by_azimuth(Deskew::kNone), 0, kScans - 1), 0.2);
+  ASSERT_GT(worst_m(by_azimuth(Deskew::kNone), 0, kScansSwept - 1), 0.2);
   // The way between two stamps is taken for straight, also backwards: a turn of 0.1 rad/s.
-  EXPECT_LT(worst_m(by_azimuth(Deskew::kVelocity), 0, kScans - 1), 2e-3);
-  EXPECT_LT(worst_m(by_azimuth(Deskew::kPoses), 1, kScans - 2), 1e-3);
+  EXPECT_LT(worst_m(by_azimuth(Deskew::kVelocity), 0, kScansSwept - 1), 2e-3);
+  EXPECT_LT(worst_m(by_azimuth(Deskew::kPoses), 1, kScansSwept - 2), 1e-3);
   // Without stamps a turn is taken to last 0.1 s.
   std::filesystem::remove(folder_ / "s" / "times.txt");
-  EXPECT_LT(worst_m(by_azimuth(Deskew::kPoses), 1, kScans - 2), 1e-3);
+  EXPECT_LT(worst_m(by_azimuth(Deskew::kPoses), 1, kScansSwept - 2), 1e-3);
 }
 
 TEST_F(DeskewedScans, FollowAnAccelerationByPosesBetterThanByVelocity) {
   write({.acceleration_m_s2 = 2}, begun_s, true);
-  const double by_velocity_m = worst_m(by_column(Deskew::kVelocity), 1, kScans - 2);
-  const double by_poses_m = worst_m(by_column(Deskew::kPoses), 1, kScans - 2);
+  const double by_velocity_m = worst_m(by_column(Deskew::kVelocity), 1, kScansSwept - 2);
+  const double by_poses_m = worst_m(by_column(Deskew::kPoses), 1, kScansSwept - 2);
   EXPECT_LT(by_poses_m, 4e-3);
   EXPECT_GT(by_velocity_m, 10e-3);
   EXPECT_LT(by_velocity_m, 30e-3);
@@ -208,7 +208,7 @@ TEST_F(DeskewedScans, AreStatedAndAreReadAsStoredUnlessTheyAreAskedFor) {
   const Frame frame = open_dataset(folder_ / "s", {.reading = unposed}).sequences[0]->read(2);
   EXPECT_EQ(format_bin(frame.points), format_bin(stored.points));
   ASSERT_EQ(frame.point_times_ns.size(), frame.points.size());
-  EXPECT_NEAR(static_cast<double>(frame.point_times_ns[kPoints / 2]), 0.05e9, 10);
+  EXPECT_NEAR(static_cast<double>(frame.point_times_ns[kPointsOfTurn / 2]), 0.05e9, 10);
 }
 
 TEST_F(DeskewedScans, AreRefusedWithoutSensibleTimes) {

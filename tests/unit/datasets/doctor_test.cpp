@@ -30,7 +30,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-constexpr std::size_t kScans = 40;
+constexpr std::size_t kScansExamined = 40;
 
 struct Layout {
   DatasetKind kind;
@@ -45,7 +45,7 @@ fs::path good_copy(const Layout& layout) {
     folder = std::make_unique<TempFolder>();
     simulate({.layout = layout.kind,
               .scene = layout.scene,
-              .scans = kScans,
+              .scans = kScansExamined,
               .seed = 3,
               .out = *folder / "data",
               .threads = 2});
@@ -69,7 +69,7 @@ TEST_P(DoctorOnWhatIsGood, IsQuiet) {
   EXPECT_EQ(checkup.kind, GetParam().kind);
   ASSERT_FALSE(checkup.sequences.empty());
   for (const SequenceCheckup& sequence : checkup.sequences) {
-    EXPECT_EQ(sequence.scans, kScans);
+    EXPECT_EQ(sequence.scans, kScansExamined);
     EXPECT_TRUE(sequence.poses) << sequence.name;
   }
 }
@@ -108,7 +108,7 @@ const fs::path kCampusSequence = "sequences/06";
 
 void change_poses(const fs::path& file, const std::function<void(std::vector<Pose>&)>& change) {
   auto poses = read_poses(file);
-  ASSERT_EQ(poses.size(), kScans);
+  ASSERT_EQ(poses.size(), kScansExamined);
   change(poses);
   write_poses(file, poses);
 }
@@ -268,7 +268,7 @@ const std::vector<Fault>& faults() {
        [](const fs::path& root) {
          change_poses(root / kKittiSequence / "poses.txt", [](std::vector<Pose>& poses) {
            poses.insert(poses.begin(), 3, poses.front());
-           poses.resize(kScans);
+           poses.resize(kScansExamined);
          });
        },
        "the poses fit better as 3 rows later:"},
@@ -424,7 +424,7 @@ const std::vector<Fault>& faults() {
       {"a_lost_pose_made_up_for", kKitti,
        [](const fs::path& root) {
          change_poses(root / kKittiSequence / "poses.txt", [](std::vector<Pose>& poses) {
-           poses.erase(poses.begin() + static_cast<std::ptrdiff_t>(kScans / 2));
+           poses.erase(poses.begin() + static_cast<std::ptrdiff_t>(kScansExamined / 2));
            poses.push_back(poses.back());
          });
        },
@@ -432,7 +432,7 @@ const std::vector<Fault>& faults() {
       {"frozen_from_half_on", kKitti,
        [](const fs::path& root) {
          change_poses(root / kKittiSequence / "poses.txt", [](std::vector<Pose>& poses) {
-           for (std::size_t row = kScans / 2; row < kScans; ++row) poses[row] = poses[kScans / 2];
+           for (std::size_t row = kScansExamined / 2; row < kScansExamined; ++row) poses[row] = poses[kScansExamined / 2];
          });
        },
        "the poses are frozen: rows"},
@@ -447,7 +447,7 @@ const std::vector<Fault>& faults() {
        "the poses do not fit the scans in any convention"},
       {"every_second_scan_upside_down", kKitti,
        [](const fs::path& root) {
-         for (std::size_t scan = 0; scan < kScans; scan += 2) {
+         for (std::size_t scan = 0; scan < kScansExamined; scan += 2) {
            const fs::path file = root / kKittiSequence / fmt::format("velodyne/{:06}.bin", scan);
            auto points = read_bin(file);
            for (Point& point : points) point.z = -point.z;

@@ -12,7 +12,7 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 
-constexpr const char* kIdentityRow = "1 0 0 0 0 1 0 0 0 0 1 0";
+constexpr const char* kIdentityNumbers = "1 0 0 0 0 1 0 0 0 0 1 0";
 
 Pose turned(double angle_rad, const Eigen::Vector3d& axis, const Eigen::Vector3d& position_m) {
   Pose pose = Pose::Identity();
@@ -61,16 +61,16 @@ TEST(PoseFile, AcceptsRotationsRoundedToSixDigits) {
 }
 
 TEST(PoseFile, AllowsBlankLinesOnlyAtTheEnd) {
-  EXPECT_EQ(parse_poses(std::string(kIdentityRow) + "\n\n \n", "poses.txt").size(), 1U);
+  EXPECT_EQ(parse_poses(std::string(kIdentityNumbers) + "\n\n \n", "poses.txt").size(), 1U);
   EXPECT_EQ(parse_poses("", "poses.txt").size(), 0U);
-  EXPECT_THAT(pose_error(std::string(kIdentityRow) + "\n\n" + kIdentityRow + "\n"),
+  EXPECT_THAT(pose_error(std::string(kIdentityNumbers) + "\n\n" + kIdentityNumbers + "\n"),
               HasSubstr("poses.txt:2: blank line"));
 }
 
 TEST(PoseFile, NamesTheLineOfARowWithoutTwelveNumbers) {
-  EXPECT_THAT(pose_error(std::string(kIdentityRow) + "\n1 0 0 0 0 1 0 0 0 0 1\n"),
+  EXPECT_THAT(pose_error(std::string(kIdentityNumbers) + "\n1 0 0 0 0 1 0 0 0 0 1\n"),
               AllOf(HasSubstr("poses.txt:2: 11 numbers"), HasSubstr("expected 12")));
-  EXPECT_THAT(pose_error(std::string(kIdentityRow) + " 1\n"), HasSubstr("poses.txt:1: 13 numbers"));
+  EXPECT_THAT(pose_error(std::string(kIdentityNumbers) + " 1\n"), HasSubstr("poses.txt:1: 13 numbers"));
 }
 
 TEST(PoseFile, RefusesTextAndNumbersThatAreNotFinite) {
@@ -112,7 +112,7 @@ TEST(CalibFile, RefusesAMissingATwofoldAndAShortTr) {
   EXPECT_THAT(error_of("P0: 1 0 0 0 0 1 0 0 0 0 1 0\n"),
               AllOf(HasSubstr("calib.txt: has no line \"Tr:\""), HasSubstr("expected")));
   EXPECT_THAT(error_of(""), HasSubstr("has no line"));
-  const std::string row = std::string("Tr: ") + kIdentityRow + "\n";
+  const std::string row = std::string("Tr: ") + kIdentityNumbers + "\n";
   EXPECT_THAT(error_of(row + row), HasSubstr("calib.txt:2: a second"));
   EXPECT_THAT(error_of("\nTr: 1 0 0 0 0 1 0 0 0 0 1\n"), HasSubstr("calib.txt:2: 11 numbers"));
   EXPECT_THAT(error_of("Tr: 7 0 0 0 0 7 0 0 0 0 7 0\n"), HasSubstr("calib.txt:1: rotation"));

@@ -26,16 +26,16 @@ std::vector<Pose> way(PositionAt&& position_m, double noise_m, double step_s = k
   return poses;
 }
 
-Eigen::Vector3d straight(double time_s) { return {20.0 * time_s, 0.0, 0.0}; }
+Eigen::Vector3d straight_drive(double time_s) { return {20.0 * time_s, 0.0, 0.0}; }
 
 TEST(PoseScatter, MeasuresTheNoiseOfAStraightWay) {
-  EXPECT_NEAR(scatter_of(way(straight, 0.1), kStepS).noise_m, 0.1, 0.02);
-  EXPECT_TRUE(scatter_of(way(straight, 0.1), kStepS).is_found());
+  EXPECT_NEAR(scatter_of(way(straight_drive, 0.1), kStepS).noise_m, 0.1, 0.02);
+  EXPECT_TRUE(scatter_of(way(straight_drive, 0.1), kStepS).is_found());
 }
 
 TEST(PoseScatter, IsNotFoundInSoundNoise) {
-  EXPECT_NEAR(scatter_of(way(straight, 0.05), kStepS).noise_m, 0.05, 0.01);
-  EXPECT_FALSE(scatter_of(way(straight, 0.05), kStepS).is_found());
+  EXPECT_NEAR(scatter_of(way(straight_drive, 0.05), kStepS).noise_m, 0.05, 0.01);
+  EXPECT_FALSE(scatter_of(way(straight_drive, 0.05), kStepS).is_found());
 }
 
 TEST(PoseScatter, IsNotFoundOnSmoothWays) {
@@ -55,13 +55,13 @@ TEST(PoseScatter, IsNotFoundOnSmoothWays) {
 }
 
 TEST(PoseScatter, IsNotFoundWhereScansAreSecondsApart) {
-  const std::vector<Pose> poses = way(straight, 0.5, 2.0);
+  const std::vector<Pose> poses = way(straight_drive, 0.5, 2.0);
   EXPECT_GT(scatter_of(poses, 2.0).noise_m, 0.3) << "as large as a driver's own changes of speed";
   EXPECT_FALSE(scatter_of(poses, 2.0).is_found());
 }
 
 TEST(PoseScatter, IsUnknownWithFewPoses) {
-  std::vector<Pose> poses = way(straight, 0.3);
+  std::vector<Pose> poses = way(straight_drive, 0.3);
   poses.resize(12);
   EXPECT_FALSE(scatter_of(poses, kStepS).is_found());
 }

@@ -51,17 +51,17 @@ TEST(PoseList, RefusesRowsThatAreNoPose) {
   EXPECT_THAT(error_of("t 1 2 3 0 0 0 1\n"), HasSubstr("no time in seconds"));
 }
 
-Pose at_x(double x_m) {
+Pose pose_at_x(double x_m) {
   Pose pose = Pose::Identity();
   pose.translation().x() = x_m;
   return pose;
 }
 
 TEST(PoseTrack, InterpolatesBetweenNeighboursAndNeverBeyondTheEnds) {
-  Pose turned = at_x(4.0);
+  Pose turned = pose_at_x(4.0);
   turned.linear() = Eigen::AngleAxisd(0.2, Eigen::Vector3d::UnitZ()).toRotationMatrix();
-  const PoseTrack track({{200, turned}, {100, at_x(2.0)}});
-  EXPECT_EQ(track.at(100)->matrix(), at_x(2.0).matrix());
+  const PoseTrack track({{200, turned}, {100, pose_at_x(2.0)}});
+  EXPECT_EQ(track.at(100)->matrix(), pose_at_x(2.0).matrix());
   EXPECT_EQ(track.at(200)->matrix(), turned.matrix());
   const Pose quarter = *track.at(125);
   EXPECT_DOUBLE_EQ(quarter.translation().x(), 2.5);
@@ -73,7 +73,7 @@ TEST(PoseTrack, InterpolatesBetweenNeighboursAndNeverBeyondTheEnds) {
 }
 
 TEST(Undistort, SaysWhenAPoseIsMissing) {
-  const PoseTrack track({{0, at_x(0.0)}, {100, at_x(1.0)}});
+  const PoseTrack track({{0, pose_at_x(0.0)}, {100, pose_at_x(1.0)}});
   const PoseAt pose_at = [&](std::int64_t stamp_ns) { return track.at(stamp_ns); };
   std::vector<Point> points(2, Point{1, 1, 1, 1});
   EXPECT_FALSE(undistort(points, std::vector<std::int64_t>{0, 101}, 0, 0, pose_at));

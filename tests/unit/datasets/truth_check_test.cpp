@@ -14,7 +14,7 @@ namespace {
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-constexpr std::size_t kPoints = 3;
+constexpr std::size_t kFewPoints = 3;
 
 /// Every second scan is labelled; nothing is labelled moving but one point of one scan, if given.
 class QuietSequence : public Sequence {
@@ -23,18 +23,18 @@ class QuietSequence : public Sequence {
     for (std::size_t k = 0; k < scans; ++k) {
       ScanEntry& entry = mutable_recording().scans.emplace_back();
       entry.stem = std::to_string(k);
-      entry.points = kPoints;
+      entry.points = kFewPoints;
       entry.has_truth = k % 2 == 0;
     }
   }
   using Sequence::read;
   void read(std::size_t scan_index, Frame& frame) const override {
     describe(scan_index, frame);
-    frame.points.assign(kPoints, Point{5, 1, 0, 0});
+    frame.points.assign(kFewPoints, Point{5, 1, 0, 0});
     add_truth(scan_index, frame);
   }
   std::vector<std::uint32_t> read_truth(std::size_t scan_index) const override {
-    std::vector<std::uint32_t> labels(kPoints, kStaticLabel);
+    std::vector<std::uint32_t> labels(kFewPoints, kStaticLabel);
     if (scan_index == moving_) labels.front() = kMovingLabel;
     return labels;
   }

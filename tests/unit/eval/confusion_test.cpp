@@ -14,7 +14,7 @@ namespace {
 
 using Labels = std::vector<std::uint32_t>;
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr float kNoNumber = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 /// Scores scans whose points all lie 5 m ahead, within every protocol's limits.
@@ -121,12 +121,12 @@ TEST(ScoreScan, IncludesPointsExactlyAtTheLimits) {
 }
 
 TEST(ScoreScan, TakesPointsWithoutAFiniteRangeAsOutOfRange) {
-  for (const float bad : {kNan, kInfinity}) {
+  for (const float bad : {kNoNumber, kInfinity}) {
     const Point point{bad, 0.0F, 0.0F, 0.0F};
     EXPECT_EQ(score_one("doals-hmm", 251, 251, point), kFalsePositive);
     EXPECT_EQ(score_one("doals-dynablox", 251, 251, point), kIgnoredPoint);
   }
-  EXPECT_EQ(score_one("mapmos", 251, 251, Point{kNan, 0.0F, 0.0F, 0.0F}), kIgnoredPoint);
+  EXPECT_EQ(score_one("mapmos", 251, 251, Point{kNoNumber, 0.0F, 0.0F, 0.0F}), kIgnoredPoint);
   EXPECT_EQ(score_one("mapmos", 251, 251, Point{kInfinity, 0.0F, 0.0F, 0.0F}), kTruePositive);
 }
 

@@ -22,7 +22,7 @@ Series remembering(std::uint32_t seed, std::size_t scans, double memory, double 
   return series;
 }
 
-SumUncertainty uncertainty_of(const std::vector<Series>& series) {
+SumUncertainty uncertainty_of_series(const std::vector<Series>& series) {
   return long_run_uncertainty(series, neighbour_correlation(series));
 }
 
@@ -30,38 +30,38 @@ SumUncertainty uncertainty_of(const std::vector<Series>& series) {
 /// the first has more scans, the second more spread.
 TEST(LongRunVariance, IsThatOfAnotherProgram) {
   const std::vector<Series> half = {remembering(1, 600, 0.5, 1.0), remembering(2, 240, 0.5, 3.0)};
-  EXPECT_NEAR(uncertainty_of(half).standard_error, 16.843880950789092, 1e-9);
-  EXPECT_NEAR(uncertainty_of(half).freedom, 3.131435981412699, 1e-9);
+  EXPECT_NEAR(uncertainty_of_series(half).standard_error, 16.843880950789092, 1e-9);
+  EXPECT_NEAR(uncertainty_of_series(half).freedom, 3.131435981412699, 1e-9);
   const std::vector<Series> most = {remembering(1, 600, 0.8, 1.0), remembering(2, 240, 0.8, 3.0)};
-  EXPECT_NEAR(uncertainty_of(most).standard_error, 42.429040183582416, 1e-9);
-  EXPECT_NEAR(uncertainty_of(most).freedom, 3.304771157423653, 1e-9);
+  EXPECT_NEAR(uncertainty_of_series(most).standard_error, 42.429040183582416, 1e-9);
+  EXPECT_NEAR(uncertainty_of_series(most).freedom, 3.304771157423653, 1e-9);
 }
 
 TEST(LongRunVariance, DoesNotChangeWithAConstant) {
   const std::vector<Series> series = {remembering(1, 600, 0.5, 1.0)};
   std::vector<Series> raised = series;
   for (double& value : raised[0]) value += 1000.0;
-  EXPECT_NEAR(uncertainty_of(raised).standard_error, uncertainty_of(series).standard_error, 1e-6);
+  EXPECT_NEAR(uncertainty_of_series(raised).standard_error, uncertainty_of_series(series).standard_error, 1e-6);
 }
 
 TEST(LongRunVariance, NeedsSequencesThatAreLongComparedWithTheirMemory) {
   const std::vector<Series> series = {remembering(1, 90, 0.9, 1.0), remembering(2, 110, 0.9, 3.0)};
-  EXPECT_EQ(uncertainty_of(series).unknown,
+  EXPECT_EQ(uncertainty_of_series(series).unknown,
             "neighbouring scans are too alike for 100 per sequence, expected about 767");
 }
 
 TEST(LongRunVariance, NeedsSeveralSequencesOfFortyScans) {
   std::vector<Series> series;
   for (unsigned seed = 1; seed <= 5; ++seed) series.push_back(remembering(seed, 39, 0.2, 1.0));
-  EXPECT_EQ(uncertainty_of(series).unknown,
+  EXPECT_EQ(uncertainty_of_series(series).unknown,
             "5 sequences of 39 scans in the mean, expected at least 40 in each");
 }
 
 TEST(LongRunVariance, TakesOneCoefficientOfEachOfSeveralShortSequences) {
   std::vector<Series> series;
   for (unsigned seed = 1; seed <= 10; ++seed) series.push_back(remembering(seed, 40, 0.5, 1.0));
-  EXPECT_NEAR(uncertainty_of(series).standard_error, 10.074197414390923, 1e-9);
-  EXPECT_NEAR(uncertainty_of(series).freedom, 9.03070126395113, 1e-9);
+  EXPECT_NEAR(uncertainty_of_series(series).standard_error, 10.074197414390923, 1e-9);
+  EXPECT_NEAR(uncertainty_of_series(series).freedom, 9.03070126395113, 1e-9);
 }
 
 }  // namespace

@@ -94,7 +94,7 @@ TEST(DurationText, ChangesItsUnitWithTheLength) {
   EXPECT_EQ(duration_text(7620.0), "2 h 07 min");
 }
 
-Confusion counts(std::uint64_t tp, std::uint64_t fp, std::uint64_t fn) {
+Confusion counts_of_run(std::uint64_t tp, std::uint64_t fp, std::uint64_t fn) {
   Confusion confusion;
   confusion.tp = tp;
   confusion.fp = fp;
@@ -103,8 +103,8 @@ Confusion counts(std::uint64_t tp, std::uint64_t fp, std::uint64_t fn) {
 }
 
 const std::vector<ScoredSequence> kTwoSequences = {
-    {"a", {{"0", counts(1, 0, 1)}, {"1", std::nullopt}, {"2", counts(3, 1, 0)}}, 10.0},
-    {"b", {{"0", counts(90, 5, 5)}}, 30.0}};
+    {"a", {{"0", counts_of_run(1, 0, 1)}, {"1", std::nullopt}, {"2", counts_of_run(3, 1, 0)}}, 10.0},
+    {"b", {{"0", counts_of_run(90, 5, 5)}}, 30.0}};
 
 TEST(ScoreRows, PoolASplitOverItsSequences) {
   const Split split{"test", {{0, std::nullopt}, {1, std::nullopt}}};

@@ -9,7 +9,7 @@
 namespace mosbench {
 namespace {
 
-constexpr std::size_t kPoints = 200'000;
+constexpr std::size_t kPointsPerScan = 200'000;
 
 /// Six labelled scans of one wall, of which the last cannot be read.
 class BrokenSequence : public Sequence {
@@ -19,18 +19,18 @@ class BrokenSequence : public Sequence {
     for (int k = 0; k < 6; ++k) {
       ScanEntry& entry = mutable_recording().scans.emplace_back();
       entry.stem = std::to_string(k);
-      entry.points = kPoints;
+      entry.points = kPointsPerScan;
       entry.has_truth = true;
     }
   }
   void read(std::size_t scan_index, Frame& frame) const override {
     if (scan_index + 1 == size()) throw DataError("last.bin", "is broken", "a scan");
     describe(scan_index, frame);
-    frame.points.assign(kPoints, Point{2, 1, 0, 0});
+    frame.points.assign(kPointsPerScan, Point{2, 1, 0, 0});
     add_truth(scan_index, frame);
   }
   std::vector<std::uint32_t> read_truth(std::size_t) const override {
-    return std::vector<std::uint32_t>(kPoints, kStaticLabel);
+    return std::vector<std::uint32_t>(kPointsPerScan, kStaticLabel);
   }
 };
 

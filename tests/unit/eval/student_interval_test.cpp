@@ -12,12 +12,12 @@ namespace {
 // Of Student's t with 10 degrees of freedom, from a printed table.
 constexpr double kQuantile975 = 2.228138852, kQuantile80 = 0.879057829;
 // So many scans that do not resemble their neighbours have 10 coefficients.
-constexpr std::size_t kScans = 1100;
+constexpr std::size_t kScansOfSeries = 1100;
 
 /// Scans of 1000 moving points; the share that is found is not that of the scan before.
 SequenceCounts unlike_scans(unsigned seed, std::uint64_t least_found) {
   std::mt19937 random(seed);
-  SequenceCounts scans(kScans);
+  SequenceCounts scans(kScansOfSeries);
   for (Confusion& scan : scans) {
     scan.tp = least_found + random() % 100;
     scan.fn = 1000 - scan.tp;
