@@ -103,7 +103,9 @@ Confusion counts_of_run(std::uint64_t tp, std::uint64_t fp, std::uint64_t fn) {
 }
 
 const std::vector<ScoredSequence> kTwoSequences = {
-    {"a", {{"0", counts_of_run(1, 0, 1)}, {"1", std::nullopt}, {"2", counts_of_run(3, 1, 0)}}, 10.0},
+    {"a",
+     {{"0", counts_of_run(1, 0, 1)}, {"1", std::nullopt}, {"2", counts_of_run(3, 1, 0)}},
+     10.0},
     {"b", {{"0", counts_of_run(90, 5, 5)}}, 30.0}};
 
 TEST(ScoreRows, PoolASplitOverItsSequences) {
