@@ -95,7 +95,9 @@ TEST(Profile, TraceHoldsEachStageInsideItsScan) {
   // Detection starts when the window is full.
   const std::set<std::string_view> always = {"voxelize", "raycast", "map_update", "evict"};
   for (const std::string_view stage : kStageNames) {
-    EXPECT_EQ(slices[std::string(stage)], always.contains(stage) ? kScansProfiled : kScansProfiled - 4) << stage;
+    EXPECT_EQ(slices[std::string(stage)],
+              always.contains(stage) ? kScansProfiled : kScansProfiled - 4)
+        << stage;
   }
   EXPECT_EQ(counters, 2 * kScansProfiled);
 }

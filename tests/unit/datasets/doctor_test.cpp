@@ -432,7 +432,8 @@ const std::vector<Fault>& faults() {
       {"frozen_from_half_on", kKitti,
        [](const fs::path& root) {
          change_poses(root / kKittiSequence / "poses.txt", [](std::vector<Pose>& poses) {
-           for (std::size_t row = kScansExamined / 2; row < kScansExamined; ++row) poses[row] = poses[kScansExamined / 2];
+           for (std::size_t row = kScansExamined / 2; row < kScansExamined; ++row)
+             poses[row] = poses[kScansExamined / 2];
          });
        },
        "the poses are frozen: rows"},

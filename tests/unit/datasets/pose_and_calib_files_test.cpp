@@ -70,7 +70,8 @@ TEST(PoseFile, AllowsBlankLinesOnlyAtTheEnd) {
 TEST(PoseFile, NamesTheLineOfARowWithoutTwelveNumbers) {
   EXPECT_THAT(pose_error(std::string(kIdentityNumbers) + "\n1 0 0 0 0 1 0 0 0 0 1\n"),
               AllOf(HasSubstr("poses.txt:2: 11 numbers"), HasSubstr("expected 12")));
-  EXPECT_THAT(pose_error(std::string(kIdentityNumbers) + " 1\n"), HasSubstr("poses.txt:1: 13 numbers"));
+  EXPECT_THAT(pose_error(std::string(kIdentityNumbers) + " 1\n"),
+              HasSubstr("poses.txt:1: 13 numbers"));
 }
 
 TEST(PoseFile, RefusesTextAndNumbersThatAreNotFinite) {

@@ -41,7 +41,8 @@ TEST(LongRunVariance, DoesNotChangeWithAConstant) {
   const std::vector<Series> series = {remembering(1, 600, 0.5, 1.0)};
   std::vector<Series> raised = series;
   for (double& value : raised[0]) value += 1000.0;
-  EXPECT_NEAR(uncertainty_of_series(raised).standard_error, uncertainty_of_series(series).standard_error, 1e-6);
+  EXPECT_NEAR(uncertainty_of_series(raised).standard_error,
+              uncertainty_of_series(series).standard_error, 1e-6);
 }
 
 TEST(LongRunVariance, NeedsSequencesThatAreLongComparedWithTheirMemory) {
