@@ -5,8 +5,9 @@
 
 #include "datasets/files/errors.hpp"
 #include "eval/cli/commands.hpp"
+#include "eval/cli/output_file.hpp"
 #include "eval/results/answer_text.hpp"
-#include "eval/statistics/gate.hpp"
+#include "eval/statistics/gate_report.hpp"
 #include "eval/statistics/paired_runs.hpp"
 
 namespace mosbench {
@@ -20,23 +21,31 @@ difference is shown as a note; it says whether other scans like these would show
 --statistical a drop must also exceed the half-width of that interval. Runs of another protocol, method,
 setting, scans or input are refused; --even-if compares the scans that both have.
 
+For pull requests: --output-format github adds an annotation per regression to the text, and --summary
+writes the table in markdown.
+
 Exit codes: 0 pass, 1 regression, 2 wrong usage, 3 unusable or unlike results.
 
 Examples:
   mosbench compare results/baseline/highway-online results/runs/highway
-  mosbench compare results/baseline/highway-online results/runs/highway --max-drop 0.1 --json)";
+  mosbench compare results/baseline/highway-online results/runs/highway --max-drop 0.1 --json
+  mosbench compare results/baseline/highway-online results/runs/highway --output-format github \
+    --summary gate.md)";
 
 struct CompareFlags {
   std::filesystem::path baseline, newer;
   double max_drop_points = 0.5;
   bool statistical = false;
   bool even_if = false;
-  bool json = false;
+  bool quiet = false;
+  std::string format = "text";
+  std::filesystem::path summary;
 };
 
 std::string answer_of(const CompareFlags& options, const ResultSet& baseline,
                       const ResultSet& newer, const PairedRuns& paired, const GateResult& result) {
-  if (options.json) {
+  if (options.quiet && result.passed()) return "";
+  if (options.format == "json") {
     nlohmann::ordered_json json = to_json(result);
     json["paired_scans"] = paired.scans.size();
     json["missing_predictions"] = {{"baseline", missing_predictions(baseline)},
@@ -48,7 +57,8 @@ std::string answer_of(const CompareFlags& options, const ResultSet& baseline,
   for (const std::string& warning : warnings(baseline)) text += "baseline: " + warning + '\n';
   for (const std::string& warning : warnings(newer)) text += "new: " + warning + '\n';
   if (!paired.unlike.empty()) text += "unlike: " + unlike_text(paired.unlike) + '\n';
-  return text + '\n' + gate_text(result) + (result.passed() ? "\npass\n" : "\nregression\n");
+  text += '\n' + gate_text(result) + (result.passed() ? "\npass\n" : "\nregression\n");
+  return options.format == "github" ? text + gate_annotations(result) : text;
 }
 
 Answer compare(const CompareFlags& options) {
@@ -67,7 +77,11 @@ Answer compare(const CompareFlags& options) {
   const GateResult result =
       judge(paired, *baseline.front().protocol, options.max_drop_points / 100.0,
             options.statistical ? GateRule::kStatistical : GateRule::kMaxDrop);
-  return {answer_of(options, baseline, newer, paired, result), result.passed() ? 0 : 1};
+  const std::string answer = answer_of(options, baseline, newer, paired, result);
+  const int exit_code = result.passed() ? 0 : 1;
+  if (options.summary.empty()) return {answer, exit_code};
+  write_output(options.summary, gate_markdown(result));
+  return answer_beside(options.summary, answer, exit_code);
 }
 
 }  // namespace
@@ -86,7 +100,16 @@ CommandRun add_compare(CLI::App& command) {
   command.add_flag("--statistical", options->statistical,
                    "Fail only when the drop also exceeds what its 95 % interval leaves open");
   command.add_flag("--even-if", options->even_if, "Also compare results of different kinds");
-  command.add_flag("--json", options->json, "Print JSON instead of a table");
+  CLI::Option* format = command.add_option("--output-format", options->format, "How to print it")
+                            ->check(CLI::IsMember({"text", "json", "github"}))
+                            ->capture_default_str();
+  command
+      .add_flag_callback(
+          "--json", [options] { options->format = "json"; }, "As --output-format json")
+      ->excludes(format);
+  command.add_option("--summary", options->summary, "Also write the table in markdown to FILE")
+      ->type_name("FILE");
+  command.add_flag("-q,--quiet", options->quiet, "Print nothing when it passes");
   command.footer(kCompareFooter);
   return [options] { return compare(*options); };
 }

@@ -11,8 +11,10 @@
 #include "datasets/layouts/layout.hpp"
 #include "datasets/simulator/built_in_scenes.hpp"
 #include "eval/cli/commands.hpp"
+#include "eval/cli/list_json.hpp"
 #include "eval/predictions/prediction_format.hpp"
 #include "eval/protocols/protocol_list.hpp"
+#include "eval/results/answer_text.hpp"
 #include "eval/results/text_table.hpp"
 #include "eval/runs/presets.hpp"
 
@@ -24,7 +26,8 @@ constexpr const char* kListFooter = R"(Examples:
   mosbench list methods
   mosbench list methods dynablox
   mosbench list presets
-  mosbench list datasets)";
+  mosbench list datasets
+  mosbench list methods --json)";
 
 std::string datasets_text() {
   std::string text;
@@ -65,14 +68,6 @@ std::string presets_text() {
 
 std::string default_text(const Setting& setting) {
   return setting.is_set ? to_string(setting.value) : fmt::format("as {}", setting.follows);
-}
-
-/// Returns the unit with which the name of a setting ends; empty for numbers without one.
-std::string unit_of(const Setting& setting) {
-  const std::string_view last = setting.name.substr(setting.name.rfind('_') + 1);
-  constexpr std::string_view kUnits[] = {"m",     "s",      "rad",    "deg",
-                                         "scans", "voxels", "points", "ranges"};
-  return std::ranges::find(kUnits, last) != std::end(kUnits) ? std::string(last) : "";
 }
 
 std::string method_text(const MethodKind& method) {
@@ -141,11 +136,21 @@ std::string list(const std::string& what) {
       formats_text());
 }
 
+const MethodKind& method_named_by_user(const std::string& name) {
+  const MethodKind* method = find_method(name);
+  if (method != nullptr) return *method;
+  std::vector<std::string_view> names;
+  for (const MethodKind& kind : methods()) names.push_back(kind.name);
+  throw UsageError(fmt::format("{}: is no method, expected one of {} (nearest: {})", name,
+                               fmt::join(names, ", "), nearest_name(name, names)));
+}
+
 }  // namespace
 
 CommandRun add_list(CLI::App& command) {
   struct Listed {
     std::string what = "all", name;
+    bool json = false;
   };
   auto listed = std::make_shared<Listed>();
   command
@@ -155,19 +160,18 @@ CommandRun add_list(CLI::App& command) {
       ->check(CLI::IsMember(
           {"all", "datasets", "methods", "presets", "protocols", "scenes", "formats"}));
   command.add_option("NAME", listed->name, "One of the methods");
+  command.add_flag("--json", listed->json, "Print JSON instead of text");
   command.footer(kListFooter);
   return [listed] {
-    if (listed->name.empty()) return Answer{list(listed->what)};
+    if (listed->name.empty()) {
+      return Answer{listed->json ? json_text(list_json(listed->what)) : list(listed->what)};
+    }
     if (listed->what != "methods") {
       throw UsageError(
           fmt::format("{}: is one argument too many, expected a name after methods", listed->name));
     }
-    const MethodKind* method = find_method(listed->name);
-    if (method != nullptr) return Answer{method_text(*method)};
-    std::vector<std::string_view> names;
-    for (const MethodKind& kind : methods()) names.push_back(kind.name);
-    throw UsageError(fmt::format("{}: is no method, expected one of {} (nearest: {})", listed->name,
-                                 fmt::join(names, ", "), nearest_name(listed->name, names)));
+    const MethodKind& method = method_named_by_user(listed->name);
+    return Answer{listed->json ? json_text(method_json(method)) : method_text(method)};
   };
 }
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -36,10 +35,5 @@ struct GateResult {
 /// 95 % interval. A run whose IoU became undefined fails; one whose IoU was undefined passes.
 GateResult judge(const PairedRuns& paired, const Protocol& protocol, double max_drop,
                  GateRule rule = GateRule::kMaxDrop);
-
-/// Formats a row per check. The paired interval is shown under every rule: it says whether other
-/// scans like these would show the difference.
-std::string gate_text(const GateResult& result);
-nlohmann::ordered_json to_json(const GateResult& result);
 
 }  // namespace mosbench

@@ -118,6 +118,39 @@ TEST_F(Compare, LetsTheMaxDropAloneDecide) {
   EXPECT_EQ(compare_to_whole({"--max-drop", std::to_string(100.0 * drop - 0.01)}).exit_code, 1);
 }
 
+TEST_F(Compare, AnnotatesAPullRequest) {
+  score_changed("whole", [](std::size_t) { return false; });
+  score_changed("flipped", [](std::size_t moving) { return moving % 33 == 0; });
+  const auto compare_to_whole = [this](const std::string& newer,
+                                       const std::vector<std::string>& more) {
+    std::vector<std::string> words = {"compare", (folder_ / "whole/results").string(),
+                                      (folder_ / newer / "results").string()};
+    words.insert(words.end(), more.begin(), more.end());
+    return cli::run(words);
+  };
+  const fs::path summary = folder_ / "gate.md";
+  const cli::Answer worse =
+      compare_to_whole("flipped", {"--output-format", "github", "--summary", summary.string()});
+  EXPECT_EQ(worse.exit_code, 1) << worse.err;
+  EXPECT_THAT(worse.out, HasSubstr("\nregression\n"));
+  EXPECT_THAT(worse.out, HasSubstr("::error title=IoU of room dropped::100.0 %25 before, 97."));
+  EXPECT_THAT(read_file(summary), HasSubstr("### MOS gate: REGRESSION\n\n| sequence | baseline"));
+  EXPECT_THAT(read_file(summary), HasSubstr("\n| room | 100.0 | 97."));
+
+  const cli::Answer same =
+      compare_to_whole("whole", {"--output-format", "github", "--summary", summary.string()});
+  EXPECT_EQ(same.exit_code, 0) << same.err;
+  EXPECT_THAT(same.out, Not(HasSubstr("::error")));
+  EXPECT_THAT(read_file(summary), HasSubstr("### MOS gate: pass\n"));
+
+  EXPECT_EQ(compare_to_whole("whole", {"-q"}).out, "");
+  EXPECT_THAT(compare_to_whole("flipped", {"-q"}).out, HasSubstr("REGRESSION"));
+  const cli::Answer markdown = compare_to_whole("whole", {"--summary", "-"});
+  EXPECT_THAT(markdown.out, testing::StartsWith("### MOS gate"));
+  EXPECT_THAT(markdown.err, HasSubstr("\npass\n"));
+  EXPECT_EQ(compare_to_whole("whole", {"--json", "--output-format", "text"}).exit_code, 2);
+}
+
 TEST_F(Compare, RefusesUnlikeResultsUnlessTold) {
   run_again("coarse", {"--set", "voxel_size_m=0.4"});
   const cli::Answer setting = compare("coarse");

@@ -137,6 +137,26 @@ TEST(List, ShowsTheSettingsOfOneMethodWithUnits) {
   EXPECT_EQ(cli::run({"list", "presets", "underwood"}).exit_code, 2);
 }
 
+TEST(List, PrintsJson) {
+  const auto all = nlohmann::json::parse(cli::run({"list", "--json"}).out);
+  EXPECT_TRUE(all.contains("schema_version"));
+  for (const char* what : {"datasets", "methods", "presets", "protocols", "scenes", "formats"}) {
+    EXPECT_GT(all.at(what).size(), 2U) << what;
+    auto part = nlohmann::json::parse(cli::run({"list", what, "--json"}).out);
+    EXPECT_EQ(part.size(), 2U) << what << " and the version";
+    EXPECT_EQ(part.at(what), all.at(what));
+  }
+  auto one = nlohmann::json::parse(cli::run({"list", "methods", "underwood", "--json"}).out);
+  EXPECT_EQ(one.at("name"), "underwood");
+  const auto angle = std::ranges::find_if(one.at("settings"), [](const nlohmann::json& setting) {
+    return setting.at("name") == "neighbour_angle_rad";
+  });
+  ASSERT_NE(angle, one.at("settings").end());
+  EXPECT_EQ(angle->at("default"), 0.0157);
+  EXPECT_EQ(angle->at("unit"), "rad");
+  EXPECT_EQ(angle->at("highest"), 0.5);
+}
+
 TEST(List, ShowsDatasetsPresetsProtocolsAndScenes) {
   const std::string all = cli::run({"list"}).out;
   std::string parts;

@@ -44,17 +44,17 @@ struct Block {
   float belief(std::uint32_t cell) const { return beliefs.at(cell, numbers); }
 };
 
-struct Setting {
+struct HmmSetting {
   double voxel_size_m, sigma_m, epsilon, p_min;
 };
-const Setting kSettings[] = {{0.2, 0.2, 0.005, 0.99},   {0.25, 0.25, 0.005, 0.99},
-                             {0.2, 0.35, 0.005, 0.999}, {0.3, 0.2, 0.005, 0.95},
-                             {0.2, 0.8, 0.01, 0.9},     {0.2, 0.1, 0.2, 0.6},
-                             {0.25, 0.25, 0.001, 0.5},  {0.2, 0.2, 0.005, 0.99999}};
+const HmmSetting kSettings[] = {{0.2, 0.2, 0.005, 0.99},   {0.25, 0.25, 0.005, 0.99},
+                                {0.2, 0.35, 0.005, 0.999}, {0.3, 0.2, 0.005, 0.95},
+                                {0.2, 0.8, 0.01, 0.9},     {0.2, 0.1, 0.2, 0.6},
+                                {0.25, 0.25, 0.001, 0.5},  {0.2, 0.2, 0.005, 0.99999}};
 
 TEST(BeliefFilter, FollowsTheThreeStatesOfThePaper) {
   std::mt19937 random(41);
-  for (const Setting& s : kSettings) {
+  for (const HmmSetting& s : kSettings) {
     const BeliefFilter filter(s.voxel_size_m, s.sigma_m, s.epsilon, s.p_min);
     const int beyond = (filter.radius() + 1) * (filter.radius() + 1);
     std::vector<ThreeStates> twins(kBlockVoxels);

@@ -1,11 +1,11 @@
-#include "eval/statistics/gate.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <string>
 #include <vector>
+
+#include "eval/statistics/gate_report.hpp"
 
 namespace mosbench {
 namespace {
@@ -67,6 +67,23 @@ TEST(Gate, SaysWhyThereIsNoInterval) {
   EXPECT_THAT(gate_text(result),
               testing::HasSubstr("no interval for street: 1 scans, expected at least 100"));
   EXPECT_EQ(to_json(result).at("checks").at(0).at("low"), nullptr);
+}
+
+TEST(Gate, EscapesNamesInAnnotationsAndMarkdown) {
+  const Confusion right{.tp = 1}, wrong{.fp = 1, .fn = 1}, nothing{.tn = 1};
+  const std::string name = "day|50%: a,\nb";
+  const auto judged = [&](const Confusion& first, const Confusion& second) {
+    const PairedRuns paired{{{name, "0", nullptr, nullptr}}, {{first}}, {{second}}, {}};
+    return judge(paired, protocol_named("sipailou"), 0.005);
+  };
+  EXPECT_EQ(gate_annotations(judged(right, wrong)),
+            "::error title=IoU of day|50%25%3A a%2C%0Ab dropped::100.0 %25 before, 0.0 %25 now: "
+            "-100.00 points, tolerance 0.50\n");
+  EXPECT_EQ(gate_annotations(judged(wrong, nothing)),
+            "::error title=IoU of day|50%25%3A a%2C%0Ab dropped::0.0 %25 before, undefined now\n");
+  EXPECT_EQ(gate_annotations(judged(right, right)), "");
+  EXPECT_THAT(gate_markdown(judged(right, wrong)),
+              testing::HasSubstr("\n| day\\|50%: a,\\\\x0ab | 100.0 | 0.0 | -100.00 |"));
 }
 
 }  // namespace

@@ -1,0 +1,115 @@
+#include "eval/cli/list_json.hpp"
+
+#include <algorithm>
+#include <iterator>
+
+#include "datasets/layouts/layout.hpp"
+#include "datasets/simulator/built_in_scenes.hpp"
+#include "eval/predictions/prediction_format.hpp"
+#include "eval/protocols/protocol_list.hpp"
+#include "eval/runs/presets.hpp"
+
+namespace mosbench {
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json value_json(const SettingValue& value) {
+  return std::visit([](const auto& held) { return ordered_json(held); }, value);
+}
+
+ordered_json setting_json(const Setting& setting) {
+  ordered_json json = {{"name", setting.name}};
+  if (setting.is_set) {
+    json["default"] = value_json(setting.value);
+  } else {
+    json["follows"] = setting.follows;
+  }
+  if (!setting.choices.empty()) {
+    json["choices"] = setting.choices;
+  } else {
+    json["unit"] = unit_of(setting);
+    json["lowest"] = setting.lowest;
+    json["highest"] = setting.highest;
+  }
+  json["meaning"] = setting.meaning;
+  return json;
+}
+
+ordered_json dataset_json(const Layout* row) {
+  return {{"name", row->name},           {"title", row->title},
+          {"content", row->content},     {"size", row->size},
+          {"published", row->published}, {"licence", row->licence},
+          {"folders", row->folders},     {"written", row->writer.has_value()}};
+}
+
+ordered_json preset_json(const Preset& preset) {
+  ordered_json settings = ordered_json::object();
+  for (const PresetValue& value : preset.values) {
+    settings[std::string(value.setting)] = value_json(value.value);
+  }
+  return {{"name", preset.name},
+          {"dataset", to_string(preset.kind)},
+          {"protocol", preset.protocol},
+          {"settings", settings},
+          {"source", preset.source}};
+}
+
+ordered_json protocol_json(const ProtocolDescription& protocol) {
+  return {{"name", protocol.name},    {"rule", protocol.summary},
+          {"truth", protocol.truth},  {"moving", protocol.prediction},
+          {"range", protocol.range},  {"average", protocol.aggregation},
+          {"split", protocol.split},  {"zero_by_zero", protocol.empty_case},
+          {"source", protocol.source}};
+}
+
+ordered_json scene_json(const SceneSummary& scene) {
+  return {{"name", scene.name}, {"content", scene.content}};
+}
+
+ordered_json format_json(const DescribedFormat& format) {
+  return {{"name", format.name},
+          {"extension", format.extension},
+          {"per_scan", format.per_scan},
+          {"description", format.description}};
+}
+
+template <typename Rows, typename ToJson>
+ordered_json rows_json(const Rows& rows, ToJson&& row_json) {
+  ordered_json json = ordered_json::array();
+  std::ranges::transform(rows, std::back_inserter(json), row_json);
+  return json;
+}
+
+}  // namespace
+
+std::string unit_of(const Setting& setting) {
+  const std::string_view last = setting.name.substr(setting.name.rfind('_') + 1);
+  constexpr std::string_view kUnits[] = {"m",     "s",      "rad",    "deg",
+                                         "scans", "voxels", "points", "ranges"};
+  return std::ranges::find(kUnits, last) != std::end(kUnits) ? std::string(last) : "";
+}
+
+ordered_json method_json(const MethodKind& method) {
+  return {{"name", method.name},
+          {"title", method.title},
+          {"summary", method.summary},
+          {"source", method.source},
+          {"settings", rows_json(method.defaults.all(), setting_json)}};
+}
+
+ordered_json list_json(std::string_view what) {
+  ordered_json json;
+  const auto add = [&](std::string_view kind, const auto& rows, const auto& row_json) {
+    if (what == kind || what == "all") json[std::string(kind)] = rows_json(rows, row_json);
+  };
+  add("datasets", layouts(), dataset_json);
+  add("methods", methods(), method_json);
+  add("presets", presets(), preset_json);
+  add("protocols", describe_protocols(), protocol_json);
+  add("scenes", built_in_scenes(), scene_json);
+  add("formats", prediction_formats(), format_json);
+  return json;
+}
+
+}  // namespace mosbench
