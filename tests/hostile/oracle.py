@@ -10,6 +10,8 @@ from program import fault_of
 FRACTIONS = {"iou", "precision", "recall", "f1", "baseline_iou", "new_iou", "first_iou", "second_iou"}
 COUNTS = {"tp", "fp", "fn", "tn", "ignored", "unknown_ids", "points", "labelled_scans", "undefined_scans", "paired_scans"}
 NOT_A_NUMBER = re.compile(r"(?<![\w./-])[+-]?(?:nan|inf)(?![\w./-])")
+# The program says a name from an input behind these, and a scan may be called nan.
+BEFORE_A_NAME = {"scan ", "sequence "}
 WORD_BEFORE, WORD_AFTER = re.compile(r"[A-Za-z]+ $"), re.compile(r"^ [A-Za-z]+")
 NEGATIVE_IOU = re.compile(r"^\S.* {2,}-\d+\.\d", re.MULTILINE)
 # Their tables have no column that may be negative.
@@ -50,6 +52,8 @@ def wrong_json(text):
 def _stands_in_a_name(match, texts):
     """Whether an input's text says the same with a word before or after it: "range inf m" as a section of a table."""
     before, after = WORD_BEFORE.search(match.string[:match.start()]), WORD_AFTER.search(match.string[match.end():])
+    if before and before.group() in BEFORE_A_NAME:
+        return True
     names = [word for word in (before and before.group() + match.group(), after and match.group() + after.group()) if word]
     return any(re.search(rf"(?<![\w+-]){re.escape(name)}", text) for name in names for text in texts)
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Hostile rounds: damaged inputs, kills, races and limits, each against a program that must survive them.
 
-run.py --minutes 5 | --hours 1 [--jobs N] [--seed N] PROGRAM
+run.py --minutes 5 | --hours 1 [--cases N] [--jobs N] [--seed N] PROGRAM
 run.py --seed N --case DRIVER:K PROGRAM        repeats one case
 """
 
@@ -110,12 +110,12 @@ def sort_of(tried):
 
 
 def work(bench, number, jobs, seed, plan, folder, answers):
-    """One of the processes that try cases until their time is over."""
+    """One of the processes that try cases until there are no more or their time is over."""
     sandbox.enter(bench, number)
     seen = collections.Counter()
-    for driver, until in plan:
+    for driver, until, cases in plan:
         case = number
-        while time.monotonic() < until:
+        while case < cases and time.monotonic() < until:
             tried = attempt(bench, driver, seed, case)
             if tried.faults:
                 seen[sort_of(tried)] += 1
@@ -179,11 +179,11 @@ class Tally:
 
 
 def hostile_round(bench, arguments, seconds):
-    """Runs all drivers one after the other, each with its part of the time. Returns the counts."""
+    """Runs all drivers one after the other, each with its part of the time and of the cases. Returns the counts."""
     plan, until = [], time.monotonic()
     for driver, part in DRIVERS.values():
         until += part * seconds
-        plan.append((driver, until))
+        plan.append((driver, until, part * arguments.cases))
     connections, workers = [], []
     for number in range(arguments.jobs):
         receiving, sending = multiprocessing.Pipe(duplex=False)
@@ -225,6 +225,7 @@ def parse_arguments():
     duration.add_argument("--minutes", type=float)
     duration.add_argument("--hours", type=float)
     duration.add_argument("--case", metavar="DRIVER:K", help="repeat this case alone")
+    parser.add_argument("--cases", type=float, default=float("inf"), help="at most so many; no limit by default")
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--keep", default=ROOT / "build/hostile", help="folder for the cases that find a defect")
