@@ -66,7 +66,7 @@ std::string gate_markdown(const GateResult& result) {
   std::string text = fmt::format("### MOS gate: {}\n\n{}|---|--:|--:|--:|--:|--:|--:|---|\n",
                                  result.passed() ? "pass" : "REGRESSION", markdown_row(kColumns));
   for (const GateCheck& check : result.checks) text += markdown_row(cells_of(check));
-  for (const std::string& note : notes_of(result)) text += "\n" + markdown_text(note) + '\n';
+  for (const std::string& note : notes_of(result)) text += fmt::format("\n{}\n", markdown_text(note));
   return text;
 }
 
@@ -80,7 +80,7 @@ std::string gate_annotations(const GateResult& result) {
                                   percent_text(check.tolerance, "{:.2f}"))
                     : "undefined now";
     text += fmt::format("::error title={}::{}\n",
-                        workflow_text("IoU of " + check.name + " dropped", ":,"),
+                        workflow_text(fmt::format("IoU of {} dropped", check.name), ":,"),
                         workflow_text(percent_text(check.baseline) + " % before, " + now));
   }
   return text;
