@@ -4,6 +4,7 @@
 #include <charconv>
 #include <memory>
 #include <optional>
+#include <set>
 
 #include "datasets/files/errors.hpp"
 #include "eval/cli/commands.hpp"
@@ -11,6 +12,7 @@
 #include "eval/protocols/metrics.hpp"
 #include "eval/report/birds_eye.hpp"
 #include "eval/report/scan_choice.hpp"
+#include "eval/results/result_set.hpp"
 
 namespace mosbench {
 namespace {
@@ -33,19 +35,36 @@ struct RenderFlags {
   BirdsEyeOptions picture;
 };
 
+std::set<std::string> names_of(const std::vector<FoundResult>& results) {
+  std::set<std::string> names;
+  for (const FoundResult& result : results) names.insert(result.name.text());
+  return names;
+}
+
+/// Returns the folders of the runs that the results are of.
+std::set<std::string> run_folders(const std::vector<FoundResult>& results) {
+  std::set<std::string> runs;
+  for (const FoundResult& result : results) {
+    runs.insert(folder_of_run(result.folder, result.name).string());
+  }
+  return runs;
+}
+
 FoundResult choose_result(const RenderFlags& options) {
   std::vector<FoundResult> results = find_results(options.input);
-  std::string names;
-  for (const FoundResult& result : results)
-    names += (names.empty() ? "" : ", ") + result.name.text();
+  const std::set<std::string> names = names_of(results);
   if (options.sequence) {
     std::erase_if(results, [&](const FoundResult& result) {
       return result.name.text() != *options.sequence;
     });
   }
   if (results.size() == 1) return std::move(results.front());
+  if (const std::set<std::string> runs = run_folders(results); runs.size() > 1) {
+    throw UsageError(fmt::format("{}: holds results of {} runs, expected one of {}",
+                                 options.input.string(), runs.size(), fmt::join(runs, ", ")));
+  }
   throw UsageError(fmt::format("{}: holds results of {}, expected --sequence to name one",
-                               options.input.string(), names));
+                               options.input.string(), fmt::join(names, ", ")));
 }
 
 std::size_t choose_scan(const std::string& text, const std::vector<ScanRow>& rows) {

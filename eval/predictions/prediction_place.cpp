@@ -179,6 +179,40 @@ bool is_truth(const fs::path& path, const Sequence& sequence) {
   });
 }
 
+/// Recognises the predictions of the sequence below `root`; `only_sequence`, or in `root` itself.
+std::optional<PredictionPlace> look_below(const fs::path& root, const Sequence& sequence,
+                                          bool only_sequence, std::optional<Format> format) {
+  for (const fs::path& folder : candidate_folders(root, sequence.name(), only_sequence)) {
+    const auto found = format ? find_format_in(folder, *format) : recognise_in(folder, sequence);
+    if (found) return found;
+  }
+  return std::nullopt;
+}
+
+/// Lists the folders in `root` with predictions of the sequence, as `run --method all` makes them.
+std::vector<std::string> runs_below(const fs::path& root, const Sequence& sequence,
+                                    std::optional<Format> format) {
+  std::vector<std::string> runs;
+  if (!fs::is_directory(root)) return runs;
+  for (const fs::path& folder : list_folders(root)) {
+    const auto found = look_below(folder, sequence, false, format);
+    if (found && !is_truth(found->path, sequence)) runs.push_back(folder.string());
+  }
+  return runs;
+}
+
+DataError nothing_found(const fs::path& root, const Sequence& sequence,
+                        std::optional<Format> format) {
+  const std::string wrong = "no predictions for sequence " + sequence.name();
+  const std::vector<std::string> runs = runs_below(root, sequence, format);
+  if (!runs.empty()) {
+    return {root, wrong, fmt::format("a folder that holds some: {}", fmt::join(runs, ", "))};
+  }
+  return {root, wrong,
+          "label files in <sequence>/predictions or <sequence>/labels, or another format that "
+          "`mosbench list formats` shows"};
+}
+
 }  // namespace
 
 void check_positions(const fs::path& path, const Sequence& sequence) {
@@ -233,14 +267,8 @@ PredictionPlace find_predictions(const fs::path& root, const Sequence& sequence,
   if (only_sequence && fs::is_regular_file(root, error)) {
     found = PredictionPlace{root, format.value_or(format_of_named(root))};
   }
-  for (const fs::path& folder : candidate_folders(root, sequence.name(), only_sequence)) {
-    if (!found) found = format ? find_format_in(folder, *format) : recognise_in(folder, sequence);
-  }
-  if (!found) {
-    throw DataError(root, "no predictions for sequence " + sequence.name(),
-                    "label files in <sequence>/predictions or <sequence>/labels, or another "
-                    "format that `mosbench list formats` shows");
-  }
+  if (!found) found = look_below(root, sequence, only_sequence, format);
+  if (!found) throw nothing_found(root, sequence, format);
   if (is_truth(found->path, sequence)) {
     throw DataError(found->path, "holds the truth of sequence " + sequence.name(),
                     "a folder of predictions");

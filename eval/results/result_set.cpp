@@ -146,6 +146,16 @@ void add_to_runs(SequenceResult result, std::vector<ResultSet>& sets, const fs::
   set->sequences.push_back(std::move(result));
 }
 
+/// The folders to give instead of the one that holds them all: ": one of a, b"; nothing where runs
+/// share a folder.
+std::string folders_text(const std::vector<ResultSet>& sets) {
+  std::set<std::string> folders;
+  for (const ResultSet& set : sets) {
+    folders.insert(folder_of_run(set.front().file.parent_path(), set.front().sequence).string());
+  }
+  return folders.size() < sets.size() ? "" : fmt::format(": one of {}", fmt::join(folders, ", "));
+}
+
 /// Names the file and what tells its run from others.
 std::string run_text(const SequenceResult& result) {
   return fmt::format("{} ({}; {}; {})", result.file.string(), result.method, result.setting,
@@ -166,13 +176,17 @@ SequenceResult read_sequence_result(const fs::path& file) {
   return sequence_result(file, read_result(file));
 }
 
-std::vector<ResultSet> load_result_sets(const fs::path& path) {
+std::vector<ResultSet> sorted_into_runs(std::vector<SequenceResult> results, const fs::path& path) {
   std::vector<ResultSet> sets;
-  for (const fs::path& file : result_files(path)) {
-    add_to_runs(read_sequence_result(file), sets, path);
-  }
+  for (SequenceResult& result : results) add_to_runs(std::move(result), sets, path);
   for (ResultSet& set : sets) std::ranges::sort(set.sequences, {}, &SequenceResult::sequence);
   return sets;
+}
+
+std::vector<ResultSet> load_result_sets(const fs::path& path) {
+  std::vector<SequenceResult> results;
+  for (const fs::path& file : result_files(path)) results.push_back(read_sequence_result(file));
+  return sorted_into_runs(std::move(results), path);
 }
 
 ResultSet load_result_set(const fs::path& path) {
@@ -181,7 +195,17 @@ ResultSet load_result_set(const fs::path& path) {
   throw DataError(path,
                   fmt::format("holds {} runs: {} differs from {}", sets.size(),
                               run_text(sets[1].front()), run_text(sets[0].front())),
-                  "the results of one run");
+                  "the results of one run" + folders_text(sets));
+}
+
+fs::path folder_of_run(const fs::path& result_folder, const SequenceName& sequence) {
+  fs::path run = result_folder;
+  fs::path rest = sequence.folder();
+  while (!rest.empty() && run.filename() == rest.filename()) {
+    run = run.parent_path();
+    rest = rest.parent_path();
+  }
+  return rest.empty() && run.has_filename() ? run : result_folder;
 }
 
 std::size_t missing_predictions(const ResultSet& set) {

@@ -50,13 +50,24 @@ SequenceResult sequence_result(const std::filesystem::path& file, ResultFile con
 /// Reads one result.json. Throws DataError naming it.
 SequenceResult read_sequence_result(const std::filesystem::path& file);
 
-/// Every result.json below a folder (or the file itself), sorted into runs: what differs in method,
-/// setting, protocol, range or data set is another run. Throws DataError when there is none, or
-/// when a run has the same sequence twice.
+/// Sorts results into runs: what differs in method, setting, protocol, range or data set is another
+/// run. Throws DataError when a run has the same sequence twice. `path` is what they were read
+/// from.
+std::vector<ResultSet> sorted_into_runs(std::vector<SequenceResult> results,
+                                        const std::filesystem::path& path);
+
+/// Every result.json below a folder (or the file itself), sorted into runs. Throws DataError when
+/// there is none, or as `sorted_into_runs`.
 std::vector<ResultSet> load_result_sets(const std::filesystem::path& path);
 
-/// The same where there has to be a single run; throws DataError naming two files that differ.
+/// The same where there has to be a single run; throws DataError naming two files that differ, and
+/// the folders of all runs where they have one each.
 ResultSet load_result_set(const std::filesystem::path& path);
+
+/// Returns "runs/mine" for the result of sequence 00 in runs/mine/00; the folder itself where it is
+/// not named like its sequence.
+std::filesystem::path folder_of_run(const std::filesystem::path& result_folder,
+                                    const SequenceName& sequence);
 
 std::size_t missing_predictions(const ResultSet& set);
 

@@ -45,6 +45,23 @@ TEST_F(RunMethods, GiveTheFilesOfEachMethodRunAlone) {
   EXPECT_THAT(answer.out, HasSubstr("results in " + (folder_ / "out/underwood").string()));
 }
 
+TEST_F(RunMethods, AreNamedWhereACommandTakesOneOfThem) {
+  ASSERT_EQ(run("hmm-mos,underwood", {"--scores"}).exit_code, 0);
+  const std::string out = folder_ / "out";
+  const std::string folders = out + "/hmm-mos, " + out + "/underwood";
+  for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
+           {"stats", out},
+           {"curve", out},
+           {"render", out, "--scan", "worst", "-o", folder_ / "worst.png"},
+           {"breakdown", folder_ / "room", "--predictions", out},
+           {"score", folder_ / "room", "--predictions", out}}) {
+    const cli::Answer answer = cli::run(words);
+    EXPECT_NE(answer.exit_code, 0) << words[0];
+    EXPECT_THAT(answer.err, HasSubstr(folders)) << words[0];
+  }
+  EXPECT_EQ(cli::run({"stats", out + "/hmm-mos"}).exit_code, 0);
+}
+
 TEST_F(RunMethods, TakeSettingsOfTheirOwn) {
   const cli::Answer answer =
       run("hmm-mos,underwood",
