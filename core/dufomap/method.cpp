@@ -14,7 +14,9 @@ MethodKind method_kind() {
           "points in space that some scan saw to be void, on a map of one bit per voxel",
           settings_of(Config{}),
           check_settings<Config>,
-          make_method<Pipeline, Config>};
+          make_method<Pipeline, Config>,
+          false,
+          "seen void"};
 }
 
 }  // namespace mosbench::dufomap

@@ -14,7 +14,9 @@ MethodKind method_kind() {
           "clusters of points in space that a volumetric map has seen free for long",
           settings_of(Config{}),
           check_settings<Config>,
-          make_method<Pipeline, Config>};
+          make_method<Pipeline, Config>,
+          false,
+          "distance to surfaces, m"};
 }
 
 }  // namespace mosbench::dynablox

@@ -11,6 +11,8 @@ namespace {
 constexpr std::string_view kSource =
     "Bhandari, James, Phillips, McAree: Moving Object Segmentation in Point Cloud Data using "
     "Hidden Markov Models, 2024, arXiv:2410.18638";
+constexpr std::string_view kScoreName = "dynamic score";
+constexpr std::string_view kThresholdName = "Otsu threshold";
 
 std::unique_ptr<Method> make_slow(const Settings& settings, const RunContext& context) {
   return make_reference(config_of<Config>(settings), context);
@@ -25,7 +27,10 @@ MethodKind method_kind() {
           "a three-state hidden Markov model per voxel, changes convolved over space and time",
           settings_of(Config{}),
           check_settings<Config>,
-          make_method<Pipeline, Config>};
+          make_method<Pipeline, Config>,
+          false,
+          kScoreName,
+          kThresholdName};
 }
 
 MethodKind reference_kind() {
@@ -36,7 +41,9 @@ MethodKind reference_kind() {
           settings_of(Config{}),
           check_settings<Config>,
           make_slow,
-          true};
+          true,
+          kScoreName,
+          kThresholdName};
 }
 
 }  // namespace mosbench::hmm_mos

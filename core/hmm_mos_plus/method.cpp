@@ -13,7 +13,10 @@ MethodKind method_kind() {
           "objects that arrive in space known to be free, on the map of hmm-mos",
           settings_of(Config{}),
           check_settings<Config>,
-          make_method<Pipeline, Config>};
+          make_method<Pipeline, Config>,
+          false,
+          "share of seeds",
+          "least share of seeds"};
 }
 
 }  // namespace mosbench::hmm_mos_plus

@@ -30,7 +30,10 @@ MethodKind method_kind() {
                                  : how_to_build(),
           settings_of(Config{}),
           check_settings,
-          make};
+          make,
+          false,
+          "log-odds of free space",
+          "free above"};
 }
 
 }  // namespace mosbench::octomap

@@ -14,7 +14,10 @@ MethodKind method_kind() {
           "points in space that a scan one second before saw past",
           settings_of(Config{}),
           check_settings<Config>,
-          make_method<Pipeline, Config>};
+          make_method<Pipeline, Config>,
+          false,
+          "margin, m",
+          "range tolerance, m"};
 }
 
 }  // namespace mosbench::underwood

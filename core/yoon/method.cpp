@@ -14,7 +14,10 @@ MethodKind method_kind() {
           "our reading: points in free space of a scan before, filtered and grown to objects",
           settings_of(Config{}),
           check_settings<Config>,
-          make_method<Pipeline, Config>};
+          make_method<Pipeline, Config>,
+          false,
+          "residual, m",
+          "residual of seeds, m"};
 }
 
 }  // namespace mosbench::yoon

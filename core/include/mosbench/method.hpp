@@ -108,6 +108,9 @@ struct MethodKind {
   std::function<std::unique_ptr<Method>(const Settings& settings, const RunContext& context)> make;
   /// The labels of another method from slower, simpler code: for tests, not for a benchmark.
   bool is_twin = false;
+  std::string_view score_name = "score";  ///< what scores are, with unit: "margin, m"
+  /// What LabelledScan::threshold is, "Otsu threshold"; empty when no threshold is worth showing.
+  std::string_view threshold_name = "";
 };
 
 /// All methods, the default one first.
