@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdlib>
 #include <set>
 #include <stdexcept>
 
@@ -24,15 +26,7 @@ void add_sequence(const FoundResult& result, const std::optional<std::filesystem
     throw DataError(result.folder / "scores", "is not there",
                     "scores of points: give the same run command again, with --scores");
   }
-  const SequenceResult row = sequence_result(result.folder / "result.json", result.file);
-  std::set<std::string> counted;
-  for (const ScanRow* scan : counted_scans(row)) counted.insert(scan->stem);
-  Progress progress("curve " + result.name.text(), counted.size());
-  for (std::size_t k = 0; k < scans.sequence().size(); ++k) {
-    if (!counted.contains(scans.sequence().stem(k))) continue;
-    counts.add(scans.read(k), scans.rule());
-    progress.advance();
-  }
+  add_counted_scans(result, scans, counts);
 }
 
 std::string metrics_text(const Confusion& counts) {
@@ -79,7 +73,22 @@ nlohmann::ordered_json threshold_json(const CurvePoint& point) {
   return json;
 }
 
+/// A chart shows no more digits.
+double rounded(double value) { return std::round(value * 1e4) / 1e4; }
+
 }  // namespace
+
+void add_counted_scans(const FoundResult& result, const ResultScans& scans, ScoreCounts& counts) {
+  const SequenceResult row = sequence_result(result.folder / "result.json", result.file);
+  std::set<std::string> counted;
+  for (const ScanRow* scan : counted_scans(row)) counted.insert(scan->stem);
+  Progress progress("curve " + result.name.text(), counted.size());
+  for (std::size_t k = 0; k < scans.sequence().size(); ++k) {
+    if (!counted.contains(scans.sequence().stem(k))) continue;
+    counts.add(scans.read(k), scans.rule());
+    progress.advance();
+  }
+}
 
 CurveReport curve_of_run(const std::filesystem::path& path,
                          const std::optional<std::filesystem::path>& dataset_root) {
@@ -134,6 +143,20 @@ nlohmann::ordered_json curve_json(const CurveReport& report) {
   json["curve"] = nlohmann::ordered_json::array();
   for (const CurvePoint& point : thinned(report.curve)) {
     json["curve"].push_back(threshold_json(point));
+  }
+  return json;
+}
+
+nlohmann::ordered_json drawn_curve_json(const ScoreCurve& curve) {
+  constexpr double kStep = 4e-3;  // a pixel or two
+  nlohmann::ordered_json json = {{"average_precision", curve.average_precision},
+                                 {"best", threshold_json(best_point(curve))},
+                                 {"labels", point_json(curve.of_labels)}};
+  for (const CurvePoint& point : thinned(curve, kStep)) {
+    json["recall"].push_back(rounded(recall(point.counts).value()));
+    json["precision"].push_back(rounded(precision(point.counts).value()));
+    json["threshold"].push_back(
+        std::strtod(fmt::format("{:.4g}", point.threshold).c_str(), nullptr));
   }
   return json;
 }

@@ -17,6 +17,10 @@ struct CurveReport {
   ScoreCurve curve;
 };
 
+/// Adds the scores of the scans of a result that the protocol counts. `scans` are those of
+/// `result`, with scores. Throws DataError as ResultScans does.
+void add_counted_scans(const FoundResult& result, const ResultScans& scans, ScoreCounts& counts);
+
 /// Reads scans, truth, labels and scores of the run again. Throws DataError as ResultScans does,
 /// where the run kept no scores, where no scan has truth, and where no point moves.
 CurveReport curve_of_run(const std::filesystem::path& path,
@@ -26,6 +30,9 @@ std::string curve_text(const CurveReport& report);
 /// Formats a line per point of the thinned curve.
 std::string curve_csv(const CurveReport& report);
 nlohmann::ordered_json curve_json(const CurveReport& report);
+/// Returns what a chart needs, each list by falling threshold: "recall", "precision" and
+/// "threshold", "average_precision", "best", "labels".
+nlohmann::ordered_json drawn_curve_json(const ScoreCurve& curve);
 /// Draws precision over recall, and where the labels of the run are.
 Picture curve_picture(const CurveReport& report);
 

@@ -2,12 +2,17 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <mosbench/method.hpp>
+#include <set>
+
 #include "datasets/files/errors.hpp"
 #include "eval/protocols/protocol.hpp"
 #include "eval/report/point_planes.hpp"
 #include "eval/report/report_asset.hpp"
 #include "eval/report/report_numbers.hpp"
 #include "eval/report/report_path.hpp"
+#include "eval/report/report_runs.hpp"
 #include "eval/report/report_scans.hpp"
 #include "mosbench_version.hpp"
 
@@ -33,20 +38,6 @@ std::string script_json(const ordered_json& json) {
   return escaped;
 }
 
-/// Returns "mine" for results/runs/mine/00 of sequence 00; the folder's own name if it is not named
-/// like its sequence.
-std::string run_name(const FoundResult& result) {
-  std::filesystem::path run = std::filesystem::absolute(result.folder / "").lexically_normal();
-  run = run.parent_path();
-  const std::filesystem::path last = run.filename();
-  std::filesystem::path sequence = result.name.folder();
-  while (!sequence.empty() && run.filename() == sequence.filename()) {
-    run = run.parent_path();
-    sequence = sequence.parent_path();
-  }
-  return sequence.empty() && run.has_filename() ? run.filename().string() : last.string();
-}
-
 ordered_json result_json(const FoundResult& result) {
   const ordered_json& content = result.file.content;
   ordered_json json = {{"run", run_name(result)}, {"folder", result.folder.string()}};
@@ -55,27 +46,42 @@ ordered_json result_json(const FoundResult& result) {
           name.is_string() ? find_protocol(name.get<std::string>()) : nullptr) {
     json["protocol_summary"] = protocol->summary;
   }
+  const ordered_json kind = content.value("/method/kind"_json_pointer, ordered_json());
+  if (const MethodKind* method =
+          kind.is_string() ? find_method(kind.get<std::string>()) : nullptr) {
+    json["score_name"] = method->score_name;
+    json["threshold_name"] = method->threshold_name;
+  }
   json["estimates"] = estimates_of(result);
   json["result"] = content;
   return json;
 }
 
+/// Results of which an input and its folder are given are taken once.
 std::vector<FoundResult> find_all(const std::vector<std::filesystem::path>& inputs) {
   std::vector<FoundResult> results;
+  std::set<std::filesystem::path> known;
   for (const std::filesystem::path& input : inputs) {
-    for (FoundResult& result : find_results(input)) results.push_back(std::move(result));
+    for (FoundResult& result : find_results(input)) {
+      if (known.insert(std::filesystem::canonical(result.folder)).second) {
+        results.push_back(std::move(result));
+      }
+    }
   }
   return results;
 }
 
 ordered_json content_without_points(const std::vector<std::filesystem::path>& inputs,
                                     const std::vector<FoundResult>& results,
+                                    const std::vector<ReportRun>& runs,
                                     const ReportOptions& options) {
   ordered_json json = {{"format", 1},
                        {"version", std::string(kMosbenchVersion)},
                        {"position_step_m", kPositionStep_m},
                        {"max_mb", options.max_mb},
                        {"tables", covered_tables(inputs)},
+                       {"leaderboards", leaderboards_of(runs)},
+                       {"curves", ordered_json::array()},
                        {"clouds", ordered_json::array()},
                        {"results", ordered_json::array()}};
   for (const FoundResult& result : results) json["results"].push_back(result_json(result));
@@ -108,33 +114,56 @@ std::string page(const ordered_json& content, const std::vector<std::string>& bl
   return html;
 }
 
+/// Opens the scans of every result that has labels, and says which has none; where none has, it
+/// throws DataError as ResultScans does.
+std::vector<std::optional<ResultScans>> open_sources(
+    const std::vector<FoundResult>& results, const std::optional<std::filesystem::path>& root,
+    std::vector<std::string>& remarks) {
+  std::vector<std::optional<ResultScans>> sources(results.size());
+  const bool any = std::ranges::any_of(results, has_labels);
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    if (!any || has_labels(results[i])) {
+      sources[i].emplace(results[i], root);
+    } else {
+      remarks.push_back(fmt::format("{}: without points, because its labels are not beside it",
+                                    results[i].folder.string()));
+    }
+  }
+  return sources;
+}
+
 }  // namespace
 
 Report build_report(const std::vector<std::filesystem::path>& inputs,
                     const ReportOptions& options) {
   const std::vector<FoundResult> results = find_all(inputs);
-  ordered_json content = content_without_points(inputs, results, options);
+  const std::vector<ReportRun> runs = runs_of(results);
+  ordered_json content = content_without_points(inputs, results, runs, options);
   if (options.scans.none()) {
     return {page(content, {}), results.size(), {"the file holds no points (--scans none)"}};
   }
   check_choice(results, options.scans);
-  std::vector<ResultScans> sources;
-  sources.reserve(results.size());
+  std::vector<std::string> remarks;
+  const std::vector<std::optional<ResultScans>> sources =
+      open_sources(results, options.dataset_root, remarks);
   for (std::size_t i = 0; i < results.size(); ++i) {
-    sources.emplace_back(results[i], options.dataset_root);
-    content["results"][i]["breakdown"] = breakdown_of(sources[i]);
-    content["results"][i]["protocols"] = protocols_of(sources[i]);
-    content["results"][i]["path"] = path_of(results[i], sources[i]);
+    if (!sources[i]) continue;
+    content["results"][i]["breakdown"] = breakdown_of(*sources[i]);
+    content["results"][i]["protocols"] = protocols_of(*sources[i]);
+    content["results"][i]["path"] = path_of(results[i], *sources[i]);
   }
+  content["curves"] = curves_of(runs, results, sources);
   const ReportScans scans = choose_report_scans(results, sources, options.scans,
                                                 room_for_points(content, results, options));
   content["clouds"] = scans.clouds;
   for (std::size_t i = 0; i < results.size(); ++i) {
+    if (!sources[i]) continue;
     content["results"][i]["cloud"] = scans.results[i].cloud;
     content["results"][i]["outcomes"] = scans.results[i].outcome_blocks;
     content["results"][i]["scores"] = scans.results[i].score_blocks;
   }
-  return {page(content, scans.blocks), results.size(), scans.remarks};
+  remarks.insert(remarks.end(), scans.remarks.begin(), scans.remarks.end());
+  return {page(content, scans.blocks), results.size(), remarks};
 }
 
 }  // namespace mosbench

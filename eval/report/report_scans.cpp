@@ -14,6 +14,8 @@ namespace {
 
 using nlohmann::ordered_json;
 
+using Sources = std::vector<std::optional<ResultScans>>;
+
 struct PackedScan {
   std::size_t scan_index;
   ordered_json header;
@@ -51,10 +53,11 @@ std::vector<std::size_t> merged_round_robin(
   return merged;
 }
 
-std::vector<Cloud> group_by_frames(const std::vector<FoundResult>& results,
+std::vector<Cloud> group_by_frames(const std::vector<FoundResult>& results, const Sources& sources,
                                    const ScanChoice& choice) {
   std::vector<Cloud> clouds;
   for (std::size_t i = 0; i < results.size(); ++i) {
+    if (!sources[i]) continue;
     const auto same = std::ranges::find_if(clouds, [&](const Cloud& cloud) {
       const FoundResult& first = results[cloud.members.front()];
       return first.name == results[i].name &&
@@ -81,11 +84,10 @@ ordered_json pose_json(const Pose& pose) {
   return numbers;
 }
 
-PackedScan pack(const Cloud& cloud, const std::vector<ResultScans>& sources,
-                std::size_t scan_index) {
+PackedScan pack(const Cloud& cloud, const Sources& sources, std::size_t scan_index) {
   PackedScan packed{scan_index, {}, {}, {}, {}};
   for (const std::size_t member : cloud.members) {
-    const JudgedScan scan = sources[member].read(scan_index);
+    const JudgedScan scan = sources[member]->read(scan_index);
     if (packed.positions.empty()) {
       packed.header = {{"index", scan_index},
                        {"stem", scan.frame.stem},
@@ -95,13 +97,12 @@ PackedScan pack(const Cloud& cloud, const std::vector<ResultScans>& sources,
     }
     packed.outcomes.push_back(compressed_text(outcome_plane(scan.outcomes, scan.frame.points)));
     packed.scores.push_back(
-        sources[member].has_scores() ? compressed_text(score_planes(scan.scores)) : "");
+        sources[member]->has_scores() ? compressed_text(score_planes(scan.scores)) : "");
   }
   return packed;
 }
 
-void pack_until_full(std::vector<Cloud>& clouds, const std::vector<ResultScans>& sources,
-                     std::size_t max_bytes) {
+void pack_until_full(std::vector<Cloud>& clouds, const Sources& sources, std::size_t max_bytes) {
   std::size_t wanted = 0, bytes = 0;
   for (const Cloud& cloud : clouds) wanted += cloud.wanted.size();
   Progress progress("report", wanted);
@@ -151,12 +152,11 @@ void check_choice(const std::vector<FoundResult>& results, const ScanChoice& cho
                   longest - 1));
 }
 
-ReportScans choose_report_scans(const std::vector<FoundResult>& results,
-                                const std::vector<ResultScans>& sources, const ScanChoice& choice,
-                                std::size_t max_bytes) {
+ReportScans choose_report_scans(const std::vector<FoundResult>& results, const Sources& sources,
+                                const ScanChoice& choice, std::size_t max_bytes) {
   ReportScans report;
   report.results.resize(results.size());
-  std::vector<Cloud> clouds = group_by_frames(results, choice);
+  std::vector<Cloud> clouds = group_by_frames(results, sources, choice);
   pack_until_full(clouds, sources, max_bytes);
   check_packed(clouds);
   for (Cloud& cloud : clouds) {

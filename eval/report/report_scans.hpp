@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,9 +32,9 @@ void check_choice(const std::vector<FoundResult>& results, const ScanChoice& cho
 
 /// Takes scans in the order in which they are wanted, from all clouds alternately, until the next
 /// one would exceed `max_bytes`; throws UsageError when that leaves none. `sources` are the scans
-/// of `results`, one each.
+/// of `results`, none for a result without points.
 ReportScans choose_report_scans(const std::vector<FoundResult>& results,
-                                const std::vector<ResultScans>& sources, const ScanChoice& choice,
-                                std::size_t max_bytes);
+                                const std::vector<std::optional<ResultScans>>& sources,
+                                const ScanChoice& choice, std::size_t max_bytes);
 
 }  // namespace mosbench

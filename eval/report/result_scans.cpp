@@ -31,9 +31,12 @@ auto from_json(const FoundResult& result, Read&& read) {
   }
 }
 
+/// Whether it is of mosbench score.
+bool is_scored(const FoundResult& result) { return result.file.content.contains("predictions"); }
+
 void check_has_labels(const FoundResult& result) {
-  const bool scored = result.file.content.contains("predictions");
-  if (!scored && is_there(result.folder / kLabels)) return;
+  if (has_labels(result)) return;
+  const bool scored = is_scored(result);
   throw DataError(result.folder / kResult,
                   scored ? "is of mosbench score, which keeps no labels next to it"
                          : "has no labels/ next to it",
@@ -141,6 +144,10 @@ std::vector<FoundResult> find_results(const fs::path& path) {
     results.push_back(std::move(result));
   }
   return results;
+}
+
+bool has_labels(const FoundResult& result) {
+  return !is_scored(result) && is_there(result.folder / kLabels);
 }
 
 ResultScans::ResultScans(const FoundResult& result, const std::optional<fs::path>& dataset_root)

@@ -23,6 +23,9 @@ struct FoundResult {
 /// Finds the results at and below `path`, ordered by path. Throws DataError when there are none.
 std::vector<FoundResult> find_results(const std::filesystem::path& path);
 
+/// Whether the labels of a run are next to its result.json.
+bool has_labels(const FoundResult& result);
+
 /// One scan with the outcome of each point.
 struct JudgedScan {
   Frame frame;

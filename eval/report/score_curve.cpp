@@ -80,12 +80,11 @@ const CurvePoint& best_point(const ScoreCurve& curve) {
       curve.points, {}, [](const CurvePoint& point) { return moving_iou(point.counts).value(); });
 }
 
-std::vector<CurvePoint> thinned(const ScoreCurve& curve) {
-  constexpr double kStep = 1e-3;
+std::vector<CurvePoint> thinned(const ScoreCurve& curve, double step) {
   std::vector<CurvePoint> kept;
   for (const CurvePoint& point : curve.points) {
     const auto moved = [&](auto metric) {
-      return std::abs(*metric(point.counts) - *metric(kept.back().counts)) >= kStep;
+      return std::abs(*metric(point.counts) - *metric(kept.back().counts)) >= step;
     };
     const bool is_end = kept.empty() || &point == &curve.points.back();
     if (is_end || moved(precision) || moved(recall)) kept.push_back(point);

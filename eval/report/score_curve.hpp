@@ -50,8 +50,8 @@ class ScoreCounts {
 /// Returns the point of highest moving IoU; of equal ones that of the highest threshold.
 const CurvePoint& best_point(const ScoreCurve& curve);
 
-/// Returns the points that are needed to draw the curve: neighbours differ by at least a thousandth
-/// in precision or recall, the first and the last are kept.
-std::vector<CurvePoint> thinned(const ScoreCurve& curve);
+/// Returns the points that are needed to draw the curve: neighbours differ by at least `step` in
+/// precision or recall, the first and the last are kept.
+std::vector<CurvePoint> thinned(const ScoreCurve& curve, double step = 1e-3);
 
 }  // namespace mosbench

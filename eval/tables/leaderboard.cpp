@@ -12,11 +12,12 @@
 namespace mosbench {
 namespace {
 
+bool lacks_truth(const SequenceResult& sequence) { return counted_scans(sequence).empty(); }
+
 void check_has_truth(const ResultSet& run) {
-  for (const SequenceResult& sequence : run.sequences) {
-    if (!counted_scans(sequence).empty()) continue;
-    throw DataError(sequence.file, "has no scan with truth", "a run that was scored");
-  }
+  const auto unscored = std::ranges::find_if(run.sequences, lacks_truth);
+  if (unscored == run.sequences.end()) return;
+  throw DataError(unscored->file, "has no scan with truth", "a run that was scored");
 }
 
 /// Methods are ranked with the poses that they were run with.
@@ -24,11 +25,17 @@ bool may_differ(const Unlike& unlike) {
   return unlike.kind == Unlike::Kind::kSetting || unlike.kind == Unlike::Kind::kPoses;
 }
 
-void check_is_like(const ResultSet& first, const ResultSet& run) {
-  std::vector<Unlike> unlike = pair_runs(first, run).unlike;
+/// Returns why two runs cannot stand in one leaderboard.
+std::vector<Unlike> obstacles(const PairedRuns& paired) {
+  std::vector<Unlike> unlike = paired.unlike;
   std::erase_if(unlike, [](const Unlike& other) {
     return may_differ(other) || other.kind == Unlike::Kind::kScans;
   });
+  return unlike;
+}
+
+void check_is_like(const ResultSet& first, const ResultSet& run) {
+  const std::vector<Unlike> unlike = obstacles(pair_runs(first, run));
   if (unlike.empty()) return;
   throw DataError(run.front().file,
                   "is not like " + first.front().file.string() + ": " + unlike_text(unlike),
@@ -146,6 +153,23 @@ void remark_on_times(const std::vector<ResultSet>& runs, std::vector<std::string
 }
 
 }  // namespace
+
+std::vector<std::vector<ResultSet>> comparable_runs(const std::vector<ResultSet>& runs) {
+  std::vector<std::vector<ResultSet>> groups;
+  for (const ResultSet& run : runs) {
+    if (std::ranges::any_of(run.sequences, lacks_truth)) continue;
+    const auto group = std::ranges::find_if(groups, [&](const std::vector<ResultSet>& known) {
+      const PairedRuns paired = pair_runs(known.front(), run);
+      return !paired.scans.empty() && obstacles(paired).empty();
+    });
+    if (group == groups.end()) {
+      groups.push_back({run});
+    } else {
+      group->push_back(run);
+    }
+  }
+  return groups;
+}
 
 Leaderboard leaderboard_of(const std::vector<ResultSet>& runs) {
   Leaderboard board;

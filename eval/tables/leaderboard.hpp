@@ -27,6 +27,10 @@ struct Leaderboard {
   std::vector<std::string> remarks;    ///< what a reader should know, plain sentences
 };
 
+/// Groups runs that can stand in one leaderboard and have scans in common, in the order in which
+/// they come; runs without truth are left out.
+std::vector<std::vector<ResultSet>> comparable_runs(const std::vector<ResultSet>& runs);
+
 /// Throws DataError naming the run that is of another protocol, range or input than the first.
 Leaderboard leaderboard_of(const std::vector<ResultSet>& runs);
 

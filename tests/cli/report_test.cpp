@@ -114,6 +114,76 @@ TEST(Report, HoldsTheDynamicScoresOfARunThatKeptThem) {
   EXPECT_EQ(report().exit_code, 3);
 }
 
+/// Two methods with scores and the labels of one of them as another's, in one folder each.
+void write_several_runs(const std::filesystem::path& folder) {
+  for (const auto& words : std::vector<std::vector<std::string>>{
+           {"run", small_run() / "scans/00", "--method", "hmm-mos,underwood", "--scores", "--out",
+            folder / "all"},
+           {"score", small_run() / "scans/00", "--predictions", folder / "all/underwood",
+            "--method", "Net", "--out", folder / "net"}}) {
+    const cli::Answer answer = cli::run(words);
+    if (answer.exit_code != 0) throw std::runtime_error(answer.err);
+  }
+}
+
+TEST(Report, RanksSeveralRunsAsTheLeaderboardDoes) {
+  const TempFolder folder;
+  write_several_runs(folder.path());
+  const std::string all = folder / "all", net = folder / "net", out = folder / "r.html";
+  const cli::Answer answer = cli::run({"report", all, net, all + "/underwood", "-o", out});
+  ASSERT_EQ(answer.exit_code, 0) << answer.err;
+  EXPECT_THAT(answer.out, HasSubstr("report of 3 results in "));
+  EXPECT_THAT(answer.out, HasSubstr("net/00: without points, because its labels are not beside"));
+  const auto content = content_of(read_file(out));
+  ASSERT_EQ(content.at("leaderboards").size(), 1U);
+  const auto& rows = content.at("leaderboards").at(0).at("rows");
+  const auto expected =
+      nlohmann::ordered_json::parse(cli::run({"leaderboard", all, net, "--format", "json"}).out);
+  ASSERT_EQ(rows.size(), 3U);
+  for (std::size_t r = 0; r < 3; ++r) {
+    for (const char* key : {"method", "all", "to_best", "ms_per_scan", "memory_mb", "on_front"}) {
+      EXPECT_EQ(rows.at(r).at(key), expected.at("rows").at(r).at(key)) << r << key;
+    }
+    const auto& result =
+        content.at("results").at(rows.at(r).at("results").at(0).get<std::size_t>());
+    EXPECT_EQ(result.at("run"), rows.at(r).at("run"));
+    EXPECT_EQ(result.at("result").at("method").at("name"), rows.at(r).at("method"));
+    EXPECT_EQ(result.contains("cloud"), rows.at(r).at("method") != "Net");
+  }
+}
+
+TEST(Report, HoldsTheCurvesOfRunsWithScoresAndWhatTheyAreCalled) {
+  const TempFolder folder;
+  write_several_runs(folder.path());
+  const std::string out = folder / "r.html";
+  ASSERT_EQ(cli::run({"report", folder / "all", small_run() / "runs/mine", "-o", out}).exit_code,
+            0);
+  const auto content = content_of(read_file(out));
+  const auto& curves = content.at("curves");
+  ASSERT_EQ(curves.size(), 2U) << "the third run kept no scores";
+  for (const auto& curve : curves) {
+    const std::string run = curve.at("run");
+    const auto expected = nlohmann::ordered_json::parse(
+        cli::run({"curve", folder / "all" / run, "--format", "json"}).out);
+    for (const char* key : {"average_precision", "best", "labels"}) {
+      EXPECT_EQ(curve.at(key), expected.at(key)) << run << key;
+    }
+    EXPECT_EQ(curve.at("recall").size(), curve.at("precision").size());
+    EXPECT_EQ(curve.at("recall").back(), 1.0);
+  }
+  const auto& results = content.at("results");
+  EXPECT_EQ(results.at(0).at("score_name"), "dynamic score");
+  EXPECT_EQ(results.at(0).at("threshold_name"), "Otsu threshold");
+  EXPECT_EQ(results.at(1).at("score_name"), "margin, m");
+}
+
+TEST(Report, OfOneRunHasNoLeaderboard) {
+  const TempFolder folder;
+  const std::string out = folder / "r.html";
+  ASSERT_EQ(cli::run({"report", small_run() / "runs/mine", "-o", out}).exit_code, 0);
+  EXPECT_TRUE(content_of(read_file(out)).at("leaderboards").empty());
+}
+
 TEST(Report, IsTheSameBytesEachTime) {
   const TempFolder folder;
   for (const char* name : {"a.html", "b.html"}) {

@@ -19,6 +19,19 @@ before(async () => {
 });
 after(() => browser.close());
 
+/** Ticks or unticks a run in the menu of the 3-D view. */
+async function beside(page, run) {
+  await page.click('.toolbar .menu summary');
+  await page.click(`.toolbar .menu-list label:has-text("${run}")`);
+  await page.click('.toolbar .menu summary');
+}
+
+/** Unticks every run beside the chosen one in the charts. */
+async function chartsAlone(page) {
+  await page.click('.charts .menu summary');
+  for (const box of await page.locator('.charts .menu-list :checked').all()) await box.click();
+}
+
 const STAGE = { width: 480, height: 700 };
 
 async function shot(page, name) {
@@ -43,14 +56,14 @@ test('colours by height, the dark theme and two runs side by side show what they
   await page.selectOption('[aria-label=colour]', 'height');
   await shot(page, 'dark_height');
   await page.selectOption('[aria-label=colour]', 'outcome');
-  await page.selectOption('[aria-label=beside]', { label: 'delayed' });
+  await beside(page, 'delayed');
   await shot(page, 'dark_side_by_side');
   refuseComplaints(page);
 });
 
 test('two runs stay in step, each with its own counts', async () => {
   const page = await openReport(browser, both, { viewport: STAGE });
-  await page.selectOption('[aria-label=beside]', { label: 'delayed' });
+  await beside(page, 'delayed');
   const differing = online.scans.findIndex(({ fn }, k) => k > 0 && fn !== delayed.scans[k].fn);
   assert.ok(differing > 0, 'the runs differ somewhere');
   await page.evaluate((scan) => mosbenchReport.transport.go(scan), differing - 1);
@@ -72,7 +85,7 @@ test('colours by dynamic score tell those of the score files, with a key to them
   assert.ok(without > 0 && without < scores.length && threshold > 3, 'the scan has votes for motion');
   const shown = await page.evaluate(() => mosbenchReport.viewer.coloursShown());
   assert.equal(shown['207,213,220'], without);
-  assert.match(await page.locator('.scale').textContent(), new RegExp(`^dynamic scorenone1\\d+threshold ${threshold.toFixed(0)}$`));
+  assert.match(await page.locator('.scale').textContent(), new RegExp(`^dynamic scorenone1\\d+Otsu threshold ${threshold.toFixed(0)}$`));
   await page.keyboard.press('t');
   await shot(page, 'score_top_dark');
   refuseComplaints(page);
@@ -81,12 +94,12 @@ test('colours by dynamic score tell those of the score files, with a key to them
 test('dynamic scores are not offered beside a run without them, which is told how to get them', async () => {
   const page = await openReport(browser, both, { viewport: STAGE });
   await page.selectOption('[aria-label=colour]', 'score');
-  await page.selectOption('[aria-label=beside]', { label: 'delayed' });
+  await beside(page, 'delayed');
   await settled(page);
   assert.equal(await page.evaluate(() => mosbenchReport.state.get('colouring')), 'outcome');
   assert.equal(await page.locator('[aria-label=colour] option[disabled]').textContent(), 'dynamic score: needs mosbench run --scores');
-  await page.selectOption('[aria-label=beside]', '');
-  assert.equal(await page.locator('[aria-label=colour] option[disabled]').count(), 0);
+  await beside(page, 'delayed');
+  assert.equal(await page.locator('[aria-label=colour] option[value=score][disabled]').count(), 0);
   refuseComplaints(page);
 });
 
@@ -107,7 +120,7 @@ test('charts over the scans hold the numbers of both runs', async () => {
 
 test('charts hold the numbers of result.json', async () => {
   const page = await openReport(browser, both);
-  await page.selectOption('[aria-label="charts beside"]', '');
+  await chartsAlone(page);
   const numbers = await page.evaluate(() => Object.fromEntries(mosbenchReport.charts.charts.map((chart) => [chart.key, chart.numbers()])));
   const of = (key) => online.scans.map((scan) => scan[key]);
   assert.deepEqual(numbers.counts, { TP: of('tp'), FP: of('fp'), FN: of('fn') });
@@ -131,7 +144,7 @@ test('intervals, ranges, objects and protocols are those that the program tells'
   const why = content.estimates.iou.no_interval;
   assert.ok(why, 'so few scans have no interval');
   assert.ok((await page.locator('.tiles').textContent()).includes(`no interval: ${why}`));
-  assert.equal(await page.getByTitle(`no interval: ${why}`).first().textContent(), `${(100 * content.estimates.iou.value).toFixed(1)} % no interval`);
+  assert.equal(await page.locator('.block:has(h2:text-is("Results"))').getByTitle(`no interval: ${why}`).first().textContent(), `${(100 * content.estimates.iou.value).toFixed(1)} % no interval`);
   const breakdown = answer('breakdown', dataset, '--predictions', run, '--top', '50').sequences[0];
   assert.deepEqual(content.breakdown, breakdown);
   const own = content.protocols.find(({ name }) => name === online.protocol.name);
@@ -162,7 +175,7 @@ test('the way of the sensor stands beside that of the data set, with the distanc
   await page.evaluate(() => mosbenchReport.transport.go(2));
   assert.deepEqual(await dot(), both_paths.online[2]);
   await assertLooksLikeKept(browser, 'path', await page.locator('[data-chart=path]').screenshot());
-  await page.selectOption('[aria-label="charts beside"]', '');
+  await chartsAlone(page);
   assert.equal(await numbers('drift'), null);
   refuseComplaints(page);
 });
@@ -204,7 +217,7 @@ test('a click on a point shows its numbers', async () => {
     const { viewer } = mosbenchReport;
     const { positions_m: p, outcomes, drawable } = viewer.scans[0];
     const clip = viewer.stage.clipMatrix();
-    const { width, height } = viewer.stage.paneSize();
+    const { width, height } = viewer.stage.grid();
     for (let i = 0; i < outcomes.length; ++i) {
       const [x, y, z] = p.subarray(3 * i, 3 * i + 3);
       const row = (r) => clip[r] * x + clip[4 + r] * y + clip[8 + r] * z + clip[12 + r];

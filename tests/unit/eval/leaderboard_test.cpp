@@ -113,6 +113,34 @@ TEST(Leaderboard, RanksNoRunThatLacksPredictions) {
   EXPECT_THAT(board.remarks.front(), HasSubstr("gaps: INCOMPLETE: 1 scans"));
 }
 
+TEST(Leaderboard, StandsForEachGroupOfRunsThatCanBeCompared) {
+  std::vector<ResultSet> runs = {run_of("a", 900, 1.0), run_of("mapmos", 850, 2.0),
+                                 run_of("b", 800, 1.0), run_of("elsewhere", 800, 1.0),
+                                 run_of("untold", 800, 1.0)};
+  for (SequenceResult& sequence : runs[1].sequences) sequence.protocol = &protocol_named("mapmos");
+  for (SequenceResult& sequence : runs[3].sequences) {
+    sequence.sequence = SequenceName("9" + sequence.sequence.text(), "9");
+  }
+  runs[4].sequences[1].scans.clear();
+  std::vector<std::vector<std::string>> names;
+  for (const std::vector<ResultSet>& group : comparable_runs(runs)) {
+    std::vector<std::string>& of_group = names.emplace_back();
+    for (const ResultSet& run : group) of_group.push_back(run.front().method);
+  }
+  EXPECT_THAT(names,
+              ElementsAre(ElementsAre("a", "b"), ElementsAre("mapmos"), ElementsAre("elsewhere")));
+}
+
+TEST(ResultSet, LiesInTheFolderAboveThoseNamedLikeItsSequence) {
+  const auto folder = [](const char* result, const char* sequence) {
+    return folder_of_run(result, SequenceName(sequence, "here")).string();
+  };
+  EXPECT_EQ(folder("runs/mine/00", "00"), "runs/mine");
+  EXPECT_EQ(folder("runs/mine/station/sequence_1", "station/sequence_1"), "runs/mine");
+  EXPECT_EQ(folder("runs/mine/other", "00"), "runs/mine/other");
+  EXPECT_EQ(folder("00", "00"), "00");
+}
+
 TEST(Leaderboard, RefusesRunsOfAnotherKind) {
   const auto refusal = [](auto&& change) {
     std::vector<ResultSet> runs = {run_of("a", 900, 1.0), run_of("b", 850, 2.0)};

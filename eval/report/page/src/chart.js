@@ -32,6 +32,24 @@ function cursorAtScan(state) {
   };
 }
 
+/** A dot at each of [{x, y, colour}] that has a place. */
+function dots(marks, state) {
+  return (plot) => {
+    const { theme, radius } = { theme: state.get('theme'), radius: 4.5 * devicePixelRatio };
+    for (const { x, y, colour } of marks.filter((mark) => mark.x !== null && mark.y !== null)) {
+      plot.ctx.save();
+      plot.ctx.fillStyle = colour[theme];
+      plot.ctx.strokeStyle = surface(theme).background;
+      plot.ctx.lineWidth = devicePixelRatio;
+      plot.ctx.beginPath();
+      plot.ctx.arc(plot.valToPos(x, 'x', true), plot.valToPos(y, 'y', true), radius, 0, 2 * Math.PI);
+      plot.ctx.fill();
+      plot.ctx.stroke();
+      plot.ctx.restore();
+    }
+  };
+}
+
 /**
  * A chart in a frame with its title. `series`: [{label, values, colour, ...}] over `x`; `options`
  * goes to uPlot. A chart over scans sends clicks to `go` and marks the shown scan.
@@ -71,7 +89,7 @@ export class Chart {
   #build(width) {
     const style = axisStyle(this.state.get('theme'));
     const axes = [{ ...style, incrs: this.go ? SCAN_STEPS : undefined, ...this.options.xAxis }, { ...style, size: 58, values: shortTicks, ...this.options.yAxis }];
-    const draw = this.go ? [cursorAtScan(this.state)] : [];
+    const draw = [...(this.go ? [cursorAtScan(this.state)] : []), ...(this.options.marks ? [dots(this.options.marks, this.state)] : [])];
     const options = {
       width,
       height: HEIGHT,
@@ -87,10 +105,10 @@ export class Chart {
     if (this.go) this.plot.over.addEventListener('click', () => this.#click());
   }
 
-  #line({ label, colour, values, fill, dash, paths, points, width = 1.5, show = true }) {
+  #line({ label, colour, values, fill, dash, paths, points, spanGaps, width = 1.5, show = true }) {
     const stroke = typeof colour === 'object' ? colour[this.state.get('theme')] : colour;
     return {
-      label, stroke, fill: fill ? fill(stroke) : undefined, dash, width, paths, show,
+      label, stroke, fill: fill ? fill(stroke) : undefined, dash, width, paths, show, spanGaps,
       points: points ? { fill: stroke, ...points } : { show: values.filter((v) => v !== null).length < 40, size: 4 },
       value: (_, __, ___, i) => (i === null || values[i] === null || values[i] === undefined ? '–' : this.options.text(values[i])),
     };

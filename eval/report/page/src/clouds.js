@@ -2,10 +2,20 @@ import { outcomesFromPlane, positionsFromPlanes, readBlock, scoresFromPlanes } f
 
 const SCANS_KEPT = 24;
 
+/** What `make` gives for a key, kept for the next time; the last used one is the last to go. */
+function keep(kept, key, make) {
+  const value = kept.get(key) ?? make();
+  kept.delete(key);
+  kept.set(key, value);
+  while (kept.size > SCANS_KEPT) kept.delete(kept.keys().next().value);
+  return value;
+}
+
 /** The scans whose points are in the file, unpacked when they are first looked at. */
 export class Clouds {
   #content;
   #kept = new Map();
+  #positions = new Map(); // of scans, shared by all runs
 
   constructor(content) {
     this.#content = content;
@@ -20,13 +30,19 @@ export class Clouds {
     return this.#cloudOf(result)?.scans.map((scan) => scan.index) ?? [];
   }
 
-  /** Whether the points of a result have dynamic scores. */
+  /** What the scores of a result measure. */
+  scoreName(result) {
+    return this.#content.results[result].score_name ?? 'score';
+  }
+
+  /** Whether the points of a result have scores. */
   hasScores(result) {
     return (this.#content.results[result].scores ?? []).length > 0;
   }
 
   leftOut(result) {
-    return this.#cloudOf(result)?.left_out ?? 'the file holds no points';
+    const none = this.#content.clouds.length > 0 ? 'the file holds no points of this run' : 'the file holds no points';
+    return this.#cloudOf(result)?.left_out ?? none;
   }
 
   /** Other results of the same scans. */
@@ -48,13 +64,11 @@ export class Clouds {
    * scores are null where the run kept none.
    */
   async read(result, index) {
-    const key = `${result}/${index}`;
-    if (!this.#kept.has(key)) this.#kept.set(key, this.#unpack(result, index));
-    const scan = this.#kept.get(key);
-    this.#kept.delete(key); // the last used one is the last to go
-    this.#kept.set(key, scan);
-    while (this.#kept.size > SCANS_KEPT) this.#kept.delete(this.#kept.keys().next().value);
-    return scan;
+    return keep(this.#kept, `${result}/${index}`, () => this.#unpack(result, index));
+  }
+
+  #positionsOf(block) {
+    return keep(this.#positions, block, async () => positionsFromPlanes(await readBlock(block), this.#content.position_step_m));
   }
 
   async #unpack(result, index) {
@@ -62,15 +76,15 @@ export class Clouds {
     const place = scans.findIndex((scan) => scan.index === index);
     if (place < 0) return null;
     const { outcomes, scores } = this.#content.results[result];
-    const [planes, plane, scorePlanes] = await Promise.all([
-      readBlock(scans[place].positions),
+    const [positions_m, plane, scorePlanes] = await Promise.all([
+      this.#positionsOf(scans[place].positions),
       readBlock(outcomes[place]),
       this.hasScores(result) ? readBlock(scores[place]) : null,
     ]);
     return {
       points: scans[place].points,
       stem: scans[place].stem,
-      positions_m: positionsFromPlanes(planes, this.#content.position_step_m),
+      positions_m,
       pose: scans[place].map_from_sensor,
       ...outcomesFromPlane(plane),
       scores: scorePlanes && scoresFromPlanes(scorePlanes),

@@ -1,3 +1,4 @@
+import { isDisputed, opinionColours, opinionsOf } from './disagreement.js';
 import { OUTCOMES, outcomeColours, rgb, scaleColour } from './theme.js';
 
 /** What a point's colour can stand for. */
@@ -5,17 +6,40 @@ export const COLOURINGS = [
   { key: 'outcome', name: 'outcome' },
   { key: 'range', name: 'range', unit: 'm', digits: 1 },
   { key: 'height', name: 'height', unit: 'm', digits: 1 },
-  { key: 'score', name: 'dynamic score', unit: '', digits: 0 },
+  { key: 'score', name: 'score', unit: '' },
+  { key: 'disagreement', name: 'disagreement' },
 ];
 
 const OUTCOMES_THAT_STAND_OUT = 3; // tp, fp, fn come first in the palette
+const LARGER = 1.8;
 
-/** Those that the shown results allow: dynamic scores are only there when every run kept them. */
-export function colouringsOf(clouds, results) {
-  return COLOURINGS.filter(({ key }) => key !== 'score' || results.every((result) => clouds.hasScores(result)));
+/** Why a colouring cannot be shown; null where it can. Scores of different methods have no common scale. */
+function obstacle(key, clouds, results, view) {
+  if (key === 'score') {
+    if (!results.every((result) => clouds.hasScores(result))) return 'needs mosbench run --scores';
+    const names = new Set(results.map((result) => clouds.scoreName(result)));
+    return names.size > 1 ? 'not of different methods' : null;
+  }
+  if (key !== 'disagreement') return null;
+  return results.length < 2 ? 'needs a run beside' : view === 'map' ? 'not in the motion map' : null;
 }
 
-/** Colour of points without any vote for motion, which are most. */
+/** Every colouring with its name for the shown results, and with `why` where it cannot be shown. */
+export function allColourings(clouds, results, view) {
+  const several = results.length > 1 || clouds.comparable(results[0]).length > 0;
+  return COLOURINGS.filter(({ key }) => key !== 'disagreement' || several).map((colouring) => ({
+    ...colouring,
+    name: colouring.key === 'score' ? clouds.scoreName(results[0]) : colouring.name,
+    why: obstacle(colouring.key, clouds, results, view),
+  }));
+}
+
+/** Those that the shown results and the view allow. */
+export function colouringsOf(clouds, results, view) {
+  return allColourings(clouds, results, view).filter(({ why }) => why === null);
+}
+
+/** Colour of points without a score, which are most. */
 export function colourWithoutScore(theme) {
   return OUTCOMES.find(({ key }) => key === 'unlabelled')[theme];
 }
@@ -41,11 +65,14 @@ export function limits(values) {
   return high > low ? [low, high] : [low, low + 1];
 }
 
-/** One scale for all that is shown, so that equal colours are equal numbers. */
+/** One scale for all that is shown, so that equal colours are equal numbers. Votes are counted from 1. */
 function commonScale(key, scans, values) {
-  const ends = values.map((v, s) => limits(v.filter((x, i) => scans[s].drawable[i] && (key !== 'score' || x > 0))));
-  const low = key === 'score' ? 1 : Math.min(...ends.map(([lowest]) => lowest));  // without a score: a colour of its own
-  return { low, high: Math.max(key === 'score' ? 2 : -Infinity, ...ends.map(([, highest]) => highest)) };
+  const shown = values.map((v, s) => v.filter((x, i) => scans[s].drawable[i] && (key !== 'score' || x !== 0)));
+  const ends = shown.map(limits);
+  const [low, high] = [Math.min(...ends.map(([lowest]) => lowest)), Math.max(...ends.map(([, highest]) => highest))];
+  if (key !== 'score') return { low, high };
+  const areVotes = shown.every((v) => v.every((x) => Number.isInteger(x) && x > 0));
+  return areVotes ? { low: 1, high: Math.max(2, high), digits: 0 } : { low, high, digits: 2 };
 }
 
 function byOutcome(scan, theme) {
@@ -65,20 +92,25 @@ function byScale(values, { low, high }, theme, colourOfZero) {
   return colours;
 }
 
-/** Three bytes per point of each scan, and the scale when the colour is one. */
+/** Three bytes per point of each scan, the scale when the colour is one, and `large(p, i)`: what stands out. */
 export function colourScans(key, scans, theme) {
-  if (key === 'outcome') return { colours: scans.map((scan) => byOutcome(scan, theme)), scale: null };
+  const large = (p, i) => scans[p].outcomes[i] < OUTCOMES_THAT_STAND_OUT;
+  if (key === 'outcome') return { colours: scans.map((scan) => byOutcome(scan, theme)), scale: null, large };
+  if (key === 'disagreement') {
+    const opinions = scans.map((_, p) => opinionsOf(scans, p));
+    return { colours: opinions.map((o) => opinionColours(o, theme)), scale: null, opinions, large: (p, i) => isDisputed(opinions[p][i]) };
+  }
   const values = scans.map((scan) => quantity(key, scan));
   const scale = commonScale(key, scans, values);
   const colourOfZero = key === 'score' ? rgb(colourWithoutScore(theme)) : null;
-  return { colours: values.map((v) => byScale(v, scale, theme, colourOfZero)), scale };
+  return { colours: values.map((v) => byScale(v, scale, theme, colourOfZero)), scale, large };
 }
 
-/** Size per point in pixels: 0 for what is hidden or has no position, false points larger. */
-export function sizePoints(scan, visible, pixels) {
+/** Size per point in pixels: 0 for what is hidden or has no position, larger for what stands out. */
+export function sizePoints(scan, visible, pixels, large) {
   return Float32Array.from(scan.outcomes, (outcome, i) => {
     if (!scan.drawable[i] || !visible[outcome]) return 0;
-    return outcome < OUTCOMES_THAT_STAND_OUT ? 1.8 * pixels : pixels;
+    return large(i) ? LARGER * pixels : pixels;
   });
 }
 

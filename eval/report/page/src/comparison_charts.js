@@ -1,23 +1,14 @@
 import { count, fixed, percent } from './format.js';
 import { iou, precision, recall } from './metrics.js';
-import { costColumns, ofJudged, percentAxis } from './scan_charts.js';
-import { OUTCOMES } from './theme.js';
-
-const colourOf = (key) => OUTCOMES.find((outcome) => outcome.key === key);
-// Told apart by any colour vision, and by their dashes.
-const LINES = [{ colour: colourOf('tp'), width: 2 }, { colour: colourOf('fp'), dash: [7, 3], width: 2 }];
-
-/** The runs' names, told apart when they are the same. */
-export function runNames(entries) {
-  const names = entries.map(({ run }) => run);
-  return names[0] === names[1] ? names.map((name, i) => `${name} (${i + 1})`) : names;
-}
+import { runNames } from './runs_menu.js';
+import { costColumns, ofJudged, percentAxis, thresholdFrame } from './scan_charts.js';
+import { runLine } from './theme.js';
 
 /** One line per run, or null when a run lacks the numbers. */
 function chart(entries, { key, title, note, values, options }) {
   const lines = entries.map(values);
   if (lines.includes(null)) return null;
-  const series = runNames(entries).map((label, i) => ({ label, values: lines[i], ...LINES[i] }));
+  const series = runNames(entries).map((label, i) => ({ label, values: lines[i], ...runLine(i) }));
   return { key, title, note, series, options };
 }
 
@@ -36,9 +27,16 @@ function costChart(entries, column, key, title, note, text) {
   return chart(entries, { key, title, note, values, options: { text } });
 }
 
-/** The charts over the scans for two runs of the same scans. */
+/** Of methods whose thresholds are of one kind; others have no common axis. */
+function thresholdChart(entries) {
+  const frame = thresholdFrame(entries);
+  const values = ({ result }) => result.scans.map(({ threshold }) => threshold ?? null);
+  return frame && chart(entries, { ...frame, values });
+}
+
+/** The charts over the scans for some runs of the same scans. */
 export function comparisonCharts(entries) {
-  const whole = entries.map(({ result }) => percent(result.summary?.iou)).join(' and ');
+  const whole = entries.map(({ result }) => percent(result.summary?.iou)).join(', ');
   return [
     metricChart(entries, 'iou', 'IoU', iou, `of the whole ${whole}`),
     metricChart(entries, 'precision', 'Precision', precision),
@@ -47,9 +45,6 @@ export function comparisonCharts(entries) {
     countChart(entries, 'fn', 'False negatives'),
     costChart(entries, 'push_ms', 'time', 'Time of the method', 'milliseconds per scan', (v) => fixed(v, 1, 'ms')),
     costChart(entries, 'resident_mib', 'memory', 'Memory', 'resident after each scan, MiB', (v) => fixed(v, 0, 'MiB')),
-    chart(entries, {
-      key: 'threshold', title: 'Otsu threshold', note: 'of the dynamic score', options: { text: (v) => fixed(v, 1) },
-      values: ({ result }) => result.scans.map(({ threshold }) => threshold ?? null),
-    }),
+    thresholdChart(entries),
   ].filter(Boolean);
 }

@@ -20,7 +20,7 @@ export function keyActions(state, viewer, transport) {
     2: [null, null, view(1)],
     3: [null, null, view(2)],
     4: [null, null, view(3)],
-    c: ['c', 'colour by the next quantity', () => state.set({ colouring: next(colouringsOf(viewer.clouds, viewer.results()), state.get('colouring')) })],
+    c: ['c', 'colour by the next quantity', () => state.set({ colouring: next(colouringsOf(viewer.clouds, viewer.results(), state.get('view')), state.get('colouring')) })],
     r: ['r', 'view back to its start', () => viewer.resetView()],
     t: ['t', 'light or dark', () => state.set({ theme: state.get('theme') === 'dark' ? 'light' : 'dark' })],
   };

@@ -39,14 +39,14 @@ export class Legend {
     });
   }
 
-  /** Counts of the scans in the panes. */
+  /** Counts of the scans in the panes, as far as there is room. */
   fill(scans) {
     const perScan = scans.map((scan) => countOutcomes(scan.outcomes));
     this.rows.forEach(({ row, counts }, i) => {
-      counts.textContent = perScan.map((c) => count(c[i])).join(' · ');
+      counts.textContent = scans.length > 2 ? '' : perScan.map((c) => count(c[i])).join(' · ');
       row.hidden = perScan.every((c) => c[i] === 0);
     });
-    const unseen = scans[0].drawable.filter((d) => d === 0).length;
+    const unseen = scans.length === 0 ? 0 : scans[0].drawable.filter((d) => d === 0).length;
     this.hidden.textContent = unseen > 0 ? `${count(unseen)} of these have no position` : '';
   }
 }

@@ -3,6 +3,7 @@ import { Clouds } from './clouds.js';
 import { element } from './dom.js';
 import { header } from './header.js';
 import { keyActions, keyList, listenToKeys } from './keyboard.js';
+import { leaderboards } from './leaderboard.js';
 import { worstScans } from './metrics.js';
 import { notices } from './notices.js';
 import { readContent } from './payload.js';
@@ -25,8 +26,8 @@ function firstScan(content, clouds, result) {
 function initialState(content, clouds) {
   return new State({
     result: 0,
-    other: null,
-    compared: null,
+    others: [],
+    compared: [],
     scan: firstScan(content, clouds, 0),
     view: 'orbit',
     colouring: 'outcome',
@@ -34,6 +35,14 @@ function initialState(content, clouds) {
     pointSize: 1.6,
     theme: preferredTheme(),
   });
+}
+
+/** Another result; one of the same scans shows the same scan, beside the same runs. */
+function choiceOf(state, content, clouds, result) {
+  const of = clouds.comparable(result);
+  if (!of.includes(state.get('result'))) return { result, others: [], scan: firstScan(content, clouds, result) };
+  const others = state.get('others').filter((other) => other !== result);
+  return { result, others, scan: state.get('scan') };
 }
 
 /** The 3-D view with its controls; null where the browser cannot draw it. */
@@ -69,13 +78,13 @@ async function start() {
   state.follow(['theme'], () => (document.documentElement.dataset.theme = state.get('theme')));
   const transport = new Transport(state, content, clouds);
   const go = (scan) => transport.go(scan);
-  const choose = (result) => state.set({ result, other: null, scan: firstScan(content, clouds, result) });
+  const choose = (result) => state.set(choiceOf(state, content, clouds, result));
   const hasPoints = content.clouds.length > 0;
   const section = element('section', { class: hasPoints ? 'view' : '', 'aria-label': 'Points' });
   const charts = new Charts(state, content, go);
   document.body.append(
     header(state, content, choose),
-    element('main', {}, notices(state, content, clouds), tiles(state, content), section, charts.node,
+    element('main', {}, notices(state, content, clouds), leaderboards(state, content, choose), tiles(state, content), section, charts.node,
       summaryTable(content, choose), resultTables(state, content, go), paperTables(content), provenance(state, content)),
   );
   // Unpacking goes on in the background; getting at the graphics card may take a second. Neither

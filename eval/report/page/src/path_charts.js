@@ -1,11 +1,9 @@
 import { fixed } from './format.js';
-import { OUTCOMES } from './theme.js';
-
-const colourOf = (key) => OUTCOMES.find((outcome) => outcome.key === key);
+import { runLine } from './theme.js';
 
 /** How far the poses of each run are off those of the data set, over the way driven; null where all took the latter. */
 export function driftChart(entries, names) {
-  const off = entries.flatMap(({ path }, i) => (path?.off_m ? [{ label: names[i], values: path.off_m, colour: colourOf(i === 0 ? 'tp' : 'fp') }] : []));
+  const off = entries.flatMap(({ path }, i) => (path?.off_m ? [{ label: names[i], values: path.off_m, colour: runLine(i).colour }] : []));
   if (off.length === 0) return null;
   return {
     key: 'drift',

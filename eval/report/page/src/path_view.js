@@ -1,17 +1,15 @@
 import { element, shape } from './dom.js';
 import { fixed } from './format.js';
-import { OUTCOMES, surface } from './theme.js';
+import { runLine, surface } from './theme.js';
 
 const LINE_STEPS_M = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000];
 const MOST_LINES = 8;
 const HEIGHT = 210; // as the charts beside it
 const WIDTH = 500;
 
-const colourOf = (key, theme) => OUTCOMES.find((outcome) => outcome.key === key)[theme];
-
 /** The paths to draw: that of the data set itself where it is another one, then those of the runs. */
 export function pathsOf(entries, names) {
-  const paths = entries.map(({ path }, i) => (path ? { label: names[i], points_m: path.run_m, key: i === 0 ? 'tp' : 'fp' } : null)).filter(Boolean);
+  const paths = entries.map(({ path }, i) => (path ? { label: names[i], points_m: path.run_m, key: i } : null)).filter(Boolean);
   const own = entries.find(({ path }) => path?.own_m)?.path.own_m;
   return own ? [{ label: 'poses of the data set', points_m: own, key: null }, ...paths] : paths;
 }
@@ -63,7 +61,7 @@ export class PathView {
 
   #colour(key) {
     const theme = this.state.get('theme');
-    return key === null ? surface(theme).text : colourOf(key, theme);
+    return key === null ? surface(theme).text : runLine(key).colour[theme];
   }
 
   #line({ points_m, key }) {

@@ -6,7 +6,7 @@ import { OUTCOMES } from './theme.js';
 const vector = (numbers) => numbers.map((n) => n.toFixed(2)).join(', ');
 
 /** The numbers of one point, with its outcome in every run that is shown. */
-export function pointDetails(scans, pane, point, runs) {
+export function pointDetails(scans, pane, point, runs, scores) {
   const scan = scans[pane];
   const position = [...scan.positions_m.subarray(3 * point, 3 * point + 3)];
   const rows = [[scan.pose ? 'sensor x, y, z' : 'map x, y, z', `${vector(position)} m`]];
@@ -19,7 +19,7 @@ export function pointDetails(scans, pane, point, runs) {
   judged.forEach((s, p) => {
     const run = judged.length > 1 ? runs[p] : null;
     rows.push([run ?? 'outcome', OUTCOMES[s.outcomes[point]].name]);
-    if (s.scores) rows.push([run ? `${run}, dynamic score` : 'dynamic score', fixed(s.scores[point], Number.isInteger(s.scores[point]) ? 0 : 3)]);
+    if (s.scores) rows.push([run ? `${run}, ${scores[p]}` : scores[p], fixed(s.scores[point], Number.isInteger(s.scores[point]) ? 0 : 3)]);
   });
   return element('dl', {}, ...rows.flatMap(([name, value]) => [element('dt', {}, name), element('dd', {}, value)]));
 }

@@ -18,11 +18,11 @@ function factsOf({ folder, protocol_summary: rules, result }) {
   return new Map(facts.filter(([, value]) => value !== undefined).map(([key, value]) => [key, String(value)]));
 }
 
-/** What each number of the report comes from; what differs between two runs stands out. */
+/** What each number of the report comes from; what differs between runs stands out. */
 export function provenance(state, content) {
   const node = element('section', { class: 'block provenance' });
-  state.follow(['result', 'other'], () => {
-    const shown = [state.get('result'), state.get('other')].filter((r) => r !== null).map((r) => content.results[r]);
+  state.follow(['result', 'others'], () => {
+    const shown = [state.get('result'), ...state.get('others')].map((r) => content.results[r]);
     const facts = shown.map(factsOf);
     const keys = [...new Set(facts.flatMap((f) => [...f.keys()]))];
     const rows = keys.map((key) => {

@@ -13,11 +13,15 @@ function swatch(colour) {
 export class Scale {
   node = element('div', { class: 'scale', hidden: true });
 
-  /** `scale`: {low, high}, or null for none; `thresholds` of the shown scans, for dynamic scores. */
-  fill(key, scale, theme, thresholds) {
+  /**
+   * `scale`: {low, high, digits}, or null for none; `name` of the quantity; of a score also its thresholds in the
+   * shown scans, [{name, threshold}].
+   */
+  fill(key, scale, theme, { name, thresholds }) {
     this.node.hidden = scale === null;
+    this.node.classList.remove('kinds');
     if (!scale) return;
-    const { name, unit, digits } = COLOURINGS.find((colouring) => colouring.key === key);
+    const { unit, digits = scale.digits } = COLOURINGS.find((colouring) => colouring.key === key);
     const stops = Array.from({ length: 10 }, (_, i) => `rgb(${scaleColour(i / 9, theme).join(',')})`);
     const bar = element('span', { class: 'bar' });
     bar.style.background = `linear-gradient(to right, ${stops.join(',')})`;
@@ -26,7 +30,14 @@ export class Scale {
       element('span', {}, name),
       ...(ofScore ? [swatch(colourWithoutScore(theme)), element('span', {}, 'none')] : []),
       element('span', {}, fixed(scale.low, digits)), bar, element('span', {}, fixed(scale.high, digits, unit)),
-      ...(ofScore && thresholds.length > 0 ? [element('span', { class: 'faint' }, `threshold ${thresholds.map((t) => fixed(t, 0)).join(' · ')}`)] : []),
+      ...(ofScore && thresholds.length > 0 ? [element('span', { class: 'faint' }, [...new Set(thresholds.map((t) => `${t.name} ${fixed(t.threshold, digits)}`))].join(' · '))] : []),
     );
+  }
+
+  /** The key to colours that stand for kinds: [{name, colour}]. */
+  fillKinds(kinds) {
+    this.node.hidden = false;
+    this.node.classList.add('kinds');
+    this.node.replaceChildren(...kinds.map(({ name, colour }) => element('span', { class: 'kind' }, swatch(colour), name)));
   }
 }

@@ -51,15 +51,23 @@ export function countsChart({ result }) {
   return { key: 'counts', title: 'Moving points', series: [of('tp', 'TP'), of('fp', 'FP'), of('fn', 'FN')], options: { text: count } };
 }
 
-export function thresholdChart({ result }) {
-  const values = result.scans.map((scan) => scan.threshold);
-  return {
-    key: 'threshold',
-    title: 'Otsu threshold',
-    note: 'of the dynamic score; none where no motion was looked for',
-    series: [{ label: 'threshold', values, colour: COLOURS.unlabelled_moving }],
-    options: { text: (v) => fixed(v, 1) },
-  };
+/**
+ * Title and note of a chart of the thresholds, by their name in the method; null where the runs have none of one
+ * kind, or where it is the same for all scans: then it is a setting.
+ */
+export function thresholdFrame(entries) {
+  const [{ threshold_name: name, score_name: score }] = entries;
+  if (!name || entries.some((entry) => entry.threshold_name !== name)) return null;
+  const varies = ({ result }) => new Set(result.scans.map(({ threshold }) => threshold ?? null).filter((t) => t !== null)).size > 1;
+  if (!entries.some(varies)) return null;
+  const title = name[0].toUpperCase() + name.slice(1);
+  return { key: 'threshold', title, note: `of the ${score}; none where no motion was looked for`, options: { text: (v) => fixed(v, 1) } };
+}
+
+export function thresholdChart(entry) {
+  const frame = thresholdFrame([entry]);
+  const values = entry.result.scans.map(({ threshold }) => threshold ?? null);
+  return frame && { ...frame, series: [{ label: 'threshold', values, colour: COLOURS.unlabelled_moving }] };
 }
 
 /** Rows of timing.scans as columns by name. */

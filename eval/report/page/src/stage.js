@@ -2,6 +2,7 @@ import {
   BufferAttribute, BufferGeometry, Color, Group, LineBasicMaterial, LineLoop, Line, LineSegments,
   PerspectiveCamera, Points, Scene, ShaderMaterial, Vector3, WebGLRenderer,
 } from 'three';
+import { paneAt, paneGrid } from './pane_grid.js';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 
 const VERTEX = `
@@ -63,8 +64,8 @@ class Pane {
 }
 
 /**
- * Draws one or two clouds side by side with one camera, so that they cannot get out of step. Throws
- * when the browser has no WebGL.
+ * Draws clouds side by side with one camera, so that they cannot get out of step. Throws when the
+ * browser has no WebGL.
  */
 export class Stage {
   constructor(canvas) {
@@ -78,8 +79,8 @@ export class Stage {
       uniforms: { pixelRatio: { value: 1 } },
     });
     this.guideMaterial = new LineBasicMaterial();
-    this.panes = [0, 1].map(() => new Pane(this.pointMaterial, this.guideMaterial));
-    this.shown = 1;
+    this.panes = [];
+    this.shown = 0;
     this.camera = new PerspectiveCamera(55, 1, 0.05, 3000);
     this.camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.camera, canvas);
@@ -105,9 +106,20 @@ export class Stage {
     this.draw();
   }
 
-  /** Width and height of one pane in CSS pixels. */
-  paneSize() {
-    return { width: this.canvas.clientWidth / this.shown, height: this.canvas.clientHeight };
+  /** Shows the first so many panes. */
+  show(panes) {
+    while (this.panes.length < panes) this.panes.push(new Pane(this.pointMaterial, this.guideMaterial));
+    this.shown = panes;
+  }
+
+  /** Columns, rows, and width and height of one pane in CSS pixels. */
+  grid() {
+    return paneGrid(this.shown, { width: this.canvas.clientWidth, height: this.canvas.clientHeight });
+  }
+
+  /** The pane at these pixels of the canvas and the pixels within it, or null. */
+  paneAt(x, y) {
+    return paneAt(this.grid(), this.shown, x, y);
   }
 
   /** 4x4 matrix from metres to the unit cube of the screen, columns first. */
@@ -137,14 +149,16 @@ export class Stage {
     const { clientWidth, clientHeight } = this.canvas;
     if (clientWidth === 0 || clientHeight === 0) return;
     this.#resize(clientWidth, clientHeight, Math.min(devicePixelRatio, 2));
-    const { width, height } = this.paneSize();
+    const { columns, rows, width, height } = this.grid();
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
+    this.renderer.setScissorTest(false);
+    this.renderer.clear();
     this.renderer.setScissorTest(true);
     for (let p = 0; p < this.shown; ++p) {
-      this.renderer.setViewport(p * width, 0, width, height);
-      this.renderer.setScissor(p * width, 0, width, height);
-      this.renderer.clear();
+      const corner = [(p % columns) * width, (rows - 1 - Math.floor(p / columns)) * height]; // counted from below
+      this.renderer.setViewport(...corner, width, height);
+      this.renderer.setScissor(...corner, width, height);
       this.renderer.render(this.panes[p].scene, this.camera);
     }
   }

@@ -1,6 +1,7 @@
 import { choice } from './choice.js';
-import { COLOURINGS, colouringsOf } from './colouring.js';
+import { allColourings } from './colouring.js';
 import { element } from './dom.js';
+import { runOptions, RunsMenu } from './runs_menu.js';
 import { VIEWS } from './views.js';
 
 function viewButtons(state) {
@@ -13,30 +14,32 @@ function viewButtons(state) {
   return group;
 }
 
-/** What to colour by; what needs other runs is named with the command that gives them. */
+/** What to colour by; what cannot be shown says why. */
 function colourChoice(state, clouds, viewer) {
   const node = element('span', {});
-  state.follow(['result', 'other', 'colouring'], () => {
-    const offered = colouringsOf(clouds, viewer.results());
-    if (!offered.some(({ key }) => key === state.get('colouring'))) return state.set({ colouring: 'outcome' });
-    const missing = COLOURINGS.filter((colouring) => !offered.includes(colouring));
-    const options = [...offered, ...missing.map(({ key, name }) => ({ key, name: `${name}: needs mosbench run --scores`, disabled: true }))];
+  state.follow(['result', 'others', 'colouring', 'view'], () => {
+    const all = allColourings(clouds, viewer.results(), state.get('view'));
+    if (!all.some(({ key, why }) => why === null && key === state.get('colouring'))) return state.set({ colouring: 'outcome' });
+    const options = all.map(({ key, name, why }) => ({ key, name: why === null ? name : `${name}: ${why}`, disabled: why !== null }));
     node.replaceChildren(choice('colour', options, state.get('colouring'), (value) => state.set({ colouring: value })));
   });
   return node;
 }
 
+/** Up to five runs of the same scans beside the chosen one. */
+function besideChoice(state, content, clouds) {
+  const menu = new RunsMenu('beside', (others) => state.set({ others }));
+  state.follow(['result', 'others'], () => {
+    const others = clouds.comparable(state.get('result'));
+    menu.fill(runOptions(content, state.get('result'), others), state.get('others'));
+  });
+  return menu.node;
+}
+
 /** What to look at and how. */
 export function toolbar(state, content, clouds, viewer) {
-  const compare = element('span', {});
-  state.follow(['result', 'other'], () => {
-    const others = clouds.comparable(state.get('result'));
-    const options = [{ key: '', name: 'nothing' }, ...others.map((i) => ({ key: i, name: content.results[i].run }))];
-    compare.replaceChildren(...(others.length === 0 ? [] : [choice('beside', options, state.get('other') ?? '', (value) =>
-      state.set({ other: value === '' ? null : Number(value) }))]));
-  });
   const sizes = [{ key: 1, name: 'small' }, { key: 1.6, name: 'medium' }, { key: 2.6, name: 'large' }];
   return element('div', { class: 'toolbar' }, viewButtons(state), colourChoice(state, clouds, viewer),
-    choice('points', sizes, state.get('pointSize'), (value) => state.set({ pointSize: Number(value) })), compare,
+    choice('points', sizes, state.get('pointSize'), (value) => state.set({ pointSize: Number(value) })), besideChoice(state, content, clouds),
     element('button', { type: 'button', title: 'Back to where the view starts (r)', onclick: () => viewer.resetView() }, 'reset'));
 }

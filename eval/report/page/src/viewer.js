@@ -1,9 +1,12 @@
 import { colourScans, sizePoints } from './colouring.js';
+import { opinionNames } from './disagreement.js';
 import { element } from './dom.js';
 import { Legend } from './legend.js';
 import { join, movingPoints } from './motion_map.js';
+import { PaneFrames } from './pane_frames.js';
 import { pick } from './picking.js';
 import { pointDetails } from './point_details.js';
+import { runNames } from './runs_menu.js';
 import { Scale } from './scale.js';
 import { Stage } from './stage.js';
 import { surface } from './theme.js';
@@ -11,56 +14,58 @@ import { viewpoint } from './views.js';
 
 const CLICK_PIXELS = 4;
 
-/** The 3-D view: shows the state's scan of one result, or of two side by side. */
+/** The 3-D view: shows the state's scan of one result, or of up to six side by side. */
 export class Viewer {
   node = element('div', { class: 'stage' });
   scans = [];
+  #shown = []; // the results that they are of: others may be on their way
   #turn = 0;
   #maps = new Map();
 
   constructor(state, content, clouds) {
     Object.assign(this, { state, content, clouds });
     const canvas = element('canvas', { tabindex: '0', 'aria-label': 'Points of the scan in 3-D' });
-    this.names = [0, 1].map(() => element('span', { class: 'pane-name' }));
+    this.frames = new PaneFrames();
     this.legend = new Legend(state);
     this.scale = new Scale();
     this.details = element('div', { class: 'details', hidden: true, 'aria-live': 'polite' });
     this.busy = element('span', { class: 'busy', role: 'status' });
-    this.node.append(canvas, ...this.names, this.busy, this.legend.node, this.scale.node, this.details);
+    this.node.append(element('div', { class: 'screen' }, canvas, this.frames.node), this.busy, this.legend.node, this.scale.node, this.details);
     this.stage = new Stage(canvas);
     this.#listen(canvas);
     state.follow(['theme'], () => this.stage.setTheme(surface(state.get('theme'))));
-    state.follow(['result', 'other', 'scan', 'view'], () => this.show());
+    state.follow(['result', 'others', 'scan', 'view'], () => this.show());
     state.follow(['theme', 'colouring', 'visible', 'pointSize'], () => this.#paint());
   }
 
-  /** Results in the panes, left to right. */
+  /** Results in the panes, row by row. */
   results() {
-    const other = this.state.get('other');
-    return other === null ? [this.state.get('result')] : [this.state.get('result'), other];
+    return [this.state.get('result'), ...this.state.get('others')];
+  }
+
+  names() {
+    return runNames(this.#shown.map((r) => this.content.results[r]));
   }
 
   async show() {
     const turn = ++this.#turn;
     const [results, scan, view] = [this.results(), this.state.get('scan'), this.state.get('view')];
     const scans = await Promise.all(results.map((r) => (view === 'map' ? this.#motionMap(r) : this.clouds.read(r, scan))));
-    if (turn !== this.#turn || scans.includes(null)) return; // another scan was asked for meanwhile
-    this.scans = scans;
+    if (turn !== this.#turn) return; // another scan was asked for meanwhile
+    this.scans = scans.includes(null) ? [] : scans; // a run without points in the file
+    this.#shown = scans.includes(null) ? [] : results;
     this.details.hidden = true;
-    this.stage.shown = scans.length;
-    this.names.forEach((name, p) => {
-      name.textContent = scans.length > 1 ? this.content.results[results[p]].run : '';
-      name.style.left = `${p * 50}%`;
-    });
-    this.node.classList.toggle('two', scans.length > 1);
-    this.legend.fill(scans);
+    this.stage.show(this.scans.length);
+    this.node.dataset.rows = this.stage.grid().rows;
+    this.legend.fill(this.scans);
     this.#paint();
-    this.#look(view);
+    if (this.scans.length > 0) this.#look(view);
     this.node.dataset.shown = `${view === 'map' ? 'map' : scan} ${results.join(' ')}`;
   }
 
   /** The map is of one place for all runs: the first scan's. */
   async #motionMap(result) {
+    if (this.clouds.scansOf(result).length === 0) return null;
     if (!this.#maps.has(result)) {
       const indices = this.clouds.scansOf(result);
       const parts = [];
@@ -90,20 +95,29 @@ export class Viewer {
   }
 
   #paint() {
-    const [key, theme] = [this.state.get('colouring'), this.state.get('theme')];
-    const { colours, scale } = colourScans(key, this.scans, theme);
+    const [wanted, theme] = [this.state.get('colouring'), this.state.get('theme')];
+    const key = wanted === 'score' && this.scans.some(({ scores }) => !scores) ? 'outcome' : wanted;
+    const { colours, scale, opinions, large } = colourScans(key, this.scans, theme);
     this.scans.forEach((scan, p) => {
-      const sizes = sizePoints(scan, this.state.get('visible'), this.state.get('pointSize'));
+      const sizes = sizePoints(scan, this.state.get('visible'), this.state.get('pointSize'), (i) => large(p, i));
       this.stage.panes[p].fill(scan.positions_m, colours[p], sizes, scan.path ?? null);
     });
-    this.scale.fill(key, scale, theme, this.#thresholds());
+    const names = this.names();
+    this.frames.fill(this.stage.grid().columns, names, this.scans, opinions);
+    const name = key === 'score' ? this.clouds.scoreName(this.#shown[0] ?? this.state.get('result')) : key;
+    this.scale.fill(key, scale, theme, { name, thresholds: this.#thresholds() });
+    if (opinions && names.length > 1) this.scale.fillKinds(opinionNames(names, theme));
     this.stage.draw();
   }
 
-  /** Of the scans in the panes; the motion map has none. */
+  /** Of the scans in the panes: [{name, threshold}]; the motion map has none. */
   #thresholds() {
     if (this.state.get('view') === 'map') return [];
-    return this.results().map((r) => this.content.results[r].result.scans[this.state.get('scan')].threshold);
+    return this.#shown.flatMap((r) => {
+      const { threshold_name: name, result } = this.content.results[r];
+      const threshold = result.scans[this.state.get('scan')]?.threshold ?? null;
+      return name && threshold !== null ? [{ name, threshold }] : [];
+    });
   }
 
   #listen(canvas) {
@@ -127,16 +141,16 @@ export class Viewer {
 
   /** Shows the numbers of the point at these pixels of the canvas, or none. */
   pickAt(x, y) {
-    if (this.scans.length === 0) return;
-    const { width, height } = this.stage.paneSize();
-    const pane = Math.min(Math.floor(x / width), this.scans.length - 1);
-    const { geometry } = this.stage.panes[pane];
-    const at = { x: x - pane * width, y, width, height };
-    const point = pick(this.scans[pane].positions_m, geometry.getAttribute('size').array, this.stage.clipMatrix(), at);
+    const spot = this.stage.paneAt(x, y);
+    if (!spot) return;
+    const { width, height } = this.stage.grid();
+    const { geometry } = this.stage.panes[spot.pane];
+    const at = { x: spot.x, y: spot.y, width, height };
+    const point = pick(this.scans[spot.pane].positions_m, geometry.getAttribute('size').array, this.stage.clipMatrix(), at);
     this.details.hidden = point < 0;
     if (point < 0) return;
-    const runs = this.results().map((r) => this.content.results[r].run);
-    this.details.replaceChildren(pointDetails(this.scans, pane, point, runs));
+    const scores = this.#shown.map((r) => this.clouds.scoreName(r));
+    this.details.replaceChildren(pointDetails(this.scans, spot.pane, point, this.names(), scores));
   }
 
   /** Points per colour as the graphics card gets them, "r,g,b" to number. */

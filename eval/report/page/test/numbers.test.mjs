@@ -1,11 +1,13 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { comparisonCharts, runNames } from '../src/comparison_charts.js';
+import { comparisonCharts } from '../src/comparison_charts.js';
 import { count, fixed, intervalOf, percent, whyNoInterval } from '../src/format.js';
 import { iou, precision, recall, worstScans } from '../src/metrics.js';
 import { flatten } from '../src/provenance.js';
+import { runNames, runOptions, toggled } from '../src/runs_menu.js';
 import { resultsOfSameScans } from '../src/same_scans.js';
-import { costColumns, metricsChart, stagesChart } from '../src/scan_charts.js';
+import { costColumns, metricsChart, stagesChart, thresholdChart } from '../src/scan_charts.js';
+import { precisionAt, scoreCurveChart } from '../src/score_curve.js';
 
 test('metrics of a scan worked by hand', () => {
   const counts = { tp: 6, fp: 2, fn: 4, tn: 100 };
@@ -71,12 +73,13 @@ test('the chart of metrics has gaps where there is no truth, and a band where th
 });
 
 test('charts of two runs hold both, and only what both have', () => {
-  const first = { run: 'online', result: TIMED };
-  const second = { run: 'delayed', result: { ...TIMED, scans: [{ tp: 3, fp: 0, fn: 1, threshold: 7 }, {}] } };
+  const otsu = { threshold_name: 'Otsu threshold', score_name: 'dynamic score' };
+  const first = { run: 'online', ...otsu, result: TIMED };
+  const second = { run: 'delayed', ...otsu, result: { ...TIMED, scans: [{ tp: 3, fp: 0, fn: 1, threshold: 7 }, { threshold: 8 }] } };
   const both = Object.fromEntries(comparisonCharts([first, second]).map((chart) => [chart.key, chart]));
   assert.deepEqual(both.iou.series.map(({ label, values }) => [label, values]), [['online', [0.5, null]], ['delayed', [0.75, null]]]);
   assert.deepEqual(both.time.series.map(({ values }) => values), [[9, 8], [9, 8]]);
-  assert.deepEqual(both.threshold.series.map(({ values }) => values), [[null, null], [7, null]]);
+  assert.deepEqual(both.threshold.series.map(({ values }) => values), [[null, null], [7, 8]]);
   assert.notEqual(both.fp.series[0].colour.light, both.fp.series[1].colour.light);
   assert.notDeepEqual(both.fp.series[0].dash, both.fp.series[1].dash);
   const untimed = { ...second, result: { ...second.result, timing: undefined } };
@@ -86,6 +89,33 @@ test('charts of two runs hold both, and only what both have', () => {
 test('runs of one name are numbered', () => {
   assert.deepEqual(runNames([{ run: 'a' }, { run: 'a' }]), ['a (1)', 'a (2)']);
   assert.deepEqual(runNames([{ run: 'a' }, { run: 'b' }]), ['a', 'b']);
+  assert.deepEqual(runNames([{ run: 'a' }, { run: 'b' }, { run: 'a' }]), ['a (1)', 'b', 'a (2)']);
+  assert.deepEqual(runOptions({ results: [{ run: 'a' }, { run: 'b' }, { run: 'a' }] }, 0, [1, 2]), [{ key: 1, name: 'b' }, { key: 2, name: 'a (2)' }]);
+  assert.deepEqual([toggled([1, 2], 3), toggled([1, 2], 1)], [[1, 2, 3], [2]]);
+});
+
+test('a threshold is shown by its name in the method, where it has one that varies', () => {
+  const scans = [{ threshold: 3 }, { threshold: null }, { threshold: 4 }];
+  const entry = (threshold_name, thresholds = scans) => ({ run: 'a', threshold_name, score_name: 'margin, m', result: { scans: thresholds, summary: null } });
+  const { title, note, series } = thresholdChart(entry('range tolerance, m'));
+  assert.deepEqual([title, note, series[0].values], ['Range tolerance, m', 'of the margin, m; none where no motion was looked for', [3, null, 4]]);
+  assert.equal(thresholdChart(entry('')), null);
+  assert.equal(thresholdChart(entry(undefined)), null);
+  assert.equal(thresholdChart(entry('a', [{ threshold: 3 }, {}, { threshold: 3 }])), null, 'a setting');
+  const keys = (...names) => comparisonCharts(names.map((name) => entry(name))).map(({ key }) => key);
+  assert.deepEqual([keys('a', 'a', 'a'), keys('a', 'b')], [['threshold'], []], 'different thresholds have no common axis');
+});
+
+test('curves of several runs share one axis, each with its own points, and dots of their labels', () => {
+  const curve = (run, results, recalls, precisions) => ({ run, results, recall: recalls, precision: precisions, average_precision: 0.5, labels: { recall: 0.4, precision: 0.9 } });
+  const curves = [curve('a', [0], [0.2, 0.2, 1], [1, 0.9, 0.3]), curve('b', [1], [0.5, 1], [0.8, 0.2]), curve('c', [2], [1], [0.1])];
+  const { x, series, options } = scoreCurveChart(curves, [0, 1]);
+  assert.deepEqual(x, [0.2, 0.2, 0.5, 1, 1]);
+  assert.deepEqual(series.map(({ drawn }) => drawn), [[1, 0.9, null, 0.3, null], [null, null, 0.8, null, 0.2]]);
+  assert.deepEqual(series.map(({ label, values }) => [label, values]), [['a, AP 50.0 %', [1, 1, 0.3, 0.3, 0.3]], ['b, AP 50.0 %', [0.8, 0.8, 0.8, 0.2, 0.2]]]);
+  assert.deepEqual(options.marks.map((mark) => [mark.x, mark.y]), [[0.4, 0.9], [0.4, 0.9]]);
+  assert.deepEqual(precisionAt({ recall: [0.5], precision: [0.7] }, [0.1, 0.6]), [0.7, null]);
+  assert.deepEqual([scoreCurveChart(curves, [3]), scoreCurveChart(undefined, [0])], [null, null]);
 });
 
 test('results are of the same scans when sequence and stems are', () => {

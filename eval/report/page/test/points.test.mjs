@@ -1,10 +1,13 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { Clouds } from '../src/clouds.js';
-import { colourScans, colouringsOf, countOutcomes, limits, quantity, sizePoints } from '../src/colouring.js';
+import { allColourings, colourScans, colouringsOf, countOutcomes, limits, quantity, sizePoints } from '../src/colouring.js';
+import { countDisputed, opinionNames, opinionsOf } from '../src/disagreement.js';
 import { join, movingPoints, toMap } from '../src/motion_map.js';
+import { paneAt, paneGrid } from '../src/pane_grid.js';
 import { pick } from '../src/picking.js';
 import { State } from '../src/state.js';
+import { rgb } from '../src/theme.js';
 import { extent, viewpoint } from '../src/views.js';
 
 const SCAN = {
@@ -38,7 +41,7 @@ test('a scale spans the drawn points, and a flat one still has two ends', () => 
 test('two scans share one scale, from one vote to the most that is drawn', () => {
   const scored = (scores) => ({ ...SCAN, scores: Int32Array.from(scores) });
   const { colours, scale } = colourScans('score', [scored([0, 4, 8, 999]), scored([0, 16, 0, 0])], 'light');
-  assert.deepEqual(scale, { low: 1, high: 17 });
+  assert.deepEqual(scale, { low: 1, high: 17, digits: 0 });
   const at = (s, i) => [...colours[s].slice(3 * i, 3 * i + 3)];
   assert.deepEqual(at(0, 0), [0xcf, 0xd5, 0xdc], 'no vote has a colour of its own');
   assert.deepEqual(at(0, 0), at(1, 0));
@@ -46,15 +49,58 @@ test('two scans share one scale, from one vote to the most that is drawn', () =>
   assert.deepEqual(at(0, 3), [0xfe, 0xe8, 0x38], 'beyond the scale is its end');
 });
 
-test('scores are offered only where every shown run kept them', () => {
-  const clouds = new Clouds({ clouds: [], results: [{ scores: [3] }, { scores: [] }, {}] });
-  const offers = (...results) => colouringsOf(clouds, results).some(({ key }) => key === 'score');
-  assert.deepEqual([offers(0), offers(1), offers(2), offers(0, 1)], [true, false, false, false]);
+test('a scale of scores that are no votes spans those that are not 0', () => {
+  const { colours, scale } = colourScans('score', [{ ...SCAN, scores: [-0.5, 0, 0.5, 9] }], 'light');
+  assert.deepEqual(scale, { low: -0.5, high: 0.5, digits: 2 });
+  assert.deepEqual([...colours[0].slice(3, 6)], [0xcf, 0xd5, 0xdc], '0 has a colour of its own');
+});
+
+test('scores are offered only where every shown run kept them, and of one kind', () => {
+  const clouds = new Clouds({ clouds: [], results: [{ scores: [3], score_name: 'margin' }, { scores: [] }, {}, { scores: [4] }] });
+  const score = (...results) => allColourings(clouds, results, 'orbit').find(({ key }) => key === 'score');
+  assert.deepEqual([score(0).why, score(0, 1).why, score(0, 3).why], [null, 'needs mosbench run --scores', 'not of different methods']);
+  assert.deepEqual([score(0).name, score(3).name], ['margin', 'score']);
+  assert.equal(colouringsOf(clouds, [1], 'orbit').some(({ key }) => key === 'score'), false);
+});
+
+test('disagreement is offered beside a run, outside of the motion map', () => {
+  const clouds = new Clouds({ clouds: [{ scans: [] }], results: [{ cloud: 0 }, { cloud: 0 }, {}] });
+  const why = (results, view) => allColourings(clouds, results, view).find(({ key }) => key === 'disagreement')?.why;
+  assert.deepEqual([why([0, 1], 'orbit'), why([0, 1], 'map'), why([0], 'orbit'), why([2], 'orbit')], [null, 'not in the motion map', 'needs a run beside', undefined]);
+});
+
+test('disagreement says who calls a point moving: the first run against each other, and against all', () => {
+  const says = (...outcomes) => ({ ...SCAN, outcomes: Uint8Array.from(outcomes) });
+  // tp fp fn tn: by the truth; 4 and 5: not judged, called static and moving
+  const scans = [says(0, 1, 2, 4), says(0, 3, 0, 4), says(2, 1, 2, 5)];
+  assert.deepEqual(scans.map((_, p) => [...opinionsOf(scans, p)]), [[1, 1, 2, 2], [0, 1, 2, 3], [1, 0, 3, 2]]);
+  assert.deepEqual(countDisputed(opinionsOf(scans, 0)), { first: 2, other: 2 });
+  const { colours, scale, large } = colourScans('disagreement', scans, 'light');
+  assert.equal(scale, null);
+  assert.deepEqual([large(1, 0), large(1, 1), large(1, 2), large(1, 3)], [false, true, true, false]);
+  const keys = opinionNames(['a', 'b'], 'light');
+  assert.deepEqual(keys.map(({ name }) => name), ['moving in both', 'moving in a alone', 'moving in b alone', 'static in both']);
+  assert.deepEqual([...colours[1].slice(3, 6)], rgb(keys[1].colour));
+  assert.equal(opinionNames(['a', 'b', 'c'], 'light')[2].name, 'moving in the other alone');
+});
+
+test('panes fill a grid that suits the screen', () => {
+  const shape = (panes, width) => {
+    const { columns, rows } = paneGrid(panes, { width, height: 400 });
+    return `${columns}x${rows}`;
+  };
+  assert.deepEqual([0, 1, 2, 3, 4, 5, 6].map((n) => shape(n, 1200)), ['1x1', '1x1', '2x1', '3x1', '2x2', '3x2', '3x2']);
+  assert.deepEqual([1, 2, 3, 4, 5, 6].map((n) => shape(n, 380)), ['1x1', '2x1', '2x2', '2x2', '2x3', '2x3']);
+  const grid = paneGrid(5, { width: 1200, height: 400 });
+  assert.deepEqual(paneAt(grid, 5, 450, 250), { pane: 4, x: 50, y: 50 });
+  assert.equal(paneAt(grid, 5, 900, 250), null, 'the sixth pane is empty');
 });
 
 test('hidden outcomes and points without a place have no size, judged moving ones are larger', () => {
-  assert.deepEqual([...sizePoints(SCAN, ALL, 1)].map((s) => Math.round(10 * s)), [18, 10, 18, 0]);
-  assert.equal(sizePoints(SCAN, ALL.with(0, false), 1)[0], 0);
+  const { large } = colourScans('outcome', [SCAN], 'light');
+  const sizes = (visible) => [...sizePoints(SCAN, visible, 1, (i) => large(0, i))].map((s) => Math.round(10 * s));
+  assert.deepEqual(sizes(ALL), [18, 10, 18, 0]);
+  assert.equal(sizes(ALL.with(0, false))[0], 0);
 });
 
 test('the motion map holds moving points in the frame of the map', () => {
