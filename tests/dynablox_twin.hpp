@@ -9,8 +9,8 @@
 
 #include "core/dynablox/clusters.hpp"
 #include "core/dynablox/config.hpp"
-#include "core/dynablox/range_image.hpp"
-#include "core/dynablox/sensor_model.hpp"
+#include "core/tsdf/range_image.hpp"
+#include "core/tsdf/sensor_model.hpp"
 #include "core/voxel/voxel.hpp"
 
 /// Dynablox voxel by voxel, without masks, bounds or lists of what may change: maps of single
@@ -18,6 +18,8 @@
 /// that of the method, so that numbers are equal.
 namespace mosbench::dynablox_twin {
 using namespace dynablox;
+using namespace tsdf;
+using dynablox::Config;
 
 /// Index of a voxel, or of a wide block, in the map frame: z, y, x.
 using Index = std::array<long, 3>;

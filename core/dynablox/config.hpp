@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "core/base/config_fields.hpp"
+#include "core/tsdf/config.hpp"
 
 namespace mosbench::dynablox {
 
@@ -27,18 +28,9 @@ inline constexpr std::array<std::string_view, 2> kMissingNames = {"ignore", "kee
 
 /// Every parameter; the defaults are those of the authors' default.yaml, where lengths in voxels
 /// are given in metres for voxels of 0.2 m.
-struct Config {
+struct Config : tsdf::Config {
   Level level = Level::kObject;
-  double voxel_size_m = 0.2;
-  double min_range_m = 0.5;
-  double max_range_m = 20.0;
-  int range_image_rows = 0;     ///< V; 0: measured
-  int range_image_columns = 0;  ///< H; 0: measured
-  double field_of_view_down_deg = 0;
-  double field_of_view_up_deg = 0;  ///< both 0: measured
-  double truncation_voxels = 2.0;   ///< tau / v
   double occupied_below_voxels = 1.5;
-  double max_weight = 1000;
   int burn_in_scans = 5;
   int temporal_buffer_scans = 2;
   int counter_to_reset_scans = 150;
@@ -52,15 +44,9 @@ struct Config {
   BoxTest box_test = BoxTest::kAuthors;
   double max_tracking_distance_m = 1.0;
   int min_track_scans = 0;
-  double map_radius_ranges = 2.0;
 
-  float truncation_m() const { return static_cast<float>(truncation_voxels * voxel_size_m); }
   float occupied_below_m() const {
     return static_cast<float>(occupied_below_voxels * voxel_size_m);
-  }
-  bool measures_sensor() const {
-    return range_image_rows == 0 || range_image_columns == 0 ||
-           (field_of_view_down_deg == 0 && field_of_view_up_deg == 0);
   }
 };
 
@@ -68,25 +54,9 @@ struct Config {
 template <typename AnyConfig, typename Visitor>
 void visit_fields(AnyConfig& config, Visitor&& visit) {
   visit("level", config.level, kLevelNames, "points move with their object, or by their voxel");
-  visit("voxel_size_m", config.voxel_size_m, FieldRange{0.01, 10.0}, "v, edge of a voxel");
-  visit("min_range_m", config.min_range_m, FieldRange{0.0, 1000.0},
-        "points at or nearer than this never move");
-  visit("max_range_m", config.max_range_m, FieldRange{0.1, 1000.0},
-        "voxels farther than this are not updated");
-  visit("range_image_rows", config.range_image_rows, FieldRange{0, 1024},
-        "V, rows of the range image; 0: measured in the first scan with 1000 returns, as columns "
-        "and field of view");
-  visit("range_image_columns", config.range_image_columns, FieldRange{0, 8192},
-        "H, columns of the range image in a full turn");
-  visit("field_of_view_down_deg", config.field_of_view_down_deg, FieldRange{-90.0, 90.0},
-        "elevation of the lowest row; half a row below the lowest beam is best");
-  visit("field_of_view_up_deg", config.field_of_view_up_deg, FieldRange{-90.0, 90.0},
-        "elevation of the highest row");
-  visit("truncation_voxels", config.truncation_voxels, FieldRange{1.1, 100.0},
-        "tau, distances are cut off here");
+  tsdf::visit_common_fields(config, visit);
   visit("occupied_below_voxels", config.occupied_below_voxels, FieldRange{0.0, 100.0},
         "a voxel is occupied below this distance to a surface");
-  visit("max_weight", config.max_weight, FieldRange{1.0, 1e6}, "limit of a voxel's weight");
   visit("burn_in_scans", config.burn_in_scans, FieldRange{1, 10000},
         "an ever-free voxel was not occupied for so long");
   visit("temporal_buffer_scans", config.temporal_buffer_scans, FieldRange{0, 10000},
@@ -113,8 +83,6 @@ void visit_fields(AnyConfig& config, Visitor&& visit) {
         "an object's centre moves at most so far between scans");
   visit("min_track_scans", config.min_track_scans, FieldRange{0, 10000},
         "an object was seen in so many scans before");
-  visit("map_radius_ranges", config.map_radius_ranges, FieldRange{1.0, 1e6},
-        "the map is kept within so many times max_range_m; the authors keep all");
 }
 
 /// Throws std::invalid_argument "<key>: <what is wrong>, <what was expected>" for the first field

@@ -24,66 +24,68 @@ struct HistoryBits {
 };
 
 /// One row of eight voxels, of which `occupied` are so in this frame.
-inline __attribute__((always_inline)) void count_row(VoxelNumbers& numbers, std::size_t row,
+inline __attribute__((always_inline)) void count_row(VoxelHistory& voxels, std::size_t row,
                                                      std::uint32_t occupied, const Frame& frame,
                                                      HistoryBits& plane) {
-  auto last = load<IntLanes>(&numbers.last_occupied[row * kLanes]);
+  auto last = load<IntLanes>(&voxels.last_occupied[row * kLanes]);
   if (occupied != 0) {
     const IntLanes is_occupied = lanes_of(occupied);
     using Runs = std::uint16_t __attribute__((vector_size(16)));
-    const auto run = __builtin_convertvector(load<Runs>(&numbers.runs[row * kLanes]), IntLanes);
+    const auto run = __builtin_convertvector(load<Runs>(&voxels.runs[row * kLanes]), IntLanes);
     constexpr std::int32_t kMost = std::numeric_limits<std::uint16_t>::max();
     const IntLanes longer = run < kMost ? run + 1 : run;
     const IntLanes counted = last >= frame.buffer_start ? longer : IntLanes{} + 1;
     const IntLanes new_run = is_occupied ? counted : run;
     last = is_occupied ? IntLanes{} + frame.now : last;
-    store(__builtin_convertvector(new_run, Runs), &numbers.runs[row * kLanes]);
-    store(last, &numbers.last_occupied[row * kLanes]);
+    store(__builtin_convertvector(new_run, Runs), &voxels.runs[row * kLanes]);
+    store(last, &voxels.last_occupied[row * kLanes]);
     plane.worn = with_row(plane.worn, row & 7, bits_of(new_run >= frame.counter_to_reset));
   }
   plane.recent = with_row(plane.recent, row & 7, bits_of(last >= frame.recent_start));
 }
 
 /// The first half of the update, for the voxels of one block.
-MOSBENCH_MULTIARCH void count_occupied(MapBlock& block, VoxelNumbers& numbers,
-                                       const BlockMask& points, const Frame& frame) {
+MOSBENCH_MULTIARCH void count_occupied(BlockHistory& history, VoxelHistory& voxels,
+                                       const BlockMask& occupied_voxels, const Frame& frame) {
   for (std::size_t z = 0; z < kBlockSide; ++z) {
-    const std::uint64_t occupied = block.near_surface.words[z] | points.words[z];
-    HistoryBits plane{block.recent.words[z], block.worn.words[z]};
+    const std::uint64_t occupied = occupied_voxels.words[z];
+    HistoryBits plane{history.recent.words[z], history.worn.words[z]};
     const std::uint64_t concerned = occupied | plane.recent;
     if (concerned == 0) continue;
     for (std::size_t y = 0; y < kBlockSide; ++y) {
       if ((concerned >> (8 * y) & 0xFF) == 0) continue;
-      count_row(numbers, z * kBlockSide + y, static_cast<std::uint32_t>(occupied >> (8 * y) & 0xFF),
+      count_row(voxels, z * kBlockSide + y, static_cast<std::uint32_t>(occupied >> (8 * y) & 0xFF),
                 frame, plane);
     }
-    block.recent.words[z] = plane.recent;
-    block.worn.words[z] = plane.worn;
+    history.recent.words[z] = plane.recent;
+    history.worn.words[z] = plane.worn;
   }
-  block.recent_frame = frame.now;
+  history.recent_frame = frame.now;
 }
 
 /// The same for a block of which no voxel was ever observed: all are near a surface, d = 0.
-void count_unobserved(MapBlock& block, const Frame& frame) {
+void count_unobserved(BlockHistory& history, const Frame& frame) {
   constexpr std::uint16_t kMost = std::numeric_limits<std::uint16_t>::max();
-  const bool goes_on = block.last_occupied >= frame.buffer_start;
-  block.run =
-      goes_on ? static_cast<std::uint16_t>(std::min(block.run + 1, int{kMost})) : std::uint16_t{1};
-  block.last_occupied = frame.now;
+  const bool goes_on = history.last_occupied >= frame.buffer_start;
+  history.run = goes_on ? static_cast<std::uint16_t>(std::min(history.run + 1, int{kMost}))
+                        : std::uint16_t{1};
+  history.last_occupied = frame.now;
 }
 
 /// Returns the voxels that cannot border on ever-free space: unobserved, or occupied in the
 /// burn-in.
-BlockMask barred(const TsdfMap& map, const MapBlock& block, const Frame& frame) {
-  if (block.recent_frame == frame.now || !block.recent.any()) {
-    return ~block.observed | block.recent;
+BlockMask barred(const EverFreeMap& map, std::uint32_t slot, const Frame& frame) {
+  const BlockMask unobserved = ~map.tsdf.blocks[slot].observed;
+  const BlockHistory& history = map.histories[slot];
+  if (history.recent_frame == frame.now || !history.recent.any()) {
+    return unobserved | history.recent;
   }
   BlockMask recent;
-  const VoxelNumbers& numbers = map.numbers[block.numbers];
-  for_each_cell(block.recent, [&](std::uint32_t cell) {
-    if (numbers.last_occupied[cell] >= frame.recent_start) recent.set(cell);
+  const VoxelHistory& voxels = map.voxels[history.voxels];
+  for_each_cell(history.recent, [&](std::uint32_t cell) {
+    if (voxels.last_occupied[cell] >= frame.recent_start) recent.set(cell);
   });
-  return ~block.observed | recent;
+  return unobserved | recent;
 }
 
 /// Returns the voxels of a block that have one of the mask's within it among themselves and their
@@ -105,35 +107,36 @@ BlockMask grown_inside(const BlockMask& mask) {
 }
 
 /// The second half of the update, for one block.
-void make_ever_free(TsdfMap& map, std::uint32_t slot, const Frame& frame) {
-  MapBlock& block = map.blocks[slot];
-  if (block.numbers == kNoSlot) return;
+void make_ever_free(EverFreeMap& map, std::uint32_t slot, const Frame& frame) {
+  BlockHistory& history = map.histories[slot];
+  if (history.voxels == kNoSlot) return;
   // Most voxels that are not ever-free have an occupied or unobserved one beside them in their
   // block.
   const BlockMask candidates =
-      without(~block.ever_free, grown_inside(~block.observed | block.recent));
+      without(~history.ever_free, grown_inside(~map.tsdf.blocks[slot].observed | history.recent));
   if (!candidates.any()) return;
   static constexpr BlockMask kAll{{~0ull, ~0ull, ~0ull, ~0ull, ~0ull, ~0ull, ~0ull, ~0ull}};
   std::array<BlockMask, 27> masks;
   Neighbourhood around{};
-  for_each_neighbour(map.blocks.index_of(slot), [&](std::size_t position, const BlockIndex& index) {
-    const MapBlock* neighbour = position == 13 ? &block : map.find(index);
+  const BlockIndex& centre = map.tsdf.blocks.index_of(slot);
+  for_each_neighbour(centre, [&](std::size_t position, const BlockIndex& index) {
+    const std::uint32_t neighbour = position == 13 ? slot : map.tsdf.blocks.find(index);
     around[position] = &kAll;
-    if (neighbour == nullptr || neighbour->numbers == kNoSlot) return;
-    masks[position] = barred(map, *neighbour, frame);
+    if (neighbour == kNoSlot || map.histories[neighbour].voxels == kNoSlot) return;
+    masks[position] = barred(map, neighbour, frame);
     around[position] = &masks[position];
   });
   HaloRows halo;
   gather_halo(around, 1, halo);
-  block.ever_free = block.ever_free | without(candidates, dilate(halo));
+  history.ever_free = history.ever_free | without(candidates, dilate(halo));
 }
 
-void clear_ever_free(TsdfMap& map, const Voxel& voxel) {
-  const std::uint32_t slot = map.blocks.find(block_of(voxel));
+void clear_ever_free(EverFreeMap& map, const Voxel& voxel) {
+  const std::uint32_t slot = map.tsdf.blocks.find(block_of(voxel));
   if (slot == kNoSlot) return;
   BlockMask cleared;
   cleared.set(cell_of(voxel));
-  map.blocks[slot].ever_free = without(map.blocks[slot].ever_free, cleared);
+  map.histories[slot].ever_free = without(map.histories[slot].ever_free, cleared);
 }
 
 /// Calls visit(voxel) for the 26 neighbours.
@@ -147,15 +150,16 @@ void for_each_around(const Voxel& voxel, Visit&& visit) {
 /// Clears worn voxels and those around them, in one wide block after the other, voxels in the order
 /// z, y, x: one that an earlier one cleared clears none itself. Other wide blocks are changed at
 /// the end, so that the order of wide blocks does not matter.
-void clear_worn(TsdfMap& map, std::span<const std::uint32_t> worn_slots) {
+void clear_worn(EverFreeMap& map, std::span<const std::uint32_t> worn_slots) {
   struct WornVoxel {
     BlockIndex wide;
     Voxel voxel;
   };
   std::vector<WornVoxel> worn;
   for (const std::uint32_t slot : worn_slots) {
-    const BlockIndex index = map.blocks.index_of(slot);
-    for_each_cell(map.blocks[slot].worn & map.blocks[slot].ever_free, [&](std::uint32_t cell) {
+    const BlockIndex index = map.tsdf.blocks.index_of(slot);
+    const BlockHistory& history = map.histories[slot];
+    for_each_cell(history.worn & history.ever_free, [&](std::uint32_t cell) {
       worn.push_back({{index.x >> 1, index.y >> 1, index.z >> 1}, voxel_at(index, cell)});
     });
   }
@@ -165,8 +169,7 @@ void clear_worn(TsdfMap& map, std::span<const std::uint32_t> worn_slots) {
   std::ranges::sort(worn, {}, key);
   std::vector<Voxel> in_other_blocks;
   for (const WornVoxel& one : worn) {
-    const MapBlock* block = map.find(block_of(one.voxel));
-    if (!block->ever_free.test(cell_of(one.voxel))) continue;
+    if (!map.ever_free_in(block_of(one.voxel)).test(cell_of(one.voxel))) continue;
     clear_ever_free(map, one.voxel);
     for_each_around(one.voxel, [&](const Voxel& neighbour) {
       const BlockIndex index = block_of(neighbour);
@@ -182,21 +185,24 @@ void clear_worn(TsdfMap& map, std::span<const std::uint32_t> worn_slots) {
 
 }  // namespace
 
-void update_ever_free(TsdfMap& map, const VoxelSet& measured, std::int32_t frame_number,
+void update_ever_free(EverFreeMap& map, const VoxelSet& measured, std::int32_t frame_number,
                       const Config& config, ThreadPool& pool) {
   const Frame frame{frame_number, frame_number - config.temporal_buffer_scans,
                     frame_number - config.burn_in_scans + 1, config.counter_to_reset_scans};
   std::vector<std::uint8_t> is_worn(map.touched.size());
   pool.for_ranges(map.touched.size(), 32, [&](std::size_t begin, std::size_t end, unsigned) {
     for (std::size_t i = begin; i < end; ++i) {
-      MapBlock& block = map.blocks[map.touched[i]];
-      if (block.numbers == kNoSlot) {
-        count_unobserved(block, frame);
+      const std::uint32_t slot = map.touched[i];
+      BlockHistory& history = map.histories[slot];
+      if (history.voxels == kNoSlot) {
+        count_unobserved(history, frame);
         continue;
       }
-      const BlockMask* points = measured.mask_of(map.blocks.index_of(map.touched[i]));
-      count_occupied(block, map.numbers[block.numbers], points ? *points : BlockMask{}, frame);
-      is_worn[i] = (block.worn & block.ever_free).any();
+      const BlockMask* points = measured.mask_of(map.tsdf.blocks.index_of(slot));
+      const BlockMask& near_surface = map.tsdf.blocks[slot].near_surface;
+      count_occupied(history, map.voxels[history.voxels],
+                     points ? near_surface | *points : near_surface, frame);
+      is_worn[i] = (history.worn & history.ever_free).any();
     }
   });
   std::vector<std::uint32_t> worn_slots;

@@ -3,7 +3,8 @@
 #include <cstdint>
 
 #include "core/base/thread_pool.hpp"
-#include "core/dynablox/tsdf_map.hpp"
+#include "core/dynablox/config.hpp"
+#include "core/dynablox/ever_free_map.hpp"
 #include "core/voxel/voxel_set.hpp"
 
 namespace mosbench::dynablox {
@@ -13,7 +14,7 @@ namespace mosbench::dynablox {
 /// c = c + 1 if O >= f - buffer, else 1; O = f. An ever-free voxel with c at the limit is ever-free
 /// no more, nor are its 26 neighbours. Then each observed voxel becomes ever-free when it and its
 /// 26 neighbours are observed and were not occupied since frame f - burn-in.
-void update_ever_free(TsdfMap& map, const VoxelSet& measured, std::int32_t frame,
+void update_ever_free(EverFreeMap& map, const VoxelSet& measured, std::int32_t frame,
                       const Config& config, ThreadPool& pool);
 
 }  // namespace mosbench::dynablox

@@ -1,12 +1,13 @@
 #pragma once
 
-#include <memory>
 #include <mosbench/method.hpp>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "core/dynablox/config.hpp"
+#include "core/dynablox/ever_free_map.hpp"
+#include "core/dynablox/tracks.hpp"
+#include "core/tsdf/tsdf_method.hpp"
 
 namespace mosbench::dynablox {
 
@@ -15,24 +16,24 @@ namespace mosbench::dynablox {
 /// voxels are brought up to date, then the scan enters the map. Online. Scores are the distance of
 /// the point's voxel to the nearest surface, metres, tau more where it is ever-free, 0 where it was
 /// not observed; no threshold is compared with them. With level=object, objects are the tracks.
-class Pipeline final : public Method {
+class Pipeline final : public tsdf::TsdfMethod {
  public:
   /// Throws std::invalid_argument as `check` does, and for 0 threads.
   explicit Pipeline(const Config& config, const RunContext& context = {});
-  ~Pipeline() override;
-
-  std::unique_ptr<Observed> observe(std::span<const Point> points,
-                                    const Pose& map_from_sensor) override;
-  std::vector<LabelledScan> push(std::unique_ptr<Observed> observed) override;
-  std::vector<LabelledScan> push(std::span<const Point> points,
-                                 const Pose& map_from_sensor) override;
-  std::vector<LabelledScan> finish() override;
-  std::optional<MemoryUse> memory() const override;
-  std::vector<std::string> remarks() const override;
 
  private:
-  struct State;
-  std::unique_ptr<State> state_;
+  void take(const tsdf::ObservedScan& observed, LabelledScan& result) override;
+  MemoryUse map_memory() const override;
+
+  void label_points(const tsdf::ObservedScan& observed, std::span<const BlockMask> ever_free,
+                    LabelledScan& result) const;
+  void label_objects(const tsdf::ObservedScan& observed, std::span<const BlockMask> ever_free,
+                     LabelledScan& result);
+  std::vector<float> scores(const tsdf::ObservedScan& observed) const;
+
+  Config config_;
+  EverFreeMap map_;
+  Tracks tracks_;
 };
 
 }  // namespace mosbench::dynablox

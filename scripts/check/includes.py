@@ -17,6 +17,10 @@ MAY_INCLUDE = {
     "core/include": set(),
     "core/base": {"core/include"},
     "core/voxel": {"core/include", "core/base"},
+    # Signed distances around the sensor, for the methods that judge by them.
+    "core/tsdf": {"core/include", "core/base", "core/voxel"},
+    "core/dynablox": {"core/include", "core/base", "core/voxel", "core/tsdf"},
+    "core/lc_free_space": {"core/include", "core/base", "core/voxel", "core/tsdf"},
     # Stands on the map of the paper's method.
     "core/hmm_mos_plus": {"core/include", "core/base", "core/voxel", "core/hmm_mos"},
     # Its free space is that of underwood.

@@ -2,8 +2,8 @@
 
 #include <random>
 
-#include "core/dynablox/depth_bounds.hpp"
 #include "core/dynablox/pipeline.hpp"
+#include "core/tsdf/depth_bounds.hpp"
 #include "tests/dynablox_twin.hpp"
 #include "tests/small_world.hpp"
 
@@ -117,12 +117,12 @@ TEST(DynabloxDepthBounds, HoldForEveryPlaceInRandomRectangles) {
   };
   std::size_t free = 0;
   for (int round = 0; round < 40; ++round) {
-    dynablox::RangeImage image{.rows = 3 + below(60), .columns = 5 + below(300), .ranges_m = {}};
+    tsdf::RangeImage image{.rows = 3 + below(60), .columns = 5 + below(300), .ranges_m = {}};
     image.ranges_m.resize(static_cast<std::size_t>((image.rows + 1) * image.columns));
     for (std::size_t i = 0; i < static_cast<std::size_t>(image.rows * image.columns); ++i) {
       image.ranges_m[i] = random() % 9 == 0 ? 0 : 1 + static_cast<float>(random() % 4096) / 512;
     }
-    const dynablox::DepthBounds bounds(image);
+    const tsdf::DepthBounds bounds(image);
     for (int rectangle = 0; rectangle < 20; ++rectangle) {
       const int first_row = below(image.rows),
                 last_row = std::min(image.rows - 1, first_row + below(20));
@@ -135,7 +135,7 @@ TEST(DynabloxDepthBounds, HoldForEveryPlaceInRandomRectangles) {
         const float row = static_cast<float>(first_row + below(last_row - first_row + 1)) + share;
         const float column =
             static_cast<float>(first_column + below(last_column - first_column + 1)) + share;
-        const float depth = dynablox::depth_at(image, {row, column}, 0.2F);
+        const float depth = tsdf::depth_at(image, {row, column}, 0.2F);
         ASSERT_GE(depth, least * (1 - 1e-6F));
         ASSERT_LE(depth, greatest * (1 + 1e-6F));
       }

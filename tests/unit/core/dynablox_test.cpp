@@ -7,18 +7,12 @@
 
 #include "core/dynablox/clusters.hpp"
 #include "core/dynablox/ever_free.hpp"
-#include "core/dynablox/integration.hpp"
 #include "core/dynablox/pipeline.hpp"
-#include "core/dynablox/ray_blocks.hpp"
 #include "core/dynablox/tracks.hpp"
 
 /// Numbers worked by hand from the published settings.
 namespace mosbench::dynablox {
 namespace {
-
-/// The sensor of the authors' default.yaml.
-constexpr SensorModel kOusterOs1{
-    .rows = 64, .columns = 2048, .down_deg = -33.22222 / 2, .up_deg = 33.22222 / 2};
 
 TEST(DynabloxConfig, DefaultsAreTheAuthorsAndLegal) {
   const Config config;
@@ -45,133 +39,26 @@ TEST(DynabloxConfig, RefusesValuesThatDoNotGoTogether) {
   refuses([](Config& c) { c.truncation_voxels = 1; });
 }
 
-TEST(DynabloxSensor, MeetsAVoxelWithSoManyRays) {
-  const double rays = kOusterOs1.rays_per_voxel_at_1m(0.2);
-  EXPECT_NEAR(rays, 1439.0770, 1e-4);
-  EXPECT_NEAR(rays / 25, 57.563, 1e-3);
-  EXPECT_NEAR(rays / 400, 3.5977, 1e-4);
-}
-
-TEST(DynabloxAngles, AreThoseOfTheLibraryWithinTheirRounding) {
-  for (int i = 0; i < 20000; ++i) {
-    const double angle = (i + 0.25) / 20000 * 2 * std::numbers::pi;
-    const Point point{static_cast<float>(7 * std::cos(angle)),
-                      static_cast<float>(-7 * std::sin(angle)), 1, 0};
-    const ImagePlace place = place_in_image(kOusterOs1, point);
-    const double phi = std::atan2(-double{point.y}, double{point.x}) / (2 * std::numbers::pi);
-    ASSERT_NEAR(place.column, 2048 * (phi < 0 ? phi + 1 : phi), 2e-4);
-    const double elevation = std::atan(1.0 / 7) / std::numbers::pi * 180;
-    ASSERT_NEAR(place.row, 63 * (0.5 - elevation / 33.22222), 2e-5);
-  }
-  EXPECT_EQ(place_in_image(kOusterOs1, {0, 0, 0, 0}).column, 0.0F);
-}
-
-std::pair<int, int> pixel_of(const Point& point) {
-  ThreadPool pool(1);
-  const std::int32_t pixel = pixels_of({&point, 1}, kOusterOs1, pool).pixels.front();
-  return pixel == kNoPixel ? std::pair{-1, -1} : std::pair{pixel / 2048, pixel % 2048};
-}
-
-TEST(DynabloxPixels, AreTruncatedTowardZeroAndRejectedAtTheSeam) {
-  using Pixel = std::pair<int, int>;
-  const Pixel none{-1, -1};
-  EXPECT_EQ(pixel_of({1, 0, 0, 0}), none);
-  EXPECT_EQ(pixel_of({1, -1, 0, 0}), Pixel(31, 256));
-  EXPECT_EQ(pixel_of({-1, -1, 0, 0}), Pixel(31, 768));
-  EXPECT_EQ(pixel_of({-1, 1, 0, 0}), Pixel(31, 1280));
-  EXPECT_EQ(pixel_of({1, 1, 0, 0}), Pixel(31, 1792));
-  const auto at_elevation = [](double degrees) {
-    const double radians = degrees / 180 * std::numbers::pi;
-    return Point{-static_cast<float>(std::cos(radians)), 0.1F,
-                 static_cast<float>(std::sin(radians)), 0};
-  };
-  EXPECT_EQ(pixel_of(at_elevation(16.5)).first, 0);
-  EXPECT_EQ(pixel_of(at_elevation(16.61 + 0.4)).first, 0) << "up to a row above the field of view";
-  EXPECT_EQ(pixel_of(at_elevation(16.61 + 0.7)), none);
-  EXPECT_EQ(pixel_of(at_elevation(-16.5)).first, 62);
-  EXPECT_EQ(pixel_of(at_elevation(-17.3)), none);
-  EXPECT_EQ(pixel_of({0, 0, 0, 0}), none);
-  EXPECT_EQ(pixel_of({std::nanf(""), 1, 1, 0}), none);
-  EXPECT_EQ(pixel_of({INFINITY, 1, 1, 0}), none);
-}
-
-TEST(DynabloxRangeImage, KeepsTheNearestReturnAndHidesBehindOneTooNear) {
-  const SensorModel sensor{.rows = 2, .columns = 8, .down_deg = -10, .up_deg = 10};
-  const ScanPixels pixels{{3, 3, 3, 4, 4, kNoPixel, 12}, {7, 5, 6, 9, 0.3F, 1, 8}};
-  const RangeImage image = range_image(pixels, sensor, 0.5F);
-  EXPECT_EQ(image.at(0, 3), 5);
-  EXPECT_EQ(image.at(0, 4), 0);
-  EXPECT_EQ(image.at(1, 4), 8);
-  EXPECT_EQ(image.ranges_m.size(), 24U) << "an empty row below the last one";
-}
-
-TEST(DynabloxDepth, IsLinearButForEmptyPixelsAndEdges) {
-  RangeImage image{.rows = 2, .columns = 2, .ranges_m = {4, 6, 5, 7, 0, 0}};
-  EXPECT_FLOAT_EQ(depth_at(image, {0.5F, 0.25F}, 10), 5.0F);
-  EXPECT_EQ(depth_at(image, {0.5F, 0.25F}, 0.2F), 4.0F) << "an edge: the nearest";
-  image.ranges_m = {4, 0, 5, 0, 0, 0};
-  EXPECT_FLOAT_EQ(depth_at(image, {0.5F, 0.25F}, 10), 4.5F) << "the left column alone";
-  image.ranges_m = {0, 6, 0, 0, 0, 0};
-  EXPECT_EQ(depth_at(image, {0.5F, 0.25F}, 10), 6.0F);
-  image.ranges_m = {0, 0, 0, 0, 0, 0};
-  EXPECT_EQ(depth_at(image, {0.5F, 0.25F}, 10), 0.0F);
-  image.ranges_m = {4, 6, 5, 7, 0, 0};
-  EXPECT_FLOAT_EQ(depth_at(image, {1.0F, 0.5F}, 10), 6.0F) << "below the last row nothing is";
-}
-
-/// A voxel at 5 m that is at a surface in some frames, and then free: frames until it counts as
-/// free.
-int frames_until_free(int frames_at_surface) {
-  const Config config;
-  ThreadPool pool(1);
-  const VoxelGrid grid{.voxel_size_m = 0.2};
-  TsdfMap map;
-  const Voxel voxel{25, 0, 0};  // its centre is 5 m along -x of the sensor
-  Pose pose = Pose::Identity();
-  pose.translation() = Eigen::Vector3d(10.1, 0.1, 0.1);
-  const std::vector<std::uint32_t> slots = map.touch({wide_of(block_of(voxel))}, 0);
-  RangeImage image{.rows = 64, .columns = 2048, .ranges_m = {}};
-  const auto see = [&](float depth_m) {
-    image.ranges_m.assign(65 * 2048, depth_m);
-    integrate(map, slots, grid, {image, kOusterOs1, pose}, config, pool);
-  };
-  for (int i = 0; i < frames_at_surface; ++i) see(5.0F);
-  const MapBlock& block = *map.find(block_of(voxel));
-  EXPECT_TRUE(block.near_surface.test(cell_of(voxel)));
-  for (int frames = 1; frames < 100; ++frames) {
-    see(15.0F);
-    // The mean of 3 free and 1 occupied frame is 0.3 m but for rounding.
-    if (map.numbers[block.numbers].distances_m[cell_of(voxel)] > 0.3F - 1e-6F) return frames;
-  }
-  return -1;
-}
-
-TEST(DynabloxIntegration, TakesSoManyFramesToFreeAVoxelAtASurface) {
-  EXPECT_EQ(frames_until_free(1), 3);
-  EXPECT_EQ(frames_until_free(5), 15);
-  EXPECT_EQ(frames_until_free(20), 25) << "the weight is limited";
-  EXPECT_EQ(frames_until_free(100), 25);
-}
-
 /// Two wide blocks in which everything was seen free and is ever-free.
-TsdfMap free_map(const Config& config) {
-  TsdfMap map;
-  map.touched = map.touch({{0, 0, 0}, {1, 0, 0}}, 0);
+EverFreeMap free_map(const Config& config) {
+  EverFreeMap map(config.occupied_below_m());
+  map.touch({{0, 0, 0}, {1, 0, 0}}, 0);
   for (const std::uint32_t slot : map.touched) {
-    MapBlock& block = map.blocks[slot];
-    map.add_numbers(block, config.counter_to_reset_scans);
-    map.numbers[block.numbers].distances_m.fill(0.4F);
-    map.numbers[block.numbers].weights.fill(1);
+    tsdf::MapBlock& block = map.tsdf.blocks[slot];
+    map.tsdf.add_numbers(block);
+    map.tsdf.numbers[block.numbers].distances_m.fill(0.4F);
+    map.tsdf.numbers[block.numbers].weights.fill(1);
     block.near_surface = BlockMask{};
-    block.observed = block.ever_free = ~BlockMask{};
+    block.observed = map.histories[slot].ever_free = ~BlockMask{};
   }
+  map.add_voxels(config.counter_to_reset_scans);
   return map;
 }
 
-std::size_t cleared_voxels(const TsdfMap& map) {
+std::size_t cleared_voxels(const EverFreeMap& map) {
   std::size_t cleared = 0;
   for (const std::uint32_t slot : map.touched) {
-    cleared += (~map.blocks[slot].ever_free).count();
+    cleared += (~map.histories[slot].ever_free).count();
   }
   return cleared;
 }
@@ -182,7 +69,7 @@ TEST(DynabloxEverFree, EndsWithItsNeighboursAfterSoManyOccupiedFrames) {
   const Voxel voxel{15, 7, 7};  // its neighbours lie in four blocks of either wide block
   VoxelSet points;
   points.masks[points.insert(block_of(voxel))].set(cell_of(voxel));
-  TsdfMap map = free_map(config);
+  EverFreeMap map = free_map(config);
   for (std::int32_t frame = 1000; frame < 1149; ++frame) {
     update_ever_free(map, points, frame, config, pool);
     ASSERT_EQ(cleared_voxels(map), 0U);
@@ -199,7 +86,7 @@ TEST(DynabloxEverFree, CountsOnOverGapsWithinTheBufferAlone) {
   VoxelSet points;
   points.masks[points.insert(block_of(voxel))].set(cell_of(voxel));
   for (const int gap : {2, 3}) {
-    TsdfMap map = free_map(config);
+    EverFreeMap map = free_map(config);
     std::int32_t frame = 1000;
     for (int i = 0; i < 149; ++i, ++frame) update_ever_free(map, points, frame, config, pool);
     for (int i = 1; i < gap; ++i, ++frame) update_ever_free(map, {}, frame, config, pool);
@@ -215,7 +102,7 @@ TEST(DynabloxEverFree, OneThatAnEarlierOneClearedClearsNoneItself) {
   VoxelSet points;
   points.masks[points.insert({0, 0, 0})].set(cell_of({3, 4, 4}));
   points.masks[points.insert({0, 0, 0})].set(cell_of({4, 4, 4}));
-  TsdfMap map = free_map(config);
+  EverFreeMap map = free_map(config);
   update_ever_free(map, points, 1000, config, pool);
   EXPECT_EQ(cleared_voxels(map), 27U);
 }
@@ -317,90 +204,6 @@ TEST(DynabloxTracks, JoinTheNearestPairsFirstAndGiveNoNumberTwice) {
   EXPECT_EQ(numbers({0.2, 7}), (Numbers{1, 4})) << "too far from 5.5";
   EXPECT_EQ(numbers({}), Numbers{});
   EXPECT_EQ(numbers({0.2}), Numbers{5});
-}
-
-TEST(DynabloxRays, MeetEveryBlockThatPointsOnThemLieIn) {
-  std::mt19937 random(3);
-  const auto uniform = [&](double low, double high) {
-    return low + (high - low) * (static_cast<double>(random()) / 4294967296.0);
-  };
-  Pose pose = Pose::Identity();
-  pose.linear() = Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized()).matrix();
-  pose.translation() = Eigen::Vector3d(-11.3, 4.1, 2.2);
-  const RayLimits limits{.wide_block_m = 3.2,
-                         .grid_origin_m = Eigen::Vector3d(-12.8, 0, 0),
-                         .min_range_m = 0.5,
-                         .max_range_m = 25,
-                         .beyond_m = 0.4};
-  ThreadPool pool(2);
-  RayBlocksScratch scratch;
-  for (int round = 0; round < 200; ++round) {
-    const std::vector<Point> points{{static_cast<float>(uniform(-15, 15)),
-                                     static_cast<float>(uniform(-15, 15)),
-                                     static_cast<float>(uniform(-5, 5)), 0}};
-    const Eigen::Vector3d point(points[0].x, points[0].y, points[0].z);
-    const auto range_m = static_cast<float>(point.norm());
-    const auto blocks = ray_blocks(points, {{0}, {range_m}}, pose, limits, scratch, pool);
-    std::size_t inside = 0;
-    for (int step = 0; step <= 1000; ++step) {
-      const Eigen::Vector3d at =
-          pose * (point * (1 + 0.4 / range_m) * step / 1000.0) - limits.grid_origin_m;
-      const auto cell = [&](int axis) { return static_cast<int>(std::floor(at[axis] / 3.2)); };
-      // Beside a corner of blocks rounding decides which one is met.
-      const Eigen::Vector3d from_border =
-          (at / 3.2 - (at / 3.2).array().round().matrix()).cwiseAbs();
-      if (from_border.minCoeff() < 1e-3) continue;
-      inside += std::ranges::count(blocks, BlockIndex{cell(0), cell(1), cell(2)}) == 1;
-      ASSERT_EQ(std::ranges::count(blocks, BlockIndex{cell(0), cell(1), cell(2)}), 1);
-    }
-    ASSERT_GT(inside, 900U);
-    ASSERT_LE(blocks.size(), 25U);
-  }
-}
-
-TEST(DynabloxSensor, IsMeasuredFromItsComb) {
-  std::vector<Point> points;
-  std::mt19937 random(4);
-  for (int column = 0; column < 1800; ++column) {
-    for (int beam = 0; beam < 16; ++beam) {
-      const double e = (-15.0 + 2 * beam) / 180 * std::numbers::pi;
-      const double a = (column + 0.5) / 1800 * 2 * std::numbers::pi;
-      const double range_m = 3 + static_cast<double>(random() % 1000) / 50;
-      points.push_back({static_cast<float>(range_m * std::cos(e) * std::cos(a)),
-                        static_cast<float>(range_m * std::cos(e) * std::sin(a)),
-                        static_cast<float>(range_m * std::sin(e)), 0});
-    }
-  }
-  const SensorModel sensor = measured_sensor(points, {}).value();
-  EXPECT_TRUE(sensor.has_beams);
-  EXPECT_EQ(sensor.rows, 16);
-  EXPECT_EQ(sensor.columns, 1800);
-  EXPECT_NEAR(sensor.down_deg, -14.5, 1e-3)
-      << "beams lie a quarter of a row below their rows' edges";
-  EXPECT_NEAR(sensor.up_deg, 15.5, 1e-3);
-  Config config;
-  config.range_image_columns = 900;
-  EXPECT_EQ(measured_sensor(points, config)->columns, 900) << "what is set is kept";
-  EXPECT_EQ(measured_sensor(std::span(points).first(900), {}), std::nullopt);
-}
-
-TEST(DynabloxSensor, HasPixelsOfADegreeWhereDirectionsAreScattered) {
-  std::vector<Point> points;
-  std::mt19937 random(4);
-  const auto uniform = [&](double low, double high) {
-    return low + (high - low) * (static_cast<double>(random()) / 4294967296.0);
-  };
-  for (int i = 0; i < 24000; ++i) {
-    const double e = uniform(-38, 38) / 180 * std::numbers::pi;
-    const double a = uniform(-35, 35) / 180 * std::numbers::pi;
-    points.push_back({static_cast<float>(9 * std::cos(e) * std::cos(a)),
-                      static_cast<float>(9 * std::cos(e) * std::sin(a)),
-                      static_cast<float>(9 * std::sin(e)), 0});
-  }
-  const SensorModel sensor = measured_sensor(points, {}).value();
-  EXPECT_FALSE(sensor.has_beams);
-  EXPECT_NEAR(sensor.rows, 77, 1);
-  EXPECT_EQ(sensor.columns, 360);
 }
 
 }  // namespace

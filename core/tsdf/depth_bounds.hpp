@@ -3,9 +3,9 @@
 #include <cstddef>
 #include <vector>
 
-#include "core/dynablox/range_image.hpp"
+#include "core/tsdf/range_image.hpp"
 
-namespace mosbench::dynablox {
+namespace mosbench::tsdf {
 
 /// Least and greatest depth that an image shows within rectangles, from pyramids of minima and
 /// maxima. A place between four empty pixels has depth 0.
@@ -29,4 +29,4 @@ class DepthBounds {
   std::vector<Level> levels_;  ///< each half as fine as the one before
 };
 
-}  // namespace mosbench::dynablox
+}  // namespace mosbench::tsdf

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "core/base/thread_pool.hpp"
-#include "core/dynablox/sensor_model.hpp"
+#include "core/tsdf/sensor_model.hpp"
 
-namespace mosbench::dynablox {
+namespace mosbench::tsdf {
 
 /// Ranges of the nearest returns by direction, metres; 0 where there is none, and below min_range.
 struct RangeImage {
@@ -52,4 +52,4 @@ ImagePlace place_in_image(const SensorModel& sensor, const Point& direction);
 /// truncation distance. 0 where all four are empty.
 float depth_at(const RangeImage& image, const ImagePlace& place, float half_truncation_m);
 
-}  // namespace mosbench::dynablox
+}  // namespace mosbench::tsdf

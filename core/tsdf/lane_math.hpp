@@ -6,7 +6,7 @@
 
 /// Roots and angles of eight numbers, the same bits on every machine, which those of the C library
 /// are not.
-namespace mosbench::dynablox {
+namespace mosbench::tsdf {
 
 inline __attribute__((always_inline)) FloatLanes sqrt_of(const FloatLanes& lanes) {
 #if defined(__SSE2__)
@@ -48,4 +48,4 @@ inline __attribute__((always_inline)) FloatLanes angle_turns(const FloatLanes& y
   return y < 0.0F ? -half : half;
 }
 
-}  // namespace mosbench::dynablox
+}  // namespace mosbench::tsdf

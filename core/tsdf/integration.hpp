@@ -6,13 +6,13 @@
 #include <vector>
 
 #include "core/base/thread_pool.hpp"
-#include "core/dynablox/config.hpp"
-#include "core/dynablox/range_image.hpp"
-#include "core/dynablox/sensor_model.hpp"
-#include "core/dynablox/tsdf_map.hpp"
+#include "core/tsdf/config.hpp"
+#include "core/tsdf/range_image.hpp"
+#include "core/tsdf/sensor_model.hpp"
+#include "core/tsdf/tsdf_map.hpp"
 #include "core/voxel/voxel.hpp"
 
-namespace mosbench::dynablox {
+namespace mosbench::tsdf {
 
 /// A scan as its range image, seen from where it was taken.
 struct Depths {
@@ -30,4 +30,4 @@ struct Depths {
 void integrate(TsdfMap& map, std::span<const std::uint32_t> slots, const VoxelGrid& grid,
                const Depths& depths, const Config& config, ThreadPool& pool);
 
-}  // namespace mosbench::dynablox
+}  // namespace mosbench::tsdf

@@ -1,4 +1,4 @@
-#include "core/dynablox/integration.hpp"
+#include "core/tsdf/integration.hpp"
 
 #include <algorithm>
 #include <array>
@@ -6,17 +6,17 @@
 #include <numbers>
 
 #include "core/base/multiarch.hpp"
-#include "core/dynablox/depth_bounds.hpp"
-#include "core/dynablox/image_lanes.hpp"
+#include "core/tsdf/depth_bounds.hpp"
+#include "core/tsdf/image_lanes.hpp"
 
-namespace mosbench::dynablox {
+namespace mosbench::tsdf {
 namespace {
 
 constexpr float kObservedWeight = 1e-6F;
 
 /// Lengths in metres.
 struct Limits {
-  float min_range, max_range, truncation, half_truncation, voxel_size, occupied_below;
+  float min_range, max_range, truncation, half_truncation, voxel_size, near_below;
   float rays_at_1m, max_weight;
 };
 
@@ -72,8 +72,7 @@ inline __attribute__((always_inline)) void add_row(VoxelNumbers& numbers, std::s
   const FloatLanes new_w = counts ? limited : w;
   store(new_d, &numbers.distances_m[row * kLanes]);
   store(new_w, &numbers.weights[row * kLanes]);
-  plane.near_surface =
-      with_row(plane.near_surface, row & 7, bits_of(new_d < limits.occupied_below));
+  plane.near_surface = with_row(plane.near_surface, row & 7, bits_of(new_d < limits.near_below));
   plane.observed = with_row(plane.observed, row & 7, bits_of(new_w > kObservedWeight));
 }
 
@@ -281,7 +280,7 @@ void integrate(TsdfMap& map, std::span<const std::uint32_t> slots, const VoxelGr
       .truncation = config.truncation_m(),
       .half_truncation = 0.5F * config.truncation_m(),
       .voxel_size = static_cast<float>(config.voxel_size_m),
-      .occupied_below = config.occupied_below_m(),
+      .near_below = map.near_below_m,
       .rays_at_1m = static_cast<float>(depths.sensor.rays_per_voxel_at_1m(config.voxel_size_m)),
       .max_weight = static_cast<float>(config.max_weight)};
   const Surroundings surroundings(depths, limits);
@@ -314,9 +313,7 @@ void integrate(TsdfMap& map, std::span<const std::uint32_t> slots, const VoxelGr
   });
   for (std::size_t i = 0; i < slots.size(); ++i) {
     MapBlock& block = map.blocks[slots[i]];
-    if (reaches[i / 8][i % 8] != Reach::kHidden && block.numbers == kNoSlot) {
-      map.add_numbers(block, config.counter_to_reset_scans);
-    }
+    if (reaches[i / 8][i % 8] != Reach::kHidden && block.numbers == kNoSlot) map.add_numbers(block);
   }
   const ImageProjection projection(depths.sensor);
   pool.for_ranges(slots.size(), 16, [&](std::size_t begin, std::size_t end, unsigned) {
@@ -337,4 +334,4 @@ void integrate(TsdfMap& map, std::span<const std::uint32_t> slots, const VoxelGr
   });
 }
 
-}  // namespace mosbench::dynablox
+}  // namespace mosbench::tsdf

@@ -1,11 +1,11 @@
-#include "core/dynablox/sensor_model.hpp"
+#include "core/tsdf/sensor_model.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
 
-namespace mosbench::dynablox {
+namespace mosbench::tsdf {
 namespace {
 
 constexpr double kDegrees = 180 / std::numbers::pi;
@@ -122,4 +122,4 @@ std::optional<SensorModel> measured_sensor(std::span<const Point> points, const 
   return sensor;
 }
 
-}  // namespace mosbench::dynablox
+}  // namespace mosbench::tsdf

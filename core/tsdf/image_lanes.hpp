@@ -1,10 +1,10 @@
 #pragma once
 
-#include "core/dynablox/lane_math.hpp"
-#include "core/dynablox/sensor_model.hpp"
+#include "core/tsdf/lane_math.hpp"
+#include "core/tsdf/sensor_model.hpp"
 
 /// Places in a range image and depths there, eight at a time.
-namespace mosbench::dynablox {
+namespace mosbench::tsdf {
 
 /// Turns directions into places, as place_in_image does.
 struct ImageProjection {
@@ -54,4 +54,4 @@ inline __attribute__((always_inline)) FloatLanes depth_between(const FourPixels&
   return least + half_truncation_m < depth ? least : depth;
 }
 
-}  // namespace mosbench::dynablox
+}  // namespace mosbench::tsdf

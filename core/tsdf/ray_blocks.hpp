@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "core/base/thread_pool.hpp"
-#include "core/dynablox/range_image.hpp"
+#include "core/tsdf/range_image.hpp"
 #include "core/voxel/voxel_set.hpp"
 
-namespace mosbench::dynablox {
+namespace mosbench::tsdf {
 
 /// Blocks of 16^3 voxels, in which the authors' map is updated: eight blocks of the voxel room.
 inline constexpr int kWideSide = 16;
@@ -42,4 +42,4 @@ std::vector<BlockIndex> ray_blocks(std::span<const Point> points, const ScanPixe
                                    const Pose& map_from_sensor, const RayLimits& limits,
                                    RayBlocksScratch& scratch, ThreadPool& pool);
 
-}  // namespace mosbench::dynablox
+}  // namespace mosbench::tsdf

@@ -1,10 +1,10 @@
-#include "core/dynablox/depth_bounds.hpp"
+#include "core/tsdf/depth_bounds.hpp"
 
 #include <algorithm>
 #include <bit>
 #include <limits>
 
-namespace mosbench::dynablox {
+namespace mosbench::tsdf {
 namespace {
 
 // Rectangles are at most so many cells wide and high on the level that is asked.
@@ -78,4 +78,4 @@ DepthBounds::Bounds DepthBounds::within(int first_row, int last_row, int first_c
   return bounds;
 }
 
-}  // namespace mosbench::dynablox
+}  // namespace mosbench::tsdf

@@ -4,9 +4,9 @@
 #include <optional>
 #include <span>
 
-#include "core/dynablox/config.hpp"
+#include "core/tsdf/config.hpp"
 
-namespace mosbench::dynablox {
+namespace mosbench::tsdf {
 
 /// How a sensor's directions are arranged in rows and columns. Row 0 is the highest; columns run
 /// clockwise seen from above, from 0 at x > 0, y = 0 on.
@@ -32,4 +32,4 @@ std::optional<SensorModel> configured_sensor(const Config& config);
 /// rows and gets pixels of 1 degree.
 std::optional<SensorModel> measured_sensor(std::span<const Point> points, const Config& config);
 
-}  // namespace mosbench::dynablox
+}  // namespace mosbench::tsdf

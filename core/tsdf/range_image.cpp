@@ -1,13 +1,13 @@
-#include "core/dynablox/range_image.hpp"
+#include "core/tsdf/range_image.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "core/base/multiarch.hpp"
-#include "core/dynablox/image_lanes.hpp"
+#include "core/tsdf/image_lanes.hpp"
 
-namespace mosbench::dynablox {
+namespace mosbench::tsdf {
 namespace {
 
 constexpr float kShortestRange_m = 1e-6F;
@@ -119,4 +119,4 @@ float depth_at(const RangeImage& image, const ImagePlace& place, float half_trun
   return depth[0];
 }
 
-}  // namespace mosbench::dynablox
+}  // namespace mosbench::tsdf

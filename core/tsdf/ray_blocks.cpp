@@ -1,11 +1,11 @@
-#include "core/dynablox/ray_blocks.hpp"
+#include "core/tsdf/ray_blocks.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdlib>
 
-namespace mosbench::dynablox {
+namespace mosbench::tsdf {
 namespace {
 
 // As in the authors' program, so that positions on a border belong to the block behind it.
@@ -120,4 +120,4 @@ std::vector<BlockIndex> ray_blocks(std::span<const Point> points, const ScanPixe
   return blocks;
 }
 
-}  // namespace mosbench::dynablox
+}  // namespace mosbench::tsdf

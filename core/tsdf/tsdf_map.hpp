@@ -1,0 +1,66 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/base/slot_pool.hpp"
+#include "core/tsdf/config.hpp"
+#include "core/voxel/block_map.hpp"
+
+namespace mosbench::tsdf {
+
+/// What the map knows of the voxels of a block, 8 bytes each.
+struct VoxelNumbers {
+  alignas(32) std::array<float, kBlockVoxels> distances_m;  ///< d, to the nearest surface, signed
+  alignas(32) std::array<float, kBlockVoxels> weights;      ///< w, 0: never observed
+};
+
+/// A block of voxels. Until one of its voxels is observed, it has no numbers: d = w = 0.
+struct MapBlock {
+  BlockMask observed;      ///< w > 1e-6
+  BlockMask near_surface;  ///< d below TsdfMap::near_below_m
+  std::uint32_t numbers = kNoSlot;
+};
+
+/// The truncated signed distances around the sensor. Wide blocks of 16^3 voxels come and go as a
+/// whole.
+struct TsdfMap {
+  explicit TsdfMap(float near_surface_below_m) : near_below_m(near_surface_below_m) {}
+
+  float near_below_m;
+  BlockMap<MapBlock> blocks;
+  SlotPool<VoxelNumbers> numbers;
+
+  /// Slots of blocks, eight per wide block, and those of them that were made just now.
+  struct Touched {
+    std::vector<std::uint32_t> slots, fresh;
+  };
+  /// Returns all blocks of these wide blocks, in their order, x fastest within each; makes those
+  /// that are missing.
+  Touched touch(const std::vector<BlockIndex>& wide_blocks);
+  /// Gives a block numbers.
+  void add_numbers(MapBlock& block);
+  /// Removes wide blocks farther from the sensor than map_radius_ranges allows, and returns the
+  /// slots of their blocks. Looks at the whole map, so only where the sensor has left the wide
+  /// block in which it last did.
+  std::vector<std::uint32_t> keep_near(const Eigen::Vector3d& sensor_m, const VoxelGrid& grid,
+                                       const Config& config);
+
+  const MapBlock* find(const BlockIndex& index) const {
+    const std::uint32_t slot = blocks.find(index);
+    return slot == kNoSlot ? nullptr : &blocks[slot];
+  }
+  /// Returns d of a block's voxel, 0 where it was never observed.
+  float distance_m(const MapBlock* block, std::uint32_t cell) const {
+    if (block == nullptr || block->numbers == kNoSlot) return 0;
+    return numbers[block->numbers].distances_m[cell];
+  }
+  std::size_t memory_bytes() const { return blocks.memory_bytes() + numbers.memory_bytes(); }
+
+ private:
+  std::optional<Eigen::Vector3d> kept_around_m_;
+};
+
+}  // namespace mosbench::tsdf

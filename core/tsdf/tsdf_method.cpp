@@ -1,0 +1,119 @@
+#include "core/tsdf/tsdf_method.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <utility>
+
+#include "core/base/rigid.hpp"
+#include "core/base/stage_clock.hpp"
+#include "core/tsdf/integration.hpp"
+
+namespace mosbench::tsdf {
+namespace {
+
+/// Returns a grid whose origin is near the first scan, in whole wide blocks of the map frame.
+VoxelGrid wide_grid_around(const Eigen::Vector3d& sensor_m, double voxel_size_m) {
+  VoxelGrid grid = grid_around(sensor_m, voxel_size_m);
+  for (double& origin : grid.origin_voxels) origin = std::floor(origin / kWideSide) * kWideSide;
+  return grid;
+}
+
+}  // namespace
+
+TsdfMethod::TsdfMethod(const Config& config, const RunContext& context, Wants wants)
+    : config_(config),
+      context_(checked(context)),
+      wants_(wants),
+      order_(context.scan_count),
+      pool_(context.threads),
+      sensor_(configured_sensor(config)) {}
+
+std::unique_ptr<ObservedScan> TsdfMethod::observe_by(std::span<const Point> points,
+                                                     const Pose& pose, ThreadPool& pool) {
+  check_rigid(pose);
+  auto current = std::make_unique<ObservedScan>();
+  const StageRecord record{current->stages, context_.cpu_times};
+  const VoxelGrid around =
+      grid_ ? *grid_ : wide_grid_around(pose.translation(), config_.voxel_size_m);
+  current->map_from_sensor = pose;
+  current->scan = timed(record, "voxelize", [&] {
+    return voxelize(points, pose, around, wants_.nearest_m, config_.max_range_m, pool);
+  });
+  if (!grid_) grid_ = around;  // written once: the previous scan may be pushed meanwhile
+  timed(record, "range_image", [&] { see(points, *current, pool); });
+  if (wants_.points) current->points.assign(points.begin(), points.end());
+  order_.number(*current);
+  return current;
+}
+
+void TsdfMethod::see(std::span<const Point> points, ObservedScan& observed, ThreadPool& pool) {
+  if (!sensor_) sensor_ = measured_sensor(points, config_);
+  observed.sensor = sensor_;
+  if (!sensor_) return;
+  const ScanPixels pixels = pixels_of(points, *sensor_, pool);
+  observed.image = range_image(pixels, *sensor_, static_cast<float>(config_.min_range_m));
+  const RayLimits limits{.wide_block_m = kWideSide * config_.voxel_size_m,
+                         .grid_origin_m = grid_->corner_m({0, 0, 0}),
+                         .min_range_m = config_.min_range_m,
+                         .max_range_m = config_.max_range_m,
+                         .beyond_m = config_.truncation_m()};
+  observed.wide_blocks =
+      ray_blocks(points, pixels, observed.map_from_sensor, limits, scratch_, pool);
+}
+
+std::unique_ptr<Observed> TsdfMethod::observe(std::span<const Point> points,
+                                              const Pose& map_from_sensor) {
+  // The other half of the threads pushes the previous scan.
+  if (!observing_pool_) observing_pool_.emplace(std::max(1U, pool_.size() / 2));
+  return observe_by(points, map_from_sensor, *observing_pool_);
+}
+
+std::vector<LabelledScan> TsdfMethod::push(std::unique_ptr<Observed> observed) {
+  std::vector<LabelledScan> results(1);
+  LabelledScan& result = results.front();
+  result.scan_index = order_.pushed();
+  auto& scan = order_.take<ObservedScan>(observed.get());
+  result.nonfinite_points = scan.scan.nonfinite_points;
+  result.stages = std::move(scan.stages);
+  result.judged = true;
+  result.labels.assign(scan.scan.voxel_of_point.size(), kStaticLabel);
+  take(scan, result);
+  return results;
+}
+
+std::vector<LabelledScan> TsdfMethod::push(std::span<const Point> points,
+                                           const Pose& map_from_sensor) {
+  order_.expect_scan();
+  return push(observe_by(points, map_from_sensor, pool_));
+}
+
+std::vector<LabelledScan> TsdfMethod::finish() {
+  order_.finish();
+  return {};
+}
+
+void TsdfMethod::integrate_scan(TsdfMap& map, std::span<const std::uint32_t> slots,
+                                const ObservedScan& observed) {
+  if (!observed.sensor) return;
+  integrate(map, slots, grid(), {observed.image, *observed.sensor, observed.map_from_sensor},
+            config_, pool_);
+}
+
+std::optional<MemoryUse> TsdfMethod::memory() const {
+  MemoryUse use = map_memory();
+  use.bytes += scratch_.memory_bytes();
+  return use;
+}
+
+std::vector<std::string> TsdfMethod::remarks() const {
+  if (!config_.measures_sensor()) return {};
+  if (!sensor_) return {"No scan had enough returns to measure the sensor: no point moves."};
+  std::ostringstream text;
+  text << "The range image was measured: " << sensor_->rows << " rows from " << sensor_->down_deg
+       << " to " << sensor_->up_deg << " degrees, " << sensor_->columns << " columns"
+       << (sensor_->has_beams ? "." : "; no beams were found, so pixels are 1 degree wide.");
+  return {text.str()};
+}
+
+}  // namespace mosbench::tsdf
