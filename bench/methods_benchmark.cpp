@@ -6,7 +6,8 @@
 namespace mosbench {
 namespace {
 
-constexpr char kUnderwood[] = "underwood", kDufomap[] = "dufomap", kYoon[] = "yoon";
+constexpr char kLcFreeSpace[] = "lc-free-space", kUnderwood[] = "underwood", kDufomap[] = "dufomap",
+               kYoon[] = "yoon";
 #if MOSBENCH_WITH_OCTOMAP
 constexpr char kOctomap[] = "octomap";
 #endif
@@ -47,6 +48,7 @@ void method_stage(benchmark::State& state, StagedScans& staged, ThreadPool& pool
   count_items(state, "points", mean_points(staged));
 }
 
+const RegisterStage lc_free_space_stage(kLcFreeSpace, method_stage<kLcFreeSpace>, true);
 const RegisterStage underwood_stage(kUnderwood, method_stage<kUnderwood>, true);
 const RegisterStage dufomap_stage(kDufomap, method_stage<kDufomap>, true);
 #if MOSBENCH_WITH_OCTOMAP

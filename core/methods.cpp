@@ -5,6 +5,7 @@
 #include "core/dynablox/method.hpp"
 #include "core/hmm_mos/method.hpp"
 #include "core/hmm_mos_plus/method.hpp"
+#include "core/lc_free_space/method.hpp"
 #include "core/octomap/method.hpp"
 #include "core/underwood/method.hpp"
 #include "core/yoon/method.hpp"
@@ -13,9 +14,9 @@ namespace mosbench {
 
 std::span<const MethodKind> methods() {
   static const std::vector<MethodKind> kMethods = {
-      hmm_mos::method_kind(),  hmm_mos::reference_kind(), hmm_mos_plus::method_kind(),
-      dynablox::method_kind(), underwood::method_kind(),  dufomap::method_kind(),
-      octomap::method_kind(),  yoon::method_kind(),
+      hmm_mos::method_kind(),  hmm_mos::reference_kind(),    hmm_mos_plus::method_kind(),
+      dynablox::method_kind(), lc_free_space::method_kind(), underwood::method_kind(),
+      dufomap::method_kind(),  octomap::method_kind(),       yoon::method_kind(),
   };
   return kMethods;
 }

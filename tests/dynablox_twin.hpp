@@ -136,7 +136,7 @@ class DynabloxTwin {
         std::ranges::count_if(map_, [](const auto& entry) { return entry.second.ever_free; }));
   }
 
- private:
+ protected:
   static constexpr Index kNowhere{1L << 40, 0, 0};
 
   /// A. The voxel of every point; kNowhere for those that do not take part.

@@ -11,6 +11,7 @@
 #include "eval/cli/commands.hpp"
 #include "eval/cli/dataset_flags.hpp"
 #include "eval/results/tell.hpp"
+#include "eval/runs/presets.hpp"
 #include "eval/runs/run_execute.hpp"
 #include "eval/tables/table_match.hpp"
 #include "eval/tables/table_report.hpp"
@@ -21,8 +22,9 @@ namespace {
 constexpr const char* kReproduceFooter =
     R"(Runs HMM-MOS with every setting that the paper's table needs (DOALS: range 20 m and 120 m; HeLiMOS:
 online and delayed by 10 scans), each to OUT/<preset>, and every other method of mosbench that has a row in
-the table (DOALS: Dynablox, by its own protocol), to OUT/<preset>-<method>, and prints the table. The same
-command again keeps what is finished and runs the rest. Part of a data set fills part of the table.
+the table (DOALS: Dynablox, and LC Free Space at 20 m, by Dynablox's protocol), to OUT/<preset>-<method>, and
+prints the table. The same command again keeps what is finished and runs the rest. Part of a data set fills
+part of the table.
 Another data set, or one without any sequence of the table, is refused (exit code 3).
 
 Examples:
@@ -47,10 +49,17 @@ const Recipe& recipe_named(const std::string& name) {
       fmt::format("reproduce: '{}' is not known, expected doals, sipailou or helimos", name));
 }
 
-/// A method of a table's row, and the protocol of that row.
+/// A method of a table's rows, their protocol and ranges.
 struct TableMethod {
   const MethodKind* kind;
   std::optional<std::string> protocol;  ///< nothing: that of the preset
+  std::vector<double> ranges_m = {};    ///< empty: that of any preset
+
+  /// Returns whether a row has the range of the preset.
+  bool has_row_for(const std::string& preset) const {
+    const double range_m = settings_of(preset_named(preset), *kind).number("max_range_m");
+    return ranges_m.empty() || std::ranges::find(ranges_m, range_m) != ranges_m.end();
+  }
 };
 
 /// The paper's method, then every other method of mosbench that has a row in the table.
@@ -59,10 +68,10 @@ std::vector<TableMethod> methods_of(const PaperTable& table,
   std::vector<TableMethod> found = {{&methods().front(), std::nullopt}};
   for (const PublishedCell& cell : cells) {
     const MethodKind* kind = cell.table == table.name ? own_method(cell) : nullptr;
-    if (kind == nullptr || std::ranges::find(found, kind, &TableMethod::kind) != found.end()) {
-      continue;
-    }
-    found.push_back({kind, cell.protocol});
+    if (kind == nullptr || kind == found.front().kind) continue;
+    auto method = std::ranges::find(found, kind, &TableMethod::kind);
+    if (method == found.end()) method = found.insert(method, {kind, cell.protocol});
+    if (cell.max_range_m) method->ranges_m.push_back(*cell.max_range_m);
   }
   return found;
 }
@@ -133,6 +142,7 @@ std::string reproduce(const ReproduceFlags& options) {
   std::vector<ResultSet> runs;
   for (const TableMethod& method : methods_of(table, cells)) {
     for (const std::string& preset : recipe.presets) {
+      if (!method.has_row_for(preset)) continue;
       const RunOptions run = options_of(options, preset, method, out);
       tell(fmt::format("method {}, preset {}", method.kind->name, preset));
       execute_run(plan_run(run));

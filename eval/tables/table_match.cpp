@@ -42,6 +42,16 @@ void scored_mismatches(const SequenceResult& result, const PublishedCell& cell,
   differ("range in m", result.range.max_m, cell.max_range_m, reasons);
 }
 
+/// Returns whether a published method is the one that runs call `title`, which adds "(our reading)"
+/// where no code was published.
+bool is_method(const std::string& published, const std::string& title) {
+  constexpr std::string_view kOurs = " (our reading)";
+  const std::string_view name = title;
+  const std::string_view theirs =
+      name.ends_with(kOurs) ? name.substr(0, name.size() - kOurs.size()) : name;
+  return lower_case(published) == lower_case(std::string(theirs));
+}
+
 }  // namespace
 
 std::vector<PublishedRow> published_rows(const PaperTable& table,
@@ -64,9 +74,8 @@ std::vector<PublishedRow> published_rows(const PaperTable& table,
 }
 
 const MethodKind* own_method(const PublishedCell& cell) {
-  const std::string title = lower_case(cell.method);
   const auto found = std::ranges::find_if(methods(), [&](const MethodKind& method) {
-    return lower_case(std::string(method.title)) == title;
+    return is_method(cell.method, std::string(method.title));
   });
   return found == methods().end() ? nullptr : &*found;
 }
@@ -92,7 +101,7 @@ std::optional<std::size_t> nearest_row(const ResultSet& run,
   std::size_t fewest = 0;
   for (std::size_t r = 0; r < rows.size(); ++r) {
     const PublishedCell& cell = rows[r].cells.front();
-    if (lower_case(cell.method) != lower_case(run.front().method)) continue;
+    if (!is_method(cell.method, run.front().method)) continue;
     const std::size_t count = mismatches(run, cell).size();
     if (nearest && count >= fewest) continue;
     nearest = r;

@@ -38,7 +38,7 @@ FOUND = {
 }
 # Independent errors of every pose: metres along each axis, degrees about each axis.
 DISTURBED = {"2 cm, 0.1 deg": (0.02, 0.1), "10 cm, 0.5 deg": (0.1, 0.5)}
-METHODS = ["hmm-mos", "hmm-mos-plus", "dynablox", "underwood", "yoon", "octomap", "dufomap"]
+METHODS = ["hmm-mos", "hmm-mos-plus", "dynablox", "lc-free-space", "underwood", "yoon", "octomap", "dufomap"]
 
 
 class Study:
