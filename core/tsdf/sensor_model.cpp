@@ -5,66 +5,20 @@
 #include <numbers>
 #include <vector>
 
+#include "core/base/beam_rows.hpp"
+
 namespace mosbench::tsdf {
 namespace {
 
 constexpr double kDegrees = 180 / std::numbers::pi;
-constexpr std::size_t kFewestReturns = 1000;
-constexpr int kSectors = 720;
-// Two returns of one beam in a sector, or of a comb seen through noise.
-constexpr double kSameBeamDeg = 0.05;
-// Quartiles of spacings at random (exponential) differ by a factor of 4.8, of HDL-64E's comb, which
-// is half as dense at its lower end, by 1.6.
-constexpr double kScatterOfRandom = 3.0;
 constexpr double kRosettePixelDeg = 1.0;
 constexpr double kBelowEdgeRows = 0.25;
 
-struct Direction {
-  double azimuth_deg, elevation_deg;
-};
-
-std::vector<Direction> directions_of(std::span<const Point> points, double min_range_m) {
-  std::vector<Direction> directions;
-  for (const Point& point : points) {
-    const double x = point.x, y = point.y, z = point.z;
-    const double range_m = std::sqrt(x * x + y * y + z * z);
-    if (!std::isfinite(range_m) || range_m <= min_range_m || range_m == 0) continue;
-    const double azimuth_deg = std::atan2(-y, x) * kDegrees;
-    directions.push_back(
-        {azimuth_deg < 0 ? azimuth_deg + 360 : azimuth_deg, std::asin(z / range_m) * kDegrees});
-  }
-  return directions;
-}
-
-double quantile(std::vector<double>& values, double share) {
-  const auto index = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + index, values.end());
-  return values[static_cast<std::size_t>(index)];
-}
-
-/// Returns the spacings of elevations that follow one another in a sector of azimuth.
-std::vector<double> spacings_deg(const std::vector<Direction>& directions) {
-  std::vector<std::vector<double>> sectors(kSectors);
-  for (const Direction& direction : directions) {
-    const auto sector = static_cast<std::size_t>(direction.azimuth_deg / 360 * kSectors);
-    sectors[std::min<std::size_t>(sector, kSectors - 1)].push_back(direction.elevation_deg);
-  }
-  std::vector<double> spacings;
-  for (std::vector<double>& elevations : sectors) {
-    std::ranges::sort(elevations);
-    for (std::size_t i = 1; i < elevations.size(); ++i) {
-      const double spacing = elevations[i] - elevations[i - 1];
-      if (spacing > kSameBeamDeg) spacings.push_back(spacing);
-    }
-  }
-  return spacings;
-}
-
 /// Returns how many columns a full turn has when the fullest row has a return in each of its own.
-int columns_of(const std::vector<Direction>& directions, const SensorModel& sensor) {
+int columns_of(const std::vector<BeamDirection>& directions, const SensorModel& sensor) {
   std::vector<int> in_row(static_cast<std::size_t>(sensor.rows));
   std::vector<bool> seen(360);
-  for (const Direction& direction : directions) {
+  for (const BeamDirection& direction : directions) {
     const double row = (sensor.up_deg - direction.elevation_deg) /
                        (sensor.up_deg - sensor.down_deg) * (sensor.rows - 1);
     if (row < 0 || row >= sensor.rows) continue;
@@ -93,15 +47,14 @@ std::optional<SensorModel> configured_sensor(const Config& config) {
 }
 
 std::optional<SensorModel> measured_sensor(std::span<const Point> points, const Config& config) {
-  const std::vector<Direction> directions = directions_of(points, config.min_range_m);
-  if (directions.size() < kFewestReturns) return std::nullopt;
-  std::vector<double> spacings = spacings_deg(directions);
-  if (spacings.size() < kFewestReturns / 10) return std::nullopt;
+  const std::vector<BeamDirection> directions = beam_directions(points, config.min_range_m);
+  const std::optional<RowSpacing> spacing = row_spacing(directions);
+  if (!spacing) return std::nullopt;
   SensorModel sensor;
-  sensor.has_beams = quantile(spacings, 0.75) < kScatterOfRandom * quantile(spacings, 0.25);
-  const double row_deg = sensor.has_beams ? quantile(spacings, 0.5) : kRosettePixelDeg;
+  sensor.has_beams = spacing->is_regular;
+  const double row_deg = sensor.has_beams ? spacing->degrees : kRosettePixelDeg;
   std::vector<double> elevations;
-  for (const Direction& direction : directions) elevations.push_back(direction.elevation_deg);
+  for (const BeamDirection& direction : directions) elevations.push_back(direction.elevation_deg);
   sensor.down_deg = config.field_of_view_down_deg;
   sensor.up_deg = config.field_of_view_up_deg;
   if (sensor.down_deg == 0 && sensor.up_deg == 0) {

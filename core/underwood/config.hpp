@@ -9,7 +9,8 @@ namespace mosbench::underwood {
 struct Config {
   double min_range_m = 0.5;             ///< points at or nearer than this never take part
   double max_range_m = 20.0;            ///< points farther than this never move
-  double neighbour_angle_rad = 0.0157;  ///< alpha; must exceed the spacing of the sensor's rows
+  double neighbour_angle_rad = 0.0157;  ///< alpha
+  double least_angle_rows = 1.15;       ///< alpha is at least so many spacings of rows
   double range_tolerance_m = 0.15;      ///< rho
   int reference_offset_scans = 10;      ///< n; 10 are 1 s at 10 Hz
   int references = 1;                   ///< scans k - n, k - 2 n, ... that scan k is compared with
@@ -25,8 +26,10 @@ void visit_fields(AnyConfig& config, Visitor&& visit) {
   visit("max_range_m", config.max_range_m, FieldRange{0.1, 1000.0},
         "points farther than this never move");
   visit("neighbour_angle_rad", config.neighbour_angle_rad, FieldRange{0.002, 0.5},
-        "alpha, reference points this near in bearing and elevation are compared; at least 1.15 "
-        "times the spacing of the sensor's rows");
+        "alpha, reference points this near in bearing and elevation are compared");
+  visit("least_angle_rows", config.least_angle_rows, FieldRange{0.0, 10.0},
+        "alpha is at least so many spacings of the sensor's rows, measured in the first scan with "
+        "1000 returns; 0: as set");
   visit("range_tolerance_m", config.range_tolerance_m, FieldRange{0.001, 100.0},
         "rho, a point moves when all of them are this much farther away");
   visit("reference_offset_scans", config.reference_offset_scans, FieldRange{1, 1000},

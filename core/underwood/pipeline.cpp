@@ -28,9 +28,12 @@ std::vector<float> margins_of(const DirectionGrid& reference, std::span<const Di
 }  // namespace
 
 Pipeline::Pipeline(const Config& config, const RunContext& context)
-    : SequentialMethod(context, kReach_m), config_(checked(config)) {}
+    : SequentialMethod(context, kReach_m),
+      config_(checked(config)),
+      angle_(config.neighbour_angle_rad, config.least_angle_rows) {}
 
 std::vector<LabelledScan> Pipeline::take(PosedScan& scan, LabelledScan result) {
+  angle_.measure(scan.points, config_.min_range_m);
   HeldScan& current = held_.emplace_back();
   {
     const StageClock clock({result.stages, context().cpu_times}, "directions");
@@ -90,9 +93,8 @@ void Pipeline::judge(std::size_t place) {
       return directions_of(judged.scan.points, reference_from_sensor,
                            {config_.min_range_m, config_.max_range_m}, pool());
     });
-    const auto grid = timed(record, "grid", [&] {
-      return DirectionGrid(reference->directions, config_.neighbour_angle_rad);
-    });
+    const auto grid =
+        timed(record, "grid", [&] { return DirectionGrid(reference->directions, angle_.rad()); });
     margins.push_back(
         timed(record, "query", [&] { return margins_of(grid, queries, least_m, pool()); }));
   }

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <deque>
+#include <string>
 #include <vector>
 
 #include "core/base/sequential_method.hpp"
 #include "core/underwood/config.hpp"
 #include "core/underwood/directions.hpp"
+#include "core/underwood/neighbour_angle.hpp"
 
 namespace mosbench::underwood {
 
@@ -19,6 +21,7 @@ class Pipeline final : public SequentialMethod {
 
   /// Keeps the last n * references + d scans.
   std::optional<MemoryUse> memory() const override;
+  std::vector<std::string> remarks() const override { return angle_.remarks(); }
 
  private:
   struct HeldScan {
@@ -33,6 +36,7 @@ class Pipeline final : public SequentialMethod {
   std::vector<const HeldScan*> references_of(std::size_t place) const;
 
   Config config_;
+  NeighbourAngle angle_;
   std::deque<HeldScan> held_;   ///< the newest last
   std::size_t unreleased_ = 0;  ///< of them, the newest
 };

@@ -18,6 +18,7 @@ struct Config {
   double max_range_m = 20.0;            ///< points farther than this never move
   int window_scans = 10;                ///< n; 10 are 1 s at 10 Hz
   double neighbour_angle_rad = 0.0157;  ///< of free-space queries, and edge of a pixel
+  double least_angle_rows = 1.15;       ///< that angle is at least so many spacings of rows
   double free_margin_m = 0.3;           ///< that the reference must see past a point
   double seed_residual_m = 0.3;         ///< of a point without anything near it in the reference
   double planar_share = 0.05;           ///< of the smallest eigenvalue in their sum
@@ -37,8 +38,10 @@ void visit_fields(AnyConfig& config, Visitor&& visit) {
   visit("window_scans", config.window_scans, FieldRange{1, 1000},
         "n, scan k is compared with scan k - n; 10 are 1 s at 10 Hz");
   visit("neighbour_angle_rad", config.neighbour_angle_rad, FieldRange{0.002, 0.5},
-        "beams this near in bearing and elevation decide whether space was free; at least 1.15 "
-        "times the spacing of the sensor's rows");
+        "beams this near in bearing and elevation decide whether space was free");
+  visit("least_angle_rows", config.least_angle_rows, FieldRange{0.0, 10.0},
+        "that angle is at least so many spacings of the sensor's rows, measured in the first scan "
+        "with 1000 returns; 0: as set");
   visit("free_margin_m", config.free_margin_m, FieldRange{0.001, 100.0},
         "space is free where all of them reach this much farther");
   visit("seed_residual_m", config.seed_residual_m, FieldRange{0.0, 0.59},

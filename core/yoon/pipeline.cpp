@@ -50,9 +50,12 @@ std::vector<Look::Finding> findings_of(const underwood::DirectionGrid& reference
 }  // namespace
 
 Pipeline::Pipeline(const Config& config, const RunContext& context)
-    : SequentialMethod(context, kReach_m), config_(checked(config)) {}
+    : SequentialMethod(context, kReach_m),
+      config_(checked(config)),
+      angle_(config.neighbour_angle_rad, config.least_angle_rows) {}
 
 std::vector<LabelledScan> Pipeline::take(PosedScan& scan, LabelledScan result) {
+  angle_.measure(scan.points, config_.min_range_m);
   std::vector<Direction> own = timed({result.stages, context().cpu_times}, "directions", [&] {
     return underwood::directions_of(scan.points, Pose::Identity(),
                                     {config_.min_range_m, std::numeric_limits<double>::max()},
@@ -78,7 +81,7 @@ void Pipeline::judge(const PosedScan& scan, const std::vector<Direction>& own,
                                     {config_.min_range_m, config_.max_range_m}, pool());
   });
   const auto findings = timed(record, "query", [&] {
-    const underwood::DirectionGrid grid(reference.directions, config_.neighbour_angle_rad);
+    const underwood::DirectionGrid grid(reference.directions, angle_.rad());
     return findings_of(grid, queries, config_.free_margin_m, pool());
   });
   const auto points = positions_of(scan.points, reference_from_sensor);
@@ -102,7 +105,7 @@ void Pipeline::judge(const PosedScan& scan, const std::vector<Direction>& own,
   if (config_.last_step != LastStep::kSeeds) {
     const StageClock clock(record, "box_filter");
     // Points beyond the range limit are seen all the same.
-    moving = filter_seeds(own, moving, config_.neighbour_angle_rad);
+    moving = filter_seeds(own, moving, angle_.rad());
   }
   if (config_.last_step == LastStep::kGrowth) {
     const StageClock clock(record, "growth");

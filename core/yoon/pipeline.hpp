@@ -1,10 +1,12 @@
 #pragma once
 
 #include <deque>
+#include <string>
 #include <vector>
 
 #include "core/base/sequential_method.hpp"
 #include "core/underwood/directions.hpp"
+#include "core/underwood/neighbour_angle.hpp"
 #include "core/yoon/config.hpp"
 
 namespace mosbench::yoon {
@@ -21,6 +23,7 @@ class Pipeline final : public SequentialMethod {
 
   /// Keeps the last n scans.
   std::optional<MemoryUse> memory() const override;
+  std::vector<std::string> remarks() const override { return angle_.remarks(); }
 
  private:
   struct PastScan {
@@ -33,6 +36,7 @@ class Pipeline final : public SequentialMethod {
              const PastScan& reference, LabelledScan& result);
 
   Config config_;
+  underwood::NeighbourAngle angle_;
   std::deque<PastScan> past_;  ///< the newest last
 };
 

@@ -19,8 +19,6 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 # scene, sensor
 KINDS = [("mall", "os1-64"), ("street", "hdl-64e"), ("campus", "vlp-16"), ("campus", "avia"),
          ("street", "aeva"), ("highway", "os2-128")]
-# The rows of a VLP-16 are 2 degrees apart: neighbours of a direction must be sought in the next row.
-SETTINGS = {"vlp-16": "underwood.neighbour_angle_rad=0.04,yoon.neighbour_angle_rad=0.04"}
 
 
 def simulated(program, work, kind, seed, scans):
@@ -43,30 +41,26 @@ def simulated(program, work, kind, seed, scans):
     return folder
 
 
-def measured(program, work, data, sensor):
+def measured(program, work, data):
     """The rows of the leaderboard of all methods on one sequence, with their CPU time."""
     out = work / "runs" / data.name
-    settings = ["--set", SETTINGS[sensor]] if sensor in SETTINGS else []
-    subprocess.run([program, "run", data, "--method", "all", "--threads", "1", "--out", out, *settings],
+    subprocess.run([program, "run", data, "--method", "all", "--threads", "1", "--out", out],
                    check=True, stdout=subprocess.DEVNULL)
     rows = []
     for folder in sorted(folder for folder in out.iterdir() if folder.is_dir()):
         printed = subprocess.run([program, "leaderboard", folder, "--format", "json"], check=True,
                                  stdout=subprocess.PIPE)
         row = json.loads(printed.stdout)["rows"][0]
-        rows.append(row | {"cpu_ms": cpu_ms(program, work, data, sensor, folder.name)})
+        rows.append(row | {"cpu_ms": cpu_ms(program, work, data, folder.name)})
     return rows
 
 
-def cpu_ms(program, work, data, sensor, method):
+def cpu_ms(program, work, data, method):
     """CPU milliseconds per scan once the start is over; a busy machine changes them little."""
     file = work / "profiles" / f"{data.name}-{method}.json"
     if not file.exists():
-        own = [setting.removeprefix(f"{method}.") for setting in SETTINGS.get(sensor, "").split(",")
-               if setting.startswith(f"{method}.")]
-        settings = ["--set", ",".join(own)] if own else []
         subprocess.run([program, "profile", data, "--method", method, "--threads", "1", "--scans", "30",
-                        "--json", file, *settings], check=True, stdout=subprocess.DEVNULL)
+                        "--json", file], check=True, stdout=subprocess.DEVNULL)
     scans = json.loads(file.read_text())["sequences"][0]["scans"]
     return statistics.fmean(scan["method_cpu_ms"] for scan in scans[10:])
 
@@ -109,7 +103,7 @@ def main():
     for seed in map(int, chosen.seeds.split(",")):
         for kind in KINDS:
             data = simulated(chosen.program, chosen.work, kind, seed, chosen.scans)
-            by_kind[kind] += measured(chosen.program, chosen.work, data, kind[1])
+            by_kind[kind] += measured(chosen.program, chosen.work, data)
     rows = sum(by_kind.values(), [])
     methods = sorted({row["method"] for row in rows},
                      key=lambda name: -mean([row for row in rows if row["method"] == name],

@@ -50,8 +50,6 @@ Settings settings_for(const MethodKind& kind, const Sequence& sequence) {
   set("range_image_columns", sequence.columns);
   set("field_of_view_down_deg", -sequence.field_deg / 2);
   set("field_of_view_up_deg", sequence.field_deg / 2);
-  // Rows of a VLP-16 are 2 degrees apart: the angle must reach from one to the next.
-  if (sequence.rows == 16) set("neighbour_angle_rad", 0.04);
   return settings;
 }
 

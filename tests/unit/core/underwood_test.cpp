@@ -1,9 +1,12 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 
 #include "core/underwood/direction_grid.hpp"
+#include "core/underwood/neighbour_angle.hpp"
 #include "core/underwood/pipeline.hpp"
 
 namespace mosbench::underwood {
@@ -137,6 +140,60 @@ TEST(Underwood, RefusesMoreVotesThanReferences) {
   EXPECT_NO_THROW(check(config));
   config.min_range_m = config.max_range_m;
   EXPECT_THROW(check(config), std::invalid_argument);
+}
+
+/// A full turn of rows so far apart, seen every degree.
+std::vector<Point> turn_of_rows(int rows, double spacing_deg) {
+  std::vector<Point> points;
+  for (int row = 0; row < rows; ++row) {
+    for (int azimuth = 0; azimuth < 360; ++azimuth) {
+      const double e = (row - rows / 2) * spacing_deg / 180 * std::numbers::pi;
+      const double b = (azimuth + 0.5) / 180 * std::numbers::pi;
+      points.push_back({static_cast<float>(10 * std::cos(e) * std::cos(b)),
+                        static_cast<float>(10 * std::cos(e) * std::sin(b)),
+                        static_cast<float>(10 * std::sin(e)), 0});
+    }
+  }
+  return points;
+}
+
+TEST(UnderwoodAngle, ReachesFromRowToRow) {
+  const std::vector<Point> turn = turn_of_rows(16, 2.0);
+  NeighbourAngle sparse(0.0157, 1.15);
+  sparse.measure(std::span(turn).first(900), 0.5);
+  EXPECT_EQ(sparse.rad(), 0.0157) << "too few returns to tell";
+  EXPECT_TRUE(sparse.remarks().empty());
+  sparse.measure(turn, 0.5);
+  EXPECT_NEAR(sparse.rad(), 1.15 * 2.0 / 180 * std::numbers::pi, 1e-6);
+  EXPECT_EQ(sparse.remarks().size(), 1U);
+  const double first_rad = sparse.rad();
+  sparse.measure(turn_of_rows(16, 3.0), 0.5);
+  EXPECT_EQ(sparse.rad(), first_rad) << "measured once";
+  NeighbourAngle dense(0.0157, 1.15);
+  dense.measure(turn_of_rows(64, 0.5), 0.5);
+  EXPECT_EQ(dense.rad(), 0.0157) << "reaches already";
+  NeighbourAngle as_set(0.0157, 0);
+  as_set.measure(turn, 0.5);
+  EXPECT_EQ(as_set.rad(), 0.0157);
+  NeighbourAngle widest(0.0157, 10);
+  widest.measure(turn_of_rows(16, 8.0), 0.5);
+  EXPECT_EQ(widest.rad(), kWidestAngle_rad);
+}
+
+/// A point between two rows of a sparse sensor, before a wall.
+TEST(Underwood, FindsWhatCameBetweenRowsTwoDegreesApart) {
+  for (const double least_angle_rows : {1.15, 0.0}) {
+    Config config;
+    config.reference_offset_scans = 1;
+    config.least_angle_rows = least_angle_rows;
+    Pipeline pipeline(config);
+    std::vector<Point> points = turn_of_rows(16, 2.0);
+    pipeline.push(points, Pose::Identity());
+    points.push_back({5 * std::cos(0.01F), 0, 5 * std::sin(0.01F), 0});
+    const LabelledScan scan = std::move(pipeline.push(points, Pose::Identity()).front());
+    EXPECT_EQ(scan.labels.back() == kMovingLabel, least_angle_rows > 0);
+    EXPECT_EQ(std::ranges::count(scan.labels, kMovingLabel), least_angle_rows > 0 ? 1 : 0);
+  }
 }
 
 }  // namespace
