@@ -13,13 +13,13 @@
 namespace mosbench {
 namespace {
 
-constexpr int kScans = 40;
+constexpr int kScoredScans = 40;
 constexpr std::size_t kPoints = 500;
 
 class ScoreProperty : public testing::Test {
  protected:
   void SetUp() override {
-    for (int k = 0; k < kScans; ++k) scans_.push_back(random_scan(random_, kPoints, kAllIds));
+    for (int k = 0; k < kScoredScans; ++k) scans_.push_back(random_scan(random_, kPoints, kAllIds));
   }
   static Confusion score(const Protocol& protocol, const RandomScan& scan) {
     return score_scan(protocol, scan.truth, scan.prediction, scan.points);
