@@ -15,7 +15,9 @@ MethodKind method_kind() {
           "points in space that a volumetric map holds free, and those beside them",
           settings_of(Config{}),
           check_settings<Config>,
-          make_method<Pipeline, Config>};
+          make_method<Pipeline, Config>,
+          false,
+          "distance to surfaces, m"};
 }
 
 }  // namespace mosbench::lc_free_space

@@ -66,7 +66,8 @@ std::string gate_markdown(const GateResult& result) {
   std::string text = fmt::format("### MOS gate: {}\n\n{}|---|--:|--:|--:|--:|--:|--:|---|\n",
                                  result.passed() ? "pass" : "REGRESSION", markdown_row(kColumns));
   for (const GateCheck& check : result.checks) text += markdown_row(cells_of(check));
-  for (const std::string& note : notes_of(result)) text += fmt::format("\n{}\n", markdown_text(note));
+  for (const std::string& note : notes_of(result))
+    text += fmt::format("\n{}\n", markdown_text(note));
   return text;
 }
 

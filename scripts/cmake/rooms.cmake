@@ -5,8 +5,6 @@
 # rooms can be linked into a shared library; calls within them stay direct and may be inlined.
 set(MOSBENCH_FILES_AT_A_TIME 40 CACHE STRING "Files of a room that are compiled together")
 add_library(mosbench_room_options INTERFACE)
-# Sanitized tests are compiled with -O1, which is sooner done; what they run would take far longer with it.
-target_compile_options(mosbench_room_options INTERFACE $<$<CONFIG:RelWithDebInfo>:-O2>)
 if(MOSBENCH_WITH_PYTHON)
   target_compile_options(mosbench_room_options INTERFACE -fno-semantic-interposition)
 endif()
