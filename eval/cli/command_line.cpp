@@ -11,7 +11,7 @@
 #include "datasets/files/errors.hpp"
 #include "datasets/files/nearest_name.hpp"
 #include "eval/cli/help_text.hpp"
-#include "mosbench_version.hpp"
+#include "eval/results/version.hpp"
 
 namespace mosbench {
 namespace {

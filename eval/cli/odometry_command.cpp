@@ -21,10 +21,10 @@
 #include "eval/results/settings_json.hpp"
 #include "eval/results/shell_text.hpp"
 #include "eval/results/tell.hpp"
+#include "eval/results/version.hpp"
 #include "eval/runs/found_poses.hpp"
 #include "eval/runs/odometry_choice.hpp"
 #include "eval/runs/run_plan.hpp"
-#include "mosbench_version.hpp"
 
 namespace mosbench {
 namespace {

@@ -10,7 +10,7 @@
 #include "eval/results/settings_json.hpp"
 #include "eval/results/simulated.hpp"
 #include "eval/results/text_table.hpp"
-#include "mosbench_version.hpp"
+#include "eval/results/version.hpp"
 
 namespace mosbench {
 namespace {

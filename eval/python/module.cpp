@@ -3,7 +3,7 @@
 
 #include "datasets/files/errors.hpp"
 #include "eval/python/bindings.hpp"
-#include "mosbench_version.hpp"
+#include "eval/results/version.hpp"
 
 namespace {
 

@@ -14,7 +14,7 @@
 #include "eval/report/report_path.hpp"
 #include "eval/report/report_runs.hpp"
 #include "eval/report/report_scans.hpp"
-#include "mosbench_version.hpp"
+#include "eval/results/version.hpp"
 
 namespace mosbench {
 namespace {

@@ -12,10 +12,10 @@
 #include "eval/results/reading_json.hpp"
 #include "eval/results/same_input.hpp"
 #include "eval/results/settings_json.hpp"
+#include "eval/results/version.hpp"
 #include "eval/runs/method_choice.hpp"
 #include "eval/runs/presets.hpp"
 #include "eval/runs/shared_folder.hpp"
-#include "mosbench_version.hpp"
 
 namespace mosbench {
 namespace fs = std::filesystem;

@@ -12,8 +12,8 @@
 #include "eval/results/reading_json.hpp"
 #include "eval/results/result_set.hpp"
 #include "eval/results/simulated.hpp"
+#include "eval/results/version.hpp"
 #include "eval/tables/score_table.hpp"
-#include "mosbench_version.hpp"
 
 namespace mosbench {
 namespace {

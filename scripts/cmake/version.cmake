@@ -1,19 +1,22 @@
-# mosbench_version.hpp: which code made a result. Included by the project it defines the target
-# mosbench_version; run as a script, at every build, it writes the header when its content changed.
+# mosbench_version.cpp: which code made a result. Included by the project it defines the library
+# mosbench_version; run as a script, at every build, it writes the file when its content changed. It is compiled alone,
+# since its content changes with every edit.
 
 if(NOT CMAKE_SCRIPT_MODE_FILE)
-  set(generated_dir ${PROJECT_BINARY_DIR}/generated)
-  add_custom_target(mosbench_version_header
+  set(version_source ${PROJECT_BINARY_DIR}/generated/mosbench_version.cpp)
+  add_custom_target(mosbench_version_source
     COMMAND ${CMAKE_COMMAND}
       -D SOURCE_DIR=${PROJECT_SOURCE_DIR} -D PROJECT_VERSION=${PROJECT_VERSION}
       -D "COMPILER=${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION}"
-      -D HEADER=${generated_dir}/mosbench_version.hpp -P ${CMAKE_CURRENT_LIST_FILE}
-    BYPRODUCTS ${generated_dir}/mosbench_version.hpp
+      -D WRITTEN=${version_source} -P ${CMAKE_CURRENT_LIST_FILE}
+    BYPRODUCTS ${version_source}
     COMMENT "Asking git for the version"
     VERBATIM)
-  add_library(mosbench_version INTERFACE)
-  add_dependencies(mosbench_version mosbench_version_header)
-  target_include_directories(mosbench_version INTERFACE ${generated_dir})
+  add_library(mosbench_version STATIC ${version_source})
+  add_dependencies(mosbench_version mosbench_version_source)
+  target_compile_features(mosbench_version PRIVATE cxx_std_20)
+  target_include_directories(mosbench_version PRIVATE ${PROJECT_SOURCE_DIR})
+  set_target_properties(mosbench_version PROPERTIES POSITION_INDEPENDENT_CODE ${MOSBENCH_WITH_PYTHON})
   return()
 endif()
 
@@ -38,17 +41,13 @@ if(git AND EXISTS ${SOURCE_DIR}/.git)
   endif()
 endif()
 
-file(CONFIGURE OUTPUT ${HEADER} @ONLY CONTENT [[
-#pragma once
-
-#include <string_view>
+file(CONFIGURE OUTPUT ${WRITTEN} @ONLY CONTENT [[
+#include "eval/results/version.hpp"
 
 namespace mosbench {
 
-/// The project's version and, when it was built from a git clone, `git describe` behind a plus.
-inline constexpr std::string_view kMosbenchVersion = "@VERSION@";
-/// Name and version of the compiler that built the program.
-inline constexpr std::string_view kCompiler = "@COMPILER@";
+const std::string_view kMosbenchVersion = "@VERSION@";
+const std::string_view kCompiler = "@COMPILER@";
 
 }  // namespace mosbench
 ]])
