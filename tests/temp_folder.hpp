@@ -1,12 +1,13 @@
 #pragma once
 
-#include <unistd.h>
+#include <stdlib.h>
 
-#include <atomic>
+#include <cerrno>
 #include <filesystem>
 #include <fstream>
 #include <string>
 #include <string_view>
+#include <system_error>
 
 namespace mosbench {
 
@@ -14,10 +15,13 @@ namespace mosbench {
 class TempFolder {
  public:
   TempFolder() {
-    static std::atomic<int> count = 0;
-    path_ = std::filesystem::temp_directory_path() /
-            ("mosbench_test_" + std::to_string(::getpid()) + "_" + std::to_string(count++));
-    std::filesystem::create_directories(path_);
+    std::string name = std::filesystem::temp_directory_path() / "mosbench_test_XXXXXX";
+    if (::mkdtemp(name.data()) == nullptr) {
+      throw std::system_error(errno, std::generic_category(), name);
+    }
+    path_ = name;
+    // Programs that run with fewer rights look into it, too.
+    std::filesystem::permissions(path_, std::filesystem::perms(0755));
   }
   ~TempFolder() {
     std::error_code ignored;
