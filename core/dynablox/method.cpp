@@ -16,7 +16,7 @@ MethodKind method_kind() {
           check_settings<Config>,
           make_method<Pipeline, Config>,
           false,
-          "distance to surfaces, m"};
+          "distance to surfaces (tau more if ever-free), m"};
 }
 
 }  // namespace mosbench::dynablox

@@ -14,9 +14,10 @@ void NeighbourAngle::measure(std::span<const Point> points, double min_range_m) 
   const std::optional<RowSpacing> spacing = row_spacing(beam_directions(points, min_range_m));
   if (!spacing) return;
   is_measured_ = true;
-  const double least_rad = least_rows_ * spacing->degrees / 180 * std::numbers::pi;
+  const double least_rad =
+      std::min(least_rows_ * spacing->degrees / 180 * std::numbers::pi, kWidestAngle_rad);
   if (!spacing->is_regular || least_rad <= rad_) return;
-  rad_ = std::min(least_rad, kWidestAngle_rad);
+  rad_ = least_rad;
   row_deg_ = spacing->degrees;
 }
 

@@ -80,7 +80,7 @@ Answer compare(const CompareFlags& options) {
   const std::string answer = answer_of(options, baseline, newer, paired, result);
   const int exit_code = result.passed() ? 0 : 1;
   if (options.summary.empty()) return {answer, exit_code};
-  write_output(options.summary, gate_markdown(result));
+  write_output(options.summary, gate_markdown(result, unlike_text(paired.unlike)));
   return answer_beside(options.summary, answer, exit_code);
 }
 

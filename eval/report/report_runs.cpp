@@ -1,6 +1,9 @@
 #include "eval/report/report_runs.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <map>
 #include <stdexcept>
 
 #include "eval/report/curve_report.hpp"
@@ -46,6 +49,15 @@ ordered_json leaderboard_json(const std::vector<ResultSet>& group,
   return json;
 }
 
+/// Makes "base" of two runs "base (1)" and "base (2)".
+void number_equal_names(std::vector<ReportRun>& runs) {
+  std::map<std::string, int> uses, seen;
+  for (const ReportRun& run : runs) ++uses[run.name];
+  for (ReportRun& run : runs) {
+    if (uses[run.name] > 1) run.name = fmt::format("{} ({})", run.name, ++seen[run.name]);
+  }
+}
+
 bool has_curve(const ReportRun& run, const std::vector<std::optional<ResultScans>>& sources) {
   return std::ranges::all_of(run.results, [&](std::size_t i) {
     return sources[i] && sources[i]->has_scores() &&
@@ -80,6 +92,7 @@ std::vector<ReportRun> runs_of(const std::vector<FoundResult>& results) {
       run.set = std::move(set);
     }
   }
+  number_equal_names(runs);
   return runs;
 }
 

@@ -23,7 +23,7 @@ struct ReportRun {
 };
 
 /// Sorts results into runs: those of one folder, method and setting, in the order of their first
-/// result. Throws DataError as `sorted_into_runs`.
+/// result; equal names are numbered. Throws DataError as `sorted_into_runs`.
 std::vector<ReportRun> runs_of(const std::vector<FoundResult>& results);
 
 /// Returns a leaderboard, as `mosbench leaderboard` prints it, for each group of at least two runs

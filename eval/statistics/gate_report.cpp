@@ -62,12 +62,13 @@ std::string gate_text(const GateResult& result) {
   return fmt::format("{}\n{}\n", table.str(), fmt::join(notes_of(result), "\n"));
 }
 
-std::string gate_markdown(const GateResult& result) {
+std::string gate_markdown(const GateResult& result, std::string_view unlike) {
   std::string text = fmt::format("### MOS gate: {}\n\n{}|---|--:|--:|--:|--:|--:|--:|---|\n",
                                  result.passed() ? "pass" : "REGRESSION", markdown_row(kColumns));
   for (const GateCheck& check : result.checks) text += markdown_row(cells_of(check));
   for (const std::string& note : notes_of(result))
     text += fmt::format("\n{}\n", markdown_text(note));
+  if (!unlike.empty()) text += fmt::format("\nunlike: {}\n", markdown_text(unlike));
   return text;
 }
 

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 
 #include "eval/statistics/gate.hpp"
 
@@ -11,8 +12,9 @@ namespace mosbench {
 /// scans like these would show the difference.
 std::string gate_text(const GateResult& result);
 
-/// Formats the verdict, the same table and notes in markdown, for the summary of a pull request.
-std::string gate_markdown(const GateResult& result);
+/// Formats the verdict, the same table and notes in markdown, for the summary of a pull request;
+/// `unlike` says in what else the runs differ.
+std::string gate_markdown(const GateResult& result, std::string_view unlike = "");
 
 /// Returns a workflow command of GitHub (`::error ...`) per check that failed; empty when all
 /// passed.

@@ -10,8 +10,8 @@ from program import fault_of
 FRACTIONS = {"iou", "precision", "recall", "f1", "baseline_iou", "new_iou", "first_iou", "second_iou"}
 COUNTS = {"tp", "fp", "fn", "tn", "ignored", "unknown_ids", "points", "labelled_scans", "undefined_scans", "paired_scans"}
 NOT_A_NUMBER = re.compile(r"(?<![\w./-])[+-]?(?:nan|inf)(?![\w./-])")
-# The program says a name from an input behind these, and a scan may be called nan.
-BEFORE_A_NAME = {"scan ", "sequence "}
+# The program says a name from an input between these, and a scan may be called nan.
+NAME_BEFORE, NAME_AFTER = re.compile(r"(^|[:;,(] )(scan|sequence) $", re.MULTILINE), re.compile(r"^(:| is only)")
 WORD_BEFORE, WORD_AFTER = re.compile(r"[A-Za-z]+ $"), re.compile(r"^ [A-Za-z]+")
 NEGATIVE_IOU = re.compile(r"^\S.* {2,}-\d+\.\d", re.MULTILINE)
 # Their tables have no column that may be negative.
@@ -52,7 +52,7 @@ def wrong_json(text):
 def _stands_in_a_name(match, texts):
     """Whether an input's text says the same with a word before or after it: "range inf m" as a section of a table."""
     before, after = WORD_BEFORE.search(match.string[:match.start()]), WORD_AFTER.search(match.string[match.end():])
-    if before and before.group() in BEFORE_A_NAME:
+    if NAME_BEFORE.search(match.string[:match.start()]) and NAME_AFTER.search(match.string[match.end():]):
         return True
     names = [word for word in (before and before.group() + match.group(), after and match.group() + after.group()) if word]
     return any(re.search(rf"(?<![\w+-]){re.escape(name)}", text) for name in names for text in texts)

@@ -253,6 +253,9 @@ def main():
             return alone.exitcode
         tally = hostile_round(bench, arguments, 60 * (arguments.minutes or 60 * arguments.hours))
     tally.print()
+    cases = sum(row["tried"] for row in tally.rows.values())
+    if cases < arguments.cases < float("inf"):
+        print(f"the time was over after {cases} of {arguments.cases:.0f} cases")
     whole = all(row["tried"] for row in tally.rows.values())
     return 0 if whole and not tally.sorts else 1
 

@@ -120,7 +120,7 @@ test('the colour tells where two runs disagree, and in how many points', async (
 test('scores and thresholds are called what they are, and have no common scale across methods', async () => {
   const page = await openReport(browser, file, { viewport: SMALL });
   const scoreOption = page.locator('[aria-label=colour] option[value=score]');
-  for (const [method, name, threshold] of [['underwood', 'margin, m', 'range tolerance, m'], ['dynablox', 'distance to surfaces, m', ''], ['hmm-mos', 'dynamic score', 'Otsu threshold']]) {
+  for (const [method, name, threshold] of [['underwood', 'margin, m', 'range tolerance, m'], ['dynablox', 'distance to surfaces (tau more if ever-free), m', ''], ['hmm-mos', 'dynamic score', 'Otsu threshold']]) {
     await look(page, method);
     assert.equal(await scoreOption.textContent(), name);
     await page.selectOption('[aria-label=colour]', 'score');

@@ -96,6 +96,7 @@ class Oracle(unittest.TestCase):
         self.assertEqual(self.faults("08      12  -0.500  0.1\n", ["run", "data"]), ["numbers"])
         self.assertEqual(self.faults("IoU  nan\n", ["stats", "run"]), ["numbers"])
         self.assertEqual(self.faults("08      12  0.500  0.1\nnano info\n", ["run", "data"]), [])
+        self.assertEqual(self.faults("ms per scan nan\nms/scan nan\nscan inf\n", ["profile", "data"]), ["numbers"])
         self.assertEqual(self.faults("sequence 08: scan nan is only in the first run\n", ["bless", "run"]), [])
 
     def test_a_name_that_the_input_gives_may_say_inf(self):

@@ -82,6 +82,8 @@ TEST(Gate, EscapesNamesInAnnotationsAndMarkdown) {
   EXPECT_EQ(gate_annotations(judged(wrong, nothing)),
             "::error title=IoU of day|50%25%3A a%2C%0Ab dropped::0.0 %25 before, undefined now\n");
   EXPECT_EQ(gate_annotations(judged(right, right)), "");
+  EXPECT_THAT(gate_markdown(judged(right, right), "method is A and B"),
+              testing::EndsWith("\nunlike: method is A and B\n"));
   EXPECT_THAT(gate_markdown(judged(right, wrong)),
               testing::HasSubstr("\n| day\\|50%: a,\\\\x0ab | 100.0 | 0.0 | -100.00 |"));
 }

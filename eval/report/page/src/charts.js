@@ -42,13 +42,21 @@ export class Charts {
     return others.length === 0 ? [] : [element('div', { class: 'chart-choice' }, this.menu.node)];
   }
 
+  /** What is shown and then the others of the same scans; null where another protocol or range counted. */
+  #ofSameRules(result) {
+    const shown = [result, ...this.state.get('compared')];
+    const rules = (i) => JSON.stringify(this.content.results[i].result.protocol);
+    const all = [...shown, ...this.#sameScans().filter((i) => !shown.includes(i))];
+    return all.map((i) => (rules(i) === rules(result) ? i : null));
+  }
+
   #chartsOf(entries, result) {
     const [entry, ...others] = entries;
     const x = entry.result.scans.map((_, k) => k);
     const overScans = others.length === 0 ? OVER_SCANS.map((make) => make(entry)).filter(Boolean) : comparisonCharts(entries);
     const overBins = OVER_BINS.map((make) => make(entry)).filter(Boolean);
     const ofRun = (note) => (others.length === 0 ? note : `of ${entry.run}; ${note}`);
-    const ofAll = [scoreCurveChart(this.content.curves, [result, ...this.#sameScans()]), driftChart(entries, runNames(entries))];
+    const ofAll = [scoreCurveChart(this.content.curves, this.#ofSameRules(result)), driftChart(entries, runNames(entries))];
     return [
       ...overScans.map((chart) => ({ x, go: this.go, ...chart })),
       ...overBins.map((chart) => ({ ...chart, note: ofRun(chart.note) })),

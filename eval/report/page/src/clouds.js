@@ -35,6 +35,11 @@ export class Clouds {
     return this.#content.results[result].score_name ?? 'score';
   }
 
+  /** Results whose scores are of one kind have a common scale. */
+  scoreKind(result) {
+    return `${this.#content.results[result].result.method?.name}: ${this.scoreName(result)}`;
+  }
+
   /** Whether the points of a result have scores. */
   hasScores(result) {
     return (this.#content.results[result].scores ?? []).length > 0;

@@ -17,8 +17,8 @@ const LARGER = 1.8;
 function obstacle(key, clouds, results, view) {
   if (key === 'score') {
     if (!results.every((result) => clouds.hasScores(result))) return 'needs mosbench run --scores';
-    const names = new Set(results.map((result) => clouds.scoreName(result)));
-    return names.size > 1 ? 'not of different methods' : null;
+    const kinds = new Set(results.map((result) => clouds.scoreKind(result)));
+    return kinds.size > 1 ? 'not of different methods' : null;
   }
   if (key !== 'disagreement') return null;
   return results.length < 2 ? 'needs a run beside' : view === 'map' ? 'not in the motion map' : null;
@@ -95,6 +95,7 @@ function byScale(values, { low, high }, theme, colourOfZero) {
 /** Three bytes per point of each scan, the scale when the colour is one, and `large(p, i)`: what stands out. */
 export function colourScans(key, scans, theme) {
   const large = (p, i) => scans[p].outcomes[i] < OUTCOMES_THAT_STAND_OUT;
+  if (scans.length === 0) return { colours: [], scale: null, large };
   if (key === 'outcome') return { colours: scans.map((scan) => byOutcome(scan, theme)), scale: null, large };
   if (key === 'disagreement') {
     const opinions = scans.map((_, p) => opinionsOf(scans, p));

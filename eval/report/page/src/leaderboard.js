@@ -18,6 +18,7 @@ function toBestCell(row, place) {
   if (place === 0) return row.all ? 'best' : '–';
   const { to_best: difference } = row;
   if (!difference) return '–';
+  if (difference.value === null) return withHint('undefined', null, whyNoInterval(difference));
   const ends = intervalOf(difference);
   return withHint(points(difference.value), ends ? `${points(ends[0])} to ${points(ends[1])}` : 'no interval', whyNoInterval(difference));
 }

@@ -1,5 +1,5 @@
 import { percent } from './format.js';
-import { runLine } from './theme.js';
+import { RUN_LINES, runLine } from './theme.js';
 
 /** Precision at the first threshold that reaches each recall of `x`; null beyond the curve. */
 export function precisionAt({ recall, precision }, x) {
@@ -17,12 +17,18 @@ function spread(curves) {
   return { x: all.map(({ x }) => x), drawn: curves.map((_, c) => all.map((point) => (point.c === c ? point.y : null))) };
 }
 
+/** Those of `curves` that hold one of the results, with its place among them, as far as there are lines to tell them apart. */
+function placed(curves, results) {
+  const found = (curves ?? []).map((curve) => ({ ...curve, place: results.findIndex((i) => curve.results.includes(i)) }));
+  return found.filter(({ place }) => place >= 0 && place < RUN_LINES.length).sort((a, b) => a.place - b.place);
+}
+
 /**
- * Precision over recall for all thresholds of the scores, a line per run of the same scans as `shown` that kept
- * scores, and a dot where its labels are; null without any.
+ * Precision over recall for all thresholds of the scores, a line per run that kept scores, drawn as the place of its
+ * result in `shown` is elsewhere (null: not to be drawn), and a dot where its labels are; null without any.
  */
 export function scoreCurveChart(curves, shown) {
-  const wanted = (curves ?? []).filter(({ results }) => results.some((i) => shown.includes(i)));
+  const wanted = placed(curves, shown);
   if (wanted.length === 0) return null;
   const { x, drawn } = spread(wanted);
   const ticks = (_, values) => values.map((v) => `${Math.round(100 * v)} %`);
@@ -33,12 +39,12 @@ export function scoreCurveChart(curves, shown) {
     x,
     series: wanted.map((curve, c) => ({
       label: `${curve.run}, AP ${percent(curve.average_precision)}`, values: precisionAt(curve, x), drawn: drawn[c],
-      spanGaps: true, points: { show: false }, ...runLine(c),
+      spanGaps: true, points: { show: curve.recall.length < 3 }, ...runLine(curve.place),
     })),
     options: {
       text: percent, xLabel: 'recall', xValue: (_, v) => (v === null || v === undefined ? '–' : percent(v)), xScale: { range: [0, 1.01] }, xAxis: { values: ticks },
       yScale: { range: [0, 1.02] }, yAxis: { values: ticks },
-      marks: wanted.map(({ labels }, c) => ({ x: labels.recall, y: labels.precision, colour: runLine(c).colour })),
+      marks: wanted.map(({ labels, place }) => ({ x: labels.recall, y: labels.precision, colour: runLine(place).colour })),
     },
   };
 }

@@ -43,6 +43,7 @@ export class Transport {
 
   /** Goes to a scan, or to the nearest one whose points are in the file, and says so. */
   go(index) {
+    if (index === undefined) return; // of a result without points
     const nearest = this.clouds.nearest(this.state.get('result'), index);
     this.message.textContent =
       nearest === null || nearest === index ? '' : `The points of scan ${index} were left out of this file; this is scan ${nearest}.`;

@@ -8,6 +8,7 @@ import { runNames, runOptions, toggled } from '../src/runs_menu.js';
 import { resultsOfSameScans } from '../src/same_scans.js';
 import { costColumns, metricsChart, stagesChart, thresholdChart } from '../src/scan_charts.js';
 import { precisionAt, scoreCurveChart } from '../src/score_curve.js';
+import { RUN_LINES, runLine } from '../src/theme.js';
 
 test('metrics of a scan worked by hand', () => {
   const counts = { tp: 6, fp: 2, fn: 4, tn: 100 };
@@ -116,6 +117,16 @@ test('curves of several runs share one axis, each with its own points, and dots 
   assert.deepEqual(options.marks.map((mark) => [mark.x, mark.y]), [[0.4, 0.9], [0.4, 0.9]]);
   assert.deepEqual(precisionAt({ recall: [0.5], precision: [0.7] }, [0.1, 0.6]), [0.7, null]);
   assert.deepEqual([scoreCurveChart(curves, [3]), scoreCurveChart(undefined, [0])], [null, null]);
+});
+
+test('curves are drawn as their runs are in other charts, and not under other rules', () => {
+  const curve = (run, results) => ({ run, results, recall: [1], precision: [0.5], average_precision: 0.5, labels: { recall: 1, precision: 0.5 } });
+  const { series } = scoreCurveChart([curve('a', [0]), curve('b', [1]), curve('c', [2])], [2, null, 0]);
+  assert.deepEqual(series.map(({ label }) => label[0]), ['c', 'a']);
+  assert.deepEqual(series.map(({ colour }) => colour), [runLine(0).colour, runLine(2).colour]);
+  assert.equal(series[0].points.show, true); // one point makes no line
+  const many = Array.from({ length: 12 }, (_, i) => i);
+  assert.equal(scoreCurveChart(many.map((i) => curve(`r${i}`, [i])), many).series.length, RUN_LINES.length);
 });
 
 test('results are of the same scans when sequence and stems are', () => {

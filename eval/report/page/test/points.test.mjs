@@ -36,6 +36,7 @@ test('a scale spans the drawn points, and a flat one still has two ends', () => 
   assert.deepEqual(limits(Float32Array.from([2, 2])), [2, 3]);
   assert.deepEqual(limits(Float32Array.from([])), [0, 1]);
   assert.deepEqual(colourScans('height', [SCAN], 'light').scale, { low: -1, high: 2 });
+  assert.deepEqual([colourScans('range', [], 'light').scale, colourScans('range', [], 'light').colours], [null, []]);
 });
 
 test('two scans share one scale, from one vote to the most that is drawn', () => {
@@ -56,9 +57,13 @@ test('a scale of scores that are no votes spans those that are not 0', () => {
 });
 
 test('scores are offered only where every shown run kept them, and of one kind', () => {
-  const clouds = new Clouds({ clouds: [], results: [{ scores: [3], score_name: 'margin' }, { scores: [] }, {}, { scores: [4] }] });
+  const of = (name) => ({ method: { name } });
+  const clouds = new Clouds({ clouds: [], results: [
+    { scores: [3], score_name: 'margin', result: of('A') }, { scores: [] }, {}, { scores: [4], result: of('B') },
+    { scores: [3], score_name: 'margin', result: of('B') }, { scores: [3], score_name: 'margin', result: of('A') }] });
   const score = (...results) => allColourings(clouds, results, 'orbit').find(({ key }) => key === 'score');
   assert.deepEqual([score(0).why, score(0, 1).why, score(0, 3).why], [null, 'needs mosbench run --scores', 'not of different methods']);
+  assert.deepEqual([score(0, 4).why, score(0, 5).why], ['not of different methods', null]);
   assert.deepEqual([score(0).name, score(3).name], ['margin', 'score']);
   assert.equal(colouringsOf(clouds, [1], 'orbit').some(({ key }) => key === 'score'), false);
 });
