@@ -91,11 +91,10 @@ BlockMask barred(const EverFreeMap& map, std::uint32_t slot, const Frame& frame)
 /// Returns the voxels of a block that have one of the mask's within it among themselves and their
 /// 26 neighbours.
 BlockMask grown_inside(const BlockMask& mask) {
-  constexpr std::uint64_t kFirst = 0x0101010101010101u, kLast = 0x8080808080808080u;
   BlockMask planes;
   for (std::size_t z = 0; z < kBlockSide; ++z) {
     const std::uint64_t word = mask.words[z];
-    const std::uint64_t row = word | (word << 1 & ~kFirst) | (word >> 1 & ~kLast);
+    const std::uint64_t row = word | beside_in_row(word);
     planes.words[z] = row | row << 8 | row >> 8;
   }
   BlockMask grown = planes;

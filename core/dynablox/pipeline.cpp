@@ -3,6 +3,7 @@
 #include "core/base/stage_clock.hpp"
 #include "core/dynablox/clusters.hpp"
 #include "core/dynablox/ever_free.hpp"
+#include "core/voxel/point_labels.hpp"
 
 namespace mosbench::dynablox {
 
@@ -16,15 +17,6 @@ Pipeline::Pipeline(const Config& config, const RunContext& context)
       config_(config),
       map_(config.occupied_below_m()),
       tracks_(config.max_tracking_distance_m) {}
-
-void Pipeline::label_points(const ObservedScan& observed, std::span<const BlockMask> ever_free,
-                            LabelledScan& result) const {
-  for (std::size_t i = 0; i < result.labels.size(); ++i) {
-    const std::uint32_t voxel = observed.scan.voxel_of_point[i];
-    if (voxel == kNoVoxel) continue;
-    if (ever_free[voxel / kBlockVoxels].test(voxel % kBlockVoxels)) result.labels[i] = kMovingLabel;
-  }
-}
 
 void Pipeline::label_objects(const ObservedScan& observed, std::span<const BlockMask> ever_free,
                              LabelledScan& result) {
@@ -58,15 +50,10 @@ std::vector<float> Pipeline::scores(const ObservedScan& observed) const {
     blocks.push_back(map_.tsdf.find(index));
     ever_free.push_back(map_.ever_free_in(index));
   }
-  std::vector<float> result(scan.voxel_of_point.size());
-  for (std::size_t i = 0; i < result.size(); ++i) {
-    const std::uint32_t voxel = scan.voxel_of_point[i];
-    if (voxel == kNoVoxel) continue;
-    const std::uint32_t slot = voxel / kBlockVoxels, cell = voxel % kBlockVoxels;
-    result[i] = map_.tsdf.distance_m(blocks[slot], cell) +
-                (ever_free[slot].test(cell) ? config_.truncation_m() : 0.0F);
-  }
-  return result;
+  return project_scores(scan, [&](std::uint32_t slot, std::uint32_t cell) {
+    return map_.tsdf.distance_m(blocks[slot], cell) +
+           (ever_free[slot].test(cell) ? config_.truncation_m() : 0.0F);
+  });
 }
 
 void Pipeline::take(const ObservedScan& observed, LabelledScan& result) {
@@ -80,7 +67,7 @@ void Pipeline::take(const ObservedScan& observed, LabelledScan& result) {
     }
     if (context().scores) result.scores = scores(observed);
     if (config_.level == Level::kPoint) {
-      label_points(observed, ever_free, result);
+      result.labels = project_labels(observed.scan, ever_free);
     } else {
       label_objects(observed, ever_free, result);
     }

@@ -25,8 +25,6 @@ class Pipeline final : public tsdf::TsdfMethod {
   void take(const tsdf::ObservedScan& observed, LabelledScan& result) override;
   MemoryUse map_memory() const override;
 
-  void label_points(const tsdf::ObservedScan& observed, std::span<const BlockMask> ever_free,
-                    LabelledScan& result) const;
   void label_objects(const tsdf::ObservedScan& observed, std::span<const BlockMask> ever_free,
                      LabelledScan& result);
   std::vector<float> scores(const tsdf::ObservedScan& observed) const;

@@ -2,6 +2,8 @@
 
 #include <mosbench/scan.hpp>
 
+#include "core/voxel/point_labels.hpp"
+
 namespace mosbench::hmm_mos {
 
 std::vector<std::uint32_t> project_labels(const VoxelizedScan& scan, const VoxelSet& moving) {
@@ -12,30 +14,15 @@ std::vector<std::uint32_t> project_labels(const VoxelizedScan& scan, const Voxel
   for (std::size_t i = 0; i < moving.block_count(); ++i) {
     masks[scan.measured.find(moving.blocks[i])] = moving.masks[i];
   }
-  return project_labels(scan, masks);
-}
-
-std::vector<std::uint32_t> project_labels(const VoxelizedScan& scan,
-                                          std::span<const BlockMask> moving) {
-  std::vector<std::uint32_t> labels(scan.voxel_of_point.size(), kStaticLabel);
-  for (std::size_t i = 0; i < labels.size(); ++i) {
-    const std::uint32_t voxel = scan.voxel_of_point[i];
-    if (voxel == kNoVoxel) continue;
-    if (moving[voxel / kBlockVoxels].test(voxel % kBlockVoxels)) labels[i] = kMovingLabel;
-  }
-  return labels;
+  return mosbench::project_labels(scan, masks);
 }
 
 std::vector<float> project_scores(const VoxelizedScan& scan, const SumField& sums) {
-  std::vector<float> scores(scan.voxel_of_point.size(), 0);
   std::vector<const SumField::Block*> values;
   for (const BlockIndex& block : scan.measured.blocks) values.push_back(sums.find(block));
-  for (std::size_t i = 0; i < scores.size(); ++i) {
-    const std::uint32_t voxel = scan.voxel_of_point[i];
-    if (voxel == kNoVoxel || values[voxel / kBlockVoxels] == nullptr) continue;
-    scores[i] = static_cast<float>((*values[voxel / kBlockVoxels])[voxel % kBlockVoxels]);
-  }
-  return scores;
+  return mosbench::project_scores(scan, [&](std::uint32_t slot, std::uint32_t cell) {
+    return values[slot] == nullptr ? 0.0F : static_cast<float>((*values[slot])[cell]);
+  });
 }
 
 }  // namespace mosbench::hmm_mos

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "core/voxel/voxel_field.hpp"
@@ -13,9 +12,6 @@ namespace mosbench::hmm_mos {
 /// Returns a label per point (paper, III: points take the label of their voxel): kMovingLabel in
 /// voxels of `moving`, kStaticLabel elsewhere.
 std::vector<std::uint32_t> project_labels(const VoxelizedScan& scan, const VoxelSet& moving);
-/// The same for masks in the order of scan.measured.blocks.
-std::vector<std::uint32_t> project_labels(const VoxelizedScan& scan,
-                                          std::span<const BlockMask> moving);
 
 /// Returns L^dyn of every point's voxel; 0 where the point has no voxel or the voxel no score.
 std::vector<float> project_scores(const VoxelizedScan& scan, const SumField& sums);

@@ -3,9 +3,9 @@
 #include <utility>
 
 #include "core/base/stage_clock.hpp"
-#include "core/hmm_mos/label_projection.hpp"
 #include "core/hmm_mos_plus/ground.hpp"
 #include "core/hmm_mos_plus/objects.hpp"
+#include "core/voxel/point_labels.hpp"
 
 namespace mosbench::hmm_mos_plus {
 namespace {
@@ -59,7 +59,7 @@ void Pipeline::judge(HeldScan& held) {
   const ScanMasks moving =
       timed(record, "objects", [&] { return moving_voxels(held, std::move(low)); });
   const StageClock clock(record, "labels");
-  result.labels = hmm_mos::project_labels(scan, moving);
+  result.labels = project_labels(scan, moving);
   result.threshold = config_.min_seed_share;
   result.judged = true;
 }

@@ -6,15 +6,12 @@
 namespace mosbench::lc_free_space {
 namespace {
 
-// Voxels of a word with x = 0 and with x = 7.
-constexpr std::uint64_t kFirst = 0x0101010101010101u, kLast = 0x8080808080808080u;
-
 /// Returns the voxels of a block that share a face with one of its own in the mask.
 BlockMask beside(const BlockMask& mask) {
   BlockMask result;
   for (std::size_t z = 0; z < kBlockSide; ++z) {
     const std::uint64_t word = mask.words[z];
-    result.words[z] = (word << 1 & ~kFirst) | (word >> 1 & ~kLast) | word << 8 | word >> 8;
+    result.words[z] = beside_in_row(word) | word << 8 | word >> 8;
     if (z > 0) result.words[z] |= mask.words[z - 1];
     if (z + 1 < kBlockSide) result.words[z] |= mask.words[z + 1];
   }
@@ -30,8 +27,9 @@ struct Sides {
 BlockMask beside(const Sides& sides) {
   BlockMask result;
   for (std::size_t z = 0; z < kBlockSide; ++z) {
-    result.words[z] = (sides.left.words[z] & kLast) >> 7 | (sides.right.words[z] & kFirst) << 7 |
-                      sides.front.words[z] >> 56 | sides.back.words[z] << 56;
+    result.words[z] = (sides.left.words[z] & kLastColumn) >> 7 |
+                      (sides.right.words[z] & kFirstColumn) << 7 | sides.front.words[z] >> 56 |
+                      sides.back.words[z] << 56;
   }
   result.words.front() |= sides.below.words.back();
   result.words.back() |= sides.above.words.front();

@@ -2,13 +2,9 @@
 
 #include "core/base/stage_clock.hpp"
 #include "core/lc_free_space/free_space.hpp"
+#include "core/voxel/point_labels.hpp"
 
 namespace mosbench::lc_free_space {
-namespace {
-
-constexpr std::size_t kPointsAtATime = 4096;
-
-}  // namespace
 
 Pipeline::Pipeline(const Config& config, const RunContext& context)
     : TsdfMethod(checked(config), context, {.nearest_m = config.min_range_m}),
@@ -22,26 +18,15 @@ void Pipeline::label(const VoxelizedScan& scan, LabelledScan& result) {
   } else {
     result.threshold = config_.free_above_m();
   }
-  pool().for_ranges(
-      result.labels.size(), kPointsAtATime, [&](std::size_t begin, std::size_t end, unsigned) {
-        for (std::size_t i = begin; i < end; ++i) {
-          const std::uint32_t voxel = scan.voxel_of_point[i];
-          if (voxel != kNoVoxel && moving[voxel / kBlockVoxels].test(voxel % kBlockVoxels)) {
-            result.labels[i] = kMovingLabel;
-          }
-        }
-      });
+  result.labels = project_labels(scan, moving);
 }
 
 void Pipeline::score(const VoxelizedScan& scan, LabelledScan& result) {
   std::vector<const tsdf::MapBlock*> blocks;
   for (const BlockIndex& index : scan.measured.blocks) blocks.push_back(map_.find(index));
-  result.scores.assign(result.labels.size(), 0);
-  for (std::size_t i = 0; i < result.scores.size(); ++i) {
-    const std::uint32_t voxel = scan.voxel_of_point[i];
-    if (voxel == kNoVoxel) continue;
-    result.scores[i] = map_.distance_m(blocks[voxel / kBlockVoxels], voxel % kBlockVoxels);
-  }
+  result.scores = project_scores(scan, [&](std::uint32_t slot, std::uint32_t cell) {
+    return map_.distance_m(blocks[slot], cell);
+  });
 }
 
 void Pipeline::take(const tsdf::ObservedScan& observed, LabelledScan& result) {

@@ -88,7 +88,7 @@ inline std::uint64_t nonzero_bytes(std::uint64_t word) {
   word |= word >> 4;
   word |= word >> 2;
   word |= word >> 1;
-  return (word & 0x0101010101010101u) * 0x0102040810204080u >> 56;
+  return (word & kFirstColumn) * 0x0102040810204080u >> 56;
 }
 
 /// The cube of blocks around a block, and how far sources matter.

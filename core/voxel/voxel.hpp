@@ -82,6 +82,14 @@ inline BlockMask operator~(const BlockMask& a) {
   return without(BlockMask{{~0ull, ~0ull, ~0ull, ~0ull, ~0ull, ~0ull, ~0ull, ~0ull}}, a);
 }
 
+/// The voxels x = 0 and x = 7 of a word of a mask.
+inline constexpr std::uint64_t kFirstColumn = 0x0101010101010101u, kLastColumn = kFirstColumn << 7;
+
+/// Returns the voxels of a word of a mask that have one of its own beside them in their row.
+inline std::uint64_t beside_in_row(std::uint64_t word) {
+  return (word << 1 & ~kFirstColumn) | (word >> 1 & ~kLastColumn);
+}
+
 /// Calls visit(cell) for every set voxel in rising order.
 template <typename Visit>
 void for_each_cell(const BlockMask& mask, Visit&& visit) {
