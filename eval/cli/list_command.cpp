@@ -122,18 +122,38 @@ std::string formats_text() {
   return table.str();
 }
 
-std::string list(const std::string& what) {
-  if (what == "formats") return formats_text();
-  if (what == "datasets") return datasets_text();
-  if (what == "methods") return methods_text();
-  if (what == "presets") return presets_text();
-  if (what == "protocols") return protocols_text();
-  if (what == "scenes") return scenes_text();
-  return fmt::format(
-      "Data sets\n\n{}\nMethods\n\n{}\nPresets\n\n{}\nProtocols\n\n{}\nScenes\n\n{}\nFormats of "
-      "predictions\n\n{}",
-      datasets_text(), methods_text(), presets_text(), protocols_text(), scenes_text(),
-      formats_text());
+/// One of the things that can be listed.
+struct ListKind {
+  std::string_view name, title;
+  std::string (*text)();
+  nlohmann::ordered_json (*json)();
+};
+
+constexpr ListKind kKinds[] = {
+    {"datasets", "Data sets", datasets_text, datasets_json},
+    {"methods", "Methods", methods_text, methods_json},
+    {"presets", "Presets", presets_text, presets_json},
+    {"protocols", "Protocols", protocols_text, protocols_json},
+    {"scenes", "Scenes", scenes_text, scenes_json},
+    {"formats", "Formats of predictions", formats_text, formats_json},
+};
+constexpr std::string_view kAll = "all";
+
+std::string list(std::string_view what) {
+  std::vector<std::string> parts;
+  for (const ListKind& kind : kKinds) {
+    if (what == kind.name) return kind.text();
+    if (what == kAll) parts.push_back(fmt::format("{}\n\n{}", kind.title, kind.text()));
+  }
+  return fmt::format("{}", fmt::join(parts, "\n"));
+}
+
+nlohmann::ordered_json list_json(std::string_view what) {
+  nlohmann::ordered_json json;
+  for (const ListKind& kind : kKinds) {
+    if (what == kind.name || what == kAll) json[std::string(kind.name)] = kind.json();
+  }
+  return json;
 }
 
 const MethodKind& method_named_by_user(const std::string& name) {
@@ -153,12 +173,13 @@ CommandRun add_list(CLI::App& command) {
     bool json = false;
   };
   auto listed = std::make_shared<Listed>();
+  std::vector<std::string> names = {std::string(kAll)};
+  for (const ListKind& kind : kKinds) names.emplace_back(kind.name);
   command
       .add_option("WHAT", listed->what,
                   "datasets, methods, presets, protocols, scenes, formats or all")
       ->capture_default_str()
-      ->check(CLI::IsMember(
-          {"all", "datasets", "methods", "presets", "protocols", "scenes", "formats"}));
+      ->check(CLI::IsMember(names));
   command.add_option("NAME", listed->name, "One of the methods");
   command.add_flag("--json", listed->json, "Print JSON instead of text");
   command.footer(kListFooter);

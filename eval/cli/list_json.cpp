@@ -98,18 +98,11 @@ ordered_json method_json(const MethodKind& method) {
           {"settings", rows_json(method.defaults.all(), setting_json)}};
 }
 
-ordered_json list_json(std::string_view what) {
-  ordered_json json;
-  const auto add = [&](std::string_view kind, const auto& rows, const auto& row_json) {
-    if (what == kind || what == "all") json[std::string(kind)] = rows_json(rows, row_json);
-  };
-  add("datasets", layouts(), dataset_json);
-  add("methods", methods(), method_json);
-  add("presets", presets(), preset_json);
-  add("protocols", describe_protocols(), protocol_json);
-  add("scenes", built_in_scenes(), scene_json);
-  add("formats", prediction_formats(), format_json);
-  return json;
-}
+ordered_json datasets_json() { return rows_json(layouts(), dataset_json); }
+ordered_json methods_json() { return rows_json(methods(), method_json); }
+ordered_json presets_json() { return rows_json(presets(), preset_json); }
+ordered_json protocols_json() { return rows_json(describe_protocols(), protocol_json); }
+ordered_json scenes_json() { return rows_json(built_in_scenes(), scene_json); }
+ordered_json formats_json() { return rows_json(prediction_formats(), format_json); }
 
 }  // namespace mosbench
