@@ -24,6 +24,7 @@
 #include <vector>
 
 #include "core/hmm_mos/config.hpp"
+#include "tests/shared_folder.hpp"
 
 /// The labels of the authors' own program on four sequences, which lie beside the project where its
 /// owner keeps them. Their files are read here without the project's readers, so that a test that
@@ -52,11 +53,7 @@ inline void PrintTo(const ParityCase& parity, std::ostream* out) { *out << parit
 
 /// Nothing where the owner's folder is not there: such tests are skipped.
 inline std::optional<std::filesystem::path> shared_parity_folder() {
-  const char* const override_path = std::getenv("MOSBENCH_SHARED");
-  const std::filesystem::path shared =
-      override_path != nullptr ? std::filesystem::path(override_path)
-                               : std::filesystem::path(MOSBENCH_SOURCE_DIR) / "../shared";
-  const std::filesystem::path folder = shared / "parity";
+  const std::filesystem::path folder = shared_folder() / "parity";
   if (!std::filesystem::exists(folder / "unpack.sh")) return std::nullopt;
   return std::filesystem::canonical(folder);
 }

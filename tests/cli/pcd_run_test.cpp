@@ -6,6 +6,7 @@
 #include "datasets/files/files.hpp"
 #include "datasets/files/pcd_file.hpp"
 #include "tests/cli/program.hpp"
+#include "tests/shared_folder.hpp"
 
 namespace mosbench {
 namespace {
@@ -13,9 +14,7 @@ namespace {
 namespace fs = std::filesystem;
 
 TEST(RunOnPcd, GivesTheLabelsOfTheBinFilesOfTheSameRealScans) {
-  const char* elsewhere = std::getenv("MOSBENCH_SHARED");
-  const fs::path shared =
-      elsewhere != nullptr ? fs::path(elsewhere) : fs::path(MOSBENCH_SOURCE_DIR) / "../shared";
+  const fs::path shared = shared_folder();
   if (!fs::exists(shared / "real/pcd")) GTEST_SKIP() << shared << " holds no real scans";
   if (!reads_pcd()) GTEST_SKIP() << "this build is without PCL";
   const TempFolder folder;

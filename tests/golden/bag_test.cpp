@@ -14,6 +14,7 @@
 #include "datasets/rosbag/bag_file.hpp"
 #include "datasets/rosbag/bag_sequence.hpp"
 #include "datasets/rosbag/ros_messages.hpp"
+#include "tests/shared_folder.hpp"
 #include "tests/temp_folder.hpp"
 
 namespace mosbench {
@@ -21,12 +22,6 @@ namespace {
 
 using testing::AllOf;
 using testing::HasSubstr;
-
-std::filesystem::path shared_folder() {
-  const char* elsewhere = std::getenv("MOSBENCH_SHARED");
-  return elsewhere != nullptr ? std::filesystem::path(elsewhere)
-                              : std::filesystem::path(MOSBENCH_SOURCE_DIR) / "../shared";
-}
 
 /// SHA-256 of points as .bin holds them, by coreutils.
 std::string sha256_of(const std::vector<Point>& points) {

@@ -10,6 +10,7 @@
 #include "datasets/files/errors.hpp"
 #include "datasets/files/pcd_file.hpp"
 #include "datasets/layouts/kitti_sequence.hpp"
+#include "tests/shared_folder.hpp"
 #include "tests/temp_folder.hpp"
 
 namespace mosbench {
@@ -22,12 +23,6 @@ constexpr const char* kTwoPoints =
     "VERSION 0.7\nFIELDS z y x\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 2\nHEIGHT 1\n"
     "POINTS 2\nDATA ascii\n3 2 1\n6 5 4\n";
 
-std::filesystem::path shared_scans() {
-  const char* elsewhere = std::getenv("MOSBENCH_SHARED");
-  return elsewhere != nullptr ? std::filesystem::path(elsewhere)
-                              : std::filesystem::path(MOSBENCH_SOURCE_DIR) / "../shared";
-}
-
 class PcdFile : public testing::Test {
  protected:
   void SetUp() override {
@@ -36,7 +31,7 @@ class PcdFile : public testing::Test {
 };
 
 TEST_F(PcdFile, EqualsTheBinFilesOfTheSameRealScansBitForBit) {
-  const auto folder = shared_scans() / "real/pcd";
+  const auto folder = shared_folder() / "real/pcd";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << folder << " is not there";
   for (const char* stem : {"0000000000", "0000000001", "0000000002", "0000000003", "0000000004"}) {
     const auto bin = read_bin(folder / (std::string(stem) + ".bin"));
@@ -52,7 +47,7 @@ TEST_F(PcdFile, EqualsTheBinFilesOfTheSameRealScansBitForBit) {
 }
 
 TEST_F(PcdFile, TakesFourOfEightFields) {
-  const auto file = shared_scans() / "real/pcd/eight_fields.pcd";
+  const auto file = shared_folder() / "real/pcd/eight_fields.pcd";
   if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not there";
   const auto points = read_pcd(file);
   ASSERT_GT(points.size(), 100000U);

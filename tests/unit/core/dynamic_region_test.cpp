@@ -5,6 +5,7 @@
 #include <map>
 
 #include "core/hmm_mos/otsu.hpp"
+#include "tests/unit/core/otsu_of.hpp"
 #include "tests/voxel_twins.hpp"
 
 namespace mosbench {
@@ -24,12 +25,6 @@ Detection detection(const Triples& occupied, const Triples& dynamic) {
   result.occupied = occupied;
   result.dynamic = dynamic;
   return result;
-}
-
-std::optional<double> otsu_of_scan(const std::vector<int>& values) {
-  std::vector<ValueCount> entries;
-  for (const int value : values) entries.push_back({value, 1});
-  return otsu_threshold(entries);
 }
 
 /// The dynamic region of the authors' program, with a record for every voxel ever visited.
@@ -52,7 +47,7 @@ class RegionTwin {
       if (count > 0) positive.push_back(count);
     }
     Triples chosen;
-    if (const std::optional<double> threshold = otsu_of_scan(positive)) {
+    if (const std::optional<double> threshold = otsu_of(positive)) {
       for (const auto& [v, count] : votes) {
         if (count > *threshold) chosen.insert(v);
       }
@@ -82,7 +77,7 @@ class RegionTwin {
       record.score = score;
       scores.push_back(score);
     }
-    threshold_ = otsu_of_scan(scores).value_or(threshold_);
+    threshold_ = otsu_of(scores).value_or(threshold_);
     for (auto& [v, record] : records_) {
       record.high_confidence =
           record.dynamic && !record.beside_unknown && record.score > threshold_;
@@ -240,7 +235,7 @@ TEST(DynamicRegion, AddsNoVoxelWithAsManyVotesAsTheThreshold) {
     middles.insert({16 * place, 0, 0});
     votes.push_back(place);
   }
-  ASSERT_EQ(otsu_of_scan(votes), 51.0);
+  ASSERT_EQ(otsu_of(votes), 51.0);
   EXPECT_EQ(regions.back_end(detection(middles, {}), kKernelWidth).size(), 50U);
 }
 

@@ -7,6 +7,8 @@
 #include <random>
 #include <vector>
 
+#include "tests/unit/core/otsu_of.hpp"
+
 namespace mosbench {
 using namespace hmm_mos;
 namespace {
@@ -47,12 +49,6 @@ std::optional<double> literal_otsu(const std::vector<int>& values) {
   }
   if (level < 0) return std::nullopt;
   return lo + (level - 1) * (hi - lo) / 100;
-}
-
-std::optional<double> otsu_of(const std::vector<int>& values) {
-  std::vector<ValueCount> entries;
-  for (const int value : values) entries.push_back({value, 1});
-  return otsu_threshold(entries);
 }
 
 TEST(Otsu, NothingToSeparateHasNoThreshold) {

@@ -17,6 +17,7 @@
 #include "datasets/rosbag/point_cloud2.hpp"
 #include "tests/bag_bytes.hpp"
 #include "tests/temp_folder.hpp"
+#include "tests/unit/datasets/pose_at_x.hpp"
 
 namespace mosbench {
 namespace {
@@ -28,12 +29,6 @@ using testing::HasSubstr;
 constexpr std::int64_t kStart = 1'500'000'000'000'000'000;
 constexpr std::int64_t kPeriod = 100'000'000;
 
-Pose at_x(double x_m) {
-  Pose pose = Pose::Identity();
-  pose.translation().x() = x_m;
-  return pose;
-}
-
 const std::vector<Point> kPoints = {{1, 2, 3, 4}, {0, 0, 0, 0}, {5, 6, 7, 8}};
 
 /// Three scans and four transforms, the sensor going 1 m per scan.
@@ -43,7 +38,8 @@ BagBytes good_bag(const std::vector<std::uint32_t>& times_ns = {}) {
                      {"/tf", std::string(kTfMessage)}};
   for (std::int64_t i = 0; i < 4; ++i) {
     const std::int64_t stamp_ns = kStart + i * kPeriod;
-    std::vector<BagEntry> chunk = {{1, stamp_ns, tf_at(stamp_ns, at_x(static_cast<double>(i)))}};
+    std::vector<BagEntry> chunk = {
+        {1, stamp_ns, tf_at(stamp_ns, pose_at_x(static_cast<double>(i)))}};
     if (i < 3) chunk.push_back({0, stamp_ns, timed_cloud(stamp_ns, kPoints, times_ns)});
     bag.chunks.push_back(chunk);
   }
@@ -128,7 +124,7 @@ TEST_F(Bag, TakesPosesOfTransformStampedOrOfAFile) {
 TEST_F(Bag, ReadsThroughAChainOfFrames) {
   BagBytes bag = good_bag();
   bag.connections.push_back({"/tf_static", std::string(kTfMessage)});
-  Pose map_in_world = at_x(100.0);
+  Pose map_in_world = pose_at_x(100.0);
   map_in_world.linear() = Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitZ()).toRotationMatrix();
   bag.chunks[0].push_back(
       {2, kStart, format_tf_message({{kStart, "world", "/map", map_in_world}})});
@@ -169,7 +165,7 @@ TEST_F(Bag, NamesWhatItLacks) {
   EXPECT_THAT(error_of(nothing), HasSubstr("holds no sensor_msgs/PointCloud2 but nothing"));
   BagBytes late = bag;
   late.chunks.resize(1);
-  late.chunks[0][0].message = tf_at(kStart + 5 * kPeriod, at_x(0));
+  late.chunks[0][0].message = tf_at(kStart + 5 * kPeriod, pose_at_x(0));
   EXPECT_THAT(error_of(late), HasSubstr("no transform covers any of its 1 scans"));
 }
 
@@ -297,7 +293,7 @@ TEST_F(Bag, FindsFieldsAtAnyOffsetAndOfAnyType) {
   BagBytes bag = good_bag();
   bag.chunks[0][1].message = format_cloud(head, std::move(records).bytes());
   bag.chunks.resize(1);
-  bag.chunks[0].push_back({1, 0, tf_at(0, at_x(0.0))});
+  bag.chunks[0].push_back({1, 0, tf_at(0, pose_at_x(0.0))});
   const Frame frame = BagSequence("s", write(bag.str()), {}).read(0);
   ASSERT_EQ(frame.points.size(), 2U);
   EXPECT_EQ(frame.points[1].x, -2.5F);
@@ -326,7 +322,7 @@ TEST_F(Bag, WrittenByTheLibraryGivesBackWhatWentIn) {
     BagWriter writer(file, compression);
     for (std::int64_t i = 0; i < 200; ++i) {
       const std::int64_t stamp_ns = kStart + i * kPeriod;
-      writer.write("/tf", stamp_ns, kTfMessage, tf_at(stamp_ns, at_x(static_cast<double>(i))));
+      writer.write("/tf", stamp_ns, kTfMessage, tf_at(stamp_ns, pose_at_x(static_cast<double>(i))));
       std::vector<Point> points(1000, Point{static_cast<float>(i), 1, 2, 3});
       writer.write("/p", stamp_ns, kPointCloud2, timed_cloud(stamp_ns, points, {}));
     }

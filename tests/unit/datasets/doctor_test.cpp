@@ -481,12 +481,23 @@ const std::vector<Fault>& faults() {
   return all;
 }
 
+/// Faults that sanitized builds try, where each takes half a minute.
+constexpr std::string_view kTriedSanitized[] = {"transposed_rotations",
+                                                "poses_shifted_by_one_scan_on_a_straight_road",
+                                                "inverse_poses_on_a_straight_road",
+                                                "rows_of_neighbours_exchanged",
+                                                "rows_far_apart_exchanged",
+                                                "first_two_rows_exchanged",
+                                                "exchanged_labels",
+                                                "one_scan_missing",
+                                                "four_frozen_rows",
+                                                "turned_rotations"};
+
 class Doctor : public testing::TestWithParam<Fault> {};
 
 TEST_P(Doctor, FindsThePlantedFault) {
   const Fault& fault = GetParam();
-  // Some of them, chosen by the lengths of their names: each takes half a minute then.
-  if (kSanitized && std::string_view(fault.name).size() % 4 != 0) {
+  if (kSanitized && std::ranges::find(kTriedSanitized, fault.name) == std::end(kTriedSanitized)) {
     GTEST_SKIP() << "takes minutes in sanitized builds";
   }
   const TempFolder folder;

@@ -10,7 +10,7 @@
 namespace mosbench {
 namespace {
 
-std::vector<std::string> files_below(const std::filesystem::path& path) {
+std::vector<std::string> sequences_in(const std::filesystem::path& path) {
   std::vector<std::string> names;
   for (const SequenceFolder& sequence : mdetector_layout().list(path)) {
     names.push_back(sequence.name);
@@ -26,12 +26,12 @@ TEST(MdetectorLayout, NamesSequencesByTheirSet) {
     std::filesystem::create_directories(folder / "M-detector" / sequence / "velodyne");
   }
   using Names = std::vector<std::string>;
-  EXPECT_EQ(files_below(folder / "M-detector"), (Names{"KITTI/0000", "KITTI/0001", "Waymo/0000"}));
-  EXPECT_EQ(files_below(folder / "M-detector/waymo"), (Names{"Waymo/0000"}));
-  EXPECT_EQ(files_below(folder / "M-detector/kitti/sequences/0001"), (Names{"KITTI/0001"}));
+  EXPECT_EQ(sequences_in(folder / "M-detector"), (Names{"KITTI/0000", "KITTI/0001", "Waymo/0000"}));
+  EXPECT_EQ(sequences_in(folder / "M-detector/waymo"), (Names{"Waymo/0000"}));
+  EXPECT_EQ(sequences_in(folder / "M-detector/kitti/sequences/0001"), (Names{"KITTI/0001"}));
   // A set that is one sequence, and folders of other names, keep theirs.
   std::filesystem::create_directories(folder / "mine/Avia/velodyne");
-  EXPECT_EQ(files_below(folder / "mine"), (Names{"Avia"}));
+  EXPECT_EQ(sequences_in(folder / "mine"), (Names{"Avia"}));
 }
 
 }  // namespace

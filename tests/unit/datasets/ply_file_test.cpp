@@ -14,6 +14,7 @@
 #include "datasets/files/byte_cursor.hpp"
 #include "datasets/files/errors.hpp"
 #include "datasets/files/files.hpp"
+#include "tests/shared_folder.hpp"
 #include "tests/temp_folder.hpp"
 
 namespace mosbench {
@@ -93,11 +94,7 @@ TEST(PlyFile, RefusesWhatIsNoneOrCutOff) {
 }
 
 TEST(PlyFile, HoldsTheFieldsOfTheOusterDriverAndThePointsOfItsBinFile) {
-  const char* elsewhere = std::getenv("MOSBENCH_SHARED");
-  const auto folder =
-      (elsewhere != nullptr ? std::filesystem::path(elsewhere)
-                            : std::filesystem::path(MOSBENCH_SOURCE_DIR) / "../shared") /
-      "real/os1";
+  const auto folder = shared_folder() / "real/os1";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << folder << " is not there";
   const auto ply = parse_ply(read_file(folder / "000104.ply"), "000104.ply");
   const auto bin = read_bin(folder / "000104.bin");

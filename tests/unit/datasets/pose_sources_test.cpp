@@ -10,6 +10,7 @@
 #include "datasets/sequence/pose_track.hpp"
 #include "datasets/sequence/undistort.hpp"
 #include "tests/temp_folder.hpp"
+#include "tests/unit/datasets/pose_at_x.hpp"
 
 namespace mosbench {
 namespace {
@@ -49,12 +50,6 @@ TEST(PoseList, RefusesRowsThatAreNoPose) {
   EXPECT_THAT(error_of("0 1 2 3 0 0 0 1\n0 1 2 3 0 0 0 1\n"),
               HasSubstr("f:2: its stamp is not behind"));
   EXPECT_THAT(error_of("t 1 2 3 0 0 0 1\n"), HasSubstr("no time in seconds"));
-}
-
-Pose pose_at_x(double x_m) {
-  Pose pose = Pose::Identity();
-  pose.translation().x() = x_m;
-  return pose;
 }
 
 TEST(PoseTrack, InterpolatesBetweenNeighboursAndNeverBeyondTheEnds) {

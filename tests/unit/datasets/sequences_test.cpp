@@ -15,6 +15,7 @@
 #include "datasets/layouts/kitti_sequence.hpp"
 #include "datasets/sequence/fingerprint.hpp"
 #include "tests/temp_folder.hpp"
+#include "tests/unit/datasets/pose_at_x.hpp"
 
 namespace mosbench {
 namespace {
@@ -32,19 +33,13 @@ std::vector<Point> points_of(std::size_t count) {
   return points;
 }
 
-Pose at(double x_m) {
-  Pose pose = Pose::Identity();
-  pose.translation().x() = x_m;
-  return pose;
-}
-
 /// Scans of 3, 4, 5, ... points with the given stems, and a pose for each.
 void write_recording(const TempFolder& folder, const std::vector<std::string>& stems,
                      const std::string& scan_folder = "velodyne") {
   std::vector<Pose> poses;
   for (std::size_t i = 0; i < stems.size(); ++i) {
     write_bin(folder / (scan_folder + "/" + stems[i] + ".bin"), points_of(3 + i));
-    poses.push_back(at(0.5 * static_cast<double>(i)));
+    poses.push_back(pose_at_x(0.5 * static_cast<double>(i)));
   }
   write_poses(folder / "poses.txt", poses);
 }
@@ -68,7 +63,7 @@ TEST(KittiSequence, ReadsScansPosesTimesAndLabelsForPartOfTheScans) {
   const Frame frame = sequence.read(1);
   EXPECT_EQ(frame.stem, "000001");
   EXPECT_EQ(format_bin(frame.points), format_bin(points_of(4)));
-  EXPECT_EQ(frame.map_from_sensor.matrix(), at(0.5).matrix());
+  EXPECT_EQ(frame.map_from_sensor.matrix(), pose_at_x(0.5).matrix());
   EXPECT_EQ(frame.stamp_ns, 100000000);
   ASSERT_TRUE(frame.truth.has_value());
   EXPECT_THAT(*frame.truth, ElementsAre(0U, 9U, 251U, 0x500fbU));
@@ -142,7 +137,7 @@ TEST(KittiSequence, TakesAnotherPoseFile) {
   const TempFolder folder;
   write_recording(folder, {"0"});
   std::filesystem::remove(folder / "poses.txt");
-  write_poses(folder / "elsewhere.txt", std::vector<Pose>{at(7)});
+  write_poses(folder / "elsewhere.txt", std::vector<Pose>{pose_at_x(7)});
   const KittiSequence sequence("s", folder.path(),
                                ReadingOptions{.poses = folder / "elsewhere.txt"});
   EXPECT_EQ(sequence.read(0).map_from_sensor.translation().x(), 7.0);
@@ -160,11 +155,11 @@ TEST(KittiSequence, NamesWhatIsMissing) {
 TEST(KittiSequence, NamesBothCountsWhenPosesOrTimesDoNotFit) {
   const TempFolder folder;
   write_recording(folder, {"0", "1"});
-  write_poses(folder / "poses.txt", std::vector<Pose>{at(0)});
+  write_poses(folder / "poses.txt", std::vector<Pose>{pose_at_x(0)});
   EXPECT_THAT(kitti_error(folder), HasSubstr("poses.txt: 1 pose rows for 2 scans"));
-  write_poses(folder / "poses.txt", std::vector<Pose>{at(0), at(1), at(2)});
+  write_poses(folder / "poses.txt", std::vector<Pose>{pose_at_x(0), pose_at_x(1), pose_at_x(2)});
   EXPECT_THAT(kitti_error(folder), HasSubstr("poses.txt: 3 pose rows for 2 scans"));
-  write_poses(folder / "poses.txt", std::vector<Pose>{at(0), at(1)});
+  write_poses(folder / "poses.txt", std::vector<Pose>{pose_at_x(0), pose_at_x(1)});
   folder.write("times.txt", "0\n0.1\n0.2\n");
   EXPECT_THAT(kitti_error(folder), HasSubstr("times.txt: 3 times for 2 scans"));
 }

@@ -9,19 +9,13 @@
 #include <string_view>
 #include <vector>
 
+#include "tests/unit/eval/confusions.hpp"
+
 namespace mosbench {
 namespace {
 
-using Labels = std::vector<std::uint32_t>;
-
 constexpr float kNoNumber = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
-/// Scores scans whose points all lie 5 m ahead, within every protocol's limits.
-Confusion score(std::string_view protocol, const Labels& truth, const Labels& prediction) {
-  const std::vector<Point> points(truth.size(), Point{5.0F, 0.0F, 0.0F, 0.0F});
-  return score_scan(protocol_named(protocol), truth, prediction, points);
-}
 
 Confusion score_one(std::string_view protocol, std::uint32_t truth, std::uint32_t prediction,
                     const Point& point) {

@@ -11,17 +11,10 @@
 #include "eval/statistics/distributions.hpp"
 #include "eval/statistics/neighbour_correlation.hpp"
 #include "eval/statistics/uncertainty.hpp"
+#include "tests/unit/eval/confusions.hpp"
 
 namespace mosbench {
 namespace {
-
-Confusion counts(std::uint64_t tp, std::uint64_t fp, std::uint64_t fn) {
-  Confusion confusion;
-  confusion.tp = tp;
-  confusion.fp = fp;
-  confusion.fn = fn;
-  return confusion;
-}
 
 /// Standard normal numbers, the same with every library.
 class Normal {

@@ -11,6 +11,7 @@
 #include "eval/results/reading_json.hpp"
 #include "eval/results/text_table.hpp"
 #include "eval/tables/score_table.hpp"
+#include "tests/unit/eval/confusions.hpp"
 
 namespace mosbench {
 namespace {
@@ -94,19 +95,9 @@ TEST(DurationText, ChangesItsUnitWithTheLength) {
   EXPECT_EQ(duration_text(7620.0), "2 h 07 min");
 }
 
-Confusion counts_of_run(std::uint64_t tp, std::uint64_t fp, std::uint64_t fn) {
-  Confusion confusion;
-  confusion.tp = tp;
-  confusion.fp = fp;
-  confusion.fn = fn;
-  return confusion;
-}
-
 const std::vector<ScoredSequence> kTwoSequences = {
-    {"a",
-     {{"0", counts_of_run(1, 0, 1)}, {"1", std::nullopt}, {"2", counts_of_run(3, 1, 0)}},
-     10.0},
-    {"b", {{"0", counts_of_run(90, 5, 5)}}, 30.0}};
+    {"a", {{"0", counts(1, 0, 1)}, {"1", std::nullopt}, {"2", counts(3, 1, 0)}}, 10.0},
+    {"b", {{"0", counts(90, 5, 5)}}, 30.0}};
 
 TEST(ScoreRows, PoolASplitOverItsSequences) {
   const Split split{"test", {{0, std::nullopt}, {1, std::nullopt}}};

@@ -8,16 +8,10 @@
 #include <vector>
 
 #include "eval/protocols/metrics.hpp"
+#include "tests/unit/eval/confusions.hpp"
 
 namespace mosbench {
 namespace {
-
-using Labels = std::vector<std::uint32_t>;
-
-Confusion score_vector(std::string_view protocol, const Labels& truth, const Labels& prediction) {
-  const std::vector<Point> points(truth.size(), Point{5.0F, 0.0F, 0.0F, 0.0F});
-  return score_scan(protocol_named(protocol), truth, prediction, points);
-}
 
 Summary summary_of(std::string_view protocol, const Confusion& scan) {
   return summarize(protocol_named(protocol), std::vector{scan});
@@ -26,23 +20,23 @@ Summary summary_of(std::string_view protocol, const Confusion& scan) {
 TEST(WorkedVectors, FirstMixesAllIds) {
   const Labels truth = {0, 9, 251, 252, 1};
   const Labels prediction = {251, 251, 251, 9, 9};
-  const Confusion kitti = score_vector("semantickitti-mos", truth, prediction);
+  const Confusion kitti = score("semantickitti-mos", truth, prediction);
   EXPECT_EQ(kitti, (Confusion{.tp = 1, .fp = 1, .fn = 1, .ignored = 2}));
   EXPECT_EQ(summary_of("semantickitti-mos", kitti).published_text, "0.333");
-  const Confusion sipailou = score_vector("sipailou", truth, prediction);
+  const Confusion sipailou = score("sipailou", truth, prediction);
   EXPECT_EQ(sipailou, (Confusion{.tp = 1, .fp = 2, .fn = 1, .tn = 1, .unknown_ids = 1}));
   EXPECT_EQ(moving_iou(sipailou), 0.25);
-  const Confusion mapmos = score_vector("mapmos", truth, prediction);
+  const Confusion mapmos = score("mapmos", truth, prediction);
   EXPECT_EQ(mapmos, (Confusion{.tp = 1, .fp = 1, .fn = 1, .ignored = 2}));
   EXPECT_EQ(moving_iou(mapmos), 1.0 / 3.0);
-  const Confusion apollo = score_vector("mapmos-apollo", truth, prediction);
+  const Confusion apollo = score("mapmos-apollo", truth, prediction);
   EXPECT_EQ(apollo, (Confusion{.tp = 1, .fp = 2, .fn = 1, .tn = 1}));
   EXPECT_EQ(moving_iou(apollo), 0.25);
 }
 
 TEST(WorkedVectors, SecondMissesAMovingPointByLeavingItUnlabelled) {
   for (const std::string_view name : {"semantickitti-mos", "sipailou"}) {
-    const Confusion counts = score_vector(name, {251}, {0});
+    const Confusion counts = score(name, {251}, {0});
     EXPECT_EQ(counts, Confusion{.fn = 1}) << name;
     EXPECT_EQ(moving_iou(counts), 0.0) << name;
   }
@@ -52,12 +46,12 @@ TEST(WorkedVectors, ThirdHasNothingMovingAndEveryProgramSaysSomethingElse) {
   const Labels still = {9, 9};
   for (const std::string_view name :
        {"semantickitti-mos", "mapmos", "doals-dynablox", "doals-hmm"}) {
-    const Summary summary = summary_of(name, score_vector(name, still, still));
+    const Summary summary = summary_of(name, score(name, still, still));
     EXPECT_EQ(summary.iou, std::nullopt) << name;
     EXPECT_EQ(summary.undefined_scans, 1U) << name;
   }
   const auto published = [&](std::string_view name) {
-    return summary_of(name, score_vector(name, still, still));
+    return summary_of(name, score(name, still, still));
   };
   EXPECT_EQ(published("semantickitti-mos").published_text, "0.000");
   EXPECT_EQ(published("mapmos").published_text, "nan");
@@ -93,7 +87,7 @@ TEST(WorkedVectors, FifthTellsTheMeanOfScansFromThePooledNumber) {
 }
 
 TEST(WorkedVectors, SixthReadsAnIdBelowAnInstanceNumber) {
-  EXPECT_EQ(score_vector("semantickitti-mos", {0x000500FB}, {251}), Confusion{.tp = 1});
+  EXPECT_EQ(score("semantickitti-mos", {0x000500FB}, {251}), Confusion{.tp = 1});
 }
 
 TEST(WorkedVectors, TheAuthorsExampleAverages8922) {
