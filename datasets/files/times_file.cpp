@@ -98,15 +98,17 @@ std::vector<std::int64_t> parse_times(std::string_view text, const std::filesyst
   return stamps_ns;
 }
 
-std::string format_times(std::span<const std::int64_t> stamps_ns) {
+std::string seconds_text(std::int64_t stamp_ns) {
   constexpr std::uint64_t kNsPerSecond = 1'000'000'000;
+  const auto bits = static_cast<std::uint64_t>(stamp_ns);
+  const std::uint64_t magnitude = stamp_ns < 0 ? 0 - bits : bits;
+  return fmt::format("{}{}.{:09}", stamp_ns < 0 ? "-" : "", magnitude / kNsPerSecond,
+                     magnitude % kNsPerSecond);
+}
+
+std::string format_times(std::span<const std::int64_t> stamps_ns) {
   std::string text;
-  for (const std::int64_t stamp_ns : stamps_ns) {
-    const auto bits = static_cast<std::uint64_t>(stamp_ns);
-    const std::uint64_t magnitude = stamp_ns < 0 ? 0 - bits : bits;
-    text += fmt::format("{}{}.{:09}\n", stamp_ns < 0 ? "-" : "", magnitude / kNsPerSecond,
-                        magnitude % kNsPerSecond);
-  }
+  for (const std::int64_t stamp_ns : stamps_ns) text += seconds_text(stamp_ns) + '\n';
   return text;
 }
 

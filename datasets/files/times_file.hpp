@@ -17,7 +17,9 @@ std::optional<std::int64_t> parse_seconds_as_ns(std::string_view text);
 
 /// Parses times.txt: one time in seconds per scan. Throws DataError with the line.
 std::vector<std::int64_t> parse_times(std::string_view text, const std::filesystem::path& file);
-/// Formats seconds with nine decimals.
+/// Formats nanoseconds as seconds with nine decimals.
+std::string seconds_text(std::int64_t stamp_ns);
+/// Formats times.txt: seconds with nine decimals, one per line.
 std::string format_times(std::span<const std::int64_t> stamps_ns);
 
 std::vector<std::int64_t> read_times(const std::filesystem::path& file);

@@ -21,7 +21,6 @@
 #include "eval/results/settings_json.hpp"
 #include "eval/results/shell_text.hpp"
 #include "eval/results/tell.hpp"
-#include "eval/results/version.hpp"
 #include "eval/runs/found_poses.hpp"
 #include "eval/runs/odometry_choice.hpp"
 #include "eval/runs/run_plan.hpp"
@@ -79,11 +78,10 @@ bool writes_tum(const OdometryFlags& flags) {
 nlohmann::ordered_json record_identity(const Sequence& sequence, const OdometryChoice& choice) {
   ReadingStatement reading = sequence.reading();
   for (auto& statement : statement_of(choice)) reading.push_back(std::move(statement));
-  return {
-      {"sequence", sequence.name()},
-      {"reading", to_json(reading)},
-      {"file_stamp", file_stamp(sequence)},
-      {"code", {{"version", std::string(kMosbenchVersion)}, {"compiler", std::string(kCompiler)}}}};
+  return {{"sequence", sequence.name()},
+          {"reading", to_json(reading)},
+          {"file_stamp", file_stamp(sequence)},
+          {"code", code_json()}};
 }
 
 /// The scans of a record that an earlier call left when it had written the pose file, if the same

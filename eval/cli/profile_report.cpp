@@ -10,7 +10,6 @@
 #include "eval/results/settings_json.hpp"
 #include "eval/results/simulated.hpp"
 #include "eval/results/text_table.hpp"
-#include "eval/results/version.hpp"
 
 namespace mosbench {
 namespace {
@@ -186,13 +185,12 @@ std::string profile_text(const RunPlan& plan, const std::vector<SequenceProfile>
 }
 
 ordered_json profile_json(const RunPlan& plan, const std::vector<SequenceProfile>& profiles) {
-  ordered_json json = {
-      {"dataset", std::string(to_string(plan.dataset.kind))},
-      {"method", std::string(plan.settings.method->name)},
-      {"preset", plan.preset},
-      {"config", to_json(plan.settings.method_settings)},
-      {"code", {{"version", std::string(kMosbenchVersion)}, {"compiler", std::string(kCompiler)}}},
-      {"machine", machine_json()}};
+  ordered_json json = {{"dataset", std::string(to_string(plan.dataset.kind))},
+                       {"method", std::string(plan.settings.method->name)},
+                       {"preset", plan.preset},
+                       {"config", to_json(plan.settings.method_settings)},
+                       {"code", code_json()},
+                       {"machine", machine_json()}};
   if (const auto origin = simulated_origin_json(plan.dataset)) json["simulated"] = *origin;
   json["sequences"] = ordered_json::array();
   for (const SequenceProfile& profile : profiles) {

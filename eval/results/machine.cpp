@@ -10,6 +10,8 @@
 #include <string>
 #include <thread>
 
+#include "eval/results/version.hpp"
+
 namespace mosbench {
 namespace {
 
@@ -35,6 +37,10 @@ nlohmann::ordered_json machine_json() {
           {"logical_cores", std::thread::hardware_concurrency()},
           {"memory_mib", static_cast<double>(sysconf(_SC_PHYS_PAGES)) * page_mib()},
           {"system", std::string(system.sysname) + " " + system.machine}};
+}
+
+nlohmann::ordered_json code_json() {
+  return {{"version", std::string(kMosbenchVersion)}, {"compiler", std::string(kCompiler)}};
 }
 
 void keep_freed_memory() {

@@ -7,6 +7,9 @@ namespace mosbench {
 /// Processor, logical cores, memory and operating system, as far as they can be read.
 nlohmann::ordered_json machine_json();
 
+/// Version of mosbench and the compiler that built it.
+nlohmann::ordered_json code_json();
+
 /// Makes the C library keep freed memory for the next scan, which needs as much again; otherwise
 /// the system takes its pages back and clears new ones. Whoever keeps something small of every scan
 /// reserves the memory for it first: between large buffers it would split the heap, and the process

@@ -6,6 +6,7 @@
 
 #include "datasets/files/errors.hpp"
 #include "datasets/files/pose_file.hpp"
+#include "datasets/files/times_file.hpp"
 
 namespace mosbench {
 namespace {
@@ -13,15 +14,11 @@ namespace {
 std::string tum_rows(const Sequence& sequence, const std::vector<Pose>& poses) {
   std::string rows;
   for (std::size_t k = 0; k < poses.size(); ++k) {
-    const std::int64_t stamp_ns = sequence.stamp_ns(k).value();
     const Pose& pose = poses[k];
     const Eigen::Quaterniond q = Eigen::Quaterniond(pose.linear()).normalized();
-    const bool negative = stamp_ns < 0;
-    const std::uint64_t ns =
-        negative ? -static_cast<std::uint64_t>(stamp_ns) : static_cast<std::uint64_t>(stamp_ns);
-    rows += fmt::format("{}{}.{:09} {} {} {} {} {} {} {}\n", negative ? "-" : "",
-                        ns / 1'000'000'000, ns % 1'000'000'000, pose.translation().x(),
-                        pose.translation().y(), pose.translation().z(), q.x(), q.y(), q.z(), q.w());
+    rows += fmt::format("{} {} {} {} {} {} {} {}\n", seconds_text(sequence.stamp_ns(k).value()),
+                        pose.translation().x(), pose.translation().y(), pose.translation().z(),
+                        q.x(), q.y(), q.z(), q.w());
   }
   return rows;
 }

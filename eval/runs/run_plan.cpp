@@ -9,10 +9,10 @@
 #include "datasets/files/errors.hpp"
 #include "datasets/sequence/fingerprint.hpp"
 #include "eval/protocols/benchmark_split.hpp"
+#include "eval/results/machine.hpp"
 #include "eval/results/reading_json.hpp"
 #include "eval/results/same_input.hpp"
 #include "eval/results/settings_json.hpp"
-#include "eval/results/version.hpp"
 #include "eval/runs/method_choice.hpp"
 #include "eval/runs/presets.hpp"
 #include "eval/runs/shared_folder.hpp"
@@ -88,19 +88,18 @@ fs::path default_out(const RunPlan& plan, const RunOptions& options) {
 
 nlohmann::ordered_json identity_of(const RunPlan& plan, const Sequence& sequence) {
   const RunSettings& settings = plan.settings;
-  return {
-      {"sequence", sequence.name()},
-      {"dataset", std::string(to_string(plan.dataset.kind))},
-      {"reading", to_json(sequence.reading())},
-      {"method",
-       {{"name", std::string(settings.method->title)},
-        {"kind", std::string(settings.method->name)}}},
-      {"protocol",
-       {{"name", std::string(settings.protocol->name)},
-        {"min_range_m", settings.range.min_m},
-        {"max_range_m", settings.range.max_m}}},
-      {"config", to_json(settings.method_settings)},
-      {"code", {{"version", std::string(kMosbenchVersion)}, {"compiler", std::string(kCompiler)}}}};
+  return {{"sequence", sequence.name()},
+          {"dataset", std::string(to_string(plan.dataset.kind))},
+          {"reading", to_json(sequence.reading())},
+          {"method",
+           {{"name", std::string(settings.method->title)},
+            {"kind", std::string(settings.method->name)}}},
+          {"protocol",
+           {{"name", std::string(settings.protocol->name)},
+            {"min_range_m", settings.range.min_m},
+            {"max_range_m", settings.range.max_m}}},
+          {"config", to_json(settings.method_settings)},
+          {"code", code_json()}};
 }
 
 /// What the results of all sequences of a run have in common.
