@@ -74,6 +74,14 @@ std::string read_file(const std::filesystem::path& file) {
   return bytes;
 }
 
+std::string read_start(const std::filesystem::path& file, std::size_t most_bytes) {
+  const OpenFile in = open_to_read(file);
+  std::string bytes(most_bytes, '\0');
+  bytes.resize(std::fread(bytes.data(), 1, bytes.size(), in.get()));
+  check_reading(in.get(), file);
+  return bytes;
+}
+
 std::string read_head(const std::filesystem::path& file, std::string_view last_line) {
   constexpr std::size_t kStepBytes = 4096;
   const OpenFile in = open_to_read(file);

@@ -39,12 +39,21 @@ std::optional<std::filesystem::path> scan_folder_of(const std::filesystem::path&
   return std::nullopt;
 }
 
-std::vector<StemFile> list_scan_folder(const std::filesystem::path& scan_folder) {
-  auto scans = list_by_stem(scan_folder, {".bin", ".pcd", ".ply"});
-  if (scans.empty()) throw DataError(scan_folder, "holds no scan", kLayout);
+bool is_named_as_scan(const std::filesystem::path& file) {
+  return has_extension(file, ".bin") || has_extension(file, ".pcd") || has_extension(file, ".ply");
+}
+
+std::vector<StemFile> scans_in(const std::filesystem::path& folder) {
+  auto scans = list_by_stem(folder, {".bin", ".pcd", ".ply"});
   for (StemFile& scan : scans) {
     if (scan.file.string().ends_with(kNuscenesEnd)) scan.stem.resize(scan.stem.size() - 4);
   }
+  return scans;
+}
+
+std::vector<StemFile> list_scan_folder(const std::filesystem::path& scan_folder) {
+  auto scans = scans_in(scan_folder);
+  if (scans.empty()) throw DataError(scan_folder, "holds no scan", kLayout);
   return scans;
 }
 

@@ -11,12 +11,16 @@
 
 namespace mosbench {
 
+/// Whether a file is named as a scan: .bin, .pcd or .ply.
+bool is_named_as_scan(const std::filesystem::path& file);
+
 /// Returns the folder of scans in a sequence folder: velodyne/, else binFiles/, else LIDAR_TOP/
 /// (nuScenes), else nothing.
 std::optional<std::filesystem::path> scan_folder_of(const std::filesystem::path& sequence_folder);
 
-/// Lists the scans (.bin, .pcd, .ply) of `scan_folder` in order. Throws DataError when there are
-/// none.
+/// Lists the scans (.bin, .pcd, .ply) of a folder in order; none where it holds none.
+std::vector<StemFile> scans_in(const std::filesystem::path& folder);
+/// The same, but throws DataError when there are none.
 std::vector<StemFile> list_scan_folder(const std::filesystem::path& scan_folder);
 /// Lists those of `scan_folder_of`. Throws DataError also when there is no such folder.
 std::vector<StemFile> list_scans(const std::filesystem::path& sequence_folder);

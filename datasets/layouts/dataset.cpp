@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <system_error>
 #include <utility>
 
 #include "datasets/files/errors.hpp"
 #include "datasets/files/files.hpp"
+#include "datasets/files/shown_text.hpp"
 #include "datasets/layouts/folder_search.hpp"
 #include "datasets/layouts/layout.hpp"
 #include "datasets/layouts/simulated_origin.hpp"
@@ -18,8 +20,27 @@
 namespace mosbench {
 namespace {
 
+/// Names what a path holds by the ends of names, which nothing here reads: " but 12 .pcap files".
+std::string what_is_there(const std::filesystem::path& path) {
+  std::error_code error;
+  if (!std::filesystem::is_directory(path, error)) return ", and is no file that is read";
+  std::map<std::string, std::size_t> files_of_end;
+  std::size_t files = 0;
+  for (std::filesystem::directory_iterator entry(path, error), end; !error && entry != end;
+       entry.increment(error)) {
+    if (!entry->is_regular_file(error)) continue;
+    ++files_of_end[shown_in_line(entry->path().extension().string())];
+    ++files;
+  }
+  const auto most = std::ranges::max_element(
+      files_of_end, {}, [](const auto& end_and_files) { return end_and_files.second; });
+  if (most == files_of_end.end()) return "";
+  return fmt::format(" but {} files, {} of them called *{}", files, most->second, most->first);
+}
+
 const Layout& recognise(const std::filesystem::path& path, std::vector<std::string>& remarks) {
-  if (const auto origin = simulated_origin(path)) {
+  const auto origin = is_scan(path) ? std::nullopt : simulated_origin(path);
+  if (origin) {
     remarks.push_back("recognised as " + std::string(to_string(origin->layout)) +
                       ": it is simulated in this layout");
     return layout_of(origin->layout);
@@ -34,8 +55,9 @@ const Layout& recognise(const std::filesystem::path& path, std::vector<std::stri
     }
   }
   throw DataError(
-      path, "holds no sequence",
-      "a data set or one sequence folder (velodyne/ or binFiles/ with scans, poses.txt)");
+      path, "holds no sequence" + what_is_there(path),
+      "a data set, one sequence folder (velodyne/ or binFiles/ with scans, poses.txt), " +
+          std::string(recording_layout().expected));
 }
 
 std::string joined(const std::vector<SequenceFolder>& folders) {
@@ -72,12 +94,13 @@ struct ListedSequences {
 ListedSequences list_sequences(const std::filesystem::path& path, const OpenOptions& options,
                                std::vector<std::string>& remarks) {
   std::error_code error;
-  if (!is_bag(path)) {
+  if (!std::filesystem::is_regular_file(path, error)) {
+    error.clear();
     const std::filesystem::directory_iterator listing(path, error);
   }
   if (error) {
     throw DataError(path, "is no folder that can be listed (" + error.message() + ")",
-                    "a data set's root, one sequence folder or a .bag file");
+                    "a data set's root, one sequence folder, a scan or a .bag file");
   }
   if (is_unfinished_conversion(path)) {
     throw DataError(path, "holds part of a data set (mosbench convert was stopped)",

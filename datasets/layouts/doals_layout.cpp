@@ -33,6 +33,7 @@ void list_scene(const std::filesystem::path& scene, const std::string& prefix,
 /// Lists in alphabetical order, which for the published scenes is that of the published numbers.
 std::vector<SequenceFolder> list_doals(const std::filesystem::path& path) {
   if (is_bag(path)) return {{path.stem().string(), path, ""}};
+  if (!std::filesystem::is_directory(path)) return {};
   if (scan_folder_of(path) || !list_by_stem(path, {".bag"}).empty())
     return {sequence_folder(folder_name(path), path)};
   std::vector<SequenceFolder> sequences;
@@ -67,8 +68,15 @@ std::vector<Split> doals_splits(const std::vector<SequenceFolder>& folders,
   return splits;
 }
 
+/// Many a bag holds an Ouster's scans: only what lies around it tells that it is of this set.
+std::optional<std::string> recognise_doals_bag(const std::filesystem::path& folder) {
+  if (is_there(folder / "indices.csv")) return "indices.csv is beside the bag";
+  if (is_sequence_name(folder_name(folder))) return "the bag is in a folder sequence_N";
+  return std::nullopt;
+}
+
 std::optional<std::string> recognise_doals(const std::filesystem::path& path) {
-  if (is_bag(path)) return "it is a bag";
+  if (is_bag(path)) return recognise_doals_bag(parent_folder(path));
   const auto sequences = list_doals(path);
   for (const SequenceFolder& sequence : sequences) {
     if (is_there(sequence.folder / "indices.csv")) return "indices.csv is there";
@@ -77,7 +85,6 @@ std::optional<std::string> recognise_doals(const std::filesystem::path& path) {
   if (is_sequence_name(folder_name(sequences.front().folder))) {
     return "sequence_N folders are there";
   }
-  if (!list_by_stem(path, {".bag"}).empty()) return "a bag is there";
   return std::nullopt;
 }
 

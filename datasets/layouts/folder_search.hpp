@@ -16,8 +16,11 @@ std::filesystem::path without_slash(const std::filesystem::path& path);
 /// Returns the last name of a path, also of "." and of one that ends with a slash.
 std::string folder_name(const std::filesystem::path& path);
 
-/// Whether a path is a file that is named as a bag.
+/// Whether a path is a file that is named as a bag, or begins as one.
 bool is_bag(const std::filesystem::path& path);
+
+/// Whether a path is a file that is named as a scan.
+bool is_scan(const std::filesystem::path& path);
 
 /// Returns the folder that a sequence folder is in.
 std::filesystem::path parent_folder(const std::filesystem::path& path);

@@ -88,6 +88,7 @@ const Layout& apollo_layout();
 const Layout& moe_layout();
 const Layout& kth_layout();
 const Layout& mdetector_layout();
+const Layout& recording_layout();
 
 /// Returns all rows, in the order in which they are listed.
 std::span<const Layout* const> layouts();

@@ -72,12 +72,14 @@ void FolderSequence::take_poses(const SensorPoses& poses) {
 
 void FolderSequence::list_scans(const std::filesystem::path& folder, const FolderLayout& layout) {
   Recording& recording = mutable_recording();
-  std::vector<StemFile> scans = layout.scan_folder.empty()
-                                    ? mosbench::list_scans(folder)
-                                    : list_scan_folder(folder / layout.scan_folder);
+  const bool is_flat = layout.scan_folder == ".";
+  std::vector<StemFile> scans =
+      layout.scan_folder.empty() ? mosbench::list_scans(folder)
+                                 : list_scan_folder(is_flat ? folder : folder / layout.scan_folder);
   const std::filesystem::path& first = scans.front().file;
-  recording.reading = {{"scan_files", fmt::format("{} of {}/", first.extension().string(),
-                                                  first.parent_path().filename().string())}};
+  recording.reading = {
+      {"scan_files", fmt::format("{} of {}/", first.extension().string(),
+                                 is_flat ? "." : first.parent_path().filename().string())}};
   if (bin_columns_ != ReadingOptions{}.bin_columns) {
     recording.reading.emplace_back("bin_columns", std::to_string(bin_columns_));
   }

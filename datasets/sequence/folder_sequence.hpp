@@ -14,7 +14,8 @@ namespace mosbench {
 
 /// Where a layout keeps the scans and the poses of a sequence.
 struct FolderLayout {
-  std::string_view scan_folder = {};  ///< within the sequence folder; found by name when empty
+  std::string_view scan_folder = {};  ///< within the sequence folder, "." for itself; found by
+                                      ///< name when empty
   std::string_view poses_file = "poses.txt";
   bool poses_of_lidar = false;  ///< calib.txt is not applied to poses_file
 };

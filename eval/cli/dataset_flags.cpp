@@ -102,7 +102,9 @@ void add_dataset_flags(CLI::App& command, std::filesystem::path& input, std::str
 
 void add_scan_dataset_flags(CLI::App& command, std::filesystem::path& input, std::string& dataset,
                             std::vector<std::string>& sequences, ReadingOptions& reading) {
-  command.add_option("DATA", input, "Root of a data set, one sequence folder, or a bag")
+  command
+      .add_option("DATA", input,
+                  "Root of a data set, one sequence folder, a bag, a scan, or a folder of them")
       ->type_name("DIR")
       ->required();
   add_dataset_kind_flag(command, dataset);

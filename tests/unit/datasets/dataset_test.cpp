@@ -67,7 +67,7 @@ TEST(Layouts, HaveOneCompleteRowPerDataSet) {
     }
     EXPECT_GT(row->files.sensor_range_m, 0.0) << row->name;
   }
-  EXPECT_EQ(kinds.size(), 8U);
+  EXPECT_EQ(kinds.size(), 9U);
   EXPECT_EQ(dataset_kind_from_string("kitti"), std::nullopt);
 }
 

@@ -1,0 +1,83 @@
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "datasets/files/folder_listing.hpp"
+#include "datasets/files/scan_file.hpp"
+#include "datasets/layouts/folder_search.hpp"
+#include "datasets/layouts/kitti_sequence.hpp"
+#include "datasets/layouts/layout.hpp"
+#include "datasets/layouts/single_scan.hpp"
+#include "datasets/rosbag/bag_sequence.hpp"
+
+namespace mosbench {
+namespace {
+
+std::vector<std::filesystem::path> bags_of(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> bags;
+  for (const StemFile& bag : list_by_stem(folder, {".bag"})) bags.push_back(bag.file);
+  return bags;
+}
+
+/// A bag or a scan that is given itself, the bags of a folder, or the folder of scans. One bag is
+/// called as its folder.
+std::vector<SequenceFolder> list_recording(const std::filesystem::path& path) {
+  if (is_bag(path) || is_scan(path)) return {{path.stem().string(), path, ""}};
+  if (!std::filesystem::is_directory(path)) return {};
+  const auto bags = bags_of(path);
+  if (bags.size() == 1) return {{folder_name(path), bags.front(), ""}};
+  std::vector<SequenceFolder> sequences;
+  for (const auto& bag : bags) sequences.push_back({bag.stem().string(), bag, ""});
+  if (sequences.empty() && !scans_in(path).empty()) return {{folder_name(path), path, ""}};
+  return sequences;
+}
+
+std::unique_ptr<Sequence> open_recording(const SequenceFolder& sequence,
+                                         const ReadingOptions& options) {
+  const auto& path = sequence.folder;
+  if (is_bag(path)) return std::make_unique<BagSequence>(sequence.name, path, options);
+  if (is_scan(path)) return std::make_unique<SingleScan>(sequence.name, path, options);
+  return std::make_unique<KittiSequence>(sequence.name, path, options,
+                                         SequenceLayout{.folder = {.scan_folder = "."}});
+}
+
+std::optional<std::string> recognise_recording(const std::filesystem::path& path) {
+  const auto sequences = list_recording(path);
+  if (sequences.empty()) return std::nullopt;
+  const auto& first = sequences.front().folder;
+  if (sequences.size() > 1) return fmt::format("{} bags are there", sequences.size());
+  if (is_bag(path)) return "it is a bag";
+  if (is_bag(first)) return "a bag is there";
+  if (is_scan(path)) return "it is a scan";
+  const auto scans = scans_in(path);
+  return fmt::format("{} {} files are there", scans.size(),
+                     scans.front().file.extension().string());
+}
+
+}  // namespace
+
+const Layout& recording_layout() {
+  static const Layout row = {
+      .kind = DatasetKind::kRecording,
+      .name = "recording",
+      .title = "A recording of your own: a bag, a scan, or a folder of either",
+      .content = "any LiDAR",
+      .size = "any",
+      .published = "nowhere: it is yours",
+      .licence = "yours",
+      .folders = {"<file>.bag, or <root>/ with such files",
+                  "<root>/*.bin, *.pcd or *.ply, with or without", "  poses.txt   12 numbers a row",
+                  "  times.txt   seconds", "  labels/*.label",
+                  "<file>.bin, .pcd or .ply: one scan"},
+      .files = {.sensor_range_m = 450.0},
+      .expected = "a bag, a .bin, .pcd or .ply scan, or a folder with bags or scans",
+      .list = list_recording,
+      .open = open_recording,
+      .splits = nullptr,
+      .evidence = Evidence::kNone,
+      .recognise = recognise_recording,
+      .writer = std::nullopt};
+  return row;
+}
+
+}  // namespace mosbench
