@@ -14,6 +14,7 @@
 #include "datasets/layouts/layout.hpp"
 #include "datasets/layouts/simulated_origin.hpp"
 #include "datasets/layouts/unfinished_conversion.hpp"
+#include "datasets/perturb/perturbation.hpp"
 #include "datasets/sequence/azimuth_times.hpp"
 #include "datasets/sequence/scan_deskewer.hpp"
 
@@ -163,6 +164,33 @@ void check_pose_file(const ReadingOptions& reading, const std::vector<SequenceFo
                    ", expected one name in --sequences, or a folder with a file for each");
 }
 
+/// Takes scans that were lost out of the splits.
+void keep_left_scans(Dataset& dataset) {
+  for (Split& split : dataset.splits) {
+    for (SplitPart& part : split.parts) {
+      if (!part.stems) continue;
+      std::set<std::string> left;
+      for (const ScanEntry& scan : dataset.sequences[part.sequence]->recording().scans) {
+        if (part.stems->contains(scan.stem)) left.insert(scan.stem);
+      }
+      part.stems = std::move(left);
+    }
+  }
+}
+
+void perturb(Dataset& dataset, const ReadingOptions& reading) {
+  const Perturbation perturbation = parse_perturbation(*reading.perturb);
+  if (reading.poses_by_odometry && !changes_points_only(perturbation)) {
+    throw UsageError(
+        "--perturb: changes scans or poses, or needs poses, which odometry has yet to find, "
+        "expected kinds that change points only, or mosbench convert --perturb first");
+  }
+  for (std::unique_ptr<Sequence>& sequence : dataset.sequences) {
+    sequence = perturbed(std::move(sequence), perturbation);
+  }
+  keep_left_scans(dataset);
+}
+
 }  // namespace
 
 std::vector<SequenceFolder> find_sequences(const std::filesystem::path& path,
@@ -187,6 +215,7 @@ Dataset open_dataset(const std::filesystem::path& path, const OpenOptions& optio
   if (layout.splits != nullptr) {
     dataset.splits = layout.splits(folders, dataset.sequences, dataset.remarks);
   }
+  if (options.reading.perturb) perturb(dataset, options.reading);
   return dataset;
 }
 

@@ -15,9 +15,10 @@ using Json = nlohmann::ordered_json;
 }  // namespace
 
 std::string format_simulated_origin(const SimulatedOrigin& origin) {
-  const Json marker = {{"simulated", true},     {"layout", to_string(origin.layout)},
-                       {"scene", origin.scene}, {"scene_fingerprint", origin.scene_fingerprint},
-                       {"scans", origin.scans}, {"seed", origin.seed}};
+  Json marker = {{"simulated", true},     {"layout", to_string(origin.layout)},
+                 {"scene", origin.scene}, {"scene_fingerprint", origin.scene_fingerprint},
+                 {"scans", origin.scans}, {"seed", origin.seed}};
+  if (origin.perturb) marker["perturb"] = *origin.perturb;
   return marker.dump(2) + "\n";
 }
 
@@ -26,11 +27,13 @@ SimulatedOrigin parse_simulated_origin(std::string_view text, const std::filesys
     const Json marker = parse_json(text, file);
     const auto layout = dataset_kind_from_string(marker.at("layout").get<std::string>());
     if (!layout) throw DataError(file, "its layout is unknown", "a marker written by mosbench");
-    return {.layout = *layout,
-            .scene = marker.at("scene").get<std::string>(),
-            .scene_fingerprint = marker.at("scene_fingerprint").get<std::string>(),
-            .scans = marker.at("scans").get<std::size_t>(),
-            .seed = marker.at("seed").get<std::uint64_t>()};
+    SimulatedOrigin origin{.layout = *layout,
+                           .scene = marker.at("scene").get<std::string>(),
+                           .scene_fingerprint = marker.at("scene_fingerprint").get<std::string>(),
+                           .scans = marker.at("scans").get<std::size_t>(),
+                           .seed = marker.at("seed").get<std::uint64_t>()};
+    if (marker.contains("perturb")) origin.perturb = marker.at("perturb").get<std::string>();
+    return origin;
   } catch (const Json::exception& error) {
     throw DataError(file, std::string("cannot be understood (") + error.what() + ")",
                     "a marker written by mosbench");

@@ -19,6 +19,7 @@ struct SimulatedOrigin {
   std::string scene_fingerprint;  ///< hash of the whole scene
   std::size_t scans = 0;
   std::uint64_t seed = 0;
+  std::optional<std::string> perturb = std::nullopt;  ///< disturbances, where there are any
 
   bool operator==(const SimulatedOrigin&) const = default;
 };

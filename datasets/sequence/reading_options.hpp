@@ -51,6 +51,8 @@ struct ReadingOptions {
   std::optional<Deskew> deskew = std::nullopt;
   std::optional<PointTimes> point_times = std::nullopt;  ///< when not set, those of a bag's points
   std::size_t bin_columns = 4;                           ///< float32 per point in .bin files
+  /// Disturbances of what is read, as `parse_perturbation` takes them.
+  std::optional<std::string> perturb = std::nullopt;
 
   /// Whether points with times are to be moved.
   bool undistorts() const { return deskew != Deskew::kNone; }

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "datasets/simulator/portable_math.hpp"
+#include "datasets/sequence/portable_math.hpp"
 #include "datasets/simulator/trajectory.hpp"
 
 namespace mosbench {

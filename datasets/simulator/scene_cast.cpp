@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "datasets/simulator/portable_math.hpp"
+#include "datasets/sequence/portable_math.hpp"
 
 namespace mosbench {
 namespace {

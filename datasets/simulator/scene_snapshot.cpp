@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "datasets/simulator/portable_math.hpp"
+#include "datasets/sequence/portable_math.hpp"
 #include "datasets/simulator/trajectory.hpp"
 
 namespace mosbench {

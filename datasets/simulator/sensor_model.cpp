@@ -3,7 +3,7 @@
 #include <array>
 #include <utility>
 
-#include "datasets/simulator/portable_math.hpp"
+#include "datasets/sequence/portable_math.hpp"
 
 namespace mosbench {
 namespace {

@@ -17,8 +17,9 @@
 #include "datasets/layouts/helimos_layout.hpp"
 #include "datasets/layouts/layout.hpp"
 #include "datasets/layouts/simulated_origin.hpp"
+#include "datasets/perturb/perturbation.hpp"
+#include "datasets/sequence/portable_math.hpp"
 #include "datasets/simulator/built_in_scenes.hpp"
-#include "datasets/simulator/portable_math.hpp"
 #include "datasets/simulator/scene_json.hpp"
 #include "datasets/simulator/simulated_layouts.hpp"
 #include "datasets/simulator/simulator.hpp"
@@ -45,7 +46,8 @@ SimulatedOrigin origin_of(const SimulateOptions& options, const Scene& scene) {
           .scene = scene.name,
           .scene_fingerprint = fmt::format("{:016x}", XXH3_64bits(text.data(), text.size())),
           .scans = options.scans,
-          .seed = options.seed};
+          .seed = options.seed,
+          .perturb = options.perturb};
 }
 
 /// Returns whether a folder is empty but for the first bytes of the marker, which a killed run may
@@ -81,44 +83,67 @@ std::string readme(const SimulatedOrigin& origin) {
       "These scans are simulated. Nothing in this folder was recorded by a sensor, and no number\n"
       "computed from it may be shown next to those published for the real data set.\n\n"
       "Scene \"{}\" is in scene.json. To make the same files again:\n"
-      "mosbench simulate --layout {} --scene scene.json --scans {} --seed {} --out DIR\n"
+      "mosbench simulate --layout {} --scene scene.json --scans {} --seed {}{} --out DIR\n"
       "{}",
       origin.scene, to_string(origin.layout), origin.scans, origin.seed,
+      origin.perturb ? " --perturb " + *origin.perturb : "",
       origin.layout == DatasetKind::kDoals
           ? "Truth is by appearance as in DOALS: a person who stands still is listed as dynamic.\n"
           : "Truth is by speed: above 0.5 m/s is moving, for vehicles above 1.0 m/s.\n");
 }
 
-/// Makes the frames of one recording as its layout stores them.
-class RecordingFrames {
+/// One recording as its layout stores it, but with the LiDAR's poses.
+class SimulatedSequence : public Sequence {
  public:
-  RecordingFrames(const SimulateOptions& options, const Scene& scene, SensorKind sensor)
-      : layout_(options.layout),
-        simulator_(scene, sensor_model(sensor), options.seed),
-        labelled_(labelled_scans(options.layout, options.scans)) {}
-
-  Frame frame(std::size_t scan_index) const {
-    const SimulatedScan scan = simulator_.scan(scan_index);
-    Frame frame;
-    frame.stem = fmt::format("{:06}", scan_index);
-    frame.map_from_sensor = stored_pose(scan.map_from_sensor);
-    frame.stamp_ns = stored_stamp_ns(scan.stamp_ns);
-    const bool labelled = labelled_.contains(scan_index);
-    if (layout_ == DatasetKind::kDoals) {
-      frame.points = scan.points;
-      if (labelled) frame.truth = doals_truth(scan);
-      return frame;
+  SimulatedSequence(const SimulateOptions& options, const Scene& scene,
+                    const SimulatedRecording& simulated)
+      : layout_(options.layout), simulator_(scene, sensor_model(simulated.sensor), options.seed) {
+    const std::set<std::size_t> labelled = labelled_scans(layout_, options.scans);
+    Recording& recording = mutable_recording();
+    recording.name = SequenceName(name_of(simulated.folder), simulated.folder);
+    for (std::size_t k = 0; k < options.scans; ++k) {
+      recording.scans.push_back(
+          {.stem = fmt::format("{:06}", k),
+           .file = std::nullopt,
+           .stamp_ns = stored_stamp_ns(simulator_.stamp_ns(k)),
+           .map_from_sensor = stored_pose(simulator_.map_from_sensor(k)),
+           .points = layout_ == DatasetKind::kDoals ? simulator_.sensor().slots() : 0,
+           .has_truth = labelled.contains(k)});
     }
+  }
+
+  using Sequence::read;
+  void read(std::size_t scan_index, Frame& frame) const override {
+    SimulatedScan scan = simulator_.scan(scan_index);
+    describe(scan_index, frame);
+    frame.truth.reset();
+    const bool labelled = has_truth(scan_index);
+    if (layout_ == DatasetKind::kDoals) {
+      if (labelled) frame.truth = doals_truth(scan);
+      frame.points = std::move(scan.points);
+      return;
+    }
+    frame.points.clear();
     if (labelled) frame.truth.emplace();
     for (std::size_t i = 0; i < scan.points.size(); ++i) {
       if (scan.owners[i] == SimulatedScan::kNoReturn) continue;
       frame.points.push_back(scan.points[i]);
       if (labelled) frame.truth->push_back(layout_label(layout_, scan, i));
     }
-    return frame;
+  }
+  std::vector<std::uint32_t> read_truth(std::size_t scan_index) const override {
+    Frame frame;
+    read(scan_index, frame);
+    if (!frame.truth) refuse_truth(scan_index);
+    return std::move(*frame.truth);
   }
 
  private:
+  /// As readers name it: of DOALS with the scene's folder.
+  std::string name_of(const fs::path& folder) const {
+    return layout_ == DatasetKind::kDoals ? folder.generic_string() : folder.filename().string();
+  }
+
   /// Sipailou and HeLiMOS have no times.txt, that of SemanticKITTI starts at 0.
   std::optional<std::int64_t> stored_stamp_ns(std::int64_t stamp_ns) const {
     if (layout_ == DatasetKind::kDoals) return stamp_ns;
@@ -129,21 +154,35 @@ class RecordingFrames {
   /// Poses of HeLiMOS are in a global frame, those of the other sets begin at the identity.
   Pose stored_pose(const Pose& pose) const {
     if (layout_ == DatasetKind::kHelimos) return pose;
-    const Pose tr = camera_from_lidar(layout_);
-    const Pose first_from_map = inverse_of(simulator_.map_from_sensor(0));
-    return compose(compose(tr, compose(first_from_map, pose)), inverse_of(tr));
+    return compose(inverse_of(simulator_.map_from_sensor(0)), pose);
   }
 
   DatasetKind layout_;
   Simulator simulator_;
-  std::set<std::size_t> labelled_;
 };
+
+std::unique_ptr<Sequence> simulated_sequence(const SimulateOptions& options, const Scene& scene,
+                                             const SimulatedRecording& simulated) {
+  std::unique_ptr<Sequence> sequence =
+      std::make_unique<SimulatedSequence>(options, scene, simulated);
+  if (!options.perturb) return sequence;
+  return perturbed(std::move(sequence), parse_perturbation(*options.perturb));
+}
 
 /// A recording and what writes it.
 struct RecordingWriter {
-  RecordingFrames frames;
+  std::unique_ptr<Sequence> sequence;
   std::unique_ptr<SequenceWriter> files;
 };
+
+/// Writes a scan with the pose of what the layout keeps poses of.
+void write_scan(const RecordingWriter& writer, std::size_t scan_index, const Pose& tr) {
+  Frame frame = writer.sequence->read(scan_index);
+  if (tr.matrix() != Pose::Identity().matrix()) {
+    frame.map_from_sensor = compose(compose(tr, frame.map_from_sensor), inverse_of(tr));
+  }
+  writer.files->write(scan_index, frame);
+}
 
 void check(const SimulateOptions& options) {
   if (options.scans < 1 || options.scans > kMostScans) {
@@ -166,29 +205,29 @@ void simulate(const SimulateOptions& options,
   check(options);
   const Scene scene = load_scene(options.scene);
   const SimulatedOrigin origin = origin_of(options, scene);
-  const WriteOptions writing = {.scans = options.scans,
-                                .camera_from_lidar = camera_from_lidar(options.layout)};
+  const Pose tr = camera_from_lidar(options.layout);
   std::vector<RecordingWriter> writers;
+  std::vector<std::pair<std::size_t, std::size_t>> scans;  // of which writer, and which
   for (const SimulatedRecording& recording : recordings_of(options.layout, scene)) {
-    writers.push_back(
-        {RecordingFrames(options, scene, recording.sensor),
-         layout_of(options.layout).writer->open(options.out / recording.folder, writing)});
+    auto sequence = simulated_sequence(options, scene, recording);
+    for (std::size_t k = 0; k < sequence->size(); ++k) scans.emplace_back(writers.size(), k);
+    auto files = layout_of(options.layout)
+                     .writer->open(options.out / recording.folder,
+                                   {.scans = sequence->size(), .camera_from_lidar = tr});
+    writers.push_back({std::move(sequence), std::move(files)});
   }
   claim_folder(options.out, origin);
   write_file_atomic(options.out / "README.txt", readme(origin));
   write_file_atomic(options.out / "scene.json", format_scene(scene));
 
-  const std::size_t total = writers.size() * options.scans;
   std::size_t done = 0;
   std::mutex progress_mutex;
   ThreadPool pool(options.threads);
-  pool.for_ranges(total, 1, [&](std::size_t i, std::size_t, unsigned) {
-    const RecordingWriter& writer = writers[i / options.scans];
-    const std::size_t scan_index = i % options.scans;
-    writer.files->write(scan_index, writer.frames.frame(scan_index));
+  pool.for_ranges(scans.size(), 1, [&](std::size_t i, std::size_t, unsigned) {
+    write_scan(writers[scans[i].first], scans[i].second, tr);
     if (!progress) return;
     const std::lock_guard lock(progress_mutex);
-    progress(++done, total);
+    progress(++done, scans.size());
   });
   if (options.layout == DatasetKind::kHelimos) {
     write_helimos_splits(options.out,

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "core/base/thread_pool.hpp"
@@ -17,8 +18,9 @@ struct SimulateOptions {
   std::string scene;  ///< name of a built-in scene, or the path of a .json file
   std::size_t scans = 0;
   std::uint64_t seed = 1;
-  std::filesystem::path out;              ///< becomes the data set's root
-  unsigned threads = hardware_threads();  ///< the files do not depend on it
+  std::optional<std::string> perturb = std::nullopt;  ///< as `parse_perturbation` takes it
+  std::filesystem::path out;                          ///< becomes the data set's root
+  unsigned threads = hardware_threads();              ///< the files do not depend on it
 };
 
 /// Writes a simulated data set in the layout of a real one, each file atomically and the poses

@@ -6,8 +6,8 @@
 
 #include "datasets/files/errors.hpp"
 #include "datasets/files/nearest_name.hpp"
+#include "datasets/sequence/portable_math.hpp"
 #include "datasets/simulator/built_in_scenes.hpp"
-#include "datasets/simulator/portable_math.hpp"
 #include "datasets/simulator/trajectory.hpp"
 
 namespace mosbench {

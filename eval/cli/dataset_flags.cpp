@@ -6,6 +6,7 @@
 
 #include "datasets/files/errors.hpp"
 #include "datasets/files/text.hpp"
+#include "datasets/perturb/perturbation.hpp"
 #include "eval/results/reading_json.hpp"
 #include "eval/runs/run_plan.hpp"
 
@@ -85,6 +86,7 @@ void add_scan_flags(CLI::App& command, ReadingOptions& options) {
                   "float32 per point in .bin files: 4, or 5 (ring of nuScenes, times)")
       ->check(CLI::IsMember({4, 5}))
       ->group(kReadingGroup);
+  add_perturb_flag(command, options.perturb);
 }
 
 void add_reading_flags(CLI::App& command, ReadingOptions& options) {
@@ -113,6 +115,16 @@ void add_scan_dataset_flags(CLI::App& command, std::filesystem::path& input, std
       ->delimiter(',')
       ->allow_extra_args(false);
   add_scan_flags(command, reading);
+}
+
+void add_perturb_flag(CLI::App& command, std::optional<std::string>& perturb) {
+  command
+      .add_option_function<std::string>(
+          "--perturb",
+          [&](const std::string& text) { perturb = to_string(parse_perturbation(text)); },
+          "Disturb what is read, in this order, see `mosbench list perturbations`")
+      ->type_name("KIND=STRENGTH,...,seed=N")
+      ->group(kReadingGroup);
 }
 
 std::vector<std::string> reading_names() {

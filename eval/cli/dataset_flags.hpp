@@ -2,6 +2,7 @@
 
 #include <CLI/App.hpp>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,9 @@ ReadingOptions reading_of(std::vector<std::string> flags);
 
 /// Returns the names of these flags in the words of Python: "pose_frame".
 std::vector<std::string> reading_names();
+
+/// Adds --perturb, whose text is checked and made canonical.
+void add_perturb_flag(CLI::App& command, std::optional<std::string>& perturb);
 
 /// Adds --dataset alone.
 void add_dataset_kind_flag(CLI::App& command, std::string& dataset);

@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <mosbench/method.hpp>
 #include <span>
@@ -9,6 +10,7 @@
 #include "datasets/files/errors.hpp"
 #include "datasets/files/nearest_name.hpp"
 #include "datasets/layouts/layout.hpp"
+#include "datasets/perturb/perturb_kinds.hpp"
 #include "datasets/simulator/built_in_scenes.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/cli/list_json.hpp"
@@ -27,6 +29,7 @@ constexpr const char* kListFooter = R"(Examples:
   mosbench list methods dynablox
   mosbench list presets
   mosbench list datasets
+  mosbench list perturbations
   mosbench list methods --json)";
 
 std::string datasets_text() {
@@ -122,6 +125,30 @@ std::string formats_text() {
   return table.str();
 }
 
+/// The strength that changes nothing.
+std::string none_text(const PerturbKind& kind) {
+  return std::isnan(kind.none) ? "beams_of" : fmt::format("{:g}", kind.none);
+}
+
+std::string perturbations_text() {
+  TextTable table({{"kind", TextTable::kLeft},
+                   {"unit", TextTable::kLeft},
+                   {"none"},
+                   {"from"},
+                   {"to"},
+                   {"what", TextTable::kLeft}});
+  for (const PerturbKind& kind : perturb_kinds()) {
+    table.add_row({std::string(kind.name), std::string(kind.unit), none_text(kind),
+                   fmt::format("{:g}", kind.lowest), fmt::format("{:g}", kind.highest),
+                   fmt::format("{} [{}]", kind.definition, kind.source)});
+  }
+  std::string text = table.str() + "Keys that kinds share:\n";
+  for (const PerturbKey& key : perturb_keys()) {
+    text += fmt::format("  {:<17}{}\n", key.name, key.definition);
+  }
+  return text;
+}
+
 /// One of the things that can be listed.
 struct ListKind {
   std::string_view name, title;
@@ -136,6 +163,7 @@ constexpr ListKind kKinds[] = {
     {"protocols", "Protocols", protocols_text, protocols_json},
     {"scenes", "Scenes", scenes_text, scenes_json},
     {"formats", "Formats of predictions", formats_text, formats_json},
+    {"perturbations", "Disturbances for --perturb", perturbations_text, perturbations_json},
 };
 constexpr std::string_view kAll = "all";
 
@@ -177,7 +205,7 @@ CommandRun add_list(CLI::App& command) {
   for (const ListKind& kind : kKinds) names.emplace_back(kind.name);
   command
       .add_option("WHAT", listed->what,
-                  "datasets, methods, presets, protocols, scenes, formats or all")
+                  "datasets, methods, presets, protocols, scenes, formats, perturbations or all")
       ->capture_default_str()
       ->check(CLI::IsMember(names));
   command.add_option("NAME", listed->name, "One of the methods");

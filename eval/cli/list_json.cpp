@@ -4,6 +4,7 @@
 #include <iterator>
 
 #include "datasets/layouts/layout.hpp"
+#include "datasets/perturb/perturb_kinds.hpp"
 #include "datasets/simulator/built_in_scenes.hpp"
 #include "eval/predictions/prediction_format.hpp"
 #include "eval/protocols/protocol_list.hpp"
@@ -74,6 +75,12 @@ ordered_json format_json(const DescribedFormat& format) {
           {"description", format.description}};
 }
 
+ordered_json perturbation_json(const PerturbKind& kind) {
+  return {{"name", kind.name},     {"unit", kind.unit},       {"none", kind.none},
+          {"lowest", kind.lowest}, {"highest", kind.highest}, {"definition", kind.definition},
+          {"source", kind.source}};
+}
+
 template <typename Rows, typename ToJson>
 ordered_json rows_json(const Rows& rows, ToJson&& row_json) {
   ordered_json json = ordered_json::array();
@@ -104,5 +111,6 @@ ordered_json presets_json() { return rows_json(presets(), preset_json); }
 ordered_json protocols_json() { return rows_json(describe_protocols(), protocol_json); }
 ordered_json scenes_json() { return rows_json(built_in_scenes(), scene_json); }
 ordered_json formats_json() { return rows_json(prediction_formats(), format_json); }
+ordered_json perturbations_json() { return rows_json(perturb_kinds(), perturbation_json); }
 
 }  // namespace mosbench

@@ -16,6 +16,7 @@ nlohmann::ordered_json presets_json();
 nlohmann::ordered_json protocols_json();
 nlohmann::ordered_json scenes_json();
 nlohmann::ordered_json formats_json();
+nlohmann::ordered_json perturbations_json();
 
 /// Returns one method with its settings.
 nlohmann::ordered_json method_json(const MethodKind& method);

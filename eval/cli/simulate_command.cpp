@@ -22,6 +22,7 @@ to the scans, and pass that file as SCENE. Errors name the key that is missing, 
 Examples:
   mosbench simulate --layout semantickitti --scene street --scans 40 --seed 1 --out sim/street
   mosbench simulate --layout doals --scene mall --scans 100 --seed 7 --out sim/doals
+  mosbench simulate --layout doals --scene mall --scans 100 --seed 7 --perturb fog_per_m=0.03 --out sim/fog
   mosbench simulate --layout helimos --scene street --scans 1 --seed 1 --out near
   cp near/scene.json my_street.json
   mosbench simulate --layout helimos --scene my_street.json --scans 200 --seed 1 --out sim/helimos)";
@@ -69,6 +70,7 @@ CommandRun add_simulate(CLI::App& command) {
   command.add_option("--out", simulation.out, "Root of the data set to write")
       ->type_name("DIR")
       ->required();
+  add_perturb_flag(command, simulation.perturb);
   add_threads_flag(command, simulation.threads);
   command.footer(kSimulateFooter);
   return [options] { return Answer{simulate_dataset(*options)}; };

@@ -8,8 +8,9 @@ namespace mosbench {
 namespace {
 
 std::string notice(const SimulatedOrigin& origin) {
-  return fmt::format("simulated data (scene {}, seed {}): not comparable with published numbers",
-                     origin.scene, origin.seed);
+  return fmt::format("simulated data (scene {}, seed {}{}): not comparable with published numbers",
+                     origin.scene, origin.seed,
+                     origin.perturb ? ", disturbed by " + *origin.perturb : "");
 }
 
 }  // namespace
@@ -17,10 +18,12 @@ std::string notice(const SimulatedOrigin& origin) {
 std::optional<nlohmann::ordered_json> simulated_origin_json(const Dataset& dataset) {
   const std::optional<SimulatedOrigin> origin = simulated_origin(dataset.root);
   if (!origin) return std::nullopt;
-  return nlohmann::ordered_json{{"scene", origin->scene},
-                                {"seed", origin->seed},
-                                {"scene_fingerprint", origin->scene_fingerprint},
-                                {"notice", notice(*origin)}};
+  nlohmann::ordered_json json = {{"scene", origin->scene},
+                                 {"seed", origin->seed},
+                                 {"scene_fingerprint", origin->scene_fingerprint},
+                                 {"notice", notice(*origin)}};
+  if (origin->perturb) json["perturb"] = *origin->perturb;
+  return json;
 }
 
 std::string simulated_remark(const Dataset& dataset) {

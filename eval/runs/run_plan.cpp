@@ -81,9 +81,11 @@ fs::path default_out(const RunPlan& plan, const RunOptions& options) {
                                     : settings.method->name;
   // A run with other poses has results of its own.
   const std::string poses = plan.odometry ? fmt::format("-{}", plan.odometry->kind->name) : "";
+  // So has one with disturbed scans.
+  const std::string perturb = options.reading.perturb ? "-" + *options.reading.perturb : "";
   const std::string data = fmt::format("{}-{}", folder.filename().string(), plan.preset);
   const std::string method = options.one_of_several ? "" : fmt::format("-{}", kind);
-  return fs::path("results/runs") / (data + method + poses);
+  return fs::path("results/runs") / (data + method + poses + perturb);
 }
 
 nlohmann::ordered_json identity_of(const RunPlan& plan, const Sequence& sequence) {

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """Measures how the cost of a scan grows with range, voxel size, beams and threads.
 
-Simulates a drive on the highway with an OS2-128, thins it to fewer beams, profiles the method over
-it one setting at a time and prints a table with the exponent b of cost = a * setting^b, fitted to
-the medians. --write puts the table between the sweep marks of bench/NOTES.md and the plot into
-results/sweep.svg.
+Simulates a drive on the highway with an OS2-128, leaves fewer beams of it (what the others saw is
+missing returns, which cost next to nothing), profiles the method over it one setting at a time and
+prints a table with the exponent b of cost = a * setting^b, fitted to the medians. --write puts the
+table between the sweep marks of bench/NOTES.md and the plot into results/sweep.svg.
 """
 
 import argparse
@@ -24,7 +24,7 @@ SWEEPS = {"range": [20, 50, 80, 120], "voxel": [0.1, 0.2, 0.3, 0.4], "beams": [1
 TITLES = {"range": "range, m", "voxel": "voxel size, m", "beams": "beams of 1,024 points",
           "threads": "threads (wall time)"}
 MARKS = ("<!-- sweep begins -->", "<!-- sweep ends -->")
-SENSOR, SENSOR_BEAMS, POINT_BYTES, WARM_UP_SCANS = "os2-128", 128, 16, 5
+SENSOR, SENSOR_BEAMS, WARM_UP_SCANS = "os2-128", 128, 5
 
 
 def arguments():
@@ -44,7 +44,7 @@ def arguments():
 
 
 def simulate(program, scans, folder):
-    """Writes folder/<beams>/ with every n-th ring of the simulated scans."""
+    """Writes a drive with all beams to folder/whole and returns the folder of its scans."""
     whole = folder / "whole"
     command = [program, "simulate", "--seed", "1", "--out", whole]
     subprocess.run([*command, "--layout", "doals", "--scene", "highway", "--scans", "1"], check=True,
@@ -53,25 +53,16 @@ def simulate(program, scans, folder):
     scene["sensor"] = SENSOR
     (folder / "scene.json").write_text(json.dumps(scene))
     shutil.rmtree(whole)
-    # The layout of DOALS keeps the rays without return, so that every n-th point is every n-th ring.
+    # The layout of DOALS keeps the rays without return, so that points lie in columns of beams.
     subprocess.run([*command, "--layout", "doals", "--scene", folder / "scene.json", "--scans",
                     str(scans)], check=True, stdout=subprocess.DEVNULL)
-    source = next(whole.glob("**/velodyne")).parent
-    for beams in SWEEPS["beams"]:
-        target = folder / str(beams)
-        (target / "velodyne").mkdir(parents=True)
-        shutil.copy(source / "poses.txt", target)
-        for scan in sorted((source / "velodyne").glob("*.bin")):
-            content = scan.read_bytes()
-            step = POINT_BYTES * SENSOR_BEAMS // beams  # points are stored ring by ring per column
-            thinned = b"".join(content[i:i + POINT_BYTES] for i in range(0, len(content), step))
-            (target / "velodyne" / scan.name).write_bytes(thinned)
+    return next(whole.glob("**/velodyne")).parent
 
 
-def profile(program, method, folder, setting):
-    report = folder / "profile.json"
-    subprocess.run([program, "profile", folder / str(setting["beams"]), "--dataset", "semantickitti",
-                    "--method", method, "--threads", str(setting["threads"]), "--json", report, "--set",
+def profile(program, method, drive, report, setting):
+    subprocess.run([program, "profile", drive, "--dataset", "semantickitti",
+                    "--perturb", f"beams={setting['beams']},beams_of={SENSOR_BEAMS}", "--method", method,
+                    "--threads", str(setting["threads"]), "--json", report, "--set",
                     f"max_range_m={setting['range']}", f"voxel_size_m={setting['voxel']}"],
                    check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     return json.loads(report.read_text())
@@ -97,10 +88,11 @@ def measure(program, method, scans, rounds):
     costs = {(variable, value): [] for variable, values in SWEEPS.items() for value in values}
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
-        simulate(program, scans, folder)
+        drive = simulate(program, scans, folder)
         for turn in range(rounds):
             for (variable, value), found in costs.items():
-                report = profile(program, method, folder, {**BASE, variable: value})
+                report = profile(program, method, drive, folder / "profile.json",
+                                 {**BASE, variable: value})
                 found.append(cost_ms(report, variable))
             print(f"round {turn + 1}/{rounds}", file=sys.stderr, flush=True)
     rows = {variable: (values, [min(costs[variable, value]) for value in values])

@@ -7,7 +7,7 @@ import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-DATASETS = {"datasets/files", "datasets/sequence", "datasets/layouts"}
+DATASETS = {"datasets/files", "datasets/sequence", "datasets/perturb", "datasets/layouts"}
 # What eval uses of core apart from the public face: threads and clocks.
 THREADS = {"core/include", "core/base"}
 NUMBERS = {"eval/protocols", "eval/predictions", "eval/results", "eval/runs", "eval/statistics"}
@@ -28,8 +28,9 @@ MAY_INCLUDE = {
     "core": {"core/"},
     "datasets/files": {"core/include"},
     "datasets/sequence": {"core/include", "datasets/files"},
+    "datasets/perturb": {"core/include", "datasets/files", "datasets/sequence"},
     "datasets/rosbag": {"core/include", "datasets/files", "datasets/sequence"},
-    "datasets/layouts": {"core/include", "datasets/files", "datasets/sequence", "datasets/rosbag"},
+    "datasets/layouts": {"core/include", "datasets/rosbag"} | DATASETS,
     "datasets/simulator": THREADS | DATASETS,
     "datasets/doctor": {"core/include"} | DATASETS,
     "eval/protocols": {"core/include", "datasets/"},

@@ -8,8 +8,8 @@
 #include <thread>
 
 #include "datasets/files/errors.hpp"
+#include "datasets/sequence/portable_math.hpp"
 #include "datasets/simulator/built_in_scenes.hpp"
-#include "datasets/simulator/portable_math.hpp"
 #include "datasets/simulator/scene_json.hpp"
 
 namespace mosbench {

@@ -168,6 +168,16 @@ def test_reading_has_every_flag_of_the_program():
     assert set(mosbench.READING) == set(_mosbench.reading_names())
 
 
+def test_disturbances_are_those_of_the_program(street, tmp_path):
+    plain, tilted = mosbench.open(street).scan(3), mosbench.open(street, perturb="mount_tilt_deg=5").scan(3)
+    assert plain.points.shape == tilted.points.shape
+    assert (plain.points[:, 2] != tilted.points[:, 2]).any()
+    simulated = mosbench.simulate(tmp_path / "sparse", scans=2, perturb="dropout_probability=1")
+    assert not mosbench.open(simulated).scan(1).points.any()
+    with pytest.raises(ValueError, match='^perturb: "mount_tilt" is not known.*nearest: mount_tilt_deg'):
+        mosbench.open(street, perturb="mount_tilt=5")
+
+
 def test_errors_speak_of_arguments(street, tmp_path):
     with pytest.raises(ValueError, match="^preset: .*sipailuo") as raised:
         mosbench.run(street, preset="sipailuo", out=tmp_path / "run")

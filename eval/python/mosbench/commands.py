@@ -244,10 +244,18 @@ def compare(
 
 
 def simulate(
-    out: PathLike, layout: str = "semantickitti", scene: str = "street", scans: int = 60, seed: int = 1
+    out: PathLike,
+    layout: str = "semantickitti",
+    scene: str = "street",
+    scans: int = 60,
+    seed: int = 1,
+    perturb: Optional[str] = None,
 ) -> pathlib.Path:
-    """Writes a simulated data set with exact truth and returns its folder."""
-    arguments = ["simulate", *flags(out=out, layout=layout, scene=scene, scans=scans, seed=seed)]
+    """Writes a simulated data set with exact truth and returns its folder.
+
+    perturb: "KIND=STRENGTH,...,seed=N", disturbances as `mosbench list perturbations` has them.
+    """
+    arguments = ["simulate", *flags(out=out, layout=layout, scene=scene, scans=scans, seed=seed, perturb=perturb)]
     _command(arguments)
     return pathlib.Path(out)
 

@@ -19,6 +19,7 @@ READING = (
     "point_times",  # "column" or "azimuth"
     "deskew",  # "none", "velocity" or "poses"
     "bin_columns",  # 4 or 5 float32 per point
+    "perturb",  # "KIND=STRENGTH,...,seed=N"
 )
 
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "datasets/simulator/portable_math.hpp"
+#include "datasets/sequence/portable_math.hpp"
 
 namespace mosbench {
 namespace {

@@ -1,0 +1,150 @@
+#include "datasets/perturb/perturbation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "datasets/files/errors.hpp"
+#include "datasets/files/nearest_name.hpp"
+#include "datasets/files/text.hpp"
+#include "datasets/perturb/perturb_kinds.hpp"
+
+namespace mosbench {
+namespace {
+
+[[noreturn]] void refuse(std::string_view what, const std::string& expected) {
+  throw UsageError(fmt::format("--perturb: {}, expected {}", what, expected));
+}
+
+[[noreturn]] void refuse_name(std::string_view name) {
+  std::vector<std::string_view> names;
+  for (const PerturbKind& kind : perturb_kinds()) names.push_back(kind.name);
+  for (const PerturbKey& key : perturb_keys()) names.push_back(key.name);
+  refuse(fmt::format("{} is not known", quoted(name)),
+         fmt::format("one of {} (nearest: {})", fmt::join(names, ", "), nearest_name(name, names)));
+}
+
+std::uint64_t whole_number(std::string_view name, std::string_view text, std::uint64_t lowest,
+                           std::uint64_t highest) {
+  const auto number = parse_unsigned(text);
+  if (number && *number >= lowest && *number <= highest) return *number;
+  refuse(fmt::format("{}: {} is no number for it", name, quoted(text)),
+         fmt::format("a whole number from {} to {}", lowest, highest));
+}
+
+double number_within(std::string_view name, std::string_view text, double lowest, double highest) {
+  const auto number = parse_double(text);
+  if (number && *number >= lowest && *number <= highest) return *number;
+  refuse(fmt::format("{}: {} is no number for it", name, quoted(text)),
+         fmt::format("a number from {:g} to {:g}", lowest, highest));
+}
+
+/// Returns whether the name is that of a shared key, which is then set.
+bool set_key(std::string_view name, std::string_view text, Perturbation& perturbation) {
+  constexpr std::uint64_t kMostScans = 1'000'000'000, kMostBeams = 4096;
+  if (name == "seed") {
+    perturbation.seed = whole_number(name, text, 0, UINT64_MAX);
+  } else if (name == "pose_jump_scan") {
+    perturbation.jump_scan = whole_number(name, text, 0, kMostScans);
+  } else if (name == "beams_of") {
+    perturbation.beams_of = whole_number(name, text, 2, kMostBeams);
+  } else if (name == "beams_top_deg") {
+    perturbation.beams_top_deg = number_within(name, text, -90, 90);
+  } else if (name == "beams_bottom_deg") {
+    perturbation.beams_bottom_deg = number_within(name, text, -90, 90);
+  } else if (name == "sensor_range_m") {
+    perturbation.sensor_range_m = number_within(name, text, 1, 10'000);
+  } else {
+    return false;
+  }
+  return true;
+}
+
+void add_step(std::string_view name, std::string_view text, Perturbation& perturbation) {
+  const auto kind = std::ranges::find(perturb_kinds(), name, &PerturbKind::name);
+  if (kind == perturb_kinds().end()) refuse_name(name);
+  const double strength = number_within(name, text, kind->lowest, kind->highest);
+  const bool counts = kind->unit == "beams" || kind->unit == "scans";
+  if (counts && strength != std::floor(strength)) {
+    refuse(fmt::format("{}: {} is no count", name, quoted(text)), "a whole number");
+  }
+  perturbation.steps.push_back({&*kind, strength});
+}
+
+void check_beams(const Perturbation& perturbation) {
+  if (perturbation.beams_top_deg.has_value() != perturbation.beams_bottom_deg.has_value()) {
+    refuse("one of beams_top_deg and beams_bottom_deg is missing", "both of them, or neither");
+  }
+  if (perturbation.beams_top_deg &&
+      !(*perturbation.beams_top_deg > *perturbation.beams_bottom_deg)) {
+    refuse("beams_top_deg is not above beams_bottom_deg", "elevations from top to bottom");
+  }
+  for (const PerturbStep& step : perturbation.steps) {
+    if (step.kind->name != "beams") continue;
+    if (perturbation.beams_of % static_cast<std::size_t>(step.strength) == 0) continue;
+    refuse(fmt::format("beams: {:g} of {} cannot be evenly spaced", step.strength,
+                       perturbation.beams_of),
+           "a divisor of beams_of");
+  }
+}
+
+bool has(const Perturbation& perturbation, std::string_view prefix) {
+  return std::ranges::any_of(perturbation.steps, [&](const PerturbStep& step) {
+    return step.kind->name.starts_with(prefix);
+  });
+}
+
+}  // namespace
+
+Perturbation parse_perturbation(std::string_view text) {
+  Perturbation perturbation;
+  std::vector<std::string_view> said;
+  for (const std::string_view part : split_at_commas(text)) {
+    const std::size_t equals = part.find('=');
+    if (equals == std::string_view::npos) {
+      refuse(fmt::format("{} has no value", quoted(part)), "KIND=STRENGTH,...,seed=N");
+    }
+    const std::string_view name = trim(part.substr(0, equals));
+    const std::string_view value = trim(part.substr(equals + 1));
+    if (!set_key(name, value, perturbation)) {
+      add_step(name, value, perturbation);
+    } else if (std::ranges::find(said, name) != said.end()) {
+      refuse(fmt::format("{} is given twice", name), "it once");
+    } else {
+      said.push_back(name);
+    }
+  }
+  check_beams(perturbation);
+  return perturbation;
+}
+
+std::string to_string(const Perturbation& perturbation) {
+  std::vector<std::string> parts;
+  for (const PerturbStep& step : perturbation.steps) {
+    parts.push_back(fmt::format("{}={}", step.kind->name, step.strength));
+  }
+  if (has(perturbation, "pose_jump") && perturbation.jump_scan) {
+    parts.push_back(fmt::format("pose_jump_scan={}", *perturbation.jump_scan));
+  }
+  if (has(perturbation, "beams")) {
+    parts.push_back(fmt::format("beams_of={}", perturbation.beams_of));
+    if (perturbation.beams_top_deg) {
+      parts.push_back(fmt::format("beams_top_deg={},beams_bottom_deg={}",
+                                  *perturbation.beams_top_deg, *perturbation.beams_bottom_deg));
+    }
+  }
+  if (has(perturbation, "rain") || has(perturbation, "fog")) {
+    parts.push_back(fmt::format("sensor_range_m={}", perturbation.sensor_range_m));
+  }
+  parts.push_back(fmt::format("seed={}", perturbation.seed));
+  return fmt::format("{}", fmt::join(parts, ","));
+}
+
+bool changes_points_only(const Perturbation& perturbation) {
+  return std::ranges::none_of(perturbation.steps, [](const PerturbStep& step) {
+    return step.kind->needs_poses || step.kind->change_scans != nullptr;
+  });
+}
+
+}  // namespace mosbench
