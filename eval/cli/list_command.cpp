@@ -58,15 +58,24 @@ std::string presets_text() {
                    {"protocol", TextTable::kLeft},
                    {"from", TextTable::kLeft}});
   for (const Preset& preset : presets()) {
+    if (!preset.kind) {
+      table.add_row({std::string(preset.name), "any", "", "as the data set's", "", "",
+                     fmt::format("{} by {}", preset.source, preset.method)});
+      continue;
+    }
     const auto value = [&](std::string_view setting) {
       return to_string(std::ranges::find(preset.values, setting, &PresetValue::setting)->value);
     };
-    table.add_row({std::string(preset.name), std::string(to_string(preset.kind)),
+    table.add_row({std::string(preset.name), std::string(to_string(*preset.kind)),
                    value("voxel_size_m"),
                    fmt::format("{} to {}", value("min_range_m"), value("max_range_m")),
                    value("delay_scans"), std::string(preset.protocol), std::string(preset.source)});
   }
-  return table.str() + "All other settings keep the defaults that `mosbench list methods` shows.\n";
+  return table.str() +
+         "All other settings keep the defaults that `mosbench list methods` shows. A preset of any "
+         "data "
+         "set takes what\nis left open from the data set's first one; of a method, it is run by no "
+         "other.\n";
 }
 
 std::string default_text(const Setting& setting) {

@@ -50,8 +50,9 @@ ordered_json preset_json(const Preset& preset) {
     settings[std::string(value.setting)] = value_json(value.value);
   }
   return {{"name", preset.name},
-          {"dataset", to_string(preset.kind)},
-          {"protocol", preset.protocol},
+          {"dataset", preset.kind ? ordered_json(to_string(*preset.kind)) : nullptr},
+          {"method", preset.method.empty() ? nullptr : ordered_json(preset.method)},
+          {"protocol", preset.kind ? ordered_json(preset.protocol) : nullptr},
           {"settings", settings},
           {"source", preset.source}};
 }

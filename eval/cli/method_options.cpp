@@ -57,7 +57,9 @@ void add_method_options(CLI::App& command, RunOptions& options) {
                   "Method that segments, see `mosbench list methods`; for run also A,B or all "
                   "(default: hmm-mos)")
       ->type_name("METHOD");
-  command.add_option("--preset", options.preset, "Published settings (default: by data set)")
+  command
+      .add_option("--preset", options.preset,
+                  "Published settings, or `best` (default: by data set)")
       ->type_name("PRESET");
   command.add_option("--variant", options.variant,
                      "Short for --set variant=NAME: paper-2024 (default) or release-2025");

@@ -22,9 +22,9 @@ namespace {
 constexpr const char* kReproduceFooter =
     R"(Runs HMM-MOS with every setting that the paper's table needs (DOALS: range 20 m and 120 m; HeLiMOS:
 online and delayed by 10 scans), each to OUT/<preset>, and every other method of mosbench that has a row in
-the table (DOALS: Dynablox, and LC Free Space at 20 m, by Dynablox's protocol), to OUT/<preset>-<method>, and
-prints the table. The same command again keeps what is finished and runs the rest. Part of a data set fills
-part of the table.
+the table (DOALS: Dynablox, and LC Free Space at 20 m, by Dynablox's protocol) or that preset `best` is of
+(HMM-MOS plus, a row of its own), to OUT/<preset>-<method>, and prints the table. The same command again
+keeps what is finished and runs the rest. Part of a data set fills part of the table.
 Another data set, or one without any sequence of the table, is refused (exit code 3).
 
 Examples:
@@ -62,7 +62,8 @@ struct TableMethod {
   }
 };
 
-/// The paper's method, then every other method of mosbench that has a row in the table.
+/// The paper's method, then every other method of mosbench that has a row in the table, and the one
+/// of preset `best`.
 std::vector<TableMethod> methods_of(const PaperTable& table,
                                     const std::vector<PublishedCell>& cells) {
   std::vector<TableMethod> found = {{&methods().front(), std::nullopt}};
@@ -73,6 +74,7 @@ std::vector<TableMethod> methods_of(const PaperTable& table,
     if (method == found.end()) method = found.insert(method, {kind, cell.protocol});
     if (cell.max_range_m) method->ranges_m.push_back(*cell.max_range_m);
   }
+  found.push_back({find_method(preset_named("best").method), std::nullopt});
   return found;
 }
 

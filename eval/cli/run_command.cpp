@@ -42,7 +42,8 @@ sequences are kept, also when the program behind the command has changed: --over
 
 Settings: defaults < --preset < --config FILE < --set. FILE holds a JSON object such as
   {"voxel_size_m": 0.25, "max_range_m": 50.0, "delay_scans": 10}
-`mosbench list methods` shows all settings, `mosbench list presets` the presets.
+`mosbench list methods` shows all settings, `mosbench list presets` the presets; --preset best is method
+hmm-mos-plus with its defaults, and with the voxels, the range and the protocol of the data set's own preset.
 
 --odometry finds the poses before the method sees a scan and writes them to DIR/<sequence>/poses.txt;
 its settings are part of the configuration. Poses that it doubts are counted on stderr and in the
@@ -53,6 +54,7 @@ out of the map that the next scans are registered to.
 
 Examples:
   mosbench run ~/sipailou-livox-kitti
+  mosbench run ~/kitti/sequences/08 --preset best
   mosbench run ~/doals --preset doals-120m --sequences station/sequence_1,station/sequence_2
   mosbench run ~/HeLiMOS/KAIST05/Deskewed_LiDAR --preset helimos-delayed --protocol helimos-test
   mosbench run ~/kitti/sequences/08 --set max_range_m=30,voxel_size_m=0.2 --out results/runs/08-near

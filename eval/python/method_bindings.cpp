@@ -202,6 +202,11 @@ void bind_methods(py::module_& module) {
     for (const Preset& preset : presets()) names.emplace_back(preset.name);
     return names;
   });
+  module.def("method_name", [](const std::optional<std::string>& method,
+                               const std::optional<std::string>& preset) {
+    const MethodKind& kind = method_of(method, preset);
+    return method.value_or(std::string(kind.name));
+  });
   module.def("method_settings", base_settings);
   module.def("odometry_settings", odometry_settings);
   module.def("check_settings", [](const std::string& method, const Settings& settings) {

@@ -8,6 +8,7 @@
 #include "datasets/files/errors.hpp"
 #include "datasets/files/nearest_name.hpp"
 #include "eval/exec/exec_method.hpp"
+#include "eval/runs/presets.hpp"
 
 namespace mosbench {
 namespace {
@@ -42,6 +43,16 @@ const MethodKind& method_named(const std::string& name) {
   throw UsageError(
       fmt::format("--method: '{}' is not known, expected one of {} or exec:COMMAND (nearest: {})",
                   name, fmt::join(names, ", "), nearest_name(name, names)));
+}
+
+const MethodKind& method_of(const std::optional<std::string>& method,
+                            const std::optional<std::string>& preset) {
+  const MethodKind* named = method ? &method_named(*method) : nullptr;
+  const std::string_view of_preset = preset ? preset_named(*preset).method : "";
+  if (of_preset.empty()) return named != nullptr ? *named : methods().front();
+  if (named == nullptr || named->name == of_preset) return *find_method(of_preset);
+  throw UsageError(fmt::format("--preset {}: is of method {}, expected no --method or this one",
+                               *preset, of_preset));
 }
 
 bool names_several_methods(const std::string& text) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <mosbench/method.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,11 @@ namespace mosbench {
 /// Returns the method that --method names; of "exec:COMMAND" that of `exec_method`. Throws
 /// UsageError naming the nearest one.
 const MethodKind& method_named(const std::string& name);
+
+/// Returns the method that is named, else that of the preset, else the paper's. Throws UsageError
+/// where the preset is of another method than the one that is named.
+const MethodKind& method_of(const std::optional<std::string>& method,
+                            const std::optional<std::string>& preset);
 
 /// Methods of a benchmark, and why others are not among them.
 struct MethodChoice {

@@ -66,6 +66,7 @@ std::span<const Preset> presets() {
              "authors' config of M-detector's sets (2025)"},
       Preset{"recording", DatasetKind::kRecording, settings(0.25, 1.5, 50.0), "semantickitti-mos",
              "ours, for recordings of any sensor: as helimos"},
+      Preset{"best", std::nullopt, {}, "", "ours, results/plus/README.md", "hmm-mos-plus"},
   };
   return kPresets;
 }
@@ -93,8 +94,17 @@ Settings settings_of(const Preset& preset, const MethodKind& method) {
   return settings;
 }
 
+Preset preset_for(const Preset& preset, DatasetKind kind) {
+  if (preset.kind) return preset;
+  Preset complete = default_preset(kind);
+  complete.name = preset.name;
+  complete.source = preset.source;
+  complete.method = preset.method;
+  return complete;
+}
+
 const Preset& default_preset(DatasetKind kind) {
-  return *std::ranges::find(presets(), kind, &Preset::kind);
+  return *std::ranges::find(presets(), std::optional(kind), &Preset::kind);
 }
 
 }  // namespace mosbench

@@ -2,6 +2,7 @@
 
 #include <mosbench/method.hpp>
 #include <mosbench/settings.hpp>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -19,10 +20,11 @@ struct PresetValue {
 /// values of the settings that they have; the others keep their defaults.
 struct Preset {
   std::string_view name;
-  DatasetKind kind;
+  std::optional<DatasetKind> kind;  ///< nothing: any, see `preset_for`
   std::vector<PresetValue> values;
-  std::string_view protocol;  ///< name of a row of the protocol table
-  std::string_view source;    ///< where the settings come from
+  std::string_view protocol;     ///< name of a row of the protocol table; empty without a kind
+  std::string_view source;       ///< where the settings come from
+  std::string_view method = {};  ///< the one that it is of; empty: any
 };
 
 std::span<const Preset> presets();
@@ -32,6 +34,9 @@ const Preset& preset_named(std::string_view name);
 
 /// Returns the method's defaults with the preset's values for the settings that the method has.
 Settings settings_of(const Preset& preset, const MethodKind& method);
+
+/// Returns the preset; one of any data set with the values and protocol of this kind's default.
+Preset preset_for(const Preset& preset, DatasetKind kind);
 
 /// What `mosbench run` takes when the user names none: the online preset of the data set.
 const Preset& default_preset(DatasetKind kind);

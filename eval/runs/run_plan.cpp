@@ -21,8 +21,8 @@ namespace mosbench {
 namespace fs = std::filesystem;
 namespace {
 
-const Preset& choose_preset(const RunOptions& options, DatasetKind kind, RunPlan& plan) {
-  if (options.preset) return preset_named(*options.preset);
+Preset choose_preset(const RunOptions& options, DatasetKind kind, RunPlan& plan) {
+  if (options.preset) return preset_for(preset_named(*options.preset), kind);
   const Preset& preset = default_preset(kind);
   plan.notes.push_back(
       fmt::format("preset {} taken because the data set is {}", preset.name, to_string(kind)));
@@ -178,15 +178,14 @@ void note_preset_without_settings(const Preset& preset, RunPlan& plan) {
 
 RunPlan plan_method(const RunOptions& options) {
   RunPlan plan;
-  plan.settings.method =
-      &method_named(options.method.value_or(std::string(methods().front().name)));
+  plan.settings.method = &method_of(options.method, options.preset);
   plan.settings.threads = options.threads;
   plan.reading = options.reading;
   plan.odometry = named_odometry(options.odometry, options.reading);
   plan.reading.poses_by_odometry = plan.odometry.has_value();
   plan.dataset = open_dataset(
       options.input, {dataset_kind_option(options.dataset), options.sequences, plan.reading});
-  const Preset& preset = choose_preset(options, plan.dataset.kind, plan);
+  const Preset preset = choose_preset(options, plan.dataset.kind, plan);
   plan.preset = preset.name;
   note_preset_without_settings(preset, plan);
   plan.settings.method_settings = choose_settings(options, preset, *plan.settings.method);

@@ -4,7 +4,6 @@
 
 #include "eval/protocols/protocol.hpp"
 #include "eval/results/shell_text.hpp"
-#include "eval/runs/presets.hpp"
 #include "eval/tables/table_match.hpp"
 
 namespace mosbench {
@@ -42,12 +41,15 @@ const Preset& nearest_preset(DatasetKind dataset, const MethodKind& method,
   return *nearest;
 }
 
+std::string run_command(const PaperTable& table, const TableColumn& column, const Preset& preset) {
+  return fmt::format("mosbench run DIR --dataset {} --sequences {} --preset {}",
+                     to_string(table.dataset), fmt::join(column.sequences, ","), preset.name);
+}
+
 std::string run_command(const PaperTable& table, const TableColumn& column,
                         const PublishedCell& published, const MethodKind& method) {
   const Preset& preset = nearest_preset(table.dataset, method, published);
-  std::string command =
-      fmt::format("mosbench run DIR --dataset {} --sequences {} --preset {}",
-                  to_string(table.dataset), fmt::join(column.sequences, ","), preset.name);
+  std::string command = run_command(table, column, preset);
   if (&method != &methods().front()) command += fmt::format(" --method {}", method.name);
   if (preset.protocol != published.protocol)
     command += " --protocol " + shell_word(published.protocol);
@@ -73,12 +75,19 @@ std::string command_for(const PaperTable& table, const TableColumn& column,
   return "then: " + run_command(table, column, published, *method);
 }
 
+std::string needs(const PaperTable& table, const TableColumn& column, const std::string& then) {
+  return fmt::format("needs {} of {}; {}", fmt::join(column.sequences, ", "), table.download, then);
+}
+
 }  // namespace
 
 std::string how_to_fill(const PaperTable& table, const TableColumn& column,
                         const PublishedCell& published) {
-  return fmt::format("needs {} of {}; {}", fmt::join(column.sequences, ", "), table.download,
-                     command_for(table, column, published));
+  return needs(table, column, command_for(table, column, published));
+}
+
+std::string how_to_fill(const PaperTable& table, const TableColumn& column, const Preset& preset) {
+  return needs(table, column, "then: " + run_command(table, column, preset));
 }
 
 }  // namespace mosbench

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "eval/runs/presets.hpp"
 #include "eval/tables/paper_tables.hpp"
 #include "eval/tables/published.hpp"
 
@@ -12,5 +13,8 @@ namespace mosbench {
 /// data set that comes nearest to the published settings, for other methods `mosbench score`.
 std::string how_to_fill(const PaperTable& table, const TableColumn& column,
                         const PublishedCell& published);
+
+/// The same for a preset of a method that was published nowhere.
+std::string how_to_fill(const PaperTable& table, const TableColumn& column, const Preset& preset);
 
 }  // namespace mosbench

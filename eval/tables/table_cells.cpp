@@ -111,6 +111,23 @@ TableRow published_row(const PaperTable& table, const PublishedRow& row) {
   return filled;
 }
 
+/// Returns the empty row of the method that is better than the paper's and published nowhere.
+TableRow best_row(const PaperTable& table, const Preset& best, const MethodKind& method) {
+  TableRow row{"",
+               std::string(method.title),
+               fmt::format("preset {}", best.name),
+               std::string(preset_for(best, table.dataset).protocol),
+               std::string(method.source),
+               "",
+               {}};
+  for (const TableColumn& column : table.columns) {
+    TableCell& cell = row.cells.emplace_back();
+    cell.column = column.name;
+    cell.reasons = {how_to_fill(table, column, best)};
+  }
+  return row;
+}
+
 TableRow measured_row(const PaperTable& table, const ResultSet& run, const PublishedRow* row) {
   const SequenceResult& first = run.front();
   const bool same_rules =
@@ -168,6 +185,11 @@ FilledTable fill_table(const PaperTable& table, const std::vector<PublishedCell>
     for (const ResultSet& run : of_row[r])
       filled.rows.push_back(measured_row(table, run, &rows[r]));
   }
+  const Preset& best = preset_named("best");
+  const MethodKind& method = *find_method(best.method);
+  const bool is_measured = std::ranges::any_of(
+      unmatched, [&](const ResultSet& run) { return run.front().method == method.title; });
+  if (!is_measured) filled.rows.push_back(best_row(table, best, method));
   for (const ResultSet& run : unmatched) filled.rows.push_back(measured_row(table, run, nullptr));
   return filled;
 }

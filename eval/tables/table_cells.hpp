@@ -44,7 +44,8 @@ struct FilledTable {
 
 /// Fills the published rows: each run goes to the row of its method that is nearest in variant,
 /// voxel size, range, delay and protocol; runs of methods without a published row follow at the
-/// end. A HeLiMOS run over all labelled scans also gives the numbers of the test split.
+/// end, among them always the method of preset `best`. A HeLiMOS run over all labelled scans
+/// also gives the numbers of the test split.
 FilledTable fill_table(const PaperTable& table, const std::vector<PublishedCell>& published,
                        const std::vector<ResultSet>& runs);
 

@@ -118,6 +118,20 @@ TEST_F(RunSettings, OfAPresetThatAMethodLacksAreNamed) {
               testing::Not(testing::Contains(testing::HasSubstr("runs without"))));
 }
 
+TEST_F(RunSettings, OfPresetBestAreThoseOfPlusAndOfTheDataSet) {
+  const auto best = result_of({"--preset", "best"});
+  EXPECT_EQ(best.at("preset"), "best");
+  EXPECT_EQ(best.at("method").at("kind"), "hmm-mos-plus");
+  const auto plus = result_of({"--method", "hmm-mos-plus"});
+  EXPECT_EQ(best.at("config"), plus.at("config"));
+  EXPECT_EQ(best.at("protocol"), plus.at("protocol"));
+  RunOptions options;
+  options.input = folder_ / "room";
+  options.preset = "best";
+  options.method = "yoon";
+  EXPECT_THROW(plan_run(options), UsageError);
+}
+
 TEST_F(RunSettings, OfOdometryStandInTheResultToo) {
   for (const OdometryKind& kind : odometries()) {
     const auto json = result_of({"--odometry", std::string(kind.name)});

@@ -87,6 +87,14 @@ def test_refuses_wrong_shapes_poses_settings_and_calls(wall):
         mos.push(wall, IDENTITY)
 
 
+def test_preset_best_is_of_plus():
+    best = mosbench.Config.preset("best")
+    assert best.method == "hmm-mos-plus" and best == mosbench.Config("hmm-mos-plus")
+    assert mosbench.Config.preset("doals-20m").method == "hmm-mos"
+    with pytest.raises(ValueError, match="^preset best: is of method hmm-mos-plus"):
+        mosbench.Config.preset("best", method="dynablox")
+
+
 def test_config_replaces_copies_loads_and_compares(tmp_path):
     config = mosbench.Config.preset("doals-20m")
     finer = config.replace(voxel_size_m=0.1, delay_scans=np.int64(3))

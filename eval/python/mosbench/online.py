@@ -27,8 +27,12 @@ class Config:
         self._set(settings)
 
     @classmethod
-    def preset(cls, name: str, method: str = "hmm-mos") -> "Config":
-        """Returns the published settings of this name; `mosbench.presets()` lists them."""
+    def preset(cls, name: str, method: Optional[str] = None) -> "Config":
+        """Returns the published settings of this name; `mosbench.presets()` lists them.
+
+        They are for "hmm-mos" when no method is named; "best" is of "hmm-mos-plus".
+        """
+        method = _mosbench.method_name(method, name)
         return cls._of(method, _mosbench.method_settings(method, name))
 
     @classmethod

@@ -8,6 +8,7 @@
 
 #include "datasets/files/errors.hpp"
 #include "eval/protocols/protocol.hpp"
+#include "eval/runs/method_choice.hpp"
 #include "eval/runs/presets.hpp"
 #include "tests/temp_folder.hpp"
 
@@ -115,7 +116,8 @@ TEST(Presets, HaveThePapersSettingsAndAKnownProtocol) {
       for (const Setting& setting : method.defaults.all()) taken.insert(setting.name);
     }
     for (const PresetValue& value : preset.values) EXPECT_TRUE(taken.contains(value.setting));
-    EXPECT_NE(find_protocol(preset.protocol), nullptr) << preset.name;
+    const Preset of_kind = preset_for(preset, preset.kind.value_or(DatasetKind::kSipailou));
+    EXPECT_NE(find_protocol(of_kind.protocol), nullptr) << preset.name;
     EXPECT_EQ(&preset_named(preset.name), &preset);
   }
   EXPECT_EQ(value_of("doals-20m", "max_range_m"), 20.0);
@@ -128,6 +130,31 @@ TEST(Presets, HaveThePapersSettingsAndAKnownProtocol) {
   EXPECT_EQ(value_of("helimos-delayed", "delay_scans"), 10);
   EXPECT_EQ(default_preset(DatasetKind::kHelimos).name, "helimos");
   EXPECT_EQ(default_preset(DatasetKind::kDoals).name, "doals-20m");
+}
+
+TEST(Presets, BestIsPlusWithItsDefaultsAndWhatEachDataSetNeeds) {
+  const Preset& best = preset_named("best");
+  EXPECT_FALSE(best.kind);
+  EXPECT_EQ(best.method, "hmm-mos-plus");
+  const MethodKind& plus = *find_method(best.method);
+  EXPECT_EQ(to_json(settings_of(best, plus)), to_json(plus.defaults));
+  const Preset helimos = preset_for(best, DatasetKind::kHelimos);
+  EXPECT_EQ(helimos.name, "best");
+  EXPECT_EQ(helimos.method, "hmm-mos-plus");
+  EXPECT_EQ(helimos.protocol, "helimos-all");
+  EXPECT_EQ(to_json(settings_of(helimos, plus)),
+            to_json(settings_of(preset_named("helimos"), plus)));
+  EXPECT_EQ(preset_for(preset_named("doals-120m"), DatasetKind::kHelimos).name, "doals-120m");
+}
+
+TEST(Presets, NameTheMethodThatTheyAreOf) {
+  EXPECT_EQ(method_of({}, {}).name, "hmm-mos");
+  EXPECT_EQ(method_of({}, "helimos").name, "hmm-mos");
+  EXPECT_EQ(method_of("dynablox", "helimos").name, "dynablox");
+  EXPECT_EQ(method_of({}, "best").name, "hmm-mos-plus");
+  EXPECT_EQ(method_of("hmm-mos-plus", "best").name, "hmm-mos-plus");
+  EXPECT_THAT(message_of<UsageError>([] { method_of("dynablox", "best"); }),
+              "--preset best: is of method hmm-mos-plus, expected no --method or this one");
 }
 
 // The published rows of these two data sets are of the authors' later program only.
