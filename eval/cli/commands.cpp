@@ -15,7 +15,7 @@ std::span<const Command> commands() {
       Command{"curve", "Draw precision over recall for all thresholds of the scores", add_curve},
       Command{"table", "Print a published table with measured values next to it", add_table},
       Command{"reproduce", "Run all that a table of the paper needs", add_reproduce},
-      Command{"leaderboard", "Rank runs on the same scans", add_leaderboard},
+      Command{"rank", "Rank runs on the same scans, with what differs in them", add_rank},
       Command{"stats", "Print the intervals of a run, or the difference of two", add_stats},
       Command{"breakdown", "Show where predictions are right and wrong", add_breakdown},
       Command{"diff", "List the scans and objects on which two runs disagree", add_diff},

@@ -33,7 +33,7 @@ times of its files are; otherwise, and with --verify, all of it is read and comp
 with the same protocol. all is every method of `mosbench list methods` but hmm-mos-reference. All of it is
 checked before the first scan: a setting of --set, --config or --variant that one of the methods lacks is
 refused; --set METHOD.KEY=VALUE sets one method's. A method that fails then leaves the others as they are;
-the exit code is that of the first failure. `mosbench leaderboard DIR` compares them.
+the exit code is that of the first failure. `mosbench rank DIR` compares them.
 
 --method exec:COMMAND starts a program of yours for each sequence, hands it the scans with their poses over
 stdin, and takes its labels from stdout (results/FORMATS.md has the messages, tests/examples/exec a

@@ -112,23 +112,31 @@ void mark_front(std::vector<LeaderboardRow>& rows) {
   }
 }
 
-/// Says what is wrong with the scans of a run beside those of the best.
-void compare_with_best(const LeaderboardRow& best, LeaderboardRow& row,
-                       std::vector<std::string>& remarks) {
-  PairedRuns paired = pair_runs(*best.run, *row.run);
+/// Names a row by its method, and by its number where another row is of the same one.
+std::string name_of(const Leaderboard& board, const LeaderboardRow& row) {
+  const std::string& method = row.run->front().method;
+  const auto rows = std::ranges::count(
+      board.rows, method, [](const LeaderboardRow& other) { return other.run->front().method; });
+  return rows == 1 ? method : fmt::format("{} (row {})", method, &row - board.rows.data() + 1);
+}
+
+/// Takes the difference of a row to the first, and says what is wrong with its scans beside those.
+void compare_with_first(Leaderboard& board, LeaderboardRow& row) {
+  const LeaderboardRow& first = board.rows.front();
+  PairedRuns paired = pair_runs(*first.run, *row.run);
   for (const Unlike& unlike : paired.unlike) {
     if (unlike.kind != Unlike::Kind::kPoses) continue;
-    remarks.push_back(fmt::format("{} and {}: {}", best.run->front().method,
-                                  row.run->front().method, unlike_text({unlike})));
+    board.remarks.push_back(fmt::format("{} and {}: {}", name_of(board, first), name_of(board, row),
+                                        unlike_text({unlike})));
   }
   std::erase_if(paired.unlike, may_differ);
   if (paired.unlike.empty()) {
-    row.to_best = paired_difference(*best.run->front().protocol, paired.first, paired.second,
-                                    paired.spacing)[Metric::kIou];
+    row.to_first = paired_difference(*first.run->front().protocol, paired.first, paired.second,
+                                     paired.spacing)[Metric::kIou];
     return;
   }
-  remarks.push_back(fmt::format("{} is not compared with {}: {}", row.run->front().method,
-                                best.run->front().method, unlike_text(paired.unlike)));
+  board.remarks.push_back(fmt::format("{} is not compared with {}: {}", name_of(board, row),
+                                      name_of(board, first), unlike_text(paired.unlike)));
 }
 
 /// Says in which respect the times of the runs cannot be compared.
@@ -152,6 +160,17 @@ void remark_on_times(const std::vector<ResultSet>& runs, std::vector<std::string
   }
 }
 
+void add_settings_and_warnings(Leaderboard& board) {
+  std::vector<const ResultSet*> runs;
+  for (const LeaderboardRow& row : board.rows) {
+    runs.push_back(row.run);
+    for (const std::string& warning : warnings(*row.run)) {
+      board.remarks.push_back(fmt::format("{}: {}", name_of(board, row), warning));
+    }
+  }
+  board.differing = differing_settings(runs);
+}
+
 }  // namespace
 
 std::vector<std::vector<ResultSet>> comparable_runs(const std::vector<ResultSet>& runs) {
@@ -171,22 +190,20 @@ std::vector<std::vector<ResultSet>> comparable_runs(const std::vector<ResultSet>
   return groups;
 }
 
-Leaderboard leaderboard_of(const std::vector<ResultSet>& runs) {
+Leaderboard leaderboard_of(const std::vector<ResultSet>& runs, RowOrder order) {
   Leaderboard board;
   board.sequences = sequences_of(runs);
   for (const ResultSet& run : runs) {
     check_has_truth(run);
     check_is_like(runs.front(), run);
     board.rows.push_back(row_of(run, board.sequences));
-    for (const std::string& warning : warnings(run)) {
-      board.remarks.push_back(fmt::format("{}: {}", run.front().method, warning));
-    }
   }
-  std::ranges::stable_sort(board.rows, std::greater(), iou_of);
+  if (order == RowOrder::kIou) std::ranges::stable_sort(board.rows, std::greater(), iou_of);
+  add_settings_and_warnings(board);
   mark_front(board.rows);
   remark_on_times(runs, board.remarks);
   for (std::size_t i = 1; board.rows.front().all && i < board.rows.size(); ++i) {
-    compare_with_best(board.rows.front(), board.rows[i], board.remarks);
+    compare_with_first(board, board.rows[i]);
   }
   return board;
 }

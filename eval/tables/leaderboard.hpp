@@ -6,6 +6,7 @@
 
 #include "eval/results/result_set.hpp"
 #include "eval/statistics/intervals.hpp"
+#include "eval/tables/differing_settings.hpp"
 
 namespace mosbench {
 
@@ -17,21 +18,28 @@ struct LeaderboardRow {
   std::optional<double> ms_per_scan;  ///< of the method, mean of all scans
   std::optional<double> memory_mb;    ///< most that the process held, 1e6 bytes
   bool is_on_front = false;           ///< no other run is as good and as fast, and better in one
-  std::optional<Difference> to_best;  ///< of IoU, to that of the first row, on the same scans
+  std::optional<Difference> to_first;  ///< of IoU, to that of the first row, on the same scans
 };
 
-/// Runs on the same scans, the best first. The runs must outlive it.
+/// Runs on the same scans. The runs must outlive it.
 struct Leaderboard {
   std::vector<std::string> sequences;  ///< every sequence that a run has
-  std::vector<LeaderboardRow> rows;    ///< by IoU, then those without
-  std::vector<std::string> remarks;    ///< what a reader should know, plain sentences
+  std::vector<LeaderboardRow> rows;
+  std::vector<DifferingSetting> differing;  ///< values in the order of the rows
+  std::vector<std::string> remarks;         ///< what a reader should know, plain sentences
 };
 
 /// Groups runs that can stand in one leaderboard and have scans in common, in the order in which
 /// they come; runs without truth are left out.
 std::vector<std::vector<ResultSet>> comparable_runs(const std::vector<ResultSet>& runs);
 
+/// Which row comes first, to which the others are compared.
+enum class RowOrder {
+  kIou,   ///< the best, those without IoU last
+  kGiven  ///< the first run
+};
+
 /// Throws DataError naming the run that is of another protocol, range or input than the first.
-Leaderboard leaderboard_of(const std::vector<ResultSet>& runs);
+Leaderboard leaderboard_of(const std::vector<ResultSet>& runs, RowOrder order = RowOrder::kIou);
 
 }  // namespace mosbench

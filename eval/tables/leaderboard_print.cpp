@@ -8,6 +8,7 @@
 #include "eval/results/answer_text.hpp"
 #include "eval/results/csv.hpp"
 #include "eval/results/latex.hpp"
+#include "eval/results/markdown.hpp"
 #include "eval/results/text_table.hpp"
 #include "eval/statistics/statistics_report.hpp"
 
@@ -24,25 +25,32 @@ std::string number_text(const std::optional<double>& number) {
   return number ? fmt::format("{:.1f}", *number) : "-";
 }
 
-/// "-2.1 [-3.0, -1.2]", "-2.1 [none]", "best" or "-".
-std::string to_best_text(const Leaderboard& board, const LeaderboardRow& row) {
-  if (&row == &board.rows.front()) return row.all ? "best" : "-";
-  if (!row.to_best) return "-";
-  const std::string value = percent_text(row.to_best->value, "{:+.2f}");
-  const std::string interval = interval_text(row.to_best->interval, "{:+.2f}");
+/// "-2.1 [-3.0, -1.2]", "-2.1 [none]", "first" or "-".
+std::string to_first_text(const Leaderboard& board, const LeaderboardRow& row) {
+  if (&row == &board.rows.front()) return row.all ? "first" : "-";
+  if (!row.to_first) return "-";
+  const std::string value = percent_text(row.to_first->value, "{:+.2f}");
+  const std::string interval = interval_text(row.to_first->interval, "{:+.2f}");
   return fmt::format("{} {}", value, interval == "none" ? "[none]" : interval);
+}
+
+/// `missing` where the run has no such setting.
+std::string value_text(const ordered_json& value, const char* missing) {
+  if (value.is_null()) return missing;
+  return value.is_string() ? value.get<std::string>() : value.dump();
 }
 
 /// A sequence's own column would repeat that of all where there is but one.
 bool shows_sequences(const Leaderboard& board) { return board.sequences.size() > 1; }
 
 std::vector<TextTable::Column> columns_of(const Leaderboard& board) {
-  std::vector<TextTable::Column> columns = {
-      {"", TextTable::kLeft}, {"method", TextTable::kLeft}, {"IoU %"}, {"95 %"}};
+  std::vector<TextTable::Column> columns = {{"", TextTable::kLeft}, {"method", TextTable::kLeft}};
+  for (const DifferingSetting& setting : board.differing) columns.push_back({setting.name});
+  columns.insert(columns.end(), {{"IoU %"}, {"95 %"}});
   if (shows_sequences(board)) {
     for (const std::string& name : board.sequences) columns.push_back({name});
   }
-  for (const char* title : {"precision %", "recall %", "ms/scan", "MB", "front", "IoU to best"}) {
+  for (const char* title : {"precision %", "recall %", "ms/scan", "MB", "front", "IoU to first"}) {
     columns.push_back({title});
   }
   return columns;
@@ -50,9 +58,12 @@ std::vector<TextTable::Column> columns_of(const Leaderboard& board) {
 
 std::vector<std::string> cells_of_row(const Leaderboard& board, std::size_t r) {
   const LeaderboardRow& row = board.rows[r];
-  std::vector<std::string> cells = {
-      fmt::format("{}", r + 1), row.run->front().method, percent_of(row.all, Metric::kIou),
-      row.all ? interval_text((*row.all)[Metric::kIou].interval, "{:.1f}") : "-"};
+  std::vector<std::string> cells = {fmt::format("{}", r + 1), row.run->front().method};
+  for (const DifferingSetting& setting : board.differing) {
+    cells.push_back(value_text(setting.values[r], "-"));
+  }
+  cells.push_back(percent_of(row.all, Metric::kIou));
+  cells.push_back(row.all ? interval_text((*row.all)[Metric::kIou].interval, "{:.1f}") : "-");
   if (shows_sequences(board)) {
     for (const auto& estimates : row.sequences) {
       cells.push_back(percent_of(estimates, Metric::kIou));
@@ -64,7 +75,7 @@ std::vector<std::string> cells_of_row(const Leaderboard& board, std::size_t r) {
   cells.push_back(number_text(row.ms_per_scan));
   cells.push_back(number_text(row.memory_mb));
   cells.emplace_back(row.is_on_front ? "*" : "");
-  cells.push_back(to_best_text(board, row));
+  cells.push_back(to_first_text(board, row));
   return cells;
 }
 
@@ -84,8 +95,8 @@ std::string row_notes(const Leaderboard& board) {
     const LeaderboardRow& row = board.rows[r];
     text += fmt::format("{}: {}, {} ({})\n", r + 1, row.run->front().method,
                         row.run->front().setting, row.run->front().file.string());
-    if (!row.to_best || row.to_best->no_interval.empty()) continue;
-    without_interval[row.to_best->no_interval].push_back(r + 1);
+    if (!row.to_first || row.to_first->no_interval.empty()) continue;
+    without_interval[row.to_first->no_interval].push_back(r + 1);
   }
   for (const auto& [why, rows] : without_interval) {
     text += fmt::format("no interval of the difference of {}: {}\n", fmt::join(rows, ", "), why);
@@ -97,6 +108,10 @@ std::string remarks_text(const Leaderboard& board) {
   std::string text;
   for (const std::string& remark : board.remarks) text += remark + '\n';
   return text;
+}
+
+std::size_t place_of(const Leaderboard& board, const LeaderboardRow& row) {
+  return static_cast<std::size_t>(&row - board.rows.data());
 }
 
 std::string csv_number(const std::optional<double>& number) {
@@ -111,8 +126,8 @@ void add_csv(const Estimate& estimate, std::vector<std::string>& cells) {
   cells.push_back(interval ? csv_percent(interval->high) : "");
 }
 
-std::string csv_line(const LeaderboardRow& row, const std::string& sequence,
-                     const std::optional<Estimates>& estimates) {
+std::string csv_line(const Leaderboard& board, const LeaderboardRow& row,
+                     const std::string& sequence, const std::optional<Estimates>& estimates) {
   const SequenceResult& first = row.run->front();
   std::vector<std::string> cells = {first.method, first.setting, first.file.string(), sequence};
   for (const Metric metric : {Metric::kIou, Metric::kPrecision, Metric::kRecall}) {
@@ -122,15 +137,22 @@ std::string csv_line(const LeaderboardRow& row, const std::string& sequence,
   cells.push_back(is_all ? csv_number(row.ms_per_scan) : "");
   cells.push_back(is_all ? csv_number(row.memory_mb) : "");
   cells.emplace_back(is_all && row.is_on_front ? "1" : "");
-  const Difference to_best = is_all ? row.to_best.value_or(Difference{}) : Difference{};
-  add_csv(to_best, cells);
-  cells.push_back(csv_number(to_best.p_value));
-  cells.push_back(to_best.no_interval);
+  const Difference to_first = is_all ? row.to_first.value_or(Difference{}) : Difference{};
+  add_csv(to_first, cells);
+  cells.push_back(csv_number(to_first.p_value));
+  cells.push_back(to_first.no_interval);
+  for (const DifferingSetting& setting : board.differing) {
+    cells.push_back(value_text(setting.values[place_of(board, row)], ""));
+  }
   return csv_row(cells);
 }
 
 ordered_json to_json(const Leaderboard& board, const LeaderboardRow& row) {
   ordered_json json = provenance_json(*row.run);
+  json["differing_settings"] = ordered_json::object();
+  for (const DifferingSetting& setting : board.differing) {
+    json["differing_settings"][setting.name] = setting.values[place_of(board, row)];
+  }
   json["all"] = row.all ? to_json(*row.all) : ordered_json(nullptr);
   json["sequences"] = ordered_json::array();
   for (std::size_t s = 0; s < board.sequences.size(); ++s) {
@@ -141,8 +163,8 @@ ordered_json to_json(const Leaderboard& board, const LeaderboardRow& row) {
   json["ms_per_scan"] = json_or_null(row.ms_per_scan);
   json["memory_mb"] = json_or_null(row.memory_mb);
   json["on_front"] = row.is_on_front;
-  json["to_best"] = nullptr;
-  if (row.to_best) json["to_best"] = to_json(*row.to_best);
+  json["to_first"] = nullptr;
+  if (row.to_first) json["to_first"] = to_json(*row.to_first);
   return json;
 }
 
@@ -153,7 +175,7 @@ std::string leaderboard_text(const Leaderboard& board) {
   for (std::size_t r = 0; r < board.rows.size(); ++r) table.add_row(cells_of_row(board, r));
   return fmt::format(
       "{}\n\n{}\n* front: no other run is as good and as fast, and better in one of both\n"
-      "to best: paired difference of IoU in percentage points, with its 95 % interval\n\n{}{}",
+      "to first: paired difference of IoU in percentage points, with its 95 % interval\n\n{}{}",
       rules_text(board), table.str(), row_notes(board), remarks_text(board));
 }
 
@@ -168,16 +190,48 @@ std::string leaderboard_latex(const Leaderboard& board) {
   return text + "\\end{tabular}\n";
 }
 
+std::string leaderboard_markdown(const Leaderboard& board) {
+  std::vector<std::string> titles;
+  std::string rule = "|";
+  for (const TextTable::Column& column : columns_of(board)) {
+    titles.push_back(column.title);
+    rule += column.align == TextTable::kLeft ? "---|" : "--:|";
+  }
+  std::string text = markdown_text(rules_text(board)) + "\n\n" + markdown_row(titles) + rule + '\n';
+  for (std::size_t r = 0; r < board.rows.size(); ++r) text += markdown_row(cells_of_row(board, r));
+  text += "\n\\*: no other run is as good and as fast, and better in one of both\n";
+  for (const std::string& remark : board.remarks) text += "\n" + markdown_text(remark) + '\n';
+  return text;
+}
+
 std::string leaderboard_csv(const Leaderboard& board) {
-  std::string csv =
-      "method,setting,results,sequence,iou_percent,iou_low_percent,iou_high_percent,"
-      "precision_percent,precision_low_percent,precision_high_percent,recall_percent,"
-      "recall_low_percent,recall_high_percent,ms_per_scan,memory_mb,on_front,to_best_points,"
-      "to_best_low_points,to_best_high_points,to_best_p_value,no_interval\n";
+  std::vector<std::string> titles = {"method",
+                                     "setting",
+                                     "results",
+                                     "sequence",
+                                     "iou_percent",
+                                     "iou_low_percent",
+                                     "iou_high_percent",
+                                     "precision_percent",
+                                     "precision_low_percent",
+                                     "precision_high_percent",
+                                     "recall_percent",
+                                     "recall_low_percent",
+                                     "recall_high_percent",
+                                     "ms_per_scan",
+                                     "memory_mb",
+                                     "on_front",
+                                     "to_first_points",
+                                     "to_first_low_points",
+                                     "to_first_high_points",
+                                     "to_first_p_value",
+                                     "no_interval"};
+  for (const DifferingSetting& setting : board.differing) titles.push_back(setting.name);
+  std::string csv = csv_row(titles);
   for (const LeaderboardRow& row : board.rows) {
-    csv += csv_line(row, "all", row.all);
+    csv += csv_line(board, row, "all", row.all);
     for (std::size_t s = 0; s < board.sequences.size(); ++s) {
-      csv += csv_line(row, board.sequences[s], row.sequences[s]);
+      csv += csv_line(board, row, board.sequences[s], row.sequences[s]);
     }
   }
   return csv;
@@ -189,8 +243,11 @@ ordered_json to_json(const Leaderboard& board) {
       {"dataset", first.dataset},         {"protocol", std::string(first.protocol->name)},
       {"min_range_m", first.range.min_m}, {"max_range_m", first.range.max_m},
       {"simulated", first.simulated},     {"confidence", kConfidence},
-      {"sequences", board.sequences},     {"rows", ordered_json::array()},
-      {"remarks", board.remarks}};
+      {"sequences", board.sequences},     {"differing_settings", ordered_json::array()},
+      {"rows", ordered_json::array()},    {"remarks", board.remarks}};
+  for (const DifferingSetting& setting : board.differing) {
+    json["differing_settings"].push_back(setting.name);
+  }
   for (const LeaderboardRow& row : board.rows) json["rows"].push_back(to_json(board, row));
   return json;
 }

@@ -48,7 +48,7 @@ def measured(program, work, data):
                    check=True, stdout=subprocess.DEVNULL)
     rows = []
     for folder in sorted(folder for folder in out.iterdir() if folder.is_dir()):
-        printed = subprocess.run([program, "leaderboard", folder, "--format", "json"], check=True,
+        printed = subprocess.run([program, "rank", folder, "--format", "json"], check=True,
                                  stdout=subprocess.PIPE)
         row = json.loads(printed.stdout)["rows"][0]
         rows.append(row | {"cpu_ms": cpu_ms(program, work, data, folder.name)})

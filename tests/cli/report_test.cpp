@@ -126,7 +126,7 @@ void write_several_runs(const std::filesystem::path& folder) {
   }
 }
 
-TEST(Report, RanksSeveralRunsAsTheLeaderboardDoes) {
+TEST(Report, RanksSeveralRunsAsRankDoes) {
   const TempFolder folder;
   write_several_runs(folder.path());
   const std::string all = folder / "all", net = folder / "net", out = folder / "r.html";
@@ -138,10 +138,10 @@ TEST(Report, RanksSeveralRunsAsTheLeaderboardDoes) {
   ASSERT_EQ(content.at("leaderboards").size(), 1U);
   const auto& rows = content.at("leaderboards").at(0).at("rows");
   const auto expected =
-      nlohmann::ordered_json::parse(cli::run({"leaderboard", all, net, "--format", "json"}).out);
+      nlohmann::ordered_json::parse(cli::run({"rank", all, net, "--format", "json"}).out);
   ASSERT_EQ(rows.size(), 3U);
   for (std::size_t r = 0; r < 3; ++r) {
-    for (const char* key : {"method", "all", "to_best", "ms_per_scan", "memory_mb", "on_front"}) {
+    for (const char* key : {"method", "all", "to_first", "ms_per_scan", "memory_mb", "on_front"}) {
       EXPECT_EQ(rows.at(r).at(key), expected.at("rows").at(r).at(key)) << r << key;
     }
     const auto& result =

@@ -125,9 +125,9 @@ TEST_F(RunMethods, AreRefusedBeforeTheFirstScan) {
   }
 }
 
-TEST_F(RunMethods, StandInTheLeaderboard) {
+TEST_F(RunMethods, AreRanked) {
   ASSERT_EQ(run("underwood,hmm-mos", {"--set", "underwood.reference_offset_scans=3"}).exit_code, 0);
-  const cli::Answer json = cli::run({"leaderboard", folder_ / "out", "--format", "json"});
+  const cli::Answer json = cli::run({"rank", folder_ / "out", "--format", "json"});
   ASSERT_EQ(json.exit_code, 0) << json.err;
   const auto rows = nlohmann::json::parse(json.out).at("rows");
   ASSERT_EQ(rows.size(), 2U);
@@ -136,13 +136,13 @@ TEST_F(RunMethods, StandInTheLeaderboard) {
     EXPECT_GT(row.at("memory_mb").get<double>(), 0.0);
     EXPECT_GT(row.at("all").at("iou").at("value").get<double>(), 0.0) << row;
   }
-  const cli::Answer text = cli::run({"leaderboard", folder_ / "out"});
+  const cli::Answer text = cli::run({"rank", folder_ / "out"});
   EXPECT_THAT(text.out, HasSubstr("Underwood et al."));
   EXPECT_THAT(text.out, HasSubstr("no interval of the difference of 2: 8 scans"));
   ASSERT_EQ(cli::run({"run", folder_ / "room", "--protocol", "mapmos", "--out", folder_ / "other"})
                 .exit_code,
             0);
-  const cli::Answer refused = cli::run({"leaderboard", folder_ / "out", folder_ / "other"});
+  const cli::Answer refused = cli::run({"rank", folder_ / "out", folder_ / "other"});
   EXPECT_EQ(refused.exit_code, 3);
   EXPECT_THAT(refused.err, HasSubstr("protocol is semantickitti-mos and mapmos"));
 }

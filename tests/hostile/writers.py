@@ -9,7 +9,7 @@ import folders
 import fixtures
 import program
 
-READERS = {"stats", "table", "leaderboard", "breakdown", "diff", "compare", "doctor", "trajectory", "list", "help", "completion"}
+READERS = {"stats", "table", "rank", "breakdown", "diff", "compare", "doctor", "trajectory", "list", "help", "completion"}
 WRITERS = {
     "run": "run data --config config.json --threads 1 --scores --out out",
     "run on two threads": "run data --config config.json --threads 2 --out out",

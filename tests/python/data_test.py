@@ -148,9 +148,9 @@ def test_runs_are_compared_and_broken_down(street, near, finished, tmp_path):
     assert mosbench.table("I")["table"] == "I"
 
 
-def test_methods_stand_in_a_leaderboard_and_scores_give_a_curve(street, near, finished, tmp_path):
+def test_methods_are_ranked_and_scores_give_a_curve(street, near, finished, tmp_path):
     scored = mosbench.run(street, method="underwood", scores=True, out=tmp_path / "underwood")
-    board = mosbench.leaderboard(finished, scored)
+    board = mosbench.rank(finished, scored)
     assert {row["method"] for row in board["rows"]} == {finished.method, scored.method}
     curve = mosbench.curve(scored, picture=tmp_path / "curve.png")
     assert 0 <= curve["average_precision"] <= 1

@@ -205,9 +205,12 @@ def table(name: str, *results: Union[Result, PathLike]) -> dict[str, Any]:
     return json.loads(_command(["table", name, *map(_folder, results), "--format=json"])[1])
 
 
-def leaderboard(*results: Union[Result, PathLike]) -> dict[str, Any]:
-    """Returns methods by sequences with intervals and what is not beaten, as `leaderboard --format json`."""
-    return json.loads(_command(["leaderboard", *map(_folder, results), "--format=json"])[1])
+def rank(*results: Union[Result, PathLike], order: str = "iou") -> dict[str, Any]:
+    """Returns runs by sequences with intervals and what is not beaten, as `rank --format json`.
+
+    order: "iou", the best first, or "given"; differences are to the first row.
+    """
+    return json.loads(_command(["rank", *map(_folder, results), *flags(order=order), "--format=json"])[1])
 
 
 def curve(result: Union[Result, PathLike], picture: Optional[PathLike] = None) -> dict[str, Any]:

@@ -10,7 +10,7 @@ trap 'rm -rf "$work"' EXIT
 
 mosbench simulate --layout semantickitti --scene room --scans 8 --seed 1 --out "$work/sim"
 mosbench run "$work/sim" --method "hmm-mos,exec:$client" --out "$work/runs"
-mosbench leaderboard "$work/runs"
+mosbench rank "$work/runs"
 
 python="${PYTHON:-/usr/bin/python3}"
 if ! "$python" -c 'import numpy' 2> /dev/null; then

@@ -73,8 +73,8 @@ TEST(Leaderboard, RanksByIouAndMarksTheFrontOfIouAgainstTime) {
 TEST(Leaderboard, GivesThePairedDifferenceToTheBestWithItsInterval) {
   const std::vector<ResultSet> runs = {run_of("a", 900, 1.0), run_of("b", 850, 2.0)};
   const Leaderboard board = leaderboard_of(runs);
-  EXPECT_FALSE(board.rows[0].to_best);
-  const Difference& difference = board.rows[1].to_best.value();
+  EXPECT_FALSE(board.rows[0].to_first);
+  const Difference& difference = board.rows[1].to_first.value();
   EXPECT_NEAR(difference.value.value(), -0.05, 1e-9);
   ASSERT_TRUE(difference.interval) << difference.no_interval;
   EXPECT_LE(difference.interval->low, -0.05 + 1e-9);
@@ -96,7 +96,7 @@ TEST(Leaderboard, RanksNoRunThatLacksASequence) {
   EXPECT_EQ(board.rows[1].run->front().method, "half");
   EXPECT_FALSE(board.rows[1].all);
   EXPECT_FALSE(board.rows[1].is_on_front);
-  EXPECT_FALSE(board.rows[1].to_best);
+  EXPECT_FALSE(board.rows[1].to_first);
   EXPECT_TRUE(board.rows[1].sequences[0]);
   EXPECT_FALSE(board.rows[1].sequences[1]);
   EXPECT_THAT(board.remarks, ElementsAre("half is not compared with whole: sequence 01: is only "
@@ -167,14 +167,71 @@ TEST(Leaderboard, RemarksOnTimesOfOtherThreadsAndProcessors) {
                           "ms per scan are of different processors: other, unknown"));
 }
 
+/// A run of one method with settings of its own.
+ResultSet run_with(const std::string& name, std::uint64_t found, nlohmann::ordered_json config) {
+  ResultSet run = run_of("HMM-MOS", found, 5.0);
+  run.path = "runs/" + name;
+  for (SequenceResult& sequence : run.sequences) sequence.header["config"] = config;
+  return run;
+}
+
+TEST(Leaderboard, ShowsTheSettingsInWhichRunsOfOneMethodDiffer) {
+  std::vector<ResultSet> runs = {
+      run_with("online", 600, {{"delay_scans", 0}, {"voxel_size_m", 0.2}}),
+      run_with("delayed", 900, {{"delay_scans", 10}, {"voxel_size_m", 0.2}}),
+      run_of("Net", 700, std::nullopt)};
+  runs[2].sequences[0].setting = "large";
+  runs[1].sequences[0].header["reading"] = {{"poses", "poses.txt"}};
+  runs[0].sequences[0].header["reading"] = {{"poses", "found by KISS-ICP"},
+                                            {"pose_odometry", "a=1"}};
+  const Leaderboard board = leaderboard_of(runs);
+  ASSERT_EQ(board.differing.size(), 2U);
+  EXPECT_EQ(board.differing[0].name, "delay_scans");
+  EXPECT_THAT(board.differing[0].values, ElementsAre(10, nullptr, 0)) << "in the order of the rows";
+  EXPECT_EQ(board.differing[1].name, "poses");
+  EXPECT_THAT(board.differing[1].values, ElementsAre("as given", nullptr, "found by KISS-ICP"));
+  EXPECT_THAT(leaderboard_text(board), HasSubstr("delay_scans"));
+  EXPECT_EQ(to_json(board).at("rows").at(2).at("differing_settings").at("delay_scans"), 0);
+  const std::string csv = leaderboard_csv(board);
+  EXPECT_THAT(csv.substr(0, csv.find('\n')), testing::EndsWith(",no_interval,delay_scans,poses"));
+}
+
+TEST(Leaderboard, ShowsSettingsThatAllRunsHaveWhateverTheirMethod) {
+  std::vector<ResultSet> runs = {run_with("near", 600, {{"max_range_m", 20.0}, {"only_here", 1}}),
+                                 run_with("far", 900, {{"max_range_m", 50.0}})};
+  for (SequenceResult& sequence : runs[1].sequences) sequence.method = "Dynablox";
+  const Leaderboard board = leaderboard_of(runs);
+  ASSERT_EQ(board.differing.size(), 1U);
+  EXPECT_EQ(board.differing[0].name, "max_range_m");
+}
+
+TEST(Leaderboard, KeepsTheGivenOrderAndComparesWithItsFirst) {
+  const std::vector<ResultSet> runs = {run_of("baseline", 850, 1.0), run_of("better", 900, 2.0)};
+  const Leaderboard board = leaderboard_of(runs, RowOrder::kGiven);
+  EXPECT_EQ(board.rows[0].run->front().method, "baseline");
+  EXPECT_FALSE(board.rows[0].to_first);
+  EXPECT_NEAR(board.rows[1].to_first.value().value.value(), 0.05, 1e-9);
+}
+
+TEST(Leaderboard, NamesTheRowWhereSeveralAreOfOneMethod) {
+  std::vector<ResultSet> runs = {run_with("a", 900, {{"x", 1}}), run_with("b", 800, {{"x", 2}})};
+  runs[1].sequences.pop_back();
+  EXPECT_THAT(leaderboard_of(runs).remarks,
+              ElementsAre(HasSubstr("HMM-MOS (row 2) is not compared with HMM-MOS (row 1)")));
+}
+
 TEST(Leaderboard, IsPrintedInEveryFormat) {
   const std::vector<ResultSet> runs = {run_of("a_b", 900, 1.0), run_of("c", 850, 2.0)};
   const Leaderboard board = leaderboard_of(runs);
   const auto json = to_json(board);
   EXPECT_EQ(json.at("rows").at(0).at("method"), "a_b");
-  EXPECT_NEAR(json.at("rows").at(1).at("to_best").at("value").get<double>(), -0.05, 1e-9);
+  EXPECT_NEAR(json.at("rows").at(1).at("to_first").at("value").get<double>(), -0.05, 1e-9);
   EXPECT_TRUE(json.at("rows").at(0).at("on_front").get<bool>());
   EXPECT_THAT(leaderboard_latex(board), HasSubstr("1 & a\\_b & 85.0"));
+  const std::string markdown = leaderboard_markdown(board);
+  EXPECT_THAT(markdown, HasSubstr("\n|  | method | IoU % | 95 % | 00 | 01 |"));
+  EXPECT_THAT(markdown, HasSubstr("|---|---|--:|--:|"));
+  EXPECT_THAT(markdown, HasSubstr("\n| 1 | a_b | 85.0 |"));
   const std::string csv = leaderboard_csv(board);
   EXPECT_EQ(std::ranges::count(csv, '\n'), 7);
   EXPECT_THAT(csv, HasSubstr("\na_b,,00/result.json,all,84.9825,"));

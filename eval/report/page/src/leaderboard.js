@@ -14,21 +14,23 @@ function estimateCell(metrics, metric) {
   return withHint(percent(estimate.value), ends && `${(100 * ends[0]).toFixed(1)}–${(100 * ends[1]).toFixed(1)}`, whyNoInterval(estimate));
 }
 
-function toBestCell(row, place) {
+function toFirstCell(row, place) {
   if (place === 0) return row.all ? 'best' : '–';
-  const { to_best: difference } = row;
+  const { to_first: difference } = row;
   if (!difference) return '–';
   if (difference.value === null) return withHint('undefined', null, whyNoInterval(difference));
   const ends = intervalOf(difference);
   return withHint(points(difference.value), ends ? `${points(ends[0])} to ${points(ends[1])}` : 'no interval', whyNoInterval(difference));
 }
 
-function cellsOf(row, place, names) {
+const valueText = (value) => (value === null ? '–' : String(value));
+
+function cellsOf(row, place, names, settings) {
   const sequences = names.length > 1 ? row.sequences.map(({ metrics }) => estimateCell(metrics, 'iou')) : [];
   return [
-    String(place + 1), withHint(row.method, row.run, row.setting), estimateCell(row.all, 'iou'), ...sequences,
+    String(place + 1), withHint(row.method, row.run, row.setting), ...settings.map((name) => valueText(row.differing_settings[name])), estimateCell(row.all, 'iou'), ...sequences,
     estimateCell(row.all, 'precision'), estimateCell(row.all, 'recall'), fixed(row.ms_per_scan, 1), fixed(row.memory_mb, 0),
-    row.on_front ? element('span', { title: 'on the Pareto front' }, '★') : '', toBestCell(row, place),
+    row.on_front ? element('span', { title: 'on the Pareto front' }, '★') : '', toFirstCell(row, place),
   ];
 }
 
@@ -43,9 +45,9 @@ function resultOf({ results }, content, shown) {
 }
 
 function boardNode(board, state, content, choose) {
-  const { sequences: names, rows, remarks } = board;
-  const titles = ['', 'method', 'IoU', ...(names.length > 1 ? names : []), 'precision', 'recall', 'ms/scan', 'MB', 'front', 'IoU to the best'];
-  const body = table(titles, rows.map((row, place) => cellsOf(row, place, names)), {
+  const { sequences: names, differing_settings: settings, rows, remarks } = board;
+  const titles = ['', 'method', ...settings, 'IoU', ...(names.length > 1 ? names : []), 'precision', 'recall', 'ms/scan', 'MB', 'front', 'IoU to the best'];
+  const body = table(titles, rows.map((row, place) => cellsOf(row, place, names, settings)), {
     leftColumns: 2, onRow: (r) => choose(resultOf(rows[r], content, state.get('result'))),
   });
   const lines = body.querySelectorAll('tbody tr');
