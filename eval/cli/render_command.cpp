@@ -19,8 +19,9 @@ namespace {
 
 constexpr const char* kRenderFooter =
     R"(Draws one scan from above, without browser or graphics card: true and false points, their counts,
-range rings in metres. K counts from 0; "worst" is the scan with the most false points. Points are
-read again from where the run read them, or from --data.
+range rings in metres. K counts from 0; "worst" is the scan with the most false points, not one in
+which the method did not look for motion yet. RESULT is of `mosbench run` or `mosbench score --out`;
+points and labels are read again from where they were read then, or points from --data.
 
 Examples:
   mosbench render results/runs/sim --scan 20 -o scan.png
@@ -76,6 +77,13 @@ std::size_t choose_scan(const std::string& text, const std::vector<ScanRow>& row
                                text, static_cast<std::ptrdiff_t>(rows.size()) - 1));
 }
 
+/// Throws UsageError for a scan that mosbench score left out.
+void check_has_labels(const ResultScans& scans, std::size_t scan_index) {
+  if (scans.has(scan_index)) return;
+  throw UsageError(fmt::format("--scan: scan {} ({}) was not scored, expected one that was",
+                               scan_index, scans.rows()[scan_index].stem));
+}
+
 std::vector<std::string> title_of(const FoundResult& result, std::size_t scan_index) {
   const ScanRow& row = result.file.rows.scans[scan_index];
   std::vector<std::string> lines = {
@@ -95,13 +103,14 @@ std::vector<std::string> title_of(const FoundResult& result, std::size_t scan_in
 
 Answer render(RenderFlags& options) {
   const FoundResult result = choose_result(options);
-  const std::size_t scan_index = choose_scan(options.scan, result.file.rows.scans);
   const ResultScans scans(result, options.dataset_root);
-  options.picture.title = title_of(result, scan_index);
+  const std::size_t scan_index = choose_scan(options.scan, scans.rows());
+  check_has_labels(scans, scan_index);
+  options.picture.title = title_of(scans.result(), scan_index);
   const Picture picture = birds_eye(scans.read(scan_index), options.picture);
   write_output(options.out, picture.png());
   return answer_beside(options.out,
-                       fmt::format("scan {} of {} in {}\n", result.file.rows.scans[scan_index].stem,
+                       fmt::format("scan {} of {} in {}\n", scans.rows()[scan_index].stem,
                                    result.name.text(), options.out.string()));
 }
 
@@ -109,7 +118,8 @@ Answer render(RenderFlags& options) {
 
 CommandRun add_render(CLI::App& command) {
   auto options = std::make_shared<RenderFlags>();
-  command.add_option("RESULT", options->input, "Folder that `mosbench run` wrote")
+  command
+      .add_option("RESULT", options->input, "Folder that `mosbench run` or `mosbench score` wrote")
       ->type_name("DIR")
       ->required();
   command.add_option("--scan", options->scan, "Number of the scan from 0, or worst")

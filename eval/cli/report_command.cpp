@@ -17,8 +17,8 @@ true and false points, charts over the scans, tables and provenance. RESULT is a
 `mosbench run` or `mosbench score --out` wrote, a folder above such ones (that of a run of several
 methods), or a result.json. Several runs of the same scans are ranked in a leaderboard; a menu puts
 up to six of them side by side, and a colour shows where they disagree. Runs with --scores have
-their precision over recall drawn. Points are read again from where the run read them, or from
---data; results of `mosbench score` have none, only numbers.
+their precision over recall drawn. Points and labels are read again from where they were read,
+or points from --data.
 
 --scans takes a list of K (that scan), A-B (from A to B), every:N (each N-th) and worst:N (the N worst),
 counted from 0, or one of

@@ -139,7 +139,9 @@ std::string score(const ScoreFlags& options) {
     check_scored_folders(dataset, *options.out);
   }
   const std::vector<SequenceScores> scores = score_dataset(dataset, task);
-  if (options.out) write_scores(dataset, task, options.method, scores, *options.out);
+  if (options.out) {
+    write_scores(dataset, options.reading, task, options.method, scores, *options.out);
+  }
   return options.json ? score_json(dataset, task, scores, !split_asked)
                       : score_text(dataset, task, scores, !split_asked);
 }

@@ -73,10 +73,16 @@ std::string_view cloud_column(DynabloxLevel level) {
 
 }  // namespace
 
+std::string_view to_string(DynabloxLevel level) {
+  constexpr std::string_view kNames[] = {"point", "cluster", "object"};
+  return kNames[static_cast<std::size_t>(level)];
+}
+
 DynabloxLevel dynablox_level_named(std::string_view name) {
-  if (name == "point") return DynabloxLevel::kPoint;
-  if (name == "cluster") return DynabloxLevel::kCluster;
-  if (name == "object") return DynabloxLevel::kObject;
+  for (const DynabloxLevel level :
+       {DynabloxLevel::kPoint, DynabloxLevel::kCluster, DynabloxLevel::kObject}) {
+    if (name == to_string(level)) return level;
+  }
   throw UsageError(
       fmt::format("--level: '{}' is not known, expected point, cluster or object", name));
 }

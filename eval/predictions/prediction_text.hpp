@@ -15,6 +15,8 @@ enum class DynabloxLevel : std::uint8_t { kPoint, kCluster, kObject };
 
 /// Throws UsageError for a name that is not point, cluster or object.
 DynabloxLevel dynablox_level_named(std::string_view name);
+/// Returns the name that `dynablox_level_named` takes.
+std::string_view to_string(DynabloxLevel level);
 
 /// Parses labels (9 or 251) from a text file with a row per point: "0" or "1", or "moveable moving
 /// class". Throws DataError with the line.

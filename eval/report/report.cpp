@@ -125,7 +125,7 @@ std::vector<std::optional<ResultScans>> open_sources(
     if (!any || has_labels(results[i])) {
       sources[i].emplace(results[i], root);
     } else {
-      remarks.push_back(fmt::format("{}: without points, because its labels are not beside it",
+      remarks.push_back(fmt::format("{}: without points, because its labels are not known",
                                     results[i].folder.string()));
     }
   }
@@ -148,6 +148,7 @@ Report build_report(const std::vector<std::filesystem::path>& inputs,
       open_sources(results, options.dataset_root, remarks);
   for (std::size_t i = 0; i < results.size(); ++i) {
     if (!sources[i]) continue;
+    content["results"][i]["result"] = sources[i]->result().file.content;
     content["results"][i]["breakdown"] = breakdown_of(*sources[i]);
     content["results"][i]["protocols"] = protocols_of(*sources[i]);
     content["results"][i]["path"] = path_of(results[i], *sources[i]);

@@ -59,19 +59,19 @@ ordered_json estimates_of(const FoundResult& result) {
 }
 
 ordered_json breakdown_of(const ResultScans& scans) {
-  const std::vector<std::size_t> wanted = scans_with_truth(scans.sequence());
+  const std::vector<std::size_t> wanted = scans.scored_scans();
   if (wanted.empty()) return nullptr;
-  const OpenedPredictions opened =
-      open_predictions(scans.label_folder(), scans.sequence(), wanted, true, {});
-  return to_json(break_down(scans.sequence(), wanted, *opened.labels,
+  return to_json(break_down(scans.sequence(), wanted, scans.labels(),
                             {scans.rule().protocol, scans.rule().range, hardware_threads()}),
                  kListed);
 }
 
 ordered_json protocols_of(const ResultScans& scans) {
-  if (scans_with_truth(scans.sequence()).empty()) return nullptr;
+  const std::size_t labelled = scans_with_truth(scans.sequence()).size();
+  if (labelled == 0 || scans.scored_scans().size() < labelled) return nullptr;
   const std::vector<ScoreRule> rules = rules_beside(scans.rule());
-  const ScoreTask task{scans.label_folder(), {}, rules, std::nullopt, hardware_threads()};
+  const ScoreTask task{scans.source().path, scans.source().options, rules, std::nullopt,
+                       hardware_threads()};
   const auto scores = score_dataset(scans.dataset(), task);
   return side_by_side_json(scans.dataset(), rules, scores).at("protocols");
 }

@@ -47,7 +47,7 @@ bool are_same_scans(const Sequence& one, const Sequence& other) {
 /// the run took these, or where there are none that can be read.
 std::optional<std::vector<Pose>> poses_passed_over(const FoundResult& result,
                                                    const ResultScans& scans) {
-  ReadingOptions reading = told_from_json(result.file.content.at("timing"));
+  ReadingOptions reading = told_from_json(recorded_reading(result));
   if (!reading.poses && !reading.poses_by_odometry) return std::nullopt;
   const ReadingOptions untold;
   reading.poses.reset();

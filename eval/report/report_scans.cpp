@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 
 #include "datasets/files/errors.hpp"
 #include "eval/report/compressed_text.hpp"
@@ -53,15 +54,52 @@ std::vector<std::size_t> merged_round_robin(
   return merged;
 }
 
-std::vector<Cloud> group_by_frames(const std::vector<FoundResult>& results, const Sources& sources,
-                                   const ScanChoice& choice) {
+/// Says in which way the points were read; poses do not change them unless they undistort.
+std::map<std::string, std::string> reading_of_points(const ResultScans& scans) {
+  std::map<std::string, std::string> reading(scans.sequence().reading().begin(),
+                                             scans.sequence().reading().end());
+  if (reading.contains("deskew")) return reading;
+  std::erase_if(reading, [](const auto& entry) { return entry.first.starts_with("pose"); });
+  return reading;
+}
+
+bool have_same_truth(const ScanRow& one, const ScanRow& other) {
+  return !one.truth_hash || !other.truth_hash || one.truth_hash == other.truth_hash;
+}
+
+/// Whether a result of `mosbench score`, which has no fingerprint, is of the same files.
+bool are_of_same_files(const ResultScans& one, const ResultScans& other) {
+  namespace fs = std::filesystem;
+  return fs::canonical(one.dataset().root) == fs::canonical(other.dataset().root) &&
+         reading_of_points(one) == reading_of_points(other) &&
+         std::ranges::equal(one.rows(), other.rows(), have_same_truth) &&
+         std::ranges::equal(one.rows(), other.rows(), {}, &ScanRow::stem, &ScanRow::stem);
+}
+
+bool are_of_same_frames(const ResultScans& one, const ResultScans& other) {
+  if (one.result().name != other.result().name) return false;
+  const std::string& fingerprint = one.result().file.rows.fingerprint;
+  const std::string& another = other.result().file.rows.fingerprint;
+  const bool is_known = !fingerprint.empty() && !another.empty();
+  return is_known ? fingerprint == another : are_of_same_files(one, other);
+}
+
+/// Positions of the results with points: first those whose frames have a fingerprint.
+std::vector<std::size_t> order_of_grouping(const Sources& sources) {
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < sources.size(); ++i) {
+    if (sources[i]) order.push_back(i);
+  }
+  std::ranges::stable_partition(
+      order, [&](std::size_t i) { return !sources[i]->result().file.rows.fingerprint.empty(); });
+  return order;
+}
+
+std::vector<Cloud> group_by_frames(const Sources& sources, const ScanChoice& choice) {
   std::vector<Cloud> clouds;
-  for (std::size_t i = 0; i < results.size(); ++i) {
-    if (!sources[i]) continue;
+  for (const std::size_t i : order_of_grouping(sources)) {
     const auto same = std::ranges::find_if(clouds, [&](const Cloud& cloud) {
-      const FoundResult& first = results[cloud.members.front()];
-      return first.name == results[i].name &&
-             first.file.rows.fingerprint == results[i].file.rows.fingerprint;
+      return are_of_same_frames(*sources[cloud.members.front()], *sources[i]);
     });
     Cloud& cloud = same == clouds.end() ? clouds.emplace_back() : *same;
     cloud.members.push_back(i);
@@ -69,7 +107,9 @@ std::vector<Cloud> group_by_frames(const std::vector<FoundResult>& results, cons
   for (Cloud& cloud : clouds) {
     std::vector<std::vector<std::size_t>> wanted_lists;
     for (const std::size_t i : cloud.members) {
-      wanted_lists.push_back(choice.wanted(results[i].file.rows.scans));
+      std::vector<std::size_t>& wanted =
+          wanted_lists.emplace_back(choice.wanted(sources[i]->rows()));
+      std::erase_if(wanted, [&](std::size_t k) { return !sources[i]->has(k); });
     }
     cloud.wanted = merged_round_robin(wanted_lists);
   }
@@ -156,16 +196,17 @@ ReportScans choose_report_scans(const std::vector<FoundResult>& results, const S
                                 const ScanChoice& choice, std::size_t max_bytes) {
   ReportScans report;
   report.results.resize(results.size());
-  std::vector<Cloud> clouds = group_by_frames(results, sources, choice);
+  std::vector<Cloud> clouds = group_by_frames(sources, choice);
   pack_until_full(clouds, sources, max_bytes);
   check_packed(clouds);
   for (Cloud& cloud : clouds) {
     std::ranges::sort(cloud.packed, {}, &PackedScan::scan_index);
     const FoundResult& first = results[cloud.members.front()];
-    const std::string remark = left_out(cloud, first.file.rows.scans.size());
+    const std::size_t scans = sources[cloud.members.front()]->rows().size();
+    const std::string remark = left_out(cloud, scans);
     if (!remark.empty()) report.remarks.push_back(first.name.text() + ": " + remark);
     ordered_json json = {{"sequence", first.name.text()},
-                         {"scans_in_sequence", first.file.rows.scans.size()},
+                         {"scans_in_sequence", scans},
                          {"left_out", remark},
                          {"scans", ordered_json::array()}};
     for (const std::size_t i : cloud.members) report.results[i].cloud = report.clouds.size();

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <map>
+
 #include "datasets/files/errors.hpp"
 #include "datasets/files/files.hpp"
 #include "datasets/files/label_file.hpp"
@@ -21,7 +23,7 @@ constexpr const char* kLabels = "labels";
 
 /// Calls `read` on the content of result.json; a missing member becomes a DataError.
 template <typename Read>
-auto from_json(const FoundResult& result, Read&& read) {
+decltype(auto) from_json(const FoundResult& result, Read&& read) {
   try {
     return read(result.file.content);
   } catch (const nlohmann::ordered_json::exception& error) {
@@ -36,12 +38,16 @@ bool is_scored(const FoundResult& result) { return result.file.content.contains(
 
 void check_has_labels(const FoundResult& result) {
   if (has_labels(result)) return;
-  const bool scored = is_scored(result);
+  if (!is_scored(result)) {
+    throw DataError(result.folder / kResult, "has no labels/ next to it",
+                    "a folder of mosbench run to show points of; of others mosbench report "
+                    "--scans none shows the numbers");
+  }
+  const bool tells = result.file.content.contains("source");
   throw DataError(result.folder / kResult,
-                  scored ? "is of mosbench score, which keeps no labels next to it"
-                         : "has no labels/ next to it",
-                  "a folder of mosbench run to show points of; of others mosbench report "
-                  "--scans none shows the numbers");
+                  tells ? "is of counts, not of labels" : "does not say where its labels are",
+                  tells ? "labels to show points of; mosbench report --scans none shows the numbers"
+                        : "a result that mosbench score wrote since it notes them: score again");
 }
 
 /// The poses that odometry found stand next to the labels.
@@ -68,7 +74,7 @@ Dataset open_dataset_of(const FoundResult& result, std::optional<fs::path> root)
   check_has_labels(result);
   return from_json(result, [&](const nlohmann::ordered_json& json) {
     const auto kind = dataset_kind_from_string(json.at("dataset").get<std::string>());
-    const nlohmann::ordered_json& recorded = json.at("timing");
+    const nlohmann::ordered_json& recorded = recorded_reading(result);
     if (!root && recorded.contains("dataset_root")) {
       root = recorded.at("dataset_root").get<std::string>();
     }
@@ -92,7 +98,7 @@ Dataset open_dataset_of(const FoundResult& result, std::optional<fs::path> root)
 std::string read_otherwise(const FoundResult& result, const Sequence& sequence) {
   const auto before = result.file.content.value("reading", nlohmann::ordered_json::object());
   // The same pose file may be given by another path; the file stamp identifies it.
-  const bool told_poses = result.file.content.at("timing").contains("poses");
+  const bool told_poses = recorded_reading(result).contains("poses");
   std::string text;
   for (const auto& [what, how] : sequence.reading()) {
     const std::string was = before.value(what, how);
@@ -100,6 +106,14 @@ std::string read_otherwise(const FoundResult& result, const Sequence& sequence) 
     text += fmt::format("; {} was \"{}\" and is \"{}\" now", what, was, how);
   }
   return text;
+}
+
+[[noreturn]] void refuse_other_scans(const FoundResult& result, const Dataset& dataset,
+                                     const std::string& how) {
+  throw DataError(result.folder / kResult,
+                  fmt::format("was made from other scans, poses or labels than {} holds in {}{}",
+                              result.name.text(), dataset.root.string(), how),
+                  "the data set of the run in --data");
 }
 
 void check_same_scans(const FoundResult& result, const Dataset& dataset) {
@@ -111,10 +125,58 @@ void check_same_scans(const FoundResult& result, const Dataset& dataset) {
   // Other reading options give other frames from the same files.
   const auto stamp = otherwise.empty() ? std::optional(file_stamp(sequence)) : std::nullopt;
   if (same && same_input(sequence, stamp, result.file)) return;
-  throw DataError(result.folder / kResult,
-                  fmt::format("was made from other scans, poses or labels than {} holds in {}{}",
-                              sequence.name(), dataset.root.string(), otherwise),
-                  "the data set of the run in --data");
+  refuse_other_scans(result, dataset, otherwise);
+}
+
+/// Gives a scored result a row per scan. Throws DataError where it has one that is no scan.
+FoundResult aligned(const FoundResult& result, const Dataset& dataset) {
+  const Sequence& sequence = *dataset.sequences.front();
+  const std::string otherwise = read_otherwise(result, sequence);
+  if (!otherwise.empty()) refuse_other_scans(result, dataset, otherwise);
+  FoundResult whole = result;
+  std::vector<ScanRow>& rows = whole.file.rows.scans;
+  nlohmann::ordered_json& json = whole.file.content["scans"];
+  rows.clear();
+  json = nlohmann::ordered_json::array();
+  std::map<std::string, std::size_t> scored;
+  for (const ScanRow& row : result.file.rows.scans) scored.emplace(row.stem, scored.size());
+  for (std::size_t k = 0; k < sequence.size(); ++k) {
+    const auto found = scored.extract(sequence.stem(k));
+    const bool here = !found.empty();
+    rows.push_back(here ? result.file.rows.scans[found.mapped()] : ScanRow{});
+    json.push_back(here ? result.file.content.at("scans").at(found.mapped())
+                        : nlohmann::ordered_json({{"stem", sequence.stem(k)}}));
+    rows.back().stem = sequence.stem(k);
+  }
+  if (!scored.empty()) {
+    refuse_other_scans(result, dataset, fmt::format("; it has no scan {}", scored.begin()->first));
+  }
+  return whole;
+}
+
+/// The labels that `mosbench run` wrote, which are read without a look at those of other scans.
+class RunLabels : public Predictions {
+ public:
+  RunLabels(fs::path folder, const Sequence& sequence)
+      : folder_(std::move(folder)), sequence_(sequence) {}
+  bool has(std::size_t) const override { return true; }
+  std::vector<std::uint32_t> read(std::size_t scan_index) const override {
+    return read_labels(folder_ / (sequence_.stem(scan_index) + ".label"),
+                       sequence_.point_count(scan_index));
+  }
+
+ private:
+  fs::path folder_;
+  const Sequence& sequence_;
+};
+
+PredictionSource source_of(const FoundResult& result) {
+  if (!is_scored(result)) return {result.folder / kLabels, {}};
+  PredictionSource source = from_json(result, [](const nlohmann::ordered_json& json) {
+    return prediction_source(json.at("source"));
+  });
+  source.options.allow_missing = !result.file.content.at("predictions").at("missing").empty();
+  return source;
 }
 
 bool same_counts(const OutcomeCounts& counts, const std::optional<Confusion>& recorded) {
@@ -147,29 +209,54 @@ std::vector<FoundResult> find_results(const fs::path& path) {
 }
 
 bool has_labels(const FoundResult& result) {
-  return !is_scored(result) && is_there(result.folder / kLabels);
+  if (!is_scored(result)) return is_there(result.folder / kLabels);
+  const auto& content = result.file.content;
+  return content.contains("source") && content.at("predictions").value("format", "") !=
+                                           describe(PredictionFormat::kDynabloxScores).name;
+}
+
+const nlohmann::ordered_json& recorded_reading(const FoundResult& result) {
+  return from_json(
+      result, [&](const nlohmann::ordered_json& json) -> const auto& {
+        return json.at(is_scored(result) ? "source" : "timing");
+      });
 }
 
 ResultScans::ResultScans(const FoundResult& result, const std::optional<fs::path>& dataset_root)
     : result_(result),
       dataset_(open_dataset_of(result, dataset_root)),
       rule_{},
-      label_folder_(result.folder / kLabels),
-      has_scores_(is_there(result.folder / "scores")) {
+      source_(source_of(result)),
+      has_scores_(!is_scored(result) && is_there(result.folder / "scores")) {
   from_json(result, [&](const nlohmann::ordered_json& json) {
     const nlohmann::ordered_json& protocol = json.at("protocol");
     rule_ = {&protocol_named(protocol.at("name").get<std::string>()),
              {protocol.at("min_range_m"), protocol.at("max_range_m")}};
-    check_same_scans(result, dataset_);
+    if (!is_scored(result)) {
+      check_same_scans(result, dataset_);
+      labels_ = std::make_unique<RunLabels>(source_.path, sequence());
+      return;
+    }
+    aligned_ = aligned(result, dataset_);
+    labels_ =
+        open_predictions(source_.path, sequence(), scored_scans(), true, source_.options).labels;
   });
+}
+
+std::vector<std::size_t> ResultScans::scored_scans() const {
+  std::vector<std::size_t> scans = scans_with_truth(sequence());
+  std::erase_if(scans, [&](std::size_t k) { return !has(k); });
+  return scans;
 }
 
 JudgedScan ResultScans::read(std::size_t scan_index) const {
   JudgedScan scan{sequence().read(scan_index), {}, {}};
-  const fs::path label_file = label_folder_ / (scan.frame.stem + ".label");
-  const std::vector<std::uint32_t> labels = read_labels(label_file, scan.frame.points.size());
-  const ScanRow& row = result_.file.rows.scans[scan_index];
-  const std::optional<Confusion>& recorded = row.counts;
+  if (!has(scan_index)) {
+    scan.outcomes.assign(scan.frame.points.size(), PointOutcome::kIgnoredStatic);
+    return scan;
+  }
+  const std::vector<std::uint32_t> labels = labels_->read(scan_index);
+  const std::optional<Confusion>& recorded = rows()[scan_index].counts;
   if (scan.frame.truth && recorded) {
     const bool gated = rule_.protocol->range_rule != RangeRule::kNone;
     scan.outcomes = point_outcomes(
@@ -178,12 +265,7 @@ JudgedScan ResultScans::read(std::size_t scan_index) const {
   } else {
     scan.outcomes = outcomes_without_truth(labels);
   }
-  OutcomeCounts counts{};
-  for (const PointOutcome outcome : scan.outcomes) ++counts[static_cast<std::size_t>(outcome)];
-  if (!same_counts(counts, recorded) || !are_labels_of(row, labels)) {
-    throw DataError(label_file, "does not give the counts in result.json",
-                    "the label file of that run");
-  }
+  check_counts(scan, labels, rows()[scan_index]);
   if (has_scores_) {
     const fs::path file = dynamic_score_file(result_.folder, scan.frame.stem);
     const bool whole = result_.file.content.value("format", 1) < 2;
@@ -191,6 +273,18 @@ JudgedScan ResultScans::read(std::size_t scan_index) const {
                                        whole ? ScoreNumbers::kInt32 : ScoreNumbers::kFloat32, file);
   }
   return scan;
+}
+
+/// Labels that `mosbench score` read have no hash: other formats hold none.
+void ResultScans::check_counts(const JudgedScan& scan, const std::vector<std::uint32_t>& labels,
+                               const ScanRow& row) const {
+  OutcomeCounts counts{};
+  for (const PointOutcome outcome : scan.outcomes) ++counts[static_cast<std::size_t>(outcome)];
+  if (same_counts(counts, row.counts) && (aligned_ || are_labels_of(row, labels))) return;
+  const fs::path file =
+      aligned_ ? source_.path / scan.frame.stem : source_.path / (scan.frame.stem + ".label");
+  throw DataError(file, "does not give the counts in result.json",
+                  aligned_ ? "the predictions that were scored" : "the label file of that run");
 }
 
 }  // namespace mosbench

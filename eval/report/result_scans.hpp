@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,11 +10,11 @@
 #include "datasets/layouts/dataset.hpp"
 #include "eval/protocols/confusion.hpp"
 #include "eval/results/result_file.hpp"
-#include "eval/runs/score_execute.hpp"
+#include "eval/runs/score_source.hpp"
 
 namespace mosbench {
 
-/// A folder of `mosbench run` with its result.json.
+/// A folder of `mosbench run` or `mosbench score` with its result.json.
 struct FoundResult {
   std::filesystem::path folder;
   SequenceName name;  ///< of the sequence
@@ -23,8 +24,11 @@ struct FoundResult {
 /// Finds the results at and below `path`, ordered by path. Throws DataError when there are none.
 std::vector<FoundResult> find_results(const std::filesystem::path& path);
 
-/// Whether the labels of a run are next to its result.json.
+/// Whether the labels are known: those of a run next to its result.json, others where `mosbench
+/// score` read them.
 bool has_labels(const FoundResult& result);
+/// The reading flags and "dataset_root" of a result. Throws DataError where it tells none.
+const nlohmann::ordered_json& recorded_reading(const FoundResult& result);
 
 /// One scan with the outcome of each point.
 struct JudgedScan {
@@ -33,29 +37,45 @@ struct JudgedScan {
   std::vector<float> scores;           ///< of the method, empty unless the run kept them
 };
 
-/// The scans of a result: points and truth from the data set, labels from the result's folder.
+/// The scans of a result: points and truth from the data set, labels from the run's folder or from
+/// where they were scored.
 class ResultScans {
  public:
-  /// Opens the data set at `dataset_root`, by default where the run read it, with the run's reading
-  /// options. Throws DataError when it is missing or not what the run read, when the result has no
-  /// labels next to it, and when result.json does not say how it was scored.
+  /// Opens the data set at `dataset_root`, by default where it was read before, with the reading
+  /// options of then. Throws DataError when it is missing or another one, when the labels are not
+  /// there, and when result.json does not say how it was scored.
   ResultScans(const FoundResult& result, const std::optional<std::filesystem::path>& dataset_root);
 
+  /// The result with a row per scan of the sequence; one that was not scored has no counts.
+  const FoundResult& result() const { return aligned_ ? *aligned_ : result_; }
+  const std::vector<ScanRow>& rows() const { return result().file.rows.scans; }
   const Dataset& dataset() const { return dataset_; }
-  const std::filesystem::path& label_folder() const { return label_folder_; }
+  /// Where the labels lie and how they are read.
+  const PredictionSource& source() const { return source_; }
+  const Predictions& labels() const { return *labels_; }
+  /// Whether the result has labels of a scan: `mosbench score` leaves some out.
+  bool has(std::size_t scan_index) const { return !aligned_ || rows()[scan_index].counts; }
+  /// The scans with truth and labels.
+  std::vector<std::size_t> scored_scans() const;
   /// Protocol and range of the run.
   const ScoreRule& rule() const { return rule_; }
   const Sequence& sequence() const { return *dataset_.sequences.front(); }
   /// Whether the run kept scores.
   bool has_scores() const { return has_scores_; }
-  /// Throws DataError when the labels do not give the counts of result.json.
+  /// Throws DataError when the labels do not give the counts of result.json. A scan without labels
+  /// has no outcome but kIgnoredStatic.
   JudgedScan read(std::size_t scan_index) const;
 
  private:
+  void check_counts(const JudgedScan& scan, const std::vector<std::uint32_t>& labels,
+                    const ScanRow& row) const;
+
   const FoundResult& result_;
   Dataset dataset_;
   ScoreRule rule_;
-  std::filesystem::path label_folder_;
+  std::optional<FoundResult> aligned_;  ///< of `mosbench score`
+  PredictionSource source_;
+  std::unique_ptr<Predictions> labels_;
   bool has_scores_;
 };
 

@@ -8,6 +8,7 @@
 #include <numeric>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 #include "datasets/files/errors.hpp"
 
@@ -110,9 +111,10 @@ std::vector<std::size_t> ScanChoice::wanted(const std::vector<ScanRow>& rows) co
 std::vector<std::size_t> worst_first(const std::vector<ScanRow>& rows) {
   std::vector<std::size_t> order(rows.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) {
-    return false_points(rows[a]) > false_points(rows[b]);
-  });
+  const auto place = [&](std::size_t k) {
+    return std::pair(rows[k].judged && rows[k].counts.has_value(), false_points(rows[k]));
+  };
+  std::ranges::stable_sort(order, std::greater(), place);
   return order;
 }
 

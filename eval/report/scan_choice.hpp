@@ -31,8 +31,8 @@ class ScanChoice {
   std::vector<Part> parts_;
 };
 
-/// Returns scan indices by falling number of false points (FP + FN), equal ones in order; scans
-/// without truth last.
+/// Returns scan indices by falling number of false points (FP + FN), equal ones in order; then
+/// those in which the method did not look for motion, and scans without truth.
 std::vector<std::size_t> worst_first(const std::vector<ScanRow>& rows);
 
 }  // namespace mosbench

@@ -90,6 +90,7 @@ SequenceResult from_content(const fs::path& file, ResultFile content) {
   result.header = std::move(content.content);
   result.header.erase("scans");
   result.header.erase("timing");
+  result.header.erase("source");
   const ordered_json& header = result.header;
   result.sequence = SequenceName(header.at("sequence"), file);
   result.dataset = header.at("dataset");

@@ -13,6 +13,7 @@
 #include "eval/results/result_set.hpp"
 #include "eval/results/simulated.hpp"
 #include "eval/results/version.hpp"
+#include "eval/runs/score_source.hpp"
 #include "eval/tables/score_table.hpp"
 
 namespace mosbench {
@@ -157,22 +158,25 @@ void check_scored_folders(const Dataset& dataset, const std::filesystem::path& o
   for (const auto& sequence : dataset.sequences) refuse_other_results(out / sequence->name());
 }
 
-void write_scores(const Dataset& dataset, const ScoreTask& task, const MethodName& method,
-                  const std::vector<SequenceScores>& scores, const std::filesystem::path& out) {
+void write_scores(const Dataset& dataset, const ReadingOptions& reading, const ScoreTask& task,
+                  const MethodName& method, const std::vector<SequenceScores>& scores,
+                  const std::filesystem::path& out) {
   const ScoreRule& rule = task.rules.front();
   for (const SequenceScores& sequence : scores) {
     if (!sequence.opened) continue;
     const Sequence& recorded = *dataset.sequences[sequence.position];
-    ordered_json header = {{"sequence", recorded.name()},
-                           {"dataset", std::string(to_string(dataset.kind))},
-                           {"method", {{"name", method.name}, {"setting", method.setting}}},
-                           {"protocol",
-                            {{"name", std::string(rule.protocol->name)},
-                             {"min_range_m", rule.range.min_m},
-                             {"max_range_m", rule.range.max_m}}},
-                           {"reading", to_json(recorded.reading())},
-                           {"code", {{"version", std::string(kMosbenchVersion)}}},
-                           {"predictions", predictions_json(*sequence.opened)}};
+    ordered_json header = {
+        {"sequence", recorded.name()},
+        {"dataset", std::string(to_string(dataset.kind))},
+        {"method", {{"name", method.name}, {"setting", method.setting}}},
+        {"protocol",
+         {{"name", std::string(rule.protocol->name)},
+          {"min_range_m", rule.range.min_m},
+          {"max_range_m", rule.range.max_m}}},
+        {"reading", to_json(recorded.reading())},
+        {"code", {{"version", std::string(kMosbenchVersion)}}},
+        {"predictions", predictions_json(*sequence.opened)},
+        {"source", source_json(dataset, reading, task, sequence.opened->format)}};
     if (const auto origin = simulated_origin_json(dataset)) header["simulated"] = *origin;
     const ordered_json splits = picked_stems(dataset, sequence.position);
     if (!splits.empty()) header["splits"] = splits;

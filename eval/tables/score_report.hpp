@@ -35,9 +35,10 @@ nlohmann::ordered_json side_by_side_json(const Dataset& dataset,
 /// Throws UsageError where <out>/<sequence> holds anything that `write_scores` did not write.
 void check_scored_folders(const Dataset& dataset, const std::filesystem::path& out);
 
-/// Writes <out>/<sequence>/result.json, which `table`, `stats` and `compare` read as they read
-/// those of a run. Throws DataError.
-void write_scores(const Dataset& dataset, const ScoreTask& task, const MethodName& method,
-                  const std::vector<SequenceScores>& scores, const std::filesystem::path& out);
+/// Writes <out>/<sequence>/result.json, which `table`, `stats`, `compare` and `report` read as they
+/// read those of a run; `reading` is how the data set was opened. Throws DataError.
+void write_scores(const Dataset& dataset, const ReadingOptions& reading, const ScoreTask& task,
+                  const MethodName& method, const std::vector<SequenceScores>& scores,
+                  const std::filesystem::path& out);
 
 }  // namespace mosbench

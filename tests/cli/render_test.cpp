@@ -36,6 +36,16 @@ TEST_F(Render, DrawsAScanWithoutBrowserAndTheSameEachTime) {
   EXPECT_EQ(cli::run({"render", run(), "--scan", "worst", "-o", folder_ / "w.png"}).exit_code, 0);
 }
 
+TEST_F(Render, DrawsTheSameOfLabelsThatWereScored) {
+  const std::string net = folder_ / "net";
+  ASSERT_EQ(cli::run({"score", folder_ / "00", "--predictions", run(), "--out", net}).exit_code, 0);
+  for (const auto& [from, name] : {std::pair{run(), "run.png"}, std::pair{net, "net.png"}}) {
+    const cli::Answer answer = cli::run({"render", from, "--scan", "6", "-o", folder_ / name});
+    ASSERT_EQ(answer.exit_code, 0) << answer.err;
+  }
+  EXPECT_EQ(read_file(folder_ / "run.png"), read_file(folder_ / "net.png"));
+}
+
 TEST_F(Render, RefusesScansAndSequencesThatAreNotThere) {
   for (const char* scan : {"8", "-1", "best", ""}) {
     const cli::Answer answer = cli::run({"render", run(), "--scan", scan, "-o", folder_ / "r.png"});

@@ -1,6 +1,6 @@
 // What a reader sees and does: views, charts, keys, two runs side by side, phone and desktop.
 import assert from 'node:assert/strict';
-import { writeFileSync } from 'node:fs';
+import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { DESKTOP, PHONE, openBrowser, openReport, refuseComplaints, settled } from './browser.mjs';
@@ -18,6 +18,13 @@ before(async () => {
   browser = await openBrowser();
 });
 after(() => browser.close());
+
+/** The report with the first run alone in the 3-D view. */
+async function openAlone(options) {
+  const page = await openReport(browser, both, options);
+  await page.evaluate(() => mosbenchReport.state.set({ others: [] }));
+  return page;
+}
 
 /** Ticks or unticks a run in the menu of the 3-D view. */
 async function beside(page, run) {
@@ -40,7 +47,7 @@ async function shot(page, name) {
 }
 
 test('each view shows what it showed before', async () => {
-  const page = await openReport(browser, both, { viewport: { width: 700, height: 640 } });
+  const page = await openAlone({ viewport: { width: 700, height: 640 } });
   await page.evaluate(() => mosbenchReport.state.set({ scan: 21 }));
   for (const view of ['orbit', 'top', 'sensor', 'map']) {
     await page.click(`[data-view=${view}]`);
@@ -50,7 +57,7 @@ test('each view shows what it showed before', async () => {
 });
 
 test('colours by height, the dark theme and two runs side by side show what they showed before', async () => {
-  const page = await openReport(browser, both, { viewport: { width: 700, height: 640 }, theme: 'dark' });
+  const page = await openAlone({ viewport: { width: 700, height: 640 }, theme: 'dark' });
   await page.evaluate(() => mosbenchReport.state.set({ scan: 21, view: 'top' }));
   await shot(page, 'dark_top');
   await page.selectOption('[aria-label=colour]', 'height');
@@ -62,7 +69,7 @@ test('colours by height, the dark theme and two runs side by side show what they
 });
 
 test('two runs stay in step, each with its own counts', async () => {
-  const page = await openReport(browser, both, { viewport: STAGE });
+  const page = await openAlone({ viewport: STAGE });
   await beside(page, 'delayed');
   const differing = online.scans.findIndex(({ fn }, k) => k > 0 && fn !== delayed.scans[k].fn);
   assert.ok(differing > 0, 'the runs differ somewhere');
@@ -75,7 +82,7 @@ test('two runs stay in step, each with its own counts', async () => {
 });
 
 test('colours by dynamic score tell those of the score files, with a key to them', async () => {
-  const page = await openReport(browser, both, { viewport: { width: 700, height: 640 } });
+  const page = await openAlone({ viewport: { width: 700, height: 640 } });
   await page.evaluate(() => mosbenchReport.state.set({ scan: 21, view: 'top' }));
   await page.selectOption('[aria-label=colour]', 'score');
   await shot(page, 'score_top');
@@ -92,7 +99,7 @@ test('colours by dynamic score tell those of the score files, with a key to them
 });
 
 test('dynamic scores are not offered beside a run without them, which is told how to get them', async () => {
-  const page = await openReport(browser, both, { viewport: STAGE });
+  const page = await openAlone({ viewport: STAGE });
   await page.selectOption('[aria-label=colour]', 'score');
   await beside(page, 'delayed');
   await settled(page);
@@ -136,7 +143,7 @@ test('charts hold the numbers of result.json', async () => {
 });
 
 test('intervals, ranges, objects and protocols are those that the program tells', async () => {
-  const page = await openReport(browser, both);
+  const page = await openAlone({});
   const content = await page.evaluate(() => mosbenchReport.content.results[0]);
   const answer = (...args) => JSON.parse(mosbench(...args, '--json'));
   const [run, dataset] = [join(folder, 'online'), join(folder, 'sim')];
@@ -190,8 +197,90 @@ test('a click into a chart moves the 3-D view to that scan', async () => {
   refuseComplaints(page);
 });
 
-test('keys change view, colour, theme and scan, and play goes on by itself', async () => {
+test('two runs are side by side from the start, in a typical scan, with the numbers of both', async () => {
   const page = await openReport(browser, both, { viewport: STAGE });
+  await settled(page);
+  assert.deepEqual(await page.evaluate(() => mosbenchReport.viewer.names()), ['online', 'delayed']);
+  const scan = await page.evaluate(() => mosbenchReport.state.get('scan'));
+  const idle = new Set(online.scans_without_detection);
+  const telling = online.scans.filter((s) => !idle.has(s.stem) && s.tp + s.fn > 0).map(({ tp, fp, fn }) => tp / (tp + fp + fn));
+  const iou = ({ tp, fp, fn }) => tp / (tp + fp + fn);
+  assert.equal(iou(online.scans[scan]), telling.sort((a, b) => a - b)[Math.floor(telling.length / 2)]);
+  const shown = await page.locator('.tile').first().textContent();
+  assert.equal(shown, `IoU${[online, delayed].map(({ summary }, i) => `${['online', 'delayed'][i]}${(100 * summary.iou).toFixed(1)} %`).join('')}`);
+  const [legend, screen] = await Promise.all(['.legend', '.screen'].map((part) => page.locator(part).boundingBox()));
+  assert.ok(legend.y >= screen.y + screen.height - 1, 'the legend covers no pane');
+  refuseComplaints(page);
+});
+
+test('a link leads back to run, scan and camera', async () => {
+  const page = await openAlone({ viewport: STAGE });
+  await page.evaluate(() => mosbenchReport.state.set({ result: 1, scan: 20, view: 'orbit' }));
+  await settled(page);
+  await page.evaluate(() => mosbenchReport.viewer.lookFrom({ eye: [-5, 6, 7], target: [1, 2, 3] }));
+  await page.click('text=copy link');
+  const hash = await page.evaluate(() => location.hash);
+  assert.equal(hash, '#result=1&scan=20&view=orbit&colour=outcome&eye=-5,6,7&target=1,2,3');
+  await page.evaluate(() => { mosbenchReport.state.set({ result: 0, scan: 3, view: 'top' }); location.hash = ''; });
+  await settled(page);
+  await page.evaluate((link) => (location.hash = link), hash);
+  await page.waitForFunction(() => mosbenchReport.state.get('scan') === 20);
+  await settled(page);
+  const camera = await page.evaluate(() => mosbenchReport.viewer.stage.camera_m());
+  assert.deepEqual([camera.eye, camera.target].map((p) => p.map((m) => Number(m.toFixed(3)))), [[-5, 6, 7], [1, 2, 3]]);
+  refuseComplaints(page);
+});
+
+test('pictures are saved twice as large without background, charts as drawings', async () => {
+  const page = await openAlone({ viewport: STAGE });
+  await settled(page);
+  const saved = async (button) => {
+    const [download] = await Promise.all([page.waitForEvent('download'), button.click()]);
+    const file = join(artefacts(), download.suggestedFilename());
+    await download.saveAs(file);
+    return { name: download.suggestedFilename(), bytes: readFileSync(file) };
+  };
+  const picture = await saved(page.locator('text=save picture'));
+  assert.match(picture.name, /^online_06_\d{6}_orbit\.png$/);
+  const canvas = await page.locator('.stage canvas').boundingBox();
+  assert.deepEqual([16, 20].map((at) => picture.bytes.readUInt32BE(at)), [2 * Math.floor(canvas.width), 2 * Math.floor(canvas.height)]);
+  const blank = await browser.newPage(); // a report may fetch nothing
+  const clear = await blank.evaluate(async (base64) => {
+    const image = await createImageBitmap(await (await fetch(`data:image/png;base64,${base64}`)).blob());
+    const context = new OffscreenCanvas(image.width, image.height).getContext('2d');
+    context.drawImage(image, 0, 0);
+    const { data } = context.getImageData(0, 0, image.width, image.height);
+    const alphas = data.filter((_, i) => i % 4 === 3);
+    return { none: alphas.filter((a) => a === 0).length / alphas.length, full: alphas.filter((a) => a === 255).length };
+  }, picture.bytes.toString('base64'));
+  await blank.close();
+  assert.ok(clear.none > 0.3 && clear.full > 1000, JSON.stringify(clear));
+  for (const [key, part] of [['iou', '<polyline'], ['range', '<rect'], ['path', '<polyline']]) {
+    const drawing = await saved(page.locator(`[data-chart=${key}] .save`));
+    assert.equal(drawing.name, `${key}.svg`);
+    assert.ok(drawing.bytes.toString().startsWith('<svg xmlns="http://www.w3.org/2000/svg"') && drawing.bytes.includes(part), key);
+    assert.ok(!/NaN|undefined/.test(drawing.bytes.toString()), key);
+  }
+  refuseComplaints(page);
+});
+
+test('charts hold no placeholders, and a motion map that is left says nothing more', async () => {
+  const page = await openAlone({ viewport: STAGE });
+  assert.equal(await page.locator('.chart .u-value').first().evaluate((cell) => getComputedStyle(cell).visibility), 'hidden');
+  await page.click('[data-view=map]');
+  await page.click('[data-view=orbit]');
+  await settled(page);
+  await page.evaluate(() => new Promise((done) => setTimeout(done, 300)));
+  assert.equal(await page.locator('.busy').textContent(), '');
+  await page.click('[data-view=map]');
+  await settled(page);
+  const [moving, still] = await page.evaluate(() => mosbenchReport.viewer.scans.map(({ points, context }) => [points, context.length / 3])[0]);
+  assert.ok(moving > 0 && still > 1000, `${moving} ${still}`);
+  refuseComplaints(page);
+});
+
+test('keys change view, colour, theme and scan, and play goes on by itself', async () => {
+  const page = await openAlone({ viewport: STAGE });
   const state = (key) => page.evaluate((k) => mosbenchReport.state.get(k), key);
   await page.keyboard.press('2');
   assert.equal(await state('view'), 'top');
@@ -210,7 +299,7 @@ test('keys change view, colour, theme and scan, and play goes on by itself', asy
 });
 
 test('a click on a point shows its numbers', async () => {
-  const page = await openReport(browser, both, { viewport: STAGE });
+  const page = await openAlone({ viewport: STAGE });
   await page.evaluate(() => mosbenchReport.state.set({ view: 'top' }));
   await settled(page);
   const spot = await page.evaluate(() => {
@@ -243,6 +332,8 @@ test('everything is readable on desktop and phone, light and dark', async () => 
       await settled(page);
       const sideways = await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
       assert.equal(sideways, 0, `${size}: the page scrolls sideways`);
+      const { y } = await page.locator('.stage').boundingBox();
+      assert.ok(y < (size === 'phone' ? 0.45 : 0.55) * viewport.height, `${size}: the picture begins at ${y}`);
       writeFileSync(join(artefacts(), `page_${size}_${theme}.png`), await page.screenshot({ fullPage: true }));
       refuseComplaints(page);
       await page.context().close();

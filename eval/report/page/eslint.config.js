@@ -1,5 +1,5 @@
-const browser = ['atob', 'Blob', 'DecompressionStream', 'Response', 'document', 'devicePixelRatio', 'matchMedia', 'performance', 'requestAnimationFrame', 'ResizeObserver', 'setInterval', 'clearInterval', 'setTimeout'];
-const node = ['console', 'process', 'URL', 'Buffer'];
+const browser = ['atob', 'Blob', 'DecompressionStream', 'Response', 'URL', 'XMLSerializer', 'document', 'devicePixelRatio', 'location', 'matchMedia', 'navigator', 'performance', 'requestAnimationFrame', 'ResizeObserver', 'setInterval', 'clearInterval', 'setTimeout'];
+const node = ['console', 'process', 'Buffer'];
 const named = (names) => Object.fromEntries(names.map((name) => [name, 'readonly']));
 
 const rules = {

@@ -28,6 +28,12 @@ std::vector<ScanRow> rows_with(const std::vector<std::uint64_t>& false_points) {
   return rows;
 }
 
+TEST(WorstFirst, HasScansInWhichNothingWasLookedForBehindAllOthers) {
+  std::vector<ScanRow> rows = rows_with({5, 90, 7});
+  rows[1].judged = false;
+  EXPECT_EQ(worst_first(rows), (Scans{2, 0, 1}));
+}
+
 TEST(ScanChoice, ReadsListsInTheOrderOfTheirWords) {
   const auto rows = rows_with({0, 5, 0, 9, 0, 0, 7, 0});
   EXPECT_EQ(ScanChoice("6,1-2,99").wanted(rows), (Scans{6, 1, 2}));

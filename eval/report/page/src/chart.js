@@ -1,5 +1,7 @@
 import uPlot from 'uplot';
+import { chartSvg } from './chart_svg.js';
 import { element } from './dom.js';
+import { svgButton } from './saving.js';
 import { surface } from './theme.js';
 
 const HEIGHT = 210;
@@ -56,16 +58,21 @@ function dots(marks, state) {
  */
 export class Chart {
   constructor(state, { key, title, note, x, series, options = {}, go = null }) {
-    Object.assign(this, { state, key, x, series, options, go });
+    Object.assign(this, { state, key, title, x, series, options, go });
     this.body = element('div', { class: 'chart-body' });
     this.node = element('figure', { class: 'chart', 'data-chart': key },
-      element('figcaption', {}, title, note ? element('span', { class: 'hint' }, ` ${note}`) : null), this.body);
+      element('figcaption', {}, title, note ? element('span', { class: 'hint' }, ` ${note}`) : null, svgButton(key, () => this.svg())), this.body);
     new ResizeObserver(() => this.#fit()).observe(this.body);
   }
 
   /** The numbers it shows, per series, as they stand in result.json. */
   numbers() {
     return Object.fromEntries(this.series.map(({ label, values }) => [label, values]));
+  }
+
+  /** The chart as an svg element. */
+  svg() {
+    return chartSvg({ plot: this.plot, title: this.title, series: this.series, marks: this.options.marks, theme: this.state.get('theme'), bars });
   }
 
   #fit() {

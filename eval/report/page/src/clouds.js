@@ -1,3 +1,4 @@
+import { hasLabels } from './metrics.js';
 import { outcomesFromPlane, positionsFromPlanes, readBlock, scoresFromPlanes } from './payload.js';
 
 const SCANS_KEPT = 24;
@@ -65,7 +66,7 @@ export class Clouds {
   }
 
   /**
-   * {points, positions_m, outcomes, drawable, scores, pose}, or null when its points were left out;
+   * {points, positions_m, outcomes, drawable, scores, pose, unscored}, or null when its points were left out;
    * scores are null where the run kept none.
    */
   async read(result, index) {
@@ -91,6 +92,7 @@ export class Clouds {
       stem: scans[place].stem,
       positions_m,
       pose: scans[place].map_from_sensor,
+      unscored: !hasLabels(this.#content.results[result].result.scans[index]),
       ...outcomesFromPlane(plane),
       scores: scorePlanes && scoresFromPlanes(scorePlanes),
     };

@@ -12,11 +12,12 @@ export function isDisputed(opinion) {
 
 /**
  * One opinion per point of a pane. The first pane holds the first run against all others together: where any of
- * them disagrees, that counts.
+ * them disagrees, that counts. A run that was not scored in this scan has no opinion.
  */
 export function opinionsOf(scans, pane) {
   const [first, ...others] = scans;
-  const against = pane === 0 ? others : [scans[pane]];
+  const against = (pane === 0 ? others : [scans[pane]]).filter(({ unscored }) => !unscored);
+  if (first.unscored || against.length === 0) return new Uint8Array(first.outcomes.length).fill(BOTH_STATIC);
   return Uint8Array.from(first.outcomes, (outcome, i) => {
     const moves = MOVES[outcome];
     if (against.every(({ outcomes }) => MOVES[outcomes[i]] === moves)) return moves ? BOTH_MOVING : BOTH_STATIC;

@@ -4,7 +4,8 @@ import { element } from './dom.js';
 import { header } from './header.js';
 import { keyActions, keyList, listenToKeys } from './keyboard.js';
 import { leaderboards } from './leaderboard.js';
-import { worstScans } from './metrics.js';
+import { viewOf } from './link.js';
+import { hasLabels, typicalScan } from './metrics.js';
 import { notices } from './notices.js';
 import { readContent } from './payload.js';
 import { provenance } from './provenance.js';
@@ -16,17 +17,26 @@ import { toolbar } from './toolbar.js';
 import { Transport } from './transport.js';
 import { Viewer } from './viewer.js';
 
-/** The scan to begin with: the worst one whose points are in the file. */
+/** The scan to begin with: a typical one of those whose points are in the file; the worst are a key away. */
 function firstScan(content, clouds, result) {
-  const drawable = clouds.scansOf(result);
-  const worst = worstScans(content.results[result].result).find((k) => drawable.includes(k));
-  return worst ?? drawable[0] ?? 0;
+  const drawable = clouds.scansOf(result).filter((k) => hasLabels(content.results[result].result.scans[k]));
+  return typicalScan(content.results[result].result, drawable) ?? drawable[0] ?? 0;
+}
+
+/** Two runs of the same scans are there to be compared. */
+function firstOthers(clouds, result) {
+  const others = clouds.comparable(result);
+  return others.length === 1 ? others : [];
+}
+
+function linkedView(content, clouds) {
+  return viewOf(location.hash, content, (result) => clouds.comparable(result));
 }
 
 function initialState(content, clouds) {
   return new State({
     result: 0,
-    others: [],
+    others: firstOthers(clouds, 0),
     compared: [],
     scan: firstScan(content, clouds, 0),
     view: 'orbit',
@@ -34,6 +44,7 @@ function initialState(content, clouds) {
     visible: [true, true, true, true, true, true],
     pointSize: 1.6,
     theme: preferredTheme(),
+    ...linkedView(content, clouds).changes,
   });
 }
 
@@ -61,6 +72,13 @@ function fillViewSection(section, state, content, clouds, transport) {
   if (viewer) {
     const actions = keyActions(state, viewer, transport);
     listenToKeys(actions);
+    const follow = () => {
+      const { changes, camera } = linkedView(content, clouds);
+      state.set(changes);
+      if (camera) viewer.lookFrom(camera);
+    };
+    follow();
+    globalThis.addEventListener('hashchange', follow);
     section.append(toolbar(state, content, clouds, viewer), viewer.node, transport.node, keyList(actions));
   }
   return viewer;

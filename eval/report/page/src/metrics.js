@@ -21,6 +21,21 @@ export function hasCounts(scan) {
   return scan.tp !== undefined;
 }
 
+/** Whether a scan has labels; a scan that `mosbench score` left out has none. */
+export function hasLabels(scan) {
+  return scan.predicted_moving_points !== undefined;
+}
+
+/**
+ * Of `among`, the scan with the median IoU of those in which something moves and the method looked for it: what
+ * one may expect to see; null where there is none.
+ */
+export function typicalScan({ scans, scans_without_detection: idle = [] }, among) {
+  const tells = (k) => hasCounts(scans[k]) && scans[k].tp + scans[k].fn > 0 && !idle.includes(scans[k].stem);
+  const ordered = among.filter(tells).sort((a, b) => iou(scans[a]) - iou(scans[b]) || a - b);
+  return ordered[Math.floor(ordered.length / 2)] ?? null;
+}
+
 /**
  * Indices of the scans with false points, most first. Those in which the method did not look for
  * motion yet come last: what it misses there says nothing about it.

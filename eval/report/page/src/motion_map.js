@@ -7,6 +7,30 @@ export function toMap(pose, x, y, z, origin) {
   return [0, 4, 8].map((r, i) => pose[r] * x + pose[r + 1] * y + pose[r + 2] * z + pose[r + 3] - origin[i]);
 }
 
+const CELL_M = 0.4;
+const MOST_CELLS = 400000;
+
+/** Points of what stands still, one per cell, in the frame of the map: where the moving ones were. */
+export class StillPoints {
+  #cells = new Set();
+  #positions_m = [];
+
+  add({ points, positions_m, outcomes, drawable, pose }, origin) {
+    for (let i = 0; i < points && this.#cells.size < MOST_CELLS; ++i) {
+      if (SHOWN[outcomes[i]] || !drawable[i]) continue;
+      const at = toMap(pose, positions_m[3 * i], positions_m[3 * i + 1], positions_m[3 * i + 2], origin);
+      const cell = at.reduce((key, m) => 131072 * key + Math.floor(m / CELL_M) + 65536, 0);
+      if (this.#cells.has(cell)) continue;
+      this.#cells.add(cell);
+      this.#positions_m.push(...at);
+    }
+  }
+
+  positions_m() {
+    return Float32Array.from(this.#positions_m);
+  }
+}
+
 function shownPoints({ outcomes, drawable }) {
   let shown = 0;
   for (let i = 0; i < outcomes.length; ++i) shown += SHOWN[outcomes[i]] && drawable[i] ? 1 : 0;

@@ -9,6 +9,7 @@ function noteOf(scan, opinions, pane) {
     const { first, other } = countDisputed(opinions);
     return pane === 0 ? `${count(first + other)} disputed by any` : `${count(first)} only in the first, ${count(other)} only here`;
   }
+  if (scan.unscored) return 'not scored';
   const [tp, fp, fn] = countOutcomes(scan.outcomes);
   return `TP ${count(tp)} · FP ${count(fp)} · FN ${count(fn)}`;
 }
@@ -22,6 +23,6 @@ export class PaneFrames {
     this.node.style.gridTemplateColumns = `repeat(${columns}, minmax(0, 1fr))`;
     this.node.replaceChildren(...names.map((name, p) => element('div', { class: 'pane' },
       names.length > 1 ? element('span', { class: 'pane-name' }, name) : null,
-      names.length > 2 ? element('span', { class: 'pane-note' }, noteOf(scans[p], opinions?.[p], p)) : null)));
+      names.length > 2 || scans[p].unscored ? element('span', { class: 'pane-note' }, noteOf(scans[p], opinions?.[p], p)) : null)));
   }
 }

@@ -1,5 +1,6 @@
 import { element, shape } from './dom.js';
 import { fixed } from './format.js';
+import { svgButton } from './saving.js';
 import { runLine, surface } from './theme.js';
 
 const LINE_STEPS_M = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000];
@@ -51,12 +52,20 @@ export class PathView {
     this.body = element('div', { class: 'chart-body' });
     const step_m = gridStep_m(this.frame);
     this.node = element('figure', { class: 'chart', 'data-chart': this.key },
-      element('figcaption', {}, 'Way of the sensor', element('span', { class: 'hint' }, ` from above, map frame; a line every ${fixed(step_m, 0, 'm')}`)), this.body);
+      element('figcaption', {}, 'Way of the sensor', element('span', { class: 'hint' }, ` from above, map frame; a line every ${fixed(step_m, 0, 'm')}`), svgButton(this.key, () => this.svg())), this.body);
     this.rebuild();
   }
 
   numbers() {
     return Object.fromEntries(this.paths.map(({ label, points_m }) => [label, points_m]));
+  }
+
+  /** The drawing as an svg element of its own. */
+  svg() {
+    const drawing = this.body.querySelector('svg').cloneNode(true);
+    drawing.setAttribute('width', WIDTH);
+    drawing.setAttribute('height', HEIGHT);
+    return drawing;
   }
 
   #colour(key) {

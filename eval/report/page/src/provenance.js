@@ -1,7 +1,7 @@
 import { element, table } from './dom.js';
 import { resultName } from './header.js';
 
-const NOT_PROVENANCE = new Set(['scans', 'summary', 'timing', 'remarks', 'scans_without_detection', 'splits']);
+const NOT_PROVENANCE = new Set(['scans', 'summary', 'timing', 'remarks', 'scans_without_detection', 'splits', 'source']);
 
 /** [["config.voxel_size_m", "0.25"], ...] of nested objects. */
 export function flatten(value, prefix = '') {
@@ -13,8 +13,8 @@ export function flatten(value, prefix = '') {
 
 function factsOf({ folder, protocol_summary: rules, result }) {
   const kept = Object.fromEntries(Object.entries(result).filter(([key]) => !NOT_PROVENANCE.has(key)));
-  const { timing = {} } = result;
-  const facts = [['results in', folder], ['data set at', timing.dataset_root], ['rules', rules], ...flatten(kept), ['threads', timing.threads], ['wall_s', timing.wall_s]];
+  const { timing = {}, source = {} } = result;
+  const facts = [['results in', folder], ['data set at', timing.dataset_root ?? source.dataset_root], ['labels from', source.predictions], ['rules', rules], ...flatten(kept), ['threads', timing.threads], ['wall_s', timing.wall_s]];
   return new Map(facts.filter(([, value]) => value !== undefined).map(([key, value]) => [key, String(value)]));
 }
 

@@ -1,6 +1,6 @@
 import {
   BufferAttribute, BufferGeometry, Color, Group, LineBasicMaterial, LineLoop, Line, LineSegments,
-  PerspectiveCamera, Points, Scene, ShaderMaterial, Vector3, WebGLRenderer,
+  PerspectiveCamera, Points, PointsMaterial, Scene, ShaderMaterial, Vector3, WebGLRenderer,
 } from 'three';
 import { paneAt, paneGrid } from './pane_grid.js';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
@@ -42,21 +42,26 @@ class Pane {
   scene = new Scene();
   geometry = new BufferGeometry();
 
-  constructor(pointMaterial, guideMaterial) {
+  constructor(pointMaterial, guideMaterial, contextMaterial) {
     const cloud = new Points(this.geometry, pointMaterial);
-    cloud.frustumCulled = false;
+    this.context = new Points(new BufferGeometry(), contextMaterial);
+    cloud.frustumCulled = this.context.frustumCulled = false;
     this.guides = new Group();
     this.guides.add(...RINGS_M.map((radius_m) => ring(radius_m, guideMaterial)), axes(guideMaterial));
     this.path = new Line(new BufferGeometry(), guideMaterial);
     this.path.frustumCulled = false;
-    this.scene.add(cloud, this.guides, this.path);
+    this.scene.add(this.context, cloud, this.guides, this.path);
   }
 
-  fill(positions_m, colours, sizes, path) {
+  /** `path`: way of the sensor, `context`: positions of what stands still; both null but in the motion map. */
+  fill(positions_m, colours, sizes, path, context) {
     this.geometry.setAttribute('position', new BufferAttribute(positions_m, 3));
     this.geometry.setAttribute('shade', new BufferAttribute(colours, 3, true));
     this.geometry.setAttribute('size', new BufferAttribute(sizes, 1));
     this.geometry.setDrawRange(0, sizes.length);
+    this.context.visible = context !== null;
+    if (context && context !== this.contextShown) this.context.geometry.setAttribute('position', new BufferAttribute(context, 3));
+    this.contextShown = context;
     this.guides.visible = path === null;
     this.path.visible = path !== null;
     if (path) this.path.geometry.setFromPoints(path.map((p) => new Vector3(...p)));
@@ -71,7 +76,7 @@ export class Stage {
   constructor(canvas) {
     this.canvas = canvas;
     // Screenshots and tests read the picture after it was shown.
-    this.renderer = new WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: true });
+    this.renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true, preserveDrawingBuffer: true });
     this.renderer.autoClear = false;
     this.pointMaterial = new ShaderMaterial({
       vertexShader: VERTEX,
@@ -79,6 +84,7 @@ export class Stage {
       uniforms: { pixelRatio: { value: 1 } },
     });
     this.guideMaterial = new LineBasicMaterial();
+    this.contextMaterial = new PointsMaterial({ size: 1, sizeAttenuation: false });
     this.panes = [];
     this.shown = 0;
     this.camera = new PerspectiveCamera(55, 1, 0.05, 3000);
@@ -91,6 +97,7 @@ export class Stage {
   setTheme({ background, guide }) {
     this.renderer.setClearColor(new Color().setStyle(background), 1);
     this.guideMaterial.color.setStyle(guide);
+    this.contextMaterial.color.setStyle(guide);
     this.draw();
   }
 
@@ -108,7 +115,7 @@ export class Stage {
 
   /** Shows the first so many panes. */
   show(panes) {
-    while (this.panes.length < panes) this.panes.push(new Pane(this.pointMaterial, this.guideMaterial));
+    while (this.panes.length < panes) this.panes.push(new Pane(this.pointMaterial, this.guideMaterial, this.contextMaterial));
     this.shown = panes;
   }
 
@@ -145,10 +152,26 @@ export class Stage {
     this.pointMaterial.uniforms.pixelRatio.value = ratio;
   }
 
-  #drawNow() {
+  /** {eye, target}, metres. */
+  camera_m() {
+    return { eye: this.camera.position.toArray(), target: this.controls.target.toArray() };
+  }
+
+  /** A PNG of what is shown, without the background, in `ratio` pixels per pixel of the page. */
+  picture(ratio) {
+    const background = this.renderer.getClearColor(new Color());
+    this.renderer.setClearColor(background, 0);
+    this.#drawNow(ratio);
+    const png = new Promise((done) => this.canvas.toBlob(done, 'image/png'));
+    this.renderer.setClearColor(background, 1);
+    this.#drawNow();
+    return png;
+  }
+
+  #drawNow(ratio = Math.min(devicePixelRatio, 2)) {
     const { clientWidth, clientHeight } = this.canvas;
     if (clientWidth === 0 || clientHeight === 0) return;
-    this.#resize(clientWidth, clientHeight, Math.min(devicePixelRatio, 2));
+    this.#resize(clientWidth, clientHeight, ratio);
     const { columns, rows, width, height } = this.grid();
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();

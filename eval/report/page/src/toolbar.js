@@ -1,7 +1,9 @@
 import { choice } from './choice.js';
 import { allColourings } from './colouring.js';
 import { element } from './dom.js';
+import { hashOf } from './link.js';
 import { runOptions, RunsMenu } from './runs_menu.js';
+import { fileName, save } from './saving.js';
 import { VIEWS } from './views.js';
 
 function viewButtons(state) {
@@ -36,10 +38,33 @@ function besideChoice(state, content, clouds) {
   return menu.node;
 }
 
+const PICTURE_RATIO = 2;
+
+/** Saves the picture, and puts a link to the view where it can be copied. */
+function keepButtons(state, content, viewer) {
+  const message = element('span', { class: 'hint', role: 'status' });
+  const picture = async () => {
+    const { run, result } = content.results[state.get('result')];
+    const png = await viewer.stage.picture(PICTURE_RATIO);
+    const what = state.get('view') === 'map' ? 'map' : (result.scans[state.get('scan')]?.stem ?? '');
+    save(png, fileName([run, result.sequence, what, state.get('view')], 'png'));
+  };
+  const link = async () => {
+    location.replace(hashOf(state, viewer.stage.camera_m()));
+    const copied = await navigator.clipboard?.writeText(location.href).then(() => true, () => false);
+    message.textContent = copied ? 'link copied' : 'the address holds the link';
+  };
+  state.follow(['result', 'others', 'scan', 'view'], () => (message.textContent = ''));
+  return [
+    element('button', { type: 'button', title: 'Save as PNG, twice as large, without background', onclick: picture }, 'save picture'),
+    element('button', { type: 'button', title: 'A link to this scan and view', onclick: link }, 'copy link'), message,
+  ];
+}
+
 /** What to look at and how. */
 export function toolbar(state, content, clouds, viewer) {
   const sizes = [{ key: 1, name: 'small' }, { key: 1.6, name: 'medium' }, { key: 2.6, name: 'large' }];
   return element('div', { class: 'toolbar' }, viewButtons(state), colourChoice(state, clouds, viewer),
     choice('points', sizes, state.get('pointSize'), (value) => state.set({ pointSize: Number(value) })), besideChoice(state, content, clouds),
-    element('button', { type: 'button', title: 'Back to where the view starts (r)', onclick: () => viewer.resetView() }, 'reset'));
+    element('button', { type: 'button', title: 'Back to where the view starts (r)', onclick: () => viewer.resetView() }, 'reset'), ...keepButtons(state, content, viewer));
 }

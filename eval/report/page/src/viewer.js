@@ -2,7 +2,7 @@ import { colourScans, sizePoints } from './colouring.js';
 import { opinionNames } from './disagreement.js';
 import { element } from './dom.js';
 import { Legend } from './legend.js';
-import { join, movingPoints } from './motion_map.js';
+import { join, movingPoints, StillPoints } from './motion_map.js';
 import { PaneFrames } from './pane_frames.js';
 import { pick } from './picking.js';
 import { pointDetails } from './point_details.js';
@@ -49,14 +49,16 @@ export class Viewer {
 
   async show() {
     const turn = ++this.#turn;
+    this.busy.textContent = '';
     const [results, scan, view] = [this.results(), this.state.get('scan'), this.state.get('view')];
-    const scans = await Promise.all(results.map((r) => (view === 'map' ? this.#motionMap(r) : this.clouds.read(r, scan))));
+    const scans = await Promise.all(results.map((r) => (view === 'map' ? this.#motionMap(r, turn) : this.clouds.read(r, scan))));
     if (turn !== this.#turn) return; // another scan was asked for meanwhile
     this.scans = scans.includes(null) ? [] : scans; // a run without points in the file
     this.#shown = scans.includes(null) ? [] : results;
     this.details.hidden = true;
     this.stage.show(this.scans.length);
     this.node.dataset.rows = this.stage.grid().rows;
+    this.node.dataset.panes = this.scans.length;
     this.legend.fill(this.scans);
     this.#paint();
     if (this.scans.length > 0) this.#look(view);
@@ -64,20 +66,23 @@ export class Viewer {
   }
 
   /** The map is of one place for all runs: the first scan's. */
-  async #motionMap(result) {
+  async #motionMap(result, turn) {
     if (this.clouds.scansOf(result).length === 0) return null;
     if (!this.#maps.has(result)) {
       const indices = this.clouds.scansOf(result);
       const parts = [];
+      const still = new StillPoints();
       let origin = null;
       for (const k of indices) {
         const scan = await this.clouds.read(result, k);
+        if (turn !== this.#turn) return null; // something else is looked at by now
         origin ??= [3, 7, 11].map((i) => scan.pose[i]);
         parts.push(movingPoints(scan, origin));
+        still.add(scan, origin);
         this.busy.textContent = `adding up scan ${parts.length} of ${indices.length}`;
       }
       this.busy.textContent = '';
-      this.#maps.set(result, join(parts));
+      this.#maps.set(result, { ...join(parts), context: still.positions_m() });
     }
     return this.#maps.get(result);
   }
@@ -85,7 +90,14 @@ export class Viewer {
   #look(view) {
     if (this.look === view) return this.stage.draw();
     this.look = view;
-    this.stage.look(viewpoint(view, this.scans[0]));
+    this.stage.look({ ...viewpoint(view, this.scans[0]), ...this.camera });
+    this.camera = null;
+  }
+
+  /** Looks from {eye, target}, metres, when the next scan is shown, or now. */
+  lookFrom(camera) {
+    Object.assign(this, { camera, look: null });
+    if (this.scans.length > 0) this.#look(this.state.get('view'));
   }
 
   /** Back to where the view starts. */
@@ -100,7 +112,7 @@ export class Viewer {
     const { colours, scale, opinions, large } = colourScans(key, this.scans, theme);
     this.scans.forEach((scan, p) => {
       const sizes = sizePoints(scan, this.state.get('visible'), this.state.get('pointSize'), (i) => large(p, i));
-      this.stage.panes[p].fill(scan.positions_m, colours[p], sizes, scan.path ?? null);
+      this.stage.panes[p].fill(scan.positions_m, colours[p], sizes, scan.path ?? null, scan.context ?? null);
     });
     const names = this.names();
     this.frames.fill(this.stage.grid().columns, names, this.scans, opinions);

@@ -2,13 +2,21 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { comparisonCharts } from '../src/comparison_charts.js';
 import { count, fixed, intervalOf, percent, whyNoInterval } from '../src/format.js';
-import { iou, precision, recall, worstScans } from '../src/metrics.js';
+import { iou, precision, recall, typicalScan, worstScans } from '../src/metrics.js';
 import { flatten } from '../src/provenance.js';
 import { runNames, runOptions, toggled } from '../src/runs_menu.js';
 import { resultsOfSameScans } from '../src/same_scans.js';
 import { costColumns, metricsChart, stagesChart, thresholdChart } from '../src/scan_charts.js';
 import { precisionAt, scoreCurveChart } from '../src/score_curve.js';
 import { RUN_LINES, runLine } from '../src/theme.js';
+
+test('a typical scan is the median of those in which something moves and is looked for', () => {
+  const scan = (stem, tp, fn) => ({ stem, tp, fp: 0, fn, tn: 9 });
+  const result = { scans: [scan('idle', 0, 9), scan('still', 0, 0), scan('all', 9, 0), scan('half', 5, 5), scan('few', 1, 9), { stem: 'no truth' }], scans_without_detection: ['idle'] };
+  assert.equal(typicalScan(result, [0, 1, 2, 3, 4, 5]), 3);
+  assert.equal(typicalScan(result, [0, 1, 4, 5]), 4);
+  assert.equal(typicalScan(result, [0, 1, 5]), null);
+});
 
 test('metrics of a scan worked by hand', () => {
   const counts = { tp: 6, fp: 2, fn: 4, tn: 100 };

@@ -3,7 +3,7 @@ import { test } from 'node:test';
 import { Clouds } from '../src/clouds.js';
 import { allColourings, colourScans, colouringsOf, countOutcomes, limits, quantity, sizePoints } from '../src/colouring.js';
 import { countDisputed, opinionNames, opinionsOf } from '../src/disagreement.js';
-import { join, movingPoints, toMap } from '../src/motion_map.js';
+import { join, movingPoints, StillPoints, toMap } from '../src/motion_map.js';
 import { paneAt, paneGrid } from '../src/pane_grid.js';
 import { pick } from '../src/picking.js';
 import { State } from '../src/state.js';
@@ -95,7 +95,7 @@ test('panes fill a grid that suits the screen', () => {
     return `${columns}x${rows}`;
   };
   assert.deepEqual([0, 1, 2, 3, 4, 5, 6].map((n) => shape(n, 1200)), ['1x1', '1x1', '2x1', '3x1', '2x2', '3x2', '3x2']);
-  assert.deepEqual([1, 2, 3, 4, 5, 6].map((n) => shape(n, 380)), ['1x1', '2x1', '2x2', '2x2', '2x3', '2x3']);
+  assert.deepEqual([1, 2, 3, 4, 5, 6].map((n) => shape(n, 380)), ['1x1', '1x2', '2x2', '2x2', '2x3', '2x3']);
   const grid = paneGrid(5, { width: 1200, height: 400 });
   assert.deepEqual(paneAt(grid, 5, 450, 250), { pane: 4, x: 50, y: 50 });
   assert.equal(paneAt(grid, 5, 900, 250), null, 'the sixth pane is empty');
@@ -121,6 +121,17 @@ test('the motion map holds moving points in the frame of the map', () => {
   const scored = movingPoints({ ...SCAN, scores: [5, 6, 7, 8] }, [10, 20, 30]);
   assert.deepEqual([...join([scored, scored]).scores], [5, 7, 5, 7]);
   assert.equal(join([scored, part]).scores, null);
+});
+
+test('the motion map holds what stands still once per cell', () => {
+  const still = new StillPoints();
+  for (let scan = 0; scan < 2; ++scan) still.add(SCAN, [10, 20, 30]);
+  assert.deepEqual([...still.positions_m()], [0, 0, 2], 'neither moving points nor those without a place');
+});
+
+test('a run that was not scored in a scan disagrees with none', () => {
+  const scans = [SCAN, { ...SCAN, outcomes: Uint8Array.from([4, 4, 4, 4]), unscored: true }];
+  assert.deepEqual(scans.map((_, p) => [...opinionsOf(scans, p)]), [[3, 3, 3, 3], [3, 3, 3, 3]]);
 });
 
 test('the nearest point to the eye under the pointer is picked, never a hidden one', () => {
