@@ -58,8 +58,9 @@ std::vector<LabelledScan> Pipeline::release() {
 void Pipeline::enter(const VoxelizedScan& scan, const StageRecord& record) {
   const SeenSpace seen =
       timed(record, "raycast", [&] { return see(scan, *grid_, config_, scratch_, pool()); });
-  const VoxelList voids =
-      timed(record, "void", [&] { return void_of(seen, config_.pose_error_voxels, pool()); });
+  const VoxelList voids = timed(record, "void", [&] {
+    return new_voids(seen, ever_void_, config_.pose_error_voxels, pool());
+  });
   const StageClock clock(record, "map_update");
   for (std::size_t i = 0; i < voids.blocks.size(); ++i) {
     if (!voids.masks[i].any()) continue;

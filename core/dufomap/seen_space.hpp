@@ -1,24 +1,27 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "core/base/thread_pool.hpp"
 #include "core/dufomap/config.hpp"
+#include "core/voxel/block_map.hpp"
 #include "core/voxel/ray_window.hpp"
 #include "core/voxel/voxelize.hpp"
 
 namespace mosbench::dufomap {
 
-/// What one scan saw.
+/// What one scan saw. `passed` runs together with `known.blocks`.
 struct SeenSpace {
-  VoxelSet crossed;  ///< by rays, the voxels where they end and d_p more included
-  VoxelSet hit;      ///< the last d_s of the rays to voxels within max_range
+  VoxelSet known;                 ///< crossed by rays, d_p more than their ends included, or hit
+  std::vector<BlockMask> passed;  ///< those that no ray hit with its last d_s
 };
 
-/// Reusable memory of `see`: windows of bits around the sensor.
+/// Reusable memory of `see`: windows of bits around the sensor, those with an odd number in bytes
+/// along y.
 struct SightScratch {
-  RayWindow hits;
-  std::vector<RayWindow> crossed;  ///< per thread
+  std::array<RayWindow, 2> hits;   ///< the same bits twice
+  std::vector<RayWindow> crossed;  ///< two per thread
 
   std::size_t memory_bytes() const;
 };
@@ -31,8 +34,9 @@ struct SightScratch {
 SeenSpace see(const VoxelizedScan& scan, const VoxelGrid& grid, const Config& config,
               SightScratch& scratch, ThreadPool& pool);
 
-/// Returns the void voxels: crossed ones that were not hit and whose neighbours within d_p were all
-/// crossed or hit (paper, section III-B).
-VoxelList void_of(const SeenSpace& seen, int pose_error_voxels, ThreadPool& pool);
+/// Returns the void voxels that are not in `ever_void`: passed ones whose neighbours within d_p are
+/// all known (paper, section III-B).
+VoxelList new_voids(const SeenSpace& seen, const BlockMap<BlockMask>& ever_void,
+                    int pose_error_voxels, ThreadPool& pool);
 
 }  // namespace mosbench::dufomap

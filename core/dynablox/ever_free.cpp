@@ -88,23 +88,6 @@ BlockMask barred(const EverFreeMap& map, std::uint32_t slot, const Frame& frame)
   return unobserved | recent;
 }
 
-/// Returns the voxels of a block that have one of the mask's within it among themselves and their
-/// 26 neighbours.
-BlockMask grown_inside(const BlockMask& mask) {
-  BlockMask planes;
-  for (std::size_t z = 0; z < kBlockSide; ++z) {
-    const std::uint64_t word = mask.words[z];
-    const std::uint64_t row = word | beside_in_row(word);
-    planes.words[z] = row | row << 8 | row >> 8;
-  }
-  BlockMask grown = planes;
-  for (std::size_t z = 0; z < kBlockSide; ++z) {
-    if (z > 0) grown.words[z] |= planes.words[z - 1];
-    if (z + 1 < kBlockSide) grown.words[z] |= planes.words[z + 1];
-  }
-  return grown;
-}
-
 /// The second half of the update, for one block.
 void make_ever_free(EverFreeMap& map, std::uint32_t slot, const Frame& frame) {
   BlockHistory& history = map.histories[slot];

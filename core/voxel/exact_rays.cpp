@@ -4,17 +4,12 @@
 #include <span>
 
 #include "core/base/multiarch.hpp"
-#include "core/base/simd_lanes.hpp"
+#include "core/voxel/half_lanes.hpp"
 
 namespace mosbench {
 namespace {
 
-// GCC takes wider vectors of conditions apart into single numbers.
-using Reals = double __attribute__((vector_size(32)));
-using Longs = std::int64_t __attribute__((vector_size(32)));
-using Bits = std::uint64_t __attribute__((vector_size(32)));
-constexpr std::size_t kHalf = 4, kHalves = kLanes / kHalf;
-struct alignas(32) BitArray : std::array<std::uint64_t, kLanes> {};
+static_assert(kRaysTogether == kLanes);
 
 /// Half of eight rays on their way.
 struct HalfGroup {
@@ -24,9 +19,6 @@ struct HalfGroup {
   Longs stopped;
 };
 using Group = std::array<HalfGroup, kHalves>;
-
-/// The eight rays that are walked together.
-using RayGroup = std::array<const ExactRay*, kLanes>;
 
 Group group_of(const RayGroup& rays, const WindowBits& bits) {
   Group group{};
@@ -46,10 +38,6 @@ Group group_of(const RayGroup& rays, const WindowBits& bits) {
   return group;
 }
 
-inline __attribute__((always_inline)) bool all(const Longs& flags) {
-  return bits_of(reinterpret_cast<ByteFlags>(flags)) == 0xFFFFFFFF;
-}
-
 [[gnu::noinline]] void touch_group(const BitArray& from, const BitArray& to,
                                    RayWindow::Tiles tiles) {
   const auto tile = [](std::uint64_t byte) {
@@ -65,10 +53,18 @@ struct AxisBits {
   std::uint64_t x, y, z;
 };
 
-/// Moves four rays to their next voxels, unless they stop; `hit` are those that stand on a hit.
+/// Stops the rays that stand on a hit.
+[[gnu::noinline]] void stop_at_hits(const std::uint8_t* hits, const BitArray& place,
+                                    const BitArray& mark, HalfGroup& low, HalfGroup& high) {
+  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    if ((hits[place[lane]] & mark[lane]) == 0) continue;
+    (lane < kHalf ? low : high).stopped[lane % kHalf] = -1;
+  }
+}
+
+/// Moves four rays to their next voxels, unless they stop.
 template <RayEnd until>
-inline __attribute__((always_inline)) void advance(HalfGroup& rays, const Longs& hit,
-                                                   const AxisBits& axes) {
+inline __attribute__((always_inline)) void advance(HalfGroup& rays, const AxisBits& axes) {
   // The order of comparisons decides which of two equal borders comes first.
   const Longs x_before_y = rays.next[0] < rays.next[1];
   const Reals nearer = x_before_y ? rays.next[0] : rays.next[1];
@@ -82,7 +78,7 @@ inline __attribute__((always_inline)) void advance(HalfGroup& rays, const Longs&
   const Reals to_y = along_y ? rays.next[1] + rays.pace[1] : rays.next[1];
   const Reals to_z = not_z ? rays.next[2] : rays.next[2] + rays.pace[2];
   if constexpr (until == RayEnd::kAtHit) {
-    rays.stopped |= hit | ((not_z ? nearer : rays.next[2]) >= rays.length);
+    rays.stopped |= (not_z ? nearer : rays.next[2]) >= rays.length;
   } else {
     const Reals xy = to_x < to_y ? to_x : to_y;
     rays.stopped |= Longs(to == rays.end) | ((xy < to_z ? xy : to_z) > rays.length);
@@ -102,7 +98,7 @@ inline __attribute__((always_inline)) void walk(Group& group, const AxisBits& ax
   std::uint8_t* const bytes = window.bits();
   const RayWindow::Tiles tiles = window.tiles();
   HalfGroup low = group[0], high = group[1];
-  BitArray place, mark, sampled, found{};
+  BitArray place, mark, sampled;
   for (int step = 0;; ++step) {
     store(low.at >> 3, place.data());
     store(high.at >> 3, place.data() + kHalf);
@@ -111,17 +107,20 @@ inline __attribute__((always_inline)) void walk(Group& group, const AxisBits& ax
     // A lane extracted from a register costs two operations, a loaded one: force loads.
     __asm__("" : "+m"(place), "+m"(mark));
     if (step == 0) sampled = place;
+    std::uint64_t found = 0;
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       const std::uint64_t byte = place[lane];
       bytes[byte] |= static_cast<std::uint8_t>(mark[lane]);
-      if constexpr (until == RayEnd::kAtHit) found[lane] = hits[byte] & mark[lane];
+      if constexpr (until == RayEnd::kAtHit) found |= hits[byte] & mark[lane];
     }
     if (step % RayWindow::kTileSide == 0) {
       touch_group(sampled, place, tiles);
       sampled = place;
     }
-    advance<until>(low, load<Longs>(found.data()) != 0, axes);
-    advance<until>(high, load<Longs>(found.data() + kHalf) != 0, axes);
+    // Rarely, so that no lane waits for a vector made of numbers just stored.
+    if (found != 0) stop_at_hits(hits, place, mark, low, high);
+    advance<until>(low, axes);
+    advance<until>(high, axes);
     if (all(low.stopped & high.stopped)) break;
   }
   touch_group(sampled, place, tiles);
@@ -155,9 +154,8 @@ void go_beyond(const RayGroup& rays, const Group& group, const WindowBits& bits,
   }
 }
 
-/// Deals rays of similar length into groups. The eight of a group come from different regions, so
-/// that they do not write to the same cache lines: a run of n similar rays is cut into eight parts,
-/// and each gives one ray to every group. The last groups are filled up with the longest ray.
+}  // namespace
+
 std::vector<RayGroup> groups_of(std::span<const ExactRay> rays) {
   constexpr std::uint32_t kSimilar_steps = 8;
   std::vector<std::uint32_t> first;
@@ -186,8 +184,6 @@ std::vector<RayGroup> groups_of(std::span<const ExactRay> rays) {
   }
   return groups;
 }
-
-}  // namespace
 
 void cast_exact(std::span<const ExactRay> rays, RayEnd until, const RayWindow& hits,
                 int beyond_voxels, RayWindow& window) {

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "core/voxel/grid_walk.hpp"
 #include "core/voxel/ray_window.hpp"
@@ -13,8 +16,16 @@ struct ExactRay {
   BorderCrossings crossings;
   double length_m;
   std::uint64_t start, end;  ///< bits of the window
-  std::uint32_t steps;       ///< about as many voxels; rays of similar length are walked together
+  std::uint32_t steps;       ///< about so many to the end; rays of similar length walk together
 };
+
+/// Rays that are walked together, one in each lane.
+inline constexpr std::size_t kRaysTogether = 8;
+using RayGroup = std::array<const ExactRay*, kRaysTogether>;
+/// Deals rays of similar length into groups. The eight of a group come from different regions, so
+/// that they do not write to the same cache lines: a run of n similar rays is cut into eight parts,
+/// and each gives one ray to every group. The last groups are filled up with the longest ray.
+std::vector<RayGroup> groups_of(std::span<const ExactRay> rays);
 
 /// How far rays go.
 enum class RayEnd {

@@ -52,34 +52,39 @@ struct BorderCrossings {
 /// that axis alone.
 class WindowBits {
  public:
-  explicit WindowBits(const RayWindow& window) {
+  explicit WindowBits(const RayWindow& window)
+      : y_shift_(window.y_shift()),
+        z_shift_(window.z_shift()),
+        along_y_(window.bytes_along() == RayWindow::BytesAlong::kY) {
     const auto below = [](int bit) { return (std::uint64_t{1} << bit) - 1; };
-    const int y = window.y_shift(), z = window.z_shift();
-    axes_[0] = 7 | (below(y) & ~below(10)) << 3;
-    axes_[1] = (7 | 3 << 8 | (below(z) & ~below(y))) << 3;
-    axes_[2] = (below(8) & ~below(3)) << 3 | (below(58) & ~below(z)) << 3;
+    axes_[0] = 7 | (below(y_shift_) & ~below(10)) << 3;
+    axes_[1] = (7 | 3 << 8 | (below(z_shift_) & ~below(y_shift_))) << 3;
+    axes_[2] = (below(8) & ~below(3)) << 3 | (below(58) & ~below(z_shift_)) << 3;
+    if (!along_y_) return;
+    axes_[0] ^= 7 | 7 << 3;
+    axes_[1] ^= 7 | 7 << 3;
   }
 
   /// Returns the bit of a voxel, counted from the low corner of the window.
   std::uint64_t at(const Voxel& from_corner) const {
-    const std::array<std::int32_t, 3> index{from_corner.x, from_corner.y, from_corner.z};
-    std::uint64_t bit = 0;
-    for (std::size_t i = 0; i < 3; ++i) {
-      std::uint64_t rest = axes_[i];
-      for (auto digits = static_cast<std::uint32_t>(index[i]); digits != 0; digits >>= 1) {
-        if ((digits & 1) != 0) bit |= rest & (~rest + 1);
-        rest &= rest - 1;
-      }
-    }
-    return bit;
+    constexpr int kFraction = 8;  // what address_of wants
+    const auto scaled = [](std::int32_t index) {
+      return std::uint64_t{static_cast<std::uint32_t>(index)} << kFraction;
+    };
+    const std::int32_t swapped = along_y_ ? (from_corner.x ^ from_corner.y) & 7 : 0;
+    const std::int32_t x = from_corner.x ^ swapped, y = from_corner.y ^ swapped;
+    const std::uint64_t byte =
+        address_of<kFraction>(scaled(x), scaled(y), scaled(from_corner.z), y_shift_, z_shift_);
+    return byte << 3 | static_cast<std::uint64_t>(x & 7);
   }
 
   /// Returns the bits of an axis.
   std::uint64_t of_axis(std::size_t axis) const { return axes_[axis]; }
   /// Returns what a step adds to the bits of an axis. Forward, the bits of the other axes are
   /// added as ones, so that they hand the carry on.
-  std::uint64_t change(std::size_t axis, bool back) const {
-    const std::uint64_t own = axes_[axis];
+  std::uint64_t change(std::size_t axis, bool back) const { return change_of(axes_[axis], back); }
+  /// The same for some bits of an axis.
+  static std::uint64_t change_of(std::uint64_t own, bool back) {
     const std::uint64_t lowest = own & (~own + 1);
     return back ? ~lowest + 1 : ~own + lowest;
   }
@@ -90,6 +95,8 @@ class WindowBits {
   }
 
  private:
+  int y_shift_, z_shift_;
+  bool along_y_;
   std::array<std::uint64_t, 3> axes_;
 };
 
@@ -101,6 +108,7 @@ class WindowWalk {
 
   std::uint64_t at() const { return at_; }
   double nearest_m() const { return crossings_.nearest_m(); }
+  double next_m(std::size_t axis) const { return crossings_.next_m[axis]; }
 
   /// Moves to the next voxel and returns along which axis.
   std::size_t advance() {
@@ -150,7 +158,8 @@ struct VoxelBox {
 };
 
 /// Lays a window out around a box. Returns the block at its low corner.
-inline BlockIndex lay_out_around(const VoxelBox& box, RayWindow& window) {
+inline BlockIndex lay_out_around(const VoxelBox& box, RayWindow& window,
+                                 RayWindow::BytesAlong bytes = RayWindow::BytesAlong::kX) {
   const BlockIndex first = block_of(box.low);
   const auto tiles = [](std::int32_t first_block, std::int32_t high) {
     const std::int32_t extent = high - first_block * kBlockSide;
@@ -158,7 +167,7 @@ inline BlockIndex lay_out_around(const VoxelBox& box, RayWindow& window) {
         std::bit_width(static_cast<std::uint32_t>(extent / RayWindow::kTileSide)));
   };
   window.lay_out(
-      {tiles(first.x, box.high.x), tiles(first.y, box.high.y), tiles(first.z, box.high.z)});
+      {tiles(first.x, box.high.x), tiles(first.y, box.high.y), tiles(first.z, box.high.z)}, bytes);
   return first;
 }
 

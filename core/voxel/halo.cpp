@@ -116,6 +116,21 @@ MOSBENCH_MULTIARCH BlockMask dilate(const HaloRows& halo) {
   return result;
 }
 
+BlockMask grown_inside(const BlockMask& mask) {
+  BlockMask planes;
+  for (std::size_t z = 0; z < kBlockSide; ++z) {
+    const std::uint64_t word = mask.words[z];
+    const std::uint64_t row = word | beside_in_row(word);
+    planes.words[z] = row | row << 8 | row >> 8;
+  }
+  BlockMask grown = planes;
+  for (std::size_t z = 0; z < kBlockSide; ++z) {
+    if (z > 0) grown.words[z] |= planes.words[z - 1];
+    if (z + 1 < kBlockSide) grown.words[z] |= planes.words[z + 1];
+  }
+  return grown;
+}
+
 MOSBENCH_MULTIARCH int count_around(const HaloRows& halo, std::uint32_t cell) {
   const int x = static_cast<int>(cell & 7), y = static_cast<int>((cell >> 3) & 7),
             z = static_cast<int>(cell >> 6);

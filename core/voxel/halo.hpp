@@ -43,6 +43,10 @@ void invert(HaloRows& halo);
 /// Returns the voxels of the block that have a set voxel within `radius` per axis.
 BlockMask dilate(const HaloRows& halo);
 
+/// Returns the voxels of a block that have one of the mask's within it among themselves and their
+/// 26 neighbours: what can be said of `dilate` with radius 1 without the blocks around.
+BlockMask grown_inside(const BlockMask& mask);
+
 /// Counts the set voxels in the cube of side 2 radius + 1 around a cell of the block.
 int count_around(const HaloRows& halo, std::uint32_t cell);
 

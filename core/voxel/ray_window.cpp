@@ -20,11 +20,27 @@ std::vector<std::uint32_t> touched_tiles(const std::vector<std::uint8_t>& touche
   return tiles;
 }
 
-/// Returns a block's bits and clears them in the window.
-BlockMask take(std::uint8_t* bytes) {
+/// Swaps the axes of eight rows of eight bits (Warren, Hacker's Delight, 7-3).
+std::uint64_t turned(std::uint64_t rows) {
+  const auto swap = [&rows](int distance, std::uint64_t lower) {
+    const std::uint64_t differ = (rows ^ rows >> distance) & lower;
+    rows ^= differ ^ differ << distance;
+  };
+  swap(7, 0x00AA00AA00AA00AAu);
+  swap(14, 0x0000CCCC0000CCCCu);
+  swap(28, 0x00000000F0F0F0F0u);
+  return rows;
+}
+
+BlockMask turned(const BlockMask& mask) {
+  BlockMask result;
+  for (std::size_t z = 0; z < kBlockSide; ++z) result.words[z] = turned(mask.words[z]);
+  return result;
+}
+
+BlockMask read(const std::uint8_t* bytes) {
   BlockMask mask;
   std::memcpy(mask.words.data(), bytes, sizeof(mask.words));
-  if (mask.any()) std::memset(bytes, 0, sizeof(mask.words));
   return mask;
 }
 
@@ -35,8 +51,9 @@ void append(const VoxelList& part, VoxelList& all) {
 
 }  // namespace
 
-void RayWindow::lay_out(const std::array<int, 3>& log2_tiles) {
+void RayWindow::lay_out(const std::array<int, 3>& log2_tiles, BytesAlong axis) {
   log2_tiles_ = log2_tiles;
+  bytes_along_ = axis;
   tiles_.x_tiles_ = (1u << log2_tiles[0]) - 1;
   tiles_.y_tiles_ = ((1u << log2_tiles[1]) - 1) << log2_tiles[0];
   const std::size_t tiles = std::size_t{1} << (log2_tiles[0] + log2_tiles[1] + log2_tiles[2]);
@@ -51,6 +68,25 @@ void RayWindow::lay_out(const std::array<int, 3>& log2_tiles) {
   }
   touched_.assign(tiles, 0);
   tiles_.touched_ = touched_.data();
+}
+
+void RayWindow::copy_turned(const RayWindow& other) {
+  for (const std::uint32_t tile : touched_tiles(other.touched_)) {
+    touched_[tile] = 1;
+    for (std::uint32_t block = 0; block < kBlocksPerTile; ++block) {
+      const std::size_t at = std::size_t{tile} * kTileBytes + block * sizeof(BlockMask);
+      const BlockMask mask = read(other.bits() + at);
+      if (mask.any()) std::memcpy(bits() + at, turned(mask).words.data(), sizeof(mask.words));
+    }
+  }
+}
+
+/// Returns a block's bits and clears them in the window.
+BlockMask RayWindow::take(std::size_t byte) {
+  const BlockMask mask = read(bits() + byte);
+  if (!mask.any()) return mask;
+  std::memset(bits() + byte, 0, sizeof(mask.words));
+  return bytes_along_ == BytesAlong::kX ? mask : turned(mask);
 }
 
 std::size_t RayWindow::memory_bytes() const {
@@ -80,10 +116,11 @@ VoxelList collect(std::span<RayWindow> windows, const BlockIndex& first_block, T
     VoxelList& part = parts[begin / kGrain];
     for (std::size_t i = begin; i < end; ++i) {
       for (std::uint32_t block = 0; block < kBlocksPerTile; ++block) {
-        const std::size_t at = std::size_t{tiles[i]} * RayWindow::kTileBytes + block * 64;
-        BlockMask mask = take(all.bits() + at);
+        const std::size_t at =
+            std::size_t{tiles[i]} * RayWindow::kTileBytes + block * sizeof(BlockMask);
+        BlockMask mask = all.take(at);
         for (RayWindow& window : windows.subspan(1)) {
-          if (window.touched_[tiles[i]] != 0) mask = mask | take(window.bits() + at);
+          if (window.touched_[tiles[i]] != 0) mask = mask | window.take(at);
         }
         if (!mask.any()) continue;
         part.blocks.push_back(all.block_at(tiles[i], block, first_block));

@@ -16,15 +16,20 @@ namespace mosbench {
 /// blocks (one page each). Numbers of tiles are powers of two, so that shifted coordinates make an
 /// address:
 ///   y0-2 z0-2 z3-4 y3-4 x3-4 | x5.. y5.. z5..   (lowest address bit first; x0-2 is the bit)
+/// Where bytes lie along y, x0-2 and y0-2 change places.
 class RayWindow {
  public:
+  enum class BytesAlong : std::uint8_t { kX, kY };
   static constexpr std::int32_t kTileSide = 32;
   static constexpr std::uint32_t kTileBytes = 4096;
 
   /// Zeroes nothing but the record of touched tiles: `collect` leaves the bits zero.
-  void lay_out(const std::array<int, 3>& log2_tiles);
+  void lay_out(const std::array<int, 3>& log2_tiles, BytesAlong axis = BytesAlong::kX);
+  /// Copies the bits of a window of the same tiles whose bytes lie along the other axis.
+  void copy_turned(const RayWindow& other);
 
   std::uint8_t* bits() const { return bits_.get(); }
+  BytesAlong bytes_along() const { return bytes_along_; }
   int y_shift() const { return 12 + log2_tiles_[0]; }
   int z_shift() const { return y_shift() + log2_tiles_[1]; }
 
@@ -42,6 +47,9 @@ class RayWindow {
       }
     }
 
+    /// Touches the tile of a byte.
+    void touch(std::uint64_t byte) const { touched_[byte / kTileBytes] = 1; }
+
    private:
     friend class RayWindow;
     std::uint32_t x_tiles_ = 0, y_tiles_ = 0;
@@ -56,12 +64,14 @@ class RayWindow {
  private:
   friend VoxelList collect(std::span<RayWindow> windows, const BlockIndex& first_block,
                            class ThreadPool& pool);
+  BlockMask take(std::size_t byte);
   BlockIndex block_at(std::uint32_t tile, std::uint32_t block, const BlockIndex& first) const;
 
   struct Free {
     void operator()(std::uint8_t* pointer) const { std::free(pointer); }
   };
   std::array<int, 3> log2_tiles_{};  ///< along x, y, z
+  BytesAlong bytes_along_ = BytesAlong::kX;
   Tiles tiles_;
   std::size_t capacity_tiles_ = 0;
   std::unique_ptr<std::uint8_t, Free> bits_;
@@ -88,7 +98,7 @@ inline __attribute__((always_inline)) Number address_of(const Number& x, const N
          ((y >> (kFraction + 5) << y_shift) + (z >> (kFraction + 5) << z_shift));
 }
 
-/// Returns the voxels of all windows of one layout and clears the windows. `first_block` is the
+/// Returns the voxels of all windows of the same tiles and clears the windows. `first_block` is the
 /// block at their low corner.
 VoxelList collect(std::span<RayWindow> windows, const BlockIndex& first_block, ThreadPool& pool);
 
