@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
-#include <cstdlib>
+
+#include "core/base/multiarch.hpp"
+#include "core/base/simd_lanes.hpp"
 
 namespace mosbench::tsdf {
 namespace {
@@ -18,51 +21,81 @@ using Cell = std::array<std::int32_t, 3>;
 struct Window {
   std::int32_t side;
   std::uint8_t* met;
-
-  std::size_t offset(const Cell& cell) const {
-    return (static_cast<std::size_t>(cell[2]) * static_cast<std::size_t>(side) +
-            static_cast<std::size_t>(cell[1])) *
-               static_cast<std::size_t>(side) +
-           static_cast<std::size_t>(cell[0]);
-  }
 };
 
-Cell cell_at(const Steps& position) {
-  Cell cell{};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    cell[axis] = static_cast<std::int32_t>(std::floor(position[axis] + kBorder));
-  }
-  return cell;
+/// Positions of eight rays' starts, in blocks from the window's corner.
+using Starts = std::array<LaneArray, 3>;
+
+inline __attribute__((always_inline)) IntLanes index_of(const FloatLanes& position) {
+  const FloatLanes behind_border = position + kBorder;
+  const IntLanes truncated = __builtin_convertvector(behind_border, IntLanes);
+  return truncated + (__builtin_convertvector(truncated, FloatLanes) > behind_border);  // -1: true
 }
 
-/// Marks the blocks from `start` to `end`, positions in blocks from the window's corner.
-void traverse(const Steps& start, const Steps& end, const Window& window) {
-  const Cell last = cell_at(end);
-  Cell cell = cell_at(start);
-  std::int32_t steps = 0;
-  Steps to_border{}, per_block{};
-  std::array<std::ptrdiff_t, 3> stride{};
-  const std::array<std::ptrdiff_t, 3> strides{1, window.side,
-                                              std::ptrdiff_t{window.side} * window.side};
+/// Marks the blocks from eight starts to `end`.
+MOSBENCH_MULTIARCH void traverse(const Starts& starts, const Steps& end, const Window& window) {
+  // A local: the byte stores below could otherwise change anything behind a reference.
+  std::uint8_t* const met = window.met;
+  const std::array<std::int32_t, 3> strides{1, window.side, window.side * window.side};
+  IntLanes offset{}, steps{}, stride[3];
+  FloatLanes to_border[3], per_block[3];
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const float ray = end[axis] - start[axis];
-    steps += std::abs(last[axis] - cell[axis]);
-    const float sign = ray > 0 ? 1.0F : (ray < 0 ? -1.0F : 0.0F);
-    const float inside = start[axis] - static_cast<float>(cell[axis]);
-    stride[axis] = strides[axis] * static_cast<std::ptrdiff_t>(sign);
-    to_border[axis] = ray == 0 ? 2.0F : (std::max(sign, 0.0F) - inside) / ray;
-    per_block[axis] = ray == 0 ? 2.0F : sign / ray;
+    const auto start = load<FloatLanes>(starts[axis].data());
+    const FloatLanes ray = end[axis] - start;
+    const IntLanes cell = index_of(start), last = index_of(FloatLanes{} + end[axis]);
+    const FloatLanes inside = start - __builtin_convertvector(cell, FloatLanes);
+    const FloatLanes one = FloatLanes{} + 1.0F, two = FloatLanes{} + 2.0F, none{};
+    const FloatLanes ahead = ray > 0.0F ? one : none;
+    const FloatLanes sign = ray < 0.0F ? -one : ahead;
+    to_border[axis] = ray == 0.0F ? two : (ahead - inside) / ray;
+    per_block[axis] = ray == 0.0F ? two : sign / ray;
+    steps += magnitude(last - cell);
+    offset += cell * strides[axis];
+    stride[axis] = __builtin_convertvector(sign, IntLanes) * strides[axis];
   }
-  std::uint8_t* block = window.met + window.offset(cell);
-  *block = 1;
-  for (; steps > 0; --steps) {
-    std::size_t axis = to_border[1] < to_border[0] ? 1 : 0;
-    axis = to_border[2] < to_border[axis] ? 2 : axis;
-    to_border[axis] += per_block[axis];
-    block += stride[axis];
-    *block = 1;
+  for (;; steps -= 1) {
+    LaneArray offsets;
+    store(offset, offsets);
+    for (const std::uint32_t at : offsets) met[at] = 1;
+    const IntLanes goes_on = steps > 0;
+    if (bits_of(goes_on) == 0) return;
+    const IntLanes y_first = to_border[1] < to_border[0];
+    const IntLanes z_first = to_border[2] < (y_first ? to_border[1] : to_border[0]);
+    const IntLanes along[3] = {goes_on & ~y_first & ~z_first, goes_on & y_first & ~z_first,
+                               goes_on & z_first};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      to_border[axis] = along[axis] ? to_border[axis] + per_block[axis] : to_border[axis];
+      offset += along[axis] & stride[axis];
+    }
   }
 }
+
+/// Collects rays until there are eight to be walked together.
+class RayBatch {
+ public:
+  RayBatch(const Steps& end, const Window& window) : end_(end), window_(window) {}
+
+  void add(const Steps& start) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      starts_[axis][count_] = std::bit_cast<std::uint32_t>(start[axis]);
+    }
+    if (++count_ == kLanes) finish();
+  }
+  void finish() {
+    if (count_ == 0) return;
+    for (std::size_t lane = count_; lane < kLanes; ++lane) {
+      for (LaneArray& starts : starts_) starts[lane] = starts[0];  // the first ray once more
+    }
+    traverse(starts_, end_, window_);
+    count_ = 0;
+  }
+
+ private:
+  const Steps& end_;
+  const Window& window_;
+  Starts starts_;
+  std::size_t count_ = 0;
+};
 
 }  // namespace
 
@@ -98,13 +131,15 @@ std::vector<BlockIndex> ray_blocks(std::span<const Point> points, const ScanPixe
   for (auto& window : scratch.windows) window.assign(cells, 0);
   pool.for_ranges(points.size(), 4096, [&](std::size_t begin, std::size_t end, unsigned thread) {
     const Window window{side, scratch.windows[thread].data()};
+    RayBatch rays(sensor, window);
     for (std::size_t i = begin; i < end; ++i) {
       const float range_m = pixels.ranges_m[i];
       if (pixels.pixels[i] == kNoPixel || range_m < min_range_m || range_m > max_range_m) continue;
       const Eigen::Vector3f ray = turned * Eigen::Vector3f(points[i].x, points[i].y, points[i].z) *
                                   (1.0F + beyond_m / range_m);
-      traverse({sensor[0] + ray.x(), sensor[1] + ray.y(), sensor[2] + ray.z()}, sensor, window);
+      rays.add({sensor[0] + ray.x(), sensor[1] + ray.y(), sensor[2] + ray.z()});
     }
+    rays.finish();
   });
   std::vector<BlockIndex> blocks;
   std::size_t offset = 0;
