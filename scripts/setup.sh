@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# setup.sh [--python|--tests|--checks|--package|--page]: installs the Debian packages for building and
+# setup.sh [--python|--tests|--checks|--package|--page|--cluster]: installs the Debian packages for building and
 # testing; with --python also those of the Python package, its tests and its examples; with --checks those
 # of the format and clang checks and of the API pages; with --package those that make and check Debian
 # packages; with --page what tests, lints and builds the report's page: a browser, node and the packages of
-# eval/report/page/package-lock.json; --tests is --python and --page. Returns quickly when all are installed.
+# eval/report/page/package-lock.json; with --cluster Snakemake and Slurm; --tests is --python and --page. Returns quickly when all are installed.
 # MOSBENCH_WITH_PCL=OFF leaves out PCL, which brings some 400 packages,
 # MOSBENCH_WITH_ROSBAG=OFF the 40 or so of ROS's bag library, which only writing bags needs,
 # MOSBENCH_WITH_OCTOMAP=OFF the two of OctoMap, for the method of that name,
@@ -11,7 +11,7 @@
 set -euo pipefail
 
 packages=(g++ cmake ninja-build pkg-config git xz-utils jq bsdextrautils python3
-  libeigen3-dev libfmt-dev nlohmann-json3-dev libcli11-dev libxxhash-dev libutfcpp-dev
+  libeigen3-dev libfmt-dev nlohmann-json3-dev libcli11-dev libxxhash-dev libutfcpp-dev libyaml-cpp-dev
   zlib1g-dev libpng-dev libbz2-dev liblz4-dev libboost-dev)
 [ "${MOSBENCH_BUILD_TESTS:-ON}" = OFF ] || packages+=(libgtest-dev libgmock-dev libbenchmark-dev help2man)
 [ "${MOSBENCH_WITH_PCL:-ON}" = OFF ] || packages+=(libpcl-dev)
@@ -25,7 +25,8 @@ case "${1:-}" in
     ;;
   --checks) packages+=(clang clang-format clang-tidy doxygen) ;;
   --package) packages+=(pybind11-dev python3-dev python3-numpy dpkg-dev lintian mmdebstrap) ;;
-  *) echo "usage: setup.sh [--python|--tests|--checks|--package|--page]" >&2; exit 2 ;;
+  --cluster) packages+=(snakemake slurm-wlm munge) ;;
+  *) echo "usage: setup.sh [--python|--tests|--checks|--package|--page|--cluster]" >&2; exit 2 ;;
 esac
 with_page=$(case "${1:-}" in --page | --tests) echo 1 ;; esac)
 if [ -n "$with_page" ]; then

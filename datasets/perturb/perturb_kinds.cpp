@@ -66,6 +66,7 @@ std::span<const PerturbKind> perturb_kinds() {
           .definition =
               "all poses from pose_jump_scan on turn by this about the vertical through its sensor",
           .source = "what closing a loop does to a pose graph",
+          .is_random = false,
           .change_scans = add_pose_jump_deg},
       PerturbKind{
           .name = "range_noise_m",
@@ -84,6 +85,7 @@ std::span<const PerturbKind> perturb_kinds() {
                   .unit = "m",
                   .definition = "is added to every range; no return comes nearer than 1 cm",
                   .source = "systematic part of a sensor's stated accuracy",
+                  .is_random = false,
                   .point_change = range_bias},
       PerturbKind{.name = "dropout_probability",
                   .none = 0,
@@ -111,6 +113,7 @@ std::span<const PerturbKind> perturb_kinds() {
                   .unit = "beams",
                   .definition = "only this many of the beams_of beams are left, evenly spaced",
                   .source = "Wei et al., LiDAR Distillation (2022), 3.2",
+                  .is_random = false,
                   .changes_truth = true,
                   .point_change = fewer_beams},
       PerturbKind{.name = "every_nth_scan",
@@ -120,6 +123,7 @@ std::span<const PerturbKind> perturb_kinds() {
                   .unit = "scans",
                   .definition = "only every n-th scan is left, the first included",
                   .source = "a slower sensor",
+                  .is_random = false,
                   .change_scans = keep_every_nth_scan},
       PerturbKind{.name = "scan_loss_probability",
                   .none = 0,
@@ -167,6 +171,7 @@ std::span<const PerturbKind> perturb_kinds() {
                   .unit = "deg",
                   .definition = "the sensor looks down by this, and the poses do not know",
                   .source = "error of extrinsic calibration",
+                  .is_random = false,
                   .point_change = mount_tilt},
       PerturbKind{
           .name = "time_warp",
@@ -178,6 +183,7 @@ std::span<const PerturbKind> perturb_kinds() {
                         "length, behind first, the stamp ahead",
           .source = "Geiger et al., Vision meets Robotics (2013), 3; the inverse of undistortion",
           .needs_poses = true,
+          .is_random = false,
           .point_change = time_warp},
   };
   return kKinds;

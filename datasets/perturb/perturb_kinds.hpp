@@ -57,6 +57,7 @@ struct PerturbKind {
   double lowest, highest;
   std::string_view unit, definition, source;
   bool needs_poses = false;
+  bool is_random = true;       ///< whether the seed counts
   bool changes_truth = false;  ///< points may be lost or become others
   void (*change_scans)(const PerturbContext& context, ScanList& list) = nullptr;
   ChangePoints (*point_change)(const PerturbContext& context) = nullptr;

@@ -92,6 +92,11 @@ std::string readme(const SimulatedOrigin& origin) {
           : "Truth is by speed: above 0.5 m/s is moving, for vehicles above 1.0 m/s.\n");
 }
 
+/// Returns the name that readers give a sequence: of DOALS with the scene's folder.
+std::string name_of(DatasetKind layout, const fs::path& folder) {
+  return layout == DatasetKind::kDoals ? folder.generic_string() : folder.filename().string();
+}
+
 /// One recording as its layout stores it, but with the LiDAR's poses.
 class SimulatedSequence : public Sequence {
  public:
@@ -100,7 +105,7 @@ class SimulatedSequence : public Sequence {
       : layout_(options.layout), simulator_(scene, sensor_model(simulated.sensor), options.seed) {
     const std::set<std::size_t> labelled = labelled_scans(layout_, options.scans);
     Recording& recording = mutable_recording();
-    recording.name = SequenceName(name_of(simulated.folder), simulated.folder);
+    recording.name = SequenceName(name_of(layout_, simulated.folder), simulated.folder);
     for (std::size_t k = 0; k < options.scans; ++k) {
       recording.scans.push_back(
           {.stem = fmt::format("{:06}", k),
@@ -139,11 +144,6 @@ class SimulatedSequence : public Sequence {
   }
 
  private:
-  /// As readers name it: of DOALS with the scene's folder.
-  std::string name_of(const fs::path& folder) const {
-    return layout_ == DatasetKind::kDoals ? folder.generic_string() : folder.filename().string();
-  }
-
   /// Sipailou and HeLiMOS have no times.txt, that of SemanticKITTI starts at 0.
   std::optional<std::int64_t> stored_stamp_ns(std::int64_t stamp_ns) const {
     if (layout_ == DatasetKind::kDoals) return stamp_ns;
@@ -193,6 +193,14 @@ void check(const SimulateOptions& options) {
 }
 
 }  // namespace
+
+std::vector<std::string> simulated_names(DatasetKind layout, const Scene& scene) {
+  std::vector<std::string> names;
+  for (const SimulatedRecording& recording : recordings_of(layout, scene)) {
+    names.push_back(name_of(layout, recording.folder));
+  }
+  return names;
+}
 
 Scene load_scene(const std::string& name_or_file) {
   const bool is_file =

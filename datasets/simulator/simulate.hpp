@@ -6,6 +6,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/base/thread_pool.hpp"
 #include "datasets/layouts/dataset.hpp"
@@ -30,6 +31,10 @@ struct SimulateOptions {
 /// never from two threads at once.
 void simulate(const SimulateOptions& options,
               const std::function<void(std::size_t done, std::size_t total)>& progress = {});
+
+/// Returns the names of the sequences that a simulation consists of. Throws UsageError as
+/// `simulate`.
+std::vector<std::string> simulated_names(DatasetKind layout, const Scene& scene);
 
 /// Returns the scene of a built-in name, or of a file when the name ends in .json or has a slash.
 Scene load_scene(const std::string& name_or_file);

@@ -51,6 +51,7 @@ CommandRun add_run(CLI::App& command);
 CommandRun add_score(CLI::App& command);
 CommandRun add_simulate(CLI::App& command);
 CommandRun add_stats(CLI::App& command);
+CommandRun add_study(CLI::App& command);
 CommandRun add_table(CLI::App& command);
 CommandRun add_trajectory(CLI::App& command);
 

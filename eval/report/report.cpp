@@ -23,21 +23,6 @@ using nlohmann::ordered_json;
 
 constexpr std::size_t kBytesAroundBlock = 64;
 
-/// Escapes "<", so that no string of the content can close its element or open another.
-std::string script_json(const ordered_json& json) {
-  const std::string text = json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
-  std::string escaped;
-  escaped.reserve(text.size());
-  for (const char c : text) {
-    if (c == '<') {
-      escaped += "\\u003c";
-    } else {
-      escaped += c;
-    }
-  }
-  return escaped;
-}
-
 ordered_json result_json(const FoundResult& result) {
   const ordered_json& content = result.file.content;
   ordered_json json = {{"run", run_name(result)}, {"folder", result.folder.string()}};
@@ -101,19 +86,6 @@ std::size_t room_for_points(const ordered_json& content, const std::vector<Found
                   options.max_mb, static_cast<double>(taken) / 1e6));
 }
 
-std::string page(const ordered_json& content, const std::vector<std::string>& blocks) {
-  const auto [before, behind] = report_asset_parts();
-  std::string html(before);
-  html += "<script type=\"application/json\" id=\"report\">" + script_json(content) + "</script>\n";
-  for (std::size_t i = 0; i < blocks.size(); ++i) {
-    html += fmt::format("<script type=\"text/plain\" id=\"block-{}\">", i);
-    html += blocks[i];
-    html += "</script>\n";
-  }
-  html += behind;
-  return html;
-}
-
 /// Opens the scans of every result that has labels, and says which has none; where none has, it
 /// throws DataError as ResultScans does.
 std::vector<std::optional<ResultScans>> open_sources(
@@ -140,7 +112,9 @@ Report build_report(const std::vector<std::filesystem::path>& inputs,
   const std::vector<ReportRun> runs = runs_of(results);
   ordered_json content = content_without_points(inputs, results, runs, options);
   if (options.scans.none()) {
-    return {page(content, {}), results.size(), {"the file holds no points (--scans none)"}};
+    return {filled_page(report_asset(), content),
+            results.size(),
+            {"the file holds no points (--scans none)"}};
   }
   check_choice(results, options.scans);
   std::vector<std::string> remarks;
@@ -164,7 +138,7 @@ Report build_report(const std::vector<std::filesystem::path>& inputs,
     content["results"][i]["scores"] = scans.results[i].score_blocks;
   }
   remarks.insert(remarks.end(), scans.remarks.begin(), scans.remarks.end());
-  return {page(content, scans.blocks), results.size(), remarks};
+  return {filled_page(report_asset(), content, scans.blocks), results.size(), remarks};
 }
 
 }  // namespace mosbench

@@ -76,11 +76,9 @@ ordered_json header(const RunPlan& plan, const PlannedSequence& planned, const S
   const Recording& recording = plan.dataset.sequences[planned.position]->recording();
   for (const ScanEntry& scan : recording.left_out) json["scans_left_out"].push_back(scan.stem);
   const Split* benchmark = benchmark_scans(*plan.settings.protocol, plan.dataset.splits);
-  const auto stems =
-      benchmark == nullptr ? std::nullopt : stems_in_split(*benchmark, planned.position);
   std::vector<Confusion> counts;
-  for (const ScanRow& row : rows.scans) {
-    if (row.counts && (!stems || stems->contains(row.stem))) counts.push_back(*row.counts);
+  for (const ScanRow* row : counted_scans(plan, planned.position, rows)) {
+    counts.push_back(*row->counts);
   }
   if (const ordered_json splits = picked_stems(plan.dataset, planned.position); !splits.empty()) {
     json["splits"] = splits;
@@ -156,6 +154,17 @@ SequenceOutcome reuse(const RunPlan& plan, const PlannedSequence& planned) {
 }
 
 }  // namespace
+
+std::vector<const ScanRow*> counted_scans(const RunPlan& plan, std::size_t position,
+                                          const SequenceRows& rows) {
+  const Split* benchmark = benchmark_scans(*plan.settings.protocol, plan.dataset.splits);
+  const auto stems = benchmark == nullptr ? std::nullopt : stems_in_split(*benchmark, position);
+  std::vector<const ScanRow*> counted;
+  for (const ScanRow& row : rows.scans) {
+    if (row.counts && (!stems || stems->contains(row.stem))) counted.push_back(&row);
+  }
+  return counted;
+}
 
 std::vector<SequenceOutcome> execute_run(const RunPlan& plan) {
   keep_freed_memory();

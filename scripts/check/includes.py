@@ -44,6 +44,7 @@ MAY_INCLUDE = {
     "eval/breakdown": THREADS | {"datasets/"} | NUMBERS,
     "eval/tables": {"core/include", "datasets/"} | NUMBERS,
     "eval/report": THREADS | {"datasets/", "eval/breakdown", "eval/tables", "eval/trajectory"} | NUMBERS,
+    "eval/study": THREADS | {"datasets/", "eval/report"} | NUMBERS,
     "eval/cli": THREADS | {"datasets/", "eval/"},
     "eval/python": THREADS | {"datasets/", "eval/"},
     "bench": {"core/", "datasets/", "eval/"},
@@ -65,6 +66,7 @@ EXTERNAL = {
     "nlohmann": ABOVE_CORE,
     "xxhash.h": {"datasets", "eval", "tests"},
     "utf8.h": {"datasets"},
+    "yaml-cpp": {"eval"},
 }
 # All that core may take from outside, apart from the above: it computes, and neither reads nor prints.
 FOR_CORE = set(

@@ -1,4 +1,4 @@
-// Bundles src/ into page.html, which the C++ build takes in. Run by scripts/build_report.sh.
+// Bundles src/ into page.html and study.html, which the C++ build takes in. Run by scripts/build_report.sh.
 import { createHash } from 'node:crypto';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { build } from 'esbuild';
@@ -24,24 +24,34 @@ const licence = (name) => {
   return `${name} ${version}\n\n${readFileSync(`${folder}node_modules/${name}/LICENSE`, 'utf8').trim()}`;
 };
 
-const script = await bundle('src/main.js');
 const style = await bundle('src/style.css');
-const parts = {
-  SCRIPT_HASH: hash(script),
-  STYLE_HASH: hash(style),
-  LICENCES: ['three', 'uplot'].map(licence).join('\n\n\n'),
-  STYLE: style,
-  SCRIPT: script,
-};
 const template = readFileSync(`${folder}src/page.html`, 'utf8');
-const page = template.replace(/\b(SCRIPT_HASH|STYLE_HASH|LICENCES|STYLE|SCRIPT)\b/g, (name) => parts[name]);
-if (process.argv.includes('--check')) {
-  if (readFileSync(`${folder}page.html`, 'utf8') !== page) {
-    console.error('page.html is not what src makes: run scripts/build_report.sh');
-    process.exit(1);
+
+/** The page that a script draws, with the licences of the libraries in it. */
+async function pageOf(entry, libraries) {
+  const script = await bundle(entry);
+  const parts = {
+    SCRIPT_HASH: hash(script),
+    STYLE_HASH: hash(style),
+    LICENCES: libraries.map(licence).join('\n\n\n'),
+    STYLE: style,
+    SCRIPT: script,
+  };
+  return template.replace(/\b(SCRIPT_HASH|STYLE_HASH|LICENCES|STYLE|SCRIPT)\b/g, (name) => parts[name]);
+}
+
+const pages = {
+  'page.html': await pageOf('src/main.js', ['three', 'uplot']),
+  'study.html': await pageOf('src/study.js', ['uplot']),
+};
+for (const [name, page] of Object.entries(pages)) {
+  if (!process.argv.includes('--check')) {
+    writeFileSync(folder + name, page);
+    console.log(`${name}: ${Math.round(page.length / 1000)} kB`);
+  } else if (readFileSync(folder + name, 'utf8') !== page) {
+    console.error(`${name} is not what src makes: run scripts/build_report.sh`);
+    process.exitCode = 1;
+  } else {
+    console.log(`${name} is what src makes`);
   }
-  console.log('page.html is what src makes');
-} else {
-  writeFileSync(`${folder}page.html`, page);
-  console.log(`page.html: ${Math.round(page.length / 1000)} kB`);
 }

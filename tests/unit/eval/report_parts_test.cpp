@@ -113,7 +113,7 @@ TEST(CompressedText, IsZlibInBase64) {
 }
 
 TEST(ReportAsset, IsOnePageWithAPlaceForTheContent) {
-  const auto [before, behind] = report_asset_parts();
+  const auto [before, behind] = parts_of_page(report_asset());
   EXPECT_TRUE(before.starts_with("<!doctype html>"));
   EXPECT_NE(before.find("three.js authors"), std::string_view::npos);
   EXPECT_NE(behind.find("</html>"), std::string_view::npos);

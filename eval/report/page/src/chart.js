@@ -52,6 +52,22 @@ function dots(marks, state) {
   };
 }
 
+/** A vertical bar from low to high at each of [{x, low, high, colour}] that has both. */
+function whiskers(bars, state) {
+  return (plot) => {
+    for (const { x, low, high, colour } of bars.filter((bar) => bar.low !== undefined && bar.high !== undefined)) {
+      plot.ctx.save();
+      plot.ctx.strokeStyle = colour[state.get('theme')];
+      plot.ctx.lineWidth = devicePixelRatio;
+      plot.ctx.beginPath();
+      plot.ctx.moveTo(plot.valToPos(x, 'x', true), plot.valToPos(low, 'y', true));
+      plot.ctx.lineTo(plot.valToPos(x, 'x', true), plot.valToPos(high, 'y', true));
+      plot.ctx.stroke();
+      plot.ctx.restore();
+    }
+  };
+}
+
 /**
  * A chart in a frame with its title. `series`: [{label, values, colour, ...}] over `x`; `options`
  * goes to uPlot. A chart over scans sends clicks to `go` and marks the shown scan.
@@ -96,7 +112,8 @@ export class Chart {
   #build(width) {
     const style = axisStyle(this.state.get('theme'));
     const axes = [{ ...style, incrs: this.go ? SCAN_STEPS : undefined, ...this.options.xAxis }, { ...style, size: 58, values: shortTicks, ...this.options.yAxis }];
-    const draw = [...(this.go ? [cursorAtScan(this.state)] : []), ...(this.options.marks ? [dots(this.options.marks, this.state)] : [])];
+    const draw = [...(this.go ? [cursorAtScan(this.state)] : []), ...(this.options.marks ? [dots(this.options.marks, this.state)] : []),
+      ...(this.options.whiskers ? [whiskers(this.options.whiskers, this.state)] : [])];
     const options = {
       width,
       height: HEIGHT,

@@ -1,0 +1,197 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <memory>
+
+#include "datasets/files/errors.hpp"
+#include "eval/cli/commands.hpp"
+#include "eval/cli/dataset_flags.hpp"
+#include "eval/cli/output_file.hpp"
+#include "eval/results/answer_text.hpp"
+#include "eval/results/tell.hpp"
+#include "eval/study/study_cell.hpp"
+#include "eval/study/study_run.hpp"
+#include "eval/study/study_table.hpp"
+
+namespace mosbench {
+namespace {
+
+constexpr const char* kStudyFooter =
+    R"(FILE is a YAML file that names data, methods with settings, disturbances with strengths, seeds and the
+protocol; results/studies/README.md has all its keys and examples. Each combination is a cell with a key: the
+hash of everything that decides its result. Its result is one small file in DIR/cells, put there in one step.
+
+  plan   counts the cells that are done and missing; --measure runs the first scans of each method on each
+         sequence, so that it can tell the hours; --json lists all cells with their keys
+  run    computes what is missing by Snakemake, on this machine or with --profile slurm on a cluster, and
+         prints the table; the same command goes on after a kill, and computes again what another version
+         of mosbench left; --yes above 100 cells
+  cell   computes the cells with these keys, without Snakemake
+  table  prints what is there: means with 95 % intervals over sequences (of a single one over seeds), each
+         disturbance by strength, the Pareto front of IoU and time, ranks with critical difference.
+         The exit code is 1 while cells are missing or failed, which it names
+
+Examples:
+  mosbench study plan results/studies/demo.yaml --measure
+  mosbench study run results/studies/demo.yaml
+  mosbench study table results/studies/demo.yaml --format html -o demo.html
+  mosbench study run my_study.yaml --profile slurm --yes --out /shared/my_study)";
+
+constexpr std::size_t kMostWithoutYes = 100;
+
+struct StudyFlags {
+  std::string action;
+  std::filesystem::path file;
+  std::vector<std::string> keys;
+  std::optional<std::filesystem::path> out;
+  std::filesystem::path output = "-";
+  std::string profile = "local", format = "text";
+  unsigned threads = 1;
+  bool json = false, measure = false, yes = false;
+};
+
+std::string state_counts(const StudyPlan& plan) {
+  std::size_t done = 0, failed = 0, other = 0;
+  for (const PlannedCell& planned : plan.cells) {
+    done += planned.state == CellState::kDone;
+    failed += planned.state == CellState::kFailed;
+    other += planned.state == CellState::kOtherVersion;
+  }
+  const std::size_t missing = plan.cells.size() - done - failed - other;
+  return fmt::format("{} cells: {} done, {} missing, {} failed, {} of another version of mosbench",
+                     plan.cells.size(), done, missing, failed, other);
+}
+
+std::string hours_text(const StudyWork& work) {
+  if (work.cells.empty()) return "nothing is to be computed";
+  if (!work.hours) return "how long it takes is not known, --measure tells";
+  return fmt::format("{:.2f} hours of one core are to be computed", *work.hours);
+}
+
+nlohmann::ordered_json plan_json(const StudyPlan& plan, const CostModel& costs) {
+  static constexpr std::array kStates = {"missing", "failed", "other version", "done"};
+  nlohmann::ordered_json json = {{"study", plan.study->name},
+                                 {"out", plan.out.string()},
+                                 {"hours", json_or_null(work_of(plan, costs).hours)},
+                                 {"cells", nlohmann::ordered_json::array()}};
+  for (const PlannedCell& planned : plan.cells) {
+    json["cells"].push_back({{"key", planned.cell.key},
+                             {"title", planned.cell.title()},
+                             {"state", kStates[static_cast<std::size_t>(planned.state)]},
+                             {"seconds", json_or_null(costs.seconds(planned.cell))}});
+  }
+  return json;
+}
+
+Answer plan_answer(const StudyPlan& plan, const StudyFlags& flags) {
+  if (flags.measure) measure_costs(plan);
+  const CostModel costs = read_costs(plan.out);
+  if (flags.json) return {json_text(plan_json(plan, costs))};
+  return {fmt::format("{}\n{}\n", state_counts(plan), hours_text(work_of(plan, costs)))};
+}
+
+Answer cell_answer(const StudyPlan& plan, const StudyFlags& flags) {
+  if (flags.keys.empty()) throw UsageError("study cell: names no cell, expected its KEY");
+  std::string text;
+  bool failed = false;
+  for (const std::string& key : flags.keys) {
+    const auto found = std::ranges::find_if(
+        plan.cells, [&](const PlannedCell& planned) { return planned.cell.key == key; });
+    if (found == plan.cells.end()) {
+      throw UsageError(
+          fmt::format("{}: has no cell {}, expected one that `mosbench study plan "
+                      "{} --json` lists",
+                      flags.file.string(), key, flags.file.string()));
+    }
+    const CellOutcome outcome = compute_cell(*found, *plan.study, plan.out, flags.threads);
+    failed = failed || outcome == CellOutcome::kFailed;
+    static constexpr std::array kOutcomes = {"computed", "kept", "failed"};
+    text += fmt::format("{} {}: {}\n", key, kOutcomes[static_cast<std::size_t>(outcome)],
+                        found->cell.title());
+  }
+  return {text, failed ? 1 : 0};
+}
+
+std::string table_in(const std::string& format, const StudyPlan& plan, const StudyTable& table) {
+  if (format == "csv") return study_csv(plan);
+  if (format == "latex") return study_latex(table);
+  if (format == "json") return json_text(to_json(table));
+  if (format == "html") return study_html(table);
+  return study_text(table);
+}
+
+Answer table_answer(const StudyPlan& plan, const StudyFlags& flags) {
+  const StudyTable table = gather(plan);
+  const int exit_code = table.done == table.cells ? 0 : 1;
+  const std::string text = table_in(flags.format, plan, table);
+  if (flags.output == "-") return {text, exit_code};
+  write_output(flags.output, text);
+  return {fmt::format("wrote {}\n", flags.output.string()), exit_code};
+}
+
+Answer run_answer(const Study& study, const StudyPlan& plan, const StudyFlags& flags) {
+  const std::size_t pending = work_of(plan, {}).cells.size();
+  if (pending > 0) measure_costs(plan);
+  const CostModel costs = read_costs(plan.out);
+  tell(state_counts(plan));
+  tell(hours_text(work_of(plan, costs)));
+  if (pending > kMostWithoutYes && !flags.yes) {
+    throw UsageError(fmt::format("study run: {} cells are to be computed, and {}, expected --yes",
+                                 pending, hours_text(work_of(plan, costs))));
+  }
+  std::error_code error;
+  const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
+  const int engine = run_engine(plan, costs,
+                                {.profile = flags.profile,
+                                 .threads = flags.threads,
+                                 .program = error ? std::filesystem::path("mosbench") : program});
+  if (engine != 0) tell(fmt::format("Snakemake ended with exit code {}", engine));
+  return table_answer(plan_study(study, plan.out), flags);
+}
+
+Answer study(const StudyFlags& flags) {
+  const Study study = read_study(flags.file);
+  const std::filesystem::path out =
+      flags.out.value_or(std::filesystem::path("results/runs") / flags.file.stem());
+  const StudyPlan plan =
+      plan_study(study, out, flags.action == "cell" ? flags.keys : std::vector<std::string>());
+  if (flags.action == "plan") return plan_answer(plan, flags);
+  if (flags.action == "cell") return cell_answer(plan, flags);
+  if (flags.action == "run") return run_answer(study, plan, flags);
+  return table_answer(plan, flags);
+}
+
+}  // namespace
+
+CommandRun add_study(CLI::App& command) {
+  auto flags = std::make_shared<StudyFlags>();
+  command.add_option("ACTION", flags->action, "plan, run, cell or table")
+      ->required()
+      ->check(CLI::IsMember({"plan", "run", "cell", "table"}));
+  command.add_option("FILE", flags->file, "The study, a YAML file")->type_name("FILE")->required();
+  command.add_option("KEY", flags->keys, "Of cells to compute");
+  command
+      .add_option("--out", flags->out,
+                  "Folder of the results (default: results/runs/<name of FILE>)")
+      ->type_name("DIR");
+  command
+      .add_option("--profile", flags->profile, "local, slurm, or the folder of a Snakemake profile")
+      ->type_name("PROFILE")
+      ->capture_default_str();
+  command.add_option("--format", flags->format, "How to print the table")
+      ->check(CLI::IsMember({"text", "csv", "latex", "json", "html"}))
+      ->capture_default_str();
+  command.add_option("-o,--output", flags->output, "File of the table; - is stdout")
+      ->type_name("FILE")
+      ->capture_default_str();
+  add_threads_flag(command, flags->threads);
+  command.get_option("--threads")->description("Threads of each cell; results do not depend on it");
+  command.add_flag("--measure", flags->measure, "With plan: measure what a scan costs first");
+  command.add_flag("--yes", flags->yes, "With run: compute more than 100 cells");
+  command.add_flag("--json", flags->json, "With plan: print JSON instead of text");
+  command.footer(kStudyFooter);
+  return [flags] { return study(*flags); };
+}
+
+}  // namespace mosbench

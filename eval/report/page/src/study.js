@@ -1,0 +1,100 @@
+import { Chart } from './chart.js';
+import { element, table } from './dom.js';
+import { fixed, percent } from './format.js';
+import { readContent } from './payload.js';
+import { State } from './state.js';
+import { preferredTheme, runLine } from './theme.js';
+
+const METRICS = { iou: 'IoU', precision: 'Precision', recall: 'Recall' };
+const PERCENT_TICKS = (_, values) => values.map((v) => `${Math.round(100 * v)} %`);
+
+/** "62.3 % (60.1 to 64.4)" of a mean with its interval. */
+function meanText({ value, low, high }) {
+  const interval = low === undefined ? '' : ` (${(100 * low).toFixed(1)} to ${(100 * high).toFixed(1)})`;
+  return percent(value) + interval;
+}
+
+/** A metric over the strengths of one disturbance, a line per method; bars are intervals. */
+export function curveChart(curve, metric) {
+  const places = curve.values.map((_, i) => i);
+  return {
+    key: `${curve.axis}-${metric}`,
+    title: `${METRICS[metric]} by ${curve.axis}`,
+    note: curve.unit,
+    x: places,
+    series: curve.lines.map(({ label, points }, i) => ({
+      label, values: points.map((point) => point[metric].value), points: { show: true, size: 6 }, ...runLine(i),
+    })),
+    options: {
+      text: percent, xLabel: curve.axis, xValue: (_, i) => curve.values[i] ?? '–',
+      xScale: { range: [-0.3, places.length - 0.7] },
+      xAxis: { incrs: [1], values: (_, ticks) => ticks.map((i) => curve.values[i] ?? '') },
+      yScale: { range: [0, 1.02] }, yAxis: { values: PERCENT_TICKS },
+      whiskers: curve.lines.flatMap(({ points }, i) => points.map((point, x) => ({ x, low: point[metric].low, high: point[metric].high, colour: runLine(i).colour }))),
+    },
+  };
+}
+
+/** IoU over the time of a scan, a dot per method; null without times. */
+export function paretoChart(rows) {
+  const known = rows.map((row, i) => ({ ...row, line: runLine(i) })).filter((row) => row.ms_per_scan !== null && row.metrics.iou.value !== null);
+  if (known.length === 0) return null;
+  const sorted = [...known].sort((a, b) => a.ms_per_scan - b.ms_per_scan);
+  return {
+    key: 'pareto',
+    title: 'IoU over time',
+    note: 'ms per scan; * is on the Pareto front',
+    x: sorted.map((row) => row.ms_per_scan),
+    series: known.map((row) => ({
+      label: row.label + (row.front ? ' *' : ''), values: sorted.map((other) => (other === row ? row.metrics.iou.value : null)),
+      ...row.line, points: { show: true, size: 10 },
+    })),
+    options: {
+      text: percent, xLabel: 'ms per scan', xScale: { distr: 3 }, yScale: { range: [0, 1.02] }, yAxis: { values: PERCENT_TICKS },
+      xValue: (_, v) => fixed(v, 1), xAxis: { values: (_, ticks) => ticks.map((tick) => (tick === null ? '' : String(tick))) },
+    },
+  };
+}
+
+function overview(study) {
+  const rows = study.rows.map(({ label, metrics, ms_per_scan, front, rank }) => [
+    label, meanText(metrics.iou), meanText(metrics.precision), meanText(metrics.recall), fixed(ms_per_scan, 1), front ? '*' : '', fixed(rank, 2),
+  ]);
+  return table(['method', 'IoU', 'precision', 'recall', 'ms per scan', 'front', 'mean rank'], rows);
+}
+
+function remarks(study) {
+  const lines = [];
+  if (study.simulated) lines.push('Simulated data: not comparable with published numbers.');
+  if (study.critical_difference !== null) {
+    lines.push(`Mean ranks over ${study.ranked_sequences} sequences differ at 5 % where they are more than ${study.critical_difference.toFixed(2)} apart (Nemenyi).`);
+  }
+  lines.push(`${study.done} of ${study.cells} cells are done.`);
+  for (const { cell, why } of study.failures) lines.push(`Failed: ${cell}: ${why}`);
+  return lines.map((line) => element('p', { class: 'notice' }, line));
+}
+
+/** The worst scans link to the command that shows them in a report. */
+function worstScans(study) {
+  const commands = new Map();
+  for (const { command, cell } of study.worst) if (!commands.has(command)) commands.set(command, { cell, id: `show-${commands.size}` });
+  const rows = study.worst.map(({ label, cell, stem, iou, command }) => [
+    label, element('a', { href: `#${commands.get(command).id}` }, cell), stem, percent(iou),
+  ]);
+  const shown = [...commands].map(([command, { cell, id }]) => element('div', { class: 'block', id }, element('p', {}, cell), element('pre', {}, command)));
+  return [element('h2', {}, 'Worst scans'), table(['method', 'cell', 'scan', 'IoU'], rows, { leftColumns: 3 }), ...shown];
+}
+
+function draw(study) {
+  document.title = `mosbench study ${study.name}`;
+  const state = new State({ theme: preferredTheme(), scan: 0 });
+  const pareto = paretoChart(study.rows);
+  const specs = [pareto, ...study.curves.flatMap((curve) => Object.keys(METRICS).map((metric) => curveChart(curve, metric)))];
+  const charts = specs.filter((spec) => spec !== null).map((spec) => new Chart(state, spec));
+  document.documentElement.dataset.theme = state.get('theme');
+  document.body.append(element('main', {},
+    element('h1', {}, `Study ${study.name}`), ...remarks(study), overview(study),
+    element('div', { class: 'charts' }, ...charts.map((chart) => chart.node)), ...worstScans(study)));
+}
+
+if (globalThis.document?.getElementById('report')) draw(readContent());

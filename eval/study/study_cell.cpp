@@ -1,0 +1,246 @@
+#include "eval/study/study_cell.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+
+#include "datasets/files/errors.hpp"
+#include "datasets/files/files.hpp"
+#include "datasets/files/json_text.hpp"
+#include "eval/protocols/metrics.hpp"
+#include "eval/protocols/summary_json.hpp"
+#include "eval/results/answer_text.hpp"
+#include "eval/results/machine.hpp"
+#include "eval/results/settings_json.hpp"
+#include "eval/results/tell.hpp"
+#include "eval/results/version.hpp"
+#include "eval/runs/profile.hpp"
+#include "eval/runs/run_execute.hpp"
+#include "eval/runs/run_plan.hpp"
+
+namespace mosbench {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::ordered_json;
+
+constexpr std::size_t kWorstScans = 3, kMeasuredScans = 6;
+
+RunOptions run_options(const StudyCell& cell, const Study& study, const fs::path& out,
+                       unsigned threads) {
+  RunOptions options;
+  options.input = made_data(out, *cell.data);
+  options.dataset = cell.data->dataset;
+  options.sequences = {cell.sequence};
+  options.method = cell.method->method;
+  options.preset = cell.method->preset;
+  options.protocol = study.protocol;
+  options.range = study.range;
+  options.reading = cell.data->reading;
+  options.reading.perturb = cell.perturb();
+  if (!cell.odometry.empty()) options.odometry.kind = cell.odometry;
+  options.assignments = cell.identity.at("set").get<std::vector<std::string>>();
+  options.threads = threads;
+  return options;
+}
+
+/// A folder of one computation for labels that nobody keeps.
+class ScratchFolder {
+ public:
+  explicit ScratchFolder(const fs::path& out) {
+    std::error_code error;
+    fs::create_directories(out, error);
+    std::string name = out / "labels-XXXXXX";
+    if (error || mkdtemp(name.data()) == nullptr) {
+      throw DataError(out, "cannot hold a folder for labels", "a writable folder");
+    }
+    path_ = name;
+  }
+  ~ScratchFolder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+ordered_json worst_scans(std::vector<const ScanRow*> scans) {
+  std::erase_if(scans, [](const ScanRow* row) { return !moving_iou(*row->counts); });
+  std::ranges::stable_sort(scans, {},
+                           [](const ScanRow* row) { return moving_iou(*row->counts).value(); });
+  ordered_json worst = ordered_json::array();
+  for (const ScanRow* row : std::span(scans).first(std::min(scans.size(), kWorstScans))) {
+    worst.push_back({{"stem", row->stem}, {"iou", moving_iou(*row->counts).value()}});
+  }
+  return worst;
+}
+
+ordered_json cell_json(const StudyCell& cell) {
+  return {{"data", cell.data->name},
+          {"sequence", cell.sequence},
+          {"method", cell.method->name},
+          {"odometry", cell.odometry},
+          {"axis", cell.axis == nullptr ? "" : cell.axis->name},
+          {"value", cell.value},
+          {"seed", cell.seed}};
+}
+
+ordered_json record_head(const StudyCell& cell) {
+  return {{"key", cell.key},
+          {"version", std::string(kMosbenchVersion)},
+          {"cell", cell_json(cell)},
+          {"identity", cell.identity}};
+}
+
+std::string host_name() {
+  std::array<char, 256> host{};
+  gethostname(host.data(), host.size() - 1);
+  return host.data();
+}
+
+ordered_json computed_record(const StudyCell& cell, const Study& study, const fs::path& out,
+                             unsigned threads) {
+  const auto begin = std::chrono::steady_clock::now();
+  const RunPlan plan = plan_method(run_options(cell, study, out, threads));
+  Sequence& sequence = *plan.dataset.sequences.front();
+  if (plan.odometry) find_poses(sequence, *plan.odometry, threads);
+  const ScratchFolder scratch(out / "scratch");
+  const SequenceRows rows = run_sequence(sequence, plan.settings, scratch.path());
+  const std::vector<const ScanRow*> counted = counted_scans(plan, 0, rows);
+  std::vector<Confusion> counts;
+  for (const ScanRow* row : counted) counts.push_back(*row->counts);
+  double memory_mib = 0;
+  for (const ScanCost& cost : rows.costs) memory_mib = std::max(memory_mib, cost.resident_mib);
+
+  ordered_json record = record_head(cell);
+  record["simulated"] = cell.data->simulation.has_value();
+  record["protocol"] = std::string(plan.settings.protocol->name);
+  record["config"] = to_json(plan.settings.method_settings);
+  record["fingerprint"] = rows.fingerprint;
+  record["scans"] = rows.scans.size();
+  record["summary"] =
+      counts.empty() ? ordered_json(nullptr) : to_json(summarize(*plan.settings.protocol, counts));
+  record["worst"] = worst_scans(counted);
+  const auto seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  record["timing"] = {{"ms_per_scan", json_or_null(method_ms_per_scan(rows))},
+                      {"wall_s", seconds},
+                      {"most_memory_mib", memory_mib},
+                      {"threads", threads},
+                      {"host", host_name()},
+                      {"machine", machine_json()}};
+  return record;
+}
+
+CellOutcome fail(const StudyCell& cell, const fs::path& out, const char* why) {
+  ordered_json record = record_head(cell);
+  record["failure"] = why;
+  tell(fmt::format("{}: {}", cell.title(), why));
+  write_shared(failure_file(out, cell.key), json_text(record));
+  return CellOutcome::kFailed;
+}
+
+/// Where costs of a method on a sequence are kept.
+std::string cost_name(const StudyCell& cell) {
+  return fmt::format("{}/{}/{}", cell.data->name, cell.sequence, cell.method->name);
+}
+
+fs::path cost_file(const fs::path& out) { return out / "costs.json"; }
+
+/// The first scans, when the map is still filling, cost less than the others; the last of them
+/// stand for those.
+ordered_json measured_cost(const StudyPlan& study, const StudyCell& cell) {
+  const RunPlan plan = plan_method(run_options(cell, *study.study, study.out, 1));
+  const Sequence& sequence = *plan.dataset.sequences.front();
+  const SequenceProfile profile = profile_sequence(sequence, plan.settings, kMeasuredScans);
+  const std::size_t half = profile.scans.size() / 2;
+  double cpu_ms = 0, memory_mib = 0;
+  for (std::size_t k = half; k < profile.scans.size(); ++k) {
+    cpu_ms += profile.scans[k].method.cpu_ms + profile.scans[k].read.cpu_ms;
+    memory_mib = std::max(memory_mib, profile.scans[k].resident_mib);
+  }
+  return {{"ms_per_scan", cpu_ms / static_cast<double>(profile.scans.size() - half)},
+          {"scans", sequence.size()},
+          {"memory_mib", memory_mib}};
+}
+
+std::optional<double> number_in(const ordered_json& costs, const StudyCell& cell,
+                                const char* what) {
+  const auto found = costs.find(cost_name(cell));
+  if (found == costs.end() || !found->is_object() || !found->contains(what) ||
+      !found->at(what).is_number()) {
+    return std::nullopt;
+  }
+  return found->at(what).get<double>();
+}
+
+}  // namespace
+
+CellOutcome compute_cell(const PlannedCell& planned, const Study& study, const fs::path& out,
+                         unsigned threads) {
+  const StudyCell& cell = planned.cell;
+  if (planned.state == CellState::kDone) return CellOutcome::kKept;
+  if (planned.state == CellState::kOtherVersion) {
+    tell(fmt::format("{}: computed by mosbench {}, again by {}", cell.title(),
+                     planned.record.value("version", "?"), kMosbenchVersion));
+  }
+  ordered_json record;
+  try {
+    record = computed_record(cell, study, out, threads);
+  } catch (const UsageError& error) {
+    return fail(cell, out, error.what());
+  } catch (const DataError& error) {
+    return fail(cell, out, error.what());
+  } catch (const std::bad_alloc&) {
+    return fail(cell, out, "needs more memory than there is");
+  }
+  write_shared(record_file(out, cell.key), json_text(record));
+  std::error_code ignored;
+  fs::remove(failure_file(out, cell.key), ignored);
+  return CellOutcome::kComputed;
+}
+
+CostModel read_costs(const fs::path& out) {
+  CostModel model;
+  if (!is_there(cost_file(out))) return model;
+  const ordered_json costs = parse_json(read_file(cost_file(out)), cost_file(out));
+  if (costs.is_object()) model.costs = costs;
+  return model;
+}
+
+void measure_costs(const StudyPlan& plan) {
+  CostModel model = read_costs(plan.out);
+  bool changed = false;
+  for (const PlannedCell& planned : plan.cells) {
+    const StudyCell& cell = planned.cell;
+    if (cell.axis != nullptr || model.costs.contains(cost_name(cell))) continue;
+    try {
+      model.costs[cost_name(cell)] = measured_cost(plan, cell);
+      changed = true;
+    } catch (const DataError& error) {  // fails again as a cell
+      tell(fmt::format("{}: not measured: {}", cell.title(), error.what()));
+    }
+  }
+  if (changed) write_shared(cost_file(plan.out), json_text(model.costs));
+}
+
+std::optional<double> CostModel::seconds(const StudyCell& cell) const {
+  constexpr double kStart_s = 0.1;
+  const auto ms = number_in(costs, cell, "ms_per_scan"), scans = number_in(costs, cell, "scans");
+  if (!ms || !scans) return std::nullopt;
+  return kStart_s + 1e-3 * *ms * *scans;
+}
+
+std::optional<double> CostModel::memory_mib(const StudyCell& cell) const {
+  return number_in(costs, cell, "memory_mib");
+}
+
+}  // namespace mosbench

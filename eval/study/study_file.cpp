@@ -1,0 +1,269 @@
+#include "eval/study/study_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "datasets/files/errors.hpp"
+#include "datasets/files/files.hpp"
+#include "datasets/files/text.hpp"
+#include "datasets/simulator/simulate.hpp"
+#include "eval/results/reading_json.hpp"
+#include "eval/results/settings_json.hpp"
+#include "eval/runs/method_choice.hpp"
+#include "eval/runs/odometry_choice.hpp"
+#include "eval/runs/presets.hpp"
+#include "eval/runs/run_plan.hpp"
+#include "eval/study/yaml_node.hpp"
+
+namespace mosbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Names stand in tables and in files.
+std::string name_of(const YamlNode& node) {
+  const std::string name = node.text();
+  const bool plain = std::ranges::all_of(name, [](char c) {
+    return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
+           std::string_view(" ._+-").find(c) != std::string_view::npos;
+  });
+  if (!plain || name.size() > 60) {
+    node.refuse(fmt::format("{} is no name", mosbench::quoted(name)),
+                "at most 60 letters, digits, blanks and . _ + -");
+  }
+  return name;
+}
+
+/// From the study's folder; "~/" is the user's.
+fs::path path_of(const YamlNode& node, const fs::path& file) {
+  const std::string text = node.text();
+  const char* home = std::getenv("HOME");
+  if (text.starts_with("~/") && home != nullptr) return fs::path(home) / text.substr(2);
+  return (fs::absolute(file).parent_path() / text).lexically_normal();
+}
+
+ReadingOptions reading_of_study(const YamlNode& node, const fs::path& file) {
+  node.check_keys({"poses", "pose_format", "pose_frame", "pose_direction", "max_pose_gap_s",
+                   "topic", "map_frame", "deskew", "point_times", "bin_columns"});
+  nlohmann::ordered_json json = nlohmann::ordered_json::object();
+  for (const auto& [key, value] : node.members()) {
+    const auto number = parse_double(value.text());
+    if (key == "bin_columns") {
+      json[key] = value.whole(4, 5);
+    } else if (key == "max_pose_gap_s") {
+      if (!number || *number < 0) value.refuse("is no time", "seconds");
+      json[key] = *number;
+    } else {
+      json[key] = key == "poses" ? path_of(value, file).string() : value.text();
+    }
+  }
+  return node.located([&] { return told_from_json(json); });
+}
+
+std::vector<StudyData> simulations_of(const std::string& name, const YamlNode& node,
+                                      const fs::path& file) {
+  node.check_keys({"layout", "scene", "scans", "seed"});
+  StudySimulation simulation;
+  const YamlNode layout = node.at("layout");
+  const auto kind = dataset_kind_from_string(layout.text());
+  if (!kind || !is_written(*kind)) {
+    layout.refuse(fmt::format("layout {} is not known", mosbench::quoted(layout.text())),
+                  "doals, sipailou, helimos or semantickitti");
+  }
+  simulation.layout = *kind;
+  const YamlNode scene = node.at("scene");
+  simulation.scene = scene.text().ends_with(".json") ? path_of(scene, file).string() : scene.text();
+  scene.located([&] { return load_scene(simulation.scene).name; });
+  simulation.scans = node.at("scans").whole(1, 1'000'000);
+  std::vector<StudyData> data;
+  const std::vector<YamlNode> seeds = node.at("seed").list();
+  for (const YamlNode& seed : seeds) {
+    simulation.seed = seed.whole(0, UINT64_MAX);
+    StudyData& one = data.emplace_back();
+    one.name = seeds.size() == 1 ? name : fmt::format("{}-{}", name, simulation.seed);
+    one.simulation = simulation;
+  }
+  return data;
+}
+
+std::vector<StudyData> data_of(const YamlNode& node, const fs::path& file) {
+  node.check_keys({"name", "simulate", "path", "dataset", "sequences", "reading"});
+  const std::string name = name_of(node.at("name"));
+  std::vector<StudyData> data(1);
+  if (const auto simulate = node.find("simulate")) {
+    if (node.find("path") || node.find("dataset")) {
+      node.refuse("says simulate and where data lie", "one of simulate and path");
+    }
+    data = simulations_of(name, *simulate, file);
+  } else {
+    data.front().name = name;
+    data.front().path = path_of(node.at("path"), file);
+  }
+  for (StudyData& one : data) {
+    if (const auto dataset = node.find("dataset")) {
+      one.dataset = dataset->text();
+      dataset->located([&] { return dataset_kind_option(one.dataset).has_value(); });
+    }
+    if (const auto sequences = node.find("sequences")) {
+      for (const YamlNode& sequence : sequences->list()) one.sequences.push_back(sequence.text());
+    }
+    if (const auto reading = node.find("reading")) one.reading = reading_of_study(*reading, file);
+  }
+  return data;
+}
+
+StudyMethod method_of(const YamlNode& node) {
+  StudyMethod method;
+  if (!node.is_map()) {
+    method.name = method.method = node.text();
+    node.located([&] { return &method_named(method.method); });
+    return method;
+  }
+  node.check_keys({"name", "method", "preset", "set"});
+  method.method = node.at("method").text();
+  const MethodKind* kind = node.at("method").located([&] { return &method_named(method.method); });
+  method.name = node.find("name") ? name_of(node.at("name")) : method.method;
+  if (const auto preset = node.find("preset")) {
+    method.preset = preset->text();
+    preset->located([&] { return &preset_named(*method.preset); });
+  }
+  if (const auto set = node.find("set")) {
+    Settings settings = kind->defaults;
+    for (const auto& [key, value] : set->members()) {
+      method.assignments.push_back(fmt::format("{}={}", key, value.text()));
+      value.located([&] { apply_setting_assignment(method.assignments.back(), settings); });
+    }
+  }
+  return method;
+}
+
+StudyAxis disturbance_of(const YamlNode& node) {
+  node.check_keys({"kind", "strengths", "with"});
+  StudyAxis axis;
+  axis.name = node.at("kind").text();
+  if (const auto with = node.find("with")) {
+    for (const auto& [key, value] : with->members()) {
+      if (std::ranges::find(perturb_keys(), key, &PerturbKey::name) == perturb_keys().end() ||
+          key == "seed") {
+        value.refuse(fmt::format("key {} is no key that kinds share", mosbench::quoted(key)),
+                     "one of `mosbench list perturbations` but seed");
+      }
+      axis.with += fmt::format(",{}={}", key, value.text());
+    }
+  }
+  for (const YamlNode& strength : node.at("strengths").list()) {
+    const std::string text = fmt::format("{}={}{}", axis.name, strength.text(), axis.with);
+    const Perturbation parsed = strength.located([&] { return parse_perturbation(text); });
+    axis.kind = parsed.steps.front().kind;
+    axis.values.push_back(fmt::format("{}", parsed.steps.front().strength));
+  }
+  return axis;
+}
+
+StudyAxis setting_of(const YamlNode& node, const std::vector<StudyMethod>& methods) {
+  node.check_keys({"setting", "values"});
+  StudyAxis axis;
+  axis.name = node.at("setting").text();
+  bool known = false;
+  for (const StudyMethod& method : methods) {
+    Settings settings = method_named(method.method).defaults;
+    if (settings.find(axis.name) == nullptr) continue;
+    known = true;
+    for (const YamlNode& value : node.at("values").list()) {
+      value.located([&] {
+        apply_setting_assignment(fmt::format("{}={}", axis.name, value.text()), settings);
+      });
+    }
+  }
+  if (!known) {
+    node.at("setting").refuse(
+        fmt::format("no method has a setting {}", mosbench::quoted(axis.name)),
+        "one of `mosbench list methods`");
+  }
+  for (const YamlNode& value : node.at("values").list()) axis.values.push_back(value.text());
+  return axis;
+}
+
+template <typename Named>
+void check_names(const YamlNode& node, const std::vector<Named>& rows) {
+  std::set<std::string> names;
+  for (const Named& row : rows) {
+    if (!names.insert(row.name).second) {
+      node.refuse(fmt::format("name {} is given twice", mosbench::quoted(row.name)),
+                  "names that differ");
+    }
+  }
+}
+
+std::string range_of(const YamlNode& node, const std::optional<std::string>& protocol) {
+  const std::vector<YamlNode> limits = node.list();
+  if (limits.size() != 2 || !protocol) {
+    node.refuse("range_m is not understood", "[MIN, MAX] together with a protocol");
+  }
+  const std::string range = fmt::format("{},{}", limits[0].text(), limits[1].text());
+  node.located([&] { return range_option(range, protocol_named(*protocol)).min_m; });
+  return range;
+}
+
+void read_rest(const YamlNode& root, Study& study) {
+  if (const auto protocol = root.find("protocol")) {
+    study.protocol = protocol->text();
+    protocol->located([&] { return &protocol_named(*study.protocol); });
+  }
+  if (const auto range = root.find("range_m")) study.range = range_of(*range, study.protocol);
+  if (const auto odometry = root.find("odometry")) {
+    study.odometries.clear();
+    for (const YamlNode& kind : odometry->list()) {
+      study.odometries.push_back(kind.text() == "none" ? "" : kind.text());
+      OdometryOptions options;
+      if (!study.odometries.back().empty()) options.kind = study.odometries.back();
+      kind.located([&] { return choose_odometry(options, {}).kind; });
+    }
+  }
+  if (const auto disturb = root.find("disturb")) {
+    for (const YamlNode& kind : disturb->list()) study.axes.push_back(disturbance_of(kind));
+  }
+  if (const auto vary = root.find("vary")) {
+    for (const YamlNode& one : vary->list()) {
+      study.axes.push_back(setting_of(one, study.methods));
+    }
+  }
+  check_names(root, study.axes);
+  if (const auto seeds = root.find("seeds")) {
+    study.seeds.clear();
+    for (const YamlNode& seed : seeds->list()) study.seeds.push_back(seed.whole(0, UINT64_MAX));
+  }
+}
+
+}  // namespace
+
+Study parse_study(const std::string& text, const fs::path& file) {
+  const YamlNode root = parse_yaml(text, file);
+  root.check_keys(
+      {"name", "protocol", "range_m", "data", "methods", "odometry", "disturb", "vary", "seeds"});
+  Study study;
+  study.file = file;
+  study.name = name_of(root.at("name"));
+  for (const YamlNode& node : root.at("data").list()) {
+    for (StudyData& data : data_of(node, file)) study.data.push_back(std::move(data));
+  }
+  for (const YamlNode& node : root.at("methods").list()) study.methods.push_back(method_of(node));
+  check_names(root.at("data"), study.data);
+  check_names(root.at("methods"), study.methods);
+  read_rest(root, study);
+  return study;
+}
+
+Study read_study(const fs::path& file) {
+  try {
+    return parse_study(read_file(file), file);
+  } catch (const DataError& error) {
+    throw UsageError(error.what());
+  }
+}
+
+}  // namespace mosbench

@@ -1,0 +1,223 @@
+#include "eval/study/study_plan.hpp"
+
+#include <fmt/format.h>
+#include <xxhash.h>
+
+#include <algorithm>
+#include <set>
+
+#include "datasets/files/errors.hpp"
+#include "datasets/files/files.hpp"
+#include "datasets/files/json_text.hpp"
+#include "datasets/sequence/fingerprint.hpp"
+#include "datasets/simulator/scene_json.hpp"
+#include "datasets/simulator/simulate.hpp"
+#include "eval/results/reading_json.hpp"
+#include "eval/results/version.hpp"
+#include "eval/runs/method_choice.hpp"
+#include "eval/runs/run_plan.hpp"
+
+namespace mosbench {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::ordered_json;
+
+std::string hash_of(std::string_view text) {
+  const XXH128_hash_t hash = XXH3_128bits(text.data(), text.size());
+  return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
+}
+
+ordered_json simulation_json(const StudySimulation& simulation) {
+  return {{"layout", to_string(simulation.layout)},
+          {"scene", hash_of(format_scene(load_scene(simulation.scene)))},
+          {"scans", simulation.scans},
+          {"seed", simulation.seed}};
+}
+
+/// Names and sizes of all files, and the bytes of those that are no scans: the same for a copy of
+/// the data, and known without reading scans.
+std::string content_of(const Sequence& sequence) {
+  std::string listing;
+  for (const fs::path& file : sequence.files()) {
+    listing += fmt::format("{} {}\n", file.filename().string(), size_of(file));
+  }
+  for (const fs::path& file : sequence.recording().files) listing += hash_of_file(file) + "\n";
+  return hash_of(listing);
+}
+
+/// What a cell has to say of a sequence on disk. One that cannot be opened says why.
+ordered_json sequence_json(const StudyData& data, const std::string& name) {
+  ordered_json json;
+  try {
+    ReadingOptions reading = data.reading;
+    const Dataset dataset =
+        open_dataset(data.path, {dataset_kind_option(data.dataset), {name}, reading});
+    reading.poses.reset();
+    json = {{"dataset", to_string(dataset.kind)},
+            {"content", content_of(*dataset.sequences.front())},
+            {"reading", told_json(reading)}};
+  } catch (const DataError& error) {
+    json = {{"unreadable", error.what()}};
+  }
+  return json;
+}
+
+struct KnownSequence {
+  std::string name;
+  ordered_json identity;
+};
+
+std::vector<KnownSequence> sequences_of(const StudyData& data) {
+  std::vector<KnownSequence> sequences;
+  if (data.simulation) {
+    const ordered_json json = simulation_json(*data.simulation);
+    const Scene scene = load_scene(data.simulation->scene);
+    for (const std::string& name : simulated_names(data.simulation->layout, scene)) {
+      const bool wanted =
+          data.sequences.empty() || std::ranges::find(data.sequences, name) != data.sequences.end();
+      if (wanted)
+        sequences.push_back({name, {{"simulated", json}, {"reading", told_json(data.reading)}}});
+    }
+    return sequences;
+  }
+  std::optional<DatasetKind> kind;
+  const OpenOptions options{dataset_kind_option(data.dataset), data.sequences, data.reading};
+  for (const SequenceFolder& folder : find_sequences(data.path, options, kind)) {
+    sequences.push_back({folder.name, sequence_json(data, folder.name)});
+  }
+  return sequences;
+}
+
+/// Lists the cells of one method on one sequence.
+class CellLister {
+ public:
+  CellLister(const Study& study, std::vector<StudyCell>& cells) : study_(study), cells_(cells) {}
+
+  void list(StudyCell cell, const ordered_json& sequence) {
+    cell.axis = nullptr;
+    cell.seed = 0;
+    add(cell, sequence);
+    for (const StudyAxis& axis : study_.axes) {
+      if (!applies(axis, cell)) continue;
+      cell.axis = &axis;
+      for (const std::string& value : axis.values) {
+        cell.value = value;
+        const bool random = axis.kind != nullptr && axis.kind->is_random;
+        cell.seed = 0;
+        if (!random) add(cell, sequence);
+        for (const std::uint64_t seed : study_.seeds) {
+          cell.seed = seed;
+          if (random) add(cell, sequence);
+        }
+      }
+    }
+  }
+
+ private:
+  static bool applies(const StudyAxis& axis, const StudyCell& cell) {
+    if (axis.kind != nullptr) return true;
+    return method_named(cell.method->method).defaults.find(axis.name) != nullptr;
+  }
+
+  void add(StudyCell cell, const ordered_json& sequence) {
+    ordered_json set = cell.method->assignments;
+    if (cell.axis != nullptr && cell.axis->kind == nullptr) {
+      set.push_back(fmt::format("{}={}", cell.axis->name, cell.value));
+    }
+    cell.identity = {{"format", 1},
+                     {"data", sequence},
+                     {"sequence", cell.sequence},
+                     {"method", cell.method->method},
+                     {"preset", cell.method->preset.value_or("")},
+                     {"set", set},
+                     {"odometry", cell.odometry},
+                     {"perturb", cell.perturb().value_or("")},
+                     {"protocol", study_.protocol.value_or("")},
+                     {"range", study_.range.value_or("")}};
+    cell.key = hash_of(cell.identity.dump());
+    if (known_.insert(cell.key).second) cells_.push_back(std::move(cell));
+  }
+
+  const Study& study_;
+  std::vector<StudyCell>& cells_;
+  std::set<std::string> known_;
+};
+
+PlannedCell look_up(StudyCell cell, const fs::path& out) {
+  PlannedCell planned{std::move(cell), CellState::kMissing, nullptr};
+  for (const bool failed : {false, true}) {
+    const fs::path file =
+        failed ? failure_file(out, planned.cell.key) : record_file(out, planned.cell.key);
+    if (!is_there(file)) continue;
+    try {
+      planned.record = parse_json(read_file(file), file);
+      if (planned.record.at("key") != planned.cell.key) continue;
+      const bool same = planned.record.at("version") == std::string(kMosbenchVersion);
+      planned.state = failed ? CellState::kFailed
+                      : same ? CellState::kDone
+                             : CellState::kOtherVersion;
+      return planned;
+    } catch (const DataError&) {  // is computed again
+    } catch (const nlohmann::json::exception&) {
+    }
+    planned.record = nullptr;
+  }
+  return planned;
+}
+
+}  // namespace
+
+std::optional<std::string> StudyCell::perturb() const {
+  if (axis == nullptr || axis->kind == nullptr) return std::nullopt;
+  return to_string(
+      parse_perturbation(fmt::format("{}={}{},seed={}", axis->name, value, axis->with, seed)));
+}
+
+std::string StudyCell::title() const {
+  std::string text = fmt::format("{} {}, {}", data->name, sequence, method->name);
+  if (!odometry.empty()) text += fmt::format(", poses by {}", odometry);
+  if (axis != nullptr) text += fmt::format(", {}={}", axis->name, value);
+  if (seed != 0) text += fmt::format(", seed {}", seed);
+  return text;
+}
+
+StudyPlan plan_study(const Study& study, const fs::path& out,
+                     const std::vector<std::string>& only) {
+  StudyPlan plan{&study, out, {}};
+  std::vector<StudyCell> cells;
+  CellLister lister(study, cells);
+  for (const StudyData& data : study.data) {
+    for (const KnownSequence& sequence : sequences_of(data)) {
+      for (const StudyMethod& method : study.methods) {
+        for (const std::string& odometry : study.odometries) {
+          StudyCell cell;
+          cell.data = &data;
+          cell.sequence = sequence.name;
+          cell.method = &method;
+          cell.odometry = odometry;
+          lister.list(std::move(cell), sequence.identity);
+        }
+      }
+    }
+  }
+  for (StudyCell& cell : cells) {
+    const bool wanted = only.empty() || std::ranges::find(only, cell.key) != only.end();
+    if (wanted) plan.cells.push_back(look_up(std::move(cell), out));
+  }
+  return plan;
+}
+
+fs::path record_file(const fs::path& out, const std::string& key) {
+  return out / "cells" / (key + ".json");
+}
+
+fs::path failure_file(const fs::path& out, const std::string& key) {
+  return out / "cells" / (key + ".failure.json");
+}
+
+fs::path simulated_folder(const fs::path& out, const StudyData& data) {
+  return out / "data" / hash_of(simulation_json(*data.simulation).dump()).substr(0, 16);
+}
+
+}  // namespace mosbench

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "eval/study/study_file.hpp"
+
+namespace mosbench {
+
+/// One run of a study: a method on a sequence, with at most one thing changed.
+struct StudyCell {
+  const StudyData* data = nullptr;
+  std::string sequence;
+  const StudyMethod* method = nullptr;
+  std::string odometry;             ///< empty: the poses of the data
+  const StudyAxis* axis = nullptr;  ///< null where nothing is changed
+  std::string value;                ///< of the axis
+  std::uint64_t seed = 0;           ///< 0 where nothing is random
+  nlohmann::ordered_json identity;  ///< all that decides the result but the program
+  std::string key;                  ///< hash of it, 32 hexadecimal digits
+
+  /// Returns the text of --perturb; nothing where scans stay as they are.
+  std::optional<std::string> perturb() const;
+  /// Returns "street 08, hmm-mos, pose_noise_m=0.05, seed 2".
+  std::string title() const;
+};
+
+/// What lies where a cell's result belongs.
+enum class CellState : std::uint8_t {
+  kMissing,
+  kFailed,        ///< and what it said lies there
+  kOtherVersion,  ///< a result of another version of mosbench
+  kDone
+};
+
+struct PlannedCell {
+  StudyCell cell;
+  CellState state = CellState::kMissing;
+  nlohmann::ordered_json record;  ///< what lies there, null where nothing does
+};
+
+/// All cells of a study, each once, in the order of its file.
+struct StudyPlan {
+  const Study* study = nullptr;
+  std::filesystem::path out;
+  std::vector<PlannedCell> cells;
+};
+
+/// Lists the cells and what is known of them. Data on disk are opened, simulated ones are not made.
+/// With `only` given, of these keys alone. Throws UsageError and DataError; a sequence that cannot
+/// be opened is a cell that will fail.
+StudyPlan plan_study(const Study& study, const std::filesystem::path& out,
+                     const std::vector<std::string>& only = {});
+
+std::filesystem::path record_file(const std::filesystem::path& out, const std::string& key);
+std::filesystem::path failure_file(const std::filesystem::path& out, const std::string& key);
+
+/// Returns the folder of simulated data below that of the study.
+std::filesystem::path simulated_folder(const std::filesystem::path& out, const StudyData& data);
+
+/// Returns where data lie, and makes simulated ones first where they are missing, in one step for
+/// all who look, also on other hosts. Throws as `simulate` does.
+std::filesystem::path made_data(const std::filesystem::path& out, const StudyData& data);
+
+/// Puts bytes in place by a name of its own and one rename, without locks, which file systems that
+/// hosts share may lack.
+void write_shared(const std::filesystem::path& file, const std::string& bytes);
+
+}  // namespace mosbench

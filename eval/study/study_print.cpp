@@ -1,0 +1,215 @@
+#include <fmt/format.h>
+
+#include "eval/report/report_asset.hpp"
+#include "eval/results/answer_text.hpp"
+#include "eval/results/csv.hpp"
+#include "eval/results/latex.hpp"
+#include "eval/results/text_table.hpp"
+#include "eval/study/study_table.hpp"
+
+namespace mosbench {
+namespace {
+
+using nlohmann::ordered_json;
+
+/// "62.3 +- 1.2".
+std::string mean_text(const StudyMean& mean) {
+  if (!mean.value) return mean.count == 0 ? "-" : "undefined";
+  if (!mean.interval) return percent_text(mean.value);
+  return fmt::format("{} +- {:.1f}", percent_text(mean.value),
+                     50 * (mean.interval->high - mean.interval->low));
+}
+
+std::string number_text(const std::optional<double>& value, const char* style) {
+  return value ? fmt::format(fmt::runtime(style), *value) : "-";
+}
+
+std::vector<std::string> titles() {
+  return {"method", "IoU %", "precision %", "recall %", "ms/scan", "front", "rank"};
+}
+
+std::vector<std::string> cells_of(const StudyRow& row) {
+  return {row.label,
+          mean_text(row.metrics[0]),
+          mean_text(row.metrics[1]),
+          mean_text(row.metrics[2]),
+          number_text(row.ms_per_scan, "{:.1f}"),
+          row.is_on_front ? "*" : "",
+          number_text(row.rank, "{:.2f}")};
+}
+
+std::string axis_title(const StudyCurve& curve) {
+  return curve.unit.empty() ? curve.axis : fmt::format("{}, {}", curve.axis, curve.unit);
+}
+
+std::vector<std::string> cells_of(const StudyTable& table, const StudyCurve& curve, std::size_t i) {
+  std::vector<std::string> cells = {table.rows[i].label};
+  for (const StudyMetrics& metrics : curve.metrics[i]) cells.push_back(mean_text(metrics[0]));
+  return cells;
+}
+
+std::string remarks_text(const StudyTable& table) {
+  std::string text;
+  if (table.critical_difference) {
+    text += fmt::format(
+        "Mean ranks over {} sequences, each by the mean IoU over all disturbances, differ at 5 % "
+        "where they are more than {:.2f} apart (Nemenyi).\n",
+        table.ranked_sequences, *table.critical_difference);
+  }
+  if (table.simulated) text += "simulated data: not comparable with published numbers\n";
+  if (table.hours) {
+    text += fmt::format("{} of {} cells are done; they took {:.3f} hours", table.done, table.cells,
+                        *table.hours);
+    text += table.predicted_hours ? fmt::format(", {:.3f} were expected\n", *table.predicted_hours)
+                                  : "\n";
+  }
+  if (table.done < table.cells) {
+    text += fmt::format("INCOMPLETE: {} cells are missing\n", table.cells - table.done);
+  }
+  for (const StudyGap& gap : table.failures) text += fmt::format("{}: {}\n", gap.title, gap.why);
+  return text;
+}
+
+ordered_json to_json(const StudyMetrics& metrics) {
+  ordered_json json;
+  for (std::size_t i = 0; i < metrics.size(); ++i) {
+    ordered_json& one = json[kStudyMetrics[i]];
+    one = {{"value", json_or_null(metrics[i].value)}, {"count", metrics[i].count}};
+    if (metrics[i].interval) {
+      one["low"] = metrics[i].interval->low;
+      one["high"] = metrics[i].interval->high;
+    }
+  }
+  return json;
+}
+
+std::string latex_table(const std::vector<std::string>& head,
+                        const std::vector<std::vector<std::string>>& rows) {
+  std::string text =
+      fmt::format("\\begin{{tabular}}{{l{}}}\n\\hline\n", std::string(head.size() - 1, 'r'));
+  text += latex_row(head) + "\n\\hline\n";
+  for (const auto& row : rows) text += latex_row(row) + "\n";
+  return text + "\\hline\n\\end{tabular}\n";
+}
+
+std::string state_text(CellState state) {
+  switch (state) {
+    case CellState::kDone:
+      return "done";
+    case CellState::kFailed:
+      return "failed";
+    case CellState::kOtherVersion:
+      return "other version";
+    case CellState::kMissing:
+      break;
+  }
+  return "missing";
+}
+
+std::string cell_number(const PlannedCell& planned, const char* part, const char* what) {
+  if (planned.state != CellState::kDone || !planned.record.at(part).is_object()) return "";
+  const ordered_json& value = planned.record.at(part).value(what, ordered_json());
+  return value.is_number() ? value.dump() : "";
+}
+
+}  // namespace
+
+std::string study_text(const StudyTable& table) {
+  std::vector<TextTable::Column> columns;
+  for (const std::string& title : titles()) columns.push_back({title});
+  columns.front().align = TextTable::kLeft;
+  TextTable plain(columns);
+  for (const StudyRow& row : table.rows) plain.add_row(cells_of(row));
+  std::string text = fmt::format("{}\n\n{}", table.name, plain.str());
+  for (const StudyCurve& curve : table.curves) {
+    columns.assign(1, {fmt::format("IoU % by {}", axis_title(curve)), TextTable::kLeft});
+    for (const std::string& value : curve.values) columns.push_back({value});
+    TextTable by_value(columns);
+    for (std::size_t i = 0; i < table.rows.size(); ++i) {
+      by_value.add_row(cells_of(table, curve, i));
+    }
+    text += "\n" + by_value.str();
+  }
+  return text + "\n" + remarks_text(table);
+}
+
+std::string study_latex(const StudyTable& table) {
+  std::vector<std::vector<std::string>> rows;
+  for (const StudyRow& row : table.rows) rows.push_back(cells_of(row));
+  std::string text;
+  if (table.simulated) text += "% simulated data: not comparable with published numbers\n";
+  text += latex_table(titles(), rows);
+  for (const StudyCurve& curve : table.curves) {
+    std::vector<std::string> head = {axis_title(curve)};
+    head.insert(head.end(), curve.values.begin(), curve.values.end());
+    rows.clear();
+    for (std::size_t i = 0; i < table.rows.size(); ++i) rows.push_back(cells_of(table, curve, i));
+    text += "\n" + latex_table(head, rows);
+  }
+  return text;
+}
+
+std::string study_csv(const StudyPlan& plan) {
+  std::string text = csv_row(std::vector<std::string>{
+      "key", "data", "sequence", "method", "odometry", "axis", "value", "seed", "state", "iou",
+      "precision", "recall", "ms_per_scan", "wall_s"});
+  for (const PlannedCell& planned : plan.cells) {
+    const StudyCell& cell = planned.cell;
+    text += csv_row(std::vector<std::string>{
+        cell.key, cell.data->name, cell.sequence, cell.method->name, cell.odometry,
+        cell.axis == nullptr ? "" : cell.axis->name, cell.value, std::to_string(cell.seed),
+        state_text(planned.state), cell_number(planned, "summary", "iou"),
+        cell_number(planned, "summary", "precision"), cell_number(planned, "summary", "recall"),
+        cell_number(planned, "timing", "ms_per_scan"), cell_number(planned, "timing", "wall_s")});
+  }
+  return text;
+}
+
+ordered_json to_json(const StudyTable& table) {
+  ordered_json json = {{"name", table.name},
+                       {"simulated", table.simulated},
+                       {"cells", table.cells},
+                       {"done", table.done},
+                       {"hours", json_or_null(table.hours)},
+                       {"predicted_hours", json_or_null(table.predicted_hours)},
+                       {"ranked_sequences", table.ranked_sequences},
+                       {"critical_difference", json_or_null(table.critical_difference)},
+                       {"rows", ordered_json::array()},
+                       {"curves", ordered_json::array()},
+                       {"worst", ordered_json::array()},
+                       {"failures", ordered_json::array()}};
+  for (const StudyRow& row : table.rows) {
+    json["rows"].push_back({{"label", row.label},
+                            {"metrics", to_json(row.metrics)},
+                            {"ms_per_scan", json_or_null(row.ms_per_scan)},
+                            {"front", row.is_on_front},
+                            {"rank", json_or_null(row.rank)}});
+  }
+  for (const StudyCurve& curve : table.curves) {
+    ordered_json lines = ordered_json::array();
+    for (std::size_t i = 0; i < table.rows.size(); ++i) {
+      ordered_json points = ordered_json::array();
+      for (const StudyMetrics& metrics : curve.metrics[i]) points.push_back(to_json(metrics));
+      lines.push_back({{"label", table.rows[i].label}, {"points", points}});
+    }
+    json["curves"].push_back(
+        {{"axis", curve.axis}, {"unit", curve.unit}, {"values", curve.values}, {"lines", lines}});
+  }
+  for (const StudyWorst& scan : table.worst) {
+    json["worst"].push_back({{"label", scan.label},
+                             {"cell", scan.title},
+                             {"stem", scan.stem},
+                             {"iou", scan.iou},
+                             {"command", scan.command}});
+  }
+  for (const StudyGap& gap : table.failures) {
+    json["failures"].push_back({{"cell", gap.title}, {"why", gap.why}});
+  }
+  return json;
+}
+
+std::string study_html(const StudyTable& table) {
+  return filled_page(study_asset(), to_json(table));
+}
+
+}  // namespace mosbench

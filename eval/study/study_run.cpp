@@ -1,0 +1,150 @@
+#include "eval/study/study_run.hpp"
+
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <set>
+
+#include "datasets/files/errors.hpp"
+#include "datasets/files/files.hpp"
+#include "eval/results/answer_text.hpp"
+#include "eval/results/tell.hpp"
+#include "eval/study/workflow_asset.hpp"
+
+namespace mosbench {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::ordered_json;
+
+constexpr double kGroup_s = 120;          // starting a job of a cluster takes seconds
+constexpr std::size_t kMostInGroup = 50;  // a killed job loses at most one cell, but waits again
+
+struct Group {
+  std::vector<const PlannedCell*> cells;
+  double seconds = 0, memory_mib = 0;
+  bool known = true;
+};
+
+/// Cells of unknown cost stay alone.
+std::vector<Group> groups_of(const StudyWork& work, const CostModel& costs, double group_s) {
+  std::vector<Group> groups;
+  for (const PlannedCell* planned : work.cells) {
+    const auto seconds = costs.seconds(planned->cell), mib = costs.memory_mib(planned->cell);
+    const bool joins = !groups.empty() && seconds && groups.back().known &&
+                       groups.back().cells.size() < kMostInGroup &&
+                       groups.back().seconds + *seconds <= group_s &&
+                       groups.back().cells.back()->cell.data == planned->cell.data;
+    if (!joins) groups.emplace_back();
+    Group& group = groups.back();
+    group.cells.push_back(planned);
+    group.seconds += seconds.value_or(0);
+    group.memory_mib = std::max(group.memory_mib, mib.value_or(0));
+    group.known = group.known && seconds && mib;
+  }
+  return groups;
+}
+
+/// Three times the expected time and one and a half times the memory, as maps grow.
+ordered_json group_json(const Group& group, std::size_t number) {
+  constexpr double kUnknown_mib = 4000, kUnknownMinutes = 240;
+  const double mib = group.known ? std::max(500.0, 1.5 * group.memory_mib) : kUnknown_mib;
+  const double minutes = group.known ? 2 + 3 * group.seconds / 60 : kUnknownMinutes;
+  ordered_json json = {{"id", fmt::format("{:05}", number)},
+                       {"mem_mb", std::lround(std::ceil(mib))},
+                       {"minutes", std::lround(std::ceil(minutes))},
+                       {"keys", ordered_json::array()}};
+  for (const PlannedCell* planned : group.cells) json["keys"].push_back(planned->cell.key);
+  return json;
+}
+
+/// Writes what Snakemake reads to OUT/workflow, and returns the folder of the profile.
+fs::path write_workflow(const fs::path& out, const ordered_json& plan, const std::string& profile) {
+  const fs::path folder = out / "workflow";
+  write_file_atomic(folder / "plan.json", json_text(plan));
+  write_file_atomic(folder / "Snakefile", snakefile_asset());
+  write_file_atomic(folder / "local/config.yaml", local_profile_asset());
+  write_file_atomic(folder / "slurm/config.yaml", slurm_profile_asset());
+  write_file_atomic(folder / "slurm_status.sh", slurm_status_asset());
+  std::error_code ignored;
+  fs::permissions(folder / "slurm_status.sh", fs::perms(0755), ignored);
+  if (profile == "local" || profile == "slurm") return folder / profile;
+  if (is_there(fs::path(profile) / "config.yaml")) return fs::absolute(profile);
+  throw UsageError(fmt::format(
+      "--profile: {} is no profile, expected local, slurm or a folder with config.yaml", profile));
+}
+
+/// Starts a program and waits for it; its stdout goes to stderr, which is for progress.
+int run_program(const std::vector<std::string>& words) {
+  std::vector<char*> arguments;
+  for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
+  arguments.push_back(nullptr);
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_adddup2(&actions, STDERR_FILENO, STDOUT_FILENO);
+  pid_t child = 0;
+  const int error =
+      posix_spawnp(&child, arguments[0], &actions, nullptr, arguments.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  if (error != 0) {
+    throw DataError(words.front(), fmt::format("cannot be started ({})", std::strerror(error)),
+                    "Snakemake 7 (Debian: snakemake)");
+  }
+  int status = 0;
+  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+}  // namespace
+
+StudyWork work_of(const StudyPlan& plan, const CostModel& costs) {
+  StudyWork work;
+  double seconds = 0;
+  bool known = true;
+  for (const PlannedCell& planned : plan.cells) {
+    if (planned.state == CellState::kDone) continue;
+    work.cells.push_back(&planned);
+    const auto expected_s = costs.seconds(planned.cell);
+    known = known && expected_s.has_value();
+    seconds += expected_s.value_or(0);
+  }
+  if (known) work.hours = seconds / 3600;
+  return work;
+}
+
+int run_engine(const StudyPlan& plan, const CostModel& costs, const EngineOptions& options) {
+  const fs::path out = fs::absolute(plan.out);
+  const StudyWork work = work_of(plan, costs);
+  if (work.cells.empty()) return 0;
+  std::set<const StudyData*> made;
+  for (const PlannedCell* planned : work.cells) {
+    if (made.insert(planned->cell.data).second) made_data(plan.out, *planned->cell.data);
+  }
+  const bool local = options.profile == "local";
+  const double even_s = work.hours.value_or(0) * 3600 / 64;  // so that cores end together
+  const auto groups = groups_of(work, costs, local ? std::min(kGroup_s, even_s) : kGroup_s);
+  ordered_json json = {{"program", options.program.string()},
+                       {"study", fs::absolute(plan.study->file).string()},
+                       {"out", out.string()},
+                       {"threads", options.threads},
+                       {"groups", ordered_json::array()}};
+  for (const Group& group : groups) {
+    json["groups"].push_back(group_json(group, json["groups"].size()));
+  }
+  const fs::path profile = write_workflow(out, json, options.profile);
+  std::error_code ignored;
+  fs::remove_all(out / "groups", ignored);  // of an earlier plan
+  tell(fmt::format("{} cells in {} jobs by Snakemake, in {}", work.cells.size(), groups.size(),
+                   plan.out.string()));
+  return run_program({"snakemake", "--snakefile", out / "workflow/Snakefile", "--directory", out,
+                      "--profile", profile, "--config",
+                      fmt::format("plan={}", (out / "workflow/plan.json").string())});
+}
+
+}  // namespace mosbench

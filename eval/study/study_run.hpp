@@ -1,0 +1,28 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "eval/study/study_cell.hpp"
+
+namespace mosbench {
+
+/// What is to be computed, and what it is expected to take.
+struct StudyWork {
+  std::vector<const PlannedCell*> cells;  ///< that are not done
+  std::optional<double> hours;            ///< of one core; nothing where a cost is not known
+};
+StudyWork work_of(const StudyPlan& plan, const CostModel& costs);
+
+struct EngineOptions {
+  std::string profile = "local";  ///< local, slurm, or the folder of a profile of the user's
+  unsigned threads = 1;           ///< of each cell
+  std::filesystem::path program;  ///< mosbench
+};
+
+/// Computes what is missing by Snakemake: short cells of the same data are grouped into one job.
+/// Simulated data are made first. Returns Snakemake's exit code. Throws DataError where Snakemake
+/// is not installed or the folder cannot be written.
+int run_engine(const StudyPlan& plan, const CostModel& costs, const EngineOptions& options);
+
+}  // namespace mosbench

@@ -1,0 +1,269 @@
+#include "eval/study/study_table.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "eval/results/shell_text.hpp"
+#include "eval/statistics/distributions.hpp"
+#include "eval/study/study_cell.hpp"
+
+namespace mosbench {
+namespace {
+
+using nlohmann::ordered_json;
+
+/// Values by sequence, then by seed.
+using Samples = std::map<std::string, std::vector<std::optional<double>>>;
+
+std::string label_of(const StudyCell& cell) {
+  return cell.odometry.empty() ? cell.method->name
+                               : fmt::format("{} ({})", cell.method->name, cell.odometry);
+}
+
+std::string sequence_of(const StudyCell& cell) {
+  return fmt::format("{} {}", cell.data->name, cell.sequence);
+}
+
+std::optional<double> number(const ordered_json& record, const char* part, const char* what) {
+  const auto found = record.find(part);
+  if (found == record.end() || !found->is_object()) return std::nullopt;
+  const auto value = found->find(what);
+  return value != found->end() && value->is_number() ? std::optional(value->get<double>())
+                                                     : std::nullopt;
+}
+
+std::optional<double> mean_of(const std::vector<std::optional<double>>& values) {
+  double sum = 0;
+  for (const auto& value : values) {
+    if (!value) return std::nullopt;
+    sum += *value;
+  }
+  if (values.empty()) return std::nullopt;
+  return sum / static_cast<double>(values.size());
+}
+
+StudyMean study_mean(const Samples& samples) {
+  std::vector<std::optional<double>> values;
+  if (samples.size() == 1) {
+    values = samples.begin()->second;
+  } else {
+    for (const auto& [sequence, of_seeds] : samples) values.push_back(mean_of(of_seeds));
+  }
+  StudyMean mean{mean_of(values), std::nullopt, values.size()};
+  if (!mean.value || values.size() < 2) return mean;
+  const double count = static_cast<double>(values.size());
+  double squares = 0;
+  for (const auto& value : values) squares += (*value - *mean.value) * (*value - *mean.value);
+  const double half = student_quantile(1 - (1 - kConfidence) / 2, count - 1) *
+                      std::sqrt(squares / (count - 1) / count);
+  mean.interval = Interval{std::max(0.0, *mean.value - half), std::min(1.0, *mean.value + half)};
+  return mean;
+}
+
+/// The cells that were computed, as a table is made of them.
+class DoneCells {
+ public:
+  explicit DoneCells(const StudyPlan& plan) {
+    for (const PlannedCell& planned : plan.cells) {
+      const std::string label = label_of(planned.cell);
+      if (std::ranges::find(labels, label) == labels.end()) labels.push_back(label);
+      if (planned.state == CellState::kDone) done.push_back(&planned);
+    }
+  }
+
+  template <typename Wanted>
+  StudyMetrics metrics(Wanted&& wanted) const {
+    StudyMetrics metrics;
+    for (std::size_t i = 0; i < metrics.size(); ++i) {
+      Samples samples;
+      for (const PlannedCell* planned : done) {
+        if (!wanted(planned->cell)) continue;
+        samples[sequence_of(planned->cell)].push_back(
+            number(planned->record, "summary", kStudyMetrics[i]));
+      }
+      metrics[i] = study_mean(samples);
+    }
+    return metrics;
+  }
+
+  std::vector<std::string> labels;
+  std::vector<const PlannedCell*> done;
+};
+
+StudyRow row_of(const DoneCells& cells, const std::string& label) {
+  const auto is_plain = [&](const StudyCell& cell) {
+    return cell.axis == nullptr && label_of(cell) == label;
+  };
+  std::vector<std::optional<double>> ms;
+  for (const PlannedCell* planned : cells.done) {
+    if (is_plain(planned->cell)) ms.push_back(number(planned->record, "timing", "ms_per_scan"));
+  }
+  return {label, cells.metrics(is_plain), mean_of(ms), false, std::nullopt};
+}
+
+void mark_front(std::vector<StudyRow>& rows) {
+  for (StudyRow& row : rows) {
+    if (!row.metrics[0].value || !row.ms_per_scan) continue;
+    row.is_on_front = std::ranges::none_of(rows, [&](const StudyRow& other) {
+      if (!other.metrics[0].value || !other.ms_per_scan) return false;
+      const double iou = *other.metrics[0].value - *row.metrics[0].value;
+      const double ms = *other.ms_per_scan - *row.ms_per_scan;
+      return iou >= 0 && ms <= 0 && (iou > 0 || ms < 0);
+    });
+  }
+}
+
+StudyCurve curve_of(const DoneCells& cells, const StudyAxis& axis) {
+  StudyCurve curve;
+  curve.axis = axis.name;
+  if (axis.kind != nullptr) curve.unit = axis.kind->unit;
+  curve.values = {"none"};
+  curve.values.insert(curve.values.end(), axis.values.begin(), axis.values.end());
+  for (const std::string& label : cells.labels) {
+    std::vector<StudyMetrics>& line = curve.metrics.emplace_back();
+    for (std::size_t i = 0; i < curve.values.size(); ++i) {
+      line.push_back(cells.metrics([&](const StudyCell& cell) {
+        if (label_of(cell) != label) return false;
+        return i == 0 ? cell.axis == nullptr : cell.axis == &axis && cell.value == curve.values[i];
+      }));
+    }
+  }
+  return curve;
+}
+
+/// Mean IoU of each label on a sequence over everything that was done to it but other settings;
+/// nothing where one lacks a cell.
+std::optional<std::vector<double>> scores_on(const StudyPlan& plan, const DoneCells& cells,
+                                             const std::string& sequence) {
+  std::vector<std::vector<std::optional<double>>> values(cells.labels.size());
+  for (const PlannedCell& planned : plan.cells) {
+    const StudyCell& cell = planned.cell;
+    if (sequence_of(cell) != sequence) continue;
+    if (cell.axis != nullptr && cell.axis->kind == nullptr) continue;
+    const auto label = std::ranges::find(cells.labels, label_of(cell)) - cells.labels.begin();
+    const bool done = planned.state == CellState::kDone;
+    values[static_cast<std::size_t>(label)].push_back(
+        done ? number(planned.record, "summary", "iou") : std::nullopt);
+  }
+  std::vector<double> scores;
+  for (const auto& of_label : values) {
+    const auto mean = mean_of(of_label);
+    if (!mean || of_label.size() != values.front().size()) return std::nullopt;
+    scores.push_back(*mean);
+  }
+  return scores;
+}
+
+/// Places from 1, the mean place for equals.
+std::vector<double> places_of(const std::vector<double>& scores) {
+  std::vector<double> places;
+  for (const double score : scores) {
+    const auto better = std::ranges::count_if(scores, [&](double s) { return s > score; });
+    const auto equal = std::ranges::count(scores, score);
+    places.push_back(static_cast<double>(better) + (static_cast<double>(equal) + 1) / 2);
+  }
+  return places;
+}
+
+/// Studentized range at 5 % and infinite freedom, divided by the root of 2, for 2 to 10 methods.
+constexpr std::array<double, 9> kNemenyi = {1.960, 2.343, 2.569, 2.728, 2.850,
+                                            2.949, 3.031, 3.102, 3.164};
+
+void rank(const StudyPlan& plan, const DoneCells& cells, StudyTable& table) {
+  const std::size_t methods = table.rows.size();
+  if (methods < 2) return;
+  std::vector<std::string> sequences;
+  for (const PlannedCell& planned : plan.cells) {
+    const std::string sequence = sequence_of(planned.cell);
+    if (std::ranges::find(sequences, sequence) == sequences.end()) sequences.push_back(sequence);
+  }
+  std::vector<double> sums(methods);
+  for (const std::string& sequence : sequences) {
+    const auto scores = scores_on(plan, cells, sequence);
+    if (!scores) continue;
+    ++table.ranked_sequences;
+    const std::vector<double> places = places_of(*scores);
+    for (std::size_t i = 0; i < methods; ++i) sums[i] += places[i];
+  }
+  const double count = static_cast<double>(table.ranked_sequences);
+  if (table.ranked_sequences < 2) return;
+  for (std::size_t i = 0; i < methods; ++i) table.rows[i].rank = sums[i] / count;
+  if (methods - 2 >= kNemenyi.size()) return;
+  const double k = static_cast<double>(methods);
+  table.critical_difference = kNemenyi[methods - 2] * std::sqrt(k * (k + 1) / (6 * count));
+}
+
+std::string command_for(const StudyPlan& plan, const StudyCell& cell) {
+  const std::string data = cell.data->simulation ? simulated_folder(plan.out, *cell.data).string()
+                                                 : cell.data->path.string();
+  std::string command = fmt::format("mosbench run {} --sequences {} --method {}", shell_word(data),
+                                    shell_word(cell.sequence), shell_word(cell.method->method));
+  if (const auto perturb = cell.perturb()) command += " --perturb " + shell_word(*perturb);
+  if (cell.method->preset) command += " --preset " + *cell.method->preset;
+  if (!cell.odometry.empty()) command += " --odometry " + cell.odometry;
+  for (const auto& set : cell.identity.at("set")) {
+    command += " --set " + shell_word(set.get<std::string>());
+  }
+  const std::string runs = "results/runs/" + cell.key.substr(0, 12);
+  return fmt::format("{} --out {} && mosbench report {} -o worst.html", command, runs, runs);
+}
+
+/// The worst scans of each label, of any cell.
+void list_worst(const StudyPlan& plan, const DoneCells& cells, StudyTable& table) {
+  constexpr std::size_t kOfEach = 3;
+  for (const std::string& label : cells.labels) {
+    std::vector<StudyWorst> worst;
+    for (const PlannedCell* planned : cells.done) {
+      if (label_of(planned->cell) != label || !planned->record.contains("worst")) continue;
+      for (const ordered_json& scan : planned->record.at("worst")) {
+        worst.push_back({label, planned->cell.title(), scan.value("stem", ""),
+                         command_for(plan, planned->cell), scan.value("iou", 0.0)});
+      }
+    }
+    std::ranges::stable_sort(worst, {}, &StudyWorst::iou);
+    worst.resize(std::min(worst.size(), kOfEach));
+    table.worst.insert(table.worst.end(), worst.begin(), worst.end());
+  }
+}
+
+void count_cells(const StudyPlan& plan, StudyTable& table) {
+  const CostModel costs = read_costs(plan.out);
+  double seconds = 0, predicted_s = 0;
+  bool all_predicted = true;
+  for (const PlannedCell& planned : plan.cells) {
+    ++table.cells;
+    if (planned.state == CellState::kFailed) {
+      table.failures.push_back({planned.cell.title(), planned.record.value("failure", "")});
+    }
+    if (planned.state != CellState::kDone) continue;
+    ++table.done;
+    table.simulated = table.simulated || planned.record.value("simulated", false);
+    seconds += number(planned.record, "timing", "wall_s").value_or(0);
+    const auto expected_s = costs.seconds(planned.cell);
+    all_predicted = all_predicted && expected_s.has_value();
+    predicted_s += expected_s.value_or(0);
+  }
+  if (table.done == 0) return;
+  table.hours = seconds / 3600;
+  if (all_predicted) table.predicted_hours = predicted_s / 3600;
+}
+
+}  // namespace
+
+StudyTable gather(const StudyPlan& plan) {
+  StudyTable table;
+  table.name = plan.study->name;
+  const DoneCells cells(plan);
+  for (const std::string& label : cells.labels) table.rows.push_back(row_of(cells, label));
+  mark_front(table.rows);
+  for (const StudyAxis& axis : plan.study->axes) table.curves.push_back(curve_of(cells, axis));
+  rank(plan, cells, table);
+  list_worst(plan, cells, table);
+  count_cells(plan, table);
+  return table;
+}
+
+}  // namespace mosbench

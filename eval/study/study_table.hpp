@@ -1,0 +1,79 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "eval/statistics/intervals.hpp"
+#include "eval/study/study_plan.hpp"
+
+namespace mosbench {
+
+/// Mean of a metric over the sequences of a study, each the mean of its seeds; with a single
+/// sequence, over seeds.
+struct StudyMean {
+  std::optional<double> value;       ///< fraction; nothing without cells, or where one is undefined
+  std::optional<Interval> interval;  ///< 95 %, Student's t; nothing below two
+  std::size_t count = 0;             ///< sequences, or seeds of the single one
+};
+
+/// IoU, precision and recall.
+using StudyMetrics = std::array<StudyMean, 3>;
+inline constexpr std::array<const char*, 3> kStudyMetrics = {"iou", "precision", "recall"};
+
+/// A method with its poses, on all sequences without any disturbance.
+struct StudyRow {
+  std::string label;
+  StudyMetrics metrics;
+  std::optional<double> ms_per_scan;
+  bool is_on_front = false;    ///< none is as good and as fast, and better in one
+  std::optional<double> rank;  ///< mean over sequences of its place, 1 the best
+};
+
+/// Metrics of every row by the strength of one disturbance, or by the value of one setting.
+struct StudyCurve {
+  std::string axis, unit;
+  std::vector<std::string> values;                 ///< the undisturbed one first
+  std::vector<std::vector<StudyMetrics>> metrics;  ///< by row, by value
+};
+
+/// What cannot be shown, and why.
+struct StudyGap {
+  std::string title, why;
+};
+
+/// One of the worst scans of a row, and the command that shows it.
+struct StudyWorst {
+  std::string label, title, stem, command;
+  double iou;
+};
+
+/// All that a study found.
+struct StudyTable {
+  std::string name;
+  bool simulated = false;  ///< any of its data
+  std::vector<StudyRow> rows;
+  std::vector<StudyCurve> curves;
+  std::size_t ranked_sequences = 0;
+  /// Two mean ranks that are farther apart differ at 5 % (Nemenyi; Demsar 2006, eq. 5 and table 5).
+  std::optional<double> critical_difference;
+  std::vector<StudyWorst> worst;
+  std::vector<StudyGap> failures;
+  std::size_t cells = 0, done = 0;
+  std::optional<double> hours,
+      predicted_hours;  ///< of what is done, and what costs.json said of it
+};
+
+/// Gathers what lies there.
+StudyTable gather(const StudyPlan& plan);
+
+std::string study_text(const StudyTable& table);
+std::string study_latex(const StudyTable& table);
+/// Formats a line per cell.
+std::string study_csv(const StudyPlan& plan);
+nlohmann::ordered_json to_json(const StudyTable& table);
+/// Returns a page of its own with the curves.
+std::string study_html(const StudyTable& table);
+
+}  // namespace mosbench

@@ -1,0 +1,165 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "tests/cli/program.hpp"
+#include "tests/cli/small_sequence.hpp"
+#include "tests/temp_folder.hpp"
+
+namespace mosbench {
+namespace {
+
+using nlohmann::ordered_json;
+using testing::HasSubstr;
+
+/// Two small sequences, two methods, one disturbance.
+class Studies : public testing::Test {
+ protected:
+  void SetUp() override {
+    for (const char* name : {"00", "01"}) {
+      cli::write_small_sequence(folder_.path() / "data/sequences" / name, 6);
+    }
+    folder_.write("s.yaml", R"(name: s
+protocol: sipailou
+data: {name: small, path: data, dataset: semantickitti}
+methods:
+  - {method: hmm-mos, set: {voxel_size_m: 0.4}}
+  - underwood
+disturb: {kind: range_noise_m, strengths: [0.05]}
+)");
+  }
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+  cli::Answer study(const std::string& action, std::vector<std::string> words = {}) const {
+    std::vector<std::string> all = {"study", action, path("s.yaml")};
+    all.insert(all.end(), words.begin(), words.end());
+    if (std::find(words.begin(), words.end(), "--out") == words.end()) {
+      all.insert(all.end(), {"--out", path("out")});
+    }
+    return cli::run(all);
+  }
+  std::vector<std::string> keys() const {
+    const auto plan = ordered_json::parse(study("plan", {"--json"}).out);
+    std::vector<std::string> keys;
+    for (const auto& cell : plan.at("cells")) keys.push_back(cell.at("key"));
+    return keys;
+  }
+  ordered_json record(const std::string& out, const std::string& key) const {
+    auto json = ordered_json::parse(read_file(folder_.path() / out / "cells" / (key + ".json")));
+    json.erase("timing");
+    return json;
+  }
+
+  TempFolder folder_;
+};
+
+TEST_F(Studies, AreComputedCellByCellAndGathered) {
+  ASSERT_EQ(keys().size(), 8u);
+  EXPECT_EQ(study("table").exit_code, 1);
+  const cli::Answer first = study("cell", keys());
+  ASSERT_EQ(first.exit_code, 0) << first.err;
+  EXPECT_EQ(first.out.find("kept"), std::string::npos);
+  const cli::Answer again = study("cell", keys());
+  EXPECT_EQ(again.out.find("computed"), std::string::npos);
+  const cli::Answer table = study("table");
+  EXPECT_EQ(table.exit_code, 0) << table.out;
+  EXPECT_THAT(table.out, HasSubstr("8 of 8 cells are done"));
+  // A cell's numbers are those of the same run.
+  const cli::Answer run =
+      cli::run({"run", path("data"), "--dataset", "semantickitti", "--sequences", "00",
+                "--protocol", "sipailou", "--set", "voxel_size_m=0.4", "--out", path("run")});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const ordered_json cell = record("out", keys().front());
+  const ordered_json result = cli::timeless_result(folder_ / "run/00");
+  EXPECT_EQ(cell.at("summary"), result.at("summary"));
+  EXPECT_EQ(cell.at("fingerprint"), result.at("fingerprint"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out/scratch/labels"));
+  for (const char* format : {"csv", "latex", "json", "html"}) {
+    EXPECT_EQ(study("table", {"--format", format}).exit_code, 0) << format;
+  }
+}
+
+TEST_F(Studies, OfACopyOfTheDataHaveTheSameKeys) {
+  const std::vector<std::string> before = keys();
+  std::filesystem::rename(folder_ / "data", folder_ / "moved");
+  std::filesystem::copy(folder_ / "moved", folder_ / "data",
+                        std::filesystem::copy_options::recursive);
+  EXPECT_EQ(keys(), before);
+  write_file_atomic(folder_ / "data/sequences/01/poses.txt",
+                    read_file(folder_ / "data/sequences/01/poses.txt") + " ");
+  const std::vector<std::string> after = keys();
+  EXPECT_TRUE(std::equal(before.begin(), before.begin() + 4, after.begin()));
+  for (std::size_t i = 4; i < 8; ++i) EXPECT_NE(before[i], after[i]);
+}
+
+TEST_F(Studies, GoOnWhereOneSequenceIsBad) {
+  write_file_atomic(folder_ / "data/sequences/01/velodyne/000003.bin", "odd");
+  const cli::Answer cells = study("cell", keys());
+  EXPECT_EQ(cells.exit_code, 1);
+  const cli::Answer table = study("table");
+  EXPECT_EQ(table.exit_code, 1);
+  EXPECT_THAT(table.out, HasSubstr("4 of 8 cells are done"));
+  EXPECT_THAT(table.out, HasSubstr("000003.bin"));
+  cli::write_small_sequence(folder_ / "data/sequences/01", 6);
+  EXPECT_EQ(study("cell", keys()).exit_code, 0);
+  EXPECT_EQ(study("table").exit_code, 0);
+}
+
+TEST_F(Studies, AreTheSameFromTwoProcessesAtOnce) {
+  const std::vector<std::string> all = keys();
+  std::vector<std::string> words = {"study", "cell", path("s.yaml"), all[0], "--out", path("two")};
+  const TempFolder one, two;
+  const pid_t first = cli::start(words, one.path()), second = cli::start(words, two.path());
+  EXPECT_EQ(cli::wait_for(first), 0);
+  EXPECT_EQ(cli::wait_for(second), 0);
+  ASSERT_EQ(study("cell", {all[0]}).exit_code, 0);
+  EXPECT_EQ(record("two", all[0]), record("out", all[0]));
+  std::size_t files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder_ / "two/cells")) {
+    files += entry.is_regular_file();
+  }
+  EXPECT_EQ(files, 1u);
+}
+
+TEST_F(Studies, ComputeAgainWhatAnotherVersionLeft) {
+  const std::string key = keys().front();
+  ASSERT_EQ(study("cell", {key}).exit_code, 0);
+  const auto file = folder_.path() / "out/cells" / (key + ".json");
+  auto json = ordered_json::parse(read_file(file));
+  json["version"] = "0.0.1";
+  write_file_atomic(file, json.dump());
+  EXPECT_THAT(study("plan").out, HasSubstr("1 of another version"));
+  const cli::Answer again = study("cell", {key});
+  EXPECT_THAT(again.err, HasSubstr("computed by mosbench 0.0.1"));
+  EXPECT_THAT(study("plan").out, HasSubstr("0 of another version"));
+}
+
+TEST_F(Studies, TellTheHoursOnceTheyAreMeasured) {
+  EXPECT_THAT(study("plan").out, HasSubstr("--measure tells"));
+  EXPECT_THAT(study("plan", {"--measure"}).out, HasSubstr("hours of one core"));
+}
+
+TEST_F(Studies, RefuseWhatIsNotUnderstood) {
+  EXPECT_EQ(study("cell", {"0123"}).exit_code, 2);
+  EXPECT_EQ(study("cell").exit_code, 2);
+  EXPECT_EQ(study("fly").exit_code, 2);
+  folder_.write("s.yaml", "name: s\ndata: 3\nmethods: [yoon]\n");
+  const cli::Answer wrong = study("plan");
+  EXPECT_EQ(wrong.exit_code, 2);
+  EXPECT_THAT(wrong.err, HasSubstr("s.yaml:2: "));
+  std::string seeds = "[1";
+  for (int seed = 2; seed < 60; ++seed) seeds += ", " + std::to_string(seed);
+  folder_.write(
+      "s.yaml",
+      "name: s\ndata: {name: d, path: data, dataset: semantickitti}\nmethods: [underwood]\n"
+      "disturb: {kind: range_noise_m, strengths: [1]}\nseeds: " +
+          seeds + "]\n");
+  const cli::Answer many = study("run");
+  EXPECT_EQ(many.exit_code, 2);
+  EXPECT_THAT(many.err, HasSubstr("expected --yes"));
+}
+
+}  // namespace
+}  // namespace mosbench

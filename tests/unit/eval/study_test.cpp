@@ -1,0 +1,212 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+#include "datasets/files/errors.hpp"
+#include "eval/results/answer_text.hpp"
+#include "eval/results/version.hpp"
+#include "eval/study/study_cell.hpp"
+#include "eval/study/study_file.hpp"
+#include "eval/study/study_run.hpp"
+#include "eval/study/study_table.hpp"
+#include "tests/temp_folder.hpp"
+
+namespace mosbench {
+namespace {
+
+using nlohmann::ordered_json;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+constexpr const char* kSmallStudy = R"(name: small
+protocol: semantickitti-mos
+data:
+  - name: room
+    simulate: {layout: semantickitti, scene: room, scans: 6, seed: [1, 2]}
+methods:
+  - hmm-mos
+  - {name: near, method: underwood, set: {max_range_m: 15}}
+disturb:
+  - {kind: pose_noise_m, strengths: [0, 0.05, 0.1]}
+  - {kind: mount_tilt_deg, strengths: [1]}
+seeds: [1, 2, 3]
+)";
+
+std::string replaced_in(std::string text, const std::string& what, const std::string& by) {
+  const std::size_t at = text.find(what);
+  EXPECT_NE(at, std::string::npos) << what;
+  return text.replace(at, what.size(), by);
+}
+
+std::string study_error(const std::string& text) {
+  return message_of<UsageError>([&] { parse_study(text, "s.yaml"); });
+}
+
+std::set<std::string> keys_of(const StudyPlan& plan) {
+  std::set<std::string> keys;
+  for (const PlannedCell& planned : plan.cells) keys.insert(planned.cell.key);
+  return keys;
+}
+
+TEST(StudyFile, IsReadAsItIsWritten) {
+  const Study study = parse_study(kSmallStudy, "s.yaml");
+  ASSERT_EQ(study.data.size(), 2u);
+  EXPECT_EQ(study.data[1].name, "room-2");
+  EXPECT_EQ(study.data[1].simulation->seed, 2u);
+  EXPECT_EQ(study.methods[1].assignments, std::vector<std::string>{"max_range_m=15"});
+  EXPECT_EQ(study.axes[0].values, (std::vector<std::string>{"0", "0.05", "0.1"}));
+  EXPECT_EQ(study.seeds, (std::vector<std::uint64_t>{1, 2, 3}));
+}
+
+TEST(StudyFile, IsRefusedWithTheLineOfTheFault) {
+  const auto error = [](const std::string& what, const std::string& by) {
+    return study_error(replaced_in(kSmallStudy, what, by));
+  };
+  EXPECT_THAT(error("seeds:", "seed:"), AllOf(StartsWith("s.yaml:12: key \"seed\" is not known"),
+                                              HasSubstr("nearest: seeds")));
+  EXPECT_THAT(error("scans: 6", "scan: 6"), StartsWith("s.yaml:5: key \"scan\" is not known"));
+  EXPECT_THAT(error(", scans: 6", ""), StartsWith("s.yaml:5: key \"scans\" is missing"));
+  EXPECT_THAT(error("scans: 6", "scans: many"), StartsWith("s.yaml:5: \"many\" is no number"));
+  EXPECT_THAT(error("scene: room", "scene: attic"), StartsWith("s.yaml:5: "));
+  EXPECT_THAT(error("hmm-mos", "hmm-moss"),
+              AllOf(StartsWith("s.yaml:7: "), HasSubstr("nearest: hmm-mos")));
+  EXPECT_THAT(error("max_range_m", "max_range"),
+              AllOf(StartsWith("s.yaml:8: "), HasSubstr("nearest: max_range_m")));
+  EXPECT_THAT(error("0.05", "-1"), StartsWith("s.yaml:10: --perturb: pose_noise_m"));
+  EXPECT_THAT(error("pose_noise_m", "pose_noise"), HasSubstr("nearest: pose_noise_m"));
+  EXPECT_THAT(error("semantickitti-mos", "kitti"), StartsWith("s.yaml:2: "));
+  EXPECT_THAT(error("name: near", "name: hmm-mos"), HasSubstr("given twice"));
+  EXPECT_THAT(error("name: near", "name: ../near"), HasSubstr("is no name"));
+  EXPECT_THAT(error("seeds: [1, 2, 3]", "seeds: []"), StartsWith("s.yaml:12: is an empty list"));
+  EXPECT_THAT(error("seeds: [1, 2, 3]", "name: again"), HasSubstr("\"name\" is given twice"));
+  EXPECT_THAT(study_error("name: [1"), StartsWith("s.yaml:"));
+  EXPECT_THAT(study_error(""), HasSubstr("is no map"));
+  EXPECT_THAT(study_error("- 1"), HasSubstr("is no map"));
+}
+
+TEST(StudyPlan, HoldsEveryCombinationOnce) {
+  const Study study = parse_study(kSmallStudy, "s.yaml");
+  const StudyPlan plan = plan_study(study, "/nowhere");
+  // Each of two sequences and two methods: plain, three strengths by three seeds, one tilt.
+  EXPECT_EQ(plan.cells.size(), 2u * 2u * (1 + 3 * 3 + 1));
+  EXPECT_EQ(keys_of(plan).size(), plan.cells.size());
+  for (const PlannedCell& planned : plan.cells) EXPECT_EQ(planned.state, CellState::kMissing);
+  EXPECT_EQ(plan.cells[2].cell.title(), "room-1 08, hmm-mos, pose_noise_m=0, seed 2");
+}
+
+TEST(StudyPlan, KeepsTheKeysOfWhatDidNotChange) {
+  const auto keys = [](const std::string& text) {
+    const Study study = parse_study(text, "s.yaml");
+    return keys_of(plan_study(study, "/nowhere"));
+  };
+  const std::set<std::string> before = keys(kSmallStudy);
+  const auto shared = [&](const std::string& what, const std::string& by) {
+    std::size_t same = 0;
+    for (const std::string& key : keys(replaced_in(kSmallStudy, what, by)))
+      same += before.count(key);
+    return same;
+  };
+  EXPECT_EQ(shared("name: small", "name: other"), 44u);
+  EXPECT_EQ(shared("name: near", "name: far"), 44u);  // a name in tables decides no result
+  EXPECT_EQ(shared("[0, 0.05, 0.1]", "[0, 0.05, 0.2]"), 44u - 12u);
+  EXPECT_EQ(shared("max_range_m: 15", "max_range_m: 16"), 22u);
+  EXPECT_EQ(shared("seed: [1, 2]", "seed: [1, 3]"), 22u);
+  EXPECT_EQ(shared("semantickitti-mos", "sipailou"), 0u);
+  EXPECT_EQ(shared("scans: 6", "scans: 7"), 0u);
+}
+
+/// Writes the record of a cell as if it had been computed.
+void write_record(const StudyPlan& plan, const StudyCell& cell, double iou, double ms,
+                  const std::string& version = std::string(kMosbenchVersion)) {
+  const ordered_json record = {{"key", cell.key},
+                               {"version", version},
+                               {"simulated", true},
+                               {"summary", {{"iou", iou}, {"precision", 0.5}, {"recall", nullptr}}},
+                               {"worst", {{{"stem", "000003"}, {"iou", iou / 2}}}},
+                               {"timing", {{"ms_per_scan", ms}, {"wall_s", 36.0}}}};
+  write_shared(record_file(plan.out, cell.key), json_text(record));
+}
+
+std::string without_disturbances() {
+  const std::string text = kSmallStudy;
+  return text.substr(0, text.find("disturb:"));
+}
+
+TEST(StudyTable, HasMeansRanksAndTheParetoFront) {
+  const TempFolder folder;
+  const Study study = parse_study(
+      replaced_in(without_disturbances(), "- hmm-mos", "- hmm-mos\n  - yoon"), "s.yaml");
+  const StudyPlan plan = plan_study(study, folder.path());
+  ASSERT_EQ(plan.cells.size(), 6u);
+  const double ious[] = {0.8, 0.6, 0.4, 0.6, 0.6, 0.2};  // hmm-mos, yoon, near on two sequences
+  for (std::size_t i = 0; i < 6; ++i)
+    write_record(plan, plan.cells[i].cell, ious[i], i % 3 ? 40 : 20);
+  const StudyTable table = gather(plan_study(study, folder.path()));
+  ASSERT_EQ(table.rows.size(), 3u);
+  const StudyMean& mean = table.rows[0].metrics[0];
+  EXPECT_NEAR(*mean.value, 0.7, 1e-12);
+  // t of one degree of freedom at 97.5 % is 12.706; the standard error is 0.1.
+  EXPECT_EQ(mean.interval->high, 1.0);
+  EXPECT_EQ(mean.interval->low, 0.0);
+  EXPECT_EQ(*table.rows[0].rank, 1.25);  // first, and first beside the second
+  EXPECT_EQ(*table.rows[1].rank, 1.75);
+  EXPECT_EQ(*table.rows[2].rank, 3);
+  EXPECT_NEAR(*table.critical_difference, 2.343 * std::sqrt(3.0 * 4 / (6 * 2)), 1e-12);
+  EXPECT_TRUE(table.rows[0].is_on_front);
+  EXPECT_FALSE(table.rows[1].is_on_front);
+  EXPECT_FALSE(table.rows[0].metrics[2].value);
+  EXPECT_NEAR(*table.hours, 6 * 36.0 / 3600, 1e-12);
+  EXPECT_TRUE(table.simulated);
+  EXPECT_EQ(table.worst.front().iou, 0.3);
+  EXPECT_THAT(study_text(table), HasSubstr("simulated data"));
+  EXPECT_THAT(study_latex(table), HasSubstr("\\begin{tabular}{lrrrrrr}"));
+  EXPECT_THAT(study_html(table), HasSubstr("\"name\":\"small\""));
+}
+
+TEST(StudyTable, AveragesSeedsBeforeSequences) {
+  const TempFolder folder;
+  const Study study = parse_study(
+      replaced_in(kSmallStudy, "  - {name: near, method: underwood, set: {max_range_m: 15}}\n", ""),
+      "s.yaml");
+  const StudyPlan plan = plan_study(study, folder.path());
+  for (const PlannedCell& planned : plan.cells) {
+    const bool first = planned.cell.data->name == "room-1";
+    const double seed = static_cast<double>(planned.cell.seed);
+    write_record(plan, planned.cell, (first ? 0.4 : 0.6) + 0.01 * seed, 1);
+  }
+  const StudyTable table = gather(plan_study(study, folder.path()));
+  const StudyMean& mean = table.curves[0].metrics[0][2][0];
+  EXPECT_EQ(mean.count, 2u);
+  EXPECT_NEAR(*mean.value, 0.52, 1e-12);
+  EXPECT_EQ(table.curves[0].values, (std::vector<std::string>{"none", "0", "0.05", "0.1"}));
+}
+
+TEST(StudyTable, SaysWhatIsMissingAndOfAnotherVersion) {
+  const TempFolder folder;
+  const Study study = parse_study(without_disturbances(), "s.yaml");
+  const StudyPlan plan = plan_study(study, folder.path());
+  write_record(plan, plan.cells[0].cell, 0.5, 1, "0.0.1");
+  write_shared(record_file(folder.path(), plan.cells[1].cell.key), "{\"key\": ");
+  write_record(plan, plan.cells[2].cell, 0.5, 1);
+  const StudyPlan again = plan_study(study, folder.path());
+  EXPECT_EQ(again.cells[0].state, CellState::kOtherVersion);
+  EXPECT_EQ(again.cells[1].state, CellState::kMissing);
+  EXPECT_EQ(again.cells[2].state, CellState::kDone);
+  EXPECT_THAT(study_text(gather(again)), HasSubstr("INCOMPLETE: 3 cells are missing"));
+  EXPECT_EQ(work_of(again, {}).cells.size(), 3u);
+}
+
+// A study of a field: its plan and its tables must not keep anyone waiting.
+TEST(StudyPlan, OfTenThousandCellsIsQuick) {
+  const TempFolder folder;
+  std::string seeds = "1";
+  for (int seed = 2; seed <= 830; ++seed) seeds += ", " + std::to_string(seed);
+  const Study study =
+      parse_study(replaced_in(kSmallStudy, "[1, 2, 3]", "[" + seeds + "]"), "s.yaml");
+  EXPECT_EQ(plan_study(study, folder.path()).cells.size(), 4u * (1 + 3 * 830 + 1));
+}
+
+}  // namespace
+}  // namespace mosbench
