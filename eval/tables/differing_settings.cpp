@@ -35,6 +35,12 @@ OwnedSettings of_poses(const SequenceResult& result) {
   return settings;
 }
 
+OwnedSettings of_disturbance(const SequenceResult& result) {
+  OwnedSettings settings{result.method};
+  settings.values["perturb"] = reading_of(result).value("perturb", "none");
+  return settings;
+}
+
 /// Splits "voxel_size_m=0.5 ...", as the odometry states its settings.
 OwnedSettings of_odometry(const SequenceResult& result) {
   const ordered_json reading = reading_of(result);
@@ -78,7 +84,7 @@ std::vector<std::string> names_in(const std::vector<OwnedSettings>& runs) {
 
 std::vector<DifferingSetting> differing_settings(const std::vector<const ResultSet*>& runs) {
   std::vector<DifferingSetting> differing;
-  for (const auto settings_of : {of_method, of_poses, of_odometry}) {
+  for (const auto settings_of : {of_method, of_poses, of_disturbance, of_odometry}) {
     std::vector<OwnedSettings> owned;
     for (const ResultSet* run : runs) owned.push_back(settings_of(run->front()));
     for (const std::string& name : names_in(owned)) {

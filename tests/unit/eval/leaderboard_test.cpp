@@ -175,6 +175,16 @@ ResultSet run_with(const std::string& name, std::uint64_t found, nlohmann::order
   return run;
 }
 
+TEST(Leaderboard, ShowsByWhatRunsWereDisturbed) {
+  std::vector<ResultSet> runs = {run_with("as_recorded", 900, {{"voxel_size_m", 0.2}}),
+                                 run_with("shaken", 600, {{"voxel_size_m", 0.2}})};
+  runs[1].sequences[0].header["reading"] = {{"perturb", "pose_noise_m=0.05,seed=3"}};
+  const Leaderboard board = leaderboard_of(runs);
+  ASSERT_EQ(board.differing.size(), 1U);
+  EXPECT_EQ(board.differing[0].name, "perturb");
+  EXPECT_THAT(board.differing[0].values, ElementsAre("none", "pose_noise_m=0.05,seed=3"));
+}
+
 TEST(Leaderboard, ShowsTheSettingsInWhichRunsOfOneMethodDiffer) {
   std::vector<ResultSet> runs = {
       run_with("online", 600, {{"delay_scans", 0}, {"voxel_size_m", 0.2}}),
