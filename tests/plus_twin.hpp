@@ -21,20 +21,22 @@ using hmm_mos::reference::Voxel;
 struct Cell {
   double occupied = 0, free = 0, unobserved = 1;  // belief
   Occupancy state = kUnobserved;
-  int last_seen = 0, free_scans = 0, occupied_scans = 0, arrived_at = 0;
+  int last_seen = 0, free_ticks = 0, occupied_ticks = 0, arrived_at = 0;
   bool arrived = false, sure = false;
 };
 
 struct Scan final : Observed {
   PointVoxels voxels;
-  SetOf measured, observed, occupied, seeds, fresh, settled;
+  SetOf measured, observed, occupied, seeds, fresh, settled, aged;
   Eigen::Vector3d sensor_m = Eigen::Vector3d::Zero();
   LabelledScan result;
 };
 
 class PlusTwin final : public Method {
  public:
-  explicit PlusTwin(const hmm_mos_plus::Config& config) : c_(config) {}
+  explicit PlusTwin(const hmm_mos_plus::Config& config,
+                    const std::vector<std::int64_t>& stamps_ns = {})
+      : c_(config), stamps_ns_(stamps_ns) {}
 
   std::unique_ptr<Observed> observe(std::span<const Point> points, const Pose& t) override {
     auto scan = std::make_unique<Scan>();
@@ -60,6 +62,9 @@ class PlusTwin final : public Method {
   std::vector<LabelledScan> push(std::unique_ptr<Observed> observed) override {
     auto& scan = dynamic_cast<Scan&>(*observed);
     scan.result.scan_index = static_cast<std::size_t>(++k_);
+    const int tick_before = tick_;
+    tick_ = tick_of_scan(static_cast<std::size_t>(k_));
+    ticks_passed_ = tick_ - tick_before;
     for (const Voxel& v : scan.observed) update(v, scan.measured);
     std::erase_if(map_, [&](const auto& entry) {
       const bool expired = k_ > c_.map.global_window_scans &&
@@ -71,9 +76,9 @@ class PlusTwin final : public Method {
       const Cell* cell = find(map_, v);
       if (cell == nullptr || cell->state != kOccupied) continue;
       if (young(*cell) && may_be_seed(v)) scan.seeds.insert(v);
-      if (young(*cell) && k_ - cell->arrived_at <= c_.fresh_age_scans) scan.fresh.insert(v);
-      if (cell->occupied_scans >= 8 &&
-          !(cell->arrived && k_ - cell->arrived_at <= c_.object_age_scans))
+      if (young(*cell) && is_within(*cell, c_.fresh_age_s)) scan.fresh.insert(v);
+      if (cell->occupied_ticks >= 5) scan.aged.insert(v);
+      if (cell->occupied_ticks >= 8 && !(cell->arrived && is_within(*cell, c_.object_age_s)))
         scan.settled.insert(v);
     }
     held_.push_back(std::move(scan));
@@ -98,19 +103,39 @@ class PlusTwin final : public Method {
     if (std::max(c.occupied, c.free) > c_.map.min_state_probability)
       c.state = c.free > c.occupied ? kFree : kOccupied;
     c.last_seen = k_;
-    if (c.state == kOccupied && before == kOccupied) ++c.occupied_scans;
-    if (c.state == kFree && before == kFree) ++c.free_scans;
+    if (c.state == kOccupied && before == kOccupied) c.occupied_ticks += ticks_passed_;
+    if (c.state == kFree && before == kFree) c.free_ticks += ticks_passed_;
     if (c.state == kOccupied && before != kOccupied) {
-      c.arrived = before == kFree, c.sure = c.arrived && c.free_scans >= 3;
-      c.arrived_at = k_, c.free_scans = 0, c.occupied_scans = 1;
+      c.arrived = before == kFree, c.sure = c.arrived && c.free_ticks >= 3;
+      c.arrived_at = tick_, c.free_ticks = 0, c.occupied_ticks = 1;
     }
     if (c.state == kFree && before != kFree) {
       c.arrived = c.sure = false;
-      c.occupied_scans = 0, c.free_scans = 1;
+      c.occupied_ticks = 0, c.free_ticks = 1;
     }
   }
 
-  bool young(const Cell& c) const { return c.sure && k_ - c.arrived_at <= c_.seed_age_scans; }
+  /// Tenths of a second, as far as the stamps tell: periods since the first scan, by their median
+  /// length, which is 0.1 s when it is near that.
+  int tick_of_scan(std::size_t k) const {
+    std::vector<double> apart_s;
+    for (std::size_t i = 1; i < stamps_ns_.size(); ++i)
+      apart_s.push_back(static_cast<double>(stamps_ns_[i] - stamps_ns_[i - 1]) * 1e-9);
+    std::vector<double> sorted = apart_s;
+    std::ranges::sort(sorted);
+    const double period_s = sorted.empty() ? 0 : sorted[sorted.size() / 2];
+    if (period_s <= 0) return static_cast<int>(k);
+    double periods = 0;
+    for (std::size_t i = 0; i < k; ++i)
+      periods += std::max(1.0, std::round(apart_s.at(i) / period_s));
+    const bool is_ten_hertz = period_s >= 0.08 && period_s <= 0.125;
+    return static_cast<int>(std::floor(periods * (is_ten_hertz ? 1 : period_s / 0.1)));
+  }
+
+  bool is_within(const Cell& c, double age_s) const {
+    return tick_ - c.arrived_at <= std::lround(age_s * 10);
+  }
+  bool young(const Cell& c) const { return c.sure && is_within(c, c_.seed_age_s); }
 
   bool is_known(const Cell* c) const {
     return c != nullptr && c->state != kUnobserved &&
@@ -121,7 +146,7 @@ class PlusTwin final : public Method {
   bool may_be_seed(const Voxel& v) const {
     const int firm = count_neighbours(v, 1, [&](const Voxel& u) {
       const Cell* c = find(map_, u);
-      return is_known(c) && c->state == kOccupied && c->occupied_scans >= 8 && !young(*c);
+      return is_known(c) && c->state == kOccupied && c->occupied_ticks >= 8 && !young(*c);
     });
     const int unknown =
         count_neighbours(v, 2, [&](const Voxel& u) { return !is_known(find(map_, u)); });
@@ -133,6 +158,7 @@ class PlusTwin final : public Method {
       const Cell* cell = find(map_, v);
       if (!is_known(cell) || cell->state != kFree) continue;
       scan.settled.erase(v);
+      scan.aged.erase(v);
       scan.fresh.insert(v);
       if (may_be_seed(v)) scan.seeds.insert(v);
     }
@@ -165,10 +191,14 @@ class PlusTwin final : public Method {
       const auto is_fresh = [&](const Voxel& v) { return is_seed(v) && scan.fresh.contains(v); };
       const auto seeds = static_cast<double>(std::ranges::count_if(members, is_seed));
       const auto fresh = static_cast<double>(std::ranges::count_if(members, is_fresh));
-      const double share = seeds / static_cast<double>(members.size());
+      const auto is_aged = [&](const Voxel& v) { return scan.aged.contains(v); };
+      const auto aged = static_cast<double>(std::ranges::count_if(members, is_aged));
+      const auto size = static_cast<double>(members.size());
+      const double share = seeds / size;
       for (const Voxel& v : members) shares[v] = static_cast<float>(share);
       if (share >= c_.min_seed_share && fresh >= c_.min_fresh_share * seeds &&
-          seeds >= c_.min_seeds_voxels && has_size_of_object(members))
+          seeds >= c_.min_seeds_voxels && aged <= c_.max_aged_share * size &&
+          has_size_of_object(members) && rises_from_ground(members, scan.occupied))
         objects.insert(members.begin(), members.end());
     }
     SetOf moving = objects;
@@ -193,6 +223,17 @@ class PlusTwin final : public Method {
     return true;
   }
 
+  bool rises_from_ground(const std::vector<Voxel>& members, const SetOf& occupied) const {
+    const int r = static_cast<int>(c_.rise_radius_m / c_.map.voxel_size_m);
+    const auto [west, east] = std::ranges::minmax(members, {}, &Voxel::x);
+    const auto [south, north] = std::ranges::minmax(members, {}, &Voxel::y);
+    const int top = std::ranges::max(members, {}, &Voxel::z).z;
+    return std::any_of(occupied.begin(), occupied.end(), [&](const Voxel& u) {
+      return u.x >= west.x - r && u.x <= east.x + r && u.y >= south.y - r && u.y <= north.y + r &&
+             top >= u.z + c_.min_rise_voxels;
+    });
+  }
+
   std::vector<LabelledScan> release(std::size_t held) {
     std::vector<LabelledScan> results;
     for (; held_.size() > held; held_.pop_front()) {
@@ -210,7 +251,8 @@ class PlusTwin final : public Method {
   hmm_mos_plus::Config c_;
   MapOf<Cell> map_;
   std::deque<Scan> held_;
-  int k_ = -1;
+  std::vector<std::int64_t> stamps_ns_;
+  int k_ = -1, tick_ = -1, ticks_passed_ = 1;
 };
 
 }  // namespace mosbench::plus_twin

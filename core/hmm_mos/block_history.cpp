@@ -1,14 +1,16 @@
 #include "core/hmm_mos/block_history.hpp"
 
+#include <algorithm>
+
 namespace mosbench::hmm_mos {
 
 void BlockHistory::update(const BlockMask& observed, const BlockStates& before,
-                          const BlockStates& after, std::uint32_t scan_index) {
+                          const BlockStates& after, const Tick& tick) {
   if (arrived_.any()) {  // before their age is beyond what 8 bits hold
-    arrived_ = within(arrived_, kMaxAgeScans, scan_index);
+    arrived_ = within(arrived_, kMaxAgeTicks, tick.at);
     sure_ = sure_ & arrived_;
   }
-  updated_ = scan_index;
+  updated_ = tick.at;
   const BlockMask occupied = observed & after.occupied, free = observed & after.free;
   if (const BlockMask came = without(occupied, before.occupied); came.any()) {
     const BlockMask from_free = came & before.free;
@@ -22,26 +24,38 @@ void BlockHistory::update(const BlockMask& observed, const BlockStates& before,
       arrived_at_ = std::make_unique_for_overwrite<std::array<std::uint8_t, kBlockVoxels>>();
     }
     for_each_cell(from_free, [&](std::uint32_t cell) {
-      (*arrived_at_)[cell] = static_cast<std::uint8_t>(scan_index);
+      (*arrived_at_)[cell] = static_cast<std::uint8_t>(tick.at);
     });
   }
-  if (BlockMask carry = occupied & before.occupied; carry.any()) {
-    for (BlockMask& digit : occupied_) {
-      const BlockMask both = digit & carry;
-      digit = without(digit | carry, both);
-      carry = both;
-    }
-    settled_ = settled_ | carry;  // 7 + 1
+  const BlockMask stayed_occupied = occupied & before.occupied;
+  for (std::uint32_t i = std::min(tick.steps, kSettledTicks); i > 0; --i) {
+    count_occupied(stayed_occupied);
   }
   if (const BlockMask left = without(free, before.free); left.any()) {
     forget(left);
     free_low_ = free_low_ | left;
   }
-  if (const BlockMask stayed = free & before.free; stayed.any()) {  // 1 -> 2 -> 3 -> 3
-    const BlockMask high = free_high_ | (free_low_ & stayed);
-    free_low_ = without(free_low_, without(stayed, free_high_)) | (stayed & free_high_);
-    free_high_ = high;
+  const BlockMask stayed_free = free & before.free;
+  for (std::uint32_t i = std::min(tick.steps, kSureTicks); i > 0; --i) count_free(stayed_free);
+}
+
+void BlockHistory::count_occupied(const BlockMask& voxels) {
+  if (!voxels.any()) return;
+  BlockMask carry = voxels;
+  for (BlockMask& digit : occupied_) {
+    const BlockMask both = digit & carry;
+    digit = without(digit | carry, both);
+    carry = both;
   }
+  settled_ = settled_ | carry;  // 7 + 1
+}
+
+/// 1 -> 2 -> 3 -> 3.
+void BlockHistory::count_free(const BlockMask& voxels) {
+  if (!voxels.any()) return;
+  const BlockMask high = free_high_ | (free_low_ & voxels);
+  free_low_ = without(free_low_, without(voxels, free_high_)) | (voxels & free_high_);
+  free_high_ = high;
 }
 
 void BlockHistory::forget(const BlockMask& voxels) {
@@ -51,14 +65,14 @@ void BlockHistory::forget(const BlockMask& voxels) {
   }
 }
 
-BlockMask BlockHistory::within(const BlockMask& arrivals, std::uint32_t scans,
-                               std::uint32_t scan_index) const {
+BlockMask BlockHistory::within(const BlockMask& arrivals, std::uint32_t ticks,
+                               std::uint32_t now) const {
   BlockMask young;
-  if (scan_index - updated_ > kMaxAgeScans) return young;
+  if (now - updated_ > kMaxAgeTicks) return young;
   for_each_cell(arrivals, [&](std::uint32_t cell) {
-    // Ages at the last update are at most kMaxAgeScans, so that these are below 256.
-    const auto age = static_cast<std::uint8_t>(scan_index - (*arrived_at_)[cell]);
-    if (age <= scans) young.set(cell);
+    // Ages at the last update are at most kMaxAgeTicks, so that these are below 256.
+    const auto age = static_cast<std::uint8_t>(now - (*arrived_at_)[cell]);
+    if (age <= ticks) young.set(cell);
   });
   return young;
 }

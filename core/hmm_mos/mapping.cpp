@@ -11,6 +11,7 @@ Mapping::Mapping(const Config& config, const RunContext& context, VoxelMap::Keep
     : config_(config),
       context_(checked(context)),
       order_(context.scan_count),
+      clock_(context.stamps_ns),
       keeps_(keeps),
       pool_(context.threads) {}
 
@@ -55,7 +56,7 @@ ObservedScan& Mapping::enter(Observed* observed) {
     const StageClock clock(record, "map_update");
     std::vector<const VoxelSet*> sources{&scan.measured};
     if (config_.distance_field_scans == 2) sources.push_back(&previous_measured_);
-    map_->update(current.observed, sources, scan.sensor_m, k(), pool_);
+    map_->update(current.observed, sources, scan.sensor_m, k(), pool_, clock_.of(k()));
   }
   {
     const StageClock clock(record, "evict");

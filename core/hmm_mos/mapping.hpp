@@ -11,6 +11,7 @@
 #include "core/base/push_order.hpp"
 #include "core/base/thread_pool.hpp"
 #include "core/hmm_mos/config.hpp"
+#include "core/hmm_mos/tick_clock.hpp"
 #include "core/hmm_mos/voxel_map.hpp"
 #include "core/voxel/raycast.hpp"
 #include "core/voxel/voxelize.hpp"
@@ -62,6 +63,7 @@ class Mapping {
   Config config_;
   RunContext context_;
   PushOrder order_;
+  TickClock clock_;
   VoxelMap::Keeps keeps_;
   ThreadPool pool_;
   std::optional<ThreadPool> observing_pool_;  // for scans observed during a push

@@ -165,12 +165,14 @@ std::optional<VoxelMap::Past> VoxelMap::past_at(std::uint32_t scan_index, const 
   const Block& block = blocks_[slot];
   return Past{
       {without(block.states.occupied, block.stale), without(block.states.free, block.stale)},
-      histories_[slot]};
+      histories_[slot],
+      tick_.at};
 }
 
 VoxelList VoxelMap::update(const VoxelList& observed, std::span<const VoxelSet* const> sources,
                            const Eigen::Vector3d& sensor_m, std::uint32_t scan_index,
-                           ThreadPool& pool) {
+                           ThreadPool& pool, const std::optional<Tick>& tick) {
+  tick_ = tick.value_or(Tick{scan_index, 1});
   if (const auto due = eviction_.enter(sensor_m)) run(*due, scan_index - 1);
   forget_changes_of_expired(scan_index);
   const int reach = distance_field_.reach(), side = 2 * reach + 1;
@@ -202,7 +204,7 @@ VoxelList VoxelMap::update(const VoxelList& observed, std::span<const VoxelSet* 
       }
       changed[i] = detect_changes(before, block.states);
       if (keeps_history_) {
-        histories_[slots_[i]].update(voxels, before, block.states, scan_index);
+        histories_[slots_[i]].update(voxels, before, block.states, tick_);
       }
       mark_seen(block, voxels, scan_index);
     }

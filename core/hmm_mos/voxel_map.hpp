@@ -31,9 +31,11 @@ class VoxelMap {
 
   /// One step x_k = eta B A x_{k-1} of the observed voxels, and their states (paper, III).
   /// `sources` are the measured sets whose union the distance field refers to; `sensor_m` is this
-  /// scan's position. Returns the voxels whose state changed.
+  /// scan's position; histories count by `tick`, without one by scans. Returns the voxels whose
+  /// state changed.
   VoxelList update(const VoxelList& observed, std::span<const VoxelSet* const> sources,
-                   const Eigen::Vector3d& sensor_m, std::uint32_t scan_index, ThreadPool& pool);
+                   const Eigen::Vector3d& sensor_m, std::uint32_t scan_index, ThreadPool& pool,
+                   const std::optional<Tick>& tick = std::nullopt);
 
   /// To be called after `update`: removes voxels out of range (see Eviction) and those not observed
   /// for more than w_g scans (paper, III).
@@ -51,6 +53,7 @@ class VoxelMap {
   struct Past {
     BlockStates known;
     const BlockHistory& history;
+    std::uint32_t tick;  ///< of the last update
   };
   /// Returns that of a block at `scan_index`, nullopt where there is none; for maps that keep it.
   /// Not const as `known_at` is not.
@@ -97,6 +100,7 @@ class VoxelMap {
   // block, which the serial part of `update` would fetch from memory to ask.
   std::vector<std::uint32_t> numbers_of_;
   bool keeps_history_;
+  Tick tick_;                           // of the last update
   std::deque<BlockHistory> histories_;  // by slot of the block, or none at all
   std::vector<std::uint32_t> slots_;    // of the observed blocks
 };

@@ -1,5 +1,6 @@
 #include "core/hmm_mos_plus/arrivals.hpp"
 
+#include <cmath>
 #include <vector>
 
 #include "core/voxel/neighbourhood.hpp"
@@ -10,15 +11,19 @@ namespace {
 /// The neighbours of a seed that should be known: a cube of 5^3 voxels.
 constexpr int kKnownRadius = 2, kCubeVoxels = 125;
 
+std::uint32_t ticks_of(double age_s) {
+  return static_cast<std::uint32_t>(std::lround(age_s / hmm_mos::TickClock::kSeconds));
+}
+
 /// Returns the voxels of the map in these blocks that are settled and did not arrive of late.
 VoxelSet firm_voxels(hmm_mos::VoxelMap& map, const std::vector<BlockIndex>& blocks, std::uint32_t k,
-                     std::uint32_t seed_age) {
+                     std::uint32_t seed_age_ticks) {
   VoxelSet firm;
   for (const BlockIndex& block : blocks) {
     const auto past = map.past_at(k, block);
     const BlockMask settled = past->history.settled() & past->known.occupied;
     if (!settled.any()) continue;
-    const BlockMask mask = without(settled, past->history.sure_within(seed_age, k));
+    const BlockMask mask = without(settled, past->history.sure_within(seed_age_ticks, past->tick));
     if (mask.any()) firm.masks[firm.insert(block)] = mask;
   }
   return firm;
@@ -32,8 +37,7 @@ void add_seeds(const VoxelizedScan& scan, const ScanMasks& raw, hmm_mos::VoxelMa
     if (raw[slot].any()) slots.push_back(slot);
   }
   const VoxelSet known = map.known_at(k, blocks_of(scan, slots), pool);
-  const VoxelSet firm =
-      firm_voxels(map, known.blocks, k, static_cast<std::uint32_t>(config.seed_age_scans));
+  const VoxelSet firm = firm_voxels(map, known.blocks, k, ticks_of(config.seed_age_s));
   pool.for_ranges(slots.size(), 16, [&](std::size_t begin, std::size_t end, unsigned) {
     HaloRows rows;
     for (std::size_t i = begin; i < end; ++i) {
@@ -55,7 +59,8 @@ void add_seeds(const VoxelizedScan& scan, const ScanMasks& raw, hmm_mos::VoxelMa
 ArrivalClasses classify(const VoxelizedScan& scan, hmm_mos::VoxelMap& map, std::uint32_t k,
                         const Config& config, ThreadPool& pool) {
   const std::size_t blocks = scan.measured.block_count();
-  ArrivalClasses classes{ScanMasks(blocks), ScanMasks(blocks), ScanMasks(blocks)};
+  ArrivalClasses classes{ScanMasks(blocks), ScanMasks(blocks), ScanMasks(blocks),
+                         ScanMasks(blocks)};
   ScanMasks young(blocks);
   for (std::size_t i = 0; i < blocks; ++i) {
     if (!scan.occupied[i].any()) continue;
@@ -63,14 +68,13 @@ ArrivalClasses classify(const VoxelizedScan& scan, hmm_mos::VoxelMap& map, std::
     if (!past) continue;  // at the range limit not every occupied voxel is observed
     const auto& history = past->history;
     const BlockMask occupied = scan.occupied[i] & past->known.occupied;
-    const auto seed_age = static_cast<std::uint32_t>(config.seed_age_scans);
-    young[i] = history.sure_within(seed_age, k) & occupied;
-    const auto fresh_age = static_cast<std::uint32_t>(config.fresh_age_scans);
-    classes.fresh[i] = history.sure_within(fresh_age, k) & young[i];
+    young[i] = history.sure_within(ticks_of(config.seed_age_s), past->tick) & occupied;
+    classes.fresh[i] = history.sure_within(ticks_of(config.fresh_age_s), past->tick) & young[i];
+    classes.aged[i] = history.aged() & occupied;
     const BlockMask settled = history.settled() & occupied;
     if (!settled.any()) continue;
-    const auto object_age = static_cast<std::uint32_t>(config.object_age_scans);
-    classes.settled[i] = without(settled, history.arrived_within(object_age, k));
+    const std::uint32_t object_age_ticks = ticks_of(config.object_age_s);
+    classes.settled[i] = without(settled, history.arrived_within(object_age_ticks, past->tick));
   }
   add_seeds(scan, young, map, k, config, pool, classes.seeds);
   return classes;
@@ -83,6 +87,7 @@ void add_departures(const VoxelizedScan& scan, hmm_mos::VoxelMap& map, std::uint
     const auto past = map.past_at(k, scan.measured.blocks[i]);
     if (past) departed[i] = scan.occupied[i] & past->known.free;
     classes.settled[i] = without(classes.settled[i], departed[i]);
+    classes.aged[i] = without(classes.aged[i], departed[i]);
     classes.fresh[i] = classes.fresh[i] | departed[i];
   }
   add_seeds(scan, departed, map, k, config, pool, classes.seeds);

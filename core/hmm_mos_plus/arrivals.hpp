@@ -14,6 +14,7 @@ struct ArrivalClasses {
   ScanMasks seeds;    ///< arrived of late, apart from settled surfaces and in known space
   ScanMasks fresh;    ///< arrived just now: among the seeds, a sign that an object still moves
   ScanMasks settled;  ///< there for longer: no object grows into them
+  ScanMasks aged;     ///< there for some scans: most of an object that moves is not
 };
 
 /// Returns the classes of scan k, with the map as it is after it.

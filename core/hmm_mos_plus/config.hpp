@@ -26,15 +26,18 @@ inline hmm_mos::Config paper_map() {
 /// Every parameter; README.md of this folder says what they are worth.
 struct Config {
   hmm_mos::Config map = paper_map();
-  int seed_age_scans = 10;
-  int object_age_scans = 10;
-  int max_unknown_voxels = 15;
+  double seed_age_s = 1.0;
+  double object_age_s = 1.0;
+  int max_unknown_voxels = 18;
   int ground_radius_voxels = 2;
   int ground_layers_voxels = 1;
   int min_seeds_voxels = 3;
-  double min_seed_share = 0.1;
-  int fresh_age_scans = 2;
+  double min_seed_share = 0.12;
+  double fresh_age_s = 0.2;
   double min_fresh_share = 0.2;
+  double max_aged_share = 0.6;
+  double rise_radius_m = 6.0;
+  int min_rise_voxels = 2;
   double max_extent_m = 10.0;
   double max_height_m = 4.5;
 };
@@ -48,10 +51,10 @@ void visit_fields(AnyConfig& config, Visitor&& visit) {
       visit(name, field, legal, meaning);
     }
   });
-  constexpr double kMaxAge = hmm_mos::BlockHistory::kMaxAgeScans;
-  visit("seed_age_scans", config.seed_age_scans, FieldRange{0, kMaxAge},
-        "a voxel that arrived in free space is a seed for so long; 10 are 1 s at 10 Hz");
-  visit("object_age_scans", config.object_age_scans, FieldRange{0, kMaxAge},
+  constexpr double kMaxAge_s = hmm_mos::BlockHistory::kMaxAgeTicks * hmm_mos::TickClock::kSeconds;
+  visit("seed_age_s", config.seed_age_s, FieldRange{0.0, kMaxAge_s},
+        "a voxel that arrived in free space is a seed for so long; to tenths, by stamps or 10 Hz");
+  visit("object_age_s", config.object_age_s, FieldRange{0.0, kMaxAge_s},
         "a voxel that arrived may be part of an object for so long although it is settled");
   visit("max_unknown_voxels", config.max_unknown_voxels, FieldRange{0, 125},
         "a seed has at most so many unknown ones among the 125 voxels around it");
@@ -63,10 +66,16 @@ void visit_fields(AnyConfig& config, Visitor&& visit) {
         "an object has at least so many seeds");
   visit("min_seed_share", config.min_seed_share, FieldRange{0.0, 1.0},
         "an object's voxels are seeds by at least this share");
-  visit("fresh_age_scans", config.fresh_age_scans, FieldRange{0, kMaxAge},
-        "a seed is fresh for so long; from seed_age_scans on every seed is");
+  visit("fresh_age_s", config.fresh_age_s, FieldRange{0.0, kMaxAge_s},
+        "a seed is fresh for so long; from seed_age_s on every seed is");
   visit("min_fresh_share", config.min_fresh_share, FieldRange{0.0, 1.0},
         "of an object's seeds, at least this share is fresh: those of a parked car grow old");
+  visit("max_aged_share", config.max_aged_share, FieldRange{0.0, 1.0},
+        "of an object's voxels, at most this share was seen occupied for 0.5 s or more");
+  visit("rise_radius_m", config.rise_radius_m, FieldRange{0.0, 100.0},
+        "the ground around an object is the lowest voxel within this distance of its box");
+  visit("min_rise_voxels", config.min_rise_voxels, FieldRange{0, 100},
+        "the top of an object is at least this high above the ground around it");
   visit("max_extent_m", config.max_extent_m, FieldRange{0.0, 1000.0},
         "an object is at most so long along x and y of the map");
   visit("max_height_m", config.max_height_m, FieldRange{0.0, 1000.0},

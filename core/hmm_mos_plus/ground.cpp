@@ -12,32 +12,15 @@ namespace mosbench::hmm_mos_plus {
 namespace {
 
 constexpr std::size_t kSide = kBlockSide;
-/// Heights of the columns of a stack of blocks, y * 8 + x.
-using Tile = std::array<std::int32_t, kSide * kSide>;
 constexpr std::int32_t kNone = std::numeric_limits<std::int32_t>::max();
 
-struct Tiles {
-  BlockTable table;  // of {x, y, 0}
-  std::vector<BlockIndex> blocks;
-  std::vector<Tile> lowest;
+}  // namespace
 
-  std::size_t slot_of(const BlockIndex& block) {
-    const auto fresh = static_cast<std::uint32_t>(blocks.size());
-    const std::uint32_t slot = table.find_or_insert({block.x, block.y, 0}, fresh);
-    if (slot == fresh) {
-      blocks.push_back({block.x, block.y, 0});
-      lowest.emplace_back().fill(kNone);
-    }
-    return slot;
-  }
-};
-
-Tiles lowest_of(const VoxelizedScan& scan, std::vector<std::size_t>& tile_of) {
-  Tiles tiles;
+Ground::Ground(const VoxelizedScan& scan) : scan_(scan), tile_of_(scan.occupied.size()) {
   for (std::size_t i = 0; i < scan.occupied.size(); ++i) {
     if (!scan.occupied[i].any()) continue;
-    tile_of[i] = tiles.slot_of(scan.measured.blocks[i]);
-    Tile& lowest = tiles.lowest[tile_of[i]];
+    tile_of_[i] = slot_of(scan.measured.blocks[i]);
+    Tile& lowest = lowest_[tile_of_[i]];
     std::uint64_t columns = 0;  // those that a lower layer of the block had
     for (std::uint32_t z = 0; z < kSide; ++z) {
       const std::int32_t height = scan.measured.blocks[i].z * 8 + static_cast<std::int32_t>(z);
@@ -49,19 +32,28 @@ Tiles lowest_of(const VoxelizedScan& scan, std::vector<std::size_t>& tile_of) {
       }
     }
   }
-  return tiles;
+}
+
+std::size_t Ground::slot_of(const BlockIndex& block) {
+  const auto fresh = static_cast<std::uint32_t>(blocks_.size());
+  const std::uint32_t slot = table_.find_or_insert({block.x, block.y, 0}, fresh);
+  if (slot == fresh) {
+    blocks_.push_back({block.x, block.y, 0});
+    lowest_.emplace_back().fill(kNone);
+  }
+  return slot;
 }
 
 /// Returns the lowest of the columns within `radius` of each column of a tile.
-Tile lowest_around(const Tiles& tiles, const BlockIndex& at, int radius) {
+Ground::Tile Ground::lowest_around(const BlockIndex& at, int radius) const {
   constexpr std::size_t kWide = 3 * kSide;
   std::array<std::array<std::int32_t, kWide>, kWide> around;
   for (std::size_t tile = 0; tile < 9; ++tile) {
     const auto tx = static_cast<int>(tile % 3), ty = static_cast<int>(tile / 3);
-    const std::uint32_t slot = tiles.table.find({at.x + tx - 1, at.y + ty - 1, 0});
+    const std::uint32_t slot = table_.find({at.x + tx - 1, at.y + ty - 1, 0});
     for (std::size_t cell = 0; cell < kSide * kSide; ++cell) {
       around[tile / 3 * kSide + cell / kSide][tile % 3 * kSide + cell % kSide] =
-          slot == kNoSlot ? kNone : tiles.lowest[slot][cell];
+          slot == kNoSlot ? kNone : lowest_[slot][cell];
     }
   }
   const auto first = static_cast<std::size_t>(kBlockSide - radius);
@@ -84,24 +76,36 @@ Tile lowest_around(const Tiles& tiles, const BlockIndex& at, int radius) {
   return lowest;
 }
 
-}  // namespace
-
-ScanMasks low_voxels(const VoxelizedScan& scan, int radius, int layers) {
-  std::vector<std::size_t> tile_of(scan.occupied.size());
-  const Tiles tiles = lowest_of(scan, tile_of);
+ScanMasks Ground::low_voxels(int radius, int layers) const {
   std::vector<Tile> around;
-  for (const BlockIndex& block : tiles.blocks) {
-    around.push_back(lowest_around(tiles, block, radius));
-  }
-  ScanMasks low(scan.occupied.size());
+  for (const BlockIndex& block : blocks_) around.push_back(lowest_around(block, radius));
+  ScanMasks low(scan_.occupied.size());
   for (std::size_t i = 0; i < low.size(); ++i) {
-    if (!scan.occupied[i].any()) continue;
-    const Tile& lowest = around[tile_of[i]];
-    for_each_cell(scan.occupied[i], [&](std::uint32_t cell) {
-      if (voxel_at(scan.measured.blocks[i], cell).z <= lowest[cell & 63] + layers) low[i].set(cell);
+    if (!scan_.occupied[i].any()) continue;
+    const Tile& lowest = around[tile_of_[i]];
+    for_each_cell(scan_.occupied[i], [&](std::uint32_t cell) {
+      const std::int32_t z = voxel_at(scan_.measured.blocks[i], cell).z;
+      if (z <= lowest[cell & 63] + layers) low[i].set(cell);
     });
   }
   return low;
+}
+
+std::int32_t Ground::lowest_between(const Voxel& first, const Voxel& last) const {
+  std::int32_t lowest = kNone;
+  for (int ty = first.y >> 3; ty <= last.y >> 3; ++ty) {
+    for (int tx = first.x >> 3; tx <= last.x >> 3; ++tx) {
+      const std::uint32_t slot = table_.find({tx, ty, 0});
+      if (slot == kNoSlot) continue;
+      for (int y = std::max(first.y, ty * 8); y <= std::min(last.y, ty * 8 + 7); ++y) {
+        for (int x = std::max(first.x, tx * 8); x <= std::min(last.x, tx * 8 + 7); ++x) {
+          const auto cell = static_cast<std::size_t>((y & 7) * 8 + (x & 7));
+          lowest = std::min(lowest, lowest_[slot][cell]);
+        }
+      }
+    }
+  }
+  return lowest;
 }
 
 }  // namespace mosbench::hmm_mos_plus

@@ -69,8 +69,11 @@ std::vector<std::uint32_t> take_connected(std::uint32_t first, ScanMasks& left,
   return taken;
 }
 
-bool has_size_of_object(const VoxelizedScan& scan, const std::vector<std::uint32_t>& voxels,
-                        const Config& config) {
+struct Box {
+  Voxel low, high;  // both included
+};
+
+Box box_of(const VoxelizedScan& scan, const std::vector<std::uint32_t>& voxels) {
   constexpr int kMax = std::numeric_limits<int>::max();
   Voxel low{kMax, kMax, kMax}, high{-kMax, -kMax, -kMax};
   for (const std::uint32_t voxel : voxels) {
@@ -78,15 +81,51 @@ bool has_size_of_object(const VoxelizedScan& scan, const std::vector<std::uint32
     low = {std::min(low.x, v.x), std::min(low.y, v.y), std::min(low.z, v.z)};
     high = {std::max(high.x, v.x), std::max(high.y, v.y), std::max(high.z, v.z)};
   }
+  return {low, high};
+}
+
+bool has_size_of_object(const Box& box, const Config& config) {
   const double size_m = config.map.voxel_size_m;
+  const Voxel& low = box.low;
+  const Voxel& high = box.high;
   return std::max(high.x - low.x, high.y - low.y) * size_m <= config.max_extent_m &&
          (high.z - low.z) * size_m <= config.max_height_m;
+}
+
+/// Whether a component is more than a strip of ground.
+bool rises_from_ground(const Box& box, const Ground& ground, const Config& config) {
+  const int r = static_cast<int>(config.rise_radius_m / config.map.voxel_size_m);
+  const std::int32_t lowest =
+      ground.lowest_between({box.low.x - r, box.low.y - r, 0}, {box.high.x + r, box.high.y + r, 0});
+  return box.high.z >= lowest + config.min_rise_voxels;
+}
+
+/// Counts what a component holds of the classes, and says whether it moves.
+void judge(const VoxelizedScan& scan, const ArrivalClasses& classes, const Ground& ground,
+           const Config& config, Component& component) {
+  double seeds = 0, fresh = 0, aged = 0;
+  for (const std::uint32_t voxel : component.voxels) {
+    const std::uint32_t block = voxel / kBlockVoxels, cell = voxel % kBlockVoxels;
+    if (classes.aged[block].test(cell)) ++aged;
+    if (!classes.seeds[block].test(cell)) continue;
+    ++seeds;
+    if (classes.fresh[block].test(cell)) ++fresh;
+  }
+  const auto voxels = static_cast<double>(component.voxels.size());
+  component.seed_share = seeds / voxels;
+  if (seeds < config.min_seeds_voxels || component.seed_share < config.min_seed_share ||
+      fresh < config.min_fresh_share * seeds || aged > config.max_aged_share * voxels) {
+    return;
+  }
+  const Box box = box_of(scan, component.voxels);
+  component.moves = has_size_of_object(box, config) && rises_from_ground(box, ground, config);
 }
 
 }  // namespace
 
 std::vector<Component> components_of(const VoxelizedScan& scan, const ArrivalClasses& classes,
-                                     const ScanMasks& others, const Config& config) {
+                                     const ScanMasks& others, const Ground& ground,
+                                     const Config& config) {
   const ScanMasks& seeds = classes.seeds;
   ScanMasks left = others;
   for (std::size_t i = 0; i < left.size(); ++i) left[i] = left[i] | seeds[i];
@@ -96,18 +135,7 @@ std::vector<Component> components_of(const VoxelizedScan& scan, const ArrivalCla
     for_each_cell(seeds[slot], [&](std::uint32_t cell) {
       Component found{take_connected(slot * kBlockVoxels + cell, left, surroundings)};
       if (found.voxels.empty()) return;  // taken with another seed
-      double seed_count = 0, fresh_count = 0;
-      for (const std::uint32_t voxel : found.voxels) {
-        const std::uint32_t block = voxel / kBlockVoxels, of_block = voxel % kBlockVoxels;
-        if (!seeds[block].test(of_block)) continue;
-        ++seed_count;
-        if (classes.fresh[block].test(of_block)) ++fresh_count;
-      }
-      found.seed_share = seed_count / static_cast<double>(found.voxels.size());
-      found.moves = seed_count >= config.min_seeds_voxels &&
-                    found.seed_share >= config.min_seed_share &&
-                    fresh_count >= config.min_fresh_share * seed_count &&
-                    has_size_of_object(scan, found.voxels, config);
+      judge(scan, classes, ground, config, found);
       components.push_back(std::move(found));
     });
   }

@@ -5,6 +5,7 @@
 
 #include "core/hmm_mos_plus/arrivals.hpp"
 #include "core/hmm_mos_plus/config.hpp"
+#include "core/hmm_mos_plus/ground.hpp"
 #include "core/hmm_mos_plus/scan_masks.hpp"
 
 namespace mosbench::hmm_mos_plus {
@@ -13,12 +14,13 @@ namespace mosbench::hmm_mos_plus {
 struct Component {
   std::vector<std::uint32_t> voxels;
   double seed_share = 0;  ///< seeds / voxels
-  bool moves = false;     ///< enough seeds, some of them fresh, and no larger than an object
+  bool moves = false;     ///< enough seeds, some of them fresh, of an object's age and size
 };
 
 /// Returns the components (26 neighbours) of the seeds and `others` that hold a seed.
 std::vector<Component> components_of(const VoxelizedScan& scan, const ArrivalClasses& classes,
-                                     const ScanMasks& others, const Config& config);
+                                     const ScanMasks& others, const Ground& ground,
+                                     const Config& config);
 
 /// Returns those of the occupied voxels `low` that lie under one of the objects' voxels, straight
 /// or diagonally.

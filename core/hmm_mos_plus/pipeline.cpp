@@ -3,7 +3,6 @@
 #include <utility>
 
 #include "core/base/stage_clock.hpp"
-#include "core/hmm_mos_plus/ground.hpp"
 #include "core/hmm_mos_plus/objects.hpp"
 #include "core/voxel/point_labels.hpp"
 
@@ -53,11 +52,12 @@ void Pipeline::judge(HeldScan& held) {
     const StageClock clock(record, "departures");
     add_departures(scan, mapping().map(), mapping().k(), config_, mapping().pool(), held.classes);
   }
+  const Ground ground = timed(record, "ground", [&] { return Ground(scan); });
   ScanMasks low = timed(record, "ground", [&] {
-    return low_voxels(scan, config_.ground_radius_voxels, config_.ground_layers_voxels);
+    return ground.low_voxels(config_.ground_radius_voxels, config_.ground_layers_voxels);
   });
   const ScanMasks moving =
-      timed(record, "objects", [&] { return moving_voxels(held, std::move(low)); });
+      timed(record, "objects", [&] { return moving_voxels(held, ground, std::move(low)); });
   const StageClock clock(record, "labels");
   result.labels = project_labels(scan, moving);
   result.threshold = config_.min_seed_share;
@@ -66,14 +66,15 @@ void Pipeline::judge(HeldScan& held) {
 
 /// Returns the voxels of objects that move, feet included, and scores the scan's points. `low` are
 /// the voxels near the ground.
-ScanMasks Pipeline::moving_voxels(HeldScan& held, ScanMasks low) {
+ScanMasks Pipeline::moving_voxels(HeldScan& held, const Ground& ground, ScanMasks low) {
   const VoxelizedScan& scan = held.scan;
   ScanMasks moving(low.size()), others(low.size());
   for (std::size_t i = 0; i < others.size(); ++i) {
     others[i] = without(scan.occupied[i], held.classes.settled[i] | low[i]);
     low[i] = without(low[i], held.classes.settled[i]);
   }
-  const std::vector<Component> components = components_of(scan, held.classes, others, config_);
+  const std::vector<Component> components =
+      components_of(scan, held.classes, others, ground, config_);
   for (const Component& component : components) {
     if (!component.moves) continue;
     for (const std::uint32_t voxel : component.voxels) {
@@ -99,7 +100,7 @@ std::vector<LabelledScan> Pipeline::release(std::size_t count) {
 std::size_t Pipeline::held_bytes() const {
   std::size_t bytes = 0;
   for (const HeldScan& held : held_) {
-    bytes += held.scan.memory_bytes() + 3 * held.classes.seeds.capacity() * sizeof(BlockMask);
+    bytes += held.scan.memory_bytes() + 4 * held.classes.seeds.capacity() * sizeof(BlockMask);
   }
   return bytes;
 }

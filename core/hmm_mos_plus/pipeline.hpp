@@ -7,6 +7,7 @@
 #include "core/hmm_mos/mapped_method.hpp"
 #include "core/hmm_mos_plus/arrivals.hpp"
 #include "core/hmm_mos_plus/config.hpp"
+#include "core/hmm_mos_plus/ground.hpp"
 
 namespace mosbench::hmm_mos_plus {
 
@@ -31,7 +32,7 @@ class Pipeline final : public hmm_mos::MappedMethod {
   std::vector<LabelledScan> release_all() override { return release(held_.size()); }
   std::size_t held_bytes() const override;
   void judge(HeldScan& held);
-  ScanMasks moving_voxels(HeldScan& held, ScanMasks low);
+  ScanMasks moving_voxels(HeldScan& held, const Ground& ground, ScanMasks low);
   std::vector<LabelledScan> release(std::size_t count);
 
   Config config_;

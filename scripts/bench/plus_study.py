@@ -18,7 +18,8 @@ import statistics
 import subprocess
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-ARRIVALS = ["--set", "min_seed_share=0.2,object_age_scans=30,min_fresh_share=0"]
+ARRIVALS = ["--set", "min_seed_share=0.2,object_age_s=3,min_fresh_share=0,max_aged_share=1,"
+            "min_rise_voxels=0,max_unknown_voxels=15"]
 METHODS = {"paper": ["--method", "hmm-mos"],
            "arrivals": ["--method", "hmm-mos-plus", *ARRIVALS],
            "plus": ["--method", "hmm-mos-plus"]}

@@ -19,10 +19,10 @@ hmm_mos_plus::Config plus_of_a_room(int delay_scans = 0) {
   return config;
 }
 
-std::vector<std::vector<std::uint32_t>> plus_labels(const SmallWorld& world,
-                                                    const hmm_mos_plus::Config& config,
-                                                    unsigned threads = 1) {
-  hmm_mos_plus::Pipeline pipeline(config, {.threads = threads});
+std::vector<std::vector<std::uint32_t>> plus_labels(
+    const SmallWorld& world, const hmm_mos_plus::Config& config, unsigned threads = 1,
+    const std::vector<std::int64_t>& stamps_ns = {}) {
+  hmm_mos_plus::Pipeline pipeline(config, {.threads = threads, .stamps_ns = stamps_ns});
   std::vector<std::vector<std::uint32_t>> labels;
   for (LabelledScan& result : results_of(pipeline, world))
     labels.push_back(std::move(result.labels));
@@ -81,7 +81,7 @@ TEST(PlusWithoutSeeds, HasNoMovingPoint) {
   ASSERT_GT(moving_points(plus_labels(world, plus_of_a_room())), 50U);
   hmm_mos_plus::Config config = plus_of_a_room();
   config.max_unknown_voxels = 0;
-  config.seed_age_scans = 0;
+  config.seed_age_s = 0;
   config.min_seeds_voxels = 100000;
   EXPECT_EQ(moving_points(plus_labels(world, config)), 0U);
 }
@@ -110,11 +110,106 @@ std::size_t scans_with_motion(const std::vector<std::vector<std::uint32_t>>& lab
 TEST(PlusObjectsThatStay, MoveAsLongAsTheirSeedsAreFresh) {
   const SmallWorld world = world_with_a_box_that_stays();
   hmm_mos_plus::Config config = plus_of_a_room();
+  config.max_aged_share = 1.0;
   EXPECT_EQ(scans_with_motion(plus_labels(world, config)), 3U);
-  config.fresh_age_scans = 5;
+  config.fresh_age_s = 0.5;
   EXPECT_EQ(scans_with_motion(plus_labels(world, config)), 6U);
   config.min_fresh_share = 0.0;
   EXPECT_EQ(scans_with_motion(plus_labels(world, config)), 11U);
+}
+
+TEST(PlusObjectsThatStay, MoveUntilMostOfTheirVoxelsAreAged) {
+  hmm_mos_plus::Config config = plus_of_a_room();
+  config.min_fresh_share = 0.0;
+  EXPECT_EQ(scans_with_motion(plus_labels(world_with_a_box_that_stays(), config)), 4U);
+}
+
+/// Returns the stamps of `scans` scans.
+std::vector<std::int64_t> stamps_every(std::int64_t period_ns, std::size_t scans) {
+  std::vector<std::int64_t> stamps_ns = {1'700'000'000'000'000'000};
+  while (stamps_ns.size() < scans) stamps_ns.push_back(stamps_ns.back() + period_ns);
+  return stamps_ns;
+}
+
+TEST(PlusStamps, ChangeNoLabelAtTenHertzWhateverTheirJitter) {
+  std::size_t moving = 0;
+  for (unsigned seed = 70; seed < 73; ++seed) {
+    const SmallWorld world = small_world({.seed = seed});
+    const auto expected = plus_labels(world, plus_of_a_room());
+    moving += moving_points(expected);
+    for (const std::int64_t period_ns : {98'000'000, 100'000'000, 103'700'000}) {
+      std::vector<std::int64_t> stamps_ns = stamps_every(period_ns, world.scans.size());
+      for (std::size_t k = 0; k < stamps_ns.size(); k += 3) stamps_ns[k] += 20'000'000;
+      ASSERT_EQ(plus_labels(world, plus_of_a_room(), 1, stamps_ns), expected) << period_ns;
+    }
+  }
+  EXPECT_GT(moving, 200U);
+}
+
+/// The box comes at the tenth of 30 scans of 10 Hz.
+TEST(PlusStamps, LetABoxThatStaysMoveForLikeTimesAtEveryRate) {
+  const SmallWorld world = world_with_a_box_that_stays();
+  hmm_mos_plus::Config config = plus_of_a_room();
+  config.fresh_age_s = 0.6;
+  config.max_aged_share = 1.0;
+  const auto moving_s = [&](std::size_t every, std::size_t times) {
+    SmallWorld at_rate;
+    for (std::size_t k = 0; k < world.scans.size(); k += every) {
+      for (std::size_t i = 0; i < times; ++i) {
+        at_rate.scans.push_back(world.scans[k]);
+        at_rate.poses.push_back(world.poses[k]);
+      }
+    }
+    const std::size_t period_ns = 100'000'000 * every / times;
+    const auto stamps_ns = stamps_every(static_cast<std::int64_t>(period_ns), at_rate.scans.size());
+    const auto scans = scans_with_motion(plus_labels(at_rate, config, 1, stamps_ns));
+    return static_cast<double>(scans) * static_cast<double>(period_ns) * 1e-9;
+  };
+  EXPECT_NEAR(moving_s(1, 1), 0.7, 1e-9);
+  EXPECT_NEAR(moving_s(2, 1), 0.8, 1e-9);
+  EXPECT_NEAR(moving_s(1, 2), 0.7, 1e-9);
+}
+
+TEST(PlusStamps, CountScansThatAreMissing) {
+  SmallWorld world = world_with_a_box_that_stays();
+  std::vector<std::int64_t> stamps_ns = stamps_every(100'000'000, world.scans.size());
+  hmm_mos_plus::Config config = plus_of_a_room();
+  config.fresh_age_s = 0.6;
+  config.max_aged_share = 1.0;
+  for (int lost = 0; lost < 4; ++lost) {
+    world.scans.erase(world.scans.begin() + 12);
+    world.poses.erase(world.poses.begin() + 12);
+    stamps_ns.erase(stamps_ns.begin() + 12);
+  }
+  EXPECT_EQ(scans_with_motion(plus_labels(world, config)), 7U);
+  EXPECT_EQ(scans_with_motion(plus_labels(world, config, 1, stamps_ns)), 3U);
+}
+
+/// A floor and a wall; from the tenth scan on a box stands on the floor, four voxels high.
+SmallWorld world_with_a_box_on_a_floor() {
+  SmallWorld world;
+  for (std::size_t k = 0; k < 20; ++k) {
+    std::vector<Point>& scan = world.scans.emplace_back();
+    world.poses.push_back(Pose::Identity());
+    for (float y = -0.5F; y < 0.5F; y += 0.02F) {
+      for (float down = -0.2F; down < 0.6F; down += 0.01F) {
+        const bool hits = k >= 10 && 2.0F * down > 0.1F && 2.0F * down < 0.9F && std::abs(y) < 0.2F;
+        const float x = hits ? 2.0F : std::min(4.0F, 0.9F / std::max(down, 0.01F));
+        scan.push_back({x, y * x, -down * x, 0.0F});
+      }
+    }
+  }
+  return world;
+}
+
+TEST(PlusOnTheGround, MovesWhatRisesFromItAlone) {
+  const SmallWorld world = world_with_a_box_on_a_floor();
+  hmm_mos_plus::Config config = plus_of_a_room();
+  EXPECT_GT(scans_with_motion(plus_labels(world, config)), 0U);
+  config.min_rise_voxels = 3;
+  EXPECT_GT(scans_with_motion(plus_labels(world, config)), 0U) << "z is -4 to -1 voxels";
+  config.min_rise_voxels = 4;
+  EXPECT_EQ(scans_with_motion(plus_labels(world, config)), 0U);
 }
 
 TEST(PlusScores, AreAtTheThresholdOrAboveWhereAPointMovesButForFeet) {

@@ -25,9 +25,11 @@ struct PlusTally {
 };
 
 void expect_twins_labels(const SmallWorld& world, const hmm_mos_plus::Config& config,
-                         PlusTally& tally, unsigned threads = 1) {
-  plus_twin::PlusTwin twin(config);
-  hmm_mos_plus::Pipeline pipeline(config, {.threads = threads, .scores = true});
+                         PlusTally& tally, unsigned threads = 1,
+                         const std::vector<std::int64_t>& stamps_ns = {}) {
+  plus_twin::PlusTwin twin(config, stamps_ns);
+  hmm_mos_plus::Pipeline pipeline(config,
+                                  {.threads = threads, .scores = true, .stamps_ns = stamps_ns});
   const std::vector<LabelledScan> expected = results_of(twin, world);
   const std::vector<LabelledScan> results = results_of(pipeline, world);
   ASSERT_EQ(results.size(), world.scans.size());
@@ -61,6 +63,28 @@ TEST(PlusAgainstItsTwin, AgreesOnlineAndForEveryDelay) {
   EXPECT_GT(tally.scored_points, tally.moving_points / 2);
 }
 
+/// With jitter, and with scans that are missing.
+TEST(PlusAgainstItsTwin, AgreesAtEveryRateOfStamps) {
+  PlusTally tally;
+  unsigned seed = 70;
+  for (const double period_s : {0.02, 0.05, 0.07, 0.1, 0.1036, 0.15, 0.2, 1.0}) {
+    std::mt19937 random(++seed);
+    const SmallWorld world = small_world({.seed = seed, .scans = 24});
+    std::vector<std::int64_t> stamps_ns = {1'700'000'000'000'000'000};
+    while (stamps_ns.size() < world.scans.size()) {
+      const double jitter = 0.9 + 0.2 * static_cast<double>(random() % 1000) / 1000.0;
+      const double periods = random() % 8 == 0 ? 2 + static_cast<double>(random() % 3) : 1;
+      stamps_ns.push_back(stamps_ns.back() +
+                          static_cast<std::int64_t>(period_s * jitter * periods * 1e9));
+    }
+    hmm_mos_plus::Config config = small_plus();
+    config.map.delay_scans = seed % 3 == 0 ? 3 : 0;
+    expect_twins_labels(world, config, tally, 1, stamps_ns);
+  }
+  EXPECT_EQ(tally.sequences, 8U);
+  EXPECT_GT(tally.moving_points, 500U);
+}
+
 TEST(PlusAgainstItsTwin, AgreesWhenVoxelsExpireAndLeave) {
   PlusTally tally;
   for (unsigned seed = 50; seed < 54; ++seed) {
@@ -91,15 +115,18 @@ TEST(PlusAgainstItsTwin, AgreesOnRandomConfigurations) {
     config.map.delay_scans = one_of(0, 0, 1, 3);
     config.map.global_window_scans = one_of(4, 9, 300);
     config.map.min_state_probability = one_of(0.6, 0.9, 0.99);
-    config.seed_age_scans = one_of(0, 2, 10);
-    config.object_age_scans = one_of(0, 10, 30, 100);
+    config.seed_age_s = one_of(0.0, 0.2, 1.0);
+    config.object_age_s = one_of(0.0, 1.0, 3.0, 10.0);
     config.max_unknown_voxels = one_of(15, 40, 80, 125);
     config.ground_radius_voxels = one_of(0, 2, 8);
     config.ground_layers_voxels = one_of(0, 1, 3);
     config.min_seeds_voxels = one_of(1, 3, 5);
     config.min_seed_share = one_of(0.0, 0.1, 0.5);
-    config.fresh_age_scans = one_of(0, 2, 30);
+    config.fresh_age_s = one_of(0.0, 0.2, 3.0);
     config.min_fresh_share = one_of(0.0, 0.2, 0.7);
+    config.max_aged_share = one_of(0.0, 0.3, 0.6, 1.0);
+    config.rise_radius_m = one_of(0.0, 0.7, 6.0);
+    config.min_rise_voxels = one_of(0, 1, 2, 4);
     config.max_extent_m = one_of(0.8, 2.0, 10.0);
     config.max_height_m = one_of(0.5, 1.0, 4.5);
     const SmallWorld world = small_world({.seed = seed,

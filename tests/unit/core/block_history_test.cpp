@@ -17,7 +17,7 @@ BlockMask one_voxel() {
 struct OneVoxel {
   BlockHistory history;
   BlockStates states;
-  std::uint32_t scan = 0;
+  std::uint32_t scan = 0, steps = 1;
 
   void see(std::string_view states_seen) {
     for (const char seen : states_seen) {
@@ -25,12 +25,15 @@ struct OneVoxel {
       if (seen == 'f') states = {.occupied = {}, .free = one_voxel()};
       if (seen == 'o') states = {.occupied = one_voxel(), .free = {}};
       const BlockMask observed = seen == '.' ? BlockMask{} : one_voxel();
-      history.update(observed, before, states, scan++);
+      history.update(observed, before, states, {scan, steps});
+      scan += steps;
     }
   }
   /// Asked in the scan that was seen last.
-  bool arrived(std::uint32_t scans) const { return history.arrived_within(scans, scan - 1).any(); }
-  bool sure(std::uint32_t scans) const { return history.sure_within(scans, scan - 1).any(); }
+  bool arrived(std::uint32_t scans) const {
+    return history.arrived_within(scans, scan - steps).any();
+  }
+  bool sure(std::uint32_t scans) const { return history.sure_within(scans, scan - steps).any(); }
 };
 
 TEST(BlockHistory, CallsAnArrivalSureAfterThreeFreeScans) {
@@ -65,6 +68,36 @@ TEST(BlockHistory, SettlesAVoxelAfterEightOccupiedScansUntilItIsFree) {
   EXPECT_FALSE(voxel.history.settled().any());
 }
 
+TEST(BlockHistory, CallsAVoxelAgedFromTheFifthOccupiedScanUntilItIsFree) {
+  OneVoxel voxel;
+  for (std::size_t seen = 1; seen <= 20; ++seen) {
+    voxel.see(seen % 3 == 0 ? ".o" : "o");
+    EXPECT_EQ(voxel.history.aged().any(), seen >= BlockHistory::kAgedTicks) << seen;
+  }
+  voxel.see("f");
+  EXPECT_FALSE(voxel.history.aged().any());
+  voxel.see("oooo");
+  EXPECT_FALSE(voxel.history.aged().any());
+}
+
+TEST(BlockHistory, CountsTicksRatherThanScans) {
+  OneVoxel slow, fast;
+  slow.steps = 2;
+  slow.see("ffo");  // free for 1 + 2
+  EXPECT_TRUE(slow.sure(0));
+  slow.see("oo");  // 1 + 2 + 2
+  EXPECT_TRUE(slow.history.aged().any());
+  EXPECT_FALSE(slow.history.settled().any());
+  slow.see("oo");
+  EXPECT_TRUE(slow.history.settled().any());
+  EXPECT_TRUE(slow.sure(8));
+  EXPECT_FALSE(slow.sure(7));
+  fast.steps = 0;
+  fast.see("ffffffffo");
+  EXPECT_TRUE(fast.arrived(0));
+  EXPECT_FALSE(fast.sure(0)) << "no time passed";
+}
+
 TEST(BlockHistory, ForgetsAVoxelWholly) {
   OneVoxel voxel;
   voxel.see("fffo");
@@ -81,15 +114,15 @@ TEST(BlockHistory, NeverMakesAnOldArrivalYoungAgain) {
   watched.see("fffo");
   for (std::uint32_t k = 0; k < 70'000; ++k) {
     watched.see("o");
-    ASSERT_EQ(watched.arrived(BlockHistory::kMaxAgeScans), k < BlockHistory::kMaxAgeScans) << k;
+    ASSERT_EQ(watched.arrived(BlockHistory::kMaxAgeTicks), k < BlockHistory::kMaxAgeTicks) << k;
   }
-  for (std::uint32_t pause = BlockHistory::kMaxAgeScans + 1; pause < 66'000; pause += 251) {
+  for (std::uint32_t pause = BlockHistory::kMaxAgeTicks + 1; pause < 66'000; pause += 251) {
     OneVoxel alone;
     alone.see("fffo");
     alone.scan += pause;
-    ASSERT_FALSE(alone.arrived(BlockHistory::kMaxAgeScans)) << pause;
+    ASSERT_FALSE(alone.arrived(BlockHistory::kMaxAgeTicks)) << pause;
     alone.see(".");
-    ASSERT_FALSE(alone.arrived(BlockHistory::kMaxAgeScans)) << pause;
+    ASSERT_FALSE(alone.arrived(BlockHistory::kMaxAgeTicks)) << pause;
   }
 }
 
