@@ -1,4 +1,5 @@
 #include <map>
+#include <optional>
 #include <string>
 
 #include "bench/stage_benchmark.hpp"
@@ -6,8 +7,8 @@
 namespace mosbench {
 namespace {
 
-constexpr char kLcFreeSpace[] = "lc-free-space", kUnderwood[] = "underwood", kDufomap[] = "dufomap",
-               kYoon[] = "yoon";
+constexpr char kDynablox[] = "dynablox", kLcFreeSpace[] = "lc-free-space",
+               kUnderwood[] = "underwood", kDufomap[] = "dufomap", kYoon[] = "yoon";
 #if MOSBENCH_WITH_OCTOMAP
 constexpr char kOctomap[] = "octomap";
 #endif
@@ -22,7 +23,8 @@ std::unique_ptr<Method> make(const char* name, const Config& limits, unsigned th
 }
 
 /// Measures all scans of the workload from the first; one call is one scan on average. Counters
-/// hold the stages' CPU milliseconds per scan. Labels must be those of one thread.
+/// hold the stages' CPU milliseconds per scan, and what the method holds after the last scan in
+/// MB. Labels must be those of one thread.
 template <const char* name>
 void method_stage(benchmark::State& state, StagedScans& staged, ThreadPool& pool) {
   const Config& limits = staged.workload.config;
@@ -43,11 +45,15 @@ void method_stage(benchmark::State& state, StagedScans& staged, ThreadPool& pool
       ++scans;
       expect(state, result.labels == expected[k]);
     }
+    if (const std::optional<MemoryUse> use = method->memory()) {
+      state.counters["memory_MB"] = static_cast<double>(use->bytes) / 1e6;
+    }
   }
   for (const auto& [stage, sum] : sum_ms) state.counters[stage + "_cpu_ms"] = sum / scans;
   count_items(state, "points", mean_points(staged));
 }
 
+const RegisterStage dynablox_stage(kDynablox, method_stage<kDynablox>, true);
 const RegisterStage lc_free_space_stage(kLcFreeSpace, method_stage<kLcFreeSpace>, true);
 const RegisterStage underwood_stage(kUnderwood, method_stage<kUnderwood>, true);
 const RegisterStage dufomap_stage(kDufomap, method_stage<kDufomap>, true);

@@ -4,7 +4,9 @@
 Simulates a drive on the highway with an OS2-128, leaves fewer beams of it (what the others saw is
 missing returns, which cost next to nothing), profiles the method over it one setting at a time and
 prints a table with the exponent b of cost = a * setting^b, fitted to the medians. --write puts the
-table between the sweep marks of bench/NOTES.md and the plot into results/sweep.svg.
+table between the sweep marks of bench/NOTES.md and the plot into results/sweep.svg. --methods
+measures every method at the middle setting instead, a row each with its memory; --write puts that
+between the methods marks.
 """
 
 import argparse
@@ -23,7 +25,10 @@ SWEEPS = {"range": [20, 50, 80, 120], "voxel": [0.1, 0.2, 0.3, 0.4], "beams": [1
           "threads": [1, 2]}
 TITLES = {"range": "range, m", "voxel": "voxel size, m", "beams": "beams of 1,024 points",
           "threads": "threads (wall time)"}
-MARKS = ("<!-- sweep begins -->", "<!-- sweep ends -->")
+# Edge of a voxel of each method in --methods; dufomap's is its own, the others at the end have none.
+METHODS = {"hmm-mos": 0.25, "hmm-mos-plus": 0.25, "dynablox": 0.25, "lc-free-space": 0.25, "octomap": 0.25,
+           "dufomap": 0.1, "underwood": None, "yoon": None}
+VOXEL_SETTINGS = {"dufomap": "resolution_m", "underwood": None, "yoon": None}
 SENSOR, SENSOR_BEAMS, WARM_UP_SCANS = "os2-128", 128, 5
 
 
@@ -34,6 +39,7 @@ def arguments():
     parser.add_argument("--method", default="hmm-mos", help="to measure (default: hmm-mos)")
     parser.add_argument("--scans", type=int, default=30, help="of the drive (default: 30)")
     parser.add_argument("--rounds", type=int, default=3, help="over all settings (default: 3)")
+    parser.add_argument("--methods", action="store_true", help="a row for every method, at the middle setting")
     parser.add_argument("--write", action="store_true", help="into bench/NOTES.md and results/sweep.svg")
     chosen = parser.parse_args()
     if chosen.rounds < 1:
@@ -60,10 +66,13 @@ def simulate(program, scans, folder):
 
 
 def profile(program, method, drive, report, setting):
+    settings = [f"max_range_m={setting['range']}"]
+    voxel_setting = VOXEL_SETTINGS.get(method, "voxel_size_m")
+    if voxel_setting:
+        settings.append(f"{voxel_setting}={setting['voxel']}")
     subprocess.run([program, "profile", drive, "--dataset", "semantickitti",
                     "--perturb", f"beams={setting['beams']},beams_of={SENSOR_BEAMS}", "--method", method,
-                    "--threads", str(setting["threads"]), "--json", report, "--set",
-                    f"max_range_m={setting['range']}", f"voxel_size_m={setting['voxel']}"],
+                    "--threads", str(setting["threads"]), "--json", report, "--set", *settings],
                    check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     return json.loads(report.read_text())
 
@@ -142,24 +151,65 @@ def plot(rows):
             f'<rect width="880" height="190" fill="#fff"/>{panels}</svg>\n')
 
 
-def write(text, picture):
+def memory_mb(report):
+    """Most that the method held after a scan, and the process."""
+    scans = report["sequences"][0]["scans"]
+    return max(scan["method_bytes"] for scan in scans) / 1e6, max(scan["resident_mib"] for scan in scans) * 1.048576
+
+
+def measure_methods(program, scans, rounds):
+    """The least of the medians of several rounds, each round over all methods, their memory, and the machine."""
+    costs, memory = {method: [] for method in METHODS}, {}
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        drive = simulate(program, scans, folder)
+        for turn in range(rounds):
+            for method, voxel in METHODS.items():
+                report = profile(program, method, drive, folder / "profile.json", {**BASE, "voxel": voxel})
+                costs[method].append(cost_ms(report, "range"))
+                memory[method] = memory_mb(report)
+            print(f"round {turn + 1}/{rounds}", file=sys.stderr, flush=True)
+    return {method: min(found) for method, found in costs.items()}, memory, report["machine"]["processor"]
+
+
+def methods_table(costs, memory, machine, scans, rounds):
+    lines = [f"The same drive at {BASE['range']} m, {BASE['beams']} beams, 1 thread, {scans} scans, {machine}: CPU "
+             f"milliseconds per scan of the method", f"alone, the lowest of {rounds} medians, and the most that it and "
+             "the whole process held.", "",
+             "| method | voxel, m | ms per scan | MB of the method | MB of the process |", "|---|---|---|---|---|"]
+    for method, cost in costs.items():
+        voxel = METHODS[method] or "none"
+        lines.append(f"| {method} | {voxel} | {cost:.1f} | {memory[method][0]:.1f} | {memory[method][1]:.0f} |")
+    return "\n".join(lines)
+
+
+def write(name, text):
+    """Replaces what bench/NOTES.md has between two marks."""
     notes = ROOT / "bench/NOTES.md"
     content = notes.read_text()
-    if any(content.count(mark) != 1 for mark in MARKS):
-        sys.exit(f"{notes}: lacks the sweep marks, expected {MARKS[0]} and {MARKS[1]} once each")
-    before, rest = content.split(MARKS[0])
-    after = rest.split(MARKS[1])[1]
-    (ROOT / "results/sweep.svg").write_text(picture)
-    notes.write_text(f"{before}{MARKS[0]}\n{text}\n\n![cost per scan](../results/sweep.svg)\n{MARKS[1]}{after}")
+    begin, end = (f"<!-- {name} {edge} -->" for edge in ("begins", "ends"))
+    if content.count(begin) != 1 or content.count(end) != 1:
+        sys.exit(f"{notes}: lacks the {name} marks, expected {begin} and {end} once each")
+    before, rest = content.split(begin)
+    after = rest.split(end)[1]
+    notes.write_text(f"{before}{begin}\n{text}\n{end}{after}")
 
 
 def main():
     chosen = arguments()
+    if chosen.methods:
+        found = measure_methods(chosen.program, chosen.scans, chosen.rounds)
+        text = methods_table(*found, chosen.scans, chosen.rounds)
+        print(text)
+        if chosen.write:
+            write("methods", text)
+        return
     rows, machine = measure(chosen.program, chosen.method, chosen.scans, chosen.rounds)
     text = table(rows, machine, chosen.scans, chosen.rounds)
     print(text)
     if chosen.write:
-        write(text, plot(rows))
+        (ROOT / "results/sweep.svg").write_text(plot(rows))
+        write("sweep", f"{text}\n\n![cost per scan](../results/sweep.svg)")
 
 
 if __name__ == "__main__":

@@ -61,7 +61,7 @@ EXTERNAL = {
     "CLI": {"eval", "tests"},
     "pybind11": {"eval"},
     "pcl": {"core/include/mosbench/pcl.hpp", "datasets", "tests"},
-    "octomap": {"core/octomap/log_odds_map.cpp", "tests"},
+    "octomap": {"core/octomap/log_odds_map.cpp", "bench/octomap_benchmark.cpp", "tests"},
     "fmt": ABOVE_CORE,
     "nlohmann": ABOVE_CORE,
     "xxhash.h": {"datasets", "eval", "tests"},
