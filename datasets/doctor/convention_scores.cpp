@@ -39,6 +39,17 @@ std::vector<std::size_t> better_ones(const std::vector<ConventionScore>& scores)
   return better;
 }
 
+/// Returns the conventions that explain the measured motions about as well as the best one; none
+/// where that one does not.
+std::vector<std::size_t> as_good_as_the_best(const std::vector<ConventionScore>& scores) {
+  std::vector<std::size_t> better = better_ones(scores);
+  if (better.empty() || !scores[better.front()].explains) return {};
+  const double enough = kSameShare * scores[better.front()].gain;
+  std::erase_if(better,
+                [&](std::size_t i) { return !scores[i].explains || scores[i].gain < enough; });
+  return better;
+}
+
 /// Returns "as one row later" or "with the points mirrored".
 std::string reading_of(const PoseConvention& convention) {
   const std::string& name = convention.name;
@@ -135,12 +146,18 @@ double best_gain(const std::vector<ConventionScore>& scores) {
 
 std::optional<std::string> better_convention(const std::vector<PoseConvention>& conventions,
                                              const std::vector<ConventionScore>& scores) {
-  std::vector<std::size_t> better = better_ones(scores);
-  if (better.empty() || !scores[better.front()].explains) return std::nullopt;
-  const double enough = kSameShare * scores[better.front()].gain;
-  std::erase_if(better,
-                [&](std::size_t i) { return !scores[i].explains || scores[i].gain < enough; });
+  const std::vector<std::size_t> better = as_good_as_the_best(scores);
+  if (better.empty()) return std::nullopt;
   return sentence_on(conventions, scores[better.front()], better);
+}
+
+std::string flags_for(const std::vector<PoseConvention>& conventions,
+                      const std::vector<ConventionScore>& scores) {
+  constexpr std::string_view kByFlags = "run with ";
+  std::vector<std::size_t> better = as_good_as_the_best(scores);
+  std::erase_if(better,
+                [&](std::size_t i) { return !conventions[i].remedy.starts_with(kByFlags); });
+  return better.size() == 1 ? conventions[better.front()].remedy.substr(kByFlags.size()) : "";
 }
 
 std::vector<PoseConvention> worth_another_try(const std::vector<PoseConvention>& conventions,

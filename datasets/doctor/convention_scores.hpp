@@ -47,6 +47,11 @@ double best_gain(const std::vector<ConventionScore>& scores);
 std::optional<std::string> better_convention(const std::vector<PoseConvention>& conventions,
                                              const std::vector<ConventionScore>& scores);
 
+/// Returns the flags that read the poses in one of the conventions that `better_convention` names;
+/// empty where none or several of these take no more than flags.
+std::string flags_for(const std::vector<PoseConvention>& conventions,
+                      const std::vector<ConventionScore>& scores);
+
 /// Returns the best conventions, from which to register scans again, when the best one does not
 /// explain the measured motions: registration that starts from wrong poses may have missed them.
 std::vector<PoseConvention> worth_another_try(const std::vector<PoseConvention>& conventions,

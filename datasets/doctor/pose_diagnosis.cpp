@@ -119,6 +119,10 @@ PoseDiagnosis diagnose(const std::vector<Pose>& given, const MeasuredMotions& me
   const double fast_m_s = speed_m_s(evidence, scans);
   result.findings = findings_of(evidence, result, fast_m_s, step_s);
   if (result.findings.empty()) result.remarks = remarks_on_rows(evidence);
+  const auto other = better_convention(result.conventions, result.scores);
+  if (other && result.findings == std::vector{*other}) {
+    result.flags = flags_for(result.conventions, result.scores);
+  }
   result.measures = measures_of(evidence, result, fast_m_s);
   return result;
 }

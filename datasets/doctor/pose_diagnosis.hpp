@@ -28,6 +28,8 @@ struct PoseDiagnosis {
   std::vector<ConventionScore> scores;  ///< one per convention
   std::vector<std::string> findings;    ///< plain sentences
   std::vector<std::string> remarks;     ///< of what may well be right
+  /// Flags that read the poses as they are meant, "--pose-frame lidar"; empty where none do.
+  std::string flags;
   /// Of how smooth the way of the given poses is.
   PoseScatter scatter;
   std::map<std::string, double> measures;  ///< what thresholds are compared with

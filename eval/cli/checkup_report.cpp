@@ -123,6 +123,17 @@ std::string sequence_text(const SequenceCheckup& sequence) {
   return text + poses_text(sequence) + truth_text(sequence);
 }
 
+/// Says of which sequences the poses were not checked; empty where all were.
+std::string unchecked_text(const Checkup& checkup) {
+  std::vector<std::string> names;
+  for (const SequenceCheckup& sequence : checkup.sequences) {
+    if (!sequence.poses) names.push_back(sequence.name);
+  }
+  if (names.empty()) return "";
+  return fmt::format("; the poses of {} were NOT checked: too few scans or points",
+                     names_text(names));
+}
+
 std::string verdict(const Checkup& checkup, const std::string& input) {
   if (checkup.has(Severity::kError)) {
     return "Verdict: cannot be used as it is. Put right the errors above, then\n  mosbench "
@@ -138,9 +149,9 @@ std::string verdict(const Checkup& checkup, const std::string& input) {
     return sequence.poses && !sequence.poses->fits && cannot_be_told(*sequence.poses) &&
            sequence.poses->overlap < sequence.poses->best_overlap;
   });
-  return fmt::format("Verdict: nothing wrong was found{}. Next\n  mosbench run {}\n",
+  return fmt::format("Verdict: nothing wrong was found{}{}. Next\n  mosbench run {}\n",
                      unsure ? "; whether the poses fit cannot be told from these scans" : "",
-                     input);
+                     unchecked_text(checkup), input);
 }
 
 const char* severity_text(Severity severity) {

@@ -62,6 +62,7 @@ std::string answer_of(const CompareFlags& options, const ResultSet& baseline,
 }
 
 Answer compare(const CompareFlags& options) {
+  if (!options.summary.empty()) check_output(options.summary);
   const ResultSet baseline = load_result_set(options.baseline);
   const ResultSet newer = load_result_set(options.newer);
   const PairedRuns paired = pair_runs(baseline, newer);

@@ -118,9 +118,21 @@ std::vector<ObjectDisagreement> objects_of(const DiffFlags& options, const Resul
                   "the data set of the runs in --data");
 }
 
+/// Without truth there are no right and wrong points to compare.
+void check_has_truth(const ResultSet& run) {
+  const bool scored = std::ranges::any_of(run.sequences, [](const SequenceResult& sequence) {
+    return !counted_scans(sequence).empty();
+  });
+  if (scored) return;
+  throw DataError(run.front().file, "has no scan with truth, by which points are right or wrong",
+                  "a run over labelled scans; the colour disagreement of mosbench report shows "
+                  "where labels differ without truth");
+}
+
 std::string diff(const DiffFlags& options) {
   const ResultSet first = load_result_set(options.first);
   const ResultSet second = load_result_set(options.second);
+  for (const ResultSet* run : {&first, &second}) check_has_truth(*run);
   const PairedRuns paired = pair_runs(first, second);
   if (paired.scans.empty()) {
     throw DataError(options.second, "shares no counted scan with " + options.first.string(),

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
+#include <set>
 
 #include "datasets/doctor/doctor.hpp"
 #include "eval/cli/checkup_report.hpp"
@@ -42,20 +43,40 @@ struct DoctorFlags {
   bool json = false;
 };
 
-/// DATA and the flags that say how it was read, for the command that comes next.
-std::string asked(const DoctorFlags& options) {
+/// The flags by which all sequences were to be read; empty unless they agree.
+std::string flags_found(const Checkup& checkup) {
+  std::set<std::string> flags;
+  for (const SequenceCheckup& sequence : checkup.sequences) {
+    flags.insert(sequence.poses ? sequence.poses->flags : "");
+  }
+  return flags.size() == 1 ? *flags.begin() : "";
+}
+
+/// The reading options with "--pose-frame lidar" or another flag that the doctor found.
+ReadingOptions mended(ReadingOptions reading, const std::string& flags) {
+  const std::size_t blank = flags.find(' ');
+  if (blank == std::string::npos) return reading;
+  const std::string word = flags.substr(blank + 1);
+  if (const auto frame = pose_frame_named(word)) reading.pose_frame = *frame;
+  if (const auto inverse = poses_inverse_named(word)) reading.poses_inverse = *inverse;
+  return reading;
+}
+
+/// DATA and the flags that say how it is to be read, for the command that comes next.
+std::string next_input(const DoctorFlags& options, const Checkup& checkup) {
   std::string words = shell_word(options.input.string());
   if (options.dataset != "auto") words += " --dataset " + options.dataset;
   if (!options.sequences.empty()) {
     words += " --sequences " + shell_word(fmt::format("{}", fmt::join(options.sequences, ",")));
   }
-  return words + told_flags(options.reading);
+  return words + told_flags(mended(options.reading, flags_found(checkup)));
 }
 
 Answer check_dataset(const DoctorFlags& options) {
   const Checkup checkup = check_up(
       options.input, {dataset_kind_option(options.dataset), options.sequences, options.reading});
-  std::string report = options.json ? checkup_json(checkup) : checkup_text(checkup, asked(options));
+  std::string report =
+      options.json ? checkup_json(checkup) : checkup_text(checkup, next_input(options, checkup));
   return {report, checkup.has(Severity::kError) ? 3 : checkup.has(Severity::kWarning) ? 1 : 0};
 }
 

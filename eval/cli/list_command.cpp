@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 #include <mosbench/method.hpp>
+#include <mosbench/odometry.hpp>
 #include <span>
 
 #include "datasets/files/errors.hpp"
@@ -27,6 +28,7 @@ constexpr const char* kListFooter = R"(Examples:
   mosbench list
   mosbench list methods
   mosbench list methods dynablox
+  mosbench list odometry
   mosbench list presets
   mosbench list datasets
   mosbench list perturbations
@@ -82,17 +84,42 @@ std::string default_text(const Setting& setting) {
   return setting.is_set ? to_string(setting.value) : fmt::format("as {}", setting.follows);
 }
 
-std::string method_text(const MethodKind& method) {
+std::string settings_text(const Settings& settings) {
   TextTable table({{"  setting", TextTable::kLeft},
                    {"default"},
                    {"unit", TextTable::kLeft},
                    {"legal", TextTable::kLeft},
                    {"meaning", TextTable::kLeft}});
-  for (const Setting& setting : method.defaults.all()) {
+  for (const Setting& setting : settings.all()) {
     table.add_row({fmt::format("  {}", setting.name), default_text(setting), unit_of(setting),
                    legal_values(setting), std::string(setting.meaning)});
   }
-  return fmt::format("{}: {}\n{}\n{}\n", method.name, method.summary, method.source, table.str());
+  return table.str();
+}
+
+std::string method_text(const MethodKind& method) {
+  return fmt::format("{}: {}\n{}\n{}\n", method.name, method.summary, method.source,
+                     settings_text(method.defaults));
+}
+
+std::string odometry_text() {
+  std::string text;
+  for (const OdometryKind& kind : odometries()) {
+    text += fmt::format("{}: {}\n{}\n{}\n", kind.name, kind.summary, kind.source,
+                        settings_text(kind.defaults));
+  }
+  TextTable table({{"preset", TextTable::kLeft},
+                   {"odometry", TextTable::kLeft},
+                   {"settings", TextTable::kLeft}});
+  for (const OdometryPreset& preset : odometry_presets()) {
+    std::vector<std::string> settings;
+    for (const auto& [name, value] : preset.settings) {
+      settings.push_back(fmt::format("{}={}", name, to_string(value)));
+    }
+    table.add_row({std::string(preset.name), std::string(preset.odometry),
+                   fmt::format("{}", fmt::join(settings, ","))});
+  }
+  return text + table.str() + "Set by --odometry-preset and --odometry-set KEY=VALUE.\n";
 }
 
 std::string methods_text() {
@@ -168,6 +195,7 @@ struct ListKind {
 constexpr ListKind kKinds[] = {
     {"datasets", "Data sets", datasets_text, datasets_json},
     {"methods", "Methods", methods_text, methods_json},
+    {"odometry", "Odometry", odometry_text, odometry_json},
     {"presets", "Presets", presets_text, presets_json},
     {"protocols", "Protocols", protocols_text, protocols_json},
     {"scenes", "Scenes", scenes_text, scenes_json},
@@ -214,7 +242,8 @@ CommandRun add_list(CLI::App& command) {
   for (const ListKind& kind : kKinds) names.emplace_back(kind.name);
   command
       .add_option("WHAT", listed->what,
-                  "datasets, methods, presets, protocols, scenes, formats, perturbations or all")
+                  "datasets, methods, odometry, presets, protocols, scenes, formats, perturbations "
+                  "or all")
       ->capture_default_str()
       ->check(CLI::IsMember(names));
   command.add_option("NAME", listed->name, "One of the methods");

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <mosbench/odometry.hpp>
 
 #include "datasets/layouts/layout.hpp"
 #include "datasets/perturb/perturb_kinds.hpp"
@@ -37,6 +38,13 @@ ordered_json setting_json(const Setting& setting) {
   return json;
 }
 
+template <typename Rows, typename ToJson>
+ordered_json rows_json(const Rows& rows, ToJson&& row_json) {
+  ordered_json json = ordered_json::array();
+  std::ranges::transform(rows, std::back_inserter(json), row_json);
+  return json;
+}
+
 ordered_json dataset_json(const Layout* row) {
   return {{"name", row->name},           {"title", row->title},
           {"content", row->content},     {"size", row->size},
@@ -55,6 +63,20 @@ ordered_json preset_json(const Preset& preset) {
           {"protocol", preset.kind ? ordered_json(preset.protocol) : nullptr},
           {"settings", settings},
           {"source", preset.source}};
+}
+
+ordered_json odometry_kind_json(const OdometryKind& kind) {
+  return {{"name", kind.name},
+          {"title", kind.title},
+          {"summary", kind.summary},
+          {"source", kind.source},
+          {"settings", rows_json(kind.defaults.all(), setting_json)}};
+}
+
+ordered_json odometry_preset_json(const OdometryPreset& preset) {
+  ordered_json settings = ordered_json::object();
+  for (const auto& [name, value] : preset.settings) settings[std::string(name)] = value_json(value);
+  return {{"name", preset.name}, {"odometry", preset.odometry}, {"settings", settings}};
 }
 
 ordered_json protocol_json(const ProtocolDescription& protocol) {
@@ -82,13 +104,6 @@ ordered_json perturbation_json(const PerturbKind& kind) {
           {"source", kind.source}};
 }
 
-template <typename Rows, typename ToJson>
-ordered_json rows_json(const Rows& rows, ToJson&& row_json) {
-  ordered_json json = ordered_json::array();
-  std::ranges::transform(rows, std::back_inserter(json), row_json);
-  return json;
-}
-
 }  // namespace
 
 std::string unit_of(const Setting& setting) {
@@ -108,6 +123,10 @@ ordered_json method_json(const MethodKind& method) {
 
 ordered_json datasets_json() { return rows_json(layouts(), dataset_json); }
 ordered_json methods_json() { return rows_json(methods(), method_json); }
+ordered_json odometry_json() {
+  return {{"kinds", rows_json(odometries(), odometry_kind_json)},
+          {"presets", rows_json(odometry_presets(), odometry_preset_json)}};
+}
 ordered_json presets_json() { return rows_json(presets(), preset_json); }
 ordered_json protocols_json() { return rows_json(describe_protocols(), protocol_json); }
 ordered_json scenes_json() { return rows_json(built_in_scenes(), scene_json); }

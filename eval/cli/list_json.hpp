@@ -12,6 +12,7 @@ std::string unit_of(const Setting& setting);
 /// What `list` knows of a kind, an object per row.
 nlohmann::ordered_json datasets_json();
 nlohmann::ordered_json methods_json();
+nlohmann::ordered_json odometry_json();
 nlohmann::ordered_json presets_json();
 nlohmann::ordered_json protocols_json();
 nlohmann::ordered_json scenes_json();

@@ -11,6 +11,7 @@
 #include "eval/cli/command_line.hpp"
 #include "eval/cli/failure.hpp"
 #include "eval/results/tell.hpp"
+#include "eval/results/terminal.hpp"
 
 namespace {
 
@@ -36,7 +37,10 @@ int main(int argc, char** argv) {
     occupy_standard_streams();
     const mosbench::Answer answer = mosbench::answer_to({argv + 1, argv + argc});
     // Names in it may come from files of strangers.
-    mosbench::write_stdout(mosbench::shown(answer.text));
+    const std::string text =
+        mosbench::folded_tables(mosbench::shown(answer.text), mosbench::terminal_columns());
+    mosbench::write_stdout(mosbench::shows_colours(STDOUT_FILENO) ? mosbench::in_colours(text)
+                                                                  : text);
     return answer.exit_code;
   } catch (...) {
     const mosbench::Failure failure = mosbench::current_failure();

@@ -2,6 +2,7 @@
 
 #include <cstdio>
 
+#include "datasets/files/errors.hpp"
 #include "datasets/files/files.hpp"
 
 namespace mosbench {
@@ -19,6 +20,20 @@ void write_output(const std::filesystem::path& file, std::string_view bytes) {
   } else {
     commit_file(file, bytes);
   }
+}
+
+void check_output(const std::filesystem::path& file) {
+  if (names_stdout(file)) return;
+  std::error_code ignored;
+  if (std::filesystem::is_directory(file, ignored)) {
+    throw DataError(file, "is a folder", "a file to write");
+  }
+  std::filesystem::path above = std::filesystem::absolute(file).parent_path();
+  while (above.has_relative_path() && !std::filesystem::exists(above, ignored)) {
+    above = above.parent_path();
+  }
+  if (std::filesystem::is_directory(above, ignored)) return;
+  throw DataError(above, "is no folder", "a folder for " + file.filename().string());
 }
 
 Answer answer_beside(const std::filesystem::path& file, const std::string& text, int exit_code) {

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <charconv>
 #include <memory>
 #include <optional>
@@ -9,9 +10,11 @@
 #include "datasets/files/errors.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/cli/output_file.hpp"
+#include "eval/cli/picture_sequence.hpp"
 #include "eval/protocols/metrics.hpp"
 #include "eval/report/birds_eye.hpp"
 #include "eval/report/scan_choice.hpp"
+#include "eval/results/progress.hpp"
 #include "eval/results/result_set.hpp"
 
 namespace mosbench {
@@ -22,17 +25,22 @@ constexpr const char* kRenderFooter =
 range rings in metres. K counts from 0; "worst" is the scan with the most false points, not one in
 which the method did not look for motion yet. RESULT is of `mosbench run` or `mosbench score --out`;
 points and labels are read again from where they were read then, or points from --data.
+--scans draws several, given as for `mosbench report` (A-B, every:N, all), to a video (.mp4 or .gif, by
+ffmpeg, which `apt-get install ffmpeg` brings) or else to a folder, a PNG file each.
 
 Examples:
   mosbench render results/runs/sim --scan 20 -o scan.png
   mosbench render results/runs/doals --sequence hauptgebaeude/sequence_1 --scan worst -o worst.png
-  mosbench render results/runs/08 --scan 120 -o dark.png --dark --range 30 --size 1600)";
+  mosbench render results/runs/08 --scan 120 -o dark.png --dark --range 30 --size 1600
+  mosbench render results/runs/08 --scans 40-90 -o street.mp4
+  mosbench render results/runs/08 --scans every:10 -o pictures)";
 
 struct RenderFlags {
   std::filesystem::path input, out;
   std::optional<std::filesystem::path> dataset_root;
   std::optional<std::string> sequence;
-  std::string scan;
+  std::optional<std::string> scan, scans;
+  double per_s = 10.0;
   BirdsEyeOptions picture;
 };
 
@@ -101,14 +109,47 @@ std::vector<std::string> title_of(const FoundResult& result, std::size_t scan_in
   return lines;
 }
 
+Picture picture_of(const ResultScans& scans, std::size_t scan_index, BirdsEyeOptions options) {
+  options.title = title_of(scans.result(), scan_index);
+  return birds_eye(scans.read(scan_index), options);
+}
+
+/// The scans that --scans names, in their own order.
+std::vector<std::size_t> chosen_scans(const ResultScans& scans, const std::string& text) {
+  std::vector<std::size_t> chosen = ScanChoice(text).wanted(scans.rows());
+  std::erase_if(chosen, [&](std::size_t k) { return !scans.has(k); });
+  std::ranges::sort(chosen);
+  if (!chosen.empty()) return chosen;
+  throw UsageError(fmt::format("--scans: '{}' chooses no scan, expected some of 0 to {}", text,
+                               static_cast<std::ptrdiff_t>(scans.rows().size()) - 1));
+}
+
+Answer render_several(RenderFlags& options, const ResultScans& scans) {
+  const std::vector<std::size_t> chosen = chosen_scans(scans, *options.scans);
+  // One range for all pictures, or they would jump.
+  if (options.picture.range_m <= 0.0) {
+    options.picture.range_m = reach_m(scans.read(chosen[chosen.size() / 2]));
+  }
+  PictureSequence pictures(options.out, options.per_s);
+  Progress progress("render", chosen.size());
+  for (const std::size_t k : chosen) {
+    pictures.add(scans.rows()[k].stem, picture_of(scans, k, options.picture).png());
+    progress.advance();
+  }
+  return {pictures.finish()};
+}
+
 Answer render(RenderFlags& options) {
+  if (options.scan.has_value() == options.scans.has_value()) {
+    throw UsageError("--scan or --scans: say which scans to draw, expected one of them");
+  }
+  if (options.scan) check_output(options.out);
   const FoundResult result = choose_result(options);
   const ResultScans scans(result, options.dataset_root);
-  const std::size_t scan_index = choose_scan(options.scan, scans.rows());
+  if (options.scans) return render_several(options, scans);
+  const std::size_t scan_index = choose_scan(*options.scan, scans.rows());
   check_has_labels(scans, scan_index);
-  options.picture.title = title_of(scans.result(), scan_index);
-  const Picture picture = birds_eye(scans.read(scan_index), options.picture);
-  write_output(options.out, picture.png());
+  write_output(options.out, picture_of(scans, scan_index, options.picture).png());
   return answer_beside(options.out,
                        fmt::format("scan {} of {} in {}\n", scans.rows()[scan_index].stem,
                                    result.name.text(), options.out.string()));
@@ -123,9 +164,15 @@ CommandRun add_render(CLI::App& command) {
       ->type_name("DIR")
       ->required();
   command.add_option("--scan", options->scan, "Number of the scan from 0, or worst")
-      ->type_name("K")
-      ->required();
-  command.add_option("-o,--out", options->out, "PNG file to write; - is stdout")
+      ->type_name("K");
+  command.add_option("--scans", options->scans, "Scans of a video or a folder of pictures")
+      ->type_name("SCANS");
+  command.add_option("--per-s", options->per_s, "Pictures per second of a video")
+      ->check(CLI::Range(0.1, 120.0))
+      ->capture_default_str();
+  command
+      .add_option("-o,--out", options->out,
+                  "PNG file to write, - is stdout; of --scans .mp4, .gif or a folder")
       ->type_name("FILE")
       ->required();
   command.add_option("--sequence", options->sequence, "Sequence, where RESULT holds several")

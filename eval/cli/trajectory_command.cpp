@@ -10,6 +10,7 @@
 #include "eval/cli/output_file.hpp"
 #include "eval/cli/trajectory_plot.hpp"
 #include "eval/results/answer_text.hpp"
+#include "eval/results/shell_text.hpp"
 #include "eval/trajectory/path_comparison.hpp"
 #include "eval/trajectory/trajectory_scores.hpp"
 
@@ -121,7 +122,23 @@ void check_plot(const TrajectoryFlags& flags) {
   }
 }
 
+/// Says what to type, as two files may be an estimate with its truth or two estimates.
+void check_truth(const TrajectoryFlags& flags) {
+  if (!flags.truth.empty()) return;
+  const std::string first = shell_word(flags.estimate.string());
+  if (!flags.other) {
+    throw UsageError(fmt::format(
+        "--truth: is missing, expected mosbench trajectory {} --truth TRUE_POSES", first));
+  }
+  const std::string second = shell_word(flags.other->string());
+  throw UsageError(fmt::format(
+      "--truth: is missing, expected mosbench trajectory {0} --truth {1}, where {1} holds "
+      "the true poses, or mosbench trajectory {0} {1} --truth TRUE_POSES for two estimates",
+      first, second));
+}
+
 Answer trajectory_answer(const TrajectoryFlags& flags) {
+  check_truth(flags);
   if (flags.other && flags.relative.delta_m) {
     throw UsageError(
         "--delta-m: cuts each estimate by its own path, expected --delta for two estimates");
@@ -148,9 +165,9 @@ CommandRun add_trajectory(CLI::App& command) {
       ->required();
   command.add_option("OTHER", flags->other, "Second file or folder of estimated poses, to compare")
       ->type_name("PATH");
-  command.add_option("--truth", flags->truth, "File or folder of true poses, or data set")
-      ->type_name("PATH")
-      ->required();
+  command
+      .add_option("--truth", flags->truth, "File or folder of true poses, or data set (required)")
+      ->type_name("PATH");
   command.add_option("--align", flags->alignment, "Alignment before APE and RPE (default: none)")
       ->check(CLI::IsMember({"none", "origin", "rigid", "similarity"}));
   command

@@ -20,19 +20,6 @@ bool stands_out(PointOutcome outcome) {
   return outcome != PointOutcome::kTrueNegative && outcome != PointOutcome::kIgnoredStatic;
 }
 
-double reach_m(const JudgedScan& scan) {
-  std::vector<double> distances_m;
-  for (const Point& point : scan.frame.points) {
-    if (is_drawable(point))
-      distances_m.push_back(std::hypot(static_cast<double>(point.x), static_cast<double>(point.y)));
-  }
-  if (distances_m.empty()) return 10.0;
-  const auto most = distances_m.begin() +
-                    static_cast<std::ptrdiff_t>(0.98 * static_cast<double>(distances_m.size() - 1));
-  std::ranges::nth_element(distances_m, most);
-  return 5.0 * std::max(1.0, std::ceil(*most / 5.0));
-}
-
 /// Returns a round number of metres that gives three to eight rings.
 double ring_step_m(double range_m) {
   double step_m = 1.0;
@@ -133,6 +120,19 @@ class BirdsEye {
 };
 
 }  // namespace
+
+double reach_m(const JudgedScan& scan) {
+  std::vector<double> distances_m;
+  for (const Point& point : scan.frame.points) {
+    if (is_drawable(point))
+      distances_m.push_back(std::hypot(static_cast<double>(point.x), static_cast<double>(point.y)));
+  }
+  if (distances_m.empty()) return 10.0;
+  const auto most = distances_m.begin() +
+                    static_cast<std::ptrdiff_t>(0.98 * static_cast<double>(distances_m.size() - 1));
+  std::ranges::nth_element(distances_m, most);
+  return 5.0 * std::max(1.0, std::ceil(*most / 5.0));
+}
 
 Picture birds_eye(const JudgedScan& scan, const BirdsEyeOptions& options) {
   return BirdsEye(scan, options).draw();

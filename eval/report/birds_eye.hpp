@@ -16,6 +16,9 @@ struct BirdsEyeOptions {
   std::vector<std::string> title;  ///< lines in the upper left corner
 };
 
+/// Returns the range in metres that holds 98 % of the points of a scan, at least that of one ring.
+double reach_m(const JudgedScan& scan);
+
 /// Draws a scan from above, the sensor in the middle and facing up: each point in the colour of its
 /// outcome, false ones on top, with counts of all points, range rings and a scale.
 Picture birds_eye(const JudgedScan& scan, const BirdsEyeOptions& options);

@@ -180,14 +180,14 @@ std::vector<ScanPose> estimate_poses(const Sequence& sequence, const OdometryCho
   return poses;
 }
 
-std::vector<Pose> find_poses(Sequence& sequence, const OdometryChoice& choice, unsigned threads) {
+std::vector<ScanPose> find_poses(Sequence& sequence, const OdometryChoice& choice,
+                                 unsigned threads) {
   auto& posed = dynamic_cast<PosedSequence&>(sequence);
-  const std::vector<ScanPose> scans = estimate_poses(posed.unposed(), choice, threads);
-  std::vector<Pose> poses = poses_of(scans);
+  std::vector<ScanPose> scans = estimate_poses(posed.unposed(), choice, threads);
   const std::string remark = odometry_remark(sequence, choice, scans);
   tell(fmt::format("{}: {}", sequence.name(), remark));
-  posed.set_poses(poses, remark);
-  return poses;
+  posed.set_poses(poses_of(scans), remark);
+  return scans;
 }
 
 std::vector<Pose> poses_of(const std::vector<ScanPose>& scans) {

@@ -63,7 +63,8 @@ std::vector<ScanPose> estimate_poses(const Sequence& sequence, const OdometryCho
                                      unsigned threads);
 
 /// Finds and sets the poses of a sequence that `expect_poses` wrapped. Returns them.
-std::vector<Pose> find_poses(Sequence& sequence, const OdometryChoice& choice, unsigned threads);
+std::vector<ScanPose> find_poses(Sequence& sequence, const OdometryChoice& choice,
+                                 unsigned threads);
 
 std::vector<Pose> poses_of(const std::vector<ScanPose>& scans);
 std::size_t doubtful_count(const std::vector<ScanPose>& scans);

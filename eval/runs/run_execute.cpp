@@ -33,12 +33,33 @@ std::vector<std::string> scans_without_detection(const SequenceRows& rows) {
   return stems;
 }
 
+/// "000000 to 000009, 000058": the scans that were not judged, as far as there is room.
+std::string unjudged_text(const std::vector<ScanRow>& rows) {
+  constexpr std::size_t kMostRanges = 4;
+  std::vector<std::string> ranges;
+  for (std::size_t first = 0; first < rows.size(); ++first) {
+    if (rows[first].judged) continue;
+    std::size_t last = first;
+    while (last + 1 < rows.size() && !rows[last + 1].judged) ++last;
+    ranges.push_back(last == first ? rows[first].stem
+                                   : rows[first].stem + " to " + rows[last].stem);
+    first = last;
+  }
+  if (ranges.size() > kMostRanges) {
+    ranges.resize(kMostRanges);
+    ranges.emplace_back("...");
+  }
+  return fmt::format("{}", fmt::join(ranges, ", "));
+}
+
 std::vector<std::string> all_remarks(const RunSettings& settings, const Sequence& sequence,
                                      const SequenceRows& rows) {
   std::vector<std::string> remarks = sequence.remarks();
   if (const std::size_t unjudged = scans_without_detection(rows).size(); unjudged > 0) {
-    remarks.push_back(fmt::format("{} of {} scans are labelled static without detection", unjudged,
-                                  sequence.size()));
+    remarks.push_back(fmt::format(
+        "{} of {} scans are labelled static without detection, because the method has seen too few "
+        "scans before or after them: {}",
+        unjudged, sequence.size(), unjudged_text(rows.scans)));
   }
   remarks.insert(remarks.end(), rows.remarks.begin(), rows.remarks.end());
   std::size_t nonfinite_points = 0;
@@ -60,8 +81,18 @@ std::vector<std::string> all_remarks(const RunSettings& settings, const Sequence
   return remarks;
 }
 
+ordered_json doubtful_poses(const Sequence& sequence, const std::vector<ScanPose>& poses) {
+  ordered_json json = ordered_json::array();
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    if (!poses[k].doubtful()) continue;
+    json.push_back({{"stem", sequence.stem(k)}, {"doubt", poses[k].doubt}});
+  }
+  return json;
+}
+
+/// `found`: the poses by odometry, if the run asked for them.
 ordered_json header(const RunPlan& plan, const PlannedSequence& planned, const SequenceRows& rows,
-                    const std::vector<std::string>& remarks) {
+                    const std::vector<std::string>& remarks, const std::vector<ScanPose>& found) {
   ordered_json json = {{"format", kResultFormat}};
   json.update(planned.identity);
   json["preset"] = plan.preset;
@@ -73,7 +104,9 @@ ordered_json header(const RunPlan& plan, const PlannedSequence& planned, const S
   json["machine"] = machine_json();
   json["remarks"] = remarks;
   json["scans_without_detection"] = scans_without_detection(rows);
-  const Recording& recording = plan.dataset.sequences[planned.position]->recording();
+  const Sequence& sequence = *plan.dataset.sequences[planned.position];
+  if (plan.odometry) json["doubtful_poses"] = doubtful_poses(sequence, found);
+  const Recording& recording = sequence.recording();
   for (const ScanEntry& scan : recording.left_out) json["scans_left_out"].push_back(scan.stem);
   const Split* benchmark = benchmark_scans(*plan.settings.protocol, plan.dataset.splits);
   std::vector<Confusion> counts;
@@ -118,10 +151,11 @@ SequenceOutcome run_now(const RunPlan& plan, const PlannedSequence& planned) {
   const fs::path partial = planned.folder.begin();
   try {
     SequenceOutcome outcome;
+    std::vector<ScanPose> found;
     if (plan.odometry) {
-      keep_poses(find_poses(*plan.dataset.sequences[planned.position], *plan.odometry,
-                            plan.settings.threads),
-                 partial / "poses.txt");
+      found = find_poses(*plan.dataset.sequences[planned.position], *plan.odometry,
+                         plan.settings.threads);
+      keep_poses(poses_of(found), partial / "poses.txt");
     }
     const std::vector<std::string> doubts = doubts_about_poses(plan, sequence);
     outcome.rows = run_sequence(sequence, plan.settings, partial);
@@ -130,7 +164,7 @@ SequenceOutcome run_now(const RunPlan& plan, const PlannedSequence& planned) {
     outcome.folder = planned.folder.path();
     write_file_atomic(
         partial / "result.json",
-        format_result(header(plan, planned, outcome.rows, outcome.remarks), outcome.rows,
+        format_result(header(plan, planned, outcome.rows, outcome.remarks, found), outcome.rows,
                       plan.settings.threads, clock_header(plan, planned)));
     planned.folder.publish();
     return outcome;

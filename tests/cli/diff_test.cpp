@@ -32,6 +32,14 @@ class Diff : public testing::Test {
   TempFolder folder_;
 };
 
+TEST_F(Diff, SaysThatRunsWithoutTruthCannotBeCompared) {
+  std::filesystem::remove_all(folder_ / "room/labels");
+  ASSERT_EQ(cli::run({"run", folder_ / "room", "--out", folder_ / "untold"}).exit_code, 0);
+  const cli::Answer answer = cli::run({"diff", folder_ / "delay_0", folder_ / "untold"});
+  EXPECT_EQ(answer.exit_code, 3);
+  EXPECT_THAT(answer.err, HasSubstr("untold/room/result.json: has no scan with truth"));
+}
+
 TEST_F(Diff, HeadsItsColumnsWithTheNamesOfTheRuns) {
   const cli::Answer answer = diff("room");
   ASSERT_EQ(answer.exit_code, 0) << answer.err;

@@ -52,6 +52,36 @@ TEST_F(DoctorCommand, KeepsTheReadingFlagsInTheNextCommand) {
                                     "' --pose-frame lidar --deskew none\n"));
 }
 
+TEST_F(DoctorCommand, PutsTheFlagThatMendsThePosesIntoTheNextCommand) {
+  const std::string drive = (folder_ / "drive").string();
+  ASSERT_EQ(cli::run({"simulate", "--layout", "semantickitti", "--scene", "street", "--scans", "12",
+                      "--seed", "1", "--out", drive})
+                .exit_code,
+            0);
+  const std::string sequence = drive + "/sequences/08";
+  // Poses of the LiDAR beside a Tr that is then applied to them.
+  Pose tr = Pose::Identity();
+  tr.linear() << 0, -1, 0, 0, 0, -1, 1, 0, 0;
+  std::vector<Pose> poses = read_poses(sequence + "/poses.txt");
+  for (Pose& pose : poses) pose = tr.inverse() * pose * tr;
+  write_poses(sequence + "/poses.txt", poses);
+  const cli::Answer wrong = cli::run({"doctor", sequence});
+  EXPECT_EQ(wrong.exit_code, 1) << wrong.out;
+  EXPECT_THAT(wrong.out, HasSubstr("the lidar's, Tr not to be applied"));
+  const std::string next = sequence + " --pose-frame lidar";
+  EXPECT_THAT(wrong.out, HasSubstr("\n  mosbench run " + next + "\n"));
+  const cli::Answer mended = cli::run({"doctor", sequence, "--pose-frame", "lidar"});
+  EXPECT_EQ(mended.exit_code, 0) << mended.out;
+}
+
+TEST_F(DoctorCommand, SaysThatPosesOfFewScansWereNotChecked) {
+  cli::write_small_sequence(folder_ / "short", 4);
+  const cli::Answer answer = cli::run({"doctor", (folder_ / "short").string()});
+  EXPECT_EQ(answer.exit_code, 0) << answer.out;
+  EXPECT_THAT(answer.out, HasSubstr("nothing wrong was found; the poses of short were NOT checked: "
+                                    "too few scans or points. Next\n"));
+}
+
 TEST_F(DoctorCommand, NamesAFileOnce) {
   const fs::path label = folder_ / "room/labels/000003.label";
   fs::resize_file(label, fs::file_size(label) - 4);

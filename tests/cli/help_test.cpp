@@ -71,6 +71,44 @@ TEST(Usage, IsRefusedWithExitCode2AndAPrefixedMessage) {
   }
 }
 
+TEST(Usage, OfTrajectoryWithoutTruthSaysWhatToType) {
+  const cli::Answer two = cli::run({"trajectory", "a.txt", "my b.txt"});
+  EXPECT_EQ(two.exit_code, 2);
+  EXPECT_THAT(two.err, HasSubstr("mosbench trajectory a.txt --truth 'my b.txt'"));
+  EXPECT_THAT(two.err, HasSubstr("mosbench trajectory a.txt 'my b.txt' --truth TRUE_POSES"));
+  EXPECT_THAT(cli::run({"trajectory", "a.txt"}).err,
+              HasSubstr("expected mosbench trajectory a.txt --truth TRUE_POSES"));
+}
+
+TEST(List, ShowsTheSettingsOfOdometry) {
+  const std::string text = cli::run({"list", "odometry"}).out;
+  EXPECT_THAT(text, HasSubstr("\nkiss: "));
+  EXPECT_THAT(text, ContainsRegex("\nuq-vlp16 +simple +.*sigma_m=12"));
+  const auto json = nlohmann::json::parse(cli::run({"list", "odometry", "--json"}).out);
+  const auto& kinds = json.at("odometry").at("kinds");
+  ASSERT_EQ(kinds.size(), 2U);
+  EXPECT_EQ(kinds.at(0).at("name"), "simple");
+  for (const auto& setting : kinds.at(0).at("settings")) {
+    EXPECT_THAT(text, HasSubstr("\n  " + setting.at("name").get<std::string>() + " "));
+  }
+}
+
+TEST(Usage, RefusesAFolderAsOutputBeforeTheWork) {
+  const TempFolder folder;
+  const std::string nothing = folder / "nothing", out = folder.path();
+  for (const std::vector<std::string>& words :
+       std::vector<std::vector<std::string>>{{"report", nothing, "-o", out},
+                                             {"render", nothing, "--scan", "0", "-o", out},
+                                             {"curve", nothing, "-o", out},
+                                             {"compare", nothing, nothing, "--summary", out}}) {
+    const cli::Answer answer = cli::run(words);
+    EXPECT_EQ(answer.exit_code, 3) << words[0];
+    EXPECT_THAT(answer.err, HasSubstr(out + ": is a folder, expected a file to write")) << words[0];
+  }
+  const auto file = folder.write("file", "");
+  EXPECT_THAT(cli::run({"report", nothing, "-o", file / "x.html"}).err, HasSubstr("is no folder"));
+}
+
 TEST(Usage, NamesTheNearestWordToAnUnknownOne) {
   struct Mistake {
     std::vector<std::string> arguments;

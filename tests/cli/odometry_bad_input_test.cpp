@@ -155,6 +155,13 @@ TEST_P(BadDrives, AreLabelledWithARemarkWherePosesAreDoubtful) {
   const bool all = std::string(GetParam().said) == "6 doubtful";
   EXPECT_EQ(remarks.find("MOST POSES ARE DOUBTFUL") != std::string::npos, all) << remarks;
   EXPECT_EQ(read_poses(folder_ / "runs" / "s" / "poses.txt").size(), scans_);
+  const auto listed =
+      nlohmann::ordered_json::parse(read_file(folder_ / "runs/s/result.json")).at("doubtful_poses");
+  EXPECT_EQ(listed.empty(), !doubtful) << listed;
+  for (const auto& pose : listed) {
+    EXPECT_FALSE(pose.at("stem").get<std::string>().empty());
+    EXPECT_FALSE(pose.at("doubt").get<std::string>().empty());
+  }
 }
 
 TEST_P(BadDrives, AreWrittenAsTumOnlyWhereStampsRise) {

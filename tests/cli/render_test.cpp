@@ -46,6 +46,59 @@ TEST_F(Render, DrawsTheSameOfLabelsThatWereScored) {
   EXPECT_EQ(read_file(folder_ / "run.png"), read_file(folder_ / "net.png"));
 }
 
+TEST_F(Render, DrawsSeveralScansToAFolderInOneRange) {
+  const cli::Answer answer =
+      cli::run({"render", run(), "--scans", "5-6,2", "-o", folder_ / "pictures", "--size", "300"});
+  ASSERT_EQ(answer.exit_code, 0) << answer.err;
+  EXPECT_THAT(answer.out, HasSubstr("3 pictures in "));
+  for (const char* stem : {"000002", "000005", "000006"}) {
+    const std::string png = read_file(folder_ / "pictures" / (std::string(stem) + ".png"));
+    EXPECT_TRUE(png.starts_with("\x89PNG")) << stem;
+  }
+  EXPECT_EQ(cli::run({"render", run(), "--scans", "90-99", "-o", folder_ / "none"}).exit_code, 2);
+  EXPECT_EQ(cli::run({"render", run(), "-o", folder_ / "x.png"}).exit_code, 2);
+  EXPECT_EQ(
+      cli::run({"render", run(), "--scan", "1", "--scans", "1", "-o", folder_ / "x.png"}).exit_code,
+      2);
+}
+
+/// Draws scans 1 and 2 with this script as ffmpeg, or with none.
+cli::Answer render_video(const std::string& run, const TempFolder& folder, const char* script) {
+  const std::filesystem::path programs = folder / "programs";
+  std::filesystem::create_directories(programs);
+  if (script != nullptr) {
+    write_file_atomic(programs / "ffmpeg", script);
+    std::filesystem::permissions(programs / "ffmpeg", std::filesystem::perms::owner_all);
+  }
+  return cli::run({"render", run, "--scans", "1-2", "-o", folder / "v.mp4", "--size", "300"},
+                  [&] { setenv("PATH", programs.c_str(), 1); });
+}
+
+TEST_F(Render, HandsThePicturesOfAVideoToFfmpeg) {
+  const cli::Answer made =
+      render_video(run(), folder_, "#!/bin/sh\nfor last; do :; done\n/bin/cat > \"$last\"\n");
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  EXPECT_THAT(made.out, HasSubstr("2 pictures in the video "));
+  ASSERT_EQ(
+      cli::run({"render", run(), "--scans", "1-2", "-o", folder_ / "p", "--size", "300"}).exit_code,
+      0);
+  EXPECT_EQ(read_file(folder_ / "v.mp4"),
+            read_file(folder_ / "p/000001.png") + read_file(folder_ / "p/000002.png"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "v.partial.mp4"));
+}
+
+TEST_F(Render, LeavesNoVideoWhereFfmpegFailsOrIsNotThere) {
+  const cli::Answer failed = render_video(run(), folder_, "#!/bin/sh\nexit 1\n");
+  EXPECT_EQ(failed.exit_code, 3);
+  EXPECT_THAT(failed.err, HasSubstr("could not be made by ffmpeg"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "v.mp4"));
+  std::filesystem::remove(folder_ / "programs/ffmpeg");
+  const cli::Answer without = render_video(run(), folder_, nullptr);
+  EXPECT_EQ(without.exit_code, 0) << without.err;
+  EXPECT_THAT(without.err, HasSubstr("ffmpeg is not there"));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "v/000002.png"));
+}
+
 TEST_F(Render, RefusesScansAndSequencesThatAreNotThere) {
   for (const char* scan : {"8", "-1", "best", ""}) {
     const cli::Answer answer = cli::run({"render", run(), "--scan", scan, "-o", folder_ / "r.png"});

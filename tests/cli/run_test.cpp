@@ -178,9 +178,31 @@ TEST_F(Run, WithoutTruthWritesLabelsAndSaysSo) {
   fs::remove_all(folder_ / "room/labels");
   const cli::Answer answer = cli::run(command("out"));
   ASSERT_EQ(answer.exit_code, 0) << answer.err;
-  EXPECT_THAT(answer.out, HasSubstr("no truth"));
+  EXPECT_THAT(answer.out, HasSubstr("no scan has truth: nothing to score\n"));
+  std::size_t moving = 0;
+  const auto scans = result("out").at("scans");
+  for (const auto& scan : scans) {
+    moving += scan.at("predicted_moving_points").get<std::size_t>();
+  }
+  EXPECT_GT(moving, 0U);
+  EXPECT_THAT(answer.out, testing::ContainsRegex("room +12 +" +
+                                                 std::to_string(kScansOfRun * cli::kPointsPerScan) +
+                                                 " +" + std::to_string(moving) + " "));
+  const auto json = nlohmann::ordered_json::parse(cli::run(command("out", {"--json"})).out);
+  EXPECT_EQ(json.at("sequences").at(0).at("predicted_moving_points"), moving);
   EXPECT_TRUE(result("out").at("summary").is_null());
   EXPECT_FALSE(result("out").at("scans").at(0).contains("tp"));
+}
+
+TEST_F(Run, SaysWhichScansWereNotJudgedAndWhy) {
+  ASSERT_EQ(cli::run(command("out", {"--set", "delay_scans=4"})).exit_code, 0);
+  const auto unjudged = result("out").at("scans_without_detection");
+  ASSERT_FALSE(unjudged.empty());
+  const std::string remarks = result("out").at("remarks").dump();
+  EXPECT_THAT(remarks, HasSubstr(std::to_string(unjudged.size()) +
+                                 " of 12 scans are labelled static without detection, because the "
+                                 "method has seen too few scans before or after them: " +
+                                 unjudged.at(0).get<std::string>()));
 }
 
 TEST_F(Run, TakesARootOfSeveralSequencesAndASelection) {

@@ -1,7 +1,7 @@
 import { element, table } from './dom.js';
 import { resultName } from './header.js';
 
-const NOT_PROVENANCE = new Set(['scans', 'summary', 'timing', 'remarks', 'scans_without_detection', 'splits', 'source']);
+const NOT_PROVENANCE = new Set(['scans', 'summary', 'timing', 'remarks', 'scans_without_detection', 'splits', 'source', 'doubtful_poses']);
 
 /** [["config.voxel_size_m", "0.25"], ...] of nested objects. */
 export function flatten(value, prefix = '') {

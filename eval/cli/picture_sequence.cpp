@@ -1,0 +1,71 @@
+#include "eval/cli/picture_sequence.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <utility>
+
+#include "datasets/files/errors.hpp"
+#include "datasets/files/files.hpp"
+#include "eval/results/shell_text.hpp"
+#include "eval/results/tell.hpp"
+
+namespace mosbench {
+namespace fs = std::filesystem;
+namespace {
+
+bool has_ffmpeg() { return std::system("command -v ffmpeg >/dev/null 2>&1") == 0; }
+
+/// Videos that every player shows have an even size; a gif has colours of its own.
+std::string ffmpeg_command(const fs::path& file, double per_s) {
+  const bool gif = file.extension() == ".gif";
+  const char* picture = gif ? "-filter_complex '[0:v]split[a][b];[a]palettegen[p];[b][p]paletteuse'"
+                            : "-vf 'pad=ceil(iw/2)*2:ceil(ih/2)*2' -pix_fmt yuv420p";
+  return fmt::format("ffmpeg -loglevel error -y -f image2pipe -framerate {:g} -i - {} {}", per_s,
+                     picture, shell_word(file.string()));
+}
+
+}  // namespace
+
+PictureSequence::PictureSequence(const fs::path& out, double per_s) {
+  if (out.extension() != ".mp4" && out.extension() != ".gif") {
+    folder_ = out;
+    return;
+  }
+  if (!has_ffmpeg()) {
+    folder_ = fs::path(out).replace_extension();
+    tell(fmt::format("ffmpeg is not there (Debian's package ffmpeg): pictures go to {} instead",
+                     folder_.string()));
+    return;
+  }
+  out_ = fs::absolute(out);
+  fs::create_directories(out_.parent_path());
+  partial_ = out_.parent_path() /
+             fmt::format("{}.partial{}", out_.stem().string(), out_.extension().string());
+  ffmpeg_ = popen(ffmpeg_command(partial_, per_s).c_str(), "w");
+  if (ffmpeg_ == nullptr) throw DataError(out, "ffmpeg cannot be started", "room for a process");
+}
+
+PictureSequence::~PictureSequence() {
+  if (ffmpeg_ != nullptr) pclose(ffmpeg_);
+  std::error_code ignored;
+  if (!partial_.empty()) fs::remove(partial_, ignored);
+}
+
+void PictureSequence::add(const std::string& stem, std::string_view png) {
+  ++pictures_;
+  if (ffmpeg_ == nullptr) return write_file_atomic(folder_ / (stem + ".png"), png);
+  // What ffmpeg thinks of it shows when it ends.
+  std::fwrite(png.data(), 1, png.size(), ffmpeg_);
+}
+
+std::string PictureSequence::finish() {
+  if (ffmpeg_ == nullptr) return fmt::format("{} pictures in {}\n", pictures_, folder_.string());
+  if (pclose(std::exchange(ffmpeg_, nullptr)) != 0) {
+    throw DataError(out_, "could not be made by ffmpeg", "that it takes PNG files and knows H.264");
+  }
+  fs::rename(partial_, out_);
+  return fmt::format("{} pictures in the video {}\n", pictures_, out_.string());
+}
+
+}  // namespace mosbench
