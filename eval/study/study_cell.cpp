@@ -190,7 +190,7 @@ CellOutcome compute_cell(const PlannedCell& planned, const Study& study, const f
   if (planned.state == CellState::kDone) return CellOutcome::kKept;
   if (planned.state == CellState::kOtherVersion) {
     tell(fmt::format("{}: computed by mosbench {}, again by {}", cell.title(),
-                     planned.record.value("version", "?"), kMosbenchVersion));
+                     planned.record.at("version").get<std::string>(), kMosbenchVersion));
   }
   ordered_json record;
   try {

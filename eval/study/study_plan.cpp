@@ -144,26 +144,41 @@ class CellLister {
   std::set<std::string> known_;
 };
 
-PlannedCell look_up(StudyCell cell, const fs::path& out) {
-  PlannedCell planned{std::move(cell), CellState::kMissing, nullptr};
-  for (const bool failed : {false, true}) {
-    const fs::path file =
-        failed ? failure_file(out, planned.cell.key) : record_file(out, planned.cell.key);
-    if (!is_there(file)) continue;
-    try {
-      planned.record = parse_json(read_file(file), file);
-      if (planned.record.at("key") != planned.cell.key) continue;
-      const bool same = planned.record.at("version") == std::string(kMosbenchVersion);
-      planned.state = failed ? CellState::kFailed
-                      : same ? CellState::kDone
-                             : CellState::kOtherVersion;
-      return planned;
-    } catch (const DataError&) {  // is computed again
-    } catch (const nlohmann::json::exception&) {
-    }
-    planned.record = nullptr;
+/// Whether a record has the members that tables read. Throws a JSON exception where one is missing.
+bool is_whole(const ordered_json& record, bool failed) {
+  if (!record.at("version").is_string()) return false;
+  if (failed) return record.at("failure").is_string();
+  const ordered_json& summary = record.at("summary");
+  const bool scored = summary.is_object() || summary.is_null();
+  const bool listed = std::ranges::all_of(record.at("worst"), [](const ordered_json& scan) {
+    return scan.at("stem").is_string() && scan.at("iou").is_number();
+  });
+  return scored && listed && record.at("simulated").is_boolean() && record.at("timing").is_object();
+}
+
+/// What a file says of a cell; nothing where it is missing, damaged or of another cell, which is
+/// then computed again.
+std::optional<ordered_json> record_in(const fs::path& file, const std::string& key, bool failed) {
+  if (!is_there(file)) return std::nullopt;
+  try {
+    ordered_json record = parse_json(read_file(file), file);
+    if (record.at("key") == key && is_whole(record, failed)) return record;
+  } catch (const DataError&) {
+  } catch (const nlohmann::json::exception&) {
   }
-  return planned;
+  return std::nullopt;
+}
+
+PlannedCell look_up(StudyCell cell, const fs::path& out) {
+  const auto result = record_in(record_file(out, cell.key), cell.key, false);
+  if (result && result->at("version") == std::string(kMosbenchVersion)) {
+    return {std::move(cell), CellState::kDone, *result};
+  }
+  if (const auto failure = record_in(failure_file(out, cell.key), cell.key, true)) {
+    return {std::move(cell), CellState::kFailed, *failure};
+  }
+  if (result) return {std::move(cell), CellState::kOtherVersion, *result};
+  return {std::move(cell), CellState::kMissing, nullptr};
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include "eval/results/csv.hpp"
 #include "eval/results/latex.hpp"
 #include "eval/results/text_table.hpp"
+#include "eval/results/version.hpp"
 #include "eval/study/study_table.hpp"
 
 namespace mosbench {
@@ -167,6 +168,7 @@ std::string study_csv(const StudyPlan& plan) {
 
 ordered_json to_json(const StudyTable& table) {
   ordered_json json = {{"name", table.name},
+                       {"version", std::string(kMosbenchVersion)},
                        {"simulated", table.simulated},
                        {"cells", table.cells},
                        {"done", table.done},

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <string>
 #include <vector>
 
@@ -139,6 +140,22 @@ TEST_F(Studies, ComputeAgainWhatAnotherVersionLeft) {
 TEST_F(Studies, TellTheHoursOnceTheyAreMeasured) {
   EXPECT_THAT(study("plan").out, HasSubstr("--measure tells"));
   EXPECT_THAT(study("plan", {"--measure"}).out, HasSubstr("hours of one core"));
+}
+
+TEST_F(Studies, AreRunBySnakemakeAndGoOnWhereTheyWereLeft) {
+  if (std::system("snakemake --version > /dev/null 2>&1") != 0) {
+    GTEST_SKIP() << "snakemake is not installed";
+  }
+  const std::vector<std::string> all = keys();
+  ASSERT_EQ(study("cell", {all[2]}).exit_code, 0);
+  const cli::Answer run = study("run");
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("7 cells in "));
+  EXPECT_THAT(run.out, HasSubstr("8 of 8 cells are done"));
+  EXPECT_THAT(study("run").err, HasSubstr("nothing is to be computed"));
+  ASSERT_EQ(study("cell", {all[0], "--out", path("alone")}).exit_code, 0);
+  EXPECT_EQ(record("out", all[0]), record("alone", all[0]));
+  EXPECT_EQ(study("run", {"--profile", path("nothing"), "--out", path("new")}).exit_code, 2);
 }
 
 TEST_F(Studies, RefuseWhatIsNotUnderstood) {

@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -188,7 +189,9 @@ TEST(StudyTable, SaysWhatIsMissingAndOfAnotherVersion) {
   const Study study = parse_study(without_disturbances(), "s.yaml");
   const StudyPlan plan = plan_study(study, folder.path());
   write_record(plan, plan.cells[0].cell, 0.5, 1, "0.0.1");
-  write_shared(record_file(folder.path(), plan.cells[1].cell.key), "{\"key\": ");
+  const std::string& key = plan.cells[1].cell.key;
+  write_shared(record_file(folder.path(), key),
+               fmt::format("{{\"key\": \"{}\", \"version\": 3}}", key));
   write_record(plan, plan.cells[2].cell, 0.5, 1);
   const StudyPlan again = plan_study(study, folder.path());
   EXPECT_EQ(again.cells[0].state, CellState::kOtherVersion);

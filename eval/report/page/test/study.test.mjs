@@ -1,0 +1,27 @@
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+import { curveChart, paretoChart } from '../src/study.js';
+
+const point = (value, low, high) => ({ iou: { value, low, high }, precision: { value: 1 }, recall: { value: null } });
+const curve = {
+  axis: 'pose_noise_m', unit: 'm', values: ['none', '0.05'],
+  lines: [{ label: 'a', points: [point(0.8, 0.7, 0.9), point(0.6)] }, { label: 'b', points: [point(0.5), point(null)] }],
+};
+
+test('a curve has a line per method over the strengths, and bars where there are intervals', () => {
+  const chart = curveChart(curve, 'iou');
+  assert.deepEqual(chart.x, [0, 1]);
+  assert.deepEqual(chart.series.map(({ label, values }) => [label, values]), [['a', [0.8, 0.6]], ['b', [0.5, null]]]);
+  assert.deepEqual(chart.options.xAxis.values(null, [0, 1, 2]), ['none', '0.05', '']);
+  const bars = chart.options.whiskers.filter(({ low }) => low !== undefined);
+  assert.deepEqual(bars.map(({ x, low, high }) => [x, low, high]), [[0, 0.7, 0.9]]);
+});
+
+test('the Pareto plot has a dot per method with IoU and time, and none without', () => {
+  const row = (label, value, ms_per_scan, front) => ({ label, front, ms_per_scan, metrics: { iou: { value } } });
+  const chart = paretoChart([row('slow', 0.9, 40, true), row('unknown', 0.9, null, false), row('fast', 0.5, 10, true), row('worse', 0.4, 20, false)]);
+  assert.deepEqual(chart.x, [10, 20, 40]);
+  assert.deepEqual(chart.series.map(({ label, values }) => [label, values]),
+    [['slow *', [null, null, 0.9]], ['fast *', [0.5, null, null]], ['worse', [null, 0.4, null]]]);
+  assert.equal(paretoChart([row('unknown', null, 1, false)]), null);
+});
