@@ -3,7 +3,8 @@
 # testing; with --python also those of the Python package, its tests and its examples; with --checks those
 # of the format and clang checks and of the API pages; with --package those that make and check Debian
 # packages; with --page what tests, lints and builds the report's page: a browser, node and the packages of
-# eval/report/page/package-lock.json; with --cluster Snakemake and Slurm; --tests is --python and --page. Returns quickly when all are installed.
+# eval/report/page/package-lock.json and tests/ros2/package-lock.json, whose writers make ROS 2 bags; with --cluster
+# Snakemake and Slurm; --tests is --python and --page. Returns quickly when all are installed.
 # MOSBENCH_WITH_PCL=OFF leaves out PCL, which brings some 400 packages,
 # MOSBENCH_WITH_ROSBAG=OFF the 40 or so of ROS's bag library, which only writing bags needs,
 # MOSBENCH_WITH_OCTOMAP=OFF the two of OctoMap, for the method of that name,
@@ -12,7 +13,7 @@ set -euo pipefail
 
 packages=(g++ cmake ninja-build pkg-config git xz-utils jq bsdextrautils python3
   libeigen3-dev libfmt-dev nlohmann-json3-dev libcli11-dev libxxhash-dev libutfcpp-dev libyaml-cpp-dev
-  zlib1g-dev libpng-dev libbz2-dev liblz4-dev libboost-dev)
+  zlib1g-dev libpng-dev libbz2-dev liblz4-dev libzstd-dev libsqlite3-dev libboost-dev)
 [ "${MOSBENCH_BUILD_TESTS:-ON}" = OFF ] || packages+=(libgtest-dev libgmock-dev libbenchmark-dev help2man)
 [ "${MOSBENCH_WITH_PCL:-ON}" = OFF ] || packages+=(libpcl-dev)
 [ "${MOSBENCH_WITH_ROSBAG:-ON}" = OFF ] || packages+=(librosbag-storage-dev)
@@ -73,15 +74,16 @@ install_packages() {
   done
 }
 
-# Installs what the lock file names and nothing else; the stamp is its copy at the last installation.
-install_page_packages() {
+# install_node_packages FOLDER WHAT: what its lock file names and nothing else; the stamp is the copy of
+# that at the last installation.
+install_node_packages() {
   local folder stamp
-  folder=$(dirname "${BASH_SOURCE[0]}")/../eval/report/page
+  folder=$(dirname "${BASH_SOURCE[0]}")/../$1
   stamp=$folder/node_modules/.installed-lock.json
   cmp -s "$folder/package-lock.json" "$stamp" && return 0
-  echo "setup.sh: installing the packages of the report's page" >&2
+  echo "setup.sh: installing the packages of $2" >&2
   if ! (cd "$folder" && npm ci --ignore-scripts --no-audit --no-fund --loglevel=error >&2); then
-    echo "setup.sh: npm could not install them; tests of the page will be skipped" >&2
+    echo "setup.sh: npm could not install them; tests of $2 will be skipped" >&2
     rm -rf "$folder/node_modules"
     return 0
   fi
@@ -89,4 +91,7 @@ install_page_packages() {
 }
 
 install_packages
-if [ -n "$with_page" ]; then install_page_packages; fi
+if [ -n "$with_page" ]; then
+  install_node_packages eval/report/page "the report's page"
+  install_node_packages tests/ros2 "ROS 2 bags of other writers"
+fi

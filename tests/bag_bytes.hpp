@@ -115,7 +115,8 @@ struct BagBytes {
 
 /// A message with points of x y z intensity float32 and t uint32.
 inline std::string timed_cloud(std::int64_t stamp_ns, const std::vector<Point>& points,
-                               const std::vector<std::uint32_t>& times_ns) {
+                               const std::vector<std::uint32_t>& times_ns,
+                               MessageEncoding encoding = MessageEncoding::kRos1) {
   CloudHead head;
   head.stamp_ns = stamp_ns;
   head.frame = "lidar";
@@ -130,11 +131,12 @@ inline std::string timed_cloud(std::int64_t stamp_ns, const std::vector<Point>& 
     records.put(points[i]);
     records.put(times_ns.empty() ? 0U : times_ns[i]);
   }
-  return format_cloud(head, std::move(records).bytes());
+  return format_cloud(head, std::move(records).bytes(), encoding);
 }
 
-inline std::string tf_at(std::int64_t stamp_ns, const Pose& map_from_lidar) {
-  return format_tf_message({{stamp_ns, "map", "lidar", map_from_lidar}});
+inline std::string tf_at(std::int64_t stamp_ns, const Pose& map_from_lidar,
+                         MessageEncoding encoding = MessageEncoding::kRos1) {
+  return format_tf_message({{stamp_ns, "map", "lidar", map_from_lidar}}, encoding);
 }
 
 }  // namespace mosbench

@@ -46,8 +46,8 @@ std::vector<fs::path> sequence_folders(const Dataset& dataset, const Layout& lay
 std::set<fs::path> expected_files(const Dataset& dataset, const std::vector<fs::path>& folders) {
   std::set<fs::path> files = {kSimulatedMarker};
   for (std::size_t i = 0; i < folders.size(); ++i) {
-    for (const char* name :
-         {"times.txt", "calib.txt", "poses.txt", "indices.csv", "bag.bag", kPoseOriginFile}) {
+    for (const char* name : {"times.txt", "calib.txt", "poses.txt", "indices.csv", "bag.bag",
+                             "metadata.yaml", "bag_0.mcap", "bag_0.db3", kPoseOriginFile}) {
       files.insert(folders[i] / name);
     }
     for (const char* split : {"train.txt", "val.txt", "test.txt"}) {
@@ -65,7 +65,7 @@ std::set<fs::path> expected_files(const Dataset& dataset, const std::vector<fs::
 /// Says what is converted to what.
 std::string statement_of(const Dataset& dataset, const ConvertOptions& options) {
   nlohmann::ordered_json json = {{"layout", to_string(options.layout)},
-                                 {"as_bag", options.writing.as_bag},
+                                 {"bag", to_string(options.writing.bag)},
                                  {"compression", options.writing.compression}};
   for (const auto& sequence : dataset.sequences) {
     json["sequences"].push_back({{"name", sequence->name()},

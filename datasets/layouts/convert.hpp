@@ -11,7 +11,7 @@
 namespace mosbench {
 
 struct ConvertOptions {
-  DatasetKind layout = DatasetKind::kSemanticKitti;  ///< one that `simulate` writes, too
+  DatasetKind layout = DatasetKind::kSemanticKitti;  ///< one that has a writer
   WriteOptions writing = {};
   std::filesystem::path out;  ///< becomes the data set's root
   /// Called with the position of a sequence before its first scan is read, if it is to be written.

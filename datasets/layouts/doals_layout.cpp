@@ -4,6 +4,7 @@
 #include "datasets/layouts/doals_sequence.hpp"
 #include "datasets/layouts/folder_search.hpp"
 #include "datasets/layouts/layout.hpp"
+#include "datasets/rosbag/open_bag.hpp"
 
 namespace mosbench {
 namespace {
@@ -32,7 +33,7 @@ void list_scene(const std::filesystem::path& scene, const std::string& prefix,
 
 /// Lists in alphabetical order, which for the published scenes is that of the published numbers.
 std::vector<SequenceFolder> list_doals(const std::filesystem::path& path) {
-  if (is_bag(path)) return {{path.stem().string(), path, ""}};
+  if (is_bag_file(path)) return {{path.stem().string(), path, ""}};
   if (!std::filesystem::is_directory(path)) return {};
   if (scan_folder_of(path) || !list_by_stem(path, {".bag"}).empty())
     return {sequence_folder(folder_name(path), path)};
@@ -76,7 +77,7 @@ std::optional<std::string> recognise_doals_bag(const std::filesystem::path& fold
 }
 
 std::optional<std::string> recognise_doals(const std::filesystem::path& path) {
-  if (is_bag(path)) return recognise_doals_bag(parent_folder(path));
+  if (is_bag_file(path)) return recognise_doals_bag(parent_folder(path));
   const auto sequences = list_doals(path);
   for (const SequenceFolder& sequence : sequences) {
     if (is_there(sequence.folder / "indices.csv")) return "indices.csv is there";

@@ -10,6 +10,7 @@
 #include "datasets/files/scan_file.hpp"
 #include "datasets/layouts/folder_search.hpp"
 #include "datasets/rosbag/bag_sequence.hpp"
+#include "datasets/rosbag/open_bag.hpp"
 #include "datasets/sequence/folder_sequence.hpp"
 
 namespace mosbench {
@@ -58,7 +59,7 @@ constexpr std::array<DoalsPublished, 8> kPublished = {{
 
 std::unique_ptr<Sequence> open_scans(std::string name, const std::filesystem::path& folder,
                                      const ReadingOptions& options) {
-  if (is_bag(folder)) return std::make_unique<BagSequence>(std::move(name), folder, options);
+  if (is_bag_file(folder)) return std::make_unique<BagSequence>(std::move(name), folder, options);
   if (!scan_folder_of(folder)) {
     if (const auto bag = bag_of(folder)) {
       return std::make_unique<BagSequence>(std::move(name), *bag, options);
@@ -81,7 +82,7 @@ const DoalsPublished* find_doals_published(std::string_view scene, std::string_v
 DoalsSequence::DoalsSequence(std::string name, const std::filesystem::path& folder,
                              const DoalsPublished* published, const ReadingOptions& options)
     : SequenceAround(open_scans(std::move(name), folder, options)),
-      indices_file_((is_bag(folder) ? folder.parent_path() : folder) / "indices.csv") {
+      indices_file_((is_bag_file(folder) ? folder.parent_path() : folder) / "indices.csv") {
   open_truth(published);
 }
 

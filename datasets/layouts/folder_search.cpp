@@ -19,13 +19,6 @@ std::string folder_name(const std::filesystem::path& path) {
   return without_slash(path).filename().string();
 }
 
-bool is_bag(const std::filesystem::path& path) {
-  constexpr std::string_view kStart = "#ROSBAG";
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(path, ignored)) return false;
-  return path.extension() == ".bag" || read_start(path, kStart.size()) == kStart;
-}
-
 bool is_scan(const std::filesystem::path& path) {
   std::error_code ignored;
   return is_named_as_scan(path) && std::filesystem::is_regular_file(path, ignored);

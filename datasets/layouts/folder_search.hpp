@@ -16,9 +16,6 @@ std::filesystem::path without_slash(const std::filesystem::path& path);
 /// Returns the last name of a path, also of "." and of one that ends with a slash.
 std::string folder_name(const std::filesystem::path& path);
 
-/// Whether a path is a file that is named as a bag, or begins as one.
-bool is_bag(const std::filesystem::path& path);
-
 /// Whether a path is a file that is named as a scan.
 bool is_scan(const std::filesystem::path& path);
 

@@ -9,25 +9,40 @@
 #include "datasets/layouts/layout.hpp"
 #include "datasets/layouts/single_scan.hpp"
 #include "datasets/rosbag/bag_sequence.hpp"
+#include "datasets/rosbag/open_bag.hpp"
 
 namespace mosbench {
 namespace {
 
+bool is_bag(const std::filesystem::path& path) { return is_bag_file(path) || is_bag_folder(path); }
+
+/// Lists the bags in a folder, files before folders.
 std::vector<std::filesystem::path> bags_of(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> bags;
-  for (const StemFile& bag : list_by_stem(folder, {".bag"})) bags.push_back(bag.file);
+  for (const StemFile& bag : list_by_stem(folder, {".bag", ".mcap", ".db3", ".zstd"})) {
+    if (is_bag_file(bag.file)) bags.push_back(bag.file);
+  }
+  for (const std::filesystem::path& below : list_folders(folder)) {
+    if (is_bag_folder(below)) bags.push_back(below);
+  }
   return bags;
 }
 
 /// A bag or a scan that is given itself, the bags of a folder, or the folder of scans. One bag is
 /// called as its folder.
 std::vector<SequenceFolder> list_recording(const std::filesystem::path& path) {
-  if (is_bag(path) || is_scan(path)) return {{path.stem().string(), path, ""}};
+  if (is_bag_folder(path)) return {{folder_name(path), path, ""}};
+  if (is_bag_file(path) || is_scan(path)) return {{path.stem().string(), path, ""}};
   if (!std::filesystem::is_directory(path)) return {};
   const auto bags = bags_of(path);
-  if (bags.size() == 1) return {{folder_name(path), bags.front(), ""}};
+  if (bags.size() == 1 && is_bag_file(bags.front())) {
+    return {{folder_name(path), bags.front(), ""}};
+  }
   std::vector<SequenceFolder> sequences;
-  for (const auto& bag : bags) sequences.push_back({bag.stem().string(), bag, ""});
+  for (const auto& bag : bags) {
+    const auto name = is_bag_folder(bag) ? bag.filename() : bag.stem();
+    sequences.push_back({name.string(), bag, ""});
+  }
   if (sequences.empty() && !scans_in(path).empty()) return {{folder_name(path), path, ""}};
   return sequences;
 }
@@ -41,11 +56,16 @@ std::unique_ptr<Sequence> open_recording(const SequenceFolder& sequence,
                                          SequenceLayout{.folder = {.scan_folder = "."}});
 }
 
+std::filesystem::path recording_folder(const std::string& name, std::size_t) {
+  return flat_name(name);
+}
+
 std::optional<std::string> recognise_recording(const std::filesystem::path& path) {
   const auto sequences = list_recording(path);
   if (sequences.empty()) return std::nullopt;
   const auto& first = sequences.front().folder;
   if (sequences.size() > 1) return fmt::format("{} bags are there", sequences.size());
+  if (is_bag_folder(path)) return "it is the folder of a ROS 2 bag";
   if (is_bag(path)) return "it is a bag";
   if (is_bag(first)) return "a bag is there";
   if (is_scan(path)) return "it is a scan";
@@ -65,7 +85,9 @@ const Layout& recording_layout() {
       .size = "any",
       .published = "nowhere: it is yours",
       .licence = "yours",
-      .folders = {"<file>.bag, or <root>/ with such files",
+      .folders = {"<file>.bag (ROS 1), .mcap or .db3 (ROS 2), each of these also packed as .zstd",
+                  "<root>/metadata.yaml and the files that it names: a ROS 2 bag",
+                  "<root>/ with such files or folders: a sequence each",
                   "<root>/*.bin, *.pcd or *.ply, with or without", "  poses.txt   12 numbers a row",
                   "  times.txt   seconds", "  labels/*.label",
                   "<file>.bin, .pcd or .ply: one scan"},
@@ -76,7 +98,7 @@ const Layout& recording_layout() {
       .splits = nullptr,
       .evidence = Evidence::kNone,
       .recognise = recognise_recording,
-      .writer = std::nullopt};
+      .writer = LayoutWriter{write_as_ros2_bag, recording_folder}};
   return row;
 }
 

@@ -1,5 +1,6 @@
 #include "datasets/layouts/sequence_writer.hpp"
 
+#include <array>
 #include <optional>
 #include <span>
 #include <vector>
@@ -8,12 +9,14 @@
 #include "datasets/files/byte_cursor.hpp"
 #include "datasets/files/calib_file.hpp"
 #include "datasets/files/disk_sync.hpp"
+#include "datasets/files/errors.hpp"
 #include "datasets/files/files.hpp"
 #include "datasets/files/indices_file.hpp"
 #include "datasets/files/label_file.hpp"
 #include "datasets/files/pose_file.hpp"
 #include "datasets/files/times_file.hpp"
 #include "datasets/rosbag/bag_writer.hpp"
+#include "datasets/rosbag/ros2_bag_writer.hpp"
 #include "datasets/rosbag/ros_messages.hpp"
 
 namespace mosbench {
@@ -64,6 +67,12 @@ bool is_moving(std::uint32_t label) {
   return id >= kMovingLabel && id <= 259U;
 }
 
+/// Scans without stamps get ones as far apart as those of most sensors.
+std::int64_t stamp_of(std::size_t scan_index, const Frame& frame) {
+  constexpr std::int64_t kPeriodNs = 100'000'000;
+  return frame.stamp_ns.value_or(static_cast<std::int64_t>(scan_index) * kPeriodNs);
+}
+
 /// Collects stamps and truth as DOALS stores them.
 class DoalsRows {
  public:
@@ -71,9 +80,7 @@ class DoalsRows {
 
   /// Returns the frame's stamp.
   std::int64_t add(std::size_t scan_index, const Frame& frame) {
-    constexpr std::int64_t kPeriodNs = 100'000'000;
-    const std::int64_t stamp_ns =
-        frame.stamp_ns.value_or(static_cast<std::int64_t>(scan_index) * kPeriodNs);
+    const std::int64_t stamp_ns = stamp_of(scan_index, frame);
     stamps_ns_[scan_index] = stamp_ns;
     if (!frame.truth) return stamp_ns;
     IndicesRow& row = rows_[scan_index].emplace();
@@ -120,31 +127,37 @@ class DoalsWriter : public SequenceWriter {
   std::vector<Pose> poses_;
 };
 
-constexpr const char* kLidarFrame = "os1_lidar";
+constexpr const char* kDoalsFrame = "os1_lidar";
 
-/// Returns a message with x y z intensity float32 and t uint32, fields that DOALS's driver has too;
-/// a scan is taken at one instant, so every t is 0.
-std::string cloud_message(std::span<const Point> points, std::int64_t stamp_ns) {
-  constexpr std::uint32_t kStepBytes = 20;
+/// A field of uint32 beside x y z intensity, with one value per point.
+struct ExtraField {
+  std::string name;
+  std::vector<std::uint32_t> values;
+};
+
+/// Returns a message with x y z intensity float32 and the extra field, if there is one.
+std::string cloud_message(std::span<const Point> points, std::int64_t stamp_ns,
+                          const std::string& frame, const std::optional<ExtraField>& extra,
+                          MessageEncoding encoding) {
   constexpr std::uint8_t kUint32 = 6, kFloat32 = 7;
   CloudHead head;
   head.stamp_ns = stamp_ns;
-  head.frame = kLidarFrame;
+  head.frame = frame;
   head.height = 1;
   head.width = static_cast<std::uint32_t>(points.size());
   head.fields = {{"x", 0, kFloat32, 1},
                  {"y", 4, kFloat32, 1},
                  {"z", 8, kFloat32, 1},
-                 {"intensity", 12, kFloat32, 1},
-                 {"t", 16, kUint32, 1}};
-  head.point_step_bytes = kStepBytes;
-  head.row_step_bytes = kStepBytes * head.width;
+                 {"intensity", 12, kFloat32, 1}};
+  if (extra) head.fields.push_back({extra->name, sizeof(Point), kUint32, 1});
+  head.point_step_bytes = sizeof(Point) + (extra ? sizeof(std::uint32_t) : 0);
+  head.row_step_bytes = head.point_step_bytes * head.width;
   ByteSink records;
-  for (const Point& point : points) {
-    records.put(point);
-    records.put(std::uint32_t{0});
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    records.put(points[i]);
+    if (extra) records.put(extra->values[i]);
   }
-  return format_cloud(head, std::move(records).bytes());
+  return format_cloud(head, std::move(records).bytes(), encoding);
 }
 
 class DoalsBagWriter : public SequenceWriter {
@@ -155,9 +168,11 @@ class DoalsBagWriter : public SequenceWriter {
   void write(std::size_t scan_index, const Frame& frame) override {
     const std::int64_t stamp_ns = rows_.add(scan_index, frame);
     bag_.write("/tf", stamp_ns, kTfMessage,
-               format_tf_message({{stamp_ns, "map", kLidarFrame, frame.map_from_sensor}}));
+               format_tf_message({{stamp_ns, "map", kDoalsFrame, frame.map_from_sensor}}));
+    // The field of times that DOALS's driver has, too: a scan is taken at one instant.
+    const ExtraField times{"t", std::vector<std::uint32_t>(frame.points.size(), 0)};
     bag_.write("/os1_cloud_node/points", stamp_ns, kPointCloud2,
-               cloud_message(frame.points, stamp_ns));
+               cloud_message(frame.points, stamp_ns, kDoalsFrame, times, MessageEncoding::kRos1));
   }
 
   void finish() override {
@@ -171,10 +186,50 @@ class DoalsBagWriter : public SequenceWriter {
   DoalsRows rows_;
 };
 
+Ros2Storage storage_of(const WriteOptions& options) {
+  if (options.bag == BagKind::kMcap) return Ros2Storage::kMcap;
+  if (options.bag == BagKind::kDb3) return Ros2Storage::kSqlite;
+  throw UsageError("a recording is written as a ROS 2 bag, expected ros2-mcap or ros2-db3");
+}
+
+class Ros2SequenceWriter : public SequenceWriter {
+ public:
+  Ros2SequenceWriter(const fs::path& folder, const WriteOptions& options)
+      : bag_(Ros2BagWriter::open(storage_of(options), folder, options.compression)) {}
+
+  void write(std::size_t scan_index, const Frame& frame) override {
+    constexpr const char* kFrame = "lidar";
+    constexpr MessageEncoding kEncoding = MessageEncoding::kCdr;
+    const std::int64_t stamp_ns = stamp_of(scan_index, frame);
+    bag_->write("/tf", stamp_ns, kTfMessage,
+                format_tf_message({{stamp_ns, "map", kFrame, frame.map_from_sensor}}, kEncoding));
+    std::optional<ExtraField> labels;
+    if (frame.truth) labels = {"label", *frame.truth};
+    bag_->write("/points", stamp_ns, kPointCloud2,
+                cloud_message(frame.points, stamp_ns, kFrame, labels, kEncoding));
+  }
+
+  void finish() override { bag_->close(); }
+
+ private:
+  std::unique_ptr<Ros2BagWriter> bag_;
+};
+
 }  // namespace
 
+std::string_view to_string(BagKind kind) {
+  constexpr std::array<std::string_view, 4> kNames = {"none", "ros1", "mcap", "db3"};
+  return kNames[static_cast<std::size_t>(kind)];
+}
+
 const char* last_file_of(const WriteOptions& options) {
-  return options.as_bag ? "bag.bag" : "poses.txt";
+  if (options.bag == BagKind::kNone) return "poses.txt";
+  return options.bag == BagKind::kRos1 ? "bag.bag" : message_file_of(storage_of(options));
+}
+
+std::unique_ptr<SequenceWriter> write_as_ros2_bag(const fs::path& folder,
+                                                  const WriteOptions& options) {
+  return std::make_unique<Ros2SequenceWriter>(folder, options);
 }
 
 std::unique_ptr<SequenceWriter> write_as_kitti(const fs::path& folder,
@@ -184,7 +239,7 @@ std::unique_ptr<SequenceWriter> write_as_kitti(const fs::path& folder,
 
 std::unique_ptr<SequenceWriter> write_as_doals(const fs::path& folder,
                                                const WriteOptions& options) {
-  if (options.as_bag) return std::make_unique<DoalsBagWriter>(folder, options);
+  if (options.bag != BagKind::kNone) return std::make_unique<DoalsBagWriter>(folder, options);
   return std::make_unique<DoalsWriter>(folder, options.scans);
 }
 

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "datasets/sequence/sequence.hpp"
 
@@ -20,12 +22,18 @@ class SequenceWriter {
   virtual void finish() = 0;
 };
 
+/// The kinds of bags that are written.
+enum class BagKind : std::uint8_t { kNone, kRos1, kMcap, kDb3 };
+std::string_view to_string(BagKind kind);
+
 struct WriteOptions {
   std::size_t scans = 0;
   /// Tr of calib.txt in layouts that have it: the poses of the frames are those of the camera.
   Pose camera_from_lidar = Pose::Identity();
-  bool as_bag = false;              ///< of DOALS: a bag instead of files
-  std::string compression = "lz4";  ///< of the bag's chunks: none, lz4, bz2
+  /// Of DOALS a ROS 1 bag instead of files; of a recording one of ROS 2.
+  BagKind bag = BagKind::kNone;
+  /// Of the bag's chunks: none, lz4, of ROS 1 bz2 and of MCAP zstd; of kDb3's messages none, zstd.
+  std::string compression = "lz4";
 };
 
 /// Returns the name of the file that appears when all of a sequence is on the disk.
@@ -41,5 +49,12 @@ std::unique_ptr<SequenceWriter> write_as_kitti(const std::filesystem::path& fold
 /// get ones 0.1 s apart. Throws as BagWriter.
 std::unique_ptr<SequenceWriter> write_as_doals(const std::filesystem::path& folder,
                                                const WriteOptions& options);
+
+/// Writes a ROS 2 bag: metadata.yaml and bag_0.mcap or bag_0.db3 with the topics /points, whose
+/// points have x y z intensity, and a field label for frames with truth, and /tf from map to lidar.
+/// Frames without stamps get ones 0.1 s apart. Throws UsageError without `options.bag`, else as
+/// Ros2BagWriter.
+std::unique_ptr<SequenceWriter> write_as_ros2_bag(const std::filesystem::path& folder,
+                                                  const WriteOptions& options);
 
 }  // namespace mosbench

@@ -14,25 +14,23 @@ namespace {
 
 constexpr std::string_view kVersionLine = "#ROSBAG V2.0\n";
 constexpr std::uint32_t kMostHeaderBytes = 1U << 20U;
-constexpr std::uint32_t kMostChunkBytes = 1U << 29U;
 constexpr std::uint32_t kIndexEntryBytes = 12;
 constexpr const char* kBag = "a closed ROS bag of version 2.0";
 
 }  // namespace
 
-BagFile::BagFile(const std::filesystem::path& file)
-    : file_(file), file_bytes_(size_of(file)), in_(file, std::ios::binary) {
-  if (!in_) throw DataError(file, "cannot be opened", "a readable file");
-  if (bytes_at(0, std::min<std::uint64_t>(file_bytes_, kVersionLine.size())) != kVersionLine) {
+BagFile::BagFile(const std::filesystem::path& file) : BagReader(file), in_(file) {
+  const std::uint64_t file_bytes = in_.size_bytes();
+  if (in_.bytes_at(0, std::min<std::uint64_t>(file_bytes, kVersionLine.size())) != kVersionLine) {
     throw DataError(file, "does not start like a ROS bag",
                     "\"#ROSBAG V2.0\" (rosbag migrate "
                     "turns older ones into it)");
   }
   const std::string head =
-      bytes_at(kVersionLine.size(),
-               std::min<std::uint64_t>(file_bytes_ - kVersionLine.size(), kMostHeaderBytes));
-  ByteCursor cursor(head, file_, "the bag");
-  const BagRecord record = read_bag_record(cursor, file_);
+      in_.bytes_at(kVersionLine.size(),
+                   std::min<std::uint64_t>(file_bytes - kVersionLine.size(), kMostHeaderBytes));
+  ByteCursor cursor(head, path_, "the bag");
+  const BagRecord record = read_bag_record(cursor, path_);
   if (record.fields.op() != BagOp::kBagHeader) {
     throw DataError(file, "its first record is no bag header", kBag);
   }
@@ -49,51 +47,52 @@ BagFile::BagFile(const std::filesystem::path& file)
 }
 
 void BagFile::walk(std::uint64_t index_at_bytes) {
-  if (index_at_bytes > file_bytes_) {
+  const std::uint64_t file_bytes = in_.size_bytes();
+  if (index_at_bytes > file_bytes) {
     throw DataError(
-        file_,
-        fmt::format("is cut off: its index begins at byte {} of {}", index_at_bytes, file_bytes_),
+        path_,
+        fmt::format("is cut off: its index begins at byte {} of {}", index_at_bytes, file_bytes),
         kBag);
   }
   std::uint64_t at = kVersionLine.size();
-  while (at < file_bytes_) {
+  while (at < file_bytes) {
     const auto counted = [&](std::uint64_t from, const char* what) {
-      if (from + sizeof(std::uint32_t) <= file_bytes_) {
-        const std::string size = bytes_at(from, sizeof(std::uint32_t));
-        const auto count = ByteCursor(size, file_, what).take<std::uint32_t>();
-        if (from + sizeof(std::uint32_t) + count <= file_bytes_) return count;
+      if (from + sizeof(std::uint32_t) <= file_bytes) {
+        const std::string size = in_.bytes_at(from, sizeof(std::uint32_t));
+        const auto count = ByteCursor(size, path_, what).take<std::uint32_t>();
+        if (from + sizeof(std::uint32_t) + count <= file_bytes) return count;
       }
       throw DataError(
-          file_,
-          fmt::format("is cut off: {} at byte {} of {} is incomplete", what, from, file_bytes_),
+          path_,
+          fmt::format("is cut off: {} at byte {} of {} is incomplete", what, from, file_bytes),
           kBag);
     };
     const std::uint32_t header_bytes = counted(at, "the record header");
     if (header_bytes > kMostHeaderBytes) {
-      throw DataError(file_, fmt::format("has a record header of {} bytes", header_bytes), kBag);
+      throw DataError(path_, fmt::format("has a record header of {} bytes", header_bytes), kBag);
     }
-    const std::string header = bytes_at(at + sizeof(std::uint32_t), header_bytes);
+    const std::string header = in_.bytes_at(at + sizeof(std::uint32_t), header_bytes);
     at += sizeof(std::uint32_t) + header_bytes;
     const std::uint32_t content_bytes = counted(at, "the record");
     at += sizeof(std::uint32_t);
-    switch (BagFields(header, file_).op()) {
+    switch (BagFields(header, path_).op()) {
       case BagOp::kChunk:
         add_chunk(header, at, content_bytes);
         break;
       case BagOp::kIndex:
-        add_index(header, bytes_at(at, content_bytes));
+        add_index(header, in_.bytes_at(at, content_bytes));
         break;
       case BagOp::kConnection:
-        add_connection(header, bytes_at(at, content_bytes));
+        add_connection(header, in_.bytes_at(at, content_bytes));
         break;
       case BagOp::kChunkSummary:
-        add_chunk_summary(bytes_at(at, content_bytes));
+        add_chunk_summary(in_.bytes_at(at, content_bytes));
         break;
       case BagOp::kBagHeader:
         break;
       case BagOp::kMessage:
       default:
-        throw DataError(file_, fmt::format("has an unknown record before byte {}", at), kBag);
+        throw DataError(path_, fmt::format("has an unknown record before byte {}", at), kBag);
     }
     at += content_bytes;
   }
@@ -101,17 +100,17 @@ void BagFile::walk(std::uint64_t index_at_bytes) {
 
 void BagFile::add_chunk(std::string_view header, std::uint64_t content_at_bytes,
                         std::uint32_t content_bytes) {
-  const BagFields fields(header, file_);
-  Chunk chunk{content_at_bytes, content_bytes, fields.u32("size"),
-              std::string(fields.text("compression"))};
+  const BagFields fields(header, path_);
+  BagChunk chunk{content_at_bytes, content_bytes, fields.u32("size"),
+                 std::string(fields.text("compression"))};
   if (chunk.compression != "none" && chunk.compression != "bz2" && chunk.compression != "lz4") {
-    throw DataError(file_, "a chunk is compressed by \"" + chunk.compression + "\"",
+    throw DataError(path_, "a chunk is compressed by \"" + chunk.compression + "\"",
                     "none, bz2 or lz4");
   }
   if (chunk.size_bytes > kMostChunkBytes ||
       (chunk.compression == "none" && chunk.size_bytes != chunk.stored_bytes)) {
     throw DataError(
-        file_,
+        path_,
         fmt::format("a chunk of {} bytes claims to have {}", chunk.stored_bytes, chunk.size_bytes),
         fmt::format("its size, at most {}", kMostChunkBytes));
   }
@@ -119,19 +118,19 @@ void BagFile::add_chunk(std::string_view header, std::uint64_t content_at_bytes,
 }
 
 void BagFile::add_index(std::string_view header, std::string_view content) {
-  const BagFields fields(header, file_);
+  const BagFields fields(header, path_);
   const std::uint32_t count = fields.u32("count");
   if (chunks_.empty() || fields.u32("ver") != 1 ||
       content.size() != std::uint64_t{count} * kIndexEntryBytes) {
-    throw DataError(file_, "an index record does not fit its chunk", kBag);
+    throw DataError(path_, "an index record does not fit its chunk", kBag);
   }
-  ByteCursor cursor(content, file_, "an index record");
+  ByteCursor cursor(content, path_, "an index record");
   for (std::uint32_t i = 0; i < count; ++i) {
     const std::uint64_t seconds = cursor.take<std::uint32_t>();
     const std::uint64_t nanoseconds = cursor.take<std::uint32_t>();
     const auto offset_bytes = cursor.take<std::uint32_t>();
     if (offset_bytes >= chunks_.back().size_bytes) {
-      throw DataError(file_, "an index entry points beyond its chunk", kBag);
+      throw DataError(path_, "an index entry points beyond its chunk", kBag);
     }
     messages_.push_back({fields.u32("conn"),
                          static_cast<std::int64_t>(seconds * 1'000'000'000U + nanoseconds),
@@ -141,7 +140,7 @@ void BagFile::add_index(std::string_view header, std::string_view content) {
 
 void BagFile::add_chunk_summary(std::string_view content) {
   constexpr std::size_t kEntryBytes = 8;
-  ByteCursor cursor(content, file_, "a chunk summary");
+  ByteCursor cursor(content, path_, "a chunk summary");
   while (cursor.rest().size() >= kEntryBytes) {
     cursor.take<std::uint32_t>();  // connection
     summarised_messages_ += cursor.take<std::uint32_t>();
@@ -149,102 +148,65 @@ void BagFile::add_chunk_summary(std::string_view content) {
 }
 
 void BagFile::add_connection(std::string_view header, std::string_view content) {
-  const BagFields fields(header, file_);
-  const BagFields description(content, file_);
+  const BagFields fields(header, path_);
+  const BagFields description(content, path_);
   connections_.push_back({fields.u32("conn"), std::string(fields.text("topic")),
                           std::string(description.text("type"))});
 }
 
 void BagFile::check_counts(std::uint32_t connections, std::uint32_t chunks) const {
   if (chunks_.size() != chunks) {
-    throw DataError(file_, fmt::format("has {} chunks", chunks_.size()),
+    throw DataError(path_, fmt::format("has {} chunks", chunks_.size()),
                     fmt::format("{} by its header", chunks));
   }
   if (connections_.size() != connections) {
-    throw DataError(file_, fmt::format("has {} connections", connections_.size()),
+    throw DataError(path_, fmt::format("has {} connections", connections_.size()),
                     fmt::format("{} by its header", connections));
   }
   if (messages_.size() != summarised_messages_) {
-    throw DataError(file_, fmt::format("its index lists {} messages", messages_.size()),
+    throw DataError(path_, fmt::format("its index lists {} messages", messages_.size()),
                     fmt::format("{} by its summary", summarised_messages_));
   }
   for (const BagMessage& message : messages_) {
-    if (std::ranges::find(connections_, message.connection, &BagConnection::id) ==
-        connections_.end()) {
+    if (find_connection(message.connection) == nullptr) {
       throw DataError(
-          file_, fmt::format("connection {} of a message is missing", message.connection), kBag);
+          path_, fmt::format("connection {} of a message is missing", message.connection), kBag);
     }
   }
 }
 
-std::vector<BagConnection> BagFile::connections_of_type(std::string_view type) const {
-  std::vector<BagConnection> found;
-  for (const BagConnection& connection : connections_) {
-    if (connection.type == type) found.push_back(connection);
-  }
-  return found;
-}
-
 std::vector<BagMessage> BagFile::messages(std::string_view topic) const {
-  std::vector<BagMessage> found;
-  for (const BagMessage& message : messages_) {
-    const auto connection = std::ranges::find(connections_, message.connection, &BagConnection::id);
-    if (connection->topic == topic) found.push_back(message);
-  }
-  std::ranges::stable_sort(found, {}, &BagMessage::recorded_ns);
-  return found;
-}
-
-std::string BagFile::bytes_at(std::uint64_t offset_bytes, std::uint64_t count) const {
-  std::string bytes(count, '\0');
-  in_.clear();
-  in_.seekg(static_cast<std::streamoff>(offset_bytes));
-  in_.read(bytes.data(), static_cast<std::streamsize>(count));
-  if (!in_ || static_cast<std::uint64_t>(in_.gcount()) != count) {
-    throw DataError(file_, fmt::format("cannot be read at byte {}", offset_bytes),
-                    "a readable file that does not change");
-  }
-  return bytes;
-}
-
-std::shared_ptr<const std::string> BagFile::chunk_content(std::size_t chunk) const {
-  if (unpacked_.second && unpacked_.first == chunk) return unpacked_.second;
-  const Chunk& stored = chunks_[chunk];
-  unpacked_ = {chunk, std::make_shared<const std::string>(decompress_chunk(
-                          stored.compression, bytes_at(stored.offset_bytes, stored.stored_bytes),
-                          stored.size_bytes, file_))};
-  return unpacked_.second;
+  return of_topic(messages_, topic);
 }
 
 std::string BagFile::read(const BagMessage& message, std::size_t most_bytes) const {
   constexpr std::size_t kRecordStartBytes = 256;
-  const Chunk& chunk = chunks_.at(message.chunk);
+  const BagChunk& chunk = chunks_.at(message.chunk);
   const std::size_t left_bytes = chunk.size_bytes - message.offset_bytes;
   const std::uint64_t at_bytes = chunk.offset_bytes + message.offset_bytes;
-  const std::lock_guard lock(mutex_);
-  const bool packed = chunk.compression != "none";
+  const bool packed = chunk.is_packed();
   std::shared_ptr<const std::string> content;
   std::string start;
   if (packed) {
-    content = chunk_content(message.chunk);
+    content = in_.content_of(chunk);
   } else {
-    start = bytes_at(at_bytes, std::min(left_bytes, kRecordStartBytes));
+    start = in_.bytes_at(at_bytes, std::min<std::uint64_t>(left_bytes, kRecordStartBytes));
   }
-  ByteCursor cursor(packed ? std::string_view(*content).substr(message.offset_bytes) : start, file_,
+  ByteCursor cursor(packed ? std::string_view(*content).substr(message.offset_bytes) : start, path_,
                     "a message");
   const std::string_view header = cursor.take_counted();
-  const BagFields fields(header, file_);
+  const BagFields fields(header, path_);
   if (fields.op() != BagOp::kMessage || fields.u32("conn") != message.connection) {
-    throw DataError(file_, "an index entry leads to no message of its connection", kBag);
+    throw DataError(path_, "an index entry leads to no message of its connection", kBag);
   }
   const auto count = cursor.take<std::uint32_t>();
   const std::size_t wanted_bytes = std::min<std::size_t>(count, most_bytes);
   if (packed) return std::string(cursor.take_bytes(wanted_bytes));
   const std::size_t before_bytes = header.size() + 2 * sizeof(std::uint32_t);
   if (wanted_bytes > left_bytes - before_bytes) {
-    throw DataError(file_, "a message does not end within its chunk", kBag);
+    throw DataError(path_, "a message does not end within its chunk", kBag);
   }
-  return bytes_at(at_bytes + before_bytes, wanted_bytes);
+  return in_.bytes_at(at_bytes + before_bytes, wanted_bytes);
 }
 
 }  // namespace mosbench

@@ -8,7 +8,7 @@
 #include "datasets/files/errors.hpp"
 #include "datasets/files/folder_listing.hpp"
 #include "datasets/rosbag/bag_topics.hpp"
-#include "datasets/rosbag/point_cloud2.hpp"
+#include "datasets/rosbag/open_bag.hpp"
 #include "datasets/sequence/pose_source.hpp"
 #include "datasets/sequence/pose_track.hpp"
 
@@ -37,7 +37,7 @@ std::optional<std::filesystem::path> bag_of(const std::filesystem::path& folder)
 
 BagSequence::BagSequence(std::string name, const std::filesystem::path& bag,
                          const ReadingOptions& options)
-    : bag_(bag),
+    : bag_(open_bag(bag)),
       undistorts_(options.undistorts()),
       keeps_times_(options.poses_by_odometry || options.deskew == Deskew::kVelocity),
       by_azimuth_(options.point_times == PointTimes::kAzimuth) {
@@ -46,14 +46,25 @@ BagSequence::BagSequence(std::string name, const std::filesystem::path& bag,
   }
   Recording& recording = mutable_recording();
   recording.name = SequenceName(std::move(name), bag.parent_path());
-  recording.files = {bag};
-  const std::string topic = cloud_topic(bag_, options.topic);
+  recording.files = bag_->files();
+  recording.remarks = bag_->remarks();
+  const std::string topic = cloud_topic(*bag_, options.topic);
   list_scans(topic);
   recording.reading.emplace_back("scan_files",
                                  fmt::format("{}, topic {}", bag.filename().string(), topic));
   options.poses || options.poses_by_odometry ? open_pose_file(options) : open_transforms(options);
   state_undistortion();
   enter_scans();
+}
+
+CloudHead BagSequence::head_of(const BagMessage& message) const {
+  const MessageFormat format = bag_->format_of(message);
+  return parse_cloud_head(bag_->read(message, kHeadBytes), bag_->path(), format);
+}
+
+TimedCloud BagSequence::cloud_of(const Scan& scan) const {
+  const MessageFormat format = bag_->format_of(scan.message);
+  return parse_cloud(bag_->read(scan.message), bag_->path(), format);
 }
 
 ScanEntry BagSequence::entry_of(const Scan& scan) {
@@ -68,21 +79,23 @@ void BagSequence::enter_scans() {
   for (const Scan& scan : scans_) {
     ScanEntry& entry = mutable_recording().scans.emplace_back(entry_of(scan));
     entry.map_from_sensor = *pose_at_(scan.stamp_ns);
+    entry.has_truth = scan.labelled;
   }
 }
 
 void BagSequence::list_scans(const std::string& topic) {
-  for (const BagMessage& message : bag_.messages(topic)) {
-    const CloudHead head = parse_cloud_head(bag_.read(message, kHeadBytes), bag_.path());
+  for (const BagMessage& message : bag_->messages(topic)) {
+    const CloudHead head = head_of(message);
     scans_.push_back({message, scans_.size(), head.stamp_ns, head.points(),
-                      has_times(head) && !by_azimuth_, head.frame});
+                      has_times(head) && !by_azimuth_, find_field(head, "label") != nullptr,
+                      head.frame});
   }
   if (scans_.empty()) {
-    throw DataError(bag_.path(), "topic " + topic + " holds no message", "one per scan");
+    throw DataError(bag_->path(), "topic " + topic + " holds no message", "one per scan");
   }
   for (const Scan& scan : scans_) {
     if (scan.frame == scans_.front().frame) continue;
-    throw DataError(bag_.path(),
+    throw DataError(bag_->path(),
                     fmt::format("topic {} has scans in the frames {} and {}", topic,
                                 scans_.front().frame, scan.frame),
                     "one sensor");
@@ -92,7 +105,7 @@ void BagSequence::list_scans(const std::string& topic) {
 void BagSequence::open_pose_file(const ReadingOptions& options) {
   std::vector<std::int64_t> stamps_ns;
   for (const Scan& scan : scans_) stamps_ns.push_back(scan.stamp_ns);
-  const SensorPoses poses = read_sensor_poses(bag_.path().parent_path(), "poses.txt", options,
+  const SensorPoses poses = read_sensor_poses(bag_->path().parent_path(), "poses.txt", options,
                                               {scans_.size(), stamps_ns});
   std::vector<Scan> scans = std::exchange(scans_, {});
   std::vector<std::pair<std::int64_t, Pose>> stamped;
@@ -115,9 +128,10 @@ void BagSequence::open_pose_file(const ReadingOptions& options) {
 }
 
 void BagSequence::open_transforms(const ReadingOptions& options) {
-  BagTransforms transforms = bag_transforms(bag_, options.map_frame, scans_.front().frame);
+  BagTransforms transforms = bag_transforms(*bag_, options.map_frame, scans_.front().frame);
   mutable_recording().reading.emplace_back("poses", transforms.source);
-  state_pose_origin(bag_.path(), mutable_recording().reading, mutable_recording().remarks);
+  state_pose_origin(bag_->files().front(), mutable_recording().reading,
+                    mutable_recording().remarks);
   mutable_recording().remarks.push_back("poses from the bag: " + transforms.source);
   pose_at_ = [chain = std::move(transforms.map_from_sensor)](std::int64_t stamp_ns) {
     return chain.at(stamp_ns);
@@ -128,7 +142,7 @@ void BagSequence::open_transforms(const ReadingOptions& options) {
 bool BagSequence::covered(const Scan& scan) const {
   if (!pose_at_(scan.stamp_ns)) return false;
   if (!undistorts_ || !scan.timed || pose_at_(scan.stamp_ns + kLongestScanNs)) return true;
-  const TimedCloud cloud = parse_cloud(bag_.read(scan.message), bag_.path());
+  const TimedCloud cloud = cloud_of(scan);
   return cloud.times_ns.empty() || (pose_at_(cloud.stamp_ns + std::ranges::max(cloud.times_ns)) &&
                                     pose_at_(cloud.stamp_ns + std::ranges::min(cloud.times_ns)));
 }
@@ -137,7 +151,7 @@ void BagSequence::leave_out_uncovered() {
   const std::size_t all = scans_.size();
   std::erase_if(scans_, [this](const Scan& scan) { return !covered(scan); });
   if (scans_.empty()) {
-    throw DataError(bag_.path(), fmt::format("no transform covers any of its {} scans", all),
+    throw DataError(bag_->path(), fmt::format("no transform covers any of its {} scans", all),
                     "poses while the scans are taken, or --poses FILE");
   }
   if (scans_.size() == all) return;
@@ -159,11 +173,11 @@ void BagSequence::state_undistortion() {
 
 void BagSequence::read(std::size_t scan_index, Frame& frame) const {
   const Scan& scan = scans_.at(scan_index);
-  TimedCloud cloud = parse_cloud(bag_.read(scan.message), bag_.path());
+  TimedCloud cloud = cloud_of(scan);
   if (by_azimuth_) cloud.times_ns.clear();
   for (const std::int64_t time_ns : cloud.times_ns) {
     if (time_ns < -kLongestScanNs || time_ns > kLongestScanNs) {
-      throw DataError(bag_.path(), scan.number,
+      throw DataError(bag_->path(), scan.number,
                       fmt::format("a point was measured {} ns after the scan's stamp", time_ns),
                       "times within a second of it");
     }
@@ -174,18 +188,19 @@ void BagSequence::read(std::size_t scan_index, Frame& frame) const {
   const auto pose = pose_at_(at_ns);
   if (!pose ||
       (moves && !undistort(cloud.points, cloud.times_ns, cloud.stamp_ns, at_ns, pose_at_))) {
-    throw DataError(bag_.path(), scan.number, "no pose covers the scan",
+    throw DataError(bag_->path(), scan.number, "no pose covers the scan",
                     "poses while it was taken");
   }
   describe(scan_index, frame);
   frame.points = std::move(cloud.points);
   frame.map_from_sensor = *pose;
   if (undistorts_ && keeps_times_) frame.point_times_ns = std::move(cloud.times_ns);
-  frame.truth.reset();
+  frame.truth = std::move(cloud.labels);
 }
 
 std::vector<std::uint32_t> BagSequence::read_truth(std::size_t scan_index) const {
-  refuse_truth(scan_index);
+  if (!has_truth(scan_index)) refuse_truth(scan_index);
+  return cloud_of(scans_.at(scan_index)).labels.value();
 }
 
 }  // namespace mosbench

@@ -2,11 +2,13 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "datasets/rosbag/bag_file.hpp"
+#include "datasets/rosbag/bag_reader.hpp"
+#include "datasets/rosbag/point_cloud2.hpp"
 #include "datasets/sequence/sequence.hpp"
 #include "datasets/sequence/undistort.hpp"
 
@@ -15,14 +17,14 @@ namespace mosbench {
 /// Returns the one .bag in a folder; nothing without any. Throws DataError for several.
 std::optional<std::filesystem::path> bag_of(const std::filesystem::path& folder);
 
-/// The scans of one topic of a ROS 1 bag. Poses are those of its tf tree (/tf, /tf_static), else of
-/// its TransformStamped topics, unless `options.poses` names a file. Scans whose points have times
-/// are undistorted; their frames then have the pose at the first point's time. Scans that no
-/// transform covers are left out and counted in the remarks. It has no truth of its own.
+/// The scans of one topic of a bag (`open_bag`). Poses are those of its tf tree (/tf, /tf_static),
+/// else of `bag_transforms`, unless `options.poses` names a file. Scans whose points have times are
+/// undistorted; their frames then have the pose at the first point's time. Scans that no transform
+/// covers are left out and counted in the remarks. Truth is the field "label" of the points.
 class BagSequence : public Sequence {
  public:
-  /// Throws DataError for a file that is no bag, has no such topic, no scan in it, or no transforms
-  /// from the scans' frame to the map's.
+  /// `bag` is a file or the folder of a ROS 2 bag. Throws DataError for what is no bag, has no such
+  /// topic, no scan in it, or no transforms from the scans' frame to the map's.
   BagSequence(std::string name, const std::filesystem::path& bag, const ReadingOptions& options);
 
   using Sequence::read;
@@ -36,6 +38,7 @@ class BagSequence : public Sequence {
     std::int64_t stamp_ns = 0;
     std::size_t points = 0;
     bool timed = false;
+    bool labelled = false;
     std::string frame;
   };
 
@@ -48,7 +51,10 @@ class BagSequence : public Sequence {
   static ScanEntry entry_of(const Scan& scan);
   void enter_scans();
 
-  BagFile bag_;
+  CloudHead head_of(const BagMessage& message) const;
+  TimedCloud cloud_of(const Scan& scan) const;
+
+  std::unique_ptr<const BagReader> bag_;
   std::vector<Scan> scans_;
   PoseAt pose_at_;
   /// With a pose file the last scan is not undistorted: no pose follows its own.

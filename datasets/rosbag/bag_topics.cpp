@@ -13,7 +13,7 @@ namespace {
 constexpr std::string_view kDoalsTopic = "/os1_cloud_node/points";
 constexpr std::string_view kTfStatic = "/tf_static";
 
-std::set<std::string> topics_of_type(const BagFile& bag, std::string_view type) {
+std::set<std::string> topics_of_type(const BagReader& bag, std::string_view type) {
   std::set<std::string> topics;
   for (const BagConnection& connection : bag.connections_of_type(type)) {
     topics.insert(connection.topic);
@@ -27,7 +27,7 @@ std::string listed(const std::set<std::string>& names) {
   return text;
 }
 
-std::string all_topics(const BagFile& bag) {
+std::string all_topics(const BagReader& bag) {
   std::set<std::string> topics;
   for (const BagConnection& connection : bag.connections()) {
     topics.insert(connection.topic + " (" + connection.type + ")");
@@ -41,29 +41,57 @@ struct Transforms {
   std::set<std::string> topics;
 };
 
-Transforms tf_transforms(const BagFile& bag) {
+/// Appends what a topic says.
+void add_transforms(const BagReader& bag, const std::string& topic,
+                    std::vector<StampedTransform>& transforms) {
+  for (const BagMessage& message : bag.messages(topic)) {
+    for (StampedTransform& transform :
+         parse_transforms(bag.read(message), bag.format_of(message), bag.path())) {
+      transforms.push_back(std::move(transform));
+    }
+  }
+}
+
+Transforms tf_transforms(const BagReader& bag) {
   Transforms found;
   for (const std::string_view type : {kTfMessage, kOldTfMessage}) {
     for (const std::string& topic : topics_of_type(bag, type)) {
-      auto& target = topic.ends_with(kTfStatic) ? found.always : found.changing;
-      for (const BagMessage& message : bag.messages(topic)) {
-        for (StampedTransform& transform : parse_tf_message(bag.read(message), bag.path())) {
-          target.push_back(std::move(transform));
-        }
-      }
+      add_transforms(bag, topic, topic.ends_with(kTfStatic) ? found.always : found.changing);
       found.topics.insert(topic);
     }
   }
   return found;
 }
 
-Transforms stamped_transforms(const BagFile& bag) {
+Transforms stamped_transforms(const BagReader& bag) {
   Transforms found;
   for (const std::string& topic : topics_of_type(bag, kTransformStamped)) {
-    for (const BagMessage& message : bag.messages(topic)) {
-      found.changing.push_back(parse_transform(bag.read(message), bag.path()));
-    }
+    add_transforms(bag, topic, found.changing);
     found.topics.insert(topic);
+  }
+  return found;
+}
+
+/// The poses of one topic of Odometry, PoseStamped or Path. A Path repeats what the one before had:
+/// the last is whole. Poses without child are the sensor's.
+Transforms pose_topic(const BagReader& bag, std::string_view type, const std::string& topic,
+                      const std::vector<StampedTransform>& always,
+                      const std::string& sensor_frame) {
+  Transforms found{{}, always, {topic}};
+  if (type == kPath) {
+    const std::vector<BagMessage> messages = bag.messages(topic);
+    if (messages.empty()) return found;
+    found.changing =
+        parse_transforms(bag.read(messages.back()), bag.format_of(messages.back()), bag.path());
+  } else {
+    add_transforms(bag, topic, found.changing);
+  }
+  for (StampedTransform& transform : found.changing) {
+    if (transform.child.empty()) transform.child = sensor_frame;
+  }
+  // A sensor has one parent: what is fixed above it is not the way to these poses.
+  if (type != kOdometry) {
+    std::erase_if(found.always, [&](const auto& fixed) { return fixed.child == sensor_frame; });
   }
   return found;
 }
@@ -79,24 +107,54 @@ std::string frames_of(const Transforms& transforms) {
   return frames.empty() ? "no frame" : listed(frames);
 }
 
-std::optional<BagTransforms> find_chain(const Transforms& transforms, const BagFile& bag,
+std::optional<BagTransforms> find_chain(const Transforms& transforms, const BagReader& bag,
                                         const std::optional<std::string>& map_frame,
                                         const std::string& sensor_frame) {
   const TransformTree tree(transforms.changing, transforms.always, bag.path());
   const auto frames = tree.ancestors(sensor_frame);
-  const bool has_map = std::ranges::find(frames, "map") != frames.end();
-  const std::string map = map_frame.value_or(has_map ? "map" : frames.back());
+  const auto named_map = std::ranges::find(frames, "map");
+  const std::string map = map_frame.value_or(named_map != frames.end() ? "map" : frames.back());
   if (map == sensor_frame) return std::nullopt;
+  const auto moves = [&](const StampedTransform& transform) {
+    return std::ranges::find(frames, transform.child) < std::ranges::find(frames, map);
+  };
+  // How the sensor is mounted is no pose of it.
+  if (!map_frame && std::ranges::none_of(transforms.changing, moves)) return std::nullopt;
   auto chain = tree.chain(map, sensor_frame);
   if (!chain) return std::nullopt;
   return BagTransforms{std::move(*chain),
                        listed(transforms.topics) + ", " + map + " from " + sensor_frame};
 }
 
+/// Finds the one topic of a type whose poses lead to the sensor.
+std::optional<BagTransforms> find_poses(std::string_view type,
+                                        const std::vector<StampedTransform>& always,
+                                        const BagReader& bag,
+                                        const std::optional<std::string>& map_frame,
+                                        const std::string& sensor_frame) {
+  std::optional<BagTransforms> found;
+  std::set<std::string> fitting;
+  for (const std::string& topic : topics_of_type(bag, type)) {
+    const Transforms poses = pose_topic(bag, type, topic, always, sensor_frame);
+    auto chain = find_chain(poses, bag, map_frame, sensor_frame);
+    if (!chain) continue;
+    fitting.insert(topic);
+    found = std::move(chain);
+  }
+  if (fitting.size() > 1) {
+    throw DataError(bag.path(), "has poses in the topics " + listed(fitting),
+                    "one of them, or --poses FILE");
+  }
+  return found;
+}
+
 }  // namespace
 
-std::string cloud_topic(const BagFile& bag, const std::optional<std::string>& asked) {
-  const auto topics = topics_of_type(bag, kPointCloud2);
+std::string cloud_topic(const BagReader& bag, const std::optional<std::string>& asked) {
+  std::set<std::string> topics;
+  for (const std::string_view type : {kPointCloud2, kLivoxCustomMsg, kOldLivoxCustomMsg}) {
+    topics.merge(topics_of_type(bag, type));
+  }
   if (asked && topics.contains(*asked)) return *asked;
   if (asked) {
     throw DataError(bag.path(), "has no PointCloud2 topic " + *asked,
@@ -112,12 +170,15 @@ std::string cloud_topic(const BagFile& bag, const std::optional<std::string>& as
                   "one of them in --topic");
 }
 
-BagTransforms bag_transforms(const BagFile& bag, const std::optional<std::string>& map_frame,
+BagTransforms bag_transforms(const BagReader& bag, const std::optional<std::string>& map_frame,
                              const std::string& sensor_frame) {
   const Transforms tf = tf_transforms(bag);
   if (auto found = find_chain(tf, bag, map_frame, sensor_frame)) return *found;
   const Transforms stamped = stamped_transforms(bag);
   if (auto found = find_chain(stamped, bag, map_frame, sensor_frame)) return *found;
+  for (const std::string_view type : {kOdometry, kPoseStamped, kPath}) {
+    if (auto found = find_poses(type, tf.always, bag, map_frame, sensor_frame)) return *found;
+  }
   throw DataError(
       bag.path(),
       "no transforms lead from " + map_frame.value_or("a map") + " to " + sensor_frame +

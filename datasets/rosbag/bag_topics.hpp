@@ -3,14 +3,14 @@
 #include <optional>
 #include <string>
 
-#include "datasets/rosbag/bag_file.hpp"
+#include "datasets/rosbag/bag_reader.hpp"
 #include "datasets/rosbag/transform_tree.hpp"
 
 namespace mosbench {
 
-/// Returns the PointCloud2 topic that was asked for, else that of DOALS, else the only one. Throws
-/// DataError that lists the topics of the bag.
-std::string cloud_topic(const BagFile& bag, const std::optional<std::string>& asked);
+/// Returns the topic of PointCloud2, or of CustomMsg of Livox, that was asked for, else that of
+/// DOALS, else the only one. Throws DataError that lists the topics of the bag.
+std::string cloud_topic(const BagReader& bag, const std::optional<std::string>& asked);
 
 struct BagTransforms {
   TransformTree::Chain map_from_sensor;
@@ -19,8 +19,10 @@ struct BagTransforms {
 
 /// Returns the transforms from the sensor's frame to `map_frame`; when that is not given, to "map"
 /// if it is among the ancestors, else to the root. Searches /tf with /tf_static first, then topics
-/// of TransformStamped. Throws DataError that lists the frames of the bag.
-BagTransforms bag_transforms(const BagFile& bag, const std::optional<std::string>& map_frame,
+/// of TransformStamped, then each topic of Odometry with /tf_static, of PoseStamped and of Path,
+/// whose poses are taken as the sensor's. Throws DataError that lists the frames of the bag, and
+/// for poses of the same type in several topics.
+BagTransforms bag_transforms(const BagReader& bag, const std::optional<std::string>& map_frame,
                              const std::string& sensor_frame);
 
 }  // namespace mosbench

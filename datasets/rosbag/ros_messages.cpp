@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 
-#include "datasets/files/byte_cursor.hpp"
 #include "datasets/files/quaternion.hpp"
+#include "datasets/rosbag/message_cursor.hpp"
 
 namespace mosbench {
 namespace {
 
-constexpr std::uint64_t kNsPerSecond = 1'000'000'000;
+constexpr std::int64_t kNsPerSecond = 1'000'000'000;
 constexpr std::uint64_t kMostPoints = 1ULL << 31U;
 
 struct Header {
@@ -21,46 +21,54 @@ std::string without_slash(std::string_view frame) {
   return std::string(frame);
 }
 
-Header take_header(ByteCursor& cursor) {
-  cursor.take<std::uint32_t>();  // seq
-  const std::uint64_t seconds = cursor.take<std::uint32_t>();
-  const std::uint64_t nanoseconds = cursor.take<std::uint32_t>();
-  return {static_cast<std::int64_t>(seconds * kNsPerSecond + nanoseconds),
-          without_slash(cursor.take_counted())};
+/// Seconds count from 0 to 2^32 in ROS 1, and have a sign in ROS 2.
+std::int64_t take_stamp_ns(MessageCursor& cursor) {
+  const auto bits = cursor.take<std::uint32_t>();
+  const std::int64_t seconds =
+      cursor.is_cdr() ? std::int64_t{static_cast<std::int32_t>(bits)} : std::int64_t{bits};
+  return seconds * kNsPerSecond + cursor.take<std::uint32_t>();
 }
 
-void put_header(ByteSink& sink, std::int64_t stamp_ns, const std::string& frame) {
+Header take_header(MessageCursor& cursor) {
+  if (!cursor.is_cdr()) cursor.take<std::uint32_t>();  // seq
+  const std::int64_t stamp_ns = take_stamp_ns(cursor);
+  return {stamp_ns, without_slash(cursor.take_text())};
+}
+
+void put_header(MessageSink& sink, std::int64_t stamp_ns, const std::string& frame) {
   const auto stamp = static_cast<std::uint64_t>(stamp_ns);
-  sink.put(std::uint32_t{0});
+  if (!sink.is_cdr()) sink.put(std::uint32_t{0});
   sink.put(static_cast<std::uint32_t>(stamp / kNsPerSecond));
   sink.put(static_cast<std::uint32_t>(stamp % kNsPerSecond));
-  sink.put_counted(frame);
+  sink.put_text(frame);
 }
 
-StampedTransform take_transform(ByteCursor& cursor, const std::filesystem::path& file) {
-  StampedTransform transform;
-  const Header header = take_header(cursor);
-  transform.stamp_ns = header.stamp_ns;
-  transform.parent = header.frame;
-  transform.child = without_slash(cursor.take_counted());
+/// Reads a position and a quaternion.
+Pose take_pose(MessageCursor& cursor, const StampedTransform& of,
+               const std::filesystem::path& file) {
   Eigen::Vector3d translation_m;
   for (int axis = 0; axis < 3; ++axis) translation_m[axis] = cursor.take<double>();
   Eigen::Vector4d xyzw;
   for (int i = 0; i < 4; ++i) xyzw[i] = cursor.take<double>();
-  const auto pose = pose_of(translation_m, xyzw);
-  if (!pose) {
-    throw DataError(file,
-                    "the transform from " + transform.child + " to " + transform.parent +
-                        " is not finite or its quaternion not of length 1",
-                    "a rigid motion");
-  }
-  transform.parent_from_child = *pose;
+  if (const auto pose = pose_of(translation_m, xyzw)) return *pose;
+  throw DataError(file,
+                  "the transform from " + of.child + " to " + of.parent +
+                      " is not finite or its quaternion not of length 1",
+                  "a rigid motion");
+}
+
+StampedTransform take_transform(MessageCursor& cursor, bool names_child,
+                                const std::filesystem::path& file) {
+  const Header header = take_header(cursor);
+  StampedTransform transform{header.stamp_ns, header.frame, "", Pose::Identity()};
+  if (names_child) transform.child = without_slash(cursor.take_text());
+  transform.parent_from_child = take_pose(cursor, transform, file);
   return transform;
 }
 
-void put_transform(ByteSink& sink, const StampedTransform& transform) {
+void put_transform(MessageSink& sink, const StampedTransform& transform) {
   put_header(sink, transform.stamp_ns, transform.parent);
-  sink.put_counted(transform.child);
+  sink.put_text(transform.child);
   for (int axis = 0; axis < 3; ++axis) {
     sink.put(transform.parent_from_child.translation()[axis]);
   }
@@ -68,32 +76,88 @@ void put_transform(ByteSink& sink, const StampedTransform& transform) {
   for (const double value : {q.x(), q.y(), q.z(), q.w()}) sink.put(value);
 }
 
-}  // namespace
-
-StampedTransform parse_transform(std::string_view bytes, const std::filesystem::path& file) {
-  ByteCursor cursor(bytes, file, "a TransformStamped");
-  return take_transform(cursor, file);
+void check_size(const CloudHead& head, const std::filesystem::path& file) {
+  const bool fits = head.points() <= kMostPoints &&
+                    std::uint64_t{head.width} * head.point_step_bytes <= head.row_step_bytes &&
+                    std::uint64_t{head.row_step_bytes} * head.height == head.records_bytes;
+  if (fits || head.points() == 0) return;
+  throw DataError(file,
+                  fmt::format("a PointCloud2 of {} x {} points of {} bytes, {} bytes a row, has "
+                              "{} bytes",
+                              head.width, head.height, head.point_step_bytes, head.row_step_bytes,
+                              head.records_bytes),
+                  "height rows of at least width points");
 }
 
-std::vector<StampedTransform> parse_tf_message(std::string_view bytes,
+/// The points of a CustomMsg are records of 19 bytes, which CDR begins at multiples of 4.
+CloudHead parse_livox_head(MessageCursor& cursor) {
+  constexpr std::uint8_t kUint8 = 2, kUint32 = 6, kFloat32 = 7;
+  constexpr std::uint32_t kPointBytes = 19;
+  CloudHead head;
+  const Header header = take_header(cursor);
+  head.stamp_ns = header.stamp_ns;
+  head.frame = header.frame;
+  cursor.take<std::uint64_t>();                             // timebase
+  cursor.take<std::uint32_t>();                             // point_num
+  for (int i = 0; i < 4; ++i) cursor.take<std::uint8_t>();  // lidar_id, rsvd
+  head.height = 1;
+  head.width = cursor.take<std::uint32_t>();
+  head.fields = {{"offset_time", 0, kUint32, 1},
+                 {"x", 4, kFloat32, 1},
+                 {"y", 8, kFloat32, 1},
+                 {"z", 12, kFloat32, 1},
+                 {"intensity", 16, kUint8, 1}};
+  head.big_endian = cursor.is_big_endian();
+  head.point_step_bytes = cursor.is_cdr() ? kPointBytes + 1 : kPointBytes;
+  const std::uint64_t all_bytes = std::uint64_t{head.width} * head.point_step_bytes;
+  // No padding follows the last point; more than fits is refused as points that are missing.
+  const std::uint64_t records_bytes = all_bytes - (cursor.is_cdr() && all_bytes > 0 ? 1 : 0);
+  head.records_bytes =
+      static_cast<std::uint32_t>(std::min<std::uint64_t>(records_bytes, UINT32_MAX));
+  head.row_step_bytes = head.records_bytes;
+  head.records_at_bytes = cursor.position_bytes();
+  return head;
+}
+
+}  // namespace
+
+std::vector<StampedTransform> parse_transforms(std::string_view bytes, const MessageFormat& format,
                                                const std::filesystem::path& file) {
-  ByteCursor cursor(bytes, file, "a TFMessage");
+  const auto name = std::string(format.type.substr(format.type.find('/') + 1));
+  MessageCursor cursor(bytes, format.encoding, file, "a " + name);
+  if (format.type == kTransformStamped || format.type == kOdometry) {
+    return {take_transform(cursor, true, file)};
+  }
+  if (format.type == kPoseStamped) return {take_transform(cursor, false, file)};
+  const bool is_path = format.type == kPath;
+  if (is_path) take_header(cursor);
   std::vector<StampedTransform> transforms;
   for (auto left = cursor.take<std::uint32_t>(); left > 0; --left) {
-    transforms.push_back(take_transform(cursor, file));
+    transforms.push_back(take_transform(cursor, !is_path, file));
   }
   return transforms;
 }
 
-std::string format_tf_message(const std::vector<StampedTransform>& transforms) {
-  ByteSink sink;
+std::vector<StampedTransform> parse_tf_message(std::string_view bytes,
+                                               const std::filesystem::path& file) {
+  return parse_transforms(bytes, {kTfMessage, MessageEncoding::kRos1}, file);
+}
+
+std::string format_tf_message(const std::vector<StampedTransform>& transforms,
+                              MessageEncoding encoding) {
+  MessageSink sink(encoding);
   sink.put(static_cast<std::uint32_t>(transforms.size()));
   for (const StampedTransform& transform : transforms) put_transform(sink, transform);
   return std::move(sink).bytes();
 }
 
-CloudHead parse_cloud_head(std::string_view bytes, const std::filesystem::path& file) {
-  ByteCursor cursor(bytes, file, "a PointCloud2");
+CloudHead parse_cloud_head(std::string_view bytes, const std::filesystem::path& file,
+                           const MessageFormat& format) {
+  if (format.type == kLivoxCustomMsg || format.type == kOldLivoxCustomMsg) {
+    MessageCursor points(bytes, format.encoding, file, "a CustomMsg");
+    return parse_livox_head(points);
+  }
+  MessageCursor cursor(bytes, format.encoding, file, "a PointCloud2");
   CloudHead head;
   const Header header = take_header(cursor);
   head.stamp_ns = header.stamp_ns;
@@ -102,7 +166,7 @@ CloudHead parse_cloud_head(std::string_view bytes, const std::filesystem::path& 
   head.width = cursor.take<std::uint32_t>();
   for (auto left = cursor.take<std::uint32_t>(); left > 0; --left) {
     CloudField& field = head.fields.emplace_back();
-    field.name = cursor.take_counted();
+    field.name = cursor.take_text();
     field.offset_bytes = cursor.take<std::uint32_t>();
     field.datatype = cursor.take<std::uint8_t>();
     field.count = cursor.take<std::uint32_t>();
@@ -111,29 +175,20 @@ CloudHead parse_cloud_head(std::string_view bytes, const std::filesystem::path& 
   head.point_step_bytes = cursor.take<std::uint32_t>();
   head.row_step_bytes = cursor.take<std::uint32_t>();
   head.records_bytes = cursor.take<std::uint32_t>();
-  head.records_at_bytes = bytes.size() - cursor.rest().size();
-  const bool fits = head.points() <= kMostPoints &&
-                    std::uint64_t{head.width} * head.point_step_bytes <= head.row_step_bytes &&
-                    std::uint64_t{head.row_step_bytes} * head.height == head.records_bytes;
-  if (!fits && head.points() != 0) {
-    throw DataError(file,
-                    fmt::format("a PointCloud2 of {} x {} points of {} bytes, {} bytes a row, has "
-                                "{} bytes",
-                                head.width, head.height, head.point_step_bytes, head.row_step_bytes,
-                                head.records_bytes),
-                    "height rows of at least width points");
-  }
+  head.records_at_bytes = cursor.position_bytes();
+  check_size(head, file);
   return head;
 }
 
-std::string format_cloud(const CloudHead& head, std::string_view records) {
-  ByteSink sink;
+std::string format_cloud(const CloudHead& head, std::string_view records,
+                         MessageEncoding encoding) {
+  MessageSink sink(encoding);
   put_header(sink, head.stamp_ns, head.frame);
   sink.put(head.height);
   sink.put(head.width);
   sink.put(static_cast<std::uint32_t>(head.fields.size()));
   for (const CloudField& field : head.fields) {
-    sink.put_counted(field.name);
+    sink.put_text(field.name);
     sink.put(field.offset_bytes);
     sink.put(field.datatype);
     sink.put(field.count);

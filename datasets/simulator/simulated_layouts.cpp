@@ -111,7 +111,7 @@ std::vector<SimulatedRecording> recordings_of(DatasetKind layout, const Scene& s
     case DatasetKind::kSemanticKitti:
       return {{"sequences/08", sensor_of(scene, SensorKind::kHdl64e)}};
     default:
-      throw UsageError("layout " + std::string(to_string(layout)) + " is read only");
+      throw UsageError("layout " + std::string(to_string(layout)) + " is not simulated");
   }
 }
 

@@ -20,18 +20,19 @@ constexpr const char* kConvertFooter =
     R"(Writes the scans, LiDAR poses, stamps and truth of DATA in another layout, for other programs. Points
 keep their bits and their order. Truth becomes .label files with the ids of the source. In the layouts
 of DOALS it becomes rows of indices.csv with the points of ids 251 to 259, and scans without stamps get
-stamps 0.1 s apart.
+stamps 0.1 s apart. ROS 2 bags have the topics /points, where truth is the field label, and /tf.
 
 Examples:
   mosbench convert ~/doals/station/sequence_1 --layout semantickitti --out ~/doals-kitti
   mosbench convert ~/doals --sequences 1,2 --layout doals --out ~/doals-bin
   mosbench convert sim/doals --layout doals-bag --compression lz4 --out sim/bags
+  mosbench convert drive.bag --layout ros2-mcap --compression zstd --out ~/drive-ros2
   mosbench convert ~/kitti --sequences 08 --poses suma.txt --layout semantickitti --out ~/kitti-suma
   mosbench convert ~/folder-with-a-bag --odometry simple --layout semantickitti --out ~/posed)";
 
 struct ConvertFlags {
   std::filesystem::path input;
-  std::string dataset = "auto", layout;
+  std::string dataset = "auto", layout, compression;
   std::vector<std::string> sequences;
   ReadingOptions reading;
   OdometryOptions odometry;
@@ -39,11 +40,29 @@ struct ConvertFlags {
   unsigned threads = hardware_threads();
 };
 
+/// The layouts that are bags; any other is that of a data set.
+void set_layout(const std::string& name, ConvertOptions& conversion) {
+  conversion.writing.bag = name == "doals-bag"   ? BagKind::kRos1
+                           : name == "ros2-mcap" ? BagKind::kMcap
+                           : name == "ros2-db3"  ? BagKind::kDb3
+                                                 : BagKind::kNone;
+  if (conversion.writing.bag == BagKind::kNone) {
+    conversion.layout = *dataset_kind_from_string(name);
+  } else {
+    conversion.layout = name == "doals-bag" ? DatasetKind::kDoals : DatasetKind::kRecording;
+  }
+}
+
+/// SQLite has no chunks that lz4 could pack.
+std::string compression_of(const ConvertFlags& options) {
+  if (!options.compression.empty()) return options.compression;
+  return options.layout == "ros2-db3" ? "none" : "lz4";
+}
+
 std::string convert_dataset(ConvertFlags options) {
   ConvertOptions& conversion = options.conversion;
-  conversion.writing.as_bag = options.layout == "doals-bag";
-  conversion.layout =
-      conversion.writing.as_bag ? DatasetKind::kDoals : *dataset_kind_from_string(options.layout);
+  set_layout(options.layout, conversion);
+  conversion.writing.compression = compression_of(options);
   const std::optional<OdometryChoice> odometry = named_odometry(options.odometry, options.reading);
   options.reading.poses_by_odometry = odometry.has_value();
   Dataset dataset = open_dataset(
@@ -74,13 +93,16 @@ CommandRun add_convert(CLI::App& command) {
                     options->reading);
   command.add_option("--layout", options->layout, "Layout to write")
       ->required()
-      ->check(CLI::IsMember({"doals", "doals-bag", "sipailou", "helimos", "semantickitti"}));
+      ->check(CLI::IsMember(
+          {"doals", "doals-bag", "sipailou", "helimos", "semantickitti", "ros2-mcap", "ros2-db3"}));
   command.add_option("--out", options->conversion.out, "Root of the data set to write")
       ->type_name("DIR")
       ->required();
-  command.add_option("--compression", options->conversion.writing.compression, "Of the bag")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"none", "lz4", "bz2"}));
+  command
+      .add_option("--compression", options->compression,
+                  "Of the bag: bz2 for ROS 1, zstd for ROS 2, lz4 not for ros2-db3 (default: lz4, "
+                  "there none)")
+      ->check(CLI::IsMember({"none", "lz4", "bz2", "zstd"}));
   add_odometry_flags(command, options->odometry);
   add_threads_flag(command, options->threads);
   command.footer(kConvertFooter);

@@ -5,7 +5,7 @@
 #include "datasets/files/errors.hpp"
 #include "datasets/files/files.hpp"
 #include "datasets/layouts/dataset.hpp"
-#include "datasets/layouts/folder_search.hpp"
+#include "datasets/rosbag/open_bag.hpp"
 
 namespace mosbench {
 namespace {
@@ -102,7 +102,7 @@ std::vector<PosePath> paths_of_data_set(const fs::path& root) {
 }  // namespace
 
 std::vector<PosePath> read_pose_paths(const fs::path& path, std::optional<PoseFormat> format) {
-  if (is_bag(path)) return paths_of_data_set(path);
+  if (is_bag_file(path)) return paths_of_data_set(path);
   if (!fs::is_directory(path)) return {path_of_file(path.stem().string(), path, format)};
   NamedFiles files = files_of_runs(path);
   if (files.empty() && is_data_set(path)) return paths_of_data_set(path);

@@ -95,6 +95,29 @@ TEST_F(Convert, MakesABagOfSeveralChunksThatReadsAndScoresAsTheExportedScans) {
   }
 }
 
+TEST_F(Convert, MakesRos2BagsThatReadAndScoreAsTheScans) {
+  const std::string exported = simulate("semantickitti");
+  const nlohmann::json expected = scores(exported, "out");
+  ASSERT_GT(expected.dump().size(), 20U);
+  const std::vector<std::pair<std::string, std::string>> kinds = {
+      {"ros2-mcap", "lz4"}, {"ros2-mcap", "zstd"}, {"ros2-db3", "none"}, {"ros2-db3", "zstd"}};
+  for (const auto& [layout, compression] : kinds) {
+    const std::string out = layout + compression;
+    const cli::Answer answer =
+        convert(exported, layout, out.c_str(), {"--compression", compression});
+    ASSERT_EQ(answer.exit_code, 0) << answer.err;
+    EXPECT_EQ(open_dataset(folder_ / out, {}).kind, DatasetKind::kRecording);
+    expect_same_frames(exported, folder_ / out, 1e-12);
+    EXPECT_EQ(cli::run({"doctor", (folder_ / out).string()}).exit_code, 0) << out;
+    const cli::Answer run = cli::run({"run", (folder_ / out).string(), "--preset", "semantickitti",
+                                      "--out", (folder_ / (out + "_out")).string(), "--json"});
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_EQ(nlohmann::json::parse(run.out).at("sequences").at(0).at("summary"), expected);
+  }
+  EXPECT_EQ(convert(exported, "ros2-db3", "z", {"--compression", "lz4"}).exit_code, 2);
+  EXPECT_EQ(convert(exported, "semantickitti", "unpacked").exit_code, 0) << "has no compression";
+}
+
 TEST_F(Convert, TurnsEveryLayoutIntoEveryOther) {
   for (const std::string from : {"doals", "sipailou", "helimos", "semantickitti"}) {
     const std::string input = simulate(from, "6");
@@ -173,9 +196,10 @@ TEST_F(Convert, GoesOnAfterAKillToTheFilesOfAnUndisturbedOne) {
 TEST_F(Convert, LeavesNothingWhereThereIsNoRoom) {
   cli::write_small_sequence(folder_ / "room", 6);
   const std::string room = (folder_ / "room").string();
-  for (const char* layout : {"semantickitti", "doals-bag"}) {
+  for (const char* layout : {"semantickitti", "doals-bag", "ros2-mcap", "ros2-db3"}) {
     if (layout == std::string("doals-bag") && !writes_bags()) continue;
-    for (const char* compression : {"none", "lz4", "bz2"}) {
+    const bool is_ros2 = std::string(layout).starts_with("ros2");
+    for (const char* compression : {"none", is_ros2 ? "none" : "lz4", is_ros2 ? "none" : "bz2"}) {
       const cli::Answer answer = cli::run({"convert", room, "--layout", layout, "--compression",
                                            compression, "--out", (folder_ / "new").string()},
                                           [] {
@@ -191,7 +215,7 @@ TEST_F(Convert, LeavesNothingWhereThereIsNoRoom) {
 
 TEST_F(Convert, GoesOnWhereTooFewFilesCouldBeOpened) {
   cli::write_small_sequence(folder_ / "room", 3);
-  for (const char* layout : {"semantickitti", "doals-bag"}) {
+  for (const char* layout : {"semantickitti", "doals-bag", "ros2-mcap", "ros2-db3"}) {
     if (layout == std::string("doals-bag") && !writes_bags()) continue;
     int failures = 0;
     for (rlim_t files = 3; files < 16; ++files) {

@@ -18,6 +18,7 @@
 #include "datasets/files/pose_list.hpp"
 #include "datasets/files/split_file.hpp"
 #include "datasets/files/times_file.hpp"
+#include "datasets/rosbag/bag_metadata.hpp"
 #include "datasets/rosbag/bag_sequence.hpp"
 #include "datasets/rosbag/point_cloud2.hpp"
 #include "datasets/simulator/scene_json.hpp"
@@ -27,6 +28,7 @@
 #include "eval/results/settings_json.hpp"
 #include "eval/tables/published.hpp"
 #include "tests/fuzz/memory_file.hpp"
+#include "tests/temp_folder.hpp"
 
 /// Every parser of bytes with what must hold of any value it returns. A parser may throw DataError;
 /// whatever else happens is a bug. Shared by the replayed corpus and the libFuzzer targets.
@@ -161,6 +163,41 @@ inline void ros_message(std::string_view bytes) {
   require(cloud.points.size() <= message.size());
 }
 
+/// Messages in CDR, of ROS 2; the first byte chooses the type.
+inline void ros2_message(std::string_view bytes) {
+  if (bytes.empty()) return;
+  const std::string_view message = bytes.substr(1);
+  const auto transforms_of = [&](std::string_view type) {
+    for (const auto& transform : parse_transforms(message, {type, MessageEncoding::kCdr}, "f")) {
+      require(transform.parent_from_child.matrix().allFinite());
+    }
+  };
+  switch (bytes.front()) {
+    case 't':
+      return transforms_of(kTfMessage);
+    case 's':
+      return transforms_of(kTransformStamped);
+    case 'o':
+      return transforms_of(kOdometry);
+    case 'p':
+      return transforms_of(kPoseStamped);
+    case 'w':
+      return transforms_of(kPath);
+    default:
+      break;
+  }
+  const std::string_view type = bytes.front() == 'l' ? kLivoxCustomMsg : kPointCloud2;
+  const TimedCloud cloud = parse_cloud(message, "f", {type, MessageEncoding::kCdr});
+  require(cloud.times_ns.empty() || cloud.times_ns.size() == cloud.points.size());
+  require(!cloud.labels || cloud.labels->size() == cloud.points.size());
+  require(cloud.points.size() <= message.size());
+}
+
+inline void bag_metadata(std::string_view text) {
+  const BagMetadata metadata = parse_bag_metadata(text, "f");
+  require(!metadata.files.empty());
+}
+
 /// Calls `read` with a file of these bytes, which its errors must name.
 template <typename Read>
 void with_file(std::string_view bytes, Read&& read) {
@@ -174,14 +211,26 @@ void with_file(std::string_view bytes, Read&& read) {
   }
 }
 
-/// A whole bag with all its scans.
-inline void bag(std::string_view bytes) {
-  with_file(bytes, [](const std::filesystem::path& file) {
-    const BagSequence recording("s", file, {});
-    for (std::size_t i = 0; i < recording.size(); ++i) {
-      require(recording.read(i).points.size() == recording.point_count(i));
-    }
-  });
+inline void read_bag(const std::filesystem::path& file) {
+  const BagSequence recording("s", file, {});
+  for (std::size_t i = 0; i < recording.size(); ++i) {
+    require(recording.read(i).points.size() == recording.point_count(i));
+  }
+}
+
+/// A whole bag with all its scans: of ROS 1 or in MCAP, as its first bytes say.
+inline void bag(std::string_view bytes) { with_file(bytes, read_bag); }
+
+/// The same in SQLite, which opens nothing but files with a name.
+inline void sqlite_bag(std::string_view bytes) {
+  const TempFolder folder;
+  const auto file = folder.write("s.db3", bytes);
+  try {
+    read_bag(file);
+  } catch (const DataError& error) {
+    require(std::string_view(error.what()).starts_with(file.string()));
+    throw DataError(std::string("f") + error.what());
+  }
 }
 
 inline void scene(std::string_view text) {
@@ -214,7 +263,7 @@ struct Parser {
   const char* name;  ///< of its corpus folder and its libFuzzer target
   void (*parse)(std::string_view);
 };
-inline constexpr std::array<Parser, 18> kParsers = {{{"bin", bin},
+inline constexpr std::array<Parser, 22> kParsers = {{{"bin", bin},
                                                      {"label", label},
                                                      {"dynamic_scores", dynamic_scores},
                                                      {"poses", poses},
@@ -227,7 +276,11 @@ inline constexpr std::array<Parser, 18> kParsers = {{{"bin", bin},
                                                      {"moe_labels", moe_labels},
                                                      {"pose_list", pose_list},
                                                      {"ros_message", ros_message},
+                                                     {"ros2_message", ros2_message},
+                                                     {"bag_metadata", bag_metadata},
                                                      {"bag", bag},
+                                                     {"mcap", bag},
+                                                     {"sqlite_bag", sqlite_bag},
                                                      {"scene", scene},
                                                      {"config", config},
                                                      {"result", result},

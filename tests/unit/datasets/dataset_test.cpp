@@ -71,12 +71,12 @@ TEST(Layouts, HaveOneCompleteRowPerDataSet) {
   EXPECT_EQ(dataset_kind_from_string("kitti"), std::nullopt);
 }
 
-TEST(Layouts, AreWrittenForFourDataSets) {
+TEST(Layouts, AreWrittenForFourDataSetsAndRecordings) {
   std::vector<std::string_view> written;
   for (const Layout* row : layouts()) {
     if (row->writer) written.push_back(row->name);
   }
-  EXPECT_THAT(written, ElementsAre("doals", "sipailou", "helimos", "semantickitti"));
+  EXPECT_THAT(written, ElementsAre("doals", "sipailou", "helimos", "semantickitti", "recording"));
 }
 
 TEST(OpenDataset, FindsSemanticKittiWithAndWithoutTheFolderSequences) {

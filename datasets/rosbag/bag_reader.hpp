@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "datasets/rosbag/message_format.hpp"
+
+namespace mosbench {
+
+/// One topic of one publisher.
+struct BagConnection {
+  std::uint32_t id = 0;
+  std::string topic;
+  std::string type;  ///< as ROS 1 writes it: "sensor_msgs/PointCloud2"
+  MessageEncoding encoding = MessageEncoding::kRos1;
+};
+
+/// Where a message is stored.
+struct BagMessage {
+  std::uint32_t connection = 0;
+  std::int64_t recorded_ns = 0;  ///< when it was recorded, not the stamp of its header
+  std::size_t chunk = 0;
+  std::uint64_t offset_bytes = 0;  ///< of its record in the uncompressed chunk; a row of a database
+  std::size_t part = 0;            ///< of a bag of several files
+};
+
+/// The recorded messages of a robot, whatever file keeps them.
+class BagReader {
+ public:
+  virtual ~BagReader() = default;
+  BagReader(const BagReader&) = delete;
+  BagReader& operator=(const BagReader&) = delete;
+
+  /// What errors name.
+  const std::filesystem::path& path() const { return path_; }
+  /// All files that were opened; at least one.
+  const std::vector<std::filesystem::path>& files() const { return files_; }
+  /// Plain sentences on what was found odd.
+  const std::vector<std::string>& remarks() const { return remarks_; }
+  const std::vector<BagConnection>& connections() const { return connections_; }
+  std::vector<BagConnection> connections_of_type(std::string_view type) const;
+  /// Returns the connection with this id, or nullptr.
+  const BagConnection* find_connection(std::uint32_t id) const;
+
+  /// Returns the messages of a topic in the order in which they were recorded.
+  virtual std::vector<BagMessage> messages(std::string_view topic) const = 0;
+  /// Returns the bytes of a message, no more than `most_bytes` where that spares reading them. Safe
+  /// to call from several threads. Throws DataError.
+  virtual std::string read(const BagMessage& message, std::size_t most_bytes = SIZE_MAX) const = 0;
+  /// Returns how the bytes of a message are to be parsed, valid as long as this reader.
+  virtual MessageFormat format_of(const BagMessage& message) const;
+
+ protected:
+  explicit BagReader(const std::filesystem::path& path) : path_(path), files_{path} {}
+  /// Returns those of `all` whose connection is of the topic, in the order of their times.
+  std::vector<BagMessage> of_topic(const std::vector<BagMessage>& all,
+                                   std::string_view topic) const;
+
+  std::filesystem::path path_;
+  std::vector<std::filesystem::path> files_;
+  std::vector<std::string> remarks_;
+  std::vector<BagConnection> connections_;
+};
+
+}  // namespace mosbench

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <utility>
+
+#include "datasets/files/file_descriptor.hpp"
+
+namespace mosbench {
+
+/// Part of a bag that holds records, packed or not.
+struct BagChunk {
+  std::uint64_t offset_bytes = 0;  ///< of its content in the file
+  std::uint64_t stored_bytes = 0;
+  std::uint64_t size_bytes = 0;  ///< unpacked
+  std::string compression = {};  ///< "" or "none", "bz2", "lz4", "zstd"
+  std::uint32_t crc = 0;         ///< CRC-32 of the unpacked content; 0: not known
+  bool is_packed() const { return !compression.empty() && compression != "none"; }
+};
+
+/// The longest chunk that is read: what one claims to hold is allocated.
+inline constexpr std::uint64_t kMostChunkBytes = 1ULL << 29U;
+
+/// Reads the bytes of a bag, of which one unpacked chunk is kept. Safe to call from several
+/// threads.
+class ChunkReader {
+ public:
+  /// Throws DataError when the file cannot be opened.
+  explicit ChunkReader(const std::filesystem::path& file);
+
+  std::uint64_t size_bytes() const { return size_bytes_; }
+  /// Throws DataError when the file does not hold so many bytes there.
+  std::string bytes_at(std::uint64_t offset_bytes, std::uint64_t count) const;
+  /// Returns the content of a chunk, which is within the file and at most kMostChunkBytes long.
+  /// Throws DataError for one that is damaged.
+  std::shared_ptr<const std::string> content_of(const BagChunk& chunk) const;
+
+ private:
+  std::filesystem::path file_;
+  std::uint64_t size_bytes_;
+  FileDescriptor descriptor_;
+  mutable std::mutex mutex_;                                                   ///< of kept_
+  mutable std::pair<std::uint64_t, std::shared_ptr<const std::string>> kept_;  ///< by its offset
+};
+
+}  // namespace mosbench

@@ -1,0 +1,183 @@
+#include "datasets/rosbag/sqlite_bag.hpp"
+
+#include <fmt/format.h>
+#include <sqlite3.h>
+
+#include <algorithm>
+
+#include "datasets/files/errors.hpp"
+#include "datasets/files/files.hpp"
+#include "datasets/rosbag/bag_compression.hpp"
+#include "datasets/rosbag/ros_type.hpp"
+
+namespace mosbench {
+namespace {
+
+constexpr const char* kDatabase = "a ROS 2 bag with the tables topics and messages";
+
+/// A query whose rows are taken one after the other.
+class Rows {
+ public:
+  Rows(sqlite3* database, const char* query) {
+    prepared_ = sqlite3_prepare_v2(database, query, -1, &statement_, nullptr);
+  }
+  ~Rows() { sqlite3_finalize(statement_); }
+  Rows(const Rows&) = delete;
+  Rows& operator=(const Rows&) = delete;
+
+  /// Returns SQLITE_ROW, SQLITE_DONE or an error.
+  int next() { return prepared_ == SQLITE_OK ? sqlite3_step(statement_) : prepared_; }
+  std::int64_t integer(int column) { return sqlite3_column_int64(statement_, column); }
+  std::string text(int column) {
+    const auto* bytes = reinterpret_cast<const char*>(sqlite3_column_text(statement_, column));
+    const auto count = static_cast<std::size_t>(sqlite3_column_bytes(statement_, column));
+    return bytes == nullptr ? std::string() : std::string(bytes, count);
+  }
+
+ private:
+  sqlite3_stmt* statement_ = nullptr;
+  int prepared_;
+};
+
+/// The path as SQLite's URI wants it.
+std::string uri_of(const std::filesystem::path& file, bool is_immutable) {
+  const std::filesystem::path whole = std::filesystem::absolute(file);
+  std::string uri = "file:";
+  for (const char byte : whole.native()) {
+    const bool is_special = byte == '%' || byte == '?' || byte == '#';
+    uri += is_special ? fmt::format("%{:02X}", static_cast<unsigned char>(byte))
+                      : std::string(1, byte);
+  }
+  return uri + (is_immutable ? "?immutable=1" : "");
+}
+
+}  // namespace
+
+void SqliteBag::Close::operator()(sqlite3* database) const { sqlite3_close(database); }
+void SqliteBag::Close::operator()(sqlite3_blob* blob) const { sqlite3_blob_close(blob); }
+
+SqliteBag::SqliteBag(const std::filesystem::path& file)
+    : BagReader(file), file_bytes_(size_of(file)) {
+  open_database();
+  check_table("topics");
+  check_table("messages");
+  add_topics();
+  add_messages();
+}
+
+SqliteBag::~SqliteBag() = default;
+
+void SqliteBag::open_database() {
+  // What a killed recorder did not move into the file is in a log beside it.
+  const std::filesystem::path log = path_.native() + "-wal";
+  std::error_code none;
+  const auto log_bytes = std::filesystem::file_size(log, none);
+  const bool has_log = !none && log_bytes > 0;
+  sqlite3* opened = nullptr;
+  const int result =
+      sqlite3_open_v2(uri_of(path_, !has_log).c_str(), &opened,
+                      SQLITE_OPEN_READONLY | SQLITE_OPEN_URI | SQLITE_OPEN_NOMUTEX, nullptr);
+  database_.reset(opened);
+  check(result);
+  // What a file of strangers says must neither run code nor write.
+  sqlite3_db_config(opened, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
+  sqlite3_db_config(opened, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
+  sqlite3_exec(opened, "PRAGMA cell_size_check=ON", nullptr, nullptr, nullptr);
+  if (has_log) {
+    remarks_.push_back(path_.filename().string() +
+                       " was not closed by its recorder: its log is read, too");
+    files_.push_back(log);
+  }
+}
+
+void SqliteBag::check(int result) const {
+  if (result != SQLITE_OK) refuse();
+}
+
+void SqliteBag::refuse() const {
+  throw DataError(path_, fmt::format("cannot be read ({})", sqlite3_errmsg(database_.get())),
+                  kDatabase);
+}
+
+void SqliteBag::check_table(const char* name) const {
+  const std::string query =
+      fmt::format("SELECT rootpage FROM sqlite_schema WHERE type='table' AND name='{}'", name);
+  Rows rows(database_.get(), query.c_str());
+  const int result = rows.next();
+  // Views and virtual tables, which would run code, have no page of their own.
+  if (result == SQLITE_ROW && rows.integer(0) > 0) return;
+  if (result != SQLITE_ROW && result != SQLITE_DONE) refuse();
+  throw DataError(path_, fmt::format("has no table {}", name), kDatabase);
+}
+
+void SqliteBag::add_topics() {
+  Rows rows(database_.get(), "SELECT id, name, type, serialization_format FROM topics");
+  int result = 0;
+  while ((result = rows.next()) == SQLITE_ROW) {
+    BagConnection connection;
+    connection.id = static_cast<std::uint32_t>(rows.integer(0));
+    connection.topic = rows.text(1);
+    connection.type = ros1_type(rows.text(2));
+    connection.encoding = MessageEncoding::kCdr;
+    // Another name, so that nothing parses it and errors tell it.
+    if (rows.text(3) != "cdr") connection.type += " as " + rows.text(3);
+    if (find_connection(connection.id) != nullptr) {
+      throw DataError(path_, fmt::format("has two topics {}", connection.id), kDatabase);
+    }
+    connections_.push_back(std::move(connection));
+  }
+  if (result != SQLITE_DONE) refuse();
+}
+
+void SqliteBag::add_messages() {
+  Rows rows(database_.get(), "SELECT rowid, topic_id, timestamp FROM messages");
+  int result = 0;
+  while ((result = rows.next()) == SQLITE_ROW) {
+    const auto topic = static_cast<std::uint32_t>(rows.integer(1));
+    messages_.push_back({topic, rows.integer(2), 0, static_cast<std::uint64_t>(rows.integer(0))});
+    if (find_connection(topic) == nullptr) {
+      throw DataError(path_, fmt::format("topic {} of a message is missing", topic), kDatabase);
+    }
+  }
+  if (result != SQLITE_DONE) refuse();
+}
+
+std::vector<BagMessage> SqliteBag::messages(std::string_view topic) const {
+  return of_topic(messages_, topic);
+}
+
+void SqliteBag::seek(std::int64_t row) const {
+  if (blob_) {
+    check(sqlite3_blob_reopen(blob_.get(), row));
+    return;
+  }
+  sqlite3_blob* opened = nullptr;
+  const int result =
+      sqlite3_blob_open(database_.get(), "main", "messages", "data", row, 0, &opened);
+  blob_.reset(opened);
+  check(result);
+}
+
+std::string SqliteBag::stored(std::int64_t row, std::size_t most_bytes) const {
+  const std::lock_guard lock(mutex_);
+  seek(row);
+  const auto count = static_cast<std::uint64_t>(sqlite3_blob_bytes(blob_.get()));
+  // A damaged row may claim more than there is.
+  if (count > file_bytes_ && files_.size() == 1) {
+    throw DataError(path_, fmt::format("message {} claims {} bytes", row, count),
+                    "no more than the file has");
+  }
+  std::string bytes(std::min<std::uint64_t>(count, most_bytes), '\0');
+  check(sqlite3_blob_read(blob_.get(), bytes.data(), static_cast<int>(bytes.size()), 0));
+  return bytes;
+}
+
+std::string SqliteBag::read(const BagMessage& message, std::size_t most_bytes) const {
+  const auto row = static_cast<std::int64_t>(message.offset_bytes);
+  std::string bytes = stored(row, most_bytes);
+  if (!is_zstd(bytes)) return bytes;
+  if (bytes.size() == most_bytes) bytes = stored(row, SIZE_MAX);
+  return decompress_zstd(bytes, most_bytes, path_);
+}
+
+}  // namespace mosbench
