@@ -15,7 +15,6 @@ constexpr std::string_view kStageNames[] = {"voxelize",       "raycast", "map_up
                                             "convolution",    "median",  "window",     "otsu",
                                             "dynamic_region", "labels"};
 
-using nlohmann::json;
 using testing::HasSubstr;
 
 constexpr std::size_t kScansProfiled = 12;
@@ -45,13 +44,13 @@ TEST(Profile, ShowsEveryStageMemoryAndSpeed) {
 TEST(Profile, StagesAddUpToTheMethodAndSpreadsAreInOrder) {
   const TempFolder folder;
   ASSERT_EQ(profile_small(folder).exit_code, 0);
-  const json whole = json::parse(read_file(folder.path() / "profile.json"));
-  const json& sequence = whole["sequences"][0];
+  const nlohmann::json whole = nlohmann::json::parse(read_file(folder.path() / "profile.json"));
+  const nlohmann::json& sequence = whole["sequences"][0];
   ASSERT_EQ(sequence["scans"].size(), kScansProfiled);
   for (const char* clock : {"wall_ms", "cpu_ms"}) {
     double sum_ms = 0;
     for (const auto& [name, cost] : sequence["stages"].items()) {
-      const json& spread = cost[clock];
+      const nlohmann::json& spread = cost[clock];
       EXPECT_LE(spread["min"], spread["median"]) << name;
       EXPECT_LE(spread["median"], spread["p95"]) << name;
       EXPECT_LE(spread["p95"], spread["max"]) << name;
@@ -61,7 +60,7 @@ TEST(Profile, StagesAddUpToTheMethodAndSpreadsAreInOrder) {
     EXPECT_NEAR(sum_ms, method_ms, 0.05 * method_ms) << clock;
     EXPECT_LT(sequence["stages"]["between stages"][clock]["median"], 0.5 * method_ms) << clock;
   }
-  for (const json& scan : sequence["scans"]) {
+  for (const nlohmann::json& scan : sequence["scans"]) {
     EXPECT_EQ(scan["points"], cli::kPointsPerScan);
     EXPECT_GT(scan["map_blocks"], 0);
     EXPECT_GT(scan["resident_mib"], 0.0);
@@ -71,11 +70,11 @@ TEST(Profile, StagesAddUpToTheMethodAndSpreadsAreInOrder) {
 TEST(Profile, TraceHoldsEachStageInsideItsScan) {
   const TempFolder folder;
   ASSERT_EQ(profile_small(folder).exit_code, 0);
-  const json trace = json::parse(read_file(folder.path() / "trace.json"));
+  const nlohmann::json trace = nlohmann::json::parse(read_file(folder.path() / "trace.json"));
   double scan_start_us = 0, scan_end_us = 0;
   std::size_t scans = 0, counters = 0;
   std::map<std::string, std::size_t> slices;
-  for (const json& event : trace["traceEvents"]) {
+  for (const nlohmann::json& event : trace["traceEvents"]) {
     counters += event["ph"] == "C";
     if (event["ph"] != "X") continue;
     const double start_us = event["ts"], end_us = start_us + event["dur"].get<double>();
@@ -105,7 +104,7 @@ TEST(Profile, TraceHoldsEachStageInsideItsScan) {
 TEST(Profile, StopsAfterTheScansAskedFor) {
   const TempFolder folder;
   ASSERT_EQ(profile_small(folder, {"--scans", "5"}).exit_code, 0);
-  const json whole = json::parse(read_file(folder.path() / "profile.json"));
+  const nlohmann::json whole = nlohmann::json::parse(read_file(folder.path() / "profile.json"));
   EXPECT_EQ(whole["sequences"][0]["scans"].size(), 5U);
 }
 
