@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# setup.sh [--python|--tests|--checks|--package|--page|--cluster]: installs the Debian packages for building and
-# testing; with --python also those of the Python package, its tests and its examples; with --checks those
+# setup.sh [--python|--tests|--checks|--package|--page|--cluster]: installs the Debian packages for building
+# and testing; with --python also those of the Python package, its tests and its examples; with --checks those
 # of the format and clang checks and of the API pages; with --package those that make and check Debian
 # packages; with --page what tests, lints and builds the report's page: a browser, node and the packages of
-# eval/report/page/package-lock.json and tests/ros2/package-lock.json, whose writers make ROS 2 bags; with --cluster
-# Snakemake and Slurm; --tests is --python and --page. Returns quickly when all are installed.
+# eval/report/page/package-lock.json; with --cluster Snakemake and Slurm; --tests is --python and --page.
+# Returns quickly when all are installed.
 # MOSBENCH_WITH_PCL=OFF leaves out PCL, which brings some 400 packages,
 # MOSBENCH_WITH_ROSBAG=OFF the 40 or so of ROS's bag library, which only writing bags needs,
 # MOSBENCH_WITH_OCTOMAP=OFF the two of OctoMap, for the method of that name,
