@@ -94,6 +94,26 @@ void check_sequence(const Sequence& sequence, const std::filesystem::path& folde
   if (!simulated) append(checkup.symptoms, check_published(sequence, kind, folder, part));
 }
 
+/// Calls a function before each scan is read.
+class WatchedSequence : public SequenceAround {
+ public:
+  WatchedSequence(std::unique_ptr<Sequence> inner, const std::function<void()>& at_each_scan)
+      : SequenceAround(std::move(inner)), at_each_scan_(at_each_scan) {}
+
+  using Sequence::read;
+  void read(std::size_t scan_index, Frame& frame) const override {
+    at_each_scan_();
+    inner().read(scan_index, frame);
+  }
+  std::vector<std::uint32_t> read_truth(std::size_t scan_index) const override {
+    at_each_scan_();
+    return inner().read_truth(scan_index);
+  }
+
+ private:
+  const std::function<void()>& at_each_scan_;
+};
+
 }  // namespace
 
 bool Checkup::has(Severity severity) const {
@@ -157,7 +177,8 @@ std::vector<Symptom> check_labels_by_scans(const Sequence& sequence, SequenceChe
   return symptoms;
 }
 
-Checkup check_up(const std::filesystem::path& path, const OpenOptions& options) {
+Checkup check_up(const std::filesystem::path& path, const OpenOptions& options,
+                 const std::function<void()>& at_each_scan) {
   Checkup checkup;
   std::vector<SequenceFolder> folders;
   try {
@@ -166,10 +187,11 @@ Checkup check_up(const std::filesystem::path& path, const OpenOptions& options) 
       collect(checkup.symptoms, folder.folder,
               [&] { return check_folder(folder.folder, folder.name); });
     }
-    const Dataset dataset = open_dataset(path, options);
+    Dataset dataset = open_dataset(path, options);
     const bool simulated = simulated_origin(path).has_value();
     for (std::size_t i = 0; i < dataset.sequences.size(); ++i) {
-      check_sequence(*dataset.sequences[i], folders[i].folder, dataset.kind, simulated, checkup);
+      const WatchedSequence sequence(std::move(dataset.sequences[i]), at_each_scan);
+      check_sequence(sequence, folders[i].folder, dataset.kind, simulated, checkup);
     }
   } catch (const DataError& error) {
     checkup.symptoms.push_back(symptom_of(error, path));

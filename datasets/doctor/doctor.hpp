@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -52,8 +53,11 @@ struct Checkup {
 
 /// Checks a data set. All files are listed and their sizes checked, some dozens of scans per
 /// sequence are read. A reason why the data set cannot be opened is an error among the symptoms and
-/// not thrown; throws UsageError as `open_dataset`.
-Checkup check_up(const std::filesystem::path& path, const OpenOptions& options);
+/// not thrown; throws UsageError as `open_dataset`. `at_each_scan` is called before a scan is read,
+/// and may throw to end the check.
+Checkup check_up(
+    const std::filesystem::path& path, const OpenOptions& options,
+    const std::function<void()>& at_each_scan = [] {});
 
 /// Checks a sequence folder without opening it: gaps in the numbering of scans, label files without
 /// scan, missing labels, files of odd sizes.

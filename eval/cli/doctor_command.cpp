@@ -9,6 +9,7 @@
 #include "eval/cli/checkup_report.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/cli/dataset_flags.hpp"
+#include "eval/results/caller.hpp"
 #include "eval/results/reading_json.hpp"
 #include "eval/results/shell_text.hpp"
 #include "eval/runs/run_plan.hpp"
@@ -74,7 +75,8 @@ std::string next_input(const DoctorFlags& options, const Checkup& checkup) {
 
 Answer check_dataset(const DoctorFlags& options) {
   const Checkup checkup = check_up(
-      options.input, {dataset_kind_option(options.dataset), options.sequences, options.reading});
+      options.input, {dataset_kind_option(options.dataset), options.sequences, options.reading},
+      caller().at_each_scan);
   std::string report =
       options.json ? checkup_json(checkup) : checkup_text(checkup, next_input(options, checkup));
   return {report, checkup.has(Severity::kError) ? 3 : checkup.has(Severity::kWarning) ? 1 : 0};

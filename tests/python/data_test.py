@@ -297,6 +297,22 @@ def test_doctor_is_content_with_sound_data(street):
     assert checkup.ok == (not checkup.symptoms)
 
 
+def test_an_interrupt_ends_the_doctor(street):
+    start_s = time.process_time()
+    mosbench.doctor(street)
+    whole_s = time.process_time() - start_s
+    before = signal.signal(signal.SIGPROF, signal.default_int_handler)
+    try:
+        signal.setitimer(signal.ITIMER_PROF, whole_s / 10)
+        start_s = time.process_time()
+        with pytest.raises(KeyboardInterrupt):
+            mosbench.doctor(street)
+        assert time.process_time() - start_s < 0.8 * whole_s
+    finally:
+        signal.setitimer(signal.ITIMER_PROF, 0)
+        signal.signal(signal.SIGPROF, before)
+
+
 def test_report_is_one_file(finished, tmp_path):
     file = finished.report(tmp_path / "report.html", max_mb=5)
     assert file.read_text().startswith("<!")
