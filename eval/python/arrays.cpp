@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cmath>
 #include <limits>
 #include <string_view>
 
@@ -54,6 +55,11 @@ Pose pose_of(const py::array& array) {
   const auto matrix = numbers_of<DoubleArray>(array, "pose");
   if (matrix.ndim() != 2 || matrix.shape(0) != 4 || matrix.shape(1) != 4) {
     throw py::value_error(fmt::format("pose: has shape {}, expected (4, 4)", shape_text(matrix)));
+  }
+  for (py::ssize_t i = 0; i < matrix.size(); ++i) {
+    if (std::isfinite(matrix.data()[i])) continue;
+    throw py::value_error(fmt::format("pose[{}, {}]: is {}, expected a finite number", i / 4, i % 4,
+                                      matrix.data()[i]));
   }
   Pose pose;
   for (int row = 0; row < 4; ++row) {

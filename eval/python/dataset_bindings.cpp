@@ -1,10 +1,14 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include "datasets/files/files.hpp"
+#include "datasets/files/pose_file.hpp"
 #include "datasets/layouts/dataset.hpp"
+#include "datasets/sequence/pose_frame_mark.hpp"
 #include "eval/cli/dataset_flags.hpp"
 #include "eval/python/arrays.hpp"
 #include "eval/python/bindings.hpp"
+#include "eval/runs/found_poses.hpp"
 #include "eval/runs/run_plan.hpp"
 
 namespace mosbench::python {
@@ -67,11 +71,22 @@ std::vector<OpenSequence> sequences_of(const SharedDataset& dataset) {
   return sequences;
 }
 
+/// Writes KITTI's rows, marked as the lidar's, or with stamps those of TUM.
+void write_pose_file(const std::filesystem::path& file, const std::vector<py::array>& matrices,
+                     const std::optional<std::vector<std::int64_t>>& stamps_ns) {
+  std::vector<Pose> poses;
+  for (const py::array& matrix : matrices) poses.push_back(pose_of(matrix));
+  const std::string rows = stamps_ns ? tum_rows(*stamps_ns, poses) : format_poses(poses);
+  if (!stamps_ns) mark_as_lidars(file, rows);
+  write_file_atomic(file, rows);
+}
+
 }  // namespace
 
 void bind_datasets(py::module_& module) {
   module.def("open", open_shared);
   module.def("reading_names", reading_names);
+  module.def("write_poses", write_pose_file);
   py::class_<Dataset, SharedDataset>(module, "Dataset")
       .def_property_readonly("kind",
                              [](const Dataset& d) { return std::string(to_string(d.kind)); })

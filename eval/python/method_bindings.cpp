@@ -25,6 +25,17 @@ namespace {
                                     name, fmt::join(known, ", "), nearest_name(name, known)));
 }
 
+/// A symbol of the paper, with which the meaning of its setting begins, is answered by that
+/// setting.
+[[noreturn]] void refuse_setting(const std::string& name, const Settings& settings) {
+  for (const Setting& setting : settings.all()) {
+    if (!setting.meaning.starts_with(name + ",")) continue;
+    throw py::value_error(
+        fmt::format("setting: '{}' is not known, expected {}", name, setting.name));
+  }
+  refuse_name("setting", name, settings.all());
+}
+
 const MethodKind& method_named(const std::string& name) {
   if (const MethodKind* kind = find_method(name)) return *kind;
   refuse_name("method", name, methods());
@@ -183,7 +194,7 @@ void bind_methods(py::module_& module) {
   py::class_<Settings>(module, "Settings")
       .def("set",
            [](Settings& settings, const std::string& name, const SettingValue& value) {
-             if (settings.find(name) == nullptr) refuse_name("setting", name, settings.all());
+             if (settings.find(name) == nullptr) refuse_setting(name, settings);
              settings.set(name, value);
            })
       .def("load", [](Settings& settings,

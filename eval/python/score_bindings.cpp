@@ -92,6 +92,7 @@ py::list sequence_results(const ResultSet& set) {
     sequence["name"] = result.sequence.text();
     sequence["folder"] = result.file.parent_path();
     const std::vector<SequenceCounts> counts = {counts_of(result)};
+    sequence["header"] = result.header.dump();
     sequence["metrics"] = dict_of(aggregate(*result.protocol, counts));
     sequence["method_ms_per_scan"] = result.method_ms_per_scan;
     py::list scans;
@@ -114,7 +115,6 @@ py::dict load_results(const std::filesystem::path& folder) {
   results["dataset"] = set.front().dataset;
   results["protocol"] = std::string(set.front().protocol->name);
   results["simulated"] = set.front().simulated;
-  results["header"] = set.front().header.dump();
   results["warnings"] = warnings(set);
   results["metrics"] = dict_of(aggregate(*set.front().protocol, counts_of(set)));
   results["sequences"] = sequence_results(set);

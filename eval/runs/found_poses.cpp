@@ -11,18 +11,6 @@
 namespace mosbench {
 namespace {
 
-std::string tum_rows(const Sequence& sequence, const std::vector<Pose>& poses) {
-  std::string rows;
-  for (std::size_t k = 0; k < poses.size(); ++k) {
-    const Pose& pose = poses[k];
-    const Eigen::Quaterniond q = Eigen::Quaterniond(pose.linear()).normalized();
-    rows += fmt::format("{} {} {} {} {} {} {} {}\n", seconds_text(sequence.stamp_ns(k).value()),
-                        pose.translation().x(), pose.translation().y(), pose.translation().z(),
-                        q.x(), q.y(), q.z(), q.w());
-  }
-  return rows;
-}
-
 template <typename Matrix>
 nlohmann::ordered_json rows_json(const Matrix& matrix) {
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
@@ -66,6 +54,18 @@ nlohmann::ordered_json scans_json(const Sequence& sequence, const std::vector<Sc
   return scans;
 }
 
+std::string tum_rows(const std::vector<std::int64_t>& stamps_ns, const std::vector<Pose>& poses) {
+  std::string rows;
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    const Pose& pose = poses[k];
+    const Eigen::Quaterniond q = Eigen::Quaterniond(pose.linear()).normalized();
+    rows += fmt::format("{} {} {} {} {} {} {} {}\n", seconds_text(stamps_ns.at(k)),
+                        pose.translation().x(), pose.translation().y(), pose.translation().z(),
+                        q.x(), q.y(), q.z(), q.w());
+  }
+  return rows;
+}
+
 std::string pose_rows(const FoundPoses& found, bool as_tum) {
   std::vector<Pose> poses;
   for (const auto& scan : found.scans) {
@@ -75,7 +75,12 @@ std::string pose_rows(const FoundPoses& found, bool as_tum) {
           scan.at("map_from_sensor").at(i / 4).at(i % 4).get<double>();
     }
   }
-  return as_tum ? tum_rows(found.sequence, poses) : format_poses(poses);
+  if (!as_tum) return format_poses(poses);
+  std::vector<std::int64_t> stamps_ns;
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    stamps_ns.push_back(found.sequence.stamp_ns(k).value());
+  }
+  return tum_rows(stamps_ns, poses);
 }
 
 std::size_t doubtful_scans(const FoundPoses& found) {

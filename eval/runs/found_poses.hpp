@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <mosbench/odometry.hpp>
 #include <nlohmann/json.hpp>
@@ -23,6 +24,9 @@ nlohmann::ordered_json scans_json(const Sequence& sequence, const std::vector<Sc
 /// Throws UsageError unless every scan has a stamp, and a later one than the scan before: rows of
 /// TUM are found by their stamps.
 void check_stamps_of_tum(const Sequence& sequence);
+
+/// The rows of a TUM file of poses with these stamps, one for each.
+std::string tum_rows(const std::vector<std::int64_t>& stamps_ns, const std::vector<Pose>& poses);
 
 /// The rows of a file of poses, of KITTI or, for scans with stamps, of TUM. Throws a JSON exception
 /// for scans that `scans_json` did not write.

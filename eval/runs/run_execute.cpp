@@ -123,10 +123,15 @@ ordered_json header(const RunPlan& plan, const PlannedSequence& planned, const S
   return json;
 }
 
-/// Where and how `report` and `render` find the points again; folders are this machine's.
+/// Where and how `report` and `render` find the points again; folders are this machine's. Of the
+/// run all sequences, by which an interrupted one is known.
 ordered_json clock_header(const RunPlan& plan, const PlannedSequence& planned) {
   ordered_json json = {{"file_stamp", planned.stamp},
-                       {"dataset_root", fs::absolute(plan.dataset.root).string()}};
+                       {"dataset_root", fs::absolute(plan.dataset.root).string()},
+                       {"sequences_of_run", ordered_json::array()}};
+  for (const PlannedSequence& each : plan.sequences) {
+    json["sequences_of_run"].push_back(plan.dataset.sequences[each.position]->name());
+  }
   json.update(told_json(plan.reading));
   return json;
 }

@@ -3,6 +3,9 @@
 import ast
 import inspect
 import pathlib
+import typing
+
+import pytest
 
 import mosbench
 from mosbench import _mosbench
@@ -41,3 +44,18 @@ def test_the_package_is_marked_as_typed_and_says_what_everything_is():
             for member, one in vars(value).items():
                 if inspect.isfunction(one) and not member.startswith("_"):
                     assert one.__doc__, f"{name}.{member}"
+
+
+@pytest.mark.skipif(not hasattr(typing, "get_overloads"), reason="Python before 3.11 does not tell overloads")
+def test_type_checkers_know_that_a_named_sequence_is_one():
+    told = [call.__annotations__ for call in typing.get_overloads(mosbench.open)]
+    assert {one["sequence"]: one["return"] for one in told} == {"str": "Sequence", "None": "Union[Dataset, Sequence]"}
+
+
+def test_help_says_what_a_result_has(finished):
+    for value in (finished, finished[0]):
+        told = " ".join(type(value).__doc__.split())
+        for name in public(vars(value)):
+            assert f" {name}: " in told, name
+        for name, one in vars(type(value)).items():
+            assert not isinstance(one, property) or one.__doc__, name

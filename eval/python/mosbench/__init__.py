@@ -14,6 +14,8 @@ from mosbench._mosbench import method_names as methods
 from mosbench._mosbench import preset_names as presets
 from mosbench._mosbench import protocol_names as protocols
 from mosbench.commands import (
+    Checkup,
+    Comparison,
     breakdown,
     compare,
     curve,
@@ -32,9 +34,12 @@ from mosbench.flags import READING
 from mosbench.flow import moving_for_h5
 from mosbench.metrics import confusion, iou, metrics
 from mosbench.online import MOS, Config, Labels, Odometry, OdometryPose, odometry
+from mosbench.poses import write_poses
 from mosbench.results import Result, SequenceResult
 
 __all__ = [
+    "Checkup",
+    "Comparison",
     "Config",
     "Dataset",
     "Labels",
@@ -70,4 +75,5 @@ __all__ = [
     "simulate",
     "stats",
     "table",
+    "write_poses",
 ]

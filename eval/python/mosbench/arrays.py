@@ -7,13 +7,19 @@ from typing import Any
 import numpy as np
 
 
-def as_array(values: Any) -> np.ndarray:
+def as_array(values: Any, name: str) -> np.ndarray:
     """Returns an array, without a copy where the object shares its memory (numpy, torch, DLPack, buffers).
 
-    Tensors of other devices than the CPU raise what their library raises.
+    Tensors of other devices than the CPU raise what their library raises. Raises ValueError for masked
+    values, which a plain array has no place for.
     """
+    if np.ma.is_masked(values):
+        raise ValueError(f"{name}: has masked values, expected a plain array, as .filled(value) or rows without them")
     if hasattr(values, "detach"):  # a tensor that remembers how it was computed gives no memory away
         values = values.detach()
     if hasattr(values, "__dlpack__") and not hasattr(values, "__array__"):
         return np.from_dlpack(values)
-    return np.asarray(values)
+    try:
+        return np.asarray(values)
+    except ValueError:
+        raise ValueError(f"{name}: has rows of different lengths, expected an array") from None

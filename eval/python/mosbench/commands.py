@@ -2,21 +2,23 @@
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
-import io
 import json
 import os
 import pathlib
+import shutil
 import tempfile
-from typing import Any, Iterable, Mapping, Optional, Union
+from typing import Any, Iterable, Iterator, Mapping, Optional, Union
 
 import numpy as np
 
 from mosbench import _mosbench
 from mosbench.arrays import as_array
 from mosbench.datasets import Dataset, Opened, Sequence, seconds_after_stamp
-from mosbench.flags import flags, plain_errors, reading_flags
-from mosbench.online import Config, SettingValue
+from mosbench.flags import flags, plain_errors, reading_flags, whole_number
+from mosbench.online import Config, SettingValue, refuse_no_settings
+from mosbench.poses import checked_poses, is_path, keep_poses, pose_files, write_changed
 from mosbench.results import Result
 
 PathLike = Union[str, os.PathLike]
@@ -36,61 +38,126 @@ def _setting_flags(settings: Optional[Mapping[str, SettingValue]], flag: str = "
             for name, value in (settings or {}).items()]  # fmt: skip
 
 
+def _how_to_read(data: Any, reading: Mapping[str, Any]) -> dict[str, Any]:
+    """Returns the reading of what `mosbench.open` opened, with what is given now over it."""
+    opened: Mapping[str, Any] = data.opened_by.reading if isinstance(data, (Dataset, Sequence)) else {}
+    return {**opened, **reading}
+
+
+def _refuse_no_poses(reading: Mapping[str, Any]) -> None:
+    if isinstance(reading.get("poses"), bool):
+        raise ValueError(f"poses: is {reading['poses']}, expected poses of the scans: a file, (K, 4, 4), None for the "
+                         "data set's own, or of run odometry='simple', which finds them from the scans")
+
+
 def _data_flags(data: Any, dataset: str, sequences: Iterable[str], reading: Mapping[str, Any]) -> list[str]:
     """Returns the folder of data, or of what `mosbench.open` opened, and how to read it."""
     names = [sequences] if isinstance(sequences, str) else list(sequences)
     if isinstance(data, (Dataset, Sequence)):
         by: Opened = data.opened_by
-        data, dataset, names, reading = by.path, by.dataset, names or by.sequences, {**by.reading, **reading}
+        data, dataset, names = by.path, by.dataset, names or by.sequences
     return [os.fspath(data), *flags(dataset=dataset, sequences=names or None), *reading_flags(reading)]
+
+
+def _answer_on_data(
+    command: str, data: Any, dataset: str, sequences: Iterable[str], reading: Mapping[str, Any], more: list[str]
+) -> tuple[int, Any]:
+    """Answers a command that needs poses and keeps no results."""
+    reading = _how_to_read(data, reading)
+    _refuse_no_poses(reading)
+    with pose_files() as files:
+        return _answer([command, *_data_flags(data, dataset, sequences, files.reading(reading)), *more])
 
 
 def _folder(result: Union[Result, PathLike]) -> str:
     return os.fspath(result.folder if isinstance(result, Result) else result)
 
 
-def _write_changed(file: pathlib.Path, content: bytes) -> None:
-    """Leaves a file alone that has the content already, so that finished runs over it stay finished."""
-    if not file.exists() or file.read_bytes() != content:
-        file.write_bytes(content)
+def _data_folder(out: PathLike) -> pathlib.Path:
+    """Returns <out>-data, for what results in `out` are of and no file had."""
+    out = pathlib.Path(out)
+    return out.with_name(out.name + "-data")
 
 
-def _pose_rows(poses: np.ndarray) -> bytes:
-    """Returns KITTI's rows of poses (K, 4, 4)."""
-    rows = io.BytesIO()
-    np.savetxt(rows, poses[:, :3].reshape(-1, 12), fmt="%.17g")
-    return rows.getvalue()
+@contextlib.contextmanager
+def _removed_on_error(folder: Optional[pathlib.Path]) -> Iterator[None]:
+    """Removes a folder that a failed call made; what Ctrl-C ends goes on from there."""
+    made = folder is not None and not folder.exists()
+    try:
+        yield
+    except Exception:
+        if made:
+            shutil.rmtree(folder, ignore_errors=True)
+        raise
+
+
+def _points_of(item: Any, index: int) -> np.ndarray:
+    points = as_array((item or (None,))[0] if isinstance(item, tuple) else item, f"scan {index}")
+    if points.dtype.kind not in "fiu":
+        raise ValueError(f"scan {index}: is {type(item).__name__} without points, expected (points (N, 3), times)")
+    if points.ndim != 2 or points.shape[1] < 3:
+        raise ValueError(f"scan {index}: has shape {points.shape}, expected (N, 3) or more columns")
+    return points.astype(np.float32, copy=False)
 
 
 def _scan_rows(item: Any, index: int, with_times: bool) -> bytes:
     """Returns a scan of KISS-ICP's data sets as a .bin file, with times as one with five columns."""
-    points = np.asarray(item[0] if isinstance(item, tuple) else item, dtype=np.float32)
-    if points.ndim != 2 or points.shape[1] < 3:
-        raise ValueError(f"scan {index}: has shape {points.shape}, expected (N, 3) or more columns")
+    points = _points_of(item, index)
     rows = np.zeros((len(points), 5 if with_times else 4), dtype="<f4")
     rows[:, : min(4, points.shape[1])] = points[:, :4]
     if with_times:
-        times_s = seconds_after_stamp(item[1] if isinstance(item, tuple) else (), len(points), index)
+        times = item[1] if isinstance(item, tuple) and len(item) > 1 else ()
+        times_s = seconds_after_stamp(times, len(points), index)
         if times_s is None and len(points) > 0:
             raise ValueError(f"scan {index}: has no times of points, expected them with deskew=")
         rows[:, 4] = () if times_s is None else times_s
     return rows.tobytes()
 
 
+def _gt_poses(dataset: Any) -> np.ndarray:
+    poses = getattr(dataset, "gt_poses", None)
+    if poses is None:
+        raise ValueError("data: has no gt_poses, one (4, 4) per scan; expected them, or odometry='simple'")
+    if len(poses) != len(dataset):
+        raise ValueError(f"data: has {len(poses)} gt_poses for {len(dataset)} scans, expected one (4, 4) per scan")
+    return checked_poses(poses, "gt_poses")
+
+
+def _claim(folder: pathlib.Path, dataset: Any) -> None:
+    """Makes the folder of scans. Raises ValueError when it has those of objects of another class."""
+    owner, mark = type(dataset).__qualname__, folder / "class.txt"
+    folder.mkdir(parents=True, exist_ok=True)
+    if mark.exists() and (before := mark.read_text().strip()) != owner:
+        raise ValueError(f"out: {folder} has scans of {before}, expected those of {owner}: give each an out of its own")
+    mark.write_text(owner + "\n")
+
+
 def _write_sequence(dataset: Any, folder: pathlib.Path, with_poses: bool, with_times: bool) -> None:
     """Writes what KISS-ICP takes for a data set: (points, times) by index, `gt_poses`."""
+    poses = _gt_poses(dataset) if with_poses else None
+    _claim(folder.parent, dataset)
     (folder / "velodyne").mkdir(parents=True, exist_ok=True)
     for stale in sorted((folder / "velodyne").glob("[0-9]*.bin"))[len(dataset) :]:
         stale.unlink()  # of a longer data set that was written here before
     for index in range(len(dataset)):
         rows = _scan_rows(dataset[index], index, with_times)
-        _write_changed(folder / "velodyne" / f"{index:06d}.bin", rows)
-    if not with_poses:
-        return
-    poses = getattr(dataset, "gt_poses", None)
-    if poses is None or len(poses) != len(dataset):
-        raise ValueError("data: has no gt_poses, one (4, 4) per scan; expected them, or odometry='simple'")
-    _write_changed(folder / "poses.txt", _pose_rows(np.asarray(poses, dtype=np.float64)))
+        write_changed(folder / "velodyne" / f"{index:06d}.bin", rows)
+    if poses is not None:
+        keep_poses(folder / "poses.txt", poses, "gt_poses")
+
+
+def _with_kept_poses(reading: Mapping[str, Any], out: Optional[PathLike]) -> dict[str, Any]:
+    """Returns how to read data with <out>-data/poses.txt where poses are an array: a report reads them again."""
+    poses = reading.get("poses")
+    if poses is None or is_path(poses):
+        return dict(reading)
+    if out is None:
+        raise ValueError("out: is not given, expected a folder, beside which poses in an array are kept")
+    poses = checked_poses(poses, "poses")
+    file = _data_folder(out) / "poses.txt"
+    file.parent.mkdir(parents=True, exist_ok=True)
+    keep_poses(file, poses, "poses")
+    return {**reading, "poses": file}
 
 
 def run(
@@ -117,40 +184,53 @@ def run(
 
     data: a folder, what `mosbench.open` returned, or an object with `len`, `[i] -> (points (N, 3), times)`
     and `gt_poses`, as KISS-ICP takes data sets; its scans are written to a folder in `<out>-data`, with
-    deskew="velocity" or "poses" also the times.
+    deskew="velocity" or "poses" also the times. Objects of one class may share `out`, by their `sequence_id`.
     out: folder of the results; results/runs/... when not given.
+    config: a Config is all settings of its method, and given without preset. Settings by name are set over
+    those of `preset`, and without one over the preset of the data set, or the method's defaults.
     odometry: "simple" or "kiss" finds the poses from the scans instead of reading them.
     progress: print progress and notes on stderr.
-    reading: `poses`, `pose_frame`, ... as mosbench.READING lists them.
+    reading: `poses`, `pose_frame`, ... as mosbench.READING lists them; poses in an array are kept in `<out>-data`.
     """
+    refuse_no_settings(config)
     if isinstance(config, Config):
+        if preset is not None:
+            raise ValueError(f"preset: is given beside a Config, which replaces all settings of {preset}; expected "
+                             f"config=Config.preset({preset!r}).replace(...), or a dict of what differs")
         if method not in (None, config.method):
             raise ValueError(f"method: is {method}, expected {config.method} as config has it")
         method, config = config.method, config.to_dict()
     if method and _mosbench.names_several_methods(method):
         raise ValueError(f"method: '{method}' names several, expected one; each gives a Result of its own")
-    if not isinstance(data, (str, os.PathLike, Dataset, Sequence)):
-        name = str(getattr(data, "sequence_id", type(data).__name__)).replace("/", "_")
-        out = pathlib.Path(out or f"results/runs/{name}")
-        folder = out.with_name(out.name + "-data") / name
-        with_poses = odometry is None and reading.get("poses") is None
-        with_times = reading.get("deskew") in ("velocity", "poses") and "point_times" not in reading
-        _write_sequence(data, folder, with_poses, with_times)
-        if with_times:
-            reading |= {"point_times": "column", "bin_columns": 5}
-        data = folder
-    arguments = ["run", *_data_flags(data, dataset, sequences, reading)]
-    arguments += flags(preset=preset, out=out, method=method, protocol=protocol, scores=scores)
-    arguments += flags(overwrite=overwrite, threads=threads, drop_moving=drop_moving)
-    arguments += flags(odometry=odometry, odometry_preset=odometry_preset)
-    arguments += _setting_flags(odometry_settings, "--odometry-set")
-    _, answer = _answer(arguments + _setting_flags(config), quiet=not progress)
+    reading = _how_to_read(data, reading)
+    if odometry is None:
+        _refuse_no_poses(reading)
+    elif reading.get("poses") is False:
+        reading["poses"] = None
+    is_object = not isinstance(data, (str, os.PathLike, Dataset, Sequence))
+    name = str(getattr(data, "sequence_id", type(data).__name__)).replace("/", "_")
+    if is_object and out is None:
+        out = f"results/runs/{name}"
+    with _removed_on_error(None if out is None else _data_folder(out)):
+        if is_object:
+            folder = _data_folder(out) / name
+            with_times = reading.get("deskew") in ("velocity", "poses") and "point_times" not in reading
+            _write_sequence(data, folder, odometry is None and reading.get("poses") is None, with_times)
+            if with_times:
+                reading |= {"point_times": "column", "bin_columns": 5}
+            data = folder
+        arguments = ["run", *_data_flags(data, dataset, sequences, _with_kept_poses(reading, out))]
+        arguments += flags(preset=preset, out=out, method=method, protocol=protocol, scores=scores)
+        arguments += flags(overwrite=overwrite, threads=threads, drop_moving=drop_moving)
+        arguments += flags(odometry=odometry, odometry_preset=odometry_preset)
+        arguments += _setting_flags(odometry_settings, "--odometry-set")
+        _, answer = _answer(arguments + _setting_flags(config), quiet=not progress)
     return Result(answer["out"])
 
 
 def score(
     data: Any,
-    predictions: PathLike,
+    predictions: Union[Result, PathLike],
     protocol: Optional[str] = None,
     out: Optional[PathLike] = None,
     *,
@@ -166,15 +246,24 @@ def score(
 ) -> Result:
     """Scores the predictions of any method, as `mosbench score` does.
 
+    predictions: a folder or file, or a Result; for labels in arrays there is `mosbench.metrics`.
     out: folder to keep the results in; without it they are dropped after they are read.
     data, reading: as for `run`.
     """
+    if not isinstance(predictions, (Result, str, os.PathLike)):
+        raise TypeError(f"predictions: is {type(predictions).__name__}, expected a folder or file, or a Result; "
+                        "mosbench.metrics takes arrays")
+    if protocol == "all":
+        raise ValueError(f"protocol: is 'all', expected one: {', '.join(_mosbench.protocol_names())}")
+    reading = _how_to_read(data, reading)
+    if reading.get("poses") is False:
+        reading["poses"] = None  # no score depends on them
     with tempfile.TemporaryDirectory() as scratch:
         kept = pathlib.Path(out) if out is not None else pathlib.Path(scratch) / "score"
-        arguments = ["score", *_data_flags(data, dataset, sequences, reading)]
-        arguments += flags(predictions=predictions, protocol=protocol, out=kept, format=format)
-        arguments += flags(id_map=id_map, split=split, method=method, allow_missing=allow_missing)
-        _answer(arguments + flags(threads=threads))
+        arguments = flags(predictions=_folder(predictions), protocol=protocol, out=kept, format=format)
+        arguments += flags(id_map=id_map, split=split, method=method, allow_missing=allow_missing, threads=threads)
+        with _removed_on_error(_data_folder(kept)):
+            _answer(["score", *_data_flags(data, dataset, sequences, _with_kept_poses(reading, kept)), *arguments])
         return Result(kept)
 
 
@@ -189,8 +278,8 @@ def breakdown(
     **reading: Any,
 ) -> dict[str, Any]:
     """Returns where predictions are right and wrong: by range, size and speed, as `breakdown --json` has it."""
-    arguments = ["breakdown", *_data_flags(data, dataset, sequences, reading)]
-    return _answer(arguments + flags(predictions=_folder(predictions), protocol=protocol, top=top))[1]
+    more = flags(predictions=_folder(predictions), protocol=protocol, top=top)
+    return _answer_on_data("breakdown", data, dataset, sequences, reading, more)[1]
 
 
 def diff(
@@ -223,10 +312,13 @@ def curve(result: Union[Result, PathLike], picture: Optional[PathLike] = None) -
 
 @dataclasses.dataclass(frozen=True)
 class Comparison:
-    """What comparing two runs found."""
+    """What comparing two runs found; true when it is ok."""
 
     ok: bool  #: no sequence lost more than it may
     content: dict[str, Any] = dataclasses.field(repr=False)  #: as `compare --json` has it
+
+    def __bool__(self) -> bool:
+        return self.ok
 
 
 def compare(
@@ -258,6 +350,7 @@ def simulate(
 
     perturb: "KIND=STRENGTH,...,seed=N", disturbances as `mosbench list perturbations` has them.
     """
+    scans, seed = whole_number(scans, "scans", 1), whole_number(seed, "seed", 0)
     arguments = ["simulate", *flags(out=out, layout=layout, scene=scene, scans=scans, seed=seed, perturb=perturb)]
     _command(arguments)
     return pathlib.Path(out)
@@ -270,10 +363,13 @@ def stats(first: Union[Result, PathLike], second: Union[Result, PathLike, None] 
 
 @dataclasses.dataclass(frozen=True)
 class Checkup:
-    """What the doctor found."""
+    """What the doctor found; true when it is ok."""
 
     ok: bool  #: nothing is wrong
     content: dict[str, Any] = dataclasses.field(repr=False)  #: as `doctor --json` has it
+
+    def __bool__(self) -> bool:
+        return self.ok
 
     @property
     def symptoms(self) -> list[dict[str, Any]]:
@@ -283,27 +379,18 @@ class Checkup:
 
 def doctor(data: Any, *, dataset: str = "auto", sequences: Iterable[str] = (), **reading: Any) -> Checkup:
     """Checks a data set before anything is run on it; data and reading as for `run`."""
-    exit_code, content = _answer(["doctor", *_data_flags(data, dataset, sequences, reading)])
+    exit_code, content = _answer_on_data("doctor", data, dataset, sequences, reading, [])
     return Checkup(exit_code == 0, content)
-
-
-def _pose_file(poses: Any, folder: str, name: str) -> str:
-    if isinstance(poses, (str, os.PathLike)):
-        return os.fspath(poses)
-    matrices = as_array(poses)
-    if matrices.ndim != 3 or matrices.shape[1:] != (4, 4):
-        raise ValueError(f"{name}: has shape {matrices.shape}, expected (K, 4, 4)")
-    file = pathlib.Path(folder, f"{name}.txt")
-    file.write_bytes(_pose_rows(matrices))
-    return os.fspath(file)
 
 
 def evaluate_trajectory(estimate: Any, truth: Any, *, align: str = "none") -> dict[str, Any]:
     """Returns KITTI's errors, APE and RPE of poses (files, or arrays (K, 4, 4)), as `trajectory --json`.
 
     align: "none", "origin", "rigid" or "similarity".
+    KITTI's errors are the devkit's to every digit, and so of numbers in float32: an error of rotation under
+    about 0.02 degrees may round to 0 there, or to that; APE and RPE are of float64.
     """
-    with tempfile.TemporaryDirectory() as folder:
-        arguments = ["trajectory", _pose_file(estimate, folder, "estimate")]
-        arguments += flags(truth=_pose_file(truth, folder, "truth"), align=align)
-        return _answer(arguments)[1]
+    with pose_files() as files:
+        arguments = ["trajectory", files.path(estimate, "estimate")]
+        arguments += [*flags(truth=files.path(truth, "truth"), align=align), "--json"]
+        return json.loads(files.named(_command(arguments)[1]))

@@ -5,12 +5,13 @@ from __future__ import annotations
 import dataclasses
 import os
 import pathlib
-from typing import Any, Iterator, Optional, Sequence as List, Union
+from typing import Any, Iterator, Optional, Sequence as List, Union, overload
 
 import numpy as np
 
 from mosbench import _mosbench
 from mosbench.flags import plain_errors, reading_flags
+from mosbench.poses import pose_files
 
 PathLike = Union[str, os.PathLike]
 SCAN_S = 0.1  #: how long a scan is taken to last where nothing says it
@@ -52,8 +53,8 @@ class Scan:
 class Sequence:
     """Scans of one sensor in order; reads each when it is asked for.
 
-    Also a data set as KISS-ICP takes them: `sequence[i]` is (points (N, 3) float64, times (N,) 0 to 1),
-    `gt_poses` is (K, 4, 4).
+    Iterating gives a `Scan` each, `scan(i)` one of them. Also a data set as KISS-ICP takes them, and so
+    `sequence[i]` is no Scan but (points (N, 3) float64, times (N,) 0 to 1); `gt_poses` is (K, 4, 4).
     """
 
     def __init__(self, opened: Any, opened_by: "Opened"):
@@ -89,6 +90,7 @@ class Sequence:
         return (self.scan(index) for index in range(len(self)))
 
     def __getitem__(self, index: int) -> tuple[np.ndarray, np.ndarray]:
+        """Points and times as KISS-ICP takes them."""
         scan = self.scan(index)
         times = np.zeros(0)
         if scan.point_times_ns is not None:
@@ -101,7 +103,7 @@ class Sequence:
 
 
 class Dataset:
-    """All sequences of a data set, by name or number; iterates over their scans one after the other."""
+    """The sequences of a data set, by name or number: `len`, `data[i]`, `data["08"]` and iteration are of them."""
 
     def __init__(self, opened: Any, opened_by: "Opened"):
         self._opened = opened
@@ -135,8 +137,8 @@ class Dataset:
     def __len__(self) -> int:
         return len(self.sequences)
 
-    def __iter__(self) -> Iterator[Scan]:
-        return (scan for sequence in self.sequences for scan in sequence)
+    def __iter__(self) -> Iterator[Sequence]:
+        return iter(self.sequences)
 
     def __repr__(self) -> str:
         return f"<mosbench.Dataset {self.kind} at {self.root}: {len(self)} sequences>"
@@ -159,25 +161,46 @@ def seconds_after_stamp(times: Any, count: int, index: int) -> Optional[np.ndarr
     return SCAN_S * times
 
 
+@overload
+def open(path: PathLike, sequence: str, *, dataset: str = "auto", poses: Any = None, **reading: Any) -> Sequence: ...
+
+
+@overload
+def open(
+    path: PathLike,
+    sequence: None = None,
+    *,
+    dataset: str = "auto",
+    sequences: List[str] = (),
+    poses: Any = None,
+    **reading: Any,
+) -> Union[Dataset, Sequence]: ...
+
+
 def open(
     path: PathLike,
     sequence: Optional[str] = None,
     *,
     dataset: str = "auto",
     sequences: List[str] = (),
-    poses: Union[PathLike, bool, None] = None,
+    poses: Any = None,
     **reading: Any,
 ) -> Union[Dataset, Sequence]:
     """Opens a data set, or with `sequence`, or of a folder with a single one, that sequence.
 
-    poses: a file to take instead of the sequence's own; False: read none, every pose is the identity.
+    poses: a file to take instead of the sequence's own, or (K, 4, 4), or a list of (4, 4), map_from_sensor
+    of the LiDAR; False: read none, every pose is the identity.
     reading: as READING lists them.
     Raises OSError for what cannot be read, ValueError for a sequence that is not there.
     """
     several = [sequences] if isinstance(sequences, str) else [str(name) for name in sequences]
     names = several if sequence is None else [sequence]
+    if poses is True:
+        raise ValueError("poses: is True, expected a file, (K, 4, 4), False, or None for the sequence's own")
+    given = {"poses": poses, **reading}
     with_poses = poses is not False
-    given = {"poses": poses or None, **reading}
-    found = plain_errors(_mosbench.open, os.fspath(path), dataset, names, reading_flags(given), with_poses)
+    with pose_files() as files:
+        read = reading_flags(files.reading({**given, "poses": poses if with_poses else None}))
+        found = plain_errors(_mosbench.open, os.fspath(path), dataset, names, read, with_poses)
     opened = Dataset(found, Opened(os.path.abspath(path), dataset, tuple(names), given))
     return opened.sequences[0] if len(opened) == 1 and not several else opened

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import operator
 import os
 import re
 from typing import Any, Callable, Mapping
 
 #: How data are read; `mosbench run --help` says what each means.
 READING = (
-    "poses",  # file to take instead of the sequence's own
+    "poses",  # file, or (K, 4, 4) map_from_sensor of the LiDAR, to take instead of the sequence's own
     "pose_format",  # "kitti", "tum" or "dynablox"
     "pose_frame",  # "lidar" or "camera"
     "pose_direction",  # "map-from-sensor" or "sensor-from-map"
@@ -49,6 +50,7 @@ def reading_flags(reading: Mapping[str, Any]) -> list[str]:
 
 def _in_python(message: str) -> str:
     """Returns a message of the program with arguments where it names flags."""
+    message = re.sub(r"mosbench run .* --odometry (\w+)", r"run(odometry='\1')", message)
     message = re.sub(r"; see mosbench [\w ]*--help", "", message)
     return re.sub(r"(?<![\w-])--([a-z][a-z-]*)", lambda match: match[1].replace("-", "_"), message)
 
@@ -59,3 +61,18 @@ def plain_errors(call: Callable[..., Any], *arguments: Any) -> Any:
         return call(*arguments)
     except (ValueError, OSError) as error:
         raise type(error)(_in_python(str(error))) from None
+
+
+INT64 = 2**63
+
+
+def whole_number(value: Any, name: str, least: int = -INT64, most: int = INT64 - 1) -> int:
+    """Returns an int. Raises TypeError for what is no whole number, ValueError for one out of range."""
+    try:
+        number = operator.index(value)
+    except TypeError:
+        raise TypeError(f"{name}: is {value!r}, expected a whole number") from None
+    if not least <= number <= most:
+        legal = f"{least} or more" if number < least and most == INT64 - 1 else f"{least} to {most}"
+        raise ValueError(f"{name}: is {number}, expected {legal}")
+    return number

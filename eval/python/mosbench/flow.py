@@ -20,6 +20,7 @@ def moving_for_h5(
 ) -> int:
     """Fills the data set `dufo` (uint8 (N,), 1 moving) of every group of an .h5 file of OpenSceneFlow.
 
+    config: as `MOS` takes it; "hmm-mos" with its defaults when not given, which `mosbench.Config()` prints.
     Groups are named by their stamp and hold `lidar` (N, 3 or more) and `pose` (4, 4). The file is replaced
     when all labels are there, and not before. Returns the number of scans. Raises ValueError for a file
     without these groups, or that has `dufo` already unless `overwrite`.

@@ -11,7 +11,12 @@ from mosbench.arrays import as_array
 
 
 def _label_array(values: Any, name: str) -> np.ndarray:
-    labels = as_array(values)
+    if values is None:
+        raise ValueError(f"{name}: is None, expected labels (N,); a scan without truth has no score")
+    labels = as_array(values, name)
+    if labels.dtype.kind not in "biu":
+        raise ValueError(f"{name}: has type {labels.dtype}, expected bool, or label ids as integers; of scores "
+                         "say which move, as in scores > 0.5")
     if labels.dtype != bool and labels.size and 0 < labels.max() <= 2 and labels.min() >= 0:
         raise ValueError(f"{name}: holds no other ids than 0, 1 and 2, which are classes of a network; "
                          "expected bool, or label ids")
@@ -22,7 +27,7 @@ def _counted_arrays(predicted: Any, truth: Any, points: Any) -> tuple:
     return (
         _label_array(predicted, "predicted"),
         _label_array(truth, "truth"),
-        None if points is None else as_array(points),
+        None if points is None else as_array(points, "points"),
     )
 
 

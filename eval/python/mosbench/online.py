@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import collections.abc
 import copy
 import dataclasses
 import os
-from typing import Any, Iterable, Mapping, Optional, Union
+from typing import Any, Iterable, Iterator, Mapping, Optional, Union
 
 import numpy as np
 
@@ -13,17 +14,27 @@ from mosbench import _mosbench
 from mosbench.arrays import as_array
 from mosbench.datasets import open as open_data
 from mosbench.datasets import seconds_after_stamp
+from mosbench.flags import plain_errors, whole_number
 
 SettingValue = Union[int, float, str]
+MOST_THREADS = 1024
 
 
-class Config:
-    """A method and its settings. Settings carry their unit in their name, as in `voxel_size_m`."""
+def _set(settings: Any, values: Mapping[str, SettingValue]) -> None:
+    for name, value in values.items():
+        value = value.item() if isinstance(value, np.generic) else value
+        if not isinstance(value, (int, float, str)):
+            raise TypeError(f"{name}: is {value!r}, expected a number or a name")
+        settings.set(name, value)
+
+
+class Config(collections.abc.Mapping):
+    """A method and its settings, a mapping of them. They carry their unit in their name, as in `voxel_size_m`."""
 
     def __init__(self, method: str = "hmm-mos", **settings: SettingValue):
         """Takes the method's defaults with these settings over them."""
         self._method = method
-        self._settings = _mosbench.method_settings(method, None)
+        self._settings = plain_errors(_mosbench.method_settings, method, None)
         self._set(settings)
 
     @classmethod
@@ -32,13 +43,13 @@ class Config:
 
         They are for "hmm-mos" when no method is named; "best" is of "hmm-mos-plus".
         """
-        method = _mosbench.method_name(method, name)
-        return cls._of(method, _mosbench.method_settings(method, name))
+        method = plain_errors(_mosbench.method_name, method, name)
+        return cls._of(method, plain_errors(_mosbench.method_settings, method, name))
 
     @classmethod
     def load(cls, file: Union[str, os.PathLike], method: str = "hmm-mos") -> "Config":
         """Returns the defaults with the settings of a JSON object over them, as `--config` does."""
-        settings = _mosbench.method_settings(method, None)
+        settings = plain_errors(_mosbench.method_settings, method, None)
         with open(file, "rb"):
             pass  # OSError where there is no such file; ValueError is for what is in it
         settings.load(os.fspath(file))
@@ -58,8 +69,7 @@ class Config:
         return replaced
 
     def _set(self, settings: Mapping[str, SettingValue]) -> None:
-        for name, value in settings.items():
-            self._settings.set(name, value.item() if isinstance(value, np.generic) else value)
+        _set(self._settings, settings)
         _mosbench.check_settings(self._method, self._settings)
 
     @property
@@ -78,6 +88,15 @@ class Config:
     def __getitem__(self, name: str) -> SettingValue:
         return self.to_dict()[name]
 
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.to_dict())
+
+    def __len__(self) -> int:
+        return len(self.to_dict())
+
+    def __reduce__(self) -> tuple:
+        return _config_of, (self._method, self.to_dict())
+
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Config):
             return NotImplemented
@@ -86,6 +105,18 @@ class Config:
     def __repr__(self) -> str:
         values = ", ".join(f"{name}={value!r}" for name, value in self.to_dict().items())
         return f"Config({self._method!r}, {values})"
+
+
+def _config_of(method: str, settings: dict[str, SettingValue]) -> Config:
+    return Config(method, **settings)
+
+
+def refuse_no_settings(config: Any) -> None:
+    """Raises TypeError, or for the name of a file or preset ValueError, for what holds no settings."""
+    if isinstance(config, (str, os.PathLike)):
+        raise ValueError("config: is a text, expected settings by name, Config.preset(...) or Config.load(...)")
+    if config is not None and not isinstance(config, collections.abc.Mapping):
+        raise TypeError(f"config: is {type(config).__name__}, expected a Config, or settings by name")
 
 
 @dataclasses.dataclass(frozen=True)
@@ -122,18 +153,21 @@ class MOS:
     ):
         """Takes a config, or settings by name over the method's defaults ("hmm-mos" when none is named).
 
+        `MOS()` is `MOS(Config())`, the defaults of "hmm-mos", and no preset: `run` without one takes that of
+        the data set instead. Presets: `MOS(Config.preset(name))`.
         A config is of one method: `Config.preset(name, method=...)` and `Config(method, ...)` make one.
         `scan_count` is the length of the sequence where it is known: the end of a delayed run may be
         labelled in another way.
         """
         if not isinstance(config, Config):
-            if isinstance(config, (str, os.PathLike)):
-                raise ValueError("config: is a text, expected settings by name, Config.preset(...) or Config.load(...)")
+            refuse_no_settings(config)
             config = Config(method or "hmm-mos", **dict(config or {}))
         elif method not in (None, config.method):
             raise ValueError(f"method: is {method}, expected {config.method} as config has it")
         self._config = config
-        self._method = _mosbench.Method(config.method, config._settings, threads, scan_count, scores)
+        threads = whole_number(threads, "threads", 1, MOST_THREADS)
+        scan_count = None if scan_count is None else whole_number(scan_count, "scan_count", 0)
+        self._method = _mosbench.Method(config.method, config._settings, threads, scan_count, bool(scores))
 
     @property
     def config(self) -> Config:
@@ -146,7 +180,7 @@ class MOS:
         points: (N, 3) or (N, 4), sensor frame, metres; float32 (N, 4) in C order is not copied.
         pose: (4, 4), map_from_sensor.
         """
-        return [Labels(**scan) for scan in self._method.push(as_array(points), as_array(pose))]
+        return [Labels(**scan) for scan in self._method.push(as_array(points, "points"), as_array(pose, "pose"))]
 
     def finish(self) -> list[Labels]:
         """Returns what a delay still holds back. Nothing can be pushed after it."""
@@ -187,17 +221,24 @@ class Odometry:
         **settings: SettingValue,
     ):
         """kind: "simple" (SiMpLE) or "kiss" (KISS-ICP)."""
-        values = _mosbench.odometry_settings(kind, preset)
-        for name, value in settings.items():
-            values.set(name, value)
-        self._odometry = _mosbench.Odometry(kind, values, threads)
+        values = plain_errors(_mosbench.odometry_settings, kind, preset)
+        _set(values, settings)
+        self._odometry = _mosbench.Odometry(kind, values, whole_number(threads, "threads", 1, MOST_THREADS))
 
     def push(
         self, points: Any, stamp_ns: Optional[int] = None, point_times_ns: Any = None
     ) -> OdometryPose:
         """points: as MOS.push; point_times_ns: (N,) after the stamp, for moving the points by them."""
-        times = [] if point_times_ns is None else as_array(point_times_ns).astype(np.int64).tolist()
-        return OdometryPose(**self._odometry.push(as_array(points), stamp_ns, times))
+        stamp_ns = None if stamp_ns is None else whole_number(stamp_ns, "stamp_ns")
+        times_ns = [] if point_times_ns is None else _times_ns(point_times_ns)
+        return OdometryPose(**self._odometry.push(as_array(points, "points"), stamp_ns, times_ns))
+
+
+def _times_ns(times: Any) -> list[int]:
+    times = as_array(times, "point_times_ns")
+    if times.ndim != 1 or times.dtype.kind not in "fiu" or not np.isfinite(times).all():
+        raise ValueError(f"point_times_ns: has shape {times.shape}, type {times.dtype}, expected (N,) finite numbers")
+    return times.astype(np.int64).tolist()
 
 
 def odometry(scans: Iterable[Any], kind: str = "simple", **options: Any) -> np.ndarray:
@@ -212,6 +253,7 @@ def odometry(scans: Iterable[Any], kind: str = "simple", **options: Any) -> np.n
     if len(sequences := getattr(scans, "sequences", ())) > 1:
         names = ", ".join(sequence.name for sequence in sequences)
         raise ValueError(f"scans: are {len(sequences)} sequences, expected one, as data[name]: {names}")
+    scans = sequences[0] if sequences else scans
     engine = Odometry(kind, **options)
     poses = []
     for index, scan in enumerate(scans):

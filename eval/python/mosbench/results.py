@@ -7,7 +7,8 @@ import html
 import json
 import os
 import pathlib
-from typing import Any, Optional, Union
+import re
+from typing import Any, Iterator, Optional, Union
 
 import numpy as np
 
@@ -32,6 +33,10 @@ _SCAN_TYPE = np.dtype(
 )
 
 
+#: How the program begins what it says loudly: "THE POSES FIT AS ...", "MOST POSES ARE DOUBTFUL, ...".
+_LOUD = re.compile(r"(\b[A-Z]{2,} ){2}|INCOMPLETE")
+
+
 def _scan_row(sequence: str, scan: dict[str, Any]) -> tuple:
     counts = scan["counts"] or {"tp": 0, "fp": 0, "fn": 0, "tn": 0}
     union = counts["tp"] + counts["fp"] + counts["fn"]
@@ -45,10 +50,16 @@ def _scan_row(sequence: str, scan: dict[str, Any]) -> tuple:
 
 @dataclasses.dataclass(frozen=True)
 class SequenceResult:
-    """One sequence. Metrics are fractions as the protocol defines them, None where they are 0/0."""
+    """One sequence of a Result.
+
+    name: of the sequence. folder: of its result.json and labels. header: what its result.json says beside its
+    scans. metrics: iou, precision, recall and f1 as fractions, as the protocol defines them, None where 0/0.
+    method_ms_per_scan: wall time of the method. scans: what the result says of each scan.
+    """
 
     name: str
     folder: pathlib.Path
+    header: dict[str, Any] = dataclasses.field(repr=False)
     metrics: dict[str, Optional[float]]
     method_ms_per_scan: Optional[float]
     scans: list[dict[str, Any]] = dataclasses.field(repr=False)
@@ -64,29 +75,75 @@ class SequenceResult:
         labelled, tp, fp, fn, tn, iou (NaN where nothing moves)."""
         return np.array([_scan_row(self.name, scan) for scan in self.scans], dtype=_SCAN_TYPE)
 
+    @property
+    def remarks(self) -> list[str]:
+        """What was assumed or found odd, of the data and of the predictions."""
+        return [*self.header.get("remarks", []), *self._of_predictions()]
+
+    @property
+    def warnings(self) -> list[str]:
+        """The remarks that make the numbers doubtful."""
+        loud = [remark for remark in self.header.get("remarks", []) if _LOUD.search(remark)]
+        unjudged = len(self.header.get("scans_without_detection", []))
+        if unjudged and unjudged == len(self.scans):
+            loud.append("all scans are labelled static without detection")
+        return loud + self._of_predictions()
+
+    def _of_predictions(self) -> list[str]:
+        return self.header.get("predictions", {}).get("remarks", [])
+
     def labels(self, stem: str) -> np.ndarray:
         """uint32 (N,), as the run wrote them."""
         return np.fromfile(self.folder / "labels" / f"{stem}.label", dtype="<u4")
 
 
+def _without_results(folder: pathlib.Path, sequences: list[SequenceResult]) -> list[str]:
+    """Returns the sequences of a run, as each of its results names them, that have no result in its folder."""
+    wanted: dict[str, None] = {}
+    for sequence in sequences:
+        file = sequence.folder / "result.json"
+        if sequence.folder == folder or not file.is_file():
+            return []  # one result of a run was asked for, and not the run
+        wanted.update(dict.fromkeys(json.loads(file.read_bytes()).get("timing", {}).get("sequences_of_run", [])))
+    return [name for name in wanted if name not in {sequence.name for sequence in sequences}]
+
+
 class Result:
-    """What a folder of results says: `mosbench.Result("results/runs/x")`, or what `run` returns."""
+    """What a folder of results says: `mosbench.Result("results/runs/x")`, or what `run` and `score` return.
+
+    `len`, iteration and `result[i]` are of its sequences, `result["08"]` is one of them.
+
+    folder: where it lies. sequences: a SequenceResult each. header: that of the first sequence, with settings,
+    versions and how the data were read. method: its title; setting: of the method, in words. dataset: its layout.
+    protocol: by which it is scored. simulated: whether the data are. metrics: iou, precision, recall and f1 over
+    all sequences, 0 to 1, None where 0/0. warnings: what has to be said wherever the numbers are shown.
+    """
 
     def __init__(self, folder: Union[str, os.PathLike]):
         """Raises OSError when the folder holds no results or those of several runs."""
         self.folder = pathlib.Path(folder)
-        content = _mosbench.load_results(os.fspath(folder))
-        #: what the first result.json says beside its scans: settings, versions, where the scans are
-        self.header: dict[str, Any] = json.loads(content["header"])
-        self.sequences = [SequenceResult(**one) for one in content["sequences"]]
-        self.method: str = content["method"]  #: its title
-        self.setting: str = content["setting"]  #: of the method, in words
+        content = plain_errors(_mosbench.load_results, os.fspath(folder))
+        self.sequences = [
+            SequenceResult(**{**one, "header": json.loads(one["header"])}) for one in content["sequences"]
+        ]
+        self.header: dict[str, Any] = self.sequences[0].header
+        self.method: str = content["method"]
+        self.setting: str = content["setting"]
         self.dataset: str = content["dataset"]
         self.protocol: str = content["protocol"]
         self.simulated: bool = content["simulated"]
-        self.warnings: list[str] = content["warnings"]  #: to be said wherever the numbers are shown
-        #: iou, precision, recall and f1, 0 to 1; None where 0/0
+        self.warnings: list[str] = content["warnings"] + self._own_warnings()
         self.metrics: dict[str, Optional[float]] = content["metrics"]
+
+    def _own_warnings(self) -> list[str]:
+        missing = _without_results(self.folder, self.sequences)
+        half = [f"INCOMPLETE: the run is interrupted, {', '.join(missing)} have no results"] if missing else []
+        return half + [f"{one.name}: {warning}" for one in self.sequences for warning in one.warnings]
+
+    @property
+    def remarks(self) -> list[str]:
+        """What was assumed or found odd in each sequence, warnings among them."""
+        return [f"{one.name}: {remark}" for one in self.sequences for remark in one.remarks]
 
     @property
     def iou(self) -> Optional[float]:
@@ -113,7 +170,15 @@ class Result:
         """SequenceResult.per_scan of all sequences, one after the other."""
         return np.concatenate([sequence.per_scan for sequence in self.sequences])
 
-    def __getitem__(self, name: str) -> SequenceResult:
+    def __len__(self) -> int:
+        return len(self.sequences)
+
+    def __iter__(self) -> Iterator[SequenceResult]:
+        return iter(self.sequences)
+
+    def __getitem__(self, name: Union[str, int]) -> SequenceResult:
+        if isinstance(name, (int, np.integer)):
+            return self.sequences[name]
         for sequence in self.sequences:
             if sequence.name == name:
                 return sequence
@@ -127,7 +192,12 @@ class Result:
         return pandas.DataFrame.from_records(self.per_scan)
 
     def report(self, file: Union[str, os.PathLike], *, max_mb: Optional[float] = None) -> pathlib.Path:
-        """Writes the report, one HTML file with the scans in 3-D, and returns its path."""
+        """Writes the report, one .html file with the scans in 3-D, and returns its path.
+
+        Raises ValueError for another kind of file, OSError.
+        """
+        if pathlib.Path(file).suffix not in (".html", ".htm"):
+            raise ValueError(f"file: is {os.fspath(file)}, expected a name in .html")
         arguments = ["report", os.fspath(self.folder), "-o", os.fspath(file)]
         if max_mb is not None:
             arguments += ["--max-mb", str(max_mb)]
@@ -136,7 +206,7 @@ class Result:
 
     def _rows(self) -> list[tuple[str, ...]]:
         def percent(value: Optional[float]) -> str:
-            return "undefined" if value is None else f"{100 * value:.1f}"
+            return "undefined" if value is None else f"{100 * value:.1f} %"
 
         rows = [
             (one.name, str(len(one.scans)), *(percent(one.metrics[m]) for m in ("iou", "precision", "recall")))
@@ -153,14 +223,15 @@ class Result:
         return f"{self.method}{setting}, protocol {self.protocol}{simulated}"
 
     def __repr__(self) -> str:
-        lines = [f"{name}: IoU {iou} %, precision {precision} %, recall {recall} %"
+        lines = [f"{name}: IoU {iou}, precision {precision}, recall {recall}"
                  for name, _, iou, precision, recall in self._rows()]  # fmt: skip
-        return "\n".join([self._title(), *lines])
+        return "\n".join([self._title(), *lines, *(f"WARNING: {warning}" for warning in self.warnings)])
 
     def _repr_html_(self) -> str:
         def cells(tag: str, row: tuple[str, ...]) -> str:
             return "<tr>" + "".join(f"<{tag}>{html.escape(cell)}</{tag}>" for cell in row) + "</tr>"
 
-        head = cells("th", ("sequence", "scans", "IoU %", "precision %", "recall %"))
+        head = cells("th", ("sequence", "scans", "IoU", "precision", "recall"))
         body = "".join(cells("td", row) for row in self._rows())
-        return f"<table><caption>{html.escape(self._title())}</caption>{head}{body}</table>"
+        warnings = "".join(f"<p>WARNING: {html.escape(warning)}</p>" for warning in self.warnings)
+        return f"<table><caption>{html.escape(self._title())}</caption>{head}{body}</table>{warnings}"
