@@ -22,7 +22,7 @@ case "${1:-}" in
   "" | --page) ;;
   --python | --tests)
     packages+=(pybind11-dev python3-dev python3-numpy python3-pytest python3-h5py python3-matplotlib
-      python3-pandas python3-pip python3-setuptools python3-wheel)
+      python3-pandas python3-pip python3-venv python3-setuptools python3-wheel)
     ;;
   --checks) packages+=(clang clang-format clang-tidy doxygen) ;;
   --package) packages+=(pybind11-dev python3-dev python3-numpy dpkg-dev lintian mmdebstrap) ;;
