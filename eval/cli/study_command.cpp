@@ -127,7 +127,9 @@ Answer table_answer(const StudyPlan& plan, const StudyFlags& flags) {
   const std::string text = table_in(flags.format, plan, table);
   if (flags.output == "-") return {text, exit_code};
   write_output(flags.output, text);
-  return {fmt::format("wrote {}\n", flags.output.string()), exit_code};
+  const std::string rest =
+      exit_code == 0 ? "" : fmt::format("; {} of {} cells are done", table.done, table.cells);
+  return {fmt::format("wrote {}{}\n", flags.output.string(), rest), exit_code};
 }
 
 Answer run_answer(const Study& study, const StudyPlan& plan, const StudyFlags& flags) {

@@ -29,6 +29,15 @@ SCENE = {
     "doors": [{"hinge_m": [-0.6, -3.8], "period_s": 0.5, "swing_s": 0.2}],
     "balls": [{"from_m": [2, -2, 1.2], "velocity_m_s": [-3.5, 0.5, 3], "period_s": 0.4}],
 }
+STUDY = """name: hostile
+data: {name: drive, path: data}
+methods: [hmm-mos, {name: near, method: dynablox, set: {max_range_m: 8}}]
+odometry: [none, kiss]
+disturb:
+  - {kind: pose_noise_m, strengths: [0.05, 0.2]}
+vary: [{setting: voxel_size_m, values: [0.4, 0.5]}]
+seeds: [1, 2]
+"""
 SCANS = 8
 # Settings with which even so few points make something move.
 CONFIG = {"voxel_size_m": 0.5, "kernel_width_voxels": 1, "min_otsu_score": 0, "min_state_probability": 0.9,
@@ -55,6 +64,8 @@ def _steady_result(data):
     result = json.loads(data)
     if "timing" in result:
         result["timing"] = {**_steady(result["timing"]), "dataset_root": "data"}
+    if "source" in result:
+        result["source"] = {**result["source"], "dataset_root": "data", "predictions": "run"}
     if "machine" in result:
         result["machine"] = {"processor": "one", "logical_cores": 2, "memory_mib": 4096.0, "system": "Linux x86_64"}
     return json.dumps(result, indent=1).encode()
@@ -69,6 +80,7 @@ class Maker:
             "scene.json": json.dumps(SCENE, indent=1).encode(),
             "config.json": json.dumps(CONFIG).encode(),
             "other.json": json.dumps(OTHER_CONFIG).encode(),
+            "study.yaml": STUDY.encode(),
         }
         folders.renew(folder, self.texts)
 
@@ -99,6 +111,8 @@ def _simulated(maker):
     for compression in ("none", "lz4", "bz2"):
         trees[f"bag_{compression}"] = maker.make(
             f"bag_{compression}", f"convert doals --layout doals-bag --compression {compression} --out")
+    for container in ("mcap", "db3"):
+        trees[container] = maker.make(container, f"convert doals --layout ros2-{container} --out")
     return trees
 
 

@@ -7,7 +7,8 @@ import re
 import shutil
 import stat
 
-CLOCK_KEYS = ("timing", "wall_s")
+# Members of result.json that tell when and where it was made.
+OWN_KEYS = ("timing", "wall_s", "source")
 # Names of what an interrupted write may leave.
 UNFINISHED = r"\.partial|\.replaced|\.mosbench"
 
@@ -74,7 +75,7 @@ def _without_clock(name, data):
         value = json.loads(data.decode())
     except (ValueError, RecursionError):
         return data
-    for key in CLOCK_KEYS:
+    for key in OWN_KEYS:
         value.pop(key, None)
     return json.dumps(value).encode()
 

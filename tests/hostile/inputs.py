@@ -8,7 +8,8 @@ import folders
 LAYOUTS = ("doals", "doals-bag", "sipailou", "helimos", "semantickitti")
 RUN = "run data --config config.json --threads 1 --out out"
 READING = [
-    RUN, f"{RUN} --json", f"{RUN} --scores --odometry kiss", "doctor data", "doctor data --json",
+    RUN, f"{RUN} --json", f"{RUN} --perturb pose_noise_m=0.05,dropout_probability=0.2,fog_per_m=0.02,seed=3",
+    f"{RUN} --scores --odometry kiss", "doctor data", "doctor data --json",
     "odometry data -o out.txt --threads 1", "odometry data -o out.tum --odometry kiss --json --threads 1",
     "profile data --scans 3 --json p.json --trace t.json", *(f"convert data --layout {layout} --out out" for layout in LAYOUTS),
     "score data --predictions predicted --json", "score data --predictions predicted --protocol all",
@@ -56,6 +57,10 @@ def _scans(trees):
     for compression in ("none", "lz4", "bz2"):
         tree = _prefixed(trees, data=f"bag_{compression}", predicted="doals_run")
         yield Kind(f"bag {compression}", tree, re.compile(r"\.bag$"), [*READING, f"{RUN} --raw-scans"])
+    for container, pattern in (("mcap", r"\.mcap$"), ("db3", r"\.db3$"), ("db3", r"metadata\.yaml$")):
+        tree = _prefixed(trees, data=container)
+        recording = [*READING[:READING.index("score data --predictions predicted --json")], f"{RUN} --raw-scans"]
+        yield Kind(f"ROS 2 {pattern[2:-1]}", tree, re.compile(pattern), recording)
 
 
 def _sequences(trees):
@@ -134,6 +139,8 @@ def _texts(trees, published):
     layouts = [f"simulate --layout {layout} --scene scene.json --scans 2 --seed 1 --threads 1 --out out"
                for layout in ("doals", "sipailou", "semantickitti")]
     yield Kind("scene", tree, re.compile("^scene.json$"), layouts)
+    yield Kind("study", tree, re.compile("^study.yaml$"), [
+        "study plan study.yaml --out out", "study plan study.yaml --json --out out", "study table study.yaml --out out"])
     rows = _prefixed(trees, run="doals_run") | {"published.csv": published}
     yield Kind("published rows", rows, re.compile("^published.csv$"), [
         f"table {name} run --published published.csv --format {form}"
