@@ -4,7 +4,7 @@ find_package(Doxygen 1.9 QUIET)
 if(DOXYGEN_FOUND)
   file(GLOB pages RELATIVE ${PROJECT_SOURCE_DIR} CONFIGURE_DEPENDS
        *.md core/*.md core/*/*.md datasets/*.md datasets/*/*.md eval/*.md eval/*/*.md results/*.md results/*/*.md
-       bench/*.md tests/*/*.md)
+       bench/*.md scripts/*/*.md tests/*/*.md)
   set(DOXYGEN_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/docs)
   set(DOXYGEN_USE_MDFILE_AS_MAINPAGE ${PROJECT_SOURCE_DIR}/README.md)
   set(DOXYGEN_STRIP_FROM_PATH ${PROJECT_SOURCE_DIR}/core/include ${PROJECT_SOURCE_DIR})
