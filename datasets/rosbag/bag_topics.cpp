@@ -185,7 +185,7 @@ BagTransforms bag_transforms(const BagReader& bag, const std::optional<std::stri
           " (/tf: " + frames_of(tf) + "; TransformStamped: " + frames_of(stamped) + ")",
       "such a chain, or --poses FILE, and --map-frame if the map is called otherwise; or "
       "poses found from the scans: mosbench run " +
-          bag.path().parent_path().string() + " --odometry simple");
+          bag.path().string() + " --odometry simple");
 }
 
 }  // namespace mosbench

@@ -175,7 +175,8 @@ TEST(Cdr, AlignsEveryNumberToItsSizeFromAfterTheFirstFourBytes) {
       "\7\0\0\0"      // a uint8 and padding
       "\0\0\0\0\0\0\xF8\x3F",
       28};
-  MessageCursor cursor(bytes, kCdr, "f", "a message");
+  const std::filesystem::path file = "f";
+  MessageCursor cursor(bytes, kCdr, file, "a message");
   EXPECT_EQ(cursor.take_text(), "a");
   EXPECT_EQ(cursor.take<std::uint32_t>(), 5U);
   EXPECT_EQ(cursor.take<std::uint8_t>(), 7U);
