@@ -168,6 +168,7 @@ Answer odometry_answer(OdometryFlags flags) {
   if (flags.out == "-" && !single) {
     throw UsageError("-o -: has no room for several sequences, expected a folder");
   }
+  if (single) check_output(flags.out);
   const std::optional<FolderLock> lock =
       single ? std::nullopt : std::make_optional<FolderLock>(flags.out);
   std::string text;

@@ -25,7 +25,7 @@ void write_output(const std::filesystem::path& file, std::string_view bytes) {
 void check_output(const std::filesystem::path& file) {
   if (names_stdout(file)) return;
   std::error_code ignored;
-  if (std::filesystem::is_directory(file, ignored)) {
+  if (std::filesystem::is_directory(file, ignored) || !file.has_filename()) {
     throw DataError(file, "is a folder", "a file to write");
   }
   std::filesystem::path above = std::filesystem::absolute(file).parent_path();

@@ -88,8 +88,8 @@ std::string latex_table(const std::vector<std::string>& head,
                         const std::vector<std::vector<std::string>>& rows) {
   std::string text =
       fmt::format("\\begin{{tabular}}{{l{}}}\n\\hline\n", std::string(head.size() - 1, 'r'));
-  text += latex_row(head) + "\n\\hline\n";
-  for (const auto& row : rows) text += latex_row(row) + "\n";
+  text += latex_row(head) + "\\hline\n";
+  for (const auto& row : rows) text += latex_row(row);
   return text + "\\hline\n\\end{tabular}\n";
 }
 

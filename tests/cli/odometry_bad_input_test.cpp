@@ -175,5 +175,15 @@ TEST_P(BadDrives, AreWrittenAsTumOnlyWhereStampsRise) {
                                HasSubstr("is not after that of the one before, expected kitti")));
 }
 
+TEST_P(BadDrives, AreNotRegisteredWhereThePosesHaveNoPlace) {
+  for (const std::string& place : {path("s"), path("new/")}) {
+    const cli::Answer found = cli::run({"odometry", path("s"), "-o", place});
+    EXPECT_EQ(found.exit_code, 3) << place;
+    EXPECT_THAT(found.err, AllOf(HasSubstr("is a folder, expected a file to write"),
+                                 testing::Not(HasSubstr("scan 1/"))));
+    EXPECT_FALSE(std::filesystem::exists(path("new")));
+  }
+}
+
 }  // namespace
 }  // namespace mosbench

@@ -163,6 +163,7 @@ TEST(StudyTable, HasMeansRanksAndTheParetoFront) {
   EXPECT_EQ(table.worst.front().iou, 0.3);
   EXPECT_THAT(study_text(table), HasSubstr("simulated data"));
   EXPECT_THAT(study_latex(table), HasSubstr("\\begin{tabular}{lrrrrrr}"));
+  EXPECT_THAT(study_latex(table), testing::Not(HasSubstr("\n\n\\hline"))) << "does not compile";
   EXPECT_THAT(study_html(table), HasSubstr("\"name\":\"small\""));
 }
 
