@@ -141,8 +141,13 @@ void BagSequence::open_transforms(const ReadingOptions& options) {
 
 bool BagSequence::covered(const Scan& scan) const {
   if (!pose_at_(scan.stamp_ns)) return false;
-  if (!undistorts_ || !scan.timed || pose_at_(scan.stamp_ns + kLongestScanNs)) return true;
+  if (!undistorts_ || !scan.timed) return true;
+  // Points may also have been measured before the stamp.
+  if (pose_at_(scan.stamp_ns - kLongestScanNs) && pose_at_(scan.stamp_ns + kLongestScanNs)) {
+    return true;
+  }
   const TimedCloud cloud = cloud_of(scan);
+  check_times(scan, cloud);
   return cloud.times_ns.empty() || (pose_at_(cloud.stamp_ns + std::ranges::max(cloud.times_ns)) &&
                                     pose_at_(cloud.stamp_ns + std::ranges::min(cloud.times_ns)));
 }
@@ -171,17 +176,20 @@ void BagSequence::state_undistortion() {
   mutable_recording().remarks.push_back("undistortion: " + how);
 }
 
+void BagSequence::check_times(const Scan& scan, const TimedCloud& cloud) const {
+  for (const std::int64_t time_ns : cloud.times_ns) {
+    if (time_ns >= -kLongestScanNs && time_ns <= kLongestScanNs) continue;
+    throw DataError(bag_->path(), scan.number,
+                    fmt::format("a point was measured {} ns after the scan's stamp", time_ns),
+                    "times within a second of it");
+  }
+}
+
 void BagSequence::read(std::size_t scan_index, Frame& frame) const {
   const Scan& scan = scans_.at(scan_index);
   TimedCloud cloud = cloud_of(scan);
   if (by_azimuth_) cloud.times_ns.clear();
-  for (const std::int64_t time_ns : cloud.times_ns) {
-    if (time_ns < -kLongestScanNs || time_ns > kLongestScanNs) {
-      throw DataError(bag_->path(), scan.number,
-                      fmt::format("a point was measured {} ns after the scan's stamp", time_ns),
-                      "times within a second of it");
-    }
-  }
+  check_times(scan, cloud);
   const bool last = leaves_last_ && scan_index + 1 == scans_.size();
   const bool moves = undistorts_ && !keeps_times_ && !cloud.times_ns.empty() && !last;
   const std::int64_t at_ns = moves && !leaves_last_ ? reference_ns(cloud) : cloud.stamp_ns;

@@ -53,6 +53,7 @@ class BagSequence : public Sequence {
 
   CloudHead head_of(const BagMessage& message) const;
   TimedCloud cloud_of(const Scan& scan) const;
+  void check_times(const Scan& scan, const TimedCloud& cloud) const;
 
   std::unique_ptr<const BagReader> bag_;
   std::vector<Scan> scans_;

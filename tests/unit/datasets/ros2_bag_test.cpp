@@ -492,6 +492,41 @@ TEST(PointCloud2, GivesTimesInTheFieldsAndUnitsOfSeveralDrivers) {
   EXPECT_THAT(cloud_with_times("timestamp", 8, 5.0, 5.0).times_ns, ElementsAre(0, 0));
 }
 
+/// The three scans with a time for each point, and poses until two seconds later.
+McapBytes with_times(const std::vector<float>& times_s) {
+  McapBytes bag = good_mcap();
+  for (auto& chunk : bag.chunks) {
+    if (chunk.size() < 2) continue;
+    CloudHead head = parse_cloud_head(chunk[1].message, "f", {kPointCloud2, kCdr});
+    head.fields.back() = {"time", sizeof(Point), 7, 1};
+    ByteSink records;
+    for (std::size_t i = 0; i < kRos2Points.size(); ++i) {
+      records.put(kRos2Points[i]);
+      records.put(times_s.at(i));
+    }
+    chunk[1].message = format_cloud(head, std::move(records).bytes(), kCdr);
+  }
+  constexpr std::int64_t kLaterNs = kRos2Start + 2'000'000'000;
+  bag.chunks.push_back({{1, kLaterNs, tf_at(kLaterNs, pose_at_x(20), kCdr)}});
+  return bag;
+}
+
+TEST_F(Ros2Bag, LeavesOutAScanWhosePointsWereMeasuredBeforeTheFirstPose) {
+  const BagSequence recording("s", write(with_times({-0.05F, -0.02F, 0.0F}).str()), {});
+  EXPECT_THAT(recording.remarks(), Contains(HasSubstr("1 of 3 scans are left out")));
+  ASSERT_EQ(recording.size(), 2U);
+  EXPECT_EQ(recording.read(0).stamp_ns, kRos2Start + kRos2Period);
+  EXPECT_NEAR(recording.read(0).map_from_sensor.translation().x(), 0.5, 1e-6);
+  EXPECT_EQ(BagSequence("s", folder_ / "s.mcap", {.deskew = Deskew::kNone}).size(), 3U);
+}
+
+TEST_F(Ros2Bag, SaysThatTimesOfPointsAreNotInSeconds) {
+  McapBytes bag = with_times({0.0F, 50.0F, 100.0F});
+  bag.chunks.pop_back();  // near the last pose such scans seemed to be covered by none
+  EXPECT_THAT(error_of(bag.str()),
+              HasSubstr("a point was measured 50000000000 ns after the scan's stamp"));
+}
+
 TEST(BagMetadata, NamesFilesInListsOfEitherKind) {
   const auto files = [](const std::string& text) { return parse_bag_metadata(text, "f").files; };
   EXPECT_THAT(files("a:\n  relative_file_paths:\n    - x.db3\n    - 'y z.db3'\r\n  other: - no\n"),
