@@ -63,9 +63,10 @@ Transforms tf_transforms(const BagReader& bag) {
   return found;
 }
 
-Transforms stamped_transforms(const BagReader& bag) {
+/// Those of all topics of TransformStamped or Odometry.
+Transforms transforms_of_type(const BagReader& bag, std::string_view type) {
   Transforms found;
-  for (const std::string& topic : topics_of_type(bag, kTransformStamped)) {
+  for (const std::string& topic : topics_of_type(bag, type)) {
     add_transforms(bag, topic, found.changing);
     found.topics.insert(topic);
   }
@@ -89,10 +90,10 @@ Transforms pose_topic(const BagReader& bag, std::string_view type, const std::st
   for (StampedTransform& transform : found.changing) {
     if (transform.child.empty()) transform.child = sensor_frame;
   }
-  // A sensor has one parent: what is fixed above it is not the way to these poses.
-  if (type != kOdometry) {
-    std::erase_if(found.always, [&](const auto& fixed) { return fixed.child == sensor_frame; });
-  }
+  // A frame has one parent: what is fixed above it is not the way to these poses.
+  std::set<std::string> posed;
+  for (const StampedTransform& transform : found.changing) posed.insert(transform.child);
+  std::erase_if(found.always, [&](const auto& fixed) { return posed.contains(fixed.child); });
   return found;
 }
 
@@ -136,6 +137,8 @@ std::optional<BagTransforms> find_poses(std::string_view type,
   std::set<std::string> fitting;
   for (const std::string& topic : topics_of_type(bag, type)) {
     const Transforms poses = pose_topic(bag, type, topic, always, sensor_frame);
+    // A single one is a goal or a start, and no way of the sensor.
+    if (poses.changing.size() < 2) continue;
     auto chain = find_chain(poses, bag, map_frame, sensor_frame);
     if (!chain) continue;
     fitting.insert(topic);
@@ -174,7 +177,7 @@ BagTransforms bag_transforms(const BagReader& bag, const std::optional<std::stri
                              const std::string& sensor_frame) {
   const Transforms tf = tf_transforms(bag);
   if (auto found = find_chain(tf, bag, map_frame, sensor_frame)) return *found;
-  const Transforms stamped = stamped_transforms(bag);
+  const Transforms stamped = transforms_of_type(bag, kTransformStamped);
   if (auto found = find_chain(stamped, bag, map_frame, sensor_frame)) return *found;
   for (const std::string_view type : {kOdometry, kPoseStamped, kPath}) {
     if (auto found = find_poses(type, tf.always, bag, map_frame, sensor_frame)) return *found;
@@ -182,7 +185,8 @@ BagTransforms bag_transforms(const BagReader& bag, const std::optional<std::stri
   throw DataError(
       bag.path(),
       "no transforms lead from " + map_frame.value_or("a map") + " to " + sensor_frame +
-          " (/tf: " + frames_of(tf) + "; TransformStamped: " + frames_of(stamped) + ")",
+          " (/tf: " + frames_of(tf) + "; TransformStamped: " + frames_of(stamped) +
+          "; Odometry: " + frames_of(transforms_of_type(bag, kOdometry)) + ")",
       "such a chain, or --poses FILE, and --map-frame if the map is called otherwise; or "
       "poses found from the scans: mosbench run " +
           bag.path().string() + " --odometry simple");

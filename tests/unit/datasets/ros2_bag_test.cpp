@@ -404,6 +404,34 @@ TEST_F(Ros2Bag, TakesHowTheSensorIsMountedToOdometryButNotAsPoses) {
   EXPECT_THAT(error_of(bag.str()), HasSubstr("no transforms lead from a map to lidar"));
 }
 
+TEST_F(Ros2Bag, TakesTheOdometryOfAFrameThatIsAlsoMounted) {
+  for (const char* child : {"lidar", ""}) {
+    const auto of_child = [child](std::int64_t stamp_ns, double x_m) {
+      return odometry(stamp_ns, x_m, child);
+    };
+    McapBytes bag = with_poses("nav_msgs/msg/Odometry", of_child);
+    bag.channels.push_back({"/tf_static", "tf2_msgs/msg/TFMessage"});
+    bag.chunks[0].push_back(
+        {2, kRos2Start, format_tf_message({{0, "base", "lidar", pose_at_x(10.0)}}, kCdr)});
+    expect_good(BagSequence("s", write(bag.str()), {}));
+  }
+}
+
+TEST_F(Ros2Bag, NamesTheFramesOfOdometryThatDoesNotLeadToTheSensor) {
+  const auto of_base = [](std::int64_t stamp_ns, double x_m) {
+    return odometry(stamp_ns, x_m, "base");
+  };
+  EXPECT_THAT(error_of(with_poses("nav_msgs/msg/Odometry", of_base).str()),
+              AllOf(HasSubstr("Odometry: base, odom)"), HasSubstr("--odometry simple")));
+}
+
+TEST_F(Ros2Bag, TakesNoSinglePoseForTheWayOfTheSensor) {
+  McapBytes bag = with_poses("nav_msgs/msg/Path", path_until);
+  bag.channels.push_back({"/goal_pose", "geometry_msgs/msg/PoseStamped"});
+  bag.chunks[0].push_back({2, kRos2Start, pose_stamped(kRos2Start, 99.0)});
+  expect_good(BagSequence("s", write(bag.str()), {}));
+}
+
 TEST_F(Ros2Bag, AsksWhichOfSeveralTopicsOfPosesIsMeant) {
   McapBytes bag = with_poses("geometry_msgs/msg/PoseStamped", pose_stamped);
   bag.channels.push_back({"/gps", "geometry_msgs/msg/PoseStamped"});
