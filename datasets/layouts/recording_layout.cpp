@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
+#include <map>
 #include <memory>
 
+#include "datasets/files/errors.hpp"
 #include "datasets/files/folder_listing.hpp"
 #include "datasets/files/scan_file.hpp"
 #include "datasets/layouts/folder_search.hpp"
@@ -28,6 +30,20 @@ std::vector<std::filesystem::path> bags_of(const std::filesystem::path& folder) 
   return bags;
 }
 
+/// Results are called as their sequences: those of two of one name would overwrite each other.
+void expect_own_names(const std::filesystem::path& folder,
+                      const std::vector<SequenceFolder>& sequences) {
+  std::map<std::string, std::filesystem::path> known;
+  for (const SequenceFolder& sequence : sequences) {
+    const auto [other, is_new] = known.emplace(sequence.name, sequence.folder.filename());
+    if (is_new) continue;
+    throw DataError(folder,
+                    fmt::format("holds the bags {} and {}, both called {}", other->second.string(),
+                                sequence.folder.filename().string(), sequence.name),
+                    "names of their own, or one of them as DATA");
+  }
+}
+
 /// A bag or a scan that is given itself, the bags of a folder, or the folder of scans. One bag is
 /// called as its folder.
 std::vector<SequenceFolder> list_recording(const std::filesystem::path& path) {
@@ -43,6 +59,7 @@ std::vector<SequenceFolder> list_recording(const std::filesystem::path& path) {
     const auto name = is_bag_folder(bag) ? bag.filename() : bag.stem();
     sequences.push_back({name.string(), bag, ""});
   }
+  expect_own_names(path, sequences);
   if (sequences.empty() && !scans_in(path).empty()) return {{folder_name(path), path, ""}};
   return sequences;
 }

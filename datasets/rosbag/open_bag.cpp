@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <set>
 #include <utility>
 
 #include "datasets/files/errors.hpp"
@@ -58,8 +59,13 @@ std::unique_ptr<const BagReader> open_bag_folder(const fs::path& folder) {
     throw DataError(file, "is of a ROS 2 bag with compression " + metadata.compression, "zstd");
   }
   std::vector<std::unique_ptr<const BagReader>> parts;
+  std::set<fs::path> known;
   for (const std::string& name : metadata.files) {
-    parts.push_back(open_bag_file(part_of(folder, name)));
+    const fs::path part = part_of(folder, name);
+    if (!known.insert(part.lexically_normal()).second) {
+      throw DataError(file, "names " + name + " twice", "each file of the bag once");
+    }
+    parts.push_back(open_bag_file(part));
   }
   return std::make_unique<JoinedBag>(folder, std::move(parts));
 }

@@ -261,6 +261,9 @@ TEST_F(Ros2Bag, OfSeveralFilesIsOneSequence) {
   folder_.write("drive/metadata.yaml", metadata + "    - drive_2.mcap\n");
   EXPECT_THAT(message_of<DataError>([&] { open_dataset(folder_ / "drive", {}); }),
               HasSubstr("names drive_2.mcap, which is not there"));
+  folder_.write("drive/metadata.yaml", metadata + "    - drive_0.mcap\n");
+  EXPECT_THAT(message_of<DataError>([&] { open_dataset(folder_ / "drive", {}); }),
+              HasSubstr("names drive_0.mcap twice"));
   folder_.write("drive/metadata.yaml",
                 "rosbag2_bagfile_information:\n  compression_format: snappy\n"
                 "  relative_file_paths: [drive_0.mcap]\n");
@@ -274,6 +277,9 @@ TEST_F(Ros2Bag, OfSeveralFilesIsOneSequence) {
   ASSERT_EQ(two.sequences.size(), 2U);
   EXPECT_EQ(two.sequences[0]->name(), "c");
   EXPECT_EQ(two.sequences[1]->name(), "a");
+  folder_.write("two/a.mcap", good_mcap().str());
+  EXPECT_THAT(message_of<DataError>([&] { open_dataset(folder_ / "two", {}); }),
+              HasSubstr("holds the bags a.mcap and a, both called a"));
 }
 
 TEST_F(Ros2Bag, InSqliteIsReadWithPackedMessagesAndPackedAsAWhole) {
