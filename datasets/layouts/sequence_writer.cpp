@@ -3,6 +3,7 @@
 #include <array>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "datasets/files/bin_file.hpp"
@@ -72,6 +73,25 @@ std::int64_t stamp_of(std::size_t scan_index, const Frame& frame) {
   constexpr std::int64_t kPeriodNs = 100'000'000;
   return frame.stamp_ns.value_or(static_cast<std::int64_t>(scan_index) * kPeriodNs);
 }
+
+/// Refuses scans that a bag, which is ordered by stamps and finds poses by them, would give back in
+/// another order or with the pose of another.
+class RisingStamps {
+ public:
+  explicit RisingStamps(fs::path file) : file_(std::move(file)) {}
+
+  void expect_later(std::int64_t stamp_ns, const Frame& frame) {
+    if (last_ns_ && stamp_ns <= *last_ns_) {
+      throw DataError(file_, "scan " + frame.stem + " is not later than the one before it",
+                      "stamps that increase, by which a bag orders its scans");
+    }
+    last_ns_ = stamp_ns;
+  }
+
+ private:
+  fs::path file_;
+  std::optional<std::int64_t> last_ns_;
+};
 
 /// Collects stamps and truth as DOALS stores them.
 class DoalsRows {
@@ -163,10 +183,14 @@ std::string cloud_message(std::span<const Point> points, std::int64_t stamp_ns,
 class DoalsBagWriter : public SequenceWriter {
  public:
   DoalsBagWriter(const fs::path& folder, const WriteOptions& options)
-      : folder_(folder), bag_(folder / "bag.bag", options.compression), rows_(options.scans) {}
+      : folder_(folder),
+        bag_(folder / "bag.bag", options.compression),
+        rows_(options.scans),
+        stamps_(folder / "bag.bag") {}
 
   void write(std::size_t scan_index, const Frame& frame) override {
     const std::int64_t stamp_ns = rows_.add(scan_index, frame);
+    stamps_.expect_later(stamp_ns, frame);
     bag_.write("/tf", stamp_ns, kTfMessage,
                format_tf_message({{stamp_ns, "map", kDoalsFrame, frame.map_from_sensor}}));
     // The field of times that DOALS's driver has, too: a scan is taken at one instant.
@@ -184,6 +208,7 @@ class DoalsBagWriter : public SequenceWriter {
   fs::path folder_;
   BagWriter bag_;
   DoalsRows rows_;
+  RisingStamps stamps_;
 };
 
 Ros2Storage storage_of(const WriteOptions& options) {
@@ -195,12 +220,14 @@ Ros2Storage storage_of(const WriteOptions& options) {
 class Ros2SequenceWriter : public SequenceWriter {
  public:
   Ros2SequenceWriter(const fs::path& folder, const WriteOptions& options)
-      : bag_(Ros2BagWriter::open(storage_of(options), folder, options.compression)) {}
+      : bag_(Ros2BagWriter::open(storage_of(options), folder, options.compression)),
+        stamps_(folder / message_file_of(storage_of(options))) {}
 
   void write(std::size_t scan_index, const Frame& frame) override {
     constexpr const char* kFrame = "lidar";
     constexpr MessageEncoding kEncoding = MessageEncoding::kCdr;
     const std::int64_t stamp_ns = stamp_of(scan_index, frame);
+    stamps_.expect_later(stamp_ns, frame);
     bag_->write("/tf", stamp_ns, kTfMessage,
                 format_tf_message({{stamp_ns, "map", kFrame, frame.map_from_sensor}}, kEncoding));
     std::optional<ExtraField> labels;
@@ -213,6 +240,7 @@ class Ros2SequenceWriter : public SequenceWriter {
 
  private:
   std::unique_ptr<Ros2BagWriter> bag_;
+  RisingStamps stamps_;
 };
 
 }  // namespace

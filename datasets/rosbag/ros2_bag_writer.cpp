@@ -38,7 +38,12 @@ Ros2BagWriter::Ros2BagWriter(const std::filesystem::path& folder, BagSummary sum
 
 void Ros2BagWriter::write(const std::string& topic, std::int64_t stamp_ns, std::string_view type,
                           std::string_view message) {
+  constexpr std::int64_t kEndNs = (std::int64_t{1} << 31U) * 1'000'000'000;
   if (stamp_ns < 0) throw DataError(file(), "a stamp to be written is negative", "stamps from 0");
+  if (stamp_ns >= kEndNs) {
+    throw DataError(file(), "a stamp to be written is beyond 2^31 s",
+                    "seconds of 31 bits, as in ROS 2");
+  }
   auto& topics = summary_.topics;
   auto known = std::ranges::find(topics, topic, &TopicCount::name);
   const bool is_new = known == topics.end();

@@ -10,6 +10,7 @@
 #include "datasets/files/errors.hpp"
 #include "datasets/files/files.hpp"
 #include "datasets/layouts/dataset.hpp"
+#include "datasets/layouts/sequence_writer.hpp"
 #include "datasets/rosbag/bag_compression.hpp"
 #include "datasets/rosbag/bag_metadata.hpp"
 #include "datasets/rosbag/bag_sequence.hpp"
@@ -224,6 +225,40 @@ TEST_F(Ros2Bag, WrittenIsReadAgain) {
   EXPECT_THAT(message_of<UsageError>(
                   [&] { Ros2BagWriter::open(Ros2Storage::kSqlite, folder_ / "z", "lz4"); }),
               HasSubstr("expected none or zstd"));
+}
+
+TEST_F(Ros2Bag, IsNotWrittenWithStampsThatItCannotHold) {
+  constexpr std::int64_t kEndNs = (std::int64_t{1} << 31U) * 1'000'000'000;
+  for (const auto storage : {Ros2Storage::kMcap, Ros2Storage::kSqlite}) {
+    const auto writer = Ros2BagWriter::open(storage, folder_ / "late", "none");
+    const auto error_at = [&](std::int64_t stamp_ns) {
+      return message_of<DataError>([&] { writer->write("/tf", stamp_ns, kTfMessage, ""); });
+    };
+    EXPECT_EQ(error_at(kEndNs - 1), "nothing thrown");
+    EXPECT_THAT(error_at(kEndNs), HasSubstr("beyond 2^31 s"));
+    EXPECT_THAT(error_at(-1), HasSubstr("is negative"));
+  }
+}
+
+TEST_F(Ros2Bag, IsNotWrittenFromScansThatItWouldGiveBackInAnotherOrder) {
+  WriteOptions options;
+  options.bag = BagKind::kMcap;
+  options.compression = "none";
+  options.scans = 3;
+  for (const std::int64_t third_ns : {0L, 100L, 101L}) {
+    const auto writer = write_as_ros2_bag(folder_ / "order", options);
+    Frame frame;
+    const auto error_at = [&](std::size_t scan, std::int64_t stamp_ns) {
+      frame.stem = std::to_string(scan);
+      frame.stamp_ns = stamp_ns;
+      return message_of<DataError>([&] { writer->write(scan, frame); });
+    };
+    ASSERT_EQ(error_at(0, 0), "nothing thrown");
+    ASSERT_EQ(error_at(1, 100), "nothing thrown");
+    EXPECT_THAT(error_at(2, third_ns),
+                third_ns > 100 ? HasSubstr("nothing thrown")
+                               : HasSubstr("bag_0.mcap: scan 2 is not later than the one before"));
+  }
 }
 
 /// A writer's bag with the three scans.
