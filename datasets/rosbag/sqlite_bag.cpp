@@ -13,6 +13,8 @@
 namespace mosbench {
 namespace {
 
+/// How the journal of a transaction that is not finished begins.
+constexpr std::string_view kJournalStart{"\xD9\xD5\x05\xF9\x20\xA1\x63\xD7", 8};
 constexpr const char* kDatabase = "a ROS 2 bag with the tables topics and messages";
 
 /// A query whose rows are taken one after the other.
@@ -58,6 +60,7 @@ void SqliteBag::Close::operator()(sqlite3_blob* blob) const { sqlite3_blob_close
 
 SqliteBag::SqliteBag(const std::filesystem::path& file)
     : BagReader(file), file_bytes_(size_of(file)) {
+  refuse_unfinished();
   open_database();
   check_table("topics");
   check_table("messages");
@@ -66,6 +69,18 @@ SqliteBag::SqliteBag(const std::filesystem::path& file)
 }
 
 SqliteBag::~SqliteBag() = default;
+
+/// What such a journal says has to be written back into the file before the file is right.
+void SqliteBag::refuse_unfinished() const {
+  const std::filesystem::path journal = path_.native() + "-journal";
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(journal, ignored)) return;
+  if (read_start(journal, kJournalStart.size()) != kJournalStart) return;
+  throw DataError(
+      path_,
+      "was left in the middle of a change, which " + journal.filename().string() + " takes back",
+      "a copy of both that sqlite3 has opened once: sqlite3 COPY .tables");
+}
 
 void SqliteBag::open_database() {
   // What a killed recorder did not move into the file is in a log beside it.
@@ -95,8 +110,10 @@ void SqliteBag::check(int result) const {
 }
 
 void SqliteBag::refuse() const {
-  throw DataError(path_, fmt::format("cannot be read ({})", sqlite3_errmsg(database_.get())),
-                  kDatabase);
+  const bool has_log = files_.size() > 1;
+  throw DataError(
+      path_, fmt::format("cannot be read ({})", sqlite3_errmsg(database_.get())),
+      has_log ? std::string(kDatabase) + ", in a folder where its log may be indexed" : kDatabase);
 }
 
 void SqliteBag::check_table(const char* name) const {

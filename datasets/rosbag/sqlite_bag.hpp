@@ -31,6 +31,7 @@ class SqliteBag : public BagReader {
     void operator()(sqlite3_blob* blob) const;
   };
 
+  void refuse_unfinished() const;
   void open_database();
   void check_table(const char* name) const;
   void add_topics();

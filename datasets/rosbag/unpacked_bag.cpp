@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <system_error>
+#include <utility>
 
 #include "datasets/files/errors.hpp"
 #include "datasets/files/file_descriptor.hpp"
@@ -22,9 +23,9 @@ UnpackedBag::TemporaryFile::TemporaryFile() {
   path_ = name;
 }
 
-UnpackedBag::TemporaryFile::~TemporaryFile() {
+void UnpackedBag::TemporaryFile::remove() {
   std::error_code ignored;
-  std::filesystem::remove(path_, ignored);
+  std::filesystem::remove(std::exchange(path_, {}), ignored);
 }
 
 UnpackedBag::UnpackedBag(const std::filesystem::path& file) : BagReader(file) {
@@ -40,6 +41,8 @@ UnpackedBag::UnpackedBag(const std::filesystem::path& file) : BagReader(file) {
     throw DataError(file, fmt::format("is unpacked to no bag ({})", error.what()),
                     "a packed .mcap or .db3");
   }
+  // The bag keeps the file open. Without a name it is gone with the process, however that ends.
+  unpacked_.remove();
   connections_ = bag_->connections();
   remarks_ = bag_->remarks();
 }

@@ -12,7 +12,7 @@
 namespace mosbench {
 
 /// A bag whose whole file is packed by Zstandard. It is unpacked into the folder of temporary files
-/// (TMPDIR) as long as it is read.
+/// (TMPDIR), where it has no name once it is opened.
 class UnpackedBag : public BagReader {
  public:
   /// Throws DataError.
@@ -23,11 +23,12 @@ class UnpackedBag : public BagReader {
   std::string read(const BagMessage& message, std::size_t most_bytes = SIZE_MAX) const override;
 
  private:
-  /// A file without content that nobody else has, removed at the end.
+  /// A file without content that nobody else has, removed at the end or before.
   class TemporaryFile {
    public:
     TemporaryFile();
-    ~TemporaryFile();
+    ~TemporaryFile() { remove(); }
+    void remove();
     const std::filesystem::path& path() const { return path_; }
 
    private:

@@ -321,7 +321,13 @@ TEST_F(Ros2Bag, InSqliteIsReadWithPackedMessagesAndPackedAsAWhole) {
   expect_good(BagSequence("s", good_db3(folder_, "plain"), {}));
   expect_good(BagSequence("s", good_db3(folder_, "packed", "zstd"), {}));
   const auto whole = write(compress_zstd(read_file(good_db3(folder_, "p"))), "s.db3.zstd");
-  expect_good(BagSequence("s", whole, {}));
+  const auto temporary = folder_ / "temporary";
+  std::filesystem::create_directory(temporary);
+  setenv("TMPDIR", temporary.c_str(), 1);
+  const BagSequence unpacked("s", whole, {});
+  unsetenv("TMPDIR");
+  EXPECT_TRUE(std::filesystem::is_empty(temporary)) << "a killed program would leave this";
+  expect_good(unpacked);
   write(compress_zstd("no bag"), "s.db3.zstd");
   EXPECT_THAT(message_of<DataError>([&] { BagSequence("s", whole, {}); }),
               HasSubstr("s.db3.zstd: is unpacked to no bag"));
@@ -355,6 +361,30 @@ TEST_F(Ros2Bag, RefusesADamagedDatabase) {
   EXPECT_THAT(error_with("UPDATE topics SET serialization_format = 'ros2idl'"),
               HasSubstr("(sensor_msgs/PointCloud2 as ros2idl)"));
   EXPECT_THAT(error_with("UPDATE messages SET data = x'28B52FFD00'"), HasSubstr("is damaged"));
+}
+
+TEST_F(Ros2Bag, InSqliteThatItsRecorderDidNotCloseIsReadOnlyWhereItIsWhole) {
+  const auto file = write(read_file(good_db3(folder_, "good")), "open.db3");
+  sqlite3* recorder = nullptr;
+  ASSERT_EQ(sqlite3_open(file.c_str(), &recorder), SQLITE_OK);
+  ASSERT_EQ(sqlite3_exec(recorder,
+                         "PRAGMA journal_mode=WAL; DELETE FROM messages WHERE timestamp = "
+                         "(SELECT max(timestamp) FROM messages WHERE topic_id = 2)",
+                         nullptr, nullptr, nullptr),
+            SQLITE_OK);
+  const auto killed = write(read_file(file), "killed.db3");
+  write(read_file(file.native() + "-wal"), "killed.db3-wal");
+  sqlite3_close(recorder);
+  const BagSequence recording("s", killed, {});
+  EXPECT_EQ(recording.size(), 2U);
+  EXPECT_THAT(recording.remarks(), Contains(HasSubstr("its log is read, too")));
+
+  const auto changed = write(read_file(good_db3(folder_, "good")), "changed.db3");
+  write(std::string(28, '\0'), "changed.db3-journal");
+  expect_good(BagSequence("s", changed, {}));
+  write("\xD9\xD5\x05\xF9\x20\xA1\x63\xD7 and pages", "changed.db3-journal");
+  EXPECT_THAT(message_of<DataError>([&] { BagSequence("s", changed, {}); }),
+              HasSubstr("in the middle of a change, which changed.db3-journal takes back"));
 }
 
 /// Puts other messages than transforms in the second channel.
