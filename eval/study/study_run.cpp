@@ -143,8 +143,7 @@ int run_engine(const StudyPlan& plan, const CostModel& costs, const EngineOption
   tell(fmt::format("{} cells in {} jobs by Snakemake, in {}", work.cells.size(), groups.size(),
                    plan.out.string()));
   return run_program({"snakemake", "--snakefile", out / "workflow/Snakefile", "--directory", out,
-                      "--profile", profile, "--config",
-                      fmt::format("plan={}", (out / "workflow/plan.json").string())});
+                      "--profile", profile});
 }
 
 }  // namespace mosbench
