@@ -65,6 +65,8 @@ struct PerturbKind {
 
 /// Returns all kinds, in the order in which they are listed.
 std::span<const PerturbKind> perturb_kinds();
+/// Returns the kind of this name. Throws UsageError that names the nearest one.
+const PerturbKind& perturb_kind_named(std::string_view name);
 
 /// A key that several kinds share, and what it says.
 struct PerturbKey {

@@ -62,14 +62,13 @@ bool set_key(std::string_view name, std::string_view text, Perturbation& perturb
 }
 
 void add_step(std::string_view name, std::string_view text, Perturbation& perturbation) {
-  const auto kind = std::ranges::find(perturb_kinds(), name, &PerturbKind::name);
-  if (kind == perturb_kinds().end()) refuse_name(name);
-  const double strength = number_within(name, text, kind->lowest, kind->highest);
-  const bool counts = kind->unit == "beams" || kind->unit == "scans";
+  const PerturbKind& kind = perturb_kind_named(name);
+  const double strength = number_within(name, text, kind.lowest, kind.highest);
+  const bool counts = kind.unit == "beams" || kind.unit == "scans";
   if (counts && strength != std::floor(strength)) {
     refuse(fmt::format("{}: {} is no count", name, quoted(text)), "a whole number");
   }
-  perturbation.steps.push_back({&*kind, strength});
+  perturbation.steps.push_back({&kind, strength});
 }
 
 void check_beams(const Perturbation& perturbation) {
@@ -96,6 +95,12 @@ bool has(const Perturbation& perturbation, std::string_view prefix) {
 }
 
 }  // namespace
+
+const PerturbKind& perturb_kind_named(std::string_view name) {
+  const auto kind = std::ranges::find(perturb_kinds(), name, &PerturbKind::name);
+  if (kind == perturb_kinds().end()) refuse_name(name);
+  return *kind;
+}
 
 Perturbation parse_perturbation(std::string_view text) {
   Perturbation perturbation;

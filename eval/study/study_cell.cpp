@@ -148,9 +148,11 @@ CellOutcome fail(const StudyCell& cell, const fs::path& out, const char* why) {
   return CellOutcome::kFailed;
 }
 
-/// Where costs of a method on a sequence are kept.
+/// Where costs of a method on a sequence are kept: by what they are, as a name stays when a study
+/// is edited.
 std::string cost_name(const StudyCell& cell) {
-  return fmt::format("{}/{}/{}", cell.data->name, cell.sequence, cell.method->name);
+  return fmt::format("{}/{}/{}/{}", cell.data->name, cell.sequence, cell.method->name,
+                     cell.cost_key.substr(0, 12));
 }
 
 fs::path cost_file(const fs::path& out) { return out / "costs.json"; }
@@ -225,7 +227,7 @@ void measure_costs(const StudyPlan& plan) {
     try {
       model.costs[cost_name(cell)] = measured_cost(plan, cell);
       changed = true;
-    } catch (const DataError& error) {  // fails again as a cell
+    } catch (const std::runtime_error& error) {  // fails again as a cell
       tell(fmt::format("{}: not measured: {}", cell.title(), error.what()));
     }
   }

@@ -141,10 +141,19 @@ StudyMethod method_of(const YamlNode& node) {
   return method;
 }
 
+/// Returns one value of --perturb, which cannot hold another disturbance.
+std::string perturb_value(const YamlNode& node) {
+  std::string text = node.text();
+  if (text.find(',') == std::string::npos) return text;
+  node.refuse(fmt::format("{} is more than one value", mosbench::quoted(text)), "no comma");
+}
+
 StudyAxis disturbance_of(const YamlNode& node) {
   node.check_keys({"kind", "strengths", "with"});
   StudyAxis axis;
-  axis.name = node.at("kind").text();
+  const YamlNode kind = node.at("kind");
+  axis.name = kind.text();
+  axis.kind = kind.located([&] { return &perturb_kind_named(axis.name); });
   if (const auto with = node.find("with")) {
     for (const auto& [key, value] : with->members()) {
       if (std::ranges::find(perturb_keys(), key, &PerturbKey::name) == perturb_keys().end() ||
@@ -152,13 +161,12 @@ StudyAxis disturbance_of(const YamlNode& node) {
         value.refuse(fmt::format("key {} is no key that kinds share", mosbench::quoted(key)),
                      "one of `mosbench list perturbations` but seed");
       }
-      axis.with += fmt::format(",{}={}", key, value.text());
+      axis.with += fmt::format(",{}={}", key, perturb_value(value));
     }
   }
   for (const YamlNode& strength : node.at("strengths").list()) {
-    const std::string text = fmt::format("{}={}{}", axis.name, strength.text(), axis.with);
+    const std::string text = fmt::format("{}={}{}", axis.name, perturb_value(strength), axis.with);
     const Perturbation parsed = strength.located([&] { return parse_perturbation(text); });
-    axis.kind = parsed.steps.front().kind;
     axis.values.push_back(fmt::format("{}", parsed.steps.front().strength));
   }
   return axis;

@@ -4,11 +4,12 @@
 #include <xxhash.h>
 
 #include <algorithm>
-#include <set>
+#include <map>
 
 #include "datasets/files/errors.hpp"
 #include "datasets/files/files.hpp"
 #include "datasets/files/json_text.hpp"
+#include "datasets/files/text.hpp"
 #include "datasets/sequence/fingerprint.hpp"
 #include "datasets/simulator/scene_json.hpp"
 #include "datasets/simulator/simulate.hpp"
@@ -57,7 +58,7 @@ ordered_json sequence_json(const StudyData& data, const std::string& name) {
     json = {{"dataset", to_string(dataset.kind)},
             {"content", content_of(*dataset.sequences.front())},
             {"reading", told_json(reading)}};
-  } catch (const DataError& error) {
+  } catch (const std::runtime_error& error) {  // DataError, or UsageError of what it lacks
     json = {{"unreadable", error.what()}};
   }
   return json;
@@ -68,19 +69,27 @@ struct KnownSequence {
   ordered_json identity;
 };
 
-std::vector<KnownSequence> sequences_of(const StudyData& data) {
+/// Throws UsageError for a sequence that the simulation does not write.
+std::vector<KnownSequence> simulated_sequences(const StudyData& data) {
+  const std::vector<std::string> written =
+      simulated_names(data.simulation->layout, load_scene(data.simulation->scene));
+  const std::vector<std::string>& names = data.sequences.empty() ? written : data.sequences;
+  const ordered_json json = {{"simulated", simulation_json(*data.simulation)},
+                             {"reading", told_json(data.reading)}};
   std::vector<KnownSequence> sequences;
-  if (data.simulation) {
-    const ordered_json json = simulation_json(*data.simulation);
-    const Scene scene = load_scene(data.simulation->scene);
-    for (const std::string& name : simulated_names(data.simulation->layout, scene)) {
-      const bool wanted =
-          data.sequences.empty() || std::ranges::find(data.sequences, name) != data.sequences.end();
-      if (wanted)
-        sequences.push_back({name, {{"simulated", json}, {"reading", told_json(data.reading)}}});
+  for (const std::string& name : names) {
+    if (std::ranges::find(written, name) == written.end()) {
+      throw UsageError(fmt::format("{}: simulates no sequence {}, expected {}", data.name,
+                                   mosbench::quoted(name), fmt::join(written, ", ")));
     }
-    return sequences;
+    sequences.push_back({name, json});
   }
+  return sequences;
+}
+
+std::vector<KnownSequence> sequences_of(const StudyData& data) {
+  if (data.simulation) return simulated_sequences(data);
+  std::vector<KnownSequence> sequences;
   std::optional<DatasetKind> kind;
   const OpenOptions options{dataset_kind_option(data.dataset), data.sequences, data.reading};
   for (const SequenceFolder& folder : find_sequences(data.path, options, kind)) {
@@ -97,6 +106,11 @@ class CellLister {
   void list(StudyCell cell, const ordered_json& sequence) {
     cell.axis = nullptr;
     cell.seed = 0;
+    cell.cost_key = hash_of(ordered_json{{"data", sequence},
+                                         {"method", cell.method->method},
+                                         {"preset", cell.method->preset.value_or("")},
+                                         {"set", cell.method->assignments}}
+                                .dump());
     add(cell, sequence);
     for (const StudyAxis& axis : study_.axes) {
       if (!applies(axis, cell)) continue;
@@ -136,12 +150,26 @@ class CellLister {
                      {"protocol", study_.protocol.value_or("")},
                      {"range", study_.range.value_or("")}};
     cell.key = hash_of(cell.identity.dump());
-    if (known_.insert(cell.key).second) cells_.push_back(std::move(cell));
+    const auto [known, is_new] = known_.emplace(cell.key, cells_.size());
+    if (!is_new) return check_same_row(cells_[known->second], cell);
+    cells_.push_back(std::move(cell));
+  }
+
+  /// A value that is listed twice is one cell; data or methods that are the same under two names
+  /// would leave one of them without any.
+  void check_same_row(const StudyCell& first, const StudyCell& second) const {
+    const bool same = first.data == second.data && first.sequence == second.sequence &&
+                      first.method == second.method && first.odometry == second.odometry;
+    if (same) return;
+    throw UsageError(
+        fmt::format("{}: \"{}\" and \"{}\" are the same run, expected data and methods "
+                    "that differ in more than the name",
+                    study_.file.string(), first.title(), second.title()));
   }
 
   const Study& study_;
   std::vector<StudyCell>& cells_;
-  std::set<std::string> known_;
+  std::map<std::string, std::size_t> known_;  ///< place in `cells_` of each key
 };
 
 /// Whether a record has the members that tables read. Throws a JSON exception where one is missing.

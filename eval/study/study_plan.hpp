@@ -23,6 +23,7 @@ struct StudyCell {
   std::uint64_t seed = 0;           ///< 0 where nothing is random
   nlohmann::ordered_json identity;  ///< all that decides the result but the program
   std::string key;                  ///< hash of it, 32 hexadecimal digits
+  std::string cost_key;             ///< hash of what decides the cost of the method on the sequence
 
   /// Returns the text of --perturb; nothing where scans stay as they are.
   std::optional<std::string> perturb() const;

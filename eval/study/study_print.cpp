@@ -17,8 +17,7 @@ using nlohmann::ordered_json;
 std::string mean_text(const StudyMean& mean) {
   if (!mean.value) return mean.count == 0 ? "-" : "undefined";
   if (!mean.interval) return percent_text(mean.value);
-  return fmt::format("{} +- {:.1f}", percent_text(mean.value),
-                     50 * (mean.interval->high - mean.interval->low));
+  return fmt::format("{} +- {:.1f}", percent_text(mean.value), 100 * mean.half_width);
 }
 
 std::string number_text(const std::optional<double>& value, const char* style) {

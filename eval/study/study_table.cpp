@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "eval/results/reading_json.hpp"
 #include "eval/results/shell_text.hpp"
 #include "eval/statistics/distributions.hpp"
 #include "eval/study/study_cell.hpp"
@@ -52,14 +53,17 @@ StudyMean study_mean(const Samples& samples) {
   } else {
     for (const auto& [sequence, of_seeds] : samples) values.push_back(mean_of(of_seeds));
   }
-  StudyMean mean{mean_of(values), std::nullopt, values.size()};
+  StudyMean mean;
+  mean.value = mean_of(values);
+  mean.count = values.size();
   if (!mean.value || values.size() < 2) return mean;
   const double count = static_cast<double>(values.size());
   double squares = 0;
   for (const auto& value : values) squares += (*value - *mean.value) * (*value - *mean.value);
-  const double half = student_quantile(1 - (1 - kConfidence) / 2, count - 1) *
-                      std::sqrt(squares / (count - 1) / count);
-  mean.interval = Interval{std::max(0.0, *mean.value - half), std::min(1.0, *mean.value + half)};
+  mean.half_width = student_quantile(1 - (1 - kConfidence) / 2, count - 1) *
+                    std::sqrt(squares / (count - 1) / count);
+  mean.interval = Interval{std::max(0.0, *mean.value - mean.half_width),
+                           std::min(1.0, *mean.value + mean.half_width)};
   return mean;
 }
 
@@ -201,7 +205,12 @@ std::string command_for(const StudyPlan& plan, const StudyCell& cell) {
                                                  : cell.data->path.string();
   std::string command = fmt::format("mosbench run {} --sequences {} --method {}", shell_word(data),
                                     shell_word(cell.sequence), shell_word(cell.method->method));
-  if (const auto perturb = cell.perturb()) command += " --perturb " + shell_word(*perturb);
+  ReadingOptions reading = cell.data->reading;
+  reading.perturb = cell.perturb();
+  command += told_flags(reading);
+  if (cell.data->dataset != "auto") command += " --dataset " + cell.data->dataset;
+  if (plan.study->protocol) command += " --protocol " + *plan.study->protocol;
+  if (plan.study->range) command += " --range " + *plan.study->range;
   if (cell.method->preset) command += " --preset " + *cell.method->preset;
   if (!cell.odometry.empty()) command += " --odometry " + cell.odometry;
   for (const auto& set : cell.identity.at("set")) {

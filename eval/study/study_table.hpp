@@ -14,7 +14,8 @@ namespace mosbench {
 /// sequence, over seeds.
 struct StudyMean {
   std::optional<double> value;       ///< fraction; nothing without cells, or where one is undefined
-  std::optional<Interval> interval;  ///< 95 %, Student's t; nothing below two
+  std::optional<Interval> interval;  ///< 95 %, Student's t, cut to 0 and 1; nothing below two
+  double half_width = 0;             ///< of the interval before it was cut
   std::size_t count = 0;             ///< sequences, or seeds of the single one
 };
 

@@ -82,7 +82,12 @@ std::uint64_t YamlNode::whole(std::uint64_t lowest, std::uint64_t highest) const
 
 YamlNode parse_yaml(const std::string& text, const std::filesystem::path& file) {
   try {
-    return {YAML::Load(text), file};
+    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
+    if (documents.size() > 1) {
+      throw UsageError(fmt::format("{}: has {} YAML documents, expected one study", file.string(),
+                                   documents.size()));
+    }
+    return {documents.empty() ? YAML::Node() : documents.front(), file};
   } catch (const YAML::Exception& error) {
     throw UsageError(fmt::format("{}:{}: is no YAML ({}), expected a study", file.string(),
                                  error.mark.line + 1, error.msg));

@@ -108,6 +108,24 @@ TEST_F(Studies, GoOnWhereOneSequenceIsBad) {
   EXPECT_EQ(study("table").exit_code, 0);
 }
 
+TEST_F(Studies, GoOnWhereASequenceLacksWhatReadingNeeds) {
+  folder_.write("s.yaml", R"(name: s
+protocol: sipailou
+data:
+  - {name: whole, path: data, dataset: semantickitti, sequences: ["00"]}
+  - {name: timeless, path: data, dataset: semantickitti, sequences: ["01"], reading: {deskew: velocity}}
+methods: [underwood]
+)");
+  const cli::Answer plan = study("plan", {"--measure"});
+  EXPECT_EQ(plan.exit_code, 0) << plan.err;
+  EXPECT_THAT(plan.err, HasSubstr("timeless 01, underwood: not measured: --deskew"));
+  for (const std::string& key : keys()) study("cell", {key});
+  const cli::Answer table = study("table");
+  EXPECT_EQ(table.exit_code, 1);
+  EXPECT_THAT(table.out, HasSubstr("1 of 2 cells are done"));
+  EXPECT_THAT(table.out, HasSubstr("timeless 01, underwood: --deskew"));
+}
+
 TEST_F(Studies, AreTheSameFromTwoProcessesAtOnce) {
   const std::vector<std::string> all = keys();
   std::vector<std::string> words = {"study", "cell", path("s.yaml"), all[0], "--out", path("two")};
@@ -140,6 +158,11 @@ TEST_F(Studies, ComputeAgainWhatAnotherVersionLeft) {
 TEST_F(Studies, TellTheHoursOnceTheyAreMeasured) {
   EXPECT_THAT(study("plan").out, HasSubstr("--measure tells"));
   EXPECT_THAT(study("plan", {"--measure"}).out, HasSubstr("hours of one core"));
+  const std::string text = read_file(folder_ / "s.yaml");
+  folder_.write("s.yaml", text + "odometry: [none]\nvary: {setting: max_range_m, values: [9]}\n");
+  EXPECT_THAT(study("plan").out, HasSubstr("hours of one core"));
+  cli::write_small_sequence(folder_.path() / "data/sequences/01", 12);
+  EXPECT_THAT(study("plan").out, HasSubstr("--measure tells"));
 }
 
 TEST_F(Studies, AreRunBySnakemakeAndGoOnWhereTheyWereLeft) {

@@ -87,6 +87,45 @@ TEST(StudyFile, IsRefusedWithTheLineOfTheFault) {
   EXPECT_THAT(study_error("- 1"), HasSubstr("is no map"));
 }
 
+TEST(StudyFile, DisturbsByOneKindAtATime) {
+  const auto error = [](const std::string& what, const std::string& by) {
+    return study_error(replaced_in(kSmallStudy, what, by));
+  };
+  EXPECT_THAT(error("kind: pose_noise_m", "kind: seed"),
+              AllOf(StartsWith("s.yaml:10: "), HasSubstr("\"seed\" is not known")));
+  EXPECT_THAT(error("kind: pose_noise_m", "kind: \"pose_noise_m=1,rain_mm_per_h\""),
+              HasSubstr("is not known"));
+  EXPECT_THAT(error("0.05", "\"0.05,rain_mm_per_h=3\""),
+              StartsWith("s.yaml:10: \"0.05,rain_mm_per_h=3\" is more than one value"));
+  EXPECT_THAT(error("strengths: [1]", "strengths: [1], with: {beams_of: \"64,beams=32\"}"),
+              StartsWith("s.yaml:11: \"64,beams=32\" is more than one value"));
+}
+
+TEST(StudyFile, IsOneDocument) {
+  EXPECT_THAT(study_error(std::string(kSmallStudy) + "---\nname: second\n"),
+              HasSubstr("has 2 YAML documents"));
+}
+
+TEST(StudyPlan, RefusesSequencesThatASimulationDoesNotWrite) {
+  const Study study = parse_study(
+      replaced_in(kSmallStudy, "name: room", "name: room\n    sequences: [09]"), "s.yaml");
+  EXPECT_THAT(message_of<UsageError>([&] { plan_study(study, "/nowhere"); }),
+              HasSubstr("simulates no sequence \"09\", expected 08"));
+}
+
+TEST(StudyPlan, RefusesOneRunUnderTwoNames) {
+  const auto error = [](const std::string& what, const std::string& by) {
+    const Study study = parse_study(replaced_in(kSmallStudy, what, by), "s.yaml");
+    return message_of<UsageError>([&] { plan_study(study, "/nowhere"); });
+  };
+  EXPECT_THAT(error("- hmm-mos", "- hmm-mos\n  - {name: twin, method: hmm-mos}"),
+              HasSubstr("\"room-1 08, hmm-mos\" and \"room-1 08, twin\" are the same run"));
+  EXPECT_THAT(error("methods:",
+                    "  - name: twin\n    simulate: {layout: semantickitti, scene: room, scans: 6, "
+                    "seed: 2}\nmethods:"),
+              HasSubstr("\"room-2 08, hmm-mos\" and \"twin 08, hmm-mos\" are the same run"));
+}
+
 TEST(StudyPlan, HoldsEveryCombinationOnce) {
   const Study study = parse_study(kSmallStudy, "s.yaml");
   const StudyPlan plan = plan_study(study, "/nowhere");
@@ -116,6 +155,19 @@ TEST(StudyPlan, KeepsTheKeysOfWhatDidNotChange) {
   EXPECT_EQ(shared("seed: [1, 2]", "seed: [1, 3]"), 22u);
   EXPECT_EQ(shared("semantickitti-mos", "sipailou"), 0u);
   EXPECT_EQ(shared("scans: 6", "scans: 7"), 0u);
+}
+
+TEST(StudyPlan, KnowsTheCostOfACellByWhatItIs) {
+  const auto cost_key = [](const std::string& what, const std::string& by) {
+    const Study study = parse_study(replaced_in(kSmallStudy, what, by), "s.yaml");
+    return plan_study(study, "/nowhere").cells.back().cell.cost_key;
+  };
+  const std::string before = cost_key("name: small", "name: small");
+  EXPECT_EQ(cost_key("strengths: [1]", "strengths: [2]"), before);
+  EXPECT_EQ(cost_key("semantickitti-mos", "sipailou"), before);
+  EXPECT_NE(cost_key("scans: 6", "scans: 600"), before);
+  EXPECT_NE(cost_key("max_range_m: 15", "max_range_m: 50"), before);
+  EXPECT_NE(cost_key("method: underwood, set: {max_range_m: 15}", "method: yoon"), before);
 }
 
 /// Writes the record of a cell as if it had been computed.
@@ -161,10 +213,24 @@ TEST(StudyTable, HasMeansRanksAndTheParetoFront) {
   EXPECT_NEAR(*table.hours, 6 * 36.0 / 3600, 1e-12);
   EXPECT_TRUE(table.simulated);
   EXPECT_EQ(table.worst.front().iou, 0.3);
-  EXPECT_THAT(study_text(table), HasSubstr("simulated data"));
+  EXPECT_THAT(study_text(table), AllOf(HasSubstr("simulated data"), HasSubstr("70.0 +- 127.1")));
   EXPECT_THAT(study_latex(table), HasSubstr("\\begin{tabular}{lrrrrrr}"));
   EXPECT_THAT(study_latex(table), testing::Not(HasSubstr("\n\n\\hline"))) << "does not compile";
   EXPECT_THAT(study_html(table), HasSubstr("\"name\":\"small\""));
+}
+
+TEST(StudyTable, TellsTheCommandOfAWorstScanWithAllThatTheStudySays) {
+  const TempFolder folder;
+  std::string text = replaced_in(kSmallStudy, "semantickitti-mos", "mapmos\nrange_m: [1, 20]");
+  text = replaced_in(text, "name: room", "name: room\n    reading: {deskew: none}");
+  const Study study = parse_study(text, "s.yaml");
+  const StudyPlan plan = plan_study(study, folder.path());
+  write_record(plan, plan.cells.back().cell, 0.5, 1);
+  const StudyTable table = gather(plan_study(study, folder.path()));
+  ASSERT_EQ(table.worst.size(), 1u);
+  EXPECT_THAT(table.worst.front().command,
+              HasSubstr(" --method underwood --deskew none --perturb mount_tilt_deg=1,seed=0 "
+                        "--protocol mapmos --range 1,20 --set max_range_m=15 --out "));
 }
 
 TEST(StudyTable, AveragesSeedsBeforeSequences) {
