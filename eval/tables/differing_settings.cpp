@@ -37,7 +37,8 @@ OwnedSettings of_poses(const SequenceResult& result) {
 
 OwnedSettings of_disturbance(const SequenceResult& result) {
   OwnedSettings settings{result.method};
-  settings.values["perturb"] = reading_of(result).value("perturb", "none");
+  const std::string perturb = disturbance_of(result);
+  settings.values["perturb"] = perturb.empty() ? "none" : perturb;
   return settings;
 }
 
@@ -81,6 +82,10 @@ std::vector<std::string> names_in(const std::vector<OwnedSettings>& runs) {
 }
 
 }  // namespace
+
+std::string disturbance_of(const SequenceResult& result) {
+  return reading_of(result).value("perturb", "");
+}
 
 std::vector<DifferingSetting> differing_settings(const std::vector<const ResultSet*>& runs) {
   std::vector<DifferingSetting> differing;

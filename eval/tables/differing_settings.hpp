@@ -14,6 +14,9 @@ struct DifferingSetting {
   std::vector<nlohmann::ordered_json> values;  ///< one per run; null where it has no such setting
 };
 
+/// Returns what --perturb said of the scans; empty where they were read as they are.
+std::string disturbance_of(const SequenceResult& result);
+
 /// Returns the settings of which two runs by one method have different values, or all runs have one
 /// and they differ, as recorded in result.json: those of the method (what `score --setting` said
 /// for other programs), where the poses are from, and the settings of odometry.

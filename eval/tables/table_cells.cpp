@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "eval/statistics/scan_spacing.hpp"
+#include "eval/tables/differing_settings.hpp"
 #include "eval/tables/fill_command.hpp"
 #include "eval/tables/table_match.hpp"
 
@@ -84,6 +85,12 @@ TableCell measured_cell(const PaperTable& table, const TableColumn& column, cons
   }
   cell.measured = estimate(*run.front().protocol, counts_of(part), spacing_of(part))[Metric::kIou];
   if (row != nullptr) cell.reasons = mismatches(run, cell.published.value_or(row->cells.front()));
+  for (const SequenceResult& sequence : part.sequences) {
+    const std::string perturb = disturbance_of(sequence);
+    if (perturb.empty()) continue;
+    cell.reasons.push_back(
+        fmt::format("sequence {} is disturbed by {}", sequence.sequence.text(), perturb));
+  }
   if (run.front().simulated) cell.reasons.insert(cell.reasons.begin(), "simulated data");
   for (std::string& gap : gaps(part, column)) cell.reasons.push_back(std::move(gap));
   if (!cell.measured->value) {

@@ -121,6 +121,15 @@ TEST(FillTable, SaysWithinWhereThePublishedValueLiesInTheInterval) {
   EXPECT_THAT(cell.reasons, IsEmpty());
 }
 
+TEST(FillTable, ComparesNoDisturbedScansWithPublishedOnes) {
+  ResultSet run = station(889);
+  run.sequences[1].header["reading"] = {{"perturb", "beams=32,beams_of=64,seed=1"}};
+  const TableCell cell = cell_of(filled({run}));
+  EXPECT_EQ(cell.verdict, Verdict::kNotComparable);
+  EXPECT_THAT(cell.reasons, testing::ElementsAre("sequence station/sequence_2 is disturbed by "
+                                                 "beams=32,beams_of=64,seed=1"));
+}
+
 TEST(FillTable, SaysOutsideWhereItDoesNot) {
   const TableCell cell = cell_of(filled({valid(880)}, "II"));
   EXPECT_EQ(cell.verdict, Verdict::kOutside) << testing::PrintToString(cell.reasons);
