@@ -75,9 +75,20 @@ std::string statement_of(const Dataset& dataset, const ConvertOptions& options) 
   return json.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
+/// Returns what --perturb said of the data set; empty where it was read as it is.
+std::string disturbance_of(const Dataset& dataset) {
+  for (const auto& [what, how] : dataset.sequences.front()->reading()) {
+    if (what == "perturb") return how;
+  }
+  return "";
+}
+
 void write_shared_files(const Dataset& dataset, const ConvertOptions& options) {
   if (auto origin = simulated_origin(dataset.root)) {
     origin->layout = options.layout;
+    if (const std::string perturb = disturbance_of(dataset); !perturb.empty()) {
+      origin->perturb = origin->perturb ? *origin->perturb + ", then " + perturb : perturb;
+    }
     write_file_atomic(options.out / kSimulatedMarker, format_simulated_origin(*origin));
   }
   if (options.layout == DatasetKind::kHelimos) {

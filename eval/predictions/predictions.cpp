@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
+
 #include "datasets/files/errors.hpp"
 #include "datasets/files/files.hpp"
+#include "datasets/files/json_text.hpp"
 #include "datasets/files/text.hpp"
 #include "eval/predictions/prediction_errors.hpp"
 #include "eval/predictions/prediction_place.hpp"
@@ -81,6 +84,31 @@ PredictionFormat settle_format(PredictionFormat found, const PredictionOptions& 
                                describe(found).name));
 }
 
+/// Says where labels that mosbench wrote are of scans that were disturbed in another way.
+std::string disturbance_remark(const PredictionPlace& place, const Sequence& sequence) {
+  const std::filesystem::path file = place.path.parent_path() / "result.json";
+  std::string labelled, now;
+  try {
+    if (!is_there(file)) return "";
+    labelled = parse_json(read_file(file), file).at("reading").value("perturb", "");
+  } catch (const DataError&) {  // of another program
+    return "";
+  } catch (const nlohmann::json::exception&) {
+    return "";
+  }
+  for (const auto& [what, how] : sequence.reading()) {
+    if (what == "perturb") now = how;
+  }
+  if (labelled == now) return "";
+  const auto text = [](const std::string& perturb) {
+    return perturb.empty() ? std::string("not disturbed") : "disturbed by " + perturb;
+  };
+  return fmt::format(
+      "the scans that were labelled are {}, those read now are {}: the same --perturb "
+      "makes them agree",
+      text(labelled), text(now));
+}
+
 }  // namespace
 
 LabelIdMap parse_id_map(const std::string& text) {
@@ -120,6 +148,9 @@ OpenedPredictions open_predictions(const std::filesystem::path& root, const Sequ
     opened.missing = missing_scans(*opened.labels, place, sequence, wanted, errors);
   } catch (const DataError& error) {
     throw opened.with_format(error);
+  }
+  if (std::string remark = disturbance_remark(place, sequence); !remark.empty()) {
+    opened.remarks.push_back(std::move(remark));
   }
   opened.remarks.insert(opened.remarks.end(), errors.texts().begin(), errors.texts().end());
   return opened;

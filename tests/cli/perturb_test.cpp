@@ -68,6 +68,21 @@ TEST_F(PerturbedRuns, AreTheSameAsOfDataThatWereConvertedWithThem) {
   EXPECT_EQ(again.at("fingerprint_without_poses"), disturbed.at("fingerprint_without_poses"));
 }
 
+TEST_F(PerturbedRuns, AreScoredWithAWordWhereTheTruthIsOfOtherScans) {
+  run_to("disturbed", {"--perturb", "dropout_probability=0.5,seed=1"});
+  const auto score = [&](const char* perturb) {
+    const cli::Answer answer =
+        cli::run({"score", path("s"), "--predictions", path("disturbed"), "--perturb", perturb});
+    EXPECT_EQ(answer.exit_code, 0) << answer.err;
+    return answer.out + answer.err;
+  };
+  EXPECT_THAT(
+      score("range_bias_m=0,seed=1"),
+      HasSubstr("the scans that were labelled are disturbed by dropout_probability=0.5,seed=1"));
+  EXPECT_THAT(score("dropout_probability=0.5,seed=1"),
+              testing::Not(HasSubstr("that were labelled")));
+}
+
 TEST_F(PerturbedRuns, RefuseWhatDoesNotFit) {
   const auto error = [&](std::vector<std::string> words) {
     const cli::Answer answer = cli::run(words);
@@ -109,6 +124,16 @@ TEST(PerturbedSimulations, SayWhatDisturbedThem) {
   const std::string bytes = read_file(folder.path() / "disturbed" / scan);
   EXPECT_EQ(bytes, read_file(folder.path() / "converted" / scan));
   EXPECT_NE(bytes, read_file(folder.path() / "plain" / scan));
+  // And so is what they say of themselves, also when they are disturbed once more.
+  const auto converted = ordered_json::parse(read_file(folder / "converted/simulated.json"));
+  EXPECT_EQ(converted.at("perturb"), marker.at("perturb"));
+  ASSERT_EQ(cli::run({"convert", (folder / "converted").string(), "--layout", "doals", "--out",
+                      (folder / "twice").string(), "--perturb", "range_bias_m=1"})
+                .exit_code,
+            0);
+  const auto twice = ordered_json::parse(read_file(folder / "twice/simulated.json"));
+  EXPECT_EQ(twice.at("perturb"),
+            marker.at("perturb").get<std::string>() + ", then range_bias_m=1,seed=1");
 }
 
 }  // namespace
