@@ -61,6 +61,9 @@ ArrivalClasses classify(const VoxelizedScan& scan, hmm_mos::VoxelMap& map, std::
   const std::size_t blocks = scan.measured.block_count();
   ArrivalClasses classes{ScanMasks(blocks), ScanMasks(blocks), ScanMasks(blocks),
                          ScanMasks(blocks)};
+  const std::uint32_t seed_age_ticks = ticks_of(config.seed_age_s);
+  const std::uint32_t fresh_age_ticks = ticks_of(config.fresh_age_s);
+  const std::uint32_t object_age_ticks = ticks_of(config.object_age_s);
   ScanMasks young(blocks);
   for (std::size_t i = 0; i < blocks; ++i) {
     if (!scan.occupied[i].any()) continue;
@@ -68,12 +71,11 @@ ArrivalClasses classify(const VoxelizedScan& scan, hmm_mos::VoxelMap& map, std::
     if (!past) continue;  // at the range limit not every occupied voxel is observed
     const auto& history = past->history;
     const BlockMask occupied = scan.occupied[i] & past->known.occupied;
-    young[i] = history.sure_within(ticks_of(config.seed_age_s), past->tick) & occupied;
-    classes.fresh[i] = history.sure_within(ticks_of(config.fresh_age_s), past->tick) & young[i];
+    young[i] = history.sure_within(seed_age_ticks, past->tick) & occupied;
+    classes.fresh[i] = history.sure_within(fresh_age_ticks, past->tick) & young[i];
     classes.aged[i] = history.aged() & occupied;
     const BlockMask settled = history.settled() & occupied;
     if (!settled.any()) continue;
-    const std::uint32_t object_age_ticks = ticks_of(config.object_age_s);
     classes.settled[i] = without(settled, history.arrived_within(object_age_ticks, past->tick));
   }
   add_seeds(scan, young, map, k, config, pool, classes.seeds);

@@ -12,6 +12,7 @@
 #include "datasets/layouts/layout.hpp"
 #include "datasets/layouts/simulated_origin.hpp"
 #include "datasets/layouts/unfinished_conversion.hpp"
+#include "datasets/rosbag/ros2_bag_writer.hpp"
 #include "datasets/sequence/fingerprint.hpp"
 #include "datasets/sequence/pose_source.hpp"
 
@@ -47,7 +48,8 @@ std::set<fs::path> expected_files(const Dataset& dataset, const std::vector<fs::
   std::set<fs::path> files = {kSimulatedMarker};
   for (std::size_t i = 0; i < folders.size(); ++i) {
     for (const char* name : {"times.txt", "calib.txt", "poses.txt", "indices.csv", "bag.bag",
-                             "metadata.yaml", "bag_0.mcap", "bag_0.db3", kPoseOriginFile}) {
+                             kBagMetadataFile, message_file_of(Ros2Storage::kMcap),
+                             message_file_of(Ros2Storage::kSqlite), kPoseOriginFile}) {
       files.insert(folders[i] / name);
     }
     for (const char* split : {"train.txt", "val.txt", "test.txt"}) {

@@ -107,13 +107,7 @@ void BagFile::add_chunk(std::string_view header, std::uint64_t content_at_bytes,
     throw DataError(path_, "a chunk is compressed by \"" + chunk.compression + "\"",
                     "none, bz2 or lz4");
   }
-  if (chunk.size_bytes > kMostChunkBytes ||
-      (chunk.compression == "none" && chunk.size_bytes != chunk.stored_bytes)) {
-    throw DataError(
-        path_,
-        fmt::format("a chunk of {} bytes claims to have {}", chunk.stored_bytes, chunk.size_bytes),
-        fmt::format("its size, at most {}", kMostChunkBytes));
-  }
+  check_chunk_size(chunk, content_bytes, path_);
   chunks_.push_back(std::move(chunk));
 }
 

@@ -11,6 +11,17 @@
 
 namespace mosbench {
 
+void check_chunk_size(const BagChunk& chunk, std::uint64_t room_bytes,
+                      const std::filesystem::path& file) {
+  const bool fits = chunk.stored_bytes <= room_bytes && chunk.size_bytes <= kMostChunkBytes &&
+                    (chunk.is_packed() || chunk.size_bytes == chunk.stored_bytes);
+  if (fits) return;
+  throw DataError(
+      file,
+      fmt::format("a chunk of {} bytes claims to have {}", chunk.stored_bytes, chunk.size_bytes),
+      fmt::format("its size, at most {}", kMostChunkBytes));
+}
+
 ChunkReader::ChunkReader(const std::filesystem::path& file)
     : file_(file),
       size_bytes_(size_of(file)),

@@ -24,6 +24,11 @@ struct BagChunk {
 /// The longest chunk that is read: what one claims to hold is allocated.
 inline constexpr std::uint64_t kMostChunkBytes = 1ULL << 29U;
 
+/// Throws DataError for a chunk that claims to take more than `room_bytes`, to hold more than
+/// kMostChunkBytes or, if it is not packed, to hold another number of bytes than it takes.
+void check_chunk_size(const BagChunk& chunk, std::uint64_t room_bytes,
+                      const std::filesystem::path& file);
+
 /// Reads the bytes of a bag, of which one unpacked chunk is kept. Safe to call from several
 /// threads.
 class ChunkReader {

@@ -115,13 +115,7 @@ void McapFile::add_chunk(std::uint64_t at_bytes, std::uint64_t count) {
     throw DataError(path_, "a chunk is compressed by \"" + chunk.compression + "\"",
                     "none, lz4 or zstd");
   }
-  if (chunk.stored_bytes > count - head_bytes || chunk.size_bytes > kMostChunkBytes ||
-      (!chunk.is_packed() && chunk.size_bytes != chunk.stored_bytes)) {
-    throw DataError(
-        path_,
-        fmt::format("a chunk of {} bytes claims to have {}", chunk.stored_bytes, chunk.size_bytes),
-        fmt::format("its size, at most {}", kMostChunkBytes));
-  }
+  check_chunk_size(chunk, count - head_bytes, path_);
   chunks_.push_back({std::move(chunk), false});
 }
 

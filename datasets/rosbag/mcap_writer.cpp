@@ -50,7 +50,7 @@ void checked(const std::filesystem::path& file, Call&& call) {
 
 McapWriter::McapWriter(const std::filesystem::path& folder, const std::string& compression)
     : Ros2BagWriter(folder, {"mcap", message_file_of(Ros2Storage::kMcap), "", 0, 0, {}}),
-      compression_(compression == "none" ? "" : compression) {
+      compression_(compression) {
   checked(file(), [&] { out_ = std::make_unique<PartialFile>(file()); });
   ByteSink header;
   header.put_counted("ros2");

@@ -19,6 +19,7 @@ namespace mosbench {
 /// Writes an MCAP file in chunks, each with an index of its messages, and a summary.
 class McapWriter : public Ros2BagWriter {
  public:
+  /// `compression` is "", "lz4" or "zstd".
   McapWriter(const std::filesystem::path& folder, const std::string& compression);
 
  private:

@@ -23,8 +23,9 @@ std::unique_ptr<Ros2BagWriter> Ros2BagWriter::open(Ros2Storage storage,
     throw UsageError("--compression: '" + compression + "' is not known, expected " +
                      (is_mcap ? "none, lz4 or zstd" : "none or zstd"));
   }
-  if (is_mcap) return std::make_unique<McapWriter>(folder, compression);
-  return std::make_unique<SqliteBagWriter>(folder, compression);
+  const std::string name = compression == "none" ? "" : compression;  // as both formats have it
+  if (is_mcap) return std::make_unique<McapWriter>(folder, name);
+  return std::make_unique<SqliteBagWriter>(folder, name);
 }
 
 Ros2BagWriter::Ros2BagWriter(const std::filesystem::path& folder, BagSummary summary)

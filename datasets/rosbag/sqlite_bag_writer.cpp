@@ -24,15 +24,6 @@ constexpr const char* kTables =
     "timestamp INTEGER NOT NULL, data BLOB NOT NULL);"
     "CREATE INDEX timestamp_idx ON messages (timestamp ASC);";
 
-BagSummary summary_with(const std::string& compression) {
-  return {"sqlite3",
-          message_file_of(Ros2Storage::kSqlite),
-          compression == "none" ? "" : compression,
-          0,
-          0,
-          {}};
-}
-
 }  // namespace
 
 void SqliteBagWriter::Close::operator()(sqlite3* database) const { sqlite3_close(database); }
@@ -42,7 +33,9 @@ void SqliteBagWriter::Close::operator()(sqlite3_stmt* statement) const {
 
 SqliteBagWriter::SqliteBagWriter(const std::filesystem::path& folder,
                                  const std::string& compression)
-    : Ros2BagWriter(folder, summary_with(compression)), partial_(partial_of(file())) {
+    : Ros2BagWriter(folder,
+                    {"sqlite3", message_file_of(Ros2Storage::kSqlite), compression, 0, 0, {}}),
+      partial_(partial_of(file())) {
   // What a killed run left.
   std::error_code ignored;
   std::filesystem::remove(partial_, ignored);

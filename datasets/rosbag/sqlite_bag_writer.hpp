@@ -16,6 +16,7 @@ namespace mosbench {
 /// Writes a database of SQLite with the tables of rosbag2, version 3.
 class SqliteBagWriter : public Ros2BagWriter {
  public:
+  /// `compression` is "" or "zstd".
   SqliteBagWriter(const std::filesystem::path& folder, const std::string& compression);
   ~SqliteBagWriter() override;
 

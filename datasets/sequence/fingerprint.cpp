@@ -42,6 +42,10 @@ std::string state_of(const std::filesystem::path& file) {
                      state.st_mtim.tv_nsec, state.st_ctim.tv_sec, state.st_ctim.tv_nsec);
 }
 
+std::string hex_of(const XXH128_hash_t& hash) {
+  return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
+}
+
 }  // namespace
 
 void ContentFingerprint::FreeState::operator()(XXH3_state_s* state) const { XXH3_freeState(state); }
@@ -67,9 +71,10 @@ void ContentFingerprint::add(const Frame& frame) {
   if (frame.truth) add_range(*state_, *frame.truth);
 }
 
-std::string ContentFingerprint::hex() const {
-  const XXH128_hash_t hash = XXH3_128bits_digest(state_.get());
-  return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
+std::string ContentFingerprint::hex() const { return hex_of(XXH3_128bits_digest(state_.get())); }
+
+std::string hash_of_text(std::string_view text) {
+  return hex_of(XXH3_128bits(text.data(), text.size()));
 }
 
 std::string hash_of_file(const std::filesystem::path& file) {
@@ -88,8 +93,7 @@ std::string hash_of_file(const std::filesystem::path& file) {
     }
     if (!in) throw DataError(file, "cannot be read", "a readable file");
   }
-  const XXH128_hash_t hash = XXH3_128bits(bytes.data(), bytes.size());
-  return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
+  return hash_of_text(bytes);
 }
 
 LabelHash hash_of_labels(std::span<const std::uint32_t> labels) {
@@ -105,8 +109,7 @@ std::string file_stamp(const Sequence& sequence) {
     listing += fmt::format("{}\n{}\n", std::filesystem::absolute(file).lexically_normal().string(),
                            state_of(file));
   }
-  const XXH128_hash_t hash = XXH3_128bits(listing.data(), listing.size());
-  return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
+  return hash_of_text(listing);
 }
 
 }  // namespace mosbench

@@ -6,6 +6,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "datasets/sequence/sequence.hpp"
 
@@ -32,6 +33,9 @@ class ContentFingerprint {
   Of of_;
   std::unique_ptr<XXH3_state_s, FreeState> state_;
 };
+
+/// Returns XXH3-128 over bytes, 32 hexadecimal digits.
+std::string hash_of_text(std::string_view text);
 
 /// Returns XXH3-128, 32 hexadecimal digits, over the size and the bytes of a file; of a file of
 /// more than 32 MiB, as bags have, over half of that at each end.

@@ -70,7 +70,6 @@ std::string hours_text(const StudyWork& work) {
 }
 
 nlohmann::ordered_json plan_json(const StudyPlan& plan, const CostModel& costs) {
-  static constexpr std::array kStates = {"missing", "failed", "other version", "done"};
   nlohmann::ordered_json json = {{"study", plan.study->name},
                                  {"out", plan.out.string()},
                                  {"hours", json_or_null(work_of(plan, costs).hours)},
@@ -78,7 +77,7 @@ nlohmann::ordered_json plan_json(const StudyPlan& plan, const CostModel& costs) 
   for (const PlannedCell& planned : plan.cells) {
     json["cells"].push_back({{"key", planned.cell.key},
                              {"title", planned.cell.title()},
-                             {"state", kStates[static_cast<std::size_t>(planned.state)]},
+                             {"state", to_string(planned.state)},
                              {"seconds", json_or_null(costs.seconds(planned.cell))}});
   }
   return json;

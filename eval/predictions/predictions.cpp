@@ -111,6 +111,14 @@ std::string disturbance_remark(const PredictionPlace& place, const Sequence& seq
 
 }  // namespace
 
+std::string id_map_text(const LabelIdMap& map) {
+  std::string text;
+  for (const auto& [from, to] : map) {
+    text += fmt::format("{}{}:{}", text.empty() ? "" : ",", from, to);
+  }
+  return text;
+}
+
 LabelIdMap parse_id_map(const std::string& text) {
   LabelIdMap map;
   std::string_view rest = text;

@@ -59,6 +59,8 @@ struct OpenedPredictions {
 
 /// Parses "0:0,1:9,2:251". Throws UsageError.
 LabelIdMap parse_id_map(const std::string& text);
+/// Returns the text that `parse_id_map` takes.
+std::string id_map_text(const LabelIdMap& map);
 
 /// Finds the predictions of a sequence below `root` (or `root` itself for an `only_sequence`),
 /// recognises their format and pairs them with the scans. Unless allow_missing,

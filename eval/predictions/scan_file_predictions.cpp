@@ -232,14 +232,6 @@ void check_mapped(const std::vector<PredictedId>& ids, const LabelIdMap& map) {
   }
 }
 
-std::string id_map_text(const LabelIdMap& map) {
-  std::string text;
-  for (const auto& [from, to] : map) {
-    text += fmt::format("{}{}:{}", text.empty() ? "" : ",", from, to);
-  }
-  return text;
-}
-
 }  // namespace
 
 std::unique_ptr<Predictions> open_scan_files(const PredictionPlace& place, const Sequence& sequence,

@@ -1,6 +1,7 @@
 #include "eval/report/point_planes.hpp"
 
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 

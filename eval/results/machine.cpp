@@ -6,6 +6,7 @@
 #include <malloc.h>
 #endif
 
+#include <array>
 #include <fstream>
 #include <string>
 #include <thread>
@@ -37,6 +38,12 @@ nlohmann::ordered_json machine_json() {
           {"logical_cores", std::thread::hardware_concurrency()},
           {"memory_mib", static_cast<double>(sysconf(_SC_PHYS_PAGES)) * page_mib()},
           {"system", std::string(system.sysname) + " " + system.machine}};
+}
+
+std::string host_name() {
+  std::array<char, 256> host{};
+  gethostname(host.data(), host.size() - 1);
+  return host.data();
 }
 
 nlohmann::ordered_json code_json() {

@@ -1,11 +1,15 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <string>
 
 namespace mosbench {
 
 /// Processor, logical cores, memory and operating system, as far as they can be read.
 nlohmann::ordered_json machine_json();
+
+/// Name of this host in its network, as far as it can be read.
+std::string host_name();
 
 /// Version of mosbench and the compiler that built it.
 nlohmann::ordered_json code_json();

@@ -1,25 +1,10 @@
 #include "eval/runs/score_source.hpp"
 
-#include <fmt/format.h>
-
 #include "eval/results/reading_json.hpp"
 
 namespace mosbench {
 namespace fs = std::filesystem;
-namespace {
-
 using nlohmann::ordered_json;
-
-/// Returns "0:9,1:251", as --id-map takes it.
-std::string id_map_text(const LabelIdMap& map) {
-  std::string text;
-  for (const auto& [from, to] : map) {
-    text += fmt::format("{}{}:{}", text.empty() ? "" : ",", from, to);
-  }
-  return text;
-}
-
-}  // namespace
 
 ordered_json source_json(const Dataset& dataset, const ReadingOptions& reading,
                          const ScoreTask& task, PredictionFormat format) {

@@ -1,13 +1,13 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <array>
 #include <random>
 #include <system_error>
 
 #include "datasets/files/errors.hpp"
 #include "datasets/files/files.hpp"
 #include "datasets/simulator/simulate.hpp"
+#include "eval/results/machine.hpp"
 #include "eval/study/study_plan.hpp"
 
 namespace mosbench {
@@ -16,10 +16,8 @@ namespace {
 
 /// A name that no other process takes, on any host.
 std::string own_name() {
-  std::array<char, 256> host{};
-  gethostname(host.data(), host.size() - 1);
   std::random_device random;
-  return fmt::format(".{}-{}-{:08x}{:08x}.partial", host.data(), getpid(), random(), random());
+  return fmt::format(".{}-{}-{:08x}{:08x}.partial", host_name(), getpid(), random(), random());
 }
 
 }  // namespace

@@ -1,10 +1,9 @@
 #include "eval/study/study_cell.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
+#include <stdlib.h>
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
 
@@ -100,12 +99,6 @@ ordered_json record_head(const StudyCell& cell) {
           {"identity", cell.identity}};
 }
 
-std::string host_name() {
-  std::array<char, 256> host{};
-  gethostname(host.data(), host.size() - 1);
-  return host.data();
-}
-
 ordered_json computed_record(const StudyCell& cell, const Study& study, const fs::path& out,
                              unsigned threads) {
   const auto begin = std::chrono::steady_clock::now();
@@ -174,16 +167,6 @@ ordered_json measured_cost(const StudyPlan& study, const StudyCell& cell) {
           {"memory_mib", memory_mib}};
 }
 
-std::optional<double> number_in(const ordered_json& costs, const StudyCell& cell,
-                                const char* what) {
-  const auto found = costs.find(cost_name(cell));
-  if (found == costs.end() || !found->is_object() || !found->contains(what) ||
-      !found->at(what).is_number()) {
-    return std::nullopt;
-  }
-  return found->at(what).get<double>();
-}
-
 }  // namespace
 
 CellOutcome compute_cell(const PlannedCell& planned, const Study& study, const fs::path& out,
@@ -236,13 +219,14 @@ void measure_costs(const StudyPlan& plan) {
 
 std::optional<double> CostModel::seconds(const StudyCell& cell) const {
   constexpr double kStart_s = 0.1;
-  const auto ms = number_in(costs, cell, "ms_per_scan"), scans = number_in(costs, cell, "scans");
+  const std::string name = cost_name(cell);
+  const auto ms = number_in(costs, name, "ms_per_scan"), scans = number_in(costs, name, "scans");
   if (!ms || !scans) return std::nullopt;
   return kStart_s + 1e-3 * *ms * *scans;
 }
 
 std::optional<double> CostModel::memory_mib(const StudyCell& cell) const {
-  return number_in(costs, cell, "memory_mib");
+  return number_in(costs, cost_name(cell), "memory_mib");
 }
 
 }  // namespace mosbench

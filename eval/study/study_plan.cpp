@@ -1,9 +1,9 @@
 #include "eval/study/study_plan.hpp"
 
 #include <fmt/format.h>
-#include <xxhash.h>
 
 #include <algorithm>
+#include <array>
 #include <map>
 
 #include "datasets/files/errors.hpp"
@@ -24,14 +24,9 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
-std::string hash_of(std::string_view text) {
-  const XXH128_hash_t hash = XXH3_128bits(text.data(), text.size());
-  return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
-}
-
 ordered_json simulation_json(const StudySimulation& simulation) {
   return {{"layout", to_string(simulation.layout)},
-          {"scene", hash_of(format_scene(load_scene(simulation.scene)))},
+          {"scene", hash_of_text(format_scene(load_scene(simulation.scene)))},
           {"scans", simulation.scans},
           {"seed", simulation.seed}};
 }
@@ -44,7 +39,7 @@ std::string content_of(const Sequence& sequence) {
     listing += fmt::format("{} {}\n", file.filename().string(), size_of(file));
   }
   for (const fs::path& file : sequence.recording().files) listing += hash_of_file(file) + "\n";
-  return hash_of(listing);
+  return hash_of_text(listing);
 }
 
 /// What a cell has to say of a sequence on disk. One that cannot be opened says why.
@@ -106,11 +101,12 @@ class CellLister {
   void list(StudyCell cell, const ordered_json& sequence) {
     cell.axis = nullptr;
     cell.seed = 0;
-    cell.cost_key = hash_of(ordered_json{{"data", sequence},
-                                         {"method", cell.method->method},
-                                         {"preset", cell.method->preset.value_or("")},
-                                         {"set", cell.method->assignments}}
-                                .dump());
+    cell.cost_key = hash_of_text(ordered_json{
+        {"data", sequence},
+        {"method", cell.method->method},
+        {"preset", cell.method->preset.value_or("")},
+        {"set",
+         cell.method->assignments}}.dump());
     add(cell, sequence);
     for (const StudyAxis& axis : study_.axes) {
       if (!applies(axis, cell)) continue;
@@ -149,7 +145,7 @@ class CellLister {
                      {"perturb", cell.perturb().value_or("")},
                      {"protocol", study_.protocol.value_or("")},
                      {"range", study_.range.value_or("")}};
-    cell.key = hash_of(cell.identity.dump());
+    cell.key = hash_of_text(cell.identity.dump());
     const auto [known, is_new] = known_.emplace(cell.key, cells_.size());
     if (!is_new) return check_same_row(cells_[known->second], cell);
     cells_.push_back(std::move(cell));
@@ -251,6 +247,21 @@ StudyPlan plan_study(const Study& study, const fs::path& out,
   return plan;
 }
 
+std::string_view to_string(CellState state) {
+  static constexpr std::array<std::string_view, 4> kStates = {"missing", "failed", "other version",
+                                                              "done"};
+  return kStates[static_cast<std::size_t>(state)];
+}
+
+std::optional<double> number_in(const ordered_json& record, const std::string& part,
+                                const char* what) {
+  const auto found = record.find(part);
+  if (found == record.end() || !found->is_object()) return std::nullopt;
+  const auto value = found->find(what);
+  if (value == found->end() || !value->is_number()) return std::nullopt;
+  return value->get<double>();
+}
+
 fs::path record_file(const fs::path& out, const std::string& key) {
   return out / "cells" / (key + ".json");
 }
@@ -260,7 +271,7 @@ fs::path failure_file(const fs::path& out, const std::string& key) {
 }
 
 fs::path simulated_folder(const fs::path& out, const StudyData& data) {
-  return out / "data" / hash_of(simulation_json(*data.simulation).dump()).substr(0, 16);
+  return out / "data" / hash_of_text(simulation_json(*data.simulation).dump()).substr(0, 16);
 }
 
 }  // namespace mosbench

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "eval/study/study_file.hpp"
@@ -39,6 +40,9 @@ enum class CellState : std::uint8_t {
   kDone
 };
 
+/// Returns "missing", "failed", "other version" or "done".
+std::string_view to_string(CellState state);
+
 struct PlannedCell {
   StudyCell cell;
   CellState state = CellState::kMissing;
@@ -57,6 +61,10 @@ struct StudyPlan {
 /// be opened is a cell that will fail.
 StudyPlan plan_study(const Study& study, const std::filesystem::path& out,
                      const std::vector<std::string>& only = {});
+
+/// Returns the number `what` in the member `part` of a record; nothing where there is none.
+std::optional<double> number_in(const nlohmann::ordered_json& record, const std::string& part,
+                                const char* what);
 
 std::filesystem::path record_file(const std::filesystem::path& out, const std::string& key);
 std::filesystem::path failure_file(const std::filesystem::path& out, const std::string& key);

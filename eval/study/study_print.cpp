@@ -92,24 +92,10 @@ std::string latex_table(const std::vector<std::string>& head,
   return text + "\\hline\n\\end{tabular}\n";
 }
 
-std::string state_text(CellState state) {
-  switch (state) {
-    case CellState::kDone:
-      return "done";
-    case CellState::kFailed:
-      return "failed";
-    case CellState::kOtherVersion:
-      return "other version";
-    case CellState::kMissing:
-      break;
-  }
-  return "missing";
-}
-
 std::string cell_number(const PlannedCell& planned, const char* part, const char* what) {
-  if (planned.state != CellState::kDone || !planned.record.at(part).is_object()) return "";
-  const ordered_json& value = planned.record.at(part).value(what, ordered_json());
-  return value.is_number() ? value.dump() : "";
+  if (planned.state != CellState::kDone) return "";
+  const auto value = number_in(planned.record, part, what);
+  return value ? ordered_json(*value).dump() : "";
 }
 
 }  // namespace
@@ -158,7 +144,7 @@ std::string study_csv(const StudyPlan& plan) {
     text += csv_row(std::vector<std::string>{
         cell.key, cell.data->name, cell.sequence, cell.method->name, cell.odometry,
         cell.axis == nullptr ? "" : cell.axis->name, cell.value, std::to_string(cell.seed),
-        state_text(planned.state), cell_number(planned, "summary", "iou"),
+        std::string(to_string(planned.state)), cell_number(planned, "summary", "iou"),
         cell_number(planned, "summary", "precision"), cell_number(planned, "summary", "recall"),
         cell_number(planned, "timing", "ms_per_scan"), cell_number(planned, "timing", "wall_s")});
   }

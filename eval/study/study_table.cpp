@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <utility>
 
 #include "eval/results/reading_json.hpp"
 #include "eval/results/shell_text.hpp"
 #include "eval/statistics/distributions.hpp"
+#include "eval/statistics/pareto_front.hpp"
 #include "eval/study/study_cell.hpp"
 
 namespace mosbench {
@@ -26,14 +28,6 @@ std::string label_of(const StudyCell& cell) {
 
 std::string sequence_of(const StudyCell& cell) {
   return fmt::format("{} {}", cell.data->name, cell.sequence);
-}
-
-std::optional<double> number(const ordered_json& record, const char* part, const char* what) {
-  const auto found = record.find(part);
-  if (found == record.end() || !found->is_object()) return std::nullopt;
-  const auto value = found->find(what);
-  return value != found->end() && value->is_number() ? std::optional(value->get<double>())
-                                                     : std::nullopt;
 }
 
 std::optional<double> mean_of(const std::vector<std::optional<double>>& values) {
@@ -67,71 +61,76 @@ StudyMean study_mean(const Samples& samples) {
   return mean;
 }
 
+/// A computed cell, with the names under which a table gathers it.
+struct DoneCell {
+  const PlannedCell* planned;
+  std::string label, sequence;
+
+  const StudyCell& cell() const { return planned->cell; }
+  const ordered_json& record() const { return planned->record; }
+};
+
 /// The cells that were computed, as a table is made of them.
 class DoneCells {
  public:
   explicit DoneCells(const StudyPlan& plan) {
     for (const PlannedCell& planned : plan.cells) {
-      const std::string label = label_of(planned.cell);
+      std::string label = label_of(planned.cell);
       if (std::ranges::find(labels, label) == labels.end()) labels.push_back(label);
-      if (planned.state == CellState::kDone) done.push_back(&planned);
+      if (planned.state != CellState::kDone) continue;
+      done.push_back({&planned, std::move(label), sequence_of(planned.cell)});
     }
   }
 
   template <typename Wanted>
   StudyMetrics metrics(Wanted&& wanted) const {
-    StudyMetrics metrics;
-    for (std::size_t i = 0; i < metrics.size(); ++i) {
-      Samples samples;
-      for (const PlannedCell* planned : done) {
-        if (!wanted(planned->cell)) continue;
-        samples[sequence_of(planned->cell)].push_back(
-            number(planned->record, "summary", kStudyMetrics[i]));
+    std::array<Samples, kStudyMetrics.size()> samples;
+    for (const DoneCell& each : done) {
+      if (!wanted(each)) continue;
+      for (std::size_t i = 0; i < samples.size(); ++i) {
+        samples[i][each.sequence].push_back(number_in(each.record(), "summary", kStudyMetrics[i]));
       }
-      metrics[i] = study_mean(samples);
     }
+    StudyMetrics metrics;
+    std::ranges::transform(samples, metrics.begin(), study_mean);
     return metrics;
   }
 
   std::vector<std::string> labels;
-  std::vector<const PlannedCell*> done;
+  std::vector<DoneCell> done;
 };
 
 StudyRow row_of(const DoneCells& cells, const std::string& label) {
-  const auto is_plain = [&](const StudyCell& cell) {
-    return cell.axis == nullptr && label_of(cell) == label;
+  const auto is_plain = [&](const DoneCell& each) {
+    return each.cell().axis == nullptr && each.label == label;
   };
   std::vector<std::optional<double>> ms;
-  for (const PlannedCell* planned : cells.done) {
-    if (is_plain(planned->cell)) ms.push_back(number(planned->record, "timing", "ms_per_scan"));
+  for (const DoneCell& each : cells.done) {
+    if (is_plain(each)) ms.push_back(number_in(each.record(), "timing", "ms_per_scan"));
   }
   return {label, cells.metrics(is_plain), mean_of(ms), false, std::nullopt};
 }
 
 void mark_front(std::vector<StudyRow>& rows) {
-  for (StudyRow& row : rows) {
-    if (!row.metrics[0].value || !row.ms_per_scan) continue;
-    row.is_on_front = std::ranges::none_of(rows, [&](const StudyRow& other) {
-      if (!other.metrics[0].value || !other.ms_per_scan) return false;
-      const double iou = *other.metrics[0].value - *row.metrics[0].value;
-      const double ms = *other.ms_per_scan - *row.ms_per_scan;
-      return iou >= 0 && ms <= 0 && (iou > 0 || ms < 0);
-    });
-  }
+  std::vector<IouAndTime> runs;
+  for (const StudyRow& row : rows) runs.push_back({row.metrics[0].value, row.ms_per_scan});
+  const std::vector<bool> front = pareto_front(runs);
+  for (std::size_t i = 0; i < rows.size(); ++i) rows[i].is_on_front = front[i];
 }
 
-StudyCurve curve_of(const DoneCells& cells, const StudyAxis& axis) {
+StudyCurve curve_of(const DoneCells& cells, const StudyAxis& axis,
+                    const std::vector<StudyRow>& rows) {
   StudyCurve curve;
   curve.axis = axis.name;
   if (axis.kind != nullptr) curve.unit = axis.kind->unit;
   curve.values = {"none"};
   curve.values.insert(curve.values.end(), axis.values.begin(), axis.values.end());
-  for (const std::string& label : cells.labels) {
+  for (const StudyRow& row : rows) {
     std::vector<StudyMetrics>& line = curve.metrics.emplace_back();
-    for (std::size_t i = 0; i < curve.values.size(); ++i) {
-      line.push_back(cells.metrics([&](const StudyCell& cell) {
-        if (label_of(cell) != label) return false;
-        return i == 0 ? cell.axis == nullptr : cell.axis == &axis && cell.value == curve.values[i];
+    line.push_back(row.metrics);
+    for (const std::string& value : axis.values) {
+      line.push_back(cells.metrics([&](const DoneCell& each) {
+        return each.cell().axis == &axis && each.cell().value == value && each.label == row.label;
       }));
     }
   }
@@ -150,7 +149,7 @@ std::optional<std::vector<double>> scores_on(const StudyPlan& plan, const DoneCe
     const auto label = std::ranges::find(cells.labels, label_of(cell)) - cells.labels.begin();
     const bool done = planned.state == CellState::kDone;
     values[static_cast<std::size_t>(label)].push_back(
-        done ? number(planned.record, "summary", "iou") : std::nullopt);
+        done ? number_in(planned.record, "summary", "iou") : std::nullopt);
   }
   std::vector<double> scores;
   for (const auto& of_label : values) {
@@ -220,21 +219,29 @@ std::string command_for(const StudyPlan& plan, const StudyCell& cell) {
   return fmt::format("{} --out {} && mosbench report {} -o worst.html", command, runs, runs);
 }
 
+struct BadScan {
+  double iou = 0;
+  std::string stem;
+  const StudyCell* cell = nullptr;
+};
+
 /// The worst scans of each label, of any cell.
 void list_worst(const StudyPlan& plan, const DoneCells& cells, StudyTable& table) {
   constexpr std::size_t kOfEach = 3;
   for (const std::string& label : cells.labels) {
-    std::vector<StudyWorst> worst;
-    for (const PlannedCell* planned : cells.done) {
-      if (label_of(planned->cell) != label || !planned->record.contains("worst")) continue;
-      for (const ordered_json& scan : planned->record.at("worst")) {
-        worst.push_back({label, planned->cell.title(), scan.value("stem", ""),
-                         command_for(plan, planned->cell), scan.value("iou", 0.0)});
+    std::vector<BadScan> worst;
+    for (const DoneCell& each : cells.done) {
+      if (each.label != label || !each.record().contains("worst")) continue;
+      for (const ordered_json& scan : each.record().at("worst")) {
+        worst.push_back({scan.value("iou", 0.0), scan.value("stem", ""), &each.cell()});
       }
     }
-    std::ranges::stable_sort(worst, {}, &StudyWorst::iou);
+    std::ranges::stable_sort(worst, {}, &BadScan::iou);
     worst.resize(std::min(worst.size(), kOfEach));
-    table.worst.insert(table.worst.end(), worst.begin(), worst.end());
+    for (const BadScan& scan : worst) {
+      table.worst.push_back(
+          {label, scan.cell->title(), scan.stem, command_for(plan, *scan.cell), scan.iou});
+    }
   }
 }
 
@@ -250,7 +257,7 @@ void count_cells(const StudyPlan& plan, StudyTable& table) {
     if (planned.state != CellState::kDone) continue;
     ++table.done;
     table.simulated = table.simulated || planned.record.value("simulated", false);
-    seconds += number(planned.record, "timing", "wall_s").value_or(0);
+    seconds += number_in(planned.record, "timing", "wall_s").value_or(0);
     const auto expected_s = costs.seconds(planned.cell);
     all_predicted = all_predicted && expected_s.has_value();
     predicted_s += expected_s.value_or(0);
@@ -268,7 +275,9 @@ StudyTable gather(const StudyPlan& plan) {
   const DoneCells cells(plan);
   for (const std::string& label : cells.labels) table.rows.push_back(row_of(cells, label));
   mark_front(table.rows);
-  for (const StudyAxis& axis : plan.study->axes) table.curves.push_back(curve_of(cells, axis));
+  for (const StudyAxis& axis : plan.study->axes) {
+    table.curves.push_back(curve_of(cells, axis, table.rows));
+  }
   rank(plan, cells, table);
   list_worst(plan, cells, table);
   count_cells(plan, table);

@@ -7,6 +7,7 @@
 
 #include "datasets/files/errors.hpp"
 #include "eval/statistics/paired_runs.hpp"
+#include "eval/statistics/pareto_front.hpp"
 #include "eval/statistics/scan_spacing.hpp"
 
 namespace mosbench {
@@ -97,19 +98,11 @@ std::optional<double> iou_of(const LeaderboardRow& row) {
   return row.all ? (*row.all)[Metric::kIou].value : std::nullopt;
 }
 
-/// Whether `other` is at least as good and as fast, and better in one.
-bool beats(const LeaderboardRow& other, const LeaderboardRow& row) {
-  if (!iou_of(other) || !other.ms_per_scan) return false;
-  const bool as_good = *iou_of(other) >= *iou_of(row) && *other.ms_per_scan <= *row.ms_per_scan;
-  return as_good && (*iou_of(other) > *iou_of(row) || *other.ms_per_scan < *row.ms_per_scan);
-}
-
 void mark_front(std::vector<LeaderboardRow>& rows) {
-  for (LeaderboardRow& row : rows) {
-    row.is_on_front =
-        iou_of(row) && row.ms_per_scan &&
-        std::ranges::none_of(rows, [&](const LeaderboardRow& other) { return beats(other, row); });
-  }
+  std::vector<IouAndTime> runs;
+  for (const LeaderboardRow& row : rows) runs.push_back({iou_of(row), row.ms_per_scan});
+  const std::vector<bool> front = pareto_front(runs);
+  for (std::size_t i = 0; i < rows.size(); ++i) rows[i].is_on_front = front[i];
 }
 
 /// Names a row by its method, and by its number where another row is of the same one.

@@ -4,12 +4,7 @@
 # installs them.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-skip() {
-  echo "skipped: $1 (scripts/setup.sh --page installs it)"
-  exit 77
-}
-command -v node >/dev/null || skip "there is no node"
-[ "$(node -p 'parseInt(process.versions.node)')" -ge 20 ] || skip "node $(node --version) is older than 20"
+source "$here/../node.sh"
 [ -d "$here/../../eval/report/page/node_modules/playwright-core" ] || skip "there is no playwright-core"
 [ -x "${MOSBENCH_CHROMIUM:-/usr/bin/chromium}" ] || skip "there is no Chromium"
-exec node --test --test-reporter=spec "$@"
+run_node_tests "$@"

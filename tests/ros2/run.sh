@@ -3,11 +3,6 @@
 # where node 20 or its packages are not there; scripts/setup.sh --page installs them.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-skip() {
-  echo "skipped: $1 (scripts/setup.sh --page installs it)"
-  exit 77
-}
-command -v node >/dev/null || skip "there is no node"
-[ "$(node -p 'parseInt(process.versions.node)')" -ge 20 ] || skip "node $(node --version) is older than 20"
+source "$here/../node.sh"
 [ -d "$here/node_modules/@mcap/core" ] || skip "there is no @mcap/core"
-exec node --test --test-reporter=spec "$@"
+run_node_tests "$@"

@@ -8,6 +8,7 @@
 #include "datasets/files/errors.hpp"
 #include "datasets/layouts/layout.hpp"
 #include "tests/temp_folder.hpp"
+#include "tests/unit/datasets/sequence_names.hpp"
 
 namespace mosbench {
 namespace {
@@ -26,12 +27,6 @@ void write_sequence(const TempFolder& root, const std::string& below, int scans 
     poses += "1 0 0 0 0 1 0 0 0 0 1 0\n";
   }
   root.write(below + "/poses.txt", poses);
-}
-
-std::vector<std::string> names(const Dataset& dataset) {
-  std::vector<std::string> names;
-  for (const auto& sequence : dataset.sequences) names.push_back(sequence->name());
-  return names;
 }
 
 /// "test: 00 07" for each split.
@@ -86,7 +81,7 @@ TEST(OpenDataset, FindsSemanticKittiWithAndWithoutTheFolderSequences) {
   for (const auto& path : {root.path(), root / "sequences"}) {
     const Dataset dataset = open_dataset(path, {});
     EXPECT_EQ(dataset.kind, DatasetKind::kSemanticKitti);
-    EXPECT_THAT(names(dataset), ElementsAre("00", "08", "11"));
+    EXPECT_THAT(sequence_names(dataset), ElementsAre("00", "08", "11"));
     EXPECT_THAT(splits(dataset), ElementsAre("train: 00", "valid: 08", "test: 11"));
     EXPECT_THAT(dataset.remarks, Contains(HasSubstr("recognised as semantickitti")));
   }
@@ -95,9 +90,10 @@ TEST(OpenDataset, FindsSemanticKittiWithAndWithoutTheFolderSequences) {
 TEST(OpenDataset, TakesOneSequenceFolderNamedByItself) {
   const TempFolder root;
   write_sequence(root, "kitti_0005");
-  EXPECT_THAT(names(open_dataset(root / "kitti_0005", {})), ElementsAre("kitti_0005"));
-  EXPECT_THAT(names(open_dataset(root / "kitti_0005/", {})), ElementsAre("kitti_0005"));
-  EXPECT_THAT(names(open_dataset(root / "kitti_0005/velodyne/..", {})), ElementsAre("kitti_0005"));
+  EXPECT_THAT(sequence_names(open_dataset(root / "kitti_0005", {})), ElementsAre("kitti_0005"));
+  EXPECT_THAT(sequence_names(open_dataset(root / "kitti_0005/", {})), ElementsAre("kitti_0005"));
+  EXPECT_THAT(sequence_names(open_dataset(root / "kitti_0005/velodyne/..", {})),
+              ElementsAre("kitti_0005"));
   EXPECT_THAT(splits(open_dataset(root / "kitti_0005", {})), IsEmpty());
 }
 
@@ -126,16 +122,16 @@ TEST(OpenDataset, FindsDoalsScenesAndTheirSplits) {
   }
   const Dataset dataset = open_dataset(root.path(), {});
   EXPECT_EQ(dataset.kind, DatasetKind::kDoals);
-  EXPECT_THAT(names(dataset), ElementsAre("market/sequence_1", "niederdorf/sequence_1",
-                                          "station/sequence_1", "station/sequence_2"));
+  EXPECT_THAT(sequence_names(dataset), ElementsAre("market/sequence_1", "niederdorf/sequence_1",
+                                                   "station/sequence_1", "station/sequence_2"));
   EXPECT_THAT(splits(dataset), ElementsAre("ST: station/sequence_1 station/sequence_2",
                                            "ND: niederdorf/sequence_1"));
   const Dataset scene = open_dataset(root / "station", {});
-  EXPECT_THAT(names(scene), ElementsAre("sequence_1", "sequence_2"));
+  EXPECT_THAT(sequence_names(scene), ElementsAre("sequence_1", "sequence_2"));
   EXPECT_THAT(splits(scene), ElementsAre("ST: sequence_1 sequence_2"));
   const Dataset one = open_dataset(root / "station/sequence_2", {});
   EXPECT_EQ(one.kind, DatasetKind::kDoals);
-  EXPECT_THAT(names(one), ElementsAre("sequence_2"));
+  EXPECT_THAT(sequence_names(one), ElementsAre("sequence_2"));
 }
 
 TEST(OpenDataset, TellsDoalsByIndices) {
@@ -154,8 +150,9 @@ TEST(OpenDataset, KeepsTheSequencesAskedForByNameOrDoalsNumber) {
        {"station/sequence_1", "niederdorf/sequence_1", "niederdorf/sequence_2"}) {
     write_sequence(root, name);
   }
-  EXPECT_THAT(names(open_dataset(root.path(), {.sequences = {"7", "niederdorf/sequence_2"}})),
-              ElementsAre("niederdorf/sequence_2", "station/sequence_1"));
+  EXPECT_THAT(
+      sequence_names(open_dataset(root.path(), {.sequences = {"7", "niederdorf/sequence_2"}})),
+      ElementsAre("niederdorf/sequence_2", "station/sequence_1"));
   EXPECT_THAT(error_of<UsageError>(root.path(), {.sequences = {"8"}}),
               AllOf(HasSubstr("no sequence \"8\""), HasSubstr("niederdorf/sequence_1")));
 }
@@ -171,7 +168,7 @@ TEST(OpenDataset, FindsHelimosSensorsInEveryPublishedPlace) {
   for (const char* top : {"a", "a/KAIST05", "a/KAIST05/Deskewed_LiDAR", "b", "c"}) {
     const Dataset dataset = open_dataset(root / top, {});
     EXPECT_EQ(dataset.kind, DatasetKind::kHelimos) << top;
-    EXPECT_THAT(names(dataset), ElementsAre("Aeva", "Avia", "Ouster", "Velodyne")) << top;
+    EXPECT_THAT(sequence_names(dataset), ElementsAre("Aeva", "Avia", "Ouster", "Velodyne")) << top;
     EXPECT_THAT(splits(dataset), ElementsAre("all: Aeva Avia Ouster Velodyne")) << top;
   }
 }
@@ -230,7 +227,7 @@ TEST(OpenDataset, NamesTheSequenceWithoutScansInsteadOfPassingOverIt) {
   root.write("sequences/01/poses.txt", "");
   EXPECT_THAT(error_of(root.path()),
               AllOf(HasSubstr("sequences/01"), HasSubstr("no folder of scans")));
-  EXPECT_THAT(names(open_dataset(root.path(), {.sequences = {"00"}})), ElementsAre("00"));
+  EXPECT_THAT(sequence_names(open_dataset(root.path(), {.sequences = {"00"}})), ElementsAre("00"));
 }
 
 TEST(OpenDataset, TakesAPoseFileForOneSequenceOnly) {

@@ -6,6 +6,7 @@
 #include "datasets/layouts/dataset.hpp"
 #include "tests/bag_bytes.hpp"
 #include "tests/temp_folder.hpp"
+#include "tests/unit/datasets/sequence_names.hpp"
 
 namespace mosbench {
 namespace {
@@ -26,12 +27,6 @@ std::string ouster_bag() {
   bag.chunks = {{{0, kStamp_ns, timed_cloud(kStamp_ns, {{1, 2, 3, 4}}, {})},
                  {1, kStamp_ns, tf_at(kStamp_ns, Pose::Identity())}}};
   return bag.str();
-}
-
-std::vector<std::string> sequence_names(const Dataset& dataset) {
-  std::vector<std::string> names;
-  for (const auto& sequence : dataset.sequences) names.push_back(sequence->name());
-  return names;
 }
 
 class AnyRecording : public testing::Test {
