@@ -9,12 +9,9 @@
 #include "datasets/files/scan_file.hpp"
 
 namespace mosbench {
-namespace {
 
-/// Returns the labels that intensities stand for. Scans that are not the benchmark's hold
-/// reflectances there, which are no truth.
-std::vector<std::uint32_t> truth_of(const std::vector<Point>& points,
-                                    const std::filesystem::path& file) {
+std::vector<std::uint32_t> kth_truth(const std::vector<Point>& points,
+                                     const std::filesystem::path& file) {
   std::vector<std::uint32_t> truth;
   truth.reserve(points.size());
   for (const Point& point : points) {
@@ -27,8 +24,6 @@ std::vector<std::uint32_t> truth_of(const std::vector<Point>& points,
   }
   return truth;
 }
-
-}  // namespace
 
 KthSequence::KthSequence(std::string name, const std::filesystem::path& folder) {
   Recording& recording = mutable_recording();
@@ -56,7 +51,7 @@ KthSequence::KthSequence(std::string name, const std::filesystem::path& folder) 
 void KthSequence::read(std::size_t scan_index, Frame& frame) const {
   describe(scan_index, frame);
   frame.points = read_pcd(*scan_file(scan_index));
-  frame.truth = truth_of(frame.points, *scan_file(scan_index));
+  frame.truth = kth_truth(frame.points, *scan_file(scan_index));
   const Pose sensor_from_map = frame.map_from_sensor.inverse();
   for (Point& point : frame.points) {
     const Eigen::Vector3d p = sensor_from_map * Eigen::Vector3d(point.x, point.y, point.z);
@@ -65,7 +60,7 @@ void KthSequence::read(std::size_t scan_index, Frame& frame) const {
 }
 
 std::vector<std::uint32_t> KthSequence::read_truth(std::size_t scan_index) const {
-  return truth_of(read_pcd(*scan_file(scan_index)), *scan_file(scan_index));
+  return kth_truth(read_pcd(*scan_file(scan_index)), *scan_file(scan_index));
 }
 
 }  // namespace mosbench

@@ -9,6 +9,11 @@
 
 namespace mosbench {
 
+/// Returns the labels that the intensities of a scan or a map stand for. Throws DataError for other
+/// numbers than 0 and 1: scans that are not the benchmark's hold reflectances, which are no truth.
+std::vector<std::uint32_t> kth_truth(const std::vector<Point>& points,
+                                     const std::filesystem::path& file);
+
 /// One sequence of KTH's DynamicMap_Benchmark: pcd/*.pcd with points in the map's frame, the
 /// sensor's pose in VIEWPOINT, and in intensity 1 for what is dynamic. Frames have the points in
 /// the sensor's frame and without intensity, which is the truth and hidden from a method. Reading

@@ -20,6 +20,7 @@ std::span<const Command> commands() {
       Command{"breakdown", "Show where predictions are right and wrong", add_breakdown},
       Command{"diff", "List the scans and objects on which two runs disagree", add_diff},
       Command{"study", "Run methods, data and disturbances of a study and gather them", add_study},
+      Command{"map-score", "Score a map that was cleaned of what moved", add_map_score},
       Command{"compare", "Fail when IoU dropped against a baseline", add_compare},
       Command{"bless", "Accept results as the new baseline", add_bless},
       Command{"doctor", "Find what is wrong with a data set", add_doctor},

@@ -372,3 +372,19 @@ def test_fills_dufo_of_h5(street, near, tmp_path):
     with pytest.raises(ValueError, match="no pose"):
         mosbench.moving_for_h5(tmp_path / "other.h5")
     assert file.read_bytes() == before and not list(tmp_path.glob("*.partial"))
+
+
+def test_a_cleaned_map_is_scored(tmp_path):
+    def ply(name, *rows):
+        file = tmp_path / name
+        header = f"ply\nformat ascii 1.0\nelement vertex {len(rows)}\n"
+        header += "".join(f"property float {word}\n" for word in ("x", "y", "z", "intensity"))
+        file.write_text(header + "end_header\n" + "".join(row + "\n" for row in rows))
+        return file
+
+    truth = ply("truth.ply", "0 0 0 0", "1 0 0 0", "2 0 0 1")
+    answer = mosbench.map_score(ply("map.ply", "0 0 0 0"), truth)
+    assert (answer["sa"], answer["da"]) == (0.5, 1.0)
+    assert mosbench.map_score(truth, truth, same_within_m=0.1)["da"] == 0.0
+    with pytest.raises(OSError, match="intensity 7"):
+        mosbench.map_score(truth, ply("no_truth.ply", "0 0 0 7"))

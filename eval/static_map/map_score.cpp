@@ -1,0 +1,90 @@
+#include "eval/static_map/map_score.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "datasets/files/errors.hpp"
+#include "datasets/files/scan_file.hpp"
+#include "datasets/files/shown_text.hpp"
+#include "datasets/layouts/kth_sequence.hpp"
+#include "datasets/sequence/fingerprint.hpp"
+#include "eval/results/answer_text.hpp"
+#include "eval/results/machine.hpp"
+#include "eval/results/text_table.hpp"
+
+namespace mosbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<Point> finite_points(const fs::path& file) {
+  std::vector<Point> points = read_scan(file);
+  if (points.empty())
+    throw DataError(file, "holds no point", "the points that the map was made of");
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (std::isfinite(points[i].x) && std::isfinite(points[i].y) && std::isfinite(points[i].z)) {
+      continue;
+    }
+    throw DataError(file, fmt::format("point {} is not finite", i), "a position for each point");
+  }
+  return points;
+}
+
+std::vector<bool> dynamic_points(const std::vector<Point>& points, const fs::path& file) {
+  const std::vector<std::uint32_t> labels = kth_truth(points, file);
+  std::vector<bool> dynamic(labels.size());
+  for (std::size_t i = 0; i < labels.size(); ++i) dynamic[i] = labels[i] == kMovingLabel;
+  return dynamic;
+}
+
+}  // namespace
+
+MapScore score_map(const fs::path& map, const fs::path& truth, double same_within_m) {
+  MapScore score{
+      map, fs::is_directory(truth) ? truth / "gt_cloud.pcd" : truth, 0, same_within_m, {}};
+  const std::vector<Point> points = finite_points(score.truth);
+  const std::vector<bool> dynamic = dynamic_points(points, score.truth);
+  const std::vector<Point> cleaned = read_scan(map);
+  score.map_points = cleaned.size();
+  score.counts = count_kept(cleaned, points, dynamic, same_within_m);
+  return score;
+}
+
+std::string map_score_text(const MapScore& score) {
+  const MapCounts& counts = score.counts;
+  TextTable table({{"points of the truth", TextTable::kLeft}, {"number"}, {"right"}});
+  table.add_row({"static, kept", fmt::format("{} of {}", counts.kept_static, counts.static_points),
+                 "SA " + percent_text(counts.static_accuracy(), "{:.2f}")});
+  table.add_row({"dynamic, removed",
+                 fmt::format("{} of {}", counts.removed_dynamic, counts.dynamic_points),
+                 "DA " + percent_text(counts.dynamic_accuracy(), "{:.2f}")});
+  table.add_row({"both", "", "AA " + percent_text(counts.associated_accuracy(), "{:.2f}")});
+  table.add_row({"", "", "HA " + percent_text(counts.harmonic_accuracy(), "{:.2f}")});
+  return fmt::format(
+      "map    {}, {} points\ntruth  {}, {} points; kept where a point of the map is within {} "
+      "m\n\n{}",
+      shown_in_line(score.map.string()), score.map_points, shown_in_line(score.truth.string()),
+      counts.static_points + counts.dynamic_points, score.same_within_m, table.str());
+}
+
+nlohmann::ordered_json map_score_json(const MapScore& score) {
+  const MapCounts& counts = score.counts;
+  return {{"code", code_json()},
+          {"map",
+           {{"path", score.map.string()},
+            {"hash", hash_of_file(score.map)},
+            {"points", score.map_points}}},
+          {"truth", {{"path", score.truth.string()}, {"hash", hash_of_file(score.truth)}}},
+          {"same_within_m", score.same_within_m},
+          {"static_points", counts.static_points},
+          {"kept_static", counts.kept_static},
+          {"dynamic_points", counts.dynamic_points},
+          {"removed_dynamic", counts.removed_dynamic},
+          {"sa", json_or_null(counts.static_accuracy())},
+          {"da", json_or_null(counts.dynamic_accuracy())},
+          {"aa", json_or_null(counts.associated_accuracy())},
+          {"ha", json_or_null(counts.harmonic_accuracy())}};
+}
+
+}  // namespace mosbench
