@@ -26,6 +26,7 @@ class BuildByCMake(build_ext):
             "MOSBENCH_WITH_PYTHON": "ON",
             "MOSBENCH_WITH_PCL": "OFF",
             "MOSBENCH_WITH_ROSBAG": "OFF",
+            "MOSBENCH_WITH_HDF5": "OFF",
             "MOSBENCH_BUILD_TESTS": "OFF",
             "MOSBENCH_BUILD_BENCH": "OFF",
             "Python3_EXECUTABLE": sys.executable,

@@ -7,6 +7,7 @@
 # Returns quickly when all are installed.
 # MOSBENCH_WITH_PCL=OFF leaves out PCL, which brings some 400 packages,
 # MOSBENCH_WITH_ROSBAG=OFF the 40 or so of ROS's bag library, which only writing bags needs,
+# MOSBENCH_WITH_HDF5=OFF the 30 or so of libhdf5, which only .h5 files need,
 # MOSBENCH_WITH_OCTOMAP=OFF the two of OctoMap, for the method of that name,
 # MOSBENCH_BUILD_TESTS=OFF the libraries of tests and benchmarks, and what makes manual pages.
 set -euo pipefail
@@ -17,6 +18,7 @@ packages=(g++ cmake ninja-build pkg-config git xz-utils jq bsdextrautils python3
 [ "${MOSBENCH_BUILD_TESTS:-ON}" = OFF ] || packages+=(libgtest-dev libgmock-dev libbenchmark-dev help2man)
 [ "${MOSBENCH_WITH_PCL:-ON}" = OFF ] || packages+=(libpcl-dev)
 [ "${MOSBENCH_WITH_ROSBAG:-ON}" = OFF ] || packages+=(librosbag-storage-dev)
+[ "${MOSBENCH_WITH_HDF5:-ON}" = OFF ] || packages+=(libhdf5-dev)
 [ "${MOSBENCH_WITH_OCTOMAP:-ON}" = OFF ] || packages+=(liboctomap-dev)
 case "${1:-}" in
   "" | --page) ;;

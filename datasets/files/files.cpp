@@ -82,6 +82,19 @@ std::string read_start(const std::filesystem::path& file, std::size_t most_bytes
   return bytes;
 }
 
+std::string read_part(const std::filesystem::path& file, std::uint64_t from_bytes,
+                      std::uint64_t bytes) {
+  const OpenFile in = open_to_read(file);
+  std::string part(bytes, '\0');
+  if (fseeko(in.get(), static_cast<off_t>(from_bytes), SEEK_SET) == 0 &&
+      std::fread(part.data(), 1, part.size(), in.get()) == bytes) {
+    return part;
+  }
+  check_reading(in.get(), file);
+  throw DataError(file, "is shorter than when it was opened",
+                  std::to_string(from_bytes + bytes) + " bytes");
+}
+
 std::string read_head(const std::filesystem::path& file, std::string_view last_line) {
   constexpr std::size_t kStepBytes = 4096;
   const OpenFile in = open_to_read(file);

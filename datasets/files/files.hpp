@@ -16,6 +16,9 @@ bool is_there(const std::filesystem::path& path);
 std::string read_file(const std::filesystem::path& file);
 /// Reads the first `most_bytes` of a file, or all when it is shorter; throws as `read_file`.
 std::string read_start(const std::filesystem::path& file, std::size_t most_bytes);
+/// Reads `bytes` bytes of a file from `from_bytes` on; throws DataError when it has fewer.
+std::string read_part(const std::filesystem::path& file, std::uint64_t from_bytes,
+                      std::uint64_t bytes);
 /// Reads the start of a file to the end of the first line that begins with `last_line`, or some
 /// bytes further; the whole file when there is no such line. Throws as `read_file`.
 std::string read_head(const std::filesystem::path& file, std::string_view last_line);

@@ -27,6 +27,8 @@ class PartialFile {
   PartialFile(const PartialFile&) = delete;
   PartialFile& operator=(const PartialFile&) = delete;
 
+  /// Where a library may write that takes names.
+  const std::filesystem::path& path() const { return path_; }
   void write(std::string_view bytes) const;
   /// Waits until the bytes are on the disk.
   void sync() const;

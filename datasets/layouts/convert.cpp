@@ -44,7 +44,8 @@ std::vector<fs::path> sequence_folders(const Dataset& dataset, const Layout& lay
 }
 
 /// Returns every file that may be written, named from the root.
-std::set<fs::path> expected_files(const Dataset& dataset, const std::vector<fs::path>& folders) {
+std::set<fs::path> expected_files(const Dataset& dataset, const Layout& layout,
+                                  const std::vector<fs::path>& folders) {
   std::set<fs::path> files = {kSimulatedMarker};
   for (std::size_t i = 0; i < folders.size(); ++i) {
     for (const char* name : {"times.txt", "calib.txt", "poses.txt", "indices.csv", "bag.bag",
@@ -52,6 +53,7 @@ std::set<fs::path> expected_files(const Dataset& dataset, const std::vector<fs::
                              message_file_of(Ros2Storage::kSqlite), kPoseOriginFile}) {
       files.insert(folders[i] / name);
     }
+    if (layout.writer->one_file) files.insert({folders[i], pose_origin_file(folders[i])});
     for (const char* split : {"train.txt", "val.txt", "test.txt"}) {
       files.insert(folders[i].parent_path() / split);
     }
@@ -118,7 +120,7 @@ void convert(const Dataset& dataset, const ConvertOptions& options,
   const std::vector<fs::path> folders = sequence_folders(dataset, layout);
   const FolderLock lock(options.out);
   const UnfinishedConversion unfinished(options.out, statement_of(dataset, options),
-                                        expected_files(dataset, folders));
+                                        expected_files(dataset, layout, folders));
   std::size_t total = 0;
   for (const auto& sequence : dataset.sequences) total += sequence->size();
   std::size_t done = 0;
@@ -132,9 +134,9 @@ void convert(const Dataset& dataset, const ConvertOptions& options,
       const fs::path folder = options.out / folders[i];
       WriteOptions writing = options.writing;
       writing.scans = sequence.size();
-      const fs::path pose_file = folder / last_file_of(writing);
+      const fs::path pose_file = layout.writer->one_file ? folder : folder / last_file_of(writing);
       // Finished by a conversion that was killed.
-      if (is_there(pose_file) && is_there(folder / kPoseOriginFile)) {
+      if (is_there(pose_file) && is_there(pose_origin_file(pose_file))) {
         for (std::size_t k = 0; k < sequence.size(); ++k) advance();
       } else {
         if (options.before_sequence) options.before_sequence(i);

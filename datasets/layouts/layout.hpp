@@ -46,6 +46,7 @@ struct LayoutWriter {
   /// Returns the folder of a sequence below the root; `position` is its place in the source, from
   /// 0.
   std::filesystem::path (*folder)(const std::string& name, std::size_t position);
+  bool one_file = false;  ///< `folder` is a file, which holds all of the sequence
 };
 
 /// All facts about one data set. Adding one: a value of DatasetKind, a file with its row, and the
@@ -78,6 +79,7 @@ struct Layout {
   /// Returns why `path` looks like this data set, or nothing if it does not.
   std::optional<std::string> (*recognise)(const std::filesystem::path& path);
   std::optional<LayoutWriter> writer;  ///< nothing for a data set that is only read
+  bool truth_by_speed = false;         ///< ReadingOptions::moving_speed_m_s is for it
 };
 
 const Layout& doals_layout();
@@ -88,6 +90,7 @@ const Layout& apollo_layout();
 const Layout& moe_layout();
 const Layout& kth_layout();
 const Layout& mdetector_layout();
+const Layout& opensceneflow_layout();
 const Layout& recording_layout();
 
 /// Returns all rows, in the order in which they are listed.

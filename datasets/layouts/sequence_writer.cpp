@@ -68,12 +68,6 @@ bool is_moving(std::uint32_t label) {
   return id >= kMovingLabel && id <= 259U;
 }
 
-/// Scans without stamps get ones as far apart as those of most sensors.
-std::int64_t stamp_of(std::size_t scan_index, const Frame& frame) {
-  constexpr std::int64_t kPeriodNs = 100'000'000;
-  return frame.stamp_ns.value_or(static_cast<std::int64_t>(scan_index) * kPeriodNs);
-}
-
 /// Refuses scans that a bag, which is ordered by stamps and finds poses by them, would give back in
 /// another order or with the pose of another.
 class RisingStamps {
@@ -244,6 +238,11 @@ class Ros2SequenceWriter : public SequenceWriter {
 };
 
 }  // namespace
+
+std::int64_t stamp_of(std::size_t scan_index, const Frame& frame) {
+  constexpr std::int64_t kPeriodNs = 100'000'000;
+  return frame.stamp_ns.value_or(static_cast<std::int64_t>(scan_index) * kPeriodNs);
+}
 
 std::string_view to_string(BagKind kind) {
   constexpr std::array<std::string_view, 4> kNames = {"none", "ros1", "mcap", "db3"};

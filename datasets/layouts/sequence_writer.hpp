@@ -39,6 +39,17 @@ struct WriteOptions {
 /// Returns the name of the file that appears when all of a sequence is on the disk.
 const char* last_file_of(const WriteOptions& options);
 
+/// Writes `file`, an .h5 file of OpenSceneFlow: a group per frame by its stamp with lidar, pose and
+/// ground_mask. Frames with motions get flow, flow_is_valid where they have truth,
+/// flow_category_indices and flow_instance_id, the last one none; other truth becomes mos_label.
+/// Frames may come in any order and from several threads. Frames without stamps get ones 0.1 s
+/// apart. Throws DataError also for stamps that do not increase.
+std::unique_ptr<SequenceWriter> write_as_scene_flow(const std::filesystem::path& file,
+                                                    const WriteOptions& options);
+
+/// When a frame was taken; of one without a stamp, as far apart as those of most sensors.
+std::int64_t stamp_of(std::size_t scan_index, const Frame& frame);
+
 /// Writes velodyne/, labels/ for frames with truth, times.txt when all frames have stamps,
 /// calib.txt and poses.txt.
 std::unique_ptr<SequenceWriter> write_as_kitti(const std::filesystem::path& folder,

@@ -165,14 +165,18 @@ std::string pose_origin_of(const ReadingStatement& reading) {
   return origin;
 }
 
+fs::path pose_origin_file(const fs::path& pose_file) {
+  if (pose_file.extension() != ".h5") return pose_file.parent_path() / kPoseOriginFile;
+  return pose_file.parent_path() / (pose_file.stem().string() + "." + kPoseOriginFile);
+}
+
 void write_pose_origin(const fs::path& pose_file, const std::string& origin) {
-  write_file_atomic(pose_file.parent_path() / kPoseOriginFile,
-                    origin + "\n" + hash_line(pose_file));
+  write_file_atomic(pose_origin_file(pose_file), origin + "\n" + hash_line(pose_file));
 }
 
 void state_pose_origin(const fs::path& pose_file, ReadingStatement& reading,
                        std::vector<std::string>& remarks) {
-  const fs::path file = pose_file.parent_path() / kPoseOriginFile;
+  const fs::path file = pose_origin_file(pose_file);
   if (!is_there(file)) return;
   const std::string text = read_file(file);
   const std::string origin = text.substr(0, text.find('\n'));
@@ -181,7 +185,7 @@ void state_pose_origin(const fs::path& pose_file, ReadingStatement& reading,
   } else {
     remarks.push_back(fmt::format(
         "{} was not written for {} as it is now: where these poses came from is not known",
-        kPoseOriginFile, pose_file.filename().string()));
+        file.filename().string(), pose_file.filename().string()));
   }
 }
 

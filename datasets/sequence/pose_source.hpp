@@ -37,6 +37,8 @@ SensorPoses read_sensor_poses(const std::filesystem::path& folder, const std::st
 /// Beside poses that `convert` wrote: a line that says where they came from, and one with the hash
 /// of the file that holds them.
 inline constexpr const char* kPoseOriginFile = "pose_origin.txt";
+/// Returns that file; of an .h5 file, which shares its folder with others, NAME.pose_origin.txt.
+std::filesystem::path pose_origin_file(const std::filesystem::path& pose_file);
 
 /// Returns the first line for the poses of a sequence that was read so.
 std::string pose_origin_of(const ReadingStatement& reading);

@@ -51,6 +51,8 @@ struct ReadingOptions {
   std::optional<Deskew> deskew = std::nullopt;
   std::optional<PointTimes> point_times = std::nullopt;  ///< when not set, those of a bag's points
   std::size_t bin_columns = 4;                           ///< float32 per point in .bin files
+  /// Of truth that is a flow: from which speed on a point moves; when not set, 0.5.
+  std::optional<double> moving_speed_m_s = std::nullopt;
   /// Disturbances of what is read, as `parse_perturbation` takes them.
   std::optional<std::string> perturb = std::nullopt;
 

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "datasets/sequence/point_motions.hpp"
 #include "datasets/sequence/recording.hpp"
 
 namespace mosbench {
@@ -23,6 +24,7 @@ struct Frame {
   /// When each point was measured after the stamp; empty unless the data set has such times and has
   /// not moved the points by them.
   std::vector<std::int64_t> point_times_ns;
+  std::optional<PointMotions> motions;              ///< of data sets of scene flow
   std::optional<std::vector<std::uint32_t>> truth;  ///< raw label ids, one per point, when labelled
 };
 
@@ -75,7 +77,7 @@ class Sequence {
   /// For constructors, which fill in what they find out.
   Recording& mutable_recording() { return recording_; }
 
-  /// Fills in what is known without reading: stem, pose, stamp.
+  /// Fills in what is known without reading: stem, pose, stamp; empties times and motions.
   void describe(std::size_t scan_index, Frame& frame) const;
   /// Sets the frame's truth to that of `read_truth`, or to none.
   void add_truth(std::size_t scan_index, Frame& frame) const;

@@ -104,7 +104,8 @@ bool is_vehicle(MoverKind kind) { return kind == MoverKind::kCar || kind == Move
 void place(SceneSnapshot& snapshot, const Mover& mover, const Scene& scene, double time_s) {
   const RouteState state = route_state(mover.route, time_s);
   const double x_m = state.position_m.x(), y_m = state.position_m.y();
-  Builder body(snapshot, {x_m, y_m, ground_height_m(scene.ground, x_m, y_m)}, state.heading);
+  const Eigen::Vector3d base_m(x_m, y_m, ground_height_m(scene.ground, x_m, y_m));
+  Builder body(snapshot, base_m, state.heading);
   switch (mover.kind) {
     case MoverKind::kPedestrian:
       add_pedestrian(body, state.travelled_m);
@@ -127,7 +128,9 @@ void place(SceneSnapshot& snapshot, const Mover& mover, const Scene& scene, doub
        .labelled = mover.labelled,
        .moving = state.speed_m_s > threshold_m_s,
        .dynamic_by_appearance = mover.dynamic_by_appearance.value_or(!vehicle),
-       .speed_m_s = state.speed_m_s});
+       .speed_m_s = state.speed_m_s,
+       .base_m = base_m,
+       .axis = state.heading});
 }
 
 struct LeafState {
@@ -151,7 +154,8 @@ void place(SceneSnapshot& snapshot, const Door& door, const Scene& scene, double
   const SinCos yaw = sin_cos(leaf.yaw_rad);
   constexpr double kThickness_m = 0.05;
   const double floor_m = ground_height_m(scene.ground, door.hinge_m[0], door.hinge_m[1]);
-  Builder body(snapshot, {door.hinge_m[0], door.hinge_m[1], floor_m}, {yaw.cos, yaw.sin});
+  const Eigen::Vector3d hinge_m(door.hinge_m[0], door.hinge_m[1], floor_m);
+  Builder body(snapshot, hinge_m, {yaw.cos, yaw.sin});
   body.box({door.width_m / 2.0, 0.0, door.height_m / 2.0 + 0.01},
            {door.width_m, kThickness_m, door.height_m});
   // The speed of the leaf is that of its middle.
@@ -159,7 +163,9 @@ void place(SceneSnapshot& snapshot, const Door& door, const Scene& scene, double
   snapshot.owners.push_back({.substance = Substance::kDoor,
                              .labelled = door.labelled,
                              .moving = speed_m_s > kMovingSpeed_m_s,
-                             .speed_m_s = speed_m_s});
+                             .speed_m_s = speed_m_s,
+                             .base_m = hinge_m,
+                             .axis = {yaw.cos, yaw.sin}});
 }
 
 /// Returns the seconds of free flight until the ball touches the first of the planes.
@@ -201,7 +207,8 @@ void place(SceneSnapshot& snapshot, const Ball& ball, const Scene& scene, double
                              .labelled = ball.labelled,
                              .moving = speed_m_s > kMovingSpeed_m_s,
                              .dynamic_by_appearance = true,
-                             .speed_m_s = speed_m_s});
+                             .speed_m_s = speed_m_s,
+                             .base_m = center_m});
 }
 
 }  // namespace

@@ -21,6 +21,7 @@
 #include "datasets/sequence/portable_math.hpp"
 #include "datasets/simulator/built_in_scenes.hpp"
 #include "datasets/simulator/scene_json.hpp"
+#include "datasets/simulator/simulated_flow.hpp"
 #include "datasets/simulator/simulated_layouts.hpp"
 #include "datasets/simulator/simulator.hpp"
 
@@ -78,6 +79,16 @@ void claim_folder(const fs::path& out, const SimulatedOrigin& origin) {
   }
 }
 
+const char* truth_note(DatasetKind layout) {
+  if (layout == DatasetKind::kDoals) {
+    return "Truth is by appearance as in DOALS: a person who stands still is listed as dynamic.\n";
+  }
+  if (layout == DatasetKind::kOpenSceneFlow) {
+    return "Truth is the flow of rigid bodies from each scan to the next one.\n";
+  }
+  return "Truth is by speed: above 0.5 m/s is moving, for vehicles above 1.0 m/s.\n";
+}
+
 std::string readme(const SimulatedOrigin& origin) {
   return fmt::format(
       "These scans are simulated. Nothing in this folder was recorded by a sensor, and no number\n"
@@ -86,14 +97,12 @@ std::string readme(const SimulatedOrigin& origin) {
       "mosbench simulate --layout {} --scene scene.json --scans {} --seed {}{} --out DIR\n"
       "{}",
       origin.scene, to_string(origin.layout), origin.scans, origin.seed,
-      origin.perturb ? " --perturb " + *origin.perturb : "",
-      origin.layout == DatasetKind::kDoals
-          ? "Truth is by appearance as in DOALS: a person who stands still is listed as dynamic.\n"
-          : "Truth is by speed: above 0.5 m/s is moving, for vehicles above 1.0 m/s.\n");
+      origin.perturb ? " --perturb " + *origin.perturb : "", truth_note(origin.layout));
 }
 
 /// Returns the name that readers give a sequence: of DOALS with the scene's folder.
 std::string name_of(DatasetKind layout, const fs::path& folder) {
+  if (layout == DatasetKind::kOpenSceneFlow) return folder.stem().string();
   return layout == DatasetKind::kDoals ? folder.generic_string() : folder.filename().string();
 }
 
@@ -130,10 +139,16 @@ class SimulatedSequence : public Sequence {
     }
     frame.points.clear();
     if (labelled) frame.truth.emplace();
+    SceneSnapshot later;
+    if (layout_ == DatasetKind::kOpenSceneFlow) {
+      later = simulator_.scene_at(scan_index + 1);
+      frame.motions.emplace();
+    }
     for (std::size_t i = 0; i < scan.points.size(); ++i) {
       if (scan.owners[i] == SimulatedScan::kNoReturn) continue;
       frame.points.push_back(scan.points[i]);
       if (labelled) frame.truth->push_back(layout_label(layout_, scan, i));
+      if (frame.motions) add_motion(scan, i, later, period_s(scan_index), *frame.motions);
     }
   }
   std::vector<std::uint32_t> read_truth(std::size_t scan_index) const override {
@@ -144,9 +159,15 @@ class SimulatedSequence : public Sequence {
   }
 
  private:
+  double period_s(std::size_t scan_index) const {
+    return static_cast<double>(simulator_.stamp_ns(scan_index + 1) -
+                               simulator_.stamp_ns(scan_index)) *
+           1e-9;
+  }
+
   /// Sipailou and HeLiMOS have no times.txt, that of SemanticKITTI starts at 0.
   std::optional<std::int64_t> stored_stamp_ns(std::int64_t stamp_ns) const {
-    if (layout_ == DatasetKind::kDoals) return stamp_ns;
+    if (layout_ == DatasetKind::kDoals || layout_ == DatasetKind::kOpenSceneFlow) return stamp_ns;
     if (layout_ == DatasetKind::kSemanticKitti) return stamp_ns - simulator_.stamp_ns(0);
     return std::nullopt;
   }

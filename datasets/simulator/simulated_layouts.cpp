@@ -70,6 +70,14 @@ std::uint32_t kitti_label(const OwnerState& owner, std::uint32_t owner_number) {
   return kitti_class(owner) | (movable ? (owner_number % kInstances) << kInstanceBits : 0U);
 }
 
+/// The owner of movable things is their instance, an int16 there.
+std::uint32_t scene_flow_label(const SimulatedScan& scan, std::size_t point) {
+  constexpr std::uint32_t kInstanceBits = 16, kInstances = 32768;
+  const std::uint32_t label = moving_label(scan, point), owner = scan.owners[point];
+  const bool movable = scan.scene.owners[owner].substance >= Substance::kMoverBody;
+  return label == 0 || !movable ? label : label | (owner % kInstances) << kInstanceBits;
+}
+
 SensorKind sensor_of(const Scene& scene, SensorKind usual) {
   return scene.sensor ? sensor_kind_from_string(*scene.sensor).value_or(usual) : usual;
 }
@@ -110,6 +118,8 @@ std::vector<SimulatedRecording> recordings_of(DatasetKind layout, const Scene& s
       return helimos_recordings();
     case DatasetKind::kSemanticKitti:
       return {{"sequences/08", sensor_of(scene, SensorKind::kHdl64e)}};
+    case DatasetKind::kOpenSceneFlow:
+      return {{scene.name + ".h5", sensor_of(scene, SensorKind::kHdl64e)}};
     default:
       throw UsageError("layout " + std::string(to_string(layout)) + " is not simulated");
   }
@@ -155,6 +165,8 @@ std::uint32_t layout_label(DatasetKind layout, const SimulatedScan& scan, std::s
       return helimos_label(owner, range_m(scan.points[point]));
     case DatasetKind::kSemanticKitti:
       return kitti_label(owner, owner_number);
+    case DatasetKind::kOpenSceneFlow:
+      return scene_flow_label(scan, point);
     default:
       break;
   }

@@ -20,8 +20,8 @@ struct SimulatedRecording {
 
 /// Returns the recordings that a layout consists of: DOALS an OS1-64, Sipailou an Avia (sequence
 /// 06, its valid split), HeLiMOS its four sensors, SemanticKITTI an HDL-64E (sequence 08, its valid
-/// split). A sensor named by the scene replaces that of the layout. Throws UsageError where it may
-/// not.
+/// split), OpenSceneFlow one as well. A sensor named by the scene replaces that of the layout.
+/// Throws UsageError where it may not.
 std::vector<SimulatedRecording> recordings_of(DatasetKind layout, const Scene& scene);
 
 /// Returns the indices of the scans that get labels: ten for DOALS, the last scan included, from
@@ -33,7 +33,8 @@ HelimosSplits simulated_splits(const std::set<std::size_t>& labelled);
 
 /// Returns the value in the label file of a point that has a return.
 /// Sipailou: 9, 251 or for vehicles 252 within 3..50 m, else 0. HeLiMOS: 9 or 251 within 80 m, else
-/// 0. SemanticKITTI: its class ids, with the owner as instance of movable things.
+/// 0. SemanticKITTI: its class ids, with the owner as instance of movable things. OpenSceneFlow: 9,
+/// 251 or 0 with such instances, where only 0 is kept, as its truth is a flow.
 std::uint32_t layout_label(DatasetKind layout, const SimulatedScan& scan, std::size_t point);
 
 /// Returns DOALS's truth, by appearance: moving are the points of what moves and of what looks as

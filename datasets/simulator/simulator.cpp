@@ -52,9 +52,13 @@ std::int64_t Simulator::stamp_ns(std::size_t scan_index) const {
   return kFirstStamp_ns + std::llround(time_s(scan_index) * 1e9);
 }
 
+SceneSnapshot Simulator::scene_at(std::size_t scan_index) const {
+  return snapshot(scene_, time_s(scan_index));
+}
+
 SimulatedScan Simulator::scan(std::size_t scan_index) const {
   SimulatedScan result;
-  result.scene = snapshot(scene_, time_s(scan_index));
+  result.scene = scene_at(scan_index);
   result.map_from_sensor = map_from_sensor(scan_index);
   result.stamp_ns = stamp_ns(scan_index);
   result.points.assign(sensor_.slots(), Point{});

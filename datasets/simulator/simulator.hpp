@@ -40,6 +40,8 @@ class Simulator {
   /// Return pose and stamp of a scan without computing its points.
   Pose map_from_sensor(std::size_t scan_index) const;
   std::int64_t stamp_ns(std::size_t scan_index) const;
+  /// Returns the scene as that scan sees it.
+  SceneSnapshot scene_at(std::size_t scan_index) const;
 
   const SensorModel& sensor() const { return sensor_; }
   const Scene& scene() const { return scene_; }

@@ -21,6 +21,7 @@ constexpr const char* kConvertFooter =
 keep their bits and their order. Truth becomes .label files with the ids of the source. In the layouts
 of DOALS it becomes rows of indices.csv with the points of ids 251 to 259, and scans without stamps get
 stamps 0.1 s apart. ROS 2 bags have the topics /points, where truth is the field label, and /tf.
+OpenSceneFlow's .h5 files keep the flow of DATA; truth without speeds becomes the array mos_label.
 
 Examples:
   mosbench convert ~/doals/station/sequence_1 --layout semantickitti --out ~/doals-kitti
@@ -93,8 +94,8 @@ CommandRun add_convert(CLI::App& command) {
                     options->reading);
   command.add_option("--layout", options->layout, "Layout to write")
       ->required()
-      ->check(CLI::IsMember(
-          {"doals", "doals-bag", "sipailou", "helimos", "semantickitti", "ros2-mcap", "ros2-db3"}));
+      ->check(CLI::IsMember({"doals", "doals-bag", "sipailou", "helimos", "semantickitti",
+                             "opensceneflow", "ros2-mcap", "ros2-db3"}));
   command.add_option("--out", options->conversion.out, "Root of the data set to write")
       ->type_name("DIR")
       ->required();

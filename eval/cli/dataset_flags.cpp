@@ -86,6 +86,15 @@ void add_scan_flags(CLI::App& command, ReadingOptions& options) {
                   "float32 per point in .bin files: 4, or 5 (ring of nuScenes, times)")
       ->check(CLI::IsMember({4, 5}))
       ->group(kReadingGroup);
+  command
+      .add_option("--moving-speed-m-s", options.moving_speed_m_s,
+                  "Speed from which on points of opensceneflow's truth move (default: 0.5)")
+      ->type_name("M/S")
+      ->check([](const std::string& text) {
+        const auto speed_m_s = parse_double(text);
+        return speed_m_s && *speed_m_s > 0.0 ? "" : text + " is no speed, expected m/s above 0";
+      })
+      ->group(kReadingGroup);
   add_perturb_flag(command, options.perturb);
 }
 

@@ -36,7 +36,8 @@ std::string simulate_dataset(SimulateFlags options) {
   const std::optional<DatasetKind> layout = dataset_kind_from_string(options.layout);
   if (!layout || !is_written(*layout)) {
     throw UsageError(fmt::format(
-        "--layout: '{}' is not known, expected doals, sipailou, helimos or semantickitti",
+        "--layout: '{}' is not known, expected doals, sipailou, helimos, semantickitti or "
+        "opensceneflow",
         options.layout));
   }
   options.simulation.layout = *layout;
@@ -55,7 +56,9 @@ std::string simulate_dataset(SimulateFlags options) {
 CommandRun add_simulate(CLI::App& command) {
   auto options = std::make_shared<SimulateFlags>();
   SimulateOptions& simulation = options->simulation;
-  command.add_option("--layout", options->layout, "doals, sipailou, helimos or semantickitti")
+  command
+      .add_option("--layout", options->layout,
+                  "doals, sipailou, helimos, semantickitti or opensceneflow")
       ->type_name("LAYOUT")
       ->required();
   command.add_option("--scene", simulation.scene, "Name of a scene, or a JSON file")

@@ -35,7 +35,9 @@ constexpr std::array kFormats = {
     DescribedFormat{Format::kDynabloxClouds, "dynablox-clouds", ".csv", false,
                     "clouds.csv of Dynablox, a row per point of each labelled scan; see --level"},
     DescribedFormat{Format::kDynabloxScores, "dynablox-scores", ".csv", false,
-                    "scores.csv of Dynablox, its own counts per labelled scan; see --level"}};
+                    "scores.csv of Dynablox, its own counts per labelled scan; see --level"},
+    DescribedFormat{Format::kHdf5, "h5", ".h5", false,
+                    "dufo of each group of OpenSceneFlow's .h5, 0 or 1 per point; may be DATA"}};
 
 }  // namespace
 

@@ -19,7 +19,8 @@ enum class PredictionFormat : std::uint8_t {
   kRows,
   kIndices,
   kDynabloxClouds,
-  kDynabloxScores
+  kDynabloxScores,
+  kHdf5
 };
 
 struct DescribedFormat {

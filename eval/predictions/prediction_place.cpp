@@ -11,6 +11,7 @@
 #include "datasets/files/errors.hpp"
 #include "datasets/files/folder_listing.hpp"
 #include "datasets/files/text.hpp"
+#include "datasets/hdf5/hdf5_file.hpp"
 
 namespace mosbench {
 namespace fs = std::filesystem;
@@ -58,6 +59,7 @@ std::vector<std::uint64_t> first_numbers(const fs::path& file) {
 std::optional<Format> format_of_file(const fs::path& file) {
   std::error_code ignored;
   if (!fs::is_regular_file(file, ignored)) return std::nullopt;  // a FIFO may never have a line
+  if (is_hdf5_file(file)) return Format::kHdf5;
   const std::string line = first_line(file);
   if (line.starts_with("CloudNo")) return Format::kDynabloxClouds;
   if (line.find("EvaluatedPoints") != std::string::npos) return Format::kDynabloxScores;
@@ -258,7 +260,7 @@ PredictionPlace find_predictions(const fs::path& root, const Sequence& sequence,
   if (!fs::exists(root, error)) {
     throw DataError(root, "does not exist", "a folder or file of predictions");
   }
-  for (const char* extension : {".txt", ".csv"}) {
+  for (const char* extension : {".txt", ".csv", ".h5"}) {
     const fs::path file = root / (sequence.name() + extension);
     if (!found && fs::is_regular_file(file, error)) {
       found = PredictionPlace{file, format.value_or(format_of_named(file))};
@@ -269,7 +271,8 @@ PredictionPlace find_predictions(const fs::path& root, const Sequence& sequence,
   }
   if (!found) found = look_below(root, sequence, only_sequence, format);
   if (!found) throw nothing_found(root, sequence, format);
-  if (is_truth(found->path, sequence)) {
+  // An .h5 file may hold both.
+  if (found->format != Format::kHdf5 && is_truth(found->path, sequence)) {
     throw DataError(found->path, "holds the truth of sequence " + sequence.name(),
                     "a folder of predictions");
   }

@@ -3,10 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "datasets/files/files.hpp"
 #include "datasets/files/indices_file.hpp"
+#include "datasets/files/shown_text.hpp"
+#include "datasets/hdf5/hdf5_file.hpp"
+#include "datasets/hdf5/scene_flow_names.hpp"
 
 namespace mosbench {
 namespace fs = std::filesystem;
@@ -167,6 +171,55 @@ std::unique_ptr<Predictions> open_scores(const fs::path& file, const Sequence& s
   return std::make_unique<CountedScans>(file, std::move(counts));
 }
 
+class DufoArrays : public Predictions {
+ public:
+  DufoArrays(const fs::path& file, const Sequence& sequence, PredictionErrors& errors)
+      : file_(file, kNames) {
+    std::map<std::string, std::size_t> scans;
+    for (std::size_t k = 0; k < sequence.size(); ++k) scans[sequence.stem(k)] = k;
+    for (const Hdf5Group& group : file_.groups()) {
+      if (group.arrays.empty() || is_left_out(sequence.recording(), group.name)) continue;
+      const auto scan = scans.find(group.name);
+      if (scan == scans.end()) {
+        errors.report(DataError(file, "group " + shown_in_line(group.name) + " is of no scan",
+                                "groups named as those of sequence " + sequence.name()));
+      } else {
+        enter(group, scan->second, sequence.point_count(scan->second));
+      }
+    }
+  }
+  bool has(std::size_t scan_index) const override { return scans_.contains(scan_index); }
+  std::vector<std::uint32_t> read(std::size_t scan_index) const override {
+    const Hdf5Group& group = *scans_.at(scan_index);
+    std::vector<std::uint32_t> labels;
+    for (const std::int64_t moves : file_.integers(group, group.arrays.front())) {
+      if (moves != 0 && moves != 1) {
+        throw DataError(
+            file_.path(),
+            fmt::format("{} of group {} holds {}", group.arrays.front().name, group.name, moves),
+            "0 (static) or 1 (moving)");
+      }
+      labels.push_back(moves == 1 ? kMovingLabel : kStaticLabel);
+    }
+    return labels;
+  }
+
+ private:
+  void enter(const Hdf5Group& group, std::size_t scan_index, std::size_t points) {
+    if (count_of(group.arrays.front()) != points) {
+      throw DataError(file_.path(),
+                      fmt::format("{} of group {} has {} values", group.arrays.front().name,
+                                  group.name, count_of(group.arrays.front())),
+                      fmt::format("one per point of the scan, {}", points));
+    }
+    scans_[scan_index] = &group;
+  }
+
+  static constexpr std::array kNames = {scene_flow::kDufo, scene_flow::kOlderDufo};
+  Hdf5File file_;
+  std::map<std::size_t, const Hdf5Group*> scans_;
+};
+
 }  // namespace
 
 std::unique_ptr<Predictions> open_sequence_file(const PredictionPlace& place,
@@ -180,6 +233,8 @@ std::unique_ptr<Predictions> open_sequence_file(const PredictionPlace& place,
       return open_clouds(place.path, sequence, options.level);
     case PredictionFormat::kDynabloxScores:
       return open_scores(place.path, sequence, options.level);
+    case PredictionFormat::kHdf5:
+      return std::make_unique<DufoArrays>(place.path, sequence, errors);
     default:
       return open_rows(place.path, sequence, errors);
   }

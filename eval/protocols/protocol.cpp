@@ -52,6 +52,14 @@ constexpr std::array kNuscenesIds = {
     IdRange{1000, 65534, kMoving}, IdRange{65535, 65535, kIgnored}};
 constexpr IdMap kMdetectorNuscenes{kNuscenesIds, kStatic};
 
+// The reader of OpenSceneFlow gives 0 where the flow is not valid, 40, 99 and 259 where the
+// benchmark does not look.
+constexpr std::array kSceneFlowIds = {
+    IdRange{0, 0, kIgnored},    IdRange{1, 39, kStatic},     IdRange{40, 40, kIgnored},
+    IdRange{41, 98, kStatic},   IdRange{99, 99, kIgnored},   IdRange{100, 250, kStatic},
+    IdRange{251, 258, kMoving}, IdRange{259, 259, kIgnored}, IdRange{260, 65535, kMoving}};
+constexpr IdMap kSceneFlow{kSceneFlowIds, kStatic};
+
 constexpr RangeGate kNoLimits{0.0, -1.0};
 constexpr PrintStyle kFraction{.percent = false, .digits = 3};
 constexpr PrintStyle kPercent1{.percent = true, .digits = 1};
@@ -231,6 +239,20 @@ constexpr std::array kProtocols = {
              .file_significant_digits = 0,
              .program_print = kSixSignificant,
              .default_split = ""},
+    Protocol{.name = "sceneflow-dynamic",
+             .summary = "mean of per-scan dynamic IoU; invalid flow and the ground are ignored",
+             .source = "KTH-RPL/OpenSceneFlow@2a9c474:src/utils/av2_eval.py",
+             .truth = kSceneFlow,
+             .prediction = kAbove250,
+             .range_rule = RangeRule::kTruthAndPrediction,
+             .default_range = kNoLimits,
+             .range_arithmetic = Arithmetic::kDouble,
+             .aggregation = Aggregation::kMeanOfScans,
+             .empty_case = EmptyCase::kEpsilon,
+             .metric_arithmetic = Arithmetic::kDouble,
+             .file_significant_digits = 0,
+             .program_print = kSixSignificant,
+             .default_split = "eval"},
 };
 
 }  // namespace

@@ -86,6 +86,7 @@ ordered_json told_json(const ReadingOptions& options) {
     json["point_times"] = options.point_times == PointTimes::kColumn ? "column" : "azimuth";
   }
   if (options.bin_columns != usual.bin_columns) json["bin_columns"] = options.bin_columns;
+  if (options.moving_speed_m_s) json["moving_speed_m_s"] = *options.moving_speed_m_s;
   if (options.perturb) json["perturb"] = *options.perturb;
   return json;
 }
@@ -104,6 +105,7 @@ ReadingOptions told_from_json(const ordered_json& json) {
   take_word(json, "deskew", options.deskew, deskew_named);
   take_word(json, "point_times", options.point_times, point_times_named);
   take_bin_columns(json, options);
+  take<double>(json, "moving_speed_m_s", options.moving_speed_m_s);
   take<std::string>(json, "perturb", options.perturb);
   return options;
 }

@@ -48,7 +48,8 @@ fs::path path_of(const YamlNode& node, const fs::path& file) {
 
 ReadingOptions reading_of_study(const YamlNode& node, const fs::path& file) {
   node.check_keys({"poses", "pose_format", "pose_frame", "pose_direction", "max_pose_gap_s",
-                   "topic", "map_frame", "deskew", "point_times", "bin_columns"});
+                   "topic", "map_frame", "deskew", "point_times", "bin_columns",
+                   "moving_speed_m_s"});
   nlohmann::ordered_json json = nlohmann::ordered_json::object();
   for (const auto& [key, value] : node.members()) {
     const auto number = parse_double(value.text());
@@ -56,6 +57,9 @@ ReadingOptions reading_of_study(const YamlNode& node, const fs::path& file) {
       json[key] = value.whole(4, 5);
     } else if (key == "max_pose_gap_s") {
       if (!number || *number < 0) value.refuse("is no time", "seconds");
+      json[key] = *number;
+    } else if (key == "moving_speed_m_s") {
+      if (!number || *number <= 0) value.refuse("is no speed", "m/s above 0");
       json[key] = *number;
     } else {
       json[key] = key == "poses" ? path_of(value, file).string() : value.text();
@@ -72,7 +76,7 @@ std::vector<StudyData> simulations_of(const std::string& name, const YamlNode& n
   const auto kind = dataset_kind_from_string(layout.text());
   if (!kind || !is_written(*kind)) {
     layout.refuse(fmt::format("layout {} is not known", mosbench::quoted(layout.text())),
-                  "doals, sipailou, helimos or semantickitti");
+                  "doals, sipailou, helimos, semantickitti or opensceneflow");
   }
   simulation.layout = *kind;
   const YamlNode scene = node.at("scene");

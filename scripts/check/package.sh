@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # package.sh FOLDER: installs the packages of FOLDER (build/release/packages) where nothing else is
-# installed, and uses each: the program, the module that reads .pcd scans, and the Python package.
+# installed, and uses each: the program, the modules for .pcd scans and .h5 files, and the Python package.
 # lintian must find no errors; that the project has no address is none.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
@@ -38,6 +38,10 @@ printf '%s\n' 'VERSION .7' 'FIELDS x y z' 'SIZE 4 4 4' 'TYPE F F F' 'COUNT 1 1 1
 echo 1 0 0 0 0 1 0 0 0 0 1 0 >"$root/root/pcd/poses.txt"
 in_root mosbench run /root/pcd --dataset semantickitti --out /root/pcd-run >/dev/null 2>"$root/log" ||
   { cat "$root/log" >&2; exit 1; }
+
+install_package mosbench-hdf5
+in_root sh -euc 'mosbench simulate --layout opensceneflow --scene street --scans 4 --seed 1 --out /root/flow
+  mosbench run /root/flow --out /root/flow-run' >/dev/null 2>"$root/log" || { cat "$root/log" >&2; exit 1; }
 
 install_package python3-mosbench
 in_root python3 -c '

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "datasets/files/errors.hpp"
+#include "datasets/hdf5/hdf5_module.hpp"
 #include "datasets/layouts/dataset.hpp"
 #include "datasets/rosbag/bag_file.hpp"
 #include "datasets/rosbag/bag_writer.hpp"
@@ -121,7 +122,9 @@ TEST_F(Convert, MakesRos2BagsThatReadAndScoreAsTheScans) {
 TEST_F(Convert, TurnsEveryLayoutIntoEveryOther) {
   for (const std::string from : {"doals", "sipailou", "helimos", "semantickitti"}) {
     const std::string input = simulate(from, "6");
-    for (const std::string to : {"doals", "sipailou", "helimos", "semantickitti"}) {
+    for (const std::string to :
+         {"doals", "sipailou", "helimos", "semantickitti", "opensceneflow"}) {
+      if (to == "opensceneflow" && !has_hdf5()) continue;
       const std::string out = from + "_as_" + to;
       const cli::Answer answer = convert(input, to, out.c_str());
       ASSERT_EQ(answer.exit_code, 0) << out << answer.err;

@@ -68,7 +68,8 @@ TEST_F(Simulate, RefusesWhatItDoesNotKnow) {
   EXPECT_THAT(scene.err, HasSubstr("room"));
   const cli::Answer layout = simulate("kitti", "room", "out");
   EXPECT_EQ(layout.exit_code, 2);
-  EXPECT_THAT(layout.err, HasSubstr("expected doals, sipailou, helimos or semantickitti"));
+  EXPECT_THAT(layout.err, HasSubstr("expected doals, sipailou, helimos, semantickitti or "
+                                    "opensceneflow"));
   const cli::Answer file = simulate("doals", folder_.write("scene.json", "{").string(), "out");
   EXPECT_EQ(file.exit_code, 3);
   EXPECT_THAT(file.err, HasSubstr("scene.json"));

@@ -18,6 +18,7 @@
 #include "datasets/files/pose_list.hpp"
 #include "datasets/files/split_file.hpp"
 #include "datasets/files/times_file.hpp"
+#include "datasets/hdf5/scene_flow_sequence.hpp"
 #include "datasets/rosbag/bag_metadata.hpp"
 #include "datasets/rosbag/bag_sequence.hpp"
 #include "datasets/rosbag/point_cloud2.hpp"
@@ -221,16 +222,33 @@ inline void read_bag(const std::filesystem::path& file) {
 /// A whole bag with all its scans: of ROS 1 or in MCAP, as its first bytes say.
 inline void bag(std::string_view bytes) { with_file(bytes, read_bag); }
 
-/// The same in SQLite, which opens nothing but files with a name.
-inline void sqlite_bag(std::string_view bytes) {
+/// The same as `with_file` for libraries that open nothing but files with a name.
+template <typename Read>
+void with_named_file(const char* name, std::string_view bytes, Read&& read) {
   const TempFolder folder;
-  const auto file = folder.write("s.db3", bytes);
+  const auto file = folder.write(name, bytes);
   try {
-    read_bag(file);
+    read(file);
   } catch (const DataError& error) {
     require(std::string_view(error.what()).starts_with(file.string()));
     throw DataError(std::string("f") + error.what());
   }
+}
+
+/// A bag in SQLite.
+inline void sqlite_bag(std::string_view bytes) { with_named_file("s.db3", bytes, read_bag); }
+
+/// A file of OpenSceneFlow with all its scans.
+inline void hdf5(std::string_view bytes) {
+  with_named_file("s.h5", bytes, [](const std::filesystem::path& file) {
+    const SceneFlowSequence drive("s", file, {});
+    for (std::size_t i = 0; i < drive.size(); ++i) {
+      const Frame frame = drive.read(i);
+      require(frame.points.size() == drive.point_count(i));
+      require(frame.truth.has_value() == drive.has_truth(i));
+      require(!frame.truth || frame.truth->size() == frame.points.size());
+    }
+  });
 }
 
 inline void scene(std::string_view text) {
@@ -262,8 +280,9 @@ inline void result(std::string_view bytes) {
 struct Parser {
   const char* name;  ///< of its corpus folder and its libFuzzer target
   void (*parse)(std::string_view);
+  std::size_t mutations = 3000;  ///< that the replay tries; fewer where each takes a process
 };
-inline constexpr std::array<Parser, 22> kParsers = {{{"bin", bin},
+inline constexpr std::array<Parser, 23> kParsers = {{{"bin", bin},
                                                      {"label", label},
                                                      {"dynamic_scores", dynamic_scores},
                                                      {"poses", poses},
@@ -281,6 +300,7 @@ inline constexpr std::array<Parser, 22> kParsers = {{{"bin", bin},
                                                      {"bag", bag},
                                                      {"mcap", bag},
                                                      {"sqlite_bag", sqlite_bag},
+                                                     {"hdf5", hdf5, 600},
                                                      {"scene", scene},
                                                      {"config", config},
                                                      {"result", result},

@@ -111,6 +111,8 @@ def _simulated(maker):
     for compression in ("none", "lz4", "bz2"):
         trees[f"bag_{compression}"] = maker.make(
             f"bag_{compression}", f"convert doals --layout doals-bag --compression {compression} --out")
+    trees["opensceneflow"] = maker.make(
+        "opensceneflow", f"simulate --layout opensceneflow --scene scene.json --scans {SCANS} --seed 1 --threads 1 --out")
     for container in ("mcap", "db3"):
         trees[container] = maker.make(container, f"convert doals --layout ros2-{container} --out")
     return trees

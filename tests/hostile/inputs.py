@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import folders
 
-LAYOUTS = ("doals", "doals-bag", "sipailou", "helimos", "semantickitti")
+LAYOUTS = ("doals", "doals-bag", "sipailou", "helimos", "semantickitti", "opensceneflow")
 RUN = "run data --config config.json --threads 1 --out out"
 READING = [
     RUN, f"{RUN} --json", f"{RUN} --perturb pose_noise_m=0.05,dropout_probability=0.2,fog_per_m=0.02,seed=3",
@@ -61,6 +61,12 @@ def _scans(trees):
         tree = _prefixed(trees, data=container)
         recording = [*READING[:READING.index("score data --predictions predicted --json")], f"{RUN} --raw-scans"]
         yield Kind(f"ROS 2 {pattern[2:-1]}", tree, re.compile(pattern), recording)
+
+
+    flow = _prefixed(trees, data="opensceneflow")
+    flow_commands = [*READING[:READING.index("score data --predictions predicted --json")], f"{RUN} --moving-speed-m-s 2",
+                     "score data --predictions data --json --allow-missing"]
+    yield Kind("OpenSceneFlow .h5", flow, re.compile(r"\.h5$"), flow_commands)
 
 
 def _sequences(trees):
@@ -137,7 +143,7 @@ def _texts(trees, published):
         "odometry data --config odometry.json -o out.txt --threads 1",
         f"{RUN} --odometry simple --odometry-config odometry.json"])
     layouts = [f"simulate --layout {layout} --scene scene.json --scans 2 --seed 1 --threads 1 --out out"
-               for layout in ("doals", "sipailou", "semantickitti")]
+               for layout in ("doals", "sipailou", "semantickitti", "opensceneflow")]
     yield Kind("scene", tree, re.compile("^scene.json$"), layouts)
     yield Kind("study", tree, re.compile("^study.yaml$"), [
         "study plan study.yaml --out out", "study plan study.yaml --json --out out", "study table study.yaml --out out"])

@@ -20,6 +20,7 @@ READING = (
     "point_times",  # "column" or "azimuth"
     "deskew",  # "none", "velocity" or "poses"
     "bin_columns",  # 4 or 5 float32 per point
+    "moving_speed_m_s",  # from which on points of OpenSceneFlow's truth move
     "perturb",  # "KIND=STRENGTH,...,seed=N"
 )
 

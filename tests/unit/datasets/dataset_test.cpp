@@ -62,16 +62,17 @@ TEST(Layouts, HaveOneCompleteRowPerDataSet) {
     }
     EXPECT_GT(row->files.sensor_range_m, 0.0) << row->name;
   }
-  EXPECT_EQ(kinds.size(), 9U);
+  EXPECT_EQ(kinds.size(), 10U);
   EXPECT_EQ(dataset_kind_from_string("kitti"), std::nullopt);
 }
 
-TEST(Layouts, AreWrittenForFourDataSetsAndRecordings) {
+TEST(Layouts, AreWrittenForFiveDataSetsAndRecordings) {
   std::vector<std::string_view> written;
   for (const Layout* row : layouts()) {
     if (row->writer) written.push_back(row->name);
   }
-  EXPECT_THAT(written, ElementsAre("doals", "sipailou", "helimos", "semantickitti", "recording"));
+  EXPECT_THAT(written, ElementsAre("doals", "sipailou", "helimos", "semantickitti", "opensceneflow",
+                                   "recording"));
 }
 
 TEST(OpenDataset, FindsSemanticKittiWithAndWithoutTheFolderSequences) {

@@ -24,7 +24,7 @@ TEST(Protocols, HoldEveryBenchmarkThatIsPromised) {
   for (const std::string_view name :
        {"doals-hmm", "doals-dynablox", "semantickitti-mos", "sipailou", "helimos-all",
         "helimos-test", "mapmos", "mapmos-apollo", "mapmos-kitti-tracking", "moe", "mdetector",
-        "mdetector-nuscenes"}) {
+        "mdetector-nuscenes", "sceneflow-dynamic"}) {
     ASSERT_NE(find_protocol(name), nullptr) << name;
     EXPECT_EQ(find_protocol(name)->name, name);
   }

@@ -43,7 +43,8 @@ TEST(ReadingJson, KeepsWhatTheUserTold) {
                                .map_frame = "map",
                                .deskew = Deskew::kVelocity,
                                .point_times = PointTimes::kColumn,
-                               .bin_columns = 5};
+                               .bin_columns = 5,
+                               .moving_speed_m_s = 0.75};
   const nlohmann::ordered_json json = told_json(told);
   const ReadingOptions read = told_from_json(json);
   EXPECT_EQ(read.poses, told.poses);
@@ -57,6 +58,7 @@ TEST(ReadingJson, KeepsWhatTheUserTold) {
   EXPECT_EQ(read.point_times, told.point_times);
   EXPECT_EQ(told_from_json(told_json({.deskew = Deskew::kNone})).deskew, Deskew::kNone);
   EXPECT_EQ(read.bin_columns, told.bin_columns);
+  EXPECT_EQ(read.moving_speed_m_s, told.moving_speed_m_s);
   EXPECT_EQ(told_json(read), json);
   EXPECT_TRUE(told_json({}).empty());
   EXPECT_TRUE(told_json(told_from_json({{"file_stamp", "ab"}})).empty());

@@ -1,0 +1,66 @@
+#include "datasets/hdf5/flow_truth.hpp"
+
+#include <cmath>
+#include <limits>
+
+namespace mosbench {
+namespace {
+
+Eigen::Vector3d position_of(const Point& point) { return {point.x, point.y, point.z}; }
+
+/// The flow of a point that stands still.
+Eigen::Vector3d still_flow(const Point& point, const SensorStep& step) {
+  const Eigen::Vector3d position = position_of(point);
+  return step.next_from_sensor * position - position;
+}
+
+}  // namespace
+
+std::vector<Eigen::Vector3f> velocities(std::span<const Point> points,
+                                        std::span<const float> flow_m,
+                                        std::span<const std::int64_t> valid,
+                                        const SensorStep& step) {
+  constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
+  std::vector<Eigen::Vector3f> velocities_m_s(points.size(), Eigen::Vector3f::Constant(kUnknown));
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (valid[i] == 0) continue;
+    const Eigen::Vector3d flow(flow_m[3 * i], flow_m[3 * i + 1], flow_m[3 * i + 2]);
+    const Eigen::Vector3d velocity = (flow - still_flow(points[i], step)) / step.time_s;
+    if (velocity.allFinite()) velocities_m_s[i] = velocity.cast<float>();
+  }
+  return velocities_m_s;
+}
+
+std::vector<float> flow_of(std::span<const Point> points,
+                           std::span<const Eigen::Vector3f> velocities_m_s,
+                           const SensorStep& step) {
+  std::vector<float> flow_m;
+  flow_m.reserve(3 * points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Eigen::Vector3d moved = velocities_m_s[i].cast<double>() * step.time_s;
+    Eigen::Vector3d flow = Eigen::Vector3d::Zero();
+    if (moved.allFinite()) flow = still_flow(points[i], step) + moved;
+    for (const double part : {flow.x(), flow.y(), flow.z()}) {
+      flow_m.push_back(static_cast<float>(part));
+    }
+  }
+  return flow_m;
+}
+
+std::vector<std::uint32_t> flow_labels(const PointMotions& motions, double moving_speed_m_s) {
+  std::vector<std::uint32_t> labels(motions.velocities_m_s.size(), 0);
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    const double speed_m_s = motions.velocities_m_s[i].cast<double>().norm();
+    if (std::isnan(speed_m_s)) continue;
+    const bool on_ground = !motions.on_ground.empty() && motions.on_ground[i] != 0;
+    const bool evaluated = motions.evaluated.empty() ? !on_ground : motions.evaluated[i] != 0;
+    if (speed_m_s >= moving_speed_m_s) {
+      labels[i] = evaluated ? kMovingLabel : kLeftOutMoving;
+    } else {
+      labels[i] = evaluated ? kStaticLabel : on_ground ? kGroundLabel : kLeftOutStatic;
+    }
+  }
+  return labels;
+}
+
+}  // namespace mosbench

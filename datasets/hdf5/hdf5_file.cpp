@@ -1,0 +1,204 @@
+#include "datasets/hdf5/hdf5_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+#include <utility>
+
+#include "datasets/files/byte_cursor.hpp"
+#include "datasets/files/errors.hpp"
+#include "datasets/files/files.hpp"
+#include "datasets/files/shown_text.hpp"
+#include "datasets/hdf5/process_copy.hpp"
+
+namespace mosbench {
+namespace {
+
+using Kind = Hdf5Number::Kind;
+
+constexpr std::string_view kSignature{"\x89HDF\r\n\x1a\n", 8};
+constexpr const char* kExpected = "an HDF5 file with groups of arrays";
+/// No filter of libhdf5 packs numbers more than zlib, 1032 to 1.
+constexpr std::uint64_t kMostPacked = 2048;
+
+std::string packed(const std::vector<Hdf5Group>& groups) {
+  ByteSink sink;
+  for (const Hdf5Group& group : groups) {
+    sink.put_counted(group.name);
+    sink.put(static_cast<std::uint32_t>(group.arrays.size()));
+    for (const Hdf5Array& array : group.arrays) {
+      sink.put_counted(array.name);
+      sink.put(array.number.kind);
+      sink.put(array.number.bytes);
+      sink.put(static_cast<std::uint32_t>(array.shape.size()));
+      for (const std::uint64_t size : array.shape) sink.put(size);
+      sink.put(static_cast<std::uint8_t>(array.is_plain));
+      sink.put(array.at_bytes);
+    }
+  }
+  return std::move(sink).bytes();
+}
+
+Hdf5Array take_array(ByteCursor& cursor) {
+  Hdf5Array array;
+  array.name = cursor.take_counted();
+  array.number.kind = cursor.take<Kind>();
+  array.number.bytes = cursor.take<std::uint8_t>();
+  for (auto sizes = cursor.take<std::uint32_t>(); sizes > 0; --sizes) {
+    array.shape.push_back(cursor.take<std::uint64_t>());
+  }
+  array.is_plain = cursor.take<std::uint8_t>() != 0;
+  array.at_bytes = cursor.take<std::uint64_t>();
+  return array;
+}
+
+std::vector<Hdf5Group> unpacked(std::string_view bytes, const std::filesystem::path& file) {
+  ByteCursor cursor(bytes, file, "the list of its groups");
+  std::vector<Hdf5Group> groups;
+  while (!cursor.rest().empty()) {
+    Hdf5Group& group = groups.emplace_back();
+    group.name = cursor.take_counted();
+    for (auto arrays = cursor.take<std::uint32_t>(); arrays > 0; --arrays) {
+      group.arrays.push_back(take_array(cursor));
+    }
+  }
+  return groups;
+}
+
+/// Throws what libhdf5 said in the copy.
+std::string answer_of(const CopyAnswer& answer, const std::filesystem::path& file) {
+  if (answer.failure.empty()) return answer.bytes;
+  throw DataError(file, "cannot be read (" + shown_in_line(answer.failure) + ")", kExpected);
+}
+
+void throw_if_failed(const std::string& error) {
+  if (!error.empty()) throw std::runtime_error(error);
+}
+
+template <typename Stored, typename Value>
+std::vector<Value> converted(std::string_view bytes) {
+  std::vector<Value> values(bytes.size() / sizeof(Stored));
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    Stored stored;
+    std::memcpy(&stored, bytes.data() + i * sizeof(Stored), sizeof(Stored));
+    values[i] = static_cast<Value>(stored);
+  }
+  return values;
+}
+
+template <typename Value>
+std::vector<Value> converted(std::string_view bytes, const Hdf5Number& number) {
+  const bool has_sign = number.kind == Kind::kInteger;
+  switch (number.bytes) {
+    case 1:
+      return has_sign ? converted<std::int8_t, Value>(bytes)
+                      : converted<std::uint8_t, Value>(bytes);
+    case 2:
+      return has_sign ? converted<std::int16_t, Value>(bytes)
+                      : converted<std::uint16_t, Value>(bytes);
+    case 4:
+      return has_sign ? converted<std::int32_t, Value>(bytes)
+                      : converted<std::uint32_t, Value>(bytes);
+    default:
+      return has_sign ? converted<std::int64_t, Value>(bytes)
+                      : converted<std::uint64_t, Value>(bytes);
+  }
+}
+
+}  // namespace
+
+bool is_hdf5_file(const std::filesystem::path& file) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(file, ignored)) return false;
+  try {
+    return read_start(file, kSignature.size()) == kSignature;
+  } catch (const DataError&) {
+    return false;
+  }
+}
+
+const Hdf5Array* find_array(const Hdf5Group& group, std::string_view name) {
+  const auto found = std::ranges::find(group.arrays, name, &Hdf5Array::name);
+  return found == group.arrays.end() ? nullptr : &*found;
+}
+
+std::uint64_t count_of(const Hdf5Array& array) {
+  std::uint64_t count = 1;
+  for (const std::uint64_t size : array.shape) count *= size;
+  return count;
+}
+
+Hdf5File::Hdf5File(std::filesystem::path path, std::span<const std::string_view> names)
+    : path_(std::move(path)), file_bytes_(size_of(path_)) {
+  if (read_start(path_, kSignature.size()) != kSignature) {
+    throw DataError(path_, "does not begin as a file of HDF5", kExpected);
+  }
+  const Hdf5Functions& functions = hdf5_functions(path_);
+  const CopyAnswer listing = in_process_copy([&] {
+    std::vector<Hdf5Group> groups;
+    throw_if_failed(functions.list(path_, names, groups));
+    return packed(groups);
+  });
+  groups_ = unpacked(answer_of(listing, path_), path_);
+  for (const Hdf5Group& group : groups_) {
+    for (const Hdf5Array& array : group.arrays) check(group, array);
+  }
+}
+
+/// A damaged file may claim more than there is.
+void Hdf5File::check(const Hdf5Group& group, const Hdf5Array& array) const {
+  constexpr std::uint64_t kMost = std::numeric_limits<std::uint64_t>::max();
+  std::uint64_t bytes = array.number.bytes;
+  for (const std::uint64_t size : array.shape) {
+    bytes = size != 0 && bytes > kMost / size ? kMost : bytes * size;
+  }
+  const bool fits = array.is_plain ? bytes <= file_bytes_ && array.at_bytes <= file_bytes_ - bytes
+                                   : bytes / kMostPacked <= file_bytes_;
+  if (fits) return;
+  throw DataError(
+      path_, fmt::format("{}/{} claims {} bytes", shown_in_line(group.name), array.name, bytes),
+      "no more than the file holds");
+}
+
+std::string Hdf5File::bytes_of(const Hdf5Group& group, const Hdf5Array& array) const {
+  const std::uint64_t bytes = count_of(array) * array.number.bytes;
+  if (array.is_plain) return read_part(path_, array.at_bytes, bytes);
+  const Hdf5Functions& functions = hdf5_functions(path_);
+  std::string read = answer_of(in_process_copy([&] {
+                                 std::string numbers;
+                                 throw_if_failed(functions.read(path_, group.name, array, numbers));
+                                 return numbers;
+                               }),
+                               path_);
+  if (read.size() == bytes) return read;
+  throw DataError(path_, fmt::format("{}/{} has changed", group.name, array.name),
+                  "as it was opened");
+}
+
+template <typename Value>
+std::vector<Value> Hdf5File::numbers(const Hdf5Group& group, const Hdf5Array& array) const {
+  const std::string bytes = bytes_of(group, array);
+  if (array.number.kind != Kind::kReal) return converted<Value>(bytes, array.number);
+  return array.number.bytes == sizeof(float) ? converted<float, Value>(bytes)
+                                             : converted<double, Value>(bytes);
+}
+
+std::vector<double> Hdf5File::reals(const Hdf5Group& group, const Hdf5Array& array) const {
+  return numbers<double>(group, array);
+}
+
+std::vector<float> Hdf5File::floats(const Hdf5Group& group, const Hdf5Array& array) const {
+  return numbers<float>(group, array);
+}
+
+std::vector<std::int64_t> Hdf5File::integers(const Hdf5Group& group, const Hdf5Array& array) const {
+  if (array.number.kind == Kind::kReal) {
+    throw DataError(path_, fmt::format("{}/{} holds reals", shown_in_line(group.name), array.name),
+                    "integers or truth values");
+  }
+  return converted<std::int64_t>(bytes_of(group, array), array.number);
+}
+
+}  // namespace mosbench

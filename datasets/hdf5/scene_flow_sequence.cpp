@@ -1,0 +1,325 @@
+#include "datasets/hdf5/scene_flow_sequence.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "datasets/files/errors.hpp"
+#include "datasets/files/folder_listing.hpp"
+#include "datasets/files/pose_file.hpp"
+#include "datasets/files/shown_text.hpp"
+#include "datasets/hdf5/scene_flow_names.hpp"
+#include "datasets/sequence/pose_source.hpp"
+
+namespace mosbench {
+namespace {
+
+constexpr const char* kExpectedGroups =
+    "groups of OpenSceneFlow, named by stamps, with lidar (N, 3 or more) and pose (4, 4)";
+
+std::string arrow(const Hdf5Group& group, std::string_view name) {
+  return fmt::format("{}/{}", shown_in_line(group.name), name);
+}
+
+bool is_rotation(const Eigen::Matrix3d& rotation) {
+  const Eigen::Matrix3d deviation =
+      (rotation.transpose() * rotation - Eigen::Matrix3d::Identity()).cwiseAbs();
+  return (deviation.array() <= kRotationTolerance).all() && rotation.determinant() > 0.0;
+}
+
+/// An array with one value per point, or of points in rows of one.
+bool is_list_of(const Hdf5Array& array, std::uint64_t points) {
+  const bool is_flat = array.shape.size() == 1 || (array.shape.size() == 2 && array.shape[1] == 1);
+  return is_flat && array.shape[0] == points;
+}
+
+}  // namespace
+
+SceneFlowSequence::SceneFlowSequence(std::string name, const std::filesystem::path& file,
+                                     const ReadingOptions& options)
+    : file_(file, scene_flow::kAll),
+      moving_speed_m_s_(options.moving_speed_m_s.value_or(kFlowMovingSpeed_m_s)) {
+  if (options.point_times == PointTimes::kColumn) {
+    throw UsageError("--point-times column: " + file.string() +
+                     " holds points that are moved to the stamp already, expected .bin files");
+  }
+  Recording& recording = mutable_recording();
+  recording.name = SequenceName(std::move(name), file);
+  recording.files = {file};
+  recording.reading = {{"scan_files", file.filename().string()}};
+  list_scans();
+  take_poses(options);
+  recording.reading.emplace_back("truth",
+                                 fmt::format("flow, moving from {:g} m/s on", moving_speed_m_s_));
+}
+
+/// Takes groups in the order of their stamps. Of a drive that was cut a group without anything may
+/// be left.
+void SceneFlowSequence::list_scans() {
+  std::vector<const Hdf5Group*> empty;
+  for (const Hdf5Group& group : file_.groups()) {
+    const auto stamp = stem_number(group.name);
+    if (!stamp || group.name.size() > 19) {
+      throw DataError(file_.path(),
+                      "group " + shown_in_line(group.name) + " is not named by a stamp",
+                      kExpectedGroups);
+    }
+    if (group.arrays.empty()) {
+      empty.push_back(&group);
+    } else {
+      scans_.push_back(scan_of(group, *stamp));
+    }
+  }
+  if (scans_.empty()) throw DataError(file_.path(), "holds no scans", kExpectedGroups);
+  std::ranges::sort(scans_, {}, &Scan::stamp_ns);
+  const auto same = std::ranges::adjacent_find(scans_, {}, &Scan::stamp_ns);
+  if (same != scans_.end()) {
+    throw DataError(file_.path(),
+                    fmt::format("groups {} and {} have the same stamp", same->group->name,
+                                std::next(same)->group->name),
+                    "a stamp per scan");
+  }
+  if (!empty.empty()) {
+    mutable_recording().remarks.push_back(
+        fmt::format("{} groups without arrays are left out, the first is {}", empty.size(),
+                    shown_in_line(empty.front()->name)));
+  }
+  convert_stamps();
+}
+
+SceneFlowSequence::Scan SceneFlowSequence::scan_of(const Hdf5Group& group,
+                                                   std::uint64_t stamp) const {
+  for (const std::string_view name : {scene_flow::kLidar, scene_flow::kPose}) {
+    if (find_array(group, name) != nullptr) continue;
+    throw DataError(file_.path(),
+                    fmt::format("group {} has no {}", shown_in_line(group.name), name),
+                    kExpectedGroups);
+  }
+  if (stamp > static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max())) {
+    throw DataError(file_.path(), "group " + group.name + " is later than any stamp",
+                    "nanoseconds or microseconds");
+  }
+  return {&group, static_cast<std::int64_t>(stamp), check_points(group),
+          pose_in(group, scene_flow::kPose)};
+}
+
+/// Stamps of Argoverse 2 are nanoseconds, those of Waymo and nuScenes microseconds: scans are
+/// between 5 ms and 5 s apart. One scan alone is told by its digits.
+void SceneFlowSequence::convert_stamps() {
+  constexpr std::int64_t kLongestUs = 5'000'000, kThousand = 1000;
+  constexpr std::int64_t kLatestUs = 100'000'000'000'000'000;
+  std::vector<std::int64_t> steps;
+  for (std::size_t k = 0; k + 1 < scans_.size(); ++k) {
+    steps.push_back(scans_[k + 1].stamp_ns - scans_[k].stamp_ns);
+  }
+  bool is_us = scans_.front().stamp_ns < kLatestUs;
+  if (!steps.empty()) {
+    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+    std::ranges::nth_element(steps, middle);
+    is_us = *middle < kLongestUs;
+  }
+  mutable_recording().reading.emplace_back("stamps", is_us ? "us" : "ns");
+  if (!is_us) return;
+  for (Scan& scan : scans_) {
+    if (scan.stamp_ns > std::numeric_limits<std::int64_t>::max() / kThousand) {
+      throw DataError(file_.path(), "group " + scan.group->name + " is later than any stamp",
+                      "microseconds, as its neighbours");
+    }
+    scan.stamp_ns *= kThousand;
+  }
+}
+
+void SceneFlowSequence::take_poses(const ReadingOptions& options) {
+  Recording& recording = mutable_recording();
+  if (!options.poses && !options.poses_by_odometry) {
+    for (std::size_t k = 0; k < scans_.size(); ++k) enter(k, scans_[k].map_from_sensor, false);
+    recording.reading.emplace_back("poses", "pose of each group");
+    recording.reading.emplace_back("pose_direction", "map_from_sensor");
+    state_pose_origin(file_.path(), recording.reading, recording.remarks);
+    return;
+  }
+  std::vector<std::int64_t> stamps_ns;
+  for (const Scan& scan : scans_) stamps_ns.push_back(scan.stamp_ns);
+  const SensorPoses poses = read_sensor_poses(file_.path().parent_path(), "poses.txt", options,
+                                              {scans_.size(), stamps_ns});
+  for (std::size_t k = 0; k < scans_.size(); ++k) {
+    enter(k, poses.map_from_sensor[k], std::ranges::binary_search(poses.unknown, k));
+  }
+  recording.files.insert(recording.files.end(), poses.files.begin(), poses.files.end());
+  recording.remarks.insert(recording.remarks.end(), poses.remarks.begin(), poses.remarks.end());
+  recording.reading.insert(recording.reading.end(), poses.reading.begin(), poses.reading.end());
+}
+
+void SceneFlowSequence::enter(std::size_t scan, const Pose& map_from_sensor, bool is_left_out) {
+  ScanEntry entry;
+  entry.stem = scans_[scan].group->name;
+  entry.stamp_ns = scans_[scan].stamp_ns;
+  entry.points = scans_[scan].points;
+  entry.map_from_sensor = map_from_sensor;
+  Recording& recording = mutable_recording();
+  if (is_left_out) {
+    recording.left_out.push_back(std::move(entry));
+    return;
+  }
+  entry.has_truth = has_flow(scan) || has_labels(scan);
+  recording.scans.push_back(std::move(entry));
+  places_.push_back(scan);
+}
+
+/// Returns the number of points, which every array has that tells something of them.
+std::size_t SceneFlowSequence::check_points(const Hdf5Group& group) const {
+  const auto refuse = [&](const Hdf5Array& array, const std::string& expected) {
+    throw DataError(
+        file_.path(),
+        fmt::format("{} has shape ({})", arrow(group, array.name), fmt::join(array.shape, ", ")),
+        expected);
+  };
+  const Hdf5Array& lidar = *find_array(group, scene_flow::kLidar);
+  if (lidar.shape.size() != 2 || lidar.shape[1] < 3 || lidar.shape[1] > 64) {
+    refuse(lidar, "(N, 3 or more)");
+  }
+  const std::uint64_t points = lidar.shape[0];
+  for (const Hdf5Array& array : group.arrays) {
+    if (array.name == scene_flow::kLidar) continue;
+    if (array.name == scene_flow::kPose || array.name == scene_flow::kEgoMotion) {
+      if (array.shape != std::vector<std::uint64_t>{4, 4}) refuse(array, "(4, 4)");
+    } else if (array.name == scene_flow::kFlow) {
+      if (array.shape != std::vector<std::uint64_t>{points, 3}) {
+        refuse(array, fmt::format("({}, 3)", points));
+      }
+    } else if (!is_list_of(array, points)) {
+      refuse(array, fmt::format("({})", points));
+    }
+  }
+  return points;
+}
+
+Pose SceneFlowSequence::pose_in(const Hdf5Group& group, std::string_view name) const {
+  const std::vector<double> numbers = file_.reals(group, *find_array(group, name));
+  const Eigen::Matrix4d matrix =
+      Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(numbers.data());
+  if (!matrix.allFinite() || !is_rotation(matrix.topLeftCorner<3, 3>()) ||
+      matrix.row(3) != Eigen::RowVector4d(0.0, 0.0, 0.0, 1.0)) {
+    throw DataError(file_.path(), arrow(group, name) + " is no pose",
+                    "a rotation, a translation and the row 0 0 0 1");
+  }
+  Pose pose = Pose::Identity();
+  pose.matrix() = matrix;
+  return pose;
+}
+
+bool SceneFlowSequence::has_labels(std::size_t scan) const {
+  return find_array(*scans_[scan].group, scene_flow::kLabel) != nullptr;
+}
+
+/// The flow of the last scan leads nowhere.
+bool SceneFlowSequence::has_flow(std::size_t scan) const {
+  return scan + 1 < scans_.size() && find_array(*scans_[scan].group, scene_flow::kFlow) != nullptr;
+}
+
+/// The motion by which the flow was computed, where the file keeps it.
+SensorStep SceneFlowSequence::step_after(std::size_t scan) const {
+  const Scan& from = scans_[scan];
+  const Scan& to = scans_[scan + 1];
+  const double time_s = static_cast<double>(to.stamp_ns - from.stamp_ns) * 1e-9;
+  if (find_array(*from.group, scene_flow::kEgoMotion) != nullptr) {
+    return {pose_in(*from.group, scene_flow::kEgoMotion), time_s};
+  }
+  return {to.map_from_sensor.inverse() * from.map_from_sensor, time_s};
+}
+
+std::vector<Point> SceneFlowSequence::points_of(const Scan& scan, std::vector<Point> reused) const {
+  const Hdf5Array& lidar = *find_array(*scan.group, scene_flow::kLidar);
+  const std::vector<float> numbers = file_.floats(*scan.group, lidar);
+  const std::size_t columns = lidar.shape[1];
+  reused.resize(scan.points);
+  for (std::size_t i = 0; i < scan.points; ++i) {
+    const float* row = numbers.data() + i * columns;
+    reused[i] = {row[0], row[1], row[2], columns > 3 ? row[3] : 0.0F};
+  }
+  return reused;
+}
+
+std::vector<std::int64_t> SceneFlowSequence::values(const Scan& scan, std::string_view name) const {
+  const Hdf5Array* array = find_array(*scan.group, name);
+  return array == nullptr ? std::vector<std::int64_t>{} : file_.integers(*scan.group, *array);
+}
+
+std::vector<std::uint8_t> SceneFlowSequence::flags(const Scan& scan, std::string_view name) const {
+  std::vector<std::uint8_t> flags;
+  for (const std::int64_t value : values(scan, name)) flags.push_back(value != 0 ? 1 : 0);
+  return flags;
+}
+
+PointMotions SceneFlowSequence::motions_of(std::size_t scan_place,
+                                           std::span<const Point> points) const {
+  const Scan& scan = scans_[scan_place];
+  const Hdf5Array& flow = *find_array(*scan.group, scene_flow::kFlow);
+  std::vector<std::int64_t> valid = values(scan, scene_flow::kValid);
+  if (valid.empty()) valid.assign(points.size(), 1);
+  PointMotions motions;
+  motions.velocities_m_s =
+      velocities(points, file_.floats(*scan.group, flow), valid, step_after(scan_place));
+  for (const std::int64_t number : values(scan, scene_flow::kClass)) {
+    motions.classes.push_back(static_cast<std::uint8_t>(number));
+  }
+  motions.on_ground = flags(scan, scene_flow::kGround);
+  motions.evaluated = flags(scan, scene_flow::kEvaluated);
+  return motions;
+}
+
+/// Adds the objects' numbers as instances to the labels by speed.
+std::vector<std::uint32_t> SceneFlowSequence::labels_of(std::size_t scan_place,
+                                                        const PointMotions& motions) const {
+  constexpr std::int64_t kInstances = 65536;
+  std::vector<std::uint32_t> labels = flow_labels(motions, moving_speed_m_s_);
+  const std::vector<std::int64_t> objects = values(scans_[scan_place], scene_flow::kInstance);
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    if (labels[i] == 0 || objects[i] <= 0 || objects[i] >= kInstances) continue;
+    labels[i] |= static_cast<std::uint32_t>(objects[i]) << 16U;
+  }
+  return labels;
+}
+
+std::vector<std::uint32_t> SceneFlowSequence::stored_labels(const Scan& scan) const {
+  std::vector<std::uint32_t> labels;
+  for (const std::int64_t label : values(scan, scene_flow::kLabel)) {
+    labels.push_back(static_cast<std::uint32_t>(label));
+  }
+  return labels;
+}
+
+void SceneFlowSequence::read(std::size_t scan_index, Frame& frame) const {
+  const std::size_t place = places_.at(scan_index);
+  frame.points = points_of(scans_[place], std::move(frame.points));
+  describe(scan_index, frame);
+  frame.truth.reset();
+  if (has_labels(place)) {
+    frame.truth = stored_labels(scans_[place]);
+  } else if (has_flow(place)) {
+    frame.motions = motions_of(place, frame.points);
+    frame.truth = labels_of(place, *frame.motions);
+  }
+}
+
+std::vector<std::uint32_t> SceneFlowSequence::read_truth(std::size_t scan_index) const {
+  if (!has_truth(scan_index)) refuse_truth(scan_index);
+  const std::size_t place = places_.at(scan_index);
+  if (has_labels(place)) return stored_labels(scans_[place]);
+  return labels_of(place, motions_of(place, points_of(scans_[place], {})));
+}
+
+std::vector<std::string> evaluated_scans(const std::filesystem::path& file) {
+  const Hdf5File opened(file, std::span(&scene_flow::kEvaluated, 1));
+  std::vector<std::string> scans;
+  for (const Hdf5Group& group : opened.groups()) {
+    if (!group.arrays.empty()) scans.push_back(group.name);
+  }
+  std::ranges::sort(scans);
+  return scans;
+}
+
+}  // namespace mosbench

@@ -1,0 +1,14 @@
+#include "datasets/files/errors.hpp"
+#include "datasets/hdf5/hdf5_module.hpp"
+
+namespace mosbench {
+
+bool has_hdf5() { return false; }
+
+const Hdf5Functions& hdf5_functions(const std::string& file) {
+  throw DataError(file, "this build reads and writes no .h5",
+                  "a build with libhdf5 (install libhdf5-dev, configure with "
+                  "-DMOSBENCH_WITH_HDF5=ON)");
+}
+
+}  // namespace mosbench
