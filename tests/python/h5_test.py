@@ -135,9 +135,9 @@ def test_scores_dufo_as_openSceneFlow_scores_flow(tmp_path, masked):
 
 
 def test_labels_of_a_method_are_filled_in_and_scored(tmp_path, near):
-    simulated = mosbench.simulate(tmp_path / "sim", layout="opensceneflow", scene="street", scans=8)
+    simulated = mosbench.simulate(tmp_path / "sim", layout="opensceneflow", scene="street", scans=12)
     file = simulated / "street.h5"
-    assert mosbench.moving_for_h5(file, near) == 8
+    assert mosbench.moving_for_h5(file, near) == 12
     filled = mosbench.score(file, file)
     run = mosbench.run(file, config=near, out=tmp_path / "run")
     assert filled.iou == run.iou and 0 < run.iou < 1

@@ -90,6 +90,20 @@ TEST(WorkedVectors, SixthReadsAnIdBelowAnInstanceNumber) {
   EXPECT_EQ(score("semantickitti-mos", {0x000500FB}, {251}), Confusion{.tp = 1});
 }
 
+TEST(WorkedVectors, SeventhLeavesOutWhereSceneFlowIsNotEvaluated) {
+  const Labels truth = {9, 251, 251, 40, 259, 99, 0, 0x000300FB};
+  const Labels prediction = {251, 251, 9, 251, 251, 9, 251, 251};
+  const Confusion counts = score("sceneflow-dynamic", truth, prediction);
+  EXPECT_EQ(counts, (Confusion{.tp = 2, .fp = 1, .fn = 1, .ignored = 4}));
+  // Its program counts a scan in which nothing moves as 0.
+  const Confusion still = score("sceneflow-dynamic", {9, 40}, {9, 9});
+  const Summary summary =
+      summarize(protocol_named("sceneflow-dynamic"), std::vector{counts, still});
+  EXPECT_EQ(summary.iou, 0.5);
+  EXPECT_EQ(summary.undefined_scans, 1U);
+  EXPECT_EQ(summary.published_text, "0.25");
+}
+
 TEST(WorkedVectors, TheAuthorsExampleAverages8922) {
   // Hauptgebaeude 1 at 20 m, per scan in percent, as HMM-MOS's README prints them.
   const std::array<std::uint64_t, 10> hundredths = {8368, 8427, 9689, 9283, 8591,
