@@ -44,6 +44,9 @@ class Sequence {
   /// id per point. Safe to call from several threads. Throws DataError.
   virtual std::vector<std::uint32_t> read_truth(std::size_t scan_index) const = 0;
 
+  /// Memory of scans that are kept after reading, for others who read them.
+  virtual std::size_t kept_bytes() const { return 0; }
+
   Frame read(std::size_t scan_index) const {
     Frame frame;
     read(scan_index, frame);
@@ -98,6 +101,7 @@ class SequenceAround : public Sequence {
   std::vector<std::uint32_t> read_truth(std::size_t scan_index) const override {
     return inner_->read_truth(scan_index);
   }
+  std::size_t kept_bytes() const override { return inner_->kept_bytes(); }
 
  protected:
   explicit SequenceAround(std::unique_ptr<Sequence> inner)

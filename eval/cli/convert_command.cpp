@@ -72,7 +72,8 @@ std::string convert_dataset(ConvertFlags options) {
     const OdometryChoice choice = with_filter(*odometry, options.odometry, dataset.kind);
     expect_poses(dataset, choice);
     conversion.before_sequence = [&dataset, choice, &options](std::size_t i) {
-      find_poses(*dataset.sequences[i], choice, options.threads);
+      Sequence& sequence = *dataset.sequences[i];
+      set_poses(sequence, choice, find_poses(sequence, choice, options.threads));
     };
   }
   std::optional<Progress> progress;

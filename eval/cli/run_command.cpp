@@ -29,11 +29,13 @@ another program or other input are kept unless --overwrite is given. DIR may hol
 data set, one method and one setting only. Input counts as the same while names, sizes, inodes and
 times of its files are; otherwise, and with --verify, all of it is read and compared.
 
---method all, or a list as in dynablox,yoon, runs one method after the other, each to DIR/<method>/<sequence>,
-with the same protocol. all is every method of `mosbench list methods` but hmm-mos-reference. All of it is
+--method all, or a list as in dynablox,yoon, runs one method after the other on each sequence, each to
+DIR/<method>/<sequence>, with the same protocol. Scans are read once: as many of a sequence as fit in 2 GiB,
+or in a quarter of the machine's memory, are kept for the next method and not counted as its memory. Poses of
+--odometry are found once, but for --drop-moving. all is every method of `mosbench list methods` but hmm-mos-reference. All of it is
 checked before the first scan: a setting of --set, --config or --variant that one of the methods lacks is
 refused; --set METHOD.KEY=VALUE sets one method's. A method that fails then leaves the others as they are;
-the exit code is that of the first failure. `mosbench rank DIR` compares them.
+the exit code is that of the first in the list that failed. `mosbench rank DIR` compares them.
 
 --method exec:COMMAND starts a program of yours for each sequence, hands it the scans with their poses over
 stdin, and takes its labels from stdout (results/FORMATS.md has the messages, tests/examples/exec a

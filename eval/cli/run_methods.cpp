@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <memory>
+#include <optional>
 
 #include "datasets/files/errors.hpp"
 #include "eval/cli/failure.hpp"
@@ -15,11 +17,11 @@
 namespace mosbench {
 namespace {
 
-/// What became of one method of the list.
-struct MethodOutcome {
+/// One method of the list.
+struct MethodRun {
   const RunPlan* plan;
-  std::vector<SequenceOutcome> sequences;
-  std::optional<Failure> failure;
+  std::unique_ptr<RunExecution> execution;
+  std::optional<Failure> failure;  ///< nothing is done after it
 };
 
 /// Returns the settings of one method: those for all, and "underwood.references=3" for itself.
@@ -45,10 +47,11 @@ std::vector<std::string> assignments_for(const std::string& method, const Method
 
 std::vector<RunPlan> plan_methods(const RunOptions& options, const MethodChoice& choice) {
   std::vector<RunPlan> plans;
+  const auto shared = std::make_shared<SharedReading>();
   for (const std::string& name : choice.names) {
     RunOptions one = options;
     one.method = name;
-    one.one_of_several = true;
+    one.shared = shared;
     one.assignments = assignments_for(name, choice, options.assignments);
     try {
       plans.push_back(plan_run(one));
@@ -59,41 +62,61 @@ std::vector<RunPlan> plan_methods(const RunOptions& options, const MethodChoice&
   return plans;
 }
 
-MethodOutcome execute(const RunPlan& plan) {
-  MethodOutcome outcome{&plan, {}, std::nullopt};
+/// Does a part of a run that did not fail before.
+template <typename Part>
+void attempt(MethodRun& run, Part&& part) {
+  if (run.failure) return;
   try {
-    outcome.sequences = execute_run(plan);
+    part();
   } catch (...) {
-    outcome.failure = current_failure();
-    tell(fmt::format("mosbench: method {} failed: {}", plan.settings.method->name,
-                     outcome.failure->message));
+    run.failure = current_failure();
+    tell(fmt::format("mosbench: method {} failed: {}", run.plan->settings.method->name,
+                     run.failure->message));
   }
-  return outcome;
 }
 
-std::string text_of(const std::vector<MethodOutcome>& outcomes) {
+std::vector<MethodRun> execute(const std::vector<RunPlan>& plans) {
+  std::vector<MethodRun> runs;
+  for (const RunPlan& plan : plans) {
+    tell(fmt::format("method {} ({} of {})", plan.settings.method->name, runs.size() + 1,
+                     plans.size()));
+    runs.push_back({&plan, nullptr, std::nullopt});
+    MethodRun& run = runs.back();
+    attempt(run, [&] { run.execution = std::make_unique<RunExecution>(plan); });
+  }
+  const RunPlan& first = plans.front();
+  for (const PlannedSequence& planned : first.sequences) {
+    for (MethodRun& run : runs) {
+      attempt(run, [&] { run.execution->advance(); });
+    }
+    first.shared->forget(planned.position);
+  }
+  return runs;
+}
+
+std::string text_of(const std::vector<MethodRun>& runs) {
   std::string text, failures;
-  for (const MethodOutcome& outcome : outcomes) {
-    if (outcome.failure) {
-      failures += fmt::format("method {} failed: {}\n", outcome.plan->settings.method->name,
-                              outcome.failure->message);
+  for (const MethodRun& run : runs) {
+    if (run.failure) {
+      failures += fmt::format("method {} failed: {}\n", run.plan->settings.method->name,
+                              run.failure->message);
     } else {
-      text += run_report_text(*outcome.plan, outcome.sequences) + '\n';
+      text += run_report_text(*run.plan, run.execution->outcomes()) + '\n';
     }
   }
   return text + failures;
 }
 
-nlohmann::ordered_json json_of(const MethodOutcome& outcome) {
-  if (!outcome.failure) return run_report_json(*outcome.plan, outcome.sequences);
-  return {{"method", std::string(outcome.plan->settings.method->name)},
-          {"out", outcome.plan->out.string()},
-          {"failure", outcome.failure->message}};
+nlohmann::ordered_json json_of(const MethodRun& run) {
+  if (!run.failure) return run_report_json(*run.plan, run.execution->outcomes());
+  return {{"method", std::string(run.plan->settings.method->name)},
+          {"out", run.plan->out.string()},
+          {"failure", run.failure->message}};
 }
 
-std::string json_of(const std::vector<MethodOutcome>& outcomes) {
+std::string json_of(const std::vector<MethodRun>& runs) {
   nlohmann::ordered_json methods = nlohmann::ordered_json::array();
-  for (const MethodOutcome& outcome : outcomes) methods.push_back(json_of(outcome));
+  for (const MethodRun& run : runs) methods.push_back(json_of(run));
   return json_text({{"methods", methods}});
 }
 
@@ -103,15 +126,11 @@ Answer run_methods(const RunOptions& options) {
   const MethodChoice choice = chosen_methods(*options.method);
   for (const std::string& note : choice.notes) tell(note);
   const std::vector<RunPlan> plans = plan_methods(options, choice);
-  std::vector<MethodOutcome> outcomes;
-  int exit_code = 0;
-  for (const RunPlan& plan : plans) {
-    tell(fmt::format("method {} ({} of {})", plan.settings.method->name, outcomes.size() + 1,
-                     plans.size()));
-    outcomes.push_back(execute(plan));
-    if (exit_code == 0 && outcomes.back().failure) exit_code = outcomes.back().failure->exit_code;
-  }
-  return {options.json ? json_of(outcomes) : text_of(outcomes), exit_code};
+  const std::vector<MethodRun> runs = execute(plans);
+  const auto failed =
+      std::ranges::find_if(runs, [](const MethodRun& run) { return run.failure.has_value(); });
+  return {options.json ? json_of(runs) : text_of(runs),
+          failed == runs.end() ? 0 : failed->failure->exit_code};
 }
 
 }  // namespace mosbench

@@ -5,9 +5,9 @@
 
 namespace mosbench {
 
-/// Runs the methods of a list one after the other. Throws UsageError and DataError for what is
-/// wrong before the first scan; a method that fails later is named in the answer, whose exit code
-/// is that of the first failure.
+/// Runs the methods of a list, sequence by sequence one after the other. Throws UsageError and
+/// DataError for what is wrong before the first scan; a method that fails later is named in the
+/// answer, whose exit code is that of the first failure.
 Answer run_methods(const RunOptions& options);
 
 }  // namespace mosbench

@@ -27,7 +27,9 @@ std::string processor_name() {
   return "unknown";
 }
 
-double page_mib() { return static_cast<double>(sysconf(_SC_PAGESIZE)) / 1048576.0; }
+constexpr double kMiB = 1048576;
+
+double page_mib() { return static_cast<double>(sysconf(_SC_PAGESIZE)) / kMiB; }
 
 }  // namespace
 
@@ -36,7 +38,7 @@ nlohmann::ordered_json machine_json() {
   uname(&system);
   return {{"processor", processor_name()},
           {"logical_cores", std::thread::hardware_concurrency()},
-          {"memory_mib", static_cast<double>(sysconf(_SC_PHYS_PAGES)) * page_mib()},
+          {"memory_mib", static_cast<double>(memory_bytes()) / kMiB},
           {"system", std::string(system.sysname) + " " + system.machine}};
 }
 
@@ -61,6 +63,11 @@ void give_back_memory() {
 #if defined(__GLIBC__)
   malloc_trim(0);
 #endif
+}
+
+std::size_t memory_bytes() {
+  return static_cast<std::size_t>(sysconf(_SC_PHYS_PAGES)) *
+         static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
 }
 
 double resident_mib() {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -22,6 +23,9 @@ void keep_freed_memory();
 
 /// Gives memory that was kept back to the system, so that what is held next shows what needs it.
 void give_back_memory();
+
+/// Memory of this machine.
+std::size_t memory_bytes();
 
 /// Memory this process holds at the moment, MiB; 0 where it cannot be read.
 double resident_mib();

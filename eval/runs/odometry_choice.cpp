@@ -180,14 +180,18 @@ std::vector<ScanPose> estimate_poses(const Sequence& sequence, const OdometryCho
   return poses;
 }
 
-std::vector<ScanPose> find_poses(Sequence& sequence, const OdometryChoice& choice,
+std::vector<ScanPose> find_poses(const Sequence& sequence, const OdometryChoice& choice,
                                  unsigned threads) {
-  auto& posed = dynamic_cast<PosedSequence&>(sequence);
+  const auto& posed = dynamic_cast<const PosedSequence&>(sequence);
   std::vector<ScanPose> scans = estimate_poses(posed.unposed(), choice, threads);
-  const std::string remark = odometry_remark(sequence, choice, scans);
-  tell(fmt::format("{}: {}", sequence.name(), remark));
-  posed.set_poses(poses_of(scans), remark);
+  tell(fmt::format("{}: {}", sequence.name(), odometry_remark(sequence, choice, scans)));
   return scans;
+}
+
+void set_poses(Sequence& sequence, const OdometryChoice& choice,
+               const std::vector<ScanPose>& scans) {
+  auto& posed = dynamic_cast<PosedSequence&>(sequence);
+  posed.set_poses(poses_of(scans), odometry_remark(sequence, choice, scans));
 }
 
 std::vector<Pose> poses_of(const std::vector<ScanPose>& scans) {

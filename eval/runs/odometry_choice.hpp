@@ -62,9 +62,13 @@ void expect_poses(Dataset& dataset, const OdometryChoice& choice);
 std::vector<ScanPose> estimate_poses(const Sequence& sequence, const OdometryChoice& choice,
                                      unsigned threads);
 
-/// Finds and sets the poses of a sequence that `expect_poses` wrapped. Returns them.
-std::vector<ScanPose> find_poses(Sequence& sequence, const OdometryChoice& choice,
+/// Finds the poses of a sequence that `expect_poses` wrapped, and tells how many are doubtful.
+std::vector<ScanPose> find_poses(const Sequence& sequence, const OdometryChoice& choice,
                                  unsigned threads);
+
+/// Gives a sequence that `expect_poses` wrapped the poses that were found.
+void set_poses(Sequence& sequence, const OdometryChoice& choice,
+               const std::vector<ScanPose>& scans);
 
 std::vector<Pose> poses_of(const std::vector<ScanPose>& scans);
 std::size_t doubtful_count(const std::vector<ScanPose>& scans);

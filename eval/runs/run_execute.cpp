@@ -6,7 +6,6 @@
 
 #include "datasets/doctor/pose_frame_doubt.hpp"
 #include "datasets/files/files.hpp"
-#include "datasets/files/folder_lock.hpp"
 #include "datasets/files/pose_file.hpp"
 #include "datasets/sequence/pose_frame_mark.hpp"
 #include "eval/exec/exec_method.hpp"
@@ -151,6 +150,17 @@ std::vector<std::string> doubts_about_poses(const RunPlan& plan, const Sequence&
   return {*doubt};
 }
 
+/// Finds and sets the poses of a sequence.
+std::vector<ScanPose> take_poses(const RunPlan& plan, std::size_t position) {
+  Sequence& sequence = *plan.dataset.sequences[position];
+  const unsigned threads = plan.settings.threads;
+  std::vector<ScanPose> found =
+      plan.shared ? plan.shared->poses_of(position, sequence, *plan.odometry, threads)
+                  : find_poses(sequence, *plan.odometry, threads);
+  set_poses(sequence, *plan.odometry, found);
+  return found;
+}
+
 SequenceOutcome run_now(const RunPlan& plan, const PlannedSequence& planned) {
   const Sequence& sequence = *plan.dataset.sequences[planned.position];
   const fs::path partial = planned.folder.begin();
@@ -158,11 +168,11 @@ SequenceOutcome run_now(const RunPlan& plan, const PlannedSequence& planned) {
     SequenceOutcome outcome;
     std::vector<ScanPose> found;
     if (plan.odometry) {
-      found = find_poses(*plan.dataset.sequences[planned.position], *plan.odometry,
-                         plan.settings.threads);
+      found = take_poses(plan, planned.position);
       keep_poses(poses_of(found), partial / "poses.txt");
     }
     const std::vector<std::string> doubts = doubts_about_poses(plan, sequence);
+    give_back_memory();  // of odometry, and of runs before
     outcome.rows = run_sequence(sequence, plan.settings, partial);
     outcome.remarks = all_remarks(plan.settings, sequence, outcome.rows);
     outcome.remarks.insert(outcome.remarks.begin(), doubts.begin(), doubts.end());
@@ -185,7 +195,7 @@ SequenceOutcome reuse(const RunPlan& plan, const PlannedSequence& planned) {
   const Sequence& sequence = *plan.dataset.sequences[planned.position];
   planned.folder.remove_leftovers();
   const bool is_program = plan.settings.method->name == kExecKind;
-  tell(fmt::format("{}: finished by an earlier run, kept{}", sequence.name(),
+  tell(fmt::format("{}: finished by an earlier run, kept{}", title_of(sequence, plan.settings),
                    is_program ? "; if the program has changed, --overwrite runs it again" : ""));
   return {planned.finished->rows,
           planned.finished->content.at("remarks").get<std::vector<std::string>>(),
@@ -205,17 +215,21 @@ std::vector<const ScanRow*> counted_scans(const RunPlan& plan, std::size_t posit
   return counted;
 }
 
-std::vector<SequenceOutcome> execute_run(const RunPlan& plan) {
+RunExecution::RunExecution(const RunPlan& plan) : plan_(plan), lock_(plan.out) {
   keep_freed_memory();
-  give_back_memory();  // of a run of another method
-  const FolderLock lock(plan.out);
   for (const std::string& note : plan.notes) tell(note);
   tell(fmt::format("results go to {}", plan.out.string()));
-  std::vector<SequenceOutcome> outcomes;
-  for (const PlannedSequence& planned : plan.sequences) {
-    outcomes.push_back(planned.finished ? reuse(plan, planned) : run_now(plan, planned));
-  }
-  return outcomes;
+}
+
+void RunExecution::advance() {
+  const PlannedSequence& planned = plan_.sequences.at(outcomes_.size());
+  outcomes_.push_back(planned.finished ? reuse(plan_, planned) : run_now(plan_, planned));
+}
+
+std::vector<SequenceOutcome> execute_run(const RunPlan& plan) {
+  RunExecution run(plan);
+  while (run.outcomes().size() < plan.sequences.size()) run.advance();
+  return run.outcomes();
 }
 
 }  // namespace mosbench

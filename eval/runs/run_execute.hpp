@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "datasets/files/folder_lock.hpp"
 #include "eval/runs/run_plan.hpp"
 
 namespace mosbench {
@@ -21,9 +22,24 @@ struct SequenceOutcome {
 std::vector<const ScanRow*> counted_scans(const RunPlan& plan, std::size_t position,
                                           const SequenceRows& rows);
 
-/// Segments the sequences that have no result yet, one after the other, and writes their folders.
-/// Tells on stderr what it does. Throws UsageError when another run writes to the same folder,
-/// DataError; sequences finished before an error stay.
+/// A run that goes on by one sequence at a time. Tells on stderr what it does.
+class RunExecution {
+ public:
+  /// Holds the folder of the results. Throws UsageError when another run writes to it.
+  explicit RunExecution(const RunPlan& plan);
+
+  /// Segments the next sequence, unless it has a result, and writes its folder. Throws DataError;
+  /// sequences finished before stay.
+  void advance();
+  const std::vector<SequenceOutcome>& outcomes() const { return outcomes_; }
+
+ private:
+  const RunPlan& plan_;
+  FolderLock lock_;
+  std::vector<SequenceOutcome> outcomes_;
+};
+
+/// Does all of it. Throws as RunExecution.
 std::vector<SequenceOutcome> execute_run(const RunPlan& plan);
 
 }  // namespace mosbench

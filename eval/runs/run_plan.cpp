@@ -84,7 +84,7 @@ fs::path default_out(const RunPlan& plan, const RunOptions& options) {
   // So has one with disturbed scans.
   const std::string perturb = options.reading.perturb ? "-" + *options.reading.perturb : "";
   const std::string data = fmt::format("{}-{}", folder.filename().string(), plan.preset);
-  const std::string method = options.one_of_several ? "" : fmt::format("-{}", kind);
+  const std::string method = options.shared ? "" : fmt::format("-{}", kind);
   return fs::path("results/runs") / (data + method + poses + perturb);
 }
 
@@ -185,6 +185,8 @@ RunPlan plan_method(const RunOptions& options) {
   plan.reading.poses_by_odometry = plan.odometry.has_value();
   plan.dataset = open_dataset(
       options.input, {dataset_kind_option(options.dataset), options.sequences, plan.reading});
+  plan.shared = options.shared;
+  if (plan.shared) plan.shared->share(plan.dataset);
   const Preset preset = choose_preset(options, plan.dataset.kind, plan);
   plan.preset = preset.name;
   note_preset_without_settings(preset, plan);
@@ -203,9 +205,9 @@ RunPlan plan_method(const RunOptions& options) {
 RunPlan plan_run(const RunOptions& options) {
   RunPlan plan = plan_method(options);
   plan.settings.keeps_scores = options.scores;
-  plan.settings.is_one_of_several = options.one_of_several;
+  plan.settings.is_one_of_several = options.shared != nullptr;
   plan.out = options.out.value_or(default_out(plan, options));
-  if (options.one_of_several) plan.out /= plan.settings.method->name;
+  if (options.shared) plan.out /= plan.settings.method->name;
   check_shared_folder(plan, shared_rules(plan));
   for (std::size_t i = 0; i < plan.dataset.sequences.size(); ++i) {
     plan.sequences.push_back(plan_sequence(plan, i, options));

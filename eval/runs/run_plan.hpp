@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -11,6 +12,7 @@
 #include "eval/results/result_folder.hpp"
 #include "eval/runs/odometry_choice.hpp"
 #include "eval/runs/sequence_runner.hpp"
+#include "eval/runs/shared_reading.hpp"
 
 namespace mosbench {
 
@@ -29,7 +31,8 @@ struct RunOptions {
   bool verify = false;  ///< read all input of finished sequences again
   bool scores = false;
   bool json = false;
-  bool one_of_several = false;  ///< results go to a folder of the method below `out`
+  /// With the other methods of a list, whose results go to folders of their own below `out`.
+  std::shared_ptr<SharedReading> shared = nullptr;
 };
 
 /// One sequence of a run: where its results go, and the results when they are there already.
@@ -49,6 +52,7 @@ struct RunPlan {
   std::filesystem::path out;
   std::optional<OdometryChoice> odometry;  ///< finds the poses of every sequence that is run
   ReadingOptions reading;                  ///< as the user told
+  std::shared_ptr<SharedReading> shared;   ///< as the user's options have it
   std::vector<PlannedSequence> sequences;
   std::vector<std::string> notes;  ///< choices made for the user, plain sentences
 };

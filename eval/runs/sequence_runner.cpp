@@ -75,7 +75,7 @@ class SequenceRun {
 
   SequenceRows run() {
     const Clock::time_point start = Clock::now();
-    Progress progress(progress_title(), sequence_.size());
+    Progress progress(title_of(sequence_, settings_), sequence_.size());
     std::future<ReadyScan> upcoming = prepare(0);
     for (std::size_t k = 0; k < sequence_.size(); ++k) {
       const Clock::time_point read_start = Clock::now();
@@ -100,11 +100,6 @@ class SequenceRun {
   }
 
  private:
-  std::string progress_title() const {
-    const std::string& name = sequence_.name();
-    return settings_.is_one_of_several ? fmt::format("{}, {}", settings_.method->name, name) : name;
-  }
-
   std::future<ReadyScan> prepare(std::size_t scan_index) {
     // One scan at a time, so the fingerprints see the frames in order.
     return std::async(launch_, [this, scan_index, frame = std::move(spent_)]() mutable {
@@ -124,7 +119,8 @@ class SequenceRun {
     std::vector<LabelledScan> finals = naming_scan(
         sequence_, scan_index, [&] { return method_->push(std::move(ready.observed)); });
     rows_.costs[scan_index].push_ms = ready.observe_ms + milliseconds_since(start);
-    rows_.costs[scan_index].resident_mib = resident_mib();
+    rows_.costs[scan_index].resident_mib =
+        resident_mib() - static_cast<double>(sequence_.kept_bytes()) / (1 << 20);
     remember(std::move(ready.frame));
     for (LabelledScan& result : finals) accept(std::move(result));
   }
@@ -214,6 +210,11 @@ class SequenceRun {
 };
 
 }  // namespace
+
+std::string title_of(const Sequence& sequence, const RunSettings& settings) {
+  const std::string& name = sequence.name();
+  return settings.is_one_of_several ? fmt::format("{}, {}", settings.method->name, name) : name;
+}
 
 RunContext context_of(const Sequence& sequence, const RunSettings& settings) {
   RunContext context{

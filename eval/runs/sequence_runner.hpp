@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <mosbench/method.hpp>
+#include <string>
 #include <vector>
 
 #include "datasets/sequence/sequence.hpp"
@@ -20,6 +21,10 @@ struct RunSettings {
   bool keeps_scores = false;       ///< also writes every point's score
   bool is_one_of_several = false;  ///< progress then names the method
 };
+
+/// Returns what messages call a run over a sequence: its name, and with `is_one_of_several` also
+/// the method's.
+std::string title_of(const Sequence& sequence, const RunSettings& settings);
 
 /// Returns the conditions under which the method of `settings` runs on a sequence.
 RunContext context_of(const Sequence& sequence, const RunSettings& settings);

@@ -104,7 +104,9 @@ ordered_json computed_record(const StudyCell& cell, const Study& study, const fs
   const auto begin = std::chrono::steady_clock::now();
   const RunPlan plan = plan_method(run_options(cell, study, out, threads));
   Sequence& sequence = *plan.dataset.sequences.front();
-  if (plan.odometry) find_poses(sequence, *plan.odometry, threads);
+  if (plan.odometry) {
+    set_poses(sequence, *plan.odometry, find_poses(sequence, *plan.odometry, threads));
+  }
   const ScratchFolder scratch(out / "scratch");
   const SequenceRows rows = run_sequence(sequence, plan.settings, scratch.path());
   const std::vector<const ScanRow*> counted = counted_scans(plan, 0, rows);

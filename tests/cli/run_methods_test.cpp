@@ -45,6 +45,50 @@ TEST_F(RunMethods, GiveTheFilesOfEachMethodRunAlone) {
   EXPECT_THAT(answer.out, HasSubstr("results in " + (folder_ / "out/underwood").string()));
 }
 
+TEST_F(RunMethods, ShareThePosesThatOdometryFinds) {
+  const std::vector<std::string> odometry = {"--odometry", "kiss", "--odometry-set",
+                                             "min_range_m=1"};
+  const cli::Answer answer = run("hmm-mos,underwood", odometry);
+  ASSERT_EQ(answer.exit_code, 0) << answer.err;
+  const std::string finding = "KISS-ICP of room: scan 8/8";
+  const std::size_t first = answer.err.find(finding);
+  ASSERT_NE(first, std::string::npos) << answer.err;
+  EXPECT_EQ(answer.err.find(finding, first + 1), std::string::npos) << answer.err;
+  for (const char* method : {"hmm-mos", "underwood"}) {
+    const std::string alone = folder_ / "alone" / method;
+    std::vector<std::string> words = {"run", folder_ / "room", "--method", method, "--out", alone};
+    words.insert(words.end(), odometry.begin(), odometry.end());
+    ASSERT_EQ(cli::run(words).exit_code, 0);
+    EXPECT_TRUE(fs::exists(folder_ / "out" / method / "room/poses.txt"));
+    EXPECT_EQ(cli::contents(folder_ / "out" / method), cli::contents(alone));
+  }
+}
+
+TEST_F(RunMethods, KeepTheSequencesBeforeAnInterruption) {
+  cli::write_small_sequence(folder_ / "two/sequences/00", 4);
+  cli::write_small_sequence(folder_ / "two/sequences/01", 4);
+  const fs::path scan = folder_ / "two/sequences/01/velodyne/000002.bin";
+  const std::vector<Point> points = read_bin(scan);
+  std::vector<Point> broken = points;
+  broken.front().x = 9e5F;  // metres
+  write_bin(scan, broken);
+  const auto run_both = [&] {
+    return cli::run({"run", folder_ / "two", "--method", "hmm-mos,underwood", "--out",
+                     folder_ / "out", "--json"});
+  };
+  EXPECT_EQ(run_both().exit_code, 3);
+  EXPECT_TRUE(fs::exists(folder_ / "out/hmm-mos/00/result.json"));
+  EXPECT_FALSE(fs::exists(folder_ / "out/hmm-mos/01"));
+  write_bin(scan, points);
+  fs::remove_all(folder_ / "out/underwood/01");  // of the broken scan
+  const cli::Answer again = run_both();
+  ASSERT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_THAT(again.err, HasSubstr("hmm-mos, 00: finished by an earlier run, kept"));
+  const auto sequences = nlohmann::json::parse(again.out).at("methods").at(0).at("sequences");
+  EXPECT_TRUE(sequences.at(0).at("reused").get<bool>());
+  EXPECT_FALSE(sequences.at(1).at("reused").get<bool>());
+}
+
 TEST_F(RunMethods, AreNamedWhereACommandTakesOneOfThem) {
   ASSERT_EQ(run("hmm-mos,underwood", {"--scores"}).exit_code, 0);
   const std::string out = folder_ / "out";

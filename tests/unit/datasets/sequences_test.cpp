@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstring>
 #include <set>
 
 #include "datasets/files/bin_file.hpp"
@@ -14,6 +15,7 @@
 #include "datasets/layouts/doals_sequence.hpp"
 #include "datasets/layouts/kitti_sequence.hpp"
 #include "datasets/sequence/fingerprint.hpp"
+#include "datasets/sequence/kept_scans.hpp"
 #include "tests/temp_folder.hpp"
 #include "tests/unit/datasets/pose_at_x.hpp"
 
@@ -276,6 +278,70 @@ TEST(DoalsSequence, HasNoTruthWithoutIndices) {
   EXPECT_FALSE(sequence.has_truth(0));
   EXPECT_THAT(message_of<DataError>([&] { sequence.read_truth(0); }), HasSubstr("no truth"));
   EXPECT_THAT(sequence.remarks(), Contains(HasSubstr("no indices.csv")));
+}
+
+/// Two sequences over a scan with truth, whose scans are kept together.
+struct SharedKitti {
+  explicit SharedKitti(std::size_t most_bytes) : scans(std::make_shared<KeptScans>(most_bytes)) {
+    write_bin(folder / "velodyne/000000.bin", points);
+    folder.write("poses.txt", "1 0 0 7 0 1 0 0 0 0 1 0\n");
+    write_labels(folder / "labels/000000.label", truth);
+    first =
+        std::make_unique<KeptSequence>(std::make_unique<KittiSequence>("s", folder.path()), scans);
+    second =
+        std::make_unique<KeptSequence>(std::make_unique<KittiSequence>("s", folder.path()), scans);
+  }
+
+  TempFolder folder;
+  std::vector<Point> points = {{1, 2, 3, 4}, {5, 6, 7, 8}};
+  std::vector<std::uint32_t> truth = {kMovingLabel, kStaticLabel};
+  std::shared_ptr<KeptScans> scans;
+  std::unique_ptr<Sequence> first, second;
+};
+
+TEST(KeptSequence, ReadsAScanOnceForAllThatShareIt) {
+  const SharedKitti shared(1000);
+  const Frame read = shared.first->read(0);
+  ASSERT_EQ(read.truth, shared.truth);
+  EXPECT_EQ(shared.second->kept_bytes(), 2 * (sizeof(Point) + sizeof(std::uint32_t)));
+  std::filesystem::remove(shared.folder / "velodyne/000000.bin");
+  Frame kept;
+  kept.point_times_ns = {3};
+  shared.second->read(0, kept);
+  EXPECT_EQ(kept.stem, "000000");
+  EXPECT_EQ(kept.map_from_sensor.translation().x(), 7);
+  EXPECT_EQ(kept.truth, read.truth);
+  EXPECT_TRUE(kept.point_times_ns.empty());
+  ASSERT_EQ(kept.points.size(), 2U);
+  EXPECT_EQ(std::memcmp(kept.points.data(), shared.points.data(), 2 * sizeof(Point)), 0);
+  shared.scans->clear();
+  EXPECT_EQ(shared.first->kept_bytes(), 0U);
+  EXPECT_THROW(shared.second->read(0), DataError);
+}
+
+TEST(KeptSequence, ReadsAgainWhatThereIsNoRoomFor) {
+  const SharedKitti shared(39);  // the scan has 40 bytes
+  ASSERT_EQ(shared.first->read(0).points.size(), 2U);
+  EXPECT_EQ(shared.first->kept_bytes(), 0U);
+  EXPECT_EQ(shared.second->read(0).points.size(), 2U);
+  std::filesystem::remove(shared.folder / "velodyne/000000.bin");
+  EXPECT_THROW(shared.second->read(0), DataError);
+}
+
+TEST(KeptScans, HoldStampsAndTimesOfPoints) {
+  KeptScans scans(1000);
+  Frame frame;
+  frame.points.resize(1);
+  frame.stamp_ns = 5;
+  frame.point_times_ns = {-1};
+  scans.keep(7, frame);
+  Frame found;
+  found.truth.emplace();
+  EXPECT_FALSE(scans.find(6, found));
+  ASSERT_TRUE(scans.find(7, found));
+  EXPECT_EQ(found.stamp_ns, 5);
+  EXPECT_EQ(found.point_times_ns, frame.point_times_ns);
+  EXPECT_FALSE(found.truth);
 }
 
 /// Every point one metre further on; the rest as in the sequence it is around.

@@ -1,0 +1,74 @@
+#include "datasets/sequence/kept_scans.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace mosbench {
+namespace {
+
+std::size_t bytes_of(const Frame& frame) {
+  return frame.points.size() * sizeof(Point) + frame.point_times_ns.size() * sizeof(std::int64_t) +
+         (frame.truth ? frame.truth->size() * sizeof(std::uint32_t) : 0);
+}
+
+}  // namespace
+
+template <typename Value>
+std::span<const Value> KeptScans::copy(const std::vector<Value>& values) {
+  auto* place =
+      static_cast<Value*>(memory_.allocate(values.size() * sizeof(Value), alignof(Value)));
+  std::uninitialized_copy(values.begin(), values.end(), place);
+  return {place, values.size()};
+}
+
+bool KeptScans::find(std::size_t scan_index, Frame& frame) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = scans_.find(scan_index);
+  if (found == scans_.end()) return false;
+  const Scan& scan = found->second;
+  frame.stem = scan.small.stem;
+  frame.map_from_sensor = scan.small.map_from_sensor;
+  frame.stamp_ns = scan.small.stamp_ns;
+  frame.points.assign(scan.points.begin(), scan.points.end());
+  frame.point_times_ns.assign(scan.point_times_ns.begin(), scan.point_times_ns.end());
+  frame.truth.reset();
+  if (scan.truth) frame.truth.emplace(scan.truth->begin(), scan.truth->end());
+  return true;
+}
+
+void KeptScans::keep(std::size_t scan_index, const Frame& frame) {
+  const std::lock_guard lock(mutex_);
+  const std::size_t bytes = bytes_of(frame);
+  if (bytes_ + bytes > most_bytes_ || scans_.contains(scan_index)) return;
+  Scan& scan = scans_[scan_index];
+  scan.small.stem = frame.stem;
+  scan.small.map_from_sensor = frame.map_from_sensor;
+  scan.small.stamp_ns = frame.stamp_ns;
+  scan.points = copy(frame.points);
+  scan.point_times_ns = copy(frame.point_times_ns);
+  if (frame.truth) scan.truth = copy(*frame.truth);
+  bytes_ += bytes;
+}
+
+void KeptScans::clear() {
+  const std::lock_guard lock(mutex_);
+  scans_.clear();
+  memory_.release();
+  bytes_ = 0;
+}
+
+std::size_t KeptScans::bytes() const {
+  const std::lock_guard lock(mutex_);
+  return bytes_;
+}
+
+KeptSequence::KeptSequence(std::unique_ptr<Sequence> inner, std::shared_ptr<KeptScans> scans)
+    : SequenceAround(std::move(inner)), scans_(std::move(scans)) {}
+
+void KeptSequence::read(std::size_t scan_index, Frame& frame) const {
+  if (scans_->find(scan_index, frame)) return;
+  SequenceAround::read(scan_index, frame);
+  scans_->keep(scan_index, frame);
+}
+
+}  // namespace mosbench
