@@ -1,9 +1,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <mosbench/method.hpp>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "tests/parity_cases.hpp"
@@ -34,7 +36,6 @@ struct PeerIou {
   Sequence sequence;
   std::size_t first_scan;  ///< those before are left out
   double iou_percent;
-  std::string level = {};  ///< of methods that judge points at several
 };
 
 Settings settings_for(const MethodKind& kind, const Sequence& sequence) {
@@ -53,17 +54,40 @@ Settings settings_for(const MethodKind& kind, const Sequence& sequence) {
   return settings;
 }
 
+/// `moves` tells whether a point is labelled moving.
+template <typename Moves>
 void add(const std::vector<Point>& points, const std::vector<std::uint32_t>& truth,
-         const std::vector<std::uint32_t>& labels, const Sequence& sequence, Counts& counts) {
+         Moves&& moves_at, const Sequence& sequence, Counts& counts) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Point& point = points[i];
     const double range_m = std::hypot(double{point.x}, double{point.y}, double{point.z});
     const std::uint32_t id = truth[i] & 0xFFFFU;  // above it: the instance
     if (id == 0 || range_m < sequence.min_range_m || range_m > sequence.max_range_m) continue;
-    const bool moves = id == kMovingLabel, found = labels[i] == kMovingLabel;
+    const bool moves = id == kMovingLabel, found = moves_at(i);
     counts.tp += moves && found;
     counts.fp += !moves && found;
     counts.fn += moves && !found;
+  }
+}
+
+double iou_percent(const Counts& counts) {
+  const auto found = static_cast<double>(counts.tp);
+  return 100 * found / static_cast<double>(counts.tp + counts.fp + counts.fn);
+}
+
+/// Labels a sequence and calls judge(points, truth,
+/// map_from_sensor, result) for every scan.
+template <typename Judge>
+void for_each_scan(const Sequence& sequence, Method& method, Judge&& judge) {
+  ParityCase parity{};
+  parity.sequence = sequence.name;
+  parity.scans = sequence.scans;
+  const std::vector<Pose> poses = poses_of(parity);
+  for (std::size_t k = 0; k < sequence.scans; ++k) {
+    const std::vector<Point> points = points_of(parity, k);
+    const std::vector<LabelledScan> results = method.push(points, poses[k]);
+    ASSERT_EQ(results.size(), 1U);
+    judge(points, truth_of(parity, k), poses[k], results.front());
   }
 }
 
@@ -73,56 +97,121 @@ TEST_P(PeerIous, AreThoseOfTheAuthorsProgramsWithinAPoint) {
   if (!parity_root()) GTEST_SKIP() << kSkipMessage;
   if (kSanitized) GTEST_SKIP() << "takes minutes in sanitized builds";
   const Sequence& sequence = GetParam().sequence;
-  ParityCase parity{};
-  parity.sequence = sequence.name;
-  parity.scans = sequence.scans;
-  const std::vector<Pose> poses = poses_of(parity);
   const MethodKind& kind = *find_method(GetParam().method);
-  Settings settings = settings_for(kind, sequence);
-  if (!GetParam().level.empty()) settings.set("level", GetParam().level);
-  const auto method = kind.make(settings, {.scan_count = sequence.scans});
+  const auto method = kind.make(settings_for(kind, sequence), {.scan_count = sequence.scans});
   Counts counts{};
-  for (std::size_t k = 0; k < sequence.scans; ++k) {
-    const std::vector<Point> points = points_of(parity, k);
-    const std::vector<LabelledScan> results = method->push(points, poses[k]);
-    ASSERT_EQ(results.size(), 1U);
-    if (k < GetParam().first_scan) continue;
-    add(points, truth_of(parity, k), results.front().labels, sequence, counts);
-  }
+  for_each_scan(
+      sequence, *method,
+      [&](const auto& points, const auto& truth, const Pose&, const LabelledScan& result) {
+        if (result.scan_index < GetParam().first_scan) return;
+        const auto moves = [&](std::size_t i) { return result.labels[i] == kMovingLabel; };
+        add(points, truth, moves, sequence, counts);
+      });
   ASSERT_GT(counts.tp, 1000U);
-  const auto found = static_cast<double>(counts.tp);
-  const double iou_percent = 100 * found / static_cast<double>(counts.tp + counts.fp + counts.fn);
-  EXPECT_NEAR(iou_percent, GetParam().iou_percent, 1.0) << testing::PrintToString(counts);
+  EXPECT_NEAR(iou_percent(counts), GetParam().iou_percent, 1.0) << testing::PrintToString(counts);
 }
 
-/// octomap is left out, because its library takes minutes. Of lc-free-space no program exists: a
-/// prototype on the map of Dynablox's authors was measured.
+/// octomap is left out, because its library takes minutes.
 std::vector<PeerIou> expected() {
-  return {{"hmm-mos", kMall, 0, 74.9},
-          {"hmm-mos", kUrban, 0, 56.6},
-          {"hmm-mos", kKitti, 0, 62.3},
-          {"hmm-mos", kCampus, 0, 74.9},
-          {"dynablox", kMall, 0, 75.4},
-          {"dynablox", kUrban, 0, 47.7},
-          {"dynablox", kKitti, 0, 55.5},
-          {"lc-free-space", kMall, 0, 10.9, "cluster"},
-          {"lc-free-space", kUrban, 0, 44.7, "cluster"},
-          {"lc-free-space", kKitti, 0, 34.8, "cluster"},
-          {"lc-free-space", kMall, 0, 20.6, "point"},
-          {"lc-free-space", kUrban, 0, 49.0, "point"},
-          {"lc-free-space", kKitti, 0, 45.6, "point"},
-          {"underwood", kMall, 10, 79.9},
-          {"underwood", kUrban, 10, 54.9},
-          {"underwood", kKitti, 10, 53.2},
+  return {{"hmm-mos", kMall, 0, 74.9},     {"hmm-mos", kUrban, 0, 56.6},
+          {"hmm-mos", kKitti, 0, 62.3},    {"hmm-mos", kCampus, 0, 74.9},
+          {"dynablox", kMall, 0, 75.4},    {"dynablox", kUrban, 0, 47.7},
+          {"dynablox", kKitti, 0, 55.5},   {"underwood", kMall, 10, 79.9},
+          {"underwood", kUrban, 10, 54.9}, {"underwood", kKitti, 10, 53.2},
           {"underwood", kCampus, 10, 58.5}};
 }
 
 INSTANTIATE_TEST_SUITE_P(Sequences, PeerIous, testing::ValuesIn(expected()), [](const auto& test) {
   std::string name = test.param.sequence.name + "_" + test.param.method;
-  if (!test.param.level.empty()) name += "_" + test.param.level;
   std::ranges::replace(name, '-', '_');
   return name;
 });
+
+constexpr std::array kThetas_m = {0.1F, 0.2F, 0.3F, 0.38F};
+
+/// IoU by theta of what LC Free Space finds in the map of Dynablox's authors.
+struct ThetaSweep {
+  Sequence sequence;
+  std::array<double, kThetas_m.size()> at_points, in_clusters;
+};
+
+/// The voxels of a scan's points, and the greatest distance to a surface of any point in each. All
+/// points of a voxel have its distance.
+class VoxelDistances {
+ public:
+  VoxelDistances(const std::vector<Point>& points, const Pose& pose,
+                 const std::vector<float>& distances_m) {
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Eigen::Vector3d p = pose * Eigen::Vector3d(points[i].x, points[i].y, points[i].z);
+      const auto key = [](double c) { return static_cast<std::int64_t>(std::floor(c / 0.2)); };
+      voxels_.push_back(p.allFinite() ? key_of(key(p.x()), key(p.y()), key(p.z())) : 0);
+      float& distance_m = distances_m_[voxels_.back()];
+      distance_m = std::max(distance_m, distances_m[i]);
+    }
+  }
+
+  /// Returns the greatest distance of the point's voxel and of those that share a face with it.
+  float around(std::size_t point) const {
+    float greatest_m = 0;
+    for (const std::int64_t beside :
+         {std::int64_t{0}, key_of(1, 0, 0), key_of(0, 1, 0), key_of(0, 0, 1)}) {
+      for (const std::int64_t voxel : {voxels_[point] - beside, voxels_[point] + beside}) {
+        const auto found = distances_m_.find(voxel);
+        if (found != distances_m_.end()) greatest_m = std::max(greatest_m, found->second);
+      }
+    }
+    return greatest_m;
+  }
+
+ private:
+  static std::int64_t key_of(std::int64_t x, std::int64_t y, std::int64_t z) {
+    return x + (y << 20) + (z << 40);
+  }
+
+  std::vector<std::int64_t> voxels_;
+  std::unordered_map<std::int64_t, float> distances_m_;
+};
+
+class LcFreeSpaceThetas : public testing::TestWithParam<ThetaSweep> {};
+
+/// No program of the authors exists: a prototype on the map of Dynablox's was measured.
+TEST_P(LcFreeSpaceThetas, GiveTheFiguresOfThePrototypeWithinAThirdOfAPoint) {
+  if (!parity_root()) GTEST_SKIP() << kSkipMessage;
+  if (kSanitized) GTEST_SKIP() << "takes minutes in sanitized builds";
+  const ThetaSweep& sweep = GetParam();
+  const MethodKind& kind = *find_method("lc-free-space");
+  const auto method = kind.make(settings_for(kind, sweep.sequence),
+                                {.scan_count = sweep.sequence.scans, .scores = true});
+  Counts of_labels{};
+  std::array<Counts, kThetas_m.size()> at_points{}, in_clusters{};
+  for_each_scan(
+      sweep.sequence, *method,
+      [&](const auto& points, const auto& truth, const Pose& pose, const LabelledScan& result) {
+        const auto count = [&](auto&& moves, Counts& counts) {
+          add(points, truth, moves, sweep.sequence, counts);
+        };
+        const VoxelDistances voxels(points, pose, result.scores);
+        count([&](std::size_t i) { return result.labels[i] == kMovingLabel; }, of_labels);
+        std::vector<float> around_m;
+        for (std::size_t i = 0; i < points.size(); ++i) around_m.push_back(voxels.around(i));
+        for (std::size_t t = 0; t < kThetas_m.size(); ++t) {
+          count([&](std::size_t i) { return result.scores[i] > kThetas_m[t]; }, at_points[t]);
+          count([&](std::size_t i) { return around_m[i] > kThetas_m[t]; }, in_clusters[t]);
+        }
+      });
+  EXPECT_NEAR(iou_percent(of_labels), sweep.in_clusters[1], 0.3) << "theta 0.2 m is the default";
+  for (std::size_t t = 0; t < kThetas_m.size(); ++t) {
+    EXPECT_NEAR(iou_percent(at_points[t]), sweep.at_points[t], 0.3) << kThetas_m[t];
+    EXPECT_NEAR(iou_percent(in_clusters[t]), sweep.in_clusters[t], 0.3) << kThetas_m[t];
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Sequences, LcFreeSpaceThetas,
+    testing::Values(ThetaSweep{kMall, {9.7, 20.6, 43.6, 35.0}, {5.6, 10.9, 26.6, 41.9}},
+                    ThetaSweep{kKitti, {29.9, 45.6, 57.0, 42.9}, {18.3, 34.8, 55.5, 59.5}},
+                    ThetaSweep{kUrban, {34.9, 49.0, 44.0, 25.8}, {23.7, 44.7, 49.6, 33.3}}),
+    [](const auto& test) { return test.param.sequence.name; });
 
 }  // namespace
 }  // namespace mosbench::parity
