@@ -7,25 +7,26 @@ namespace mosbench::yoon {
 std::vector<std::uint8_t> grow(std::vector<std::uint8_t> kept, const GrowthInput& input,
                                const Config& config) {
   std::vector<std::uint32_t> queue;
+  std::vector<std::uint8_t> is_left(input.in_range.begin(), input.in_range.end());
   for (std::uint32_t i = 0; i < kept.size(); ++i) {
-    if (kept[i] != 0) queue.push_back(i);
+    if (kept[i] == 0) continue;
+    queue.push_back(i);
+    is_left[i] = 0;
   }
   if (queue.empty()) return kept;
-  const PointCells cells(input.points, input.in_range, config.growth_distance_m);
+  // Each point is looked at once: its residual does not depend on from where it was reached. In a
+  // dense cluster nearly every point would else meet all others.
+  PointCells left(input.points, is_left, config.growth_distance_m);
   const auto distance_m = static_cast<float>(config.growth_distance_m);
   const auto residual_m = static_cast<float>(config.growth_residual_m);
-  // Each point is looked at once: its residual does not depend on from where it was reached.
-  std::vector<std::uint8_t> seen = kept;
   std::vector<std::uint32_t> reached;
   for (std::size_t next = 0; next < queue.size(); ++next) {
     const Eigen::Vector3f& from = input.points[queue[next]];
     reached.clear();
-    cells.for_each_around(from, [&](std::uint32_t i) {
-      if (seen[i] != 0 || !((input.points[i] - from).squaredNorm() <= distance_m * distance_m)) {
-        return;
-      }
-      seen[i] = 1;
-      reached.push_back(i);
+    left.take_around(from, [&](std::uint32_t i) {
+      const bool is_near = (input.points[i] - from).squaredNorm() <= distance_m * distance_m;
+      if (is_near) reached.push_back(i);
+      return is_near;
     });
     for (const std::uint32_t i : reached) {
       const Residual residual =

@@ -19,8 +19,8 @@ struct GrowthInput {
   const PointCells& reference_cells;  ///< as residual_of takes them
 };
 
-/// Returns the points that grow from `kept`, breadth first in the order of indices: to points
-/// within growth_distance_m whose residual exceeds growth_residual_m, which blocks points on
+/// Returns the points that grow from `kept`, breadth first, where the order decides nothing: to
+/// points within growth_distance_m whose residual exceeds growth_residual_m, which blocks points on
 /// planes that were there before. Points of unknown space join, but nothing grows from them.
 std::vector<std::uint8_t> grow(std::vector<std::uint8_t> kept, const GrowthInput& input,
                                const Config& config);

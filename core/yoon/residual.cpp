@@ -26,6 +26,11 @@ struct Nearest {
   std::array<Neighbour, kPlanePoints> points;
   std::size_t count = 0;
 
+  /// Points farther than this are not among them.
+  float reach_sq_m2() const {
+    return count < kPlanePoints ? kFarthest_m * kFarthest_m : points.back().distance_sq_m2;
+  }
+
   void add(const Neighbour& neighbour) {
     if (count == kPlanePoints && !(neighbour < points.back())) return;
     if (count < kPlanePoints) ++count;
@@ -38,12 +43,14 @@ struct Nearest {
 Nearest nearest_to(const Eigen::Vector3f& point, std::span<const Eigen::Vector3f> reference,
                    const PointCells& cells) {
   Nearest nearest;
-  cells.for_each_around(point, [&](std::uint32_t index) {
-    const Eigen::Vector3f offset = reference[index] - point;
-    const float distance_sq_m2 =
-        (offset.x() * offset.x() + offset.y() * offset.y()) + offset.z() * offset.z();
-    if (distance_sq_m2 < kFarthest_m * kFarthest_m) nearest.add({distance_sq_m2, index});
-  });
+  cells.for_each_near(
+      point, [&] { return nearest.reach_sq_m2(); },
+      [&](std::uint32_t index) {
+        const Eigen::Vector3f offset = reference[index] - point;
+        const float distance_sq_m2 =
+            (offset.x() * offset.x() + offset.y() * offset.y()) + offset.z() * offset.z();
+        if (distance_sq_m2 < kFarthest_m * kFarthest_m) nearest.add({distance_sq_m2, index});
+      });
   return nearest;
 }
 
