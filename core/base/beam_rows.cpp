@@ -12,9 +12,10 @@ constexpr std::size_t kFewestReturns = 1000;
 constexpr int kSectors = 720;
 // Two returns of one beam in a sector, or of a comb seen through noise.
 constexpr double kSameBeamDeg = 0.05;
-// Quartiles of spacings at random (exponential) differ by a factor of 4.8, of HDL-64E's comb, which
-// is half as dense at its lower end, by 1.6.
-constexpr double kScatterOfRandom = 3.0;
+// Quartiles of spacings at random (exponential, beyond kSameBeamDeg, too) differ by a factor
+// of 4.8, of simulated rosettes by 3.6 to 6.1, of HDL-64E's comb, which is half as dense at its
+// lower end, by 1.7.
+constexpr double kScatterOfRandom = 2.5;
 
 /// Returns the spacings of elevations that follow one another in a sector of azimuth.
 std::vector<double> spacings_deg(std::span<const BeamDirection> directions) {
@@ -60,7 +61,9 @@ std::optional<RowSpacing> row_spacing(std::span<const BeamDirection> directions)
   if (directions.size() < kFewestReturns) return std::nullopt;
   std::vector<double> spacings = spacings_deg(directions);
   if (spacings.size() < kFewestReturns / 10) return std::nullopt;
-  const bool is_regular = quantile(spacings, 0.75) < kScatterOfRandom * quantile(spacings, 0.25);
+  const double upper = quantile(spacings, 0.75) - kSameBeamDeg;
+  const double lower = quantile(spacings, 0.25) - kSameBeamDeg;
+  const bool is_regular = upper < kScatterOfRandom * lower;
   return RowSpacing{quantile(spacings, 0.5), is_regular};
 }
 

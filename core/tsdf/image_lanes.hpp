@@ -18,11 +18,11 @@ struct ImageProjection {
                                                     const FloatLanes& z,
                                                     const FloatLanes& flat) const {
     const FloatLanes row = (up_turns - angle_turns(z, flat)) * rows_per_turn;
-    const FloatLanes phi = angle_turns(-y, x);
+    const FloatLanes phi = angle_turns(-y, x) - first_turns;
     return {row, (phi < 0.0F ? phi + 1.0F : phi) * columns};
   }
 
-  float up_turns, rows_per_turn;
+  float up_turns, rows_per_turn, first_turns;
   float columns;                ///< H
   float last_row, last_column;  ///< V - 1, H - 1
 };

@@ -69,6 +69,7 @@ ImageProjection::ImageProjection(const SensorModel& sensor)
     : up_turns(static_cast<float>(sensor.up_deg / 360)),
       rows_per_turn(
           static_cast<float>((sensor.rows - 1) * 360 / (sensor.up_deg - sensor.down_deg))),
+      first_turns(static_cast<float>(sensor.first_deg / 360)),
       columns(static_cast<float>(sensor.columns)),
       last_row(static_cast<float>(sensor.rows - 1)),
       last_column(static_cast<float>(sensor.columns - 1)) {}

@@ -44,7 +44,7 @@ struct ImagePlace {
   float row, column;
 };
 /// Returns where a direction lies: h = (V - 1) (up - elevation) / field, w = H phi / 2 pi with phi
-/// = -atan2(y, x) in [0, 2 pi).
+/// = -atan2(y, x) - first in [0, 2 pi).
 ImagePlace place_in_image(const SensorModel& sensor, const Point& direction);
 
 /// Returns the depth at a place between pixels, "adaptive": linear between the four pixels around,

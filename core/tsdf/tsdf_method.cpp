@@ -112,7 +112,7 @@ std::vector<std::string> TsdfMethod::remarks() const {
   std::ostringstream text;
   text << "The range image was measured: " << sensor_->rows << " rows from " << sensor_->down_deg
        << " to " << sensor_->up_deg << " degrees, " << sensor_->columns << " columns"
-       << (sensor_->has_beams ? "." : "; no beams were found, so pixels are 1 degree wide.");
+       << (sensor_->has_beams ? "." : "; no beams were found, so pixels are square.");
   return {text.str()};
 }
 

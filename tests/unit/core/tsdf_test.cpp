@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -188,23 +189,50 @@ TEST(TsdfSensor, IsMeasuredFromItsComb) {
   EXPECT_EQ(measured_sensor(std::span(points).first(900), {}), std::nullopt);
 }
 
-TEST(TsdfSensor, HasPixelsOfADegreeWhereDirectionsAreScattered) {
+/// Returns scattered over 70 degrees around an azimuth, which rises to the left, and 76 degrees of
+/// elevation, 9 m away.
+std::vector<Point> rosette_around(double azimuth_deg, int returns = 24000) {
   std::vector<Point> points;
   std::mt19937 random(4);
   const auto uniform = [&](double low, double high) {
     return low + (high - low) * (static_cast<double>(random()) / 4294967296.0);
   };
-  for (int i = 0; i < 24000; ++i) {
+  for (int i = 0; i < returns; ++i) {
     const double e = uniform(-38, 38) / 180 * std::numbers::pi;
-    const double a = uniform(-35, 35) / 180 * std::numbers::pi;
+    const double a = uniform(azimuth_deg - 35, azimuth_deg + 35) / 180 * std::numbers::pi;
     points.push_back({static_cast<float>(9 * std::cos(e) * std::cos(a)),
                       static_cast<float>(9 * std::cos(e) * std::sin(a)),
                       static_cast<float>(9 * std::sin(e)), 0});
   }
-  const SensorModel sensor = measured_sensor(points, {}).value();
-  EXPECT_FALSE(sensor.has_beams);
-  EXPECT_NEAR(sensor.rows, 77, 1);
-  EXPECT_EQ(sensor.columns, 360);
+  return points;
+}
+
+TEST(TsdfSensor, HasAReturnPerPixelWhereDirectionsAreScattered) {
+  for (const int returns : {24000, 96000}) {
+    const SensorModel sensor = measured_sensor(rosette_around(0, returns), {}).value();
+    EXPECT_FALSE(sensor.has_beams) << returns;
+    const double pixel_deg = std::sqrt(70.0 * 76 / returns);
+    EXPECT_NEAR(sensor.rows * pixel_deg, 76, 2) << returns;
+    EXPECT_NEAR(sensor.columns * pixel_deg, 360, 4) << returns;
+  }
+}
+
+TEST(TsdfSensor, SeesAllThatARosetteSees) {
+  ThreadPool pool(1);
+  for (const double azimuth_deg : {0.0, 90.0, 170.0, -120.0}) {
+    const std::vector<Point> points = rosette_around(azimuth_deg);
+    const SensorModel sensor = measured_sensor(points, {}).value();
+    EXPECT_NEAR(std::remainder(sensor.first_deg + azimuth_deg - 180, 360), 0, 1) << azimuth_deg;
+    const std::vector<std::int32_t> pixels = pixels_of(points, sensor, pool).pixels;
+    const auto seen = static_cast<double>(points.size()) -
+                      static_cast<double>(std::ranges::count(pixels, kNoPixel));
+    EXPECT_GT(seen / static_cast<double>(points.size()), 0.99) << azimuth_deg;
+    const double middle_rad = azimuth_deg / 180 * std::numbers::pi;
+    const ImagePlace ahead = place_in_image(
+        sensor,
+        {static_cast<float>(std::cos(middle_rad)), static_cast<float>(std::sin(middle_rad)), 0, 0});
+    EXPECT_NEAR(ahead.column / static_cast<float>(sensor.columns), 0.5, 0.004) << azimuth_deg;
+  }
 }
 
 }  // namespace
