@@ -195,11 +195,13 @@ class PlusTwin final : public Method {
       const auto aged = static_cast<double>(std::ranges::count_if(members, is_aged));
       const auto size = static_cast<double>(members.size());
       const double share = seeds / size;
-      for (const Voxel& v : members) shares[v] = static_cast<float>(share);
-      if (share >= c_.min_seed_share && fresh >= c_.min_fresh_share * seeds &&
-          seeds >= c_.min_seeds_voxels && aged <= c_.max_aged_share * size &&
-          has_size_of_object(members) && rises_from_ground(members, scan.occupied))
-        objects.insert(members.begin(), members.end());
+      const bool moves = share >= c_.min_seed_share && fresh >= c_.min_fresh_share * seeds &&
+                         seeds >= c_.min_seeds_voxels && aged <= c_.max_aged_share * size &&
+                         has_size_of_object(members) && rises_from_ground(members, scan.occupied);
+      const SetOf kept =
+          moves ? near_seeds(members, scan.seeds) : SetOf(members.begin(), members.end());
+      for (const Voxel& v : kept) shares[v] = static_cast<float>(share);
+      if (moves) objects.insert(kept.begin(), kept.end());
     }
     SetOf moving = objects;
     for (const Voxel& v : low)
@@ -225,13 +227,30 @@ class PlusTwin final : public Method {
 
   bool rises_from_ground(const std::vector<Voxel>& members, const SetOf& occupied) const {
     const int r = static_cast<int>(c_.rise_radius_m / c_.map.voxel_size_m);
-    const auto [west, east] = std::ranges::minmax(members, {}, &Voxel::x);
-    const auto [south, north] = std::ranges::minmax(members, {}, &Voxel::y);
-    const int top = std::ranges::max(members, {}, &Voxel::z).z;
-    return std::any_of(occupied.begin(), occupied.end(), [&](const Voxel& u) {
-      return u.x >= west.x - r && u.x <= east.x + r && u.y >= south.y - r && u.y <= north.y + r &&
-             top >= u.z + c_.min_rise_voxels;
+    const auto risen = std::ranges::count_if(members, [&](const Voxel& v) {
+      return std::any_of(occupied.begin(), occupied.end(), [&](const Voxel& u) {
+        return std::abs(u.x - v.x) <= r && std::abs(u.y - v.y) <= r &&
+               v.z >= u.z + c_.min_rise_voxels;
+      });
     });
+    return static_cast<double>(risen) >= 0.25 * static_cast<double>(members.size());
+  }
+
+  /// Those that are reached from a seed within max_growth_m, from voxel to voxel.
+  SetOf near_seeds(const std::vector<Voxel>& members, const SetOf& seeds) const {
+    SetOf near;
+    for (const Voxel& v : members)
+      if (seeds.contains(v)) near.insert(v);
+    const int steps = static_cast<int>(c_.max_growth_m / c_.map.voxel_size_m);
+    for (int step = 0; step < steps; ++step) {
+      const SetOf before = near;
+      for (const Voxel& v : members)
+        for_neighbours(v, 1, [&](const Voxel& u) {
+          if (before.contains(u)) near.insert(v);
+        });
+      if (near.size() == before.size()) break;
+    }
+    return near;
   }
 
   std::vector<LabelledScan> release(std::size_t held) {

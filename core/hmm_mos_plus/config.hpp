@@ -38,6 +38,7 @@ struct Config {
   double max_aged_share = 0.6;
   double rise_radius_m = 6.0;
   int min_rise_voxels = 2;
+  double max_growth_m = 3.0;
   double max_extent_m = 10.0;
   double max_height_m = 4.5;
 };
@@ -72,10 +73,12 @@ void visit_fields(AnyConfig& config, Visitor&& visit) {
         "of an object's seeds, at least this share is fresh: those of a parked car grow old");
   visit("max_aged_share", config.max_aged_share, FieldRange{0.0, 1.0},
         "of an object's voxels, at most this share was seen occupied for 0.5 s or more");
-  visit("rise_radius_m", config.rise_radius_m, FieldRange{0.0, 100.0},
-        "the ground around an object is the lowest voxel within this distance of its box");
+  visit("rise_radius_m", config.rise_radius_m, FieldRange{0.0, 20.0},
+        "the ground around a voxel is the lowest one in the columns within this distance");
   visit("min_rise_voxels", config.min_rise_voxels, FieldRange{0, 100},
-        "the top of an object is at least this high above the ground around it");
+        "a quarter of an object's voxels are at least this high above the ground around them");
+  visit("max_growth_m", config.max_growth_m, FieldRange{0.0, 1000.0},
+        "what is connected with seeds over more than this moves not with them");
   visit("max_extent_m", config.max_extent_m, FieldRange{0.0, 1000.0},
         "an object is at most so long along x and y of the map");
   visit("max_height_m", config.max_height_m, FieldRange{0.0, 1000.0},

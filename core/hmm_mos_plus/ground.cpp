@@ -91,17 +91,45 @@ ScanMasks Ground::low_voxels(int radius, int layers) const {
   return low;
 }
 
-std::int32_t Ground::lowest_between(const Voxel& first, const Voxel& last) const {
-  std::int32_t lowest = kNone;
+/// Returns the heights of the lowest voxels of the columns from `first` to `last`, x first.
+std::vector<std::int32_t> Ground::columns(const Voxel& first, const Voxel& last) const {
+  const auto width = static_cast<std::size_t>(last.x - first.x + 1);
+  std::vector<std::int32_t> heights(width * static_cast<std::size_t>(last.y - first.y + 1), kNone);
   for (int ty = first.y >> 3; ty <= last.y >> 3; ++ty) {
     for (int tx = first.x >> 3; tx <= last.x >> 3; ++tx) {
       const std::uint32_t slot = table_.find({tx, ty, 0});
       if (slot == kNoSlot) continue;
       for (int y = std::max(first.y, ty * 8); y <= std::min(last.y, ty * 8 + 7); ++y) {
+        const auto row = static_cast<std::size_t>(y - first.y) * width;
         for (int x = std::max(first.x, tx * 8); x <= std::min(last.x, tx * 8 + 7); ++x) {
           const auto cell = static_cast<std::size_t>((y & 7) * 8 + (x & 7));
-          lowest = std::min(lowest, lowest_[slot][cell]);
+          heights[row + static_cast<std::size_t>(x - first.x)] = lowest_[slot][cell];
         }
+      }
+    }
+  }
+  return heights;
+}
+
+std::vector<std::int32_t> Ground::lowest_within(int radius, const Voxel& first,
+                                                const Voxel& last) const {
+  const std::vector<std::int32_t> around =
+      columns({first.x - radius, first.y - radius, 0}, {last.x + radius, last.y + radius, 0});
+  const auto window = static_cast<std::size_t>(2 * radius + 1);
+  const auto width = static_cast<std::size_t>(last.x - first.x + 1);
+  const auto height = static_cast<std::size_t>(last.y - first.y + 1);
+  const std::size_t wide = width + window - 1;
+  // The lowest along y first, so that the inner loops run over whole rows.
+  std::vector<std::int32_t> rows(wide * height, kNone), lowest(width * height, kNone);
+  for (std::size_t i = 0; i < window; ++i) {
+    for (std::size_t cell = 0; cell < rows.size(); ++cell) {
+      rows[cell] = std::min(rows[cell], around[cell + i * wide]);
+    }
+  }
+  for (std::size_t y = 0; y < height; ++y) {
+    for (std::size_t i = 0; i < window; ++i) {
+      for (std::size_t x = 0; x < width; ++x) {
+        lowest[y * width + x] = std::min(lowest[y * width + x], rows[y * wide + x + i]);
       }
     }
   }

@@ -18,9 +18,9 @@ class Ground {
   /// `layers` above the lowest occupied voxel in the columns within `radius` per axis, which is
   /// from 0 to kBlockSide.
   ScanMasks low_voxels(int radius, int layers) const;
-  /// Returns the height of the lowest voxel in the columns from `first` to `last`, both included;
-  /// the greatest number where there is none.
-  std::int32_t lowest_between(const Voxel& first, const Voxel& last) const;
+  /// Returns, for each column from `first` to `last`, both included, x first, the height of the
+  /// lowest voxel in the columns within `radius` per axis; the greatest number where there is none.
+  std::vector<std::int32_t> lowest_within(int radius, const Voxel& first, const Voxel& last) const;
 
  private:
   /// Heights of the columns of a stack of blocks, y * 8 + x.
@@ -28,6 +28,7 @@ class Ground {
 
   std::size_t slot_of(const BlockIndex& block);
   Tile lowest_around(const BlockIndex& at, int radius) const;
+  std::vector<std::int32_t> columns(const Voxel& first, const Voxel& last) const;
 
   const VoxelizedScan& scan_;
   BlockTable table_;                // of {x, y, 0}

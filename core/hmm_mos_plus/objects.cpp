@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <span>
 #include <utility>
 
 namespace mosbench::hmm_mos_plus {
 namespace {
+
+constexpr std::size_t kAnySteps = std::numeric_limits<std::size_t>::max();
 
 /// A scan's blocks with those around them, looked up when they are first asked for.
 class Surroundings {
@@ -53,18 +56,21 @@ class Surroundings {
   std::vector<Slots> found_;
 };
 
-/// Moves a voxel and all that are connected with it out of `left`.
-std::vector<std::uint32_t> take_connected(std::uint32_t first, ScanMasks& left,
-                                          Surroundings& surroundings) {
+/// Moves voxels out of `left`: those of `first`, and what is connected with them over at most
+/// `steps` steps from voxel to voxel.
+std::vector<std::uint32_t> take_connected(std::span<const std::uint32_t> first, std::size_t steps,
+                                          ScanMasks& left, Surroundings& surroundings) {
   std::vector<std::uint32_t> taken;
   const auto take = [&](std::uint32_t slot, std::uint32_t cell) {
     if (!left[slot].test(cell)) return;
     left[slot].words[cell >> 6] &= ~(std::uint64_t{1} << (cell & 63));
     taken.push_back(slot * kBlockVoxels + cell);
   };
-  take(first / kBlockVoxels, first % kBlockVoxels);
-  for (std::size_t next = 0; next < taken.size(); ++next) {
-    surroundings.for_around(taken[next], -1, 1, take);
+  for (const std::uint32_t voxel : first) take(voxel / kBlockVoxels, voxel % kBlockVoxels);
+  for (std::size_t next = 0; next < taken.size() && steps > 0; --steps) {
+    for (const std::size_t layer = taken.size(); next < layer; ++next) {
+      surroundings.for_around(taken[next], -1, 1, take);
+    }
   }
   return taken;
 }
@@ -93,11 +99,18 @@ bool has_size_of_object(const Box& box, const Config& config) {
 }
 
 /// Whether a component is more than a strip of ground.
-bool rises_from_ground(const Box& box, const Ground& ground, const Config& config) {
-  const int r = static_cast<int>(config.rise_radius_m / config.map.voxel_size_m);
-  const std::int32_t lowest =
-      ground.lowest_between({box.low.x - r, box.low.y - r, 0}, {box.high.x + r, box.high.y + r, 0});
-  return box.high.z >= lowest + config.min_rise_voxels;
+bool rises_from_ground(const VoxelizedScan& scan, const std::vector<std::uint32_t>& voxels,
+                       const Box& box, const Ground& ground, const Config& config) {
+  const int radius = static_cast<int>(config.rise_radius_m / config.map.voxel_size_m);
+  const std::vector<std::int32_t> lowest = ground.lowest_within(radius, box.low, box.high);
+  const int width = box.high.x - box.low.x + 1;
+  const auto rises = [&](std::uint32_t voxel) {
+    const Voxel v = voxel_at(scan.measured.blocks[voxel / kBlockVoxels], voxel % kBlockVoxels);
+    const int column = (v.y - box.low.y) * width + v.x - box.low.x;
+    return v.z >= lowest[static_cast<std::size_t>(column)] + config.min_rise_voxels;
+  };
+  const auto risen = static_cast<std::size_t>(std::ranges::count_if(voxels, rises));
+  return 4 * risen >= voxels.size();
 }
 
 /// Counts what a component holds of the classes, and says whether it moves.
@@ -118,31 +131,55 @@ void judge(const VoxelizedScan& scan, const ArrivalClasses& classes, const Groun
     return;
   }
   const Box box = box_of(scan, component.voxels);
-  component.moves = has_size_of_object(box, config) && rises_from_ground(box, ground, config);
+  component.moves = has_size_of_object(box, config) &&
+                    rises_from_ground(scan, component.voxels, box, ground, config);
 }
 
-}  // namespace
+/// Leaves of a component what is near its seeds. `none` holds no voxel, before and afterwards.
+void cut_growth(const ScanMasks& seeds, const Config& config, ScanMasks& none,
+                Surroundings& surroundings, std::vector<std::uint32_t>& voxels) {
+  const auto is_seed = [&](std::uint32_t voxel) {
+    return seeds[voxel / kBlockVoxels].test(voxel % kBlockVoxels);
+  };
+  std::vector<std::uint32_t> first;
+  for (const std::uint32_t voxel : voxels) {
+    none[voxel / kBlockVoxels].set(voxel % kBlockVoxels);
+    if (is_seed(voxel)) first.push_back(voxel);
+  }
+  const auto steps = static_cast<std::size_t>(config.max_growth_m / config.map.voxel_size_m);
+  std::vector<std::uint32_t> near = take_connected(first, steps, none, surroundings);
+  for (const std::uint32_t voxel : voxels) none[voxel / kBlockVoxels] = {};
+  voxels = std::move(near);
+}
 
+/// Returns the components that hold a seed.
 std::vector<Component> components_of(const VoxelizedScan& scan, const ArrivalClasses& classes,
-                                     const ScanMasks& others, const Ground& ground,
+                                     const Ground& ground, const ScanMasks& low,
                                      const Config& config) {
   const ScanMasks& seeds = classes.seeds;
-  ScanMasks left = others;
-  for (std::size_t i = 0; i < left.size(); ++i) left[i] = left[i] | seeds[i];
+  ScanMasks left(low.size());
+  for (std::size_t i = 0; i < left.size(); ++i) {
+    left[i] = seeds[i] | without(scan.occupied[i], classes.settled[i] | low[i]);
+  }
   Surroundings surroundings(scan);
+  ScanMasks none(low.size());
   std::vector<Component> components;
   for (std::uint32_t slot = 0; slot < seeds.size(); ++slot) {
     for_each_cell(seeds[slot], [&](std::uint32_t cell) {
-      Component found{take_connected(slot * kBlockVoxels + cell, left, surroundings)};
+      const std::array first = {static_cast<std::uint32_t>(slot * kBlockVoxels + cell)};
+      Component found{take_connected(first, kAnySteps, left, surroundings)};
       if (found.voxels.empty()) return;  // taken with another seed
       judge(scan, classes, ground, config, found);
+      if (found.moves) cut_growth(seeds, config, none, surroundings, found.voxels);
       components.push_back(std::move(found));
     });
   }
   return components;
 }
 
-ScanMasks feet_of(const VoxelizedScan& scan, const ScanMasks& objects, const ScanMasks& low) {
+/// Returns those of the low voxels that lie under an object and are not settled.
+ScanMasks feet_of(const VoxelizedScan& scan, const ArrivalClasses& classes,
+                  const ScanMasks& objects, const ScanMasks& low) {
   ScanMasks feet(objects.size());
   Surroundings surroundings(scan);
   for (std::uint32_t slot = 0; slot < objects.size(); ++slot) {
@@ -153,7 +190,23 @@ ScanMasks feet_of(const VoxelizedScan& scan, const ScanMasks& objects, const Sca
                               });
     });
   }
+  for (std::size_t i = 0; i < feet.size(); ++i) feet[i] = without(feet[i], classes.settled[i]);
   return feet;
+}
+
+}  // namespace
+
+Motion find_motion(const VoxelizedScan& scan, const ArrivalClasses& classes, const Ground& ground,
+                   const ScanMasks& low, const Config& config) {
+  Motion motion{components_of(scan, classes, ground, low, config), ScanMasks(low.size()), {}};
+  for (const Component& component : motion.components) {
+    if (!component.moves) continue;
+    for (const std::uint32_t voxel : component.voxels) {
+      motion.objects[voxel / kBlockVoxels].set(voxel % kBlockVoxels);
+    }
+  }
+  motion.feet = feet_of(scan, classes, motion.objects, low);
+  return motion;
 }
 
 }  // namespace mosbench::hmm_mos_plus

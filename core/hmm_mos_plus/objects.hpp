@@ -10,20 +10,24 @@
 
 namespace mosbench::hmm_mos_plus {
 
-/// Connected voxels of a scan that hold a seed; the numbers are those of VoxelizedScan.
+/// Connected voxels of a scan that hold a seed; the numbers are those of VoxelizedScan. One that
+/// moves holds what is near its seeds alone.
 struct Component {
   std::vector<std::uint32_t> voxels;
   double seed_share = 0;  ///< seeds / voxels
   bool moves = false;     ///< enough seeds, some of them fresh, of an object's age and size
 };
 
-/// Returns the components (26 neighbours) of the seeds and `others` that hold a seed.
-std::vector<Component> components_of(const VoxelizedScan& scan, const ArrivalClasses& classes,
-                                     const ScanMasks& others, const Ground& ground,
-                                     const Config& config);
+/// What moves in a scan.
+struct Motion {
+  std::vector<Component> components;  ///< all that hold a seed
+  ScanMasks objects;                  ///< voxels of the components that move
+  ScanMasks feet;                     ///< low voxels under those, straight or diagonally
+};
 
-/// Returns those of the occupied voxels `low` that lie under one of the objects' voxels, straight
-/// or diagonally.
-ScanMasks feet_of(const VoxelizedScan& scan, const ScanMasks& objects, const ScanMasks& low);
+/// Finds the components (26 neighbours) of the seeds and of the occupied voxels that are neither
+/// settled nor among `low`, those near the ground, and which of them move.
+Motion find_motion(const VoxelizedScan& scan, const ArrivalClasses& classes, const Ground& ground,
+                   const ScanMasks& low, const Config& config);
 
 }  // namespace mosbench::hmm_mos_plus

@@ -53,38 +53,18 @@ void Pipeline::judge(HeldScan& held) {
     add_departures(scan, mapping().map(), mapping().k(), config_, mapping().pool(), held.classes);
   }
   const Ground ground = timed(record, "ground", [&] { return Ground(scan); });
-  ScanMasks low = timed(record, "ground", [&] {
+  const ScanMasks low = timed(record, "ground", [&] {
     return ground.low_voxels(config_.ground_radius_voxels, config_.ground_layers_voxels);
   });
-  const ScanMasks moving =
-      timed(record, "objects", [&] { return moving_voxels(held, ground, std::move(low)); });
+  const Motion motion = timed(
+      record, "objects", [&] { return find_motion(scan, held.classes, ground, low, config_); });
   const StageClock clock(record, "labels");
+  ScanMasks moving = motion.objects;
+  for (std::size_t i = 0; i < moving.size(); ++i) moving[i] = moving[i] | motion.feet[i];
   result.labels = project_labels(scan, moving);
+  if (context().scores) result.scores = seed_shares(scan, motion.components);
   result.threshold = config_.min_seed_share;
   result.judged = true;
-}
-
-/// Returns the voxels of objects that move, feet included, and scores the scan's points. `low` are
-/// the voxels near the ground.
-ScanMasks Pipeline::moving_voxels(HeldScan& held, const Ground& ground, ScanMasks low) {
-  const VoxelizedScan& scan = held.scan;
-  ScanMasks moving(low.size()), others(low.size());
-  for (std::size_t i = 0; i < others.size(); ++i) {
-    others[i] = without(scan.occupied[i], held.classes.settled[i] | low[i]);
-    low[i] = without(low[i], held.classes.settled[i]);
-  }
-  const std::vector<Component> components =
-      components_of(scan, held.classes, others, ground, config_);
-  for (const Component& component : components) {
-    if (!component.moves) continue;
-    for (const std::uint32_t voxel : component.voxels) {
-      moving[voxel / kBlockVoxels].set(voxel % kBlockVoxels);
-    }
-  }
-  const ScanMasks feet = feet_of(scan, moving, low);
-  for (std::size_t i = 0; i < feet.size(); ++i) moving[i] = moving[i] | feet[i];
-  if (context().scores) held.result.scores = seed_shares(scan, components);
-  return moving;
 }
 
 std::vector<LabelledScan> Pipeline::release(std::size_t count) {

@@ -32,7 +32,6 @@ class Pipeline final : public hmm_mos::MappedMethod {
   std::vector<LabelledScan> release_all() override { return release(held_.size()); }
   std::size_t held_bytes() const override;
   void judge(HeldScan& held);
-  ScanMasks moving_voxels(HeldScan& held, const Ground& ground, ScanMasks low);
   std::vector<LabelledScan> release(std::size_t count);
 
   Config config_;

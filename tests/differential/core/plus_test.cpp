@@ -127,6 +127,7 @@ TEST(PlusAgainstItsTwin, AgreesOnRandomConfigurations) {
     config.max_aged_share = one_of(0.0, 0.3, 0.6, 1.0);
     config.rise_radius_m = one_of(0.0, 0.7, 6.0);
     config.min_rise_voxels = one_of(0, 1, 2, 4);
+    config.max_growth_m = one_of(0.0, 0.4, 0.8, 3.0);
     config.max_extent_m = one_of(0.8, 2.0, 10.0);
     config.max_height_m = one_of(0.5, 1.0, 4.5);
     const SmallWorld world = small_world({.seed = seed,
