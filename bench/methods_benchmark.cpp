@@ -7,7 +7,7 @@
 namespace mosbench {
 namespace {
 
-constexpr char kDynablox[] = "dynablox", kLcFreeSpace[] = "lc-free-space",
+constexpr char kPlus[] = "hmm-mos-plus", kDynablox[] = "dynablox", kLcFreeSpace[] = "lc-free-space",
                kUnderwood[] = "underwood", kDufomap[] = "dufomap", kYoon[] = "yoon";
 #if MOSBENCH_WITH_OCTOMAP
 constexpr char kOctomap[] = "octomap";
@@ -53,6 +53,7 @@ void method_stage(benchmark::State& state, StagedScans& staged, ThreadPool& pool
   count_items(state, "points", mean_points(staged));
 }
 
+const RegisterStage plus_stage_of_all(kPlus, method_stage<kPlus>, true);
 const RegisterStage dynablox_stage(kDynablox, method_stage<kDynablox>, true);
 const RegisterStage lc_free_space_stage(kLcFreeSpace, method_stage<kLcFreeSpace>, true);
 const RegisterStage underwood_stage(kUnderwood, method_stage<kUnderwood>, true);
