@@ -1,5 +1,6 @@
 #include "datasets/files/bin_file.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -18,17 +19,18 @@ void check_bin_size(std::uintmax_t size_bytes, std::size_t columns,
                   std::to_string(size_bytes) + " bytes are no multiple of " +
                       std::to_string(columns * sizeof(float)) +
                       ": cut off, or raw data of another layout",
-                  std::to_string(columns) + " float32 per point (x y z intensity" +
-                      (columns > 4 ? " ...)" : ")"));
+                  std::to_string(columns) + " float32 per point (x y z" +
+                      (columns > 3 ? " intensity" : "") + (columns > 4 ? " ...)" : ")"));
 }
 
 std::vector<Point> parse_bin(std::string_view bytes, std::size_t columns,
                              const std::filesystem::path& file) {
   check_bin_size(bytes.size(), columns, file);
   const std::size_t record_bytes = columns * sizeof(float);
+  const std::size_t taken_bytes = std::min(record_bytes, sizeof(Point));
   std::vector<Point> points(bytes.size() / record_bytes);
   for (std::size_t i = 0; i < points.size(); ++i) {
-    std::memcpy(&points[i], bytes.data() + i * record_bytes, sizeof(Point));
+    std::memcpy(&points[i], bytes.data() + i * record_bytes, taken_bytes);
   }
   return points;
 }

@@ -14,7 +14,8 @@ namespace mosbench {
 /// are an empty scan; NaN and infinite values are kept. Throws DataError when the size is no
 /// multiple of 16 bytes.
 std::vector<Point> parse_bin(std::string_view bytes, const std::filesystem::path& file);
-/// Parses `columns` float32 per point and keeps the first four: nuScenes adds the ring.
+/// Parses `columns` float32 per point, at least three, and keeps the first four: nuScenes adds the
+/// ring. The intensity of three is 0.
 std::vector<Point> parse_bin(std::string_view bytes, std::size_t columns,
                              const std::filesystem::path& file);
 /// Returns the number after x y z intensity of every point: seconds after the stamp of its scan, in

@@ -1,8 +1,11 @@
 #include "datasets/files/scan_file.hpp"
 
+#include <fmt/format.h>
+
 #include <system_error>
 #include <utility>
 
+#include "datasets/files/bin_columns.hpp"
 #include "datasets/files/bin_file.hpp"
 #include "datasets/files/errors.hpp"
 #include "datasets/files/files.hpp"
@@ -83,6 +86,22 @@ TimedScan read_timed_scan(const std::filesystem::path& file, std::size_t bin_col
   }
   const std::size_t columns = columns_of(file, bin_columns);
   return {parse_bin(bytes, columns, file), parse_bin_times(bytes, columns, file)};
+}
+
+void check_usual_bin_columns(std::span<const StemFile> scans) {
+  if (scans.empty()) return;
+  for (const std::size_t i : {std::size_t{0}, scans.size() / 2, scans.size() - 1}) {
+    const std::filesystem::path& file = scans[i].file;
+    if (!has_extension(file, ".bin") || file.string().ends_with(kNuscenesEnd)) continue;
+    const auto columns = other_bin_columns(read_file(file), kUsualBinColumns);
+    if (!columns) continue;
+    throw DataError(file,
+                    fmt::format("seems to hold {} float32 per point rather than {} (x y z "
+                                "intensity)",
+                                *columns, kUsualBinColumns),
+                    fmt::format("--bin-columns {}, or {} if it is as it should be", *columns,
+                                kUsualBinColumns));
+  }
 }
 
 ScanHead read_scan_head(const std::filesystem::path& file, std::size_t bin_columns) {

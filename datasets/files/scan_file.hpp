@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <mosbench/scan.hpp>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "datasets/files/folder_listing.hpp"
@@ -39,6 +40,10 @@ struct TimedScan {
 /// or .ply file in the field `find_time_field`, see `times_after_stamp_ns`. Throws DataError.
 TimedScan read_timed_scan(const std::filesystem::path& file, std::size_t bin_columns,
                           std::optional<std::int64_t> stamp_ns);
+
+/// Looks into some of the scans, if they are .bin files, whether they have four float32 per point,
+/// which nothing in them says. Throws DataError where they clearly have others.
+void check_usual_bin_columns(std::span<const StemFile> scans);
 
 /// What the size or the header of a scan file says.
 struct ScanHead {

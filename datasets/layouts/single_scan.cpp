@@ -1,7 +1,9 @@
 #include "datasets/layouts/single_scan.hpp"
 
+#include <array>
 #include <utility>
 
+#include "datasets/files/bin_columns.hpp"
 #include "datasets/files/errors.hpp"
 #include "datasets/files/scan_file.hpp"
 #include "datasets/files/shown_text.hpp"
@@ -11,7 +13,7 @@ namespace mosbench {
 
 SingleScan::SingleScan(std::string name, const std::filesystem::path& file,
                        const ReadingOptions& options)
-    : bin_columns_(options.bin_columns) {
+    : bin_columns_(options.bin_columns.value_or(kUsualBinColumns)) {
   if (options.point_times == PointTimes::kColumn && options.undistorts()) {
     throw UsageError("--point-times column: " + file.string() +
                      " is one scan, expected several to find a motion from");
@@ -21,6 +23,7 @@ SingleScan::SingleScan(std::string name, const std::filesystem::path& file,
   ScanEntry& entry = recording.scans.emplace_back();
   entry.stem = shown_in_line(file.stem().string());
   entry.file = file;
+  if (!options.bin_columns) check_usual_bin_columns(std::array{StemFile{file, entry.stem}});
   entry.points = read_scan_head(file, bin_columns_).points;
   recording.reading = {{"scan_files", file.filename().string()}};
   if (!options.poses) {

@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "datasets/files/bin_columns.hpp"
 #include "datasets/files/errors.hpp"
 #include "datasets/files/files.hpp"
 #include "datasets/files/point_times.hpp"
@@ -41,7 +42,7 @@ std::vector<std::int64_t> stamps_from_stems(const std::vector<ScanEntry>& scans)
 
 FolderSequence::FolderSequence(std::string name, const std::filesystem::path& folder,
                                const ReadingOptions& asked, const FolderLayout& layout)
-    : bin_columns_(asked.bin_columns),
+    : bin_columns_(asked.bin_columns.value_or(kUsualBinColumns)),
       times_in_column_(asked.undistorts() && asked.point_times == PointTimes::kColumn) {
   ReadingOptions options = asked;
   if (layout.poses_of_lidar && !options.poses && options.pose_frame == PoseFrame::kByCalib) {
@@ -49,7 +50,7 @@ FolderSequence::FolderSequence(std::string name, const std::filesystem::path& fo
   }
   Recording& recording = mutable_recording();
   recording.name = SequenceName(std::move(name), folder);
-  list_scans(folder, layout);
+  list_scans(folder, layout, !asked.bin_columns);
   const std::vector<std::int64_t> stamps_ns = read_stamps(folder);
   SensorPoses poses =
       read_sensor_poses(folder, std::string(layout.poses_file), options, {size(), stamps_ns});
@@ -70,17 +71,19 @@ void FolderSequence::take_poses(const SensorPoses& poses) {
   }
 }
 
-void FolderSequence::list_scans(const std::filesystem::path& folder, const FolderLayout& layout) {
+void FolderSequence::list_scans(const std::filesystem::path& folder, const FolderLayout& layout,
+                                bool columns_are_usual) {
   Recording& recording = mutable_recording();
   const bool is_flat = layout.scan_folder == ".";
   std::vector<StemFile> scans =
       layout.scan_folder.empty() ? mosbench::list_scans(folder)
                                  : list_scan_folder(is_flat ? folder : folder / layout.scan_folder);
+  if (columns_are_usual) check_usual_bin_columns(scans);
   const std::filesystem::path& first = scans.front().file;
   recording.reading = {
       {"scan_files", fmt::format("{} of {}/", first.extension().string(),
                                  is_flat ? "." : first.parent_path().filename().string())}};
-  if (bin_columns_ != ReadingOptions{}.bin_columns) {
+  if (bin_columns_ != kUsualBinColumns) {
     recording.reading.emplace_back("bin_columns", std::to_string(bin_columns_));
   }
   if (times_in_column_) {

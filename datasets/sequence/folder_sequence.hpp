@@ -42,7 +42,8 @@ class FolderSequence : public Sequence {
   bool times_in_column() const { return times_in_column_; }
 
  private:
-  void list_scans(const std::filesystem::path& folder, const FolderLayout& layout);
+  void list_scans(const std::filesystem::path& folder, const FolderLayout& layout,
+                  bool columns_are_usual);
   std::vector<std::int64_t> read_stamps(const std::filesystem::path& folder);
   void take_poses(const SensorPoses& poses);
 

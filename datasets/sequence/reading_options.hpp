@@ -50,9 +50,11 @@ struct ReadingOptions {
   /// When not set: by the poses, except that odometry registers scans as its own setting says.
   std::optional<Deskew> deskew = std::nullopt;
   std::optional<PointTimes> point_times = std::nullopt;  ///< when not set, those of a bag's points
-  std::size_t bin_columns = 4;                           ///< float32 per point in .bin files
   /// Of truth that is a flow: from which speed on a point moves; when not set, 0.5.
   std::optional<double> moving_speed_m_s = std::nullopt;
+  /// float32 per point in .bin files; when not set 4, and scans that clearly have others are
+  /// refused.
+  std::optional<std::size_t> bin_columns = std::nullopt;
   /// Disturbances of what is read, as `parse_perturbation` takes them.
   std::optional<std::string> perturb = std::nullopt;
 

@@ -82,9 +82,11 @@ void add_scan_flags(CLI::App& command, ReadingOptions& options) {
       ->group(kReadingGroup);
   add_deskew_flags(command, options);
   command
-      .add_option("--bin-columns", options.bin_columns,
-                  "float32 per point in .bin files: 4, or 5 (ring of nuScenes, times)")
-      ->check(CLI::IsMember({4, 5}))
+      .add_option(
+          "--bin-columns", options.bin_columns,
+          "float32 per point in .bin files: 4, 3 (no intensity), 5 (ring of nuScenes, times) or "
+          "more (default: 4, and files that clearly hold others are refused)")
+      ->check(CLI::IsMember({3, 4, 5, 6, 7}))
       ->group(kReadingGroup);
   command
       .add_option("--moving-speed-m-s", options.moving_speed_m_s,

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "datasets/files/bin_columns.hpp"
 #include "datasets/files/errors.hpp"
 #include "datasets/sequence/scan_deskewer.hpp"
 #include "eval/results/shell_text.hpp"
@@ -31,8 +32,9 @@ void take(const ordered_json& json, const char* key, Option& option) {
 void take_bin_columns(const ordered_json& json, ReadingOptions& options) {
   if (!json.contains("bin_columns")) return;
   const ordered_json& columns = json.at("bin_columns");
-  if (columns != 4 && columns != 5) {
-    throw UsageError(fmt::format("bin_columns: {}, expected 4 or 5", columns.dump()));
+  if (!columns.is_number_unsigned() || columns < kFewestBinColumns || columns > kMostBinColumns) {
+    throw UsageError(fmt::format("bin_columns: {}, expected {} to {}", columns.dump(),
+                                 kFewestBinColumns, kMostBinColumns));
   }
   options.bin_columns = columns.get<std::size_t>();
 }
@@ -85,8 +87,8 @@ ordered_json told_json(const ReadingOptions& options) {
   if (options.point_times) {
     json["point_times"] = options.point_times == PointTimes::kColumn ? "column" : "azimuth";
   }
-  if (options.bin_columns != usual.bin_columns) json["bin_columns"] = options.bin_columns;
   if (options.moving_speed_m_s) json["moving_speed_m_s"] = *options.moving_speed_m_s;
+  if (options.bin_columns) json["bin_columns"] = *options.bin_columns;
   if (options.perturb) json["perturb"] = *options.perturb;
   return json;
 }

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "datasets/files/bin_columns.hpp"
 #include "datasets/files/errors.hpp"
 #include "datasets/files/files.hpp"
 #include "datasets/files/text.hpp"
@@ -54,7 +55,7 @@ ReadingOptions reading_of_study(const YamlNode& node, const fs::path& file) {
   for (const auto& [key, value] : node.members()) {
     const auto number = parse_double(value.text());
     if (key == "bin_columns") {
-      json[key] = value.whole(4, 5);
+      json[key] = value.whole(kFewestBinColumns, kMostBinColumns);
     } else if (key == "max_pose_gap_s") {
       if (!number || *number < 0) value.refuse("is no time", "seconds");
       json[key] = *number;

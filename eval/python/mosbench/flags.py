@@ -19,8 +19,8 @@ READING = (
     "raw_scans",  # True: as deskew="none"
     "point_times",  # "column" or "azimuth"
     "deskew",  # "none", "velocity" or "poses"
-    "bin_columns",  # 4 or 5 float32 per point
     "moving_speed_m_s",  # from which on points of OpenSceneFlow's truth move
+    "bin_columns",  # float32 per point, 3 to 7
     "perturb",  # "KIND=STRENGTH,...,seed=N"
 )
 

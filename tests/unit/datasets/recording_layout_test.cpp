@@ -20,12 +20,12 @@ constexpr const char* kTwoPoses = "1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 2 0 1 0 0 0 0 
 
 /// A bag with one scan of an Ouster's topic and two poses, as many a robot records it.
 std::string ouster_bag() {
-  constexpr std::int64_t kStamp_ns = 1'500'000'000'000'000'000;
+  constexpr std::int64_t kScan_ns = 1'500'000'000'000'000'000;
   BagBytes bag;
   bag.connections = {{"/os1_cloud_node/points", std::string(kPointCloud2)},
                      {"/tf", std::string(kTfMessage)}};
-  bag.chunks = {{{0, kStamp_ns, timed_cloud(kStamp_ns, {{1, 2, 3, 4}}, {})},
-                 {1, kStamp_ns, tf_at(kStamp_ns, Pose::Identity())}}};
+  bag.chunks = {{{0, kScan_ns, timed_cloud(kScan_ns, {{1, 2, 3, 4}}, {})},
+                 {1, kScan_ns, tf_at(kScan_ns, Pose::Identity())}}};
   return bag.str();
 }
 

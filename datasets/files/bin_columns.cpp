@@ -1,0 +1,96 @@
+#include "datasets/files/bin_columns.hpp"
+
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+
+namespace mosbench {
+namespace {
+
+constexpr std::size_t kFewestPoints = 64;
+constexpr std::size_t kPairs = 4096;
+
+/// Mean roots of the differences within columns.
+struct Spread {
+  double of_neighbours = 0.0;  ///< of points that follow each other
+  double of_any = 0.0;         ///< of points anywhere in the scan
+};
+
+/// Returns the same numbers on every machine (splitmix64).
+std::uint64_t scrambled(std::uint64_t value) {
+  value += 0x9E3779B97F4A7C15;
+  value = (value ^ (value >> 30U)) * 0xBF58476D1CE4E5B9;
+  value = (value ^ (value >> 27U)) * 0x94D049BB133111EB;
+  return value ^ (value >> 31U);
+}
+
+float number_at(std::string_view bytes, std::size_t index) {
+  float number = 0;
+  std::memcpy(&number, bytes.data() + index * sizeof(number), sizeof(number));
+  return number;
+}
+
+/// The mean over pairs of points; numbers that are not finite say nothing.
+class RootDifferences {
+ public:
+  RootDifferences(std::string_view bytes, std::size_t columns) : bytes_(bytes), columns_(columns) {}
+
+  void add(std::size_t one, std::size_t other) {
+    for (std::size_t column = 0; column < columns_; ++column) {
+      const double difference = std::abs(double{number_at(bytes_, one * columns_ + column)} -
+                                         double{number_at(bytes_, other * columns_ + column)});
+      if (!std::isfinite(difference)) continue;
+      sum_ += std::sqrt(difference);
+      ++count_;
+    }
+  }
+  double mean() const { return count_ == 0 ? 0.0 : sum_ / static_cast<double>(count_); }
+
+ private:
+  std::string_view bytes_;
+  std::size_t columns_;
+  double sum_ = 0.0;
+  std::size_t count_ = 0;
+};
+
+Spread spread_of(std::string_view bytes, std::size_t columns) {
+  const std::size_t points = bytes.size() / (columns * sizeof(float));
+  RootDifferences of_neighbours(bytes, columns);
+  RootDifferences of_any(bytes, columns);
+  for (std::size_t pair = 0; pair < kPairs; ++pair) {
+    const std::size_t one = scrambled(2 * pair) % points;
+    of_neighbours.add(one, one + 1 < points ? one + 1 : 0);
+    of_any.add(one, scrambled(2 * pair + 1) % points);
+  }
+  return {of_neighbours.mean(), of_any.mean()};
+}
+
+/// Either differences are clearly smaller between any points, or a little and between neighbours,
+/// which scans measure side by side, by far.
+bool fits_clearly_better(const Spread& other, const Spread& told) {
+  const bool between_any = other.of_any < 0.9 * told.of_any;
+  const bool between_neighbours =
+      other.of_any < 0.97 * told.of_any && other.of_neighbours < 0.5 * told.of_neighbours;
+  return between_any || between_neighbours;
+}
+
+}  // namespace
+
+std::optional<std::size_t> other_bin_columns(std::string_view bytes, std::size_t columns) {
+  if (bytes.size() < kFewestPoints * columns * sizeof(float)) return std::nullopt;
+  const Spread told = spread_of(bytes, columns);
+  std::optional<std::size_t> best;
+  Spread spread_of_best = told;
+  for (std::size_t other = kFewestBinColumns; other <= kMostBinColumns; ++other) {
+    if (other == columns || bytes.size() % (other * sizeof(float)) != 0) continue;
+    const Spread spread = spread_of(bytes, other);
+    if (!fits_clearly_better(spread, told)) continue;
+    // Multiples of the right number fit as well.
+    if (best && spread.of_any >= 0.97 * spread_of_best.of_any) continue;
+    best = other;
+    spread_of_best = spread;
+  }
+  return best;
+}
+
+}  // namespace mosbench
