@@ -2,6 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <limits>
 #include <mosbench/method.hpp>
 #include <stdexcept>
@@ -43,9 +46,24 @@ TEST_P(EveryMethod, LabelsEveryPointOfEveryScanOnceAndInOrder) {
       EXPECT_EQ(finals[k].scan_index, k);
       EXPECT_EQ(finals[k].labels.size(), k % (kWall.size() + 1));
       EXPECT_EQ(finals[k].scores.size(), scores ? finals[k].labels.size() : 0U);
-      for (const std::uint32_t label : finals[k].labels) EXPECT_EQ(label, kStaticLabel);
+      for (const std::uint32_t label : finals[k].labels) {
+        EXPECT_TRUE(label == kStaticLabel || label == kMovingLabel) << label;
+      }
     }
   }
+}
+
+TEST_P(EveryMethod, LeavesAStandingWallStatic) {
+  const auto method = make({.scan_count = 30});
+  std::vector<LabelledScan> finals;
+  const auto take = [&](std::vector<LabelledScan> scans) {
+    for (LabelledScan& scan : scans) finals.push_back(std::move(scan));
+  };
+  for (int k = 0; k < 30; ++k) take(method->push(kWall, Pose::Identity()));
+  take(method->finish());
+  ASSERT_EQ(finals.size(), 30U);
+  const std::vector<std::uint32_t> all_static(kWall.size(), kStaticLabel);
+  for (const LabelledScan& scan : finals) EXPECT_EQ(scan.labels, all_static) << scan.scan_index;
 }
 
 TEST_P(EveryMethod, LeavesOutAndCountsWhatIsNotFinite) {
@@ -96,6 +114,23 @@ TEST_P(EveryMethod, RefusesScansThatAnotherObservedAndThoseOutOfOrder) {
   auto later = one->observe(kWall, Pose::Identity());
   EXPECT_NO_THROW(one->push(std::move(later)));
   EXPECT_THROW(one->push(std::move(earlier)), std::logic_error);
+}
+
+/// A list by hand, and how a method is written there.
+struct HandList {
+  const char *file, *quote;
+};
+
+TEST_P(EveryMethod, StandsWhereMethodsAreListedByHand) {
+  if (find_method(GetParam())->is_twin) GTEST_SKIP() << "no method of a benchmark";
+  for (const auto& [file, quote] :
+       {HandList{"core/README.md", ""}, HandList{"scripts/bench/sweep.py", "\""}}) {
+    std::ifstream stream(std::filesystem::path(MOSBENCH_SOURCE_DIR) / file);
+    const std::string text(std::istreambuf_iterator<char>(stream), {});
+    EXPECT_NE(text.find(quote + GetParam() + quote), std::string::npos)
+        << file << ": has no method " << GetParam()
+        << ", expected a row as core/README.md says under \"Adding a method\"";
+  }
 }
 
 std::vector<std::string> names() {
