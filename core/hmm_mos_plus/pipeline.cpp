@@ -64,7 +64,7 @@ void Pipeline::judge(HeldScan& held) {
   result.labels = project_labels(scan, moving);
   if (context().scores) result.scores = seed_shares(scan, motion.components);
   result.threshold = config_.min_seed_share;
-  result.judged = true;
+  result.judged = mapping().k() > 0;  // the first scan has nothing to have arrived since
 }
 
 std::vector<LabelledScan> Pipeline::release(std::size_t count) {

@@ -10,6 +10,7 @@
 #include "datasets/files/files.hpp"
 #include "datasets/layouts/doals_sequence.hpp"
 #include "datasets/layouts/simulated_origin.hpp"
+#include "datasets/sequence/pose_source.hpp"
 
 namespace mosbench {
 namespace {
@@ -194,6 +195,8 @@ Checkup check_up(const std::filesystem::path& path, const OpenOptions& options,
       check_sequence(sequence, folders[i].folder, dataset.kind, simulated, checkup);
     }
   } catch (const DataError& error) {
+    const bool lacks_poses = dynamic_cast<const MissingPoses*>(&error) != nullptr;
+    checkup.lacks_poses = lacks_poses && !checkup.has(Severity::kError);
     checkup.symptoms.push_back(symptom_of(error, path));
   }
   return checkup;

@@ -47,6 +47,7 @@ struct Checkup {
   std::optional<DatasetKind> kind;
   std::vector<SequenceCheckup> sequences;
   std::vector<Symptom> symptoms;
+  bool lacks_poses = false;  ///< the only error is that there are none
 
   bool has(Severity severity) const;
 };

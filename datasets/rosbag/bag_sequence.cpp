@@ -128,7 +128,8 @@ void BagSequence::open_pose_file(const ReadingOptions& options) {
 }
 
 void BagSequence::open_transforms(const ReadingOptions& options) {
-  BagTransforms transforms = bag_transforms(*bag_, options.map_frame, scans_.front().frame);
+  BagTransforms transforms =
+      bag_transforms(*bag_, options.map_frame, scans_.front().frame, options.pose_topic);
   mutable_recording().reading.emplace_back("poses", transforms.source);
   state_pose_origin(bag_->files().front(), mutable_recording().reading,
                     mutable_recording().remarks);

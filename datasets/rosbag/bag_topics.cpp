@@ -6,6 +6,7 @@
 
 #include "datasets/files/errors.hpp"
 #include "datasets/rosbag/ros_messages.hpp"
+#include "datasets/sequence/pose_source.hpp"
 
 namespace mosbench {
 namespace {
@@ -75,9 +76,8 @@ Transforms transforms_of_type(const BagReader& bag, std::string_view type) {
 
 /// The poses of one topic of Odometry, PoseStamped or Path. A Path repeats what the one before had:
 /// the last is whole. Poses without child are the sensor's.
-Transforms pose_topic(const BagReader& bag, std::string_view type, const std::string& topic,
-                      const std::vector<StampedTransform>& always,
-                      const std::string& sensor_frame) {
+Transforms poses_in(const BagReader& bag, std::string_view type, const std::string& topic,
+                    const std::vector<StampedTransform>& always, const std::string& sensor_frame) {
   Transforms found{{}, always, {topic}};
   if (type == kPath) {
     const std::vector<BagMessage> messages = bag.messages(topic);
@@ -136,7 +136,7 @@ std::optional<BagTransforms> find_poses(std::string_view type,
   std::optional<BagTransforms> found;
   std::set<std::string> fitting;
   for (const std::string& topic : topics_of_type(bag, type)) {
-    const Transforms poses = pose_topic(bag, type, topic, always, sensor_frame);
+    const Transforms poses = poses_in(bag, type, topic, always, sensor_frame);
     // A single one is a goal or a start, and no way of the sensor.
     if (poses.changing.size() < 2) continue;
     auto chain = find_chain(poses, bag, map_frame, sensor_frame);
@@ -146,9 +146,41 @@ std::optional<BagTransforms> find_poses(std::string_view type,
   }
   if (fitting.size() > 1) {
     throw DataError(bag.path(), "has poses in the topics " + listed(fitting),
-                    "one of them, or --poses FILE");
+                    "one of them in --pose-topic, or --poses FILE");
   }
   return found;
+}
+
+/// Finds the poses of the topic that the user named.
+std::optional<BagTransforms> poses_of_topic(const std::string& topic,
+                                            const std::vector<StampedTransform>& always,
+                                            const BagReader& bag,
+                                            const std::optional<std::string>& map_frame,
+                                            const std::string& sensor_frame) {
+  std::set<std::string> others;
+  for (const std::string_view type : {kTransformStamped, kOdometry, kPoseStamped, kPath}) {
+    std::set<std::string> topics = topics_of_type(bag, type);
+    if (topics.contains(topic)) {
+      return find_chain(poses_in(bag, type, topic, always, sensor_frame), bag, map_frame,
+                        sensor_frame);
+    }
+    others.merge(topics);
+  }
+  throw DataError(bag.path(), "has no topic of poses " + topic,
+                  others.empty() ? "--poses FILE, as it has none" : "one of " + listed(others));
+}
+
+/// Finds the poses of the first kind of topic that has some.
+std::optional<BagTransforms> first_poses(const Transforms& tf, const Transforms& stamped,
+                                         const BagReader& bag,
+                                         const std::optional<std::string>& map_frame,
+                                         const std::string& sensor_frame) {
+  if (auto found = find_chain(tf, bag, map_frame, sensor_frame)) return found;
+  if (auto found = find_chain(stamped, bag, map_frame, sensor_frame)) return found;
+  for (const std::string_view type : {kOdometry, kPoseStamped, kPath}) {
+    if (auto found = find_poses(type, tf.always, bag, map_frame, sensor_frame)) return found;
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -174,22 +206,20 @@ std::string cloud_topic(const BagReader& bag, const std::optional<std::string>& 
 }
 
 BagTransforms bag_transforms(const BagReader& bag, const std::optional<std::string>& map_frame,
-                             const std::string& sensor_frame) {
+                             const std::string& sensor_frame,
+                             const std::optional<std::string>& pose_topic) {
   const Transforms tf = tf_transforms(bag);
-  if (auto found = find_chain(tf, bag, map_frame, sensor_frame)) return *found;
   const Transforms stamped = transforms_of_type(bag, kTransformStamped);
-  if (auto found = find_chain(stamped, bag, map_frame, sensor_frame)) return *found;
-  for (const std::string_view type : {kOdometry, kPoseStamped, kPath}) {
-    if (auto found = find_poses(type, tf.always, bag, map_frame, sensor_frame)) return *found;
-  }
-  throw DataError(
+  auto found = pose_topic ? poses_of_topic(*pose_topic, tf.always, bag, map_frame, sensor_frame)
+                          : first_poses(tf, stamped, bag, map_frame, sensor_frame);
+  if (found) return *std::move(found);
+  throw MissingPoses(
       bag.path(),
       "no transforms lead from " + map_frame.value_or("a map") + " to " + sensor_frame +
           " (/tf: " + frames_of(tf) + "; TransformStamped: " + frames_of(stamped) +
           "; Odometry: " + frames_of(transforms_of_type(bag, kOdometry)) + ")",
-      "such a chain, or --poses FILE, and --map-frame if the map is called otherwise; or "
-      "poses found from the scans: mosbench run " +
-          bag.path().string() + " --odometry simple");
+      "such a chain (--map-frame names a map that is called otherwise), --poses FILE, or poses "
+      "found by odometry");
 }
 
 }  // namespace mosbench

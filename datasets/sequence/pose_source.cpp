@@ -200,12 +200,8 @@ SensorPoses read_sensor_poses(const fs::path& folder, const std::string& own_fil
   }
   const fs::path file = options.poses.value_or(folder / own_file);
   if (!options.poses && !is_there(file)) {
-    throw DataError(
-        file, "does not exist",
-        fmt::format(
-            "one pose per scan there, or in a file given by --poses; or found from the scans: "
-            "mosbench run {} --odometry simple",
-            folder.string()));
+    throw MissingPoses(file, "does not exist",
+                       "one pose per scan there, in a file given by --poses, or found by odometry");
   }
   SensorPoses poses = SensorPoseReader(folder, options, file).run(scans);
   if (options.poses) {

@@ -7,9 +7,17 @@
 #include <string>
 #include <vector>
 
+#include "datasets/files/errors.hpp"
 #include "datasets/sequence/reading_options.hpp"
 
 namespace mosbench {
+
+/// Scans have no poses at all, which odometry can find. Who knows what the user typed adds the
+/// command.
+class MissingPoses : public DataError {
+ public:
+  using DataError::DataError;
+};
 
 /// LiDAR poses of a sequence and where they came from.
 struct SensorPoses {
@@ -29,8 +37,9 @@ struct PosedScans {
 /// Reads `options.poses`, else `folder`/`own_file`, and turns the poses into the LiDAR's by
 /// `folder`/calib.txt. Poses with stamps are interpolated to the scans' stamps; without stamps rows
 /// and scans are paired in order. Scans between poses more than `options.max_pose_gap_s` apart have
-/// no pose. Throws DataError when counts differ, when the stamps of the poses do not cover a scan,
-/// or when no scan has a pose. Identities where `options.poses_by_odometry` is set.
+/// no pose. Throws MissingPoses where there is no file, DataError when counts differ, when the
+/// stamps of the poses do not cover a scan, or when no scan has a pose. Identities where
+/// `options.poses_by_odometry` is set.
 SensorPoses read_sensor_poses(const std::filesystem::path& folder, const std::string& own_file,
                               const ReadingOptions& options, const PosedScans& scans);
 

@@ -47,6 +47,8 @@ struct ReadingOptions {
   double max_pose_gap_s = 0.5;
   std::optional<std::string> topic = std::nullopt;      ///< of a bag's PointCloud2
   std::optional<std::string> map_frame = std::nullopt;  ///< of a bag's tf tree
+  /// Of a bag's poses; searched when not set.
+  std::optional<std::string> pose_topic = std::nullopt;
   /// When not set: by the poses, except that odometry registers scans as its own setting says.
   std::optional<Deskew> deskew = std::nullopt;
   std::optional<PointTimes> point_times = std::nullopt;  ///< when not set, those of a bag's points

@@ -14,6 +14,7 @@
 #include "datasets/files/errors.hpp"
 #include "datasets/files/files.hpp"
 #include "datasets/files/partial_file.hpp"
+#include "datasets/files/shell_text.hpp"
 #include "datasets/layouts/helimos_layout.hpp"
 #include "datasets/layouts/layout.hpp"
 #include "datasets/layouts/simulated_origin.hpp"
@@ -97,7 +98,7 @@ std::string readme(const SimulatedOrigin& origin) {
       "mosbench simulate --layout {} --scene scene.json --scans {} --seed {}{} --out DIR\n"
       "{}",
       origin.scene, to_string(origin.layout), origin.scans, origin.seed,
-      origin.perturb ? " --perturb " + *origin.perturb : "", truth_note(origin.layout));
+      origin.perturb ? " --perturb " + shell_word(*origin.perturb) : "", truth_note(origin.layout));
 }
 
 /// Returns the name that readers give a sequence: of DOALS with the scene's folder.

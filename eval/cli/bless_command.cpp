@@ -17,9 +17,10 @@ namespace {
 
 constexpr const char* kBlessFooter =
     R"(Copies the results of NEW to BASELINE, so that `mosbench compare` measures against them from now on,
-and prints what changes against the baseline before. What depends on the clock and the machine is left
-out. Commit the folder to accept the results. A baseline of another protocol, method, setting, scans or
-input is replaced only with --even-if. Whenever bless is stopped, the old or the new baseline is whole.
+and prints what changes against the baseline before. What depends on the clock and the machine is
+left out. Commit the folder to accept the results. A baseline of another protocol, method, setting,
+scans or input is replaced only with --even-if. Whenever bless is stopped, the old or the new
+baseline is whole.
 
 Examples:
   mosbench bless results/runs/highway results/baseline/highway-online

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <deque>
 #include <memory>
 
 #include "core/base/thread_pool.hpp"
@@ -8,7 +10,10 @@
 #include "eval/breakdown/breakdown.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/cli/dataset_flags.hpp"
+#include "eval/cli/suggested_command.hpp"
+#include "eval/report/result_scans.hpp"
 #include "eval/results/answer_text.hpp"
+#include "eval/results/result_set.hpp"
 #include "eval/results/simulated.hpp"
 #include "eval/runs/presets.hpp"
 #include "eval/runs/run_plan.hpp"
@@ -19,16 +24,19 @@ namespace {
 constexpr const char* kBreakdownFooter =
     R"(Shows where predictions are right and wrong: by range, by height above the sensor, and by the size,
 speed and age of moving objects. Lists the objects that lost most points and the largest false
-positives, worst first, with scan and position. Objects are the instances of the truth if it has any,
-else clusters of moving points linked over scans. An object is detected once a tenth of its points is
-found. Speeds are in the map frame; if the stamps of the scans do not rise, 10 Hz is assumed.
-
+positives, worst first, with scan and position. Objects are the instances of the truth if it has
+any, else clusters of moving points linked over scans. An object is detected once a tenth of its
+points is found. DATA may also be a folder of results, which tells where data and labels are and how
+they were scored. Speeds are in the map frame; if the stamps of the scans do not rise, 10 Hz is
+assumed.
 Examples:
-  mosbench breakdown ~/kitti/sequences/08 --predictions results/runs/kitti
+  mosbench breakdown results/runs/kitti
+  mosbench breakdown ~/kitti/sequences/08 --predictions mapmos/08/predictions
   mosbench breakdown sim/room --predictions results/runs/room --top 5 --json)";
 
 struct BreakdownFlags {
-  std::filesystem::path input, predictions;
+  std::filesystem::path input;
+  std::optional<std::filesystem::path> predictions;
   std::string dataset = "auto";
   std::vector<std::string> sequences;
   std::optional<std::string> protocol, range, format;
@@ -54,7 +62,7 @@ std::vector<SequenceBreakdown> all_breakdowns(const BreakdownFlags& options, con
   for (const auto& sequence : dataset.sequences) {
     const std::vector<std::size_t> scans = scans_with_truth(*sequence);
     if (scans.empty()) continue;
-    const OpenedPredictions opened = open_predictions(options.predictions, *sequence, scans,
+    const OpenedPredictions opened = open_predictions(*options.predictions, *sequence, scans,
                                                       dataset.sequences.size() == 1, prediction);
     breakdowns.push_back(break_down(*sequence, scans, *opened.labels, task));
   }
@@ -62,11 +70,8 @@ std::vector<SequenceBreakdown> all_breakdowns(const BreakdownFlags& options, con
   throw DataError(dataset.root, "no scan has truth", "labels next to the scans");
 }
 
-std::string breakdown(const BreakdownFlags& options) {
-  const Dataset dataset = open_dataset(
-      options.input, {dataset_kind_option(options.dataset), options.sequences, options.reading});
-  const BreakdownTask task = settle(options, dataset);
-  const std::vector<SequenceBreakdown> breakdowns = all_breakdowns(options, dataset, task);
+std::string printed(const BreakdownFlags& options, const Dataset& dataset,
+                    const BreakdownTask& task, const std::vector<SequenceBreakdown>& breakdowns) {
   if (options.json) {
     nlohmann::ordered_json json = {{"dataset", std::string(to_string(dataset.kind))},
                                    {"protocol", std::string(task.protocol->name)},
@@ -84,6 +89,61 @@ std::string breakdown(const BreakdownFlags& options) {
   return text;
 }
 
+/// A folder of results tells by itself how its data were read and scored.
+void refuse_flags_of_data(const CLI::App& command) {
+  const std::string given = given_words(command, [](const CLI::Option& option) {
+    const std::string name = option.get_name();
+    return option.get_group() == kReadingGroup || name == "--dataset" || name == "--format" ||
+           name == "--protocol" || name == "--range";
+  });
+  if (given.empty()) return;
+  throw UsageError(fmt::format("{}: is told by the results already, expected it with --predictions",
+                               given.substr(1)));
+}
+
+std::string breakdown_of_run(const BreakdownFlags& options, const CLI::App& command) {
+  if (find_result_files(options.input).empty()) {
+    throw UsageError(
+        fmt::format("--predictions: is missing, expected the labels of {}, or results of `mosbench "
+                    "run` or `mosbench score` in its place",
+                    options.input.string()));
+  }
+  refuse_flags_of_data(command);
+  (void)load_result_set(options.input);  // throws where they are of several runs
+  std::vector<FoundResult> results = find_results(options.input);
+  std::erase_if(results, [&](const FoundResult& result) {
+    return !options.sequences.empty() &&
+           std::ranges::find(options.sequences, result.name.text()) == options.sequences.end();
+  });
+  if (results.empty()) {
+    throw UsageError(fmt::format("--sequences: {} has no results of {}, expected others",
+                                 options.input.string(), fmt::join(options.sequences, ",")));
+  }
+  std::deque<ResultScans> scans;
+  std::vector<SequenceBreakdown> breakdowns;
+  BreakdownTask task{};
+  for (const FoundResult& result : results) {
+    const ResultScans& opened = scans.emplace_back(result, std::nullopt);
+    task = {opened.rule().protocol, opened.rule().range, options.threads};
+    if (opened.scored_scans().empty()) continue;
+    breakdowns.push_back(
+        break_down(opened.sequence(), opened.scored_scans(), opened.labels(), task));
+  }
+  if (breakdowns.empty()) {
+    throw DataError(options.input, "has no scan with truth",
+                    "results of a labelled sequence, or another name in --sequences");
+  }
+  return printed(options, scans.front().dataset(), task, breakdowns);
+}
+
+std::string breakdown(const BreakdownFlags& options, const CLI::App& command) {
+  if (!options.predictions) return breakdown_of_run(options, command);
+  const Dataset dataset = open_dataset(
+      options.input, {dataset_kind_option(options.dataset), options.sequences, options.reading});
+  const BreakdownTask task = settle(options, dataset);
+  return printed(options, dataset, task, all_breakdowns(options, dataset, task));
+}
+
 }  // namespace
 
 CommandRun add_breakdown(CLI::App& command) {
@@ -91,10 +151,11 @@ CommandRun add_breakdown(CLI::App& command) {
   add_dataset_flags(command, options->input, options->dataset, options->sequences,
                     options->reading);
   command
-      .add_option("--predictions", options->predictions,
-                  "Folder or file of predictions, as for `mosbench score`")
-      ->type_name("PATH")
-      ->required();
+      .add_option(
+          "--predictions", options->predictions,
+          "Folder or file of predictions, as for `mosbench score` (default: those of results "
+          "that are given as DATA)")
+      ->type_name("PATH");
   command.add_option("--format", options->format, "Of the predictions (default: recognised)")
       ->type_name("FORMAT");
   command
@@ -108,7 +169,7 @@ CommandRun add_breakdown(CLI::App& command) {
   add_threads_flag(command, options->threads);
   command.add_flag("--json", options->json, "Print JSON instead of tables");
   command.footer(kBreakdownFooter);
-  return [options] { return Answer{breakdown(*options)}; };
+  return [options, &command] { return Answer{breakdown(*options, command)}; };
 }
 
 }  // namespace mosbench

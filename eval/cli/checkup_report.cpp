@@ -135,6 +135,10 @@ std::string unchecked_text(const Checkup& checkup) {
 }
 
 std::string verdict(const Checkup& checkup, const std::string& input) {
+  if (checkup.lacks_poses) {
+    return "Verdict: has no poses yet. Find them from the scans, and run it, by\n  mosbench run " +
+           input + " --odometry simple\n";
+  }
   if (checkup.has(Severity::kError)) {
     return "Verdict: cannot be used as it is. Put right the errors above, then\n  mosbench "
            "doctor " +

@@ -10,7 +10,9 @@
 
 #include "datasets/files/errors.hpp"
 #include "datasets/files/nearest_name.hpp"
+#include "datasets/sequence/pose_source.hpp"
 #include "eval/cli/help_text.hpp"
+#include "eval/cli/suggested_command.hpp"
 #include "eval/results/version.hpp"
 
 namespace mosbench {
@@ -41,7 +43,7 @@ void refuse_flags_as_values(CLI::App& command) {
 /// The parser of the program, and what runs each of its commands.
 struct Program {
   CLI::App app{
-      "Finds the moving points in LiDAR scans, and scores the labels of any method by each "
+      "Finds the moving points in LiDAR scans, and scores the labels of any method by each\n"
       "benchmark's own rules.",
       "mosbench"};
   std::map<const CLI::App*, CommandRun> runs;
@@ -111,6 +113,7 @@ void refuse_unknown_arguments(const CLI::App& command, const std::string& name) 
 Answer answer_to(std::vector<std::string> arguments) {
   refuse_unknown_command(arguments);
   Program program;
+  const std::vector<std::string> typed = arguments;
   const auto chosen = [&] {
     const auto commands = program.app.get_subcommands();
     return commands.empty() ? &program.app : commands.front();
@@ -127,7 +130,12 @@ Answer answer_to(std::vector<std::string> arguments) {
     refuse_unknown_arguments(*chosen(), name);
     throw UsageError(fmt::format("{}; see {} --help", error.what(), name));
   }
-  return program.runs.at(chosen())();
+  try {
+    return program.runs.at(chosen())();
+  } catch (const MissingPoses& error) {
+    const std::string commands = commands_with_odometry(*chosen(), typed);
+    throw DataError(error.what() + (commands.empty() ? "" : ":" + commands));
+  }
 }
 
 }  // namespace mosbench

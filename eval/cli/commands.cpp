@@ -27,8 +27,7 @@ std::span<const Command> commands() {
       Command{"odometry", "Find the poses of scans", add_odometry},
       Command{"trajectory", "Score poses against true ones", add_trajectory},
       Command{"convert", "Write a data set in another layout", add_convert},
-      Command{"list", "List data sets, methods, odometry, presets, protocols, scenes and formats",
-              add_list},
+      Command{"list", "List data sets, methods, presets, protocols and more", add_list},
       Command{"help", "Show the help of a command", add_help},
       Command{"completion", "Print what completes commands and flags in a shell", add_completion},
   };

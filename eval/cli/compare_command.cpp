@@ -18,11 +18,11 @@ constexpr const char* kCompareFooter =
 scans are paired. A sequence, or all of them together, regresses when its IoU drops by more than
 --max-drop: both runs label the same scans, so no drop is chance. The 95 % interval of the paired
 difference is shown as a note; it says whether other scans like these would show the drop. With
---statistical a drop must also exceed the half-width of that interval. Runs of another protocol, method,
-setting, scans or input are refused; --even-if compares the scans that both have.
+--statistical a drop must also exceed the half-width of that interval. Runs of another protocol,
+method, setting, scans or input are refused; --even-if compares the scans that both have.
 
-For pull requests: --output-format github adds an annotation per regression to the text, and --summary
-writes the table in markdown.
+For pull requests: --output-format github adds an annotation per regression to the text, and
+--summary writes the table in markdown.
 
 Exit codes: 0 pass, 1 regression, 2 wrong usage, 3 unusable or unlike results.
 

@@ -18,8 +18,8 @@ namespace mosbench {
 namespace {
 
 constexpr const char* kCompletionFooter =
-    R"(`cmake --install` puts both scripts where the shells look for them. "commands" prints the name and the
-one-line help of every command, separated by a tab.
+    R"(`cmake --install` puts both scripts where the shells look for them. "commands" prints the name and
+the one-line help of every command, separated by a tab.
 
 Examples:
   mosbench completion bash > ~/.local/share/bash-completion/completions/mosbench

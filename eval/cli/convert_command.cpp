@@ -17,11 +17,12 @@ namespace mosbench {
 namespace {
 
 constexpr const char* kConvertFooter =
-    R"(Writes the scans, LiDAR poses, stamps and truth of DATA in another layout, for other programs. Points
-keep their bits and their order. Truth becomes .label files with the ids of the source. In the layouts
-of DOALS it becomes rows of indices.csv with the points of ids 251 to 259, and scans without stamps get
-stamps 0.1 s apart. ROS 2 bags have the topics /points, where truth is the field label, and /tf.
-OpenSceneFlow's .h5 files keep the flow of DATA; truth without speeds becomes the array mos_label.
+    R"(Writes the scans, LiDAR poses, stamps and truth of DATA in another layout, for other programs.
+Points keep their bits and their order. Truth becomes .label files with the ids of the source. In
+the layouts of DOALS it becomes rows of indices.csv with the points of ids 251 to 259, and scans
+without stamps get stamps 0.1 s apart. ROS 2 bags have the topics /points, where truth is the field
+label, and /tf. OpenSceneFlow's .h5 files keep the flow of DATA; truth without speeds becomes the
+array mos_label.
 
 Examples:
   mosbench convert ~/doals/station/sequence_1 --layout semantickitti --out ~/doals-kitti

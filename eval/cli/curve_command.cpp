@@ -11,15 +11,15 @@ namespace mosbench {
 namespace {
 
 constexpr const char* kCurveFooter =
-    R"(RUN is a folder that `mosbench run --scores` wrote: the points, the truth and the score of every point
-are read again, all scans that the protocol counts are pooled. A point counts as moving from a threshold
-of its score on; sweeping it gives precision over recall, its area (average precision: precision times
-the rise of recall, summed) and the threshold with the best IoU on these scans. The labels of the run
-need not lie on the curve, because methods do more than compare a score. Results without scores and
-those of `mosbench score` are refused (exit code 3).
+    R"(RUN is a folder that `mosbench run --scores` wrote: the points, the truth and the score of every
+point are read again, all scans that the protocol counts are pooled. A point counts as moving from a
+threshold of its score on; sweeping it gives precision over recall, its area (average precision:
+precision times the rise of recall, summed) and the threshold with the best IoU on these scans. The
+labels of the run need not lie on the curve, because methods do more than compare a score. Results
+without scores and those of `mosbench score` are refused (exit code 3).
 
 Examples:
-  mosbench curve results/runs/street     # of mosbench run sim/street --scores --out results/runs/street
+  mosbench curve results/runs/street    # of mosbench run sim/street --scores
   mosbench curve results/runs/street --format csv -o street.png > street.csv)";
 
 struct CurveFlags {

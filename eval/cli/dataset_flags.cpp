@@ -13,8 +13,6 @@
 namespace mosbench {
 namespace {
 
-constexpr const char* kReadingGroup = "Reading";
-
 /// Adds an option whose text is one of `names`; `take` puts it in its place.
 void add_choice(CLI::App& command, const std::string& flag, const std::vector<std::string>& names,
                 const std::string& description, std::function<void(const std::string&)> take) {
@@ -80,6 +78,10 @@ void add_scan_flags(CLI::App& command, ReadingOptions& options) {
   command.add_option("--map-frame", options.map_frame, "Map frame in the tf tree of a bag")
       ->type_name("FRAME")
       ->group(kReadingGroup);
+  command
+      .add_option("--pose-topic", options.pose_topic, "Topic of poses of a bag (default: found)")
+      ->type_name("TOPIC")
+      ->group(kReadingGroup);
   add_deskew_flags(command, options);
   command
       .add_option(
@@ -136,6 +138,16 @@ void add_perturb_flag(CLI::App& command, std::optional<std::string>& perturb) {
           "Disturb what is read, in this order, see `mosbench list perturbations`")
       ->type_name("KIND=STRENGTH,...,seed=N")
       ->group(kReadingGroup);
+}
+
+bool chooses_scans(const CLI::Option& option) {
+  std::filesystem::path input;
+  std::string dataset;
+  std::vector<std::string> sequences;
+  ReadingOptions reading;
+  CLI::App command;
+  add_scan_dataset_flags(command, input, dataset, sequences, reading);
+  return command.get_option_no_throw(option.get_name()) != nullptr;
 }
 
 std::vector<std::string> reading_names() {

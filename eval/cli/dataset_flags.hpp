@@ -10,6 +10,9 @@
 
 namespace mosbench {
 
+/// Group of the flags that say how data are read.
+inline constexpr const char* kReadingGroup = "Reading";
+
 /// Adds what every command that reads sequences takes: DATA, --dataset, --sequences and the flags
 /// of the group Reading. What they fill must outlive the parsing.
 void add_dataset_flags(CLI::App& command, std::filesystem::path& input, std::string& dataset,
@@ -18,6 +21,9 @@ void add_dataset_flags(CLI::App& command, std::filesystem::path& input, std::str
 /// Adds the same without the flags about poses.
 void add_scan_dataset_flags(CLI::App& command, std::filesystem::path& input, std::string& dataset,
                             std::vector<std::string>& sequences, ReadingOptions& reading);
+
+/// Returns whether an option of any command is one of these.
+bool chooses_scans(const CLI::Option& option);
 
 /// Returns what flags of the group Reading say, without a command. Throws UsageError.
 ReadingOptions reading_of(std::vector<std::string> flags);

@@ -9,24 +9,25 @@
 #include "eval/cli/checkup_report.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/cli/dataset_flags.hpp"
+#include "eval/cli/suggested_command.hpp"
 #include "eval/results/caller.hpp"
 #include "eval/results/reading_json.hpp"
-#include "eval/results/shell_text.hpp"
 #include "eval/runs/run_plan.hpp"
 
 namespace mosbench {
 namespace {
 
 constexpr const char* kDoctorFooter =
-    R"(Looks for faults that cost hours when they are noticed late: scans without labels or poses, truncated
-or frozen scans, unknown label ids, labels beyond the labelled range, points in millimetres, stamps out
-of order or in another unit, gaps in time, splits that name absent scans, counts that differ from the
-published ones, and poses that do not fit the scans. Scans are registered with one another, and the
-motions they show are compared with the poses: as given, and in other conventions (inverse, transposed,
-rows shifted by up to 15, scaled, a sensor mounted otherwise, ...). The one that fits is named, or several
-when the scans cannot decide; so are frozen rows, lost scans, jumps, noise, and rows that are exchanged.
-Labels are compared with what other scans see: what moves leaves its place. All files are listed; up to
-some hundred scans are read. scripts/check/doctor_plants.py plants faults and counts what is found.
+    R"(Looks for faults that cost hours when they are noticed late: scans without labels or poses,
+truncated or frozen scans, unknown label ids, labels beyond the labelled range, points in
+millimetres, stamps out of order or in another unit, gaps in time, splits that name absent scans,
+counts that differ from the published ones, and poses that do not fit the scans. Scans are
+registered with one another, and the motions they show are compared with the poses: as given, and in
+other conventions (inverse, transposed, rows shifted by up to 15, scaled, a sensor mounted
+otherwise, ...). The one that fits is named, or several when the scans cannot decide; so are frozen
+rows, lost scans, jumps, noise, and rows that are exchanged. Labels are compared with what other
+scans see: what moves leaves its place. All files are listed; up to some hundred scans are read.
+scripts/check/doctor_plants.py plants faults and counts what is found.
 
 Exit codes: 0 nothing found, 1 warnings, 3 the data set cannot be read.
 
@@ -63,22 +64,15 @@ ReadingOptions mended(ReadingOptions reading, const std::string& flags) {
   return reading;
 }
 
-/// DATA and the flags that say how it is to be read, for the command that comes next.
-std::string next_input(const DoctorFlags& options, const Checkup& checkup) {
-  std::string words = shell_word(options.input.string());
-  if (options.dataset != "auto") words += " --dataset " + options.dataset;
-  if (!options.sequences.empty()) {
-    words += " --sequences " + shell_word(fmt::format("{}", fmt::join(options.sequences, ",")));
-  }
-  return words + told_flags(mended(options.reading, flags_found(checkup)));
-}
-
 Answer check_dataset(const DoctorFlags& options) {
   const Checkup checkup = check_up(
       options.input, {dataset_kind_option(options.dataset), options.sequences, options.reading},
       caller().at_each_scan);
   std::string report =
-      options.json ? checkup_json(checkup) : checkup_text(checkup, next_input(options, checkup));
+      options.json
+          ? checkup_json(checkup)
+          : checkup_text(checkup, dataset_words(options.input, options.dataset, options.sequences,
+                                                mended(options.reading, flags_found(checkup))));
   return {report, checkup.has(Severity::kError) ? 3 : checkup.has(Severity::kWarning) ? 1 : 0};
 }
 

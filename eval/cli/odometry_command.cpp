@@ -15,11 +15,11 @@
 #include "eval/cli/method_options.hpp"
 #include "eval/cli/odometry_flags.hpp"
 #include "eval/cli/output_file.hpp"
+#include "eval/cli/suggested_command.hpp"
 #include "eval/results/answer_text.hpp"
 #include "eval/results/machine.hpp"
 #include "eval/results/reading_json.hpp"
 #include "eval/results/settings_json.hpp"
-#include "eval/results/shell_text.hpp"
 #include "eval/results/tell.hpp"
 #include "eval/runs/found_poses.hpp"
 #include "eval/runs/odometry_choice.hpp"
@@ -30,27 +30,28 @@ namespace {
 
 constexpr const char* kOdometryFooter =
     R"(Finds the poses of the scans from the scans alone and writes them: rows of 12 numbers (KITTI), or
-"stamp x y z qx qy qz qw" (TUM) if FILE ends in .tum or --format says so. The map frame is that of the
-first scan. They are the LiDAR's, also where the data set's own are a camera's: beside KITTI's rows, which
-do not tell, FILE.frame says so to the commands that read FILE. For several sequences FILE is a folder,
-and each is written to FILE/<sequence>.txt with a record in FILE/<sequence>.json. The same command again,
-after a kill, keeps the finished ones and starts the interrupted one again from its first scan.
+"stamp x y z qx qy qz qw" (TUM) if FILE ends in .tum or --format says so. The map frame is that of
+the first scan. They are the LiDAR's, also where the data set's own are a camera's: beside KITTI's
+rows, which do not tell, FILE.frame says so to the commands that read FILE. For several sequences
+FILE is a folder, and each is written to FILE/<sequence>.txt with a record in FILE/<sequence>.json.
+The same command again, after a kill, keeps the finished ones and starts the interrupted one again
+from its first scan.
 
-Scans whose points have times (those of bags, or by --point-times) are corrected for the motion of the
-sensor before they are registered: by the motion since the scan before (--deskew velocity, the default),
-or by the one that a first registration found (poses).
+Scans whose points have times (those of bags, or by --point-times) are corrected for the motion of
+the sensor before they are registered: by the motion since the scan before (--deskew velocity, the
+default), or by the one that a first registration found (poses).
 
---drop-moving also runs hmm-mos with the preset of the data set; what it finds moving in a scan stays out
-of the map that the next scans are registered to.
+--drop-moving also runs hmm-mos with the preset of the data set; what it finds moving in a scan
+stays out of the map that the next scans are registered to.
 
-A pose is doubtful when registration was not possible, little of the scan overlaps the map, the surfaces
-hardly constrain some motion (corridor, empty field), registration from a little beside it settles
-elsewhere (flat ground, too fast), or the pose lies far off constant velocity. Doubtful poses are
-written anyway, listed in the answer, and set the exit code to 1.
+A pose is doubtful when registration was not possible, little of the scan overlaps the map, the
+surfaces hardly constrain some motion (corridor, empty field), registration from a little beside it
+settles elsewhere (flat ground, too fast), or the pose lies far off constant velocity. Doubtful
+poses are written anyway, listed in the answer, and set the exit code to 1.
 
-Settings: defaults < --preset < --config FILE < --set, as for methods. --json prints them and, per scan,
-the pose, its covariance (rotation in rad, then translation in m, map frame), condition, overlap and
-doubt.
+Settings: defaults < --preset < --config FILE < --set, as for methods. --json prints them and, per
+scan, the pose, its covariance (rotation in rad, then translation in m, map frame), condition,
+overlap and doubt.
 
 Examples:
   mosbench odometry ~/kitti/sequences/04 -o poses.txt --preset kitti-online
@@ -151,8 +152,8 @@ std::string next_command(const OdometryFlags& flags) {
   reading.poses = flags.out;
   reading.poses_by_odometry = false;
   reading.pose_frame = PoseFrame::kLidar;
-  return fmt::format("use them with\n  mosbench run {}{}\n", shell_word(flags.input.string()),
-                     told_flags(reading));
+  return fmt::format("use them with\n  mosbench run {}\n",
+                     dataset_words(flags.input, flags.dataset, flags.sequences, reading));
 }
 
 Answer odometry_answer(OdometryFlags flags) {

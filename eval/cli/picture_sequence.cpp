@@ -7,7 +7,7 @@
 
 #include "datasets/files/errors.hpp"
 #include "datasets/files/files.hpp"
-#include "eval/results/shell_text.hpp"
+#include "datasets/files/shell_text.hpp"
 #include "eval/results/tell.hpp"
 
 namespace mosbench {

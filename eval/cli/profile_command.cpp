@@ -19,8 +19,9 @@ namespace {
 constexpr const char* kProfileFooter =
     R"(Segments the scans one after the other, without writing labels or scoring. Prints the wall time of
 each stage (min, median, p95, max), its share and the CPU time of all threads; then memory over the
-scans, and how many times faster than the sensor it ran. On a busy machine trust CPU times and shares;
-with several threads, CPU times include up to 60 us per stage and thread of waiting for work.
+scans, and how many times faster than the sensor it ran. On a busy machine trust CPU times and
+shares; with several threads, CPU times include up to 60 us per stage and thread of waiting for
+work.
 
 --json writes the same numbers, and those of each scan. --trace writes a file for ui.perfetto.dev or
 chrome://tracing, with a slice for every stage of every scan.
@@ -38,6 +39,9 @@ struct ProfileFlags {
 Answer profile(const ProfileFlags& options) {
   if (options.json == "-" && options.trace == "-") {
     throw UsageError("--json and --trace: both go to stdout, expected one of them to name a file");
+  }
+  for (const auto& file : {options.json, options.trace}) {
+    if (file) check_output(*file);
   }
   keep_freed_memory();
   const RunPlan plan = plan_method(options.method);

@@ -25,8 +25,8 @@ constexpr const char* kRenderFooter =
 range rings in metres. K counts from 0; "worst" is the scan with the most false points, not one in
 which the method did not look for motion yet. RESULT is of `mosbench run` or `mosbench score --out`;
 points and labels are read again from where they were read then, or points from --data.
---scans draws several, given as for `mosbench report` (A-B, every:N, all), to a video (.mp4 or .gif, by
-ffmpeg, which `apt-get install ffmpeg` brings) or else to a folder, a PNG file each.
+--scans draws several, given as for `mosbench report` (A-B, every:N, all), to a video (.mp4 or .gif,
+by ffmpeg, which `apt-get install ffmpeg` brings) or else to a folder, a PNG file each.
 
 Examples:
   mosbench render results/runs/sim --scan 20 -o scan.png
@@ -77,12 +77,19 @@ FoundResult choose_result(const RenderFlags& options) {
 }
 
 std::size_t choose_scan(const std::string& text, const std::vector<ScanRow>& rows) {
-  if (text == "worst" && !rows.empty()) return worst_first(rows).front();
+  const bool has_truth =
+      std::ranges::any_of(rows, [](const ScanRow& row) { return row.counts.has_value(); });
+  if (text == "worst" && has_truth) return worst_first(rows).front();
   std::size_t scan = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), scan);
   if (error == std::errc() && end == text.data() + text.size() && scan < rows.size()) return scan;
-  throw UsageError(fmt::format("--scan: '{}' is no scan of the result, expected worst or 0 to {}",
-                               text, static_cast<std::ptrdiff_t>(rows.size()) - 1));
+  const auto last = static_cast<std::ptrdiff_t>(rows.size()) - 1;
+  if (text == "worst") {
+    throw UsageError(
+        fmt::format("--scan: worst: no scan of the result has truth, expected 0 to {}", last));
+  }
+  throw UsageError(
+      fmt::format("--scan: '{}' is no scan of the result, expected worst or 0 to {}", text, last));
 }
 
 /// Throws UsageError for a scan that mosbench score left out.
@@ -143,7 +150,9 @@ Answer render(RenderFlags& options) {
   if (options.scan.has_value() == options.scans.has_value()) {
     throw UsageError("--scan or --scans: say which scans to draw, expected one of them");
   }
-  if (options.scan) check_output(options.out);
+  const std::string extension = options.out.extension().string();
+  const bool is_folder = options.scans && extension != ".mp4" && extension != ".gif";
+  check_output(is_folder ? options.out / "000000.png" : options.out);
   const FoundResult result = choose_result(options);
   const ResultScans scans(result, options.dataset_root);
   if (options.scans) return render_several(options, scans);

@@ -20,8 +20,8 @@ up to six of them side by side, and a colour shows where they disagree. Runs wit
 their precision over recall drawn. Points and labels are read again from where they were read,
 or points from --data.
 
---scans takes a list of K (that scan), A-B (from A to B), every:N (each N-th) and worst:N (the N worst),
-counted from 0, or one of
+--scans takes a list of K (that scan), A-B (from A to B), every:N (each N-th) and worst:N (the N
+worst), counted from 0, or one of
   auto   the worst tenth first, then scans spread evenly, as many as fit (default)
   all    from the first scan on, as many as fit
   none   numbers only; needs neither data set nor labels

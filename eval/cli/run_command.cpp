@@ -18,9 +18,9 @@ namespace {
 
 constexpr const char* kRunFooter =
     R"(Writes DIR/<sequence>/labels/<stem>.label (uint32 per point, 9 static, 251 moving) and
-DIR/<sequence>/result.json, and prints IoU, precision and recall, if there is truth, and ms per scan.
---scores adds DIR/<sequence>/scores/<stem>.score (float32 per point): what the method compares with
-its threshold; larger means more likely to move. `mosbench report` then colours points by it.
+DIR/<sequence>/result.json, and prints IoU, precision and recall, if there is truth, and ms per
+scan. --scores adds DIR/<sequence>/scores/<stem>.score (float32 per point): what the method compares
+with its threshold; larger means more likely to move. `mosbench report` then colours points by it.
 
 The same command again skips the sequences that are finished and starts an interrupted one again
 from its first scan, because a label may depend on every earlier scan. A sequence appears under DIR
@@ -29,30 +29,33 @@ another program or other input are kept unless --overwrite is given. DIR may hol
 data set, one method and one setting only. Input counts as the same while names, sizes, inodes and
 times of its files are; otherwise, and with --verify, all of it is read and compared.
 
---method all, or a list as in dynablox,yoon, runs one method after the other on each sequence, each to
-DIR/<method>/<sequence>, with the same protocol. Scans are read once: as many of a sequence as fit in 2 GiB,
-or in a quarter of the machine's memory, are kept for the next method and not counted as its memory. Poses of
---odometry are found once, but for --drop-moving. all is every method of `mosbench list methods` but hmm-mos-reference. All of it is
-checked before the first scan: a setting of --set, --config or --variant that one of the methods lacks is
-refused; --set METHOD.KEY=VALUE sets one method's. A method that fails then leaves the others as they are;
-the exit code is that of the first in the list that failed. `mosbench rank DIR` compares them.
+--method all, or a list as in dynablox,yoon, runs one method after the other on each sequence, each
+to DIR/<method>/<sequence>, with the same protocol. Scans are read once: as many of a sequence as
+fit in 2 GiB, or in a quarter of the machine's memory, are kept for the next method and not counted
+as its memory. Poses of --odometry are found once, but for --drop-moving. all is every method of
+`mosbench list methods` but hmm-mos-reference. All of it is checked before the first scan: a setting
+of --set, --config or --variant that one of the methods lacks is refused; --set METHOD.KEY=VALUE
+sets one method's. A method that fails then leaves the others as they are; the exit code is that of
+the first in the list that failed. `mosbench rank DIR` compares them.
 
---method exec:COMMAND starts a program of yours for each sequence, hands it the scans with their poses over
-stdin, and takes its labels from stdout (results/FORMATS.md has the messages, tests/examples/exec a
-client in Python and one in C++). In a list it comes last, as the command may hold commas. Finished
-sequences are kept, also when the program behind the command has changed: --overwrite runs them again.
+--method exec:COMMAND starts a program of yours for each sequence, hands it the scans with their
+poses over stdin, and takes its labels from stdout (results/FORMATS.md has the messages,
+tests/examples/exec a client in Python and one in C++). In a list it comes last, as the command may
+hold commas. Finished sequences are kept, also when the program behind the command has changed:
+--overwrite runs them again.
 
 Settings: defaults < --preset < --config FILE < --set. FILE holds a JSON object such as
   {"voxel_size_m": 0.25, "max_range_m": 50.0, "delay_scans": 10}
-`mosbench list methods` shows all settings, `mosbench list presets` the presets; --preset best is method
-hmm-mos-plus with its defaults, and with the voxels, the range and the protocol of the data set's own preset.
+`mosbench list methods` shows all settings, `mosbench list presets` the presets; --preset best is
+method hmm-mos-plus with its defaults, and with the voxels, the range and the protocol of the data
+set's own preset.
 
---odometry finds the poses before the method sees a scan and writes them to DIR/<sequence>/poses.txt;
-its settings are part of the configuration. Poses that it doubts are counted on stderr and in the
-remarks, in capitals where they are the most; unlike that of `mosbench odometry`, the exit code stays 0,
-because the labels are written. With
---drop-moving the method runs, online, beside the odometry, and what it finds moving in a scan stays
-out of the map that the next scans are registered to.
+--odometry finds the poses before the method sees a scan and writes them to
+DIR/<sequence>/poses.txt; its settings are part of the configuration. Poses that it doubts are
+counted on stderr and in the remarks, in capitals where they are the most; unlike that of `mosbench
+odometry`, the exit code stays 0, because the labels are written. With --drop-moving the method
+runs, online, beside the odometry, and what it finds moving in a scan stays out of the map that the
+next scans are registered to.
 
 Examples:
   mosbench run ~/sipailou-livox-kitti
@@ -62,7 +65,7 @@ Examples:
   mosbench run ~/kitti/sequences/08 --set max_range_m=30,voxel_size_m=0.2 --out results/runs/08-near
   mosbench run ~/kitti/sequences/08 --scores --out results/runs/08-scores
   mosbench run ~/kitti/sequences/08 --method all --out results/runs/08
-  mosbench run ~/kitti/sequences/08 --method hmm-mos,dynablox --set max_range_m=30,dynablox.level=point
+  mosbench run ~/kitti/sequences/08 --method hmm-mos,dynablox --set dynablox.level=point
   mosbench run ~/kitti/sequences/08 --method "exec:python3 my_network.py" --set timeout_s=120
   mosbench run ~/drive.bag --odometry simple --odometry-set min_range_m=1
   mosbench run ~/kitti-raw/0005 --point-times azimuth --deskew poses

@@ -22,11 +22,11 @@ namespace {
 constexpr const char* kScoreFooter =
     R"(Scores the predictions of any method as `mosbench run` scores its own. They are searched for in
 DIR/<sequence>/{predictions,labels}, DIR/<sequence>, DIR/sequences/<sequence>/predictions,
-DIR/<sequence>.{txt,csv} and, for one sequence, DIR/{predictions,labels} and DIR itself, which may be
-a file. The format is recognised and printed; `mosbench list formats` shows all. Every scan with truth
-needs a prediction; a missing file, one of the wrong size or one without a scan is an error, unless
---allow-missing leaves such scans out and marks the result. Under a protocol that is over a split of
-scans (helimos-test, mapmos), only those scans are scored and another --split is refused.
+DIR/<sequence>.{txt,csv} and, for one sequence, DIR/{predictions,labels} and DIR itself, which may
+be a file. The format is recognised and printed; `mosbench list formats` shows all. Every scan with
+truth needs a prediction; a missing file, one of the wrong size or one without a scan is an error,
+unless --allow-missing leaves such scans out and marks the result. Under a protocol that is over a
+split of scans (helimos-test, mapmos), only those scans are scored and another --split is refused.
 
 --protocol all prints the number of every protocol for the same labels, and why they differ.
 --out writes result.json files, which stats, compare and table read.
@@ -37,7 +37,7 @@ Examples:
   mosbench score ~/doals/station/sequence_1 --predictions clouds.csv --level object
   mosbench score ~/HeLiMOS/KAIST05/Deskewed_LiDAR --predictions 4dmos --protocol helimos-test \
     --method 4DMOS --setting delayed --out results/runs/4dmos-delayed
-  mosbench score ~/kitti/sequences/08 --predictions mapmos/sequences/08/predictions --mask 0,50 --json
+  mosbench score ~/kitti/sequences/08 --predictions mapmos/08/predictions --mask 0,50 --json
   mosbench score ~/kitti/sequences/08 --predictions mine --protocol all)";
 
 struct ScoreFlags {

@@ -14,11 +14,11 @@ namespace mosbench {
 namespace {
 
 constexpr const char* kStatsFooter =
-    R"(RUN and SECOND are folders that `mosbench run` or `mosbench score --out` wrote, or single result.json
-files. With one run: IoU, precision, recall and F1 of each sequence and of all, with 95 % intervals.
-With two: what the second changes, paired scan by scan, with interval, p-value and the smallest change
-that this number of scans can show. The runs may differ in method, setting and poses; protocol, scans
-and truth must be the same.
+    R"(RUN and SECOND are folders that `mosbench run` or `mosbench score --out` wrote, or single
+result.json files. With one run: IoU, precision, recall and F1 of each sequence and of all, with 95
+% intervals. With two: what the second changes, paired scan by scan, with interval, p-value and the
+smallest change that this number of scans can show. The runs may differ in method, setting and
+poses; protocol, scans and truth must be the same.
 
 Examples:
   mosbench stats results/runs/kitti

@@ -18,19 +18,20 @@ namespace mosbench {
 namespace {
 
 constexpr const char* kStudyFooter =
-    R"(FILE is a YAML file that names data, methods with settings, disturbances with strengths, seeds and the
-protocol; results/studies/README.md has all its keys and examples. Each combination is a cell with a key: the
-hash of everything that decides its result. Its result is one small file in DIR/cells, put there in one step.
+    R"(FILE is a YAML file that names data, methods with settings, disturbances with strengths, seeds and
+the protocol; results/studies/README.md has all its keys and examples. Each combination is a cell
+with a key: the hash of everything that decides its result. Its result is one small file in
+DIR/cells, put there in one step.
 
-  plan   counts the cells that are done and missing; --measure runs the first scans of each method on each
-         sequence, so that it can tell the hours; --json lists all cells with their keys
-  run    computes what is missing by Snakemake, on this machine or with --profile slurm on a cluster, and
-         prints the table; the same command goes on after a kill, and computes again what another version
-         of mosbench left; --yes above 100 cells
+  plan   counts the cells that are done and missing; --measure runs the first scans of each method
+         on each sequence, so that it can tell the hours; --json lists all cells with their keys
+  run    computes what is missing by Snakemake, on this machine or with --profile slurm on a
+         cluster, and prints the table; the same command goes on after a kill, and computes again
+         what another version of mosbench left; --yes above 100 cells
   cell   computes the cells with these keys, without Snakemake
-  table  prints what is there: means with 95 % intervals over sequences (of a single one over seeds), each
-         disturbance by strength, the Pareto front of IoU and time, ranks with critical difference.
-         The exit code is 1 while cells are missing or failed, which it names
+  table  prints what is there: means with 95 % intervals over sequences (of a single one over
+         seeds), each disturbance by strength, the Pareto front of IoU and time, ranks with critical
+         difference. The exit code is 1 while cells are missing or failed, which it names
 
 Examples:
   mosbench study plan results/studies/demo.yaml --measure
@@ -87,7 +88,8 @@ Answer plan_answer(const StudyPlan& plan, const StudyFlags& flags) {
   if (flags.measure) measure_costs(plan);
   const CostModel costs = read_costs(plan.out);
   if (flags.json) return {json_text(plan_json(plan, costs))};
-  return {fmt::format("{}\n{}\n", state_counts(plan), hours_text(work_of(plan, costs)))};
+  return {fmt::format("{}\n{}\nresults in {}\n", state_counts(plan),
+                      hours_text(work_of(plan, costs)), plan.out.string())};
 }
 
 Answer cell_answer(const StudyPlan& plan, const StudyFlags& flags) {
@@ -152,6 +154,7 @@ Answer run_answer(const Study& study, const StudyPlan& plan, const StudyFlags& f
 }
 
 Answer study(const StudyFlags& flags) {
+  check_output(flags.output);
   const Study study = read_study(flags.file);
   const std::filesystem::path out =
       flags.out.value_or(std::filesystem::path("results/runs") / flags.file.stem());

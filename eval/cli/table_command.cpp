@@ -13,8 +13,8 @@ namespace {
 constexpr const char* kTableFooter =
     R"(Prints a published table with the values measured here next to it: published, measured, difference,
 95 % interval, and a verdict: within (the published value lies in the interval), outside, or not
-comparable, with the reasons (simulated data, another protocol or setting, missing scans). Cells without
-results say what to download and which command fills them.
+comparable, with the reasons (simulated data, another protocol or setting, missing scans). Cells
+without results say what to download and which command fills them.
 
 RESULTS are folders that `mosbench run` or `mosbench score --out` wrote; a method named by
 `score --method` becomes a row, too. Published numbers come from results/published.csv.

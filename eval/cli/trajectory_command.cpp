@@ -1,16 +1,18 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <functional>
 #include <memory>
 #include <optional>
 
 #include "datasets/files/calib_file.hpp"
 #include "datasets/files/errors.hpp"
+#include "datasets/files/shell_text.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/cli/output_file.hpp"
+#include "eval/cli/suggested_command.hpp"
 #include "eval/cli/trajectory_plot.hpp"
 #include "eval/results/answer_text.hpp"
-#include "eval/results/shell_text.hpp"
 #include "eval/trajectory/path_comparison.hpp"
 #include "eval/trajectory/trajectory_scores.hpp"
 
@@ -19,18 +21,20 @@ namespace {
 
 constexpr const char* kTrajectoryFooter =
     R"(ESTIMATE and TRUTH are files of poses (KITTI: 12 numbers a row; TUM: stamp and quaternion; Dynablox
-rollouts), folders with files of the same names as `mosbench odometry` writes them, folders of `mosbench run
---odometry`, or data sets, whose poses are the LiDAR's. Rows are paired by stamps if both sides have them,
-else one by one.
+rollouts), folders with files of the same names as `mosbench odometry` writes them, folders of
+`mosbench run --odometry`, or data sets, whose poses are the LiDAR's. Rows are paired by stamps if
+both sides have them, else one by one.
 
-Prints the errors of KITTI's odometry benchmark, those of segments of 5 to 50 m for paths that are too
-short for it, and the absolute and relative pose errors (APE, RPE). Every answer states the alignment.
+Prints the errors of KITTI's odometry benchmark, those of segments of 5 to 50 m for paths that are
+too short for it, and the absolute and relative pose errors (APE, RPE). Every answer states the
+alignment.
 
-With OTHER, a second estimate of the same poses, also prints how much better or worse it is: differences
-paired by segments, their 95 % intervals and p-values, and the difference that as many poses would show.
+With OTHER, a second estimate of the same poses, also prints how much better or worse it is:
+differences paired by segments, their 95 % intervals and p-values, and the difference that as many
+poses would show.
 
---plot draws the paths from above and the distance to the truth over the way, as PNG; of folders with
-several sequences to FILE/<sequence>.png.
+--plot draws the paths from above and the distance to the truth over the way, as PNG; of folders
+with several sequences to FILE/<sequence>.png.
 
 A poses.txt of KITTI is in the camera frame. For an estimate in the LiDAR frame add
   --camera truth --calib calib.txt
@@ -72,10 +76,19 @@ struct ScoredEstimates {
   std::vector<TrajectoryScore> scores;
 };
 
+/// Where the paths of one of so many sequences are drawn.
+std::filesystem::path plot_file(const std::filesystem::path& out, const std::string& sequence,
+                                std::size_t sequences) {
+  return sequences == 1 ? out : out / (sequence + ".png");
+}
+
 ScoredEstimates scored_estimates(const std::filesystem::path& estimates,
                                  const TrajectoryFlags& flags, const ScoringRules& rules) {
   ScoredEstimates scored{read_trajectory_pairs(estimates, flags.truth, trajectory_options(flags)),
                          {}};
+  for (const TrajectoryPair& pair : scored.pairs) {
+    if (flags.plot) check_output(plot_file(*flags.plot, pair.name, scored.pairs.size()));
+  }
   for (const TrajectoryPair& pair : scored.pairs) scored.scores.push_back(score_of(pair, rules));
   return scored;
 }
@@ -109,7 +122,7 @@ void write_plots(const std::vector<TrajectoryScore>& first,
   for (std::size_t s = 0; s < first.size(); ++s) {
     std::vector<const TrajectoryScore*> estimates = {&first[s]};
     if (second != nullptr) estimates.push_back(&(*second)[s]);
-    write_output(first.size() == 1 ? out : out / (first[s].name + ".png"),
+    write_output(plot_file(out, first[s].name, first.size()),
                  trajectory_plot(estimates, alignment).png());
   }
 }
@@ -123,22 +136,23 @@ void check_plot(const TrajectoryFlags& flags) {
 }
 
 /// Says what to type, as two files may be an estimate with its truth or two estimates.
-void check_truth(const TrajectoryFlags& flags) {
+void check_truth(const TrajectoryFlags& flags, const CLI::App& command) {
   if (!flags.truth.empty()) return;
+  const std::string given = given_words(command, std::mem_fn(&CLI::Option::nonpositional));
   const std::string first = shell_word(flags.estimate.string());
   if (!flags.other) {
     throw UsageError(fmt::format(
-        "--truth: is missing, expected mosbench trajectory {} --truth TRUE_POSES", first));
+        "--truth: is missing, expected mosbench trajectory {} --truth TRUE_POSES{}", first, given));
   }
-  const std::string second = shell_word(flags.other->string());
-  throw UsageError(fmt::format(
-      "--truth: is missing, expected mosbench trajectory {0} --truth {1}, where {1} holds "
-      "the true poses, or mosbench trajectory {0} {1} --truth TRUE_POSES for two estimates",
-      first, second));
+  throw UsageError(
+      fmt::format("--truth: is missing, expected, where {1} holds the true poses,\n"
+                  "  mosbench trajectory {0} --truth {1}{2}\n"
+                  "or, for two estimates, mosbench trajectory {0} {1} --truth TRUE_POSES{2}",
+                  first, shell_word(flags.other->string()), given));
 }
 
-Answer trajectory_answer(const TrajectoryFlags& flags) {
-  check_truth(flags);
+Answer trajectory_answer(const TrajectoryFlags& flags, const CLI::App& command) {
+  check_truth(flags, command);
   if (flags.other && flags.relative.delta_m) {
     throw UsageError(
         "--delta-m: cuts each estimate by its own path, expected --delta for two estimates");
@@ -200,7 +214,7 @@ CommandRun add_trajectory(CLI::App& command) {
       "Print the absolute errors of every pose as CSV; of two estimates the differences");
   command.add_flag("--json", flags->json, "Print JSON instead of a table");
   command.footer(kTrajectoryFooter);
-  return [flags] { return trajectory_answer(*flags); };
+  return [flags, &command] { return trajectory_answer(*flags, command); };
 }
 
 }  // namespace mosbench

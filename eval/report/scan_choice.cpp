@@ -85,7 +85,8 @@ std::vector<std::size_t> ScanChoice::wanted(const std::vector<ScanRow>& rows) co
     order.push_back(k);
   };
   const auto take_worst = [&](std::size_t count) {
-    const std::vector<std::size_t> worst = worst_first(rows);
+    std::vector<std::size_t> worst = worst_first(rows);
+    std::erase_if(worst, [&](std::size_t k) { return !rows[k].counts; });
     for (std::size_t i = 0; i < std::min(count, worst.size()); ++i) take(worst[i]);
   };
   for (const Part& part : parts_) {

@@ -17,7 +17,8 @@ class ScanChoice {
 
   bool none() const { return parts_.empty(); }
   /// Returns scan indices in order of preference without duplicates; those after the sequence's end
-  /// are left out. "auto" prefers the worst tenth, then scans spread evenly and ever more densely.
+  /// are left out, of the worst also those without truth. "auto" prefers the worst tenth, then
+  /// scans spread evenly and ever more densely.
   std::vector<std::size_t> wanted(const std::vector<ScanRow>& rows) const;
 
  private:

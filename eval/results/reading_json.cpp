@@ -6,8 +6,8 @@
 
 #include "datasets/files/bin_columns.hpp"
 #include "datasets/files/errors.hpp"
+#include "datasets/files/shell_text.hpp"
 #include "datasets/sequence/scan_deskewer.hpp"
-#include "eval/results/shell_text.hpp"
 
 namespace mosbench {
 namespace {
@@ -83,6 +83,7 @@ ordered_json told_json(const ReadingOptions& options) {
   }
   if (options.topic) json["topic"] = *options.topic;
   if (options.map_frame) json["map_frame"] = *options.map_frame;
+  if (options.pose_topic) json["pose_topic"] = *options.pose_topic;
   if (options.deskew) json["deskew"] = std::string(to_string(*options.deskew));
   if (options.point_times) {
     json["point_times"] = options.point_times == PointTimes::kColumn ? "column" : "azimuth";
@@ -103,6 +104,7 @@ ReadingOptions told_from_json(const ordered_json& json) {
   take<double>(json, "max_pose_gap_s", options.max_pose_gap_s);
   take<std::string>(json, "topic", options.topic);
   take<std::string>(json, "map_frame", options.map_frame);
+  take<std::string>(json, "pose_topic", options.pose_topic);
   if (json.value("raw_scans", false)) options.deskew = Deskew::kNone;  // of earlier results
   take_word(json, "deskew", options.deskew, deskew_named);
   take_word(json, "point_times", options.point_times, point_times_named);

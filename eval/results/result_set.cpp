@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <stdexcept>
 
 #include "datasets/files/errors.hpp"
@@ -147,6 +148,27 @@ void add_to_runs(SequenceResult result, std::vector<ResultSet>& sets, const fs::
   set->sequences.push_back(std::move(result));
 }
 
+/// Whether two runs have the same sequence.
+bool has_twins(const std::vector<ResultSet>& runs) {
+  std::set<SequenceName> names;
+  for (const ResultSet& run : runs) {
+    for (const SequenceResult& sequence : run.sequences) {
+      if (!names.insert(sequence.sequence).second) return true;
+    }
+  }
+  return false;
+}
+
+/// One run of several, as jobs of a cluster leave a folder each.
+ResultSet joined(std::vector<ResultSet> runs) {
+  ResultSet whole = std::move(runs.front());
+  for (std::size_t i = 1; i < runs.size(); ++i) {
+    std::ranges::move(runs[i].sequences, std::back_inserter(whole.sequences));
+  }
+  std::ranges::sort(whole.sequences, {}, &SequenceResult::sequence);
+  return whole;
+}
+
 /// The folders to give instead of the one that holds them all: ": one of a, b"; nothing where runs
 /// share a folder.
 std::string folders_text(const std::vector<ResultSet>& sets) {
@@ -188,6 +210,31 @@ std::vector<ResultSet> load_result_sets(const fs::path& path) {
   std::vector<SequenceResult> results;
   for (const fs::path& file : result_files(path)) results.push_back(read_sequence_result(file));
   return sorted_into_runs(std::move(results), path);
+}
+
+std::vector<ResultSet> load_runs_of_folders(const fs::path& path) {
+  std::map<fs::path, std::vector<SequenceResult>> places;
+  for (const fs::path& file : result_files(path)) {
+    SequenceResult result = read_sequence_result(file);
+    const fs::path folder = folder_of_run(file.parent_path(), result.sequence);
+    places[folder].push_back(std::move(result));
+  }
+  std::vector<std::vector<ResultSet>> of_setting;
+  for (auto& [folder, results] : places) {
+    for (ResultSet& run : sorted_into_runs(std::move(results), path)) {
+      const auto known = std::ranges::find_if(of_setting, [&](const auto& runs) {
+        return same_run(runs.front().front(), run.front());
+      });
+      auto& runs = known == of_setting.end() ? of_setting.emplace_back() : *known;
+      runs.push_back(std::move(run));
+    }
+  }
+  std::vector<ResultSet> all;
+  for (std::vector<ResultSet>& runs : of_setting) {
+    if (!has_twins(runs)) runs = {joined(std::move(runs))};
+    std::ranges::move(runs, std::back_inserter(all));
+  }
+  return all;
 }
 
 ResultSet load_result_set(const fs::path& path) {

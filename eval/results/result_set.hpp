@@ -60,8 +60,12 @@ std::vector<ResultSet> sorted_into_runs(std::vector<SequenceResult> results,
 /// there is none, or as `sorted_into_runs`.
 std::vector<ResultSet> load_result_sets(const std::filesystem::path& path);
 
-/// The same where there has to be a single run; throws DataError naming two files that differ, and
-/// the folders of all runs where they have one each.
+/// The same, except that results of one setting which have a sequence twice are a run per folder,
+/// see `folder_of_run`.
+std::vector<ResultSet> load_runs_of_folders(const std::filesystem::path& path);
+
+/// Like load_result_sets where there has to be a single run; throws DataError naming two files that
+/// differ, and the folders of all runs where they have one each.
 ResultSet load_result_set(const std::filesystem::path& path);
 
 /// Returns "runs/mine" for the result of sequence 00 in runs/mine/00; the folder itself where it is

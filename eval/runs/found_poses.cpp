@@ -27,13 +27,16 @@ void check_stamps_of_tum(const Sequence& sequence) {
   for (std::size_t k = 0; k < sequence.size(); ++k) {
     const auto stamp_ns = sequence.stamp_ns(k);
     if (!stamp_ns) {
-      throw UsageError(fmt::format("--format tum: the scans of {} have no stamps, expected kitti",
-                                   sequence.name()));
+      throw UsageError(fmt::format(
+          "TUM rows (a file called *.tum, or --format tum) have stamps, but the scans of {} have "
+          "none, expected --format kitti or a file called *.txt",
+          sequence.name()));
     }
     if (k == 0 || *stamp_ns > *sequence.stamp_ns(k - 1)) continue;
     throw UsageError(
-        fmt::format("--format tum: the stamp of scan {} of {} is not after that of the one before, "
-                    "expected kitti, which has no stamps",
+        fmt::format("TUM rows (a file called *.tum, or --format tum) are in the order of their "
+                    "stamps, but that of scan {} of {} is not after the one before, expected "
+                    "--format kitti or a file called *.txt, which have no stamps",
                     sequence.stem(k), sequence.name()));
   }
 }

@@ -49,7 +49,7 @@ fs::path path_of(const YamlNode& node, const fs::path& file) {
 
 ReadingOptions reading_of_study(const YamlNode& node, const fs::path& file) {
   node.check_keys({"poses", "pose_format", "pose_frame", "pose_direction", "max_pose_gap_s",
-                   "topic", "map_frame", "deskew", "point_times", "bin_columns",
+                   "topic", "map_frame", "pose_topic", "deskew", "point_times", "bin_columns",
                    "moving_speed_m_s"});
   nlohmann::ordered_json json = nlohmann::ordered_json::object();
   for (const auto& [key, value] : node.members()) {

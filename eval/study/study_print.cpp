@@ -49,7 +49,9 @@ std::vector<std::string> cells_of(const StudyTable& table, const StudyCurve& cur
 }
 
 std::string remarks_text(const StudyTable& table) {
-  std::string text;
+  std::string text =
+      "+- is half of the 95 % interval of the mean over sequences, of one sequence over seeds\n";
+  text += fmt::format("results in {}\n", table.out);
   if (table.critical_difference) {
     text += fmt::format(
         "Mean ranks over {} sequences, each by the mean IoU over all disturbances, differ at 5 % "

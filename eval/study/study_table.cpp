@@ -7,8 +7,8 @@
 #include <map>
 #include <utility>
 
+#include "datasets/files/shell_text.hpp"
 #include "eval/results/reading_json.hpp"
-#include "eval/results/shell_text.hpp"
 #include "eval/statistics/distributions.hpp"
 #include "eval/statistics/pareto_front.hpp"
 #include "eval/study/study_cell.hpp"
@@ -207,11 +207,11 @@ std::string command_for(const StudyPlan& plan, const StudyCell& cell) {
   ReadingOptions reading = cell.data->reading;
   reading.perturb = cell.perturb();
   command += told_flags(reading);
-  if (cell.data->dataset != "auto") command += " --dataset " + cell.data->dataset;
-  if (plan.study->protocol) command += " --protocol " + *plan.study->protocol;
-  if (plan.study->range) command += " --range " + *plan.study->range;
-  if (cell.method->preset) command += " --preset " + *cell.method->preset;
-  if (!cell.odometry.empty()) command += " --odometry " + cell.odometry;
+  if (cell.data->dataset != "auto") command += " --dataset " + shell_word(cell.data->dataset);
+  if (plan.study->protocol) command += " --protocol " + shell_word(*plan.study->protocol);
+  if (plan.study->range) command += " --range " + shell_word(*plan.study->range);
+  if (cell.method->preset) command += " --preset " + shell_word(*cell.method->preset);
+  if (!cell.odometry.empty()) command += " --odometry " + shell_word(cell.odometry);
   for (const auto& set : cell.identity.at("set")) {
     command += " --set " + shell_word(set.get<std::string>());
   }
@@ -272,6 +272,7 @@ void count_cells(const StudyPlan& plan, StudyTable& table) {
 StudyTable gather(const StudyPlan& plan) {
   StudyTable table;
   table.name = plan.study->name;
+  table.out = plan.out.string();
   const DoneCells cells(plan);
   for (const std::string& label : cells.labels) table.rows.push_back(row_of(cells, label));
   mark_front(table.rows);

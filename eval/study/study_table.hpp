@@ -53,6 +53,7 @@ struct StudyWorst {
 /// All that a study found.
 struct StudyTable {
   std::string name;
+  std::string out;         ///< folder of the results
   bool simulated = false;  ///< any of its data
   std::vector<StudyRow> rows;
   std::vector<StudyCurve> curves;

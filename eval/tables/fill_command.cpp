@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "datasets/files/shell_text.hpp"
 #include "eval/protocols/protocol.hpp"
-#include "eval/results/shell_text.hpp"
 #include "eval/tables/table_match.hpp"
 
 namespace mosbench {
@@ -43,7 +43,8 @@ const Preset& nearest_preset(DatasetKind dataset, const MethodKind& method,
 
 std::string run_command(const PaperTable& table, const TableColumn& column, const Preset& preset) {
   return fmt::format("mosbench run DIR --dataset {} --sequences {} --preset {}",
-                     to_string(table.dataset), fmt::join(column.sequences, ","), preset.name);
+                     to_string(table.dataset),
+                     shell_word(fmt::format("{}", fmt::join(column.sequences, ","))), preset.name);
 }
 
 std::string run_command(const PaperTable& table, const TableColumn& column,

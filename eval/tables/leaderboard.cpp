@@ -166,6 +166,23 @@ void add_settings_and_warnings(Leaderboard& board) {
 
 }  // namespace
 
+void add_folders_of_twins(Leaderboard& board) {
+  const auto looks_like = [&](std::size_t a, std::size_t b) {
+    return board.rows[a].run->front().method == board.rows[b].run->front().method &&
+           std::ranges::all_of(board.differing, [&](const DifferingSetting& setting) {
+             return setting.values[a] == setting.values[b];
+           });
+  };
+  bool any = false;
+  DifferingSetting folders{"folder", {}};
+  for (std::size_t a = 0; a < board.rows.size(); ++a) {
+    for (std::size_t b = 0; b < a; ++b) any = any || looks_like(a, b);
+    const SequenceResult& first = board.rows[a].run->front();
+    folders.values.emplace_back(folder_of_run(first.file.parent_path(), first.sequence).string());
+  }
+  if (any) board.differing.insert(board.differing.begin(), std::move(folders));
+}
+
 std::vector<std::vector<ResultSet>> comparable_runs(const std::vector<ResultSet>& runs) {
   std::vector<std::vector<ResultSet>> groups;
   for (const ResultSet& run : runs) {

@@ -33,6 +33,10 @@ struct Leaderboard {
 /// they come; runs without truth are left out.
 std::vector<std::vector<ResultSet>> comparable_runs(const std::vector<ResultSet>& runs);
 
+/// Adds the folders of the runs to what differs, where nothing else tells two rows of a method
+/// apart.
+void add_folders_of_twins(Leaderboard& board);
+
 /// Which row comes first, to which the others are compared.
 enum class RowOrder {
   kIou,   ///< the best, those without IoU last

@@ -44,5 +44,24 @@ TEST(Breakdown, TellsSpeedsByTheStampsOrAsIfAt10Hz) {
   EXPECT_THAT(text.out, HasSubstr("0.5 to 1 m/s"));
 }
 
+TEST(Breakdown, OfAFolderOfResultsFindsDataLabelsAndRules) {
+  const TempFolder folder;
+  cli::write_small_sequence(folder / "room", kScansOfBreakdown);
+  const std::string run = folder / "run";
+  ASSERT_EQ(cli::run({"run", folder / "room", "--protocol", "mapmos", "--out", run}).exit_code, 0);
+  const cli::Answer told = cli::run(
+      {"breakdown", folder / "room", "--predictions", run, "--protocol", "mapmos", "--json"});
+  const cli::Answer found = cli::run({"breakdown", run, "--json"});
+  ASSERT_EQ(found.exit_code, 0) << found.err;
+  EXPECT_EQ(found.out, told.out);
+  EXPECT_EQ(cli::run({"breakdown", run, "--sequences", "room", "--json"}).out, told.out);
+
+  const cli::Answer twice = cli::run({"breakdown", run, "--protocol", "mapmos"});
+  EXPECT_EQ(twice.exit_code, 2);
+  EXPECT_THAT(twice.err, HasSubstr("--protocol mapmos: is told by the results already"));
+  EXPECT_EQ(cli::run({"breakdown", run, "--sequences", "hall"}).exit_code, 2);
+  EXPECT_THAT(cli::run({"breakdown", folder / "room"}).err, HasSubstr("--predictions: is missing"));
+}
+
 }  // namespace
 }  // namespace mosbench

@@ -16,6 +16,15 @@ using testing::HasSubstr;
 using testing::Not;
 using testing::StartsWith;
 
+/// The width of a page in a terminal beside another.
+void expect_narrow(const std::string& help, const std::string& name) {
+  constexpr std::size_t kColumns = 100;
+  std::istringstream lines(help);
+  for (std::string line; std::getline(lines, line);) {
+    EXPECT_LE(line.size(), kColumns) << name << ": " << line;
+  }
+}
+
 TEST(Help, OfTheProgramNamesEveryCommand) {
   const cli::Answer answer = cli::run({"--help"});
   EXPECT_EQ(answer.exit_code, 0);
@@ -25,9 +34,10 @@ TEST(Help, OfTheProgramNamesEveryCommand) {
     EXPECT_THAT(answer.out, ContainsRegex(fmt::format("\n  {} +{}\n", command.name, command.help)));
   }
   EXPECT_EQ(cli::run({"help"}).out, answer.out);
+  expect_narrow(answer.out, "mosbench");
 }
 
-TEST(Help, OfEveryCommandShowsUsageAndExamplesWithin110Columns) {
+TEST(Help, OfEveryCommandShowsUsageAndExamplesWithin100Columns) {
   ASSERT_GE(commands().size(), 16U);
   for (const Command& command : commands()) {
     const std::string name(command.name);
@@ -38,10 +48,7 @@ TEST(Help, OfEveryCommandShowsUsageAndExamplesWithin110Columns) {
     EXPECT_THAT(answer.out, HasSubstr("Usage: mosbench " + name + " ")) << name;
     EXPECT_THAT(answer.out, HasSubstr("Examples:\n  mosbench " + name)) << name;
     EXPECT_EQ(cli::run({"help", name}).out, answer.out) << name;
-    std::istringstream lines(answer.out);
-    for (std::string line; std::getline(lines, line);) {
-      EXPECT_LE(line.size(), 110U) << name << ": " << line;
-    }
+    expect_narrow(answer.out, name);
   }
 }
 
@@ -100,7 +107,10 @@ TEST(Usage, RefusesAFolderAsOutputBeforeTheWork) {
        std::vector<std::vector<std::string>>{{"report", nothing, "-o", out},
                                              {"render", nothing, "--scan", "0", "-o", out},
                                              {"curve", nothing, "-o", out},
-                                             {"compare", nothing, nothing, "--summary", out}}) {
+                                             {"compare", nothing, nothing, "--summary", out},
+                                             {"profile", nothing, "--json", out},
+                                             {"profile", nothing, "--trace", out},
+                                             {"study", "table", nothing, "-o", out}}) {
     const cli::Answer answer = cli::run(words);
     EXPECT_EQ(answer.exit_code, 3) << words[0];
     EXPECT_THAT(answer.err, HasSubstr(out + ": is a folder, expected a file to write")) << words[0];

@@ -114,6 +114,9 @@ TEST_F(OdometryCommand, ComparesTwoEstimatesAndDrawsThem) {
   EXPECT_THAT(text.out, HasSubstr("no interval for RPE m: 7 scans, expected at least 100"));
   EXPECT_THAT(text.out, HasSubstr("no interval for APE m: one bad motion shifts all later"));
   EXPECT_EQ(read_file(folder_ / "paths.png").substr(1, 3), "PNG");
+  const cli::Answer refused = asked({"--plot", path("")});
+  EXPECT_EQ(refused.exit_code, 3);
+  EXPECT_THAT(refused.err, HasSubstr("is a folder, expected a file to write"));
   const ordered_json json = ordered_json::parse(asked({"--json"}).out);
   const ordered_json& rpe = json.at("difference").at("relative_translation_m");
   EXPECT_DOUBLE_EQ(rpe.at("value"), rpe.at("second").get<double>() - rpe.at("first").get<double>());
@@ -201,8 +204,8 @@ TEST_F(OdometryCommand, RefusesWhatIsWrong) {
 TEST_F(OdometryCommand, IsOfferedWherePosesAreMissing) {
   const cli::Answer answer = run({"run", path("sim"), "--out", path("runs")});
   EXPECT_EQ(answer.exit_code, 3);
-  EXPECT_THAT(answer.err,
-              HasSubstr("mosbench run " + calib_.parent_path().string() + " --odometry simple"));
+  EXPECT_THAT(answer.err, HasSubstr("\n  mosbench run " + path("sim") + " --out " + path("runs") +
+                                    " --odometry simple\n"));
 }
 
 TEST_F(OdometryCommand, GivesARunItsPosesAndItsIdentity) {

@@ -99,6 +99,30 @@ TEST_F(Render, LeavesNoVideoWhereFfmpegFailsOrIsNotThere) {
   EXPECT_TRUE(std::filesystem::exists(folder_ / "v/000002.png"));
 }
 
+TEST_F(Render, KnowsNoWorstScanWithoutTruth) {
+  std::filesystem::remove_all(folder_ / "00/labels");
+  const std::string bare = folder_ / "runs/bare";
+  ASSERT_EQ(cli::run({"run", folder_ / "00", "--out", bare}).exit_code, 0);
+  const cli::Answer one = cli::run({"render", bare, "--scan", "worst", "-o", folder_ / "w.png"});
+  EXPECT_EQ(one.exit_code, 2);
+  EXPECT_THAT(one.err,
+              HasSubstr("--scan: worst: no scan of the result has truth, expected 0 to 7"));
+  EXPECT_EQ(cli::run({"render", bare, "--scans", "worst:2", "-o", folder_ / "pictures"}).exit_code,
+            2);
+}
+
+TEST_F(Render, RefusesPlacesThatCanHoldNoPicturesBeforeTheWork) {
+  folder_.write("file", "");
+  std::filesystem::create_directories(folder_ / "folder.mp4");
+  for (const auto& [out, wrong] :
+       {std::pair{"file", "is no folder"}, std::pair{"folder.mp4", "is a folder"}}) {
+    const cli::Answer answer =
+        cli::run({"render", folder_ / "nothing", "--scans", "1-2", "-o", folder_ / out});
+    EXPECT_EQ(answer.exit_code, 3);
+    EXPECT_THAT(answer.err, HasSubstr(wrong));
+  }
+}
+
 TEST_F(Render, RefusesScansAndSequencesThatAreNotThere) {
   for (const char* scan : {"8", "-1", "best", ""}) {
     const cli::Answer answer = cli::run({"render", run(), "--scan", scan, "-o", folder_ / "r.png"});

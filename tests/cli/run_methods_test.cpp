@@ -191,6 +191,25 @@ TEST_F(RunMethods, AreRanked) {
   EXPECT_THAT(refused.err, HasSubstr("protocol is semantickitti-mos and mapmos"));
 }
 
+TEST_F(RunMethods, WithOneSettingAreRankedByTheirFolders) {
+  for (const char* name : {"first", "second"}) {
+    ASSERT_EQ(cli::run({"run", folder_ / "room", "--method", "underwood", "--out",
+                        folder_.path() / "runs" / name})
+                  .exit_code,
+              0);
+  }
+  const auto board =
+      nlohmann::json::parse(cli::run({"rank", folder_ / "runs", "--format", "json"}).out);
+  ASSERT_EQ(board.at("rows").size(), 2U);
+  const cli::Answer text = cli::run({"rank", folder_ / "runs"});
+  EXPECT_EQ(text.exit_code, 0);
+  EXPECT_THAT(text.out, HasSubstr("folder"));
+  for (const char* name : {"runs/first", "runs/second"}) EXPECT_THAT(text.out, HasSubstr(name));
+  // What takes one run names them.
+  const cli::Answer refused = cli::run({"stats", folder_ / "runs"});
+  EXPECT_EQ(refused.exit_code, 3);
+}
+
 TEST(MethodChoice, OfAllIsEveryMethodOfThisBuildButTwins) {
   const MethodChoice all = chosen_methods("all");
   std::vector<std::string> expected;

@@ -16,6 +16,7 @@ READING = (
     "max_pose_gap_s",
     "topic",  # of a bag
     "map_frame",  # of a bag's tf tree
+    "pose_topic",  # of a bag
     "raw_scans",  # True: as deskew="none"
     "point_times",  # "column" or "azimuth"
     "deskew",  # "none", "velocity" or "poses"

@@ -46,7 +46,7 @@ TEST_F(AnyRecording, IsAFolderOfScansWithItsPoses) {
     folder_.write(std::string("drive/") + name, std::string(32, '\0'));
   }
   EXPECT_THAT(error_of_opening("drive"),
-              AllOf(HasSubstr("poses.txt: does not exist"), HasSubstr("--odometry simple")));
+              AllOf(HasSubstr("poses.txt: does not exist"), HasSubstr("found by odometry")));
   folder_.write("drive/poses.txt", kTwoPoses);
   const Dataset dataset = opened("drive");
   EXPECT_EQ(dataset.kind, DatasetKind::kRecording);

@@ -493,7 +493,7 @@ TEST_F(Ros2Bag, NamesTheFramesOfOdometryThatDoesNotLeadToTheSensor) {
     return odometry(stamp_ns, x_m, "base");
   };
   EXPECT_THAT(error_of(with_poses("nav_msgs/msg/Odometry", of_base).str()),
-              AllOf(HasSubstr("Odometry: base, odom)"), HasSubstr("--odometry simple")));
+              AllOf(HasSubstr("Odometry: base, odom)"), HasSubstr("found by odometry")));
 }
 
 TEST_F(Ros2Bag, TakesNoSinglePoseForTheWayOfTheSensor) {
@@ -509,7 +509,14 @@ TEST_F(Ros2Bag, AsksWhichOfSeveralTopicsOfPosesIsMeant) {
   for (auto& chunk : bag.chunks) {
     chunk.push_back({2, chunk[0].recorded_ns, chunk[0].message});
   }
-  EXPECT_THAT(error_of(bag.str()), HasSubstr("has poses in the topics /gps, /pose"));
+  EXPECT_THAT(error_of(bag.str()), AllOf(HasSubstr("has poses in the topics /gps, /pose"),
+                                         HasSubstr("one of them in --pose-topic")));
+  const BagSequence recording("s", write(bag.str()), {.pose_topic = "/gps"});
+  expect_good(recording);
+  EXPECT_THAT(recording.remarks(), Contains(HasSubstr("poses from the bag: /gps")));
+  EXPECT_THAT(
+      message_of<DataError>([&] { BagSequence("s", write(bag.str()), {.pose_topic = "/imu"}); }),
+      HasSubstr("has no topic of poses /imu, expected one of /gps, /pose"));
 }
 
 /// A CustomMsg with the points of kRos2Points, 50 ms apart.

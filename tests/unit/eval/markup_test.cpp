@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
+#include "datasets/files/shell_text.hpp"
 #include "eval/results/latex.hpp"
 #include "eval/results/markdown.hpp"
-#include "eval/results/shell_text.hpp"
 
 namespace mosbench {
 namespace {

@@ -44,6 +44,15 @@ TEST(ScanChoice, ReadsListsInTheOrderOfTheirWords) {
   EXPECT_EQ(ScanChoice("every:18446744073709551615").wanted(rows), (Scans{0}));
 }
 
+TEST(ScanChoice, KnowsNoWorstScansWithoutTruth) {
+  auto rows = rows_with({4, 5, 6});
+  rows[2].counts.reset();
+  EXPECT_EQ(ScanChoice("worst:9").wanted(rows), (Scans{1, 0}));
+  EXPECT_EQ(ScanChoice("auto").wanted(rows), (Scans{1, 0, 2}));
+  for (ScanRow& row : rows) row.counts.reset();
+  EXPECT_TRUE(ScanChoice("worst:1").wanted(rows).empty());
+}
+
 TEST(ScanChoice, AutoWantsTheWorstTenthAndThenEveryScanOnce) {
   for (const std::size_t n : {1U, 2U, 3U, 10U, 33U, 64U, 100U}) {
     std::vector<std::uint64_t> false_points(n, 0);

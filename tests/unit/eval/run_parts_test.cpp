@@ -41,6 +41,7 @@ TEST(ReadingJson, KeepsWhatTheUserTold) {
                                .max_pose_gap_s = 1.5,
                                .topic = "/os1",
                                .map_frame = "map",
+                               .pose_topic = "/gps",
                                .deskew = Deskew::kVelocity,
                                .point_times = PointTimes::kColumn,
                                .bin_columns = 5,
@@ -54,6 +55,7 @@ TEST(ReadingJson, KeepsWhatTheUserTold) {
   EXPECT_EQ(read.max_pose_gap_s, told.max_pose_gap_s);
   EXPECT_EQ(read.topic, told.topic);
   EXPECT_EQ(read.map_frame, told.map_frame);
+  EXPECT_EQ(read.pose_topic, told.pose_topic);
   EXPECT_EQ(read.deskew, told.deskew);
   EXPECT_EQ(read.point_times, told.point_times);
   EXPECT_EQ(told_from_json(told_json({.deskew = Deskew::kNone})).deskew, Deskew::kNone);

@@ -1,4 +1,4 @@
-#include "eval/results/shell_text.hpp"
+#include "datasets/files/shell_text.hpp"
 
 #include <algorithm>
 
