@@ -7,6 +7,7 @@
 #include <mutex>
 
 #include "core/base/thread_pool.hpp"
+#include "eval/breakdown/scan_times.hpp"
 #include "eval/results/progress.hpp"
 
 namespace mosbench {
@@ -14,8 +15,6 @@ namespace {
 
 /// Largest clusters of false positives that are kept per scan; the rest are mostly single points.
 constexpr std::size_t kFalseClustersPerScan = 50;
-/// Assumed without stamps: the LiDARs of all supported data sets turn at 10 Hz.
-constexpr double kScanPeriod_s = 0.1;
 
 std::vector<ScanBreakdown> per_scan(const Sequence& sequence, const std::vector<std::size_t>& scans,
                                     const Predictions& predictions, const BreakdownTask& task) {
@@ -35,22 +34,6 @@ std::vector<ScanBreakdown> per_scan(const Sequence& sequence, const std::vector<
     }
   });
   return parts;
-}
-
-/// Returns the scan times in seconds since the first; nullopt unless every scan has a stamp and the
-/// stamps increase.
-std::optional<std::vector<double>> stamped_times_s(const Sequence& sequence,
-                                                   const std::vector<std::size_t>& scans) {
-  std::vector<double> times_s;
-  std::optional<std::int64_t> first_ns;
-  for (const std::size_t k : scans) {
-    const std::optional<std::int64_t> stamp_ns = sequence.stamp_ns(k);
-    if (!stamp_ns) return std::nullopt;
-    if (!first_ns) first_ns = stamp_ns;
-    times_s.push_back(static_cast<double>(*stamp_ns - *first_ns) * 1e-9);
-    if (times_s.size() > 1 && times_s.back() <= times_s[times_s.size() - 2]) return std::nullopt;
-  }
-  return times_s;
 }
 
 template <std::size_t size>
@@ -94,15 +77,14 @@ SequenceBreakdown break_down(const Sequence& sequence, const std::vector<std::si
   breakdown.sequence = sequence.name();
   breakdown.scans = scans;
   for (std::size_t k = 0; k < sequence.size(); ++k) breakdown.stems.push_back(sequence.stem(k));
-  const auto times_s = stamped_times_s(sequence, scans);
-  breakdown.stamped = times_s.has_value();
+  const ScanTimes times = scan_times(sequence, scans);
+  breakdown.stamped = times.stamped;
   std::vector<ScanObjects> objects;
   std::vector<ScanBreakdown> parts = per_scan(sequence, scans, predictions, task);
   for (std::size_t i = 0; i < scans.size(); ++i) {
     add(parts[i].by_range, breakdown.by_range);
     add(parts[i].by_height, breakdown.by_height);
-    const double time_s = times_s ? (*times_s)[i] : static_cast<double>(scans[i]) * kScanPeriod_s;
-    objects.push_back({scans[i], time_s, std::move(parts[i].objects)});
+    objects.push_back({scans[i], times.times_s[i], std::move(parts[i].objects)});
     for (const ScanCluster& cluster : parts[i].false_positives) {
       breakdown.false_positives.push_back({scans[i], cluster});
     }

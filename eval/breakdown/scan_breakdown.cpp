@@ -8,10 +8,6 @@
 namespace mosbench {
 namespace {
 
-/// Cells of clusters: larger than the gaps between returns on an object up to about 50 m, smaller
-/// than the distance between two pedestrians.
-constexpr double kClusterCell_m = 0.5;
-
 template <std::size_t size>
 std::size_t bin_of(const std::array<double, size>& edges, double value) {
   const auto above = std::upper_bound(edges.begin(), edges.end(), value);

@@ -25,9 +25,14 @@ struct ScanCluster {
   std::size_t points = 0;
   std::size_t found = 0;  ///< points of it that are predicted moving
   Eigen::Vector3d centre_map_m = Eigen::Vector3d::Zero();
-  double range_m = 0.0;  ///< of the centre from the sensor
-  double size_m = 0.0;   ///< diagonal of the box around the points
+  double range_m = 0.0;   ///< of the centre from the sensor
+  double size_m = 0.0;    ///< diagonal of the box around the points
+  std::size_t place = 0;  ///< among the clusters of its scan, for who made them
 };
+
+/// Edge of the cells of clusters, metres: larger than the gaps between returns on an object up to
+/// about 50 m, smaller than the distance between two pedestrians.
+inline constexpr double kClusterCell_m = 0.5;
 
 /// Counts of one scan by range, height and object.
 struct ScanBreakdown {

@@ -11,7 +11,7 @@ std::span<const Command> commands() {
       Command{"profile", "Show where the time of a run goes", add_profile},
       Command{"score", "Score the predictions of any method", add_score},
       Command{"report", "Write an HTML page that shows results", add_report},
-      Command{"render", "Draw one scan of a result from above", add_render},
+      Command{"render", "Draw scans of a result as pictures or a video", add_render},
       Command{"curve", "Draw precision over recall for all thresholds of the scores", add_curve},
       Command{"table", "Print a published table with measured values next to it", add_table},
       Command{"reproduce", "Run all that a table of the paper needs", add_reproduce},

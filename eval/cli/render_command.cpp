@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <charconv>
 #include <memory>
+#include <numbers>
 #include <optional>
 #include <set>
 
@@ -12,8 +13,9 @@
 #include "eval/cli/output_file.hpp"
 #include "eval/cli/picture_sequence.hpp"
 #include "eval/protocols/metrics.hpp"
-#include "eval/report/birds_eye.hpp"
+#include "eval/report/result_boxes.hpp"
 #include "eval/report/scan_choice.hpp"
+#include "eval/report/scan_picture.hpp"
 #include "eval/results/progress.hpp"
 #include "eval/results/result_set.hpp"
 
@@ -21,19 +23,32 @@ namespace mosbench {
 namespace {
 
 constexpr const char* kRenderFooter =
-    R"(Draws one scan from above, without browser or graphics card: true and false points, their counts,
-range rings in metres. K counts from 0; "worst" is the scan with the most false points, not one in
-which the method did not look for motion yet. RESULT is of `mosbench run` or `mosbench score --out`;
-points and labels are read again from where they were read then, or points from --data.
---scans draws several, given as for `mosbench report` (A-B, every:N, all), to a video (.mp4 or .gif,
-by ffmpeg, which `apt-get install ffmpeg` brings) or else to a folder, a PNG file each.
+    R"(Draws one scan without browser or graphics card: true and false points, their counts, range rings
+in metres. K counts from 0; "worst" is the scan with the most false points, not one in which the
+method did not look for motion yet. RESULT is of `mosbench run` or `mosbench score --out`; points
+and labels are read again from where they were read then, or points from --data.
+
+--view top looks from above, orbit from a camera that circles the sensor and looks at it from 30
+degrees above; --azimuth says where the camera looks, in degrees counterclockwise from the front of
+the sensor. --scans draws several, given as for `mosbench report` (A-B, every:N, all), to a video
+(.mp4 or .gif, by ffmpeg, which `apt-get install ffmpeg` brings) or else to a folder, a PNG file
+each; the camera of an orbit then turns by --turn degrees from the first to the last.
+
+--boxes draws a box around each cluster of at least 5 points that are labelled moving, with its
+speed: that of the cluster's middle in the map over half a second before and after, where the
+clusters of the ten scans before and after are linked to it. A speed is of what is seen of an
+object: where more or less of it comes into sight, it is off by some tenths of a metre per second.
 
 Examples:
   mosbench render results/runs/sim --scan 20 -o scan.png
   mosbench render results/runs/doals --sequence hauptgebaeude/sequence_1 --scan worst -o worst.png
   mosbench render results/runs/08 --scan 120 -o dark.png --dark --range 30 --size 1600
   mosbench render results/runs/08 --scans 40-90 -o street.mp4
+  mosbench render results/runs/08 --scan 120 -o boxes.png --view orbit --azimuth 30 --boxes
+  mosbench render results/runs/08 --scans 40-90 -o orbit.gif --view orbit --turn 360
   mosbench render results/runs/08 --scans every:10 -o pictures)";
+
+constexpr double kUsualTurn_deg = 90.0;
 
 struct RenderFlags {
   std::filesystem::path input, out;
@@ -41,7 +56,10 @@ struct RenderFlags {
   std::optional<std::string> sequence;
   std::optional<std::string> scan, scans;
   double per_s = 10.0;
-  BirdsEyeOptions picture;
+  std::string view = "top";
+  std::optional<double> azimuth_deg, turn_deg;
+  bool boxes = false;
+  ScanPictureOptions picture;
 };
 
 std::set<std::string> names_of(const std::vector<FoundResult>& results) {
@@ -116,10 +134,38 @@ std::vector<std::string> title_of(const FoundResult& result, std::size_t scan_in
   return lines;
 }
 
-Picture picture_of(const ResultScans& scans, std::size_t scan_index, BirdsEyeOptions options) {
-  options.title = title_of(scans.result(), scan_index);
-  return birds_eye(scans.read(scan_index), options);
+/// Where the camera looks in one of several pictures.
+ScanViewpoint viewpoint_of(const RenderFlags& options, std::size_t picture, std::size_t pictures) {
+  if (options.view == "top") return {};
+  const double share =
+      pictures < 2 ? 0.0 : static_cast<double>(picture) / static_cast<double>(pictures - 1);
+  const double degrees =
+      options.azimuth_deg.value_or(0.0) + share * options.turn_deg.value_or(kUsualTurn_deg);
+  return {degrees * std::numbers::pi / 180.0};
 }
+
+/// Draws scans one after the other.
+class Pictures {
+ public:
+  Pictures(const RenderFlags& options, const ResultScans& scans, std::vector<std::size_t> chosen)
+      : options_(options), scans_(scans), chosen_(std::move(chosen)) {
+    if (options.boxes) boxes_ = boxes_of(scans, chosen_);
+  }
+
+  std::string png(std::size_t i) const {
+    ScanPictureOptions picture = options_.picture;
+    picture.title = title_of(scans_.result(), chosen_[i]);
+    picture.viewpoint = viewpoint_of(options_, i, chosen_.size());
+    if (options_.boxes) picture.boxes = boxes_[i];
+    return scan_picture(scans_.read(chosen_[i]), picture).png();
+  }
+
+ private:
+  const RenderFlags& options_;
+  const ResultScans& scans_;
+  std::vector<std::size_t> chosen_;
+  std::vector<std::vector<MovingBox>> boxes_;
+};
 
 /// The scans that --scans names, in their own order.
 std::vector<std::size_t> chosen_scans(const ResultScans& scans, const std::string& text) {
@@ -137,16 +183,27 @@ Answer render_several(RenderFlags& options, const ResultScans& scans) {
   if (options.picture.range_m <= 0.0) {
     options.picture.range_m = reach_m(scans.read(chosen[chosen.size() / 2]));
   }
+  const Pictures drawn(options, scans, chosen);
   PictureSequence pictures(options.out, options.per_s);
   Progress progress("render", chosen.size());
-  for (const std::size_t k : chosen) {
-    pictures.add(scans.rows()[k].stem, picture_of(scans, k, options.picture).png());
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    pictures.add(scans.rows()[chosen[i]].stem, drawn.png(i));
     progress.advance();
   }
   return {pictures.finish()};
 }
 
+void check_view(const RenderFlags& options) {
+  if (options.view == "top" && (options.azimuth_deg || options.turn_deg)) {
+    throw UsageError("--azimuth and --turn: are of --view orbit, expected it, too");
+  }
+  if (options.scan && options.turn_deg) {
+    throw UsageError("--turn: is of several pictures, expected --scans, or --azimuth alone");
+  }
+}
+
 Answer render(RenderFlags& options) {
+  check_view(options);
   if (options.scan.has_value() == options.scans.has_value()) {
     throw UsageError("--scan or --scans: say which scans to draw, expected one of them");
   }
@@ -158,7 +215,7 @@ Answer render(RenderFlags& options) {
   if (options.scans) return render_several(options, scans);
   const std::size_t scan_index = choose_scan(*options.scan, scans.rows());
   check_has_labels(scans, scan_index);
-  write_output(options.out, picture_of(scans, scan_index, options.picture).png());
+  write_output(options.out, Pictures(options, scans, {scan_index}).png(0));
   return answer_beside(options.out,
                        fmt::format("scan {} of {} in {}\n", scans.rows()[scan_index].stem,
                                    result.name.text(), options.out.string()));
@@ -197,6 +254,18 @@ CommandRun add_render(CLI::App& command) {
   command.add_option("--size", options->picture.size_pixels, "Width and height in pixels")
       ->check(CLI::Range(200, 8000))
       ->capture_default_str();
+  command.add_option("--view", options->view, "From above, or from a camera around the sensor")
+      ->check(CLI::IsMember({"top", "orbit"}))
+      ->capture_default_str();
+  command
+      .add_option("--azimuth", options->azimuth_deg,
+                  "Degrees from the sensor's front to where the camera looks (default: 0)")
+      ->check(CLI::Range(-360.0, 360.0));
+  command
+      .add_option("--turn", options->turn_deg,
+                  "Degrees by which the camera turns over --scans (default: 90)")
+      ->check(CLI::Range(-3600.0, 3600.0));
+  command.add_flag("--boxes", options->boxes, "Draw boxes around what moves, with speeds");
   command.add_flag("--dark", options->picture.dark, "Draw light points on a dark ground");
   command.footer(kRenderFooter);
   return [options] { return render(*options); };

@@ -8,6 +8,7 @@
 #include "eval/cli/odometry_flags.hpp"
 #include "eval/cli/run_methods.hpp"
 #include "eval/cli/run_report.hpp"
+#include "eval/report/written_products.hpp"
 #include "eval/results/answer_text.hpp"
 #include "eval/runs/method_choice.hpp"
 #include "eval/runs/run_execute.hpp"
@@ -21,6 +22,11 @@ constexpr const char* kRunFooter =
 DIR/<sequence>/result.json, and prints IoU, precision and recall, if there is truth, and ms per
 scan. --scores adds DIR/<sequence>/scores/<stem>.score (float32 per point): what the method compares
 with its threshold; larger means more likely to move. `mosbench report` then colours points by it.
+
+--write adds to DIR/<sequence>, from the labels: boxes.json and boxes.txt (boxes), boxes around what
+moves with track and velocity, the second in KITTI's format; moving/<stem>.ply (moving-cloud), the
+moving points of each scan; static.ply (static-cloud), a map of what stands still, a point per 0.1
+m. With the same command again what is there is kept. results/FORMATS.md describes the files.
 
 The same command again skips the sequences that are finished and starts an interrupted one again
 from its first scan, because a label may depend on every earlier scan. A sequence appears under DIR
@@ -64,6 +70,7 @@ Examples:
   mosbench run ~/HeLiMOS/KAIST05/Deskewed_LiDAR --preset helimos-delayed --protocol helimos-test
   mosbench run ~/kitti/sequences/08 --set max_range_m=30,voxel_size_m=0.2 --out results/runs/08-near
   mosbench run ~/kitti/sequences/08 --scores --out results/runs/08-scores
+  mosbench run ~/kitti/sequences/08 --write boxes,static-cloud
   mosbench run ~/kitti/sequences/08 --method all --out results/runs/08
   mosbench run ~/kitti/sequences/08 --method hmm-mos,dynablox --set dynablox.level=point
   mosbench run ~/kitti/sequences/08 --method "exec:python3 my_network.py" --set timeout_s=120
@@ -71,10 +78,19 @@ Examples:
   mosbench run ~/kitti-raw/0005 --point-times azimuth --deskew poses
   mosbench run sim/00 --config near.json --variant release-2025 --threads 4 --json)";
 
-Answer run(const RunOptions& options) {
-  if (options.method && names_several_methods(*options.method)) return run_methods(options);
+struct RunFlags {
+  RunOptions options;
+  std::vector<std::string> products;
+};
+
+Answer run(const RunFlags& flags) {
+  const RunOptions& options = flags.options;
+  if (options.method && names_several_methods(*options.method)) {
+    return run_methods(options, flags.products);
+  }
   const RunPlan plan = plan_run(options);
   const std::vector<SequenceOutcome> outcomes = execute_run(plan);
+  for (const SequenceOutcome& outcome : outcomes) write_products(outcome.folder, flags.products);
   return {options.json ? json_text(run_report_json(plan, outcomes))
                        : run_report_text(plan, outcomes)};
 }
@@ -82,7 +98,8 @@ Answer run(const RunOptions& options) {
 }  // namespace
 
 CommandRun add_run(CLI::App& command) {
-  auto options = std::make_shared<RunOptions>();
+  auto flags = std::make_shared<RunFlags>();
+  RunOptions* options = &flags->options;
   add_method_options(command, *options);
   command.add_option("--protocol", options->protocol, "How to score (default: by preset)")
       ->type_name("PROTOCOL");
@@ -97,12 +114,20 @@ CommandRun add_run(CLI::App& command) {
       ->type_name("DIR");
   add_odometry_flags(command, options->odometry);
   command.add_flag("--scores", options->scores, "Also write the score of every point");
+  command
+      .add_option(
+          "--write", flags->products,
+          "Also write, from the labels: " + fmt::format("{}", fmt::join(product_names(), ", ")))
+      ->type_name("WHAT,...")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(CLI::IsMember(product_names()));
   command.add_flag("--overwrite", options->overwrite, "Run again and replace what is in --out");
   command.add_flag("--verify", options->verify,
                    "Read all input of finished sequences again, not only its sizes and times");
   command.add_flag("--json", options->json, "Print JSON instead of a table");
   command.footer(kRunFooter);
-  return [options] { return run(*options); };
+  return [flags] { return run(*flags); };
 }
 
 }  // namespace mosbench

@@ -9,6 +9,7 @@
 #include "datasets/files/errors.hpp"
 #include "eval/cli/failure.hpp"
 #include "eval/cli/run_report.hpp"
+#include "eval/report/written_products.hpp"
 #include "eval/results/answer_text.hpp"
 #include "eval/results/tell.hpp"
 #include "eval/runs/method_choice.hpp"
@@ -122,11 +123,18 @@ std::string json_of(const std::vector<MethodRun>& runs) {
 
 }  // namespace
 
-Answer run_methods(const RunOptions& options) {
+Answer run_methods(const RunOptions& options, std::span<const std::string> products) {
   const MethodChoice choice = chosen_methods(*options.method);
   for (const std::string& note : choice.notes) tell(note);
   const std::vector<RunPlan> plans = plan_methods(options, choice);
-  const std::vector<MethodRun> runs = execute(plans);
+  std::vector<MethodRun> runs = execute(plans);
+  for (MethodRun& run : runs) {
+    attempt(run, [&] {
+      for (const SequenceOutcome& done : run.execution->outcomes()) {
+        write_products(done.folder, products);
+      }
+    });
+  }
   const auto failed =
       std::ranges::find_if(runs, [](const MethodRun& run) { return run.failure.has_value(); });
   return {options.json ? json_of(runs) : text_of(runs),

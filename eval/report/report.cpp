@@ -14,6 +14,7 @@
 #include "eval/report/report_path.hpp"
 #include "eval/report/report_runs.hpp"
 #include "eval/report/report_scans.hpp"
+#include "eval/report/result_boxes.hpp"
 #include "eval/results/version.hpp"
 
 namespace mosbench {
@@ -136,6 +137,7 @@ Report build_report(const std::vector<std::filesystem::path>& inputs,
     content["results"][i]["cloud"] = scans.results[i].cloud;
     content["results"][i]["outcomes"] = scans.results[i].outcome_blocks;
     content["results"][i]["scores"] = scans.results[i].score_blocks;
+    content["results"][i]["boxes"] = boxes_json(*sources[i], scans.results[i].scans);
   }
   remarks.insert(remarks.end(), scans.remarks.begin(), scans.remarks.end());
   return {filled_page(report_asset(), content, scans.blocks), results.size(), remarks};

@@ -216,6 +216,7 @@ ReportScans choose_report_scans(const std::vector<FoundResult>& results, const S
       report.blocks.push_back(std::move(scan.positions));
       for (std::size_t m = 0; m < cloud.members.size(); ++m) {
         ReportScans::OfResult& result = report.results[cloud.members[m]];
+        result.scans.push_back(scan.scan_index);
         result.outcome_blocks.push_back(report.blocks.size());
         report.blocks.push_back(std::move(scan.outcomes[m]));
         if (scan.scores[m].empty()) continue;

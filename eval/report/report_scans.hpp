@@ -21,6 +21,7 @@ struct ReportScans {
     std::size_t cloud = 0;
     std::vector<std::size_t> outcome_blocks;
     std::vector<std::size_t> score_blocks;
+    std::vector<std::size_t> scans;  ///< indices of those scans, which rise
   };
   std::vector<OfResult> results;
   std::vector<std::string> blocks;  ///< see compressed_text

@@ -20,9 +20,10 @@ namespace {
 constexpr const char* kLabels = "labels";
 constexpr const char* kScores = "scores";
 constexpr const char* kResult = "result.json";
-// What a run writes; poses.txt with its mark where it found them.
-constexpr std::array<const char*, 5> kWritten = {kLabels, kScores, kResult, "poses.txt",
-                                                 "poses.txt.frame"};
+// What a run writes; poses.txt with its mark where it found them, the last four by --write.
+constexpr std::array kWritten = {kLabels,     kScores,           kResult,
+                                 "poses.txt", "poses.txt.frame", "boxes.json",
+                                 "boxes.txt", "moving",          "static.ply"};
 
 std::vector<fs::path> entries(const fs::path& folder) {
   std::error_code error;

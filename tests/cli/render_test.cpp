@@ -62,6 +62,30 @@ TEST_F(Render, DrawsSeveralScansToAFolderInOneRange) {
       2);
 }
 
+TEST_F(Render, TurnsACameraAroundTheSensorAndDrawsBoxes) {
+  const auto drawn = [&](const std::string& out, std::vector<std::string> flags) {
+    flags.insert(flags.begin(), {"render", run(), "-o", folder_ / out, "--size", "300"});
+    const cli::Answer answer = cli::run(flags);
+    EXPECT_EQ(answer.exit_code, 0) << answer.err;
+    return out.ends_with(".png") ? read_file(folder_ / out) : "";
+  };
+  drawn("turn",
+        {"--scans", "5-7", "--view", "orbit", "--azimuth", "10", "--turn", "40", "--range", "9"});
+  // The camera of the second picture looks from the middle of the way.
+  EXPECT_EQ(read_file(folder_ / "turn/000006.png"),
+            drawn("a.png", {"--scan", "6", "--view", "orbit", "--azimuth", "30", "--range", "9"}));
+  EXPECT_NE(read_file(folder_ / "turn/000006.png"),
+            drawn("b.png", {"--scan", "6", "--range", "9"}));
+  EXPECT_NE(drawn("c.png", {"--scan", "6", "--boxes", "--range", "9"}),
+            read_file(folder_ / "b.png"));
+  for (const auto& flags : std::vector<std::vector<std::string>>{
+           {"--scan", "6", "--azimuth", "5"}, {"--scan", "6", "--view", "orbit", "--turn", "5"}}) {
+    std::vector<std::string> words = {"render", run(), "-o", folder_ / "d.png"};
+    words.insert(words.end(), flags.begin(), flags.end());
+    EXPECT_EQ(cli::run(words).exit_code, 2);
+  }
+}
+
 /// Draws scans 1 and 2 with this script as ffmpeg, or with none.
 cli::Answer render_video(const std::string& run, const TempFolder& folder, const char* script) {
   const std::filesystem::path programs = folder / "programs";

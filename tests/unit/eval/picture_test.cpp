@@ -5,11 +5,14 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
+#include <numbers>
+#include <optional>
 
-#include "eval/report/birds_eye.hpp"
 #include "eval/report/line_chart.hpp"
 #include "eval/report/palette.hpp"
+#include "eval/report/scan_picture.hpp"
 
 namespace mosbench {
 namespace {
@@ -137,11 +140,11 @@ JudgedScan row_of_outcomes() {
   return scan;
 }
 
-TEST(BirdsEye, DrawsEachPointWhereItIsInTheColourOfItsOutcome) {
-  BirdsEyeOptions options;
+TEST(ScanPicture, DrawsEachPointWhereItIsInTheColourOfItsOutcome) {
+  ScanPictureOptions options;
   options.size_pixels = 1000;
   options.range_m = 20.0;
-  const Picture picture = birds_eye(row_of_outcomes(), options);
+  const Picture picture = scan_picture(row_of_outcomes(), options);
   const Palette colours = palette(false);
   for (const std::size_t i : {0U, 1U, 2U, 5U}) {
     const std::size_t up = 500 - 25 * (4 + i);
@@ -149,13 +152,67 @@ TEST(BirdsEye, DrawsEachPointWhereItIsInTheColourOfItsOutcome) {
   }
 }
 
-TEST(BirdsEye, DrawsAScanWithoutPointsAndWithImpossibleOnes) {
+TEST(ScanView, PutsWhatIsAheadAboveAndWhatIsLeftToTheLeftFromAboveAndFromBehind) {
+  for (const std::optional<double> azimuth_rad : {std::optional<double>(), std::optional(0.0)}) {
+    const ScanView view({azimuth_rad}, 20.0, 1000.0);
+    const ViewedPoint sensor = view.seen({0, 0, 0}).value();
+    EXPECT_NEAR(sensor.x, 500.0, 1e-9);
+    EXPECT_NEAR(sensor.y, 500.0, 1e-9);
+    EXPECT_NEAR(sensor.scale, 1.0, 1e-12);
+    EXPECT_LT(view.seen({5, 0, 0}).value().y, 490.0);
+    EXPECT_LT(view.seen({0, 5, 0}).value().x, 490.0);
+  }
+  // From above, heights do not show.
+  const ScanView above({}, 20.0, 1000.0);
+  EXPECT_EQ(above.seen({5, 3, 2}).value().y, above.seen({5, 3, 0}).value().y);
+}
+
+TEST(ScanView, OfAnOrbitTurnsWithTheAzimuth) {
+  // Looking to the left: what is left of the sensor is far, what is ahead of it at the right.
+  const ScanView left({std::numbers::pi / 2.0}, 20.0, 1000.0);
+  const ViewedPoint far = left.seen({0, 10, 0}).value(), near = left.seen({0, -10, 0}).value();
+  EXPECT_GT(far.distance_m, near.distance_m);
+  EXPECT_LT(far.scale, 1.0);
+  EXPECT_GT(near.scale, 1.0);
+  EXPECT_GT(left.seen({10, 0, 0}).value().x, 510.0);
+  EXPECT_LT(left.seen({0, 0, 2}).value().y, 490.0);
+  // The camera is 1.6 ranges away, 30 degrees above.
+  const Eigen::Vector3d camera(0.0, -32.0 * std::cos(std::numbers::pi / 6.0), 16.0);
+  EXPECT_FALSE(left.seen(camera));
+  EXPECT_FALSE(left.seen(2.0 * camera));
+  EXPECT_NEAR(left.seen({0, 0, 0}).value().distance_m, 32.0, 1e-9);
+}
+
+TEST(ScanPicture, DrawsBoxesWithTheirSpeeds) {
+  JudgedScan scan = row_of_outcomes();
+  ScanPictureOptions options;
+  options.range_m = 20.0;
+  const std::size_t without = pixels_of(scan_picture(scan, options), palette(false).text);
+  MovingBox box;
+  box.size_m = {4.0, 2.0, 1.5};
+  box.map_from_box.translation() = Eigen::Vector3d(0.0, 10.0, 0.0);
+  options.boxes = {box};
+  const Picture drawn = scan_picture(scan, options);
+  // The left side of the box, 11 m to the left of the sensor.
+  EXPECT_EQ(drawn.at(500 - 275, 500), palette(false).text);
+  const std::size_t plain = pixels_of(drawn, palette(false).text);
+  EXPECT_GT(plain, without + 100);
+  options.boxes[0].velocity_m_s = Eigen::Vector3d(3.0, 4.0, 0.0);
+  EXPECT_GT(pixels_of(scan_picture(scan, options), palette(false).text), plain + 20);
+  options.viewpoint.orbit_rad = 1.0;
+  EXPECT_GT(pixels_of(scan_picture(scan, options), palette(false).text), without + 100);
+}
+
+TEST(ScanPicture, DrawsAScanWithoutPointsAndWithImpossibleOnes) {
   JudgedScan scan;
-  EXPECT_EQ(birds_eye(scan, {}).width(), 1000U);
+  EXPECT_EQ(scan_picture(scan, {}).width(), 1000U);
   constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
   scan.frame.points = {{kNan, 0, 0, 0}, {1e30F, 0, 0, 0}, {0, 0, 0, 0}};
   scan.outcomes.assign(3, PointOutcome::kFalsePositive);
-  const Picture picture = birds_eye(scan, {});
+  const Picture picture = scan_picture(scan, {});
+  ScanPictureOptions orbit;
+  orbit.viewpoint.orbit_rad = 2.0;
+  EXPECT_EQ(scan_picture(scan, orbit).width(), 1000U);
   // Only in the key to the colours.
   EXPECT_LT(pixels_of(picture, palette(false).outcomes[1]), 120U);
 }

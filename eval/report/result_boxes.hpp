@@ -1,0 +1,31 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "eval/breakdown/moving_boxes.hpp"
+#include "eval/report/result_scans.hpp"
+
+namespace mosbench {
+
+/// Whether the labels call a point of this outcome moving.
+bool is_labelled_moving(PointOutcome outcome);
+
+/// Returns where a point is in the sensor's frame, metres.
+Eigen::Vector3d position_of(const Point& point);
+
+/// Scans before and after one that decide its boxes' numbers and speeds: a second at 10 Hz.
+inline constexpr std::size_t kScansAroundBoxes = 10;
+
+/// Returns the boxes of the moving objects that the labels of a result show in the scans at
+/// `wanted`, which rise; a scan without labels has none. Numbers and speeds come from the scans
+/// around, which are read, too. Throws DataError.
+std::vector<std::vector<MovingBox>> boxes_of(const ResultScans& scans,
+                                             const std::vector<std::size_t>& wanted);
+
+/// The same for the page: per scan a list of boxes, each [x, y, z, yaw, length, width, height,
+/// speed] in the sensor's frame, metres and radians, to 0.01; the speed in m/s is null for an
+/// object seen once.
+nlohmann::ordered_json boxes_json(const ResultScans& scans, const std::vector<std::size_t>& wanted);
+
+}  // namespace mosbench

@@ -1,0 +1,227 @@
+#include "eval/report/scan_picture.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <optional>
+#include <utility>
+
+#include "eval/report/palette.hpp"
+#include "eval/report/point_planes.hpp"
+#include "eval/report/result_boxes.hpp"
+
+namespace mosbench {
+namespace {
+
+constexpr int kMargin = 12;
+constexpr int kLine = Picture::kGlyphHeight + 2;
+
+/// Whether a point is drawn over the background. Such points are drawn in stored order: where right
+/// and wrong ones overlap, the picture shows the more frequent kind.
+bool stands_out(PointOutcome outcome) {
+  return outcome != PointOutcome::kTrueNegative && outcome != PointOutcome::kIgnoredStatic;
+}
+
+/// Returns a round number of metres that gives three to eight rings.
+double ring_step_m(double range_m) {
+  double step_m = 1.0;
+  for (const double factor : {2.0, 2.5, 2.0, 2.0, 2.5, 2.0}) {
+    if (range_m / step_m <= 8.0) break;
+    step_m *= factor;
+  }
+  return step_m;
+}
+
+/// Returns the height in the sensor frame that a twentieth of the points lie below.
+double ground_height_m(const JudgedScan& scan) {
+  std::vector<double> heights_m;
+  for (const Point& point : scan.frame.points) {
+    if (is_drawable(point)) heights_m.push_back(static_cast<double>(point.z));
+  }
+  if (heights_m.empty()) return 0.0;
+  const auto low = heights_m.begin() + static_cast<std::ptrdiff_t>(heights_m.size() / 20);
+  std::ranges::nth_element(heights_m, low);
+  return *low;
+}
+
+class ScanPicture {
+ public:
+  ScanPicture(const JudgedScan& scan, const ScanPictureOptions& options)
+      : scan_(scan),
+        options_(options),
+        palette_(palette(options.dark)),
+        range_m_(options.range_m > 0.0 ? options.range_m : reach_m(scan)),
+        view_(options.viewpoint, range_m_, static_cast<double>(options.size_pixels)),
+        picture_(options.size_pixels, options.size_pixels, palette_.background) {}
+
+  Picture draw() && {
+    draw_rings();
+    for (const bool standing_out : {false, true}) draw_points(standing_out);
+    draw_sensor();
+    for (const MovingBox& box : options_.boxes) draw_moving_box(box);
+    draw_box(kMargin, kMargin, options_.title);
+    draw_legend();
+    return std::move(picture_);
+  }
+
+ private:
+  void draw_rings() {
+    const double ground_m = view_.is_from_above() ? 0.0 : ground_height_m(scan_);
+    const double step_m = ring_step_m(range_m_);
+    const Colour label_colour =
+        palette_.outcomes[static_cast<std::size_t>(PointOutcome::kTrueNegative)];
+    for (double radius_m = step_m; radius_m <= range_m_; radius_m += step_m) {
+      draw_ring(radius_m, ground_m);
+      const auto top = view_.seen({radius_m, 0.0, ground_m});
+      if (!top) continue;
+      picture_.text(static_cast<int>(top->x) + 4, static_cast<int>(top->y) + 2,
+                    fmt::format("{:g} m", radius_m), label_colour);
+    }
+  }
+
+  void draw_ring(double radius_m, double ground_m) {
+    const double middle = static_cast<double>(options_.size_pixels) / 2.0;
+    if (view_.is_from_above()) {
+      picture_.ring(middle, middle, radius_m * view_.pixels_per_m(), palette_.guide);
+      return;
+    }
+    constexpr int kSides = 72;
+    for (int side = 0; side < kSides; ++side) {
+      const auto corner = [&](int i) {
+        const double angle_rad = 2.0 * std::numbers::pi * i / kSides;
+        return Eigen::Vector3d(radius_m * std::cos(angle_rad), radius_m * std::sin(angle_rad),
+                               ground_m);
+      };
+      draw_edge(corner(side), corner(side + 1), 1.0, palette_.guide);
+    }
+  }
+
+  void draw_edge(const Eigen::Vector3d& from_m, const Eigen::Vector3d& to_m, double width,
+                 Colour colour) {
+    const auto from = view_.seen(from_m), to = view_.seen(to_m);
+    if (from && to) picture_.line(from->x, from->y, to->x, to->y, width, colour);
+  }
+
+  /// Points in the order in which they are drawn: from above as they are stored, else far ones
+  /// first.
+  std::vector<std::pair<ViewedPoint, PointOutcome>> seen_points(bool standing_out) const {
+    std::vector<std::pair<ViewedPoint, PointOutcome>> points;
+    for (std::size_t i = 0; i < scan_.outcomes.size(); ++i) {
+      const PointOutcome outcome = scan_.outcomes[i];
+      const Point& point = scan_.frame.points[i];
+      if (stands_out(outcome) != standing_out || !is_drawable(point)) continue;
+      if (const auto seen = view_.seen(position_of(point))) points.emplace_back(*seen, outcome);
+    }
+    if (!view_.is_from_above()) {
+      std::ranges::stable_sort(points, std::greater(),
+                               [](const auto& point) { return point.first.distance_m; });
+    }
+    return points;
+  }
+
+  void draw_points(bool standing_out) {
+    const double radius = standing_out ? 2.0 : 0.9;
+    for (const auto& [seen, outcome] : seen_points(standing_out)) {
+      picture_.disc(seen.x, seen.y, radius * std::clamp(seen.scale, 0.6, 2.0),
+                    palette_.outcomes[static_cast<std::size_t>(outcome)]);
+    }
+  }
+
+  void draw_sensor() {
+    const auto sensor = view_.seen(Eigen::Vector3d::Zero());
+    if (sensor) picture_.disc(sensor->x, sensor->y, 3.5, palette_.text);
+  }
+
+  void draw_moving_box(const MovingBox& box) {
+    std::array<Eigen::Vector3d, 8> corners = corners_of(box);
+    const Pose sensor_from_map = scan_.frame.map_from_sensor.inverse();
+    for (Eigen::Vector3d& corner : corners) corner = sensor_from_map * corner;
+    for (std::size_t i = 0; i < 4; ++i) {
+      const std::size_t next = (i + 1) % 4;
+      draw_edge(corners[i], corners[next], 2.0, palette_.text);
+      draw_edge(corners[i + 4], corners[next + 4], 2.0, palette_.text);
+      draw_edge(corners[i], corners[i + 4], 2.0, palette_.text);
+    }
+    const auto label = view_.seen(corners[4]);
+    if (!label || !box.velocity_m_s) return;
+    picture_.text(static_cast<int>(label->x), static_cast<int>(label->y) - Picture::kGlyphHeight,
+                  fmt::format("{:.1f} m/s", box.velocity_m_s->norm()), palette_.text);
+  }
+
+  /// Draws lines of text on a filled box; returns its height in pixels.
+  int draw_box(int x, int y, const std::vector<std::string>& lines, int indent = 0) {
+    std::size_t longest = 0;
+    for (const std::string& line : lines) longest = std::max(longest, line.size());
+    const int width = static_cast<int>(longest) * Picture::kGlyphWidth + 2 * kMargin + indent;
+    const int height = static_cast<int>(lines.size()) * kLine + kMargin;
+    picture_.rectangle(x, y, width, height, palette_.background, 0.88);
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      picture_.text(x + kMargin + indent, y + kMargin / 2 + static_cast<int>(i) * kLine, lines[i],
+                    palette_.text);
+    }
+    return height;
+  }
+
+  void draw_legend() {
+    OutcomeCounts counts{};
+    for (const PointOutcome outcome : scan_.outcomes) ++counts[static_cast<std::size_t>(outcome)];
+    std::vector<std::string> lines;
+    std::vector<Colour> swatches;
+    for (std::size_t i = 0; i < counts.size(); ++i) {
+      if (counts[i] == 0) continue;
+      lines.push_back(fmt::format("{:<25} {:>8}", palette_.names[i], counts[i]));
+      swatches.push_back(palette_.outcomes[i]);
+    }
+    constexpr int kIndent = 18;
+    const int top = static_cast<int>(options_.size_pixels) - kMargin -
+                    static_cast<int>(lines.size()) * kLine - kMargin;
+    draw_box(kMargin, top, lines, kIndent);
+    for (std::size_t i = 0; i < swatches.size(); ++i) {
+      const int middle = top + kMargin / 2 + static_cast<int>(i) * kLine + kLine / 2;
+      picture_.disc(2 * kMargin + 5, middle, 6.0, palette_.text);
+      picture_.disc(2 * kMargin + 5, middle, 5.0, swatches[i]);
+    }
+  }
+
+  const JudgedScan& scan_;
+  const ScanPictureOptions& options_;
+  Palette palette_;
+  double range_m_;
+  ScanView view_;
+  Picture picture_;
+};
+
+}  // namespace
+
+double reach_m(const JudgedScan& scan) {
+  std::vector<double> distances_m;
+  for (const Point& point : scan.frame.points) {
+    if (is_drawable(point))
+      distances_m.push_back(std::hypot(static_cast<double>(point.x), static_cast<double>(point.y)));
+  }
+  if (distances_m.empty()) return 10.0;
+  const auto most = distances_m.begin() +
+                    static_cast<std::ptrdiff_t>(0.98 * static_cast<double>(distances_m.size() - 1));
+  std::ranges::nth_element(distances_m, most);
+  return 5.0 * std::max(1.0, std::ceil(*most / 5.0));
+}
+
+std::array<Eigen::Vector3d, 8> corners_of(const MovingBox& box) {
+  std::array<Eigen::Vector3d, 8> corners;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const double x = i % 4 == 0 || i % 4 == 3 ? 0.5 : -0.5;
+    const double y = i % 4 < 2 ? 0.5 : -0.5;
+    const double z = i < 4 ? -0.5 : 0.5;
+    corners[i] = box.map_from_box * box.size_m.cwiseProduct(Eigen::Vector3d(x, y, z));
+  }
+  return corners;
+}
+
+Picture scan_picture(const JudgedScan& scan, const ScanPictureOptions& options) {
+  return ScanPicture(scan, options).draw();
+}
+
+}  // namespace mosbench

@@ -1,0 +1,186 @@
+#include "eval/report/written_products.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <numbers>
+#include <set>
+#include <string_view>
+
+#include "datasets/files/files.hpp"
+#include "eval/report/point_planes.hpp"
+#include "eval/report/result_boxes.hpp"
+#include "eval/results/answer_text.hpp"
+#include "eval/results/progress.hpp"
+
+namespace mosbench {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::ordered_json;
+
+constexpr double kMapVoxel_m = 0.1;
+
+ordered_json triple(const Eigen::Vector3d& vector) { return {vector.x(), vector.y(), vector.z()}; }
+
+ordered_json box_json(const MovingBox& box) {
+  const Eigen::Vector3d ahead = box.map_from_box.linear().col(0);
+  return {{"track", box.track},
+          {"points", box.points},
+          {"centre_map_m", triple(box.map_from_box.translation())},
+          {"yaw_map_rad", std::atan2(ahead.y(), ahead.x())},
+          {"size_m", triple(box.size_m)},
+          {"velocity_map_m_s", box.velocity_m_s ? triple(*box.velocity_m_s) : ordered_json()}};
+}
+
+std::string boxes_text(const ResultScans& scans, const std::vector<std::vector<MovingBox>>& boxes) {
+  ordered_json json = {
+      {"format", 1}, {"sequence", scans.sequence().name()}, {"scans", ordered_json::array()}};
+  for (std::size_t k = 0; k < boxes.size(); ++k) {
+    ordered_json& of_scan = json["scans"].emplace_back();
+    of_scan = {{"stem", scans.rows()[k].stem}, {"boxes", ordered_json::array()}};
+    for (const MovingBox& box : boxes[k]) of_scan["boxes"].push_back(box_json(box));
+  }
+  return json_text(json);
+}
+
+/// A row as KITTI's tracking benchmark has them, for a camera that looks ahead from the LiDAR's
+/// place: x right, y down, z ahead, the middle of the bottom. Nothing is known of images.
+std::string kitti_row(std::size_t scan_index, const MovingBox& box, const Pose& sensor_from_map) {
+  const Pose sensor_from_box = sensor_from_map * box.map_from_box;
+  const Eigen::Vector3d ahead = sensor_from_box.linear().col(0);
+  const Eigen::Vector3d bottom = sensor_from_box * Eigen::Vector3d(0, 0, -0.5 * box.size_m.z());
+  const double rotation_rad = std::remainder(
+      -std::atan2(ahead.y(), ahead.x()) - std::numbers::pi / 2.0, 2.0 * std::numbers::pi);
+  return fmt::format(
+      "{} {} Moving -1 -1 -10 -1 -1 -1 -1 {:.3f} {:.3f} {:.3f} {:.3f} {:.3f} {:.3f} {:.4f}\n",
+      scan_index, box.track, box.size_m.z(), box.size_m.y(), box.size_m.x(), -bottom.y(),
+      -bottom.z(), bottom.x(), rotation_rad);
+}
+
+std::string kitti_text(const ResultScans& scans, const std::vector<std::vector<MovingBox>>& boxes) {
+  std::string rows;
+  for (std::size_t k = 0; k < boxes.size(); ++k) {
+    const Pose sensor_from_map = scans.sequence().map_from_sensor(k).inverse();
+    for (const MovingBox& box : boxes[k]) rows += kitti_row(k, box, sensor_from_map);
+  }
+  return rows;
+}
+
+static_assert(std::endian::native == std::endian::little);
+
+/// A binary PLY file of x, y, z in `type` and the intensity.
+template <typename Coordinate>
+std::string ply_of(const std::vector<Eigen::Matrix<Coordinate, 3, 1>>& positions_m,
+                   const std::vector<float>& intensities, std::string_view type) {
+  std::string bytes = fmt::format(
+      "ply\nformat binary_little_endian 1.0\nelement vertex {0}\nproperty {1} x\nproperty {1} "
+      "y\nproperty {1} z\nproperty float intensity\nend_header\n",
+      positions_m.size(), type);
+  for (std::size_t i = 0; i < positions_m.size(); ++i) {
+    bytes.append(reinterpret_cast<const char*>(positions_m[i].data()), 3 * sizeof(Coordinate));
+    bytes.append(reinterpret_cast<const char*>(&intensities[i]), sizeof(float));
+  }
+  return bytes;
+}
+
+void write_boxes(const ResultScans& scans, const fs::path& folder) {
+  if (is_there(folder / "boxes.json") && is_there(folder / "boxes.txt")) return;
+  std::vector<std::size_t> all(scans.rows().size());
+  for (std::size_t k = 0; k < all.size(); ++k) all[k] = k;
+  const auto boxes = boxes_of(scans, all);
+  write_file_atomic(folder / "boxes.txt", kitti_text(scans, boxes));
+  write_file_atomic(folder / "boxes.json", boxes_text(scans, boxes));
+}
+
+/// The points of a scan that are labelled moving, as they were measured.
+std::string moving_cloud(const JudgedScan& scan) {
+  std::vector<Eigen::Vector3f> positions_m;
+  std::vector<float> intensities;
+  for (std::size_t i = 0; i < scan.outcomes.size(); ++i) {
+    const Point& point = scan.frame.points[i];
+    if (!is_labelled_moving(scan.outcomes[i])) continue;
+    positions_m.emplace_back(point.x, point.y, point.z);
+    intensities.push_back(point.intensity);
+  }
+  return ply_of(positions_m, intensities, "float");
+}
+
+void write_moving_clouds(const ResultScans& scans, const fs::path& folder) {
+  Progress progress("moving clouds", scans.rows().size());
+  for (std::size_t k = 0; k < scans.rows().size(); ++k) {
+    const fs::path file = folder / "moving" / (scans.rows()[k].stem + ".ply");
+    if (!is_there(file)) write_file_atomic(file, moving_cloud(scans.read(k)));
+    progress.advance();
+  }
+}
+
+/// The first point in each voxel of the map, of those that are labelled static.
+class StaticMap {
+ public:
+  void add(const JudgedScan& scan) {
+    for (std::size_t i = 0; i < scan.outcomes.size(); ++i) {
+      const Point& point = scan.frame.points[i];
+      if (is_labelled_moving(scan.outcomes[i]) || !is_drawable(point)) continue;
+      const Eigen::Vector3d position_m = scan.frame.map_from_sensor * position_of(point);
+      std::array<std::int64_t, 3> voxel{};
+      for (std::size_t axis = 0; axis < voxel.size(); ++axis) {
+        voxel[axis] = static_cast<std::int64_t>(
+            std::floor(position_m[static_cast<Eigen::Index>(axis)] / kMapVoxel_m));
+      }
+      if (!voxels_.insert(voxel).second) continue;
+      positions_m_.push_back(position_m);
+      intensities_.push_back(point.intensity);
+    }
+  }
+
+  std::string ply() const { return ply_of(positions_m_, intensities_, "double"); }
+
+ private:
+  std::set<std::array<std::int64_t, 3>> voxels_;
+  std::vector<Eigen::Vector3d> positions_m_;
+  std::vector<float> intensities_;
+};
+
+/// Scans in which the method did not look for motion may hold anything.
+void write_static_cloud(const ResultScans& scans, const fs::path& folder) {
+  if (is_there(folder / "static.ply")) return;
+  StaticMap map;
+  Progress progress("static map", scans.rows().size());
+  for (std::size_t k = 0; k < scans.rows().size(); ++k) {
+    if (scans.rows()[k].judged) map.add(scans.read(k));
+    progress.advance();
+  }
+  write_file_atomic(folder / "static.ply", map.ply());
+}
+
+struct Product {
+  std::string_view name;
+  void (*write)(const ResultScans& scans, const fs::path& folder);
+};
+
+constexpr std::array kProducts = {Product{"boxes", write_boxes},
+                                  Product{"moving-cloud", write_moving_clouds},
+                                  Product{"static-cloud", write_static_cloud}};
+
+}  // namespace
+
+std::vector<std::string> product_names() {
+  std::vector<std::string> names;
+  for (const Product& product : kProducts) names.emplace_back(product.name);
+  return names;
+}
+
+void write_products(const fs::path& folder, std::span<const std::string> names) {
+  if (names.empty()) return;
+  const std::vector<FoundResult> results = find_results(folder / "result.json");
+  const ResultScans scans(results.front(), std::nullopt);
+  for (const Product& product : kProducts) {
+    if (std::ranges::find(names, product.name) != names.end()) product.write(scans, folder);
+  }
+}
+
+}  // namespace mosbench

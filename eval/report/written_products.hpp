@@ -1,0 +1,17 @@
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace mosbench {
+
+/// What `mosbench run --write` can write beside the labels.
+std::vector<std::string> product_names();
+
+/// Writes products of a finished sequence of `mosbench run` into its folder; results/FORMATS.md has
+/// their formats. Each file appears whole; those that are there are kept. Throws DataError.
+void write_products(const std::filesystem::path& folder, std::span<const std::string> names);
+
+}  // namespace mosbench

@@ -1,0 +1,114 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "tests/cli/program.hpp"
+#include "tests/cli/small_sequence.hpp"
+
+namespace mosbench {
+namespace {
+
+using nlohmann::ordered_json;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+/// A box of 1.2 m that goes 0.2 m from scan to scan.
+class Products : public testing::Test {
+ protected:
+  Products() { cli::write_small_sequence(folder_ / "room", 14); }
+
+  void run(const std::string& products) const {
+    std::vector<std::string> words = {"run", folder_ / "room", "--out", folder_ / "out"};
+    if (!products.empty()) words.insert(words.end(), {"--write", products});
+    const cli::Answer answer = cli::run(words);
+    ASSERT_EQ(answer.exit_code, 0) << answer.err;
+  }
+  std::filesystem::path out(const std::string& name) const {
+    return folder_ / ("out/room/" + name);
+  }
+
+  TempFolder folder_;
+};
+
+std::size_t vertices_of(const std::string& ply) {
+  EXPECT_THAT(ply, StartsWith("ply\nformat binary_little_endian 1.0\nelement vertex "));
+  return std::stoul(ply.substr(ply.find("vertex ") + 7));
+}
+
+std::size_t body_of(const std::string& ply) { return ply.size() - ply.find("end_header\n") - 11; }
+
+TEST_F(Products, HoldBoxesWithTracksAndSpeeds) {
+  run("boxes");
+  const ordered_json scans = ordered_json::parse(read_file(out("boxes.json"))).at("scans");
+  ASSERT_EQ(scans.size(), 14U);
+  std::size_t boxes = 0;
+  std::vector<double> speeds_m_s;
+  for (const ordered_json& scan : scans) {
+    for (const ordered_json& box : scan.at("boxes")) {
+      ++boxes;
+      const ordered_json& velocity = box.at("velocity_map_m_s");
+      if (velocity.is_null() || box.at("points") < 100) continue;
+      speeds_m_s.push_back(std::hypot(velocity[0].get<double>(), velocity[1].get<double>()));
+      EXPECT_EQ(box.at("track"), scans.back().at("boxes").at(0).at("track"));
+      EXPECT_NEAR(box.at("centre_map_m")[0].get<double>(), 3.0, 0.2);
+    }
+  }
+  // More of the box is found from scan to scan, so that its middle stays behind.
+  ASSERT_GT(speeds_m_s.size(), 3U);
+  std::ranges::sort(speeds_m_s);
+  EXPECT_NEAR(speeds_m_s[speeds_m_s.size() / 2], 2.0, 0.7);
+  std::istringstream rows(read_file(out("boxes.txt")));
+  std::size_t count = 0;
+  for (std::string row; std::getline(rows, row); ++count) {
+    std::istringstream words(row);
+    std::vector<std::string> fields;
+    for (std::string word; words >> word;) fields.push_back(word);
+    ASSERT_EQ(fields.size(), 17U) << row;
+    EXPECT_EQ(fields[2], "Moving");
+    EXPECT_NEAR(std::stod(fields[15]), 3.0, 0.4) << "z of the camera is x of the LiDAR";
+  }
+  EXPECT_EQ(count, boxes);
+  EXPECT_FALSE(is_there(out("static.ply")));
+}
+
+TEST_F(Products, HoldWhatMovesAndWhatStandsStill) {
+  run("moving-cloud,static-cloud");
+  const ordered_json result = cli::timeless_result(folder_ / "out/room");
+  std::size_t moving = 0;
+  for (const ordered_json& scan : result.at("scans")) {
+    const std::string ply = read_file(out("moving/" + scan.at("stem").get<std::string>() + ".ply"));
+    const std::size_t points = vertices_of(ply);
+    EXPECT_EQ(points, scan.at("predicted_moving_points"));
+    EXPECT_EQ(body_of(ply), 16 * points);
+    moving += points;
+  }
+  EXPECT_GT(moving, 100U);
+  const std::string map = read_file(out("static.ply"));
+  EXPECT_EQ(body_of(map), 28 * vertices_of(map));
+  // 48 m of walls, 24 rows: at most a point per 0.1 m, and more than one scan's rays miss.
+  EXPECT_GT(vertices_of(map), 5000U);
+  EXPECT_LE(vertices_of(map), 13000U);
+}
+
+TEST_F(Products, AreAddedToFinishedRunsAndKept) {
+  run("");
+  EXPECT_FALSE(is_there(out("boxes.json")));
+  run("boxes,static-cloud");
+  const auto first = cli::contents(folder_ / "out");
+  std::filesystem::remove(out("static.ply"));
+  run("boxes,static-cloud");
+  EXPECT_EQ(cli::contents(folder_ / "out"), first);
+  run("");
+  EXPECT_TRUE(is_there(out("boxes.txt")));
+  const cli::Answer unknown = cli::run({"run", folder_ / "room", "--write", "cubes"});
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_THAT(unknown.err, HasSubstr("cubes"));
+}
+
+}  // namespace
+}  // namespace mosbench
