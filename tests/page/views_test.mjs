@@ -68,6 +68,27 @@ test('colours by height, the dark theme and two runs side by side show what they
   refuseComplaints(page);
 });
 
+test('boxes surround what moves, with speeds, until they are switched off', async () => {
+  const page = await openAlone({ viewport: { width: 700, height: 640 } });
+  await page.evaluate(() => mosbenchReport.state.set({ scan: 21 }));
+  assert.equal(await page.locator('.speeds span').count(), 0);
+  await page.click('button:text-is("boxes")');
+  await shot(page, 'boxes');
+  const boxes = await page.evaluate(() => mosbenchReport.viewer.scans[0].boxes);
+  assert.ok(boxes.some(([, , , , , , , speed]) => speed > 0.5), 'something moves');
+  const texts = await page.locator('.speeds span').allTextContents();
+  assert.deepEqual(texts, boxes.map(([, , , , , , , speed]) => (speed === null ? '' : `${speed.toFixed(1)} m/s`)));
+  const place = () => page.locator('.speeds span').first().evaluate(({ style }) => style.left + style.top + style.display);
+  const before = await place();
+  await page.click('[data-view=top]');
+  await settled(page);
+  assert.notEqual(await place(), before, 'the speeds follow the camera');
+  await page.keyboard.press('b');
+  await settled(page);
+  assert.equal(await page.locator('.speeds span').count(), 0);
+  refuseComplaints(page);
+});
+
 test('two runs stay in step, each with its own counts', async () => {
   const page = await openAlone({ viewport: STAGE });
   await beside(page, 'delayed');

@@ -92,6 +92,7 @@ export class Clouds {
       stem: scans[place].stem,
       positions_m,
       pose: scans[place].map_from_sensor,
+      boxes: this.#content.results[result].boxes?.[place] ?? [],
       unscored: !hasLabels(this.#content.results[result].result.scans[index]),
       ...outcomesFromPlane(plane),
       scores: scorePlanes && scoresFromPlanes(scorePlanes),

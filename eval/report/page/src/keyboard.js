@@ -21,6 +21,7 @@ export function keyActions(state, viewer, transport) {
     3: [null, null, view(2)],
     4: [null, null, view(3)],
     c: ['c', 'colour by the next quantity', () => state.set({ colouring: next(colouringsOf(viewer.clouds, viewer.results(), state.get('view')), state.get('colouring')) })],
+    b: ['b', 'boxes of what moves', () => state.set({ boxes: !state.get('boxes') })],
     r: ['r', 'view back to its start', () => viewer.resetView()],
     t: ['t', 'light or dark', () => state.set({ theme: state.get('theme') === 'dark' ? 'light' : 'dark' })],
   };

@@ -12,7 +12,7 @@ export function hashOf(state, { eye, target }) {
   const others = state.get('others');
   return `#${[
     `result=${state.get('result')}`, ...(others.length > 0 ? [`beside=${others.join(',')}`] : []), `scan=${state.get('scan')}`,
-    `view=${state.get('view')}`, `colour=${state.get('colouring')}`, `eye=${rounded(eye)}`, `target=${rounded(target)}`,
+    `view=${state.get('view')}`, ...(state.get('boxes') ? ['boxes=1'] : []), `colour=${state.get('colouring')}`, `eye=${rounded(eye)}`, `target=${rounded(target)}`,
   ].join('&')}`;
 }
 
@@ -39,6 +39,7 @@ export function viewOf(hash, content, comparable) {
     scan: whole(words.get('scan'), content.results[result].result.scans.length),
     view: keyOf(VIEWS, words.get('view')),
     colouring: keyOf(COLOURINGS, words.get('colour')),
+    boxes: words.get('boxes') === '1' ? true : null,
   };
   const beside = (words.get('beside') ?? '').split(',').map((text) => whole(text, content.results.length));
   const others = comparable(result).filter((other) => beside.includes(other));

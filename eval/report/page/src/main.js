@@ -43,6 +43,7 @@ function initialState(content, clouds) {
     colouring: 'outcome',
     visible: [true, true, true, true, true, true],
     pointSize: 1.6,
+    boxes: false,
     theme: preferredTheme(),
     ...linkedView(content, clouds).changes,
   });

@@ -1,7 +1,5 @@
-import {
-  BufferAttribute, BufferGeometry, Color, Group, LineBasicMaterial, LineLoop, Line, LineSegments,
-  PerspectiveCamera, Points, PointsMaterial, Scene, ShaderMaterial, Vector3, WebGLRenderer,
-} from 'three';
+import { Color, LineBasicMaterial, PerspectiveCamera, PointsMaterial, ShaderMaterial, WebGLRenderer } from 'three';
+import { Pane } from './pane.js';
 import { paneAt, paneGrid } from './pane_grid.js';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 
@@ -23,51 +21,6 @@ void main() {
   if (dot(off, off) > 0.25) discard;
   gl_FragColor = vec4(colour, 1.0);
 }`;
-const RINGS_M = [10, 20, 30, 40, 50];
-const SEGMENTS = 96;
-
-function ring(radius_m, material) {
-  const at = (s) => (2 * Math.PI * s) / SEGMENTS;
-  const corners = Array.from({ length: SEGMENTS }, (_, s) => new Vector3(radius_m * Math.cos(at(s)), radius_m * Math.sin(at(s)), 0));
-  return new LineLoop(new BufferGeometry().setFromPoints(corners), material);
-}
-
-function axes(material) {
-  const ends = [[-1, 0, 0], [3, 0, 0], [0, -1, 0], [0, 1, 0]].map((p) => new Vector3(...p));
-  return new LineSegments(new BufferGeometry().setFromPoints(ends), material);
-}
-
-/** One scan as the graphics card gets it. */
-class Pane {
-  scene = new Scene();
-  geometry = new BufferGeometry();
-
-  constructor(pointMaterial, guideMaterial, contextMaterial) {
-    const cloud = new Points(this.geometry, pointMaterial);
-    this.context = new Points(new BufferGeometry(), contextMaterial);
-    cloud.frustumCulled = this.context.frustumCulled = false;
-    this.guides = new Group();
-    this.guides.add(...RINGS_M.map((radius_m) => ring(radius_m, guideMaterial)), axes(guideMaterial));
-    this.path = new Line(new BufferGeometry(), guideMaterial);
-    this.path.frustumCulled = false;
-    this.scene.add(this.context, cloud, this.guides, this.path);
-  }
-
-  /** `path`: way of the sensor, `context`: positions of what stands still; both null but in the motion map. */
-  fill(positions_m, colours, sizes, path, context) {
-    this.geometry.setAttribute('position', new BufferAttribute(positions_m, 3));
-    this.geometry.setAttribute('shade', new BufferAttribute(colours, 3, true));
-    this.geometry.setAttribute('size', new BufferAttribute(sizes, 1));
-    this.geometry.setDrawRange(0, sizes.length);
-    this.context.visible = context !== null;
-    if (context && context !== this.contextShown) this.context.geometry.setAttribute('position', new BufferAttribute(context, 3));
-    this.contextShown = context;
-    this.guides.visible = path === null;
-    this.path.visible = path !== null;
-    if (path) this.path.geometry.setFromPoints(path.map((p) => new Vector3(...p)));
-  }
-}
-
 /**
  * Draws clouds side by side with one camera, so that they cannot get out of step. Throws when the
  * browser has no WebGL.
@@ -85,6 +38,8 @@ export class Stage {
     });
     this.guideMaterial = new LineBasicMaterial();
     this.contextMaterial = new PointsMaterial({ size: 1, sizeAttenuation: false });
+    this.boxMaterial = new LineBasicMaterial();
+    this.onDrawn = () => {};
     this.panes = [];
     this.shown = 0;
     this.camera = new PerspectiveCamera(55, 1, 0.05, 3000);
@@ -94,10 +49,11 @@ export class Stage {
     new ResizeObserver(() => this.draw()).observe(canvas);
   }
 
-  setTheme({ background, guide }) {
+  setTheme({ background, guide, text }) {
     this.renderer.setClearColor(new Color().setStyle(background), 1);
     this.guideMaterial.color.setStyle(guide);
     this.contextMaterial.color.setStyle(guide);
+    this.boxMaterial.color.setStyle(text);
     this.draw();
   }
 
@@ -115,7 +71,7 @@ export class Stage {
 
   /** Shows the first so many panes. */
   show(panes) {
-    while (this.panes.length < panes) this.panes.push(new Pane(this.pointMaterial, this.guideMaterial, this.contextMaterial));
+    while (this.panes.length < panes) this.panes.push(new Pane(this.pointMaterial, this.guideMaterial, this.contextMaterial, this.boxMaterial));
     this.shown = panes;
   }
 
@@ -184,5 +140,6 @@ export class Stage {
       this.renderer.setScissor(...corner, width, height);
       this.renderer.render(this.panes[p].scene, this.camera);
     }
+    this.onDrawn();
   }
 }

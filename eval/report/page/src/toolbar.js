@@ -61,10 +61,18 @@ function keepButtons(state, content, viewer) {
   ];
 }
 
+/** Boxes around what moves, where the file has some. */
+function boxesButton(state, content) {
+  if (!content.results.some(({ boxes }) => boxes?.some((ofScan) => ofScan.length > 0))) return null;
+  const button = element('button', { type: 'button', title: 'Boxes around clusters of points that are labelled moving, with their speeds', onclick: () => state.set({ boxes: !state.get('boxes') }) }, 'boxes');
+  state.follow(['boxes'], () => button.setAttribute('aria-pressed', String(state.get('boxes'))));
+  return button;
+}
+
 /** What to look at and how. */
 export function toolbar(state, content, clouds, viewer) {
   const sizes = [{ key: 1, name: 'small' }, { key: 1.6, name: 'medium' }, { key: 2.6, name: 'large' }];
   return element('div', { class: 'toolbar' }, viewButtons(state), colourChoice(state, clouds, viewer),
-    choice('points', sizes, state.get('pointSize'), (value) => state.set({ pointSize: Number(value) })), besideChoice(state, content, clouds),
+    choice('points', sizes, state.get('pointSize'), (value) => state.set({ pointSize: Number(value) })), besideChoice(state, content, clouds), boxesButton(state, content),
     element('button', { type: 'button', title: 'Back to where the view starts (r)', onclick: () => viewer.resetView() }, 'reset'), ...keepButtons(state, content, viewer));
 }

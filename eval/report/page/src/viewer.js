@@ -8,6 +8,7 @@ import { pick } from './picking.js';
 import { pointDetails } from './point_details.js';
 import { runNames } from './runs_menu.js';
 import { Scale } from './scale.js';
+import { SpeedLabels } from './speed_labels.js';
 import { Stage } from './stage.js';
 import { surface } from './theme.js';
 import { viewpoint } from './views.js';
@@ -30,12 +31,14 @@ export class Viewer {
     this.scale = new Scale();
     this.details = element('div', { class: 'details', hidden: true, 'aria-live': 'polite' });
     this.busy = element('span', { class: 'busy', role: 'status' });
-    this.node.append(element('div', { class: 'screen' }, canvas, this.frames.node), this.busy, this.legend.node, this.scale.node, this.details);
     this.stage = new Stage(canvas);
+    this.speeds = new SpeedLabels(this.stage);
+    this.node.append(element('div', { class: 'screen' }, canvas, this.speeds.node, this.frames.node), this.busy, this.legend.node, this.scale.node, this.details);
     this.#listen(canvas);
     state.follow(['theme'], () => this.stage.setTheme(surface(state.get('theme'))));
     state.follow(['result', 'others', 'scan', 'view'], () => this.show());
     state.follow(['theme', 'colouring', 'visible', 'pointSize'], () => this.#paint());
+    state.follow(['boxes'], () => this.#surround());
   }
 
   /** Results in the panes, row by row. */
@@ -60,6 +63,7 @@ export class Viewer {
     this.node.dataset.rows = this.stage.grid().rows;
     this.node.dataset.panes = this.scans.length;
     this.legend.fill(this.scans);
+    this.#surround();
     this.#paint();
     if (this.scans.length > 0) this.#look(view);
     this.node.dataset.shown = `${view === 'map' ? 'map' : scan} ${results.join(' ')}`;
@@ -119,6 +123,15 @@ export class Viewer {
     const name = key === 'score' ? this.clouds.scoreName(this.#shown[0] ?? this.state.get('result')) : key;
     this.scale.fill(key, scale, theme, { name, thresholds: this.#thresholds() });
     if (opinions && names.length > 1) this.scale.fillKinds(opinionNames(names, theme));
+    this.stage.draw();
+  }
+
+  /** The motion map, which is of many scans, has no boxes. */
+  #surround() {
+    const shown = this.state.get('boxes');
+    const boxes = this.scans.map((scan) => (shown && scan.boxes) || []);
+    boxes.forEach((ofPane, p) => this.stage.panes[p].surround(ofPane));
+    this.speeds.fill(boxes);
     this.stage.draw();
   }
 

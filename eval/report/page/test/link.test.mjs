@@ -15,6 +15,13 @@ test('a link leads to the view that it was made of', () => {
   assert.deepEqual(read(hash), { changes: view, camera: { eye: [-22, 1, 17], target: [4, 0, -1] } });
 });
 
+test('a link says whether boxes are shown', () => {
+  const hash = hashOf(new State({ result: 1, others: [], scan: 2, view: 'top', colouring: 'height', boxes: true }), { eye: [0, 0, 9], target: [0, 0, 0] });
+  assert.match(hash, /&boxes=1&/);
+  assert.equal(read(hash).changes.boxes, true);
+  assert.ok(!('boxes' in read('#result=1&boxes=yes').changes));
+});
+
 test('what is not of the report is left out of a link', () => {
   assert.deepEqual(read(''), { changes: {}, camera: null });
   assert.deepEqual(read('#result=3&scan=1'), { changes: {}, camera: null });
