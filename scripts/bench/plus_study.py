@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 """Compares hmm-mos-plus with the paper's method on simulated sequences and on a real one.
 
-    scripts/bench/plus_study.py --work FOLDER [--kitti SEQUENCE] [--delay N]
+    scripts/bench/plus_study.py --work FOLDER [--kitti SEQUENCE] > results/plus/table.md
 
-Simulates every sequence below into FOLDER (once), runs the methods on all of them and prints a
-table. The defaults of hmm-mos-plus were chosen on the group "tuned"; those of "judged" have other
-seeds and most other sensors. --kitti names a sequence in the layout of SemanticKITTI that
+Simulates every sequence below into FOLDER (once), runs the methods on all of them, online and delayed by
+3 and 10 scans, profiles them, and prints a table of each; --parts 0,cost prints two of them alone. The defaults of hmm-mos-plus were chosen on the group "tuned"; those of "judged"
+have other seeds and most other sensors. --kitti names a sequence in the layout of SemanticKITTI that
 is judged, too; its numbers are real and stand apart.
 """
 
@@ -19,11 +19,11 @@ import subprocess
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 ARRIVALS = ["--set", "min_seed_share=0.2,object_age_s=3,min_fresh_share=0,max_aged_share=1,"
-            "min_rise_voxels=0,max_unknown_voxels=15"]
-METHODS = {"paper": ["--method", "hmm-mos"],
-           "arrivals": ["--method", "hmm-mos-plus", *ARRIVALS],
+            "min_rise_voxels=0,max_unknown_voxels=15,max_growth_m=1000"]
+METHODS = {"paper": ["--method", "hmm-mos"], "arrivals": ["--method", "hmm-mos-plus", *ARRIVALS],
            "plus": ["--method", "hmm-mos-plus"]}
 SKIPPED_REAL_SCANS = 4  # those that the paper's method does not judge
+WARM_UP_SCANS, PROFILED_SCANS, ROUNDS = 10, 30, 2
 # group, name, scene, sensor, seed, scans, seconds per scan, pose noise (m, radians), voxel and range (m)
 SEQUENCES = [
     ("tuned", "mall-os1", "mall", "os1-64", 11, 80, 0.1, (0, 0), 0.20, 20),
@@ -124,17 +124,17 @@ def simulated(program, work, row):
     return sequence
 
 
-def run(program, work, sequence, arguments, settings):
-    """The counts of all scans."""
-    out = work / "run"
-    poses = sequence / "noisy_poses.txt"
-    options = ["--poses", poses] if poses.exists() else []
-    sets = [part for key, value in settings.items() for part in ("--set", f"{key}={value}")]
-    subprocess.run([program, "run", sequence, "--dataset", "semantickitti", "--threads", "1", "--overwrite",
-                    "--out", out, *arguments, *sets, *options], check=True, capture_output=True)
-    result = json.loads(next(out.glob("*/result.json")).read_text())
-    shutil.rmtree(out)
-    return result["scans"]
+def answers(program, work, sequence, arguments):
+    """The leaderboard of the methods on a sequence, rows in their order, and their counts of all scans."""
+    folders, scans = [work / "runs" / name for name in METHODS], []
+    for folder, of_method in zip(folders, METHODS.values()):
+        subprocess.run([program, "run", sequence, *of_method, *arguments, "--overwrite", "--out", folder],
+                       check=True, capture_output=True)
+        scans.append(json.loads(next(folder.glob("*/result.json")).read_text())["scans"])
+    ranked = subprocess.run([program, "rank", *folders, "--order", "given", "--format", "json"],
+                            check=True, stdout=subprocess.PIPE)
+    shutil.rmtree(work / "runs")
+    return json.loads(ranked.stdout)["rows"], scans
 
 
 def metrics(scans):
@@ -142,16 +142,98 @@ def metrics(scans):
     return [100 * tp / max(1, whole) for whole in (tp + fp + fn, tp + fp, tp + fn)]
 
 
-def row_of(program, work, name, sequence, settings, skip=0):
-    """Prints a row and returns the IoU of each method."""
-    ious, cells = [], []
-    for arguments in METHODS.values():
-        scans = run(program, work, sequence, arguments, settings)
-        iou, precision, recall = metrics(scans[skip:])
-        ious.append(iou)
-        cells.append(f"{iou:.1f} ({precision:.1f}, {recall:.1f})")
-    print(f"| {name} | {' | '.join(cells)} | {ious[-1] - ious[0]:+.1f} |", flush=True)
-    return ious
+def percent_text(estimate, form):
+    """A number with its interval, where the scans are enough for one."""
+    if estimate["low"] is None:
+        return f"{100 * estimate['value']:{form}}"
+    return f"{100 * estimate['value']:{form}} [{100 * estimate['low']:{form}}, {100 * estimate['high']:{form}}]"
+
+
+def reading_of(sequence, row, delay_scans=0):
+    """What the program is told of a sequence; `row` as in SEQUENCES."""
+    poses = sequence / "noisy_poses.txt"
+    sets = (f"voxel_size_m={row[8]},min_range_m={0.5 if row[8] == 0.2 else 1.5},max_range_m={row[9]},"
+            f"delay_scans={delay_scans}")
+    return ["--dataset", "semantickitti", "--set", sets, *(["--poses", poses] if poses.exists() else [])]
+
+
+def print_row(chosen, name, sequence, reading):
+    """Runs the methods, prints their row and returns the IoU of each and the counts of all scans."""
+    rows, scans = answers(chosen.program, chosen.work, sequence, [*reading, "--threads", "1"])
+    cells = []
+    for row in rows:
+        precision, recall = (100 * row["all"][key]["value"] for key in ("precision", "recall"))
+        cells.append(f"{percent_text(row['all']['iou'], '.1f')} ({precision:.1f}, {recall:.1f})")
+    cells.append(percent_text(rows[-1]["to_first"], "+.1f"))
+    print(f"| {name} | {' | '.join(cells)} |", flush=True)
+    return [100 * row["all"]["iou"]["value"] for row in rows], scans
+
+
+def mean_row(means, gains):
+    """With the interval of the mean gain over sequences like these: they are drawn anew 10,000 times."""
+    draw = random.Random(1)
+    drawn = sorted(statistics.fmean(draw.choices(gains, k=len(gains))) for _ in range(10000))
+    return (f"| mean | {' | '.join(means)} | {statistics.fmean(gains):+.1f} [{drawn[249]:+.1f}, {drawn[9749]:+.1f}], "
+            f"least {min(gains):+.1f} |")
+
+
+def print_group(chosen, rows, delay_scans):
+    ious = []
+    for row in rows:
+        sequence = simulated(chosen.program, chosen.work, row)
+        ious.append(print_row(chosen, row[1], sequence, reading_of(sequence, row, delay_scans))[0])
+    means = [f"{statistics.fmean(column):.1f}" for column in zip(*ious)]
+    gains = [row[-1] - row[0] for row in ious]
+    print(mean_row(means, gains))
+
+
+def print_real(chosen, row, delay_scans):
+    _, scans = print_row(chosen, row[1], chosen.kitti, reading_of(chosen.kitti, row, delay_scans))
+    later = [metrics(of_method[SKIPPED_REAL_SCANS:]) for of_method in scans]
+    cells = [f"{iou:.1f} ({precision:.1f}, {recall:.1f})" for iou, precision, recall in later]
+    print(f"| from scan {SKIPPED_REAL_SCANS} on | {' | '.join(cells)} | {later[-1][0] - later[0][0]:+.1f} |")
+
+
+def print_delay(chosen, groups, delay_scans):
+    header = f"| sequence | {' | '.join(METHODS)} | plus - paper |\n|---|{'---|' * len(METHODS)}---|"
+    print(f"\n## {f'Delayed by {delay_scans} scans' if delay_scans else 'Online'}")
+    for title, rows in groups.items():
+        print(f"\n{title}:\n\n{header}")
+        if title.startswith("Real"):
+            print_real(chosen, rows[0], delay_scans)
+        else:
+            print_group(chosen, rows, delay_scans)
+
+
+def profiled(chosen, sequence, reading, of_method, threads):
+    """CPU milliseconds per scan once the start is over, and the most bytes that the method held."""
+    file = chosen.work / "profile.json"
+    subprocess.run([chosen.program, "profile", sequence, *of_method, *reading, "--threads", str(threads),
+                    "--scans", str(PROFILED_SCANS), "--json", file], check=True, capture_output=True)
+    scans = json.loads(file.read_text())["sequences"][0]["scans"][WARM_UP_SCANS:]
+    return (statistics.fmean(scan["method_cpu_ms"] for scan in scans),
+            max(scan["method_bytes"] for scan in scans))
+
+
+def print_cost(chosen, groups):
+    """Methods are measured in turns; the lowest of the rounds counts."""
+    names = list(METHODS)
+    print(f"\n## Cost, online\n\nMilliseconds of CPU per scan, one thread; then the ratios of plus to paper.\n\n"
+          f"| sequence | {' | '.join(names)} | 1 thread | 2 threads | memory |\n|---|{'---|' * len(names)}---|---|---|")
+    ratios = []
+    for row in (row for rows in groups.values() for row in rows):
+        sequence = chosen.kitti if row[0] == "real" else simulated(chosen.program, chosen.work, row)
+        cases = [(name, threads) for threads in (1, 2) for name in names]
+        rounds = [{case: profiled(chosen, sequence, reading_of(sequence, row), METHODS[case[0]], case[1])
+                   for case in cases} for _ in range(ROUNDS)]
+        ms = {case: min(found[case][0] for found in rounds) for case in cases}
+        held = {case: max(found[case][1] for found in rounds) for case in cases}
+        ratios.append([ms["plus", 1] / ms["paper", 1], ms["plus", 2] / ms["paper", 2],
+                       held["plus", 1] / held["paper", 1]])
+        print(f"| {row[1]} | {' | '.join(f'{ms[name, 1]:.1f}' for name in names)} | "
+              f"{' | '.join(f'{ratio:.2f}' for ratio in ratios[-1])} |", flush=True)
+    columns = [f"{statistics.fmean(column):.2f}, most {max(column):.2f}" for column in zip(*ratios)]
+    print(f"| mean | {' | ' * (len(names) - 1)} | {' | '.join(columns)} |")
 
 
 def main():
@@ -159,25 +241,25 @@ def main():
     parser.add_argument("--program", default=str(ROOT / "build/release/eval/mosbench"))
     parser.add_argument("--work", type=pathlib.Path, required=True, help="folder for simulated sequences")
     parser.add_argument("--kitti", type=pathlib.Path, help="sequence folder of a real recording")
-    parser.add_argument("--delay", type=int, default=0, help="scans (default: 0, online)")
+    parser.add_argument("--parts", default="0,3,10,cost", help="delays in scans, and cost")
     chosen = parser.parse_args()
     chosen.work.mkdir(parents=True, exist_ok=True)
-    header = f"| sequence | {' | '.join(METHODS)} | plus - paper |\n|---|{'---|' * len(METHODS)}---|"
-    for group in ("tuned", "judged"):
-        print(f"\nSimulated, {group}:\n\n{header}")
-        ious = []
-        for row in (row for row in SEQUENCES if row[0] == group):
-            settings = {"voxel_size_m": row[8], "min_range_m": 0.5 if row[8] == 0.2 else 1.5,
-                        "max_range_m": row[9], "delay_scans": chosen.delay}
-            sequence = simulated(chosen.program, chosen.work, row)
-            ious.append(row_of(chosen.program, chosen.work, row[1], sequence, settings))
-        means = [f"{statistics.fmean(column):.1f}" for column in zip(*ious)]
-        gains = [row[-1] - row[0] for row in ious]
-        print(f"| mean | {' | '.join(means)} | {statistics.fmean(gains):+.1f}, least {min(gains):+.1f} |")
+    groups = {}
     if chosen.kitti:
-        print(f"\nReal, judged, without the first {SKIPPED_REAL_SCANS} scans:\n\n{header}")
-        settings = {"voxel_size_m": 0.25, "min_range_m": 1.5, "max_range_m": 50, "delay_scans": chosen.delay}
-        row_of(chosen.program, chosen.work, chosen.kitti.name, chosen.kitti, settings, SKIPPED_REAL_SCANS)
+        groups["Real, judged"] = [("real", chosen.kitti.name, "", "", 0, 0, 0.1, (0, 0), 0.25, 50)]
+    for group in ("judged", "tuned"):
+        groups[f"Simulated, {group}"] = [row for row in SEQUENCES if row[0] == group]
+    parts = chosen.parts.split(",")
+    if parts[0] == "0":
+        print("# hmm-mos-plus on all sequences\n\nWritten by `scripts/bench/plus_study.py`; README.md says what the "
+              "columns are. IoU in % (precision, recall),\nthen the difference of IoU in points, each with its 95 % "
+              "interval where a sequence has the 100 scans that one needs; the\nmean difference with that over "
+              "sequences drawn anew.")
+    for part in parts:
+        if part == "cost":
+            print_cost(chosen, groups)
+        else:
+            print_delay(chosen, groups, int(part))
 
 
 if __name__ == "__main__":
