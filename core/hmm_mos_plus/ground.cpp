@@ -47,17 +47,25 @@ std::size_t Ground::slot_of(const BlockIndex& block) {
 /// Returns the lowest of the columns within `radius` of each column of a tile.
 Ground::Tile Ground::lowest_around(const BlockIndex& at, int radius) const {
   constexpr std::size_t kWide = 3 * kSide;
-  std::array<std::array<std::int32_t, kWide>, kWide> around;
-  for (std::size_t tile = 0; tile < 9; ++tile) {
-    const auto tx = static_cast<int>(tile % 3), ty = static_cast<int>(tile / 3);
-    const std::uint32_t slot = table_.find({at.x + tx - 1, at.y + ty - 1, 0});
-    for (std::size_t cell = 0; cell < kSide * kSide; ++cell) {
-      around[tile / 3 * kSide + cell / kSide][tile % 3 * kSide + cell % kSide] =
-          slot == kNoSlot ? kNone : lowest_[slot][cell];
-    }
-  }
+  static const Tile nothing = [] {
+    Tile tile;
+    tile.fill(kNone);
+    return tile;
+  }();
   const auto first = static_cast<std::size_t>(kBlockSide - radius);
   const auto width = static_cast<std::size_t>(2 * radius + 1);
+  std::array<std::array<std::int32_t, kWide>, kWide> around;  // the tile in the middle of nine
+  for (std::size_t tile = 0; tile < 9; ++tile) {
+    const std::size_t tx = tile % 3 * kSide, ty = tile / 3 * kSide;
+    const std::uint32_t slot = table_.find(
+        {at.x + static_cast<int>(tile % 3) - 1, at.y + static_cast<int>(tile / 3) - 1, 0});
+    const Tile& heights = slot == kNoSlot ? nothing : lowest_[slot];
+    for (std::size_t y = std::max(first, ty); y < std::min(kWide - first, ty + kSide); ++y) {
+      for (std::size_t x = std::max(first, tx); x < std::min(kWide - first, tx + kSide); ++x) {
+        around[y][x] = heights[(y - ty) * kSide + x - tx];
+      }
+    }
+  }
   std::array<std::array<std::int32_t, kSide>, kWide> rows;
   for (std::size_t y = first; y + first < kWide; ++y) {
     for (std::size_t x = 0; x < kSide; ++x) {
