@@ -6,8 +6,14 @@
 namespace mosbench {
 namespace {
 
+std::size_t bytes_of(const PointMotions& motions) {
+  return motions.velocities_m_s.size() * sizeof(Eigen::Vector3f) + motions.classes.size() +
+         motions.on_ground.size() + motions.evaluated.size();
+}
+
 std::size_t bytes_of(const Frame& frame) {
   return frame.points.size() * sizeof(Point) + frame.point_times_ns.size() * sizeof(std::int64_t) +
+         (frame.motions ? bytes_of(*frame.motions) : 0) +
          (frame.truth ? frame.truth->size() * sizeof(std::uint32_t) : 0);
 }
 
@@ -29,6 +35,7 @@ bool KeptScans::find(std::size_t scan_index, Frame& frame) const {
   frame.stem = scan.small.stem;
   frame.map_from_sensor = scan.small.map_from_sensor;
   frame.stamp_ns = scan.small.stamp_ns;
+  frame.motions = scan.small.motions;
   frame.points.assign(scan.points.begin(), scan.points.end());
   frame.point_times_ns.assign(scan.point_times_ns.begin(), scan.point_times_ns.end());
   frame.truth.reset();
@@ -40,13 +47,16 @@ void KeptScans::keep(std::size_t scan_index, const Frame& frame) {
   const std::lock_guard lock(mutex_);
   const std::size_t bytes = bytes_of(frame);
   if (bytes_ + bytes > most_bytes_ || scans_.contains(scan_index)) return;
+  // Names all members, so that a new one is not forgotten here and in `find`.
+  const auto& [stem, points, map_from_sensor, stamp_ns, point_times_ns, motions, truth] = frame;
   Scan& scan = scans_[scan_index];
-  scan.small.stem = frame.stem;
-  scan.small.map_from_sensor = frame.map_from_sensor;
-  scan.small.stamp_ns = frame.stamp_ns;
-  scan.points = copy(frame.points);
-  scan.point_times_ns = copy(frame.point_times_ns);
-  if (frame.truth) scan.truth = copy(*frame.truth);
+  scan.small.stem = stem;
+  scan.small.map_from_sensor = map_from_sensor;
+  scan.small.stamp_ns = stamp_ns;
+  scan.small.motions = motions;
+  scan.points = copy(points);
+  scan.point_times_ns = copy(point_times_ns);
+  if (truth) scan.truth = copy(*truth);
   bytes_ += bytes;
 }
 

@@ -13,9 +13,9 @@ constexpr const char* kMapScoreFooter =
 same frame, with intensity 1 for dynamic points and 0 for others; of a sequence of KTH's
 DynamicMap_Benchmark the folder, too. Both are .pcd or .ply files.
 
-Static accuracy SA is the share of static points that the map still has, dynamic accuracy DA that of
-dynamic points that it no longer has, AA = sqrt(SA * DA), HA = 2 SA DA / (SA + DA), as that
-benchmark defines them. A map with fewer points than the scans, as one of voxels, loses SA:
+Static accuracy SA is the share of static points that the map still has, dynamic accuracy DA that
+of dynamic points that it no longer has, AA = sqrt(SA * DA), HA = 2 SA DA / (SA + DA): so that
+benchmark defines them. A map with fewer points than the scans, as one of voxels, loses SA;
 --same-within-m says how near a point of the map must be to stand for one of the truth.
 
 Examples:

@@ -328,17 +328,22 @@ TEST(KeptSequence, ReadsAgainWhatThereIsNoRoomFor) {
   EXPECT_THROW(shared.second->read(0), DataError);
 }
 
-TEST(KeptScans, HoldStampsAndTimesOfPoints) {
+TEST(KeptScans, HoldStampsTimesAndMotionsOfPoints) {
   KeptScans scans(1000);
   Frame frame;
   frame.points.resize(1);
   frame.stamp_ns = 5;
   frame.point_times_ns = {-1};
+  scans.keep(6, frame);
+  frame.motions.emplace().classes = {3};
   scans.keep(7, frame);
   Frame found;
   found.truth.emplace();
-  EXPECT_FALSE(scans.find(6, found));
+  EXPECT_FALSE(scans.find(5, found));
   ASSERT_TRUE(scans.find(7, found));
+  EXPECT_EQ(found.motions.value().classes, frame.motions->classes);
+  ASSERT_TRUE(scans.find(6, found));
+  EXPECT_FALSE(found.motions);
   EXPECT_EQ(found.stamp_ns, 5);
   EXPECT_EQ(found.point_times_ns, frame.point_times_ns);
   EXPECT_FALSE(found.truth);
