@@ -10,6 +10,7 @@
 #include "datasets/files/folder_lock.hpp"
 #include "datasets/layouts/helimos_layout.hpp"
 #include "datasets/layouts/layout.hpp"
+#include "datasets/layouts/nuscenes_writer.hpp"
 #include "datasets/layouts/simulated_origin.hpp"
 #include "datasets/layouts/unfinished_conversion.hpp"
 #include "datasets/rosbag/ros2_bag_writer.hpp"
@@ -54,6 +55,8 @@ std::set<fs::path> expected_files(const Dataset& dataset, const Layout& layout,
       files.insert(folders[i] / name);
     }
     if (layout.writer->one_file) files.insert({folders[i], pose_origin_file(folders[i])});
+    for (const fs::path& file : nuscenes_table_files()) files.insert(folders[i] / file);
+    files.insert((folders[i] / kNuscenesLastFile).parent_path() / kPoseOriginFile);
     for (const char* split : {"train.txt", "val.txt", "test.txt"}) {
       files.insert(folders[i].parent_path() / split);
     }
@@ -61,9 +64,19 @@ std::set<fs::path> expected_files(const Dataset& dataset, const Layout& layout,
     for (std::size_t k = 0; k < sequence.size(); ++k) {
       files.insert(folders[i] / "velodyne" / (sequence.stem(k) + ".bin"));
       files.insert(folders[i] / "labels" / (sequence.stem(k) + ".label"));
+      for (const fs::path& file : nuscenes_scan_files(sequence.stem(k))) {
+        files.insert(folders[i] / file);
+      }
     }
   }
   return files;
+}
+
+/// Returns the file that appears when all of a sequence is on the disk.
+fs::path pose_file_of(const LayoutWriter& writer, const fs::path& folder,
+                      const WriteOptions& writing) {
+  if (writer.one_file) return folder;
+  return folder / (writing.bag == BagKind::kNone ? writer.last_file : last_file_of(writing));
 }
 
 /// Says what is converted to what.
@@ -134,7 +147,7 @@ void convert(const Dataset& dataset, const ConvertOptions& options,
       const fs::path folder = options.out / folders[i];
       WriteOptions writing = options.writing;
       writing.scans = sequence.size();
-      const fs::path pose_file = layout.writer->one_file ? folder : folder / last_file_of(writing);
+      const fs::path pose_file = pose_file_of(*layout.writer, folder, writing);
       // Finished by a conversion that was killed.
       if (is_there(pose_file) && is_there(pose_origin_file(pose_file))) {
         for (std::size_t k = 0; k < sequence.size(); ++k) advance();

@@ -22,6 +22,7 @@ enum class DatasetKind {
   kKth,
   kMdetector,
   kOpenSceneFlow,
+  kNuscenes,
   kRecording  ///< a bag, a scan, or a folder of either, of no published set
 };
 
@@ -78,11 +79,12 @@ std::vector<SequenceFolder> find_sequences(const std::filesystem::path& path,
 /// Opens a data set's root, one sequence folder, a bag or a scan, and of it only the sequences
 /// kept. A kind that is not given is recognised, in this order: indices.csv or sequence_N folders
 /// (doals); folders named after HeLiMOS's sensors; velodyne_poses_kitti.txt (apollo); .h5 files
-/// (opensceneflow); pcd/ next to gt_poses.txt (moe) or gt_cloud.pcd (kth); "sipailou" or
-/// "M-detector" in a folder name of the path; folders as those of semantickitti; any bags or scans
-/// (recording). A remark says so. Throws DataError when nothing usable is there, UsageError for a
-/// sequence name that does not exist or a pose file given for several sequences. For poses in a
-/// folder each sequence takes NAME.txt, NAME.tum or NAME/poses.txt.
+/// (opensceneflow); pcd/ next to gt_poses.txt (moe) or gt_cloud.pcd (kth); tables of
+/// v1.0-* (nuscenes); "sipailou" or "M-detector" in a folder name of the path; folders as those of
+/// semantickitti; any bags or scans (recording). A remark says so. Throws DataError when nothing
+/// usable is there, UsageError for a sequence name that does not exist or a pose file given for
+/// several sequences. For poses in a folder each sequence takes NAME.txt, NAME.tum or
+/// NAME/poses.txt.
 Dataset open_dataset(const std::filesystem::path& path, const OpenOptions& options);
 
 }  // namespace mosbench

@@ -47,6 +47,9 @@ struct LayoutWriter {
   /// 0.
   std::filesystem::path (*folder)(const std::string& name, std::size_t position);
   bool one_file = false;  ///< `folder` is a file, which holds all of the sequence
+  /// The file in a sequence's folder that appears when all of it is on the disk, unless a bag is
+  /// written.
+  const char* last_file = "poses.txt";
 };
 
 /// All facts about one data set. Adding one: a value of DatasetKind, a file with its row, and the
@@ -91,6 +94,7 @@ const Layout& moe_layout();
 const Layout& kth_layout();
 const Layout& mdetector_layout();
 const Layout& opensceneflow_layout();
+const Layout& nuscenes_layout();
 const Layout& recording_layout();
 
 /// Returns all rows, in the order in which they are listed.

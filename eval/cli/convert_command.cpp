@@ -22,7 +22,8 @@ Points keep their bits and their order. Truth becomes .label files with the ids 
 the layouts of DOALS it becomes rows of indices.csv with the points of ids 251 to 259, and scans
 without stamps get stamps 0.1 s apart. ROS 2 bags have the topics /points, where truth is the field
 label, and /tf. OpenSceneFlow's .h5 files keep the flow of DATA; truth without speeds becomes the
-array mos_label.
+array mos_label. As nuscenes each sequence is a scene with tables of its own, and each moving
+point an annotation.
 
 Examples:
   mosbench convert ~/doals/station/sequence_1 --layout semantickitti --out ~/doals-kitti
@@ -97,7 +98,7 @@ CommandRun add_convert(CLI::App& command) {
   command.add_option("--layout", options->layout, "Layout to write")
       ->required()
       ->check(CLI::IsMember({"doals", "doals-bag", "sipailou", "helimos", "semantickitti",
-                             "opensceneflow", "ros2-mcap", "ros2-db3"}));
+                             "opensceneflow", "nuscenes", "ros2-mcap", "ros2-db3"}));
   command.add_option("--out", options->conversion.out, "Root of the data set to write")
       ->type_name("DIR")
       ->required();

@@ -66,6 +66,8 @@ std::span<const Preset> presets() {
              "authors' config of M-detector's sets (2025)"},
       Preset{"opensceneflow", DatasetKind::kOpenSceneFlow, settings(0.25, 1.5, 50.0),
              "sceneflow-dynamic", "ours, the authors publish none: as helimos"},
+      Preset{"nuscenes", DatasetKind::kNuscenes, settings(0.25, 1.5, 50.0), "semantickitti-mos",
+             "ours, the authors publish none: as helimos"},
       Preset{"recording", DatasetKind::kRecording, settings(0.25, 1.5, 50.0), "semantickitti-mos",
              "ours, for recordings of any sensor: as helimos"},
       Preset{"best", std::nullopt, {}, "", "ours, results/plus/README.md", "hmm-mos-plus"},

@@ -137,6 +137,27 @@ TEST_F(Convert, TurnsEveryLayoutIntoEveryOther) {
   }
 }
 
+TEST_F(Convert, MakesTablesOfNuscenesThatReadAndScoreAsTheScans) {
+  for (const char* name : {"00", "01"}) {
+    cli::write_small_sequence(folder_ / "data/sequences" / name, 12);
+  }
+  const std::string data = (folder_ / "data").string();
+  for (const char* unlabelled : {"000000", "000005"}) {
+    std::filesystem::remove(folder_ / "data/sequences/00/labels" /
+                            (std::string(unlabelled) + ".label"));
+  }
+  const cli::Answer answer = convert(data, "nuscenes", "tables");
+  ASSERT_EQ(answer.exit_code, 0) << answer.err;
+  const Dataset tables = open_dataset(folder_ / "tables", {});
+  EXPECT_EQ(tables.kind, DatasetKind::kNuscenes);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "tables/00/sweeps/LIDAR_TOP/000005.pcd.bin"));
+  expect_same_frames(data, folder_ / "tables", 1e-12);
+  EXPECT_EQ(cli::run({"doctor", (folder_ / "tables").string()}).exit_code, 0);
+  EXPECT_EQ(scores((folder_ / "tables").string(), "tables_out"), scores(data, "out"));
+  EXPECT_EQ(convert((folder_ / "tables").string(), "semantickitti", "back").exit_code, 0);
+  expect_same_frames(data, folder_ / "back", 1e-12);
+}
+
 TEST_F(Convert, MakesABagOfScansWithoutStamps) {
   if (!writes_bags()) GTEST_SKIP() << "this build is without librosbag_storage";
   cli::write_small_sequence(folder_ / "room", 3);

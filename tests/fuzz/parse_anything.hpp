@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdlib>
+#include <sstream>
 #include <string_view>
 
 #include "datasets/files/bin_file.hpp"
@@ -11,6 +13,7 @@
 #include "datasets/files/indices_file.hpp"
 #include "datasets/files/label_file.hpp"
 #include "datasets/files/moe_labels.hpp"
+#include "datasets/files/nuscenes_table.hpp"
 #include "datasets/files/pcd_header.hpp"
 #include "datasets/files/ply_file.hpp"
 #include "datasets/files/point_times.hpp"
@@ -251,6 +254,18 @@ inline void hdf5(std::string_view bytes) {
   });
 }
 
+/// Rows with the keys that any table of nuScenes has.
+inline void nuscenes_table(std::string_view text) {
+  std::istringstream bytes{std::string(text)};
+  parse_nuscenes_table(bytes, "f", [](const NuscenesRow& row) {
+    (void)row.text("token");
+    (void)row.flag("is_key_frame");
+    (void)row.integer("timestamp");
+    (void)row.texts("attribute_tokens");
+    for (const double number : row.numbers("translation", 3)) require(std::isfinite(number));
+  });
+}
+
 inline void scene(std::string_view text) {
   const std::string formatted = format_scene(parse_scene(text, "f"));
   require(format_scene(parse_scene(formatted, "f")) == formatted);
@@ -282,7 +297,8 @@ struct Parser {
   void (*parse)(std::string_view);
   std::size_t mutations = 3000;  ///< that the replay tries; fewer where each takes a process
 };
-inline constexpr std::array<Parser, 23> kParsers = {{{"bin", bin},
+inline constexpr std::array<Parser, 24> kParsers = {{{"bin", bin},
+                                                     {"nuscenes_table", nuscenes_table},
                                                      {"label", label},
                                                      {"dynamic_scores", dynamic_scores},
                                                      {"poses", poses},

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import folders
 
-LAYOUTS = ("doals", "doals-bag", "sipailou", "helimos", "semantickitti", "opensceneflow")
+LAYOUTS = ("doals", "doals-bag", "sipailou", "helimos", "semantickitti", "opensceneflow", "nuscenes")
 RUN = "run data --config config.json --threads 1 --out out"
 READING = [
     RUN, f"{RUN} --json", f"{RUN} --perturb pose_noise_m=0.05,dropout_probability=0.2,fog_per_m=0.02,seed=3",
@@ -86,6 +86,9 @@ def _sequences(trees):
         tree = _prefixed(trees, data=layout, predicted="predicted_all")
         commands = [line.replace(" data", f" data --dataset {layout}", 1) for line in READING]
         yield Kind(f"data set {layout}", tree, re.compile(r"^data/"), commands)
+    nuscenes = _prefixed(trees, data="nuscenes", predicted="predicted_all")
+    for name, pattern in (("tables of nuscenes", r"^data/.*v1.0-mini/.*\.json$"), ("scan .pcd.bin", r"\.pcd\.bin$")):
+        yield Kind(name, nuscenes, re.compile(pattern), READING)
     helimos = _prefixed(trees, data="helimos", predicted="predicted_all")
     splits = [f"{RUN} --protocol helimos-test", "score data --predictions predicted --protocol all", "doctor data",
               "score data --predictions predicted --split val --json"]

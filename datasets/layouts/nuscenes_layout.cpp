@@ -1,0 +1,189 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <span>
+
+#include "datasets/files/errors.hpp"
+#include "datasets/files/folder_listing.hpp"
+#include "datasets/files/label_file.hpp"
+#include "datasets/files/text.hpp"
+#include "datasets/layouts/folder_search.hpp"
+#include "datasets/layouts/layout.hpp"
+#include "datasets/layouts/nuscenes_sequence.hpp"
+#include "datasets/layouts/nuscenes_tables.hpp"
+#include "datasets/layouts/nuscenes_writer.hpp"
+
+namespace mosbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kScenePrefix = "scene-";
+
+/// Numbers of scenes, both ends included.
+struct NumberRange {
+  std::uint64_t first, last;
+};
+
+// The lists of nuscenes-devkit, python-sdk/nuscenes/utils/splits.py: 700, 150 and 150 scenes.
+constexpr std::array<NumberRange, 79> kTrain = {
+    {{1, 2},       {4, 11},     {19, 34},   {41, 76},   {120, 135}, {138, 139},  {149, 152},
+     {154, 155},   {157, 168},  {170, 185}, {187, 188}, {190, 196}, {199, 200},  {202, 204},
+     {206, 214},   {218, 220},  {222, 222}, {224, 264}, {283, 306}, {315, 318},  {321, 321},
+     {323, 324},   {328, 328},  {347, 386}, {388, 403}, {405, 408}, {410, 459},  {461, 465},
+     {467, 469},   {471, 472},  {474, 480}, {499, 502}, {504, 515}, {517, 518},  {525, 539},
+     {541, 546},   {566, 566},  {568, 568}, {570, 578}, {580, 580}, {582, 600},  {639, 679},
+     {681, 681},   {683, 689},  {695, 698}, {700, 701}, {703, 719}, {726, 728},  {730, 731},
+     {733, 741},   {744, 744},  {746, 747}, {749, 752}, {757, 765}, {767, 769},  {786, 787},
+     {789, 792},   {803, 806},  {808, 813}, {815, 817}, {819, 822}, {847, 856},  {858, 858},
+     {860, 866},   {868, 873},  {875, 878}, {880, 880}, {882, 903}, {945, 945},  {947, 947},
+     {949, 949},   {952, 953},  {955, 961}, {975, 984}, {988, 992}, {994, 1025}, {1044, 1058},
+     {1074, 1102}, {1104, 1110}}};
+constexpr std::array<NumberRange, 26> kVal = {
+    {{3, 3},     {12, 18},   {35, 36},   {38, 39},   {92, 110},   {221, 221}, {268, 278},
+     {329, 332}, {344, 346}, {519, 524}, {552, 565}, {625, 627},  {629, 630}, {632, 638},
+     {770, 771}, {775, 775}, {777, 778}, {780, 784}, {794, 800},  {802, 802}, {904, 917},
+     {919, 931}, {962, 963}, {966, 969}, {971, 972}, {1059, 1073}}};
+constexpr std::array<NumberRange, 18> kTest = {{{77, 91},
+                                                {111, 119},
+                                                {140, 140},
+                                                {142, 148},
+                                                {265, 266},
+                                                {279, 282},
+                                                {307, 314},
+                                                {333, 343},
+                                                {481, 498},
+                                                {547, 551},
+                                                {601, 604},
+                                                {606, 624},
+                                                {827, 831},
+                                                {833, 842},
+                                                {844, 846},
+                                                {932, 933},
+                                                {935, 943},
+                                                {1026, 1043}}};
+constexpr std::array<NumberRange, 8> kMiniTrain = {{{61, 61},
+                                                    {553, 553},
+                                                    {655, 655},
+                                                    {757, 757},
+                                                    {796, 796},
+                                                    {1077, 1077},
+                                                    {1094, 1094},
+                                                    {1100, 1100}}};
+constexpr std::array<NumberRange, 2> kMiniVal = {{{103, 103}, {916, 916}}};
+
+/// Lists the folders of tables, "v1.0-mini" and so on, at a place.
+std::vector<fs::path> versions_in(const fs::path& folder) {
+  if (holds_nuscenes_tables(folder)) return {folder};
+  std::vector<fs::path> versions;
+  for (const fs::path& below : list_folders(folder)) {
+    const bool is_version = below.filename().string().starts_with("v1.0-");
+    if (is_version && holds_nuscenes_tables(below)) versions.push_back(below);
+  }
+  return versions;
+}
+
+/// The same at a root, else in the folders below it, as `convert` writes them.
+std::vector<fs::path> versions_below(const fs::path& path) {
+  std::vector<fs::path> versions = versions_in(path);
+  if (!versions.empty()) return versions;
+  for (const fs::path& folder : list_folders(path)) {
+    for (fs::path& version : versions_in(folder)) versions.push_back(std::move(version));
+  }
+  return versions;
+}
+
+/// "0061" of "scene-0061".
+std::string alias_of(const std::string& scene) {
+  return scene.starts_with(kScenePrefix) ? scene.substr(kScenePrefix.size()) : "";
+}
+
+std::vector<SequenceFolder> list_nuscenes(const fs::path& path) {
+  std::vector<SequenceFolder> sequences;
+  std::map<std::string, fs::path> place_of_name;
+  for (const fs::path& version : versions_below(path)) {
+    for (const std::string& name : nuscenes_scene_names(version)) {
+      const auto [other, is_new] = place_of_name.emplace(name, version);
+      if (!is_new) {
+        throw DataError(path,
+                        fmt::format("holds {} twice, in {} and {}", mosbench::quoted(name),
+                                    other->second.string(), version.string()),
+                        "one of them as DATA");
+      }
+      sequences.push_back({name, version, alias_of(name)});
+    }
+  }
+  return sequences;
+}
+
+std::unique_ptr<Sequence> open_nuscenes(const SequenceFolder& sequence,
+                                        const ReadingOptions& options) {
+  return std::make_unique<NuscenesSequence>(sequence.name, sequence.folder, options);
+}
+
+bool holds(std::span<const NumberRange> ranges, const std::string& scene) {
+  const auto number = stem_number(alias_of(scene));
+  return number && std::ranges::any_of(ranges, [&](const NumberRange& range) {
+           return *number >= range.first && *number <= range.last;
+         });
+}
+
+std::vector<Split> nuscenes_splits(const std::vector<SequenceFolder>& folders,
+                                   const std::vector<std::unique_ptr<Sequence>>&,
+                                   std::vector<std::string>&) {
+  const std::array<std::pair<const char*, std::span<const NumberRange>>, 5> named = {
+      {{"train", kTrain},
+       {"val", kVal},
+       {"test", kTest},
+       {"mini_train", kMiniTrain},
+       {"mini_val", kMiniVal}}};
+  std::vector<Split> splits;
+  for (const auto& [name, ranges] : named) {
+    Split split{name, {}};
+    for (std::size_t i = 0; i < folders.size(); ++i) {
+      if (holds(ranges, folders[i].name)) split.parts.push_back({i, std::nullopt});
+    }
+    if (!split.parts.empty()) splits.push_back(std::move(split));
+  }
+  return splits;
+}
+
+std::optional<std::string> recognise_nuscenes(const fs::path& path) {
+  const auto versions = versions_below(path);
+  if (versions.empty()) return std::nullopt;
+  return "the tables of " + folder_name(versions.front()) + " are there";
+}
+
+fs::path nuscenes_folder(const std::string& name, std::size_t) { return flat_name(name); }
+
+}  // namespace
+
+const Layout& nuscenes_layout() {
+  static const Layout row = {
+      .kind = DatasetKind::kNuscenes,
+      .name = "nuscenes",
+      .title = "nuScenes, CVPR 2020, with the truth that MapMOS makes of its boxes",
+      .content = "32-beam Velodyne on a car, 20 Hz, boxes at 2 Hz",
+      .size = "1000 scenes of 20 s, some 390,000 scans",
+      .published = "nuscenes.org",
+      .licence = "CC BY-NC-SA 4.0, with nuScenes' terms of use",
+      .folders = {"<root>/", "  v1.0-{mini,trainval,test}/*.json   the tables",
+                  "  samples/LIDAR_TOP/*.pcd.bin        key frames, which have truth",
+                  "  sweeps/LIDAR_TOP/*.pcd.bin         the scans between",
+                  "<root>/<folder>/                    such roots, as convert writes them"},
+      .files = {.label_ids = {kStaticLabel, kMovingLabel}, .sensor_range_m = 200.0},
+      .expected =
+          "v1.0-mini, v1.0-trainval or v1.0-test with the tables of nuScenes beside samples/ and "
+          "sweeps/, or one such folder of tables",
+      .list = list_nuscenes,
+      .open = open_nuscenes,
+      .splits = nuscenes_splits,
+      .evidence = Evidence::kFolders,
+      .recognise = recognise_nuscenes,
+      .writer = LayoutWriter{write_as_nuscenes, nuscenes_folder, kNuscenesLastFile}};
+  return row;
+}
+
+}  // namespace mosbench

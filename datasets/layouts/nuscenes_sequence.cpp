@@ -1,0 +1,132 @@
+#include "datasets/layouts/nuscenes_sequence.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "datasets/files/errors.hpp"
+#include "datasets/files/scan_file.hpp"
+#include "datasets/files/shown_text.hpp"
+#include "datasets/layouts/folder_search.hpp"
+#include "datasets/sequence/pose_source.hpp"
+
+namespace mosbench {
+namespace {
+
+constexpr std::size_t kColumns = 5;
+
+const NuscenesScene& scene_named(const NuscenesTables& tables, const std::string& name,
+                                 const std::filesystem::path& folder) {
+  const auto scene = std::ranges::find(tables.scenes, name, &NuscenesScene::name);
+  if (scene == tables.scenes.end() || scene->scans.empty()) {
+    throw DataError(folder / "sample_data.json", "has no scan of LIDAR_TOP in " + name,
+                    "scans of every scene");
+  }
+  return *scene;
+}
+
+/// "n008...__LIDAR_TOP__1533151603547590" of the file with .pcd.bin behind it.
+std::string stem_of(const std::filesystem::path& file) {
+  return shown_in_line(file.stem().stem().string());
+}
+
+}  // namespace
+
+NuscenesSequence::NuscenesSequence(std::string name, const std::filesystem::path& tables,
+                                   const ReadingOptions& options)
+    : tables_(read_nuscenes_tables(tables)) {
+  if (options.undistorts() && options.point_times == PointTimes::kColumn) {
+    throw UsageError(
+        "--point-times column: the fifth column of nuScenes is the ring, expected "
+        "azimuth or none");
+  }
+  mutable_recording().name = SequenceName(name, tables);
+  list_scans(parent_folder(tables), scene_named(*tables_, name, tables));
+  say_what_is_read(tables);
+  take_poses(tables, options);
+}
+
+void NuscenesSequence::list_scans(const std::filesystem::path& root, const NuscenesScene& scene) {
+  for (const NuscenesScan& scan : scene.scans) {
+    ScanEntry& entry = mutable_recording().scans.emplace_back();
+    entry.stem = stem_of(scan.file);
+    entry.file = root / scan.file;
+    entry.stamp_ns = scan.stamp_ns;
+    entry.map_from_sensor = scan.map_from_sensor;
+    entry.points = read_scan_head(*entry.file, kColumns).points;
+    entry.has_truth = scan.is_key_frame && tables_->has_annotations;
+    scans_.push_back(&scan);
+  }
+}
+
+void NuscenesSequence::say_what_is_read(const std::filesystem::path& folder) {
+  Recording& recording = mutable_recording();
+  for (const char* table : {"scene.json", "sample.json", "sample_data.json", "sensor.json",
+                            "calibrated_sensor.json", "ego_pose.json"}) {
+    recording.files.push_back(folder / table);
+  }
+  recording.reading = {{"scan_files", ".pcd.bin of LIDAR_TOP, key frames and sweeps"}};
+  const auto labelled = std::ranges::count(recording.scans, true, &ScanEntry::has_truth);
+  if (labelled == 0) {
+    recording.remarks.push_back("no annotations: there is no truth");
+    return;
+  }
+  recording.truth_files = {folder / "attribute.json", folder / "sample_annotation.json"};
+  recording.remarks.push_back(
+      fmt::format("truth of the {} key frames of {} scans, from boxes of vehicle.moving, "
+                  "cycle.with_rider and pedestrian.moving",
+                  labelled, recording.scans.size()));
+}
+
+void NuscenesSequence::take_poses(const std::filesystem::path& folder,
+                                  const ReadingOptions& options) {
+  Recording& recording = mutable_recording();
+  if (!options.poses && !options.poses_by_odometry) {
+    recording.reading.emplace_back("poses", "ego_pose.json and calibrated_sensor.json");
+    recording.reading.emplace_back("pose_direction", "map_from_sensor");
+    recording.reading.emplace_back("pose_frame", "lidar");
+    state_pose_origin(folder / "ego_pose.json", recording.reading, recording.remarks);
+    return;
+  }
+  std::vector<std::int64_t> stamps_ns;
+  for (const NuscenesScan* scan : scans_) stamps_ns.push_back(scan->stamp_ns);
+  SensorPoses poses = read_sensor_poses(folder, "", options, {size(), stamps_ns});
+  const std::vector<ScanEntry> scans = std::exchange(recording.scans, {});
+  const std::vector<const NuscenesScan*> rows = std::exchange(scans_, {});
+  for (std::size_t k = 0; k < scans.size(); ++k) {
+    const bool leaves_out = std::ranges::binary_search(poses.unknown, k);
+    ScanEntry& entry = (leaves_out ? recording.left_out : recording.scans).emplace_back(scans[k]);
+    entry.map_from_sensor = poses.map_from_sensor[k];
+    entry.has_truth = entry.has_truth && !leaves_out;
+    if (!leaves_out) scans_.push_back(rows[k]);
+  }
+  recording.files.insert(recording.files.end(), poses.files.begin(), poses.files.end());
+  recording.remarks.insert(recording.remarks.end(), poses.remarks.begin(), poses.remarks.end());
+  recording.reading.insert(recording.reading.end(), poses.reading.begin(), poses.reading.end());
+}
+
+void NuscenesSequence::read(std::size_t scan_index, Frame& frame) const {
+  const ScanEntry& entry = scan(scan_index);
+  frame.points = read_scan(*entry.file, kColumns, std::move(frame.points));
+  if (frame.points.size() != entry.points) {
+    throw DataError(*entry.file, "changed since the sequence was opened",
+                    fmt::format("{} points", entry.points));
+  }
+  describe(scan_index, frame);
+  frame.point_times_ns.clear();
+  frame.truth.reset();
+  if (!entry.has_truth) return;
+  // Boxes are in the map of ego_pose, whatever poses the scans are given.
+  const NuscenesScan& row = *scans_[scan_index];
+  frame.truth = nuscenes_truth(frame.points, row.map_from_sensor, row.moving);
+}
+
+std::vector<std::uint32_t> NuscenesSequence::read_truth(std::size_t scan_index) const {
+  if (!has_truth(scan_index)) refuse_truth(scan_index);
+  Frame frame;
+  read(scan_index, frame);
+  return std::move(*frame.truth);
+}
+
+}  // namespace mosbench

@@ -1,0 +1,283 @@
+#include "datasets/layouts/nuscenes_tables.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <mutex>
+#include <numeric>
+#include <optional>
+#include <unordered_map>
+#include <unordered_set>
+
+#include "datasets/files/errors.hpp"
+#include "datasets/files/files.hpp"
+#include "datasets/files/label_file.hpp"
+#include "datasets/files/nuscenes_table.hpp"
+#include "datasets/files/quaternion.hpp"
+
+namespace mosbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Attributes of what moves, as MapMOS takes them.
+constexpr std::array kMovingAttributes = {"vehicle.moving", "cycle.with_rider",
+                                          "pedestrian.moving"};
+
+Eigen::Vector3d vector_of(const std::vector<double>& numbers) {
+  return {numbers[0], numbers[1], numbers[2]};
+}
+
+Pose pose_in(const NuscenesRow& row) {
+  const std::vector<double>& wxyz = row.numbers("rotation", 4);
+  const auto pose = pose_of(vector_of(row.numbers("translation", 3)),
+                            Eigen::Vector4d(wxyz[1], wxyz[2], wxyz[3], wxyz[0]));
+  if (!pose) row.refuse("\"rotation\" is no unit quaternion", "w x y z of length 1");
+  return *pose;
+}
+
+std::int64_t stamp_ns_in(const NuscenesRow& row) {
+  constexpr std::int64_t kNsPerUs = 1000;
+  const std::int64_t stamp_us = row.integer("timestamp");
+  if (stamp_us < 0 || stamp_us > std::numeric_limits<std::int64_t>::max() / kNsPerUs) {
+    row.refuse(fmt::format("\"timestamp\" is {}", stamp_us), "microseconds since 1970");
+  }
+  return stamp_us * kNsPerUs;
+}
+
+/// Refuses names that lead out of the data set.
+fs::path scan_file_in(const NuscenesRow& row) {
+  const fs::path file = fs::path(row.text("filename")).lexically_normal();
+  const bool leads_out = file.empty() || file.is_absolute() || *file.begin() == "..";
+  if (leads_out) row.refuse("\"filename\" is no path within the data set", "samples/LIDAR_TOP/...");
+  return file;
+}
+
+NuscenesBox box_in(const NuscenesRow& row) {
+  const std::vector<double>& width_length_height = row.numbers("size", 3);
+  NuscenesBox box{pose_in(row),
+                  0.5 * Eigen::Vector3d(width_length_height[1], width_length_height[0],
+                                        width_length_height[2])};
+  if (box.half_size_m.minCoeff() < 0.0) row.refuse("\"size\" is negative", "metres");
+  return box;
+}
+
+/// A row of sample_data.json that is of LIDAR_TOP.
+struct LidarRow {
+  std::size_t sample = 0;
+  Pose ego_from_sensor = Pose::Identity();
+  bool has_pose = false;
+  NuscenesScan scan;
+};
+
+/// Reads one table after the other; each keeps only what the next needs.
+class TableReader {
+ public:
+  explicit TableReader(fs::path folder) : folder_(std::move(folder)) {}
+
+  NuscenesTables read() {
+    read_sensors();
+    read_samples();
+    read_scans();
+    read_poses();
+    read_boxes();
+    return std::move(*this).tables();
+  }
+
+ private:
+  using Row = NuscenesRow;
+
+  template <typename Take>
+  void for_rows(const char* table, Take&& take) const {
+    read_nuscenes_table(folder_ / table, take);
+  }
+
+  void read_sensors() {
+    std::unordered_set<std::string> lidars;
+    for_rows("sensor.json", [&](const Row& row) {
+      if (row.text("channel") == "LIDAR_TOP") lidars.insert(row.text("token"));
+    });
+    for_rows("calibrated_sensor.json", [&](const Row& row) {
+      if (!lidars.contains(row.text("sensor_token"))) return;
+      mounts_.insert_or_assign(row.text("token"), pose_in(row));
+    });
+  }
+
+  void read_samples() {
+    std::unordered_map<std::string, std::size_t> scene_of_token;
+    for_rows("scene.json", [&](const Row& row) {
+      scene_of_token.emplace(row.text("token"), scenes_.size());
+      scenes_.push_back({row.text("name"), {}});
+    });
+    for_rows("sample.json", [&](const Row& row) {
+      const auto scene = scene_of_token.find(row.text("scene_token"));
+      if (scene == scene_of_token.end()) row.refuse("is of no scene", "one of scene.json");
+      sample_of_token_.emplace(row.text("token"), scene_of_sample_.size());
+      scene_of_sample_.push_back(scene->second);
+    });
+    boxes_.resize(scene_of_sample_.size());
+  }
+
+  void read_scans() {
+    for_rows("sample_data.json", [&](const Row& row) {
+      const auto mount = mounts_.find(row.text("calibrated_sensor_token"));
+      if (mount == mounts_.end()) return;
+      const auto sample = sample_of_token_.find(row.text("sample_token"));
+      if (sample == sample_of_token_.end()) row.refuse("is of no sample", "one of sample.json");
+      rows_of_pose_.emplace(row.text("ego_pose_token"), rows_.size());
+      rows_.push_back(
+          {sample->second,
+           mount->second,
+           false,
+           {scan_file_in(row), stamp_ns_in(row), Pose::Identity(), row.flag("is_key_frame"), {}}});
+    });
+  }
+
+  void read_poses() {
+    for_rows("ego_pose.json", [&](const Row& row) {
+      const auto [first, last] = rows_of_pose_.equal_range(row.text("token"));
+      for (auto found = first; found != last; ++found) {
+        LidarRow& lidar = rows_[found->second];
+        lidar.scan.map_from_sensor = pose_in(row) * lidar.ego_from_sensor;
+        lidar.has_pose = true;
+      }
+    });
+  }
+
+  void read_boxes() {
+    if (!is_there(folder_ / "sample_annotation.json")) return;
+    std::unordered_set<std::string> moving;
+    for_rows("attribute.json", [&](const Row& row) {
+      const bool moves =
+          std::ranges::find(kMovingAttributes, row.text("name")) != kMovingAttributes.end();
+      if (moves) moving.insert(row.text("token"));
+    });
+    for_rows("sample_annotation.json", [&](const Row& row) {
+      has_annotations_ = true;
+      const std::vector<std::string>& attributes = row.texts("attribute_tokens");
+      if (attributes.empty() || !moving.contains(attributes.front())) return;
+      const auto sample = sample_of_token_.find(row.text("sample_token"));
+      if (sample == sample_of_token_.end()) row.refuse("is of no sample", "one of sample.json");
+      boxes_[sample->second].push_back(box_in(row));
+    });
+  }
+
+  NuscenesTables tables() && {
+    for (LidarRow& row : rows_) {
+      if (!row.has_pose) {
+        throw DataError(folder_ / "ego_pose.json", "has no pose of " + row.scan.file.string(),
+                        "the one that sample_data.json names");
+      }
+      if (row.scan.is_key_frame) row.scan.moving = boxes_[row.sample];
+      scenes_[scene_of_sample_[row.sample]].scans.push_back(std::move(row.scan));
+    }
+    for (NuscenesScene& scene : scenes_) {
+      std::ranges::stable_sort(scene.scans, {}, &NuscenesScan::stamp_ns);
+    }
+    return {std::move(scenes_), has_annotations_};
+  }
+
+  fs::path folder_;
+  std::unordered_map<std::string, Pose> mounts_;  ///< ego_from_sensor of calibrated LiDARs
+  std::vector<NuscenesScene> scenes_;
+  std::unordered_map<std::string, std::size_t> sample_of_token_;
+  std::vector<std::size_t> scene_of_sample_;
+  std::vector<LidarRow> rows_;
+  std::unordered_multimap<std::string, std::size_t> rows_of_pose_;
+  std::vector<std::vector<NuscenesBox>> boxes_;  ///< by sample
+  bool has_annotations_ = false;
+};
+
+/// Says which tables lie in a folder, and that they are those of before.
+std::string state_of_tables(const fs::path& folder) {
+  std::string state = fs::absolute(folder).lexically_normal().string();
+  for (const fs::path& file :
+       {folder / "sample_data.json", folder / "ego_pose.json", folder / "sample_annotation.json"}) {
+    std::error_code error;
+    const auto written = fs::last_write_time(file, error).time_since_epoch().count();
+    state += fmt::format("\n{} {}", fs::file_size(file, error), written);
+  }
+  return state;
+}
+
+/// Points in the order of x, to find those near a box without looking at all.
+class PointsByX {
+ public:
+  struct XOf {
+    std::span<const Point> points;
+    float operator()(std::uint32_t i) const { return points[i].x; }
+  };
+
+  explicit PointsByX(std::span<const Point> points) : points_(points) {
+    for (std::uint32_t i = 0; i < points.size(); ++i) {
+      if (!std::isnan(points[i].x)) order_.push_back(i);
+    }
+    std::ranges::sort(order_, {}, XOf{points_});
+  }
+
+  template <typename Take>
+  void for_between(float low, float high, Take&& take) const {
+    for (auto i = std::ranges::lower_bound(order_, low, {}, XOf{points_}); i != order_.end(); ++i) {
+      if (points_[*i].x > high) break;
+      take(*i);
+    }
+  }
+
+ private:
+  std::span<const Point> points_;
+  std::vector<std::uint32_t> order_;
+};
+
+}  // namespace
+
+bool holds_nuscenes_tables(const fs::path& folder) {
+  return is_there(folder / "scene.json") && is_there(folder / "sample_data.json") &&
+         is_there(folder / "calibrated_sensor.json");
+}
+
+std::vector<std::string> nuscenes_scene_names(const fs::path& tables) {
+  std::vector<std::string> names;
+  read_nuscenes_table(tables / "scene.json",
+                      [&](const NuscenesRow& row) { names.push_back(row.text("name")); });
+  return names;
+}
+
+std::shared_ptr<const NuscenesTables> read_nuscenes_tables(const fs::path& tables) {
+  static std::mutex mutex;
+  static std::map<std::string, std::weak_ptr<const NuscenesTables>> kept;
+  const std::lock_guard lock(mutex);
+  std::erase_if(kept, [](const auto& entry) { return entry.second.expired(); });
+  std::weak_ptr<const NuscenesTables>& place = kept[state_of_tables(tables)];
+  if (auto read = place.lock()) return read;
+  auto read = std::make_shared<const NuscenesTables>(TableReader(tables).read());
+  place = read;
+  return read;
+}
+
+std::vector<std::uint32_t> nuscenes_truth(std::span<const Point> points,
+                                          const Pose& map_from_sensor,
+                                          std::span<const NuscenesBox> moving) {
+  std::vector<std::uint32_t> truth(points.size(), kStaticLabel);
+  if (moving.empty()) return truth;
+  const PointsByX by_x(points);
+  for (const NuscenesBox& box : moving) {
+    const Pose box_from_sensor = box.map_from_box.inverse() * map_from_sensor;
+    const double x_m = box_from_sensor.inverse().translation().x();
+    // One float32 more on either side: its rounding must lose no point.
+    const double reach_m = box.half_size_m.norm() + 1e-5 * (1.0 + std::abs(x_m));
+    const auto low = static_cast<float>(x_m - reach_m);
+    const auto high = static_cast<float>(x_m + reach_m);
+    by_x.for_between(low, high, [&](std::uint32_t i) {
+      const Eigen::Vector3d p =
+          box_from_sensor * Eigen::Vector3d(points[i].x, points[i].y, points[i].z);
+      if ((p.cwiseAbs().array() <= box.half_size_m.array()).all()) truth[i] = kMovingLabel;
+    });
+  }
+  return truth;
+}
+
+}  // namespace mosbench

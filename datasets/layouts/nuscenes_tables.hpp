@@ -1,0 +1,54 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <mosbench/scan.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace mosbench {
+
+/// An annotated object that moves.
+struct NuscenesBox {
+  Pose map_from_box = Pose::Identity();  ///< x along the length, y the width, z the height
+  Eigen::Vector3d half_size_m = Eigen::Vector3d::Zero();
+};
+
+struct NuscenesScan {
+  std::filesystem::path file;  ///< from the root of the data set
+  std::int64_t stamp_ns = 0;
+  Pose map_from_sensor = Pose::Identity();
+  bool is_key_frame = false;
+  std::vector<NuscenesBox> moving;  ///< of key frames
+};
+
+struct NuscenesScene {
+  std::string name;
+  std::vector<NuscenesScan> scans;  ///< of LIDAR_TOP, by time
+};
+
+/// What the tables of a version ("v1.0-mini") say of LIDAR_TOP.
+struct NuscenesTables {
+  std::vector<NuscenesScene> scenes;
+  bool has_annotations = false;  ///< false for v1.0-test, whose table of them is empty
+};
+
+/// Whether a folder holds the tables.
+bool holds_nuscenes_tables(const std::filesystem::path& folder);
+
+/// Returns the names of the scenes in their order, reading scene.json only. Throws DataError.
+std::vector<std::string> nuscenes_scene_names(const std::filesystem::path& tables);
+
+/// Reads the tables, row by row; as long as a caller keeps the result, others get the same. Throws
+/// DataError, also for a scan without pose.
+std::shared_ptr<const NuscenesTables> read_nuscenes_tables(const std::filesystem::path& tables);
+
+/// Returns 251 for the points within a box, its sides included, and 9 for all others.
+std::vector<std::uint32_t> nuscenes_truth(std::span<const Point> points,
+                                          const Pose& map_from_sensor,
+                                          std::span<const NuscenesBox> moving);
+
+}  // namespace mosbench

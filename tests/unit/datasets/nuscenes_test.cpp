@@ -1,0 +1,279 @@
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+#include "datasets/files/byte_cursor.hpp"
+#include "datasets/files/errors.hpp"
+#include "datasets/files/nuscenes_table.hpp"
+#include "datasets/layouts/dataset.hpp"
+#include "datasets/layouts/nuscenes_tables.hpp"
+#include "tests/temp_folder.hpp"
+#include "tests/unit/datasets/sequence_names.hpp"
+
+namespace mosbench {
+namespace {
+
+using testing::AllOf;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Pair;
+
+std::string table_error(const std::string& text) {
+  return message_of<DataError>([&] {
+    std::istringstream bytes(text);
+    parse_nuscenes_table(bytes, "t.json", [](const NuscenesRow& row) {
+      row.text("token");
+      row.integer("timestamp");
+      row.numbers("size", 3);
+      row.texts("names");
+      row.flag("is");
+    });
+  });
+}
+
+TEST(NuscenesTable, GivesRowsOfTextsNumbersAndLists) {
+  std::istringstream bytes(
+      R"([{"token": "a", "timestamp": 1532402927647951, "size": [1, 2.5, -3e2], "names": ["x", "y"],
+           "is": true, "other": null, "deep": {"token": [{"b": 1}]}},
+          {"names": [], "token": "b", "is": false, "size": [], "timestamp": -1}])");
+  std::size_t rows = 0;
+  parse_nuscenes_table(bytes, "t.json", [&](const NuscenesRow& row) {
+    EXPECT_EQ(row.text("token"), rows == 0 ? "a" : "b");
+    EXPECT_EQ(row.integer("timestamp"), rows == 0 ? 1532402927647951 : -1);
+    EXPECT_EQ(row.flag("is"), rows == 0);
+    if (rows == 0) {
+      EXPECT_THAT(row.numbers("size", 3), ElementsAre(1.0, 2.5, -300.0));
+    }
+    EXPECT_EQ(row.texts("names").size(), rows == 0 ? 2U : 0U);
+    ++rows;
+  });
+  EXPECT_EQ(rows, 2U);
+}
+
+TEST(NuscenesTable, RefusesWhatIsNoTable) {
+  const std::string good =
+      R"({"token": "a", "timestamp": 1, "size": [1, 2, 3], "names": ["x"], "is": true})";
+  const auto with = [&](const std::string& from, const std::string& to) {
+    std::string row = good;
+    return table_error("[" + good + "," + row.replace(row.find(from), from.size(), to) + "]");
+  };
+  ASSERT_NO_THROW(with("1, 2, 3", "3, 2, 1.5"));
+  EXPECT_THAT(with("\"token\": \"a\", ", ""), HasSubstr("t.json:1: has no \"token\""));
+  EXPECT_THAT(with("\"a\"", "7"), HasSubstr("\"token\" is of another kind, expected a text"));
+  EXPECT_THAT(with(": 1,", ": 1.5,"), HasSubstr("expected a whole number"));
+  EXPECT_THAT(with("3]", "[3]]"), HasSubstr("expected a list of 3 finite numbers"));
+  EXPECT_THAT(with(", 3]", "]"), HasSubstr("expected a list of 3 finite numbers"));
+  EXPECT_THAT(with("3]", "null]"), HasSubstr("expected a list of 3 finite numbers"));
+  EXPECT_THAT(with("[\"x\"]", "[1]"), HasSubstr("expected a list of texts"));
+  EXPECT_THAT(with("\"is\"", "\"token\""), HasSubstr("key \"token\" is there twice"));
+  EXPECT_THAT(table_error("[" + good), HasSubstr("t.json:1: is no JSON"));
+  for (const std::string text : {"", "{}", "7", "[7]", "[[]]", "[{}] {}", "\"t\""}) {
+    EXPECT_THAT(table_error(text), HasSubstr("t.json:")) << text;
+  }
+}
+
+constexpr const char* kNoTurn = R"("rotation": [1, 0, 0, 0])";
+
+/// Two scenes; the first has a key frame, in which one box moves and one stands, and a sweep.
+class NuscenesFolder : public testing::Test {
+ protected:
+  NuscenesFolder() {
+    table("sensor",
+          R"({"token": "cam", "channel": "CAM_FRONT"}, {"token": "top", "channel": "LIDAR_TOP"})");
+    table("calibrated_sensor",
+          fmt::format(R"({{"token": "c", "sensor_token": "cam", "translation": [9, 9, 9], {0}}},
+                         {{"token": "l", "sensor_token": "top", "translation": [1, 0, 2],
+                           "rotation": [0.7071067811865476, 0, 0, -0.7071067811865476]}})",
+                      kNoTurn));
+    table("scene",
+          R"({"token": "s1", "name": "scene-0061"}, {"token": "s2", "name": "scene-0103"})");
+    table("sample",
+          R"({"token": "k1", "scene_token": "s1"}, {"token": "k2", "scene_token": "s2"})");
+    table("sample_data", scan("d2", "k1", "sweeps/LIDAR_TOP/b.pcd.bin", 1050000, false) + "," +
+                             scan("d1", "k1", "samples/LIDAR_TOP/a.pcd.bin", 1000000, true) + "," +
+                             scan("d3", "k2", "samples/LIDAR_TOP/c.pcd.bin", 2000000, true) +
+                             R"(,{"token": "p", "calibrated_sensor_token": "c"})");
+    table("ego_pose", pose("d1", "100, 20, 0") + "," + pose("d2", "101, 20, 0") + "," +
+                          pose("d3", "0, 0, 0") + "," + pose("p", "5, 5, 5"));
+    table("attribute",
+          R"({"token": "m", "name": "vehicle.moving"}, {"token": "w", "name": "cycle.with_rider"},
+                          {"token": "v", "name": "pedestrian.moving"}, {"token": "q", "name": "vehicle.parked"})");
+    table("sample_annotation", box("[101, 15, 2]", "[2, 4, 1]", "\"m\"") + "," +
+                                   box("[101, 25, 2]", "[2, 4, 1]", "\"q\"") + "," +
+                                   box("[101, 20, 7]", "[1, 1, 1]", ""));
+    // In the map: by the mount x is map -y, y is map x, and the sensor stands at 101, 20, 2.
+    const std::vector<Point> points = {{5, 0, 0, 1},        // the middle of the box that moves
+                                       {5.9F, 1.9F, 0, 2},  // width is 2 along map y: in it
+                                       {6.1F, 1.9F, 0, 3},  // beyond its width
+                                       {5.0F, 2.1F, 0, 4},  // beyond its length
+                                       {-5, 0, 0, 5},       // the one that is parked
+                                       {5, 0, 0.6F, 6}};    // above it
+    ByteSink sink;
+    for (const Point& point : points) {
+      sink.put(point);
+      sink.put(31.0F);
+    }
+    const std::string bytes = std::move(sink).bytes();
+    for (const char* file : {"samples/LIDAR_TOP/a", "sweeps/LIDAR_TOP/b", "samples/LIDAR_TOP/c"}) {
+      folder_.write(std::string("root/") + file + ".pcd.bin", bytes);
+    }
+  }
+
+  void table(const std::string& name, const std::string& rows) const {
+    folder_.write("root/v1.0-mini/" + name + ".json", "[" + rows + "]");
+  }
+  static std::string scan(const char* token, const char* sample, const char* file, int stamp_us,
+                          bool is_key_frame) {
+    return fmt::format(R"({{"token": "{0}", "ego_pose_token": "{0}", "sample_token": "{1}",
+      "filename": "{2}", "timestamp": {3}, "is_key_frame": {4}, "calibrated_sensor_token": "l"}})",
+                       token, sample, file, stamp_us, is_key_frame);
+  }
+  static std::string pose(const char* token, const char* translation) {
+    return fmt::format(R"({{"token": "{}", "translation": [{}], {}}})", token, translation,
+                       kNoTurn);
+  }
+  static std::string box(const char* translation, const char* size, const char* attribute) {
+    return fmt::format(R"({{"sample_token": "k1", "translation": {}, "size": {}, {},
+      "attribute_tokens": [{}]}})",
+                       translation, size, kNoTurn, attribute);
+  }
+  Dataset opened(const char* below = "root") const { return open_dataset(folder_ / below, {}); }
+  std::string error_of_opening() const {
+    return message_of<DataError>([&] { opened(); });
+  }
+
+  TempFolder folder_;
+};
+
+TEST_F(NuscenesFolder, IsReadByItsTables) {
+  const Dataset dataset = opened();
+  EXPECT_EQ(dataset.kind, DatasetKind::kNuscenes);
+  EXPECT_THAT(dataset.remarks,
+              Contains("recognised as nuscenes: the tables of v1.0-mini are there"));
+  EXPECT_THAT(sequence_names(dataset), ElementsAre("scene-0061", "scene-0103"));
+  const Sequence& scene = *dataset.sequences.at(0);
+  ASSERT_EQ(scene.size(), 2U);
+  EXPECT_EQ(scene.stem(0), "a");
+  EXPECT_EQ(scene.stamp_ns(1), 1'050'000'000);
+  const Frame frame = scene.read(0);
+  ASSERT_EQ(frame.points.size(), 6U);
+  EXPECT_EQ(frame.points[4].intensity, 5.0F);
+  const Eigen::Vector3d ahead = frame.map_from_sensor * Eigen::Vector3d(0, 1, 0);
+  EXPECT_LT((ahead - Eigen::Vector3d(102, 20, 2)).norm(), 1e-12);
+  EXPECT_THAT(scene.reading(), Contains(Pair("pose_frame", "lidar")));
+}
+
+TEST_F(NuscenesFolder, HasTruthAtKeyFramesByBoxesOfWhatMoves) {
+  const Dataset dataset = opened();
+  const Sequence& scene = *dataset.sequences.at(0);
+  EXPECT_THAT(*scene.read(0).truth, ElementsAre(251U, 251U, 9U, 9U, 9U, 9U));
+  EXPECT_EQ(scene.read_truth(0), *scene.read(0).truth);
+  EXPECT_FALSE(scene.has_truth(1)) << "a sweep";
+  EXPECT_THAT(dataset.sequences.at(1)->read_truth(0), testing::Each(9U));
+}
+
+TEST_F(NuscenesFolder, MovesByTheFirstAttributeAsInMapMos) {
+  const std::vector<std::pair<const char*, std::uint32_t>> cases = {
+      {"\"w\"", 251}, {"\"q\"", 9}, {"\"v\"", 251}, {"\"q\", \"m\"", 9}, {"\"m\", \"q\"", 251}};
+  for (const auto& [attributes, expected] : cases) {
+    table("sample_annotation", box("[101, 15, 2]", "[2, 4, 1]", attributes));
+    EXPECT_EQ(opened().sequences.at(0)->read_truth(0).front(), expected) << attributes;
+  }
+}
+
+TEST_F(NuscenesFolder, SharesTablesUntilTheyChange) {
+  const auto first = read_nuscenes_tables(folder_ / "root/v1.0-mini");
+  EXPECT_EQ(read_nuscenes_tables(folder_ / "root/v1.0-mini"), first);
+  table("sample_annotation", box("[101, 25, 2]", "[2, 4, 1]", "\"m\""));
+  EXPECT_NE(read_nuscenes_tables(folder_ / "root/v1.0-mini"), first);
+}
+
+TEST_F(NuscenesFolder, HasNoTruthWithoutAnnotations) {
+  table("sample_annotation", "");
+  const Dataset dataset = opened();
+  EXPECT_FALSE(dataset.sequences.at(0)->has_truth(0));
+  EXPECT_THAT(dataset.sequences.at(0)->remarks(), Contains("no annotations: there is no truth"));
+}
+
+TEST_F(NuscenesFolder, IsFoundFromItsTablesAndFromAbove) {
+  for (const char* place : {"root/v1.0-mini", "root", ""}) {
+    const Dataset dataset = open_dataset(folder_ / place, {.sequences = {"0103"}});
+    EXPECT_THAT(sequence_names(dataset), ElementsAre("scene-0103")) << place;
+  }
+}
+
+TEST_F(NuscenesFolder, HasTheSplitsOfItsDevkit) {
+  std::vector<std::string> names;
+  for (const Split& split : opened().splits) {
+    names.push_back(split.name);
+    EXPECT_EQ(split.parts.size(), 1U);
+  }
+  EXPECT_THAT(names, ElementsAre("train", "val", "mini_train", "mini_val"));
+}
+
+TEST_F(NuscenesFolder, TakesOtherPosesAndKeepsItsTruth) {
+  folder_.write("p.tum", "0.9 1 0 0 0 0 0 1\n1.2 1 0 0 0 0 0 1\n");
+  const Dataset dataset = open_dataset(
+      folder_ / "root", {.sequences = {"scene-0061"}, .reading = {.poses = folder_ / "p.tum"}});
+  const Frame frame = dataset.sequences.at(0)->read(0);
+  EXPECT_EQ(frame.map_from_sensor.translation(), Eigen::Vector3d(1, 0, 0));
+  EXPECT_EQ(frame.truth->front(), 251U);
+}
+
+TEST_F(NuscenesFolder, NamesTheTableThatDoesNotFit) {
+  table("ego_pose", pose("d1", "0, 0, 0") + "," + pose("d3", "0, 0, 0"));
+  EXPECT_THAT(error_of_opening(), HasSubstr("ego_pose.json: has no pose of sweeps/LIDAR_TOP/b"));
+  table("ego_pose", R"({"token": "d1", "translation": [0, 0, 0], "rotation": [1, 1, 0, 0]})");
+  EXPECT_THAT(error_of_opening(), HasSubstr("ego_pose.json:0: \"rotation\" is no unit quaternion"));
+  for (const char* file : {"../outside.pcd.bin", "/etc/passwd", "samples/../../a"}) {
+    table("sample_data", scan("d1", "k1", file, 1, true));
+    EXPECT_THAT(error_of_opening(),
+                HasSubstr("sample_data.json:0: \"filename\" is no path within the data set"));
+  }
+  table("sample_data", scan("d1", "none", "a.pcd.bin", 1, true));
+  EXPECT_THAT(error_of_opening(), HasSubstr("sample_data.json:0: is of no sample"));
+  table("sample_data", scan("d1", "k1", "gone.pcd.bin", 1, true));
+  table("ego_pose", pose("d1", "0, 0, 0"));
+  EXPECT_THAT(error_of_opening(), HasSubstr("gone.pcd.bin"));
+  table("sample_data", "");
+  EXPECT_THAT(error_of_opening(), HasSubstr("has no scan of LIDAR_TOP in scene-0061"));
+}
+
+TEST_F(NuscenesFolder, RefusesTheRingAsTimes) {
+  EXPECT_THROW(open_dataset(folder_ / "root", {.reading = {.point_times = PointTimes::kColumn}}),
+               UsageError);
+}
+
+TEST(NuscenesTruth, IsThatOfATwinThatLooksAtAllPoints) {
+  std::vector<Point> points;
+  for (int i = 0; i < 4000; ++i) {
+    const auto at = static_cast<float>(i);
+    points.push_back({std::sin(at) * 15, std::cos(1.7F * at) * 12, std::sin(0.3F * at) * 2, 0});
+  }
+  points[5].x = std::numeric_limits<float>::quiet_NaN();
+  Pose map_from_sensor(Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitZ()));
+  map_from_sensor.translation() << 1e5, -2e5, 10;
+  std::vector<NuscenesBox> boxes(12);
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    const auto at = static_cast<double>(i);
+    boxes[i].map_from_box = map_from_sensor * Eigen::Translation3d(3 * at - 15, at, 0) *
+                            Eigen::AngleAxisd(at, Eigen::Vector3d(1, 2, 9).normalized());
+    boxes[i].half_size_m << 3, 1.5, 1;
+  }
+  std::vector<std::uint32_t> expected(points.size(), 9);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    for (const NuscenesBox& box : boxes) {
+      const Eigen::Vector3d p = (box.map_from_box.inverse() * map_from_sensor) *
+                                Eigen::Vector3d(points[i].x, points[i].y, points[i].z);
+      if ((p.cwiseAbs().array() <= box.half_size_m.array()).all()) expected[i] = 251;
+    }
+  }
+  ASSERT_GT(std::ranges::count(expected, 251U), 50);
+  EXPECT_EQ(nuscenes_truth(points, map_from_sensor, boxes), expected);
+}
+
+}  // namespace
+}  // namespace mosbench
