@@ -9,6 +9,7 @@
 #include "datasets/files/folder_listing.hpp"
 #include "datasets/files/folder_lock.hpp"
 #include "datasets/layouts/helimos_layout.hpp"
+#include "datasets/layouts/helipr_writer.hpp"
 #include "datasets/layouts/layout.hpp"
 #include "datasets/layouts/nuscenes_writer.hpp"
 #include "datasets/layouts/simulated_origin.hpp"
@@ -56,7 +57,10 @@ std::set<fs::path> expected_files(const Dataset& dataset, const Layout& layout,
     }
     if (layout.writer->one_file) files.insert({folders[i], pose_origin_file(folders[i])});
     for (const fs::path& file : nuscenes_table_files()) files.insert(folders[i] / file);
-    files.insert((folders[i] / kNuscenesLastFile).parent_path() / kPoseOriginFile);
+    for (const char* last : {kNuscenesLastFile, kHeliprLastFile}) {
+      files.insert(folders[i] / last);
+      files.insert((folders[i] / last).parent_path() / kPoseOriginFile);
+    }
     for (const char* split : {"train.txt", "val.txt", "test.txt"}) {
       files.insert(folders[i].parent_path() / split);
     }
@@ -64,6 +68,8 @@ std::set<fs::path> expected_files(const Dataset& dataset, const Layout& layout,
     for (std::size_t k = 0; k < sequence.size(); ++k) {
       files.insert(folders[i] / "velodyne" / (sequence.stem(k) + ".bin"));
       files.insert(folders[i] / "labels" / (sequence.stem(k) + ".label"));
+      const std::int64_t stamp_ns = stamp_or_period_ns(k, sequence.stamp_ns(k));
+      files.insert(folders[i] / helipr_scan_file(stamp_ns));
       for (const fs::path& file : nuscenes_scan_files(sequence.stem(k))) {
         files.insert(folders[i] / file);
       }

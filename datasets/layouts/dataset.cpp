@@ -16,6 +16,7 @@
 #include "datasets/layouts/unfinished_conversion.hpp"
 #include "datasets/perturb/perturbation.hpp"
 #include "datasets/sequence/azimuth_times.hpp"
+#include "datasets/sequence/hdl64_correction.hpp"
 #include "datasets/sequence/scan_deskewer.hpp"
 
 namespace mosbench {
@@ -214,7 +215,9 @@ Dataset open_dataset(const std::filesystem::path& path, const OpenOptions& optio
   }
   for (const SequenceFolder& folder : folders) {
     const ReadingOptions reading = reading_of(folder, options.reading);
-    dataset.sequences.push_back(with_point_times(layout.open(folder, reading), reading));
+    std::unique_ptr<Sequence> sequence = layout.open(folder, reading);
+    if (reading.hdl64_correction) sequence = std::make_unique<Hdl64Corrected>(std::move(sequence));
+    dataset.sequences.push_back(with_point_times(std::move(sequence), reading));
   }
   if (layout.splits != nullptr) {
     dataset.splits = layout.splits(folders, dataset.sequences, dataset.remarks);

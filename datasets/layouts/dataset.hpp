@@ -23,6 +23,7 @@ enum class DatasetKind {
   kMdetector,
   kOpenSceneFlow,
   kNuscenes,
+  kHelipr,
   kRecording  ///< a bag, a scan, or a folder of either, of no published set
 };
 
@@ -80,11 +81,11 @@ std::vector<SequenceFolder> find_sequences(const std::filesystem::path& path,
 /// kept. A kind that is not given is recognised, in this order: indices.csv or sequence_N folders
 /// (doals); folders named after HeLiMOS's sensors; velodyne_poses_kitti.txt (apollo); .h5 files
 /// (opensceneflow); pcd/ next to gt_poses.txt (moe) or gt_cloud.pcd (kth); tables of
-/// v1.0-* (nuscenes); "sipailou" or "M-detector" in a folder name of the path; folders as those of
-/// semantickitti; any bags or scans (recording). A remark says so. Throws DataError when nothing
-/// usable is there, UsageError for a sequence name that does not exist or a pose file given for
-/// several sequences. For poses in a folder each sequence takes NAME.txt, NAME.tum or
-/// NAME/poses.txt.
+/// v1.0-* (nuscenes); LiDAR/ with its sensors (helipr); "sipailou" or "M-detector" in a folder name
+/// of the path; folders as those of semantickitti; any bags or scans (recording). A remark says so.
+/// Throws DataError when nothing usable is there, UsageError for a sequence name that does not
+/// exist or a pose file given for several sequences. For poses in a folder each sequence takes
+/// NAME.txt, NAME.tum or NAME/poses.txt.
 Dataset open_dataset(const std::filesystem::path& path, const OpenOptions& options);
 
 }  // namespace mosbench

@@ -95,6 +95,7 @@ const Layout& kth_layout();
 const Layout& mdetector_layout();
 const Layout& opensceneflow_layout();
 const Layout& nuscenes_layout();
+const Layout& helipr_layout();
 const Layout& recording_layout();
 
 /// Returns all rows, in the order in which they are listed.

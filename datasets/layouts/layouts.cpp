@@ -7,9 +7,9 @@ namespace mosbench {
 
 std::span<const Layout* const> layouts() {
   static const std::array all = {
-      &doals_layout(),         &sipailou_layout(), &helimos_layout(),  &semantickitti_layout(),
-      &apollo_layout(),        &moe_layout(),      &kth_layout(),      &mdetector_layout(),
-      &opensceneflow_layout(), &nuscenes_layout(), &recording_layout()};
+      &doals_layout(),         &sipailou_layout(), &helimos_layout(), &semantickitti_layout(),
+      &apollo_layout(),        &moe_layout(),      &kth_layout(),     &mdetector_layout(),
+      &opensceneflow_layout(), &nuscenes_layout(), &helipr_layout(),  &recording_layout()};
   return all;
 }
 

@@ -115,7 +115,7 @@ class SceneFlowWriter : public SequenceWriter {
 
  private:
   void add(const Frame& frame, const Frame* next) {
-    const std::int64_t stamp_ns = stamp_of(next_, frame);
+    const std::int64_t stamp_ns = stamp_or_period_ns(next_, frame.stamp_ns);
     if (stamp_ns < 0 || (last_ns_ && stamp_ns <= *last_ns_)) {
       throw DataError(file_, "scan " + frame.stem + " is not later than the one before it",
                       "stamps from 0 on that increase, which name the groups");
@@ -136,7 +136,7 @@ class SceneFlowWriter : public SequenceWriter {
 
   SensorStep step_to(const Frame& frame, std::int64_t stamp_ns, const Frame& next) const {
     return {next.map_from_sensor.inverse() * frame.map_from_sensor,
-            static_cast<double>(stamp_of(next_ + 1, next) - stamp_ns) * 1e-9};
+            static_cast<double>(stamp_or_period_ns(next_ + 1, next.stamp_ns) - stamp_ns) * 1e-9};
   }
 
   void add_points(const std::vector<Point>& points) {

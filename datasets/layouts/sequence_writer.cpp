@@ -94,7 +94,7 @@ class DoalsRows {
 
   /// Returns the frame's stamp.
   std::int64_t add(std::size_t scan_index, const Frame& frame) {
-    const std::int64_t stamp_ns = stamp_of(scan_index, frame);
+    const std::int64_t stamp_ns = stamp_or_period_ns(scan_index, frame.stamp_ns);
     stamps_ns_[scan_index] = stamp_ns;
     if (!frame.truth) return stamp_ns;
     IndicesRow& row = rows_[scan_index].emplace();
@@ -220,7 +220,7 @@ class Ros2SequenceWriter : public SequenceWriter {
   void write(std::size_t scan_index, const Frame& frame) override {
     constexpr const char* kFrame = "lidar";
     constexpr MessageEncoding kEncoding = MessageEncoding::kCdr;
-    const std::int64_t stamp_ns = stamp_of(scan_index, frame);
+    const std::int64_t stamp_ns = stamp_or_period_ns(scan_index, frame.stamp_ns);
     stamps_.expect_later(stamp_ns, frame);
     bag_->write("/tf", stamp_ns, kTfMessage,
                 format_tf_message({{stamp_ns, "map", kFrame, frame.map_from_sensor}}, kEncoding));
@@ -239,14 +239,14 @@ class Ros2SequenceWriter : public SequenceWriter {
 
 }  // namespace
 
-std::int64_t stamp_of(std::size_t scan_index, const Frame& frame) {
-  constexpr std::int64_t kPeriodNs = 100'000'000;
-  return frame.stamp_ns.value_or(static_cast<std::int64_t>(scan_index) * kPeriodNs);
-}
-
 std::string_view to_string(BagKind kind) {
   constexpr std::array<std::string_view, 4> kNames = {"none", "ros1", "mcap", "db3"};
   return kNames[static_cast<std::size_t>(kind)];
+}
+
+std::int64_t stamp_or_period_ns(std::size_t scan_index, std::optional<std::int64_t> stamp_ns) {
+  constexpr std::int64_t kPeriodNs = 100'000'000;
+  return stamp_ns.value_or(static_cast<std::int64_t>(scan_index) * kPeriodNs);
 }
 
 const char* last_file_of(const WriteOptions& options) {

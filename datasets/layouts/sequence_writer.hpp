@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -36,6 +37,10 @@ struct WriteOptions {
   std::string compression = "lz4";
 };
 
+/// Returns the stamp of a scan; of one without, as many tenths of a second as its index says, which
+/// lie as far apart as those of most sensors.
+std::int64_t stamp_or_period_ns(std::size_t scan_index, std::optional<std::int64_t> stamp_ns);
+
 /// Returns the name of the file that appears when all of a sequence is on the disk.
 const char* last_file_of(const WriteOptions& options);
 
@@ -46,9 +51,6 @@ const char* last_file_of(const WriteOptions& options);
 /// apart. Throws DataError also for stamps that do not increase.
 std::unique_ptr<SequenceWriter> write_as_scene_flow(const std::filesystem::path& file,
                                                     const WriteOptions& options);
-
-/// When a frame was taken; of one without a stamp, as far apart as those of most sensors.
-std::int64_t stamp_of(std::size_t scan_index, const Frame& frame);
 
 /// Writes velodyne/, labels/ for frames with truth, times.txt when all frames have stamps,
 /// calib.txt and poses.txt.

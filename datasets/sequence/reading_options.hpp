@@ -57,6 +57,8 @@ struct ReadingOptions {
   /// float32 per point in .bin files; when not set 4, and scans that clearly have others are
   /// refused.
   std::optional<std::size_t> bin_columns = std::nullopt;
+  /// Whether points of KITTI's HDL-64E are raised by the angle that its calibration misses.
+  bool hdl64_correction = false;
   /// Disturbances of what is read, as `parse_perturbation` takes them.
   std::optional<std::string> perturb = std::nullopt;
 

@@ -11,6 +11,7 @@ void Sequence::describe(std::size_t scan_index, Frame& frame) const {
   frame.stamp_ns = entry.stamp_ns;
   frame.point_times_ns.clear();
   frame.motions.reset();
+  frame.radial_velocity_m_s.clear();
 }
 
 void Sequence::add_truth(std::size_t scan_index, Frame& frame) const {

@@ -24,7 +24,9 @@ struct Frame {
   /// When each point was measured after the stamp; empty unless the data set has such times and has
   /// not moved the points by them.
   std::vector<std::int64_t> point_times_ns;
-  std::optional<PointMotions> motions;              ///< of data sets of scene flow
+  std::optional<PointMotions> motions;  ///< of data sets of scene flow
+  /// Along each point's ray, away from the sensor, of sensors that measure it; else empty.
+  std::vector<float> radial_velocity_m_s;
   std::optional<std::vector<std::uint32_t>> truth;  ///< raw label ids, one per point, when labelled
 };
 

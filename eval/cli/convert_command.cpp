@@ -98,7 +98,7 @@ CommandRun add_convert(CLI::App& command) {
   command.add_option("--layout", options->layout, "Layout to write")
       ->required()
       ->check(CLI::IsMember({"doals", "doals-bag", "sipailou", "helimos", "semantickitti",
-                             "opensceneflow", "nuscenes", "ros2-mcap", "ros2-db3"}));
+                             "opensceneflow", "nuscenes", "helipr", "ros2-mcap", "ros2-db3"}));
   command.add_option("--out", options->conversion.out, "Root of the data set to write")
       ->type_name("DIR")
       ->required();

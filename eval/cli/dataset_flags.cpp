@@ -99,6 +99,10 @@ void add_scan_flags(CLI::App& command, ReadingOptions& options) {
         return speed_m_s && *speed_m_s > 0.0 ? "" : text + " is no speed, expected m/s above 0";
       })
       ->group(kReadingGroup);
+  command
+      .add_flag("--hdl64-correction", options.hdl64_correction,
+                "Raise points by the 0.205 degrees that KITTI's calibration of its HDL-64E misses")
+      ->group(kReadingGroup);
   add_perturb_flag(command, options.perturb);
 }
 

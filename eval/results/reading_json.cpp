@@ -90,6 +90,7 @@ ordered_json told_json(const ReadingOptions& options) {
   }
   if (options.moving_speed_m_s) json["moving_speed_m_s"] = *options.moving_speed_m_s;
   if (options.bin_columns) json["bin_columns"] = *options.bin_columns;
+  if (options.hdl64_correction) json["hdl64_correction"] = true;
   if (options.perturb) json["perturb"] = *options.perturb;
   return json;
 }
@@ -110,6 +111,7 @@ ReadingOptions told_from_json(const ordered_json& json) {
   take_word(json, "point_times", options.point_times, point_times_named);
   take_bin_columns(json, options);
   take<double>(json, "moving_speed_m_s", options.moving_speed_m_s);
+  options.hdl64_correction = json.value("hdl64_correction", false);
   take<std::string>(json, "perturb", options.perturb);
   return options;
 }

@@ -68,6 +68,8 @@ std::span<const Preset> presets() {
              "sceneflow-dynamic", "ours, the authors publish none: as helimos"},
       Preset{"nuscenes", DatasetKind::kNuscenes, settings(0.25, 1.5, 50.0), "semantickitti-mos",
              "ours, the authors publish none: as helimos"},
+      Preset{"helipr", DatasetKind::kHelipr, settings(0.25, 1.5, 50.0), "semantickitti-mos",
+             "ours, HeLiPR has no labels: as helimos"},
       Preset{"recording", DatasetKind::kRecording, settings(0.25, 1.5, 50.0), "semantickitti-mos",
              "ours, for recordings of any sensor: as helimos"},
       Preset{"best", std::nullopt, {}, "", "ours, results/plus/README.md", "hmm-mos-plus"},

@@ -158,6 +158,16 @@ TEST_F(Convert, MakesTablesOfNuscenesThatReadAndScoreAsTheScans) {
   expect_same_frames(data, folder_ / "back", 1e-12);
 }
 
+TEST_F(Convert, MakesScansOfHeliprThatAreTheSameButForTheirTruth) {
+  cli::write_small_sequence(folder_ / "room", 3);
+  std::filesystem::remove_all(folder_ / "room/labels");
+  const cli::Answer answer = convert((folder_ / "room").string(), "helipr", "packed");
+  ASSERT_EQ(answer.exit_code, 0) << answer.err;
+  EXPECT_EQ(open_dataset(folder_ / "packed", {}).kind, DatasetKind::kHelipr);
+  expect_same_frames(folder_ / "room", folder_ / "packed", 1e-12);
+  EXPECT_EQ(open_dataset(folder_ / "packed", {}).sequences.at(0)->stamp_ns(2), 200'000'000);
+}
+
 TEST_F(Convert, MakesABagOfScansWithoutStamps) {
   if (!writes_bags()) GTEST_SKIP() << "this build is without librosbag_storage";
   cli::write_small_sequence(folder_ / "room", 3);

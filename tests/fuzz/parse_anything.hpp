@@ -10,6 +10,7 @@
 #include "datasets/files/bin_file.hpp"
 #include "datasets/files/calib_file.hpp"
 #include "datasets/files/errors.hpp"
+#include "datasets/files/helipr_points.hpp"
 #include "datasets/files/indices_file.hpp"
 #include "datasets/files/label_file.hpp"
 #include "datasets/files/moe_labels.hpp"
@@ -254,6 +255,22 @@ inline void hdf5(std::string_view bytes) {
   });
 }
 
+/// The first byte chooses the LiDAR, or poses.
+inline void helipr(std::string_view bytes) {
+  if (bytes.empty()) return;
+  const std::string_view rest = bytes.substr(1);
+  if (bytes.front() == 'p') {
+    for (const HeliprPose& pose : parse_helipr_poses(rest, "f")) {
+      require(pose.map_from_sensor.matrix().allFinite());
+    }
+    return;
+  }
+  const auto sensor = static_cast<HeliprSensor>(static_cast<unsigned char>(bytes.front()) % 4);
+  const HeliprScan scan = parse_helipr_scan(rest, sensor, 0, "f");
+  require(scan.points.size() * helipr_point_bytes(sensor, 0) == rest.size());
+  require(scan.times_ns.size() == scan.points.size());
+}
+
 /// Rows with the keys that any table of nuScenes has.
 inline void nuscenes_table(std::string_view text) {
   std::istringstream bytes{std::string(text)};
@@ -297,8 +314,9 @@ struct Parser {
   void (*parse)(std::string_view);
   std::size_t mutations = 3000;  ///< that the replay tries; fewer where each takes a process
 };
-inline constexpr std::array<Parser, 24> kParsers = {{{"bin", bin},
+inline constexpr std::array<Parser, 25> kParsers = {{{"bin", bin},
                                                      {"nuscenes_table", nuscenes_table},
+                                                     {"helipr", helipr},
                                                      {"label", label},
                                                      {"dynamic_scores", dynamic_scores},
                                                      {"poses", poses},

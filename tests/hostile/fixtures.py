@@ -115,7 +115,8 @@ def _simulated(maker):
         "opensceneflow", f"simulate --layout opensceneflow --scene scene.json --scans {SCANS} --seed 1 --threads 1 --out")
     for container in ("mcap", "db3"):
         trees[container] = maker.make(container, f"convert doals --layout ros2-{container} --out")
-    trees["nuscenes"] = maker.make("nuscenes", "convert semantickitti --layout nuscenes --out")
+    for layout in ("nuscenes", "helipr"):
+        trees[layout] = maker.make(layout, f"convert semantickitti --layout {layout} --out")
     return trees
 
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import folders
 
-LAYOUTS = ("doals", "doals-bag", "sipailou", "helimos", "semantickitti", "opensceneflow", "nuscenes")
+LAYOUTS = ("doals", "doals-bag", "sipailou", "helimos", "semantickitti", "opensceneflow", "nuscenes", "helipr")
 RUN = "run data --config config.json --threads 1 --out out"
 READING = [
     RUN, f"{RUN} --json", f"{RUN} --perturb pose_noise_m=0.05,dropout_probability=0.2,fog_per_m=0.02,seed=3",
@@ -89,6 +89,9 @@ def _sequences(trees):
     nuscenes = _prefixed(trees, data="nuscenes", predicted="predicted_all")
     for name, pattern in (("tables of nuscenes", r"^data/.*v1.0-mini/.*\.json$"), ("scan .pcd.bin", r"\.pcd\.bin$")):
         yield Kind(name, nuscenes, re.compile(pattern), READING)
+    helipr = _prefixed(trees, data="helipr")
+    for name, pattern in (("scan of helipr", r"LiDAR/.*\.bin$"), ("poses of helipr", r"_gt\.txt$")):
+        yield Kind(name, helipr, re.compile(pattern), READING[:READING.index("score data --predictions predicted --json")])
     helimos = _prefixed(trees, data="helimos", predicted="predicted_all")
     splits = [f"{RUN} --protocol helimos-test", "score data --predictions predicted --protocol all", "doctor data",
               "score data --predictions predicted --split val --json"]

@@ -22,6 +22,7 @@ READING = (
     "deskew",  # "none", "velocity" or "poses"
     "moving_speed_m_s",  # from which on points of OpenSceneFlow's truth move
     "bin_columns",  # float32 per point, 3 to 7
+    "hdl64_correction",  # True: KITTI's points raised by 0.205 degrees
     "perturb",  # "KIND=STRENGTH,...,seed=N"
 )
 
@@ -54,7 +55,7 @@ def _in_python(message: str) -> str:
     """Returns a message of the program with arguments where it names flags."""
     message = re.sub(r"mosbench run .* --odometry (\w+)", r"run(odometry='\1')", message)
     message = re.sub(r"; see mosbench [\w ]*--help", "", message)
-    return re.sub(r"(?<![\w-])--([a-z][a-z-]*)", lambda match: match[1].replace("-", "_"), message)
+    return re.sub(r"(?<![\w-])--([a-z][a-z0-9-]*)", lambda match: match[1].replace("-", "_"), message)
 
 
 def plain_errors(call: Callable[..., Any], *arguments: Any) -> Any:

@@ -62,7 +62,7 @@ TEST(Layouts, HaveOneCompleteRowPerDataSet) {
     }
     EXPECT_GT(row->files.sensor_range_m, 0.0) << row->name;
   }
-  EXPECT_EQ(kinds.size(), 11U);
+  EXPECT_EQ(kinds.size(), 12U);
   EXPECT_EQ(dataset_kind_from_string("kitti"), std::nullopt);
 }
 
@@ -72,7 +72,7 @@ TEST(Layouts, AreWrittenWhereTheyHaveAWriter) {
     if (row->writer) written.push_back(row->name);
   }
   EXPECT_THAT(written, ElementsAre("doals", "sipailou", "helimos", "semantickitti", "opensceneflow",
-                                   "nuscenes", "recording"));
+                                   "nuscenes", "helipr", "recording"));
 }
 
 TEST(OpenDataset, FindsSemanticKittiWithAndWithoutTheFolderSequences) {

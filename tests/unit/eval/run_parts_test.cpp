@@ -45,7 +45,8 @@ TEST(ReadingJson, KeepsWhatTheUserTold) {
                                .deskew = Deskew::kVelocity,
                                .point_times = PointTimes::kColumn,
                                .bin_columns = 5,
-                               .moving_speed_m_s = 0.75};
+                               .moving_speed_m_s = 0.75,
+                               .hdl64_correction = true};
   const nlohmann::ordered_json json = told_json(told);
   const ReadingOptions read = told_from_json(json);
   EXPECT_EQ(read.poses, told.poses);
@@ -61,6 +62,7 @@ TEST(ReadingJson, KeepsWhatTheUserTold) {
   EXPECT_EQ(told_from_json(told_json({.deskew = Deskew::kNone})).deskew, Deskew::kNone);
   EXPECT_EQ(read.bin_columns, told.bin_columns);
   EXPECT_EQ(read.moving_speed_m_s, told.moving_speed_m_s);
+  EXPECT_EQ(read.hdl64_correction, told.hdl64_correction);
   EXPECT_EQ(told_json(read), json);
   EXPECT_TRUE(told_json({}).empty());
   EXPECT_TRUE(told_json(told_from_json({{"file_stamp", "ab"}})).empty());

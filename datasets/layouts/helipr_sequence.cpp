@@ -1,0 +1,134 @@
+#include "datasets/layouts/helipr_sequence.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "datasets/files/errors.hpp"
+#include "datasets/files/files.hpp"
+#include "datasets/files/folder_listing.hpp"
+#include "datasets/layouts/folder_search.hpp"
+#include "datasets/sequence/pose_source.hpp"
+#include "datasets/sequence/pose_track.hpp"
+
+namespace mosbench {
+namespace {
+
+HeliprSensor sensor_of_folder(const std::filesystem::path& folder) {
+  const auto sensor = helipr_sensor_from_string(folder_name(folder));
+  if (!sensor) throw DataError(folder, "is no LiDAR of HeLiPR", "Aeva, Avia, Ouster or Velodyne");
+  return *sensor;
+}
+
+}  // namespace
+
+HeliprSequence::HeliprSequence(std::string name, const std::filesystem::path& folder,
+                               const ReadingOptions& options)
+    : sensor_(sensor_of_folder(folder)),
+      gives_times_(options.undistorts() && options.point_times == PointTimes::kColumn) {
+  Recording& recording = mutable_recording();
+  recording.name = SequenceName(std::move(name), folder);
+  recording.reading = {{"scan_files", fmt::format(".bin of {}, packed", to_string(sensor_))}};
+  if (gives_times_) recording.reading.emplace_back("point_times", "of each point");
+  recording.remarks = {"no truth: HeLiMOS labels part of KAIST05"};
+  list_scans(folder);
+  take_poses(folder, options);
+}
+
+void HeliprSequence::list_scans(const std::filesystem::path& folder) {
+  constexpr auto kLatest = static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
+  for (const StemFile& scan : list_by_stem(folder, {".bin"})) {
+    const auto stamp_ns = stem_number(scan.stem);
+    if (!stamp_ns || *stamp_ns > kLatest) {
+      throw DataError(scan.file, "has no stamp for a name", "nanoseconds since 1970");
+    }
+    ScanEntry& entry = mutable_recording().scans.emplace_back();
+    entry.stem = scan.stem;
+    entry.file = scan.file;
+    entry.stamp_ns = static_cast<std::int64_t>(*stamp_ns);
+    const std::size_t point_bytes = helipr_point_bytes(sensor_, *entry.stamp_ns);
+    const std::uintmax_t size_bytes = size_of(scan.file);
+    if (size_bytes % point_bytes != 0) {
+      throw DataError(scan.file,
+                      fmt::format("{} bytes are no multiple of {}", size_bytes, point_bytes),
+                      fmt::format("points of HeLiPR's {}", to_string(sensor_)));
+    }
+    entry.points = static_cast<std::size_t>(size_bytes) / point_bytes;
+  }
+  if (size() == 0) throw DataError(folder, "holds no scan", "<stamp_ns>.bin");
+}
+
+void HeliprSequence::take_poses(const std::filesystem::path& folder,
+                                const ReadingOptions& options) {
+  Recording& recording = mutable_recording();
+  if (!options.poses && !options.poses_by_odometry) {
+    const auto place = parent_folder(folder).parent_path() / "LiDAR_GT";
+    return take_ground_truth(place / fmt::format("{}_gt.txt", to_string(sensor_)),
+                             options.max_pose_gap_s);
+  }
+  std::vector<std::int64_t> stamps_ns;
+  for (const ScanEntry& scan : recording.scans) stamps_ns.push_back(*scan.stamp_ns);
+  SensorPoses poses = read_sensor_poses(folder, "", options, {size(), stamps_ns});
+  std::vector<ScanEntry> scans = std::exchange(recording.scans, {});
+  for (std::size_t k = 0; k < scans.size(); ++k) {
+    scans[k].map_from_sensor = poses.map_from_sensor[k];
+    const bool leaves_out = std::ranges::binary_search(poses.unknown, k);
+    (leaves_out ? recording.left_out : recording.scans).push_back(std::move(scans[k]));
+  }
+  recording.files.insert(recording.files.end(), poses.files.begin(), poses.files.end());
+  recording.remarks.insert(recording.remarks.end(), poses.remarks.begin(), poses.remarks.end());
+  recording.reading.insert(recording.reading.end(), poses.reading.begin(), poses.reading.end());
+}
+
+void HeliprSequence::take_ground_truth(const std::filesystem::path& file, double max_gap_s) {
+  Recording& recording = mutable_recording();
+  std::vector<std::pair<std::int64_t, Pose>> stamped;
+  for (const HeliprPose& pose : parse_helipr_poses(read_file(file), file)) {
+    stamped.emplace_back(pose.stamp_ns, pose.map_from_sensor);
+  }
+  const PoseTrack track(std::move(stamped));
+  std::vector<ScanEntry> scans = std::exchange(recording.scans, {});
+  for (ScanEntry& scan : scans) {
+    const auto pose = track.at(*scan.stamp_ns);
+    const bool is_known =
+        pose && static_cast<double>(track.gap_ns(*scan.stamp_ns)) <= max_gap_s * 1e9;
+    if (is_known) scan.map_from_sensor = *pose;
+    (is_known ? recording.scans : recording.left_out).push_back(std::move(scan));
+  }
+  if (recording.scans.empty()) {
+    throw DataError(file, "has a pose of no scan", "stamps of the scans");
+  }
+  if (!recording.left_out.empty()) {
+    recording.remarks.push_back(fmt::format("{} of {} scans have no pose in {} and are left out",
+                                            recording.left_out.size(), scans.size(),
+                                            file.filename().string()));
+  }
+  recording.files.push_back(file);
+  recording.reading.emplace_back("poses", "LiDAR_GT/" + file.filename().string());
+  recording.reading.emplace_back("pose_direction", "map_from_sensor");
+  recording.reading.emplace_back("pose_frame", "lidar");
+  state_pose_origin(file, recording.reading, recording.remarks);
+}
+
+void HeliprSequence::read(std::size_t scan_index, Frame& frame) const {
+  const ScanEntry& entry = scan(scan_index);
+  HeliprScan scan =
+      parse_helipr_scan(read_file(*entry.file), sensor_, *entry.stamp_ns, *entry.file);
+  if (scan.points.size() != entry.points) {
+    throw DataError(*entry.file, "changed since the sequence was opened",
+                    fmt::format("{} points", entry.points));
+  }
+  describe(scan_index, frame);
+  frame.points = std::move(scan.points);
+  frame.radial_velocity_m_s = std::move(scan.radial_velocity_m_s);
+  if (gives_times_) frame.point_times_ns = std::move(scan.times_ns);
+  frame.truth.reset();
+}
+
+std::vector<std::uint32_t> HeliprSequence::read_truth(std::size_t scan_index) const {
+  refuse_truth(scan_index);
+}
+
+}  // namespace mosbench
