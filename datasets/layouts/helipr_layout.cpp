@@ -77,7 +77,8 @@ const Layout& helipr_layout() {
       .splits = nullptr,
       .evidence = Evidence::kFolders,
       .recognise = recognise_helipr,
-      .writer = LayoutWriter{write_as_helipr, helipr_folder, kHeliprLastFile}};
+      .writer = LayoutWriter{
+          .open = write_as_helipr, .folder = helipr_folder, .last_file = kHeliprLastFile}};
   return row;
 }
 

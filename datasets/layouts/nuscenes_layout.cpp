@@ -182,7 +182,8 @@ const Layout& nuscenes_layout() {
       .splits = nuscenes_splits,
       .evidence = Evidence::kFolders,
       .recognise = recognise_nuscenes,
-      .writer = LayoutWriter{write_as_nuscenes, nuscenes_folder, kNuscenesLastFile}};
+      .writer = LayoutWriter{
+          .open = write_as_nuscenes, .folder = nuscenes_folder, .last_file = kNuscenesLastFile}};
   return row;
 }
 

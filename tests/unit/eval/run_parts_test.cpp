@@ -44,8 +44,8 @@ TEST(ReadingJson, KeepsWhatTheUserTold) {
                                .pose_topic = "/gps",
                                .deskew = Deskew::kVelocity,
                                .point_times = PointTimes::kColumn,
-                               .bin_columns = 5,
                                .moving_speed_m_s = 0.75,
+                               .bin_columns = 5,
                                .hdl64_correction = true};
   const nlohmann::ordered_json json = told_json(told);
   const ReadingOptions read = told_from_json(json);
