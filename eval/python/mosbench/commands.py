@@ -313,10 +313,12 @@ def curve(result: Union[Result, PathLike], picture: Optional[PathLike] = None) -
 def map_score(map: PathLike, truth: PathLike, *, same_within_m: float = 0.05) -> dict[str, Any]:
     """Returns SA, DA, AA and HA (0 to 1) of a map that was cleaned of what moved, as `map-score --json`.
 
-    map: .pcd or .ply file. truth: the points that it was made of, with intensity 1 where they are dynamic, or the folder
-    of a sequence of KTH's DynamicMap_Benchmark. same_within_m: how near a point of the map stands for one of the truth.
+    map: .pcd or .ply file. truth: the points that it was made of, with intensity 1 where they are dynamic, or the
+    folder of a sequence of KTH's DynamicMap_Benchmark. same_within_m: how near a point of the map stands for one of
+    the truth.
     """
-    return json.loads(_command(["map-score", map, truth, *flags(same_within_m=same_within_m), "--json"])[1])
+    arguments = ["map-score", os.fspath(map), os.fspath(truth), *flags(same_within_m=same_within_m)]
+    return json.loads(_command([*arguments, "--json"])[1])
 
 
 @dataclasses.dataclass(frozen=True)
