@@ -14,12 +14,23 @@ namespace {
 
 constexpr std::size_t kColumns = 100;
 
+// A longer list of words stands in the description, which is wrapped.
+constexpr std::size_t kLongestWords = 60;
+
+/// Returns "{kitti,tum}", or nothing where any value may follow a flag.
+std::string words_of(const CLI::Option& option) {
+  const std::string type = option.get_type_name();
+  const std::size_t brace = type.find(":{");
+  return brace == std::string::npos ? "" : type.substr(brace + 1);
+}
+
 /// Returns "FILE", "N" or "{kitti,tum}": what follows a flag.
 std::string value_name(const CLI::Option& option) {
+  const std::string words = words_of(option);
+  if (words.size() > kLongestWords) return "NAME";
+  if (!words.empty()) return words;
   const std::string type = option.get_type_name();
-  const std::size_t colon = type.find(':');
-  const std::string name = type.substr(0, colon);
-  if (colon != std::string::npos && type[colon + 1] == '{') return type.substr(colon + 1);
+  const std::string name = type.substr(0, type.find(':'));
   return name == "UINT" || name == "INT" || name == "FLOAT" ? "N" : name;
 }
 
@@ -40,8 +51,18 @@ std::string wrapped(const std::string& text, std::size_t indent) {
   return lines;
 }
 
+/// Puts a blank after each comma.
+std::string spaced(const std::string& list) {
+  std::string text;
+  for (const char c : list) text += c == ',' ? ", " : std::string(1, c);
+  return text;
+}
+
 std::string description_of(const CLI::Option& option, bool is_positional) {
   std::string text = option.get_description();
+  if (const std::string words = words_of(option); words.size() > kLongestWords) {
+    text += ": " + spaced(words.substr(1, words.size() - 2));
+  }
   if (!option.get_default_str().empty()) text += " (default: " + option.get_default_str() + ")";
   if (option.get_required() && !is_positional) text += " (required)";
   return text;
@@ -62,9 +83,7 @@ std::string HelpText::make_usage(const CLI::App* app, std::string name) const {
 }
 
 std::string HelpText::make_option(const CLI::Option* option, bool is_positional) const {
-  std::string left = "  ";
-  for (const char c : make_option_name(option, is_positional))
-    left += c == ',' ? ", " : std::string(1, c);
+  std::string left = "  " + spaced(make_option_name(option, is_positional));
   if (!is_positional && option->get_items_expected_max() > 0) left += ' ' + value_name(*option);
   const std::size_t indent = get_column_width();
   left += left.size() + 2 <= indent ? std::string(indent - left.size(), ' ')
