@@ -18,7 +18,7 @@ constexpr std::size_t kColumns = 100;
 constexpr std::size_t kLongestWords = 60;
 
 /// Returns "{kitti,tum}", or nothing where any value may follow a flag.
-std::string words_of(const CLI::Option& option) {
+std::string listed_words(const CLI::Option& option) {
   const std::string type = option.get_type_name();
   const std::size_t brace = type.find(":{");
   return brace == std::string::npos ? "" : type.substr(brace + 1);
@@ -26,7 +26,7 @@ std::string words_of(const CLI::Option& option) {
 
 /// Returns "FILE", "N" or "{kitti,tum}": what follows a flag.
 std::string value_name(const CLI::Option& option) {
-  const std::string words = words_of(option);
+  const std::string words = listed_words(option);
   if (words.size() > kLongestWords) return "NAME";
   if (!words.empty()) return words;
   const std::string type = option.get_type_name();
@@ -60,7 +60,7 @@ std::string spaced(const std::string& list) {
 
 std::string description_of(const CLI::Option& option, bool is_positional) {
   std::string text = option.get_description();
-  if (const std::string words = words_of(option); words.size() > kLongestWords) {
+  if (const std::string words = listed_words(option); words.size() > kLongestWords) {
     text += ": " + spaced(words.substr(1, words.size() - 2));
   }
   if (!option.get_default_str().empty()) text += " (default: " + option.get_default_str() + ")";
