@@ -1,5 +1,6 @@
 #include "datasets/files/bin_columns.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -10,10 +11,15 @@ namespace {
 constexpr std::size_t kFewestPoints = 64;
 constexpr std::size_t kPairs = 4096;
 
-/// Mean roots of the differences within columns.
+struct Mean {
+  double value = 0.0;
+  double error = 0.0;  ///< its standard error
+};
+
+/// Roots of the differences within columns.
 struct Spread {
-  double of_neighbours = 0.0;  ///< of points that follow each other
-  double of_any = 0.0;         ///< of points anywhere in the scan
+  Mean of_neighbours;  ///< of points that follow each other
+  Mean of_any;         ///< of points anywhere in the scan
 };
 
 /// Returns the same numbers on every machine (splitmix64).
@@ -41,15 +47,21 @@ class RootDifferences {
                                          double{number_at(bytes_, other * columns_ + column)});
       if (!std::isfinite(difference)) continue;
       sum_ += std::sqrt(difference);
+      sum_of_squares_ += difference;
       ++count_;
     }
   }
-  double mean() const { return count_ == 0 ? 0.0 : sum_ / static_cast<double>(count_); }
+  Mean mean() const {
+    if (count_ == 0) return {};
+    const auto count = static_cast<double>(count_);
+    const double value = sum_ / count;
+    return {value, std::sqrt(std::max(sum_of_squares_ / count - value * value, 0.0) / count)};
+  }
 
  private:
   std::string_view bytes_;
   std::size_t columns_;
-  double sum_ = 0.0;
+  double sum_ = 0.0, sum_of_squares_ = 0.0;
   std::size_t count_ = 0;
 };
 
@@ -65,19 +77,47 @@ Spread spread_of(std::string_view bytes, std::size_t columns) {
   return {of_neighbours.mean(), of_any.mean()};
 }
 
+bool is_return(std::string_view bytes, std::size_t columns, std::size_t point) {
+  bool any = false;
+  for (std::size_t column = 0; column < columns; ++column) {
+    const float number = number_at(bytes, point * columns + column);
+    if (!std::isfinite(number)) return false;
+    any = any || number != 0.0F;
+  }
+  return any;
+}
+
+/// Where most points are missing returns, the few others decide the means.
+bool holds_mostly_returns(std::string_view bytes, std::size_t columns) {
+  const std::size_t points = bytes.size() / (columns * sizeof(float));
+  std::size_t returns = 0;
+  for (std::size_t pair = 0; pair < kPairs; ++pair) {
+    returns += is_return(bytes, columns, scrambled(2 * pair) % points);
+  }
+  return 2 * returns > kPairs;
+}
+
+/// Whether `mean` is below that share of `other`, and not by chance: a few numbers that are far off
+/// the rest may make up most of a mean.
+bool is_clearly_below(double share, const Mean& mean, const Mean& other) {
+  constexpr double kSure = 5.0;
+  return mean.value < share * other.value &&
+         other.value - mean.value > kSure * std::hypot(mean.error, other.error);
+}
+
 /// Either differences are clearly smaller between any points, or a little and between neighbours,
 /// which scans measure side by side, by far.
 bool fits_clearly_better(const Spread& other, const Spread& told) {
-  const bool between_any = other.of_any < 0.9 * told.of_any;
-  const bool between_neighbours =
-      other.of_any < 0.97 * told.of_any && other.of_neighbours < 0.5 * told.of_neighbours;
-  return between_any || between_neighbours;
+  return is_clearly_below(0.9, other.of_any, told.of_any) ||
+         (is_clearly_below(0.97, other.of_any, told.of_any) &&
+          is_clearly_below(0.5, other.of_neighbours, told.of_neighbours));
 }
 
 }  // namespace
 
 std::optional<std::size_t> other_bin_columns(std::string_view bytes, std::size_t columns) {
   if (bytes.size() < kFewestPoints * columns * sizeof(float)) return std::nullopt;
+  if (!holds_mostly_returns(bytes, columns)) return std::nullopt;
   const Spread told = spread_of(bytes, columns);
   std::optional<std::size_t> best;
   Spread spread_of_best = told;
@@ -86,7 +126,7 @@ std::optional<std::size_t> other_bin_columns(std::string_view bytes, std::size_t
     const Spread spread = spread_of(bytes, other);
     if (!fits_clearly_better(spread, told)) continue;
     // Multiples of the right number fit as well.
-    if (best && spread.of_any >= 0.97 * spread_of_best.of_any) continue;
+    if (best && spread.of_any.value >= 0.97 * spread_of_best.of_any.value) continue;
     best = other;
     spread_of_best = spread;
   }

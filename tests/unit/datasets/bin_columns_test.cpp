@@ -103,6 +103,33 @@ TEST(BinColumns, AreFourInOddScans) {
   EXPECT_EQ(other_bin_columns("", 4), std::nullopt);
 }
 
+/// Scans in which few numbers make up most of the mean.
+TEST(BinColumns, AreFourWhereFewPointsTellMuch) {
+  std::normal_distribution<float> normal;
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  for (unsigned seed = 0; seed < 8; ++seed) {
+    std::mt19937 random(seed);
+    for (const std::size_t size : {210U, 420U, 4200U, 21'000U}) {
+      for (const unsigned return_of : {1U, 2U, 3U, 10U, 30U, 100U, 500U}) {
+        std::vector<Point> zero(size), missing(size, {nan, nan, nan, 0});
+        std::vector<Point> bright(size);
+        for (std::size_t i = 0; i < size; ++i) {
+          const Point p = {20 * normal(random), 20 * normal(random), normal(random),
+                           normal(random)};
+          const bool returns = random() % return_of == 0;
+          if (returns) zero[i] = missing[i] = p;
+          bright[i] = p;
+          if (returns && return_of >= 100) bright[i].intensity = 1e8F;
+        }
+        for (const std::vector<Point>& points : {zero, missing, bright}) {
+          EXPECT_EQ(other_bin_columns(with_columns(points, 4), 4), std::nullopt)
+              << size << " points, one return of " << return_of << ", seed " << seed;
+        }
+      }
+    }
+  }
+}
+
 TEST(BinColumns, AreFourInEveryRealScan) {
   const auto real = shared_folder() / "real";
   if (!std::filesystem::exists(real)) GTEST_SKIP() << real << " is not there";
