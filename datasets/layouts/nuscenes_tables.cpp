@@ -96,6 +96,10 @@ class TableReader {
     read_nuscenes_table(folder_ / table, take);
   }
 
+  static void refuse_twice(const Row& row, bool is_new) {
+    if (!is_new) row.refuse("has the token of another row", "one row per token");
+  }
+
   void read_sensors() {
     std::unordered_set<std::string> lidars;
     for_rows("sensor.json", [&](const Row& row) {
@@ -103,20 +107,21 @@ class TableReader {
     });
     for_rows("calibrated_sensor.json", [&](const Row& row) {
       if (!lidars.contains(row.text("sensor_token"))) return;
-      mounts_.insert_or_assign(row.text("token"), pose_in(row));
+      refuse_twice(row, mounts_.emplace(row.text("token"), pose_in(row)).second);
     });
   }
 
   void read_samples() {
     std::unordered_map<std::string, std::size_t> scene_of_token;
     for_rows("scene.json", [&](const Row& row) {
-      scene_of_token.emplace(row.text("token"), scenes_.size());
+      refuse_twice(row, scene_of_token.emplace(row.text("token"), scenes_.size()).second);
       scenes_.push_back({row.text("name"), {}});
     });
     for_rows("sample.json", [&](const Row& row) {
       const auto scene = scene_of_token.find(row.text("scene_token"));
       if (scene == scene_of_token.end()) row.refuse("is of no scene", "one of scene.json");
-      sample_of_token_.emplace(row.text("token"), scene_of_sample_.size());
+      refuse_twice(row,
+                   sample_of_token_.emplace(row.text("token"), scene_of_sample_.size()).second);
       scene_of_sample_.push_back(scene->second);
     });
     boxes_.resize(scene_of_sample_.size());
@@ -142,6 +147,7 @@ class TableReader {
       const auto [first, last] = rows_of_pose_.equal_range(row.text("token"));
       for (auto found = first; found != last; ++found) {
         LidarRow& lidar = rows_[found->second];
+        refuse_twice(row, !lidar.has_pose);
         lidar.scan.map_from_sensor = pose_in(row) * lidar.ego_from_sensor;
         lidar.has_pose = true;
       }
@@ -150,15 +156,20 @@ class TableReader {
 
   void read_boxes() {
     if (!is_there(folder_ / "sample_annotation.json")) return;
-    std::unordered_set<std::string> moving;
+    std::unordered_set<std::string> all, moving;
     for_rows("attribute.json", [&](const Row& row) {
       const bool moves =
           std::ranges::find(kMovingAttributes, row.text("name")) != kMovingAttributes.end();
+      refuse_twice(row, all.insert(row.text("token")).second);
       if (moves) moving.insert(row.text("token"));
     });
     for_rows("sample_annotation.json", [&](const Row& row) {
       has_annotations_ = true;
       const std::vector<std::string>& attributes = row.texts("attribute_tokens");
+      for (const std::string& attribute : attributes) {
+        if (!all.contains(attribute))
+          row.refuse("has an unknown attribute", "one of attribute.json");
+      }
       if (attributes.empty() || !moving.contains(attributes.front())) return;
       const auto sample = sample_of_token_.find(row.text("sample_token"));
       if (sample == sample_of_token_.end()) row.refuse("is of no sample", "one of sample.json");
@@ -176,7 +187,14 @@ class TableReader {
       scenes_[scene_of_sample_[row.sample]].scans.push_back(std::move(row.scan));
     }
     for (NuscenesScene& scene : scenes_) {
-      std::ranges::stable_sort(scene.scans, {}, &NuscenesScan::stamp_ns);
+      std::ranges::sort(scene.scans, {}, &NuscenesScan::stamp_ns);
+      const auto twin = std::ranges::adjacent_find(scene.scans, {}, &NuscenesScan::stamp_ns);
+      if (twin != scene.scans.end()) {
+        throw DataError(folder_ / "sample_data.json",
+                        fmt::format("{} and {} have one timestamp", twin->file.string(),
+                                    std::next(twin)->file.string()),
+                        "scans of LIDAR_TOP that follow each other");
+      }
     }
     return {std::move(scenes_), has_annotations_};
   }

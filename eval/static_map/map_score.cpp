@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "datasets/files/errors.hpp"
 #include "datasets/files/scan_file.hpp"
@@ -18,8 +20,31 @@ namespace {
 
 namespace fs = std::filesystem;
 
+std::vector<Point> read_cloud(const fs::path& file) {
+  if (file.extension() == ".bin") {
+    throw DataError(file, "does not say what its columns are", "a .pcd or .ply file");
+  }
+  return read_scan(file);
+}
+
+/// Points are float32: far from the origin they lie on a grid that may be wider than what counts.
+void check_steps(const std::vector<Point>& points, const fs::path& file, double same_within_m) {
+  constexpr double kMostShare = 0.1;
+  float most_m = 0;
+  for (const Point& p : points) {
+    for (const float x : {p.x, p.y, p.z}) {
+      if (std::isfinite(x)) most_m = std::max(most_m, std::abs(x));
+    }
+  }
+  const float step_m = std::nextafter(most_m, std::numeric_limits<float>::infinity()) - most_m;
+  if (step_m <= kMostShare * same_within_m) return;
+  throw DataError(file,
+                  fmt::format("positions up to {:.0f} m are {} m apart in float32", most_m, step_m),
+                  fmt::format("both clouds nearer to the origin, as {} m count", same_within_m));
+}
+
 std::vector<Point> finite_points(const fs::path& file) {
-  std::vector<Point> points = read_scan(file);
+  std::vector<Point> points = read_cloud(file);
   if (points.empty())
     throw DataError(file, "holds no point", "the points that the map was made of");
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -45,7 +70,9 @@ MapScore score_map(const fs::path& map, const fs::path& truth, double same_withi
       map, fs::is_directory(truth) ? truth / "gt_cloud.pcd" : truth, 0, same_within_m, {}};
   const std::vector<Point> points = finite_points(score.truth);
   const std::vector<bool> dynamic = dynamic_points(points, score.truth);
-  const std::vector<Point> cleaned = read_scan(map);
+  const std::vector<Point> cleaned = read_cloud(map);
+  check_steps(points, score.truth, same_within_m);
+  check_steps(cleaned, map, same_within_m);
   score.map_points = cleaned.size();
   score.counts = count_kept(cleaned, points, dynamic, same_within_m);
   return score;

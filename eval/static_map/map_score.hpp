@@ -17,10 +17,10 @@ struct MapScore {
   MapCounts counts;
 };
 
-/// Reads both clouds, in one frame (.pcd, .ply, or .bin of four columns), and compares them.
+/// Reads both clouds, in one frame (.pcd or .ply), and compares them.
 /// `truth` is the file with intensity 1 for dynamic points and 0 for others, or the folder of one
 /// of KTH's sequences, whose gt_cloud.pcd is read. Throws DataError, also for other intensities and
-/// for a truth that is empty or not finite.
+/// for a truth that is empty or not finite, and so far from the origin that float32 is too coarse.
 MapScore score_map(const std::filesystem::path& map, const std::filesystem::path& truth,
                    double same_within_m);
 

@@ -54,6 +54,11 @@ TEST(MapScoreCommand, RefusesWhatIsNoTruth) {
   EXPECT_THAT(refused("1 0 0 0.5"),
               HasSubstr("point 1 has intensity 0.5, expected 0 (static) or 1"));
   EXPECT_THAT(refused("nan 0 0 1"), HasSubstr("point 1 is not finite"));
+  EXPECT_THAT(refused("400000 0 0 1"),
+              HasSubstr("truth.ply: positions up to 400000 m are 0.03125 m"));
+  const auto truth = folder.write("gt.ply", ply_of({"0 0 0 0"}));
+  EXPECT_THAT(cli::run({"map-score", folder.write("map.bin", std::string(48, 'a')), truth}).err,
+              HasSubstr("map.bin: does not say what its columns are"));
   const auto empty = folder.write("empty.ply", ply_of({}));
   EXPECT_THAT(cli::run({"map-score", map, empty}).err, HasSubstr("empty.ply: holds no point"));
   EXPECT_THAT(cli::run({"map-score", map, folder.path()}).err, HasSubstr("gt_cloud.pcd"));

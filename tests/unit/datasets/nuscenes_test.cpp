@@ -242,6 +242,25 @@ TEST_F(NuscenesFolder, NamesTheTableThatDoesNotFit) {
   EXPECT_THAT(error_of_opening(), HasSubstr("has no scan of LIDAR_TOP in scene-0061"));
 }
 
+TEST_F(NuscenesFolder, RefusesRowsThatComeTwice) {
+  table("ego_pose", pose("d1", "0, 0, 0") + "," + pose("d2", "0, 0, 0") + "," +
+                        pose("d3", "0, 0, 0") + "," + pose("d1", "1, 0, 0"));
+  EXPECT_THAT(error_of_opening(), HasSubstr("ego_pose.json:3: has the token of another row"));
+  table("scene", R"({"token": "s1", "name": "scene-0061"}, {"token": "s1", "name": "scene-0103"})");
+  EXPECT_THAT(error_of_opening(), HasSubstr("scene.json:1: has the token of another row"));
+}
+
+TEST_F(NuscenesFolder, RefusesScansOfOneTimestamp) {
+  table("sample_data", scan("d1", "k1", "samples/LIDAR_TOP/a.pcd.bin", 1000000, true) + "," +
+                           scan("d2", "k1", "sweeps/LIDAR_TOP/b.pcd.bin", 1000000, false));
+  EXPECT_THAT(error_of_opening(), HasSubstr("b.pcd.bin have one timestamp"));
+}
+
+TEST_F(NuscenesFolder, RefusesAnAttributeThatNoTableKnows) {
+  table("attribute", "");
+  EXPECT_THAT(error_of_opening(), HasSubstr("sample_annotation.json:0: has an unknown attribute"));
+}
+
 TEST_F(NuscenesFolder, RefusesTheRingAsTimes) {
   EXPECT_THROW(open_dataset(folder_ / "root", {.reading = {.point_times = PointTimes::kColumn}}),
                UsageError);
