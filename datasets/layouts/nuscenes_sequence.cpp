@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "datasets/files/errors.hpp"
+#include "datasets/files/files.hpp"
 #include "datasets/files/scan_file.hpp"
 #include "datasets/files/shown_text.hpp"
 #include "datasets/layouts/folder_search.hpp"
@@ -48,7 +49,13 @@ NuscenesSequence::NuscenesSequence(std::string name, const std::filesystem::path
 }
 
 void NuscenesSequence::list_scans(const std::filesystem::path& root, const NuscenesScene& scene) {
+  std::size_t absent = 0;
   for (const NuscenesScan& scan : scene.scans) {
+    // Who downloaded key frames alone has no sweeps.
+    if (!scan.is_key_frame && !is_there(root / scan.file)) {
+      ++absent;
+      continue;
+    }
     ScanEntry& entry = mutable_recording().scans.emplace_back();
     entry.stem = stem_of(scan.file);
     entry.file = root / scan.file;
@@ -57,6 +64,10 @@ void NuscenesSequence::list_scans(const std::filesystem::path& root, const Nusce
     entry.points = read_scan_head(*entry.file, kColumns).points;
     entry.has_truth = scan.is_key_frame && tables_->has_annotations;
     scans_.push_back(&scan);
+  }
+  if (absent > 0) {
+    mutable_recording().remarks.push_back(
+        fmt::format("left out {} sweeps of sample_data.json that are not on the disk", absent));
   }
 }
 

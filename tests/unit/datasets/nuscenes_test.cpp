@@ -242,6 +242,16 @@ TEST_F(NuscenesFolder, NamesTheTableThatDoesNotFit) {
   EXPECT_THAT(error_of_opening(), HasSubstr("has no scan of LIDAR_TOP in scene-0061"));
 }
 
+TEST_F(NuscenesFolder, IsReadWithoutItsSweepsButNotWithoutAKeyFrame) {
+  std::filesystem::remove_all(folder_ / "root/sweeps");
+  const Dataset dataset = opened();
+  EXPECT_EQ(dataset.sequences.at(0)->size(), 1U);
+  EXPECT_THAT(dataset.sequences.at(0)->recording().remarks,
+              testing::Contains(HasSubstr("left out 1 sweeps")));
+  std::filesystem::remove(folder_ / "root/samples/LIDAR_TOP/a.pcd.bin");
+  EXPECT_THAT(error_of_opening(), HasSubstr("a.pcd.bin"));
+}
+
 TEST_F(NuscenesFolder, RefusesRowsThatComeTwice) {
   table("ego_pose", pose("d1", "0, 0, 0") + "," + pose("d2", "0, 0, 0") + "," +
                         pose("d3", "0, 0, 0") + "," + pose("d1", "1, 0, 0"));
