@@ -4,6 +4,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -221,6 +222,19 @@ bool SceneFlowSequence::has_flow(std::size_t scan) const {
 }
 
 /// The motion by which the flow was computed, where the file keeps it.
+/// Far from the origin float32 moves a sensor by steps that would pass for motion of the points.
+void SceneFlowSequence::refuse_coarse_pose(const Scan& scan, double time_s) const {
+  constexpr double kMostShare = 0.2;  // of the speed that counts as motion
+  if (find_array(*scan.group, scene_flow::kPose)->number.bytes != sizeof(float)) return;
+  const auto far_m = static_cast<float>(scan.map_from_sensor.translation().cwiseAbs().maxCoeff());
+  const float step_m = std::nextafter(far_m, std::numeric_limits<float>::infinity()) - far_m;
+  if (step_m <= kMostShare * moving_speed_m_s_ * time_s) return;
+  throw DataError(recording().files.front(),
+                  fmt::format("{} is float32, {} m apart at {:.0f} m, too coarse for flow",
+                              arrow(*scan.group, scene_flow::kPose), step_m, far_m),
+                  "float64, or ego_motion");
+}
+
 SensorStep SceneFlowSequence::step_after(std::size_t scan) const {
   const Scan& from = scans_[scan];
   const Scan& to = scans_[scan + 1];
@@ -228,6 +242,8 @@ SensorStep SceneFlowSequence::step_after(std::size_t scan) const {
   if (find_array(*from.group, scene_flow::kEgoMotion) != nullptr) {
     return {pose_in(*from.group, scene_flow::kEgoMotion), time_s};
   }
+  refuse_coarse_pose(from, time_s);
+  refuse_coarse_pose(to, time_s);
   return {to.map_from_sensor.inverse() * from.map_from_sensor, time_s};
 }
 

@@ -42,6 +42,7 @@ class SceneFlowSequence : public Sequence {
   std::size_t check_points(const Hdf5Group& group) const;
   bool has_flow(std::size_t scan) const;
   bool has_labels(std::size_t scan) const;
+  void refuse_coarse_pose(const Scan& scan, double time_s) const;
   SensorStep step_after(std::size_t scan) const;
   std::vector<Point> points_of(const Scan& scan, std::vector<Point> reused) const;
   std::vector<std::int64_t> values(const Scan& scan, std::string_view name) const;

@@ -165,3 +165,22 @@ def test_numbers_of_other_places_are_refused(tmp_path, what):
     expected = "has no lidar" if what in ("soft", "elsewhere") else "has its numbers in other files"
     with pytest.raises(OSError, match=expected):
         mosbench.open(file)
+
+
+def test_poses_too_coarse_for_the_flow_are_refused(tmp_path):
+    def far(kind, with_ego_motion):
+        scans = drive()
+        for scan in scans:
+            scan["pose"][:3, 3] += 4e5, 4e6, 0
+            scan["pose"] = scan["pose"].astype(kind)
+            if not with_ego_motion:
+                scan.pop("ego_motion", None)
+        return opened(write(tmp_path / "scene.h5", scans))
+
+    with pytest.raises(OSError, match="pose is float32, 0.25 m apart at .* expected float64, or ego_motion"):
+        far(np.float32, False).scan(0)
+    for kind, with_ego_motion in ((np.float32, True), (np.float64, False)):
+        ids = far(kind, with_ego_motion).scan(0).truth & 0xFFFF
+        scan = drive()[0]
+        seen = ~scan["ground_mask"] & scan["flow_is_valid"]
+        assert np.array_equal(ids == 251, seen & scan["moving"])
