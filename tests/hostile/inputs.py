@@ -52,6 +52,9 @@ def _scans(trees):
         for layout in ("moe", "kth"):
             tree = _prefixed(trees, data=f"{layout}_{encoding}", predicted="predicted_all")
             yield Kind(f"{layout} .pcd {encoding}", tree, re.compile(r"^data/.*\.pcd$"), READING)
+        clouds = sorted(name for name in trees[f"kth_{encoding}"] if name.startswith("00/pcd/"))
+        yield Kind(f"map .pcd {encoding}", tree, re.compile(r"^data/.*\.pcd$"), [
+            f"map-score data/{clouds[0]} data/{clouds[1]}", f"map-score data/{clouds[1]} data/{clouds[0]} --json"])
     tree = _prefixed(trees, data="moe_binary", predicted="predicted_all")
     yield Kind("moe label .txt", tree, re.compile(r"^data/.*/label/"), READING)
     for compression in ("none", "lz4", "bz2"):

@@ -9,7 +9,8 @@ import folders
 import fixtures
 import program
 
-READERS = {"stats", "table", "rank", "breakdown", "diff", "compare", "doctor", "trajectory", "list", "help", "completion"}
+READERS = {"stats", "table", "rank", "breakdown", "diff", "compare", "doctor", "trajectory", "map-score", "list", "help",
+           "completion"}
 WRITERS = {
     "run": "run data --config config.json --threads 1 --scores --out out",
     "run on two threads": "run data --config config.json --threads 2 --out out",
