@@ -176,6 +176,10 @@ void parse_nuscenes_table(std::istream& bytes, const std::filesystem::path& file
 
 void read_nuscenes_table(const std::filesystem::path& file,
                          const std::function<void(const NuscenesRow&)>& take) {
+  // Opening a FIFO would wait for somebody who writes.
+  if (!std::filesystem::is_regular_file(file)) {
+    throw DataError(file, "is no regular file", "a table of nuScenes");
+  }
   std::vector<char> buffer(1U << 20U);
   std::ifstream bytes;
   bytes.rdbuf()->pubsetbuf(buffer.data(), static_cast<std::streamsize>(buffer.size()));

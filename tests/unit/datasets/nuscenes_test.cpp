@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <sstream>
 
@@ -250,6 +251,13 @@ TEST_F(NuscenesFolder, IsReadWithoutItsSweepsButNotWithoutAKeyFrame) {
               testing::Contains(HasSubstr("left out 1 sweeps")));
   std::filesystem::remove(folder_ / "root/samples/LIDAR_TOP/a.pcd.bin");
   EXPECT_THAT(error_of_opening(), HasSubstr("a.pcd.bin"));
+}
+
+TEST_F(NuscenesFolder, RefusesAPipeInsteadOfATable) {
+  const auto table = folder_ / "root/v1.0-mini/sample_annotation.json";
+  std::filesystem::remove(table);
+  ASSERT_EQ(mkfifo(table.c_str(), 0600), 0);
+  EXPECT_THAT(error_of_opening(), HasSubstr("sample_annotation.json: is no regular file"));
 }
 
 TEST_F(NuscenesFolder, RefusesRowsThatComeTwice) {
