@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <cstring>
 
+#include "datasets/files/scatter_bits.hpp"
+
 namespace mosbench {
 namespace {
 
@@ -21,14 +23,6 @@ struct Spread {
   Mean of_neighbours;  ///< of points that follow each other
   Mean of_any;         ///< of points anywhere in the scan
 };
-
-/// Returns the same numbers on every machine (splitmix64).
-std::uint64_t scrambled(std::uint64_t value) {
-  value += 0x9E3779B97F4A7C15;
-  value = (value ^ (value >> 30U)) * 0xBF58476D1CE4E5B9;
-  value = (value ^ (value >> 27U)) * 0x94D049BB133111EB;
-  return value ^ (value >> 31U);
-}
 
 float number_at(std::string_view bytes, std::size_t index) {
   float number = 0;
@@ -70,9 +64,9 @@ Spread spread_of(std::string_view bytes, std::size_t columns) {
   RootDifferences of_neighbours(bytes, columns);
   RootDifferences of_any(bytes, columns);
   for (std::size_t pair = 0; pair < kPairs; ++pair) {
-    const std::size_t one = scrambled(2 * pair) % points;
+    const std::size_t one = scatter_bits(2 * pair) % points;
     of_neighbours.add(one, one + 1 < points ? one + 1 : 0);
-    of_any.add(one, scrambled(2 * pair + 1) % points);
+    of_any.add(one, scatter_bits(2 * pair + 1) % points);
   }
   return {of_neighbours.mean(), of_any.mean()};
 }
@@ -92,7 +86,7 @@ bool holds_mostly_returns(std::string_view bytes, std::size_t columns) {
   const std::size_t points = bytes.size() / (columns * sizeof(float));
   std::size_t returns = 0;
   for (std::size_t pair = 0; pair < kPairs; ++pair) {
-    returns += is_return(bytes, columns, scrambled(2 * pair) % points);
+    returns += is_return(bytes, columns, scatter_bits(2 * pair) % points);
   }
   return 2 * returns > kPairs;
 }

@@ -106,17 +106,21 @@ std::size_t helipr_point_bytes(HeliprSensor sensor, std::int64_t stamp_ns) {
   return 0;
 }
 
+std::size_t helipr_point_count(std::uintmax_t size_bytes, HeliprSensor sensor,
+                               std::int64_t stamp_ns, const std::filesystem::path& file) {
+  const std::size_t point_bytes = helipr_point_bytes(sensor, stamp_ns);
+  if (size_bytes % point_bytes == 0) return static_cast<std::size_t>(size_bytes) / point_bytes;
+  throw DataError(file, fmt::format("{} bytes are no multiple of {}", size_bytes, point_bytes),
+                  fmt::format("points of HeLiPR's {}", to_string(sensor)));
+}
+
 HeliprScan parse_helipr_scan(std::string_view bytes, HeliprSensor sensor, std::int64_t stamp_ns,
                              const std::filesystem::path& file) {
-  const std::size_t point_bytes = helipr_point_bytes(sensor, stamp_ns);
-  if (bytes.size() % point_bytes != 0) {
-    throw DataError(file, fmt::format("{} bytes are no multiple of {}", bytes.size(), point_bytes),
-                    fmt::format("points of HeLiPR's {}", to_string(sensor)));
-  }
+  const std::size_t points = helipr_point_count(bytes.size(), sensor, stamp_ns, file);
   HeliprScan scan;
   const PointReader reader(sensor, stamp_ns, scan);
   ByteCursor cursor(bytes, file, "a point");
-  for (std::size_t i = 0; i < bytes.size() / point_bytes; ++i) {
+  for (std::size_t i = 0; i < points; ++i) {
     Point point = {};
     point.x = cursor.take<float>();
     point.y = cursor.take<float>();

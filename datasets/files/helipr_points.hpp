@@ -29,6 +29,10 @@ struct HeliprScan {
 /// (HeLiPR-File-Player@e8d95e3: src/ROSThread.cpp).
 std::size_t helipr_point_bytes(HeliprSensor sensor, std::int64_t stamp_ns);
 
+/// Returns how many points a file of a size has. Throws DataError where it is no multiple.
+std::size_t helipr_point_count(std::uintmax_t size_bytes, HeliprSensor sensor,
+                               std::int64_t stamp_ns, const std::filesystem::path& file);
+
 /// Returns the points of a file, packed one after the other. The intensity of an Avia, and of an
 /// Aeva that has none, is its reflectivity. Throws DataError for a size that is no multiple of a
 /// point's, and for times that are not within a second.

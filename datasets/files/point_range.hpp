@@ -11,4 +11,11 @@ inline double range_m(const Point& point) {
   return std::sqrt(x * x + y * y + z * z);
 }
 
+/// Returns where a point is in the sensor's frame, metres.
+inline Eigen::Vector3d position_of(const Point& point) { return {point.x, point.y, point.z}; }
+
+inline bool is_finite(const Point& point) {
+  return std::isfinite(point.x) && std::isfinite(point.y) && std::isfinite(point.z);
+}
+
 }  // namespace mosbench

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <set>
 #include <system_error>
 #include <utility>
 
@@ -90,7 +91,7 @@ TimedScan read_timed_scan(const std::filesystem::path& file, std::size_t bin_col
 
 void check_usual_bin_columns(std::span<const StemFile> scans) {
   if (scans.empty()) return;
-  for (const std::size_t i : {std::size_t{0}, scans.size() / 2, scans.size() - 1}) {
+  for (const std::size_t i : std::set{std::size_t{0}, scans.size() / 2, scans.size() - 1}) {
     const std::filesystem::path& file = scans[i].file;
     if (!has_extension(file, ".bin") || file.string().ends_with(kNuscenesEnd)) continue;
     const auto columns = other_bin_columns(read_file(file), kUsualBinColumns);

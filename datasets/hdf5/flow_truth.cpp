@@ -3,10 +3,10 @@
 #include <cmath>
 #include <limits>
 
+#include "datasets/files/point_range.hpp"
+
 namespace mosbench {
 namespace {
-
-Eigen::Vector3d position_of(const Point& point) { return {point.x, point.y, point.z}; }
 
 /// The flow of a point that stands still.
 Eigen::Vector3d still_flow(const Point& point, const SensorStep& step) {

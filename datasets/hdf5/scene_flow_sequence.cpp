@@ -149,9 +149,7 @@ void SceneFlowSequence::take_poses(const ReadingOptions& options) {
   for (std::size_t k = 0; k < scans_.size(); ++k) {
     enter(k, poses.map_from_sensor[k], std::ranges::binary_search(poses.unknown, k));
   }
-  recording.files.insert(recording.files.end(), poses.files.begin(), poses.files.end());
-  recording.remarks.insert(recording.remarks.end(), poses.remarks.begin(), poses.remarks.end());
-  recording.reading.insert(recording.reading.end(), poses.reading.begin(), poses.reading.end());
+  add_statements(poses, recording);
 }
 
 void SceneFlowSequence::enter(std::size_t scan, const Pose& map_from_sensor, bool is_left_out) {
@@ -221,7 +219,6 @@ bool SceneFlowSequence::has_flow(std::size_t scan) const {
   return scan + 1 < scans_.size() && find_array(*scans_[scan].group, scene_flow::kFlow) != nullptr;
 }
 
-/// The motion by which the flow was computed, where the file keeps it.
 /// Far from the origin float32 moves a sensor by steps that would pass for motion of the points.
 void SceneFlowSequence::refuse_coarse_pose(const Scan& scan, double time_s) const {
   constexpr double kMostShare = 0.2;  // of the speed that counts as motion
@@ -229,12 +226,13 @@ void SceneFlowSequence::refuse_coarse_pose(const Scan& scan, double time_s) cons
   const auto far_m = static_cast<float>(scan.map_from_sensor.translation().cwiseAbs().maxCoeff());
   const float step_m = std::nextafter(far_m, std::numeric_limits<float>::infinity()) - far_m;
   if (step_m <= kMostShare * moving_speed_m_s_ * time_s) return;
-  throw DataError(recording().files.front(),
+  throw DataError(file_.path(),
                   fmt::format("{} is float32, {} m apart at {:.0f} m, too coarse for flow",
                               arrow(*scan.group, scene_flow::kPose), step_m, far_m),
                   "float64, or ego_motion");
 }
 
+/// The motion by which the flow was computed, where the file keeps it.
 SensorStep SceneFlowSequence::step_after(std::size_t scan) const {
   const Scan& from = scans_[scan];
   const Scan& to = scans_[scan + 1];

@@ -48,14 +48,7 @@ void HeliprSequence::list_scans(const std::filesystem::path& folder) {
     entry.stem = scan.stem;
     entry.file = scan.file;
     entry.stamp_ns = static_cast<std::int64_t>(*stamp_ns);
-    const std::size_t point_bytes = helipr_point_bytes(sensor_, *entry.stamp_ns);
-    const std::uintmax_t size_bytes = size_of(scan.file);
-    if (size_bytes % point_bytes != 0) {
-      throw DataError(scan.file,
-                      fmt::format("{} bytes are no multiple of {}", size_bytes, point_bytes),
-                      fmt::format("points of HeLiPR's {}", to_string(sensor_)));
-    }
-    entry.points = static_cast<std::size_t>(size_bytes) / point_bytes;
+    entry.points = helipr_point_count(size_of(scan.file), sensor_, *entry.stamp_ns, scan.file);
   }
   if (size() == 0) throw DataError(folder, "holds no scan", "<stamp_ns>.bin");
 }
@@ -70,16 +63,9 @@ void HeliprSequence::take_poses(const std::filesystem::path& folder,
   }
   std::vector<std::int64_t> stamps_ns;
   for (const ScanEntry& scan : recording.scans) stamps_ns.push_back(*scan.stamp_ns);
-  SensorPoses poses = read_sensor_poses(folder, "", options, {size(), stamps_ns});
-  std::vector<ScanEntry> scans = std::exchange(recording.scans, {});
-  for (std::size_t k = 0; k < scans.size(); ++k) {
-    scans[k].map_from_sensor = poses.map_from_sensor[k];
-    const bool leaves_out = std::ranges::binary_search(poses.unknown, k);
-    (leaves_out ? recording.left_out : recording.scans).push_back(std::move(scans[k]));
-  }
-  recording.files.insert(recording.files.end(), poses.files.begin(), poses.files.end());
-  recording.remarks.insert(recording.remarks.end(), poses.remarks.begin(), poses.remarks.end());
-  recording.reading.insert(recording.reading.end(), poses.reading.begin(), poses.reading.end());
+  const SensorPoses poses = read_sensor_poses(folder, "", options, {size(), stamps_ns});
+  place_scans(poses, recording);
+  add_statements(poses, recording);
 }
 
 void HeliprSequence::take_ground_truth(const std::filesystem::path& file, double max_gap_s) {

@@ -112,9 +112,7 @@ void NuscenesSequence::take_poses(const std::filesystem::path& folder,
     entry.has_truth = entry.has_truth && !leaves_out;
     if (!leaves_out) scans_.push_back(rows[k]);
   }
-  recording.files.insert(recording.files.end(), poses.files.begin(), poses.files.end());
-  recording.remarks.insert(recording.remarks.end(), poses.remarks.begin(), poses.remarks.end());
-  recording.reading.insert(recording.reading.end(), poses.reading.begin(), poses.reading.end());
+  add_statements(poses, recording);
 }
 
 void NuscenesSequence::read(std::size_t scan_index, Frame& frame) const {

@@ -57,11 +57,6 @@ std::string five_columns(const std::vector<Point>& points) {
   return std::move(sink).bytes();
 }
 
-bool moves(std::uint32_t label) {
-  const std::uint32_t id = label & 0xFFFFU;
-  return id >= kMovingLabel && id <= 259U;
-}
-
 class NuscenesWriter : public SequenceWriter {
  public:
   NuscenesWriter(fs::path folder, const WriteOptions& options)
@@ -79,7 +74,7 @@ class NuscenesWriter : public SequenceWriter {
     if (!frame.truth) return;
     for (std::size_t i = 0; i < frame.points.size(); ++i) {
       const Point& p = frame.points[i];
-      if (moves((*frame.truth)[i])) row.moving.emplace_back(p.x, p.y, p.z);
+      if (is_moving((*frame.truth)[i])) row.moving.emplace_back(p.x, p.y, p.z);
     }
   }
 

@@ -63,11 +63,6 @@ class KittiWriter : public SequenceWriter {
   std::vector<Pose> poses_;
 };
 
-bool is_moving(std::uint32_t label) {
-  const std::uint32_t id = label & 0xFFFFU;
-  return id >= kMovingLabel && id <= 259U;
-}
-
 /// Refuses scans that a bag, which is ordered by stamps and finds poses by them, would give back in
 /// another order or with the pose of another.
 class RisingStamps {
@@ -242,6 +237,11 @@ class Ros2SequenceWriter : public SequenceWriter {
 std::string_view to_string(BagKind kind) {
   constexpr std::array<std::string_view, 4> kNames = {"none", "ros1", "mcap", "db3"};
   return kNames[static_cast<std::size_t>(kind)];
+}
+
+bool is_moving(std::uint32_t label) {
+  const std::uint32_t id = label & 0xFFFFU;
+  return id >= kMovingLabel && id <= 259U;
 }
 
 std::int64_t stamp_or_period_ns(std::size_t scan_index, std::optional<std::int64_t> stamp_ns) {

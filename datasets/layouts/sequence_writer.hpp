@@ -37,6 +37,9 @@ struct WriteOptions {
   std::string compression = "lz4";
 };
 
+/// Returns whether a label is one of what moves, 251 to 259.
+bool is_moving(std::uint32_t label);
+
 /// Returns the stamp of a scan; of one without, as many tenths of a second as its index says, which
 /// lie as far apart as those of most sensors.
 std::int64_t stamp_or_period_ns(std::size_t scan_index, std::optional<std::int64_t> stamp_ns);

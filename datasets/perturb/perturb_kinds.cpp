@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "datasets/files/point_range.hpp"
+
 namespace mosbench {
 
 std::span<const PerturbKind> perturb_kinds() {
@@ -204,8 +206,7 @@ std::span<const PerturbKey> perturb_keys() {
 }
 
 bool is_return(const Point& point) {
-  const bool finite = std::isfinite(point.x) && std::isfinite(point.y) && std::isfinite(point.z);
-  return finite && (point.x != 0 || point.y != 0 || point.z != 0);
+  return is_finite(point) && (point.x != 0 || point.y != 0 || point.z != 0);
 }
 
 void lose_point(Frame& frame, std::size_t point) {

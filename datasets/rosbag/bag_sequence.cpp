@@ -121,10 +121,7 @@ void BagSequence::open_pose_file(const ReadingOptions& options) {
     return track.at(stamp_ns);
   };
   leaves_last_ = true;
-  Recording& recording = mutable_recording();
-  recording.files.insert(recording.files.end(), poses.files.begin(), poses.files.end());
-  recording.remarks.insert(recording.remarks.end(), poses.remarks.begin(), poses.remarks.end());
-  recording.reading.insert(recording.reading.end(), poses.reading.begin(), poses.reading.end());
+  add_statements(poses, mutable_recording());
 }
 
 void BagSequence::open_transforms(const ReadingOptions& options) {

@@ -55,20 +55,10 @@ FolderSequence::FolderSequence(std::string name, const std::filesystem::path& fo
   SensorPoses poses =
       read_sensor_poses(folder, std::string(layout.poses_file), options, {size(), stamps_ns});
   for (std::size_t k = 0; k < stamps_ns.size(); ++k) recording.scans[k].stamp_ns = stamps_ns[k];
-  take_poses(poses);
+  place_scans(poses, recording);
   recording.files.insert(recording.files.begin(), poses.files.begin(), poses.files.end());
   recording.remarks = std::move(poses.remarks);
   recording.reading.insert(recording.reading.end(), poses.reading.begin(), poses.reading.end());
-}
-
-void FolderSequence::take_poses(const SensorPoses& poses) {
-  Recording& recording = mutable_recording();
-  std::vector<ScanEntry> scans = std::exchange(recording.scans, {});
-  for (std::size_t k = 0; k < scans.size(); ++k) {
-    scans[k].map_from_sensor = poses.map_from_sensor[k];
-    const bool leaves_out = std::ranges::binary_search(poses.unknown, k);
-    (leaves_out ? recording.left_out : recording.scans).push_back(std::move(scans[k]));
-  }
 }
 
 void FolderSequence::list_scans(const std::filesystem::path& folder, const FolderLayout& layout,

@@ -45,7 +45,6 @@ class FolderSequence : public Sequence {
   void list_scans(const std::filesystem::path& folder, const FolderLayout& layout,
                   bool columns_are_usual);
   std::vector<std::int64_t> read_stamps(const std::filesystem::path& folder);
-  void take_poses(const SensorPoses& poses);
 
   std::size_t bin_columns_;
   bool times_in_column_;

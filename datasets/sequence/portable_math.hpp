@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <mosbench/scan.hpp>
 
+#include "datasets/files/scatter_bits.hpp"
+
 namespace mosbench {
 
 /// All functions here use operations that IEEE 754 rounds in one way only (+ - * / and square
@@ -97,14 +99,6 @@ inline double angle_of(double y, double x) {
   if (a <= b) angle = kPi / 2 - angle;
   if (x < 0) angle = kPi - angle;
   return y < 0 ? -angle : angle;
-}
-
-/// Finalizer of SplitMix64 (Steele, Lea, Flood 2014): a bijection that scatters every input bit.
-constexpr std::uint64_t scatter_bits(std::uint64_t x) {
-  x += 0x9E3779B97F4A7C15u;
-  x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9u;
-  x = (x ^ (x >> 27)) * 0x94D049BB133111EBu;
-  return x ^ (x >> 31);
 }
 
 /// Returns a random word that depends on its arguments only, so that results cannot depend on the

@@ -165,6 +165,21 @@ std::string pose_origin_of(const ReadingStatement& reading) {
   return origin;
 }
 
+void place_scans(const SensorPoses& poses, Recording& recording) {
+  std::vector<ScanEntry> scans = std::exchange(recording.scans, {});
+  for (std::size_t k = 0; k < scans.size(); ++k) {
+    scans[k].map_from_sensor = poses.map_from_sensor[k];
+    const bool leaves_out = std::ranges::binary_search(poses.unknown, k);
+    (leaves_out ? recording.left_out : recording.scans).push_back(std::move(scans[k]));
+  }
+}
+
+void add_statements(const SensorPoses& poses, Recording& recording) {
+  recording.files.insert(recording.files.end(), poses.files.begin(), poses.files.end());
+  recording.remarks.insert(recording.remarks.end(), poses.remarks.begin(), poses.remarks.end());
+  recording.reading.insert(recording.reading.end(), poses.reading.begin(), poses.reading.end());
+}
+
 fs::path pose_origin_file(const fs::path& pose_file) {
   if (pose_file.extension() != ".h5") return pose_file.parent_path() / kPoseOriginFile;
   return pose_file.parent_path() / (pose_file.stem().string() + "." + kPoseOriginFile);

@@ -9,6 +9,7 @@
 
 #include "datasets/files/errors.hpp"
 #include "datasets/sequence/reading_options.hpp"
+#include "datasets/sequence/recording.hpp"
 
 namespace mosbench {
 
@@ -42,6 +43,12 @@ struct PosedScans {
 /// `options.poses_by_odometry` is set.
 SensorPoses read_sensor_poses(const std::filesystem::path& folder, const std::string& own_file,
                               const ReadingOptions& options, const PosedScans& scans);
+
+/// Gives the scans of a recording, which have none yet, their poses, and leaves those out whose
+/// pose is unknown.
+void place_scans(const SensorPoses& poses, Recording& recording);
+/// Adds where poses came from to what a recording says of itself.
+void add_statements(const SensorPoses& poses, Recording& recording);
 
 /// Beside poses that `convert` wrote: a line that says where they came from, and one with the hash
 /// of the file that holds them.

@@ -29,6 +29,7 @@ any, else clusters of moving points linked over scans. An object is detected onc
 points is found. DATA may also be a folder of results, which tells where data and labels are and how
 they were scored. Speeds are in the map frame; if the stamps of the scans do not rise, 10 Hz is
 assumed.
+
 Examples:
   mosbench breakdown results/runs/kitti
   mosbench breakdown ~/kitti/sequences/08 --predictions mapmos/08/predictions

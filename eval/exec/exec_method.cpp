@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "datasets/files/point_range.hpp"
 #include "eval/exec/child_process.hpp"
 #include "eval/exec/pipe_messages.hpp"
 #include "eval/exec/program_error.hpp"
@@ -26,9 +27,7 @@ struct WaitingScan : Observed {
 };
 
 std::size_t nonfinite_points(const std::vector<Point>& points) {
-  return static_cast<std::size_t>(std::ranges::count_if(points, [](const Point& point) {
-    return !std::isfinite(point.x) || !std::isfinite(point.y) || !std::isfinite(point.z);
-  }));
+  return static_cast<std::size_t>(std::ranges::count(points, false, is_finite));
 }
 
 class ExecMethod : public Method {

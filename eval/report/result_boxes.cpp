@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/base/thread_pool.hpp"
+#include "datasets/files/point_range.hpp"
 
 namespace mosbench {
 namespace {
@@ -53,10 +54,6 @@ std::vector<std::size_t> scans_around(const ResultScans& scans,
 bool is_labelled_moving(PointOutcome outcome) {
   return outcome == PointOutcome::kTruePositive || outcome == PointOutcome::kFalsePositive ||
          outcome == PointOutcome::kIgnoredMoving;
-}
-
-Eigen::Vector3d position_of(const Point& point) {
-  return {static_cast<double>(point.x), static_cast<double>(point.y), static_cast<double>(point.z)};
 }
 
 nlohmann::ordered_json boxes_json(const ResultScans& scans,

@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "datasets/files/point_range.hpp"
 #include "eval/report/palette.hpp"
 #include "eval/report/point_planes.hpp"
 #include "eval/report/result_boxes.hpp"

@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "datasets/files/files.hpp"
+#include "datasets/files/point_range.hpp"
 #include "eval/report/point_planes.hpp"
 #include "eval/report/result_boxes.hpp"
 #include "eval/results/answer_text.hpp"

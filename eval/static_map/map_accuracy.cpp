@@ -6,6 +6,8 @@
 #include <nanoflann.hpp>
 #include <vector>
 
+#include "datasets/files/point_range.hpp"
+
 namespace mosbench {
 namespace {
 
@@ -15,9 +17,7 @@ class FinitePoints {
   explicit FinitePoints(std::span<const Point> points) {
     points_.reserve(points.size());
     for (const Point& p : points) {
-      if (std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z)) {
-        points_.push_back({p.x, p.y, p.z});
-      }
+      if (is_finite(p)) points_.push_back({p.x, p.y, p.z});
     }
   }
   std::size_t kdtree_get_point_count() const { return points_.size(); }

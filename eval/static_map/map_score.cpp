@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "datasets/files/errors.hpp"
+#include "datasets/files/point_range.hpp"
 #include "datasets/files/scan_file.hpp"
 #include "datasets/files/shown_text.hpp"
 #include "datasets/layouts/kth_sequence.hpp"
@@ -47,13 +48,10 @@ std::vector<Point> finite_points(const fs::path& file) {
   std::vector<Point> points = read_cloud(file);
   if (points.empty())
     throw DataError(file, "holds no point", "the points that the map was made of");
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (std::isfinite(points[i].x) && std::isfinite(points[i].y) && std::isfinite(points[i].z)) {
-      continue;
-    }
-    throw DataError(file, fmt::format("point {} is not finite", i), "a position for each point");
-  }
-  return points;
+  const auto odd = std::ranges::find(points, false, is_finite);
+  if (odd == points.end()) return points;
+  throw DataError(file, fmt::format("point {} is not finite", odd - points.begin()),
+                  "a position for each point");
 }
 
 std::vector<bool> dynamic_points(const std::vector<Point>& points, const fs::path& file) {
