@@ -42,7 +42,7 @@ RunOptions run_options(const StudyCell& cell, const Study& study, const fs::path
   options.reading = cell.data->reading;
   options.reading.perturb = cell.perturb();
   if (!cell.odometry.empty()) options.odometry.kind = cell.odometry;
-  options.assignments = cell.identity.at("set").get<std::vector<std::string>>();
+  options.assignments = cell.assignments;
   options.threads = threads;
   return options;
 }

@@ -18,6 +18,7 @@
 #include "eval/runs/odometry_choice.hpp"
 #include "eval/runs/presets.hpp"
 #include "eval/runs/run_plan.hpp"
+#include "eval/study/study_sampling.hpp"
 #include "eval/study/yaml_node.hpp"
 
 namespace mosbench {
@@ -177,30 +178,6 @@ StudyAxis disturbance_of(const YamlNode& node) {
   return axis;
 }
 
-StudyAxis setting_of(const YamlNode& node, const std::vector<StudyMethod>& methods) {
-  node.check_keys({"setting", "values"});
-  StudyAxis axis;
-  axis.name = node.at("setting").text();
-  bool known = false;
-  for (const StudyMethod& method : methods) {
-    Settings settings = method_named(method.method).defaults;
-    if (settings.find(axis.name) == nullptr) continue;
-    known = true;
-    for (const YamlNode& value : node.at("values").list()) {
-      value.located([&] {
-        apply_setting_assignment(fmt::format("{}={}", axis.name, value.text()), settings);
-      });
-    }
-  }
-  if (!known) {
-    node.at("setting").refuse(
-        fmt::format("no method has a setting {}", mosbench::quoted(axis.name)),
-        "one of `mosbench list methods`");
-  }
-  for (const YamlNode& value : node.at("values").list()) axis.values.push_back(value.text());
-  return axis;
-}
-
 template <typename Named>
 void check_names(const YamlNode& node, const std::vector<Named>& rows) {
   std::set<std::string> names;
@@ -210,6 +187,63 @@ void check_names(const YamlNode& node, const std::vector<Named>& rows) {
                   "names that differ");
     }
   }
+}
+
+/// Checks a setting and its values by all methods that have it, and returns what one of them says
+/// of it. `place` is where its name stands.
+Setting checked_setting(const std::string& name, const YamlNode& place,
+                        const std::vector<YamlNode>& values,
+                        const std::vector<StudyMethod>& methods) {
+  std::optional<Setting> known;
+  for (const StudyMethod& method : methods) {
+    Settings settings = method_named(method.method).defaults;
+    if (settings.find(name) == nullptr) continue;
+    known = *settings.find(name);
+    for (const YamlNode& value : values) {
+      value.located(
+          [&] { apply_setting_assignment(fmt::format("{}={}", name, value.text()), settings); });
+    }
+  }
+  if (known) return *known;
+  place.refuse(fmt::format("no method has a setting {}", mosbench::quoted(name)),
+               "one of `mosbench list methods`");
+}
+
+StudyAxis setting_of(const YamlNode& node, const std::vector<StudyMethod>& methods) {
+  node.check_keys({"setting", "values"});
+  StudyAxis axis;
+  axis.name = node.at("setting").text();
+  const std::vector<YamlNode> values = node.at("values").list();
+  checked_setting(axis.name, node.at("setting"), values, methods);
+  for (const YamlNode& value : values) {
+    axis.values.push_back(value.text());
+    axis.assignments.push_back({{axis.name, value.text()}});
+  }
+  return axis;
+}
+
+SampledSetting sampled_setting_of(const std::string& name, const YamlNode& limits,
+                                  const std::vector<StudyMethod>& methods) {
+  const std::vector<YamlNode> ends = limits.list();
+  const Setting setting = checked_setting(name, limits, ends, methods);
+  if (ends.size() != 2 || std::holds_alternative<std::string>(setting.value)) {
+    limits.refuse(fmt::format("{} cannot be drawn", name), "a number's [LOWEST, HIGHEST]");
+  }
+  const double low = *parse_double(ends[0].text()), high = *parse_double(ends[1].text());
+  if (low >= high) limits.refuse(fmt::format("{} cannot be drawn", name), "LOWEST below HIGHEST");
+  return {name, low, high, std::holds_alternative<int>(setting.value)};
+}
+
+StudyAxis sample_of(const YamlNode& node, const std::vector<StudyMethod>& methods) {
+  node.check_keys({"points", "seed", "settings"});
+  std::vector<SampledSetting> settings;
+  for (const auto& [name, limits] : node.at("settings").members()) {
+    settings.push_back(sampled_setting_of(name, limits, methods));
+  }
+  check_names(node, settings);
+  const std::size_t points = node.at("points").whole(3, 100'000);
+  return sampled_axis(settings, points,
+                      node.find("seed") ? node.at("seed").whole(0, UINT64_MAX) : 1);
 }
 
 std::string range_of(const YamlNode& node, const std::optional<std::string>& protocol) {
@@ -245,6 +279,9 @@ void read_rest(const YamlNode& root, Study& study) {
       study.axes.push_back(setting_of(one, study.methods));
     }
   }
+  if (const auto sample = root.find("sample")) {
+    study.axes.push_back(sample_of(*sample, study.methods));
+  }
   check_names(root, study.axes);
   if (const auto seeds = root.find("seeds")) {
     study.seeds.clear();
@@ -256,8 +293,8 @@ void read_rest(const YamlNode& root, Study& study) {
 
 Study parse_study(const std::string& text, const fs::path& file) {
   const YamlNode root = parse_yaml(text, file);
-  root.check_keys(
-      {"name", "protocol", "range_m", "data", "methods", "odometry", "disturb", "vary", "seeds"});
+  root.check_keys({"name", "protocol", "range_m", "data", "methods", "odometry", "disturb", "vary",
+                   "sample", "seeds"});
   Study study;
   study.file = file;
   study.name = name_of(root.at("name"));

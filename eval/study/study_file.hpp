@@ -40,12 +40,20 @@ struct StudyMethod {
   std::vector<std::string> assignments;  ///< as of --set
 };
 
-/// One kind of disturbance, or one setting, at several strengths; all else stays as it is.
+/// What a study sets: a setting and its value, as of --set.
+struct StudyAssignment {
+  std::string setting, value;
+};
+
+/// One kind of disturbance, or settings, at several values; all else stays as it is.
 struct StudyAxis {
-  const PerturbKind* kind = nullptr;  ///< null for a setting
-  std::string name;                   ///< of the kind or the setting
+  const PerturbKind* kind = nullptr;  ///< null for settings
+  std::string name;                   ///< of the kind or the setting; "sample" of several settings
   std::vector<std::string> values;
   std::string with;  ///< shared keys of --perturb, each with a comma in front
+  std::vector<std::vector<StudyAssignment>> assignments;  ///< by value; none of a disturbance
+  std::vector<std::string>
+      sampled;  ///< the settings that are drawn all at once, see `sampled_axis`
 };
 
 /// What study.yaml says.

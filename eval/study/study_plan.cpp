@@ -101,6 +101,7 @@ class CellLister {
   void list(StudyCell cell, const ordered_json& sequence) {
     cell.axis = nullptr;
     cell.seed = 0;
+    cell.assignments = cell.method->assignments;
     cell.cost_key = hash_of_text(ordered_json{
         {"data", sequence},
         {"method", cell.method->method},
@@ -109,10 +110,12 @@ class CellLister {
          cell.method->assignments}}.dump());
     add(cell, sequence);
     for (const StudyAxis& axis : study_.axes) {
-      if (!applies(axis, cell)) continue;
       cell.axis = &axis;
-      for (const std::string& value : axis.values) {
-        cell.value = value;
+      for (std::size_t i = 0; i < axis.values.size(); ++i) {
+        cell.value = axis.values[i];
+        cell.assignments = assignments_of(*cell.method, axis, i);
+        const bool lacks_settings = cell.assignments.size() == cell.method->assignments.size();
+        if (axis.kind == nullptr && lacks_settings) continue;
         const bool random = axis.kind != nullptr && axis.kind->is_random;
         cell.seed = 0;
         if (!random) add(cell, sequence);
@@ -125,22 +128,13 @@ class CellLister {
   }
 
  private:
-  static bool applies(const StudyAxis& axis, const StudyCell& cell) {
-    if (axis.kind != nullptr) return true;
-    return method_named(cell.method->method).defaults.find(axis.name) != nullptr;
-  }
-
   void add(StudyCell cell, const ordered_json& sequence) {
-    ordered_json set = cell.method->assignments;
-    if (cell.axis != nullptr && cell.axis->kind == nullptr) {
-      set.push_back(fmt::format("{}={}", cell.axis->name, cell.value));
-    }
     cell.identity = {{"format", 1},
                      {"data", sequence},
                      {"sequence", cell.sequence},
                      {"method", cell.method->method},
                      {"preset", cell.method->preset.value_or("")},
-                     {"set", set},
+                     {"set", cell.assignments},
                      {"odometry", cell.odometry},
                      {"perturb", cell.perturb().value_or("")},
                      {"protocol", study_.protocol.value_or("")},
@@ -213,8 +207,29 @@ std::optional<std::string> StudyCell::perturb() const {
       parse_perturbation(fmt::format("{}={}{},seed={}", axis->name, value, axis->with, seed)));
 }
 
+std::string StudyCell::label() const {
+  return odometry.empty() ? method->name : fmt::format("{} ({})", method->name, odometry);
+}
+
+std::string StudyCell::sequence_label() const { return fmt::format("{} {}", data->name, sequence); }
+
+bool has_setting(const StudyMethod& method, const std::string& name) {
+  return method_named(method.method).defaults.find(name) != nullptr;
+}
+
+std::vector<std::string> assignments_of(const StudyMethod& method, const StudyAxis& axis,
+                                        std::size_t value) {
+  std::vector<std::string> assignments = method.assignments;
+  if (axis.kind != nullptr) return assignments;
+  for (const StudyAssignment& one : axis.assignments[value]) {
+    if (!has_setting(method, one.setting)) continue;
+    assignments.push_back(fmt::format("{}={}", one.setting, one.value));
+  }
+  return assignments;
+}
+
 std::string StudyCell::title() const {
-  std::string text = fmt::format("{} {}, {}", data->name, sequence, method->name);
+  std::string text = fmt::format("{}, {}", sequence_label(), method->name);
   if (!odometry.empty()) text += fmt::format(", poses by {}", odometry);
   if (axis != nullptr) text += fmt::format(", {}={}", axis->name, value);
   if (seed != 0) text += fmt::format(", seed {}", seed);

@@ -18,19 +18,32 @@ struct StudyCell {
   const StudyData* data = nullptr;
   std::string sequence;
   const StudyMethod* method = nullptr;
-  std::string odometry;             ///< empty: the poses of the data
-  const StudyAxis* axis = nullptr;  ///< null where nothing is changed
-  std::string value;                ///< of the axis
-  std::uint64_t seed = 0;           ///< 0 where nothing is random
-  nlohmann::ordered_json identity;  ///< all that decides the result but the program
-  std::string key;                  ///< hash of it, 32 hexadecimal digits
-  std::string cost_key;             ///< hash of what decides the cost of the method on the sequence
+  std::string odometry;                  ///< empty: the poses of the data
+  const StudyAxis* axis = nullptr;       ///< null where nothing is changed
+  std::string value;                     ///< of the axis
+  std::vector<std::string> assignments;  ///< as of --set: of the method, then of the axis
+  std::uint64_t seed = 0;                ///< 0 where nothing is random
+  nlohmann::ordered_json identity;       ///< all that decides the result but the program
+  std::string key;                       ///< hash of it, 32 hexadecimal digits
+  std::string cost_key;  ///< hash of what decides the cost of the method on the sequence
 
   /// Returns the text of --perturb; nothing where scans stay as they are.
   std::optional<std::string> perturb() const;
+  /// Returns "hmm-mos", or "hmm-mos (kiss)" with poses by odometry: its row in tables.
+  std::string label() const;
+  /// Returns "street 08".
+  std::string sequence_label() const;
   /// Returns "street 08, hmm-mos, pose_noise_m=0.05, seed 2".
   std::string title() const;
 };
+
+/// Whether a method has a setting of this name.
+bool has_setting(const StudyMethod& method, const std::string& name);
+
+/// Returns what a cell sets, as of --set: what the study says of the method, then those settings of
+/// one value of the axis that the method has.
+std::vector<std::string> assignments_of(const StudyMethod& method, const StudyAxis& axis,
+                                        std::size_t value);
 
 /// What lies where a cell's result belongs.
 enum class CellState : std::uint8_t {

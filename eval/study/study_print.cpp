@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "eval/report/report_asset.hpp"
 #include "eval/results/answer_text.hpp"
 #include "eval/results/csv.hpp"
@@ -48,10 +50,41 @@ std::vector<std::string> cells_of(const StudyTable& table, const StudyCurve& cur
   return cells;
 }
 
+std::string effect_text(const std::optional<TotalEffect>& effect) {
+  if (!effect) return "-";
+  return fmt::format("{:.2f} ({:.2f} to {:.2f})", effect->index, effect->interval.low,
+                     effect->interval.high);
+}
+
+/// The head, and a line per sampled setting with its effect on the IoU of each method.
+std::vector<std::vector<std::string>> effect_rows(const StudyTable& table) {
+  std::vector<std::vector<std::string>> rows = {{"total effect"}};
+  for (const StudyEffects& effects : table.effects) rows.front().push_back(effects.label);
+  for (std::size_t column = 0; column < table.effects.size(); ++column) {
+    const StudyEffects& effects = table.effects[column];
+    for (std::size_t i = 0; i < effects.settings.size(); ++i) {
+      auto row = std::ranges::find(rows, effects.settings[i],
+                                   [](const std::vector<std::string>& each) { return each[0]; });
+      if (row == rows.end()) {
+        row = rows.insert(row, std::vector<std::string>(rows.front().size(), ""));
+        row->front() = effects.settings[i];
+      }
+      (*row)[column + 1] = effect_text(effects.effects[i]);
+    }
+  }
+  return rows;
+}
+
 std::string remarks_text(const StudyTable& table) {
   std::string text =
       "+- is half of the 95 % interval of the mean over sequences, of one sequence over seeds\n";
   text += fmt::format("results in {}\n", table.out);
+  for (const StudyEffects& effects : table.effects) {
+    text += fmt::format(
+        "total effect on {}: the part of the IoU's variance that is left while all other sampled "
+        "settings are fixed, over {} points (Jansen; 95 % by bootstrap)\n",
+        effects.label, effects.points);
+  }
   if (table.critical_difference) {
     text += fmt::format(
         "Mean ranks over {} sequences, each by the mean IoU over all disturbances, differ at 5 % "
@@ -85,6 +118,19 @@ ordered_json to_json(const StudyMetrics& metrics) {
   return json;
 }
 
+ordered_json to_json(const StudyEffects& effects) {
+  ordered_json settings = ordered_json::array();
+  for (std::size_t i = 0; i < effects.settings.size(); ++i) {
+    ordered_json& one = settings.emplace_back(ordered_json{{"name", effects.settings[i]}});
+    const std::optional<TotalEffect>& effect = effects.effects[i];
+    one["total_effect"] = effect ? ordered_json(effect->index) : ordered_json(nullptr);
+    if (!effect) continue;
+    one["low"] = effect->interval.low;
+    one["high"] = effect->interval.high;
+  }
+  return {{"label", effects.label}, {"points", effects.points}, {"settings", settings}};
+}
+
 std::string latex_table(const std::vector<std::string>& head,
                         const std::vector<std::vector<std::string>>& rows) {
   std::string text =
@@ -92,6 +138,16 @@ std::string latex_table(const std::vector<std::string>& head,
   text += latex_row(head) + "\\hline\n";
   for (const auto& row : rows) text += latex_row(row);
   return text + "\\hline\n\\end{tabular}\n";
+}
+
+std::string effects_text(const StudyTable& table) {
+  const std::vector<std::vector<std::string>> rows = effect_rows(table);
+  std::vector<TextTable::Column> columns;
+  for (const std::string& title : rows.front()) columns.push_back({title});
+  columns.front().align = TextTable::kLeft;
+  TextTable text(columns);
+  for (std::size_t i = 1; i < rows.size(); ++i) text.add_row(rows[i]);
+  return text.str();
 }
 
 std::string cell_number(const PlannedCell& planned, const char* part, const char* what) {
@@ -118,6 +174,7 @@ std::string study_text(const StudyTable& table) {
     }
     text += "\n" + by_value.str();
   }
+  if (!table.effects.empty()) text += "\n" + effects_text(table);
   return text + "\n" + remarks_text(table);
 }
 
@@ -132,6 +189,12 @@ std::string study_latex(const StudyTable& table) {
     head.insert(head.end(), curve.values.begin(), curve.values.end());
     rows.clear();
     for (std::size_t i = 0; i < table.rows.size(); ++i) rows.push_back(cells_of(table, curve, i));
+    text += "\n" + latex_table(head, rows);
+  }
+  if (!table.effects.empty()) {
+    rows = effect_rows(table);
+    const std::vector<std::string> head = rows.front();
+    rows.erase(rows.begin());
     text += "\n" + latex_table(head, rows);
   }
   return text;
@@ -165,6 +228,7 @@ ordered_json to_json(const StudyTable& table) {
                        {"critical_difference", json_or_null(table.critical_difference)},
                        {"rows", ordered_json::array()},
                        {"curves", ordered_json::array()},
+                       {"effects", ordered_json::array()},
                        {"worst", ordered_json::array()},
                        {"failures", ordered_json::array()}};
   for (const StudyRow& row : table.rows) {
@@ -183,6 +247,9 @@ ordered_json to_json(const StudyTable& table) {
     }
     json["curves"].push_back(
         {{"axis", curve.axis}, {"unit", curve.unit}, {"values", curve.values}, {"lines", lines}});
+  }
+  for (const StudyEffects& effects : table.effects) {
+    json["effects"].push_back(to_json(effects));
   }
   for (const StudyWorst& scan : table.worst) {
     json["worst"].push_back({{"label", scan.label},

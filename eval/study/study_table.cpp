@@ -21,15 +21,6 @@ using nlohmann::ordered_json;
 /// Values by sequence, then by seed.
 using Samples = std::map<std::string, std::vector<std::optional<double>>>;
 
-std::string label_of(const StudyCell& cell) {
-  return cell.odometry.empty() ? cell.method->name
-                               : fmt::format("{} ({})", cell.method->name, cell.odometry);
-}
-
-std::string sequence_of(const StudyCell& cell) {
-  return fmt::format("{} {}", cell.data->name, cell.sequence);
-}
-
 std::optional<double> mean_of(const std::vector<std::optional<double>>& values) {
   double sum = 0;
   for (const auto& value : values) {
@@ -75,10 +66,10 @@ class DoneCells {
  public:
   explicit DoneCells(const StudyPlan& plan) {
     for (const PlannedCell& planned : plan.cells) {
-      std::string label = label_of(planned.cell);
+      std::string label = planned.cell.label();
       if (std::ranges::find(labels, label) == labels.end()) labels.push_back(label);
       if (planned.state != CellState::kDone) continue;
-      done.push_back({&planned, std::move(label), sequence_of(planned.cell)});
+      done.push_back({&planned, std::move(label), planned.cell.sequence_label()});
     }
   }
 
@@ -144,9 +135,9 @@ std::optional<std::vector<double>> scores_on(const StudyPlan& plan, const DoneCe
   std::vector<std::vector<std::optional<double>>> values(cells.labels.size());
   for (const PlannedCell& planned : plan.cells) {
     const StudyCell& cell = planned.cell;
-    if (sequence_of(cell) != sequence) continue;
+    if (cell.sequence_label() != sequence) continue;
     if (cell.axis != nullptr && cell.axis->kind == nullptr) continue;
-    const auto label = std::ranges::find(cells.labels, label_of(cell)) - cells.labels.begin();
+    const auto label = std::ranges::find(cells.labels, cell.label()) - cells.labels.begin();
     const bool done = planned.state == CellState::kDone;
     values[static_cast<std::size_t>(label)].push_back(
         done ? number_in(planned.record, "summary", "iou") : std::nullopt);
@@ -180,7 +171,7 @@ void rank(const StudyPlan& plan, const DoneCells& cells, StudyTable& table) {
   if (methods < 2) return;
   std::vector<std::string> sequences;
   for (const PlannedCell& planned : plan.cells) {
-    const std::string sequence = sequence_of(planned.cell);
+    const std::string sequence = planned.cell.sequence_label();
     if (std::ranges::find(sequences, sequence) == sequences.end()) sequences.push_back(sequence);
   }
   std::vector<double> sums(methods);
@@ -212,9 +203,7 @@ std::string command_for(const StudyPlan& plan, const StudyCell& cell) {
   if (plan.study->range) command += " --range " + shell_word(*plan.study->range);
   if (cell.method->preset) command += " --preset " + shell_word(*cell.method->preset);
   if (!cell.odometry.empty()) command += " --odometry " + shell_word(cell.odometry);
-  for (const auto& set : cell.identity.at("set")) {
-    command += " --set " + shell_word(set.get<std::string>());
-  }
+  for (const std::string& set : cell.assignments) command += " --set " + shell_word(set);
   const std::string runs = "results/runs/" + cell.key.substr(0, 12);
   return fmt::format("{} --out {} && mosbench report {} -o worst.html", command, runs, runs);
 }
@@ -277,7 +266,11 @@ StudyTable gather(const StudyPlan& plan) {
   for (const std::string& label : cells.labels) table.rows.push_back(row_of(cells, label));
   mark_front(table.rows);
   for (const StudyAxis& axis : plan.study->axes) {
-    table.curves.push_back(curve_of(cells, axis, table.rows));
+    if (axis.sampled.empty()) {
+      table.curves.push_back(curve_of(cells, axis, table.rows));
+    } else {
+      table.effects = effects_of(plan, axis);
+    }
   }
   rank(plan, cells, table);
   list_worst(plan, cells, table);

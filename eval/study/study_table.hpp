@@ -7,6 +7,7 @@
 
 #include "eval/statistics/intervals.hpp"
 #include "eval/study/study_plan.hpp"
+#include "eval/study/study_sampling.hpp"
 
 namespace mosbench {
 
@@ -57,6 +58,7 @@ struct StudyTable {
   bool simulated = false;  ///< any of its data
   std::vector<StudyRow> rows;
   std::vector<StudyCurve> curves;
+  std::vector<StudyEffects> effects;
   std::size_t ranked_sequences = 0;
   /// Two mean ranks that are farther apart differ at 5 % (Nemenyi; Demsar 2006, eq. 5 and table 5).
   std::optional<double> critical_difference;

@@ -268,6 +268,66 @@ TEST(StudyTable, SaysWhatIsMissingAndOfAnotherVersion) {
   EXPECT_EQ(work_of(again, {}).cells.size(), 3u);
 }
 
+std::string sampled_study() {
+  return without_disturbances() +
+         "sample:\n  points: 12\n  settings: {max_range_m: [5, 20], local_window_scans: [1, 3]}\n";
+}
+
+TEST(StudyFile, DrawsSettingsEvenlyBetweenLegalValues) {
+  const Study study = parse_study(sampled_study(), "s.yaml");
+  ASSERT_EQ(study.axes.size(), 1u);
+  const StudyAxis& axis = study.axes[0];
+  ASSERT_EQ(axis.values.size(), 12u * 3);
+  EXPECT_EQ(axis.values[4], "2 max_range_m");
+  std::set<std::string> windows;
+  double sum = 0;
+  for (std::size_t i = 0; i < axis.values.size(); i += 3) {
+    const auto& base = axis.assignments[i];
+    sum += std::stod(base[0].value) / 12;
+    EXPECT_GE(std::stod(base[0].value), 5);
+    EXPECT_LE(std::stod(base[0].value), 20);
+    windows.insert(base[1].value);
+    EXPECT_NE(axis.assignments[i + 1][0].value, base[0].value);
+    EXPECT_EQ(axis.assignments[i + 1][1].value, base[1].value);
+    EXPECT_EQ(axis.assignments[i + 2][0].value, base[0].value);
+  }
+  EXPECT_NEAR(sum, 12.5, 2.5);
+  EXPECT_EQ(windows, (std::set<std::string>{"1", "2", "3"}));
+  const auto error = [](const std::string& what, const std::string& by) {
+    return study_error(replaced_in(sampled_study(), what, by));
+  };
+  EXPECT_THAT(error("[5, 20]", "[20, 5]"), HasSubstr("expected LOWEST below HIGHEST"));
+  EXPECT_THAT(error("[5, 20]", "[5]"), StartsWith("s.yaml:11: max_range_m cannot be drawn"));
+  EXPECT_THAT(error("[5, 20]", "[5, many]"), StartsWith("s.yaml:11: "));
+  EXPECT_THAT(error("max_range_m: [5", "max_rang_m: [5"), HasSubstr("no method has a setting"));
+  EXPECT_THAT(error("points: 12", "points: 2"), StartsWith("s.yaml:10: "));
+}
+
+TEST(StudyTable, TellsHowMuchEachSampledSettingDecides) {
+  const TempFolder folder;
+  const Study study = parse_study(sampled_study(), "s.yaml");
+  const StudyPlan plan = plan_study(study, folder.path());
+  for (const PlannedCell& planned : plan.cells) {
+    if (planned.cell.axis == nullptr) continue;
+    const std::string& range = planned.cell.assignments[planned.cell.method->assignments.size()];
+    ASSERT_THAT(range, StartsWith("max_range_m="));
+    write_record(plan, planned.cell, std::stod(range.substr(12)) / 30, 1);
+  }
+  const StudyTable table = gather(plan_study(study, folder.path()));
+  ASSERT_EQ(table.effects.size(), 2u);
+  EXPECT_EQ(table.effects[0].points, 12u);
+  EXPECT_EQ(table.effects[0].settings,
+            (std::vector<std::string>{"max_range_m", "local_window_scans"}));
+  EXPECT_EQ(table.effects[0].effects[1]->index, 0);
+  EXPECT_LE(table.effects[0].effects[0]->interval.low, 1);
+  EXPECT_GE(table.effects[0].effects[0]->interval.high, 1);
+  EXPECT_EQ(table.effects[1].settings, std::vector<std::string>{"max_range_m"})
+      << "underwood has no windows";
+  EXPECT_THAT(study_text(table), HasSubstr("local_window_scans  0.00 (0.00 to 0.00)"));
+  EXPECT_THAT(study_latex(table), HasSubstr("total effect & hmm-mos & near"));
+  EXPECT_THAT(study_html(table), HasSubstr("\"effects\":[{\"label\":\"hmm-mos\",\"points\":12,"));
+}
+
 // A study of a field: its plan and its tables must not keep anyone waiting.
 TEST(StudyPlan, OfTenThousandCellsIsQuick) {
   const TempFolder folder;

@@ -63,6 +63,16 @@ function overview(study) {
   return table(['method', 'IoU', 'precision', 'recall', 'ms per scan', 'front', 'mean rank'], rows);
 }
 
+function effects(study) {
+  return (study.effects ?? []).flatMap(({ label, points, settings }) => {
+    const rows = [...settings].sort((a, b) => b.total_effect - a.total_effect).map(({ name, total_effect, low, high }) => [
+      name, fixed(total_effect, 2), total_effect === null ? '' : `${fixed(low, 2)} to ${fixed(high, 2)}`,
+    ]);
+    const note = `The part of the IoU's variance that is left while all other sampled settings are fixed, over ${points} points.`;
+    return [element('h2', {}, `Total effect of each setting on ${label}`), element('p', {}, note), table(['setting', 'total effect', '95 %'], rows)];
+  });
+}
+
 function remarks(study) {
   const lines = [];
   if (study.simulated) lines.push('Simulated data: not comparable with published numbers.');
@@ -94,7 +104,7 @@ function draw(study) {
   document.documentElement.dataset.theme = state.get('theme');
   document.body.append(element('main', {},
     element('h1', {}, `Study ${study.name}`), ...remarks(study), overview(study),
-    element('div', { class: 'charts' }, ...charts.map((chart) => chart.node)), ...worstScans(study)));
+    element('div', { class: 'charts' }, ...charts.map((chart) => chart.node)), ...effects(study), ...worstScans(study)));
 }
 
 if (globalThis.document?.getElementById('report')) draw(readContent());
