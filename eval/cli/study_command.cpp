@@ -9,6 +9,7 @@
 #include "eval/cli/dataset_flags.hpp"
 #include "eval/cli/output_file.hpp"
 #include "eval/results/answer_text.hpp"
+#include "eval/results/progress.hpp"
 #include "eval/results/tell.hpp"
 #include "eval/study/study_cell.hpp"
 #include "eval/study/study_run.hpp"
@@ -24,14 +25,15 @@ with a key: the hash of everything that decides its result. Its result is one sm
 DIR/cells, put there in one step.
 
   plan   counts the cells that are done and missing; --measure runs the first scans of each method
-         on each sequence, so that it can tell the hours; --json lists all cells with their keys
+         on each sequence, so that it can tell how long it takes; --json lists all cells with their keys
   run    computes what is missing by Snakemake, on this machine or with --profile slurm on a
          cluster, and prints the table; the same command goes on after a kill, and computes again
          what another version of mosbench left; --yes above 100 cells
   cell   computes the cells with these keys, without Snakemake
   table  prints what is there: means with 95 % intervals over sequences (of a single one over
-         seeds), each disturbance by strength, the Pareto front of IoU and time, ranks with critical
-         difference. The exit code is 1 while cells are missing or failed, which it names
+         seeds), paired differences to the best, each disturbance by strength, effects of sampled
+         settings, the Pareto front of IoU and time, ranks with critical difference. The exit code
+         is 1 while cells are missing or failed; it says why those failed
 
 Examples:
   mosbench study plan results/studies/demo.yaml --measure
@@ -64,16 +66,16 @@ std::string state_counts(const StudyPlan& plan) {
                      plan.cells.size(), done, missing, failed, other);
 }
 
-std::string hours_text(const StudyWork& work) {
+std::string work_text(const StudyWork& work) {
   if (work.cells.empty()) return "nothing is to be computed";
-  if (!work.hours) return "how long it takes is not known, --measure tells";
-  return fmt::format("{:.2f} hours of one core are to be computed", *work.hours);
+  if (!work.cpu_s) return "how long it takes is not known, --measure tells";
+  return fmt::format("{} of one core are to be computed", duration_text(*work.cpu_s));
 }
 
 nlohmann::ordered_json plan_json(const StudyPlan& plan, const CostModel& costs) {
   nlohmann::ordered_json json = {{"study", plan.study->name},
                                  {"out", plan.out.string()},
-                                 {"hours", json_or_null(work_of(plan, costs).hours)},
+                                 {"cpu_s", json_or_null(work_of(plan, costs).cpu_s)},
                                  {"cells", nlohmann::ordered_json::array()}};
   for (const PlannedCell& planned : plan.cells) {
     json["cells"].push_back({{"key", planned.cell.key},
@@ -89,7 +91,7 @@ Answer plan_answer(const StudyPlan& plan, const StudyFlags& flags) {
   const CostModel costs = read_costs(plan.out);
   if (flags.json) return {json_text(plan_json(plan, costs))};
   return {fmt::format("{}\n{}\nresults in {}\n", state_counts(plan),
-                      hours_text(work_of(plan, costs)), plan.out.string())};
+                      work_text(work_of(plan, costs)), plan.out.string())};
 }
 
 Answer cell_answer(const StudyPlan& plan, const StudyFlags& flags) {
@@ -138,10 +140,10 @@ Answer run_answer(const Study& study, const StudyPlan& plan, const StudyFlags& f
   if (pending > 0) measure_costs(plan);
   const CostModel costs = read_costs(plan.out);
   tell(state_counts(plan));
-  tell(hours_text(work_of(plan, costs)));
+  tell(work_text(work_of(plan, costs)));
   if (pending > kMostWithoutYes && !flags.yes) {
     throw UsageError(fmt::format("study run: {} cells are to be computed, and {}, expected --yes",
-                                 pending, hours_text(work_of(plan, costs))));
+                                 pending, work_text(work_of(plan, costs))));
   }
   std::error_code error;
   const auto program = std::filesystem::read_symlink("/proc/self/exe", error);

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "core/base/stage_clock.hpp"
 #include "datasets/files/errors.hpp"
 #include "datasets/files/files.hpp"
 #include "datasets/files/json_text.hpp"
@@ -102,6 +103,7 @@ ordered_json record_head(const StudyCell& cell) {
 ordered_json computed_record(const StudyCell& cell, const Study& study, const fs::path& out,
                              unsigned threads) {
   const auto begin = std::chrono::steady_clock::now();
+  const double begin_cpu_ms = process_cpu_ms();
   const RunPlan plan = plan_method(run_options(cell, study, out, threads));
   Sequence& sequence = *plan.dataset.sequences.front();
   if (plan.odometry) {
@@ -128,6 +130,7 @@ ordered_json computed_record(const StudyCell& cell, const Study& study, const fs
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   record["timing"] = {{"ms_per_scan", json_or_null(method_ms_per_scan(rows))},
                       {"wall_s", seconds},
+                      {"cpu_s", 1e-3 * (process_cpu_ms() - begin_cpu_ms)},
                       {"most_memory_mib", memory_mib},
                       {"threads", threads},
                       {"host", host_name()},

@@ -90,6 +90,7 @@ std::vector<StudyData> simulations_of(const std::string& name, const YamlNode& n
   for (const YamlNode& seed : seeds) {
     simulation.seed = seed.whole(0, UINT64_MAX);
     StudyData& one = data.emplace_back();
+    one.group = name;
     one.name = seeds.size() == 1 ? name : fmt::format("{}-{}", name, simulation.seed);
     one.simulation = simulation;
   }
@@ -106,8 +107,12 @@ std::vector<StudyData> data_of(const YamlNode& node, const fs::path& file) {
     }
     data = simulations_of(name, *simulate, file);
   } else {
-    data.front().name = name;
-    data.front().path = path_of(node.at("path"), file);
+    data.front().name = data.front().group = name;
+    const YamlNode path = node.at("path");
+    data.front().path = path_of(path, file);
+    if (!is_there(data.front().path)) {
+      path.refuse(fmt::format("{} is not there", data.front().path.string()), "a folder or file");
+    }
   }
   for (StudyData& one : data) {
     if (const auto dataset = node.find("dataset")) {

@@ -26,6 +26,7 @@ struct StudySimulation {
 /// Data on disk, or a simulation of them.
 struct StudyData {
   std::string name;
+  std::string group;  ///< the name without the seed of a simulation
   std::optional<StudySimulation> simulation;
   std::filesystem::path path;  ///< of data on disk
   std::string dataset = "auto";

@@ -213,6 +213,8 @@ std::string StudyCell::label() const {
 
 std::string StudyCell::sequence_label() const { return fmt::format("{} {}", data->name, sequence); }
 
+std::string StudyCell::group_label() const { return fmt::format("{} {}", data->group, sequence); }
+
 bool has_setting(const StudyMethod& method, const std::string& name) {
   return method_named(method.method).defaults.find(name) != nullptr;
 }

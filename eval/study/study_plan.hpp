@@ -31,8 +31,10 @@ struct StudyCell {
   std::optional<std::string> perturb() const;
   /// Returns "hmm-mos", or "hmm-mos (kiss)" with poses by odometry: its row in tables.
   std::string label() const;
-  /// Returns "street 08".
+  /// Returns "street-1 08".
   std::string sequence_label() const;
+  /// Returns "street 08": seeds of one scene are no more than one sequence to a mean.
+  std::string group_label() const;
   /// Returns "street 08, hmm-mos, pose_noise_m=0.05, seed 2".
   std::string title() const;
 };

@@ -6,6 +6,7 @@
 #include "eval/results/answer_text.hpp"
 #include "eval/results/csv.hpp"
 #include "eval/results/latex.hpp"
+#include "eval/results/progress.hpp"
 #include "eval/results/text_table.hpp"
 #include "eval/results/version.hpp"
 #include "eval/study/study_table.hpp"
@@ -27,12 +28,13 @@ std::string number_text(const std::optional<double>& value, const char* style) {
 }
 
 std::vector<std::string> titles() {
-  return {"method", "IoU %", "precision %", "recall %", "ms/scan", "front", "rank"};
+  return {"method", "IoU %", "to best", "precision %", "recall %", "ms/scan", "front", "rank"};
 }
 
 std::vector<std::string> cells_of(const StudyRow& row) {
   return {row.label,
           mean_text(row.metrics[0]),
+          row.to_best ? mean_text(*row.to_best) : "",
           mean_text(row.metrics[1]),
           mean_text(row.metrics[2]),
           number_text(row.ms_per_scan, "{:.1f}"),
@@ -77,7 +79,9 @@ std::vector<std::vector<std::string>> effect_rows(const StudyTable& table) {
 
 std::string remarks_text(const StudyTable& table) {
   std::string text =
-      "+- is half of the 95 % interval of the mean over sequences, of one sequence over seeds\n";
+      "+- is half of the 95 % interval of the mean over sequences, each the mean of its seeds, or "
+      "over the seeds of one; of fewer than three there is none. \"to best\" is the paired "
+      "difference of IoU.\n";
   text += fmt::format("results in {}\n", table.out);
   for (const StudyEffects& effects : table.effects) {
     text += fmt::format(
@@ -92,11 +96,12 @@ std::string remarks_text(const StudyTable& table) {
         table.ranked_sequences, *table.critical_difference);
   }
   if (table.simulated) text += "simulated data: not comparable with published numbers\n";
-  if (table.hours) {
-    text += fmt::format("{} of {} cells are done; they took {:.3f} hours", table.done, table.cells,
-                        *table.hours);
-    text += table.predicted_hours ? fmt::format(", {:.3f} were expected\n", *table.predicted_hours)
-                                  : "\n";
+  if (table.cpu_s) {
+    text += fmt::format("{} of {} cells are done; they took {} of CPU time", table.done,
+                        table.cells, duration_text(*table.cpu_s));
+    text += table.predicted_s
+                ? fmt::format(", {} were expected\n", duration_text(*table.predicted_s))
+                : "\n";
   }
   if (table.done < table.cells) {
     text += fmt::format("INCOMPLETE: {} cells are missing\n", table.cells - table.done);
@@ -105,16 +110,18 @@ std::string remarks_text(const StudyTable& table) {
   return text;
 }
 
+ordered_json to_json(const StudyMean& mean) {
+  ordered_json json = {{"value", json_or_null(mean.value)}, {"count", mean.count}};
+  if (mean.interval) {
+    json["low"] = mean.interval->low;
+    json["high"] = mean.interval->high;
+  }
+  return json;
+}
+
 ordered_json to_json(const StudyMetrics& metrics) {
   ordered_json json;
-  for (std::size_t i = 0; i < metrics.size(); ++i) {
-    ordered_json& one = json[kStudyMetrics[i]];
-    one = {{"value", json_or_null(metrics[i].value)}, {"count", metrics[i].count}};
-    if (metrics[i].interval) {
-      one["low"] = metrics[i].interval->low;
-      one["high"] = metrics[i].interval->high;
-    }
-  }
+  for (std::size_t i = 0; i < metrics.size(); ++i) json[kStudyMetrics[i]] = to_json(metrics[i]);
   return json;
 }
 
@@ -222,8 +229,8 @@ ordered_json to_json(const StudyTable& table) {
                        {"simulated", table.simulated},
                        {"cells", table.cells},
                        {"done", table.done},
-                       {"hours", json_or_null(table.hours)},
-                       {"predicted_hours", json_or_null(table.predicted_hours)},
+                       {"cpu_s", json_or_null(table.cpu_s)},
+                       {"predicted_cpu_s", json_or_null(table.predicted_s)},
                        {"ranked_sequences", table.ranked_sequences},
                        {"critical_difference", json_or_null(table.critical_difference)},
                        {"rows", ordered_json::array()},
@@ -232,11 +239,13 @@ ordered_json to_json(const StudyTable& table) {
                        {"worst", ordered_json::array()},
                        {"failures", ordered_json::array()}};
   for (const StudyRow& row : table.rows) {
-    json["rows"].push_back({{"label", row.label},
-                            {"metrics", to_json(row.metrics)},
-                            {"ms_per_scan", json_or_null(row.ms_per_scan)},
-                            {"front", row.is_on_front},
-                            {"rank", json_or_null(row.rank)}});
+    json["rows"].push_back(
+        {{"label", row.label},
+         {"metrics", to_json(row.metrics)},
+         {"to_best", row.to_best ? to_json(*row.to_best) : ordered_json(nullptr)},
+         {"ms_per_scan", json_or_null(row.ms_per_scan)},
+         {"front", row.is_on_front},
+         {"rank", json_or_null(row.rank)}});
   }
   for (const StudyCurve& curve : table.curves) {
     ordered_json lines = ordered_json::array();

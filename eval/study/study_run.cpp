@@ -114,7 +114,7 @@ StudyWork work_of(const StudyPlan& plan, const CostModel& costs) {
     known = known && expected_s.has_value();
     seconds += expected_s.value_or(0);
   }
-  if (known) work.hours = seconds / 3600;
+  if (known) work.cpu_s = seconds;
   return work;
 }
 
@@ -127,7 +127,7 @@ int run_engine(const StudyPlan& plan, const CostModel& costs, const EngineOption
     if (made.insert(planned->cell.data).second) made_data(plan.out, *planned->cell.data);
   }
   const bool local = options.profile == "local";
-  const double even_s = work.hours.value_or(0) * 3600 / 64;  // so that cores end together
+  const double even_s = work.cpu_s.value_or(0) / 64;  // so that cores end together
   const auto groups = groups_of(work, costs, local ? std::min(kGroup_s, even_s) : kGroup_s);
   ordered_json json = {{"program", options.program.string()},
                        {"study", fs::absolute(plan.study->file).string()},

@@ -10,7 +10,7 @@ namespace mosbench {
 /// What is to be computed, and what it is expected to take.
 struct StudyWork {
   std::vector<const PlannedCell*> cells;  ///< that are not done
-  std::optional<double> hours;            ///< of one core; nothing where a cost is not known
+  std::optional<double> cpu_s;            ///< of one core; nothing where a cost is not known
 };
 StudyWork work_of(const StudyPlan& plan, const CostModel& costs);
 

@@ -18,8 +18,8 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// Values by sequence, then by seed.
-using Samples = std::map<std::string, std::vector<std::optional<double>>>;
+/// Values by sequence, then by what differs in seeds alone.
+using Samples = std::map<std::string, std::map<std::string, std::optional<double>>>;
 
 std::optional<double> mean_of(const std::vector<std::optional<double>>& values) {
   double sum = 0;
@@ -31,25 +31,48 @@ std::optional<double> mean_of(const std::vector<std::optional<double>>& values) 
   return sum / static_cast<double>(values.size());
 }
 
-StudyMean study_mean(const Samples& samples) {
+std::vector<std::optional<double>> values_of(
+    const std::map<std::string, std::optional<double>>& seeds) {
+  std::vector<std::optional<double>> values;
+  for (const auto& [seed, value] : seeds) values.push_back(value);
+  return values;
+}
+
+StudyMean study_mean(const Samples& samples, const Interval& within = {0, 1}) {
+  constexpr std::size_t kFewest = 3;  // of two, Student's t spans more than there is
   std::vector<std::optional<double>> values;
   if (samples.size() == 1) {
-    values = samples.begin()->second;
+    values = values_of(samples.begin()->second);
   } else {
-    for (const auto& [sequence, of_seeds] : samples) values.push_back(mean_of(of_seeds));
+    for (const auto& [sequence, seeds] : samples) values.push_back(mean_of(values_of(seeds)));
   }
   StudyMean mean;
   mean.value = mean_of(values);
   mean.count = values.size();
-  if (!mean.value || values.size() < 2) return mean;
+  if (!mean.value || values.size() < kFewest) return mean;
   const double count = static_cast<double>(values.size());
   double squares = 0;
   for (const auto& value : values) squares += (*value - *mean.value) * (*value - *mean.value);
   mean.half_width = student_quantile(1 - (1 - kConfidence) / 2, count - 1) *
                     std::sqrt(squares / (count - 1) / count);
-  mean.interval = Interval{std::max(0.0, *mean.value - mean.half_width),
-                           std::min(1.0, *mean.value + mean.half_width)};
+  mean.interval = Interval{std::max(within.low, *mean.value - mean.half_width),
+                           std::min(within.high, *mean.value + mean.half_width)};
   return mean;
+}
+
+/// First minus second, where both are.
+Samples differences(const Samples& first, const Samples& second) {
+  Samples paired;
+  for (const auto& [sequence, seeds] : first) {
+    for (const auto& [seed, value] : seeds) {
+      const auto others = second.find(sequence);
+      if (others == second.end()) continue;
+      const auto other = others->second.find(seed);
+      if (other == others->second.end() || !value || !other->second) continue;
+      paired[sequence][seed] = *value - *other->second;
+    }
+  }
+  return paired;
 }
 
 /// A computed cell, with the names under which a table gathers it.
@@ -69,21 +92,27 @@ class DoneCells {
       std::string label = planned.cell.label();
       if (std::ranges::find(labels, label) == labels.end()) labels.push_back(label);
       if (planned.state != CellState::kDone) continue;
-      done.push_back({&planned, std::move(label), planned.cell.sequence_label()});
+      done.push_back({&planned, std::move(label), planned.cell.group_label()});
     }
   }
 
   template <typename Wanted>
-  StudyMetrics metrics(Wanted&& wanted) const {
-    std::array<Samples, kStudyMetrics.size()> samples;
+  Samples samples(const char* metric, Wanted&& wanted) const {
+    Samples samples;
     for (const DoneCell& each : done) {
       if (!wanted(each)) continue;
-      for (std::size_t i = 0; i < samples.size(); ++i) {
-        samples[i][each.sequence].push_back(number_in(each.record(), "summary", kStudyMetrics[i]));
-      }
+      const std::string seed = fmt::format("{} {}", each.cell().data->name, each.cell().seed);
+      samples[each.sequence][seed] = number_in(each.record(), "summary", metric);
     }
+    return samples;
+  }
+
+  template <typename Wanted>
+  StudyMetrics metrics(Wanted&& wanted) const {
     StudyMetrics metrics;
-    std::ranges::transform(samples, metrics.begin(), study_mean);
+    for (std::size_t i = 0; i < metrics.size(); ++i) {
+      metrics[i] = study_mean(samples(kStudyMetrics[i], wanted));
+    }
     return metrics;
   }
 
@@ -91,15 +120,36 @@ class DoneCells {
   std::vector<DoneCell> done;
 };
 
+/// Whether a cell is of this row, without any disturbance.
+auto is_plain_of(const std::string& label) {
+  return
+      [label](const DoneCell& each) { return each.cell().axis == nullptr && each.label == label; };
+}
+
 StudyRow row_of(const DoneCells& cells, const std::string& label) {
-  const auto is_plain = [&](const DoneCell& each) {
-    return each.cell().axis == nullptr && each.label == label;
-  };
+  const auto is_plain = is_plain_of(label);
   std::vector<std::optional<double>> ms;
   for (const DoneCell& each : cells.done) {
     if (is_plain(each)) ms.push_back(number_in(each.record(), "timing", "ms_per_scan"));
   }
-  return {label, cells.metrics(is_plain), mean_of(ms), false, std::nullopt};
+  StudyRow row;
+  row.label = label;
+  row.metrics = cells.metrics(is_plain);
+  row.ms_per_scan = mean_of(ms);
+  return row;
+}
+
+/// Compares all rows with the best on the sequences that both have.
+void compare_with_best(const DoneCells& cells, std::vector<StudyRow>& rows) {
+  const auto iou = [](const StudyRow& row) { return row.metrics[0].value.value_or(-1); };
+  const auto best = std::ranges::max_element(rows, {}, iou);
+  if (best == rows.end() || !best->metrics[0].value) return;
+  const Samples of_best = cells.samples(kStudyMetrics[0], is_plain_of(best->label));
+  for (StudyRow& row : rows) {
+    if (row.label == best->label) continue;
+    const Samples of_row = cells.samples(kStudyMetrics[0], is_plain_of(row.label));
+    row.to_best = study_mean(differences(of_row, of_best), {-1, 1});
+  }
 }
 
 void mark_front(std::vector<StudyRow>& rows) {
@@ -135,7 +185,7 @@ std::optional<std::vector<double>> scores_on(const StudyPlan& plan, const DoneCe
   std::vector<std::vector<std::optional<double>>> values(cells.labels.size());
   for (const PlannedCell& planned : plan.cells) {
     const StudyCell& cell = planned.cell;
-    if (cell.sequence_label() != sequence) continue;
+    if (cell.group_label() != sequence) continue;
     if (cell.axis != nullptr && cell.axis->kind == nullptr) continue;
     const auto label = std::ranges::find(cells.labels, cell.label()) - cells.labels.begin();
     const bool done = planned.state == CellState::kDone;
@@ -171,7 +221,7 @@ void rank(const StudyPlan& plan, const DoneCells& cells, StudyTable& table) {
   if (methods < 2) return;
   std::vector<std::string> sequences;
   for (const PlannedCell& planned : plan.cells) {
-    const std::string sequence = planned.cell.sequence_label();
+    const std::string sequence = planned.cell.group_label();
     if (std::ranges::find(sequences, sequence) == sequences.end()) sequences.push_back(sequence);
   }
   std::vector<double> sums(methods);
@@ -214,16 +264,16 @@ struct BadScan {
   const StudyCell* cell = nullptr;
 };
 
-/// The worst scans of each label, of any cell.
+/// The worst scan of the worst cells of each label.
 void list_worst(const StudyPlan& plan, const DoneCells& cells, StudyTable& table) {
   constexpr std::size_t kOfEach = 3;
   for (const std::string& label : cells.labels) {
     std::vector<BadScan> worst;
     for (const DoneCell& each : cells.done) {
       if (each.label != label || !each.record().contains("worst")) continue;
-      for (const ordered_json& scan : each.record().at("worst")) {
-        worst.push_back({scan.value("iou", 0.0), scan.value("stem", ""), &each.cell()});
-      }
+      const ordered_json& scans = each.record().at("worst");
+      if (scans.empty()) continue;
+      worst.push_back({scans[0].value("iou", 0.0), scans[0].value("stem", ""), &each.cell()});
     }
     std::ranges::stable_sort(worst, {}, &BadScan::iou);
     worst.resize(std::min(worst.size(), kOfEach));
@@ -236,7 +286,7 @@ void list_worst(const StudyPlan& plan, const DoneCells& cells, StudyTable& table
 
 void count_cells(const StudyPlan& plan, StudyTable& table) {
   const CostModel costs = read_costs(plan.out);
-  double seconds = 0, predicted_s = 0;
+  double cpu_s = 0, predicted_s = 0;
   bool all_predicted = true;
   for (const PlannedCell& planned : plan.cells) {
     ++table.cells;
@@ -246,14 +296,14 @@ void count_cells(const StudyPlan& plan, StudyTable& table) {
     if (planned.state != CellState::kDone) continue;
     ++table.done;
     table.simulated = table.simulated || planned.record.value("simulated", false);
-    seconds += number_in(planned.record, "timing", "wall_s").value_or(0);
+    cpu_s += number_in(planned.record, "timing", "cpu_s").value_or(0);
     const auto expected_s = costs.seconds(planned.cell);
     all_predicted = all_predicted && expected_s.has_value();
     predicted_s += expected_s.value_or(0);
   }
   if (table.done == 0) return;
-  table.hours = seconds / 3600;
-  if (all_predicted) table.predicted_hours = predicted_s / 3600;
+  table.cpu_s = cpu_s;
+  if (all_predicted) table.predicted_s = predicted_s;
 }
 
 }  // namespace
@@ -265,6 +315,7 @@ StudyTable gather(const StudyPlan& plan) {
   const DoneCells cells(plan);
   for (const std::string& label : cells.labels) table.rows.push_back(row_of(cells, label));
   mark_front(table.rows);
+  compare_with_best(cells, table.rows);
   for (const StudyAxis& axis : plan.study->axes) {
     if (axis.sampled.empty()) {
       table.curves.push_back(curve_of(cells, axis, table.rows));

@@ -11,11 +11,11 @@
 
 namespace mosbench {
 
-/// Mean of a metric over the sequences of a study, each the mean of its seeds; with a single
-/// sequence, over seeds.
+/// Mean of a metric over the sequences of a study, each the mean of its seeds, also of those of its
+/// simulation; with a single sequence, over seeds.
 struct StudyMean {
   std::optional<double> value;       ///< fraction; nothing without cells, or where one is undefined
-  std::optional<Interval> interval;  ///< 95 %, Student's t, cut to 0 and 1; nothing below two
+  std::optional<Interval> interval;  ///< 95 %, Student's t, cut to 0 and 1; nothing below three
   double half_width = 0;             ///< of the interval before it was cut
   std::size_t count = 0;             ///< sequences, or seeds of the single one
 };
@@ -28,6 +28,7 @@ inline constexpr std::array<const char*, 3> kStudyMetrics = {"iou", "precision",
 struct StudyRow {
   std::string label;
   StudyMetrics metrics;
+  std::optional<StudyMean> to_best;  ///< IoU minus that of the best row, paired; not of that row
   std::optional<double> ms_per_scan;
   bool is_on_front = false;    ///< none is as good and as fast, and better in one
   std::optional<double> rank;  ///< mean over sequences of its place, 1 the best
@@ -65,8 +66,8 @@ struct StudyTable {
   std::vector<StudyWorst> worst;
   std::vector<StudyGap> failures;
   std::size_t cells = 0, done = 0;
-  std::optional<double> hours,
-      predicted_hours;  ///< of what is done, and what costs.json said of it
+  /// CPU time of what is done, and what costs.json said of it.
+  std::optional<double> cpu_s, predicted_s;
 };
 
 /// Gathers what lies there.

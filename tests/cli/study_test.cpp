@@ -157,10 +157,10 @@ TEST_F(Studies, ComputeAgainWhatAnotherVersionLeft) {
 
 TEST_F(Studies, TellTheHoursOnceTheyAreMeasured) {
   EXPECT_THAT(study("plan").out, HasSubstr("--measure tells"));
-  EXPECT_THAT(study("plan", {"--measure"}).out, HasSubstr("hours of one core"));
+  EXPECT_THAT(study("plan", {"--measure"}).out, HasSubstr("of one core are to be computed"));
   const std::string text = read_file(folder_ / "s.yaml");
   folder_.write("s.yaml", text + "odometry: [none]\nvary: {setting: max_range_m, values: [9]}\n");
-  EXPECT_THAT(study("plan").out, HasSubstr("hours of one core"));
+  EXPECT_THAT(study("plan").out, HasSubstr("of one core are to be computed"));
   cli::write_small_sequence(folder_.path() / "data/sequences/01", 12);
   EXPECT_THAT(study("plan").out, HasSubstr("--measure tells"));
 }

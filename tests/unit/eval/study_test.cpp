@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 #include <set>
 
 #include "datasets/files/errors.hpp"
@@ -178,7 +179,7 @@ void write_record(const StudyPlan& plan, const StudyCell& cell, double iou, doub
                                {"simulated", true},
                                {"summary", {{"iou", iou}, {"precision", 0.5}, {"recall", nullptr}}},
                                {"worst", {{{"stem", "000003"}, {"iou", iou / 2}}}},
-                               {"timing", {{"ms_per_scan", ms}, {"wall_s", 36.0}}}};
+                               {"timing", {{"ms_per_scan", ms}, {"cpu_s", 36.0}}}};
   write_shared(record_file(plan.out, cell.key), json_text(record));
 }
 
@@ -187,34 +188,51 @@ std::string without_disturbances() {
   return text.substr(0, text.find("disturb:"));
 }
 
+/// The two methods on three scenes.
+std::string three_scenes() {
+  std::string scenes;
+  for (const char* scene : {"room", "mall", "street"}) {
+    scenes += fmt::format(
+        "  - name: {0}\n    simulate: {{layout: semantickitti, scene: {0}, scans: 6, seed: 1}}\n",
+        scene);
+  }
+  const std::string text = without_disturbances();
+  return text.substr(0, text.find("  - name: room")) + scenes + text.substr(text.find("methods:"));
+}
+
 TEST(StudyTable, HasMeansRanksAndTheParetoFront) {
   const TempFolder folder;
-  const Study study = parse_study(
-      replaced_in(without_disturbances(), "- hmm-mos", "- hmm-mos\n  - yoon"), "s.yaml");
+  const Study study =
+      parse_study(replaced_in(three_scenes(), "- hmm-mos", "- hmm-mos\n  - yoon"), "s.yaml");
   const StudyPlan plan = plan_study(study, folder.path());
-  ASSERT_EQ(plan.cells.size(), 6u);
-  const double ious[] = {0.8, 0.6, 0.4, 0.6, 0.6, 0.2};  // hmm-mos, yoon, near on two sequences
-  for (std::size_t i = 0; i < 6; ++i)
+  ASSERT_EQ(plan.cells.size(), 9u);
+  // hmm-mos, yoon, near on three sequences
+  const double ious[] = {0.8, 0.6, 0.4, 0.6, 0.6, 0.2, 0.7, 0.6, 0.3};
+  for (std::size_t i = 0; i < 9; ++i)
     write_record(plan, plan.cells[i].cell, ious[i], i % 3 ? 40 : 20);
   const StudyTable table = gather(plan_study(study, folder.path()));
   ASSERT_EQ(table.rows.size(), 3u);
   const StudyMean& mean = table.rows[0].metrics[0];
   EXPECT_NEAR(*mean.value, 0.7, 1e-12);
-  // t of one degree of freedom at 97.5 % is 12.706; the standard error is 0.1.
-  EXPECT_EQ(mean.interval->high, 1.0);
-  EXPECT_EQ(mean.interval->low, 0.0);
-  EXPECT_EQ(*table.rows[0].rank, 1.25);  // first, and first beside the second
-  EXPECT_EQ(*table.rows[1].rank, 1.75);
+  // t of two degrees of freedom at 97.5 % is 4.3027; the standard error is 0.1 / sqrt(3).
+  EXPECT_NEAR(mean.half_width, 4.3027 * 0.1 / std::sqrt(3.0), 1e-5);
+  EXPECT_NEAR(mean.interval->low, 0.7 - mean.half_width, 1e-12);
+  EXPECT_FALSE(table.rows[0].to_best) << "it is the best";
+  EXPECT_NEAR(*table.rows[2].to_best->value, -0.4, 1e-12);
+  EXPECT_NEAR(table.rows[2].to_best->half_width, 0, 1e-7) << "0.4 less on each";
+  EXPECT_NEAR(table.rows[1].to_best->half_width, 4.3027 * 0.1 / std::sqrt(3.0), 1e-5);
+  EXPECT_NEAR(*table.rows[0].rank, (1 + 1.5 + 1) / 3, 1e-12);  // first, first beside the second
+  EXPECT_NEAR(*table.rows[1].rank, (2 + 1.5 + 2) / 3, 1e-12);
   EXPECT_EQ(*table.rows[2].rank, 3);
-  EXPECT_NEAR(*table.critical_difference, 2.343 * std::sqrt(3.0 * 4 / (6 * 2)), 1e-12);
+  EXPECT_NEAR(*table.critical_difference, 2.343 * std::sqrt(3.0 * 4 / (6 * 3)), 1e-12);
   EXPECT_TRUE(table.rows[0].is_on_front);
   EXPECT_FALSE(table.rows[1].is_on_front);
   EXPECT_FALSE(table.rows[0].metrics[2].value);
-  EXPECT_NEAR(*table.hours, 6 * 36.0 / 3600, 1e-12);
+  EXPECT_NEAR(*table.cpu_s, 9 * 36.0, 1e-12);
   EXPECT_TRUE(table.simulated);
   EXPECT_EQ(table.worst.front().iou, 0.3);
-  EXPECT_THAT(study_text(table), AllOf(HasSubstr("simulated data"), HasSubstr("70.0 +- 127.1")));
-  EXPECT_THAT(study_latex(table), HasSubstr("\\begin{tabular}{lrrrrrr}"));
+  EXPECT_THAT(study_text(table), AllOf(HasSubstr("simulated data"), HasSubstr("70.0 +- 24.8")));
+  EXPECT_THAT(study_latex(table), HasSubstr("\\begin{tabular}{lrrrrrrr}"));
   EXPECT_THAT(study_latex(table), testing::Not(HasSubstr("\n\n\\hline"))) << "does not compile";
   EXPECT_THAT(study_html(table), HasSubstr("\"name\":\"small\""));
 }
@@ -236,17 +254,21 @@ TEST(StudyTable, TellsTheCommandOfAWorstScanWithAllThatTheStudySays) {
 TEST(StudyTable, AveragesSeedsBeforeSequences) {
   const TempFolder folder;
   const Study study = parse_study(
-      replaced_in(kSmallStudy, "  - {name: near, method: underwood, set: {max_range_m: 15}}\n", ""),
+      replaced_in(
+          kSmallStudy,
+          "methods:\n  - hmm-mos\n  - {name: near, method: underwood, set: {max_range_m: 15}}\n",
+          "  - name: mall\n    simulate: {layout: semantickitti, scene: mall, scans: 6, seed: 1}\n"
+          "methods: hmm-mos\n"),
       "s.yaml");
   const StudyPlan plan = plan_study(study, folder.path());
+  const std::map<std::string, double> ious = {{"room-1", 0.2}, {"room-2", 0.4}, {"mall", 0.7}};
   for (const PlannedCell& planned : plan.cells) {
-    const bool first = planned.cell.data->name == "room-1";
     const double seed = static_cast<double>(planned.cell.seed);
-    write_record(plan, planned.cell, (first ? 0.4 : 0.6) + 0.01 * seed, 1);
+    write_record(plan, planned.cell, ious.at(planned.cell.data->name) + 0.01 * seed, 1);
   }
   const StudyTable table = gather(plan_study(study, folder.path()));
   const StudyMean& mean = table.curves[0].metrics[0][2][0];
-  EXPECT_EQ(mean.count, 2u);
+  EXPECT_EQ(mean.count, 2u) << "seeds of one scene are one sequence";
   EXPECT_NEAR(*mean.value, 0.52, 1e-12);
   EXPECT_EQ(table.curves[0].values, (std::vector<std::string>{"none", "0", "0.05", "0.1"}));
 }

@@ -50,17 +50,20 @@ export function paretoChart(rows) {
       ...row.line, points: { show: true, size: 10 },
     })),
     options: {
-      text: percent, xLabel: 'ms per scan', xScale: { distr: 3 }, yScale: { range: [0, 1.02] }, yAxis: { values: PERCENT_TICKS },
-      xValue: (_, v) => fixed(v, 1), xAxis: { values: (_, ticks) => ticks.map((tick) => (tick === null ? '' : String(tick))) },
+      text: percent, xLabel: 'ms per scan', xScale: { distr: 3, range: [sorted[0].ms_per_scan / 1.5, sorted.at(-1).ms_per_scan * 1.5] }, yScale: { range: [0, 1.02] }, yAxis: { values: PERCENT_TICKS },
+      xValue: (_, v) => fixed(v, 1), xAxis: {
+        filter: (_, ticks) => ticks.map((tick) => (/^[125]/.test(tick.toExponential(0)) ? tick : null)),
+        values: (_, ticks) => ticks.map((tick) => (tick === null ? '' : String(tick))),
+      },
     },
   };
 }
 
 function overview(study) {
-  const rows = study.rows.map(({ label, metrics, ms_per_scan, front, rank }) => [
-    label, meanText(metrics.iou), meanText(metrics.precision), meanText(metrics.recall), fixed(ms_per_scan, 1), front ? '*' : '', fixed(rank, 2),
+  const rows = study.rows.map(({ label, metrics, to_best, ms_per_scan, front, rank }) => [
+    label, meanText(metrics.iou), to_best ? meanText(to_best) : '', meanText(metrics.precision), meanText(metrics.recall), fixed(ms_per_scan, 1), front ? '*' : '', fixed(rank, 2),
   ]);
-  return table(['method', 'IoU', 'precision', 'recall', 'ms per scan', 'front', 'mean rank'], rows);
+  return table(['method', 'IoU', 'to the best', 'precision', 'recall', 'ms per scan', 'front', 'mean rank'], rows);
 }
 
 function effects(study) {
@@ -69,7 +72,7 @@ function effects(study) {
       name, fixed(total_effect, 2), total_effect === null ? '' : `${fixed(low, 2)} to ${fixed(high, 2)}`,
     ]);
     const note = `The part of the IoU's variance that is left while all other sampled settings are fixed, over ${points} points.`;
-    return [element('h2', {}, `Total effect of each setting on ${label}`), element('p', {}, note), table(['setting', 'total effect', '95 %'], rows)];
+    return [element('h2', {}, `Total effect of each setting on ${label}`), element('div', { class: 'block' }, element('p', {}, note), table(['setting', 'total effect', '95 %'], rows))];
   });
 }
 
@@ -79,7 +82,7 @@ function remarks(study) {
   if (study.critical_difference !== null) {
     lines.push(`Mean ranks over ${study.ranked_sequences} sequences differ at 5 % where they are more than ${study.critical_difference.toFixed(2)} apart (Nemenyi).`);
   }
-  lines.push(`${study.done} of ${study.cells} cells are done.`);
+  if (study.done < study.cells) lines.push(`${study.cells - study.done} of ${study.cells} cells are missing.`);
   for (const { cell, why } of study.failures) lines.push(`Failed: ${cell}: ${why}`);
   return lines.map((line) => element('p', { class: 'notice' }, line));
 }
@@ -92,7 +95,7 @@ function worstScans(study) {
     label, element('a', { href: `#${commands.get(command).id}` }, cell), stem, percent(iou),
   ]);
   const shown = [...commands].map(([command, { cell, id }]) => element('div', { class: 'block', id }, element('p', {}, cell), element('pre', {}, command)));
-  return [element('h2', {}, 'Worst scans'), table(['method', 'cell', 'scan', 'IoU'], rows, { leftColumns: 3 }), ...shown];
+  return [element('h2', {}, 'Worst scans'), element('div', { class: 'block' }, table(['method', 'cell', 'scan', 'IoU'], rows, { leftColumns: 3 })), ...shown];
 }
 
 function draw(study) {
@@ -103,7 +106,7 @@ function draw(study) {
   const charts = specs.filter((spec) => spec !== null).map((spec) => new Chart(state, spec));
   document.documentElement.dataset.theme = state.get('theme');
   document.body.append(element('main', {},
-    element('h1', {}, `Study ${study.name}`), ...remarks(study), overview(study),
+    element('h1', {}, `Study ${study.name}`), ...remarks(study), element('div', { class: 'block' }, overview(study)),
     element('div', { class: 'charts' }, ...charts.map((chart) => chart.node)), ...effects(study), ...worstScans(study)));
 }
 
