@@ -13,11 +13,19 @@
 namespace mosbench {
 
 std::span<const MethodKind> methods() {
+  // clang-format off
   static const std::vector<MethodKind> kMethods = {
-      hmm_mos::method_kind(),  hmm_mos::reference_kind(),    hmm_mos_plus::method_kind(),
-      dynablox::method_kind(), lc_free_space::method_kind(), underwood::method_kind(),
-      dufomap::method_kind(),  octomap::method_kind(),       yoon::method_kind(),
+      hmm_mos::method_kind(),
+      hmm_mos::reference_kind(),
+      hmm_mos_plus::method_kind(),
+      dynablox::method_kind(),
+      lc_free_space::method_kind(),
+      underwood::method_kind(),
+      dufomap::method_kind(),
+      octomap::method_kind(),
+      yoon::method_kind(),
   };
+  // clang-format on
   return kMethods;
 }
 

@@ -7,16 +7,16 @@
 namespace mosbench::dufomap {
 
 MethodKind method_kind() {
-  return {"dufomap",
-          "DUFOMap",
-          "Duberg, Zhang, Jia, Jensfelt: DUFOMap: Efficient Dynamic Awareness Mapping, IEEE "
-          "Robotics and Automation Letters 2024, arXiv:2403.01449",
-          "points in space that some scan saw to be void, on a map of one bit per voxel",
-          settings_of(Config{}),
-          check_settings<Config>,
-          make_method<Pipeline, Config>,
-          false,
-          "seen void"};
+  return {.name = "dufomap",
+          .title = "DUFOMap",
+          .source =
+              "Duberg, Zhang, Jia, Jensfelt: DUFOMap: Efficient Dynamic Awareness Mapping, IEEE "
+              "Robotics and Automation Letters 2024, arXiv:2403.01449",
+          .summary = "points in space that some scan saw to be void, on a map of one bit per voxel",
+          .defaults = settings_of(Config{}),
+          .check = check_settings<Config>,
+          .make = make_method<Pipeline, Config>,
+          .score_name = "seen void"};
 }
 
 }  // namespace mosbench::dufomap

@@ -21,29 +21,30 @@ std::unique_ptr<Method> make_slow(const Settings& settings, const RunContext& co
 }  // namespace
 
 MethodKind method_kind() {
-  return {"hmm-mos",
-          "HMM-MOS",
-          kSource,
-          "a three-state hidden Markov model per voxel, changes convolved over space and time",
-          settings_of(Config{}),
-          check_settings<Config>,
-          make_method<Pipeline, Config>,
-          false,
-          kScoreName,
-          kThresholdName};
+  return {.name = "hmm-mos",
+          .title = "HMM-MOS",
+          .source = kSource,
+          .summary =
+              "a three-state hidden Markov model per voxel, changes convolved over space and time",
+          .defaults = settings_of(Config{}),
+          .check = check_settings<Config>,
+          .make = make_method<Pipeline, Config>,
+          .score_name = kScoreName,
+          .threshold_name = kThresholdName};
 }
 
 MethodKind reference_kind() {
-  return {"hmm-mos-reference",
-          "HMM-MOS (reference)",
-          kSource,
-          "the same labels, step by step as in the paper; up to thousands of times slower",
-          settings_of(Config{}),
-          check_settings<Config>,
-          make_slow,
-          true,
-          kScoreName,
-          kThresholdName};
+  return {
+      .name = "hmm-mos-reference",
+      .title = "HMM-MOS (reference)",
+      .source = kSource,
+      .summary = "the same labels, step by step as in the paper; up to thousands of times slower",
+      .defaults = settings_of(Config{}),
+      .check = check_settings<Config>,
+      .make = make_slow,
+      .is_twin = true,
+      .score_name = kScoreName,
+      .threshold_name = kThresholdName};
 }
 
 }  // namespace mosbench::hmm_mos

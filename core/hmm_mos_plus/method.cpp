@@ -7,16 +7,15 @@
 namespace mosbench::hmm_mos_plus {
 
 MethodKind method_kind() {
-  return {"hmm-mos-plus",
-          "HMM-MOS plus",
-          "mosbench, core/hmm_mos_plus/README.md",
-          "objects that arrive in space known to be free, on the map of hmm-mos",
-          settings_of(Config{}),
-          check_settings<Config>,
-          make_method<Pipeline, Config>,
-          false,
-          "share of seeds",
-          "least share of seeds"};
+  return {.name = "hmm-mos-plus",
+          .title = "HMM-MOS plus",
+          .source = "mosbench, core/hmm_mos_plus/README.md",
+          .summary = "objects that arrive in space known to be free, on the map of hmm-mos",
+          .defaults = settings_of(Config{}),
+          .check = check_settings<Config>,
+          .make = make_method<Pipeline, Config>,
+          .score_name = "share of seeds",
+          .threshold_name = "least share of seeds"};
 }
 
 }  // namespace mosbench::hmm_mos_plus

@@ -7,17 +7,17 @@
 namespace mosbench::lc_free_space {
 
 MethodKind method_kind() {
-  return {"lc-free-space",
-          "LC Free Space (our reading)",
-          "Modayil, Kuipers: The Initial Development of Object Knowledge by a Learning Robot, "
-          "Robotics and Autonomous Systems 56, 2008, as a row of Dynablox's table, "
-          "arXiv:2304.10049; no code for it was published",
-          "points in space that a volumetric map holds free, and those beside them",
-          settings_of(Config{}),
-          check_settings<Config>,
-          make_method<Pipeline, Config>,
-          false,
-          "distance to surfaces, m"};
+  return {.name = "lc-free-space",
+          .title = "LC Free Space (our reading)",
+          .source =
+              "Modayil, Kuipers: The Initial Development of Object Knowledge by a Learning Robot, "
+              "Robotics and Autonomous Systems 56, 2008, as a row of Dynablox's table, "
+              "arXiv:2304.10049; no code for it was published",
+          .summary = "points in space that a volumetric map holds free, and those beside them",
+          .defaults = settings_of(Config{}),
+          .check = check_settings<Config>,
+          .make = make_method<Pipeline, Config>,
+          .score_name = "distance to surfaces, m"};
 }
 
 }  // namespace mosbench::lc_free_space

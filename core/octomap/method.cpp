@@ -22,18 +22,20 @@ std::unique_ptr<Method> make(const Settings& settings, const RunContext& context
 }  // namespace
 
 MethodKind method_kind() {
-  return {"octomap",
-          "OctoMap",
+  return {
+      .name = "octomap",
+      .title = "OctoMap",
+      .source =
           "Hornung, Wurm, Bennewitz, Stachniss, Burgard: OctoMap: An Efficient Probabilistic 3D "
           "Mapping Framework Based on Octrees, Autonomous Robots 2013",
-          how_to_build().empty() ? "points in voxels that OctoMap's map of log-odds holds free"
-                                 : how_to_build(),
-          settings_of(Config{}),
-          check_settings,
-          make,
-          false,
-          "log-odds of free space",
-          "free above"};
+      .summary = how_to_build().empty()
+                     ? "points in voxels that OctoMap's map of log-odds holds free"
+                     : how_to_build(),
+      .defaults = settings_of(Config{}),
+      .check = check_settings,
+      .make = make,
+      .score_name = "log-odds of free space",
+      .threshold_name = "free above"};
 }
 
 }  // namespace mosbench::octomap

@@ -7,17 +7,18 @@
 namespace mosbench::underwood {
 
 MethodKind method_kind() {
-  return {"underwood",
-          "Underwood et al.",
+  return {
+      .name = "underwood",
+      .title = "Underwood et al.",
+      .source =
           "Underwood, Gillsjo, Bailey, Vlaskine: Explicit 3D Change Detection using Ray-Tracing in "
           "Spherical Coordinates, ICRA 2013",
-          "points in space that a scan one second before saw past",
-          settings_of(Config{}),
-          check_settings<Config>,
-          make_method<Pipeline, Config>,
-          false,
-          "margin, m",
-          "range tolerance, m"};
+      .summary = "points in space that a scan one second before saw past",
+      .defaults = settings_of(Config{}),
+      .check = check_settings<Config>,
+      .make = make_method<Pipeline, Config>,
+      .score_name = "margin, m",
+      .threshold_name = "range tolerance, m"};
 }
 
 }  // namespace mosbench::underwood

@@ -50,7 +50,7 @@ MAY_INCLUDE = {
     "eval/cli": THREADS | {"datasets/", "eval/"},
     "eval/python": THREADS | {"datasets/", "eval/"},
     "bench": {"core/", "datasets/", "eval/"},
-    "tests/examples": {"core/include"},
+    "tests/examples": {"core/include", "core/base", "tests/examples"},
     "tests": {"core/", "datasets/", "eval/", "bench", "tests/"},
 }
 # Any other folder of core is a method, or odometry. None includes another.

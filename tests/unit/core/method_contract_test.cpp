@@ -11,17 +11,18 @@
 #include <string>
 #include <vector>
 
-/// What Method promises, of every method in the table.
+#include "tests/examples/new_voxels.hpp"
+
+/// What Method promises, of every method in the table and of the example.
 namespace mosbench {
 namespace {
 
 const std::vector<Point> kWall = {{4, 0, 0, 0}, {4, 1, 0, 0}, {4, 2, 0, 0}, {4, -1, 1, 0}};
 
-class EveryMethod : public testing::TestWithParam<std::string> {
+class EveryMethod : public testing::TestWithParam<MethodKind> {
  protected:
   std::unique_ptr<Method> make(const RunContext& context = {}) const {
-    const MethodKind* kind = find_method(GetParam());
-    return kind->make(kind->defaults, context);
+    return GetParam().make(GetParam().defaults, context);
   }
 };
 
@@ -122,23 +123,33 @@ struct HandList {
 };
 
 TEST_P(EveryMethod, StandsWhereMethodsAreListedByHand) {
-  if (find_method(GetParam())->is_twin) GTEST_SKIP() << "no method of a benchmark";
+  if (GetParam().is_twin || find_method(GetParam().name) == nullptr) {
+    GTEST_SKIP() << "no method of a benchmark";
+  }
+  const std::string name(GetParam().name);
   for (const auto& [file, quote] :
        {HandList{"core/README.md", ""}, HandList{"scripts/bench/sweep.py", "\""}}) {
     std::ifstream stream(std::filesystem::path(MOSBENCH_SOURCE_DIR) / file);
     const std::string text(std::istreambuf_iterator<char>(stream), {});
-    EXPECT_NE(text.find(quote + GetParam() + quote), std::string::npos)
-        << file << ": has no method " << GetParam()
+    EXPECT_TRUE(text.find(quote + name + quote) != std::string::npos)
+        << file << ": has no method " << name
         << ", expected a row as core/README.md says under \"Adding a method\"";
   }
 }
 
-std::vector<std::string> names() {
-  std::vector<std::string> known;
+TEST_P(EveryMethod, HasTheSettingsThatPresetsKnow) {
+  for (const char* name : {"min_range_m", "max_range_m"}) {
+    ASSERT_NE(GetParam().defaults.find(name), nullptr) << name;
+    EXPECT_NO_THROW(GetParam().defaults.number(name));
+  }
+}
+
+std::vector<MethodKind> kinds() {
+  std::vector<MethodKind> known = {new_voxels::method_kind()};
   for (const MethodKind& kind : methods()) {
     try {
       kind.check(kind.defaults);
-      known.emplace_back(kind.name);
+      known.push_back(kind);
     } catch (const std::invalid_argument& error) {
       // A library may be missing, and nothing else.
       EXPECT_THAT(error.what(), testing::HasSubstr("this build has no"));
@@ -147,8 +158,8 @@ std::vector<std::string> names() {
   return known;
 }
 
-INSTANTIATE_TEST_SUITE_P(Methods, EveryMethod, testing::ValuesIn(names()), [](const auto& row) {
-  std::string name = row.param;
+INSTANTIATE_TEST_SUITE_P(Methods, EveryMethod, testing::ValuesIn(kinds()), [](const auto& row) {
+  std::string name(row.param.name);
   std::erase(name, '-');
   return name;
 });
