@@ -12,6 +12,8 @@ COUNTS = {"tp", "fp", "fn", "tn", "ignored", "unknown_ids", "points", "labelled_
 NOT_A_NUMBER = re.compile(r"(?<![\w./-])[+-]?(?:nan|inf)(?![\w./-])")
 # The program says a name from an input between these, and a scan may be called nan.
 NAME_BEFORE, NAME_AFTER = re.compile(r"(^|[:;,(] )(scan|sequence) $", re.MULTILINE), re.compile(r"^(:| is only)")
+# The program repeats a place or a name from the command line there: at the start of a row, or after one of these.
+GIVEN_BEFORE = re.compile(r"(?:^|\b(?:accepted|as|in|wrote|scans of|video|data set|method|first:|second:) )$", re.MULTILINE)
 WORD_BEFORE, WORD_AFTER = re.compile(r"[A-Za-z]+ $"), re.compile(r"^ [A-Za-z]+")
 NEGATIVE_IOU = re.compile(r"^\S.* {2,}-\d+\.\d", re.MULTILINE)
 # Their tables have no column that may be negative.
@@ -58,6 +60,12 @@ def _stands_in_a_name(match, texts):
     return any(re.search(rf"(?<![\w+-]){re.escape(name)}", text) for name in names for text in texts)
 
 
+def _was_given(match, words):
+    """Whether the command line gave it as a name, or as a part of a path, that the answer repeats as such."""
+    parts = {part for word in words for part in re.split("[/=,:]", word)}
+    return match.group() in parts and GIVEN_BEFORE.search(match.string[:match.start()]) is not None
+
+
 def _texts_of(case):
     """The texts that a case gives to the program."""
     files = (file for file in Path(case).rglob("*") if file.suffix in (".csv", ".json", ".txt") and file.is_file())
@@ -77,7 +85,7 @@ def _wrong_answer(ended, case):
     # What a benchmark's own program prints may be nan.
     if "benchmark's rounding" not in ended.out:
         for match in NOT_A_NUMBER.finditer(ended.out):
-            if not _stands_in_a_name(match, _texts_of(case)):
+            if not (_was_given(match, ended.words) or _stands_in_a_name(match, _texts_of(case))):
                 return f"the answer says {match.group()}"
     if ended.words[0] in WITHOUT_NEGATIVES and (match := NEGATIVE_IOU.search(ended.out)):
         return f"negative number in a table: {match.group()}"

@@ -110,6 +110,15 @@ class Oracle(unittest.TestCase):
             self.assertTrue(faults("| Dynablox | range -inf m | -inf |\n"))
             self.assertTrue(faults("| LMNet | inf | nan |\n"))
 
+    def test_a_name_that_the_command_line_gives_may_say_nan(self):
+        for words in (["bless", "run", "nan"], ["bless", "run", "new/nan"], ["bless", "run", "--even-if=nan"]):
+            self.assertEqual(self.faults("accepted run as nan\n", words), [], words)
+        self.assertEqual(self.faults("method  IoU\n-inf    12.0\n", ["stats", "run", "--method", "-inf"]), [])
+        # Not where a number stands, nor what nobody gave.
+        self.assertEqual(self.faults("accepted run as nan\n", ["bless", "run", "nano"]), ["numbers"])
+        for out in ("IoU  nan\n", "IoU nan\n", "| nan | 0.5 |\n", "IoU 0.5 -> nan\n", "ms: nan\n", "from 0.1 to nan\n"):
+            self.assertEqual(self.faults(out, ["bless", "run", "inf", "nan"]), ["numbers"], out)
+
     def test_leftovers_are_seen_unless_they_were_there(self):
         with tempfile.TemporaryDirectory() as case:
             folders.write(case, {"out/08.partial/x": b""})
