@@ -15,19 +15,38 @@ constexpr std::size_t kMostGroups = 1'000'000;
 constexpr int kMostDimensions = 4;
 constexpr hid_t kWhole = 0;  // H5S_ALL, which is a cast of C
 
+/// Finds "No space left on device" in an error of the library.
+herr_t note_reason(unsigned, const H5E_error2_t* error, void* reason) {
+  constexpr std::string_view kBefore = "error message = '";
+  const std::string_view said = error->desc;
+  const std::size_t at = said.find(kBefore);
+  if (at == std::string_view::npos) return 0;
+  const std::string_view rest = said.substr(at + kBefore.size());
+  *static_cast<std::string*>(reason) = rest.substr(0, rest.find('\''));
+  return 0;
+}
+
+/// Returns why the system refused what the library's last call wanted; empty where it did not.
+std::string reason_of_system() {
+  std::string reason;
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_DOWNWARD, note_reason, &reason);
+  return reason.empty() ? "" : ": " + reason;
+}
+
 class Hdf5Error : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
+  explicit Hdf5Error(const std::string& what) : std::runtime_error(what + reason_of_system()) {}
 };
 
-/// An object of the library, closed at the end.
+/// An object of the library, closed at the end. While an error passes it stays open: what could not
+/// be written cannot be closed either, which makes libhdf5 1.10 crash.
 class Handle {
  public:
   Handle(hid_t id, herr_t (*close)(hid_t), const char* what) : id_(id), close_(close) {
     if (id < 0) throw Hdf5Error(std::string("libhdf5 cannot ") + what);
   }
   ~Handle() {
-    if (id_ >= 0) close_(id_);
+    if (id_ >= 0 && std::uncaught_exceptions() == 0) close_(id_);
   }
   Handle(Handle&& other) noexcept : id_(std::exchange(other.id_, -1)), close_(other.close_) {}
   Handle& operator=(Handle&&) = delete;
@@ -35,6 +54,7 @@ class Handle {
   operator hid_t() const { return id_; }
   /// Returns false when closing fails, as it does on a full disk.
   bool close_now() { return close_(std::exchange(id_, -1)) >= 0; }
+  void leave_open() { id_ = -1; }
 
  private:
   hid_t id_;
@@ -235,9 +255,10 @@ Handle create_file(const std::string& path) {
   return {H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose, "write it"};
 }
 
-class LibraryOutput : public Hdf5Output {
+class LibraryOutput final : public Hdf5Output {
  public:
   explicit LibraryOutput(const std::string& path) : file_(create_file(path)) {}
+  ~LibraryOutput() override { close(); }
 
   std::string add(const std::string& group_name, const Hdf5Array& array,
                   std::string_view bytes) override try {
@@ -249,20 +270,29 @@ class LibraryOutput : public Hdf5Output {
     const Handle space(H5Screate_simple(static_cast<int>(sizes.size()), sizes.data(), nullptr),
                        H5Sclose, "make a shape");
     const Handle properties = properties_without_times(H5P_DATASET_CREATE);
-    const Handle dataset(
+    Handle dataset(
         H5Dcreate2(group, array.name.c_str(), type, space, H5P_DEFAULT, properties, H5P_DEFAULT),
         H5Dclose, "make an array");
     const bool is_written =
         bytes.empty() || H5Dwrite(dataset, type, kWhole, kWhole, H5P_DEFAULT, bytes.data()) >= 0;
-    return is_written ? "" : "libhdf5 cannot write " + group_name + "/" + array.name;
+    // Few numbers are written when the array is closed.
+    if (!is_written || !dataset.close_now()) {
+      throw Hdf5Error("libhdf5 cannot write " + group_name + "/" + array.name);
+    }
+    return "";
   } catch (const std::exception& error) {
-    return error.what();
+    return give_up(error.what());
   }
 
-  std::string close() override {
+  std::string close() override try {
+    if (file_ < 0) return "";
     be_quiet();
-    const bool is_flushed = H5Fflush(file_, H5F_SCOPE_GLOBAL) >= 0;
-    return file_.close_now() && is_flushed ? "" : "libhdf5 cannot write all of it";
+    if (H5Fflush(file_, H5F_SCOPE_GLOBAL) < 0 || !file_.close_now()) {
+      throw Hdf5Error("libhdf5 cannot write all of it");
+    }
+    return "";
+  } catch (const std::exception& error) {
+    return give_up(error.what());
   }
 
  private:
@@ -271,6 +301,12 @@ class LibraryOutput : public Hdf5Output {
     const Handle properties = properties_without_times(H5P_GROUP_CREATE);
     const Handle made(H5Gcreate2(file_, name.c_str(), H5P_DEFAULT, properties, H5P_DEFAULT),
                       H5Gclose, "make a group");
+  }
+
+  /// Leaves the file as it is: see Handle.
+  std::string give_up(const std::string& why) {
+    file_.leave_open();
+    return why;
   }
 
   Handle file_;
@@ -291,5 +327,7 @@ constexpr Hdf5Functions kFunctions = {list, read, create};
 // dlsym finds the C name; both sides are of one build, so C++ types may pass.
 extern "C" __attribute__((visibility("default"))) const mosbench::Hdf5Functions*
 mosbench_hdf5_functions() {
+  // At the end of the process the library would close what it could not write, and crash.
+  H5dont_atexit();
   return &mosbench::kFunctions;
 }

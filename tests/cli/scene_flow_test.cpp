@@ -11,6 +11,7 @@
 namespace mosbench {
 namespace {
 
+using testing::ContainsRegex;
 using testing::HasSubstr;
 
 /// Points, poses, stamps and truth of two sequences are the same.
@@ -91,6 +92,21 @@ TEST_F(SceneFlowProgram, ConvertsToOtherLayoutsAndBack) {
   expect_same_scans(folder_ / "sim", folder_ / "kitti");
   convert("kitti", "opensceneflow", "back");
   expect_same_scans(folder_ / "sim", folder_ / "back");
+}
+
+TEST_F(SceneFlowProgram, LeavesNothingWhereThereIsNoRoom) {
+  // The first number, in the middle, and what libhdf5 writes when it closes the file.
+  const auto whole = std::filesystem::file_size(path("sim/street.h5"));
+  for (const rlim_t bytes : {rlim_t{2'000}, rlim_t{whole / 2}, rlim_t{whole - 1}}) {
+    const cli::Answer answer = cli::run(
+        {"convert", path("sim"), "--layout", "opensceneflow", "--out", path("new")}, [bytes] {
+          const struct rlimit small { bytes, bytes };
+          setrlimit(RLIMIT_FSIZE, &small);
+        });
+    EXPECT_EQ(answer.exit_code, 3) << bytes;
+    EXPECT_THAT(answer.err, ContainsRegex("street.h5: cannot be written .*File too large"));
+    EXPECT_FALSE(std::filesystem::exists(path("new"))) << bytes;
+  }
 }
 
 TEST_F(SceneFlowProgram, ScoresDufoOfItsFiles) {
