@@ -185,7 +185,12 @@ void read_nuscenes_table(const std::filesystem::path& file,
   bytes.rdbuf()->pubsetbuf(buffer.data(), static_cast<std::streamsize>(buffer.size()));
   bytes.open(file, std::ios::binary);
   if (!bytes) throw DataError(file, "cannot be read", "a table of nuScenes");
-  parse_nuscenes_table(bytes, file, take);
+  try {
+    parse_nuscenes_table(bytes, file, take);
+  } catch (const std::ios_base::failure& error) {
+    throw DataError(file, fmt::format("cannot be read ({})", error.code().message()),
+                    "a table of nuScenes");
+  }
 }
 
 }  // namespace mosbench

@@ -260,6 +260,15 @@ TEST_F(NuscenesFolder, RefusesAPipeInsteadOfATable) {
   EXPECT_THAT(error_of_opening(), HasSubstr("sample_annotation.json: is no regular file"));
 }
 
+TEST_F(NuscenesFolder, NamesATableWhoseReadingFails) {
+  const auto table = folder_ / "root/v1.0-mini/sample_annotation.json";
+  std::filesystem::remove(table);
+  // Nothing lies at the first address of a process.
+  std::filesystem::create_symlink("/proc/self/mem", table);
+  EXPECT_THAT(error_of_opening(),
+              HasSubstr("sample_annotation.json: cannot be read (Input/output"));
+}
+
 TEST_F(NuscenesFolder, RefusesRowsThatComeTwice) {
   table("ego_pose", pose("d1", "0, 0, 0") + "," + pose("d2", "0, 0, 0") + "," +
                         pose("d3", "0, 0, 0") + "," + pose("d1", "1, 0, 0"));
