@@ -213,10 +213,11 @@ std::vector<Point> parse_ply(std::string_view bytes, const std::filesystem::path
 }
 
 std::vector<double> parse_ply_times(std::string_view bytes, const std::filesystem::path& file) {
-  const auto [head, ascii] = PlyHeadParser(bytes, bytes.size(), file).run();
+  const PlyHead ply = PlyHeadParser(bytes, bytes.size(), file).run();
+  const CloudHead& head = ply.vertices;
   const CloudField* field = find_time_field(head);
   if (field == nullptr) throw DataError(file, "the points have no times", kTimeFields);
-  if (!ascii) return numbers_of(head, *field, bytes, file);
+  if (!ply.ascii) return numbers_of(head, *field, bytes, file);
   const auto column = static_cast<std::size_t>(field - head.fields.data());
   std::vector<double> times;
   for_each_row(head, bytes.substr(head.records_at_bytes), file,
