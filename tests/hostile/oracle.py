@@ -14,7 +14,7 @@ NOT_A_NUMBER = re.compile(r"(?<![\w./-])[+-]?(?:nan|inf)(?![\w./-])")
 NAME_BEFORE, NAME_AFTER = re.compile(r"(^|[:;,(] )(scan|sequence) $", re.MULTILINE), re.compile(r"^(:| is only)")
 # The program repeats a place or a name from the command line there: at the start of a row, or after one of these.
 GIVEN_BEFORE = re.compile(r"(?:^|\b(?:accepted|as|in|wrote|scans of|video|data set|method|first:|second:) )$", re.MULTILINE)
-WORD_BEFORE, WORD_AFTER = re.compile(r"[A-Za-z]+ $"), re.compile(r"^ [A-Za-z]+")
+WORD_BEFORE, WORD_AFTER = re.compile(r"[A-Za-z-]+ $"), re.compile(r"^ [A-Za-z]+")
 NEGATIVE_IOU = re.compile(r"^\S.* {2,}-\d+\.\d", re.MULTILINE)
 # Their tables have no column that may be negative.
 WITHOUT_NEGATIVES = {"run", "score"}

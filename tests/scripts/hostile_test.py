@@ -101,11 +101,12 @@ class Oracle(unittest.TestCase):
 
     def test_a_name_that_the_input_gives_may_say_inf(self):
         with tempfile.TemporaryDirectory() as case:
-            folders.write(case, {"published.csv": b"I,range -inf m,Dynablox,84\nI,inf,LMNet,nan\n"})
+            folders.write(case, {"published.csv": b"I,range -inf m,Dynablox,84\nI,inf,LMNet,nan,MOE-Dataset -inf + README\n"})
 
             def faults(out):
                 return oracle.faults_of(ended(out=out, words=["table", "I"]), case, ())
             self.assertEqual(faults("| Dynablox | range -inf m | 84 |\n"), [])
+            self.assertEqual(faults("| LMNet | MOE-Dataset -inf + README |\n"), [])
             self.assertTrue(faults("| Dynablox | range inf m | 84 |\n"))
             self.assertTrue(faults("| Dynablox | range -inf m | -inf |\n"))
             self.assertTrue(faults("| LMNet | inf | nan |\n"))
