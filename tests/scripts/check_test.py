@@ -4,9 +4,11 @@ import pathlib
 import sys
 import tempfile
 import unittest
+import unittest.mock
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "scripts/check"))
+import headers  # noqa: E402
 import includes  # noqa: E402
 import mutants  # noqa: E402
 import paper  # noqa: E402
@@ -50,6 +52,28 @@ class Paper(unittest.TestCase):
         for expected in ("`b.cpp:line`: there is no such file", "`a.cpp:ray`: a.cpp declares no ray",
                          "`a.cpp:line` links to c.cpp", "no reference in: | None | see the code |"):
             self.assertIn(expected, said)
+
+
+class Headers(unittest.TestCase):
+    def said_of(self, header, **others):
+        with tempfile.TemporaryDirectory() as folder, unittest.mock.patch.object(headers, "ROOT", pathlib.Path(folder)):
+            headers.foreign.cache_clear()
+            for name, text in {"h": header, **others}.items():
+                (pathlib.Path(folder) / f"{name}.hpp").write_text(text)
+            shared = [headers.precompile({name}, pathlib.Path(folder) / f"{name}_alone.hpp") for name in ("string", "vector")]
+            return headers.complaint("h.hpp", shared)
+
+    def test_a_header_that_includes_what_it_needs_is_accepted(self):
+        self.assertEqual(self.said_of("#include <vector>\n\nstruct H {\n  std::vector<int> of;\n};\n"), "")
+
+    def test_what_another_header_includes_counts(self):
+        self.assertEqual(self.said_of('#include "a.hpp"\n\nextern std::string h;\n', a="#include <string>\n"), "")
+
+    def test_a_header_that_needs_more_than_it_includes_is_refused(self):
+        self.assertIn("vector", self.said_of("#include <cstdint>\n\nstruct H {\n  std::vector<int> of;\n};\n"))
+
+    def test_an_include_after_something_else_is_refused(self):
+        self.assertIn("h.hpp:2: an include after something else", self.said_of("struct H;\n#include <vector>\n"))
 
 
 class Includes(unittest.TestCase):
