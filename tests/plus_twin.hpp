@@ -27,7 +27,7 @@ struct Cell {
 
 struct Scan final : Observed {
   PointVoxels voxels;
-  SetOf measured, observed, occupied, seeds, fresh, settled, aged;
+  SetOf measured, observed, occupied, seeds, fresh, settled, aged, departed;
   Eigen::Vector3d sensor_m = Eigen::Vector3d::Zero();
   LabelledScan result;
 };
@@ -160,7 +160,7 @@ class PlusTwin final : public Method {
       scan.settled.erase(v);
       scan.aged.erase(v);
       scan.fresh.insert(v);
-      if (may_be_seed(v)) scan.seeds.insert(v);
+      if (may_be_seed(v) && scan.seeds.insert(v).second) scan.departed.insert(v);
     }
   }
 
@@ -212,6 +212,11 @@ class PlusTwin final : public Method {
       scan.result.labels.push_back(v && moving.contains(*v) ? kMovingLabel : kStaticLabel);
       const float* share = v ? find(shares, *v) : nullptr;
       scan.result.scores.push_back(share == nullptr ? 0 : *share);
+      scan.result.reasons.push_back(!v || !moving.contains(*v)   ? Reason::kNone
+                                    : !objects.contains(*v)      ? Reason::kFeet
+                                    : scan.departed.contains(*v) ? Reason::kDeparted
+                                    : scan.seeds.contains(*v)    ? Reason::kArrived
+                                                                 : Reason::kGrown);
     }
   }
 

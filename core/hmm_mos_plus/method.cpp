@@ -15,7 +15,8 @@ MethodKind method_kind() {
           .check = check_settings<Config>,
           .make = make_method<Pipeline, Config>,
           .score_name = "share of seeds",
-          .threshold_name = "least share of seeds"};
+          .threshold_name = "least share of seeds",
+          .gives_reasons = true};
 }
 
 }  // namespace mosbench::hmm_mos_plus

@@ -25,6 +25,24 @@ std::vector<float> seed_shares(const VoxelizedScan& scan,
   return scores;
 }
 
+/// Returns why a scan's points move. Seeds that did not arrive departed.
+std::vector<Reason> reasons_of(const VoxelizedScan& scan, const ScanMasks& arrived,
+                               const ScanMasks& seeds, const Motion& motion) {
+  const auto reason_of = [&](std::uint32_t voxel) {
+    const std::uint32_t slot = voxel / kBlockVoxels, cell = voxel % kBlockVoxels;
+    if (!motion.objects[slot].test(cell)) {
+      return motion.feet[slot].test(cell) ? Reason::kFeet : Reason::kNone;
+    }
+    if (!seeds[slot].test(cell)) return Reason::kGrown;
+    return arrived[slot].test(cell) ? Reason::kArrived : Reason::kDeparted;
+  };
+  std::vector<Reason> reasons;
+  for (const std::uint32_t voxel : scan.voxel_of_point) {
+    reasons.push_back(voxel == kNoVoxel ? Reason::kNone : reason_of(voxel));
+  }
+  return reasons;
+}
+
 }  // namespace
 
 Pipeline::Pipeline(const Config& config, const RunContext& context)
@@ -48,6 +66,7 @@ void Pipeline::judge(HeldScan& held) {
   const VoxelizedScan& scan = held.scan;
   LabelledScan& result = held.result;
   const StageRecord record{result.stages, context().cpu_times};
+  const ScanMasks arrived = context().scores ? held.classes.seeds : ScanMasks();
   if (config_.map.delay_scans > 0) {
     const StageClock clock(record, "departures");
     add_departures(scan, mapping().map(), mapping().k(), config_, mapping().pool(), held.classes);
@@ -62,7 +81,10 @@ void Pipeline::judge(HeldScan& held) {
   ScanMasks moving = motion.objects;
   for (std::size_t i = 0; i < moving.size(); ++i) moving[i] = moving[i] | motion.feet[i];
   result.labels = project_labels(scan, moving);
-  if (context().scores) result.scores = seed_shares(scan, motion.components);
+  if (context().scores) {
+    result.scores = seed_shares(scan, motion.components);
+    result.reasons = reasons_of(scan, arrived, held.classes.seeds, motion);
+  }
   result.threshold = config_.min_seed_share;
   result.judged = mapping().k() > 0;  // the first scan has nothing to have arrived since
 }

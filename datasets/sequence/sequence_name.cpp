@@ -14,7 +14,8 @@ namespace {
 
 constexpr std::size_t kLongest_bytes = 255;
 constexpr std::ptrdiff_t kMostSlashes = 1;
-constexpr std::array<std::string_view, 3> kOfResults = {"labels", "scores", "result.json"};
+constexpr std::array<std::string_view, 4> kOfResults = {"labels", "scores", "reasons",
+                                                        "result.json"};
 
 bool is_of_results(std::string_view part) {
   return std::ranges::find(kOfResults, part) != kOfResults.end() || part.ends_with(".partial") ||
@@ -30,7 +31,7 @@ void check_part(std::string_view part, const std::string& text, const std::files
   if (!is_printable(part)) refuse("UTF-8 without control characters");
   if (is_of_results(part)) {
     refuse(
-        "another name: results use labels, scores, result.json, *.partial and *.replaced "
+        "another name: results use labels, scores, reasons, result.json, *.partial and *.replaced "
         "themselves");
   }
 }

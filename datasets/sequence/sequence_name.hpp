@@ -13,7 +13,8 @@ class SequenceName {
   SequenceName() = default;
   /// Takes what `file`, a result.json or the sequence's folder, says. Throws DataError naming it
   /// unless every part is UTF-8 of 1 to 255 bytes without control characters, no "." or "..", and
-  /// none that results use themselves: labels, scores, result.json, *.partial, *.replaced.
+  /// none that results use themselves: labels, scores, reasons, result.json, *.partial,
+  /// *.replaced.
   SequenceName(std::string text, const std::filesystem::path& file);
 
   const std::string& text() const { return text_; }

@@ -34,6 +34,10 @@ the sensor. --scans draws several, given as for `mosbench report` (A-B, every:N,
 (.mp4 or .gif, by ffmpeg, which `apt-get install ffmpeg` brings) or else to a folder, a PNG file
 each; the camera of an orbit then turns by --turn degrees from the first to the last.
 
+--reasons colours points by why they are called moving, as `mosbench run --scores` with the method
+hmm-mos-plus wrote it: arrived in space that was free, left it free behind, connected with such, or
+feet, what is next to the ground below them.
+
 --boxes draws a box around each cluster of at least 5 points that are labelled moving, with its
 speed: that of the cluster's middle in the map over half a second before and after, where the
 clusters of the ten scans before and after are linked to it. A speed is of what is seen of an
@@ -43,6 +47,7 @@ Examples:
   mosbench render results/runs/sim --scan 20 -o scan.png
   mosbench render results/runs/doals --sequence hauptgebaeude/sequence_1 --scan worst -o worst.png
   mosbench render results/runs/08 --scan 120 -o dark.png --dark --range 30 --size 1600
+  mosbench render results/runs/08-best --scan 120 -o why.png --reasons --range 30
   mosbench render results/runs/08 --scans 40-90 -o street.mp4
   mosbench render results/runs/08 --scan 120 -o boxes.png --view orbit --azimuth 30 --boxes
   mosbench render results/runs/08 --scans 40-90 -o orbit.gif --view orbit --turn 360
@@ -134,6 +139,12 @@ std::vector<std::string> title_of(const FoundResult& result, std::size_t scan_in
   return lines;
 }
 
+void check_has_reasons(const ResultScans& scans) {
+  if (scans.has_reasons()) return;
+  throw DataError(scans.result().folder / "reasons", "is not there",
+                  "a run of mosbench run --scores by a method that says why points move");
+}
+
 /// Where the camera looks in one of several pictures.
 ScanViewpoint viewpoint_of(const RenderFlags& options, std::size_t picture, std::size_t pictures) {
   if (options.view == "top") return {};
@@ -212,6 +223,7 @@ Answer render(RenderFlags& options) {
   check_output(is_folder ? options.out / "000000.png" : options.out);
   const FoundResult result = choose_result(options);
   const ResultScans scans(result, options.dataset_root);
+  if (options.picture.by_reason) check_has_reasons(scans);
   if (options.scans) return render_several(options, scans);
   const std::size_t scan_index = choose_scan(*options.scan, scans.rows());
   check_has_labels(scans, scan_index);
@@ -266,6 +278,8 @@ CommandRun add_render(CLI::App& command) {
                   "Degrees by which the camera turns over --scans (default: 90)")
       ->check(CLI::Range(-3600.0, 3600.0));
   command.add_flag("--boxes", options->boxes, "Draw boxes around what moves, with speeds");
+  command.add_flag("--reasons", options->picture.by_reason,
+                   "Colour what is called moving by why, as `mosbench run --scores` kept it");
   command.add_flag("--dark", options->picture.dark, "Draw light points on a dark ground");
   command.footer(kRenderFooter);
   return [options] { return render(*options); };

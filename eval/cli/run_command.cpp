@@ -21,7 +21,10 @@ constexpr const char* kRunFooter =
     R"(Writes DIR/<sequence>/labels/<stem>.label (uint32 per point, 9 static, 251 moving) and
 DIR/<sequence>/result.json, and prints IoU, precision and recall, if there is truth, and ms per
 scan. --scores adds DIR/<sequence>/scores/<stem>.score (float32 per point): what the method compares
-with its threshold; larger means more likely to move. `mosbench report` then colours points by it.
+with its threshold; larger means more likely to move. `mosbench report` then colours points by it,
+and `mosbench curve` draws precision over recall. Of hmm-mos-plus it also adds
+DIR/<sequence>/reasons/<stem>.reason (a byte per point): why it moves; `report` and `render
+--reasons` colour points by that.
 
 --write adds to DIR/<sequence>, from the labels: boxes.json and boxes.txt (boxes), boxes around what
 moves with track and velocity, the second in KITTI's format; moving/<stem>.ply (moving-cloud), the
@@ -113,7 +116,8 @@ CommandRun add_run(CLI::App& command) {
                   "--odometry also -<kind>)")
       ->type_name("DIR");
   add_odometry_flags(command, options->odometry);
-  command.add_flag("--scores", options->scores, "Also write the score of every point");
+  command.add_flag("--scores", options->scores,
+                   "Also write the score of every point, and of hmm-mos-plus why it moves");
   command
       .add_option(
           "--write", flags->products,

@@ -68,8 +68,8 @@ Picture trajectory_plot(std::span<const TrajectoryScore* const> estimates,
   for (std::size_t e = 0; e < estimates.size(); ++e) {
     const std::string name = estimates.size() == 1 ? "estimate" : e == 0 ? "first" : "second";
     above.curves.push_back(
-        seen_from_above(name, colours.outcomes[e], estimates[e]->estimate_m, plane));
-    errors.curves.push_back(errors_over_way(name, colours.outcomes[e], *estimates[e]));
+        seen_from_above(name, colours.outcomes[e].colour, estimates[e]->estimate_m, plane));
+    errors.curves.push_back(errors_over_way(name, colours.outcomes[e].colour, *estimates[e]));
   }
   return line_charts(std::array{above, errors}, kChartPixels);
 }

@@ -85,7 +85,13 @@ py::list descriptions_of(const Settings& settings) {
   return rows;
 }
 
-py::dict result_of(LabelledScan&& scan, bool with_scores) {
+py::array_t<std::uint8_t> numbers_of(const std::vector<Reason>& reasons) {
+  std::vector<std::uint8_t> numbers;
+  for (const Reason reason : reasons) numbers.push_back(static_cast<std::uint8_t>(reason));
+  return array_of(std::move(numbers));
+}
+
+py::dict result_of(LabelledScan&& scan, bool with_scores, bool with_reasons) {
   py::dict stages;
   for (const StageTime& stage : scan.stages) {
     const py::str name(std::string(stage.name));
@@ -96,6 +102,7 @@ py::dict result_of(LabelledScan&& scan, bool with_scores) {
   result["index"] = scan.scan_index;
   result["labels"] = array_of(std::move(scan.labels));
   result["scores"] = with_scores ? py::object(array_of(std::move(scan.scores))) : py::none();
+  result["reasons"] = with_reasons ? py::object(numbers_of(scan.reasons)) : py::none();
   const bool has_objects = !scan.objects.empty();
   result["objects"] = has_objects ? py::object(array_of(std::move(scan.objects))) : py::none();
   result["threshold"] = scan.threshold;
@@ -110,6 +117,7 @@ class LockedMethod {
   LockedMethod(const std::string& name, const Settings& settings, unsigned threads,
                std::optional<std::size_t> scan_count, bool scores)
       : scores_(scores),
+        reasons_(scores && method_named(name).gives_reasons),
         method_(method_named(name).make(
             settings, {.threads = threads, .scan_count = scan_count, .scores = scores})) {
     keep_freed_memory();
@@ -139,11 +147,12 @@ class LockedMethod {
       scans = work();
     }
     py::list results;
-    for (LabelledScan& scan : scans) results.append(result_of(std::move(scan), scores_));
+    for (LabelledScan& scan : scans) results.append(result_of(std::move(scan), scores_, reasons_));
     return results;
   }
 
   bool scores_;
+  bool reasons_;
   std::vector<Point> padded_;
   std::mutex mutex_;
   std::unique_ptr<Method> method_;

@@ -29,10 +29,11 @@ Palette palette(bool dark) {
   };
   Palette palette{
       {}, {}, colour(json.at("background")), colour(json.at("text")), colour(json.at("guide"))};
-  for (std::size_t i = 0; i < palette.outcomes.size(); ++i) {
-    const nlohmann::ordered_json& outcome = json.at("outcomes").at(i);
-    palette.outcomes[i] = colour(outcome);
-    palette.names[i] = outcome.at("name");
+  for (const nlohmann::ordered_json& entry : json.at("outcomes")) {
+    palette.outcomes.push_back({colour(entry), entry.at("name")});
+  }
+  for (const nlohmann::ordered_json& entry : json.at("reasons")) {
+    palette.reasons.push_back({colour(entry), entry.at("name")});
   }
   return palette;
 }

@@ -1,17 +1,23 @@
 #pragma once
 
-#include <array>
 #include <string>
+#include <vector>
 
 #include "eval/report/picture.hpp"
 
 namespace mosbench {
 
-/// Colours of a light or dark picture, equal to those of the report's page. The colours of outcomes
-/// can be distinguished with any colour vision.
+/// A colour and what it stands for.
+struct Swatch {
+  Colour colour;
+  std::string name;
+};
+
+/// Colours of a light or dark picture, equal to those of the report's page. Those of outcomes and
+/// those of reasons can be distinguished with any colour vision.
 struct Palette {
-  std::array<Colour, 6> outcomes;    ///< by PointOutcome
-  std::array<std::string, 6> names;  ///< of the outcomes
+  std::vector<Swatch> outcomes;  ///< by PointOutcome
+  std::vector<Swatch> reasons;   ///< by Reason
   Colour background, text, guide;
 };
 

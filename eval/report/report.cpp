@@ -138,6 +138,7 @@ Report build_report(const std::vector<std::filesystem::path>& inputs,
     content["results"][i]["outcomes"] = scans.results[i].outcome_blocks;
     content["results"][i]["scores"] = scans.results[i].score_blocks;
     content["results"][i]["boxes"] = boxes_json(*sources[i], scans.results[i].scans);
+    content["results"][i]["reasons"] = scans.results[i].reason_blocks;
   }
   remarks.insert(remarks.end(), scans.remarks.begin(), scans.remarks.end());
   return {filled_page(report_asset(), content, scans.blocks), results.size(), remarks};

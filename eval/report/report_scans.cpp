@@ -9,6 +9,7 @@
 #include "eval/report/compressed_text.hpp"
 #include "eval/report/point_planes.hpp"
 #include "eval/results/progress.hpp"
+#include "eval/results/reason_file.hpp"
 
 namespace mosbench {
 namespace {
@@ -23,11 +24,13 @@ struct PackedScan {
   std::string positions;
   std::vector<std::string> outcomes;  ///< per member of the cloud
   std::vector<std::string> scores;    ///< per member, empty where the run kept none
+  std::vector<std::string> reasons;   ///< the same
 
   std::size_t bytes() const {
     std::size_t sum = positions.size();
     for (const std::string& plane : outcomes) sum += plane.size();
     for (const std::string& planes : scores) sum += planes.size();
+    for (const std::string& plane : reasons) sum += plane.size();
     return sum;
   }
 };
@@ -125,7 +128,7 @@ ordered_json pose_json(const Pose& pose) {
 }
 
 PackedScan pack(const Cloud& cloud, const Sources& sources, std::size_t scan_index) {
-  PackedScan packed{scan_index, {}, {}, {}, {}};
+  PackedScan packed{scan_index, {}, {}, {}, {}, {}};
   for (const std::size_t member : cloud.members) {
     const JudgedScan scan = sources[member]->read(scan_index);
     if (packed.positions.empty()) {
@@ -138,6 +141,8 @@ PackedScan pack(const Cloud& cloud, const Sources& sources, std::size_t scan_ind
     packed.outcomes.push_back(compressed_text(outcome_plane(scan.outcomes, scan.frame.points)));
     packed.scores.push_back(
         sources[member]->has_scores() ? compressed_text(score_planes(scan.scores)) : "");
+    packed.reasons.push_back(
+        sources[member]->has_reasons() ? compressed_text(format_reasons(scan.reasons)) : "");
   }
   return packed;
 }
@@ -219,9 +224,13 @@ ReportScans choose_report_scans(const std::vector<FoundResult>& results, const S
         result.scans.push_back(scan.scan_index);
         result.outcome_blocks.push_back(report.blocks.size());
         report.blocks.push_back(std::move(scan.outcomes[m]));
-        if (scan.scores[m].empty()) continue;
-        result.score_blocks.push_back(report.blocks.size());
-        report.blocks.push_back(std::move(scan.scores[m]));
+        const auto add = [&](std::string& block, std::vector<std::size_t>& blocks) {
+          if (block.empty()) return;
+          blocks.push_back(report.blocks.size());
+          report.blocks.push_back(std::move(block));
+        };
+        add(scan.scores[m], result.score_blocks);
+        add(scan.reasons[m], result.reason_blocks);
       }
     }
     report.clouds.push_back(std::move(json));

@@ -15,13 +15,14 @@ namespace mosbench {
 /// point by point and positions are stored once.
 struct ReportScans {
   nlohmann::ordered_json clouds = nlohmann::ordered_json::array();
-  /// Per result its cloud, and per scan of that cloud the block with the outcomes, and the one with
-  /// the dynamic scores when the run kept them.
+  /// Per result its cloud, and per scan of that cloud the block with the outcomes, and those with
+  /// the dynamic scores and the reasons when the run kept them.
   struct OfResult {
     std::size_t cloud = 0;
     std::vector<std::size_t> outcome_blocks;
     std::vector<std::size_t> score_blocks;
     std::vector<std::size_t> scans;  ///< indices of those scans, which rise
+    std::vector<std::size_t> reason_blocks;
   };
   std::vector<OfResult> results;
   std::vector<std::string> blocks;  ///< see compressed_text

@@ -12,6 +12,7 @@
 #include "datasets/sequence/posed_sequence.hpp"
 #include "eval/results/dynamic_score_file.hpp"
 #include "eval/results/reading_json.hpp"
+#include "eval/results/reason_file.hpp"
 #include "eval/results/same_input.hpp"
 
 namespace mosbench {
@@ -227,7 +228,8 @@ ResultScans::ResultScans(const FoundResult& result, const std::optional<fs::path
       dataset_(open_dataset_of(result, dataset_root)),
       rule_{},
       source_(source_of(result)),
-      has_scores_(!is_scored(result) && is_there(result.folder / "scores")) {
+      has_scores_(!is_scored(result) && is_there(result.folder / "scores")),
+      has_reasons_(!is_scored(result) && is_there(result.folder / "reasons")) {
   from_json(result, [&](const nlohmann::ordered_json& json) {
     const nlohmann::ordered_json& protocol = json.at("protocol");
     rule_ = {&protocol_named(protocol.at("name").get<std::string>()),
@@ -250,7 +252,7 @@ std::vector<std::size_t> ResultScans::scored_scans() const {
 }
 
 JudgedScan ResultScans::read(std::size_t scan_index) const {
-  JudgedScan scan{sequence().read(scan_index), {}, {}};
+  JudgedScan scan{sequence().read(scan_index), {}, {}, {}};
   if (!has(scan_index)) {
     scan.outcomes.assign(scan.frame.points.size(), PointOutcome::kIgnoredStatic);
     return scan;
@@ -271,6 +273,10 @@ JudgedScan ResultScans::read(std::size_t scan_index) const {
     const bool whole = result_.file.content.value("format", 1) < 2;
     scan.scores = parse_dynamic_scores(read_file(file), scan.frame.points.size(),
                                        whole ? ScoreNumbers::kInt32 : ScoreNumbers::kFloat32, file);
+  }
+  if (has_reasons_) {
+    const fs::path file = reason_file(result_.folder, scan.frame.stem);
+    scan.reasons = parse_reasons(read_file(file), scan.frame.points.size(), file);
   }
   return scan;
 }

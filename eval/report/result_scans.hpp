@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <memory>
+#include <mosbench/method.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -35,6 +36,7 @@ struct JudgedScan {
   Frame frame;
   std::vector<PointOutcome> outcomes;  ///< kIgnoredStatic or kIgnoredMoving without truth
   std::vector<float> scores;           ///< of the method, empty unless the run kept them
+  std::vector<Reason> reasons;         ///< why points move, empty unless the run kept them
 };
 
 /// The scans of a result: points and truth from the data set, labels from the run's folder or from
@@ -62,6 +64,8 @@ class ResultScans {
   const Sequence& sequence() const { return *dataset_.sequences.front(); }
   /// Whether the run kept scores.
   bool has_scores() const { return has_scores_; }
+  /// Whether the run kept why points move.
+  bool has_reasons() const { return has_reasons_; }
   /// Throws DataError when the labels do not give the counts of result.json. A scan without labels
   /// has no outcome but kIgnoredStatic.
   JudgedScan read(std::size_t scan_index) const;
@@ -77,6 +81,7 @@ class ResultScans {
   PredictionSource source_;
   std::unique_ptr<Predictions> labels_;
   bool has_scores_;
+  bool has_reasons_;
 };
 
 }  // namespace mosbench

@@ -25,6 +25,24 @@ constexpr int kLine = Picture::kGlyphHeight + 2;
 bool stands_out(PointOutcome outcome) {
   return outcome != PointOutcome::kTrueNegative && outcome != PointOutcome::kIgnoredStatic;
 }
+bool stands_out(Reason reason) { return reason != Reason::kNone; }
+
+/// What the points of a scan are drawn as.
+struct Kinds {
+  std::vector<Swatch> swatches;
+  std::vector<std::size_t> of_point;  ///< positions in swatches
+  std::vector<bool> stand_out;        ///< by point
+};
+
+template <typename Kind>
+Kinds kinds_of(const std::vector<Kind>& of_points, std::vector<Swatch> swatches) {
+  Kinds kinds{std::move(swatches), {}, {}};
+  for (const Kind kind : of_points) {
+    kinds.of_point.push_back(static_cast<std::size_t>(kind));
+    kinds.stand_out.push_back(stands_out(kind));
+  }
+  return kinds;
+}
 
 /// Returns a round number of metres that gives three to eight rings.
 double ring_step_m(double range_m) {
@@ -54,6 +72,8 @@ class ScanPicture {
       : scan_(scan),
         options_(options),
         palette_(palette(options.dark)),
+        kinds_(options.by_reason ? kinds_of(scan.reasons, palette_.reasons)
+                                 : kinds_of(scan.outcomes, palette_.outcomes)),
         range_m_(options.range_m > 0.0 ? options.range_m : reach_m(scan)),
         view_(options.viewpoint, range_m_, static_cast<double>(options.size_pixels)),
         picture_(options.size_pixels, options.size_pixels, palette_.background) {}
@@ -73,7 +93,7 @@ class ScanPicture {
     const double ground_m = view_.is_from_above() ? 0.0 : ground_height_m(scan_);
     const double step_m = ring_step_m(range_m_);
     const Colour label_colour =
-        palette_.outcomes[static_cast<std::size_t>(PointOutcome::kTrueNegative)];
+        palette_.outcomes[static_cast<std::size_t>(PointOutcome::kTrueNegative)].colour;
     for (double radius_m = step_m; radius_m <= range_m_; radius_m += step_m) {
       draw_ring(radius_m, ground_m);
       const auto top = view_.seen({radius_m, 0.0, ground_m});
@@ -108,13 +128,13 @@ class ScanPicture {
 
   /// Points in the order in which they are drawn: from above as they are stored, else far ones
   /// first.
-  std::vector<std::pair<ViewedPoint, PointOutcome>> seen_points(bool standing_out) const {
-    std::vector<std::pair<ViewedPoint, PointOutcome>> points;
-    for (std::size_t i = 0; i < scan_.outcomes.size(); ++i) {
-      const PointOutcome outcome = scan_.outcomes[i];
+  std::vector<std::pair<ViewedPoint, Colour>> seen_points(bool standing_out) const {
+    std::vector<std::pair<ViewedPoint, Colour>> points;
+    for (std::size_t i = 0; i < kinds_.of_point.size(); ++i) {
       const Point& point = scan_.frame.points[i];
-      if (stands_out(outcome) != standing_out || !is_drawable(point)) continue;
-      if (const auto seen = view_.seen(position_of(point))) points.emplace_back(*seen, outcome);
+      if (kinds_.stand_out[i] != standing_out || !is_drawable(point)) continue;
+      const Colour colour = kinds_.swatches[kinds_.of_point[i]].colour;
+      if (const auto seen = view_.seen(position_of(point))) points.emplace_back(*seen, colour);
     }
     if (!view_.is_from_above()) {
       std::ranges::stable_sort(points, std::greater(),
@@ -125,9 +145,8 @@ class ScanPicture {
 
   void draw_points(bool standing_out) {
     const double radius = standing_out ? 2.0 : 0.9;
-    for (const auto& [seen, outcome] : seen_points(standing_out)) {
-      picture_.disc(seen.x, seen.y, radius * std::clamp(seen.scale, 0.6, 2.0),
-                    palette_.outcomes[static_cast<std::size_t>(outcome)]);
+    for (const auto& [seen, colour] : seen_points(standing_out)) {
+      picture_.disc(seen.x, seen.y, radius * std::clamp(seen.scale, 0.6, 2.0), colour);
     }
   }
 
@@ -167,14 +186,14 @@ class ScanPicture {
   }
 
   void draw_legend() {
-    OutcomeCounts counts{};
-    for (const PointOutcome outcome : scan_.outcomes) ++counts[static_cast<std::size_t>(outcome)];
+    std::vector<std::size_t> counts(kinds_.swatches.size());
+    for (const std::size_t kind : kinds_.of_point) ++counts[kind];
     std::vector<std::string> lines;
     std::vector<Colour> swatches;
     for (std::size_t i = 0; i < counts.size(); ++i) {
       if (counts[i] == 0) continue;
-      lines.push_back(fmt::format("{:<25} {:>8}", palette_.names[i], counts[i]));
-      swatches.push_back(palette_.outcomes[i]);
+      lines.push_back(fmt::format("{:<25} {:>8}", kinds_.swatches[i].name, counts[i]));
+      swatches.push_back(kinds_.swatches[i].colour);
     }
     constexpr int kIndent = 18;
     const int top = static_cast<int>(options_.size_pixels) - kMargin -
@@ -190,6 +209,7 @@ class ScanPicture {
   const JudgedScan& scan_;
   const ScanPictureOptions& options_;
   Palette palette_;
+  Kinds kinds_;
   double range_m_;
   ScanView view_;
   Picture picture_;

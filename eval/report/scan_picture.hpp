@@ -17,6 +17,7 @@ struct ScanPictureOptions {
   std::size_t size_pixels = 1000;  ///< width and height
   double range_m = 0.0;  ///< from the sensor to the edge; 0: the range of 98 % of the points
   bool dark = false;
+  bool by_reason = false;  ///< colours say why a point is called moving, which the scan has to know
   ScanViewpoint viewpoint;
   std::vector<std::string> title;  ///< lines in the upper left corner
   std::vector<MovingBox> boxes;    ///< drawn with their speeds
@@ -28,8 +29,8 @@ double reach_m(const JudgedScan& scan);
 /// Returns the corners of a box in the map: the four of its bottom in a circle, then those above.
 std::array<Eigen::Vector3d, 8> corners_of(const MovingBox& box);
 
-/// Draws a scan: each point in the colour of its outcome, false ones on top, with counts of all
-/// points, range rings on the ground and a scale.
+/// Draws a scan: each point in the colour of its outcome or reason, what stands out on top, with
+/// counts of all points, range rings on the ground and a scale.
 Picture scan_picture(const JudgedScan& scan, const ScanPictureOptions& options);
 
 }  // namespace mosbench

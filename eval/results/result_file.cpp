@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <set>
 #include <string>
 #include <system_error>
@@ -208,10 +209,12 @@ bool holds_own_result(const std::filesystem::path& folder) {
   }
 }
 
-/// Returns whether no result is to be looked for in a folder: a run keeps its labels or scores
-/// there, or was killed, or is about to replace it. A sequence may be called like that, too.
+/// Returns whether no result is to be looked for in a folder: a run keeps its labels, scores or
+/// reasons there, or was killed, or is about to replace it. A sequence may be called like that,
+/// too.
 bool is_passed_over(const std::filesystem::path& folder) {
-  if (folder.filename() == "labels" || folder.filename() == "scores") {
+  constexpr std::array kOfRun = {"labels", "scores", "reasons"};
+  if (std::ranges::find(kOfRun, folder.filename()) != kOfRun.end()) {
     return is_there(folder.parent_path() / "result.json");
   }
   const bool leftover = folder.extension() == ".partial" || folder.extension() == ".replaced";

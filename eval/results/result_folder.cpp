@@ -19,11 +19,12 @@ namespace {
 
 constexpr const char* kLabels = "labels";
 constexpr const char* kScores = "scores";
+constexpr const char* kReasons = "reasons";
 constexpr const char* kResult = "result.json";
 // What a run writes; poses.txt with its mark where it found them, the last four by --write.
-constexpr std::array kWritten = {kLabels,     kScores,           kResult,
-                                 "poses.txt", "poses.txt.frame", "boxes.json",
-                                 "boxes.txt", "moving",          "static.ply"};
+constexpr std::array kWritten = {kLabels,     kScores,           kReasons,    kResult,
+                                 "poses.txt", "poses.txt.frame", "boxes.txt", "boxes.json",
+                                 "moving",    "static.ply"};
 
 std::vector<fs::path> entries(const fs::path& folder) {
   std::error_code error;
@@ -47,12 +48,12 @@ void checked(const fs::path& path, const char* what, Operation&& operation) {
   }
 }
 
-/// Labels and scores both take four bytes per point.
-bool all_present(const fs::path& folder, const char* extension, const ResultFile& result) {
+bool all_present(const fs::path& folder, const char* extension, std::size_t bytes_per_point,
+                 const ResultFile& result) {
   for (const ScanRow& row : result.rows.scans) {
     std::error_code error;
     const auto size = fs::file_size(folder / (row.stem + extension), error);
-    if (error || size != row.points * sizeof(std::uint32_t)) return false;
+    if (error || size != row.points * bytes_per_point) return false;
   }
   return true;
 }
@@ -97,7 +98,7 @@ void ResultFolder::check_replaceable() const {
 
 std::optional<ResultFile> ResultFolder::finished(const Sequence& sequence,
                                                  const nlohmann::ordered_json& identity,
-                                                 bool with_scores) const {
+                                                 const PointFiles& point_files) const {
   check_replaceable();
   if (!fs::exists(folder_ / kResult)) return std::nullopt;
   ResultFile result = read_result(folder_ / kResult);
@@ -110,9 +111,15 @@ std::optional<ResultFile> ResultFolder::finished(const Sequence& sequence,
   }
   refuse_extra(folder_ / kLabels, ".label", sequence);
   refuse_extra(folder_ / kScores, ".score", sequence);
+  refuse_extra(folder_ / kReasons, ".reason", sequence);
   if (result.rows.scans.size() != sequence.size()) return std::nullopt;
-  if (!all_present(folder_ / kLabels, ".label", result)) return std::nullopt;
-  if (with_scores && !all_present(folder_ / kScores, ".score", result)) return std::nullopt;
+  if (!all_present(folder_ / kLabels, ".label", 4, result)) return std::nullopt;
+  if (point_files.scores && !all_present(folder_ / kScores, ".score", 4, result)) {
+    return std::nullopt;
+  }
+  if (point_files.reasons && !all_present(folder_ / kReasons, ".reason", 1, result)) {
+    return std::nullopt;
+  }
   return result;
 }
 

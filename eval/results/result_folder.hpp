@@ -9,10 +9,16 @@
 
 namespace mosbench {
 
-/// The folder <out>/<sequence> of a run: labels/<stem>.label, scores/<stem>.score when they were
-/// asked for, and result.json. It appears as a whole when the sequence is done; until then
-/// everything lies in `<folder>.partial`, which the next run clears. So a killed or failed run
-/// never mixes with earlier results.
+/// What a run writes per point beside the labels.
+struct PointFiles {
+  bool scores = false;
+  bool reasons = false;
+};
+
+/// The folder <out>/<sequence> of a run: labels/<stem>.label, scores/<stem>.score and
+/// reasons/<stem>.reason when they were asked for, and result.json. It appears as a whole when the
+/// sequence is done; until then everything lies in `<folder>.partial`, which the next run clears.
+/// So a killed or failed run never mixes with earlier results.
 class ResultFolder {
  public:
   explicit ResultFolder(std::filesystem::path folder) : folder_(std::move(folder)) {}
@@ -20,12 +26,12 @@ class ResultFolder {
   const std::filesystem::path& path() const { return folder_; }
 
   /// The finished result when it answers the same question: the members of `identity` are equal in
-  /// its result.json, and every scan has its label file, and its score file when `with_scores`.
+  /// its result.json, and every scan has its label file, and what `point_files` asks for.
   /// Nothing when there is no folder or such files are missing or have the wrong size, so that the
   /// sequence has to be run. Throws UsageError naming what differs when something else lies there.
   std::optional<ResultFile> finished(const Sequence& sequence,
                                      const nlohmann::ordered_json& identity,
-                                     bool with_scores) const;
+                                     const PointFiles& point_files) const;
 
   /// Throws UsageError naming a label file whose labels are not those that `result`, which lies
   /// there, counts.

@@ -141,7 +141,7 @@ PlannedSequence plan_sequence(const RunPlan& plan, std::size_t position,
     return planned;
   }
   planned.finished =
-      planned.folder.finished(sequence, planned.identity, plan.settings.keeps_scores);
+      planned.folder.finished(sequence, planned.identity, plan.settings.point_files());
   if (planned.finished) check_unchanged(plan, planned, options.verify);
   return planned;
 }

@@ -16,6 +16,7 @@
 #include "eval/results/dynamic_score_file.hpp"
 #include "eval/results/machine.hpp"
 #include "eval/results/progress.hpp"
+#include "eval/results/reason_file.hpp"
 
 namespace mosbench {
 namespace {
@@ -141,10 +142,14 @@ class SequenceRun {
       fault(fmt::format("labels scan {}, expected {}", result.scan_index, accepted_));
     }
     const std::size_t points = pending_.front().points;
-    const std::size_t scores = settings_.keeps_scores ? points : result.scores.size();
-    if (result.labels.size() != points || result.scores.size() != scores) {
-      fault(fmt::format("has {} labels and {} scores for the {} points of scan {}",
-                        result.labels.size(), result.scores.size(), points, accepted_));
+    const PointFiles wanted = settings_.point_files();
+    const std::size_t scores = wanted.scores ? points : result.scores.size();
+    const std::size_t reasons = wanted.reasons ? points : result.reasons.size();
+    if (result.labels.size() != points || result.scores.size() != scores ||
+        result.reasons.size() != reasons) {
+      fault(fmt::format("has {} labels, {} scores and {} reasons for the {} points of scan {}",
+                        result.labels.size(), result.scores.size(), result.reasons.size(), points,
+                        accepted_));
     }
     ++accepted_;
   }
@@ -184,8 +189,13 @@ class SequenceRun {
   void write(const LabelledScan& result) const {
     const std::string& stem = rows_.scans[result.scan_index].stem;
     write_labels(folder_ / "labels" / (stem + ".label"), result.labels);
-    if (!settings_.keeps_scores) return;
-    write_file_atomic(dynamic_score_file(folder_, stem), format_dynamic_scores(result.scores));
+    const PointFiles wanted = settings_.point_files();
+    if (wanted.scores) {
+      write_file_atomic(dynamic_score_file(folder_, stem), format_dynamic_scores(result.scores));
+    }
+    if (wanted.reasons) {
+      write_file_atomic(reason_file(folder_, stem), format_reasons(result.reasons));
+    }
   }
 
   void finish_settling() {

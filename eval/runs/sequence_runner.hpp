@@ -8,6 +8,7 @@
 #include "datasets/sequence/sequence.hpp"
 #include "eval/protocols/protocol.hpp"
 #include "eval/results/result_file.hpp"
+#include "eval/results/result_folder.hpp"
 
 namespace mosbench {
 
@@ -20,6 +21,9 @@ struct RunSettings {
   unsigned threads = 1;
   bool keeps_scores = false;       ///< also writes every point's score
   bool is_one_of_several = false;  ///< progress then names the method
+
+  /// Reasons come with the scores of a method that gives some.
+  PointFiles point_files() const { return {keeps_scores, keeps_scores && method->gives_reasons}; }
 };
 
 /// Returns what messages call a run over a sequence: its name, and with `is_one_of_several` also
@@ -29,8 +33,8 @@ std::string title_of(const Sequence& sequence, const RunSettings& settings);
 /// Returns the conditions under which the method of `settings` runs on a sequence.
 RunContext context_of(const Sequence& sequence, const RunSettings& settings);
 
-/// Segments a sequence, writes `folder`/labels/<stem>.label for every scan, with `keeps_scores`
-/// also `folder`/scores/<stem>.score, and scores the scans with truth. With more than one thread
+/// Segments a sequence, writes `folder`/labels/<stem>.label for every scan, also what
+/// `point_files` asks for, and scores the scans with truth. With more than one thread
 /// the next scan is read and observed and the last one scored and written while a scan enters the
 /// map; what a whole run writes and which error is thrown do not depend on it. Holds up to three
 /// scans at a time, and the truth of those whose labels are still delayed. Throws DataError.

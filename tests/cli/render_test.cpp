@@ -147,6 +147,27 @@ TEST_F(Render, RefusesPlacesThatCanHoldNoPicturesBeforeTheWork) {
   }
 }
 
+TEST_F(Render, ColoursReasonsWhereTheRunKeptThem) {
+  const std::string plus = folder_ / "plus";
+  ASSERT_EQ(
+      cli::run({"run", folder_ / "00", "--preset", "best", "--scores", "--out", plus}).exit_code,
+      0);
+  const auto picture = [&](std::vector<std::string> flags) {
+    std::vector<std::string> words = {"render", plus, "--scan", "6", "-o", folder_ / "a.png"};
+    words.insert(words.end(), flags.begin(), flags.end());
+    const cli::Answer answer = cli::run(words);
+    EXPECT_EQ(answer.exit_code, 0) << answer.err;
+    return read_file(folder_ / "a.png");
+  };
+  EXPECT_NE(picture({"--reasons"}), picture({}));
+  const cli::Answer refused =
+      cli::run({"render", run(), "--scan", "6", "-o", folder_ / "c.png", "--reasons"});
+  EXPECT_EQ(refused.exit_code, 3);
+  EXPECT_THAT(
+      refused.err,
+      HasSubstr("reasons: is not there, expected a run of mosbench run --scores by a method"));
+}
+
 TEST_F(Render, RefusesScansAndSequencesThatAreNotThere) {
   for (const char* scan : {"8", "-1", "best", ""}) {
     const cli::Answer answer = cli::run({"render", run(), "--scan", scan, "-o", folder_ / "r.png"});

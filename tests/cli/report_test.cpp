@@ -105,6 +105,7 @@ TEST(Report, HoldsTheDynamicScoresOfARunThatKeptThem) {
   const auto content = content_of(read_file(folder / "r.html"));
   EXPECT_TRUE(content.at("results").at(0).at("scores").empty());
   EXPECT_EQ(content.at("results").at(1).at("scores").size(), 8U);
+  EXPECT_TRUE(content.at("results").at(1).at("reasons").empty());
   const auto file = folder / "runs/scored/00/scores/000005.score";
   std::filesystem::resize_file(file, 12);
   const cli::Answer cut = report();
@@ -112,6 +113,22 @@ TEST(Report, HoldsTheDynamicScoresOfARunThatKeptThem) {
   EXPECT_THAT(cut.err, HasSubstr("000005.score: has 12 bytes"));
   std::filesystem::remove(file);
   EXPECT_EQ(report().exit_code, 3);
+}
+
+TEST(Report, HoldsTheReasonsOfRunsThatKeptThem) {
+  const TempFolder folder;
+  const auto plus = folder / "plus";
+  ASSERT_EQ(
+      cli::run({"run", small_run() / "scans/00", "--preset", "best", "--scores", "--out", plus})
+          .exit_code,
+      0);
+  const auto report = [&] { return cli::run({"report", plus, "-o", folder / "r.html"}); };
+  ASSERT_EQ(report().exit_code, 0);
+  EXPECT_EQ(content_of(read_file(folder / "r.html")).at("results").at(0).at("reasons").size(), 8U);
+  std::filesystem::resize_file(std::filesystem::path(plus) / "00/reasons/000005.reason", 12);
+  const cli::Answer cut = report();
+  EXPECT_EQ(cut.exit_code, 3);
+  EXPECT_THAT(cut.err, HasSubstr("000005.reason: has 12 bytes"));
 }
 
 /// Two methods with scores and the labels of one of them as another's, in one folder each.

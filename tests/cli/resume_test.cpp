@@ -105,6 +105,22 @@ TEST_F(Resume, RunsASequenceAnewWhenScoresAreAskedForAndNotThere) {
   EXPECT_THAT(refused.err, HasSubstr("000999.score: belongs to no scan"));
 }
 
+TEST_F(Resume, RunsASequenceAnewWhenReasonsAreCutOrGone) {
+  const auto plus = command({"--scores", "--method", "hmm-mos-plus"});
+  ASSERT_EQ(cli::run(plus).exit_code, 0);
+  const auto whole = cli::contents(results());
+  fs::resize_file(results() / "reasons/000004.reason", 8);
+  ASSERT_EQ(cli::run(plus).exit_code, 0);
+  EXPECT_EQ(cli::contents(results()), whole);
+  fs::remove_all(results() / "reasons");
+  ASSERT_EQ(cli::run(plus).exit_code, 0);
+  EXPECT_EQ(cli::contents(results()), whole);
+  folder_.write("out/room/reasons/000999.reason", "stale");
+  const cli::Answer refused = cli::run(plus);
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("000999.reason: belongs to no scan"));
+}
+
 TEST_F(Resume, RefusesResultsOfAnotherConfigurationAndNamesTheDifference) {
   ASSERT_EQ(cli::run(command()).exit_code, 0);
   const auto before = cli::contents(folder_ / "out");

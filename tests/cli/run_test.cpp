@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "eval/results/dynamic_score_file.hpp"
+#include "eval/results/reason_file.hpp"
 #include "tests/cli/program.hpp"
 #include "tests/cli/small_sequence.hpp"
 
@@ -83,6 +84,26 @@ TEST_F(Run, WritesOneScorePerPointWhenAskedAndTheSameLabels) {
     }
   }
   EXPECT_GT(above, 0U);
+}
+
+TEST_F(Run, WritesAReasonPerPointBesideScoresWhereTheMethodGivesAny) {
+  for (const char* method : {"hmm-mos-plus", "hmm-mos"}) {
+    const cli::Answer answer = cli::run(command(method, {"--scores", "--method", method}));
+    ASSERT_EQ(answer.exit_code, 0) << answer.err;
+  }
+  EXPECT_FALSE(fs::exists(folder_ / "hmm-mos/room/reasons"));
+  std::size_t moving = 0;
+  for (std::size_t k = 0; k < kScansOfRun; ++k) {
+    const fs::path file = reason_file(folder_ / "hmm-mos-plus/room", cli::stem(k));
+    const auto reasons = parse_reasons(read_file(file), cli::kPointsPerScan, file);
+    const auto labels = read_labels(
+        folder_ / "hmm-mos-plus/room/labels" / (cli::stem(k) + ".label"), cli::kPointsPerScan);
+    for (std::size_t i = 0; i < reasons.size(); ++i) {
+      ASSERT_EQ(reasons[i] != Reason::kNone, labels[i] == kMovingLabel) << k << ' ' << i;
+      moving += labels[i] == kMovingLabel;
+    }
+  }
+  EXPECT_GT(moving, 0U);
 }
 
 TEST_F(Run, PrintsTheScoresAndWhatItChose) {

@@ -35,7 +35,7 @@ class SequenceNames : public testing::Test {
 };
 
 TEST_F(SequenceNames, ThatResultsUseThemselvesAreRefusedByRun) {
-  for (const std::string name : {"labels", "scores", "08.partial", "08.replaced", "result.json"}) {
+  for (const std::string name : {"labels", "reasons", "08.partial", "08.replaced", "result.json"}) {
     fs::copy(data() / "sequences/08", data() / "sequences" / name, fs::copy_options::recursive);
     const auto before = cli::contents(out());
     const cli::Answer answer = cli::run({"run", data(), "--out", out()});
@@ -50,7 +50,7 @@ TEST_F(SequenceNames, ThatResultsUseThemselvesAreRefusedByRun) {
 }
 
 TEST_F(SequenceNames, ThatResultsUseThemselvesAreNotLeftOutOfNumbers) {
-  for (const std::string name : {"labels", "scores", "08.partial", "08.replaced"}) {
+  for (const std::string name : {"labels", "reasons", "08.partial", "08.replaced"}) {
     const fs::path file = put_result(out() / name, name);
     for (const std::vector<std::string>& command :
          std::vector<std::vector<std::string>>{{"stats", out()},

@@ -188,7 +188,7 @@ def _in_place_of(path, make):
     make(path)
 
 
-NAMES = [b"08.partial", b"labels", b"scores", b"x.replaced", b"\xff\xfe", b"a b", b"a\nb", b"-x", b"=cmd()", b"\x1b[31m",
+NAMES = [b"08.partial", b"labels", b"scores", b"reasons", b"x.replaced", b"\xff\xfe", b"a b", b"a\nb", b"-x", b"=cmd()", b"\x1b[31m",
          b"a" * 255, b"$(touch x)", b"000001 (copy).bin", b"999999.label", b"..x", b"con", b"a,b", b'a"b', b"a|b"]
 
 

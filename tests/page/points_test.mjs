@@ -1,9 +1,10 @@
 // The 3-D view shows what result.json counts.
 import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { openBrowser, openReport, refuseComplaints, settled } from './browser.mjs';
-import { freshFolder, mosbench, realSequence, resultOf, simulatedRuns } from './reports.mjs';
+import { artefacts, freshFolder, mosbench, realSequence, resultOf, simulatedRuns } from './reports.mjs';
 import palette from '../../eval/report/page/palette.json' with { type: 'json' };
 
 // Pictures are drawn without a graphics card here: small ones are enough to count by.
@@ -14,10 +15,8 @@ let browser;
 before(async () => (browser = await openBrowser()));
 after(() => browser.close());
 
-const colour = (key) => {
-  const { light } = palette.outcomes.find((outcome) => outcome.key === key);
-  return [1, 3, 5].map((i) => parseInt(light.slice(i, i + 2), 16)).join(',');
-};
+const rgb = (hex) => [1, 3, 5].map((i) => parseInt(hex.slice(i, i + 2), 16)).join(',');
+const colour = (key) => rgb(palette.outcomes.find((outcome) => outcome.key === key).light);
 
 function coloursOf(shown) {
   const of = (key) => shown[colour(key)] ?? 0;
@@ -58,5 +57,29 @@ test('points of each colour equal the counts on the real KITTI drive 0005', { sk
   const result = resultOf(join(run, 'kitti_0005'));
   const page = await openReport(browser, file, { viewport: SMALL });
   await everyScanShowsItsCounts(page, result);
+  refuseComplaints(page);
+});
+
+test('points of each reason equal those of the reason files, with a key to the colours', async () => {
+  simulatedRuns(folder);
+  const run = join(folder, 'best');
+  const file = join(folder, 'best.html');
+  mosbench('run', join(folder, 'sim'), '--preset', 'best', '--set', 'delay_scans=8', '--scores', '--out', run);
+  mosbench('report', run, '-o', file);
+  const page = await openReport(browser, file, { viewport: SMALL });
+  await page.selectOption('[aria-label=colour]', 'reason');
+  assert.equal(await page.locator('.scale').textContent(), palette.reasons.map(({ name }) => name).join(''));
+  const seen = palette.reasons.map(() => 0);
+  for (const [scan, { stem }] of resultOf(join(run, '06')).scans.entries()) {
+    await page.evaluate((k) => mosbenchReport.transport.go(k), scan);
+    await settled(page);
+    const expected = palette.reasons.map(() => 0);
+    for (const reason of readFileSync(join(run, '06', 'reasons', `${stem}.reason`))) ++expected[reason];
+    const shown = await page.evaluate(() => mosbenchReport.viewer.coloursShown());
+    assert.deepEqual(palette.reasons.map(({ light }) => shown[rgb(light)] ?? 0), expected, `scan ${scan}`);
+    expected.forEach((points, reason) => (seen[reason] += points));
+  }
+  assert.ok(seen.every((points) => points > 0), `each reason is there: ${seen}`);
+  await page.screenshot({ path: join(artefacts(), 'reasons.png') });
   refuseComplaints(page);
 });

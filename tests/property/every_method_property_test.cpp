@@ -36,7 +36,7 @@ std::vector<SmallWorld> small_worlds() {
   return worlds;
 }
 
-TEST_P(EveryMethodOnSmallWorlds, GivesTheSameLabelsAndScoresForAnyNumberOfThreads) {
+TEST_P(EveryMethodOnSmallWorlds, GivesTheSameLabelsScoresAndReasonsForAnyNumberOfThreads) {
   for (const SmallWorld& world : small_worlds()) {
     const auto expected = results_of(*make({.scores = true}), world);
     ASSERT_EQ(expected.size(), world.scans.size());
@@ -46,6 +46,7 @@ TEST_P(EveryMethodOnSmallWorlds, GivesTheSameLabelsAndScoresForAnyNumberOfThread
       for (std::size_t k = 0; k < results.size(); ++k) {
         ASSERT_EQ(results[k].labels, expected[k].labels) << "scan " << k;
         ASSERT_EQ(results[k].scores, expected[k].scores) << "scan " << k;
+        ASSERT_EQ(results[k].reasons, expected[k].reasons) << "scan " << k;
       }
     }
   }
@@ -56,6 +57,20 @@ TEST_P(EveryMethodOnSmallWorlds, GivesTheSameLabelsWithAndWithoutScores) {
     const auto plain = results_of(*make({}), world);
     const auto scored = results_of(*make({.scores = true}), world);
     for (std::size_t k = 0; k < plain.size(); ++k) ASSERT_EQ(plain[k].labels, scored[k].labels);
+  }
+}
+
+TEST_P(EveryMethodOnSmallWorlds, GivesAReasonToWhatMovesAloneAndOnlyWhereItSaysSo) {
+  const bool gives_reasons = find_method(GetParam())->gives_reasons;
+  for (const SmallWorld& world : small_worlds()) {
+    for (const LabelledScan& scan : results_of(*make({}), world)) ASSERT_TRUE(scan.reasons.empty());
+    for (const LabelledScan& scan : results_of(*make({.scores = true}), world)) {
+      ASSERT_EQ(scan.reasons.size(), gives_reasons ? scan.labels.size() : 0U);
+      for (std::size_t i = 0; i < scan.reasons.size(); ++i) {
+        ASSERT_LT(static_cast<std::size_t>(scan.reasons[i]), kReasonCount);
+        ASSERT_EQ(scan.reasons[i] != Reason::kNone, scan.labels[i] == kMovingLabel);
+      }
+    }
   }
 }
 

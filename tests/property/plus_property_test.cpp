@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/hmm_mos_plus/pipeline.hpp"
@@ -232,6 +233,29 @@ TEST(PlusScores, AreAtTheThresholdOrAboveWhereAPointMovesButForFeet) {
   }
   EXPECT_GT(moving, 200U);
   EXPECT_LT(below * 2, moving);
+}
+
+TEST(PlusReasons, AreOfEveryMovingPointOneAndDepartedOnlyWithADelay) {
+  std::array<std::size_t, kReasonCount> points{};
+  for (unsigned seed = 50; seed < 54; ++seed) {
+    const SmallWorld world = small_world({.seed = seed});
+    for (const int delay : {0, 3}) {
+      hmm_mos_plus::Pipeline pipeline(plus_of_a_room(delay), {.scores = true});
+      const std::vector<LabelledScan> results = results_of(pipeline, world);
+      const auto plain = plus_labels(world, plus_of_a_room(delay));
+      for (std::size_t k = 0; k < results.size(); ++k) {
+        ASSERT_EQ(results[k].labels, plain[k]);
+        ASSERT_EQ(results[k].reasons.size(), plain[k].size());
+        for (std::size_t i = 0; i < plain[k].size(); ++i) {
+          const Reason reason = results[k].reasons[i];
+          ASSERT_EQ(reason != Reason::kNone, plain[k][i] == kMovingLabel);
+          ASSERT_TRUE(delay > 0 || reason != Reason::kDeparted);
+          ++points.at(static_cast<std::size_t>(reason));
+        }
+      }
+    }
+  }
+  for (const std::size_t of_reason : points) EXPECT_GT(of_reason, 20U);
 }
 
 TEST(PlusMemory, StaysBoundedOverALongRun) {

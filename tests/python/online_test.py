@@ -118,6 +118,18 @@ def test_delayed_labels_come_later_and_scores_when_asked(wall):
     assert mosbench.MOS().push(wall, IDENTITY)[0].scores is None
 
 
+def test_reasons_come_with_scores_of_hmm_mos_plus(street):
+    for method, scores, expected in (("hmm-mos-plus", True, True), ("hmm-mos-plus", False, False), ("hmm-mos", True, False)):
+        mos = mosbench.MOS(method=method, scores=scores)
+        results = [mos.push(scan.points, scan.pose)[0] for scan in mosbench.open(street)]
+        assert all((result.reasons is not None) == expected for result in results)
+        if not expected:
+            continue
+        assert all(result.reasons.dtype == np.uint8 for result in results)
+        assert all(((result.reasons > 0) == result.moving).all() for result in results)
+        assert {1, 3} <= set(np.concatenate([result.reasons for result in results]))
+
+
 def test_objects_come_from_methods_that_find_them(street):
     for method, expected in (("hmm-mos", False), ("dynablox", True)):
         mos = mosbench.MOS(method=method)

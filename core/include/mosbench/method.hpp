@@ -23,11 +23,22 @@ struct StageTime {
   double cpu_ms = 0;  ///< of the whole process, all threads; 0 unless RunContext::cpu_times
 };
 
+/// Why a method calls a point moving.
+enum class Reason : std::uint8_t {
+  kNone,      ///< it does not
+  kArrived,   ///< its place was free before
+  kDeparted,  ///< its place is free afterwards
+  kGrown,     ///< it is connected with such points
+  kFeet,      ///< it is next to the ground, below such points
+};
+inline constexpr std::size_t kReasonCount = 5;
+
 /// One scan whose labels are final.
 struct LabelledScan {
   std::size_t scan_index = 0;         ///< counts pushed scans from 0
   std::vector<std::uint32_t> labels;  ///< kStaticLabel or kMovingLabel, one per pushed point
   std::vector<float> scores;          ///< larger: more likely to move; empty unless asked for
+  std::vector<Reason> reasons;        ///< the same; empty of methods that give none
   /// Number of the moving object that each point belongs to, from 1 and the same in all scans, 0
   /// for none; empty when the method finds no objects.
   std::vector<std::uint32_t> objects;
@@ -88,7 +99,7 @@ struct RunContext {
   /// Length of the sequence when it is known: the end of a delayed run may be labelled in another
   /// way.
   std::optional<std::size_t> scan_count = std::nullopt;
-  bool scores = false;     ///< results hold a score per point
+  bool scores = false;     ///< results hold a score per point, and of some methods a reason
   bool cpu_times = false;  ///< stages hold their CPU time, too
   /// When each scan was measured, ns since 1970 or since the start; empty when unknown.
   std::vector<std::int64_t> stamps_ns = {};
@@ -111,6 +122,7 @@ struct MethodKind {
   std::string_view score_name = "score";  ///< what scores are, with unit: "margin, m"
   /// What LabelledScan::threshold is, "Otsu threshold"; empty when no threshold is worth showing.
   std::string_view threshold_name = "";
+  bool gives_reasons = false;  ///< results with scores also say why each point moves
 };
 
 /// All methods, the default one first.

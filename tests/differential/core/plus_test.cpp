@@ -22,6 +22,7 @@ hmm_mos_plus::Config small_plus() {
 
 struct PlusTally {
   std::size_t sequences = 0, moving_points = 0, scored_points = 0;
+  std::array<std::size_t, kReasonCount> reasons{};
 };
 
 void expect_twins_labels(const SmallWorld& world, const hmm_mos_plus::Config& config,
@@ -38,6 +39,9 @@ void expect_twins_labels(const SmallWorld& world, const hmm_mos_plus::Config& co
     ASSERT_EQ(results[k].scan_index, k);
     ASSERT_EQ(results[k].labels, expected[k].labels) << "scan " << k;
     ASSERT_EQ(results[k].scores, expected[k].scores) << "scan " << k;
+    ASSERT_EQ(results[k].reasons, expected[k].reasons) << "scan " << k;
+    for (const Reason reason : results[k].reasons)
+      ++tally.reasons[static_cast<std::size_t>(reason)];
     ASSERT_EQ(results[k].nonfinite_points, expected[k].nonfinite_points);
     ASSERT_EQ(results[k].judged, k > 0 || config.map.delay_scans > 0);
     tally.moving_points +=
@@ -61,6 +65,7 @@ TEST(PlusAgainstItsTwin, AgreesOnlineAndForEveryDelay) {
   EXPECT_EQ(tally.sequences, 24U);
   EXPECT_GT(tally.moving_points, 2000U);
   EXPECT_GT(tally.scored_points, tally.moving_points / 2);
+  for (const std::size_t points : tally.reasons) EXPECT_GT(points, 20U);
 }
 
 /// With jitter, and with scans that are missing.

@@ -36,8 +36,8 @@ TEST(SequenceName, RefusesWhatLeadsOutOfTheFolderOfResults) {
 }
 
 TEST(SequenceName, RefusesNamesThatResultsUseThemselves) {
-  for (const char* name : {"labels", "scores", "result.json", "08.partial", "08.replaced",
-                           ".partial", "labels/sequence_1", "station/scores"}) {
+  for (const char* name : {"labels", "scores", "reasons", "result.json", "08.partial",
+                           "08.replaced", ".partial", "labels/sequence_1", "station/scores"}) {
     EXPECT_THAT(refusal(name), HasSubstr("expected another name: results use labels, scores"))
         << name;
   }

@@ -126,8 +126,11 @@ TEST(Picture, IsAPngFileOfTheSamePixels) {
 }
 
 TEST(Palette, IsThatOfThePage) {
-  EXPECT_EQ(palette(false).outcomes[0], (Colour{0x00, 0x72, 0xB2}));
-  EXPECT_EQ(palette(true).names[1], "false positive");
+  EXPECT_EQ(palette(false).outcomes.at(0).colour, (Colour{0x00, 0x72, 0xB2}));
+  EXPECT_EQ(palette(true).outcomes.at(1).name, "false positive");
+  EXPECT_EQ(palette(false).outcomes.size(), OutcomeCounts{}.size());
+  EXPECT_EQ(palette(false).reasons.size(), kReasonCount);
+  EXPECT_EQ(palette(false).reasons.at(4).name, "feet");
 }
 
 /// One point per outcome, ahead of the sensor and apart from each other.
@@ -148,7 +151,20 @@ TEST(ScanPicture, DrawsEachPointWhereItIsInTheColourOfItsOutcome) {
   const Palette colours = palette(false);
   for (const std::size_t i : {0U, 1U, 2U, 5U}) {
     const std::size_t up = 500 - 25 * (4 + i);
-    EXPECT_EQ(picture.at(500, up), colours.outcomes[i]) << i;
+    EXPECT_EQ(picture.at(500, up), colours.outcomes[i].colour) << i;
+  }
+}
+
+TEST(ScanPicture, DrawsEachPointInTheColourOfItsReasonWhenAskedTo) {
+  ScanPictureOptions options;
+  options.range_m = 20.0;
+  options.by_reason = true;
+  JudgedScan scan = row_of_outcomes();
+  for (const int reason : {1, 2, 3, 4, 1, 1}) scan.reasons.push_back(static_cast<Reason>(reason));
+  const Picture picture = scan_picture(scan, options);
+  const Palette colours = palette(false);
+  for (const std::size_t i : {0U, 1U, 2U, 3U}) {
+    EXPECT_EQ(picture.at(500, 500 - 25 * (4 + i)), colours.reasons[i + 1].colour) << i;
   }
 }
 
@@ -214,7 +230,7 @@ TEST(ScanPicture, DrawsAScanWithoutPointsAndWithImpossibleOnes) {
   orbit.viewpoint.orbit_rad = 2.0;
   EXPECT_EQ(scan_picture(scan, orbit).width(), 1000U);
   // Only in the key to the colours.
-  EXPECT_LT(pixels_of(picture, palette(false).outcomes[1]), 120U);
+  EXPECT_LT(pixels_of(picture, palette(false).outcomes[1].colour), 120U);
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "eval/report/report_asset.hpp"
 #include "eval/report/scan_choice.hpp"
 #include "eval/results/dynamic_score_file.hpp"
+#include "eval/results/reason_file.hpp"
 #include "tests/temp_folder.hpp"
 
 namespace mosbench {
@@ -113,6 +114,16 @@ TEST(DynamicScores, OfTheFirstFormatAreWholeNumbers) {
   const std::string bytes({0, 0, 0, 0, 7, 0, 0, 0, 0x2f, 0x0d, 0, 0});
   EXPECT_EQ(parse_dynamic_scores(bytes, 3, ScoreNumbers::kInt32, "f"),
             (std::vector<float>{0, 7, 3375}));
+}
+
+TEST(Reasons, AreOneKnownBytePerPoint) {
+  const std::vector<Reason> reasons = {Reason::kNone, Reason::kFeet, Reason::kArrived};
+  const std::string bytes(format_reasons(reasons));
+  EXPECT_EQ(bytes, std::string("\x00\x04\x01", 3));
+  EXPECT_EQ(parse_reasons(bytes, 3, "f"), reasons);
+  EXPECT_THROW(parse_reasons(bytes, 4, "f"), DataError);
+  EXPECT_THROW(parse_reasons("\x05", 1, "f"), DataError);
+  EXPECT_THROW(parse_reasons("\xff", 1, "f"), DataError);
 }
 
 TEST(CompressedText, IsZlibInBase64) {

@@ -99,13 +99,49 @@ TEST(SequenceRunner, RefusesAMethodThatLabelsOtherThanItWasGiven) {
   };
   EXPECT_EQ(
       message_of<std::logic_error>([&] { run_sequence(TwoScans(), settings, folder.path()); }),
-      "method broken has 3 labels and 0 scores for the 1 points of scan 0");
+      "method broken has 3 labels, 0 scores and 0 reasons for the 1 points of scan 0");
   kind.make = [](const Settings&, const RunContext&) -> std::unique_ptr<Method> {
     return std::make_unique<BrokenMethod>(true);
   };
   EXPECT_EQ(
       message_of<std::logic_error>([&] { run_sequence(TwoScans(), settings, folder.path()); }),
       "method broken leaves 2 scans without labels");
+}
+
+/// Gives labels and scores, but says never why.
+class ReasonlessMethod : public BrokenMethod {
+ public:
+  ReasonlessMethod() : BrokenMethod(false) {}
+  using Method::push;
+  std::vector<LabelledScan> push(std::unique_ptr<Observed>) override {
+    LabelledScan scan;
+    scan.scan_index = pushed_++;
+    scan.labels.assign(1, kStaticLabel);
+    scan.scores.assign(1, 0.0F);
+    return {scan};
+  }
+
+ private:
+  std::size_t pushed_ = 0;
+};
+
+TEST(SequenceRunner, WantsReasonsWithTheScoresOfAMethodThatGivesSome) {
+  MethodKind kind = methods().front();
+  kind.name = "broken";
+  kind.make = [](const Settings&, const RunContext&) -> std::unique_ptr<Method> {
+    return std::make_unique<ReasonlessMethod>();
+  };
+  RunSettings settings;
+  settings.method = &kind;
+  settings.protocol = &protocol_named("mapmos");
+  settings.keeps_scores = true;
+  const TempFolder folder;
+  run_sequence(TwoScans(), settings, folder.path());
+  EXPECT_FALSE(std::filesystem::exists(folder / "reasons"));
+  kind.gives_reasons = true;
+  EXPECT_EQ(
+      message_of<std::logic_error>([&] { run_sequence(TwoScans(), settings, folder.path()); }),
+      "method broken has 1 labels, 1 scores and 0 reasons for the 1 points of scan 0");
 }
 
 }  // namespace

@@ -46,6 +46,11 @@ export class Clouds {
     return (this.#content.results[result].scores ?? []).length > 0;
   }
 
+  /** Whether the run kept why its points move. */
+  hasReasons(result) {
+    return (this.#content.results[result].reasons ?? []).length > 0;
+  }
+
   leftOut(result) {
     const none = this.#content.clouds.length > 0 ? 'the file holds no points of this run' : 'the file holds no points';
     return this.#cloudOf(result)?.left_out ?? none;
@@ -66,8 +71,8 @@ export class Clouds {
   }
 
   /**
-   * {points, positions_m, outcomes, drawable, scores, pose, unscored}, or null when its points were left out;
-   * scores are null where the run kept none.
+   * {points, positions_m, outcomes, drawable, scores, reasons, pose, unscored}, or null when its points were left
+   * out; scores and reasons are null where the run kept none.
    */
   async read(result, index) {
     return keep(this.#kept, `${result}/${index}`, () => this.#unpack(result, index));
@@ -81,11 +86,12 @@ export class Clouds {
     const scans = this.#cloudOf(result)?.scans ?? [];
     const place = scans.findIndex((scan) => scan.index === index);
     if (place < 0) return null;
-    const { outcomes, scores } = this.#content.results[result];
-    const [positions_m, plane, scorePlanes] = await Promise.all([
+    const { outcomes, scores, reasons } = this.#content.results[result];
+    const [positions_m, plane, scorePlanes, reasonPlane] = await Promise.all([
       this.#positionsOf(scans[place].positions),
       readBlock(outcomes[place]),
       this.hasScores(result) ? readBlock(scores[place]) : null,
+      this.hasReasons(result) ? readBlock(reasons[place]) : null,
     ]);
     return {
       points: scans[place].points,
@@ -96,6 +102,7 @@ export class Clouds {
       unscored: !hasLabels(this.#content.results[result].result.scans[index]),
       ...outcomesFromPlane(plane),
       scores: scorePlanes && scoresFromPlanes(scorePlanes),
+      reasons: reasonPlane,
     };
   }
 }

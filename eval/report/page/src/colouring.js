@@ -1,5 +1,5 @@
 import { isDisputed, opinionColours, opinionsOf } from './disagreement.js';
-import { OUTCOMES, outcomeColours, rgb, scaleColour } from './theme.js';
+import { OUTCOMES, outcomeColours, REASONS, rgb, scaleColour } from './theme.js';
 
 /** What a point's colour can stand for. */
 export const COLOURINGS = [
@@ -7,6 +7,7 @@ export const COLOURINGS = [
   { key: 'range', name: 'range', unit: 'm', digits: 1 },
   { key: 'height', name: 'height', unit: 'm', digits: 1 },
   { key: 'score', name: 'score', unit: '' },
+  { key: 'reason', name: 'reason' },
   { key: 'disagreement', name: 'disagreement' },
 ];
 
@@ -20,6 +21,7 @@ function obstacle(key, clouds, results, view) {
     const kinds = new Set(results.map((result) => clouds.scoreKind(result)));
     return kinds.size > 1 ? 'not of different methods' : null;
   }
+  if (key === 'reason') return results.every((result) => clouds.hasReasons(result)) ? null : 'not given by every run';
   if (key !== 'disagreement') return null;
   return results.length < 2 ? 'needs a run beside' : view === 'map' ? 'not in the motion map' : null;
 }
@@ -27,7 +29,9 @@ function obstacle(key, clouds, results, view) {
 /** Every colouring with its name for the shown results, and with `why` where it cannot be shown. */
 export function allColourings(clouds, results, view) {
   const several = results.length > 1 || clouds.comparable(results[0]).length > 0;
-  return COLOURINGS.filter(({ key }) => key !== 'disagreement' || several).map((colouring) => ({
+  const reasoned = results.some((result) => clouds.hasReasons(result));
+  const offered = { disagreement: several, reason: reasoned };
+  return COLOURINGS.filter(({ key }) => offered[key] ?? true).map((colouring) => ({
     ...colouring,
     name: colouring.key === 'score' ? clouds.scoreName(results[0]) : colouring.name,
     why: obstacle(colouring.key, clouds, results, view),
@@ -75,11 +79,16 @@ function commonScale(key, scans, values) {
   return areVotes ? { low: 1, high: Math.max(2, high), digits: 0 } : { low, high, digits: 2 };
 }
 
-function byOutcome(scan, theme) {
-  const palette = outcomeColours(theme).map(rgb);
-  const colours = new Uint8Array(3 * scan.points);
-  for (let i = 0; i < scan.points; ++i) colours.set(palette[scan.outcomes[i]], 3 * i);
+function byKind(kinds, hexColours) {
+  const palette = hexColours.map(rgb);
+  const colours = new Uint8Array(3 * kinds.length);
+  for (let i = 0; i < kinds.length; ++i) colours.set(palette[kinds[i]], 3 * i);
   return colours;
+}
+
+/** The key to the colours of reasons: [{name, colour}]. */
+export function reasonNames(theme) {
+  return REASONS.map((reason) => ({ name: reason.name, colour: reason[theme] }));
 }
 
 function byScale(values, { low, high }, theme, colourOfZero) {
@@ -96,7 +105,11 @@ function byScale(values, { low, high }, theme, colourOfZero) {
 export function colourScans(key, scans, theme) {
   const large = (p, i) => scans[p].outcomes[i] < OUTCOMES_THAT_STAND_OUT;
   if (scans.length === 0) return { colours: [], scale: null, large };
-  if (key === 'outcome') return { colours: scans.map((scan) => byOutcome(scan, theme)), scale: null, large };
+  if (key === 'outcome') return { colours: scans.map((scan) => byKind(scan.outcomes, outcomeColours(theme))), scale: null, large };
+  if (key === 'reason') {
+    const hexColours = reasonNames(theme).map(({ colour }) => colour);
+    return { colours: scans.map((scan) => byKind(scan.reasons, hexColours)), scale: null, large };
+  }
   if (key === 'disagreement') {
     const opinions = scans.map((_, p) => opinionsOf(scans, p));
     return { colours: opinions.map((o) => opinionColours(o, theme)), scale: null, opinions, large: (p, i) => isDisputed(opinions[p][i]) };

@@ -44,6 +44,7 @@ export function movingPoints(scan, origin) {
     positions_m: new Float32Array(3 * points),
     outcomes: new Uint8Array(points),
     scores: scan.scores ? new Float32Array(points) : null,
+    reasons: scan.reasons ? new Uint8Array(points) : null,
     eye: toMap(scan.pose, 0, 0, 0, origin),
   };
   let next = 0;
@@ -51,6 +52,7 @@ export function movingPoints(scan, origin) {
     if (!SHOWN[scan.outcomes[i]] || !scan.drawable[i]) continue;
     moving.positions_m.set(toMap(scan.pose, scan.positions_m[3 * i], scan.positions_m[3 * i + 1], scan.positions_m[3 * i + 2], origin), 3 * next);
     if (scan.scores) moving.scores[next] = scan.scores[i];
+    if (scan.reasons) moving.reasons[next] = scan.reasons[i];
     moving.outcomes[next++] = scan.outcomes[i];
   }
   return moving;
@@ -65,6 +67,7 @@ export function join(parts) {
     positions_m: new Float32Array(3 * points),
     outcomes: new Uint8Array(points),
     scores: parts.every((part) => part.scores) ? new Float32Array(points) : null,
+    reasons: parts.every((part) => part.reasons) ? new Uint8Array(points) : null,
     drawable: new Uint8Array(points).fill(1),
     path: parts.map((part) => part.eye),
     pose: null,
@@ -74,6 +77,7 @@ export function join(parts) {
     cloud.positions_m.set(part.positions_m, 3 * next);
     cloud.outcomes.set(part.outcomes, next);
     cloud.scores?.set(part.scores, next);
+    cloud.reasons?.set(part.reasons, next);
     next += part.outcomes.length;
   }
   return cloud;

@@ -1,7 +1,7 @@
 import { element } from './dom.js';
 import { fixed } from './format.js';
 import { toMap } from './motion_map.js';
-import { OUTCOMES } from './theme.js';
+import { OUTCOMES, REASONS } from './theme.js';
 
 const vector = (numbers) => numbers.map((n) => n.toFixed(2)).join(', ');
 
@@ -20,6 +20,7 @@ export function pointDetails(scans, pane, point, runs, scores) {
     const run = judged.length > 1 ? runs[p] : null;
     rows.push([run ?? 'outcome', OUTCOMES[s.outcomes[point]].name]);
     if (s.scores) rows.push([run ? `${run}, ${scores[p]}` : scores[p], fixed(s.scores[point], Number.isInteger(s.scores[point]) ? 0 : 3)]);
+    if (s.reasons) rows.push([run ? `${run}, reason` : 'reason', REASONS[s.reasons[point]].name]);
   });
   return element('dl', {}, ...rows.flatMap(([name, value]) => [element('dt', {}, name), element('dd', {}, value)]));
 }

@@ -7,6 +7,9 @@ export function preferredTheme() {
 
 export const OUTCOMES = palette.outcomes;
 
+/** Why a point is called moving, by the numbers of Reason in mosbench/method.hpp. */
+export const REASONS = palette.reasons;
+
 /** [r, g, b] in 0..255 of "#rrggbb". */
 export function rgb(hex) {
   return [1, 3, 5].map((i) => parseInt(hex.slice(i, i + 2), 16));

@@ -1,4 +1,4 @@
-import { colourScans, sizePoints } from './colouring.js';
+import { colourScans, reasonNames, sizePoints } from './colouring.js';
 import { opinionNames } from './disagreement.js';
 import { element } from './dom.js';
 import { Legend } from './legend.js';
@@ -112,7 +112,8 @@ export class Viewer {
 
   #paint() {
     const [wanted, theme] = [this.state.get('colouring'), this.state.get('theme')];
-    const key = wanted === 'score' && this.scans.some(({ scores }) => !scores) ? 'outcome' : wanted;
+    const needed = { score: 'scores', reason: 'reasons' }[wanted];
+    const key = needed && this.scans.some((scan) => !scan[needed]) ? 'outcome' : wanted;
     const { colours, scale, opinions, large } = colourScans(key, this.scans, theme);
     this.scans.forEach((scan, p) => {
       const sizes = sizePoints(scan, this.state.get('visible'), this.state.get('pointSize'), (i) => large(p, i));
@@ -123,6 +124,7 @@ export class Viewer {
     const name = key === 'score' ? this.clouds.scoreName(this.#shown[0] ?? this.state.get('result')) : key;
     this.scale.fill(key, scale, theme, { name, thresholds: this.#thresholds() });
     if (opinions && names.length > 1) this.scale.fillKinds(opinionNames(names, theme));
+    if (key === 'reason') this.scale.fillKinds(reasonNames(theme));
     this.stage.draw();
   }
 

@@ -37,5 +37,15 @@ for (const theme of ['light', 'dark']) {
         }
       }
     });
+    test(`reasons are told apart in the ${theme} theme with ${vision}`, () => {
+      const { reasons, background } = palette;
+      reasons.forEach((a, i) => {
+        assert.ok(difference(vision, a[theme], background[theme]) > 12, `${a.key} on the background`);
+        for (const b of reasons.slice(i + 1)) {
+          const found = difference(vision, a[theme], b[theme]);
+          assert.ok(found > 25, `${a.key} and ${b.key}: ${found}`);
+        }
+      });
+    });
   }
 }

@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { Clouds } from '../src/clouds.js';
-import { allColourings, colourScans, colouringsOf, countOutcomes, limits, quantity, sizePoints } from '../src/colouring.js';
+import { allColourings, colourScans, colouringsOf, countOutcomes, limits, quantity, reasonNames, sizePoints } from '../src/colouring.js';
 import { countDisputed, opinionNames, opinionsOf } from '../src/disagreement.js';
 import { join, movingPoints, StillPoints, toMap } from '../src/motion_map.js';
 import { paneAt, paneGrid } from '../src/pane_grid.js';
@@ -66,6 +66,17 @@ test('scores are offered only where every shown run kept them, and of one kind',
   assert.deepEqual([score(0, 4).why, score(0, 5).why], ['not of different methods', null]);
   assert.deepEqual([score(0).name, score(3).name], ['margin', 'score']);
   assert.equal(colouringsOf(clouds, [1], 'orbit').some(({ key }) => key === 'score'), false);
+});
+
+test('reasons are coloured as the palette says, and offered only where a shown run gives some', () => {
+  const clouds = new Clouds({ clouds: [], results: [{ reasons: [3] }, { reasons: [] }, {}] });
+  const why = (...results) => allColourings(clouds, results, 'orbit').find(({ key }) => key === 'reason')?.why;
+  assert.deepEqual([why(0), why(0, 1), why(1), why(2)], [null, 'not given by every run', undefined, undefined]);
+  const { colours, scale } = colourScans('reason', [{ ...SCAN, reasons: Uint8Array.from([1, 0, 2, 4]) }], 'light');
+  assert.equal(scale, null);
+  const names = reasonNames('light');
+  assert.deepEqual(names.map(({ name }) => name), ['not called moving', 'arrived in free space', 'left free space behind', 'connected with such', 'feet']);
+  assert.deepEqual([1, 0, 2, 4].map((reason) => rgb(names[reason].colour)), [0, 1, 2, 3].map((i) => [...colours[0].slice(3 * i, 3 * i + 3)]));
 });
 
 test('disagreement is offered beside a run, outside of the motion map', () => {
