@@ -3,12 +3,23 @@
 #include <algorithm>
 
 namespace mosbench::hmm_mos {
+namespace {
+
+/// Arrivals are pruned before their age is beyond what 8 bits hold: it is below kMaxAgeTicks and
+/// this at an update, and grows by kMaxAgeTicks until `within` takes none for young.
+constexpr std::uint32_t kPruneTicks = 50;
+static_assert(2 * BlockHistory::kMaxAgeTicks + kPruneTicks < 256);
+
+}  // namespace
 
 void BlockHistory::update(const BlockMask& observed, const BlockStates& before,
                           const BlockStates& after, const Tick& tick) {
-  if (arrived_.any()) {  // before their age is beyond what 8 bits hold
+  if (!arrived_.any()) {
+    pruned_ = tick.at;
+  } else if (tick.at - pruned_ >= kPruneTicks) {
     arrived_ = within(arrived_, kMaxAgeTicks, tick.at);
     sure_ = sure_ & arrived_;
+    pruned_ = tick.at;
   }
   updated_ = tick.at;
   const BlockMask occupied = observed & after.occupied, free = observed & after.free;
@@ -70,7 +81,6 @@ BlockMask BlockHistory::within(const BlockMask& arrivals, std::uint32_t ticks,
   BlockMask young;
   if (now - updated_ > kMaxAgeTicks) return young;
   for_each_cell(arrivals, [&](std::uint32_t cell) {
-    // Ages at the last update are at most kMaxAgeTicks, so that these are below 256.
     const auto age = static_cast<std::uint8_t>(now - (*arrived_at_)[cell]);
     if (age <= ticks) young.set(cell);
   });

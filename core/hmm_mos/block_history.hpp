@@ -33,19 +33,22 @@ class BlockHistory {
   /// Makes voxels never seen.
   void forget(const BlockMask& voxels);
 
-  /// Returns the voxels whose present run of occupied scans began from free, at most `ticks`
-  /// before `now`.
-  BlockMask arrived_within(std::uint32_t ticks, std::uint32_t now) const {
-    return within(arrived_, ticks, now);
+  /// Returns those of some voxels whose present run of occupied scans began from free, at most
+  /// `ticks` before `now`; up to kMaxAgeTicks.
+  BlockMask arrived_within(const BlockMask& voxels, std::uint32_t ticks, std::uint32_t now) const {
+    return within(voxels & arrived_, ticks, now);
   }
   /// The same of those that were free for kSureTicks or more.
-  BlockMask sure_within(std::uint32_t ticks, std::uint32_t now) const {
-    return within(sure_, ticks, now);
+  BlockMask sure_within(const BlockMask& voxels, std::uint32_t ticks, std::uint32_t now) const {
+    return within(voxels & sure_, ticks, now);
   }
   /// Returns the voxels that were occupied for kSettledTicks or more in their present run.
   const BlockMask& settled() const { return settled_; }
   /// The same of kAgedTicks.
   BlockMask aged() const { return settled_ | (occupied_[2] & (occupied_[1] | occupied_[0])); }
+
+  /// Bytes from the start that `update` needs where all that is seen is free.
+  static constexpr std::size_t kTouchedBytes = 2 * sizeof(std::uint64_t) + 3 * sizeof(BlockMask);
 
   std::size_t memory_bytes() const {
     return sizeof(BlockHistory) + (arrived_at_ ? sizeof(*arrived_at_) : 0);
@@ -56,13 +59,15 @@ class BlockHistory {
   void count_occupied(const BlockMask& voxels);
   void count_free(const BlockMask& voxels);
 
-  BlockMask arrived_, sure_, settled_;
-  BlockMask free_low_, free_high_;     // count of being free, 0 to 3
-  std::array<BlockMask, 3> occupied_;  // count of being occupied, modulo 8
-  std::uint32_t updated_ = 0;          // tick of the last update
+  std::uint32_t updated_ = 0;  // tick of the last update
+  std::uint32_t pruned_ = 0;   // tick at which no arrival was older than kMaxAgeTicks
   // Tick of the arrival modulo 256, valid where arrived; null while nothing ever arrived, as in
   // most blocks.
   std::unique_ptr<std::array<std::uint8_t, kBlockVoxels>> arrived_at_;
+  BlockMask arrived_;
+  BlockMask free_low_, free_high_;  // count of being free, 0 to 3; so far what free space touches
+  BlockMask sure_, settled_;
+  std::array<BlockMask, 3> occupied_;  // count of being occupied, modulo 8
 };
 
 }  // namespace mosbench::hmm_mos

@@ -191,6 +191,9 @@ VoxelList VoxelMap::update(const VoxelList& observed, std::span<const VoxelSet* 
       const BlockMask& voxels = observed.masks[i];
       Block& block = blocks_[slots_[i]];
       if (i + 1 < end) fetch(&blocks_[slots_[i + 1]], kTouchedBytes);
+      if (i + 1 < end && keeps_history_) {
+        fetch(&histories_[slots_[i + 1]], BlockHistory::kTouchedBytes);
+      }
       refresh_block(slots_[i], scan_index);
       const BlockStates before = block.states;
       if (near[i] != 0) {

@@ -1,6 +1,7 @@
 #include "core/hmm_mos_plus/arrivals.hpp"
 
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "core/voxel/neighbourhood.hpp"
@@ -15,38 +16,63 @@ std::uint32_t ticks_of(double age_s) {
   return static_cast<std::uint32_t>(std::lround(age_s / hmm_mos::TickClock::kSeconds));
 }
 
-/// Returns the voxels of the map in these blocks that are settled and did not arrive of late.
-VoxelSet firm_voxels(hmm_mos::VoxelMap& map, const std::vector<BlockIndex>& blocks, std::uint32_t k,
-                     std::uint32_t seed_age_ticks) {
+/// Returns the voxels of the map in blocks with neighbours of raw[slots] that are settled and did
+/// not arrive of late.
+VoxelSet firm_voxels(const VoxelizedScan& scan, const ScanMasks& raw,
+                     const std::vector<std::uint32_t>& slots, hmm_mos::VoxelMap& map,
+                     std::uint32_t k, std::uint32_t seed_age_ticks) {
   VoxelSet firm;
-  for (const BlockIndex& block : blocks) {
-    const auto past = map.past_at(k, block);
+  for (const std::uint32_t slot : slots) {
+    const std::uint32_t near = blocks_within(raw[slot], 1);
+    for_each_neighbour(scan.measured.blocks[slot], [&](std::size_t position, const BlockIndex& at) {
+      if (near >> position & 1) firm.insert(at);
+    });
+  }
+  for (std::size_t i = 0; i < firm.block_count(); ++i) {
+    const auto past = map.past_at(k, firm.blocks[i]);
+    if (!past) continue;
     const BlockMask settled = past->history.settled() & past->known.occupied;
-    if (!settled.any()) continue;
-    const BlockMask mask = without(settled, past->history.sure_within(seed_age_ticks, past->tick));
-    if (mask.any()) firm.masks[firm.insert(block)] = mask;
+    const BlockMask of_late = past->history.sure_within(settled, seed_age_ticks, past->tick);
+    firm.masks[i] = without(settled, of_late);
   }
   return firm;
 }
 
-/// Adds to seeds[i] those of raw[i] that lie apart from firm voxels and in known space.
-void add_seeds(const VoxelizedScan& scan, const ScanMasks& raw, hmm_mos::VoxelMap& map,
-               std::uint32_t k, const Config& config, ThreadPool& pool, ScanMasks& seeds) {
+/// Returns the slots of the masks that hold voxels.
+std::vector<std::uint32_t> slots_with_any(const ScanMasks& masks) {
   std::vector<std::uint32_t> slots;
-  for (std::uint32_t slot = 0; slot < raw.size(); ++slot) {
-    if (raw[slot].any()) slots.push_back(slot);
+  for (std::uint32_t slot = 0; slot < masks.size(); ++slot) {
+    if (masks[slot].any()) slots.push_back(slot);
   }
+  return slots;
+}
+
+/// Takes away what lies beside firm voxels.
+void keep_apart(const VoxelizedScan& scan, hmm_mos::VoxelMap& map, std::uint32_t k,
+                const Config& config, ThreadPool& pool, ScanMasks& raw) {
+  const std::vector<std::uint32_t> slots = slots_with_any(raw);
+  const VoxelSet firm = firm_voxels(scan, raw, slots, map, k, ticks_of(config.seed_age_s));
+  pool.for_ranges(slots.size(), 16, [&](std::size_t begin, std::size_t end, unsigned) {
+    HaloRows rows;
+    for (std::size_t i = begin; i < end; ++i) {
+      gather_around(firm, scan.measured.blocks[slots[i]], 1, rows);
+      raw[slots[i]] = without(raw[slots[i]], dilate(rows));
+    }
+  });
+}
+
+/// Adds to seeds[i] those of raw[i] that lie apart from firm voxels and in known space.
+void add_seeds(const VoxelizedScan& scan, ScanMasks raw, hmm_mos::VoxelMap& map, std::uint32_t k,
+               const Config& config, ThreadPool& pool, ScanMasks& seeds) {
+  keep_apart(scan, map, k, config, pool, raw);
+  const std::vector<std::uint32_t> slots = slots_with_any(raw);
   const VoxelSet known = map.known_at(k, blocks_of(scan, slots), pool);
-  const VoxelSet firm = firm_voxels(map, known.blocks, k, ticks_of(config.seed_age_s));
   pool.for_ranges(slots.size(), 16, [&](std::size_t begin, std::size_t end, unsigned) {
     HaloRows rows;
     for (std::size_t i = begin; i < end; ++i) {
       const std::uint32_t slot = slots[i];
-      gather_around(firm, scan.measured.blocks[slot], 1, rows);
-      const BlockMask apart = without(raw[slot], dilate(rows));
-      if (!apart.any()) continue;
       gather_around(known, scan.measured.blocks[slot], kKnownRadius, rows);
-      for_each_cell(apart, [&](std::uint32_t cell) {
+      for_each_cell(raw[slot], [&](std::uint32_t cell) {
         const int unknown = kCubeVoxels - count_around(rows, cell);
         if (unknown <= config.max_unknown_voxels) seeds[slot].set(cell);
       });
@@ -71,14 +97,15 @@ ArrivalClasses classify(const VoxelizedScan& scan, hmm_mos::VoxelMap& map, std::
     if (!past) continue;  // at the range limit not every occupied voxel is observed
     const auto& history = past->history;
     const BlockMask occupied = scan.occupied[i] & past->known.occupied;
-    young[i] = history.sure_within(seed_age_ticks, past->tick) & occupied;
-    classes.fresh[i] = history.sure_within(fresh_age_ticks, past->tick) & young[i];
+    young[i] = history.sure_within(occupied, seed_age_ticks, past->tick);
+    classes.fresh[i] = history.sure_within(young[i], fresh_age_ticks, past->tick);
     classes.aged[i] = history.aged() & occupied;
     const BlockMask settled = history.settled() & occupied;
     if (!settled.any()) continue;
-    classes.settled[i] = without(settled, history.arrived_within(object_age_ticks, past->tick));
+    classes.settled[i] =
+        without(settled, history.arrived_within(settled, object_age_ticks, past->tick));
   }
-  add_seeds(scan, young, map, k, config, pool, classes.seeds);
+  add_seeds(scan, std::move(young), map, k, config, pool, classes.seeds);
   return classes;
 }
 
@@ -92,7 +119,7 @@ void add_departures(const VoxelizedScan& scan, hmm_mos::VoxelMap& map, std::uint
     classes.aged[i] = without(classes.aged[i], departed[i]);
     classes.fresh[i] = classes.fresh[i] | departed[i];
   }
-  add_seeds(scan, departed, map, k, config, pool, classes.seeds);
+  add_seeds(scan, std::move(departed), map, k, config, pool, classes.seeds);
 }
 
 }  // namespace mosbench::hmm_mos_plus

@@ -66,19 +66,23 @@ Ground::Tile Ground::lowest_around(const BlockIndex& at, int radius) const {
       }
     }
   }
-  std::array<std::array<std::int32_t, kSide>, kWide> rows;
-  for (std::size_t y = first; y + first < kWide; ++y) {
+  // Loops over a row's eight columns inside: eight at a time.
+  using Row = std::array<std::int32_t, kSide>;
+  const auto take_lower = [](const std::int32_t* heights, std::int32_t* lowest_of_row) {
     for (std::size_t x = 0; x < kSide; ++x) {
-      const auto* begin = &around[y][first + x];
-      rows[y][x] = *std::min_element(begin, begin + width);
+      lowest_of_row[x] = std::min(lowest_of_row[x], heights[x]);
     }
+  };
+  std::array<Row, kWide> rows;
+  for (std::size_t y = first; y + first < kWide; ++y) {
+    rows[y].fill(kNone);
+    for (std::size_t i = 0; i < width; ++i) take_lower(&around[y][first + i], rows[y].data());
   }
   Tile lowest;
   lowest.fill(kNone);
-  for (std::size_t cell = 0; cell < kSide * kSide; ++cell) {
-    const std::size_t y = cell / kSide + first;
-    for (std::size_t i = y; i < y + width; ++i) {
-      lowest[cell] = std::min(lowest[cell], rows[i][cell % kSide]);
+  for (std::size_t y = 0; y < kSide; ++y) {
+    for (std::size_t i = 0; i < width; ++i) {
+      take_lower(rows[y + first + i].data(), &lowest[y * kSide]);
     }
   }
   return lowest;

@@ -31,9 +31,11 @@ struct OneVoxel {
   }
   /// Asked in the scan that was seen last.
   bool arrived(std::uint32_t scans) const {
-    return history.arrived_within(scans, scan - steps).any();
+    return history.arrived_within(one_voxel(), scans, scan - steps).any();
   }
-  bool sure(std::uint32_t scans) const { return history.sure_within(scans, scan - steps).any(); }
+  bool sure(std::uint32_t scans) const {
+    return history.sure_within(one_voxel(), scans, scan - steps).any();
+  }
 };
 
 TEST(BlockHistory, CallsAnArrivalSureAfterThreeFreeScans) {
@@ -107,6 +109,33 @@ TEST(BlockHistory, ForgetsAVoxelWholly) {
   voxel.see("fo");
   EXPECT_TRUE(voxel.arrived(0));
   EXPECT_FALSE(voxel.sure(0));
+}
+
+TEST(BlockHistory, TellsOfTheVoxelsThatAreAskedForAlone) {
+  OneVoxel voxel;
+  voxel.see("fffo");
+  EXPECT_FALSE(voxel.history.arrived_within({}, 10, 3).any());
+  EXPECT_FALSE(voxel.history.sure_within({}, 10, 3).any());
+}
+
+/// Ages are counted modulo 256: at every pace of updates and pauses none comes round.
+TEST(BlockHistory, KnowsAgesExactlyWhateverTheTicksBetweenUpdates) {
+  for (const std::uint32_t steps : {1U, 7U, 49U, 50U, 51U, 99U, 100U, 101U, 149U, 255U, 256U}) {
+    for (std::uint32_t pause = 0; pause < 600; pause += 13) {
+      OneVoxel voxel;
+      voxel.see("fffo");
+      const std::uint32_t arrival = voxel.scan - 1;
+      voxel.steps = steps;
+      for (int update = 0; update < 12; ++update) {
+        const std::uint32_t now = voxel.scan;
+        voxel.see("o");
+        for (const std::uint32_t later : {now, now + pause}) {
+          const bool young = voxel.history.sure_within(one_voxel(), 100, later).any();
+          ASSERT_EQ(young, later - arrival <= 100) << steps << ' ' << pause;
+        }
+      }
+    }
+  }
 }
 
 TEST(BlockHistory, NeverMakesAnOldArrivalYoungAgain) {
