@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <system_error>
-#include <utility>
 
 #include "datasets/files/errors.hpp"
 #include "datasets/files/shown_text.hpp"
@@ -22,20 +21,42 @@ std::vector<std::filesystem::directory_entry> visible_entries(const std::filesys
   return entries;
 }
 
-bool stem_less(const std::string& a, const std::string& b) {
-  return std::pair(stem_number(a), a) < std::pair(stem_number(b), b);
+/// Takes the digits that `text` begins with off it, and returns them without zeros in front.
+std::string_view take_number(std::string_view& text) {
+  const auto digits =
+      static_cast<std::size_t>(std::ranges::find_if_not(text, is_digit) - text.begin());
+  std::string_view number = text.substr(0, digits);
+  text.remove_prefix(digits);
+  number.remove_prefix(std::min(number.find_first_not_of('0'), number.size()));
+  return number;
+}
+
+/// Below 0 where `a` comes before `b`: numbers by value, what lies between them by text. Digits
+/// behind a point that follows a digit are a fraction, 1650.5 comes after 1650.123.
+int in_order(std::string_view a, std::string_view b) {
+  bool after_digit = false, in_fraction = false;
+  while (!a.empty() && !b.empty()) {
+    if (!in_fraction && is_digit(a.front()) && is_digit(b.front())) {
+      const std::string_view one = take_number(a), other = take_number(b);
+      if (one.size() != other.size()) return one.size() < other.size() ? -1 : 1;
+      if (const int order = one.compare(other); order != 0) return order;
+      after_digit = true;
+      continue;
+    }
+    if (a.front() != b.front()) return a.front() < b.front() ? -1 : 1;
+    in_fraction = is_digit(a.front()) ? in_fraction : a.front() == '.' && after_digit;
+    after_digit = in_fraction || is_digit(a.front());
+    a.remove_prefix(1);
+    b.remove_prefix(1);
+  }
+  return a.empty() ? (b.empty() ? 0 : -1) : 1;
 }
 
 void sort_by_stem(std::vector<StemFile>& files) {
-  const bool all_numbers = std::ranges::all_of(
-      files, [](const StemFile& file) { return stem_number(file.stem).has_value(); });
-  std::ranges::sort(files, [all_numbers](const StemFile& a, const StemFile& b) {
-    return all_numbers ? stem_less(a.stem, b.stem) : a.stem < b.stem;
-  });
-  const auto repeated =
-      std::ranges::adjacent_find(files, [all_numbers](const StemFile& a, const StemFile& b) {
-        return all_numbers ? stem_number(a.stem) == stem_number(b.stem) : a.stem == b.stem;
-      });
+  std::ranges::sort(
+      files, [](const StemFile& a, const StemFile& b) { return in_order(a.stem, b.stem) < 0; });
+  const auto repeated = std::ranges::adjacent_find(
+      files, [](const StemFile& a, const StemFile& b) { return in_order(a.stem, b.stem) == 0; });
   if (repeated == files.end()) return;
   throw DataError(std::next(repeated)->file,
                   "stands for the same scan as " + repeated->file.filename().string(),
@@ -69,7 +90,7 @@ std::vector<std::filesystem::path> list_folders(const std::filesystem::path& fol
     if (entry.is_directory(ignored)) folders.push_back(entry.path());
   }
   std::ranges::sort(folders, [](const auto& a, const auto& b) {
-    return stem_less(a.filename().string(), b.filename().string());
+    return in_order(a.filename().string(), b.filename().string()) < 0;
   });
   return folders;
 }

@@ -32,6 +32,9 @@ std::string_view trim(std::string_view text);
 /// Returns the whole of `text` as a finite double, or nothing.
 std::optional<double> parse_double(std::string_view text);
 
+/// Whether this is a decimal digit, in any locale.
+constexpr bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
 /// Returns the whole of `text` as a decimal number without sign, or nothing.
 std::optional<std::uint64_t> parse_unsigned(std::string_view text);
 

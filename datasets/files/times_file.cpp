@@ -15,8 +15,6 @@ namespace {
 constexpr std::uint64_t kLargest =
     static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
 
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
-
 /// digits * 10^(-decimals), without sign.
 struct Decimal {
   std::string digits;
