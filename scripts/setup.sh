@@ -9,13 +9,14 @@
 # MOSBENCH_WITH_ROSBAG=OFF the 40 or so of ROS's bag library, which only writing bags needs,
 # MOSBENCH_WITH_HDF5=OFF the 30 or so of libhdf5, which only .h5 files need,
 # MOSBENCH_WITH_OCTOMAP=OFF the two of OctoMap, for the method of that name,
-# MOSBENCH_BUILD_TESTS=OFF the libraries of tests and benchmarks, and what makes manual pages.
+# MOSBENCH_BUILD_TESTS=OFF the libraries of tests and benchmarks, what makes manual pages, and git, of which the
+# program needs no more than the version of a clone.
 set -euo pipefail
 
-packages=(g++ cmake ninja-build pkg-config git xz-utils jq bsdextrautils python3
+packages=(g++ cmake ninja-build pkg-config xz-utils jq bsdextrautils python3
   libeigen3-dev libfmt-dev nlohmann-json3-dev libcli11-dev libxxhash-dev libutfcpp-dev libyaml-cpp-dev
   zlib1g-dev libpng-dev libbz2-dev liblz4-dev libzstd-dev libsqlite3-dev libboost-dev libnanoflann-dev)
-[ "${MOSBENCH_BUILD_TESTS:-ON}" = OFF ] || packages+=(libgtest-dev libgmock-dev libbenchmark-dev help2man)
+[ "${MOSBENCH_BUILD_TESTS:-ON}" = OFF ] || packages+=(git libgtest-dev libgmock-dev libbenchmark-dev help2man)
 [ "${MOSBENCH_WITH_PCL:-ON}" = OFF ] || packages+=(libpcl-dev)
 [ "${MOSBENCH_WITH_ROSBAG:-ON}" = OFF ] || packages+=(librosbag-storage-dev)
 [ "${MOSBENCH_WITH_HDF5:-ON}" = OFF ] || packages+=(libhdf5-dev)
