@@ -63,6 +63,13 @@ void add_method_options(CLI::App& command, RunOptions& options) {
       ->type_name("PRESET");
   command.add_option("--variant", options.variant,
                      "Short for --set variant=NAME: paper-2024 (default) or release-2025");
+  command
+      .add_option(
+          "--moving", options.moving,
+          "What counts as moving with hmm-mos-plus: what moves now, or ever within the last "
+          "SECONDS, at most 10")
+      ->type_name("now|ever[:SECONDS]")
+      ->capture_default_str();
   command.add_option("--config", options.config_file, "JSON object of settings of the method")
       ->type_name("FILE");
   add_threads_flag(command, options.threads);

@@ -59,6 +59,11 @@ Settings: defaults < --preset < --config FILE < --set. FILE holds a JSON object 
 method hmm-mos-plus with its defaults, and with the voxels, the range and the protocol of the data
 set's own preset.
 
+--moving ever is for truth by object, as that of DOALS, where who stops stays moving: hmm-mos-plus
+then calls moving what arrived in free space in the last 10 s, with ever:3 in the last 3 s, also
+where it stands since. It is short for --set seed_age_s=10,object_age_s=10,fresh_age_s=10,
+max_aged_share=1. Where truth is by speed, or parked cars come into view, it costs precision.
+
 --odometry finds the poses before the method sees a scan and writes them to
 DIR/<sequence>/poses.txt; its settings are part of the configuration. Poses that it doubts are
 counted on stderr and in the remarks, in capitals where they are the most; unlike that of `mosbench
@@ -69,6 +74,7 @@ next scans are registered to.
 Examples:
   mosbench run ~/sipailou-livox-kitti
   mosbench run ~/kitti/sequences/08 --preset best
+  mosbench run ~/doals --preset best --moving ever
   mosbench run ~/doals --preset doals-120m --sequences station/sequence_1,station/sequence_2
   mosbench run ~/HeLiMOS/KAIST05/Deskewed_LiDAR --preset helimos-delayed --protocol helimos-test
   mosbench run ~/kitti/sequences/08 --set max_range_m=30,voxel_size_m=0.2 --out results/runs/08-near

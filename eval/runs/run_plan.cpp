@@ -43,11 +43,38 @@ void apply_variant(const std::string& name, const MethodKind& method, Settings& 
   }
 }
 
+/// Settings by which hmm-mos-plus calls moving what arrived in the last `kept_s` seconds, whether
+/// or not it stands since.
+void remember_motion(const std::string& kept_s, Settings& settings) {
+  for (const char* age : {"seed_age_s", "object_age_s", "fresh_age_s"}) {
+    apply_setting_assignment(fmt::format("{}={}", age, kept_s), settings);
+  }
+  apply_setting_assignment("max_aged_share=1", settings);
+}
+
+/// --moving now, ever or ever:SECONDS.
+void apply_moving(const std::string& text, const MethodKind& method, Settings& settings) {
+  if (text == "now") return;
+  constexpr std::string_view kFor = "ever:";
+  if (text != "ever" && !text.starts_with(kFor)) {
+    throw UsageError(
+        fmt::format("--moving: '{}' is not known, expected now, ever or ever:SECONDS", text));
+  }
+  if (settings.find("seed_age_s") == nullptr) {
+    throw UsageError(
+        fmt::format("--moving {}: method {} does not remember what moved, expected hmm-mos-plus",
+                    text, method.name));
+  }
+  // As long as the method can.
+  remember_motion(text == "ever" ? "10" : text.substr(kFor.size()), settings);
+}
+
 Settings choose_settings(const RunOptions& options, const Preset& preset,
                          const MethodKind& method) {
   Settings settings = settings_of(preset, method);
   if (options.config_file) apply_settings_file(*options.config_file, settings);
   if (options.variant) apply_variant(*options.variant, method, settings);
+  apply_moving(options.moving, method, settings);
   for (const std::string& assignment : options.assignments) {
     apply_setting_assignment(assignment, settings);
   }
@@ -84,8 +111,9 @@ fs::path default_out(const RunPlan& plan, const RunOptions& options) {
   // So has one with disturbed scans.
   const std::string perturb = options.reading.perturb ? "-" + *options.reading.perturb : "";
   const std::string data = fmt::format("{}-{}", folder.filename().string(), plan.preset);
+  const std::string moving = options.moving == "now" ? "" : "-ever";
   const std::string method = options.shared ? "" : fmt::format("-{}", kind);
-  return fs::path("results/runs") / (data + method + poses + perturb);
+  return fs::path("results/runs") / (data + method + moving + poses + perturb);
 }
 
 nlohmann::ordered_json identity_of(const RunPlan& plan, const Sequence& sequence) {

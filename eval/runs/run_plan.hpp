@@ -22,6 +22,7 @@ struct RunOptions {
   std::string dataset = "auto";
   std::vector<std::string> sequences;
   std::optional<std::string> method, preset, variant, protocol, range;
+  std::string moving = "now";  ///< or "ever" or "ever:SECONDS"
   std::optional<std::filesystem::path> config_file, out;
   ReadingOptions reading = {};
   OdometryOptions odometry;  ///< poses are found by it when a kind is named

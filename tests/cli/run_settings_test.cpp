@@ -154,5 +154,39 @@ TEST_F(RunSettings, OfScoringAndReadingStandInTheResultToo) {
   EXPECT_EQ(json.at("reading").at("pose_direction"), "sensor_from_map, inverted");
 }
 
+TEST_F(RunSettings, OfMovingEverRememberWhatMovedAndSetWins) {
+  const auto config = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> flags = {"--method", "hmm-mos-plus"};
+    flags.insert(flags.end(), more.begin(), more.end());
+    return result_of(flags).at("config");
+  };
+  const auto now = config({}), ever = config({"--moving", "ever"});
+  EXPECT_EQ(config({"--moving", "now"}), now);
+  for (const char* age : {"seed_age_s", "object_age_s", "fresh_age_s"}) {
+    EXPECT_LE(now.at(age), 1.0) << age;
+    EXPECT_EQ(ever.at(age), 10.0) << age;
+    EXPECT_EQ(config({"--moving", "ever:2.5"}).at(age), 2.5) << age;
+  }
+  EXPECT_EQ(ever.at("max_aged_share"), 1.0);
+  EXPECT_EQ(config({"--moving", "ever", "--set", "fresh_age_s=3"}).at("fresh_age_s"), 3.0);
+}
+
+TEST_F(RunSettings, OfMovingEverAreRefusedWhereTheyMeanNothing) {
+  const auto refusal = [&](const std::string& moving, const std::string& method) {
+    const cli::Answer answer = cli::run({"run", folder_ / "room", "--method", method, "--moving",
+                                         moving, "--out", folder_ / "out"});
+    EXPECT_EQ(answer.exit_code, 2) << moving;
+    return answer.err;
+  };
+  EXPECT_THAT(refusal("ever", "hmm-mos"),
+              testing::HasSubstr("method hmm-mos does not remember what moved"));
+  EXPECT_THAT(refusal("always", "hmm-mos-plus"),
+              testing::HasSubstr("--moving: 'always' is not known, expected now, ever"));
+  for (const char* wrong : {"ever:", "ever:11", "ever:-1", "ever:x", "ever:nan"}) {
+    EXPECT_THAT(refusal(wrong, "hmm-mos-plus"), testing::HasSubstr("seed_age_s")) << wrong;
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
+}
+
 }  // namespace
 }  // namespace mosbench

@@ -125,6 +125,17 @@ TEST(PlusObjectsThatStay, MoveUntilMostOfTheirVoxelsAreAged) {
   EXPECT_EQ(scans_with_motion(plus_labels(world_with_a_box_that_stays(), config)), 4U);
 }
 
+/// What `mosbench run --moving ever:SECONDS` sets.
+TEST(PlusObjectsThatStay, MoveForAsLongAsMotionIsRemembered) {
+  const SmallWorld world = world_with_a_box_that_stays();
+  for (const auto& [kept_s, scans] : {std::pair{0.5, 6U}, {1.5, 16U}, {10.0, 20U}}) {
+    hmm_mos_plus::Config config = plus_of_a_room();
+    config.seed_age_s = config.object_age_s = config.fresh_age_s = kept_s;
+    config.max_aged_share = 1.0;
+    EXPECT_EQ(scans_with_motion(plus_labels(world, config)), scans) << kept_s;
+  }
+}
+
 /// Returns the stamps of `scans` scans.
 std::vector<std::int64_t> stamps_every(std::int64_t period_ns, std::size_t scans) {
   std::vector<std::int64_t> stamps_ns = {1'700'000'000'000'000'000};
