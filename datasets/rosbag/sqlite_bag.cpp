@@ -53,6 +53,13 @@ std::string uri_of(const std::filesystem::path& file, bool is_immutable) {
   return uri + (is_immutable ? "?immutable=1" : "");
 }
 
+/// What a file of strangers says must neither run code nor write.
+void distrust(sqlite3* database) {
+  sqlite3_db_config(database, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
+  sqlite3_db_config(database, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
+  sqlite3_exec(database, "PRAGMA cell_size_check=ON", nullptr, nullptr, nullptr);
+}
+
 }  // namespace
 
 void SqliteBag::Close::operator()(sqlite3* database) const { sqlite3_close(database); }
@@ -62,6 +69,24 @@ SqliteBag::SqliteBag(const std::filesystem::path& file)
     : BagReader(file), file_bytes_(size_of(file)) {
   refuse_unfinished();
   open_database();
+  read_tables();
+}
+
+SqliteBag::SqliteBag(const std::filesystem::path& file, std::span<unsigned char> content)
+    : BagReader(file), file_bytes_(content.size()) {
+  sqlite3* opened = nullptr;
+  const int result =
+      sqlite3_open_v2(":memory:", &opened, SQLITE_OPEN_READWRITE | SQLITE_OPEN_NOMUTEX, nullptr);
+  database_.reset(opened);
+  check(result);
+  const auto bytes = static_cast<sqlite3_int64>(content.size());
+  check(sqlite3_deserialize(opened, "main", content.data(), bytes, bytes,
+                            SQLITE_DESERIALIZE_READONLY));
+  distrust(opened);
+  read_tables();
+}
+
+void SqliteBag::read_tables() {
   check_table("topics");
   check_table("messages");
   add_topics();
@@ -94,10 +119,7 @@ void SqliteBag::open_database() {
                       SQLITE_OPEN_READONLY | SQLITE_OPEN_URI | SQLITE_OPEN_NOMUTEX, nullptr);
   database_.reset(opened);
   check(result);
-  // What a file of strangers says must neither run code nor write.
-  sqlite3_db_config(opened, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
-  sqlite3_db_config(opened, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
-  sqlite3_exec(opened, "PRAGMA cell_size_check=ON", nullptr, nullptr, nullptr);
+  distrust(opened);
   if (has_log) {
     remarks_.push_back(path_.filename().string() +
                        " was not closed by its recorder: its log is read, too");

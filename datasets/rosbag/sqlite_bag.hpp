@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <mutex>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,6 +21,8 @@ class SqliteBag : public BagReader {
  public:
   /// Throws DataError for a file that is no such database.
   explicit SqliteBag(const std::filesystem::path& file);
+  /// The same of the content of such a file, which outlives it and is not changed.
+  SqliteBag(const std::filesystem::path& file, std::span<unsigned char> content);
   ~SqliteBag() override;
 
   std::vector<BagMessage> messages(std::string_view topic) const override;
@@ -33,6 +36,7 @@ class SqliteBag : public BagReader {
 
   void refuse_unfinished() const;
   void open_database();
+  void read_tables();
   void check_table(const char* name) const;
   void add_topics();
   void add_messages();

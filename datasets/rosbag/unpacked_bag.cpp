@@ -1,11 +1,12 @@
 #include "datasets/rosbag/unpacked_bag.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <stdlib.h>
+#include <sys/mman.h>
 #include <unistd.h>
 
-#include <system_error>
-#include <utility>
+#include <string>
 
 #include "datasets/files/errors.hpp"
 #include "datasets/files/file_descriptor.hpp"
@@ -16,45 +17,79 @@
 
 namespace mosbench {
 
-UnpackedBag::TemporaryFile::TemporaryFile() {
+namespace {
+
+/// Opens a file that no folder lists.
+FileDescriptor nameless_file() {
   std::string name = std::filesystem::temp_directory_path() / "mosbench_bag_XXXXXX";
-  const FileDescriptor made(mkstemp(name.data()));
-  if (!made.is_open()) throw DataError(name, "cannot be made", "a writable folder in TMPDIR");
-  path_ = name;
+  FileDescriptor made(mkostemp(name.data(), O_CLOEXEC));
+  if (!made.is_open() || unlink(name.c_str()) != 0) {
+    throw DataError(name, "cannot be made", "a writable folder in TMPDIR");
+  }
+  return made;
 }
 
-void UnpackedBag::TemporaryFile::remove() {
-  std::error_code ignored;
-  std::filesystem::remove(std::exchange(path_, {}), ignored);
+/// The path by which this process opens it again.
+std::filesystem::path path_of(const FileDescriptor& file) {
+  return fmt::format("/proc/self/fd/{}", file.number());
 }
 
-UnpackedBag::UnpackedBag(const std::filesystem::path& file) : BagReader(file) {
-  decompress_zstd_file(file, unpacked_.path());
-  const std::string start = read_start(unpacked_.path(), kMcapMagic.size());
+}  // namespace
+
+UnpackedBag::Mapping::Mapping(const FileDescriptor& file) {
+  const off_t bytes = lseek(file.number(), 0, SEEK_END);
+  require_success(bytes >= 0);
+  if (bytes == 0) return;
+  const auto size = static_cast<std::size_t>(bytes);
+  void* start = mmap(nullptr, size, PROT_READ, MAP_PRIVATE, file.number(), 0);
+  require_success(start != MAP_FAILED);
+  content_ = {static_cast<unsigned char*>(start), size};
+}
+
+UnpackedBag::Mapping::~Mapping() {
+  if (!content_.empty()) munmap(content_.data(), content_.size());
+}
+
+template <typename Work>
+auto UnpackedBag::naming_file(Work&& work) const {
   try {
-    if (start == kMcapMagic) {
-      bag_ = std::make_unique<McapFile>(unpacked_.path());
-    } else {
-      bag_ = std::make_unique<SqliteBag>(unpacked_.path());
-    }
+    return work();
   } catch (const DataError& error) {
-    throw DataError(file, fmt::format("is unpacked to no bag ({})", error.what()),
+    throw DataError(path_, fmt::format("is unpacked to no bag ({})", error.what()),
                     "a packed .mcap or .db3");
   }
-  // The bag keeps the file open. Without a name it is gone with the process, however that ends.
-  unpacked_.remove();
+}
+
+UnpackedBag::UnpackedBag(const std::filesystem::path& file)
+    : BagReader(file), unpacked_(nameless_file()) {
+  const std::filesystem::path unpacked = path_of(unpacked_);
+  decompress_zstd_file(file, unpacked);
+  bag_ = naming_file([&] { return opened(unpacked); });
   connections_ = bag_->connections();
   remarks_ = bag_->remarks();
+  const std::string number = unpacked.filename().string();
+  for (std::string& remark : remarks_) {
+    if (remark.starts_with(number)) remark.replace(0, number.size(), file.filename().string());
+  }
 }
 
 UnpackedBag::~UnpackedBag() = default;
+
+/// SQLite opens no file without a name, but takes its content.
+std::unique_ptr<const BagReader> UnpackedBag::opened(const std::filesystem::path& unpacked) {
+  if (read_start(unpacked, kMcapMagic.size()) == kMcapMagic) {
+    return std::make_unique<McapFile>(unpacked);
+  }
+  mapping_ = std::make_unique<Mapping>(unpacked_);
+  return std::make_unique<SqliteBag>(path_, mapping_->content());
+}
 
 std::vector<BagMessage> UnpackedBag::messages(std::string_view topic) const {
   return bag_->messages(topic);
 }
 
 std::string UnpackedBag::read(const BagMessage& message, std::size_t most_bytes) const {
-  return bag_->read(message, most_bytes);
+  return naming_file([&] { return bag_->read(message, most_bytes); });
 }
 
 }  // namespace mosbench

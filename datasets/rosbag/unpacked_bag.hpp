@@ -3,16 +3,18 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "datasets/files/file_descriptor.hpp"
 #include "datasets/rosbag/bag_reader.hpp"
 
 namespace mosbench {
 
 /// A bag whose whole file is packed by Zstandard. It is unpacked into the folder of temporary files
-/// (TMPDIR), where it has no name once it is opened.
+/// (TMPDIR), where it never has a name: nothing is left of it, however the process ends.
 class UnpackedBag : public BagReader {
  public:
   /// Throws DataError.
@@ -23,19 +25,28 @@ class UnpackedBag : public BagReader {
   std::string read(const BagMessage& message, std::size_t most_bytes = SIZE_MAX) const override;
 
  private:
-  /// A file without content that nobody else has, removed at the end or before.
-  class TemporaryFile {
+  /// Returns what `work` does with the unpacked bag; its errors name the file that the user knows.
+  template <typename Work>
+  auto naming_file(Work&& work) const;
+
+  /// The content of a file, which must not become shorter.
+  class Mapping {
    public:
-    TemporaryFile();
-    ~TemporaryFile() { remove(); }
-    void remove();
-    const std::filesystem::path& path() const { return path_; }
+    /// Throws std::system_error.
+    explicit Mapping(const FileDescriptor& file);
+    ~Mapping();
+    Mapping(const Mapping&) = delete;
+    Mapping& operator=(const Mapping&) = delete;
+    std::span<unsigned char> content() const { return content_; }
 
    private:
-    std::filesystem::path path_;
+    std::span<unsigned char> content_;
   };
 
-  TemporaryFile unpacked_;
+  std::unique_ptr<const BagReader> opened(const std::filesystem::path& unpacked);
+
+  FileDescriptor unpacked_;
+  std::unique_ptr<const Mapping> mapping_;  ///< of a database
   std::unique_ptr<const BagReader> bag_;
 };
 

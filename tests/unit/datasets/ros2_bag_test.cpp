@@ -1,8 +1,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sqlite3.h>
+#include <sys/resource.h>
 
 #include <cmath>
+#include <csignal>
+#include <cstdlib>
 #include <cstring>
 #include <functional>
 #include <string>
@@ -317,20 +320,32 @@ TEST_F(Ros2Bag, OfSeveralFilesIsOneSequence) {
               HasSubstr("holds the bags a.mcap and a, both called a"));
 }
 
+TEST_F(Ros2Bag, PackedAsAWholeLeavesNoFileWhereTheProgramIsKilledWhileItUnpacks) {
+  const auto whole = write(compress_zstd(good_mcap().str()), "s.mcap.zstd");
+  std::filesystem::create_directory(folder_ / "temporary");
+  const auto unpack_beyond_the_limit = [&] {
+    setenv("TMPDIR", (folder_ / "temporary").c_str(), 1);
+    const rlimit limit{.rlim_cur = 1000, .rlim_max = 1000};
+    setrlimit(RLIMIT_FSIZE, &limit);
+    signal(SIGXFSZ, SIG_DFL);
+    BagSequence("s", whole, {});
+  };
+  EXPECT_EXIT(unpack_beyond_the_limit(), testing::KilledBySignal(SIGXFSZ), "");
+  EXPECT_TRUE(std::filesystem::is_empty(folder_ / "temporary"));
+}
+
 TEST_F(Ros2Bag, InSqliteIsReadWithPackedMessagesAndPackedAsAWhole) {
   expect_good(BagSequence("s", good_db3(folder_, "plain"), {}));
   expect_good(BagSequence("s", good_db3(folder_, "packed", "zstd"), {}));
   const auto whole = write(compress_zstd(read_file(good_db3(folder_, "p"))), "s.db3.zstd");
-  const auto temporary = folder_ / "temporary";
-  std::filesystem::create_directory(temporary);
-  setenv("TMPDIR", temporary.c_str(), 1);
-  const BagSequence unpacked("s", whole, {});
-  unsetenv("TMPDIR");
-  EXPECT_TRUE(std::filesystem::is_empty(temporary)) << "a killed program would leave this";
-  expect_good(unpacked);
+  expect_good(BagSequence("s", whole, {}));
   write(compress_zstd("no bag"), "s.db3.zstd");
   EXPECT_THAT(message_of<DataError>([&] { BagSequence("s", whole, {}); }),
               HasSubstr("s.db3.zstd: is unpacked to no bag"));
+  const std::string mcap = good_mcap().str();
+  const auto cut = write(compress_zstd(mcap.substr(0, mcap.size() - 30)), "cut.mcap.zstd");
+  EXPECT_THAT(BagSequence("s", cut, {}).remarks(),
+              Contains(testing::StartsWith("cut.mcap.zstd was not closed by its recorder")));
   write(read_file(good_db3(folder_, "p")).substr(0, 3000), "s.db3");
   EXPECT_THROW(BagSequence("s", folder_ / "s.db3", {}), DataError);
 }
