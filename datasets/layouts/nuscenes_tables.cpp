@@ -18,6 +18,7 @@
 #include "datasets/files/label_file.hpp"
 #include "datasets/files/nuscenes_table.hpp"
 #include "datasets/files/quaternion.hpp"
+#include "datasets/files/text.hpp"
 
 namespace mosbench {
 namespace {
@@ -259,8 +260,13 @@ bool holds_nuscenes_tables(const fs::path& folder) {
 
 std::vector<std::string> nuscenes_scene_names(const fs::path& tables) {
   std::vector<std::string> names;
-  read_nuscenes_table(tables / "scene.json",
-                      [&](const NuscenesRow& row) { names.push_back(row.text("name")); });
+  std::unordered_set<std::string> known;
+  read_nuscenes_table(tables / "scene.json", [&](const NuscenesRow& row) {
+    const std::string& name = names.emplace_back(row.text("name"));
+    if (known.insert(name).second) return;
+    row.refuse(fmt::format("has the name {} of another row", mosbench::quoted(name)),
+               "one row per scene");
+  });
   return names;
 }
 

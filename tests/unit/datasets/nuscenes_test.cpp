@@ -275,6 +275,11 @@ TEST_F(NuscenesFolder, RefusesRowsThatComeTwice) {
   EXPECT_THAT(error_of_opening(), HasSubstr("ego_pose.json:3: has the token of another row"));
   table("scene", R"({"token": "s1", "name": "scene-0061"}, {"token": "s1", "name": "scene-0103"})");
   EXPECT_THAT(error_of_opening(), HasSubstr("scene.json:1: has the token of another row"));
+  table("scene", R"({"token": "s1", "name": "scene-0061"}, {"token": "s2", "name": "scene-0061"})");
+  EXPECT_THAT(
+      error_of_opening(),
+      HasSubstr(
+          "scene.json:1: has the name \"scene-0061\" of another row, expected one row per scene"));
 }
 
 TEST_F(NuscenesFolder, RefusesScansOfOneTimestamp) {
