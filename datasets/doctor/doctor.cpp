@@ -81,14 +81,19 @@ std::string sentence_on(const MisplacedRows& rows, const Sequence& sequence) {
       sequence.stem(rows.first), sequence.stem(rows.second), rows.first + 1, rows.second + 1);
 }
 
-void check_sequence(const Sequence& sequence, const std::filesystem::path& folder, DatasetKind kind,
-                    bool simulated, Checkup& checkup) {
-  SequenceCheckup& part = checkup.sequences.emplace_back();
+SequenceCheckup described(const Sequence& sequence) {
+  SequenceCheckup part;
   part.name = sequence.name();
   part.scans = sequence.size();
   part.reading = sequence.reading();
   part.remarks = sequence.remarks();
   part.labelled_scans = scans_with_truth(sequence).size();
+  return part;
+}
+
+void check_sequence(const Sequence& sequence, const std::filesystem::path& folder, DatasetKind kind,
+                    bool simulated, Checkup& checkup) {
+  SequenceCheckup& part = checkup.sequences.emplace_back(described(sequence));
   collect(checkup.symptoms, folder, [&] { return check_content(sequence, kind, part); });
   collect(checkup.symptoms, folder, [&] { return check_poses(sequence, folder, part); });
   collect(checkup.symptoms, folder, [&] { return check_labels_by_scans(sequence, part); });
@@ -114,6 +119,21 @@ class WatchedSequence : public SequenceAround {
  private:
   const std::function<void()>& at_each_scan_;
 };
+
+/// Checks what needs no poses.
+void check_without_poses(const std::filesystem::path& path, OpenOptions options,
+                         const std::vector<SequenceFolder>& folders,
+                         const std::function<void()>& at_each_scan, Checkup& checkup) {
+  options.reading.poses_by_odometry = true;
+  Dataset dataset = open_dataset(path, options);
+  for (std::size_t i = 0; i < dataset.sequences.size(); ++i) {
+    const WatchedSequence sequence(std::move(dataset.sequences[i]), at_each_scan);
+    SequenceCheckup& part = checkup.sequences.emplace_back(described(sequence));
+    part.has_poses = false;
+    collect(checkup.symptoms, folders[i].folder,
+            [&] { return check_content(sequence, dataset.kind, part); });
+  }
+}
 
 }  // namespace
 
@@ -194,9 +214,14 @@ Checkup check_up(const std::filesystem::path& path, const OpenOptions& options,
       const WatchedSequence sequence(std::move(dataset.sequences[i]), at_each_scan);
       check_sequence(sequence, folders[i].folder, dataset.kind, simulated, checkup);
     }
+  } catch (const MissingPoses& error) {
+    collect(checkup.symptoms, path, [&] {
+      check_without_poses(path, options, folders, at_each_scan, checkup);
+      return std::vector<Symptom>();
+    });
+    checkup.lacks_poses = !checkup.has(Severity::kError);
+    checkup.symptoms.push_back(symptom_of(error, path));
   } catch (const DataError& error) {
-    const bool lacks_poses = dynamic_cast<const MissingPoses*>(&error) != nullptr;
-    checkup.lacks_poses = lacks_poses && !checkup.has(Severity::kError);
     checkup.symptoms.push_back(symptom_of(error, path));
   }
   return checkup;

@@ -33,6 +33,7 @@ struct SequenceCheckup {
   std::map<std::uint32_t, std::size_t> points_of_id;  ///< label ids of the scans read
   std::vector<std::size_t> points_of_range;           ///< per bin of `range_bins_m`
   std::size_t points = 0, zero_points = 0, nonfinite_points = 0;
+  bool has_poses = true;
   bool is_partly_turned = false;  ///< some scans are upside down: they do not fit one another
   /// What thresholds are compared with, see scripts/check/doctor_margins.py.
   std::map<std::string, double> measures;

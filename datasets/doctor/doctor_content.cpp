@@ -81,6 +81,7 @@ class ContentCheck {
   std::vector<Symptom> run() {
     checkup_.points_of_range.assign(range_bins_m().size(), 0);
     for (const std::size_t scan_index : sampled_scans()) count_scan(scan_index);
+    check_empty();
     check_returns();
     check_ids();
     check_stamps();
@@ -184,6 +185,16 @@ class ContentCheck {
         range_m > expected_.label_max_m + kToleranceM) {
       ++labels_beyond_;
     }
+  }
+
+  void check_empty() {
+    std::vector<std::size_t> empty;
+    for (std::size_t k = 0; k < sequence_.size(); ++k) {
+      if (sequence_.point_count(k) == 0) empty.push_back(k);
+    }
+    if (empty.empty()) return;
+    warn(fmt::format("{} of {} scans hold no points, first {}; expected some in every scan",
+                     empty.size(), sequence_.size(), sequence_.stem(empty.front())));
   }
 
   void check_returns() {

@@ -89,7 +89,8 @@ void check_sizes(const std::vector<StemFile>& scans, const std::string& name,
     std::ranges::nth_element(around,
                              around.begin() + static_cast<std::ptrdiff_t>(around.size() / 2));
     const auto usual_bytes = static_cast<double>(around[around.size() / 2]);
-    if (static_cast<double>(sizes_bytes[i]) < kSmallestShare * usual_bytes)
+    const bool is_empty = sizes_bytes[i] == 0;  // which is told of any format
+    if (!is_empty && static_cast<double>(sizes_bytes[i]) < kSmallestShare * usual_bytes)
       small.push_back(scans[i].stem);
   }
   if (small.empty()) return;

@@ -81,6 +81,7 @@ std::string conventions_text(const PoseDiagnosis& poses) {
 }
 
 std::string poses_text(const SequenceCheckup& sequence) {
+  if (!sequence.has_poses) return "";
   if (!sequence.poses) {
     return fmt::format(
         "  overlap         not measured: {}\n",
@@ -136,8 +137,12 @@ std::string unchecked_text(const Checkup& checkup) {
 
 std::string verdict(const Checkup& checkup, const std::string& input) {
   if (checkup.lacks_poses) {
-    return "Verdict: has no poses yet. Find them from the scans, and run it, by\n  mosbench run " +
-           input + " --odometry simple\n";
+    return fmt::format(
+        "Verdict: has no poses yet{}. Find them from the scans, and run it, by\n  mosbench run {} "
+        "--odometry simple\n",
+        checkup.has(Severity::kWarning) ? ", and is doubtful until the warnings are understood"
+                                        : "",
+        input);
   }
   if (checkup.has(Severity::kError)) {
     return "Verdict: cannot be used as it is. Put right the errors above, then\n  mosbench "
@@ -221,8 +226,10 @@ std::string checkup_text(const Checkup& checkup, const std::string& input) {
 
 std::string checkup_json(const Checkup& checkup) {
   ordered_json json = {{"dataset", nullptr},
+                       {"range_bins_m", range_bins_m()},
                        {"sequences", ordered_json::array()},
                        {"symptoms", ordered_json::array()}};
+  json["range_bins_m"].back() = nullptr;  // open
   if (checkup.kind) json["dataset"] = std::string(to_string(*checkup.kind));
   for (const SequenceCheckup& sequence : checkup.sequences) {
     json["sequences"].push_back(checkup_json(sequence));

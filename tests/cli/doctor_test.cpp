@@ -40,6 +40,36 @@ TEST_F(DoctorCommand, EndsWithAVerdictTheNextCommandAndItsExitCode) {
   EXPECT_THAT(unusable.out, HasSubstr("Verdict: cannot be used"));
 }
 
+TEST_F(DoctorCommand, ChecksScansThatHaveNoPosesYet) {
+  fs::remove(folder_ / "room/poses.txt");
+  const cli::Answer good = cli::run({"doctor", room()});
+  EXPECT_EQ(good.exit_code, 3);
+  EXPECT_THAT(good.out, HasSubstr("room: 12 scans, 12 labelled\n"));
+  EXPECT_THAT(good.out, HasSubstr("returns         103680 of 103680 points in 12 scans"));
+  EXPECT_THAT(good.out, Not(HasSubstr("overlap")));
+  EXPECT_THAT(good.out, HasSubstr("Verdict: has no poses yet. Find them"));
+  write_file_atomic(folder_ / "room/velodyne/000007.bin", "");
+  fs::remove(folder_ / "room/labels/000007.label");
+  const cli::Answer empty = cli::run({"doctor", room()});
+  EXPECT_EQ(empty.exit_code, 3);
+  EXPECT_THAT(empty.out, HasSubstr("1 of 12 scans hold no points, first 000007; expected"));
+  EXPECT_THAT(empty.out, Not(HasSubstr("far smaller")));
+  EXPECT_THAT(empty.out, HasSubstr("has no poses yet, and is doubtful until"));
+}
+
+TEST_F(DoctorCommand, WarnsOfAnEmptyScanOfARecording) {
+  fs::create_directory(folder_ / "flat");
+  for (int k = 0; k < 12; ++k) {
+    const std::string name = cli::stem(static_cast<std::size_t>(k)) + ".bin";
+    fs::rename(folder_ / "room/velodyne" / name, folder_ / "flat" / name);
+  }
+  fs::rename(folder_ / "room/poses.txt", folder_ / "flat/poses.txt");
+  write_file_atomic(folder_ / "flat/000007.bin", "");
+  const cli::Answer answer = cli::run({"doctor", folder_ / "flat"});
+  EXPECT_EQ(answer.exit_code, 1) << answer.out;
+  EXPECT_THAT(answer.out, HasSubstr("flat: 1 of 12 scans hold no points, first 000007"));
+}
+
 TEST_F(DoctorCommand, KeepsTheReadingFlagsInTheNextCommand) {
   fs::rename(folder_ / "room/poses.txt", folder_ / "my poses.txt");
   const std::string poses = (folder_ / "my poses.txt").string();
@@ -113,6 +143,10 @@ TEST_F(DoctorCommand, PrintsTheSameAsJson) {
   EXPECT_EQ(json.at("dataset"), "semantickitti");
   EXPECT_EQ(json.at("sequences").at(0).at("scans"), 12);
   EXPECT_TRUE(json.at("symptoms").empty());
+  const auto& bins = json.at("range_bins_m");
+  EXPECT_EQ(bins.size(), json.at("sequences").at(0).at("points_of_range").size());
+  EXPECT_EQ(bins.front(), 0.5);
+  EXPECT_TRUE(bins.back().is_null());
 }
 
 TEST_F(DoctorCommand, RefusesWhatIsNoFolderAsUnusable) {
