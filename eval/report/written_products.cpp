@@ -10,9 +10,9 @@
 #include <set>
 #include <string_view>
 
-#include "datasets/files/files.hpp"
 #include "datasets/files/point_range.hpp"
 #include "eval/report/point_planes.hpp"
+#include "eval/report/product_record.hpp"
 #include "eval/report/result_boxes.hpp"
 #include "eval/results/answer_text.hpp"
 #include "eval/results/progress.hpp"
@@ -41,8 +41,11 @@ std::string boxes_text(const ResultScans& scans, const std::vector<std::vector<M
   ordered_json json = {
       {"format", 1}, {"sequence", scans.sequence().name()}, {"scans", ordered_json::array()}};
   for (std::size_t k = 0; k < boxes.size(); ++k) {
+    const std::optional<std::int64_t> stamp_ns = scans.sequence().recording().scans[k].stamp_ns;
     ordered_json& of_scan = json["scans"].emplace_back();
-    of_scan = {{"stem", scans.rows()[k].stem}, {"boxes", ordered_json::array()}};
+    of_scan = {{"stem", scans.rows()[k].stem},
+               {"stamp_ns", stamp_ns ? ordered_json(*stamp_ns) : ordered_json()},
+               {"boxes", ordered_json::array()}};
     for (const MovingBox& box : boxes[k]) of_scan["boxes"].push_back(box_json(box));
   }
   return json_text(json);
@@ -88,13 +91,14 @@ std::string ply_of(const std::vector<Eigen::Matrix<Coordinate, 3, 1>>& positions
   return bytes;
 }
 
-void write_boxes(const ResultScans& scans, const fs::path& folder) {
-  if (is_there(folder / "boxes.json") && is_there(folder / "boxes.txt")) return;
+void write_boxes(const ResultScans& scans, ProductRecord& record) {
+  const bool has_json = record.has("boxes.json"), has_text = record.has("boxes.txt");
+  if (has_json && has_text) return;
   std::vector<std::size_t> all(scans.rows().size());
   for (std::size_t k = 0; k < all.size(); ++k) all[k] = k;
   const auto boxes = boxes_of(scans, all);
-  write_file_atomic(folder / "boxes.txt", kitti_text(scans, boxes));
-  write_file_atomic(folder / "boxes.json", boxes_text(scans, boxes));
+  record.write("boxes.txt", kitti_text(scans, boxes));
+  record.write("boxes.json", boxes_text(scans, boxes));
 }
 
 /// The points of a scan that are labelled moving, as they were measured.
@@ -110,11 +114,11 @@ std::string moving_cloud(const JudgedScan& scan) {
   return ply_of(positions_m, intensities, "float");
 }
 
-void write_moving_clouds(const ResultScans& scans, const fs::path& folder) {
+void write_moving_clouds(const ResultScans& scans, ProductRecord& record) {
   Progress progress("moving clouds", scans.rows().size());
   for (std::size_t k = 0; k < scans.rows().size(); ++k) {
-    const fs::path file = folder / "moving" / (scans.rows()[k].stem + ".ply");
-    if (!is_there(file)) write_file_atomic(file, moving_cloud(scans.read(k)));
+    const std::string file = fmt::format("moving/{}.ply", scans.rows()[k].stem);
+    if (!record.has(file)) record.write(file, moving_cloud(scans.read(k)));
     progress.advance();
   }
 }
@@ -147,20 +151,20 @@ class StaticMap {
 };
 
 /// Scans in which the method did not look for motion may hold anything.
-void write_static_cloud(const ResultScans& scans, const fs::path& folder) {
-  if (is_there(folder / "static.ply")) return;
+void write_static_cloud(const ResultScans& scans, ProductRecord& record) {
+  if (record.has("static.ply")) return;
   StaticMap map;
   Progress progress("static map", scans.rows().size());
   for (std::size_t k = 0; k < scans.rows().size(); ++k) {
     if (scans.rows()[k].judged) map.add(scans.read(k));
     progress.advance();
   }
-  write_file_atomic(folder / "static.ply", map.ply());
+  record.write("static.ply", map.ply());
 }
 
 struct Product {
   std::string_view name;
-  void (*write)(const ResultScans& scans, const fs::path& folder);
+  void (*write)(const ResultScans& scans, ProductRecord& record);
 };
 
 constexpr std::array kProducts = {Product{"boxes", write_boxes},
@@ -179,8 +183,11 @@ void write_products(const fs::path& folder, std::span<const std::string> names) 
   if (names.empty()) return;
   const std::vector<FoundResult> results = find_results(folder / "result.json");
   const ResultScans scans(results.front(), std::nullopt);
+  ProductRecord record(folder);
   for (const Product& product : kProducts) {
-    if (std::ranges::find(names, product.name) != names.end()) product.write(scans, folder);
+    if (std::ranges::find(names, product.name) == names.end()) continue;
+    product.write(scans, record);
+    record.save();
   }
 }
 

@@ -11,7 +11,8 @@ namespace mosbench {
 std::vector<std::string> product_names();
 
 /// Writes products of a finished sequence of `mosbench run` into its folder; results/FORMATS.md has
-/// their formats. Each file appears whole; those that are there are kept. Throws DataError.
+/// their formats. Each file appears whole; those that are there as they were
+/// written are kept. Throws DataError, and UsageError for one that was changed since.
 void write_products(const std::filesystem::path& folder, std::span<const std::string> names);
 
 }  // namespace mosbench

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "datasets/files/times_file.hpp"
 #include "tests/cli/program.hpp"
 #include "tests/cli/small_sequence.hpp"
 
@@ -20,7 +21,12 @@ using testing::StartsWith;
 /// A box of 1.2 m that goes 0.2 m from scan to scan.
 class Products : public testing::Test {
  protected:
-  Products() { cli::write_small_sequence(folder_ / "room", 14); }
+  Products() {
+    cli::write_small_sequence(folder_ / "room", 14);
+    std::vector<std::int64_t> stamps_ns;
+    for (std::int64_t k = 0; k < 14; ++k) stamps_ns.push_back(5'000'000'000 + 100'000'000 * k);
+    write_times(folder_ / "room/times.txt", stamps_ns);
+  }
 
   void run(const std::string& products) const {
     std::vector<std::string> words = {"run", folder_ / "room", "--out", folder_ / "out"};
@@ -49,6 +55,8 @@ TEST_F(Products, HoldBoxesWithTracksAndSpeeds) {
   std::size_t boxes = 0;
   std::vector<double> speeds_m_s;
   for (const ordered_json& scan : scans) {
+    const int index = std::stoi(scan.at("stem").get<std::string>());
+    EXPECT_EQ(scan.at("stamp_ns"), 5'000'000'000 + 100'000'000LL * index);
     for (const ordered_json& box : scan.at("boxes")) {
       ++boxes;
       const ordered_json& velocity = box.at("velocity_map_m_s");
@@ -103,11 +111,37 @@ TEST_F(Products, AreAddedToFinishedRunsAndKept) {
   std::filesystem::remove(out("static.ply"));
   run("boxes,static-cloud");
   EXPECT_EQ(cli::contents(folder_ / "out"), first);
+  std::filesystem::remove(out("products.json"));
+  write_file_atomic(out("boxes.txt"), "of another program");
+  run("boxes,static-cloud");
+  EXPECT_EQ(cli::contents(folder_ / "out"), first);
   run("");
   EXPECT_TRUE(is_there(out("boxes.txt")));
   const cli::Answer unknown = cli::run({"run", folder_ / "room", "--write", "cubes"});
   EXPECT_EQ(unknown.exit_code, 2);
   EXPECT_THAT(unknown.err, HasSubstr("cubes"));
+}
+
+TEST_F(Products, ThatWereChangedAreRefused) {
+  run("boxes,moving-cloud,static-cloud");
+  const auto whole = cli::contents(folder_ / "out");
+  for (const char* file : {"boxes.json", "boxes.txt", "moving/000009.ply", "static.ply"}) {
+    const std::string bytes = read_file(out(file));
+    write_file_atomic(out(file), bytes.substr(0, bytes.size() - 1));
+    const std::vector<std::string> words = {"run", folder_ / "room", "--out", folder_ / "out"};
+    EXPECT_EQ(cli::run(words).exit_code, 0);
+    const cli::Answer refused = cli::run({"run", folder_ / "room", "--out", folder_ / "out",
+                                          "--write", "boxes,moving-cloud,static-cloud"});
+    EXPECT_EQ(refused.exit_code, 2) << file;
+    EXPECT_THAT(refused.err, HasSubstr(std::string(file) + ": was changed after the run"));
+    std::filesystem::remove(out(file));
+    run("boxes,moving-cloud,static-cloud");
+    EXPECT_EQ(cli::contents(folder_ / "out"), whole) << file;
+  }
+  write_file_atomic(out("products.json"), "[]");
+  EXPECT_EQ(
+      cli::run({"run", folder_ / "room", "--out", folder_ / "out", "--write", "boxes"}).exit_code,
+      3);
 }
 
 }  // namespace

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+
+namespace mosbench {
+
+/// Writes files of `run --write` into a folder, and remembers in its products.json by their hashes
+/// what they held, so that a later run knows which are as they were written.
+class ProductRecord {
+ public:
+  /// Throws DataError for a damaged products.json.
+  explicit ProductRecord(std::filesystem::path folder);
+
+  /// Returns whether `file`, a path below the folder, is there and known. Throws UsageError when it
+  /// was changed since it was written.
+  bool has(const std::string& file) const;
+  /// Writes the file as a whole. It is known once `save` was called.
+  void write(const std::string& file, std::string_view bytes);
+  void save() const;
+
+ private:
+  std::filesystem::path folder_;
+  nlohmann::ordered_json hashes_;  ///< by file
+};
+
+}  // namespace mosbench
