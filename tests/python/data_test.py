@@ -1,5 +1,6 @@
 """Readers, runs, scores and files."""
 
+import json
 import os
 import signal
 import subprocess
@@ -155,6 +156,15 @@ def test_methods_are_ranked_and_scores_give_a_curve(street, near, finished, tmp_
     curve = mosbench.curve(scored, picture=tmp_path / "curve.png")
     assert 0 <= curve["average_precision"] <= 1
     assert (tmp_path / "curve.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_run_writes_what_is_asked_for(street, near, tmp_path):
+    for write in ("boxes", ["static-cloud", "boxes"]):
+        folder = mosbench.run(street, config=near, out=tmp_path / "run", write=write)["08"].folder
+        assert len(json.loads((folder / "boxes.json").read_text())["scans"]) == 12
+        assert (folder / "static.ply").exists() == ("static-cloud" in write)
+    with pytest.raises(ValueError, match="cubes"):
+        mosbench.run(street, config=near, out=tmp_path / "run", write=["cubes"])
 
 
 def test_run_takes_one_method(street, tmp_path):

@@ -50,9 +50,13 @@ def _refuse_no_poses(reading: Mapping[str, Any]) -> None:
                          "data set's own, or of run odometry='simple', which finds them from the scans")
 
 
+def _names(names: Union[str, Iterable[str]]) -> Optional[list[str]]:
+    return ([names] if isinstance(names, str) else list(names)) or None
+
+
 def _data_flags(data: Any, dataset: str, sequences: Iterable[str], reading: Mapping[str, Any]) -> list[str]:
     """Returns the folder of data, or of what `mosbench.open` opened, and how to read it."""
-    names = [sequences] if isinstance(sequences, str) else list(sequences)
+    names = _names(sequences)
     if isinstance(data, (Dataset, Sequence)):
         by: Opened = data.opened_by
         data, dataset, names = by.path, by.dataset, names or by.sequences
@@ -175,6 +179,7 @@ def run(
     odometry_settings: Optional[Mapping[str, SettingValue]] = None,
     drop_moving: bool = False,
     scores: bool = False,
+    write: Union[str, Iterable[str]] = (),
     overwrite: bool = False,
     threads: Optional[int] = None,
     progress: bool = False,
@@ -189,6 +194,7 @@ def run(
     config: a Config is all settings of its method, and given without preset. Settings by name are set over
     those of `preset`, and without one over the preset of the data set, or the method's defaults.
     odometry: "simple" or "kiss" finds the poses from the scans instead of reading them.
+    write: "boxes", "moving-cloud" and "static-cloud", one or several: files beside the labels, as `run --write` adds.
     progress: print progress and notes on stderr.
     reading: `poses`, `pose_frame`, ... as mosbench.READING lists them; poses in an array are kept in `<out>-data`.
     """
@@ -221,7 +227,7 @@ def run(
             data = folder
         arguments = ["run", *_data_flags(data, dataset, sequences, _with_kept_poses(reading, out))]
         arguments += flags(preset=preset, out=out, method=method, protocol=protocol, scores=scores)
-        arguments += flags(overwrite=overwrite, threads=threads, drop_moving=drop_moving)
+        arguments += flags(write=_names(write), overwrite=overwrite, threads=threads, drop_moving=drop_moving)
         arguments += flags(odometry=odometry, odometry_preset=odometry_preset)
         arguments += _setting_flags(odometry_settings, "--odometry-set")
         _, answer = _answer(arguments + _setting_flags(config), quiet=not progress)
