@@ -61,7 +61,7 @@ auto naming_scan(const Sequence& sequence, std::size_t scan_index, Work&& work) 
 class SequenceRun {
  public:
   SequenceRun(const Sequence& sequence, const RunSettings& settings,
-              const std::filesystem::path& folder)
+              const std::optional<std::filesystem::path>& folder)
       : sequence_(sequence),
         settings_(settings),
         folder_(folder),
@@ -187,14 +187,15 @@ class SequenceRun {
   }
 
   void write(const LabelledScan& result) const {
+    if (!folder_) return;
     const std::string& stem = rows_.scans[result.scan_index].stem;
-    write_labels(folder_ / "labels" / (stem + ".label"), result.labels);
+    write_labels(*folder_ / "labels" / (stem + ".label"), result.labels);
     const PointFiles wanted = settings_.point_files();
     if (wanted.scores) {
-      write_file_atomic(dynamic_score_file(folder_, stem), format_dynamic_scores(result.scores));
+      write_file_atomic(dynamic_score_file(*folder_, stem), format_dynamic_scores(result.scores));
     }
     if (wanted.reasons) {
-      write_file_atomic(reason_file(folder_, stem), format_reasons(result.reasons));
+      write_file_atomic(reason_file(*folder_, stem), format_reasons(result.reasons));
     }
   }
 
@@ -206,7 +207,7 @@ class SequenceRun {
 
   const Sequence& sequence_;
   const RunSettings& settings_;
-  const std::filesystem::path& folder_;
+  const std::optional<std::filesystem::path>& folder_;
   std::launch launch_;
   std::unique_ptr<Method> method_;
   ContentFingerprint fingerprint_;
@@ -237,7 +238,7 @@ RunContext context_of(const Sequence& sequence, const RunSettings& settings) {
 }
 
 SequenceRows run_sequence(const Sequence& sequence, const RunSettings& settings,
-                          const std::filesystem::path& folder) {
+                          const std::optional<std::filesystem::path>& folder) {
   return SequenceRun(sequence, settings, folder).run();
 }
 

@@ -33,13 +33,14 @@ std::string title_of(const Sequence& sequence, const RunSettings& settings);
 /// Returns the conditions under which the method of `settings` runs on a sequence.
 RunContext context_of(const Sequence& sequence, const RunSettings& settings);
 
-/// Segments a sequence, writes `folder`/labels/<stem>.label for every scan, also what
-/// `point_files` asks for, and scores the scans with truth. With more than one thread
-/// the next scan is read and observed and the last one scored and written while a scan enters the
-/// map; what a whole run writes and which error is thrown do not depend on it. Holds up to three
-/// scans at a time, and the truth of those whose labels are still delayed. Throws DataError.
+/// Segments a sequence and scores the scans with truth. Where there is a folder, writes
+/// `folder`/labels/<stem>.label for every scan, also what `point_files` asks for. With more than
+/// one thread the next scan is read and observed and the last one scored and written while a scan
+/// enters the map; what a whole run writes and which error is thrown do not depend on it. Holds up
+/// to three scans at a time, and the truth of those whose labels are still delayed. Throws
+/// DataError.
 SequenceRows run_sequence(const Sequence& sequence, const RunSettings& settings,
-                          const std::filesystem::path& folder);
+                          const std::optional<std::filesystem::path>& folder);
 
 /// Pushes one scan of `sequence`. Throws DataError naming the scan's file, or where it has none of
 /// its own the scan, for points and poses beyond the voxel grid.

@@ -1,7 +1,6 @@
 #include "eval/study/study_cell.hpp"
 
 #include <fmt/format.h>
-#include <stdlib.h>
 
 #include <algorithm>
 #include <chrono>
@@ -48,30 +47,6 @@ RunOptions run_options(const StudyCell& cell, const Study& study, const fs::path
   return options;
 }
 
-/// A folder of one computation for labels that nobody keeps.
-class ScratchFolder {
- public:
-  explicit ScratchFolder(const fs::path& out) {
-    std::error_code error;
-    fs::create_directories(out, error);
-    std::string name = out / "labels-XXXXXX";
-    if (error || mkdtemp(name.data()) == nullptr) {
-      throw DataError(out, "cannot hold a folder for labels", "a writable folder");
-    }
-    path_ = name;
-  }
-  ~ScratchFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
-
 ordered_json worst_scans(std::vector<const ScanRow*> scans) {
   std::erase_if(scans, [](const ScanRow* row) { return !moving_iou(*row->counts); });
   std::ranges::stable_sort(scans, {},
@@ -109,8 +84,7 @@ ordered_json computed_record(const StudyCell& cell, const Study& study, const fs
   if (plan.odometry) {
     set_poses(sequence, *plan.odometry, find_poses(sequence, *plan.odometry, threads));
   }
-  const ScratchFolder scratch(out / "scratch");
-  const SequenceRows rows = run_sequence(sequence, plan.settings, scratch.path());
+  const SequenceRows rows = run_sequence(sequence, plan.settings, std::nullopt);
   const std::vector<const ScanRow*> counted = counted_scans(plan, 0, rows);
   std::vector<Confusion> counts;
   for (const ScanRow* row : counted) counts.push_back(*row->counts);

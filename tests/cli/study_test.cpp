@@ -76,7 +76,7 @@ TEST_F(Studies, AreComputedCellByCellAndGathered) {
   const ordered_json result = cli::timeless_result(folder_ / "run/00");
   EXPECT_EQ(cell.at("summary"), result.at("summary"));
   EXPECT_EQ(cell.at("fingerprint"), result.at("fingerprint"));
-  EXPECT_FALSE(std::filesystem::exists(folder_ / "out/scratch/labels"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out/scratch"));
   for (const char* format : {"csv", "latex", "json", "html"}) {
     EXPECT_EQ(study("table", {"--format", format}).exit_code, 0) << format;
   }
