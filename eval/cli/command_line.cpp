@@ -104,8 +104,12 @@ void refuse_unknown_arguments(const CLI::App& command, const std::string& name) 
   }
   const std::vector<std::string_view> candidates(flags.begin(), flags.end());
   std::string hint = as_setting(command, word);
-  if (hint.empty()) hint = fmt::format("nearest: {}", nearest_name(word, candidates));
-  throw UsageError(fmt::format("{}: is no flag of {} ({}); see {} --help", word, name, hint, name));
+  const bool is_short = !word.starts_with("--");  // no other is near to a single letter
+  if (hint.empty() && !is_short) {
+    hint = fmt::format("nearest: {}", nearest_name(word, candidates));
+  }
+  throw UsageError(fmt::format("{}: is no flag of {}{}; see {} --help", word, name,
+                               hint.empty() ? "" : fmt::format(" ({})", hint), name));
 }
 
 }  // namespace

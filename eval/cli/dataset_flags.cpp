@@ -103,7 +103,7 @@ void add_scan_flags(CLI::App& command, ReadingOptions& options) {
       .add_flag("--hdl64-correction", options.hdl64_correction,
                 "Raise points by the 0.205 degrees that KITTI's calibration of its HDL-64E misses")
       ->group(kReadingGroup);
-  add_perturb_flag(command, options.perturb);
+  add_perturb_flag(command, options.perturb, "Disturb what is read")->group(kReadingGroup);
 }
 
 void add_reading_flags(CLI::App& command, ReadingOptions& options) {
@@ -134,14 +134,14 @@ void add_scan_dataset_flags(CLI::App& command, std::filesystem::path& input, std
   add_scan_flags(command, reading);
 }
 
-void add_perturb_flag(CLI::App& command, std::optional<std::string>& perturb) {
-  command
+CLI::Option* add_perturb_flag(CLI::App& command, std::optional<std::string>& perturb,
+                              const std::string& description) {
+  return command
       .add_option_function<std::string>(
           "--perturb",
           [&](const std::string& text) { perturb = to_string(parse_perturbation(text)); },
-          "Disturb what is read, in this order, see `mosbench list perturbations`")
-      ->type_name("KIND=STRENGTH,...,seed=N")
-      ->group(kReadingGroup);
+          description + ", in this order, see `mosbench list perturbations`")
+      ->type_name("KIND=STRENGTH,...,seed=N");
 }
 
 bool chooses_scans(const CLI::Option& option) {

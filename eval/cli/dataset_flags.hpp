@@ -31,8 +31,10 @@ ReadingOptions reading_of(std::vector<std::string> flags);
 /// Returns the names of these flags in the words of Python: "pose_frame".
 std::vector<std::string> reading_names();
 
-/// Adds --perturb, whose text is checked and made canonical.
-void add_perturb_flag(CLI::App& command, std::optional<std::string>& perturb);
+/// Adds --perturb, whose text is checked and made canonical; `description` ends before where the
+/// kinds are listed.
+CLI::Option* add_perturb_flag(CLI::App& command, std::optional<std::string>& perturb,
+                              const std::string& description);
 
 /// Adds --dataset alone.
 void add_dataset_kind_flag(CLI::App& command, std::string& dataset);

@@ -17,8 +17,9 @@ constexpr std::size_t kColumns = 100;
 // A longer list of words stands in the description, which is wrapped.
 constexpr std::size_t kLongestWords = 60;
 
-/// Returns "{kitti,tum}", or nothing where any value may follow a flag.
+/// Returns "{kitti,tum}", or nothing where any value may follow a flag, or several words may.
 std::string listed_words(const CLI::Option& option) {
+  if (option.get_delimiter() != '\0') return "";
   const std::string type = option.get_type_name();
   const std::size_t brace = type.find(":{");
   return brace == std::string::npos ? "" : type.substr(brace + 1);
@@ -89,6 +90,10 @@ std::string HelpText::make_option(const CLI::Option* option, bool is_positional)
   left += left.size() + 2 <= indent ? std::string(indent - left.size(), ' ')
                                     : '\n' + std::string(indent, ' ');
   return left + wrapped(description_of(*option, is_positional), indent) + '\n';
+}
+
+std::string type_of_names(const std::vector<std::string_view>& names) {
+  return fmt::format("NAME:{{{}}}", fmt::join(names, ","));
 }
 
 std::string full_name(const CLI::App& command) {

@@ -2,6 +2,8 @@
 
 #include <CLI/CLI.hpp>
 #include <string>
+#include <string_view>
+#include <vector>
 
 namespace mosbench {
 
@@ -12,6 +14,10 @@ class HelpText : public CLI::Formatter {
   std::string make_usage(const CLI::App* app, std::string name) const override;
   std::string make_option(const CLI::Option* option, bool is_positional) const override;
 };
+
+/// Returns the name of a type whose values are `names`, as CLI11 names those that it checks: help
+/// and completion list them.
+std::string type_of_names(const std::vector<std::string_view>& names);
 
 /// Returns "mosbench", or "mosbench run" of the command run.
 std::string full_name(const CLI::App& command);

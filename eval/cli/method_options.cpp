@@ -1,9 +1,12 @@
 #include "eval/cli/method_options.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstring>
 
 #include "eval/cli/dataset_flags.hpp"
+#include "eval/cli/help_text.hpp"
 
 namespace mosbench {
 namespace {
@@ -61,8 +64,12 @@ void add_method_options(CLI::App& command, RunOptions& options) {
       .add_option("--preset", options.preset,
                   "Published settings, or `best` (default: by data set)")
       ->type_name("PRESET");
-  command.add_option("--variant", options.variant,
-                     "Short for --set variant=NAME: paper-2024 (default) or release-2025");
+  const Settings& of_paper = methods().front().defaults;
+  command
+      .add_option(
+          "--variant", options.variant,
+          fmt::format("Short for --set variant=NAME (default: {})", of_paper.choice("variant")))
+      ->type_name(type_of_names(of_paper.find("variant")->choices));
   command
       .add_option(
           "--moving", options.moving,

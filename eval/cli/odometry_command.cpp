@@ -202,9 +202,12 @@ CommandRun add_odometry(CLI::App& command) {
                   "File of poses to write (- is stdout); a folder for several sequences")
       ->type_name("FILE")
       ->required();
-  command.add_option("--odometry", flags->odometry.kind, "simple or kiss (default: simple)");
+  command
+      .add_option("--odometry", flags->odometry.kind,
+                  "See `mosbench list odometry` (default: simple)")
+      ->type_name(odometry_type());
   command.add_option("--preset", flags->odometry.preset, "Settings that authors published")
-      ->type_name("PRESET");
+      ->type_name(odometry_preset_type());
   command.add_option("--config", flags->odometry.config_file, "JSON object of settings")
       ->type_name("FILE");
   add_drop_moving_flag(command, flags->odometry);

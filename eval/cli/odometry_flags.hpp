@@ -1,10 +1,15 @@
 #pragma once
 
 #include <CLI/App.hpp>
+#include <string>
 
 #include "eval/runs/odometry_choice.hpp"
 
 namespace mosbench {
+
+/// The names of kinds and of presets, as `type_of_names`.
+std::string odometry_type();
+std::string odometry_preset_type();
 
 /// Adds --odometry and the flags of its settings to a command that otherwise reads poses. What they
 /// fill must outlive the parsing.

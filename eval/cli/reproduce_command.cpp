@@ -10,6 +10,7 @@
 #include "datasets/layouts/simulated_origin.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/cli/dataset_flags.hpp"
+#include "eval/cli/help_text.hpp"
 #include "eval/results/tell.hpp"
 #include "eval/runs/presets.hpp"
 #include "eval/runs/run_execute.hpp"
@@ -169,7 +170,8 @@ CommandRun add_reproduce(CLI::App& command) {
       ->delimiter(',')
       ->allow_extra_args(false);
   add_threads_flag(command, options->threads);
-  command.add_option("--format", options->format, "markdown, csv, latex or json")
+  command.add_option("--format", options->format, "Of what is printed")
+      ->type_name(type_of_names({"markdown", "csv", "latex", "json"}))
       ->capture_default_str();
   command.footer(kReproduceFooter);
   return [options] { return Answer{reproduce(*options)}; };

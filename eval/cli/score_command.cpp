@@ -9,6 +9,7 @@
 #include "datasets/files/folder_lock.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/cli/dataset_flags.hpp"
+#include "eval/cli/help_text.hpp"
 #include "eval/protocols/benchmark_split.hpp"
 #include "eval/results/answer_text.hpp"
 #include "eval/results/machine.hpp"
@@ -159,7 +160,8 @@ void add_prediction_options(CLI::App& command, ScoreFlags& options) {
   command
       .add_option("--id-map", options.id_map, "Meaning of the predicted ids, such as 0:0,1:9,2:251")
       ->type_name("MAP");
-  command.add_option("--level", options.level, "Of Dynablox's files: point, cluster or object")
+  command.add_option("--level", options.level, "Of Dynablox's files")
+      ->type_name(type_of_names({"point", "cluster", "object"}))
       ->capture_default_str();
   command.add_flag("--allow-missing", options.task.options.allow_missing,
                    "Leave out scans whose prediction is missing or faulty; marks the result");

@@ -74,7 +74,7 @@ CommandRun add_simulate(CLI::App& command) {
   command.add_option("--out", simulation.out, "Root of the data set to write")
       ->type_name("DIR")
       ->required();
-  add_perturb_flag(command, simulation.perturb);
+  add_perturb_flag(command, simulation.perturb, "Disturb what is written");
   add_threads_flag(command, simulation.threads);
   command.footer(kSimulateFooter);
   return [options] { return Answer{simulate_dataset(*options)}; };

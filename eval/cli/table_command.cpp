@@ -5,6 +5,7 @@
 
 #include "datasets/files/files.hpp"
 #include "eval/cli/commands.hpp"
+#include "eval/cli/help_text.hpp"
 #include "eval/tables/table_report.hpp"
 
 namespace mosbench {
@@ -53,7 +54,8 @@ CommandRun add_table(CLI::App& command) {
       .add_option("--published", options->published,
                   "CSV of published numbers, instead of the built-in ones")
       ->type_name("FILE");
-  command.add_option("--format", options->format, "markdown, csv, latex or json")
+  command.add_option("--format", options->format, "Of what is printed")
+      ->type_name(type_of_names({"markdown", "csv", "latex", "json"}))
       ->capture_default_str();
   command.footer(kTableFooter);
   return [options] { return Answer{table(*options)}; };

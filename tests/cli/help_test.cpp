@@ -49,7 +49,23 @@ TEST(Help, OfEveryCommandShowsUsageAndExamplesWithin100Columns) {
     EXPECT_THAT(answer.out, HasSubstr("Examples:\n  mosbench " + name)) << name;
     EXPECT_EQ(cli::run({"help", name}).out, answer.out) << name;
     expect_narrow(answer.out, name);
+    // What is typed behind a flag has a name or is listed; --setting of `score` alone is free text.
+    if (name != "score") EXPECT_THAT(answer.out, Not(HasSubstr("TEXT"))) << name;
   }
+}
+
+TEST(Help, ListsTheValuesOfAFlagAndNamesThoseOfAList) {
+  const std::string run = cli::run({"run", "--help"}).out;
+  for (const char* part :
+       {"\n  --variant {paper-2024,release-2025}\n", "\n  --odometry {simple,kiss}",
+        "\n  --write WHAT,...          Also write, from the labels: boxes, moving-cloud, "
+        "static-cloud\n",
+        "\nReading:\n  --topic"}) {
+    EXPECT_THAT(run, HasSubstr(part));
+  }
+  const std::string simulate = cli::run({"simulate", "--help"}).out;
+  EXPECT_THAT(simulate, HasSubstr("Disturb what is written, in this order"));
+  EXPECT_THAT(simulate, Not(HasSubstr("Reading:")));
 }
 
 TEST(Version, NamesProgramAndCompiler) {
@@ -133,6 +149,7 @@ TEST(Usage, NamesTheNearestWordToAnUnknownOne) {
            {{"run", "x", "--treads=2"},
             "--treads: is no flag of mosbench run (nearest: --threads)"},
            {{"run", "x", "--delay", "10"}, "(a setting of hmm-mos: --set delay_scans=...)"},
+           {{"run", "x", "-q"}, "-q: is no flag of mosbench run; see mosbench run --help"},
            {{"run", "x", "--out", "--json"}, "--out: --json is a flag, expected a value"},
            {{"run", "x", "y"}, "y: is one argument too many"}}) {
     const cli::Answer answer = cli::run(mistake.arguments);
@@ -162,6 +179,8 @@ TEST(Completion, OffersCommandsFlagsAndTheirValuesInBash) {
   EXPECT_EQ(completed(script, "mosbench run --pre"), "--preset\n");
   EXPECT_EQ(completed(script, "mosbench run DATA --preset doals-"), "doals-20m doals-120m\n");
   EXPECT_EQ(completed(script, "mosbench list me"), "methods\n");
+  EXPECT_EQ(completed(script, "mosbench run DATA --write s"), "static-cloud\n");
+  EXPECT_EQ(completed(script, "mosbench odometry DATA --preset kitti-o"), "kitti-online\n");
   EXPECT_EQ(completed(script, "mosbench run --out d"), "\n");
 }
 
