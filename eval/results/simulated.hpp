@@ -8,7 +8,11 @@
 
 namespace mosbench {
 
-/// {"scene", "seed", "notice"} of a data set that `mosbench simulate` wrote; nothing for real data.
+/// {"scene", "seed", "notice"} of a sequence that `mosbench simulate` wrote, also where a link
+/// leads to it; nothing for real data.
+std::optional<nlohmann::ordered_json> simulated_origin_json(const Dataset& dataset,
+                                                            const Sequence& sequence);
+/// The same of the first such sequence of a data set.
 std::optional<nlohmann::ordered_json> simulated_origin_json(const Dataset& dataset);
 
 /// The line with which every answer about simulated data begins; empty for real data.

@@ -95,7 +95,8 @@ ordered_json header(const RunPlan& plan, const PlannedSequence& planned, const S
   ordered_json json = {{"format", kResultFormat}};
   json.update(planned.identity);
   json["preset"] = plan.preset;
-  if (const auto origin = simulated_origin_json(plan.dataset)) {
+  const Sequence& sequence = *plan.dataset.sequences[planned.position];
+  if (const auto origin = simulated_origin_json(plan.dataset, sequence)) {
     json["simulated"] = *origin;
   }
   json["fingerprint"] = rows.fingerprint;
@@ -103,7 +104,6 @@ ordered_json header(const RunPlan& plan, const PlannedSequence& planned, const S
   json["machine"] = machine_json();
   json["remarks"] = remarks;
   json["scans_without_detection"] = scans_without_detection(rows);
-  const Sequence& sequence = *plan.dataset.sequences[planned.position];
   if (plan.odometry) json["doubtful_poses"] = doubtful_poses(sequence, found);
   const Recording& recording = sequence.recording();
   for (const ScanEntry& scan : recording.left_out) json["scans_left_out"].push_back(scan.stem);

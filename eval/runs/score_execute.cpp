@@ -131,6 +131,20 @@ SequenceScores score_sequence(const Dataset& dataset, std::size_t position, cons
   return scores;
 }
 
+/// Says why there is nothing to score: no truth, or no prediction that --allow-missing left.
+[[noreturn]] void refuse_nothing(const Dataset& dataset, const ScoreTask& task,
+                                 const std::vector<SequenceScores>& sequences) {
+  for (const SequenceScores& sequence : sequences) {
+    if (!sequence.opened) continue;
+    const std::vector<std::string>& remarks = sequence.opened->remarks;
+    throw DataError(task.predictions,
+                    fmt::format("holds no usable prediction of any scan with truth{}",
+                                remarks.empty() ? "" : " (" + remarks.front() + ")"),
+                    "some");
+  }
+  throw DataError(dataset.root, "no scan to score has truth", "labels beside the scans");
+}
+
 }  // namespace
 
 std::vector<SequenceScores> score_dataset(const Dataset& dataset, const ScoreTask& task) {
@@ -141,9 +155,7 @@ std::vector<SequenceScores> score_dataset(const Dataset& dataset, const ScoreTas
     sequences.push_back(score_sequence(dataset, i, task, pool));
     scans += sequences.back().by_rule.front().size();
   }
-  if (scans == 0) {
-    throw DataError(dataset.root, "no scan to score has truth", "labels beside the scans");
-  }
+  if (scans == 0) refuse_nothing(dataset, task, sequences);
   return sequences;
 }
 

@@ -47,16 +47,22 @@ std::string run_command(const PaperTable& table, const TableColumn& column, cons
                      shell_word(fmt::format("{}", fmt::join(column.sequences, ","))), preset.name);
 }
 
+/// A run whose folder is not named by what differs from the preset gets a folder that is.
 std::string run_command(const PaperTable& table, const TableColumn& column,
                         const PublishedCell& published, const MethodKind& method) {
   const Preset& preset = nearest_preset(table.dataset, method, published);
   std::string command = run_command(table, column, preset);
   if (&method != &methods().front()) command += fmt::format(" --method {}", method.name);
-  if (preset.protocol != published.protocol)
+  std::vector<std::string> differing = other_settings(preset, method, published);
+  if (!differing.empty()) command += fmt::format(" --set {}", fmt::join(differing, ","));
+  if (preset.protocol != published.protocol) {
     command += " --protocol " + shell_word(published.protocol);
-  const std::vector<std::string> assignments = other_settings(preset, method, published);
-  if (assignments.empty()) return command;
-  return command + fmt::format(" --set {}", fmt::join(assignments, " "));
+    differing.push_back(published.protocol);
+  }
+  if (differing.empty()) return command;
+  return command + " --out " +
+         shell_word(fmt::format("results/runs/{}-{}-{}", preset.name, method.name,
+                                fmt::join(differing, "-")));
 }
 
 std::string score_command(const PaperTable& table, const PublishedCell& published) {

@@ -36,10 +36,11 @@ std::vector<Unlike> obstacles(const PairedRuns& paired) {
 }
 
 void check_is_like(const ResultSet& first, const ResultSet& run) {
-  const std::vector<Unlike> unlike = obstacles(pair_runs(first, run));
-  if (unlike.empty()) return;
-  throw DataError(run.front().file,
-                  "is not like " + first.front().file.string() + ": " + unlike_text(unlike),
+  const PairedRuns paired = pair_runs(first, run);
+  const std::vector<Unlike> unlike = obstacles(paired);
+  if (unlike.empty() && !paired.scans.empty()) return;
+  const std::string why = unlike.empty() ? "they have no scan in common" : unlike_text(unlike);
+  throw DataError(run.front().file, "is not like " + first.front().file.string() + ": " + why,
                   "runs with the same protocol, range, scans and truth");
 }
 

@@ -177,7 +177,9 @@ void write_scores(const Dataset& dataset, const ReadingOptions& reading, const S
         {"code", {{"version", std::string(kMosbenchVersion)}}},
         {"predictions", predictions_json(*sequence.opened)},
         {"source", source_json(dataset, reading, task, sequence.opened->format)}};
-    if (const auto origin = simulated_origin_json(dataset)) header["simulated"] = *origin;
+    if (const auto origin = simulated_origin_json(dataset, recorded)) {
+      header["simulated"] = *origin;
+    }
     const ordered_json splits = picked_stems(dataset, sequence.position);
     if (!splits.empty()) header["splits"] = splits;
     const std::vector<ScanRow>& rows = sequence.by_rule.front();

@@ -101,6 +101,20 @@ bool is_simulated(const FilledTable& table) {
   return false;
 }
 
+/// Names the command that does what the footnotes say one by one, where there is one.
+std::string hint_on_runs(const FilledTable& table) {
+  using enum DatasetKind;
+  const DatasetKind kind = table.table->dataset;
+  const bool is_reproduced = kind == kDoals || kind == kSipailou || kind == kHelimos;
+  const bool lacks_runs = std::ranges::any_of(table.rows, [](const TableRow& row) {
+    return std::ranges::any_of(
+        row.cells, [](const TableCell& cell) { return !cell.measured && !cell.reasons.empty(); });
+  });
+  if (!is_reproduced || !lacks_runs) return "";
+  return fmt::format("\n`mosbench reproduce {} --data DIR` does most of that at once.\n",
+                     to_string(kind));
+}
+
 std::string interval_end(const Estimate& estimate, double Interval::*end) {
   return estimate.interval ? csv_percent((*estimate.interval).*end) : "";
 }
@@ -147,7 +161,7 @@ std::string table_markdown(const FilledTable& table) {
   for (const std::string& line : measured_sequences(table)) {
     text += "- " + markdown_text(line) + '\n';
   }
-  return text + notes.str();
+  return text + notes.str() + hint_on_runs(table);
 }
 
 std::string table_latex(const FilledTable& table) {

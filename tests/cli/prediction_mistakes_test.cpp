@@ -109,6 +109,14 @@ TEST_F(PredictionMistakes, AFaultyFileIsReportedOnce) {
   EXPECT_THAT(answer.out, HasSubstr("INCOMPLETE: 1 scans"));
 }
 
+TEST_F(PredictionMistakes, NothingUsableIsToldFromNoTruth) {
+  folder_.write("empty/000003.label", "");
+  const cli::Answer answer = score(folder_ / "empty", {"--allow-missing"});
+  EXPECT_EQ(answer.exit_code, 3);
+  EXPECT_THAT(answer.err, HasSubstr("empty: holds no usable prediction of any scan with truth "
+                                    "(passed over: "));
+}
+
 // The five scans in the middle of the sequence have only zeros.
 TEST_F(PredictionMistakes, ClassesAreRecognisedInTheFirstScanAlone) {
   const auto in_first = [](std::uint32_t id) {

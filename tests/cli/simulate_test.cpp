@@ -76,6 +76,21 @@ TEST_F(Simulate, RefusesWhatItDoesNotKnow) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
 }
 
+/// As users gather sequences of several data sets in one.
+TEST_F(Simulate, IsKnownWhereALinkLeadsToIt) {
+  ASSERT_EQ(simulate("semantickitti", "room", "a").exit_code, 0);
+  std::filesystem::create_directories(folder_ / "mine/sequences");
+  std::filesystem::copy(folder_ / "a/sequences/08", folder_ / "mine/sequences/00",
+                        std::filesystem::copy_options::recursive);
+  std::filesystem::create_directory_symlink(folder_ / "a/sequences/08",
+                                            folder_ / "mine/sequences/01");
+  const cli::Answer run = cli::run({"run", folder_ / "mine", "--out", folder_ / "out"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("simulated data (scene room"));
+  EXPECT_TRUE(cli::timeless_result(folder_ / "out/01").contains("simulated"));
+  EXPECT_FALSE(cli::timeless_result(folder_ / "out/00").contains("simulated"));
+}
+
 TEST_F(Simulate, NamesAnOutputFolderThatCannotBeMade) {
   folder_.write("out", "in the way");
   const cli::Answer answer = simulate("doals", "room", "out/below");

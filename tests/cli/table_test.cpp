@@ -232,7 +232,7 @@ TEST_P(TableCommand, FillsTheCellsOfItsTable) {
   for (const std::vector<std::string>& words : commands) {
     std::vector<std::string> command = {"run", (folder / "data").string(), "--out",
                                         (folder / "out" / words.at(3)).string()};
-    command.insert(command.end(), words.begin(), words.end());
+    command.insert(command.end(), words.begin(), std::ranges::find(words, "--out"));
     const cli::Answer run = cli::run(command);
     ASSERT_EQ(run.exit_code, 0) << run.err;
   }

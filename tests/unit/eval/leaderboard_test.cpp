@@ -154,6 +154,9 @@ TEST(Leaderboard, RefusesRunsOfAnotherKind) {
   EXPECT_THAT(refusal([](auto& run) { run.scans[0].truth_hash->fill('1'); }),
               HasSubstr("the truth of scan 0 differs"));
   EXPECT_THAT(refusal([](auto& run) { run.scans.clear(); }), HasSubstr("no scan with truth"));
+  EXPECT_THAT(
+      refusal([](auto& run) { run.sequence = SequenceName("9" + run.sequence.text(), "9"); }),
+      HasSubstr("they have no scan in common, expected runs with the same"));
 }
 
 TEST(Leaderboard, RemarksOnTimesOfOtherThreadsAndProcessors) {

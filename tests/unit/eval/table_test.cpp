@@ -276,7 +276,8 @@ TEST(FillTable, SaysHowToRunPeersThatMosbenchHas) {
                 HasSubstr(std::string("mosbench run DIR --dataset doals --sequences "
                                       "station/sequence_1,station/sequence_2 --preset ") +
                           (near ? "doals-20m" : "doals-120m") +
-                          " --method dynablox --protocol doals-dynablox"));
+                          " --method dynablox --protocol doals-dynablox --out results/runs/" +
+                          (near ? "doals-20m" : "doals-120m") + "-dynablox-doals-dynablox"));
   }
   EXPECT_EQ(found, 2U);
 }
