@@ -70,15 +70,52 @@ std::vector<std::vector<Span>> folds_of(const std::vector<Span>& columns, std::s
   return folds;
 }
 
+/// The text of a line in a column, with blanks up to its width.
+std::string cell_of(const std::string& line, const Span& column) {
+  const auto [begin, end] = column;
+  const std::string cell = begin < line.size() ? line.substr(begin, end - begin) : "";
+  return cell + std::string(end - begin - cell.size(), ' ');
+}
+
 std::string cells_of(const std::string& line, const std::vector<Span>& columns) {
   std::string cells;
-  for (const auto& [begin, end] : columns) {
-    const std::string cell = begin < line.size() ? line.substr(begin, end - begin) : "";
-    if (begin != columns.front().first) cells += kBetween;
-    cells += cell + std::string(end - begin - cell.size(), ' ');
+  for (const Span& column : columns) {
+    if (&column != columns.data()) cells += kBetween;
+    cells += cell_of(line, column);
   }
   cells.erase(cells.find_last_not_of(' ') + 1);
   return cells + '\n';
+}
+
+/// The same of two columns, the second of which goes on in the next line where there is no room.
+std::string broken_cells(const std::string& line, const std::vector<Span>& columns,
+                         std::size_t room) {
+  const std::size_t indent = columns.front().second + kBetween.size();
+  std::istringstream words(cell_of(line, columns.back()));
+  std::string cells = cell_of(line, columns.front()) + std::string(kBetween);
+  std::size_t used = indent;
+  for (std::string word; words >> word; used += word.size()) {
+    if (word.find_first_not_of('-') == std::string::npos)
+      word.resize(std::min(word.size(), room - indent));
+    if (used > indent && used + 1 + word.size() > room) {
+      cells += '\n' + std::string(indent, ' ');
+      used = indent;
+    } else if (used > indent) {
+      cells += ' ';
+      ++used;
+    }
+    cells += word;
+  }
+  cells.erase(cells.find_last_not_of(' ') + 1);
+  return cells + '\n';
+}
+
+std::string row_of(const std::string& line, const std::vector<Span>& fold, std::size_t room) {
+  constexpr std::size_t kLeastRoom = 20;  // for words in the second of two columns
+  const std::string whole = cells_of(line, fold);
+  const std::size_t first = fold.front().second + kBetween.size();
+  if (fold.size() != 2 || whole.size() <= room + 1 || first + kLeastRoom > room) return whole;
+  return broken_cells(line, fold, room);
 }
 
 /// Whether a line ends where the columns of a table do, as titles and rows without trailing blanks
@@ -106,7 +143,7 @@ std::string folded_tables(const std::string& answer, std::size_t room) {
     const auto folds = folds_of(columns, room);
     for (const auto& fold : folds) {
       if (&fold != folds.data()) text += '\n';
-      for (std::size_t row = i; row < end; ++row) text += cells_of(lines[row], fold);
+      for (std::size_t row = i; row < end; ++row) text += row_of(lines[row], fold, room);
     }
     i = end - 1;
   }

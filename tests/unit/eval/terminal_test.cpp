@@ -33,6 +33,14 @@ TEST(FoldedTables, ShowsAColumnThatIsWiderThanTheTerminalAllTheSame) {
             "run   ms\n----  --\nmine   9\n");
 }
 
+TEST(FoldedTables, BreaksTextBesideTheFirstColumn) {
+  TextTable table({{"name", TextTable::kLeft}, {"why", TextTable::kLeft}});
+  table.add_row({"a", "one two three four five six"});
+  EXPECT_EQ(folded_tables(table.str(), 26),
+            "name  why\n----  --------------------\na     one two three four\n      five six\n");
+  EXPECT_EQ(folded_tables(table.str(), 25), table.str()) << "there is hardly room for words";
+}
+
 TEST(FoldedTables, FoldsBetweenLinesThatAreNoTable) {
   const std::string around = "a note that is longer than the terminal\n\n";
   EXPECT_EQ(folded_tables(around + wide_table().str() + "\n" + around, 19),
