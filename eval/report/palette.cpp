@@ -29,11 +29,15 @@ Palette palette(bool dark) {
   };
   Palette palette{
       {}, {}, colour(json.at("background")), colour(json.at("text")), colour(json.at("guide"))};
+  const auto swatch = [&](const nlohmann::ordered_json& entry) {
+    const std::string name = entry.at("name");
+    return Swatch{colour(entry), name, entry.value("without_truth", name)};
+  };
   for (const nlohmann::ordered_json& entry : json.at("outcomes")) {
-    palette.outcomes.push_back({colour(entry), entry.at("name")});
+    palette.outcomes.push_back(swatch(entry));
   }
   for (const nlohmann::ordered_json& entry : json.at("reasons")) {
-    palette.reasons.push_back({colour(entry), entry.at("name")});
+    palette.reasons.push_back(swatch(entry));
   }
   return palette;
 }

@@ -11,6 +11,7 @@ namespace mosbench {
 struct Swatch {
   Colour colour;
   std::string name;
+  std::string name_without_truth;  ///< the same but for outcomes
 };
 
 /// Colours of a light or dark picture, equal to those of the report's page. Those of outcomes and

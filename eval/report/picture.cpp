@@ -93,17 +93,17 @@ void Picture::rectangle(int x, int y, int width, int height, Colour colour, doub
   }
 }
 
-void Picture::text(int x, int y, std::string_view text, Colour colour) {
+void Picture::text(int x, int y, std::string_view text, Colour colour, int scale) {
   const std::string_view levels = glyph_levels();
   for (std::size_t i = 0; i < text.size(); ++i) {
     int glyph = static_cast<unsigned char>(text[i]) - kFirstGlyph;
     if (glyph < 0 || glyph >= kGlyphs) glyph = '?' - kFirstGlyph;
-    for (int row = 0; row < kGlyphHeight; ++row) {
-      for (int column = 0; column < kGlyphWidth; ++column) {
-        const auto level =
-            static_cast<std::size_t>(row * kGlyphWidth * kGlyphs + glyph * kGlyphWidth + column);
-        blend(x + static_cast<int>(i) * kGlyphWidth + column, y + row, colour,
-              static_cast<unsigned char>(levels[level]) / 255.0);
+    const int left = x + static_cast<int>(i) * kGlyphWidth * scale;
+    for (int row = 0; row < kGlyphHeight * scale; ++row) {
+      for (int column = 0; column < kGlyphWidth * scale; ++column) {
+        const int level = (row / scale * kGlyphs + glyph) * kGlyphWidth + column / scale;
+        blend(left + column, y + row, colour,
+              static_cast<unsigned char>(levels[static_cast<std::size_t>(level)]) / 255.0);
       }
     }
   }

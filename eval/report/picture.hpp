@@ -30,8 +30,9 @@ class Picture {
   void ring(double x, double y, double radius, Colour colour);
   void line(double from_x, double from_y, double to_x, double to_y, double width, Colour colour);
   void rectangle(int x, int y, int width, int height, Colour colour, double opacity = 1.0);
-  /// Draws ASCII text with (x, y) as its upper left corner; other characters become "?".
-  void text(int x, int y, std::string_view text, Colour colour);
+  /// Draws ASCII text with (x, y) as its upper left corner, `scale` times as large; other
+  /// characters become "?".
+  void text(int x, int y, std::string_view text, Colour colour, int scale = 1);
 
   /// Returns the bytes of a PNG file.
   std::string png() const;

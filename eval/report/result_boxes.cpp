@@ -21,6 +21,8 @@ std::vector<Eigen::Vector3d> moving_points_of(const JudgedScan& scan) {
 
 double to_hundredths(double value) { return std::round(100.0 * value) / 100.0; }
 
+double to_thousandths(double value) { return std::round(1000.0 * value) / 1000.0; }
+
 nlohmann::ordered_json numbers_of(const MovingBox& box, const Pose& sensor_from_map) {
   const Pose sensor_from_box = sensor_from_map * box.map_from_box;
   const Eigen::Vector3d ahead = sensor_from_box.linear().col(0);
@@ -29,7 +31,7 @@ nlohmann::ordered_json numbers_of(const MovingBox& box, const Pose& sensor_from_
   numbers.push_back(to_hundredths(std::atan2(ahead.y(), ahead.x())));
   for (const double value : box.size_m) numbers.push_back(to_hundredths(value));
   numbers.push_back(box.velocity_m_s
-                        ? nlohmann::ordered_json(to_hundredths(box.velocity_m_s->norm()))
+                        ? nlohmann::ordered_json(to_thousandths(box.velocity_m_s->norm()))
                         : nlohmann::ordered_json());
   return numbers;
 }

@@ -21,8 +21,8 @@ std::vector<std::vector<MovingBox>> boxes_of(const ResultScans& scans,
                                              const std::vector<std::size_t>& wanted);
 
 /// The same for the page: per scan a list of boxes, each [x, y, z, yaw, length, width, height,
-/// speed] in the sensor's frame, metres and radians, to 0.01; the speed in m/s is null for an
-/// object seen once.
+/// speed] in the sensor's frame, metres and radians, to 0.01; the speed in m/s to 0.001, null
+/// for an object seen once.
 nlohmann::ordered_json boxes_json(const ResultScans& scans, const std::vector<std::size_t>& wanted);
 
 }  // namespace mosbench

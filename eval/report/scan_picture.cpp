@@ -18,7 +18,13 @@ namespace mosbench {
 namespace {
 
 constexpr int kMargin = 12;
-constexpr int kLine = Picture::kGlyphHeight + 2;
+
+/// A text whose upper left corner is at x, y.
+struct Label {
+  int x, y;
+  std::string text;
+  Colour colour;
+};
 
 /// Whether a point is drawn over the background. Such points are drawn in stored order: where right
 /// and wrong ones overlap, the picture shows the more frequent kind.
@@ -76,6 +82,7 @@ class ScanPicture {
                                  : kinds_of(scan.outcomes, palette_.outcomes)),
         range_m_(options.range_m > 0.0 ? options.range_m : reach_m(scan)),
         view_(options.viewpoint, range_m_, static_cast<double>(options.size_pixels)),
+        text_scale_(std::max(1, static_cast<int>(options.size_pixels + 500) / 1000)),
         picture_(options.size_pixels, options.size_pixels, palette_.background) {}
 
   Picture draw() && {
@@ -83,6 +90,7 @@ class ScanPicture {
     for (const bool standing_out : {false, true}) draw_points(standing_out);
     draw_sensor();
     for (const MovingBox& box : options_.boxes) draw_moving_box(box);
+    for (const Label& label : labels_) draw_label(label);
     draw_box(kMargin, kMargin, options_.title);
     draw_legend();
     return std::move(picture_);
@@ -98,8 +106,8 @@ class ScanPicture {
       draw_ring(radius_m, ground_m);
       const auto top = view_.seen({radius_m, 0.0, ground_m});
       if (!top) continue;
-      picture_.text(static_cast<int>(top->x) + 4, static_cast<int>(top->y) + 2,
-                    fmt::format("{:g} m", radius_m), label_colour);
+      add_label({static_cast<int>(top->x) + 4, static_cast<int>(top->y) + 2,
+                 fmt::format("{:g} m", radius_m), label_colour});
     }
   }
 
@@ -167,20 +175,51 @@ class ScanPicture {
     }
     const auto label = view_.seen(corners[4]);
     if (!label || !box.velocity_m_s) return;
-    picture_.text(static_cast<int>(label->x), static_cast<int>(label->y) - Picture::kGlyphHeight,
-                  fmt::format("{:.1f} m/s", box.velocity_m_s->norm()), palette_.text);
+    add_label({static_cast<int>(label->x), static_cast<int>(label->y) - glyph_height(),
+               fmt::format("{:.1f} m/s", box.velocity_m_s->norm()), palette_.text});
+  }
+
+  int glyph_height() const { return text_scale_ * Picture::kGlyphHeight; }
+  int line_height() const { return glyph_height() + 2 * text_scale_; }
+  int width_of(const std::string& text) const {
+    return text_scale_ * Picture::kGlyphWidth * static_cast<int>(text.size());
+  }
+
+  bool overlap(const Label& a, const Label& b) const {
+    return a.x < b.x + width_of(b.text) && b.x < a.x + width_of(a.text) &&
+           std::abs(a.y - b.y) < glyph_height();
+  }
+
+  /// Keeps a label for when the points are drawn, above those that are there.
+  void add_label(Label label) {
+    for (bool moved = true; moved;) {
+      moved = false;
+      for (const Label& other : labels_) {
+        if (!overlap(label, other)) continue;
+        label.y = other.y - glyph_height();
+        moved = true;
+      }
+    }
+    labels_.push_back(std::move(label));
+  }
+
+  void draw_label(const Label& label) {
+    constexpr double kVeil = 0.6;
+    picture_.rectangle(label.x - 2, label.y, width_of(label.text) + 4, glyph_height(),
+                       palette_.background, kVeil);
+    picture_.text(label.x, label.y, label.text, label.colour, text_scale_);
   }
 
   /// Draws lines of text on a filled box; returns its height in pixels.
   int draw_box(int x, int y, const std::vector<std::string>& lines, int indent = 0) {
-    std::size_t longest = 0;
-    for (const std::string& line : lines) longest = std::max(longest, line.size());
-    const int width = static_cast<int>(longest) * Picture::kGlyphWidth + 2 * kMargin + indent;
-    const int height = static_cast<int>(lines.size()) * kLine + kMargin;
+    int longest = 0;
+    for (const std::string& line : lines) longest = std::max(longest, width_of(line));
+    const int width = longest + 2 * kMargin + indent;
+    const int height = static_cast<int>(lines.size()) * line_height() + kMargin;
     picture_.rectangle(x, y, width, height, palette_.background, 0.88);
     for (std::size_t i = 0; i < lines.size(); ++i) {
-      picture_.text(x + kMargin + indent, y + kMargin / 2 + static_cast<int>(i) * kLine, lines[i],
-                    palette_.text);
+      picture_.text(x + kMargin + indent, y + kMargin / 2 + static_cast<int>(i) * line_height(),
+                    lines[i], palette_.text, text_scale_);
     }
     return height;
   }
@@ -188,21 +227,27 @@ class ScanPicture {
   void draw_legend() {
     std::vector<std::size_t> counts(kinds_.swatches.size());
     for (const std::size_t kind : kinds_.of_point) ++counts[kind];
+    constexpr std::ptrdiff_t kJudged = 4;  // outcomes where there is truth
+    const bool has_truth = std::any_of(counts.begin(), counts.begin() + kJudged,
+                                       [](std::size_t count) { return count > 0; });
     std::vector<std::string> lines;
     std::vector<Colour> swatches;
     for (std::size_t i = 0; i < counts.size(); ++i) {
       if (counts[i] == 0) continue;
-      lines.push_back(fmt::format("{:<25} {:>8}", kinds_.swatches[i].name, counts[i]));
-      swatches.push_back(kinds_.swatches[i].colour);
+      const Swatch& swatch = kinds_.swatches[i];
+      lines.push_back(fmt::format("{:<25} {:>8}",
+                                  has_truth ? swatch.name : swatch.name_without_truth, counts[i]));
+      swatches.push_back(swatch.colour);
     }
-    constexpr int kIndent = 18;
+    const int indent = 18 * text_scale_;
     const int top = static_cast<int>(options_.size_pixels) - kMargin -
-                    static_cast<int>(lines.size()) * kLine - kMargin;
-    draw_box(kMargin, top, lines, kIndent);
+                    static_cast<int>(lines.size()) * line_height() - kMargin;
+    draw_box(kMargin, top, lines, indent);
     for (std::size_t i = 0; i < swatches.size(); ++i) {
-      const int middle = top + kMargin / 2 + static_cast<int>(i) * kLine + kLine / 2;
-      picture_.disc(2 * kMargin + 5, middle, 6.0, palette_.text);
-      picture_.disc(2 * kMargin + 5, middle, 5.0, swatches[i]);
+      const int middle =
+          top + kMargin / 2 + static_cast<int>(i) * line_height() + line_height() / 2;
+      picture_.disc(2 * kMargin + 5 * text_scale_, middle, 5.0 * text_scale_ + 1.0, palette_.text);
+      picture_.disc(2 * kMargin + 5 * text_scale_, middle, 5.0 * text_scale_, swatches[i]);
     }
   }
 
@@ -212,7 +257,9 @@ class ScanPicture {
   Kinds kinds_;
   double range_m_;
   ScanView view_;
+  int text_scale_;  ///< large pictures have large text
   Picture picture_;
+  std::vector<Label> labels_;
 };
 
 }  // namespace

@@ -252,32 +252,59 @@ test('a link leads back to run, scan and camera', async () => {
   refuseComplaints(page);
 });
 
-test('pictures are saved twice as large without background, charts as drawings', async () => {
-  const page = await openAlone({ viewport: STAGE });
-  await settled(page);
-  const saved = async (button) => {
-    const [download] = await Promise.all([page.waitForEvent('download'), button.click()]);
-    const file = join(artefacts(), download.suggestedFilename());
-    await download.saveAs(file);
-    return { name: download.suggestedFilename(), bytes: readFileSync(file) };
-  };
-  const picture = await saved(page.locator('text=save picture'));
-  assert.match(picture.name, /^online_06_\d{6}_orbit\.png$/);
-  const canvas = await page.locator('.stage canvas').boundingBox();
-  assert.deepEqual([16, 20].map((at) => picture.bytes.readUInt32BE(at)), [2 * Math.floor(canvas.width), 2 * Math.floor(canvas.height)]);
+/** How opaque each pixel of a PNG is, row by row. */
+async function alphasOf(png) {
   const blank = await browser.newPage(); // a report may fetch nothing
-  const clear = await blank.evaluate(async (base64) => {
+  const alphas = await blank.evaluate(async (base64) => {
     const image = await createImageBitmap(await (await fetch(`data:image/png;base64,${base64}`)).blob());
     const context = new OffscreenCanvas(image.width, image.height).getContext('2d');
     context.drawImage(image, 0, 0);
-    const { data } = context.getImageData(0, 0, image.width, image.height);
-    const alphas = data.filter((_, i) => i % 4 === 3);
-    return { none: alphas.filter((a) => a === 0).length / alphas.length, full: alphas.filter((a) => a === 255).length };
-  }, picture.bytes.toString('base64'));
+    return [...context.getImageData(0, 0, image.width, image.height).data.filter((_, i) => i % 4 === 3)];
+  }, png.toString('base64'));
   await blank.close();
+  return alphas;
+}
+
+async function saved(page, button) {
+  const [download] = await Promise.all([page.waitForEvent('download'), button.click()]);
+  const file = join(artefacts(), download.suggestedFilename());
+  await download.saveAs(file);
+  return { name: download.suggestedFilename(), bytes: readFileSync(file) };
+}
+
+test('speeds of boxes stand in a saved picture where the page has them', async () => {
+  const page = await openAlone({ viewport: STAGE });
+  await page.evaluate(() => mosbenchReport.state.set({ scan: 21, boxes: true }));
+  await settled(page);
+  const places = await page.evaluate(() => {
+    const stage = document.querySelector('.stage canvas').getBoundingClientRect();
+    return [...document.querySelectorAll('.speeds span')].filter((span) => span.textContent && span.style.display !== 'none').map((span) => {
+      const { left, top, width, height } = span.getBoundingClientRect();
+      return { left: left - stage.left, top: top - stage.top, width, height };
+    });
+  });
+  assert.ok(places.length > 0, 'a speed is in sight');
+  const { bytes } = await saved(page, page.locator('text=save picture'));
+  const [alphas, columns] = [await alphasOf(bytes), bytes.readUInt32BE(16)];
+  const alphaAt = (x, y) => alphas[Math.round(2 * y) * columns + Math.round(2 * x)];
+  for (const { left, top, width, height } of places) {
+    for (const [x, y] of [[left + 1, top + 1], [left + width - 2, top + height - 2]]) assert.ok(alphaAt(x, y) > 200, `${x} ${y}: ${alphaAt(x, y)}`);
+  }
+  refuseComplaints(page);
+});
+
+test('pictures are saved twice as large without background, charts as drawings', async () => {
+  const page = await openAlone({ viewport: STAGE });
+  await settled(page);
+  const picture = await saved(page, page.locator('text=save picture'));
+  assert.match(picture.name, /^online_06_\d{6}_orbit\.png$/);
+  const canvas = await page.locator('.stage canvas').boundingBox();
+  assert.deepEqual([16, 20].map((at) => picture.bytes.readUInt32BE(at)), [2 * Math.floor(canvas.width), 2 * Math.floor(canvas.height)]);
+  const alphas = await alphasOf(picture.bytes);
+  const clear = { none: alphas.filter((a) => a === 0).length / alphas.length, full: alphas.filter((a) => a === 255).length };
   assert.ok(clear.none > 0.3 && clear.full > 1000, JSON.stringify(clear));
   for (const [key, part] of [['iou', '<polyline'], ['range', '<rect'], ['path', '<polyline']]) {
-    const drawing = await saved(page.locator(`[data-chart=${key}] .save`));
+    const drawing = await saved(page, page.locator(`[data-chart=${key}] .save`));
     assert.equal(drawing.name, `${key}.svg`);
     assert.ok(drawing.bytes.toString().startsWith('<svg xmlns="http://www.w3.org/2000/svg"') && drawing.bytes.includes(part), key);
     assert.ok(!/NaN|undefined/.test(drawing.bytes.toString()), key);

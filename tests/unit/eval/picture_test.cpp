@@ -128,6 +128,8 @@ TEST(Picture, IsAPngFileOfTheSamePixels) {
 TEST(Palette, IsThatOfThePage) {
   EXPECT_EQ(palette(false).outcomes.at(0).colour, (Colour{0x00, 0x72, 0xB2}));
   EXPECT_EQ(palette(true).outcomes.at(1).name, "false positive");
+  EXPECT_EQ(palette(true).outcomes.at(1).name_without_truth, "false positive");
+  EXPECT_EQ(palette(true).outcomes.at(4).name_without_truth, "static");
   EXPECT_EQ(palette(false).outcomes.size(), OutcomeCounts{}.size());
   EXPECT_EQ(palette(false).reasons.size(), kReasonCount);
   EXPECT_EQ(palette(false).reasons.at(4).name, "feet");
@@ -217,6 +219,43 @@ TEST(ScanPicture, DrawsBoxesWithTheirSpeeds) {
   EXPECT_GT(pixels_of(scan_picture(scan, options), palette(false).text), plain + 20);
   options.viewpoint.orbit_rad = 1.0;
   EXPECT_GT(pixels_of(scan_picture(scan, options), palette(false).text), without + 100);
+}
+
+TEST(ScanPicture, WritesRangesOverPoints) {
+  ScanPictureOptions options;
+  options.range_m = 20.0;
+  const JudgedScan none;
+  JudgedScan scan;
+  for (int i = 0; i < 400; ++i) {  // where the ring of 5 m is named
+    scan.frame.points.push_back({4.9F - 0.02F * static_cast<float>(i / 20),
+                                 -0.1F - 0.1F * static_cast<float>(i % 20), 0, 0});
+    scan.outcomes.push_back(PointOutcome::kFalsePositive);
+  }
+  const Colour ink = palette(false).outcomes[3].colour;
+  const std::size_t written = pixels_of(scan_picture(none, options), ink);
+  EXPECT_GT(written, 30U);
+  EXPECT_EQ(pixels_of(scan_picture(scan, options), ink), written);
+}
+
+TEST(ScanPicture, HasLargerTextWhereItIsLarger) {
+  ScanPictureOptions options;
+  options.title = {"a title"};
+  const std::size_t once = pixels_of(scan_picture({}, options), palette(false).text);
+  options.size_pixels = 1600;
+  EXPECT_GT(pixels_of(scan_picture({}, options), palette(false).text), 3 * once);
+}
+
+TEST(ScanPicture, PutsSpeedsThatWouldOverlapAboveOneAnother) {
+  ScanPictureOptions options;
+  options.range_m = 20.0;
+  MovingBox box;
+  box.size_m = {4.0, 2.0, 1.5};
+  box.map_from_box.translation() = Eigen::Vector3d(0.0, 10.0, 0.0);
+  box.velocity_m_s = Eigen::Vector3d(3.0, 4.0, 0.0);
+  options.boxes = {box};
+  const std::size_t one = pixels_of(scan_picture({}, options), palette(false).text);
+  options.boxes.push_back(box);
+  EXPECT_GT(pixels_of(scan_picture({}, options), palette(false).text), one + 20);
 }
 
 TEST(ScanPicture, DrawsAScanWithoutPointsAndWithImpossibleOnes) {

@@ -39,3 +39,11 @@ export function placeIn([x, y, z], clip, { width, height }) {
   if (Math.abs(right) > 1 || Math.abs(up) > 1) return null;
   return { x: ((right + 1) / 2) * width, y: ((1 - up) / 2) * height };
 }
+
+/** Moves a place up until a text of that size there covers none at the places `taken`, to which it is added. */
+export function raised({ x, y }, taken, { width, height }) {
+  const covers = (other) => Math.abs(other.x - x) < width && Math.abs(other.y - y) < height - 1e-6;
+  for (let other = taken.find(covers); other; other = taken.find(covers)) y = other.y - height;
+  taken.push({ x, y });
+  return { x, y };
+}

@@ -11,15 +11,16 @@ export class Legend {
     this.state = state;
     this.rows = OUTCOMES.map((outcome, i) => {
       const swatch = element('span', { class: 'swatch' });
+      const name = element('span', { class: 'name' });
       const counts = element('span', { class: 'counts' });
       const row = element(
         'button',
         { type: 'button', 'data-outcome': outcome.key, onclick: () => this.#toggle(i), title: 'Show or hide' },
         swatch,
-        element('span', { class: 'name' }, outcome.name),
+        name,
         counts,
       );
-      return { row, swatch, counts };
+      return { row, swatch, name, counts };
     });
     this.hidden = element('p', { class: 'hint' });
     this.node.append(...this.rows.map(({ row }) => row), this.hidden);
@@ -42,7 +43,10 @@ export class Legend {
   /** Counts of the scans in the panes, as far as there is room. */
   fill(scans) {
     const perScan = scans.map((scan) => countOutcomes(scan.outcomes));
-    this.rows.forEach(({ row, counts }, i) => {
+    const hasTruth = perScan.some((c) => c.slice(0, 4).some((points) => points > 0));
+    this.rows.forEach(({ row, name, counts }, i) => {
+      const { name: usual, without_truth: plain = usual } = OUTCOMES[i];
+      name.textContent = hasTruth ? usual : plain;
       counts.textContent = scans.length > 2 ? '' : perScan.map((c) => count(c[i])).join(' · ');
       row.hidden = perScan.every((c) => c[i] === 0);
     });

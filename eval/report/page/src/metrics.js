@@ -26,14 +26,21 @@ export function hasLabels(scan) {
   return scan.predicted_moving_points !== undefined;
 }
 
+/** Of those of `among` that `tells`, the one in the middle by `value`; null where there is none. */
+function medianScan(among, tells, value) {
+  const ordered = among.filter(tells).sort((a, b) => value(a) - value(b) || a - b);
+  return ordered[Math.floor(ordered.length / 2)] ?? null;
+}
+
 /**
  * Of `among`, the scan with the median IoU of those in which something moves and the method looked for it: what
- * one may expect to see; null where there is none.
+ * one may expect to see. Without truth that with the median number of points labelled moving. null where there is none.
  */
 export function typicalScan({ scans, scans_without_detection: idle = [] }, among) {
-  const tells = (k) => hasCounts(scans[k]) && scans[k].tp + scans[k].fn > 0 && !idle.includes(scans[k].stem);
-  const ordered = among.filter(tells).sort((a, b) => iou(scans[a]) - iou(scans[b]) || a - b);
-  return ordered[Math.floor(ordered.length / 2)] ?? null;
+  const looked = (k) => !idle.includes(scans[k].stem);
+  const judged = medianScan(among, (k) => hasCounts(scans[k]) && scans[k].tp + scans[k].fn > 0 && looked(k), (k) => iou(scans[k]));
+  const moving = (k) => scans[k].predicted_moving_points;
+  return judged ?? medianScan(among, (k) => moving(k) > 0 && looked(k), moving);
 }
 
 /**

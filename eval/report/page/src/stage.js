@@ -1,4 +1,5 @@
 import { Color, LineBasicMaterial, PerspectiveCamera, PointsMaterial, ShaderMaterial, WebGLRenderer } from 'three';
+import { element } from './dom.js';
 import { Pane } from './pane.js';
 import { paneAt, paneGrid } from './pane_grid.js';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
@@ -113,15 +114,16 @@ export class Stage {
     return { eye: this.camera.position.toArray(), target: this.controls.target.toArray() };
   }
 
-  /** A PNG of what is shown, without the background, in `ratio` pixels per pixel of the page. */
+  /** A canvas with what is shown, without the background, in `ratio` pixels per pixel of the page. */
   picture(ratio) {
     const background = this.renderer.getClearColor(new Color());
     this.renderer.setClearColor(background, 0);
     this.#drawNow(ratio);
-    const png = new Promise((done) => this.canvas.toBlob(done, 'image/png'));
+    const copy = element('canvas', { width: this.canvas.width, height: this.canvas.height });
+    copy.getContext('2d').drawImage(this.canvas, 0, 0);
     this.renderer.setClearColor(background, 1);
     this.#drawNow();
-    return png;
+    return copy;
   }
 
   #drawNow(ratio = Math.min(devicePixelRatio, 2)) {

@@ -45,7 +45,7 @@ function keepButtons(state, content, viewer) {
   const message = element('span', { class: 'hint', role: 'status' });
   const picture = async () => {
     const { run, result } = content.results[state.get('result')];
-    const png = await viewer.stage.picture(PICTURE_RATIO);
+    const png = await viewer.picture(PICTURE_RATIO);
     const what = state.get('view') === 'map' ? 'map' : (result.scans[state.get('scan')]?.stem ?? '');
     save(png, fileName([run, result.sequence, what, state.get('view')], 'png'));
   };

@@ -1,5 +1,5 @@
 import { element } from './dom.js';
-import { worstScans } from './metrics.js';
+import { hasCounts, worstScans } from './metrics.js';
 
 const FRAME_MS = 200;
 
@@ -18,10 +18,11 @@ export class Transport {
       element('div', { class: 'transport-row' },
         button('◀', 'Previous scan (left arrow)', () => this.step(-1)), this.play,
         button('▶|', 'Next scan (right arrow)', () => this.step(1)), this.slider, this.label,
-        button('worst', 'Next worse scan (w)', () => this.nextWorst())),
+        this.worst = button('worst', 'Next worse scan (w)', () => this.nextWorst())),
       this.message,
     );
     state.follow(['result', 'scan'], () => this.#show());
+    state.follow(['result'], () => (this.worst.disabled = !this.#result().scans.some(hasCounts)));
   }
 
   #scans() {
@@ -38,7 +39,7 @@ export class Transport {
     this.slider.max = Math.max(scans.length - 1, 0);
     this.slider.value = Math.max(scans.indexOf(scan), 0);
     const rows = this.#result().scans;
-    this.label.textContent = `scan ${scan} of ${rows.length} · ${rows[scan]?.stem ?? ''}`;
+    this.label.textContent = `scan ${scan} of 0 to ${rows.length - 1} · ${rows[scan]?.stem ?? ''}`;
   }
 
   /** Goes to a scan, or to the nearest one whose points are in the file, and says so. */

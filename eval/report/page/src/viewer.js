@@ -104,6 +104,13 @@ export class Viewer {
     if (this.scans.length > 0) this.#look(this.state.get('view'));
   }
 
+  /** A PNG of what is shown with the speeds of boxes, as Stage.picture has it. */
+  picture(ratio) {
+    const picture = this.stage.picture(ratio);
+    this.speeds.draw(picture, ratio);
+    return new Promise((done) => picture.toBlob(done, 'image/png'));
+  }
+
   /** Back to where the view starts. */
   resetView() {
     this.look = null;

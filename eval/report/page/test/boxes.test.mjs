@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { corners, edges, placeIn, speedText, topOf } from '../src/boxes.js';
+import { corners, edges, placeIn, raised, speedText, topOf } from '../src/boxes.js';
 
 const BOX = [10, 5, 1, Math.PI / 2, 4, 2, 1.5, 3.04];
 
@@ -33,4 +33,12 @@ test('a place is in pixels of the pane, none outside of it or behind the eye', (
   assert.equal(placeIn([1.5, 0, 0], same, { width: 200, height: 100 }), null);
   const behind = [...same.slice(0, 15), -1];
   assert.equal(placeIn([0, 0, 0], behind, { width: 200, height: 100 }), null);
+});
+
+test('texts that would cover one another are moved up', () => {
+  const [taken, size] = [[], { width: 40, height: 10 }];
+  assert.deepEqual(raised({ x: 50, y: 100 }, taken, size), { x: 50, y: 100 });
+  assert.deepEqual(raised({ x: 60, y: 104 }, taken, size), { x: 60, y: 90 });
+  assert.deepEqual(raised({ x: 20, y: 85 }, taken, size), { x: 20, y: 85 });
+  assert.deepEqual(raised({ x: 50, y: 100 }, taken, size), { x: 50, y: 75 });
 });

@@ -18,6 +18,12 @@ test('a typical scan is the median of those in which something moves and is look
   assert.equal(typicalScan(result, [0, 1, 5]), null);
 });
 
+test('without truth a typical scan is the median by the points labelled moving', () => {
+  const scans = [9, 0, 40, 7, 20].map((moving, k) => ({ stem: `${k}`, predicted_moving_points: moving }));
+  assert.equal(typicalScan({ scans, scans_without_detection: ['4'] }, [0, 1, 2, 3, 4]), 0);
+  assert.equal(typicalScan({ scans }, [1]), null);
+});
+
 test('metrics of a scan worked by hand', () => {
   const counts = { tp: 6, fp: 2, fn: 4, tn: 100 };
   assert.deepEqual([iou(counts), precision(counts), recall(counts)], [0.5, 0.75, 0.6]);
