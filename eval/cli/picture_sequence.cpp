@@ -17,12 +17,12 @@ namespace {
 bool has_ffmpeg() { return std::system("command -v ffmpeg >/dev/null 2>&1") == 0; }
 
 /// Videos that every player shows have an even size; a gif has colours of its own.
-std::string ffmpeg_command(const fs::path& file, double per_s) {
+std::string ffmpeg_command(const std::string& pictures, const fs::path& file, double per_s) {
   const bool gif = file.extension() == ".gif";
   const char* picture = gif ? "-filter_complex '[0:v]split[a][b];[a]palettegen[p];[b][p]paletteuse'"
                             : "-vf 'pad=ceil(iw/2)*2:ceil(ih/2)*2' -pix_fmt yuv420p";
-  return fmt::format("ffmpeg -loglevel error -y -f image2pipe -framerate {:g} -i - {} {}", per_s,
-                     picture, shell_word(file.string()));
+  return fmt::format("ffmpeg -loglevel error -y -framerate {:g} {} {} {}", per_s, pictures, picture,
+                     shell_word(file.string()));
 }
 
 }  // namespace
@@ -34,15 +34,18 @@ PictureSequence::PictureSequence(const fs::path& out, double per_s) {
   }
   if (!has_ffmpeg()) {
     folder_ = fs::path(out).replace_extension();
-    tell(fmt::format("ffmpeg is not there (Debian's package ffmpeg): pictures go to {} instead",
-                     folder_.string()));
+    const std::string all = "-pattern_type glob -i " + shell_word((folder_ / "*.png").string());
+    tell(
+        fmt::format("ffmpeg is not there (Debian's package ffmpeg): pictures go to {} instead, of "
+                    "which it makes the video by\n  {}",
+                    folder_.string(), ffmpeg_command(all, out, per_s)));
     return;
   }
   out_ = fs::absolute(out);
   fs::create_directories(out_.parent_path());
   partial_ = out_.parent_path() /
              fmt::format("{}.partial{}", out_.stem().string(), out_.extension().string());
-  ffmpeg_ = popen(ffmpeg_command(partial_, per_s).c_str(), "w");
+  ffmpeg_ = popen(ffmpeg_command("-f image2pipe -i -", partial_, per_s).c_str(), "w");
   if (ffmpeg_ == nullptr) throw DataError(out, "ffmpeg cannot be started", "room for a process");
 }
 

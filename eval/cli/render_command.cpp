@@ -9,6 +9,7 @@
 #include <set>
 
 #include "datasets/files/errors.hpp"
+#include "datasets/files/text.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/cli/output_file.hpp"
 #include "eval/cli/picture_sequence.hpp"
@@ -213,13 +214,26 @@ void check_view(const RenderFlags& options) {
   }
 }
 
+/// Whether --out of --scans is a folder of pictures. Throws UsageError for another kind of file.
+bool names_folder(const std::filesystem::path& out) {
+  const std::string extension = lower_case(out.extension().string());
+  if (extension == ".mp4" || extension == ".gif") return false;
+  for (const char* other : {".png", ".jpg", ".avi", ".mkv", ".mov", ".webm"}) {
+    if (extension != other) continue;
+    throw UsageError(
+        fmt::format("-o: {} is not written of several scans, expected .mp4, .gif or a "
+                    "folder for a .png each",
+                    out.string()));
+  }
+  return true;
+}
+
 Answer render(RenderFlags& options) {
   check_view(options);
   if (options.scan.has_value() == options.scans.has_value()) {
     throw UsageError("--scan or --scans: say which scans to draw, expected one of them");
   }
-  const std::string extension = options.out.extension().string();
-  const bool is_folder = options.scans && extension != ".mp4" && extension != ".gif";
+  const bool is_folder = options.scans && names_folder(options.out);
   check_output(is_folder ? options.out / "000000.png" : options.out);
   const FoundResult result = choose_result(options);
   const ResultScans scans(result, options.dataset_root);

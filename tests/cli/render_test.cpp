@@ -120,6 +120,7 @@ TEST_F(Render, LeavesNoVideoWhereFfmpegFailsOrIsNotThere) {
   const cli::Answer without = render_video(run(), folder_, nullptr);
   EXPECT_EQ(without.exit_code, 0) << without.err;
   EXPECT_THAT(without.err, HasSubstr("ffmpeg is not there"));
+  EXPECT_THAT(without.err, HasSubstr("-pattern_type glob -i '" + (folder_ / "v/*.png").string()));
   EXPECT_TRUE(std::filesystem::exists(folder_ / "v/000002.png"));
 }
 
@@ -133,6 +134,16 @@ TEST_F(Render, KnowsNoWorstScanWithoutTruth) {
               HasSubstr("--scan: worst: no scan of the result has truth, expected 0 to 7"));
   EXPECT_EQ(cli::run({"render", bare, "--scans", "worst:2", "-o", folder_ / "pictures"}).exit_code,
             2);
+}
+
+TEST_F(Render, RefusesVideosThatItDoesNotWrite) {
+  for (const char* name : {"v.webm", "v.AVI", "v.png"}) {
+    const cli::Answer answer =
+        cli::run({"render", run(), "--scans", "1-2", "-o", folder_ / name, "--size", "300"});
+    EXPECT_EQ(answer.exit_code, 2);
+    EXPECT_THAT(answer.err, HasSubstr("is not written of several scans, expected .mp4, .gif or"));
+    EXPECT_FALSE(std::filesystem::exists(folder_ / name));
+  }
 }
 
 TEST_F(Render, RefusesPlacesThatCanHoldNoPicturesBeforeTheWork) {
