@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <array>
+#include <iomanip>
 #include <map>
+#include <sstream>
 
 #include "datasets/files/errors.hpp"
 #include "datasets/files/files.hpp"
@@ -59,6 +61,25 @@ ordered_json sequence_json(const StudyData& data, const std::string& name) {
   return json;
 }
 
+/// The bytes of all files that the command of a method of the user names; nothing for other
+/// methods.
+std::string program_of(const StudyMethod& method) {
+  std::string contents;
+  if (!method.method.starts_with("exec:")) return contents;
+  std::istringstream command(method.method.substr(5));
+  for (std::string word; !(command >> std::ws).eof();) {
+    const char quote = static_cast<char>(command.peek());
+    if (quote == '"' || quote == '\'') {
+      command >> std::quoted(word, quote);
+    } else {
+      command >> word;
+    }
+    std::error_code ignored;
+    if (fs::is_regular_file(word, ignored)) contents += hash_of_file(word) + "\n";
+  }
+  return contents;
+}
+
 struct KnownSequence {
   std::string name;
   ordered_json identity;
@@ -96,7 +117,9 @@ std::vector<KnownSequence> sequences_of(const StudyData& data) {
 /// Lists the cells of one method on one sequence.
 class CellLister {
  public:
-  CellLister(const Study& study, std::vector<StudyCell>& cells) : study_(study), cells_(cells) {}
+  CellLister(const Study& study, std::vector<StudyCell>& cells) : study_(study), cells_(cells) {
+    for (const StudyMethod& method : study.methods) program_of_[&method] = program_of(method);
+  }
 
   void list(StudyCell cell, const ordered_json& sequence) {
     cell.axis = nullptr;
@@ -129,6 +152,7 @@ class CellLister {
 
  private:
   void add(StudyCell cell, const ordered_json& sequence) {
+    const std::string& program = program_of_.at(cell.method);
     cell.identity = {{"format", 1},
                      {"data", sequence},
                      {"sequence", cell.sequence},
@@ -139,6 +163,7 @@ class CellLister {
                      {"perturb", cell.perturb().value_or("")},
                      {"protocol", study_.protocol.value_or("")},
                      {"range", study_.range.value_or("")}};
+    if (!program.empty()) cell.identity["program"] = program;
     cell.key = hash_of_text(cell.identity.dump());
     const auto [known, is_new] = known_.emplace(cell.key, cells_.size());
     if (!is_new) return check_same_row(cells_[known->second], cell);
@@ -159,6 +184,7 @@ class CellLister {
 
   const Study& study_;
   std::vector<StudyCell>& cells_;
+  std::map<const StudyMethod*, std::string> program_of_;
   std::map<std::string, std::size_t> known_;  ///< place in `cells_` of each key
 };
 

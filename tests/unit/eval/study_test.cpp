@@ -158,6 +158,20 @@ TEST(StudyPlan, KeepsTheKeysOfWhatDidNotChange) {
   EXPECT_EQ(shared("scans: 6", "scans: 7"), 0u);
 }
 
+TEST(StudyPlan, ComputesAgainWhatAChangedProgramLabelled) {
+  const TempFolder folder;
+  const std::string text = replaced_in(kSmallStudy, "- hmm-mos",
+                                       fmt::format("- {{name: ours, method: \"exec:sh '{}' -x\"}}",
+                                                   folder.write("our method.sh", "1").string()));
+  const Study study = parse_study(text, "s.yaml");
+  const std::set<std::string> before = keys_of(plan_study(study, "/nowhere"));
+  EXPECT_EQ(keys_of(plan_study(study, "/nowhere")), before);
+  folder.write("our method.sh", "2");
+  std::size_t same = 0;
+  for (const std::string& key : keys_of(plan_study(study, "/nowhere"))) same += before.count(key);
+  EXPECT_EQ(same, before.size() / 2) << "of the other method";
+}
+
 TEST(StudyPlan, KnowsTheCostOfACellByWhatItIs) {
   const auto cost_key = [](const std::string& what, const std::string& by) {
     const Study study = parse_study(replaced_in(kSmallStudy, what, by), "s.yaml");
