@@ -45,7 +45,7 @@ EVERY_TEST = "*"
 PYTEST_SELECTED_NOTHING = 5
 # A loop without end is a killed mutant, too. CPU time, which a busy machine does not change.
 LIMIT_CPU_S, LIMIT_OF_ONE_TEST_CPU_S = 300, 60
-OPTIONS = ("MOSBENCH_WITH_PCL=OFF", "MOSBENCH_WITH_ROSBAG=OFF", "MOSBENCH_WITH_HDF5=OFF", "MOSBENCH_BUILD_BENCH=OFF",
+OPTIONS = ("MOSBENCH_WITH_PCL=OFF", "MOSBENCH_WITH_ROSBAG=OFF", "MOSBENCH_BUILD_BENCH=OFF",
            "MOSBENCH_WARNINGS_AS_ERRORS=ON",
            # A mutant changes one file.
            "MOSBENCH_FILES_AT_A_TIME=1",

@@ -146,6 +146,22 @@ TEST_F(HeliprFolder, LeavesScansWithoutPoseOut) {
               Contains("1 of 2 scans have no pose in Aeva_gt.txt and are left out"));
 }
 
+TEST_F(HeliprFolder, LeavesScansBetweenDistantPosesOut) {
+  const std::string scan = point_with(1.0F, std::uint16_t{0}, 0.0F);
+  for (const char* stamp : {"5000000700", "10000000700"}) {
+    folder_.write(std::string("set/KAIST05/LiDAR/Velodyne/") + stamp + ".bin", scan);
+  }
+  folder_.write("set/KAIST05/LiDAR_GT/Velodyne_gt.txt",
+                std::string("700") + kStill + "10000000700" + kStill);
+  const auto scans = [&](double max_gap_s) {
+    const Dataset dataset = open_dataset(folder_ / "set/KAIST05/LiDAR/Velodyne",
+                                         {.reading = {.max_pose_gap_s = max_gap_s}});
+    return dataset.sequences.at(0)->size();
+  };
+  EXPECT_EQ(scans(9.9), 2U);
+  EXPECT_EQ(scans(10.1), 3U);
+}
+
 TEST_F(HeliprFolder, NamesTheScanThatIsNone) {
   folder_.write("set/KAIST05/LiDAR/Velodyne/800.bin", "short");
   EXPECT_THAT(message_of<DataError>([&] { open_dataset(folder_ / "set", {}); }),

@@ -298,6 +298,15 @@ TEST_F(NuscenesFolder, RefusesTheRingAsTimes) {
                UsageError);
 }
 
+TEST(NuscenesTruth, ReachesTheCornersOfATurnedBox) {
+  constexpr double kEighthTurn_rad = 0.25 * 3.14159265358979;
+  const Pose turned(Eigen::AngleAxisd(kEighthTurn_rad, Eigen::Vector3d::UnitZ()));
+  const std::vector<NuscenesBox> boxes = {{turned, {1, 1, 1}}};
+  // The corner lies at the root of 2.
+  const std::vector<Point> points = {{1.41F, 0, 0, 0}, {1.42F, 0, 0, 0}, {-1.41F, 0, 0, 0}};
+  EXPECT_THAT(nuscenes_truth(points, Pose::Identity(), boxes), testing::ElementsAre(251, 9, 251));
+}
+
 TEST(NuscenesTruth, IsThatOfATwinThatLooksAtAllPoints) {
   std::vector<Point> points;
   for (int i = 0; i < 4000; ++i) {

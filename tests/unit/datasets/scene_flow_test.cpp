@@ -209,6 +209,15 @@ TEST_F(SceneFlowFile, TakesTheEgoMotionByWhichTheFlowWasMade) {
   EXPECT_EQ(SceneFlowSequence("s", write(groups), {}).read_truth(0)[0], 251U);
 }
 
+TEST_F(SceneFlowFile, TakesTheFourthColumnForTheIntensity) {
+  auto groups = scans();
+  groups[0].arrays[0] = hdf5_array<float>(
+      "lidar", Kind::kReal, {4, 5}, {5, 0, 0, 7, 1, 6, 1, 0, 8, 1, 7, 0, 0, 9, 1, 8, 0, -1, 10, 1});
+  const Frame frame = SceneFlowSequence("s", write(groups), {}).read(0);
+  EXPECT_EQ(frame.points[1].intensity, 8.0F);
+  EXPECT_EQ(frame.points[3].z, -1.0F);
+}
+
 TEST_F(SceneFlowFile, LeavesOutGroupsThatADriveWasCutAt) {
   auto groups = scans();
   groups.push_back({"1600000000300000", {hdf5_array<float>("else", Kind::kReal, {1}, {1})}});
