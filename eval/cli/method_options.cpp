@@ -73,9 +73,9 @@ void add_method_options(CLI::App& command, RunOptions& options) {
   command
       .add_option(
           "--moving", options.moving,
-          "What counts as moving with hmm-mos-plus: what moves now, or ever within the last "
-          "SECONDS, at most 10")
-      ->type_name("now|ever[:SECONDS]")
+          "What hmm-mos-plus calls moving: now, or with ever or ever:SECONDS whatever moved of "
+          "late, to 10 s")
+      ->type_name("WHEN")
       ->capture_default_str();
   command.add_option("--config", options.config_file, "JSON object of settings of the method")
       ->type_name("FILE");
