@@ -1,5 +1,8 @@
 #include "datasets/layouts/convert.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <vector>
@@ -119,11 +122,39 @@ void write_shared_files(const Dataset& dataset, const ConvertOptions& options) {
   }
 }
 
-void convert_sequence(const Sequence& sequence, SequenceWriter& writer,
+/// Counts what of the truth is not written.
+struct LostTruth {
+  std::size_t unlabelled_points = 0, labelled_scans = 0;
+
+  void add(const Frame& frame) {
+    if (!frame.truth) return;
+    ++labelled_scans;
+    unlabelled_points += static_cast<std::size_t>(std::ranges::count_if(
+        *frame.truth, [](std::uint32_t label) { return (label & 0xFFFFU) == 0; }));
+  }
+
+  std::vector<std::string> sentences(const Layout& layout) const {
+    const KeptTruth keeps = layout.writer->keeps;
+    if (keeps == KeptTruth::kMoving && unlabelled_points > 0) {
+      return {
+          fmt::format("{} points of the label id 0, which most data sets give to what nobody "
+                      "labelled, become static: layout {} knows static and moving alone",
+                      unlabelled_points, layout.name)};
+    }
+    if (keeps == KeptTruth::kNone && labelled_scans > 0) {
+      return {fmt::format("the labels of {} scans are left out: layout {} has none", labelled_scans,
+                          layout.name)};
+    }
+    return {};
+  }
+};
+
+void convert_sequence(const Sequence& sequence, SequenceWriter& writer, LostTruth& lost,
                       const std::function<void()>& advance) {
   Frame frame;
   for (std::size_t k = 0; k < sequence.size(); ++k) {
     sequence.read(k, frame);
+    lost.add(frame);
     writer.write(k, frame);
     advance();
   }
@@ -132,8 +163,9 @@ void convert_sequence(const Sequence& sequence, SequenceWriter& writer,
 
 }  // namespace
 
-void convert(const Dataset& dataset, const ConvertOptions& options,
-             const std::function<void(std::size_t done, std::size_t total)>& progress) {
+std::vector<std::string> convert(
+    const Dataset& dataset, const ConvertOptions& options,
+    const std::function<void(std::size_t done, std::size_t total)>& progress) {
   const Layout& layout = layout_of(options.layout);
   if (!layout.writer) throw UsageError("layout " + std::string(layout.name) + " is read only");
   const std::vector<fs::path> folders = sequence_folders(dataset, layout);
@@ -143,6 +175,7 @@ void convert(const Dataset& dataset, const ConvertOptions& options,
   std::size_t total = 0;
   for (const auto& sequence : dataset.sequences) total += sequence->size();
   std::size_t done = 0;
+  LostTruth lost;
   const auto advance = [&] {
     if (progress) progress(++done, total);
   };
@@ -159,7 +192,7 @@ void convert(const Dataset& dataset, const ConvertOptions& options,
         for (std::size_t k = 0; k < sequence.size(); ++k) advance();
       } else {
         if (options.before_sequence) options.before_sequence(i);
-        convert_sequence(sequence, *layout.writer->open(folder, writing), advance);
+        convert_sequence(sequence, *layout.writer->open(folder, writing), lost, advance);
         write_pose_origin(pose_file, pose_origin_of(sequence.reading()));
       }
     }
@@ -168,6 +201,7 @@ void convert(const Dataset& dataset, const ConvertOptions& options,
     unfinished.give_up();
     throw;
   }
+  return lost.sentences(layout);
 }
 
 }  // namespace mosbench

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "datasets/layouts/dataset.hpp"
 #include "datasets/layouts/sequence_writer.hpp"
@@ -22,8 +23,10 @@ struct ConvertOptions {
 /// splits that the source has. Simulated data stay marked as such. After a kill the same conversion
 /// goes on with the first sequence that is not finished. Throws UsageError when `out` holds
 /// anything else, the layout is only read, or it has no room for a sequence. `progress` is called
-/// with the scans done and to do.
-void convert(const Dataset& dataset, const ConvertOptions& options,
-             const std::function<void(std::size_t done, std::size_t total)>& progress = {});
+/// with the scans done and to do. Returns what of the truth the layout does not hold, in plain
+/// sentences.
+std::vector<std::string> convert(
+    const Dataset& dataset, const ConvertOptions& options,
+    const std::function<void(std::size_t done, std::size_t total)>& progress = {});
 
 }  // namespace mosbench

@@ -136,7 +136,8 @@ const Layout& doals_layout() {
       .splits = doals_splits,
       .evidence = Evidence::kFolders,
       .recognise = recognise_doals,
-      .writer = LayoutWriter{write_as_doals, doals_folder}};
+      .writer = LayoutWriter{
+          .open = write_as_doals, .folder = doals_folder, .keeps = KeptTruth::kMoving}};
   return row;
 }
 

@@ -77,8 +77,10 @@ const Layout& helipr_layout() {
       .splits = nullptr,
       .evidence = Evidence::kFolders,
       .recognise = recognise_helipr,
-      .writer = LayoutWriter{
-          .open = write_as_helipr, .folder = helipr_folder, .last_file = kHeliprLastFile}};
+      .writer = LayoutWriter{.open = write_as_helipr,
+                             .folder = helipr_folder,
+                             .last_file = kHeliprLastFile,
+                             .keeps = KeptTruth::kNone}};
   return row;
 }
 

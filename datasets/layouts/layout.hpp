@@ -40,6 +40,9 @@ struct LayoutContent {
 };
 
 /// How a data set is written by `simulate` and `convert`.
+/// What a layout keeps of the truth of a point: its id, whether it moves, or nothing.
+enum class KeptTruth : std::uint8_t { kId, kMoving, kNone };
+
 struct LayoutWriter {
   std::unique_ptr<SequenceWriter> (*open)(const std::filesystem::path& folder,
                                           const WriteOptions& options);
@@ -50,6 +53,7 @@ struct LayoutWriter {
   /// The file in a sequence's folder that appears when all of it is on the disk, unless a bag is
   /// written.
   const char* last_file = "poses.txt";
+  KeptTruth keeps = KeptTruth::kId;
 };
 
 /// All facts about one data set. Adding one: a value of DatasetKind, a file with its row, and the

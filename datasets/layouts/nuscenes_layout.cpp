@@ -182,8 +182,10 @@ const Layout& nuscenes_layout() {
       .splits = nuscenes_splits,
       .evidence = Evidence::kFolders,
       .recognise = recognise_nuscenes,
-      .writer = LayoutWriter{
-          .open = write_as_nuscenes, .folder = nuscenes_folder, .last_file = kNuscenesLastFile}};
+      .writer = LayoutWriter{.open = write_as_nuscenes,
+                             .folder = nuscenes_folder,
+                             .last_file = kNuscenesLastFile,
+                             .keeps = KeptTruth::kMoving}};
   return row;
 }
 

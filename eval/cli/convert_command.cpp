@@ -11,6 +11,7 @@
 #include "eval/cli/dataset_flags.hpp"
 #include "eval/cli/odometry_flags.hpp"
 #include "eval/results/progress.hpp"
+#include "eval/results/tell.hpp"
 #include "eval/runs/run_plan.hpp"
 
 namespace mosbench {
@@ -80,11 +81,12 @@ std::string convert_dataset(ConvertFlags options) {
   }
   std::optional<Progress> progress;
   std::size_t scans = 0;
-  convert(dataset, conversion, [&](std::size_t done, std::size_t total) {
+  const auto count = [&](std::size_t done, std::size_t total) {
     if (!progress) progress.emplace("convert", total);
     progress->advance();
     scans = done;
-  });
+  };
+  for (const std::string& sentence : convert(dataset, conversion, count)) tell(sentence);
   return fmt::format("converted {} scans of {} to {} in {}\n", scans, options.input.string(),
                      options.layout, conversion.out.string());
 }

@@ -17,6 +17,7 @@ namespace mosbench {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 using testing::StartsWith;
 
 /// Points, stamps, truth and, within `pose_error`, poses of two data sets are the same.
@@ -166,6 +167,24 @@ TEST_F(Convert, MakesScansOfHeliprThatAreTheSameButForTheirTruth) {
   EXPECT_EQ(open_dataset(folder_ / "packed", {}).kind, DatasetKind::kHelipr);
   expect_same_frames(folder_ / "room", folder_ / "packed", 1e-12);
   EXPECT_EQ(open_dataset(folder_ / "packed", {}).sequences.at(0)->stamp_ns(2), 200'000'000);
+}
+
+TEST_F(Convert, TellsWhatOfTheTruthALayoutDoesNotHold) {
+  cli::write_small_sequence(folder_ / "room", 3);
+  const std::filesystem::path file = folder_ / "room/labels/000001.label";
+  std::vector<std::uint32_t> truth = read_labels(file, cli::kPointsPerScan);
+  std::fill(truth.begin(), truth.begin() + 7, 0x30000U);
+  write_labels(file, truth);
+  const std::string room = (folder_ / "room").string();
+  for (const char* layout : {"doals", "nuscenes"}) {
+    EXPECT_THAT(convert(room, layout, layout).err,
+                HasSubstr("7 points of the label id 0, which most data sets give to what nobody "
+                          "labelled, become static: layout " +
+                          std::string(layout)));
+  }
+  EXPECT_THAT(convert(room, "helipr", "helipr").err,
+              HasSubstr("the labels of 3 scans are left out: layout helipr has none"));
+  EXPECT_THAT(convert(room, "helimos", "helimos").err, Not(HasSubstr("label")));
 }
 
 TEST_F(Convert, MakesABagOfScansWithoutStamps) {
