@@ -152,6 +152,19 @@ class SensorPoseReader {
   SensorPoses result_;
 };
 
+/// Says where poses are expected, and names those that lie where KITTI's odometry benchmark has
+/// them: poses/04.txt beside sequences/04.
+MissingPoses missing_poses(const fs::path& folder, const fs::path& file) {
+  const fs::path name = fs::absolute(folder / "").parent_path().filename();
+  const fs::path others = folder / "../../poses";
+  const std::string expected =
+      is_there(others / (name.string() + ".txt"))
+          ? fmt::format("one pose per scan there, or --poses {}",
+                        others.lexically_normal().string())
+          : "one pose per scan there, in a file given by --poses, or found by odometry";
+  return {file, "does not exist", expected};
+}
+
 }  // namespace
 
 std::string pose_origin_of(const ReadingStatement& reading) {
@@ -215,8 +228,7 @@ SensorPoses read_sensor_poses(const fs::path& folder, const std::string& own_fil
   }
   const fs::path file = options.poses.value_or(folder / own_file);
   if (!options.poses && !is_there(file)) {
-    throw MissingPoses(file, "does not exist",
-                       "one pose per scan there, in a file given by --poses, or found by odometry");
+    throw missing_poses(folder, file);
   }
   SensorPoses poses = SensorPoseReader(folder, options, file).run(scans);
   if (options.poses) {

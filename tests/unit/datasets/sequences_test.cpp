@@ -103,6 +103,19 @@ TEST(KittiSequence, OrdersScansByTheNumbersInTheirStems) {
   }
 }
 
+TEST(KittiSequence, NamesPosesThatLieAsInKittisOdometryBenchmark) {
+  const TempFolder folder;
+  write_bin(folder / "kitti/sequences/04/velodyne/000000.bin", points_of(3));
+  const auto error = [&] {
+    return message_of<DataError>([&] { KittiSequence("04", folder / "kitti/sequences/04"); });
+  };
+  EXPECT_THAT(error(), HasSubstr("in a file given by --poses, or found by odometry"));
+  write_poses(folder / "kitti/poses/04.txt", std::vector<Pose>(1, Pose::Identity()));
+  EXPECT_THAT(error(), HasSubstr("04/poses.txt: does not exist, expected one pose per scan there, "
+                                 "or --poses " +
+                                 (folder / "kitti/poses").string()));
+}
+
 TEST(KittiSequence, RefusesTwoScansWithTheSameNumber) {
   const TempFolder folder;
   write_recording(folder, {"7", "007"});
