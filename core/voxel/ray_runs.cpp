@@ -134,8 +134,8 @@ inline __attribute__((always_inline)) void advance(HalfRuns& rays, const RunEnds
 }
 
 /// Walks eight rays to their ends.
-MOSBENCH_MULTIARCH void walk_runs(RunGroup& group, const OwnBits& own, const std::uint8_t* hits,
-                                  RayWindow& window) {
+MOSBENCH_MULTIARCH_V4 void walk_runs(RunGroup& group, const OwnBits& own, const std::uint8_t* hits,
+                                     RayWindow& window) {
   // Locals: the byte stores below could otherwise change anything behind a reference.
   std::uint8_t* const bytes = window.bits();
   const RayWindow::Tiles tiles = window.tiles();
