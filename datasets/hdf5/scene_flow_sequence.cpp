@@ -19,7 +19,7 @@ namespace mosbench {
 namespace {
 
 constexpr const char* kExpectedGroups =
-    "groups of OpenSceneFlow, named by stamps, with lidar (N, 3 or more) and pose (4, 4)";
+    "groups of OpenSceneFlow, named by stamps, with lidar (N, 3 or more)";
 
 std::string arrow(const Hdf5Group& group, std::string_view name) {
   return fmt::format("{}/{}", shown_in_line(group.name), name);
@@ -93,18 +93,19 @@ void SceneFlowSequence::list_scans() {
 
 SceneFlowSequence::Scan SceneFlowSequence::scan_of(const Hdf5Group& group,
                                                    std::uint64_t stamp) const {
-  for (const std::string_view name : {scene_flow::kLidar, scene_flow::kPose}) {
-    if (find_array(group, name) != nullptr) continue;
-    throw DataError(file_.path(),
-                    fmt::format("group {} has no {}", shown_in_line(group.name), name),
+  if (find_array(group, scene_flow::kLidar) == nullptr) {
+    throw DataError(file_.path(), "group " + shown_in_line(group.name) + " has no lidar",
                     kExpectedGroups);
   }
   if (stamp > static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max())) {
     throw DataError(file_.path(), "group " + group.name + " is later than any stamp",
                     "nanoseconds or microseconds");
   }
-  return {&group, static_cast<std::int64_t>(stamp), check_points(group),
-          pose_in(group, scene_flow::kPose)};
+  Scan scan{&group, static_cast<std::int64_t>(stamp), check_points(group), {}};
+  if (find_array(group, scene_flow::kPose) != nullptr) {
+    scan.map_from_sensor = pose_in(group, scene_flow::kPose);
+  }
+  return scan;
 }
 
 /// Stamps of Argoverse 2 are nanoseconds, those of Waymo and nuScenes microseconds: scans are
@@ -133,10 +134,29 @@ void SceneFlowSequence::convert_stamps() {
   }
 }
 
+/// Throws DataError for a scan without pose: of all scans, or of those whose truth is a flow that
+/// holds the sensor's own motion.
+void SceneFlowSequence::require_poses(bool of_all) const {
+  const auto flows_by_poses = [&](std::size_t scan) {
+    return has_flow(scan) && !has_labels(scan) &&
+           find_array(*scans_[scan].group, scene_flow::kEgoMotion) == nullptr;
+  };
+  for (std::size_t k = 0; k < scans_.size(); ++k) {
+    const bool of_flow = flows_by_poses(k) || (k > 0 && flows_by_poses(k - 1));
+    if (scans_[k].map_from_sensor || !(of_all || of_flow)) continue;
+    throw DataError(file_.path(),
+                    fmt::format("group {} has no pose", shown_in_line(scans_[k].group->name)),
+                    of_all ? "pose (4, 4) in each group, --poses FILE or --odometry KIND"
+                           : "pose (4, 4) or ego_motion where there is flow");
+  }
+}
+
 void SceneFlowSequence::take_poses(const ReadingOptions& options) {
   Recording& recording = mutable_recording();
-  if (!options.poses && !options.poses_by_odometry) {
-    for (std::size_t k = 0; k < scans_.size(); ++k) enter(k, scans_[k].map_from_sensor, false);
+  const bool by_file = !options.poses && !options.poses_by_odometry;
+  require_poses(by_file);
+  if (by_file) {
+    for (std::size_t k = 0; k < scans_.size(); ++k) enter(k, *scans_[k].map_from_sensor, false);
     recording.reading.emplace_back("poses", "pose of each group");
     recording.reading.emplace_back("pose_direction", "map_from_sensor");
     state_pose_origin(file_.path(), recording.reading, recording.remarks);
@@ -223,7 +243,7 @@ bool SceneFlowSequence::has_flow(std::size_t scan) const {
 void SceneFlowSequence::refuse_coarse_pose(const Scan& scan, double time_s) const {
   constexpr double kMostShare = 0.2;  // of the speed that counts as motion
   if (find_array(*scan.group, scene_flow::kPose)->number.bytes != sizeof(float)) return;
-  const auto far_m = static_cast<float>(scan.map_from_sensor.translation().cwiseAbs().maxCoeff());
+  const auto far_m = static_cast<float>(scan.map_from_sensor->translation().cwiseAbs().maxCoeff());
   const float step_m = std::nextafter(far_m, std::numeric_limits<float>::infinity()) - far_m;
   if (step_m <= kMostShare * moving_speed_m_s_ * time_s) return;
   throw DataError(file_.path(),
@@ -242,7 +262,7 @@ SensorStep SceneFlowSequence::step_after(std::size_t scan) const {
   }
   refuse_coarse_pose(from, time_s);
   refuse_coarse_pose(to, time_s);
-  return {to.map_from_sensor.inverse() * from.map_from_sensor, time_s};
+  return {to.map_from_sensor->inverse() * *from.map_from_sensor, time_s};
 }
 
 std::vector<Point> SceneFlowSequence::points_of(const Scan& scan, std::vector<Point> reused) const {

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,11 +30,12 @@ class SceneFlowSequence : public Sequence {
     const Hdf5Group* group = nullptr;
     std::int64_t stamp_ns = 0;
     std::size_t points = 0;
-    Pose map_from_sensor = Pose::Identity();  ///< the file's own
+    std::optional<Pose> map_from_sensor;  ///< the file's own
   };
 
   void list_scans();
   void convert_stamps();
+  void require_poses(bool of_all) const;
   void take_poses(const ReadingOptions& options);
   void enter(std::size_t scan, const Pose& map_from_sensor, bool is_left_out);
   Scan scan_of(const Hdf5Group& group, std::uint64_t stamp) const;

@@ -226,6 +226,29 @@ TEST_F(SceneFlowFile, LeavesOutGroupsThatADriveWasCutAt) {
   EXPECT_THAT(drive.remarks(), Contains(HasSubstr("the first is 1600000000300000")));
 }
 
+TEST_F(SceneFlowFile, NeedsNoPosesWhereOthersAreGiven) {
+  auto groups = scans();
+  const auto drop = [&](const std::string& name) {
+    for (Hdf5GroupBytes& group : groups) {
+      std::erase_if(group.arrays, [&](const auto& array) { return array.first.name == name; });
+    }
+  };
+  drop("pose");
+  ReadingOptions odometry;
+  odometry.poses_by_odometry = true;
+  EXPECT_THAT(
+      message_of<DataError>([&] { SceneFlowSequence("s", write(groups), odometry); }),
+      HasSubstr("group 1600000000000000 has no pose, expected pose (4, 4) or ego_motion where"));
+  drop("flow");
+  const SceneFlowSequence bare("s", write(groups), odometry);
+  EXPECT_EQ(bare.size(), 3u);
+  EXPECT_FALSE(bare.has_truth(0));
+  EXPECT_EQ(bare.read(0).points.size(), 4u);
+  EXPECT_THAT(error_of(groups),
+              HasSubstr("has no pose, expected pose (4, 4) in each group, --poses "
+                        "FILE or --odometry KIND"));
+}
+
 TEST_F(SceneFlowFile, NamesWhatIsWrong) {
   const auto file = (folder_ / "drive.h5").string();
   auto groups = scans();
