@@ -25,7 +25,8 @@ with a key: the hash of everything that decides its result. Its result is one sm
 DIR/cells, put there in one step.
 
   plan   counts the cells that are done and missing; --measure runs the first scans of each method
-         on each sequence, so that it can tell how long it takes; --json lists all cells with their keys
+         on each sequence, so that it can tell how long it takes; --json lists all cells with
+         their keys
   run    computes what is missing by Snakemake, on this machine or with --profile slurm on a
          cluster, and prints the table; the same command goes on after a kill, and computes again
          what another version of mosbench left; --yes above 100 cells
