@@ -7,6 +7,7 @@
 #include <iterator>
 #include <limits>
 #include <mosbench/method.hpp>
+#include <ostream>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -15,6 +16,10 @@
 
 /// What Method promises, of every method in the table and of the example.
 namespace mosbench {
+
+/// What a test of one prints.
+void PrintTo(const MethodKind& kind, std::ostream* out) { *out << kind.name; }
+
 namespace {
 
 const std::vector<Point> kWall = {{4, 0, 0, 0}, {4, 1, 0, 0}, {4, 2, 0, 0}, {4, -1, 1, 0}};

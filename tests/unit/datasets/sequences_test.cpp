@@ -92,7 +92,7 @@ TEST(KittiSequence, OrdersScansByTheNumbersInTheirStems) {
   const std::vector<std::vector<std::string>> in_order = {
       {"9", "10", "first"},
       {"cloud-0", "cloud-2", "cloud-10", "cloud-100"},
-      {"a-01-2", "a-1-2", "a-1-10", "a-2"},
+      {"a-1-2", "a-1-10", "a-2"},
       {"1531883530.449377000", "1531883530.5", "1531883531", "1531883531.04", "1531883531.1"},
       {"s18446744073709551616", "s18446744073709551617", "s20000000000000000000"}};
   for (const std::vector<std::string>& stems : in_order) {
