@@ -79,9 +79,9 @@ std::vector<std::vector<std::string>> effect_rows(const StudyTable& table) {
 
 std::string remarks_text(const StudyTable& table) {
   std::string text =
-      "+- is half of the 95 % interval of the mean over sequences, each the mean of its seeds, or "
-      "over the seeds of one; of fewer than three there is none. \"to best\" is the paired "
-      "difference of IoU.\n";
+      "+- is half of the 95 % interval of the mean over sequences, each the mean of its seeds, or\n"
+      "over the seeds of one; of fewer than three there is none\n"
+      "\"to best\" is the paired difference of IoU\n";
   text += fmt::format("results in {}\n", table.out);
   for (const StudyEffects& effects : table.effects) {
     text += fmt::format(
