@@ -43,7 +43,8 @@ int in_order(std::string_view a, std::string_view b) {
       after_digit = true;
       continue;
     }
-    if (a.front() != b.front()) return a.front() < b.front() ? -1 : 1;
+    // Not as char, whose sign depends on the machine.
+    if (a.front() != b.front()) return a.substr(0, 1).compare(b.substr(0, 1));
     in_fraction = is_digit(a.front()) ? in_fraction : a.front() == '.' && after_digit;
     after_digit = in_fraction || is_digit(a.front());
     a.remove_prefix(1);

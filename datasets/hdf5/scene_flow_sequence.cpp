@@ -144,10 +144,14 @@ void SceneFlowSequence::require_poses(bool of_all) const {
   for (std::size_t k = 0; k < scans_.size(); ++k) {
     const bool of_flow = flows_by_poses(k) || (k > 0 && flows_by_poses(k - 1));
     if (scans_[k].map_from_sensor || !(of_all || of_flow)) continue;
-    throw DataError(file_.path(),
-                    fmt::format("group {} has no pose", shown_in_line(scans_[k].group->name)),
-                    of_all ? "pose (4, 4) in each group, --poses FILE or --odometry KIND"
-                           : "pose (4, 4) or ego_motion where there is flow");
+    const std::string lack =
+        fmt::format("group {} has no pose", shown_in_line(scans_[k].group->name));
+    if (of_flow) {
+      throw DataError(file_.path(), lack, "pose (4, 4) or ego_motion where there is flow");
+    }
+    throw MissingPoses(
+        file_.path(), lack,
+        "pose (4, 4) in each group, in a file given by --poses, or found by odometry");
   }
 }
 

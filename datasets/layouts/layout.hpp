@@ -39,10 +39,10 @@ struct LayoutContent {
   std::vector<PublishedCount> published = {};
 };
 
-/// How a data set is written by `simulate` and `convert`.
 /// What a layout keeps of the truth of a point: its id, whether it moves, or nothing.
 enum class KeptTruth : std::uint8_t { kId, kMoving, kNone };
 
+/// How a data set is written by `simulate` and `convert`.
 struct LayoutWriter {
   std::unique_ptr<SequenceWriter> (*open)(const std::filesystem::path& folder,
                                           const WriteOptions& options);

@@ -79,6 +79,13 @@ SqliteBag::SqliteBag(const std::filesystem::path& file, std::span<unsigned char>
       sqlite3_open_v2(":memory:", &opened, SQLITE_OPEN_READWRITE | SQLITE_OPEN_NOMUTEX, nullptr);
   database_.reset(opened);
   check(result);
+  // A database that was written with a log says so after it was closed, and would not be taken.
+  constexpr std::size_t kWriteVersion = 18, kReadVersion = 19;
+  constexpr unsigned char kLog = 2, kNoLog = 1;
+  if (content.size() > kReadVersion && content[kWriteVersion] == kLog &&
+      content[kReadVersion] == kLog) {
+    content[kWriteVersion] = content[kReadVersion] = kNoLog;
+  }
   const auto bytes = static_cast<sqlite3_int64>(content.size());
   check(sqlite3_deserialize(opened, "main", content.data(), bytes, bytes,
                             SQLITE_DESERIALIZE_READONLY));

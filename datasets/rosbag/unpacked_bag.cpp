@@ -41,7 +41,7 @@ UnpackedBag::Mapping::Mapping(const FileDescriptor& file) {
   require_success(bytes >= 0);
   if (bytes == 0) return;
   const auto size = static_cast<std::size_t>(bytes);
-  void* start = mmap(nullptr, size, PROT_READ, MAP_PRIVATE, file.number(), 0);
+  void* start = mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE, file.number(), 0);
   require_success(start != MAP_FAILED);
   content_ = {static_cast<unsigned char*>(start), size};
 }

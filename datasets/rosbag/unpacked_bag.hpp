@@ -14,7 +14,8 @@
 namespace mosbench {
 
 /// A bag whose whole file is packed by Zstandard. It is unpacked into the folder of temporary files
-/// (TMPDIR), where it never has a name: nothing is left of it, however the process ends.
+/// (TMPDIR), where its name is removed before anything is written: no bag is left there, however
+/// the process ends.
 class UnpackedBag : public BagReader {
  public:
   /// Throws DataError.
@@ -29,7 +30,7 @@ class UnpackedBag : public BagReader {
   template <typename Work>
   auto naming_file(Work&& work) const;
 
-  /// The content of a file, which must not become shorter.
+  /// The content of a file, which must not become shorter; changes stay in this process.
   class Mapping {
    public:
     /// Throws std::system_error.

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kLongest_bytes = 255;
 constexpr std::ptrdiff_t kMostSlashes = 1;
-constexpr std::array<std::string_view, 4> kOfResults = {"labels", "scores", "reasons",
+constexpr std::array<std::string_view, 5> kOfResults = {"labels", "scores", "reasons", "moving",
                                                         "result.json"};
 
 bool is_of_results(std::string_view part) {
@@ -31,8 +31,8 @@ void check_part(std::string_view part, const std::string& text, const std::files
   if (!is_printable(part)) refuse("UTF-8 without control characters");
   if (is_of_results(part)) {
     refuse(
-        "another name: results use labels, scores, reasons, result.json, *.partial and *.replaced "
-        "themselves");
+        "another name: results use labels, scores, reasons, moving, result.json, *.partial and "
+        "*.replaced themselves");
   }
 }
 

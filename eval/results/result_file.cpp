@@ -213,7 +213,7 @@ bool holds_own_result(const std::filesystem::path& folder) {
 /// reasons there, or was killed, or is about to replace it. A sequence may be called like that,
 /// too.
 bool is_passed_over(const std::filesystem::path& folder) {
-  constexpr std::array kOfRun = {"labels", "scores", "reasons"};
+  constexpr std::array kOfRun = {"labels", "scores", "reasons", "moving"};
   if (std::ranges::find(kOfRun, folder.filename()) != kOfRun.end()) {
     return is_there(folder.parent_path() / "result.json");
   }

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "datasets/files/errors.hpp"
+#include "datasets/files/text.hpp"
 #include "datasets/sequence/fingerprint.hpp"
 #include "eval/protocols/benchmark_split.hpp"
 #include "eval/results/machine.hpp"
@@ -56,7 +57,9 @@ void remember_motion(const std::string& kept_s, Settings& settings) {
 void apply_moving(const std::string& text, const MethodKind& method, Settings& settings) {
   if (text == "now") return;
   constexpr std::string_view kFor = "ever:";
-  if (text != "ever" && !text.starts_with(kFor)) {
+  const bool has_seconds =
+      text.starts_with(kFor) && parse_double(text.substr(kFor.size())).has_value();
+  if (text != "ever" && !has_seconds) {
     throw UsageError(
         fmt::format("--moving: '{}' is not known, expected now, ever or ever:SECONDS", text));
   }
@@ -111,7 +114,8 @@ fs::path default_out(const RunPlan& plan, const RunOptions& options) {
   // So has one with disturbed scans.
   const std::string perturb = options.reading.perturb ? "-" + *options.reading.perturb : "";
   const std::string data = fmt::format("{}-{}", folder.filename().string(), plan.preset);
-  const std::string moving = options.moving == "now" ? "" : "-ever";
+  std::string moving = options.moving == "now" ? "" : "-" + options.moving;
+  std::ranges::replace(moving, ':', '-');
   const std::string method = options.shared ? "" : fmt::format("-{}", kind);
   return fs::path("results/runs") / (data + method + moving + poses + perturb);
 }

@@ -18,7 +18,10 @@ std::string drawn(const SampledSetting& setting, std::uint64_t stream, std::uint
   if (setting.is_whole) {
     return fmt::format("{:.0f}", setting.low + std::floor(part * (setting.high - setting.low + 1)));
   }
-  return fmt::format("{:.6g}", setting.low + part * (setting.high - setting.low));
+  const std::string number =
+      fmt::format("{:.6g}", setting.low + part * (setting.high - setting.low));
+  // Digits that are cut must not lead out of what is legal.
+  return fmt::format("{}", std::clamp(std::stod(number), setting.low, setting.high));
 }
 
 /// IoU of each cell of one row, by what the cell sets and by sequence.

@@ -32,6 +32,7 @@ TEST(FolderListing, PutsNumbersInNamesInOrder) {
               ElementsAre("run2-scan1", "run2-scan9", "run2-scan10", "run10-scan0"));
   EXPECT_THAT(listed({"cloud.10", "cloud.9", "cloud"}),
               ElementsAre("cloud", "cloud.9", "cloud.10"));
+  EXPECT_THAT(listed({"\xC3\xA4", "z", "a"}), ElementsAre("a", "z", "\xC3\xA4"));
   const std::string beyond_64_bits = "99999999999999999999999";
   EXPECT_THAT(listed({beyond_64_bits, "1" + beyond_64_bits, "7"}),
               ElementsAre("7", beyond_64_bits, "1" + beyond_64_bits));

@@ -402,6 +402,19 @@ TEST_F(Ros2Bag, InSqliteThatItsRecorderDidNotCloseIsReadOnlyWhereItIsWhole) {
               HasSubstr("in the middle of a change, which changed.db3-journal takes back"));
 }
 
+TEST_F(Ros2Bag, PackedAfterItsRecorderWroteWithALogIsRead) {
+  const auto file = write(read_file(good_db3(folder_, "good")), "logged.db3");
+  sqlite3* recorder = nullptr;
+  ASSERT_EQ(sqlite3_open(file.c_str(), &recorder), SQLITE_OK);
+  ASSERT_EQ(sqlite3_exec(recorder, "PRAGMA journal_mode=WAL; CREATE TABLE more (id)", nullptr,
+                         nullptr, nullptr),
+            SQLITE_OK);
+  sqlite3_close(recorder);
+  const std::string bytes = read_file(file);
+  ASSERT_EQ(bytes.substr(18, 2), "\x02\x02");
+  expect_good(BagSequence("s", write(compress_zstd(bytes), "logged.db3.zstd"), {}));
+}
+
 /// Puts other messages than transforms in the second channel.
 McapBytes with_poses(const char* type,
                      const std::function<std::string(std::int64_t, double)>& make) {

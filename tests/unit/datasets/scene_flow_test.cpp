@@ -16,6 +16,7 @@
 #include "datasets/hdf5/scene_flow_sequence.hpp"
 #include "datasets/layouts/dataset.hpp"
 #include "datasets/layouts/sequence_writer.hpp"
+#include "datasets/sequence/pose_source.hpp"
 #include "tests/hdf5_bytes.hpp"
 #include "tests/temp_folder.hpp"
 
@@ -244,9 +245,9 @@ TEST_F(SceneFlowFile, NeedsNoPosesWhereOthersAreGiven) {
   EXPECT_EQ(bare.size(), 3u);
   EXPECT_FALSE(bare.has_truth(0));
   EXPECT_EQ(bare.read(0).points.size(), 4u);
-  EXPECT_THAT(error_of(groups),
-              HasSubstr("has no pose, expected pose (4, 4) in each group, --poses "
-                        "FILE or --odometry KIND"));
+  EXPECT_THAT(message_of<MissingPoses>([&] { SceneFlowSequence("s", write(groups), {}); }),
+              HasSubstr("has no pose, expected pose (4, 4) in each group, in a file given by "
+                        "--poses, or found by odometry"));
 }
 
 TEST_F(SceneFlowFile, NamesWhatIsWrong) {
