@@ -31,6 +31,7 @@ enum class Reason : std::uint8_t {
   kGrown,     ///< it is connected with such points
   kFeet,      ///< it is next to the ground, below such points
 };
+/// Number of values of Reason.
 inline constexpr std::size_t kReasonCount = 5;
 
 /// One scan whose labels are final.
