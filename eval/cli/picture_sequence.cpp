@@ -8,6 +8,7 @@
 #include "datasets/files/errors.hpp"
 #include "datasets/files/files.hpp"
 #include "datasets/files/shell_text.hpp"
+#include "datasets/files/text.hpp"
 #include "eval/results/tell.hpp"
 
 namespace mosbench {
@@ -16,9 +17,11 @@ namespace {
 
 bool has_ffmpeg() { return std::system("command -v ffmpeg >/dev/null 2>&1") == 0; }
 
+std::string extension_of(const fs::path& file) { return lower_case(file.extension().string()); }
+
 /// Videos that every player shows have an even size; a gif has colours of its own.
 std::string ffmpeg_command(const std::string& pictures, const fs::path& file, double per_s) {
-  const bool gif = file.extension() == ".gif";
+  const bool gif = extension_of(file) == ".gif";
   const char* picture = gif ? "-filter_complex '[0:v]split[a][b];[a]palettegen[p];[b][p]paletteuse'"
                             : "-vf 'pad=ceil(iw/2)*2:ceil(ih/2)*2' -pix_fmt yuv420p";
   return fmt::format("ffmpeg -loglevel error -y -framerate {:g} {} {} {}", per_s, pictures, picture,
@@ -27,8 +30,12 @@ std::string ffmpeg_command(const std::string& pictures, const fs::path& file, do
 
 }  // namespace
 
+bool is_video(const fs::path& out) {
+  return extension_of(out) == ".mp4" || extension_of(out) == ".gif";
+}
+
 PictureSequence::PictureSequence(const fs::path& out, double per_s) {
-  if (out.extension() != ".mp4" && out.extension() != ".gif") {
+  if (!is_video(out)) {
     folder_ = out;
     return;
   }

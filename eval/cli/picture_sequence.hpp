@@ -8,6 +8,9 @@
 
 namespace mosbench {
 
+/// Whether pictures of several scans go into one file: .mp4 or .gif, in letters of any case.
+bool is_video(const std::filesystem::path& out);
+
 /// Where the pictures of several scans go: into a video (.mp4, .gif) by ffmpeg, or into a folder, a
 /// PNG file each. Without ffmpeg the folder is named like the video.
 class PictureSequence {

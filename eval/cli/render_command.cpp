@@ -216,8 +216,8 @@ void check_view(const RenderFlags& options) {
 
 /// Whether --out of --scans is a folder of pictures. Throws UsageError for another kind of file.
 bool names_folder(const std::filesystem::path& out) {
+  if (is_video(out)) return false;
   const std::string extension = lower_case(out.extension().string());
-  if (extension == ".mp4" || extension == ".gif") return false;
   for (const char* other : {".png", ".jpg", ".avi", ".mkv", ".mov", ".webm"}) {
     if (extension != other) continue;
     throw UsageError(

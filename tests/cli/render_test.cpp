@@ -87,14 +87,15 @@ TEST_F(Render, TurnsACameraAroundTheSensorAndDrawsBoxes) {
 }
 
 /// Draws scans 1 and 2 with this script as ffmpeg, or with none.
-cli::Answer render_video(const std::string& run, const TempFolder& folder, const char* script) {
+cli::Answer render_video(const std::string& run, const TempFolder& folder, const char* script,
+                         const char* name = "v.mp4") {
   const std::filesystem::path programs = folder / "programs";
   std::filesystem::create_directories(programs);
   if (script != nullptr) {
     write_file_atomic(programs / "ffmpeg", script);
     std::filesystem::permissions(programs / "ffmpeg", std::filesystem::perms::owner_all);
   }
-  return cli::run({"render", run, "--scans", "1-2", "-o", folder / "v.mp4", "--size", "300"},
+  return cli::run({"render", run, "--scans", "1-2", "-o", folder / name, "--size", "300"},
                   [&] { setenv("PATH", programs.c_str(), 1); });
 }
 
@@ -122,6 +123,13 @@ TEST_F(Render, LeavesNoVideoWhereFfmpegFailsOrIsNotThere) {
   EXPECT_THAT(without.err, HasSubstr("ffmpeg is not there"));
   EXPECT_THAT(without.err, HasSubstr("-pattern_type glob -i '" + (folder_ / "v/*.png").string()));
   EXPECT_TRUE(std::filesystem::exists(folder_ / "v/000002.png"));
+}
+
+TEST_F(Render, KnowsAVideoByItsEndInCapitalsToo) {
+  const cli::Answer without = render_video(run(), folder_, nullptr, "V.MP4");
+  EXPECT_EQ(without.exit_code, 0) << without.err;
+  EXPECT_THAT(without.err, HasSubstr("ffmpeg is not there"));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "V/000002.png"));
 }
 
 TEST_F(Render, KnowsNoWorstScanWithoutTruth) {
