@@ -21,7 +21,8 @@ class SqliteBag : public BagReader {
  public:
   /// Throws DataError for a file that is no such database.
   explicit SqliteBag(const std::filesystem::path& file);
-  /// The same of the content of such a file, which outlives it and is not changed.
+  /// The same of the content of such a file, which outlives it. May change what its head says of a
+  /// log.
   SqliteBag(const std::filesystem::path& file, std::span<unsigned char> content);
   ~SqliteBag() override;
 

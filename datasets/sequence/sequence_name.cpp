@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <string_view>
 
 #include "datasets/files/errors.hpp"
@@ -14,25 +13,23 @@ namespace {
 
 constexpr std::size_t kLongest_bytes = 255;
 constexpr std::ptrdiff_t kMostSlashes = 1;
-constexpr std::array<std::string_view, 5> kOfResults = {"labels", "scores", "reasons", "moving",
-                                                        "result.json"};
 
 bool is_of_results(std::string_view part) {
-  return std::ranges::find(kOfResults, part) != kOfResults.end() || part.ends_with(".partial") ||
-         part.ends_with(".replaced");
+  return std::ranges::find(kScanFileFolders, part) != kScanFileFolders.end() ||
+         part == "result.json" || part.ends_with(".partial") || part.ends_with(".replaced");
 }
 
 void check_part(std::string_view part, const std::string& text, const std::filesystem::path& file) {
-  const auto refuse = [&](const char* expected) {
+  const auto refuse = [&](const std::string& expected) {
     throw DataError(file, fmt::format("names the sequence \"{}\"", shown_in_line(text)), expected);
   };
   if (part.empty() || part == "." || part == "..") refuse("a folder below that of results");
   if (part.size() > kLongest_bytes) refuse("at most 255 bytes");
   if (!is_printable(part)) refuse("UTF-8 without control characters");
   if (is_of_results(part)) {
-    refuse(
-        "another name: results use labels, scores, reasons, moving, result.json, *.partial and "
-        "*.replaced themselves");
+    refuse(fmt::format(
+        "another name: results use {}, result.json, *.partial and *.replaced themselves",
+        fmt::join(kScanFileFolders, ", ")));
   }
 }
 

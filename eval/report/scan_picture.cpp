@@ -50,6 +50,17 @@ Kinds kinds_of(const std::vector<Kind>& of_points, std::vector<Swatch> swatches)
   return kinds;
 }
 
+/// Where nothing is judged, the two outcomes that are left have plainer names.
+Kinds kinds_of_outcomes(const JudgedScan& scan, std::vector<Swatch> swatches) {
+  const bool has_truth = std::ranges::any_of(scan.outcomes, [](PointOutcome outcome) {
+    return outcome != PointOutcome::kIgnoredStatic && outcome != PointOutcome::kIgnoredMoving;
+  });
+  for (Swatch& swatch : swatches) {
+    if (!has_truth) swatch.name = swatch.name_without_truth;
+  }
+  return kinds_of(scan.outcomes, std::move(swatches));
+}
+
 /// Returns a round number of metres that gives three to eight rings.
 double ring_step_m(double range_m) {
   double step_m = 1.0;
@@ -79,7 +90,7 @@ class ScanPicture {
         options_(options),
         palette_(palette(options.dark)),
         kinds_(options.by_reason ? kinds_of(scan.reasons, palette_.reasons)
-                                 : kinds_of(scan.outcomes, palette_.outcomes)),
+                                 : kinds_of_outcomes(scan, palette_.outcomes)),
         range_m_(options.range_m > 0.0 ? options.range_m : reach_m(scan)),
         view_(options.viewpoint, range_m_, static_cast<double>(options.size_pixels)),
         text_scale_(std::max(1, static_cast<int>(options.size_pixels + 500) / 1000)),
@@ -227,16 +238,12 @@ class ScanPicture {
   void draw_legend() {
     std::vector<std::size_t> counts(kinds_.swatches.size());
     for (const std::size_t kind : kinds_.of_point) ++counts[kind];
-    constexpr std::ptrdiff_t kJudged = 4;  // outcomes where there is truth
-    const bool has_truth = std::any_of(counts.begin(), counts.begin() + kJudged,
-                                       [](std::size_t count) { return count > 0; });
     std::vector<std::string> lines;
     std::vector<Colour> swatches;
     for (std::size_t i = 0; i < counts.size(); ++i) {
       if (counts[i] == 0) continue;
       const Swatch& swatch = kinds_.swatches[i];
-      lines.push_back(fmt::format("{:<25} {:>8}",
-                                  has_truth ? swatch.name : swatch.name_without_truth, counts[i]));
+      lines.push_back(fmt::format("{:<25} {:>8}", swatch.name, counts[i]));
       swatches.push_back(swatch.colour);
     }
     const int indent = 18 * text_scale_;

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <set>
 #include <string>
 #include <system_error>
@@ -13,6 +12,7 @@
 #include "datasets/files/json_text.hpp"
 #include "datasets/files/label_file.hpp"
 #include "datasets/files/text.hpp"
+#include "datasets/sequence/sequence_name.hpp"
 #include "eval/protocols/counts_json.hpp"
 #include "eval/results/answer_text.hpp"
 #include "eval/results/result_format.hpp"
@@ -209,12 +209,10 @@ bool holds_own_result(const std::filesystem::path& folder) {
   }
 }
 
-/// Returns whether no result is to be looked for in a folder: a run keeps its labels, scores or
-/// reasons there, or was killed, or is about to replace it. A sequence may be called like that,
-/// too.
+/// Returns whether no result is to be looked for in a folder: a run keeps files per scan there, or
+/// was killed, or is about to replace it. A sequence may be called like that, too.
 bool is_passed_over(const std::filesystem::path& folder) {
-  constexpr std::array kOfRun = {"labels", "scores", "reasons", "moving"};
-  if (std::ranges::find(kOfRun, folder.filename()) != kOfRun.end()) {
+  if (std::ranges::find(kScanFileFolders, folder.filename().string()) != kScanFileFolders.end()) {
     return is_there(folder.parent_path() / "result.json");
   }
   const bool leftover = folder.extension() == ".partial" || folder.extension() == ".replaced";

@@ -63,13 +63,14 @@ void apply_moving(const std::string& text, const MethodKind& method, Settings& s
     throw UsageError(
         fmt::format("--moving: '{}' is not known, expected now, ever or ever:SECONDS", text));
   }
-  if (settings.find("seed_age_s") == nullptr) {
+  const Setting* age = settings.find("seed_age_s");
+  if (age == nullptr) {
     throw UsageError(
         fmt::format("--moving {}: method {} does not remember what moved, expected hmm-mos-plus",
                     text, method.name));
   }
-  // As long as the method can.
-  remember_motion(text == "ever" ? "10" : text.substr(kFor.size()), settings);
+  const std::string longest_s = to_string(SettingValue(age->highest));
+  remember_motion(text == "ever" ? longest_s : text.substr(kFor.size()), settings);
 }
 
 Settings choose_settings(const RunOptions& options, const Preset& preset,

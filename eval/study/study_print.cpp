@@ -27,29 +27,33 @@ std::string number_text(const std::optional<double>& value, const char* style) {
   return value ? fmt::format(fmt::runtime(style), *value) : "-";
 }
 
-std::vector<std::string> titles() {
-  return {"method", "IoU %", "to best", "precision %", "recall %", "ms/scan", "front", "rank"};
-}
+/// Lines of cells, the first of which is the head.
+using TextRows = std::vector<std::vector<std::string>>;
 
-std::vector<std::string> cells_of(const StudyRow& row) {
-  return {row.label,
-          mean_text(row.metrics[0]),
-          row.to_best ? mean_text(*row.to_best) : "",
-          mean_text(row.metrics[1]),
-          mean_text(row.metrics[2]),
-          number_text(row.ms_per_scan, "{:.1f}"),
-          row.is_on_front ? "*" : "",
-          number_text(row.rank, "{:.2f}")};
+TextRows overview_rows(const StudyTable& table) {
+  TextRows rows = {
+      {"method", "IoU %", "to best", "precision %", "recall %", "ms/scan", "front", "rank"}};
+  for (const StudyRow& row : table.rows) {
+    rows.push_back({row.label, mean_text(row.metrics[0]),
+                    row.to_best ? mean_text(*row.to_best) : "", mean_text(row.metrics[1]),
+                    mean_text(row.metrics[2]), number_text(row.ms_per_scan, "{:.1f}"),
+                    row.is_on_front ? "*" : "", number_text(row.rank, "{:.2f}")});
+  }
+  return rows;
 }
 
 std::string axis_title(const StudyCurve& curve) {
   return curve.unit.empty() ? curve.axis : fmt::format("{}, {}", curve.axis, curve.unit);
 }
 
-std::vector<std::string> cells_of(const StudyTable& table, const StudyCurve& curve, std::size_t i) {
-  std::vector<std::string> cells = {table.rows[i].label};
-  for (const StudyMetrics& metrics : curve.metrics[i]) cells.push_back(mean_text(metrics[0]));
-  return cells;
+TextRows curve_rows(const StudyTable& table, const StudyCurve& curve, const std::string& title) {
+  TextRows rows = {{title}};
+  rows.front().insert(rows.front().end(), curve.values.begin(), curve.values.end());
+  for (std::size_t i = 0; i < table.rows.size(); ++i) {
+    std::vector<std::string>& row = rows.emplace_back(1, table.rows[i].label);
+    for (const StudyMetrics& metrics : curve.metrics[i]) row.push_back(mean_text(metrics[0]));
+  }
+  return rows;
 }
 
 std::string effect_text(const std::optional<TotalEffect>& effect) {
@@ -58,9 +62,9 @@ std::string effect_text(const std::optional<TotalEffect>& effect) {
                      effect->interval.high);
 }
 
-/// The head, and a line per sampled setting with its effect on the IoU of each method.
-std::vector<std::vector<std::string>> effect_rows(const StudyTable& table) {
-  std::vector<std::vector<std::string>> rows = {{"total effect"}};
+/// A line per sampled setting with its effect on the IoU of each method.
+TextRows effect_rows(const StudyTable& table) {
+  TextRows rows = {{"total effect"}};
   for (const StudyEffects& effects : table.effects) rows.front().push_back(effects.label);
   for (std::size_t column = 0; column < table.effects.size(); ++column) {
     const StudyEffects& effects = table.effects[column];
@@ -138,23 +142,21 @@ ordered_json to_json(const StudyEffects& effects) {
   return {{"label", effects.label}, {"points", effects.points}, {"settings", settings}};
 }
 
-std::string latex_table(const std::vector<std::string>& head,
-                        const std::vector<std::vector<std::string>>& rows) {
-  std::string text =
-      fmt::format("\\begin{{tabular}}{{l{}}}\n\\hline\n", std::string(head.size() - 1, 'r'));
-  text += latex_row(head) + "\\hline\n";
-  for (const auto& row : rows) text += latex_row(row);
-  return text + "\\hline\n\\end{tabular}\n";
-}
-
-std::string effects_text(const StudyTable& table) {
-  const std::vector<std::vector<std::string>> rows = effect_rows(table);
+std::string text_table(const TextRows& rows) {
   std::vector<TextTable::Column> columns;
   for (const std::string& title : rows.front()) columns.push_back({title});
   columns.front().align = TextTable::kLeft;
   TextTable text(columns);
   for (std::size_t i = 1; i < rows.size(); ++i) text.add_row(rows[i]);
   return text.str();
+}
+
+std::string latex_table(const TextRows& rows) {
+  std::string text = fmt::format("\\begin{{tabular}}{{l{}}}\n\\hline\n",
+                                 std::string(rows.front().size() - 1, 'r'));
+  text += latex_row(rows.front()) + "\\hline\n";
+  for (std::size_t i = 1; i < rows.size(); ++i) text += latex_row(rows[i]);
+  return text + "\\hline\n\\end{tabular}\n";
 }
 
 std::string cell_number(const PlannedCell& planned, const char* part, const char* what) {
@@ -166,44 +168,23 @@ std::string cell_number(const PlannedCell& planned, const char* part, const char
 }  // namespace
 
 std::string study_text(const StudyTable& table) {
-  std::vector<TextTable::Column> columns;
-  for (const std::string& title : titles()) columns.push_back({title});
-  columns.front().align = TextTable::kLeft;
-  TextTable plain(columns);
-  for (const StudyRow& row : table.rows) plain.add_row(cells_of(row));
-  std::string text = fmt::format("{}\n\n{}", table.name, plain.str());
+  std::string text = fmt::format("{}\n\n{}", table.name, text_table(overview_rows(table)));
   for (const StudyCurve& curve : table.curves) {
-    columns.assign(1, {fmt::format("IoU % by {}", axis_title(curve)), TextTable::kLeft});
-    for (const std::string& value : curve.values) columns.push_back({value});
-    TextTable by_value(columns);
-    for (std::size_t i = 0; i < table.rows.size(); ++i) {
-      by_value.add_row(cells_of(table, curve, i));
-    }
-    text += "\n" + by_value.str();
+    const std::string title = fmt::format("IoU % by {}", axis_title(curve));
+    text += "\n" + text_table(curve_rows(table, curve, title));
   }
-  if (!table.effects.empty()) text += "\n" + effects_text(table);
+  if (!table.effects.empty()) text += "\n" + text_table(effect_rows(table));
   return text + "\n" + remarks_text(table);
 }
 
 std::string study_latex(const StudyTable& table) {
-  std::vector<std::vector<std::string>> rows;
-  for (const StudyRow& row : table.rows) rows.push_back(cells_of(row));
   std::string text;
   if (table.simulated) text += "% simulated data: not comparable with published numbers\n";
-  text += latex_table(titles(), rows);
+  text += latex_table(overview_rows(table));
   for (const StudyCurve& curve : table.curves) {
-    std::vector<std::string> head = {axis_title(curve)};
-    head.insert(head.end(), curve.values.begin(), curve.values.end());
-    rows.clear();
-    for (std::size_t i = 0; i < table.rows.size(); ++i) rows.push_back(cells_of(table, curve, i));
-    text += "\n" + latex_table(head, rows);
+    text += "\n" + latex_table(curve_rows(table, curve, axis_title(curve)));
   }
-  if (!table.effects.empty()) {
-    rows = effect_rows(table);
-    const std::vector<std::string> head = rows.front();
-    rows.erase(rows.begin());
-    text += "\n" + latex_table(head, rows);
-  }
+  if (!table.effects.empty()) text += "\n" + latex_table(effect_rows(table));
   return text;
 }
 

@@ -22,7 +22,7 @@ FOLDERS = ("core", "datasets", "eval")
 LEFT_OUT = ("core/include/mosbench/pcl.hpp", "eval/python/")
 # Vectors are returned by functions that are always inlined: no calling convention is involved.
 COMPILE = ["c++", "-std=c++20", "-Wall", "-Wextra", "-Wpedantic", "-Wshadow", "-Wconversion", "-Wsign-conversion",
-            "-Wold-style-cast", "-Wno-psabi", "-Werror", "-I.", "-Icore/include"]
+           "-Wold-style-cast", "-Wno-psabi", "-Werror", "-I.", "-Icore/include"]
 INCLUDE = re.compile(r'#include ([<"])([^>"]+)[>"]')
 # All that may come before an include.
 COMMENT_OR_CONDITION = re.compile(r"(//.*|#.*|)$")
@@ -51,10 +51,10 @@ def foreign(header):
     return frozenset(found)
 
 
-def shared_sets():
-    """What all headers include that include the same of what takes long."""
+def shared_sets(names):
+    """What all of these headers include that include the same of what takes long."""
     groups = collections.defaultdict(list)
-    for header in headers():
+    for header in names:
         long = frozenset(name for name in foreign(header) if "/" in name or name in LONG_STANDARD_HEADERS)
         groups[long].append(foreign(header))
     return [frozenset.intersection(*group) for long, group in groups.items() if long and len(group) >= MANY]
@@ -106,12 +106,14 @@ def complaint(header, precompiled):
 
 def main():
     with tempfile.TemporaryDirectory() as folder, concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as threads:
-        paths = [pathlib.Path(folder) / f"{i}.hpp" for i in range(len(shared_sets()))]
-        precompiled = list(threads.map(precompile, shared_sets(), paths))
-        wrong = list(filter(None, threads.map(lambda header: complaint(header, precompiled), headers())))
+        names = headers()
+        shared = shared_sets(names)
+        paths = [pathlib.Path(folder) / f"{i}.hpp" for i in range(len(shared))]
+        precompiled = list(threads.map(precompile, shared, paths))
+        wrong = list(filter(None, threads.map(lambda header: complaint(header, precompiled), names)))
     print(*wrong, sep="", end="")
-    print(f"{len(headers())} headers compiled alone, {len(wrong)} wrong")
-    return 1 if wrong or not headers() else 0
+    print(f"{len(names)} headers compiled alone, {len(wrong)} wrong")
+    return 1 if wrong or not names else 0
 
 
 if __name__ == "__main__":

@@ -22,6 +22,11 @@ export function shape(tag, attributes = {}, ...children) {
   return fill(document.createElementNS(SVG, tag), attributes, children);
 }
 
+/** A part of the page under a title of its own, with a note where there is one. */
+export function block(title, note, body) {
+  return element('section', { class: 'block' }, element('h2', {}, title), note ? element('p', { class: 'hint' }, note) : null, body);
+}
+
 /** A table from column titles and rows of cells; a cell is text, a node, or {text, title}. */
 export function table(titles, rows, { leftColumns = 1, onRow = null } = {}) {
   const side = (i) => (i < leftColumns ? 'left' : 'right');

@@ -1,5 +1,5 @@
 import { Chart } from './chart.js';
-import { element, table } from './dom.js';
+import { block, element, table } from './dom.js';
 import { fixed, percent } from './format.js';
 import { readContent } from './payload.js';
 import { State } from './state.js';
@@ -67,12 +67,12 @@ function overview(study) {
 }
 
 function effects(study) {
-  return (study.effects ?? []).flatMap(({ label, points, settings }) => {
+  return (study.effects ?? []).map(({ label, points, settings }) => {
     const rows = [...settings].sort((a, b) => b.total_effect - a.total_effect).map(({ name, total_effect, low, high }) => [
       name, fixed(total_effect, 2), total_effect === null ? '' : `${fixed(low, 2)} to ${fixed(high, 2)}`,
     ]);
     const note = `The part of the IoU's variance that is left while all other sampled settings are fixed, over ${points} points.`;
-    return [element('h2', {}, `Total effect of each setting on ${label}`), element('div', { class: 'block' }, element('p', {}, note), table(['setting', 'total effect', '95 %'], rows))];
+    return block(`Total effect of each setting on ${label}`, note, table(['setting', 'total effect', '95 %'], rows));
   });
 }
 
@@ -95,7 +95,7 @@ function worstScans(study) {
     label, element('a', { href: `#${commands.get(command).id}` }, cell), stem, percent(iou),
   ]);
   const shown = [...commands].map(([command, { cell, id }]) => element('div', { class: 'block', id }, element('p', {}, cell), element('pre', {}, command)));
-  return [element('h2', {}, 'Worst scans'), element('div', { class: 'block' }, table(['method', 'cell', 'scan', 'IoU'], rows, { leftColumns: 3 })), ...shown];
+  return [block('Worst scans', null, table(['method', 'cell', 'scan', 'IoU'], rows, { leftColumns: 3 })), ...shown];
 }
 
 function draw(study) {

@@ -1,12 +1,8 @@
-import { element, table } from './dom.js';
+import { block, element, table } from './dom.js';
 import { count, fixed, intervalOf, percent, whyNoInterval } from './format.js';
 import { iou, worstScans } from './metrics.js';
 
 const AT_MOST = 12;
-
-function block(title, note, body) {
-  return element('section', { class: 'block' }, element('h2', {}, title), note ? element('p', { class: 'hint' }, note) : null, body);
-}
 
 function withInterval(value, estimate) {
   const ends = intervalOf(estimate);
