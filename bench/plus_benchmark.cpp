@@ -5,13 +5,14 @@
 #include "bench/stage_benchmark.hpp"
 #include "core/hmm_mos_plus/objects.hpp"
 #include "core/hmm_mos_plus/pipeline.hpp"
+#include "core/hmm_mos_plus/tracks.hpp"
 #include "core/voxel/point_labels.hpp"
 
 namespace mosbench {
 namespace {
 
 /// The stages that hmm-mos-plus has beside those of the map.
-enum class PlusStage { kHistory, kArrivals, kGround, kObjects };
+enum class PlusStage { kHistory, kArrivals, kGround, kPrediction, kObjects };
 
 using PlusConfig = hmm_mos_plus::Config;
 
@@ -45,23 +46,20 @@ template <PlusStage stage>
 void plus_stage(benchmark::State& state, StagedScans& staged, ThreadPool& pool) {
   const std::vector<std::vector<std::uint32_t>> expected = plus_labels(staged);
   const PlusConfig config = plus_config(staged.workload.config);
-  const auto run = [&](PlusStage which, auto&& work) {
-    return which == stage ? timed_call(state, work) : work();
-  };
   bool right = true;
   measure_passes(state, staged.measured.size(), [&] {
     VoxelMap map(config.map, staged.grid, VoxelMap::Keeps::kStatesAndHistory);
+    hmm_mos_plus::Tracks tracks(config);
     for (const StagedScan& s : staged.all) {
-      if (s.k < staged.measured.front().k) {
-        update_plus_map(map, s, pool);
-        map.evict(s.k);
-        continue;
-      }
-      staged.run_other_stages();
+      const bool measured = s.k >= staged.measured.front().k;
+      const auto run = [&](PlusStage which, auto&& work) {
+        return which == stage && measured ? timed_call(state, work) : work();
+      };
+      if (measured) staged.run_other_stages();
       const StagedScan inputs = s;
       run(PlusStage::kHistory, [&] { return update_plus_map(map, inputs, pool); });
       map.evict(s.k);
-      const auto classes = run(PlusStage::kArrivals, [&] {
+      auto classes = run(PlusStage::kArrivals, [&] {
         return hmm_mos_plus::classify(inputs.scan, map, s.k, config, pool);
       });
       const auto [ground, low] = run(PlusStage::kGround, [&] {
@@ -69,8 +67,17 @@ void plus_stage(benchmark::State& state, StagedScans& staged, ThreadPool& pool) 
         auto masks = lowest.low_voxels(config.ground_radius_voxels, config.ground_layers_voxels);
         return std::pair(std::move(lowest), std::move(masks));
       });
+      const hmm_mos::Tick tick{.at = s.k};
+      run(PlusStage::kPrediction, [&] {
+        tracks.add_seeds(inputs.scan, low, tick, classes);
+        return 0;
+      });
       const auto motion = run(PlusStage::kObjects, [&] {
         return hmm_mos_plus::find_motion(inputs.scan, classes, ground, low, config);
+      });
+      run(PlusStage::kPrediction, [&] {
+        tracks.follow(inputs.scan, motion.components, tick);
+        return 0;
       });
       auto moving = motion.objects;
       for (std::size_t i = 0; i < moving.size(); ++i) moving[i] = moving[i] | motion.feet[i];
@@ -84,6 +91,7 @@ void plus_stage(benchmark::State& state, StagedScans& staged, ThreadPool& pool) 
 const RegisterStage history("plus_map_update", plus_stage<PlusStage::kHistory>, true);
 const RegisterStage arrivals("plus_arrivals", plus_stage<PlusStage::kArrivals>, true);
 const RegisterStage ground("plus_ground", plus_stage<PlusStage::kGround>, false);
+const RegisterStage prediction("plus_prediction", plus_stage<PlusStage::kPrediction>, false);
 const RegisterStage objects("plus_objects", plus_stage<PlusStage::kObjects>, false);
 
 }  // namespace

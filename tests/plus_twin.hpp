@@ -6,6 +6,7 @@
 #include <limits>
 #include <memory>
 #include <mosbench/method.hpp>
+#include <tuple>
 #include <vector>
 
 #include "core/hmm_mos/reference_voxels.hpp"
@@ -28,8 +29,17 @@ struct Cell {
 struct Scan final : Observed {
   PointVoxels voxels;
   SetOf measured, observed, occupied, seeds, fresh, settled, aged, departed;
+  SetOf predicted;
   Eigen::Vector3d sensor_m = Eigen::Vector3d::Zero();
+  int periods = 1;  // since the scan before
   LabelledScan result;
+};
+
+/// What moved in the scan before.
+struct Object {
+  SetOf voxels;
+  Eigen::Vector3d centre, velocity = Eigen::Vector3d::Zero();  // voxels, voxels per period
+  int steps = 0;
 };
 
 class PlusTwin final : public Method {
@@ -65,6 +75,7 @@ class PlusTwin final : public Method {
     const int tick_before = tick_;
     tick_ = tick_of_scan(static_cast<std::size_t>(k_));
     ticks_passed_ = tick_ - tick_before;
+    scan.periods = periods_before(static_cast<std::size_t>(k_));
     for (const Voxel& v : scan.observed) update(v, scan.measured);
     std::erase_if(map_, [&](const auto& entry) {
       const bool expired = k_ > c_.map.global_window_scans &&
@@ -118,18 +129,24 @@ class PlusTwin final : public Method {
   /// Tenths of a second, as far as the stamps tell: periods since the first scan, by their median
   /// length, which is 0.1 s when it is near that.
   int tick_of_scan(std::size_t k) const {
+    int periods = 0;
+    for (std::size_t i = 1; i <= k; ++i) periods += periods_before(i);
+    return static_cast<int>(std::floor(periods * (period_s() / 0.1)));
+  }
+
+  double median_s() const {
     std::vector<double> apart_s;
-    for (std::size_t i = 1; i < stamps_ns_.size(); ++i)
-      apart_s.push_back(static_cast<double>(stamps_ns_[i] - stamps_ns_[i - 1]) * 1e-9);
-    std::vector<double> sorted = apart_s;
-    std::ranges::sort(sorted);
-    const double period_s = sorted.empty() ? 0 : sorted[sorted.size() / 2];
-    if (period_s <= 0) return static_cast<int>(k);
-    double periods = 0;
-    for (std::size_t i = 0; i < k; ++i)
-      periods += std::max(1.0, std::round(apart_s.at(i) / period_s));
-    const bool is_ten_hertz = period_s >= 0.08 && period_s <= 0.125;
-    return static_cast<int>(std::floor(periods * (is_ten_hertz ? 1 : period_s / 0.1)));
+    for (std::size_t i = 1; i < stamps_ns_.size(); ++i) apart_s.push_back(seconds_before(i));
+    std::ranges::sort(apart_s);
+    return apart_s.empty() ? 0.1 : apart_s[apart_s.size() / 2];
+  }
+  double period_s() const { return median_s() >= 0.08 && median_s() <= 0.125 ? 0.1 : median_s(); }
+  double seconds_before(std::size_t k) const {
+    return static_cast<double>(stamps_ns_.at(k) - stamps_ns_.at(k - 1)) * 1e-9;
+  }
+  int periods_before(std::size_t k) const {
+    if (stamps_ns_.empty() || k == 0) return 1;
+    return static_cast<int>(std::max(1.0, std::round(seconds_before(k) / median_s())));
   }
 
   bool is_within(const Cell& c, double age_s) const {
@@ -171,8 +188,12 @@ class PlusTwin final : public Method {
     });
   }
 
-  void judge(Scan& scan) const {
-    if (c_.map.delay_scans > 0) add_departures(scan);
+  void judge(Scan& scan) {
+    if (c_.map.delay_scans > 0)
+      add_departures(scan);
+    else
+      predict(scan);
+    std::vector<Object> found;
     SetOf left = scan.seeds, low, objects;
     for (const Voxel& v : scan.occupied) {
       if (scan.settled.contains(v)) continue;
@@ -202,7 +223,9 @@ class PlusTwin final : public Method {
           moves ? near_seeds(members, scan.seeds) : SetOf(members.begin(), members.end());
       for (const Voxel& v : kept) shares[v] = static_cast<float>(share);
       if (moves) objects.insert(kept.begin(), kept.end());
+      if (moves) found.push_back(followed(kept, scan.periods));
     }
+    last_ = found;
     SetOf moving = objects;
     for (const Voxel& v : low)
       for_neighbours({v.x, v.y, v.z + 1}, 1, [&](const Voxel& u) {
@@ -212,12 +235,62 @@ class PlusTwin final : public Method {
       scan.result.labels.push_back(v && moving.contains(*v) ? kMovingLabel : kStaticLabel);
       const float* share = v ? find(shares, *v) : nullptr;
       scan.result.scores.push_back(share == nullptr ? 0 : *share);
-      scan.result.reasons.push_back(!v || !moving.contains(*v)   ? Reason::kNone
-                                    : !objects.contains(*v)      ? Reason::kFeet
-                                    : scan.departed.contains(*v) ? Reason::kDeparted
-                                    : scan.seeds.contains(*v)    ? Reason::kArrived
-                                                                 : Reason::kGrown);
+      scan.result.reasons.push_back(!v || !moving.contains(*v)    ? Reason::kNone
+                                    : !objects.contains(*v)       ? Reason::kFeet
+                                    : scan.departed.contains(*v)  ? Reason::kDeparted
+                                    : scan.predicted.contains(*v) ? Reason::kPredicted
+                                    : scan.seeds.contains(*v)     ? Reason::kArrived
+                                                                  : Reason::kGrown);
     }
+  }
+
+  /// Where the objects of the scan before are by now.
+  void predict(Scan& scan) const {
+    if (scan.periods * period_s() > 1) return;
+    for (const Object& object : last_) {
+      if (c_.min_track_steps == 0 || object.steps < c_.min_track_steps) continue;
+      const auto ahead = [&](int axis) {
+        return static_cast<int>(std::lround(object.velocity[axis] * scan.periods));
+      };
+      if (ahead(0) == 0 && ahead(1) == 0 && ahead(2) == 0) continue;
+      for (const Voxel& v : object.voxels) {
+        const Voxel at{v.x + ahead(0), v.y + ahead(1), v.z + ahead(2)};
+        if (!scan.occupied.contains(at) || scan.settled.contains(at) || is_low(at, scan.occupied))
+          continue;
+        scan.fresh.insert(at);
+        if (scan.seeds.insert(at).second) scan.predicted.insert(at);
+      }
+    }
+  }
+
+  /// With its past: that of the object that is nearest to it, within 20 m/s, when moved on.
+  Object followed(const SetOf& voxels, int periods) const {
+    Object found{voxels, centre_of(voxels)};
+    const double limit = 20 * (period_s() * periods) / c_.map.voxel_size_m;
+    const auto apart = [&](const Object& object) -> Eigen::Vector3d {
+      return found.centre - object.centre - object.velocity * periods;
+    };
+    const auto rank = [&](const Object& o) {
+      return std::tuple(apart(o).squaredNorm(), o.centre.x(), o.centre.y(), o.centre.z(),
+                        o.velocity.x(), o.velocity.y(), o.velocity.z(), o.steps);
+    };
+    const Object* nearest = nullptr;
+    for (const Object& object : last_)
+      if (apart(object).squaredNorm() <= squared(limit) && period_s() * periods <= 1 &&
+          (nearest == nullptr || rank(object) < rank(*nearest)))
+        nearest = &object;
+    if (nearest != nullptr) {
+      found.velocity = (found.centre - nearest->centre) / periods;
+      found.steps = nearest->steps + 1;
+    }
+    return found;
+  }
+
+  /// Rounded down to 1/256 of a voxel.
+  static Eigen::Vector3d centre_of(const SetOf& voxels) {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (const Voxel& v : voxels) sum += Eigen::Vector3d(v.x, v.y, v.z);
+    return (sum * 256 / static_cast<double>(voxels.size())).array().floor() / 256;
   }
 
   bool has_size_of_object(const std::vector<Voxel>& members) const {
@@ -275,6 +348,7 @@ class PlusTwin final : public Method {
   hmm_mos_plus::Config c_;
   MapOf<Cell> map_;
   std::deque<Scan> held_;
+  std::vector<Object> last_;
   std::vector<std::int64_t> stamps_ns_;
   int k_ = -1, tick_ = -1, ticks_passed_ = 1;
 };

@@ -49,6 +49,7 @@ class Mapping {
 
   /// Are there once a scan has entered, k being its index.
   std::uint32_t k() const { return static_cast<std::uint32_t>(order_.pushed() - 1); }
+  Tick tick() const { return clock_.of(k()); }
   VoxelMap& map() { return *map_; }
   const VoxelGrid& grid() const { return *grid_; }
   ThreadPool& pool() { return pool_; }

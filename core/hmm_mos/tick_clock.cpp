@@ -36,21 +36,24 @@ TickClock::TickClock(std::span<const std::int64_t> stamps_ns) {
   const double measured = period_ns / kTick_ns;
   const double ticks_per_period = measured >= 0.8 && measured <= 1.25 ? 1.0 : measured;
   double periods = 0, last_tick = 0;
-  ticks_.push_back({});
+  const double period_s = ticks_per_period * kSeconds;
+  ticks_.push_back({.period_s = period_s});
   for (const double distance_ns : apart_ns) {
-    periods += std::clamp(std::round(distance_ns / period_ns), 1.0, kLongestGapPeriods);
+    const double passed = std::clamp(std::round(distance_ns / period_ns), 1.0, kLongestGapPeriods);
+    periods += passed;
     const double tick = std::floor(periods * ticks_per_period);
     const auto steps = static_cast<std::uint32_t>(std::min(tick - last_tick, 1e9));
-    ticks_.push_back({ticks_.back().at + steps, steps});
+    ticks_.push_back(
+        {ticks_.back().at + steps, steps, static_cast<std::uint32_t>(passed), period_s});
     last_tick = tick;
   }
 }
 
 Tick TickClock::of(std::uint32_t scan_index) const {
   if (scan_index < ticks_.size()) return ticks_[scan_index];
-  if (ticks_.empty()) return {scan_index, 1};
+  if (ticks_.empty()) return {.at = scan_index};
   const auto behind = scan_index - static_cast<std::uint32_t>(ticks_.size() - 1);
-  return {ticks_.back().at + behind, 1};
+  return {.at = ticks_.back().at + behind};
 }
 
 }  // namespace mosbench::hmm_mos

@@ -9,8 +9,10 @@ namespace mosbench::hmm_mos {
 /// When a scan was measured, in tenths of a second, so that histories of 5 and of 20 Hz are like
 /// those of 10 Hz.
 struct Tick {
-  std::uint32_t at = 0;     ///< since the first scan; wraps around
-  std::uint32_t steps = 1;  ///< since the scan before
+  std::uint32_t at = 0;       ///< since the first scan; wraps around
+  std::uint32_t steps = 1;    ///< since the scan before
+  std::uint32_t periods = 1;  ///< since the scan before, in scans, missing ones counted
+  double period_s = 0.1;      ///< of the scans
 };
 
 /// Gives each scan its tick. The period is the median distance of the stamps, and 0.08 to 0.125 s

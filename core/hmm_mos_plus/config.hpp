@@ -41,6 +41,7 @@ struct Config {
   double max_growth_m = 3.0;
   double max_extent_m = 10.0;
   double max_height_m = 4.5;
+  int min_track_steps = 1;
 };
 
 /// The one list of fields, as config_fields.hpp describes it.
@@ -83,6 +84,10 @@ void visit_fields(AnyConfig& config, Visitor&& visit) {
         "an object is at most so long along x and y of the map");
   visit("max_height_m", config.max_height_m, FieldRange{0.0, 1000.0},
         "an object is at most so high");
+  visit(
+      "min_track_steps", config.min_track_steps, FieldRange{0, 1000},
+      "an object followed over so many scans has seeds where it will be in the next one; 0: none; "
+      "without a delay");
 }
 
 /// Throws std::invalid_argument "<key>: <what is wrong>, <what was expected>" for the first field

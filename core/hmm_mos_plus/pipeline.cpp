@@ -25,16 +25,16 @@ std::vector<float> seed_shares(const VoxelizedScan& scan,
   return scores;
 }
 
-/// Returns why a scan's points move. Seeds that did not arrive departed.
+/// Returns why a scan's points move; `other` is why voxels are seeds that did not arrive.
 std::vector<Reason> reasons_of(const VoxelizedScan& scan, const ScanMasks& arrived,
-                               const ScanMasks& seeds, const Motion& motion) {
+                               const ScanMasks& seeds, Reason other, const Motion& motion) {
   const auto reason_of = [&](std::uint32_t voxel) {
     const std::uint32_t slot = voxel / kBlockVoxels, cell = voxel % kBlockVoxels;
     if (!motion.objects[slot].test(cell)) {
       return motion.feet[slot].test(cell) ? Reason::kFeet : Reason::kNone;
     }
     if (!seeds[slot].test(cell)) return Reason::kGrown;
-    return arrived[slot].test(cell) ? Reason::kArrived : Reason::kDeparted;
+    return arrived[slot].test(cell) ? Reason::kArrived : other;
   };
   std::vector<Reason> reasons;
   for (const std::uint32_t voxel : scan.voxel_of_point) {
@@ -47,12 +47,14 @@ std::vector<Reason> reasons_of(const VoxelizedScan& scan, const ScanMasks& arriv
 
 Pipeline::Pipeline(const Config& config, const RunContext& context)
     : MappedMethod(checked(config).map, context, hmm_mos::VoxelMap::Keeps::kStatesAndHistory),
-      config_(config) {}
+      config_(config),
+      tracks_(config) {}
 
 std::vector<LabelledScan> Pipeline::entered(hmm_mos::ObservedScan& current) {
   HeldScan& held = held_.emplace_back();
   held.result = begun_result(current, mapping().k());
   held.scan = std::move(current.scan);
+  held.tick = mapping().tick();
   const StageRecord record{held.result.stages, context().cpu_times};
   held.classes = timed(record, "arrivals", [&] {
     return classify(held.scan, mapping().map(), mapping().k(), config_, mapping().pool());
@@ -75,15 +77,24 @@ void Pipeline::judge(HeldScan& held) {
   const ScanMasks low = timed(record, "ground", [&] {
     return ground.low_voxels(config_.ground_radius_voxels, config_.ground_layers_voxels);
   });
+  if (predicts()) {
+    const StageClock clock(record, "prediction");
+    tracks_.add_seeds(scan, low, held.tick, held.classes);
+  }
   const Motion motion = timed(
       record, "objects", [&] { return find_motion(scan, held.classes, ground, low, config_); });
+  if (predicts()) {
+    const StageClock clock(record, "prediction");
+    tracks_.follow(scan, motion.components, held.tick);
+  }
   const StageClock clock(record, "labels");
   ScanMasks moving = motion.objects;
   for (std::size_t i = 0; i < moving.size(); ++i) moving[i] = moving[i] | motion.feet[i];
   result.labels = project_labels(scan, moving);
   if (context().scores) {
     result.scores = seed_shares(scan, motion.components);
-    result.reasons = reasons_of(scan, arrived, held.classes.seeds, motion);
+    const Reason other = config_.map.delay_scans > 0 ? Reason::kDeparted : Reason::kPredicted;
+    result.reasons = reasons_of(scan, arrived, held.classes.seeds, other, motion);
   }
   result.threshold = config_.min_seed_share;
   result.judged = mapping().k() > 0;  // the first scan has nothing to have arrived since
@@ -100,7 +111,7 @@ std::vector<LabelledScan> Pipeline::release(std::size_t count) {
 }
 
 std::size_t Pipeline::held_bytes() const {
-  std::size_t bytes = 0;
+  std::size_t bytes = tracks_.memory_bytes();
   for (const HeldScan& held : held_) {
     bytes += held.scan.memory_bytes() + 4 * held.classes.seeds.capacity() * sizeof(BlockMask);
   }

@@ -8,6 +8,7 @@
 #include "core/hmm_mos_plus/arrivals.hpp"
 #include "core/hmm_mos_plus/config.hpp"
 #include "core/hmm_mos_plus/ground.hpp"
+#include "core/hmm_mos_plus/tracks.hpp"
 
 namespace mosbench::hmm_mos_plus {
 
@@ -27,6 +28,7 @@ class Pipeline final : public hmm_mos::MappedMethod {
     VoxelizedScan scan;
     ArrivalClasses classes;
     LabelledScan result;
+    hmm_mos::Tick tick;
   };
 
   std::vector<LabelledScan> entered(hmm_mos::ObservedScan& current) override;
@@ -35,7 +37,10 @@ class Pipeline final : public hmm_mos::MappedMethod {
   void judge(HeldScan& held);
   std::vector<LabelledScan> release(std::size_t count);
 
+  bool predicts() const { return config_.map.delay_scans == 0 && config_.min_track_steps > 0; }
+
   Config config_;
+  Tracks tracks_;              // of the last scan judged, when it predicts
   std::deque<HeldScan> held_;  // the last delay + 1 scans, current one last
 };
 

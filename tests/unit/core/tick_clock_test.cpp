@@ -65,5 +65,17 @@ TEST(TickClock, SurvivesAnyStamps) {
   for (std::uint32_t k = 1; k < 8; ++k) EXPECT_GE(clock.of(k).steps, 0U);
 }
 
+TEST(TickClock, CountsPeriodsOfTheScans) {
+  const std::vector<std::int64_t> stamps_ns = {0, 50'000'000, 100'000'000, 250'000'000,
+                                               300'000'000};
+  const TickClock clock(stamps_ns);
+  std::vector<std::uint32_t> periods;
+  for (std::uint32_t k = 0; k < 6; ++k) periods.push_back(clock.of(k).periods);
+  EXPECT_EQ(periods, (std::vector<std::uint32_t>{1, 1, 1, 3, 1, 1}));
+  EXPECT_DOUBLE_EQ(clock.of(3).period_s, 0.05);
+  EXPECT_DOUBLE_EQ(clock.of(0).period_s, 0.05);
+  EXPECT_DOUBLE_EQ(TickClock({}).of(3).period_s, 0.1);
+}
+
 }  // namespace
 }  // namespace mosbench::hmm_mos

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "core/hmm_mos/tick_clock.hpp"
+#include "core/hmm_mos_plus/arrivals.hpp"
+#include "core/hmm_mos_plus/config.hpp"
+#include "core/hmm_mos_plus/objects.hpp"
+#include "core/hmm_mos_plus/scan_masks.hpp"
+
+namespace mosbench::hmm_mos_plus {
+
+/// What moved in the last scan, followed from scan to scan.
+class Tracks {
+ public:
+  explicit Tracks(const Config& config);
+
+  /// Predicts what was followed over min_track_steps: its voxels of the last scan, moved on by its
+  /// last step, are fresh seeds of the scan where they are occupied, not settled and not low. A
+  /// step below half a voxel along all axes is none.
+  /// `tick` is that of the scan.
+  void add_seeds(const VoxelizedScan& scan, const ScanMasks& low, const hmm_mos::Tick& tick,
+                 ArrivalClasses& classes) const;
+  /// Makes the components that move in the scan those of the last one. Each is the next step of the
+  /// one that comes nearest when moved on, if that is near enough.
+  void follow(const VoxelizedScan& scan, const std::vector<Component>& components,
+              const hmm_mos::Tick& tick);
+  std::size_t memory_bytes() const;
+
+ private:
+  using Vector = std::array<double, 3>;
+
+  /// Lengths in voxels.
+  struct Track {
+    Vector centre{};
+    Vector velocity{};  ///< per period of the scans
+    int steps = 0;      ///< over which it was followed
+    std::vector<Voxel> voxels;
+  };
+
+  /// Null when no track comes near enough.
+  const Track* nearest_to(const Vector& centre, const hmm_mos::Tick& tick) const;
+
+  int min_steps_;
+  double max_error_voxels_s_;
+  std::vector<Track> tracks_;
+};
+
+}  // namespace mosbench::hmm_mos_plus
