@@ -6,7 +6,7 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 export MOSBENCH_WITH_PCL=${MOSBENCH_WITH_PCL:-OFF} MOSBENCH_WITH_ROSBAG=${MOSBENCH_WITH_ROSBAG:-OFF}
 export MOSBENCH_WITH_HDF5=${MOSBENCH_WITH_HDF5:-OFF}
-export MOSBENCH_BUILD_TESTS=OFF MOSBENCH_BUILD_BENCH=OFF
+export MOSBENCH_BUILD_TESTS=OFF MOSBENCH_BUILD_BENCH=OFF MOSBENCH_PRECOMPILED_HEADERS=ON
 scripts/setup.sh
 scripts/build.sh release --target mosbench
 mosbench=build/release/eval/mosbench

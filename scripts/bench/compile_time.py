@@ -49,7 +49,7 @@ def main():
         configure = ["cmake", "-S", str(ROOT), "-B", build, "-G", "Ninja",
                      "-DCMAKE_BUILD_TYPE=Release", "-DMOSBENCH_BUILD_TESTS=OFF",
                      "-DMOSBENCH_BUILD_BENCH=OFF", "-DMOSBENCH_WITH_PCL=OFF",
-                     "-DMOSBENCH_WITH_ROSBAG=OFF", "-DMOSBENCH_WITH_HDF5=OFF",
+                     "-DMOSBENCH_PRECOMPILED_HEADERS=ON", "-DMOSBENCH_WITH_ROSBAG=OFF", "-DMOSBENCH_WITH_HDF5=OFF",
                      f"-DCMAKE_CXX_COMPILER_LAUNCHER={sys.executable};{__file__}", *definitions]
         for command in (configure, ["cmake", "--build", build, "-j1", "--target", options.target]):
             done = subprocess.run(command, env=environment, capture_output=True, text=True)
