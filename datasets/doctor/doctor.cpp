@@ -95,6 +95,7 @@ void check_sequence(const Sequence& sequence, const std::filesystem::path& folde
                     bool simulated, Checkup& checkup) {
   SequenceCheckup& part = checkup.sequences.emplace_back(described(sequence));
   collect(checkup.symptoms, folder, [&] { return check_content(sequence, kind, part); });
+  append(checkup.symptoms, check_stamps(sequence, part));
   collect(checkup.symptoms, folder, [&] { return check_poses(sequence, folder, part); });
   collect(checkup.symptoms, folder, [&] { return check_labels_by_scans(sequence, part); });
   if (!simulated) append(checkup.symptoms, check_published(sequence, kind, folder, part));
@@ -120,6 +121,18 @@ class WatchedSequence : public SequenceAround {
   const std::function<void()>& at_each_scan_;
 };
 
+/// Opens the data set and checks it; `folders` are those of the sequences in the options.
+void check_opened(const std::filesystem::path& path, const OpenOptions& options,
+                  const std::vector<SequenceFolder>& folders,
+                  const std::function<void()>& at_each_scan, Checkup& checkup) {
+  Dataset dataset = open_dataset(path, options);
+  const bool simulated = simulated_origin(path).has_value();
+  for (std::size_t i = 0; i < dataset.sequences.size(); ++i) {
+    const WatchedSequence sequence(std::move(dataset.sequences[i]), at_each_scan);
+    check_sequence(sequence, folders[i].folder, dataset.kind, simulated, checkup);
+  }
+}
+
 /// Checks what needs no poses.
 void check_without_poses(const std::filesystem::path& path, OpenOptions options,
                          const std::vector<SequenceFolder>& folders,
@@ -132,7 +145,29 @@ void check_without_poses(const std::filesystem::path& path, OpenOptions options,
     part.has_poses = false;
     collect(checkup.symptoms, folders[i].folder,
             [&] { return check_content(sequence, dataset.kind, part); });
+    append(checkup.symptoms, check_stamps(sequence, part));
   }
+}
+
+/// Checks each sequence for itself, of those without poses what needs none.
+void check_one_by_one(const std::filesystem::path& path, OpenOptions options,
+                      const std::vector<SequenceFolder>& folders,
+                      const std::function<void()>& at_each_scan, Checkup& checkup) {
+  std::vector<Symptom> missing;
+  for (const SequenceFolder& folder : folders) {
+    options.sequences = {folder.name};
+    collect(checkup.symptoms, path, [&] {
+      try {
+        check_opened(path, options, {folder}, at_each_scan, checkup);
+      } catch (const MissingPoses& error) {
+        missing.push_back(symptom_of(error, path));
+        check_without_poses(path, options, {folder}, at_each_scan, checkup);
+      }
+      return std::vector<Symptom>();
+    });
+  }
+  checkup.lacks_poses = !missing.empty() && !checkup.has(Severity::kError);
+  append(checkup.symptoms, std::move(missing));
 }
 
 }  // namespace
@@ -208,19 +243,9 @@ Checkup check_up(const std::filesystem::path& path, const OpenOptions& options,
       collect(checkup.symptoms, folder.folder,
               [&] { return check_folder(folder.folder, folder.name); });
     }
-    Dataset dataset = open_dataset(path, options);
-    const bool simulated = simulated_origin(path).has_value();
-    for (std::size_t i = 0; i < dataset.sequences.size(); ++i) {
-      const WatchedSequence sequence(std::move(dataset.sequences[i]), at_each_scan);
-      check_sequence(sequence, folders[i].folder, dataset.kind, simulated, checkup);
-    }
-  } catch (const MissingPoses& error) {
-    collect(checkup.symptoms, path, [&] {
-      check_without_poses(path, options, folders, at_each_scan, checkup);
-      return std::vector<Symptom>();
-    });
-    checkup.lacks_poses = !checkup.has(Severity::kError);
-    checkup.symptoms.push_back(symptom_of(error, path));
+    check_opened(path, options, folders, at_each_scan, checkup);
+  } catch (const MissingPoses&) {
+    check_one_by_one(path, options, folders, at_each_scan, checkup);
   } catch (const DataError& error) {
     checkup.symptoms.push_back(symptom_of(error, path));
   }

@@ -65,9 +65,12 @@ Checkup check_up(
 /// scan, missing labels, files of odd sizes.
 std::vector<Symptom> check_folder(const std::filesystem::path& folder, const std::string& name);
 
-/// Checks points, labels and stamps of some of the scans, and fills in `checkup`.
+/// Checks points and labels of some of the scans, and fills in `checkup`.
 std::vector<Symptom> check_content(const Sequence& sequence, DatasetKind kind,
                                    SequenceCheckup& checkup);
+
+/// Checks the stamps of all scans: their order, unit and gaps; fills in the measures of `checkup`.
+std::vector<Symptom> check_stamps(const Sequence& sequence, SequenceCheckup& checkup);
 
 /// Checks the poses by the overlap of scans, and fills in `checkup`.
 std::vector<Symptom> check_poses(const Sequence& sequence, const std::filesystem::path& folder,

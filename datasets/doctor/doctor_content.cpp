@@ -32,10 +32,6 @@ constexpr double kMostNear = 0.99;
 /// Share of zeros between two returns above which they were zeroed: a sensor loses few single
 /// returns (up to 0.05), while whole regions have none.
 constexpr double kMostLostBetween = 0.1;
-/// Seconds between scans; less and more come from another unit.
-constexpr double kShortestStepS = 0.01, kLongestStepS = 10.0;
-/// A step in time so many times longer than usual is a gap, not a lost scan or two.
-constexpr double kGapSteps = 10.0;
 /// Share of the flat surfaces around the sensor that may be above it, unless it hangs upside down.
 constexpr double kMostAbove = 0.8;
 /// Single scans are upside down in which more are above it, of at least this many, while as many
@@ -84,8 +80,6 @@ class ContentCheck {
     check_empty();
     check_returns();
     check_ids();
-    check_stamps();
-    check_gaps();
     check_frozen();
     return std::move(symptoms_);
   }
@@ -299,51 +293,6 @@ class ContentCheck {
     return fmt::format(
         "{}{}", fmt::join(ids.begin(), std::next(ids.begin(), std::min(count, kShown)), ", "),
         count > kShown ? ", ..." : "");
-  }
-
-  void check_stamps() {
-    std::size_t backward = 0;
-    std::string first;
-    for (std::size_t i = 1; i < sequence_.size(); ++i) {
-      const auto before = sequence_.stamp_ns(i - 1);
-      const auto after = sequence_.stamp_ns(i);
-      if (!before || !after || *before < *after) continue;
-      if (backward++ == 0) first = sequence_.stem(i);
-    }
-    if (backward == 0) return;
-    warn(
-        fmt::format("{} stamps are not later than the one before, first that of scan {}; expected "
-                    "them in order",
-                    backward, first));
-  }
-
-  /// Checks the time from scan to scan.
-  void check_gaps() {
-    std::vector<double> steps_s;
-    std::vector<std::size_t> scans;
-    for (std::size_t i = 1; i < sequence_.size(); ++i) {
-      const auto before = sequence_.stamp_ns(i - 1);
-      const auto after = sequence_.stamp_ns(i);
-      if (!before || !after || *after <= *before) continue;
-      steps_s.push_back(1e-9 * static_cast<double>(*after - *before));
-      scans.push_back(i);
-    }
-    if (steps_s.empty()) return;
-    const double usual_s = measure("step_s", median(steps_s));
-    if (usual_s < kShortestStepS || usual_s > kLongestStepS) {
-      warn(
-          fmt::format("stamps are {:g} s apart (median); expected seconds, about 0.1 from scan to "
-                      "scan",
-                      usual_s));
-      return;
-    }
-    const auto longest = std::ranges::max_element(steps_s);
-    if (measure("gap_steps", *longest / usual_s) <= kGapSteps) return;
-    warn(
-        fmt::format("scan {} comes {:.2f} s after the one before it, others {:.2f} s; expected no "
-                    "gap in time",
-                    sequence_.stem(scans[static_cast<std::size_t>(longest - steps_s.begin())]),
-                    *longest, usual_s));
   }
 
   /// Compares scans of the same size and the same bytes at both ends as a whole.

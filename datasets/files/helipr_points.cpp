@@ -142,6 +142,20 @@ std::string format_helipr_ouster(const std::vector<Point>& points) {
   return std::move(sink).bytes();
 }
 
+std::string format_helipr_aeva(const std::vector<Point>& points,
+                               const std::vector<float>& radial_velocity_m_s,
+                               std::int64_t stamp_ns) {
+  ByteSink sink;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    sink.put(points[i]);
+    sink.put(radial_velocity_m_s[i]);
+    sink.put(std::int32_t{0});
+    sink.put(std::uint8_t{0});
+    if (stamp_ns > kLastWithout_ns) sink.put(points[i].intensity);
+  }
+  return std::move(sink).bytes();
+}
+
 std::vector<HeliprPose> parse_helipr_poses(std::string_view text,
                                            const std::filesystem::path& file) {
   constexpr std::size_t kNumbers = 8;

@@ -41,6 +41,11 @@ HeliprScan parse_helipr_scan(std::string_view bytes, HeliprSensor sensor, std::i
 
 /// Returns points as an Ouster stores them, all at the stamp.
 std::string format_helipr_ouster(const std::vector<Point>& points);
+/// Returns points as an Aeva stores them at that time, all at the stamp; the intensity is also the
+/// reflectivity. As many velocities as points.
+std::string format_helipr_aeva(const std::vector<Point>& points,
+                               const std::vector<float>& radial_velocity_m_s,
+                               std::int64_t stamp_ns);
 
 /// The sensor's pose at a stamp.
 struct HeliprPose {

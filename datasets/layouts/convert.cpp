@@ -13,6 +13,7 @@
 #include "datasets/files/folder_lock.hpp"
 #include "datasets/layouts/helimos_layout.hpp"
 #include "datasets/layouts/helipr_writer.hpp"
+#include "datasets/layouts/kitti_drive_writer.hpp"
 #include "datasets/layouts/layout.hpp"
 #include "datasets/layouts/nuscenes_writer.hpp"
 #include "datasets/layouts/simulated_origin.hpp"
@@ -60,9 +61,17 @@ std::set<fs::path> expected_files(const Dataset& dataset, const Layout& layout,
     }
     if (layout.writer->one_file) files.insert({folders[i], pose_origin_file(folders[i])});
     for (const fs::path& file : nuscenes_table_files()) files.insert(folders[i] / file);
-    for (const char* last : {kNuscenesLastFile, kHeliprLastFile}) {
-      files.insert(folders[i] / last);
-      files.insert((folders[i] / last).parent_path() / kPoseOriginFile);
+    for (const auto& names : {kitti_raw_files(dataset.sequences[i]->size()),
+                              kitti_tracking_files(dataset.sequences[i]->size())}) {
+      for (const fs::path& file : names) files.insert((folders[i] / file).lexically_normal());
+    }
+    std::vector<fs::path> pose_files = helipr_pose_files();
+    for (const char* last : {kNuscenesLastFile, kKittiRawLastFile, kKittiTrackingLastFile}) {
+      pose_files.emplace_back(last);
+    }
+    for (const fs::path& file : pose_files) {
+      files.insert(folders[i] / file);
+      files.insert((folders[i] / file).parent_path() / kPoseOriginFile);
     }
     for (const char* split : {"train.txt", "val.txt", "test.txt"}) {
       files.insert(folders[i].parent_path() / split);
@@ -72,7 +81,7 @@ std::set<fs::path> expected_files(const Dataset& dataset, const Layout& layout,
       files.insert(folders[i] / "velodyne" / (sequence.stem(k) + ".bin"));
       files.insert(folders[i] / "labels" / (sequence.stem(k) + ".label"));
       const std::int64_t stamp_ns = stamp_or_period_ns(k, sequence.stamp_ns(k));
-      files.insert(folders[i] / helipr_scan_file(stamp_ns));
+      for (const fs::path& file : helipr_scan_files(stamp_ns)) files.insert(folders[i] / file);
       for (const fs::path& file : nuscenes_scan_files(sequence.stem(k))) {
         files.insert(folders[i] / file);
       }
@@ -85,7 +94,7 @@ std::set<fs::path> expected_files(const Dataset& dataset, const Layout& layout,
 fs::path pose_file_of(const LayoutWriter& writer, const fs::path& folder,
                       const WriteOptions& writing) {
   if (writer.one_file) return folder;
-  return folder / (writing.bag == BagKind::kNone ? writer.last_file : last_file_of(writing));
+  return folder / writer.last_file(writing);
 }
 
 /// Says what is converted to what.
@@ -141,6 +150,12 @@ struct LostTruth {
                       "labelled, become static: layout {} knows static and moving alone",
                       unlabelled_points, layout.name)};
     }
+    if (keeps == KeptTruth::kInView && labelled_scans > 0) {
+      return {
+          fmt::format("points beyond the view of camera 2 lose their labels: layout {} has none "
+                      "there",
+                      layout.name)};
+    }
     if (keeps == KeptTruth::kNone && labelled_scans > 0) {
       return {fmt::format("the labels of {} scans are left out: layout {} has none", labelled_scans,
                           layout.name)};
@@ -186,6 +201,7 @@ std::vector<std::string> convert(
       const fs::path folder = options.out / folders[i];
       WriteOptions writing = options.writing;
       writing.scans = sequence.size();
+      writing.radial_velocities = sequence.recording().has_radial_velocities;
       const fs::path pose_file = pose_file_of(*layout.writer, folder, writing);
       // Finished by a conversion that was killed.
       if (is_there(pose_file) && is_there(pose_origin_file(pose_file))) {

@@ -210,8 +210,10 @@ Dataset open_dataset(const std::filesystem::path& path, const OpenOptions& optio
   dataset.root = path;
   check_pose_file(options.reading, folders);
   if (options.reading.moving_speed_m_s && !layout.truth_by_speed) {
-    throw UsageError("--moving-speed-m-s: the truth of " + std::string(layout.name) +
-                     " is no speed, expected a data set of scene flow, as opensceneflow");
+    throw UsageError(
+        "--moving-speed-m-s: the truth of " + std::string(layout.name) +
+        " is no speed, expected a data set of scene flow, as opensceneflow, or of boxes, as "
+        "kitti-raw");
   }
   for (const SequenceFolder& folder : folders) {
     const ReadingOptions reading = reading_of(folder, options.reading);

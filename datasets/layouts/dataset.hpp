@@ -24,6 +24,8 @@ enum class DatasetKind {
   kOpenSceneFlow,
   kNuscenes,
   kHelipr,
+  kKittiRaw,
+  kKittiTracking,
   kRecording  ///< a bag, a scan, or a folder of either, of no published set
 };
 
@@ -32,8 +34,6 @@ std::string_view to_string(DatasetKind kind);
 std::optional<DatasetKind> dataset_kind_from_string(std::string_view name);
 /// Returns "doals, sipailou, ...".
 std::string dataset_kind_names();
-/// Returns whether `simulate` and `convert` write the layout.
-bool is_written(DatasetKind kind);
 
 /// Part of a sequence: the scans with these stems, or all of them.
 struct SplitPart {
@@ -81,11 +81,12 @@ std::vector<SequenceFolder> find_sequences(const std::filesystem::path& path,
 /// kept. A kind that is not given is recognised, in this order: indices.csv or sequence_N folders
 /// (doals); folders named after HeLiMOS's sensors; velodyne_poses_kitti.txt (apollo); .h5 files
 /// (opensceneflow); pcd/ next to gt_poses.txt (moe) or gt_cloud.pcd (kth); tables of
-/// v1.0-* (nuscenes); LiDAR/ with its sensors (helipr); "sipailou" or "M-detector" in a folder name
-/// of the path; folders as those of semantickitti; any bags or scans (recording). A remark says so.
-/// Throws DataError when nothing usable is there, UsageError for a sequence name that does not
-/// exist or a pose file given for several sequences. For poses in a folder each sequence takes
-/// NAME.txt, NAME.tum or NAME/poses.txt.
+/// v1.0-* (nuscenes); LiDAR/ with its sensors (helipr); velodyne_points/data (kitti-raw);
+/// velodyne/ with oxts/ and calib/ beside it (kitti-tracking); "sipailou" or "M-detector" in a
+/// folder name of the path; folders as those of semantickitti; any bags or scans (recording). A
+/// remark says so. Throws DataError when nothing usable is there, UsageError for a sequence name
+/// that does not exist or a pose file given for several sequences. For poses in a folder each
+/// sequence takes NAME.txt, NAME.tum or NAME/poses.txt.
 Dataset open_dataset(const std::filesystem::path& path, const OpenOptions& options);
 
 }  // namespace mosbench

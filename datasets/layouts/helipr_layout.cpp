@@ -79,7 +79,7 @@ const Layout& helipr_layout() {
       .recognise = recognise_helipr,
       .writer = LayoutWriter{.open = write_as_helipr,
                              .folder = helipr_folder,
-                             .last_file = kHeliprLastFile,
+                             .last_file = helipr_last_file,
                              .keeps = KeptTruth::kNone}};
   return row;
 }

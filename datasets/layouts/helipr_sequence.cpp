@@ -31,6 +31,7 @@ HeliprSequence::HeliprSequence(std::string name, const std::filesystem::path& fo
   Recording& recording = mutable_recording();
   recording.name = SequenceName(std::move(name), folder);
   recording.reading = {{"scan_files", fmt::format(".bin of {}, packed", to_string(sensor_))}};
+  recording.has_radial_velocities = sensor_ == HeliprSensor::kAeva;
   if (gives_times_) recording.reading.emplace_back("point_times", "of each point");
   recording.remarks = {"no truth: HeLiMOS labels part of KAIST05"};
   list_scans(folder);

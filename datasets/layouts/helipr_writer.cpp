@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <array>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -13,10 +15,23 @@
 namespace mosbench {
 namespace {
 
+constexpr std::array kWritten = {HeliprSensor::kOuster, HeliprSensor::kAeva};
+
+HeliprSensor sensor_of(const WriteOptions& options) {
+  return options.radial_velocities ? HeliprSensor::kAeva : HeliprSensor::kOuster;
+}
+
+std::filesystem::path scan_file(HeliprSensor sensor, std::int64_t stamp_ns) {
+  return std::filesystem::path("LiDAR") / to_string(sensor) / fmt::format("{}.bin", stamp_ns);
+}
+
 class HeliprWriter : public SequenceWriter {
  public:
   HeliprWriter(std::filesystem::path folder, const WriteOptions& options)
-      : folder_(std::move(folder)), poses_(options.scans) {}
+      : folder_(std::move(folder)),
+        sensor_(sensor_of(options)),
+        last_file_(helipr_last_file(options)),
+        poses_(options.scans) {}
 
   void write(std::size_t scan_index, const Frame& frame) override {
     const std::int64_t stamp_ns = stamp_or_period_ns(scan_index, frame.stamp_ns);
@@ -24,7 +39,7 @@ class HeliprWriter : public SequenceWriter {
       throw DataError(folder_, "scan " + frame.stem + " has a stamp below 0", "ns since 1970");
     }
     poses_[scan_index] = {stamp_ns, frame.map_from_sensor};
-    write_file_atomic(folder_ / helipr_scan_file(stamp_ns), format_helipr_ouster(frame.points));
+    write_file_atomic(folder_ / scan_file(sensor_, stamp_ns), packed(frame, stamp_ns));
   }
 
   void finish() override {
@@ -37,18 +52,42 @@ class HeliprWriter : public SequenceWriter {
                       "one after the other, as HeLiPR names scans by them");
     }
     sync_file_system_of(folder_);
-    commit_file(folder_ / kHeliprLastFile, format_helipr_poses(poses_));
+    commit_file(folder_ / last_file_, format_helipr_poses(poses_));
   }
 
  private:
+  std::string packed(const Frame& frame, std::int64_t stamp_ns) const {
+    if (sensor_ != HeliprSensor::kAeva) return format_helipr_ouster(frame.points);
+    if (frame.radial_velocity_m_s.size() != frame.points.size()) {
+      throw DataError(folder_,
+                      fmt::format("scan {} has {} radial velocities", frame.stem,
+                                  frame.radial_velocity_m_s.size()),
+                      fmt::format("one for each of its {} points", frame.points.size()));
+    }
+    return format_helipr_aeva(frame.points, frame.radial_velocity_m_s, stamp_ns);
+  }
+
   std::filesystem::path folder_;
+  HeliprSensor sensor_;
+  const char* last_file_;
   std::vector<HeliprPose> poses_;
 };
 
 }  // namespace
 
-std::filesystem::path helipr_scan_file(std::int64_t stamp_ns) {
-  return std::filesystem::path("LiDAR/Ouster") / fmt::format("{}.bin", stamp_ns);
+const char* helipr_last_file(const WriteOptions& options) {
+  return options.radial_velocities ? "LiDAR_GT/Aeva_gt.txt" : "LiDAR_GT/Ouster_gt.txt";
+}
+
+std::vector<std::filesystem::path> helipr_pose_files() {
+  return {helipr_last_file({.radial_velocities = false}),
+          helipr_last_file({.radial_velocities = true})};
+}
+
+std::vector<std::filesystem::path> helipr_scan_files(std::int64_t stamp_ns) {
+  std::vector<std::filesystem::path> files;
+  for (const HeliprSensor sensor : kWritten) files.push_back(scan_file(sensor, stamp_ns));
+  return files;
 }
 
 std::unique_ptr<SequenceWriter> write_as_helipr(const std::filesystem::path& folder,

@@ -3,19 +3,23 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <vector>
 
 #include "datasets/layouts/sequence_writer.hpp"
 
 namespace mosbench {
 
-/// The file of the poses, which is written last.
-inline constexpr const char* kHeliprLastFile = "LiDAR_GT/Ouster_gt.txt";
+/// Returns the file of the poses, which is written last.
+const char* helipr_last_file(const WriteOptions& options);
 
-/// Returns the place of a scan with this stamp.
-std::filesystem::path helipr_scan_file(std::int64_t stamp_ns);
+/// Returns the files of poses that a folder of `write_as_helipr` may hold.
+std::vector<std::filesystem::path> helipr_pose_files();
+/// Returns the places that a scan with this stamp may have.
+std::vector<std::filesystem::path> helipr_scan_files(std::int64_t stamp_ns);
 
-/// Writes the scans as those of HeLiPR's Ouster, which loses no bit of a point; without truth, for
-/// which HeLiPR has no place. Scans without stamps get ones 0.1 s apart.
+/// Writes the scans as those of HeLiPR's Aeva where they have radial velocities, else of its
+/// Ouster: neither loses a bit of a point. Without truth, for which HeLiPR has no place. Scans
+/// without stamps get ones 0.1 s apart.
 std::unique_ptr<SequenceWriter> write_as_helipr(const std::filesystem::path& folder,
                                                 const WriteOptions& options);
 

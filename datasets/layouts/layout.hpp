@@ -39,8 +39,9 @@ struct LayoutContent {
   std::vector<PublishedCount> published = {};
 };
 
-/// What a layout keeps of the truth of a point: its id, whether it moves, or nothing.
-enum class KeptTruth : std::uint8_t { kId, kMoving, kNone };
+/// What a layout keeps of the truth of a point: its id, whether it moves, that in a camera's view
+/// and whether it is labelled, or nothing.
+enum class KeptTruth : std::uint8_t { kId, kMoving, kInView, kNone };
 
 /// How a data set is written by `simulate` and `convert`.
 struct LayoutWriter {
@@ -50,10 +51,16 @@ struct LayoutWriter {
   /// 0.
   std::filesystem::path (*folder)(const std::string& name, std::size_t position);
   bool one_file = false;  ///< `folder` is a file, which holds all of the sequence
-  /// The file in a sequence's folder that appears when all of it is on the disk, unless a bag is
-  /// written.
-  const char* last_file = "poses.txt";
+  /// Returns the file in a sequence's folder that appears when all of it is on the disk.
+  const char* (*last_file)(const WriteOptions& options) = last_file_of;
   KeptTruth keeps = KeptTruth::kId;
+};
+
+/// A data set that comes in the folders of another.
+struct RelatedSet {
+  std::string_view title, content;
+  std::string_view published;  ///< where its authors publish it
+  std::string_view reading;    ///< what to give mosbench for its rules
 };
 
 /// All facts about one data set. Adding one: a value of DatasetKind, a file with its row, and the
@@ -85,8 +92,9 @@ struct Layout {
   Evidence evidence;
   /// Returns why `path` looks like this data set, or nothing if it does not.
   std::optional<std::string> (*recognise)(const std::filesystem::path& path);
-  std::optional<LayoutWriter> writer;  ///< nothing for a data set that is only read
-  bool truth_by_speed = false;         ///< ReadingOptions::moving_speed_m_s is for it
+  std::optional<LayoutWriter> writer;    ///< nothing for a data set that is only read
+  bool truth_by_speed = false;           ///< ReadingOptions::moving_speed_m_s is for it
+  std::vector<RelatedSet> related = {};  ///< that the same reader reads
 };
 
 const Layout& doals_layout();
@@ -100,6 +108,8 @@ const Layout& mdetector_layout();
 const Layout& opensceneflow_layout();
 const Layout& nuscenes_layout();
 const Layout& helipr_layout();
+const Layout& kitti_raw_layout();
+const Layout& kitti_tracking_layout();
 const Layout& recording_layout();
 
 /// Returns all rows, in the order in which they are listed.

@@ -7,9 +7,10 @@ namespace mosbench {
 
 std::span<const Layout* const> layouts() {
   static const std::array all = {
-      &doals_layout(),         &sipailou_layout(), &helimos_layout(), &semantickitti_layout(),
-      &apollo_layout(),        &moe_layout(),      &kth_layout(),     &mdetector_layout(),
-      &opensceneflow_layout(), &nuscenes_layout(), &helipr_layout(),  &recording_layout()};
+      &doals_layout(),          &sipailou_layout(), &helimos_layout(), &semantickitti_layout(),
+      &apollo_layout(),         &moe_layout(),      &kth_layout(),     &mdetector_layout(),
+      &opensceneflow_layout(),  &nuscenes_layout(), &helipr_layout(),  &kitti_raw_layout(),
+      &kitti_tracking_layout(), &recording_layout()};
   return all;
 }
 
@@ -24,8 +25,6 @@ std::string dataset_kind_names() {
   for (const Layout* row : layouts()) names += (names.empty() ? "" : ", ") + std::string(row->name);
   return names;
 }
-
-bool is_written(DatasetKind kind) { return layout_of(kind).writer.has_value(); }
 
 std::optional<DatasetKind> dataset_kind_from_string(std::string_view name) {
   for (const Layout* row : layouts()) {

@@ -184,7 +184,7 @@ const Layout& nuscenes_layout() {
       .recognise = recognise_nuscenes,
       .writer = LayoutWriter{.open = write_as_nuscenes,
                              .folder = nuscenes_folder,
-                             .last_file = kNuscenesLastFile,
+                             .last_file = [](const WriteOptions&) { return kNuscenesLastFile; },
                              .keeps = KeptTruth::kMoving}};
   return row;
 }

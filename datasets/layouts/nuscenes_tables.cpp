@@ -4,11 +4,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
 #include <map>
 #include <mutex>
-#include <numeric>
 #include <optional>
 #include <unordered_map>
 #include <unordered_set>
@@ -19,6 +17,7 @@
 #include "datasets/files/nuscenes_table.hpp"
 #include "datasets/files/quaternion.hpp"
 #include "datasets/files/text.hpp"
+#include "datasets/layouts/points_in_boxes.hpp"
 
 namespace mosbench {
 namespace {
@@ -178,13 +177,22 @@ class TableReader {
     });
   }
 
+  /// Returns the boxes of a key frame; the last one of a sample takes them.
+  std::vector<NuscenesBox> boxes_of(std::size_t sample) {
+    std::vector<NuscenesBox>& boxes = boxes_[sample];
+    boxes.shrink_to_fit();
+    return --key_frames_[sample] == 0 ? std::move(boxes) : boxes;
+  }
+
   NuscenesTables tables() && {
+    key_frames_.resize(boxes_.size());
+    for (const LidarRow& row : rows_) key_frames_[row.sample] += row.scan.is_key_frame ? 1U : 0U;
     for (LidarRow& row : rows_) {
       if (!row.has_pose) {
         throw DataError(folder_ / "ego_pose.json", "has no pose of " + row.scan.file.string(),
                         "the one that sample_data.json names");
       }
-      if (row.scan.is_key_frame) row.scan.moving = boxes_[row.sample];
+      if (row.scan.is_key_frame) row.scan.moving = boxes_of(row.sample);
       scenes_[scene_of_sample_[row.sample]].scans.push_back(std::move(row.scan));
     }
     for (NuscenesScene& scene : scenes_) {
@@ -208,6 +216,7 @@ class TableReader {
   std::vector<LidarRow> rows_;
   std::unordered_multimap<std::string, std::size_t> rows_of_pose_;
   std::vector<std::vector<NuscenesBox>> boxes_;  ///< by sample
+  std::vector<std::size_t> key_frames_;          ///< by sample
   bool has_annotations_ = false;
 };
 
@@ -222,34 +231,6 @@ std::string state_of_tables(const fs::path& folder) {
   }
   return state;
 }
-
-/// Points in the order of x, to find those near a box without looking at all.
-class PointsByX {
- public:
-  struct XOf {
-    std::span<const Point> points;
-    float operator()(std::uint32_t i) const { return points[i].x; }
-  };
-
-  explicit PointsByX(std::span<const Point> points) : points_(points) {
-    for (std::uint32_t i = 0; i < points.size(); ++i) {
-      if (!std::isnan(points[i].x)) order_.push_back(i);
-    }
-    std::ranges::sort(order_, {}, XOf{points_});
-  }
-
-  template <typename Take>
-  void for_between(float low, float high, Take&& take) const {
-    for (auto i = std::ranges::lower_bound(order_, low, {}, XOf{points_}); i != order_.end(); ++i) {
-      if (points_[*i].x > high) break;
-      take(*i);
-    }
-  }
-
- private:
-  std::span<const Point> points_;
-  std::vector<std::uint32_t> order_;
-};
 
 }  // namespace
 
@@ -287,19 +268,9 @@ std::vector<std::uint32_t> nuscenes_truth(std::span<const Point> points,
                                           std::span<const NuscenesBox> moving) {
   std::vector<std::uint32_t> truth(points.size(), kStaticLabel);
   if (moving.empty()) return truth;
-  const PointsByX by_x(points);
+  const PointsInBoxes boxes(points);
   for (const NuscenesBox& box : moving) {
-    const Pose box_from_sensor = box.map_from_box.inverse() * map_from_sensor;
-    const double x_m = box_from_sensor.inverse().translation().x();
-    // One float32 more on either side: its rounding must lose no point.
-    const double reach_m = box.half_size_m.norm() + 1e-5 * (1.0 + std::abs(x_m));
-    const auto low = static_cast<float>(x_m - reach_m);
-    const auto high = static_cast<float>(x_m + reach_m);
-    by_x.for_between(low, high, [&](std::uint32_t i) {
-      const Eigen::Vector3d p =
-          box_from_sensor * Eigen::Vector3d(points[i].x, points[i].y, points[i].z);
-      if ((p.cwiseAbs().array() <= box.half_size_m.array()).all()) truth[i] = kMovingLabel;
-    });
+    boxes.label(box.map_from_box.inverse() * map_from_sensor, box.half_size_m, kMovingLabel, truth);
   }
   return truth;
 }

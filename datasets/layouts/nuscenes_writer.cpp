@@ -3,14 +3,18 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
-#include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <system_error>
 
 #include "datasets/files/byte_cursor.hpp"
 #include "datasets/files/disk_sync.hpp"
 #include "datasets/files/errors.hpp"
 #include "datasets/files/files.hpp"
+#include "datasets/files/partial_file.hpp"
+#include "datasets/files/scan_file.hpp"
 #include "datasets/layouts/folder_search.hpp"
 
 namespace mosbench {
@@ -24,6 +28,7 @@ constexpr std::array kNames = {"attribute", "calibrated_sensor", "sample", "samp
                                "scene",     "sample_data",       "sensor", "ego_pose"};
 constexpr const char* kMovingToken = "vehicle.moving";
 constexpr double kBox_m = 2e-5;
+constexpr std::size_t kColumnsWritten = 5;
 
 fs::path scan_file(const std::string& stem, bool is_key_frame) {
   return fs::path(is_key_frame ? "samples" : "sweeps") / "LIDAR_TOP" / (stem + ".pcd.bin");
@@ -57,6 +62,74 @@ std::string five_columns(const std::vector<Point>& points) {
   return std::move(sink).bytes();
 }
 
+/// Returns which points of a scan move; nothing when none does.
+std::vector<bool> moving_points(const Frame& frame) {
+  std::vector<bool> moving;
+  if (!frame.truth || std::ranges::none_of(*frame.truth, is_moving)) return moving;
+  for (const std::uint32_t label : *frame.truth) moving.push_back(is_moving(label));
+  return moving;
+}
+
+/// A table that is written row by row: the annotations of a scene are far more than its scans.
+class TableFile {
+ public:
+  explicit TableFile(fs::path file) : file_(std::move(file)) {
+    checked([&] {
+      fs::create_directories(file_.parent_path());
+      partial_.emplace(file_);
+    });
+  }
+
+  void add(const ordered_json& row) {
+    constexpr std::size_t kFull = 1 << 20;
+    text_ += is_empty_ ? "[\n" : ",\n";
+    is_empty_ = false;
+    text_ += row.dump();
+    if (text_.size() > kFull) flush();
+  }
+
+  void finish() {
+    end();
+    checked([&] { partial_->put_in_place_of(file_); });
+  }
+
+  /// Waits until it is on the disk, too.
+  void commit() {
+    end();
+    checked([&] {
+      partial_->sync();
+      partial_->put_in_place_of(file_);
+    });
+    sync_names_of(file_.parent_path());
+  }
+
+ private:
+  void end() {
+    text_ += is_empty_ ? "[]\n" : "\n]\n";
+    flush();
+  }
+
+  void flush() {
+    checked([&] { partial_->write(text_); });
+    text_.clear();
+  }
+
+  template <typename Call>
+  void checked(Call&& call) const {
+    try {
+      call();
+    } catch (const std::system_error& error) {
+      throw DataError(file_, "cannot be written (" + error.code().message() + ")",
+                      "a writable output folder with free space");
+    }
+  }
+
+  fs::path file_;
+  std::optional<PartialFile> partial_;
+  std::string text_;
+  bool is_empty_ = true;
+};
+
 class NuscenesWriter : public SequenceWriter {
  public:
   NuscenesWriter(fs::path folder, const WriteOptions& options)
@@ -71,22 +144,16 @@ class NuscenesWriter : public SequenceWriter {
                                   : static_cast<std::int64_t>(scan_index) * kPeriod_us;
     row.map_from_sensor = frame.map_from_sensor;
     write_file_atomic(folder_ / scan_file(row.stem, row.is_key_frame), five_columns(frame.points));
-    if (!frame.truth) return;
-    for (std::size_t i = 0; i < frame.points.size(); ++i) {
-      const Point& p = frame.points[i];
-      if (is_moving((*frame.truth)[i])) row.moving.emplace_back(p.x, p.y, p.z);
-    }
+    row.moving = moving_points(frame);
   }
 
   void finish() override {
     expect_rising_stamps();
-    write_table("sensor",
-                ordered_json::array(
-                    {{{"token", "lidar"}, {"channel", "LIDAR_TOP"}, {"modality", "lidar"}}}));
+    write_row("sensor", {{"token", "lidar"}, {"channel", "LIDAR_TOP"}, {"modality", "lidar"}});
     ordered_json mount = row_of_pose("mount", ego_from_sensor());
     mount["sensor_token"] = "lidar";
-    write_table("calibrated_sensor", ordered_json::array({mount}));
-    write_table("attribute", {{{"token", kMovingToken}, {"name", kMovingToken}}});
+    write_row("calibrated_sensor", mount);
+    write_row("attribute", {{"token", kMovingToken}, {"name", kMovingToken}});
     write_samples();
     write_annotations();
     write_scans();
@@ -99,7 +166,7 @@ class NuscenesWriter : public SequenceWriter {
     bool is_key_frame = false;
     std::int64_t stamp_us = 0;
     Pose map_from_sensor = Pose::Identity();
-    std::vector<Eigen::Vector3d> moving;  ///< points, in the sensor's frame
+    std::vector<bool> moving;  ///< of each point; empty when none does
   };
 
   /// nuScenes orders scans by their stamps.
@@ -112,25 +179,33 @@ class NuscenesWriter : public SequenceWriter {
     }
   }
 
-  void write_table(const char* name, const ordered_json& rows) const {
-    write_file_atomic(folder_ / kTables / (std::string(name) + ".json"), rows.dump(0) + "\n");
+  TableFile table(const char* name) const {
+    return TableFile(folder_ / kTables / (std::string(name) + ".json"));
+  }
+
+  /// Writes a table of one row.
+  void write_row(const char* name, const ordered_json& row) const {
+    TableFile rows = table(name);
+    rows.add(row);
+    rows.finish();
   }
 
   bool is_sample(std::size_t k) const { return scans_[k].is_key_frame || k == 0; }
 
   void write_samples() const {
     const std::string scene = token_of(0);
-    ordered_json samples = ordered_json::array();
+    TableFile rows = table("sample");
+    std::size_t samples = 0;
     for (std::size_t k = 0; k < scans_.size(); ++k) {
       if (!is_sample(k)) continue;
-      samples.push_back(
-          {{"token", token_of(k)}, {"timestamp", scans_[k].stamp_us}, {"scene_token", scene}});
+      ++samples;
+      rows.add({{"token", token_of(k)}, {"timestamp", scans_[k].stamp_us}, {"scene_token", scene}});
     }
-    write_table("sample", samples);
-    write_table("scene", {{{"token", scene},
-                           {"name", folder_name(folder_)},
-                           {"nbr_samples", samples.size()},
-                           {"first_sample_token", token_of(0)}}});
+    rows.finish();
+    write_row("scene", {{"token", scene},
+                        {"name", folder_name(folder_)},
+                        {"nbr_samples", samples},
+                        {"first_sample_token", token_of(0)}});
   }
 
   static ordered_json annotation(std::size_t k, const Pose& map_from_box, double size_m) {
@@ -143,50 +218,61 @@ class NuscenesWriter : public SequenceWriter {
 
   /// An object of no size and no attribute in each key frame says that it is annotated.
   void write_annotations() const {
-    ordered_json rows = ordered_json::array();
+    TableFile rows = table("sample_annotation");
     for (std::size_t k = 0; k < scans_.size(); ++k) {
-      const Row& scan = scans_[k];
-      if (!scan.is_key_frame) continue;
-      rows.push_back(annotation(k, scan.map_from_sensor, 0.0));
-      for (const Eigen::Vector3d& point : scan.moving) {
-        Pose map_from_box = Pose::Identity();
-        map_from_box.translation() = scan.map_from_sensor * point;
-        rows.push_back(annotation(k, map_from_box, kBox_m));
-        rows.back()["attribute_tokens"].push_back(kMovingToken);
-      }
+      if (!scans_[k].is_key_frame) continue;
+      rows.add(annotation(k, scans_[k].map_from_sensor, 0.0));
+      if (!scans_[k].moving.empty()) add_moving(k, rows);
     }
-    write_table("sample_annotation", rows);
+    rows.finish();
+  }
+
+  /// Points are read from their file again: those of all scans may not fit in memory.
+  void add_moving(std::size_t k, TableFile& rows) const {
+    const Row& scan = scans_[k];
+    const std::vector<Point> points =
+        read_scan(folder_ / scan_file(scan.stem, true), kColumnsWritten);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (!scan.moving[i]) continue;
+      Pose map_from_box = Pose::Identity();
+      map_from_box.translation() =
+          scan.map_from_sensor * Eigen::Vector3d(points[i].x, points[i].y, points[i].z);
+      ordered_json row = annotation(k, map_from_box, kBox_m);
+      row["attribute_tokens"].push_back(kMovingToken);
+      rows.add(row);
+    }
   }
 
   void write_scans() const {
-    ordered_json rows = ordered_json::array();
+    TableFile rows = table("sample_data");
     std::size_t sample = 0;
     for (std::size_t k = 0; k < scans_.size(); ++k) {
       const Row& scan = scans_[k];
       if (is_sample(k)) sample = k;
-      rows.push_back({{"token", token_of(k)},
-                      {"sample_token", token_of(sample)},
-                      {"ego_pose_token", token_of(k)},
-                      {"calibrated_sensor_token", "mount"},
-                      {"timestamp", scan.stamp_us},
-                      {"fileformat", "pcd"},
-                      {"is_key_frame", scan.is_key_frame},
-                      {"filename", scan_file(scan.stem, scan.is_key_frame).generic_string()},
-                      {"prev", k == 0 ? "" : token_of(k - 1)},
-                      {"next", k + 1 == scans_.size() ? "" : token_of(k + 1)}});
+      rows.add({{"token", token_of(k)},
+                {"sample_token", token_of(sample)},
+                {"ego_pose_token", token_of(k)},
+                {"calibrated_sensor_token", "mount"},
+                {"timestamp", scan.stamp_us},
+                {"fileformat", "pcd"},
+                {"is_key_frame", scan.is_key_frame},
+                {"filename", scan_file(scan.stem, scan.is_key_frame).generic_string()},
+                {"prev", k == 0 ? "" : token_of(k - 1)},
+                {"next", k + 1 == scans_.size() ? "" : token_of(k + 1)}});
     }
-    write_table("sample_data", rows);
+    rows.finish();
   }
 
   void write_poses() const {
-    ordered_json rows = ordered_json::array();
+    sync_file_system_of(folder_);
+    TableFile rows = table("ego_pose");
     const Pose sensor_from_ego = ego_from_sensor().inverse();
     for (std::size_t k = 0; k < scans_.size(); ++k) {
-      rows.push_back(row_of_pose(token_of(k), scans_[k].map_from_sensor * sensor_from_ego));
-      rows.back()["timestamp"] = scans_[k].stamp_us;
+      ordered_json row = row_of_pose(token_of(k), scans_[k].map_from_sensor * sensor_from_ego);
+      row["timestamp"] = scans_[k].stamp_us;
+      rows.add(row);
     }
-    sync_file_system_of(folder_);
-    commit_file(folder_ / kNuscenesLastFile, rows.dump(0) + "\n");
+    rows.commit();
   }
 
   fs::path folder_;

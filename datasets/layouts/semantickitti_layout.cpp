@@ -1,3 +1,6 @@
+#include <algorithm>
+
+#include "datasets/files/scan_file.hpp"
 #include "datasets/layouts/folder_search.hpp"
 #include "datasets/layouts/layout.hpp"
 
@@ -10,12 +13,21 @@ std::vector<Split> semantickitti_splits(const std::vector<SequenceFolder>& folde
   return splits_of_names(
       {{"train", {"00", "01", "02", "03", "04", "05", "06", "07", "09", "10"}},
        {"valid", {"08"}},
-       {"test", {"11", "12", "13", "14", "15", "16", "17", "18", "19", "20", "21"}}},
+       {"test", {"11", "12", "13", "14", "15", "16", "17", "18", "19", "20", "21"}},
+       // Those of KITTI-Road-MOS in MotionSeg3D's semantic-kitti-mos.yaml.
+       {"road-train", {"30", "31", "32", "33", "34", "40"}},
+       {"road-valid", {"35", "36", "37", "38", "39", "41"}}},
       folders);
 }
 
 std::optional<std::string> recognise_semantickitti(const std::filesystem::path& path) {
-  if (list_kitti(path).empty()) return std::nullopt;
+  const std::vector<SequenceFolder> sequences = list_kitti(path);
+  if (sequences.empty()) return std::nullopt;
+  // Folders with a number for a name may hold a bag each.
+  const bool has_scans = std::ranges::any_of(sequences, [](const SequenceFolder& sequence) {
+    return scan_folder_of(sequence.folder).has_value();
+  });
+  if (!has_scans && recording_layout().recognise(path)) return std::nullopt;
   return "it has the layout and nothing of another data set";
 }
 
@@ -41,7 +53,9 @@ const Layout& semantickitti_layout() {
                               {"05", 2761}, {"06", 1101}, {"07", 1101}, {"08", 4071}, {"09", 1591},
                               {"10", 1201}, {"11", 921},  {"12", 1061}, {"13", 3281}, {"14", 631},
                               {"15", 1901}, {"16", 1731}, {"17", 491},  {"18", 1801}, {"19", 4981},
-                              {"20", 831},  {"21", 2721}}},
+                              {"20", 831},  {"21", 2721}, {"30", 297},  {"31", 188},  {"32", 430},
+                              {"33", 430},  {"34", 390},  {"35", 78},   {"36", 420},  {"37", 936},
+                              {"38", 339},  {"39", 279},  {"40", 1170}, {"41", 837}}},
       .expected =
           "sequences/NN or NN with velodyne/, labels/, poses.txt and calib.txt each "
           "(SemanticKITTI), or one such sequence folder",
@@ -50,7 +64,15 @@ const Layout& semantickitti_layout() {
       .splits = semantickitti_splits,
       .evidence = Evidence::kNone,
       .recognise = recognise_semantickitti,
-      .writer = LayoutWriter{write_as_kitti, kitti_folder}};
+      .writer = LayoutWriter{write_as_kitti, kitti_folder},
+      .related = {{"KITTI-Road-MOS, IROS 2022",
+                   "12 of KITTI's raw drives on roads as sequences 30 to 41, 5794 scans, labels 9 "
+                   "and 251",
+                   "github.com/haomo-ai/MotionSeg3D, config/kitti_road_mos.md",
+                   "score --split road-train or road-valid"},
+                  {"KITTI tracking 19, RA-L 2023",
+                   "one sequence of KITTI's tracking benchmark with labels of points",
+                   "github.com/PRBonn/MapMOS", "run or score --protocol mapmos-kitti-tracking"}}};
   return row;
 }
 

@@ -212,6 +212,7 @@ bool is_return(const Point& point) {
 void lose_point(Frame& frame, std::size_t point) {
   frame.points[point] = {0, 0, 0, 0};
   if (frame.truth) (*frame.truth)[point] = 0;
+  if (!frame.radial_velocity_m_s.empty()) frame.radial_velocity_m_s[point] = 0;
 }
 
 void set_range(Point& point, double range_m, double new_range_m) {

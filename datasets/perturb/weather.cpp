@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <optional>
 
@@ -45,6 +46,9 @@ void weaken(Frame& frame, double extinction_per_m, double least,
     } else if (hidden) {
       set_range(point, target_m, before->range_m);
       if (frame.truth) (*frame.truth)[i] = 0;
+      if (!frame.radial_velocity_m_s.empty()) {
+        frame.radial_velocity_m_s[i] = std::numeric_limits<float>::quiet_NaN();
+      }
     }
   }
 }

@@ -10,7 +10,7 @@ constexpr const char* kTimeDefinition = "MSG: builtin_interfaces/Time\nint32 sec
 std::string joined(std::initializer_list<const char*> definitions) {
   std::string text;
   for (const char* definition : definitions) {
-    if (!text.empty()) text += std::string(80, '=') + "\n";
+    if (!text.empty()) text.append(80, '=').push_back('\n');
     text += definition;
   }
   return text;

@@ -35,6 +35,7 @@ struct Recording {
   std::vector<std::string> remarks;
   /// What was read in which convention; two runs on the same files may differ in it.
   ReadingStatement reading;
+  bool has_radial_velocities = false;  ///< whether frames have them
 };
 
 /// Returns whether a stem is that of a scan that was left out.

@@ -25,7 +25,8 @@ struct Frame {
   /// not moved the points by them.
   std::vector<std::int64_t> point_times_ns;
   std::optional<PointMotions> motions;  ///< of data sets of scene flow
-  /// Along each point's ray, away from the sensor, of sensors that measure it; else empty.
+  /// Of the surface relative to the sensor along each point's ray, positive away from the sensor,
+  /// of sensors that measure it; else empty. NaN where it is not known.
   std::vector<float> radial_velocity_m_s;
   std::optional<std::vector<std::uint32_t>> truth;  ///< raw label ids, one per point, when labelled
 };

@@ -11,13 +11,14 @@ namespace {
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kRadPerDeg = kPi / 180.0;
 
-constexpr std::array<std::pair<SensorKind, std::string_view>, 6> kNames = {{
+constexpr std::array<std::pair<SensorKind, std::string_view>, 7> kNames = {{
     {SensorKind::kOs1_64, "os1-64"},
     {SensorKind::kOs2_128, "os2-128"},
     {SensorKind::kVlp16, "vlp-16"},
     {SensorKind::kHdl64e, "hdl-64e"},
     {SensorKind::kAvia, "avia"},
     {SensorKind::kAeva, "aeva"},
+    {SensorKind::kHdl32e, "hdl-32e"},
 }};
 
 // Elevations of the highest and lowest ring, and the horizontal field of view.
@@ -39,6 +40,8 @@ FieldOfView field_of_view(SensorKind kind) {
       return {38.6 * kRadPerDeg, -38.6 * kRadPerDeg, 70.4 * kRadPerDeg};
     case SensorKind::kAeva:
       return {9.6 * kRadPerDeg, -9.6 * kRadPerDeg, 120.0 * kRadPerDeg};
+    case SensorKind::kHdl32e:
+      return {10.67 * kRadPerDeg, -30.67 * kRadPerDeg, 2 * kPi};
   }
   return {};
 }
@@ -151,6 +154,8 @@ SensorModel sensor_model(SensorKind kind) {
               .max_range_m = 150.0,
               .range_noise_m = 0.03,
               .mount_m = {0.5, -0.3, 0.0}};
+    case SensorKind::kHdl32e:
+      return {.kind = kind, .columns = 1084, .rings = 32, .min_range_m = 1.0, .max_range_m = 100.0};
   }
   return {};
 }

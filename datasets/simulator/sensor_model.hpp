@@ -10,7 +10,7 @@
 
 namespace mosbench {
 
-enum class SensorKind : std::uint8_t { kOs1_64, kOs2_128, kVlp16, kHdl64e, kAvia, kAeva };
+enum class SensorKind : std::uint8_t { kOs1_64, kOs2_128, kVlp16, kHdl64e, kAvia, kAeva, kHdl32e };
 
 /// The mounting of a sensor on its carrier and the properties of its returns.
 struct SensorModel {
@@ -32,7 +32,7 @@ std::optional<SensorKind> sensor_kind_from_string(std::string_view name);
 std::vector<std::string_view> sensor_names();
 
 /// Returns the sensor as it is sold: OS1-64 2048 columns, OS2-128 1024, VLP-16 1800, HDL-64E 2000,
-/// Livox Avia 24,000 points, Aeva Aeries II 64 x 800.
+/// Livox Avia 24,000 points, Aeva Aeries II 64 x 800, HDL-32E 1084.
 SensorModel sensor_model(SensorKind kind);
 
 /// Returns unit vectors of all rays of a scan in firing order, slot = column * rings + ring, in the

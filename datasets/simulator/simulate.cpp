@@ -18,13 +18,11 @@
 #include "datasets/layouts/helimos_layout.hpp"
 #include "datasets/layouts/layout.hpp"
 #include "datasets/layouts/simulated_origin.hpp"
-#include "datasets/perturb/perturbation.hpp"
 #include "datasets/sequence/portable_math.hpp"
 #include "datasets/simulator/built_in_scenes.hpp"
 #include "datasets/simulator/scene_json.hpp"
-#include "datasets/simulator/simulated_flow.hpp"
 #include "datasets/simulator/simulated_layouts.hpp"
-#include "datasets/simulator/simulator.hpp"
+#include "datasets/simulator/simulated_sequence.hpp"
 
 namespace mosbench {
 namespace {
@@ -87,6 +85,7 @@ const char* truth_note(DatasetKind layout) {
   if (layout == DatasetKind::kOpenSceneFlow) {
     return "Truth is the flow of rigid bodies from each scan to the next one.\n";
   }
+  if (layout == DatasetKind::kHelipr) return "There is no truth: HeLiPR has no place for it.\n";
   return "Truth is by speed: above 0.5 m/s is moving, for vehicles above 1.0 m/s.\n";
 }
 
@@ -99,96 +98,6 @@ std::string readme(const SimulatedOrigin& origin) {
       "{}",
       origin.scene, to_string(origin.layout), origin.scans, origin.seed,
       origin.perturb ? " --perturb " + shell_word(*origin.perturb) : "", truth_note(origin.layout));
-}
-
-/// Returns the name that readers give a sequence: of DOALS with the scene's folder.
-std::string name_of(DatasetKind layout, const fs::path& folder) {
-  if (layout == DatasetKind::kOpenSceneFlow) return folder.stem().string();
-  return layout == DatasetKind::kDoals ? folder.generic_string() : folder.filename().string();
-}
-
-/// One recording as its layout stores it, but with the LiDAR's poses.
-class SimulatedSequence : public Sequence {
- public:
-  SimulatedSequence(const SimulateOptions& options, const Scene& scene,
-                    const SimulatedRecording& simulated)
-      : layout_(options.layout), simulator_(scene, sensor_model(simulated.sensor), options.seed) {
-    const std::set<std::size_t> labelled = labelled_scans(layout_, options.scans);
-    Recording& recording = mutable_recording();
-    recording.name = SequenceName(name_of(layout_, simulated.folder), simulated.folder);
-    for (std::size_t k = 0; k < options.scans; ++k) {
-      recording.scans.push_back(
-          {.stem = fmt::format("{:06}", k),
-           .file = std::nullopt,
-           .stamp_ns = stored_stamp_ns(simulator_.stamp_ns(k)),
-           .map_from_sensor = stored_pose(simulator_.map_from_sensor(k)),
-           .points = layout_ == DatasetKind::kDoals ? simulator_.sensor().slots() : 0,
-           .has_truth = labelled.contains(k)});
-    }
-  }
-
-  using Sequence::read;
-  void read(std::size_t scan_index, Frame& frame) const override {
-    SimulatedScan scan = simulator_.scan(scan_index);
-    describe(scan_index, frame);
-    frame.truth.reset();
-    const bool labelled = has_truth(scan_index);
-    if (layout_ == DatasetKind::kDoals) {
-      if (labelled) frame.truth = doals_truth(scan);
-      frame.points = std::move(scan.points);
-      return;
-    }
-    frame.points.clear();
-    if (labelled) frame.truth.emplace();
-    SceneSnapshot later;
-    if (layout_ == DatasetKind::kOpenSceneFlow) {
-      later = simulator_.scene_at(scan_index + 1);
-      frame.motions.emplace();
-    }
-    for (std::size_t i = 0; i < scan.points.size(); ++i) {
-      if (scan.owners[i] == SimulatedScan::kNoReturn) continue;
-      frame.points.push_back(scan.points[i]);
-      if (labelled) frame.truth->push_back(layout_label(layout_, scan, i));
-      if (frame.motions) add_motion(scan, i, later, period_s(scan_index), *frame.motions);
-    }
-  }
-  std::vector<std::uint32_t> read_truth(std::size_t scan_index) const override {
-    Frame frame;
-    read(scan_index, frame);
-    if (!frame.truth) refuse_truth(scan_index);
-    return std::move(*frame.truth);
-  }
-
- private:
-  double period_s(std::size_t scan_index) const {
-    return static_cast<double>(simulator_.stamp_ns(scan_index + 1) -
-                               simulator_.stamp_ns(scan_index)) *
-           1e-9;
-  }
-
-  /// Sipailou and HeLiMOS have no times.txt, that of SemanticKITTI starts at 0.
-  std::optional<std::int64_t> stored_stamp_ns(std::int64_t stamp_ns) const {
-    if (layout_ == DatasetKind::kDoals || layout_ == DatasetKind::kOpenSceneFlow) return stamp_ns;
-    if (layout_ == DatasetKind::kSemanticKitti) return stamp_ns - simulator_.stamp_ns(0);
-    return std::nullopt;
-  }
-
-  /// Poses of HeLiMOS are in a global frame, those of the other sets begin at the identity.
-  Pose stored_pose(const Pose& pose) const {
-    if (layout_ == DatasetKind::kHelimos) return pose;
-    return compose(inverse_of(simulator_.map_from_sensor(0)), pose);
-  }
-
-  DatasetKind layout_;
-  Simulator simulator_;
-};
-
-std::unique_ptr<Sequence> simulated_sequence(const SimulateOptions& options, const Scene& scene,
-                                             const SimulatedRecording& simulated) {
-  std::unique_ptr<Sequence> sequence =
-      std::make_unique<SimulatedSequence>(options, scene, simulated);
-  if (!options.perturb) return sequence;
-  return perturbed(std::move(sequence), parse_perturbation(*options.perturb));
 }
 
 /// A recording and what writes it.
@@ -219,7 +128,7 @@ void check(const SimulateOptions& options) {
 std::vector<std::string> simulated_names(DatasetKind layout, const Scene& scene) {
   std::vector<std::string> names;
   for (const SimulatedRecording& recording : recordings_of(layout, scene)) {
-    names.push_back(name_of(layout, recording.folder));
+    names.push_back(simulated_name(layout, recording));
   }
   return names;
 }
@@ -241,9 +150,12 @@ void simulate(const SimulateOptions& options,
   for (const SimulatedRecording& recording : recordings_of(options.layout, scene)) {
     auto sequence = simulated_sequence(options, scene, recording);
     for (std::size_t k = 0; k < sequence->size(); ++k) scans.emplace_back(writers.size(), k);
-    auto files = layout_of(options.layout)
-                     .writer->open(options.out / recording.folder,
-                                   {.scans = sequence->size(), .camera_from_lidar = tr});
+    auto files =
+        layout_of(options.layout)
+            .writer->open(options.out / recording.folder,
+                          {.scans = sequence->size(),
+                           .camera_from_lidar = tr,
+                           .radial_velocities = sequence->recording().has_radial_velocities});
     writers.push_back({std::move(sequence), std::move(files)});
   }
   claim_folder(options.out, origin);

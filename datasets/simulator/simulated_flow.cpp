@@ -15,16 +15,6 @@ bool begins_anew(const OwnerState& now, const OwnerState& later, double time_s) 
   return (later.base_m - now.base_m).norm() > most_m_s * time_s;
 }
 
-/// Where a point of the owner is later.
-Eigen::Vector3d moved(const Eigen::Vector3d& point_m, const OwnerState& now,
-                      const OwnerState& later) {
-  const Eigen::Vector3d arm = point_m - now.base_m;
-  const double cos = now.axis.x() * later.axis.x() + now.axis.y() * later.axis.y();
-  const double sin = now.axis.x() * later.axis.y() - now.axis.y() * later.axis.x();
-  return later.base_m +
-         Eigen::Vector3d(cos * arm.x() - sin * arm.y(), sin * arm.x() + cos * arm.y(), arm.z());
-}
-
 /// Argoverse 2's numbers of classes.
 std::uint8_t class_of(const OwnerState& owner) {
   if (owner.substance != Substance::kMoverBody) return 0;
@@ -43,6 +33,15 @@ std::uint8_t class_of(const OwnerState& owner) {
 
 }  // namespace
 
+Eigen::Vector3d moved_with(const OwnerState& now, const OwnerState& later,
+                           const Eigen::Vector3d& point_m) {
+  const Eigen::Vector3d arm = point_m - now.base_m;
+  const double cos = now.axis.x() * later.axis.x() + now.axis.y() * later.axis.y();
+  const double sin = now.axis.x() * later.axis.y() - now.axis.y() * later.axis.x();
+  return later.base_m +
+         Eigen::Vector3d(cos * arm.x() - sin * arm.y(), sin * arm.x() + cos * arm.y(), arm.z());
+}
+
 void add_motion(const SimulatedScan& scan, std::size_t point, const SceneSnapshot& later,
                 double time_s, PointMotions& motions) {
   const std::uint32_t number = scan.owners[point];
@@ -54,7 +53,7 @@ void add_motion(const SimulatedScan& scan, std::size_t point, const SceneSnapsho
     const Eigen::Matrix3d map_from_sensor = scan.map_from_sensor.linear();
     const Eigen::Vector3d point_m =
         rotated(map_from_sensor, {at.x, at.y, at.z}) + scan.map_from_sensor.translation();
-    const Eigen::Vector3d way_m = moved(point_m, now, then) - point_m;
+    const Eigen::Vector3d way_m = moved_with(now, then, point_m) - point_m;
     velocity_m_s = (rotated(map_from_sensor.transpose(), way_m) / time_s).cast<float>();
   }
   motions.velocities_m_s.push_back(velocity_m_s);

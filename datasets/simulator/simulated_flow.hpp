@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
 
 #include "datasets/sequence/point_motions.hpp"
@@ -14,5 +15,10 @@ namespace mosbench {
 /// ground are the points of the scene's ground.
 void add_motion(const SimulatedScan& scan, std::size_t point, const SceneSnapshot& later,
                 double time_s, PointMotions& motions);
+
+/// Returns where a point of an owner is later, in the map: the owner's bodies are rigid and turn
+/// about the vertical through its base.
+Eigen::Vector3d moved_with(const OwnerState& now, const OwnerState& later,
+                           const Eigen::Vector3d& point_m);
 
 }  // namespace mosbench

@@ -1,14 +1,23 @@
 #include "datasets/simulator/simulated_layouts.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
+#include <span>
 
 #include "datasets/files/errors.hpp"
+#include "datasets/files/kitti_calib.hpp"
 #include "datasets/files/point_range.hpp"
 #include "datasets/layouts/helimos_layout.hpp"
 
 namespace mosbench {
 namespace {
+
+constexpr std::array kSimulatedLayouts = {
+    DatasetKind::kDoals,         DatasetKind::kSipailou,      DatasetKind::kHelimos,
+    DatasetKind::kSemanticKitti, DatasetKind::kOpenSceneFlow, DatasetKind::kNuscenes,
+    DatasetKind::kHelipr,        DatasetKind::kKittiRaw,      DatasetKind::kKittiTracking};
 
 bool is_vehicle(const OwnerState& owner) {
   return owner.substance == Substance::kMoverBody &&
@@ -78,6 +87,11 @@ std::uint32_t scene_flow_label(const SimulatedScan& scan, std::size_t point) {
   return label == 0 || !movable ? label : label | (owner % kInstances) << kInstanceBits;
 }
 
+std::uint32_t label_in_view(const SimulatedScan& scan, std::size_t point) {
+  static const CameraView kView = written_kitti_mounting().view;
+  return kView.sees(position_of(scan.points[point])) ? moving_label(scan, point) : 0;
+}
+
 SensorKind sensor_of(const Scene& scene, SensorKind usual) {
   return scene.sensor ? sensor_kind_from_string(*scene.sensor).value_or(usual) : usual;
 }
@@ -97,7 +111,30 @@ std::vector<SimulatedRecording> helimos_recordings() {
                    why);
 }
 
+void refuse_sensors(const Scene& scene, DatasetKind layout, const char* count) {
+  if (!scene.sensor && !scene.columns) return;
+  throw UsageError(
+      fmt::format("scene '{}' sets \"sensor\" or \"columns\", but layout {} has {} sensors of its "
+                  "own; leave these keys out",
+                  scene.name, to_string(layout), count));
+}
+
 }  // namespace
+
+std::optional<DatasetKind> simulated_layout_from_string(std::string_view name) {
+  for (const DatasetKind kind : kSimulatedLayouts) {
+    if (to_string(kind) == name) return kind;
+  }
+  return std::nullopt;
+}
+
+std::string simulated_layout_names() {
+  std::vector<std::string_view> names;
+  for (const DatasetKind kind : kSimulatedLayouts) names.push_back(to_string(kind));
+  const std::string_view last = names.back();
+  names.pop_back();
+  return fmt::format("{} or {}", fmt::join(names, ", "), last);
+}
 
 std::vector<SimulatedRecording> recordings_of(DatasetKind layout, const Scene& scene) {
   switch (layout) {
@@ -110,16 +147,21 @@ std::vector<SimulatedRecording> recordings_of(DatasetKind layout, const Scene& s
     case DatasetKind::kSipailou:
       return {{"sequences/06", sensor_of(scene, SensorKind::kAvia)}};
     case DatasetKind::kHelimos:
-      if (scene.sensor || scene.columns) {
-        throw UsageError("scene '" + scene.name +
-                         "' sets \"sensor\" or \"columns\", but layout helimos has four sensors of "
-                         "its own; leave these keys out");
-      }
+      refuse_sensors(scene, layout, "four");
       return helimos_recordings();
     case DatasetKind::kSemanticKitti:
       return {{"sequences/08", sensor_of(scene, SensorKind::kHdl64e)}};
     case DatasetKind::kOpenSceneFlow:
       return {{scene.name + ".h5", sensor_of(scene, SensorKind::kHdl64e)}};
+    case DatasetKind::kNuscenes:
+      return {{scene.name, sensor_of(scene, SensorKind::kHdl32e)}};
+    case DatasetKind::kHelipr:
+      refuse_sensors(scene, layout, "two");
+      return {{scene.name, SensorKind::kAeva}, {scene.name, SensorKind::kOs2_128}};
+    case DatasetKind::kKittiRaw:
+      return {{std::filesystem::path("date") / scene.name, sensor_of(scene, SensorKind::kHdl64e)}};
+    case DatasetKind::kKittiTracking:
+      return {{scene.name, sensor_of(scene, SensorKind::kHdl64e)}};
     default:
       throw UsageError("layout " + std::string(to_string(layout)) + " is not simulated");
   }
@@ -127,15 +169,17 @@ std::vector<SimulatedRecording> recordings_of(DatasetKind layout, const Scene& s
 
 std::set<std::size_t> labelled_scans(DatasetKind layout, std::size_t scans) {
   // The method detects nothing in the first scans; labels there would measure nothing.
-  constexpr std::size_t kFirst = 4, kDoalsScans = 10, kHelimosStep = 4;
+  constexpr std::size_t kFirst = 4, kDoalsScans = 10, kHelimosStep = 4, kNuscenesStep = 5;
   std::set<std::size_t> labelled;
+  if (layout == DatasetKind::kHelipr) return labelled;
   if (layout == DatasetKind::kDoals) {
     for (std::size_t i = 1; i <= kDoalsScans; ++i) {
       const std::size_t end = i * scans / kDoalsScans;
       if (end > kFirst) labelled.insert(end - 1);
     }
-  } else if (layout == DatasetKind::kHelimos) {
-    for (std::size_t i = kFirst; i < scans; i += kHelimosStep) labelled.insert(i);
+  } else if (layout == DatasetKind::kHelimos || layout == DatasetKind::kNuscenes) {
+    const std::size_t step = layout == DatasetKind::kHelimos ? kHelimosStep : kNuscenesStep;
+    for (std::size_t i = kFirst; i < scans; i += step) labelled.insert(i);
   } else {
     for (std::size_t i = 0; i < scans; ++i) labelled.insert(i);
   }
@@ -167,6 +211,11 @@ std::uint32_t layout_label(DatasetKind layout, const SimulatedScan& scan, std::s
       return kitti_label(owner, owner_number);
     case DatasetKind::kOpenSceneFlow:
       return scene_flow_label(scan, point);
+    case DatasetKind::kNuscenes:
+      return owner.moving ? kMovingLabel : kStaticLabel;
+    case DatasetKind::kKittiRaw:
+    case DatasetKind::kKittiTracking:
+      return label_in_view(scan, point);
     default:
       break;
   }

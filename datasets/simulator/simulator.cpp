@@ -44,16 +44,16 @@ double Simulator::time_s(std::size_t scan_index) const {
   return static_cast<double>(scan_index) * scene_.scan_period_s;
 }
 
-Pose Simulator::map_from_sensor(std::size_t scan_index) const {
-  return sensor_pose(scene_, sensor_, time_s(scan_index));
+Pose Simulator::map_from_sensor(std::size_t scan_index, double later_s) const {
+  return sensor_pose(scene_, sensor_, time_s(scan_index) + later_s);
 }
 
 std::int64_t Simulator::stamp_ns(std::size_t scan_index) const {
   return kFirstStamp_ns + std::llround(time_s(scan_index) * 1e9);
 }
 
-SceneSnapshot Simulator::scene_at(std::size_t scan_index) const {
-  return snapshot(scene_, time_s(scan_index));
+SceneSnapshot Simulator::scene_at(std::size_t scan_index, double later_s) const {
+  return snapshot(scene_, time_s(scan_index) + later_s);
 }
 
 SimulatedScan Simulator::scan(std::size_t scan_index) const {

@@ -37,11 +37,11 @@ class Simulator {
   /// where there is no return or no label.
   Frame frame(std::size_t scan_index) const;
 
-  /// Return pose and stamp of a scan without computing its points.
-  Pose map_from_sensor(std::size_t scan_index) const;
+  /// Return pose and stamp of a scan without computing its points; the pose some seconds later.
+  Pose map_from_sensor(std::size_t scan_index, double later_s = 0.0) const;
   std::int64_t stamp_ns(std::size_t scan_index) const;
-  /// Returns the scene as that scan sees it.
-  SceneSnapshot scene_at(std::size_t scan_index) const;
+  /// Returns the scene as that scan sees it, or some seconds later.
+  SceneSnapshot scene_at(std::size_t scan_index, double later_s = 0.0) const;
 
   const SensorModel& sensor() const { return sensor_; }
   const Scene& scene() const { return scene_; }

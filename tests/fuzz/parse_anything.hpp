@@ -12,6 +12,9 @@
 #include "datasets/files/errors.hpp"
 #include "datasets/files/helipr_points.hpp"
 #include "datasets/files/indices_file.hpp"
+#include "datasets/files/kitti_calib.hpp"
+#include "datasets/files/kitti_oxts.hpp"
+#include "datasets/files/kitti_stamps.hpp"
 #include "datasets/files/label_file.hpp"
 #include "datasets/files/moe_labels.hpp"
 #include "datasets/files/nuscenes_table.hpp"
@@ -22,6 +25,8 @@
 #include "datasets/files/pose_list.hpp"
 #include "datasets/files/split_file.hpp"
 #include "datasets/files/times_file.hpp"
+#include "datasets/files/tracking_labels.hpp"
+#include "datasets/files/tracklets.hpp"
 #include "datasets/hdf5/scene_flow_sequence.hpp"
 #include "datasets/rosbag/bag_metadata.hpp"
 #include "datasets/rosbag/bag_sequence.hpp"
@@ -269,6 +274,40 @@ inline void helipr(std::string_view bytes) {
   const HeliprScan scan = parse_helipr_scan(rest, sensor, 0, "f");
   require(scan.points.size() * helipr_point_bytes(sensor, 0) == rest.size());
   require(scan.times_ns.size() == scan.points.size());
+  if (sensor != HeliprSensor::kAeva) return;
+  const std::string written = format_helipr_aeva(scan.points, scan.radial_velocity_m_s, 0);
+  require(written.size() == rest.size());
+  const HeliprScan again = parse_helipr_scan(written, sensor, 0, "f");
+  require(format_helipr_aeva(again.points, again.radial_velocity_m_s, 0) == written);
+}
+
+inline void tracklets(std::string_view text) {
+  const auto parsed = parse_tracklets(text, "f");
+  const std::string written = format_tracklets(parsed);
+  require(format_tracklets(parse_tracklets(written, "f")) == written);
+}
+
+inline void tracking_labels(std::string_view text) {
+  const auto parsed = parse_tracking_labels(text, "f");
+  const std::string written = format_tracking_labels(parsed);
+  require(format_tracking_labels(parse_tracking_labels(written, "f")) == written);
+}
+
+inline void kitti_oxts(std::string_view text) {
+  const auto parsed = parse_oxts(text, "f");
+  require(format_oxts(parse_oxts(format_oxts(parsed), "f")) == format_oxts(parsed));
+  require(poses_of_oxts(parsed).size() == parsed.size());
+}
+
+inline void kitti_stamps(std::string_view text) {
+  const auto parsed = parse_kitti_stamps(text, "f");
+  require(parse_kitti_stamps(format_kitti_stamps(parsed), "f") == parsed);
+}
+
+inline void kitti_calib(std::string_view text) {
+  const KittiMounting parsed = parse_tracking_calib(text, "f");
+  require(parsed.lidar_from_imu.matrix().allFinite() && parsed.view.width_px > 0.0);
+  (void)parsed.view.sees({10.0, 0.0, 0.0});
 }
 
 /// Rows with the keys that any table of nuScenes has.
@@ -314,8 +353,13 @@ struct Parser {
   void (*parse)(std::string_view);
   std::size_t mutations = 3000;  ///< that the replay tries; fewer where each takes a process
 };
-inline constexpr std::array<Parser, 25> kParsers = {{{"bin", bin},
+inline constexpr std::array<Parser, 30> kParsers = {{{"bin", bin},
                                                      {"nuscenes_table", nuscenes_table},
+                                                     {"tracklets", tracklets},
+                                                     {"tracking_labels", tracking_labels},
+                                                     {"kitti_oxts", kitti_oxts},
+                                                     {"kitti_stamps", kitti_stamps},
+                                                     {"kitti_calib", kitti_calib},
                                                      {"helipr", helipr},
                                                      {"label", label},
                                                      {"dynamic_scores", dynamic_scores},

@@ -115,7 +115,7 @@ def _simulated(maker):
         "opensceneflow", f"simulate --layout opensceneflow --scene scene.json --scans {SCANS} --seed 1 --threads 1 --out")
     for container in ("mcap", "db3"):
         trees[container] = maker.make(container, f"convert doals --layout ros2-{container} --out")
-    for layout in ("nuscenes", "helipr"):
+    for layout in ("nuscenes", "helipr", "kitti-raw", "kitti-tracking"):
         trees[layout] = maker.make(layout, f"convert semantickitti --layout {layout} --out")
     return trees
 

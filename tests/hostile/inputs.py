@@ -5,7 +5,8 @@ from dataclasses import dataclass
 
 import folders
 
-LAYOUTS = ("doals", "doals-bag", "sipailou", "helimos", "semantickitti", "opensceneflow", "nuscenes", "helipr")
+LAYOUTS = ("doals", "doals-bag", "sipailou", "helimos", "semantickitti", "opensceneflow", "nuscenes", "helipr",
+           "kitti-raw", "kitti-tracking")
 RUN = "run data --config config.json --threads 1 --out out"
 READING = [
     RUN, f"{RUN} --json", f"{RUN} --perturb pose_noise_m=0.05,dropout_probability=0.2,fog_per_m=0.02,seed=3",
@@ -95,6 +96,12 @@ def _sequences(trees):
     helipr = _prefixed(trees, data="helipr")
     for name, pattern in (("scan of helipr", r"LiDAR/.*\.bin$"), ("poses of helipr", r"_gt\.txt$")):
         yield Kind(name, helipr, re.compile(pattern), READING[:READING.index("score data --predictions predicted --json")])
+    drives = [*READING[:READING.index("score data --predictions predicted --json")], f"{RUN} --moving-speed-m-s 2"]
+    for layout, pattern in (("kitti-raw", r"tracklet_labels\.xml$"), ("kitti-raw", r"timestamps\.txt$"),
+                            ("kitti-raw", r"oxts/data/.*\.txt$"), ("kitti-raw", r"calib_\w+\.txt$"),
+                            ("kitti-raw", r"\.bin$"), ("kitti-tracking", r"label_02/.*\.txt$"),
+                            ("kitti-tracking", r"oxts/\d+\.txt$"), ("kitti-tracking", r"calib/.*\.txt$")):
+        yield Kind(f"{layout} {pattern.rstrip('$')}", _prefixed(trees, data=layout), re.compile(pattern), drives)
     helimos = _prefixed(trees, data="helimos", predicted="predicted_all")
     splits = [f"{RUN} --protocol helimos-test", "score data --predictions predicted --protocol all", "doctor data",
               "score data --predictions predicted --split val --json"]

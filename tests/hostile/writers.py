@@ -20,6 +20,10 @@ WRITERS = {
     "simulate": "simulate --layout semantickitti --scene scene.json --scans 8 --seed 2 --threads 1 --out out",
     "simulate doals": "simulate --layout doals --scene scene.json --scans 8 --seed 2 --threads 2 --out out",
     "simulate opensceneflow": "simulate --layout opensceneflow --scene scene.json --scans 8 --seed 2 --threads 2 --out out",
+    "simulate nuscenes": "simulate --layout nuscenes --scene scene.json --scans 8 --seed 2 --threads 2 --out out",
+    "simulate helipr": "simulate --layout helipr --scene room --scans 8 --seed 2 --threads 2 --out out",
+    "simulate kitti-raw": "simulate --layout kitti-raw --scene scene.json --scans 8 --seed 2 --threads 2 --out out",
+    "simulate kitti-tracking": "simulate --layout kitti-tracking --scene scene.json --scans 8 --seed 2 --threads 2 --out out",
     "report": "report run -o old.html",
     "report of numbers": "report run other_run -o old.html --scans none",
     "render": "render run --scan 7 -o old.png --size 200",
@@ -83,7 +87,7 @@ def check_that_all_are_here(bench):
     """A command that is new belongs into one of the two lists."""
     bench.renew({})
     listed = bench.run("--help").out.partition("\nCommands:\n")[2].partition("\n\n")[0]
-    commands = set(re.findall(r"^  (\S+)", listed, re.MULTILINE))
+    commands = set(re.findall(r"^  ([\w-]+)", listed, re.MULTILINE))
     known = READERS | {line.split()[0] for line in WRITERS.values()}
     if commands != known:
         raise fixtures.NotWhole(f"commands that writers.py does not know, or that are gone: {commands ^ known}")

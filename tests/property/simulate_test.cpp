@@ -53,8 +53,14 @@ class EveryLayout : public testing::TestWithParam<DatasetKind> {};
 
 INSTANTIATE_TEST_SUITE_P(Simulate, EveryLayout,
                          testing::Values(DatasetKind::kDoals, DatasetKind::kSipailou,
-                                         DatasetKind::kHelimos, DatasetKind::kSemanticKitti),
-                         [](const auto& layout) { return std::string(to_string(layout.param)); });
+                                         DatasetKind::kHelimos, DatasetKind::kSemanticKitti,
+                                         DatasetKind::kNuscenes, DatasetKind::kHelipr,
+                                         DatasetKind::kKittiRaw, DatasetKind::kKittiTracking),
+                         [](const auto& layout) {
+                           std::string name(to_string(layout.param));
+                           std::ranges::replace(name, '-', '_');
+                           return name;
+                         });
 
 // Labels of the layout for the points that its files keep.
 struct Expected {
@@ -120,7 +126,7 @@ TEST_P(EveryLayout, WritesTheSameFilesFromAnyNumberOfThreadsAndTwiceInARow) {
   SimulateOptions options = options_for(GetParam(), folder / "two", 6);
   simulate(options);
   const auto once = files_below(folder / "two");
-  ASSERT_GT(once.size(), 10U);
+  ASSERT_GT(once.size(), 9U);
   simulate(options);
   EXPECT_EQ(files_below(folder / "two"), once);
   options.out = folder / "one";
@@ -256,6 +262,33 @@ TEST(SimulatedHelimos, LabelsPartOfTheScansAndSplitsThemInBlocks) {
   EXPECT_LT(*splits["train"].rbegin(), *splits["val"].begin());
   EXPECT_LT(*splits["val"].rbegin(), *splits["test"].begin());
   EXPECT_EQ(simulated_splits({7}), (HelimosSplits{{"test", {7}}}));
+}
+
+TEST(SimulatedNuscenes, HasKeyFramesTwiceASecondAndTurnsNothingUnlabelled) {
+  EXPECT_EQ(labelled_scans(DatasetKind::kNuscenes, 17), (std::set<std::size_t>{4, 9, 14}));
+  EXPECT_EQ(labelled_scans(DatasetKind::kNuscenes, 3), (std::set<std::size_t>{2}));
+  EXPECT_THAT(labelled_scans(DatasetKind::kHelipr, 17), testing::IsEmpty());
+  Scene scene = built_in_scene("room");
+  for (Mover& mover : scene.movers) mover.labelled = false;
+  const SimulatedScan scan = Simulator(scene, sensor_model(SensorKind::kHdl32e), 1).scan(4);
+  std::map<std::uint32_t, std::size_t> count;
+  for (std::size_t i = 0; i < scan.points.size(); ++i) {
+    if (scan.owners[i] == SimulatedScan::kNoReturn) continue;
+    const std::uint32_t label = layout_label(DatasetKind::kNuscenes, scan, i);
+    EXPECT_EQ(label == kMovingLabel, scan.scene.owners[scan.owners[i]].moving);
+    ++count[label];
+  }
+  EXPECT_EQ(count.size(), 2U) << "9 and 251";
+}
+
+TEST(SimulatedLayouts, AreThoseThatHaveRecordings) {
+  EXPECT_EQ(
+      simulated_layout_names(),
+      "doals, sipailou, helimos, semantickitti, opensceneflow, nuscenes, helipr, kitti-raw or "
+      "kitti-tracking");
+  EXPECT_EQ(simulated_layout_from_string("helipr"), DatasetKind::kHelipr);
+  EXPECT_EQ(simulated_layout_from_string("recording"), std::nullopt);
+  EXPECT_EQ(simulated_layout_from_string("kitti"), std::nullopt);
 }
 
 TEST(SimulatedSipailou, LabelsOnlyFromThreeToFiftyMetres) {

@@ -62,7 +62,7 @@ TEST(Layouts, HaveOneCompleteRowPerDataSet) {
     }
     EXPECT_GT(row->files.sensor_range_m, 0.0) << row->name;
   }
-  EXPECT_EQ(kinds.size(), 12U);
+  EXPECT_EQ(kinds.size(), 14U);
   EXPECT_EQ(dataset_kind_from_string("kitti"), std::nullopt);
 }
 
@@ -71,8 +71,9 @@ TEST(Layouts, AreWrittenWhereTheyHaveAWriter) {
   for (const Layout* row : layouts()) {
     if (row->writer) written.push_back(row->name);
   }
-  EXPECT_THAT(written, ElementsAre("doals", "sipailou", "helimos", "semantickitti", "opensceneflow",
-                                   "nuscenes", "helipr", "recording"));
+  EXPECT_THAT(written,
+              ElementsAre("doals", "sipailou", "helimos", "semantickitti", "opensceneflow",
+                          "nuscenes", "helipr", "kitti-raw", "kitti-tracking", "recording"));
 }
 
 TEST(OpenDataset, FindsSemanticKittiWithAndWithoutTheFolderSequences) {
@@ -86,6 +87,15 @@ TEST(OpenDataset, FindsSemanticKittiWithAndWithoutTheFolderSequences) {
     EXPECT_THAT(splits(dataset), ElementsAre("train: 00", "valid: 08", "test: 11"));
     EXPECT_THAT(dataset.remarks, Contains(HasSubstr("recognised as semantickitti")));
   }
+}
+
+TEST(OpenDataset, KnowsTheSplitsOfKittiRoad) {
+  const TempFolder root;
+  for (const char* name : {"08", "30", "34", "35", "40", "41"}) {
+    write_sequence(root, std::string("sequences/") + name);
+  }
+  EXPECT_THAT(splits(open_dataset(root.path(), {})),
+              ElementsAre("valid: 08", "road-train: 30 34 40", "road-valid: 35 41"));
 }
 
 TEST(OpenDataset, TakesOneSequenceFolderNamedByItself) {

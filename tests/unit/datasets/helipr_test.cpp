@@ -89,6 +89,21 @@ TEST(HeliprPoints, OfTheOtherLidarsHaveTimesAndIntensities) {
               HasSubstr("f.bin:0: is measured 4 s after the stamp"));
 }
 
+TEST(HeliprPoints, AreWrittenAsAnAevaStoresThem) {
+  const std::vector<Point> points = {{1, 2, 3, 0.5F}, {4, 5, 6, 0.25F}};
+  const std::vector<float> velocities = {-8.5F, 0.125F};
+  for (const std::int64_t stamp_ns : {kOld_ns, kNew_ns}) {
+    const std::string bytes = format_helipr_aeva(points, velocities, stamp_ns);
+    EXPECT_EQ(bytes.size(), 2 * helipr_point_bytes(HeliprSensor::kAeva, stamp_ns));
+    const HeliprScan scan = parse_helipr_scan(bytes, HeliprSensor::kAeva, stamp_ns, "f.bin");
+    EXPECT_EQ(scan.radial_velocity_m_s, velocities);
+    EXPECT_THAT(scan.times_ns, ElementsAre(0, 0));
+    ASSERT_EQ(scan.points.size(), 2U);
+    EXPECT_EQ(scan.points[1].z, 6.0F);
+    EXPECT_EQ(scan.points[1].intensity, 0.25F);
+  }
+}
+
 TEST(HeliprPoses, AreRowsWithStamps) {
   const auto poses = parse_helipr_poses("5 1 2 3 0 0 0 1\n9 4 5 6 0 0 1 0\n", "f.txt");
   ASSERT_EQ(poses.size(), 2U);

@@ -1,0 +1,63 @@
+#include "datasets/layouts/box_tracks.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "datasets/files/label_file.hpp"
+#include "datasets/sequence/sequence.hpp"
+
+namespace mosbench {
+namespace {
+
+/// The centre of a box in the map.
+struct Sighting {
+  const TrackedBox* box;
+  Eigen::Vector3d centre_m;
+  double time_s;
+};
+
+std::vector<Sighting> sightings_of(const BoxTrack& track,
+                                   std::span<const std::optional<FramePose>> frames) {
+  std::vector<Sighting> sightings;
+  std::int64_t first_ns = 0;
+  for (const TrackedBox& box : track) {
+    if (box.frame >= frames.size() || !frames[box.frame]) continue;
+    const FramePose& pose = *frames[box.frame];
+    if (sightings.empty()) first_ns = pose.stamp_ns;
+    sightings.push_back({&box, pose.map_from_lidar * box.lidar_from_box.translation(),
+                         static_cast<double>(pose.stamp_ns - first_ns) * 1e-9});
+  }
+  return sightings;
+}
+
+std::uint32_t label_of(std::span<const Sighting> track, std::size_t at, double moving_speed_m_s) {
+  std::size_t first = at == 0 ? 0 : at - 1;
+  std::size_t last = std::min(at + 1, track.size() - 1);
+  const double time_s = track[at].time_s;
+  while (first > 0 && time_s - track[first - 1].time_s <= kTrackWindow_s) --first;
+  while (last + 1 < track.size() && track[last + 1].time_s - time_s <= kTrackWindow_s) ++last;
+  const double span_s = track[last].time_s - track[first].time_s;
+  if (!(span_s > 0.0)) return 0;
+  const double speed_m_s = (track[last].centre_m - track[first].centre_m).norm() / span_s;
+  return speed_m_s >= moving_speed_m_s ? kMovingLabel : kStaticLabel;
+}
+
+}  // namespace
+
+std::vector<std::vector<LabelledBox>> label_boxes(std::span<const BoxTrack> tracks,
+                                                  std::span<const std::optional<FramePose>> frames,
+                                                  double moving_speed_m_s) {
+  std::vector<std::vector<LabelledBox>> boxes(frames.size());
+  for (const BoxTrack& track : tracks) {
+    const std::vector<Sighting> sightings = sightings_of(track, frames);
+    for (std::size_t i = 0; i < sightings.size(); ++i) {
+      const TrackedBox& box = *sightings[i].box;
+      boxes[box.frame].push_back({box.lidar_from_box.inverse(), box.half_size_m,
+                                  label_of(sightings, i, moving_speed_m_s)});
+    }
+  }
+  for (auto& of_frame : boxes) std::ranges::stable_sort(of_frame, {}, &LabelledBox::label);
+  return boxes;
+}
+
+}  // namespace mosbench

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <mosbench/scan.hpp>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace mosbench {
+
+/// A labelled object in one frame.
+struct TrackedBox {
+  std::size_t frame = 0;
+  Pose lidar_from_box = Pose::Identity();  ///< x along the length, y the width, z the height
+  Eigen::Vector3d half_size_m = Eigen::Vector3d::Zero();
+};
+
+/// The boxes of one object by frame, at most one in each.
+using BoxTrack = std::vector<TrackedBox>;
+
+/// Where the sensor was in one frame, and when.
+struct FramePose {
+  Pose map_from_lidar = Pose::Identity();
+  std::int64_t stamp_ns = 0;
+};
+
+/// A box and the label of the points in it.
+struct LabelledBox {
+  Pose box_from_lidar = Pose::Identity();
+  Eigen::Vector3d half_size_m = Eigen::Vector3d::Zero();
+  std::uint32_t label = 0;
+};
+
+/// Boxes are compared with those of this time before and after.
+inline constexpr double kTrackWindow_s = 0.5;
+
+/// Returns the boxes of every frame: 251 from `moving_speed_m_s` on, 9 below, 0 for an object that
+/// is seen in one frame alone. The speed is that of the box's centre in the map between the first
+/// and the last box of its track within `kTrackWindow_s`, but at least those before and after it.
+/// Where boxes overlap, moving comes last. Boxes of frames without pose are left out.
+std::vector<std::vector<LabelledBox>> label_boxes(std::span<const BoxTrack> tracks,
+                                                  std::span<const std::optional<FramePose>> frames,
+                                                  double moving_speed_m_s);
+
+}  // namespace mosbench

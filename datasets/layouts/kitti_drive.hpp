@@ -1,0 +1,49 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "datasets/files/folder_listing.hpp"
+#include "datasets/files/kitti_calib.hpp"
+#include "datasets/layouts/box_tracks.hpp"
+#include "datasets/sequence/reading_options.hpp"
+
+namespace mosbench {
+
+/// A part of the image whose content nobody labelled: left, top, right, bottom.
+using ImageRegion = std::array<double, 4>;
+
+/// What the files beside the scans of a drive say. The numbers of its frames start at 0 and are
+/// the stems of the scans; frames without a scan are usual.
+struct KittiDrive {
+  std::string name;
+  std::filesystem::path folder;  ///< of the scans
+  std::vector<StemFile> scans;
+  std::vector<std::optional<FramePose>> frames;
+  std::vector<std::optional<std::int64_t>>
+      stamps_ns;    ///< of scans, by frame; empty: none are known
+  CameraView view;  ///< of what is labelled
+  bool has_truth = false;
+  std::vector<BoxTrack> tracks;
+  std::map<std::size_t, std::vector<ImageRegion>> unlabelled;  ///< by frame
+  std::filesystem::path pose_file;                             ///< the last that a writer writes
+  std::vector<std::filesystem::path> files;                    ///< that decide poses and stamps
+  std::vector<std::filesystem::path> truth_files;
+  std::string pose_source, truth_source;  ///< for what is said of the reading
+  std::vector<std::string> remarks;
+};
+
+/// Reads DATE_drive_NNNN_sync/ and the calibration beside it. Without oxts/ all `frames` are empty,
+/// unless there are tracklets. Throws DataError.
+KittiDrive read_raw_drive(const std::string& name, const std::filesystem::path& folder);
+
+/// Reads a sequence of the tracking benchmark by its folder velodyne/NNNN. Throws as above.
+KittiDrive read_tracking_drive(const std::string& name, const std::filesystem::path& folder);
+
+}  // namespace mosbench

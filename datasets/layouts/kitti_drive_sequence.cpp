@@ -1,0 +1,161 @@
+#include "datasets/layouts/kitti_drive_sequence.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "datasets/files/errors.hpp"
+#include "datasets/files/point_range.hpp"
+#include "datasets/files/scan_file.hpp"
+#include "datasets/hdf5/flow_truth.hpp"
+#include "datasets/layouts/points_in_boxes.hpp"
+#include "datasets/sequence/pose_source.hpp"
+
+namespace mosbench {
+namespace {
+
+constexpr std::size_t kBinColumns = 4;
+
+std::size_t frame_of(const ScanEntry& scan) {
+  return static_cast<std::size_t>(stem_number(scan.stem).value());
+}
+
+/// Whether oxts place a frame, without which nothing is known of its boxes' speeds.
+bool is_placed(const KittiDrive& drive, std::size_t frame) {
+  return frame < drive.frames.size() && drive.frames[frame];
+}
+
+bool holds(const ImageRegion& region, const Eigen::Vector3d& projected) {
+  const double x_px = projected.x() / projected.z(), y_px = projected.y() / projected.z();
+  return x_px >= region[0] && x_px <= region[2] && y_px >= region[1] && y_px <= region[3];
+}
+
+}  // namespace
+
+KittiDriveSequence::KittiDriveSequence(KittiDrive drive, const ReadingOptions& options)
+    : bin_columns_(options.bin_columns.value_or(kBinColumns)),
+      view_(drive.view),
+      unlabelled_(std::move(drive.unlabelled)) {
+  if (options.undistorts() && options.point_times == PointTimes::kColumn) {
+    throw UsageError(
+        "--point-times column: the points of KITTI's drives have no times, expected "
+        "azimuth or none");
+  }
+  Recording& recording = mutable_recording();
+  recording.name = SequenceName(drive.name, drive.folder);
+  recording.files = drive.files;
+  recording.truth_files = drive.truth_files;
+  recording.remarks = drive.remarks;
+  const double moving_speed_m_s = options.moving_speed_m_s.value_or(kFlowMovingSpeed_m_s);
+  recording.reading = {{"scan_files", ".bin of the drive"}};
+  if (drive.has_truth) {
+    recording.reading.emplace_back(
+        "truth", fmt::format("boxes of {}, moving from {:g} m/s on, in the view of camera 2",
+                             drive.truth_source, moving_speed_m_s));
+    boxes_ = label_boxes(drive.tracks, drive.frames, moving_speed_m_s);
+  } else {
+    recording.remarks.push_back("no labels of objects: there is no truth");
+  }
+  list_scans(drive);
+  take_poses(drive, options);
+}
+
+void KittiDriveSequence::list_scans(const KittiDrive& drive) {
+  for (const StemFile& scan : drive.scans) {
+    ScanEntry& entry = mutable_recording().scans.emplace_back();
+    entry.stem = scan.stem;
+    entry.file = scan.file;
+    entry.points = read_scan_head(scan.file, bin_columns_).points;
+    entry.has_truth = drive.has_truth && is_placed(drive, frame_of(entry));
+    if (!drive.stamps_ns.empty()) entry.stamp_ns = drive.stamps_ns[frame_of(entry)];
+  }
+  const std::size_t frames = frame_of(mutable_recording().scans.back()) + 1;
+  if (frames > size()) {
+    mutable_recording().remarks.push_back(
+        fmt::format("{} of {} frames have no scan", frames - size(), frames));
+  }
+}
+
+void KittiDriveSequence::take_oxts(const KittiDrive& drive) {
+  Recording& recording = mutable_recording();
+  if (drive.frames.empty()) {
+    throw MissingPoses(drive.folder, "has no oxts, which gives KITTI's drives their poses",
+                       "oxts, or poses of another source");
+  }
+  for (ScanEntry& scan : std::exchange(recording.scans, {})) {
+    const std::size_t frame = frame_of(scan);
+    const bool is_known = is_placed(drive, frame);
+    if (is_known) scan.map_from_sensor = drive.frames[frame]->map_from_lidar;
+    (is_known ? recording.scans : recording.left_out).push_back(std::move(scan));
+  }
+  if (recording.scans.empty()) {
+    throw DataError(drive.pose_file, "belongs to no scan", "packets of the frames of the scans");
+  }
+  if (!recording.left_out.empty()) {
+    recording.remarks.push_back(
+        fmt::format("{} scans have no packet in oxts and are left out", recording.left_out.size()));
+  }
+  recording.reading.emplace_back("poses", drive.pose_source);
+  recording.reading.emplace_back("pose_direction", "map_from_sensor");
+  recording.reading.emplace_back("pose_frame", "lidar");
+  state_pose_origin(drive.pose_file, recording.reading, recording.remarks);
+}
+
+void KittiDriveSequence::take_poses(const KittiDrive& drive, const ReadingOptions& options) {
+  if (!options.poses && !options.poses_by_odometry) return take_oxts(drive);
+  Recording& recording = mutable_recording();
+  std::vector<std::int64_t> stamps_ns;
+  for (const ScanEntry& scan : recording.scans) {
+    if (scan.stamp_ns) stamps_ns.push_back(*scan.stamp_ns);
+  }
+  const SensorPoses poses = read_sensor_poses(drive.folder, "", options, {size(), stamps_ns});
+  place_scans(poses, recording);
+  for (ScanEntry& scan : recording.left_out) scan.has_truth = false;
+  add_statements(poses, recording);
+}
+
+std::vector<std::uint32_t> KittiDriveSequence::truth_of(std::size_t frame,
+                                                        std::span<const Point> points) const {
+  std::vector<std::uint32_t> truth(points.size(), kStaticLabel);
+  const auto regions = unlabelled_.find(frame);
+  if (regions != unlabelled_.end()) {
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Eigen::Vector3d at = view_.project(position_of(points[i]));
+      if (std::ranges::any_of(regions->second, [&](const auto& r) { return holds(r, at); })) {
+        truth[i] = 0;
+      }
+    }
+  }
+  if (frame < boxes_.size() && !boxes_[frame].empty()) {
+    const PointsInBoxes search(points);
+    for (const LabelledBox& box : boxes_[frame]) {
+      search.label(box.box_from_lidar, box.half_size_m, box.label, truth);
+    }
+  }
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!view_.sees(position_of(points[i]))) truth[i] = 0;
+  }
+  return truth;
+}
+
+void KittiDriveSequence::read(std::size_t scan_index, Frame& frame) const {
+  const ScanEntry& entry = scan(scan_index);
+  frame.points = read_scan(*entry.file, bin_columns_, std::move(frame.points));
+  if (frame.points.size() != entry.points) {
+    throw DataError(*entry.file, "changed since the sequence was opened",
+                    fmt::format("{} points", entry.points));
+  }
+  describe(scan_index, frame);
+  frame.truth.reset();
+  if (entry.has_truth) frame.truth = truth_of(frame_of(entry), frame.points);
+}
+
+std::vector<std::uint32_t> KittiDriveSequence::read_truth(std::size_t scan_index) const {
+  if (!has_truth(scan_index)) refuse_truth(scan_index);
+  Frame frame;
+  read(scan_index, frame);
+  return std::move(*frame.truth);
+}
+
+}  // namespace mosbench

@@ -1,0 +1,256 @@
+#include "datasets/layouts/kitti_drive_writer.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "datasets/files/bin_file.hpp"
+#include "datasets/files/disk_sync.hpp"
+#include "datasets/files/errors.hpp"
+#include "datasets/files/files.hpp"
+#include "datasets/files/kitti_calib.hpp"
+#include "datasets/files/kitti_oxts.hpp"
+#include "datasets/files/kitti_stamps.hpp"
+#include "datasets/files/point_range.hpp"
+#include "datasets/files/tracking_labels.hpp"
+#include "datasets/files/tracklets.hpp"
+#include "datasets/layouts/pure_boxes.hpp"
+
+namespace mosbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Far enough to be fast over any time between two frames.
+constexpr double kDropped_m = 1e6;
+
+fs::path raw_scan_file(std::size_t frame) {
+  return fmt::format("velodyne_points/data/{:010}.bin", frame);
+}
+fs::path raw_oxts_file(std::size_t frame) { return fmt::format("oxts/data/{:010}.txt", frame); }
+fs::path tracking_scan_file(std::size_t frame) {
+  return fmt::format("training/velodyne/0000/{:06}.bin", frame);
+}
+
+/// What the boxes of a frame say of its points.
+struct BoxesOfFrame {
+  bool has_truth = false;
+  std::vector<AxisBox> moving, unlabelled;
+};
+
+BoxesOfFrame boxes_of(const Frame& frame, const CameraView& view) {
+  constexpr double kEverywhere_m = 1e4;
+  BoxesOfFrame boxes;
+  if (!frame.truth) {
+    boxes.unlabelled = {
+        {Eigen::Vector3d::Constant(-kEverywhere_m), Eigen::Vector3d::Constant(kEverywhere_m)}};
+    return boxes;
+  }
+  boxes.has_truth = true;
+  std::vector<std::uint32_t> moving, unlabelled, fixed;
+  for (std::uint32_t i = 0; i < frame.points.size(); ++i) {
+    if (!view.sees(position_of(frame.points[i]))) continue;
+    const std::uint32_t label = (*frame.truth)[i];
+    (is_moving(label) ? moving : (label & 0xFFFFU) == 0U ? unlabelled : fixed).push_back(i);
+  }
+  const auto all_but = [&](const std::vector<std::uint32_t>& others) {
+    std::vector<std::uint32_t> joined = fixed;
+    joined.insert(joined.end(), others.begin(), others.end());
+    return joined;
+  };
+  boxes.moving = pure_boxes(frame.points, moving, all_but(unlabelled));
+  boxes.unlabelled = pure_boxes(frame.points, unlabelled, all_but(moving));
+  return boxes;
+}
+
+/// A box; one that moves has fallen by the next frame, others are seen once.
+struct WrittenBox {
+  std::size_t frame;
+  const AxisBox* box;
+  bool moves;
+};
+
+/// What both layouts write of a drive.
+class DriveWriter : public SequenceWriter {
+ public:
+  DriveWriter(fs::path folder, const WriteOptions& options)
+      : folder_(std::move(folder)),
+        mounting_(written_kitti_mounting()),
+        poses_(options.scans, Pose::Identity()),
+        boxes_(options.scans) {}
+
+  void write(std::size_t scan_index, const Frame& frame) override {
+    write_bin(folder_ / scan_file(scan_index), frame.points);
+    poses_[scan_index] = frame.map_from_sensor;
+    boxes_[scan_index] = boxes_of(frame, mounting_.view);
+  }
+
+ protected:
+  virtual fs::path scan_file(std::size_t frame) const = 0;
+
+  const fs::path& folder() const { return folder_; }
+  const KittiMounting& mounting() const { return mounting_; }
+
+  /// One more than there are scans, for the last boxes to fall in.
+  std::vector<OxtsPacket> packets() const {
+    std::vector<Pose> map_from_imu;
+    const Pose imu_from_lidar = mounting_.lidar_from_imu.inverse();
+    for (const Pose& map_from_lidar : poses_) {
+      map_from_imu.push_back(imu_from_lidar * map_from_lidar * mounting_.lidar_from_imu);
+    }
+    map_from_imu.push_back(map_from_imu.empty() ? Pose::Identity() : map_from_imu.back());
+    return oxts_of_poses(map_from_imu);
+  }
+
+  bool has_truth() const { return std::ranges::any_of(boxes_, &BoxesOfFrame::has_truth); }
+
+  std::vector<WrittenBox> written_boxes() const {
+    std::vector<WrittenBox> written;
+    for (std::size_t k = 0; k < boxes_.size(); ++k) {
+      for (const AxisBox& box : boxes_[k].moving) written.push_back({k, &box, true});
+      for (const AxisBox& box : boxes_[k].unlabelled) written.push_back({k, &box, false});
+    }
+    return written;
+  }
+
+ private:
+  fs::path folder_;
+  KittiMounting mounting_;
+  std::vector<Pose> poses_;
+  std::vector<BoxesOfFrame> boxes_;
+};
+
+class KittiRawWriter : public DriveWriter {
+ public:
+  KittiRawWriter(const fs::path& folder, const WriteOptions& options)
+      : DriveWriter(folder, options), stamps_ns_(options.scans) {}
+
+  void write(std::size_t scan_index, const Frame& frame) override {
+    constexpr std::int64_t kLast_ns = 9'214'646'400'000'000'000;  // the end of 2261
+    const std::int64_t stamp_ns = stamp_or_period_ns(scan_index, frame.stamp_ns);
+    if (stamp_ns < 0 || stamp_ns >= kLast_ns) {
+      throw DataError(folder(), "scan " + frame.stem + " has a stamp that is no date of KITTI's",
+                      "one of 1970 to 2261");
+    }
+    stamps_ns_[scan_index] = stamp_ns;
+    DriveWriter::write(scan_index, frame);
+  }
+
+  void finish() override {
+    expect_rising_stamps();
+    const KittiCalibTexts texts = format_kitti_mounting(mounting());
+    const fs::path date = folder().parent_path();
+    write_file_atomic(date / "calib_imu_to_velo.txt", texts.imu_to_velo);
+    write_file_atomic(date / "calib_velo_to_cam.txt", texts.velo_to_cam);
+    write_file_atomic(date / "calib_cam_to_cam.txt", texts.cam_to_cam);
+    if (has_truth()) write_file_atomic(folder() / "tracklet_labels.xml", tracklets());
+    write_file_atomic(folder() / "velodyne_points/timestamps.txt", format_kitti_stamps(stamps_ns_));
+    const std::vector<OxtsPacket> rows = packets();
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      write_file_atomic(folder() / raw_oxts_file(k), format_oxts({&rows[k], 1}));
+    }
+    constexpr std::int64_t kPeriod_ns = 100'000'000;
+    stamps_ns_.push_back(stamps_ns_.empty() ? 0 : *stamps_ns_.back() + kPeriod_ns);
+    sync_file_system_of(folder());
+    commit_file(folder() / kKittiRawLastFile, format_kitti_stamps(stamps_ns_));
+  }
+
+ private:
+  fs::path scan_file(std::size_t frame) const override { return raw_scan_file(frame); }
+
+  void expect_rising_stamps() const {
+    const auto twin = std::ranges::adjacent_find(stamps_ns_, std::greater_equal<>());
+    if (twin == stamps_ns_.end()) return;
+    throw DataError(
+        folder(),
+        fmt::format("scan {} is not later than the one before", twin - stamps_ns_.begin() + 1),
+        "stamps that increase, by which boxes have their speed");
+  }
+
+  std::string tracklets() const {
+    std::vector<Tracklet> tracklets;
+    for (const WrittenBox& written : written_boxes()) {
+      const Eigen::Vector3d size_m = written.box->high_m - written.box->low_m;
+      Eigen::Vector3d bottom_m = 0.5 * (written.box->low_m + written.box->high_m);
+      bottom_m.z() -= 0.5 * size_m.z();
+      Tracklet& tracklet = tracklets.emplace_back();
+      tracklet = {"Misc", size_m.z(), size_m.y(), size_m.x(), written.frame, {{bottom_m, 0.0}}};
+      if (!written.moves) continue;
+      bottom_m.z() -= kDropped_m;
+      tracklet.poses.push_back({bottom_m, 0.0});
+    }
+    return format_tracklets(tracklets);
+  }
+
+  std::vector<std::optional<std::int64_t>> stamps_ns_;
+};
+
+class KittiTrackingWriter : public DriveWriter {
+ public:
+  using DriveWriter::DriveWriter;
+
+  void finish() override {
+    write_file_atomic(folder() / "training/calib/0000.txt", format_tracking_calib(mounting()));
+    if (has_truth()) {
+      write_file_atomic(folder() / "training/label_02/0000.txt", format_tracking_labels(labels()));
+    }
+    sync_file_system_of(folder());
+    commit_file(folder() / kKittiTrackingLastFile, format_oxts(packets()));
+  }
+
+ private:
+  fs::path scan_file(std::size_t frame) const override { return tracking_scan_file(frame); }
+
+  std::vector<TrackingLabel> labels() const {
+    std::vector<TrackingLabel> labels;
+    const Pose& camera_from_lidar = mounting().view.rectified_from_lidar;
+    std::int64_t track = 0;
+    for (const WrittenBox& written : written_boxes()) {
+      const Eigen::Vector3d size_m = written.box->high_m - written.box->low_m;
+      CameraBox box = {size_m.z(), size_m.y(), size_m.x(), Eigen::Vector3d::Zero(),
+                       -0.5 * std::numbers::pi};
+      box.bottom_m = camera_from_lidar * (0.5 * (written.box->low_m + written.box->high_m));
+      box.bottom_m.y() += 0.5 * size_m.z();
+      labels.push_back({written.frame, track, "Misc", {}, box});
+      if (written.moves) {
+        box.bottom_m.y() += kDropped_m;
+        labels.push_back({written.frame + 1, track, "Misc", {}, box});
+      }
+      ++track;
+    }
+    return labels;
+  }
+};
+
+}  // namespace
+
+std::vector<fs::path> kitti_raw_files(std::size_t scans) {
+  std::vector<fs::path> files = {"tracklet_labels.xml",      "velodyne_points/timestamps.txt",
+                                 kKittiRawLastFile,          "../calib_imu_to_velo.txt",
+                                 "../calib_velo_to_cam.txt", "../calib_cam_to_cam.txt"};
+  for (std::size_t k = 0; k <= scans; ++k) files.push_back(raw_oxts_file(k));
+  for (std::size_t k = 0; k < scans; ++k) files.push_back(raw_scan_file(k));
+  return files;
+}
+
+std::vector<fs::path> kitti_tracking_files(std::size_t scans) {
+  std::vector<fs::path> files = {"training/calib/0000.txt", "training/label_02/0000.txt",
+                                 kKittiTrackingLastFile};
+  for (std::size_t k = 0; k < scans; ++k) files.push_back(tracking_scan_file(k));
+  return files;
+}
+
+std::unique_ptr<SequenceWriter> write_as_kitti_raw(const fs::path& folder,
+                                                   const WriteOptions& options) {
+  return std::make_unique<KittiRawWriter>(folder, options);
+}
+
+std::unique_ptr<SequenceWriter> write_as_kitti_tracking(const fs::path& folder,
+                                                        const WriteOptions& options) {
+  return std::make_unique<KittiTrackingWriter>(folder, options);
+}
+
+}  // namespace mosbench

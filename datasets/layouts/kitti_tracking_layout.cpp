@@ -1,0 +1,87 @@
+#include "datasets/files/files.hpp"
+#include "datasets/files/folder_listing.hpp"
+#include "datasets/layouts/folder_search.hpp"
+#include "datasets/layouts/kitti_drive_sequence.hpp"
+#include "datasets/layouts/kitti_drive_writer.hpp"
+#include "datasets/layouts/layout.hpp"
+
+namespace mosbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Lists velodyne/NNNN of training/ or testing/, which have oxts/ and calib/ beside it.
+std::vector<SequenceFolder> sequences_in(const fs::path& part, const std::string& prefix) {
+  std::vector<SequenceFolder> sequences;
+  if (!is_there(part / "oxts") || !is_there(part / "calib")) return sequences;
+  for (const fs::path& folder : list_folders(part / "velodyne")) {
+    const std::string number = folder_name(folder);
+    if (!stem_number(number) || list_by_stem(folder, {".bin"}).empty()) continue;
+    sequences.push_back({prefix + number, folder, prefix.empty() ? "" : number});
+  }
+  return sequences;
+}
+
+/// Those of a root: training/ has labels, testing/ is read where it is given itself.
+std::vector<SequenceFolder> sequences_of(const fs::path& root, const std::string& prefix) {
+  auto sequences = sequences_in(root / "training", prefix);
+  return sequences.empty() ? sequences_in(root, prefix) : sequences;
+}
+
+std::vector<SequenceFolder> list_kitti_tracking(const fs::path& path) {
+  auto sequences = sequences_of(path, "");
+  if (!sequences.empty()) return sequences;
+  for (const fs::path& root : list_folders(path)) {
+    for (SequenceFolder& sequence : sequences_in(root / "training", folder_name(root) + "/")) {
+      sequences.push_back(std::move(sequence));
+    }
+  }
+  return sequences;
+}
+
+std::unique_ptr<Sequence> open_kitti_tracking(const SequenceFolder& sequence,
+                                              const ReadingOptions& options) {
+  return std::make_unique<KittiDriveSequence>(read_tracking_drive(sequence.name, sequence.folder),
+                                              options);
+}
+
+std::optional<std::string> recognise_kitti_tracking(const fs::path& path) {
+  const auto sequences = list_kitti_tracking(path);
+  if (sequences.empty()) return std::nullopt;
+  return "velodyne/" + folder_name(sequences.front().folder) + " has oxts/ and calib/ beside it";
+}
+
+fs::path kitti_tracking_folder(const std::string& name, std::size_t) { return flat_name(name); }
+
+}  // namespace
+
+const Layout& kitti_tracking_layout() {
+  static const Layout row = {
+      .kind = DatasetKind::kKittiTracking,
+      .name = "kitti-tracking",
+      .title = "KITTI tracking, CVPR 2012, with truth made of its boxes",
+      .content = "Velodyne HDL-64E on a car, 10 Hz, boxes of objects in the camera's view",
+      .size = "21 sequences with labels, 29 without",
+      .published = "cvlibs.net/datasets/kitti/eval_tracking.php",
+      .licence = "CC BY-NC-SA 3.0",
+      .folders = {"<root>/training/", "  velodyne/<number>/*.bin", "  oxts/<number>.txt",
+                  "  calib/<number>.txt", "  label_02/<number>.txt    for truth",
+                  "<root>/<folder>/           such roots, as convert writes them"},
+      .files = {.label_ids = {0, kStaticLabel, kMovingLabel}, .sensor_range_m = 130.0},
+      .expected =
+          "training/{velodyne/<number>/*.bin,oxts,calib,label_02} of KITTI's tracking benchmark",
+      .list = list_kitti_tracking,
+      .open = open_kitti_tracking,
+      .splits = nullptr,
+      .evidence = Evidence::kFolders,
+      .recognise = recognise_kitti_tracking,
+      .writer =
+          LayoutWriter{.open = write_as_kitti_tracking,
+                       .folder = kitti_tracking_folder,
+                       .last_file = [](const WriteOptions&) { return kKittiTrackingLastFile; },
+                       .keeps = KeptTruth::kInView},
+      .truth_by_speed = true};
+  return row;
+}
+
+}  // namespace mosbench

@@ -1,0 +1,125 @@
+// The doctor on .h5, nuScenes and HeLiPR, written from scans of the simulator.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "datasets/doctor/doctor.hpp"
+#include "datasets/hdf5/hdf5_module.hpp"
+#include "datasets/layouts/convert.hpp"
+#include "datasets/simulator/simulated_sequence.hpp"
+#include "tests/sanitizers.hpp"
+#include "tests/temp_folder.hpp"
+
+namespace mosbench {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr std::size_t kScans = 16;
+
+/// Turns what a scan is given into what another is given, as a fault would.
+using ScanFault = std::function<void(const Sequence& good, std::size_t scan_index, Frame& frame)>;
+
+class Faulty : public SequenceAround {
+ public:
+  Faulty(std::unique_ptr<Sequence> good, ScanFault fault)
+      : SequenceAround(std::move(good)), fault_(std::move(fault)) {}
+
+  using Sequence::read;
+  void read(std::size_t scan_index, Frame& frame) const override {
+    inner().read(scan_index, frame);
+    if (fault_) fault_(inner(), scan_index, frame);
+  }
+
+ private:
+  ScanFault fault_;
+};
+
+void with_pose_of_the_scan_before(const Sequence& good, std::size_t scan_index, Frame& frame) {
+  frame.map_from_sensor = good.map_from_sensor(scan_index == 0 ? 0 : scan_index - 1);
+}
+
+/// Point by point: files of flow hold as many rows as the scan has points.
+void with_flow_of_the_scan_before(const Sequence& good, std::size_t scan_index, Frame& frame) {
+  const Frame before = good.read(scan_index == 0 ? 0 : scan_index - 1);
+  for (std::size_t i = 0; i < frame.points.size(); ++i) {
+    const std::size_t other = std::min(i, before.points.size() - 1);
+    frame.motions->velocities_m_s[i] = before.motions->velocities_m_s[other];
+    (*frame.truth)[i] = (*before.truth)[other];
+  }
+}
+
+/// Writes the first recording of a layout and returns what the doctor says of it.
+Checkup checkup_with(DatasetKind layout, const TempFolder& folder, ScanFault fault) {
+  Scene scene = load_scene("street");
+  if (layout == DatasetKind::kOpenSceneFlow) scene.columns = 900;
+  const SimulatedRecording recording = recordings_of(layout, scene).front();
+  SimulateOptions simulation;
+  simulation.layout = layout;
+  simulation.scans = kScans;
+  Dataset dataset;
+  dataset.kind = layout;
+  dataset.root = folder / "none";
+  dataset.sequences.push_back(
+      std::make_unique<Faulty>(simulated_sequence(simulation, scene, recording), std::move(fault)));
+  ConvertOptions options;
+  options.layout = layout;
+  options.out = folder / "data";
+  convert(dataset, options);
+  return check_up(folder / "data", {});
+}
+
+class DoctorOnFormats : public testing::TestWithParam<DatasetKind> {
+ protected:
+  void SetUp() override {
+    if (GetParam() == DatasetKind::kOpenSceneFlow && !has_hdf5()) {
+      GTEST_SKIP() << "this build is without libhdf5";
+    }
+    if (kSanitized) GTEST_SKIP() << "takes minutes in sanitized builds";
+  }
+
+  TempFolder folder_;
+};
+
+std::string said_in(const Checkup& checkup) {
+  std::string text;
+  for (const Symptom& symptom : checkup.symptoms)
+    text += symptom.where + ": " + symptom.what + "\n";
+  return text;
+}
+
+INSTANTIATE_TEST_SUITE_P(Formats, DoctorOnFormats,
+                         testing::Values(DatasetKind::kOpenSceneFlow, DatasetKind::kNuscenes,
+                                         DatasetKind::kHelipr),
+                         [](const auto& kind) { return std::string(to_string(kind.param)); });
+
+TEST_P(DoctorOnFormats, IsQuietAboutWhatIsGood) {
+  const Checkup checkup = checkup_with(GetParam(), folder_, {});
+  EXPECT_EQ(said_in(checkup), "");
+  EXPECT_EQ(checkup.kind, GetParam());
+  ASSERT_EQ(checkup.sequences.size(), 1U);
+  EXPECT_TRUE(checkup.sequences.front().poses);
+}
+
+TEST_P(DoctorOnFormats, FindsPosesThatAreAScanLate) {
+  EXPECT_THAT(said_in(checkup_with(GetParam(), folder_, with_pose_of_the_scan_before)),
+              HasSubstr("the poses fit better as one row later"));
+}
+
+TEST(DoctorOnSceneFlow, FindsAFlowThatIsAScanLate) {
+  if (!has_hdf5()) GTEST_SKIP() << "this build is without libhdf5";
+  if (kSanitized) GTEST_SKIP() << "takes minutes in sanitized builds";
+  const TempFolder folder;
+  EXPECT_THAT(
+      said_in(checkup_with(DatasetKind::kOpenSceneFlow, folder, with_flow_of_the_scan_before)),
+      HasSubstr("the labels do not fit the scans"));
+}
+
+}  // namespace
+}  // namespace mosbench
