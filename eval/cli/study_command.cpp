@@ -20,9 +20,16 @@ namespace {
 
 constexpr const char* kStudyFooter =
     R"(FILE is a YAML file that names data, methods with settings, disturbances with strengths, seeds and
-the protocol; results/studies/README.md has all its keys and examples. Each combination is a cell
-with a key: the hash of everything that decides its result. Its result is one small file in
-DIR/cells, put there in one step.
+the protocol; results/studies/README.md has all its keys. A small one:
+
+  name: mine
+  data: {name: drive, path: sim/street}
+  methods: [hmm-mos, hmm-mos-plus, {name: near, method: hmm-mos, set: {max_range_m: 10}}]
+  disturb: {kind: pose_noise_m, strengths: [0.05, 0.1]}
+  seeds: [1, 2, 3]
+
+Each combination is a cell with a key: the hash of everything that decides its result. Its result is
+one small file in DIR/cells, put there in one step.
 
   plan   counts the cells that are done and missing; --measure runs the first scans of each method
          on each sequence, so that it can tell how long it takes; --json lists all cells with

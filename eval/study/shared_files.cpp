@@ -27,9 +27,9 @@ void write_shared(const fs::path& file, const std::string& bytes) {
   std::error_code error;
   try {
     commit_file(own, bytes);
-  } catch (...) {
+  } catch (const DataError& full) {
     fs::remove(own, error);
-    throw;
+    throw DataError(fmt::format("{}, as {}", file.string(), full.what()));
   }
   fs::rename(own, file, error);
   if (!error) return;

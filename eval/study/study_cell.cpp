@@ -10,6 +10,7 @@
 #include "datasets/files/errors.hpp"
 #include "datasets/files/files.hpp"
 #include "datasets/files/json_text.hpp"
+#include "datasets/sequence/posed_sequence.hpp"
 #include "eval/protocols/metrics.hpp"
 #include "eval/protocols/summary_json.hpp"
 #include "eval/results/answer_text.hpp"
@@ -47,13 +48,27 @@ RunOptions run_options(const StudyCell& cell, const Study& study, const fs::path
   return options;
 }
 
-ordered_json worst_scans(std::vector<const ScanRow*> scans) {
+std::int64_t wrong_points(const ScanRow& row) {
+  return static_cast<std::int64_t>(row.counts->fp + row.counts->fn);
+}
+
+/// `scans` are those of a sequence that count. Scans whose map is still empty show nothing but
+/// that, and are left out of longer sequences. Of scans with the same IoU, those with more wrong
+/// points come first.
+ordered_json worst_scans(std::vector<const ScanRow*> scans, std::span<const ScanRow> sequence) {
+  constexpr std::size_t kWarmUpScans = 10;
+  if (sequence.size() > 2 * kWarmUpScans) {
+    std::erase_if(scans, [&](const ScanRow* row) { return row < &sequence[kWarmUpScans]; });
+  }
   std::erase_if(scans, [](const ScanRow* row) { return !moving_iou(*row->counts); });
-  std::ranges::stable_sort(scans, {},
-                           [](const ScanRow* row) { return moving_iou(*row->counts).value(); });
+  std::ranges::stable_sort(scans, {}, [](const ScanRow* row) {
+    return std::pair(moving_iou(*row->counts).value(), -wrong_points(*row));
+  });
   ordered_json worst = ordered_json::array();
   for (const ScanRow* row : std::span(scans).first(std::min(scans.size(), kWorstScans))) {
-    worst.push_back({{"stem", row->stem}, {"iou", moving_iou(*row->counts).value()}});
+    worst.push_back({{"stem", row->stem},
+                     {"iou", moving_iou(*row->counts).value()},
+                     {"wrong", wrong_points(*row)}});
   }
   return worst;
 }
@@ -99,7 +114,7 @@ ordered_json computed_record(const StudyCell& cell, const Study& study, const fs
   record["scans"] = rows.scans.size();
   record["summary"] =
       counts.empty() ? ordered_json(nullptr) : to_json(summarize(*plan.settings.protocol, counts));
-  record["worst"] = worst_scans(counted);
+  record["worst"] = worst_scans(counted, rows.scans);
   const auto seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   record["timing"] = {{"ms_per_scan", json_or_null(method_ms_per_scan(rows))},
@@ -129,19 +144,47 @@ std::string cost_name(const StudyCell& cell) {
 
 fs::path cost_file(const fs::path& out) { return out / "costs.json"; }
 
+/// Time that a core is taken: a program of the user's is another process and may wait for a GPU.
+double core_ms(const Cost& cost, const StudyMethod& method) {
+  return is_program(method) ? cost.wall_ms : cost.cpu_ms;
+}
+
+/// Finds poses of the first scans, and leaves the sensor standing after them. Returns the CPU time
+/// of a scan.
+double measured_odometry_ms(Sequence& sequence, const OdometryChoice& odometry) {
+  const auto& posed = dynamic_cast<const PosedSequence&>(sequence);
+  const double begin_cpu_ms = process_cpu_ms();
+  auto poses = estimate_poses(posed.unposed(), odometry, 1, kMeasuredScans);
+  const double cpu_ms = process_cpu_ms() - begin_cpu_ms;
+  if (poses.empty()) return 0;
+  const double scans = static_cast<double>(poses.size());
+  poses.resize(sequence.size(), poses.back());
+  set_poses(sequence, odometry, poses);
+  return cpu_ms / scans;
+}
+
 /// The first scans, when the map is still filling, cost less than the others; the last of them
-/// stand for those.
+/// stand for those. What the first ones cost more is the start of a program.
 ordered_json measured_cost(const StudyPlan& study, const StudyCell& cell) {
+  constexpr double kStart_s = 0.1;
   const RunPlan plan = plan_method(run_options(cell, *study.study, study.out, 1));
-  const Sequence& sequence = *plan.dataset.sequences.front();
+  Sequence& sequence = *plan.dataset.sequences.front();
+  const double odometry_ms = plan.odometry ? measured_odometry_ms(sequence, *plan.odometry) : 0;
   const SequenceProfile profile = profile_sequence(sequence, plan.settings, kMeasuredScans);
   const std::size_t half = profile.scans.size() / 2;
-  double cpu_ms = 0, memory_mib = 0;
-  for (std::size_t k = half; k < profile.scans.size(); ++k) {
-    cpu_ms += profile.scans[k].method.cpu_ms + profile.scans[k].read.cpu_ms;
-    memory_mib = std::max(memory_mib, profile.scans[k].resident_mib);
+  double first_ms = 0, later_ms = 0, memory_mib = 0;
+  for (std::size_t k = 0; k < profile.scans.size(); ++k) {
+    const ScanProfile& scan = profile.scans[k];
+    const double ms = core_ms(scan.method, *cell.method) + core_ms(scan.read, *cell.method);
+    (k < half ? first_ms : later_ms) += ms;
+    memory_mib = std::max(memory_mib, scan.resident_mib);
   }
-  return {{"ms_per_scan", cpu_ms / static_cast<double>(profile.scans.size() - half)},
+  if (is_program(*cell.method)) memory_mib += most_memory_of_children_mib();
+  const double later_scans = static_cast<double>(profile.scans.size() - half);
+  const double ms_per_scan = later_ms / later_scans;
+  const double start_ms = first_ms - ms_per_scan * static_cast<double>(half);
+  return {{"start_s", std::max(kStart_s, 1e-3 * start_ms)},
+          {"ms_per_scan", ms_per_scan + odometry_ms},
           {"scans", sequence.size()},
           {"memory_mib", memory_mib}};
 }
@@ -197,11 +240,11 @@ void measure_costs(const StudyPlan& plan) {
 }
 
 std::optional<double> CostModel::seconds(const StudyCell& cell) const {
-  constexpr double kStart_s = 0.1;
   const std::string name = cost_name(cell);
+  const auto start_s = number_in(costs, name, "start_s");
   const auto ms = number_in(costs, name, "ms_per_scan"), scans = number_in(costs, name, "scans");
-  if (!ms || !scans) return std::nullopt;
-  return kStart_s + 1e-3 * *ms * *scans;
+  if (!start_s || !ms || !scans) return std::nullopt;
+  return *start_s + 1e-3 * *ms * *scans;
 }
 
 std::optional<double> CostModel::memory_mib(const StudyCell& cell) const {

@@ -12,6 +12,7 @@
 #include "datasets/files/files.hpp"
 #include "datasets/files/text.hpp"
 #include "datasets/simulator/simulate.hpp"
+#include "datasets/simulator/simulated_layouts.hpp"
 #include "eval/results/reading_json.hpp"
 #include "eval/results/settings_json.hpp"
 #include "eval/runs/method_choice.hpp"
@@ -75,10 +76,10 @@ std::vector<StudyData> simulations_of(const std::string& name, const YamlNode& n
   node.check_keys({"layout", "scene", "scans", "seed"});
   StudySimulation simulation;
   const YamlNode layout = node.at("layout");
-  const auto kind = dataset_kind_from_string(layout.text());
-  if (!kind || !is_written(*kind)) {
+  const auto kind = simulated_layout_from_string(layout.text());
+  if (!kind) {
     layout.refuse(fmt::format("layout {} is not known", mosbench::quoted(layout.text())),
-                  "doals, sipailou, helimos, semantickitti or opensceneflow");
+                  simulated_layout_names());
   }
   simulation.layout = *kind;
   const YamlNode scene = node.at("scene");
@@ -127,13 +128,27 @@ std::vector<StudyData> data_of(const YamlNode& node, const fs::path& file) {
   return data;
 }
 
+StudyMethod plain_method(const std::string& name) {
+  StudyMethod method;
+  method.name = method.method = name;
+  return method;
+}
+
+/// A method by its name, or "all" of them.
+std::vector<StudyMethod> plain_methods(const YamlNode& node) {
+  std::vector<StudyMethod> methods;
+  if (node.text() == "all") {
+    for (const std::string& name : chosen_methods("all").names)
+      methods.push_back(plain_method(name));
+  } else {
+    node.located([&] { return &method_named(node.text()); });
+    methods.push_back(plain_method(node.text()));
+  }
+  return methods;
+}
+
 StudyMethod method_of(const YamlNode& node) {
   StudyMethod method;
-  if (!node.is_map()) {
-    method.name = method.method = node.text();
-    node.located([&] { return &method_named(method.method); });
-    return method;
-  }
   node.check_keys({"name", "method", "preset", "set"});
   method.method = node.at("method").text();
   const MethodKind* kind = node.at("method").located([&] { return &method_named(method.method); });
@@ -306,7 +321,10 @@ Study parse_study(const std::string& text, const fs::path& file) {
   for (const YamlNode& node : root.at("data").list()) {
     for (StudyData& data : data_of(node, file)) study.data.push_back(std::move(data));
   }
-  for (const YamlNode& node : root.at("methods").list()) study.methods.push_back(method_of(node));
+  for (const YamlNode& node : root.at("methods").list()) {
+    const auto methods = node.is_map() ? std::vector{method_of(node)} : plain_methods(node);
+    study.methods.insert(study.methods.end(), methods.begin(), methods.end());
+  }
   check_names(root.at("data"), study.data);
   check_names(root.at("methods"), study.methods);
   read_rest(root, study);

@@ -65,7 +65,7 @@ ordered_json sequence_json(const StudyData& data, const std::string& name) {
 /// methods.
 std::string program_of(const StudyMethod& method) {
   std::string contents;
-  if (!method.method.starts_with("exec:")) return contents;
+  if (!is_program(method)) return contents;
   std::istringstream command(method.method.substr(5));
   for (std::string word; !(command >> std::ws).eof();) {
     const char quote = static_cast<char>(command.peek());
@@ -108,8 +108,12 @@ std::vector<KnownSequence> sequences_of(const StudyData& data) {
   std::vector<KnownSequence> sequences;
   std::optional<DatasetKind> kind;
   const OpenOptions options{dataset_kind_option(data.dataset), data.sequences, data.reading};
-  for (const SequenceFolder& folder : find_sequences(data.path, options, kind)) {
-    sequences.push_back({folder.name, sequence_json(data, folder.name)});
+  try {
+    for (const SequenceFolder& folder : find_sequences(data.path, options, kind)) {
+      sequences.push_back({folder.name, sequence_json(data, folder.name)});
+    }
+  } catch (const UsageError& error) {
+    throw UsageError(fmt::format("{}: {}", data.name, error.what()));
   }
   return sequences;
 }
@@ -129,6 +133,7 @@ class CellLister {
         {"data", sequence},
         {"method", cell.method->method},
         {"preset", cell.method->preset.value_or("")},
+        {"odometry", cell.odometry},
         {"set",
          cell.method->assignments}}.dump());
     add(cell, sequence);
@@ -240,6 +245,8 @@ std::string StudyCell::label() const {
 std::string StudyCell::sequence_label() const { return fmt::format("{} {}", data->name, sequence); }
 
 std::string StudyCell::group_label() const { return fmt::format("{} {}", data->group, sequence); }
+
+bool is_program(const StudyMethod& method) { return method.method.starts_with("exec:"); }
 
 bool has_setting(const StudyMethod& method, const std::string& name) {
   return method_named(method.method).defaults.find(name) != nullptr;

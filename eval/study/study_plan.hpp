@@ -39,6 +39,9 @@ struct StudyCell {
   std::string title() const;
 };
 
+/// Whether a method is a program of the user's, which runs in a process of its own.
+bool is_program(const StudyMethod& method);
+
 /// Whether a method has a setting of this name.
 bool has_setting(const StudyMethod& method, const std::string& name);
 

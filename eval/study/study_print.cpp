@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 
 #include "eval/report/report_asset.hpp"
 #include "eval/results/answer_text.hpp"
@@ -43,7 +44,8 @@ TextRows overview_rows(const StudyTable& table) {
 }
 
 std::string axis_title(const StudyCurve& curve) {
-  return curve.unit.empty() ? curve.axis : fmt::format("{}, {}", curve.axis, curve.unit);
+  const bool has_unit = !curve.unit.empty() && curve.unit != "1";  // as of a probability
+  return has_unit ? fmt::format("{}, {}", curve.axis, curve.unit) : curve.axis;
 }
 
 TextRows curve_rows(const StudyTable& table, const StudyCurve& curve, const std::string& title) {
@@ -81,6 +83,33 @@ TextRows effect_rows(const StudyTable& table) {
   return rows;
 }
 
+/// "36 of 36 cells are done; they took 12 s of one core, 1.20 times the 10 s that were expected".
+std::string work_done_text(const StudyTable& table) {
+  std::string text = fmt::format("{} of {} cells are done; they took {} of one core", table.done,
+                                 table.cells, duration_text(*table.core_s));
+  if (!table.predicted_s || *table.predicted_s <= 0) return text;
+  return text + fmt::format(", {:.2f} times the {} that were expected",
+                            *table.core_s / *table.predicted_s, duration_text(*table.predicted_s));
+}
+
+/// A line per reason: a bad scan fails every cell of its sequence.
+std::string failures_text(const StudyTable& table) {
+  std::vector<std::string> reasons;
+  std::map<std::string, std::vector<std::string>> cells;
+  for (const StudyGap& gap : table.failures) {
+    if (cells[gap.why].empty()) reasons.push_back(gap.why);
+    cells[gap.why].push_back(gap.title);
+  }
+  std::string text;
+  for (const std::string& why : reasons) {
+    const std::vector<std::string>& failed = cells[why];
+    const std::string more =
+        failed.size() == 1 ? "" : fmt::format(" and {} more cells", failed.size() - 1);
+    text += fmt::format("{}{}: {}\n", failed.front(), more, why);
+  }
+  return text;
+}
+
 std::string remarks_text(const StudyTable& table) {
   std::string text =
       "+- is half of the 95 % interval of the mean over sequences, each the mean of its seeds, or\n"
@@ -100,18 +129,11 @@ std::string remarks_text(const StudyTable& table) {
         table.ranked_sequences, *table.critical_difference);
   }
   if (table.simulated) text += "simulated data: not comparable with published numbers\n";
-  if (table.cpu_s) {
-    text += fmt::format("{} of {} cells are done; they took {} of CPU time", table.done,
-                        table.cells, duration_text(*table.cpu_s));
-    text += table.predicted_s
-                ? fmt::format(", {} were expected\n", duration_text(*table.predicted_s))
-                : "\n";
-  }
+  if (table.core_s) text += fmt::format("{}\n", work_done_text(table));
   if (table.done < table.cells) {
     text += fmt::format("INCOMPLETE: {} cells are missing\n", table.cells - table.done);
   }
-  for (const StudyGap& gap : table.failures) text += fmt::format("{}: {}\n", gap.title, gap.why);
-  return text;
+  return text + failures_text(table);
 }
 
 ordered_json to_json(const StudyMean& mean) {
@@ -210,7 +232,7 @@ ordered_json to_json(const StudyTable& table) {
                        {"simulated", table.simulated},
                        {"cells", table.cells},
                        {"done", table.done},
-                       {"cpu_s", json_or_null(table.cpu_s)},
+                       {"cpu_s", json_or_null(table.core_s)},
                        {"predicted_cpu_s", json_or_null(table.predicted_s)},
                        {"ranked_sequences", table.ranked_sequences},
                        {"critical_difference", json_or_null(table.critical_difference)},

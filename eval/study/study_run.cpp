@@ -63,6 +63,12 @@ ordered_json group_json(const Group& group, std::size_t number) {
   return json;
 }
 
+/// Where cells are computed: a program's command may name files from where it is typed. Other nodes
+/// need not have that folder for anything else.
+fs::path folder_of_commands(const StudyPlan& plan, const fs::path& out) {
+  return std::ranges::any_of(plan.study->methods, is_program) ? fs::current_path() : out;
+}
+
 /// Writes what Snakemake reads to OUT/workflow, and returns the folder of the profile.
 fs::path write_workflow(const fs::path& out, const ordered_json& plan, const std::string& profile) {
   const fs::path folder = out / "workflow";
@@ -130,6 +136,7 @@ int run_engine(const StudyPlan& plan, const CostModel& costs, const EngineOption
   const double even_s = work.cpu_s.value_or(0) / 64;  // so that cores end together
   const auto groups = groups_of(work, costs, local ? std::min(kGroup_s, even_s) : kGroup_s);
   ordered_json json = {{"program", options.program.string()},
+                       {"folder", folder_of_commands(plan, out).string()},
                        {"study", fs::absolute(plan.study->file).string()},
                        {"out", out.string()},
                        {"threads", options.threads},

@@ -260,6 +260,7 @@ std::string command_for(const StudyPlan& plan, const StudyCell& cell) {
 
 struct BadScan {
   double iou = 0;
+  std::int64_t wrong = 0;  ///< points
   std::string stem;
   const StudyCell* cell = nullptr;
 };
@@ -273,9 +274,11 @@ void list_worst(const StudyPlan& plan, const DoneCells& cells, StudyTable& table
       if (each.label != label || !each.record().contains("worst")) continue;
       const ordered_json& scans = each.record().at("worst");
       if (scans.empty()) continue;
-      worst.push_back({scans[0].value("iou", 0.0), scans[0].value("stem", ""), &each.cell()});
+      worst.push_back({scans[0].value("iou", 0.0), scans[0].value("wrong", std::int64_t{0}),
+                       scans[0].value("stem", ""), &each.cell()});
     }
-    std::ranges::stable_sort(worst, {}, &BadScan::iou);
+    std::ranges::stable_sort(worst, {},
+                             [](const BadScan& scan) { return std::pair(scan.iou, -scan.wrong); });
     worst.resize(std::min(worst.size(), kOfEach));
     for (const BadScan& scan : worst) {
       table.worst.push_back(
@@ -286,7 +289,7 @@ void list_worst(const StudyPlan& plan, const DoneCells& cells, StudyTable& table
 
 void count_cells(const StudyPlan& plan, StudyTable& table) {
   const CostModel costs = read_costs(plan.out);
-  double cpu_s = 0, predicted_s = 0;
+  double core_s = 0, predicted_s = 0;
   bool all_predicted = true;
   for (const PlannedCell& planned : plan.cells) {
     ++table.cells;
@@ -296,13 +299,14 @@ void count_cells(const StudyPlan& plan, StudyTable& table) {
     if (planned.state != CellState::kDone) continue;
     ++table.done;
     table.simulated = table.simulated || planned.record.value("simulated", false);
-    cpu_s += number_in(planned.record, "timing", "cpu_s").value_or(0);
+    const char* time = is_program(*planned.cell.method) ? "wall_s" : "cpu_s";
+    core_s += number_in(planned.record, "timing", time).value_or(0);
     const auto expected_s = costs.seconds(planned.cell);
     all_predicted = all_predicted && expected_s.has_value();
     predicted_s += expected_s.value_or(0);
   }
   if (table.done == 0) return;
-  table.cpu_s = cpu_s;
+  table.core_s = core_s;
   if (all_predicted) table.predicted_s = predicted_s;
 }
 

@@ -66,8 +66,9 @@ struct StudyTable {
   std::vector<StudyWorst> worst;
   std::vector<StudyGap> failures;
   std::size_t cells = 0, done = 0;
-  /// CPU time of what is done, and what costs.json said of it.
-  std::optional<double> cpu_s, predicted_s;
+  /// Time of one core for what is done, and what costs.json said of it. Programs of the user's
+  /// count for as long as they last.
+  std::optional<double> core_s, predicted_s;
 };
 
 /// Gathers what lies there.

@@ -1,9 +1,16 @@
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sched.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdlib>
+#include <cstring>
+#include <functional>
+#include <map>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "tests/cli/program.hpp"
@@ -15,6 +22,13 @@ namespace {
 
 using nlohmann::ordered_json;
 using testing::HasSubstr;
+
+bool within_10_s(const std::function<bool()>& is_so) {
+  for (int i = 0; i < 1000 && !is_so(); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  return is_so();
+}
 
 /// Two small sequences, two methods, one disturbance.
 class Studies : public testing::Test {
@@ -39,13 +53,23 @@ disturb: {kind: range_noise_m, strengths: [0.05]}
     if (std::find(words.begin(), words.end(), "--out") == words.end()) {
       all.insert(all.end(), {"--out", path("out")});
     }
-    return cli::run(all);
+    return cli::run(all, go_there());
+  }
+  /// Commands of programs may name files of the folder.
+  std::function<void()> go_there() const {
+    return [there = folder_.path()] { std::filesystem::current_path(there); };
   }
   std::vector<std::string> keys() const {
     const auto plan = ordered_json::parse(study("plan", {"--json"}).out);
     std::vector<std::string> keys;
     for (const auto& cell : plan.at("cells")) keys.push_back(cell.at("key"));
     return keys;
+  }
+  std::size_t cells_in(const std::string& out) const {
+    const auto files = std::filesystem::directory_iterator(folder_ / out / "cells");
+    return static_cast<std::size_t>(std::count_if(begin(files), end(files), [](const auto& entry) {
+      return !entry.path().filename().string().starts_with('.');
+    }));
   }
   ordered_json record(const std::string& out, const std::string& key) const {
     auto json = ordered_json::parse(read_file(folder_.path() / out / "cells" / (key + ".json")));
@@ -102,6 +126,7 @@ TEST_F(Studies, GoOnWhereOneSequenceIsBad) {
   const cli::Answer table = study("table");
   EXPECT_EQ(table.exit_code, 1);
   EXPECT_THAT(table.out, HasSubstr("4 of 8 cells are done"));
+  EXPECT_THAT(table.out, HasSubstr("small 01, hmm-mos and 3 more cells: "));
   EXPECT_THAT(table.out, HasSubstr("000003.bin"));
   cli::write_small_sequence(folder_ / "data/sequences/01", 6);
   EXPECT_EQ(study("cell", keys()).exit_code, 0);
@@ -130,16 +155,18 @@ TEST_F(Studies, AreTheSameFromTwoProcessesAtOnce) {
   const std::vector<std::string> all = keys();
   std::vector<std::string> words = {"study", "cell", path("s.yaml"), all[0], "--out", path("two")};
   const TempFolder one, two;
-  const pid_t first = cli::start(words, one.path()), second = cli::start(words, two.path());
+  const auto on_host = [](const char* name) {
+    return [name] {  // without the right to it they are on one host
+      if (unshare(CLONE_NEWUTS) == 0 && sethostname(name, std::strlen(name)) != 0) _exit(126);
+    };
+  };
+  const pid_t first = cli::start(words, one.path(), on_host("node-1"));
+  const pid_t second = cli::start(words, two.path(), on_host("node-2"));
   EXPECT_EQ(cli::wait_for(first), 0);
   EXPECT_EQ(cli::wait_for(second), 0);
   ASSERT_EQ(study("cell", {all[0]}).exit_code, 0);
   EXPECT_EQ(record("two", all[0]), record("out", all[0]));
-  std::size_t files = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(folder_ / "two/cells")) {
-    files += entry.is_regular_file();
-  }
-  EXPECT_EQ(files, 1u);
+  EXPECT_EQ(cells_in("two"), 1u);
 }
 
 TEST_F(Studies, ComputeAgainWhatAnotherVersionLeft) {
@@ -165,16 +192,70 @@ TEST_F(Studies, TellTheHoursOnceTheyAreMeasured) {
   EXPECT_THAT(study("plan").out, HasSubstr("--measure tells"));
 }
 
+/// A program that waits for a network or a GPU takes a core all the same, and jobs of a cluster
+/// that count its CPU time alone would be killed.
+TEST_F(Studies, ExpectProgramsAndOdometryToTakeTheirTime) {
+  folder_.write("s.yaml", fmt::format(R"(name: s
+data: {{name: small, path: data, dataset: semantickitti, sequences: ["00"]}}
+methods:
+  - {{name: slow, method: "exec:sleep 0.3; {}/examples/exec_client"}}
+  - underwood
+odometry: [none, simple]
+)",
+                                      MOSBENCH_BINARY_DIR));
+  ASSERT_EQ(study("plan", {"--measure"}).exit_code, 0);
+  std::map<std::string, double> seconds;
+  const auto plan = ordered_json::parse(study("plan", {"--json"}).out);
+  for (const auto& cell : plan.at("cells")) {
+    seconds[cell.at("title")] = cell.at("seconds");
+  }
+  EXPECT_GT(seconds["small 00, slow"], 0.3);
+  EXPECT_GT(seconds["small 00, underwood, poses by simple"], seconds["small 00, underwood"]);
+  ASSERT_EQ(study("cell", {keys().front()}).exit_code, 0);
+  const auto table = ordered_json::parse(study("table", {"--format", "json"}).out);
+  EXPECT_GT(table.at("cpu_s"), 0.3);
+  EXPECT_GT(table.at("predicted_cpu_s"), 0.3);
+}
+
+TEST_F(Studies, GoOnWhenADiskWasFull) {
+  const std::vector<std::string> all = keys();
+  std::vector<std::string> words = {"study", "cell", path("s.yaml")};
+  words.insert(words.end(), all.begin(), all.end());
+  words.insert(words.end(), {"--out", path("out")});
+  const cli::Answer full = cli::run(words, [] {
+    signal(SIGXFSZ, SIG_IGN);
+    const struct rlimit small { 1000, 1000 };
+    setrlimit(RLIMIT_FSIZE, &small);
+  });
+  EXPECT_EQ(full.exit_code, 3);
+  EXPECT_THAT(full.err, HasSubstr(all.front() + ".json, as "));
+  EXPECT_THAT(full.err, HasSubstr("cannot be written"));
+  EXPECT_TRUE(std::filesystem::is_empty(folder_ / "out/cells")) << "no half of a record";
+  EXPECT_EQ(study("cell", all).exit_code, 0);
+}
+
 TEST_F(Studies, AreRunBySnakemakeAndGoOnWhereTheyWereLeft) {
   if (std::system("snakemake --version > /dev/null 2>&1") != 0) {
     GTEST_SKIP() << "snakemake is not installed";
   }
+  std::filesystem::create_symlink(MOSBENCH_BINARY_DIR "/examples/exec_client", folder_ / "ours");
+  const std::string text = read_file(folder_ / "s.yaml");
+  folder_.write("s.yaml", std::string(text).replace(text.find("- underwood"), 11,
+                                                    "- {name: ours, method: \"exec:./ours\"}"));
   const std::vector<std::string> all = keys();
   const std::string odd = "out #1: {x}";  // neither YAML nor what Snakemake formats
   ASSERT_EQ(study("cell", {all[2], "--out", path(odd)}).exit_code, 0);
+  const TempFolder streams;
+  const pid_t killed =
+      cli::start({"study", "run", path("s.yaml"), "--out", path(odd)}, streams.path(), [&] {
+        setpgid(0, 0);
+        go_there()();
+      });
+  EXPECT_TRUE(within_10_s([&] { return cells_in(odd) > 1; })) << read_file(streams / "stderr.txt");
+  kill(-killed, SIGKILL);  // Snakemake, too
+  EXPECT_EQ(cli::wait_for(killed), 128 + SIGKILL);
   const cli::Answer run = study("run", {"--out", path(odd)});
   EXPECT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_THAT(run.err, HasSubstr("7 cells in "));
   EXPECT_THAT(run.out, HasSubstr("8 of 8 cells are done"));
   EXPECT_THAT(study("run", {"--out", path(odd)}).err, HasSubstr("nothing is to be computed"));
   ASSERT_EQ(study("cell", {all[0], "--out", path("alone")}).exit_code, 0);

@@ -9,6 +9,7 @@
 #include "datasets/files/errors.hpp"
 #include "eval/results/answer_text.hpp"
 #include "eval/results/version.hpp"
+#include "eval/runs/method_choice.hpp"
 #include "eval/study/study_cell.hpp"
 #include "eval/study/study_file.hpp"
 #include "eval/study/study_run.hpp"
@@ -100,6 +101,17 @@ TEST(StudyFile, DisturbsByOneKindAtATime) {
               StartsWith("s.yaml:10: \"0.05,rain_mm_per_h=3\" is more than one value"));
   EXPECT_THAT(error("strengths: [1]", "strengths: [1], with: {beams_of: \"64,beams=32\"}"),
               StartsWith("s.yaml:11: \"64,beams=32\" is more than one value"));
+}
+
+TEST(StudyFile, MayNameAllMethods) {
+  const std::string text = kSmallStudy;
+  const Study study = parse_study(
+      text.substr(0, text.find("methods:")) + "methods: [all, {name: near, method: yoon}]\n",
+      "s.yaml");
+  const auto all = chosen_methods("all").names;
+  ASSERT_EQ(study.methods.size(), all.size() + 1);
+  for (std::size_t i = 0; i < all.size(); ++i) EXPECT_EQ(study.methods[i].name, all[i]);
+  EXPECT_EQ(study.methods.back().name, "near");
 }
 
 TEST(StudyFile, IsOneDocument) {
@@ -242,7 +254,7 @@ TEST(StudyTable, HasMeansRanksAndTheParetoFront) {
   EXPECT_TRUE(table.rows[0].is_on_front);
   EXPECT_FALSE(table.rows[1].is_on_front);
   EXPECT_FALSE(table.rows[0].metrics[2].value);
-  EXPECT_NEAR(*table.cpu_s, 9 * 36.0, 1e-12);
+  EXPECT_NEAR(*table.core_s, 9 * 36.0, 1e-12);
   EXPECT_TRUE(table.simulated);
   EXPECT_EQ(table.worst.front().iou, 0.3);
   EXPECT_THAT(study_text(table), AllOf(HasSubstr("simulated data"), HasSubstr("70.0 +- 24.8")));

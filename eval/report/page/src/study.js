@@ -14,13 +14,22 @@ function meanText({ value, low, high }) {
   return percent(value) + interval;
 }
 
+/** The unit of an axis; a probability has none to show. */
+const unitOf = ({ unit }) => (unit === '1' ? '' : unit);
+
+/** 1, 2 and 5 times powers of ten from `low` to `high`: uPlot begins a logarithmic axis at its end. */
+export function logTicks(low, high) {
+  const powers = Array.from({ length: 16 }, (_, i) => i - 6);
+  return powers.flatMap((power) => [1, 2, 5].map((digit) => Number(`${digit}e${power}`))).filter((tick) => low <= tick && tick <= high);
+}
+
 /** A metric over the strengths of one disturbance, a line per method; bars are intervals. */
 export function curveChart(curve, metric) {
   const places = curve.values.map((_, i) => i);
   return {
     key: `${curve.axis}-${metric}`,
     title: `${METRICS[metric]} by ${curve.axis}`,
-    note: curve.unit,
+    note: unitOf(curve),
     x: places,
     series: curve.lines.map(({ label, points }, i) => ({
       label, values: points.map((point) => point[metric].value), points: { show: true, size: 6 }, ...runLine(i),
@@ -30,7 +39,10 @@ export function curveChart(curve, metric) {
       xScale: { range: [-0.3, places.length - 0.7] },
       xAxis: { incrs: [1], values: (_, ticks) => ticks.map((i) => curve.values[i] ?? '') },
       yScale: { range: [0, 1.02] }, yAxis: { values: PERCENT_TICKS },
-      whiskers: curve.lines.flatMap(({ points }, i) => points.map((point, x) => ({ x, low: point[metric].low, high: point[metric].high, colour: runLine(i).colour }))),
+      // Side by side, or the last would hide the others.
+      whiskers: curve.lines.flatMap(({ points }, i) => points.map((point, place) => ({
+        x: place + 0.05 * (i - (curve.lines.length - 1) / 2), low: point[metric].low, high: point[metric].high, colour: runLine(i).colour,
+      }))),
     },
   };
 }
@@ -50,10 +62,9 @@ export function paretoChart(rows) {
       ...row.line, points: { show: true, size: 10 },
     })),
     options: {
-      text: percent, xLabel: 'ms per scan', xScale: { distr: 3, range: [sorted[0].ms_per_scan / 1.5, sorted.at(-1).ms_per_scan * 1.5] }, yScale: { range: [0, 1.02] }, yAxis: { values: PERCENT_TICKS },
+      text: percent, xLabel: 'ms per scan', xScale: { distr: 3, range: [sorted[0].ms_per_scan / 2, sorted.at(-1).ms_per_scan * 2] }, yScale: { range: [0, 1.02] }, yAxis: { values: PERCENT_TICKS },
       xValue: (_, v) => fixed(v, 1), xAxis: {
-        filter: (_, ticks) => ticks.map((tick) => (/^[125]/.test(tick.toExponential(0)) ? tick : null)),
-        values: (_, ticks) => ticks.map((tick) => (tick === null ? '' : String(tick))),
+        splits: (_, axis, low, high) => logTicks(low, high), filter: (_, ticks) => ticks, values: (_, ticks) => ticks.map(String),
       },
     },
   };
@@ -76,15 +87,27 @@ function effects(study) {
   });
 }
 
+/** Cells by why they failed: a bad scan fails every cell of its sequence. */
+export function byReason(failures) {
+  const cells = new Map();
+  for (const { cell, why } of failures) cells.set(why, [...(cells.get(why) ?? []), cell]);
+  return cells;
+}
+
+/** What is bad, and what one should know. */
 function remarks(study) {
-  const lines = [];
-  if (study.simulated) lines.push('Simulated data: not comparable with published numbers.');
+  const bad = [];
+  const lines = ['Means are over sequences, each the mean of its seeds, or over the seeds of one. Numbers behind them, and bars, are 95 % intervals; of fewer than three there are none.'];
+  if (study.simulated) bad.push('Simulated data: not comparable with published numbers.');
   if (study.critical_difference !== null) {
     lines.push(`Mean ranks over ${study.ranked_sequences} sequences differ at 5 % where they are more than ${study.critical_difference.toFixed(2)} apart (Nemenyi).`);
   }
-  if (study.done < study.cells) lines.push(`${study.cells - study.done} of ${study.cells} cells are missing.`);
-  for (const { cell, why } of study.failures) lines.push(`Failed: ${cell}: ${why}`);
-  return lines.map((line) => element('p', { class: 'notice' }, line));
+  if (study.cpu_s !== null && study.predicted_cpu_s) {
+    lines.push(`The ${study.done} cells that are done took ${(study.cpu_s / study.predicted_cpu_s).toFixed(2)} times the time that was expected.`);
+  }
+  if (study.done < study.cells) bad.push(`${study.cells - study.done} of ${study.cells} cells are missing.`);
+  for (const [why, cells] of byReason(study.failures)) bad.push(`Failed: ${cells[0]}${cells.length > 1 ? ` and ${cells.length - 1} more cells` : ''}: ${why}`);
+  return [...bad.map((line) => element('p', { class: 'notice' }, line)), ...lines.map((line) => element('p', { class: 'notice quiet' }, line))];
 }
 
 /** The worst scans link to the command that shows them in a report. */
@@ -95,7 +118,7 @@ function worstScans(study) {
     label, element('a', { href: `#${commands.get(command).id}` }, cell), stem, percent(iou),
   ]);
   const shown = [...commands].map(([command, { cell, id }]) => element('div', { class: 'block', id }, element('p', {}, cell), element('pre', {}, command)));
-  return [block('Worst scans', null, table(['method', 'cell', 'scan', 'IoU'], rows, { leftColumns: 3 })), ...shown];
+  return [block('Worst scans', 'Of longer sequences without the first ten scans, whose maps are still empty.', table(['method', 'cell', 'scan', 'IoU'], rows, { leftColumns: 3 })), ...shown];
 }
 
 function draw(study) {

@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { curveChart, paretoChart } from '../src/study.js';
+import { byReason, curveChart, logTicks, paretoChart } from '../src/study.js';
 
 const point = (value, low, high) => ({ iou: { value, low, high }, precision: { value: 1 }, recall: { value: null } });
 const curve = {
@@ -14,7 +14,18 @@ test('a curve has a line per method over the strengths, and bars where there are
   assert.deepEqual(chart.series.map(({ label, values }) => [label, values]), [['a', [0.8, 0.6]], ['b', [0.5, null]]]);
   assert.deepEqual(chart.options.xAxis.values(null, [0, 1, 2]), ['none', '0.05', '']);
   const bars = chart.options.whiskers.filter(({ low }) => low !== undefined);
-  assert.deepEqual(bars.map(({ x, low, high }) => [x, low, high]), [[0, 0.7, 0.9]]);
+  assert.deepEqual(bars.map(({ x, low, high }) => [x, low, high]), [[-0.025, 0.7, 0.9]]);
+  assert.equal(curveChart({ ...curve, unit: '1' }, 'iou').note, '');
+});
+
+test('cells that failed alike are told once', () => {
+  const failures = [{ cell: 'a', why: 'cut off' }, { cell: 'b', why: 'no pose' }, { cell: 'c', why: 'cut off' }];
+  assert.deepEqual([...byReason(failures)], [['cut off', ['a', 'c']], ['no pose', ['b']]]);
+});
+
+test('ticks of a logarithmic axis are round numbers', () => {
+  assert.deepEqual(logTicks(11.393111303703705, 78), [20, 50]);
+  assert.deepEqual(logTicks(0.05, 1), [0.05, 0.1, 0.2, 0.5, 1]);
 });
 
 test('the Pareto plot has a dot per method with IoU and time, and none without', () => {
