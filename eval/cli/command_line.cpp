@@ -59,6 +59,7 @@ struct Program {
     for (const Command& row : commands()) {
       CLI::App* command = app.add_subcommand(std::string(row.name), std::string(row.help));
       command->group("Commands");
+      if (!row.alias.empty()) command->alias(std::string(row.alias));
       runs[command] = row.add(*command);
       refuse_flags_as_values(*command);
     }

@@ -4,6 +4,11 @@
 
 namespace mosbench {
 
+std::vector<std::string_view> Command::names() const {
+  if (alias.empty()) return {name};
+  return {name, alias};
+}
+
 std::span<const Command> commands() {
   static constexpr std::array kCommands = {
       Command{"simulate", "Write a simulated data set with exact truth", add_simulate},
@@ -15,7 +20,8 @@ std::span<const Command> commands() {
       Command{"curve", "Draw precision over recall for all thresholds of the scores", add_curve},
       Command{"table", "Print a published table with measured values next to it", add_table},
       Command{"reproduce", "Run all that a table of the paper needs", add_reproduce},
-      Command{"rank", "Rank runs on the same scans, with what differs in them", add_rank},
+      Command{"rank", "Rank runs on the same scans, with what differs in them", add_rank,
+              "leaderboard"},
       Command{"stats", "Print the intervals of a run, or the difference of two", add_stats},
       Command{"breakdown", "Show where predictions are right and wrong", add_breakdown},
       Command{"diff", "List the scans and objects on which two runs disagree", add_diff},

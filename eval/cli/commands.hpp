@@ -4,6 +4,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace CLI {
 class App;
@@ -26,6 +27,10 @@ struct Command {
   std::string_view help;  ///< one line
   /// Adds the command's flags to its parser and returns what runs it after the parsing.
   CommandRun (*add)(CLI::App& command);
+  std::string_view alias{};  ///< another name that it answers to; empty: none
+
+  /// Returns all names that it answers to, its own first.
+  std::vector<std::string_view> names() const;
 };
 
 /// All commands, in the order in which --help shows them.

@@ -99,6 +99,7 @@ std::vector<std::string> flags_of(const CLI::Option& option) {
 
 std::string bash_completion(const CLI::App& program) {
   std::string values, flags;
+  std::vector<std::string_view> names;
   for (const Command& row : commands()) {
     std::vector<std::string> words;
     for (const CLI::Option* option : program.get_subcommand(std::string(row.name))->get_options()) {
@@ -106,14 +107,17 @@ std::string bash_completion(const CLI::App& program) {
       for (const std::string& flag : flags_of(*option)) {
         words.push_back(flag);
         if (is_flag(*option)) continue;
-        values +=
-            fmt::format("      '{} {}') words='{}' ;;\n", row.name, flag, fmt::join(possible, " "));
+        for (const std::string_view name : row.names()) {
+          values +=
+              fmt::format("      '{} {}') words='{}' ;;\n", name, flag, fmt::join(possible, " "));
+        }
       }
       if (option->get_positional()) words.insert(words.begin(), possible.begin(), possible.end());
     }
-    flags += fmt::format("        {}) words='{}' ;;\n", row.name, fmt::join(words, " "));
+    flags += fmt::format("        {}) words='{}' ;;\n", fmt::join(row.names(), "|"),
+                         fmt::join(words, " "));
+    for (const std::string_view name : row.names()) names.push_back(name);
   }
-  const auto names = names_of(commands(), &Command::name);
   return fmt::format(kBash, fmt::join(names, " "), values, flags);
 }
 
@@ -142,8 +146,10 @@ std::string zsh_argument(const CLI::Option& option) {
 std::string zsh_completion(const CLI::App& program) {
   std::string names, cases;
   for (const Command& row : commands()) {
-    names += fmt::format("    '{}:{}'\n", row.name, plain(std::string(row.help)));
-    cases += fmt::format("    {})\n      _arguments", row.name);
+    for (const std::string_view name : row.names()) {
+      names += fmt::format("    '{}:{}'\n", name, plain(std::string(row.help)));
+    }
+    cases += fmt::format("    {})\n      _arguments", fmt::join(row.names(), "|"));
     for (const CLI::Option* option : program.get_subcommand(std::string(row.name))->get_options()) {
       if (!option->get_group().empty()) cases += zsh_argument(*option);
     }

@@ -24,7 +24,8 @@ the layouts of DOALS it becomes rows of indices.csv with the points of ids 251 t
 without stamps get stamps 0.1 s apart. ROS 2 bags have the topics /points, where truth is the field
 label, and /tf. OpenSceneFlow's .h5 files keep the flow of DATA; truth without speeds becomes the
 array mos_label. As nuscenes each sequence is a scene with tables of its own, and each moving
-point an annotation.
+point an annotation. As kitti-raw and kitti-tracking points that move are in boxes that do, and what
+the camera does not see has no label.
 
 Examples:
   mosbench convert ~/doals/station/sequence_1 --layout semantickitti --out ~/doals-kitti
@@ -100,7 +101,8 @@ CommandRun add_convert(CLI::App& command) {
   command.add_option("--layout", options->layout, "Layout to write")
       ->required()
       ->check(CLI::IsMember({"doals", "doals-bag", "sipailou", "helimos", "semantickitti",
-                             "opensceneflow", "nuscenes", "helipr", "ros2-mcap", "ros2-db3"}));
+                             "opensceneflow", "nuscenes", "helipr", "kitti-raw", "kitti-tracking",
+                             "ros2-mcap", "ros2-db3"}));
   command.add_option("--out", options->conversion.out, "Root of the data set to write")
       ->type_name("DIR")
       ->required();

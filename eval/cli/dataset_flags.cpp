@@ -92,7 +92,8 @@ void add_scan_flags(CLI::App& command, ReadingOptions& options) {
       ->group(kReadingGroup);
   command
       .add_option("--moving-speed-m-s", options.moving_speed_m_s,
-                  "Speed from which on points of opensceneflow's truth move (default: 0.5)")
+                  "Speed from which on points of truth by flow or boxes move: opensceneflow, "
+                  "kitti-raw, kitti-tracking (default: 0.5)")
       ->type_name("M/S")
       ->check([](const std::string& text) {
         const auto speed_m_s = parse_double(text);

@@ -113,8 +113,10 @@ std::string help_of(const CLI::App& command) {
 void check_command_name(const std::string& name) {
   std::vector<std::string_view> names;
   for (const Command& command : commands()) {
-    if (command.name == name) return;
-    names.push_back(command.name);
+    for (const std::string_view known : command.names()) {
+      if (name == known) return;
+      names.push_back(known);
+    }
   }
   throw UsageError(fmt::format("'{}' is not a command (nearest: {}); see mosbench --help", name,
                                nearest_name(name, names)));

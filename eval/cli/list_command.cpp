@@ -47,6 +47,10 @@ std::string datasets_text() {
     for (const std::string_view line : std::span(row->folders).subspan(1)) {
       text += fmt::format("  {:<10}{}\n", "", line);
     }
+    for (const RelatedSet& set : row->related) {
+      text += fmt::format("  {:<10}{}: {}\n  {:<10}  {}; {}\n", "also", set.title, set.content, "",
+                          set.published, set.reading);
+    }
   }
   return text;
 }

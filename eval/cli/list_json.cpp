@@ -45,11 +45,23 @@ ordered_json rows_json(const Rows& rows, ToJson&& row_json) {
   return json;
 }
 
+ordered_json related_json(const RelatedSet& set) {
+  return {{"title", set.title},
+          {"content", set.content},
+          {"published", set.published},
+          {"reading", set.reading}};
+}
+
 ordered_json dataset_json(const Layout* row) {
-  return {{"name", row->name},           {"title", row->title},
-          {"content", row->content},     {"size", row->size},
-          {"published", row->published}, {"licence", row->licence},
-          {"folders", row->folders},     {"written", row->writer.has_value()}};
+  return {{"name", row->name},
+          {"title", row->title},
+          {"content", row->content},
+          {"size", row->size},
+          {"published", row->published},
+          {"licence", row->licence},
+          {"folders", row->folders},
+          {"written", row->writer.has_value()},
+          {"related", rows_json(row->related, related_json)}};
 }
 
 ordered_json preset_json(const Preset& preset) {

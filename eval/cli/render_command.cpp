@@ -36,8 +36,8 @@ the sensor. --scans draws several, given as for `mosbench report` (A-B, every:N,
 each; the camera of an orbit then turns by --turn degrees from the first to the last.
 
 --reasons colours points by why they are called moving, as `mosbench run --scores` with the method
-hmm-mos-plus wrote it: arrived in space that was free, left it free behind, connected with such, or
-feet, what is next to the ground below them.
+hmm-mos-plus wrote it: arrived in space that was free, left it free behind, where an object that
+moved before is expected, connected with such, or feet, what is next to the ground below them.
 
 --boxes draws a box around each cluster of at least 5 points that are labelled moving, with its
 speed: that of the cluster's middle in the map over half a second before and after, where the

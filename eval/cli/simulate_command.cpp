@@ -6,6 +6,7 @@
 
 #include "datasets/files/errors.hpp"
 #include "datasets/simulator/simulate.hpp"
+#include "datasets/simulator/simulated_layouts.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/cli/dataset_flags.hpp"
 #include "eval/results/progress.hpp"
@@ -34,12 +35,10 @@ struct SimulateFlags {
 };
 
 std::string simulate_dataset(SimulateFlags options) {
-  const std::optional<DatasetKind> layout = dataset_kind_from_string(options.layout);
-  if (!layout || !is_written(*layout)) {
-    throw UsageError(fmt::format(
-        "--layout: '{}' is not known, expected doals, sipailou, helimos, semantickitti or "
-        "opensceneflow",
-        options.layout));
+  const std::optional<DatasetKind> layout = simulated_layout_from_string(options.layout);
+  if (!layout) {
+    throw UsageError(fmt::format("--layout: '{}' is not known, expected {}", options.layout,
+                                 simulated_layout_names()));
   }
   options.simulation.layout = *layout;
   std::optional<Progress> progress;
@@ -57,9 +56,7 @@ std::string simulate_dataset(SimulateFlags options) {
 CommandRun add_simulate(CLI::App& command) {
   auto options = std::make_shared<SimulateFlags>();
   SimulateOptions& simulation = options->simulation;
-  command
-      .add_option("--layout", options->layout,
-                  "doals, sipailou, helimos, semantickitti or opensceneflow")
+  command.add_option("--layout", options->layout, simulated_layout_names())
       ->type_name("LAYOUT")
       ->required();
   command.add_option("--scene", simulation.scene, "Name of a scene, or a JSON file")

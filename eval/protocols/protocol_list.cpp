@@ -87,6 +87,9 @@ std::string describe_range(const Protocol& protocol) {
   const std::string_view what =
       protocol.range_rule == RangeRule::kTruthOnly ? "truth only" : "truth and prediction";
   const RangeGate& limits = protocol.default_range;
+  if (limits.max_m <= 0.0 && limits.min_m > 0.0) {
+    return fmt::format("{}, from {:g} m by default", what, limits.min_m);
+  }
   if (limits.max_m <= 0.0) return fmt::format("{}, no limit by default", what);
   return fmt::format("{}, {:g} to {:g} m by default", what, limits.min_m, limits.max_m);
 }

@@ -47,6 +47,9 @@ py::dict read_scan(const OpenSequence& opened, std::size_t scan_index) {
   const bool timed = !frame.point_times_ns.empty();
   scan["point_times_ns"] =
       timed ? py::object(array_of(std::move(frame.point_times_ns))) : py::none();
+  const bool has_velocities = !frame.radial_velocity_m_s.empty();
+  scan["radial_velocity_m_s"] =
+      has_velocities ? py::object(array_of(std::move(frame.radial_velocity_m_s))) : py::none();
   scan["truth"] = frame.truth ? py::object(array_of(std::move(*frame.truth))) : py::none();
   return scan;
 }

@@ -61,6 +61,22 @@ std::string outcome_plane(std::span<const PointOutcome> outcomes, std::span<cons
   return plane;
 }
 
+std::string velocity_planes(std::span<const float> radial_velocity_m_s) {
+  constexpr std::uint16_t kUnknown = 0x8000U;
+  const std::size_t n = radial_velocity_m_s.size();
+  std::string planes(2 * n, '\0');
+  for (std::size_t i = 0; i < n; ++i) {
+    const double steps =
+        std::round(static_cast<double>(radial_velocity_m_s[i]) / kVelocityStep_m_s);
+    const bool is_known = std::abs(steps) <= kMaxSteps;  // false for NaN
+    const std::uint16_t code =
+        is_known ? static_cast<std::uint16_t>(static_cast<std::int16_t>(steps)) : kUnknown;
+    planes[i] = static_cast<char>(code & 0xFFU);
+    planes[n + i] = static_cast<char>(code >> 8);
+  }
+  return planes;
+}
+
 std::string score_planes(std::span<const float> scores) {
   std::string planes;
   planes.reserve(4 * scores.size());

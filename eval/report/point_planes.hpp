@@ -25,6 +25,13 @@ std::string position_planes(std::span<const Point> points);
 /// Encodes one byte per point: its PointOutcome, plus 8 when it is not drawable.
 std::string outcome_plane(std::span<const PointOutcome> outcomes, std::span<const Point> points);
 
+/// Resolution of radial velocities in a report, m/s.
+inline constexpr double kVelocityStep_m_s = 0.01;
+
+/// Encodes radial velocities as multiples of kVelocityStep_m_s in 16 bits, -32768 where they are
+/// not known or out of range: first the low bytes of all, then the high ones.
+std::string velocity_planes(std::span<const float> radial_velocity_m_s);
+
 /// Encodes four bytes per point, the bits of its float32 score: the lowest bytes of all scores,
 /// then the next ones. Most are 0.
 std::string score_planes(std::span<const float> scores);

@@ -45,11 +45,14 @@ bool ProductRecord::has(const std::string& file) const {
 }
 
 void ProductRecord::write(const std::string& file, std::string_view bytes) {
+  constexpr std::size_t kUnsaved = 50;
   write_file_atomic(folder_ / file, bytes);
   hashes_[file] = hash_of_text(bytes);
+  if (++unsaved_ == kUnsaved) save();
 }
 
-void ProductRecord::save() const {
+void ProductRecord::save() {
+  unsaved_ = 0;
   write_file_atomic(folder_ / kRecord, json_text({{"files", hashes_}}));
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -17,13 +18,15 @@ class ProductRecord {
   /// Returns whether `file`, a path below the folder, is there and known. Throws UsageError when it
   /// was changed since it was written.
   bool has(const std::string& file) const;
-  /// Writes the file as a whole. It is known once `save` was called.
+  /// Writes the file as a whole. It is known once `save` was called, which every 50th call does: of
+  /// many files a killed run makes few again.
   void write(const std::string& file, std::string_view bytes);
-  void save() const;
+  void save();
 
  private:
   std::filesystem::path folder_;
   nlohmann::ordered_json hashes_;  ///< by file
+  std::size_t unsaved_ = 0;
 };
 
 }  // namespace mosbench

@@ -64,6 +64,7 @@ ordered_json content_without_points(const std::vector<std::filesystem::path>& in
   ordered_json json = {{"format", 1},
                        {"version", std::string(kMosbenchVersion)},
                        {"position_step_m", kPositionStep_m},
+                       {"velocity_step_m_s", kVelocityStep_m_s},
                        {"max_mb", options.max_mb},
                        {"tables", covered_tables(inputs)},
                        {"leaderboards", leaderboards_of(runs)},

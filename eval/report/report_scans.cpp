@@ -22,12 +22,13 @@ struct PackedScan {
   std::size_t scan_index;
   ordered_json header;
   std::string positions;
+  std::string velocities;             ///< empty where the sensor measures none
   std::vector<std::string> outcomes;  ///< per member of the cloud
   std::vector<std::string> scores;    ///< per member, empty where the run kept none
   std::vector<std::string> reasons;   ///< the same
 
   std::size_t bytes() const {
-    std::size_t sum = positions.size();
+    std::size_t sum = positions.size() + velocities.size();
     for (const std::string& plane : outcomes) sum += plane.size();
     for (const std::string& planes : scores) sum += planes.size();
     for (const std::string& plane : reasons) sum += plane.size();
@@ -128,7 +129,7 @@ ordered_json pose_json(const Pose& pose) {
 }
 
 PackedScan pack(const Cloud& cloud, const Sources& sources, std::size_t scan_index) {
-  PackedScan packed{scan_index, {}, {}, {}, {}, {}};
+  PackedScan packed{scan_index, {}, {}, {}, {}, {}, {}};
   for (const std::size_t member : cloud.members) {
     const JudgedScan scan = sources[member]->read(scan_index);
     if (packed.positions.empty()) {
@@ -137,6 +138,9 @@ PackedScan pack(const Cloud& cloud, const Sources& sources, std::size_t scan_ind
                        {"points", scan.frame.points.size()},
                        {"map_from_sensor", pose_json(scan.frame.map_from_sensor)}};
       packed.positions = compressed_text(position_planes(scan.frame.points));
+      if (!scan.frame.radial_velocity_m_s.empty()) {
+        packed.velocities = compressed_text(velocity_planes(scan.frame.radial_velocity_m_s));
+      }
     }
     packed.outcomes.push_back(compressed_text(outcome_plane(scan.outcomes, scan.frame.points)));
     packed.scores.push_back(
@@ -217,8 +221,12 @@ ReportScans choose_report_scans(const std::vector<FoundResult>& results, const S
     for (const std::size_t i : cloud.members) report.results[i].cloud = report.clouds.size();
     for (PackedScan& scan : cloud.packed) {
       scan.header["positions"] = report.blocks.size();
-      json["scans"].push_back(std::move(scan.header));
       report.blocks.push_back(std::move(scan.positions));
+      if (!scan.velocities.empty()) {
+        scan.header["radial_velocities"] = report.blocks.size();
+        report.blocks.push_back(std::move(scan.velocities));
+      }
+      json["scans"].push_back(std::move(scan.header));
       for (std::size_t m = 0; m < cloud.members.size(); ++m) {
         ReportScans::OfResult& result = report.results[cloud.members[m]];
         result.scans.push_back(scan.scan_index);

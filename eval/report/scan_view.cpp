@@ -1,5 +1,6 @@
 #include "eval/report/scan_view.hpp"
 
+#include <Eigen/Geometry>
 #include <cmath>
 #include <numbers>
 

@@ -158,8 +158,9 @@ void expect_poses(Dataset& dataset, const OdometryChoice& choice) {
 }
 
 std::vector<ScanPose> estimate_poses(const Sequence& sequence, const OdometryChoice& choice,
-                                     unsigned threads) {
-  Progress progress(fmt::format("{} of {}", choice.kind->title, sequence.name()), sequence.size());
+                                     unsigned threads, std::size_t most_scans) {
+  const std::size_t scans = std::min(sequence.size(), most_scans);
+  Progress progress(fmt::format("{} of {}", choice.kind->title, sequence.name()), scans);
   const std::unique_ptr<Odometry> odometry = choice.kind->make(choice.settings, threads);
   const auto& filter = choice.filter;
   const std::unique_ptr<Method> method =
@@ -168,7 +169,7 @@ std::vector<ScanPose> estimate_poses(const Sequence& sequence, const OdometryCho
              : nullptr;
   std::vector<ScanPose> poses;
   Frame frame;
-  for (std::size_t k = 0; k < sequence.size(); ++k) {
+  for (std::size_t k = 0; k < scans; ++k) {
     sequence.read(k, frame);
     poses.push_back(odometry->push(frame.points, {frame.stamp_ns, frame.point_times_ns}));
     if (method) {

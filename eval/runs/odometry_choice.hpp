@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <limits>
 #include <mosbench/method.hpp>
 #include <mosbench/odometry.hpp>
 #include <nlohmann/json.hpp>
@@ -57,10 +58,11 @@ ReadingStatement statement_of(const OdometryChoice& choice);
 /// Wraps every sequence of a data set that was opened without poses into a PosedSequence.
 void expect_poses(Dataset& dataset, const OdometryChoice& choice);
 
-/// Finds the poses of a sequence from its scans and tells how far it is. The same for any number of
-/// threads. Throws DataError, and UsageError for a filter that labels scans later.
-std::vector<ScanPose> estimate_poses(const Sequence& sequence, const OdometryChoice& choice,
-                                     unsigned threads);
+/// Finds the poses of a sequence, or of its first scans, and tells how far it is. The same for any
+/// number of threads. Throws DataError, and UsageError for a filter that labels scans later.
+std::vector<ScanPose> estimate_poses(
+    const Sequence& sequence, const OdometryChoice& choice, unsigned threads,
+    std::size_t most_scans = std::numeric_limits<std::size_t>::max());
 
 /// Finds the poses of a sequence that `expect_poses` wrapped, and tells how many are doubtful.
 std::vector<ScanPose> find_poses(const Sequence& sequence, const OdometryChoice& choice,

@@ -63,9 +63,12 @@ class Convert : public testing::Test {
     arguments.insert(arguments.end(), more.begin(), more.end());
     return cli::run(arguments);
   }
-  nlohmann::json scores(const std::string& input, const char* out) const {
-    const cli::Answer answer =
-        cli::run({"run", input, "--out", (folder_ / out).string(), "--json"});
+  nlohmann::json scores(const std::string& input, const char* out,
+                        const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> arguments = {"run", input, "--out", (folder_ / out).string(),
+                                          "--json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const cli::Answer answer = cli::run(arguments);
     EXPECT_EQ(answer.exit_code, 0) << answer.err;
     return nlohmann::json::parse(answer.out).at("sequences").at(0).at("summary");
   }
@@ -120,6 +123,15 @@ TEST_F(Convert, MakesRos2BagsThatReadAndScoreAsTheScans) {
   EXPECT_EQ(convert(exported, "semantickitti", "unpacked").exit_code, 0) << "has no compression";
 }
 
+TEST_F(Convert, MakesRos2BagsThatAreKnownAlsoInFoldersWithNumbers) {
+  cli::write_small_sequence(folder_ / "data/sequences/08", 3);
+  for (const std::string layout : {"ros2-mcap", "ros2-db3"}) {
+    const std::string bags = (folder_ / layout).string();
+    ASSERT_EQ(convert((folder_ / "data").string(), layout, layout.c_str()).exit_code, 0);
+    EXPECT_EQ(open_dataset(bags, {}).kind, DatasetKind::kRecording);
+  }
+}
+
 TEST_F(Convert, TurnsEveryLayoutIntoEveryOther) {
   for (const std::string from : {"doals", "sipailou", "helimos", "semantickitti"}) {
     const std::string input = simulate(from, "6");
@@ -154,7 +166,8 @@ TEST_F(Convert, MakesTablesOfNuscenesThatReadAndScoreAsTheScans) {
   EXPECT_TRUE(std::filesystem::exists(folder_ / "tables/00/sweeps/LIDAR_TOP/000005.pcd.bin"));
   expect_same_frames(data, folder_ / "tables", 1e-12);
   EXPECT_EQ(cli::run({"doctor", (folder_ / "tables").string()}).exit_code, 0);
-  EXPECT_EQ(scores((folder_ / "tables").string(), "tables_out"), scores(data, "out"));
+  EXPECT_EQ(scores((folder_ / "tables").string(), "tables_out"),
+            scores(data, "out", {"--protocol", "mapmos-nuscenes"}));
   EXPECT_EQ(convert((folder_ / "tables").string(), "semantickitti", "back").exit_code, 0);
   expect_same_frames(data, folder_ / "back", 1e-12);
 }
@@ -167,6 +180,30 @@ TEST_F(Convert, MakesScansOfHeliprThatAreTheSameButForTheirTruth) {
   EXPECT_EQ(open_dataset(folder_ / "packed", {}).kind, DatasetKind::kHelipr);
   expect_same_frames(folder_ / "room", folder_ / "packed", 1e-12);
   EXPECT_EQ(open_dataset(folder_ / "packed", {}).sequences.at(0)->stamp_ns(2), 200'000'000);
+}
+
+TEST_F(Convert, KeepsRadialVelocitiesOfAnAevaAlsoDisturbedOnes) {
+  const std::string data = simulate("helipr", "3");
+  ASSERT_EQ(convert(data, "helipr", "again").exit_code, 0);
+  const Dataset first = open_dataset(data, {}), second = open_dataset(folder_ / "again", {});
+  ASSERT_EQ(second.sequences.size(), 2U);
+  EXPECT_EQ(second.sequences[0]->name(), "room_Aeva/Aeva");
+  EXPECT_EQ(second.sequences[1]->name(), "room_Ouster/Ouster");
+  const Frame expected = first.sequences[0]->read(2), frame = second.sequences[0]->read(2);
+  EXPECT_GT(frame.points.size(), 1000U);
+  EXPECT_EQ(frame.radial_velocity_m_s, expected.radial_velocity_m_s);
+  EXPECT_TRUE(second.sequences[1]->read(2).radial_velocity_m_s.empty());
+  expect_same_frames(data, folder_ / "again", 1e-12);
+
+  ASSERT_EQ(
+      convert(data, "helipr", "lost", {"--perturb", "dropout_probability=0.5,seed=1"}).exit_code,
+      0);
+  const Frame lost = open_dataset(folder_ / "lost", {}).sequences[0]->read(2);
+  ASSERT_EQ(lost.radial_velocity_m_s.size(), expected.points.size());
+  for (std::size_t i = 0; i < lost.points.size(); ++i) {
+    const bool is_lost = lost.points[i].x == 0 && lost.points[i].y == 0;
+    EXPECT_EQ(lost.radial_velocity_m_s[i], is_lost ? 0.0F : expected.radial_velocity_m_s[i]);
+  }
 }
 
 TEST_F(Convert, TellsWhatOfTheTruthALayoutDoesNotHold) {

@@ -57,6 +57,22 @@ TEST_F(DoctorCommand, ChecksScansThatHaveNoPosesYet) {
   EXPECT_THAT(empty.out, HasSubstr("has no poses yet, and is doubtful until"));
 }
 
+TEST_F(DoctorCommand, ChecksThePosesOfSequencesBesideOneWithout) {
+  for (const char* name : {"00", "01"}) {
+    cli::write_small_sequence(folder_ / "data/sequences" / name, 12);
+  }
+  fs::remove(folder_ / "data/sequences/00/poses.txt");
+  const cli::Answer answer = cli::run({"doctor", (folder_ / "data").string(), "--json"});
+  EXPECT_EQ(answer.exit_code, 3);
+  const auto json = nlohmann::json::parse(answer.out);
+  ASSERT_EQ(json.at("sequences").size(), 2U);
+  EXPECT_EQ(json.at("sequences")[0].at("name"), "00");
+  EXPECT_TRUE(json.at("sequences")[0].at("poses").is_null());
+  EXPECT_FALSE(json.at("sequences")[1].at("poses").is_null());
+  ASSERT_EQ(json.at("symptoms").size(), 1U);
+  EXPECT_THAT(json.at("symptoms")[0].at("where").get<std::string>(), HasSubstr("sequences/00"));
+}
+
 TEST_F(DoctorCommand, WarnsOfAnEmptyScanOfARecording) {
   fs::create_directory(folder_ / "flat");
   for (int k = 0; k < 12; ++k) {

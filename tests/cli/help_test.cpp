@@ -31,7 +31,8 @@ TEST(Help, OfTheProgramNamesEveryCommand) {
   EXPECT_THAT(answer.out, HasSubstr("Usage: mosbench COMMAND [OPTIONS]\n"));
   EXPECT_THAT(answer.out, HasSubstr("Examples:\n  mosbench "));
   for (const Command& command : commands()) {
-    EXPECT_THAT(answer.out, ContainsRegex(fmt::format("\n  {} +{}\n", command.name, command.help)));
+    EXPECT_THAT(answer.out, ContainsRegex(fmt::format(
+                                "\n  {} +{}\n", fmt::join(command.names(), ", "), command.help)));
   }
   EXPECT_EQ(cli::run({"help"}).out, answer.out);
   expect_narrow(answer.out, "mosbench");
@@ -177,6 +178,9 @@ std::string completed(const std::string& script, const std::string& words) {
 TEST(Completion, OffersCommandsFlagsAndTheirValuesInBash) {
   const std::string script = cli::run({"completion", "bash"}).out;
   EXPECT_EQ(completed(script, "mosbench re"), "report render reproduce\n");
+  EXPECT_EQ(completed(script, "mosbench lead"), "leaderboard\n");
+  EXPECT_EQ(completed(script, "mosbench leaderboard --form"),
+            completed(script, "mosbench rank --form"));
   EXPECT_EQ(completed(script, "mosbench run --pre"), "--preset\n");
   EXPECT_EQ(completed(script, "mosbench run DATA --preset doals-"), "doals-20m doals-120m\n");
   EXPECT_EQ(completed(script, "mosbench list me"), "methods\n");
@@ -189,7 +193,8 @@ TEST(Completion, KnowsEveryCommandInZsh) {
   const std::string script = cli::run({"completion", "zsh"}).out;
   EXPECT_THAT(script, StartsWith("#compdef mosbench\n"));
   for (const Command& command : commands()) {
-    EXPECT_THAT(script, HasSubstr(fmt::format("\n    {})\n      _arguments", command.name)));
+    EXPECT_THAT(script, HasSubstr(fmt::format("\n    {})\n      _arguments",
+                                              fmt::join(command.names(), "|"))));
   }
 }
 
@@ -234,9 +239,10 @@ TEST(List, ShowsDatasetsPresetsProtocolsAndScenes) {
     EXPECT_THAT(all, HasSubstr(answer.out)) << what;
     parts += answer.out;
   }
-  for (const char* name : {"DOI 10.3929/ethz-c-000788171", "velodyne/%06d.bin", "doals-20m",
-                           "doals-120m", "sipailou", "helimos-delayed", "semantickitti",
-                           "v1.0-{mini,trainval,test}/*.json", "doals-hmm", "mapmos", "room"}) {
+  for (const char* name :
+       {"DOI 10.3929/ethz-c-000788171", "velodyne/%06d.bin", "doals-20m", "doals-120m", "sipailou",
+        "helimos-delayed", "semantickitti", "v1.0-{mini,trainval,test}/*.json", "KITTI-Road-MOS",
+        "doals-hmm", "mapmos", "room"}) {
     EXPECT_THAT(parts, HasSubstr(name));
   }
 }

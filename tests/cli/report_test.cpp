@@ -143,6 +143,23 @@ void write_several_runs(const std::filesystem::path& folder) {
   }
 }
 
+TEST(Report, HoldsTheRadialVelocitiesOfAnAeva) {
+  const TempFolder folder;
+  const std::string data = folder / "sim", run = folder / "run", page = folder / "r.html";
+  ASSERT_EQ(cli::run({"simulate", "--layout", "helipr", "--scene", "room", "--scans", "6", "--seed",
+                      "5", "--out", data})
+                .exit_code,
+            0);
+  ASSERT_EQ(cli::run({"run", data, "--out", run}).exit_code, 0);
+  const cli::Answer answer = cli::run({"report", run, "-o", page, "--scans", "4-5"});
+  ASSERT_EQ(answer.exit_code, 0) << answer.err;
+  const auto clouds = content_of(read_file(page)).at("clouds");
+  ASSERT_EQ(clouds.size(), 2U);
+  EXPECT_EQ(clouds[0].at("sequence"), "room/Aeva");
+  for (const auto& scan : clouds[0].at("scans")) EXPECT_TRUE(scan.contains("radial_velocities"));
+  for (const auto& scan : clouds[1].at("scans")) EXPECT_FALSE(scan.contains("radial_velocities"));
+}
+
 TEST(Report, RanksSeveralRunsAsRankDoes) {
   const TempFolder folder;
   write_several_runs(folder.path());

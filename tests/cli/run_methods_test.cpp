@@ -182,6 +182,8 @@ TEST_F(RunMethods, AreRanked) {
   }
   const cli::Answer text = cli::run({"rank", folder_ / "out"});
   EXPECT_THAT(text.out, HasSubstr("Underwood et al."));
+  EXPECT_EQ(cli::run({"leaderboard", folder_ / "out"}).out, text.out);
+  EXPECT_EQ(cli::run({"help", "leaderboard"}).out, cli::run({"rank", "--help"}).out);
   EXPECT_THAT(text.out, HasSubstr("no interval of the difference of 2: 8 scans"));
   ASSERT_EQ(cli::run({"run", folder_ / "room", "--protocol", "mapmos", "--out", folder_ / "other"})
                 .exit_code,

@@ -26,7 +26,8 @@ class Simulate : public testing::Test {
 };
 
 TEST_F(Simulate, GivesDataThatRunAndScoreTakeAndNeverPassForReal) {
-  for (const std::string layout : {"doals", "sipailou", "helimos", "semantickitti"}) {
+  for (const std::string layout : {"doals", "sipailou", "helimos", "semantickitti", "nuscenes",
+                                   "kitti-raw", "kitti-tracking"}) {
     const cli::Answer simulated = simulate(layout, "room", layout);
     ASSERT_EQ(simulated.exit_code, 0) << simulated.err;
     EXPECT_THAT(simulated.out, HasSubstr("simulated 6 scans of scene room, seed 5"));
@@ -54,6 +55,18 @@ TEST_F(Simulate, GivesDataThatRunAndScoreTakeAndNeverPassForReal) {
   }
 }
 
+TEST_F(Simulate, GivesScansOfHeliprWithoutTruthThatRunAndDoctorTake) {
+  ASSERT_EQ(simulate("helipr", "room", "sim").exit_code, 0);
+  const std::string input = (folder_ / "sim").string();
+  const cli::Answer run = cli::run({"run", input, "--out", (folder_ / "out").string(), "--json"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const auto ran = nlohmann::json::parse(run.out);
+  EXPECT_EQ(ran.at("simulated").at("notice"), kNotice);
+  EXPECT_EQ(ran.at("sequences").at(0).at("name"), "room/Aeva");
+  EXPECT_EQ(ran.at("sequences").at(1).at("name"), "room/Ouster");
+  EXPECT_EQ(cli::run({"doctor", input}).exit_code, 0);
+}
+
 TEST_F(Simulate, GivesTheSameFilesForTheSameSeed) {
   ASSERT_EQ(simulate("semantickitti", "room", "a").exit_code, 0);
   ASSERT_EQ(simulate("semantickitti", "room", "b").exit_code, 0);
@@ -68,8 +81,10 @@ TEST_F(Simulate, RefusesWhatItDoesNotKnow) {
   EXPECT_THAT(scene.err, HasSubstr("room"));
   const cli::Answer layout = simulate("kitti", "room", "out");
   EXPECT_EQ(layout.exit_code, 2);
-  EXPECT_THAT(layout.err, HasSubstr("expected doals, sipailou, helimos, semantickitti or "
-                                    "opensceneflow"));
+  EXPECT_THAT(layout.err,
+              HasSubstr("expected doals, sipailou, helimos, semantickitti, "
+                        "opensceneflow, nuscenes, helipr, kitti-raw or kitti-tracking"));
+  EXPECT_EQ(simulate("recording", "room", "out").exit_code, 2) << "is written by convert alone";
   const cli::Answer file = simulate("doals", folder_.write("scene.json", "{").string(), "out");
   EXPECT_EQ(file.exit_code, 3);
   EXPECT_THAT(file.err, HasSubstr("scene.json"));

@@ -41,6 +41,14 @@ def test_open_gives_scans_and_speaks_as_kiss_icp_does(street):
         mosbench.open(street, sequence="07")
 
 
+def test_scans_of_an_aeva_have_radial_velocities(tmp_path, street):
+    data = mosbench.open(mosbench.simulate(tmp_path / "sim", layout="helipr", scene="room", scans=2))
+    scan = data["room/Aeva"].scan(1)
+    assert scan.radial_velocity_m_s.dtype == np.float32 and scan.radial_velocity_m_s.shape == (len(scan.points),)
+    assert scan.truth is None and data["room/Ouster"].scan(1).radial_velocity_m_s is None
+    assert mosbench.open(street).scan(0).radial_velocity_m_s is None
+
+
 def test_run_keeps_what_the_result_says(street, finished):
     assert finished.method == "HMM-MOS" and finished.simulated
     per_scan = finished.per_scan

@@ -37,6 +37,8 @@ class Scan:
     pose: np.ndarray  #: float64 (4, 4), map_from_sensor
     stamp_ns: Optional[int]  #: when it was measured; None when the data set has no stamps
     point_times_ns: Optional[np.ndarray]  #: int64 (N,), when each point was measured after the stamp
+    #: float32 (N,), of the surface relative to the sensor, positive away from it; of an Aeva, else None
+    radial_velocity_m_s: Optional[np.ndarray]
     truth: Optional[np.ndarray]  #: uint32 (N,), raw labels: id, and in the upper 16 bits instance; None without
 
     @property

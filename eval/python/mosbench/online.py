@@ -128,7 +128,8 @@ class Labels:
     scores: Optional[np.ndarray]  #: float32 (N,), larger is more likely to move; None unless asked for
     reasons: Optional[np.ndarray]
     """uint8 (N,), with scores of "hmm-mos-plus": why a point moves: 0 it does not, 1 arrived in free space,
-    2 left free space behind, 3 connected with such, 4 feet of what moves. Else None."""
+    2 left free space behind, 3 connected with such, 4 feet of what moves, 5 where what moved before is
+    expected. Else None."""
     objects: Optional[np.ndarray]
     """uint32 (N,): number of the moving object, from 1 and the same in all scans, 0 for none; None when
     the method finds no objects."""

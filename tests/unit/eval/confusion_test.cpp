@@ -107,6 +107,14 @@ TEST(ScoreScan, CountsAPredictionOutOfRangeAgainstTheMethodOnlyUnderDoalsHmm) {
   EXPECT_EQ(score_one("mapmos", 251, 251, far), kTruePositive);
 }
 
+TEST(ScoreScan, LeavesOutWhatIsNearUnderMapmosNuscenes) {
+  const Point near{2.999F, 0.0F, 0.0F, 0.0F}, at{0.0F, 3.0F, 0.0F, 0.0F};
+  EXPECT_EQ(score_one("mapmos-nuscenes", 251, 251, near), kIgnoredPoint);
+  EXPECT_EQ(score_one("mapmos-nuscenes", 9, 251, near), kIgnoredPoint);
+  EXPECT_EQ(score_one("mapmos-nuscenes", 251, 251, at), kTruePositive);
+  EXPECT_EQ(score_one("mapmos-nuscenes", 251, 9, Point{200.0F, 0.0F, 0.0F, 0.0F}), kFalseNegative);
+}
+
 TEST(ScoreScan, IncludesPointsExactlyAtTheLimits) {
   for (const Point& point : {Point{0.5F, 0.0F, 0.0F, 0.0F}, Point{0.0F, -20.0F, 0.0F, 0.0F}}) {
     EXPECT_EQ(score_one("doals-hmm", 251, 251, point), kTruePositive);

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdint>
+#include <numbers>
 #include <vector>
 
 namespace mosbench {
@@ -35,6 +37,16 @@ TEST(LongRunVariance, IsThatOfAnotherProgram) {
   const std::vector<Series> most = {remembering(1, 600, 0.8, 1.0), remembering(2, 240, 0.8, 3.0)};
   EXPECT_NEAR(uncertainty_of_series(most).standard_error, 42.429040183582416, 1e-9);
   EXPECT_NEAR(uncertainty_of_series(most).freedom, 3.304771157423653, 1e-9);
+}
+
+TEST(LongRunVariance, TakesNoCoefficientFasterThanTheMemory) {
+  const std::vector<Series> series = {remembering(1, 600, 0.8, 1.0)};
+  const double memory = neighbour_correlation(series).bound(3.25);
+  const double corner = (1.0 - memory) / std::sqrt(memory);
+  const double slow = std::floor(0.25 * corner * 600.0 / std::numbers::pi);
+  ASSERT_GT(slow, 2.0);
+  ASSERT_LT(slow, std::floor(0.1 * std::pow(600.0, 2.0 / 3.0)));
+  EXPECT_NEAR(uncertainty_of_series(series).freedom, slow, 1e-9);
 }
 
 TEST(LongRunVariance, DoesNotChangeWithAConstant) {

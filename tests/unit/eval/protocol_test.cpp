@@ -23,8 +23,8 @@ namespace {
 TEST(Protocols, HoldEveryBenchmarkThatIsPromised) {
   for (const std::string_view name :
        {"doals-hmm", "doals-dynablox", "semantickitti-mos", "sipailou", "helimos-all",
-        "helimos-test", "mapmos", "mapmos-apollo", "mapmos-kitti-tracking", "moe", "mdetector",
-        "mdetector-nuscenes", "sceneflow-dynamic"}) {
+        "helimos-test", "mapmos", "mapmos-apollo", "mapmos-kitti-tracking", "mapmos-nuscenes",
+        "moe", "mdetector", "mdetector-nuscenes", "sceneflow-dynamic"}) {
     ASSERT_NE(find_protocol(name), nullptr) << name;
     EXPECT_EQ(find_protocol(name)->name, name);
   }
@@ -78,6 +78,8 @@ TEST(Protocols, AreDescribedInWords) {
   const auto& mapmos = rows[6];
   EXPECT_EQ(mapmos.name, "mapmos");
   EXPECT_EQ(mapmos.range, "truth and prediction, no limit by default");
+  EXPECT_EQ(rows[9].name, "mapmos-nuscenes");
+  EXPECT_EQ(rows[9].range, "truth and prediction, from 3 m by default");
 }
 
 TEST(RangeGate, IncludesBothEnds) {

@@ -92,6 +92,13 @@ TEST(PointPlanes, MarkPointsThatHaveNoPlace) {
   EXPECT_EQ(plane, std::string("\x03\x0b\x0b\x0b\x03\x0b"));
 }
 
+TEST(PointPlanes, HoldRadialVelocitiesInCentimetresPerSecond) {
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_EQ(velocity_planes(std::vector<float>{2.58F, -0.01F, kNan, 400.0F}),
+            std::string("\x02\xff\x00\x00\x01\xff\x80\x80", 8));
+  EXPECT_EQ(velocity_planes({}), "");
+}
+
 TEST(PointPlanes, HoldScoresByteByByte) {
   // 3.0F is 0x40400000, 1.0F is 0x3f800000.
   EXPECT_EQ(score_planes(std::vector<float>{3.0F, 1.0F}),
@@ -122,7 +129,7 @@ TEST(Reasons, AreOneKnownBytePerPoint) {
   EXPECT_EQ(bytes, std::string("\x00\x04\x01", 3));
   EXPECT_EQ(parse_reasons(bytes, 3, "f"), reasons);
   EXPECT_THROW(parse_reasons(bytes, 4, "f"), DataError);
-  EXPECT_THROW(parse_reasons("\x05", 1, "f"), DataError);
+  EXPECT_THROW(parse_reasons("\x06", 1, "f"), DataError);
   EXPECT_THROW(parse_reasons("\xff", 1, "f"), DataError);
 }
 

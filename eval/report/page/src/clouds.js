@@ -1,5 +1,5 @@
 import { hasLabels } from './metrics.js';
-import { outcomesFromPlane, positionsFromPlanes, readBlock, scoresFromPlanes } from './payload.js';
+import { outcomesFromPlane, positionsFromPlanes, readBlock, scoresFromPlanes, velocitiesFromPlanes } from './payload.js';
 
 const SCANS_KEPT = 24;
 
@@ -51,6 +51,12 @@ export class Clouds {
     return (this.#content.results[result].reasons ?? []).length > 0;
   }
 
+  /** Whether the sensor measured how fast its points move along their rays. */
+  hasVelocities(result) {
+    const scans = this.#cloudOf(result)?.scans ?? [];
+    return scans.length > 0 && scans.every((scan) => scan.radial_velocities !== undefined);
+  }
+
   leftOut(result) {
     const none = this.#content.clouds.length > 0 ? 'the file holds no points of this run' : 'the file holds no points';
     return this.#cloudOf(result)?.left_out ?? none;
@@ -71,8 +77,8 @@ export class Clouds {
   }
 
   /**
-   * {points, positions_m, outcomes, drawable, scores, reasons, pose, unscored}, or null when its points were left
-   * out; scores and reasons are null where the run kept none.
+   * {points, positions_m, outcomes, drawable, scores, reasons, velocities_m_s, pose, unscored}, or null when its points
+   * were left out; scores and reasons are null where the run kept none, velocities where the sensor measures none.
    */
   async read(result, index) {
     return keep(this.#kept, `${result}/${index}`, () => this.#unpack(result, index));
@@ -87,11 +93,12 @@ export class Clouds {
     const place = scans.findIndex((scan) => scan.index === index);
     if (place < 0) return null;
     const { outcomes, scores, reasons } = this.#content.results[result];
-    const [positions_m, plane, scorePlanes, reasonPlane] = await Promise.all([
+    const [positions_m, plane, scorePlanes, reasonPlane, velocityPlanes] = await Promise.all([
       this.#positionsOf(scans[place].positions),
       readBlock(outcomes[place]),
       this.hasScores(result) ? readBlock(scores[place]) : null,
       this.hasReasons(result) ? readBlock(reasons[place]) : null,
+      this.hasVelocities(result) ? readBlock(scans[place].radial_velocities) : null,
     ]);
     return {
       points: scans[place].points,
@@ -103,6 +110,7 @@ export class Clouds {
       ...outcomesFromPlane(plane),
       scores: scorePlanes && scoresFromPlanes(scorePlanes),
       reasons: reasonPlane,
+      velocities_m_s: velocityPlanes && velocitiesFromPlanes(velocityPlanes, this.#content.velocity_step_m_s),
     };
   }
 }

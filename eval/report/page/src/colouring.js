@@ -6,6 +6,7 @@ export const COLOURINGS = [
   { key: 'outcome', name: 'outcome' },
   { key: 'range', name: 'range', unit: 'm', digits: 1 },
   { key: 'height', name: 'height', unit: 'm', digits: 1 },
+  { key: 'velocity', name: 'radial velocity', unit: 'm/s', digits: 1 },
   { key: 'score', name: 'score', unit: '' },
   { key: 'reason', name: 'reason' },
   { key: 'disagreement', name: 'disagreement' },
@@ -21,6 +22,7 @@ function obstacle(key, clouds, results, view) {
     const kinds = new Set(results.map((result) => clouds.scoreKind(result)));
     return kinds.size > 1 ? 'not of different methods' : null;
   }
+  if (key === 'velocity') return results.every((result) => clouds.hasVelocities(result)) ? null : 'not in every recording';
   if (key === 'reason') return results.every((result) => clouds.hasReasons(result)) ? null : 'not given by every run';
   if (key !== 'disagreement') return null;
   return results.length < 2 ? 'needs a run beside' : view === 'map' ? 'not in the motion map' : null;
@@ -30,7 +32,8 @@ function obstacle(key, clouds, results, view) {
 export function allColourings(clouds, results, view) {
   const several = results.length > 1 || clouds.comparable(results[0]).length > 0;
   const reasoned = results.some((result) => clouds.hasReasons(result));
-  const offered = { disagreement: several, reason: reasoned };
+  const measured = results.some((result) => clouds.hasVelocities(result));
+  const offered = { disagreement: several, reason: reasoned, velocity: measured };
   return COLOURINGS.filter(({ key }) => offered[key] ?? true).map((colouring) => ({
     ...colouring,
     name: colouring.key === 'score' ? clouds.scoreName(results[0]) : colouring.name,
@@ -43,7 +46,7 @@ export function colouringsOf(clouds, results, view) {
   return allColourings(clouds, results, view).filter(({ why }) => why === null);
 }
 
-/** Colour of points without a score, which are most. */
+/** Colour of points without a score, which are most, or without a velocity. */
 export function colourWithoutScore(theme) {
   return OUTCOMES.find(({ key }) => key === 'unlabelled')[theme];
 }
@@ -51,6 +54,7 @@ export function colourWithoutScore(theme) {
 /** The quantity per point that a scale shows. */
 export function quantity(key, scan) {
   if (key === 'score') return Float32Array.from(scan.scores);
+  if (key === 'velocity') return scan.velocities_m_s;
   const { positions_m, points } = scan;
   const values = new Float32Array(points);
   for (let i = 0; i < points; ++i) {
@@ -71,7 +75,7 @@ export function limits(values) {
 
 /** One scale for all that is shown, so that equal colours are equal numbers. Votes are counted from 1. */
 function commonScale(key, scans, values) {
-  const shown = values.map((v, s) => v.filter((x, i) => scans[s].drawable[i] && (key !== 'score' || x !== 0)));
+  const shown = values.map((v, s) => v.filter((x, i) => scans[s].drawable[i] && !Number.isNaN(x) && (key !== 'score' || x !== 0)));
   const ends = shown.map(limits);
   const [low, high] = [Math.min(...ends.map(([lowest]) => lowest)), Math.max(...ends.map(([, highest]) => highest))];
   if (key !== 'score') return { low, high };
@@ -91,12 +95,13 @@ export function reasonNames(theme) {
   return REASONS.map((reason) => ({ name: reason.name, colour: reason[theme] }));
 }
 
-function byScale(values, { low, high }, theme, colourOfZero) {
+function byScale(values, { low, high }, theme, isNone) {
+  const none = rgb(colourWithoutScore(theme));
   const steps = Array.from({ length: 256 }, (_, s) => scaleColour(s / 255, theme));
   const colours = new Uint8Array(3 * values.length);
   for (let i = 0; i < values.length; ++i) {
     const fraction = Math.min(Math.max((values[i] - low) / (high - low), 0), 1);
-    colours.set(colourOfZero && values[i] === 0 ? colourOfZero : steps[Math.round(255 * fraction)], 3 * i);
+    colours.set(isNone(values[i]) ? none : steps[Math.round(255 * fraction)], 3 * i);
   }
   return colours;
 }
@@ -116,8 +121,8 @@ export function colourScans(key, scans, theme) {
   }
   const values = scans.map((scan) => quantity(key, scan));
   const scale = commonScale(key, scans, values);
-  const colourOfZero = key === 'score' ? rgb(colourWithoutScore(theme)) : null;
-  return { colours: values.map((v) => byScale(v, scale, theme, colourOfZero)), scale, large };
+  const isNone = key === 'score' ? (value) => value === 0 : Number.isNaN;
+  return { colours: values.map((v) => byScale(v, scale, theme, isNone)), scale, large };
 }
 
 /** Size per point in pixels: 0 for what is hidden or has no position, larger for what stands out. */

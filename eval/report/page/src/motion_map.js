@@ -45,6 +45,7 @@ export function movingPoints(scan, origin) {
     outcomes: new Uint8Array(points),
     scores: scan.scores ? new Float32Array(points) : null,
     reasons: scan.reasons ? new Uint8Array(points) : null,
+    velocities_m_s: scan.velocities_m_s ? new Float32Array(points) : null,
     eye: toMap(scan.pose, 0, 0, 0, origin),
   };
   let next = 0;
@@ -53,6 +54,7 @@ export function movingPoints(scan, origin) {
     moving.positions_m.set(toMap(scan.pose, scan.positions_m[3 * i], scan.positions_m[3 * i + 1], scan.positions_m[3 * i + 2], origin), 3 * next);
     if (scan.scores) moving.scores[next] = scan.scores[i];
     if (scan.reasons) moving.reasons[next] = scan.reasons[i];
+    if (scan.velocities_m_s) moving.velocities_m_s[next] = scan.velocities_m_s[i];
     moving.outcomes[next++] = scan.outcomes[i];
   }
   return moving;
@@ -68,6 +70,7 @@ export function join(parts) {
     outcomes: new Uint8Array(points),
     scores: parts.every((part) => part.scores) ? new Float32Array(points) : null,
     reasons: parts.every((part) => part.reasons) ? new Uint8Array(points) : null,
+    velocities_m_s: parts.every((part) => part.velocities_m_s) ? new Float32Array(points) : null,
     drawable: new Uint8Array(points).fill(1),
     path: parts.map((part) => part.eye),
     pose: null,
@@ -78,6 +81,7 @@ export function join(parts) {
     cloud.outcomes.set(part.outcomes, next);
     cloud.scores?.set(part.scores, next);
     cloud.reasons?.set(part.reasons, next);
+    cloud.velocities_m_s?.set(part.velocities_m_s, next);
     next += part.outcomes.length;
   }
   return cloud;

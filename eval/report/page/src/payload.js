@@ -37,6 +37,16 @@ export function scoresFromPlanes(planes) {
   return new Float32Array(bits.buffer);
 }
 
+/** Radial velocities in m/s, NaN where not known, from the planes that eval/report/point_planes.cpp describes. */
+export function velocitiesFromPlanes(planes, step_m_s) {
+  const points = planes.length / 2;
+  const UNKNOWN = -32768;
+  return Float32Array.from({ length: points }, (_, i) => {
+    const steps = ((planes[i] | (planes[points + i] << 8)) << 16) >> 16;
+    return steps === UNKNOWN ? NaN : steps * step_m_s;
+  });
+}
+
 /** Splits a plane of outcomes into what each point counts as and whether it has a position. */
 export function outcomesFromPlane(plane) {
   const outcomes = plane.map((byte) => byte & 7);

@@ -15,6 +15,10 @@ export function pointDetails(scans, pane, point, runs, scores) {
     rows.push(['range', fixed(Math.hypot(...position), 2, 'm')]);
     rows.push(['map x, y, z', `${vector(toMap(scan.pose, ...position, [0, 0, 0]))} m`]);
   }
+  if (scan.velocities_m_s) {
+    const velocity = scan.velocities_m_s[point];
+    rows.push(['radial velocity', Number.isNaN(velocity) ? 'not known' : fixed(velocity, 2, 'm/s')]);
+  }
   const judged = scan.pose ? scans : [scan];
   judged.forEach((s, p) => {
     const run = judged.length > 1 ? runs[p] : null;

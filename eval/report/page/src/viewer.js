@@ -119,7 +119,7 @@ export class Viewer {
 
   #paint() {
     const [wanted, theme] = [this.state.get('colouring'), this.state.get('theme')];
-    const needed = { score: 'scores', reason: 'reasons' }[wanted];
+    const needed = { score: 'scores', reason: 'reasons', velocity: 'velocities_m_s' }[wanted];
     const key = needed && this.scans.some((scan) => !scan[needed]) ? 'outcome' : wanted;
     const { colours, scale, opinions, large } = colourScans(key, this.scans, theme);
     this.scans.forEach((scan, p) => {

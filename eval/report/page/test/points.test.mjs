@@ -31,6 +31,15 @@ test('range and height are those of the positions', () => {
   assert.deepEqual([...quantity('height', SCAN)], [0, 2, -1, 0]);
 });
 
+test('velocities have a scale, and what is not known a colour of its own', () => {
+  const scan = { ...SCAN, velocities_m_s: Float32Array.from([-2, NaN, 3, 50]) };
+  const { colours, scale } = colourScans('velocity', [scan], 'light');
+  assert.deepEqual(scale, { low: -2, high: 3 });
+  assert.deepEqual([...colours[0].slice(3, 6)], [0xcf, 0xd5, 0xdc]);
+  assert.notDeepEqual([...colours[0].slice(0, 3)], [...colours[0].slice(6, 9)]);
+  assert.equal(join([movingPoints({ ...scan, outcomes: Uint8Array.from([0, 3, 3, 4]) }, [0, 0, 0])]).velocities_m_s[0], -2);
+});
+
 test('a scale spans the drawn points, and a flat one still has two ends', () => {
   assert.deepEqual(limits(Float32Array.from([5, 1, 3])), [1, 5]);
   assert.deepEqual(limits(Float32Array.from([2, 2])), [2, 3]);
@@ -75,7 +84,7 @@ test('reasons are coloured as the palette says, and offered only where a shown r
   const { colours, scale } = colourScans('reason', [{ ...SCAN, reasons: Uint8Array.from([1, 0, 2, 4]) }], 'light');
   assert.equal(scale, null);
   const names = reasonNames('light');
-  assert.deepEqual(names.map(({ name }) => name), ['not called moving', 'arrived in free space', 'left free space behind', 'connected with such', 'feet']);
+  assert.deepEqual(names.map(({ name }) => name), ['not called moving', 'arrived in free space', 'left free space behind', 'connected with such', 'feet', 'where an object is expected']);
   assert.deepEqual([1, 0, 2, 4].map((reason) => rgb(names[reason].colour)), [0, 1, 2, 3].map((i) => [...colours[0].slice(3 * i, 3 * i + 3)]));
 });
 
