@@ -19,7 +19,7 @@ namespace {
 using Kind = Hdf5Number::Kind;
 
 constexpr std::string_view kSignature{"\x89HDF\r\n\x1a\n", 8};
-constexpr const char* kExpected = "an HDF5 file with groups of arrays";
+constexpr const char* kExpected = "a whole HDF5 file of OpenSceneFlow, with groups of arrays";
 /// No filter of libhdf5 packs numbers more than zlib, 1032 to 1.
 constexpr std::uint64_t kMostPacked = 2048;
 
@@ -132,7 +132,8 @@ std::uint64_t count_of(const Hdf5Array& array) {
 
 Hdf5File::Hdf5File(std::filesystem::path path, std::span<const std::string_view> names)
     : path_(std::move(path)), file_bytes_(size_of(path_)) {
-  if (read_start(path_, kSignature.size()) != kSignature) {
+  if (file_bytes_ == 0) throw DataError(path_, "is empty", kExpected);
+  if (file_bytes_ < kSignature.size() || read_start(path_, kSignature.size()) != kSignature) {
     throw DataError(path_, "does not begin as a file of HDF5", kExpected);
   }
   const Hdf5Functions& functions = hdf5_functions(path_);

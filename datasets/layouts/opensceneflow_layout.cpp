@@ -11,12 +11,19 @@
 namespace mosbench {
 namespace {
 
+/// An empty or damaged file is known by its name, and opening it says what is wrong.
+bool is_scene_flow_file(const std::filesystem::path& path) {
+  std::error_code ignored;
+  return is_hdf5_file(path) ||
+         (path.extension() == ".h5" && std::filesystem::is_regular_file(path, ignored));
+}
+
 std::vector<SequenceFolder> list_scene_flow(const std::filesystem::path& path) {
-  if (is_hdf5_file(path)) return {{path.stem().string(), path, ""}};
+  if (is_scene_flow_file(path)) return {{path.stem().string(), path, ""}};
   std::vector<SequenceFolder> sequences;
   if (!std::filesystem::is_directory(path)) return sequences;
   for (const StemFile& file : list_by_stem(path, {".h5"})) {
-    if (is_hdf5_file(file.file)) sequences.push_back({file.stem, file.file, ""});
+    if (is_scene_flow_file(file.file)) sequences.push_back({file.stem, file.file, ""});
   }
   return sequences;
 }
@@ -47,7 +54,7 @@ std::vector<Split> scene_flow_splits(const std::vector<SequenceFolder>& files,
 std::optional<std::string> recognise_scene_flow(const std::filesystem::path& path) {
   const auto files = list_scene_flow(path);
   if (files.empty()) return std::nullopt;
-  if (is_hdf5_file(path)) return "it is an .h5 file";
+  if (is_scene_flow_file(path)) return "it is an .h5 file";
   return fmt::format("{} .h5 files are there", files.size());
 }
 

@@ -282,10 +282,23 @@ TEST_F(SceneFlowFile, RefusesFilesThatAreNoneOrCut) {
   for (const std::size_t size : {bytes.size() - 1, bytes.size() / 2, std::size_t{8}}) {
     const auto cut = folder_.write("cut.h5", bytes.substr(0, size));
     EXPECT_THAT(message_of<DataError>([&] { SceneFlowSequence("s", cut, {}); }),
-                AllOf(StartsWith(cut.string()), HasSubstr("expected an HDF5 file")));
+                AllOf(StartsWith(cut.string()), HasSubstr("expected a whole HDF5 file")));
   }
   EXPECT_THROW(open_dataset(write(scans()), {.reading = {.point_times = PointTimes::kColumn}}),
                UsageError);
+}
+
+TEST(SceneFlowFolder, NamesAFileThatIsEmptyOrNone) {
+  const TempFolder folder;
+  folder.write("data/a.h5", "");
+  for (const char* place : {"data", "data/a.h5"}) {
+    EXPECT_THAT(message_of<DataError>([&] { open_dataset(folder / place, {}); }),
+                AllOf(HasSubstr("a.h5: is empty, expected a whole HDF5 file of OpenSceneFlow")))
+        << place;
+  }
+  folder.write("data/a.h5", "\x89HDF");
+  EXPECT_THAT(message_of<DataError>([&] { open_dataset(folder / "data", {}); }),
+              HasSubstr("a.h5: does not begin as a file of HDF5"));
 }
 
 TEST_F(SceneFlowFile, IsWrittenWithTheSameBytesInAnyOrder) {
