@@ -11,6 +11,7 @@
 
 #include "datasets/doctor/doctor.hpp"
 #include "datasets/doctor/registration.hpp"
+#include "datasets/doctor/truth_check.hpp"
 #include "datasets/files/files.hpp"
 #include "datasets/files/point_range.hpp"
 #include "datasets/layouts/layout.hpp"
@@ -77,6 +78,7 @@ class ContentCheck {
   std::vector<Symptom> run() {
     checkup_.points_of_range.assign(range_bins_m().size(), 0);
     for (const std::size_t scan_index : sampled_scans()) count_scan(scan_index);
+    if (has_only_unlabelled()) count_labelled_scans();
     check_empty();
     check_returns();
     check_ids();
@@ -100,6 +102,17 @@ class ContentCheck {
       if (!labelled.empty()) sampled.insert(labelled[i * labelled.size() / (kScansRead / 2)]);
     }
     return sampled;
+  }
+
+  bool has_only_unlabelled() const {
+    return checkup_.points_of_id.size() == 1 && checkup_.points_of_id.contains(0);
+  }
+
+  /// Those read have none by chance where key frames alone are labelled.
+  void count_labelled_scans() {
+    const std::vector<std::size_t> labelled = scans_with_labels(sequence_);
+    const std::size_t count = std::min(kScansRead / 2, labelled.size());
+    for (std::size_t i = 0; i < count; ++i) count_scan(labelled[i * labelled.size() / count]);
   }
 
   void count_scan(std::size_t scan_index) {
@@ -261,8 +274,7 @@ class ContentCheck {
       if (!expected_.label_ids.empty() && !expected_.label_ids.contains(id)) unknown.push_back(id);
       learning_classes = learning_classes && id <= 2;
     }
-    const bool only_unlabelled =
-        checkup_.points_of_id.size() == 1 && checkup_.points_of_id.contains(0);
+    const bool only_unlabelled = has_only_unlabelled();
     if (learning_classes && !only_unlabelled) {
       warn(
           fmt::format("the labels are {}, as the classes of a network; expected the ids of the "
@@ -272,7 +284,7 @@ class ContentCheck {
       warn(fmt::format("the labels hold the ids {}; expected only those of the data set ({})",
                        fmt::join(unknown, ", "), shortened(expected_.label_ids)));
     }
-    if (only_unlabelled) warn("all labels of the scans read are 0; expected labelled points");
+    if (only_unlabelled) warn("all labels of all scans are 0; expected labelled points");
     if (labels_beyond_ > 0) {
       warn(
           fmt::format("{} labelled points lie outside of {:g} to {:g} m; expected id 0 there, as "

@@ -103,9 +103,8 @@ class TruthChecking {
       : sequence_(sequence), poses_(poses), poses_fit_(poses_fit) {}
 
   TruthCheck run() {
-    const std::vector<std::size_t> labelled = scans_with_truth(sequence_);
-    const std::size_t count = std::min(kLabelledScans, labelled.size());
-    for (std::size_t i = 0; i < count; ++i) examine(labelled[i * labelled.size() / count]);
+    examine_some(scans_with_truth(sequence_));
+    if (result_.moving + result_.still == 0) examine_some(scans_with_labels(sequence_));
     result_.moving_leaves = share(moving_left_, moving_seen_);
     result_.still_leaves = share(still_left_, still_seen_);
     result_.purity = result_.moving > 0 ? purity_sum_ / static_cast<double>(result_.moving) : 0.0;
@@ -116,6 +115,11 @@ class TruthChecking {
  private:
   static double share(std::size_t part, std::size_t whole) {
     return whole == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(whole);
+  }
+
+  void examine_some(const std::vector<std::size_t>& labelled) {
+    const std::size_t count = std::min(kLabelledScans, labelled.size());
+    for (std::size_t i = 0; i < count; ++i) examine(labelled[i * labelled.size() / count]);
   }
 
   void examine(std::size_t scan_index) {
@@ -220,6 +224,15 @@ class TruthChecking {
 };
 
 }  // namespace
+
+std::vector<std::size_t> scans_with_labels(const Sequence& sequence) {
+  std::vector<std::size_t> labelled = scans_with_truth(sequence);
+  std::erase_if(labelled, [&](std::size_t scan_index) {
+    return std::ranges::all_of(sequence.read_truth(scan_index),
+                               [](std::uint32_t label) { return (label & 0xFFFFU) == 0; });
+  });
+  return labelled;
+}
 
 TruthCheck check_truth(const Sequence& sequence, const std::vector<Pose>& map_from_sensor,
                        bool poses_fit) {

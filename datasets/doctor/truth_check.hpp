@@ -21,6 +21,10 @@ struct TruthCheck {
   std::vector<std::string> remarks;  ///< of what may well be right
 };
 
+/// Returns the scans with a label other than 0, which nobody gave: data sets may have labels of key
+/// frames alone and files of zeros for the scans between. Reads the truth of all.
+std::vector<std::size_t> scans_with_labels(const Sequence& sequence);
+
 /// Compares labels with what other scans see, in up to a dozen labelled scans. Unless the scans
 /// confirm the poses, nothing is concluded from which points leave their place. Throws DataError.
 TruthCheck check_truth(const Sequence& sequence, const std::vector<Pose>& map_from_sensor,

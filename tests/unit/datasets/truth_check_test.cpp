@@ -3,9 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <optional>
 #include <string>
 
+#include "datasets/doctor/doctor.hpp"
 #include "datasets/sequence/sequence.hpp"
 
 namespace mosbench {
@@ -67,6 +69,47 @@ TEST(TruthWithoutAnythingMoving, IsLookedForInAllScans) {
   EXPECT_EQ(check.moving, 0U);  // not among the dozen examined
   EXPECT_THAT(check.findings, IsEmpty());
   EXPECT_THAT(check.remarks, IsEmpty());
+}
+
+/// All scans have truth; only scan 7 and the one in its middle hold other labels than 0.
+class KeyFrames : public QuietSequence {
+ public:
+  KeyFrames() : QuietSequence(60, 7) {
+    for (ScanEntry& scan : mutable_recording().scans) scan.has_truth = true;
+  }
+  std::vector<std::uint32_t> read_truth(std::size_t scan_index) const override {
+    if (scan_index != 7 && scan_index != 33) return std::vector<std::uint32_t>(kFewPoints, 0U);
+    return QuietSequence::read_truth(scan_index);
+  }
+};
+
+TEST(TruthOfKeyFrames, IsLookedForAmongScansOfZeros) {
+  const KeyFrames frames;
+  EXPECT_THAT(scans_with_labels(frames), ElementsAre(7U, 33U));
+  const TruthCheck check =
+      check_truth(frames, std::vector<Pose>(frames.size(), Pose::Identity()), true);
+  EXPECT_EQ(check.moving, 1U);
+  EXPECT_EQ(check.still, 5U);
+  SequenceCheckup checkup;
+  for (const Symptom& symptom : check_content(frames, DatasetKind::kSemanticKitti, checkup)) {
+    EXPECT_THAT(symptom.what, testing::Not(testing::HasSubstr("labels")));
+  }
+  EXPECT_EQ(checkup.points_of_id[kMovingLabel], 1U);
+}
+
+TEST(TruthOfKeyFrames, IsMissingWhereAllScansAreZeros) {
+  class Zeros : public QuietSequence {
+   public:
+    Zeros() : QuietSequence(20, {}) {}
+    std::vector<std::uint32_t> read_truth(std::size_t) const override {
+      return std::vector<std::uint32_t>(kFewPoints, 0U);
+    }
+  };
+  SequenceCheckup checkup;
+  const auto symptoms = check_content(Zeros(), DatasetKind::kSemanticKitti, checkup);
+  EXPECT_TRUE(std::ranges::any_of(symptoms, [](const Symptom& symptom) {
+    return symptom.what == "all labels of all scans are 0; expected labelled points";
+  }));
 }
 
 }  // namespace
