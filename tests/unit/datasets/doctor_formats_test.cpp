@@ -1,4 +1,4 @@
-// The doctor on .h5, nuScenes and HeLiPR, written from scans of the simulator.
+// The doctor on .h5, nuScenes, HeLiPR and ROS 2 bags, written from scans of the simulator.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -12,6 +12,7 @@
 #include "datasets/doctor/doctor.hpp"
 #include "datasets/hdf5/hdf5_module.hpp"
 #include "datasets/layouts/convert.hpp"
+#include "datasets/layouts/sequence_writer.hpp"
 #include "datasets/simulator/simulated_sequence.hpp"
 #include "tests/sanitizers.hpp"
 #include "tests/temp_folder.hpp"
@@ -55,8 +56,17 @@ void with_flow_of_the_scan_before(const Sequence& good, std::size_t scan_index, 
   }
 }
 
-/// Writes the first recording of a layout and returns what the doctor says of it.
-Checkup checkup_with(DatasetKind layout, const TempFolder& folder, ScanFault fault) {
+/// What is written, of recordings as a bag.
+struct Format {
+  DatasetKind layout;
+  BagKind bag = BagKind::kNone;
+};
+
+/// Writes the first recording of a layout, as a bag one of SemanticKITTI, and returns what the
+/// doctor says of it.
+Checkup checkup_with(const Format& format, const TempFolder& folder, ScanFault fault) {
+  const bool is_bag = format.bag != BagKind::kNone;
+  const DatasetKind layout = is_bag ? DatasetKind::kSemanticKitti : format.layout;
   Scene scene = load_scene("street");
   if (layout == DatasetKind::kOpenSceneFlow) scene.columns = 900;
   const SimulatedRecording recording = recordings_of(layout, scene).front();
@@ -69,16 +79,18 @@ Checkup checkup_with(DatasetKind layout, const TempFolder& folder, ScanFault fau
   dataset.sequences.push_back(
       std::make_unique<Faulty>(simulated_sequence(simulation, scene, recording), std::move(fault)));
   ConvertOptions options;
-  options.layout = layout;
+  options.layout = format.layout;
+  options.writing.bag = format.bag;
+  options.writing.compression = "none";
   options.out = folder / "data";
   convert(dataset, options);
   return check_up(folder / "data", {});
 }
 
-class DoctorOnFormats : public testing::TestWithParam<DatasetKind> {
+class DoctorOnFormats : public testing::TestWithParam<Format> {
  protected:
   void SetUp() override {
-    if (GetParam() == DatasetKind::kOpenSceneFlow && !has_hdf5()) {
+    if (GetParam().layout == DatasetKind::kOpenSceneFlow && !has_hdf5()) {
       GTEST_SKIP() << "this build is without libhdf5";
     }
     if (kSanitized) GTEST_SKIP() << "takes minutes in sanitized builds";
@@ -94,15 +106,23 @@ std::string said_in(const Checkup& checkup) {
   return text;
 }
 
+std::string name_of_format(const testing::TestParamInfo<Format>& format) {
+  const BagKind bag = format.param.bag;
+  return std::string(bag == BagKind::kNone ? to_string(format.param.layout) : to_string(bag));
+}
+
 INSTANTIATE_TEST_SUITE_P(Formats, DoctorOnFormats,
-                         testing::Values(DatasetKind::kOpenSceneFlow, DatasetKind::kNuscenes,
-                                         DatasetKind::kHelipr),
-                         [](const auto& kind) { return std::string(to_string(kind.param)); });
+                         testing::Values(Format{DatasetKind::kOpenSceneFlow},
+                                         Format{DatasetKind::kNuscenes},
+                                         Format{DatasetKind::kHelipr},
+                                         Format{DatasetKind::kRecording, BagKind::kMcap},
+                                         Format{DatasetKind::kRecording, BagKind::kDb3}),
+                         name_of_format);
 
 TEST_P(DoctorOnFormats, IsQuietAboutWhatIsGood) {
   const Checkup checkup = checkup_with(GetParam(), folder_, {});
   EXPECT_EQ(said_in(checkup), "");
-  EXPECT_EQ(checkup.kind, GetParam());
+  EXPECT_EQ(checkup.kind, GetParam().layout);
   ASSERT_EQ(checkup.sequences.size(), 1U);
   EXPECT_TRUE(checkup.sequences.front().poses);
 }
@@ -117,7 +137,7 @@ TEST(DoctorOnSceneFlow, FindsAFlowThatIsAScanLate) {
   if (kSanitized) GTEST_SKIP() << "takes minutes in sanitized builds";
   const TempFolder folder;
   EXPECT_THAT(
-      said_in(checkup_with(DatasetKind::kOpenSceneFlow, folder, with_flow_of_the_scan_before)),
+      said_in(checkup_with({DatasetKind::kOpenSceneFlow}, folder, with_flow_of_the_scan_before)),
       HasSubstr("the labels do not fit the scans"));
 }
 
