@@ -16,6 +16,11 @@ bool is_helipr_lidar(const fs::path& folder) {
          folder_name(parent_folder(folder)) == "LiDAR" && !list_by_stem(folder, {".bin"}).empty();
 }
 
+/// Whether a recording is called after its LiDAR, as `convert` calls it: "Roundabout01_Aeva".
+bool is_called_after(const fs::path& recording, const fs::path& lidar) {
+  return folder_name(recording).ends_with("_" + folder_name(lidar));
+}
+
 /// Lists the LiDARs of one recording, each called `prefix` and its own name.
 std::vector<SequenceFolder> lidars_of(const fs::path& recording, const std::string& prefix) {
   std::vector<SequenceFolder> sequences;
@@ -33,9 +38,11 @@ std::vector<SequenceFolder> list_helipr(const fs::path& path) {
   if (auto sequences = lidars_of(path, ""); !sequences.empty()) return sequences;
   std::vector<SequenceFolder> sequences;
   for (const fs::path& recording : list_folders(path)) {
-    for (SequenceFolder& lidar : lidars_of(recording, folder_name(recording) + "/")) {
-      sequences.push_back(std::move(lidar));
+    auto lidars = lidars_of(recording, folder_name(recording) + "/");
+    if (lidars.size() == 1 && is_called_after(recording, lidars.front().folder)) {
+      lidars.front().name = folder_name(recording);
     }
+    sequences.insert(sequences.end(), lidars.begin(), lidars.end());
   }
   return sequences;
 }
