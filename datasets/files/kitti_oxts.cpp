@@ -29,12 +29,13 @@ OxtsPacket parse_packet(const TextLine& line, const std::filesystem::path& file)
     if (!number) throw DataError(file, line.number, quoted(texts[i]) + " is no number", "a number");
     numbers[i] = *number;
   }
-  const bool is_on_map = std::abs(numbers[0]) <= 89.0 && std::abs(numbers[1]) <= 360.0;
-  if (!is_on_map) {
+  const OxtsPacket packet = {numbers[0], numbers[1], numbers[2],
+                             numbers[3], numbers[4], numbers[5]};
+  if (!is_on_map(packet)) {
     throw DataError(file, line.number, "is no place that Mercator's projection shows",
                     "a latitude within 89 degrees and a longitude within 360");
   }
-  return {numbers[0], numbers[1], numbers[2], numbers[3], numbers[4], numbers[5]};
+  return packet;
 }
 
 double scale_of(const OxtsPacket& first) { return std::cos(first.latitude_deg * kRadPerDeg); }
@@ -63,6 +64,13 @@ void set_attitude(const Eigen::Matrix3d& r, OxtsPacket& packet) {
 }
 
 }  // namespace
+
+bool is_on_map(const OxtsPacket& packet) {
+  const bool is_finite = std::isfinite(packet.altitude_m) && std::isfinite(packet.roll_rad) &&
+                         std::isfinite(packet.pitch_rad) && std::isfinite(packet.yaw_rad);
+  return is_finite && std::abs(packet.latitude_deg) <= 89.0 &&
+         std::abs(packet.longitude_deg) <= 360.0;
+}
 
 std::vector<OxtsPacket> parse_oxts(std::string_view text, const std::filesystem::path& file) {
   std::vector<OxtsPacket> packets;

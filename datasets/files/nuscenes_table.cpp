@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "datasets/files/errors.hpp"
+#include "datasets/files/files.hpp"
 #include "datasets/files/text.hpp"
 
 namespace mosbench {
@@ -24,6 +25,11 @@ const NuscenesRow::Value& NuscenesRow::value(std::string_view key, Kind kind,
   if (found == end) refuse(fmt::format("has no \"{}\"", key), expected);
   if (found->kind != kind) refuse(fmt::format("\"{}\" is of another kind", key), expected);
   return *found;
+}
+
+bool NuscenesRow::has(std::string_view key) const {
+  const auto end = values_.begin() + static_cast<std::ptrdiff_t>(size_);
+  return std::any_of(values_.begin(), end, [key](const Value& value) { return value.key == key; });
 }
 
 const std::string& NuscenesRow::text(std::string_view key) const {
@@ -176,6 +182,7 @@ void parse_nuscenes_table(std::istream& bytes, const std::filesystem::path& file
 
 void read_nuscenes_table(const std::filesystem::path& file,
                          const std::function<void(const NuscenesRow&)>& take) {
+  if (!is_there(file)) throw DataError(file, "is not there", "a table of nuScenes");
   // Opening a FIFO would wait for somebody who writes.
   if (!std::filesystem::is_regular_file(file)) {
     throw DataError(file, "is no regular file", "a table of nuScenes");

@@ -15,6 +15,7 @@ namespace mosbench {
 /// or lists of texts or numbers.
 class NuscenesRow {
  public:
+  bool has(std::string_view key) const;
   /// Return the value of a key. Throw DataError naming the file and the row, from 0, where the key
   /// is missing or holds something else, numbers that are not finite or another count of them.
   const std::string& text(std::string_view key) const;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <map>
 #include <set>
 #include <utility>
 
@@ -14,6 +15,8 @@ namespace mosbench {
 namespace {
 
 constexpr std::size_t kLabelColumns = 17, kMostLabelFrames = 1'000'000;
+/// KITTI has a few in a frame; each is compared with all points.
+constexpr std::size_t kMostRegions = 1000;
 constexpr std::string_view kRegion = "DontCare";
 
 class LabelRow {
@@ -86,11 +89,16 @@ std::vector<TrackingLabel> parse_tracking_labels(std::string_view text,
                                                  const std::filesystem::path& file) {
   std::vector<TrackingLabel> labels;
   std::set<std::pair<std::size_t, std::int64_t>> known;
+  std::map<std::size_t, std::size_t> regions;
   for (const TextLine& line : split_lines(text, file)) {
     const LabelRow row(line, file);
     const TrackingLabel& label = labels.emplace_back(row.label());
     if (label.box && !known.emplace(label.frame, label.track).second) {
       row.refuse(fmt::format("track {} is twice in frame {}", label.track, label.frame), "once");
+    }
+    if (!label.box && ++regions[label.frame] > kMostRegions) {
+      row.refuse(fmt::format("frame {} has more regions of DontCare", label.frame),
+                 fmt::format("{} at most", kMostRegions));
     }
   }
   return labels;

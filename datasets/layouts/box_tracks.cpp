@@ -30,7 +30,11 @@ std::vector<Sighting> sightings_of(const BoxTrack& track,
   return sightings;
 }
 
-std::uint32_t label_of(std::span<const Sighting> track, std::size_t at, double moving_speed_m_s) {
+constexpr std::uint32_t kIdBits = 16, kIds = 1U << kIdBits;
+
+std::uint32_t id_of(const LabelledBox& box) { return box.label % kIds; }
+
+std::uint32_t id_at(std::span<const Sighting> track, std::size_t at, double moving_speed_m_s) {
   std::size_t first = at == 0 ? 0 : at - 1;
   std::size_t last = std::min(at + 1, track.size() - 1);
   const double time_s = track[at].time_s;
@@ -44,6 +48,10 @@ std::uint32_t label_of(std::span<const Sighting> track, std::size_t at, double m
 
 }  // namespace
 
+std::uint32_t instance_of_number(std::uint64_t number) {
+  return number + 1 < kIds ? static_cast<std::uint32_t>(number + 1) : 0;
+}
+
 std::vector<std::vector<LabelledBox>> label_boxes(std::span<const BoxTrack> tracks,
                                                   std::span<const std::optional<FramePose>> frames,
                                                   double moving_speed_m_s) {
@@ -52,12 +60,25 @@ std::vector<std::vector<LabelledBox>> label_boxes(std::span<const BoxTrack> trac
     const std::vector<Sighting> sightings = sightings_of(track, frames);
     for (std::size_t i = 0; i < sightings.size(); ++i) {
       const TrackedBox& box = *sightings[i].box;
+      const std::uint32_t id = id_at(sightings, i, moving_speed_m_s);
       boxes[box.frame].push_back({box.lidar_from_box.inverse(), box.half_size_m,
-                                  label_of(sightings, i, moving_speed_m_s)});
+                                  id == 0 ? 0 : id | (box.instance << kIdBits)});
     }
   }
-  for (auto& of_frame : boxes) std::ranges::stable_sort(of_frame, {}, &LabelledBox::label);
+  for (auto& of_frame : boxes) std::ranges::stable_sort(of_frame, {}, id_of);
   return boxes;
+}
+
+bool is_unlabelled(std::span<const LabelledBox> boxes) {
+  constexpr double kReach_m = 200.0;
+  bool covers = false;
+  for (const LabelledBox& box : boxes) {
+    const Eigen::Vector3d sensor_m = box.box_from_lidar.translation();
+    if (id_of(box) != 0 && sensor_m.norm() <= kReach_m + box.half_size_m.norm()) return false;
+    const Eigen::Array3d reached_m = sensor_m.cwiseAbs().array() + kReach_m;
+    covers = covers || (id_of(box) == 0 && (reached_m <= box.half_size_m.array()).all());
+  }
+  return covers;
 }
 
 }  // namespace mosbench

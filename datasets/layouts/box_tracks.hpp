@@ -15,6 +15,7 @@ struct TrackedBox {
   std::size_t frame = 0;
   Pose lidar_from_box = Pose::Identity();  ///< x along the length, y the width, z the height
   Eigen::Vector3d half_size_m = Eigen::Vector3d::Zero();
+  std::uint32_t instance = 0;  ///< of its object; 0 where that is not known
 };
 
 /// The boxes of one object by frame, at most one in each.
@@ -26,7 +27,11 @@ struct FramePose {
   std::int64_t stamp_ns = 0;
 };
 
-/// A box and the label of the points in it.
+/// Returns the instance of an object that has this number, from 0 on: one more, or 0 beyond the 16
+/// bits that labels have for it.
+std::uint32_t instance_of_number(std::uint64_t number);
+
+/// A box and the label of the points in it, with an instance in the upper 16 bits.
 struct LabelledBox {
   Pose box_from_lidar = Pose::Identity();
   Eigen::Vector3d half_size_m = Eigen::Vector3d::Zero();
@@ -37,11 +42,16 @@ struct LabelledBox {
 inline constexpr double kTrackWindow_s = 0.5;
 
 /// Returns the boxes of every frame: 251 from `moving_speed_m_s` on, 9 below, 0 for an object that
-/// is seen in one frame alone. The speed is that of the box's centre in the map between the first
-/// and the last box of its track within `kTrackWindow_s`, but at least those before and after it.
-/// Where boxes overlap, moving comes last. Boxes of frames without pose are left out.
+/// is seen in one frame alone, which has no instance. The speed is that of the box's centre in the
+/// map between the first and the last box of its track within `kTrackWindow_s`, but at least those
+/// before and after it. Where boxes overlap, moving comes last. Boxes of frames without pose are
+/// left out.
 std::vector<std::vector<LabelledBox>> label_boxes(std::span<const BoxTrack> tracks,
                                                   std::span<const std::optional<FramePose>> frames,
                                                   double moving_speed_m_s);
+
+/// Whether nobody labelled a frame, as `convert` writes scans without truth: a box without label
+/// holds all that a LiDAR reaches, and no box with one comes there.
+bool is_unlabelled(std::span<const LabelledBox> boxes);
 
 }  // namespace mosbench

@@ -11,6 +11,8 @@
 #include "datasets/files/files.hpp"
 #include "datasets/files/folder_listing.hpp"
 #include "datasets/files/folder_lock.hpp"
+#include "datasets/files/kitti_calib.hpp"
+#include "datasets/files/point_range.hpp"
 #include "datasets/layouts/helimos_layout.hpp"
 #include "datasets/layouts/helipr_writer.hpp"
 #include "datasets/layouts/kitti_drive_writer.hpp"
@@ -133,28 +135,34 @@ void write_shared_files(const Dataset& dataset, const ConvertOptions& options) {
 
 /// Counts what of the truth is not written.
 struct LostTruth {
-  std::size_t unlabelled_points = 0, labelled_scans = 0;
+  KeptTruth keeps = KeptTruth::kId;
+  std::size_t unlabelled_points = 0, labelled_scans = 0, points_beyond_view = 0;
 
   void add(const Frame& frame) {
+    static const CameraView kView = written_kitti_mounting().view;
     if (!frame.truth) return;
     ++labelled_scans;
-    unlabelled_points += static_cast<std::size_t>(std::ranges::count_if(
-        *frame.truth, [](std::uint32_t label) { return (label & 0xFFFFU) == 0; }));
+    for (std::size_t i = 0; i < frame.points.size(); ++i) {
+      if (((*frame.truth)[i] & 0xFFFFU) == 0) {
+        ++unlabelled_points;
+      } else if (keeps == KeptTruth::kInView && !kView.sees(position_of(frame.points[i]))) {
+        ++points_beyond_view;
+      }
+    }
   }
 
   std::vector<std::string> sentences(const Layout& layout) const {
-    const KeptTruth keeps = layout.writer->keeps;
     if (keeps == KeptTruth::kMoving && unlabelled_points > 0) {
       return {
           fmt::format("{} points of the label id 0, which most data sets give to what nobody "
                       "labelled, become static: layout {} knows static and moving alone",
                       unlabelled_points, layout.name)};
     }
-    if (keeps == KeptTruth::kInView && labelled_scans > 0) {
+    if (keeps == KeptTruth::kInView && points_beyond_view > 0) {
       return {
-          fmt::format("points beyond the view of camera 2 lose their labels: layout {} has none "
+          fmt::format("{} points beyond the view of camera 2 lose their labels: layout {} has none "
                       "there",
-                      layout.name)};
+                      points_beyond_view, layout.name)};
     }
     if (keeps == KeptTruth::kNone && labelled_scans > 0) {
       return {fmt::format("the labels of {} scans are left out: layout {} has none", labelled_scans,
@@ -190,7 +198,7 @@ std::vector<std::string> convert(
   std::size_t total = 0;
   for (const auto& sequence : dataset.sequences) total += sequence->size();
   std::size_t done = 0;
-  LostTruth lost;
+  LostTruth lost{.keeps = layout.writer->keeps};
   const auto advance = [&] {
     if (progress) progress(++done, total);
   };

@@ -82,7 +82,7 @@ std::vector<SequenceFolder> find_sequences(const std::filesystem::path& path,
 /// (doals); folders named after HeLiMOS's sensors; velodyne_poses_kitti.txt (apollo); .h5 files
 /// (opensceneflow); pcd/ next to gt_poses.txt (moe) or gt_cloud.pcd (kth); tables of
 /// v1.0-* (nuscenes); LiDAR/ with its sensors (helipr); velodyne_points/data (kitti-raw);
-/// velodyne/ with oxts/ and calib/ beside it (kitti-tracking); "sipailou" or "M-detector" in a
+/// velodyne/NNNN with scans (kitti-tracking); "sipailou" or "M-detector" in a
 /// folder name of the path; folders as those of semantickitti; any bags or scans (recording). A
 /// remark says so. Throws DataError when nothing usable is there, UsageError for a sequence name
 /// that does not exist or a pose file given for several sequences. For poses in a folder each

@@ -11,6 +11,7 @@
 #include "datasets/files/files.hpp"
 #include "datasets/files/kitti_oxts.hpp"
 #include "datasets/files/kitti_stamps.hpp"
+#include "datasets/files/text.hpp"
 #include "datasets/files/tracking_labels.hpp"
 #include "datasets/files/tracklets.hpp"
 #include "datasets/layouts/folder_search.hpp"
@@ -45,7 +46,17 @@ std::vector<Pose> lidar_poses(const std::vector<OxtsPacket>& packets, const Pose
   return poses;
 }
 
-BoxTrack track_of(const Tracklet& tracklet) {
+constexpr std::string_view kPart = "Object";
+
+/// The instance that the type of a written box says, else that of its track.
+std::uint32_t instance_of(std::string_view type, std::uint64_t track) {
+  const bool is_part = type.starts_with(kPart);
+  const auto part = is_part ? parse_unsigned(type.substr(kPart.size())) : std::nullopt;
+  constexpr std::uint64_t kMost = 65535;
+  return part && *part <= kMost ? static_cast<std::uint32_t>(*part) : instance_of_number(track);
+}
+
+BoxTrack track_of(const Tracklet& tracklet, std::size_t number) {
   BoxTrack track;
   const Eigen::Vector3d half_size_m =
       0.5 * Eigen::Vector3d(tracklet.length_m, tracklet.width_m, tracklet.height_m);
@@ -54,7 +65,8 @@ BoxTrack track_of(const Tracklet& tracklet) {
     Pose pose = Pose::Identity();
     pose.linear() = Eigen::AngleAxisd(at.yaw_rad, Eigen::Vector3d::UnitZ()).toRotationMatrix();
     pose.translation() = at.bottom_m + half_size_m.z() * Eigen::Vector3d::UnitZ();
-    track.push_back({tracklet.first_frame + i, pose, half_size_m});
+    track.push_back(
+        {tracklet.first_frame + i, pose, half_size_m, instance_of(tracklet.type, number)});
   }
   return track;
 }
@@ -85,7 +97,7 @@ void read_raw_poses(const fs::path& folder, const Pose& lidar_from_imu, KittiDri
 
 void read_tracklets(const fs::path& file, KittiDrive& drive) {
   for (const Tracklet& tracklet : parse_tracklets(read_file(file), file)) {
-    drive.tracks.push_back(track_of(tracklet));
+    drive.tracks.push_back(track_of(tracklet, drive.tracks.size()));
   }
   drive.has_truth = true;
   drive.truth_files = {file};
@@ -110,8 +122,10 @@ void read_labels_of_tracks(const fs::path& file, KittiDrive& drive) {
       continue;
     }
     const CameraBox& box = *label.box;
-    tracks[label.track].push_back({label.frame, lidar_from_rectified * rectified_from_box(box),
-                                   0.5 * Eigen::Vector3d(box.length_m, box.width_m, box.height_m)});
+    tracks[label.track].push_back(
+        {label.frame, lidar_from_rectified * rectified_from_box(box),
+         0.5 * Eigen::Vector3d(box.length_m, box.width_m, box.height_m),
+         instance_of(label.type, static_cast<std::uint64_t>(label.track))});
   }
   for (auto& [number, track] : tracks) {
     std::ranges::sort(track, {}, &TrackedBox::frame);
@@ -121,7 +135,27 @@ void read_labels_of_tracks(const fs::path& file, KittiDrive& drive) {
   drive.truth_files = {file};
 }
 
+fs::path first_missing(const std::vector<fs::path>& needed) {
+  const auto missing = std::ranges::find_if_not(needed, is_there);
+  return missing == needed.end() ? fs::path() : *missing;
+}
+
+/// Whether there are boxes, and poses by which they move.
+bool has_usable_boxes(const fs::path& file, KittiDrive& drive) {
+  if (!is_there(file)) {
+    drive.remarks.emplace_back("no labels of objects: there is no truth");
+    return false;
+  }
+  if (drive.missing.empty()) return true;
+  drive.remarks.push_back(
+      fmt::format("{} gives no truth: {} is not there, by which its boxes have a place and a speed",
+                  file.string(), drive.missing.string()));
+  return false;
+}
+
 }  // namespace
+
+std::string type_of_part(std::uint32_t instance) { return fmt::format("{}{}", kPart, instance); }
 
 KittiDrive read_raw_drive(const std::string& name, const fs::path& folder) {
   KittiDrive drive;
@@ -131,8 +165,10 @@ KittiDrive read_raw_drive(const std::string& name, const fs::path& folder) {
   drive.pose_source = "oxts, by Mercator's projection";
   drive.truth_source = "tracklet_labels.xml";
   const fs::path tracklets = folder / "tracklet_labels.xml", stamps = folder / "velodyne_points";
-  if (is_there(folder / "oxts") || is_there(tracklets)) {
-    const fs::path date = parent_folder(folder);
+  const fs::path date = parent_folder(folder);
+  drive.missing = first_missing({folder / "oxts", date / "calib_imu_to_velo.txt",
+                                 date / "calib_velo_to_cam.txt", date / "calib_cam_to_cam.txt"});
+  if (drive.missing.empty()) {
     const KittiMounting mounting = read_kitti_mounting(date);
     drive.view = mounting.view;
     for (const char* calib : {"imu_to_velo", "velo_to_cam", "cam_to_cam"}) {
@@ -140,7 +176,7 @@ KittiDrive read_raw_drive(const std::string& name, const fs::path& folder) {
     }
     read_raw_poses(folder / "oxts", mounting.lidar_from_imu, drive);
   }
-  if (is_there(tracklets)) read_tracklets(tracklets, drive);
+  if (has_usable_boxes(tracklets, drive)) read_tracklets(tracklets, drive);
   if (is_there(stamps / "timestamps.txt")) {
     drive.files.push_back(stamps / "timestamps.txt");
     drive.stamps_ns = parse_kitti_stamps(read_file(drive.files.back()), drive.files.back());
@@ -166,7 +202,8 @@ KittiDrive read_tracking_drive(const std::string& name, const fs::path& folder) 
   const std::string file_name = folder_name(folder) + ".txt";
   const fs::path calib = root / "calib" / file_name, labels = root / "label_02" / file_name;
   drive.pose_file = root / "oxts" / file_name;
-  if (is_there(drive.pose_file) || is_there(labels)) {
+  drive.missing = first_missing({root / "oxts", root / "calib", drive.pose_file, calib});
+  if (drive.missing.empty()) {
     const KittiMounting mounting = parse_tracking_calib(read_file(calib), calib);
     drive.view = mounting.view;
     const auto packets = parse_oxts(read_file(drive.pose_file), drive.pose_file);
@@ -176,7 +213,7 @@ KittiDrive read_tracking_drive(const std::string& name, const fs::path& folder) 
     }
     drive.files = {calib, drive.pose_file};
   }
-  if (is_there(labels)) read_labels_of_tracks(labels, drive);
+  if (has_usable_boxes(labels, drive)) read_labels_of_tracks(labels, drive);
   return drive;
 }
 

@@ -37,10 +37,16 @@ struct KittiDrive {
   std::vector<std::filesystem::path> truth_files;
   std::string pose_source, truth_source;  ///< for what is said of the reading
   std::vector<std::string> remarks;
+  /// What is not there of oxts and calibration; then there are neither `frames` nor truth. Empty:
+  /// all is there.
+  std::filesystem::path missing;
 };
 
-/// Reads DATE_drive_NNNN_sync/ and the calibration beside it. Without oxts/ all `frames` are empty,
-/// unless there are tracklets. Throws DataError.
+/// The type of the boxes that `convert` writes: parts of the object with this instance, 0 for none.
+std::string type_of_part(std::uint32_t instance);
+
+/// Reads DATE_drive_NNNN_sync/ and the calibration beside it. Throws DataError for what is there
+/// and damaged.
 KittiDrive read_raw_drive(const std::string& name, const std::filesystem::path& folder);
 
 /// Reads a sequence of the tracking benchmark by its folder velodyne/NNNN. Throws as above.

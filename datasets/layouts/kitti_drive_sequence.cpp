@@ -54,8 +54,6 @@ KittiDriveSequence::KittiDriveSequence(KittiDrive drive, const ReadingOptions& o
         "truth", fmt::format("boxes of {}, moving from {:g} m/s on, in the view of camera 2",
                              drive.truth_source, moving_speed_m_s));
     boxes_ = label_boxes(drive.tracks, drive.frames, moving_speed_m_s);
-  } else {
-    recording.remarks.push_back("no labels of objects: there is no truth");
   }
   list_scans(drive);
   take_poses(drive, options);
@@ -67,7 +65,8 @@ void KittiDriveSequence::list_scans(const KittiDrive& drive) {
     entry.stem = scan.stem;
     entry.file = scan.file;
     entry.points = read_scan_head(scan.file, bin_columns_).points;
-    entry.has_truth = drive.has_truth && is_placed(drive, frame_of(entry));
+    const std::size_t frame = frame_of(entry);
+    entry.has_truth = is_placed(drive, frame) && drive.has_truth && !is_unlabelled(boxes_[frame]);
     if (!drive.stamps_ns.empty()) entry.stamp_ns = drive.stamps_ns[frame_of(entry)];
   }
   const std::size_t frames = frame_of(mutable_recording().scans.back()) + 1;
@@ -79,9 +78,10 @@ void KittiDriveSequence::list_scans(const KittiDrive& drive) {
 
 void KittiDriveSequence::take_oxts(const KittiDrive& drive) {
   Recording& recording = mutable_recording();
-  if (drive.frames.empty()) {
-    throw MissingPoses(drive.folder, "has no oxts, which gives KITTI's drives their poses",
-                       "oxts, or poses of another source");
+  if (!drive.missing.empty()) {
+    throw MissingPoses(drive.missing, "is not there",
+                       "oxts and calibration, which give KITTI's drives their poses, or poses of "
+                       "another source");
   }
   for (ScanEntry& scan : std::exchange(recording.scans, {})) {
     const std::size_t frame = frame_of(scan);

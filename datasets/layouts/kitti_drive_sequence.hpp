@@ -11,10 +11,11 @@ namespace mosbench {
 
 /// A drive of KITTI's raw data or of its tracking benchmark. Truth, where there is any: 251 in
 /// boxes that move, 9 elsewhere in the view of camera 2, 0 beyond it, in regions that nobody
-/// labelled, and in boxes that are seen once.
+/// labelled, and in boxes that are seen once; in the upper 16 bits the object of a box. Frames
+/// that are within such a box as a whole have none.
 class KittiDriveSequence : public Sequence {
  public:
-  /// Throws DataError; MissingPoses for a drive without oxts.
+  /// Throws DataError; MissingPoses for a drive without oxts or calibration.
   KittiDriveSequence(KittiDrive drive, const ReadingOptions& options);
 
   using Sequence::read;

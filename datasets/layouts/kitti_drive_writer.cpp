@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <optional>
 
@@ -17,6 +18,7 @@
 #include "datasets/files/point_range.hpp"
 #include "datasets/files/tracking_labels.hpp"
 #include "datasets/files/tracklets.hpp"
+#include "datasets/layouts/kitti_drive.hpp"
 #include "datasets/layouts/pure_boxes.hpp"
 
 namespace mosbench {
@@ -35,43 +37,73 @@ fs::path tracking_scan_file(std::size_t frame) {
   return fmt::format("training/velodyne/0000/{:06}.bin", frame);
 }
 
-/// What the boxes of a frame say of its points.
-struct BoxesOfFrame {
-  bool has_truth = false;
-  std::vector<AxisBox> moving, unlabelled;
-};
-
-BoxesOfFrame boxes_of(const Frame& frame, const CameraView& view) {
-  constexpr double kEverywhere_m = 1e4;
-  BoxesOfFrame boxes;
-  if (!frame.truth) {
-    boxes.unlabelled = {
-        {Eigen::Vector3d::Constant(-kEverywhere_m), Eigen::Vector3d::Constant(kEverywhere_m)}};
-    return boxes;
-  }
-  boxes.has_truth = true;
-  std::vector<std::uint32_t> moving, unlabelled, fixed;
-  for (std::uint32_t i = 0; i < frame.points.size(); ++i) {
-    if (!view.sees(position_of(frame.points[i]))) continue;
-    const std::uint32_t label = (*frame.truth)[i];
-    (is_moving(label) ? moving : (label & 0xFFFFU) == 0U ? unlabelled : fixed).push_back(i);
-  }
-  const auto all_but = [&](const std::vector<std::uint32_t>& others) {
-    std::vector<std::uint32_t> joined = fixed;
-    joined.insert(joined.end(), others.begin(), others.end());
-    return joined;
-  };
-  boxes.moving = pure_boxes(frame.points, moving, all_but(unlabelled));
-  boxes.unlabelled = pure_boxes(frame.points, unlabelled, all_but(moving));
-  return boxes;
-}
-
 /// A box; one that moves has fallen by the next frame, others are seen once.
 struct WrittenBox {
   std::size_t frame;
-  const AxisBox* box;
+  AxisBox box;
   bool moves;
+  std::uint32_t instance;
 };
+
+constexpr std::uint32_t kInstanceAt = 16;
+
+/// Points of a scan that one kind of box holds, by their labels.
+using PointsOfLabel = std::map<std::uint32_t, std::vector<std::uint32_t>>;
+
+/// Moving points by their instances, with the id 251, unlabelled ones under 0, all else under 9.
+PointsOfLabel points_in_view(const Frame& frame, const CameraView& view) {
+  PointsOfLabel points;
+  for (std::uint32_t i = 0; i < frame.points.size(); ++i) {
+    if (!view.sees(position_of(frame.points[i]))) continue;
+    const std::uint32_t label = (*frame.truth)[i];
+    const std::uint32_t instance = label >> kInstanceAt;
+    const bool is_labelled = (label & 0xFFFFU) != 0;
+    points[is_moving(label) ? (instance << kInstanceAt) + kMovingLabel
+           : is_labelled    ? kStaticLabel
+                            : 0U]
+        .push_back(i);
+  }
+  return points;
+}
+
+/// Farther away a fallen box would not be where one is expected.
+void expect_near(const AxisBox& box, const std::string& stem, const fs::path& folder) {
+  constexpr double kFarthest_m = 1e5;
+  if (box.low_m.cwiseAbs().maxCoeff() < kFarthest_m &&
+      box.high_m.cwiseAbs().maxCoeff() < kFarthest_m) {
+    return;
+  }
+  throw DataError(folder, "scan " + stem + " has a point to be in a box more than 100 km away",
+                  "points where a LiDAR measures");
+}
+
+/// Returns the boxes of a scan with truth: each holds points of one label alone.
+std::vector<WrittenBox> boxes_of(std::size_t scan_index, const Frame& frame, const CameraView& view,
+                                 const fs::path& folder) {
+  std::vector<WrittenBox> boxes;
+  const PointsOfLabel points = points_in_view(frame, view);
+  for (const auto& [label, inside] : points) {
+    if (label == kStaticLabel) continue;
+    std::vector<std::uint32_t> outside;
+    for (const auto& [other, places] : points) {
+      if (other != label) outside.insert(outside.end(), places.begin(), places.end());
+    }
+    for (const AxisBox& box : pure_boxes(frame.points, inside, std::move(outside))) {
+      expect_near(box, frame.stem, folder);
+      boxes.push_back({scan_index, box, label != 0, label >> kInstanceAt});
+    }
+  }
+  return boxes;
+}
+
+/// All of a scan without truth, in a box that is seen once.
+WrittenBox box_of_everything(std::size_t scan_index) {
+  constexpr double kEverywhere_m = 1e4;
+  return {scan_index,
+          {Eigen::Vector3d::Constant(-kEverywhere_m), Eigen::Vector3d::Constant(kEverywhere_m)},
+          false,
+          0};
+}
 
 /// What both layouts write of a drive.
 class DriveWriter : public SequenceWriter {
@@ -80,12 +112,17 @@ class DriveWriter : public SequenceWriter {
       : folder_(std::move(folder)),
         mounting_(written_kitti_mounting()),
         poses_(options.scans, Pose::Identity()),
+        has_truth_(options.scans, 0),
         boxes_(options.scans) {}
 
   void write(std::size_t scan_index, const Frame& frame) override {
+    if (!frame.map_from_sensor.matrix().allFinite()) {
+      throw DataError(folder_, "the pose of scan " + frame.stem + " is not finite", "numbers");
+    }
     write_bin(folder_ / scan_file(scan_index), frame.points);
     poses_[scan_index] = frame.map_from_sensor;
-    boxes_[scan_index] = boxes_of(frame, mounting_.view);
+    has_truth_[scan_index] = frame.truth ? 1 : 0;
+    if (frame.truth) boxes_[scan_index] = boxes_of(scan_index, frame, mounting_.view, folder_);
   }
 
  protected:
@@ -102,16 +139,25 @@ class DriveWriter : public SequenceWriter {
       map_from_imu.push_back(imu_from_lidar * map_from_lidar * mounting_.lidar_from_imu);
     }
     map_from_imu.push_back(map_from_imu.empty() ? Pose::Identity() : map_from_imu.back());
-    return oxts_of_poses(map_from_imu);
+    std::vector<OxtsPacket> packets = oxts_of_poses(map_from_imu);
+    const auto lost = std::ranges::find_if_not(packets, is_on_map);
+    if (lost == packets.end()) return packets;
+    const Eigen::Vector3d place_m =
+        map_from_imu[static_cast<std::size_t>(lost - packets.begin())].translation();
+    throw DataError(
+        folder_,
+        fmt::format("scan {} lies at {} {} {} m, which no packet of KITTI's GPS/IMU can say",
+                    lost - packets.begin(), place_m.x(), place_m.y(), place_m.z()),
+        "a drive within Mercator's projection");
   }
 
-  bool has_truth() const { return std::ranges::any_of(boxes_, &BoxesOfFrame::has_truth); }
+  bool has_truth() const { return std::ranges::find(has_truth_, 1) != has_truth_.end(); }
 
   std::vector<WrittenBox> written_boxes() const {
     std::vector<WrittenBox> written;
     for (std::size_t k = 0; k < boxes_.size(); ++k) {
-      for (const AxisBox& box : boxes_[k].moving) written.push_back({k, &box, true});
-      for (const AxisBox& box : boxes_[k].unlabelled) written.push_back({k, &box, false});
+      if (has_truth_[k] == 0) written.push_back(box_of_everything(k));
+      written.insert(written.end(), boxes_[k].begin(), boxes_[k].end());
     }
     return written;
   }
@@ -120,7 +166,8 @@ class DriveWriter : public SequenceWriter {
   fs::path folder_;
   KittiMounting mounting_;
   std::vector<Pose> poses_;
-  std::vector<BoxesOfFrame> boxes_;
+  std::vector<std::uint8_t> has_truth_;  ///< of each scan
+  std::vector<std::vector<WrittenBox>> boxes_;
 };
 
 class KittiRawWriter : public DriveWriter {
@@ -141,6 +188,7 @@ class KittiRawWriter : public DriveWriter {
 
   void finish() override {
     expect_rising_stamps();
+    const std::vector<OxtsPacket> rows = packets();
     const KittiCalibTexts texts = format_kitti_mounting(mounting());
     const fs::path date = folder().parent_path();
     write_file_atomic(date / "calib_imu_to_velo.txt", texts.imu_to_velo);
@@ -148,7 +196,6 @@ class KittiRawWriter : public DriveWriter {
     write_file_atomic(date / "calib_cam_to_cam.txt", texts.cam_to_cam);
     if (has_truth()) write_file_atomic(folder() / "tracklet_labels.xml", tracklets());
     write_file_atomic(folder() / "velodyne_points/timestamps.txt", format_kitti_stamps(stamps_ns_));
-    const std::vector<OxtsPacket> rows = packets();
     for (std::size_t k = 0; k < rows.size(); ++k) {
       write_file_atomic(folder() / raw_oxts_file(k), format_oxts({&rows[k], 1}));
     }
@@ -173,11 +220,16 @@ class KittiRawWriter : public DriveWriter {
   std::string tracklets() const {
     std::vector<Tracklet> tracklets;
     for (const WrittenBox& written : written_boxes()) {
-      const Eigen::Vector3d size_m = written.box->high_m - written.box->low_m;
-      Eigen::Vector3d bottom_m = 0.5 * (written.box->low_m + written.box->high_m);
+      const Eigen::Vector3d size_m = written.box.high_m - written.box.low_m;
+      Eigen::Vector3d bottom_m = 0.5 * (written.box.low_m + written.box.high_m);
       bottom_m.z() -= 0.5 * size_m.z();
       Tracklet& tracklet = tracklets.emplace_back();
-      tracklet = {"Misc", size_m.z(), size_m.y(), size_m.x(), written.frame, {{bottom_m, 0.0}}};
+      tracklet = {type_of_part(written.instance),
+                  size_m.z(),
+                  size_m.y(),
+                  size_m.x(),
+                  written.frame,
+                  {{bottom_m, 0.0}}};
       if (!written.moves) continue;
       bottom_m.z() -= kDropped_m;
       tracklet.poses.push_back({bottom_m, 0.0});
@@ -193,12 +245,13 @@ class KittiTrackingWriter : public DriveWriter {
   using DriveWriter::DriveWriter;
 
   void finish() override {
+    const std::string rows = format_oxts(packets());
     write_file_atomic(folder() / "training/calib/0000.txt", format_tracking_calib(mounting()));
     if (has_truth()) {
       write_file_atomic(folder() / "training/label_02/0000.txt", format_tracking_labels(labels()));
     }
     sync_file_system_of(folder());
-    commit_file(folder() / kKittiTrackingLastFile, format_oxts(packets()));
+    commit_file(folder() / kKittiTrackingLastFile, rows);
   }
 
  private:
@@ -209,15 +262,16 @@ class KittiTrackingWriter : public DriveWriter {
     const Pose& camera_from_lidar = mounting().view.rectified_from_lidar;
     std::int64_t track = 0;
     for (const WrittenBox& written : written_boxes()) {
-      const Eigen::Vector3d size_m = written.box->high_m - written.box->low_m;
+      const Eigen::Vector3d size_m = written.box.high_m - written.box.low_m;
       CameraBox box = {size_m.z(), size_m.y(), size_m.x(), Eigen::Vector3d::Zero(),
                        -0.5 * std::numbers::pi};
-      box.bottom_m = camera_from_lidar * (0.5 * (written.box->low_m + written.box->high_m));
+      box.bottom_m = camera_from_lidar * (0.5 * (written.box.low_m + written.box.high_m));
       box.bottom_m.y() += 0.5 * size_m.z();
-      labels.push_back({written.frame, track, "Misc", {}, box});
+      const std::string type = type_of_part(written.instance);
+      labels.push_back({written.frame, track, type, {}, box});
       if (written.moves) {
         box.bottom_m.y() += kDropped_m;
-        labels.push_back({written.frame + 1, track, "Misc", {}, box});
+        labels.push_back({written.frame + 1, track, type, {}, box});
       }
       ++track;
     }

@@ -19,10 +19,12 @@ std::vector<std::filesystem::path> kitti_tracking_files(std::size_t scans);
 
 /// Writes a drive of KITTI's raw data, the calibration beside its folder. Scans are called by their
 /// numbers; frames without stamps get ones 0.1 s apart. Points in the view of camera 2 keep whether
-/// they are labelled and whether they move: moving points lie in boxes that are 1000 km lower in
-/// the next frame, unlabelled ones, as all of a scan without truth, in boxes that are seen once;
-/// where no scan has truth no tracklets are written. oxts go on for one frame after the last.
-/// Throws DataError for stamps that do not increase or are not within 1970 to 2261.
+/// they are labelled and whether they move, and moving ones their instance: these lie in boxes that
+/// are 1000 km lower in the next frame and whose type says the instance, unlabelled ones, as all of
+/// a scan without truth, in boxes that are seen once; where no scan has truth no tracklets are
+/// written. oxts go on for one frame after the last. Throws DataError for stamps that do not
+/// increase or are not within 1970 to 2261, and for poses and moving points that are farther away
+/// than the files can say.
 std::unique_ptr<SequenceWriter> write_as_kitti_raw(const std::filesystem::path& folder,
                                                    const WriteOptions& options);
 

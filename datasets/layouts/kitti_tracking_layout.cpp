@@ -10,16 +10,27 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Lists velodyne/NNNN of training/ or testing/, which have oxts/ and calib/ beside it.
+bool is_sequence(const fs::path& folder) {
+  return stem_number(folder_name(folder)) && !list_by_stem(folder, {".bin"}).empty();
+}
+
+/// Lists velodyne/NNNN of training/ or testing/. No other data set has such folders.
 std::vector<SequenceFolder> sequences_in(const fs::path& part, const std::string& prefix) {
   std::vector<SequenceFolder> sequences;
-  if (!is_there(part / "oxts") || !is_there(part / "calib")) return sequences;
   for (const fs::path& folder : list_folders(part / "velodyne")) {
     const std::string number = folder_name(folder);
-    if (!stem_number(number) || list_by_stem(folder, {".bin"}).empty()) continue;
-    sequences.push_back({prefix + number, folder, prefix.empty() ? "" : number});
+    if (is_sequence(folder)) {
+      sequences.push_back({prefix + number, folder, prefix.empty() ? "" : number});
+    }
   }
   return sequences;
+}
+
+/// Whether a folder is velodyne/ or below it, beside which one of the other folders lies.
+bool is_of_benchmark(const fs::path& velodyne) {
+  const fs::path part = parent_folder(velodyne);
+  return folder_name(velodyne) == "velodyne" &&
+         (is_there(part / "oxts") || is_there(part / "calib") || is_there(part / "label_02"));
 }
 
 /// Those of a root: training/ has labels, testing/ is read where it is given itself.
@@ -29,6 +40,10 @@ std::vector<SequenceFolder> sequences_of(const fs::path& root, const std::string
 }
 
 std::vector<SequenceFolder> list_kitti_tracking(const fs::path& path) {
+  if (is_of_benchmark(path)) return sequences_in(parent_folder(path), "");
+  if (is_of_benchmark(parent_folder(path)) && is_sequence(path)) {
+    return {{folder_name(path), path, ""}};
+  }
   auto sequences = sequences_of(path, "");
   if (!sequences.empty()) return sequences;
   for (const fs::path& root : list_folders(path)) {
@@ -48,7 +63,7 @@ std::unique_ptr<Sequence> open_kitti_tracking(const SequenceFolder& sequence,
 std::optional<std::string> recognise_kitti_tracking(const fs::path& path) {
   const auto sequences = list_kitti_tracking(path);
   if (sequences.empty()) return std::nullopt;
-  return "velodyne/" + folder_name(sequences.front().folder) + " has oxts/ and calib/ beside it";
+  return "scans are in velodyne/" + folder_name(sequences.front().folder);
 }
 
 fs::path kitti_tracking_folder(const std::string& name, std::size_t) { return flat_name(name); }

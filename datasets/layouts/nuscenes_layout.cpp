@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -74,15 +75,22 @@ constexpr std::array<NumberRange, 8> kMiniTrain = {{{61, 61},
                                                     {1100, 1100}}};
 constexpr std::array<NumberRange, 2> kMiniVal = {{{103, 103}, {916, 916}}};
 
-/// Lists the folders of tables, "v1.0-mini" and so on, at a place.
+/// Whether a folder holds tables of nuScenes, if only half of them.
+bool has_tables(const fs::path& folder) {
+  return missing_nuscenes_tables(folder).size() <= kNuscenesTables.size() / 2;
+}
+
+/// Lists the folders of tables, "v1.0-mini" and so on, at a place; those that lack some only where
+/// none has all, so that opening them names what they lack.
 std::vector<fs::path> versions_in(const fs::path& folder) {
-  if (holds_nuscenes_tables(folder)) return {folder};
-  std::vector<fs::path> versions;
+  if (has_tables(folder)) return {folder};
+  std::vector<fs::path> whole, partial;
   for (const fs::path& below : list_folders(folder)) {
-    const bool is_version = below.filename().string().starts_with("v1.0-");
-    if (is_version && holds_nuscenes_tables(below)) versions.push_back(below);
+    if (!below.filename().string().starts_with("v1.0-")) continue;
+    const std::size_t missing = missing_nuscenes_tables(below).size();
+    if (missing < kNuscenesTables.size()) (missing == 0 ? whole : partial).push_back(below);
   }
-  return versions;
+  return whole.empty() ? partial : whole;
 }
 
 /// The same at a root, else in the folders below it, as `convert` writes them.
@@ -104,6 +112,10 @@ std::vector<SequenceFolder> list_nuscenes(const fs::path& path) {
   std::vector<SequenceFolder> sequences;
   std::map<std::string, fs::path> place_of_name;
   for (const fs::path& version : versions_below(path)) {
+    if (const auto missing = missing_nuscenes_tables(version); !missing.empty()) {
+      throw DataError(version / missing.front(), "is not there",
+                      fmt::format("the tables {} of nuScenes", fmt::join(kNuscenesTables, ", ")));
+    }
     for (const std::string& name : nuscenes_scene_names(version)) {
       const auto [other, is_new] = place_of_name.emplace(name, version);
       if (!is_new) {

@@ -73,14 +73,14 @@ void NuscenesSequence::list_scans(const std::filesystem::path& root, const Nusce
 
 void NuscenesSequence::say_what_is_read(const std::filesystem::path& folder) {
   Recording& recording = mutable_recording();
-  for (const char* table : {"scene.json", "sample.json", "sample_data.json", "sensor.json",
-                            "calibrated_sensor.json", "ego_pose.json"}) {
-    recording.files.push_back(folder / table);
-  }
+  for (const char* table : kNuscenesTables) recording.files.push_back(folder / table);
   recording.reading = {{"scan_files", ".pcd.bin of LIDAR_TOP, key frames and sweeps"}};
   const auto labelled = std::ranges::count(recording.scans, true, &ScanEntry::has_truth);
   if (labelled == 0) {
-    recording.remarks.push_back("no annotations: there is no truth");
+    const bool has_table = is_there(folder / "sample_annotation.json");
+    recording.remarks.emplace_back(
+        has_table ? "no annotations: there is no truth"
+                  : "no annotations, sample_annotation.json is not there: there is no truth");
     return;
   }
   recording.truth_files = {folder / "attribute.json", folder / "sample_annotation.json"};

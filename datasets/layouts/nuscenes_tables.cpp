@@ -17,6 +17,7 @@
 #include "datasets/files/nuscenes_table.hpp"
 #include "datasets/files/quaternion.hpp"
 #include "datasets/files/text.hpp"
+#include "datasets/layouts/box_tracks.hpp"
 #include "datasets/layouts/points_in_boxes.hpp"
 
 namespace mosbench {
@@ -64,6 +65,16 @@ NuscenesBox box_in(const NuscenesRow& row) {
                                         width_length_height[2])};
   if (box.half_size_m.minCoeff() < 0.0) row.refuse("\"size\" is negative", "metres");
   return box;
+}
+
+constexpr std::string_view kWrittenObject = "mosbench-object-";
+
+std::optional<std::uint32_t> written_instance(std::string_view token) {
+  constexpr std::uint64_t kMost = 65535;
+  if (!token.starts_with(kWrittenObject)) return std::nullopt;
+  const auto instance = parse_unsigned(token.substr(kWrittenObject.size()));
+  if (!instance || *instance > kMost) return std::nullopt;
+  return static_cast<std::uint32_t>(*instance);
 }
 
 /// A row of sample_data.json that is of LIDAR_TOP.
@@ -125,6 +136,7 @@ class TableReader {
       scene_of_sample_.push_back(scene->second);
     });
     boxes_.resize(scene_of_sample_.size());
+    instances_.resize(scenes_.size());
   }
 
   void read_scans() {
@@ -173,8 +185,18 @@ class TableReader {
       if (attributes.empty() || !moving.contains(attributes.front())) return;
       const auto sample = sample_of_token_.find(row.text("sample_token"));
       if (sample == sample_of_token_.end()) row.refuse("is of no sample", "one of sample.json");
-      boxes_[sample->second].push_back(box_in(row));
+      NuscenesBox& box = boxes_[sample->second].emplace_back(box_in(row));
+      box.instance = instance_in(row, scene_of_sample_[sample->second]);
     });
+  }
+
+  /// Numbers the objects of each scene as they come; beyond 16 bits they have no number.
+  std::uint32_t instance_in(const Row& row, std::size_t scene) {
+    if (!row.has("instance_token")) return 0;
+    const std::string& token = row.text("instance_token");
+    if (const auto written = written_instance(token)) return *written;
+    auto& numbers = instances_[scene];
+    return instance_of_number(numbers.emplace(token, numbers.size()).first->second);
   }
 
   /// Returns the boxes of a key frame; the last one of a sample takes them.
@@ -215,8 +237,9 @@ class TableReader {
   std::vector<std::size_t> scene_of_sample_;
   std::vector<LidarRow> rows_;
   std::unordered_multimap<std::string, std::size_t> rows_of_pose_;
-  std::vector<std::vector<NuscenesBox>> boxes_;  ///< by sample
-  std::vector<std::size_t> key_frames_;          ///< by sample
+  std::vector<std::vector<NuscenesBox>> boxes_;                          ///< by sample
+  std::vector<std::size_t> key_frames_;                                  ///< by sample
+  std::vector<std::unordered_map<std::string, std::size_t>> instances_;  ///< by scene
   bool has_annotations_ = false;
 };
 
@@ -234,9 +257,16 @@ std::string state_of_tables(const fs::path& folder) {
 
 }  // namespace
 
-bool holds_nuscenes_tables(const fs::path& folder) {
-  return is_there(folder / "scene.json") && is_there(folder / "sample_data.json") &&
-         is_there(folder / "calibrated_sensor.json");
+std::string nuscenes_object_token(std::uint32_t instance) {
+  return fmt::format("{}{}", kWrittenObject, instance);
+}
+
+std::vector<std::string> missing_nuscenes_tables(const fs::path& folder) {
+  std::vector<std::string> missing;
+  for (const char* table : kNuscenesTables) {
+    if (!is_there(folder / table)) missing.emplace_back(table);
+  }
+  return missing;
 }
 
 std::vector<std::string> nuscenes_scene_names(const fs::path& tables) {
@@ -270,7 +300,8 @@ std::vector<std::uint32_t> nuscenes_truth(std::span<const Point> points,
   if (moving.empty()) return truth;
   const PointsInBoxes boxes(points);
   for (const NuscenesBox& box : moving) {
-    boxes.label(box.map_from_box.inverse() * map_from_sensor, box.half_size_m, kMovingLabel, truth);
+    boxes.label(box.map_from_box.inverse() * map_from_sensor, box.half_size_m,
+                kMovingLabel | (box.instance << 16U), truth);
   }
   return truth;
 }

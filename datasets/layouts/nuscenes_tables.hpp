@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -15,7 +16,11 @@ namespace mosbench {
 struct NuscenesBox {
   Pose map_from_box = Pose::Identity();  ///< x along the length, y the width, z the height
   Eigen::Vector3d half_size_m = Eigen::Vector3d::Zero();
+  std::uint32_t instance = 0;  ///< of its object within the scene; 0 where that is not known
 };
+
+/// The token of an object that `convert` writes, which says its instance.
+std::string nuscenes_object_token(std::uint32_t instance);
 
 struct NuscenesScan {
   std::filesystem::path file;  ///< from the root of the data set
@@ -36,8 +41,13 @@ struct NuscenesTables {
   bool has_annotations = false;  ///< false for v1.0-test, whose table of them is empty
 };
 
-/// Whether a folder holds the tables.
-bool holds_nuscenes_tables(const std::filesystem::path& folder);
+/// The tables that are always read; attribute.json only where there is sample_annotation.json.
+inline constexpr std::array<const char*, 6> kNuscenesTables = {
+    "scene.json",   "sample.json", "sample_data.json", "sensor.json", "calibrated_sensor.json",
+    "ego_pose.json"};
+
+/// Returns those of them that a folder lacks.
+std::vector<std::string> missing_nuscenes_tables(const std::filesystem::path& folder);
 
 /// Returns the names of the scenes in their order, reading scene.json only. Throws DataError.
 std::vector<std::string> nuscenes_scene_names(const std::filesystem::path& tables);
@@ -46,7 +56,8 @@ std::vector<std::string> nuscenes_scene_names(const std::filesystem::path& table
 /// DataError, also for a scan without pose.
 std::shared_ptr<const NuscenesTables> read_nuscenes_tables(const std::filesystem::path& tables);
 
-/// Returns 251 for the points within a box, its sides included, and 9 for all others.
+/// Returns 251 for the points within a box, its sides included, with its instance in the upper 16
+/// bits, and 9 for all others.
 std::vector<std::uint32_t> nuscenes_truth(std::span<const Point> points,
                                           const Pose& map_from_sensor,
                                           std::span<const NuscenesBox> moving);

@@ -14,8 +14,10 @@
 #include "datasets/files/errors.hpp"
 #include "datasets/files/files.hpp"
 #include "datasets/files/partial_file.hpp"
+#include "datasets/files/point_range.hpp"
 #include "datasets/files/scan_file.hpp"
 #include "datasets/layouts/folder_search.hpp"
+#include "datasets/layouts/nuscenes_tables.hpp"
 
 namespace mosbench {
 namespace {
@@ -62,11 +64,19 @@ std::string five_columns(const std::vector<Point>& points) {
   return std::move(sink).bytes();
 }
 
-/// Returns which points of a scan move; nothing when none does.
-std::vector<bool> moving_points(const Frame& frame) {
-  std::vector<bool> moving;
-  if (!frame.truth || std::ranges::none_of(*frame.truth, is_moving)) return moving;
-  for (const std::uint32_t label : *frame.truth) moving.push_back(is_moving(label));
+/// A point that moves, and its object.
+struct MovingPoint {
+  std::uint32_t place = 0;
+  std::uint16_t instance = 0;
+};
+
+std::vector<MovingPoint> moving_points(const Frame& frame) {
+  std::vector<MovingPoint> moving;
+  if (!frame.truth) return moving;
+  for (std::uint32_t i = 0; i < frame.truth->size(); ++i) {
+    const std::uint32_t label = (*frame.truth)[i];
+    if (is_moving(label)) moving.push_back({i, static_cast<std::uint16_t>(label >> 16U)});
+  }
   return moving;
 }
 
@@ -144,6 +154,7 @@ class NuscenesWriter : public SequenceWriter {
                                   : static_cast<std::int64_t>(scan_index) * kPeriod_us;
     row.map_from_sensor = frame.map_from_sensor;
     write_file_atomic(folder_ / scan_file(row.stem, row.is_key_frame), five_columns(frame.points));
+    row.points = frame.points.size();
     row.moving = moving_points(frame);
   }
 
@@ -166,7 +177,8 @@ class NuscenesWriter : public SequenceWriter {
     bool is_key_frame = false;
     std::int64_t stamp_us = 0;
     Pose map_from_sensor = Pose::Identity();
-    std::vector<bool> moving;  ///< of each point; empty when none does
+    std::size_t points = 0;
+    std::vector<MovingPoint> moving;
   };
 
   /// nuScenes orders scans by their stamps.
@@ -230,14 +242,17 @@ class NuscenesWriter : public SequenceWriter {
   /// Points are read from their file again: those of all scans may not fit in memory.
   void add_moving(std::size_t k, TableFile& rows) const {
     const Row& scan = scans_[k];
-    const std::vector<Point> points =
-        read_scan(folder_ / scan_file(scan.stem, true), kColumnsWritten);
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      if (!scan.moving[i]) continue;
+    const fs::path file = folder_ / scan_file(scan.stem, true);
+    const std::vector<Point> points = read_scan(file, kColumnsWritten);
+    if (points.size() != scan.points) {
+      throw DataError(file, fmt::format("has {} points now", points.size()),
+                      fmt::format("the {} that were written", scan.points));
+    }
+    for (const MovingPoint& moving : scan.moving) {
       Pose map_from_box = Pose::Identity();
-      map_from_box.translation() =
-          scan.map_from_sensor * Eigen::Vector3d(points[i].x, points[i].y, points[i].z);
+      map_from_box.translation() = scan.map_from_sensor * position_of(points[moving.place]);
       ordered_json row = annotation(k, map_from_box, kBox_m);
+      if (moving.instance != 0) row["instance_token"] = nuscenes_object_token(moving.instance);
       row["attribute_tokens"].push_back(kMovingToken);
       rows.add(row);
     }

@@ -87,9 +87,16 @@ std::uint32_t scene_flow_label(const SimulatedScan& scan, std::size_t point) {
   return label == 0 || !movable ? label : label | (owner % kInstances) << kInstanceBits;
 }
 
+/// The owner of a moving point is its instance, as that of a box.
+std::uint32_t box_label(std::uint32_t label, std::uint32_t owner) {
+  constexpr std::uint32_t kInstanceBits = 16, kInstances = 65536;
+  return label == kMovingLabel ? label | (owner % kInstances) << kInstanceBits : label;
+}
+
 std::uint32_t label_in_view(const SimulatedScan& scan, std::size_t point) {
   static const CameraView kView = written_kitti_mounting().view;
-  return kView.sees(position_of(scan.points[point])) ? moving_label(scan, point) : 0;
+  if (!kView.sees(position_of(scan.points[point]))) return 0;
+  return box_label(moving_label(scan, point), scan.owners[point]);
 }
 
 SensorKind sensor_of(const Scene& scene, SensorKind usual) {
@@ -212,7 +219,7 @@ std::uint32_t layout_label(DatasetKind layout, const SimulatedScan& scan, std::s
     case DatasetKind::kOpenSceneFlow:
       return scene_flow_label(scan, point);
     case DatasetKind::kNuscenes:
-      return owner.moving ? kMovingLabel : kStaticLabel;
+      return box_label(owner.moving ? kMovingLabel : kStaticLabel, owner_number);
     case DatasetKind::kKittiRaw:
     case DatasetKind::kKittiTracking:
       return label_in_view(scan, point);

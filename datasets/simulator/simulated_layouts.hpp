@@ -46,7 +46,7 @@ HelimosSplits simulated_splits(const std::set<std::size_t>& labelled);
 /// 0. SemanticKITTI: its class ids, with the owner as instance of movable things. OpenSceneFlow: 9,
 /// 251 or 0 with such instances, where only 0 is kept, as its truth is a flow. nuScenes: 9 or 251,
 /// as what is in no box is static. KITTI's drives: 9, 251 or 0, which all beyond the camera's view
-/// has.
+/// has. The owner is the instance of what moves in both.
 std::uint32_t layout_label(DatasetKind layout, const SimulatedScan& scan, std::size_t point);
 
 /// Returns DOALS's truth, by appearance: moving are the points of what moves and of what looks as

@@ -2,8 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <set>
 #include <string>
 
+#include "datasets/files/bin_file.hpp"
 #include "datasets/files/files.hpp"
 #include "datasets/files/kitti_calib.hpp"
 #include "datasets/files/point_range.hpp"
@@ -25,7 +27,7 @@ std::uint32_t label_in_view(const Point& point, const Frame& source, std::size_t
   if (!source.truth || !kView.sees(position_of(point))) return 0;
   const std::uint32_t label = (*source.truth)[place];
   if ((label & 0xFFFFU) == 0) return 0;
-  return is_moving(label) ? kMovingLabel : kStaticLabel;
+  return is_moving(label) ? (label & 0xFFFF0000U) + kMovingLabel : kStaticLabel;
 }
 
 class KittiDrives : public testing::TestWithParam<const char*> {
@@ -72,16 +74,19 @@ TEST_P(KittiDrives, KeepTruthInTheCamerasViewAndAllElse) {
   EXPECT_EQ(to_string(drive.kind), GetParam());
   ASSERT_EQ(drive.sequences.at(0)->size(), kScans);
   std::size_t moving = 0, fixed = 0;
+  std::set<std::uint32_t> objects;
   for (std::size_t k = 0; k < kScans; ++k) {
     const Frame expected = source.sequences[0]->read(k), frame = drive.sequences[0]->read(k);
     ASSERT_EQ(expected.truth.has_value(), k != kWithoutTruth);
+    ASSERT_EQ(frame.truth.has_value(), k != kWithoutTruth);
     ASSERT_EQ(frame.points.size(), expected.points.size());
-    ASSERT_TRUE(frame.truth);
+    if (!frame.truth) continue;
     std::size_t wrong = 0;
     for (std::size_t i = 0; i < frame.points.size(); ++i) {
       const std::uint32_t label = (*frame.truth)[i];
       if (label != label_in_view(expected.points[i], expected, i)) ++wrong;
-      moving += label == kMovingLabel ? 1 : 0;
+      moving += (label & 0xFFFFU) == kMovingLabel ? 1 : 0;
+      if (label >> 16U != 0) objects.insert(label >> 16U);
       fixed += label == kStaticLabel ? 1 : 0;
     }
     EXPECT_EQ(wrong, 0U) << "scan " << k;
@@ -91,6 +96,7 @@ TEST_P(KittiDrives, KeepTruthInTheCamerasViewAndAllElse) {
     }
   }
   EXPECT_GT(moving, 1000U);
+  EXPECT_GT(objects.size(), 2U);
   EXPECT_GT(fixed, 20000U);
 }
 
@@ -102,6 +108,49 @@ TEST_P(KittiDrives, AreGoodToTheDoctorUntilTheirPacketsAreLate) {
   const cli::Answer late = cli::run({"doctor", drive_});
   EXPECT_EQ(late.exit_code, 1);
   EXPECT_THAT(late.out + late.err, HasSubstr("the poses fit better as one row later"));
+}
+
+TEST_P(KittiDrives, RefuseWhatTheirFilesCannotSay) {
+  const auto convert_again = [&] {
+    return cli::run(
+        {"convert", source_, "--layout", GetParam(), "--out", (folder_ / "far").string()});
+  };
+  const auto scan = folder_ / "source/sequences/08/velodyne/000003.bin";
+  const std::string bytes = read_file(scan);
+  Frame frame = open_dataset(source_, {}).sequences[0]->read(3);
+  for (std::size_t i = 0; i < frame.points.size(); ++i) {
+    if (label_in_view(frame.points[i], frame, i) % 65536 != kMovingLabel) continue;
+    Point& point = frame.points[i];
+    point = {point.x * 1e5F, point.y * 1e5F, point.z * 1e5F, point.intensity};
+    break;
+  }
+  write_file_atomic(scan, std::string(format_bin(frame.points)));
+  const cli::Answer far_point = convert_again();
+  EXPECT_EQ(far_point.exit_code, 3);
+  EXPECT_THAT(far_point.err,
+              HasSubstr("scan 000003 has a point to be in a box more than 100 km away"));
+  write_file_atomic(scan, bytes);
+
+  const auto poses = folder_ / "source/sequences/08/poses.txt";
+  std::string rows;
+  for (std::size_t k = 0; k < kScans; ++k) {
+    rows += k == 4 ? "1 0 0 0 0 1 0 4e7 0 0 1 0\n" : "1 0 0 0 0 1 0 0 0 0 1 0\n";
+  }
+  std::filesystem::remove(folder_ / "source/sequences/08/calib.txt");
+  write_file_atomic(poses, rows);
+  const cli::Answer far_pose = convert_again();
+  EXPECT_EQ(far_pose.exit_code, 3);
+  EXPECT_THAT(far_pose.err, HasSubstr("which no packet of KITTI's GPS/IMU can say"));
+}
+
+/// A drive has no labels beyond the view; once written, none are lost any more.
+TEST_P(KittiDrives, TellWhatIsBeyondTheViewOnlyWhereThereIsSome) {
+  ASSERT_EQ(converted_.exit_code, 0) << converted_.err;
+  EXPECT_THAT(converted_.err, testing::ContainsRegex("[1-9][0-9]* points beyond the view"));
+  const cli::Answer again =
+      cli::run({"convert", drive_, "--layout", GetParam(), "--out", (folder_ / "again").string()});
+  ASSERT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_THAT(again.err, testing::Not(HasSubstr("beyond the view")));
 }
 
 }  // namespace

@@ -275,8 +275,9 @@ TEST(SimulatedNuscenes, HasKeyFramesTwiceASecondAndTurnsNothingUnlabelled) {
   for (std::size_t i = 0; i < scan.points.size(); ++i) {
     if (scan.owners[i] == SimulatedScan::kNoReturn) continue;
     const std::uint32_t label = layout_label(DatasetKind::kNuscenes, scan, i);
-    EXPECT_EQ(label == kMovingLabel, scan.scene.owners[scan.owners[i]].moving);
-    ++count[label];
+    EXPECT_EQ((label & 0xFFFFU) == kMovingLabel, scan.scene.owners[scan.owners[i]].moving);
+    EXPECT_EQ(label >> 16U, label == kStaticLabel ? 0U : scan.owners[i]);
+    ++count[label & 0xFFFFU];
   }
   EXPECT_EQ(count.size(), 2U) << "9 and 251";
 }

@@ -86,6 +86,42 @@ TEST(LabelBoxes, KnowsNothingOfWhatIsSeenOnce) {
       << "a frame without pose";
 }
 
+TEST(LabelBoxes, KeepsTheInstanceOfWhatHasALabel) {
+  std::vector<BoxTrack> tracks(2);
+  tracks[0] = {box_at(1, 30.0), box_at(2, 35.0), box_at(3, 40.0)};
+  for (TrackedBox& box : tracks[0]) box.instance = 7;
+  tracks[1] = {box_at(1, 30.0), box_at(2, 30.0)};
+  for (TrackedBox& box : tracks[1]) box.instance = 9;
+  const auto boxes = label_boxes(tracks, driven_frames(4), 0.5);
+  ASSERT_EQ(boxes[1].size(), 2U);
+  EXPECT_EQ(boxes[1][0].label, 9U + (9U << 16U));
+  EXPECT_EQ(boxes[1][1].label, 251U + (7U << 16U)) << "moving wins, whatever the instances";
+  tracks[0] = {box_at(1, 30.0)};
+  tracks[0].front().instance = 7;
+  EXPECT_EQ(label_boxes({tracks.data(), 1}, driven_frames(4), 0.5)[1].front().label, 0U);
+  EXPECT_EQ(instance_of_number(0), 1U);
+  EXPECT_EQ(instance_of_number(65534), 65535U);
+  EXPECT_EQ(instance_of_number(65535), 0U) << "it would be that of another";
+  EXPECT_EQ(instance_of_number(~std::uint64_t{0}), 0U);
+}
+
+LabelledBox box_around(double x_m, double half_m, std::uint32_t label) {
+  LabelledBox box{Pose::Identity(), Eigen::Vector3d::Constant(half_m), label};
+  box.box_from_lidar.translation().x() = -x_m;
+  return box;
+}
+
+TEST(IsUnlabelled, TakesABoxAroundAllAndNoLabelNearby) {
+  const auto everything = box_around(0, 1e4, 0);
+  EXPECT_TRUE(is_unlabelled(std::vector{everything}));
+  EXPECT_FALSE(is_unlabelled({}));
+  EXPECT_FALSE(is_unlabelled(std::vector{box_around(10, 209, 0)}));
+  EXPECT_TRUE(is_unlabelled(std::vector{box_around(10, 210, 0)}));
+  EXPECT_FALSE(is_unlabelled(std::vector{box_around(0, 1e4, 9)}));
+  EXPECT_FALSE(is_unlabelled(std::vector{everything, box_around(30, 1, 251)}));
+  EXPECT_TRUE(is_unlabelled(std::vector{everything, box_around(1e6, 1, 251 + (3U << 16U))}));
+}
+
 TEST(LabelBoxes, LetsMotionWin) {
   std::vector<BoxTrack> tracks(3);
   tracks[0] = {box_at(1, 30.0), box_at(2, 35.0)};
@@ -96,6 +132,15 @@ TEST(LabelBoxes, LetsMotionWin) {
   EXPECT_EQ(boxes[1][0].label, 0U);
   EXPECT_EQ(boxes[1][1].label, 9U);
   EXPECT_EQ(boxes[1][2].label, 251U);
+}
+
+/// 1000 times the instance and the id, to be read in a failure.
+std::vector<std::uint32_t> readable(const std::vector<std::uint32_t>& truth) {
+  std::vector<std::uint32_t> readable;
+  for (const std::uint32_t label : truth) {
+    readable.push_back(1000 * (label >> 16U) + (label & 0xFFFFU));
+  }
+  return readable;
 }
 
 const std::string kRest = " 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0\n";
@@ -210,11 +255,13 @@ TEST_F(KittiRawDrive, HasTruthByTheSpeedOfItsBoxes) {
   const Dataset dataset = opened();
   const Sequence& sequence = *dataset.sequences.front();
   for (std::size_t scan = 0; scan < sequence.size(); ++scan) {
-    EXPECT_THAT(*sequence.read(scan).truth, ElementsAre(251U, 9U, 9U, 0U, 9U)) << scan;
+    EXPECT_THAT(readable(*sequence.read(scan).truth), ElementsAre(1251U, 2009U, 9U, 0U, 9U))
+        << scan;
     EXPECT_EQ(sequence.read_truth(scan), *sequence.read(scan).truth);
   }
   const Dataset slow = opened({.moving_speed_m_s = 10.5});
-  EXPECT_THAT(slow.sequences.front()->read_truth(0), ElementsAre(9U, 9U, 9U, 0U, 9U));
+  EXPECT_THAT(readable(slow.sequences.front()->read_truth(0)),
+              ElementsAre(1009U, 2009U, 9U, 0U, 9U));
   EXPECT_THAT(slow.sequences.front()->reading(),
               Contains(Pair("truth", HasSubstr("moving from 10.5 m/s on"))));
 }
@@ -223,7 +270,8 @@ TEST_F(KittiRawDrive, StandsOnTheBottomOfItsBoxes) {
   const std::vector<Point> points = {{15, 3, -2.01F, 0}, {15, 3, -1.99F, 0}, {15, 3, -0.01F, 0},
                                      {15, 3, 0.01F, 0},  {16.9F, 3, -1, 0},  {17.1F, 3, -1, 0}};
   write(drive("velodyne_points/data/0000000000.bin"), std::string(format_bin(points)));
-  EXPECT_THAT(opened().sequences.front()->read_truth(0), ElementsAre(9U, 251U, 251U, 9U, 251U, 9U));
+  EXPECT_THAT(readable(opened().sequences.front()->read_truth(0)),
+              ElementsAre(9U, 1251U, 1251U, 9U, 1251U, 9U));
 }
 
 TEST_F(KittiRawDrive, LeavesWhatIsSeenOnceUnlabelled) {
@@ -263,7 +311,8 @@ TEST_F(KittiRawDrive, TakesOtherPosesAndKeepsItsTruth) {
   folder_.write("p.tum", "1317042130 1 0 0 0 0 0 1\n1317042150 1 0 0 0 0 0 1\n");
   const Dataset dataset = opened({.poses = folder_ / "p.tum", .max_pose_gap_s = 60.0});
   EXPECT_EQ(dataset.sequences.front()->map_from_sensor(3).translation().x(), 1.0);
-  EXPECT_THAT(dataset.sequences.front()->read_truth(3), ElementsAre(251U, 9U, 9U, 0U, 9U));
+  EXPECT_THAT(readable(dataset.sequences.front()->read_truth(3)),
+              ElementsAre(1251U, 2009U, 9U, 0U, 9U));
 }
 
 TEST_F(KittiRawDrive, HasNoTruthOfFramesWithoutPacketWhereverPosesComeFrom) {
@@ -272,7 +321,8 @@ TEST_F(KittiRawDrive, HasNoTruthOfFramesWithoutPacketWhereverPosesComeFrom) {
   const Dataset dataset = opened({.poses = folder_ / "p.tum", .max_pose_gap_s = 60.0});
   ASSERT_EQ(dataset.sequences.front()->stem(2), "0000000003");
   EXPECT_FALSE(dataset.sequences.front()->has_truth(2)) << "what its boxes hold would be static";
-  EXPECT_THAT(dataset.sequences.front()->read_truth(3), ElementsAre(251U, 9U, 9U, 0U, 9U));
+  EXPECT_THAT(readable(dataset.sequences.front()->read_truth(3)),
+              ElementsAre(1251U, 2009U, 9U, 0U, 9U));
 }
 
 TEST_F(KittiRawDrive, SaysWhatIsMissing) {
@@ -289,12 +339,29 @@ TEST_F(KittiRawDrive, SaysWhatIsMissing) {
   EXPECT_THAT(error_of_opening(), HasSubstr("calib_velo_to_cam.txt: is not there"));
 }
 
-TEST_F(KittiRawDrive, NeedsOxtsOrOtherPoses) {
+TEST_F(KittiRawDrive, NeedsOxtsOrOtherPosesAndHasNoTruthWithoutOxts) {
   std::filesystem::remove_all(folder_ / drive("oxts"));
-  EXPECT_THAT(error_of_opening(), HasSubstr("oxts/data")) << "tracklets need them";
+  EXPECT_THAT(message_of<MissingPoses>([&] { opened(); }),
+              HasSubstr("2011_09_26_drive_0001_sync/oxts: is not there"));
+  const Dataset dataset = opened({.poses_by_odometry = true});
+  EXPECT_EQ(dataset.sequences.front()->size(), 5U);
+  EXPECT_FALSE(dataset.sequences.front()->has_truth(0));
+  EXPECT_THAT(dataset.sequences.front()->remarks(),
+              Contains(AllOf(HasSubstr("tracklet_labels.xml gives no truth"), HasSubstr("oxts"))));
   std::filesystem::remove(folder_ / drive("tracklet_labels.xml"));
-  EXPECT_THAT(message_of<MissingPoses>([&] { opened(); }), HasSubstr("has no oxts"));
-  EXPECT_EQ(opened({.poses_by_odometry = true}).sequences.front()->size(), 5U);
+  EXPECT_THAT(opened({.poses_by_odometry = true}).sequences.front()->remarks(),
+              Contains("no labels of objects: there is no truth"));
+}
+
+TEST_F(KittiRawDrive, NeedsItsCalibrationOrOtherPoses) {
+  std::filesystem::remove(folder_ / "root/2011_09_26/calib_velo_to_cam.txt");
+  EXPECT_THAT(message_of<MissingPoses>([&] { opened(); }),
+              HasSubstr("calib_velo_to_cam.txt: is not there"));
+  folder_.write("p.tum", "1317042130 1 0 0 0 0 0 1\n1317042150 1 0 0 0 0 0 1\n");
+  const Dataset dataset = opened({.poses = folder_ / "p.tum", .max_pose_gap_s = 60.0});
+  EXPECT_EQ(dataset.sequences.front()->map_from_sensor(3).translation().x(), 1.0);
+  EXPECT_FALSE(dataset.sequences.front()->has_truth(3));
+  EXPECT_THAT(dataset.sequences.front()->remarks(), Contains(HasSubstr("calib_velo_to_cam.txt")));
 }
 
 TEST_F(KittiRawDrive, RefusesTimesThatItsPointsDoNotHave) {
@@ -344,8 +411,9 @@ TEST_F(KittiTrackingSequence, IsReadAsItsDrive) {
 TEST_F(KittiTrackingSequence, HasTruthByItsBoxesAndNoneWhereNobodyCared) {
   const Dataset dataset = open_dataset(folder_.path(), {});
   const Sequence& sequence = *dataset.sequences.front();
-  EXPECT_THAT(sequence.read_truth(0), ElementsAre(251U, 9U, 9U, 0U, 9U));
-  EXPECT_THAT(sequence.read_truth(1), ElementsAre(251U, 9U, 0U, 0U, 9U))
+  EXPECT_THAT(readable(sequence.read_truth(0)), ElementsAre(6251U, 4009U, 9U, 0U, 9U))
+      << "tracks 5 and 3";
+  EXPECT_THAT(readable(sequence.read_truth(1)), ElementsAre(6251U, 4009U, 0U, 0U, 9U))
       << "a region holds the car, whose box is labelled, and the point beside it";
 }
 
@@ -353,8 +421,19 @@ TEST_F(KittiTrackingSequence, TurnsBoxesAboutTheCamerasAxis) {
   const std::vector<Point> points = {{16.9F, 3, -1, 0},  {17.1F, 3, -1, 0},  {15, 4.1F, -1, 0},
                                      {15, 3, -1.99F, 0}, {15, 3, -2.01F, 0}, {15, 3, 0.01F, 0}};
   folder_.write("training/velodyne/0003/000000.bin", format_bin(points));
-  EXPECT_THAT(open_dataset(folder_.path(), {}).sequences.front()->read_truth(0),
-              ElementsAre(251U, 9U, 9U, 251U, 9U, 9U));
+  EXPECT_THAT(readable(open_dataset(folder_.path(), {}).sequences.front()->read_truth(0)),
+              ElementsAre(6251U, 9U, 9U, 6251U, 9U, 9U));
+}
+
+TEST_F(KittiTrackingSequence, TakesTheInstanceThatAWrittenBoxSays) {
+  std::string labels;
+  for (const int frame : {0, 1}) {
+    labels +=
+        fmt::format("{} 5 Object300 0 0 0 0 0 9 9 2 2 4 -3 2 15 -1.5707963267948966\n", frame);
+  }
+  folder_.write("training/label_02/0003.txt", labels);
+  EXPECT_EQ(readable(open_dataset(folder_.path(), {}).sequences.front()->read_truth(0)).front(),
+            300251U);
 }
 
 TEST_F(KittiTrackingSequence, IsReadWithoutLabelsAsTesting) {
@@ -363,6 +442,41 @@ TEST_F(KittiTrackingSequence, IsReadWithoutLabelsAsTesting) {
   const Dataset dataset = open_dataset(folder_ / "testing", {});
   EXPECT_EQ(dataset.kind, DatasetKind::kKittiTracking);
   EXPECT_FALSE(dataset.sequences.front()->has_truth(0));
+}
+
+TEST_F(KittiTrackingSequence, IsKnownWithoutOxtsOrCalib) {
+  for (const char* lacks : {"oxts", "calib"}) {
+    std::filesystem::rename(folder_ / "training" / lacks, folder_ / "away");
+    for (const char* place : {"", "training", "training/velodyne", "training/velodyne/0003"}) {
+      EXPECT_THAT(message_of<MissingPoses>([&] { open_dataset(folder_ / place, {}); }),
+                  HasSubstr(fmt::format("training/{}: is not there", lacks)))
+          << place;
+      const Dataset dataset =
+          open_dataset(folder_ / place, {.reading = {.poses_by_odometry = true}});
+      EXPECT_EQ(dataset.kind, DatasetKind::kKittiTracking) << place;
+      ASSERT_EQ(dataset.sequences.front()->size(), 3U);
+      EXPECT_FALSE(dataset.sequences.front()->has_truth(0));
+      EXPECT_THAT(dataset.sequences.front()->remarks(),
+                  Contains(AllOf(HasSubstr("label_02/0003.txt gives no truth"),
+                                 HasSubstr(std::string("training/") + lacks))));
+    }
+    std::filesystem::rename(folder_ / "away", folder_ / "training" / lacks);
+  }
+}
+
+TEST_F(KittiTrackingSequence, NamesTheFileThatOneSequenceLacks) {
+  std::filesystem::remove(folder_ / "training/calib/0003.txt");
+  EXPECT_THAT(message_of<MissingPoses>([&] { open_dataset(folder_.path(), {}); }),
+              HasSubstr("training/calib/0003.txt: is not there"));
+}
+
+TEST_F(KittiTrackingSequence, LeavesFoldersOfScansWithPosesOfTheirOwnAlone) {
+  for (const char* folder : {"training/oxts", "training/calib", "training/label_02"}) {
+    std::filesystem::remove_all(folder_ / folder);
+  }
+  folder_.write("training/velodyne/0003/poses.txt",
+                "1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 0 0 1 0 0 0 0 1 0\n");
+  EXPECT_EQ(open_dataset(folder_ / "training/velodyne/0003", {}).kind, DatasetKind::kRecording);
 }
 
 }  // namespace

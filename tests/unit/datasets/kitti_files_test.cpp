@@ -302,5 +302,32 @@ TEST(TrackingLabels, RefuseOtherLines) {
   EXPECT_THAT(error("-2", "-2\n" + good), HasSubstr("l:2: track 7 is twice in frame 2"));
 }
 
+TEST(TrackingLabels, RefusesMoreRegionsThanAnybodyDraws) {
+  const auto regions = [](std::size_t count, std::size_t frames) {
+    std::string text;
+    for (std::size_t i = 0; i < count; ++i) {
+      text += fmt::format("{} -1 DontCare -1 -1 -10 0 0 9 9 -1 -1 -1 -1000 -1000 -1000 -10\n",
+                          i % frames);
+    }
+    return text;
+  };
+  EXPECT_EQ(parse_tracking_labels(regions(2000, 2), "l.txt").size(), 2000U);
+  EXPECT_THAT(message_of<DataError>([&] { parse_tracking_labels(regions(2001, 2), "l.txt"); }),
+              HasSubstr("l.txt:2001: frame 0 has more regions of DontCare, expected 1000 at most"));
+}
+
+TEST(Oxts, KnowsWhatNoPacketCanSay) {
+  std::vector<Pose> poses(2, Pose::Identity());
+  poses[1].translation() << 1000, 2000, 10;
+  EXPECT_TRUE(is_on_map(oxts_of_poses(poses)[1]));
+  for (const Eigen::Vector3d& far : {Eigen::Vector3d(0, 4e7, 0), Eigen::Vector3d(1e9, 0, 0)}) {
+    poses[1].translation() = far;
+    EXPECT_FALSE(is_on_map(oxts_of_poses(poses)[1]));
+  }
+  OxtsPacket packet;
+  packet.yaw_rad = std::nan("");
+  EXPECT_FALSE(is_on_map(packet));
+}
+
 }  // namespace
 }  // namespace mosbench

@@ -243,6 +243,48 @@ TEST_F(NuscenesFolder, NamesTheTableThatDoesNotFit) {
   EXPECT_THAT(error_of_opening(), HasSubstr("has no scan of LIDAR_TOP in scene-0061"));
 }
 
+TEST_F(NuscenesFolder, IsKnownAndNamesTheTableThatItLacks) {
+  for (const std::string lacks :
+       {"scene", "sample", "sample_data", "sensor", "calibrated_sensor", "ego_pose"}) {
+    const auto table = folder_ / ("root/v1.0-mini/" + lacks + ".json");
+    std::filesystem::rename(table, folder_ / "away");
+    for (const char* place : {"root", "root/v1.0-mini", ""}) {
+      EXPECT_THAT(message_of<DataError>([&] { open_dataset(folder_ / place, {}); }),
+                  AllOf(HasSubstr("v1.0-mini/" + lacks + ".json: is not there"),
+                        HasSubstr("sample_data.json")))
+          << place;
+    }
+    std::filesystem::rename(folder_ / "away", table);
+  }
+  std::filesystem::remove(folder_ / "root/v1.0-mini/attribute.json");
+  EXPECT_THAT(error_of_opening(), HasSubstr("attribute.json: is not there"));
+  std::filesystem::remove(folder_ / "root/v1.0-mini/sample_annotation.json");
+  EXPECT_THAT(opened().sequences.front()->remarks(),
+              Contains(HasSubstr("sample_annotation.json is not there")));
+}
+
+TEST_F(NuscenesFolder, NumbersTheObjectsOfAScene) {
+  const auto of = [](const char* object, const char* translation) {
+    std::string row = box(translation, "[2, 4, 1]", "\"m\"");
+    return row.insert(row.find('{') + 1, fmt::format(R"("instance_token": "{}", )", object));
+  };
+  table("sample_annotation", of("a", "[901, 15, 2]") + "," + of("b", "[101, 15, 2]") + "," +
+                                 of("b", "[902, 15, 2]") + "," +
+                                 of("mosbench-object-300", "[101, 25, 2]") + "," +
+                                 box("[101, 20, 7]", "[1, 1, 1]", "\"m\""));
+  const auto truth = opened().sequences.at(0)->read_truth(0);
+  EXPECT_EQ(truth.at(0), 251U + (2U << 16U));
+  EXPECT_EQ(truth.at(2), 9U);
+  EXPECT_EQ(truth.at(4), 251U + (300U << 16U)) << "as convert writes it";
+}
+
+TEST_F(NuscenesFolder, PrefersAVersionThatHasAllTables) {
+  folder_.write("root/v1.0-test/scene.json", "[]");
+  folder_.write("root/v1.0-test/sample.json", "[]");
+  folder_.write("root/v1.0-test/sensor.json", "[]");
+  EXPECT_EQ(opened().sequences.size(), 2U);
+}
+
 TEST_F(NuscenesFolder, IsReadWithoutItsSweepsButNotWithoutAKeyFrame) {
   std::filesystem::remove_all(folder_ / "root/sweeps");
   const Dataset dataset = opened();
