@@ -187,7 +187,7 @@ def span_text(curve, line):
     if len(known) < 2:
         return "-"
     low, high = min(known), max(known)
-    return f"{percent(low[0])} to {percent(high[0])} ({'as it is' if high[1] == 'none' else high[1]})"
+    return f"{percent(low[0])} to {percent(high[0])} ({'default' if high[1] == 'none' else high[1]})"
 
 
 def effects(found):
@@ -261,7 +261,7 @@ def compact_json(found):
 
 
 def panel(left, top, curve):
-    """IoU over the values of a curve, 240 x 190, each value at the same distance."""
+    """IoU over the values of a curve, 240 x 190, each value at the same distance; a setting's default stands apart."""
     count = len(curve["values"])
     x_of = lambda i: left + 44 + 184 * i / max(1, count - 1)
     y_of = lambda iou: top + 150 - 120 * iou
@@ -270,11 +270,14 @@ def panel(left, top, curve):
     for tick in (0, 0.25, 0.5, 0.75, 1):
         parts.append(f'<path d="M{left + 44} {y_of(tick):.1f}h184" stroke="#ddd"/>'
                      f'<text x="{left + 38}" y="{y_of(tick) + 4:.1f}" class="tick">{100 * tick:.0f}</text>')
-    for i, value in enumerate(curve["values"]):
+    first = 0 if is_disturbance(curve) else 1
+    for i, value in enumerate(["none", "default"][first:first + 1] + curve["values"][1:]):
         parts.append(f'<text x="{x_of(i):.1f}" y="{top + 168}">{html.escape(value)}</text>')
     for i, line in enumerate(curve["lines"]):
-        points = " ".join(f"{x_of(k):.1f},{y_of(iou):.1f}" for k, iou in enumerate(ious(line)) if iou is not None)
-        parts.append(f'<polyline points="{points}" {stroke(i)}/>')
+        points = [f"{x_of(k):.1f},{y_of(iou):.1f}" for k, iou in enumerate(ious(line)) if iou is not None and k >= first]
+        parts.append(f'<polyline points="{" ".join(points)}" {stroke(i)}/>')
+        if first and ious(line)[0] is not None:
+            parts.append(f'<circle cx="{x_of(0):.1f}" cy="{y_of(ious(line)[0]):.1f}" r="3" fill="{COLOURS[i % len(COLOURS)]}"/>')
     return "".join(parts)
 
 
