@@ -165,9 +165,20 @@ class PlusTwin final : public Method {
       const Cell* c = find(map_, u);
       return is_known(c) && c->state == kOccupied && c->occupied_ticks >= 8 && !young(*c);
     });
+    const auto known = [&](const Voxel& u) { return is_known(find(map_, u)); };
     const int unknown =
-        count_neighbours(v, 2, [&](const Voxel& u) { return !is_known(find(map_, u)); });
+        count_neighbours(v, 2, [&](const Voxel& u) { return !known(u) && !in_gap(u, known); });
     return firm == 0 && unknown <= c_.max_unknown_voxels;
+  }
+
+  /// Between known voxels above and below, with so few unknown ones between them.
+  bool in_gap(const Voxel& v, const auto& known) const {
+    const auto steps_to_known = [&](int dz) {
+      int steps = 1;
+      while (steps <= c_.max_gap_voxels && !known({v.x, v.y, v.z + dz * steps})) ++steps;
+      return steps;
+    };
+    return steps_to_known(1) + steps_to_known(-1) - 1 <= c_.max_gap_voxels;
   }
 
   void add_departures(Scan& scan) const {
@@ -216,9 +227,11 @@ class PlusTwin final : public Method {
       const auto aged = static_cast<double>(std::ranges::count_if(members, is_aged));
       const auto size = static_cast<double>(members.size());
       const double share = seeds / size;
-      const bool moves = share >= c_.min_seed_share && fresh >= c_.min_fresh_share * seeds &&
-                         seeds >= c_.min_seeds_voxels && aged <= c_.max_aged_share * size &&
-                         has_size_of_object(members) && rises_from_ground(members, scan.occupied);
+      const bool moves =
+          share >= c_.min_seed_share && fresh >= c_.min_fresh_share * seeds &&
+          (seeds >= c_.min_seeds_voxels || (share >= 0.5 && seeds >= c_.min_pure_seeds_voxels)) &&
+          aged <= c_.max_aged_share * size && has_size_of_object(members) &&
+          rises_from_ground(members, scan.occupied);
       const SetOf kept =
           moves ? near_seeds(members, scan.seeds) : SetOf(members.begin(), members.end());
       for (const Voxel& v : kept) shares[v] = static_cast<float>(share);

@@ -10,7 +10,7 @@ namespace mosbench::hmm_mos_plus {
 namespace {
 
 /// The neighbours of a seed that should be known: a cube of 5^3 voxels.
-constexpr int kKnownRadius = 2, kCubeVoxels = 125;
+constexpr int kCubeVoxels = 125;
 
 std::uint32_t ticks_of(double age_s) {
   return static_cast<std::uint32_t>(std::lround(age_s / hmm_mos::TickClock::kSeconds));
@@ -68,12 +68,14 @@ void add_seeds(const VoxelizedScan& scan, ScanMasks raw, hmm_mos::VoxelMap& map,
   const std::vector<std::uint32_t> slots = slots_with_any(raw);
   const VoxelSet known = map.known_at(k, blocks_of(scan, slots), pool);
   pool.for_ranges(slots.size(), 16, [&](std::size_t begin, std::size_t end, unsigned) {
-    HaloRows rows;
+    HaloRows rows, closed;
     for (std::size_t i = begin; i < end; ++i) {
       const std::uint32_t slot = slots[i];
-      gather_around(known, scan.measured.blocks[slot], kKnownRadius, rows);
+      const int gap = config.max_gap_voxels;
+      gather_around(known, scan.measured.blocks[slot], kKnownRadius + gap, rows);
+      close_columns(rows, gap, closed);
       for_each_cell(raw[slot], [&](std::uint32_t cell) {
-        const int unknown = kCubeVoxels - count_around(rows, cell);
+        const int unknown = kCubeVoxels - count_around(closed, cell);
         if (unknown <= config.max_unknown_voxels) seeds[slot].set(cell);
       });
     }

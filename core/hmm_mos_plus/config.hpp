@@ -7,6 +7,7 @@
 #include "core/base/config_fields.hpp"
 #include "core/hmm_mos/block_history.hpp"
 #include "core/hmm_mos/config.hpp"
+#include "core/voxel/halo.hpp"
 
 namespace mosbench::hmm_mos_plus {
 
@@ -15,6 +16,9 @@ inline constexpr std::array<std::string_view, 9> kMapSettings = {
     "voxel_size_m",          "occupancy_sigma_m",  "min_range_m",
     "max_range_m",           "delay_scans",        "global_window_scans",
     "min_state_probability", "transition_epsilon", "distance_field_scans"};
+
+/// Of the cube around a seed in which voxels should be known.
+inline constexpr int kKnownRadius = 2;
 
 /// The paper's map with distances to the current scan alone.
 inline hmm_mos::Config paper_map() {
@@ -28,10 +32,12 @@ struct Config {
   hmm_mos::Config map = paper_map();
   double seed_age_s = 1.0;
   double object_age_s = 1.0;
-  int max_unknown_voxels = 18;
+  int max_unknown_voxels = 15;
+  int max_gap_voxels = 3;
   int ground_radius_voxels = 2;
   int ground_layers_voxels = 1;
   int min_seeds_voxels = 3;
+  int min_pure_seeds_voxels = 2;
   double min_seed_share = 0.12;
   double fresh_age_s = 0.2;
   double min_fresh_share = 0.2;
@@ -60,12 +66,17 @@ void visit_fields(AnyConfig& config, Visitor&& visit) {
         "a voxel that arrived may be part of an object for so long although it is settled");
   visit("max_unknown_voxels", config.max_unknown_voxels, FieldRange{0, 125},
         "a seed has at most so many unknown ones among the 125 voxels around it");
+  visit("max_gap_voxels", config.max_gap_voxels, FieldRange{0, kMaxHalo - kKnownRadius},
+        "unknown voxels between known ones above and below, if so many or fewer, count as known: "
+        "gaps between beams");
   visit("ground_radius_voxels", config.ground_radius_voxels, FieldRange{0, kBlockSide},
         "the ground is the lowest voxel in the columns within this distance");
   visit("ground_layers_voxels", config.ground_layers_voxels, FieldRange{0, 100},
         "voxels at most this high above the ground connect nothing");
   visit("min_seeds_voxels", config.min_seeds_voxels, FieldRange{1, 100000},
         "an object has at least so many seeds");
+  visit("min_pure_seeds_voxels", config.min_pure_seeds_voxels, FieldRange{1, 100000},
+        "one of which half or more are seeds needs only so many");
   visit("min_seed_share", config.min_seed_share, FieldRange{0.0, 1.0},
         "an object's voxels are seeds by at least this share");
   visit("fresh_age_s", config.fresh_age_s, FieldRange{0.0, kMaxAge_s},

@@ -126,7 +126,9 @@ void judge(const VoxelizedScan& scan, const ArrivalClasses& classes, const Groun
   }
   const auto voxels = static_cast<double>(component.voxels.size());
   component.seed_share = seeds / voxels;
-  if (seeds < config.min_seeds_voxels || component.seed_share < config.min_seed_share ||
+  const bool enough = seeds >= config.min_seeds_voxels ||
+                      (2 * seeds >= voxels && seeds >= config.min_pure_seeds_voxels);
+  if (!enough || component.seed_share < config.min_seed_share ||
       fresh < config.min_fresh_share * seeds || aged > config.max_aged_share * voxels) {
     return;
   }

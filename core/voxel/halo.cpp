@@ -78,6 +78,31 @@ MOSBENCH_MULTIARCH void gather_halo(const Neighbourhood& masks, int radius, Halo
   halo.any = any != 0;
 }
 
+MOSBENCH_MULTIARCH void close_columns(const HaloRows& halo, int gap, HaloRows& closed) {
+  closed.radius = halo.radius - gap;
+  closed.side = halo.side - 2 * gap;
+  const std::uint32_t kept = row_mask(closed);
+  std::uint32_t any = 0;
+  std::array<std::uint32_t, kMaxHalo + 2> below;  // those at most so far below
+  for (int y = 0; y < closed.side; ++y) {
+    for (int z = 0; z < closed.side; ++z) {
+      const auto at = [&](int dz) { return halo.row(z + gap + dz, y + gap); };
+      below[0] = 0;
+      for (int i = 1; i <= gap; ++i) {
+        below[static_cast<std::size_t>(i)] = below[static_cast<std::size_t>(i - 1)] | at(-i);
+      }
+      std::uint32_t row = at(0);
+      for (int i = 1; i <= gap; ++i) row |= at(i) & below[static_cast<std::size_t>(gap + 1 - i)];
+      row = row >> gap & kept;
+      any |= row;
+      closed
+          .rows[static_cast<std::size_t>(z * HaloRows::kStride + kBlockSide - closed.radius + y)] =
+          row;
+    }
+  }
+  closed.any = any != 0;
+}
+
 MOSBENCH_MULTIARCH void invert(HaloRows& halo) {
   const std::uint32_t kept = row_mask(halo);
   std::uint32_t any = 0;

@@ -37,6 +37,10 @@ std::uint32_t blocks_within(const BlockMask& mask, int radius);
 /// kMaxHalo.
 void gather_halo(const Neighbourhood& masks, int radius, HaloRows& halo);
 
+/// Returns in `closed`, whose radius is less by `gap`, the halo and what lies between two of its
+/// voxels of a column that are at most `gap` voxels apart.
+void close_columns(const HaloRows& halo, int gap, HaloRows& closed);
+
 /// Inverts the halo.
 void invert(HaloRows& halo);
 

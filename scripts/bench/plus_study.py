@@ -19,7 +19,8 @@ import subprocess
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 ARRIVALS = ["--set", "min_seed_share=0.2,object_age_s=3,min_fresh_share=0,max_aged_share=1,"
-            "min_rise_voxels=0,max_unknown_voxels=15,max_growth_m=1000,min_track_steps=0"]
+            "min_rise_voxels=0,max_unknown_voxels=15,max_growth_m=1000,min_track_steps=0,"
+            "max_gap_voxels=0,min_pure_seeds_voxels=3"]
 METHODS = {"paper": ["--method", "hmm-mos"], "arrivals": ["--method", "hmm-mos-plus", *ARRIVALS],
            "plus": ["--method", "hmm-mos-plus"]}
 SKIPPED_REAL_SCANS = 4  # those that the paper's method does not judge

@@ -83,7 +83,7 @@ TEST(PlusWithoutSeeds, HasNoMovingPoint) {
   hmm_mos_plus::Config config = plus_of_a_room();
   config.max_unknown_voxels = 0;
   config.seed_age_s = 0;
-  config.min_seeds_voxels = 100000;
+  config.min_seeds_voxels = config.min_pure_seeds_voxels = 100000;
   EXPECT_EQ(moving_points(plus_labels(world, config)), 0U);
 }
 
@@ -195,6 +195,46 @@ TEST(PlusStamps, CountScansThatAreMissing) {
   }
   EXPECT_EQ(scans_with_motion(plus_labels(world, config)), 7U);
   EXPECT_EQ(scans_with_motion(plus_labels(world, config, 1, stamps_ns)), 3U);
+}
+
+/// A wall seen by rows of beams, and from the tenth scan on a box before it, where so many voxels
+/// lie from row to row.
+SmallWorld world_seen_in_rows(int rows_apart, float box_m) {
+  SmallWorld world;
+  for (std::size_t k = 0; k < 14; ++k) {
+    std::vector<Point>& scan = world.scans.emplace_back();
+    world.poses.push_back(Pose::Identity());
+    for (float y = -0.4F; y < 0.4F; y += 0.02F) {
+      for (int row = -12 / rows_apart; row <= 12 / rows_apart; ++row) {
+        const float z = (0.125F + 0.5F * static_cast<float>(rows_apart * row)) / 4.1F;
+        const bool hits = k >= 10 && std::abs(2 * y) < box_m / 2 && std::abs(2 * z) < box_m / 2;
+        const float x = hits ? 2.1F : 4.1F;
+        scan.push_back({x, x * y, x * z, 0.0F});
+      }
+    }
+  }
+  return world;
+}
+
+TEST(PlusBetweenRowsOfBeams, HasSeedsWhereTheGapsAreNoLonger) {
+  for (const int unknown_between : {1, 2, 3}) {
+    const SmallWorld world = world_seen_in_rows(unknown_between + 1, 1.0F);
+    hmm_mos_plus::Config config = plus_of_a_room();
+    config.max_unknown_voxels = 30;
+    config.max_gap_voxels = unknown_between;
+    EXPECT_GT(moving_points(plus_labels(world, config)), 0U) << unknown_between;
+    config.max_gap_voxels = 0;
+    EXPECT_EQ(moving_points(plus_labels(world, config)), 0U) << unknown_between;
+  }
+}
+
+TEST(PlusObjectsOfFewVoxels, MoveWhenFewPureSeedsAreEnough) {
+  const SmallWorld world = world_seen_in_rows(1, 0.3F);
+  hmm_mos_plus::Config config = plus_of_a_room();
+  config.min_seeds_voxels = 100;
+  EXPECT_GT(moving_points(plus_labels(world, config)), 0U);
+  config.min_pure_seeds_voxels = 100;
+  EXPECT_EQ(moving_points(plus_labels(world, config)), 0U);
 }
 
 /// A floor and a wall; from the tenth scan on a box stands on the floor, four voxels high.

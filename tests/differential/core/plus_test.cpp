@@ -137,9 +137,11 @@ TEST(PlusAgainstItsTwin, AgreesOnRandomConfigurations) {
     config.seed_age_s = one_of(0.0, 0.2, 1.0);
     config.object_age_s = one_of(0.0, 1.0, 3.0, 10.0);
     config.max_unknown_voxels = one_of(15, 40, 80, 125);
+    config.max_gap_voxels = one_of(0, 1, 3, 6);
     config.ground_radius_voxels = one_of(0, 2, 8);
     config.ground_layers_voxels = one_of(0, 1, 3);
     config.min_seeds_voxels = one_of(1, 3, 5);
+    config.min_pure_seeds_voxels = one_of(1, 2, 9);
     config.min_seed_share = one_of(0.0, 0.1, 0.5);
     config.fresh_age_s = one_of(0.0, 0.2, 3.0);
     config.min_fresh_share = one_of(0.0, 0.2, 0.7);

@@ -74,6 +74,32 @@ TEST(Halo, DilationAndCountEqualTheTripleLoop) {
   EXPECT_GT(counted, 10'000U);
 }
 
+TEST(Halo, ClosingColumnsFillsWhatLiesBetweenTwoVoxelsThatAreNear) {
+  std::mt19937 random(33);
+  std::size_t filled = 0;
+  for (int gap = 0; gap <= kMaxHalo; ++gap) {
+    const Triples voxels = random_triples(random, 2000, 10);
+    HaloRows closed;
+    close_columns(halo_of(voxel_set(voxels), kMaxHalo), gap, closed);
+    Triples expected = voxels;
+    for (const Triple& low : voxels) {
+      for (int height = 2; height <= gap + 1; ++height) {
+        if (!voxels.contains({low[0], low[1], low[2] + height})) continue;
+        for (int dz = 1; dz < height; ++dz) expected.insert({low[0], low[1], low[2] + dz});
+      }
+    }
+    filled += expected.size() - voxels.size();
+    const HaloRows other = halo_of(voxel_set(expected), kMaxHalo - gap);
+    ASSERT_EQ(closed.radius, other.radius);
+    ASSERT_EQ(closed.side, other.side);
+    ASSERT_EQ(closed.any, other.any);
+    for (int z = 0; z < other.side; ++z) {
+      for (int y = 0; y < other.side; ++y) ASSERT_EQ(closed.row(z, y), other.row(z, y)) << gap;
+    }
+  }
+  EXPECT_GT(filled, 100U);
+}
+
 TEST(Halo, InvertingTurnsOverEveryVoxelOfTheHalo) {
   std::mt19937 random(34);
   for (int radius = 0; radius <= kMaxHalo; ++radius) {
