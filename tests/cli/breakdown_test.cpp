@@ -44,6 +44,29 @@ TEST(Breakdown, TellsSpeedsByTheStampsOrAsIfAt10Hz) {
   EXPECT_THAT(text.out, HasSubstr("0.5 to 1 m/s"));
 }
 
+// Key frames of nuScenes are half a second apart: no cluster is near that of before.
+TEST(Breakdown, FollowsTheObjectsOfBoxes) {
+  for (const char* layout : {"nuscenes", "kitti-raw", "kitti-tracking"}) {
+    const TempFolder folder;
+    const std::string data = folder / "data", run = folder / "run";
+    ASSERT_EQ(cli::run({"simulate", "--layout", layout, "--scene", "street", "--scans", "15",
+                        "--seed", "1", "--out", data})
+                  .exit_code,
+              0);
+    ASSERT_EQ(cli::run({"run", data, "--out", run}).exit_code, 0);
+    const cli::Answer answer = cli::run({"breakdown", run, "--json"});
+    ASSERT_EQ(answer.exit_code, 0) << answer.err;
+    std::size_t followed = 0;
+    const nlohmann::json parsed = nlohmann::json::parse(answer.out);
+    for (const auto& object : parsed.at("sequences").at(0).at("objects")) {
+      EXPECT_GT(object.at("instance"), 0) << layout;
+      if (object.at("sightings") < 3) continue;
+      if (object.at("speed_m_s").get<double>() > 4.0) ++followed;
+    }
+    EXPECT_GT(followed, 0U) << layout;
+  }
+}
+
 TEST(Breakdown, OfAFolderOfResultsFindsDataLabelsAndRules) {
   const TempFolder folder;
   cli::write_small_sequence(folder / "room", kScansOfBreakdown);
