@@ -54,6 +54,10 @@ struct Structure {
   std::array<double, 3> size_m{};  ///< full extents; cylinders stand upright
   double yaw_rad = 0.0;
   double density = 1.0;
+  std::optional<double> sway_m{};       ///< how far the leaves of vegetation swing along x
+  std::optional<double> let_through{};  ///< the share of rays that pass glass
+  /// A box whose faces show what stands before them: points behind it, with its own truth.
+  std::optional<bool> mirrors{};
   bool labelled = true;  ///< if not, its points have truth 0
 };
 
@@ -100,6 +104,9 @@ struct Scene {
   std::optional<std::int64_t> columns;        ///< of a scanning sensor; the model's when not set
   std::optional<double> range_noise_m;        ///< standard deviation; the model's when not set
   std::optional<double> dropout_probability;  ///< of a return; the model's when not set
+  /// Beams that fall on two things at most 1.5 m apart return a range between them; 0 when not set.
+  std::optional<double> beam_width_rad;
+  std::optional<double> ground_bumps_m;  ///< the ground rises and falls by up to so much
   Ego ego;
   std::vector<GroundPlane> ground;
   std::vector<Structure> structures;

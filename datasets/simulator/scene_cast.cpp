@@ -118,12 +118,40 @@ bool leaf_stops(const Solid& solid, const Eigen::Vector3d& in_body_m, std::uint6
   return uniform(word) < solid.density && (random_word(ray_word, step) & 1) == 0;
 }
 
+/// Returns how far the ground is above its plane, alike in squares of 0.5 m.
+double bump_m(const Eigen::Vector3d& at_m, double bumps_m) {
+  constexpr double kSquaresPerMetre = 2.0;
+  std::uint64_t word = 0;
+  for (const double coordinate_m : {at_m.x(), at_m.y()}) {
+    word = scatter_bits(word ^ static_cast<std::uint64_t>(static_cast<std::int64_t>(
+                                   std::floor(coordinate_m * kSquaresPerMetre))));
+  }
+  return bumps_m * (2.0 * uniform(word) - 1.0);
+}
+
+/// Returns where a ray goes that a box mirrors at a point of one of its faces.
+Eigen::Vector3d direction_reflected(const Solid& box, const Eigen::Vector3d& at_m,
+                                    const Eigen::Vector3d& direction) {
+  const Eigen::Vector3d in_box_m = into_axes(box.axis, at_m - box.center_m);
+  int face = 0;
+  const auto outward = [&](int axis) { return std::abs(in_box_m(axis)) - box.half_size_m(axis); };
+  for (const int axis : {1, 2}) face = outward(axis) > outward(face) ? axis : face;
+  Eigen::Vector3d d = into_axes(box.axis, direction);
+  d(face) = -d(face);
+  return {d.x() * box.axis.x() - d.y() * box.axis.y(), d.x() * box.axis.y() + d.y() * box.axis.x(),
+          d.z()};
+}
+
 }  // namespace
 
 SceneCast::SceneCast(std::span<const GroundPlane> ground, std::uint32_t ground_owner,
                      std::span<const Solid> solids, const Eigen::Vector3d& origin_m,
-                     double max_range_m)
-    : ground_(ground), ground_owner_(ground_owner), origin_m_(origin_m), max_range_m_(max_range_m) {
+                     double max_range_m, double bumps_m)
+    : ground_(ground),
+      ground_owner_(ground_owner),
+      origin_m_(origin_m),
+      max_range_m_(max_range_m),
+      bumps_m_(bumps_m) {
   sort_into_sectors(solids);
 }
 
@@ -159,35 +187,73 @@ void SceneCast::enter(const Candidate& candidate, const Eigen::Vector3d& directi
   const Eigen::Vector3d d = into_axes(solid.axis, direction);
   const Interval interval = inside(solid, candidate.origin_m, d);
   if (!(interval.enter_m < interval.leave_m) || interval.enter_m >= best.range_m) return;
-  if (solid.density >= 1.0) {
-    if (interval.enter_m > 0.0) best = {interval.enter_m, solid.owner};
+  if (solid.let_through > 0.0 && uniform(random_word(~ray_word, solid.owner)) < solid.let_through) {
     return;
   }
+  if (solid.density >= 1.0) {
+    if (interval.enter_m > 0.0) {
+      best = {interval.enter_m, solid.owner, solid.mirrors ? &solid : nullptr};
+    }
+    return;
+  }
+  const Eigen::Vector3d from_leaves_m =
+      candidate.origin_m - Eigen::Vector3d(solid.leaves_at_m, 0.0, 0.0);
   constexpr double kStep_m = 0.2;
   const double start_m = std::max(0.0, interval.enter_m) + kStep_m * uniform(ray_word);
   const double end_m = std::min(interval.leave_m, best.range_m);
   std::uint64_t step = 1;
   for (double range_m = start_m; range_m < end_m; range_m += kStep_m, ++step) {
-    if (leaf_stops(solid, candidate.origin_m + range_m * d, ray_word, step)) {
+    if (leaf_stops(solid, from_leaves_m + range_m * d, ray_word, step)) {
       best = {range_m, solid.owner};
       return;
     }
   }
 }
 
-std::optional<RayHit> SceneCast::first_hit(const Eigen::Vector3d& direction,
-                                           std::uint64_t ray_word) const {
-  RayHit best{max_range_m_, ground_owner_};
+/// Whether a ray from `origin_m` reaches the ground before `best`, which is the ground then.
+bool SceneCast::reach_ground(const Eigen::Vector3d& origin_m, const Eigen::Vector3d& direction,
+                             RayHit& best) const {
   bool hit = false;
   for (const GroundPlane& plane : ground_) {
     const double descent =
         plane.slope_x * direction.x() + plane.slope_y * direction.y() - direction.z();
-    const double height_m = origin_m_.z() - plane.height_m - plane.slope_x * origin_m_.x() -
-                            plane.slope_y * origin_m_.y();
+    const double height_m =
+        origin_m.z() - plane.height_m - plane.slope_x * origin_m.x() - plane.slope_y * origin_m.y();
     if (descent <= 0.0 || height_m <= 0.0 || height_m >= best.range_m * descent) continue;
-    best.range_m = height_m / descent;
+    best = {height_m / descent, ground_owner_};
+    if (bumps_m_ > 0.0) {
+      const double nearer_m =
+          bump_m(origin_m + best.range_m * direction, bumps_m_) / std::max(descent, bumps_m_);
+      best.range_m = std::max(0.0, best.range_m - nearer_m);
+    }
     hit = true;
   }
+  return hit;
+}
+
+/// Returns what a mirror shows, as far behind it as the ray goes on.
+std::optional<RayHit> SceneCast::reflected(const RayHit& hit, const Eigen::Vector3d& direction,
+                                           std::uint64_t ray_word) const {
+  const Solid& mirror = *hit.mirror;
+  const Eigen::Vector3d at_m = origin_m_ + hit.range_m * direction;
+  const Eigen::Vector3d away = direction_reflected(mirror, at_m, direction);
+  RayHit shown{max_range_m_ - hit.range_m, ground_owner_};
+  bool found = reach_ground(at_m, away, shown);
+  for (const Candidate& candidate : candidates_) {
+    const Solid& solid = *candidate.solid;
+    if (&solid == &mirror) continue;
+    const double before_m = shown.range_m;
+    enter({&solid, into_axes(solid.axis, at_m - solid.center_m), 0.0}, away, ray_word, shown);
+    found = found || shown.range_m < before_m;
+  }
+  if (!found) return std::nullopt;
+  return RayHit{hit.range_m + shown.range_m, hit.owner};
+}
+
+std::optional<RayHit> SceneCast::first_hit(const Eigen::Vector3d& direction,
+                                           std::uint64_t ray_word) const {
+  RayHit best{max_range_m_, ground_owner_};
+  const bool hit = reach_ground(origin_m_, direction, best);
   const double horizontal =
       std::sqrt(direction.x() * direction.x() + direction.y() * direction.y());
   const double turn = diamond_angle(direction.x(), direction.y()) / kFullTurn;
@@ -200,7 +266,7 @@ std::optional<RayHit> SceneCast::first_hit(const Eigen::Vector3d& direction,
     enter(candidate, direction, ray_word, best);
   }
   if (!hit && best.range_m == before_m) return std::nullopt;
-  return best;
+  return best.mirror == nullptr ? best : reflected(best, direction, ray_word);
 }
 
 }  // namespace mosbench

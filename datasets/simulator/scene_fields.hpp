@@ -63,6 +63,9 @@ void visit_fields(Of<Structure> auto& structure, auto&& visit) {
   visit("size_m", structure.size_m, FieldRule{.lowest = 0.01, .highest = 1e4, .required = true});
   visit("yaw_rad", structure.yaw_rad, kAngle);
   visit("density", structure.density, FieldRule{.lowest = 0.01, .highest = 1.0});
+  visit("sway_m", structure.sway_m, FieldRule{.lowest = 0.0, .highest = 2.0});
+  visit("let_through", structure.let_through, FieldRule{.lowest = 0.0, .highest = 1.0});
+  visit("mirrors", structure.mirrors, FieldRule{});
   visit("labelled", structure.labelled, FieldRule{});
 }
 
@@ -101,6 +104,8 @@ void visit_fields(Of<Scene> auto& scene, auto&& visit) {
   visit("columns", scene.columns, FieldRule{.lowest = 16, .highest = 8192});
   visit("range_noise_m", scene.range_noise_m, FieldRule{.lowest = 0.0, .highest = 1.0});
   visit("dropout_probability", scene.dropout_probability, FieldRule{.lowest = 0.0, .highest = 1.0});
+  visit("beam_width_rad", scene.beam_width_rad, FieldRule{.lowest = 0.0, .highest = 0.05});
+  visit("ground_bumps_m", scene.ground_bumps_m, FieldRule{.lowest = 0.0, .highest = 0.5});
   visit("ego", scene.ego, kMust);
   visit("ground", scene.ground, FieldRule{});
   visit("structures", scene.structures, FieldRule{});

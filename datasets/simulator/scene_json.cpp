@@ -145,6 +145,12 @@ void check_record(const Structure& structure, const Place& place) {
   if (!round || !ball) {
     place.key("size_m").refuse("is not round", "equal extents for a cylinder (x, y) or a sphere");
   }
+  if (structure.sway_m && structure.density >= 1.0) {
+    place.key("sway_m").refuse("is of no vegetation", "a \"density\" below 1");
+  }
+  if (structure.mirrors.value_or(false) && structure.shape != Shape::kBox) {
+    place.key("mirrors").refuse("is of no box", "\"shape\": \"box\"");
+  }
 }
 
 void check_record(const Door& door, const Place& place) {

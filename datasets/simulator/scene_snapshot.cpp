@@ -54,13 +54,23 @@ class Builder {
   std::uint32_t owner_;
 };
 
-void place(SceneSnapshot& snapshot, const Structure& structure) {
+/// Leaves swing once in 2.6 s, each structure's on their own.
+double swing_of(std::size_t owner, double time_s) {
+  constexpr double kPeriod_s = 2.6, kTurn_rad = 6.283185307179586;
+  return sin_cos(kTurn_rad * (time_s / kPeriod_s + uniform(scatter_bits(owner)))).sin;
+}
+
+void place(SceneSnapshot& snapshot, const Structure& structure, double time_s) {
   const SinCos yaw = sin_cos(structure.yaw_rad);
+  const double sway_m = structure.sway_m.value_or(0.0);
   snapshot.solids.push_back({.shape = structure.shape,
                              .center_m = to_vector(structure.center_m),
                              .half_size_m = to_vector(structure.size_m) / 2.0,
                              .axis = {yaw.cos, yaw.sin},
                              .density = structure.density,
+                             .leaves_at_m = sway_m * swing_of(snapshot.owners.size(), time_s),
+                             .let_through = structure.let_through.value_or(0.0),
+                             .mirrors = structure.mirrors.value_or(false),
                              .owner = static_cast<std::uint32_t>(snapshot.owners.size())});
   const Substance solid =
       structure.shape == Shape::kCylinder ? Substance::kPole : Substance::kBuilding;
@@ -216,7 +226,7 @@ void place(SceneSnapshot& snapshot, const Ball& ball, const Scene& scene, double
 SceneSnapshot snapshot(const Scene& scene, double time_s) {
   SceneSnapshot result;
   result.owners.push_back({.substance = Substance::kGround});
-  for (const Structure& structure : scene.structures) place(result, structure);
+  for (const Structure& structure : scene.structures) place(result, structure, time_s);
   for (const Mover& mover : scene.movers) place(result, mover, scene, time_s);
   for (const Door& door : scene.doors) place(result, door, scene, time_s);
   for (const Ball& ball : scene.balls) place(result, ball, scene, time_s);

@@ -33,6 +33,26 @@ float intensity_of(std::uint32_t owner) {
   return static_cast<float>(0.1 + 0.8 * uniform(scatter_bits(owner)));
 }
 
+/// Lets a beam with another thing at its rim, not far before or behind, return a range between.
+void mix(const SceneCast& cast, const Eigen::Vector3d& direction, double width_rad,
+         std::uint64_t ray_word, RayHit& hit) {
+  constexpr double kFarthestApart_m = 1.5;
+  const auto draw = [&](std::uint64_t i) { return uniform(random_word(ray_word, ~i)); };
+  const SinCos turn = sin_cos(6.283185307179586 * draw(0));
+  const double level = std::sqrt(direction.x() * direction.x() + direction.y() * direction.y());
+  if (level == 0.0) return;
+  const Eigen::Vector3d aside(-direction.y() / level, direction.x() / level, 0.0);
+  const Eigen::Vector3d up(-direction.z() * direction.x() / level,
+                           -direction.z() * direction.y() / level, level);
+  const double half_rad = width_rad / 2.0;
+  const double scale = 1.0 / std::sqrt(1.0 + half_rad * half_rad);
+  const Eigen::Vector3d rim = scale * (direction + half_rad * (turn.cos * aside + turn.sin * up));
+  const auto other = cast.first_hit(rim, ray_word);
+  if (!other || other->owner == hit.owner) return;
+  const double apart_m = other->range_m - hit.range_m;
+  if (std::abs(apart_m) <= kFarthestApart_m) hit.range_m += draw(1) * apart_m;
+}
+
 }  // namespace
 
 Simulator::Simulator(Scene scene, const SensorModel& sensor, std::uint64_t seed)
@@ -70,14 +90,17 @@ SimulatedScan Simulator::scan(std::size_t scan_index) const {
       directions_.empty() ? own_directions : directions_;
   const Eigen::Matrix3d rotation = result.map_from_sensor.linear();
   const SceneCast cast(scene_.ground, 0, result.scene.solids, result.map_from_sensor.translation(),
-                       sensor_.max_range_m);
+                       sensor_.max_range_m, scene_.ground_bumps_m.value_or(0.0));
+  const double beam_width_rad = scene_.beam_width_rad.value_or(0.0);
   const std::uint64_t scan_seed =
       random_word(random_word(seed_, scan_index), static_cast<std::uint64_t>(sensor_.kind));
   for (std::size_t slot = 0; slot < directions.size(); ++slot) {
     const std::uint64_t ray_word = random_word(scan_seed, slot);
     if (uniform(scatter_bits(ray_word)) < sensor_.dropout_probability) continue;
-    const auto hit = cast.first_hit(rotated(rotation, directions[slot]), ray_word);
+    const Eigen::Vector3d direction = rotated(rotation, directions[slot]);
+    auto hit = cast.first_hit(direction, ray_word);
     if (!hit) continue;
+    if (beam_width_rad > 0.0) mix(cast, direction, beam_width_rad, ray_word, *hit);
     const double range_m =
         hit->range_m + sensor_.range_noise_m * nearly_normal(scatter_bits(~ray_word));
     if (range_m < sensor_.min_range_m) continue;

@@ -4,7 +4,9 @@
 #include <xxhash.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <set>
 #include <thread>
 
 #include "datasets/files/errors.hpp"
@@ -140,6 +142,112 @@ TEST_P(EveryScene, KeepsTheCarrierOutOfStructuresAndAtAConstantPace) {
     }
     before = scan;
   }
+}
+
+/// A sensor without noise 1 m above the ground that looks along x at a wall from 10 m on.
+Scene before_a_wall() {
+  Scene scene;
+  scene.name = "wall";
+  scene.range_noise_m = 0.0;
+  scene.dropout_probability = 0.0;
+  scene.ego = {.carrier = Carrier::kTripod, .sensor_height_m = 1.0, .route = {}};
+  scene.ground = {GroundPlane{}};
+  scene.structures = {{.center_m = {10.5, 0.0, 5.0}, .size_m = {1.0, 20.0, 10.0}}};
+  return scene;
+}
+
+/// The points of a scan in the map frame, above the sensor, 17 degrees off the x axis at most.
+std::vector<Eigen::Vector3d> points_ahead(const Scene& scene, std::size_t scan_index = 0) {
+  const SimulatedScan scan =
+      Simulator(scene, sensor_model(SensorKind::kOs1_64), 3).scan(scan_index);
+  std::vector<Eigen::Vector3d> points_m;
+  for (std::size_t i = 0; i < scan.points.size(); ++i) {
+    if (scan.owners[i] == SimulatedScan::kNoReturn) continue;
+    const Point& p = scan.points[i];
+    const Eigen::Vector3d at = scan.map_from_sensor * Eigen::Vector3d(p.x, p.y, p.z);
+    if (std::abs(at.y()) < 0.3 * at.x() && at.z() > 1) points_m.push_back(at);
+  }
+  return points_m;
+}
+
+std::size_t count_between(const std::vector<Eigen::Vector3d>& points_m, double low, double high) {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      points_m, [&](const Eigen::Vector3d& p) { return p.x() > low && p.x() < high; }));
+}
+
+TEST(SimulatedGlass, LetsItsShareOfRaysThrough) {
+  Scene scene = before_a_wall();
+  scene.structures.push_back(
+      {.center_m = {5.0, 0.0, 5.0}, .size_m = {0.02, 20.0, 10.0}, .let_through = 0.7});
+  const auto points_m = points_ahead(scene);
+  ASSERT_GT(points_m.size(), 1000U);
+  const std::size_t behind = count_between(points_m, 9.9, 10.1);
+  EXPECT_EQ(behind + count_between(points_m, 4.9, 5.1), points_m.size());
+  EXPECT_NEAR(static_cast<double>(behind), 0.7 * static_cast<double>(points_m.size()),
+              0.08 * static_cast<double>(points_m.size()));
+}
+
+TEST(SimulatedMirrors, ShowWhatStandsBeforeThemAsFarBehind) {
+  Scene scene = before_a_wall();
+  scene.structures = {{.center_m = {6.0, 0.0, 5.0}, .size_m = {2.0, 20.0, 10.0}, .mirrors = true},
+                      {.center_m = {-2.5, 0.0, 5.0}, .size_m = {1.0, 40.0, 10.0}}};
+  const auto points_m = points_ahead(scene);
+  ASSERT_GT(points_m.size(), 500U);
+  // The mirror is at 5 m, the wall's face at -2 m.
+  EXPECT_EQ(count_between(points_m, 11.99, 12.01), points_m.size());
+}
+
+TEST(SimulatedBeams, ReturnRangesBetweenTwoThingsWhenTheyAreWide) {
+  Scene scene = before_a_wall();
+  scene.structures.push_back(
+      {.shape = Shape::kCylinder, .center_m = {9.0, 0.0, 5.0}, .size_m = {0.2, 0.2, 10.0}});
+  EXPECT_EQ(count_between(points_ahead(scene), 9.15, 9.95), 0U);
+  scene.beam_width_rad = 0.003;
+  EXPECT_GT(count_between(points_ahead(scene), 9.15, 9.95), 10U);
+}
+
+TEST(SimulatedLeaves, SwayAsFarAsTheyMay) {
+  Scene scene = before_a_wall();
+  const auto cells = [&](std::size_t scan_index) {
+    std::set<std::array<int, 3>> found;  // of 0.2 m
+    for (const Eigen::Vector3d& p : points_ahead(scene, scan_index)) {
+      if (p.x() > 9) continue;
+      found.insert({static_cast<int>(std::floor(p.x() * 5)),
+                    static_cast<int>(std::floor(p.y() * 5)),
+                    static_cast<int>(std::floor(p.z() * 5))});
+    }
+    return found;
+  };
+  const auto in_both = [&] {
+    const auto first = cells(0), later = cells(5);
+    const auto count =
+        std::ranges::count_if(first, [&](const auto& c) { return later.contains(c); });
+    return static_cast<double>(count) / static_cast<double>(first.size());
+  };
+  scene.structures.push_back(
+      {.center_m = {5.0, 0.0, 2.0}, .size_m = {2.0, 4.0, 2.0}, .density = 0.2});
+  const double still = in_both();
+  scene.structures.back().sway_m = 0.3;
+  EXPECT_GT(still, 0.8);
+  EXPECT_LT(in_both(), still - 0.2);
+}
+
+TEST(SimulatedGround, RisesAndFallsByItsBumps) {
+  Scene scene = before_a_wall();
+  scene.structures.clear();
+  scene.ground_bumps_m = 0.05;
+  const SimulatedScan scan = Simulator(scene, sensor_model(SensorKind::kOs1_64), 3).scan(0);
+  double lowest_m = 0, highest_m = 0;
+  for (std::size_t i = 0; i < scan.points.size(); ++i) {
+    if (scan.owners[i] == SimulatedScan::kNoReturn) continue;
+    const Point& p = scan.points[i];
+    const double z_m = (scan.map_from_sensor * Eigen::Vector3d(p.x, p.y, p.z)).z();
+    lowest_m = std::min(lowest_m, z_m);
+    highest_m = std::max(highest_m, z_m);
+  }
+  EXPECT_GT(lowest_m, -0.05001);
+  EXPECT_LT(highest_m, 0.05001);
+  EXPECT_GT(highest_m - lowest_m, 0.08);
 }
 
 TEST(Simulator, ReturnsExactRangesWithoutNoise) {

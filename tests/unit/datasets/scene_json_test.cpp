@@ -121,6 +121,14 @@ TEST(SceneJson, RefusesWhatCannotBeWalkedSwungOrBuilt) {
       error_of(smallest_with(
           R"("structures": [{"shape": "cylinder", "center_m": [0, 0, 1], "size_m": [1, 2, 1]}])")),
       HasSubstr("structures[0].size_m: is not round"));
+  EXPECT_THAT(
+      error_of(smallest_with(
+          R"("structures": [{"shape": "box", "center_m": [0, 0, 1], "size_m": [1, 2, 1], "sway_m": 0.1}])")),
+      HasSubstr("structures[0].sway_m: is of no vegetation"));
+  EXPECT_THAT(
+      error_of(smallest_with(
+          R"("structures": [{"shape": "sphere", "center_m": [0, 0, 1], "size_m": [1, 1, 1], "mirrors": true}])")),
+      HasSubstr("structures[0].mirrors: is of no box"));
 }
 
 TEST(SceneJson, RefusesTextThatIsNoJsonAndRepeatedKeys) {
