@@ -12,6 +12,7 @@
 #include "datasets/doctor/doctor.hpp"
 #include "datasets/doctor/registration.hpp"
 #include "datasets/doctor/truth_check.hpp"
+#include "datasets/files/counted.hpp"
 #include "datasets/files/files.hpp"
 #include "datasets/files/point_range.hpp"
 #include "datasets/layouts/layout.hpp"
@@ -200,8 +201,8 @@ class ContentCheck {
       if (sequence_.point_count(k) == 0) empty.push_back(k);
     }
     if (empty.empty()) return;
-    warn(fmt::format("{} of {} scans hold no points, first {}; expected some in every scan",
-                     empty.size(), sequence_.size(), sequence_.stem(empty.front())));
+    warn(fmt::format("{} of {} hold no points, first {}; expected some in every scan", empty.size(),
+                     counted(sequence_.size(), "scan"), sequence_.stem(empty.front())));
   }
 
   void check_returns() {

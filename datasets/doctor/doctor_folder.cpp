@@ -4,6 +4,7 @@
 #include <set>
 
 #include "datasets/doctor/doctor.hpp"
+#include "datasets/files/counted.hpp"
 #include "datasets/files/files.hpp"
 #include "datasets/files/folder_listing.hpp"
 #include "datasets/files/scan_file.hpp"
@@ -66,10 +67,11 @@ void check_labels(const fs::path& folder, const std::vector<StemFile>& scans,
   const auto unlabelled = stems_without(scans, labels);
   const auto share = static_cast<double>(labels.size()) / static_cast<double>(scans.size());
   if (!unlabelled.empty() && share > kMostlyLabelled) {
-    symptoms.push_back({Severity::kWarning, name,
-                        fmt::format("{} of {} scans have no label: {}; expected labels for all or "
-                                    "for a part at regular distances",
-                                    unlabelled.size(), scans.size(), some_of(unlabelled))});
+    symptoms.push_back(
+        {Severity::kWarning, name,
+         fmt::format("{} of {} have no label: {}; expected labels for all or "
+                     "for a part at regular distances",
+                     unlabelled.size(), counted(scans.size(), "scan"), some_of(unlabelled))});
   }
 }
 
@@ -95,9 +97,9 @@ void check_sizes(const std::vector<StemFile>& scans, const std::string& name,
   }
   if (small.empty()) return;
   symptoms.push_back({Severity::kWarning, name,
-                      fmt::format("{} scans are far smaller than those around them: {}; expected "
+                      fmt::format("{} far smaller than those around them: {}; expected "
                                   "scans of like size",
-                                  small.size(), some_of(small))});
+                                  counted(small.size(), "scan is", "scans are"), some_of(small))});
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <unordered_map>
 
 #include "datasets/doctor/scan_overlap.hpp"
+#include "datasets/files/counted.hpp"
 #include "datasets/files/point_range.hpp"
 
 namespace mosbench {
@@ -201,10 +202,10 @@ class TruthChecking {
     if (!none) return;
     const std::size_t span = labelled.back() - labelled.front() + 1;
     const std::string what =
-        fmt::format("no point of {} labelled scans is labelled moving", labelled.size());
+        fmt::format("no point of {} is labelled moving", counted(labelled.size(), "labelled scan"));
     if (span > kScansWithoutMoving) {
       result_.findings.push_back(
-          fmt::format("{}; expected some in a sequence over {} scans", what, span));
+          fmt::format("{}; expected some in a sequence over {}", what, counted(span, "scan")));
     } else {
       result_.remarks.push_back(what + ": the IoU of these labels is undefined");
     }

@@ -139,7 +139,8 @@ class NuscenesRowReader final : public nlohmann::json_sax<nlohmann::json> {
 
   bool parse_error(std::size_t, const std::string&,
                    const nlohmann::json::exception& error) override {
-    throw DataError(file_, row_.index_, std::string("is no JSON (") + error.what() + ")", "JSON");
+    // It names the line itself, which is no index of a row.
+    throw DataError(file_, std::string("is no JSON (") + error.what() + ")", "JSON");
   }
 
  private:

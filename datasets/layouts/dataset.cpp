@@ -7,6 +7,7 @@
 #include <system_error>
 #include <utility>
 
+#include "datasets/files/counted.hpp"
 #include "datasets/files/errors.hpp"
 #include "datasets/files/files.hpp"
 #include "datasets/files/shown_text.hpp"
@@ -37,7 +38,8 @@ std::string what_is_there(const std::filesystem::path& path) {
   const auto most = std::ranges::max_element(
       files_of_end, {}, [](const auto& end_and_files) { return end_and_files.second; });
   if (most == files_of_end.end()) return "";
-  return fmt::format(" but {} files, {} of them called *{}", files, most->second, most->first);
+  return fmt::format(" but {}, {} of them called *{}", counted(files, "file"), most->second,
+                     most->first);
 }
 
 const Layout& recognise(const std::filesystem::path& path, std::vector<std::string>& remarks) {
@@ -68,19 +70,35 @@ std::string joined(const std::vector<SequenceFolder>& folders) {
   return names;
 }
 
+bool has_name(const SequenceFolder& folder, const std::string& name) {
+  return !name.empty() && (folder.name == name || folder.alias == name);
+}
+
+/// Returns the one folder whose alias ends in "_<name>", as "2011_09_26_drive_0011" in "_0011";
+/// null where there is none, or are several.
+const SequenceFolder* numbered(const std::vector<SequenceFolder>& folders,
+                               const std::string& name) {
+  const auto has_end = [&](const SequenceFolder& folder) {
+    return !name.empty() && folder.alias.ends_with('_' + name);
+  };
+  if (std::ranges::count_if(folders, has_end) != 1) return nullptr;
+  return &*std::ranges::find_if(folders, has_end);
+}
+
 /// Returns the folders whose name or alias is in `names`, in the data set's order; all when `names`
 /// is empty.
 std::vector<SequenceFolder> keep_named(std::vector<SequenceFolder> folders,
-                                       const std::vector<std::string>& names) {
+                                       std::vector<std::string> names) {
   if (names.empty()) return folders;
-  const auto has_name = [](const SequenceFolder& folder, const std::string& name) {
-    return !name.empty() && (folder.name == name || folder.alias == name);
-  };
-  for (const std::string& name : names) {
+  for (std::string& name : names) {
     if (std::ranges::any_of(folders, [&](const auto& folder) { return has_name(folder, name); })) {
       continue;
     }
-    throw UsageError("no sequence \"" + name + "\", expected one of " + joined(folders));
+    const SequenceFolder* folder = numbered(folders, name);
+    if (folder == nullptr) {
+      throw UsageError("no sequence \"" + name + "\", expected one of " + joined(folders));
+    }
+    name = folder->name;
   }
   std::erase_if(folders, [&](const SequenceFolder& folder) {
     return std::ranges::none_of(names, [&](const auto& name) { return has_name(folder, name); });

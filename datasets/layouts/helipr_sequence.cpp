@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "datasets/files/counted.hpp"
 #include "datasets/files/errors.hpp"
 #include "datasets/files/files.hpp"
 #include "datasets/files/folder_listing.hpp"
@@ -88,9 +89,9 @@ void HeliprSequence::take_ground_truth(const std::filesystem::path& file, double
     throw DataError(file, "has a pose of no scan", "stamps of the scans");
   }
   if (!recording.left_out.empty()) {
-    recording.remarks.push_back(fmt::format("{} of {} scans have no pose in {} and are left out",
-                                            recording.left_out.size(), scans.size(),
-                                            file.filename().string()));
+    recording.remarks.push_back(
+        fmt::format("{} of {} have no pose in {} and are left out", recording.left_out.size(),
+                    counted(scans.size(), "scan"), file.filename().string()));
   }
   recording.files.push_back(file);
   recording.reading.emplace_back("poses", "LiDAR_GT/" + file.filename().string());

@@ -17,7 +17,7 @@ bool is_drive(const fs::path& folder) { return is_there(folder / "velodyne_point
 /// "2011_09_26_drive_0001" of "2011_09_26_drive_0001_sync".
 std::string drive_alias(const std::string& name) {
   constexpr std::string_view kEnd = "_sync";
-  return name.ends_with(kEnd) ? name.substr(0, name.size() - kEnd.size()) : "";
+  return name.ends_with(kEnd) ? name.substr(0, name.size() - kEnd.size()) : name;
 }
 
 std::vector<SequenceFolder> drives_in(const fs::path& date) {

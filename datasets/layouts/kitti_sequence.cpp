@@ -5,6 +5,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "datasets/files/counted.hpp"
 #include "datasets/files/errors.hpp"
 #include "datasets/files/files.hpp"
 #include "datasets/files/folder_listing.hpp"
@@ -48,7 +49,7 @@ void KittiSequence::pair_labels() {
   }
   if (recording.truth_files.size() < size()) {
     recording.remarks.push_back(
-        fmt::format("labels for {} of {} scans", recording.truth_files.size(), size()));
+        fmt::format("labels for {} of {}", recording.truth_files.size(), counted(size(), "scan")));
   }
 }
 

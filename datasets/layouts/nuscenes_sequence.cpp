@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "datasets/files/counted.hpp"
 #include "datasets/files/errors.hpp"
 #include "datasets/files/files.hpp"
 #include "datasets/files/scan_file.hpp"
@@ -85,9 +86,9 @@ void NuscenesSequence::say_what_is_read(const std::filesystem::path& folder) {
   }
   recording.truth_files = {folder / "attribute.json", folder / "sample_annotation.json"};
   recording.remarks.push_back(
-      fmt::format("truth of the {} key frames of {} scans, from boxes of vehicle.moving, "
+      fmt::format("truth of {} of {}, from boxes of vehicle.moving, "
                   "cycle.with_rider and pedestrian.moving",
-                  labelled, recording.scans.size()));
+                  counted(labelled, "key frame"), counted(recording.scans.size(), "scan")));
 }
 
 void NuscenesSequence::take_poses(const std::filesystem::path& folder,

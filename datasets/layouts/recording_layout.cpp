@@ -3,6 +3,7 @@
 #include <map>
 #include <memory>
 
+#include "datasets/files/counted.hpp"
 #include "datasets/files/errors.hpp"
 #include "datasets/files/folder_listing.hpp"
 #include "datasets/files/scan_file.hpp"
@@ -87,8 +88,8 @@ std::optional<std::string> recognise_recording(const std::filesystem::path& path
   if (is_bag(first)) return "a bag is there";
   if (is_scan(path)) return "it is a scan";
   const auto scans = scans_in(path);
-  return fmt::format("{} {} files are there", scans.size(),
-                     scans.front().file.extension().string());
+  const std::string what = scans.front().file.extension().string() + " file";
+  return counted(scans.size(), what + " is there", what + "s are there");
 }
 
 }  // namespace

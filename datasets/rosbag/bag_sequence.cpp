@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "datasets/files/counted.hpp"
 #include "datasets/files/errors.hpp"
 #include "datasets/files/folder_listing.hpp"
 #include "datasets/rosbag/bag_topics.hpp"
@@ -154,13 +155,13 @@ void BagSequence::leave_out_uncovered() {
   const std::size_t all = scans_.size();
   std::erase_if(scans_, [this](const Scan& scan) { return !covered(scan); });
   if (scans_.empty()) {
-    throw DataError(bag_->path(), fmt::format("no transform covers any of its {} scans", all),
+    throw DataError(bag_->path(), "no transform covers any of its " + counted(all, "scan"),
                     "poses while the scans are taken, or --poses FILE");
   }
   if (scans_.size() == all) return;
   mutable_recording().remarks.push_back(
-      fmt::format("{} of {} scans are left out: no transform covers them{}", all - scans_.size(),
-                  all, undistorts_ ? " from first to last point" : ""));
+      fmt::format("{} of {} are left out: no transform covers them{}", all - scans_.size(),
+                  counted(all, "scan"), undistorts_ ? " from first to last point" : ""));
 }
 
 void BagSequence::state_undistortion() {

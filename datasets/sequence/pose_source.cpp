@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "datasets/files/calib_file.hpp"
+#include "datasets/files/counted.hpp"
 #include "datasets/files/errors.hpp"
 #include "datasets/files/files.hpp"
 #include "datasets/sequence/fingerprint.hpp"
@@ -101,7 +102,7 @@ class SensorPoseReader {
       throw DataError(file_, "all scans " + gaps, "more poses, or a longer --max-pose-gap-s");
     }
     const std::string left_out =
-        fmt::format("{} of {} scans are left out", result_.unknown.size(), scans.count);
+        fmt::format("{} of {} are left out", result_.unknown.size(), counted(scans.count, "scan"));
     result_.remarks.push_back(fmt::format("{}: they {} in {} (--max-pose-gap-s)", left_out, gaps,
                                           file_.filename().string()));
     return left_out;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "datasets/files/counted.hpp"
 #include "eval/breakdown/breakdown.hpp"
 #include "eval/protocols/counts_json.hpp"
 #include "eval/protocols/metrics.hpp"
@@ -188,8 +189,9 @@ ordered_json to_json(const SequenceBreakdown& breakdown, std::size_t at_most) {
 }
 
 std::string breakdown_text(const SequenceBreakdown& breakdown, std::size_t at_most) {
-  return fmt::format("sequence {}: {} scans, {} moving objects, speeds {}\n\n", breakdown.sequence,
-                     breakdown.scans.size(), breakdown.objects.size(),
+  return fmt::format("sequence {}: {}, {}, speeds {}\n\n", breakdown.sequence,
+                     counted(breakdown.scans.size(), "scan"),
+                     counted(breakdown.objects.size(), "moving object"),
                      breakdown.stamped
                          ? "by the scans' stamps"
                          : "as if scans came at 10 Hz, as not all have rising stamps") +

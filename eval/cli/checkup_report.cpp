@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "datasets/files/counted.hpp"
 #include "eval/results/answer_text.hpp"
 
 namespace mosbench {
@@ -111,14 +112,15 @@ std::string truth_text(const SequenceCheckup& sequence) {
 }
 
 std::string sequence_text(const SequenceCheckup& sequence) {
-  std::string text = fmt::format("{}: {} scans, {} labelled\n", sequence.name, sequence.scans,
-                                 sequence.labelled_scans);
+  std::string text = fmt::format("{}: {}, {} labelled\n", sequence.name,
+                                 counted(sequence.scans, "scan"), sequence.labelled_scans);
   for (const auto& [what, how] : sequence.reading) text += fmt::format("  {:<16}{}\n", what, how);
   for (const std::string& remark : sequence.remarks)
     text += fmt::format("  note            {}\n", remark);
-  text += fmt::format("  returns         {} of {} points in {} scans; {} NaN or infinite\n",
+  text += fmt::format("  returns         {} of {} in {}; {} NaN or infinite\n",
                       sequence.points - sequence.zero_points - sequence.nonfinite_points,
-                      sequence.points, sequence.scans_read, sequence.nonfinite_points);
+                      counted(sequence.points, "point"), counted(sequence.scans_read, "scan"),
+                      sequence.nonfinite_points);
   text += fmt::format("  range           {}\n  label ids       {}\n", ranges_text(sequence),
                       ids_text(sequence));
   return text + poses_text(sequence) + truth_text(sequence);

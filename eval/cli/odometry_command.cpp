@@ -56,7 +56,7 @@ overlap and doubt.
 Examples:
   mosbench odometry ~/kitti/sequences/04 -o poses.txt --preset kitti-online
   mosbench odometry ~/drive.bag -o poses.tum --set min_range_m=1,max_range_m=60
-  mosbench odometry ~/kitti-raw/0005 -o poses.txt --point-times azimuth --deskew poses
+  mosbench odometry ~/kitti/2011_09_26 --sequences 0005 -o poses.txt --point-times azimuth
   mosbench odometry ~/kitti/sequences/04 -o kiss.txt --odometry kiss --json > kiss.json
   mosbench trajectory poses.txt --truth ~/kitti/sequences/04 --align origin)";
 

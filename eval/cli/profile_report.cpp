@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "datasets/files/counted.hpp"
 #include "datasets/files/quantile.hpp"
 #include "eval/results/machine.hpp"
 #include "eval/results/settings_json.hpp"
@@ -176,10 +177,9 @@ ordered_json sequence_json(const SequenceProfile& profile) {
 std::string profile_text(const RunPlan& plan, const std::vector<SequenceProfile>& profiles) {
   std::string text = simulated_remark(plan.dataset);
   for (const SequenceProfile& profile : profiles) {
-    text +=
-        fmt::format("{}: {} scans, {} thread{}; milliseconds per scan\n{}\n{}\n{}\n", profile.name,
-                    profile.scans.size(), profile.threads, profile.threads == 1 ? "" : "s",
-                    stage_table(profile), memory_table(profile), speed_line(profile));
+    text += fmt::format("{}: {}, {}; milliseconds per scan\n{}\n{}\n{}\n", profile.name,
+                        counted(profile.scans.size(), "scan"), counted(profile.threads, "thread"),
+                        stage_table(profile), memory_table(profile), speed_line(profile));
   }
   return text;
 }

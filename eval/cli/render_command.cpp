@@ -92,6 +92,11 @@ FoundResult choose_result(const RenderFlags& options) {
     });
   }
   if (results.size() == 1) return std::move(results.front());
+  if (results.empty()) {
+    throw UsageError(fmt::format("--sequence: {} holds no results of {}, expected one of {}",
+                                 options.input.string(), mosbench::quoted(*options.sequence),
+                                 fmt::join(names, ", ")));
+  }
   if (const std::set<std::string> runs = run_folders(results); runs.size() > 1) {
     throw UsageError(fmt::format("{}: holds results of {} runs, expected one of {}",
                                  options.input.string(), runs.size(), fmt::join(runs, ", ")));

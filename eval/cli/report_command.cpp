@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
+#include "datasets/files/counted.hpp"
 #include "datasets/files/errors.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/cli/output_file.hpp"
@@ -46,9 +47,9 @@ Answer write_report(ReportFlags& options) {
   options.report.scans = ScanChoice(options.scans);
   const Report report = build_report(options.inputs, options.report);
   write_output(options.out, report.html);
-  std::string text = fmt::format("report of {} {} in {}, {:.1f} MB\n", report.results,
-                                 report.results == 1 ? "result" : "results", options.out.string(),
-                                 static_cast<double>(report.html.size()) / 1e6);
+  std::string text =
+      fmt::format("report of {} in {}, {:.1f} MB\n", counted(report.results, "result"),
+                  options.out.string(), static_cast<double>(report.html.size()) / 1e6);
   for (const std::string& remark : report.remarks) text += remark + '\n';
   return answer_beside(options.out, text);
 }

@@ -85,7 +85,7 @@ Examples:
   mosbench run ~/kitti/sequences/08 --method hmm-mos,dynablox --set dynablox.level=point
   mosbench run ~/kitti/sequences/08 --method "exec:python3 my_network.py" --set timeout_s=120
   mosbench run ~/drive.bag --odometry simple --odometry-set min_range_m=1
-  mosbench run ~/kitti-raw/0005 --point-times azimuth --deskew poses
+  mosbench run ~/kitti/2011_09_26 --sequences 0005 --point-times azimuth --deskew poses
   mosbench run sim/00 --config near.json --variant release-2025 --threads 4 --json)";
 
 struct RunFlags {

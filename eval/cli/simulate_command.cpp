@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 
+#include "datasets/files/counted.hpp"
 #include "datasets/files/errors.hpp"
 #include "datasets/simulator/simulate.hpp"
 #include "datasets/simulator/simulated_layouts.hpp"
@@ -46,9 +47,9 @@ std::string simulate_dataset(SimulateFlags options) {
     if (!progress) progress.emplace("simulate", total);
     progress->advance();
   });
-  return fmt::format("simulated {} scans of scene {}, seed {}, as {} in {}\n",
-                     options.simulation.scans, options.simulation.scene, options.simulation.seed,
-                     options.layout, options.simulation.out.string());
+  return fmt::format("simulated {} of scene {}, seed {}, as {} in {}\n",
+                     counted(options.simulation.scans, "scan"), options.simulation.scene,
+                     options.simulation.seed, options.layout, options.simulation.out.string());
 }
 
 }  // namespace

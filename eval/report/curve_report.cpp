@@ -8,6 +8,7 @@
 #include <set>
 #include <stdexcept>
 
+#include "datasets/files/counted.hpp"
 #include "datasets/files/errors.hpp"
 #include "eval/protocols/metrics.hpp"
 #include "eval/results/answer_text.hpp"
@@ -61,8 +62,8 @@ std::string levels_text(const ScoreCurve& curve) {
 /// A method that gives a point 1 or 0 has nothing to be swept.
 std::string few_scores_text(const ScoreCurve& curve) {
   if (curve.points.size() > 2) return "";
-  return fmt::format("the scores take {} value{}: the method says no more than its labels\n",
-                     curve.points.size(), curve.points.size() == 1 ? "" : "s");
+  return fmt::format("the scores take {}: the method says no more than its labels\n",
+                     counted(curve.points.size(), "value"));
 }
 
 nlohmann::ordered_json point_json(const Confusion& counts) {
@@ -113,10 +114,10 @@ std::string curve_text(const CurveReport& report) {
   const CurvePoint& best = best_point(curve);
   const Confusion& counts = best.counts;
   return fmt::format(
-      "{}, {}; data set {}, protocol {}{}\n{} scans, {} of {} counted points move\n\n"
+      "{}, {}; data set {}, protocol {}{}\n{}, {} of {} counted points move\n\n"
       "average precision {} %\nbest threshold {:.6g}: {}\nlabels of the run: {}\n\n{}{}",
       first.method, first.setting, first.dataset, first.protocol->name,
-      first.simulated ? "; SIMULATED" : "", curve.scans, counts.tp + counts.fn,
+      first.simulated ? "; SIMULATED" : "", counted(curve.scans, "scan"), counts.tp + counts.fn,
       counts.tp + counts.fp + counts.fn + counts.tn, percent_text(curve.average_precision),
       best.threshold, metrics_text(counts), metrics_text(curve.of_labels), levels_text(curve),
       few_scores_text(curve));

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <map>
 
+#include "datasets/files/counted.hpp"
 #include "datasets/files/errors.hpp"
 #include "eval/report/compressed_text.hpp"
 #include "eval/report/point_planes.hpp"
@@ -174,7 +175,8 @@ void pack_until_full(std::vector<Cloud>& clouds, const Sources& sources, std::si
 std::string left_out(const Cloud& cloud, std::size_t scans) {
   const std::size_t shown = cloud.packed.size();
   if (shown == scans) return "";
-  std::string text = fmt::format("the points of {} of {} scans are in the file", shown, scans);
+  std::string text =
+      fmt::format("the points of {} of {} are in the file", shown, counted(scans, "scan"));
   if (cloud.wanted.size() < scans) text += fmt::format("; --scans chose {}", cloud.wanted.size());
   if (cloud.full) text += "; the others would take it above --max-mb";
   return text;

@@ -6,6 +6,7 @@
 #include <iterator>
 #include <stdexcept>
 
+#include "datasets/files/counted.hpp"
 #include "datasets/files/errors.hpp"
 #include "eval/protocols/counts_json.hpp"
 #include "eval/results/settings_json.hpp"
@@ -263,8 +264,9 @@ std::size_t missing_predictions(const ResultSet& set) {
 }
 
 std::string incomplete_warning(std::size_t missing_predictions) {
-  return fmt::format("INCOMPLETE: {} scans without usable prediction are not counted",
-                     missing_predictions);
+  return fmt::format("INCOMPLETE: {} not counted",
+                     counted(missing_predictions, "scan without usable prediction is",
+                             "scans without usable prediction are"));
 }
 
 std::string split_warning(const std::string& split) {

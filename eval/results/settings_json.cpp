@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "datasets/files/counted.hpp"
 #include "datasets/files/errors.hpp"
 #include "datasets/files/files.hpp"
 #include "datasets/files/json_text.hpp"
@@ -158,7 +159,7 @@ std::string describe_settings(const nlohmann::ordered_json& config, std::string_
   }
   if (has("delay_scans")) {
     const int delay_scans = config.at("delay_scans");
-    parts.push_back(delay_scans == 0 ? "online" : fmt::format("delayed by {} scans", delay_scans));
+    parts.push_back(delay_scans == 0 ? "online" : "delayed by " + counted(delay_scans, "scan"));
   }
   for (const auto& [key, value] : config.items()) {
     const Setting* setting = kind == nullptr ? nullptr : kind->defaults.find(key);

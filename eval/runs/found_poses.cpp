@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "datasets/files/counted.hpp"
 #include "datasets/files/errors.hpp"
 #include "datasets/files/pose_file.hpp"
 #include "datasets/files/times_file.hpp"
@@ -94,8 +95,9 @@ std::size_t doubtful_scans(const FoundPoses& found) {
 std::string found_text(const FoundPoses& found, std::string_view odometry) {
   constexpr std::size_t kListed = 10;
   const std::size_t doubtful = doubtful_scans(found);
-  std::string text = fmt::format("{}: {} poses by {} in {}, {} doubtful\n", found.sequence.name(),
-                                 found.scans.size(), odometry, found.file.string(), doubtful);
+  std::string text =
+      fmt::format("{}: {} by {} in {}, {} doubtful\n", found.sequence.name(),
+                  counted(found.scans.size(), "pose"), odometry, found.file.string(), doubtful);
   std::size_t listed = 0;
   for (const auto& scan : found.scans) {
     if (scan.at("doubt").is_null() || listed == kListed) continue;

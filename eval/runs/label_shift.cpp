@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <map>
 
+#include "datasets/files/counted.hpp"
 #include "eval/protocols/metrics.hpp"
 
 namespace mosbench {
@@ -46,15 +47,15 @@ std::vector<std::size_t> comparable_scans(const Sequence& sequence,
 
 std::string shift_text(int shift, double iou, double unshifted_iou, std::size_t scans) {
   const char* direction = shift > 0 ? "late" : "early";
+  const std::string by = counted(std::abs(shift), "scan");
   std::string text = fmt::format(
-      "labels look {} scans {}: those of {} scans {} fit the truth better, IoU {:.1f} in place of "
-      "{:.1f} % in {} scans",
-      std::abs(shift), direction, std::abs(shift), shift > 0 ? "later" : "earlier", 100.0 * iou,
-      100.0 * unshifted_iou, scans);
+      "labels look {} {}: those of {} {} fit the truth better, IoU {:.1f} in place of "
+      "{:.1f} % in {}",
+      by, direction, by, shift > 0 ? "later" : "earlier", 100.0 * iou, 100.0 * unshifted_iou,
+      counted(scans, "scan"));
   if (shift > 0) {
     text += fmt::format(
-        "; a method with a delay of {} scans that names labels by its newest scan leaves them so",
-        shift);
+        "; a method with a delay of {} that names labels by its newest scan leaves them so", by);
   }
   return text;
 }

@@ -5,6 +5,7 @@
 #include <system_error>
 
 #include "datasets/doctor/pose_frame_doubt.hpp"
+#include "datasets/files/counted.hpp"
 #include "datasets/files/files.hpp"
 #include "datasets/files/pose_file.hpp"
 #include "datasets/sequence/pose_frame_mark.hpp"
@@ -56,9 +57,9 @@ std::vector<std::string> all_remarks(const RunSettings& settings, const Sequence
   std::vector<std::string> remarks = sequence.remarks();
   if (const std::size_t unjudged = scans_without_detection(rows).size(); unjudged > 0) {
     remarks.push_back(fmt::format(
-        "{} of {} scans are labelled static without detection, because the method has seen too few "
+        "{} of {} are labelled static without detection, because the method has seen too few "
         "scans before or after them: {}",
-        unjudged, sequence.size(), unjudged_text(rows.scans)));
+        unjudged, counted(sequence.size(), "scan"), unjudged_text(rows.scans)));
   }
   remarks.insert(remarks.end(), rows.remarks.begin(), rows.remarks.end());
   std::size_t nonfinite_points = 0;
@@ -68,14 +69,13 @@ std::vector<std::string> all_remarks(const RunSettings& settings, const Sequence
     if (row.counts) unknown_ids += row.counts->unknown_ids;
   }
   if (nonfinite_points > 0) {
-    remarks.push_back(
-        fmt::format("{} points are NaN or infinite: left out of the map and labelled static",
-                    nonfinite_points));
+    remarks.push_back(fmt::format("{} NaN or infinite: left out of the map and labelled static",
+                                  counted(nonfinite_points, "point is", "points are")));
   }
   if (unknown_ids > 0) {
     remarks.push_back(
-        fmt::format("{} points have a label id that protocol {} does not know: counted as it says",
-                    unknown_ids, settings.protocol->name));
+        fmt::format("{} a label id that protocol {} does not know: counted as it says",
+                    counted(unknown_ids, "point has", "points have"), settings.protocol->name));
   }
   return remarks;
 }

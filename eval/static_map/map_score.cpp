@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "datasets/files/counted.hpp"
 #include "datasets/files/errors.hpp"
 #include "datasets/files/point_range.hpp"
 #include "datasets/files/scan_file.hpp"
@@ -87,10 +88,12 @@ std::string map_score_text(const MapScore& score) {
   table.add_row({"both", "", "AA " + percent_text(counts.associated_accuracy(), "{:.2f}")});
   table.add_row({"", "", "HA " + percent_text(counts.harmonic_accuracy(), "{:.2f}")});
   return fmt::format(
-      "map    {}, {} points\ntruth  {}, {} points; kept where a point of the map is within {} "
+      "map    {}, {}\ntruth  {}, {}; kept where a point of the map is within {} "
       "m\n\n{}",
-      shown_in_line(score.map.string()), score.map_points, shown_in_line(score.truth.string()),
-      counts.static_points + counts.dynamic_points, score.same_within_m, table.str());
+      shown_in_line(score.map.string()), counted(score.map_points, "point"),
+      shown_in_line(score.truth.string()),
+      counted(counts.static_points + counts.dynamic_points, "point"), score.same_within_m,
+      table.str());
 }
 
 nlohmann::ordered_json map_score_json(const MapScore& score) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "datasets/files/counted.hpp"
 #include "datasets/files/errors.hpp"
 #include "eval/trajectory/frame_check.hpp"
 #include "eval/trajectory/pose_paths.hpp"
@@ -70,7 +71,7 @@ TrajectoryPair paired(PosePath estimate, PosePath truth, const TrajectoryOptions
   if (!estimate.list.stamps_ns.empty() && !truth.list.stamps_ns.empty()) {
     pair_by_time(estimate.list, truth.list, estimate.place, options.max_time_difference_s, pair);
   } else if (estimate.list.poses.size() != truth.list.poses.size()) {
-    throw DataError(estimate.place, fmt::format("holds {} poses", estimate.list.poses.size()),
+    throw DataError(estimate.place, "holds " + counted(estimate.list.poses.size(), "pose"),
                     fmt::format("{} as in {}, or stamps in both as in .tum files",
                                 truth.list.poses.size(), truth.place.string()));
   } else {

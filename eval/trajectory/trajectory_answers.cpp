@@ -3,6 +3,7 @@
 #include <numbers>
 #include <vector>
 
+#include "datasets/files/counted.hpp"
 #include "eval/results/answer_text.hpp"
 #include "eval/results/csv.hpp"
 #include "eval/results/text_table.hpp"
@@ -77,8 +78,8 @@ std::vector<std::string> overall_row(const char* name, const std::optional<MeanS
 }
 
 std::string relative_name(const RelativePairs& pairs) {
-  const std::string delta = pairs.delta_m ? fmt::format("{} m", *pairs.delta_m)
-                                          : fmt::format("{} scans", pairs.delta_scans);
+  const std::string delta =
+      pairs.delta_m ? fmt::format("{} m", *pairs.delta_m) : counted(pairs.delta_scans, "scan");
   return delta + (pairs.all ? ", from every pose" : ", one after the other");
 }
 

@@ -174,7 +174,7 @@ TEST_F(SpoiledRun, ReportsAnUnknownLabelIdByTheProtocolsRule) {
   write_labels(folder_ / "room/labels/000005.label", truth);
   const cli::Answer answer = run();
   ASSERT_EQ(answer.exit_code, 0) << answer.err;
-  EXPECT_THAT(answer.out, HasSubstr("1 points have a label id that protocol semantickitti-mos"));
+  EXPECT_THAT(answer.out, HasSubstr("1 point has a label id that protocol semantickitti-mos"));
   EXPECT_EQ(cli::timeless_result(folder_ / "out/room").at("scans").at(5).at("unknown_ids"), 1);
 }
 

@@ -40,7 +40,7 @@ TEST(Breakdown, TellsSpeedsByTheStampsOrAsIfAt10Hz) {
 
   const cli::Answer text =
       cli::run({"breakdown", folder / "room", "--predictions", folder / "predicted"});
-  EXPECT_THAT(text.out, HasSubstr("1 moving objects, speeds by the scans' stamps"));
+  EXPECT_THAT(text.out, HasSubstr("1 moving object, speeds by the scans' stamps"));
   EXPECT_THAT(text.out, HasSubstr("0.5 to 1 m/s"));
 }
 

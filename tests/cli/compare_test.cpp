@@ -297,7 +297,7 @@ TEST_F(Compare, AndStatsRepeatThatPredictionsWereMissing) {
   const cli::Answer score = cli::run({"score", (folder_ / "room").string(), "--predictions",
                                       labels.string(), "--allow-missing", "--out", results});
   ASSERT_EQ(score.exit_code, 0) << score.err;
-  const std::string mark = "INCOMPLETE: 1 scans without usable prediction are not counted";
+  const std::string mark = "INCOMPLETE: 1 scan without usable prediction is not counted";
   ASSERT_THAT(score.out, HasSubstr(mark));
 
   EXPECT_THAT(cli::run({"stats", results}).out, HasSubstr(mark));

@@ -79,7 +79,7 @@ std::vector<Mistake> mistakes() {
          scans.resize(1);
          stamps_s.resize(1);
        },
-       0, "1 poses"},
+       0, "1 pose "},
       {"GapOfManyScans",
        [](Scans& scans, Stamps& stamps_s) {
          for (int k = 3; k < 6; ++k) {

@@ -106,7 +106,7 @@ TEST_F(PredictionMistakes, AFaultyFileIsReportedOnce) {
   ASSERT_EQ(answer.exit_code, 0) << answer.err;
   EXPECT_THAT(answer.out, HasSubstr("000003.label: has 100 bytes"));
   EXPECT_THAT(answer.out, Not(HasSubstr("000003.label: is not there")));
-  EXPECT_THAT(answer.out, HasSubstr("INCOMPLETE: 1 scans"));
+  EXPECT_THAT(answer.out, HasSubstr("INCOMPLETE: 1 scan without"));
 }
 
 TEST_F(PredictionMistakes, NothingUsableIsToldFromNoTruth) {

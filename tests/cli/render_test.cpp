@@ -196,7 +196,7 @@ TEST_F(Render, RefusesScansAndSequencesThatAreNotThere) {
   const cli::Answer answer =
       cli::run({"render", run(), "--sequence", "01", "--scan", "1", "-o", folder_ / "r.png"});
   EXPECT_EQ(answer.exit_code, 2);
-  EXPECT_THAT(answer.err, HasSubstr("holds results of 00, expected --sequence to name one"));
+  EXPECT_THAT(answer.err, HasSubstr("holds no results of \"01\", expected one of 00"));
 }
 
 }  // namespace

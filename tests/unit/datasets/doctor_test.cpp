@@ -331,7 +331,7 @@ const std::vector<Fault>& faults() {
          const fs::path scan = root / kKittiSequence / "velodyne/000017.bin";
          fs::resize_file(scan, fs::file_size(scan) / 32 * 16);
        },
-       "1 scans are far smaller than those around them: 000017", Severity::kError},
+       "1 scan is far smaller than those around them: 000017", Severity::kError},
       {"labels_of_raw_classes", kCampus,
        [](const fs::path& root) {
          change_labels(root / kCampusSequence,

@@ -226,6 +226,24 @@ class KittiRawDrive : public testing::Test {
   TempFolder folder_;
 };
 
+TEST_F(KittiRawDrive, IsNamedByItsNumber) {
+  for (const char* name : {"0001", "drive_0001", "2011_09_26_drive_0001"}) {
+    const Dataset dataset = open_dataset(folder_ / "root", {.sequences = {name}});
+    EXPECT_THAT(sequence_names(dataset), ElementsAre("2011_09_26_drive_0001_sync")) << name;
+  }
+  const auto error_of = [&](const char* name) {
+    return message_of<UsageError>([&] { open_dataset(folder_ / "root", {.sequences = {name}}); });
+  };
+  EXPECT_THAT(error_of("0011"), HasSubstr("expected one of 2011_09_26_drive_0001_sync"));
+  EXPECT_THAT(error_of("001"), HasSubstr("no sequence \"001\""));
+  // Of two dates the number says too little.
+  std::filesystem::copy(folder_ / "root/2011_09_26", folder_ / "root/2011_09_27",
+                        std::filesystem::copy_options::recursive);
+  std::filesystem::rename(folder_ / "root/2011_09_27/2011_09_26_drive_0001_sync",
+                          folder_ / "root/2011_09_27/2011_09_27_drive_0001_sync");
+  EXPECT_THAT(error_of("0001"), HasSubstr("2011_09_27_drive_0001_sync"));
+}
+
 TEST_F(KittiRawDrive, IsReadByItsFrames) {
   const Dataset dataset = opened();
   EXPECT_EQ(dataset.kind, DatasetKind::kKittiRaw);
@@ -304,7 +322,7 @@ TEST_F(KittiRawDrive, LeavesOutScansWithoutPacket) {
   const Dataset dataset = opened();
   EXPECT_EQ(dataset.sequences.front()->size(), 4U);
   EXPECT_THAT(dataset.sequences.front()->remarks(),
-              Contains("1 scans have no packet in oxts and are left out"));
+              Contains("1 scan has no packet in oxts and is left out"));
 }
 
 TEST_F(KittiRawDrive, TakesOtherPosesAndKeepsItsTruth) {

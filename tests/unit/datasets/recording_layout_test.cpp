@@ -63,7 +63,7 @@ TEST_F(AnyRecording, IsAFolderOfPly) {
                 "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
                 "property float z\nend_header\n1 2 3\n");
   const Dataset dataset = opened("drive", {.poses_by_odometry = true});
-  EXPECT_THAT(dataset.remarks, Contains(HasSubstr("1 .ply files")));
+  EXPECT_THAT(dataset.remarks, Contains(HasSubstr("1 .ply file is")));
   EXPECT_EQ(dataset.sequences[0]->read(0).points[0].z, 3.0F);
 }
 

@@ -64,7 +64,7 @@ std::string remark_on(int shift) {
 TEST(ShiftRemark, NamesTheShift) {
   EXPECT_EQ(remark_on(0), "");
   EXPECT_THAT(remark_on(1),
-              testing::StartsWith("labels look 1 scans late: those of 1 scans later "
+              testing::StartsWith("labels look 1 scan late: those of 1 scan later "
                                   "fit the truth better, IoU 100.0 in place of 60.0 %"));
   EXPECT_THAT(remark_on(10), testing::HasSubstr("a method with a delay of 10 scans"));
   EXPECT_THAT(remark_on(-3), testing::StartsWith("labels look 3 scans early"));

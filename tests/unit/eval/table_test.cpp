@@ -167,7 +167,7 @@ TEST(FillTable, ComparesNothingThatIsOfAnotherKind) {
   lost.sequences[0].scans.pop_back();
   lost.sequences[0].missing_predictions = 1;
   EXPECT_THAT(reasons(lost),
-              ElementsAre("INCOMPLETE: 1 scans without usable prediction are not counted",
+              ElementsAre("INCOMPLETE: 1 scan without usable prediction is not counted",
                           "19 labelled scans, published over 20"));
 
   ResultSet coarse = station(889);
