@@ -53,8 +53,28 @@ SceneFlowSequence::SceneFlowSequence(std::string name, const std::filesystem::pa
   recording.reading = {{"scan_files", file.filename().string()}};
   list_scans();
   take_poses(options);
-  recording.reading.emplace_back("truth",
-                                 fmt::format("flow, moving from {:g} m/s on", moving_speed_m_s_));
+  state_truth(options);
+}
+
+/// Labels that `convert` wrote stand in place of the flow.
+void SceneFlowSequence::state_truth(const ReadingOptions& options) {
+  bool by_flow = false, by_labels = false;
+  for (std::size_t k = 0; k < scans_.size(); ++k) {
+    by_labels = by_labels || has_labels(k);
+    by_flow = by_flow || (has_flow(k) && !has_labels(k));
+  }
+  if (by_labels && !by_flow && options.moving_speed_m_s) {
+    throw UsageError(fmt::format(
+        "--moving-speed-m-s: the truth of {} is its array {}, without speeds, expected no such "
+        "flag, or files with flow",
+        file_.path().string(), scene_flow::kLabel));
+  }
+  const std::string flow = fmt::format("flow, moving from {:g} m/s on", moving_speed_m_s_);
+  const std::string labels(scene_flow::kLabel);
+  mutable_recording().reading.emplace_back("truth", !by_labels ? flow
+                                                    : by_flow
+                                                        ? fmt::format("{}, else {}", labels, flow)
+                                                        : labels);
 }
 
 /// Takes groups in the order of their stamps. Of a drive that was cut a group without anything may

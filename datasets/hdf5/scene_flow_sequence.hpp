@@ -37,6 +37,7 @@ class SceneFlowSequence : public Sequence {
   void convert_stamps();
   void require_poses(bool of_all) const;
   void take_poses(const ReadingOptions& options);
+  void state_truth(const ReadingOptions& options);
   void enter(std::size_t scan, const Pose& map_from_sensor, bool is_left_out);
   Scan scan_of(const Hdf5Group& group, std::uint64_t stamp) const;
   Pose pose_in(const Hdf5Group& group, std::string_view name) const;

@@ -52,6 +52,14 @@ std::uint32_t instance_of_number(std::uint64_t number) {
   return number + 1 < kIds ? static_cast<std::uint32_t>(number + 1) : 0;
 }
 
+bool is_of_labels(std::span<const BoxTrack> tracks) {
+  return std::ranges::any_of(tracks, [](const BoxTrack& track) {
+    return std::ranges::any_of(track, [](const TrackedBox& box) {
+      return box.lidar_from_box.translation().norm() > 0.5 * kFall_m;
+    });
+  });
+}
+
 std::vector<std::vector<LabelledBox>> label_boxes(std::span<const BoxTrack> tracks,
                                                   std::span<const std::optional<FramePose>> frames,
                                                   double moving_speed_m_s) {

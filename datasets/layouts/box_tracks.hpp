@@ -41,6 +41,12 @@ struct LabelledBox {
 /// Boxes are compared with those of this time before and after.
 inline constexpr double kTrackWindow_s = 0.5;
 
+/// How far a box falls in one frame that `convert` and `simulate` wrote around points whose labels
+/// say that they move: far enough to be fast over any time between two frames.
+inline constexpr double kFall_m = 1e6;
+/// Whether boxes fall so: their truth is one of labels, and no speed.
+bool is_of_labels(std::span<const BoxTrack> tracks);
+
 /// Returns the boxes of every frame: 251 from `moving_speed_m_s` on, 9 below, 0 for an object that
 /// is seen in one frame alone, which has no instance. The speed is that of the box's centre in the
 /// map between the first and the last box of its track within `kTrackWindow_s`, but at least those

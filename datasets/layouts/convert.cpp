@@ -7,6 +7,7 @@
 #include <set>
 #include <vector>
 
+#include "datasets/files/counted.hpp"
 #include "datasets/files/errors.hpp"
 #include "datasets/files/files.hpp"
 #include "datasets/files/folder_listing.hpp"
@@ -133,13 +134,15 @@ void write_shared_files(const Dataset& dataset, const ConvertOptions& options) {
   }
 }
 
-/// Counts what of the truth is not written.
-struct LostTruth {
+/// Counts what is not written.
+struct LostContent {
   KeptTruth keeps = KeptTruth::kId;
   std::size_t unlabelled_points = 0, labelled_scans = 0, points_beyond_view = 0;
+  std::size_t radial_velocities = 0;
 
   void add(const Frame& frame) {
     static const CameraView kView = written_kitti_mounting().view;
+    radial_velocities += frame.radial_velocity_m_s.size();
     if (!frame.truth) return;
     ++labelled_scans;
     for (std::size_t i = 0; i < frame.points.size(); ++i) {
@@ -152,27 +155,42 @@ struct LostTruth {
   }
 
   std::vector<std::string> sentences(const Layout& layout) const {
+    std::vector<std::string> sentences;
+    if (std::string lost = truth_sentence(layout); !lost.empty()) sentences.push_back(lost);
+    if (radial_velocities > 0 && !layout.writer->keeps_radial_velocities) {
+      sentences.push_back(
+          fmt::format("the radial velocities of {} are left out: layout {} has none",
+                      counted(radial_velocities, "point"), layout.name));
+    }
+    return sentences;
+  }
+
+ private:
+  /// Empty where the layout keeps all truth.
+  std::string truth_sentence(const Layout& layout) const {
     if (keeps == KeptTruth::kMoving && unlabelled_points > 0) {
-      return {
-          fmt::format("{} points of the label id 0, which most data sets give to what nobody "
-                      "labelled, become static: layout {} knows static and moving alone",
-                      unlabelled_points, layout.name)};
+      return fmt::format(
+          "{} of the label id 0, which most data sets give to what nobody labelled, {} static: "
+          "layout {} knows static and moving alone",
+          counted(unlabelled_points, "point"), unlabelled_points == 1 ? "becomes" : "become",
+          layout.name);
     }
     if (keeps == KeptTruth::kInView && points_beyond_view > 0) {
-      return {
-          fmt::format("{} points beyond the view of camera 2 lose their labels: layout {} has none "
-                      "there",
-                      points_beyond_view, layout.name)};
+      return fmt::format(
+          "{}: layout {} has none there",
+          counted(points_beyond_view, "point beyond the view of camera 2 loses its label",
+                  "points beyond the view of camera 2 lose their labels"),
+          layout.name);
     }
     if (keeps == KeptTruth::kNone && labelled_scans > 0) {
-      return {fmt::format("the labels of {} scans are left out: layout {} has none", labelled_scans,
-                          layout.name)};
+      return fmt::format("the labels of {} are left out: layout {} has none",
+                         counted(labelled_scans, "scan"), layout.name);
     }
-    return {};
+    return "";
   }
 };
 
-void convert_sequence(const Sequence& sequence, SequenceWriter& writer, LostTruth& lost,
+void convert_sequence(const Sequence& sequence, SequenceWriter& writer, LostContent& lost,
                       const std::function<void()>& advance) {
   Frame frame;
   for (std::size_t k = 0; k < sequence.size(); ++k) {
@@ -198,7 +216,7 @@ std::vector<std::string> convert(
   std::size_t total = 0;
   for (const auto& sequence : dataset.sequences) total += sequence->size();
   std::size_t done = 0;
-  LostTruth lost{.keeps = layout.writer->keeps};
+  LostContent lost{.keeps = layout.writer->keeps};
   const auto advance = [&] {
     if (progress) progress(++done, total);
   };

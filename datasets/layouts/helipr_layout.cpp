@@ -87,7 +87,8 @@ const Layout& helipr_layout() {
       .writer = LayoutWriter{.open = write_as_helipr,
                              .folder = helipr_folder,
                              .last_file = helipr_last_file,
-                             .keeps = KeptTruth::kNone}};
+                             .keeps = KeptTruth::kNone,
+                             .keeps_radial_velocities = true}};
   return row;
 }
 

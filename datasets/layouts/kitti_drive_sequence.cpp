@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "datasets/files/counted.hpp"
 #include "datasets/files/errors.hpp"
 #include "datasets/files/point_range.hpp"
 #include "datasets/files/scan_file.hpp"
@@ -24,6 +25,13 @@ std::size_t frame_of(const ScanEntry& scan) {
 /// Whether oxts place a frame, without which nothing is known of its boxes' speeds.
 bool is_placed(const KittiDrive& drive, std::size_t frame) {
   return frame < drive.frames.size() && drive.frames[frame];
+}
+
+[[noreturn]] void refuse_speed(const KittiDrive& drive) {
+  throw UsageError(
+      fmt::format("--moving-speed-m-s: the boxes of {} in {} were made of labels by mosbench and "
+                  "have no speeds, expected no such flag, or KITTI's own drive",
+                  drive.name, drive.folder.string()));
 }
 
 bool holds(const ImageRegion& region, const Eigen::Vector3d& projected) {
@@ -50,9 +58,12 @@ KittiDriveSequence::KittiDriveSequence(KittiDrive drive, const ReadingOptions& o
   const double moving_speed_m_s = options.moving_speed_m_s.value_or(kFlowMovingSpeed_m_s);
   recording.reading = {{"scan_files", ".bin of the drive"}};
   if (drive.has_truth) {
+    const bool of_labels = is_of_labels(drive.tracks);
+    if (of_labels && options.moving_speed_m_s) refuse_speed(drive);
     recording.reading.emplace_back(
-        "truth", fmt::format("boxes of {}, moving from {:g} m/s on, in the view of camera 2",
-                             drive.truth_source, moving_speed_m_s));
+        "truth", fmt::format("boxes of {}, {}, in the view of camera 2", drive.truth_source,
+                             of_labels ? "made of labels"
+                                       : fmt::format("moving from {:g} m/s on", moving_speed_m_s)));
     boxes_ = label_boxes(drive.tracks, drive.frames, moving_speed_m_s);
   }
   list_scans(drive);
@@ -72,7 +83,7 @@ void KittiDriveSequence::list_scans(const KittiDrive& drive) {
   const std::size_t frames = frame_of(mutable_recording().scans.back()) + 1;
   if (frames > size()) {
     mutable_recording().remarks.push_back(
-        fmt::format("{} of {} frames have no scan", frames - size(), frames));
+        fmt::format("{} of {} have no scan", frames - size(), counted(frames, "frame")));
   }
 }
 
@@ -93,8 +104,9 @@ void KittiDriveSequence::take_oxts(const KittiDrive& drive) {
     throw DataError(drive.pose_file, "belongs to no scan", "packets of the frames of the scans");
   }
   if (!recording.left_out.empty()) {
-    recording.remarks.push_back(
-        fmt::format("{} scans have no packet in oxts and are left out", recording.left_out.size()));
+    recording.remarks.push_back(counted(recording.left_out.size(),
+                                        "scan has no packet in oxts and is left out",
+                                        "scans have no packet in oxts and are left out"));
   }
   recording.reading.emplace_back("poses", drive.pose_source);
   recording.reading.emplace_back("pose_direction", "map_from_sensor");

@@ -18,6 +18,7 @@
 #include "datasets/files/point_range.hpp"
 #include "datasets/files/tracking_labels.hpp"
 #include "datasets/files/tracklets.hpp"
+#include "datasets/layouts/box_tracks.hpp"
 #include "datasets/layouts/kitti_drive.hpp"
 #include "datasets/layouts/pure_boxes.hpp"
 
@@ -25,9 +26,6 @@ namespace mosbench {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Far enough to be fast over any time between two frames.
-constexpr double kDropped_m = 1e6;
 
 fs::path raw_scan_file(std::size_t frame) {
   return fmt::format("velodyne_points/data/{:010}.bin", frame);
@@ -231,7 +229,7 @@ class KittiRawWriter : public DriveWriter {
                   written.frame,
                   {{bottom_m, 0.0}}};
       if (!written.moves) continue;
-      bottom_m.z() -= kDropped_m;
+      bottom_m.z() -= kFall_m;
       tracklet.poses.push_back({bottom_m, 0.0});
     }
     return format_tracklets(tracklets);
@@ -270,7 +268,7 @@ class KittiTrackingWriter : public DriveWriter {
       const std::string type = type_of_part(written.instance);
       labels.push_back({written.frame, track, type, {}, box});
       if (written.moves) {
-        box.bottom_m.y() += kDropped_m;
+        box.bottom_m.y() += kFall_m;
         labels.push_back({written.frame + 1, track, type, {}, box});
       }
       ++track;

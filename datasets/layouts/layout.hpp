@@ -54,6 +54,7 @@ struct LayoutWriter {
   /// Returns the file in a sequence's folder that appears when all of it is on the disk.
   const char* (*last_file)(const WriteOptions& options) = last_file_of;
   KeptTruth keeps = KeptTruth::kId;
+  bool keeps_radial_velocities = false;
 };
 
 /// A data set that comes in the folders of another.

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "core/base/thread_pool.hpp"
+#include "datasets/files/counted.hpp"
 #include "datasets/files/errors.hpp"
 #include "datasets/layouts/convert.hpp"
 #include "eval/cli/commands.hpp"
@@ -64,6 +65,16 @@ std::string compression_of(const ConvertFlags& options) {
   return options.layout == "ros2-db3" ? "none" : "lz4";
 }
 
+/// A flow has no threshold: who reads it chooses one.
+void check_kept_speed(const ConvertFlags& options, DatasetKind source) {
+  constexpr auto kFlow = DatasetKind::kOpenSceneFlow;
+  if (!options.reading.moving_speed_m_s) return;
+  if (source != kFlow || options.conversion.layout != kFlow) return;
+  throw UsageError(
+      "--moving-speed-m-s: layout opensceneflow keeps the flow and not what was moving by it, "
+      "expected the flag where the converted files are read");
+}
+
 std::string convert_dataset(ConvertFlags options) {
   ConvertOptions& conversion = options.conversion;
   set_layout(options.layout, conversion);
@@ -72,6 +83,7 @@ std::string convert_dataset(ConvertFlags options) {
   options.reading.poses_by_odometry = odometry.has_value();
   Dataset dataset = open_dataset(
       options.input, {dataset_kind_option(options.dataset), options.sequences, options.reading});
+  check_kept_speed(options, dataset.kind);
   if (odometry) {
     const OdometryChoice choice = with_filter(*odometry, options.odometry, dataset.kind);
     expect_poses(dataset, choice);
@@ -88,8 +100,8 @@ std::string convert_dataset(ConvertFlags options) {
     scans = done;
   };
   for (const std::string& sentence : convert(dataset, conversion, count)) tell(sentence);
-  return fmt::format("converted {} scans of {} to {} in {}\n", scans, options.input.string(),
-                     options.layout, conversion.out.string());
+  return fmt::format("converted {} of {} to {} in {}\n", counted(scans, "scan"),
+                     options.input.string(), options.layout, conversion.out.string());
 }
 
 }  // namespace

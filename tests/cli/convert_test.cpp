@@ -383,5 +383,17 @@ TEST_F(Convert, StatesInTheResultHowASequenceWasRead) {
   EXPECT_EQ(reading.at("pose_direction"), "sensor_from_map, inverted");
 }
 
+TEST_F(Convert, TellsThatRadialVelocitiesAreLost) {
+  const std::string source = simulate("helipr", "3");
+  const cli::Answer lost = convert(source, "semantickitti", "plain", {"--sequences", "room/Aeva"});
+  ASSERT_EQ(lost.exit_code, 0) << lost.err;
+  EXPECT_THAT(lost.err,
+              testing::ContainsRegex("the radial velocities of [0-9]+ points are left out: layout "
+                                     "semantickitti has none"));
+  const cli::Answer kept = convert(source, "helipr", "aeva", {"--sequences", "room/Aeva"});
+  ASSERT_EQ(kept.exit_code, 0) << kept.err;
+  EXPECT_THAT(kept.err, Not(HasSubstr("radial velocities")));
+}
+
 }  // namespace
 }  // namespace mosbench

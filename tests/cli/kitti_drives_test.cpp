@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <set>
 #include <string>
@@ -151,6 +152,20 @@ TEST_P(KittiDrives, TellWhatIsBeyondTheViewOnlyWhereThereIsSome) {
       cli::run({"convert", drive_, "--layout", GetParam(), "--out", (folder_ / "again").string()});
   ASSERT_EQ(again.exit_code, 0) << again.err;
   EXPECT_THAT(again.err, testing::Not(HasSubstr("beyond the view")));
+}
+
+TEST_P(KittiDrives, MadeOfLabelsHaveNoSpeedToChoose) {
+  ASSERT_EQ(converted_.exit_code, 0) << converted_.err;
+  const cli::Answer fast = cli::run(
+      {"run", drive_, "--moving-speed-m-s", "1000000", "--out", (folder_ / "fast").string()});
+  EXPECT_EQ(fast.exit_code, 2);
+  EXPECT_THAT(fast.err, HasSubstr("--moving-speed-m-s: the boxes of 0"));
+  EXPECT_THAT(fast.err, HasSubstr("were made of labels"));
+  const Dataset drive = open_dataset(drive_, {});
+  const auto& reading = drive.sequences.at(0)->reading();
+  EXPECT_TRUE(std::ranges::any_of(reading, [](const auto& line) {
+    return line.first == "truth" && line.second.find("made of labels") != std::string::npos;
+  }));
 }
 
 }  // namespace

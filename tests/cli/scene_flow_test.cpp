@@ -152,5 +152,29 @@ TEST_F(SceneFlowProgram, NamesAFileThatIsDamaged) {
   EXPECT_EQ(cli::run({"run", path("sim"), "--moving-speed-m-s", "-1"}).exit_code, 2);
 }
 
+TEST_F(SceneFlowProgram, ConvertsByNoSpeedThatItsFilesCannotKeep) {
+  const std::vector<std::string> words = {"convert", path("sim"), "--moving-speed-m-s", "2",
+                                          "--layout"};
+  const auto convert_to = [&](const std::string& layout, const std::string& source) {
+    std::vector<std::string> all = words;
+    all[1] = source;
+    all.insert(all.end(), {layout, "--out", path(layout.c_str())});
+    return cli::run(all);
+  };
+  const cli::Answer kept = convert_to("opensceneflow", path("sim"));
+  EXPECT_EQ(kept.exit_code, 2);
+  EXPECT_THAT(kept.err, HasSubstr("keeps the flow"));
+  ASSERT_EQ(convert_to("semantickitti", path("sim")).exit_code, 0);
+  // Labels without speeds become an array of labels, whose truth no speed changes.
+  ASSERT_EQ(cli::run({"convert", path("semantickitti"), "--layout", "opensceneflow", "--out",
+                      path("labels")})
+                .exit_code,
+            0);
+  const cli::Answer labels =
+      cli::run({"run", path("labels"), "--moving-speed-m-s", "2", "--out", path("run_labels")});
+  EXPECT_EQ(labels.exit_code, 2);
+  EXPECT_THAT(labels.err, HasSubstr("is its array mos_label"));
+}
+
 }  // namespace
 }  // namespace mosbench
