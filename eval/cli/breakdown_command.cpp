@@ -11,6 +11,7 @@
 #include "eval/cli/commands.hpp"
 #include "eval/cli/dataset_flags.hpp"
 #include "eval/cli/suggested_command.hpp"
+#include "eval/protocols/protocol_list.hpp"
 #include "eval/report/result_scans.hpp"
 #include "eval/results/answer_text.hpp"
 #include "eval/results/result_set.hpp"
@@ -85,7 +86,8 @@ std::string printed(const BreakdownFlags& options, const Dataset& dataset,
     }
     return json_text(json);
   }
-  std::string text = fmt::format("protocol {}\n{}", task.protocol->name, simulated_remark(dataset));
+  std::string text =
+      fmt::format("{}\n{}", rule_line({task.protocol, task.range}), simulated_remark(dataset));
   for (const SequenceBreakdown& part : breakdowns) text += '\n' + breakdown_text(part, options.top);
   return text;
 }

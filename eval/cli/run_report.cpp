@@ -80,19 +80,12 @@ std::string method_line(const RunPlan& plan) {
                      describe_settings(to_json(settings.method_settings), settings.method->name));
 }
 
-std::string protocol_line(const RunPlan& plan) {
-  const Protocol& protocol = *plan.settings.protocol;
-  const std::string range = counted_range_text(protocol, plan.settings.range);
-  return fmt::format("protocol {}: {}{}", protocol.name, protocol.summary,
-                     range.empty() ? "" : " (" + range + ")");
-}
-
 }  // namespace
 
 std::string run_report_text(const RunPlan& plan, const std::vector<SequenceOutcome>& outcomes) {
-  std::string text =
-      fmt::format("{} data set {}\n{}\n{}\n", to_string(plan.dataset.kind),
-                  plan.dataset.root.string(), method_line(plan), protocol_line(plan));
+  std::string text = fmt::format("{} data set {}\n{}\n{}\n", to_string(plan.dataset.kind),
+                                 plan.dataset.root.string(), method_line(plan),
+                                 rule_line({plan.settings.protocol, plan.settings.range}));
   const bool scored = has_truth(outcomes);
   if (scored) text += benchmark_remark(*plan.settings.protocol, plan.dataset.splits);
   text += simulated_remark(plan.dataset);

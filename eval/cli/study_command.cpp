@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "datasets/files/counted.hpp"
 #include "datasets/files/errors.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/cli/dataset_flags.hpp"
@@ -70,8 +71,8 @@ std::string state_counts(const StudyPlan& plan) {
     other += planned.state == CellState::kOtherVersion;
   }
   const std::size_t missing = plan.cells.size() - done - failed - other;
-  return fmt::format("{} cells: {} done, {} missing, {} failed, {} of another version of mosbench",
-                     plan.cells.size(), done, missing, failed, other);
+  return fmt::format("{}: {} done, {} missing, {} failed, {} of another version of mosbench",
+                     counted(plan.cells.size(), "cell"), done, missing, failed, other);
 }
 
 std::string work_text(const StudyWork& work) {
@@ -139,7 +140,8 @@ Answer table_answer(const StudyPlan& plan, const StudyFlags& flags) {
   if (flags.output == "-") return {text, exit_code};
   write_output(flags.output, text);
   const std::string rest =
-      exit_code == 0 ? "" : fmt::format("; {} of {} cells are done", table.done, table.cells);
+      exit_code == 0 ? ""
+                     : fmt::format("; {} of {} are done", table.done, counted(table.cells, "cell"));
   return {fmt::format("wrote {}{}\n", flags.output.string(), rest), exit_code};
 }
 

@@ -4,11 +4,13 @@
 #include <fmt/format.h>
 #include <poll.h>
 #include <signal.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <thread>
 
 namespace mosbench {
@@ -74,8 +76,22 @@ void kill_all(pid_t group) {
   _exit(0);
 }
 
+std::atomic<long> most_memory_kib{0};
+
 void reap(pid_t process) {
   while (waitpid(process, nullptr, 0) < 0 && errno == EINTR) {
+  }
+}
+
+/// The system's own maximum, of all children, would count earlier commands and guards, too.
+void reap_and_measure(pid_t process) {
+  rusage usage{};
+  while (wait4(process, nullptr, 0, &usage) < 0) {
+    if (errno != EINTR) return;
+  }
+  long most_kib = most_memory_kib;
+  while (usage.ru_maxrss > most_kib &&
+         !most_memory_kib.compare_exchange_weak(most_kib, usage.ru_maxrss)) {
   }
 }
 
@@ -109,7 +125,7 @@ ChildProcess::~ChildProcess() {
     }
     reap(guard_);
   }
-  reap(child_);
+  reap_and_measure(child_);
 }
 
 void ChildProcess::write_some(std::string_view& outgoing) {
@@ -183,6 +199,11 @@ std::string ChildProcess::how_it_ended(Deadline deadline) {
     if (Clock::now() >= deadline) return "";
     std::this_thread::sleep_for(kLook);
   }
+}
+
+double take_most_memory_of_commands_mib() {
+  constexpr double kKibOfMib = 1024;
+  return static_cast<double>(most_memory_kib.exchange(0)) / kKibOfMib;
 }
 
 }  // namespace mosbench

@@ -73,6 +73,14 @@ struct Protocol {
       default_split;  ///< of the data set it is published for; empty: all labelled scans
 };
 
+/// A protocol with the range it is applied over.
+struct ScoreRule {
+  const Protocol* protocol;
+  RangeGate range;
+
+  bool operator==(const ScoreRule&) const = default;
+};
+
 /// All protocols in the order in which they are listed.
 std::span<const Protocol> protocols();
 

@@ -119,4 +119,22 @@ std::string counted_range_text(const Protocol& protocol, const RangeGate& range)
                          : fmt::format("from {:g} m", range.min_m);
 }
 
+namespace {
+
+std::string in_brackets(const ScoreRule& rule) {
+  const std::string range = counted_range_text(*rule.protocol, rule.range);
+  return range.empty() ? "" : fmt::format(" ({})", range);
+}
+
+}  // namespace
+
+std::string rule_line(const ScoreRule& rule) {
+  return fmt::format("protocol {}: {}{}", rule.protocol->name, rule.protocol->summary,
+                     in_brackets(rule));
+}
+
+std::string rule_name(const ScoreRule& rule) {
+  return fmt::format("{}{}", rule.protocol->name, in_brackets(rule));
+}
+
 }  // namespace mosbench

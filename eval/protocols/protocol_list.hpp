@@ -27,4 +27,9 @@ std::vector<ProtocolDescription> describe_protocols();
 /// limit the range.
 std::string counted_range_text(const Protocol& protocol, const RangeGate& range);
 
+/// Returns "protocol mapmos: pooled; ... (from 3 m)", the range that is really applied.
+std::string rule_line(const ScoreRule& rule);
+/// Returns "mapmos (from 3 m)".
+std::string rule_name(const ScoreRule& rule);
+
 }  // namespace mosbench

@@ -1,6 +1,5 @@
 #include "eval/results/machine.hpp"
 
-#include <sys/resource.h>
 #include <sys/utsname.h>
 #include <unistd.h>
 #if defined(__GLIBC__)
@@ -77,12 +76,6 @@ double resident_mib() {
   double resident_pages = 0.0;
   statm >> total_pages >> resident_pages;
   return statm ? resident_pages * page_mib() : 0.0;
-}
-
-double most_memory_of_children_mib() {
-  rusage usage{};
-  if (getrusage(RUSAGE_CHILDREN, &usage) != 0) return 0.0;
-  return static_cast<double>(usage.ru_maxrss) / 1024;
 }
 
 }  // namespace mosbench

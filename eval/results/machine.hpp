@@ -30,7 +30,4 @@ std::size_t memory_bytes();
 /// Memory this process holds at the moment, MiB; 0 where it cannot be read.
 double resident_mib();
 
-/// The most memory that any process held which this one started and which has ended, MiB.
-double most_memory_of_children_mib();
-
 }  // namespace mosbench

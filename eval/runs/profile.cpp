@@ -7,6 +7,7 @@
 
 #include "core/base/stage_clock.hpp"
 #include "datasets/files/quantile.hpp"
+#include "eval/exec/child_process.hpp"
 #include "eval/results/machine.hpp"
 #include "eval/results/progress.hpp"
 
@@ -53,12 +54,13 @@ void add_stages(const std::vector<StageTime>& stages, SequenceProfile& profile) 
 
 SequenceProfile profile_sequence(const Sequence& sequence, const RunSettings& settings,
                                  std::size_t most_scans) {
-  SequenceProfile profile{sequence.name(), settings.threads, std::nullopt, {}, {}};
+  SequenceProfile profile{sequence.name(), settings.threads, std::nullopt, {}, {}, 0};
+  take_most_memory_of_commands_mib();  // of commands before this one
   const std::size_t scans = std::min(sequence.size(), most_scans);
   // The whole length: the end of a delayed sequence is labelled in another way.
   RunContext context = context_of(sequence, settings);
   context.cpu_times = true;
-  const std::unique_ptr<Method> method = settings.method->make(settings.method_settings, context);
+  std::unique_ptr<Method> method = settings.method->make(settings.method_settings, context);
   std::vector<LabelledScan> finals;
   Progress progress("profile " + sequence.name(), scans);
   std::vector<std::int64_t> stamps_ns;
@@ -78,6 +80,8 @@ SequenceProfile profile_sequence(const Sequence& sequence, const RunSettings& se
     progress.advance();
   }
   for (const LabelledScan& final_scan : method->finish()) add_stages(final_scan.stages, profile);
+  method.reset();  // a program's memory is known when it has ended
+  profile.program_mib = take_most_memory_of_commands_mib();
   profile.period_ms = median_period_ms(stamps_ns);
   return profile;
 }

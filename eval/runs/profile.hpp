@@ -34,6 +34,7 @@ struct SequenceProfile {
   std::optional<double> period_ms;  ///< median distance of the stamps; nothing without stamps
   std::vector<ScanProfile> scans;
   std::vector<std::string_view> stages;  ///< in the order in which they first ran
+  double program_mib = 0;                ///< the most that a program of the user's held
 };
 
 /// Segments the first `most_scans` scans of a sequence, one after the other, and measures. Throws

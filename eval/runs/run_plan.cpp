@@ -22,12 +22,12 @@ namespace mosbench {
 namespace fs = std::filesystem;
 namespace {
 
-Preset choose_preset(const RunOptions& options, DatasetKind kind, RunPlan& plan) {
-  if (options.preset) return preset_for(preset_named(*options.preset), kind);
-  const Preset& preset = default_preset(kind);
-  plan.notes.push_back(
-      fmt::format("preset {} taken because the data set is {}", preset.name, to_string(kind)));
-  return preset;
+Preset choose_preset(const RunOptions& options, DatasetKind kind) {
+  return options.preset ? preset_for(preset_named(*options.preset), kind) : default_preset(kind);
+}
+
+const Protocol& choose_protocol(const RunOptions& options, const Preset& preset) {
+  return protocol_named(options.protocol.value_or(std::string(preset.protocol)));
 }
 
 /// --variant is the short form of --set variant=NAME.
@@ -90,14 +90,17 @@ Settings choose_settings(const RunOptions& options, const Preset& preset,
   return settings;
 }
 
+/// A benchmark with a range limit is scored over the range it was run at.
+bool is_scored_where_run(const Protocol& protocol) {
+  return protocol.range_rule != RangeRule::kNone && protocol.default_range.max_m > 0;
+}
+
 RangeGate choose_range(const RunOptions& options, const Protocol& protocol,
                        const Settings& settings) {
   if (options.range) return range_option(*options.range, protocol);
-  // A benchmark with a range limit is scored over the range it was run at.
-  const bool limited = protocol.range_rule != RangeRule::kNone && protocol.default_range.max_m > 0;
   const bool known =
       settings.find("min_range_m") != nullptr && settings.find("max_range_m") != nullptr;
-  return limited && known
+  return is_scored_where_run(protocol) && known
              ? RangeGate{settings.number("min_range_m"), settings.number("max_range_m")}
              : protocol.default_range;
 }
@@ -220,11 +223,15 @@ RunPlan plan_method(const RunOptions& options) {
       options.input, {dataset_kind_option(options.dataset), options.sequences, plan.reading});
   plan.shared = options.shared;
   if (plan.shared) plan.shared->share(plan.dataset);
-  const Preset preset = choose_preset(options, plan.dataset.kind, plan);
+  const Preset preset = choose_preset(options, plan.dataset.kind);
   plan.preset = preset.name;
+  if (!options.preset) {
+    plan.notes.push_back(fmt::format("preset {} taken because the data set is {}", preset.name,
+                                     to_string(plan.dataset.kind)));
+  }
   note_preset_without_settings(preset, plan);
   plan.settings.method_settings = choose_settings(options, preset, *plan.settings.method);
-  plan.settings.protocol = &protocol_named(options.protocol.value_or(std::string(preset.protocol)));
+  plan.settings.protocol = &choose_protocol(options, preset);
   plan.settings.range =
       choose_range(options, *plan.settings.protocol, plan.settings.method_settings);
   if (!plan.odometry) return plan;
@@ -246,6 +253,16 @@ RunPlan plan_run(const RunOptions& options) {
     plan.sequences.push_back(plan_sequence(plan, i, options));
   }
   return plan;
+}
+
+ScoreRule score_rule(const RunOptions& options, DatasetKind kind) {
+  const Preset preset = choose_preset(options, kind);
+  const Protocol& protocol = choose_protocol(options, preset);
+  Settings settings;
+  if (!options.range && is_scored_where_run(protocol)) {
+    settings = choose_settings(options, preset, method_of(options.method, options.preset));
+  }
+  return {&protocol, choose_range(options, protocol, settings)};
 }
 
 std::optional<DatasetKind> dataset_kind_option(const std::string& name) {

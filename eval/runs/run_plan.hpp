@@ -65,6 +65,10 @@ RunPlan plan_method(const RunOptions& options);
 /// The same, and looks at what earlier runs left. Writes nothing. Throws UsageError and DataError.
 RunPlan plan_run(const RunOptions& options);
 
+/// Returns the rule by which a run on data of this kind is scored, without opening any. Throws
+/// UsageError as `plan_method` does.
+ScoreRule score_rule(const RunOptions& options, DatasetKind kind);
+
 /// "auto" is nothing. Throws UsageError for a name that is no data set kind.
 std::optional<DatasetKind> dataset_kind_option(const std::string& name);
 

@@ -11,12 +11,6 @@
 
 namespace mosbench {
 
-/// A protocol with the range it is applied over.
-struct ScoreRule {
-  const Protocol* protocol;
-  RangeGate range;
-};
-
 /// What `score_dataset` is told.
 struct ScoreTask {
   std::filesystem::path predictions;

@@ -1,6 +1,9 @@
 #include <fmt/format.h>
+#include <signal.h>
 #include <unistd.h>
 
+#include <cerrno>
+#include <charconv>
 #include <random>
 #include <system_error>
 
@@ -14,53 +17,85 @@ namespace mosbench {
 namespace fs = std::filesystem;
 namespace {
 
-/// A name that no other process takes, on any host.
-std::string own_name() {
-  std::random_device random;
-  return fmt::format(".{}-{}-{:08x}{:08x}.partial", host_name(), getpid(), random(), random());
+constexpr std::string_view kEnd = ".partial";
+
+std::string own_start() { return fmt::format(".{}-", host_name()); }
+
+/// Where this process writes, under a name that no other takes on any host. What is there when this
+/// object goes was not put in place, and is removed.
+class OwnPath {
+ public:
+  explicit OwnPath(const fs::path& folder) {
+    std::random_device random;
+    path_ = folder /
+            fmt::format("{}{}-{:08x}{:08x}{}", own_start(), getpid(), random(), random(), kEnd);
+  }
+  ~OwnPath() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  OwnPath(const OwnPath&) = delete;
+  OwnPath& operator=(const OwnPath&) = delete;
+
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+/// Whether a process of this host that has ended gave this name.
+bool is_abandoned(const std::string& name) {
+  const std::string start = own_start();
+  if (!name.starts_with(start) || !name.ends_with(kEnd)) return false;
+  pid_t process = 0;
+  const char* first = name.data() + start.size();
+  const auto [end, error] = std::from_chars(first, name.data() + name.size(), process);
+  if (error != std::errc() || *end != '-' || process <= 0) return false;
+  return kill(process, 0) != 0 && errno == ESRCH;
 }
 
 }  // namespace
 
 void write_shared(const fs::path& file, const std::string& bytes) {
-  const fs::path own = file.parent_path() / own_name();
-  std::error_code error;
+  const OwnPath own(file.parent_path());
   try {
-    commit_file(own, bytes);
+    commit_file(own.path(), bytes);
   } catch (const DataError& full) {
-    fs::remove(own, error);
     throw DataError(fmt::format("{}, as {}", file.string(), full.what()));
   }
-  fs::rename(own, file, error);
+  std::error_code error;
+  fs::rename(own.path(), file, error);
   if (!error) return;
-  const std::string why = error.message();
-  fs::remove(own, error);
-  throw DataError(file, fmt::format("cannot be written ({})", why), "a writable folder");
+  throw DataError(file, fmt::format("cannot be written ({})", error.message()),
+                  "a writable folder");
+}
+
+void remove_abandoned(const fs::path& out) {
+  std::vector<fs::path> abandoned;
+  std::error_code ignored;
+  for (const fs::path& folder : {out, out / "cells", out / "data"}) {
+    for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+      if (is_abandoned(entry.path().filename().string())) abandoned.push_back(entry.path());
+    }
+  }
+  for (const fs::path& path : abandoned) fs::remove_all(path, ignored);
 }
 
 fs::path made_data(const fs::path& out, const StudyData& data) {
   if (!data.simulation) return data.path;
   const fs::path folder = simulated_folder(out, data);
   if (is_there(folder)) return folder;
-  const fs::path own = folder.parent_path() / own_name();
-  std::error_code error;
-  try {
-    simulate({.layout = data.simulation->layout,
-              .scene = data.simulation->scene,
-              .scans = data.simulation->scans,
-              .seed = data.simulation->seed,
-              .out = own});
-  } catch (...) {
-    fs::remove_all(own, error);
-    throw;
-  }
+  const OwnPath own(folder.parent_path());
+  simulate({.layout = data.simulation->layout,
+            .scene = data.simulation->scene,
+            .scans = data.simulation->scans,
+            .seed = data.simulation->seed,
+            .out = own.path()});
   // Where another process was first, its data are the same.
-  fs::rename(own, folder, error);
-  if (!error) return folder;
-  const std::string why = error.message();
-  fs::remove_all(own, error);
-  if (is_there(folder)) return folder;
-  throw DataError(folder, fmt::format("cannot be made ({})", why), "a writable folder");
+  std::error_code error;
+  fs::rename(own.path(), folder, error);
+  if (!error || is_there(folder)) return folder;
+  throw DataError(folder, fmt::format("cannot be made ({})", error.message()), "a writable folder");
 }
 
 }  // namespace mosbench

@@ -21,6 +21,7 @@
 #include "eval/runs/profile.hpp"
 #include "eval/runs/run_execute.hpp"
 #include "eval/runs/run_plan.hpp"
+#include "eval/study/study_scoring.hpp"
 
 namespace mosbench {
 namespace {
@@ -32,18 +33,13 @@ constexpr std::size_t kWorstScans = 3, kMeasuredScans = 6;
 
 RunOptions run_options(const StudyCell& cell, const Study& study, const fs::path& out,
                        unsigned threads) {
-  RunOptions options;
+  RunOptions options = scoring_options(cell, study);
   options.input = made_data(out, *cell.data);
   options.dataset = cell.data->dataset;
   options.sequences = {cell.sequence};
-  options.method = cell.method->method;
-  options.preset = cell.method->preset;
-  options.protocol = study.protocol;
-  options.range = study.range;
   options.reading = cell.data->reading;
   options.reading.perturb = cell.perturb();
   if (!cell.odometry.empty()) options.odometry.kind = cell.odometry;
-  options.assignments = cell.assignments;
   options.threads = threads;
   return options;
 }
@@ -179,7 +175,7 @@ ordered_json measured_cost(const StudyPlan& study, const StudyCell& cell) {
     (k < half ? first_ms : later_ms) += ms;
     memory_mib = std::max(memory_mib, scan.resident_mib);
   }
-  if (is_program(*cell.method)) memory_mib += most_memory_of_children_mib();
+  memory_mib += profile.program_mib;
   const double later_scans = static_cast<double>(profile.scans.size() - half);
   const double ms_per_scan = later_ms / later_scans;
   const double start_ms = first_ms - ms_per_scan * static_cast<double>(half);

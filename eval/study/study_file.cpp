@@ -94,6 +94,7 @@ std::vector<StudyData> simulations_of(const std::string& name, const YamlNode& n
     one.group = name;
     one.name = seeds.size() == 1 ? name : fmt::format("{}-{}", name, simulation.seed);
     one.simulation = simulation;
+    one.dataset = to_string(simulation.layout);  // a folder's name does not say which
   }
   return data;
 }

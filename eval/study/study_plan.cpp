@@ -19,6 +19,7 @@
 #include "eval/results/version.hpp"
 #include "eval/runs/method_choice.hpp"
 #include "eval/runs/run_plan.hpp"
+#include "eval/study/study_scoring.hpp"
 
 namespace mosbench {
 namespace {
@@ -81,6 +82,7 @@ std::string program_of(const StudyMethod& method) {
 }
 
 struct KnownSequence {
+  DatasetKind kind;
   std::string name;
   ordered_json identity;
 };
@@ -98,7 +100,7 @@ std::vector<KnownSequence> simulated_sequences(const StudyData& data) {
       throw UsageError(fmt::format("{}: simulates no sequence {}, expected {}", data.name,
                                    mosbench::quoted(name), fmt::join(written, ", ")));
     }
-    sequences.push_back({name, json});
+    sequences.push_back({data.simulation->layout, name, json});
   }
   return sequences;
 }
@@ -110,7 +112,7 @@ std::vector<KnownSequence> sequences_of(const StudyData& data) {
   const OpenOptions options{dataset_kind_option(data.dataset), data.sequences, data.reading};
   try {
     for (const SequenceFolder& folder : find_sequences(data.path, options, kind)) {
-      sequences.push_back({folder.name, sequence_json(data, folder.name)});
+      sequences.push_back({*kind, folder.name, sequence_json(data, folder.name)});
     }
   } catch (const UsageError& error) {
     throw UsageError(fmt::format("{}: {}", data.name, error.what()));
@@ -273,7 +275,7 @@ std::string StudyCell::title() const {
 
 StudyPlan plan_study(const Study& study, const fs::path& out,
                      const std::vector<std::string>& only) {
-  StudyPlan plan{&study, out, {}};
+  StudyPlan plan{&study, out, {}, std::nullopt};
   std::vector<StudyCell> cells;
   CellLister lister(study, cells);
   for (const StudyData& data : study.data) {
@@ -282,6 +284,7 @@ StudyPlan plan_study(const Study& study, const fs::path& out,
         for (const std::string& odometry : study.odometries) {
           StudyCell cell;
           cell.data = &data;
+          cell.kind = sequence.kind;
           cell.sequence = sequence.name;
           cell.method = &method;
           cell.odometry = odometry;
@@ -290,6 +293,7 @@ StudyPlan plan_study(const Study& study, const fs::path& out,
       }
     }
   }
+  plan.rule = shared_rule(study, cells);
   for (StudyCell& cell : cells) {
     const bool wanted = only.empty() || std::ranges::find(only, cell.key) != only.end();
     if (wanted) plan.cells.push_back(look_up(std::move(cell), out));

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "eval/protocols/protocol.hpp"
 #include "eval/study/study_file.hpp"
 
 namespace mosbench {
@@ -16,6 +17,7 @@ namespace mosbench {
 /// One run of a study: a method on a sequence, with at most one thing changed.
 struct StudyCell {
   const StudyData* data = nullptr;
+  DatasetKind kind = DatasetKind::kRecording;  ///< of the data
   std::string sequence;
   const StudyMethod* method = nullptr;
   std::string odometry;                  ///< empty: the poses of the data
@@ -72,11 +74,13 @@ struct StudyPlan {
   const Study* study = nullptr;
   std::filesystem::path out;
   std::vector<PlannedCell> cells;
+  /// By which every cell is scored; nothing where the settings of all are refused.
+  std::optional<ScoreRule> rule;
 };
 
 /// Lists the cells and what is known of them. Data on disk are opened, simulated ones are not made.
-/// With `only` given, of these keys alone. Throws UsageError and DataError; a sequence that cannot
-/// be opened is a cell that will fail.
+/// With `only` given, of these keys alone. Throws UsageError, also where cells would be scored by
+/// different rules, and DataError; a sequence that cannot be opened is a cell that will fail.
 StudyPlan plan_study(const Study& study, const std::filesystem::path& out,
                      const std::vector<std::string>& only = {});
 
@@ -97,5 +101,8 @@ std::filesystem::path made_data(const std::filesystem::path& out, const StudyDat
 /// Puts bytes in place by a name of its own and one rename, without locks, which file systems that
 /// hosts share may lack.
 void write_shared(const std::filesystem::path& file, const std::string& bytes);
+
+/// Removes what processes of this host that have ended left half-written in a study's folder.
+void remove_abandoned(const std::filesystem::path& out);
 
 }  // namespace mosbench

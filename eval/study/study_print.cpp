@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <map>
 
+#include "datasets/files/counted.hpp"
+#include "eval/protocols/protocol_list.hpp"
 #include "eval/report/report_asset.hpp"
 #include "eval/results/answer_text.hpp"
 #include "eval/results/csv.hpp"
@@ -85,33 +87,34 @@ TextRows effect_rows(const StudyTable& table) {
 
 /// "36 of 36 cells are done; they took 12 s of one core, 1.20 times the 10 s that were expected".
 std::string work_done_text(const StudyTable& table) {
-  std::string text = fmt::format("{} of {} cells are done; they took {} of one core", table.done,
-                                 table.cells, duration_text(*table.core_s));
+  std::string text = fmt::format("{} of {} are done; they took {} of one core", table.done,
+                                 counted(table.cells, "cell"), duration_text(*table.core_s));
   if (!table.predicted_s || *table.predicted_s <= 0) return text;
   return text + fmt::format(", {:.2f} times the {} that were expected",
                             *table.core_s / *table.predicted_s, duration_text(*table.predicted_s));
 }
 
 /// A line per reason: a bad scan fails every cell of its sequence.
-std::string failures_text(const StudyTable& table) {
+std::string gaps_text(const std::vector<StudyGap>& gaps) {
   std::vector<std::string> reasons;
   std::map<std::string, std::vector<std::string>> cells;
-  for (const StudyGap& gap : table.failures) {
+  for (const StudyGap& gap : gaps) {
     if (cells[gap.why].empty()) reasons.push_back(gap.why);
     cells[gap.why].push_back(gap.title);
   }
   std::string text;
   for (const std::string& why : reasons) {
-    const std::vector<std::string>& failed = cells[why];
+    const std::vector<std::string>& same = cells[why];
     const std::string more =
-        failed.size() == 1 ? "" : fmt::format(" and {} more cells", failed.size() - 1);
-    text += fmt::format("{}{}: {}\n", failed.front(), more, why);
+        same.size() == 1 ? "" : " and " + counted(same.size() - 1, "more cell");
+    text += fmt::format("{}{}: {}\n", same.front(), more, why);
   }
   return text;
 }
 
 std::string remarks_text(const StudyTable& table) {
-  std::string text =
+  std::string text = table.rule ? rule_line(*table.rule) + '\n' : "";
+  text +=
       "+- is half of the 95 % interval of the mean over sequences, each the mean of its seeds, or\n"
       "over the seeds of one; of fewer than three there is none\n"
       "\"to best\" is the paired difference of IoU\n";
@@ -131,9 +134,10 @@ std::string remarks_text(const StudyTable& table) {
   if (table.simulated) text += "simulated data: not comparable with published numbers\n";
   if (table.core_s) text += fmt::format("{}\n", work_done_text(table));
   if (table.done < table.cells) {
-    text += fmt::format("INCOMPLETE: {} cells are missing\n", table.cells - table.done);
+    text += fmt::format("INCOMPLETE: {} missing\n",
+                        counted(table.cells - table.done, "cell is", "cells are"));
   }
-  return text + failures_text(table);
+  return text + gaps_text(table.undefined) + gaps_text(table.failures);
 }
 
 ordered_json to_json(const StudyMean& mean) {
@@ -173,18 +177,42 @@ std::string text_table(const TextRows& rows) {
   return text.str();
 }
 
-std::string latex_table(const TextRows& rows) {
-  std::string text = fmt::format("\\begin{{tabular}}{{l{}}}\n\\hline\n",
-                                 std::string(rows.front().size() - 1, 'r'));
+/// `foot` is the last line, across all columns.
+std::string latex_table(const TextRows& rows, const std::string& foot) {
+  const std::size_t columns = rows.front().size();
+  std::string text =
+      fmt::format("\\begin{{tabular}}{{l{}}}\n\\hline\n", std::string(columns - 1, 'r'));
   text += latex_row(rows.front()) + "\\hline\n";
   for (std::size_t i = 1; i < rows.size(); ++i) text += latex_row(rows[i]);
-  return text + "\\hline\n\\end{tabular}\n";
+  text += "\\hline\n";
+  if (!foot.empty()) {
+    text += fmt::format("\\multicolumn{{{}}}{{l}}{{{}}} \\\\\n", columns, latex_text(foot));
+  }
+  return text + "\\end{tabular}\n";
 }
 
 std::string cell_number(const PlannedCell& planned, const char* part, const char* what) {
   if (planned.state != CellState::kDone) return "";
   const auto value = number_in(planned.record, part, what);
   return value ? ordered_json(*value).dump() : "";
+}
+
+/// Protocol, lowest and highest range.
+std::vector<std::string> csv_rule(const std::optional<ScoreRule>& rule) {
+  if (!rule) return {"", "", ""};
+  return {std::string(rule->protocol->name), fmt::format("{}", rule->range.min_m),
+          fmt::format("{}", rule->range.max_m)};
+}
+
+std::string why_empty(const PlannedCell& planned) {
+  return planned.state == CellState::kFailed ? planned.record.value("failure", "")
+                                             : why_undefined(planned);
+}
+
+ordered_json gaps_json(const std::vector<StudyGap>& gaps) {
+  ordered_json json = ordered_json::array();
+  for (const StudyGap& gap : gaps) json.push_back({{"cell", gap.title}, {"why", gap.why}});
+  return json;
 }
 
 }  // namespace
@@ -202,26 +230,29 @@ std::string study_text(const StudyTable& table) {
 std::string study_latex(const StudyTable& table) {
   std::string text;
   if (table.simulated) text += "% simulated data: not comparable with published numbers\n";
-  text += latex_table(overview_rows(table));
+  const std::string rule = table.rule ? "protocol " + rule_name(*table.rule) : "";
+  text += latex_table(overview_rows(table), rule);
   for (const StudyCurve& curve : table.curves) {
-    text += "\n" + latex_table(curve_rows(table, curve, axis_title(curve)));
+    text += "\n" + latex_table(curve_rows(table, curve, axis_title(curve)), rule);
   }
-  if (!table.effects.empty()) text += "\n" + latex_table(effect_rows(table));
+  if (!table.effects.empty()) text += "\n" + latex_table(effect_rows(table), rule);
   return text;
 }
 
 std::string study_csv(const StudyPlan& plan) {
   std::string text = csv_row(std::vector<std::string>{
-      "key", "data", "sequence", "method", "odometry", "axis", "value", "seed", "state", "iou",
-      "precision", "recall", "ms_per_scan", "wall_s"});
+      "key", "data", "sequence", "method", "odometry", "axis", "value", "seed", "state", "protocol",
+      "min_range_m", "max_range_m", "iou", "precision", "recall", "ms_per_scan", "wall_s", "why"});
+  const std::vector<std::string> rule = csv_rule(plan.rule);
   for (const PlannedCell& planned : plan.cells) {
     const StudyCell& cell = planned.cell;
     text += csv_row(std::vector<std::string>{
         cell.key, cell.data->name, cell.sequence, cell.method->name, cell.odometry,
         cell.axis == nullptr ? "" : cell.axis->name, cell.value, std::to_string(cell.seed),
-        std::string(to_string(planned.state)), cell_number(planned, "summary", "iou"),
-        cell_number(planned, "summary", "precision"), cell_number(planned, "summary", "recall"),
-        cell_number(planned, "timing", "ms_per_scan"), cell_number(planned, "timing", "wall_s")});
+        std::string(to_string(planned.state)), rule[0], rule[1], rule[2],
+        cell_number(planned, "summary", "iou"), cell_number(planned, "summary", "precision"),
+        cell_number(planned, "summary", "recall"), cell_number(planned, "timing", "ms_per_scan"),
+        cell_number(planned, "timing", "wall_s"), why_empty(planned)});
   }
   return text;
 }
@@ -230,6 +261,9 @@ ordered_json to_json(const StudyTable& table) {
   ordered_json json = {{"name", table.name},
                        {"version", std::string(kMosbenchVersion)},
                        {"simulated", table.simulated},
+                       {"protocol", nullptr},
+                       {"min_range_m", nullptr},
+                       {"max_range_m", nullptr},
                        {"cells", table.cells},
                        {"done", table.done},
                        {"cpu_s", json_or_null(table.core_s)},
@@ -240,7 +274,13 @@ ordered_json to_json(const StudyTable& table) {
                        {"curves", ordered_json::array()},
                        {"effects", ordered_json::array()},
                        {"worst", ordered_json::array()},
-                       {"failures", ordered_json::array()}};
+                       {"undefined", gaps_json(table.undefined)},
+                       {"failures", gaps_json(table.failures)}};
+  if (table.rule) {
+    json["protocol"] = table.rule->protocol->name;
+    json["min_range_m"] = table.rule->range.min_m;
+    json["max_range_m"] = table.rule->range.max_m;
+  }
   for (const StudyRow& row : table.rows) {
     json["rows"].push_back(
         {{"label", row.label},
@@ -269,9 +309,6 @@ ordered_json to_json(const StudyTable& table) {
                              {"stem", scan.stem},
                              {"iou", scan.iou},
                              {"command", scan.command}});
-  }
-  for (const StudyGap& gap : table.failures) {
-    json["failures"].push_back({{"cell", gap.title}, {"why", gap.why}});
   }
   return json;
 }

@@ -1,19 +1,18 @@
 #include "eval/study/study_run.hpp"
 
 #include <fmt/format.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
+#include <signal.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <set>
 
+#include "datasets/files/counted.hpp"
 #include "datasets/files/errors.hpp"
 #include "datasets/files/files.hpp"
 #include "eval/results/answer_text.hpp"
 #include "eval/results/tell.hpp"
+#include "eval/study/engine_process.hpp"
 #include "eval/study/workflow_asset.hpp"
 
 namespace mosbench {
@@ -85,28 +84,6 @@ fs::path write_workflow(const fs::path& out, const ordered_json& plan, const std
       "--profile: {} is no profile, expected local, slurm or a folder with config.yaml", profile));
 }
 
-/// Starts a program and waits for it; its stdout goes to stderr, which is for progress.
-int run_program(const std::vector<std::string>& words) {
-  std::vector<char*> arguments;
-  for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
-  arguments.push_back(nullptr);
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_adddup2(&actions, STDERR_FILENO, STDOUT_FILENO);
-  pid_t child = 0;
-  const int error =
-      posix_spawnp(&child, arguments[0], &actions, nullptr, arguments.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  if (error != 0) {
-    throw DataError(words.front(), fmt::format("cannot be started ({})", std::strerror(error)),
-                    "Snakemake 7 (Debian: snakemake)");
-  }
-  int status = 0;
-  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
-  }
-  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-}
-
 }  // namespace
 
 StudyWork work_of(const StudyPlan& plan, const CostModel& costs) {
@@ -127,6 +104,7 @@ StudyWork work_of(const StudyPlan& plan, const CostModel& costs) {
 int run_engine(const StudyPlan& plan, const CostModel& costs, const EngineOptions& options) {
   const fs::path out = fs::absolute(plan.out);
   const StudyWork work = work_of(plan, costs);
+  remove_abandoned(plan.out);
   if (work.cells.empty()) return 0;
   std::set<const StudyData*> made;
   for (const PlannedCell* planned : work.cells) {
@@ -147,10 +125,15 @@ int run_engine(const StudyPlan& plan, const CostModel& costs, const EngineOption
   const fs::path profile = write_workflow(out, json, options.profile);
   std::error_code ignored;
   fs::remove_all(out / "groups", ignored);  // of an earlier plan
-  tell(fmt::format("{} cells in {} jobs by Snakemake, in {}", work.cells.size(), groups.size(),
-                   plan.out.string()));
-  return run_program({"snakemake", "--snakefile", out / "workflow/Snakefile", "--directory", out,
-                      "--profile", profile});
+  tell(fmt::format("{} in {} by Snakemake, in {}", counted(work.cells.size(), "cell"),
+                   counted(groups.size(), "job"), plan.out.string()));
+  const EngineEnd end = run_in_group({"snakemake", "--snakefile", out / "workflow/Snakefile",
+                                      "--directory", out, "--profile", profile});
+  if (end.stopped_by) {
+    remove_abandoned(plan.out);
+    raise(*end.stopped_by);  // ends this process, as it would have without us
+  }
+  return end.exit_code;
 }
 
 }  // namespace mosbench

@@ -21,7 +21,8 @@ struct EngineOptions {
 };
 
 /// Computes what is missing by Snakemake: short cells of the same data are grouped into one job.
-/// Simulated data are made first. Returns Snakemake's exit code. Throws DataError where Snakemake
+/// Simulated data are made first. A signal that ends this process ends all that it started. Returns
+/// Snakemake's exit code. Throws DataError where Snakemake
 /// is not installed or the folder cannot be written.
 int run_engine(const StudyPlan& plan, const CostModel& costs, const EngineOptions& options);
 

@@ -297,6 +297,8 @@ void count_cells(const StudyPlan& plan, StudyTable& table) {
       table.failures.push_back({planned.cell.title(), planned.record.value("failure", "")});
     }
     if (planned.state != CellState::kDone) continue;
+    const std::string why = why_undefined(planned);
+    if (!why.empty()) table.undefined.push_back({planned.cell.title(), why});
     ++table.done;
     table.simulated = table.simulated || planned.record.value("simulated", false);
     const char* time = is_program(*planned.cell.method) ? "wall_s" : "cpu_s";
@@ -312,10 +314,27 @@ void count_cells(const StudyPlan& plan, StudyTable& table) {
 
 }  // namespace
 
+std::string why_undefined(const PlannedCell& planned) {
+  if (planned.state != CellState::kDone) return "";
+  if (planned.record.at("summary").is_null()) return "undefined: no scan has truth that counts";
+  static constexpr std::array kNames = {"IoU", "precision", "recall"};
+  static constexpr std::array kReasons = {"no point that counts moves, in truth or labels",
+                                          "no point that counts is labelled moving",
+                                          "no point that counts moves"};
+  std::string text;
+  for (std::size_t i = 0; i < kStudyMetrics.size(); ++i) {
+    if (number_in(planned.record, "summary", kStudyMetrics[i])) continue;
+    text += fmt::format("{}undefined {}: {}", text.empty() ? "" : "; ", kNames[i], kReasons[i]);
+    if (i == 0) break;  // the others are, too, for the same reason
+  }
+  return text;
+}
+
 StudyTable gather(const StudyPlan& plan) {
   StudyTable table;
   table.name = plan.study->name;
   table.out = plan.out.string();
+  table.rule = plan.rule;
   const DoneCells cells(plan);
   for (const std::string& label : cells.labels) table.rows.push_back(row_of(cells, label));
   mark_front(table.rows);

@@ -57,6 +57,7 @@ struct StudyTable {
   std::string name;
   std::string out;         ///< folder of the results
   bool simulated = false;  ///< any of its data
+  std::optional<ScoreRule> rule;
   std::vector<StudyRow> rows;
   std::vector<StudyCurve> curves;
   std::vector<StudyEffects> effects;
@@ -65,11 +66,16 @@ struct StudyTable {
   std::optional<double> critical_difference;
   std::vector<StudyWorst> worst;
   std::vector<StudyGap> failures;
+  std::vector<StudyGap> undefined;  ///< cells that have no IoU, precision or recall
   std::size_t cells = 0, done = 0;
   /// Time of one core for what is done, and what costs.json said of it. Programs of the user's
   /// count for as long as they last.
   std::optional<double> core_s, predicted_s;
 };
+
+/// Why a cell that is done lacks a metric, "undefined recall: no point that counts moves"; empty
+/// where it lacks none.
+std::string why_undefined(const PlannedCell& planned);
 
 /// Gathers what lies there.
 StudyTable gather(const StudyPlan& plan);

@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
+#include "datasets/files/counted.hpp"
 #include "datasets/files/errors.hpp"
 #include "datasets/files/files.hpp"
 #include "datasets/files/partial_file.hpp"
 #include "eval/protocols/benchmark_split.hpp"
 #include "eval/protocols/metrics.hpp"
+#include "eval/protocols/protocol_list.hpp"
 #include "eval/protocols/summary_json.hpp"
 #include "eval/results/answer_text.hpp"
 #include "eval/results/reading_json.hpp"
@@ -51,8 +53,8 @@ std::string truth_remark(const Sequence& sequence) {
   }
   if (without == 0) return "";
   if (without > kNamedScans) names += ", ...";
-  return fmt::format("{} of {} scans have no truth and are not scored: {}", without,
-                     sequence.size(), names);
+  return fmt::format("{} of {} have no truth and are not scored: {}", without,
+                     counted(sequence.size(), "scan"), names);
 }
 
 ordered_json predictions_json(const OpenedPredictions& opened) {
@@ -124,9 +126,9 @@ std::string score_text(const Dataset& dataset, const ScoreTask& task,
   const ScoreRule& rule = task.rules.front();
   const auto split = other_split(dataset, task);
   std::string text = fmt::format(
-      "protocol {}: {}\n{}{}{}\n{}", rule.protocol->name, rule.protocol->summary,
-      benchmark_remark(*rule.protocol, dataset.splits), split ? split_warning(*split) + '\n' : "",
-      simulated_remark(dataset), format_rows(table_rows(dataset, rule, scores, with_sequences)));
+      "{}\n{}{}{}\n{}", rule_line(rule), benchmark_remark(*rule.protocol, dataset.splits),
+      split ? split_warning(*split) + '\n' : "", simulated_remark(dataset),
+      format_rows(table_rows(dataset, rule, scores, with_sequences)));
   text += '\n';
   for (const std::string& remark : score_remarks(dataset, scores)) text += remark + '\n';
   return text;

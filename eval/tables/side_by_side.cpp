@@ -16,6 +16,7 @@ using nlohmann::ordered_json;
 /// Summary of all scored scans under one protocol.
 struct ProtocolRow {
   std::string name;
+  RangeGate range;
   Summary summary;
   std::string reason;
 };
@@ -33,8 +34,8 @@ std::string why(const ProtocolDescription& words, const ScoreRule& rule, const C
   if (rule.protocol->range_rule == RangeRule::kTruthOnly) {
     text += fmt::format("; truth beyond {:g} to {:g} m static, predictions there count",
                         rule.range.min_m, rule.range.max_m);
-  } else if (rule.protocol->range_rule == RangeRule::kTruthAndPrediction && rule.range.max_m > 0) {
-    text += fmt::format("; only points at {:g} to {:g} m", rule.range.min_m, rule.range.max_m);
+  } else if (rule.protocol->range_rule == RangeRule::kTruthAndPrediction) {
+    text += fmt::format("; only points {}", counted_range_text(*rule.protocol, rule.range));
   }
   if (!rule.protocol->default_split.empty()) {
     text += fmt::format("; published over split {} alone", rule.protocol->default_split);
@@ -63,8 +64,8 @@ std::vector<ProtocolRow> protocol_rows(const std::vector<ScoreRule>& rules,
   const std::vector<ProtocolDescription> words = describe_protocols();
   std::vector<ProtocolRow> rows;
   for (std::size_t r = 0; r < rules.size(); ++r) {
-    ProtocolRow row{std::string(rules[r].protocol->name), summary_of(*rules[r].protocol, scores, r),
-                    ""};
+    ProtocolRow row{std::string(rules[r].protocol->name), rules[r].range,
+                    summary_of(*rules[r].protocol, scores, r), ""};
     const auto described = std::ranges::find(words, row.name, &ProtocolDescription::name);
     row.reason = why(*described, rules[r], row.summary.pooled);
     rows.push_back(std::move(row));
@@ -103,6 +104,8 @@ ordered_json side_by_side_json(const Dataset& dataset, const std::vector<ScoreRu
   if (const auto origin = simulated_origin_json(dataset)) json["simulated"] = *origin;
   for (const ProtocolRow& row : protocol_rows(rules, scores)) {
     ordered_json protocol = {{"name", row.name},
+                             {"min_range_m", row.range.min_m},
+                             {"max_range_m", row.range.max_m},
                              {"iou", json_or_null(row.summary.iou)},
                              {"published_text", row.summary.published_text}};
     protocol.update(counts_json(row.summary.pooled));

@@ -4,9 +4,11 @@
 #include <sched.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdlib>
 #include <cstring>
+#include <fstream>
 #include <functional>
 #include <map>
 #include <string>
@@ -261,6 +263,86 @@ TEST_F(Studies, AreRunBySnakemakeAndGoOnWhereTheyWereLeft) {
   ASSERT_EQ(study("cell", {all[0], "--out", path("alone")}).exit_code, 0);
   EXPECT_EQ(record(odd, all[0]), record("alone", all[0]));
   EXPECT_EQ(study("run", {"--profile", path("nothing"), "--out", path("new")}).exit_code, 2);
+}
+
+/// Processes whose command names `word`.
+std::size_t processes_with(const std::string& word) {
+  std::size_t found = 0;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
+    std::ifstream command(entry.path() / "cmdline");
+    const std::string text{std::istreambuf_iterator<char>(command), {}};
+    found += text.find(word) != std::string::npos ? 1U : 0U;
+  }
+  return found;
+}
+
+TEST_F(Studies, LeaveNothingBehindWhenTheyAreStopped) {
+  if (std::system("snakemake --version > /dev/null 2>&1") != 0) {
+    GTEST_SKIP() << "snakemake is not installed";
+  }
+  const std::string started = path("started");
+  folder_.write("s.yaml", fmt::format(R"(name: s
+data: {{name: small, path: data, dataset: semantickitti, sequences: ["00"]}}
+methods: {{name: slow, method: "exec:test -d '{0}' && mkdir '{0}-again' && sleep 60; mkdir '{0}'"}}
+)",
+                                      started));
+  // A process that was killed before wrote this.
+  const pid_t gone = fork();
+  if (gone == 0) _exit(0);
+  ASSERT_EQ(cli::wait_for(gone), 0);
+  std::array<char, 256> host{};
+  gethostname(host.data(), host.size() - 1);
+  const std::string left = fmt::format("out/cells/.{}-{}-00.partial", host.data(), gone);
+  folder_.write(left, "half");
+  const TempFolder streams;
+  const pid_t stopped =
+      cli::start({"study", "run", path("s.yaml"), "--out", path("out")}, streams.path());
+  ASSERT_TRUE(within_10_s([&] { return std::filesystem::exists(started + "-again"); }))
+      << read_file(streams / "stderr.txt");
+  EXPECT_GT(processes_with(path("s.yaml")), 1U) << "the cell, besides the study";
+  kill(stopped, SIGTERM);
+  EXPECT_EQ(cli::wait_for(stopped), 128 + SIGTERM);
+  EXPECT_TRUE(within_10_s([&] { return processes_with(path("s.yaml")) == 0; })) << "its cells";
+  EXPECT_TRUE(within_10_s([&] { return processes_with(started) == 0; })) << "the cell's program";
+  EXPECT_FALSE(std::filesystem::exists(folder_ / left));
+  EXPECT_TRUE(std::filesystem::is_empty(folder_ / "out/cells"));
+}
+
+/// A large program that was measured before a small one would have its cells wait for memory.
+TEST_F(Studies, ExpectOfEachProgramItsOwnMemory) {
+  folder_.write("s.yaml", fmt::format(R"(name: s
+data: {{name: small, path: data, dataset: semantickitti, sequences: ["00"]}}
+methods:
+  - {{name: large, method: "exec:dd if=/dev/zero of=/dev/null bs=200M count=1 2> /dev/null; {0}"}}
+  - {{name: small, method: "exec:{0}"}}
+)",
+                                      MOSBENCH_BINARY_DIR "/examples/exec_client"));
+  ASSERT_EQ(study("plan", {"--measure"}).exit_code, 0);
+  const auto costs = ordered_json::parse(read_file(folder_ / "out/costs.json"));
+  std::map<std::string, double> mib;
+  for (const auto& [name, cost] : costs.items()) {
+    if (cost.is_object())
+      mib[name.find("/large/") != std::string::npos ? "large" : "small"] = cost.at("memory_mib");
+  }
+  ASSERT_EQ(mib.size(), 2U);
+  EXPECT_GT(mib["large"], 200);
+  EXPECT_GT(mib["small"], 1);
+  EXPECT_LT(mib["small"], mib["large"] - 100);
+}
+
+TEST_F(Studies, RefuseDifferentProtocols) {
+  folder_.write("s.yaml", R"(name: s
+data:
+  - {name: small, path: data, dataset: semantickitti}
+  - {name: other, path: data, dataset: sipailou}
+methods: underwood
+)");
+  for (const char* action : {"plan", "run", "table", "cell"}) {
+    const cli::Answer refused = study(action);
+    EXPECT_EQ(refused.exit_code, 2) << action;
+    EXPECT_THAT(refused.err, HasSubstr("\"small\" by semantickitti-mos; \"other\" by sipailou"));
+    EXPECT_THAT(refused.err, HasSubstr("give the key \"protocol:\""));
+  }
 }
 
 TEST_F(Studies, RefuseWhatIsNotUnderstood) {

@@ -1,5 +1,6 @@
 #include "eval/protocols/protocol.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <array>
@@ -163,6 +164,16 @@ TEST(PredictionFormats, AreAllDescribedInTheReadme) {
     EXPECT_NE(readme.find("| `" + std::string(format.name) + "` |"), std::string::npos)
         << format.name;
   }
+}
+
+TEST(ProtocolList, SaysTheRangeThatIsAppliedAndNoOther) {
+  const auto line = [](const char* name, const RangeGate& range) {
+    return rule_line({&protocol_named(name), range});
+  };
+  EXPECT_EQ(line("mapmos-nuscenes", {0.0, 50.0}),
+            "protocol mapmos-nuscenes: pooled; as mapmos, all scans with boxes (0 to 50 m)");
+  EXPECT_THAT(line("mapmos-nuscenes", {3.0, -1.0}), testing::EndsWith("(from 3 m)"));
+  EXPECT_EQ(rule_name({&protocol_named("sipailou"), {0.0, -1.0}}), "sipailou");
 }
 
 }  // namespace

@@ -272,9 +272,11 @@ TEST(StudyTable, TellsTheCommandOfAWorstScanWithAllThatTheStudySays) {
   write_record(plan, plan.cells.back().cell, 0.5, 1);
   const StudyTable table = gather(plan_study(study, folder.path()));
   ASSERT_EQ(table.worst.size(), 1u);
-  EXPECT_THAT(table.worst.front().command,
-              HasSubstr(" --method underwood --deskew none --perturb mount_tilt_deg=1,seed=0 "
-                        "--protocol mapmos --range 1,20 --set max_range_m=15 --out "));
+  EXPECT_THAT(
+      table.worst.front().command,
+      HasSubstr(
+          " --method underwood --deskew none --perturb mount_tilt_deg=1,seed=0 "
+          "--dataset semantickitti --protocol mapmos --range 1,20 --set max_range_m=15 --out "));
 }
 
 TEST(StudyTable, AveragesSeedsBeforeSequences) {
@@ -297,6 +299,90 @@ TEST(StudyTable, AveragesSeedsBeforeSequences) {
   EXPECT_EQ(mean.count, 2u) << "seeds of one scene are one sequence";
   EXPECT_NEAR(*mean.value, 0.52, 1e-12);
   EXPECT_EQ(table.curves[0].values, (std::vector<std::string>{"none", "0", "0.05", "0.1"}));
+}
+
+/// Two data whose own protocols differ, and a study that names none.
+std::string study_of_two_protocols() {
+  std::string text = replaced_in(without_disturbances(), "protocol: semantickitti-mos\n", "");
+  return replaced_in(text, "methods:",
+                     "  - name: boxes\n    simulate: {layout: nuscenes, scene: room, scans: 6, "
+                     "seed: 1}\nmethods:");
+}
+
+std::string plan_error(const std::string& text) {
+  const Study study = parse_study(text, "s.yaml");
+  return message_of<UsageError>([&] { plan_study(study, "/nowhere"); });
+}
+
+TEST(StudyScoring, RefusesDataOfDifferentProtocols) {
+  const std::string text = study_of_two_protocols();
+  EXPECT_EQ(plan_error(text),
+            "s.yaml: averages what different rules count: \"room-1\", \"room-2\" by "
+            "semantickitti-mos; \"boxes\" by mapmos-nuscenes (from 3 m), expected the same "
+            "for all: give the key \"protocol:\", as `protocol: semantickitti-mos`, or make a "
+            "study of each");
+  EXPECT_EQ(plan_error("protocol: mapmos\n" + text), "nothing thrown");
+}
+
+TEST(StudyScoring, RefusesMethodsWhosePresetsDiffer) {
+  std::string text = replaced_in(without_disturbances(), "protocol: semantickitti-mos\n", "");
+  EXPECT_EQ(plan_error(text), "nothing thrown");
+  text = replaced_in(text, "name: near,", "name: near, preset: sipailou,");
+  EXPECT_THAT(plan_error(text), AllOf(HasSubstr("\"room-1, hmm-mos\""), HasSubstr("by sipailou"),
+                                      HasSubstr("\"room-2, near\"")));
+}
+
+TEST(StudyScoring, RefusesRangesThatAMethodsSettingsChoose) {
+  const std::string text = replaced_in(without_disturbances(), "semantickitti-mos", "doals-hmm");
+  EXPECT_THAT(plan_error(text), AllOf(HasSubstr("by doals-hmm (1.5 to 50 m)"),
+                                      HasSubstr("by doals-hmm (1.5 to 15 m)"),
+                                      HasSubstr("give the key \"range_m:\"")));
+  EXPECT_EQ(plan_error(text + "range_m: [1, 10]\n"), "nothing thrown");
+  EXPECT_THAT(plan_error(replaced_in(text, ", set: {max_range_m: 15}", "") +
+                         "vary: {setting: max_range_m, values: [9]}\n"),
+              HasSubstr("\"room-1, hmm-mos, max_range_m=9\""));
+}
+
+TEST(StudyScoring, IsNamedInEveryTable) {
+  const TempFolder folder;
+  const Study study = parse_study(
+      replaced_in(without_disturbances(), "semantickitti-mos", "mapmos\nrange_m: [1, 20]"),
+      "s.yaml");
+  write_record(plan_study(study, folder.path()), plan_study(study, folder.path()).cells[0].cell,
+               0.5, 1);
+  const StudyPlan plan = plan_study(study, folder.path());
+  const StudyTable table = gather(plan);
+  EXPECT_THAT(study_text(table), HasSubstr("protocol mapmos: pooled; "));
+  EXPECT_THAT(study_text(table), HasSubstr("(1 to 20 m)"));
+  EXPECT_THAT(study_latex(table), HasSubstr("\\multicolumn{8}{l}{protocol mapmos (1 to 20 m)}"));
+  EXPECT_THAT(study_csv(plan), AllOf(HasSubstr("state,protocol,min_range_m,max_range_m,iou"),
+                                     HasSubstr(",done,mapmos,1,20,0.5,")));
+  const ordered_json json = to_json(table);
+  EXPECT_EQ(json.at("protocol"), "mapmos");
+  EXPECT_EQ(json.at("min_range_m"), 1.0);
+  EXPECT_EQ(json.at("max_range_m"), 20.0);
+}
+
+TEST(StudyTable, SaysWhyAMeanIsUndefined) {
+  const TempFolder folder;
+  const Study study = parse_study(without_disturbances(), "s.yaml");
+  const StudyPlan plan = plan_study(study, folder.path());
+  write_record(plan, plan.cells[0].cell, 0.5, 1);  // without recall
+  ordered_json record = {{"key", plan.cells[1].cell.key},
+                         {"version", std::string(kMosbenchVersion)},
+                         {"simulated", true},
+                         {"summary", nullptr},
+                         {"worst", ordered_json::array()},
+                         {"timing", ordered_json::object()}};
+  write_shared(record_file(plan.out, plan.cells[1].cell.key), json_text(record));
+  const StudyPlan done = plan_study(study, folder.path());
+  const StudyTable table = gather(done);
+  EXPECT_THAT(study_text(table),
+              HasSubstr("\nroom-1 08, near: undefined: no scan has truth that counts\n"));
+  EXPECT_THAT(study_text(table),
+              HasSubstr("\nroom-1 08, hmm-mos: undefined recall: no point that counts moves\n"));
+  EXPECT_EQ(to_json(table).at("undefined").size(), 2u);
+  EXPECT_THAT(study_csv(done), HasSubstr("undefined: no scan has truth that counts"));
 }
 
 TEST(StudyTable, SaysWhatIsMissingAndOfAnotherVersion) {

@@ -13,6 +13,12 @@ export function fixed(number, digits, unit = '') {
   return `${number.toFixed(digits)}${unit ? ` ${unit}` : ''}`;
 }
 
+/** "protocol doals-hmm, 0.5 to 20 m": the rules of a number, with the range of the points that count. */
+export function rulesText({ protocol, min_range_m: low, max_range_m: high }) {
+  if (high > 0) return `protocol ${protocol}, ${low} to ${high} m`;
+  return low > 0 ? `protocol ${protocol}, from ${low} m` : `protocol ${protocol}`;
+}
+
 /** [low, high] of an estimate, or null where it has no interval. */
 export function intervalOf(estimate) {
   return estimate && estimate.low !== null && estimate.low !== undefined ? [estimate.low, estimate.high] : null;

@@ -1,5 +1,5 @@
 import { element, table } from './dom.js';
-import { fixed, intervalOf, percent, whyNoInterval } from './format.js';
+import { fixed, intervalOf, percent, rulesText, whyNoInterval } from './format.js';
 
 const points = (fraction) => `${fraction < 0 ? '−' : '+'}${Math.abs(100 * fraction).toFixed(1)}`;
 
@@ -34,10 +34,6 @@ function cellsOf(row, place, names, settings) {
   ];
 }
 
-function rulesOf({ dataset, protocol, min_range_m: low, max_range_m: high }) {
-  return `Data set ${dataset}, protocol ${protocol}${high >= 0 ? `, ${low} to ${high} m` : ''}.`;
-}
-
 /** The result of a run that is of the shown sequence, else its first one. */
 function resultOf({ results }, content, shown) {
   const sequenceOf = (i) => content.results[i].result.sequence;
@@ -56,7 +52,7 @@ function boardNode(board, state, content, choose) {
     else line.removeAttribute('aria-current');
   }));
   return element('section', { class: 'block leaderboard' }, element('h2', {}, 'Leaderboard'),
-    element('p', { class: 'hint' }, `${rulesOf(board)} ★: no other run is as good and as fast, and better in one. Last column: paired difference in percentage points, with its 95 % interval. A click on a row shows the run.`),
+    element('p', { class: 'hint' }, `Data set ${board.dataset}, ${rulesText(board)}. ★: no other run is as good and as fast, and better in one. Last column: paired difference in percentage points, with its 95 % interval. A click on a row shows the run.`),
     body, element('ul', { class: 'hint' }, ...remarks.map((remark) => element('li', {}, remark))));
 }
 

@@ -1,6 +1,6 @@
 import { Chart } from './chart.js';
 import { block, element, table } from './dom.js';
-import { fixed, percent } from './format.js';
+import { fixed, percent, rulesText } from './format.js';
 import { readContent } from './payload.js';
 import { State } from './state.js';
 import { preferredTheme, runLine } from './theme.js';
@@ -87,17 +87,23 @@ function effects(study) {
   });
 }
 
-/** Cells by why they failed: a bad scan fails every cell of its sequence. */
-export function byReason(failures) {
+/** Cells by why they lack something: a bad scan fails every cell of its sequence. */
+function byReason(gaps) {
   const cells = new Map();
-  for (const { cell, why } of failures) cells.set(why, [...(cells.get(why) ?? []), cell]);
+  for (const { cell, why } of gaps) cells.set(why, [...(cells.get(why) ?? []), cell]);
   return cells;
+}
+
+/** "a 08, near and 3 more cells: why". */
+export function gapLines(gaps) {
+  return [...byReason(gaps)].map(([why, [first, ...more]]) => `${first}${more.length > 0 ? ` and ${more.length} more ${more.length === 1 ? 'cell' : 'cells'}` : ''}: ${why}`);
 }
 
 /** What is bad, and what one should know. */
 function remarks(study) {
   const bad = [];
   const lines = ['Means are over sequences, each the mean of its seeds, or over the seeds of one. Numbers behind them, and bars, are 95 % intervals; of fewer than three there are none.'];
+  if (study.protocol) lines.unshift(`Scored by ${rulesText(study)}.`);
   if (study.simulated) bad.push('Simulated data: not comparable with published numbers.');
   if (study.critical_difference !== null) {
     lines.push(`Mean ranks over ${study.ranked_sequences} sequences differ at 5 % where they are more than ${study.critical_difference.toFixed(2)} apart (Nemenyi).`);
@@ -106,7 +112,7 @@ function remarks(study) {
     lines.push(`The ${study.done} cells that are done took ${(study.cpu_s / study.predicted_cpu_s).toFixed(2)} times the time that was expected.`);
   }
   if (study.done < study.cells) bad.push(`${study.cells - study.done} of ${study.cells} cells are missing.`);
-  for (const [why, cells] of byReason(study.failures)) bad.push(`Failed: ${cells[0]}${cells.length > 1 ? ` and ${cells.length - 1} more cells` : ''}: ${why}`);
+  bad.push(...gapLines(study.undefined), ...gapLines(study.failures).map((line) => `Failed: ${line}`));
   return [...bad.map((line) => element('p', { class: 'notice' }, line)), ...lines.map((line) => element('p', { class: 'notice quiet' }, line))];
 }
 

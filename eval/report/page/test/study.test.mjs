@@ -1,6 +1,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { byReason, curveChart, logTicks, paretoChart } from '../src/study.js';
+import { rulesText } from '../src/format.js';
+import { curveChart, gapLines, logTicks, paretoChart } from '../src/study.js';
 
 const point = (value, low, high) => ({ iou: { value, low, high }, precision: { value: 1 }, recall: { value: null } });
 const curve = {
@@ -20,7 +21,14 @@ test('a curve has a line per method over the strengths, and bars where there are
 
 test('cells that failed alike are told once', () => {
   const failures = [{ cell: 'a', why: 'cut off' }, { cell: 'b', why: 'no pose' }, { cell: 'c', why: 'cut off' }];
-  assert.deepEqual([...byReason(failures)], [['cut off', ['a', 'c']], ['no pose', ['b']]]);
+  assert.deepEqual(gapLines(failures), ['a and 1 more cell: cut off', 'b: no pose']);
+});
+
+test('the rules of a number say which points count', () => {
+  const rules = (min_range_m, max_range_m) => rulesText({ protocol: 'p', min_range_m, max_range_m });
+  assert.equal(rules(0.5, 20), 'protocol p, 0.5 to 20 m');
+  assert.equal(rules(3, -1), 'protocol p, from 3 m');
+  assert.equal(rules(0, -1), 'protocol p');
 });
 
 test('ticks of a logarithmic axis are round numbers', () => {
