@@ -79,26 +79,30 @@ MOSBENCH_MULTIARCH void gather_halo(const Neighbourhood& masks, int radius, Halo
 }
 
 MOSBENCH_MULTIARCH void close_columns(const HaloRows& halo, int gap, HaloRows& closed) {
+  constexpr std::size_t kStride = HaloRows::kStride;
+  using Plane = std::array<std::uint32_t, kStride>;
   closed.radius = halo.radius - gap;
   closed.side = halo.side - 2 * gap;
   const std::uint32_t kept = row_mask(closed);
   std::uint32_t any = 0;
-  std::array<std::uint32_t, kMaxHalo + 2> below;  // those at most so far below
-  for (int y = 0; y < closed.side; ++y) {
-    for (int z = 0; z < closed.side; ++z) {
-      const auto at = [&](int dz) { return halo.row(z + gap + dz, y + gap); };
-      below[0] = 0;
-      for (int i = 1; i <= gap; ++i) {
-        below[static_cast<std::size_t>(i)] = below[static_cast<std::size_t>(i - 1)] | at(-i);
-      }
-      std::uint32_t row = at(0);
-      for (int i = 1; i <= gap; ++i) row |= at(i) & below[static_cast<std::size_t>(gap + 1 - i)];
-      row = row >> gap & kept;
-      any |= row;
-      closed
-          .rows[static_cast<std::size_t>(z * HaloRows::kStride + kBlockSide - closed.radius + y)] =
-          row;
+  std::array<Plane, kMaxHalo + 1> below;  // [i]: those at most i below
+  below[0].fill(0);
+  for (int z = 0; z < closed.side; ++z) {
+    const auto plane = [&](int dz) {
+      return &halo.rows[static_cast<std::size_t>(z + gap + dz) * kStride];
+    };
+    std::uint32_t* const rows = &closed.rows[static_cast<std::size_t>(z) * kStride];
+    std::copy_n(plane(0), kStride, rows);
+    for (int i = 1; i <= gap; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      for (std::size_t y = 0; y < kStride; ++y) below[at][y] = below[at - 1][y] | plane(-i)[y];
     }
+    for (int i = 1; i <= gap; ++i) {
+      const Plane& near = below[static_cast<std::size_t>(gap + 1 - i)];
+      for (std::size_t y = 0; y < kStride; ++y) rows[y] |= plane(i)[y] & near[y];
+    }
+    for (std::size_t y = 0; y < kStride; ++y) rows[y] = rows[y] >> gap & kept;
+    for (int y = 0; y < closed.side; ++y) any |= closed.row(z, y);
   }
   closed.any = any != 0;
 }
