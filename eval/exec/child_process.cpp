@@ -36,13 +36,31 @@ Pipe make_pipe() {
   return {FileDescriptor(ends[0]), FileDescriptor(ends[1])};
 }
 
+/// False once the other end is closed without a word.
+bool reads_word(int end) {
+  char word = 0;
+  ssize_t read_bytes = -1;
+  do {
+    read_bytes = read(end, &word, 1);
+  } while (read_bytes < 0 && errno == EINTR);
+  return read_bytes > 0;
+}
+
+void write_word(const FileDescriptor& end) {
+  while (write(end.number(), "x", 1) < 0 && errno == EINTR) {
+  }
+}
+
 void make_nonblocking(const FileDescriptor& file) {
   require_success(fcntl(file.number(), F_SETFL, O_NONBLOCK) == 0);
 }
 
-/// Becomes the command. Calls only what is allowed after a fork of a process with threads.
-[[noreturn]] void become(const char* command, int stdin_end, int stdout_end) {
+/// Becomes the command once a word says that its guard is there; ends where nobody is left to say
+/// it. Calls only what is allowed after a fork of a process with threads.
+[[noreturn]] void become(const char* command, int stdin_end, int stdout_end, const Pipe& start) {
   setpgid(0, 0);
+  close(start.write_end.number());
+  if (!reads_word(start.read_end.number())) _exit(127);
   dup2(stdin_end, STDIN_FILENO);
   dup2(stdout_end, STDOUT_FILENO);
   for (const int ignored : {SIGPIPE, SIGXFSZ}) signal(ignored, SIG_DFL);
@@ -67,12 +85,7 @@ void kill_all(pid_t group) {
   for (const int ignored : {SIGHUP, SIGINT, SIGTERM}) signal(ignored, SIG_IGN);
   dup2(lifeline, STDIN_FILENO);
   close_range(STDIN_FILENO + 1, ~0U, 0);
-  char word = 0;
-  ssize_t read_bytes = -1;
-  do {
-    read_bytes = read(STDIN_FILENO, &word, 1);
-  } while (read_bytes < 0 && errno == EINTR);
-  if (read_bytes == 0) kill_all(group);
+  if (!reads_word(STDIN_FILENO)) kill_all(group);
   _exit(0);
 }
 
@@ -103,15 +116,16 @@ int left_ms(ChildProcess::Deadline deadline) {
 }  // namespace
 
 ChildProcess::ChildProcess(const std::string& command) {
-  Pipe in = make_pipe(), out = make_pipe(), lifeline = make_pipe();
+  Pipe in = make_pipe(), out = make_pipe(), start = make_pipe(), lifeline = make_pipe();
   make_nonblocking(in.write_end);
   make_nonblocking(out.read_end);
   child_ = fork();
   require_success(child_ >= 0);
-  if (child_ == 0) become(command.c_str(), in.read_end.number(), out.write_end.number());
+  if (child_ == 0) become(command.c_str(), in.read_end.number(), out.write_end.number(), start);
   setpgid(child_, child_);  // whoever comes first, it or the child
   guard_ = fork();
   if (guard_ == 0) guard(child_, lifeline.read_end.number());
+  write_word(start.write_end);
   to_child_ = std::move(in.write_end);
   from_child_ = std::move(out.read_end);
   lifeline_ = std::move(lifeline.write_end);
@@ -121,8 +135,7 @@ ChildProcess::~ChildProcess() {
   // The number of the group stays taken as long as the child is not reaped.
   kill_all(child_);
   if (guard_ > 0) {
-    while (write(lifeline_.number(), "x", 1) < 0 && errno == EINTR) {
-    }
+    write_word(lifeline_);
     reap(guard_);
   }
   reap_and_measure(child_);
