@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <ranges>
 #include <system_error>
 #include <utility>
 
@@ -56,6 +57,14 @@ const Layout& recognise(const std::filesystem::path& path, std::vector<std::stri
         remarks.push_back("recognised as " + std::string(layout->name) + ": " + *why);
         return *layout;
       }
+    }
+  }
+  // From the end: SemanticKITTI takes any folder with a number for a name for a part of it.
+  for (const Layout* layout : layouts() | std::views::reverse) {
+    if (layout->recognise_part == nullptr) continue;
+    if (const auto why = layout->recognise_part(path)) {
+      remarks.push_back("recognised as " + std::string(layout->name) + ": " + *why);
+      return *layout;
     }
   }
   throw DataError(

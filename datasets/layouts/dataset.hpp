@@ -83,10 +83,11 @@ std::vector<SequenceFolder> find_sequences(const std::filesystem::path& path,
 /// (opensceneflow); pcd/ next to gt_poses.txt (moe) or gt_cloud.pcd (kth); tables of
 /// v1.0-* (nuscenes); LiDAR/ with its sensors (helipr); velodyne_points/data (kitti-raw);
 /// velodyne/NNNN with scans (kitti-tracking); "sipailou" or "M-detector" in a
-/// folder name of the path; folders as those of semantickitti; any bags or scans (recording). A
-/// remark says so. Throws DataError when nothing usable is there, UsageError for a sequence name
-/// that does not exist or a pose file given for several sequences. For poses in a folder each
-/// sequence takes NAME.txt, NAME.tum or NAME/poses.txt.
+/// folder name of the path; folders as those of semantickitti; any bags or scans (recording);
+/// part of the files of kitti-tracking, nuscenes, opensceneflow or semantickitti, where opening
+/// says what is missing. A remark says so. Throws DataError when nothing usable is there,
+/// UsageError for a sequence name that does not exist or a pose file given for several sequences.
+/// For poses in a folder each sequence takes NAME.txt, NAME.tum or NAME/poses.txt.
 Dataset open_dataset(const std::filesystem::path& path, const OpenOptions& options);
 
 }  // namespace mosbench

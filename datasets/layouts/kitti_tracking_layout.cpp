@@ -14,7 +14,7 @@ bool is_sequence(const fs::path& folder) {
   return stem_number(folder_name(folder)) && !list_by_stem(folder, {".bin"}).empty();
 }
 
-/// Lists velodyne/NNNN of training/ or testing/. No other data set has such folders.
+/// Lists velodyne/NNNN of training/ or testing/.
 std::vector<SequenceFolder> sequences_in(const fs::path& part, const std::string& prefix) {
   std::vector<SequenceFolder> sequences;
   for (const fs::path& folder : list_folders(part / "velodyne")) {
@@ -26,7 +26,7 @@ std::vector<SequenceFolder> sequences_in(const fs::path& part, const std::string
   return sequences;
 }
 
-/// Whether a folder is velodyne/ or below it, beside which one of the other folders lies.
+/// Whether a folder is velodyne/, beside which one of the other folders lies.
 bool is_of_benchmark(const fs::path& velodyne) {
   const fs::path part = parent_folder(velodyne);
   return folder_name(velodyne) == "velodyne" &&
@@ -60,7 +60,17 @@ std::unique_ptr<Sequence> open_kitti_tracking(const SequenceFolder& sequence,
                                               options);
 }
 
+/// Scans alone may lie in such folders elsewhere, too, and one given itself with poses of its own.
 std::optional<std::string> recognise_kitti_tracking(const fs::path& path) {
+  const auto sequences = list_kitti_tracking(path);
+  if (sequences.empty()) return std::nullopt;
+  const fs::path& first = sequences.front().folder;
+  const bool has_own_poses = first == path && is_there(path / "poses.txt");
+  if (has_own_poses || !is_of_benchmark(parent_folder(first))) return std::nullopt;
+  return "scans are in velodyne/" + folder_name(sequences.front().folder);
+}
+
+std::optional<std::string> recognise_part_of_kitti_tracking(const fs::path& path) {
   const auto sequences = list_kitti_tracking(path);
   if (sequences.empty()) return std::nullopt;
   return "scans are in velodyne/" + folder_name(sequences.front().folder);
@@ -90,6 +100,7 @@ const Layout& kitti_tracking_layout() {
       .splits = nullptr,
       .evidence = Evidence::kFolders,
       .recognise = recognise_kitti_tracking,
+      .recognise_part = recognise_part_of_kitti_tracking,
       .writer =
           LayoutWriter{.open = write_as_kitti_tracking,
                        .folder = kitti_tracking_folder,

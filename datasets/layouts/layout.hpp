@@ -93,6 +93,9 @@ struct Layout {
   Evidence evidence;
   /// Returns why `path` looks like this data set, or nothing if it does not.
   std::optional<std::string> (*recognise)(const std::filesystem::path& path);
+  /// The same of a data set that lacks files or has damaged ones, which opening it names; asked
+  /// where nothing that can be read is there. Null where there is no such.
+  std::optional<std::string> (*recognise_part)(const std::filesystem::path& path) = nullptr;
   std::optional<LayoutWriter> writer;    ///< nothing for a data set that is only read
   bool truth_by_speed = false;           ///< ReadingOptions::moving_speed_m_s is for it
   std::vector<RelatedSet> related = {};  ///< that the same reader reads

@@ -162,10 +162,23 @@ std::vector<Split> nuscenes_splits(const std::vector<SequenceFolder>& folders,
   return splits;
 }
 
+/// Whether half of the tables are there, and one whose name no other data set has.
+bool is_surely_nuscenes(const fs::path& tables) {
+  return has_tables(tables) &&
+         (is_there(tables / "sample_data.json") || is_there(tables / "calibrated_sensor.json"));
+}
+
 std::optional<std::string> recognise_nuscenes(const fs::path& path) {
   const auto versions = versions_below(path);
+  const auto sure = std::ranges::find_if(versions, is_surely_nuscenes);
+  if (sure == versions.end()) return std::nullopt;
+  return "the tables of " + folder_name(*sure) + " are there";
+}
+
+std::optional<std::string> recognise_part_of_nuscenes(const fs::path& path) {
+  const auto versions = versions_below(path);
   if (versions.empty()) return std::nullopt;
-  return "the tables of " + folder_name(versions.front()) + " are there";
+  return "some tables of " + folder_name(versions.front()) + " are there";
 }
 
 fs::path nuscenes_folder(const std::string& name, std::size_t) { return flat_name(name); }
@@ -194,6 +207,7 @@ const Layout& nuscenes_layout() {
       .splits = nuscenes_splits,
       .evidence = Evidence::kFolders,
       .recognise = recognise_nuscenes,
+      .recognise_part = recognise_part_of_nuscenes,
       .writer = LayoutWriter{.open = write_as_nuscenes,
                              .folder = nuscenes_folder,
                              .last_file = [](const WriteOptions&) { return kNuscenesLastFile; },

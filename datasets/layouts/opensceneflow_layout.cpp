@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "datasets/files/counted.hpp"
 #include "datasets/files/errors.hpp"
 #include "datasets/files/folder_listing.hpp"
 #include "datasets/hdf5/scene_flow_sequence.hpp"
@@ -55,7 +56,17 @@ std::optional<std::string> recognise_scene_flow(const std::filesystem::path& pat
   const auto files = list_scene_flow(path);
   if (files.empty()) return std::nullopt;
   if (is_scene_flow_file(path)) return "it is an .h5 file";
+  const bool any_whole = std::ranges::any_of(
+      files, [](const SequenceFolder& file) { return is_hdf5_file(file.folder); });
+  if (!any_whole) return std::nullopt;
   return fmt::format("{} .h5 files are there", files.size());
+}
+
+std::optional<std::string> recognise_damaged_scene_flow(const std::filesystem::path& path) {
+  const auto files = list_scene_flow(path);
+  if (files.empty()) return std::nullopt;
+  return fmt::format("{}, none of them whole",
+                     counted(files.size(), ".h5 file is there", ".h5 files are there"));
 }
 
 std::filesystem::path scene_flow_file(const std::string& name, std::size_t) {
@@ -84,6 +95,7 @@ const Layout& opensceneflow_layout() {
       .splits = scene_flow_splits,
       .evidence = Evidence::kFolders,
       .recognise = recognise_scene_flow,
+      .recognise_part = recognise_damaged_scene_flow,
       .writer = LayoutWriter{write_as_scene_flow, scene_flow_file, true},
       .truth_by_speed = true};
   return row;

@@ -21,14 +21,17 @@ std::vector<Split> semantickitti_splits(const std::vector<SequenceFolder>& folde
 }
 
 std::optional<std::string> recognise_semantickitti(const std::filesystem::path& path) {
-  const std::vector<SequenceFolder> sequences = list_kitti(path);
-  if (sequences.empty()) return std::nullopt;
-  // Folders with a number for a name may hold a bag each.
-  const bool has_scans = std::ranges::any_of(sequences, [](const SequenceFolder& sequence) {
-    return scan_folder_of(sequence.folder).has_value();
+  const bool has_scans = std::ranges::any_of(list_kitti(path), [](const SequenceFolder& sequence) {
+    const auto folder = scan_folder_of(sequence.folder);
+    return folder && !scans_in(*folder).empty();
   });
-  if (!has_scans && recording_layout().recognise(path)) return std::nullopt;
+  if (!has_scans) return std::nullopt;
   return "it has the layout and nothing of another data set";
+}
+
+std::optional<std::string> recognise_part_of_semantickitti(const std::filesystem::path& path) {
+  if (list_kitti(path).empty()) return std::nullopt;
+  return "it has the folders and nothing of another data set";
 }
 
 }  // namespace
@@ -64,6 +67,7 @@ const Layout& semantickitti_layout() {
       .splits = semantickitti_splits,
       .evidence = Evidence::kNone,
       .recognise = recognise_semantickitti,
+      .recognise_part = recognise_part_of_semantickitti,
       .writer = LayoutWriter{write_as_kitti, kitti_folder},
       .related = {{"KITTI-Road-MOS, IROS 2022",
                    "12 of KITTI's raw drives on roads as sequences 30 to 41, 5794 scans, labels 9 "

@@ -89,6 +89,43 @@ TEST(OpenDataset, FindsSemanticKittiWithAndWithoutTheFolderSequences) {
   }
 }
 
+TEST(OpenDataset, IsNotMisledByFilesBesideSequencesThatItCanRead) {
+  const std::string scan(16, '\0');
+  for (const auto& [file, bytes] : std::vector<std::pair<std::string, std::string>>{
+           {"features.h5", ""},
+           {"features.h5", "no HDF5"},
+           {"v1.0-x/scene.json", "[]"},
+           {"x/v1.0-x/scene.json", "[]"},
+           {"training/velodyne/0000/000000.bin", scan},
+           {"sequences/00/velodyne/0001/000000.bin", scan}}) {
+    const TempFolder root;
+    write_sequence(root, "sequences/00");
+    root.write(file, bytes);
+    for (const auto& path : {root.path(), root / "sequences/00"}) {
+      const Dataset dataset = open_dataset(path, {});
+      EXPECT_EQ(dataset.kind, DatasetKind::kSemanticKitti) << path << file;
+      EXPECT_EQ(dataset.sequences.front()->size(), 2U);
+    }
+  }
+  const TempFolder scans;
+  scans.write("000000.bin", scan);
+  scans.write("poses.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n");
+  scans.write("features.h5", "");
+  EXPECT_EQ(open_dataset(scans.path(), {}).kind, DatasetKind::kRecording);
+}
+
+TEST(OpenDataset, TakesPartOfADataSetWhereNothingElseCanBeRead) {
+  for (const auto& [file, missing] : std::vector<std::pair<std::string, std::string>>{
+           {"features.h5", "features.h5: is empty"},
+           {"v1.0-x/scene.json", "v1.0-x/sample.json: is not there"},
+           {"velodyne/0001/000000.bin", "oxts: is not there"},
+           {"00/poses.txt", "no folder of scans"}}) {
+    const TempFolder root;
+    root.write(file, file.ends_with(".bin") ? std::string(16, '\0') : "");
+    EXPECT_THAT(error_of(root.path()), HasSubstr(missing)) << file;
+  }
+}
+
 TEST(OpenDataset, KnowsTheSplitsOfKittiRoad) {
   const TempFolder root;
   for (const char* name : {"08", "30", "34", "35", "40", "41"}) {

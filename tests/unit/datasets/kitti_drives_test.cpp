@@ -482,6 +482,15 @@ TEST_F(KittiTrackingSequence, IsKnownWithoutOxtsOrCalib) {
   }
 }
 
+TEST_F(KittiTrackingSequence, TakesThePosesInAFolderOfScansThatIsGivenItself) {
+  folder_.write("training/velodyne/0003/poses.txt",
+                "1 0 0 7 0 1 0 0 0 0 1 0\n1 0 0 7 0 1 0 0 0 0 1 0\n1 0 0 7 0 1 0 0 0 0 1 0\n");
+  const Dataset scans = open_dataset(folder_ / "training/velodyne/0003", {});
+  EXPECT_EQ(scans.kind, DatasetKind::kRecording);
+  EXPECT_EQ(scans.sequences.front()->map_from_sensor(0).translation().x(), 7.0);
+  EXPECT_EQ(open_dataset(folder_.path(), {}).kind, DatasetKind::kKittiTracking);
+}
+
 TEST_F(KittiTrackingSequence, NamesTheFileThatOneSequenceLacks) {
   std::filesystem::remove(folder_ / "training/calib/0003.txt");
   EXPECT_THAT(message_of<MissingPoses>([&] { open_dataset(folder_.path(), {}); }),
