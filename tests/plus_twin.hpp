@@ -230,8 +230,8 @@ class PlusTwin final : public Method {
       const bool moves =
           share >= c_.min_seed_share && fresh >= c_.min_fresh_share * seeds &&
           (seeds >= c_.min_seeds_voxels || (share >= 0.5 && seeds >= c_.min_pure_seeds_voxels)) &&
-          aged <= c_.max_aged_share * size && has_size_of_object(members) &&
-          rises_from_ground(members, scan.occupied);
+          (share >= 0.5 || aged <= c_.max_aged_share * size) &&
+          has_size_of_object(members, share >= 0.5) && rises_from_ground(members, scan.occupied);
       const SetOf kept =
           moves ? near_seeds(members, scan.seeds) : SetOf(members.begin(), members.end());
       for (const Voxel& v : kept) shares[v] = static_cast<float>(share);
@@ -306,11 +306,13 @@ class PlusTwin final : public Method {
     return (sum * 256 / static_cast<double>(voxels.size())).array().floor() / 256;
   }
 
-  bool has_size_of_object(const std::vector<Voxel>& members) const {
+  bool has_size_of_object(const std::vector<Voxel>& members, bool is_pure) const {
+    const double max_m =
+        is_pure ? std::max(c_.max_extent_m, c_.max_pure_extent_m) : c_.max_extent_m;
     for (const Voxel& a : members)
       for (const Voxel& b : members)
-        if ((a.x - b.x) * c_.map.voxel_size_m > c_.max_extent_m ||
-            (a.y - b.y) * c_.map.voxel_size_m > c_.max_extent_m ||
+        if ((a.x - b.x) * c_.map.voxel_size_m > max_m ||
+            (a.y - b.y) * c_.map.voxel_size_m > max_m ||
             (a.z - b.z) * c_.map.voxel_size_m > c_.max_height_m)
           return false;
     return true;

@@ -30,8 +30,8 @@ inline hmm_mos::Config paper_map() {
 /// Every parameter; README.md of this folder says what they are worth.
 struct Config {
   hmm_mos::Config map = paper_map();
-  double seed_age_s = 1.0;
-  double object_age_s = 1.0;
+  double seed_age_s = 1.5;
+  double object_age_s = 2.0;
   int max_unknown_voxels = 15;
   int max_gap_voxels = 3;
   int ground_radius_voxels = 2;
@@ -41,11 +41,12 @@ struct Config {
   double min_seed_share = 0.12;
   double fresh_age_s = 0.2;
   double min_fresh_share = 0.2;
-  double max_aged_share = 0.6;
+  double max_aged_share = 0.5;
   double rise_radius_m = 6.0;
   int min_rise_voxels = 2;
   double max_growth_m = 3.0;
   double max_extent_m = 10.0;
+  double max_pure_extent_m = 20.0;
   double max_height_m = 4.5;
   int min_track_steps = 1;
 };
@@ -84,7 +85,8 @@ void visit_fields(AnyConfig& config, Visitor&& visit) {
   visit("min_fresh_share", config.min_fresh_share, FieldRange{0.0, 1.0},
         "of an object's seeds, at least this share is fresh: those of a parked car grow old");
   visit("max_aged_share", config.max_aged_share, FieldRange{0.0, 1.0},
-        "of an object's voxels, at most this share was seen occupied for 0.5 s or more");
+        "of an object's voxels, at most this share was seen occupied for 0.5 s or more; any where "
+        "half or more are seeds");
   visit("rise_radius_m", config.rise_radius_m, FieldRange{0.0, 20.0},
         "the ground around a voxel is the lowest one in the columns within this distance");
   visit("min_rise_voxels", config.min_rise_voxels, FieldRange{0, 100},
@@ -93,6 +95,8 @@ void visit_fields(AnyConfig& config, Visitor&& visit) {
         "what is connected with seeds over more than this moves not with them");
   visit("max_extent_m", config.max_extent_m, FieldRange{0.0, 1000.0},
         "an object is at most so long along x and y of the map");
+  visit("max_pure_extent_m", config.max_pure_extent_m, FieldRange{0.0, 1000.0},
+        "one of which half or more are seeds may be so long: a truck or a bus");
   visit("max_height_m", config.max_height_m, FieldRange{0.0, 1000.0},
         "an object is at most so high");
   visit(

@@ -90,11 +90,11 @@ Box box_of(const VoxelizedScan& scan, const std::vector<std::uint32_t>& voxels) 
   return {low, high};
 }
 
-bool has_size_of_object(const Box& box, const Config& config) {
+bool has_size_of_object(const Box& box, double max_extent_m, const Config& config) {
   const double size_m = config.map.voxel_size_m;
   const Voxel& low = box.low;
   const Voxel& high = box.high;
-  return std::max(high.x - low.x, high.y - low.y) * size_m <= config.max_extent_m &&
+  return std::max(high.x - low.x, high.y - low.y) * size_m <= max_extent_m &&
          (high.z - low.z) * size_m <= config.max_height_m;
 }
 
@@ -126,14 +126,18 @@ void judge(const VoxelizedScan& scan, const ArrivalClasses& classes, const Groun
   }
   const auto voxels = static_cast<double>(component.voxels.size());
   component.seed_share = seeds / voxels;
-  const bool enough = seeds >= config.min_seeds_voxels ||
-                      (2 * seeds >= voxels && seeds >= config.min_pure_seeds_voxels);
+  const bool is_pure = 2 * seeds >= voxels;
+  const bool enough =
+      seeds >= config.min_seeds_voxels || (is_pure && seeds >= config.min_pure_seeds_voxels);
+  const bool is_too_old = !is_pure && aged > config.max_aged_share * voxels;
   if (!enough || component.seed_share < config.min_seed_share ||
-      fresh < config.min_fresh_share * seeds || aged > config.max_aged_share * voxels) {
+      fresh < config.min_fresh_share * seeds || is_too_old) {
     return;
   }
   const Box box = box_of(scan, component.voxels);
-  component.moves = has_size_of_object(box, config) &&
+  const double max_extent_m =
+      is_pure ? std::max(config.max_extent_m, config.max_pure_extent_m) : config.max_extent_m;
+  component.moves = has_size_of_object(box, max_extent_m, config) &&
                     rises_from_ground(scan, component.voxels, box, ground, config);
 }
 

@@ -20,7 +20,7 @@ import subprocess
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 ARRIVALS = ["--set", "min_seed_share=0.2,object_age_s=3,min_fresh_share=0,max_aged_share=1,"
             "min_rise_voxels=0,max_unknown_voxels=15,max_growth_m=1000,min_track_steps=0,"
-            "max_gap_voxels=0,min_pure_seeds_voxels=3"]
+            "max_gap_voxels=0,min_pure_seeds_voxels=3,seed_age_s=1,max_pure_extent_m=10"]
 METHODS = {"paper": ["--method", "hmm-mos"], "arrivals": ["--method", "hmm-mos-plus", *ARRIVALS],
            "plus": ["--method", "hmm-mos-plus"]}
 SKIPPED_REAL_SCANS = 4  # those that the paper's method does not judge
@@ -37,6 +37,10 @@ SEQUENCES = [
     ("tuned", "parked-os1-t1", "parked", "os1-64", 41, 50, 0.1, (0.03, 0.0026), 0.25, 50),
     ("tuned", "parked-os1-t2", "parked", "os1-64", 42, 50, 0.1, (0.03, 0.0026), 0.25, 50),
     ("tuned", "parked-hdl-t3", "parked", "hdl-64e", 43, 50, 0.1, (0.03, 0.0026), 0.25, 50),
+    ("tuned", "lane-hdl-t1", "lane", "hdl-64e", 303, 70, 0.1, (0.01, 0.0006), 0.25, 50),
+    ("tuned", "lane-hdl-t2", "lane", "hdl-64e", 304, 70, 0.1, (0.01, 0.0006), 0.25, 50),
+    ("tuned", "lane-hdl-t3", "lane", "hdl-64e", 306, 70, 0.1, (0.01, 0.0006), 0.25, 50),
+    ("tuned", "lane-hdl-t4", "lane", "hdl-64e", 309, 70, 0.1, (0.01, 0.0006), 0.25, 50),
     ("judged", "mall-os1-b", "mall", "os1-64", 21, 80, 0.1, (0, 0), 0.20, 20),
     ("judged", "mall-vlp16", "mall", "vlp-16", 22, 80, 0.1, (0, 0), 0.20, 20),
     ("judged", "campus-avia-b", "campus", "avia", 23, 80, 0.1, (0.02, 0.0017), 0.25, 50),
@@ -51,6 +55,11 @@ SEQUENCES = [
     ("judged", "parked-os1-j1", "parked", "os1-64", 51, 50, 0.1, (0.03, 0.0026), 0.25, 50),
     ("judged", "parked-os1-j2", "parked", "os1-64", 52, 50, 0.1, (0.03, 0.0026), 0.25, 50),
     ("judged", "parked-hdl-j3", "parked", "hdl-64e", 53, 50, 0.1, (0.03, 0.0026), 0.25, 50),
+    ("judged", "lane-hdl-j1", "lane", "hdl-64e", 310, 70, 0.1, (0.01, 0.0006), 0.25, 50),
+    ("judged", "lane-os1", "lane", "os1-64", 312, 70, 0.1, (0.02, 0.0017), 0.25, 50),
+    ("judged", "lane-vlp16", "lane", "vlp-16", 314, 70, 0.1, (0.01, 0.0006), 0.25, 50),
+    ("judged", "lane-os2", "lane", "os2-128", 315, 60, 0.1, (0.02, 0.0017), 0.25, 50),
+    ("judged", "lane-aeva", "lane", "aeva", 316, 70, 0.1, (0.01, 0.0006), 0.25, 50),
     ("rough", "rough-os1", "rough", "os1-64", 81, 60, 0.1, (0.02, 0.0017), 0.25, 50),
     ("rough", "rough-vlp16", "rough", "vlp-16", 82, 60, 0.1, (0.02, 0.0017), 0.25, 50),
     ("rough", "rough-hdl64", "rough", "hdl-64e", 83, 60, 0.1, (0.02, 0.0017), 0.25, 50),
@@ -113,7 +122,35 @@ def roughen(scene, seed):
         add("box", x_m + 5, 5.5, [7.0, 1.0, 1.4], density=0.4, sway_m=0.15)
 
 
-MADE_OF_STREET = {"parked": park_cars, "rough": roughen}
+def fill_lane(scene, seed):
+    """A rough street without glass, where two cyclists ride ahead and a car or a truck comes towards them
+    (even seeds) or drives ahead, too."""
+    draw = random.Random(seed)
+    cyclists = [m for m in scene["movers"] if m["route"]["legs"] and m["kind"] == "cyclist"][:2]
+    roughen(scene, seed)
+    scene["structures"] = [s for s in scene["structures"] if s.get("let_through", 0) == 0]
+    parked = [m for m in scene["movers"] if not m["route"]["legs"]]
+    draw.shuffle(parked)
+
+    def drive(x_m, y_m, to_m, slowest_m_s, fastest_m_s):
+        leg = {"to_m": [to_m, y_m], "speed_m_s": draw.uniform(slowest_m_s, fastest_m_s), "wait_s": 0}
+        return {"from_m": [x_m, y_m], "legs": [leg], "after": "stay", "start_s": 0}
+    for i, cyclist in enumerate(cyclists):
+        x_m = 12 + 14 * i + draw.uniform(0, 8)
+        cyclist["route"] = drive(x_m, -1.75 if draw.random() < 0.5 else -3.2, 220.0, 3, 6)
+    if seed % 2:
+        place = draw.uniform(30, 45), -1.75, 220.0
+    else:
+        place = draw.uniform(60, 110), 1.9, -20.0
+        parked = [m for m in parked if m["route"]["from_m"][1] < 0]
+    kind = draw.choice(["car", "truck"])
+    vehicle = {"kind": kind, "route": drive(*place, 5, 9), "labelled": True}
+    scene["movers"] = cyclists + [vehicle] + parked[:draw.randint(14, 30)]
+    scene |= {"range_noise_m": 0.02, "ground_bumps_m": 0.02}
+    scene["ego"]["route"]["legs"][0]["speed_m_s"] = draw.choice([6.0, 9.0, 12.0])
+
+
+MADE_OF_STREET = {"parked": park_cars, "rough": roughen, "lane": fill_lane}
 
 
 def add_pose_noise(source, target, noise, seed):

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 #include <random>
 
 #include "core/hmm_mos_plus/pipeline.hpp"
@@ -82,6 +83,38 @@ TEST(PlusAgainstItsTwin, AgreesOnWhatIsPredicted) {
   EXPECT_GT(tally.reasons[static_cast<std::size_t>(Reason::kPredicted)], 20U);
 }
 
+/// A wall, before which a truck drives past from the tenth scan on: it is longer than what is seen.
+SmallWorld world_with_a_truck() {
+  SmallWorld world;
+  for (std::size_t k = 0; k < 34; ++k) {
+    std::vector<Point>& scan = world.scans.emplace_back();
+    world.poses.push_back(Pose::Identity());
+    const float front_m = -1.2F + 0.1F * (static_cast<float>(k) - 10.0F);
+    for (float y = -0.6F; y < 0.6F; y += 0.02F) {
+      for (float z = -0.6F; z < 0.6F; z += 0.02F) {
+        const float x = 2.0F * y < front_m && std::abs(z) < 0.3F ? 2.0F : 4.0F;
+        scan.push_back({x, x * y, x * z, 0.0F});
+      }
+    }
+  }
+  return world;
+}
+
+TEST(PlusAgainstItsTwin, AgreesOnLongVehicles) {
+  std::array<PlusTally, 2> tallies;
+  for (const double max_pure_extent_m : {0.0, 20.0}) {
+    for (const int delay : {0, 3}) {
+      hmm_mos_plus::Config config = small_plus();
+      config.max_extent_m = 1.0;
+      config.max_pure_extent_m = max_pure_extent_m;
+      config.map.delay_scans = delay;
+      expect_twins_labels(world_with_a_truck(), config, tallies[max_pure_extent_m > 0]);
+    }
+  }
+  EXPECT_GT(tallies[0].moving_points, 2000U);
+  EXPECT_GT(tallies[1].moving_points, 2 * tallies[0].moving_points);
+}
+
 /// With jitter, and with scans that are missing.
 TEST(PlusAgainstItsTwin, AgreesAtEveryRateOfStamps) {
   PlusTally tally;
@@ -150,6 +183,7 @@ TEST(PlusAgainstItsTwin, AgreesOnRandomConfigurations) {
     config.min_rise_voxels = one_of(0, 1, 2, 4);
     config.max_growth_m = one_of(0.0, 0.4, 0.8, 3.0);
     config.max_extent_m = one_of(0.8, 2.0, 10.0);
+    config.max_pure_extent_m = one_of(0.5, 1.2, 20.0);
     config.max_height_m = one_of(0.5, 1.0, 4.5);
     config.min_track_steps = one_of(0, 1, 1, 2);
     const SmallWorld world = small_world({.seed = seed,
