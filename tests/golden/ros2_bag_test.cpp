@@ -21,7 +21,9 @@ struct Ros2Case {
 
 class RealRos2Bag : public testing::TestWithParam<Ros2Case> {};
 
-TEST_P(RealRos2Bag, GivesTheScansOfTheRos1BagBitForBit) {
+/// Points and stamps are the same bits. Poses are written as quaternions, which turn back into
+/// matrices with other last bits.
+TEST_P(RealRos2Bag, GivesThePointsOfTheRos1BagBitForBitAndItsPosesToRounding) {
   const auto bag = shared_folder() / "real/rosbag" / GetParam().bag;
   if (!std::filesystem::exists(bag)) GTEST_SKIP() << bag << " is not there";
   const OpenOptions raw{.reading = {.deskew = Deskew::kNone}};
