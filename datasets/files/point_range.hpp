@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 #include <mosbench/scan.hpp>
 
 namespace mosbench {
@@ -13,6 +14,11 @@ inline double range_m(const Point& point) {
 
 /// Returns where a point is in the sensor's frame, metres.
 inline Eigen::Vector3d position_of(const Point& point) { return {point.x, point.y, point.z}; }
+
+/// Returns how far apart float32 numbers are that lie `at_m` from zero or just beyond.
+inline float float_step_m(float at_m) {
+  return std::nextafter(at_m, std::numeric_limits<float>::infinity()) - at_m;
+}
 
 inline bool is_finite(const Point& point) {
   return std::isfinite(point.x) && std::isfinite(point.y) && std::isfinite(point.z);

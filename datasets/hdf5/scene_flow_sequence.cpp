@@ -10,6 +10,7 @@
 
 #include "datasets/files/errors.hpp"
 #include "datasets/files/folder_listing.hpp"
+#include "datasets/files/point_range.hpp"
 #include "datasets/files/pose_file.hpp"
 #include "datasets/files/shown_text.hpp"
 #include "datasets/hdf5/scene_flow_names.hpp"
@@ -268,7 +269,7 @@ void SceneFlowSequence::refuse_coarse_pose(const Scan& scan, double time_s) cons
   constexpr double kMostShare = 0.2;  // of the speed that counts as motion
   if (find_array(*scan.group, scene_flow::kPose)->number.bytes != sizeof(float)) return;
   const auto far_m = static_cast<float>(scan.map_from_sensor->translation().cwiseAbs().maxCoeff());
-  const float step_m = std::nextafter(far_m, std::numeric_limits<float>::infinity()) - far_m;
+  const float step_m = float_step_m(far_m);
   if (step_m <= kMostShare * moving_speed_m_s_ * time_s) return;
   throw DataError(file_.path(),
                   fmt::format("{} is float32, {} m apart at {:.0f} m, too coarse for flow",

@@ -18,8 +18,8 @@ of dynamic points that it no longer has, AA = sqrt(SA * DA), HA = 2 SA DA / (SA 
 benchmark defines them. A map with fewer points than the scans, as one of voxels, loses SA;
 --same-within-m says how near a point of the map must be to stand for one of the truth.
 
-`mosbench run --write static-cloud` writes such a map, static.ply, with a point per 0.1 m, in the
-frame of the poses: --same-within-m 0.1 suits it.
+`mosbench run --write static-cloud` writes such a map, static.ply (static-cloud-pcd: static.pcd),
+with a point per 0.1 m, in the frame of the poses: --same-within-m 0.1 suits it.
 
 Examples:
   mosbench map-score results/runs/00/00/static.ply kth/00 --same-within-m 0.1

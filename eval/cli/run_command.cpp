@@ -29,8 +29,9 @@ DIR/<sequence>/reasons/<stem>.reason (a byte per point): why it moves; `report` 
 --write adds to DIR/<sequence>, from the labels: boxes.json and boxes.txt (boxes), boxes around what
 moves with track and velocity, the second in KITTI's format; moving/<stem>.ply (moving-cloud), the
 moving points of each scan; static.ply (static-cloud), a map of what stands still, a point per 0.1
-m. The same command again keeps what is there, and refuses what was changed meanwhile: remove it to
-have it made again. results/FORMATS.md describes the files.
+m; static.pcd (static-cloud-pcd), the same map for PCL. The same command again keeps what is there,
+and refuses what was changed meanwhile: remove it to have it made again. results/FORMATS.md
+describes the files.
 
 The same command again skips the sequences that are finished and starts an interrupted one again
 from its first scan, because a label may depend on every earlier scan. A sequence appears under DIR

@@ -22,6 +22,7 @@ class ProductRecord {
   /// many files a killed run makes few again.
   void write(const std::string& file, std::string_view bytes);
   void save();
+  const std::filesystem::path& folder() const { return folder_; }
 
  private:
   std::filesystem::path folder_;

@@ -10,6 +10,7 @@
 #include <set>
 #include <string_view>
 
+#include "datasets/files/errors.hpp"
 #include "datasets/files/point_range.hpp"
 #include "eval/report/point_planes.hpp"
 #include "eval/report/product_record.hpp"
@@ -91,6 +92,23 @@ std::string ply_of(const std::vector<Eigen::Matrix<Coordinate, 3, 1>>& positions
   return bytes;
 }
 
+/// A binary PCD file of x, y, z and the intensity in float32, as PCL's own points have them: it
+/// takes other types of x, y and z for missing.
+std::string pcd_of(const std::vector<Eigen::Vector3d>& positions_m,
+                   const std::vector<float>& intensities) {
+  std::string bytes = fmt::format(
+      "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS x y z intensity\nSIZE 4 4 4 "
+      "4\nTYPE F F F F\nCOUNT 1 1 1 1\nWIDTH {0}\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS "
+      "{0}\nDATA binary\n",
+      positions_m.size());
+  for (std::size_t i = 0; i < positions_m.size(); ++i) {
+    const Eigen::Vector3f position_m = positions_m[i].cast<float>();
+    bytes.append(reinterpret_cast<const char*>(position_m.data()), 3 * sizeof(float));
+    bytes.append(reinterpret_cast<const char*>(&intensities[i]), sizeof(float));
+  }
+  return bytes;
+}
+
 void write_boxes(const ResultScans& scans, ProductRecord& record) {
   const bool has_json = record.has("boxes.json"), has_text = record.has("boxes.txt");
   if (has_json && has_text) return;
@@ -144,6 +162,20 @@ class StaticMap {
 
   std::string ply() const { return ply_of(positions_m_, intensities_, "double"); }
 
+  /// Throws DataError naming the file where float32 is too coarse for the voxels.
+  std::string pcd(const fs::path& file) const {
+    constexpr double kMostShare = 0.1;
+    double most_m = 0.0;
+    for (const Eigen::Vector3d& position_m : positions_m_) {
+      most_m = std::max(most_m, position_m.cwiseAbs().maxCoeff());
+    }
+    const float step_m = float_step_m(static_cast<float>(most_m));
+    if (step_m <= kMostShare * kMapVoxel_m) return pcd_of(positions_m_, intensities_);
+    throw DataError(
+        file, fmt::format("positions up to {:.0f} m are {} m apart in float32", most_m, step_m),
+        "poses nearer to their origin, or static-cloud, whose .ply has float64");
+  }
+
  private:
   std::set<std::array<std::int64_t, 3>> voxels_;
   std::vector<Eigen::Vector3d> positions_m_;
@@ -151,15 +183,25 @@ class StaticMap {
 };
 
 /// Scans in which the method did not look for motion may hold anything.
-void write_static_cloud(const ResultScans& scans, ProductRecord& record) {
-  if (record.has("static.ply")) return;
+StaticMap static_map_of(const ResultScans& scans) {
   StaticMap map;
   Progress progress("static map", scans.rows().size());
   for (std::size_t k = 0; k < scans.rows().size(); ++k) {
     if (scans.rows()[k].judged) map.add(scans.read(k));
     progress.advance();
   }
-  record.write("static.ply", map.ply());
+  return map;
+}
+
+void write_static_ply(const ResultScans& scans, ProductRecord& record) {
+  const std::string file = "static.ply";
+  if (!record.has(file)) record.write(file, static_map_of(scans).ply());
+}
+
+void write_static_pcd(const ResultScans& scans, ProductRecord& record) {
+  const std::string file = "static.pcd";
+  if (record.has(file)) return;
+  record.write(file, static_map_of(scans).pcd(record.folder() / file));
 }
 
 struct Product {
@@ -167,9 +209,9 @@ struct Product {
   void (*write)(const ResultScans& scans, ProductRecord& record);
 };
 
-constexpr std::array kProducts = {Product{"boxes", write_boxes},
-                                  Product{"moving-cloud", write_moving_clouds},
-                                  Product{"static-cloud", write_static_cloud}};
+constexpr std::array kProducts = {
+    Product{"boxes", write_boxes}, Product{"moving-cloud", write_moving_clouds},
+    Product{"static-cloud", write_static_ply}, Product{"static-cloud-pcd", write_static_pcd}};
 
 }  // namespace
 

@@ -21,10 +21,10 @@ constexpr const char* kLabels = "labels";
 constexpr const char* kScores = "scores";
 constexpr const char* kReasons = "reasons";
 constexpr const char* kResult = "result.json";
-// What a run writes; poses.txt with its mark where it found them, the last five by --write.
+// What a run writes; poses.txt with its mark where it found them, the last six by --write.
 constexpr std::array kWritten = {kLabels,     kScores,      kReasons,          kResult,
                                  "poses.txt", "boxes.txt",  "poses.txt.frame", "boxes.json",
-                                 "moving",    "static.ply", "products.json"};
+                                 "moving",    "static.ply", "static.pcd",      "products.json"};
 
 std::vector<fs::path> entries(const fs::path& folder) {
   std::error_code error;

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "datasets/files/counted.hpp"
 #include "datasets/files/errors.hpp"
@@ -38,7 +37,7 @@ void check_steps(const std::vector<Point>& points, const fs::path& file, double 
       if (std::isfinite(x)) most_m = std::max(most_m, std::abs(x));
     }
   }
-  const float step_m = std::nextafter(most_m, std::numeric_limits<float>::infinity()) - most_m;
+  const float step_m = float_step_m(most_m);
   if (step_m <= kMostShare * same_within_m) return;
   throw DataError(file,
                   fmt::format("positions up to {:.0f} m are {} m apart in float32", most_m, step_m),

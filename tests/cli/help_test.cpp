@@ -61,7 +61,7 @@ TEST(Help, ListsTheValuesOfAFlagAndNamesThoseOfAList) {
   const std::string run = cli::run({"run", "--help"}).out;
   for (const char* part : {"\n  --variant {paper-2024,release-2025}\n",
                            "\n  --odometry {simple,kiss}", "\n  --write WHAT,...  ",
-                           "Also write, from the labels: boxes, moving-cloud, static-cloud\n",
+                           "Also write, from the labels: boxes, moving-cloud, static-cloud,\n",
                            "\nReading:\n  --topic"}) {
     EXPECT_THAT(run, HasSubstr(part));
   }
@@ -184,7 +184,7 @@ TEST(Completion, OffersCommandsFlagsAndTheirValuesInBash) {
   EXPECT_EQ(completed(script, "mosbench run --pre"), "--preset\n");
   EXPECT_EQ(completed(script, "mosbench run DATA --preset doals-"), "doals-20m doals-120m\n");
   EXPECT_EQ(completed(script, "mosbench list me"), "methods\n");
-  EXPECT_EQ(completed(script, "mosbench run DATA --write s"), "static-cloud\n");
+  EXPECT_EQ(completed(script, "mosbench run DATA --write s"), "static-cloud static-cloud-pcd\n");
   EXPECT_EQ(completed(script, "mosbench odometry DATA --preset kitti-on"), "kitti-online\n");
   EXPECT_EQ(completed(script, "mosbench run --out d"), "\n");
 }

@@ -2,11 +2,15 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstring>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include "datasets/files/pcl_reader.hpp"
+#include "datasets/files/scan_file.hpp"
 #include "datasets/files/times_file.hpp"
 #include "tests/cli/program.hpp"
 #include "tests/cli/small_sequence.hpp"
@@ -103,6 +107,67 @@ TEST_F(Products, HoldWhatMovesAndWhatStandsStill) {
   EXPECT_LE(vertices_of(map), 13000U);
 }
 
+/// What static.pcd holds of the points of static.ply: the header of PCD 0.7, then four float32
+/// each.
+std::string pcd_of(const std::string& ply) {
+  const std::string count = std::to_string(vertices_of(ply));
+  std::string pcd =
+      "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS x y z intensity\n"
+      "SIZE 4 4 4 4\nTYPE F F F F\nCOUNT 1 1 1 1\nWIDTH " +
+      count + "\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " + count + "\nDATA binary\n";
+  for (std::size_t at = ply.size() - body_of(ply); at < ply.size(); at += 28) {
+    std::array<double, 3> position_m{};
+    std::memcpy(position_m.data(), ply.data() + at, 24);
+    for (const double x_m : position_m) {
+      const auto narrow_m = static_cast<float>(x_m);
+      pcd.append(reinterpret_cast<const char*>(&narrow_m), 4);
+    }
+    pcd.append(ply, at + 24, 4);
+  }
+  return pcd;
+}
+
+TEST_F(Products, HoldTheStaticMapAsPcdWithTheSamePoints) {
+  run("static-cloud,static-cloud-pcd");
+  const std::string map = read_file(out("static.ply"));
+  EXPECT_EQ(read_file(out("static.pcd")), pcd_of(map));
+  std::filesystem::remove(out("static.ply"));
+  std::filesystem::remove(out("static.pcd"));
+  run("static-cloud-pcd");
+  EXPECT_EQ(read_file(out("static.pcd")), pcd_of(map));
+  EXPECT_FALSE(is_there(out("static.ply")));
+
+  if (!reads_pcd()) return;
+  const std::vector<Point> points = read_scan(out("static.pcd"));
+  ASSERT_EQ(points.size(), vertices_of(map));
+  EXPECT_EQ(points.front().intensity, 0.5F);
+  // A point of the wall that the map has, and one in the middle of the room that it has not.
+  const auto truth = folder_.write(
+      "truth.ply",
+      "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\n"
+      "property float z\nproperty float intensity\nend_header\n-6 0.05 0.1 0\n0 0 0 1\n");
+  const cli::Answer scored =
+      cli::run({"map-score", out("static.pcd"), truth, "--same-within-m", "0.1", "--json"});
+  ASSERT_EQ(scored.exit_code, 0) << scored.err;
+  const auto score = nlohmann::json::parse(scored.out);
+  EXPECT_EQ(score.at("map").at("points"), points.size());
+  EXPECT_EQ(score.at("sa"), 1.0);
+  EXPECT_EQ(score.at("da"), 1.0);
+}
+
+TEST_F(Products, HoldNoPcdWherePosesAreTooFarForFloat32) {
+  Pose far = Pose::Identity();
+  far.translation().x() = 200'000.0;
+  write_poses(folder_ / "room/poses.txt", std::vector<Pose>(14, far));
+  run("static-cloud");
+  const cli::Answer refused =
+      cli::run({"run", folder_ / "room", "--out", folder_ / "out", "--write", "static-cloud-pcd"});
+  EXPECT_EQ(refused.exit_code, 3);
+  EXPECT_THAT(refused.err, HasSubstr("room/static.pcd: positions up to 200006 m are 0.015625 m "
+                                     "apart in float32, expected poses nearer to their origin"));
+  EXPECT_FALSE(is_there(out("static.pcd")));
+}
+
 TEST_F(Products, AreAddedToFinishedRunsAndKept) {
   run("");
   EXPECT_FALSE(is_there(out("boxes.json")));
@@ -123,19 +188,21 @@ TEST_F(Products, AreAddedToFinishedRunsAndKept) {
 }
 
 TEST_F(Products, ThatWereChangedAreRefused) {
-  run("boxes,moving-cloud,static-cloud");
+  const std::string all = "boxes,moving-cloud,static-cloud,static-cloud-pcd";
+  run(all);
   const auto whole = cli::contents(folder_ / "out");
-  for (const char* file : {"boxes.json", "boxes.txt", "moving/000009.ply", "static.ply"}) {
+  for (const char* file :
+       {"boxes.json", "boxes.txt", "moving/000009.ply", "static.ply", "static.pcd"}) {
     const std::string bytes = read_file(out(file));
     write_file_atomic(out(file), bytes.substr(0, bytes.size() - 1));
     const std::vector<std::string> words = {"run", folder_ / "room", "--out", folder_ / "out"};
     EXPECT_EQ(cli::run(words).exit_code, 0);
-    const cli::Answer refused = cli::run({"run", folder_ / "room", "--out", folder_ / "out",
-                                          "--write", "boxes,moving-cloud,static-cloud"});
+    const cli::Answer refused =
+        cli::run({"run", folder_ / "room", "--out", folder_ / "out", "--write", all});
     EXPECT_EQ(refused.exit_code, 2) << file;
     EXPECT_THAT(refused.err, HasSubstr(std::string(file) + ": was changed after the run"));
     std::filesystem::remove(out(file));
-    run("boxes,moving-cloud,static-cloud");
+    run(all);
     EXPECT_EQ(cli::contents(folder_ / "out"), whole) << file;
   }
   write_file_atomic(out("products.json"), "[]");

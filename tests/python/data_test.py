@@ -167,10 +167,11 @@ def test_methods_are_ranked_and_scores_give_a_curve(street, near, finished, tmp_
 
 
 def test_run_writes_what_is_asked_for(street, near, tmp_path):
-    for write in ("boxes", ["static-cloud", "boxes"]):
+    for write in ("boxes", ["static-cloud", "static-cloud-pcd", "boxes"]):
         folder = mosbench.run(street, config=near, out=tmp_path / "run", write=write)["08"].folder
         assert len(json.loads((folder / "boxes.json").read_text())["scans"]) == 12
         assert (folder / "static.ply").exists() == ("static-cloud" in write)
+        assert (folder / "static.pcd").exists() == ("static-cloud-pcd" in write)
     with pytest.raises(ValueError, match="cubes"):
         mosbench.run(street, config=near, out=tmp_path / "run", write=["cubes"])
 

@@ -194,7 +194,8 @@ def run(
     config: a Config is all settings of its method, and given without preset. Settings by name are set over
     those of `preset`, and without one over the preset of the data set, or the method's defaults.
     odometry: "simple" or "kiss" finds the poses from the scans instead of reading them.
-    write: "boxes", "moving-cloud" and "static-cloud", one or several: files beside the labels, as `run --write` adds.
+    write: "boxes", "moving-cloud", "static-cloud", "static-cloud-pcd", one or several: files beside the labels, as
+    `run --write` adds.
     progress: print progress and notes on stderr.
     reading: `poses`, `pose_frame`, ... as mosbench.READING lists them; poses in an array are kept in `<out>-data`.
     """
