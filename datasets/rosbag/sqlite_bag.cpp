@@ -4,6 +4,7 @@
 #include <sqlite3.h>
 
 #include <algorithm>
+#include <array>
 
 #include "datasets/files/errors.hpp"
 #include "datasets/files/files.hpp"
@@ -176,9 +177,28 @@ void SqliteBag::add_topics() {
 }
 
 void SqliteBag::add_messages() {
-  Rows rows(database_.get(), "SELECT rowid, topic_id, timestamp FROM messages");
+  struct Column {
+    const char* name;
+    const char* type;
+    const char* expected;
+  };
+  constexpr std::array kColumns = {Column{"topic_id", "integer", "the number of a topic"},
+                                   Column{"timestamp", "integer", "nanoseconds"},
+                                   Column{"data", "blob", "the bytes of a message"}};
+  Rows rows(database_.get(),
+            "SELECT rowid, topic_id, timestamp, typeof(topic_id), typeof(timestamp), typeof(data) "
+            "FROM messages");
   int result = 0;
   while ((result = rows.next()) == SQLITE_ROW) {
+    // SQLite would give 0 for what is no number.
+    for (int i = 0; const Column& column : kColumns) {
+      const std::string type = rows.text(3 + i++);
+      if (type == column.type) continue;
+      throw DataError(path_,
+                      fmt::format("row {} of messages has {} in place of its {}", rows.integer(0),
+                                  type, column.name),
+                      column.expected);
+    }
     const auto topic = static_cast<std::uint32_t>(rows.integer(1));
     messages_.push_back({topic, rows.integer(2), 0, static_cast<std::uint64_t>(rows.integer(0))});
     if (find_connection(topic) == nullptr) {

@@ -378,6 +378,31 @@ TEST_F(Ros2Bag, RefusesADamagedDatabase) {
   EXPECT_THAT(error_with("UPDATE messages SET data = x'28B52FFD00'"), HasSubstr("is damaged"));
 }
 
+TEST_F(Ros2Bag, NamesTheRowOfADatabaseThatHoldsNoMessage) {
+  const auto error_with = [&](const std::string& change) {
+    const auto file = write(read_file(good_db3(folder_, "good")), "spoilt.db3");
+    // The tables of recorders say NOT NULL; a damaged file need not.
+    run_sql(file, ("CREATE TABLE loose AS SELECT topic_id, timestamp, data FROM messages; "
+                   "DROP TABLE messages; ALTER TABLE loose RENAME TO messages; UPDATE messages " +
+                   change + " WHERE rowid = 3")
+                      .c_str());
+    return message_of<DataError>([&] { BagSequence("s", file, {}); });
+  };
+  EXPECT_EQ(error_with("SET topic_id = topic_id"), "nothing thrown");
+  EXPECT_THAT(error_with("SET timestamp = NULL"),
+              HasSubstr("spoilt.db3: row 3 of messages has null in place of its timestamp, "
+                        "expected nanoseconds"));
+  EXPECT_THAT(error_with("SET timestamp = 'noon'"),
+              HasSubstr("row 3 of messages has text in place of its timestamp"));
+  EXPECT_THAT(error_with("SET topic_id = NULL"),
+              HasSubstr("row 3 of messages has null in place of its topic_id"));
+  for (const std::string type : {"text", "null"}) {
+    EXPECT_THAT(error_with(type == "text" ? "SET data = 'scan'" : "SET data = NULL"),
+                HasSubstr("row 3 of messages has " + type +
+                          " in place of its data, expected the bytes of a message"));
+  }
+}
+
 TEST_F(Ros2Bag, InSqliteThatItsRecorderDidNotCloseIsReadOnlyWhereItIsWhole) {
   const auto file = write(read_file(good_db3(folder_, "good")), "open.db3");
   sqlite3* recorder = nullptr;
