@@ -254,7 +254,8 @@ constexpr std::array kProtocols = {
              .program_print = kSixSignificant,
              .default_split = ""},
     Protocol{.name = "sceneflow-dynamic",
-             .summary = "mean of per-scan dynamic IoU; invalid flow and the ground are ignored",
+             .summary = "mean of per-scan dynamic IoU where the flow is valid: within eval_mask, "
+                        "without one off the ground at any range",
              .source = "KTH-RPL/OpenSceneFlow@2a9c474:src/utils/av2_eval.py",
              .truth = kSceneFlow,
              .prediction = kAbove250,

@@ -1,6 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -67,6 +69,22 @@ TEST_F(SceneFlowProgram, LabelsScoresAndChecksWhatItSimulates) {
   EXPECT_EQ(summary.at("labelled_scans"), 11);
   EXPECT_GT(summary.at("tp"), 0);
   EXPECT_GT(summary.at("ignored"), 0);
+  // Without eval_mask every point off the ground counts, as in OpenSceneFlow, also outside of the
+  // box of 70 x 70 m.
+  std::size_t counted = 0, outside = 0;
+  for (std::size_t k = 0; k < 11; ++k) {
+    const Frame frame = data.sequences[0]->read(k);
+    for (std::size_t i = 0; i < frame.points.size(); ++i) {
+      const std::uint32_t id = frame.truth->at(i) & 0xFFFFU;
+      if (id != 9 && id != 251) continue;
+      ++counted;
+      if (std::max(std::abs(frame.points[i].x), std::abs(frame.points[i].y)) > 35) ++outside;
+    }
+  }
+  std::size_t scored = 0;
+  for (const char* count : {"tp", "fp", "fn", "tn"}) scored += summary.at(count).get<std::size_t>();
+  EXPECT_EQ(scored, counted);
+  EXPECT_GT(outside, 0U);
   const auto result = cli::timeless_result(folder_ / "out/street");
   EXPECT_EQ(result.at("reading").at("truth"), "flow, moving from 0.5 m/s on");
 

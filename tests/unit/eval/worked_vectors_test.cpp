@@ -104,6 +104,18 @@ TEST(WorkedVectors, SeventhLeavesOutWhereSceneFlowIsNotEvaluated) {
   EXPECT_EQ(summary.published_text, "0.25");
 }
 
+TEST(WorkedVectors, EighthCountsSceneFlowAtAnyRangeAsItsProgramDoes) {
+  // Inside of the box of 70 x 70 m, at its corner, outside of it within 50 m, beyond both.
+  const std::vector<Point> points = {{10, 0, 0, 0}, {35, 35, 0, 0}, {36, 0, 0, 0}, {0, -80, 0, 0}};
+  const Labels truth = {251, 251, 9, 251};
+  const Labels prediction = {251, 9, 251, 9};
+  const Protocol& protocol = protocol_named("sceneflow-dynamic");
+  EXPECT_EQ(score_scan(protocol, truth, prediction, points),
+            (Confusion{.tp = 1, .fp = 1, .fn = 2}));
+  EXPECT_EQ(score_scan(protocol, truth, prediction, points, {0.0, 50.0}),
+            (Confusion{.tp = 1, .fp = 1, .fn = 1, .ignored = 1}));
+}
+
 TEST(WorkedVectors, TheAuthorsExampleAverages8922) {
   // Hauptgebaeude 1 at 20 m, per scan in percent, as HMM-MOS's README prints them.
   const std::array<std::uint64_t, 10> hundredths = {8368, 8427, 9689, 9283, 8591,
