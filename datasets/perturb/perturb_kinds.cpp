@@ -192,16 +192,20 @@ std::span<const PerturbKind> perturb_kinds() {
 }
 
 std::span<const PerturbKey> perturb_keys() {
+  static constexpr std::array<std::string_view, 2> kJumps = {"pose_jump_m", "pose_jump_deg"};
+  static constexpr std::array<std::string_view, 1> kBeams = {"beams"};
+  static constexpr std::array<std::string_view, 2> kWeather = {"rain_mm_per_h", "fog_per_m"};
   static constexpr std::array kKeys = {
-      PerturbKey{"seed", "of everything random (1)"},
-      PerturbKey{"pose_jump_scan", "number of the scan, from 0 (the middle one)"},
-      PerturbKey{"beams_of", "beams of the sensor (64)"},
-      PerturbKey{
-          "beams_top_deg",
-          "elevation of the highest beam; without it points lie beam by beam in each column"},
-      PerturbKey{"beams_bottom_deg", "elevation of the lowest beam"},
+      PerturbKey{"seed", "of everything random (1)", {}},
+      PerturbKey{"pose_jump_scan", "number of the scan, from 0 (the middle one)", kJumps},
+      PerturbKey{"beams_of", "beams of the sensor (64)", kBeams},
+      PerturbKey{"beams_top_deg",
+                 "elevation of the highest beam; without it points lie beam by beam in each column",
+                 kBeams},
+      PerturbKey{"beams_bottom_deg", "elevation of the lowest beam", kBeams},
       PerturbKey{"sensor_range_m",
-                 "farthest return of a weak target in clear air, for rain and fog (120)"}};
+                 "farthest return of a weak target in clear air, for rain and fog (120)",
+                 kWeather}};
   return kKeys;
 }
 

@@ -71,6 +71,7 @@ const PerturbKind& perturb_kind_named(std::string_view name);
 /// A key that several kinds share, and what it says.
 struct PerturbKey {
   std::string_view name, definition;
+  std::span<const std::string_view> kinds;  ///< that use it; none are named for the seed
 };
 std::span<const PerturbKey> perturb_keys();
 

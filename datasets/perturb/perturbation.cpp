@@ -88,6 +88,20 @@ void check_beams(const Perturbation& perturbation) {
   }
 }
 
+/// A key that nothing uses is one whose kind was forgotten.
+void check_used(const Perturbation& perturbation, const std::vector<std::string_view>& said) {
+  if (perturbation.steps.empty()) refuse("no disturbance is given", "KIND=STRENGTH,...,seed=N");
+  for (const PerturbKey& key : perturb_keys()) {
+    if (key.kinds.empty() || std::ranges::find(said, key.name) == said.end()) continue;
+    const bool is_used = std::ranges::any_of(perturbation.steps, [&](const PerturbStep& step) {
+      return std::ranges::find(key.kinds, step.kind->name) != key.kinds.end();
+    });
+    if (is_used) continue;
+    refuse(fmt::format("{} is given, but nothing that uses it", key.name),
+           fmt::format("it with {}", fmt::join(key.kinds, " or ")));
+  }
+}
+
 bool has(const Perturbation& perturbation, std::string_view prefix) {
   return std::ranges::any_of(perturbation.steps, [&](const PerturbStep& step) {
     return step.kind->name.starts_with(prefix);
@@ -121,6 +135,7 @@ Perturbation parse_perturbation(std::string_view text) {
     }
   }
   check_beams(perturbation);
+  check_used(perturbation, said);
   return perturbation;
 }
 

@@ -34,9 +34,10 @@ std::string name_of(const YamlNode& node) {
     return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
            std::string_view(" ._+-").find(c) != std::string_view::npos;
   });
-  if (!plain || name.size() > 60) {
+  const bool blank = name.find_first_not_of(' ') == std::string::npos;
+  if (!plain || blank || name.size() > 60) {
     node.refuse(fmt::format("{} is no name", mosbench::quoted(name)),
-                "at most 60 letters, digits, blanks and . _ + -");
+                "1 to 60 letters, digits, blanks and . _ + -");
   }
   return name;
 }
@@ -52,7 +53,7 @@ fs::path path_of(const YamlNode& node, const fs::path& file) {
 ReadingOptions reading_of_study(const YamlNode& node, const fs::path& file) {
   node.check_keys({"poses", "pose_format", "pose_frame", "pose_direction", "max_pose_gap_s",
                    "topic", "map_frame", "pose_topic", "deskew", "point_times", "bin_columns",
-                   "moving_speed_m_s"});
+                   "moving_speed_m_s", "hdl64_correction"});
   nlohmann::ordered_json json = nlohmann::ordered_json::object();
   for (const auto& [key, value] : node.members()) {
     const auto number = parse_double(value.text());
@@ -64,6 +65,9 @@ ReadingOptions reading_of_study(const YamlNode& node, const fs::path& file) {
     } else if (key == "moving_speed_m_s") {
       if (!number || *number <= 0) value.refuse("is no speed", "m/s above 0");
       json[key] = *number;
+    } else if (key == "hdl64_correction") {
+      if (value.text() != "true") value.refuse("is not understood", "true, or no such key");
+      json[key] = true;
     } else {
       json[key] = key == "poses" ? path_of(value, file).string() : value.text();
     }
@@ -261,7 +265,7 @@ StudyAxis sample_of(const YamlNode& node, const std::vector<StudyMethod>& method
   for (const auto& [name, limits] : node.at("settings").members()) {
     settings.push_back(sampled_setting_of(name, limits, methods));
   }
-  check_names(node, settings);
+  if (settings.empty()) node.at("settings").refuse("is an empty map", "SETTING: [LOWEST, HIGHEST]");
   const std::size_t points = node.at("points").whole(3, 100'000);
   return sampled_axis(settings, points,
                       node.find("seed") ? node.at("seed").whole(0, UINT64_MAX) : 1);

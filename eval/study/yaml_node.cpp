@@ -25,15 +25,11 @@ void YamlNode::rethrow_here(const std::exception& error) const {
 }
 
 void YamlNode::check_keys(std::initializer_list<std::string_view> known) const {
-  std::set<std::string> seen;
   for (const auto& [key, value] : members()) {
     if (std::ranges::find(known, key) == known.end()) {
       const std::string_view nearest = nearest_name(key, std::span(known.begin(), known.size()));
       value.refuse(fmt::format("key {} is not known", mosbench::quoted(key)),
                    fmt::format("one of {} (nearest: {})", fmt::join(known, ", "), nearest));
-    }
-    if (!seen.insert(key).second) {
-      value.refuse(fmt::format("key {} is given twice", mosbench::quoted(key)), "it once");
     }
   }
 }
@@ -60,9 +56,13 @@ std::vector<YamlNode> YamlNode::list() const {
 std::vector<std::pair<std::string, YamlNode>> YamlNode::members() const {
   if (!node_.IsMap()) refuse("is no map", "KEY: VALUE, ...");
   std::vector<std::pair<std::string, YamlNode>> members;
+  std::set<std::string> seen;
   for (const auto& member : node_) {
     if (!member.first.IsScalar()) refuse("has a key that is no word", "KEY: VALUE, ...");
     members.emplace_back(member.first.Scalar(), YamlNode(member.second, file_));
+    const auto& [key, value] = members.back();
+    if (seen.insert(key).second) continue;
+    value.refuse(fmt::format("key {} is given twice", mosbench::quoted(key)), "it once");
   }
   return members;
 }

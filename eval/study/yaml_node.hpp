@@ -21,13 +21,13 @@ class YamlNode {
   /// Throws "<file>:<line>: <wrong>, expected <expected>".
   [[noreturn]] void refuse(const std::string& wrong, const std::string& expected) const;
 
-  /// Checks that this is a map with these keys, each at most once.
+  /// Checks that this is a map with no other keys.
   void check_keys(std::initializer_list<std::string_view> known) const;
   std::optional<YamlNode> find(const char* key) const;
   YamlNode at(const char* key) const;
   /// Returns the members of a list; of anything else that one value.
   std::vector<YamlNode> list() const;
-  /// Returns the members of a map in order.
+  /// Returns the members of a map in order. Refuses keys that are given twice.
   std::vector<std::pair<std::string, YamlNode>> members() const;
   bool is_map() const { return node_.IsMap(); }
 

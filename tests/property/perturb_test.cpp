@@ -575,6 +575,10 @@ TEST(PerturbationText, IsRefusedWithWhatWasExpected) {
   EXPECT_THAT(error("seed=-1"), HasSubstr("a whole number"));
   EXPECT_THAT(error("seed=1,seed=2"), HasSubstr("given twice"));
   EXPECT_THAT(error("beams=48"), HasSubstr("a divisor of beams_of"));
+  EXPECT_THAT(error("seed=3"), HasSubstr("no disturbance is given"));
+  EXPECT_THAT(error("beams_of=32,fog_per_m=0.1"), HasSubstr("expected it with beams"));
+  EXPECT_THAT(error("pose_jump_scan=3,pose_noise_m=1"), HasSubstr("pose_jump_m or pose_jump_deg"));
+  EXPECT_THAT(error("sensor_range_m=90,beams=32"), HasSubstr("rain_mm_per_h or fog_per_m"));
   EXPECT_THAT(error("beams=32,beams_top_deg=3"), HasSubstr("both of them"));
   EXPECT_THAT(error("beams=32,beams_top_deg=3,beams_bottom_deg=4"), HasSubstr("top to bottom"));
 }

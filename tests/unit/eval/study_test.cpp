@@ -84,6 +84,13 @@ TEST(StudyFile, IsRefusedWithTheLineOfTheFault) {
   EXPECT_THAT(error("name: near", "name: ../near"), HasSubstr("is no name"));
   EXPECT_THAT(error("seeds: [1, 2, 3]", "seeds: []"), StartsWith("s.yaml:12: is an empty list"));
   EXPECT_THAT(error("seeds: [1, 2, 3]", "name: again"), HasSubstr("\"name\" is given twice"));
+  EXPECT_THAT(error("{max_range_m: 15}", "{max_range_m: 15, max_range_m: 9}"),
+              AllOf(StartsWith("s.yaml:8: "), HasSubstr("\"max_range_m\" is given twice")));
+  EXPECT_THAT(error("strengths: [1]", "strengths: [1], with: {beams_of: 32}"),
+              AllOf(StartsWith("s.yaml:11: "), HasSubstr("beams_of is given, but nothing")));
+  EXPECT_THAT(error("seeds: [1, 2, 3]", "sample: {points: 8, settings: {}}"),
+              AllOf(StartsWith("s.yaml:12: "), HasSubstr("is an empty map")));
+  EXPECT_THAT(error("name: near", "name: ' '"), HasSubstr("is no name"));
   EXPECT_THAT(study_error("name: [1"), StartsWith("s.yaml:"));
   EXPECT_THAT(study_error(""), HasSubstr("is no map"));
   EXPECT_THAT(study_error("- 1"), HasSubstr("is no map"));
@@ -112,6 +119,15 @@ TEST(StudyFile, MayNameAllMethods) {
   ASSERT_EQ(study.methods.size(), all.size() + 1);
   for (std::size_t i = 0; i < all.size(); ++i) EXPECT_EQ(study.methods[i].name, all[i]);
   EXPECT_EQ(study.methods.back().name, "near");
+}
+
+TEST(StudyFile, ReadsDataWithEveryFlagOfARun) {
+  const std::string from = "seed: [1, 2]}";
+  const std::string plain =
+      replaced_in(kSmallStudy, from, from + "\n    reading: {hdl64_correction: true}");
+  EXPECT_TRUE(parse_study(plain, "s.yaml").data.front().reading.hdl64_correction);
+  EXPECT_THAT(study_error(replaced_in(plain, "true", "maybe")),
+              StartsWith("s.yaml:6: is not understood, expected true"));
 }
 
 TEST(StudyFile, IsOneDocument) {
