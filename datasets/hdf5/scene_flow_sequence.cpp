@@ -8,6 +8,7 @@
 #include <limits>
 #include <utility>
 
+#include "datasets/files/counted.hpp"
 #include "datasets/files/errors.hpp"
 #include "datasets/files/folder_listing.hpp"
 #include "datasets/files/point_range.hpp"
@@ -59,12 +60,17 @@ SceneFlowSequence::SceneFlowSequence(std::string name, const std::filesystem::pa
 
 /// Labels that `convert` wrote stand in place of the flow.
 void SceneFlowSequence::state_truth(const ReadingOptions& options) {
-  bool by_flow = false, by_labels = false;
+  bool by_labels = false;
+  std::size_t by_flow = 0, by_any_flow = 0;
   for (std::size_t k = 0; k < scans_.size(); ++k) {
-    by_labels = by_labels || has_labels(k);
-    by_flow = by_flow || (has_flow(k) && !has_labels(k));
+    if (has_labels(k)) {
+      by_labels = true;
+    } else if (has_flow(k)) {
+      ++by_flow;
+      if (find_array(*scans_[k].group, scene_flow::kValid) == nullptr) ++by_any_flow;
+    }
   }
-  if (by_labels && !by_flow && options.moving_speed_m_s) {
+  if (by_labels && by_flow == 0 && options.moving_speed_m_s) {
     throw UsageError(fmt::format(
         "--moving-speed-m-s: the truth of {} is its array {}, without speeds, expected no such "
         "flag, or files with flow",
@@ -73,9 +79,14 @@ void SceneFlowSequence::state_truth(const ReadingOptions& options) {
   const std::string flow = fmt::format("flow, moving from {:g} m/s on", moving_speed_m_s_);
   const std::string labels(scene_flow::kLabel);
   mutable_recording().reading.emplace_back("truth", !by_labels ? flow
-                                                    : by_flow
+                                                    : by_flow > 0
                                                         ? fmt::format("{}, else {}", labels, flow)
                                                         : labels);
+  if (by_any_flow > 0) {
+    mutable_recording().remarks.push_back(
+        fmt::format("{} flow without {}: all of it is taken for valid",
+                    counted(by_any_flow, "scan has", "scans have"), scene_flow::kValid));
+  }
 }
 
 /// Takes groups in the order of their stamps. Of a drive that was cut a group without anything may
@@ -307,6 +318,21 @@ std::vector<std::int64_t> SceneFlowSequence::values(const Scan& scan, std::strin
   return array == nullptr ? std::vector<std::int64_t>{} : file_.integers(*scan.group, *array);
 }
 
+/// Throws DataError for numbers that `Value` cannot hold.
+template <typename Value>
+std::vector<Value> SceneFlowSequence::values_as(const Scan& scan, std::string_view name) const {
+  std::vector<Value> held;
+  for (const std::int64_t value : values(scan, name)) {
+    if (!std::in_range<Value>(value)) {
+      throw DataError(file_.path(),
+                      fmt::format("{}[{}] is {}", arrow(*scan.group, name), held.size(), value),
+                      fmt::format("0 to {}", std::numeric_limits<Value>::max()));
+    }
+    held.push_back(static_cast<Value>(value));
+  }
+  return held;
+}
+
 std::vector<std::uint8_t> SceneFlowSequence::flags(const Scan& scan, std::string_view name) const {
   std::vector<std::uint8_t> flags;
   for (const std::int64_t value : values(scan, name)) flags.push_back(value != 0 ? 1 : 0);
@@ -322,9 +348,7 @@ PointMotions SceneFlowSequence::motions_of(std::size_t scan_place,
   PointMotions motions;
   motions.velocities_m_s =
       velocities(points, file_.floats(*scan.group, flow), valid, step_after(scan_place));
-  for (const std::int64_t number : values(scan, scene_flow::kClass)) {
-    motions.classes.push_back(static_cast<std::uint8_t>(number));
-  }
+  motions.classes = values_as<std::uint8_t>(scan, scene_flow::kClass);
   motions.on_ground = flags(scan, scene_flow::kGround);
   motions.evaluated = flags(scan, scene_flow::kEvaluated);
   return motions;
@@ -344,11 +368,7 @@ std::vector<std::uint32_t> SceneFlowSequence::labels_of(std::size_t scan_place,
 }
 
 std::vector<std::uint32_t> SceneFlowSequence::stored_labels(const Scan& scan) const {
-  std::vector<std::uint32_t> labels;
-  for (const std::int64_t label : values(scan, scene_flow::kLabel)) {
-    labels.push_back(static_cast<std::uint32_t>(label));
-  }
-  return labels;
+  return values_as<std::uint32_t>(scan, scene_flow::kLabel);
 }
 
 void SceneFlowSequence::read(std::size_t scan_index, Frame& frame) const {

@@ -48,6 +48,8 @@ class SceneFlowSequence : public Sequence {
   SensorStep step_after(std::size_t scan) const;
   std::vector<Point> points_of(const Scan& scan, std::vector<Point> reused) const;
   std::vector<std::int64_t> values(const Scan& scan, std::string_view name) const;
+  template <typename Value>
+  std::vector<Value> values_as(const Scan& scan, std::string_view name) const;
   std::vector<std::uint8_t> flags(const Scan& scan, std::string_view name) const;
   PointMotions motions_of(std::size_t scan, std::span<const Point> points) const;
   std::vector<std::uint32_t> labels_of(std::size_t scan, const PointMotions& motions) const;

@@ -274,6 +274,34 @@ TEST_F(SceneFlowFile, NamesWhatIsWrong) {
   EXPECT_THAT(error_of(groups), HasSubstr("ground_mask holds reals"));
 }
 
+TEST_F(SceneFlowFile, RefusesNumbersThatLabelsAndClassesCannotHold) {
+  const auto error_of_first = [&](const std::string& name, std::vector<std::int64_t> values) {
+    auto groups = scans();
+    std::erase_if(groups[0].arrays, [&](const auto& array) { return array.first.name == name; });
+    groups[0].arrays.push_back(hdf5_array(name, Kind::kInteger, {4}, std::move(values)));
+    return error_of(groups);
+  };
+  EXPECT_THAT(error_of_first("mos_label", {9, 9, (std::int64_t{1} << 32) + 251, 9}),
+              HasSubstr("1600000000000000/mos_label[2] is 4294967547, expected 0 to 4294967295"));
+  EXPECT_THAT(error_of_first("mos_label", {-1, 9, 9, 9}), HasSubstr("mos_label[0] is -1"));
+  EXPECT_THAT(error_of_first("flow_category_indices", {0, 256, 0, 0}),
+              HasSubstr("1600000000000000/flow_category_indices[1] is 256, expected 0 to 255"));
+  EXPECT_THAT(error_of_first("flow_category_indices", {0, 0, 0, -1}),
+              HasSubstr("flow_category_indices[3] is -1"));
+}
+
+TEST_F(SceneFlowFile, SaysWhereNothingTellsWhichFlowIsValid) {
+  auto groups = scans();
+  EXPECT_THAT(SceneFlowSequence("s", write(groups), {}).remarks(),
+              Not(Contains(HasSubstr("flow_is_valid"))));
+  std::erase_if(groups[1].arrays,
+                [](const auto& array) { return array.first.name == "flow_is_valid"; });
+  const SceneFlowSequence drive("s", write(groups), {});
+  EXPECT_THAT(drive.remarks(),
+              Contains("1 scan has flow without flow_is_valid: all of it is taken for valid"));
+  EXPECT_EQ(drive.read(1).truth->at(2) & 0xFFFFU, 251U);
+}
+
 TEST_F(SceneFlowFile, RefusesFilesThatAreNoneOrCut) {
   const auto text = folder_.write("text.h5", "text");
   EXPECT_THAT(message_of<DataError>([&] { SceneFlowSequence("s", text, {}); }),
