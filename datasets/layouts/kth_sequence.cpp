@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <string_view>
 #include <utility>
 
 #include "datasets/files/errors.hpp"
@@ -9,16 +10,20 @@
 #include "datasets/files/scan_file.hpp"
 
 namespace mosbench {
+namespace {
+
+constexpr std::string_view kOtherScans = "; --dataset semantickitti reads other scans";
+
+}  // namespace
 
 std::vector<std::uint32_t> kth_truth(const std::vector<Point>& points,
-                                     const std::filesystem::path& file) {
+                                     const std::filesystem::path& file, std::string_view advice) {
   std::vector<std::uint32_t> truth;
   truth.reserve(points.size());
   for (const Point& point : points) {
     if (point.intensity != 0.0F && point.intensity != 1.0F) {
       throw DataError(file, fmt::format("point {} has intensity {}", truth.size(), point.intensity),
-                      "0 (static) or 1 (dynamic), as KTH's truth; --dataset semantickitti reads "
-                      "other scans");
+                      fmt::format("0 (static) or 1 (dynamic), as KTH's truth{}", advice));
     }
     truth.push_back(point.intensity == 1.0F ? kMovingLabel : kStaticLabel);
   }
@@ -51,7 +56,7 @@ KthSequence::KthSequence(std::string name, const std::filesystem::path& folder) 
 void KthSequence::read(std::size_t scan_index, Frame& frame) const {
   describe(scan_index, frame);
   frame.points = read_pcd(*scan_file(scan_index));
-  frame.truth = kth_truth(frame.points, *scan_file(scan_index));
+  frame.truth = kth_truth(frame.points, *scan_file(scan_index), kOtherScans);
   const Pose sensor_from_map = frame.map_from_sensor.inverse();
   for (Point& point : frame.points) {
     const Eigen::Vector3d p = sensor_from_map * Eigen::Vector3d(point.x, point.y, point.z);
@@ -60,7 +65,7 @@ void KthSequence::read(std::size_t scan_index, Frame& frame) const {
 }
 
 std::vector<std::uint32_t> KthSequence::read_truth(std::size_t scan_index) const {
-  return kth_truth(read_pcd(*scan_file(scan_index)), *scan_file(scan_index));
+  return kth_truth(read_pcd(*scan_file(scan_index)), *scan_file(scan_index), kOtherScans);
 }
 
 }  // namespace mosbench
