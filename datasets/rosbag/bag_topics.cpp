@@ -197,7 +197,7 @@ std::string cloud_topic(const BagReader& bag, const std::optional<std::string>& 
   }
   if (topics.empty()) {
     throw DataError(bag.path(), "holds no sensor_msgs/PointCloud2 but " + all_topics(bag),
-                    "scans as PointCloud2");
+                    "scans as PointCloud2; of a folder with bags --sequences picks others");
   }
   if (topics.contains(std::string(kDoalsTopic))) return std::string(kDoalsTopic);
   if (topics.size() == 1) return *topics.begin();
