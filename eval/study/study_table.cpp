@@ -164,7 +164,7 @@ StudyCurve curve_of(const DoneCells& cells, const StudyAxis& axis,
   StudyCurve curve;
   curve.axis = axis.name;
   if (axis.kind != nullptr) curve.unit = axis.kind->unit;
-  curve.values = {"none"};
+  curve.values = {axis.kind != nullptr ? "none" : "default"};
   curve.values.insert(curve.values.end(), axis.values.begin(), axis.values.end());
   for (const StudyRow& row : rows) {
     std::vector<StudyMetrics>& line = curve.metrics.emplace_back();

@@ -187,7 +187,7 @@ def span_text(curve, line):
     if len(known) < 2:
         return "-"
     low, high = min(known), max(known)
-    return f"{percent(low[0])} to {percent(high[0])} ({'default' if high[1] == 'none' else high[1]})"
+    return f"{percent(low[0])} to {percent(high[0])} ({high[1]})"
 
 
 def effects(found):
@@ -271,7 +271,7 @@ def panel(left, top, curve):
         parts.append(f'<path d="M{left + 44} {y_of(tick):.1f}h184" stroke="#ddd"/>'
                      f'<text x="{left + 38}" y="{y_of(tick) + 4:.1f}" class="tick">{100 * tick:.0f}</text>')
     first = 0 if is_disturbance(curve) else 1
-    for i, value in enumerate(["none", "default"][first:first + 1] + curve["values"][1:]):
+    for i, value in enumerate(curve["values"]):
         parts.append(f'<text x="{x_of(i):.1f}" y="{top + 168}">{html.escape(value)}</text>')
     for i, line in enumerate(curve["lines"]):
         points = [f"{x_of(k):.1f},{y_of(iou):.1f}" for k, iou in enumerate(ious(line)) if iou is not None and k >= first]

@@ -30,7 +30,7 @@ TABLE = {
          "lines": [line("falls", [0.8, 0.75, 0.25]), line("stands", [0.6, 0.6, None])]},
         {"axis": "dropout_probability", "unit": "1", "values": ["none", "0.5"],
          "lines": [line("falls", [0.8, 0.3]), line("stands", [0.6, 0.59])]},
-        {"axis": "voxel_size_m", "unit": "", "values": ["none", "0.4"],
+        {"axis": "voxel_size_m", "unit": "", "values": ["default", "0.4"],
          "lines": [line("falls", [0.8, 0.7]), line("stands", [0.6, 0.65])]}],
     "effects": [{"label": "falls", "points": 8, "settings": [
         {"name": "voxel_size_m", "total_effect": 0.7, "low": 0.5, "high": 0.91234567}]}],

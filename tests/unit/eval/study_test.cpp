@@ -317,6 +317,14 @@ TEST(StudyTable, AveragesSeedsBeforeSequences) {
   EXPECT_EQ(table.curves[0].values, (std::vector<std::string>{"none", "0", "0.05", "0.1"}));
 }
 
+TEST(StudyTable, CallsTheValueOfASettingThatIsNotVariedDefault) {
+  const TempFolder folder;
+  const Study study = parse_study(
+      without_disturbances() + "vary: {setting: voxel_size_m, values: [0.2]}\n", "s.yaml");
+  EXPECT_EQ(gather(plan_study(study, folder.path())).curves[0].values,
+            (std::vector<std::string>{"default", "0.2"}));
+}
+
 /// Two data whose own protocols differ, and a study that names none.
 std::string study_of_two_protocols() {
   std::string text = replaced_in(without_disturbances(), "protocol: semantickitti-mos\n", "");
