@@ -176,6 +176,13 @@ def test_run_writes_what_is_asked_for(street, near, tmp_path):
         mosbench.run(street, config=near, out=tmp_path / "run", write=["cubes"])
 
 
+def test_run_takes_what_counts_as_moving(street, tmp_path):
+    run = mosbench.run(street, preset="best", moving="ever:3", out=tmp_path / "run")["08"]
+    assert json.loads((run.folder / "result.json").read_text())["config"]["object_age_s"] == 3
+    with pytest.raises(ValueError, match="hmm-mos-plus"):
+        mosbench.run(street, method="hmm-mos", moving="ever", out=tmp_path / "refused")
+
+
 def test_run_takes_one_method(street, tmp_path):
     for several in ("all", "yoon,underwood"):
         with pytest.raises(ValueError, match="names several"):

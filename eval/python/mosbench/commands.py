@@ -171,6 +171,7 @@ def run(
     *,
     config: Union[Config, Mapping[str, SettingValue], None] = None,
     method: Optional[str] = None,
+    moving: Optional[str] = None,
     dataset: str = "auto",
     sequences: Iterable[str] = (),
     protocol: Optional[str] = None,
@@ -193,6 +194,7 @@ def run(
     out: folder of the results; results/runs/... when not given.
     config: a Config is all settings of its method, and given without preset. Settings by name are set over
     those of `preset`, and without one over the preset of the data set, or the method's defaults.
+    moving: "ever" or "ever:3" of hmm-mos-plus: whatever moved in the last 10, or 3, seconds, as `run --moving`.
     odometry: "simple" or "kiss" finds the poses from the scans instead of reading them.
     write: "boxes", "moving-cloud", "static-cloud", "static-cloud-pcd", one or several: files beside the labels, as
     `run --write` adds.
@@ -227,7 +229,7 @@ def run(
                 reading |= {"point_times": "column", "bin_columns": 5}
             data = folder
         arguments = ["run", *_data_flags(data, dataset, sequences, _with_kept_poses(reading, out))]
-        arguments += flags(preset=preset, out=out, method=method, protocol=protocol, scores=scores)
+        arguments += flags(preset=preset, moving=moving, out=out, method=method, protocol=protocol, scores=scores)
         arguments += flags(write=_names(write), overwrite=overwrite, threads=threads, drop_moving=drop_moving)
         arguments += flags(odometry=odometry, odometry_preset=odometry_preset)
         arguments += _setting_flags(odometry_settings, "--odometry-set")
