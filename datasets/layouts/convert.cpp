@@ -138,11 +138,12 @@ void write_shared_files(const Dataset& dataset, const ConvertOptions& options) {
 struct LostContent {
   KeptTruth keeps = KeptTruth::kId;
   std::size_t unlabelled_points = 0, labelled_scans = 0, points_beyond_view = 0;
-  std::size_t radial_velocities = 0;
+  std::size_t radial_velocities = 0, stamps = 0;
 
   void add(const Frame& frame) {
     static const CameraView kView = written_kitti_mounting().view;
     radial_velocities += frame.radial_velocity_m_s.size();
+    if (frame.stamp_ns) ++stamps;
     if (!frame.truth) return;
     ++labelled_scans;
     for (std::size_t i = 0; i < frame.points.size(); ++i) {
@@ -161,6 +162,11 @@ struct LostContent {
       sentences.push_back(
           fmt::format("the radial velocities of {} are left out: layout {} has none",
                       counted(radial_velocities, "point"), layout.name));
+    }
+    if (stamps > 0 && !layout.writer->keeps_stamps) {
+      sentences.push_back(fmt::format(
+          "the stamps of {} are left out: layout {} has none, its scans are 0.1 s apart",
+          counted(stamps, "scan"), layout.name));
     }
     return sentences;
   }

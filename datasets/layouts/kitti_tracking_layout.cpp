@@ -105,7 +105,8 @@ const Layout& kitti_tracking_layout() {
           LayoutWriter{.open = write_as_kitti_tracking,
                        .folder = kitti_tracking_folder,
                        .last_file = [](const WriteOptions&) { return kKittiTrackingLastFile; },
-                       .keeps = KeptTruth::kInView},
+                       .keeps = KeptTruth::kInView,
+                       .keeps_stamps = false},
       .truth_by_speed = true};
   return row;
 }

@@ -55,6 +55,7 @@ struct LayoutWriter {
   const char* (*last_file)(const WriteOptions& options) = last_file_of;
   KeptTruth keeps = KeptTruth::kId;
   bool keeps_radial_velocities = false;
+  bool keeps_stamps = true;
 };
 
 /// A data set that comes in the folders of another.

@@ -152,6 +152,9 @@ class NuscenesWriter : public SequenceWriter {
     row.is_key_frame = frame.truth.has_value();
     row.stamp_us = frame.stamp_ns ? *frame.stamp_ns / kNsPerUs
                                   : static_cast<std::int64_t>(scan_index) * kPeriod_us;
+    if (row.stamp_us < 0) {
+      throw DataError(folder_, "scan " + frame.stem + " has a stamp below 0", "us since 1970");
+    }
     row.map_from_sensor = frame.map_from_sensor;
     write_file_atomic(folder_ / scan_file(row.stem, row.is_key_frame), five_columns(frame.points));
     row.points = frame.points.size();

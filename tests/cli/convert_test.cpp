@@ -334,6 +334,28 @@ TEST_F(Convert, RefusesStampsThatABagCannotHold) {
   EXPECT_THAT(answer.err, HasSubstr("bag.bag: a stamp to be written is beyond 2^32 s"));
 }
 
+TEST_F(Convert, RefusesStampsThatNuscenesCannotHold) {
+  cli::write_small_sequence(folder_ / "room", 2);
+  folder_.write("room/times.txt", "-0.1\n0\n");
+  const cli::Answer answer = convert((folder_ / "room").string(), "nuscenes", "scenes");
+  EXPECT_EQ(answer.exit_code, 3);
+  EXPECT_THAT(answer.err, HasSubstr("has a stamp below 0, expected us since 1970"));
+}
+
+TEST_F(Convert, TellsThatStampsAreLost) {
+  const std::string source = simulate("semantickitti", "3");
+  const cli::Answer lost = convert(source, "kitti-tracking", "tracking");
+  ASSERT_EQ(lost.exit_code, 0) << lost.err;
+  EXPECT_THAT(lost.err, HasSubstr("the stamps of 3 scans are left out: layout kitti-tracking has "
+                                  "none, its scans are 0.1 s apart"));
+  const cli::Answer kept = convert(source, "kitti-raw", "raw");
+  ASSERT_EQ(kept.exit_code, 0) << kept.err;
+  EXPECT_THAT(kept.err, Not(HasSubstr("stamps")));
+  const cli::Answer none = convert(simulate("sipailou", "3"), "kitti-tracking", "unstamped");
+  ASSERT_EQ(none.exit_code, 0) << none.err;
+  EXPECT_THAT(none.err, Not(HasSubstr("stamps")));
+}
+
 TEST_F(Convert, KeepsWherePosesCameFrom) {
   const std::string source = simulate("sipailou", "4");
   ASSERT_EQ(convert(source, "semantickitti", "posed", {"--odometry", "simple"}).exit_code, 0);
