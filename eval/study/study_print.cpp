@@ -240,16 +240,17 @@ std::string study_latex(const StudyTable& table) {
 }
 
 std::string study_csv(const StudyPlan& plan) {
-  std::string text = csv_row(std::vector<std::string>{
-      "key", "data", "sequence", "method", "odometry", "axis", "value", "seed", "state", "protocol",
-      "min_range_m", "max_range_m", "iou", "precision", "recall", "ms_per_scan", "wall_s", "why"});
+  std::string text = csv_row(
+      std::vector<std::string>{"key", "data", "group", "sequence", "method", "odometry", "axis",
+                               "value", "seed", "state", "protocol", "min_range_m", "max_range_m",
+                               "iou", "precision", "recall", "ms_per_scan", "wall_s", "why"});
   const std::vector<std::string> rule = csv_rule(plan.rule);
   for (const PlannedCell& planned : plan.cells) {
     const StudyCell& cell = planned.cell;
     text += csv_row(std::vector<std::string>{
-        cell.key, cell.data->name, cell.sequence, cell.method->name, cell.odometry,
-        cell.axis == nullptr ? "" : cell.axis->name, cell.value, std::to_string(cell.seed),
-        std::string(to_string(planned.state)), rule[0], rule[1], rule[2],
+        cell.key, cell.data->name, cell.data->group, cell.sequence, cell.method->name,
+        cell.odometry, cell.axis == nullptr ? "" : cell.axis->name, cell.value,
+        std::to_string(cell.seed), std::string(to_string(planned.state)), rule[0], rule[1], rule[2],
         cell_number(planned, "summary", "iou"), cell_number(planned, "summary", "precision"),
         cell_number(planned, "summary", "recall"), cell_number(planned, "timing", "ms_per_scan"),
         cell_number(planned, "timing", "wall_s"), why_empty(planned)});

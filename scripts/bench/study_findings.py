@@ -64,7 +64,7 @@ def cells_of(chosen):
         label = f"{cell['method']} ({cell['odometry']})" if cell["odometry"] else cell["method"]
         by_sequence = cells.setdefault((label, cell["axis"], cell["value"]), {})
         iou = float(cell["iou"]) if cell["iou"] else None
-        by_sequence.setdefault((cell["data"], cell["sequence"]), []).append(iou)
+        by_sequence.setdefault((cell["group"], cell["sequence"]), []).append(iou)
     return {key: {name: None if None in seeds else statistics.mean(seeds) for name, seeds in by_sequence.items()}
             for key, by_sequence in cells.items()}
 

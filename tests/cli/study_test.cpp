@@ -106,6 +106,8 @@ TEST_F(Studies, AreComputedCellByCellAndGathered) {
   for (const char* format : {"csv", "latex", "json", "html"}) {
     EXPECT_EQ(study("table", {"--format", format}).exit_code, 0) << format;
   }
+  EXPECT_THAT(study("table", {"--format", "csv"}).out,
+              testing::StartsWith("key,data,group,sequence,"));
 }
 
 TEST_F(Studies, OfACopyOfTheDataHaveTheSameKeys) {
