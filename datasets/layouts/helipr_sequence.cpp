@@ -90,7 +90,7 @@ void HeliprSequence::take_ground_truth(const std::filesystem::path& file, double
   }
   if (!recording.left_out.empty()) {
     recording.remarks.push_back(
-        fmt::format("{} of {} have no pose in {} and are left out", recording.left_out.size(),
+        fmt::format("left out {} of {}: no pose in {}", recording.left_out.size(),
                     counted(scans.size(), "scan"), file.filename().string()));
   }
   recording.files.push_back(file);
@@ -104,10 +104,7 @@ void HeliprSequence::read(std::size_t scan_index, Frame& frame) const {
   const ScanEntry& entry = scan(scan_index);
   HeliprScan scan =
       parse_helipr_scan(read_file(*entry.file), sensor_, *entry.stamp_ns, *entry.file);
-  if (scan.points.size() != entry.points) {
-    throw DataError(*entry.file, "changed since the sequence was opened",
-                    fmt::format("{} points", entry.points));
-  }
+  check_count(scan_index, scan.points.size());
   describe(scan_index, frame);
   frame.points = std::move(scan.points);
   frame.radial_velocity_m_s = std::move(scan.radial_velocity_m_s);

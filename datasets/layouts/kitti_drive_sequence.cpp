@@ -82,8 +82,8 @@ void KittiDriveSequence::list_scans(const KittiDrive& drive) {
   }
   const std::size_t frames = frame_of(mutable_recording().scans.back()) + 1;
   if (frames > size()) {
-    mutable_recording().remarks.push_back(
-        fmt::format("{} of {} have no scan", frames - size(), counted(frames, "frame")));
+    mutable_recording().remarks.push_back(fmt::format(
+        "{}, of {}", counted(frames - size(), "frame has no scan", "frames have no scan"), frames));
   }
 }
 
@@ -154,10 +154,7 @@ std::vector<std::uint32_t> KittiDriveSequence::truth_of(std::size_t frame,
 void KittiDriveSequence::read(std::size_t scan_index, Frame& frame) const {
   const ScanEntry& entry = scan(scan_index);
   frame.points = read_scan(*entry.file, bin_columns_, std::move(frame.points));
-  if (frame.points.size() != entry.points) {
-    throw DataError(*entry.file, "changed since the sequence was opened",
-                    fmt::format("{} points", entry.points));
-  }
+  check_count(scan_index, frame.points.size());
   describe(scan_index, frame);
   frame.truth.reset();
   if (entry.has_truth) frame.truth = truth_of(frame_of(entry), frame.points);

@@ -20,11 +20,13 @@ std::string drive_alias(const std::string& name) {
   return name.ends_with(kEnd) ? name.substr(0, name.size() - kEnd.size()) : name;
 }
 
+/// Leaves out unsynchronized drives, whose scans are text and which may lie beside the others.
 std::vector<SequenceFolder> drives_in(const fs::path& date) {
   std::vector<SequenceFolder> drives;
   for (const fs::path& folder : list_folders(date)) {
     const std::string name = folder_name(folder);
-    if (is_drive(folder)) drives.push_back({name, folder, drive_alias(name)});
+    if (is_drive(folder) && !name.ends_with("_extract"))
+      drives.push_back({name, folder, drive_alias(name)});
   }
   return drives;
 }

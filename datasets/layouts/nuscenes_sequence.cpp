@@ -67,8 +67,9 @@ void NuscenesSequence::list_scans(const std::filesystem::path& root, const Nusce
     scans_.push_back(&scan);
   }
   if (absent > 0) {
-    mutable_recording().remarks.push_back(
-        fmt::format("left out {} sweeps of sample_data.json that are not on the disk", absent));
+    mutable_recording().remarks.push_back(fmt::format(
+        "left out {} on the disk", counted(absent, "sweep of sample_data.json that is not",
+                                           "sweeps of sample_data.json that are not")));
   }
 }
 
@@ -119,10 +120,7 @@ void NuscenesSequence::take_poses(const std::filesystem::path& folder,
 void NuscenesSequence::read(std::size_t scan_index, Frame& frame) const {
   const ScanEntry& entry = scan(scan_index);
   frame.points = read_scan(*entry.file, kColumns, std::move(frame.points));
-  if (frame.points.size() != entry.points) {
-    throw DataError(*entry.file, "changed since the sequence was opened",
-                    fmt::format("{} points", entry.points));
-  }
+  check_count(scan_index, frame.points.size());
   describe(scan_index, frame);
   frame.point_times_ns.clear();
   frame.truth.reset();

@@ -107,13 +107,6 @@ std::vector<std::int64_t> FolderSequence::read_stamps(const std::filesystem::pat
   return stamps_ns;
 }
 
-void FolderSequence::check_count(std::size_t scan_index, std::size_t points) const {
-  const ScanEntry& entry = scan(scan_index);
-  if (points == entry.points) return;
-  throw DataError(*entry.file, "changed since the sequence was opened",
-                  fmt::format("{} points", entry.points));
-}
-
 void FolderSequence::read(std::size_t scan_index, Frame& frame) const {
   const std::filesystem::path& file = *scan(scan_index).file;
   TimedScan timed;

@@ -34,8 +34,6 @@ class FolderSequence : public Sequence {
   std::vector<std::uint32_t> read_truth(std::size_t scan_index) const override;
 
  protected:
-  /// Throws DataError when a scan has another number of points than at opening.
-  void check_count(std::size_t scan_index, std::size_t points) const;
   /// Whether the points of every scan have a field "label".
   bool labels_in_scans() const { return labels_in_scans_; }
   /// Whether the times of points are to be read from the scans.

@@ -1,5 +1,7 @@
 #include "datasets/sequence/sequence.hpp"
 
+#include <fmt/format.h>
+
 #include "datasets/files/errors.hpp"
 
 namespace mosbench {
@@ -22,6 +24,13 @@ void Sequence::add_truth(std::size_t scan_index, Frame& frame) const {
 void Sequence::refuse_truth(std::size_t scan_index) const {
   const std::filesystem::path place = std::filesystem::path(name()) / stem(scan_index);
   throw DataError(scan_file(scan_index).value_or(place), "has no truth", "a labelled scan");
+}
+
+void Sequence::check_count(std::size_t scan_index, std::size_t points) const {
+  const ScanEntry& entry = scan(scan_index);
+  if (points == entry.points) return;
+  throw DataError(*entry.file, "changed since the sequence was opened",
+                  fmt::format("{} points", entry.points));
 }
 
 std::vector<std::size_t> scans_with_truth(const Sequence& sequence) {

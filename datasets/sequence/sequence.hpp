@@ -88,6 +88,9 @@ class Sequence {
   /// Sets the frame's truth to that of `read_truth`, or to none.
   void add_truth(std::size_t scan_index, Frame& frame) const;
   [[noreturn]] void refuse_truth(std::size_t scan_index) const;
+  /// Throws DataError where the file of a scan has another number of points than when the sequence
+  /// was opened.
+  void check_count(std::size_t scan_index, std::size_t points) const;
 
  private:
   Recording recording_;

@@ -158,7 +158,7 @@ TEST_F(HeliprFolder, LeavesScansWithoutPoseOut) {
   const Dataset dataset = open_dataset(folder_ / "set/KAIST05/LiDAR/Aeva", {});
   EXPECT_EQ(dataset.sequences.at(0)->size(), 1U);
   EXPECT_THAT(dataset.sequences.at(0)->remarks(),
-              Contains("1 of 2 scans have no pose in Aeva_gt.txt and are left out"));
+              Contains("left out 1 of 2 scans: no pose in Aeva_gt.txt"));
 }
 
 TEST_F(HeliprFolder, LeavesScansBetweenDistantPosesOut) {
