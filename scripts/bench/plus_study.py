@@ -16,6 +16,7 @@ import random
 import shutil
 import statistics
 import subprocess
+import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 ARRIVALS = ["--set", "min_seed_share=0.2,object_age_s=3,min_fresh_share=0,max_aged_share=1,"
@@ -24,6 +25,7 @@ ARRIVALS = ["--set", "min_seed_share=0.2,object_age_s=3,min_fresh_share=0,max_ag
 METHODS = {"paper": ["--method", "hmm-mos"], "arrivals": ["--method", "hmm-mos-plus", *ARRIVALS],
            "plus": ["--method", "hmm-mos-plus"]}
 SKIPPED_REAL_SCANS = 4  # those that the paper's method does not judge
+MADE_OF = "made_of.json"  # in the folder of a sequence: its seed, scans, noise and scene
 WARM_UP_SCANS, PROFILED_SCANS, ROUNDS = 10, 30, 2
 # group, name, scene, sensor, seed, scans, seconds per scan, pose noise (m, radians), voxel and range (m)
 SEQUENCES = [
@@ -178,29 +180,46 @@ def add_pose_noise(source, target, noise, seed):
     target.write_text("\n".join(lines) + "\n")
 
 
+def scene_of(program, work, row):
+    """The scene of a row: a built-in one with its sensor and its time per scan, or what is made of the street."""
+    _, name, scene_name, sensor, seed, _, period_s, *_ = row
+    known = "street" if scene_name in MADE_OF_STREET else scene_name
+    seen = work / f"{name}.seen"
+    shutil.rmtree(seen, ignore_errors=True)
+    subprocess.run([program, "simulate", "--layout", "semantickitti", "--seed", str(seed), "--out", seen,
+                    "--scene", known, "--scans", "1"], check=True, capture_output=True)
+    scene = json.loads((seen / "scene.json").read_text())
+    shutil.rmtree(seen)
+    scene |= {"sensor": sensor, "scan_period_s": period_s}
+    if scene_name in MADE_OF_STREET:
+        MADE_OF_STREET[scene_name](scene, seed)
+    return scene
+
+
 def simulated(program, work, row):
-    """The folder of a simulated sequence, made when it is not there yet."""
-    _, name, scene_name, sensor, seed, scans, period_s, noise, _, _ = row
+    """The folder of a simulated sequence, made when it is not there yet. Ends the script where one of the same name
+    was made of another row or scene: its numbers would be those of another sequence."""
+    _, name, _, _, seed, scans, _, noise, _, _ = row
     folder = work / name
-    sequence = folder / "sequences" / "08"
-    if not folder.exists():
-        begun = work / f"{name}.begun"
-        shutil.rmtree(begun, ignore_errors=True)
-        command = [program, "simulate", "--layout", "semantickitti", "--seed", str(seed), "--out", begun]
-        known = "street" if scene_name in MADE_OF_STREET else scene_name
-        subprocess.run([*command, "--scene", known, "--scans", "1"], check=True, capture_output=True)
-        scene = json.loads((begun / "scene.json").read_text())
-        shutil.rmtree(begun)
-        scene |= {"sensor": sensor, "scan_period_s": period_s}
-        if scene_name in MADE_OF_STREET:
-            MADE_OF_STREET[scene_name](scene, seed)
-        file = work / f"{name}.json"
-        file.write_text(json.dumps(scene))
-        subprocess.run([*command, "--scene", file, "--scans", str(scans)], check=True, capture_output=True)
-        inside = begun / "sequences" / "08"
-        add_pose_noise(inside / "poses.txt", inside / "noisy_poses.txt", noise, seed)
-        begun.rename(folder)
-    return sequence
+    scene = scene_of(program, work, row)
+    made_of = json.dumps({"seed": seed, "scans": scans, "pose_noise": noise, "scene": scene})
+    if folder.exists():
+        kept = folder / MADE_OF
+        if not kept.exists() or kept.read_text() != made_of:
+            sys.exit(f"{folder}: was made of another row or scene than {name} is now, expected {MADE_OF} there to tell "
+                     "the same; remove the folder or choose another --work")
+        return folder / "sequences" / "08"
+    begun = work / f"{name}.begun"
+    shutil.rmtree(begun, ignore_errors=True)
+    file = work / f"{name}.json"
+    file.write_text(json.dumps(scene))
+    subprocess.run([program, "simulate", "--layout", "semantickitti", "--seed", str(seed), "--out", begun,
+                    "--scene", file, "--scans", str(scans)], check=True, capture_output=True)
+    inside = begun / "sequences" / "08"
+    add_pose_noise(inside / "poses.txt", inside / "noisy_poses.txt", noise, seed)
+    (begun / MADE_OF).write_text(made_of)
+    begun.rename(folder)
+    return folder / "sequences" / "08"
 
 
 def answers(program, work, sequence, arguments):
