@@ -23,22 +23,31 @@ export function logTicks(low, high) {
   return powers.flatMap((power) => [1, 2, 5].map((digit) => Number(`${digit}e${power}`))).filter((tick) => low <= tick && tick <= high);
 }
 
-/** A metric over the strengths of one disturbance, a line per method; bars are intervals. */
+/** Settings have no unit; a disturbance has one, a probability that of 1. */
+const isSetting = ({ unit }) => unit === '';
+
+/**
+ * A metric over the strengths of one disturbance or the values of a setting, a line per method; bars are intervals. A
+ * setting's default is a dot apart: methods and data sets have their own, which lie anywhere among the values.
+ */
 export function curveChart(curve, metric) {
   const places = curve.values.map((_, i) => i);
+  const valuesOf = ({ points }) => points.map((point) => point[metric].value);
   return {
     key: `${curve.axis}-${metric}`,
     title: `${METRICS[metric]} by ${curve.axis}`,
     note: unitOf(curve),
     x: places,
-    series: curve.lines.map(({ label, points }, i) => ({
-      label, values: points.map((point) => point[metric].value), points: { show: true, size: 6 }, ...runLine(i),
+    series: curve.lines.map((line, i) => ({
+      label: line.label, values: valuesOf(line), points: { show: true, size: 6 }, ...runLine(i),
+      ...(isSetting(curve) && { drawn: valuesOf(line).map((value, place) => (place === 0 ? null : value)) }),
     })),
     options: {
       text: percent, xLabel: curve.axis, xValue: (_, i) => curve.values[i] ?? '–',
       xScale: { range: [-0.3, places.length - 0.7] },
       xAxis: { incrs: [1], values: (_, ticks) => ticks.map((i) => curve.values[i] ?? '') },
       yScale: { range: [0, 1.02] }, yAxis: { values: PERCENT_TICKS },
+      marks: isSetting(curve) ? curve.lines.map((line, i) => ({ x: 0, y: valuesOf(line)[0], colour: runLine(i).colour })) : undefined,
       // Side by side, or the last would hide the others.
       whiskers: curve.lines.flatMap(({ points }, i) => points.map((point, place) => ({
         x: place + 0.05 * (i - (curve.lines.length - 1) / 2), low: point[metric].low, high: point[metric].high, colour: runLine(i).colour,

@@ -19,6 +19,14 @@ test('a curve has a line per method over the strengths, and bars where there are
   assert.equal(curveChart({ ...curve, unit: '1' }, 'iou').note, '');
 });
 
+test('the default of a setting is a dot apart, which no line joins to the values', () => {
+  const chart = curveChart({ ...curve, axis: 'voxel_size_m', unit: '', values: ['default', '0.1'] }, 'iou');
+  assert.deepEqual(chart.series.map(({ values, drawn }) => [values, drawn]), [[[0.8, 0.6], [null, 0.6]], [[0.5, null], [null, null]]]);
+  assert.deepEqual(chart.options.marks.map(({ x, y }) => [x, y]), [[0, 0.8], [0, 0.5]]);
+  const disturbed = curveChart(curve, 'iou');
+  assert.ok(disturbed.options.marks === undefined && disturbed.series.every(({ drawn }) => drawn === undefined));
+});
+
 test('cells that failed alike are told once', () => {
   const failures = [{ cell: 'a', why: 'cut off' }, { cell: 'b', why: 'no pose' }, { cell: 'c', why: 'cut off' }];
   assert.deepEqual(gapLines(failures), ['a and 1 more cell: cut off', 'b: no pose']);
