@@ -95,6 +95,13 @@ def test_preset_best_is_of_plus():
         mosbench.Config.preset("best", method="dynablox")
 
 
+def test_settings_of_best_on_a_data_set_are_had_by_its_preset_and_the_method(tmp_path):
+    mosbench.simulate(tmp_path / "sim", layout="semantickitti", scene="room", scans=2, seed=1)
+    ran = mosbench.run(tmp_path / "sim", preset="best", out=tmp_path / "run").header["config"]
+    config = mosbench.Config.preset("semantickitti", method="hmm-mos-plus")
+    assert config.items() <= ran.items()  # the run adds what follows from them
+
+
 def test_config_replaces_copies_loads_and_compares(tmp_path):
     config = mosbench.Config.preset("doals-20m")
     finer = config.replace(voxel_size_m=0.1, delay_scans=np.int64(3))

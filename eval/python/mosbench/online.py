@@ -41,7 +41,10 @@ class Config(collections.abc.Mapping):
     def preset(cls, name: str, method: Optional[str] = None) -> "Config":
         """Returns the published settings of this name; `mosbench.presets()` lists them.
 
-        They are for "hmm-mos" when no method is named; "best" is of "hmm-mos-plus".
+        They are for "hmm-mos" when no method is named; "best" is of "hmm-mos-plus". As a Config knows no data set,
+        "best" has all defaults of that method, also its voxels of 0.2 m and range of 0.5 to 20 m, while
+        `run(data, preset="best")` takes voxels and range of the data set's own preset. Those settings are
+        `Config.preset("semantickitti", method="hmm-mos-plus")`, with the preset of your data set.
         """
         method = plain_errors(_mosbench.method_name, method, name)
         return cls._of(method, plain_errors(_mosbench.method_settings, method, name))
