@@ -164,9 +164,7 @@ struct LostContent {
                       counted(radial_velocities, "point"), layout.name));
     }
     if (stamps > 0 && !layout.writer->keeps_stamps) {
-      sentences.push_back(fmt::format(
-          "the stamps of {} are left out: layout {} has none, its scans are 0.1 s apart",
-          counted(stamps, "scan"), layout.name));
+      sentences.push_back(lost_stamps_text(stamps, layout));
     }
     return sentences;
   }

@@ -121,6 +121,9 @@ const Layout& recording_layout();
 std::span<const Layout* const> layouts();
 const Layout& layout_of(DatasetKind kind);
 
+/// Returns what to tell who writes scans with stamps into a layout without.
+std::string lost_stamps_text(std::size_t scans, const Layout& layout);
+
 inline constexpr std::string_view kUnknownLicence =
     "not known to mosbench, see where it is published";
 

@@ -1,6 +1,9 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 
+#include "datasets/files/counted.hpp"
 #include "datasets/layouts/layout.hpp"
 
 namespace mosbench {
@@ -16,6 +19,11 @@ std::span<const Layout* const> layouts() {
 
 const Layout& layout_of(DatasetKind kind) {
   return **std::ranges::find(layouts(), kind, [](const Layout* row) { return row->kind; });
+}
+
+std::string lost_stamps_text(std::size_t scans, const Layout& layout) {
+  return fmt::format("the stamps of {} are left out: layout {} has none, its scans are 0.1 s apart",
+                     counted(scans, "scan"), layout.name);
 }
 
 std::string_view to_string(DatasetKind kind) { return layout_of(kind).name; }

@@ -115,6 +115,18 @@ void write_scan(const RecordingWriter& writer, std::size_t scan_index, const Pos
   writer.files->write(scan_index, frame);
 }
 
+/// Tells that a scene's own time per scan is lost where the data set has no stamps.
+std::vector<std::string> remarks_of(const std::vector<RecordingWriter>& writers, const Scene& scene,
+                                    const Layout& layout) {
+  if (scene.scan_period_s == Scene{}.scan_period_s) return {};
+  std::size_t unstamped = 0;
+  for (const RecordingWriter& writer : writers) {
+    if (!writer.sequence->stamp_ns(0)) unstamped += writer.sequence->size();
+  }
+  if (unstamped == 0) return {};
+  return {lost_stamps_text(unstamped, layout)};
+}
+
 void check(const SimulateOptions& options) {
   if (options.scans < 1 || options.scans > kMostScans) {
     throw UsageError(
@@ -139,8 +151,9 @@ Scene load_scene(const std::string& name_or_file) {
   return is_file ? read_scene(name_or_file) : built_in_scene(name_or_file);
 }
 
-void simulate(const SimulateOptions& options,
-              const std::function<void(std::size_t done, std::size_t total)>& progress) {
+std::vector<std::string> simulate(
+    const SimulateOptions& options,
+    const std::function<void(std::size_t done, std::size_t total)>& progress) {
   check(options);
   const Scene scene = load_scene(options.scene);
   const SimulatedOrigin origin = origin_of(options, scene);
@@ -176,6 +189,7 @@ void simulate(const SimulateOptions& options,
                          simulated_splits(labelled_scans(options.layout, options.scans)));
   }
   for (const RecordingWriter& writer : writers) writer.files->finish();
+  return remarks_of(writers, scene, layout_of(options.layout));
 }
 
 }  // namespace mosbench

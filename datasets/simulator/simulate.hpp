@@ -28,9 +28,10 @@ struct SimulateOptions {
 /// last: what a killed run leaves cannot be opened and is completed by the same call. Throws
 /// UsageError when `out` holds anything but a simulation of the same parameters, DataError for a
 /// bad scene file or an unwritable folder. `progress` is called with the scans done and to do,
-/// never from two threads at once.
-void simulate(const SimulateOptions& options,
-              const std::function<void(std::size_t done, std::size_t total)>& progress = {});
+/// never from two threads at once. Returns a sentence for all that the layout did not keep.
+std::vector<std::string> simulate(
+    const SimulateOptions& options,
+    const std::function<void(std::size_t done, std::size_t total)>& progress = {});
 
 /// Returns the names of the sequences that a simulation consists of. Throws UsageError as
 /// `simulate`.

@@ -43,10 +43,11 @@ std::string simulate_dataset(SimulateFlags options) {
   }
   options.simulation.layout = *layout;
   std::optional<Progress> progress;
-  simulate(options.simulation, [&](std::size_t, std::size_t total) {
+  const auto count = [&](std::size_t, std::size_t total) {
     if (!progress) progress.emplace("simulate", total);
     progress->advance();
-  });
+  };
+  for (const std::string& sentence : simulate(options.simulation, count)) tell(sentence);
   return fmt::format("simulated {} of scene {}, seed {}, as {} in {}\n",
                      counted(options.simulation.scans, "scan"), options.simulation.scene,
                      options.simulation.seed, options.layout, options.simulation.out.string());

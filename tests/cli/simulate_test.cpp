@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tests/cli/program.hpp"
@@ -10,6 +11,7 @@ namespace mosbench {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 constexpr const char* kNotice =
     "simulated data (scene room, seed 5): not comparable with published numbers";
@@ -104,6 +106,29 @@ TEST_F(Simulate, IsKnownWhereALinkLeadsToIt) {
   EXPECT_THAT(run.out, HasSubstr("simulated data (scene room"));
   EXPECT_TRUE(cli::timeless_result(folder_ / "out/01").contains("simulated"));
   EXPECT_FALSE(cli::timeless_result(folder_ / "out/00").contains("simulated"));
+}
+
+TEST_F(Simulate, TellsThatAScenesOwnTimePerScanIsLostInLayoutsWithoutStamps) {
+  ASSERT_EQ(simulate("semantickitti", "room", "usual").exit_code, 0);
+  auto scene = nlohmann::json::parse(read_file(folder_ / "usual/scene.json"));
+  scene.at("scan_period_s") = 0.2;
+  folder_.write("slow.json", scene.dump());
+  const std::string slow = (folder_ / "slow.json").string();
+  for (const auto& [layout, scans] :
+       {std::pair{"sipailou", "6 scans"}, {"kitti-tracking", "6 scans"}, {"helimos", "24 scans"}}) {
+    const cli::Answer lost = simulate(layout, slow, std::string("slow_") + layout);
+    ASSERT_EQ(lost.exit_code, 0) << lost.err;
+    EXPECT_THAT(lost.err,
+                HasSubstr(std::string("the stamps of ") + scans + " are left out: layout " +
+                          layout + " has none, its scans are 0.1 s apart"));
+    EXPECT_THAT(simulate(layout, "room", std::string("usual_") + layout).err,
+                Not(HasSubstr("stamps")));
+  }
+  for (const char* layout : {"semantickitti", "kitti-raw", "nuscenes"}) {
+    const cli::Answer kept = simulate(layout, slow, std::string("slow_") + layout);
+    ASSERT_EQ(kept.exit_code, 0) << kept.err;
+    EXPECT_THAT(kept.err, Not(HasSubstr("stamps")));
+  }
 }
 
 TEST_F(Simulate, NamesAnOutputFolderThatCannotBeMade) {
