@@ -52,7 +52,7 @@ auto naming_scan(const Sequence& sequence, std::size_t scan_index, Work&& work) 
   try {
     return work();
   } catch (const std::range_error& error) {
-    throw DataError(scan(), error.what(), "points and poses within reach of the voxel grid");
+    throw DataError(scan().string() + ": " + error.what());  // which says what was expected
   } catch (const ProgramError& error) {
     throw DataError(scan(), error.wrong(), error.expected());
   }

@@ -100,6 +100,14 @@ TEST_F(PerturbedRuns, RefuseWhatDoesNotFit) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "sim"));
 }
 
+TEST_F(PerturbedRuns, NameWhatIsOutOfReachAndOneExpectation) {
+  const cli::Answer answer = cli::run(
+      {"run", path("s"), "--out", path("far"), "--perturb", "range_bias_m=1e6,range_noise_m=1e6"});
+  EXPECT_EQ(answer.exit_code, 3);
+  EXPECT_THAT(answer.err, HasSubstr("000000.bin: point 0: its voxel index overflows, expected a "
+                                    "point within 524288 voxels of the sensor\n"));
+}
+
 TEST(PerturbedSimulations, SayWhatDisturbedThem) {
   const TempFolder folder;
   const auto simulate = [&](const char* out, const char* text) {
