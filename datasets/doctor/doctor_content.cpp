@@ -201,8 +201,9 @@ class ContentCheck {
       if (sequence_.point_count(k) == 0) empty.push_back(k);
     }
     if (empty.empty()) return;
-    warn(fmt::format("{} of {} hold no points, first {}; expected some in every scan", empty.size(),
-                     counted(sequence_.size(), "scan"), sequence_.stem(empty.front())));
+    warn(fmt::format("{} of {} no points, first {}; expected some in every scan", empty.size(),
+                     counted(sequence_.size(), "scan holds", "scans hold"),
+                     sequence_.stem(empty.front())));
   }
 
   void check_returns() {

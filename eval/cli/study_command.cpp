@@ -139,9 +139,10 @@ Answer table_answer(const StudyPlan& plan, const StudyFlags& flags) {
   const std::string text = table_in(flags.format, plan, table);
   if (flags.output == "-") return {text, exit_code};
   write_output(flags.output, text);
-  const std::string rest =
-      exit_code == 0 ? ""
-                     : fmt::format("; {} of {} are done", table.done, counted(table.cells, "cell"));
+  const std::string rest = exit_code == 0
+                               ? ""
+                               : fmt::format("; {} of {} done", table.done,
+                                             counted(table.cells, "cell is", "cells are"));
   return {fmt::format("wrote {}{}\n", flags.output.string(), rest), exit_code};
 }
 

@@ -57,9 +57,9 @@ std::vector<std::string> all_remarks(const RunSettings& settings, const Sequence
   std::vector<std::string> remarks = sequence.remarks();
   if (const std::size_t unjudged = scans_without_detection(rows).size(); unjudged > 0) {
     remarks.push_back(fmt::format(
-        "{} of {} are labelled static without detection, because the method has seen too few "
+        "{} of {} labelled static without detection, because the method has seen too few "
         "scans before or after them: {}",
-        unjudged, counted(sequence.size(), "scan"), unjudged_text(rows.scans)));
+        unjudged, counted(sequence.size(), "scan is", "scans are"), unjudged_text(rows.scans)));
   }
   remarks.insert(remarks.end(), rows.remarks.begin(), rows.remarks.end());
   std::size_t nonfinite_points = 0;

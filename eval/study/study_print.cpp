@@ -87,8 +87,9 @@ TextRows effect_rows(const StudyTable& table) {
 
 /// "36 of 36 cells are done; they took 12 s of one core, 1.20 times the 10 s that were expected".
 std::string work_done_text(const StudyTable& table) {
-  std::string text = fmt::format("{} of {} are done; they took {} of one core", table.done,
-                                 counted(table.cells, "cell"), duration_text(*table.core_s));
+  std::string text = fmt::format("{} of {} done; {} took {} of one core", table.done,
+                                 counted(table.cells, "cell is", "cells are"),
+                                 table.cells == 1 ? "it" : "they", duration_text(*table.core_s));
   if (!table.predicted_s || *table.predicted_s <= 0) return text;
   return text + fmt::format(", {:.2f} times the {} that were expected",
                             *table.core_s / *table.predicted_s, duration_text(*table.predicted_s));

@@ -226,6 +226,14 @@ TEST_F(Run, SaysWhichScansWereNotJudgedAndWhy) {
                                  unjudged.at(0).get<std::string>()));
 }
 
+TEST_F(Run, SpeaksOfOneScanInTheSingular) {
+  cli::write_small_sequence(folder_ / "one", 1);
+  const cli::Answer run = cli::run({"run", (folder_ / "one").string(), "--dataset", "semantickitti",
+                                    "--out", (folder_ / "out").string()});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("1 of 1 scan is labelled static without detection"));
+}
+
 TEST_F(Run, TakesARootOfSeveralSequencesAndASelection) {
   for (const char* name : {"00", "01"}) {
     cli::write_small_sequence(folder_ / "root/sequences" / name, 6);

@@ -137,6 +137,17 @@ TEST_F(Studies, GoOnWhereOneSequenceIsBad) {
   EXPECT_EQ(study("table").exit_code, 0);
 }
 
+TEST_F(Studies, SpeakOfOneCellInTheSingular) {
+  folder_.write("s.yaml", R"(name: s
+data:
+  - {name: whole, path: data, dataset: semantickitti, sequences: ["00"]}
+methods: [underwood]
+)");
+  EXPECT_THAT(study("table", {"-o", path("table.txt")}).out, HasSubstr("; 0 of 1 cell is done"));
+  ASSERT_EQ(study("cell", keys()).exit_code, 0);
+  EXPECT_THAT(study("table").out, HasSubstr("1 of 1 cell is done; it took "));
+}
+
 TEST_F(Studies, GoOnWhereASequenceLacksWhatReadingNeeds) {
   folder_.write("s.yaml", R"(name: s
 protocol: sipailou
