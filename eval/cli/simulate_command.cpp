@@ -11,6 +11,7 @@
 #include "eval/cli/commands.hpp"
 #include "eval/cli/dataset_flags.hpp"
 #include "eval/results/progress.hpp"
+#include "eval/results/tell.hpp"
 
 namespace mosbench {
 namespace {
