@@ -38,7 +38,7 @@ std::uint32_t blocks_within(const BlockMask& mask, int radius);
 void gather_halo(const Neighbourhood& masks, int radius, HaloRows& halo);
 
 /// Returns in `closed`, whose radius is less by `gap`, the halo and what lies between two of its
-/// voxels of a column that are at most `gap` voxels apart.
+/// voxels of a column with at most `gap` voxels between them.
 void close_columns(const HaloRows& halo, int gap, HaloRows& closed);
 
 /// Inverts the halo.
