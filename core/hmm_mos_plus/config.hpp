@@ -85,7 +85,7 @@ void visit_fields(AnyConfig& config, Visitor&& visit) {
   visit("min_fresh_share", config.min_fresh_share, FieldRange{0.0, 1.0},
         "of an object's seeds, at least this share is fresh: those of a parked car grow old");
   visit("max_aged_share", config.max_aged_share, FieldRange{0.0, 1.0},
-        "of an object's voxels, at most this share was seen occupied for 0.5 s or more; any where "
+        "of an object's voxels, at most this share was seen occupied for 0.5 s or more, unless "
         "half or more are seeds");
   visit("rise_radius_m", config.rise_radius_m, FieldRange{0.0, 20.0},
         "the ground around a voxel is the lowest one in the columns within this distance");
