@@ -1,8 +1,10 @@
 #include <array>
+#include <memory>
 #include <utility>
 #include <vector>
 
 #include "bench/stage_benchmark.hpp"
+#include "core/hmm_mos_plus/look_back.hpp"
 #include "core/hmm_mos_plus/objects.hpp"
 #include "core/hmm_mos_plus/pipeline.hpp"
 #include "core/hmm_mos_plus/tracks.hpp"
@@ -12,7 +14,7 @@ namespace mosbench {
 namespace {
 
 /// The stages that hmm-mos-plus has beside those of the map.
-enum class PlusStage { kHistory, kArrivals, kGround, kPrediction, kObjects };
+enum class PlusStage { kHistory, kArrivals, kGround, kLookBack, kPrediction, kObjects };
 
 using PlusConfig = hmm_mos_plus::Config;
 
@@ -49,6 +51,7 @@ void plus_stage(benchmark::State& state, StagedScans& staged, ThreadPool& pool) 
   bool right = true;
   measure_passes(state, staged.measured.size(), [&] {
     VoxelMap map(config.map, staged.grid, VoxelMap::Keeps::kStatesAndHistory);
+    hmm_mos_plus::LookBack past(config);
     hmm_mos_plus::Tracks tracks(config);
     for (const StagedScan& s : staged.all) {
       const bool measured = s.k >= staged.measured.front().k;
@@ -62,18 +65,23 @@ void plus_stage(benchmark::State& state, StagedScans& staged, ThreadPool& pool) 
       auto classes = run(PlusStage::kArrivals, [&] {
         return hmm_mos_plus::classify(inputs.scan, map, s.k, config, pool);
       });
-      const auto [ground, low] = run(PlusStage::kGround, [&] {
-        hmm_mos_plus::Ground lowest(inputs.scan);
-        auto masks = lowest.low_voxels(config.ground_radius_voxels, config.ground_layers_voxels);
-        return std::pair(std::move(lowest), std::move(masks));
+      const auto ground = run(PlusStage::kGround, [&] {
+        return std::make_shared<const hmm_mos_plus::Ground>(inputs.scan, config);
       });
+      hmm_mos_plus::LowVoxels low(inputs.scan, *ground);
       const hmm_mos::Tick tick{.at = s.k};
+      run(PlusStage::kLookBack, [&] {
+        past.look(map, s.k, pool);
+        past.keep(inputs.scan, classes, ground, tick);
+        return 0;
+      });
       run(PlusStage::kPrediction, [&] {
+        past.add_seeds(inputs.scan, low, classes);
         tracks.add_seeds(inputs.scan, low, tick, classes);
         return 0;
       });
       const auto motion = run(PlusStage::kObjects, [&] {
-        return hmm_mos_plus::find_motion(inputs.scan, classes, ground, low, config);
+        return hmm_mos_plus::find_motion(inputs.scan, classes, *ground, low, config);
       });
       run(PlusStage::kPrediction, [&] {
         tracks.follow(inputs.scan, motion.components, tick);
@@ -91,6 +99,7 @@ void plus_stage(benchmark::State& state, StagedScans& staged, ThreadPool& pool) 
 const RegisterStage history("plus_map_update", plus_stage<PlusStage::kHistory>, true);
 const RegisterStage arrivals("plus_arrivals", plus_stage<PlusStage::kArrivals>, true);
 const RegisterStage ground("plus_ground", plus_stage<PlusStage::kGround>, false);
+const RegisterStage look_back("plus_look_back", plus_stage<PlusStage::kLookBack>, true);
 const RegisterStage prediction("plus_prediction", plus_stage<PlusStage::kPrediction>, false);
 const RegisterStage objects("plus_objects", plus_stage<PlusStage::kObjects>, false);
 

@@ -22,20 +22,27 @@ using hmm_mos::reference::Voxel;
 struct Cell {
   double occupied = 0, free = 0, unobserved = 1;  // belief
   Occupancy state = kUnobserved;
-  int last_seen = 0, free_ticks = 0, occupied_ticks = 0, arrived_at = 0;
-  bool arrived = false, sure = false;
+  int last_seen = 0, free_ticks = 0, occupied_ticks = 0, arrived_at = 0, left_at = 0;
+  bool arrived = false, sure = false, left = false;
 };
 
 struct Scan final : Observed {
   PointVoxels voxels;
-  SetOf measured, observed, occupied, seeds, fresh, settled, aged, departed;
+  SetOf measured, observed, occupied, ground, seeds, fresh, settled, aged, standing, departed;
   SetOf predicted;
   Eigen::Vector3d sensor_m = Eigen::Vector3d::Zero();
   int periods = 1;  // since the scan before
   LabelledScan result;
 };
 
-/// What moved in the scan before.
+/// Connected voxels that hold a seed.
+struct Component {
+  SetOf voxels;  // of one that moves, those near its seeds
+  float share = 0;
+  bool moves = false;
+};
+
+/// What moved in a scan before.
 struct Object {
   SetOf voxels;
   Eigen::Vector3d centre, velocity = Eigen::Vector3d::Zero();  // voxels, voxels per period
@@ -86,12 +93,14 @@ class PlusTwin final : public Method {
     for (const Voxel& v : scan.occupied) {
       const Cell* cell = find(map_, v);
       if (cell == nullptr || cell->state != kOccupied) continue;
-      if (young(*cell) && may_be_seed(v)) scan.seeds.insert(v);
+      if (young(*cell) && may_be_seed(v, true)) scan.seeds.insert(v);
       if (young(*cell) && is_within(*cell, c_.fresh_age_s)) scan.fresh.insert(v);
       if (cell->occupied_ticks >= 5) scan.aged.insert(v);
-      if (cell->occupied_ticks >= 8 && !(cell->arrived && is_within(*cell, c_.object_age_s)))
-        scan.settled.insert(v);
+      const bool of_late = cell->arrived && is_within(*cell, c_.object_age_s);
+      if (cell->occupied_ticks >= 8 && !of_late) scan.settled.insert(v);
+      if (cell->occupied_ticks >= 5 && !(of_late && is_within(*cell, 1))) scan.standing.insert(v);
     }
+    scan.ground = scan.occupied;
     held_.push_back(std::move(scan));
     return release(static_cast<std::size_t>(c_.map.delay_scans));
   }
@@ -117,12 +126,14 @@ class PlusTwin final : public Method {
     if (c.state == kOccupied && before == kOccupied) c.occupied_ticks += ticks_passed_;
     if (c.state == kFree && before == kFree) c.free_ticks += ticks_passed_;
     if (c.state == kOccupied && before != kOccupied) {
-      c.arrived = before == kFree, c.sure = c.arrived && c.free_ticks >= 3;
-      c.arrived_at = tick_, c.free_ticks = 0, c.occupied_ticks = 1;
+      const bool is_back = c.left && tick_ - c.left_at <= 10;
+      c.arrived = before == kFree, c.sure = c.arrived && c.free_ticks >= 3 && !is_back;
+      c.arrived_at = tick_, c.free_ticks = 0, c.occupied_ticks = 1, c.left = false;
     }
     if (c.state == kFree && before != kFree) {
       c.arrived = c.sure = false;
       c.occupied_ticks = 0, c.free_ticks = 1;
+      c.left = before == kOccupied, c.left_at = tick_;
     }
   }
 
@@ -159,10 +170,12 @@ class PlusTwin final : public Method {
            k_ - c->last_seen < c_.map.global_window_scans;
   }
 
-  /// Apart from settled surfaces, in known space.
-  bool may_be_seed(const Voxel& v) const {
+  /// Apart from settled surfaces and from what an arrival may have come from by noise, in known
+  /// space.
+  bool may_be_seed(const Voxel& v, bool arrived) const {
     const int firm = count_neighbours(v, 1, [&](const Voxel& u) {
       const Cell* c = find(map_, u);
+      if (arrived && c != nullptr && c->left && tick_ - c->left_at <= 5) return true;
       return is_known(c) && c->state == kOccupied && c->occupied_ticks >= 8 && !young(*c);
     });
     const auto known = [&](const Voxel& u) { return is_known(find(map_, u)); };
@@ -187,8 +200,9 @@ class PlusTwin final : public Method {
       if (!is_known(cell) || cell->state != kFree) continue;
       scan.settled.erase(v);
       scan.aged.erase(v);
+      scan.standing.erase(v);
       scan.fresh.insert(v);
-      if (may_be_seed(v) && scan.seeds.insert(v).second) scan.departed.insert(v);
+      if (may_be_seed(v, false) && scan.seeds.insert(v).second) scan.departed.insert(v);
     }
   }
 
@@ -199,18 +213,11 @@ class PlusTwin final : public Method {
     });
   }
 
-  void judge(Scan& scan) {
-    if (c_.map.delay_scans > 0)
-      add_departures(scan);
-    else
-      predict(scan);
-    std::vector<Object> found;
-    SetOf left = scan.seeds, low, objects;
-    for (const Voxel& v : scan.occupied) {
-      if (scan.settled.contains(v)) continue;
-      (is_low(v, scan.occupied) ? low : left).insert(v);
-    }
-    MapOf<float> shares;
+  std::vector<Component> components_of(const Scan& scan) const {
+    std::vector<Component> found;
+    SetOf left = scan.seeds;
+    for (const Voxel& v : scan.occupied)
+      if (!scan.settled.contains(v) && !is_low(v, scan.ground)) left.insert(v);
     for (const Voxel& seed : scan.seeds) {
       std::vector<Voxel> members;
       if (left.erase(seed) > 0) members.push_back(seed);
@@ -231,18 +238,40 @@ class PlusTwin final : public Method {
           share >= c_.min_seed_share && fresh >= c_.min_fresh_share * seeds &&
           (seeds >= c_.min_seeds_voxels || (share >= 0.5 && seeds >= c_.min_pure_seeds_voxels)) &&
           (share >= 0.5 || aged <= c_.max_aged_share * size) &&
-          has_size_of_object(members, share >= 0.5) && rises_from_ground(members, scan.occupied);
-      const SetOf kept =
-          moves ? near_seeds(members, scan.seeds) : SetOf(members.begin(), members.end());
-      for (const Voxel& v : kept) shares[v] = static_cast<float>(share);
-      if (moves) objects.insert(kept.begin(), kept.end());
-      if (moves) found.push_back(followed(kept, scan.periods));
+          has_size_of_object(members, share >= 0.5) && rises_from_ground(members, scan.ground);
+      found.push_back({moves ? near_seeds(members, scan) : SetOf(members.begin(), members.end()),
+                       static_cast<float>(share), moves});
     }
-    last_ = found;
+    return found;
+  }
+
+  void judge(Scan& scan) {
+    if (c_.map.delay_scans > 0) {
+      add_departures(scan);
+    } else {
+      look_back();
+      past_.push_back(scan);
+      int since = 0;
+      for (const Scan& later : past_) since += later.periods;
+      predict(late_, since, scan);
+      predict(last_, scan.periods, scan);
+    }
+    const std::vector<Component> components = components_of(scan);
+    last_ = followed(components, scan.periods, last_);
+    SetOf low, objects;
+    for (const Voxel& v : scan.occupied)
+      if (!scan.settled.contains(v) && is_low(v, scan.ground)) low.insert(v);
+    MapOf<float> shares;
+    for (const Component& component : components) {
+      for (const Voxel& v : component.voxels) shares[v] = component.share;
+      if (component.moves) objects.insert(component.voxels.begin(), component.voxels.end());
+    }
     SetOf moving = objects;
     for (const Voxel& v : low)
       for_neighbours({v.x, v.y, v.z + 1}, 1, [&](const Voxel& u) {
-        if (u.z == v.z + 1 && objects.contains(u)) moving.insert(v);
+        const bool is_straight = u.x == v.x && u.y == v.y;
+        if (u.z == v.z + 1 && objects.contains(u) && (is_straight || !scan.aged.contains(v)))
+          moving.insert(v);
       });
     for (const auto& v : scan.voxels.of_point) {
       scan.result.labels.push_back(v && moving.contains(*v) ? kMovingLabel : kStaticLabel);
@@ -257,27 +286,62 @@ class PlusTwin final : public Method {
     }
   }
 
-  /// Where the objects of the scan before are by now.
-  void predict(Scan& scan) const {
-    if (scan.periods * period_s() > 1) return;
-    for (const Object& object : last_) {
+  /// What moved two scans ago, as its departures tell by now. Settled voxels do not depart.
+  void look_back() {
+    if (past_.size() < 2) return;
+    Scan then = past_.front();
+    past_.pop_front();
+    std::erase_if(then.occupied, [&](const Voxel& v) {
+      return then.settled.contains(v) && !then.seeds.contains(v);
+    });
+    then.settled.clear();
+    add_departures(then);
+    late_ = followed(components_of(then), then.periods, late_);
+  }
+
+  /// Where objects of a scan `periods` before are by now: moved on by their last step, corrected by
+  /// up to two voxels along x and y to where most of them is found.
+  void predict(const std::vector<Object>& objects, int periods, Scan& scan) const {
+    if (periods * period_s() > 1) return;
+    for (const Object& object : objects) {
       if (c_.min_track_steps == 0 || object.steps < c_.min_track_steps) continue;
       const auto ahead = [&](int axis) {
-        return static_cast<int>(std::lround(object.velocity[axis] * scan.periods));
+        return static_cast<int>(std::lround(object.velocity[axis] * periods));
       };
       if (ahead(0) == 0 && ahead(1) == 0 && ahead(2) == 0) continue;
-      for (const Voxel& v : object.voxels) {
-        const Voxel at{v.x + ahead(0), v.y + ahead(1), v.z + ahead(2)};
-        if (!scan.occupied.contains(at) || scan.settled.contains(at) || is_low(at, scan.occupied))
-          continue;
-        scan.fresh.insert(at);
-        if (scan.seeds.insert(at).second) scan.predicted.insert(at);
+      const auto found = [&](int dx, int dy) {
+        std::vector<Voxel> at;
+        for (const Voxel& v : object.voxels)
+          at.push_back({v.x + ahead(0) + dx, v.y + ahead(1) + dy, v.z + ahead(2)});
+        std::erase_if(at, [&](const Voxel& v) {
+          return !scan.occupied.contains(v) || scan.standing.contains(v) || is_low(v, scan.ground);
+        });
+        return at;
+      };
+      std::vector<std::tuple<std::size_t, int, int, int>> corrections;  // the best first
+      for (int dy = -2; dy <= 2; ++dy)
+        for (int dx = -2; dx <= 2; ++dx)
+          if (ahead(0) + dx != 0 || ahead(1) + dy != 0 || ahead(2) != 0)
+            corrections.emplace_back(object.voxels.size() - found(dx, dy).size(),
+                                     dx * dx + dy * dy, dy, dx);
+      const auto [missed, squared, dy, dx] = *std::ranges::min_element(corrections);
+      for (const Voxel& v : found(dx, dy)) {
+        scan.fresh.insert(v);
+        if (scan.seeds.insert(v).second) scan.predicted.insert(v);
       }
     }
   }
 
+  std::vector<Object> followed(const std::vector<Component>& components, int periods,
+                               const std::vector<Object>& before) const {
+    std::vector<Object> objects;
+    for (const Component& component : components)
+      if (component.moves) objects.push_back(followed(component.voxels, periods, before));
+    return objects;
+  }
+
   /// With its past: that of the object that is nearest to it, within 20 m/s, when moved on.
-  Object followed(const SetOf& voxels, int periods) const {
+  Object followed(const SetOf& voxels, int periods, const std::vector<Object>& before) const {
     Object found{voxels, centre_of(voxels)};
     const double limit = 20 * (period_s() * periods) / c_.map.voxel_size_m;
     const auto apart = [&](const Object& object) -> Eigen::Vector3d {
@@ -288,7 +352,7 @@ class PlusTwin final : public Method {
                         o.velocity.x(), o.velocity.y(), o.velocity.z(), o.steps);
     };
     const Object* nearest = nullptr;
-    for (const Object& object : last_)
+    for (const Object& object : before)
       if (apart(object).squaredNorm() <= squared(limit) && period_s() * periods <= 1 &&
           (nearest == nullptr || rank(object) < rank(*nearest)))
         nearest = &object;
@@ -330,16 +394,16 @@ class PlusTwin final : public Method {
   }
 
   /// Those that are reached from a seed within max_growth_m, from voxel to voxel.
-  SetOf near_seeds(const std::vector<Voxel>& members, const SetOf& seeds) const {
+  SetOf near_seeds(const std::vector<Voxel>& members, const Scan& scan) const {
     SetOf near;
     for (const Voxel& v : members)
-      if (seeds.contains(v)) near.insert(v);
+      if (scan.seeds.contains(v)) near.insert(v);
     const int steps = static_cast<int>(c_.max_growth_m / c_.map.voxel_size_m);
     for (int step = 0; step < steps; ++step) {
       const SetOf before = near;
       for (const Voxel& v : members)
         for_neighbours(v, 1, [&](const Voxel& u) {
-          if (before.contains(u)) near.insert(v);
+          if (before.contains(u) && !scan.standing.contains(v)) near.insert(v);
         });
       if (near.size() == before.size()) break;
     }
@@ -363,7 +427,8 @@ class PlusTwin final : public Method {
   hmm_mos_plus::Config c_;
   MapOf<Cell> map_;
   std::deque<Scan> held_;
-  std::vector<Object> last_;
+  std::deque<Scan> past_;             // to look back at
+  std::vector<Object> last_, late_;  // of the scan before, and of the one looked back at
   std::vector<std::int64_t> stamps_ns_;
   int k_ = -1, tick_ = -1, ticks_passed_ = 1;
 };

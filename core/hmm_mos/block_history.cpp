@@ -5,7 +5,7 @@
 namespace mosbench::hmm_mos {
 namespace {
 
-/// Arrivals are pruned before their age is beyond what 8 bits hold: it is below kMaxAgeTicks and
+/// Turns are pruned before their age is beyond what 8 bits hold: it is below kMaxAgeTicks and
 /// this at an update, and grows by kMaxAgeTicks until `within` takes none for young.
 constexpr std::uint32_t kPruneTicks = 50;
 static_assert(2 * BlockHistory::kMaxAgeTicks + kPruneTicks < 256);
@@ -14,10 +14,11 @@ static_assert(2 * BlockHistory::kMaxAgeTicks + kPruneTicks < 256);
 
 void BlockHistory::update(const BlockMask& observed, const BlockStates& before,
                           const BlockStates& after, const Tick& tick) {
-  if (!arrived_.any()) {
+  if (!(arrived_ | left_).any()) {
     pruned_ = tick.at;
   } else if (tick.at - pruned_ >= kPruneTicks) {
     arrived_ = within(arrived_, kMaxAgeTicks, tick.at);
+    left_ = within(left_, kMaxAgeTicks, tick.at);
     sure_ = sure_ & arrived_;
     pruned_ = tick.at;
   }
@@ -25,29 +26,38 @@ void BlockHistory::update(const BlockMask& observed, const BlockStates& before,
   const BlockMask occupied = observed & after.occupied, free = observed & after.free;
   if (const BlockMask came = without(occupied, before.occupied); came.any()) {
     const BlockMask from_free = came & before.free;
-    arrived_ = without(arrived_, came) | from_free;
-    sure_ = without(sure_, came) | (from_free & free_low_ & free_high_);
-    settled_ = without(settled_, came);
-    for (BlockMask* digit : {&free_low_, &free_high_, &occupied_[0], &occupied_[1], &occupied_[2]})
-      *digit = without(*digit, came);
+    const BlockMask sure = without(from_free & free_low_ & free_high_,
+                                   left_within(came, kReturnTicks, tick.at));
+    forget(came);
+    arrived_ = arrived_ | from_free;
+    sure_ = sure_ | sure;
     occupied_[0] = occupied_[0] | came;
-    if (!arrived_at_ && from_free.any()) {
-      arrived_at_ = std::make_unique_for_overwrite<std::array<std::uint8_t, kBlockVoxels>>();
-    }
-    for_each_cell(from_free, [&](std::uint32_t cell) {
-      (*arrived_at_)[cell] = static_cast<std::uint8_t>(tick.at);
-    });
+    turn(from_free, tick.at);
   }
   const BlockMask stayed_occupied = occupied & before.occupied;
   for (std::uint32_t i = std::min(tick.steps, kSettledTicks); i > 0; --i) {
     count_occupied(stayed_occupied);
   }
-  if (const BlockMask left = without(free, before.free); left.any()) {
-    forget(left);
-    free_low_ = free_low_ | left;
+  if (const BlockMask freed = without(free, before.free); freed.any()) {
+    const BlockMask left = freed & before.occupied;
+    forget(freed);
+    left_ = left_ | left;
+    free_low_ = free_low_ | freed;
+    turn(left, tick.at);
   }
   const BlockMask stayed_free = free & before.free;
   for (std::uint32_t i = std::min(tick.steps, kSureTicks); i > 0; --i) count_free(stayed_free);
+}
+
+/// Notes that voxels arrived or left.
+void BlockHistory::turn(const BlockMask& voxels, std::uint32_t now) {
+  if (!voxels.any()) return;
+  if (!turned_at_) {
+    turned_at_ = std::make_unique_for_overwrite<std::array<std::uint8_t, kBlockVoxels>>();
+  }
+  for_each_cell(voxels, [&](std::uint32_t cell) {
+    (*turned_at_)[cell] = static_cast<std::uint8_t>(now);
+  });
 }
 
 void BlockHistory::count_occupied(const BlockMask& voxels) {
@@ -70,18 +80,18 @@ void BlockHistory::count_free(const BlockMask& voxels) {
 }
 
 void BlockHistory::forget(const BlockMask& voxels) {
-  for (BlockMask* mask : {&arrived_, &sure_, &settled_, &free_low_, &free_high_, &occupied_[0],
+  for (BlockMask* mask : {&arrived_, &left_, &sure_, &settled_, &free_low_, &free_high_, &occupied_[0],
                           &occupied_[1], &occupied_[2]}) {
     *mask = without(*mask, voxels);
   }
 }
 
-BlockMask BlockHistory::within(const BlockMask& arrivals, std::uint32_t ticks,
+BlockMask BlockHistory::within(const BlockMask& turned, std::uint32_t ticks,
                                std::uint32_t now) const {
   BlockMask young;
   if (now - updated_ > kMaxAgeTicks) return young;
-  for_each_cell(arrivals, [&](std::uint32_t cell) {
-    const auto age = static_cast<std::uint8_t>(now - (*arrived_at_)[cell]);
+  for_each_cell(turned, [&](std::uint32_t cell) {
+    const auto age = static_cast<std::uint8_t>(now - (*turned_at_)[cell]);
     if (age <= ticks) young.set(cell);
   });
   return young;

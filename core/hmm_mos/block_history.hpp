@@ -19,6 +19,8 @@ class BlockHistory {
  public:
   /// Count of being free from which an arrival is sure.
   static constexpr std::uint32_t kSureTicks = 3;
+  /// What left a voxel and is back after so long or less did not surely arrive.
+  static constexpr std::uint32_t kReturnTicks = 10;
   /// Count of being occupied from which a voxel is aged.
   static constexpr std::uint32_t kAgedTicks = 5;
   /// The same from which it is settled.
@@ -38,9 +40,14 @@ class BlockHistory {
   BlockMask arrived_within(const BlockMask& voxels, std::uint32_t ticks, std::uint32_t now) const {
     return within(voxels & arrived_, ticks, now);
   }
-  /// The same of those that were free for kSureTicks or more.
+  /// The same of those that were free for kSureTicks or more, and empty for more than kReturnTicks.
   BlockMask sure_within(const BlockMask& voxels, std::uint32_t ticks, std::uint32_t now) const {
     return within(voxels & sure_, ticks, now);
+  }
+  /// Returns those of some voxels that are free and were occupied until at most `ticks` before
+  /// `now`.
+  BlockMask left_within(const BlockMask& voxels, std::uint32_t ticks, std::uint32_t now) const {
+    return within(voxels & left_, ticks, now);
   }
   /// Returns the voxels that were occupied for kSettledTicks or more in their present run.
   const BlockMask& settled() const { return settled_; }
@@ -48,23 +55,24 @@ class BlockHistory {
   BlockMask aged() const { return settled_ | (occupied_[2] & (occupied_[1] | occupied_[0])); }
 
   /// Bytes from the start that `update` needs where all that is seen is free.
-  static constexpr std::size_t kTouchedBytes = 2 * sizeof(std::uint64_t) + 3 * sizeof(BlockMask);
+  static constexpr std::size_t kTouchedBytes = 2 * sizeof(std::uint64_t) + 4 * sizeof(BlockMask);
 
   std::size_t memory_bytes() const {
-    return sizeof(BlockHistory) + (arrived_at_ ? sizeof(*arrived_at_) : 0);
+    return sizeof(BlockHistory) + (turned_at_ ? sizeof(*turned_at_) : 0);
   }
 
  private:
-  BlockMask within(const BlockMask& arrivals, std::uint32_t ticks, std::uint32_t now) const;
+  BlockMask within(const BlockMask& turned, std::uint32_t ticks, std::uint32_t now) const;
+  void turn(const BlockMask& voxels, std::uint32_t now);
   void count_occupied(const BlockMask& voxels);
   void count_free(const BlockMask& voxels);
 
   std::uint32_t updated_ = 0;  // tick of the last update
-  std::uint32_t pruned_ = 0;   // tick at which no arrival was older than kMaxAgeTicks
-  // Tick of the arrival modulo 256, valid where arrived; null while nothing ever arrived, as in
+  std::uint32_t pruned_ = 0;   // tick at which no turn was older than kMaxAgeTicks
+  // Tick of the turn modulo 256, valid where arrived or left; null while nothing ever turned, as in
   // most blocks.
-  std::unique_ptr<std::array<std::uint8_t, kBlockVoxels>> arrived_at_;
-  BlockMask arrived_;
+  std::unique_ptr<std::array<std::uint8_t, kBlockVoxels>> turned_at_;
+  BlockMask arrived_, left_;  // turned from free to occupied, and back
   BlockMask free_low_, free_high_;  // count of being free, 0 to 3; so far what free space touches
   BlockMask sure_, settled_;
   std::array<BlockMask, 3> occupied_;  // count of being occupied, modulo 8

@@ -11,16 +11,23 @@ namespace {
 
 /// The neighbours of a seed that should be known: a cube of 5^3 voxels.
 constexpr int kCubeVoxels = 125;
+/// What left a voxel so short a time ago may have moved to the next one only by noise.
+constexpr std::uint32_t kLeftTicks = 5;
+/// An aged voxel that arrived at most so long ago is not standing.
+constexpr std::uint32_t kStandingTicks = 10;
+
+/// What may make a voxel a seed.
+enum class Evidence { kArrival, kDeparture };
 
 std::uint32_t ticks_of(double age_s) {
   return static_cast<std::uint32_t>(std::lround(age_s / hmm_mos::TickClock::kSeconds));
 }
 
 /// Returns the voxels of the map in blocks with neighbours of raw[slots] that are settled and did
-/// not arrive of late.
+/// not arrive of late; beside arrivals, those that were left of late, too.
 VoxelSet firm_voxels(const VoxelizedScan& scan, const ScanMasks& raw,
                      const std::vector<std::uint32_t>& slots, hmm_mos::VoxelMap& map,
-                     std::uint32_t k, std::uint32_t seed_age_ticks) {
+                     std::uint32_t k, std::uint32_t seed_age_ticks, Evidence evidence) {
   VoxelSet firm;
   for (const std::uint32_t slot : slots) {
     const std::uint32_t near = blocks_within(raw[slot], 1);
@@ -34,6 +41,9 @@ VoxelSet firm_voxels(const VoxelizedScan& scan, const ScanMasks& raw,
     const BlockMask settled = past->history.settled() & past->known.occupied;
     const BlockMask of_late = past->history.sure_within(settled, seed_age_ticks, past->tick);
     firm.masks[i] = without(settled, of_late);
+    if (evidence == Evidence::kArrival) {
+      firm.masks[i] = firm.masks[i] | past->history.left_within(past->known.free, kLeftTicks, past->tick);
+    }
   }
   return firm;
 }
@@ -49,9 +59,10 @@ std::vector<std::uint32_t> slots_with_any(const ScanMasks& masks) {
 
 /// Takes away what lies beside firm voxels.
 void keep_apart(const VoxelizedScan& scan, hmm_mos::VoxelMap& map, std::uint32_t k,
-                const Config& config, ThreadPool& pool, ScanMasks& raw) {
+                const Config& config, Evidence evidence, ThreadPool& pool, ScanMasks& raw) {
   const std::vector<std::uint32_t> slots = slots_with_any(raw);
-  const VoxelSet firm = firm_voxels(scan, raw, slots, map, k, ticks_of(config.seed_age_s));
+  const VoxelSet firm =
+      firm_voxels(scan, raw, slots, map, k, ticks_of(config.seed_age_s), evidence);
   pool.for_ranges(slots.size(), 16, [&](std::size_t begin, std::size_t end, unsigned) {
     HaloRows rows;
     for (std::size_t i = begin; i < end; ++i) {
@@ -63,8 +74,8 @@ void keep_apart(const VoxelizedScan& scan, hmm_mos::VoxelMap& map, std::uint32_t
 
 /// Adds to seeds[i] those of raw[i] that lie apart from firm voxels and in known space.
 void add_seeds(const VoxelizedScan& scan, ScanMasks raw, hmm_mos::VoxelMap& map, std::uint32_t k,
-               const Config& config, ThreadPool& pool, ScanMasks& seeds) {
-  keep_apart(scan, map, k, config, pool, raw);
+               const Config& config, Evidence evidence, ThreadPool& pool, ScanMasks& seeds) {
+  keep_apart(scan, map, k, config, evidence, pool, raw);
   const std::vector<std::uint32_t> slots = slots_with_any(raw);
   const VoxelSet known = map.known_at(k, blocks_of(scan, slots), pool);
   pool.for_ranges(slots.size(), 16, [&](std::size_t begin, std::size_t end, unsigned) {
@@ -87,12 +98,12 @@ void add_seeds(const VoxelizedScan& scan, ScanMasks raw, hmm_mos::VoxelMap& map,
 ArrivalClasses classify(const VoxelizedScan& scan, hmm_mos::VoxelMap& map, std::uint32_t k,
                         const Config& config, ThreadPool& pool) {
   const std::size_t blocks = scan.measured.block_count();
-  ArrivalClasses classes{ScanMasks(blocks), ScanMasks(blocks), ScanMasks(blocks),
-                         ScanMasks(blocks)};
+  const ScanMasks none(blocks);
+  ArrivalClasses classes{none, none, none, none, none};
   const std::uint32_t seed_age_ticks = ticks_of(config.seed_age_s);
   const std::uint32_t fresh_age_ticks = ticks_of(config.fresh_age_s);
   const std::uint32_t object_age_ticks = ticks_of(config.object_age_s);
-  ScanMasks young(blocks);
+  ScanMasks young = none;
   for (std::size_t i = 0; i < blocks; ++i) {
     if (!scan.occupied[i].any()) continue;
     const auto past = map.past_at(k, scan.measured.blocks[i]);
@@ -102,12 +113,12 @@ ArrivalClasses classify(const VoxelizedScan& scan, hmm_mos::VoxelMap& map, std::
     young[i] = history.sure_within(occupied, seed_age_ticks, past->tick);
     classes.fresh[i] = history.sure_within(young[i], fresh_age_ticks, past->tick);
     classes.aged[i] = history.aged() & occupied;
-    const BlockMask settled = history.settled() & occupied;
-    if (!settled.any()) continue;
-    classes.settled[i] =
-        without(settled, history.arrived_within(settled, object_age_ticks, past->tick));
+    const BlockMask came = history.arrived_within(classes.aged[i], object_age_ticks, past->tick);
+    classes.settled[i] = without(history.settled() & occupied, came);
+    classes.standing[i] =
+        without(classes.aged[i], history.arrived_within(came, kStandingTicks, past->tick));
   }
-  add_seeds(scan, std::move(young), map, k, config, pool, classes.seeds);
+  add_seeds(scan, std::move(young), map, k, config, Evidence::kArrival, pool, classes.seeds);
   return classes;
 }
 
@@ -119,9 +130,10 @@ void add_departures(const VoxelizedScan& scan, hmm_mos::VoxelMap& map, std::uint
     if (past) departed[i] = scan.occupied[i] & past->known.free;
     classes.settled[i] = without(classes.settled[i], departed[i]);
     classes.aged[i] = without(classes.aged[i], departed[i]);
+    classes.standing[i] = without(classes.standing[i], departed[i]);
     classes.fresh[i] = classes.fresh[i] | departed[i];
   }
-  add_seeds(scan, std::move(departed), map, k, config, pool, classes.seeds);
+  add_seeds(scan, std::move(departed), map, k, config, Evidence::kDeparture, pool, classes.seeds);
 }
 
 }  // namespace mosbench::hmm_mos_plus

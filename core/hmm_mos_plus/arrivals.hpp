@@ -11,10 +11,13 @@ namespace mosbench::hmm_mos_plus {
 
 /// What a scan's occupied voxels are by their history.
 struct ArrivalClasses {
-  ScanMasks seeds;    ///< arrived of late, apart from settled surfaces and in known space
-  ScanMasks fresh;    ///< arrived just now: among the seeds, a sign that an object still moves
-  ScanMasks settled;  ///< there for longer: no object grows into them
-  ScanMasks aged;     ///< there for some scans: most of an object that moves is not
+  ScanMasks seeds;     ///< arrived of late, apart from settled surfaces and in known space
+  ScanMasks fresh;     ///< arrived just now: among the seeds, a sign that an object still moves
+  ScanMasks settled;   ///< there for longer: they connect nothing
+  ScanMasks aged;      ///< there for some scans: most of an object that moves is not
+  ScanMasks standing;  ///< aged, and did not arrive of late: no object grows into them
+
+  std::size_t memory_bytes() const { return 5 * seeds.capacity() * sizeof(BlockMask); }
 };
 
 /// Returns the classes of scan k, with the map as it is after it.
@@ -22,7 +25,8 @@ ArrivalClasses classify(const VoxelizedScan& scan, hmm_mos::VoxelMap& map, std::
                         const Config& config, ThreadPool& pool);
 
 /// For a scan that is judged later, with the map as it is after scan k: its voxels that are free by
-/// then departed. They are not settled, and fresh seeds as far as they pass a seed's tests.
+/// then departed. They are neither settled nor aged, and fresh seeds as far as they pass a seed's
+/// tests.
 void add_departures(const VoxelizedScan& scan, hmm_mos::VoxelMap& map, std::uint32_t k,
                     const Config& config, ThreadPool& pool, ArrivalClasses& classes);
 

@@ -16,11 +16,11 @@ constexpr std::int32_t kNone = std::numeric_limits<std::int32_t>::max();
 
 }  // namespace
 
-Ground::Ground(const VoxelizedScan& scan) : scan_(scan), tile_of_(scan.occupied.size()) {
+Ground::Ground(const VoxelizedScan& scan, const Config& config)
+    : radius_(config.ground_radius_voxels), layers_(config.ground_layers_voxels) {
   for (std::size_t i = 0; i < scan.occupied.size(); ++i) {
     if (!scan.occupied[i].any()) continue;
-    tile_of_[i] = slot_of(scan.measured.blocks[i]);
-    Tile& lowest = lowest_[tile_of_[i]];
+    Tile& lowest = tile_of(scan.measured.blocks[i]);
     std::uint64_t columns = 0;  // those that a lower layer of the block had
     for (std::uint32_t z = 0; z < kSide; ++z) {
       const std::int32_t height = scan.measured.blocks[i].z * 8 + static_cast<std::int32_t>(z);
@@ -34,26 +34,23 @@ Ground::Ground(const VoxelizedScan& scan) : scan_(scan), tile_of_(scan.occupied.
   }
 }
 
-std::size_t Ground::slot_of(const BlockIndex& block) {
-  const auto fresh = static_cast<std::uint32_t>(blocks_.size());
+Ground::Tile& Ground::tile_of(const BlockIndex& block) {
+  const auto fresh = static_cast<std::uint32_t>(lowest_.size());
   const std::uint32_t slot = table_.find_or_insert({block.x, block.y, 0}, fresh);
-  if (slot == fresh) {
-    blocks_.push_back({block.x, block.y, 0});
-    lowest_.emplace_back().fill(kNone);
-  }
-  return slot;
+  if (slot == fresh) lowest_.emplace_back().fill(kNone);
+  return lowest_[slot];
 }
 
-/// Returns the lowest of the columns within `radius` of each column of a tile.
-Ground::Tile Ground::lowest_around(const BlockIndex& at, int radius) const {
+/// Returns the lowest of the columns within radius_ of each column of a block.
+Ground::Tile Ground::lowest_around(const BlockIndex& at) const {
   constexpr std::size_t kWide = 3 * kSide;
   static const Tile nothing = [] {
     Tile tile;
     tile.fill(kNone);
     return tile;
   }();
-  const auto first = static_cast<std::size_t>(kBlockSide - radius);
-  const auto width = static_cast<std::size_t>(2 * radius + 1);
+  const auto first = static_cast<std::size_t>(kBlockSide - radius_);
+  const auto width = static_cast<std::size_t>(2 * radius_ + 1);
   std::array<std::array<std::int32_t, kWide>, kWide> around;  // the tile in the middle of nine
   for (std::size_t tile = 0; tile < 9; ++tile) {
     const std::size_t tx = tile % 3 * kSide, ty = tile / 3 * kSide;
@@ -88,18 +85,12 @@ Ground::Tile Ground::lowest_around(const BlockIndex& at, int radius) const {
   return lowest;
 }
 
-ScanMasks Ground::low_voxels(int radius, int layers) const {
-  std::vector<Tile> around;
-  for (const BlockIndex& block : blocks_) around.push_back(lowest_around(block, radius));
-  ScanMasks low(scan_.occupied.size());
-  for (std::size_t i = 0; i < low.size(); ++i) {
-    if (!scan_.occupied[i].any()) continue;
-    const Tile& lowest = around[tile_of_[i]];
-    for_each_cell(scan_.occupied[i], [&](std::uint32_t cell) {
-      const std::int32_t z = voxel_at(scan_.measured.blocks[i], cell).z;
-      if (z <= lowest[cell & 63] + layers) low[i].set(cell);
-    });
-  }
+BlockMask Ground::low_among(const BlockMask& voxels, const BlockIndex& block) const {
+  BlockMask low;
+  const Tile lowest = lowest_around(block);
+  for_each_cell(voxels, [&](std::uint32_t cell) {
+    if (voxel_at(block, cell).z <= lowest[cell & 63] + layers_) low.set(cell);
+  });
   return low;
 }
 
@@ -146,6 +137,17 @@ std::vector<std::int32_t> Ground::lowest_within(int radius, const Voxel& first,
     }
   }
   return lowest;
+}
+
+LowVoxels::LowVoxels(const VoxelizedScan& scan, const Ground& ground)
+    : scan_(scan), ground_(ground), low_(scan.occupied.size()), found_(scan.occupied.size()) {}
+
+const BlockMask& LowVoxels::in(std::uint32_t slot) {
+  if (found_[slot] == 0) {
+    found_[slot] = 1;
+    low_[slot] = ground_.low_among(scan_.occupied[slot], scan_.measured.blocks[slot]);
+  }
+  return low_[slot];
 }
 
 }  // namespace mosbench::hmm_mos_plus

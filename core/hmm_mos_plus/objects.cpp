@@ -56,14 +56,16 @@ class Surroundings {
   std::vector<Slots> found_;
 };
 
-/// Moves voxels out of `left`: those of `first`, and what is connected with them over at most
-/// `steps` steps from voxel to voxel.
+/// Moves voxels out of left_in(slot), a mask per block: those of `first`, and what is connected with
+/// them over at most `steps` steps from voxel to voxel.
+template <typename LeftIn>
 std::vector<std::uint32_t> take_connected(std::span<const std::uint32_t> first, std::size_t steps,
-                                          ScanMasks& left, Surroundings& surroundings) {
+                                          LeftIn&& left_in, Surroundings& surroundings) {
   std::vector<std::uint32_t> taken;
   const auto take = [&](std::uint32_t slot, std::uint32_t cell) {
-    if (!left[slot].test(cell)) return;
-    left[slot].words[cell >> 6] &= ~(std::uint64_t{1} << (cell & 63));
+    BlockMask& left = left_in(slot);
+    if (!left.test(cell)) return;
+    left.words[cell >> 6] &= ~(std::uint64_t{1} << (cell & 63));
     taken.push_back(slot * kBlockVoxels + cell);
   };
   for (const std::uint32_t voxel : first) take(voxel / kBlockVoxels, voxel % kBlockVoxels);
@@ -141,70 +143,98 @@ void judge(const VoxelizedScan& scan, const ArrivalClasses& classes, const Groun
                     rises_from_ground(scan, component.voxels, box, ground, config);
 }
 
-/// Leaves of a component what is near its seeds. `none` holds no voxel, before and afterwards.
-void cut_growth(const ScanMasks& seeds, const Config& config, ScanMasks& none,
+/// Leaves of a component what is near its seeds and not standing. `none` holds no voxel, before and
+/// afterwards.
+void cut_growth(const ArrivalClasses& classes, const Config& config, ScanMasks& none,
                 Surroundings& surroundings, std::vector<std::uint32_t>& voxels) {
-  const auto is_seed = [&](std::uint32_t voxel) {
-    return seeds[voxel / kBlockVoxels].test(voxel % kBlockVoxels);
-  };
   std::vector<std::uint32_t> first;
   for (const std::uint32_t voxel : voxels) {
-    none[voxel / kBlockVoxels].set(voxel % kBlockVoxels);
-    if (is_seed(voxel)) first.push_back(voxel);
+    const std::uint32_t block = voxel / kBlockVoxels, cell = voxel % kBlockVoxels;
+    const bool is_seed = classes.seeds[block].test(cell);
+    if (is_seed) first.push_back(voxel);
+    if (is_seed || !classes.standing[block].test(cell)) none[block].set(cell);
   }
   const auto steps = static_cast<std::size_t>(config.max_growth_m / config.map.voxel_size_m);
-  std::vector<std::uint32_t> near = take_connected(first, steps, none, surroundings);
+  const auto none_in = [&](std::uint32_t slot) -> BlockMask& { return none[slot]; };
+  std::vector<std::uint32_t> near = take_connected(first, steps, none_in, surroundings);
   for (const std::uint32_t voxel : voxels) none[voxel / kBlockVoxels] = {};
   voxels = std::move(near);
 }
 
+/// What components are made of: seeds and voxels that are neither settled nor low.
+class Candidates {
+ public:
+  Candidates(const VoxelizedScan& scan, const ArrivalClasses& classes, LowVoxels& low)
+      : scan_(scan),
+        classes_(classes),
+        low_(low),
+        left_(scan.occupied.size()),
+        asked_(scan.occupied.size()) {}
+
+  /// Returns those of a block; what is taken out of it stays out.
+  BlockMask& operator()(std::uint32_t slot) {
+    if (asked_[slot] == 0) {
+      asked_[slot] = 1;
+      const BlockMask still = classes_.settled[slot] | low_.in(slot);
+      left_[slot] = classes_.seeds[slot] | without(scan_.occupied[slot], still);
+    }
+    return left_[slot];
+  }
+
+ private:
+  const VoxelizedScan& scan_;
+  const ArrivalClasses& classes_;
+  LowVoxels& low_;
+  ScanMasks left_;
+  std::vector<std::uint8_t> asked_;
+};
+
 /// Returns the components that hold a seed.
 std::vector<Component> components_of(const VoxelizedScan& scan, const ArrivalClasses& classes,
-                                     const Ground& ground, const ScanMasks& low,
-                                     const Config& config) {
-  const ScanMasks& seeds = classes.seeds;
-  ScanMasks left(low.size());
-  for (std::size_t i = 0; i < left.size(); ++i) {
-    left[i] = seeds[i] | without(scan.occupied[i], classes.settled[i] | low[i]);
-  }
+                                     const Ground& ground, LowVoxels& low, const Config& config) {
+  Candidates left(scan, classes, low);
   Surroundings surroundings(scan);
-  ScanMasks none(low.size());
+  ScanMasks none(classes.seeds.size());
   std::vector<Component> components;
-  for (std::uint32_t slot = 0; slot < seeds.size(); ++slot) {
-    for_each_cell(seeds[slot], [&](std::uint32_t cell) {
+  for (std::uint32_t slot = 0; slot < classes.seeds.size(); ++slot) {
+    for_each_cell(classes.seeds[slot], [&](std::uint32_t cell) {
       const std::array first = {static_cast<std::uint32_t>(slot * kBlockVoxels + cell)};
       Component found{take_connected(first, kAnySteps, left, surroundings)};
       if (found.voxels.empty()) return;  // taken with another seed
       judge(scan, classes, ground, config, found);
-      if (found.moves) cut_growth(seeds, config, none, surroundings, found.voxels);
+      if (found.moves) cut_growth(classes, config, none, surroundings, found.voxels);
       components.push_back(std::move(found));
     });
   }
   return components;
 }
 
-/// Returns those of the low voxels that lie under an object and are not settled.
+/// Returns those of the low voxels that lie straight under an object and are not settled, or
+/// diagonally and are not aged.
 ScanMasks feet_of(const VoxelizedScan& scan, const ArrivalClasses& classes,
-                  const ScanMasks& objects, const ScanMasks& low) {
+                  const ScanMasks& objects, LowVoxels& low) {
   ScanMasks feet(objects.size());
   Surroundings surroundings(scan);
   for (std::uint32_t slot = 0; slot < objects.size(); ++slot) {
     for_each_cell(objects[slot], [&](std::uint32_t cell) {
       surroundings.for_around(slot * kBlockVoxels + cell, -1, -1,
                               [&](std::uint32_t below, std::uint32_t below_cell) {
-                                if (low[below].test(below_cell)) feet[below].set(below_cell);
+                                constexpr std::uint32_t kXY = kBlockSide * kBlockSide - 1;
+                                const bool is_straight = ((below_cell ^ cell) & kXY) == 0;
+                                const auto& still = is_straight ? classes.settled : classes.aged;
+                                if (!low.in(below).test(below_cell)) return;
+                                if (!still[below].test(below_cell)) feet[below].set(below_cell);
                               });
     });
   }
-  for (std::size_t i = 0; i < feet.size(); ++i) feet[i] = without(feet[i], classes.settled[i]);
   return feet;
 }
 
 }  // namespace
 
 Motion find_motion(const VoxelizedScan& scan, const ArrivalClasses& classes, const Ground& ground,
-                   const ScanMasks& low, const Config& config) {
-  Motion motion{components_of(scan, classes, ground, low, config), ScanMasks(low.size()), {}};
+                   LowVoxels& low, const Config& config) {
+  Motion motion{components_of(scan, classes, ground, low, config), ScanMasks(scan.occupied.size()), {}};
   for (const Component& component : motion.components) {
     if (!component.moves) continue;
     for (const std::uint32_t voxel : component.voxels) {

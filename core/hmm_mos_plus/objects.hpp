@@ -26,8 +26,8 @@ struct Motion {
 };
 
 /// Finds the components (26 neighbours) of the seeds and of the occupied voxels that are neither
-/// settled nor among `low`, those near the ground, and which of them move.
+/// settled nor low, and which of them move.
 Motion find_motion(const VoxelizedScan& scan, const ArrivalClasses& classes, const Ground& ground,
-                   const ScanMasks& low, const Config& config);
+                   LowVoxels& low, const Config& config);
 
 }  // namespace mosbench::hmm_mos_plus

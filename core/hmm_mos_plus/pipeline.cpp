@@ -1,5 +1,6 @@
 #include "core/hmm_mos_plus/pipeline.hpp"
 
+#include <memory>
 #include <utility>
 
 #include "core/base/stage_clock.hpp"
@@ -48,7 +49,8 @@ std::vector<Reason> reasons_of(const VoxelizedScan& scan, const ScanMasks& arriv
 Pipeline::Pipeline(const Config& config, const RunContext& context)
     : MappedMethod(checked(config).map, context, hmm_mos::VoxelMap::Keeps::kStatesAndHistory),
       config_(config),
-      tracks_(config) {}
+      tracks_(config),
+      look_back_(config) {}
 
 std::vector<LabelledScan> Pipeline::entered(hmm_mos::ObservedScan& current) {
   HeldScan& held = held_.emplace_back();
@@ -73,16 +75,22 @@ void Pipeline::judge(HeldScan& held) {
     const StageClock clock(record, "departures");
     add_departures(scan, mapping().map(), mapping().k(), config_, mapping().pool(), held.classes);
   }
-  const Ground ground = timed(record, "ground", [&] { return Ground(scan); });
-  const ScanMasks low = timed(record, "ground", [&] {
-    return ground.low_voxels(config_.ground_radius_voxels, config_.ground_layers_voxels);
-  });
+  const auto ground =
+      timed(record, "ground", [&] { return std::make_shared<const Ground>(scan, config_); });
+  LowVoxels low(scan, *ground);
+  ArrivalClasses& classes = held.classes;
+  if (predicts()) {
+    const StageClock clock(record, "look_back");
+    look_back_.look(mapping().map(), mapping().k(), mapping().pool());
+    look_back_.keep(scan, classes, ground, held.tick);
+  }
   if (predicts()) {
     const StageClock clock(record, "prediction");
-    tracks_.add_seeds(scan, low, held.tick, held.classes);
+    look_back_.add_seeds(scan, low, classes);
+    tracks_.add_seeds(scan, low, held.tick, classes);
   }
-  const Motion motion = timed(
-      record, "objects", [&] { return find_motion(scan, held.classes, ground, low, config_); });
+  const Motion motion =
+      timed(record, "objects", [&] { return find_motion(scan, classes, *ground, low, config_); });
   if (predicts()) {
     const StageClock clock(record, "prediction");
     tracks_.follow(scan, motion.components, held.tick);
@@ -94,7 +102,7 @@ void Pipeline::judge(HeldScan& held) {
   if (context().scores) {
     result.scores = seed_shares(scan, motion.components);
     const Reason other = config_.map.delay_scans > 0 ? Reason::kDeparted : Reason::kPredicted;
-    result.reasons = reasons_of(scan, arrived, held.classes.seeds, other, motion);
+    result.reasons = reasons_of(scan, arrived, classes.seeds, other, motion);
   }
   result.threshold = config_.min_seed_share;
   result.judged = mapping().k() > 0;  // the first scan has nothing to have arrived since
@@ -111,9 +119,9 @@ std::vector<LabelledScan> Pipeline::release(std::size_t count) {
 }
 
 std::size_t Pipeline::held_bytes() const {
-  std::size_t bytes = tracks_.memory_bytes();
+  std::size_t bytes = tracks_.memory_bytes() + look_back_.memory_bytes();
   for (const HeldScan& held : held_) {
-    bytes += held.scan.memory_bytes() + 4 * held.classes.seeds.capacity() * sizeof(BlockMask);
+    bytes += held.scan.memory_bytes() + held.classes.memory_bytes();
   }
   return bytes;
 }

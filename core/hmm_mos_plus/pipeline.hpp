@@ -7,7 +7,7 @@
 #include "core/hmm_mos/mapped_method.hpp"
 #include "core/hmm_mos_plus/arrivals.hpp"
 #include "core/hmm_mos_plus/config.hpp"
-#include "core/hmm_mos_plus/ground.hpp"
+#include "core/hmm_mos_plus/look_back.hpp"
 #include "core/hmm_mos_plus/tracks.hpp"
 
 namespace mosbench::hmm_mos_plus {
@@ -41,6 +41,7 @@ class Pipeline final : public hmm_mos::MappedMethod {
 
   Config config_;
   Tracks tracks_;              // of the last scan judged, when it predicts
+  LookBack look_back_;         // the same
   std::deque<HeldScan> held_;  // the last delay + 1 scans, current one last
 };
 

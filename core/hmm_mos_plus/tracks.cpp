@@ -12,6 +12,9 @@ namespace {
 constexpr double kMaxError_m_s = 20;
 /// Nothing is followed over more.
 constexpr double kLongestStep_s = 1;
+/// Voxels by which a prediction is corrected at most along x and y: two or three scans tell no better
+/// how fast a surface moves that is one voxel thick.
+constexpr int kCorrection = 2;
 /// Centres are rounded down to these parts of a voxel, so that they shift exactly with the map.
 constexpr std::int64_t kParts = 256;
 
@@ -27,6 +30,43 @@ std::array<double, 3> centre_of(const std::vector<Voxel>& voxels) {
   return {mean_of(x, count), mean_of(y, count), mean_of(z, count)};
 }
 
+/// Returns the voxels of the scan where those of an object are when moved on by `shift`, and may
+/// move.
+std::vector<std::uint32_t> match(const std::vector<Voxel>& voxels, const Voxel& shift,
+                                 const VoxelizedScan& scan, LowVoxels& low,
+                                 const ArrivalClasses& classes) {
+  std::vector<std::uint32_t> found;
+  for (const Voxel& v : voxels) {
+    const Voxel at{v.x + shift.x, v.y + shift.y, v.z + shift.z};
+    const std::uint32_t slot = scan.measured.find(block_of(at)), cell = cell_of(at);
+    if (slot == kNoSlot || !scan.occupied[slot].test(cell)) continue;
+    if (classes.standing[slot].test(cell) || low.in(slot).test(cell)) continue;
+    found.push_back(slot * kBlockVoxels + cell);
+  }
+  return found;
+}
+
+/// The same with the correction that finds most, the smallest of those.
+std::vector<std::uint32_t> best_match(const std::vector<Voxel>& voxels, const Voxel& shift,
+                                      const VoxelizedScan& scan, LowVoxels& low,
+                                      const ArrivalClasses& classes) {
+  std::vector<std::uint32_t> best;
+  int best_squared = 0;
+  for (int dy = -kCorrection; dy <= kCorrection; ++dy) {
+    for (int dx = -kCorrection; dx <= kCorrection; ++dx) {
+      const Voxel corrected{shift.x + dx, shift.y + dy, shift.z};
+      if (corrected == Voxel{}) continue;
+      std::vector<std::uint32_t> found = match(voxels, corrected, scan, low, classes);
+      const int squared = dx * dx + dy * dy;
+      if (found.size() < best.size()) continue;
+      if (found.size() == best.size() && squared >= best_squared) continue;
+      best = std::move(found);
+      best_squared = squared;
+    }
+  }
+  return best;
+}
+
 double seconds_of(const hmm_mos::Tick& tick) { return tick.period_s * tick.periods; }
 
 }  // namespace
@@ -35,7 +75,7 @@ Tracks::Tracks(const Config& config)
     : min_steps_(config.min_track_steps),
       max_error_voxels_s_(kMaxError_m_s / config.map.voxel_size_m) {}
 
-void Tracks::add_seeds(const VoxelizedScan& scan, const ScanMasks& low, const hmm_mos::Tick& tick,
+void Tracks::add_seeds(const VoxelizedScan& scan, LowVoxels& low, const hmm_mos::Tick& tick,
                        ArrivalClasses& classes) const {
   if (seconds_of(tick) > kLongestStep_s) return;
   for (const Track& track : tracks_) {
@@ -45,13 +85,9 @@ void Tracks::add_seeds(const VoxelizedScan& scan, const ScanMasks& low, const hm
     };
     const Voxel shift{ahead(0), ahead(1), ahead(2)};
     if (shift == Voxel{}) continue;  // else what stops would be its own evidence
-    for (const Voxel& v : track.voxels) {
-      const Voxel at{v.x + shift.x, v.y + shift.y, v.z + shift.z};
-      const std::uint32_t slot = scan.measured.find(block_of(at)), cell = cell_of(at);
-      if (slot == kNoSlot || !scan.occupied[slot].test(cell)) continue;
-      if (classes.settled[slot].test(cell) || low[slot].test(cell)) continue;
-      classes.seeds[slot].set(cell);
-      classes.fresh[slot].set(cell);
+    for (const std::uint32_t voxel : best_match(track.voxels, shift, scan, low, classes)) {
+      classes.seeds[voxel / kBlockVoxels].set(voxel % kBlockVoxels);
+      classes.fresh[voxel / kBlockVoxels].set(voxel % kBlockVoxels);
     }
   }
 }

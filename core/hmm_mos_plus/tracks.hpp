@@ -12,16 +12,16 @@
 
 namespace mosbench::hmm_mos_plus {
 
-/// What moved in the last scan, followed from scan to scan.
+/// What moved in a scan, followed from scan to scan.
 class Tracks {
  public:
   explicit Tracks(const Config& config);
 
-  /// Predicts what was followed over min_track_steps: its voxels of the last scan, moved on by its
-  /// last step, are fresh seeds of the scan where they are occupied, not settled and not low. A
-  /// step below half a voxel along all axes is none.
-  /// `tick` is that of the scan.
-  void add_seeds(const VoxelizedScan& scan, const ScanMasks& low, const hmm_mos::Tick& tick,
+  /// Predicts what was followed over min_track_steps: its voxels, moved on by its last step, are
+  /// fresh seeds of a later scan where they are occupied, not standing and not low. The step is
+  /// corrected along x and y to the one that finds most of these. One below half a voxel along all
+  /// axes is none. `tick` has the periods since the scan followed.
+  void add_seeds(const VoxelizedScan& scan, LowVoxels& low, const hmm_mos::Tick& tick,
                  ArrivalClasses& classes) const;
   /// Makes the components that move in the scan those of the last one. Each is the next step of the
   /// one that comes nearest when moved on, if that is near enough.

@@ -49,6 +49,39 @@ TEST(BlockHistory, CallsAnArrivalSureAfterThreeFreeScans) {
   EXPECT_FALSE(unseen.arrived(10));
 }
 
+/// A pole that poses move to the next voxel and back.
+TEST(BlockHistory, CallsNoReturnSureBeforeASecond) {
+  OneVoxel early, at_limit, past_limit, unseen_first;
+  early.see("oofffffffffo");
+  ASSERT_EQ(early.scan, 12U) << "left in scan 2, back in 11";
+  EXPECT_TRUE(early.arrived(0));
+  EXPECT_FALSE(early.sure(0));
+  at_limit.see("offffffffffo");
+  past_limit.see("offfffffffffo");
+  EXPECT_FALSE(at_limit.sure(0)) << "10 scans after it left";
+  EXPECT_TRUE(past_limit.sure(0)) << "11 scans";
+  unseen_first.see("fffo");
+  EXPECT_TRUE(unseen_first.sure(0)) << "it left nothing";
+}
+
+TEST(BlockHistory, TellsWhatLeftUntilItIsBack) {
+  OneVoxel voxel;
+  const auto left = [&](std::uint32_t scans) {
+    return voxel.history.left_within(one_voxel(), scans, voxel.scan - 1).any();
+  };
+  voxel.see("fff");
+  EXPECT_FALSE(left(10)) << "nothing was there";
+  voxel.see("oo");
+  EXPECT_FALSE(left(10));
+  voxel.see("f");
+  EXPECT_TRUE(left(0));
+  voxel.see(".f");
+  EXPECT_FALSE(left(1));
+  EXPECT_TRUE(left(2));
+  voxel.see("o");
+  EXPECT_FALSE(left(10));
+}
+
 TEST(BlockHistory, CountsTheAgeOfAnArrivalInAllScans) {
   OneVoxel voxel;
   voxel.see("fffo..o");

@@ -9,15 +9,15 @@ namespace {
 
 constexpr hmm_mos::Tick kTick;
 
-/// A box of 3^3 voxels, all occupied, that moves: at x, and y = z = -1.
+/// A box of 3^3 voxels, all occupied, that moves: its lowest corner is at x, y and z.
 struct Box {
   VoxelizedScan scan;
   Component component{.voxels = {}, .seed_share = 1, .moves = true};
 
-  explicit Box(int x) {
+  explicit Box(int x, int y = -1, int z = -1) {
     for (int dz = 0; dz < 3; ++dz) {
       for (int dy = 0; dy < 3; ++dy) {
-        for (int dx = 0; dx < 3; ++dx) add({x + dx, dy - 1, dz - 1});
+        for (int dx = 0; dx < 3; ++dx) add({x + dx, y + dy, z + dz});
       }
     }
     scan.occupied = scan.measured.masks;
@@ -30,17 +30,40 @@ struct Box {
   }
 };
 
-/// Returns the number of voxels of a box at x that are seeds by what was followed.
-std::size_t seeds_at(int x, const Tracks& tracks, const hmm_mos::Tick& tick = kTick,
-                     bool settled = false, bool low = false) {
-  const Box box(x);
+/// What a box is besides occupied.
+struct Kind {
+  bool standing = false, low = false;
+};
+
+/// Returns the voxels of a box that are seeds by what was followed.
+std::vector<Voxel> predicted(const Box& box, const Tracks& tracks,
+                             const hmm_mos::Tick& tick = kTick, const Kind& kind = {}) {
+  Box with_floor = box;
+  for (int x = -40; x < 80; x += kBlockSide) with_floor.add({x, 0, -50});
+  with_floor.scan.occupied = with_floor.scan.measured.masks;
+  Config config;
+  config.ground_radius_voxels = kBlockSide;
+  if (kind.low) config.ground_layers_voxels = 100;
+  const Ground ground(with_floor.scan, config);
+  LowVoxels low(box.scan, ground);
   const ScanMasks none(box.scan.occupied.size());
-  ArrivalClasses classes{none, none, settled ? box.scan.occupied : none, none};
-  tracks.add_seeds(box.scan, low ? box.scan.occupied : none, tick, classes);
+  ArrivalClasses classes{none, none, none, none, kind.standing ? box.scan.occupied : none};
+  tracks.add_seeds(box.scan, low, tick, classes);
   EXPECT_EQ(classes.seeds, classes.fresh);
-  std::size_t seeds = 0;
-  for (const BlockMask& mask : classes.seeds) seeds += mask.count();
+  std::vector<Voxel> seeds;
+  for (std::size_t i = 0; i < classes.seeds.size(); ++i) {
+    for_each_cell(classes.seeds[i], [&](std::uint32_t cell) {
+      seeds.push_back(voxel_at(box.scan.measured.blocks[i], cell));
+    });
+  }
   return seeds;
+}
+
+std::size_t seeds_of(const Box& box, const Tracks& tracks) { return predicted(box, tracks).size(); }
+
+std::size_t seeds_at(int x, const Tracks& tracks, const hmm_mos::Tick& tick = kTick,
+                     const Kind& kind = {}) {
+  return predicted(Box(x), tracks, tick, kind).size();
 }
 
 Tracks followed(const std::vector<int>& xs, const hmm_mos::Tick& tick = kTick,
@@ -56,14 +79,38 @@ Tracks followed(const std::vector<int>& xs, const hmm_mos::Tick& tick = kTick,
 TEST(PlusTracks, PredictOneStepOfTheLastLength) {
   EXPECT_EQ(seeds_at(0, followed({0})), 0U) << "seen once";
   EXPECT_EQ(seeds_at(9, followed({-1, 4})), 27U);
-  EXPECT_EQ(seeds_at(8, followed({-1, 4})), 18U);
-  EXPECT_EQ(seeds_at(12, followed({-1, 4})), 0U);
   EXPECT_EQ(seeds_at(-14, followed({0, -4, -9})), 27U);
+}
+
+/// Expected at 9, y = -1 and z = -1.
+TEST(PlusTracks, CorrectAStepByTwoVoxelsAlongXAndY) {
+  const Tracks tracks = followed({-1, 4});
+  EXPECT_EQ(seeds_at(8, tracks), 27U);
+  EXPECT_EQ(seeds_at(11, tracks), 27U);
+  EXPECT_EQ(seeds_at(12, tracks), 18U);
+  EXPECT_EQ(seeds_at(14, tracks), 0U);
+  EXPECT_EQ(seeds_of(Box(7, 1), tracks), 27U);
+  EXPECT_EQ(seeds_of(Box(9, -4), tracks), 18U);
+  EXPECT_EQ(seeds_of(Box(9, -1, 0), tracks), 18U) << "not along z";
+}
+
+/// Expected at 9 to 11, of a box from 8 to 12: corrections by one find as much.
+TEST(PlusTracks, CorrectNoStepThatFindsAll) {
+  Box longer(8);
+  for (int x = 11; x <= 12; ++x) {
+    for (int dy = 0; dy < 3; ++dy) {
+      for (int dz = 0; dz < 3; ++dz) longer.add({x, dy - 1, dz - 1});
+    }
+  }
+  longer.scan.occupied = longer.scan.measured.masks;
+  const std::vector<Voxel> seeds = predicted(longer, followed({-1, 4}));
+  ASSERT_EQ(seeds.size(), 27U);
+  for (const Voxel& seed : seeds) EXPECT_TRUE(seed.x >= 9 && seed.x <= 11) << seed.x;
 }
 
 TEST(PlusTracks, PredictNothingOfWhatStands) {
   EXPECT_EQ(seeds_at(4, followed({0, 4, 4})), 0U);
-  EXPECT_EQ(seeds_at(5, followed({0, 4, 5})), 18U) << "a step of one voxel is one";
+  EXPECT_EQ(seeds_at(5, followed({0, 4, 5})), 18U) << "a step of one voxel is not corrected to none";
 }
 
 TEST(PlusTracks, CountScansThatAreMissing) {
@@ -72,9 +119,9 @@ TEST(PlusTracks, CountScansThatAreMissing) {
   EXPECT_EQ(seeds_at(16, followed({0, 4}), late), 27U);
 }
 
-TEST(PlusTracks, PredictNothingThatIsSettledOrLow) {
-  EXPECT_EQ(seeds_at(8, followed({0, 4}), kTick, true, false), 0U);
-  EXPECT_EQ(seeds_at(8, followed({0, 4}), kTick, false, true), 0U);
+TEST(PlusTracks, PredictNothingThatStandsOrIsLow) {
+  EXPECT_EQ(seeds_at(8, followed({0, 4}), kTick, {.standing = true}), 0U);
+  EXPECT_EQ(seeds_at(8, followed({0, 4}), kTick, {.low = true}), 0U);
 }
 
 /// Voxels of 0.2 m: 20 m/s are 10 of them per scan.

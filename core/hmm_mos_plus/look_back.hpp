@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <memory>
+
+#include "core/base/thread_pool.hpp"
+#include "core/hmm_mos/tick_clock.hpp"
+#include "core/hmm_mos/voxel_map.hpp"
+#include "core/hmm_mos_plus/arrivals.hpp"
+#include "core/hmm_mos_plus/config.hpp"
+#include "core/hmm_mos_plus/ground.hpp"
+#include "core/hmm_mos_plus/tracks.hpp"
+
+namespace mosbench::hmm_mos_plus {
+
+/// What moved some scans ago, as its departures tell by now: what moves away from the sensor arrives
+/// where nothing was known to be free.
+class LookBack {
+ public:
+  explicit LookBack(const Config& config);
+
+  /// Looks back from scan k, with the map as it is after it.
+  void look(hmm_mos::VoxelMap& map, std::uint32_t k, ThreadPool& pool);
+  /// Keeps of scan k what may have moved, to look back at it later.
+  void keep(const VoxelizedScan& scan, const ArrivalClasses& classes,
+            std::shared_ptr<const Ground> ground, const hmm_mos::Tick& tick);
+  /// Predicts, as Tracks does, where in scan k is what moved then.
+  void add_seeds(const VoxelizedScan& scan, LowVoxels& low, ArrivalClasses& classes) const;
+  std::size_t memory_bytes() const;
+
+ private:
+  struct Past {
+    VoxelizedScan scan;  ///< without settled voxels
+    ArrivalClasses classes;
+    std::shared_ptr<const Ground> ground;
+    hmm_mos::Tick tick;
+  };
+
+  Config config_;
+  Tracks tracks_;
+  std::deque<Past> past_;  // scan k last
+};
+
+}  // namespace mosbench::hmm_mos_plus
