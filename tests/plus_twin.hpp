@@ -98,7 +98,9 @@ class PlusTwin final : public Method {
       if (cell->occupied_ticks >= 5) scan.aged.insert(v);
       const bool of_late = cell->arrived && is_within(*cell, c_.object_age_s);
       if (cell->occupied_ticks >= 8 && !of_late) scan.settled.insert(v);
-      if (cell->occupied_ticks >= 5 && !(of_late && is_within(*cell, 1))) scan.standing.insert(v);
+      const int half_age = static_cast<int>(std::lround(c_.object_age_s * 10)) / 2;
+      if (cell->occupied_ticks >= 5 && !(cell->arrived && tick_ - cell->arrived_at <= half_age))
+        scan.standing.insert(v);
     }
     scan.ground = scan.occupied;
     held_.push_back(std::move(scan));
@@ -322,8 +324,8 @@ class PlusTwin final : public Method {
       for (int dy = -2; dy <= 2; ++dy)
         for (int dx = -2; dx <= 2; ++dx)
           if (ahead(0) + dx != 0 || ahead(1) + dy != 0 || ahead(2) != 0)
-            corrections.emplace_back(object.voxels.size() - found(dx, dy).size(),
-                                     dx * dx + dy * dy, dy, dx);
+            corrections.emplace_back(object.voxels.size() - found(dx, dy).size(), dx * dx + dy * dy,
+                                     dy, dx);
       const auto [missed, squared, dy, dx] = *std::ranges::min_element(corrections);
       for (const Voxel& v : found(dx, dy)) {
         scan.fresh.insert(v);
@@ -427,7 +429,7 @@ class PlusTwin final : public Method {
   hmm_mos_plus::Config c_;
   MapOf<Cell> map_;
   std::deque<Scan> held_;
-  std::deque<Scan> past_;             // to look back at
+  std::deque<Scan> past_;            // to look back at
   std::vector<Object> last_, late_;  // of the scan before, and of the one looked back at
   std::vector<std::int64_t> stamps_ns_;
   int k_ = -1, tick_ = -1, ticks_passed_ = 1;

@@ -26,8 +26,8 @@ void BlockHistory::update(const BlockMask& observed, const BlockStates& before,
   const BlockMask occupied = observed & after.occupied, free = observed & after.free;
   if (const BlockMask came = without(occupied, before.occupied); came.any()) {
     const BlockMask from_free = came & before.free;
-    const BlockMask sure = without(from_free & free_low_ & free_high_,
-                                   left_within(came, kReturnTicks, tick.at));
+    const BlockMask sure =
+        without(from_free & free_low_ & free_high_, left_within(came, kReturnTicks, tick.at));
     forget(came);
     arrived_ = arrived_ | from_free;
     sure_ = sure_ | sure;
@@ -55,9 +55,8 @@ void BlockHistory::turn(const BlockMask& voxels, std::uint32_t now) {
   if (!turned_at_) {
     turned_at_ = std::make_unique_for_overwrite<std::array<std::uint8_t, kBlockVoxels>>();
   }
-  for_each_cell(voxels, [&](std::uint32_t cell) {
-    (*turned_at_)[cell] = static_cast<std::uint8_t>(now);
-  });
+  for_each_cell(voxels,
+                [&](std::uint32_t cell) { (*turned_at_)[cell] = static_cast<std::uint8_t>(now); });
 }
 
 void BlockHistory::count_occupied(const BlockMask& voxels) {
@@ -80,8 +79,8 @@ void BlockHistory::count_free(const BlockMask& voxels) {
 }
 
 void BlockHistory::forget(const BlockMask& voxels) {
-  for (BlockMask* mask : {&arrived_, &left_, &sure_, &settled_, &free_low_, &free_high_, &occupied_[0],
-                          &occupied_[1], &occupied_[2]}) {
+  for (BlockMask* mask : {&arrived_, &left_, &sure_, &settled_, &free_low_, &free_high_,
+                          &occupied_[0], &occupied_[1], &occupied_[2]}) {
     *mask = without(*mask, voxels);
   }
 }

@@ -72,7 +72,7 @@ class BlockHistory {
   // Tick of the turn modulo 256, valid where arrived or left; null while nothing ever turned, as in
   // most blocks.
   std::unique_ptr<std::array<std::uint8_t, kBlockVoxels>> turned_at_;
-  BlockMask arrived_, left_;  // turned from free to occupied, and back
+  BlockMask arrived_, left_;        // turned from free to occupied, and back
   BlockMask free_low_, free_high_;  // count of being free, 0 to 3; so far what free space touches
   BlockMask sure_, settled_;
   std::array<BlockMask, 3> occupied_;  // count of being occupied, modulo 8

@@ -11,10 +11,8 @@ namespace {
 
 /// The neighbours of a seed that should be known: a cube of 5^3 voxels.
 constexpr int kCubeVoxels = 125;
-/// What left a voxel so short a time ago may have moved to the next one only by noise.
+/// What left a voxel so short a time ago may be beside it by noise alone.
 constexpr std::uint32_t kLeftTicks = 5;
-/// An aged voxel that arrived at most so long ago is not standing.
-constexpr std::uint32_t kStandingTicks = 10;
 
 /// What may make a voxel a seed.
 enum class Evidence { kArrival, kDeparture };
@@ -42,7 +40,8 @@ VoxelSet firm_voxels(const VoxelizedScan& scan, const ScanMasks& raw,
     const BlockMask of_late = past->history.sure_within(settled, seed_age_ticks, past->tick);
     firm.masks[i] = without(settled, of_late);
     if (evidence == Evidence::kArrival) {
-      firm.masks[i] = firm.masks[i] | past->history.left_within(past->known.free, kLeftTicks, past->tick);
+      firm.masks[i] =
+          firm.masks[i] | past->history.left_within(past->known.free, kLeftTicks, past->tick);
     }
   }
   return firm;
@@ -116,7 +115,7 @@ ArrivalClasses classify(const VoxelizedScan& scan, hmm_mos::VoxelMap& map, std::
     const BlockMask came = history.arrived_within(classes.aged[i], object_age_ticks, past->tick);
     classes.settled[i] = without(history.settled() & occupied, came);
     classes.standing[i] =
-        without(classes.aged[i], history.arrived_within(came, kStandingTicks, past->tick));
+        without(classes.aged[i], history.arrived_within(came, object_age_ticks / 2, past->tick));
   }
   add_seeds(scan, std::move(young), map, k, config, Evidence::kArrival, pool, classes.seeds);
   return classes;

@@ -56,8 +56,8 @@ class Surroundings {
   std::vector<Slots> found_;
 };
 
-/// Moves voxels out of left_in(slot), a mask per block: those of `first`, and what is connected with
-/// them over at most `steps` steps from voxel to voxel.
+/// Moves voxels out of left_in(slot), a mask per block: those of `first`, and what is connected
+/// with them over at most `steps` steps from voxel to voxel.
 template <typename LeftIn>
 std::vector<std::uint32_t> take_connected(std::span<const std::uint32_t> first, std::size_t steps,
                                           LeftIn&& left_in, Surroundings& surroundings) {
@@ -234,7 +234,8 @@ ScanMasks feet_of(const VoxelizedScan& scan, const ArrivalClasses& classes,
 
 Motion find_motion(const VoxelizedScan& scan, const ArrivalClasses& classes, const Ground& ground,
                    LowVoxels& low, const Config& config) {
-  Motion motion{components_of(scan, classes, ground, low, config), ScanMasks(scan.occupied.size()), {}};
+  Motion motion{
+      components_of(scan, classes, ground, low, config), ScanMasks(scan.occupied.size()), {}};
   for (const Component& component : motion.components) {
     if (!component.moves) continue;
     for (const std::uint32_t voxel : component.voxels) {

@@ -12,8 +12,8 @@ namespace {
 constexpr double kMaxError_m_s = 20;
 /// Nothing is followed over more.
 constexpr double kLongestStep_s = 1;
-/// Voxels by which a prediction is corrected at most along x and y: two or three scans tell no better
-/// how fast a surface moves that is one voxel thick.
+/// Voxels by which a prediction is corrected at most along x and y: two or three scans tell no
+/// better how fast a surface moves that is one voxel thick.
 constexpr int kCorrection = 2;
 /// Centres are rounded down to these parts of a voxel, so that they shift exactly with the map.
 constexpr std::int64_t kParts = 256;

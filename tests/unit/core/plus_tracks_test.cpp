@@ -110,7 +110,8 @@ TEST(PlusTracks, CorrectNoStepThatFindsAll) {
 
 TEST(PlusTracks, PredictNothingOfWhatStands) {
   EXPECT_EQ(seeds_at(4, followed({0, 4, 4})), 0U);
-  EXPECT_EQ(seeds_at(5, followed({0, 4, 5})), 18U) << "a step of one voxel is not corrected to none";
+  EXPECT_EQ(seeds_at(5, followed({0, 4, 5})), 18U)
+      << "a step of one voxel is not corrected to none";
 }
 
 TEST(PlusTracks, CountScansThatAreMissing) {
