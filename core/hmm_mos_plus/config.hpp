@@ -64,7 +64,8 @@ void visit_fields(AnyConfig& config, Visitor&& visit) {
   visit("seed_age_s", config.seed_age_s, FieldRange{0.0, kMaxAge_s},
         "a voxel that arrived in free space is a seed for so long; to tenths, by stamps or 10 Hz");
   visit("object_age_s", config.object_age_s, FieldRange{0.0, kMaxAge_s},
-        "a voxel that arrived may be part of an object for so long although it is settled");
+        "a voxel that arrived may be part of an object for so long although it is settled, and be "
+        "grown into for half of it although it is aged");
   visit("max_unknown_voxels", config.max_unknown_voxels, FieldRange{0, 125},
         "a seed has at most so many unknown ones among the 125 voxels around it");
   visit("max_gap_voxels", config.max_gap_voxels, FieldRange{0, kMaxHalo - kKnownRadius},
@@ -99,10 +100,9 @@ void visit_fields(AnyConfig& config, Visitor&& visit) {
         "one of which half or more are seeds may be so long: a truck or a bus");
   visit("max_height_m", config.max_height_m, FieldRange{0.0, 1000.0},
         "an object is at most so high");
-  visit(
-      "min_track_steps", config.min_track_steps, FieldRange{0, 1000},
-      "an object followed over so many scans has seeds where it will be in the next one; 0: none; "
-      "without a delay");
+  visit("min_track_steps", config.min_track_steps, FieldRange{0, 1000},
+        "an object followed over so many scans has seeds where it will be; 0: none, and what moves "
+        "away is not looked back at; without a delay");
 }
 
 /// Throws std::invalid_argument "<key>: <what is wrong>, <what was expected>" for the first field
