@@ -71,8 +71,7 @@ void plus_stage(benchmark::State& state, StagedScans& staged, ThreadPool& pool) 
       hmm_mos_plus::LowVoxels low(inputs.scan, *ground);
       const hmm_mos::Tick tick{.at = s.k};
       run(PlusStage::kLookBack, [&] {
-        past.look(map, s.k, pool);
-        past.keep(inputs.scan, classes, ground, tick);
+        past.enter(inputs.scan, classes, ground, tick, map, s.k, pool);
         return 0;
       });
       run(PlusStage::kPrediction, [&] {

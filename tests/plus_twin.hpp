@@ -177,8 +177,9 @@ class PlusTwin final : public Method {
   bool may_be_seed(const Voxel& v, bool arrived) const {
     const int firm = count_neighbours(v, 1, [&](const Voxel& u) {
       const Cell* c = find(map_, u);
-      if (arrived && c != nullptr && c->left && tick_ - c->left_at <= 5) return true;
-      return is_known(c) && c->state == kOccupied && c->occupied_ticks >= 8 && !young(*c);
+      if (!is_known(c)) return false;
+      if (arrived && c->left && tick_ - c->left_at <= 5) return true;
+      return c->state == kOccupied && c->occupied_ticks >= 8 && !young(*c);
     });
     const auto known = [&](const Voxel& u) { return is_known(find(map_, u)); };
     const int unknown =
@@ -302,7 +303,7 @@ class PlusTwin final : public Method {
   }
 
   /// Where objects of a scan `periods` before are by now: moved on by their last step, corrected by
-  /// up to two voxels along x and y to where most of them is found.
+  /// up to two voxels along x and y to where most of them is found, by less than a right angle.
   void predict(const std::vector<Object>& objects, int periods, Scan& scan) const {
     if (periods * period_s() > 1) return;
     for (const Object& object : objects) {
@@ -323,7 +324,7 @@ class PlusTwin final : public Method {
       std::vector<std::tuple<std::size_t, int, int, int>> corrections;  // the best first
       for (int dy = -2; dy <= 2; ++dy)
         for (int dx = -2; dx <= 2; ++dx)
-          if (ahead(0) + dx != 0 || ahead(1) + dy != 0 || ahead(2) != 0)
+          if ((ahead(0) + dx) * ahead(0) + (ahead(1) + dy) * ahead(1) + ahead(2) * ahead(2) > 0)
             corrections.emplace_back(object.voxels.size() - found(dx, dy).size(), dx * dx + dy * dy,
                                      dy, dx);
       const auto [missed, squared, dy, dx] = *std::ranges::min_element(corrections);

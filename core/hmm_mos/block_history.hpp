@@ -40,7 +40,7 @@ class BlockHistory {
   BlockMask arrived_within(const BlockMask& voxels, std::uint32_t ticks, std::uint32_t now) const {
     return within(voxels & arrived_, ticks, now);
   }
-  /// The same of those that were free for kSureTicks or more, and empty for more than kReturnTicks.
+  /// The same of those that were free for kSureTicks or more and not left in the last kReturnTicks.
   BlockMask sure_within(const BlockMask& voxels, std::uint32_t ticks, std::uint32_t now) const {
     return within(voxels & sure_, ticks, now);
   }

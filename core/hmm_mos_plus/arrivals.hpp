@@ -15,7 +15,7 @@ struct ArrivalClasses {
   ScanMasks fresh;     ///< arrived just now: among the seeds, a sign that an object still moves
   ScanMasks settled;   ///< there for longer: they connect nothing
   ScanMasks aged;      ///< there for some scans: most of an object that moves is not
-  ScanMasks standing;  ///< aged, older than half of object_age_s: nothing grows into them
+  ScanMasks standing;  ///< aged, did not arrive within half of object_age_s: not grown into
 
   std::size_t memory_bytes() const { return 5 * seeds.capacity() * sizeof(BlockMask); }
 };

@@ -20,8 +20,8 @@ void LookBack::look(hmm_mos::VoxelMap& map, std::uint32_t k, ThreadPool& pool) {
   Past& then = past_.front();
   add_departures(then.scan, map, k, config_, pool, then.classes);
   LowVoxels low(then.scan, *then.ground);
-  const Motion motion = find_motion(then.scan, then.classes, *then.ground, low, config_);
-  tracks_.follow(then.scan, motion.components, then.tick);
+  tracks_.follow(then.scan, find_components(then.scan, then.classes, *then.ground, low, config_),
+                 then.tick);
   past_.pop_front();
 }
 
@@ -32,8 +32,10 @@ void LookBack::add_seeds(const VoxelizedScan& scan, LowVoxels& low, ArrivalClass
   tracks_.add_seeds(scan, low, since, classes);
 }
 
-void LookBack::keep(const VoxelizedScan& scan, const ArrivalClasses& classes,
-                    std::shared_ptr<const Ground> ground, const hmm_mos::Tick& tick) {
+void LookBack::enter(const VoxelizedScan& scan, const ArrivalClasses& classes,
+                     std::shared_ptr<const Ground> ground, const hmm_mos::Tick& tick,
+                     hmm_mos::VoxelMap& map, std::uint32_t k, ThreadPool& pool) {
+  look(map, k, pool);
   std::vector<std::uint32_t> slots;
   ScanMasks may_move(scan.occupied.size());
   for (std::uint32_t slot = 0; slot < may_move.size(); ++slot) {

@@ -21,16 +21,18 @@ class LookBack {
  public:
   explicit LookBack(const Config& config);
 
-  /// Looks back from scan k, with the map as it is after it.
-  void look(hmm_mos::VoxelMap& map, std::uint32_t k, ThreadPool& pool);
-  /// Keeps of scan k what may have moved, to look back at it later.
-  void keep(const VoxelizedScan& scan, const ArrivalClasses& classes,
-            std::shared_ptr<const Ground> ground, const hmm_mos::Tick& tick);
-  /// Predicts, as Tracks does, where in scan k is what moved then.
+  /// Takes in scan k, whose classes know nothing of predictions, and looks back from it, with the
+  /// map as it is after it.
+  void enter(const VoxelizedScan& scan, const ArrivalClasses& classes,
+             std::shared_ptr<const Ground> ground, const hmm_mos::Tick& tick,
+             hmm_mos::VoxelMap& map, std::uint32_t k, ThreadPool& pool);
+  /// Predicts, as Tracks does, where in the scan entered last is what moved before.
   void add_seeds(const VoxelizedScan& scan, LowVoxels& low, ArrivalClasses& classes) const;
   std::size_t memory_bytes() const;
 
  private:
+  void look(hmm_mos::VoxelMap& map, std::uint32_t k, ThreadPool& pool);
+
   struct Past {
     VoxelizedScan scan;  ///< without settled voxels
     ArrivalClasses classes;
@@ -40,7 +42,7 @@ class LookBack {
 
   Config config_;
   Tracks tracks_;
-  std::deque<Past> past_;  // scan k last
+  std::deque<Past> past_;  // the scan entered last is the last one
 };
 
 }  // namespace mosbench::hmm_mos_plus

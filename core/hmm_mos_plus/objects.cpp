@@ -56,16 +56,16 @@ class Surroundings {
   std::vector<Slots> found_;
 };
 
-/// Moves voxels out of left_in(slot), a mask per block: those of `first`, and what is connected
-/// with them over at most `steps` steps from voxel to voxel.
-template <typename LeftIn>
+/// Moves voxels out of remaining_in(slot), a mask per block: those of `first`, and what is
+/// connected with them over at most `steps` steps from voxel to voxel.
+template <typename RemainingIn>
 std::vector<std::uint32_t> take_connected(std::span<const std::uint32_t> first, std::size_t steps,
-                                          LeftIn&& left_in, Surroundings& surroundings) {
+                                          RemainingIn&& remaining_in, Surroundings& surroundings) {
   std::vector<std::uint32_t> taken;
   const auto take = [&](std::uint32_t slot, std::uint32_t cell) {
-    BlockMask& left = left_in(slot);
-    if (!left.test(cell)) return;
-    left.words[cell >> 6] &= ~(std::uint64_t{1} << (cell & 63));
+    BlockMask& remaining = remaining_in(slot);
+    if (!remaining.test(cell)) return;
+    remaining.words[cell >> 6] &= ~(std::uint64_t{1} << (cell & 63));
     taken.push_back(slot * kBlockVoxels + cell);
   };
   for (const std::uint32_t voxel : first) take(voxel / kBlockVoxels, voxel % kBlockVoxels);
@@ -168,7 +168,7 @@ class Candidates {
       : scan_(scan),
         classes_(classes),
         low_(low),
-        left_(scan.occupied.size()),
+        remaining_(scan.occupied.size()),
         asked_(scan.occupied.size()) {}
 
   /// Returns those of a block; what is taken out of it stays out.
@@ -176,38 +176,18 @@ class Candidates {
     if (asked_[slot] == 0) {
       asked_[slot] = 1;
       const BlockMask still = classes_.settled[slot] | low_.in(slot);
-      left_[slot] = classes_.seeds[slot] | without(scan_.occupied[slot], still);
+      remaining_[slot] = classes_.seeds[slot] | without(scan_.occupied[slot], still);
     }
-    return left_[slot];
+    return remaining_[slot];
   }
 
  private:
   const VoxelizedScan& scan_;
   const ArrivalClasses& classes_;
   LowVoxels& low_;
-  ScanMasks left_;
+  ScanMasks remaining_;
   std::vector<std::uint8_t> asked_;
 };
-
-/// Returns the components that hold a seed.
-std::vector<Component> components_of(const VoxelizedScan& scan, const ArrivalClasses& classes,
-                                     const Ground& ground, LowVoxels& low, const Config& config) {
-  Candidates left(scan, classes, low);
-  Surroundings surroundings(scan);
-  ScanMasks none(classes.seeds.size());
-  std::vector<Component> components;
-  for (std::uint32_t slot = 0; slot < classes.seeds.size(); ++slot) {
-    for_each_cell(classes.seeds[slot], [&](std::uint32_t cell) {
-      const std::array first = {static_cast<std::uint32_t>(slot * kBlockVoxels + cell)};
-      Component found{take_connected(first, kAnySteps, left, surroundings)};
-      if (found.voxels.empty()) return;  // taken with another seed
-      judge(scan, classes, ground, config, found);
-      if (found.moves) cut_growth(classes, config, none, surroundings, found.voxels);
-      components.push_back(std::move(found));
-    });
-  }
-  return components;
-}
 
 /// Returns those of the low voxels that lie straight under an object and are not settled, or
 /// diagonally and are not aged.
@@ -232,10 +212,29 @@ ScanMasks feet_of(const VoxelizedScan& scan, const ArrivalClasses& classes,
 
 }  // namespace
 
+std::vector<Component> find_components(const VoxelizedScan& scan, const ArrivalClasses& classes,
+                                       const Ground& ground, LowVoxels& low, const Config& config) {
+  Candidates remaining(scan, classes, low);
+  Surroundings surroundings(scan);
+  ScanMasks none(classes.seeds.size());
+  std::vector<Component> components;
+  for (std::uint32_t slot = 0; slot < classes.seeds.size(); ++slot) {
+    for_each_cell(classes.seeds[slot], [&](std::uint32_t cell) {
+      const std::array first = {static_cast<std::uint32_t>(slot * kBlockVoxels + cell)};
+      Component found{take_connected(first, kAnySteps, remaining, surroundings)};
+      if (found.voxels.empty()) return;  // taken with another seed
+      judge(scan, classes, ground, config, found);
+      if (found.moves) cut_growth(classes, config, none, surroundings, found.voxels);
+      components.push_back(std::move(found));
+    });
+  }
+  return components;
+}
+
 Motion find_motion(const VoxelizedScan& scan, const ArrivalClasses& classes, const Ground& ground,
                    LowVoxels& low, const Config& config) {
   Motion motion{
-      components_of(scan, classes, ground, low, config), ScanMasks(scan.occupied.size()), {}};
+      find_components(scan, classes, ground, low, config), ScanMasks(scan.occupied.size()), {}};
   for (const Component& component : motion.components) {
     if (!component.moves) continue;
     for (const std::uint32_t voxel : component.voxels) {

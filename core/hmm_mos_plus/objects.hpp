@@ -11,7 +11,7 @@
 namespace mosbench::hmm_mos_plus {
 
 /// Connected voxels of a scan that hold a seed; the numbers are those of VoxelizedScan. One that
-/// moves holds what is near its seeds alone.
+/// moves holds its seeds, and what is near them and does not stand.
 struct Component {
   std::vector<std::uint32_t> voxels;
   double seed_share = 0;  ///< seeds / voxels
@@ -26,7 +26,11 @@ struct Motion {
 };
 
 /// Finds the components (26 neighbours) of the seeds and of the occupied voxels that are neither
-/// settled nor low, and which of them move.
+/// settled nor low, those that hold a seed, and which of them move.
+std::vector<Component> find_components(const VoxelizedScan& scan, const ArrivalClasses& classes,
+                                       const Ground& ground, LowVoxels& low, const Config& config);
+
+/// Finds what moves in a scan: components, and the feet of those that move.
 Motion find_motion(const VoxelizedScan& scan, const ArrivalClasses& classes, const Ground& ground,
                    LowVoxels& low, const Config& config);
 

@@ -80,11 +80,10 @@ void Pipeline::judge(HeldScan& held) {
   LowVoxels low(scan, *ground);
   ArrivalClasses& classes = held.classes;
   if (predicts()) {
-    const StageClock clock(record, "look_back");
-    look_back_.look(mapping().map(), mapping().k(), mapping().pool());
-    look_back_.keep(scan, classes, ground, held.tick);
-  }
-  if (predicts()) {
+    timed(record, "look_back", [&] {
+      look_back_.enter(scan, classes, ground, held.tick, mapping().map(), mapping().k(),
+                       mapping().pool());
+    });
     const StageClock clock(record, "prediction");
     look_back_.add_seeds(scan, low, classes);
     tracks_.add_seeds(scan, low, held.tick, classes);

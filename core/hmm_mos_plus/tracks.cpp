@@ -31,12 +31,13 @@ std::array<double, 3> centre_of(const std::vector<Voxel>& voxels) {
 }
 
 /// Returns the voxels of the scan where those of an object are when moved on by `shift`, and may
-/// move.
+/// move. Gives up when there cannot be `worth` of them.
 std::vector<std::uint32_t> match(const std::vector<Voxel>& voxels, const Voxel& shift,
-                                 const VoxelizedScan& scan, LowVoxels& low,
+                                 std::size_t worth, const VoxelizedScan& scan, LowVoxels& low,
                                  const ArrivalClasses& classes) {
   std::vector<std::uint32_t> found;
-  for (const Voxel& v : voxels) {
+  for (std::size_t i = 0; i < voxels.size() && found.size() + voxels.size() - i >= worth; ++i) {
+    const Voxel& v = voxels[i];
     const Voxel at{v.x + shift.x, v.y + shift.y, v.z + shift.z};
     const std::uint32_t slot = scan.measured.find(block_of(at)), cell = cell_of(at);
     if (slot == kNoSlot || !scan.occupied[slot].test(cell)) continue;
@@ -46,17 +47,23 @@ std::vector<std::uint32_t> match(const std::vector<Voxel>& voxels, const Voxel& 
   return found;
 }
 
+/// Whether two steps make less than a right angle. Others would let what stops be its own evidence.
+bool leads_along(const Voxel& step, const Voxel& other) {
+  return step.x * other.x + step.y * other.y + step.z * other.z > 0;
+}
+
 /// The same with the correction that finds most, the smallest of those.
 std::vector<std::uint32_t> best_match(const std::vector<Voxel>& voxels, const Voxel& shift,
                                       const VoxelizedScan& scan, LowVoxels& low,
                                       const ArrivalClasses& classes) {
-  std::vector<std::uint32_t> best;
+  std::vector<std::uint32_t> best = match(voxels, shift, 0, scan, low, classes);
+  if (best.size() == voxels.size()) return best;
   int best_squared = 0;
   for (int dy = -kCorrection; dy <= kCorrection; ++dy) {
     for (int dx = -kCorrection; dx <= kCorrection; ++dx) {
       const Voxel corrected{shift.x + dx, shift.y + dy, shift.z};
-      if (corrected == Voxel{}) continue;
-      std::vector<std::uint32_t> found = match(voxels, corrected, scan, low, classes);
+      if (!leads_along(corrected, shift)) continue;
+      std::vector<std::uint32_t> found = match(voxels, corrected, best.size(), scan, low, classes);
       const int squared = dx * dx + dy * dy;
       if (found.size() < best.size()) continue;
       if (found.size() == best.size() && squared >= best_squared) continue;

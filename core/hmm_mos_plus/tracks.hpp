@@ -7,8 +7,8 @@
 #include "core/hmm_mos/tick_clock.hpp"
 #include "core/hmm_mos_plus/arrivals.hpp"
 #include "core/hmm_mos_plus/config.hpp"
+#include "core/hmm_mos_plus/ground.hpp"
 #include "core/hmm_mos_plus/objects.hpp"
-#include "core/hmm_mos_plus/scan_masks.hpp"
 
 namespace mosbench::hmm_mos_plus {
 
@@ -19,8 +19,9 @@ class Tracks {
 
   /// Predicts what was followed over min_track_steps: its voxels, moved on by its last step, are
   /// fresh seeds of a later scan where they are occupied, not standing and not low. The step is
-  /// corrected along x and y to the one that finds most of these. One below half a voxel along all
-  /// axes is none. `tick` has the periods since the scan followed.
+  /// corrected along x and y, but never turned by a right angle, to the one that finds most of
+  /// these. One below half a voxel along all axes is none. `tick` has the periods since the scan
+  /// followed.
   void add_seeds(const VoxelizedScan& scan, LowVoxels& low, const hmm_mos::Tick& tick,
                  ArrivalClasses& classes) const;
   /// Makes the components that move in the scan those of the last one. Each is the next step of the
