@@ -25,7 +25,7 @@ struct Sweep {
 ///   path(kSweepScans + n) <= evict_radius - asked,
 /// the path of the sensor over the last kSweepScans + n scans. For a voxel that should have left
 /// lay farther than evict_radius from a position since the last sweep of its block. What is asked
-/// about scan k, or with a delay scan k - n, lies within `asked` = max_range + kernel of a position
+/// about scan k, or later about scan k - n, lies within `asked` = max_range + kernel of a position
 /// of that path, so it lies nearer than asked + path <= evict_radius to each of these positions:
 /// such a voxel is never asked about before the next sweep of its block removes it. Nor is it
 /// observed again, as rays end at max_range. While the path is longer, every scan sweeps all blocks

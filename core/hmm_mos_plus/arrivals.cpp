@@ -21,8 +21,8 @@ std::uint32_t ticks_of(double age_s) {
   return static_cast<std::uint32_t>(std::lround(age_s / hmm_mos::TickClock::kSeconds));
 }
 
-/// Returns the voxels of the map in blocks with neighbours of raw[slots] that are settled and did
-/// not arrive of late; beside arrivals, those that were left of late, too.
+/// Returns, of the blocks around raw[slots], the settled voxels that did not arrive of late; for
+/// arrivals also those that were just left.
 VoxelSet firm_voxels(const VoxelizedScan& scan, const ScanMasks& raw,
                      const std::vector<std::uint32_t>& slots, hmm_mos::VoxelMap& map,
                      std::uint32_t k, std::uint32_t seed_age_ticks, Evidence evidence) {

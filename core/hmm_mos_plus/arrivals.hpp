@@ -11,7 +11,8 @@ namespace mosbench::hmm_mos_plus {
 
 /// What a scan's occupied voxels are by their history.
 struct ArrivalClasses {
-  ScanMasks seeds;     ///< arrived of late, apart from settled surfaces and in known space
+  ScanMasks
+      seeds;  ///< arrived of late, apart from what is settled or was just left, in known space
   ScanMasks fresh;     ///< arrived just now: among the seeds, a sign that an object still moves
   ScanMasks settled;   ///< there for longer: they connect nothing
   ScanMasks aged;      ///< there for some scans: most of an object that moves is not
@@ -25,8 +26,8 @@ ArrivalClasses classify(const VoxelizedScan& scan, hmm_mos::VoxelMap& map, std::
                         const Config& config, ThreadPool& pool);
 
 /// For a scan that is judged later, with the map as it is after scan k: its voxels that are free by
-/// then departed. They are neither settled nor aged, and fresh seeds as far as they pass a seed's
-/// tests.
+/// then departed. They are neither settled, aged nor standing, and fresh seeds as far as they pass
+/// a seed's tests but the one for what was just left.
 void add_departures(const VoxelizedScan& scan, hmm_mos::VoxelMap& map, std::uint32_t k,
                     const Config& config, ThreadPool& pool, ArrivalClasses& classes);
 

@@ -64,8 +64,8 @@ void visit_fields(AnyConfig& config, Visitor&& visit) {
   visit("seed_age_s", config.seed_age_s, FieldRange{0.0, kMaxAge_s},
         "a voxel that arrived in free space is a seed for so long; to tenths, by stamps or 10 Hz");
   visit("object_age_s", config.object_age_s, FieldRange{0.0, kMaxAge_s},
-        "a voxel that arrived may be part of an object for so long although it is settled, and be "
-        "grown into for half of it although it is aged");
+        "a voxel that arrived connects objects for so long although it is settled, and for half of "
+        "it may belong to one although it is aged");
   visit("max_unknown_voxels", config.max_unknown_voxels, FieldRange{0, 125},
         "a seed has at most so many unknown ones among the 125 voxels around it");
   visit("max_gap_voxels", config.max_gap_voxels, FieldRange{0, kMaxHalo - kKnownRadius},
@@ -93,7 +93,8 @@ void visit_fields(AnyConfig& config, Visitor&& visit) {
   visit("min_rise_voxels", config.min_rise_voxels, FieldRange{0, 100},
         "a quarter of an object's voxels are at least this high above the ground around them");
   visit("max_growth_m", config.max_growth_m, FieldRange{0.0, 1000.0},
-        "what is connected with seeds over more than this moves not with them");
+        "what is connected with seeds over more than this, or through voxels that stand, moves not "
+        "with them");
   visit("max_extent_m", config.max_extent_m, FieldRange{0.0, 1000.0},
         "an object is at most so long along x and y of the map");
   visit("max_pure_extent_m", config.max_pure_extent_m, FieldRange{0.0, 1000.0},
@@ -101,8 +102,8 @@ void visit_fields(AnyConfig& config, Visitor&& visit) {
   visit("max_height_m", config.max_height_m, FieldRange{0.0, 1000.0},
         "an object is at most so high");
   visit("min_track_steps", config.min_track_steps, FieldRange{0, 1000},
-        "an object followed over so many scans has seeds where it will be; 0: none, and what moves "
-        "away is not looked back at; without a delay");
+        "what was followed over so many scans, also when looked back at, has seeds where it should "
+        "be now; 0: neither; without a delay");
 }
 
 /// Throws std::invalid_argument "<key>: <what is wrong>, <what was expected>" for the first field

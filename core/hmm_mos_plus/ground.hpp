@@ -15,8 +15,8 @@ class Ground {
  public:
   Ground(const VoxelizedScan& scan, const Config& config);
 
-  /// Returns the low ones among a block's voxels: at most ground_layers_voxels above the lowest
-  /// occupied voxel in the columns within ground_radius_voxels per axis.
+  /// Returns the low ones among the scan's voxels in a block: at most ground_layers_voxels above
+  /// the lowest occupied voxel in the columns within ground_radius_voxels per axis.
   BlockMask low_among(const BlockMask& voxels, const BlockIndex& block) const;
   /// Returns, for each column from `first` to `last`, both included, x first, the height of the
   /// lowest voxel in the columns within `radius` per axis; the greatest number where there is none.

@@ -82,6 +82,17 @@ TEST(BlockHistory, TellsWhatLeftUntilItIsBack) {
   EXPECT_FALSE(left(10));
 }
 
+/// Ticks are kept modulo 256.
+TEST(BlockHistory, NeverTellsTwiceThatAVoxelWasLeft) {
+  OneVoxel voxel;
+  voxel.see("of");
+  for (std::uint32_t age = 1; age < 600; ++age) {
+    voxel.see("f");
+    const std::uint32_t now = voxel.scan - 1;
+    ASSERT_EQ(voxel.history.left_within(one_voxel(), 5, now).any(), age <= 5) << age;
+  }
+}
+
 TEST(BlockHistory, CountsTheAgeOfAnArrivalInAllScans) {
   OneVoxel voxel;
   voxel.see("fffo..o");
