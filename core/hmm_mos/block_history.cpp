@@ -28,7 +28,7 @@ void BlockHistory::update(const BlockMask& observed, const BlockStates& before,
     const BlockMask from_free = came & before.free;
     const BlockMask sure =
         without(from_free & free_low_ & free_high_, left_within(came, kReturnTicks, tick.at));
-    forget(came);
+    for (BlockMask* mask : {&left_, &free_low_, &free_high_}) *mask = without(*mask, came);
     arrived_ = arrived_ | from_free;
     sure_ = sure_ | sure;
     occupied_[0] = occupied_[0] | came;
@@ -38,13 +38,13 @@ void BlockHistory::update(const BlockMask& observed, const BlockStates& before,
   for (std::uint32_t i = std::min(tick.steps, kSettledTicks); i > 0; --i) {
     count_occupied(stayed_occupied);
   }
-  if (const BlockMask freed = without(free, before.free); freed.any()) {
-    const BlockMask left = freed & before.occupied;
-    forget(freed);
+  const BlockMask freed = without(free, before.free);
+  if (const BlockMask left = freed & before.occupied; left.any()) {
+    forget(left);
     left_ = left_ | left;
-    free_low_ = free_low_ | freed;
     turn(left, tick.at);
   }
+  free_low_ = free_low_ | freed;
   const BlockMask stayed_free = free & before.free;
   for (std::uint32_t i = std::min(tick.steps, kSureTicks); i > 0; --i) count_free(stayed_free);
 }

@@ -26,7 +26,7 @@ METHODS = {"paper": ["--method", "hmm-mos"], "arrivals": ["--method", "hmm-mos-p
            "plus": ["--method", "hmm-mos-plus"]}
 SKIPPED_REAL_SCANS = 4  # those that the paper's method does not judge
 MADE_OF = "made_of.json"  # in the folder of a sequence: its seed, scans, noise and scene
-WARM_UP_SCANS, PROFILED_SCANS, ROUNDS = 10, 30, 2
+WARM_UP_SCANS, PROFILED_SCANS, ROUNDS = 10, 30, 3
 # group, name, scene, sensor, seed, scans, seconds per scan, pose noise (m, radians), voxel and range (m)
 SEQUENCES = [
     ("tuned", "mall-os1", "mall", "os1-64", 11, 80, 0.1, (0, 0), 0.20, 20),
