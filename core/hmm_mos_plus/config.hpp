@@ -65,7 +65,7 @@ void visit_fields(AnyConfig& config, Visitor&& visit) {
         "a voxel that arrived in free space is a seed for so long; to tenths, by stamps or 10 Hz");
   visit("object_age_s", config.object_age_s, FieldRange{0.0, kMaxAge_s},
         "a voxel that arrived connects objects for so long although it is settled, and for half of "
-        "it may belong to one although it is aged");
+        "it may belong to one although it is aged; to tenths");
   visit("max_unknown_voxels", config.max_unknown_voxels, FieldRange{0, 125},
         "a seed has at most so many unknown ones among the 125 voxels around it");
   visit("max_gap_voxels", config.max_gap_voxels, FieldRange{0, kMaxHalo - kKnownRadius},
@@ -82,7 +82,7 @@ void visit_fields(AnyConfig& config, Visitor&& visit) {
   visit("min_seed_share", config.min_seed_share, FieldRange{0.0, 1.0},
         "an object's voxels are seeds by at least this share");
   visit("fresh_age_s", config.fresh_age_s, FieldRange{0.0, kMaxAge_s},
-        "a seed is fresh for so long; from seed_age_s on every seed is");
+        "a seed is fresh for so long; to tenths; from seed_age_s on every seed is");
   visit("min_fresh_share", config.min_fresh_share, FieldRange{0.0, 1.0},
         "of an object's seeds, at least this share is fresh: those of a parked car grow old");
   visit("max_aged_share", config.max_aged_share, FieldRange{0.0, 1.0},
@@ -103,7 +103,7 @@ void visit_fields(AnyConfig& config, Visitor&& visit) {
         "an object is at most so high");
   visit("min_track_steps", config.min_track_steps, FieldRange{0, 1000},
         "what was followed over so many scans, also when looked back at, has seeds where it should "
-        "be now; 0: neither; without a delay");
+        "be now; 0: no prediction and no looking back; not used with a delay");
 }
 
 /// Throws std::invalid_argument "<key>: <what is wrong>, <what was expected>" for the first field
