@@ -7,6 +7,7 @@
 #include <span>
 
 #include "datasets/files/errors.hpp"
+#include "datasets/files/files.hpp"
 #include "datasets/files/folder_listing.hpp"
 #include "datasets/files/label_file.hpp"
 #include "datasets/files/text.hpp"
