@@ -168,25 +168,6 @@ TEST(PlusPoles, MoveWhenTheyComeAndNotWhenPosesMoveThem) {
   EXPECT_GT(moving_scans("AAAA--------BBBBBBBB"), 0U) << "so late that it is another";
 }
 
-/// A wall, and a box that was there before the first scan, leaves in the tenth and hides what it
-/// drives into.
-SmallWorld world_with_a_box_that_leaves() {
-  SmallWorld world;
-  for (std::size_t k = 0; k < 16; ++k) {
-    std::vector<Point>& scan = world.scans.emplace_back();
-    world.poses.push_back(Pose::Identity());
-    const float box_m = 1.4F + 0.5F * std::max(0.0F, static_cast<float>(k) - 9.0F);
-    for (float y = -0.6F; y < 0.6F; y += 0.02F) {
-      for (float z = -0.6F; z < 0.6F; z += 0.02F) {
-        const bool is_hit = std::abs(box_m * y) < 0.5F && std::abs(box_m * z) < 0.5F;
-        const float x = is_hit ? box_m : 4.9F;
-        scan.push_back({x, x * y, x * z, 0.0F});
-      }
-    }
-  }
-  return world;
-}
-
 TEST(PlusObjectsThatLeave, AreFoundOnlineByWhatDeparted) {
   const SmallWorld world = world_with_a_box_that_leaves();
   hmm_mos_plus::Config config = plus_of_a_room();

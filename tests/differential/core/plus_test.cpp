@@ -127,6 +127,16 @@ TEST(PlusAgainstItsTwin, AgreesOnLongVehicles) {
   EXPECT_LT(moving_points_of_truck(20.0, 0.2), few_seeds + 1000);
 }
 
+TEST(PlusAgainstItsTwin, AgreesOnWhatLeaves) {
+  for (const double object_age_s : {1.0, 2.0, 4.0}) {
+    PlusTally tally;
+    hmm_mos_plus::Config config = small_plus();
+    config.object_age_s = object_age_s;
+    expect_twins_labels(world_with_a_box_that_leaves(), config, tally);
+    EXPECT_GT(tally.reasons[static_cast<std::size_t>(Reason::kPredicted)], 50U);
+  }
+}
+
 /// With jitter, and with scans that are missing.
 TEST(PlusAgainstItsTwin, AgreesAtEveryRateOfStamps) {
   PlusTally tally;
