@@ -127,6 +127,40 @@ TEST(PlusAgainstItsTwin, AgreesOnLongVehicles) {
   EXPECT_LT(moving_points_of_truck(20.0, 0.2), few_seeds + 1000);
 }
 
+/// A wall, a box before it from the tenth scan on, and beside that another one 1.2 s later.
+SmallWorld world_with_two_boxes() {
+  SmallWorld world;
+  for (std::size_t k = 0; k < 25; ++k) {
+    std::vector<Point>& scan = world.scans.emplace_back();
+    world.poses.push_back(Pose::Identity());
+    for (float y = -0.6F; y < 0.6F; y += 0.02F) {
+      for (float z = -0.6F; z < 0.6F; z += 0.02F) {
+        const bool is_first = k >= 10 && y >= -0.25F && y < 0.0F;
+        const bool is_second = k >= 22 && y >= 0.0F && y < 0.25F;
+        const float x = (is_first || is_second) && std::abs(z) < 0.4F ? 2.0F : 4.0F;
+        scan.push_back({x, x * y, x * z, 0.0F});
+      }
+    }
+  }
+  return world;
+}
+
+/// The first one stands when it is older than half of object_age_s.
+TEST(PlusAgainstItsTwin, AgreesOnWhatStands) {
+  const auto moving_points = [](double object_age_s) {
+    PlusTally tally;
+    hmm_mos_plus::Config config = small_plus();
+    config.seed_age_s = 0.5;
+    config.object_age_s = object_age_s;
+    config.max_aged_share = 1.0;
+    expect_twins_labels(world_with_two_boxes(), config, tally);
+    return tally.moving_points;
+  };
+  const std::size_t second_alone = moving_points(2.0);
+  EXPECT_GT(second_alone, 100U);
+  EXPECT_GT(moving_points(4.0), second_alone + 100);
+}
+
 TEST(PlusAgainstItsTwin, AgreesOnWhatLeaves) {
   for (const double object_age_s : {1.0, 2.0, 4.0}) {
     PlusTally tally;
