@@ -47,15 +47,6 @@ VoxelSet firm_voxels(const VoxelizedScan& scan, const ScanMasks& raw,
   return firm;
 }
 
-/// Returns the slots of the masks that hold voxels.
-std::vector<std::uint32_t> slots_with_any(const ScanMasks& masks) {
-  std::vector<std::uint32_t> slots;
-  for (std::uint32_t slot = 0; slot < masks.size(); ++slot) {
-    if (masks[slot].any()) slots.push_back(slot);
-  }
-  return slots;
-}
-
 /// Takes away what lies beside firm voxels.
 void keep_apart(const VoxelizedScan& scan, hmm_mos::VoxelMap& map, std::uint32_t k,
                 const Config& config, Evidence evidence, ThreadPool& pool, ScanMasks& raw) {

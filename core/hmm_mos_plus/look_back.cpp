@@ -36,12 +36,11 @@ void LookBack::enter(const VoxelizedScan& scan, const ArrivalClasses& classes,
                      std::shared_ptr<const Ground> ground, const hmm_mos::Tick& tick,
                      hmm_mos::VoxelMap& map, std::uint32_t k, ThreadPool& pool) {
   look(map, k, pool);
-  std::vector<std::uint32_t> slots;
   ScanMasks may_move(scan.occupied.size());
   for (std::uint32_t slot = 0; slot < may_move.size(); ++slot) {
     may_move[slot] = without(scan.occupied[slot], classes.settled[slot]) | classes.seeds[slot];
-    if (may_move[slot].any()) slots.push_back(slot);
   }
+  const std::vector<std::uint32_t> slots = slots_with_any(may_move);
   const auto of_slots = [&](const ScanMasks& masks) {
     ScanMasks kept(slots.size());
     for (std::size_t i = 0; i < slots.size(); ++i) kept[i] = masks[slots[i]];

@@ -62,9 +62,9 @@ std::vector<std::uint32_t> best_match(const std::vector<Voxel>& voxels, const Vo
   for (int dy = -kCorrection; dy <= kCorrection; ++dy) {
     for (int dx = -kCorrection; dx <= kCorrection; ++dx) {
       const Voxel corrected{shift.x + dx, shift.y + dy, shift.z};
-      if (!leads_along(corrected, shift)) continue;
-      std::vector<std::uint32_t> found = match(voxels, corrected, best.size(), scan, low, classes);
       const int squared = dx * dx + dy * dy;
+      if (squared == 0 || !leads_along(corrected, shift)) continue;
+      std::vector<std::uint32_t> found = match(voxels, corrected, best.size(), scan, low, classes);
       if (found.size() < best.size()) continue;
       if (found.size() == best.size() && squared >= best_squared) continue;
       best = std::move(found);
