@@ -198,23 +198,31 @@ inline std::size_t moving_points(const std::vector<std::vector<std::uint32_t>>& 
   return moving;
 }
 
-/// A wall, and a box that was there before the first scan, leaves in the tenth and hides what it
-/// drives into.
-inline SmallWorld world_with_a_box_that_leaves() {
+/// Scans of a sensor that stands and looks ahead. Rays of slope y and z end at x = distance_m(k, y,
+/// z) in scan k.
+template <typename Distance>
+SmallWorld world_ahead(std::size_t scans, Distance&& distance_m) {
   SmallWorld world;
-  for (std::size_t k = 0; k < 16; ++k) {
+  for (std::size_t k = 0; k < scans; ++k) {
     std::vector<Point>& scan = world.scans.emplace_back();
     world.poses.push_back(Pose::Identity());
-    const float box_m = 1.4F + 0.5F * std::max(0.0F, static_cast<float>(k) - 9.0F);
     for (float y = -0.6F; y < 0.6F; y += 0.02F) {
       for (float z = -0.6F; z < 0.6F; z += 0.02F) {
-        const bool is_hit = std::abs(box_m * y) < 0.5F && std::abs(box_m * z) < 0.5F;
-        const float x = is_hit ? box_m : 4.9F;
+        const float x = distance_m(k, y, z);
         scan.push_back({x, x * y, x * z, 0.0F});
       }
     }
   }
   return world;
+}
+
+/// A wall, and a box that was there before the first scan, leaves in the tenth and hides what it
+/// drives into.
+inline SmallWorld world_with_a_box_that_leaves() {
+  return world_ahead(16, [](std::size_t k, float y, float z) {
+    const float box_m = 1.4F + 0.5F * std::max(0.0F, static_cast<float>(k) - 9.0F);
+    return std::abs(box_m * y) < 0.5F && std::abs(box_m * z) < 0.5F ? box_m : 4.9F;
+  });
 }
 
 }  // namespace mosbench

@@ -90,18 +90,9 @@ TEST(PlusWithoutSeeds, HasNoMovingPoint) {
 
 /// A wall, and a box before it from the tenth scan on.
 SmallWorld world_with_a_box_that_stays() {
-  SmallWorld world;
-  for (std::size_t k = 0; k < 30; ++k) {
-    std::vector<Point>& scan = world.scans.emplace_back();
-    world.poses.push_back(Pose::Identity());
-    for (float y = -0.6F; y < 0.6F; y += 0.02F) {
-      for (float z = -0.6F; z < 0.6F; z += 0.02F) {
-        const float x = k >= 10 && std::abs(y) < 0.15F && std::abs(z) < 0.15F ? 2.0F : 4.0F;
-        scan.push_back({x, x * y, x * z, 0.0F});
-      }
-    }
-  }
-  return world;
+  return world_ahead(30, [](std::size_t k, float y, float z) {
+    return k >= 10 && std::abs(y) < 0.15F && std::abs(z) < 0.15F ? 2.0F : 4.0F;
+  });
 }
 
 std::size_t scans_with_motion(const std::vector<std::vector<std::uint32_t>>& labels) {
@@ -141,20 +132,10 @@ TEST(PlusObjectsThatStay, MoveForAsLongAsMotionIsRemembered) {
 /// A wall, and before it a pole: in its place (A), beside it by a voxel (B) or not there (-), scan
 /// by scan.
 SmallWorld world_with_a_pole(std::string_view places) {
-  SmallWorld world;
-  for (const char place : places) {
-    std::vector<Point>& scan = world.scans.emplace_back();
-    world.poses.push_back(Pose::Identity());
-    const float pole_m = place == 'A' ? 0.12F : 0.37F;
-    for (float y = -0.6F; y < 0.6F; y += 0.02F) {
-      for (float z = -0.6F; z < 0.6F; z += 0.02F) {
-        const bool is_hit = place != '-' && std::abs(2.0F * y - pole_m) < 0.06F;
-        const float x = is_hit ? 2.0F : 4.0F;
-        scan.push_back({x, x * y, x * z, 0.0F});
-      }
-    }
-  }
-  return world;
+  return world_ahead(places.size(), [&](std::size_t k, float y, float) {
+    const float pole_m = places[k] == 'A' ? 0.12F : 0.37F;
+    return places[k] != '-' && std::abs(2.0F * y - pole_m) < 0.06F ? 2.0F : 4.0F;
+  });
 }
 
 TEST(PlusPoles, MoveWhenTheyComeAndNotWhenPosesMoveThem) {

@@ -85,19 +85,10 @@ TEST(PlusAgainstItsTwin, AgreesOnWhatIsPredicted) {
 
 /// A wall, before which a truck drives past from the tenth scan on: it is longer than what is seen.
 SmallWorld world_with_a_truck() {
-  SmallWorld world;
-  for (std::size_t k = 0; k < 34; ++k) {
-    std::vector<Point>& scan = world.scans.emplace_back();
-    world.poses.push_back(Pose::Identity());
+  return world_ahead(34, [](std::size_t k, float y, float z) {
     const float front_m = -1.2F + 0.1F * (static_cast<float>(k) - 10.0F);
-    for (float y = -0.6F; y < 0.6F; y += 0.02F) {
-      for (float z = -0.6F; z < 0.6F; z += 0.02F) {
-        const float x = 2.0F * y < front_m && std::abs(z) < 0.3F ? 2.0F : 4.0F;
-        scan.push_back({x, x * y, x * z, 0.0F});
-      }
-    }
-  }
-  return world;
+    return 2.0F * y < front_m && std::abs(z) < 0.3F ? 2.0F : 4.0F;
+  });
 }
 
 /// Returns what moves of the truck where only seeds may be `max_pure_extent_m` long, all others 1
@@ -129,20 +120,11 @@ TEST(PlusAgainstItsTwin, AgreesOnLongVehicles) {
 
 /// A wall, a box before it from the tenth scan on, and beside that another one 1.2 s later.
 SmallWorld world_with_two_boxes() {
-  SmallWorld world;
-  for (std::size_t k = 0; k < 25; ++k) {
-    std::vector<Point>& scan = world.scans.emplace_back();
-    world.poses.push_back(Pose::Identity());
-    for (float y = -0.6F; y < 0.6F; y += 0.02F) {
-      for (float z = -0.6F; z < 0.6F; z += 0.02F) {
-        const bool is_first = k >= 10 && y >= -0.25F && y < 0.0F;
-        const bool is_second = k >= 22 && y >= 0.0F && y < 0.25F;
-        const float x = (is_first || is_second) && std::abs(z) < 0.4F ? 2.0F : 4.0F;
-        scan.push_back({x, x * y, x * z, 0.0F});
-      }
-    }
-  }
-  return world;
+  return world_ahead(25, [](std::size_t k, float y, float z) {
+    const bool is_first = k >= 10 && y >= -0.25F && y < 0.0F;
+    const bool is_second = k >= 22 && y >= 0.0F && y < 0.25F;
+    return (is_first || is_second) && std::abs(z) < 0.4F ? 2.0F : 4.0F;
+  });
 }
 
 /// The first one stands when it is older than half of object_age_s.
