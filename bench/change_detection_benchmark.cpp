@@ -1,5 +1,5 @@
 #include "bench/stage_benchmark.hpp"
-#include "core/hmm_mos/change_detection.hpp"
+#include "core/methods/hmm_mos/change_detection.hpp"
 
 namespace mosbench {
 using namespace hmm_mos;

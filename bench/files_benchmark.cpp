@@ -3,8 +3,8 @@
 #include <filesystem>
 
 #include "bench/stage_benchmark.hpp"
-#include "datasets/files/bin_file.hpp"
-#include "datasets/files/label_file.hpp"
+#include "datasets/formats/bin_file.hpp"
+#include "datasets/formats/label_file.hpp"
 
 namespace mosbench {
 namespace {

@@ -1,6 +1,6 @@
 #include "bench/stage_benchmark.hpp"
-#include "core/hmm_mos/label_projection.hpp"
-#include "core/hmm_mos/threshold.hpp"
+#include "core/methods/hmm_mos/label_projection.hpp"
+#include "core/methods/hmm_mos/threshold.hpp"
 
 namespace mosbench {
 using namespace hmm_mos;

@@ -1,5 +1,5 @@
 #include "bench/stage_benchmark.hpp"
-#include "core/hmm_mos/median.hpp"
+#include "core/methods/hmm_mos/median.hpp"
 
 namespace mosbench {
 using namespace hmm_mos;

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "bench/staged_scans.hpp"
-#include "core/hmm_mos/hmm.hpp"
+#include "core/methods/hmm_mos/hmm.hpp"
 #include "core/voxel/distance_field.hpp"
 #include "core/voxel/source_grid.hpp"
 

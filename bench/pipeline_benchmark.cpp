@@ -2,7 +2,7 @@
 #include <string>
 
 #include "bench/stage_benchmark.hpp"
-#include "core/hmm_mos/pipeline.hpp"
+#include "core/methods/hmm_mos/pipeline.hpp"
 
 namespace mosbench {
 using namespace hmm_mos;

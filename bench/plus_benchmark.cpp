@@ -4,10 +4,10 @@
 #include <vector>
 
 #include "bench/stage_benchmark.hpp"
-#include "core/hmm_mos_plus/look_back.hpp"
-#include "core/hmm_mos_plus/objects.hpp"
-#include "core/hmm_mos_plus/pipeline.hpp"
-#include "core/hmm_mos_plus/tracks.hpp"
+#include "core/methods/hmm_mos_plus/look_back.hpp"
+#include "core/methods/hmm_mos_plus/objects.hpp"
+#include "core/methods/hmm_mos_plus/pipeline.hpp"
+#include "core/methods/hmm_mos_plus/tracks.hpp"
 #include "core/voxel/point_labels.hpp"
 
 namespace mosbench {

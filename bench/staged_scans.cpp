@@ -5,10 +5,10 @@
 #include <stdexcept>
 #include <utility>
 
-#include "core/hmm_mos/dilation.hpp"
-#include "core/hmm_mos/label_projection.hpp"
-#include "core/hmm_mos/median.hpp"
-#include "core/hmm_mos/threshold.hpp"
+#include "core/methods/hmm_mos/dilation.hpp"
+#include "core/methods/hmm_mos/label_projection.hpp"
+#include "core/methods/hmm_mos/median.hpp"
+#include "core/methods/hmm_mos/threshold.hpp"
 #include "core/voxel/neighbourhood.hpp"
 
 namespace mosbench {

@@ -5,11 +5,11 @@
 #include <vector>
 
 #include "bench/workloads.hpp"
-#include "core/hmm_mos/convolution.hpp"
-#include "core/hmm_mos/dynamic_region.hpp"
-#include "core/hmm_mos/local_window.hpp"
-#include "core/hmm_mos/pipeline.hpp"
-#include "core/hmm_mos/voxel_map.hpp"
+#include "core/methods/hmm_mos/convolution.hpp"
+#include "core/methods/hmm_mos/dynamic_region.hpp"
+#include "core/methods/hmm_mos/local_window.hpp"
+#include "core/methods/hmm_mos/pipeline.hpp"
+#include "core/methods/hmm_mos/voxel_map.hpp"
 #include "core/voxel/raycast.hpp"
 
 namespace mosbench {

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "datasets/files/errors.hpp"
 #include "datasets/layouts/dataset.hpp"
 #include "datasets/simulator/simulator.hpp"
+#include "datasets/text/errors.hpp"
 
 namespace mosbench {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/hmm_mos/config.hpp"
+#include "core/methods/hmm_mos/config.hpp"
 #include "datasets/sequence/sequence.hpp"
 
 namespace mosbench {

@@ -7,8 +7,8 @@
 #include <set>
 #include <vector>
 
-#include "core/dynablox/clusters.hpp"
-#include "core/dynablox/config.hpp"
+#include "core/methods/dynablox/clusters.hpp"
+#include "core/methods/dynablox/config.hpp"
 #include "core/tsdf/range_image.hpp"
 #include "core/tsdf/sensor_model.hpp"
 #include "core/voxel/voxel.hpp"

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "datasets/files/byte_cursor.hpp"
+#include "datasets/formats/byte_cursor.hpp"
 #include "datasets/rosbag/bag_compression.hpp"
 #include "datasets/rosbag/mcap_record.hpp"
 

@@ -23,7 +23,7 @@
 #include <variant>
 #include <vector>
 
-#include "core/hmm_mos/config.hpp"
+#include "core/methods/hmm_mos/config.hpp"
 #include "tests/shared_folder.hpp"
 
 /// The labels of the authors' own program on four sequences, which lie beside the project where its

@@ -9,11 +9,11 @@
 #include <tuple>
 #include <vector>
 
-#include "core/hmm_mos/reference_voxels.hpp"
-#include "core/hmm_mos_plus/config.hpp"
+#include "core/methods/hmm_mos/reference_voxels.hpp"
+#include "core/methods/hmm_mos_plus/config.hpp"
 
-/// The method of core/hmm_mos_plus as its README reads: single voxels in hash maps, comparisons of
-/// all pairs, double precision.
+/// The method of core/methods/hmm_mos_plus as its README reads: single voxels in hash maps,
+/// comparisons of all pairs, double precision.
 namespace mosbench::plus_twin {
 using namespace hmm_mos::reference;
 using hmm_mos::reference::Voxel;

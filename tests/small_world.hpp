@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "core/hmm_mos/pipeline.hpp"
+#include "core/methods/hmm_mos/pipeline.hpp"
 
 /// Seeded sequences of a few hundred points per scan: a room with boxes that move through it, cast
 /// ray by ray. Small enough for methods that compare all pairs.

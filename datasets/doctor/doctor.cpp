@@ -4,13 +4,13 @@
 
 #include <algorithm>
 
+#include "datasets/disk/files.hpp"
 #include "datasets/doctor/row_patterns.hpp"
-#include "datasets/files/calib_file.hpp"
-#include "datasets/files/errors.hpp"
-#include "datasets/files/files.hpp"
+#include "datasets/formats/calib_file.hpp"
 #include "datasets/layouts/doals_sequence.hpp"
 #include "datasets/layouts/simulated_origin.hpp"
 #include "datasets/sequence/pose_source.hpp"
+#include "datasets/text/errors.hpp"
 
 namespace mosbench {
 namespace {

@@ -9,13 +9,13 @@
 #include <set>
 #include <unordered_map>
 
+#include "datasets/disk/files.hpp"
 #include "datasets/doctor/doctor.hpp"
 #include "datasets/doctor/registration.hpp"
 #include "datasets/doctor/truth_check.hpp"
-#include "datasets/files/counted.hpp"
-#include "datasets/files/files.hpp"
-#include "datasets/files/point_range.hpp"
+#include "datasets/formats/point_range.hpp"
 #include "datasets/layouts/layout.hpp"
+#include "datasets/text/counted.hpp"
 
 namespace mosbench {
 namespace {

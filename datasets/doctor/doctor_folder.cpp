@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <set>
 
+#include "datasets/disk/files.hpp"
+#include "datasets/disk/folder_listing.hpp"
 #include "datasets/doctor/doctor.hpp"
-#include "datasets/files/counted.hpp"
-#include "datasets/files/files.hpp"
-#include "datasets/files/folder_listing.hpp"
-#include "datasets/files/scan_file.hpp"
+#include "datasets/formats/scan_file.hpp"
+#include "datasets/text/counted.hpp"
 
 namespace mosbench {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "datasets/doctor/pose_findings.hpp"
 #include "datasets/doctor/row_patterns.hpp"
-#include "datasets/files/quantile.hpp"
+#include "datasets/text/quantile.hpp"
 
 namespace mosbench {
 namespace {

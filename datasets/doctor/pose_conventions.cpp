@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "datasets/files/calib_file.hpp"
+#include "datasets/formats/calib_file.hpp"
 
 namespace mosbench {
 namespace {

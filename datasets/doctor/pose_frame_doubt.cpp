@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "datasets/doctor/scan_overlap.hpp"
-#include "datasets/files/calib_file.hpp"
+#include "datasets/formats/calib_file.hpp"
 
 namespace mosbench {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "datasets/files/quantile.hpp"
+#include "datasets/text/quantile.hpp"
 
 namespace mosbench {
 

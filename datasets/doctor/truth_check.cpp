@@ -9,8 +9,8 @@
 #include <unordered_map>
 
 #include "datasets/doctor/scan_overlap.hpp"
-#include "datasets/files/counted.hpp"
-#include "datasets/files/point_range.hpp"
+#include "datasets/formats/point_range.hpp"
+#include "datasets/text/counted.hpp"
 
 namespace mosbench {
 namespace {

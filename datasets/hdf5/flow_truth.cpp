@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "datasets/files/point_range.hpp"
+#include "datasets/formats/point_range.hpp"
 
 namespace mosbench {
 namespace {

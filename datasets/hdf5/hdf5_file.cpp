@@ -7,11 +7,11 @@
 #include <limits>
 #include <utility>
 
-#include "datasets/files/byte_cursor.hpp"
-#include "datasets/files/errors.hpp"
-#include "datasets/files/files.hpp"
-#include "datasets/files/shown_text.hpp"
+#include "datasets/disk/files.hpp"
+#include "datasets/formats/byte_cursor.hpp"
 #include "datasets/hdf5/process_copy.hpp"
+#include "datasets/text/errors.hpp"
+#include "datasets/text/shown_text.hpp"
 
 namespace mosbench {
 namespace {

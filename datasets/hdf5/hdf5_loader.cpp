@@ -1,6 +1,6 @@
-#include "datasets/files/errors.hpp"
-#include "datasets/files/loaded_module.hpp"
+#include "datasets/disk/loaded_module.hpp"
 #include "datasets/hdf5/hdf5_module.hpp"
+#include "datasets/text/errors.hpp"
 
 namespace mosbench {
 

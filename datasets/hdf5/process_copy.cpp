@@ -12,7 +12,7 @@
 #include <exception>
 #include <utility>
 
-#include "datasets/files/file_descriptor.hpp"
+#include "datasets/disk/file_descriptor.hpp"
 
 namespace mosbench {
 namespace {

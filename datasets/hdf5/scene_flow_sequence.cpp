@@ -8,14 +8,14 @@
 #include <limits>
 #include <utility>
 
-#include "datasets/files/counted.hpp"
-#include "datasets/files/errors.hpp"
-#include "datasets/files/folder_listing.hpp"
-#include "datasets/files/point_range.hpp"
-#include "datasets/files/pose_file.hpp"
-#include "datasets/files/shown_text.hpp"
+#include "datasets/disk/folder_listing.hpp"
+#include "datasets/formats/point_range.hpp"
+#include "datasets/formats/pose_file.hpp"
 #include "datasets/hdf5/scene_flow_names.hpp"
 #include "datasets/sequence/pose_source.hpp"
+#include "datasets/text/counted.hpp"
+#include "datasets/text/errors.hpp"
+#include "datasets/text/shown_text.hpp"
 
 namespace mosbench {
 namespace {

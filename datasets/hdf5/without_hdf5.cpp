@@ -1,5 +1,5 @@
-#include "datasets/files/errors.hpp"
 #include "datasets/hdf5/hdf5_module.hpp"
+#include "datasets/text/errors.hpp"
 
 namespace mosbench {
 

@@ -1,4 +1,4 @@
-#include "datasets/files/files.hpp"
+#include "datasets/disk/files.hpp"
 #include "datasets/layouts/folder_search.hpp"
 #include "datasets/layouts/kitti_sequence.hpp"
 #include "datasets/layouts/layout.hpp"

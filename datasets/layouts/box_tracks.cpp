@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "datasets/files/label_file.hpp"
+#include "datasets/formats/label_file.hpp"
 #include "datasets/sequence/sequence.hpp"
 
 namespace mosbench {

@@ -7,13 +7,11 @@
 #include <set>
 #include <vector>
 
-#include "datasets/files/counted.hpp"
-#include "datasets/files/errors.hpp"
-#include "datasets/files/files.hpp"
-#include "datasets/files/folder_listing.hpp"
-#include "datasets/files/folder_lock.hpp"
-#include "datasets/files/kitti_calib.hpp"
-#include "datasets/files/point_range.hpp"
+#include "datasets/disk/files.hpp"
+#include "datasets/disk/folder_listing.hpp"
+#include "datasets/disk/folder_lock.hpp"
+#include "datasets/formats/kitti_calib.hpp"
+#include "datasets/formats/point_range.hpp"
 #include "datasets/layouts/helimos_layout.hpp"
 #include "datasets/layouts/helipr_writer.hpp"
 #include "datasets/layouts/kitti_drive_writer.hpp"
@@ -24,6 +22,8 @@
 #include "datasets/rosbag/ros2_bag_writer.hpp"
 #include "datasets/sequence/fingerprint.hpp"
 #include "datasets/sequence/pose_source.hpp"
+#include "datasets/text/counted.hpp"
+#include "datasets/text/errors.hpp"
 
 namespace mosbench {
 namespace {

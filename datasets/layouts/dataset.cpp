@@ -8,10 +8,7 @@
 #include <system_error>
 #include <utility>
 
-#include "datasets/files/counted.hpp"
-#include "datasets/files/errors.hpp"
-#include "datasets/files/files.hpp"
-#include "datasets/files/shown_text.hpp"
+#include "datasets/disk/files.hpp"
 #include "datasets/layouts/folder_search.hpp"
 #include "datasets/layouts/layout.hpp"
 #include "datasets/layouts/simulated_origin.hpp"
@@ -20,6 +17,9 @@
 #include "datasets/sequence/azimuth_times.hpp"
 #include "datasets/sequence/hdl64_correction.hpp"
 #include "datasets/sequence/scan_deskewer.hpp"
+#include "datasets/text/counted.hpp"
+#include "datasets/text/errors.hpp"
+#include "datasets/text/shown_text.hpp"
 
 namespace mosbench {
 namespace {

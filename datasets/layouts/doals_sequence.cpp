@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <utility>
 
-#include "datasets/files/errors.hpp"
-#include "datasets/files/files.hpp"
-#include "datasets/files/scan_file.hpp"
+#include "datasets/disk/files.hpp"
+#include "datasets/formats/scan_file.hpp"
 #include "datasets/layouts/folder_search.hpp"
 #include "datasets/rosbag/bag_sequence.hpp"
 #include "datasets/rosbag/open_bag.hpp"
 #include "datasets/sequence/folder_sequence.hpp"
+#include "datasets/text/errors.hpp"
 
 namespace mosbench {
 namespace {

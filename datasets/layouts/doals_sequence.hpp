@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "datasets/files/indices_file.hpp"
+#include "datasets/formats/indices_file.hpp"
 #include "datasets/sequence/sequence.hpp"
 
 namespace mosbench {

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 
-#include "datasets/files/files.hpp"
-#include "datasets/files/folder_listing.hpp"
-#include "datasets/files/scan_file.hpp"
-#include "datasets/files/text.hpp"
+#include "datasets/disk/files.hpp"
+#include "datasets/disk/folder_listing.hpp"
+#include "datasets/formats/scan_file.hpp"
 #include "datasets/layouts/kitti_sequence.hpp"
+#include "datasets/text/text.hpp"
 
 namespace mosbench {
 

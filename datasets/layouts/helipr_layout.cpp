@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "datasets/files/folder_listing.hpp"
+#include "datasets/disk/folder_listing.hpp"
 #include "datasets/layouts/folder_search.hpp"
 #include "datasets/layouts/helipr_sequence.hpp"
 #include "datasets/layouts/helipr_writer.hpp"

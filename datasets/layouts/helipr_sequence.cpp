@@ -6,13 +6,13 @@
 #include <limits>
 #include <utility>
 
-#include "datasets/files/counted.hpp"
-#include "datasets/files/errors.hpp"
-#include "datasets/files/files.hpp"
-#include "datasets/files/folder_listing.hpp"
+#include "datasets/disk/files.hpp"
+#include "datasets/disk/folder_listing.hpp"
 #include "datasets/layouts/folder_search.hpp"
 #include "datasets/sequence/pose_source.hpp"
 #include "datasets/sequence/pose_track.hpp"
+#include "datasets/text/counted.hpp"
+#include "datasets/text/errors.hpp"
 
 namespace mosbench {
 namespace {

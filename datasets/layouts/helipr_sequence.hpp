@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "datasets/files/helipr_points.hpp"
+#include "datasets/formats/helipr_points.hpp"
 #include "datasets/sequence/sequence.hpp"
 
 namespace mosbench {

@@ -7,10 +7,10 @@
 #include <utility>
 #include <vector>
 
-#include "datasets/files/disk_sync.hpp"
-#include "datasets/files/errors.hpp"
-#include "datasets/files/files.hpp"
-#include "datasets/files/helipr_points.hpp"
+#include "datasets/disk/disk_sync.hpp"
+#include "datasets/disk/files.hpp"
+#include "datasets/formats/helipr_points.hpp"
+#include "datasets/text/errors.hpp"
 
 namespace mosbench {
 namespace {

@@ -7,14 +7,14 @@
 #include <limits>
 #include <utility>
 
-#include "datasets/files/errors.hpp"
-#include "datasets/files/files.hpp"
-#include "datasets/files/kitti_oxts.hpp"
-#include "datasets/files/kitti_stamps.hpp"
-#include "datasets/files/text.hpp"
-#include "datasets/files/tracking_labels.hpp"
-#include "datasets/files/tracklets.hpp"
+#include "datasets/disk/files.hpp"
+#include "datasets/formats/kitti_oxts.hpp"
+#include "datasets/formats/kitti_stamps.hpp"
+#include "datasets/formats/tracking_labels.hpp"
+#include "datasets/formats/tracklets.hpp"
 #include "datasets/layouts/folder_search.hpp"
+#include "datasets/text/errors.hpp"
+#include "datasets/text/text.hpp"
 
 namespace mosbench {
 namespace {

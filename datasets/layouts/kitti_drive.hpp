@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "datasets/files/folder_listing.hpp"
-#include "datasets/files/kitti_calib.hpp"
+#include "datasets/disk/folder_listing.hpp"
+#include "datasets/formats/kitti_calib.hpp"
 #include "datasets/layouts/box_tracks.hpp"
 #include "datasets/sequence/reading_options.hpp"
 

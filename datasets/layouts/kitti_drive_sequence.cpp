@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <utility>
 
-#include "datasets/files/counted.hpp"
-#include "datasets/files/errors.hpp"
-#include "datasets/files/point_range.hpp"
-#include "datasets/files/scan_file.hpp"
+#include "datasets/formats/point_range.hpp"
+#include "datasets/formats/scan_file.hpp"
 #include "datasets/hdf5/flow_truth.hpp"
 #include "datasets/layouts/points_in_boxes.hpp"
 #include "datasets/sequence/pose_source.hpp"
+#include "datasets/text/counted.hpp"
+#include "datasets/text/errors.hpp"
 
 namespace mosbench {
 namespace {

@@ -8,19 +8,19 @@
 #include <numbers>
 #include <optional>
 
-#include "datasets/files/bin_file.hpp"
-#include "datasets/files/disk_sync.hpp"
-#include "datasets/files/errors.hpp"
-#include "datasets/files/files.hpp"
-#include "datasets/files/kitti_calib.hpp"
-#include "datasets/files/kitti_oxts.hpp"
-#include "datasets/files/kitti_stamps.hpp"
-#include "datasets/files/point_range.hpp"
-#include "datasets/files/tracking_labels.hpp"
-#include "datasets/files/tracklets.hpp"
+#include "datasets/disk/disk_sync.hpp"
+#include "datasets/disk/files.hpp"
+#include "datasets/formats/bin_file.hpp"
+#include "datasets/formats/kitti_calib.hpp"
+#include "datasets/formats/kitti_oxts.hpp"
+#include "datasets/formats/kitti_stamps.hpp"
+#include "datasets/formats/point_range.hpp"
+#include "datasets/formats/tracking_labels.hpp"
+#include "datasets/formats/tracklets.hpp"
 #include "datasets/layouts/box_tracks.hpp"
 #include "datasets/layouts/kitti_drive.hpp"
 #include "datasets/layouts/pure_boxes.hpp"
+#include "datasets/text/errors.hpp"
 
 namespace mosbench {
 namespace {

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "datasets/files/label_file.hpp"
+#include "datasets/formats/label_file.hpp"
 #include "datasets/sequence/folder_sequence.hpp"
 
 namespace mosbench {

@@ -1,5 +1,5 @@
-#include "datasets/files/files.hpp"
-#include "datasets/files/folder_listing.hpp"
+#include "datasets/disk/files.hpp"
+#include "datasets/disk/folder_listing.hpp"
 #include "datasets/layouts/folder_search.hpp"
 #include "datasets/layouts/kitti_drive_sequence.hpp"
 #include "datasets/layouts/kitti_drive_writer.hpp"

@@ -1,7 +1,7 @@
-#include "datasets/files/errors.hpp"
 #include "datasets/layouts/folder_search.hpp"
 #include "datasets/layouts/kth_sequence.hpp"
 #include "datasets/layouts/layout.hpp"
+#include "datasets/text/errors.hpp"
 
 namespace mosbench {
 namespace {

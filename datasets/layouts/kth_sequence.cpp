@@ -5,9 +5,9 @@
 #include <string_view>
 #include <utility>
 
-#include "datasets/files/errors.hpp"
-#include "datasets/files/pcd_file.hpp"
-#include "datasets/files/scan_file.hpp"
+#include "datasets/formats/pcd_file.hpp"
+#include "datasets/formats/scan_file.hpp"
+#include "datasets/text/errors.hpp"
 
 namespace mosbench {
 namespace {

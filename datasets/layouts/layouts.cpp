@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 
-#include "datasets/files/counted.hpp"
 #include "datasets/layouts/layout.hpp"
+#include "datasets/text/counted.hpp"
 
 namespace mosbench {
 

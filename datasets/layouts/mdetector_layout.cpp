@@ -1,7 +1,7 @@
-#include "datasets/files/folder_listing.hpp"
-#include "datasets/files/text.hpp"
+#include "datasets/disk/folder_listing.hpp"
 #include "datasets/layouts/folder_search.hpp"
 #include "datasets/layouts/layout.hpp"
+#include "datasets/text/text.hpp"
 
 namespace mosbench {
 namespace {

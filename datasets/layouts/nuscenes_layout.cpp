@@ -6,16 +6,16 @@
 #include <map>
 #include <span>
 
-#include "datasets/files/errors.hpp"
-#include "datasets/files/files.hpp"
-#include "datasets/files/folder_listing.hpp"
-#include "datasets/files/label_file.hpp"
-#include "datasets/files/text.hpp"
+#include "datasets/disk/files.hpp"
+#include "datasets/disk/folder_listing.hpp"
+#include "datasets/formats/label_file.hpp"
 #include "datasets/layouts/folder_search.hpp"
 #include "datasets/layouts/layout.hpp"
 #include "datasets/layouts/nuscenes_sequence.hpp"
 #include "datasets/layouts/nuscenes_tables.hpp"
 #include "datasets/layouts/nuscenes_writer.hpp"
+#include "datasets/text/errors.hpp"
+#include "datasets/text/text.hpp"
 
 namespace mosbench {
 namespace {

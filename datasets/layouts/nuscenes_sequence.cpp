@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <utility>
 
-#include "datasets/files/counted.hpp"
-#include "datasets/files/errors.hpp"
-#include "datasets/files/files.hpp"
-#include "datasets/files/scan_file.hpp"
-#include "datasets/files/shown_text.hpp"
+#include "datasets/disk/files.hpp"
+#include "datasets/formats/scan_file.hpp"
 #include "datasets/layouts/folder_search.hpp"
 #include "datasets/sequence/pose_source.hpp"
+#include "datasets/text/counted.hpp"
+#include "datasets/text/errors.hpp"
+#include "datasets/text/shown_text.hpp"
 
 namespace mosbench {
 namespace {

@@ -11,14 +11,14 @@
 #include <unordered_map>
 #include <unordered_set>
 
-#include "datasets/files/errors.hpp"
-#include "datasets/files/files.hpp"
-#include "datasets/files/label_file.hpp"
-#include "datasets/files/nuscenes_table.hpp"
-#include "datasets/files/quaternion.hpp"
-#include "datasets/files/text.hpp"
+#include "datasets/disk/files.hpp"
+#include "datasets/formats/label_file.hpp"
+#include "datasets/formats/nuscenes_table.hpp"
+#include "datasets/formats/quaternion.hpp"
 #include "datasets/layouts/box_tracks.hpp"
 #include "datasets/layouts/points_in_boxes.hpp"
+#include "datasets/text/errors.hpp"
+#include "datasets/text/text.hpp"
 
 namespace mosbench {
 namespace {

@@ -9,15 +9,15 @@
 #include <optional>
 #include <system_error>
 
-#include "datasets/files/byte_cursor.hpp"
-#include "datasets/files/disk_sync.hpp"
-#include "datasets/files/errors.hpp"
-#include "datasets/files/files.hpp"
-#include "datasets/files/partial_file.hpp"
-#include "datasets/files/point_range.hpp"
-#include "datasets/files/scan_file.hpp"
+#include "datasets/disk/disk_sync.hpp"
+#include "datasets/disk/files.hpp"
+#include "datasets/disk/partial_file.hpp"
+#include "datasets/formats/byte_cursor.hpp"
+#include "datasets/formats/point_range.hpp"
+#include "datasets/formats/scan_file.hpp"
 #include "datasets/layouts/folder_search.hpp"
 #include "datasets/layouts/nuscenes_tables.hpp"
+#include "datasets/text/errors.hpp"
 
 namespace mosbench {
 namespace {

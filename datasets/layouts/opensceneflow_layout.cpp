@@ -2,12 +2,12 @@
 
 #include <algorithm>
 
-#include "datasets/files/counted.hpp"
-#include "datasets/files/errors.hpp"
-#include "datasets/files/folder_listing.hpp"
+#include "datasets/disk/folder_listing.hpp"
 #include "datasets/hdf5/scene_flow_sequence.hpp"
 #include "datasets/layouts/folder_search.hpp"
 #include "datasets/layouts/layout.hpp"
+#include "datasets/text/counted.hpp"
+#include "datasets/text/errors.hpp"
 
 namespace mosbench {
 namespace {

@@ -7,13 +7,13 @@
 #include <system_error>
 #include <utility>
 
-#include "datasets/files/disk_sync.hpp"
-#include "datasets/files/errors.hpp"
-#include "datasets/files/partial_file.hpp"
+#include "datasets/disk/disk_sync.hpp"
+#include "datasets/disk/partial_file.hpp"
 #include "datasets/hdf5/flow_truth.hpp"
 #include "datasets/hdf5/hdf5_module.hpp"
 #include "datasets/hdf5/scene_flow_names.hpp"
 #include "datasets/layouts/sequence_writer.hpp"
+#include "datasets/text/errors.hpp"
 
 namespace mosbench {
 namespace {

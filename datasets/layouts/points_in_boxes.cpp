@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "datasets/files/point_range.hpp"
+#include "datasets/formats/point_range.hpp"
 
 namespace mosbench {
 

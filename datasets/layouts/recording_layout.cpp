@@ -3,16 +3,16 @@
 #include <map>
 #include <memory>
 
-#include "datasets/files/counted.hpp"
-#include "datasets/files/errors.hpp"
-#include "datasets/files/folder_listing.hpp"
-#include "datasets/files/scan_file.hpp"
+#include "datasets/disk/folder_listing.hpp"
+#include "datasets/formats/scan_file.hpp"
 #include "datasets/layouts/folder_search.hpp"
 #include "datasets/layouts/kitti_sequence.hpp"
 #include "datasets/layouts/layout.hpp"
 #include "datasets/layouts/single_scan.hpp"
 #include "datasets/rosbag/bag_sequence.hpp"
 #include "datasets/rosbag/open_bag.hpp"
+#include "datasets/text/counted.hpp"
+#include "datasets/text/errors.hpp"
 
 namespace mosbench {
 namespace {

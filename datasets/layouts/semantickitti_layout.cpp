@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "datasets/files/scan_file.hpp"
+#include "datasets/formats/scan_file.hpp"
 #include "datasets/layouts/folder_search.hpp"
 #include "datasets/layouts/layout.hpp"
 

@@ -6,19 +6,19 @@
 #include <utility>
 #include <vector>
 
-#include "datasets/files/bin_file.hpp"
-#include "datasets/files/byte_cursor.hpp"
-#include "datasets/files/calib_file.hpp"
-#include "datasets/files/disk_sync.hpp"
-#include "datasets/files/errors.hpp"
-#include "datasets/files/files.hpp"
-#include "datasets/files/indices_file.hpp"
-#include "datasets/files/label_file.hpp"
-#include "datasets/files/pose_file.hpp"
-#include "datasets/files/times_file.hpp"
+#include "datasets/disk/disk_sync.hpp"
+#include "datasets/disk/files.hpp"
+#include "datasets/formats/bin_file.hpp"
+#include "datasets/formats/byte_cursor.hpp"
+#include "datasets/formats/calib_file.hpp"
+#include "datasets/formats/indices_file.hpp"
+#include "datasets/formats/label_file.hpp"
+#include "datasets/formats/pose_file.hpp"
+#include "datasets/formats/times_file.hpp"
 #include "datasets/rosbag/bag_writer.hpp"
 #include "datasets/rosbag/ros2_bag_writer.hpp"
 #include "datasets/rosbag/ros_messages.hpp"
+#include "datasets/text/errors.hpp"
 
 namespace mosbench {
 namespace {

@@ -3,9 +3,9 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
-#include "datasets/files/errors.hpp"
-#include "datasets/files/files.hpp"
-#include "datasets/files/json_text.hpp"
+#include "datasets/disk/files.hpp"
+#include "datasets/text/errors.hpp"
+#include "datasets/text/json_text.hpp"
 
 namespace mosbench {
 namespace {

@@ -3,11 +3,11 @@
 #include <array>
 #include <utility>
 
-#include "datasets/files/bin_columns.hpp"
-#include "datasets/files/errors.hpp"
-#include "datasets/files/scan_file.hpp"
-#include "datasets/files/shown_text.hpp"
+#include "datasets/formats/bin_columns.hpp"
+#include "datasets/formats/scan_file.hpp"
 #include "datasets/sequence/pose_source.hpp"
+#include "datasets/text/errors.hpp"
+#include "datasets/text/shown_text.hpp"
 
 namespace mosbench {
 

@@ -2,10 +2,10 @@
 
 #include <system_error>
 
-#include "datasets/files/disk_sync.hpp"
-#include "datasets/files/errors.hpp"
-#include "datasets/files/files.hpp"
-#include "datasets/files/partial_file.hpp"
+#include "datasets/disk/disk_sync.hpp"
+#include "datasets/disk/files.hpp"
+#include "datasets/disk/partial_file.hpp"
+#include "datasets/text/errors.hpp"
 
 namespace mosbench {
 namespace fs = std::filesystem;

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "datasets/files/errors.hpp"
-#include "datasets/files/nearest_name.hpp"
-#include "datasets/files/text.hpp"
 #include "datasets/perturb/perturb_kinds.hpp"
+#include "datasets/text/errors.hpp"
+#include "datasets/text/nearest_name.hpp"
+#include "datasets/text/text.hpp"
 
 namespace mosbench {
 namespace {

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <memory>
 
-#include "datasets/files/errors.hpp"
-#include "datasets/files/point_range.hpp"
+#include "datasets/formats/point_range.hpp"
 #include "datasets/perturb/perturb_kinds.hpp"
+#include "datasets/text/errors.hpp"
 
 namespace mosbench {
 namespace {

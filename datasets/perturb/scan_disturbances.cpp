@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "datasets/files/errors.hpp"
 #include "datasets/perturb/perturb_kinds.hpp"
+#include "datasets/text/errors.hpp"
 
 namespace mosbench {
 namespace {

@@ -5,7 +5,7 @@
 #include <memory>
 #include <optional>
 
-#include "datasets/files/point_range.hpp"
+#include "datasets/formats/point_range.hpp"
 #include "datasets/perturb/perturb_kinds.hpp"
 
 namespace mosbench {

@@ -10,8 +10,8 @@
 #include <memory>
 #include <new>
 
-#include "datasets/files/errors.hpp"
 #include "datasets/rosbag/chunk_reader.hpp"
+#include "datasets/text/errors.hpp"
 
 namespace mosbench {
 namespace {

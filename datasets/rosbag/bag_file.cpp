@@ -4,10 +4,10 @@
 
 #include <algorithm>
 
-#include "datasets/files/errors.hpp"
-#include "datasets/files/files.hpp"
+#include "datasets/disk/files.hpp"
 #include "datasets/rosbag/bag_compression.hpp"
 #include "datasets/rosbag/bag_record.hpp"
+#include "datasets/text/errors.hpp"
 
 namespace mosbench {
 namespace {

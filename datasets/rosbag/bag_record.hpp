@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "datasets/files/byte_cursor.hpp"
+#include "datasets/formats/byte_cursor.hpp"
 
 namespace mosbench {
 

@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <utility>
 
-#include "datasets/files/counted.hpp"
-#include "datasets/files/errors.hpp"
-#include "datasets/files/folder_listing.hpp"
+#include "datasets/disk/folder_listing.hpp"
 #include "datasets/rosbag/bag_topics.hpp"
 #include "datasets/rosbag/open_bag.hpp"
 #include "datasets/sequence/pose_source.hpp"
 #include "datasets/sequence/pose_track.hpp"
+#include "datasets/text/counted.hpp"
+#include "datasets/text/errors.hpp"
 
 namespace mosbench {
 namespace {

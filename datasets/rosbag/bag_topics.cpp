@@ -4,9 +4,9 @@
 #include <set>
 #include <utility>
 
-#include "datasets/files/errors.hpp"
 #include "datasets/rosbag/ros_messages.hpp"
 #include "datasets/sequence/pose_source.hpp"
+#include "datasets/text/errors.hpp"
 
 namespace mosbench {
 namespace {

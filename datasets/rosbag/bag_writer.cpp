@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
-#include "datasets/files/disk_sync.hpp"
-#include "datasets/files/errors.hpp"
-#include "datasets/files/partial_file.hpp"
+#include "datasets/disk/disk_sync.hpp"
+#include "datasets/disk/partial_file.hpp"
 #include "datasets/rosbag/ros_messages.hpp"
+#include "datasets/text/errors.hpp"
 
 namespace mosbench {
 namespace {

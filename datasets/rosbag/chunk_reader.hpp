@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "datasets/files/file_descriptor.hpp"
+#include "datasets/disk/file_descriptor.hpp"
 
 namespace mosbench {
 

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <set>
 
-#include "datasets/files/errors.hpp"
 #include "datasets/rosbag/ros_type.hpp"
+#include "datasets/text/errors.hpp"
 
 namespace mosbench {
 namespace {

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "datasets/files/byte_cursor.hpp"
+#include "datasets/formats/byte_cursor.hpp"
 #include "datasets/rosbag/bag_reader.hpp"
 #include "datasets/rosbag/chunk_reader.hpp"
 #include "datasets/rosbag/mcap_record.hpp"

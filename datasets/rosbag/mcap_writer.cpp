@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <system_error>
 
-#include "datasets/files/errors.hpp"
-#include "datasets/files/files.hpp"
+#include "datasets/disk/files.hpp"
 #include "datasets/rosbag/bag_compression.hpp"
 #include "datasets/rosbag/ros2_definitions.hpp"
+#include "datasets/text/errors.hpp"
 
 namespace mosbench {
 namespace {

@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "datasets/files/byte_cursor.hpp"
-#include "datasets/files/partial_file.hpp"
+#include "datasets/disk/partial_file.hpp"
+#include "datasets/formats/byte_cursor.hpp"
 #include "datasets/rosbag/mcap_record.hpp"
 #include "datasets/rosbag/ros2_bag_writer.hpp"
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "datasets/files/byte_cursor.hpp"
+#include "datasets/formats/byte_cursor.hpp"
 #include "datasets/rosbag/message_format.hpp"
 
 namespace mosbench {

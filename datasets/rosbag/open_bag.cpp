@@ -7,8 +7,7 @@
 #include <set>
 #include <utility>
 
-#include "datasets/files/errors.hpp"
-#include "datasets/files/files.hpp"
+#include "datasets/disk/files.hpp"
 #include "datasets/rosbag/bag_compression.hpp"
 #include "datasets/rosbag/bag_file.hpp"
 #include "datasets/rosbag/bag_metadata.hpp"
@@ -16,6 +15,7 @@
 #include "datasets/rosbag/mcap_file.hpp"
 #include "datasets/rosbag/sqlite_bag.hpp"
 #include "datasets/rosbag/unpacked_bag.hpp"
+#include "datasets/text/errors.hpp"
 
 namespace mosbench {
 namespace {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <span>
 
-#include "datasets/files/errors.hpp"
-#include "datasets/files/point_times.hpp"
+#include "datasets/formats/point_times.hpp"
+#include "datasets/text/errors.hpp"
 
 namespace mosbench {
 namespace {

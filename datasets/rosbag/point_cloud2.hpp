@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "datasets/files/point_records.hpp"
+#include "datasets/formats/point_records.hpp"
 #include "datasets/rosbag/ros_messages.hpp"
 
 namespace mosbench {

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <utility>
 
-#include "datasets/files/errors.hpp"
-#include "datasets/files/files.hpp"
+#include "datasets/disk/files.hpp"
 #include "datasets/rosbag/mcap_writer.hpp"
 #include "datasets/rosbag/ros_type.hpp"
 #include "datasets/rosbag/sqlite_bag_writer.hpp"
+#include "datasets/text/errors.hpp"
 
 namespace mosbench {
 

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "datasets/files/quaternion.hpp"
+#include "datasets/formats/quaternion.hpp"
 #include "datasets/rosbag/message_cursor.hpp"
 
 namespace mosbench {

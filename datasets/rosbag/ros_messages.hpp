@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "datasets/files/point_records.hpp"
+#include "datasets/formats/point_records.hpp"
 #include "datasets/rosbag/message_format.hpp"
 
 namespace mosbench {

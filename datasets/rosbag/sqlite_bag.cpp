@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <array>
 
-#include "datasets/files/errors.hpp"
-#include "datasets/files/files.hpp"
+#include "datasets/disk/files.hpp"
 #include "datasets/rosbag/bag_compression.hpp"
 #include "datasets/rosbag/ros_type.hpp"
+#include "datasets/text/errors.hpp"
 
 namespace mosbench {
 namespace {

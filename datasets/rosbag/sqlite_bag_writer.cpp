@@ -4,10 +4,10 @@
 
 #include <system_error>
 
-#include "datasets/files/disk_sync.hpp"
-#include "datasets/files/errors.hpp"
-#include "datasets/files/partial_file.hpp"
+#include "datasets/disk/disk_sync.hpp"
+#include "datasets/disk/partial_file.hpp"
 #include "datasets/rosbag/bag_compression.hpp"
+#include "datasets/text/errors.hpp"
 
 namespace mosbench {
 namespace {

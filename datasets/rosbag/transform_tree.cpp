@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "datasets/files/errors.hpp"
+#include "datasets/text/errors.hpp"
 
 namespace mosbench {
 

@@ -8,12 +8,12 @@
 
 #include <string>
 
-#include "datasets/files/errors.hpp"
-#include "datasets/files/file_descriptor.hpp"
-#include "datasets/files/files.hpp"
+#include "datasets/disk/file_descriptor.hpp"
+#include "datasets/disk/files.hpp"
 #include "datasets/rosbag/bag_compression.hpp"
 #include "datasets/rosbag/mcap_file.hpp"
 #include "datasets/rosbag/sqlite_bag.hpp"
+#include "datasets/text/errors.hpp"
 
 namespace mosbench {
 

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "datasets/files/file_descriptor.hpp"
+#include "datasets/disk/file_descriptor.hpp"
 #include "datasets/rosbag/bag_reader.hpp"
 
 namespace mosbench {

@@ -1,5 +1,5 @@
-#include "datasets/files/errors.hpp"
 #include "datasets/rosbag/bag_writer.hpp"
+#include "datasets/text/errors.hpp"
 
 namespace rosbag {
 class Bag {};

@@ -11,8 +11,8 @@
 #include <new>
 #include <type_traits>
 
-#include "datasets/files/errors.hpp"
-#include "datasets/files/files.hpp"
+#include "datasets/disk/files.hpp"
+#include "datasets/text/errors.hpp"
 
 namespace mosbench {
 namespace {

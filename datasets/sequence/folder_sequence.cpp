@@ -6,12 +6,12 @@
 #include <limits>
 #include <utility>
 
-#include "datasets/files/bin_columns.hpp"
-#include "datasets/files/errors.hpp"
-#include "datasets/files/files.hpp"
-#include "datasets/files/point_times.hpp"
-#include "datasets/files/scan_file.hpp"
-#include "datasets/files/times_file.hpp"
+#include "datasets/disk/files.hpp"
+#include "datasets/formats/bin_columns.hpp"
+#include "datasets/formats/point_times.hpp"
+#include "datasets/formats/scan_file.hpp"
+#include "datasets/formats/times_file.hpp"
+#include "datasets/text/errors.hpp"
 
 namespace mosbench {
 namespace {

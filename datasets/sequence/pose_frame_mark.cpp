@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "datasets/files/files.hpp"
+#include "datasets/disk/files.hpp"
 
 namespace mosbench {
 namespace {

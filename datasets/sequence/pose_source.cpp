@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "datasets/files/calib_file.hpp"
-#include "datasets/files/counted.hpp"
-#include "datasets/files/errors.hpp"
-#include "datasets/files/files.hpp"
+#include "datasets/disk/files.hpp"
+#include "datasets/formats/calib_file.hpp"
 #include "datasets/sequence/fingerprint.hpp"
 #include "datasets/sequence/pose_frame_mark.hpp"
 #include "datasets/sequence/pose_track.hpp"
+#include "datasets/text/counted.hpp"
+#include "datasets/text/errors.hpp"
 
 namespace mosbench {
 namespace {

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "datasets/files/errors.hpp"
 #include "datasets/sequence/reading_options.hpp"
 #include "datasets/sequence/recording.hpp"
+#include "datasets/text/errors.hpp"
 
 namespace mosbench {
 

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <string_view>
 
-#include "datasets/files/errors.hpp"
-#include "datasets/files/shown_text.hpp"
+#include "datasets/text/errors.hpp"
+#include "datasets/text/shown_text.hpp"
 
 namespace mosbench {
 namespace {

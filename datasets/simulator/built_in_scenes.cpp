@@ -3,9 +3,9 @@
 #include <array>
 #include <string>
 
-#include "datasets/files/errors.hpp"
-#include "datasets/files/nearest_name.hpp"
 #include "datasets/simulator/scene_builder.hpp"
+#include "datasets/text/errors.hpp"
+#include "datasets/text/nearest_name.hpp"
 
 namespace mosbench {
 namespace {

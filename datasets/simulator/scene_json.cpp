@@ -6,13 +6,13 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "datasets/files/errors.hpp"
-#include "datasets/files/files.hpp"
-#include "datasets/files/json_text.hpp"
-#include "datasets/files/nearest_name.hpp"
+#include "datasets/disk/files.hpp"
 #include "datasets/simulator/scene_fields.hpp"
 #include "datasets/simulator/sensor_model.hpp"
 #include "datasets/simulator/trajectory.hpp"
+#include "datasets/text/errors.hpp"
+#include "datasets/text/json_text.hpp"
+#include "datasets/text/nearest_name.hpp"
 
 namespace mosbench {
 namespace {

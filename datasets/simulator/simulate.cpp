@@ -12,10 +12,8 @@
 #include <vector>
 
 #include "core/base/thread_pool.hpp"
-#include "datasets/files/errors.hpp"
-#include "datasets/files/files.hpp"
-#include "datasets/files/partial_file.hpp"
-#include "datasets/files/shell_text.hpp"
+#include "datasets/disk/files.hpp"
+#include "datasets/disk/partial_file.hpp"
 #include "datasets/layouts/helimos_layout.hpp"
 #include "datasets/layouts/layout.hpp"
 #include "datasets/layouts/simulated_origin.hpp"
@@ -24,6 +22,8 @@
 #include "datasets/simulator/scene_json.hpp"
 #include "datasets/simulator/simulated_layouts.hpp"
 #include "datasets/simulator/simulated_sequence.hpp"
+#include "datasets/text/errors.hpp"
+#include "datasets/text/shell_text.hpp"
 
 namespace mosbench {
 namespace {

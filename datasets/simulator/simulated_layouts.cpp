@@ -6,10 +6,10 @@
 #include <array>
 #include <span>
 
-#include "datasets/files/errors.hpp"
-#include "datasets/files/kitti_calib.hpp"
-#include "datasets/files/point_range.hpp"
+#include "datasets/formats/kitti_calib.hpp"
+#include "datasets/formats/point_range.hpp"
 #include "datasets/layouts/helimos_layout.hpp"
+#include "datasets/text/errors.hpp"
 
 namespace mosbench {
 namespace {

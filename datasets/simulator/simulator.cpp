@@ -4,11 +4,11 @@
 #include <string>
 #include <utility>
 
-#include "datasets/files/errors.hpp"
-#include "datasets/files/nearest_name.hpp"
 #include "datasets/sequence/portable_math.hpp"
 #include "datasets/simulator/built_in_scenes.hpp"
 #include "datasets/simulator/trajectory.hpp"
+#include "datasets/text/errors.hpp"
+#include "datasets/text/nearest_name.hpp"
 
 namespace mosbench {
 namespace {

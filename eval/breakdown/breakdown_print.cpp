@@ -2,12 +2,12 @@
 
 #include <algorithm>
 
-#include "datasets/files/counted.hpp"
+#include "datasets/text/counted.hpp"
+#include "eval/answer/answer_text.hpp"
+#include "eval/answer/text_table.hpp"
 #include "eval/breakdown/breakdown.hpp"
 #include "eval/protocols/counts_json.hpp"
 #include "eval/protocols/metrics.hpp"
-#include "eval/results/answer_text.hpp"
-#include "eval/results/text_table.hpp"
 
 namespace mosbench {
 namespace {

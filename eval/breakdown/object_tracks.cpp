@@ -4,7 +4,7 @@
 #include <iterator>
 #include <tuple>
 
-#include "datasets/files/quantile.hpp"
+#include "datasets/text/quantile.hpp"
 
 namespace mosbench {
 namespace {

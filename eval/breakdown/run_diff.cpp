@@ -6,9 +6,9 @@
 #include <stdexcept>
 
 #include "datasets/layouts/folder_search.hpp"
+#include "eval/answer/answer_text.hpp"
+#include "eval/answer/text_table.hpp"
 #include "eval/protocols/metrics.hpp"
-#include "eval/results/answer_text.hpp"
-#include "eval/results/text_table.hpp"
 
 namespace mosbench {
 namespace {

@@ -3,10 +3,10 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
-#include "datasets/files/errors.hpp"
-#include "datasets/files/folder_lock.hpp"
-#include "datasets/files/folder_relation.hpp"
-#include "datasets/files/replace_folder.hpp"
+#include "datasets/disk/folder_lock.hpp"
+#include "datasets/disk/folder_relation.hpp"
+#include "datasets/disk/replace_folder.hpp"
+#include "datasets/text/errors.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/statistics/baseline.hpp"
 #include "eval/statistics/paired_runs.hpp"

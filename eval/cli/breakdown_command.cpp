@@ -6,14 +6,14 @@
 #include <memory>
 
 #include "core/base/thread_pool.hpp"
-#include "datasets/files/errors.hpp"
+#include "datasets/text/errors.hpp"
+#include "eval/answer/answer_text.hpp"
 #include "eval/breakdown/breakdown.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/cli/dataset_flags.hpp"
 #include "eval/cli/suggested_command.hpp"
 #include "eval/protocols/protocol_list.hpp"
 #include "eval/report/result_scans.hpp"
-#include "eval/results/answer_text.hpp"
 #include "eval/results/result_set.hpp"
 #include "eval/results/simulated.hpp"
 #include "eval/runs/presets.hpp"

@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "datasets/files/counted.hpp"
-#include "eval/results/answer_text.hpp"
+#include "datasets/text/counted.hpp"
+#include "eval/answer/answer_text.hpp"
 
 namespace mosbench {
 namespace {

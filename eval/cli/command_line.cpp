@@ -8,9 +8,9 @@
 #include <memory>
 #include <mosbench/method.hpp>
 
-#include "datasets/files/errors.hpp"
-#include "datasets/files/nearest_name.hpp"
 #include "datasets/sequence/pose_source.hpp"
+#include "datasets/text/errors.hpp"
+#include "datasets/text/nearest_name.hpp"
 #include "eval/cli/help_text.hpp"
 #include "eval/cli/suggested_command.hpp"
 #include "eval/results/version.hpp"

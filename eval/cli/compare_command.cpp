@@ -3,10 +3,10 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
-#include "datasets/files/errors.hpp"
+#include "datasets/text/errors.hpp"
+#include "eval/answer/answer_text.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/cli/output_file.hpp"
-#include "eval/results/answer_text.hpp"
 #include "eval/statistics/gate_report.hpp"
 #include "eval/statistics/paired_runs.hpp"
 

@@ -5,9 +5,9 @@
 #include <optional>
 
 #include "core/base/thread_pool.hpp"
-#include "datasets/files/counted.hpp"
-#include "datasets/files/errors.hpp"
 #include "datasets/layouts/convert.hpp"
+#include "datasets/text/counted.hpp"
+#include "datasets/text/errors.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/cli/dataset_flags.hpp"
 #include "eval/cli/odometry_flags.hpp"

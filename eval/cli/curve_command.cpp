@@ -2,10 +2,10 @@
 #include <memory>
 #include <optional>
 
+#include "eval/answer/answer_text.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/cli/output_file.hpp"
 #include "eval/report/curve_report.hpp"
-#include "eval/results/answer_text.hpp"
 
 namespace mosbench {
 namespace {

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <functional>
 
-#include "datasets/files/errors.hpp"
-#include "datasets/files/text.hpp"
 #include "datasets/perturb/perturbation.hpp"
+#include "datasets/text/errors.hpp"
+#include "datasets/text/text.hpp"
 #include "eval/results/reading_json.hpp"
 #include "eval/runs/run_plan.hpp"
 

@@ -6,12 +6,12 @@
 #include <memory>
 
 #include "core/base/thread_pool.hpp"
-#include "datasets/files/errors.hpp"
 #include "datasets/sequence/fingerprint.hpp"
+#include "datasets/text/errors.hpp"
+#include "eval/answer/answer_text.hpp"
 #include "eval/breakdown/run_diff.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/cli/dataset_flags.hpp"
-#include "eval/results/answer_text.hpp"
 #include "eval/results/tell.hpp"
 #include "eval/runs/run_plan.hpp"
 

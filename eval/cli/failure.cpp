@@ -6,7 +6,7 @@
 #include <new>
 #include <system_error>
 
-#include "datasets/files/errors.hpp"
+#include "datasets/text/errors.hpp"
 
 namespace mosbench {
 namespace {

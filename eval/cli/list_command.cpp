@@ -8,17 +8,17 @@
 #include <mosbench/odometry.hpp>
 #include <span>
 
-#include "datasets/files/errors.hpp"
-#include "datasets/files/nearest_name.hpp"
 #include "datasets/layouts/layout.hpp"
 #include "datasets/perturb/perturb_kinds.hpp"
 #include "datasets/simulator/built_in_scenes.hpp"
+#include "datasets/text/errors.hpp"
+#include "datasets/text/nearest_name.hpp"
+#include "eval/answer/answer_text.hpp"
+#include "eval/answer/text_table.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/cli/list_json.hpp"
 #include "eval/predictions/prediction_format.hpp"
 #include "eval/protocols/protocol_list.hpp"
-#include "eval/results/answer_text.hpp"
-#include "eval/results/text_table.hpp"
 #include "eval/runs/presets.hpp"
 
 namespace mosbench {

@@ -5,13 +5,13 @@
 #include <csignal>
 #include <cstdio>
 
-#include "datasets/files/errors.hpp"
-#include "datasets/files/files.hpp"
-#include "datasets/files/shown_text.hpp"
+#include "datasets/disk/files.hpp"
+#include "datasets/text/errors.hpp"
+#include "datasets/text/shown_text.hpp"
+#include "eval/answer/terminal.hpp"
 #include "eval/cli/command_line.hpp"
 #include "eval/cli/failure.hpp"
 #include "eval/results/tell.hpp"
-#include "eval/results/terminal.hpp"
 
 namespace {
 

@@ -1,8 +1,8 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
+#include "eval/answer/answer_text.hpp"
 #include "eval/cli/commands.hpp"
-#include "eval/results/answer_text.hpp"
 #include "eval/static_map/map_score.hpp"
 
 namespace mosbench {

@@ -2,8 +2,8 @@
 
 #include <cstdio>
 
-#include "datasets/files/errors.hpp"
-#include "datasets/files/files.hpp"
+#include "datasets/disk/files.hpp"
+#include "datasets/text/errors.hpp"
 
 namespace mosbench {
 namespace {

@@ -5,10 +5,10 @@
 #include <cstdlib>
 #include <utility>
 
-#include "datasets/files/errors.hpp"
-#include "datasets/files/files.hpp"
-#include "datasets/files/shell_text.hpp"
-#include "datasets/files/text.hpp"
+#include "datasets/disk/files.hpp"
+#include "datasets/text/errors.hpp"
+#include "datasets/text/shell_text.hpp"
+#include "datasets/text/text.hpp"
 #include "eval/results/tell.hpp"
 
 namespace mosbench {

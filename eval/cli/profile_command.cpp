@@ -4,12 +4,12 @@
 #include <limits>
 #include <memory>
 
-#include "datasets/files/errors.hpp"
+#include "datasets/text/errors.hpp"
+#include "eval/answer/answer_text.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/cli/method_options.hpp"
 #include "eval/cli/output_file.hpp"
 #include "eval/cli/profile_report.hpp"
-#include "eval/results/answer_text.hpp"
 #include "eval/results/machine.hpp"
 #include "eval/results/tell.hpp"
 

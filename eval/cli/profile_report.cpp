@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <numeric>
 
-#include "datasets/files/counted.hpp"
-#include "datasets/files/quantile.hpp"
+#include "datasets/text/counted.hpp"
+#include "datasets/text/quantile.hpp"
+#include "eval/answer/text_table.hpp"
 #include "eval/results/machine.hpp"
 #include "eval/results/settings_json.hpp"
 #include "eval/results/simulated.hpp"
-#include "eval/results/text_table.hpp"
 
 namespace mosbench {
 namespace {

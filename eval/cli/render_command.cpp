@@ -8,8 +8,8 @@
 #include <optional>
 #include <set>
 
-#include "datasets/files/errors.hpp"
-#include "datasets/files/text.hpp"
+#include "datasets/text/errors.hpp"
+#include "datasets/text/text.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/cli/output_file.hpp"
 #include "eval/cli/picture_sequence.hpp"

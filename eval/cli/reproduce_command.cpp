@@ -6,8 +6,8 @@
 #include <memory>
 
 #include "core/base/thread_pool.hpp"
-#include "datasets/files/errors.hpp"
 #include "datasets/layouts/simulated_origin.hpp"
+#include "datasets/text/errors.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/cli/dataset_flags.hpp"
 #include "eval/cli/help_text.hpp"

@@ -3,13 +3,13 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
+#include "eval/answer/answer_text.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/cli/method_options.hpp"
 #include "eval/cli/odometry_flags.hpp"
 #include "eval/cli/run_methods.hpp"
 #include "eval/cli/run_report.hpp"
 #include "eval/report/written_products.hpp"
-#include "eval/results/answer_text.hpp"
 #include "eval/runs/method_choice.hpp"
 #include "eval/runs/run_execute.hpp"
 #include "eval/runs/run_plan.hpp"

@@ -6,11 +6,11 @@
 #include <memory>
 #include <optional>
 
-#include "datasets/files/errors.hpp"
+#include "datasets/text/errors.hpp"
+#include "eval/answer/answer_text.hpp"
 #include "eval/cli/failure.hpp"
 #include "eval/cli/run_report.hpp"
 #include "eval/report/written_products.hpp"
-#include "eval/results/answer_text.hpp"
 #include "eval/results/tell.hpp"
 #include "eval/runs/method_choice.hpp"
 #include "eval/runs/run_execute.hpp"

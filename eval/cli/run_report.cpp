@@ -4,11 +4,11 @@
 
 #include <algorithm>
 
+#include "eval/answer/answer_text.hpp"
+#include "eval/answer/text_table.hpp"
 #include "eval/protocols/protocol_list.hpp"
-#include "eval/results/answer_text.hpp"
 #include "eval/results/settings_json.hpp"
 #include "eval/results/simulated.hpp"
-#include "eval/results/text_table.hpp"
 #include "eval/tables/score_table.hpp"
 
 namespace mosbench {

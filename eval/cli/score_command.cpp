@@ -5,13 +5,13 @@
 #include <optional>
 
 #include "core/base/thread_pool.hpp"
-#include "datasets/files/errors.hpp"
-#include "datasets/files/folder_lock.hpp"
+#include "datasets/disk/folder_lock.hpp"
+#include "datasets/text/errors.hpp"
+#include "eval/answer/answer_text.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/cli/dataset_flags.hpp"
 #include "eval/cli/help_text.hpp"
 #include "eval/protocols/benchmark_split.hpp"
-#include "eval/results/answer_text.hpp"
 #include "eval/results/machine.hpp"
 #include "eval/runs/presets.hpp"
 #include "eval/runs/run_plan.hpp"

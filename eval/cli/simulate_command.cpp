@@ -4,10 +4,10 @@
 #include <memory>
 #include <optional>
 
-#include "datasets/files/counted.hpp"
-#include "datasets/files/errors.hpp"
 #include "datasets/simulator/simulate.hpp"
 #include "datasets/simulator/simulated_layouts.hpp"
+#include "datasets/text/counted.hpp"
+#include "datasets/text/errors.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/cli/dataset_flags.hpp"
 #include "eval/results/progress.hpp"

@@ -4,9 +4,9 @@
 #include <memory>
 #include <optional>
 
-#include "datasets/files/errors.hpp"
+#include "datasets/text/errors.hpp"
+#include "eval/answer/answer_text.hpp"
 #include "eval/cli/commands.hpp"
-#include "eval/results/answer_text.hpp"
 #include "eval/results/tell.hpp"
 #include "eval/statistics/statistics_report.hpp"
 

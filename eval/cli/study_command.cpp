@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <memory>
 
-#include "datasets/files/counted.hpp"
-#include "datasets/files/errors.hpp"
+#include "datasets/text/counted.hpp"
+#include "datasets/text/errors.hpp"
+#include "eval/answer/answer_text.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/cli/dataset_flags.hpp"
 #include "eval/cli/output_file.hpp"
-#include "eval/results/answer_text.hpp"
 #include "eval/results/progress.hpp"
 #include "eval/results/tell.hpp"
 #include "eval/study/study_cell.hpp"

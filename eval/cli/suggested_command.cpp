@@ -4,7 +4,7 @@
 
 #include <string_view>
 
-#include "datasets/files/shell_text.hpp"
+#include "datasets/text/shell_text.hpp"
 #include "eval/cli/dataset_flags.hpp"
 #include "eval/results/reading_json.hpp"
 

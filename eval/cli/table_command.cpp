@@ -3,7 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
-#include "datasets/files/files.hpp"
+#include "datasets/disk/files.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/cli/help_text.hpp"
 #include "eval/tables/table_report.hpp"

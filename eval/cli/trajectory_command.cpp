@@ -5,14 +5,14 @@
 #include <memory>
 #include <optional>
 
-#include "datasets/files/calib_file.hpp"
-#include "datasets/files/errors.hpp"
-#include "datasets/files/shell_text.hpp"
+#include "datasets/formats/calib_file.hpp"
+#include "datasets/text/errors.hpp"
+#include "datasets/text/shell_text.hpp"
+#include "eval/answer/answer_text.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/cli/output_file.hpp"
 #include "eval/cli/suggested_command.hpp"
 #include "eval/cli/trajectory_plot.hpp"
-#include "eval/results/answer_text.hpp"
 #include "eval/trajectory/path_comparison.hpp"
 #include "eval/trajectory/trajectory_scores.hpp"
 

@@ -6,8 +6,8 @@
 #include <array>
 #include <string>
 
-#include "eval/report/line_chart.hpp"
-#include "eval/report/palette.hpp"
+#include "eval/answer/line_chart.hpp"
+#include "eval/answer/palette.hpp"
 
 namespace mosbench {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <span>
 
-#include "eval/report/picture.hpp"
+#include "eval/answer/picture.hpp"
 #include "eval/trajectory/trajectory_scores.hpp"
 
 namespace mosbench {

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "datasets/files/file_descriptor.hpp"
+#include "datasets/disk/file_descriptor.hpp"
 
 namespace mosbench {
 

@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "datasets/files/point_range.hpp"
+#include "datasets/formats/point_range.hpp"
 #include "eval/exec/child_process.hpp"
 #include "eval/exec/pipe_messages.hpp"
 #include "eval/exec/program_error.hpp"

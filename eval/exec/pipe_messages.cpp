@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "datasets/files/text.hpp"
+#include "datasets/text/text.hpp"
 #include "eval/exec/program_error.hpp"
 
 namespace mosbench {

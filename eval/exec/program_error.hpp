@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "datasets/files/errors.hpp"
+#include "datasets/text/errors.hpp"
 
 namespace mosbench {
 

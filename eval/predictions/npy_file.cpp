@@ -6,8 +6,8 @@
 #include <mosbench/scan.hpp>
 #include <string>
 
-#include "datasets/files/errors.hpp"
-#include "datasets/files/files.hpp"
+#include "datasets/disk/files.hpp"
+#include "datasets/text/errors.hpp"
 
 namespace mosbench {
 namespace fs = std::filesystem;

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <functional>
 
-#include "datasets/files/errors.hpp"
-#include "datasets/files/files.hpp"
-#include "datasets/files/label_file.hpp"
+#include "datasets/disk/files.hpp"
+#include "datasets/formats/label_file.hpp"
+#include "datasets/text/errors.hpp"
 
 namespace mosbench {
 namespace fs = std::filesystem;

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "datasets/files/errors.hpp"
+#include "datasets/text/errors.hpp"
 
 namespace mosbench {
 

@@ -6,7 +6,7 @@
 #include <array>
 #include <string>
 
-#include "datasets/files/errors.hpp"
+#include "datasets/text/errors.hpp"
 
 namespace mosbench {
 namespace {

@@ -6,7 +6,7 @@
 #include <array>
 #include <optional>
 
-#include "datasets/files/errors.hpp"
+#include "datasets/text/errors.hpp"
 #include "eval/protocols/confusion.hpp"
 
 namespace mosbench {

@@ -8,10 +8,10 @@
 #include <set>
 #include <system_error>
 
-#include "datasets/files/errors.hpp"
-#include "datasets/files/folder_listing.hpp"
-#include "datasets/files/text.hpp"
+#include "datasets/disk/folder_listing.hpp"
 #include "datasets/hdf5/hdf5_file.hpp"
+#include "datasets/text/errors.hpp"
+#include "datasets/text/text.hpp"
 
 namespace mosbench {
 namespace fs = std::filesystem;

@@ -7,8 +7,8 @@
 #include <optional>
 #include <string>
 
-#include "datasets/files/errors.hpp"
-#include "datasets/files/text.hpp"
+#include "datasets/text/errors.hpp"
+#include "datasets/text/text.hpp"
 
 namespace mosbench {
 namespace {

@@ -4,10 +4,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "datasets/files/errors.hpp"
-#include "datasets/files/files.hpp"
-#include "datasets/files/json_text.hpp"
-#include "datasets/files/text.hpp"
+#include "datasets/disk/files.hpp"
+#include "datasets/text/errors.hpp"
+#include "datasets/text/json_text.hpp"
+#include "datasets/text/text.hpp"
 #include "eval/predictions/prediction_errors.hpp"
 #include "eval/predictions/prediction_place.hpp"
 #include "eval/predictions/scan_file_predictions.hpp"

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "datasets/files/errors.hpp"
 #include "datasets/sequence/sequence.hpp"
+#include "datasets/text/errors.hpp"
 #include "eval/predictions/predicted_ids.hpp"
 #include "eval/predictions/prediction_format.hpp"
 #include "eval/predictions/prediction_text.hpp"

@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "datasets/files/files.hpp"
-#include "datasets/files/folder_listing.hpp"
-#include "datasets/files/label_file.hpp"
-#include "datasets/files/pcd_file.hpp"
-#include "datasets/files/shown_text.hpp"
-#include "datasets/files/text.hpp"
+#include "datasets/disk/files.hpp"
+#include "datasets/disk/folder_listing.hpp"
+#include "datasets/formats/label_file.hpp"
+#include "datasets/formats/pcd_file.hpp"
+#include "datasets/text/shown_text.hpp"
+#include "datasets/text/text.hpp"
 #include "eval/predictions/npy_file.hpp"
 #include "eval/predictions/prediction_mask.hpp"
 

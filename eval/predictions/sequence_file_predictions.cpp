@@ -6,11 +6,11 @@
 #include <array>
 #include <utility>
 
-#include "datasets/files/files.hpp"
-#include "datasets/files/indices_file.hpp"
-#include "datasets/files/shown_text.hpp"
+#include "datasets/disk/files.hpp"
+#include "datasets/formats/indices_file.hpp"
 #include "datasets/hdf5/hdf5_file.hpp"
 #include "datasets/hdf5/scene_flow_names.hpp"
+#include "datasets/text/shown_text.hpp"
 
 namespace mosbench {
 namespace fs = std::filesystem;

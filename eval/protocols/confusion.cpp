@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "datasets/files/point_range.hpp"
+#include "datasets/formats/point_range.hpp"
 
 namespace mosbench {
 namespace {

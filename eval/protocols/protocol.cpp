@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "datasets/files/errors.hpp"
-#include "datasets/files/nearest_name.hpp"
+#include "datasets/text/errors.hpp"
+#include "datasets/text/nearest_name.hpp"
 
 namespace mosbench {
 namespace {

@@ -1,8 +1,8 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
-#include "datasets/files/files.hpp"
-#include "datasets/files/pose_file.hpp"
+#include "datasets/disk/files.hpp"
+#include "datasets/formats/pose_file.hpp"
 #include "datasets/layouts/dataset.hpp"
 #include "datasets/sequence/pose_frame_mark.hpp"
 #include "eval/cli/dataset_flags.hpp"

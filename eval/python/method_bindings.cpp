@@ -7,7 +7,7 @@
 #include <mutex>
 #include <stdexcept>
 
-#include "datasets/files/nearest_name.hpp"
+#include "datasets/text/nearest_name.hpp"
 #include "eval/python/arrays.hpp"
 #include "eval/python/bindings.hpp"
 #include "eval/results/machine.hpp"

@@ -1,7 +1,7 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "datasets/files/errors.hpp"
+#include "datasets/text/errors.hpp"
 #include "eval/python/bindings.hpp"
 #include "eval/results/version.hpp"
 

@@ -1,9 +1,9 @@
 #include <fmt/format.h>
 
+#include "eval/answer/answer_text.hpp"
+#include "eval/answer/line_chart.hpp"
 #include "eval/protocols/metrics.hpp"
 #include "eval/report/curve_report.hpp"
-#include "eval/report/line_chart.hpp"
-#include "eval/results/answer_text.hpp"
 
 namespace mosbench {
 namespace {

@@ -8,13 +8,13 @@
 #include <set>
 #include <stdexcept>
 
-#include "datasets/files/counted.hpp"
-#include "datasets/files/errors.hpp"
+#include "datasets/text/counted.hpp"
+#include "datasets/text/errors.hpp"
+#include "eval/answer/answer_text.hpp"
+#include "eval/answer/csv.hpp"
+#include "eval/answer/text_table.hpp"
 #include "eval/protocols/metrics.hpp"
-#include "eval/results/answer_text.hpp"
-#include "eval/results/csv.hpp"
 #include "eval/results/progress.hpp"
-#include "eval/results/text_table.hpp"
 #include "eval/statistics/statistics_report.hpp"
 
 namespace mosbench {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "eval/report/picture.hpp"
+#include "eval/answer/picture.hpp"
 #include "eval/report/score_curve.hpp"
 #include "eval/results/result_set.hpp"
 

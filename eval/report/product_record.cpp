@@ -4,11 +4,11 @@
 
 #include <algorithm>
 
-#include "datasets/files/errors.hpp"
-#include "datasets/files/files.hpp"
-#include "datasets/files/json_text.hpp"
+#include "datasets/disk/files.hpp"
 #include "datasets/sequence/fingerprint.hpp"
-#include "eval/results/answer_text.hpp"
+#include "datasets/text/errors.hpp"
+#include "datasets/text/json_text.hpp"
+#include "eval/answer/answer_text.hpp"
 
 namespace mosbench {
 namespace {

@@ -6,7 +6,7 @@
 #include <mosbench/method.hpp>
 #include <set>
 
-#include "datasets/files/errors.hpp"
+#include "datasets/text/errors.hpp"
 #include "eval/protocols/protocol.hpp"
 #include "eval/report/point_planes.hpp"
 #include "eval/report/report_asset.hpp"

@@ -8,13 +8,10 @@
 
 namespace mosbench {
 
-// Embedded by CMakeLists.txt: the page without its content, as scripts/build_report.sh made it; a
-// PGM picture of the letters that `mosbench render` writes with; the colours of both as JSON.
+// Embedded by CMakeLists.txt: the page without its content, as scripts/build_report.sh made it.
 std::string_view report_asset();
 /// The page of `mosbench study table --format html`, made likewise.
 std::string_view study_asset();
-std::string_view glyphs_asset();
-std::string_view palette_asset();
 
 /// Returns the parts of a page before and after the content.
 std::pair<std::string_view, std::string_view> parts_of_page(std::string_view asset);

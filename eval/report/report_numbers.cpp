@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "core/base/thread_pool.hpp"
-#include "datasets/files/errors.hpp"
+#include "datasets/text/errors.hpp"
 #include "eval/breakdown/breakdown.hpp"
 #include "eval/statistics/scan_spacing.hpp"
 #include "eval/statistics/statistics_report.hpp"

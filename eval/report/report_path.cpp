@@ -3,7 +3,7 @@
 #include <cmath>
 #include <optional>
 
-#include "datasets/files/errors.hpp"
+#include "datasets/text/errors.hpp"
 #include "eval/results/reading_json.hpp"
 #include "eval/trajectory/alignment.hpp"
 #include "eval/trajectory/pose_errors.hpp"

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <map>
 
-#include "datasets/files/counted.hpp"
-#include "datasets/files/errors.hpp"
+#include "datasets/text/counted.hpp"
+#include "datasets/text/errors.hpp"
 #include "eval/report/compressed_text.hpp"
 #include "eval/report/point_planes.hpp"
 #include "eval/results/progress.hpp"

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/base/thread_pool.hpp"
-#include "datasets/files/point_range.hpp"
+#include "datasets/formats/point_range.hpp"
 
 namespace mosbench {
 namespace {

@@ -4,12 +4,12 @@
 
 #include <map>
 
-#include "datasets/files/errors.hpp"
-#include "datasets/files/files.hpp"
-#include "datasets/files/label_file.hpp"
-#include "datasets/files/pose_file.hpp"
+#include "datasets/disk/files.hpp"
+#include "datasets/formats/label_file.hpp"
+#include "datasets/formats/pose_file.hpp"
 #include "datasets/sequence/fingerprint.hpp"
 #include "datasets/sequence/posed_sequence.hpp"
+#include "datasets/text/errors.hpp"
 #include "eval/results/dynamic_score_file.hpp"
 #include "eval/results/reading_json.hpp"
 #include "eval/results/reason_file.hpp"

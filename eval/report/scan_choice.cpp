@@ -10,7 +10,7 @@
 #include <string_view>
 #include <utility>
 
-#include "datasets/files/errors.hpp"
+#include "datasets/text/errors.hpp"
 
 namespace mosbench {
 namespace {

@@ -9,8 +9,8 @@
 #include <optional>
 #include <utility>
 
-#include "datasets/files/point_range.hpp"
-#include "eval/report/palette.hpp"
+#include "datasets/formats/point_range.hpp"
+#include "eval/answer/palette.hpp"
 #include "eval/report/point_planes.hpp"
 #include "eval/report/result_boxes.hpp"
 

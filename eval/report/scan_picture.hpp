@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "eval/answer/picture.hpp"
 #include "eval/breakdown/moving_boxes.hpp"
-#include "eval/report/picture.hpp"
 #include "eval/report/result_scans.hpp"
 #include "eval/report/scan_view.hpp"
 

@@ -10,12 +10,12 @@
 #include <set>
 #include <string_view>
 
-#include "datasets/files/errors.hpp"
-#include "datasets/files/point_range.hpp"
+#include "datasets/formats/point_range.hpp"
+#include "datasets/text/errors.hpp"
+#include "eval/answer/answer_text.hpp"
 #include "eval/report/point_planes.hpp"
 #include "eval/report/product_record.hpp"
 #include "eval/report/result_boxes.hpp"
-#include "eval/results/answer_text.hpp"
 #include "eval/results/progress.hpp"
 
 namespace mosbench {

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <cstring>
 
-#include "datasets/files/errors.hpp"
+#include "datasets/text/errors.hpp"
 
 namespace mosbench {
 

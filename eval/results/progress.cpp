@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "datasets/files/shown_text.hpp"
+#include "datasets/text/shown_text.hpp"
 #include "eval/results/caller.hpp"
 
 namespace mosbench {

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 
-#include "datasets/files/bin_columns.hpp"
-#include "datasets/files/errors.hpp"
-#include "datasets/files/shell_text.hpp"
+#include "datasets/formats/bin_columns.hpp"
 #include "datasets/sequence/scan_deskewer.hpp"
+#include "datasets/text/errors.hpp"
+#include "datasets/text/shell_text.hpp"
 
 namespace mosbench {
 namespace {

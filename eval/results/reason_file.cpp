@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "datasets/files/errors.hpp"
+#include "datasets/text/errors.hpp"
 
 namespace mosbench {
 

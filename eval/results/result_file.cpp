@@ -7,14 +7,14 @@
 #include <string>
 #include <system_error>
 
-#include "datasets/files/errors.hpp"
-#include "datasets/files/files.hpp"
-#include "datasets/files/json_text.hpp"
-#include "datasets/files/label_file.hpp"
-#include "datasets/files/text.hpp"
+#include "datasets/disk/files.hpp"
+#include "datasets/formats/label_file.hpp"
 #include "datasets/sequence/sequence_name.hpp"
+#include "datasets/text/errors.hpp"
+#include "datasets/text/json_text.hpp"
+#include "datasets/text/text.hpp"
+#include "eval/answer/answer_text.hpp"
 #include "eval/protocols/counts_json.hpp"
-#include "eval/results/answer_text.hpp"
 #include "eval/results/result_format.hpp"
 
 namespace mosbench {

@@ -8,9 +8,9 @@
 #include <system_error>
 #include <vector>
 
-#include "datasets/files/errors.hpp"
-#include "datasets/files/label_file.hpp"
-#include "datasets/files/replace_folder.hpp"
+#include "datasets/disk/replace_folder.hpp"
+#include "datasets/formats/label_file.hpp"
+#include "datasets/text/errors.hpp"
 #include "eval/results/json_differences.hpp"
 
 namespace mosbench {

@@ -6,8 +6,8 @@
 #include <iterator>
 #include <stdexcept>
 
-#include "datasets/files/counted.hpp"
-#include "datasets/files/errors.hpp"
+#include "datasets/text/counted.hpp"
+#include "datasets/text/errors.hpp"
 #include "eval/protocols/counts_json.hpp"
 #include "eval/results/settings_json.hpp"
 

@@ -11,11 +11,11 @@
 #include <string>
 #include <vector>
 
-#include "datasets/files/counted.hpp"
-#include "datasets/files/errors.hpp"
-#include "datasets/files/files.hpp"
-#include "datasets/files/json_text.hpp"
-#include "datasets/files/nearest_name.hpp"
+#include "datasets/disk/files.hpp"
+#include "datasets/text/counted.hpp"
+#include "datasets/text/errors.hpp"
+#include "datasets/text/json_text.hpp"
+#include "datasets/text/nearest_name.hpp"
 
 namespace mosbench {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <cstdio>
 
-#include "datasets/files/shown_text.hpp"
+#include "datasets/text/shown_text.hpp"
 #include "eval/results/caller.hpp"
 
 namespace mosbench {

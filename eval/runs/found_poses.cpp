@@ -4,10 +4,10 @@
 
 #include <algorithm>
 
-#include "datasets/files/counted.hpp"
-#include "datasets/files/errors.hpp"
-#include "datasets/files/pose_file.hpp"
-#include "datasets/files/times_file.hpp"
+#include "datasets/formats/pose_file.hpp"
+#include "datasets/formats/times_file.hpp"
+#include "datasets/text/counted.hpp"
+#include "datasets/text/errors.hpp"
 
 namespace mosbench {
 namespace {

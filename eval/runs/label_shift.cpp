@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <map>
 
-#include "datasets/files/counted.hpp"
+#include "datasets/text/counted.hpp"
 #include "eval/protocols/metrics.hpp"
 
 namespace mosbench {

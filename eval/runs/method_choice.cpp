@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "datasets/files/errors.hpp"
-#include "datasets/files/nearest_name.hpp"
+#include "datasets/text/errors.hpp"
+#include "datasets/text/nearest_name.hpp"
 #include "eval/exec/exec_method.hpp"
 #include "eval/runs/presets.hpp"
 

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "datasets/files/errors.hpp"
-#include "datasets/files/nearest_name.hpp"
 #include "datasets/sequence/posed_sequence.hpp"
 #include "datasets/sequence/scan_deskewer.hpp"
+#include "datasets/text/errors.hpp"
+#include "datasets/text/nearest_name.hpp"
 #include "eval/results/progress.hpp"
 #include "eval/results/settings_json.hpp"
 #include "eval/results/tell.hpp"

@@ -6,8 +6,8 @@
 #include <array>
 #include <vector>
 
-#include "datasets/files/errors.hpp"
-#include "datasets/files/nearest_name.hpp"
+#include "datasets/text/errors.hpp"
+#include "datasets/text/nearest_name.hpp"
 
 namespace mosbench {
 namespace {

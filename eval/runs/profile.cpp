@@ -6,7 +6,7 @@
 #include <mosbench/method.hpp>
 
 #include "core/base/stage_clock.hpp"
-#include "datasets/files/quantile.hpp"
+#include "datasets/text/quantile.hpp"
 #include "eval/exec/child_process.hpp"
 #include "eval/results/machine.hpp"
 #include "eval/results/progress.hpp"

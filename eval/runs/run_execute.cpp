@@ -4,11 +4,11 @@
 
 #include <system_error>
 
+#include "datasets/disk/files.hpp"
 #include "datasets/doctor/pose_frame_doubt.hpp"
-#include "datasets/files/counted.hpp"
-#include "datasets/files/files.hpp"
-#include "datasets/files/pose_file.hpp"
+#include "datasets/formats/pose_file.hpp"
 #include "datasets/sequence/pose_frame_mark.hpp"
+#include "datasets/text/counted.hpp"
 #include "eval/exec/exec_method.hpp"
 #include "eval/protocols/benchmark_split.hpp"
 #include "eval/protocols/metrics.hpp"

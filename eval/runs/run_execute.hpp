@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "datasets/files/folder_lock.hpp"
+#include "datasets/disk/folder_lock.hpp"
 #include "eval/runs/run_plan.hpp"
 
 namespace mosbench {

@@ -6,9 +6,9 @@
 #include <cstdio>
 #include <stdexcept>
 
-#include "datasets/files/errors.hpp"
-#include "datasets/files/text.hpp"
 #include "datasets/sequence/fingerprint.hpp"
+#include "datasets/text/errors.hpp"
+#include "datasets/text/text.hpp"
 #include "eval/protocols/benchmark_split.hpp"
 #include "eval/results/machine.hpp"
 #include "eval/results/reading_json.hpp"

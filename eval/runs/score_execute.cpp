@@ -6,8 +6,8 @@
 #include <mutex>
 
 #include "core/base/thread_pool.hpp"
-#include "datasets/files/errors.hpp"
 #include "datasets/sequence/fingerprint.hpp"
+#include "datasets/text/errors.hpp"
 #include "eval/protocols/benchmark_split.hpp"
 #include "eval/results/progress.hpp"
 #include "eval/runs/label_shift.hpp"

@@ -8,10 +8,10 @@
 #include <future>
 #include <stdexcept>
 
-#include "datasets/files/errors.hpp"
-#include "datasets/files/files.hpp"
-#include "datasets/files/label_file.hpp"
+#include "datasets/disk/files.hpp"
+#include "datasets/formats/label_file.hpp"
 #include "datasets/sequence/fingerprint.hpp"
+#include "datasets/text/errors.hpp"
 #include "eval/exec/program_error.hpp"
 #include "eval/results/dynamic_score_file.hpp"
 #include "eval/results/machine.hpp"

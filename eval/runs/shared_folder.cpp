@@ -7,9 +7,9 @@
 #include <system_error>
 #include <vector>
 
-#include "datasets/files/errors.hpp"
-#include "datasets/files/folder_relation.hpp"
+#include "datasets/disk/folder_relation.hpp"
 #include "datasets/layouts/folder_search.hpp"
+#include "datasets/text/errors.hpp"
 #include "eval/results/json_differences.hpp"
 
 namespace mosbench {

@@ -6,7 +6,7 @@
 #include <nanoflann.hpp>
 #include <vector>
 
-#include "datasets/files/point_range.hpp"
+#include "datasets/formats/point_range.hpp"
 
 namespace mosbench {
 namespace {

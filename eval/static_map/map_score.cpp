@@ -5,16 +5,16 @@
 #include <algorithm>
 #include <cmath>
 
-#include "datasets/files/counted.hpp"
-#include "datasets/files/errors.hpp"
-#include "datasets/files/point_range.hpp"
-#include "datasets/files/scan_file.hpp"
-#include "datasets/files/shown_text.hpp"
+#include "datasets/formats/point_range.hpp"
+#include "datasets/formats/scan_file.hpp"
 #include "datasets/layouts/kth_sequence.hpp"
 #include "datasets/sequence/fingerprint.hpp"
-#include "eval/results/answer_text.hpp"
+#include "datasets/text/counted.hpp"
+#include "datasets/text/errors.hpp"
+#include "datasets/text/shown_text.hpp"
+#include "eval/answer/answer_text.hpp"
+#include "eval/answer/text_table.hpp"
 #include "eval/results/machine.hpp"
-#include "eval/results/text_table.hpp"
 
 namespace mosbench {
 namespace {

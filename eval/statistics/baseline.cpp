@@ -5,12 +5,12 @@
 #include <set>
 #include <system_error>
 
-#include "datasets/files/errors.hpp"
-#include "datasets/files/files.hpp"
-#include "datasets/files/folder_lock.hpp"
-#include "datasets/files/folder_relation.hpp"
-#include "datasets/files/partial_file.hpp"
-#include "datasets/files/replace_folder.hpp"
+#include "datasets/disk/files.hpp"
+#include "datasets/disk/folder_lock.hpp"
+#include "datasets/disk/folder_relation.hpp"
+#include "datasets/disk/partial_file.hpp"
+#include "datasets/disk/replace_folder.hpp"
+#include "datasets/text/errors.hpp"
 
 namespace mosbench {
 namespace fs = std::filesystem;

@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include "eval/results/answer_text.hpp"
-#include "eval/results/markdown.hpp"
-#include "eval/results/text_table.hpp"
+#include "eval/answer/answer_text.hpp"
+#include "eval/answer/markdown.hpp"
+#include "eval/answer/text_table.hpp"
 #include "eval/statistics/statistics_report.hpp"
 
 namespace mosbench {

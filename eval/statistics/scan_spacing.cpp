@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "datasets/files/folder_listing.hpp"
+#include "datasets/disk/folder_listing.hpp"
 
 namespace mosbench {
 namespace {

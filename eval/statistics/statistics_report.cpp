@@ -4,10 +4,10 @@
 
 #include <cmath>
 
+#include "eval/answer/answer_text.hpp"
+#include "eval/answer/csv.hpp"
+#include "eval/answer/text_table.hpp"
 #include "eval/protocols/counts_json.hpp"
-#include "eval/results/answer_text.hpp"
-#include "eval/results/csv.hpp"
-#include "eval/results/text_table.hpp"
 #include "eval/statistics/scan_spacing.hpp"
 
 namespace mosbench {

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "datasets/files/scatter_bits.hpp"
+#include "datasets/text/scatter_bits.hpp"
 
 namespace mosbench {
 namespace {

@@ -14,7 +14,7 @@
 #include <cstring>
 #include <thread>
 
-#include "datasets/files/errors.hpp"
+#include "datasets/text/errors.hpp"
 
 namespace mosbench {
 namespace {

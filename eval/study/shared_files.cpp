@@ -7,9 +7,9 @@
 #include <random>
 #include <system_error>
 
-#include "datasets/files/errors.hpp"
-#include "datasets/files/files.hpp"
+#include "datasets/disk/files.hpp"
 #include "datasets/simulator/simulate.hpp"
+#include "datasets/text/errors.hpp"
 #include "eval/results/machine.hpp"
 #include "eval/study/study_plan.hpp"
 

@@ -7,13 +7,13 @@
 #include <cmath>
 
 #include "core/base/stage_clock.hpp"
-#include "datasets/files/errors.hpp"
-#include "datasets/files/files.hpp"
-#include "datasets/files/json_text.hpp"
+#include "datasets/disk/files.hpp"
 #include "datasets/sequence/posed_sequence.hpp"
+#include "datasets/text/errors.hpp"
+#include "datasets/text/json_text.hpp"
+#include "eval/answer/answer_text.hpp"
 #include "eval/protocols/metrics.hpp"
 #include "eval/protocols/summary_json.hpp"
-#include "eval/results/answer_text.hpp"
 #include "eval/results/machine.hpp"
 #include "eval/results/settings_json.hpp"
 #include "eval/results/tell.hpp"

@@ -7,12 +7,12 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "datasets/files/bin_columns.hpp"
-#include "datasets/files/errors.hpp"
-#include "datasets/files/files.hpp"
-#include "datasets/files/text.hpp"
+#include "datasets/disk/files.hpp"
+#include "datasets/formats/bin_columns.hpp"
 #include "datasets/simulator/simulate.hpp"
 #include "datasets/simulator/simulated_layouts.hpp"
+#include "datasets/text/errors.hpp"
+#include "datasets/text/text.hpp"
 #include "eval/results/reading_json.hpp"
 #include "eval/results/settings_json.hpp"
 #include "eval/runs/method_choice.hpp"

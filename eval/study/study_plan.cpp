@@ -8,13 +8,13 @@
 #include <map>
 #include <sstream>
 
-#include "datasets/files/errors.hpp"
-#include "datasets/files/files.hpp"
-#include "datasets/files/json_text.hpp"
-#include "datasets/files/text.hpp"
+#include "datasets/disk/files.hpp"
 #include "datasets/sequence/fingerprint.hpp"
 #include "datasets/simulator/scene_json.hpp"
 #include "datasets/simulator/simulate.hpp"
+#include "datasets/text/errors.hpp"
+#include "datasets/text/json_text.hpp"
+#include "datasets/text/text.hpp"
 #include "eval/results/reading_json.hpp"
 #include "eval/results/version.hpp"
 #include "eval/runs/method_choice.hpp"

@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <map>
 
-#include "datasets/files/counted.hpp"
+#include "datasets/text/counted.hpp"
+#include "eval/answer/answer_text.hpp"
+#include "eval/answer/csv.hpp"
+#include "eval/answer/latex.hpp"
+#include "eval/answer/text_table.hpp"
 #include "eval/protocols/protocol_list.hpp"
 #include "eval/report/report_asset.hpp"
-#include "eval/results/answer_text.hpp"
-#include "eval/results/csv.hpp"
-#include "eval/results/latex.hpp"
 #include "eval/results/progress.hpp"
-#include "eval/results/text_table.hpp"
 #include "eval/results/version.hpp"
 #include "eval/study/study_table.hpp"
 

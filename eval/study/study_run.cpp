@@ -7,10 +7,10 @@
 #include <cmath>
 #include <set>
 
-#include "datasets/files/counted.hpp"
-#include "datasets/files/errors.hpp"
-#include "datasets/files/files.hpp"
-#include "eval/results/answer_text.hpp"
+#include "datasets/disk/files.hpp"
+#include "datasets/text/counted.hpp"
+#include "datasets/text/errors.hpp"
+#include "eval/answer/answer_text.hpp"
 #include "eval/results/tell.hpp"
 #include "eval/study/engine_process.hpp"
 #include "eval/study/workflow_asset.hpp"

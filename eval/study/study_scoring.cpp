@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "datasets/files/errors.hpp"
-#include "datasets/files/text.hpp"
+#include "datasets/text/errors.hpp"
+#include "datasets/text/text.hpp"
 #include "eval/protocols/protocol_list.hpp"
 
 namespace mosbench {

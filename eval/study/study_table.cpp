@@ -7,7 +7,7 @@
 #include <map>
 #include <utility>
 
-#include "datasets/files/shell_text.hpp"
+#include "datasets/text/shell_text.hpp"
 #include "eval/results/reading_json.hpp"
 #include "eval/statistics/distributions.hpp"
 #include "eval/statistics/pareto_front.hpp"

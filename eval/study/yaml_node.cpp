@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <set>
 
-#include "datasets/files/errors.hpp"
-#include "datasets/files/nearest_name.hpp"
-#include "datasets/files/text.hpp"
+#include "datasets/text/errors.hpp"
+#include "datasets/text/nearest_name.hpp"
+#include "datasets/text/text.hpp"
 
 namespace mosbench {
 

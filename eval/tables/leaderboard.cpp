@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <set>
 
-#include "datasets/files/errors.hpp"
+#include "datasets/text/errors.hpp"
 #include "eval/statistics/paired_runs.hpp"
 #include "eval/statistics/pareto_front.hpp"
 #include "eval/statistics/scan_spacing.hpp"

@@ -6,8 +6,8 @@
 #include <array>
 #include <string>
 
-#include "datasets/files/errors.hpp"
-#include "datasets/files/text.hpp"
+#include "datasets/text/errors.hpp"
+#include "datasets/text/text.hpp"
 
 namespace mosbench {
 

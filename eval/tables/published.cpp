@@ -4,8 +4,8 @@
 
 #include <array>
 
-#include "datasets/files/errors.hpp"
-#include "datasets/files/text.hpp"
+#include "datasets/text/errors.hpp"
+#include "datasets/text/text.hpp"
 
 namespace mosbench {
 

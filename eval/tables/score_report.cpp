@@ -2,15 +2,15 @@
 
 #include <fmt/format.h>
 
-#include "datasets/files/counted.hpp"
-#include "datasets/files/errors.hpp"
-#include "datasets/files/files.hpp"
-#include "datasets/files/partial_file.hpp"
+#include "datasets/disk/files.hpp"
+#include "datasets/disk/partial_file.hpp"
+#include "datasets/text/counted.hpp"
+#include "datasets/text/errors.hpp"
+#include "eval/answer/answer_text.hpp"
 #include "eval/protocols/benchmark_split.hpp"
 #include "eval/protocols/metrics.hpp"
 #include "eval/protocols/protocol_list.hpp"
 #include "eval/protocols/summary_json.hpp"
-#include "eval/results/answer_text.hpp"
 #include "eval/results/reading_json.hpp"
 #include "eval/results/result_set.hpp"
 #include "eval/results/simulated.hpp"

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 
+#include "eval/answer/answer_text.hpp"
+#include "eval/answer/text_table.hpp"
 #include "eval/protocols/benchmark_split.hpp"
 #include "eval/protocols/summary_json.hpp"
-#include "eval/results/answer_text.hpp"
-#include "eval/results/text_table.hpp"
 
 namespace mosbench {
 namespace {

@@ -1,11 +1,11 @@
 #include <fmt/format.h>
 
+#include "eval/answer/answer_text.hpp"
+#include "eval/answer/text_table.hpp"
 #include "eval/protocols/counts_json.hpp"
 #include "eval/protocols/metrics.hpp"
 #include "eval/protocols/protocol_list.hpp"
-#include "eval/results/answer_text.hpp"
 #include "eval/results/simulated.hpp"
-#include "eval/results/text_table.hpp"
 #include "eval/tables/score_report.hpp"
 
 namespace mosbench {

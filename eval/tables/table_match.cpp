@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "datasets/files/text.hpp"
+#include "datasets/text/text.hpp"
 
 namespace mosbench {
 namespace {

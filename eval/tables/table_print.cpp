@@ -4,11 +4,11 @@
 
 #include <algorithm>
 
-#include "eval/results/answer_text.hpp"
-#include "eval/results/csv.hpp"
-#include "eval/results/latex.hpp"
-#include "eval/results/markdown.hpp"
-#include "eval/results/text_table.hpp"
+#include "eval/answer/answer_text.hpp"
+#include "eval/answer/csv.hpp"
+#include "eval/answer/latex.hpp"
+#include "eval/answer/markdown.hpp"
+#include "eval/answer/text_table.hpp"
 
 namespace mosbench {
 namespace {

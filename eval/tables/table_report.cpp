@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "datasets/files/errors.hpp"
-#include "eval/results/answer_text.hpp"
+#include "datasets/text/errors.hpp"
+#include "eval/answer/answer_text.hpp"
 #include "eval/results/tell.hpp"
 #include "eval/tables/table_print.hpp"
 

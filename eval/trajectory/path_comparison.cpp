@@ -7,10 +7,10 @@
 #include <limits>
 #include <numbers>
 
-#include "datasets/files/errors.hpp"
-#include "eval/results/answer_text.hpp"
-#include "eval/results/csv.hpp"
-#include "eval/results/text_table.hpp"
+#include "datasets/text/errors.hpp"
+#include "eval/answer/answer_text.hpp"
+#include "eval/answer/csv.hpp"
+#include "eval/answer/text_table.hpp"
 
 namespace mosbench {
 namespace {

@@ -2,10 +2,10 @@
 
 #include <map>
 
-#include "datasets/files/errors.hpp"
-#include "datasets/files/files.hpp"
+#include "datasets/disk/files.hpp"
 #include "datasets/layouts/dataset.hpp"
 #include "datasets/rosbag/open_bag.hpp"
+#include "datasets/text/errors.hpp"
 
 namespace mosbench {
 namespace {

@@ -3,10 +3,10 @@
 #include <numbers>
 #include <vector>
 
-#include "datasets/files/counted.hpp"
-#include "eval/results/answer_text.hpp"
-#include "eval/results/csv.hpp"
-#include "eval/results/text_table.hpp"
+#include "datasets/text/counted.hpp"
+#include "eval/answer/answer_text.hpp"
+#include "eval/answer/csv.hpp"
+#include "eval/answer/text_table.hpp"
 #include "eval/trajectory/trajectory_scores.hpp"
 
 namespace mosbench {

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "datasets/files/errors.hpp"
+#include "datasets/text/errors.hpp"
 
 namespace mosbench {
 namespace {

@@ -7,10 +7,12 @@ import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-DATASETS = {"datasets/files", "datasets/sequence", "datasets/perturb", "datasets/layouts"}
+# Words and numbers, files on disk, and one parser per format.
+FILES = {"datasets/text", "datasets/disk", "datasets/formats"}
+DATASETS = FILES | {"datasets/sequence", "datasets/perturb", "datasets/layouts"}
 # What eval uses of core apart from the public face: threads and clocks.
 THREADS = {"core/include", "core/base"}
-NUMBERS = {"eval/protocols", "eval/predictions", "eval/results", "eval/runs", "eval/statistics"}
+NUMBERS = {"eval/answer", "eval/protocols", "eval/predictions", "eval/results", "eval/runs", "eval/statistics"}
 # Rooms that the files of a room may include in addition to their own. A name with a slash at the end means
 # all rooms below it.
 MAY_INCLUDE = {
@@ -19,30 +21,34 @@ MAY_INCLUDE = {
     "core/voxel": {"core/include", "core/base"},
     # Signed distances around the sensor, for the methods that judge by them.
     "core/tsdf": {"core/include", "core/base", "core/voxel"},
-    "core/dynablox": {"core/include", "core/base", "core/voxel", "core/tsdf"},
-    "core/lc_free_space": {"core/include", "core/base", "core/voxel", "core/tsdf"},
+    "core/methods/dynablox": {"core/include", "core/base", "core/voxel", "core/tsdf"},
+    "core/methods/lc_free_space": {"core/include", "core/base", "core/voxel", "core/tsdf"},
     # Stands on the map of the paper's method.
-    "core/hmm_mos_plus": {"core/include", "core/base", "core/voxel", "core/hmm_mos"},
+    "core/methods/hmm_mos_plus": {"core/include", "core/base", "core/voxel", "core/methods/hmm_mos"},
     # Its free space is that of underwood.
-    "core/yoon": {"core/include", "core/base", "core/voxel", "core/underwood"},
-    "core": {"core/"},
-    "datasets/files": {"core/include"},
-    "datasets/sequence": {"core/include", "datasets/files"},
-    "datasets/perturb": {"core/include", "datasets/files", "datasets/sequence"},
-    "datasets/rosbag": {"core/include", "datasets/files", "datasets/sequence"},
-    "datasets/hdf5": {"core/include", "datasets/files", "datasets/sequence"},
+    "core/methods/yoon": {"core/include", "core/base", "core/voxel", "core/methods/underwood"},
+    # The table of all methods.
+    "core/methods": {"core/"},
+    "datasets/text": {"core/include"},
+    "datasets/disk": {"core/include", "datasets/text"},
+    "datasets/formats": {"core/include", "datasets/text", "datasets/disk"},
+    "datasets/sequence": {"core/include"} | FILES,
+    "datasets/perturb": {"core/include", "datasets/sequence"} | FILES,
+    "datasets/rosbag": {"core/include", "datasets/sequence"} | FILES,
+    "datasets/hdf5": {"core/include", "datasets/sequence"} | FILES,
     "datasets/layouts": {"core/include", "datasets/rosbag", "datasets/hdf5"} | DATASETS,
     "datasets/simulator": THREADS | DATASETS,
     "datasets/doctor": {"core/include"} | DATASETS,
+    "eval/answer": {"datasets/text"},
     "eval/protocols": {"core/include", "datasets/"},
     "eval/predictions": {"core/include", "datasets/", "eval/protocols"},
-    "eval/results": {"core/include", "datasets/", "eval/protocols"},
+    "eval/results": {"core/include", "datasets/", "eval/answer", "eval/protocols"},
     # A method that is a process of the user: it needs no data set, only how errors and files are written.
-    "eval/exec": {"core/include", "datasets/files"},
+    "eval/exec": {"core/include"} | FILES,
     "eval/runs": THREADS | {"datasets/", "eval/exec", "eval/protocols", "eval/predictions", "eval/results"},
-    "eval/statistics": {"core/include", "datasets/", "eval/protocols", "eval/results"},
-    "eval/trajectory": {"core/include", "datasets/", "eval/results", "eval/statistics"},
-    "eval/static_map": {"core/include", "datasets/", "eval/results"},
+    "eval/statistics": {"core/include", "datasets/", "eval/answer", "eval/protocols", "eval/results"},
+    "eval/trajectory": {"core/include", "datasets/", "eval/answer", "eval/results", "eval/statistics"},
+    "eval/static_map": {"core/include", "datasets/", "eval/answer", "eval/results"},
     "eval/breakdown": THREADS | {"datasets/"} | NUMBERS,
     "eval/tables": {"core/include", "datasets/"} | NUMBERS,
     "eval/report": THREADS | {"datasets/", "eval/breakdown", "eval/tables", "eval/trajectory"} | NUMBERS,
@@ -53,7 +59,7 @@ MAY_INCLUDE = {
     "tests/examples": {"core/include", "core/base", "tests/examples"},
     "tests": {"core/", "datasets/", "eval/", "bench", "tests/"},
 }
-# Any other folder of core is a method, or odometry. None includes another.
+# Any other folder of core/methods is a method, as is odometry. None includes another.
 METHOD = {"core/include", "core/base", "core/voxel"}
 ABOVE_CORE = {"datasets", "eval", "bench", "tests"}
 TOP = ABOVE_CORE | {"core"}
@@ -63,7 +69,7 @@ EXTERNAL = {
     "CLI": {"eval", "tests"},
     "pybind11": {"eval"},
     "pcl": {"core/include/mosbench/pcl.hpp", "datasets", "tests"},
-    "octomap": {"core/octomap/log_odds_map.cpp", "bench/octomap_benchmark.cpp", "tests"},
+    "octomap": {"core/methods/octomap/log_odds_map.cpp", "bench/octomap_benchmark.cpp", "tests"},
     "hdf5.h": {"datasets/hdf5/hdf5_module.cpp"},
     "fmt": ABOVE_CORE,
     "nlohmann": ABOVE_CORE,
@@ -87,9 +93,11 @@ ODD_INCLUDE = re.compile(r"\s*(#|%:|\?\?=|/\*.*\*/).*\b(include|import|embed)\b"
 def room_of(name):
     """The row of MAY_INCLUDE that a file belongs to; its folder when there is none."""
     folders = name.split("/")[:-1]
+    if folders[:2] == ["core", "methods"]:
+        return "/".join(folders[:3])
     for depth in (2, 1):
         room = "/".join(folders[:depth])
-        if room in MAY_INCLUDE and not (room == "core" and len(folders) > 1):
+        if room in MAY_INCLUDE:
             return room
     return "/".join(folders[:2])
 

@@ -5,11 +5,11 @@
 #include <thread>
 #include <vector>
 
-#include "datasets/files/errors.hpp"
 #include "datasets/hdf5/hdf5_module.hpp"
 #include "datasets/layouts/dataset.hpp"
 #include "datasets/rosbag/bag_file.hpp"
 #include "datasets/rosbag/bag_writer.hpp"
+#include "datasets/text/errors.hpp"
 #include "tests/cli/program.hpp"
 #include "tests/cli/small_sequence.hpp"
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "datasets/files/pose_file.hpp"
+#include "datasets/formats/pose_file.hpp"
 #include "tests/cli/program.hpp"
 #include "tests/odometry_scenes.hpp"
 #include "tests/temp_folder.hpp"

@@ -6,10 +6,10 @@
 #include <set>
 #include <string>
 
-#include "datasets/files/bin_file.hpp"
-#include "datasets/files/files.hpp"
-#include "datasets/files/kitti_calib.hpp"
-#include "datasets/files/point_range.hpp"
+#include "datasets/disk/files.hpp"
+#include "datasets/formats/bin_file.hpp"
+#include "datasets/formats/kitti_calib.hpp"
+#include "datasets/formats/point_range.hpp"
 #include "datasets/layouts/dataset.hpp"
 #include "datasets/layouts/sequence_writer.hpp"
 #include "tests/cli/program.hpp"

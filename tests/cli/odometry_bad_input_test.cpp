@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "datasets/files/bin_file.hpp"
-#include "datasets/files/pose_file.hpp"
+#include "datasets/formats/bin_file.hpp"
+#include "datasets/formats/pose_file.hpp"
 #include "tests/cli/program.hpp"
 #include "tests/odometry_scenes.hpp"
 #include "tests/temp_folder.hpp"

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "datasets/files/files.hpp"
-#include "datasets/files/pose_file.hpp"
+#include "datasets/disk/files.hpp"
+#include "datasets/formats/pose_file.hpp"
 #include "tests/cli/program.hpp"
 #include "tests/cli/small_sequence.hpp"
 

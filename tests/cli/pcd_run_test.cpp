@@ -3,8 +3,8 @@
 #include <cstdlib>
 #include <string>
 
-#include "datasets/files/files.hpp"
-#include "datasets/files/pcd_file.hpp"
+#include "datasets/disk/files.hpp"
+#include "datasets/formats/pcd_file.hpp"
 #include "tests/cli/program.hpp"
 #include "tests/shared_folder.hpp"
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "datasets/files/times_file.hpp"
+#include "datasets/formats/times_file.hpp"
 #include "tests/cli/program.hpp"
 #include "tests/cli/small_sequence.hpp"
 

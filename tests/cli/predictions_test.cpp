@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "datasets/files/bin_file.hpp"
-#include "datasets/files/label_file.hpp"
-#include "datasets/files/pcd_file.hpp"
-#include "datasets/files/times_file.hpp"
+#include "datasets/formats/bin_file.hpp"
+#include "datasets/formats/label_file.hpp"
+#include "datasets/formats/pcd_file.hpp"
+#include "datasets/formats/times_file.hpp"
 #include "tests/cli/program.hpp"
 #include "tests/cli/small_sequence.hpp"
 

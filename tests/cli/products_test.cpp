@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "datasets/files/pcl_reader.hpp"
-#include "datasets/files/scan_file.hpp"
-#include "datasets/files/times_file.hpp"
+#include "datasets/formats/pcl_reader.hpp"
+#include "datasets/formats/scan_file.hpp"
+#include "datasets/formats/times_file.hpp"
 #include "tests/cli/program.hpp"
 #include "tests/cli/small_sequence.hpp"
 

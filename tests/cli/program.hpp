@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "datasets/files/files.hpp"
+#include "datasets/disk/files.hpp"
 #include "tests/temp_folder.hpp"
 
 /// Runs the built program as a user would.

@@ -3,7 +3,7 @@
 
 #include <mosbench/method.hpp>
 
-#include "datasets/files/bin_file.hpp"
+#include "datasets/formats/bin_file.hpp"
 #include "eval/runs/method_choice.hpp"
 #include "tests/cli/program.hpp"
 #include "tests/cli/small_sequence.hpp"

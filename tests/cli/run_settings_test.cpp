@@ -5,7 +5,7 @@
 #include <mosbench/method.hpp>
 #include <mosbench/odometry.hpp>
 
-#include "datasets/files/errors.hpp"
+#include "datasets/text/errors.hpp"
 #include "eval/results/settings_json.hpp"
 #include "eval/runs/run_plan.hpp"
 #include "tests/cli/program.hpp"

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "datasets/files/bin_file.hpp"
-#include "datasets/files/files.hpp"
-#include "datasets/files/label_file.hpp"
-#include "datasets/files/pose_file.hpp"
+#include "datasets/disk/files.hpp"
+#include "datasets/formats/bin_file.hpp"
+#include "datasets/formats/label_file.hpp"
+#include "datasets/formats/pose_file.hpp"
 
 /// A sequence folder in SemanticKITTI's layout, small enough for a test of its own: a box that
 /// crosses a square room around a sensor that stands still.

@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "datasets/files/bin_file.hpp"
-#include "datasets/files/label_file.hpp"
-#include "datasets/files/pcd_file.hpp"
+#include "datasets/formats/bin_file.hpp"
+#include "datasets/formats/label_file.hpp"
+#include "datasets/formats/pcd_file.hpp"
 #include "tests/cli/program.hpp"
 #include "tests/cli/small_sequence.hpp"
 

@@ -2,7 +2,7 @@
 
 #include <random>
 
-#include "core/dynablox/pipeline.hpp"
+#include "core/methods/dynablox/pipeline.hpp"
 #include "core/tsdf/depth_bounds.hpp"
 #include "tests/dynablox_twin.hpp"
 #include "tests/small_world.hpp"

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "core/lc_free_space/pipeline.hpp"
+#include "core/methods/lc_free_space/pipeline.hpp"
 #include "tests/dynablox_twin.hpp"
 #include "tests/small_world.hpp"
 

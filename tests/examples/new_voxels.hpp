@@ -2,7 +2,7 @@
 
 // A method of one's own, whole: a point moves when its voxel was empty in all scans before. To run
 // it as `mosbench run --method new-voxels`, put this into core/new_voxels/method.hpp, method_kind()
-// into a method.cpp beside it, and the row into core/methods.cpp.
+// into a method.cpp beside it, and the row into core/methods/methods.cpp.
 #include <cmath>
 #include <cstdint>
 #include <optional>

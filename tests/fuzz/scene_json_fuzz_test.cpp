@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "datasets/files/errors.hpp"
 #include "datasets/simulator/scene_json.hpp"
 #include "datasets/simulator/simulator.hpp"
+#include "datasets/text/errors.hpp"
 
 namespace mosbench {
 namespace {

@@ -8,12 +8,12 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "datasets/files/bin_file.hpp"
-#include "datasets/files/errors.hpp"
-#include "datasets/files/files.hpp"
+#include "datasets/disk/files.hpp"
+#include "datasets/formats/bin_file.hpp"
 #include "datasets/rosbag/bag_file.hpp"
 #include "datasets/rosbag/bag_sequence.hpp"
 #include "datasets/rosbag/ros_messages.hpp"
+#include "datasets/text/errors.hpp"
 #include "tests/shared_folder.hpp"
 #include "tests/temp_folder.hpp"
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/dynablox/pipeline.hpp"
+#include "core/methods/dynablox/pipeline.hpp"
 #include "tests/parity_cases.hpp"
 #include "tests/sanitizers.hpp"
 

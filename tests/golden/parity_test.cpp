@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/hmm_mos/pipeline.hpp"
+#include "core/methods/hmm_mos/pipeline.hpp"
 #include "tests/parity_cases.hpp"
 #include "tests/sanitizers.hpp"
 

@@ -6,10 +6,10 @@
 #include <cstring>
 #include <filesystem>
 
-#include "datasets/files/bin_file.hpp"
-#include "datasets/files/errors.hpp"
-#include "datasets/files/pcd_file.hpp"
+#include "datasets/formats/bin_file.hpp"
+#include "datasets/formats/pcd_file.hpp"
 #include "datasets/layouts/kitti_sequence.hpp"
+#include "datasets/text/errors.hpp"
 #include "tests/shared_folder.hpp"
 #include "tests/temp_folder.hpp"
 

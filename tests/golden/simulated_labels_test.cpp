@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "datasets/files/files.hpp"
+#include "datasets/disk/files.hpp"
 #include "tests/cli/program.hpp"
 
 // The labels of the authors' program on simulated sequences; tests/golden/simulated/README.md says

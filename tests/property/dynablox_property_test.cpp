@@ -4,7 +4,7 @@
 #include <cmath>
 #include <set>
 
-#include "core/dynablox/pipeline.hpp"
+#include "core/methods/dynablox/pipeline.hpp"
 #include "tests/small_world.hpp"
 
 namespace mosbench {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/lc_free_space/pipeline.hpp"
+#include "core/methods/lc_free_space/pipeline.hpp"
 #include "tests/small_world.hpp"
 
 namespace mosbench {

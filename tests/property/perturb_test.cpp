@@ -8,13 +8,13 @@
 #include <string>
 #include <thread>
 
-#include "datasets/files/errors.hpp"
-#include "datasets/files/point_range.hpp"
+#include "datasets/formats/point_range.hpp"
 #include "datasets/perturb/perturb_kinds.hpp"
 #include "datasets/perturb/perturbation.hpp"
 #include "datasets/sequence/fingerprint.hpp"
 #include "datasets/sequence/undistort.hpp"
 #include "datasets/simulator/simulator.hpp"
+#include "datasets/text/errors.hpp"
 #include "tests/temp_folder.hpp"
 
 namespace mosbench {

@@ -5,7 +5,7 @@
 #include <numeric>
 #include <random>
 
-#include "core/hmm_mos/pipeline.hpp"
+#include "core/methods/hmm_mos/pipeline.hpp"
 #include "tests/small_world.hpp"
 
 namespace mosbench {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string_view>
 
-#include "core/hmm_mos_plus/pipeline.hpp"
+#include "core/methods/hmm_mos_plus/pipeline.hpp"
 #include "tests/small_world.hpp"
 
 namespace mosbench {

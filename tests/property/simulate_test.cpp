@@ -10,14 +10,14 @@
 #include <stdexcept>
 #include <string>
 
-#include "datasets/files/errors.hpp"
-#include "datasets/files/files.hpp"
+#include "datasets/disk/files.hpp"
 #include "datasets/layouts/dataset.hpp"
 #include "datasets/layouts/simulated_origin.hpp"
 #include "datasets/simulator/built_in_scenes.hpp"
 #include "datasets/simulator/scene_json.hpp"
 #include "datasets/simulator/simulated_layouts.hpp"
 #include "datasets/simulator/simulator.hpp"
+#include "datasets/text/errors.hpp"
 #include "tests/temp_folder.hpp"
 
 namespace mosbench {

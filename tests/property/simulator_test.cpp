@@ -9,10 +9,10 @@
 #include <set>
 #include <thread>
 
-#include "datasets/files/errors.hpp"
 #include "datasets/sequence/portable_math.hpp"
 #include "datasets/simulator/built_in_scenes.hpp"
 #include "datasets/simulator/scene_json.hpp"
+#include "datasets/text/errors.hpp"
 
 namespace mosbench {
 namespace {

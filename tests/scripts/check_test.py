@@ -79,33 +79,33 @@ class Headers(unittest.TestCase):
 class Includes(unittest.TestCase):
     def test_each_room_has_its_name(self):
         self.assertEqual(includes.room_of("core/voxel/rays.cpp"), "core/voxel")
-        self.assertEqual(includes.room_of("core/methods.cpp"), "core")
+        self.assertEqual(includes.room_of("core/methods/methods.cpp"), "core/methods")
         self.assertEqual(includes.room_of("core/include/mosbench/scan.hpp"), "core/include")
         self.assertEqual(includes.room_of("tests/unit/core/otsu_test.cpp"), "tests")
 
     def test_lower_rooms_may_be_included(self):
         for name, quote, header in (
-                ("core/hmm_mos/hmm.cpp", '"', "core/voxel/voxel.hpp"), ("core/voxel/rays.cpp", "<", "vector"),
+                ("core/methods/hmm_mos/hmm.cpp", '"', "core/voxel/voxel.hpp"), ("core/voxel/rays.cpp", "<", "vector"),
                 ("eval/cli/run_command.cpp", "<", "CLI/CLI.hpp"), ("eval/report/report.cpp", "<", "mosbench/scan.hpp"),
-                ("tests/unit/core/otsu_test.cpp", '"', "core/hmm_mos/otsu.hpp")):
+                ("tests/unit/core/otsu_test.cpp", '"', "core/methods/hmm_mos/otsu.hpp")):
             self.assertIsNone(includes.complaint(name, quote, header), (name, header))
 
     def test_rooms_above_and_beside_are_refused(self):
-        for name, header in (("core/voxel/rays.cpp", "core/hmm_mos/hmm.hpp"),
-                             ("core/odometry/kiss.cpp", "core/hmm_mos/hmm.hpp"),
-                             ("datasets/files/text.cpp", "eval/results/csv.hpp"),
-                             ("core/base/rigid.cpp", "datasets/files/files.hpp")):
+        for name, header in (("core/voxel/rays.cpp", "core/methods/hmm_mos/hmm.hpp"),
+                             ("core/odometry/kiss.cpp", "core/methods/hmm_mos/hmm.hpp"),
+                             ("datasets/text/text.cpp", "eval/answer/csv.hpp"),
+                             ("core/base/rigid.cpp", "datasets/disk/files.hpp")):
             self.assertIn("must not include", includes.complaint(name, '"', header) or "", (name, header))
 
     def test_core_neither_reads_nor_prints(self):
         for header in ("fstream", "iostream", "filesystem", "cstdio", "fmt/format.h", "nlohmann/json.hpp", "pcl/io.h"):
-            self.assertIn("core must not use", includes.complaint("core/hmm_mos/hmm.cpp", "<", header) or "", header)
-        self.assertIsNone(includes.complaint("datasets/files/files.cpp", "<", "filesystem"))
+            self.assertIn("core must not use", includes.complaint("core/methods/hmm_mos/hmm.cpp", "<", header) or "", header)
+        self.assertIsNone(includes.complaint("datasets/disk/files.cpp", "<", "filesystem"))
 
     def test_paths_are_whole_and_methods_come_by_their_public_face(self):
-        for quote, header in (('"', "hmm.hpp"), ('"', "core/hmm_mos/absent.hpp"), ("<", "mosbench/absent.hpp"),
+        for quote, header in (('"', "hmm.hpp"), ('"', "core/methods/hmm_mos/absent.hpp"), ("<", "mosbench/absent.hpp"),
                               ('"', "core/include/mosbench/scan.hpp")):
-            self.assertIn("is neither a path", includes.complaint("core/hmm_mos/hmm.cpp", quote, header) or "", header)
+            self.assertIn("is neither a path", includes.complaint("core/methods/hmm_mos/hmm.cpp", quote, header) or "", header)
 
 
 class Mutants(unittest.TestCase):

@@ -3,7 +3,7 @@
 #include <array>
 #include <set>
 
-#include "core/dufomap/pipeline.hpp"
+#include "core/methods/dufomap/pipeline.hpp"
 #include "core/voxel/grid_walk.hpp"
 #include "tests/small_world.hpp"
 

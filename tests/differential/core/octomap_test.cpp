@@ -6,8 +6,8 @@
 #include <map>
 #include <set>
 
-#include "core/octomap/log_odds_map.hpp"
-#include "core/octomap/pipeline.hpp"
+#include "core/methods/octomap/log_odds_map.hpp"
+#include "core/methods/octomap/pipeline.hpp"
 #include "tests/small_world.hpp"
 
 /// octomap against the library's own insertPointCloud.

@@ -1,11 +1,11 @@
-#include "core/hmm_mos/pipeline.hpp"
+#include "core/methods/hmm_mos/pipeline.hpp"
 
 #include <gtest/gtest.h>
 
 #include <sstream>
 #include <string>
 
-#include "core/hmm_mos/reference.hpp"
+#include "core/methods/hmm_mos/reference.hpp"
 #include "tests/small_world.hpp"
 
 /// The core against the slow twin, label for label and score for score, on small seeded worlds.

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <random>
 
-#include "core/hmm_mos_plus/pipeline.hpp"
+#include "core/methods/hmm_mos_plus/pipeline.hpp"
 #include "tests/plus_twin.hpp"
 #include "tests/small_world.hpp"
 

@@ -2,8 +2,8 @@
 
 #include <limits>
 
-#include "core/underwood/direction_grid.hpp"
-#include "core/underwood/pipeline.hpp"
+#include "core/methods/underwood/direction_grid.hpp"
+#include "core/methods/underwood/pipeline.hpp"
 #include "tests/small_world.hpp"
 
 /// underwood against all pairs of points.

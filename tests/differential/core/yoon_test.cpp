@@ -4,9 +4,9 @@
 #include <limits>
 #include <numbers>
 
-#include "core/underwood/direction_grid.hpp"
-#include "core/yoon/pipeline.hpp"
-#include "core/yoon/residual.hpp"
+#include "core/methods/underwood/direction_grid.hpp"
+#include "core/methods/yoon/pipeline.hpp"
+#include "core/methods/yoon/residual.hpp"
 #include "tests/small_world.hpp"
 
 /// yoon against all pairs of points, step by step.

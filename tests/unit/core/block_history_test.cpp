@@ -1,4 +1,4 @@
-#include "core/hmm_mos/block_history.hpp"
+#include "core/methods/hmm_mos/block_history.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "core/hmm_mos/config.hpp"
+#include "core/methods/hmm_mos/config.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

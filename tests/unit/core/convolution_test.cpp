@@ -1,4 +1,4 @@
-#include "core/hmm_mos/convolution.hpp"
+#include "core/methods/hmm_mos/convolution.hpp"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/dufomap/pipeline.hpp"
+#include "core/methods/dufomap/pipeline.hpp"
 
 namespace mosbench::dufomap {
 namespace {

@@ -5,10 +5,10 @@
 #include <random>
 #include <stdexcept>
 
-#include "core/dynablox/clusters.hpp"
-#include "core/dynablox/ever_free.hpp"
-#include "core/dynablox/pipeline.hpp"
-#include "core/dynablox/tracks.hpp"
+#include "core/methods/dynablox/clusters.hpp"
+#include "core/methods/dynablox/ever_free.hpp"
+#include "core/methods/dynablox/pipeline.hpp"
+#include "core/methods/dynablox/tracks.hpp"
 
 /// Numbers worked by hand from the published settings.
 namespace mosbench::dynablox {

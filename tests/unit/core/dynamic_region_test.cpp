@@ -1,10 +1,10 @@
-#include "core/hmm_mos/dynamic_region.hpp"
+#include "core/methods/hmm_mos/dynamic_region.hpp"
 
 #include <gtest/gtest.h>
 
 #include <map>
 
-#include "core/hmm_mos/otsu.hpp"
+#include "core/methods/hmm_mos/otsu.hpp"
 #include "tests/unit/core/otsu_of.hpp"
 #include "tests/voxel_twins.hpp"
 

@@ -1,11 +1,11 @@
-#include "core/hmm_mos/hmm.hpp"
+#include "core/methods/hmm_mos/hmm.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
-#include "core/hmm_mos/change_detection.hpp"
+#include "core/methods/hmm_mos/change_detection.hpp"
 
 namespace mosbench {
 using namespace hmm_mos;

@@ -1,4 +1,4 @@
-#include "core/hmm_mos/last_seen.hpp"
+#include "core/methods/hmm_mos/last_seen.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,8 +4,8 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "core/lc_free_space/free_space.hpp"
-#include "core/lc_free_space/pipeline.hpp"
+#include "core/methods/lc_free_space/free_space.hpp"
+#include "core/methods/lc_free_space/pipeline.hpp"
 #include "core/tsdf/integration.hpp"
 #include "core/tsdf/ray_blocks.hpp"
 

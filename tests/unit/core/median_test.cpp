@@ -1,4 +1,4 @@
-#include "core/hmm_mos/median.hpp"
+#include "core/methods/hmm_mos/median.hpp"
 
 #include <gtest/gtest.h>
 

@@ -2,8 +2,8 @@
 
 #include <map>
 
-#include "core/octomap/log_odds_map.hpp"
-#include "core/octomap/pipeline.hpp"
+#include "core/methods/octomap/log_odds_map.hpp"
+#include "core/methods/octomap/pipeline.hpp"
 
 namespace mosbench::octomap {
 namespace {

@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/hmm_mos/otsu.hpp"
+#include "core/methods/hmm_mos/otsu.hpp"
 
 namespace mosbench::hmm_mos {
 

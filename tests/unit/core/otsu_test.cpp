@@ -1,4 +1,4 @@
-#include "core/hmm_mos/otsu.hpp"
+#include "core/methods/hmm_mos/otsu.hpp"
 
 #include <gtest/gtest.h>
 

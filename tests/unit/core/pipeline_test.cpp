@@ -1,4 +1,4 @@
-#include "core/hmm_mos/pipeline.hpp"
+#include "core/methods/hmm_mos/pipeline.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

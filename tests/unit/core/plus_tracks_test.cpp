@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "core/hmm_mos_plus/tracks.hpp"
+#include "core/methods/hmm_mos_plus/tracks.hpp"
 
 namespace mosbench::hmm_mos_plus {
 namespace {

@@ -1,12 +1,12 @@
-#include "core/hmm_mos/threshold.hpp"
+#include "core/methods/hmm_mos/threshold.hpp"
 
 #include <gtest/gtest.h>
 
 #include <map>
 
-#include "core/hmm_mos/dilation.hpp"
-#include "core/hmm_mos/label_projection.hpp"
-#include "core/hmm_mos/local_window.hpp"
+#include "core/methods/hmm_mos/dilation.hpp"
+#include "core/methods/hmm_mos/label_projection.hpp"
+#include "core/methods/hmm_mos/local_window.hpp"
 #include "tests/voxel_twins.hpp"
 
 namespace mosbench {

@@ -1,4 +1,4 @@
-#include "core/hmm_mos/tick_clock.hpp"
+#include "core/methods/hmm_mos/tick_clock.hpp"
 
 #include <gtest/gtest.h>
 

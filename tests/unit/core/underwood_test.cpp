@@ -5,9 +5,9 @@
 #include <numbers>
 #include <span>
 
-#include "core/underwood/direction_grid.hpp"
-#include "core/underwood/neighbour_angle.hpp"
-#include "core/underwood/pipeline.hpp"
+#include "core/methods/underwood/direction_grid.hpp"
+#include "core/methods/underwood/neighbour_angle.hpp"
+#include "core/methods/underwood/pipeline.hpp"
 
 namespace mosbench::underwood {
 namespace {

@@ -1,4 +1,4 @@
-#include "core/hmm_mos/voxel_map.hpp"
+#include "core/methods/hmm_mos/voxel_map.hpp"
 
 #include <gtest/gtest.h>
 

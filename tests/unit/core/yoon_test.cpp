@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/yoon/box_filter.hpp"
-#include "core/yoon/growth.hpp"
-#include "core/yoon/pipeline.hpp"
+#include "core/methods/yoon/box_filter.hpp"
+#include "core/methods/yoon/growth.hpp"
+#include "core/methods/yoon/pipeline.hpp"
 
 namespace mosbench::yoon {
 namespace {

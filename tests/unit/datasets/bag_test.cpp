@@ -7,14 +7,14 @@
 #include <functional>
 #include <string>
 
-#include "datasets/files/errors.hpp"
-#include "datasets/files/files.hpp"
+#include "datasets/disk/files.hpp"
 #include "datasets/layouts/doals_sequence.hpp"
 #include "datasets/rosbag/bag_compression.hpp"
 #include "datasets/rosbag/bag_file.hpp"
 #include "datasets/rosbag/bag_sequence.hpp"
 #include "datasets/rosbag/bag_writer.hpp"
 #include "datasets/rosbag/point_cloud2.hpp"
+#include "datasets/text/errors.hpp"
 #include "tests/bag_bytes.hpp"
 #include "tests/temp_folder.hpp"
 #include "tests/unit/datasets/pose_at_x.hpp"

@@ -3,14 +3,14 @@
 
 #include <string>
 
-#include "datasets/files/bin_file.hpp"
-#include "datasets/files/byte_cursor.hpp"
-#include "datasets/files/errors.hpp"
-#include "datasets/files/label_file.hpp"
-#include "datasets/files/moe_labels.hpp"
-#include "datasets/files/pcd_file.hpp"
-#include "datasets/files/pose_file.hpp"
+#include "datasets/formats/bin_file.hpp"
+#include "datasets/formats/byte_cursor.hpp"
+#include "datasets/formats/label_file.hpp"
+#include "datasets/formats/moe_labels.hpp"
+#include "datasets/formats/pcd_file.hpp"
+#include "datasets/formats/pose_file.hpp"
 #include "datasets/layouts/dataset.hpp"
+#include "datasets/text/errors.hpp"
 #include "tests/temp_folder.hpp"
 
 namespace mosbench {

@@ -1,4 +1,4 @@
-#include "datasets/files/bin_columns.hpp"
+#include "datasets/formats/bin_columns.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,12 +11,12 @@
 #include <string>
 #include <vector>
 
-#include "datasets/files/bin_file.hpp"
-#include "datasets/files/errors.hpp"
-#include "datasets/files/files.hpp"
+#include "datasets/disk/files.hpp"
+#include "datasets/formats/bin_file.hpp"
 #include "datasets/layouts/dataset.hpp"
 #include "datasets/simulator/built_in_scenes.hpp"
 #include "datasets/simulator/simulator.hpp"
+#include "datasets/text/errors.hpp"
 #include "tests/shared_folder.hpp"
 #include "tests/temp_folder.hpp"
 

@@ -5,8 +5,8 @@
 
 #include <set>
 
-#include "datasets/files/errors.hpp"
 #include "datasets/layouts/layout.hpp"
+#include "datasets/text/errors.hpp"
 #include "tests/temp_folder.hpp"
 #include "tests/unit/datasets/sequence_names.hpp"
 

@@ -10,13 +10,13 @@
 #include <numbers>
 #include <string>
 
-#include "datasets/files/bin_file.hpp"
-#include "datasets/files/errors.hpp"
-#include "datasets/files/files.hpp"
-#include "datasets/files/pcl_reader.hpp"
-#include "datasets/files/pose_file.hpp"
+#include "datasets/disk/files.hpp"
+#include "datasets/formats/bin_file.hpp"
+#include "datasets/formats/pcl_reader.hpp"
+#include "datasets/formats/pose_file.hpp"
 #include "datasets/layouts/dataset.hpp"
 #include "datasets/sequence/azimuth_times.hpp"
+#include "datasets/text/errors.hpp"
 #include "tests/temp_folder.hpp"
 
 namespace mosbench {

@@ -14,12 +14,12 @@
 #include <string>
 #include <vector>
 
-#include "datasets/files/bin_file.hpp"
-#include "datasets/files/calib_file.hpp"
-#include "datasets/files/files.hpp"
-#include "datasets/files/label_file.hpp"
-#include "datasets/files/pose_file.hpp"
-#include "datasets/files/times_file.hpp"
+#include "datasets/disk/files.hpp"
+#include "datasets/formats/bin_file.hpp"
+#include "datasets/formats/calib_file.hpp"
+#include "datasets/formats/label_file.hpp"
+#include "datasets/formats/pose_file.hpp"
+#include "datasets/formats/times_file.hpp"
 #include "datasets/layouts/simulated_origin.hpp"
 #include "datasets/simulator/simulate.hpp"
 #include "tests/sanitizers.hpp"

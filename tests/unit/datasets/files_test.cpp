@@ -1,4 +1,4 @@
-#include "datasets/files/files.hpp"
+#include "datasets/disk/files.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,8 +10,8 @@
 #include <future>
 #include <iterator>
 
-#include "datasets/files/errors.hpp"
-#include "datasets/files/partial_file.hpp"
+#include "datasets/disk/partial_file.hpp"
+#include "datasets/text/errors.hpp"
 #include "tests/temp_folder.hpp"
 
 namespace mosbench {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "datasets/files/bin_file.hpp"
+#include "datasets/formats/bin_file.hpp"
 #include "datasets/layouts/dataset.hpp"
 #include "tests/temp_folder.hpp"
 

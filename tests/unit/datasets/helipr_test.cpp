@@ -3,10 +3,10 @@
 
 #include <array>
 
-#include "datasets/files/byte_cursor.hpp"
-#include "datasets/files/errors.hpp"
-#include "datasets/files/helipr_points.hpp"
+#include "datasets/formats/byte_cursor.hpp"
+#include "datasets/formats/helipr_points.hpp"
 #include "datasets/layouts/dataset.hpp"
+#include "datasets/text/errors.hpp"
 #include "tests/temp_folder.hpp"
 #include "tests/unit/datasets/sequence_names.hpp"
 

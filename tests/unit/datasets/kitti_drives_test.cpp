@@ -5,10 +5,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "datasets/files/bin_file.hpp"
-#include "datasets/files/errors.hpp"
+#include "datasets/formats/bin_file.hpp"
 #include "datasets/layouts/dataset.hpp"
 #include "datasets/sequence/pose_source.hpp"
+#include "datasets/text/errors.hpp"
 #include "tests/temp_folder.hpp"
 #include "tests/unit/datasets/sequence_names.hpp"
 

@@ -5,12 +5,12 @@
 #include <cmath>
 #include <numbers>
 
-#include "datasets/files/errors.hpp"
-#include "datasets/files/kitti_calib.hpp"
-#include "datasets/files/kitti_oxts.hpp"
-#include "datasets/files/kitti_stamps.hpp"
-#include "datasets/files/tracking_labels.hpp"
-#include "datasets/files/tracklets.hpp"
+#include "datasets/formats/kitti_calib.hpp"
+#include "datasets/formats/kitti_oxts.hpp"
+#include "datasets/formats/kitti_stamps.hpp"
+#include "datasets/formats/tracking_labels.hpp"
+#include "datasets/formats/tracklets.hpp"
+#include "datasets/text/errors.hpp"
 #include "tests/temp_folder.hpp"
 
 namespace mosbench {

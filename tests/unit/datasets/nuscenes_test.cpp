@@ -5,11 +5,11 @@
 
 #include <sstream>
 
-#include "datasets/files/byte_cursor.hpp"
-#include "datasets/files/errors.hpp"
-#include "datasets/files/nuscenes_table.hpp"
+#include "datasets/formats/byte_cursor.hpp"
+#include "datasets/formats/nuscenes_table.hpp"
 #include "datasets/layouts/dataset.hpp"
 #include "datasets/layouts/nuscenes_tables.hpp"
+#include "datasets/text/errors.hpp"
 #include "tests/temp_folder.hpp"
 #include "tests/unit/datasets/sequence_names.hpp"
 

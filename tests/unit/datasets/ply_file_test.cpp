@@ -1,4 +1,4 @@
-#include "datasets/files/ply_file.hpp"
+#include "datasets/formats/ply_file.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,10 +10,10 @@
 #include <utility>
 #include <vector>
 
-#include "datasets/files/bin_file.hpp"
-#include "datasets/files/byte_cursor.hpp"
-#include "datasets/files/errors.hpp"
-#include "datasets/files/files.hpp"
+#include "datasets/disk/files.hpp"
+#include "datasets/formats/bin_file.hpp"
+#include "datasets/formats/byte_cursor.hpp"
+#include "datasets/text/errors.hpp"
 #include "tests/shared_folder.hpp"
 #include "tests/temp_folder.hpp"
 

@@ -1,12 +1,12 @@
-#include "datasets/files/point_times.hpp"
+#include "datasets/formats/point_times.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <limits>
 
-#include "datasets/files/errors.hpp"
-#include "datasets/files/ply_file.hpp"
+#include "datasets/formats/ply_file.hpp"
+#include "datasets/text/errors.hpp"
 #include "tests/temp_folder.hpp"
 
 namespace mosbench {

@@ -1,9 +1,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "datasets/files/calib_file.hpp"
-#include "datasets/files/errors.hpp"
-#include "datasets/files/pose_file.hpp"
+#include "datasets/formats/calib_file.hpp"
+#include "datasets/formats/pose_file.hpp"
+#include "datasets/text/errors.hpp"
 #include "tests/temp_folder.hpp"
 
 namespace mosbench {

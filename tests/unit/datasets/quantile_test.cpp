@@ -1,4 +1,4 @@
-#include "datasets/files/quantile.hpp"
+#include "datasets/text/quantile.hpp"
 
 #include <gtest/gtest.h>
 

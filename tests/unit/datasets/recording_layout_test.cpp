@@ -1,9 +1,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "datasets/files/bin_file.hpp"
-#include "datasets/files/errors.hpp"
+#include "datasets/formats/bin_file.hpp"
 #include "datasets/layouts/dataset.hpp"
+#include "datasets/text/errors.hpp"
 #include "tests/bag_bytes.hpp"
 #include "tests/temp_folder.hpp"
 #include "tests/unit/datasets/sequence_names.hpp"

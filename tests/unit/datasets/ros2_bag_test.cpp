@@ -10,8 +10,7 @@
 #include <functional>
 #include <string>
 
-#include "datasets/files/errors.hpp"
-#include "datasets/files/files.hpp"
+#include "datasets/disk/files.hpp"
 #include "datasets/layouts/dataset.hpp"
 #include "datasets/layouts/sequence_writer.hpp"
 #include "datasets/rosbag/bag_compression.hpp"
@@ -20,6 +19,7 @@
 #include "datasets/rosbag/message_cursor.hpp"
 #include "datasets/rosbag/open_bag.hpp"
 #include "datasets/rosbag/ros2_bag_writer.hpp"
+#include "datasets/text/errors.hpp"
 #include "tests/bag_bytes.hpp"
 #include "tests/mcap_bytes.hpp"
 #include "tests/temp_folder.hpp"

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <limits>
 
-#include "datasets/files/bin_file.hpp"
-#include "datasets/files/errors.hpp"
-#include "datasets/files/label_file.hpp"
+#include "datasets/formats/bin_file.hpp"
+#include "datasets/formats/label_file.hpp"
+#include "datasets/text/errors.hpp"
 #include "tests/temp_folder.hpp"
 
 namespace mosbench {

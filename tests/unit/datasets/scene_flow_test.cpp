@@ -9,14 +9,14 @@
 #include <stdexcept>
 #include <string>
 
-#include "datasets/files/errors.hpp"
-#include "datasets/files/files.hpp"
+#include "datasets/disk/files.hpp"
 #include "datasets/hdf5/flow_truth.hpp"
 #include "datasets/hdf5/process_copy.hpp"
 #include "datasets/hdf5/scene_flow_sequence.hpp"
 #include "datasets/layouts/dataset.hpp"
 #include "datasets/layouts/sequence_writer.hpp"
 #include "datasets/sequence/pose_source.hpp"
+#include "datasets/text/errors.hpp"
 #include "tests/hdf5_bytes.hpp"
 #include "tests/temp_folder.hpp"
 

@@ -5,8 +5,8 @@
 
 #include <string>
 
-#include "datasets/files/errors.hpp"
-#include "datasets/files/shown_text.hpp"
+#include "datasets/text/errors.hpp"
+#include "datasets/text/shown_text.hpp"
 #include "tests/temp_folder.hpp"
 
 namespace mosbench {

@@ -6,16 +6,16 @@
 #include <cstring>
 #include <set>
 
-#include "datasets/files/bin_file.hpp"
-#include "datasets/files/calib_file.hpp"
-#include "datasets/files/errors.hpp"
-#include "datasets/files/label_file.hpp"
-#include "datasets/files/pose_file.hpp"
-#include "datasets/files/times_file.hpp"
+#include "datasets/formats/bin_file.hpp"
+#include "datasets/formats/calib_file.hpp"
+#include "datasets/formats/label_file.hpp"
+#include "datasets/formats/pose_file.hpp"
+#include "datasets/formats/times_file.hpp"
 #include "datasets/layouts/doals_sequence.hpp"
 #include "datasets/layouts/kitti_sequence.hpp"
 #include "datasets/sequence/fingerprint.hpp"
 #include "datasets/sequence/kept_scans.hpp"
+#include "datasets/text/errors.hpp"
 #include "tests/temp_folder.hpp"
 #include "tests/unit/datasets/pose_at_x.hpp"
 

@@ -3,10 +3,10 @@
 
 #include <limits>
 
-#include "datasets/files/errors.hpp"
-#include "datasets/files/indices_file.hpp"
-#include "datasets/files/split_file.hpp"
-#include "datasets/files/times_file.hpp"
+#include "datasets/formats/indices_file.hpp"
+#include "datasets/formats/split_file.hpp"
+#include "datasets/formats/times_file.hpp"
+#include "datasets/text/errors.hpp"
 #include "tests/temp_folder.hpp"
 
 namespace mosbench {

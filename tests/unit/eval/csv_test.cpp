@@ -1,4 +1,4 @@
-#include "eval/results/csv.hpp"
+#include "eval/answer/csv.hpp"
 
 #include <gtest/gtest.h>
 

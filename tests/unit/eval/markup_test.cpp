@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "datasets/files/shell_text.hpp"
-#include "eval/results/latex.hpp"
-#include "eval/results/markdown.hpp"
+#include "datasets/text/shell_text.hpp"
+#include "eval/answer/latex.hpp"
+#include "eval/answer/markdown.hpp"
 
 namespace mosbench {
 namespace {

@@ -1,4 +1,4 @@
-#include "eval/report/picture.hpp"
+#include "eval/answer/picture.hpp"
 
 #include <gtest/gtest.h>
 #include <png.h>
@@ -10,8 +10,8 @@
 #include <numbers>
 #include <optional>
 
-#include "eval/report/line_chart.hpp"
-#include "eval/report/palette.hpp"
+#include "eval/answer/line_chart.hpp"
+#include "eval/answer/palette.hpp"
 #include "eval/report/scan_picture.hpp"
 
 namespace mosbench {

@@ -12,9 +12,9 @@
 #include <string>
 #include <string_view>
 
-#include "datasets/files/errors.hpp"
-#include "datasets/files/files.hpp"
-#include "datasets/files/nearest_name.hpp"
+#include "datasets/disk/files.hpp"
+#include "datasets/text/errors.hpp"
+#include "datasets/text/nearest_name.hpp"
 #include "eval/predictions/prediction_format.hpp"
 #include "eval/protocols/protocol_list.hpp"
 

@@ -5,7 +5,7 @@
 #include <numeric>
 #include <set>
 
-#include "datasets/files/errors.hpp"
+#include "datasets/text/errors.hpp"
 #include "eval/report/compressed_text.hpp"
 #include "eval/report/point_planes.hpp"
 #include "eval/report/report_asset.hpp"

@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "datasets/files/errors.hpp"
+#include "datasets/text/errors.hpp"
+#include "eval/answer/text_table.hpp"
 #include "eval/results/json_differences.hpp"
 #include "eval/results/progress.hpp"
 #include "eval/results/reading_json.hpp"
-#include "eval/results/text_table.hpp"
 #include "eval/tables/score_table.hpp"
 #include "tests/unit/eval/confusions.hpp"
 

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "datasets/files/errors.hpp"
+#include "datasets/text/errors.hpp"
 #include "eval/protocols/protocol.hpp"
 #include "tests/temp_folder.hpp"
 

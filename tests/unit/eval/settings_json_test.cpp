@@ -6,7 +6,7 @@
 #include <mosbench/method.hpp>
 #include <set>
 
-#include "datasets/files/errors.hpp"
+#include "datasets/text/errors.hpp"
 #include "eval/protocols/protocol.hpp"
 #include "eval/runs/method_choice.hpp"
 #include "eval/runs/presets.hpp"

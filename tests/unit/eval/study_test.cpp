@@ -6,8 +6,8 @@
 #include <map>
 #include <set>
 
-#include "datasets/files/errors.hpp"
-#include "eval/results/answer_text.hpp"
+#include "datasets/text/errors.hpp"
+#include "eval/answer/answer_text.hpp"
 #include "eval/results/version.hpp"
 #include "eval/runs/method_choice.hpp"
 #include "eval/study/study_cell.hpp"

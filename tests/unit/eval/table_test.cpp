@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "datasets/files/errors.hpp"
+#include "datasets/text/errors.hpp"
 #include "eval/tables/table_cells.hpp"
 #include "eval/tables/table_match.hpp"
 #include "eval/tables/table_print.hpp"

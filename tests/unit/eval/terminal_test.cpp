@@ -1,8 +1,8 @@
-#include "eval/results/terminal.hpp"
+#include "eval/answer/terminal.hpp"
 
 #include <gtest/gtest.h>
 
-#include "eval/results/text_table.hpp"
+#include "eval/answer/text_table.hpp"
 
 namespace mosbench {
 namespace {

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <random>
 
-#include "datasets/files/bin_file.hpp"
-#include "datasets/files/calib_file.hpp"
-#include "datasets/files/errors.hpp"
-#include "datasets/files/files.hpp"
-#include "datasets/files/pose_file.hpp"
+#include "datasets/disk/files.hpp"
+#include "datasets/formats/bin_file.hpp"
+#include "datasets/formats/calib_file.hpp"
+#include "datasets/formats/pose_file.hpp"
+#include "datasets/text/errors.hpp"
 #include "eval/trajectory/frame_check.hpp"
 #include "eval/trajectory/path_comparison.hpp"
 #include "eval/trajectory/trajectory_scores.hpp"

@@ -1,0 +1,129 @@
+#include "core/methods/hmm_mos_plus/arrivals.hpp"
+
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "core/voxel/neighbourhood.hpp"
+
+namespace mosbench::hmm_mos_plus {
+namespace {
+
+/// The neighbours of a seed that should be known: a cube of 5^3 voxels.
+constexpr int kCubeVoxels = 125;
+/// What left a voxel so short a time ago may be beside it by noise alone.
+constexpr std::uint32_t kLeftTicks = 5;
+
+/// What may make a voxel a seed.
+enum class Evidence { kArrival, kDeparture };
+
+std::uint32_t ticks_of(double age_s) {
+  return static_cast<std::uint32_t>(std::lround(age_s / hmm_mos::TickClock::kSeconds));
+}
+
+/// Returns, of the blocks around raw[slots], the settled voxels that did not arrive of late; for
+/// arrivals also those that were just left.
+VoxelSet firm_voxels(const VoxelizedScan& scan, const ScanMasks& raw,
+                     const std::vector<std::uint32_t>& slots, hmm_mos::VoxelMap& map,
+                     std::uint32_t k, std::uint32_t seed_age_ticks, Evidence evidence) {
+  VoxelSet firm;
+  for (const std::uint32_t slot : slots) {
+    const std::uint32_t near = blocks_within(raw[slot], 1);
+    for_each_neighbour(scan.measured.blocks[slot], [&](std::size_t position, const BlockIndex& at) {
+      if (near >> position & 1) firm.insert(at);
+    });
+  }
+  for (std::size_t i = 0; i < firm.block_count(); ++i) {
+    const auto past = map.past_at(k, firm.blocks[i]);
+    if (!past) continue;
+    const BlockMask settled = past->history.settled() & past->known.occupied;
+    const BlockMask of_late = past->history.sure_within(settled, seed_age_ticks, past->tick);
+    firm.masks[i] = without(settled, of_late);
+    if (evidence == Evidence::kArrival) {
+      firm.masks[i] =
+          firm.masks[i] | past->history.left_within(past->known.free, kLeftTicks, past->tick);
+    }
+  }
+  return firm;
+}
+
+/// Takes away what lies beside firm voxels.
+void keep_apart(const VoxelizedScan& scan, hmm_mos::VoxelMap& map, std::uint32_t k,
+                const Config& config, Evidence evidence, ThreadPool& pool, ScanMasks& raw) {
+  const std::vector<std::uint32_t> slots = slots_with_any(raw);
+  const VoxelSet firm =
+      firm_voxels(scan, raw, slots, map, k, ticks_of(config.seed_age_s), evidence);
+  pool.for_ranges(slots.size(), 16, [&](std::size_t begin, std::size_t end, unsigned) {
+    HaloRows rows;
+    for (std::size_t i = begin; i < end; ++i) {
+      gather_around(firm, scan.measured.blocks[slots[i]], 1, rows);
+      raw[slots[i]] = without(raw[slots[i]], dilate(rows));
+    }
+  });
+}
+
+/// Adds to seeds[i] those of raw[i] that lie apart from firm voxels and in known space.
+void add_seeds(const VoxelizedScan& scan, ScanMasks raw, hmm_mos::VoxelMap& map, std::uint32_t k,
+               const Config& config, Evidence evidence, ThreadPool& pool, ScanMasks& seeds) {
+  keep_apart(scan, map, k, config, evidence, pool, raw);
+  const std::vector<std::uint32_t> slots = slots_with_any(raw);
+  const VoxelSet known = map.known_at(k, blocks_of(scan, slots), pool);
+  pool.for_ranges(slots.size(), 16, [&](std::size_t begin, std::size_t end, unsigned) {
+    HaloRows rows, closed;
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::uint32_t slot = slots[i];
+      const int gap = config.max_gap_voxels;
+      gather_around(known, scan.measured.blocks[slot], kKnownRadius + gap, rows);
+      close_columns(rows, gap, closed);
+      for_each_cell(raw[slot], [&](std::uint32_t cell) {
+        const int unknown = kCubeVoxels - count_around(closed, cell);
+        if (unknown <= config.max_unknown_voxels) seeds[slot].set(cell);
+      });
+    }
+  });
+}
+
+}  // namespace
+
+ArrivalClasses classify(const VoxelizedScan& scan, hmm_mos::VoxelMap& map, std::uint32_t k,
+                        const Config& config, ThreadPool& pool) {
+  const std::size_t blocks = scan.measured.block_count();
+  const ScanMasks none(blocks);
+  ArrivalClasses classes{none, none, none, none, none};
+  const std::uint32_t seed_age_ticks = ticks_of(config.seed_age_s);
+  const std::uint32_t fresh_age_ticks = ticks_of(config.fresh_age_s);
+  const std::uint32_t object_age_ticks = ticks_of(config.object_age_s);
+  ScanMasks young = none;
+  for (std::size_t i = 0; i < blocks; ++i) {
+    if (!scan.occupied[i].any()) continue;
+    const auto past = map.past_at(k, scan.measured.blocks[i]);
+    if (!past) continue;  // at the range limit not every occupied voxel is observed
+    const auto& history = past->history;
+    const BlockMask occupied = scan.occupied[i] & past->known.occupied;
+    young[i] = history.sure_within(occupied, seed_age_ticks, past->tick);
+    classes.fresh[i] = history.sure_within(young[i], fresh_age_ticks, past->tick);
+    classes.aged[i] = history.aged() & occupied;
+    const BlockMask came = history.arrived_within(classes.aged[i], object_age_ticks, past->tick);
+    classes.settled[i] = without(history.settled() & occupied, came);
+    classes.standing[i] =
+        without(classes.aged[i], history.arrived_within(came, object_age_ticks / 2, past->tick));
+  }
+  add_seeds(scan, std::move(young), map, k, config, Evidence::kArrival, pool, classes.seeds);
+  return classes;
+}
+
+void add_departures(const VoxelizedScan& scan, hmm_mos::VoxelMap& map, std::uint32_t k,
+                    const Config& config, ThreadPool& pool, ArrivalClasses& classes) {
+  ScanMasks departed(scan.measured.block_count());
+  for (std::size_t i = 0; i < departed.size(); ++i) {
+    const auto past = map.past_at(k, scan.measured.blocks[i]);
+    if (past) departed[i] = scan.occupied[i] & past->known.free;
+    classes.settled[i] = without(classes.settled[i], departed[i]);
+    classes.aged[i] = without(classes.aged[i], departed[i]);
+    classes.standing[i] = without(classes.standing[i], departed[i]);
+    classes.fresh[i] = classes.fresh[i] | departed[i];
+  }
+  add_seeds(scan, std::move(departed), map, k, config, Evidence::kDeparture, pool, classes.seeds);
+}
+
+}  // namespace mosbench::hmm_mos_plus

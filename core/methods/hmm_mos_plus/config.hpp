@@ -1,0 +1,113 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+#include "core/base/config_fields.hpp"
+#include "core/methods/hmm_mos/block_history.hpp"
+#include "core/methods/hmm_mos/config.hpp"
+#include "core/voxel/halo.hpp"
+
+namespace mosbench::hmm_mos_plus {
+
+/// The settings of the paper's method that this one has, too: those of its map.
+inline constexpr std::array<std::string_view, 9> kMapSettings = {
+    "voxel_size_m",          "occupancy_sigma_m",  "min_range_m",
+    "max_range_m",           "delay_scans",        "global_window_scans",
+    "min_state_probability", "transition_epsilon", "distance_field_scans"};
+
+/// Of the cube around a seed in which voxels should be known.
+inline constexpr int kKnownRadius = 2;
+
+/// The paper's map with distances to the current scan alone.
+inline hmm_mos::Config paper_map() {
+  hmm_mos::Config config;
+  config.distance_field_scans = 1;
+  return config;
+}
+
+/// Every parameter; README.md of this folder says what they are worth.
+struct Config {
+  hmm_mos::Config map = paper_map();
+  double seed_age_s = 1.5;
+  double object_age_s = 2.0;
+  int max_unknown_voxels = 15;
+  int max_gap_voxels = 3;
+  int ground_radius_voxels = 2;
+  int ground_layers_voxels = 1;
+  int min_seeds_voxels = 3;
+  int min_pure_seeds_voxels = 2;
+  double min_seed_share = 0.12;
+  double fresh_age_s = 0.2;
+  double min_fresh_share = 0.2;
+  double max_aged_share = 0.5;
+  double rise_radius_m = 6.0;
+  int min_rise_voxels = 2;
+  double max_growth_m = 3.0;
+  double max_extent_m = 10.0;
+  double max_pure_extent_m = 20.0;
+  double max_height_m = 4.5;
+  int min_track_steps = 1;
+};
+
+/// The one list of fields, as config_fields.hpp describes it.
+template <typename AnyConfig, typename Visitor>
+void visit_fields(AnyConfig& config, Visitor&& visit) {
+  hmm_mos::visit_fields(config.map, [&](std::string_view name, auto& field, const auto& legal,
+                                        std::string_view meaning) {
+    if (std::ranges::find(kMapSettings, name) != kMapSettings.end()) {
+      visit(name, field, legal, meaning);
+    }
+  });
+  constexpr double kMaxAge_s = hmm_mos::BlockHistory::kMaxAgeTicks * hmm_mos::TickClock::kSeconds;
+  visit("seed_age_s", config.seed_age_s, FieldRange{0.0, kMaxAge_s},
+        "a voxel that arrived in free space is a seed for so long; to tenths, by stamps or 10 Hz");
+  visit("object_age_s", config.object_age_s, FieldRange{0.0, kMaxAge_s},
+        "a voxel that arrived connects objects for so long although it is settled, and for half of "
+        "it may belong to one although it is aged; to tenths");
+  visit("max_unknown_voxels", config.max_unknown_voxels, FieldRange{0, 125},
+        "a seed has at most so many unknown ones among the 125 voxels around it");
+  visit("max_gap_voxels", config.max_gap_voxels, FieldRange{0, kMaxHalo - kKnownRadius},
+        "unknown voxels between known ones above and below, if so many or fewer, count as known: "
+        "gaps between beams");
+  visit("ground_radius_voxels", config.ground_radius_voxels, FieldRange{0, kBlockSide},
+        "the ground is the lowest voxel in the columns within this distance");
+  visit("ground_layers_voxels", config.ground_layers_voxels, FieldRange{0, 100},
+        "voxels at most this high above the ground connect nothing");
+  visit("min_seeds_voxels", config.min_seeds_voxels, FieldRange{1, 100000},
+        "an object has at least so many seeds");
+  visit("min_pure_seeds_voxels", config.min_pure_seeds_voxels, FieldRange{1, 100000},
+        "one of which half or more are seeds needs only so many");
+  visit("min_seed_share", config.min_seed_share, FieldRange{0.0, 1.0},
+        "an object's voxels are seeds by at least this share");
+  visit("fresh_age_s", config.fresh_age_s, FieldRange{0.0, kMaxAge_s},
+        "a seed is fresh for so long; to tenths; from seed_age_s on every seed is");
+  visit("min_fresh_share", config.min_fresh_share, FieldRange{0.0, 1.0},
+        "of an object's seeds, at least this share is fresh: those of a parked car grow old");
+  visit("max_aged_share", config.max_aged_share, FieldRange{0.0, 1.0},
+        "of an object's voxels, at most this share was seen occupied for 0.5 s or more, unless "
+        "half or more are seeds");
+  visit("rise_radius_m", config.rise_radius_m, FieldRange{0.0, 20.0},
+        "the ground around a voxel is the lowest one in the columns within this distance");
+  visit("min_rise_voxels", config.min_rise_voxels, FieldRange{0, 100},
+        "a quarter of an object's voxels are at least this high above the ground around them");
+  visit("max_growth_m", config.max_growth_m, FieldRange{0.0, 1000.0},
+        "what is connected with seeds over more than this, or through voxels that stand, moves not "
+        "with them");
+  visit("max_extent_m", config.max_extent_m, FieldRange{0.0, 1000.0},
+        "an object is at most so long along x and y of the map");
+  visit("max_pure_extent_m", config.max_pure_extent_m, FieldRange{0.0, 1000.0},
+        "one of which half or more are seeds may be so long: a truck or a bus");
+  visit("max_height_m", config.max_height_m, FieldRange{0.0, 1000.0},
+        "an object is at most so high");
+  visit("min_track_steps", config.min_track_steps, FieldRange{0, 1000},
+        "what was followed over so many scans, also when looked back at, has seeds where it should "
+        "be now; 0: no prediction and no looking back; not used with a delay");
+}
+
+/// Throws std::invalid_argument "<key>: <what is wrong>, <what was expected>" for the first field
+/// outside its range, and as hmm_mos::check does.
+void check(const Config& config);
+
+}  // namespace mosbench::hmm_mos_plus

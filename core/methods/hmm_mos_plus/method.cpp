@@ -1,0 +1,22 @@
+#include "core/methods/hmm_mos_plus/method.hpp"
+
+#include "core/base/method_row.hpp"
+#include "core/methods/hmm_mos_plus/config.hpp"
+#include "core/methods/hmm_mos_plus/pipeline.hpp"
+
+namespace mosbench::hmm_mos_plus {
+
+MethodKind method_kind() {
+  return {.name = "hmm-mos-plus",
+          .title = "HMM-MOS plus",
+          .source = "mosbench, core/methods/hmm_mos_plus/README.md",
+          .summary = "objects that arrive in space known to be free, on the map of hmm-mos",
+          .defaults = settings_of(Config{}),
+          .check = check_settings<Config>,
+          .make = make_method<Pipeline, Config>,
+          .score_name = "share of seeds",
+          .threshold_name = "least share of seeds",
+          .gives_reasons = true};
+}
+
+}  // namespace mosbench::hmm_mos_plus

@@ -1,0 +1,128 @@
+#include "core/methods/hmm_mos_plus/pipeline.hpp"
+
+#include <memory>
+#include <utility>
+
+#include "core/base/stage_clock.hpp"
+#include "core/methods/hmm_mos_plus/objects.hpp"
+#include "core/voxel/point_labels.hpp"
+
+namespace mosbench::hmm_mos_plus {
+namespace {
+
+/// Returns the scores of a scan's points.
+std::vector<float> seed_shares(const VoxelizedScan& scan,
+                               const std::vector<Component>& components) {
+  std::vector<float> of_voxel(scan.measured.block_count() * kBlockVoxels);
+  for (const Component& component : components) {
+    for (const std::uint32_t voxel : component.voxels) {
+      of_voxel[voxel] = static_cast<float>(component.seed_share);
+    }
+  }
+  std::vector<float> scores;
+  for (const std::uint32_t voxel : scan.voxel_of_point) {
+    scores.push_back(voxel == kNoVoxel ? 0 : of_voxel[voxel]);
+  }
+  return scores;
+}
+
+/// Returns why a scan's points move; `other` is why voxels are seeds that did not arrive.
+std::vector<Reason> reasons_of(const VoxelizedScan& scan, const ScanMasks& arrived,
+                               const ScanMasks& seeds, Reason other, const Motion& motion) {
+  const auto reason_of = [&](std::uint32_t voxel) {
+    const std::uint32_t slot = voxel / kBlockVoxels, cell = voxel % kBlockVoxels;
+    if (!motion.objects[slot].test(cell)) {
+      return motion.feet[slot].test(cell) ? Reason::kFeet : Reason::kNone;
+    }
+    if (!seeds[slot].test(cell)) return Reason::kGrown;
+    return arrived[slot].test(cell) ? Reason::kArrived : other;
+  };
+  std::vector<Reason> reasons;
+  for (const std::uint32_t voxel : scan.voxel_of_point) {
+    reasons.push_back(voxel == kNoVoxel ? Reason::kNone : reason_of(voxel));
+  }
+  return reasons;
+}
+
+}  // namespace
+
+Pipeline::Pipeline(const Config& config, const RunContext& context)
+    : MappedMethod(checked(config).map, context, hmm_mos::VoxelMap::Keeps::kStatesAndHistory),
+      config_(config),
+      tracks_(config),
+      look_back_(config) {}
+
+std::vector<LabelledScan> Pipeline::entered(hmm_mos::ObservedScan& current) {
+  HeldScan& held = held_.emplace_back();
+  held.result = begun_result(current, mapping().k());
+  held.scan = std::move(current.scan);
+  held.tick = mapping().tick();
+  const StageRecord record{held.result.stages, context().cpu_times};
+  held.classes = timed(record, "arrivals", [&] {
+    return classify(held.scan, mapping().map(), mapping().k(), config_, mapping().pool());
+  });
+  const auto n = static_cast<std::size_t>(config_.map.delay_scans);
+  return held_.size() > n ? release(1) : std::vector<LabelledScan>{};
+}
+
+/// Labels a held scan with the map as it is now.
+void Pipeline::judge(HeldScan& held) {
+  const VoxelizedScan& scan = held.scan;
+  LabelledScan& result = held.result;
+  const StageRecord record{result.stages, context().cpu_times};
+  const ScanMasks arrived = context().scores ? held.classes.seeds : ScanMasks();
+  if (config_.map.delay_scans > 0) {
+    const StageClock clock(record, "departures");
+    add_departures(scan, mapping().map(), mapping().k(), config_, mapping().pool(), held.classes);
+  }
+  const auto ground =
+      timed(record, "ground", [&] { return std::make_shared<const Ground>(scan, config_); });
+  LowVoxels low(scan, *ground);
+  ArrivalClasses& classes = held.classes;
+  if (predicts()) {
+    timed(record, "look_back", [&] {
+      look_back_.enter(scan, classes, ground, held.tick, mapping().map(), mapping().k(),
+                       mapping().pool());
+    });
+    const StageClock clock(record, "prediction");
+    look_back_.add_seeds(scan, low, classes);
+    tracks_.add_seeds(scan, low, held.tick, classes);
+  }
+  const Motion motion =
+      timed(record, "objects", [&] { return find_motion(scan, classes, *ground, low, config_); });
+  if (predicts()) {
+    const StageClock clock(record, "prediction");
+    tracks_.follow(scan, motion.components, held.tick);
+  }
+  const StageClock clock(record, "labels");
+  ScanMasks moving = motion.objects;
+  for (std::size_t i = 0; i < moving.size(); ++i) moving[i] = moving[i] | motion.feet[i];
+  result.labels = project_labels(scan, moving);
+  if (context().scores) {
+    result.scores = seed_shares(scan, motion.components);
+    const Reason other = config_.map.delay_scans > 0 ? Reason::kDeparted : Reason::kPredicted;
+    result.reasons = reasons_of(scan, arrived, classes.seeds, other, motion);
+  }
+  result.threshold = config_.min_seed_share;
+  result.judged = mapping().k() > 0;  // the first scan has nothing to have arrived since
+}
+
+std::vector<LabelledScan> Pipeline::release(std::size_t count) {
+  std::vector<LabelledScan> results;
+  for (; count > 0; --count) {
+    judge(held_.front());
+    results.push_back(std::move(held_.front().result));
+    held_.pop_front();
+  }
+  return results;
+}
+
+std::size_t Pipeline::held_bytes() const {
+  std::size_t bytes = tracks_.memory_bytes() + look_back_.memory_bytes();
+  for (const HeldScan& held : held_) {
+    bytes += held.scan.memory_bytes() + held.classes.memory_bytes();
+  }
+  return bytes;
+}
+
+}  // namespace mosbench::hmm_mos_plus

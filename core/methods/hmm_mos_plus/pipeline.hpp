@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstddef>
+#include <deque>
+#include <vector>
+
+#include "core/methods/hmm_mos/mapped_method.hpp"
+#include "core/methods/hmm_mos_plus/arrivals.hpp"
+#include "core/methods/hmm_mos_plus/config.hpp"
+#include "core/methods/hmm_mos_plus/look_back.hpp"
+#include "core/methods/hmm_mos_plus/tracks.hpp"
+
+namespace mosbench::hmm_mos_plus {
+
+/// Objects that arrive in space known to be free, on the map of the paper's method; README.md of
+/// this folder has the idea. Scores are the share of seeds in the component of a point's voxel, 0
+/// elsewhere and for what was cut off an object; a threshold is compared with them, but decides not
+/// alone. Every scan is judged but the first of an online run. A delayed run judges the last scans
+/// of a sequence with its last map.
+class Pipeline final : public hmm_mos::MappedMethod {
+ public:
+  /// Throws std::invalid_argument as `check` does, and for 0 threads.
+  explicit Pipeline(const Config& config, const RunContext& context = {});
+
+ private:
+  /// A scan whose labels are not final yet.
+  struct HeldScan {
+    VoxelizedScan scan;
+    ArrivalClasses classes;
+    LabelledScan result;
+    hmm_mos::Tick tick;
+  };
+
+  std::vector<LabelledScan> entered(hmm_mos::ObservedScan& current) override;
+  std::vector<LabelledScan> release_all() override { return release(held_.size()); }
+  std::size_t held_bytes() const override;
+  void judge(HeldScan& held);
+  std::vector<LabelledScan> release(std::size_t count);
+
+  bool predicts() const { return config_.map.delay_scans == 0 && config_.min_track_steps > 0; }
+
+  Config config_;
+  Tracks tracks_;              // of the last scan judged, when it predicts
+  LookBack look_back_;         // the same
+  std::deque<HeldScan> held_;  // the last delay + 1 scans, current one last
+};
+
+}  // namespace mosbench::hmm_mos_plus

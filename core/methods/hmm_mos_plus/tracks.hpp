@@ -1,0 +1,52 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "core/methods/hmm_mos/tick_clock.hpp"
+#include "core/methods/hmm_mos_plus/arrivals.hpp"
+#include "core/methods/hmm_mos_plus/config.hpp"
+#include "core/methods/hmm_mos_plus/ground.hpp"
+#include "core/methods/hmm_mos_plus/objects.hpp"
+
+namespace mosbench::hmm_mos_plus {
+
+/// What moved in a scan, followed from scan to scan.
+class Tracks {
+ public:
+  explicit Tracks(const Config& config);
+
+  /// Predicts what was followed over min_track_steps: its voxels, moved on by its last step, are
+  /// fresh seeds of a later scan where they are occupied, not standing and not low. The step is
+  /// corrected along x and y, but never turned by a right angle, to the one that finds most of
+  /// these. One below half a voxel along all axes is none. `tick` has the periods since the scan
+  /// followed.
+  void add_seeds(const VoxelizedScan& scan, LowVoxels& low, const hmm_mos::Tick& tick,
+                 ArrivalClasses& classes) const;
+  /// Makes the components that move in the scan those of the last one. Each is the next step of the
+  /// one that comes nearest when moved on, if that is near enough.
+  void follow(const VoxelizedScan& scan, const std::vector<Component>& components,
+              const hmm_mos::Tick& tick);
+  std::size_t memory_bytes() const;
+
+ private:
+  using Vector = std::array<double, 3>;
+
+  /// Lengths in voxels.
+  struct Track {
+    Vector centre{};
+    Vector velocity{};  ///< per period of the scans
+    int steps = 0;      ///< over which it was followed
+    std::vector<Voxel> voxels;
+  };
+
+  /// Null when no track comes near enough.
+  const Track* nearest_to(const Vector& centre, const hmm_mos::Tick& tick) const;
+
+  int min_steps_;
+  double max_error_voxels_s_;
+  std::vector<Track> tracks_;
+};
+
+}  // namespace mosbench::hmm_mos_plus

@@ -1,0 +1,38 @@
+#include "core/methods/underwood/directions.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace mosbench::underwood {
+namespace {
+
+Direction direction_of(const Eigen::Vector3d& p) {
+  const double range_m = std::sqrt((p.x() * p.x() + p.y() * p.y()) + p.z() * p.z());
+  if (!(range_m > 0)) return {};
+  // Single precision is a ten-thousandth of the spacing of beams, and several times as fast.
+  const auto sine = static_cast<float>(p.z() / range_m);
+  return {static_cast<float>(range_m),
+          std::atan2(static_cast<float>(p.y()), static_cast<float>(p.x())),
+          std::asin(std::clamp(sine, -1.0F, 1.0F))};
+}
+
+}  // namespace
+
+std::vector<Direction> directions_of(std::span<const Point> points,
+                                     const Pose& reference_from_sensor, const RangeWindow& window,
+                                     ThreadPool& pool) {
+  std::vector<Direction> directions(points.size());
+  pool.for_ranges(points.size(), 2048, [&](std::size_t begin, std::size_t end, unsigned) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Eigen::Vector3d p(points[i].x, points[i].y, points[i].z);
+      const double range_sq_m2 = (p.x() * p.x() + p.y() * p.y()) + p.z() * p.z();
+      // NaN fails both.
+      const bool takes_part = range_sq_m2 > window.above_m * window.above_m &&
+                              range_sq_m2 <= window.up_to_m * window.up_to_m;
+      if (takes_part) directions[i] = direction_of(reference_from_sensor * p);
+    }
+  });
+  return directions;
+}
+
+}  // namespace mosbench::underwood

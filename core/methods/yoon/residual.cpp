@@ -1,0 +1,80 @@
+#include "core/methods/yoon/residual.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+namespace mosbench::yoon {
+namespace {
+
+constexpr std::size_t kPlanePoints = 10;
+
+struct Neighbour {
+  float distance_sq_m2;
+  std::uint32_t index;
+
+  bool operator<(const Neighbour& other) const {
+    return distance_sq_m2 != other.distance_sq_m2 ? distance_sq_m2 < other.distance_sq_m2
+                                                  : index < other.index;
+  }
+};
+
+/// The nearest points, at most ten, the nearest first.
+struct Nearest {
+  std::array<Neighbour, kPlanePoints> points;
+  std::size_t count = 0;
+
+  /// Points farther than this are not among them.
+  float reach_sq_m2() const {
+    return count < kPlanePoints ? kFarthest_m * kFarthest_m : points.back().distance_sq_m2;
+  }
+
+  void add(const Neighbour& neighbour) {
+    if (count == kPlanePoints && !(neighbour < points.back())) return;
+    if (count < kPlanePoints) ++count;
+    std::size_t place = count - 1;
+    for (; place > 0 && neighbour < points[place - 1]; --place) points[place] = points[place - 1];
+    points[place] = neighbour;
+  }
+};
+
+Nearest nearest_to(const Eigen::Vector3f& point, std::span<const Eigen::Vector3f> reference,
+                   const PointCells& cells) {
+  Nearest nearest;
+  cells.for_each_near(
+      point, [&] { return nearest.reach_sq_m2(); },
+      [&](std::uint32_t index) {
+        const Eigen::Vector3f offset = reference[index] - point;
+        const float distance_sq_m2 =
+            (offset.x() * offset.x() + offset.y() * offset.y()) + offset.z() * offset.z();
+        if (distance_sq_m2 < kFarthest_m * kFarthest_m) nearest.add({distance_sq_m2, index});
+      });
+  return nearest;
+}
+
+}  // namespace
+
+Residual residual_of(const Eigen::Vector3f& point, std::span<const Eigen::Vector3f> reference,
+                     const PointCells& cells, double planar_share) {
+  const Nearest nearest = nearest_to(point, reference, cells);
+  if (nearest.count == 0) return {kFarthest_m, false};
+  const Residual to_point{std::sqrt(nearest.points[0].distance_sq_m2), false};
+  if (nearest.count < kPlanePoints) return to_point;
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (const Neighbour& n : nearest.points) mean += reference[n.index].cast<double>();
+  mean /= static_cast<double>(kPlanePoints);
+  Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
+  for (const Neighbour& n : nearest.points) {
+    const Eigen::Vector3d offset = reference[n.index].cast<double>() - mean;
+    scatter += offset * offset.transpose();
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(scatter);
+  // Eigenvalues rise.
+  if (!(axes.eigenvalues()[0] < planar_share * axes.eigenvalues().sum())) return to_point;
+  const double distance_m = std::abs((point.cast<double>() - mean).dot(axes.eigenvectors().col(0)));
+  return {std::min(static_cast<float>(distance_m), kFarthest_m), true};
+}
+
+}  // namespace mosbench::yoon

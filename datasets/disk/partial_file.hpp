@@ -1,0 +1,45 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "datasets/disk/file_descriptor.hpp"
+
+namespace mosbench {
+
+/// Returns the name of what is being written and will replace `path`. Nothing reads files or
+/// folders that end in ".partial".
+std::filesystem::path partial_of(const std::filesystem::path& path);
+
+/// Returns whether `name` is that of a file that is being written and will replace `file`.
+bool is_partial_of(const std::string& name, const std::string& file);
+
+/// A file that is being written beside the one that it will replace. No two writers share one: its
+/// name is partial_of(file), locked while its writer lives and taken over after a killed one; while
+/// another process writes that, it has a name with process id and random digits.
+/// All functions throw std::system_error.
+class PartialFile {
+ public:
+  explicit PartialFile(const std::filesystem::path& file);
+  /// Removes what was not put in place.
+  ~PartialFile();
+  PartialFile(const PartialFile&) = delete;
+  PartialFile& operator=(const PartialFile&) = delete;
+
+  /// Where a library may write that takes names.
+  const std::filesystem::path& path() const { return path_; }
+  void write(std::string_view bytes) const;
+  /// Waits until the bytes are on the disk.
+  void sync() const;
+  void put_in_place_of(const std::filesystem::path& file);
+
+ private:
+  std::filesystem::path path_;
+  FileDescriptor descriptor_;
+};
+
+/// Writes all bytes to an open file, pipe or device; throws std::system_error.
+void write_bytes(int descriptor, std::string_view bytes);
+
+}  // namespace mosbench

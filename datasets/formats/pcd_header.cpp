@@ -1,0 +1,224 @@
+#include "datasets/formats/pcd_header.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cstdint>
+#include <cstring>
+#include <map>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include "datasets/formats/point_times.hpp"
+#include "datasets/formats/quaternion.hpp"
+#include "datasets/text/errors.hpp"
+#include "datasets/text/text.hpp"
+
+namespace mosbench {
+namespace {
+
+constexpr std::uint64_t kMostPoints = 1ULL << 31;
+constexpr std::uint64_t kMostValues = 1ULL << 16;  // bytes of a point, numbers of a line
+constexpr std::size_t kShownBytes = 40;
+constexpr std::array<std::string_view, 10> kKnownLines = {
+    "VERSION", "FIELDS", "SIZE", "TYPE", "COUNT", "WIDTH", "HEIGHT", "VIEWPOINT", "POINTS", "DATA"};
+
+class PcdHeaderParser {
+ public:
+  PcdHeaderParser(std::string_view bytes, const std::filesystem::path& file)
+      : bytes_(bytes), file_(file) {}
+
+  PcdHeader run() {
+    read_lines();
+    count_values();
+    const std::uint64_t width = number_of("WIDTH", kMostPoints);
+    const std::uint64_t height = number_of("HEIGHT", kMostPoints);
+    const std::uint64_t points = number_of("POINTS", kMostPoints);
+    if (width * height != points) fail("POINTS is not WIDTH * HEIGHT", "their product");
+    header_.points = static_cast<std::size_t>(points);
+    const auto& fields = lines_["FIELDS"];
+    header_.has_labels = std::ranges::find(fields, "label") != fields.end();
+    header_.has_times = std::ranges::any_of(fields, is_time_field);
+    if (lines_.contains("VIEWPOINT")) header_.viewpoint = viewpoint();
+    header_.storage = storage();
+    return header_;
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& wrong, const std::string& expected) const {
+    throw DataError(file_, wrong, expected);
+  }
+
+  /// Reads lines up to and with DATA, which ends the header.
+  void read_lines() {
+    std::size_t at = 0;
+    for (std::size_t number = 1; at < bytes_.size() && !lines_.contains("DATA"); ++number) {
+      const std::size_t end = std::min(bytes_.find('\n', at), bytes_.size());
+      read_line(bytes_.substr(at, end - at), number);
+      at = std::min(end + 1, bytes_.size());
+    }
+    header_.body_offset_bytes = at;
+    if (!lines_.contains("DATA")) {
+      fail("has no header that ends with DATA", "a PCD file, version 0.7");
+    }
+  }
+
+  /// Refuses what PCL's reader would take otherwise: it ends the header at a line that it does not
+  /// know, even a blank one, and takes the last of two equal ones.
+  void read_line(std::string_view line, std::size_t number) {
+    if (line.empty()) return;
+    const auto words = split_at_blanks(line);
+    if (!words.empty() && words.front().starts_with('#')) return;
+    if (words.empty() || std::ranges::find(kKnownLines, words.front()) == kKnownLines.end()) {
+      throw DataError(file_, number,
+                      quoted(line.substr(0, kShownBytes)) + " is no line of a PCD header",
+                      "a PCD file, version 0.7");
+    }
+    if (lines_.contains(words.front())) {
+      throw DataError(file_, number, std::string(words.front()) + " is there twice", "once");
+    }
+    lines_[words.front()].assign(words.begin() + 1, words.end());
+  }
+
+  const std::vector<std::string_view>& words_of(std::string_view key, std::size_t count) const {
+    const auto line = lines_.find(key);
+    if (line == lines_.end() || line->second.size() != count) {
+      fail("has no good line " + std::string(key) + " in its header",
+           std::to_string(count) + " values there");
+    }
+    return line->second;
+  }
+
+  std::uint64_t as_number(std::string_view word, std::uint64_t largest) const {
+    const auto number = parse_unsigned(word);
+    if (!number || *number > largest) fail(quoted(word) + " in its header", "a whole number");
+    return *number;
+  }
+
+  std::uint64_t number_of(std::string_view key, std::uint64_t largest) const {
+    return as_number(words_of(key, 1).front(), largest);
+  }
+
+  /// Reads tx ty tz qw qx qy qz.
+  Pose viewpoint() const {
+    const auto& words = words_of("VIEWPOINT", 7);
+    std::array<double, 7> numbers{};
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      const auto number = parse_double(words[i]);
+      if (!number) fail("VIEWPOINT " + quoted(words[i]), "tx ty tz qw qx qy qz");
+      numbers[i] = *number;
+    }
+    const auto pose = pose_of({numbers[0], numbers[1], numbers[2]},
+                              {numbers[4], numbers[5], numbers[6], numbers[3]});
+    if (!pose) fail("VIEWPOINT is no pose", "tx ty tz qw qx qy qz of length 1");
+    return *pose;
+  }
+
+  void count_values() {
+    const auto fields = lines_.find("FIELDS");
+    if (fields == lines_.end() || fields->second.empty()) fail("names no FIELDS", "x y z");
+    const std::size_t count = fields->second.size();
+    const auto& sizes = words_of("SIZE", count);
+    const auto& types = words_of("TYPE", count);
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::uint64_t repeats =
+          lines_.contains("COUNT") ? as_number(words_of("COUNT", count)[i], kMostValues) : 1;
+      const std::uint64_t size_bytes = as_number(sizes[i], 8);
+      const bool is_type = types[i] == "F" ? size_bytes == 4 || size_bytes == 8
+                                           : (types[i] == "I" || types[i] == "U") &&
+                                                 (size_bytes == 1 || size_bytes == 2 ||
+                                                  size_bytes == 4 || size_bytes == 8);
+      if (!is_type || repeats == 0) {
+        fail("field " + quoted(fields->second[i]) + " has no type of PCD",
+             "F of 4 or 8, I or U of 1, 2, 4 or 8 bytes, COUNT from 1");
+      }
+      header_.point_bytes += size_bytes * repeats;
+      header_.point_values += repeats;
+    }
+    if (header_.point_bytes > kMostValues) fail("has points of too many bytes", "at most 65536");
+  }
+
+  PcdStorage storage() const {
+    const std::string_view kind = words_of("DATA", 1).front();
+    if (kind == "ascii") return PcdStorage::kAscii;
+    if (kind == "binary") return PcdStorage::kBinary;
+    if (kind == "binary_compressed") return PcdStorage::kCompressed;
+    fail("DATA " + quoted(kind), "ascii, binary or binary_compressed");
+  }
+
+  std::string_view bytes_;
+  const std::filesystem::path& file_;
+  std::map<std::string_view, std::vector<std::string_view>> lines_;
+  PcdHeader header_;
+};
+
+void check_body_size(const PcdHeader& header, std::uintmax_t body_bytes,
+                     std::uintmax_t wanted_bytes, const std::filesystem::path& file) {
+  if (body_bytes >= wanted_bytes) return;
+  throw DataError(
+      file, std::to_string(body_bytes) + " bytes behind the header",
+      std::to_string(wanted_bytes) + " for its " + std::to_string(header.points) + " points");
+}
+
+void check_compressed(const PcdHeader& header, std::string_view body,
+                      const std::filesystem::path& file) {
+  std::array<std::uint32_t, 2> sizes_bytes{};  // compressed, uncompressed
+  check_body_size(header, body.size(), sizeof(sizes_bytes), file);
+  std::memcpy(sizes_bytes.data(), body.data(), sizeof(sizes_bytes));
+  check_body_size(header, body.size(), sizeof(sizes_bytes) + sizes_bytes[0], file);
+  const std::uintmax_t wanted_bytes = header.points * header.point_bytes;
+  if (sizes_bytes[1] == wanted_bytes) return;
+  throw DataError(file, std::to_string(sizes_bytes[1]) + " bytes of compressed points",
+                  std::to_string(wanted_bytes) + " for its " + std::to_string(header.points));
+}
+
+bool is_number(std::string_view word) {
+  double ignored = 0.0;  // "nan" is a number here
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), ignored);
+  return error == std::errc{} && end == word.data() + word.size();
+}
+
+void check_ascii(const PcdHeader& header, std::string_view body,
+                 const std::filesystem::path& file) {
+  std::size_t rows = 0;
+  for (const TextLine& line : split_lines(body, file)) {
+    const auto words = split_at_blanks(line.text);
+    const std::string point = "point " + std::to_string(rows++);
+    if (words.size() != header.point_values) {
+      throw DataError(file, point + " has " + std::to_string(words.size()) + " values",
+                      std::to_string(header.point_values));
+    }
+    const auto wrong = std::ranges::find_if_not(words, is_number);
+    if (wrong != words.end()) {
+      throw DataError(file, point + ": " + quoted(*wrong) + " is no number", "numbers");
+    }
+  }
+  if (rows != header.points) {
+    throw DataError(file, std::to_string(rows) + " rows of points", std::to_string(header.points));
+  }
+}
+
+}  // namespace
+
+PcdHeader parse_pcd_header(std::string_view bytes, const std::filesystem::path& file) {
+  return PcdHeaderParser(bytes, file).run();
+}
+
+void check_pcd_size(const PcdHeader& header, std::uintmax_t file_bytes,
+                    const std::filesystem::path& file) {
+  if (header.storage != PcdStorage::kBinary) return;
+  check_body_size(header,
+                  file_bytes - std::min<std::uintmax_t>(file_bytes, header.body_offset_bytes),
+                  std::uintmax_t{header.points} * header.point_bytes, file);
+}
+
+void check_pcd_body(const PcdHeader& header, std::string_view bytes,
+                    const std::filesystem::path& file) {
+  const std::string_view body = bytes.substr(header.body_offset_bytes);
+  if (header.storage == PcdStorage::kAscii) check_ascii(header, body, file);
+  if (header.storage == PcdStorage::kBinary) check_pcd_size(header, bytes.size(), file);
+  if (header.storage == PcdStorage::kCompressed) check_compressed(header, body, file);
+}
+
+}  // namespace mosbench

@@ -1,0 +1,138 @@
+#include "datasets/formats/point_records.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <type_traits>
+
+#include "datasets/text/errors.hpp"
+
+namespace mosbench {
+namespace {
+
+/// Reads a value of a point and converts it from its stored type.
+template <typename Stored, typename Wanted>
+Wanted load(const char* bytes, bool big_endian) {
+  std::array<char, sizeof(Stored)> raw;
+  std::memcpy(raw.data(), bytes, raw.size());
+  if (big_endian) std::ranges::reverse(raw);
+  Stored value;
+  std::memcpy(&value, raw.data(), raw.size());
+  if constexpr (std::is_integral_v<Wanted> && std::is_floating_point_v<Stored>) {
+    return std::abs(value) < Stored{1e18F} ? static_cast<Wanted>(value) : Wanted{-1};
+  } else {
+    return static_cast<Wanted>(value);
+  }
+}
+
+template <typename Wanted>
+using Load = Wanted (*)(const char*, bool);
+
+struct StoredType {
+  std::size_t size_bytes;
+  Load<float> as_float;
+  Load<double> as_double;
+  Load<std::int64_t> as_integer;
+};
+
+template <typename Stored>
+constexpr StoredType stored_type() {
+  return {sizeof(Stored), load<Stored, float>, load<Stored, double>, load<Stored, std::int64_t>};
+}
+
+/// In the order of sensor_msgs/PointField's numbers, which start at 1.
+constexpr std::array<StoredType, 8> kStoredTypes = {
+    stored_type<std::int8_t>(),   stored_type<std::uint8_t>(), stored_type<std::int16_t>(),
+    stored_type<std::uint16_t>(), stored_type<std::int32_t>(), stored_type<std::uint32_t>(),
+    stored_type<float>(),         stored_type<double>()};
+
+const StoredType& type_of(const CloudHead& head, const CloudField& field,
+                          const std::filesystem::path& file) {
+  if (field.datatype < 1 || field.datatype > kStoredTypes.size() || field.count != 1) {
+    throw DataError(file,
+                    "field " + field.name + " of the points has datatype " +
+                        std::to_string(field.datatype) + " and count " +
+                        std::to_string(field.count),
+                    "one number of datatype 1 to 8");
+  }
+  const StoredType& type = kStoredTypes[field.datatype - 1U];
+  if (std::uint64_t{field.offset_bytes} + type.size_bytes > head.point_step_bytes) {
+    throw DataError(file, "field " + field.name + " of the points lies beyond them",
+                    "an offset below the point step of " + std::to_string(head.point_step_bytes));
+  }
+  return type;
+}
+
+/// Calls `visit(point, record)` for each point with the start of its record.
+template <typename Visit>
+void for_each_record(const CloudHead& head, std::string_view message, Visit&& visit) {
+  std::size_t point = 0;
+  for (std::size_t row = 0; row < head.height; ++row) {
+    const char* record = message.data() + head.records_at_bytes + row * head.row_step_bytes;
+    for (std::size_t column = 0; column < head.width; ++column) {
+      visit(point++, record);
+      record += head.point_step_bytes;
+    }
+  }
+}
+
+void read_coordinate(const CloudHead& head, std::string_view message, std::string_view name,
+                     float Point::*coordinate, std::vector<Point>& points,
+                     const std::filesystem::path& file) {
+  const CloudField* field = find_field(head, name);
+  if (field == nullptr) {
+    if (name == "intensity") return;
+    throw DataError(file, "the points have no field " + std::string(name),
+                    "fields x y z [intensity]");
+  }
+  const Load<float> load_value = type_of(head, *field, file).as_float;
+  for_each_record(head, message, [&](std::size_t point, const char* record) {
+    points[point].*coordinate = load_value(record + field->offset_bytes, head.big_endian);
+  });
+}
+
+template <typename Wanted>
+std::vector<Wanted> values_of(const CloudHead& head, const CloudField& field,
+                              Load<Wanted> StoredType::*loader, std::string_view bytes,
+                              const std::filesystem::path& file) {
+  const Load<Wanted> load_value = type_of(head, field, file).*loader;
+  std::vector<Wanted> values(head.points());
+  for_each_record(head, bytes, [&](std::size_t point, const char* record) {
+    values[point] = load_value(record + field.offset_bytes, head.big_endian);
+  });
+  return values;
+}
+
+}  // namespace
+
+const CloudField* find_field(const CloudHead& head, std::string_view name) {
+  const auto found = std::ranges::find(head.fields, name, &CloudField::name);
+  return found == head.fields.end() ? nullptr : &*found;
+}
+
+std::vector<Point> points_of(const CloudHead& head, std::string_view bytes,
+                             const std::filesystem::path& file) {
+  // With at least a byte per point no more memory is allocated than the file is long.
+  if (head.point_step_bytes == 0) {
+    throw DataError(file, "has points of 0 bytes", "fields x y z [intensity]");
+  }
+  std::vector<Point> points(head.points());
+  read_coordinate(head, bytes, "x", &Point::x, points, file);
+  read_coordinate(head, bytes, "y", &Point::y, points, file);
+  read_coordinate(head, bytes, "z", &Point::z, points, file);
+  read_coordinate(head, bytes, "intensity", &Point::intensity, points, file);
+  return points;
+}
+
+std::vector<double> numbers_of(const CloudHead& head, const CloudField& field,
+                               std::string_view bytes, const std::filesystem::path& file) {
+  return values_of(head, field, &StoredType::as_double, bytes, file);
+}
+
+std::vector<std::int64_t> integers_of(const CloudHead& head, const CloudField& field,
+                                      std::string_view bytes, const std::filesystem::path& file) {
+  return values_of(head, field, &StoredType::as_integer, bytes, file);
+}
+
+}  // namespace mosbench

@@ -1,0 +1,121 @@
+#include "datasets/formats/times_file.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <limits>
+
+#include "datasets/disk/files.hpp"
+#include "datasets/text/errors.hpp"
+#include "datasets/text/text.hpp"
+
+namespace mosbench {
+namespace {
+
+constexpr std::uint64_t kLargest =
+    static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
+
+/// digits * 10^(-decimals), without sign.
+struct Decimal {
+  std::string digits;
+  std::int64_t decimals = 0;
+};
+
+/// Reads "12.5e-3" into a Decimal, or nothing.
+std::optional<Decimal> parse_decimal(std::string_view text) {
+  Decimal decimal;
+  std::size_t at = 0;
+  bool behind_point = false;
+  for (; at < text.size() && (is_digit(text[at]) || (text[at] == '.' && !behind_point)); ++at) {
+    if (text[at] == '.') {
+      behind_point = true;
+      continue;
+    }
+    decimal.digits += text[at];
+    if (behind_point) ++decimal.decimals;
+  }
+  if (decimal.digits.empty()) return std::nullopt;
+  if (at == text.size()) return decimal;
+  if (text[at] != 'e' && text[at] != 'E') return std::nullopt;
+  std::string_view exponent_text = text.substr(at + 1);
+  if (exponent_text.size() > 1 && exponent_text[0] == '+' && is_digit(exponent_text[1])) {
+    exponent_text.remove_prefix(1);
+  }
+  std::int32_t exponent = 0;
+  const char* const end = exponent_text.data() + exponent_text.size();
+  const auto parsed = std::from_chars(exponent_text.data(), end, exponent);
+  if (parsed.ec != std::errc{} || parsed.ptr != end) return std::nullopt;
+  decimal.decimals -= exponent;
+  return decimal;
+}
+
+/// Returns the first `count` digits as a number (zeros after the last), or nothing beyond 63 bits.
+std::optional<std::uint64_t> leading_number(const std::string& digits, std::int64_t count) {
+  std::uint64_t value = 0;
+  for (std::int64_t i = 0; i < count; ++i) {
+    const auto position = static_cast<std::size_t>(i);
+    // Only zeros follow, and zero stays zero: no need to go through a long exponent.
+    if (position >= digits.size() && value == 0) return 0;
+    const auto digit =
+        position < digits.size() ? static_cast<std::uint64_t>(digits[position] - '0') : 0U;
+    if (value > (kLargest - digit) / 10) return std::nullopt;
+    value = value * 10 + digit;
+  }
+  return value;
+}
+
+}  // namespace
+
+std::optional<std::int64_t> parse_seconds_as_ns(std::string_view text) {
+  const bool negative = text.starts_with('-');
+  if (negative || text.starts_with('+')) text.remove_prefix(1);
+  const auto decimal = parse_decimal(text);
+  if (!decimal) return std::nullopt;
+  const auto digit_count = static_cast<std::int64_t>(decimal->digits.size());
+  const std::int64_t kept = digit_count - decimal->decimals + 9;
+  auto magnitude = leading_number(decimal->digits, kept);
+  if (!magnitude) return std::nullopt;
+  const bool rounds_up =
+      kept >= 0 && kept < digit_count && decimal->digits[static_cast<std::size_t>(kept)] >= '5';
+  if (rounds_up && ++*magnitude > kLargest) return std::nullopt;
+  const auto ns = static_cast<std::int64_t>(*magnitude);
+  return negative ? -ns : ns;
+}
+
+std::vector<std::int64_t> parse_times(std::string_view text, const std::filesystem::path& file) {
+  std::vector<std::int64_t> stamps_ns;
+  for (const TextLine& line : split_lines(text, file)) {
+    const auto stamp_ns = parse_seconds_as_ns(line.text);
+    if (!stamp_ns) {
+      throw DataError(file, line.number,
+                      quoted(line.text) + " is no time in seconds that fits 64-bit nanoseconds",
+                      "one decimal number of seconds per line");
+    }
+    stamps_ns.push_back(*stamp_ns);
+  }
+  return stamps_ns;
+}
+
+std::string seconds_text(std::int64_t stamp_ns) {
+  constexpr std::uint64_t kNsPerSecond = 1'000'000'000;
+  const auto bits = static_cast<std::uint64_t>(stamp_ns);
+  const std::uint64_t magnitude = stamp_ns < 0 ? 0 - bits : bits;
+  return fmt::format("{}{}.{:09}", stamp_ns < 0 ? "-" : "", magnitude / kNsPerSecond,
+                     magnitude % kNsPerSecond);
+}
+
+std::string format_times(std::span<const std::int64_t> stamps_ns) {
+  std::string text;
+  for (const std::int64_t stamp_ns : stamps_ns) text += seconds_text(stamp_ns) + '\n';
+  return text;
+}
+
+std::vector<std::int64_t> read_times(const std::filesystem::path& file) {
+  return parse_times(read_file(file), file);
+}
+
+void write_times(const std::filesystem::path& file, std::span<const std::int64_t> stamps_ns) {
+  write_file_atomic(file, format_times(stamps_ns));
+}
+
+}  // namespace mosbench
