@@ -1,7 +1,7 @@
 // Measures how often intervals hold the truth, and how often the paired test calls equal runs
 // different, on counts of simulated scans whose true IoU is known. Prints the table of
-// eval/README.md: mosbench_interval_coverage [SAMPLES_PER_ROW [FIRST_SEED]]. Constants were chosen
-// on the samples of the seeds 1 to 4000: judge them on others.
+// docs/history/coverage.md: mosbench_interval_coverage [SAMPLES_PER_ROW [FIRST_SEED]]. Constants
+// were chosen on the samples of the seeds 1 to 4000: judge them on others.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -33,7 +33,7 @@ double middle_of_gap_deg(const std::vector<BeamDirection>& directions) {
 }
 
 /// Returns the edge of pixels that hold one return in the mean, where there are any: counted by
-/// whole degrees of azimuth and elevation. README.md of dynablox has figures.
+/// whole degrees of azimuth and elevation. docs/methods/dynablox.md has figures.
 double rosette_pixel_deg(const std::vector<BeamDirection>& directions) {
   std::vector<bool> seen(360 * 181);
   for (const BeamDirection& direction : directions) {

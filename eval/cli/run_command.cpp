@@ -30,7 +30,7 @@ DIR/<sequence>/reasons/<stem>.reason (a byte per point): why it moves; `report` 
 moves with track and velocity, the second in KITTI's format; moving/<stem>.ply (moving-cloud), the
 moving points of each scan; static.ply (static-cloud), a map of what stands still, a point per 0.1
 m; static.pcd (static-cloud-pcd), the same map for PCL. The same command again keeps what is there,
-and refuses what was changed meanwhile: remove it to have it made again. results/FORMATS.md
+and refuses what was changed meanwhile: remove it to have it made again. docs/formats/files.md
 describes the files.
 
 The same command again skips the sequences that are finished and starts an interrupted one again
@@ -50,7 +50,7 @@ sets one method's. A method that fails then leaves the others as they are; the e
 the first in the list that failed. `mosbench rank DIR` compares them.
 
 --method exec:COMMAND starts a program of yours for each sequence, hands it the scans with their
-poses over stdin, and takes its labels from stdout (results/FORMATS.md has the messages,
+poses over stdin, and takes its labels from stdout (docs/formats/exec.md has the messages,
 tests/examples/exec a client in Python and one in C++). In a list it comes last, as the command may
 hold commas. Finished sequences are kept, also when the program behind the command has changed:
 --overwrite runs them again.

@@ -21,7 +21,7 @@ namespace {
 
 constexpr const char* kStudyFooter =
     R"(FILE is a YAML file that names data, methods with settings, disturbances with strengths, seeds and
-the protocol; results/studies/README.md has all its keys. A small one:
+the protocol; docs/studies/study.md has all its keys. A small one:
 
   name: mine
   data: {name: drive, path: sim/street}

@@ -10,7 +10,7 @@
 
 namespace mosbench {
 
-/// The messages between mosbench and a program that labels scans, as results/FORMATS.md describes
+/// The messages between mosbench and a program that labels scans, as docs/formats/exec.md describes
 /// them: a header of 16 bytes, then a payload; little endian, without padding.
 inline constexpr std::uint32_t kPipeVersion = 1;
 inline constexpr std::size_t kHeaderBytes = 16;

@@ -7,7 +7,7 @@
 
 namespace mosbench {
 
-/// File formats of predictions; eval/README.md describes them.
+/// File formats of predictions; docs/formats/predictions.md describes them.
 enum class PredictionFormat : std::uint8_t {
   kLabel,
   kLabelByIndex,

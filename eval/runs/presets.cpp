@@ -76,7 +76,7 @@ std::span<const Preset> presets() {
              "semantickitti-mos", "ours, the authors publish none: as helimos"},
       Preset{"recording", DatasetKind::kRecording, settings(0.25, 1.5, 50.0), "semantickitti-mos",
              "ours, for recordings of any sensor: as helimos"},
-      Preset{"best", std::nullopt, {}, "", "ours, results/plus/README.md", "hmm-mos-plus"},
+      Preset{"best", std::nullopt, {}, "", "ours, docs/history/plus/README.md", "hmm-mos-plus"},
   };
   return kPresets;
 }

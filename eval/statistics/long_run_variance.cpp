@@ -11,7 +11,7 @@ namespace {
 
 using Series = std::vector<double>;
 
-// Chosen by bench/interval_coverage.cpp, whose table is in eval/README.md.
+// Chosen by bench/interval_coverage.cpp, whose table is in docs/history/coverage.md.
 
 /// A variance of less than two squares is useless: Student's t is then 12.7. Several sequences have
 /// them together: of each the slowest coefficient is enough, and is the least wrong one.

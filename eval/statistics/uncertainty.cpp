@@ -13,7 +13,7 @@ namespace {
 
 using Series = std::vector<double>;
 
-// Chosen by bench/interval_coverage.cpp, whose table is in eval/README.md.
+// Chosen by bench/interval_coverage.cpp, whose table is in docs/history/coverage.md.
 
 /// Scans in a row are independent when the correlation of neighbours is surely below: with a
 /// probability of 95 %.

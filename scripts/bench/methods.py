@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Runs every method on simulated sequences of every sensor, and prints the tables of results/methods.md.
+"""Runs every method on simulated sequences of every sensor, and prints the tables of docs/history/methods.md.
 
     scripts/bench/methods.py --work FOLDER [--scans N] [--seeds 1,2,3]
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Draws the ten largest false positives of hmm-mos-plus on the judged sequences of plus_study.py.
 
-    scripts/bench/plus_pictures.py --work FOLDER [--out results/plus]
+    scripts/bench/plus_pictures.py --work FOLDER [--out docs/history/plus]
 
 FOLDER is that of plus_study.py, or gets its sequences. One cluster of false points is drawn per scan
 and thing: false_01.png is the largest. Left from above, right from the side, 12 m wide, in the colours of
@@ -117,7 +117,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--program", default=str(plus_study.ROOT / "build/release/eval/mosbench"))
     parser.add_argument("--work", type=pathlib.Path, required=True)
-    parser.add_argument("--out", type=pathlib.Path, default=plus_study.ROOT / "results/plus")
+    parser.add_argument("--out", type=pathlib.Path, default=plus_study.ROOT / "docs/history/plus")
     chosen = parser.parse_args()
     chosen.work.mkdir(parents=True, exist_ok=True)
     clusters = []

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Compares hmm-mos-plus with the paper's method on simulated sequences and on a real one.
 
-    scripts/bench/plus_study.py --work FOLDER [--kitti SEQUENCE] > results/plus/table.md
+    scripts/bench/plus_study.py --work FOLDER [--kitti SEQUENCE] > docs/history/plus/table.md
 
 Simulates every sequence below into FOLDER (once), runs the methods on all of them, online and delayed by
 3 and 10 scans, profiles them, and prints a table of each; --parts 0,cost prints two of them alone. The defaults of hmm-mos-plus were chosen on the group "tuned"; those of "judged"

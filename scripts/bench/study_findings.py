@@ -5,7 +5,7 @@ which settings matter.
 Takes the study's file and the folder of its results, and prints tables in Markdown. The strength that costs 10 points
 of IoU, or half of it, is read off the curve of means with straight lines between strengths; a method that never loses
 so much gets the strongest with ">". --write also puts the tables between the study's marks of
-results/studies/README.md, what `mosbench study table` says (rounded) into results/studies/NAME.json, and the curves
+docs/history/studies.md, what `mosbench study table` says (rounded) into results/studies/NAME.json, and the curves
 into results/studies/NAME.svg.
 """
 
@@ -13,6 +13,7 @@ import argparse
 import csv
 import html
 import json
+import os
 import pathlib
 import statistics
 import subprocess
@@ -35,7 +36,9 @@ def arguments():
     parser.add_argument("--program", default=str(ROOT / "build/release/eval/mosbench"))
     parser.add_argument("--write", action="store_true", help="into --folder")
     parser.add_argument("--folder", type=pathlib.Path, default=ROOT / "results/studies",
-                        help="of README.md, NAME.json and NAME.svg (default: results/studies)")
+                        help="of NAME.json and NAME.svg (default: results/studies)")
+    parser.add_argument("--page", type=pathlib.Path, default=ROOT / "docs/history/studies.md",
+                        help="with the study's marks (default: docs/history/studies.md)")
     return parser.parse_args()
 
 
@@ -317,10 +320,10 @@ def main():
     chosen = arguments()
     found = table_of(chosen)
     name = found["name"]
-    text = text_of(found, cells_of(chosen), f"{name}.svg")
+    text = text_of(found, cells_of(chosen), os.path.relpath(chosen.folder / f"{name}.svg", chosen.page.parent))
     print(text)
     if chosen.write:
-        write_between(chosen.folder / "README.md", name, text)
+        write_between(chosen.page, name, text)
         (chosen.folder / f"{name}.svg").write_text(plot(found))
         (chosen.folder / f"{name}.json").write_text(compact_json(found))
 

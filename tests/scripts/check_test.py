@@ -1,6 +1,7 @@
 """The checks of scripts/check refuse what they should, on texts made here: run by ctest."""
 
 import pathlib
+import subprocess
 import sys
 import tempfile
 import unittest
@@ -10,6 +11,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "scripts/check"))
 import headers  # noqa: E402
 import includes  # noqa: E402
+import links  # noqa: E402
 import mutants  # noqa: E402
 import paper  # noqa: E402
 
@@ -30,7 +32,7 @@ class Paper(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             for name, text in files.items():
                 (pathlib.Path(folder) / name).write_text(text)
-            return paper.wrong_references(readme, pathlib.Path(folder))
+            return paper.wrong_references(readme, pathlib.Path(folder)) + paper.wrong_definitions(readme)
 
     def readme(self, rows):
         table = "".join(f"| {row} |\n" for row in rows)
@@ -52,6 +54,19 @@ class Paper(unittest.TestCase):
         for expected in ("`b.cpp:line`: there is no such file", "`a.cpp:ray`: a.cpp declares no ray",
                          "`a.cpp:line` links to c.cpp", "no reference in: | None | see the code |"):
             self.assertIn(expected, said)
+
+
+class Links(unittest.TestCase):
+    def test_every_link_of_a_page_leads_somewhere(self):
+        done = subprocess.run([ROOT / "scripts/check/links.py"], capture_output=True, text=True, check=False)
+        self.assertEqual(done.returncode, 0, done.stdout)
+
+    def test_links_that_lead_nowhere_are_named(self):
+        with tempfile.TemporaryDirectory() as folder:
+            page = pathlib.Path(folder) / "page.md"
+            page.write_text("# A `b`, c\n[a](#a-b-c) [b](page.md#a-b-c) [c](gone.md) [d](#d)\n```\n[e](e.md)\n```\n")
+            self.assertEqual(links.wrong_links(page), [f"{page}: gone.md: there is no such file",
+                                                       f"{page}: #d: no heading is called so"])
 
 
 class Headers(unittest.TestCase):

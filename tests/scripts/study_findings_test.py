@@ -59,7 +59,7 @@ class Findings(unittest.TestCase):
         self.scratch = tempfile.TemporaryDirectory()
         self.addCleanup(self.scratch.cleanup)
         self.folder = pathlib.Path(self.scratch.name)
-        (self.folder / "README.md").write_text("before\n<!-- tried begins -->\nold\n<!-- tried ends -->\nafter\n")
+        (self.folder / "page.md").write_text("before\n<!-- tried begins -->\nold\n<!-- tried ends -->\nafter\n")
 
     def run_on(self, table):
         (self.folder / "json").write_text(json.dumps(table))
@@ -68,7 +68,7 @@ class Findings(unittest.TestCase):
         program.write_text(f'#!/bin/sh\ncat "{self.folder}/$7"\n')
         program.chmod(0o755)
         return subprocess.run([sys.executable, str(SCRIPT), "tried.yaml", "out", "--program", str(program), "--write",
-                               "--folder", str(self.folder)], capture_output=True, text=True, check=False)
+                               "--folder", str(self.folder), "--page", str(self.folder / "page.md")], capture_output=True, text=True, check=False)
 
     def test_reads_strengths_off_the_curves(self):
         done = self.run_on(TABLE)
@@ -85,7 +85,7 @@ class Findings(unittest.TestCase):
 
     def test_writes_what_may_be_committed(self):
         done = self.run_on(TABLE)
-        readme = (self.folder / "README.md").read_text()
+        readme = (self.folder / "page.md").read_text()
         self.assertEqual(readme, f"before\n<!-- tried begins -->\n{done.stdout}<!-- tried ends -->\nafter\n")
         written = (self.folder / "tried.json").read_text()
         self.assertEqual(json.loads(written)["effects"][0]["settings"][0]["high"], 0.9123)

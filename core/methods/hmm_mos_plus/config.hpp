@@ -27,7 +27,7 @@ inline hmm_mos::Config paper_map() {
   return config;
 }
 
-/// Every parameter; README.md of this folder says what they are worth.
+/// Every parameter; docs/methods/hmm_mos_plus.md says what each is for.
 struct Config {
   hmm_mos::Config map = paper_map();
   double seed_age_s = 1.5;

@@ -9,7 +9,7 @@ namespace mosbench::hmm_mos_plus {
 MethodKind method_kind() {
   return {.name = "hmm-mos-plus",
           .title = "HMM-MOS plus",
-          .source = "mosbench, core/methods/hmm_mos_plus/README.md",
+          .source = "mosbench, docs/methods/hmm_mos_plus.md",
           .summary = "objects that arrive in space known to be free, on the map of hmm-mos",
           .defaults = settings_of(Config{}),
           .check = check_settings<Config>,

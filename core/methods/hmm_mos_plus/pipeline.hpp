@@ -12,11 +12,11 @@
 
 namespace mosbench::hmm_mos_plus {
 
-/// Objects that arrive in space known to be free, on the map of the paper's method; README.md of
-/// this folder has the idea. Scores are the share of seeds in the component of a point's voxel, 0
-/// elsewhere and for what was cut off an object; a threshold is compared with them, but decides not
-/// alone. Every scan is judged but the first of an online run. A delayed run judges the last scans
-/// of a sequence with its last map.
+/// Objects that arrive in space known to be free, on the map of the paper's method; the
+/// idea is in docs/methods/hmm_mos_plus.md. Scores are the share of seeds in the component of a
+/// point's voxel, 0 elsewhere and for what was cut off an object; a threshold is compared with
+/// them, but decides not alone. Every scan is judged but the first of an online run. A delayed run
+/// judges the last scans of a sequence with its last map.
 class Pipeline final : public hmm_mos::MappedMethod {
  public:
   /// Throws std::invalid_argument as `check` does, and for 0 threads.

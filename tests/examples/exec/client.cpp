@@ -1,5 +1,5 @@
 // Labels scans for `mosbench run DATA --method exec:./client`: a point moves when its voxel was
-// empty in all scans before. Needs nothing of mosbench; results/FORMATS.md has the messages. For
+// empty in all scans before. Needs nothing of mosbench; docs/formats/exec.md has the messages. For
 // little-endian machines.
 #include <cmath>
 #include <cstdint>

@@ -1,5 +1,5 @@
 """Labels scans for `mosbench run DATA --method "exec:python3 client.py"`: a point moves when its voxel
-was empty in all scans before. Put a network in place of `label`. results/FORMATS.md has the messages.
+was empty in all scans before. Put a network in place of `label`. docs/formats/exec.md has the messages.
 """
 
 import struct

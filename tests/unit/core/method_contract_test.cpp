@@ -133,12 +133,12 @@ TEST_P(EveryMethod, StandsWhereMethodsAreListedByHand) {
   }
   const std::string name(GetParam().name);
   for (const auto& [file, quote] :
-       {HandList{"core/README.md", ""}, HandList{"scripts/bench/sweep.py", "\""}}) {
+       {HandList{"docs/methods/methods.md", "`"}, HandList{"scripts/bench/sweep.py", "\""}}) {
     std::ifstream stream(std::filesystem::path(MOSBENCH_SOURCE_DIR) / file);
     const std::string text(std::istreambuf_iterator<char>(stream), {});
     EXPECT_TRUE(text.find(quote + name + quote) != std::string::npos)
         << file << ": has no method " << name
-        << ", expected a row as core/README.md says under \"Adding a method\"";
+        << ", expected a row as docs/methods/methods.md says under \"Adding a method\"";
   }
 }
 

@@ -143,7 +143,7 @@ std::string source_file(const char* name) {
 }
 
 TEST(Protocols, AreDescribedInTheirReadmeByTheFactsOfTheirRows) {
-  const auto sections = sections_of(source_file("eval/protocols/README.md"));
+  const auto sections = sections_of(source_file("docs/protocols/protocols.md"));
   EXPECT_EQ(sections.size(), protocols().size());
   for (const ProtocolDescription& protocol : describe_protocols()) {
     ASSERT_TRUE(sections.contains(protocol.name)) << protocol.name;
@@ -159,7 +159,7 @@ TEST(Protocols, AreDescribedInTheirReadmeByTheFactsOfTheirRows) {
 }
 
 TEST(PredictionFormats, AreAllDescribedInTheReadme) {
-  const std::string readme = source_file("eval/README.md");
+  const std::string readme = source_file("docs/formats/predictions.md");
   for (const DescribedFormat& format : prediction_formats()) {
     EXPECT_NE(readme.find("| `" + std::string(format.name) + "` |"), std::string::npos)
         << format.name;
