@@ -3,7 +3,7 @@
 #include <memory>
 #include <mosbench/method.hpp>
 
-#include "core/base/config_fields.hpp"
+#include "core/base/fields.hpp"
 
 namespace mosbench {
 

@@ -14,6 +14,10 @@ std::string text_of(double number) {
   return text.str();
 }
 
+bool is_free_text(const Setting& setting) {
+  return setting.choices.empty() && std::holds_alternative<std::string>(setting.value);
+}
+
 [[noreturn]] void refuse(const Setting& setting, const SettingValue& value, const char* wrong) {
   std::string text = to_string(value);
   // 3.0 is not the whole number 3.
@@ -34,6 +38,7 @@ double as_number(const Setting& setting, const SettingValue& value) {
 }  // namespace
 
 std::string legal_values(const Setting& setting) {
+  if (is_free_text(setting)) return "a text";
   if (setting.choices.empty()) return text_of(setting.lowest) + " to " + text_of(setting.highest);
   std::string text;
   for (std::size_t i = 0; i < setting.choices.size(); ++i) {
@@ -73,7 +78,8 @@ double Settings::number(std::string_view name) const {
 int Settings::whole(std::string_view name) const {
   const Setting* setting = find(name);
   if (setting != nullptr && std::holds_alternative<int>(setting->value)) {
-    return std::get<int>(setting->value);
+    const bool follows = !setting->is_set && !setting->follows.empty();
+    return follows ? whole(setting->follows) : std::get<int>(setting->value);
   }
   throw std::invalid_argument(std::string(name) + ": is no whole number of this method");
 }
@@ -88,12 +94,16 @@ const std::string& Settings::choice(std::string_view name) const {
 
 void Settings::set(std::string_view name, const SettingValue& value) {
   Setting& setting = at(name);
-  if (!setting.choices.empty()) {
-    const std::string* choice = std::get_if<std::string>(&value);
-    if (choice == nullptr || std::ranges::find(setting.choices, *choice) == setting.choices.end()) {
+  if (std::holds_alternative<std::string>(setting.value)) {
+    const std::string* text = std::get_if<std::string>(&value);
+    if (is_free_text(setting)) {
+      if (text == nullptr) refuse(setting, value, " is not a text");
+    } else if (text == nullptr ||
+               std::ranges::find(setting.choices, *text) == setting.choices.end()) {
       refuse(setting, value, " is not known");
     }
     setting.value = value;
+    setting.is_set = true;
     return;
   }
   const bool wants_whole = std::holds_alternative<int>(setting.value);

@@ -3,7 +3,7 @@
 #include <array>
 #include <string_view>
 
-#include "core/base/config_fields.hpp"
+#include "core/base/fields.hpp"
 
 namespace mosbench::odometry {
 

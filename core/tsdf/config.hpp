@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/base/config_fields.hpp"
+#include "core/base/fields.hpp"
 
 namespace mosbench::tsdf {
 

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/base/config_fields.hpp"
+#include "core/base/fields.hpp"
 #include "core/base/method_row.hpp"
 #include "core/base/range_limits.hpp"
 #include "core/base/sequential_method.hpp"

@@ -9,7 +9,7 @@
 
 namespace mosbench {
 
-/// Value of a setting: a whole number, a number, or one of a list of names.
+/// Value of a setting: a whole number, a number, or a text, mostly one of a list of names.
 using SettingValue = std::variant<int, double, std::string>;
 
 /// One parameter of a method. Its unit is the end of its name (`_m`, `_scans`, ...).
@@ -19,7 +19,7 @@ struct Setting {
   std::string_view meaning;               ///< one line, with the paper's symbol
   double lowest = 0;                      ///< legal; unused for names
   double highest = 0;                     ///< legal; unused for names
-  std::vector<std::string_view> choices;  ///< of names
+  std::vector<std::string_view> choices;  ///< of a text; empty: any text
   std::string_view follows;  ///< the setting whose value is taken while this one is not set
   bool is_set = true;        ///< false: the value is that of `follows`
 };
@@ -41,7 +41,7 @@ class Settings {
   double number(std::string_view name) const;
   /// Does the same for a whole number.
   int whole(std::string_view name) const;
-  /// Does the same for one of a list of names.
+  /// Does the same for a text.
   const std::string& choice(std::string_view name) const;
 
   /// Throws std::invalid_argument "<name>: <what is wrong>, <what was expected>" for an unknown

@@ -3,7 +3,7 @@
 #include <array>
 #include <string_view>
 
-#include "core/base/config_fields.hpp"
+#include "core/base/fields.hpp"
 #include "core/voxel/voxel.hpp"
 
 namespace mosbench::dufomap {
@@ -23,7 +23,7 @@ struct Config {
   double max_range_m = 50.0;    ///< rays end there, points farther away never move
 };
 
-/// The one list of fields, as config_fields.hpp describes it.
+/// The one list of fields, as fields.hpp describes it.
 template <typename AnyConfig, typename Visitor>
 void visit_fields(AnyConfig& config, Visitor&& visit) {
   visit("when", config.when, kWhenNames,

@@ -3,7 +3,7 @@
 #include <array>
 #include <string_view>
 
-#include "core/base/config_fields.hpp"
+#include "core/base/fields.hpp"
 #include "core/tsdf/config.hpp"
 
 namespace mosbench::dynablox {
@@ -50,7 +50,7 @@ struct Config : tsdf::Config {
   }
 };
 
-/// The one list of fields, as config_fields.hpp describes it.
+/// The one list of fields, as fields.hpp describes it.
 template <typename AnyConfig, typename Visitor>
 void visit_fields(AnyConfig& config, Visitor&& visit) {
   visit("level", config.level, kLevelNames, "points move with their object, or by their voxel");

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string_view>
 
-#include "core/base/config_fields.hpp"
+#include "core/base/fields.hpp"
 
 namespace mosbench::hmm_mos {
 
@@ -35,7 +35,7 @@ struct Config {
   double sigma_m() const { return occupancy_sigma_m.value_or(voxel_size_m); }
 };
 
-/// The one list of fields, as config_fields.hpp describes it.
+/// The one list of fields, as fields.hpp describes it.
 template <typename AnyConfig, typename Visitor>
 void visit_fields(AnyConfig& config, Visitor&& visit) {
   visit("variant", config.variant, kVariantNames,

@@ -4,7 +4,7 @@
 #include <array>
 #include <string_view>
 
-#include "core/base/config_fields.hpp"
+#include "core/base/fields.hpp"
 #include "core/methods/hmm_mos/block_history.hpp"
 #include "core/methods/hmm_mos/config.hpp"
 #include "core/voxel/halo.hpp"
@@ -51,7 +51,7 @@ struct Config {
   int min_track_steps = 1;
 };
 
-/// The one list of fields, as config_fields.hpp describes it.
+/// The one list of fields, as fields.hpp describes it.
 template <typename AnyConfig, typename Visitor>
 void visit_fields(AnyConfig& config, Visitor&& visit) {
   hmm_mos::visit_fields(config.map, [&](std::string_view name, auto& field, const auto& legal,

@@ -5,7 +5,7 @@
 #include <limits>
 #include <string_view>
 
-#include "core/base/config_fields.hpp"
+#include "core/base/fields.hpp"
 #include "core/tsdf/config.hpp"
 
 namespace mosbench::lc_free_space {
@@ -27,7 +27,7 @@ struct Config : tsdf::Config {
   }
 };
 
-/// The one list of fields, as config_fields.hpp describes it.
+/// The one list of fields, as fields.hpp describes it.
 template <typename AnyConfig, typename Visitor>
 void visit_fields(AnyConfig& config, Visitor&& visit) {
   visit("level", config.level, kLevelNames,

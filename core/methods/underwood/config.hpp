@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/base/config_fields.hpp"
+#include "core/base/fields.hpp"
 
 namespace mosbench::underwood {
 
@@ -18,7 +18,7 @@ struct Config {
   int min_votes = 1;                    ///< of references, for a point to move
 };
 
-/// The one list of fields, as config_fields.hpp describes it.
+/// The one list of fields, as fields.hpp describes it.
 template <typename AnyConfig, typename Visitor>
 void visit_fields(AnyConfig& config, Visitor&& visit) {
   visit("min_range_m", config.min_range_m, FieldRange{0.0, 1000.0},

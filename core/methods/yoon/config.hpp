@@ -3,7 +3,7 @@
 #include <array>
 #include <string_view>
 
-#include "core/base/config_fields.hpp"
+#include "core/base/fields.hpp"
 
 namespace mosbench::yoon {
 
@@ -26,7 +26,7 @@ struct Config {
   double growth_residual_m = 0.15;      ///< below it a point belongs to what was there before
 };
 
-/// The one list of fields, as config_fields.hpp describes it.
+/// The one list of fields, as fields.hpp describes it.
 template <typename AnyConfig, typename Visitor>
 void visit_fields(AnyConfig& config, Visitor&& visit) {
   visit("last_step", config.last_step, kLastStepNames,
