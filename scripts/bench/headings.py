@@ -9,74 +9,46 @@ speed in the last half second leads away from the sensor: it then enters space t
 """
 
 import argparse
-import array
-import math
 import pathlib
 
-MOVING = range(250, 260)
+import numpy as np
+
 PAST_SCANS = 5
 SMALL_POINTS = 20
 
 
-def matrix(text):
-    numbers = [float(word) for word in text.split()]
-    return [numbers[0:4], numbers[4:8], numbers[8:12]]
-
-
-def product(a, b):
-    """a b of two rigid motions, three rows of four each."""
-    return [[sum(a[i][k] * b[k][j] for k in range(3)) + (a[i][3] if j == 3 else 0) for j in range(4)]
-            for i in range(3)]
-
-
-def inverse(a):
-    turned = [[a[j][i] for j in range(3)] for i in range(3)]
-    return [row + [-sum(row[k] * a[k][3] for k in range(3))] for row in turned]
+def matrices(lines):
+    return np.array([[*line.split(), 0, 0, 0, 1] for line in lines], float).reshape(-1, 4, 4)
 
 
 def poses(sequence):
     """map_from_sensor of every scan."""
     lines = (sequence / "calib.txt").read_text().splitlines()
-    camera_from_sensor = matrix(next(line for line in lines if line.startswith("Tr:"))[3:])
-    back = inverse(camera_from_sensor)
-    return [product(product(back, matrix(line)), camera_from_sensor)
-            for line in (sequence / "poses.txt").read_text().splitlines()]
-
-
-def numbers(file, kind):
-    values = array.array(kind)
-    values.frombytes(file.read_bytes())
-    return values
+    camera_from_sensor = matrices([next(line for line in lines if line.startswith("Tr:"))[3:]])[0]
+    return np.linalg.inv(camera_from_sensor) @ matrices((sequence / "poses.txt").read_text().splitlines()) @ camera_from_sensor
 
 
 def objects(sequence, labels, scan, limits_m):
-    """Moving objects of a scan: number to (points, how many were found, mean x y z in metres)."""
-    points = numbers(sequence / "velodyne" / f"{scan:06}.bin", "f")
-    truth = numbers(sequence / "labels" / f"{scan:06}.label", "I")
-    found = numbers(labels / f"{scan:06}.label", "I")
-    if len(points) != 4 * len(truth) or len(truth) != len(found):
+    """Moving objects of a scan: number to (points, how many were found, mean x y z 1)."""
+    points = np.fromfile(sequence / "velodyne" / f"{scan:06}.bin", "<f4").reshape(-1, 4).astype(float)
+    truth, found = (np.fromfile(folder / f"{scan:06}.label", "<u4") for folder in (sequence / "labels", labels))
+    if not len(points) == len(truth) == len(found):
         raise SystemExit(f"{labels}/{scan:06}.label: {len(found)} labels and {len(truth)} true ones, "
-                         f"expected {len(points) // 4} of both")
-    sums = {}
-    for i, label in enumerate(truth):
-        point = points[4 * i:4 * i + 3]
-        if (label & 0xFFFF) not in MOVING or not limits_m[0] < math.hypot(*point) < limits_m[1]:
-            continue
-        entry = sums.setdefault(label >> 16, [0, 0, 0.0, 0.0, 0.0])
-        entry[0] += 1
-        entry[1] += (found[i] & 0xFFFF) in MOVING
-        for axis in range(3):
-            entry[2 + axis] += point[axis]
-    return {number: (entry[0], entry[1], [total / entry[0] for total in entry[2:]])
-            for number, entry in sums.items()}
+                         f"expected {len(points)} of both")
+    points[:, 3] = 1
+    range_m = np.linalg.norm(points[:, :3], axis=1)
+    moves, is_found = ((ids & 0xFFFF) // 10 == 25 for ids in (truth, found))
+    judged = moves & (limits_m[0] < range_m) & (range_m < limits_m[1])
+    numbers = np.where(judged, truth >> 16, -1)
+    return {number: ((numbers == number).sum(), is_found[numbers == number].sum(), points[numbers == number].mean(axis=0))
+            for number in np.unique(numbers[judged])}
 
 
 def heading(past, now, sensor):
     """Where an object moves between two places on the map, as the sensor sees it."""
-    moved = [a - b for a, b in zip(now, past)]
-    line = [a - b for a, b in zip(now, sensor)]
-    along = sum(a * b for a, b in zip(moved, line)) / math.hypot(*line)
-    if abs(along) < 0.7 * math.hypot(*moved[:2]):
+    moved, line = now - past, now - sensor
+    along = moved @ line / np.linalg.norm(line)
+    if abs(along) < 0.7 * np.linalg.norm(moved[:2]):
         return "across"
     return "receding" if along > 0 else "approaching"
 
@@ -85,16 +57,14 @@ def counted(sequence, labels, limits_m):
     """(heading, whether its object has few points in the scan) to [points, how many were found]."""
     tracks, counts = {}, {}
     for scan, pose in enumerate(poses(sequence)):
-        sensor = [row[3] for row in pose]
         for number, (points, found, mean) in objects(sequence, labels, scan, limits_m).items():
-            now = [sum(row[k] * mean[k] for k in range(3)) + row[3] for row in pose]
+            now = (pose @ mean)[:3]
             track = tracks.setdefault(number, [])
             old = [place for seen, place in track if seen <= scan - PAST_SCANS]
             track.append((scan, now))
-            where = heading(old[-1], now, sensor) if old else "seen for less than half a second"
-            count = counts.setdefault((where, points < SMALL_POINTS), [0, 0])
-            count[0] += points
-            count[1] += found
+            where = heading(old[-1], now, pose[:3, 3]) if old else "seen for less than half a second"
+            count = counts.setdefault((where, bool(points < SMALL_POINTS)), np.zeros(2))
+            count += points, found
     return counts
 
 

@@ -1,6 +1,7 @@
 """headings.py on a sequence whose objects head where they are told: run by ctest."""
 
 import array
+import importlib.util
 import pathlib
 import subprocess
 import sys
@@ -40,6 +41,7 @@ def headings(folder):
                           capture_output=True, text=True, check=False)
 
 
+@unittest.skipUnless(importlib.util.find_spec("numpy"), "needs numpy")
 class Headings(unittest.TestCase):
     def test_tell_what_recedes_from_what_approaches_and_crosses(self):
         with tempfile.TemporaryDirectory() as name:

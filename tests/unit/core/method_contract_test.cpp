@@ -122,9 +122,9 @@ TEST_P(EveryMethod, RefusesScansThatAnotherObservedAndThoseOutOfOrder) {
   EXPECT_THROW(one->push(std::move(earlier)), std::logic_error);
 }
 
-/// A list by hand, and how a method is written there.
+/// A list by hand, and what stands there before and after the name of a method.
 struct HandList {
-  const char *file, *quote;
+  const char *file, *before, *after;
 };
 
 TEST_P(EveryMethod, StandsWhereMethodsAreListedByHand) {
@@ -132,11 +132,12 @@ TEST_P(EveryMethod, StandsWhereMethodsAreListedByHand) {
     GTEST_SKIP() << "no method of a benchmark";
   }
   const std::string name(GetParam().name);
-  for (const auto& [file, quote] :
-       {HandList{"docs/methods/methods.md", "`"}, HandList{"scripts/bench/sweep.py", "\""}}) {
+  for (const auto& [file, before, after] :
+       {HandList{"docs/methods/methods.md", "| `", "` |"},
+        HandList{"results/studies/cost.yaml", "method: ", ","}}) {
     std::ifstream stream(std::filesystem::path(MOSBENCH_SOURCE_DIR) / file);
     const std::string text(std::istreambuf_iterator<char>(stream), {});
-    EXPECT_TRUE(text.find(quote + name + quote) != std::string::npos)
+    EXPECT_TRUE(text.find(before + name + after) != std::string::npos)
         << file << ": has no method " << name
         << ", expected a row as docs/methods/methods.md says under \"Adding a method\"";
   }
