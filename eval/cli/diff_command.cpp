@@ -2,8 +2,10 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <memory>
+#include <set>
 
 #include "core/base/thread_pool.hpp"
 #include "datasets/sequence/fingerprint.hpp"
@@ -12,6 +14,8 @@
 #include "eval/breakdown/run_diff.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/cli/dataset_flags.hpp"
+#include "eval/report/result_scans.hpp"
+#include "eval/results/result_set.hpp"
 #include "eval/results/tell.hpp"
 #include "eval/runs/run_plan.hpp"
 
@@ -20,8 +24,8 @@ namespace {
 
 constexpr const char* kDiffFooter =
     R"(Lists the scans whose counts differ between two runs, most changed first. With --data it also lists
-the moving objects of which they find different parts; A and B then must hold label files, as the
-folders of `mosbench run` do, and the data set must hold the truth that was scored.
+the moving objects of which they find different parts. The data set is read as each run read it, and
+must hold the scans and the truth of the runs.
 
 Examples:
   mosbench diff results/runs/online results/runs/delayed
@@ -35,86 +39,96 @@ struct DiffFlags {
   bool json = false;
 };
 
-/// Returns null, and says so on stderr, when the data set does not have it.
-const Sequence* sequence_named(const Dataset& dataset, const std::string& name) {
-  for (const auto& sequence : dataset.sequences) {
-    if (sequence->name() == name) return sequence.get();
+/// Labels of a run for the scans of another one, found by their stems.
+class LabelsByStem : public Predictions {
+ public:
+  LabelsByStem(const ResultScans& run, const Sequence& sequence) : run_(run), sequence_(sequence) {
+    for (std::size_t k = 0; k < run.sequence().size(); ++k) scans_[run.sequence().stem(k)] = k;
   }
-  tell(
-      fmt::format("{}: has no sequence {}; its objects are left out", dataset.root.string(), name));
-  return nullptr;
+  bool has(std::size_t scan_index) const override {
+    const auto scan = scans_.find(sequence_.stem(scan_index));
+    return scan != scans_.end() && run_.has(scan->second);
+  }
+  std::vector<std::uint32_t> read(std::size_t scan_index) const override {
+    return run_.labels().read(scans_.at(sequence_.stem(scan_index)));
+  }
+
+ private:
+  const ResultScans& run_;
+  const Sequence& sequence_;
+  std::map<std::string, std::size_t> scans_;
+};
+
+[[noreturn]] void refuse_scan(const ResultScans& run, const char* why, const std::string& stem) {
+  throw DataError(
+      run.result().folder / "result.json",
+      fmt::format("has {} for scan {} of sequence {}", why, stem, run.result().name.text()),
+      "runs over the same scans and truth, to list objects of");
 }
 
-/// Returns the counted scans of a result. Throws DataError unless they have the truth that was
-/// scored.
-std::vector<std::size_t> scans_of(const Dataset& dataset, const Sequence& sequence,
+/// Returns the counted scans of the first run. Throws DataError unless their truth is what both
+/// runs were scored by, and the second has labels of them.
+std::vector<std::size_t> scans_of(const ResultScans& first, const Predictions& second,
                                   const SequenceResult& result) {
-  std::map<std::string, std::size_t> labelled;
-  for (const std::size_t k : scans_with_truth(sequence)) labelled[sequence.stem(k)] = k;
+  std::set<std::string> counted;
+  for (const ScanRow* row : counted_scans(result)) counted.insert(row->stem);
   std::vector<std::size_t> scans;
-  for (const ScanRow* row : counted_scans(result)) {
-    const auto scan = labelled.find(row->stem);
-    const auto refuse = [&](const char* what) {
-      throw DataError(
-          dataset.root,
-          fmt::format("has {} for scan {} of sequence {}", what, row->stem, sequence.name()),
-          "the data set of the runs in --data");
-    };
-    if (scan == labelled.end()) refuse("no truth");
-    if (row->truth_hash && hash_of_labels(sequence.read_truth(scan->second)) != row->truth_hash) {
-      refuse("another truth");
+  for (const std::size_t k : first.scored_scans()) {
+    const ScanRow& row = first.rows()[k];
+    if (!counted.contains(row.stem)) continue;
+    if (row.truth_hash && hash_of_labels(first.sequence().read_truth(k)) != row.truth_hash) {
+      refuse_scan(first, "another truth", row.stem);
     }
-    scans.push_back(scan->second);
+    if (!second.has(k)) refuse_scan(first, "labels that the other run lacks", row.stem);
+    scans.push_back(k);
   }
   return scans;
 }
 
-/// Throws DataError unless labels are those that a run wrote and counted.
-void check_labels(const Sequence& sequence, const std::vector<std::size_t>& scans,
-                  const OpenedPredictions& opened, const SequenceResult& result) {
-  // Results of `mosbench score` do not say what its labels were.
-  if (result.header.contains("predictions")) return;
-  for (const std::size_t k : scans) {
-    const auto row = std::ranges::find(result.scans, sequence.stem(k), &ScanRow::stem);
-    if (row == result.scans.end() || are_labels_of(*row, opened.labels->read(k))) continue;
-    throw DataError(opened.path / (row->stem + ".label"), "does not give the counts in result.json",
-                    "the label file of that run");
-  }
+/// Both runs are broken down over the scans as the first one read them, with its poses.
+std::vector<ObjectDisagreement> objects_of(const SequenceResult& first,
+                                           const SequenceResult& second,
+                                           const std::filesystem::path& root) {
+  const FoundResult of_first = find_results(first.file).front();
+  const FoundResult of_second = find_results(second.file).front();
+  const ResultScans scans(of_first, root);
+  const ResultScans others(of_second, root);
+  const LabelsByStem labels(others, scans.sequence());
+  const std::vector<std::size_t> counted = scans_of(scans, labels, first);
+  const BreakdownTask task{first.protocol, first.range, hardware_threads()};
+  return disagreeing_objects(break_down(scans.sequence(), counted, scans.labels(), task),
+                             break_down(scans.sequence(), counted, labels, task));
 }
 
-SequenceBreakdown break_down_run(const Sequence& sequence, const std::vector<std::size_t>& scans,
-                                 const ResultSet& run, const BreakdownTask& task) {
-  const bool only_sequence = run.sequences.size() == 1;
-  const OpenedPredictions opened = open_predictions(run.path, sequence, scans, only_sequence, {});
-  const auto result = std::ranges::find(run.sequences, sequence.name(),
-                                        [](const auto& one) { return one.sequence.text(); });
-  check_labels(sequence, scans, opened, *result);
-  return break_down(sequence, scans, *opened.labels, task);
+std::set<std::string> names_in(const DiffFlags& options) {
+  std::optional<DatasetKind> kind;
+  std::set<std::string> names;
+  for (const SequenceFolder& found :
+       find_sequences(*options.root, {dataset_kind_option(options.dataset), {}, {}}, kind)) {
+    names.insert(found.name);
+  }
+  return names;
 }
 
 std::vector<ObjectDisagreement> objects_of(const DiffFlags& options, const ResultSet& first,
                                            const ResultSet& second) {
-  const Dataset dataset =
-      open_dataset(*options.root, {dataset_kind_option(options.dataset), {}, {}});
-  const BreakdownTask task{first.front().protocol, first.front().range, hardware_threads()};
+  const std::set<std::string> there = names_in(options);
   std::vector<ObjectDisagreement> objects;
   bool any = false;
   for (const SequenceResult& result : first.sequences) {
-    const bool in_both = std::ranges::find(second.sequences, result.sequence,
-                                           &SequenceResult::sequence) != second.sequences.end();
-    if (counted_scans(result).empty() || !in_both) continue;
-    const Sequence* sequence = sequence_named(dataset, result.sequence);
-    if (sequence == nullptr) continue;
-    any = true;
-    const std::vector<std::size_t> scans = scans_of(dataset, *sequence, result);
-    for (ObjectDisagreement& object :
-         disagreeing_objects(break_down_run(*sequence, scans, first, task),
-                             break_down_run(*sequence, scans, second, task))) {
-      objects.push_back(std::move(object));
+    const auto other =
+        std::ranges::find(second.sequences, result.sequence, &SequenceResult::sequence);
+    if (counted_scans(result).empty() || other == second.sequences.end()) continue;
+    if (!there.contains(result.sequence)) {
+      tell(fmt::format("{}: has no sequence {}; its objects are left out", options.root->string(),
+                       result.sequence.text()));
+      continue;
     }
+    any = true;
+    std::ranges::move(objects_of(result, *other, *options.root), std::back_inserter(objects));
   }
   if (any) return objects;
-  throw DataError(dataset.root, "has none of the sequences that both runs hold",
+  throw DataError(*options.root, "has none of the sequences that both runs hold",
                   "the data set of the runs in --data");
 }
 

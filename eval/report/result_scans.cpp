@@ -21,6 +21,7 @@ namespace {
 
 constexpr const char* kResult = "result.json";
 constexpr const char* kLabels = "labels";
+constexpr const char* kOtherCounts = "does not give the counts in result.json";
 
 /// Calls `read` on the content of result.json; a missing member becomes a DataError.
 template <typename Read>
@@ -158,16 +159,19 @@ FoundResult aligned(const FoundResult& result, const Dataset& dataset) {
 /// The labels that `mosbench run` wrote, which are read without a look at those of other scans.
 class RunLabels : public Predictions {
  public:
-  RunLabels(fs::path folder, const Sequence& sequence)
-      : folder_(std::move(folder)), sequence_(sequence) {}
+  RunLabels(const FoundResult& result, const Sequence& sequence)
+      : result_(result), sequence_(sequence) {}
   bool has(std::size_t) const override { return true; }
+  /// Throws DataError for labels that are not those the run wrote.
   std::vector<std::uint32_t> read(std::size_t scan_index) const override {
-    return read_labels(folder_ / (sequence_.stem(scan_index) + ".label"),
-                       sequence_.point_count(scan_index));
+    const fs::path file = result_.folder / kLabels / (sequence_.stem(scan_index) + ".label");
+    std::vector<std::uint32_t> labels = read_labels(file, sequence_.point_count(scan_index));
+    if (are_labels_of(result_.file.rows.scans[scan_index], labels)) return labels;
+    throw DataError(file, kOtherCounts, "the label file of that run");
   }
 
  private:
-  fs::path folder_;
+  const FoundResult& result_;
   const Sequence& sequence_;
 };
 
@@ -236,7 +240,7 @@ ResultScans::ResultScans(const FoundResult& result, const std::optional<fs::path
              {protocol.at("min_range_m"), protocol.at("max_range_m")}};
     if (!is_scored(result)) {
       check_same_scans(result, dataset_);
-      labels_ = std::make_unique<RunLabels>(source_.path, sequence());
+      labels_ = std::make_unique<RunLabels>(result_, sequence());
       return;
     }
     aligned_ = aligned(result, dataset_);
@@ -267,7 +271,7 @@ JudgedScan ResultScans::read(std::size_t scan_index) const {
   } else {
     scan.outcomes = outcomes_without_truth(labels);
   }
-  check_counts(scan, labels, rows()[scan_index]);
+  check_counts(scan, rows()[scan_index]);
   if (has_scores_) {
     const fs::path file = dynamic_score_file(result_.folder, scan.frame.stem);
     const bool whole = result_.file.content.value("format", 1) < 2;
@@ -281,15 +285,11 @@ JudgedScan ResultScans::read(std::size_t scan_index) const {
   return scan;
 }
 
-/// Labels that `mosbench score` read have no hash: other formats hold none.
-void ResultScans::check_counts(const JudgedScan& scan, const std::vector<std::uint32_t>& labels,
-                               const ScanRow& row) const {
+void ResultScans::check_counts(const JudgedScan& scan, const ScanRow& row) const {
   OutcomeCounts counts{};
   for (const PointOutcome outcome : scan.outcomes) ++counts[static_cast<std::size_t>(outcome)];
-  if (same_counts(counts, row.counts) && (aligned_ || are_labels_of(row, labels))) return;
-  const fs::path file =
-      aligned_ ? source_.path / scan.frame.stem : source_.path / (scan.frame.stem + ".label");
-  throw DataError(file, "does not give the counts in result.json",
+  if (same_counts(counts, row.counts)) return;
+  throw DataError(source_.path / (scan.frame.stem + (aligned_ ? "" : ".label")), kOtherCounts,
                   aligned_ ? "the predictions that were scored" : "the label file of that run");
 }
 

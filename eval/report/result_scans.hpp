@@ -71,8 +71,7 @@ class ResultScans {
   JudgedScan read(std::size_t scan_index) const;
 
  private:
-  void check_counts(const JudgedScan& scan, const std::vector<std::uint32_t>& labels,
-                    const ScanRow& row) const;
+  void check_counts(const JudgedScan& scan, const ScanRow& row) const;
 
   const FoundResult& result_;
   Dataset dataset_;

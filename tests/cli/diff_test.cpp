@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "datasets/formats/label_file.hpp"
@@ -54,7 +55,8 @@ TEST_F(Diff, RefusesADataSetThatIsNotTheOneOfTheRuns) {
   EXPECT_THAT(other.err, HasSubstr("hall: has none of the sequences that both runs hold"));
 
   cli::write_small_sequence(folder_ / "shorter/room", 9);
-  EXPECT_THAT(diff("shorter").err, HasSubstr("has no truth for scan 000009 of sequence room"));
+  EXPECT_THAT(diff("shorter").err,
+              HasSubstr("delay_0/room/result.json: was made from other scans, poses or labels"));
 
   cli::write_small_sequence(folder_ / "changed/room", 12);
   const std::filesystem::path file = folder_ / "changed/room/labels/000005.label";
@@ -63,7 +65,42 @@ TEST_F(Diff, RefusesADataSetThatIsNotTheOneOfTheRuns) {
   write_labels(file, labels);
   const cli::Answer changed = diff("changed");
   EXPECT_EQ(changed.exit_code, 3);
-  EXPECT_THAT(changed.err, HasSubstr("has another truth for scan 000005 of sequence room"));
+  EXPECT_THAT(changed.err, HasSubstr("was made from other scans, poses or labels than"));
+}
+
+TEST_F(Diff, ReadsTheDataSetAsTheRunsReadIt) {
+  // Without the poses of the runs the folder cannot be opened at all.
+  std::filesystem::rename(folder_ / "room/poses.txt", folder_ / "found.txt");
+  for (const char* delay : {"0", "2"}) {
+    ASSERT_EQ(cli::run({"run", folder_ / "room", "--out", folder_ / (std::string("posed_") + delay),
+                        "--poses", folder_ / "found.txt", "--bin-columns", "4", "--set",
+                        std::string("delay_scans=") + delay})
+                  .exit_code,
+              0);
+  }
+  const cli::Answer answer = cli::run(
+      {"diff", folder_ / "posed_0", folder_ / "posed_2", "--data", folder_ / "room", "--json"});
+  ASSERT_EQ(answer.exit_code, 0) << answer.err;
+  EXPECT_EQ(nlohmann::json::parse(answer.out).at("disagreeing_objects"), 1);
+  const cli::Answer broken_down = cli::run({"breakdown", folder_ / "posed_0"});
+  EXPECT_EQ(broken_down.exit_code, 0) << broken_down.err;
+}
+
+TEST_F(Diff, ComparesObjectsOfRunsWithOtherPosesByThoseOfTheFirst) {
+  std::filesystem::copy_file(folder_ / "room/poses.txt", folder_ / "same.txt");
+  ASSERT_EQ(cli::run({"run", folder_ / "room", "--out", folder_ / "posed_2", "--poses",
+                      folder_ / "same.txt", "--set", "delay_scans=2"})
+                .exit_code,
+            0);
+  const cli::Answer answer =
+      cli::run({"diff", folder_ / "delay_0", folder_ / "posed_2", "--data", folder_ / "room"});
+  EXPECT_EQ(answer.exit_code, 0) << answer.err;
+  EXPECT_EQ(answer.out.substr(answer.out.find("object")), [&] {
+    const std::string out = diff("room").out;
+    std::string named = out.substr(out.find("object"));
+    named.replace(named.find("delay_2"), 7, "posed_2");
+    return named;
+  }());
 }
 
 TEST_F(Diff, RefusesLabelsThatWereChangedAfterTheRun) {
