@@ -64,7 +64,7 @@ class Handle {
 /// Keeps the library from printing errors, which it does by itself else.
 void be_quiet() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
 
-/// A file system without locks, or one that may only be read, is none of the library's business.
+/// The library shall not lock: a file system may have no locks, or be read only.
 Handle access_without_locks() {
   Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "make properties");
   H5Pset_file_locking(access, 0, 1);
@@ -73,7 +73,7 @@ Handle access_without_locks() {
 
 Handle open_to_read(const std::string& file) {
   be_quiet();
-  // What unpacks numbers may be code of somebody else.
+  // Plug-ins that unpack numbers may be somebody else's code.
   H5PLset_loading_state(0);
   const Handle access = access_without_locks();
   return {H5Fopen(file.c_str(), H5F_ACC_RDONLY, access), H5Fclose, "open it"};

@@ -89,8 +89,8 @@ void SceneFlowSequence::state_truth(const ReadingOptions& options) {
   }
 }
 
-/// Takes groups in the order of their stamps. Of a drive that was cut a group without anything may
-/// be left.
+/// Takes groups in the order of their stamps. A drive that was cut may leave a group without
+/// arrays.
 void SceneFlowSequence::list_scans() {
   std::vector<const Hdf5Group*> empty;
   for (const Hdf5Group& group : file_.groups()) {
@@ -166,8 +166,8 @@ void SceneFlowSequence::convert_stamps() {
   }
 }
 
-/// Throws DataError for a scan without pose: of all scans, or of those whose truth is a flow that
-/// holds the sensor's own motion.
+/// Throws DataError for a scan without pose: among all scans, or among those whose flow holds the
+/// sensor's own motion.
 void SceneFlowSequence::require_poses(bool of_all) const {
   const auto flows_by_poses = [&](std::size_t scan) {
     return has_flow(scan) && !has_labels(scan) &&

@@ -19,7 +19,7 @@ struct PerturbStep {
   double strength;  ///< in the kind's unit
 };
 
-/// What --perturb says: disturbances in the order in which they are applied, and what they share.
+/// The value of --perturb: disturbances in the order in which they apply, and what they share.
 struct Perturbation {
   std::vector<PerturbStep> steps;
   std::uint64_t seed = 1;                ///< of everything random
@@ -41,11 +41,11 @@ std::string to_string(const Perturbation& perturbation);
 /// later.
 bool changes_points_only(const Perturbation& perturbation);
 
-/// Wraps a sequence into one that is disturbed. A disturbed scan depends on the text, the
-/// sequence's name and the scan as it was, and on nothing else: neither on the order in which scans
-/// are read nor on threads nor on the machine. Lost points become missing returns (0, 0, 0) with
-/// truth 0, so that there stays one label per stored point; truth follows the points. Throws
-/// UsageError for what the sequence has nothing for (stamps, beams, a scan to jump at).
+/// Wraps a sequence so that its scans are disturbed. A disturbed scan depends on the text, the
+/// sequence's name and the scan alone. The order of reading, threads and the machine do not matter.
+/// Lost points become missing returns (0, 0, 0) with truth 0, so that one label per stored point
+/// stays; truth follows the points. Throws UsageError if the sequence lacks what a disturbance
+/// needs (stamps, beams, a scan to jump at).
 std::unique_ptr<Sequence> perturbed(std::unique_ptr<Sequence> inner,
                                     const Perturbation& perturbation);
 

@@ -76,8 +76,8 @@ void check_columns(const PerturbContext& context) {
   }
 }
 
-/// What a sensor goes through around a scan, as rotation vector and translation: until the next
-/// scan, and back to the one before.
+/// The sensor's motion to the next scan, and back to the one before, as rotation vector and
+/// translation.
 struct Motions {
   struct Way {
     Eigen::Vector3d rotation_rad, translation_m;

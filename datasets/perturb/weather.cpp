@@ -15,7 +15,7 @@ constexpr double kPi = 3.14159265358979323846;
 
 double squared(double x) { return x * x; }
 
-/// What comes back of a target's light, in units of what it returns from 1 m in clear air.
+/// The light that a target sends back, in units of what it returns from 1 m in clear air.
 double target_power(double range_m, double extinction_per_m) {
   return exponential(-2 * extinction_per_m * range_m) / squared(range_m);
 }
@@ -24,13 +24,13 @@ double target_power(double range_m, double extinction_per_m) {
 /// clear air.
 double least_power(const Perturbation& shared) { return 1 / squared(shared.sensor_range_m); }
 
-/// What scatters light before a target.
+/// The droplets that scatter light before a target.
 struct Scatterer {
   double range_m, power;  ///< in units of `target_power`
 };
 
-/// Puts what returns more light in the place of each target, and loses what is too weak.
-/// `scatterer` gives the strongest one before a target at some range.
+/// Replaces each target by the scatterer if that returns more light, and loses targets that are too
+/// weak. `scatterer` gives the strongest one before a target at some range.
 template <typename StrongestBefore>
 void weaken(Frame& frame, double extinction_per_m, double least,
             StrongestBefore&& strongest_before) {
@@ -54,8 +54,8 @@ void weaken(Frame& frame, double extinction_per_m, double least,
 }
 
 /// Drops by Marshall and Palmer: N(D) = N0 exp(-slope D), D in mm. Kilic et al. sample them in the
-/// cone of each beam; here only up to where the largest drop, which would break up, could return
-/// more than the target.
+/// whole cone of each beam. Here the cone ends where the largest drop, which would break up,
+/// returns less than the target.
 struct Rain {
   static constexpr double kN0 = 8000;  // per m^3 and mm
   static constexpr double kSmallest_mm = 0.05, kLargest_mm = 6;

@@ -23,8 +23,8 @@ std::optional<std::filesystem::path> bag_of(const std::filesystem::path& folder)
 /// covers are left out and counted in the remarks. Truth is the field "label" of the points.
 class BagSequence : public Sequence {
  public:
-  /// `bag` is a file or the folder of a ROS 2 bag. Throws DataError for what is no bag, has no such
-  /// topic, no scan in it, or no transforms from the scans' frame to the map's.
+  /// `bag` is a file or the folder of a ROS 2 bag. Throws DataError if it is no bag, has no such
+  /// topic, holds no scan in it, or lacks transforms from the scans' frame to the map's.
   BagSequence(std::string name, const std::filesystem::path& bag, const ReadingOptions& options);
 
   using Sequence::read;

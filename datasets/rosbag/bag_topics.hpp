@@ -17,12 +17,12 @@ struct BagTransforms {
   std::string source;  ///< "/tf, map from os1_lidar"
 };
 
-/// Returns the transforms from the sensor's frame to `map_frame`; when that is not given, to "map"
-/// if it is among the ancestors, else to the root. Searches /tf with /tf_static first, then topics
-/// of TransformStamped, then each topic of Odometry with /tf_static, of PoseStamped and of Path,
-/// whose poses are taken as the sensor's; only `pose_topic` where it is given. Throws MissingPoses
-/// that lists the frames of the bag, DataError for poses of the same type in several topics, and
-/// for a `pose_topic` that holds none.
+/// Returns the transforms from the sensor's frame to `map_frame`. If that is not given, to "map" if
+/// it is an ancestor, else to the root. Searches /tf with /tf_static first; then topics of
+/// TransformStamped; then topics of Odometry with /tf_static, of PoseStamped and of Path, both
+/// taken as the sensor's poses. If `pose_topic` is given, only that. Throws MissingPoses that lists
+/// the frames of the bag; DataError for poses of the same type in several topics, and for a
+/// `pose_topic` that holds none.
 BagTransforms bag_transforms(const BagReader& bag, const std::optional<std::string>& map_frame,
                              const std::string& sensor_frame,
                              const std::optional<std::string>& pose_topic = std::nullopt);

@@ -108,8 +108,8 @@ struct Serializer<mosbench::SerializedMessage> {
 namespace mosbench {
 namespace {
 
-/// Asks for the memory that the library's buffers may need next: it ends the program where they
-/// find none.
+/// Asks for the memory that the library's buffers may need next, because the library ends the
+/// program if it finds none.
 void expect_memory(std::size_t message_bytes) {
   constexpr std::size_t kChunkBytes = 1 << 20;
   std::string().reserve(4 * (kChunkBytes + message_bytes));

@@ -24,13 +24,12 @@ struct BagChunk {
 /// The longest chunk that is read: what one claims to hold is allocated.
 inline constexpr std::uint64_t kMostChunkBytes = 1ULL << 29U;
 
-/// Throws DataError for a chunk that claims to take more than `room_bytes`, to hold more than
-/// kMostChunkBytes or, if it is not packed, to hold another number of bytes than it takes.
+/// Throws DataError for a chunk that claims more than `room_bytes` in the file or more than
+/// kMostChunkBytes inside, and for a plain chunk whose two sizes differ.
 void check_chunk_size(const BagChunk& chunk, std::uint64_t room_bytes,
                       const std::filesystem::path& file);
 
-/// Reads the bytes of a bag, of which one unpacked chunk is kept. Safe to call from several
-/// threads.
+/// Reads the bytes of a bag and keeps one unpacked chunk. Safe to call from several threads.
 class ChunkReader {
  public:
   /// Throws DataError when the file cannot be opened.

@@ -15,8 +15,8 @@
 namespace mosbench {
 
 /// A ROS 2 bag in one MCAP file (mcap.dev). Opening walks over the heads of its records, and reads
-/// the content of chunks only where no index follows them. Of a file that its recorder did not
-/// close everything up to the last whole record is read; a remark says so.
+/// the content of chunks only if no index follows them. A file that its recorder did not close is
+/// read up to the last whole record; a remark says so.
 class McapFile : public BagReader {
  public:
   /// Throws DataError for a file that is no MCAP, is damaged, or has a chunk that is compressed

@@ -54,7 +54,7 @@ std::string uri_of(const std::filesystem::path& file, bool is_immutable) {
   return uri + (is_immutable ? "?immutable=1" : "");
 }
 
-/// What a file of strangers says must neither run code nor write.
+/// Files of strangers must neither run code nor write.
 void distrust(sqlite3* database) {
   sqlite3_db_config(database, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
   sqlite3_db_config(database, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
@@ -103,7 +103,7 @@ void SqliteBag::read_tables() {
 
 SqliteBag::~SqliteBag() = default;
 
-/// What such a journal says has to be written back into the file before the file is right.
+/// Such a journal has to be written back into the file before the file is right.
 void SqliteBag::refuse_unfinished() const {
   const std::filesystem::path journal = path_.native() + "-journal";
   std::error_code ignored;
@@ -116,7 +116,7 @@ void SqliteBag::refuse_unfinished() const {
 }
 
 void SqliteBag::open_database() {
-  // What a killed recorder did not move into the file is in a log beside it.
+  // A killed recorder leaves a log beside the file, with what it did not move into it.
   const std::filesystem::path log = path_.native() + "-wal";
   std::error_code none;
   const auto log_bytes = std::filesystem::file_size(log, none);

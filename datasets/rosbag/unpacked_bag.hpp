@@ -13,9 +13,9 @@
 
 namespace mosbench {
 
-/// A bag whose whole file is packed by Zstandard. It is unpacked into the folder of temporary files
-/// (TMPDIR), where its name is removed before anything is written: no bag is left there, however
-/// the process ends.
+/// A bag that is packed as a whole by Zstandard. It is unpacked into the folder of temporary files
+/// (TMPDIR). Its name there is removed before anything is written: no bag is left, however the
+/// process ends.
 class UnpackedBag : public BagReader {
  public:
   /// Throws DataError.

@@ -55,8 +55,8 @@ void make_nonblocking(const FileDescriptor& file) {
   require_success(fcntl(file.number(), F_SETFL, O_NONBLOCK) == 0);
 }
 
-/// Becomes the command once a word says that its guard is there; ends where nobody is left to say
-/// it. Calls only what is allowed after a fork of a process with threads.
+/// Waits for a word that its guard is there, then becomes the command; ends if nobody is left to
+/// say it. Calls only what is allowed after a fork of a process with threads.
 [[noreturn]] void become(const char* command, int stdin_end, int stdout_end, const Pipe& start) {
   setpgid(0, 0);
   close(start.write_end.number());
@@ -78,8 +78,8 @@ void kill_all(pid_t group) {
   kill(group, SIGKILL);
 }
 
-/// Waits until the other end of the lifeline is closed without a word, which is when the process
-/// that holds it died, and kills the group then. Same restriction.
+/// Waits until the lifeline is closed without a word, because the process that holds it died, and
+/// kills the group then. Same restriction.
 [[noreturn]] void guard(pid_t group, int lifeline) {
   setpgid(0, 0);
   for (const int ignored : {SIGHUP, SIGINT, SIGTERM}) signal(ignored, SIG_IGN);

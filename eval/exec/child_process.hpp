@@ -53,9 +53,9 @@ class ChildProcess {
   bool closed_ = false, deaf_ = false;  ///< it closed its stdout, its stdin
 };
 
-/// Returns the most memory that a command of ChildProcess held which ended since the last call,
-/// with what it waited for, MiB; 0 where none ended. At least what this process held when it
-/// started the command.
+/// Returns the most memory in MiB that a command of ChildProcess held, with the processes it waited
+/// for; 0 if none ended since the last call. It is at least what this process held when it started
+/// the command.
 double take_most_memory_of_commands_mib();
 
 }  // namespace mosbench

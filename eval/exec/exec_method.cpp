@@ -113,7 +113,7 @@ class ExecMethod : public Method {
     return scans_ < context_.stamps_ns.size() ? context_.stamps_ns[scans_] : ScanMessage::kNoStamp;
   }
 
-  /// Sends, and waits until so many bytes are there, of which at most `further` bytes may follow.
+  /// Sends, and waits until so many bytes are there. At most `further` bytes may follow.
   void await(std::string_view outgoing, std::size_t bytes, std::size_t further,
              ChildProcess::Deadline deadline) {
     const std::size_t unread = program_.exchange(outgoing, bytes, bytes + further, deadline);

@@ -36,7 +36,7 @@ std::uint32_t id_of(std::uint32_t label) { return label & 0xFFFFU; }
 
 bool is_id(std::uint32_t id) { return id > 0 && id <= kLargestId; }
 
-/// Returns the encoding in which all labels but 0 make sense if it is not uint32; else nothing.
+/// Returns the encoding that gives all labels but 0 a meaning, if it is not uint32; else nothing.
 std::string other_encoding(const std::vector<std::uint32_t>& labels) {
   bool any = false;
   bool floats = true;

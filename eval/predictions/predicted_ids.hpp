@@ -25,9 +25,9 @@ std::vector<PredictedId> ids_in(std::span<const std::filesystem::path> files);
 /// Returns "0 (8,640 points), 251 (12 points)", of more than eight ids those of most points.
 std::string ids_text(std::span<const PredictedId> ids);
 
-/// Returns a remark when no point at all is predicted moving, or more than half of the points are:
-/// methods find few points moving, so that either says that the ids have another meaning. Empty
-/// otherwise. `ids` are those of the files, empty for formats without ids.
+/// Returns a remark if no point is predicted moving, or more than half of the points: methods find
+/// few moving points, so the ids may have another meaning. Empty otherwise. `ids` are those of the
+/// files, empty for formats without ids.
 std::string strange_share(std::uint64_t moving, std::uint64_t points,
                           std::span<const PredictedId> ids, const Protocol& protocol);
 

@@ -18,9 +18,9 @@ struct MaskedScan {
   std::vector<Point> points;
 };
 
-/// Finds the range limits, among those that methods commonly use, that leave as many points of
-/// every scan as there are labels. Throws DataError when none does, or when several do that leave
-/// different points.
+/// Finds the range limits, among the usual ones of methods, that leave as many points of every scan
+/// as there are labels. Throws DataError if none does, or if several do that leave different
+/// points.
 RangeGate find_mask(std::span<const MaskedScan> scans);
 
 /// Returns "3 to 50 m" or "from 3 m".

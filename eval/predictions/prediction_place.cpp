@@ -126,8 +126,8 @@ bool names_a_scan(const std::vector<fs::path>& files, const Sequence& sequence) 
       files, [&](const fs::path& file) { return stems.contains(file.stem().string()); });
 }
 
-/// Finds the one file for a whole sequence in a folder: a file with one of Dynablox's names, of the
-/// wanted format if one is wanted, otherwise the only table.
+/// Finds the one file for a whole sequence in a folder: one with a name of Dynablox's, of the
+/// wanted format if there is one; otherwise the only table.
 std::optional<fs::path> table_in(const fs::path& folder, std::optional<Format> wanted) {
   for (const char* name : {"clouds.csv", "scores.csv"}) {
     const fs::path file = folder / name;

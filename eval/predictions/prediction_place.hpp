@@ -28,8 +28,8 @@ struct NamedFile {
   std::filesystem::path file;
 };
 
-/// Lists the files per scan of a place. 4DMOS keeps confidences in a folder per scan, in which
-/// SCAN_dt_*.npy are those for earlier scans as well; the scan's own, without delay, is listed.
+/// Lists the files per scan of a place. 4DMOS keeps a folder of confidences per scan; its
+/// SCAN_dt_*.npy are for earlier scans too. The scan's own file, without delay, is listed.
 std::vector<NamedFile> prediction_files(const PredictionPlace& place);
 
 /// Throws DataError where predictions that name scans by position may mean other ones, because some

@@ -79,7 +79,7 @@ double published_ratio(const Protocol& protocol, const Confusion& counts) {
   return static_cast<double>(counts.tp) / (static_cast<double>(all) + epsilon);
 }
 
-/// Rounds a scan's value as the file does from which the protocol's own program averages.
+/// Rounds a scan's value as in the file that the protocol's own program averages.
 double as_in_file(const Protocol& protocol, double value) {
   if (protocol.file_significant_digits == 0) return value;
   return std::stod(fmt::format("{:.{}g}", value, protocol.file_significant_digits));

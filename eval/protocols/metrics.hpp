@@ -26,8 +26,8 @@ struct Summary {
   std::optional<double> iou, precision, recall, f1;
   /// Population standard deviation of the scans' IoU, for protocols that average scans.
   std::optional<double> iou_deviation;
-  /// The moving IoU that the protocol's own program computes, with its arithmetic and its treatment
-  /// of empty denominators, in percent where that program prints percent; NaN where it gives NaN.
+  /// The moving IoU of the protocol's own program, with its arithmetic and its value for empty
+  /// denominators. In percent if that program prints percent; NaN if it gives NaN.
   double published_iou = 0.0;
   std::string published_text;  ///< as that program prints it: "89.22", "0.000", "nan"
   Confusion pooled;
