@@ -11,8 +11,8 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "scripts/check"))
 import headers  # noqa: E402
 import includes  # noqa: E402
-import links  # noqa: E402
 import mutants  # noqa: E402
+import pages  # noqa: E402
 import paper  # noqa: E402
 
 
@@ -56,17 +56,25 @@ class Paper(unittest.TestCase):
             self.assertIn(expected, said)
 
 
-class Links(unittest.TestCase):
-    def test_every_link_of_a_page_leads_somewhere(self):
-        done = subprocess.run([ROOT / "scripts/check/links.py"], capture_output=True, text=True, check=False)
+class Pages(unittest.TestCase):
+    def test_of_the_project_are_right(self):
+        done = subprocess.run([ROOT / "scripts/check/pages.py"], capture_output=True, text=True, check=False)
         self.assertEqual(done.returncode, 0, done.stdout)
 
     def test_links_that_lead_nowhere_are_named(self):
         with tempfile.TemporaryDirectory() as folder:
             page = pathlib.Path(folder) / "page.md"
             page.write_text("# A `b`, c\n[a](#a-b-c) [b](page.md#a-b-c) [c](gone.md) [d](#d)\n```\n[e](e.md)\n```\n")
-            self.assertEqual(links.wrong_links(page), [f"{page}: gone.md: there is no such file",
+            self.assertEqual(pages.wrong_links(page), [f"{page}: gone.md: there is no such file",
                                                        f"{page}: #d: no heading is called so"])
+
+
+    def test_that_are_too_long_are_named(self):
+        long = "line\n" * 26
+        self.assertEqual(pages.too_long({"README.md": long, "core/README.md": long, "docs/history/README.md": long}),
+                         ["core/README.md: 26 lines, expected at most 25"])
+        self.assertEqual(pages.too_long({"docs/a.md": "word " * 18001, "docs/history/b.md": "word " * 9000}),
+                         ["docs: 18001 words without history, expected at most 18000"])
 
 
 class Headers(unittest.TestCase):
