@@ -12,9 +12,9 @@ constexpr std::size_t kFewestReturns = 1000;
 constexpr int kSectors = 720;
 // Two returns of one beam in a sector, or of a comb seen through noise.
 constexpr double kSameBeamDeg = 0.05;
-// Quartiles of spacings at random (exponential, beyond kSameBeamDeg, too) differ by a factor
-// of 4.8, of simulated rosettes by 3.6 to 6.1, of HDL-64E's comb, which is half as dense at its
-// lower end, by 1.7.
+// Quartiles of spacings differ by a factor of 4.8 at random (exponential, beyond kSameBeamDeg,
+// too), of 3.6 to 6.1 with simulated rosettes, and of 1.7 with HDL-64E's comb, which is half as
+// dense at its lower end.
 constexpr double kScatterOfRandom = 2.5;
 
 /// Returns the spacings of elevations that follow one another in a sector of azimuth.

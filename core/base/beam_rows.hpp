@@ -15,8 +15,8 @@ struct BeamDirection {
 /// Returns the directions of the finite points beyond min_range_m.
 std::vector<BeamDirection> beam_directions(std::span<const Point> points, double min_range_m);
 
-/// Returns the value below which this share of the values lies, of which there is one at least; 0
-/// is the least, 1 the greatest. Reorders them.
+/// Returns the value below which this share of the values lies; 0 is the least, 1 the greatest.
+/// There must be a value. Reorders them.
 double quantile(std::vector<double>& values, double share);
 
 /// How far apart the rows of beams of a sensor are.

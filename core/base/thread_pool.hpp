@@ -27,8 +27,8 @@ class ThreadPool {
   unsigned size() const { return static_cast<unsigned>(workers_.size()) + 1; }
 
   /// Calls work(begin, end, thread) for consecutive ranges of at most `grain` of [0, count), each
-  /// exactly once; `thread` is below size(). Returns when all are done. Of the exceptions
-  /// thrown, that of the lowest range is rethrown here. Must not be nested.
+  /// exactly once; `thread` is below size(). Returns when all are done. If several calls throw, the
+  /// exception of the lowest range is rethrown here. Must not be nested.
   void for_ranges(std::size_t count, std::size_t grain,
                   const std::function<void(std::size_t, std::size_t, unsigned)>& work);
 

@@ -12,15 +12,15 @@ namespace mosbench::odometry {
 enum class Gradient { kNumeric, kAnalytic };
 inline constexpr std::array<std::string_view, 2> kGradientNames = {"numeric", "analytic"};
 
-/// What scans with a time per point are corrected by: nothing, the motion of the scan before, or
-/// the motion that a first registration found, followed by a second one.
+/// How scans with a time per point are corrected: not at all, by the motion of the scan before, or
+/// by the motion that a first registration found, followed by a second one.
 enum class Deskew { kNone, kVelocity, kPoses };
 inline constexpr std::array<std::string_view, 3> kDeskewNames = {"none", "velocity", "poses"};
 
 enum class Switch { kOff, kOn };
 inline constexpr std::array<std::string_view, 2> kSwitchNames = {"off", "on"};
 
-/// What both engines share: which points take part, and when a pose is doubted.
+/// The settings that both engines share: which points take part, and when a pose is doubted.
 struct ScanConfig {
   double min_range_m = 0.5;
   double max_range_m = 80.0;

@@ -9,9 +9,9 @@
 
 namespace mosbench::odometry {
 
-/// The nearest map point of every scan point while a pose is searched for. A scan point that moved
-/// less than half the gap between its nearest and its second nearest map point keeps its nearest
-/// one, so that most questions need no search; the answers are the same as with one.
+/// The nearest map point of every scan point during the search for a pose. A scan point that moved
+/// less than half the gap between its nearest and second nearest map point keeps its nearest one.
+/// So most questions need no search; the answers are the same as with one.
 class Correspondences {
  public:
   /// Neighbours farther than `reach_m` may be left out. The map must outlive this and not change.

@@ -15,7 +15,7 @@ namespace mosbench::odometry {
 /// Points that are summed at a time: fixed, so that sums do not depend on threads.
 inline constexpr std::size_t kChunkPoints = 512;
 
-/// What came of aligning a scan with the map.
+/// The outcome of aligning a scan with the map.
 struct Alignment {
   Pose map_from_sensor = Pose::Identity();
   double overlap = 0;   ///< share of the scan's points that lie where the map has points
@@ -36,9 +36,9 @@ class Engine {
   virtual double spacing_m() const = 0;
   /// Finds the pose of the taken scan. The map must not be empty.
   virtual Alignment align(const Pose& seed) const = 0;
-  /// Returns the pose that some of the points find from a seed. From `probe_m` beside the pose that
-  /// all of them found they come back to it, unless there are several: on flat ground the points of
-  /// equal beams fit wherever the sensor is.
+  /// Returns the pose that some of the points find from a seed. From `probe_m` beside the pose of
+  /// all points they come back to it, unless several poses fit: on flat ground the points of equal
+  /// beams fit wherever the sensor is.
   virtual Pose settled_from(const Pose& seed) const = 0;
   virtual double probe_m() const = 0;
   /// The map point nearest to a position in the map's frame; nothing where there is none near.

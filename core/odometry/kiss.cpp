@@ -16,7 +16,7 @@ using Matrix6d = Eigen::Matrix<double, 6, 6>;
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Points = std::span<const Eigen::Vector3d>;
 
-/// What a Gauss-Newton step needs of the matched points q with residuals r and weights w.
+/// The sums of a Gauss-Newton step over the matched points q with residuals r and weights w.
 struct Sums {
   std::size_t matched = 0;
   double weight = 0;                                   // w

@@ -11,7 +11,7 @@ constexpr double kLeastStrength = 1e-9;
 constexpr double kOther_m = 0.3;
 // Added to what is known of a direction, so that next to nothing asks for no correction.
 constexpr double kDamping = 0.01;
-// What surfaces are known to at best, whatever their residuals are.
+// Surfaces are known no better than this, however small their residuals are.
 constexpr double kNoise_m = 0.02;
 
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
@@ -38,7 +38,7 @@ struct ResidualSums {
   }
 };
 
-/// What is known of one half of the six numbers when the other half is free.
+/// The information about one half of the six numbers when the other half is free.
 Eigen::Matrix3d marginal(const Matrix6d& information, Eigen::Index half, Eigen::Index other) {
   const Eigen::Matrix3d cross = information.block<3, 3>(half, other);
   const Eigen::Matrix3d rest =

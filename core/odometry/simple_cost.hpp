@@ -13,7 +13,7 @@
 
 namespace mosbench::odometry {
 
-/// What SiMpLE's cost needs: scan points in the sensor frame, the map, and sigma.
+/// The inputs of SiMpLE's cost: scan points in the sensor frame, the map, and sigma.
 struct SimpleProblem {
   std::span<const Eigen::Vector3d> points_m;
   const PointGrid& map;

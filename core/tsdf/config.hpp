@@ -4,9 +4,9 @@
 
 namespace mosbench::tsdf {
 
-/// What methods on truncated signed distances have in common; the defaults are those of Dynablox's
-/// default.yaml, where lengths in voxels are given in metres for voxels of 0.2 m. The config of a
-/// method derives from it.
+/// The settings that methods on truncated signed distances share. The config of a method derives
+/// from it. Defaults are those of Dynablox's default.yaml; lengths in voxels are given in metres
+/// for voxels of 0.2 m.
 struct Config {
   double voxel_size_m = 0.2;
   double min_range_m = 0.5;

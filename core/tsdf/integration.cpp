@@ -76,7 +76,7 @@ inline __attribute__((always_inline)) void add_row(VoxelNumbers& numbers, std::s
   plane.observed = with_row(plane.observed, row & 7, bits_of(new_w > kObservedWeight));
 }
 
-/// A row of which every voxel is in front of all surfaces by more than the truncation distance.
+/// A row whose voxels all lie in front of all surfaces by more than the truncation distance.
 inline __attribute__((always_inline)) void add_free_row(VoxelNumbers& numbers, std::size_t row,
                                                         const BlockPlace& place,
                                                         const Limits& limits, SurfaceBits& plane) {
@@ -161,7 +161,7 @@ inline __attribute__((always_inline)) void add_mixed_row(VoxelNumbers& numbers, 
   add_row(numbers, row, target, weight, seen, limits, plane);
 }
 
-/// What is known of the eight cubes that a cube is cut into, x fastest.
+/// The states of the eight cubes that a cube is cut into, x fastest.
 using EightReaches = std::array<Reach, 8>;
 
 MOSBENCH_MULTIARCH void add_mixed(MapBlock& block, VoxelNumbers& numbers, const BlockPlace& place,

@@ -47,9 +47,9 @@ struct ImagePlace {
 /// = -atan2(y, x) - first in [0, 2 pi).
 ImagePlace place_in_image(const SensorModel& sensor, const Point& direction);
 
-/// Returns the depth at a place between pixels, "adaptive": linear between the four pixels around,
-/// of which empty ones are left out, or their minimum where that is nearer by more than half of the
-/// truncation distance. 0 where all four are empty.
+/// Returns the depth at a place between pixels, "adaptive": linear between the pixels around that
+/// are not empty, or their minimum if that is nearer by more than half of the truncation distance.
+/// 0 if all four are empty.
 float depth_at(const RangeImage& image, const ImagePlace& place, float half_truncation_m);
 
 }  // namespace mosbench::tsdf

@@ -36,8 +36,8 @@ struct RayLimits {
 };
 
 /// Returns the wide blocks on the rays to the points that have a pixel and a range within limits,
-/// in the order z, y, x: Amanatides and Woo, A Fast Voxel Traversal Algorithm, 1987, from the end
-/// of the ray to the sensor, in as many steps as the two blocks' indices differ in.
+/// in the order z, y, x. Walks from the end of the ray to the sensor (Amanatides and Woo, A Fast
+/// Voxel Traversal Algorithm, 1987), with as many steps as the two blocks' indices differ.
 std::vector<BlockIndex> ray_blocks(std::span<const Point> points, const ScanPixels& pixels,
                                    const Pose& map_from_sensor, const RayLimits& limits,
                                    RayBlocksScratch& scratch, ThreadPool& pool);

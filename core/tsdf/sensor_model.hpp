@@ -28,11 +28,11 @@ struct SensorModel {
 std::optional<SensorModel> configured_sensor(const Config& config);
 
 /// Returns a model with what is configured, and the rest from the returns of a scan beyond
-/// min_range_m; nullopt when these are too few (1000) to tell. Within half a degree of azimuth the
+/// min_range_m; nullopt if these are too few (1000) to tell. Within half a degree of azimuth the
 /// elevations of a spinning sensor are a comb: rows have its median spacing, and there are as many
-/// columns as the fullest row has returns. Where spacings scatter as at random, the sensor has no
-/// rows and gets square pixels, so wide that one holds a return in the mean, the first of them in
-/// the middle of where it sees nothing.
+/// columns as the fullest row has returns. If spacings scatter as at random, the sensor has no
+/// rows. Then it gets square pixels, wide enough for one return in the mean; the first lies in the
+/// middle of where it sees nothing.
 std::optional<SensorModel> measured_sensor(std::span<const Point> points, const Config& config);
 
 }  // namespace mosbench::tsdf

@@ -11,7 +11,7 @@
 
 namespace mosbench::tsdf {
 
-/// What the map knows of the voxels of a block, 8 bytes each.
+/// The map's record of the voxels of a block, 8 bytes each.
 struct VoxelNumbers {
   alignas(32) std::array<float, kBlockVoxels> distances_m;  ///< d, to the nearest surface, signed
   alignas(32) std::array<float, kBlockVoxels> weights;      ///< w, 0: never observed

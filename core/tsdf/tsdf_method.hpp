@@ -18,7 +18,7 @@
 
 namespace mosbench::tsdf {
 
-/// What a scan shows without the scans before it.
+/// The part of a scan that needs no scan before it.
 struct ObservedScan final : NumberedScan {
   std::vector<Point> points;  ///< empty unless the method asks for them
   Pose map_from_sensor = Pose::Identity();

@@ -22,9 +22,9 @@ struct ExactRay {
 /// Rays that are walked together, one in each lane.
 inline constexpr std::size_t kRaysTogether = 8;
 using RayGroup = std::array<const ExactRay*, kRaysTogether>;
-/// Deals rays of similar length into groups. The eight of a group come from different regions, so
-/// that they do not write to the same cache lines: a run of n similar rays is cut into eight parts,
-/// and each gives one ray to every group. The last groups are filled up with the longest ray.
+/// Deals rays of similar length into groups of eight that come from different regions, so that they
+/// do not write to the same cache lines. A run of n similar rays is cut into eight parts, and each
+/// part gives one ray to every group. The last groups are filled up with the longest ray.
 std::vector<RayGroup> groups_of(std::span<const ExactRay> rays);
 
 /// How far rays go.

@@ -66,8 +66,8 @@ void append_rays(const RaySource& source, std::size_t slot, std::int64_t short_l
   });
 }
 
-/// Places of the rays with one number of visits: a table of eight columns that is filled column by
-/// column, so that the eight of a row, cast together, come from distant parts of the scan.
+/// Places of the rays with one number of visits, as a table of eight columns that is filled column
+/// by column. The eight of a row are cast together and come from distant parts of the scan.
 struct Bucket {
   std::uint32_t begin = 0, rows = 0, row = 0, column = 0, rest = 0;
 

@@ -43,7 +43,7 @@ struct Line {
   std::int64_t reciprocal, start;
 };
 
-/// What rays are cast from.
+/// The inputs of casting rays.
 struct RaySource {
   const VoxelSet& measured;
   Voxel sensor;

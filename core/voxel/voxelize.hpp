@@ -39,8 +39,8 @@ struct VoxelizedScan {
 /// Returns a grid whose origin is near the first sensor position, so that voxel indices stay small.
 VoxelGrid grid_around(const Eigen::Vector3d& sensor_m, double voxel_size_m);
 
-/// Finds the measured voxels P'_M = floor(P_M / Delta) of P_M = T_{M->S} P_S (paper, III), from the
-/// points farther than min_range from the sensor, which is negative to take all. Throws
+/// Finds the measured voxels P'_M = floor(P_M / Delta) of P_M = T_{M->S} P_S (paper, III). Takes
+/// the points farther than min_range from the sensor; a negative min_range takes all. Throws
 /// std::range_error naming the first point whose voxel lies more than 2^19 voxels from the sensor's
 /// or 2^23 from the grid's origin.
 VoxelizedScan voxelize(std::span<const Point> points, const Pose& map_from_sensor,

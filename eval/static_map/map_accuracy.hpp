@@ -12,7 +12,7 @@ namespace mosbench {
 /// KTH's DynamicMap_Benchmark, half of the voxels that most methods have.
 inline constexpr double kSameWithin_m = 0.05;
 
-/// What a cleaned map holds of the points whose truth is known.
+/// How much of the points with known truth a cleaned map holds.
 struct MapCounts {
   std::uint64_t static_points = 0, kept_static = 0;
   std::uint64_t dynamic_points = 0, removed_dynamic = 0;
@@ -23,10 +23,10 @@ struct MapCounts {
   std::optional<double> harmonic_accuracy() const;    ///< HA, 2 SA DA / (SA + DA); 0 where both are
 };
 
-/// Compares a cleaned map with the points that it was made of (Zhang et al., ITSC 2023): a point of
-/// the truth is kept where the map has one within `same_within_m`, the distance rounded to float32
-/// as in the authors' program. `dynamic` says which points of the truth are. Points of the map that
-/// are not finite are left out.
+/// Compares a cleaned map with the points that it was made of (Zhang et al., ITSC 2023). A point of
+/// the truth is kept if the map has one within `same_within_m`; the distance is rounded to float32
+/// as in the authors' program. `dynamic` says which points of the truth are dynamic. Points of the
+/// map that are not finite are left out.
 MapCounts count_kept(std::span<const Point> map, std::span<const Point> truth,
                      const std::vector<bool>& dynamic, double same_within_m = kSameWithin_m);
 

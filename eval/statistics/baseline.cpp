@@ -16,7 +16,7 @@ namespace mosbench {
 namespace fs = std::filesystem;
 namespace {
 
-/// What changes in a baseline; files are named from its folder.
+/// The changes of a baseline; files are named from its folder.
 struct BaselineChange {
   std::map<fs::path, std::string> written;  ///< with their bytes
   std::vector<fs::path> superseded;

@@ -15,8 +15,8 @@ std::string format_accepted(const SequenceResult& result);
 /// Returns the runs in a folder; empty when it does not exist or holds no result.
 std::vector<ResultSet> accepted_runs(const std::filesystem::path& folder);
 
-/// Throws UsageError when accepting the results below `newer` as the baseline in `folder` would
-/// take some of them away: one is the other or above it, or a sequence of the baseline is a link
+/// Throws UsageError if accepting the results below `newer` as the baseline in `folder` would take
+/// some of them away: one folder is the other or above it, or a sequence of the baseline is a link
 /// that leads out of it.
 void refuse_overlap(const ResultSet& newer, const std::filesystem::path& folder);
 

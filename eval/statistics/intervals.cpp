@@ -22,8 +22,8 @@ ScanTerms sum_of(const Protocol& protocol, const SequenceCounts& scans) {
 }
 
 /// Returns by how much the sum of `scans` errors is larger without a scan that has this share in
-/// the metric (jackknife): what scans of much weight add is seen too small, since the metric
-/// follows them.
+/// the metric (jackknife). The metric follows scans of much weight, so their part of the error
+/// would be too small.
 double leverage(double scans, double share) {
   return share < 1.0 ? (scans - 1.0) / scans / (1.0 - share) : 1.0;
 }

@@ -22,8 +22,8 @@ nlohmann::ordered_json parameters_of(const SequenceResult& result) {
   return result.header.value("config", nlohmann::ordered_json());
 }
 
-/// Returns "voxel_size_m: 0.25 -> 0.4, ..."; empty when the parameters are equal or unknown. Of two
-/// methods only what both have is compared.
+/// Returns "voxel_size_m: 0.25 -> 0.4, ..."; empty if the parameters are equal or unknown. Two
+/// methods are compared by the parameters that both have.
 std::string changed_parameters(const SequenceResult& first, const SequenceResult& second) {
   const nlohmann::ordered_json before = parameters_of(first);
   const nlohmann::ordered_json after = parameters_of(second);

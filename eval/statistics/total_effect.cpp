@@ -13,8 +13,8 @@ namespace {
 
 constexpr std::size_t kResamples = 2000;
 
-/// Mean of half the squared difference over the variance of all values, over some points, of which
-/// one may stand several times; nothing where all values are the same.
+/// Mean of half the squared difference over the variance of all values, over some points (a point
+/// may stand several times); nothing if all values are the same.
 std::optional<double> index_over(std::span<const double> base, std::span<const double> varied,
                                  std::span<const std::size_t> points) {
   const double count = static_cast<double>(points.size());

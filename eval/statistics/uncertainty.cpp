@@ -37,8 +37,8 @@ std::string too_few_scans(std::size_t scans) {
                      kFewestScans, kFewestFarScans);
 }
 
-/// Returns the larger correlation of neighbours: of errors, and of moving points, which show how
-/// long objects stay in view where other errors hide it.
+/// Returns the larger correlation of neighbours: of errors, or of moving points. The latter shows
+/// how long objects stay in view if other errors hide it.
 Correlation memory_of(std::span<const ScanErrors> sequences) {
   const Correlation of_errors = neighbour_correlation(all_of(sequences, &ScanErrors::error));
   const Correlation of_objects = neighbour_correlation(all_of(sequences, &ScanErrors::moving));

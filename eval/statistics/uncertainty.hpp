@@ -17,7 +17,7 @@ enum class Spacing {
 /// are far apart Student's t does not yet hold.
 inline constexpr std::size_t kFewestScans = 100, kFewestFarScans = 20;
 
-/// What the scans of one sequence have to do with a metric; values per scan.
+/// The part of the scans of one sequence in a metric; values per scan.
 struct ScanErrors {
   std::vector<double> error;   ///< what the scan adds to the error of the metric
   std::vector<double> weight;  ///< what it counts in the metric, at least 0
@@ -32,9 +32,9 @@ struct SumUncertainty {
 };
 
 /// Estimates the uncertainty of the sum of all errors, from sequences that are independent of each
-/// other. Scans that are far apart, and scans in a row in which neither errors nor moving points
-/// resemble those of the scan before, are taken for independent; `long_run_uncertainty` has the
-/// rest. Where the scans cannot tell, there is no estimate.
+/// other. Scans are taken for independent if they are far apart, or if in a row neither errors nor
+/// moving points resemble those of the scan before. All others go to `long_run_uncertainty`. If the
+/// scans cannot tell, there is no estimate.
 SumUncertainty uncertainty_of_sum(std::span<const ScanErrors> sequences, Spacing spacing);
 
 }  // namespace mosbench

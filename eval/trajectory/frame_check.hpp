@@ -7,9 +7,9 @@
 
 namespace mosbench {
 
-/// Says that the motions of an estimate fit the truth far better when one of the two is turned into
+/// Says that the motions of an estimate fit the truth far better if one of the two is turned into
 /// the axes of a camera, or is not: a wrong --camera. Without a Tr in `options` the axes are those
-/// of KITTI's cameras (x right, z ahead). Nothing where the pair fits as it is.
+/// of KITTI's cameras (x right, z ahead). Empty if the pair fits unchanged.
 std::optional<std::string> frame_remark(const TrajectoryPair& pair,
                                         const TrajectoryOptions& options);
 

@@ -20,7 +20,7 @@ constexpr double kPercent = 100.0, kDegreesPerRad = 180.0 / std::numbers::pi;
 
 using Scores = std::span<const TrajectoryScore>;
 
-/// What a pose adds to two sums of errors, and how many errors begin there.
+/// The part of a pose in two sums of errors, and how many errors begin there.
 struct Start {
   double first = 0, second = 0, errors = 0;
 };
@@ -59,7 +59,7 @@ Start sum_of(const std::vector<Starts>& sequences) {
   return sum;
 }
 
-/// What each start adds to the error of the second value minus the first. A value is a mean, or a
+/// The part of each start in the error of the second value minus the first. A value is a mean, or a
 /// function of one with these slopes there (delta method).
 std::vector<ScanErrors> start_errors(const std::vector<Starts>& sequences, const Start& sum,
                                      double first_slope, double second_slope) {

@@ -32,7 +32,7 @@ struct RelativePairs {
 PoseErrors relative_errors(std::span<const Pose> truth, std::span<const Pose> estimate,
                            const RelativePairs& pairs);
 
-/// What is said of a list of errors; the deviation is that of the population.
+/// Summary of a list of errors; the deviation is that of the population.
 struct ErrorSummary {
   std::size_t count = 0;
   double rmse = 0, mean = 0, median = 0, deviation = 0, least = 0, most = 0, squares = 0;

@@ -17,10 +17,10 @@ struct PosePath {
   PoseList list;                ///< stamps also where those of the data set's scans increase
 };
 
-/// The poses of a file; of a folder of `mosbench run --odometry` the poses.txt beside the results;
-/// of a data set those of its sequences; of another folder all files .txt, .csv and .tum in and
-/// below it. Ordered by name, or as the data set orders its sequences. Poses of Dynablox's rollouts
-/// are inverted. Throws DataError where there are none, and for two files of one name.
+/// Reads the poses of a file; of a folder of `mosbench run --odometry`, which has poses.txt beside
+/// the results; of a data set's sequences; or of all files .txt, .csv and .tum in and below another
+/// folder. They are ordered by name, or as the data set orders its sequences. Poses of Dynablox's
+/// rollouts are inverted. Throws DataError if there are none, and for two files of one name.
 std::vector<PosePath> read_pose_paths(const std::filesystem::path& path,
                                       std::optional<PoseFormat> format);
 
