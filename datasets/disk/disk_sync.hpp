@@ -8,8 +8,8 @@ namespace mosbench {
 /// survives a power cut. Throws DataError.
 void sync_names_of(const std::filesystem::path& folder);
 
-/// Waits until all that was written so far to the file system of `folder` is on the disk: for a
-/// folder of thousands of files a small part of what waiting for each would take. Throws DataError.
+/// Waits until the file system of `folder` has brought to the disk all that was written so far. For
+/// a folder of thousands of files this takes a small part of waiting for each. Throws DataError.
 void sync_file_system_of(const std::filesystem::path& folder);
 
 }  // namespace mosbench

@@ -19,9 +19,9 @@ struct StemFile {
 std::optional<std::uint64_t> stem_number(std::string_view stem);
 
 /// Lists the files of `folder` with one of `extensions` (".bin") that are not hidden, ordered by
-/// their stems: numbers in them by value ("scan_2" before "scan_10"), digits behind a point that
-/// follows a digit as a fraction ("1650.25" before "1650.5"), all else by bytes. Throws
-/// DataError when the folder cannot be read and when two stems differ by no more than zeros.
+/// their stems. Numbers go by value ("scan_2" before "scan_10"), digits behind a point that follows
+/// a digit as a fraction ("1650.25" before "1650.5"), all else by bytes. Throws DataError if the
+/// folder cannot be read, or if two stems differ only by zeros.
 std::vector<StemFile> list_by_stem(const std::filesystem::path& folder,
                                    std::initializer_list<std::string_view> extensions);
 

@@ -10,8 +10,8 @@ struct ModuleFunction {
   std::string error = "it is in none of its folders";
 };
 
-/// Loads a module (a shared library beside the program, of the same build) when something of it is
-/// needed: with all their libraries PCL and libhdf5 would cost every start of the program tens of
+/// Loads a module (a shared library beside the program, of the same build) when it is first needed:
+/// with all their libraries PCL and libhdf5 would cost every start of the program tens of
 /// milliseconds. Looks in three folders: relative to the installed program, in the installation
 /// prefix, and in the build tree.
 ModuleFunction load_function(const char* module, const char* function);

@@ -26,7 +26,7 @@ bool take(int descriptor, const fs::path& path) {
 }
 
 FileDescriptor open_to_write(const fs::path& path, int more_flags) {
-  // What lies there may be a link or a FIFO.
+  // The path may hold a link or a FIFO.
   constexpr int kFlags = O_WRONLY | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK;
   constexpr int kReadableByAll = 0666;
   return FileDescriptor(open(path.c_str(), kFlags | more_flags, kReadableByAll));

@@ -8,17 +8,17 @@
 
 namespace mosbench {
 
-/// Returns the name of what is being written and will replace `path`. Nothing reads files or
-/// folders that end in ".partial".
+/// Returns the name of the file or folder that is written and will replace `path`. Nothing reads
+/// files or folders that end in ".partial".
 std::filesystem::path partial_of(const std::filesystem::path& path);
 
 /// Returns whether `name` is that of a file that is being written and will replace `file`.
 bool is_partial_of(const std::string& name, const std::string& file);
 
-/// A file that is being written beside the one that it will replace. No two writers share one: its
-/// name is partial_of(file), locked while its writer lives and taken over after a killed one; while
-/// another process writes that, it has a name with process id and random digits.
-/// All functions throw std::system_error.
+/// A file that is written beside the one that it will replace. No two writers share one. Its name
+/// is partial_of(file), locked while its writer lives and taken over after a killed one. While
+/// another process writes that, it has a name with process id and random digits. All functions
+/// throw std::system_error.
 class PartialFile {
  public:
   explicit PartialFile(const std::filesystem::path& file);

@@ -8,8 +8,8 @@
 
 namespace mosbench {
 
-/// Writes files of `run --write` into a folder, and remembers in its products.json by their hashes
-/// what they held, so that a later run knows which are as they were written.
+/// Writes files of `run --write` into a folder and keeps their hashes in its products.json, so that
+/// a later run knows which are as they were written.
 class ProductRecord {
  public:
   /// Throws DataError for a damaged products.json.
@@ -18,8 +18,8 @@ class ProductRecord {
   /// Returns whether `file`, a path below the folder, is there and known. Throws UsageError when it
   /// was changed since it was written.
   bool has(const std::string& file) const;
-  /// Writes the file as a whole. It is known once `save` was called, which every 50th call does: of
-  /// many files a killed run makes few again.
+  /// Writes the file as a whole. `save` makes it known; every 50th call does so, so that a killed
+  /// run makes few files again.
   void write(const std::string& file, std::string_view bytes);
   void save();
   const std::filesystem::path& folder() const { return folder_; }

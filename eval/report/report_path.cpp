@@ -43,8 +43,8 @@ bool are_same_scans(const Sequence& one, const Sequence& other) {
   return same;
 }
 
-/// The poses that the data set has itself for the scans of a run that took others; nothing where
-/// the run took these, or where there are none that can be read.
+/// The poses that the data set itself has for the scans of a run that took others. Nothing if the
+/// run took these, or if they cannot be read.
 std::optional<std::vector<Pose>> poses_passed_over(const FoundResult& result,
                                                    const ResultScans& scans) {
   ReadingOptions reading = told_from_json(recorded_reading(result));

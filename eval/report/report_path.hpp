@@ -7,9 +7,9 @@
 namespace mosbench {
 
 /// The way of the sensor from above, in metres: `run_m`, [x, y] per scan of the poses of the run.
-/// Where these are not the data set's own, which has some for the same scans, also `own_m`, the
-/// length `way_m` of that path up to each scan, and the distance `off_m` of the run's positions to
-/// its; the run's first pose is then moved onto the data set's.
+/// If the data set has other poses for the same scans: also `own_m`, the length `way_m` of that
+/// path up to each scan, and the distance `off_m` of the run's positions to its; the run's first
+/// pose is then moved onto the data set's.
 nlohmann::ordered_json path_of(const FoundResult& result, const ResultScans& scans);
 
 }  // namespace mosbench

@@ -10,8 +10,7 @@
 
 namespace mosbench {
 
-/// What the labels would score if every point with at least this score, cut as in ScoreCounts,
-/// moved.
+/// The score of the labels if every point with at least this score, cut as in ScoreCounts, moved.
 struct CurvePoint {
   float threshold;
   Confusion counts;  ///< pooled over all scans
@@ -25,8 +24,8 @@ struct ScoreCurve {
   std::size_t scans = 0;
 };
 
-/// Adds up the scores of many scans in bounded memory: scores are cut toward 0 to 12 significant
-/// bits, so that whole numbers up to 4096 and ratios of 1/2000 stay apart.
+/// Adds up the scores of many scans in bounded memory. Scores are cut toward 0 to 12 significant
+/// bits: whole numbers up to 4096 and ratios of 1/2000 stay apart.
 class ScoreCounts {
  public:
   ScoreCounts();

@@ -7,7 +7,7 @@
 
 namespace mosbench {
 
-/// What `mosbench run --write` can write beside the labels.
+/// The files that `mosbench run --write` can write beside the labels.
 std::vector<std::string> product_names();
 
 /// Writes products of a finished sequence of `mosbench run` into its folder, in the formats of
