@@ -214,7 +214,7 @@ SeenSpace see(const VoxelizedScan& scan, const VoxelGrid& grid, const Config& co
   turned_hits.copy_turned(hits);
   const SensorBits sensor_bits = caster.sensor_bits(scratch.hits);
   const std::vector<std::uint32_t> slots = caster.slots_by_azimuth();
-  // Every share has a narrow sector for each of the rays that are walked together: the next eight
+  // Every share has a narrow sector for each of the rays that are walked together. The next eight
   // rays lead through the same memory, and all shares take about as long.
   const std::size_t shares = 16 * pool.size(), sectors = shares * kRaysTogether;
   pool.for_ranges(shares, 1, [&](std::size_t share, std::size_t, unsigned thread) {

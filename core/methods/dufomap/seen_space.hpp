@@ -11,7 +11,7 @@
 
 namespace mosbench::dufomap {
 
-/// What one scan saw. `passed` runs together with `known.blocks`.
+/// The space that one scan saw. `passed` runs together with `known.blocks`.
 struct SeenSpace {
   VoxelSet known;                 ///< crossed by rays, d_p more than their ends included, or hit
   std::vector<BlockMask> passed;  ///< those that no ray hit with its last d_s
@@ -27,9 +27,9 @@ struct SightScratch {
 };
 
 /// Casts a ray to the centre of every measured voxel, as UFOMap does for DUFOMap
-/// (ray_passthrough_hits = false, inflate_unknown_compensation = true): hits first, the last d_s of
-/// each ray. Then each ray crosses voxels from the sensor on, up to the first hit one, its end or
-/// max_range, and goes on until it has moved d_p voxels along one axis, so that voxels before a
+/// (ray_passthrough_hits = false, inflate_unknown_compensation = true). Hits come first: the last
+/// d_s of each ray. Then each ray crosses voxels from the sensor to the first hit one, its end or
+/// max_range. It goes on until it has moved d_p voxels along one axis, so that voxels before a
 /// surface have seen neighbours behind it.
 SeenSpace see(const VoxelizedScan& scan, const VoxelGrid& grid, const Config& config,
               SightScratch& scratch, ThreadPool& pool);

@@ -36,13 +36,13 @@ struct Clusters {
 /// compares the lower z of `a` with the upper x of `b`, and so may reject.
 bool overlap(const VoxelBox& a, const VoxelBox& b, double margin_voxels, BoxTest test);
 
-/// Grows clusters from the seeds, which are voxels of the scan, by block slot: a voxel of the scan
-/// that shares a face with a seed of the cluster joins it, and is grown from when it is a seed,
-/// too. Each voxel belongs to the first cluster that reaches it; these begin at seeds in the order
-/// of blocks, then of voxels, z before y before x. Then, for each cluster, all later ones join
-/// whose boxes overlap with its box and that have a voxel within cluster_separation_voxels of one
-/// of its own voxels, not of those that joined. What has too few or too many points, or too small
-/// or large a box, is dropped.
+/// Grows clusters from the seeds, which are voxels of the scan, by block slot. A voxel of the scan
+/// that shares a face with a seed of the cluster joins it; if it is a seed, too, the cluster grows
+/// on from it. Each voxel belongs to the first cluster that reaches it. Clusters begin at seeds in
+/// the order of blocks, then of voxels, z before y before x. Then each cluster takes in all later
+/// ones whose boxes overlap with its box and that have a voxel within cluster_separation_voxels of
+/// one of its own voxels, not of those that joined. Clusters with too few or too many points, or
+/// too small or large a box, are dropped.
 Clusters find_clusters(const VoxelizedScan& scan, std::span<const BlockMask> seeds,
                        const VoxelGrid& grid, const Config& config);
 

@@ -23,7 +23,7 @@ struct HistoryBits {
   std::uint64_t recent, worn;
 };
 
-/// One row of eight voxels, of which `occupied` are so in this frame.
+/// One row of eight voxels; `occupied` are those occupied in this frame.
 inline __attribute__((always_inline)) void count_row(VoxelHistory& voxels, std::size_t row,
                                                      std::uint32_t occupied, const Frame& frame,
                                                      HistoryBits& plane) {
@@ -63,7 +63,7 @@ MOSBENCH_MULTIARCH void count_occupied(BlockHistory& history, VoxelHistory& voxe
   history.recent_frame = frame.now;
 }
 
-/// The same for a block of which no voxel was ever observed: all are near a surface, d = 0.
+/// The same for a block whose voxels were never observed: all are near a surface, d = 0.
 void count_unobserved(BlockHistory& history, const Frame& frame) {
   constexpr std::uint16_t kMost = std::numeric_limits<std::uint16_t>::max();
   const bool goes_on = history.last_occupied >= frame.buffer_start;

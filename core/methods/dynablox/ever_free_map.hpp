@@ -15,7 +15,7 @@ struct VoxelHistory {
   alignas(32) std::array<std::uint16_t, kBlockVoxels> runs;  ///< c, occupied frames in a row
 };
 
-/// What is remembered of a block. Until one of its voxels is observed, all have the same history.
+/// The memory of a block. Until one of its voxels is observed, all have the same history.
 struct BlockHistory {
   BlockMask ever_free;  ///< e
   BlockMask recent;     ///< occupied in the burn-in before frame `recent_frame`

@@ -15,8 +15,8 @@ class Tracks {
     std::uint32_t number = 0;  ///< from 1, never given to another object
     std::uint32_t scans = 0;   ///< in which it was seen before
   };
-  /// Returns the tracks of this scan's centres, in the map frame: the nearest pair of a centre and
-  /// one of the scan before is one object when at most max_distance apart, then the next nearest
+  /// Returns the tracks of this scan's centres, in the map frame. The nearest pair of a centre and
+  /// one of the scan before is one object if at most max_distance apart, then the next nearest
   /// among the rest. The authors give a lost object's number to a new one; here it is not used
   /// again.
   std::vector<Track> follow(const std::vector<Eigen::Vector3d>& centres_m);

@@ -15,7 +15,7 @@
 
 namespace mosbench::hmm_mos {
 
-/// What moves in a scan.
+/// The motion found in a scan.
 struct Detection {
   VoxelSet moving;                  ///< among its occupied voxels
   SumField sums;                    ///< L^dyn

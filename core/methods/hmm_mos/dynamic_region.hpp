@@ -11,8 +11,8 @@
 
 namespace mosbench::hmm_mos {
 
-/// What detection found in a scan. `beside_unknown` need be complete only in and next to the blocks
-/// of the region and of `dynamic`.
+/// The findings of detection in a scan. `beside_unknown` need be complete only in and next to the
+/// blocks of the region and of `dynamic`.
 struct DetectedScan {
   const VoxelizedScan& scan;
   const VoxelSet& dynamic;      ///< before the back-end added any

@@ -11,10 +11,10 @@ namespace {
 
 /// The neighbours of a seed that should be known: a cube of 5^3 voxels.
 constexpr int kCubeVoxels = 125;
-/// What left a voxel so short a time ago may be beside it by noise alone.
+/// A surface that left a voxel so short a time ago may be beside it by noise alone.
 constexpr std::uint32_t kLeftTicks = 5;
 
-/// What may make a voxel a seed.
+/// The evidence that makes a voxel a seed.
 enum class Evidence { kArrival, kDeparture };
 
 std::uint32_t ticks_of(double age_s) {

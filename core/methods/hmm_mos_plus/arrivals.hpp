@@ -9,7 +9,7 @@
 
 namespace mosbench::hmm_mos_plus {
 
-/// What a scan's occupied voxels are by their history.
+/// The classes of a scan's occupied voxels by their history.
 struct ArrivalClasses {
   ScanMasks
       seeds;  ///< arrived of late, apart from what is settled or was just left, in known space

@@ -15,8 +15,8 @@
 
 namespace mosbench::hmm_mos_plus {
 
-/// What moved some scans ago, as its departures tell by now: what moves away from the sensor
-/// arrives where nothing was known to be free.
+/// The objects that moved some scans ago, as their departures tell by now. An object that moves
+/// away from the sensor arrives where nothing was known to be free.
 class LookBack {
  public:
   explicit LookBack(const Config& config);

@@ -161,7 +161,7 @@ void cut_growth(const ArrivalClasses& classes, const Config& config, ScanMasks& 
   voxels = std::move(near);
 }
 
-/// What components are made of: seeds and voxels that are neither settled nor low.
+/// The voxels of components: seeds, and voxels that are neither settled nor low.
 class Candidates {
  public:
   Candidates(const VoxelizedScan& scan, const ArrivalClasses& classes, LowVoxels& low)

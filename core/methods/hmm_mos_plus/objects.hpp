@@ -18,7 +18,7 @@ struct Component {
   bool moves = false;     ///< enough seeds, some of them fresh, of an object's age and size
 };
 
-/// What moves in a scan.
+/// The motion found in a scan.
 struct Motion {
   std::vector<Component> components;  ///< all that hold a seed
   ScanMasks objects;                  ///< voxels of the components that move

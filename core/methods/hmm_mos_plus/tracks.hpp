@@ -12,7 +12,7 @@
 
 namespace mosbench::hmm_mos_plus {
 
-/// What moved in a scan, followed from scan to scan.
+/// The objects that moved in a scan, followed from scan to scan.
 class Tracks {
  public:
   explicit Tracks(const Config& config);

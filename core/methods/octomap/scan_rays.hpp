@@ -11,7 +11,7 @@
 
 namespace mosbench::octomap {
 
-/// What one scan does to the map.
+/// The changes that one scan makes to the map.
 struct ScanUpdate {
   VoxelSet hit;                               ///< end voxels of points within the range limit
   VoxelList free;                             ///< voxels on the rays, some of them hit

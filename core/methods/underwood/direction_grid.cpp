@@ -14,7 +14,7 @@ namespace {
 constexpr float kPi = 3.14159274F;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-/// What the neighbours of a query have in common, in eight lanes.
+/// The numbers that the neighbours of a query share, in eight lanes.
 struct Box {
   FloatLanes nearest_m = FloatLanes{} + kInfinity;
   FloatLanes right_rad = FloatLanes{} + kInfinity, left_rad = FloatLanes{} - kInfinity;
@@ -37,7 +37,7 @@ float least(const FloatLanes& lanes) {
 }
 float greatest(const FloatLanes& lanes) { return -least(-lanes); }
 
-/// What a query compares candidates with.
+/// The query that candidates are compared with.
 struct Comparison {
   Direction query;
   float angle_sq_rad2;

@@ -16,7 +16,7 @@ inline float bearing_difference_rad(float a, float b) {
                           : (difference < -kPi ? difference + 2 * kPi : difference);
 }
 
-/// What a reference scan says about a query point.
+/// The finding of a reference scan about a query point.
 struct Look {
   enum class Finding {
     kUnknown,   ///< it does not surround the point
