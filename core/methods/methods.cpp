@@ -1,16 +1,19 @@
 #include <algorithm>
 #include <mosbench/method.hpp>
 
-#include "core/methods/dufomap/method.hpp"
-#include "core/methods/dynablox/method.hpp"
-#include "core/methods/hmm_mos/method.hpp"
-#include "core/methods/hmm_mos_plus/method.hpp"
-#include "core/methods/lc_free_space/method.hpp"
-#include "core/methods/octomap/method.hpp"
-#include "core/methods/underwood/method.hpp"
-#include "core/methods/yoon/method.hpp"
-
 namespace mosbench {
+
+/// Each method's folder defines its own in row.cpp.
+// clang-format off
+namespace hmm_mos { MethodKind method_kind(); MethodKind reference_kind(); }
+namespace hmm_mos_plus { MethodKind method_kind(); }
+namespace dynablox { MethodKind method_kind(); }
+namespace lc_free_space { MethodKind method_kind(); }
+namespace underwood { MethodKind method_kind(); }
+namespace dufomap { MethodKind method_kind(); }
+namespace octomap { MethodKind method_kind(); }
+namespace yoon { MethodKind method_kind(); }
+// clang-format on
 
 std::span<const MethodKind> methods() {
   // clang-format off

@@ -25,8 +25,6 @@ MAY_INCLUDE = {
     "core/methods/lc_free_space": {"core/include", "core/base", "core/voxel", "core/tsdf"},
     # Stands on the map of the paper's method.
     "core/methods/hmm_mos_plus": {"core/include", "core/base", "core/voxel", "core/methods/hmm_mos"},
-    # Its free space is that of underwood.
-    "core/methods/yoon": {"core/include", "core/base", "core/voxel", "core/methods/underwood"},
     # The table of all methods.
     "core/methods": {"core/"},
     "datasets/text": {"core/include"},

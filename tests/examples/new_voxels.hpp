@@ -1,8 +1,8 @@
 #pragma once
 
 // A method of one's own, whole: a point moves when its voxel was empty in all scans before. To run
-// it as `mosbench run --method new-voxels`, put this into core/new_voxels/method.hpp, method_kind()
-// into a method.cpp beside it, and the row into core/methods/methods.cpp.
+// it as `mosbench run --method new-voxels`, put this into core/methods/new_voxels/pipeline.hpp,
+// method_kind() into a row.cpp beside it, and the row into core/methods/methods.cpp.
 #include <cmath>
 #include <cstdint>
 #include <optional>

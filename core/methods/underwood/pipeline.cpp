@@ -6,24 +6,12 @@
 #include <utility>
 
 #include "core/base/stage_clock.hpp"
-#include "core/methods/underwood/direction_grid.hpp"
+#include "core/voxel/direction_grid.hpp"
 
 namespace mosbench::underwood {
 namespace {
 
 constexpr double kReach_m = 1e6;
-
-/// Returns the margins of the queries, one per point.
-std::vector<float> margins_of(const DirectionGrid& reference, std::span<const Direction> queries,
-                              float least_m, ThreadPool& pool) {
-  std::vector<float> margins(queries.size());
-  pool.for_ranges(queries.size(), 1024, [&](std::size_t begin, std::size_t end, unsigned) {
-    for (std::size_t i = begin; i < end; ++i) {
-      margins[i] = reference.free_margin_m(queries[i], least_m);
-    }
-  });
-  return margins;
-}
 
 }  // namespace
 
@@ -85,7 +73,7 @@ void Pipeline::judge(std::size_t place) {
   const auto tolerance_m = static_cast<float>(config_.range_tolerance_m);
   // Smaller margins are of no interest unless they are asked for.
   const float least_m = context().scores ? 0 : tolerance_m;
-  std::vector<std::vector<float>> margins;
+  std::vector<std::vector<Look>> looks;
   for (const HeldScan* reference : references) {
     const Pose reference_from_sensor =
         reference->scan.map_from_sensor.inverse() * judged.scan.map_from_sensor;
@@ -95,14 +83,14 @@ void Pipeline::judge(std::size_t place) {
     });
     const auto grid =
         timed(record, "grid", [&] { return DirectionGrid(reference->directions, angle_.rad()); });
-    margins.push_back(
-        timed(record, "query", [&] { return margins_of(grid, queries, least_m, pool()); }));
+    looks.push_back(
+        timed(record, "query", [&] { return looks_at(queries, grid, least_m, pool()); }));
   }
   const StageClock clock(record, "labels");
   const auto votes = static_cast<std::ptrdiff_t>(config_.min_votes);
-  std::vector<float> of_point(margins.size());
+  std::vector<float> of_point(looks.size());
   for (std::size_t i = 0; i < result.labels.size(); ++i) {
-    for (std::size_t r = 0; r < margins.size(); ++r) of_point[r] = margins[r][i];
+    for (std::size_t r = 0; r < looks.size(); ++r) of_point[r] = looks[r][i].margin_m;
     std::nth_element(of_point.begin(), of_point.begin() + votes - 1, of_point.end(),
                      std::greater<>());
     const float margin_m = of_point[static_cast<std::size_t>(votes - 1)];

@@ -6,8 +6,7 @@
 
 #include "core/base/sequential_method.hpp"
 #include "core/methods/underwood/config.hpp"
-#include "core/methods/underwood/directions.hpp"
-#include "core/methods/underwood/neighbour_angle.hpp"
+#include "core/voxel/directions.hpp"
 
 namespace mosbench::underwood {
 

@@ -19,13 +19,13 @@ class Image {
         rows_per_rad_(1 / pixel_rad),
         counts_((static_cast<std::size_t>(std::numbers::pi * rows_per_rad_) + 4) * columns_) {}
 
-  void add(const underwood::Direction& direction, bool is_seed) {
+  void add(const Direction& direction, bool is_seed) {
     Count& count = counts_[row_of(direction) * columns_ + column_of(direction)];
     ++count.points;
     count.seeds += is_seed;
   }
 
-  Count around(const underwood::Direction& direction) const {
+  Count around(const Direction& direction) const {
     const std::size_t row = row_of(direction), column = column_of(direction);
     Count sum;
     for (const std::size_t r : {row - 1, row, row + 1}) {
@@ -39,11 +39,11 @@ class Image {
   }
 
  private:
-  std::size_t row_of(const underwood::Direction& direction) const {
+  std::size_t row_of(const Direction& direction) const {
     const double from_bottom = direction.elevation_rad + std::numbers::pi / 2;
     return 1 + static_cast<std::size_t>(std::max(from_bottom, 0.0) * rows_per_rad_);
   }
-  std::size_t column_of(const underwood::Direction& direction) const {
+  std::size_t column_of(const Direction& direction) const {
     const double from_back = direction.bearing_rad + std::numbers::pi;
     const auto column = static_cast<std::size_t>(std::max(from_back, 0.0) * columns_per_rad_);
     return std::min(column, columns_ - 1);
@@ -56,7 +56,7 @@ class Image {
 
 }  // namespace
 
-std::vector<std::uint8_t> filter_seeds(std::span<const underwood::Direction> directions,
+std::vector<std::uint8_t> filter_seeds(std::span<const Direction> directions,
                                        std::span<const std::uint8_t> seeds, double pixel_rad) {
   Image image(pixel_rad);
   for (std::size_t i = 0; i < seeds.size(); ++i) {

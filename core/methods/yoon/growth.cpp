@@ -33,7 +33,7 @@ std::vector<std::uint8_t> grow(std::vector<std::uint8_t> kept, const GrowthInput
           residual_of(input.points[i], input.reference, input.reference_cells, config.planar_share);
       if (!(residual.distance_m > residual_m)) continue;
       kept[i] = 1;
-      if (input.findings[i] != underwood::Look::Finding::kUnknown) queue.push_back(i);
+      if (input.looks[i].finding != Look::Finding::kUnknown) queue.push_back(i);
     }
   }
   return kept;

@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
-#include "core/methods/underwood/direction_grid.hpp"
 #include "core/methods/yoon/config.hpp"
 #include "core/methods/yoon/residual.hpp"
+#include "core/voxel/direction_grid.hpp"
 
 namespace mosbench::yoon {
 
@@ -14,7 +14,7 @@ namespace mosbench::yoon {
 struct GrowthInput {
   std::span<const Eigen::Vector3f> points;  ///< in the frame of the reference
   std::span<const std::uint8_t> in_range;
-  std::span<const underwood::Look::Finding> findings;
+  std::span<const Look> looks;
   std::span<const Eigen::Vector3f> reference;
   const PointCells& reference_cells;  ///< as residual_of takes them
 };

@@ -4,16 +4,13 @@
 #include <utility>
 
 #include "core/base/stage_clock.hpp"
-#include "core/methods/underwood/direction_grid.hpp"
 #include "core/methods/yoon/box_filter.hpp"
 #include "core/methods/yoon/growth.hpp"
 #include "core/methods/yoon/residual.hpp"
+#include "core/voxel/direction_grid.hpp"
 
 namespace mosbench::yoon {
 namespace {
-
-using underwood::Direction;
-using underwood::Look;
 
 constexpr double kReach_m = 1e5;
 
@@ -34,19 +31,6 @@ std::vector<Eigen::Vector3f> positions_of(std::span<const Point> points,
   return positions;
 }
 
-/// Returns what the reference says about each query.
-std::vector<Look::Finding> findings_of(const underwood::DirectionGrid& reference,
-                                       std::span<const Direction> queries, double margin_m,
-                                       ThreadPool& pool) {
-  std::vector<Look::Finding> findings(queries.size());
-  pool.for_ranges(queries.size(), 1024, [&](std::size_t begin, std::size_t end, unsigned) {
-    for (std::size_t i = begin; i < end; ++i) {
-      findings[i] = reference.look(queries[i], static_cast<float>(margin_m)).finding;
-    }
-  });
-  return findings;
-}
-
 }  // namespace
 
 Pipeline::Pipeline(const Config& config, const RunContext& context)
@@ -57,9 +41,8 @@ Pipeline::Pipeline(const Config& config, const RunContext& context)
 std::vector<LabelledScan> Pipeline::take(PosedScan& scan, LabelledScan result) {
   angle_.measure(scan.points, config_.min_range_m);
   std::vector<Direction> own = timed({result.stages, context().cpu_times}, "directions", [&] {
-    return underwood::directions_of(scan.points, Pose::Identity(),
-                                    {config_.min_range_m, std::numeric_limits<double>::max()},
-                                    pool());
+    return directions_of(scan.points, Pose::Identity(),
+                         {config_.min_range_m, std::numeric_limits<double>::max()}, pool());
   });
   if (past_.size() == static_cast<std::size_t>(config_.window_scans)) {
     judge(scan, own, past_.front(), result);
@@ -77,12 +60,12 @@ void Pipeline::judge(const PosedScan& scan, const std::vector<Direction>& own,
   const Pose reference_from_sensor =
       reference.scan.map_from_sensor.inverse() * scan.map_from_sensor;
   const auto queries = timed(record, "directions", [&] {
-    return underwood::directions_of(scan.points, reference_from_sensor,
-                                    {config_.min_range_m, config_.max_range_m}, pool());
+    return directions_of(scan.points, reference_from_sensor,
+                         {config_.min_range_m, config_.max_range_m}, pool());
   });
-  const auto findings = timed(record, "query", [&] {
-    const underwood::DirectionGrid grid(reference.directions, angle_.rad());
-    return findings_of(grid, queries, config_.free_margin_m, pool());
+  const auto looks = timed(record, "query", [&] {
+    const DirectionGrid grid(reference.directions, angle_.rad());
+    return looks_at(queries, grid, static_cast<float>(config_.free_margin_m), pool());
   });
   const auto points = positions_of(scan.points, reference_from_sensor);
   const auto reference_points = positions_of(reference.scan.points, Pose::Identity());
@@ -95,7 +78,7 @@ void Pipeline::judge(const PosedScan& scan, const std::vector<Direction>& own,
     const StageClock clock(record, "seeds");
     pool().for_ranges(points.size(), 512, [&](std::size_t begin, std::size_t end, unsigned) {
       for (std::size_t i = begin; i < end; ++i) {
-        if (findings[i] != Look::Finding::kFree) continue;
+        if (looks[i].finding != Look::Finding::kFree) continue;
         residuals_m[i] =
             residual_of(points[i], reference_points, cells, config_.planar_share).distance_m;
         moving[i] = residuals_m[i] > static_cast<float>(config_.seed_residual_m);
@@ -110,8 +93,7 @@ void Pipeline::judge(const PosedScan& scan, const std::vector<Direction>& own,
   if (config_.last_step == LastStep::kGrowth) {
     const StageClock clock(record, "growth");
     const std::vector<std::uint8_t> in_range = seen_among(queries);
-    moving =
-        grow(std::move(moving), {points, in_range, findings, reference_points, cells}, config_);
+    moving = grow(std::move(moving), {points, in_range, looks, reference_points, cells}, config_);
   }
   for (std::size_t i = 0; i < moving.size(); ++i) {
     if (moving[i] != 0) result.labels[i] = kMovingLabel;

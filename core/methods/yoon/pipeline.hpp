@@ -5,9 +5,8 @@
 #include <vector>
 
 #include "core/base/sequential_method.hpp"
-#include "core/methods/underwood/directions.hpp"
-#include "core/methods/underwood/neighbour_angle.hpp"
 #include "core/methods/yoon/config.hpp"
+#include "core/voxel/directions.hpp"
 
 namespace mosbench::yoon {
 
@@ -28,15 +27,15 @@ class Pipeline final : public SequentialMethod {
  private:
   struct PastScan {
     PosedScan scan;
-    std::vector<underwood::Direction> directions;  ///< as its own sensor sees its points
+    std::vector<Direction> directions;  ///< as its own sensor sees its points
   };
 
   std::vector<LabelledScan> take(PosedScan& scan, LabelledScan result) override;
-  void judge(const PosedScan& scan, const std::vector<underwood::Direction>& own,
-             const PastScan& reference, LabelledScan& result);
+  void judge(const PosedScan& scan, const std::vector<Direction>& own, const PastScan& reference,
+             LabelledScan& result);
 
   Config config_;
-  underwood::NeighbourAngle angle_;
+  NeighbourAngle angle_;
   std::deque<PastScan> past_;  ///< the newest last
 };
 

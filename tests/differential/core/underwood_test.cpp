@@ -2,15 +2,13 @@
 
 #include <limits>
 
-#include "core/methods/underwood/direction_grid.hpp"
 #include "core/methods/underwood/pipeline.hpp"
+#include "core/voxel/direction_grid.hpp"
 #include "tests/small_world.hpp"
 
 /// underwood against all pairs of points.
 namespace mosbench {
 namespace {
-
-using underwood::Direction;
 
 /// Looks at every reference point for a query.
 bool is_changed(const std::vector<Direction>& reference, const Direction& query, float alpha_rad,
@@ -18,7 +16,7 @@ bool is_changed(const std::vector<Direction>& reference, const Direction& query,
   bool right = false, left = false, below = false, above = false;
   for (const Direction& n : reference) {
     if (n.range_m == 0) continue;
-    const float b = underwood::bearing_difference_rad(query.bearing_rad, n.bearing_rad);
+    const float b = bearing_difference_rad(query.bearing_rad, n.bearing_rad);
     const float e = n.elevation_rad - query.elevation_rad;
     if (b * b + e * e > alpha_rad * alpha_rad) continue;
     if (n.range_m - query.range_m < rho_m) return false;
@@ -48,11 +46,11 @@ void expect_all_pairs(const SmallWorld& world, const underwood::Config& config, 
     std::vector<int> votes(world.scans[k].size());
     const auto vote = [&](std::size_t reference) {
       const auto seen =
-          underwood::directions_of(world.scans[reference], Pose::Identity(),
-                                   {config.min_range_m, std::numeric_limits<double>::max()}, pool);
-      const auto queries = underwood::directions_of(
-          world.scans[k], world.poses[reference].inverse() * world.poses[k],
-          {config.min_range_m, config.max_range_m}, pool);
+          directions_of(world.scans[reference], Pose::Identity(),
+                        {config.min_range_m, std::numeric_limits<double>::max()}, pool);
+      const auto queries =
+          directions_of(world.scans[k], world.poses[reference].inverse() * world.poses[k],
+                        {config.min_range_m, config.max_range_m}, pool);
       for (std::size_t i = 0; i < votes.size(); ++i) {
         votes[i] += queries[i].range_m > 0 && is_changed(seen, queries[i], alpha_rad, rho_m);
       }

@@ -4,16 +4,15 @@
 #include <limits>
 #include <numbers>
 
-#include "core/methods/underwood/direction_grid.hpp"
 #include "core/methods/yoon/pipeline.hpp"
 #include "core/methods/yoon/residual.hpp"
+#include "core/voxel/direction_grid.hpp"
 #include "tests/small_world.hpp"
 
 /// yoon against all pairs of points, step by step.
 namespace mosbench {
 namespace {
 
-using underwood::Direction;
 using YoonFlags = std::vector<bool>;
 
 /// One scan against its reference.
@@ -33,7 +32,7 @@ struct YoonTwin {
     bool right = false, left = false, below = false, above = false;
     for (const Direction& n : seen) {
       if (n.range_m == 0 || query.range_m == 0) continue;
-      const float b = underwood::bearing_difference_rad(query.bearing_rad, n.bearing_rad);
+      const float b = bearing_difference_rad(query.bearing_rad, n.bearing_rad);
       const float e = n.elevation_rad - query.elevation_rad;
       if (b * b + e * e > alpha * alpha) continue;
       if (n.range_m - query.range_m < rho) return {false, true};
@@ -155,16 +154,16 @@ TEST(YoonAgainstAllPairs, AgreesAfterEveryStep) {
     yoon::Pipeline pipeline(config, {.threads = 1 + seed % 3});
     const std::vector<LabelledScan> results = results_of(pipeline, world);
     const auto n = static_cast<std::size_t>(config.window_scans);
-    const underwood::RangeWindow all{config.min_range_m, std::numeric_limits<double>::max()};
+    const RangeWindow all{config.min_range_m, std::numeric_limits<double>::max()};
     for (std::size_t k = n; k < world.scans.size(); ++k) {
       const Pose relative = world.poses[k - n].inverse() * world.poses[k];
-      const YoonTwin twin{config,
-                          underwood::directions_of(world.scans[k], Pose::Identity(), all, pool),
-                          underwood::directions_of(world.scans[k], relative,
-                                                   {config.min_range_m, config.max_range_m}, pool),
-                          underwood::directions_of(world.scans[k - n], Pose::Identity(), all, pool),
-                          positions(world.scans[k], relative),
-                          positions(world.scans[k - n], Pose::Identity())};
+      const YoonTwin twin{
+          config,
+          directions_of(world.scans[k], Pose::Identity(), all, pool),
+          directions_of(world.scans[k], relative, {config.min_range_m, config.max_range_m}, pool),
+          directions_of(world.scans[k - n], Pose::Identity(), all, pool),
+          positions(world.scans[k], relative),
+          positions(world.scans[k - n], Pose::Identity())};
       const YoonFlags expected = twin.moving();
       for (std::size_t i = 0; i < expected.size(); ++i) {
         ASSERT_EQ(results[k].labels[i], expected[i] ? kMovingLabel : kStaticLabel)

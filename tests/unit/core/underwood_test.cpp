@@ -5,9 +5,9 @@
 #include <numbers>
 #include <span>
 
-#include "core/methods/underwood/direction_grid.hpp"
-#include "core/methods/underwood/neighbour_angle.hpp"
 #include "core/methods/underwood/pipeline.hpp"
+#include "core/voxel/direction_grid.hpp"
+#include "core/voxel/directions.hpp"
 
 namespace mosbench::underwood {
 namespace {

@@ -10,8 +10,6 @@
 namespace mosbench::yoon {
 namespace {
 
-using underwood::Direction;
-using underwood::Look;
 using Flags = std::vector<std::uint8_t>;
 
 constexpr double kPixel_rad = 0.0157;
@@ -37,19 +35,19 @@ TEST(YoonBoxFilter, LooksAcrossTheEndsOfTheBearingsAndSkipsPointsOutOfRange) {
 /// Points on a line along x, and one reference point far away or near some of them.
 struct Line {
   std::vector<Eigen::Vector3f> points, reference;
-  std::vector<Look::Finding> findings;
+  std::vector<Look> looks;
 
   Flags grown(Flags kept, const Config& config = {}) const {
     const Flags all(points.size(), 1), all_of_reference(reference.size(), 1);
     const PointCells cells(reference, all_of_reference, kFarthest_m);
-    return grow(std::move(kept), {points, all, findings, reference, cells}, config);
+    return grow(std::move(kept), {points, all, looks, reference, cells}, config);
   }
 };
 
 Line line_of(std::initializer_list<float> x) {
   Line line;
   for (const float at : x) line.points.emplace_back(at, 0, 0);
-  line.findings.assign(line.points.size(), Look::Finding::kOccupied);
+  line.looks.assign(line.points.size(), {Look::Finding::kOccupied, 0});
   return line;
 }
 
@@ -84,8 +82,8 @@ TEST(YoonGrowth, IsBlockedByAPlaneThatWasThere) {
 
 TEST(YoonGrowth, GoesOneStepIntoUnknownSpace) {
   Line line = line_of({0, 0.2F, 0.4F});
-  line.findings[1] = Look::Finding::kUnknown;
-  line.findings[2] = Look::Finding::kUnknown;
+  line.looks[1].finding = Look::Finding::kUnknown;
+  line.looks[2].finding = Look::Finding::kUnknown;
   EXPECT_EQ(line.grown({1, 0, 0}), (Flags{1, 1, 0}));
 }
 

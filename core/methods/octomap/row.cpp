@@ -1,10 +1,10 @@
-#include "core/methods/octomap/method.hpp"
-
 #include <stdexcept>
 #include <string>
 
+#include "core/base/range_limits.hpp"
 #include "core/methods/octomap/config.hpp"
 #include "core/methods/octomap/pipeline.hpp"
+#include "core/voxel/raycast.hpp"
 
 namespace mosbench::octomap {
 namespace {
@@ -21,6 +21,14 @@ std::unique_ptr<Method> make(const Settings& settings, const RunContext& context
 
 }  // namespace
 
+void check(const Config& config) {
+  check_ranges(config);
+  check_range_limits(config.min_range_m, config.max_range_m);
+  check_voxels("max_range_m", config.max_range_m / config.voxel_size_m, "voxel_size_m",
+               kMaxRangeVoxels);
+}
+
+/// "octomap": points in voxels that OctoMap holds free.
 MethodKind method_kind() {
   return {
       .name = "octomap",

@@ -1,4 +1,4 @@
-#include "core/methods/dynablox/method.hpp"
+#include <stdexcept>
 
 #include "core/base/method_row.hpp"
 #include "core/methods/dynablox/config.hpp"
@@ -6,6 +6,17 @@
 
 namespace mosbench::dynablox {
 
+void check(const Config& config) {
+  check_ranges(config);
+  tsdf::check_common(config);
+  if (config.occupied_below_voxels > config.truncation_voxels) {
+    throw std::invalid_argument(
+        "occupied_below_voxels: above truncation_voxels, which no distance exceeds, expected "
+        "occupied <= truncation");
+  }
+}
+
+/// "dynablox": objects in space that was free for long.
 MethodKind method_kind() {
   return {.name = "dynablox",
           .title = "Dynablox",

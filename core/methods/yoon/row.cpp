@@ -1,11 +1,16 @@
-#include "core/methods/yoon/method.hpp"
-
 #include "core/base/method_row.hpp"
+#include "core/base/range_limits.hpp"
 #include "core/methods/yoon/config.hpp"
 #include "core/methods/yoon/pipeline.hpp"
 
 namespace mosbench::yoon {
 
+void check(const Config& config) {
+  check_ranges(config);
+  check_range_limits(config.min_range_m, config.max_range_m);
+}
+
+/// "yoon": our reading of a method without published code.
 MethodKind method_kind() {
   return {
       .name = "yoon",

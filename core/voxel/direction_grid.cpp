@@ -1,4 +1,4 @@
-#include "core/methods/underwood/direction_grid.hpp"
+#include "core/voxel/direction_grid.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 #include "core/base/multiarch.hpp"
 #include "core/base/simd_lanes.hpp"
 
-namespace mosbench::underwood {
+namespace mosbench {
 namespace {
 
 constexpr float kPi = 3.14159274F;
@@ -150,4 +150,13 @@ std::size_t DirectionGrid::memory_bytes() const {
              sizeof(float);
 }
 
-}  // namespace mosbench::underwood
+std::vector<Look> looks_at(std::span<const Direction> queries, const DirectionGrid& reference,
+                           float least_m, ThreadPool& pool) {
+  std::vector<Look> looks(queries.size());
+  pool.for_ranges(queries.size(), 1024, [&](std::size_t begin, std::size_t end, unsigned) {
+    for (std::size_t i = begin; i < end; ++i) looks[i] = reference.look(queries[i], least_m);
+  });
+  return looks;
+}
+
+}  // namespace mosbench

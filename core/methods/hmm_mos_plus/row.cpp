@@ -1,11 +1,15 @@
-#include "core/methods/hmm_mos_plus/method.hpp"
-
 #include "core/base/method_row.hpp"
 #include "core/methods/hmm_mos_plus/config.hpp"
 #include "core/methods/hmm_mos_plus/pipeline.hpp"
 
 namespace mosbench::hmm_mos_plus {
 
+void check(const Config& config) {
+  check_ranges(config);
+  hmm_mos::check(config.map);
+}
+
+/// "hmm-mos-plus": the paper's method, completed to objects.
 MethodKind method_kind() {
   return {.name = "hmm-mos-plus",
           .title = "HMM-MOS plus",

@@ -1,4 +1,4 @@
-#include "core/methods/lc_free_space/method.hpp"
+#include <stdexcept>
 
 #include "core/base/method_row.hpp"
 #include "core/methods/lc_free_space/config.hpp"
@@ -6,6 +6,17 @@
 
 namespace mosbench::lc_free_space {
 
+void check(const Config& config) {
+  check_ranges(config);
+  tsdf::check_common(config);
+  if (config.free_above_m() >= config.truncation_m()) {
+    throw std::invalid_argument(
+        "free_above_voxels: not below truncation_voxels, which no distance exceeds, expected "
+        "threshold < truncation");
+  }
+}
+
+/// "lc-free-space": points in space that a volumetric map holds free.
 MethodKind method_kind() {
   return {.name = "lc-free-space",
           .title = "LC Free Space (our reading)",

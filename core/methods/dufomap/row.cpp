@@ -1,11 +1,21 @@
-#include "core/methods/dufomap/method.hpp"
-
 #include "core/base/method_row.hpp"
+#include "core/base/range_limits.hpp"
 #include "core/methods/dufomap/config.hpp"
 #include "core/methods/dufomap/pipeline.hpp"
+#include "core/voxel/raycast.hpp"
 
 namespace mosbench::dufomap {
 
+void check(const Config& config) {
+  check_ranges(config);
+  check_range_limits(config.min_range_m, config.max_range_m);
+  check_voxels("max_range_m", config.max_range_m / config.resolution_m, "resolution_m",
+               kMaxRangeVoxels);
+  check_voxels("sensor_noise_m", config.sensor_noise_m / config.resolution_m, "resolution_m",
+               kMaxRangeVoxels);
+}
+
+/// "dufomap": points in space that was void in some scan.
 MethodKind method_kind() {
   return {.name = "dufomap",
           .title = "DUFOMap",

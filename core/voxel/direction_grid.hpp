@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
-#include "core/methods/underwood/directions.hpp"
+#include "core/voxel/directions.hpp"
 
-namespace mosbench::underwood {
+namespace mosbench {
 
 /// b - a of two bearings in [-pi, pi], the short way round.
 inline float bearing_difference_rad(float a, float b) {
@@ -59,4 +59,8 @@ class DirectionGrid {
   std::vector<float> range_m_, bearing_rad_, elevation_rad_;  ///< with a few more at their ends
 };
 
-}  // namespace mosbench::underwood
+/// Returns what the reference says about each query, as DirectionGrid::look does.
+std::vector<Look> looks_at(std::span<const Direction> queries, const DirectionGrid& reference,
+                           float least_m, ThreadPool& pool);
+
+}  // namespace mosbench
