@@ -8,9 +8,9 @@
 #include "datasets/disk/replace_folder.hpp"
 #include "datasets/text/errors.hpp"
 #include "eval/cli/commands.hpp"
-#include "eval/statistics/baseline.hpp"
 #include "eval/statistics/paired_runs.hpp"
 #include "eval/statistics/statistics_report.hpp"
+#include "eval/store/baseline.hpp"
 
 namespace mosbench {
 namespace {

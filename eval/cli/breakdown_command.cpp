@@ -12,12 +12,12 @@
 #include "eval/cli/commands.hpp"
 #include "eval/cli/dataset_flags.hpp"
 #include "eval/cli/suggested_command.hpp"
+#include "eval/engine/run_plan.hpp"
+#include "eval/job/presets.hpp"
 #include "eval/protocols/protocol_list.hpp"
 #include "eval/report/result_scans.hpp"
 #include "eval/results/result_set.hpp"
 #include "eval/results/simulated.hpp"
-#include "eval/runs/presets.hpp"
-#include "eval/runs/run_plan.hpp"
 
 namespace mosbench {
 namespace {

@@ -10,9 +10,9 @@
 #include "datasets/layouts/layout.hpp"
 #include "datasets/simulator/built_in_scenes.hpp"
 #include "eval/cli/commands.hpp"
+#include "eval/job/presets.hpp"
 #include "eval/predictions/prediction_format.hpp"
 #include "eval/protocols/protocol.hpp"
-#include "eval/runs/presets.hpp"
 
 namespace mosbench {
 namespace {

@@ -11,9 +11,9 @@
 #include "eval/cli/commands.hpp"
 #include "eval/cli/dataset_flags.hpp"
 #include "eval/cli/odometry_flags.hpp"
+#include "eval/engine/run_plan.hpp"
 #include "eval/results/progress.hpp"
 #include "eval/results/tell.hpp"
-#include "eval/runs/run_plan.hpp"
 
 namespace mosbench {
 namespace {

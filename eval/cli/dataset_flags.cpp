@@ -7,8 +7,8 @@
 #include "datasets/perturb/perturbation.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
+#include "eval/engine/run_plan.hpp"
 #include "eval/results/reading_json.hpp"
-#include "eval/runs/run_plan.hpp"
 
 namespace mosbench {
 namespace {

@@ -14,10 +14,10 @@
 #include "eval/breakdown/run_diff.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/cli/dataset_flags.hpp"
+#include "eval/engine/run_plan.hpp"
 #include "eval/report/result_scans.hpp"
 #include "eval/results/result_set.hpp"
 #include "eval/results/tell.hpp"
-#include "eval/runs/run_plan.hpp"
 
 namespace mosbench {
 namespace {

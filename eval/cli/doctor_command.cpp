@@ -10,9 +10,9 @@
 #include "eval/cli/commands.hpp"
 #include "eval/cli/dataset_flags.hpp"
 #include "eval/cli/suggested_command.hpp"
+#include "eval/engine/run_plan.hpp"
 #include "eval/results/caller.hpp"
 #include "eval/results/reading_json.hpp"
-#include "eval/runs/run_plan.hpp"
 
 namespace mosbench {
 namespace {

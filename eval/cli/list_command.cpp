@@ -17,9 +17,9 @@
 #include "eval/answer/text_table.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/cli/list_json.hpp"
+#include "eval/job/presets.hpp"
 #include "eval/predictions/prediction_format.hpp"
 #include "eval/protocols/protocol_list.hpp"
-#include "eval/runs/presets.hpp"
 
 namespace mosbench {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "eval/runs/run_plan.hpp"
+#include "eval/engine/run_plan.hpp"
 
 namespace mosbench {
 

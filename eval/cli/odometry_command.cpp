@@ -17,13 +17,13 @@
 #include "eval/cli/odometry_flags.hpp"
 #include "eval/cli/output_file.hpp"
 #include "eval/cli/suggested_command.hpp"
+#include "eval/engine/found_poses.hpp"
+#include "eval/engine/odometry_choice.hpp"
+#include "eval/engine/run_plan.hpp"
 #include "eval/results/machine.hpp"
 #include "eval/results/reading_json.hpp"
 #include "eval/results/settings_json.hpp"
 #include "eval/results/tell.hpp"
-#include "eval/runs/found_poses.hpp"
-#include "eval/runs/odometry_choice.hpp"
-#include "eval/runs/run_plan.hpp"
 
 namespace mosbench {
 namespace {

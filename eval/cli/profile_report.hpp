@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "eval/runs/profile.hpp"
+#include "eval/engine/profile.hpp"
 
 namespace mosbench {
 

@@ -11,9 +11,9 @@
 #include "eval/cli/commands.hpp"
 #include "eval/cli/dataset_flags.hpp"
 #include "eval/cli/help_text.hpp"
+#include "eval/engine/run_execute.hpp"
+#include "eval/job/presets.hpp"
 #include "eval/results/tell.hpp"
-#include "eval/runs/presets.hpp"
-#include "eval/runs/run_execute.hpp"
 #include "eval/tables/table_match.hpp"
 #include "eval/tables/table_report.hpp"
 

@@ -9,10 +9,10 @@
 #include "eval/cli/odometry_flags.hpp"
 #include "eval/cli/run_methods.hpp"
 #include "eval/cli/run_report.hpp"
+#include "eval/engine/run_execute.hpp"
+#include "eval/engine/run_plan.hpp"
+#include "eval/job/method_choice.hpp"
 #include "eval/report/written_products.hpp"
-#include "eval/runs/method_choice.hpp"
-#include "eval/runs/run_execute.hpp"
-#include "eval/runs/run_plan.hpp"
 
 namespace mosbench {
 namespace {

@@ -10,10 +10,10 @@
 #include "eval/answer/answer_text.hpp"
 #include "eval/cli/failure.hpp"
 #include "eval/cli/run_report.hpp"
+#include "eval/engine/run_execute.hpp"
+#include "eval/job/method_choice.hpp"
 #include "eval/report/written_products.hpp"
 #include "eval/results/tell.hpp"
-#include "eval/runs/method_choice.hpp"
-#include "eval/runs/run_execute.hpp"
 
 namespace mosbench {
 namespace {

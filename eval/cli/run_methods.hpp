@@ -4,7 +4,7 @@
 #include <string>
 
 #include "eval/cli/commands.hpp"
-#include "eval/runs/run_plan.hpp"
+#include "eval/engine/run_plan.hpp"
 
 namespace mosbench {
 

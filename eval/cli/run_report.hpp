@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "eval/runs/run_execute.hpp"
+#include "eval/engine/run_execute.hpp"
 
 namespace mosbench {
 

@@ -11,10 +11,10 @@
 #include "eval/cli/commands.hpp"
 #include "eval/cli/dataset_flags.hpp"
 #include "eval/cli/help_text.hpp"
+#include "eval/engine/run_plan.hpp"
+#include "eval/job/presets.hpp"
 #include "eval/protocols/benchmark_split.hpp"
 #include "eval/results/machine.hpp"
-#include "eval/runs/presets.hpp"
-#include "eval/runs/run_plan.hpp"
 #include "eval/tables/score_report.hpp"
 
 namespace mosbench {

@@ -6,10 +6,10 @@
 #include "datasets/layouts/dataset.hpp"
 #include "datasets/sequence/pose_frame_mark.hpp"
 #include "eval/cli/dataset_flags.hpp"
+#include "eval/engine/found_poses.hpp"
+#include "eval/engine/run_plan.hpp"
 #include "eval/python/arrays.hpp"
 #include "eval/python/bindings.hpp"
-#include "eval/runs/found_poses.hpp"
-#include "eval/runs/run_plan.hpp"
 
 namespace mosbench::python {
 namespace {

@@ -8,12 +8,12 @@
 #include <stdexcept>
 
 #include "datasets/text/nearest_name.hpp"
+#include "eval/job/method_choice.hpp"
+#include "eval/job/presets.hpp"
 #include "eval/python/arrays.hpp"
 #include "eval/python/bindings.hpp"
 #include "eval/results/machine.hpp"
 #include "eval/results/settings_json.hpp"
-#include "eval/runs/method_choice.hpp"
-#include "eval/runs/presets.hpp"
 
 namespace mosbench::python {
 namespace {

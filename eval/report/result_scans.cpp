@@ -13,7 +13,7 @@
 #include "eval/results/dynamic_score_file.hpp"
 #include "eval/results/reading_json.hpp"
 #include "eval/results/reason_file.hpp"
-#include "eval/results/same_input.hpp"
+#include "eval/store/same_input.hpp"
 
 namespace mosbench {
 namespace fs = std::filesystem;

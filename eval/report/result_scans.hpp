@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "datasets/layouts/dataset.hpp"
+#include "eval/engine/score_source.hpp"
 #include "eval/protocols/confusion.hpp"
 #include "eval/results/result_file.hpp"
-#include "eval/runs/score_source.hpp"
 
 namespace mosbench {
 

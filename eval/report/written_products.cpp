@@ -14,9 +14,9 @@
 #include "datasets/text/errors.hpp"
 #include "eval/answer/answer_text.hpp"
 #include "eval/report/point_planes.hpp"
-#include "eval/report/product_record.hpp"
 #include "eval/report/result_boxes.hpp"
 #include "eval/results/progress.hpp"
+#include "eval/store/product_record.hpp"
 
 namespace mosbench {
 namespace {

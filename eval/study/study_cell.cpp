@@ -12,15 +12,15 @@
 #include "datasets/text/errors.hpp"
 #include "datasets/text/json_text.hpp"
 #include "eval/answer/answer_text.hpp"
+#include "eval/engine/profile.hpp"
+#include "eval/engine/run_execute.hpp"
+#include "eval/engine/run_plan.hpp"
 #include "eval/protocols/metrics.hpp"
 #include "eval/protocols/summary_json.hpp"
 #include "eval/results/machine.hpp"
 #include "eval/results/settings_json.hpp"
 #include "eval/results/tell.hpp"
 #include "eval/results/version.hpp"
-#include "eval/runs/profile.hpp"
-#include "eval/runs/run_execute.hpp"
-#include "eval/runs/run_plan.hpp"
 #include "eval/study/study_scoring.hpp"
 
 namespace mosbench {

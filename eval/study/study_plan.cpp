@@ -15,10 +15,10 @@
 #include "datasets/text/errors.hpp"
 #include "datasets/text/json_text.hpp"
 #include "datasets/text/text.hpp"
+#include "eval/engine/run_plan.hpp"
+#include "eval/job/method_choice.hpp"
 #include "eval/results/reading_json.hpp"
 #include "eval/results/version.hpp"
-#include "eval/runs/method_choice.hpp"
-#include "eval/runs/run_plan.hpp"
 #include "eval/study/study_scoring.hpp"
 
 namespace mosbench {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "eval/runs/run_plan.hpp"
+#include "eval/engine/run_plan.hpp"
 #include "eval/study/study_plan.hpp"
 
 namespace mosbench {

@@ -7,6 +7,7 @@
 #include "datasets/text/counted.hpp"
 #include "datasets/text/errors.hpp"
 #include "eval/answer/answer_text.hpp"
+#include "eval/engine/score_source.hpp"
 #include "eval/protocols/benchmark_split.hpp"
 #include "eval/protocols/metrics.hpp"
 #include "eval/protocols/protocol_list.hpp"
@@ -15,7 +16,6 @@
 #include "eval/results/result_set.hpp"
 #include "eval/results/simulated.hpp"
 #include "eval/results/version.hpp"
-#include "eval/runs/score_source.hpp"
 #include "eval/tables/score_table.hpp"
 
 namespace mosbench {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "eval/runs/score_execute.hpp"
+#include "eval/engine/score_execute.hpp"
 
 namespace mosbench {
 

@@ -12,7 +12,9 @@ FILES = {"datasets/text", "datasets/disk", "datasets/formats"}
 DATASETS = FILES | {"datasets/sequence", "datasets/perturb", "datasets/layouts"}
 # What eval uses of core apart from the public face: threads and clocks.
 THREADS = {"core/include", "core/base"}
-NUMBERS = {"eval/answer", "eval/protocols", "eval/predictions", "eval/results", "eval/runs", "eval/statistics"}
+NUMBERS = {
+    "eval/answer", "eval/engine", "eval/job", "eval/protocols", "eval/predictions", "eval/results", "eval/statistics", "eval/store",
+}
 # Rooms that the files of a room may include in addition to their own. A name with a slash at the end means
 # all rooms below it.
 MAY_INCLUDE = {
@@ -43,7 +45,11 @@ MAY_INCLUDE = {
     "eval/results": {"core/include", "datasets/", "eval/answer", "eval/protocols"},
     # A method that is a process of the user: it needs no data set, only how errors and files are written.
     "eval/exec": {"core/include"} | FILES,
-    "eval/runs": THREADS | {"datasets/", "eval/exec", "eval/protocols", "eval/predictions", "eval/results"},
+    # What is asked, parsed once.
+    "eval/job": {"core/include", "datasets/", "eval/exec", "eval/protocols", "eval/predictions", "eval/results"},
+    # Where results lie; it knows nothing of methods.
+    "eval/store": {"core/include", "datasets/", "eval/answer", "eval/protocols", "eval/results"},
+    "eval/engine": THREADS | {"datasets/", "eval/exec", "eval/job", "eval/protocols", "eval/predictions", "eval/results", "eval/store"},
     "eval/statistics": {"core/include", "datasets/", "eval/answer", "eval/protocols", "eval/results"},
     "eval/trajectory": {"core/include", "datasets/", "eval/answer", "eval/results", "eval/statistics"},
     "eval/static_map": {"core/include", "datasets/", "eval/answer", "eval/results"},

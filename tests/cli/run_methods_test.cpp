@@ -4,7 +4,7 @@
 #include <mosbench/method.hpp>
 
 #include "datasets/formats/bin_file.hpp"
-#include "eval/runs/method_choice.hpp"
+#include "eval/job/method_choice.hpp"
 #include "tests/cli/program.hpp"
 #include "tests/cli/small_sequence.hpp"
 

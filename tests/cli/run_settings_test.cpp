@@ -6,8 +6,8 @@
 #include <mosbench/odometry.hpp>
 
 #include "datasets/text/errors.hpp"
+#include "eval/engine/run_plan.hpp"
 #include "eval/results/settings_json.hpp"
-#include "eval/runs/run_plan.hpp"
 #include "tests/cli/program.hpp"
 #include "tests/cli/small_sequence.hpp"
 

@@ -1,4 +1,4 @@
-#include "eval/runs/label_shift.hpp"
+#include "eval/engine/label_shift.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

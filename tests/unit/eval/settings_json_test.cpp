@@ -7,9 +7,9 @@
 #include <set>
 
 #include "datasets/text/errors.hpp"
+#include "eval/job/method_choice.hpp"
+#include "eval/job/presets.hpp"
 #include "eval/protocols/protocol.hpp"
-#include "eval/runs/method_choice.hpp"
-#include "eval/runs/presets.hpp"
 #include "tests/temp_folder.hpp"
 
 namespace mosbench {

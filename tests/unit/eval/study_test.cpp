@@ -8,8 +8,8 @@
 
 #include "datasets/text/errors.hpp"
 #include "eval/answer/answer_text.hpp"
+#include "eval/job/method_choice.hpp"
 #include "eval/results/version.hpp"
-#include "eval/runs/method_choice.hpp"
 #include "eval/study/study_cell.hpp"
 #include "eval/study/study_file.hpp"
 #include "eval/study/study_run.hpp"

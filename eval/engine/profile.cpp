@@ -1,4 +1,4 @@
-#include "eval/runs/profile.hpp"
+#include "eval/engine/profile.hpp"
 
 #include <algorithm>
 #include <iterator>

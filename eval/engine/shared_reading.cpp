@@ -1,4 +1,4 @@
-#include "eval/runs/shared_reading.hpp"
+#include "eval/engine/shared_reading.hpp"
 
 #include <algorithm>
 #include <utility>

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "datasets/sequence/sequence.hpp"
+#include "eval/engine/score_execute.hpp"
 #include "eval/predictions/predictions.hpp"
-#include "eval/runs/score_execute.hpp"
 
 namespace mosbench {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "eval/runs/run_plan.hpp"
+#include "eval/engine/run_plan.hpp"
 
 namespace mosbench {
 

@@ -1,4 +1,4 @@
-#include "eval/runs/odometry_choice.hpp"
+#include "eval/engine/odometry_choice.hpp"
 
 #include <fmt/format.h>
 
@@ -9,11 +9,11 @@
 #include "datasets/sequence/scan_deskewer.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/nearest_name.hpp"
+#include "eval/engine/sequence_runner.hpp"
+#include "eval/job/presets.hpp"
 #include "eval/results/progress.hpp"
 #include "eval/results/settings_json.hpp"
 #include "eval/results/tell.hpp"
-#include "eval/runs/presets.hpp"
-#include "eval/runs/sequence_runner.hpp"
 
 namespace mosbench {
 namespace {

@@ -1,4 +1,4 @@
-#include "eval/results/same_input.hpp"
+#include "eval/store/same_input.hpp"
 
 #include "datasets/sequence/fingerprint.hpp"
 

@@ -1,4 +1,4 @@
-#include "eval/runs/shared_folder.hpp"
+#include "eval/engine/shared_folder.hpp"
 
 #include <fmt/format.h>
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "datasets/sequence/sequence.hpp"
-#include "eval/runs/run_plan.hpp"
+#include "eval/engine/run_plan.hpp"
 
 namespace mosbench {
 

@@ -8,7 +8,7 @@
 #include "datasets/sequence/sequence.hpp"
 #include "eval/protocols/protocol.hpp"
 #include "eval/results/result_file.hpp"
-#include "eval/results/result_folder.hpp"
+#include "eval/store/result_folder.hpp"
 
 namespace mosbench {
 

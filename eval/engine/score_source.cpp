@@ -1,4 +1,4 @@
-#include "eval/runs/score_source.hpp"
+#include "eval/engine/score_source.hpp"
 
 #include "eval/results/reading_json.hpp"
 

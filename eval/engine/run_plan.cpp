@@ -1,4 +1,4 @@
-#include "eval/runs/run_plan.hpp"
+#include "eval/engine/run_plan.hpp"
 
 #include <fmt/format.h>
 
@@ -9,14 +9,14 @@
 #include "datasets/sequence/fingerprint.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
+#include "eval/engine/shared_folder.hpp"
+#include "eval/job/method_choice.hpp"
+#include "eval/job/presets.hpp"
 #include "eval/protocols/benchmark_split.hpp"
 #include "eval/results/machine.hpp"
 #include "eval/results/reading_json.hpp"
-#include "eval/results/same_input.hpp"
 #include "eval/results/settings_json.hpp"
-#include "eval/runs/method_choice.hpp"
-#include "eval/runs/presets.hpp"
-#include "eval/runs/shared_folder.hpp"
+#include "eval/store/same_input.hpp"
 
 namespace mosbench {
 namespace fs = std::filesystem;

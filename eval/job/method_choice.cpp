@@ -1,4 +1,4 @@
-#include "eval/runs/method_choice.hpp"
+#include "eval/job/method_choice.hpp"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include "datasets/text/errors.hpp"
 #include "datasets/text/nearest_name.hpp"
 #include "eval/exec/exec_method.hpp"
-#include "eval/runs/presets.hpp"
+#include "eval/job/presets.hpp"
 
 namespace mosbench {
 namespace {

@@ -1,4 +1,4 @@
-#include "eval/runs/found_poses.hpp"
+#include "eval/engine/found_poses.hpp"
 
 #include <fmt/format.h>
 

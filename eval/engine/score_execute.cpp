@@ -1,4 +1,4 @@
-#include "eval/runs/score_execute.hpp"
+#include "eval/engine/score_execute.hpp"
 
 #include <fmt/format.h>
 
@@ -8,9 +8,9 @@
 #include "core/base/thread_pool.hpp"
 #include "datasets/sequence/fingerprint.hpp"
 #include "datasets/text/errors.hpp"
+#include "eval/engine/label_shift.hpp"
 #include "eval/protocols/benchmark_split.hpp"
 #include "eval/results/progress.hpp"
-#include "eval/runs/label_shift.hpp"
 
 namespace mosbench {
 namespace {

@@ -1,4 +1,4 @@
-#include "eval/runs/presets.hpp"
+#include "eval/job/presets.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "eval/runs/sequence_runner.hpp"
+#include "eval/engine/sequence_runner.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "eval/statistics/baseline.hpp"
+#include "eval/store/baseline.hpp"
 
 #include <algorithm>
 #include <map>

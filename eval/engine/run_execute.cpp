@@ -1,4 +1,4 @@
-#include "eval/runs/run_execute.hpp"
+#include "eval/engine/run_execute.hpp"
 
 #include <fmt/format.h>
 

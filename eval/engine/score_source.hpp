@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "datasets/sequence/reading_options.hpp"
-#include "eval/runs/score_execute.hpp"
+#include "eval/engine/score_execute.hpp"
 
 namespace mosbench {
 

@@ -9,10 +9,10 @@
 
 #include "core/base/thread_pool.hpp"
 #include "datasets/layouts/dataset.hpp"
-#include "eval/results/result_folder.hpp"
-#include "eval/runs/odometry_choice.hpp"
-#include "eval/runs/sequence_runner.hpp"
-#include "eval/runs/shared_reading.hpp"
+#include "eval/engine/odometry_choice.hpp"
+#include "eval/engine/sequence_runner.hpp"
+#include "eval/engine/shared_reading.hpp"
+#include "eval/store/result_folder.hpp"
 
 namespace mosbench {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "datasets/disk/folder_lock.hpp"
-#include "eval/runs/run_plan.hpp"
+#include "eval/engine/run_plan.hpp"
 
 namespace mosbench {
 

@@ -1,4 +1,4 @@
-#include "eval/results/result_folder.hpp"
+#include "eval/store/result_folder.hpp"
 
 #include <fmt/format.h>
 

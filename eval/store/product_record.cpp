@@ -1,4 +1,4 @@
-#include "eval/report/product_record.hpp"
+#include "eval/store/product_record.hpp"
 
 #include <fmt/format.h>
 
