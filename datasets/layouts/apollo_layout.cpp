@@ -33,6 +33,7 @@ const Layout& apollo_layout() {
   static const Layout row = {
       .kind = DatasetKind::kApollo,
       .name = "apollo",
+      .usual = {"apollo", "semantickitti-mos"},
       .title = "Apollo, labelled by the authors of 4DMOS",
       .content = "Velodyne HDL-64E on a car",
       .size = "00: 2000 scans and 03: 500 scans in the HMM-MOS paper's program",

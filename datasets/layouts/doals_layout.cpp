@@ -111,6 +111,7 @@ const Layout& doals_layout() {
   static const Layout row = {
       .kind = DatasetKind::kDoals,
       .name = "doals",
+      .usual = {"doals-20m", "doals-hmm"},
       .title = "Urban Dynamic Objects LiDAR, ICRA 2021",
       .content = "hand-held Ouster OS1-64 in 4 places, 10 labelled scans in each of 8 sequences",
       .size = "12825 scans, 8 bags",

@@ -144,6 +144,7 @@ const Layout& helimos_layout() {
   static const Layout row = {
       .kind = DatasetKind::kHelimos,
       .name = "helimos",
+      .usual = {"helimos", "helimos-all"},
       .title = "HeLiMOS, IROS 2024",
       .content = "Aeva, Livox Avia, Ouster OS2-128 and Velodyne VLP-16 on one car",
       .size = "about 35 GB zipped, some 12476 scans per sensor",

@@ -66,6 +66,7 @@ const Layout& helipr_layout() {
   static const Layout row = {
       .kind = DatasetKind::kHelipr,
       .name = "helipr",
+      .usual = {"helipr", "semantickitti-mos"},
       .title = "HeLiPR, IJRR 2024, as recorded",
       .content = "Aeva, Livox Avia, Ouster OS2-128 and Velodyne VLP-16 on one car",
       .size = "see its page",

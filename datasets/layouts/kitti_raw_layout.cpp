@@ -63,6 +63,7 @@ const Layout& kitti_raw_layout() {
   static const Layout row = {
       .kind = DatasetKind::kKittiRaw,
       .name = "kitti-raw",
+      .usual = {"kitti-raw", "semantickitti-mos"},
       .title = "KITTI raw data, IJRR 2013, with truth made of its tracklets",
       .content = "Velodyne HDL-64E on a car, 10 Hz, boxes of objects in the camera's view",
       .size = "see its page",

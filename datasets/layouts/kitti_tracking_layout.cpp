@@ -84,6 +84,7 @@ const Layout& kitti_tracking_layout() {
   static const Layout row = {
       .kind = DatasetKind::kKittiTracking,
       .name = "kitti-tracking",
+      .usual = {"kitti-tracking", "semantickitti-mos"},
       .title = "KITTI tracking, CVPR 2012, with truth made of its boxes",
       .content = "Velodyne HDL-64E on a car, 10 Hz, boxes of objects in the camera's view",
       .size = "21 sequences with labels, 29 without",

@@ -28,6 +28,7 @@ const Layout& kth_layout() {
   static const Layout row = {
       .kind = DatasetKind::kKth,
       .name = "kth",
+      .usual = {"kth", "semantickitti-mos"},
       .title = "KTH DynamicMap_Benchmark, ITSC 2023",
       .content = "windows of KITTI, Argoverse 2 and an indoor recording",
       .size = "see its page",

@@ -58,6 +58,14 @@ struct LayoutWriter {
   bool keeps_stamps = true;
 };
 
+/// The preset and the protocol that a data set is run and scored with unless the user says others.
+/// A row without them does not compile.
+struct UsualRule {
+  std::string_view preset, protocol;
+  constexpr UsualRule(std::string_view preset_name, std::string_view protocol_name)
+      : preset(preset_name), protocol(protocol_name) {}
+};
+
 /// A data set that comes in the folders of another.
 struct RelatedSet {
   std::string_view title, content;
@@ -70,6 +78,7 @@ struct RelatedSet {
 struct Layout {
   DatasetKind kind;
   std::string_view name;  ///< in --dataset, presets and results
+  UsualRule usual;
 
   // What users have to know to get it and to arrange its folders.
   std::string_view title;

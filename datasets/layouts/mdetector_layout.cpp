@@ -49,6 +49,7 @@ const Layout& mdetector_layout() {
   static const Layout row = {
       .kind = DatasetKind::kMdetector,
       .name = "mdetector",
+      .usual = {"mdetector", "mdetector"},
       .title = "M-detector's sets, Nature Communications 2024",
       .content = "Livox Avia, KITTI, nuScenes and Waymo",
       .size = "45, 20, 10 and 44 sequences, scans in bags",

@@ -27,6 +27,7 @@ const Layout& moe_layout() {
   static const Layout row = {
       .kind = DatasetKind::kMoe,
       .name = "moe",
+      .usual = {"moe", "moe"},
       .title = "MOE",
       .content = "simulators and a real campus, dense with moving objects",
       .size = "10 sequences, 00 to 04 with public labels",

@@ -190,6 +190,7 @@ const Layout& nuscenes_layout() {
   static const Layout row = {
       .kind = DatasetKind::kNuscenes,
       .name = "nuscenes",
+      .usual = {"nuscenes", "mapmos-nuscenes"},
       .title = "nuScenes, CVPR 2020, with the truth that MapMOS makes of its boxes",
       .content = "32-beam Velodyne on a car, 20 Hz, boxes at 2 Hz",
       .size = "1000 scenes of 20 s, some 390,000 scans",

@@ -79,6 +79,7 @@ const Layout& opensceneflow_layout() {
   static const Layout row = {
       .kind = DatasetKind::kOpenSceneFlow,
       .name = "opensceneflow",
+      .usual = {"opensceneflow", "sceneflow-dynamic"},
       .title = "OpenSceneFlow's .h5: Argoverse 2, Waymo, nuScenes, ZOD, TruckScenes",
       .content = "scenes of about 20 s with scene flow; ZOD and the test splits without",
       .size = "Argoverse 2 sensor: 700 + 150 + 150 scenes; Waymo: 799 + 203",

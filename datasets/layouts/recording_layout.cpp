@@ -98,6 +98,7 @@ const Layout& recording_layout() {
   static const Layout row = {
       .kind = DatasetKind::kRecording,
       .name = "recording",
+      .usual = {"recording", "semantickitti-mos"},
       .title = "A recording of your own: a bag, a scan, or a folder of either",
       .content = "any LiDAR",
       .size = "any",

@@ -40,6 +40,7 @@ const Layout& semantickitti_layout() {
   static const Layout row = {
       .kind = DatasetKind::kSemanticKitti,
       .name = "semantickitti",
+      .usual = {"semantickitti", "semantickitti-mos"},
       .title = "SemanticKITTI-MOS, and data laid out like it",
       .content = "Velodyne HDL-64E on a car",
       .size = "43552 scans in 22 sequences, about 80 GB",

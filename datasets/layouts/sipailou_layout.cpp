@@ -24,6 +24,7 @@ const Layout& sipailou_layout() {
   static const Layout row = {
       .kind = DatasetKind::kSipailou,
       .name = "sipailou",
+      .usual = {"sipailou", "sipailou"},
       .title = "Sipailou Campus, of MotionBEV, RA-L 2023",
       .content = "Livox Avia on a ground robot, every scan labelled between 3 and 50 m",
       .size = "8 sequences, 06: 3191 scans, 00 and 07: 6201 scans",

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 #include <vector>
 
+#include "datasets/layouts/layout.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/nearest_name.hpp"
 
@@ -39,43 +41,47 @@ std::vector<PresetValue> later_settings(double voxel_size_m, double min_range_m,
   return values;
 }
 
+/// Numbers of a data set are computed by its usual protocol with any of its presets.
+Preset preset_of(std::string_view name, DatasetKind kind, std::vector<PresetValue> values,
+                 std::string_view source) {
+  return {name, kind, std::move(values), layout_of(kind).usual.protocol, source};
+}
+
 }  // namespace
 
 std::span<const Preset> presets() {
-  // The first preset of a kind is its default.
   static const std::array kPresets = {
-      Preset{"doals-20m", DatasetKind::kDoals, doals_settings(20.0), "doals-hmm",
-             "paper, Table I, rows (20m)"},
-      Preset{"doals-120m", DatasetKind::kDoals, doals_settings(120.0), "doals-hmm",
-             "paper, Table I, full range"},
-      Preset{"sipailou", DatasetKind::kSipailou, settings(0.25, 3.0, 50.0), "sipailou",
-             "paper, Table II"},
-      Preset{"helimos", DatasetKind::kHelimos, settings(0.25, 1.5, 50.0), "helimos-all",
-             "paper, Table III, online"},
-      Preset{"helimos-delayed", DatasetKind::kHelimos, settings(0.25, 1.5, 50.0, 10), "helimos-all",
-             "paper, Table III, delayed by 10 scans"},
-      Preset{"semantickitti", DatasetKind::kSemanticKitti, settings(0.25, 1.5, 50.0),
-             "semantickitti-mos", "ours, the authors publish none: as helimos"},
-      Preset{"apollo", DatasetKind::kApollo, settings(0.25, 0.5, 120.0), "semantickitti-mos",
-             "authors' config of Apollo (2024)"},
-      Preset{"moe", DatasetKind::kMoe, later_settings(0.20, 0.0, 120.0), "moe",
-             "authors' config of MOE (2025)"},
-      Preset{"kth", DatasetKind::kKth, settings(0.25, 1.5, 50.0), "semantickitti-mos",
-             "ours, the authors publish none: as helimos"},
-      Preset{"mdetector", DatasetKind::kMdetector, later_settings(0.20, 0.0, 120.0), "mdetector",
-             "authors' config of M-detector's sets (2025)"},
-      Preset{"opensceneflow", DatasetKind::kOpenSceneFlow, settings(0.25, 1.5, 50.0),
-             "sceneflow-dynamic", "ours, the authors publish none: as helimos"},
-      Preset{"nuscenes", DatasetKind::kNuscenes, settings(0.25, 1.5, 50.0), "mapmos-nuscenes",
-             "ours, the authors publish none: as helimos"},
-      Preset{"helipr", DatasetKind::kHelipr, settings(0.25, 1.5, 50.0), "semantickitti-mos",
-             "ours, HeLiPR has no labels: as helimos"},
-      Preset{"kitti-raw", DatasetKind::kKittiRaw, settings(0.25, 1.5, 50.0), "semantickitti-mos",
-             "ours, the authors publish none: as helimos"},
-      Preset{"kitti-tracking", DatasetKind::kKittiTracking, settings(0.25, 1.5, 50.0),
-             "semantickitti-mos", "ours, the authors publish none: as helimos"},
-      Preset{"recording", DatasetKind::kRecording, settings(0.25, 1.5, 50.0), "semantickitti-mos",
-             "ours, for recordings of any sensor: as helimos"},
+      preset_of("doals-20m", DatasetKind::kDoals, doals_settings(20.0),
+                "paper, Table I, rows (20m)"),
+      preset_of("doals-120m", DatasetKind::kDoals, doals_settings(120.0),
+                "paper, Table I, full range"),
+      preset_of("sipailou", DatasetKind::kSipailou, settings(0.25, 3.0, 50.0), "paper, Table II"),
+      preset_of("helimos", DatasetKind::kHelimos, settings(0.25, 1.5, 50.0),
+                "paper, Table III, online"),
+      preset_of("helimos-delayed", DatasetKind::kHelimos, settings(0.25, 1.5, 50.0, 10),
+                "paper, Table III, delayed by 10 scans"),
+      preset_of("semantickitti", DatasetKind::kSemanticKitti, settings(0.25, 1.5, 50.0),
+                "ours, the authors publish none: as helimos"),
+      preset_of("apollo", DatasetKind::kApollo, settings(0.25, 0.5, 120.0),
+                "authors' config of Apollo (2024)"),
+      preset_of("moe", DatasetKind::kMoe, later_settings(0.20, 0.0, 120.0),
+                "authors' config of MOE (2025)"),
+      preset_of("kth", DatasetKind::kKth, settings(0.25, 1.5, 50.0),
+                "ours, the authors publish none: as helimos"),
+      preset_of("mdetector", DatasetKind::kMdetector, later_settings(0.20, 0.0, 120.0),
+                "authors' config of M-detector's sets (2025)"),
+      preset_of("opensceneflow", DatasetKind::kOpenSceneFlow, settings(0.25, 1.5, 50.0),
+                "ours, the authors publish none: as helimos"),
+      preset_of("nuscenes", DatasetKind::kNuscenes, settings(0.25, 1.5, 50.0),
+                "ours, the authors publish none: as helimos"),
+      preset_of("helipr", DatasetKind::kHelipr, settings(0.25, 1.5, 50.0),
+                "ours, HeLiPR has no labels: as helimos"),
+      preset_of("kitti-raw", DatasetKind::kKittiRaw, settings(0.25, 1.5, 50.0),
+                "ours, the authors publish none: as helimos"),
+      preset_of("kitti-tracking", DatasetKind::kKittiTracking, settings(0.25, 1.5, 50.0),
+                "ours, the authors publish none: as helimos"),
+      preset_of("recording", DatasetKind::kRecording, settings(0.25, 1.5, 50.0),
+                "ours, for recordings of any sensor: as helimos"),
       Preset{"best", std::nullopt, {}, "", "ours, docs/history/plus/README.md", "hmm-mos-plus"},
   };
   return kPresets;
@@ -114,7 +120,7 @@ Preset preset_for(const Preset& preset, DatasetKind kind) {
 }
 
 const Preset& default_preset(DatasetKind kind) {
-  return *std::ranges::find(presets(), std::optional(kind), &Preset::kind);
+  return preset_named(layout_of(kind).usual.preset);
 }
 
 }  // namespace mosbench

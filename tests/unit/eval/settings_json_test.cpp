@@ -6,6 +6,7 @@
 #include <mosbench/method.hpp>
 #include <set>
 
+#include "datasets/layouts/layout.hpp"
 #include "datasets/text/errors.hpp"
 #include "eval/job/method_choice.hpp"
 #include "eval/job/presets.hpp"
@@ -130,6 +131,16 @@ TEST(Presets, HaveThePapersSettingsAndAKnownProtocol) {
   EXPECT_EQ(value_of("helimos-delayed", "delay_scans"), 10);
   EXPECT_EQ(default_preset(DatasetKind::kHelimos).name, "helimos");
   EXPECT_EQ(default_preset(DatasetKind::kDoals).name, "doals-20m");
+}
+
+TEST(Presets, OfEachDataSetIsOneOfItsOwnWithItsProtocol) {
+  for (const Layout* layout : layouts()) {
+    const Preset& usual = default_preset(layout->kind);
+    EXPECT_EQ(usual.kind, layout->kind) << layout->name;
+    EXPECT_EQ(usual.name, layout->usual.preset);
+    EXPECT_EQ(usual.protocol, layout->usual.protocol);
+    EXPECT_NE(find_protocol(layout->usual.protocol), nullptr) << layout->name;
+  }
 }
 
 TEST(Presets, BestIsPlusWithItsDefaultsAndWhatEachDataSetNeeds) {
