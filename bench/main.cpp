@@ -12,32 +12,35 @@
 
 namespace mosbench {
 
-std::vector<RegisteredStage>& registered_stages() {
-  static std::vector<RegisteredStage> stages;
-  return stages;
-}
-
 namespace {
 
 bool all_right = true;
 
-void measure(benchmark::State& state, const RegisteredStage& stage, const Workload& workload,
+void measure(benchmark::State& state, const BenchmarkRow& row, const Workload& workload,
              unsigned threads) {
   // Made once, because making it takes longer than measuring.
   static std::map<const Workload*, StagedScans> staged;
   ThreadPool pool(threads);
-  stage.benchmark(state, staged.try_emplace(&workload, workload).first->second, pool);
+  row.benchmark(state, staged.try_emplace(&workload, workload).first->second, pool);
 }
 
 void register_all(const std::vector<Workload>& workloads) {
-  for (const RegisteredStage& stage : registered_stages()) {
+  std::vector<BenchmarkRow> rows = stage_rows();
+  const auto append = [&](const std::vector<BenchmarkRow>& more) {
+    rows.insert(rows.end(), more.begin(), more.end());
+  };
+  append(method_rows());
+#if MOSBENCH_WITH_OCTOMAP
+  append(octomap_rows());
+#endif
+  for (const BenchmarkRow& row : rows) {
     for (const Workload& workload : workloads) {
-      for (unsigned threads = 1; threads <= (stage.parallel ? 2U : 1U); ++threads) {
+      for (unsigned threads = 1; threads <= (row.parallel ? 2U : 1U); ++threads) {
         const std::string name =
-            stage.name + "/" + workload.name + "/threads:" + std::to_string(threads);
+            row.name + "/" + workload.name + "/threads:" + std::to_string(threads);
         benchmark::RegisterBenchmark(name.c_str(),
-                                     [&stage, &workload, threads](benchmark::State& state) {
-                                       measure(state, stage, workload, threads);
+                                     [row, &workload, threads](benchmark::State& state) {
+                                       measure(state, row, workload, threads);
                                      })
             ->Unit(benchmark::kMillisecond)
             ->UseRealTime()

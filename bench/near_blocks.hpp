@@ -32,6 +32,9 @@ class NearBlocks {
     column.find(block(i), observed(i), sources(i), distances);
   }
 
+  /// Checks the distances of some cells against the nearest source over all pairs.
+  bool equals_all_pairs() const;
+
  private:
   BeliefFilter filter_;
   DistanceField field_;

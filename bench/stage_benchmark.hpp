@@ -2,6 +2,7 @@
 
 #include <benchmark/benchmark.h>
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -9,23 +10,19 @@
 
 namespace mosbench {
 
-using StageBenchmark = void (*)(benchmark::State& state, StagedScans& staged, ThreadPool& pool);
-
-struct RegisteredStage {
+/// One benchmark, measured on each workload.
+struct BenchmarkRow {
   std::string name;
-  StageBenchmark benchmark;
+  std::function<void(benchmark::State& state, StagedScans& staged, ThreadPool& pool)> benchmark;
   bool parallel;  ///< measured with one and with two threads
 };
 
-/// All registered stages, in the order of their files.
-std::vector<RegisteredStage>& registered_stages();
-
-/// A static object of this type adds a stage to the program.
-struct RegisterStage {
-  RegisterStage(const char* name, StageBenchmark benchmark, bool parallel) {
-    registered_stages().push_back({name, benchmark, parallel});
-  }
-};
+/// Stages of the pipeline in its order, and files: each function alone.
+std::vector<BenchmarkRow> stage_rows();
+/// Whole methods and odometries, and the stages of hmm-mos-plus.
+std::vector<BenchmarkRow> method_rows();
+/// The map of OctoMap by our rays and by the library's own: in builds with the library.
+std::vector<BenchmarkRow> octomap_rows();
 
 /// Shows "<items> per second" and items per call.
 inline void count_items(benchmark::State& state, const char* items, std::size_t per_call) {
@@ -84,6 +81,10 @@ std::size_t mean_of(const StagedScans& staged, Number&& number) {
 
 inline std::size_t mean_occupied(const StagedScans& staged) {
   return mean_of(staged, [](const StagedScan& scan) { return scan.scan.occupied_count; });
+}
+
+inline std::size_t mean_observed(const StagedScans& staged) {
+  return mean_of(staged, [](const StagedScan& scan) { return voxels_of(scan.observed); });
 }
 
 inline std::size_t mean_points(const StagedScans& staged) {

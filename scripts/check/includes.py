@@ -73,7 +73,7 @@ EXTERNAL = {
     "CLI": {"eval", "tests"},
     "pybind11": {"eval"},
     "pcl": {"core/include/mosbench/pcl.hpp", "datasets", "tests"},
-    "octomap": {"core/methods/octomap/log_odds_map.cpp", "bench/octomap_benchmark.cpp", "tests"},
+    "octomap": {"core/methods/octomap/log_odds_map.cpp", "bench/octomap.cpp", "tests"},
     "hdf5.h": {"datasets/hdf5/hdf5_module.cpp"},
     "fmt": ABOVE_CORE,
     "nlohmann": ABOVE_CORE,

@@ -125,8 +125,11 @@ void octomap_library(benchmark::State& state, StagedScans& staged, ThreadPool&) 
   count_items(state, "points", mean_points(staged));
 }
 
-const RegisterStage blockwise_stage("octomap_blockwise", octomap_blockwise, true);
-const RegisterStage library_stage("octomap_insertPointCloud", octomap_library, false);
-
 }  // namespace
+
+std::vector<BenchmarkRow> octomap_rows() {
+  return {{"octomap_blockwise", octomap_blockwise, true},
+          {"octomap_insertPointCloud", octomap_library, false}};
+}
+
 }  // namespace mosbench
