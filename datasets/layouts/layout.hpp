@@ -39,8 +39,8 @@ struct LayoutContent {
   std::vector<PublishedCount> published = {};
 };
 
-/// What a layout keeps of the truth of a point: its id, whether it moves, that in a camera's view
-/// and whether it is labelled, or nothing.
+/// How much truth the layout can store per point: its id; whether it moves; that in a camera's view
+/// only, and whether it is labelled; nothing.
 enum class KeptTruth : std::uint8_t { kId, kMoving, kInView, kNone };
 
 /// How a data set is written by `simulate` and `convert`.

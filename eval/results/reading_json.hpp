@@ -20,8 +20,8 @@ std::optional<bool> poses_inverse_named(std::string_view word);
 std::optional<Deskew> deskew_named(std::string_view word);
 std::optional<PointTimes> point_times_named(std::string_view word);
 
-/// What the user told about reading: members named as the flags of `mosbench run`, none for what
-/// was not told. A pose file's path is absolute.
+/// The reading options that were given, named like the flags of `mosbench run`. A pose file's path
+/// is absolute.
 nlohmann::ordered_json told_json(const ReadingOptions& options);
 /// Reads what `told_json` wrote, passing over other members. Throws UsageError for words that are
 /// not known, a JSON exception for members of another type.

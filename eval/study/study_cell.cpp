@@ -131,8 +131,7 @@ CellOutcome fail(const StudyCell& cell, const fs::path& out, const char* why) {
   return CellOutcome::kFailed;
 }
 
-/// Where costs of a method on a sequence are kept: by what they are, as a name stays when a study
-/// is edited.
+/// Returns the key of a cost. It holds a hash, because names stay when a study changes.
 std::string cost_name(const StudyCell& cell) {
   return fmt::format("{}/{}/{}/{}", cell.data->name, cell.sequence, cell.method->name,
                      cell.cost_key.substr(0, 12));

@@ -19,7 +19,7 @@ class BlockHistory {
  public:
   /// Count of being free from which an arrival is sure.
   static constexpr std::uint32_t kSureTicks = 3;
-  /// What left a voxel and is back after so long or less did not surely arrive.
+  /// A voxel occupied again within this time is no sure arrival.
   static constexpr std::uint32_t kReturnTicks = 10;
   /// Count of being occupied from which a voxel is aged.
   static constexpr std::uint32_t kAgedTicks = 5;

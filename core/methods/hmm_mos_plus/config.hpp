@@ -64,10 +64,10 @@ void visit_fields(AnyConfig& config, Visitor&& visit) {
   visit("seed_age_s", config.seed_age_s, FieldRange{0.0, kMaxAge_s},
         "a voxel that arrived in free space is a seed for so long; to tenths, by stamps or 10 Hz");
   visit("object_age_s", config.object_age_s, FieldRange{0.0, kMaxAge_s},
-        "a voxel that arrived connects objects for so long although it is settled, and for half of "
-        "it may belong to one although it is aged; to tenths");
+        "how long after its arrival a settled voxel still connects objects; an aged one belongs to "
+        "an object for half as long; to tenths");
   visit("max_unknown_voxels", config.max_unknown_voxels, FieldRange{0, 125},
-        "a seed has at most so many unknown ones among the 125 voxels around it");
+        "at most so many of the 125 voxels around a seed are unknown");
   visit("max_gap_voxels", config.max_gap_voxels, FieldRange{0, kMaxHalo - kKnownRadius},
         "unknown voxels between known ones above and below, if so many or fewer, count as known: "
         "gaps between beams");
@@ -78,32 +78,31 @@ void visit_fields(AnyConfig& config, Visitor&& visit) {
   visit("min_seeds_voxels", config.min_seeds_voxels, FieldRange{1, 100000},
         "an object has at least so many seeds");
   visit("min_pure_seeds_voxels", config.min_pure_seeds_voxels, FieldRange{1, 100000},
-        "one of which half or more are seeds needs only so many");
+        "an object that consists of seeds by half or more needs only so many");
   visit("min_seed_share", config.min_seed_share, FieldRange{0.0, 1.0},
-        "an object's voxels are seeds by at least this share");
+        "at least this share of an object's voxels are seeds");
   visit("fresh_age_s", config.fresh_age_s, FieldRange{0.0, kMaxAge_s},
         "a seed is fresh for so long; to tenths; from seed_age_s on every seed is");
   visit("min_fresh_share", config.min_fresh_share, FieldRange{0.0, 1.0},
-        "of an object's seeds, at least this share is fresh: those of a parked car grow old");
+        "at least this share of an object's seeds is fresh: those of a parked car grow old");
   visit("max_aged_share", config.max_aged_share, FieldRange{0.0, 1.0},
-        "of an object's voxels, at most this share was seen occupied for 0.5 s or more, unless "
-        "half or more are seeds");
+        "at most this share of an object's voxels was seen occupied for 0.5 s or more, unless half "
+        "or more are seeds");
   visit("rise_radius_m", config.rise_radius_m, FieldRange{0.0, 20.0},
         "the ground around a voxel is the lowest one in the columns within this distance");
   visit("min_rise_voxels", config.min_rise_voxels, FieldRange{0, 100},
         "a quarter of an object's voxels are at least this high above the ground around them");
   visit("max_growth_m", config.max_growth_m, FieldRange{0.0, 1000.0},
-        "what is connected with seeds over more than this, or through voxels that stand, moves not "
-        "with them");
+        "how far motion spreads from seeds; never through standing voxels");
   visit("max_extent_m", config.max_extent_m, FieldRange{0.0, 1000.0},
         "an object is at most so long along x and y of the map");
   visit("max_pure_extent_m", config.max_pure_extent_m, FieldRange{0.0, 1000.0},
-        "one of which half or more are seeds may be so long: a truck or a bus");
+        "an object that consists of seeds by half or more may be so long: a truck or a bus");
   visit("max_height_m", config.max_height_m, FieldRange{0.0, 1000.0},
         "an object is at most so high");
   visit("min_track_steps", config.min_track_steps, FieldRange{0, 1000},
-        "what was followed over so many scans, also when looked back at, has seeds where it should "
-        "be now; 0: no prediction and no looking back; not used with a delay");
+        "after so many scans an object's next place is predicted, also when found by looking back; "
+        "0: no prediction and no looking back; not used with a delay");
 }
 
 /// Throws std::invalid_argument "<key>: <what is wrong>, <what was expected>" for the first field
