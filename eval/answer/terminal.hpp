@@ -8,10 +8,6 @@ namespace mosbench {
 /// Returns how many columns the terminal behind stdout has; 0 where stdout is none.
 std::size_t terminal_columns();
 
-/// Returns an answer with the tables of TextTable folded into so many columns (0: any number): the
-/// columns that have no room follow below, again beside the first one.
-std::string folded_tables(const std::string& answer, std::size_t columns);
-
 /// Returns whether a terminal behind `stream` (a file descriptor) is to be shown colours: not where
 /// the environment has NO_COLOR (no-color.org) or TERM=dumb.
 bool shows_colours(int stream);

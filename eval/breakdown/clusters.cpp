@@ -10,10 +10,10 @@
 namespace mosbench {
 namespace {
 
-using Cell = std::array<std::int64_t, 3>;
+using GridCell = std::array<std::int64_t, 3>;
 
 struct CellHash {
-  std::size_t operator()(const Cell& cell) const {
+  std::size_t operator()(const GridCell& cell) const {
     std::uint64_t hash = 0;
     for (const std::int64_t index : cell) {
       hash = (hash ^ static_cast<std::uint64_t>(index)) * 0x9E3779B97F4A7C15ULL;
@@ -50,13 +50,13 @@ class Sets {
   std::vector<std::size_t> parent_;
 };
 
-using CellMembers = std::unordered_map<Cell, std::vector<std::uint32_t>, CellHash>;
+using CellMembers = std::unordered_map<GridCell, std::vector<std::uint32_t>, CellHash>;
 
 CellMembers sort_into_cells(std::span<const Eigen::Vector3d> points, double cell_m) {
   CellMembers cells;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!is_usable(points[i])) continue;
-    Cell cell{};
+    GridCell cell{};
     for (std::size_t axis = 0; axis < cell.size(); ++axis) {
       cell[axis] = static_cast<std::int64_t>(
           std::floor(points[i][static_cast<Eigen::Index>(axis)] / cell_m));
@@ -66,11 +66,11 @@ CellMembers sort_into_cells(std::span<const Eigen::Vector3d> points, double cell
   return cells;
 }
 
-void merge_neighbours(const CellMembers& cells, const Cell& cell, std::uint32_t member,
+void merge_neighbours(const CellMembers& cells, const GridCell& cell, std::uint32_t member,
                       Sets& sets) {
   for (int step = 0; step < 27; ++step) {
-    const Cell neighbour = {cell[0] + step % 3 - 1, cell[1] + step / 3 % 3 - 1,
-                            cell[2] + step / 9 - 1};
+    const GridCell neighbour = {cell[0] + step % 3 - 1, cell[1] + step / 3 % 3 - 1,
+                                cell[2] + step / 9 - 1};
     const auto found = cells.find(neighbour);
     if (found != cells.end()) sets.merge(member, found->second.front());
   }

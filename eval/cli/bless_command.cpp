@@ -32,14 +32,12 @@ struct BlessFlags {
 };
 
 /// Says what changes against the baseline before.
-std::string change(const BlessFlags& options, const ResultSet& newer) {
+Answer change(const BlessFlags& options, const ResultSet& newer) {
   const std::vector<ResultSet> known = accepted_runs(options.baseline);
   if (known.empty()) {
-    std::string text = "a new baseline\n";
-    for (const std::string& warning : warnings(newer)) text += warning + '\n';
-    return text;
+    return {.standing = standing_of(newer), .sheets = {{.lead = {"a new baseline"}}}};
   }
-  if (known.size() > 1 && options.even_if) return "several runs were there before\n";
+  if (known.size() > 1 && options.even_if) return {"several runs were there before\n"};
   // Of several runs, loading one names what they differ in.
   const ResultSet baseline = known.size() == 1 ? known.front() : load_result_set(options.baseline);
   const PairedRuns paired = pair_runs(baseline, newer);
@@ -49,19 +47,20 @@ std::string change(const BlessFlags& options, const ResultSet& newer) {
                         unlike_text(paired.unlike),
                     "one of the same kind; --even-if replaces it anyway");
   }
-  if (paired.scans.empty()) return "no scan in common with the baseline before\n";
-  return difference_text(baseline, newer, paired);
+  if (paired.scans.empty()) return {"no scan in common with the baseline before\n"};
+  return difference_answer(baseline, newer, paired);
 }
 
-std::string bless(const BlessFlags& options) {
+Answer bless(const BlessFlags& options) {
   const ResultSet newer = load_result_set(options.newer);
   refuse_overlap(newer, options.baseline);
   restore_folder(resolved(options.baseline));
   const FolderLock lock(options.baseline);
-  const std::string text = change(options, newer);
+  Answer answer = change(options, newer);
   accept_baseline(newer, options.baseline);
-  return text +
-         fmt::format("accepted {} as {}\n", options.newer.string(), options.baseline.string());
+  answer.text +=
+      fmt::format("accepted {} as {}\n", options.newer.string(), options.baseline.string());
+  return answer;
 }
 
 }  // namespace
@@ -74,7 +73,7 @@ CommandRun add_bless(CLI::App& command) {
       ->required();
   command.add_flag("--even-if", options->even_if, "Also replace a baseline of another kind");
   command.footer(kBlessFooter);
-  return [options] { return Answer{bless(*options)}; };
+  return [options] { return bless(*options); };
 }
 
 }  // namespace mosbench

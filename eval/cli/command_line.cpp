@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cstdio>
 #include <map>
 #include <memory>
 #include <mosbench/method.hpp>
@@ -11,7 +12,11 @@
 #include "datasets/sequence/pose_source.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/nearest_name.hpp"
+#include "datasets/text/shown_text.hpp"
+#include "eval/answer/render.hpp"
+#include "eval/cli/commands.hpp"
 #include "eval/cli/help_text.hpp"
+#include "eval/cli/output_file.hpp"
 #include "eval/cli/suggested_command.hpp"
 #include "eval/results/version.hpp"
 
@@ -40,6 +45,38 @@ void refuse_flags_as_values(CLI::App& command) {
   }
 }
 
+/// Words of old that mean --as; those that take no value name the format.
+struct OldWord {
+  std::string_view command, flag, format;
+};
+constexpr OldWord kOldWords[] = {{"rank", "--format", ""},      {"table", "--format", ""},
+                                 {"curve", "--format", ""},     {"study", "--format", ""},
+                                 {"stats", "--csv", "csv"},     {"compare", "--output-format", ""},
+                                 {"trajectory", "--csv", "csv"}};
+
+/// Adds --as, --json and the words of old to a command. `format` gets the name.
+void add_format_flags(CLI::App& command, const Command& row, std::string& format) {
+  std::vector<std::string> names(format_names().begin(), format_names().end());
+  if (!row.draws) std::erase(names, "png");
+  const CLI::IsMember known(names);
+  CLI::Option* as = command.add_option("--as", format, "How to print the answer")->check(known);
+  CLI::Option* json = command.get_option_no_throw("--json");  // that of profile names a file
+  if (json == nullptr) {
+    const auto choose = [&format] { format = "json"; };
+    json = command.add_flag_callback("--json", choose, "As --as json")->excludes(as);
+  }
+  for (const OldWord& old : kOldWords) {
+    if (old.command != row.name || command.get_option_no_throw(std::string(old.flag)) != nullptr) {
+      continue;
+    }
+    CLI::Option* option = old.format.empty()
+                              ? command.add_option(std::string(old.flag), format)->check(known)
+                              : command.add_flag_callback(std::string(old.flag),
+                                                          [&format, &old] { format = old.format; });
+    option->group("")->excludes(as)->excludes(json);
+  }
+}
+
 /// The parser of the program, and what runs each of its commands.
 struct Program {
   CLI::App app{
@@ -47,6 +84,7 @@ struct Program {
       "benchmark's own rules.",
       "mosbench"};
   std::map<const CLI::App*, CommandRun> runs;
+  std::string format;  ///< empty where none was asked for
 
   Program() {
     app.formatter(std::make_shared<HelpText>());
@@ -61,6 +99,7 @@ struct Program {
       command->group("Commands");
       if (!row.alias.empty()) command->alias(std::string(row.alias));
       runs[command] = row.add(*command);
+      add_format_flags(*command, row, format);
       refuse_flags_as_values(*command);
     }
   }
@@ -113,9 +152,27 @@ void refuse_unknown_arguments(const CLI::App& command, const std::string& name) 
                                hint.empty() ? "" : fmt::format(" ({})", hint), name));
 }
 
+/// Says on stdout where the answer is when it is in a file, or on stderr when stdout holds another.
+Printed printed(const Answer& answer, const std::string& asked, std::size_t columns) {
+  const Format format = asked.empty() ? answer.usual : format_named(asked);
+  Printed result{"", answer.exit_code, format == Format::kText || format == Format::kGithub};
+  if (answer.file && !names_stdout(*answer.file)) {
+    write_output(*answer.file, render(answer, format));
+    result.bytes = fmt::format("wrote {}\n", answer.file->string());
+    return result;
+  }
+  result.bytes = render(answer, format, columns);
+  // Names in it may come from files of strangers.
+  if (format != Format::kPng) result.bytes = shown(result.bytes);
+  if (!answer.goes_beside_stdout) return result;
+  std::fputs(result.bytes.c_str(), stderr);
+  result.bytes.clear();
+  return result;
+}
+
 }  // namespace
 
-Answer answer_to(std::vector<std::string> arguments) {
+Printed answer_to(std::vector<std::string> arguments, std::size_t columns) {
   refuse_unknown_command(arguments);
   Program program;
   const std::vector<std::string> typed = arguments;
@@ -127,16 +184,16 @@ Answer answer_to(std::vector<std::string> arguments) {
     std::ranges::reverse(arguments);  // as CLI11 expects them
     program.app.parse(std::move(arguments));
   } catch (const CLI::CallForVersion& version) {
-    return {std::string(version.what()) + '\n'};
+    return {std::string(version.what()) + '\n', 0, true};
   } catch (const CLI::CallForHelp&) {
-    return {help_of(*chosen())};
+    return {help_of(*chosen()), 0, true};
   } catch (const CLI::ParseError& error) {
     const std::string name = full_name(*chosen());
     refuse_unknown_arguments(*chosen(), name);
     throw UsageError(fmt::format("{}; see {} --help", error.what(), name));
   }
   try {
-    return program.runs.at(chosen())();
+    return printed(program.runs.at(chosen())(), program.format, columns);
   } catch (const MissingPoses& error) {
     const std::string commands = commands_with_odometry(*chosen(), typed);
     throw DataError(error.what() + (commands.empty() ? "" : ":" + commands));

@@ -1,14 +1,21 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
-#include "eval/cli/commands.hpp"
-
 namespace mosbench {
 
-/// Parses the arguments that follow the program's name and runs the command they name. Throws
-/// UsageError for arguments that are not understood, naming the nearest command or flag.
-Answer answer_to(std::vector<std::string> arguments);
+/// What the program writes to stdout, and its exit code.
+struct Printed {
+  std::string bytes;
+  int exit_code;
+  bool is_text;  ///< for people, who may see it in colours
+};
+
+/// Parses the arguments that follow the program's name, runs the command they name and formats its
+/// answer as --as says, for a terminal of so many columns (0: none). Throws UsageError for
+/// arguments that are not understood, naming the nearest command or flag.
+Printed answer_to(std::vector<std::string> arguments, std::size_t columns);
 
 }  // namespace mosbench

@@ -6,17 +6,13 @@
 #include <string_view>
 #include <vector>
 
+#include "eval/answer/answer.hpp"
+
 namespace CLI {
 class App;
 }
 
 namespace mosbench {
-
-/// What a command prints on stdout, and the exit code of the program.
-struct Answer {
-  std::string text;
-  int exit_code = 0;
-};
 
 /// Runs a command with the flags that were parsed. Throws UsageError and DataError.
 using CommandRun = std::function<Answer()>;
@@ -28,6 +24,7 @@ struct Command {
   /// Adds the command's flags to its parser and returns what runs it after the parsing.
   CommandRun (*add)(CLI::App& command);
   std::string_view alias{};  ///< another name that it answers to; empty: none
+  bool draws = false;        ///< its answers have charts
 
   /// Returns all names that it answers to, its own first.
   std::vector<std::string_view> names() const;

@@ -5,6 +5,7 @@
 
 #include "datasets/text/errors.hpp"
 #include "eval/answer/answer_text.hpp"
+#include "eval/answer/render.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/cli/output_file.hpp"
 #include "eval/statistics/gate_report.hpp"
@@ -21,7 +22,7 @@ difference is shown as a note; it says whether other scans like these would show
 --statistical a drop must also exceed the half-width of that interval. Runs of another protocol,
 method, setting, scans or input are refused; --even-if compares the scans that both have.
 
-For pull requests: --output-format github adds an annotation per regression to the text, and
+For pull requests: --as github adds an annotation per regression to the text, and
 --summary writes the table in markdown.
 
 Exit codes: 0 pass, 1 regression, 2 wrong usage, 3 unusable or unlike results.
@@ -29,7 +30,7 @@ Exit codes: 0 pass, 1 regression, 2 wrong usage, 3 unusable or unlike results.
 Examples:
   mosbench compare results/baseline/highway-online results/runs/highway
   mosbench compare results/baseline/highway-online results/runs/highway --max-drop 0.1 --json
-  mosbench compare results/baseline/highway-online results/runs/highway --output-format github \
+  mosbench compare results/baseline/highway-online results/runs/highway --as github \
     --summary gate.md)";
 
 struct CompareFlags {
@@ -38,27 +39,25 @@ struct CompareFlags {
   bool statistical = false;
   bool even_if = false;
   bool quiet = false;
-  std::string format = "text";
   std::filesystem::path summary;
 };
 
-std::string answer_of(const CompareFlags& options, const ResultSet& baseline,
-                      const ResultSet& newer, const PairedRuns& paired, const GateResult& result) {
-  if (options.quiet && result.passed()) return "";
-  if (options.format == "json") {
-    nlohmann::ordered_json json = to_json(result);
-    json["paired_scans"] = paired.scans.size();
-    json["missing_predictions"] = {{"baseline", missing_predictions(baseline)},
-                                   {"new", missing_predictions(newer)}};
-    json["unlike"] = unlike_text(paired.unlike);
-    return json_text(json);
-  }
-  std::string text = fmt::format("{} paired scans\n", paired.scans.size());
-  for (const std::string& warning : warnings(baseline)) text += "baseline: " + warning + '\n';
-  for (const std::string& warning : warnings(newer)) text += "new: " + warning + '\n';
-  if (!paired.unlike.empty()) text += "unlike: " + unlike_text(paired.unlike) + '\n';
-  text += '\n' + gate_text(result) + (result.passed() ? "\npass\n" : "\nregression\n");
-  return options.format == "github" ? text + gate_annotations(result) : text;
+Answer answer_of(const ResultSet& baseline, const ResultSet& newer, const PairedRuns& paired,
+                 const GateResult& result) {
+  const std::string unlike = unlike_text(paired.unlike);
+  Sheet sheet = gate_sheet(result);
+  sheet.lead.push_back(fmt::format("{} paired scans", paired.scans.size()));
+  if (!unlike.empty()) sheet.lead.push_back("unlike: " + unlike);
+  nlohmann::ordered_json json = to_json(result);
+  json["paired_scans"] = paired.scans.size();
+  json["missing_predictions"] = {{"baseline", missing_predictions(baseline)},
+                                 {"new", missing_predictions(newer)}};
+  json["unlike"] = unlike;
+  return {.exit_code = result.passed() ? 0 : 1,
+          .standing = standing_of(baseline, "baseline", newer, "new"),
+          .sheets = {std::move(sheet)},
+          .json = json_text(json),
+          .annotations = gate_annotations(result)};
 }
 
 Answer compare(const CompareFlags& options) {
@@ -78,11 +77,12 @@ Answer compare(const CompareFlags& options) {
   const GateResult result =
       judge(paired, *baseline.front().protocol, options.max_drop_points / 100.0,
             options.statistical ? GateRule::kStatistical : GateRule::kMaxDrop);
-  const std::string answer = answer_of(options, baseline, newer, paired, result);
-  const int exit_code = result.passed() ? 0 : 1;
-  if (options.summary.empty()) return {answer, exit_code};
-  write_output(options.summary, gate_markdown(result, unlike_text(paired.unlike)));
-  return answer_beside(options.summary, answer, exit_code);
+  Answer answer = answer_of(baseline, newer, paired, result);
+  if (!options.summary.empty()) {
+    write_output(options.summary, render(answer, Format::kMarkdown));
+    answer = answer_beside(options.summary, std::move(answer));
+  }
+  return options.quiet && result.passed() ? Answer{} : answer;
 }
 
 }  // namespace
@@ -101,13 +101,6 @@ CommandRun add_compare(CLI::App& command) {
   command.add_flag("--statistical", options->statistical,
                    "Fail only when the drop also exceeds what its 95 % interval leaves open");
   command.add_flag("--even-if", options->even_if, "Also compare results of different kinds");
-  CLI::Option* format = command.add_option("--output-format", options->format, "How to print it")
-                            ->check(CLI::IsMember({"text", "json", "github"}))
-                            ->capture_default_str();
-  command
-      .add_flag_callback(
-          "--json", [options] { options->format = "json"; }, "As --output-format json")
-      ->excludes(format);
   command.add_option("--summary", options->summary, "Also write the table in markdown to FILE")
       ->type_name("FILE");
   command.add_flag("-q,--quiet", options->quiet, "Print nothing when it passes");

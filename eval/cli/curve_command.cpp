@@ -38,7 +38,7 @@ Answer curve(const CurveFlags& options) {
   if (options.picture) check_output(*options.picture);
   const CurveReport report = curve_of_run(options.run, options.dataset_root);
   if (options.picture) write_output(*options.picture, curve_picture(report).png());
-  return answer_beside(options.picture.value_or(""), formatted(report, options.format));
+  return answer_beside(options.picture.value_or(""), {formatted(report, options.format)});
 }
 
 }  // namespace

@@ -7,7 +7,6 @@
 
 #include "datasets/disk/files.hpp"
 #include "datasets/text/errors.hpp"
-#include "datasets/text/shown_text.hpp"
 #include "eval/answer/terminal.hpp"
 #include "eval/cli/command_line.hpp"
 #include "eval/cli/failure.hpp"
@@ -35,13 +34,11 @@ int main(int argc, char** argv) {
   std::signal(SIGCHLD, SIG_DFL);
   try {
     occupy_standard_streams();
-    const mosbench::Answer answer = mosbench::answer_to({argv + 1, argv + argc});
-    // Names in it may come from files of strangers.
-    const std::string text =
-        mosbench::folded_tables(mosbench::shown(answer.text), mosbench::terminal_columns());
-    mosbench::write_stdout(mosbench::shows_colours(STDOUT_FILENO) ? mosbench::in_colours(text)
-                                                                  : text);
-    return answer.exit_code;
+    const mosbench::Printed printed =
+        mosbench::answer_to({argv + 1, argv + argc}, mosbench::terminal_columns());
+    const bool coloured = printed.is_text && mosbench::shows_colours(STDOUT_FILENO);
+    mosbench::write_stdout(coloured ? mosbench::in_colours(printed.bytes) : printed.bytes);
+    return printed.exit_code;
   } catch (...) {
     const mosbench::Failure failure = mosbench::current_failure();
     mosbench::tell(fmt::format("mosbench: {}", failure.message));

@@ -188,7 +188,7 @@ Answer odometry_answer(OdometryFlags flags) {
                       {"sequences", sequences}});
   }
   if (!flags.json && flags.out != "-") text += next_command(flags);
-  return answer_beside(flags.out, text, doubtful > 0 ? 1 : 0);
+  return answer_beside(flags.out, {text, doubtful > 0 ? 1 : 0});
 }
 
 }  // namespace

@@ -1,18 +1,13 @@
 #include "eval/cli/output_file.hpp"
 
-#include <cstdio>
-
 #include "datasets/disk/files.hpp"
 #include "datasets/text/errors.hpp"
 
 namespace mosbench {
-namespace {
 
 bool names_stdout(const std::filesystem::path& file) {
   return file == "-" || file == "/dev/stdout" || file == "/dev/fd/1";
 }
-
-}  // namespace
 
 void write_output(const std::filesystem::path& file, std::string_view bytes) {
   if (names_stdout(file)) {
@@ -36,10 +31,9 @@ void check_output(const std::filesystem::path& file) {
   throw DataError(above, "is no folder", "a folder for " + file.filename().string());
 }
 
-Answer answer_beside(const std::filesystem::path& file, const std::string& text, int exit_code) {
-  if (!names_stdout(file)) return {text, exit_code};
-  std::fputs(text.c_str(), stderr);
-  return {"", exit_code};
+Answer answer_beside(const std::filesystem::path& file, Answer answer) {
+  answer.goes_beside_stdout = names_stdout(file);
+  return answer;
 }
 
 }  // namespace mosbench

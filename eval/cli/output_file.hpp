@@ -1,10 +1,9 @@
 #pragma once
 
 #include <filesystem>
-#include <string>
 #include <string_view>
 
-#include "eval/cli/commands.hpp"
+#include "eval/answer/answer.hpp"
 
 namespace mosbench {
 
@@ -16,8 +15,11 @@ void write_output(const std::filesystem::path& file, std::string_view bytes);
 /// it is a folder, or lies below what is none.
 void check_output(const std::filesystem::path& file);
 
+/// Returns whether a file that the user named is stdout.
+bool names_stdout(const std::filesystem::path& file);
+
 /// Returns the answer of a command that wrote `file`. Where that is stdout, which then holds
-/// nothing else, the text goes to stderr.
-Answer answer_beside(const std::filesystem::path& file, const std::string& text, int exit_code = 0);
+/// nothing else, the answer goes to stderr.
+Answer answer_beside(const std::filesystem::path& file, Answer answer);
 
 }  // namespace mosbench

@@ -1,7 +1,6 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
-#include "eval/answer/answer_text.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/tables/leaderboard_print.hpp"
 
@@ -24,16 +23,15 @@ nothing else.
 Examples:
   mosbench rank results/runs/08
   mosbench rank results/runs/online results/runs/delay-5 results/runs/delay-10 --order given
-  mosbench rank results/runs/08 results/runs/4dmos --format latex > leaderboard.tex
-  mosbench rank results/runs/08/dynablox results/runs/08/yoon --format csv)";
+  mosbench rank results/runs/08 results/runs/4dmos --as latex > leaderboard.tex
+  mosbench rank results/runs/08/dynablox results/runs/08/yoon --as csv)";
 
 struct RankFlags {
   std::vector<std::string> runs;
   std::string order = "iou";
-  std::string format = "text";
 };
 
-std::string rank(const RankFlags& options) {
+Answer rank(const RankFlags& options) {
   std::vector<ResultSet> runs;
   for (const std::string& path : options.runs) {
     for (ResultSet& run : load_runs_of_folders(path)) runs.push_back(std::move(run));
@@ -41,11 +39,7 @@ std::string rank(const RankFlags& options) {
   Leaderboard board =
       leaderboard_of(runs, options.order == "given" ? RowOrder::kGiven : RowOrder::kIou);
   add_folders_of_twins(board);
-  if (options.format == "markdown") return leaderboard_markdown(board);
-  if (options.format == "csv") return leaderboard_csv(board);
-  if (options.format == "latex") return leaderboard_latex(board);
-  if (options.format == "json") return json_text(to_json(board));
-  return leaderboard_text(board);
+  return leaderboard_answer(board);
 }
 
 }  // namespace
@@ -56,11 +50,8 @@ CommandRun add_rank(CLI::App& command) {
   command.add_option("--order", options->order, "Best IoU first, or as RUNS are given")
       ->check(CLI::IsMember({"iou", "given"}))
       ->capture_default_str();
-  command.add_option("--format", options->format, "How to print it")
-      ->check(CLI::IsMember({"text", "markdown", "csv", "latex", "json"}))
-      ->capture_default_str();
   command.footer(kRankFooter);
-  return [options] { return Answer{rank(*options)}; };
+  return [options] { return rank(*options); };
 }
 
 }  // namespace mosbench

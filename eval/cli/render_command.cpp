@@ -248,8 +248,8 @@ Answer render(RenderFlags& options) {
   check_has_labels(scans, scan_index);
   write_output(options.out, Pictures(options, scans, {scan_index}).png(0));
   return answer_beside(options.out,
-                       fmt::format("scan {} of {} in {}\n", scans.rows()[scan_index].stem,
-                                   result.name.text(), options.out.string()));
+                       {fmt::format("scan {} of {} in {}\n", scans.rows()[scan_index].stem,
+                                    result.name.text(), options.out.string())});
 }
 
 }  // namespace

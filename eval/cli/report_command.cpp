@@ -51,7 +51,7 @@ Answer write_report(ReportFlags& options) {
       fmt::format("report of {} in {}, {:.1f} MB\n", counted(report.results, "result"),
                   options.out.string(), static_cast<double>(report.html.size()) / 1e6);
   for (const std::string& remark : report.remarks) text += remark + '\n';
-  return answer_beside(options.out, text);
+  return answer_beside(options.out, {text});
 }
 
 }  // namespace

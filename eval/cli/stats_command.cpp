@@ -5,9 +5,7 @@
 #include <optional>
 
 #include "datasets/text/errors.hpp"
-#include "eval/answer/answer_text.hpp"
 #include "eval/cli/commands.hpp"
-#include "eval/results/tell.hpp"
 #include "eval/statistics/statistics_report.hpp"
 
 namespace mosbench {
@@ -23,31 +21,17 @@ poses; protocol, scans and truth must be the same.
 Examples:
   mosbench stats results/runs/kitti
   mosbench stats results/runs/kitti results/runs/kitti-delayed
-  mosbench stats results/runs/kitti --csv > scans.csv
+  mosbench stats results/runs/kitti --as csv > scans.csv
   mosbench stats results/runs/kitti --per-scan --json)";
 
 struct StatsFlags {
   std::filesystem::path first;
   std::optional<std::filesystem::path> second;
   bool per_scan = false;
-  bool csv = false;
-  bool json = false;
 };
 
-std::string of_one(const StatsFlags& options) {
-  const ResultSet set = load_result_set(options.first);
-  if (options.csv) {
-    for (const std::string& warning : warnings(set)) tell(warning);
-    return scan_table_csv(set);
-  }
-  if (options.json) return json_text(statistics_json(set, options.per_scan));
-  return statistics_text(set);
-}
-
-std::string of_two(const StatsFlags& options) {
-  if (options.csv || options.per_scan) {
-    throw UsageError("--csv and --per-scan: show one run, expected no SECOND");
-  }
+Answer of_two(const StatsFlags& options) {
+  if (options.per_scan) throw UsageError("--per-scan: shows one run, expected no SECOND");
   const ResultSet first = load_result_set(options.first);
   const ResultSet second = load_result_set(*options.second);
   PairedRuns paired = pair_runs(first, second);
@@ -59,8 +43,7 @@ std::string of_two(const StatsFlags& options) {
     throw DataError(second.path, "is not like " + first.path.string() + ": " + unlike_text(refused),
                     "the same protocol, scans and truth");
   }
-  return options.json ? json_text(difference_json(first, second, paired))
-                      : difference_text(first, second, paired);
+  return difference_answer(first, second, paired);
 }
 
 }  // namespace
@@ -71,10 +54,11 @@ CommandRun add_stats(CLI::App& command) {
   command.add_option("SECOND", options->second, "Results of another run on the same scans")
       ->type_name("DIR");
   command.add_flag("--per-scan", options->per_scan, "With --json: also the counts of each scan");
-  command.add_flag("--csv", options->csv, "Print the counts of each scan as CSV");
-  command.add_flag("--json", options->json, "Print JSON instead of a table");
   command.footer(kStatsFooter);
-  return [options] { return Answer{options->second ? of_two(*options) : of_one(*options)}; };
+  return [options] {
+    return options->second ? of_two(*options)
+                           : statistics_answer(load_result_set(options->first), options->per_scan);
+  };
 }
 
 }  // namespace mosbench

@@ -167,7 +167,7 @@ Answer trajectory_answer(const TrajectoryFlags& flags, const CLI::App& command) 
       second ? answer_of_two(first, *second, flags, rules) : answer_of_one(first, flags, rules);
   if (!flags.plot) return {text};
   write_plots(first.scores, second ? &second->scores : nullptr, *flags.plot, rules.alignment);
-  return answer_beside(*flags.plot, text);
+  return answer_beside(*flags.plot, {text});
 }
 
 }  // namespace

@@ -21,8 +21,8 @@ std::pair<int, std::string> command(const std::vector<std::string>& arguments, b
   const py::gil_scoped_release released;
   const std::lock_guard lock(one_at_a_time);
   const CallerScope scope({.quiet = quiet, .at_each_scan = handle_signals});
-  const Answer answer = answer_to(arguments);
-  return {answer.exit_code, answer.text};
+  const Printed printed = answer_to(arguments, 0);
+  return {printed.exit_code, printed.bytes};
 }
 
 }  // namespace

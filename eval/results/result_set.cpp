@@ -287,6 +287,26 @@ std::vector<std::string> warnings(const ResultSet& set) {
   return texts;
 }
 
+Standing standing_of(const ResultSet& set) {
+  Standing standing{.doubts = warnings(set)};
+  for (const SequenceResult& sequence : set.sequences) {
+    standing.simulated = standing.simulated || sequence.simulated;
+    if (standing.origin.empty()) standing.origin = sequence.simulated_origin;
+  }
+  return standing;
+}
+
+Standing standing_of(const ResultSet& first, const char* first_name, const ResultSet& second,
+                     const char* second_name) {
+  Standing both{standing_of(first).simulated || standing_of(second).simulated};
+  for (const auto& [set, name] : {std::pair{&first, first_name}, std::pair{&second, second_name}}) {
+    for (const std::string& doubt : warnings(*set)) {
+      both.doubts.push_back(fmt::format("{}: {}", name, doubt));
+    }
+  }
+  return both;
+}
+
 std::vector<const ScanRow*> counted_scans(const SequenceResult& result) {
   const auto split = result.splits.find(std::string(result.protocol->default_split));
   std::vector<const ScanRow*> scans;

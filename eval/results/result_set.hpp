@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "datasets/sequence/sequence_name.hpp"
+#include "eval/answer/answer.hpp"
 #include "eval/protocols/protocol.hpp"
 #include "eval/protocols/scan_sums.hpp"
 #include "eval/results/result_file.hpp"
@@ -81,6 +82,12 @@ std::string incomplete_warning(std::size_t missing_predictions);
 std::string split_warning(const std::string& split);
 /// What has to be said wherever numbers of the set are shown.
 std::vector<std::string> warnings(const ResultSet& set);
+
+/// What every format has to show beside numbers of the set.
+Standing standing_of(const ResultSet& set);
+/// The same of two sets, whose doubts begin with their names.
+Standing standing_of(const ResultSet& first, const char* first_name, const ResultSet& second,
+                     const char* second_name);
 
 /// The scans that the protocol counts, in order: those with truth, of the protocol's split where it
 /// picks scans.

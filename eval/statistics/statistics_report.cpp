@@ -5,8 +5,7 @@
 #include <cmath>
 
 #include "eval/answer/answer_text.hpp"
-#include "eval/answer/csv.hpp"
-#include "eval/answer/text_table.hpp"
+#include "eval/answer/render.hpp"
 #include "eval/protocols/counts_json.hpp"
 #include "eval/statistics/scan_spacing.hpp"
 
@@ -17,32 +16,17 @@ using nlohmann::ordered_json;
 
 template <typename Value>
 ordered_json spread_json(const Value& value) {
-  return {{"value", json_or_null(value.value)},
-          {"standard_error", json_or_null(value.standard_error)},
-          {"low", value.interval ? ordered_json(value.interval->low) : ordered_json(nullptr)},
-          {"high", value.interval ? ordered_json(value.interval->high) : ordered_json(nullptr)},
-          {"no_interval",
-           value.no_interval.empty() ? ordered_json(nullptr) : ordered_json(value.no_interval)}};
+  ordered_json json = {{"value", json_or_null(value.value)},
+                       {"standard_error", json_or_null(value.standard_error)}};
+  json.update(interval_json(spread_of(value)));
+  return json;
 }
 
-std::vector<std::string> estimate_cells(const std::string& name, std::size_t scans,
-                                        const Estimates& estimates) {
-  std::vector<std::string> cells = {name, fmt::format("{}", scans)};
-  for (const Estimate& metric : estimates.metrics) {
-    cells.push_back(percent_text(metric.value));
-    cells.push_back(interval_text(metric.interval, "{:.1f}"));
-  }
+std::vector<Cell> estimate_cells(const std::string& name, std::uint64_t scans,
+                                 const Estimates& estimates) {
+  std::vector<Cell> cells = {name, scans};
+  for (const Estimate& metric : estimates.metrics) cells.emplace_back(spread_of(metric));
   return cells;
-}
-
-/// Says per row why its IoU has no interval; empty where all have one.
-std::string no_intervals(const std::vector<std::pair<std::string, const Estimate*>>& rows) {
-  std::string text;
-  for (const auto& [name, metric] : rows) {
-    if (metric->no_interval.empty()) continue;
-    text += fmt::format("no interval for {}: {}\n", name, metric->no_interval);
-  }
-  return text;
 }
 
 ordered_json scan_json(const SequenceResult& sequence, const ScanRow& row) {
@@ -59,20 +43,40 @@ ordered_json scan_json(const SequenceResult& sequence, const ScanRow& row) {
 
 std::string headline(const ResultSet& set) {
   const SequenceResult& first = set.front();
-  std::string text =
-      fmt::format("{}, {}; data set {}, protocol {}{}", first.method, first.setting, first.dataset,
-                  first.protocol->name,
-                  first.simulated ? "; SIMULATED: not comparable with published numbers" : "");
-  for (const std::string& warning : warnings(set)) text += "; " + warning;
-  return text;
+  return fmt::format("{}, {}; data set {}, protocol {}", first.method, first.setting, first.dataset,
+                     first.protocol->name);
+}
+
+/// A row per counted scan.
+Sheet scan_sheet(const ResultSet& set) {
+  Sheet sheet{.columns = {{"sequence", Unit::kText}, {"scan", Unit::kText}}};
+  for (const char* name : {"points", "tp", "fp", "fn", "tn", "ignored"}) {
+    sheet.columns.push_back({name});
+  }
+  for (const std::string_view name : kMetricNames) sheet.columns.push_back({std::string(name)});
+  for (const SequenceResult& sequence : set.sequences) {
+    for (const ScanRow* row : counted_scans(sequence)) {
+      const Confusion& counts = *row->counts;
+      std::vector<Cell>& cells = sheet.rows.emplace_back();
+      cells = {sequence.sequence.text(),
+               row->stem,
+               std::uint64_t{row->points},
+               counts.tp,
+               counts.fp,
+               counts.fn,
+               counts.tn,
+               counts.ignored};
+      for (const double value : metrics_of(counts)) cells.emplace_back(value);
+    }
+  }
+  return sheet;
 }
 
 }  // namespace
 
-std::string interval_text(const std::optional<Interval>& interval, const char* style) {
-  if (!interval) return "none";
-  return fmt::format("[{}, {}]", percent_text(interval->low, style),
-                     percent_text(interval->high, style));
+Spread spread_of(const Estimate& estimate) {
+  if (!estimate.interval) return {estimate.value, {}, {}, estimate.no_interval};
+  return {estimate.value, estimate.interval->low, estimate.interval->high};
 }
 
 RunStatistics run_statistics(const ResultSet& set) {
@@ -127,6 +131,8 @@ ordered_json provenance_json(const ResultSet& set) {
   return json;
 }
 
+namespace {
+
 ordered_json statistics_json(const ResultSet& set, bool per_scan) {
   const RunStatistics statistics = run_statistics(set);
   ordered_json json = provenance_json(set);
@@ -150,87 +156,71 @@ ordered_json statistics_json(const ResultSet& set, bool per_scan) {
   return json;
 }
 
-std::string scan_table_csv(const ResultSet& set) {
-  std::string csv = "sequence,scan,points,tp,fp,fn,tn,ignored,iou,precision,recall,f1\n";
-  for (const SequenceResult& sequence : set.sequences) {
-    for (const ScanRow* row : counted_scans(sequence)) {
-      const Confusion& counts = *row->counts;
-      std::vector<std::string> cells = {sequence.sequence, row->stem};
-      for (const std::uint64_t count : {std::uint64_t{row->points}, counts.tp, counts.fp, counts.fn,
-                                        counts.tn, counts.ignored}) {
-        cells.push_back(fmt::format("{}", count));
-      }
-      for (const double value : metrics_of(counts)) {
-        cells.push_back(std::isnan(value) ? "" : fmt::format("{:.17g}", value));
-      }
-      csv += csv_row(cells);
-    }
-  }
-  return csv;
-}
+}  // namespace
 
-std::string statistics_text(const ResultSet& set) {
+Answer statistics_answer(const ResultSet& set, bool per_scan) {
   const RunStatistics statistics = run_statistics(set);
-  TextTable table({{"sequence", TextTable::Align::kLeft},
-                   {"scans"},
-                   {"IoU %"},
-                   {"95 %"},
-                   {"precision %"},
-                   {"95 %"},
-                   {"recall %"},
-                   {"95 %"},
-                   {"F1 %"},
-                   {"95 %"}});
-  std::vector<std::pair<std::string, const Estimate*>> ious;
-  std::size_t scans = 0;
+  Sheet sheet{.lead = {headline(set)},
+              .columns = {{"sequence", Unit::kText},
+                          {"scans"},
+                          {"IoU", Unit::kPercent},
+                          {"precision", Unit::kPercent},
+                          {"recall", Unit::kPercent},
+                          {"F1", Unit::kPercent}},
+              .notes = {"95 %: where the value of many more scans like these would be"}};
+  std::uint64_t scans = 0;
+  const auto add = [&](const std::string& name, std::uint64_t counted, const Estimates& estimates) {
+    sheet.rows.push_back(estimate_cells(name, counted, estimates));
+    const std::string& why = estimates[Metric::kIou].no_interval;
+    if (!why.empty()) sheet.notes.push_back(fmt::format("no interval for {}: {}", name, why));
+  };
   for (std::size_t s = 0; s < set.sequences.size(); ++s) {
-    const std::size_t counted = counted_scans(set.sequences[s]).size();
+    const std::uint64_t counted = counted_scans(set.sequences[s]).size();
     scans += counted;
-    table.add_row(estimate_cells(set.sequences[s].sequence, counted, statistics.sequences[s]));
-    ious.emplace_back(set.sequences[s].sequence, &statistics.sequences[s][Metric::kIou]);
+    add(set.sequences[s].sequence.text(), counted, statistics.sequences[s]);
   }
-  ious.emplace_back("all", &statistics.all[Metric::kIou]);
-  table.add_rule();
-  table.add_row(estimate_cells("all", scans, statistics.all));
-  return fmt::format("{}\n\n{}\n95 %: where the value of many more scans like these would be\n{}",
-                     headline(set), table.str(), no_intervals(ious));
+  sheet.rows.emplace_back();
+  add("all", scans, statistics.all);
+  return {.standing = standing_of(set),
+          .sheets = {std::move(sheet)},
+          .records = scan_sheet(set),
+          .json = json_text(statistics_json(set, per_scan))};
 }
 
-ordered_json difference_json(const ResultSet& first, const ResultSet& second,
-                             const PairedRuns& paired) {
-  return {{"first", provenance_json(first)},
-          {"second", provenance_json(second)},
-          {"confidence", kConfidence},
-          {"paired_scans", paired.scans.size()},
-          {"unlike", unlike_text(paired.unlike)},
-          {"difference", to_json(paired_difference(*first.front().protocol, paired.first,
-                                                   paired.second, paired.spacing))}};
-}
-
-std::string difference_text(const ResultSet& first, const ResultSet& second,
-                            const PairedRuns& paired) {
+Answer difference_answer(const ResultSet& first, const ResultSet& second,
+                         const PairedRuns& paired) {
   const Differences differences =
       paired_difference(*first.front().protocol, paired.first, paired.second, paired.spacing);
-  TextTable table({{"second - first", TextTable::Align::kLeft},
-                   {"difference"},
-                   {"95 %"},
-                   {"p"},
-                   {"detectable"}});
+  const std::string unlike = unlike_text(paired.unlike);
+  Sheet sheet{
+      .lead = {"first:  " + headline(first), "second: " + headline(second),
+               fmt::format("{} paired scans{}{}", paired.scans.size(), unlike.empty() ? "" : "; ",
+                           unlike)},
+      .columns = {{"second - first", Unit::kText},
+                  {"difference", Unit::kPoints},
+                  {"p", Unit::kNumber, 4},
+                  {"detectable", Unit::kPercent, 2}},
+      .notes = {"in percentage points; detectable: the true difference that as many scans like "
+                "these show",
+                "at 5 % significance with 80 % probability; n times as many scans divide it by "
+                "sqrt(n)"}};
   for (std::size_t m = 0; m < kMetricNames.size(); ++m) {
     const Difference& metric = differences.metrics[m];
-    table.add_row({std::string(kMetricNames[m]), percent_text(metric.value, "{:+.2f}"),
-                   interval_text(metric.interval, "{:+.2f}"),
-                   metric.p_value ? fmt::format("{:.4f}", *metric.p_value) : "none",
-                   percent_text(metric.smallest_detectable, "{:.2f}")});
+    sheet.rows.push_back({std::string(kMetricNames[m]), spread_of(metric),
+                          or_missing(metric.p_value), or_undefined(metric.smallest_detectable)});
   }
-  std::string text = fmt::format("first:  {}\nsecond: {}\n{} paired scans", headline(first),
-                                 headline(second), paired.scans.size());
-  if (!paired.unlike.empty()) text += "; " + unlike_text(paired.unlike);
-  return text + "\n\n" + table.str() +
-         "\nin percentage points; detectable: the true difference that as many scans like these "
-         "show\n"
-         "at 5 % significance with 80 % probability; n times as many scans divide it by sqrt(n)\n" +
-         no_intervals({{"the difference", &differences[Metric::kIou]}});
+  if (const std::string& why = differences[Metric::kIou].no_interval; !why.empty()) {
+    sheet.notes.push_back("no interval for the difference: " + why);
+  }
+  const ordered_json json = {{"first", provenance_json(first)},
+                             {"second", provenance_json(second)},
+                             {"confidence", kConfidence},
+                             {"paired_scans", paired.scans.size()},
+                             {"unlike", unlike},
+                             {"difference", to_json(differences)}};
+  return {.standing = standing_of(first, "first", second, "second"),
+          .sheets = {std::move(sheet)},
+          .json = json_text(json)};
 }
 
 }  // namespace mosbench

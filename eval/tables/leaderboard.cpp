@@ -154,12 +154,12 @@ void remark_on_times(const std::vector<ResultSet>& runs, std::vector<std::string
   }
 }
 
-void add_settings_and_warnings(Leaderboard& board) {
+void add_settings_and_doubts(Leaderboard& board) {
   std::vector<const ResultSet*> runs;
   for (const LeaderboardRow& row : board.rows) {
     runs.push_back(row.run);
     for (const std::string& warning : warnings(*row.run)) {
-      board.remarks.push_back(fmt::format("{}: {}", name_of(board, row), warning));
+      board.doubts.push_back(fmt::format("{}: {}", name_of(board, row), warning));
     }
   }
   board.differing = differing_settings(runs);
@@ -210,7 +210,7 @@ Leaderboard leaderboard_of(const std::vector<ResultSet>& runs, RowOrder order) {
     board.rows.push_back(row_of(run, board.sequences));
   }
   if (order == RowOrder::kIou) std::ranges::stable_sort(board.rows, std::greater(), iou_of);
-  add_settings_and_warnings(board);
+  add_settings_and_doubts(board);
   mark_front(board.rows);
   remark_on_times(runs, board.remarks);
   for (std::size_t i = 1; board.rows.front().all && i < board.rows.size(); ++i) {

@@ -26,6 +26,7 @@ struct Leaderboard {
   std::vector<std::string> sequences;  ///< every sequence that a run has
   std::vector<LeaderboardRow> rows;
   std::vector<DifferingSetting> differing;  ///< values in the order of the rows
+  std::vector<std::string> doubts;          ///< of missing predictions and other splits, by run
   std::vector<std::string> remarks;         ///< what a reader should know, plain sentences
 };
 

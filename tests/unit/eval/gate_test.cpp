@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "eval/answer/render.hpp"
 #include "eval/statistics/gate_report.hpp"
 
 namespace mosbench {
@@ -64,7 +65,7 @@ TEST(Gate, SaysWhyThereIsNoInterval) {
   const GateResult result =
       judge(paired, protocol_named("sipailou"), 0.005, GateRule::kStatistical);
   EXPECT_TRUE(result.passed());
-  EXPECT_THAT(gate_text(result),
+  EXPECT_THAT(render({.sheets = {gate_sheet(result)}}, Format::kText),
               testing::HasSubstr("no interval for street: 1 scans, expected at least 100"));
   EXPECT_EQ(to_json(result).at("checks").at(0).at("low"), nullptr);
 }
@@ -76,15 +77,18 @@ TEST(Gate, EscapesNamesInAnnotationsAndMarkdown) {
     const PairedRuns paired{{{name, "0", nullptr, nullptr}}, {{first}}, {{second}}, {}};
     return judge(paired, protocol_named("sipailou"), 0.005);
   };
-  EXPECT_EQ(gate_annotations(judged(right, wrong)),
-            "::error title=IoU of day|50%25%3A a%2C%0Ab dropped::100.0 %25 before, 0.0 %25 now: "
-            "-100.00 points, tolerance 0.50\n");
-  EXPECT_EQ(gate_annotations(judged(wrong, nothing)),
-            "::error title=IoU of day|50%25%3A a%2C%0Ab dropped::0.0 %25 before, undefined now\n");
-  EXPECT_EQ(gate_annotations(judged(right, right)), "");
-  EXPECT_THAT(gate_markdown(judged(right, right), "method is A and B"),
-              testing::EndsWith("\nunlike: method is A and B\n"));
-  EXPECT_THAT(gate_markdown(judged(right, wrong)),
+  const auto shown = [](const GateResult& result, Format format) {
+    return render({.sheets = {gate_sheet(result)}, .annotations = gate_annotations(result)},
+                  format);
+  };
+  EXPECT_THAT(shown(judged(right, wrong), Format::kGithub),
+              testing::EndsWith("\n::error title=IoU of day|50%25%3A a%2C%0Ab dropped::100.0 %25 "
+                                "before, 0.0 %25 now: -100.00 points, tolerance 0.50\n"));
+  EXPECT_THAT(shown(judged(wrong, nothing), Format::kGithub),
+              testing::EndsWith("\n::error title=IoU of day|50%25%3A a%2C%0Ab dropped::0.0 %25 "
+                                "before, undefined now\n"));
+  EXPECT_TRUE(gate_annotations(judged(right, right)).empty());
+  EXPECT_THAT(shown(judged(right, wrong), Format::kMarkdown),
               testing::HasSubstr("\n| day\\|50%: a,\\\\x0ab | 100.0 | 0.0 | -100.00 |"));
 }
 

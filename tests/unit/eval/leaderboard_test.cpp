@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "datasets/text/errors.hpp"
+#include "eval/answer/render.hpp"
 #include "eval/tables/leaderboard_print.hpp"
 #include "tests/temp_folder.hpp"
 
@@ -79,13 +80,13 @@ TEST(Leaderboard, GivesThePairedDifferenceToTheBestWithItsInterval) {
   ASSERT_TRUE(difference.interval) << difference.no_interval;
   EXPECT_LE(difference.interval->low, -0.05 + 1e-9);
   EXPECT_GE(difference.interval->high, -0.05 - 1e-9);
-  EXPECT_THAT(leaderboard_text(board), HasSubstr("-5.00 ["));
+  EXPECT_THAT(render(leaderboard_answer(board), Format::kText), HasSubstr("-5.00  ["));
 }
 
 TEST(Leaderboard, SaysWhyThereIsNoIntervalOfADifference) {
   const std::vector<ResultSet> runs = {run_of("a", 900, 1.0, 3), run_of("b", 850, 2.0, 3)};
-  const std::string text = leaderboard_text(leaderboard_of(runs));
-  EXPECT_THAT(text, HasSubstr("-5.00 [none]"));
+  const std::string text = render(leaderboard_answer(leaderboard_of(runs)), Format::kText);
+  EXPECT_THAT(text, HasSubstr("-5.00  none"));
   EXPECT_THAT(text, HasSubstr("no interval of the difference of 2: 6 scans"));
 }
 
@@ -110,7 +111,7 @@ TEST(Leaderboard, RanksNoRunThatLacksPredictions) {
   const Leaderboard board = leaderboard_of(runs);
   EXPECT_EQ(board.rows[1].run->front().method, "gaps");
   EXPECT_FALSE(board.rows[1].all);
-  EXPECT_THAT(board.remarks.front(), HasSubstr("gaps: INCOMPLETE: 1 scan without"));
+  EXPECT_THAT(board.doubts.front(), HasSubstr("gaps: INCOMPLETE: 1 scan without"));
 }
 
 TEST(Leaderboard, StandsForEachGroupOfRunsThatCanBeCompared) {
@@ -203,10 +204,11 @@ TEST(Leaderboard, ShowsTheSettingsInWhichRunsOfOneMethodDiffer) {
   EXPECT_THAT(board.differing[0].values, ElementsAre(10, nullptr, 0)) << "in the order of the rows";
   EXPECT_EQ(board.differing[1].name, "poses");
   EXPECT_THAT(board.differing[1].values, ElementsAre("as given", nullptr, "found by KISS-ICP"));
-  EXPECT_THAT(leaderboard_text(board), HasSubstr("delay_scans"));
+  EXPECT_THAT(render(leaderboard_answer(board), Format::kText), HasSubstr("delay_scans"));
   EXPECT_EQ(to_json(board).at("rows").at(2).at("differing_settings").at("delay_scans"), 0);
-  const std::string csv = leaderboard_csv(board);
-  EXPECT_THAT(csv.substr(0, csv.find('\n')), testing::EndsWith(",no_interval,delay_scans,poses"));
+  const std::string csv = render(leaderboard_answer(board), Format::kCsv);
+  EXPECT_THAT(csv.substr(0, csv.find('\n')),
+              testing::EndsWith(",no_interval,delay_scans,poses,standing"));
 }
 
 TEST(Leaderboard, ShowsSettingsThatAllRunsHaveWhateverTheirMethod) {
@@ -240,12 +242,13 @@ TEST(Leaderboard, IsPrintedInEveryFormat) {
   EXPECT_EQ(json.at("rows").at(0).at("method"), "a_b");
   EXPECT_NEAR(json.at("rows").at(1).at("to_first").at("value").get<double>(), -0.05, 1e-9);
   EXPECT_TRUE(json.at("rows").at(0).at("on_front").get<bool>());
-  EXPECT_THAT(leaderboard_latex(board), HasSubstr("1 & a\\_b & 85.0"));
-  const std::string markdown = leaderboard_markdown(board);
-  EXPECT_THAT(markdown, HasSubstr("\n|  | method | IoU % | 95 % | 00 | 01 |"));
-  EXPECT_THAT(markdown, HasSubstr("|---|---|--:|--:|"));
+  const Answer answer = leaderboard_answer(board);
+  EXPECT_THAT(render(answer, Format::kLatex), HasSubstr("1 & a\\_b & 85.0"));
+  const std::string markdown = render(answer, Format::kMarkdown);
+  EXPECT_THAT(markdown, HasSubstr("\n|  | method | IoU % | 95 % | 00 % | 01 % |"));
+  EXPECT_THAT(markdown, HasSubstr("|--:|---|--:|--:|"));
   EXPECT_THAT(markdown, HasSubstr("\n| 1 | a_b | 85.0 |"));
-  const std::string csv = leaderboard_csv(board);
+  const std::string csv = render(answer, Format::kCsv);
   EXPECT_EQ(std::ranges::count(csv, '\n'), 7);
   EXPECT_THAT(csv, HasSubstr("\na_b,,00/result.json,all,84.9825,"));
 }

@@ -1,0 +1,96 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "eval/answer/line_chart.hpp"
+
+namespace mosbench {
+
+enum class Format : std::uint8_t {
+  kText,
+  kJson,
+  kCsv,
+  kLatex,
+  kMarkdown,
+  kHtml,
+  kGithub,  ///< text and the annotations of a pull request
+  kPng,     ///< the charts
+};
+
+/// A number with the interval around it, or why it has none.
+struct Spread {
+  std::optional<double> value, low, high;
+  std::string no_interval{};
+};
+
+/// One value of a table: nothing, words, a count, a number (NaN: undefined), or one with its
+/// interval.
+using Cell = std::variant<std::monostate, std::string, std::uint64_t, double, Spread>;
+
+/// Return the number, or what undefined and missing ones are shown as.
+Cell or_undefined(const std::optional<double>& value);
+Cell or_missing(const std::optional<double>& value);
+
+/// What the numbers of a column are; people see them multiplied with a factor.
+enum class Unit : std::uint8_t {
+  kText,     ///< to the left, all others to the right
+  kNumber,   ///< as it is
+  kPercent,  ///< a fraction
+  kPoints,   ///< a difference of fractions, with its sign
+};
+
+struct Column {
+  std::string name;  ///< "IoU", to which "%" is added
+  Unit unit = Unit::kNumber;
+  std::optional<int> digits{};  ///< behind the point; by default those that the unit usually has
+  std::string key{};            ///< of JSON and CSV; by default made of the name
+};
+
+/// A table with the lines above and below it. An empty row is a line across. Without columns there
+/// are the lines alone.
+struct Sheet {
+  std::string title{};
+  std::vector<std::string> lead{};
+  std::vector<Column> columns{};
+  std::vector<std::vector<Cell>> rows{};
+  std::vector<std::string> notes{};
+  std::string caption{};  ///< one line that LaTeX and HTML print with the table
+};
+
+/// What keeps the numbers of an answer from being compared with others. Every format shows it.
+struct Standing {
+  bool simulated = false;
+  std::string origin{};               ///< of simulated data, "scene room, seed 5"; empty: not told
+  std::vector<std::string> doubts{};  ///< "INCOMPLETE: 2 scans are not counted"
+};
+
+/// Returns a sentence for each.
+std::vector<std::string> sentences(const Standing& standing);
+
+/// What a failed check says in the list of changed files of a pull request.
+struct Annotation {
+  std::string title, message;
+};
+
+/// What a command answers. Renderers make text, tables and pictures of it.
+struct Answer {
+  std::string text{};  ///< plain lines; with sheets those below them
+  int exit_code = 0;
+  Format usual = Format::kText;        ///< where none was asked for
+  std::optional<Standing> standing{};  ///< of answers about results
+  std::vector<Sheet> sheets{};
+  std::optional<Sheet> records{};  ///< rows for programs, which CSV has instead of the sheets
+  std::string json{};              ///< its own, by `json_text`; empty: the sheets
+  std::string page{};              ///< HTML of its own; empty: the sheets
+  std::vector<LineChart> charts{};
+  std::vector<Annotation> annotations{};
+  std::optional<std::filesystem::path> file{};  ///< where to write it instead of on stdout
+  bool goes_beside_stdout = false;              ///< stdout holds a file that the user named so
+};
+
+}  // namespace mosbench

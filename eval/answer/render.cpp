@@ -1,0 +1,343 @@
+#include "eval/answer/render.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+#include "datasets/text/errors.hpp"
+#include "datasets/text/shown_text.hpp"
+#include "eval/answer/answer_text.hpp"
+#include "eval/answer/csv.hpp"
+
+namespace mosbench {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr std::size_t kChartPixels = 800;
+
+/// How the numbers of a unit are shown.
+struct UnitStyle {
+  const char *title, *key;  ///< behind the name
+  double factor;
+  int digits;  ///< -1: six that count
+  const char* sign;
+};
+
+const UnitStyle& style_of(Unit unit) {
+  static constexpr std::array<UnitStyle, 4> kStyles = {{{"", "", 1, -1, "-"},
+                                                        {"", "", 1, -1, "-"},
+                                                        {" %", "_percent", 100, 1, "-"},
+                                                        {"", "_points", 100, 2, "+"}}};
+  return kStyles[static_cast<std::size_t>(unit)];
+}
+
+std::string number_text(double value, const Column& column) {
+  if (std::isnan(value)) return "undefined";
+  const UnitStyle& style = style_of(column.unit);
+  const int digits = column.digits.value_or(style.digits);
+  const double shown = style.factor * value;
+  if (digits < 0) return fmt::format("{:.6g}", shown);
+  return *style.sign == '+' ? fmt::format("{:+.{}f}", shown, digits)
+                            : fmt::format("{:.{}f}", shown, digits);
+}
+
+std::string value_text(const Spread& spread, const Column& column) {
+  return number_text(spread.value.value_or(std::numeric_limits<double>::quiet_NaN()), column);
+}
+
+std::string value_text(const Cell& cell, const Column& column) {
+  if (const auto* words = std::get_if<std::string>(&cell)) return shown_in_line(*words);
+  if (const auto* count = std::get_if<std::uint64_t>(&cell)) return fmt::format("{}", *count);
+  if (const auto* number = std::get_if<double>(&cell)) return number_text(*number, column);
+  if (const auto* spread = std::get_if<Spread>(&cell)) return value_text(*spread, column);
+  return "-";
+}
+
+std::string interval_text(const Cell& cell, const Column& column) {
+  const auto* spread = std::get_if<Spread>(&cell);
+  if (spread == nullptr) return value_text(cell, column) == "-" ? "-" : "";
+  if (!spread->low) return "none";
+  return fmt::format("[{}, {}]", number_text(*spread->low, column),
+                     number_text(*spread->high, column));
+}
+
+bool has_intervals(const Sheet& sheet, std::size_t column) {
+  return std::ranges::any_of(sheet.rows, [&](const std::vector<Cell>& row) {
+    return column < row.size() && std::holds_alternative<Spread>(row[column]);
+  });
+}
+
+std::string key_of(const Column& column) {
+  if (!column.key.empty()) return column.key + style_of(column.unit).key;
+  std::string key;
+  for (const char c : column.name) {
+    const bool is_word = std::isalnum(static_cast<unsigned char>(c)) != 0;
+    if (is_word) {
+      key += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    } else if (!key.empty() && key.back() != '_') {
+      key += '_';
+    }
+  }
+  while (key.ends_with('_')) key.pop_back();
+  return (key.empty() ? "row" : key) + style_of(column.unit).key;
+}
+
+/// All digits of a number; of percents and points, which a product has rounded, six.
+std::string csv_number(const std::optional<double>& value, const Column& column) {
+  if (!value || std::isnan(*value)) return "";
+  const double factor = style_of(column.unit).factor;
+  return factor == 1 ? fmt::format("{}", *value) : fmt::format("{:.6g}", factor * *value);
+}
+
+std::string csv_value(const Cell& cell, const Column& column) {
+  if (const auto* words = std::get_if<std::string>(&cell)) return *words;
+  if (const auto* count = std::get_if<std::uint64_t>(&cell)) return fmt::format("{}", *count);
+  if (const auto* number = std::get_if<double>(&cell)) return csv_number(*number, column);
+  return "";
+}
+
+/// The key of an end of the interval around a value: "iou_low_percent" of "iou_percent".
+std::string key_of_end(const Column& column, const char* end) {
+  const std::string key = key_of(column), unit = style_of(column.unit).key;
+  return key.substr(0, key.size() - unit.size()) + end + unit;
+}
+
+std::string csv_of(const Sheet& sheet, const std::optional<Standing>& standing) {
+  std::vector<std::string> cells;
+  std::vector<bool> wide;
+  for (std::size_t c = 0; c < sheet.columns.size(); ++c) {
+    const Column& column = sheet.columns[c];
+    wide.push_back(has_intervals(sheet, c));
+    cells.push_back(key_of(column));
+    if (!wide.back()) continue;
+    for (const char* end : {"_low", "_high"}) cells.push_back(key_of_end(column, end));
+  }
+  if (standing) cells.emplace_back("standing");
+  std::string text = csv_row(cells);
+  const std::string mark =
+      standing ? fmt::format("{}", fmt::join(sentences(*standing), "; ")) : std::string();
+  for (const std::vector<Cell>& row : sheet.rows) {
+    if (row.empty()) continue;
+    cells.clear();
+    for (std::size_t c = 0; c < sheet.columns.size(); ++c) {
+      const Cell cell = c < row.size() ? row[c] : Cell();
+      const auto* spread = std::get_if<Spread>(&cell);
+      cells.push_back(spread == nullptr ? csv_value(cell, sheet.columns[c])
+                                        : csv_number(spread->value, sheet.columns[c]));
+      if (!wide[c]) continue;
+      const Spread ends = spread == nullptr ? Spread{} : *spread;
+      for (const auto& end : {ends.low, ends.high}) {
+        cells.push_back(csv_number(end, sheet.columns[c]));
+      }
+    }
+    if (standing) cells.push_back(mark);
+    text += csv_row(cells);
+  }
+  return text;
+}
+
+/// The lines of an answer without a table, as one.
+Sheet sheet_of_lines(const Answer& answer) {
+  Sheet sheet{.columns = {{"text", Unit::kText}}};
+  const auto add = [&](const std::string& line) { sheet.rows.push_back({line}); };
+  for (const Sheet& each : answer.sheets) {
+    if (!each.title.empty()) add(each.title);
+    std::ranges::for_each(each.lead, add);
+    std::ranges::for_each(each.notes, add);
+  }
+  std::istringstream lines(answer.text);
+  for (std::string line; std::getline(lines, line);) add(line);
+  return sheet;
+}
+
+std::string csv_of(const Answer& answer) {
+  if (answer.records) return csv_of(*answer.records, answer.standing);
+  std::string text;
+  for (const Sheet& sheet : answer.sheets) {
+    if (sheet.columns.empty()) continue;
+    text += (text.empty() ? "" : "\n") + csv_of(sheet, answer.standing);
+  }
+  return text.empty() ? csv_of(sheet_of_lines(answer), answer.standing) : text;
+}
+
+ordered_json number_json(const std::optional<double>& value) {
+  return value && !std::isnan(*value) ? ordered_json(*value) : ordered_json(nullptr);
+}
+
+ordered_json cell_json(const Cell& cell) {
+  if (const auto* words = std::get_if<std::string>(&cell)) return *words;
+  if (const auto* count = std::get_if<std::uint64_t>(&cell)) return *count;
+  if (const auto* number = std::get_if<double>(&cell)) return number_json(*number);
+  const auto* spread = std::get_if<Spread>(&cell);
+  if (spread == nullptr) return nullptr;
+  ordered_json json = {{"value", number_json(spread->value)}};
+  json.update(interval_json(*spread));
+  return json;
+}
+
+/// As `key_of`, but fractions stay fractions.
+std::string json_key(const Column& column) {
+  const std::string key = key_of(column);
+  return key.substr(0, key.size() - std::string_view(style_of(column.unit).key).size());
+}
+
+ordered_json sheet_json(const Sheet& sheet) {
+  ordered_json json = {{"title", sheet.title},
+                       {"lead", sheet.lead},
+                       {"rows", ordered_json::array()},
+                       {"notes", sheet.notes}};
+  for (const std::vector<Cell>& row : sheet.rows) {
+    if (row.empty()) continue;
+    ordered_json& members = json["rows"].emplace_back(ordered_json::object());
+    for (std::size_t c = 0; c < sheet.columns.size(); ++c) {
+      members[json_key(sheet.columns[c])] = c < row.size() ? cell_json(row[c]) : nullptr;
+    }
+  }
+  return json;
+}
+
+std::string json_of(const Answer& answer) {
+  if (!answer.json.empty()) return answer.json;
+  ordered_json json = ordered_json::object();
+  if (answer.standing) json["standing"] = sentences(*answer.standing);
+  if (!answer.sheets.empty()) json["sheets"] = ordered_json::array();
+  for (const Sheet& sheet : answer.sheets) json["sheets"].push_back(sheet_json(sheet));
+  if (!answer.text.empty()) json["text"] = answer.text;
+  return json_text(json);
+}
+
+std::string text_of(const Answer& answer, std::size_t columns) {
+  std::vector<Sheet> sheets = answer.sheets;
+  if (answer.standing) {
+    if (sheets.empty()) sheets.emplace_back();
+    std::vector<std::string>& lead = sheets.front().lead;
+    const std::vector<std::string> marks = sentences(*answer.standing);
+    lead.insert(lead.end(), marks.begin(), marks.end());
+  }
+  std::string text;
+  const auto add = [&](const std::string& part) {
+    if (!part.empty()) text += (text.empty() ? "" : "\n") + part;
+  };
+  for (const Sheet& sheet : sheets) add(text_of(sheet, columns));
+  add(answer.text);
+  return text;
+}
+
+/// Escapes the message of a workflow command, and what else would end a property of one.
+std::string workflow_text(std::string_view text, std::string_view also = "") {
+  std::string escaped;
+  for (const char c : text) {
+    const bool escape = c == '%' || c == '\r' || c == '\n' || also.find(c) != also.npos;
+    escaped += escape ? fmt::format("%{:02X}", c) : std::string(1, c);
+  }
+  return escaped;
+}
+
+std::string github_of(const Answer& answer) {
+  std::string text = text_of(answer, 0);
+  for (const Annotation& each : answer.annotations) {
+    text += fmt::format("::error title={}::{}\n", workflow_text(each.title, ":,"),
+                        workflow_text(each.message));
+  }
+  return text;
+}
+
+std::string png_of(const Answer& answer) {
+  if (answer.charts.empty()) {
+    throw UsageError("--as png: the answer has no chart, expected another format");
+  }
+  return line_charts(answer.charts, kChartPixels).png();
+}
+
+}  // namespace
+
+Cell or_undefined(const std::optional<double>& value) {
+  return value.value_or(std::numeric_limits<double>::quiet_NaN());
+}
+
+Cell or_missing(const std::optional<double>& value) { return value ? Cell(*value) : Cell(); }
+
+std::vector<std::string> sentences(const Standing& standing) {
+  std::vector<std::string> texts;
+  if (standing.simulated) {
+    texts.push_back(
+        fmt::format("SIMULATED data{}: not comparable with published numbers",
+                    standing.origin.empty() ? "" : fmt::format(" ({})", standing.origin)));
+  }
+  texts.insert(texts.end(), standing.doubts.begin(), standing.doubts.end());
+  return texts;
+}
+
+std::span<const std::string_view> format_names() {
+  static constexpr std::array<std::string_view, 8> kNames = {"text",     "json", "csv",    "latex",
+                                                             "markdown", "html", "github", "png"};
+  return kNames;
+}
+
+Format format_named(std::string_view name) {
+  const auto names = format_names();
+  const auto found = std::ranges::find(names, name);
+  if (found != names.end()) return static_cast<Format>(found - names.begin());
+  throw UsageError(
+      fmt::format("--as: '{}' is no format, expected one of {}", name, fmt::join(names, ", ")));
+}
+
+ShownTable shown_table(const Sheet& sheet) {
+  ShownTable table;
+  std::vector<bool> wide;
+  for (std::size_t c = 0; c < sheet.columns.size(); ++c) {
+    const Column& column = sheet.columns[c];
+    wide.push_back(has_intervals(sheet, c));
+    table.heads.push_back(
+        {shown_in_line(column.name) + style_of(column.unit).title, column.unit == Unit::kText});
+    if (wide.back()) table.heads.push_back({"95 %", false});
+  }
+  for (const std::vector<Cell>& row : sheet.rows) {
+    std::vector<std::string>& cells = table.rows.emplace_back();
+    if (row.empty()) continue;
+    for (std::size_t c = 0; c < sheet.columns.size(); ++c) {
+      const Cell cell = c < row.size() ? row[c] : Cell(std::string());
+      cells.push_back(value_text(cell, sheet.columns[c]));
+      if (wide[c]) cells.push_back(interval_text(cell, sheet.columns[c]));
+    }
+  }
+  return table;
+}
+
+ordered_json interval_json(const Spread& spread) {
+  return {{"low", json_or_null(spread.low)},
+          {"high", json_or_null(spread.high)},
+          {"no_interval",
+           spread.no_interval.empty() ? ordered_json(nullptr) : ordered_json(spread.no_interval)}};
+}
+
+std::string render(const Answer& answer, Format format, std::size_t columns) {
+  if (answer.text.empty() && answer.sheets.empty() && answer.json.empty()) return "";
+  switch (format) {
+    case Format::kJson:
+      return json_of(answer);
+    case Format::kCsv:
+      return csv_of(answer);
+    case Format::kLatex:
+      return latex_of(answer);
+    case Format::kMarkdown:
+      return markdown_of(answer);
+    case Format::kHtml:
+      return answer.page.empty() ? html_of(answer) : answer.page;
+    case Format::kGithub:
+      return github_of(answer);
+    case Format::kPng:
+      return png_of(answer);
+    case Format::kText:
+      break;
+  }
+  return text_of(answer, columns);
+}
+
+}  // namespace mosbench

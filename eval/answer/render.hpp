@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstddef>
+#include <nlohmann/json_fwd.hpp>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "eval/answer/answer.hpp"
+
+namespace mosbench {
+
+/// All formats by name, in the order of the enumeration.
+std::span<const std::string_view> format_names();
+/// Throws UsageError for a name that is none of them.
+Format format_named(std::string_view name);
+
+/// Formats an answer; text has its tables folded into so many columns of a terminal (0: any
+/// number). Nothing stays nothing. Throws UsageError for a picture of an answer without charts.
+std::string render(const Answer& answer, Format format, std::size_t columns = 0);
+
+/// Returns {"low", "high", "no_interval"}, null where there is none.
+nlohmann::ordered_json interval_json(const Spread& spread);
+
+/// Returns `text` as one line of HTML that shows it.
+std::string html_text(std::string_view text);
+
+/// The cells of a sheet as people see them.
+struct ShownTable {
+  struct Head {
+    std::string title;
+    bool is_left;
+  };
+  std::vector<Head> heads;
+  std::vector<std::vector<std::string>> rows;  ///< an empty one is a line across
+};
+ShownTable shown_table(const Sheet& sheet);
+
+/// Formats a sheet as text with a table of at most so many columns of a terminal.
+std::string text_of(const Sheet& sheet, std::size_t columns = 0);
+/// Format all sheets with what standing says of them.
+std::string latex_of(const Answer& answer);
+std::string markdown_of(const Answer& answer);
+std::string html_of(const Answer& answer);
+
+}  // namespace mosbench

@@ -1,0 +1,184 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <sstream>
+
+#include "datasets/text/shown_text.hpp"
+#include "eval/answer/latex.hpp"
+#include "eval/answer/markdown.hpp"
+#include "eval/answer/render.hpp"
+
+namespace mosbench {
+namespace {
+
+std::string joined(const std::vector<std::string>& cells, std::string (*escape)(std::string_view),
+                   const char* between) {
+  std::string line;
+  for (const std::string& cell : cells) {
+    if (&cell != cells.data()) line += between;
+    line += escape(cell);
+  }
+  return line;
+}
+
+std::vector<std::string> titles_of(const ShownTable& table) {
+  std::vector<std::string> titles;
+  for (const ShownTable::Head& head : table.heads) titles.push_back(head.title);
+  return titles;
+}
+
+std::vector<std::string> marks_of(const Answer& answer) {
+  return answer.standing ? sentences(*answer.standing) : std::vector<std::string>();
+}
+
+std::string latex_comments(const std::vector<std::string>& lines) {
+  std::string text;
+  for (const std::string& line : lines) {
+    if (!line.empty()) text += "% " + latex_text(line) + '\n';
+  }
+  return text;
+}
+
+/// A tabular. What must stay with the numbers is printed below them, and a dagger leads there.
+std::string latex_table(const Sheet& sheet, const std::vector<std::string>& marks) {
+  const ShownTable table = shown_table(sheet);
+  std::string text = "\\begin{tabular}{";
+  for (const ShownTable::Head& head : table.heads) text += head.is_left ? 'l' : 'r';
+  text += "}\n\\hline\n" + joined(titles_of(table), latex_text, " & ");
+  text += fmt::format("{} \\\\\n\\hline\n", marks.empty() ? "" : "$^\\dagger$");
+  for (const std::vector<std::string>& row : table.rows) {
+    text += row.empty() ? "\\hline\n" : joined(row, latex_text, " & ") + " \\\\\n";
+  }
+  text += "\\hline\n";
+  const auto add_foot = [&](const std::string& line) {
+    text += fmt::format("\\multicolumn{{{}}}{{l}}{{{}}} \\\\\n",
+                        std::max<std::size_t>(table.heads.size(), 1), line);
+  };
+  if (!sheet.caption.empty()) add_foot(latex_text(sheet.caption));
+  for (const std::string& mark : marks) add_foot("$^\\dagger$ " + latex_text(mark));
+  return text + "\\end{tabular}\n";
+}
+
+std::string markdown_table(const ShownTable& table) {
+  std::string text = "| " + joined(titles_of(table), markdown_text, " | ") + " |\n|";
+  for (const ShownTable::Head& head : table.heads) text += head.is_left ? "---|" : "--:|";
+  text += '\n';
+  for (const std::vector<std::string>& row : table.rows) {
+    if (!row.empty()) text += "| " + joined(row, markdown_text, " | ") + " |\n";
+  }
+  return text;
+}
+
+std::string markdown_of(const Sheet& sheet, const std::vector<std::string>& marks) {
+  std::string text;
+  if (!sheet.title.empty()) text += "### " + markdown_text(sheet.title) + "\n\n";
+  for (const std::string& line : sheet.lead) {
+    if (!line.empty()) text += markdown_text(line) + "\n\n";
+  }
+  for (const std::string& mark : marks) text += "**" + markdown_text(mark) + "**\n\n";
+  if (!sheet.columns.empty()) text += markdown_table(shown_table(sheet)) + '\n';
+  for (const std::string& note : sheet.notes) {
+    if (!note.empty()) text += "- " + markdown_text(note) + '\n';
+  }
+  return text.ends_with("\n\n") ? text.substr(0, text.size() - 1) : text;
+}
+
+std::string html_cells(const std::vector<std::string>& cells, const ShownTable& table,
+                       const char* tag) {
+  std::string text = "<tr>";
+  for (std::size_t c = 0; c < cells.size(); ++c) {
+    text += fmt::format("<{0}{1}>{2}</{0}>", tag, table.heads[c].is_left ? " class=\"l\"" : "",
+                        html_text(cells[c]));
+  }
+  return text + "</tr>\n";
+}
+
+std::string html_of(const Sheet& sheet, const std::vector<std::string>& marks) {
+  std::string text;
+  const auto add = [&](const char* tag, const std::string& line) {
+    if (!line.empty()) text += fmt::format("<{0}>{1}</{0}>\n", tag, html_text(line));
+  };
+  add("h2", sheet.title);
+  for (const std::string& line : sheet.lead) add("p", line);
+  for (const std::string& mark : marks) add("strong", mark);
+  if (!sheet.columns.empty()) {
+    const ShownTable table = shown_table(sheet);
+    text += "<table>\n";
+    add("caption", sheet.caption);
+    text += html_cells(titles_of(table), table, "th");
+    for (const std::vector<std::string>& row : table.rows) {
+      if (!row.empty()) text += html_cells(row, table, "td");
+    }
+    text += "</table>\n";
+  }
+  for (const std::string& note : sheet.notes) add("p", note);
+  return text;
+}
+
+}  // namespace
+
+std::string html_text(std::string_view text) {
+  std::string escaped;
+  for (const char c : shown_in_line(text)) {
+    switch (c) {
+      case '&':
+        escaped += "&amp;";
+        break;
+      case '<':
+        escaped += "&lt;";
+        break;
+      case '>':
+        escaped += "&gt;";
+        break;
+      case '"':
+        escaped += "&quot;";
+        break;
+      default:
+        escaped += c;
+    }
+  }
+  return escaped;
+}
+
+std::string latex_of(const Answer& answer) {
+  std::string text;
+  for (const Sheet& sheet : answer.sheets) {
+    if (!text.empty()) text += '\n';
+    text += latex_comments({sheet.title}) + latex_comments(sheet.lead);
+    if (!sheet.columns.empty()) text += latex_table(sheet, marks_of(answer));
+    text += latex_comments(sheet.notes);
+  }
+  if (answer.text.empty()) return text;
+  return text + "\\begin{verbatim}\n" + answer.text + "\\end{verbatim}\n";
+}
+
+std::string markdown_of(const Answer& answer) {
+  std::string text;
+  for (const Sheet& sheet : answer.sheets) {
+    if (!text.empty()) text += '\n';
+    text += markdown_of(
+        sheet, &sheet == answer.sheets.data() ? marks_of(answer) : std::vector<std::string>());
+  }
+  if (answer.text.empty()) return text;
+  return text + (text.empty() ? "" : "\n") + "```\n" + answer.text + "```\n";
+}
+
+std::string html_of(const Answer& answer) {
+  std::string text =
+      "<!doctype html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n<title>mosbench</title>\n"
+      "<style>body{font-family:sans-serif}th,td{text-align:right;padding:0 .5em}"
+      ".l{text-align:left}</style>\n";
+  for (const Sheet& sheet : answer.sheets) {
+    text += html_of(sheet,
+                    &sheet == answer.sheets.data() ? marks_of(answer) : std::vector<std::string>());
+  }
+  if (!answer.text.empty()) {
+    text += "<pre>\n";
+    std::istringstream lines(answer.text);
+    for (std::string line; std::getline(lines, line);) text += html_text(line) + '\n';
+    text += "</pre>\n";
+  }
+  return text + "</html>\n";
+}
+
+}  // namespace mosbench
