@@ -89,7 +89,7 @@ TEST(Answer, LeadsByADaggerFromItsLatexToWhatItIsNot) {
 
 TEST(Answer, SaysInMarkdownAndHtmlWhatItIsNot) {
   EXPECT_THAT(render(answer_of_all(), Format::kMarkdown),
-              AllOf(HasSubstr("### all\n\nabove\n\n**SIMULATED data"), HasSubstr("| --- |"),
+              AllOf(HasSubstr("### all\n\nabove\n\n**SIMULATED data"), HasSubstr("\n|---|--:|"),
                     Not(HasSubstr("----")), HasSubstr("\n- below\n")));
   EXPECT_THAT(render(answer_of_all(), Format::kHtml),
               AllOf(HasSubstr("<strong>SIMULATED data"), HasSubstr("<td class=\"l\">00</td>")));
