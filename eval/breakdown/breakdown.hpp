@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "datasets/sequence/sequence.hpp"
+#include "eval/answer/answer.hpp"
 #include "eval/breakdown/object_tracks.hpp"
 #include "eval/breakdown/scan_breakdown.hpp"
 #include "eval/predictions/predictions.hpp"
@@ -56,6 +57,6 @@ std::vector<RecallBin> recall_by_age(const std::vector<ObjectTrack>& objects);
 
 /// List the worst `at_most` objects and false positives; all are counted.
 nlohmann::ordered_json to_json(const SequenceBreakdown& breakdown, std::size_t at_most);
-std::string breakdown_text(const SequenceBreakdown& breakdown, std::size_t at_most);
+std::vector<Sheet> breakdown_sheets(const SequenceBreakdown& breakdown, std::size_t at_most);
 
 }  // namespace mosbench

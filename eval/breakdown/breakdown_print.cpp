@@ -4,7 +4,6 @@
 
 #include "datasets/text/counted.hpp"
 #include "eval/answer/answer_text.hpp"
-#include "eval/answer/text_table.hpp"
 #include "eval/breakdown/breakdown.hpp"
 #include "eval/protocols/counts_json.hpp"
 #include "eval/protocols/metrics.hpp"
@@ -76,85 +75,78 @@ ordered_json object_json(const SequenceBreakdown& breakdown, const ObjectTrack& 
           {"last_position_map_m", position(last.cluster.centre_map_m)}};
 }
 
-std::string percent(const std::optional<double>& value) {
-  return value ? percent_text(value, "{:.1f}") : "";
-}
-
 template <std::size_t size>
-std::string bins_text(const char* title, const std::array<double, size>& edges,
-                      const std::array<Confusion, size>& bins) {
-  TextTable table({{title, TextTable::kLeft},
-                   {"IoU %"},
-                   {"precision %"},
-                   {"recall %"},
-                   {"TP"},
-                   {"FP"},
-                   {"FN"}});
+Sheet bins_sheet(const char* title, const std::array<double, size>& edges,
+                 const std::array<Confusion, size>& bins) {
+  Sheet sheet{.columns = {{title, Unit::kText},
+                          {"IoU", Unit::kPercent},
+                          {"precision", Unit::kPercent},
+                          {"recall", Unit::kPercent},
+                          {"TP"},
+                          {"FP"},
+                          {"FN"}}};
   for (std::size_t b = 0; b < size; ++b) {
     if (bins[b].tp + bins[b].fp + bins[b].fn == 0) continue;
     const std::string from = edges[b] < -1e9 ? "below" : fmt::format("{:g} to", edges[b]);
-    const std::string name = b + 1 < size ? fmt::format("{} {:g} m", from, edges[b + 1])
-                                          : fmt::format("from {:g} m", edges[b]);
-    table.add_row({name, percent(moving_iou(bins[b])), percent(precision(bins[b])),
-                   percent(recall(bins[b])), fmt::format("{}", bins[b].tp),
-                   fmt::format("{}", bins[b].fp), fmt::format("{}", bins[b].fn)});
+    sheet.rows.push_back({b + 1 < size ? fmt::format("{} {:g} m", from, edges[b + 1])
+                                       : fmt::format("from {:g} m", edges[b]),
+                          or_missing(moving_iou(bins[b])), or_missing(precision(bins[b])),
+                          or_missing(recall(bins[b])), bins[b].tp, bins[b].fp, bins[b].fn});
   }
-  return table.str() + '\n';
+  return sheet;
 }
 
-std::string recall_text(const char* title, const char* counted,
-                        const std::vector<RecallBin>& bins) {
-  TextTable table({{title, TextTable::kLeft}, {counted}, {"recall %"}, {"TP"}, {"FN"}});
+Sheet recall_sheet(const char* title, const char* counted, const std::vector<RecallBin>& bins) {
+  Sheet sheet{
+      .columns = {{title, Unit::kText}, {counted}, {"recall", Unit::kPercent}, {"TP"}, {"FN"}}};
   for (const RecallBin& bin : bins) {
     if (bin.count == 0) continue;
-    const double recall = static_cast<double>(bin.tp) / static_cast<double>(bin.tp + bin.fn);
-    table.add_row({bin.name, fmt::format("{}", bin.count), percent(recall),
-                   fmt::format("{}", bin.tp), fmt::format("{}", bin.fn)});
+    sheet.rows.push_back({bin.name, std::uint64_t{bin.count},
+                          static_cast<double>(bin.tp) / static_cast<double>(bin.tp + bin.fn),
+                          bin.tp, bin.fn});
   }
-  return table.str() + '\n';
+  return sheet;
 }
 
-std::string objects_text(const SequenceBreakdown& breakdown, std::size_t at_most) {
-  TextTable table({{"worst objects", TextTable::kLeft},
-                   {"scans"},
-                   {"points"},
-                   {"recall %"},
-                   {"range m"},
-                   {"size m"},
-                   {"m/s"},
-                   {"delay"},
-                   {"position in the map m"}});
+Sheet objects_sheet(const SequenceBreakdown& breakdown, std::size_t at_most) {
+  Sheet sheet{.columns = {{"worst objects", Unit::kText},
+                          {"scans"},
+                          {"points"},
+                          {"recall", Unit::kPercent},
+                          {"range m", Unit::kNumber, 1},
+                          {"size m", Unit::kNumber, 1},
+                          {"m/s", Unit::kNumber, 1},
+                          {"delay"},
+                          {"position in the map m"}}};
   const std::vector<const ObjectTrack*> sorted = worst_first(breakdown.objects);
   for (std::size_t i = 0; i < std::min(at_most, sorted.size()); ++i) {
     const ObjectTrack& object = *sorted[i];
     const Sighting& first = object.sightings.front();
-    const auto speed_m_s = object.speed_m_s();
     const auto delay = object.detection_delay_scans();
-    table.add_row({"from " + breakdown.stems[first.scan_index],
-                   fmt::format("{}", object.sightings.size()), fmt::format("{}", object.points()),
-                   percent(object.recall()), fmt::format("{:.1f}", object.mean_range_m()),
-                   fmt::format("{:.1f}", object.largest_size_m()),
-                   speed_m_s ? fmt::format("{:.1f}", *speed_m_s) : "",
-                   delay ? fmt::format("{}", *delay) : "never",
-                   position_text(first.cluster.centre_map_m)});
+    sheet.rows.push_back({"from " + breakdown.stems[first.scan_index],
+                          std::uint64_t{object.sightings.size()}, std::uint64_t{object.points()},
+                          object.recall(), object.mean_range_m(), object.largest_size_m(),
+                          or_missing(object.speed_m_s()),
+                          delay ? Cell(std::uint64_t{*delay}) : Cell("never"),
+                          position_text(first.cluster.centre_map_m)});
   }
-  return table.str() + '\n';
+  return sheet;
 }
 
-std::string false_positives_text(const SequenceBreakdown& breakdown, std::size_t at_most) {
-  TextTable table({{"worst false positives", TextTable::kLeft},
-                   {"points"},
-                   {"range m"},
-                   {"size m"},
-                   {"position in the map m"}});
+Sheet false_positives_sheet(const SequenceBreakdown& breakdown, std::size_t at_most) {
+  Sheet sheet{.columns = {{"worst false positives", Unit::kText},
+                          {"points"},
+                          {"range m", Unit::kNumber, 1},
+                          {"size m", Unit::kNumber, 1},
+                          {"position in the map m"}}};
   const auto& clusters = breakdown.false_positives;
   for (std::size_t i = 0; i < std::min(at_most, clusters.size()); ++i) {
     const ScanCluster& cluster = clusters[i].cluster;
-    table.add_row({"scan " + breakdown.stems[clusters[i].scan_index],
-                   fmt::format("{}", cluster.points), fmt::format("{:.1f}", cluster.range_m),
-                   fmt::format("{:.1f}", cluster.size_m), position_text(cluster.centre_map_m)});
+    sheet.rows.push_back({"scan " + breakdown.stems[clusters[i].scan_index],
+                          std::uint64_t{cluster.points}, cluster.range_m, cluster.size_m,
+                          position_text(cluster.centre_map_m)});
   }
-  return table.str();
+  return sheet;
 }
 
 }  // namespace
@@ -188,19 +180,22 @@ ordered_json to_json(const SequenceBreakdown& breakdown, std::size_t at_most) {
   return json;
 }
 
-std::string breakdown_text(const SequenceBreakdown& breakdown, std::size_t at_most) {
-  return fmt::format("sequence {}: {}, {}, speeds {}\n\n", breakdown.sequence,
-                     counted(breakdown.scans.size(), "scan"),
-                     counted(breakdown.objects.size(), "moving object"),
-                     breakdown.stamped
-                         ? "by the scans' stamps"
-                         : "as if scans came at 10 Hz, as not all have rising stamps") +
-         bins_text("range", kRangeEdges_m, breakdown.by_range) +
-         bins_text("height above sensor", kHeightEdges_m, breakdown.by_height) +
-         recall_text("object size", "objects", recall_by_size(breakdown.objects)) +
-         recall_text("object speed", "objects", recall_by_speed(breakdown.objects)) +
-         recall_text("scans since first seen", "sightings", recall_by_age(breakdown.objects)) +
-         objects_text(breakdown, at_most) + false_positives_text(breakdown, at_most);
+std::vector<Sheet> breakdown_sheets(const SequenceBreakdown& breakdown, std::size_t at_most) {
+  const std::string headline = fmt::format(
+      "sequence {}: {}, {}, speeds {}", breakdown.sequence, counted(breakdown.scans.size(), "scan"),
+      counted(breakdown.objects.size(), "moving object"),
+      breakdown.stamped ? "by the scans' stamps"
+                        : "as if scans came at 10 Hz, as not all have rising stamps");
+  std::vector<Sheet> sheets = {
+      bins_sheet("range", kRangeEdges_m, breakdown.by_range),
+      bins_sheet("height above sensor", kHeightEdges_m, breakdown.by_height),
+      recall_sheet("object size", "objects", recall_by_size(breakdown.objects)),
+      recall_sheet("object speed", "objects", recall_by_speed(breakdown.objects)),
+      recall_sheet("scans since first seen", "sightings", recall_by_age(breakdown.objects)),
+      objects_sheet(breakdown, at_most),
+      false_positives_sheet(breakdown, at_most)};
+  sheets.front().lead.push_back(headline);
+  return sheets;
 }
 
 }  // namespace mosbench

@@ -7,7 +7,6 @@
 
 #include "datasets/layouts/folder_search.hpp"
 #include "eval/answer/answer_text.hpp"
-#include "eval/answer/text_table.hpp"
 #include "eval/protocols/metrics.hpp"
 
 namespace mosbench {
@@ -21,44 +20,46 @@ long long change(std::uint64_t from, std::uint64_t to) {
   return static_cast<long long>(to) - static_cast<long long>(from);
 }
 
-std::string scans_text(const RunNames& names, const std::vector<ScanDisagreement>& scans,
-                       std::size_t at_most) {
-  TextTable table({{"scan", TextTable::kLeft},
-                   {names.first + " IoU %"},
-                   {names.second + " IoU %"},
-                   {"TP"},
-                   {"FP"},
-                   {"FN"}});
+Sheet scans_sheet(const RunNames& names, const std::vector<ScanDisagreement>& scans,
+                  std::size_t at_most) {
+  Sheet sheet{.columns = {{"scan", Unit::kText},
+                          {names.first + " IoU", Unit::kPercent},
+                          {names.second + " IoU", Unit::kPercent},
+                          {"TP"},
+                          {"FP"},
+                          {"FN"}}};
   for (std::size_t i = 0; i < std::min(at_most, scans.size()); ++i) {
     const PairedRuns::Scan& scan = scans[i].scan;
     const Confusion& first = *scan.first->counts;
     const Confusion& second = *scan.second->counts;
-    table.add_row({scan.sequence + '/' + scan.stem, percent_text(moving_iou(first)),
-                   percent_text(moving_iou(second)),
-                   fmt::format("{:+}", change(first.tp, second.tp)),
-                   fmt::format("{:+}", change(first.fp, second.fp)),
-                   fmt::format("{:+}", change(first.fn, second.fn))});
+    sheet.rows.push_back({scan.sequence + '/' + scan.stem, or_undefined(moving_iou(first)),
+                          or_undefined(moving_iou(second)),
+                          fmt::format("{:+}", change(first.tp, second.tp)),
+                          fmt::format("{:+}", change(first.fp, second.fp)),
+                          fmt::format("{:+}", change(first.fn, second.fn))});
   }
-  return table.str();
+  return sheet;
 }
 
-std::string objects_text(const RunNames& names, const std::vector<ObjectDisagreement>& objects,
-                         std::size_t at_most) {
-  TextTable table({{"object", TextTable::kLeft},
-                   {"points"},
-                   {names.first + " found"},
-                   {names.second + " found"},
-                   {"range m"},
-                   {"position in the map m"}});
+Sheet objects_sheet(const RunNames& names, const std::vector<ObjectDisagreement>& objects,
+                    std::size_t at_most) {
+  Sheet sheet{.lead = {fmt::format("{} moving objects have different numbers of found points",
+                                   objects.size())},
+              .columns = {{"object", Unit::kText},
+                          {"points"},
+                          {names.first + " found"},
+                          {names.second + " found"},
+                          {"range m", Unit::kNumber, 1},
+                          {"position in the map m"}}};
   for (std::size_t i = 0; i < std::min(at_most, objects.size()); ++i) {
     const ObjectDisagreement& object = objects[i];
-    table.add_row({fmt::format("{} {} to {}", object.sequence, object.first_scan, object.last_scan),
-                   fmt::format("{}", object.points), fmt::format("{}", object.first_found),
-                   fmt::format("{}", object.second_found),
-                   fmt::format("{:.1f}", object.mean_range_m),
-                   position_text(object.position_map_m)});
+    sheet.rows.push_back(
+        {fmt::format("{} {} to {}", object.sequence, object.first_scan, object.last_scan),
+         std::uint64_t{object.points}, std::uint64_t{object.first_found},
+         std::uint64_t{object.second_found}, object.mean_range_m,
+         position_text(object.position_map_m)});
   }
-  return table.str();
+  return sheet;
 }
 
 }  // namespace
@@ -135,19 +136,16 @@ ordered_json diff_json(const PairedRuns& paired, const std::vector<ObjectDisagre
   return json;
 }
 
-std::string diff_text(const RunNames& names, const PairedRuns& paired,
-                      const std::vector<ObjectDisagreement>& objects, std::size_t at_most) {
+std::vector<Sheet> diff_sheets(const RunNames& names, const PairedRuns& paired,
+                               const std::vector<ObjectDisagreement>& objects,
+                               std::size_t at_most) {
   const std::vector<ScanDisagreement> scans = disagreeing_scans(paired);
-  std::string text =
-      fmt::format("{} of {} paired scans differ\n", scans.size(), paired.scans.size());
-  if (!paired.unlike.empty()) text += "unlike: " + unlike_text(paired.unlike) + '\n';
-  if (!scans.empty()) text += '\n' + scans_text(names, scans, at_most);
-  if (!objects.empty()) {
-    text += fmt::format("\n{} moving objects have different numbers of found points\n\n",
-                        objects.size()) +
-            objects_text(names, objects, at_most);
-  }
-  return text;
+  Sheet first = scans.empty() ? Sheet{} : scans_sheet(names, scans, at_most);
+  first.lead = {fmt::format("{} of {} paired scans differ", scans.size(), paired.scans.size())};
+  if (!paired.unlike.empty()) first.lead.push_back("unlike: " + unlike_text(paired.unlike));
+  std::vector<Sheet> sheets = {std::move(first)};
+  if (!objects.empty()) sheets.push_back(objects_sheet(names, objects, at_most));
+  return sheets;
 }
 
 }  // namespace mosbench

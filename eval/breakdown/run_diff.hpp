@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "eval/answer/answer.hpp"
 #include "eval/breakdown/breakdown.hpp"
 #include "eval/statistics/paired_runs.hpp"
 
@@ -44,7 +45,7 @@ std::vector<ObjectDisagreement> disagreeing_objects(const SequenceBreakdown& fir
 nlohmann::ordered_json diff_json(const PairedRuns& paired,
                                  const std::vector<ObjectDisagreement>& objects,
                                  std::size_t at_most);
-std::string diff_text(const RunNames& names, const PairedRuns& paired,
-                      const std::vector<ObjectDisagreement>& objects, std::size_t at_most);
+std::vector<Sheet> diff_sheets(const RunNames& names, const PairedRuns& paired,
+                               const std::vector<ObjectDisagreement>& objects, std::size_t at_most);
 
 }  // namespace mosbench

@@ -45,7 +45,6 @@ struct BreakdownFlags {
   ReadingOptions reading;
   std::size_t top = 10;
   unsigned threads = hardware_threads();
-  bool json = false;
 };
 
 BreakdownTask settle(const BreakdownFlags& options, const Dataset& dataset) {
@@ -72,24 +71,24 @@ std::vector<SequenceBreakdown> all_breakdowns(const BreakdownFlags& options, con
   throw DataError(dataset.root, "no scan has truth", "labels next to the scans");
 }
 
-std::string printed(const BreakdownFlags& options, const Dataset& dataset,
-                    const BreakdownTask& task, const std::vector<SequenceBreakdown>& breakdowns) {
-  if (options.json) {
-    nlohmann::ordered_json json = {{"dataset", std::string(to_string(dataset.kind))},
-                                   {"protocol", std::string(task.protocol->name)},
-                                   {"min_range_m", task.range.min_m},
-                                   {"max_range_m", task.range.max_m},
-                                   {"sequences", nlohmann::ordered_json::array()}};
-    if (const auto origin = simulated_origin_json(dataset)) json["simulated"] = *origin;
-    for (const SequenceBreakdown& part : breakdowns) {
-      json["sequences"].push_back(to_json(part, options.top));
+Answer answer_of(const BreakdownFlags& options, const Dataset& dataset, const BreakdownTask& task,
+                 const std::vector<SequenceBreakdown>& breakdowns) {
+  nlohmann::ordered_json json = {{"dataset", std::string(to_string(dataset.kind))},
+                                 {"protocol", std::string(task.protocol->name)},
+                                 {"min_range_m", task.range.min_m},
+                                 {"max_range_m", task.range.max_m},
+                                 {"sequences", nlohmann::ordered_json::array()}};
+  if (const auto origin = simulated_origin_json(dataset)) json["simulated"] = *origin;
+  Answer answer{.standing = standing_of(dataset),
+                .sheets = {{.lead = {rule_line({task.protocol, task.range})}}}};
+  for (const SequenceBreakdown& part : breakdowns) {
+    json["sequences"].push_back(to_json(part, options.top));
+    for (Sheet& sheet : breakdown_sheets(part, options.top)) {
+      answer.sheets.push_back(std::move(sheet));
     }
-    return json_text(json);
   }
-  std::string text =
-      fmt::format("{}\n{}", rule_line({task.protocol, task.range}), simulated_remark(dataset));
-  for (const SequenceBreakdown& part : breakdowns) text += '\n' + breakdown_text(part, options.top);
-  return text;
+  answer.json = json_text(json);
+  return answer;
 }
 
 /// A folder of results tells by itself how its data were read and scored.
@@ -104,7 +103,7 @@ void refuse_flags_of_data(const CLI::App& command) {
                                given.substr(1)));
 }
 
-std::string breakdown_of_run(const BreakdownFlags& options, const CLI::App& command) {
+Answer breakdown_of_run(const BreakdownFlags& options, const CLI::App& command) {
   if (find_result_files(options.input).empty()) {
     throw UsageError(
         fmt::format("--predictions: is missing, expected the labels of {}, or results of `mosbench "
@@ -136,15 +135,15 @@ std::string breakdown_of_run(const BreakdownFlags& options, const CLI::App& comm
     throw DataError(options.input, "has no scan with truth",
                     "results of a labelled sequence, or another name in --sequences");
   }
-  return printed(options, scans.front().dataset(), task, breakdowns);
+  return answer_of(options, scans.front().dataset(), task, breakdowns);
 }
 
-std::string breakdown(const BreakdownFlags& options, const CLI::App& command) {
+Answer breakdown(const BreakdownFlags& options, const CLI::App& command) {
   if (!options.predictions) return breakdown_of_run(options, command);
   const Dataset dataset = open_dataset(
       options.input, {dataset_kind_option(options.dataset), options.sequences, options.reading});
   const BreakdownTask task = settle(options, dataset);
-  return printed(options, dataset, task, all_breakdowns(options, dataset, task));
+  return answer_of(options, dataset, task, all_breakdowns(options, dataset, task));
 }
 
 }  // namespace
@@ -170,9 +169,8 @@ CommandRun add_breakdown(CLI::App& command) {
   command.add_option("--top", options->top, "How many objects and false positives to list")
       ->capture_default_str();
   add_threads_flag(command, options->threads);
-  command.add_flag("--json", options->json, "Print JSON instead of tables");
   command.footer(kBreakdownFooter);
-  return [options, &command] { return Answer{breakdown(*options, command)}; };
+  return [options, &command] { return breakdown(*options, command); };
 }
 
 }  // namespace mosbench

@@ -2,7 +2,7 @@
 #include <memory>
 #include <optional>
 
-#include "eval/answer/answer_text.hpp"
+#include "eval/answer/render.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/cli/output_file.hpp"
 #include "eval/report/curve_report.hpp"
@@ -20,25 +20,18 @@ without scores and those of `mosbench score` are refused (exit code 3).
 
 Examples:
   mosbench curve results/runs/street    # of mosbench run sim/street --scores
-  mosbench curve results/runs/street --format csv -o street.png > street.csv)";
+  mosbench curve results/runs/street --as csv -o street.png > street.csv)";
 
 struct CurveFlags {
   std::filesystem::path run;
   std::optional<std::filesystem::path> dataset_root, picture;
-  std::string format = "text";
 };
-
-std::string formatted(const CurveReport& report, const std::string& format) {
-  if (format == "csv") return curve_csv(report);
-  if (format == "json") return json_text(curve_json(report));
-  return curve_text(report);
-}
 
 Answer curve(const CurveFlags& options) {
   if (options.picture) check_output(*options.picture);
-  const CurveReport report = curve_of_run(options.run, options.dataset_root);
-  if (options.picture) write_output(*options.picture, curve_picture(report).png());
-  return answer_beside(options.picture.value_or(""), {formatted(report, options.format)});
+  Answer answer = curve_answer(curve_of_run(options.run, options.dataset_root));
+  if (options.picture) write_output(*options.picture, render(answer, Format::kPng));
+  return answer_beside(options.picture.value_or(""), std::move(answer));
 }
 
 }  // namespace
@@ -52,9 +45,6 @@ CommandRun add_curve(CLI::App& command) {
       .add_option("--data", options->dataset_root,
                   "Folder of the data set (default: where the run read it)")
       ->type_name("DIR");
-  command.add_option("--format", options->format, "How to print it")
-      ->check(CLI::IsMember({"text", "csv", "json"}))
-      ->capture_default_str();
   command.add_option("-o,--out", options->picture, "PNG file to draw the curve to; - is stdout")
       ->type_name("FILE");
   command.footer(kCurveFooter);

@@ -36,7 +36,6 @@ struct DiffFlags {
   std::optional<std::filesystem::path> root;
   std::string dataset = "auto";
   std::size_t top = 10;
-  bool json = false;
 };
 
 /// Labels of a run for the scans of another one, found by their stems.
@@ -143,7 +142,7 @@ void check_has_truth(const ResultSet& run) {
                   "where labels differ without truth");
 }
 
-std::string diff(const DiffFlags& options) {
+Answer diff(const DiffFlags& options) {
   const ResultSet first = load_result_set(options.first);
   const ResultSet second = load_result_set(options.second);
   for (const ResultSet* run : {&first, &second}) check_has_truth(*run);
@@ -154,10 +153,10 @@ std::string diff(const DiffFlags& options) {
   }
   const auto objects =
       options.root ? objects_of(options, first, second) : std::vector<ObjectDisagreement>{};
-  if (!options.json) {
-    return diff_text(names_apart(options.first, options.second), paired, objects, options.top);
-  }
-  return json_text(diff_json(paired, objects, options.top));
+  return {.standing = standing_of(first, "first", second, "second"),
+          .sheets =
+              diff_sheets(names_apart(options.first, options.second), paired, objects, options.top),
+          .json = json_text(diff_json(paired, objects, options.top))};
 }
 
 }  // namespace
@@ -171,9 +170,8 @@ CommandRun add_diff(CLI::App& command) {
   add_dataset_kind_flag(command, options->dataset);
   command.add_option("--top", options->top, "How many scans and objects to list")
       ->capture_default_str();
-  command.add_flag("--json", options->json, "Print JSON instead of tables");
   command.footer(kDiffFooter);
-  return [options] { return Answer{diff(*options)}; };
+  return [options] { return diff(*options); };
 }
 
 }  // namespace mosbench

@@ -42,7 +42,6 @@ struct DoctorFlags {
   std::string dataset = "auto";
   std::vector<std::string> sequences;
   ReadingOptions reading;
-  bool json = false;
 };
 
 /// The flags by which all sequences were to be read; empty unless they agree.
@@ -68,12 +67,13 @@ Answer check_dataset(const DoctorFlags& options) {
   const Checkup checkup = check_up(
       options.input, {dataset_kind_option(options.dataset), options.sequences, options.reading},
       caller().at_each_scan);
-  std::string report =
-      options.json
-          ? checkup_json(checkup)
-          : checkup_text(checkup, dataset_words(options.input, options.dataset, options.sequences,
-                                                mended(options.reading, flags_found(checkup))));
-  return {report, checkup.has(Severity::kError) ? 3 : checkup.has(Severity::kWarning) ? 1 : 0};
+  return {
+      .text = checkup_text(checkup, dataset_words(options.input, options.dataset, options.sequences,
+                                                  mended(options.reading, flags_found(checkup)))),
+      .exit_code = checkup.has(Severity::kError)     ? 3
+                   : checkup.has(Severity::kWarning) ? 1
+                                                     : 0,
+      .json = checkup_json(checkup)};
 }
 
 }  // namespace
@@ -82,7 +82,6 @@ CommandRun add_doctor(CLI::App& command) {
   auto options = std::make_shared<DoctorFlags>();
   add_dataset_flags(command, options->input, options->dataset, options->sequences,
                     options->reading);
-  command.add_flag("--json", options->json, "Print JSON instead of text");
   command.footer(kDoctorFooter);
   return [options] { return check_dataset(*options); };
 }

@@ -29,12 +29,11 @@ Examples:
 struct MapScoreFlags {
   std::filesystem::path map, truth;
   double same_within_m = kSameWithin_m;
-  bool json = false;
 };
 
 Answer map_score(const MapScoreFlags& flags) {
   const MapScore score = score_map(flags.map, flags.truth, flags.same_within_m);
-  return {flags.json ? json_text(map_score_json(score)) : map_score_text(score)};
+  return {.sheets = {map_score_sheet(score)}, .json = json_text(map_score_json(score))};
 }
 
 }  // namespace
@@ -50,7 +49,6 @@ CommandRun add_map_score(CLI::App& command) {
                   "Largest distance of a point of the map that stands for one of the truth, m")
       ->check(CLI::Range(1e-6, 1e3))
       ->capture_default_str();
-  command.add_flag("--json", flags->json, "Print JSON");
   command.footer(kMapScoreFooter);
   return [flags] { return map_score(*flags); };
 }

@@ -68,7 +68,6 @@ struct OdometryFlags {
   OdometryOptions odometry;
   std::optional<std::string> format;
   unsigned threads = hardware_threads();
-  bool json = false;
 };
 
 bool writes_tum(const OdometryFlags& flags) {
@@ -180,15 +179,14 @@ Answer odometry_answer(OdometryFlags flags) {
                                     : find_or_keep(*sequence, choice, flags);
     doubtful += doubtful_scans(found);
     text += found_text(found, choice.kind->title);
-    if (flags.json) sequences.push_back(found_json(found));
+    sequences.push_back(found_json(found));
   }
-  if (flags.json) {
-    text = json_text({{"odometry", std::string(choice.kind->name)},
-                      {"settings", to_json(choice.settings)},
-                      {"sequences", sequences}});
-  }
-  if (!flags.json && flags.out != "-") text += next_command(flags);
-  return answer_beside(flags.out, {text, doubtful > 0 ? 1 : 0});
+  if (flags.out != "-") text += next_command(flags);
+  return answer_beside(flags.out, {.text = text,
+                                   .exit_code = doubtful > 0 ? 1 : 0,
+                                   .json = json_text({{"odometry", std::string(choice.kind->name)},
+                                                      {"settings", to_json(choice.settings)},
+                                                      {"sequences", sequences}})});
 }
 
 }  // namespace
@@ -214,7 +212,6 @@ CommandRun add_odometry(CLI::App& command) {
   command.add_option("--format", flags->format, "Of the file (default: by its name)")
       ->check(CLI::IsMember({"kitti", "tum"}));
   add_threads_flag(command, flags->threads);
-  command.add_flag("--json", flags->json, "Print JSON instead of text");
   command.footer(kOdometryFooter);
   return [flags] { return odometry_answer(*flags); };
 }

@@ -52,8 +52,8 @@ Answer profile(const ProfileFlags& options) {
   }
   if (options.json) write_output(*options.json, json_text(profile_json(plan, profiles)));
   if (options.trace) write_output(*options.trace, json_text(profile_trace(profiles)));
-  const std::string text = profile_text(plan, profiles);
-  return answer_beside(options.trace == "-" ? "-" : options.json.value_or(""), {text});
+  return answer_beside(options.trace == "-" ? "-" : options.json.value_or(""),
+                       profile_answer(plan, profiles));
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 
 #include "datasets/text/counted.hpp"
 #include "datasets/text/quantile.hpp"
-#include "eval/answer/text_table.hpp"
+#include "eval/answer/answer_text.hpp"
 #include "eval/results/machine.hpp"
 #include "eval/results/settings_json.hpp"
 #include "eval/results/simulated.hpp"
@@ -67,47 +67,44 @@ std::vector<CostRow> cost_rows(const SequenceProfile& profile) {
   return rows;
 }
 
-std::string stage_table(const SequenceProfile& profile) {
-  using Align = TextTable::Align;
-  TextTable table({{"stage", Align::kLeft},
-                   {"min"},
-                   {"median"},
-                   {"p95"},
-                   {"max"},
-                   {"share"},
-                   {"CPU median"},
-                   {"CPU mean"}});
+Sheet stage_sheet(const SequenceProfile& profile) {
+  Sheet sheet{.columns = {{"stage", Unit::kText}}};
+  for (const char* title : {"min", "median", "p95", "max"}) {
+    sheet.columns.push_back({title, Unit::kNumber, 3});
+  }
+  sheet.columns.insert(sheet.columns.end(), {{"share", Unit::kPercent},
+                                             {"CPU median", Unit::kNumber, 3},
+                                             {"CPU mean", Unit::kNumber, 3}});
   const std::vector<CostRow> rows = cost_rows(profile);
   const double whole_ms = sum(rows.back().wall_ms);
   for (const CostRow& row : rows) {
-    const bool is_whole = &row == &rows.back();
-    if (is_whole) table.add_rule();
-    table.add_row(
-        {row.name, fmt::format("{:.3f}", ranked(row.wall_ms, 0)),
-         fmt::format("{:.3f}", ranked(row.wall_ms, 0.5)),
-         fmt::format("{:.3f}", ranked(row.wall_ms, 0.95)),
-         fmt::format("{:.3f}", ranked(row.wall_ms, 1)),
-         row.name == "read" ? "" : fmt::format("{:.1f} %", 100 * sum(row.wall_ms) / whole_ms),
-         fmt::format("{:.3f}", ranked(row.cpu_ms, 0.5)), fmt::format("{:.3f}", mean(row.cpu_ms))});
+    if (&row == &rows.back()) sheet.rows.emplace_back();
+    sheet.rows.push_back({row.name, ranked(row.wall_ms, 0), ranked(row.wall_ms, 0.5),
+                          ranked(row.wall_ms, 0.95), ranked(row.wall_ms, 1),
+                          row.name == "read" ? Cell("") : Cell(sum(row.wall_ms) / whole_ms),
+                          ranked(row.cpu_ms, 0.5), mean(row.cpu_ms)});
   }
-  return table.str();
+  return sheet;
 }
 
 /// First, last and eight scans between.
-std::string memory_table(const SequenceProfile& profile) {
-  TextTable table({{"scan"}, {"resident MiB"}, {"method MiB"}, {"map blocks"}});
+Sheet memory_sheet(const SequenceProfile& profile) {
+  Sheet sheet{.columns = {{"scan"},
+                          {"resident MiB", Unit::kNumber, 1},
+                          {"method MiB", Unit::kNumber, 1},
+                          {"map blocks"}}};
   const std::size_t last = profile.scans.size() - 1;
   const std::size_t steps = std::min<std::size_t>(last, 9);
   for (std::size_t i = 0; i <= steps; ++i) {
     const std::size_t k = steps == 0 ? 0 : last * i / steps;
     const ScanProfile& scan = profile.scans[k];
     const auto& memory = scan.memory;
-    table.add_row(
-        {std::to_string(k), fmt::format("{:.1f}", scan.resident_mib),
-         memory ? fmt::format("{:.1f}", static_cast<double>(memory->bytes) / 1048576.0) : "n/a",
-         memory ? std::to_string(memory->map_blocks) : "n/a"});
+    sheet.rows.push_back(
+        {std::uint64_t{k}, scan.resident_mib,
+         memory ? Cell(static_cast<double>(memory->bytes) / 1048576.0) : Cell("n/a"),
+         memory ? Cell(std::uint64_t{memory->map_blocks}) : Cell("n/a")});
   }
-  return table.str();
+  return sheet;
 }
 
 double scan_ms(const SequenceProfile& profile) {
@@ -132,7 +129,7 @@ double real_time_factor(const SequenceProfile& profile) {
 std::string speed_line(const SequenceProfile& profile) {
   return fmt::format(
       "{:.2f} ms per scan with reading, {:.2f} million points/s, {:.1f} times real time at {:g} ms "
-      "per scan{}\n",
+      "per scan{}",
       scan_ms(profile), points_per_s(profile) * 1e-6, real_time_factor(profile),
       profile.period_ms.value_or(kUsualPeriod_ms),
       profile.period_ms ? "" : " (assumed: the sequence has no stamps)");
@@ -174,14 +171,18 @@ ordered_json sequence_json(const SequenceProfile& profile) {
 
 }  // namespace
 
-std::string profile_text(const RunPlan& plan, const std::vector<SequenceProfile>& profiles) {
-  std::string text = simulated_remark(plan.dataset);
+Answer profile_answer(const RunPlan& plan, const std::vector<SequenceProfile>& profiles) {
+  Answer answer{.standing = standing_of(plan.dataset)};
   for (const SequenceProfile& profile : profiles) {
-    text += fmt::format("{}: {}, {}; milliseconds per scan\n{}\n{}\n{}\n", profile.name,
-                        counted(profile.scans.size(), "scan"), counted(profile.threads, "thread"),
-                        stage_table(profile), memory_table(profile), speed_line(profile));
+    answer.sheets.push_back(stage_sheet(profile));
+    answer.sheets.back().lead = {fmt::format("{}: {}, {}; milliseconds per scan", profile.name,
+                                             counted(profile.scans.size(), "scan"),
+                                             counted(profile.threads, "thread"))};
+    answer.sheets.push_back(memory_sheet(profile));
+    answer.sheets.back().notes = {speed_line(profile)};
   }
-  return text;
+  answer.json = json_text(profile_json(plan, profiles));
+  return answer;
 }
 
 ordered_json profile_json(const RunPlan& plan, const std::vector<SequenceProfile>& profiles) {

@@ -1,9 +1,9 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
-#include <string>
 #include <vector>
 
+#include "eval/answer/answer.hpp"
 #include "eval/engine/profile.hpp"
 
 namespace mosbench {
@@ -11,8 +11,8 @@ namespace mosbench {
 /// A period is assumed where a sequence has no stamps.
 inline constexpr double kUsualPeriod_ms = 100;
 
-/// Tables of cost per stage, memory over scans and real-time factor, for people.
-std::string profile_text(const RunPlan& plan, const std::vector<SequenceProfile>& profiles);
+/// Says the cost per stage, memory over scans and the real-time factor.
+Answer profile_answer(const RunPlan& plan, const std::vector<SequenceProfile>& profiles);
 
 /// The same numbers and those of each scan; `stages` in milliseconds per scan.
 nlohmann::ordered_json profile_json(const RunPlan& plan,

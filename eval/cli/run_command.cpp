@@ -13,6 +13,7 @@
 #include "eval/engine/run_plan.hpp"
 #include "eval/job/method_choice.hpp"
 #include "eval/report/written_products.hpp"
+#include "eval/results/simulated.hpp"
 
 namespace mosbench {
 namespace {
@@ -102,8 +103,9 @@ Answer run(const RunFlags& flags) {
   const RunPlan plan = plan_run(options);
   const std::vector<SequenceOutcome> outcomes = execute_run(plan);
   for (const SequenceOutcome& outcome : outcomes) write_products(outcome.folder, flags.products);
-  return {options.json ? json_text(run_report_json(plan, outcomes))
-                       : run_report_text(plan, outcomes)};
+  return {.standing = standing_of(plan.dataset),
+          .sheets = {run_sheet(plan, outcomes)},
+          .json = json_text(run_report_json(plan, outcomes))};
 }
 
 }  // namespace
@@ -137,7 +139,6 @@ CommandRun add_run(CLI::App& command) {
   command.add_flag("--overwrite", options->overwrite, "Run again and replace what is in --out");
   command.add_flag("--verify", options->verify,
                    "Read all input of finished sequences again, not only its sizes and times");
-  command.add_flag("--json", options->json, "Print JSON instead of a table");
   command.footer(kRunFooter);
   return [flags] { return run(*flags); };
 }

@@ -13,6 +13,7 @@
 #include "eval/engine/run_execute.hpp"
 #include "eval/job/method_choice.hpp"
 #include "eval/report/written_products.hpp"
+#include "eval/results/simulated.hpp"
 #include "eval/results/tell.hpp"
 
 namespace mosbench {
@@ -95,17 +96,19 @@ std::vector<MethodRun> execute(const std::vector<RunPlan>& plans) {
   return runs;
 }
 
-std::string text_of(const std::vector<MethodRun>& runs) {
-  std::string text, failures;
+std::vector<Sheet> sheets_of(const std::vector<MethodRun>& runs) {
+  std::vector<Sheet> sheets;
+  std::vector<std::string> failures;
   for (const MethodRun& run : runs) {
     if (run.failure) {
-      failures += fmt::format("method {} failed: {}\n", run.plan->settings.method->name,
-                              run.failure->message);
+      failures.push_back(fmt::format("method {} failed: {}", run.plan->settings.method->name,
+                                     run.failure->message));
     } else {
-      text += run_report_text(*run.plan, run.execution->outcomes()) + '\n';
+      sheets.push_back(run_sheet(*run.plan, run.execution->outcomes()));
     }
   }
-  return text + failures;
+  if (!failures.empty()) sheets.push_back({.notes = std::move(failures)});
+  return sheets;
 }
 
 nlohmann::ordered_json json_of(const MethodRun& run) {
@@ -137,8 +140,10 @@ Answer run_methods(const RunOptions& options, std::span<const std::string> produ
   }
   const auto failed =
       std::ranges::find_if(runs, [](const MethodRun& run) { return run.failure.has_value(); });
-  return {options.json ? json_of(runs) : text_of(runs),
-          failed == runs.end() ? 0 : failed->failure->exit_code};
+  return {.exit_code = failed == runs.end() ? 0 : failed->failure->exit_code,
+          .standing = standing_of(plans.front().dataset),
+          .sheets = sheets_of(runs),
+          .json = json_of(runs)};
 }
 
 }  // namespace mosbench

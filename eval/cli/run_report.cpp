@@ -4,8 +4,6 @@
 
 #include <algorithm>
 
-#include "eval/answer/answer_text.hpp"
-#include "eval/answer/text_table.hpp"
 #include "eval/protocols/protocol_list.hpp"
 #include "eval/results/settings_json.hpp"
 #include "eval/results/simulated.hpp"
@@ -14,22 +12,13 @@
 namespace mosbench {
 namespace {
 
-std::vector<ScoredSequence> scored(const RunPlan& plan,
-                                   const std::vector<SequenceOutcome>& outcomes) {
+std::vector<SummaryRow> rows_of(const RunPlan& plan, const std::vector<SequenceOutcome>& outcomes) {
   std::vector<ScoredSequence> sequences;
   for (std::size_t i = 0; i < outcomes.size(); ++i) {
-    ScoredSequence& sequence = sequences.emplace_back();
-    sequence.name = plan.dataset.sequences[i]->name();
-    sequence.method_ms_per_scan = method_ms_per_scan(outcomes[i].rows);
-    for (const ScanRow& row : outcomes[i].rows.scans) {
-      sequence.scans.push_back({row.stem, row.counts});
-    }
+    sequences.push_back({plan.dataset.sequences[i]->name(), outcomes[i].rows.scans,
+                         method_ms_per_scan(outcomes[i].rows)});
   }
-  return sequences;
-}
-
-std::vector<SummaryRow> rows_of(const RunPlan& plan, const std::vector<SequenceOutcome>& outcomes) {
-  return summary_rows(*plan.settings.protocol, plan.dataset.splits, scored(plan, outcomes));
+  return summary_rows(*plan.settings.protocol, plan.dataset.splits, sequences);
 }
 
 bool has_truth(const std::vector<SequenceOutcome>& outcomes) {
@@ -54,24 +43,24 @@ MovingPoints moving_points(const SequenceRows& rows) {
 }
 
 /// Without truth there is nothing to score, but still something to look at.
-std::string moving_points_text(const RunPlan& plan, const std::vector<SequenceOutcome>& outcomes) {
-  TextTable table({{"sequence", TextTable::kLeft},
+void add_moving_points(const RunPlan& plan, const std::vector<SequenceOutcome>& outcomes,
+                       Sheet& sheet) {
+  sheet.lead.emplace_back("no scan has truth: nothing to score");
+  sheet.columns = {{"sequence", Unit::kText},
                    {"scans"},
                    {"points"},
-                   {"labelled moving"},
-                   {"%"},
-                   {"ms/scan"}});
+                   {"moving"},
+                   {"moving", Unit::kPercent, 2},
+                   {"ms/scan", Unit::kNumber, 1}};
   for (std::size_t i = 0; i < outcomes.size(); ++i) {
     const SequenceRows& rows = outcomes[i].rows;
     const auto [points, moving] = moving_points(rows);
-    const auto share =
-        static_cast<double>(moving) / static_cast<double>(std::max<std::size_t>(points, 1));
-    table.add_row({plan.dataset.sequences[i]->name(), fmt::format("{}", rows.scans.size()),
-                   fmt::format("{}", points), fmt::format("{}", moving),
-                   percent_text(share, "{:.2f}"),
-                   fmt::format("{:.1f}", method_ms_per_scan(rows).value_or(0.0))});
+    sheet.rows.push_back(
+        {plan.dataset.sequences[i]->name(), std::uint64_t{rows.scans.size()}, std::uint64_t{points},
+         std::uint64_t{moving},
+         static_cast<double>(moving) / static_cast<double>(std::max<std::size_t>(points, 1)),
+         method_ms_per_scan(rows).value_or(0.0)});
   }
-  return "no scan has truth: nothing to score\n\n" + table.str();
 }
 
 std::string method_line(const RunPlan& plan) {
@@ -82,21 +71,21 @@ std::string method_line(const RunPlan& plan) {
 
 }  // namespace
 
-std::string run_report_text(const RunPlan& plan, const std::vector<SequenceOutcome>& outcomes) {
-  std::string text = fmt::format("{} data set {}\n{}\n{}\n", to_string(plan.dataset.kind),
-                                 plan.dataset.root.string(), method_line(plan),
-                                 rule_line({plan.settings.protocol, plan.settings.range}));
+Sheet run_sheet(const RunPlan& plan, const std::vector<SequenceOutcome>& outcomes) {
   const bool scored = has_truth(outcomes);
-  if (scored) text += benchmark_remark(*plan.settings.protocol, plan.dataset.splits);
-  text += simulated_remark(plan.dataset);
-  text += scored ? '\n' + format_rows(rows_of(plan, outcomes)) : moving_points_text(plan, outcomes);
-  text += '\n';
+  Sheet sheet = score_sheet({plan.settings.protocol, plan.settings.range}, plan.dataset.splits,
+                            scored ? rows_of(plan, outcomes) : std::vector<SummaryRow>());
+  sheet.lead.insert(sheet.lead.begin(), {fmt::format("{} data set {}", to_string(plan.dataset.kind),
+                                                     plan.dataset.root.string()),
+                                         method_line(plan)});
+  if (!scored) add_moving_points(plan, outcomes, sheet);
   for (std::size_t i = 0; i < outcomes.size(); ++i) {
     for (const std::string& remark : outcomes[i].remarks) {
-      text += fmt::format("{}: {}\n", plan.dataset.sequences[i]->name(), remark);
+      sheet.notes.push_back(fmt::format("{}: {}", plan.dataset.sequences[i]->name(), remark));
     }
   }
-  return text + fmt::format("results in {}\n", plan.out.string());
+  sheet.notes.push_back(fmt::format("results in {}", plan.out.string()));
+  return sheet;
 }
 
 nlohmann::ordered_json run_report_json(const RunPlan& plan,

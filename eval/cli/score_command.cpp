@@ -7,7 +7,6 @@
 #include "core/base/thread_pool.hpp"
 #include "datasets/disk/folder_lock.hpp"
 #include "datasets/text/errors.hpp"
-#include "eval/answer/answer_text.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/cli/dataset_flags.hpp"
 #include "eval/cli/help_text.hpp"
@@ -51,7 +50,6 @@ struct ScoreFlags {
   MethodName method{"unnamed", ""};
   ReadingOptions reading;
   std::optional<std::filesystem::path> out;
-  bool json = false;
 };
 
 void keep_split(const std::string& name, Dataset& dataset) {
@@ -111,16 +109,15 @@ PredictionOptions prediction_options(const ScoreFlags& options) {
   return settled;
 }
 
-std::string score_all(const ScoreFlags& options, const Dataset& dataset, ScoreTask task) {
+Answer score_all(const ScoreFlags& options, const Dataset& dataset, ScoreTask task) {
   if (options.out)
     throw UsageError("--out: keeps the results of one protocol, expected no --protocol all");
   task.rules = all_rules(options);
   const std::vector<SequenceScores> scores = score_dataset(dataset, task);
-  return options.json ? json_text(side_by_side_json(dataset, task.rules, scores))
-                      : side_by_side_text(dataset, task.rules, scores);
+  return side_by_side_answer(dataset, task.rules, scores);
 }
 
-std::string score(const ScoreFlags& options) {
+Answer score(const ScoreFlags& options) {
   keep_freed_memory();
   Dataset dataset = open_dataset(
       options.input, {dataset_kind_option(options.dataset), options.sequences, options.reading});
@@ -143,8 +140,7 @@ std::string score(const ScoreFlags& options) {
   if (options.out) {
     write_scores(dataset, options.reading, task, options.method, scores, *options.out);
   }
-  return options.json ? score_json(dataset, task, scores, !split_asked)
-                      : score_text(dataset, task, scores, !split_asked);
+  return score_answer(dataset, task, scores, !split_asked);
 }
 
 void add_prediction_options(CLI::App& command, ScoreFlags& options) {
@@ -190,9 +186,8 @@ CommandRun add_score(CLI::App& command) {
       ->type_name("TEXT");
   command.add_option("--out", options->out, "Write DIR/<sequence>/result.json")->type_name("DIR");
   add_threads_flag(command, options->task.threads);
-  command.add_flag("--json", options->json, "Print JSON instead of a table");
   command.footer(kScoreFooter);
-  return [options] { return Answer{score(*options)}; };
+  return [options] { return score(*options); };
 }
 
 }  // namespace mosbench

@@ -31,7 +31,6 @@ struct RunOptions {
   bool overwrite = false;
   bool verify = false;  ///< read all input of finished sequences again
   bool scores = false;
-  bool json = false;
   /// With the other methods of a list, whose results go to folders of their own below `out`.
   std::shared_ptr<SharedReading> shared = nullptr;
 };

@@ -11,8 +11,6 @@
 #include "datasets/text/counted.hpp"
 #include "datasets/text/errors.hpp"
 #include "eval/answer/answer_text.hpp"
-#include "eval/answer/csv.hpp"
-#include "eval/answer/text_table.hpp"
 #include "eval/protocols/metrics.hpp"
 #include "eval/results/progress.hpp"
 #include "eval/statistics/statistics_report.hpp"
@@ -47,23 +45,33 @@ const CurvePoint* reaching(const ScoreCurve& curve, double wanted) {
   return found == curve.points.end() ? nullptr : &*found;
 }
 
-std::string levels_text(const ScoreCurve& curve) {
-  TextTable table({{"recall % from"}, {"score from"}, {"precision %"}, {"IoU %"}});
+Sheet levels_sheet(const ScoreCurve& curve) {
+  Sheet sheet{.columns = {{"recall % from"},
+                          {"score from"},
+                          {"precision", Unit::kPercent},
+                          {"IoU", Unit::kPercent}}};
   for (int tenth = 1; tenth <= 10; ++tenth) {
     const CurvePoint* point = reaching(curve, 0.1 * tenth);
     if (point == nullptr) continue;
-    table.add_row({fmt::format("{}", 10 * tenth), fmt::format("{:.6g}", point->threshold),
-                   percent_text(precision(point->counts)),
-                   percent_text(moving_iou(point->counts))});
+    sheet.rows.push_back({10.0 * tenth, point->threshold, or_undefined(precision(point->counts)),
+                          or_undefined(moving_iou(point->counts))});
   }
-  return table.str();
+  return sheet;
 }
 
-/// A method that gives a point 1 or 0 has nothing to be swept.
-std::string few_scores_text(const ScoreCurve& curve) {
-  if (curve.points.size() > 2) return "";
-  return fmt::format("the scores take {}: the method says no more than its labels\n",
-                     counted(curve.points.size(), "value"));
+/// A row per point of the thinned curve.
+Sheet records_of(const ScoreCurve& curve) {
+  Sheet sheet;
+  for (const char* name : {"threshold", "recall", "precision", "iou", "tp", "fp", "fn", "tn"}) {
+    sheet.columns.push_back({name});
+  }
+  for (const CurvePoint& point : thinned(curve)) {
+    const Confusion& counts = point.counts;
+    sheet.rows.push_back({double{point.threshold}, recall(counts).value(),
+                          precision(counts).value(), moving_iou(counts).value(), counts.tp,
+                          counts.fp, counts.fn, counts.tn});
+  }
+  return sheet;
 }
 
 nlohmann::ordered_json point_json(const Confusion& counts) {
@@ -108,36 +116,7 @@ CurveReport curve_of_run(const std::filesystem::path& path,
   return report;
 }
 
-std::string curve_text(const CurveReport& report) {
-  const SequenceResult& first = report.run.front();
-  const ScoreCurve& curve = report.curve;
-  const CurvePoint& best = best_point(curve);
-  const Confusion& counts = best.counts;
-  return fmt::format(
-      "{}, {}; data set {}, protocol {}{}\n{}, {} of {} counted points move\n\n"
-      "average precision {} %\nbest threshold {:.6g}: {}\nlabels of the run: {}\n\n{}{}",
-      first.method, first.setting, first.dataset, first.protocol->name,
-      first.simulated ? "; SIMULATED" : "", counted(curve.scans, "scan"), counts.tp + counts.fn,
-      counts.tp + counts.fp + counts.fn + counts.tn, percent_text(curve.average_precision),
-      best.threshold, metrics_text(counts), metrics_text(curve.of_labels), levels_text(curve),
-      few_scores_text(curve));
-}
-
-std::string curve_csv(const CurveReport& report) {
-  std::string csv = "threshold,recall,precision,iou,tp,fp,fn,tn\n";
-  for (const CurvePoint& point : thinned(report.curve)) {
-    const Confusion& counts = point.counts;
-    std::vector<std::string> cells = {fmt::format("{:.9g}", point.threshold)};
-    for (const auto& value : {recall(counts), precision(counts), moving_iou(counts)}) {
-      cells.push_back(fmt::format("{:.9g}", value.value()));
-    }
-    for (const std::uint64_t count : {counts.tp, counts.fp, counts.fn, counts.tn}) {
-      cells.push_back(fmt::format("{}", count));
-    }
-    csv += csv_row(cells);
-  }
-  return csv;
-}
+namespace {
 
 nlohmann::ordered_json curve_json(const CurveReport& report) {
   nlohmann::ordered_json json = provenance_json(report.run);
@@ -150,6 +129,53 @@ nlohmann::ordered_json curve_json(const CurveReport& report) {
     json["curve"].push_back(threshold_json(point));
   }
   return json;
+}
+
+/// Draws precision over recall, and where the labels of the run are.
+LineChart curve_chart(const CurveReport& report) {
+  constexpr Colour kThresholds{0, 90, 170}, kOfLabels{200, 60, 0};
+  const auto place_of = [](const Confusion& counts) {
+    return std::array{100 * recall(counts).value_or(0), 100 * precision(counts).value_or(0)};
+  };
+  Curve thresholds{"thresholds of the score", kThresholds, {}};
+  for (const CurvePoint& point : thinned(report.curve)) {
+    thresholds.points.push_back(place_of(point.counts));
+  }
+  const Curve labels{"labels of the run", kOfLabels, {place_of(report.curve.of_labels)}};
+  return {.title = fmt::format("{}, average precision {} %{}", report.run.front().method,
+                               percent_text(report.curve.average_precision),
+                               report.run.front().simulated ? " (simulated)" : ""),
+          .x_label = "recall %",
+          .y_label = "precision %",
+          .equal_scales = true,
+          .curves = {thresholds, labels},
+          .limits = std::array{0.0, 100.0}};
+}
+
+}  // namespace
+
+Answer curve_answer(const CurveReport& report) {
+  const SequenceResult& first = report.run.front();
+  const ScoreCurve& curve = report.curve;
+  const CurvePoint& best = best_point(curve);
+  const Confusion& counts = best.counts;
+  Sheet sheet = levels_sheet(curve);
+  sheet.lead = {fmt::format("{}, {}; data set {}, protocol {}", first.method, first.setting,
+                            first.dataset, first.protocol->name),
+                fmt::format("{}, {} of {} counted points move", counted(curve.scans, "scan"),
+                            counts.tp + counts.fn, counts.tp + counts.fp + counts.fn + counts.tn),
+                fmt::format("average precision {} %", percent_text(curve.average_precision)),
+                fmt::format("best threshold {:.6g}: {}", best.threshold, metrics_text(counts)),
+                fmt::format("labels of the run: {}", metrics_text(curve.of_labels))};
+  if (curve.points.size() <= 2) {  // of a method that gives a point 1 or 0
+    sheet.notes.push_back(fmt::format("the scores take {}: the method says no more than its labels",
+                                      counted(curve.points.size(), "value")));
+  }
+  return {.standing = standing_of(report.run),
+          .sheets = {std::move(sheet)},
+          .records = records_of(curve),
+          .json = json_text(curve_json(report)),
+          .charts = {curve_chart(report)}};
 }
 
 nlohmann::ordered_json drawn_curve_json(const ScoreCurve& curve) {

@@ -3,9 +3,8 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <string>
 
-#include "eval/answer/picture.hpp"
+#include "eval/answer/answer.hpp"
 #include "eval/report/score_curve.hpp"
 #include "eval/results/result_set.hpp"
 
@@ -26,14 +25,10 @@ void add_counted_scans(const FoundResult& result, const ResultScans& scans, Scor
 CurveReport curve_of_run(const std::filesystem::path& path,
                          const std::optional<std::filesystem::path>& dataset_root);
 
-std::string curve_text(const CurveReport& report);
-/// Formats a line per point of the thinned curve.
-std::string curve_csv(const CurveReport& report);
-nlohmann::ordered_json curve_json(const CurveReport& report);
+/// Says precision at levels of recall; CSV and the chart have the points of the thinned curve.
+Answer curve_answer(const CurveReport& report);
 /// Returns what a chart needs, each list by falling threshold: "recall", "precision" and
 /// "threshold", "average_precision", "best", "labels".
 nlohmann::ordered_json drawn_curve_json(const ScoreCurve& curve);
-/// Draws precision over recall, and where the labels of the run are.
-Picture curve_picture(const CurveReport& report);
 
 }  // namespace mosbench

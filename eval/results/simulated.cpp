@@ -7,9 +7,8 @@
 namespace mosbench {
 namespace {
 
-std::string notice(const SimulatedOrigin& origin) {
-  return fmt::format("simulated data (scene {}, seed {}{}): not comparable with published numbers",
-                     origin.scene, origin.seed,
+std::string words_of(const SimulatedOrigin& origin) {
+  return fmt::format("scene {}, seed {}{}", origin.scene, origin.seed,
                      origin.perturb ? ", disturbed by " + *origin.perturb : "");
 }
 
@@ -29,10 +28,13 @@ std::optional<SimulatedOrigin> origin_of(const Dataset& dataset) {
 }
 
 nlohmann::ordered_json to_json(const SimulatedOrigin& origin) {
-  nlohmann::ordered_json members = {{"scene", origin.scene},
-                                    {"seed", origin.seed},
-                                    {"scene_fingerprint", origin.scene_fingerprint},
-                                    {"notice", notice(origin)}};
+  nlohmann::ordered_json members = {
+      {"scene", origin.scene},
+      {"seed", origin.seed},
+      {"scene_fingerprint", origin.scene_fingerprint},
+      {"notice", fmt::format("simulated data ({}): not comparable with "
+                             "published numbers",
+                             words_of(origin))}};
   if (origin.perturb) members["perturb"] = *origin.perturb;
   return members;
 }
@@ -50,9 +52,9 @@ std::optional<nlohmann::ordered_json> simulated_origin_json(const Dataset& datas
   return origin ? std::optional(to_json(*origin)) : std::nullopt;
 }
 
-std::string simulated_remark(const Dataset& dataset) {
+Standing standing_of(const Dataset& dataset) {
   const std::optional<SimulatedOrigin> origin = origin_of(dataset);
-  return origin ? notice(*origin) + '\n' : std::string();
+  return origin ? Standing{true, words_of(*origin)} : Standing{};
 }
 
 }  // namespace mosbench

@@ -2,9 +2,9 @@
 
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <string>
 
 #include "datasets/layouts/dataset.hpp"
+#include "eval/answer/answer.hpp"
 
 namespace mosbench {
 
@@ -15,7 +15,7 @@ std::optional<nlohmann::ordered_json> simulated_origin_json(const Dataset& datas
 /// The same of the first such sequence of a data set.
 std::optional<nlohmann::ordered_json> simulated_origin_json(const Dataset& dataset);
 
-/// The line with which every answer about simulated data begins; empty for real data.
-std::string simulated_remark(const Dataset& dataset);
+/// What every format has to show beside numbers of a data set.
+Standing standing_of(const Dataset& dataset);
 
 }  // namespace mosbench

@@ -13,7 +13,6 @@
 #include "datasets/text/errors.hpp"
 #include "datasets/text/shown_text.hpp"
 #include "eval/answer/answer_text.hpp"
-#include "eval/answer/text_table.hpp"
 #include "eval/results/machine.hpp"
 
 namespace mosbench {
@@ -76,23 +75,27 @@ MapScore score_map(const fs::path& map, const fs::path& truth, double same_withi
   return score;
 }
 
-std::string map_score_text(const MapScore& score) {
+Sheet map_score_sheet(const MapScore& score) {
   const MapCounts& counts = score.counts;
-  TextTable table({{"points of the truth", TextTable::kLeft}, {"number"}, {"right"}});
-  table.add_row({"static, kept", fmt::format("{} of {}", counts.kept_static, counts.static_points),
-                 "SA " + percent_text(counts.static_accuracy(), "{:.2f}")});
-  table.add_row({"dynamic, removed",
-                 fmt::format("{} of {}", counts.removed_dynamic, counts.dynamic_points),
-                 "DA " + percent_text(counts.dynamic_accuracy(), "{:.2f}")});
-  table.add_row({"both", "", "AA " + percent_text(counts.associated_accuracy(), "{:.2f}")});
-  table.add_row({"", "", "HA " + percent_text(counts.harmonic_accuracy(), "{:.2f}")});
-  return fmt::format(
-      "map    {}, {}\ntruth  {}, {}; kept where a point of the map is within {} "
-      "m\n\n{}",
-      shown_in_line(score.map.string()), counted(score.map_points, "point"),
-      shown_in_line(score.truth.string()),
-      counted(counts.static_points + counts.dynamic_points, "point"), score.same_within_m,
-      table.str());
+  const auto kept = [](std::uint64_t part, std::uint64_t all) {
+    return fmt::format("{} of {}", part, all);
+  };
+  return {.lead = {fmt::format("map    {}, {}", shown_in_line(score.map.string()),
+                               counted(score.map_points, "point")),
+                   fmt::format("truth  {}, {}; kept where a point of the map is within {} m",
+                               shown_in_line(score.truth.string()),
+                               counted(counts.static_points + counts.dynamic_points, "point"),
+                               score.same_within_m)},
+          .columns = {{"points of the truth", Unit::kText},
+                      {"number"},
+                      {"accuracy"},
+                      {"right", Unit::kPercent, 2}},
+          .rows = {{"static, kept", kept(counts.kept_static, counts.static_points), "SA",
+                    or_undefined(counts.static_accuracy())},
+                   {"dynamic, removed", kept(counts.removed_dynamic, counts.dynamic_points), "DA",
+                    or_undefined(counts.dynamic_accuracy())},
+                   {"both", "", "AA", or_undefined(counts.associated_accuracy())},
+                   {"both", "", "HA", or_undefined(counts.harmonic_accuracy())}}};
 }
 
 nlohmann::ordered_json map_score_json(const MapScore& score) {

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <string>
 
+#include "eval/answer/answer.hpp"
 #include "eval/static_map/map_accuracy.hpp"
 
 namespace mosbench {
@@ -24,7 +24,8 @@ struct MapScore {
 MapScore score_map(const std::filesystem::path& map, const std::filesystem::path& truth,
                    double same_within_m);
 
-std::string map_score_text(const MapScore& score);
+/// Says how much of the truth was kept and removed.
+Sheet map_score_sheet(const MapScore& score);
 /// With the code's version and a hash of each file.
 nlohmann::ordered_json map_score_json(const MapScore& score);
 

@@ -29,11 +29,8 @@ std::vector<SummaryRow> table_rows(const Dataset& dataset, const ScoreRule& rule
                                    const std::vector<SequenceScores>& scores, bool with_sequences) {
   std::vector<ScoredSequence> sequences;
   for (const SequenceScores& sequence : scores) {
-    ScoredSequence& scored = sequences.emplace_back();
-    scored.name = dataset.sequences[sequence.position]->name();
-    for (const ScanRow& row : sequence.by_rule.front()) {
-      scored.scans.push_back({row.stem, row.counts});
-    }
+    sequences.push_back(
+        {dataset.sequences[sequence.position]->name(), sequence.by_rule.front(), std::nullopt});
   }
   std::vector<SummaryRow> rows = summary_rows(*rule.protocol, dataset.splits, sequences);
   if (!with_sequences) {
@@ -114,46 +111,54 @@ std::vector<std::string> score_remarks(const Dataset& dataset,
                     opened.guessed ? " (recognised; --format overrides)" : "",
                     opened.path.string()));
     for (const std::string& remark : opened.remarks) add(remark);
-    if (!opened.missing.empty()) {
-      add(incomplete_warning(opened.missing.size()));
-    }
   }
   return remarks;
 }
 
-std::string score_text(const Dataset& dataset, const ScoreTask& task,
-                       const std::vector<SequenceScores>& scores, bool with_sequences) {
-  const ScoreRule& rule = task.rules.front();
-  const auto split = other_split(dataset, task);
-  std::string text = fmt::format(
-      "{}\n{}{}{}\n{}", rule_line(rule), benchmark_remark(*rule.protocol, dataset.splits),
-      split ? split_warning(*split) + '\n' : "", simulated_remark(dataset),
-      format_rows(table_rows(dataset, rule, scores, with_sequences)));
-  text += '\n';
-  for (const std::string& remark : score_remarks(dataset, scores)) text += remark + '\n';
-  return text;
+Standing standing_of(const Dataset& dataset, const std::vector<SequenceScores>& scores) {
+  Standing standing = standing_of(dataset);
+  for (const SequenceScores& sequence : scores) {
+    if (!sequence.opened || sequence.opened->missing.empty()) continue;
+    standing.doubts.push_back(dataset.sequences[sequence.position]->name() + ": " +
+                              incomplete_warning(sequence.opened->missing.size()));
+  }
+  return standing;
 }
 
-std::string score_json(const Dataset& dataset, const ScoreTask& task,
-                       const std::vector<SequenceScores>& scores, bool with_sequences) {
+std::vector<std::string> all_remarks(const Dataset& dataset,
+                                     const std::vector<SequenceScores>& scores) {
+  std::vector<std::string> remarks = score_remarks(dataset, scores);
+  for (std::string& doubt : standing_of(dataset, scores).doubts) {
+    remarks.push_back(std::move(doubt));
+  }
+  return remarks;
+}
+
+Answer score_answer(const Dataset& dataset, const ScoreTask& task,
+                    const std::vector<SequenceScores>& scores, bool with_sequences) {
   const ScoreRule& rule = task.rules.front();
+  const std::vector<SummaryRow> rows = table_rows(dataset, rule, scores, with_sequences);
+  Sheet sheet = score_sheet(rule, dataset.splits, rows);
+  sheet.notes = score_remarks(dataset, scores);
+  Standing standing = standing_of(dataset, scores);
+  if (const auto split = other_split(dataset, task)) {
+    standing.doubts.push_back(split_warning(*split));
+  }
   ordered_json json = {{"dataset", std::string(to_string(dataset.kind))},
                        {"protocol", std::string(rule.protocol->name)},
                        {"min_range_m", rule.range.min_m},
                        {"max_range_m", rule.range.max_m}};
   if (const auto origin = simulated_origin_json(dataset)) json["simulated"] = *origin;
-  json.update(rows_json(table_rows(dataset, rule, scores, with_sequences)));
+  json.update(rows_json(rows));
   json["predictions"] = ordered_json::object();
   for (const SequenceScores& sequence : scores) {
     if (!sequence.opened) continue;
     json["predictions"][dataset.sequences[sequence.position]->name()] =
         predictions_json(*sequence.opened);
   }
-  json["remarks"] = score_remarks(dataset, scores);
-  if (const auto split = other_split(dataset, task)) {
-    json["remarks"].push_back(split_warning(*split));
-  }
-  return json_text(json);
+  json["remarks"] = sheet.notes;
+  for (const std::string& doubt : standing.doubts) json["remarks"].push_back(doubt);
+  return {.standing = std::move(standing), .sheets = {std::move(sheet)}, .json = json_text(json)};
 }
 
 void check_scored_folders(const Dataset& dataset, const std::filesystem::path& out) {

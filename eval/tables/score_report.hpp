@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "eval/answer/answer.hpp"
 #include "eval/engine/score_execute.hpp"
 
 namespace mosbench {
@@ -15,19 +16,22 @@ struct MethodName {
   std::string setting;
 };
 
-/// Returns one line for each thing recognised about the predictions and for what is missing.
+/// Returns one line for each thing recognised about the predictions.
 std::vector<std::string> score_remarks(const Dataset& dataset,
                                        const std::vector<SequenceScores>& scores);
+/// What every format has to show: simulated data and missing predictions.
+Standing standing_of(const Dataset& dataset, const std::vector<SequenceScores>& scores);
+/// Returns the remarks and what is missing.
+std::vector<std::string> all_remarks(const Dataset& dataset,
+                                     const std::vector<SequenceScores>& scores);
 
-/// Format the answer of `mosbench score` for one rule, the first of the task.
-std::string score_text(const Dataset& dataset, const ScoreTask& task,
-                       const std::vector<SequenceScores>& scores, bool with_sequences);
-std::string score_json(const Dataset& dataset, const ScoreTask& task,
-                       const std::vector<SequenceScores>& scores, bool with_sequences);
+/// Says what `mosbench score` found by one rule, the first of the task.
+Answer score_answer(const Dataset& dataset, const ScoreTask& task,
+                    const std::vector<SequenceScores>& scores, bool with_sequences);
 
-/// Format the answer of `mosbench score --protocol all`: a row per rule and why it differs.
-std::string side_by_side_text(const Dataset& dataset, const std::vector<ScoreRule>& rules,
-                              const std::vector<SequenceScores>& scores);
+/// Says what `mosbench score --protocol all` found: a row per rule and why it differs.
+Answer side_by_side_answer(const Dataset& dataset, const std::vector<ScoreRule>& rules,
+                           const std::vector<SequenceScores>& scores);
 nlohmann::ordered_json side_by_side_json(const Dataset& dataset,
                                          const std::vector<ScoreRule>& rules,
                                          const std::vector<SequenceScores>& scores);

@@ -4,9 +4,8 @@
 
 #include <algorithm>
 
-#include "eval/answer/answer_text.hpp"
-#include "eval/answer/text_table.hpp"
 #include "eval/protocols/benchmark_split.hpp"
+#include "eval/protocols/protocol_list.hpp"
 #include "eval/protocols/summary_json.hpp"
 
 namespace mosbench {
@@ -18,7 +17,7 @@ using Stems = std::optional<std::set<std::string>>;
 std::vector<Confusion> counts_of(const ScoredSequence& sequence, const Stems& stems,
                                  std::size_t& scans) {
   std::vector<Confusion> counts;
-  for (const ScoredSequence::Scan& scan : sequence.scans) {
+  for (const ScanRow& scan : sequence.scans) {
     if (stems && !stems->contains(scan.stem)) continue;
     ++scans;
     if (scan.counts) counts.push_back(*scan.counts);
@@ -76,31 +75,25 @@ void add_split(const Protocol& protocol, const Split& split,
   rows.push_back(std::move(whole));
 }
 
-std::string count_text(std::uint64_t count) { return fmt::format("{}", count); }
-
 std::string row_title(const SummaryRow& row) {
   if (row.kind == SummaryRow::Kind::kSplit) return "split " + row.name;
   return row.split.empty() ? row.name : fmt::format("{} ({} scans)", row.name, row.split);
 }
 
-std::vector<std::string> cells(const SummaryRow& row, bool with_ms) {
+std::vector<Cell> cells_of(const SummaryRow& row, bool with_ms) {
   const Summary& summary = row.summary;
-  std::vector<std::string> cells = {row_title(row), count_text(row.scans),
-                                    count_text(summary.scans)};
+  std::vector<Cell> cells = {row_title(row), std::uint64_t{row.scans},
+                             std::uint64_t{summary.scans}};
   if (summary.scans == 0) {
     cells.insert(cells.end(), {"no truth", "", "", "", "", "", "", ""});
   } else {
     for (const auto& metric : {summary.iou, summary.precision, summary.recall, summary.f1}) {
-      cells.push_back(percent_text(metric));
+      cells.push_back(or_undefined(metric));
     }
-    for (const std::uint64_t count : {summary.pooled.tp, summary.pooled.fp, summary.pooled.fn}) {
-      cells.push_back(count_text(count));
-    }
-    cells.push_back(summary.published_text);
+    cells.insert(cells.end(),
+                 {summary.pooled.tp, summary.pooled.fp, summary.pooled.fn, summary.published_text});
   }
-  if (with_ms) {
-    cells.push_back(row.method_ms_per_scan ? fmt::format("{:.1f}", *row.method_ms_per_scan) : "");
-  }
+  if (with_ms) cells.push_back(or_missing(row.method_ms_per_scan));
   return cells;
 }
 
@@ -117,33 +110,43 @@ std::vector<SummaryRow> summary_rows(const Protocol& protocol, const std::vector
   return rows;
 }
 
-std::string format_rows(const std::vector<SummaryRow>& rows) {
+Sheet score_sheet(const ScoreRule& rule, const std::vector<Split>& splits,
+                  const std::vector<SummaryRow>& rows) {
+  Sheet sheet{.lead = {rule_line(rule)}};
+  if (rows.empty()) return sheet;
+  if (const std::string remark = benchmark_remark(*rule.protocol, splits); !remark.empty()) {
+    sheet.lead.push_back(remark);
+  }
+  sheet.columns = {{"sequence", Unit::kText},
+                   {"scans"},
+                   {"labelled"},
+                   {"IoU", Unit::kPercent},
+                   {"precision", Unit::kPercent},
+                   {"recall", Unit::kPercent},
+                   {"F1", Unit::kPercent},
+                   {"TP"},
+                   {"FP"},
+                   {"FN"},
+                   {"benchmark's rounding"}};
   const bool with_ms = std::ranges::any_of(
       rows, [](const SummaryRow& row) { return row.method_ms_per_scan.has_value(); });
-  std::vector<TextTable::Column> columns = {{"sequence", TextTable::Align::kLeft}};
-  for (const char* title : {"scans", "labelled", "IoU %", "precision %", "recall %", "F1 %", "TP",
-                            "FP", "FN", "benchmark's rounding"}) {
-    columns.push_back({title});
-  }
-  if (with_ms) columns.push_back({"ms/scan"});
-  TextTable table(std::move(columns));
+  if (with_ms) sheet.columns.push_back({"ms/scan", Unit::kNumber, 1});
   bool ruled = false;
   for (const SummaryRow& row : rows) {
-    if (row.kind != SummaryRow::Kind::kSequence && !ruled) table.add_rule();
+    if (row.kind != SummaryRow::Kind::kSequence && !ruled) sheet.rows.emplace_back();
     ruled = ruled || row.kind != SummaryRow::Kind::kSequence;
-    table.add_row(cells(row, with_ms));
+    sheet.rows.push_back(cells_of(row, with_ms));
   }
-  return table.str();
+  return sheet;
 }
 
 std::string benchmark_remark(const Protocol& protocol, const std::vector<Split>& splits) {
   if (protocol.default_split.empty() || splits.empty()) return "";
   if (benchmark_split(protocol, splits) != nullptr) {
-    return fmt::format("the benchmark's number is that of split {}\n", protocol.default_split);
+    return fmt::format("the benchmark's number is that of split {}", protocol.default_split);
   }
-  return fmt::format(
-      "no row is the benchmark's number: it is over split {}, which was not scored\n",
-      protocol.default_split);
+  return fmt::format("no row is the benchmark's number: it is over split {}, which was not scored",
+                     protocol.default_split);
 }
 
 nlohmann::ordered_json rows_json(const std::vector<SummaryRow>& rows) {

@@ -3,23 +3,21 @@
 #include <cstddef>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "datasets/layouts/dataset.hpp"
-#include "eval/protocols/confusion.hpp"
+#include "eval/answer/answer.hpp"
 #include "eval/protocols/metrics.hpp"
+#include "eval/results/result_file.hpp"
 
 namespace mosbench {
 
 /// Counts of one sequence, of a run or of scored predictions.
 struct ScoredSequence {
-  struct Scan {
-    std::string stem;
-    std::optional<Confusion> counts;  ///< nullopt without truth
-  };
   std::string name;
-  std::vector<Scan> scans;
+  std::span<const ScanRow> scans;
   std::optional<double> method_ms_per_scan;
 };
 
@@ -40,8 +38,10 @@ struct SummaryRow {
 std::vector<SummaryRow> summary_rows(const Protocol& protocol, const std::vector<Split>& splits,
                                      const std::vector<ScoredSequence>& sequences);
 
-/// Formats the table of `run` and `score`, with a column of milliseconds if a row has some.
-std::string format_rows(const std::vector<SummaryRow>& rows);
+/// Says them below the rule and which row has the benchmark's number, with a column of milliseconds
+/// if a row has some. Without rows there are the lines alone.
+Sheet score_sheet(const ScoreRule& rule, const std::vector<Split>& splits,
+                  const std::vector<SummaryRow>& rows);
 
 /// Returns a line that names the row with the benchmark's number, or says that none has it; empty
 /// when the protocol has no split.

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include "eval/answer/answer_text.hpp"
-#include "eval/answer/text_table.hpp"
 #include "eval/protocols/counts_json.hpp"
 #include "eval/protocols/metrics.hpp"
 #include "eval/protocols/protocol_list.hpp"
@@ -75,32 +74,32 @@ std::vector<ProtocolRow> protocol_rows(const std::vector<ScoreRule>& rules,
 
 }  // namespace
 
-std::string side_by_side_text(const Dataset& dataset, const std::vector<ScoreRule>& rules,
-                              const std::vector<SequenceScores>& scores) {
-  TextTable table({{"protocol", TextTable::Align::kLeft},
-                   {"IoU %"},
-                   {"benchmark's rounding"},
-                   {"TP"},
-                   {"FP"},
-                   {"FN"},
-                   {"why", TextTable::Align::kLeft}});
+Answer side_by_side_answer(const Dataset& dataset, const std::vector<ScoreRule>& rules,
+                           const std::vector<SequenceScores>& scores) {
+  Sheet sheet{.lead = {"the same labels by every protocol, over all scored scans"},
+              .columns = {{"protocol", Unit::kText},
+                          {"IoU", Unit::kPercent},
+                          {"benchmark's rounding"},
+                          {"TP"},
+                          {"FP"},
+                          {"FN"},
+                          {"why", Unit::kText}},
+              .notes = score_remarks(dataset, scores)};
   for (const ProtocolRow& row : protocol_rows(rules, scores)) {
     const Confusion& pooled = row.summary.pooled;
-    table.add_row({row.name, percent_text(row.summary.iou), row.summary.published_text,
-                   fmt::format("{}", pooled.tp), fmt::format("{}", pooled.fp),
-                   fmt::format("{}", pooled.fn), row.reason});
+    sheet.rows.push_back({row.name, or_undefined(row.summary.iou), row.summary.published_text,
+                          pooled.tp, pooled.fp, pooled.fn, row.reason});
   }
-  std::string text = "the same labels by every protocol, over all scored scans\n" +
-                     simulated_remark(dataset) + '\n' + table.str() + '\n';
-  for (const std::string& remark : score_remarks(dataset, scores)) text += remark + '\n';
-  return text;
+  return {.standing = standing_of(dataset, scores),
+          .sheets = {std::move(sheet)},
+          .json = json_text(side_by_side_json(dataset, rules, scores))};
 }
 
 ordered_json side_by_side_json(const Dataset& dataset, const std::vector<ScoreRule>& rules,
                                const std::vector<SequenceScores>& scores) {
   ordered_json json = {{"dataset", std::string(to_string(dataset.kind))},
                        {"protocols", ordered_json::array()},
-                       {"remarks", score_remarks(dataset, scores)}};
+                       {"remarks", all_remarks(dataset, scores)}};
   if (const auto origin = simulated_origin_json(dataset)) json["simulated"] = *origin;
   for (const ProtocolRow& row : protocol_rows(rules, scores)) {
     ordered_json protocol = {{"name", row.name},

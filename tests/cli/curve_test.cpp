@@ -9,9 +9,9 @@ namespace {
 
 using testing::HasSubstr;
 
-class Curve : public testing::Test {
+class ScoreCurves : public testing::Test {
  protected:
-  Curve() { cli::write_small_sequence(folder_ / "room", 10); }
+  ScoreCurves() { cli::write_small_sequence(folder_ / "room", 10); }
 
   cli::Answer run(const std::vector<std::string>& more = {}) const {
     std::vector<std::string> words = {"run", folder_ / "room", "--out", folder_ / "out"};
@@ -22,7 +22,7 @@ class Curve : public testing::Test {
   TempFolder folder_;
 };
 
-TEST_F(Curve, OfARunWithScoresHasItsLabelsAndAPicture) {
+TEST_F(ScoreCurves, OfARunWithScoresHasItsLabelsAndAPicture) {
   ASSERT_EQ(run({"--scores"}).exit_code, 0);
   const cli::Answer answer =
       cli::run({"curve", folder_ / "out", "--format", "json", "-o", folder_ / "curve.png"});
@@ -37,10 +37,11 @@ TEST_F(Curve, OfARunWithScoresHasItsLabelsAndAPicture) {
   const cli::Answer text = cli::run({"curve", folder_ / "out"});
   EXPECT_THAT(text.out, HasSubstr("average precision "));
   const cli::Answer csv = cli::run({"curve", folder_ / "out", "--format", "csv"});
-  EXPECT_THAT(csv.out, testing::StartsWith("threshold,recall,precision,iou,tp,fp,fn,tn\n"));
+  EXPECT_THAT(csv.out,
+              testing::StartsWith("threshold,recall,precision,iou,tp,fp,fn,tn,standing\n"));
 }
 
-TEST_F(Curve, IsRefusedWithoutScoresAndSaysWhatToDo) {
+TEST_F(ScoreCurves, IsRefusedWithoutScoresAndSaysWhatToDo) {
   ASSERT_EQ(run().exit_code, 0);
   const cli::Answer answer = cli::run({"curve", folder_ / "out"});
   EXPECT_EQ(answer.exit_code, 3);
@@ -48,7 +49,7 @@ TEST_F(Curve, IsRefusedWithoutScoresAndSaysWhatToDo) {
                                     "give the same run command again, with --scores"));
 }
 
-TEST_F(Curve, IsRefusedForLabelsOfOthersAndForSeveralRuns) {
+TEST_F(ScoreCurves, IsRefusedForLabelsOfOthersAndForSeveralRuns) {
   ASSERT_EQ(run({"--scores"}).exit_code, 0);
   ASSERT_EQ(cli::run({"score", folder_ / "room", "--predictions", folder_ / "out", "--out",
                       folder_ / "scored", "--method", "Mine"})
@@ -62,7 +63,7 @@ TEST_F(Curve, IsRefusedForLabelsOfOthersAndForSeveralRuns) {
   EXPECT_THAT(both.err, HasSubstr("holds 2 runs"));
 }
 
-TEST_F(Curve, SaysWhenAMethodGivesNoMoreThanLabels) {
+TEST_F(ScoreCurves, SaysWhenAMethodGivesNoMoreThanLabels) {
   ASSERT_EQ(run({"--scores", "--method", "dufomap"}).exit_code, 0);
   const cli::Answer answer = cli::run({"curve", folder_ / "out"});
   ASSERT_EQ(answer.exit_code, 0) << answer.err;

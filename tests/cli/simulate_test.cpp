@@ -15,6 +15,8 @@ using testing::Not;
 
 constexpr const char* kNotice =
     "simulated data (scene room, seed 5): not comparable with published numbers";
+constexpr const char* kMark =
+    "SIMULATED data (scene room, seed 5): not comparable with published numbers";
 
 class Simulate : public testing::Test {
  protected:
@@ -38,7 +40,7 @@ TEST_F(Simulate, GivesDataThatRunAndScoreTakeAndNeverPassForReal) {
     const cli::Answer text = cli::run({"run", input, "--out", out});
     ASSERT_EQ(text.exit_code, 0) << text.err;
     EXPECT_THAT(text.out, HasSubstr(layout + " data set"));
-    EXPECT_THAT(text.out, HasSubstr(kNotice));
+    EXPECT_THAT(text.out, HasSubstr(kMark));
     const cli::Answer run = cli::run({"run", input, "--out", out, "--json"});
     const auto ran = nlohmann::json::parse(run.out);
     EXPECT_EQ(ran.at("simulated").at("notice"), kNotice);
@@ -46,7 +48,7 @@ TEST_F(Simulate, GivesDataThatRunAndScoreTakeAndNeverPassForReal) {
       const auto result = cli::timeless_result(sequence.at("folder").get<std::string>());
       EXPECT_EQ(result.at("simulated").at("notice"), kNotice);
     }
-    EXPECT_THAT(cli::run({"score", input, "--predictions", out}).out, HasSubstr(kNotice));
+    EXPECT_THAT(cli::run({"score", input, "--predictions", out}).out, HasSubstr(kMark));
     const cli::Answer score = cli::run({"score", input, "--predictions", out, "--json"});
     ASSERT_EQ(score.exit_code, 0) << score.err;
     const auto scored = nlohmann::json::parse(score.out);
@@ -103,7 +105,7 @@ TEST_F(Simulate, IsKnownWhereALinkLeadsToIt) {
                                             folder_ / "mine/sequences/01");
   const cli::Answer run = cli::run({"run", folder_ / "mine", "--out", folder_ / "out"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_THAT(run.out, HasSubstr("simulated data (scene room"));
+  EXPECT_THAT(run.out, HasSubstr("SIMULATED data (scene room"));
   EXPECT_TRUE(cli::timeless_result(folder_ / "out/01").contains("simulated"));
   EXPECT_FALSE(cli::timeless_result(folder_ / "out/00").contains("simulated"));
 }

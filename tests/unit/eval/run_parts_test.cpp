@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "datasets/text/errors.hpp"
+#include "eval/answer/render.hpp"
 #include "eval/answer/text_table.hpp"
 #include "eval/results/json_differences.hpp"
 #include "eval/results/progress.hpp"
@@ -101,9 +102,17 @@ TEST(DurationText, ChangesItsUnitWithTheLength) {
   EXPECT_EQ(duration_text(7620.0), "2 h 07 min");
 }
 
-const std::vector<ScoredSequence> kTwoSequences = {
-    {"a", {{"0", counts(1, 0, 1)}, {"1", std::nullopt}, {"2", counts(3, 1, 0)}}, 10.0},
-    {"b", {{"0", counts(90, 5, 5)}}, 30.0}};
+ScanRow scan_row(const char* stem, const std::optional<Confusion>& counts) {
+  ScanRow row;
+  row.stem = stem;
+  row.counts = counts;
+  return row;
+}
+
+const std::vector<ScanRow> kScansOfA = {scan_row("0", counts(1, 0, 1)), scan_row("1", {}),
+                                        scan_row("2", counts(3, 1, 0))};
+const std::vector<ScanRow> kScansOfB = {scan_row("0", counts(90, 5, 5))};
+const std::vector<ScoredSequence> kTwoSequences = {{"a", kScansOfA, 10.0}, {"b", kScansOfB, 30.0}};
 
 TEST(ScoreRows, PoolASplitOverItsSequences) {
   const Split split{"test", {{0, std::nullopt}, {1, std::nullopt}}};
@@ -140,7 +149,7 @@ TEST(ScoreRows, CoverWholeSequencesWhereTheSplitPicksNone) {
 TEST(BenchmarkNotice, SaysWhichRowHoldsTheNumberOrThatNoneDoes) {
   const Split split{"test", {{0, std::nullopt}}};
   EXPECT_EQ(benchmark_remark(protocol_named("sipailou"), {split}),
-            "the benchmark's number is that of split test\n");
+            "the benchmark's number is that of split test");
   const Split other{"valid", {{0, std::nullopt}}};
   EXPECT_THAT(benchmark_remark(protocol_named("sipailou"), {other}),
               testing::StartsWith("no row is the benchmark's number"));
@@ -149,9 +158,10 @@ TEST(BenchmarkNotice, SaysWhichRowHoldsTheNumberOrThatNoneDoes) {
 }
 
 TEST(ScoreRows, WithoutTruthShowNoNumber) {
-  const auto rows =
-      summary_rows(protocol_named("sipailou"), {}, {{"a", {{"0", std::nullopt}}, std::nullopt}});
-  EXPECT_NE(format_rows(rows).find("no truth"), std::string::npos);
+  const Protocol& protocol = protocol_named("sipailou");
+  const std::vector<ScanRow> scans = {scan_row("0", {})};
+  const auto rows = summary_rows(protocol, {}, {{"a", scans, std::nullopt}});
+  EXPECT_THAT(text_of(score_sheet({&protocol, {}}, {}, rows)), testing::HasSubstr("no truth"));
   EXPECT_TRUE(rows_json(rows).at("sequences").at(0).at("summary").is_null());
 }
 
