@@ -93,7 +93,8 @@ void plus_stage(benchmark::State& state, StagedScans& staged, ThreadPool& pool) 
   const Labels expected = labels_of(whole, staged);
   bool right = true;
   measure_passes(state, staged.measured.size(), [&] {
-    VoxelMap map(config.map, staged.grid, VoxelMap::Keeps::kStatesAndHistory);
+    hmm_mos_plus::BlockMemory memory;
+    VoxelMap map(config.map, staged.grid, &memory);
     hmm_mos_plus::LookBack past(config);
     hmm_mos_plus::Tracks tracks(config);
     for (const StagedScan& s : staged.all) {
@@ -109,15 +110,15 @@ void plus_stage(benchmark::State& state, StagedScans& staged, ThreadPool& pool) 
       });
       map.evict(s.k);
       auto classes = run(PlusStage::kArrivals, [&] {
-        return hmm_mos_plus::classify(inputs.scan, map, s.k, config, pool);
+        return hmm_mos_plus::classify(inputs.scan, {map, memory, s.k}, config, pool);
       });
       const auto ground = run(PlusStage::kGround, [&] {
         return std::make_shared<const hmm_mos_plus::Ground>(inputs.scan, config);
       });
       hmm_mos_plus::LowVoxels low(inputs.scan, *ground);
-      const hmm_mos::Tick tick{.at = s.k};
+      const hmm_mos_plus::Tick tick{.at = s.k};
       run(PlusStage::kLookBack, [&] {
-        past.enter(inputs.scan, classes, ground, tick, map, s.k, pool);
+        past.enter(inputs.scan, classes, ground, tick, {map, memory, s.k}, pool);
         return 0;
       });
       run(PlusStage::kPrediction, [&] {

@@ -1,8 +1,8 @@
-#include "core/methods/hmm_mos/block_history.hpp"
+#include "core/methods/hmm_mos_plus/block_history.hpp"
 
 #include <algorithm>
 
-namespace mosbench::hmm_mos {
+namespace mosbench::hmm_mos_plus {
 namespace {
 
 /// Turns are pruned before their age is beyond what 8 bits hold: it is below kMaxAgeTicks and
@@ -12,8 +12,8 @@ static_assert(2 * BlockHistory::kMaxAgeTicks + kPruneTicks < 256);
 
 }  // namespace
 
-void BlockHistory::update(const BlockMask& observed, const BlockStates& before,
-                          const BlockStates& after, const Tick& tick) {
+void BlockHistory::update(const BlockMask& observed, const hmm_mos::BlockStates& before,
+                          const hmm_mos::BlockStates& after, const Tick& tick) {
   if (!(arrived_ | left_).any()) {
     pruned_ = tick.at;
   } else if (tick.at - pruned_ >= kPruneTicks) {
@@ -96,4 +96,4 @@ BlockMask BlockHistory::within(const BlockMask& turned, std::uint32_t ticks,
   return young;
 }
 
-}  // namespace mosbench::hmm_mos
+}  // namespace mosbench::hmm_mos_plus

@@ -6,10 +6,10 @@
 #include <memory>
 
 #include "core/methods/hmm_mos/hmm.hpp"
-#include "core/methods/hmm_mos/tick_clock.hpp"
+#include "core/methods/hmm_mos_plus/tick_clock.hpp"
 #include "core/voxel/voxel.hpp"
 
-namespace mosbench::hmm_mos {
+namespace mosbench::hmm_mos_plus {
 
 /// How the voxels of a block came to their state: short counters that stop at their highest value,
 /// one bit per voxel and digit, so that a few operations update the whole block. They count a scan
@@ -30,8 +30,8 @@ class BlockHistory {
 
   /// Takes in the states of the voxels that a scan observed, before and after their filter step.
   /// Blocks are updated in the order of scans.
-  void update(const BlockMask& observed, const BlockStates& before, const BlockStates& after,
-              const Tick& tick);
+  void update(const BlockMask& observed, const hmm_mos::BlockStates& before,
+              const hmm_mos::BlockStates& after, const Tick& tick);
   /// Makes voxels never seen.
   void forget(const BlockMask& voxels);
 
@@ -78,4 +78,4 @@ class BlockHistory {
   std::array<BlockMask, 3> occupied_;  // count of being occupied, modulo 8
 };
 
-}  // namespace mosbench::hmm_mos
+}  // namespace mosbench::hmm_mos_plus

@@ -36,9 +36,8 @@ class MappedMethod : public Method {
 
  protected:
   /// Throws std::invalid_argument for 0 threads.
-  MappedMethod(const Config& config, const RunContext& context,
-               VoxelMap::Keeps keeps = VoxelMap::Keeps::kStates)
-      : mapping_(std::make_unique<Mapping>(config, context, keeps)) {}
+  MappedMethod(const Config& config, const RunContext& context)
+      : mapping_(std::make_unique<Mapping>(config, context)) {}
 
   Mapping& mapping() { return *mapping_; }
   const RunContext& context() const { return mapping_->context(); }

@@ -7,12 +7,10 @@
 
 namespace mosbench::hmm_mos {
 
-Mapping::Mapping(const Config& config, const RunContext& context, VoxelMap::Keeps keeps)
+Mapping::Mapping(const Config& config, const RunContext& context)
     : config_(config),
       context_(checked(context)),
       order_(context.scan_count),
-      clock_(context.stamps_ns),
-      keeps_(keeps),
       pool_(context.threads) {}
 
 std::unique_ptr<ObservedScan> Mapping::observe(std::span<const Point> points,
@@ -51,12 +49,12 @@ ObservedScan& Mapping::enter(Observed* observed) {
   auto& current = order_.take<ObservedScan>(observed);
   const VoxelizedScan& scan = current.scan;
   const StageRecord record{current.stages, context_.cpu_times};
-  if (!map_) map_.emplace(config_, *grid_, keeps_);
+  if (!map_) map_.emplace(config_, *grid_, observer_);
   {
     const StageClock clock(record, "map_update");
     std::vector<const VoxelSet*> sources{&scan.measured};
     if (config_.distance_field_scans == 2) sources.push_back(&previous_measured_);
-    map_->update(current.observed, sources, scan.sensor_m, k(), pool_, clock_.of(k()));
+    map_->update(current.observed, sources, scan.sensor_m, k(), pool_);
   }
   {
     const StageClock clock(record, "evict");

@@ -11,7 +11,6 @@
 #include "core/base/push_order.hpp"
 #include "core/base/thread_pool.hpp"
 #include "core/methods/hmm_mos/config.hpp"
-#include "core/methods/hmm_mos/tick_clock.hpp"
 #include "core/methods/hmm_mos/voxel_map.hpp"
 #include "core/voxel/raycast.hpp"
 #include "core/voxel/voxelize.hpp"
@@ -29,8 +28,10 @@ struct ObservedScan final : NumberedScan {
 class Mapping {
  public:
   /// Throws std::invalid_argument for 0 threads.
-  Mapping(const Config& config, const RunContext& context,
-          VoxelMap::Keeps keeps = VoxelMap::Keeps::kStates);
+  Mapping(const Config& config, const RunContext& context);
+
+  /// Lets the map tell this of its blocks, from the first scan on.
+  void tell(BlockObserver& observer) { observer_ = &observer; }
 
   /// Finds P'_M and P'_obs, which need no earlier scan, with all threads. Throws as
   /// Method::observe.
@@ -49,7 +50,6 @@ class Mapping {
 
   /// Are there once a scan has entered, k being its index.
   std::uint32_t k() const { return static_cast<std::uint32_t>(order_.pushed() - 1); }
-  Tick tick() const { return clock_.of(k()); }
   VoxelMap& map() { return *map_; }
   const VoxelGrid& grid() const { return *grid_; }
   ThreadPool& pool() { return pool_; }
@@ -64,8 +64,7 @@ class Mapping {
   Config config_;
   RunContext context_;
   PushOrder order_;
-  TickClock clock_;
-  VoxelMap::Keeps keeps_;
+  BlockObserver* observer_ = nullptr;
   ThreadPool pool_;
   std::optional<ThreadPool> observing_pool_;  // for scans observed during a push
   std::optional<VoxelGrid> grid_;             // around the first scan

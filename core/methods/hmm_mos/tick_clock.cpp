@@ -1,9 +1,9 @@
-#include "core/methods/hmm_mos/tick_clock.hpp"
+#include "core/methods/hmm_mos_plus/tick_clock.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-namespace mosbench::hmm_mos {
+namespace mosbench::hmm_mos_plus {
 namespace {
 
 constexpr double kTick_ns = TickClock::kSeconds * 1e9;
@@ -56,4 +56,4 @@ Tick TickClock::of(std::uint32_t scan_index) const {
   return {.at = ticks_.back().at + behind};
 }
 
-}  // namespace mosbench::hmm_mos
+}  // namespace mosbench::hmm_mos_plus

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-namespace mosbench::hmm_mos {
+namespace mosbench::hmm_mos_plus {
 
 /// When a scan was measured, in tenths of a second, so that histories of 5 and of 20 Hz are like
 /// those of 10 Hz.
@@ -30,4 +30,4 @@ class TickClock {
   std::vector<Tick> ticks_;
 };
 
-}  // namespace mosbench::hmm_mos
+}  // namespace mosbench::hmm_mos_plus

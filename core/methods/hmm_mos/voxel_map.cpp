@@ -5,15 +5,8 @@
 namespace mosbench::hmm_mos {
 namespace {
 
-/// Starts bringing memory that is about to be written into the cache.
-void fetch(const void* memory, std::size_t bytes) {
-  constexpr std::size_t kLine = 64;
-  const auto* first = static_cast<const char*>(memory);
-  for (std::size_t at = 0; at < bytes; at += kLine) __builtin_prefetch(first + at, 1);
-}
-
-/// The same for beliefs in the layers of some cells.
-void fetch(const BeliefNumbers& numbers, const BlockMask& cells) {
+/// Fetches beliefs in the layers of some cells.
+void fetch_layers(const BeliefNumbers& numbers, const BlockMask& cells) {
   constexpr std::size_t kLayer = kBlockSide * kBlockSide;
   for (std::size_t z = 0; z < kBlockSide; ++z) {
     if (cells.words[z] != 0) fetch(&numbers.occupied[z * kLayer], kLayer * sizeof(float));
@@ -22,7 +15,7 @@ void fetch(const BeliefNumbers& numbers, const BlockMask& cells) {
 
 }  // namespace
 
-VoxelMap::VoxelMap(const Config& config, const VoxelGrid& grid, Keeps keeps)
+VoxelMap::VoxelMap(const Config& config, const VoxelGrid& grid, BlockObserver* observer)
     : variant_(config.variant),
       filter_(config.voxel_size_m, config.sigma_m(), config.transition_epsilon,
               config.min_state_probability),
@@ -34,16 +27,13 @@ VoxelMap::VoxelMap(const Config& config, const VoxelGrid& grid, Keeps keeps)
       // A block is refreshed at the latest w_g and a sweep after it was seen last, and its voxels
       // were younger than evicted_after_ then.
       age_planes_(LastSeen::planes_for(2 * global_window_scans_ + 4 * Eviction::kSweepScans)),
-      keeps_history_(keeps == Keeps::kStatesAndHistory) {}
+      observer_(observer) {}
 
 std::uint32_t VoxelMap::find_or_add(const BlockIndex& index, std::uint32_t scan_index) {
   const auto [slot, added] = blocks_.find_or_add(index);
   if (!added) return slot;
   if (numbers_of_.size() < blocks_.slot_count()) numbers_of_.resize(blocks_.slot_count(), kNoSlot);
-  if (keeps_history_) {
-    if (histories_.size() < blocks_.slot_count()) histories_.resize(blocks_.slot_count());
-    histories_[slot] = {};
-  }
+  if (observer_ != nullptr) observer_->added(slot, blocks_.slot_count());
   Block& block = blocks_[slot];
   block.oldest_seen = block.newest_seen = scan_index;
   block.states = {};
@@ -60,7 +50,7 @@ void VoxelMap::drop_block(std::uint32_t slot) {
 
 /// Removes records as if the voxels had never been seen.
 void VoxelMap::forget(std::uint32_t slot, const BlockMask& voxels) {
-  if (keeps_history_) histories_[slot].forget(voxels);
+  if (observer_ != nullptr) observer_->forgotten(slot, voxels);
   Block& block = blocks_[slot];
   block.beliefs.forget(voxels);
   block.fresh = without(block.fresh, voxels);
@@ -158,21 +148,20 @@ std::vector<std::uint8_t> VoxelMap::allocate(std::span<const BlockIndex> blocks,
   return near;
 }
 
-std::optional<VoxelMap::Past> VoxelMap::past_at(std::uint32_t scan_index, const BlockIndex& index) {
+std::optional<VoxelMap::KnownBlock> VoxelMap::block_at(std::uint32_t scan_index,
+                                                       const BlockIndex& index) {
   const std::uint32_t slot = blocks_.find(index);
   if (slot == kNoSlot) return std::nullopt;
   refresh_block(slot, scan_index);
   const Block& block = blocks_[slot];
-  return Past{
-      {without(block.states.occupied, block.stale), without(block.states.free, block.stale)},
-      histories_[slot],
-      tick_.at};
+  return KnownBlock{
+      {without(block.states.occupied, block.stale), without(block.states.free, block.stale)}, slot};
 }
 
 VoxelList VoxelMap::update(const VoxelList& observed, std::span<const VoxelSet* const> sources,
                            const Eigen::Vector3d& sensor_m, std::uint32_t scan_index,
-                           ThreadPool& pool, const std::optional<Tick>& tick) {
-  tick_ = tick.value_or(Tick{scan_index, 1});
+                           ThreadPool& pool) {
+  if (observer_ != nullptr) observer_->begin(scan_index);
   if (const auto due = eviction_.enter(sensor_m)) run(*due, scan_index - 1);
   forget_changes_of_expired(scan_index);
   const int reach = distance_field_.reach(), side = 2 * reach + 1;
@@ -191,14 +180,12 @@ VoxelList VoxelMap::update(const VoxelList& observed, std::span<const VoxelSet* 
       const BlockMask& voxels = observed.masks[i];
       Block& block = blocks_[slots_[i]];
       if (i + 1 < end) fetch(&blocks_[slots_[i + 1]], kTouchedBytes);
-      if (i + 1 < end && keeps_history_) {
-        fetch(&histories_[slots_[i + 1]], BlockHistory::kTouchedBytes);
-      }
+      if (i + 1 < end && observer_ != nullptr) observer_->fetch(slots_[i + 1]);
       refresh_block(slots_[i], scan_index);
       const BlockStates before = block.states;
       if (near[i] != 0) {
         BeliefNumbers& numbers = numbers_[numbers_of_[slots_[i]]];
-        fetch(numbers, voxels);
+        fetch_layers(numbers, voxels);
         grid.neighbours(index, reach, around);
         column.find(index, voxels, around, distances);
         filter_.update(voxels, distances, block.beliefs, numbers, block.states);
@@ -206,9 +193,7 @@ VoxelList VoxelMap::update(const VoxelList& observed, std::span<const VoxelSet* 
         BeliefFilter::update_far(voxels, block.beliefs, block.states);
       }
       changed[i] = detect_changes(before, block.states);
-      if (keeps_history_) {
-        histories_[slots_[i]].update(voxels, before, block.states, tick_);
-      }
+      if (observer_ != nullptr) observer_->updated(slots_[i], voxels, before, block.states);
       mark_seen(block, voxels, scan_index);
     }
   });
@@ -244,10 +229,8 @@ void VoxelMap::run(const Sweep& sweep, std::uint32_t scan_index) {
 }
 
 std::size_t VoxelMap::memory_bytes() const {
-  std::size_t bytes = blocks_.memory_bytes() + numbers_.memory_bytes() +
-                      numbers_of_.capacity() * sizeof(std::uint32_t);
-  for (const BlockHistory& history : histories_) bytes += history.memory_bytes();
-  return bytes;
+  return blocks_.memory_bytes() + numbers_.memory_bytes() +
+         numbers_of_.capacity() * sizeof(std::uint32_t);
 }
 
 }  // namespace mosbench::hmm_mos

@@ -2,14 +2,12 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "core/base/slot_pool.hpp"
 #include "core/base/thread_pool.hpp"
-#include "core/methods/hmm_mos/block_history.hpp"
 #include "core/methods/hmm_mos/change_log.hpp"
 #include "core/methods/hmm_mos/config.hpp"
 #include "core/methods/hmm_mos/eviction.hpp"
@@ -20,22 +18,44 @@
 
 namespace mosbench::hmm_mos {
 
+/// Starts bringing memory that is about to be written into the cache.
+inline void fetch(const void* memory, std::size_t bytes) {
+  constexpr std::size_t kLine = 64;
+  const auto* first = static_cast<const char*>(memory);
+  for (std::size_t at = 0; at < bytes; at += kLine) __builtin_prefetch(first + at, 1);
+}
+
+/// Is told what becomes of the blocks of a map, one call per block, which it knows by its slot.
+/// Calls between `begin` and the next one are from several threads, but never two of one slot at a
+/// time; `added` is from one thread.
+class BlockObserver {
+ public:
+  virtual ~BlockObserver() = default;
+  /// This scan is about to update blocks.
+  virtual void begin(std::uint32_t scan_index) = 0;
+  /// A new block has this slot, which is below `slot_count`.
+  virtual void added(std::uint32_t slot, std::size_t slot_count) = 0;
+  /// The block is about to be updated: starts bringing its memory into the cache.
+  virtual void fetch(std::uint32_t slot) const = 0;
+  /// The states of the voxels that the scan observed, before and after their filter step.
+  virtual void updated(std::uint32_t slot, const BlockMask& observed, const BlockStates& before,
+                       const BlockStates& after) = 0;
+  /// These voxels of the block are as if they had never been seen.
+  virtual void forgotten(std::uint32_t slot, const BlockMask& voxels) = 0;
+};
+
 /// The map M of the paper (III): beliefs x, states S and ages of the voxels observed in the last
 /// w_g scans within the eviction radius.
 class VoxelMap {
  public:
-  /// The paper's method needs no history.
-  enum class Keeps { kStates, kStatesAndHistory };
-
-  VoxelMap(const Config& config, const VoxelGrid& grid, Keeps keeps = Keeps::kStates);
+  /// The observer, if there is one, outlives the map.
+  VoxelMap(const Config& config, const VoxelGrid& grid, BlockObserver* observer = nullptr);
 
   /// One step x_k = eta B A x_{k-1} of the observed voxels, and their states (paper, III).
   /// `sources` are the measured sets whose union the distance field refers to; `sensor_m` is this
-  /// scan's position; histories count by `tick`, without one by scans. Returns the voxels whose
-  /// state changed.
+  /// scan's position. Returns the voxels whose state changed.
   VoxelList update(const VoxelList& observed, std::span<const VoxelSet* const> sources,
-                   const Eigen::Vector3d& sensor_m, std::uint32_t scan_index, ThreadPool& pool,
-                   const std::optional<Tick>& tick = std::nullopt);
+                   const Eigen::Vector3d& sensor_m, std::uint32_t scan_index, ThreadPool& pool);
 
   /// To be called after `update`: removes voxels out of range (see Eviction) and those not observed
   /// for more than w_g scans (paper, III).
@@ -49,15 +69,14 @@ class VoxelMap {
   /// Returns P'_chg since `first_scan`: voxels whose last change is at that scan or later.
   VoxelSet changed_since(std::uint32_t first_scan) const { return changes_.since(first_scan); }
 
-  /// The states S of a block's known voxels, and how all its voxels came to theirs.
-  struct Past {
+  /// The states S of a block's known voxels, and the slot by which its observer knows it.
+  struct KnownBlock {
     BlockStates known;
-    const BlockHistory& history;
-    std::uint32_t tick;  ///< of the last update
+    std::uint32_t slot;
   };
-  /// Returns that of a block at `scan_index`, nullopt where there is none; for maps that keep it.
-  /// Not const as `known_at` is not.
-  std::optional<Past> past_at(std::uint32_t scan_index, const BlockIndex& index);
+  /// Returns that of a block at `scan_index`, nullopt where there is none. Not const as `known_at`
+  /// is not.
+  std::optional<KnownBlock> block_at(std::uint32_t scan_index, const BlockIndex& index);
 
   std::size_t block_count() const { return blocks_.size(); }
   std::size_t memory_bytes() const;
@@ -99,10 +118,8 @@ class VoxelMap {
   // Slot in numbers_ by slot of the block, or kNoSlot while no voxel has a number. Not in the
   // block, which the serial part of `update` would fetch from memory to ask.
   std::vector<std::uint32_t> numbers_of_;
-  bool keeps_history_;
-  Tick tick_;                           // of the last update
-  std::deque<BlockHistory> histories_;  // by slot of the block, or none at all
-  std::vector<std::uint32_t> slots_;    // of the observed blocks
+  BlockObserver* observer_;
+  std::vector<std::uint32_t> slots_;  // of the observed blocks
 };
 
 }  // namespace mosbench::hmm_mos

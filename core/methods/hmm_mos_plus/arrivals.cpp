@@ -18,14 +18,14 @@ constexpr std::uint32_t kLeftTicks = 5;
 enum class Evidence { kArrival, kDeparture };
 
 std::uint32_t ticks_of(double age_s) {
-  return static_cast<std::uint32_t>(std::lround(age_s / hmm_mos::TickClock::kSeconds));
+  return static_cast<std::uint32_t>(std::lround(age_s / TickClock::kSeconds));
 }
 
 /// Returns, of the blocks around raw[slots], the settled voxels that did not arrive of late; for
 /// arrivals also those that were just left.
 VoxelSet firm_voxels(const VoxelizedScan& scan, const ScanMasks& raw,
-                     const std::vector<std::uint32_t>& slots, hmm_mos::VoxelMap& map,
-                     std::uint32_t k, std::uint32_t seed_age_ticks, Evidence evidence) {
+                     const std::vector<std::uint32_t>& slots, const RememberedMap& map,
+                     std::uint32_t seed_age_ticks, Evidence evidence) {
   VoxelSet firm;
   for (const std::uint32_t slot : slots) {
     const std::uint32_t near = blocks_within(raw[slot], 1);
@@ -34,7 +34,7 @@ VoxelSet firm_voxels(const VoxelizedScan& scan, const ScanMasks& raw,
     });
   }
   for (std::size_t i = 0; i < firm.block_count(); ++i) {
-    const auto past = map.past_at(k, firm.blocks[i]);
+    const auto past = map.past_at(firm.blocks[i]);
     if (!past) continue;
     const BlockMask settled = past->history.settled() & past->known.occupied;
     const BlockMask of_late = past->history.sure_within(settled, seed_age_ticks, past->tick);
@@ -48,11 +48,10 @@ VoxelSet firm_voxels(const VoxelizedScan& scan, const ScanMasks& raw,
 }
 
 /// Takes away what lies beside firm voxels.
-void keep_apart(const VoxelizedScan& scan, hmm_mos::VoxelMap& map, std::uint32_t k,
-                const Config& config, Evidence evidence, ThreadPool& pool, ScanMasks& raw) {
+void keep_apart(const VoxelizedScan& scan, const RememberedMap& map, const Config& config,
+                Evidence evidence, ThreadPool& pool, ScanMasks& raw) {
   const std::vector<std::uint32_t> slots = slots_with_any(raw);
-  const VoxelSet firm =
-      firm_voxels(scan, raw, slots, map, k, ticks_of(config.seed_age_s), evidence);
+  const VoxelSet firm = firm_voxels(scan, raw, slots, map, ticks_of(config.seed_age_s), evidence);
   pool.for_ranges(slots.size(), 16, [&](std::size_t begin, std::size_t end, unsigned) {
     HaloRows rows;
     for (std::size_t i = begin; i < end; ++i) {
@@ -63,11 +62,11 @@ void keep_apart(const VoxelizedScan& scan, hmm_mos::VoxelMap& map, std::uint32_t
 }
 
 /// Adds to seeds[i] those of raw[i] that lie apart from firm voxels and in known space.
-void add_seeds(const VoxelizedScan& scan, ScanMasks raw, hmm_mos::VoxelMap& map, std::uint32_t k,
+void add_seeds(const VoxelizedScan& scan, ScanMasks raw, const RememberedMap& map,
                const Config& config, Evidence evidence, ThreadPool& pool, ScanMasks& seeds) {
-  keep_apart(scan, map, k, config, evidence, pool, raw);
+  keep_apart(scan, map, config, evidence, pool, raw);
   const std::vector<std::uint32_t> slots = slots_with_any(raw);
-  const VoxelSet known = map.known_at(k, blocks_of(scan, slots), pool);
+  const VoxelSet known = map.map.known_at(map.k, blocks_of(scan, slots), pool);
   pool.for_ranges(slots.size(), 16, [&](std::size_t begin, std::size_t end, unsigned) {
     HaloRows rows, closed;
     for (std::size_t i = begin; i < end; ++i) {
@@ -85,8 +84,8 @@ void add_seeds(const VoxelizedScan& scan, ScanMasks raw, hmm_mos::VoxelMap& map,
 
 }  // namespace
 
-ArrivalClasses classify(const VoxelizedScan& scan, hmm_mos::VoxelMap& map, std::uint32_t k,
-                        const Config& config, ThreadPool& pool) {
+ArrivalClasses classify(const VoxelizedScan& scan, const RememberedMap& map, const Config& config,
+                        ThreadPool& pool) {
   const std::size_t blocks = scan.measured.block_count();
   const ScanMasks none(blocks);
   ArrivalClasses classes{none, none, none, none, none};
@@ -96,7 +95,7 @@ ArrivalClasses classify(const VoxelizedScan& scan, hmm_mos::VoxelMap& map, std::
   ScanMasks young = none;
   for (std::size_t i = 0; i < blocks; ++i) {
     if (!scan.occupied[i].any()) continue;
-    const auto past = map.past_at(k, scan.measured.blocks[i]);
+    const auto past = map.past_at(scan.measured.blocks[i]);
     if (!past) continue;  // at the range limit not every occupied voxel is observed
     const auto& history = past->history;
     const BlockMask occupied = scan.occupied[i] & past->known.occupied;
@@ -108,22 +107,22 @@ ArrivalClasses classify(const VoxelizedScan& scan, hmm_mos::VoxelMap& map, std::
     classes.standing[i] =
         without(classes.aged[i], history.arrived_within(came, object_age_ticks / 2, past->tick));
   }
-  add_seeds(scan, std::move(young), map, k, config, Evidence::kArrival, pool, classes.seeds);
+  add_seeds(scan, std::move(young), map, config, Evidence::kArrival, pool, classes.seeds);
   return classes;
 }
 
-void add_departures(const VoxelizedScan& scan, hmm_mos::VoxelMap& map, std::uint32_t k,
-                    const Config& config, ThreadPool& pool, ArrivalClasses& classes) {
+void add_departures(const VoxelizedScan& scan, const RememberedMap& map, const Config& config,
+                    ThreadPool& pool, ArrivalClasses& classes) {
   ScanMasks departed(scan.measured.block_count());
   for (std::size_t i = 0; i < departed.size(); ++i) {
-    const auto past = map.past_at(k, scan.measured.blocks[i]);
+    const auto past = map.past_at(scan.measured.blocks[i]);
     if (past) departed[i] = scan.occupied[i] & past->known.free;
     classes.settled[i] = without(classes.settled[i], departed[i]);
     classes.aged[i] = without(classes.aged[i], departed[i]);
     classes.standing[i] = without(classes.standing[i], departed[i]);
     classes.fresh[i] = classes.fresh[i] | departed[i];
   }
-  add_seeds(scan, std::move(departed), map, k, config, Evidence::kDeparture, pool, classes.seeds);
+  add_seeds(scan, std::move(departed), map, config, Evidence::kDeparture, pool, classes.seeds);
 }
 
 }  // namespace mosbench::hmm_mos_plus

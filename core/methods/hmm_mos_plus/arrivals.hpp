@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "core/base/thread_pool.hpp"
-#include "core/methods/hmm_mos/voxel_map.hpp"
+#include "core/methods/hmm_mos_plus/block_memory.hpp"
 #include "core/methods/hmm_mos_plus/config.hpp"
 #include "core/methods/hmm_mos_plus/scan_masks.hpp"
 
@@ -22,13 +22,13 @@ struct ArrivalClasses {
 };
 
 /// Returns the classes of scan k, with the map as it is after it.
-ArrivalClasses classify(const VoxelizedScan& scan, hmm_mos::VoxelMap& map, std::uint32_t k,
-                        const Config& config, ThreadPool& pool);
+ArrivalClasses classify(const VoxelizedScan& scan, const RememberedMap& map, const Config& config,
+                        ThreadPool& pool);
 
 /// For a scan that is judged later, with the map as it is after scan k: its voxels that are free by
 /// then departed. They are neither settled, aged nor standing, and fresh seeds as far as they pass
 /// a seed's tests but the one for what was just left.
-void add_departures(const VoxelizedScan& scan, hmm_mos::VoxelMap& map, std::uint32_t k,
-                    const Config& config, ThreadPool& pool, ArrivalClasses& classes);
+void add_departures(const VoxelizedScan& scan, const RememberedMap& map, const Config& config,
+                    ThreadPool& pool, ArrivalClasses& classes);
 
 }  // namespace mosbench::hmm_mos_plus

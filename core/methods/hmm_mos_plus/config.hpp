@@ -5,8 +5,8 @@
 #include <string_view>
 
 #include "core/base/fields.hpp"
-#include "core/methods/hmm_mos/block_history.hpp"
 #include "core/methods/hmm_mos/config.hpp"
+#include "core/methods/hmm_mos_plus/block_history.hpp"
 #include "core/voxel/halo.hpp"
 
 namespace mosbench::hmm_mos_plus {
@@ -60,7 +60,7 @@ void visit_fields(AnyConfig& config, Visitor&& visit) {
       visit(name, field, legal, meaning);
     }
   });
-  constexpr double kMaxAge_s = hmm_mos::BlockHistory::kMaxAgeTicks * hmm_mos::TickClock::kSeconds;
+  constexpr double kMaxAge_s = BlockHistory::kMaxAgeTicks * TickClock::kSeconds;
   visit("seed_age_s", config.seed_age_s, FieldRange{0.0, kMaxAge_s},
         "a voxel that arrived in free space is a seed for so long; to tenths, by stamps or 10 Hz");
   visit("object_age_s", config.object_age_s, FieldRange{0.0, kMaxAge_s},

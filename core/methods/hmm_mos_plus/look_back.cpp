@@ -15,10 +15,10 @@ constexpr std::size_t kScans = 2;
 
 LookBack::LookBack(const Config& config) : config_(config), tracks_(config) {}
 
-void LookBack::look(hmm_mos::VoxelMap& map, std::uint32_t k, ThreadPool& pool) {
+void LookBack::look(const RememberedMap& map, ThreadPool& pool) {
   if (past_.size() < kScans) return;
   Past& then = past_.front();
-  add_departures(then.scan, map, k, config_, pool, then.classes);
+  add_departures(then.scan, map, config_, pool, then.classes);
   LowVoxels low(then.scan, *then.ground);
   tracks_.follow(then.scan, find_components(then.scan, then.classes, *then.ground, low, config_),
                  then.tick);
@@ -26,16 +26,16 @@ void LookBack::look(hmm_mos::VoxelMap& map, std::uint32_t k, ThreadPool& pool) {
 }
 
 void LookBack::add_seeds(const VoxelizedScan& scan, LowVoxels& low, ArrivalClasses& classes) const {
-  hmm_mos::Tick since = past_.back().tick;
+  Tick since = past_.back().tick;
   since.periods = 0;
   for (const Past& later : past_) since.periods += later.tick.periods;
   tracks_.add_seeds(scan, low, since, classes);
 }
 
 void LookBack::enter(const VoxelizedScan& scan, const ArrivalClasses& classes,
-                     std::shared_ptr<const Ground> ground, const hmm_mos::Tick& tick,
-                     hmm_mos::VoxelMap& map, std::uint32_t k, ThreadPool& pool) {
-  look(map, k, pool);
+                     std::shared_ptr<const Ground> ground, const Tick& tick,
+                     const RememberedMap& map, ThreadPool& pool) {
+  look(map, pool);
   ScanMasks may_move(scan.occupied.size());
   for (std::uint32_t slot = 0; slot < may_move.size(); ++slot) {
     may_move[slot] = without(scan.occupied[slot], classes.settled[slot]) | classes.seeds[slot];

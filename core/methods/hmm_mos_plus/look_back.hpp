@@ -6,11 +6,11 @@
 #include <memory>
 
 #include "core/base/thread_pool.hpp"
-#include "core/methods/hmm_mos/tick_clock.hpp"
-#include "core/methods/hmm_mos/voxel_map.hpp"
 #include "core/methods/hmm_mos_plus/arrivals.hpp"
+#include "core/methods/hmm_mos_plus/block_memory.hpp"
 #include "core/methods/hmm_mos_plus/config.hpp"
 #include "core/methods/hmm_mos_plus/ground.hpp"
+#include "core/methods/hmm_mos_plus/tick_clock.hpp"
 #include "core/methods/hmm_mos_plus/tracks.hpp"
 
 namespace mosbench::hmm_mos_plus {
@@ -24,20 +24,20 @@ class LookBack {
   /// Takes in scan k, whose classes know nothing of predictions, and looks back from it, with the
   /// map as it is after it.
   void enter(const VoxelizedScan& scan, const ArrivalClasses& classes,
-             std::shared_ptr<const Ground> ground, const hmm_mos::Tick& tick,
-             hmm_mos::VoxelMap& map, std::uint32_t k, ThreadPool& pool);
+             std::shared_ptr<const Ground> ground, const Tick& tick, const RememberedMap& map,
+             ThreadPool& pool);
   /// Predicts, as Tracks does, where in the scan entered last is what moved before.
   void add_seeds(const VoxelizedScan& scan, LowVoxels& low, ArrivalClasses& classes) const;
   std::size_t memory_bytes() const;
 
  private:
-  void look(hmm_mos::VoxelMap& map, std::uint32_t k, ThreadPool& pool);
+  void look(const RememberedMap& map, ThreadPool& pool);
 
   struct Past {
     VoxelizedScan scan;  ///< without settled voxels
     ArrivalClasses classes;
     std::shared_ptr<const Ground> ground;
-    hmm_mos::Tick tick;
+    Tick tick;
   };
 
   Config config_;

@@ -47,19 +47,24 @@ std::vector<Reason> reasons_of(const VoxelizedScan& scan, const ScanMasks& arriv
 }  // namespace
 
 Pipeline::Pipeline(const Config& config, const RunContext& context)
-    : MappedMethod(checked(config).map, context, hmm_mos::VoxelMap::Keeps::kStatesAndHistory),
+    : MappedMethod(checked(config).map, context),
       config_(config),
       tracks_(config),
-      look_back_(config) {}
+      look_back_(config),
+      memory_(context.stamps_ns) {
+  mapping().tell(memory_);
+}
+
+RememberedMap Pipeline::remembered() { return {mapping().map(), memory_, mapping().k()}; }
 
 std::vector<LabelledScan> Pipeline::entered(hmm_mos::ObservedScan& current) {
   HeldScan& held = held_.emplace_back();
   held.result = begun_result(current, mapping().k());
   held.scan = std::move(current.scan);
-  held.tick = mapping().tick();
+  held.tick = memory_.tick();
   const StageRecord record{held.result.stages, context().cpu_times};
   held.classes = timed(record, "arrivals", [&] {
-    return classify(held.scan, mapping().map(), mapping().k(), config_, mapping().pool());
+    return classify(held.scan, remembered(), config_, mapping().pool());
   });
   const auto n = static_cast<std::size_t>(config_.map.delay_scans);
   return held_.size() > n ? release(1) : std::vector<LabelledScan>{};
@@ -73,7 +78,7 @@ void Pipeline::judge(HeldScan& held) {
   const ScanMasks arrived = context().scores ? held.classes.seeds : ScanMasks();
   if (config_.map.delay_scans > 0) {
     const StageClock clock(record, "departures");
-    add_departures(scan, mapping().map(), mapping().k(), config_, mapping().pool(), held.classes);
+    add_departures(scan, remembered(), config_, mapping().pool(), held.classes);
   }
   const auto ground =
       timed(record, "ground", [&] { return std::make_shared<const Ground>(scan, config_); });
@@ -81,8 +86,7 @@ void Pipeline::judge(HeldScan& held) {
   ArrivalClasses& classes = held.classes;
   if (predicts()) {
     timed(record, "look_back", [&] {
-      look_back_.enter(scan, classes, ground, held.tick, mapping().map(), mapping().k(),
-                       mapping().pool());
+      look_back_.enter(scan, classes, ground, held.tick, remembered(), mapping().pool());
     });
     const StageClock clock(record, "prediction");
     look_back_.add_seeds(scan, low, classes);
@@ -118,7 +122,7 @@ std::vector<LabelledScan> Pipeline::release(std::size_t count) {
 }
 
 std::size_t Pipeline::held_bytes() const {
-  std::size_t bytes = tracks_.memory_bytes() + look_back_.memory_bytes();
+  std::size_t bytes = tracks_.memory_bytes() + look_back_.memory_bytes() + memory_.memory_bytes();
   for (const HeldScan& held : held_) {
     bytes += held.scan.memory_bytes() + held.classes.memory_bytes();
   }

@@ -28,12 +28,13 @@ class Pipeline final : public hmm_mos::MappedMethod {
     VoxelizedScan scan;
     ArrivalClasses classes;
     LabelledScan result;
-    hmm_mos::Tick tick;
+    Tick tick;
   };
 
   std::vector<LabelledScan> entered(hmm_mos::ObservedScan& current) override;
   std::vector<LabelledScan> release_all() override { return release(held_.size()); }
   std::size_t held_bytes() const override;
+  RememberedMap remembered();
   void judge(HeldScan& held);
   std::vector<LabelledScan> release(std::size_t count);
 
@@ -42,6 +43,7 @@ class Pipeline final : public hmm_mos::MappedMethod {
   Config config_;
   Tracks tracks_;              // of the last scan judged, when it predicts
   LookBack look_back_;         // the same
+  BlockMemory memory_;         // of the map
   std::deque<HeldScan> held_;  // the last delay + 1 scans, current one last
 };
 

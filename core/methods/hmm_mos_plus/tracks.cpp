@@ -74,7 +74,7 @@ std::vector<std::uint32_t> best_match(const std::vector<Voxel>& voxels, const Vo
   return best;
 }
 
-double seconds_of(const hmm_mos::Tick& tick) { return tick.period_s * tick.periods; }
+double seconds_of(const Tick& tick) { return tick.period_s * tick.periods; }
 
 }  // namespace
 
@@ -82,7 +82,7 @@ Tracks::Tracks(const Config& config)
     : min_steps_(config.min_track_steps),
       max_error_voxels_s_(kMaxError_m_s / config.map.voxel_size_m) {}
 
-void Tracks::add_seeds(const VoxelizedScan& scan, LowVoxels& low, const hmm_mos::Tick& tick,
+void Tracks::add_seeds(const VoxelizedScan& scan, LowVoxels& low, const Tick& tick,
                        ArrivalClasses& classes) const {
   if (seconds_of(tick) > kLongestStep_s) return;
   for (const Track& track : tracks_) {
@@ -99,7 +99,7 @@ void Tracks::add_seeds(const VoxelizedScan& scan, LowVoxels& low, const hmm_mos:
   }
 }
 
-const Tracks::Track* Tracks::nearest_to(const Vector& centre, const hmm_mos::Tick& tick) const {
+const Tracks::Track* Tracks::nearest_to(const Vector& centre, const Tick& tick) const {
   const auto error_sq = [&](const Track& track) {
     double sum = 0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -122,7 +122,7 @@ const Tracks::Track* Tracks::nearest_to(const Vector& centre, const hmm_mos::Tic
 }
 
 void Tracks::follow(const VoxelizedScan& scan, const std::vector<Component>& components,
-                    const hmm_mos::Tick& tick) {
+                    const Tick& tick) {
   if (seconds_of(tick) > kLongestStep_s) tracks_.clear();
   std::vector<Track> followed;
   for (const Component& component : components) {

@@ -4,11 +4,11 @@
 #include <cstddef>
 #include <vector>
 
-#include "core/methods/hmm_mos/tick_clock.hpp"
 #include "core/methods/hmm_mos_plus/arrivals.hpp"
 #include "core/methods/hmm_mos_plus/config.hpp"
 #include "core/methods/hmm_mos_plus/ground.hpp"
 #include "core/methods/hmm_mos_plus/objects.hpp"
+#include "core/methods/hmm_mos_plus/tick_clock.hpp"
 
 namespace mosbench::hmm_mos_plus {
 
@@ -22,12 +22,12 @@ class Tracks {
   /// corrected along x and y, but never turned by a right angle, to the one that finds most of
   /// these. One below half a voxel along all axes is none. `tick` has the periods since the scan
   /// followed.
-  void add_seeds(const VoxelizedScan& scan, LowVoxels& low, const hmm_mos::Tick& tick,
+  void add_seeds(const VoxelizedScan& scan, LowVoxels& low, const Tick& tick,
                  ArrivalClasses& classes) const;
   /// Makes the components that move in the scan those of the last one. Each is the next step of the
   /// one that comes nearest when moved on, if that is near enough.
   void follow(const VoxelizedScan& scan, const std::vector<Component>& components,
-              const hmm_mos::Tick& tick);
+              const Tick& tick);
   std::size_t memory_bytes() const;
 
  private:
@@ -42,7 +42,7 @@ class Tracks {
   };
 
   /// Null when no track comes near enough.
-  const Track* nearest_to(const Vector& centre, const hmm_mos::Tick& tick) const;
+  const Track* nearest_to(const Vector& centre, const Tick& tick) const;
 
   int min_steps_;
   double max_error_voxels_s_;

@@ -1,10 +1,10 @@
-#include "core/methods/hmm_mos/block_history.hpp"
+#include "core/methods/hmm_mos_plus/block_history.hpp"
 
 #include <gtest/gtest.h>
 
 #include <string_view>
 
-namespace mosbench::hmm_mos {
+namespace mosbench::hmm_mos_plus {
 namespace {
 
 BlockMask one_voxel() {
@@ -16,12 +16,12 @@ BlockMask one_voxel() {
 /// One voxel that is seen free ('f') or occupied ('o') scan by scan; '.' is not observed.
 struct OneVoxel {
   BlockHistory history;
-  BlockStates states;
+  hmm_mos::BlockStates states;
   std::uint32_t scan = 0, steps = 1;
 
   void see(std::string_view states_seen) {
     for (const char seen : states_seen) {
-      const BlockStates before = states;
+      const hmm_mos::BlockStates before = states;
       if (seen == 'f') states = {.occupied = {}, .free = one_voxel()};
       if (seen == 'o') states = {.occupied = one_voxel(), .free = {}};
       const BlockMask observed = seen == '.' ? BlockMask{} : one_voxel();

@@ -1,10 +1,10 @@
-#include "core/methods/hmm_mos/tick_clock.hpp"
+#include "core/methods/hmm_mos_plus/tick_clock.hpp"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 
-namespace mosbench::hmm_mos {
+namespace mosbench::hmm_mos_plus {
 namespace {
 
 /// Returns the ticks of scans 0 to n - 1.
