@@ -165,7 +165,7 @@ void odometry_stage(benchmark::State& state, StagedScans& staged, ThreadPool& po
 std::vector<BenchmarkRow> method_rows() {
   std::vector<BenchmarkRow> rows = {{"pipeline", pipeline_stage, true}};
   for (const MethodKind& kind : methods()) {
-    const bool is_pipeline = &kind == &methods().front();
+    const bool is_pipeline = &kind == &default_method();
     if (is_pipeline || kind.is_twin || (kind.name == "octomap" && !MOSBENCH_WITH_OCTOMAP)) continue;
     rows.push_back({std::string(kind.name),
                     [&kind](benchmark::State& state, StagedScans& staged, ThreadPool& pool) {

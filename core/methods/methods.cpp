@@ -32,6 +32,8 @@ std::span<const MethodKind> methods() {
   return kMethods;
 }
 
+const MethodKind& default_method() { return methods().front(); }
+
 const MethodKind* find_method(std::string_view name) {
   const auto found = std::ranges::find(methods(), name, &MethodKind::name);
   return found == methods().end() ? nullptr : &*found;

@@ -73,9 +73,11 @@ std::string presets_text() {
       return to_string(std::ranges::find(preset.values, setting, &PresetValue::setting)->value);
     };
     table.add_row({std::string(preset.name), std::string(to_string(*preset.kind)),
-                   value("voxel_size_m"),
-                   fmt::format("{} to {}", value("min_range_m"), value("max_range_m")),
-                   value("delay_scans"), std::string(preset.protocol), std::string(preset.source)});
+                   value(common_settings::kVoxelSize_m),
+                   fmt::format("{} to {}", value(common_settings::kMinRange_m),
+                               value(common_settings::kMaxRange_m)),
+                   value(common_settings::kDelay_scans), std::string(preset.protocol),
+                   std::string(preset.source)});
   }
   return table.str() +
          "All other settings keep the defaults that `mosbench list methods` shows. A preset of any "

@@ -64,12 +64,12 @@ void add_method_options(CLI::App& command, RunOptions& options) {
       .add_option("--preset", options.preset,
                   "Published settings, or `best` (default: by data set)")
       ->type_name("PRESET");
-  const Settings& of_paper = methods().front().defaults;
+  const Settings& of_paper = default_method().defaults;
   command
-      .add_option(
-          "--variant", options.variant,
-          fmt::format("Short for --set variant=NAME (default: {})", of_paper.choice("variant")))
-      ->type_name(type_of_names(of_paper.find("variant")->choices));
+      .add_option("--variant", options.variant,
+                  fmt::format("Short for --set variant=NAME (default: {})",
+                              of_paper.choice(common_settings::kVariant)))
+      ->type_name(type_of_names(of_paper.find(common_settings::kVariant)->choices));
   command
       .add_option(
           "--moving", options.moving,

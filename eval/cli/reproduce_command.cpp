@@ -58,7 +58,8 @@ struct TableMethod {
 
   /// Returns whether a row has the range of the preset.
   bool has_row_for(const std::string& preset) const {
-    const double range_m = settings_of(preset_named(preset), *kind).number("max_range_m");
+    const double range_m =
+        settings_of(preset_named(preset), *kind).number(common_settings::kMaxRange_m);
     return ranges_m.empty() || std::ranges::find(ranges_m, range_m) != ranges_m.end();
   }
 };
@@ -67,7 +68,7 @@ struct TableMethod {
 /// of preset `best`.
 std::vector<TableMethod> methods_of(const PaperTable& table,
                                     const std::vector<PublishedCell>& cells) {
-  std::vector<TableMethod> found = {{&methods().front(), std::nullopt}};
+  std::vector<TableMethod> found = {{&default_method(), std::nullopt}};
   for (const PublishedCell& cell : cells) {
     const MethodKind* kind = cell.table == table.name ? own_method(cell) : nullptr;
     if (kind == nullptr || kind == found.front().kind) continue;
@@ -122,7 +123,7 @@ void check_is_in_table(const ReproduceFlags& options, const Recipe& recipe,
 
 RunOptions options_of(const ReproduceFlags& options, const std::string& preset,
                       const TableMethod& method, const std::filesystem::path& out) {
-  const bool is_papers = method.kind == &methods().front();
+  const bool is_papers = method.kind == &default_method();
   RunOptions run;
   run.input = options.root;
   run.dataset = options.name;

@@ -119,7 +119,8 @@ std::optional<OdometryChoice> named_odometry(const OdometryOptions& odometry,
 }
 
 MovingFilter moving_filter(const MethodKind& method, Settings settings) {
-  if (settings.find("delay_scans") != nullptr) settings.set("delay_scans", 0);
+  if (settings.find(common_settings::kDelay_scans) != nullptr)
+    settings.set(common_settings::kDelay_scans, 0);
   try {
     method.check(settings);
   } catch (const std::invalid_argument& error) {
@@ -131,7 +132,7 @@ MovingFilter moving_filter(const MethodKind& method, Settings settings) {
 
 OdometryChoice with_filter(OdometryChoice choice, const OdometryOptions& options,
                            DatasetKind kind) {
-  const MethodKind& method = methods().front();
+  const MethodKind& method = default_method();
   if (options.drop_moving) {
     choice.filter = moving_filter(method, settings_of(default_preset(kind), method));
   }

@@ -32,45 +32,47 @@ const Protocol& choose_protocol(const RunOptions& options, const Preset& preset)
 
 /// --variant is the short form of --set variant=NAME.
 void apply_variant(const std::string& name, const MethodKind& method, Settings& settings) {
-  if (settings.find("variant") == nullptr) {
+  if (settings.find(common_settings::kVariant) == nullptr) {
     throw UsageError(
         fmt::format("--variant: method {} has no variants, leave the flag out", method.name));
   }
   try {
-    settings.set("variant", name);
+    settings.set(common_settings::kVariant, name);
   } catch (const std::invalid_argument&) {
-    throw UsageError(fmt::format("--variant: '{}' is not known, expected {}", name,
-                                 fmt::join(settings.find("variant")->choices, " or ")));
+    throw UsageError(
+        fmt::format("--variant: '{}' is not known, expected {}", name,
+                    fmt::join(settings.find(common_settings::kVariant)->choices, " or ")));
   }
 }
 
-/// Settings by which hmm-mos-plus calls moving what arrived in the last `kept_s` seconds, whether
-/// or not it stands since.
-void remember_motion(const std::string& kept_s, Settings& settings) {
-  for (const char* age : {"seed_age_s", "object_age_s", "fresh_age_s"}) {
-    apply_setting_assignment(fmt::format("{}={}", age, kept_s), settings);
+/// --moving now, ever or ever:SECONDS: a short word of the methods that have it.
+void apply_word(std::string_view name, const std::string& text, const MethodKind& method,
+                Settings& settings) {
+  const auto word_of = [&](const MethodKind& kind) {
+    const auto found = std::ranges::find(kind.words, name, &SettingWord::name);
+    return found == kind.words.end() ? nullptr : &*found;
+  };
+  const MethodKind& owner =
+      word_of(method) != nullptr ? method : *std::ranges::find_if(methods(), word_of);
+  const SettingWord& word = *word_of(owner);
+  if (text == word.usual) return;
+  const std::string with_number = fmt::format("{}:", word.value);
+  const bool has_number =
+      text.starts_with(with_number) && parse_double(text.substr(with_number.size())).has_value();
+  if (text != word.value && !has_number) {
+    throw UsageError(fmt::format("--{}: '{}' is not known, expected {}, {} or {}{}", name, text,
+                                 word.usual, word.value, with_number, word.number));
   }
-  apply_setting_assignment("max_aged_share=1", settings);
-}
-
-/// --moving now, ever or ever:SECONDS.
-void apply_moving(const std::string& text, const MethodKind& method, Settings& settings) {
-  if (text == "now") return;
-  constexpr std::string_view kFor = "ever:";
-  const bool has_seconds =
-      text.starts_with(kFor) && parse_double(text.substr(kFor.size())).has_value();
-  if (text != "ever" && !has_seconds) {
-    throw UsageError(
-        fmt::format("--moving: '{}' is not known, expected now, ever or ever:SECONDS", text));
+  if (&owner != &method) {
+    throw UsageError(fmt::format("--{} {}: method {} {}, expected {}", name, text, method.name,
+                                 word.lacking, owner.name));
   }
-  const Setting* age = settings.find("seed_age_s");
-  if (age == nullptr) {
-    throw UsageError(
-        fmt::format("--moving {}: method {} does not remember what moved, expected hmm-mos-plus",
-                    text, method.name));
+  for (const std::string_view taking : word.takes) {
+    const std::string number =
+        has_number ? text.substr(with_number.size()) : to_string(settings.find(taking)->highest);
+    apply_setting_assignment(fmt::format("{}={}", taking, number), settings);
   }
-  const std::string longest_s = to_string(SettingValue(age->highest));
-  remember_motion(text == "ever" ? longest_s : text.substr(kFor.size()), settings);
+  for (const PresetValue& set : word.sets) settings.set(set.setting, set.value);
 }
 
 Settings choose_settings(const RunOptions& options, const Preset& preset,
@@ -78,7 +80,7 @@ Settings choose_settings(const RunOptions& options, const Preset& preset,
   Settings settings = settings_of(preset, method);
   if (options.config_file) apply_settings_file(*options.config_file, settings);
   if (options.variant) apply_variant(*options.variant, method, settings);
-  apply_moving(options.moving, method, settings);
+  apply_word("moving", options.moving, method, settings);
   for (const std::string& assignment : options.assignments) {
     apply_setting_assignment(assignment, settings);
   }
@@ -98,19 +100,20 @@ bool is_scored_where_run(const Protocol& protocol) {
 RangeGate choose_range(const RunOptions& options, const Protocol& protocol,
                        const Settings& settings) {
   if (options.range) return range_option(*options.range, protocol);
-  const bool known =
-      settings.find("min_range_m") != nullptr && settings.find("max_range_m") != nullptr;
+  const bool known = settings.find(common_settings::kMinRange_m) != nullptr &&
+                     settings.find(common_settings::kMaxRange_m) != nullptr;
   return is_scored_where_run(protocol) && known
-             ? RangeGate{settings.number("min_range_m"), settings.number("max_range_m")}
+             ? RangeGate{settings.number(common_settings::kMinRange_m),
+                         settings.number(common_settings::kMaxRange_m)}
              : protocol.default_range;
 }
 
 fs::path default_out(const RunPlan& plan, const RunOptions& options) {
   const fs::path folder = fs::absolute(options.input / "").lexically_normal().parent_path();
   const RunSettings& settings = plan.settings;
-  const bool has_variant = settings.method_settings.find("variant") != nullptr;
+  const bool has_variant = settings.method_settings.find(common_settings::kVariant) != nullptr;
   // The default method's folders are named by its variant.
-  const std::string_view kind = settings.method == &methods().front() && has_variant
+  const std::string_view kind = settings.method == &default_method() && has_variant
                                     ? settings.method_settings.choice("variant")
                                     : settings.method->name;
   // A run with other poses has results of its own.
@@ -185,7 +188,7 @@ PlannedSequence plan_sequence(const RunPlan& plan, std::size_t position,
 /// Names what a preset changes of the paper's method, but not of this one.
 void note_lacking_settings(const Preset& preset, RunPlan& plan) {
   const MethodKind& method = *plan.settings.method;
-  const Settings& of_paper = methods().front().defaults;
+  const Settings& of_paper = default_method().defaults;
   std::vector<std::string_view> lacking;
   for (const PresetValue& value : preset.values) {
     if (method.defaults.find(value.setting) || !of_paper.find(value.setting)) continue;

@@ -49,7 +49,7 @@ const MethodKind& method_of(const std::optional<std::string>& method,
                             const std::optional<std::string>& preset) {
   const MethodKind* named = method ? &method_named(*method) : nullptr;
   const std::string_view of_preset = preset ? preset_named(*preset).method : "";
-  if (of_preset.empty()) return named != nullptr ? *named : methods().front();
+  if (of_preset.empty()) return named != nullptr ? *named : default_method();
   if (named == nullptr || named->name == of_preset) return *find_method(of_preset);
   throw UsageError(fmt::format("--preset {}: is of method {}, expected no --method or this one",
                                *preset, of_preset));

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <utility>
 #include <vector>
 
@@ -14,76 +13,35 @@
 namespace mosbench {
 namespace {
 
-std::vector<PresetValue> settings(double voxel_size_m, double min_range_m, double max_range_m,
-                                  int delay_scans = 0) {
-  return {{"voxel_size_m", voxel_size_m},
-          {"min_range_m", min_range_m},
-          {"max_range_m", max_range_m},
-          {"delay_scans", delay_scans}};
-}
+/// Presets that are of a data set, but not its usual one.
+constexpr std::pair<std::string_view, DatasetKind> kOthers[] = {
+    {"doals-120m", DatasetKind::kDoals}, {"helimos-delayed", DatasetKind::kHelimos}};
 
-/// The same for DOALS, whose sensor Dynablox's authors describe so (their default.yaml).
-std::vector<PresetValue> doals_settings(double max_range_m) {
-  std::vector<PresetValue> values = settings(0.20, 0.5, max_range_m);
-  values.push_back({"range_image_rows", 64});
-  values.push_back({"range_image_columns", 2048});
-  values.push_back({"field_of_view_down_deg", -33.22222 / 2});
-  values.push_back({"field_of_view_up_deg", 33.22222 / 2});
-  return values;
-}
-
-/// The same for the authors' later program, with which they measured these data sets.
-std::vector<PresetValue> later_settings(double voxel_size_m, double min_range_m,
-                                        double max_range_m) {
-  std::vector<PresetValue> values = settings(voxel_size_m, min_range_m, max_range_m);
-  values.push_back({"variant", "release-2025"});
-  values.push_back({"local_window_scans", 5});
-  return values;
+/// The data set that a preset is of; nothing: any.
+std::optional<DatasetKind> kind_of(std::string_view preset) {
+  for (const Layout* layout : layouts()) {
+    if (layout->usual.preset == preset) return layout->kind;
+  }
+  for (const auto& [other, kind] : kOthers) {
+    if (other == preset) return kind;
+  }
+  return std::nullopt;
 }
 
 /// Numbers of a data set are computed by its usual protocol with any of its presets.
-Preset preset_of(std::string_view name, DatasetKind kind, std::vector<PresetValue> values,
-                 std::string_view source) {
-  return {name, kind, std::move(values), layout_of(kind).usual.protocol, source};
+std::vector<Preset> all_presets() {
+  std::vector<Preset> presets;
+  for (const MethodPreset& row : method_presets()) {
+    const std::optional<DatasetKind> kind = kind_of(row.name);
+    presets.push_back({row, kind, kind ? layout_of(*kind).usual.protocol : ""});
+  }
+  return presets;
 }
 
 }  // namespace
 
 std::span<const Preset> presets() {
-  static const std::array kPresets = {
-      preset_of("doals-20m", DatasetKind::kDoals, doals_settings(20.0),
-                "paper, Table I, rows (20m)"),
-      preset_of("doals-120m", DatasetKind::kDoals, doals_settings(120.0),
-                "paper, Table I, full range"),
-      preset_of("sipailou", DatasetKind::kSipailou, settings(0.25, 3.0, 50.0), "paper, Table II"),
-      preset_of("helimos", DatasetKind::kHelimos, settings(0.25, 1.5, 50.0),
-                "paper, Table III, online"),
-      preset_of("helimos-delayed", DatasetKind::kHelimos, settings(0.25, 1.5, 50.0, 10),
-                "paper, Table III, delayed by 10 scans"),
-      preset_of("semantickitti", DatasetKind::kSemanticKitti, settings(0.25, 1.5, 50.0),
-                "ours, the authors publish none: as helimos"),
-      preset_of("apollo", DatasetKind::kApollo, settings(0.25, 0.5, 120.0),
-                "authors' config of Apollo (2024)"),
-      preset_of("moe", DatasetKind::kMoe, later_settings(0.20, 0.0, 120.0),
-                "authors' config of MOE (2025)"),
-      preset_of("kth", DatasetKind::kKth, settings(0.25, 1.5, 50.0),
-                "ours, the authors publish none: as helimos"),
-      preset_of("mdetector", DatasetKind::kMdetector, later_settings(0.20, 0.0, 120.0),
-                "authors' config of M-detector's sets (2025)"),
-      preset_of("opensceneflow", DatasetKind::kOpenSceneFlow, settings(0.25, 1.5, 50.0),
-                "ours, the authors publish none: as helimos"),
-      preset_of("nuscenes", DatasetKind::kNuscenes, settings(0.25, 1.5, 50.0),
-                "ours, the authors publish none: as helimos"),
-      preset_of("helipr", DatasetKind::kHelipr, settings(0.25, 1.5, 50.0),
-                "ours, HeLiPR has no labels: as helimos"),
-      preset_of("kitti-raw", DatasetKind::kKittiRaw, settings(0.25, 1.5, 50.0),
-                "ours, the authors publish none: as helimos"),
-      preset_of("kitti-tracking", DatasetKind::kKittiTracking, settings(0.25, 1.5, 50.0),
-                "ours, the authors publish none: as helimos"),
-      preset_of("recording", DatasetKind::kRecording, settings(0.25, 1.5, 50.0),
-                "ours, for recordings of any sensor: as helimos"),
-      Preset{"best", std::nullopt, {}, "", "ours, docs/history/plus/README.md", "hmm-mos-plus"},
-  };
+  static const std::vector<Preset> kPresets = all_presets();
   return kPresets;
 }
 
@@ -112,11 +70,8 @@ Settings settings_of(const Preset& preset, const MethodKind& method) {
 
 Preset preset_for(const Preset& preset, DatasetKind kind) {
   if (preset.kind) return preset;
-  Preset complete = default_preset(kind);
-  complete.name = preset.name;
-  complete.source = preset.source;
-  complete.method = preset.method;
-  return complete;
+  const Preset& usual = default_preset(kind);
+  return {{preset.name, usual.values, preset.source, preset.method}, usual.kind, usual.protocol};
 }
 
 const Preset& default_preset(DatasetKind kind) {

@@ -11,20 +11,10 @@
 
 namespace mosbench {
 
-struct PresetValue {
-  std::string_view setting;
-  SettingValue value;
-};
-
-/// Published settings for a data set, and how its numbers are computed there. Methods take the
-/// values of the settings that they have; the others keep their defaults.
-struct Preset {
-  std::string_view name;
+/// Published settings of methods for a data set, and how its numbers are computed there.
+struct Preset : MethodPreset {
   std::optional<DatasetKind> kind;  ///< nothing: any, see `preset_for`
-  std::vector<PresetValue> values;
-  std::string_view protocol;     ///< name of a row of the protocol table; empty without a kind
-  std::string_view source;       ///< where the settings come from
-  std::string_view method = {};  ///< the one that it is of; empty: any
+  std::string_view protocol;        ///< name of a row of the protocol table; empty without a kind
 };
 
 std::span<const Preset> presets();

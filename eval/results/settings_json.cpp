@@ -145,20 +145,22 @@ std::string describe_settings(const nlohmann::ordered_json& config, std::string_
       kind == nullptr ? nlohmann::ordered_json::object() : to_json(kind->defaults);
   std::vector<std::string> parts;
   std::set<std::string_view> said;
-  const auto has = [&](const char* key) {
+  const auto has = [&](std::string_view key) {
     said.insert(key);
     return config.contains(key);
   };
-  if (has("variant")) parts.push_back(config.at("variant").get<std::string>());
-  if (has("voxel_size_m")) {
-    parts.push_back(fmt::format("voxel {:g} m", config.at("voxel_size_m").get<double>()));
+  const auto number = [&](std::string_view key) { return config.at(key).get<double>(); };
+  if (has(common_settings::kVariant))
+    parts.push_back(config.at(common_settings::kVariant).get<std::string>());
+  if (has(common_settings::kVoxelSize_m)) {
+    parts.push_back(fmt::format("voxel {:g} m", number(common_settings::kVoxelSize_m)));
   }
-  if (has("min_range_m") && has("max_range_m")) {
-    parts.push_back(fmt::format("range {:g} to {:g} m", config.at("min_range_m").get<double>(),
-                                config.at("max_range_m").get<double>()));
+  if (has(common_settings::kMinRange_m) && has(common_settings::kMaxRange_m)) {
+    parts.push_back(fmt::format("range {:g} to {:g} m", number(common_settings::kMinRange_m),
+                                number(common_settings::kMaxRange_m)));
   }
-  if (has("delay_scans")) {
-    const int delay_scans = config.at("delay_scans");
+  if (has(common_settings::kDelay_scans)) {
+    const int delay_scans = config.at(common_settings::kDelay_scans);
     parts.push_back(delay_scans == 0 ? "online" : "delayed by " + counted(delay_scans, "scan"));
   }
   for (const auto& [key, value] : config.items()) {

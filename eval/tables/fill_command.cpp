@@ -14,14 +14,14 @@ std::vector<std::string> other_settings(const Preset& preset, const MethodKind& 
                                         const PublishedCell& published) {
   const Settings ours = settings_of(preset, method);
   std::vector<std::string> assignments;
-  const auto compare = [&](const char* name, const std::optional<double>& theirs) {
+  const auto compare = [&](std::string_view name, const std::optional<double>& theirs) {
     if (theirs && *theirs != ours.number(name)) {
       assignments.push_back(fmt::format("{}={:g}", name, *theirs));
     }
   };
-  compare("voxel_size_m", published.voxel_size_m);
-  compare("max_range_m", published.max_range_m);
-  compare("delay_scans", published.delay_scans);
+  compare(common_settings::kVoxelSize_m, published.voxel_size_m);
+  compare(common_settings::kMaxRange_m, published.max_range_m);
+  compare(common_settings::kDelay_scans, published.delay_scans);
   const auto& [setting, value] = variant_of(published);
   if (!value.empty() && value != ours.choice(setting)) {
     assignments.push_back(fmt::format("{}={}", setting, value));
@@ -52,7 +52,7 @@ std::string run_command(const PaperTable& table, const TableColumn& column,
                         const PublishedCell& published, const MethodKind& method) {
   const Preset& preset = nearest_preset(table.dataset, method, published);
   std::string command = run_command(table, column, preset);
-  if (&method != &methods().front()) command += fmt::format(" --method {}", method.name);
+  if (&method != &default_method()) command += fmt::format(" --method {}", method.name);
   std::vector<std::string> differing = other_settings(preset, method, published);
   if (!differing.empty()) command += fmt::format(" --set {}", fmt::join(differing, ","));
   if (preset.protocol != published.protocol) {
@@ -77,7 +77,7 @@ std::string command_for(const PaperTable& table, const TableColumn& column,
                         const PublishedCell& published) {
   const MethodKind* method = own_method(published);
   if (method == nullptr) return "then: " + score_command(table, published);
-  const bool has_variants = method->defaults.find("variant") != nullptr;
+  const bool has_variants = method->defaults.find(common_settings::kVariant) != nullptr;
   if (has_variants && published.variant.empty()) return "no variant of this program is that one";
   return "then: " + run_command(table, column, published, *method);
 }

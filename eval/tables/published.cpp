@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <mosbench/settings.hpp>
 
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
@@ -39,7 +40,7 @@ double PublishedCell::iou() const { return parse_double(iou_percent).value() / 1
 
 PublishedVariant variant_of(const PublishedCell& cell) {
   const std::size_t equals = cell.variant.find('=');
-  if (equals == std::string::npos) return {"variant", cell.variant};
+  if (equals == std::string::npos) return {std::string(common_settings::kVariant), cell.variant};
   return {cell.variant.substr(0, equals), cell.variant.substr(equals + 1)};
 }
 

@@ -24,12 +24,13 @@ void own_mismatches(const nlohmann::ordered_json& config, const PublishedCell& c
     reasons.push_back(fmt::format("{} {}, published {}", published.setting, value,
                                   published.value.empty() ? "another" : published.value));
   }
-  if (cell.variant.empty() && !cell.max_range_m && !config.contains("variant")) {
+  if (cell.variant.empty() && !cell.max_range_m && !config.contains(common_settings::kVariant)) {
     reasons.emplace_back("the settings of the published run are not stated");
   }
-  differ("voxel size in m", config.value("voxel_size_m", 0.0), cell.voxel_size_m, reasons);
-  differ("range in m", config.value("max_range_m", 0.0), cell.max_range_m, reasons);
-  differ("delay in scans", config.value("delay_scans", 0),
+  differ("voxel size in m", config.value(common_settings::kVoxelSize_m, 0.0), cell.voxel_size_m,
+         reasons);
+  differ("range in m", config.value(common_settings::kMaxRange_m, 0.0), cell.max_range_m, reasons);
+  differ("delay in scans", config.value(common_settings::kDelay_scans, 0),
          cell.delay_scans ? std::optional<double>(*cell.delay_scans) : std::nullopt, reasons);
 }
 

@@ -107,6 +107,23 @@ struct RunContext {
   std::vector<std::int64_t> stamps_ns = {};
 };
 
+/// A setting with a value of its own.
+struct PresetValue {
+  std::string_view setting;
+  SettingValue value;
+};
+
+/// A short word for settings of a method that go together, as `--moving ever:5` of hmm-mos-plus.
+struct SettingWord {
+  std::string_view name;                ///< "moving"
+  std::string_view usual;               ///< its value that sets nothing: "now"
+  std::string_view value;               ///< the other one: "ever", or with a number "ever:5"
+  std::string_view number;              ///< what the number is: "SECONDS"
+  std::vector<std::string_view> takes;  ///< settings that take the number, or their highest value
+  std::vector<PresetValue> sets;        ///< what it sets besides
+  std::string_view lacking;             ///< of other methods: "does not remember what moved"
+};
+
 /// One method that can be run by name.
 struct MethodKind {
   std::string_view name;     ///< "hmm-mos"
@@ -124,13 +141,30 @@ struct MethodKind {
   std::string_view score_name = "score";  ///< what scores are, with unit: "margin, m"
   /// What LabelledScan::threshold is, "Otsu threshold"; empty when no threshold is worth showing.
   std::string_view threshold_name = "";
-  bool gives_reasons = false;  ///< results with scores also say why each point moves
+  bool gives_reasons = false;        ///< results with scores also say why each point moves
+  bool is_named_by_variant = false;  ///< folders of its runs are called by its variant
+  std::vector<SettingWord> words = {};
 };
 
 /// All methods, the default one first.
 std::span<const MethodKind> methods();
 
+/// Returns the method that runs when none is named.
+const MethodKind& default_method();
+
 /// Returns nullptr when there is no method of this name.
 const MethodKind* find_method(std::string_view name);
+
+/// Published settings. Methods take the values of the settings that they have; the others keep
+/// their defaults.
+struct MethodPreset {
+  std::string_view name;
+  std::vector<PresetValue> values;
+  std::string_view source;       ///< where the values come from
+  std::string_view method = {};  ///< the one that it is of; empty: any
+};
+
+/// All presets, in the order in which they are shown.
+std::span<const MethodPreset> method_presets();
 
 }  // namespace mosbench

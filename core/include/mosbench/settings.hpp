@@ -55,6 +55,15 @@ class Settings {
   std::vector<Setting> settings_;
 };
 
+/// Settings that play the same part in every method that has them. Tables print them first.
+namespace common_settings {
+inline constexpr std::string_view kVariant = "variant";           ///< of the authors' program
+inline constexpr std::string_view kVoxelSize_m = "voxel_size_m";  ///< edge of a voxel of the map
+inline constexpr std::string_view kMinRange_m = "min_range_m";    ///< nearer points never move
+inline constexpr std::string_view kMaxRange_m = "max_range_m";    ///< farther points never move
+inline constexpr std::string_view kDelay_scans = "delay_scans";   ///< labels come so much later
+}  // namespace common_settings
+
 /// Returns "0.1 to 1000", or "paper-2024 or release-2025".
 std::string legal_values(const Setting& setting);
 

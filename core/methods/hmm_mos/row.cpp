@@ -57,7 +57,8 @@ MethodKind method_kind() {
           .check = check_settings<Config>,
           .make = make_method<Pipeline, Config>,
           .score_name = kScoreName,
-          .threshold_name = kThresholdName};
+          .threshold_name = kThresholdName,
+          .is_named_by_variant = true};
 }
 
 /// "hmm-mos-reference": the same labels by the obvious code of reference.hpp, hundreds of times

@@ -20,7 +20,14 @@ MethodKind method_kind() {
           .make = make_method<Pipeline, Config>,
           .score_name = "share of seeds",
           .threshold_name = "least share of seeds",
-          .gives_reasons = true};
+          .gives_reasons = true,
+          .words = {{.name = "moving",
+                     .usual = "now",
+                     .value = "ever",
+                     .number = "SECONDS",
+                     .takes = {"seed_age_s", "object_age_s", "fresh_age_s"},
+                     .sets = {{"max_aged_share", 1}},
+                     .lacking = "does not remember what moved"}}};
 }
 
 }  // namespace mosbench::hmm_mos_plus

@@ -7,7 +7,7 @@
 namespace mosbench::hmm_mos_plus {
 namespace {
 
-constexpr hmm_mos::Tick kTick;
+constexpr hmm_mos_plus::Tick kTick;
 
 /// A box of 3^3 voxels, all occupied, that moves: its lowest corner is at x, y and z.
 struct Box {
@@ -37,7 +37,7 @@ struct Kind {
 
 /// Returns the voxels of a box that are seeds by what was followed.
 std::vector<Voxel> predicted(const Box& box, const Tracks& tracks,
-                             const hmm_mos::Tick& tick = kTick, const Kind& kind = {}) {
+                             const hmm_mos_plus::Tick& tick = kTick, const Kind& kind = {}) {
   Box with_floor = box;
   for (int x = -40; x < 80; x += kBlockSide) with_floor.add({x, 0, -50});
   with_floor.scan.occupied = with_floor.scan.measured.masks;
@@ -61,12 +61,12 @@ std::vector<Voxel> predicted(const Box& box, const Tracks& tracks,
 
 std::size_t seeds_of(const Box& box, const Tracks& tracks) { return predicted(box, tracks).size(); }
 
-std::size_t seeds_at(int x, const Tracks& tracks, const hmm_mos::Tick& tick = kTick,
+std::size_t seeds_at(int x, const Tracks& tracks, const hmm_mos_plus::Tick& tick = kTick,
                      const Kind& kind = {}) {
   return predicted(Box(x), tracks, tick, kind).size();
 }
 
-Tracks followed(const std::vector<int>& xs, const hmm_mos::Tick& tick = kTick,
+Tracks followed(const std::vector<int>& xs, const hmm_mos_plus::Tick& tick = kTick,
                 const Config& config = {}) {
   Tracks tracks(config);
   for (const int x : xs) {
@@ -122,7 +122,7 @@ TEST(PlusTracks, PredictNothingOfWhatStands) {
 }
 
 TEST(PlusTracks, CountScansThatAreMissing) {
-  const hmm_mos::Tick late{.at = 3, .steps = 3, .periods = 3, .period_s = 0.1};
+  const hmm_mos_plus::Tick late{.at = 3, .steps = 3, .periods = 3, .period_s = 0.1};
   EXPECT_EQ(seeds_at(10, followed({0, 4}), late), 0U);
   EXPECT_EQ(seeds_at(16, followed({0, 4}), late), 27U);
 }
@@ -139,12 +139,12 @@ TEST(PlusTracks, FollowWhatIsNearWhereItIsExpected) {
   EXPECT_EQ(seeds_at(20, followed({0, 10}, kTick, config)), 27U);
   EXPECT_EQ(seeds_at(22, followed({0, 11}, kTick, config)), 0U);
   EXPECT_EQ(seeds_at(60, followed({0, 10, 30, 45}, kTick, config)), 27U);
-  const hmm_mos::Tick slow{.at = 0, .steps = 2, .periods = 1, .period_s = 0.2};
+  const hmm_mos_plus::Tick slow{.at = 0, .steps = 2, .periods = 1, .period_s = 0.2};
   EXPECT_EQ(seeds_at(40, followed({0, 20}, slow, config), slow), 27U);
 }
 
 TEST(PlusTracks, FollowNothingOverMoreThanASecond) {
-  const hmm_mos::Tick long_after{.at = 11, .steps = 11, .periods = 11, .period_s = 0.1};
+  const hmm_mos_plus::Tick long_after{.at = 11, .steps = 11, .periods = 11, .period_s = 0.1};
   EXPECT_EQ(seeds_at(0, followed({0, 0}), long_after), 0U);
   EXPECT_EQ(seeds_at(0, followed({0, 0}, long_after)), 0U);
 }
