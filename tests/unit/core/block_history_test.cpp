@@ -200,4 +200,4 @@ TEST(BlockHistory, NeverMakesAnOldArrivalYoungAgain) {
 }
 
 }  // namespace
-}  // namespace mosbench::hmm_mos
+}  // namespace mosbench::hmm_mos_plus
