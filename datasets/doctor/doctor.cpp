@@ -1,25 +1,18 @@
 #include "datasets/doctor/doctor.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <memory>
+#include <utility>
 
 #include "datasets/disk/files.hpp"
-#include "datasets/doctor/row_patterns.hpp"
 #include "datasets/formats/calib_file.hpp"
-#include "datasets/layouts/doals_sequence.hpp"
+#include "datasets/layouts/folder_search.hpp"
 #include "datasets/layouts/simulated_origin.hpp"
 #include "datasets/sequence/pose_source.hpp"
 #include "datasets/text/errors.hpp"
 
 namespace mosbench {
 namespace {
-
-bool tr_is_applied(const ReadingStatement& reading) {
-  return std::ranges::any_of(reading, [](const auto& statement) {
-    return statement.first == "pose_frame" && statement.second.starts_with("camera");
-  });
-}
 
 /// Returns Tr of calib.txt, or nothing when it is the identity or there is no such file.
 std::optional<Pose> tr_of(const std::filesystem::path& folder) {
@@ -30,10 +23,6 @@ std::optional<Pose> tr_of(const std::filesystem::path& folder) {
   return tr;
 }
 
-void append(std::vector<Symptom>& all, std::vector<Symptom> more) {
-  std::ranges::move(more, std::back_inserter(all));
-}
-
 /// Turns an error into a symptom. The file that it names first becomes `where` if it is below
 /// `path`.
 Symptom symptom_of(const DataError& error, const std::filesystem::path& path) {
@@ -42,63 +31,6 @@ Symptom symptom_of(const DataError& error, const std::filesystem::path& path) {
       message.starts_with(root) ? message.find(": ", root.size()) : message.npos;
   if (end == message.npos) return {Severity::kError, root, message};
   return {Severity::kError, message.substr(0, end), message.substr(end + 2)};
-}
-
-/// Adds what a check returns, or the error that it throws.
-template <typename Check>
-void collect(std::vector<Symptom>& symptoms, const std::filesystem::path& folder, Check&& check) {
-  try {
-    append(symptoms, check());
-  } catch (const DataError& error) {
-    symptoms.push_back(symptom_of(error, folder));
-  }
-}
-
-/// Returns the median time from scan to scan; nothing without stamps in order.
-std::optional<double> usual_step_s(const Sequence& sequence) {
-  std::vector<double> steps_s;
-  for (std::size_t i = 1; i < sequence.size(); ++i) {
-    const auto before = sequence.stamp_ns(i - 1), after = sequence.stamp_ns(i);
-    if (before && after) steps_s.push_back(1e-9 * static_cast<double>(*after - *before));
-  }
-  if (steps_s.empty()) return std::nullopt;
-  const double step_s = median(std::move(steps_s));
-  return step_s > 0.0 ? std::optional(step_s) : std::nullopt;
-}
-
-std::string sentence_on(const MisplacedRows& rows, const Sequence& sequence) {
-  if (rows.single()) {
-    return fmt::format(
-        "the pose of scan {} (row {}) does not fit between its neighbours: the trajectory jumps "
-        "there "
-        "and back, and scans overlap better without; expected the poses in the order of the scans",
-        sequence.stem(rows.first), rows.first + 1);
-  }
-  return fmt::format(
-      "the poses of scans {} and {} (rows {} and {}) are exchanged: the other way round the "
-      "trajectory "
-      "is shorter and scans overlap better; expected the poses in the order of the scans",
-      sequence.stem(rows.first), sequence.stem(rows.second), rows.first + 1, rows.second + 1);
-}
-
-SequenceCheckup described(const Sequence& sequence) {
-  SequenceCheckup part;
-  part.name = sequence.name();
-  part.scans = sequence.size();
-  part.reading = sequence.reading();
-  part.remarks = sequence.remarks();
-  part.labelled_scans = scans_with_truth(sequence).size();
-  return part;
-}
-
-void check_sequence(const Sequence& sequence, const std::filesystem::path& folder, DatasetKind kind,
-                    bool simulated, Checkup& checkup) {
-  SequenceCheckup& part = checkup.sequences.emplace_back(described(sequence));
-  collect(checkup.symptoms, folder, [&] { return check_content(sequence, kind, part); });
-  append(checkup.symptoms, check_stamps(sequence, part));
-  collect(checkup.symptoms, folder, [&] { return check_poses(sequence, folder, part); });
-  collect(checkup.symptoms, folder, [&] { return check_labels_by_scans(sequence, part); });
-  if (!simulated) append(checkup.symptoms, check_published(sequence, kind, folder, part));
 }
 
 /// Calls a function before each scan is read.
@@ -121,135 +53,209 @@ class WatchedSequence : public SequenceAround {
   const std::function<void()>& at_each_scan_;
 };
 
-/// Opens the data set and checks it; `folders` are those of the sequences in the options.
-void check_opened(const std::filesystem::path& path, const OpenOptions& options,
-                  const std::vector<SequenceFolder>& folders,
-                  const std::function<void()>& at_each_scan, Checkup& checkup) {
-  Dataset dataset = open_dataset(path, options);
-  const bool simulated = simulated_origin(path).has_value();
-  for (std::size_t i = 0; i < dataset.sequences.size(); ++i) {
-    const WatchedSequence sequence(std::move(dataset.sequences[i]), at_each_scan);
-    check_sequence(sequence, folders[i].folder, dataset.kind, simulated, checkup);
-  }
-}
+/// Checks the sequences of a data set, one after the other.
+class Examination {
+ public:
+  Examination(const std::filesystem::path& path, OpenOptions options,
+              const std::function<void()>& at_each_scan)
+      : path_(path), options_(std::move(options)), at_each_scan_(at_each_scan) {}
 
-/// Checks what needs no poses.
-void check_without_poses(const std::filesystem::path& path, OpenOptions options,
-                         const std::vector<SequenceFolder>& folders,
-                         const std::function<void()>& at_each_scan, Checkup& checkup) {
-  options.reading.poses_by_odometry = true;
-  Dataset dataset = open_dataset(path, options);
-  for (std::size_t i = 0; i < dataset.sequences.size(); ++i) {
-    const WatchedSequence sequence(std::move(dataset.sequences[i]), at_each_scan);
-    SequenceCheckup& part = checkup.sequences.emplace_back(described(sequence));
-    part.has_poses = false;
-    collect(checkup.symptoms, folders[i].folder,
-            [&] { return check_content(sequence, dataset.kind, part); });
-    append(checkup.symptoms, check_stamps(sequence, part));
+  Checkup run() {
+    try {
+      folders_ = find_sequences(path_, options_, checkup_.kind);
+      for (const SequenceFolder& folder : folders_) check_folder(folder);
+      check_opened(options_, folders_);
+    } catch (const MissingPoses&) {
+      check_one_by_one();
+    } catch (const DataError& error) {
+      checkup_.symptoms.push_back(symptom_of(error, path_));
+    }
+    return std::move(checkup_);
   }
-}
 
-/// Checks each sequence for itself, of those without poses what needs none.
-void check_one_by_one(const std::filesystem::path& path, OpenOptions options,
-                      const std::vector<SequenceFolder>& folders,
-                      const std::function<void()>& at_each_scan, Checkup& checkup) {
-  std::vector<Symptom> missing;
-  for (const SequenceFolder& folder : folders) {
-    options.sequences = {folder.name};
-    collect(checkup.symptoms, path, [&] {
-      try {
-        check_opened(path, options, {folder}, at_each_scan, checkup);
-      } catch (const MissingPoses& error) {
-        missing.push_back(symptom_of(error, path));
-        check_without_poses(path, options, {folder}, at_each_scan, checkup);
+ private:
+  /// Notes what is no symptom; returns whether anything else is found.
+  bool judge(Subject subject, SequenceCheckup& part) {
+    const Remedy remedy = part.poses ? remedy_of(*part.poses) : Remedy();
+    bool found = false;
+    for (Symptom& symptom : judged(checks(), subject, part.facts, part.name, remedy)) {
+      if (symptom.severity == Severity::kNote) {
+        part.remarks.push_back(symptom.what);
+      } else {
+        checkup_.symptoms.push_back(std::move(symptom));
+        found = true;
       }
-      return std::vector<Symptom>();
+    }
+    return found;
+  }
+
+  /// Calls a function, and makes the error that it throws a symptom.
+  void attempt(const std::filesystem::path& path, const std::function<void()>& examine) {
+    try {
+      examine();
+    } catch (const DataError& error) {
+      checkup_.symptoms.push_back(symptom_of(error, path));
+    }
+  }
+
+  void check_folder(const SequenceFolder& folder) {
+    attempt(folder.folder, [&] {
+      SequenceCheckup part;
+      part.name = folder.name;
+      examine_folder(folder.folder, part.facts);
+      judge(Subject::kFolder, part);
+      folder_facts_[folder.name] = part.facts;
     });
   }
-  checkup.lacks_poses = !missing.empty() && !checkup.has(Severity::kError);
-  append(checkup.symptoms, std::move(missing));
-}
+
+  /// Opens and checks sequences, of those without poses what needs none.
+  void check_opened(const OpenOptions& options, const std::vector<SequenceFolder>& folders) {
+    Dataset dataset = open_dataset(path_, options);
+    const LayoutContent& expected = layout_of(dataset.kind).files;
+    for (std::size_t i = 0; i < dataset.sequences.size(); ++i) {
+      const WatchedSequence sequence(std::move(dataset.sequences[i]), at_each_scan_);
+      const std::filesystem::path& folder = folders[i].folder;
+      SequenceCheckup& part = checkup_.sequences.emplace_back();
+      part.name = sequence.name();
+      part.scans = sequence.size();
+      part.reading = sequence.reading();
+      part.remarks = sequence.remarks();
+      part.labelled_scans = scans_with_truth(sequence).size();
+      part.facts = folder_facts_[folders[i].name];
+      part.has_poses = !options.reading.poses_by_odometry;
+      check_points(sequence, folder, expected, part);
+      if (!part.has_poses) continue;
+      check_poses(sequence, folder, part);
+      if (!simulated_origin(path_)) check_published(sequence, folder, expected, part);
+    }
+  }
+
+  void check_points(const Sequence& sequence, const std::filesystem::path& folder,
+                    const LayoutContent& expected, SequenceCheckup& part) {
+    attempt(folder, [&] {
+      examine_content(sequence, expected, part);
+      judge(Subject::kPoints, part);
+      judge(Subject::kLabelIds, part);
+    });
+    examine_stamps(sequence, part.facts);
+    judge(Subject::kStamps, part);
+  }
+
+  /// Checks the poses, and the labels where nothing speaks against the poses.
+  void check_poses(const Sequence& sequence, const std::filesystem::path& folder,
+                   SequenceCheckup& part) {
+    bool is_sound = false;
+    attempt(folder, [&] {
+      examine_poses(sequence, folder, part);
+      is_sound = part.poses && !judge(Subject::kPoses, part);
+      if (is_sound) judge(Subject::kRows, part);
+    });
+    if (!is_sound) return;
+    attempt(folder, [&] {
+      examine_labels(sequence, part);
+      judge(Subject::kLabels, part);
+    });
+  }
+
+  /// Compares with what the authors published of this folder.
+  void check_published(const Sequence& sequence, const std::filesystem::path& folder,
+                       const LayoutContent& expected, SequenceCheckup& part) {
+    const auto published = std::ranges::find_if(
+        expected.published,
+        [&](const PublishedCount& count) { return ends_with(folder, count.folder); });
+    if (published == expected.published.end()) return;
+    const std::size_t scans = sequence.size(), points = sequence.point_count(0);
+    part.facts["scans"] = scans;
+    part.facts["published_scans"] = published->scans;
+    part.facts["scans_left_out"] = std::size_t{scans < published->scans};
+    part.facts["scans_too_many"] = std::size_t{scans > published->scans};
+    part.facts["first_scan_points"] = points;
+    part.facts["published_points"] = published->points;
+    part.facts["points_unlike_published"] =
+        std::size_t{published->points != 0 && points != published->points};
+    judge(Subject::kPublished, part);
+  }
+
+  void check_one_by_one() {
+    std::vector<Symptom> missing;
+    for (const SequenceFolder& folder : folders_) {
+      OpenOptions options = options_;
+      options.sequences = {folder.name};
+      attempt(path_, [&] {
+        try {
+          check_opened(options, {folder});
+        } catch (const MissingPoses& error) {
+          missing.push_back(symptom_of(error, path_));
+          options.reading.poses_by_odometry = true;
+          check_opened(options, {folder});
+        }
+      });
+    }
+    checkup_.lacks_poses = !missing.empty() && !checkup_.has(Severity::kError);
+    std::ranges::move(missing, std::back_inserter(checkup_.symptoms));
+  }
+
+  const std::filesystem::path& path_;
+  const OpenOptions options_;
+  const std::function<void()>& at_each_scan_;
+  std::vector<SequenceFolder> folders_;
+  std::map<std::string, Facts> folder_facts_;
+  Checkup checkup_;
+};
 
 }  // namespace
+
+bool tr_is_applied(const ReadingStatement& reading) {
+  return std::ranges::any_of(reading, [](const auto& statement) {
+    return statement.first == "pose_frame" && statement.second.starts_with("camera");
+  });
+}
+
+std::vector<Pose> poses_of(const Sequence& sequence) {
+  std::vector<Pose> poses;
+  for (const ScanEntry& scan : sequence.recording().scans) poses.push_back(scan.map_from_sensor);
+  return poses;
+}
 
 bool Checkup::has(Severity severity) const {
   return std::ranges::any_of(
       symptoms, [severity](const Symptom& finding) { return finding.severity == severity; });
 }
 
-std::vector<Symptom> check_poses(const Sequence& sequence, const std::filesystem::path& folder,
-                                 SequenceCheckup& checkup) {
-  constexpr std::size_t kFewestScans = 6, kSpots = 6;
-  std::vector<Pose> given;
-  std::vector<std::string> stems;
-  for (const ScanEntry& scan : sequence.recording().scans) {
-    given.push_back(scan.map_from_sensor);
-    stems.push_back(scan.stem);
-  }
-  if (given.size() < kFewestScans || checkup.is_partly_turned) return {};
-  const MisplacedRowsFound misplaced = misplaced_rows(sequence, given);
-  checkup.measures["row_gain"] = misplaced.largest_gain;
-  for (const MisplacedRows& rows : misplaced.rows) given = mended(std::move(given), rows);
-  std::vector<std::size_t> spots = odd_steps(given, kSpots);
-  for (const RowRange& run : equal_rows(given)) {
-    if (spots.size() < 2 * kSpots) spots.push_back((run.first + run.last) / 2);
-  }
-  const auto diagnose_from = [&](const std::vector<MotionGuess>& guesses) {
-    return diagnose(given, measure_motions(sequence, given, spots, guesses),
-                    other_conventions(given, tr_of(folder), tr_is_applied(checkup.reading)),
-                    {stems, usual_step_s(sequence)});
+Remedy Checkup::remedy() const {
+  const auto remedy_for = [&](const SequenceCheckup& sequence) {
+    for (const Symptom& symptom : symptoms) {
+      if (symptom.where == sequence.name && symptom.remedy) return symptom.remedy;
+    }
+    return Remedy();
   };
-  checkup.poses = diagnose_from({});
-  const auto tries = worth_another_try(checkup.poses->conventions, checkup.poses->scores);
-  std::vector<MotionGuess> guesses;
-  for (const PoseConvention& convention : tries) {
-    guesses.push_back([&convention](const ScanPair& pair) { return convention.motion(pair); });
+  Remedy common;
+  for (std::size_t i = 0; i < sequences.size(); ++i) {
+    const Remedy remedy = remedy_for(sequences[i]);
+    if (i == 0) common = remedy;
+    if (!(remedy == common)) return {};
   }
-  if (!guesses.empty()) checkup.poses = diagnose_from(guesses);
-  checkup.measures.merge(checkup.poses->measures);
-  std::ranges::copy(checkup.poses->remarks, std::back_inserter(checkup.remarks));
-  std::vector<Symptom> symptoms;
-  for (const std::string& finding : checkup.poses->findings) {
-    symptoms.push_back({Severity::kWarning, sequence.name(), finding});
-  }
-  // Poses in another convention have detours of their own.
-  if (!symptoms.empty()) return symptoms;
-  for (const MisplacedRows& rows : misplaced.rows) {
-    symptoms.push_back({Severity::kWarning, sequence.name(), sentence_on(rows, sequence)});
-  }
-  return symptoms;
+  return common;
 }
 
-std::vector<Symptom> check_labels_by_scans(const Sequence& sequence, SequenceCheckup& checkup) {
-  if (!checkup.poses || !checkup.poses->findings.empty()) return {};
-  std::vector<Pose> poses;
-  for (const ScanEntry& scan : sequence.recording().scans) poses.push_back(scan.map_from_sensor);
-  checkup.truth = check_truth(sequence, poses, checkup.poses->fits);
-  std::ranges::copy(checkup.truth->remarks, std::back_inserter(checkup.remarks));
-  std::vector<Symptom> symptoms;
-  for (const std::string& finding : checkup.truth->findings) {
-    symptoms.push_back({Severity::kWarning, sequence.name(), finding});
-  }
-  return symptoms;
+void examine_poses(const Sequence& sequence, const std::filesystem::path& folder,
+                   SequenceCheckup& checkup) {
+  constexpr std::size_t kFewestScans = 6;
+  if (sequence.size() < kFewestScans || checkup.is_partly_turned) return;
+  std::vector<Pose> given = poses_of(sequence);
+  examine_misplaced_rows(sequence, given, checkup.facts);
+  const auto conventions = other_conventions(given, tr_of(folder), tr_is_applied(checkup.reading));
+  checkup.poses =
+      measure_poses(sequence, given, conventions, checkup.facts.number("step_s"), checkup.facts);
+}
+
+double share(std::size_t part, std::size_t whole) {
+  return whole == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(whole);
 }
 
 Checkup check_up(const std::filesystem::path& path, const OpenOptions& options,
                  const std::function<void()>& at_each_scan) {
-  Checkup checkup;
-  std::vector<SequenceFolder> folders;
-  try {
-    folders = find_sequences(path, options, checkup.kind);
-    for (const SequenceFolder& folder : folders) {
-      collect(checkup.symptoms, folder.folder,
-              [&] { return check_folder(folder.folder, folder.name); });
-    }
-    check_opened(path, options, folders, at_each_scan, checkup);
-  } catch (const MissingPoses&) {
-    check_one_by_one(path, options, folders, at_each_scan, checkup);
-  } catch (const DataError& error) {
-    checkup.symptoms.push_back(symptom_of(error, path));
-  }
-  return checkup;
+  return Examination(path, options, at_each_scan).run();
 }
 
 }  // namespace mosbench

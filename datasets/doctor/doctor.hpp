@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -8,20 +9,21 @@
 #include <string>
 #include <vector>
 
-#include "datasets/doctor/misplaced_rows.hpp"
-#include "datasets/doctor/pose_diagnosis.hpp"
-#include "datasets/doctor/truth_check.hpp"
+#include "datasets/doctor/checks.hpp"
+#include "datasets/doctor/pose_evidence.hpp"
 #include "datasets/layouts/dataset.hpp"
+#include "datasets/layouts/layout.hpp"
 
 namespace mosbench {
 
-/// With a warning results are doubtful, with an error there are none.
-enum class Severity { kWarning, kError };
-
-struct Symptom {
-  Severity severity = Severity::kWarning;
-  std::string where;  ///< sequence or file
-  std::string what;   ///< a plain sentence with what was found and what was expected
+/// What the points of labelled scans do, by their labels.
+struct LabelEvidence {
+  std::size_t moving = 0, still = 0;  ///< labelled points
+  /// Share of the points labelled moving, and of those labelled static, through whose place scans
+  /// half a second and a second before or after look: what moves leaves its place.
+  double moving_leaves = 0.0, still_leaves = 0.0;
+  /// Mean share of moving points among the labelled points around a moving one.
+  double purity = 0.0;
 };
 
 /// What was found in one sequence, for users to compare with what they know of it.
@@ -35,10 +37,9 @@ struct SequenceCheckup {
   std::size_t points = 0, zero_points = 0, nonfinite_points = 0;
   bool has_poses = true;
   bool is_partly_turned = false;  ///< some scans are upside down: they do not fit one another
-  /// What thresholds are compared with, see scripts/check/doctor_margins.py.
-  std::map<std::string, double> measures;
-  std::optional<PoseDiagnosis> poses;
-  std::optional<TruthCheck> truth;  ///< none where the poses are wrong
+  Facts facts;                    ///< that are judged
+  std::optional<PoseEvidence> poses;
+  std::optional<LabelEvidence> labels;  ///< none where the poses are wrong
 };
 
 /// Returns the upper ends of the bins of SequenceCheckup::points_of_range; the last is open.
@@ -51,6 +52,8 @@ struct Checkup {
   bool lacks_poses = false;  ///< the only error is that there are none
 
   bool has(Severity severity) const;
+  /// Returns how all sequences should be read; none unless they agree.
+  Remedy remedy() const;
 };
 
 /// Checks a data set. All files are listed and their sizes checked, some dozens of scans per
@@ -61,28 +64,34 @@ Checkup check_up(
     const std::filesystem::path& path, const OpenOptions& options,
     const std::function<void()>& at_each_scan = [] {});
 
-/// Checks a sequence folder without opening it: gaps in the numbering of scans, label files without
-/// scan, missing labels, files of odd sizes.
-std::vector<Symptom> check_folder(const std::filesystem::path& folder, const std::string& name);
+/// A sentence for poses that were turned from the camera to the lidar by the Tr in calib.txt, where
+/// scans overlap clearly better under the rows as they stand in the file: nobody said that they are
+/// the camera's, and they seem to be the lidar's. Reads some scans, at most 10. Throws DataError.
+std::optional<std::string> doubt_about_pose_frame(const Sequence& sequence);
 
-/// Checks points and labels of some of the scans, and fills in `checkup`.
-std::vector<Symptom> check_content(const Sequence& sequence, DatasetKind kind,
-                                   SequenceCheckup& checkup);
+// The steps of `check_up`. Each leaves facts, and throws DataError.
 
-/// Checks the stamps of all scans: their order, unit and gaps; fills in the measures of `checkup`.
-std::vector<Symptom> check_stamps(const Sequence& sequence, SequenceCheckup& checkup);
+/// Looks at a sequence folder without opening it: gaps in the numbering of scans, label files
+/// without scan, missing labels, files of odd sizes.
+void examine_folder(const std::filesystem::path& folder, Facts& facts);
+/// Looks at the order, unit and gaps of all stamps.
+void examine_stamps(const Sequence& sequence, Facts& facts);
+/// Reads some dozens of scans.
+void examine_content(const Sequence& sequence, const LayoutContent& expected,
+                     SequenceCheckup& checkup);
+/// Compares the poses with the motions that scans show.
+void examine_poses(const Sequence& sequence, const std::filesystem::path& folder,
+                   SequenceCheckup& checkup);
+/// Compares labels with what other scans see, in up to a dozen labelled scans.
+void examine_labels(const Sequence& sequence, SequenceCheckup& checkup);
 
-/// Checks the poses by the overlap of scans, and fills in `checkup`.
-std::vector<Symptom> check_poses(const Sequence& sequence, const std::filesystem::path& folder,
-                                 SequenceCheckup& checkup);
+/// Returns the scans with a label other than 0, which nobody gave: data sets may have labels of key
+/// frames alone and files of zeros for the scans between. Reads the truth of all.
+std::vector<std::size_t> scans_with_labels(const Sequence& sequence);
 
-/// Checks the labels by what other scans see, where no symptom speaks against the poses, and fills
-/// in `checkup`.
-std::vector<Symptom> check_labels_by_scans(const Sequence& sequence, SequenceCheckup& checkup);
-
-/// Checks the number of scans against what the data set's authors published. Fewer are an excerpt
-/// and get a remark in `checkup`.
-std::vector<Symptom> check_published(const Sequence& sequence, DatasetKind kind,
-                                     const std::filesystem::path& folder, SequenceCheckup& checkup);
+/// Returns whether the poses read were turned from the camera of Tr in calib.txt to the lidar.
+bool tr_is_applied(const ReadingStatement& reading);
+std::vector<Pose> poses_of(const Sequence& sequence);
+double share(std::size_t part, std::size_t whole);
 
 }  // namespace mosbench

@@ -1,17 +1,15 @@
-#include "datasets/doctor/measured_motions.hpp"
-
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <deque>
 #include <set>
+
+#include "datasets/doctor/pose_evidence.hpp"
 
 namespace mosbench {
 namespace {
 
 constexpr double kRadOfDeg = M_PI / 180.0;
-/// The deviation of a registration is larger than its curvature says, since neighbouring points err
-/// alike.
-constexpr double kCovarianceFactor = 9.0;
 /// Best accuracy of a registration.
 constexpr double kFinestM = 0.01, kFinestRad = 0.05 * kRadOfDeg;
 /// Deviation per axis of poses that are still sound.
@@ -32,7 +30,6 @@ constexpr std::size_t kStretches = 5;
 constexpr std::size_t kSpotBefore = 3, kSpotAfter = 3;
 constexpr std::size_t kMostApart = 8;
 constexpr double kFarApartM = 2.0;
-constexpr double kSearchedM = 4.0;
 
 using Stretch = std::pair<std::size_t, std::size_t>;  // [first, last)
 
@@ -58,34 +55,31 @@ std::vector<Stretch> stretches_of(std::size_t scans, const std::vector<std::size
   return stretches;
 }
 
+/// The motions that are followed from scan to scan: that taken, and two that may be taken instead.
+constexpr std::array<ShownMotion& (*)(MeasuredMotion&), 3> kFollowed = {
+    [](MeasuredMotion& motion) -> ShownMotion& { return motion; },
+    [](MeasuredMotion& motion) -> ShownMotion& { return motion.back; },
+    [](MeasuredMotion& motion) -> ShownMotion& { return motion.best; }};
+
 struct ScanInStretch {
   std::size_t index = 0;
   RegisteredScan scan;
-  Pose start_from_scan = Pose::Identity();  ///< by motions that were taken
-  Pose back_start_from_scan = Pose::Identity();
-  Pose best_start_from_scan = Pose::Identity();
+  std::array<Pose, 3> start_from_scan = {Pose::Identity(), Pose::Identity(), Pose::Identity()};
 };
 
-void take(MeasuredMotion& measured, const Registration& registration) {
-  measured.motion = registration.motion;
-  measured.overlap = registration.overlap;
-  measured.covariance = kCovarianceFactor * registration.covariance;
-}
-
-void take(MeasuredMotion& measured, const OtherMotion& other) {
-  take(measured, other.registration);
-  measured.chained = other.chained;
-}
-
-template <typename OverlapOf>
-double sum_over(const std::vector<MeasuredMotion>& pairs, OverlapOf&& overlap_of) {
+template <typename Value>
+double sum_over(const std::vector<MeasuredMotion>& pairs, Value&& value) {
   double sum = 0.0;
-  for (const MeasuredMotion& pair : pairs) sum += overlap_of(pair);
+  for (const MeasuredMotion& pair : pairs) sum += value(pair);
   return sum;
 }
 
 double taken_overlap(const std::vector<MeasuredMotion>& pairs) {
   return sum_over(pairs, [](const auto& pair) { return pair.overlap; });
+}
+
+void take(std::vector<MeasuredMotion>& pairs, ShownMotion MeasuredMotion::*other) {
+  for (MeasuredMotion& pair : pairs) static_cast<ShownMotion&>(pair) = pair.*other;
 }
 
 /// Takes the registrations the other way round where they are better on the whole, by more than
@@ -97,18 +91,16 @@ void take_backwards(std::vector<MeasuredMotion>& pairs) {
   const double squares =
       sum_over(pairs, [&](const auto& pair) { return better(pair) * better(pair); });
   const double error = std::sqrt(std::max(0.0, squares / count - mean * mean) / count);
-  const double back =
-      sum_over(pairs, [](const auto& pair) { return pair.back.registration.overlap; });
-  if (!(mean > kBackwardsErrors * error) || back < taken_overlap(pairs)) return;
-  for (MeasuredMotion& pair : pairs) take(pair, pair.back);
+  const double back = sum_over(pairs, [](const auto& pair) { return pair.back.overlap; });
+  if (mean > kBackwardsErrors * error && back >= taken_overlap(pairs)) {
+    take(pairs, &MeasuredMotion::back);
+  }
 }
 
 /// Takes the best registrations where they are clearly better on the whole, if not one by one.
 void take_best(std::vector<MeasuredMotion>& pairs) {
-  const double best =
-      sum_over(pairs, [](const auto& pair) { return pair.best.registration.overlap; });
-  if (best <= kBetterOnTheWhole * taken_overlap(pairs)) return;
-  for (MeasuredMotion& pair : pairs) take(pair, pair.best);
+  const double best = sum_over(pairs, [](const auto& pair) { return pair.best.overlap; });
+  if (best > kBetterOnTheWhole * taken_overlap(pairs)) take(pairs, &MeasuredMotion::best);
 }
 
 class StretchMeasuring {
@@ -119,7 +111,7 @@ class StretchMeasuring {
 
   void measure(const Stretch& stretch) {
     for (std::size_t k = stretch.first; k < stretch.second; ++k) {
-      ScanInStretch next{k, registered_scan(sequence_.read(k).points, cell_m_)};
+      ScanInStretch next{k, RegisteredScan(sequence_.read(k).points, cell_m_)};
       if (!window_.empty()) measure_step(next);
       window_.push_back(std::move(next));
       if (window_.size() > kMostApart) window_.pop_front();
@@ -130,27 +122,29 @@ class StretchMeasuring {
   void measure_step(ScanInStretch& next) {
     const ScanInStretch& before = window_.back();
     MeasuredMotion step = between(before, next, {last_step_, Pose::Identity()}, !have_step_);
-    next.start_from_scan = before.start_from_scan * step.motion;
-    next.back_start_from_scan = before.back_start_from_scan * step.back.registration.motion;
-    next.best_start_from_scan = before.best_start_from_scan * step.best.registration.motion;
-    last_step_ = step.best.registration.motion;
-    have_step_ = step.best.registration.overlap > 0.0;
+    for (std::size_t i = 0; i < kFollowed.size(); ++i) {
+      next.start_from_scan[i] = before.start_from_scan[i] * kFollowed[i](step).motion;
+    }
+    last_step_ = step.best.motion;
+    have_step_ = step.best.overlap > 0.0;
     pairs_.push_back(std::move(step));
     const ScanInStretch& far = far_before(next);
     if (far.index + 1 == next.index || next.index % 2 == 1) return;
-    const Pose chained = far.start_from_scan.inverse() * next.start_from_scan;
-    const Pose best_chained = far.best_start_from_scan.inverse() * next.best_start_from_scan;
-    pairs_.push_back(between(far, next, {chained, best_chained}, false));
-    pairs_.back().chained = chained;
-    pairs_.back().back.chained = far.back_start_from_scan.inverse() * next.back_start_from_scan;
-    pairs_.back().best.chained = best_chained;
+    std::array<Pose, 3> chained;
+    for (std::size_t i = 0; i < kFollowed.size(); ++i) {
+      chained[i] = far.start_from_scan[i].inverse() * next.start_from_scan[i];
+    }
+    MeasuredMotion& across =
+        pairs_.emplace_back(between(far, next, {chained.front(), chained.back()}, false));
+    for (std::size_t i = 0; i < kFollowed.size(); ++i) kFollowed[i](across).chained = chained[i];
   }
 
   /// Returns the last scan that is at least two scans and some metres before: two ways across each
   /// step tell a jump of the poses from a step that was measured wrongly.
   const ScanInStretch& far_before(const ScanInStretch& next) const {
     for (std::size_t i = window_.size() - 1; i-- > 0;) {
-      const Pose motion = window_[i].start_from_scan.inverse() * next.start_from_scan;
+      const Pose motion =
+          window_[i].start_from_scan.front().inverse() * next.start_from_scan.front();
       if (motion.translation().norm() >= kFarApartM) return window_[i];
     }
     return window_.front();
@@ -158,30 +152,29 @@ class StretchMeasuring {
 
   MeasuredMotion between(const ScanInStretch& earlier, const ScanInStretch& later,
                          const std::vector<Pose>& starts, bool search) const {
-    const HoldingSurfaces& surfaces = earlier.scan.surfaces;
-    const SparseScan& points = later.scan.points;
     MeasuredMotion measured;
     measured.pair = {earlier.index, later.index};
     const Pose given = relative(given_, measured.pair);
-    measured.given_overlap = upright_overlap(surfaces, points, given);
-    const Registration from_given = registered(surfaces, points, given);
-    take(measured, from_given);
-    measured.best.registration = from_given;
+    measured.given_overlap = upright_overlap(earlier.scan, later.scan, given);
+    const Registration from_given = registered(earlier.scan, later.scan, given);
+    Registration& taken = measured;
+    Registration& best = measured.best;
+    taken = best = from_given;
     const auto consider = [&](const Pose& start) {
-      const Registration other = registered(surfaces, points, start);
+      const Registration other = registered(earlier.scan, later.scan, start);
       const bool near = difference_m(other.motion, from_given.motion) < kNearM;
       const double enough = near ? 0.0 : kClearlyBetter * from_given.overlap;
-      if (other.overlap > std::max(enough, measured.overlap)) take(measured, other);
-      if (other.overlap > measured.best.registration.overlap) measured.best.registration = other;
+      if (other.overlap > std::max(enough, taken.overlap)) taken = other;
+      if (other.overlap > best.overlap) best = other;
     };
     for (const Pose& start : starts) consider(start);
     for (const MotionGuess& guess : guesses_) {
       if (const auto start = guess(measured.pair)) consider(*start);
     }
-    if (search) consider(searched_start(surfaces, points, kSearchedM));
+    if (search) consider(searched_start(earlier.scan, later.scan));
     const Pose back = given.inverse();
-    measured.back_overlap = upright_overlap(surfaces, points, back);
-    measured.back.registration = registered(surfaces, points, back);
+    measured.back_overlap = upright_overlap(earlier.scan, later.scan, back);
+    static_cast<Registration&>(measured.back) = registered(earlier.scan, later.scan, back);
     return measured;
   }
 

@@ -1,10 +1,10 @@
-#include "datasets/doctor/misplaced_rows.hpp"
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <optional>
 #include <set>
 
-#include "datasets/doctor/scan_overlap.hpp"
+#include "datasets/doctor/pose_evidence.hpp"
 
 namespace mosbench {
 namespace {
@@ -29,9 +29,6 @@ constexpr double kSingleRowShare = 0.9;
 constexpr double kStepShare = 0.75;
 /// An exchange of the first or last two rows saves half: the other detour is beyond the end.
 constexpr double kEndFactor = 2.0;
-/// Overlap per pair of scans that mended rows have to gain. Right exchanges gained 0.007 (campus,
-/// Avia, 0.16 m per scan) to 0.1 and more, single rows at least 0.1, wrong exchanges lost 0.007.
-constexpr double kLeastRowGain = 0.005;
 
 Pose midway(const Pose& a, const Pose& b) {
   Pose middle = Pose::Identity();
@@ -39,13 +36,6 @@ Pose midway(const Pose& a, const Pose& b) {
       Eigen::Quaterniond(a.linear()).slerp(0.5, Eigen::Quaterniond(b.linear())).toRotationMatrix();
   middle.translation() = 0.5 * (a.translation() + b.translation());
   return middle;
-}
-
-/// Returns what `mended` puts into the row.
-Pose mended_pose(const std::vector<Pose>& poses, const MisplacedRows& rows, std::size_t row) {
-  if (row != rows.first && row != rows.second) return poses[row];
-  if (rows.single()) return midway(poses[row - 1], poses[row + 1]);
-  return poses[row == rows.first ? rows.second : rows.first];
 }
 
 /// Returns by how much the trajectory is shorter without the row, metres; next to nothing on real
@@ -71,12 +61,11 @@ struct Steps {
   double sum_m = 0.0, longest_m = 0.0;
 };
 
-/// Measures the steps around the rows with the poses of `pose_of(row)`.
-template <typename PoseOf>
-Steps steps_around(const MisplacedRows& rows, std::size_t scans, PoseOf&& pose_of) {
+/// Measures the steps around the rows.
+Steps steps_around(const std::vector<Pose>& poses, const MisplacedRows& rows) {
   Steps steps;
-  for (const ScanPair& pair : pairs_around(rows, scans)) {
-    const double step_m = difference_m(pose_of(pair.earlier), pose_of(pair.later));
+  for (const auto& [earlier, later] : pairs_around(rows, poses.size())) {
+    const double step_m = difference_m(poses[earlier], poses[later]);
     steps.sum_m += step_m;
     steps.longest_m = std::max(steps.longest_m, step_m);
   }
@@ -136,10 +125,8 @@ class Search {
   }
 
   void consider(const MisplacedRows& rows, const Suspect& suspect) {
-    const auto given = [&](std::size_t row) { return poses_[row]; };
-    const auto better = [&](std::size_t row) { return mended_pose(poses_, rows, row); };
-    const Steps before = steps_around(rows, poses_.size(), given),
-                after = steps_around(rows, poses_.size(), better);
+    const Steps before = steps_around(poses_, rows);
+    const Steps after = steps_around(mended(poses_, rows), rows);
     double saved_m = before.sum_m - after.sum_m;
     double needed_m = std::max(suspect.step_m, suspect.noise_m);
     if (rows.single()) {
@@ -162,12 +149,29 @@ class Search {
   double saved_m_ = 0.0;
 };
 
+std::string sentence_on(const MisplacedRows& rows, const Sequence& sequence) {
+  if (rows.single()) {
+    return fmt::format(
+        "the pose of scan {} (row {}) does not fit between its neighbours: the trajectory jumps "
+        "there and back, and scans overlap better without; expected the poses in the order of the "
+        "scans",
+        sequence.stem(rows.first), rows.first + 1);
+  }
+  return fmt::format(
+      "the poses of scans {} and {} (rows {} and {}) are exchanged: the other way round the "
+      "trajectory is shorter and scans overlap better; expected the poses in the order of the "
+      "scans",
+      sequence.stem(rows.first), sequence.stem(rows.second), rows.first + 1, rows.second + 1);
+}
+
 }  // namespace
 
 std::vector<Pose> mended(std::vector<Pose> poses, const MisplacedRows& rows) {
-  const Pose first = mended_pose(poses, rows, rows.first);
-  poses[rows.second] = mended_pose(poses, rows, rows.second);
-  poses[rows.first] = first;
+  if (rows.single()) {
+    poses[rows.first] = midway(poses[rows.first - 1], poses[rows.first + 1]);
+  } else {
+    std::swap(poses[rows.first], poses[rows.second]);
+  }
   return poses;
 }
 
@@ -184,25 +188,27 @@ std::vector<MisplacedRows> suspected_rows(std::vector<Pose> poses) {
   return suspected;
 }
 
-MisplacedRowsFound misplaced_rows(const Sequence& sequence, const std::vector<Pose>& poses) {
+void examine_misplaced_rows(const Sequence& sequence, std::vector<Pose>& poses, Facts& facts) {
   ScanOverlap scans(sequence);
-  MisplacedRowsFound found;
-  std::vector<Pose> before = poses;
+  std::vector<std::string> sentences;
+  double largest_gain = 0.0;
   for (const MisplacedRows& rows : suspected_rows(poses)) {
-    std::vector<Pose> after = mended(before, rows);
+    std::vector<Pose> after = mended(poses, rows);
     double gain = 0.0, pairs = 0.0;
     for (const ScanPair& pair : pairs_around(rows, poses.size())) {
       if (!scans.has_points(pair)) continue;
       gain += scans.overlap(pair, relative(after, pair));
-      gain -= scans.overlap(pair, relative(before, pair));
+      gain -= scans.overlap(pair, relative(poses, pair));
       pairs += 1.0;
     }
-    if (pairs > 0.0) found.largest_gain = std::max(found.largest_gain, gain / pairs);
+    if (pairs > 0.0) largest_gain = std::max(largest_gain, gain / pairs);
     if (gain <= kLeastRowGain * pairs) continue;
-    found.rows.push_back(rows);
-    before = std::move(after);
+    sentences.push_back(sentence_on(rows, sequence));
+    poses = std::move(after);
   }
-  return found;
+  facts["row_gain"] = largest_gain;
+  facts["misplaced_rows"] = sentences.size();
+  facts["misplaced"] = fmt::format("{}", fmt::join(sentences, "\n"));
 }
 
 }  // namespace mosbench

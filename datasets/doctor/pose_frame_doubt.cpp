@@ -1,10 +1,8 @@
-#include "datasets/doctor/pose_frame_doubt.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "datasets/doctor/scan_overlap.hpp"
+#include "datasets/doctor/doctor.hpp"
 #include "datasets/formats/calib_file.hpp"
 
 namespace mosbench {
@@ -16,18 +14,6 @@ constexpr double kTellingDifference_m = 1.0;
 // Of the overlap, a mean likelihood. Lidar poses of simulated streets, highways, malls and campuses
 // gain 0.09 to 0.32 when Tr is not applied.
 constexpr double kBetterOverlap = 0.05;
-
-std::optional<Pose> applied_tr(const Sequence& sequence) {
-  const auto frame =
-      std::ranges::find(sequence.reading(), "pose_frame", &ReadingStatement::value_type::first);
-  if (frame == sequence.reading().end() || !frame->second.starts_with("camera")) {
-    return std::nullopt;
-  }
-  for (const std::filesystem::path& file : sequence.files()) {
-    if (file.filename() == "calib.txt") return read_calib(file);
-  }
-  return std::nullopt;
-}
 
 /// The pairs that begin at the starts and end where the two ways to read the poses differ enough.
 std::vector<ScanPair> telling_pairs(const std::vector<Pose>& poses, const std::vector<Pose>& rows) {
@@ -46,13 +32,13 @@ std::vector<ScanPair> telling_pairs(const std::vector<Pose>& poses, const std::v
 }  // namespace
 
 std::optional<std::string> doubt_about_pose_frame(const Sequence& sequence) {
-  const std::optional<Pose> tr = applied_tr(sequence);
-  if (!tr) return std::nullopt;
-  std::vector<Pose> poses, rows;
-  for (std::size_t k = 0; k < sequence.size(); ++k) {
-    poses.push_back(sequence.map_from_sensor(k));
-    rows.push_back(*tr * poses.back() * tr->inverse());
-  }
+  const auto files = sequence.files();
+  const auto calib = std::ranges::find(files, "calib.txt", &std::filesystem::path::filename);
+  if (!tr_is_applied(sequence.reading()) || calib == files.end()) return std::nullopt;
+  const Pose tr = read_calib(*calib);
+  const std::vector<Pose> poses = poses_of(sequence);
+  std::vector<Pose> rows;
+  for (const Pose& pose : poses) rows.push_back(tr * pose * tr.inverse());
   ScanOverlap scans(sequence);
   std::vector<double> turned, unturned;
   for (const ScanPair& pair : telling_pairs(poses, rows)) {

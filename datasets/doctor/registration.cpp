@@ -6,8 +6,7 @@
 #include <cmath>
 #include <unordered_set>
 
-#include "datasets/doctor/cell_moments.hpp"
-#include "datasets/doctor/surface_cells.hpp"
+#include "datasets/doctor/scan_overlap.hpp"
 
 namespace mosbench {
 namespace {
@@ -43,8 +42,8 @@ bool is_flat(const Columns& columns, const Eigen::Vector3d& point_m) {
   return column != columns.end() && column->second.second - column->second.first < kFlatM;
 }
 
-HoldingSurfaces::Surface surface_of(const CellMoments& cell, bool flat) {
-  HoldingSurfaces::Surface surface;
+RegisteredScan::Surface surface_of(const CellMoments& cell, bool flat) {
+  RegisteredScan::Surface surface;
   surface.mean_m = cell.mean_m();
   const Eigen::Matrix3d covariance = cell.covariance_m2();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(covariance);
@@ -93,29 +92,26 @@ struct Normal {
   Vector6 gradient = Vector6::Zero();
 };
 
-void add_points(const HoldingSurfaces& surfaces, std::span<const Eigen::Vector3d> points_m,
-                const Pose& motion, double thickness_m, Normal& sums) {
-  for (const Eigen::Vector3d& point_m : points_m) {
+/// Sums up what pulls the later scan onto the surfaces of the earlier one.
+Normal normal_at(const RegisteredScan& earlier, const RegisteredScan& later, const Pose& motion,
+                 double thickness_m) {
+  Normal sums;
+  const auto add = [&](const Eigen::Vector3d& point_m) {
     const Eigen::Vector3d moved_m = motion * point_m;
-    const auto* surface = surfaces.at(moved_m);
-    if (surface == nullptr) continue;
+    const auto* surface = earlier.surface_at(moved_m);
+    if (surface == nullptr) return;
     const Eigen::Vector3d offset_m = moved_m - surface->mean_m;
     const Eigen::Matrix3d information = surface->information(thickness_m);
     const Eigen::Vector3d pull = information * offset_m;
     const double weight = std::exp(-0.5 * offset_m.dot(pull));
-    if (weight < 1e-3) continue;
+    if (weight < 1e-3) return;
     Eigen::Matrix<double, 3, 6> jacobian;
     jacobian << Eigen::Matrix3d::Identity(), -crossing(moved_m);
     sums.information.noalias() += weight * jacobian.transpose() * information * jacobian;
     sums.gradient.noalias() += weight * jacobian.transpose() * pull;
-  }
-}
-
-Normal normal_at(const HoldingSurfaces& surfaces, const SparseScan& scan, const Pose& motion,
-                 double thickness_m) {
-  Normal sums;
-  add_points(surfaces, scan.upright_m, motion, thickness_m, sums);
-  add_points(surfaces, scan.ground_m, motion, thickness_m, sums);
+  };
+  std::ranges::for_each(later.upright_m, add);
+  std::ranges::for_each(later.ground_m, add);
   // Directions that nothing holds stay where they are.
   sums.information.diagonal().array() += 1e-3;
   return sums;
@@ -132,11 +128,11 @@ std::vector<Eigen::Vector3d> thinned(const std::vector<Eigen::Vector3d>& points_
 }
 
 /// Gives each upright point its share of what holds the scan sideways.
-void weigh(SparseScan& scan, const HoldingSurfaces& surfaces) {
+void weigh(RegisteredScan& scan) {
   std::vector<Eigen::Matrix2d> holds;
   Eigen::Matrix2d all = Eigen::Matrix2d::Identity() * 1e-6;
   for (const Eigen::Vector3d& point_m : scan.upright_m) {
-    const auto* surface = surfaces.at(point_m);
+    const auto* surface = scan.surface_at(point_m);
     holds.emplace_back(Eigen::Matrix2d::Zero());
     if (surface == nullptr) continue;
     holds.back() = kThinM * kThinM * surface->information(kThinM).topLeftCorner<2, 2>();
@@ -146,40 +142,35 @@ void weigh(SparseScan& scan, const HoldingSurfaces& surfaces) {
   for (const Eigen::Matrix2d& hold : holds) scan.leverage.push_back(0.5 * (shares * hold).trace());
 }
 
-SparseScan sparse(const std::vector<Eigen::Vector3d>& near_m, const HoldingSurfaces& surfaces) {
-  constexpr double kUprightCellM = 0.4, kGroundCellM = 1.0;
-  constexpr std::size_t kUpright = 1500, kGround = 500;
-  const Columns columns = columns_of(near_m);
-  std::vector<Eigen::Vector3d> upright_m, ground_m;
-  for (const Eigen::Vector3d& point_m : near_m) {
-    (is_flat(columns, point_m) ? ground_m : upright_m).push_back(point_m);
-  }
-  SparseScan scan{
-      thinned(upright_m, kUprightCellM, kUpright), {}, thinned(ground_m, kGroundCellM, kGround)};
-  weigh(scan, surfaces);
-  return scan;
-}
-
 }  // namespace
 
-Eigen::Matrix3d HoldingSurfaces::Surface::information(double thickness_m) const {
+Eigen::Matrix3d RegisteredScan::Surface::information(double thickness_m) const {
   const Eigen::Vector3d weights =
       (variance_m2.array() + thickness_m * thickness_m).inverse().matrix();
   return directions * weights.asDiagonal() * directions.transpose();
 }
 
-HoldingSurfaces::HoldingSurfaces(std::span<const Eigen::Vector3d> points_m, double cell_m)
-    : cell_m_(cell_m) {
-  const Columns columns = columns_of(points_m);
-  for (const auto& [key, cell] : moments_of_cells(points_m, cell_m_)) {
+RegisteredScan::RegisteredScan(std::span<const Point> points, double size_m) : cell_m(size_m) {
+  constexpr std::size_t kSurfacePoints = 40000, kUpright = 1500, kGround = 500;
+  constexpr double kUprightCellM = 0.4, kGroundCellM = 1.0;
+  const std::vector<Eigen::Vector3d> near_m = near_points(points);
+  const std::vector<Eigen::Vector3d> surface_m = picked(near_m, kSurfacePoints);
+  const Columns surface_columns = columns_of(surface_m), columns = columns_of(near_m);
+  for (const auto& [key, cell] : moments_of_cells(surface_m, cell_m)) {
     if (cell.count < kFewestOfSurface) continue;
-    surfaces_.emplace(key, surface_of(cell, is_flat(columns, cell.mean_m())));
+    surfaces.emplace(key, surface_of(cell, is_flat(surface_columns, cell.mean_m())));
   }
+  for (const Eigen::Vector3d& point_m : near_m) {
+    (is_flat(columns, point_m) ? ground_m : upright_m).push_back(point_m);
+  }
+  upright_m = thinned(upright_m, kUprightCellM, kUpright);
+  ground_m = thinned(ground_m, kGroundCellM, kGround);
+  weigh(*this);
 }
 
-const HoldingSurfaces::Surface* HoldingSurfaces::at(const Eigen::Vector3d& point_m) const {
-  const auto found = surfaces_.find(cube_key(point_m, cell_m_));
-  return found == surfaces_.end() ? nullptr : &found->second;
+const RegisteredScan::Surface* RegisteredScan::surface_at(const Eigen::Vector3d& point_m) const {
+  const auto found = surfaces.find(cube_key(point_m, cell_m));
+  return found == surfaces.end() ? nullptr : &found->second;
 }
 
 std::vector<Eigen::Vector3d> sparse_ground_m(std::span<const Point> points) {
@@ -192,21 +183,13 @@ std::vector<Eigen::Vector3d> sparse_ground_m(std::span<const Point> points) {
   return thinned(ground_m, kColumnM, ground_m.size());
 }
 
-RegisteredScan registered_scan(std::span<const Point> points, double cell_m) {
-  constexpr std::size_t kSurfacePoints = 40000;
-  const std::vector<Eigen::Vector3d> near_m = near_points(points);
-  HoldingSurfaces surfaces(picked(near_m, kSurfacePoints), cell_m);
-  SparseScan scan = sparse(near_m, surfaces);
-  return {std::move(surfaces), std::move(scan)};
-}
-
-double upright_overlap(const HoldingSurfaces& earlier, const SparseScan& later, const Pose& motion,
-                       std::size_t step, double thickness_m) {
+double upright_overlap(const RegisteredScan& earlier, const RegisteredScan& later,
+                       const Pose& motion, std::size_t step, double thickness_m) {
   double sum = 0.0, whole = 0.0;
   for (std::size_t i = 0; i < later.upright_m.size(); i += step) {
     whole += later.leverage[i];
     const Eigen::Vector3d moved_m = motion * later.upright_m[i];
-    const auto* surface = earlier.at(moved_m);
+    const auto* surface = earlier.surface_at(moved_m);
     if (surface == nullptr) continue;
     const Eigen::Vector3d offset_m = moved_m - surface->mean_m;
     sum += later.leverage[i] *
@@ -215,10 +198,12 @@ double upright_overlap(const HoldingSurfaces& earlier, const SparseScan& later, 
   return whole > 0.0 ? sum / whole : 0.0;
 }
 
-Registration registered(const HoldingSurfaces& earlier, const SparseScan& later,
+Registration registered(const RegisteredScan& earlier, const RegisteredScan& later,
                         const Pose& start) {
   constexpr int kMostSteps = 12;
   constexpr double kStillM = 1e-3;
+  // The deviation is larger than the curvature says, since neighbouring points err alike.
+  constexpr double kCovarianceFactor = 9.0;
   Registration result;
   result.motion = start;
   for (const double thickness_m : {kCoarseM, 2.0 * kThinM, kThinM}) {
@@ -230,17 +215,18 @@ Registration registered(const HoldingSurfaces& earlier, const SparseScan& later,
       if (change.norm() < kStillM) break;
     }
   }
-  result.covariance = normal_at(earlier, later, result.motion, kThinM).information.inverse();
+  result.covariance =
+      kCovarianceFactor * normal_at(earlier, later, result.motion, kThinM).information.inverse();
   result.overlap = upright_overlap(earlier, later, result.motion, 1, kThinM);
   return result;
 }
 
-Pose searched_start(const HoldingSurfaces& earlier, const SparseScan& later, double reach_m) {
-  constexpr double kStepM = 0.5;
+Pose searched_start(const RegisteredScan& earlier, const RegisteredScan& later) {
+  constexpr double kStepM = 0.5, kReachM = 4.0;
   constexpr std::size_t kEvery = 4;
   Pose best = Pose::Identity();
   double best_overlap = 0.0;
-  const int reach = static_cast<int>(reach_m / kStepM);
+  const int reach = static_cast<int>(kReachM / kStepM);
   for (int x = -reach; x <= reach; ++x) {
     for (int y = -reach; y <= reach; ++y) {
       Pose start = Pose::Identity();

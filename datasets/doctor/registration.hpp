@@ -12,13 +12,11 @@ namespace mosbench {
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
-/// The surfaces of a scan, each with the directions in which it holds a point: a plane along its
-/// normal, a pole sideways. Rings on the ground hold a point in height only, because they move with
-/// the sensor.
-class HoldingSurfaces {
- public:
-  HoldingSurfaces(std::span<const Eigen::Vector3d> points_m, double cell_m);
-
+/// A scan as others are registered to it, by its surfaces, and as it is registered to others, by
+/// some points per cell, so that near surfaces do not outweigh far ones.
+struct RegisteredScan {
+  /// A surface with the directions in which it holds a point: a plane along its normal, a pole
+  /// sideways. Rings on the ground hold a point in height only, because they move with the sensor.
   struct Surface {
     Eigen::Vector3d mean_m = Eigen::Vector3d::Zero();
     /// Per direction (columns) the variance of the surface's points along it; none where infinite.
@@ -26,16 +24,12 @@ class HoldingSurfaces {
     Eigen::Vector3d variance_m2 = Eigen::Vector3d::Zero();
     Eigen::Matrix3d information(double thickness_m) const;
   };
-  const Surface* at(const Eigen::Vector3d& point_m) const;
 
- private:
-  double cell_m_ = 1.0;
-  std::unordered_map<std::uint64_t, Surface> surfaces_;
-};
+  RegisteredScan(std::span<const Point> points, double size_m);
+  const Surface* surface_at(const Eigen::Vector3d& point_m) const;
 
-/// Points of one scan for registration: some per cell, so that near surfaces do not outweigh far
-/// ones.
-struct SparseScan {
+  double cell_m;
+  std::unordered_map<std::uint64_t, Surface> surfaces;
   std::vector<Eigen::Vector3d> upright_m;  ///< in columns that are not flat
   /// What each of them counts in the overlap, 1 in the sum. Points that hold the scan in a
   /// direction in which few do count more: on a straight road, posts more than the barrier.
@@ -43,14 +37,8 @@ struct SparseScan {
   std::vector<Eigen::Vector3d> ground_m;  ///< in flat columns
 };
 
-/// A scan in both roles.
-struct RegisteredScan {
-  HoldingSurfaces surfaces;
-  SparseScan points;
-};
 /// Returns some points of flat surfaces, about one per square metre.
 std::vector<Eigen::Vector3d> sparse_ground_m(std::span<const Point> points);
-RegisteredScan registered_scan(std::span<const Point> points, double cell_m);
 
 /// A motion measured by two scans.
 struct Registration {
@@ -60,11 +48,12 @@ struct Registration {
   Matrix6 covariance = Matrix6::Zero();
 };
 
-double upright_overlap(const HoldingSurfaces& earlier, const SparseScan& later, const Pose& motion,
-                       std::size_t step = 1, double thickness_m = 0.05);
+double upright_overlap(const RegisteredScan& earlier, const RegisteredScan& later,
+                       const Pose& motion, std::size_t step = 1, double thickness_m = 0.05);
 /// Returns the motion near `start` that brings the later scan onto the surfaces of the earlier.
-Registration registered(const HoldingSurfaces& earlier, const SparseScan& later, const Pose& start);
-/// Returns a start for `registered`, found among translations of up to `reach_m` sideways.
-Pose searched_start(const HoldingSurfaces& earlier, const SparseScan& later, double reach_m);
+Registration registered(const RegisteredScan& earlier, const RegisteredScan& later,
+                        const Pose& start);
+/// Returns a start for `registered`, found among translations of up to 4 m sideways.
+Pose searched_start(const RegisteredScan& earlier, const RegisteredScan& later);
 
 }  // namespace mosbench

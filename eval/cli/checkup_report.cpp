@@ -45,7 +45,7 @@ std::string ids_text(const SequenceCheckup& sequence) {
 }
 
 /// Returns whether the measured motions contradict one another.
-bool cannot_be_told(const PoseDiagnosis& poses) { return poses.disagreement > 1.0; }
+bool cannot_be_told(const PoseEvidence& poses) { return poses.disagreement > 1.0; }
 
 std::string names_text(const std::vector<std::string>& names) {
   constexpr std::size_t kShown = 3;
@@ -56,7 +56,7 @@ std::string names_text(const std::vector<std::string>& names) {
 }
 
 /// Says how near the nearest other convention comes, and which ones no motion tells apart.
-std::string conventions_text(const PoseDiagnosis& poses) {
+std::string conventions_text(const PoseEvidence& poses) {
   std::vector<std::string> not_told;
   std::size_t tried = 0, nearest = 0;
   for (std::size_t i = 0; i < poses.scores.size(); ++i) {
@@ -88,11 +88,11 @@ std::string poses_text(const SequenceCheckup& sequence) {
         "  overlap         not measured: {}\n",
         sequence.is_partly_turned ? "the scans do not fit one another" : "too few scans or points");
   }
-  const PoseDiagnosis& poses = *sequence.poses;
+  const PoseEvidence& poses = *sequence.poses;
   std::string text = fmt::format(
       "  overlap         {:.2f} as given, {:.2f} after moving scans by {:.2f} m (median over {} "
       "scans)\n",
-      poses.overlap, poses.best_overlap, poses.median_correction_m, poses.scans_read);
+      poses.overlap, poses.best_overlap, poses.median_correction_m, poses.measured.scans_read);
   text += conventions_text(poses);
   if (cannot_be_told(poses)) {
     text +=
@@ -102,13 +102,12 @@ std::string poses_text(const SequenceCheckup& sequence) {
   return text;
 }
 
-std::string truth_text(const SequenceCheckup& sequence) {
-  if (!sequence.truth || sequence.truth->moving == 0) return "";
-  const TruthCheck& truth = *sequence.truth;
+std::string labels_text(const SequenceCheckup& sequence) {
+  if (!sequence.labels || sequence.labels->moving == 0) return "";
   return fmt::format(
       "  moving labels   {:.0f} % of their points leave their place within a second, {:.1f} % of "
       "the static ones\n",
-      100.0 * truth.moving_leaves, 100.0 * truth.still_leaves);
+      100.0 * sequence.labels->moving_leaves, 100.0 * sequence.labels->still_leaves);
 }
 
 std::string sequence_text(const SequenceCheckup& sequence) {
@@ -123,7 +122,7 @@ std::string sequence_text(const SequenceCheckup& sequence) {
                       sequence.nonfinite_points);
   text += fmt::format("  range           {}\n  label ids       {}\n", ranges_text(sequence),
                       ids_text(sequence));
-  return text + poses_text(sequence) + truth_text(sequence);
+  return text + poses_text(sequence) + labels_text(sequence);
 }
 
 /// Says of which sequences the poses were not checked; empty where all were.
@@ -157,7 +156,7 @@ std::string verdict(const Checkup& checkup, const std::string& input) {
            input + "\n";
   }
   const bool unsure = std::ranges::any_of(checkup.sequences, [](const SequenceCheckup& sequence) {
-    return sequence.poses && !sequence.poses->fits && cannot_be_told(*sequence.poses) &&
+    return sequence.poses && !sequence.poses->fits() && cannot_be_told(*sequence.poses) &&
            sequence.poses->overlap < sequence.poses->best_overlap;
   });
   return fmt::format("Verdict: nothing wrong was found{}{}. Next\n  mosbench run {}\n",
@@ -186,12 +185,19 @@ ordered_json checkup_json(const SequenceCheckup& sequence) {
   for (const auto& [id, points] : sequence.points_of_id) {
     json["label_ids"][std::to_string(id)] = points;
   }
-  json["measures"] = sequence.measures;
+  json["measures"] = ordered_json::object();
+  for (const Check& check : checks()) {
+    for (const Limit& limit : check.limits) {
+      if (const auto number = sequence.facts.number(limit.fact)) {
+        json["measures"][limit.fact] = *number;
+      }
+    }
+  }
   if (!sequence.poses) return json;
   ordered_json poses = {{"overlap", sequence.poses->overlap},
                         {"best_overlap", sequence.poses->best_overlap},
                         {"median_correction_m", sequence.poses->median_correction_m},
-                        {"unsound", sequence.poses->unsound},
+                        {"unsound", sequence.poses->deviation},
                         {"disagreement", sequence.poses->disagreement},
                         {"conventions", ordered_json::array()}};
   for (std::size_t i = 0; i < sequence.poses->scores.size(); ++i) {
@@ -203,12 +209,12 @@ ordered_json checkup_json(const SequenceCheckup& sequence) {
                                     {"given_off_m", score.given_off_m}});
   }
   json["poses"] = poses;
-  if (!sequence.truth) return json;
-  json["truth"] = {{"moving_points", sequence.truth->moving},
-                   {"static_points", sequence.truth->still},
-                   {"moving_leaves", sequence.truth->moving_leaves},
-                   {"static_leaves", sequence.truth->still_leaves},
-                   {"purity", sequence.truth->purity}};
+  if (!sequence.labels) return json;
+  json["truth"] = {{"moving_points", sequence.labels->moving},
+                   {"static_points", sequence.labels->still},
+                   {"moving_leaves", sequence.labels->moving_leaves},
+                   {"static_leaves", sequence.labels->still_leaves},
+                   {"purity", sequence.labels->purity}};
   return json;
 }
 
@@ -230,7 +236,8 @@ std::string checkup_json(const Checkup& checkup) {
   ordered_json json = {{"dataset", nullptr},
                        {"range_bins_m", range_bins_m()},
                        {"sequences", ordered_json::array()},
-                       {"symptoms", ordered_json::array()}};
+                       {"symptoms", ordered_json::array()},
+                       {"thresholds", ordered_json::array()}};
   json["range_bins_m"].back() = nullptr;  // open
   if (checkup.kind) json["dataset"] = std::string(to_string(*checkup.kind));
   for (const SequenceCheckup& sequence : checkup.sequences) {
@@ -240,6 +247,14 @@ std::string checkup_json(const Checkup& checkup) {
     json["symptoms"].push_back({{"severity", severity_text(symptom.severity)},
                                 {"where", symptom.where},
                                 {"what", symptom.what}});
+  }
+  for (const Check& check : checks()) {
+    for (const Limit& limit : check.limits) {
+      json["thresholds"].push_back({{"check", check.name},
+                                    {"measure", limit.fact},
+                                    {"faulty", limit.faulty == '>' ? "above" : "below"},
+                                    {"threshold", limit.threshold}});
+    }
   }
   return json_text(json);
 }

@@ -3,7 +3,6 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
-#include <set>
 
 #include "datasets/doctor/doctor.hpp"
 #include "eval/cli/checkup_report.hpp"
@@ -12,7 +11,6 @@
 #include "eval/cli/suggested_command.hpp"
 #include "eval/engine/run_plan.hpp"
 #include "eval/results/caller.hpp"
-#include "eval/results/reading_json.hpp"
 
 namespace mosbench {
 namespace {
@@ -44,32 +42,13 @@ struct DoctorFlags {
   ReadingOptions reading;
 };
 
-/// The flags by which all sequences were to be read; empty unless they agree.
-std::string flags_found(const Checkup& checkup) {
-  std::set<std::string> flags;
-  for (const SequenceCheckup& sequence : checkup.sequences) {
-    flags.insert(sequence.poses ? sequence.poses->flags : "");
-  }
-  return flags.size() == 1 ? *flags.begin() : "";
-}
-
-/// The reading options with "--pose-frame lidar" or another flag that the doctor found.
-ReadingOptions mended(ReadingOptions reading, const std::string& flags) {
-  const std::size_t blank = flags.find(' ');
-  if (blank == std::string::npos) return reading;
-  const std::string word = flags.substr(blank + 1);
-  if (const auto frame = pose_frame_named(word)) reading.pose_frame = *frame;
-  if (const auto inverse = poses_inverse_named(word)) reading.poses_inverse = *inverse;
-  return reading;
-}
-
 Answer check_dataset(const DoctorFlags& options) {
   const Checkup checkup = check_up(
       options.input, {dataset_kind_option(options.dataset), options.sequences, options.reading},
       caller().at_each_scan);
   return {
       .text = checkup_text(checkup, dataset_words(options.input, options.dataset, options.sequences,
-                                                  mended(options.reading, flags_found(checkup)))),
+                                                  checkup.remedy().applied_to(options.reading))),
       .exit_code = checkup.has(Severity::kError)     ? 3
                    : checkup.has(Severity::kWarning) ? 1
                                                      : 0,

@@ -5,7 +5,7 @@
 #include <system_error>
 
 #include "datasets/disk/files.hpp"
-#include "datasets/doctor/pose_frame_doubt.hpp"
+#include "datasets/doctor/doctor.hpp"
 #include "datasets/formats/pose_file.hpp"
 #include "datasets/sequence/pose_frame_mark.hpp"
 #include "datasets/text/counted.hpp"

@@ -609,6 +609,41 @@ TEST(DoctorInACorridor, IsQuietAboutAMotionThatScansCannotShow) {
   }
 }
 
+TEST(Checks, AreRowsAboutFacts) {
+  const std::vector<Check> table = {{Subject::kPoints,
+                                     "brightness",
+                                     {{"bright_share", '>', 0.5}, {"points", '>', 100}},
+                                     "{bright_share_percent:.0f} % of {points} points are bright"}};
+  Facts facts;
+  EXPECT_TRUE(judged(table, Subject::kPoints, facts, "00").empty()) << "nothing was measured";
+  facts["bright_share"] = 0.75;
+  facts["points"] = std::size_t{100};
+  EXPECT_TRUE(judged(table, Subject::kPoints, facts, "00").empty()) << "one limit is not passed";
+  facts["points"] = std::size_t{120};
+  const auto symptoms = judged(table, Subject::kPoints, facts, "00");
+  ASSERT_EQ(symptoms.size(), 1U);
+  EXPECT_EQ(symptoms.front().where, "00");
+  EXPECT_EQ(symptoms.front().what, "75 % of 120 points are bright");
+}
+
+TEST(Checks, CompareFactsThatAreMeasured) {
+  const Checkup checkup = check_up(good_copy(kKitti), {});
+  ASSERT_EQ(checkup.sequences.size(), 1U);
+  const Facts& facts = checkup.sequences.front().facts;
+  std::vector<std::string> unknown;
+  for (const Check& check : checks()) {
+    for (const Limit& limit : check.limits) {
+      if (!facts.number(limit.fact)) unknown.emplace_back(limit.fact);
+    }
+  }
+  // What is there only where it is found.
+  EXPECT_THAT(unknown,
+              testing::UnorderedElementsAre(
+                  "turned_scans", "missing_turn", "missing_turn", "lost_rows_repeated", "lost_rows",
+                  "better_gain", "explained_share", "scans_without_moving", "scans_without_moving",
+                  "scans_left_out", "scans_too_many", "points_unlike_published"));
+}
+
 INSTANTIATE_TEST_SUITE_P(Faults, Doctor, testing::ValuesIn(faults()),
                          [](const auto& fault) { return std::string(fault.param.name); });
 

@@ -1,9 +1,9 @@
-#include "datasets/doctor/misplaced_rows.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
+
+#include "datasets/doctor/pose_evidence.hpp"
 
 namespace mosbench {
 namespace {

@@ -30,8 +30,8 @@ TEST(Registration, FindsHowACornerMoved) {
         (motion.inverse() * Eigen::Vector3d(point.x, point.y, point.z)).cast<float>();
     point = {moved.x(), moved.y(), moved.z(), 0.0F};
   }
-  const Registration found = registered(registered_scan(corner(), 1.0).surfaces,
-                                        registered_scan(later, 1.0).points, Pose::Identity());
+  const Registration found =
+      registered(RegisteredScan(corner(), 1.0), RegisteredScan(later, 1.0), Pose::Identity());
   EXPECT_NEAR(found.motion.translation().x(), 0.3, 0.01);
   EXPECT_NEAR(found.motion.translation().y(), -0.2, 0.01);
   EXPECT_TRUE(found.motion.linear().isApprox(motion.linear(), 1e-3));
@@ -39,12 +39,12 @@ TEST(Registration, FindsHowACornerMoved) {
 }
 
 TEST(Registration, EndsForPosesWithoutEnd) {
-  const RegisteredScan scan = registered_scan(corner(), 1.0);
+  const RegisteredScan scan(corner(), 1.0);
   for (const double far_m : {1e9, 1e308, std::numeric_limits<double>::infinity(),
                              std::numeric_limits<double>::quiet_NaN()}) {
     Pose start = Pose::Identity();
     start.translation().x() = far_m;
-    EXPECT_EQ(registered(scan.surfaces, scan.points, start).overlap, 0.0) << far_m;
+    EXPECT_EQ(registered(scan, scan, start).overlap, 0.0) << far_m;
   }
 }
 

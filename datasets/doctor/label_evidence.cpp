@@ -1,14 +1,9 @@
-#include "datasets/doctor/truth_check.hpp"
-
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numbers>
 #include <unordered_map>
 
-#include "datasets/doctor/scan_overlap.hpp"
+#include "datasets/doctor/doctor.hpp"
 #include "datasets/formats/point_range.hpp"
 #include "datasets/text/counted.hpp"
 
@@ -20,20 +15,10 @@ constexpr std::size_t kLabelledScans = 12;
 constexpr std::ptrdiff_t kLookFrom[] = {-10, -5, 5, 10};
 constexpr std::size_t kStillPoints = 4000;  // per scan
 constexpr double kLeastRangeM = 1.0, kMostRangeM = 50.0;
-/// More labelled points do not move: sound labels had 0.08 at most, exchanged ones 0.92 and more.
-constexpr double kMostMoving = 0.5;
-/// With fewer moving points nothing is said.
-constexpr std::size_t kFewestMoving = 200;
-/// Labels without anything moving over more scans, a minute at 10 Hz, are doubtful: excerpts of
-/// some seconds without movers are sound, while data sets of moving objects show some in each
-/// minute.
-constexpr std::size_t kScansWithoutMoving = 600;
-/// Points labelled moving leave their place so many times as often as static ones. Sound labels had
-/// 4.6 (campus, Avia) and more, usually hundreds; labels of another scan 1 to 14.
-constexpr double kTimesStill = 2.0;
-/// Labels of these scans are purer: sound ones had 0.867 (simulated room) and 0.963 (KITTI), those
-/// of the next scan 0.76 and less, shuffled ones 0.38 and less.
-constexpr double kLeastPurity = 0.82;
+/// Moving points are compared with those in the same cube.
+constexpr double kCubeM = 0.5;
+
+Eigen::Vector3d position_m(const Point& point) { return {point.x, point.y, point.z}; }
 
 bool is_moving_id(std::uint32_t label) {
   constexpr std::uint32_t kLast = 259;  // of SemanticKITTI
@@ -89,35 +74,23 @@ class RangeImage {
   std::vector<float> nearest_m_;
 };
 
-std::uint64_t cube_of(const Point& point) {
-  constexpr double kCubeM = 0.5, kHalf = 1 << 20;
-  const auto index = [](float value) {
-    return static_cast<std::uint64_t>(
-        std::clamp(std::floor(value / kCubeM) + kHalf, 0.0, 2 * kHalf));
-  };
-  return (index(point.x) << 42U) | (index(point.y) << 21U) | index(point.z);
-}
-
-class TruthChecking {
+class LabelExamination {
  public:
-  TruthChecking(const Sequence& sequence, const std::vector<Pose>& poses, bool poses_fit)
-      : sequence_(sequence), poses_(poses), poses_fit_(poses_fit) {}
+  LabelExamination(const Sequence& sequence, SequenceCheckup& checkup)
+      : sequence_(sequence), poses_(poses_of(sequence)), checkup_(checkup) {}
 
-  TruthCheck run() {
+  void run() {
     examine_some(scans_with_truth(sequence_));
     if (result_.moving + result_.still == 0) examine_some(scans_with_labels(sequence_));
     result_.moving_leaves = share(moving_left_, moving_seen_);
     result_.still_leaves = share(still_left_, still_seen_);
     result_.purity = result_.moving > 0 ? purity_sum_ / static_cast<double>(result_.moving) : 0.0;
-    judge();
-    return std::move(result_);
+    tell();
+    if (result_.moving == 0 && result_.still > 0) look_for_moving();
+    checkup_.labels = result_;
   }
 
  private:
-  static double share(std::size_t part, std::size_t whole) {
-    return whole == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(whole);
-  }
-
   void examine_some(const std::vector<std::size_t>& labelled) {
     const std::size_t count = std::min(kLabelledScans, labelled.size());
     for (std::size_t i = 0; i < count; ++i) examine(labelled[i * labelled.size() / count]);
@@ -126,14 +99,13 @@ class TruthChecking {
   void examine(std::size_t scan_index) {
     const Frame frame = sequence_.read(scan_index);
     if (!frame.truth) return;
-    ++result_.scans;
     std::vector<std::size_t> moving, still;
     std::unordered_map<std::uint64_t, std::pair<double, double>> cubes;  // moving, all
     for (std::size_t i = 0; i < frame.points.size(); ++i) {
       const double range = range_m(frame.points[i]);
       if (((*frame.truth)[i] & 0xFFFFU) == 0 || !(range > kLeastRangeM)) continue;
       const bool moves = is_moving_id((*frame.truth)[i]);
-      auto& [moving_in_cube, all_in_cube] = cubes[cube_of(frame.points[i])];
+      auto& [moving_in_cube, all_in_cube] = cubes[cube_key(position_m(frame.points[i]), kCubeM)];
       all_in_cube += 1.0;
       if (moves) moving_in_cube += 1.0;
       (moves ? moving : still).push_back(i);
@@ -156,7 +128,7 @@ class TruthChecking {
                           relative(poses_, {index, scan_index}));
     }
     const auto count = [&](std::size_t i, std::size_t& seen, std::size_t& left) {
-      const Eigen::Vector3d point_m(points[i].x, points[i].y, points[i].z);
+      const Eigen::Vector3d point_m = position_m(points[i]);
       if (!(point_m.norm() < kMostRangeM)) return;
       bool is_seen = false, is_left = false;
       for (const auto& [image, other_from_this] : others) {
@@ -174,54 +146,39 @@ class TruthChecking {
     }
   }
 
-  void judge() {
-    if (result_.moving + result_.still == 0) return;
-    const double moves = share(result_.moving, result_.moving + result_.still);
-    if (result_.moving == 0) {
-      judge_without_moving();
-    } else if (moves > kMostMoving) {
-      result_.findings.push_back(
-          fmt::format("the labels call {:.0f} % of the points moving; expected less than half "
-                      "(are static and moving exchanged?)",
-                      100.0 * moves));
-    } else if (moving_seen_ >= kFewestMoving && scattered_or_still()) {
-      result_.findings.push_back(fmt::format(
-          "the labels do not fit the scans: of the points labelled moving {:.0f} % leave their "
-          "place within a second, of those labelled static {:.1f} %, and {:.0f} % of the points "
-          "around a moving one are moving; expected the labels of these scans",
-          100.0 * result_.moving_leaves, 100.0 * result_.still_leaves, 100.0 * result_.purity));
+  void tell() {
+    // With fewer moving points nothing is said.
+    constexpr std::size_t kFewestMoving = 200;
+    Facts& facts = checkup_.facts;
+    facts["moving_share"] = share(result_.moving, result_.moving + result_.still);
+    facts["moving_leaves"] = result_.moving_leaves;
+    facts["still_leaves"] = result_.still_leaves;
+    if (result_.moving == 0 || moving_seen_ < kFewestMoving) return;
+    facts["purity"] = result_.purity;
+    if (result_.still_leaves > 0.0) {
+      facts["leaves_ratio"] = result_.moving_leaves / result_.still_leaves;
     }
   }
 
   /// Looks for moving labels in all scans, since those examined may have missed them.
-  void judge_without_moving() {
+  void look_for_moving() {
     const std::vector<std::size_t> labelled = scans_with_truth(sequence_);
     const bool none = std::ranges::none_of(labelled, [&](std::size_t scan_index) {
       return std::ranges::any_of(sequence_.read_truth(scan_index), is_moving_id);
     });
     if (!none) return;
     const std::size_t span = labelled.back() - labelled.front() + 1;
-    const std::string what =
-        fmt::format("no point of {} is labelled moving", counted(labelled.size(), "labelled scan"));
-    if (span > kScansWithoutMoving) {
-      result_.findings.push_back(
-          fmt::format("{}; expected some in a sequence over {}", what, counted(span, "scan")));
-    } else {
-      result_.remarks.push_back(what + ": the IoU of these labels is undefined");
-    }
-  }
-
-  bool scattered_or_still() const {
-    return result_.purity < kLeastPurity ||
-           (poses_fit_ && result_.moving_leaves < kTimesStill * result_.still_leaves);
+    checkup_.facts["scans_without_moving"] = span;
+    checkup_.facts["labelled_scans"] = counted(labelled.size(), "labelled scan");
+    checkup_.facts["labelled_span"] = counted(span, "scan");
   }
 
   const Sequence& sequence_;
-  const std::vector<Pose>& poses_;
-  bool poses_fit_;
+  const std::vector<Pose> poses_;
+  SequenceCheckup& checkup_;
   std::size_t moving_seen_ = 0, moving_left_ = 0, still_seen_ = 0, still_left_ = 0;
   double purity_sum_ = 0.0;
-  TruthCheck result_;
+  LabelEvidence result_;
 };
 
 }  // namespace
@@ -235,9 +192,8 @@ std::vector<std::size_t> scans_with_labels(const Sequence& sequence) {
   return labelled;
 }
 
-TruthCheck check_truth(const Sequence& sequence, const std::vector<Pose>& map_from_sensor,
-                       bool poses_fit) {
-  return TruthChecking(sequence, map_from_sensor, poses_fit).run();
+void examine_labels(const Sequence& sequence, SequenceCheckup& checkup) {
+  LabelExamination(sequence, checkup).run();
 }
 
 }  // namespace mosbench
