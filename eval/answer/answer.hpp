@@ -42,6 +42,7 @@ enum class Unit : std::uint8_t {
   kNumber,   ///< as it is
   kPercent,  ///< a fraction
   kPoints,   ///< a difference of fractions, with its sign
+  kChange,   ///< a difference of numbers, with its sign
 };
 
 struct Column {

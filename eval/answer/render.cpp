@@ -26,14 +26,15 @@ struct UnitStyle {
   const char *title, *key;  ///< behind the name
   double factor;
   int digits;  ///< -1: six that count
-  const char* sign;
+  bool is_signed;
 };
 
 const UnitStyle& style_of(Unit unit) {
-  static constexpr std::array<UnitStyle, 4> kStyles = {{{"", "", 1, -1, "-"},
-                                                        {"", "", 1, -1, "-"},
-                                                        {" %", "_percent", 100, 1, "-"},
-                                                        {"", "_points", 100, 2, "+"}}};
+  static constexpr std::array<UnitStyle, 5> kStyles = {{{"", "", 1, -1, false},
+                                                        {"", "", 1, -1, false},
+                                                        {" %", "_percent", 100, 1, false},
+                                                        {"", "_points", 100, 2, true},
+                                                        {"", "", 1, -1, true}}};
   return kStyles[static_cast<std::size_t>(unit)];
 }
 
@@ -42,9 +43,9 @@ std::string number_text(double value, const Column& column) {
   const UnitStyle& style = style_of(column.unit);
   const int digits = column.digits.value_or(style.digits);
   const double shown = style.factor * value;
-  if (digits < 0) return fmt::format("{:.6g}", shown);
-  return *style.sign == '+' ? fmt::format("{:+.{}f}", shown, digits)
-                            : fmt::format("{:.{}f}", shown, digits);
+  const std::string text =
+      digits < 0 ? fmt::format("{:.6g}", shown) : fmt::format("{:.{}f}", shown, digits);
+  return style.is_signed && !std::signbit(shown) ? '+' + text : text;
 }
 
 std::string value_text(const Spread& spread, const Column& column) {
@@ -318,7 +319,10 @@ ordered_json interval_json(const Spread& spread) {
 }
 
 std::string render(const Answer& answer, Format format, std::size_t columns) {
-  if (answer.text.empty() && answer.sheets.empty() && answer.json.empty()) return "";
+  if (answer.text.empty() && answer.sheets.empty() && answer.json.empty() &&
+      answer.charts.empty()) {
+    return "";
+  }
   switch (format) {
     case Format::kJson:
       return json_of(answer);

@@ -25,18 +25,18 @@ Sheet scans_sheet(const RunNames& names, const std::vector<ScanDisagreement>& sc
   Sheet sheet{.columns = {{"scan", Unit::kText},
                           {names.first + " IoU", Unit::kPercent},
                           {names.second + " IoU", Unit::kPercent},
-                          {"TP"},
-                          {"FP"},
-                          {"FN"}}};
+                          {"TP", Unit::kChange},
+                          {"FP", Unit::kChange},
+                          {"FN", Unit::kChange}}};
   for (std::size_t i = 0; i < std::min(at_most, scans.size()); ++i) {
     const PairedRuns::Scan& scan = scans[i].scan;
     const Confusion& first = *scan.first->counts;
     const Confusion& second = *scan.second->counts;
     sheet.rows.push_back({scan.sequence + '/' + scan.stem, or_undefined(moving_iou(first)),
                           or_undefined(moving_iou(second)),
-                          fmt::format("{:+}", change(first.tp, second.tp)),
-                          fmt::format("{:+}", change(first.fp, second.fp)),
-                          fmt::format("{:+}", change(first.fn, second.fn))});
+                          static_cast<double>(change(first.tp, second.tp)),
+                          static_cast<double>(change(first.fp, second.fp)),
+                          static_cast<double>(change(first.fn, second.fn))});
   }
   return sheet;
 }

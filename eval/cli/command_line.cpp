@@ -49,10 +49,10 @@ void refuse_flags_as_values(CLI::App& command) {
 struct OldWord {
   std::string_view command, flag, format;
 };
-constexpr OldWord kOldWords[] = {{"rank", "--format", ""},      {"table", "--format", ""},
-                                 {"curve", "--format", ""},     {"study", "--format", ""},
-                                 {"stats", "--csv", "csv"},     {"compare", "--output-format", ""},
-                                 {"trajectory", "--csv", "csv"}};
+constexpr OldWord kOldWords[] = {
+    {"rank", "--format", ""},           {"reproduce", "--format", ""}, {"table", "--format", ""},
+    {"curve", "--format", ""},          {"study", "--format", ""},     {"stats", "--csv", "csv"},
+    {"compare", "--output-format", ""}, {"trajectory", "--csv", "csv"}};
 
 /// Adds --as, --json and the words of old to a command. `format` gets the name.
 void add_format_flags(CLI::App& command, const Command& row, std::string& format) {

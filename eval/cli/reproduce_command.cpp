@@ -15,7 +15,7 @@
 #include "eval/job/presets.hpp"
 #include "eval/results/tell.hpp"
 #include "eval/tables/table_match.hpp"
-#include "eval/tables/table_report.hpp"
+#include "eval/tables/table_print.hpp"
 
 namespace mosbench {
 namespace {
@@ -86,7 +86,6 @@ struct ReproduceFlags {
   std::optional<std::filesystem::path> out;
   std::vector<std::string> sequences;
   unsigned threads = hardware_threads();
-  std::string format = "markdown";
 };
 
 /// Says whether the recognised layout can be the wanted data set: Sipailou looks like
@@ -136,10 +135,9 @@ RunOptions options_of(const ReproduceFlags& options, const std::string& preset,
   return run;
 }
 
-std::string reproduce(const ReproduceFlags& options) {
+Answer reproduce(const ReproduceFlags& options) {
   const Recipe& recipe = recipe_named(options.name);
   const PaperTable& table = paper_table_named(recipe.table);
-  const TableFormat format = table_format_named(options.format);
   check_is_in_table(options, recipe, table);
   const std::filesystem::path out = options.out.value_or("results/runs/reproduce-" + options.name);
   const std::vector<PublishedCell> cells = built_in_cells();
@@ -153,7 +151,8 @@ std::string reproduce(const ReproduceFlags& options) {
       runs.push_back(load_result_set(*run.out));
     }
   }
-  return table_report(table, cells, runs, format);
+  for (const std::string& sentence : left_out(table, runs)) tell(sentence);
+  return table_answer(fill_table(table, cells, runs));
 }
 
 }  // namespace
@@ -171,11 +170,8 @@ CommandRun add_reproduce(CLI::App& command) {
       ->delimiter(',')
       ->allow_extra_args(false);
   add_threads_flag(command, options->threads);
-  command.add_option("--format", options->format, "Of what is printed")
-      ->type_name(type_of_names({"markdown", "csv", "latex", "json"}))
-      ->capture_default_str();
   command.footer(kReproduceFooter);
-  return [options] { return Answer{reproduce(*options)}; };
+  return [options] { return reproduce(*options); };
 }
 
 }  // namespace mosbench

@@ -5,8 +5,8 @@
 
 #include "datasets/disk/files.hpp"
 #include "eval/cli/commands.hpp"
-#include "eval/cli/help_text.hpp"
-#include "eval/tables/table_report.hpp"
+#include "eval/results/tell.hpp"
+#include "eval/tables/table_print.hpp"
 
 namespace mosbench {
 namespace {
@@ -22,17 +22,16 @@ RESULTS are folders that `mosbench run` or `mosbench score --out` wrote; a metho
 
 Examples:
   mosbench table I
-  mosbench table III results/runs/helimos results/runs/4dmos-delayed --format latex
-  mosbench table II results/runs/sipailou --format csv > table2.csv)";
+  mosbench table III results/runs/helimos results/runs/4dmos-delayed --as latex
+  mosbench table II results/runs/sipailou --as csv > table2.csv)";
 
 struct TableFlags {
   std::string name;
   std::vector<std::string> results;
   std::optional<std::filesystem::path> published;
-  std::string format = "markdown";
 };
 
-std::string table(const TableFlags& options) {
+Answer table(const TableFlags& options) {
   std::vector<ResultSet> runs;
   for (const std::string& path : options.results) {
     for (ResultSet& run : load_result_sets(path)) runs.push_back(std::move(run));
@@ -40,8 +39,9 @@ std::string table(const TableFlags& options) {
   const std::vector<PublishedCell> published =
       options.published ? parse_published(read_file(*options.published), *options.published)
                         : built_in_cells();
-  return table_report(paper_table_named(options.name), published, runs,
-                      table_format_named(options.format));
+  const PaperTable& paper = paper_table_named(options.name);
+  for (const std::string& sentence : left_out(paper, runs)) tell(sentence);
+  return table_answer(fill_table(paper, published, runs));
 }
 
 }  // namespace
@@ -54,11 +54,8 @@ CommandRun add_table(CLI::App& command) {
       .add_option("--published", options->published,
                   "CSV of published numbers, instead of the built-in ones")
       ->type_name("FILE");
-  command.add_option("--format", options->format, "Of what is printed")
-      ->type_name(type_of_names({"markdown", "csv", "latex", "json"}))
-      ->capture_default_str();
   command.footer(kTableFooter);
-  return [options] { return Answer{table(*options)}; };
+  return [options] { return table(*options); };
 }
 
 }  // namespace mosbench

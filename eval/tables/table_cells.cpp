@@ -91,7 +91,8 @@ TableCell measured_cell(const PaperTable& table, const TableColumn& column, cons
     cell.reasons.push_back(
         fmt::format("sequence {} is disturbed by {}", sequence.sequence.text(), perturb));
   }
-  if (run.front().simulated) cell.reasons.insert(cell.reasons.begin(), "simulated data");
+  cell.simulated = run.front().simulated;
+  if (cell.simulated) cell.reasons.insert(cell.reasons.begin(), "simulated data");
   for (std::string& gap : gaps(part, column)) cell.reasons.push_back(std::move(gap));
   if (!cell.measured->value) {
     cell.reasons.push_back("IoU is undefined");
@@ -174,6 +175,12 @@ std::string_view to_string(Verdict verdict) {
       break;
   }
   return "not comparable";
+}
+
+bool FilledTable::simulated() const {
+  return std::ranges::any_of(rows, [](const TableRow& row) {
+    return std::ranges::any_of(row.cells, &TableCell::simulated);
+  });
 }
 
 FilledTable fill_table(const PaperTable& table, const std::vector<PublishedCell>& published,

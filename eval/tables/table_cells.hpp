@@ -27,6 +27,7 @@ struct TableCell {
   std::optional<Estimate> measured;
   std::optional<double> difference;  ///< measured - published, fraction
   Verdict verdict = Verdict::kPublishedOnly;
+  bool simulated = false;              ///< what was measured is of simulated data
   std::vector<std::string> sequences;  ///< measured ones, with the scene of simulated ones
   std::vector<std::string> reasons;    ///< why not comparable, or what to download and run
 };
@@ -40,6 +41,7 @@ struct TableRow {
 struct FilledTable {
   const PaperTable* table;
   std::vector<TableRow> rows;
+  bool simulated() const;  ///< whether any cell is
 };
 
 /// Fills the published rows: each run goes to the row of its method that is nearest in variant,

@@ -5,10 +5,8 @@
 #include <algorithm>
 
 #include "eval/answer/answer_text.hpp"
-#include "eval/answer/csv.hpp"
-#include "eval/answer/latex.hpp"
-#include "eval/answer/markdown.hpp"
-#include "eval/answer/text_table.hpp"
+#include "eval/answer/render.hpp"
+#include "eval/statistics/statistics_report.hpp"
 
 namespace mosbench {
 namespace {
@@ -50,12 +48,10 @@ class Notes {
     if (known == texts_.end()) texts_.push_back(text);
     return fmt::format(" ({})", number);
   }
-  std::string str() const {
-    std::string text;
+  void add_to(std::vector<std::string>& notes) const {
     for (std::size_t i = 0; i < texts_.size(); ++i) {
-      text += fmt::format("- ({}) {}\n", i + 1, markdown_text(texts_[i]));
+      notes.push_back(fmt::format("({}) {}", i + 1, texts_[i]));
     }
-    return text;
   }
 
  private:
@@ -65,16 +61,6 @@ class Notes {
 std::string row_setting(const TableRow& row) {
   return row.section.empty() ? row.setting
                              : row.section + (row.setting.empty() ? "" : ", " + row.setting);
-}
-
-std::vector<std::string> column_titles(const FilledTable& table) {
-  std::vector<std::string> titles = {"method", "setting", "protocol"};
-  for (const TableColumn& column : table.table->columns) titles.emplace_back(column.name);
-  return titles;
-}
-
-std::vector<std::string> row_titles(const TableRow& row) {
-  return {row.method, row_setting(row), row.protocol};
 }
 
 /// "results/runs/doals: ST is station/sequence_1, ...; SV is ...", one line per run.
@@ -92,15 +78,6 @@ std::vector<std::string> measured_sequences(const FilledTable& table) {
   return lines;
 }
 
-bool is_simulated(const FilledTable& table) {
-  for (const TableRow& row : table.rows) {
-    for (const TableCell& cell : row.cells) {
-      if (std::ranges::find(cell.reasons, "simulated data") != cell.reasons.end()) return true;
-    }
-  }
-  return false;
-}
-
 /// Names the command that does what the footnotes say one by one, where there is one.
 std::string hint_on_runs(const FilledTable& table) {
   using enum DatasetKind;
@@ -111,12 +88,63 @@ std::string hint_on_runs(const FilledTable& table) {
         row.cells, [](const TableCell& cell) { return !cell.measured && !cell.reasons.empty(); });
   });
   if (!is_reproduced || !lacks_runs) return "";
-  return fmt::format("\n`mosbench reproduce {} --data DIR` does most of that at once.\n",
+  return fmt::format("`mosbench reproduce {} --data DIR` does most of that at once",
                      to_string(kind));
 }
 
-std::string interval_end(const Estimate& estimate, double Interval::*end) {
-  return estimate.interval ? csv_percent((*estimate.interval).*end) : "";
+Spread measured_spread(const TableCell& cell) {
+  return spread_of(cell.measured.value_or(Estimate{}));
+}
+
+Sheet sheet_of(const FilledTable& table) {
+  Sheet sheet{
+      .title = fmt::format("Table {}: {}", table.table->name, table.table->title),
+      .lead = {fmt::format("Average: {}.", table.table->averaging)},
+      .columns = {{"method", Unit::kText}, {"setting", Unit::kText}, {"protocol", Unit::kText}},
+      .notes = {"Cells: published, or published / measured (difference) [95 % interval] "
+                "verdict."}};
+  for (const TableColumn& column : table.table->columns) {
+    sheet.columns.push_back({std::string(column.name)});
+  }
+  Notes notes;
+  for (const TableRow& row : table.rows) {
+    sheet.rows.push_back({row.method, row_setting(row), row.protocol});
+    for (const TableCell& cell : row.cells) {
+      sheet.rows.back().push_back(cell_text(cell) + notes.mark(cell.reasons));
+    }
+  }
+  for (std::string& line : measured_sequences(table)) sheet.notes.push_back(std::move(line));
+  notes.add_to(sheet.notes);
+  if (std::string hint = hint_on_runs(table); !hint.empty()) sheet.notes.push_back(std::move(hint));
+  return sheet;
+}
+
+/// A row per cell with all of its members.
+Sheet records_of(const FilledTable& table) {
+  Sheet sheet;
+  for (const char* name :
+       {"table", "section", "method", "setting", "protocol", "column", "published_percent"}) {
+    sheet.columns.push_back({name});
+  }
+  sheet.columns.push_back({"measured", Unit::kPercent});
+  sheet.columns.push_back({"difference", Unit::kPoints});
+  sheet.columns.push_back({"low", Unit::kPercent});
+  sheet.columns.push_back({"high", Unit::kPercent});
+  for (const char* name : {"verdict", "reasons", "source", "results", "sequences"}) {
+    sheet.columns.push_back({name});
+  }
+  for (const TableRow& row : table.rows) {
+    for (const TableCell& cell : row.cells) {
+      const Spread measured = measured_spread(cell);
+      sheet.rows.push_back(
+          {std::string(table.table->name), row.section, row.method, row.setting, row.protocol,
+           cell.column, cell.published ? cell.published->iou_percent : "",
+           or_missing(measured.value), or_missing(cell.difference), or_missing(measured.low),
+           or_missing(measured.high), std::string(to_string(cell.verdict)),
+           joined(cell.reasons, "; "), row.source, row.results, joined(cell.sequences, "; ")});
+    }
+  }
+  return sheet;
 }
 
 ordered_json to_json(const TableCell& cell) {
@@ -127,88 +155,21 @@ ordered_json to_json(const TableCell& cell) {
   json["published"] = cell.published ? ordered_json(cell.published->iou()) : ordered_json(nullptr);
   json["published_percent"] = cell.published ? cell.published->iou_percent : "";
   json["note"] = cell.published ? cell.published->note : "";
-  const Estimate measured = cell.measured.value_or(Estimate{});
+  const Spread measured = measured_spread(cell);
   json["measured"] = json_or_null(measured.value);
   json["difference"] = json_or_null(cell.difference);
-  json["low"] = measured.interval ? ordered_json(measured.interval->low) : ordered_json(nullptr);
-  json["high"] = measured.interval ? ordered_json(measured.interval->high) : ordered_json(nullptr);
-  json["no_interval"] =
-      measured.no_interval.empty() ? ordered_json(nullptr) : ordered_json(measured.no_interval);
+  json.update(interval_json(measured));
   return json;
 }
 
 }  // namespace
 
-std::string table_markdown(const FilledTable& table) {
-  std::string text = fmt::format("## Table {}: {}\n\nAverage: {}.\n", table.table->name,
-                                 table.table->title, table.table->averaging);
-  if (is_simulated(table)) {
-    text += "Measured on SIMULATED data: not comparable with the published numbers.\n";
-  }
-  const std::vector<std::string> titles = column_titles(table);
-  text += '\n' + markdown_row(titles) + '|';
-  for (std::size_t i = 0; i < titles.size(); ++i) text += "---|";
-  text += '\n';
-  Notes notes;
-  for (const TableRow& row : table.rows) {
-    std::vector<std::string> cells = row_titles(row);
-    for (const TableCell& cell : row.cells) {
-      cells.push_back(cell_text(cell) + notes.mark(cell.reasons));
-    }
-    text += markdown_row(cells);
-  }
-  text += "\nCells: published, or published / measured (difference) [95 % interval] verdict.\n\n";
-  for (const std::string& line : measured_sequences(table)) {
-    text += "- " + markdown_text(line) + '\n';
-  }
-  return text + notes.str() + hint_on_runs(table);
-}
-
-std::string table_latex(const FilledTable& table) {
-  std::string text = fmt::format("% {}\n", table.table->title);
-  if (is_simulated(table)) text += "% measured on SIMULATED data: not comparable\n";
-  for (const std::string& line : measured_sequences(table)) {
-    text += "% " + latex_text(line) + '\n';
-  }
-  text +=
-      fmt::format("\\begin{{tabular}}{{lll{}}}\n", std::string(table.table->columns.size(), 'r'));
-  text += latex_row(column_titles(table)) + "\\hline\n";
-  for (const TableRow& row : table.rows) {
-    std::vector<std::string> cells = row_titles(row);
-    for (const TableCell& cell : row.cells) cells.push_back(cell_text(cell));
-    text += latex_row(cells);
-  }
-  return text + "\\end{tabular}\n";
-}
-
-std::string table_csv(const FilledTable& table) {
-  std::string text =
-      "table,section,method,setting,protocol,column,published_percent,measured_percent,"
-      "difference_points,low_percent,high_percent,verdict,reasons,source,results,"
-      "sequences\n";
-  for (const TableRow& row : table.rows) {
-    for (const TableCell& cell : row.cells) {
-      const Estimate measured = cell.measured.value_or(Estimate{});
-      const std::vector<std::string> cells = {std::string(table.table->name),
-                                              row.section,
-                                              row.method,
-                                              row.setting,
-                                              row.protocol,
-                                              cell.column,
-                                              cell.published ? cell.published->iou_percent : "",
-                                              csv_percent(measured.value),
-                                              csv_percent(cell.difference),
-                                              interval_end(measured, &Interval::low),
-                                              interval_end(measured, &Interval::high),
-                                              std::string(to_string(cell.verdict)),
-                                              joined(cell.reasons, "; "),
-                                              row.source,
-                                              row.results,
-                                              joined(cell.sequences, "; ")};
-      text += csv_row(cells);
-    }
-  }
-  return text;
+Answer table_answer(const FilledTable& table) {
+  return {.usual = Format::kMarkdown,
+          .standing = Standing{table.simulated()},
+          .sheets = {sheet_of(table)},
+          .records = records_of(table),
+          .json = json_text(to_json(table))};
 }
 
 ordered_json to_json(const FilledTable& table) {
@@ -216,7 +177,7 @@ ordered_json to_json(const FilledTable& table) {
                        {"title", std::string(table.table->title)},
                        {"averaging", std::string(table.table->averaging)},
                        {"download", std::string(table.table->download)},
-                       {"simulated", is_simulated(table)},
+                       {"simulated", table.simulated()},
                        {"columns", ordered_json::array()},
                        {"rows", ordered_json::array()}};
   for (const TableColumn& column : table.table->columns) {

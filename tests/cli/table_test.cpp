@@ -92,7 +92,7 @@ TEST_F(Tables, FromSimulatedDataCompareNothingAndNameWhatIsMissing) {
   EXPECT_THAT(elsewhere.err, HasSubstr("left out of table apollo"));
   const cli::Answer latex =
       cli::run({"table", "II", (folder_ / "out-sipailou").string(), "--format", "latex"});
-  EXPECT_THAT(latex.out, HasSubstr("% measured on SIMULATED data"));
+  EXPECT_THAT(latex.out, HasSubstr("$^\\dagger$ SIMULATED data"));
 
   fs::remove_all(folder_ / "out-helimos/helimos/Ouster");
   const cli::Answer part =

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "datasets/text/errors.hpp"
+#include "eval/answer/render.hpp"
 #include "eval/tables/table_cells.hpp"
 #include "eval/tables/table_match.hpp"
 #include "eval/tables/table_print.hpp"
@@ -322,11 +323,12 @@ TEST(FillTable, AveragesSensorsAndCountsBothFrameSetsOfHelimos) {
 
 TEST(TablePrint, GivesEachFormatTheSameNumbers) {
   const FilledTable table = filled({valid(880)}, "II");
-  EXPECT_THAT(table_markdown(table), HasSubstr("85.6 / 88.0 (+2.4) [8"));
-  EXPECT_THAT(table_markdown(table), HasSubstr("] outside |"));
-  EXPECT_THAT(table_latex(table), HasSubstr("85.6 / 88.0 (+2.4)"));
-  EXPECT_THAT(table_latex(table), HasSubstr("\\begin{tabular}{lllrr}"));
-  EXPECT_THAT(table_csv(table), HasSubstr(",sipailou,valid,85.6,87.999"));
+  const Answer answer = table_answer(table);
+  EXPECT_THAT(render(answer, Format::kMarkdown), HasSubstr("85.6 / 88.0 (+2.4) [8"));
+  EXPECT_THAT(render(answer, Format::kMarkdown), HasSubstr("] outside |"));
+  EXPECT_THAT(render(answer, Format::kLatex), HasSubstr("85.6 / 88.0 (+2.4)"));
+  EXPECT_THAT(render(answer, Format::kLatex), HasSubstr("\\begin{tabular}{lllrr}"));
+  EXPECT_THAT(render(answer, Format::kCsv), HasSubstr(",sipailou,valid,85.6,87.999"));
   const auto json = to_json(table);
   EXPECT_EQ(json.at("columns").size(), 2U);
   for (const auto& row : json.at("rows")) {
