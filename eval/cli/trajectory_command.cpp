@@ -9,6 +9,7 @@
 #include "datasets/text/errors.hpp"
 #include "datasets/text/shell_text.hpp"
 #include "eval/answer/answer_text.hpp"
+#include "eval/answer/render.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/cli/output_file.hpp"
 #include "eval/cli/suggested_command.hpp"
@@ -53,7 +54,7 @@ struct TrajectoryFlags {
   std::optional<std::string> format;
   double max_time_difference_s = 0.01;
   RelativePairs relative;
-  bool per_pose = false, csv = false, json = false;
+  bool per_pose = false;
 };
 
 TrajectoryOptions trajectory_options(const TrajectoryFlags& flags) {
@@ -93,37 +94,41 @@ ScoredEstimates scored_estimates(const std::filesystem::path& estimates,
   return scored;
 }
 
-std::string answer_of_one(const ScoredEstimates& one, const TrajectoryFlags& flags,
-                          const ScoringRules& rules) {
-  if (flags.csv) return trajectory_csv(one.scores);
-  if (flags.json) return json_text(trajectory_json(one.scores, rules, flags.per_pose));
-  return trajectory_text(one.scores, rules);
+Answer answer_of_one(const ScoredEstimates& one, const TrajectoryFlags& flags,
+                     const ScoringRules& rules) {
+  return {.sheets = {trajectory_sheet(one.scores, rules)},
+          .records = pose_records(one.scores),
+          .json = json_text(trajectory_json(one.scores, rules, flags.per_pose))};
 }
 
-std::string answer_of_two(const ScoredEstimates& first, const ScoredEstimates& second,
-                          const TrajectoryFlags& flags, const ScoringRules& rules) {
+Answer answer_of_two(const ScoredEstimates& first, const ScoredEstimates& second,
+                     const TrajectoryFlags& flags, const ScoringRules& rules) {
   check_same_truth(first.pairs, second.pairs);
   const std::vector<PathDifference> differences = compare_paths(first.scores, second.scores);
-  if (flags.csv) return path_differences_csv(differences);
-  if (flags.json) {
-    return json_text({{"first", trajectory_json(first.scores, rules, flags.per_pose)},
-                      {"second", trajectory_json(second.scores, rules, flags.per_pose)},
-                      {"confidence", kConfidence},
-                      {"difference", path_differences_json(differences)}});
-  }
-  return fmt::format("first: {}\n{}\nsecond: {}\n{}\n{}", flags.estimate.string(),
-                     trajectory_text(first.scores, rules), flags.other->string(),
-                     trajectory_text(second.scores, rules), path_differences_text(differences));
+  Answer answer{
+      .sheets = {trajectory_sheet(first.scores, rules), trajectory_sheet(second.scores, rules),
+                 path_differences_sheet(differences)},
+      .records = path_difference_records(differences),
+      .json = json_text({{"first", trajectory_json(first.scores, rules, flags.per_pose)},
+                         {"second", trajectory_json(second.scores, rules, flags.per_pose)},
+                         {"confidence", kConfidence},
+                         {"difference", path_differences_json(differences)}})};
+  answer.sheets[0].lead = {"first: " + flags.estimate.string()};
+  answer.sheets[1].lead = {"second: " + flags.other->string()};
+  return answer;
 }
 
-void write_plots(const std::vector<TrajectoryScore>& first,
-                 const std::vector<TrajectoryScore>* second, const std::filesystem::path& out,
-                 PathAlignment alignment) {
+/// Adds the charts of every sequence, and writes them where --plot says.
+void draw(const std::vector<TrajectoryScore>& first, const std::vector<TrajectoryScore>* second,
+          const TrajectoryFlags& flags, PathAlignment alignment, Answer& answer) {
   for (std::size_t s = 0; s < first.size(); ++s) {
     std::vector<const TrajectoryScore*> estimates = {&first[s]};
     if (second != nullptr) estimates.push_back(&(*second)[s]);
-    write_output(plot_file(out, first[s].name, first.size()),
-                 trajectory_plot(estimates, alignment).png());
+    const Answer one{.charts = trajectory_charts(estimates, alignment)};
+    if (flags.plot) {
+      write_output(plot_file(*flags.plot, first[s].name, first.size()), render(one, Format::kPng));
+    }
+    answer.charts.insert(answer.charts.end(), one.charts.begin(), one.charts.end());
   }
 }
 
@@ -163,11 +168,10 @@ Answer trajectory_answer(const TrajectoryFlags& flags, const CLI::App& command) 
   const ScoredEstimates first = scored_estimates(flags.estimate, flags, rules);
   std::optional<ScoredEstimates> second;
   if (flags.other) second = scored_estimates(*flags.other, flags, rules);
-  const std::string text =
+  Answer answer =
       second ? answer_of_two(first, *second, flags, rules) : answer_of_one(first, flags, rules);
-  if (!flags.plot) return {text};
-  write_plots(first.scores, second ? &second->scores : nullptr, *flags.plot, rules.alignment);
-  return answer_beside(*flags.plot, {text});
+  draw(first.scores, second ? &second->scores : nullptr, flags, rules.alignment, answer);
+  return answer_beside(flags.plot.value_or(""), std::move(answer));
 }
 
 }  // namespace
@@ -209,10 +213,6 @@ CommandRun add_trajectory(CLI::App& command) {
   command.add_flag("--per-pose", flags->per_pose, "With --json: errors of every pose and segment");
   command.add_option("--plot", flags->plot, "PNG file to draw the paths and their errors to")
       ->type_name("FILE");
-  command.add_flag(
-      "--csv", flags->csv,
-      "Print the absolute errors of every pose as CSV; of two estimates the differences");
-  command.add_flag("--json", flags->json, "Print JSON instead of a table");
   command.footer(kTrajectoryFooter);
   return [flags, &command] { return trajectory_answer(*flags, command); };
 }

@@ -12,7 +12,6 @@
 namespace mosbench {
 namespace {
 
-constexpr std::size_t kChartPixels = 800;
 constexpr std::array<const char*, 3> kAxes = {"x", "y", "z"};
 
 /// The axes of the ground: x and z where the path hardly extends along y, as that of a camera.
@@ -48,8 +47,8 @@ Curve errors_over_way(std::string name, Colour colour, const TrajectoryScore& sc
 
 }  // namespace
 
-Picture trajectory_plot(std::span<const TrajectoryScore* const> estimates,
-                        PathAlignment alignment) {
+std::vector<LineChart> trajectory_charts(std::span<const TrajectoryScore* const> estimates,
+                                         PathAlignment alignment) {
   const Palette colours = palette(false);
   const std::vector<Eigen::Vector3d>& truth_m = estimates.front()->truth_m;
   const auto plane = plane_of(truth_m);
@@ -71,7 +70,7 @@ Picture trajectory_plot(std::span<const TrajectoryScore* const> estimates,
         seen_from_above(name, colours.outcomes[e].colour, estimates[e]->estimate_m, plane));
     errors.curves.push_back(errors_over_way(name, colours.outcomes[e].colour, *estimates[e]));
   }
-  return line_charts(std::array{above, errors}, kChartPixels);
+  return {above, errors};
 }
 
 }  // namespace mosbench

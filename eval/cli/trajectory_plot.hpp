@@ -1,14 +1,16 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
-#include "eval/answer/picture.hpp"
+#include "eval/answer/line_chart.hpp"
 #include "eval/trajectory/trajectory_scores.hpp"
 
 namespace mosbench {
 
-/// Draws one sequence as one or two estimates see it: from above beside the truth, and the distance
-/// to it over the way driven. `alignment` is stated.
-Picture trajectory_plot(std::span<const TrajectoryScore* const> estimates, PathAlignment alignment);
+/// Charts of one sequence as one or two estimates see it: from above beside the truth, and the
+/// distance to it over the way driven. `alignment` is stated.
+std::vector<LineChart> trajectory_charts(std::span<const TrajectoryScore* const> estimates,
+                                         PathAlignment alignment);
 
 }  // namespace mosbench

@@ -9,8 +9,8 @@
 
 #include "datasets/text/errors.hpp"
 #include "eval/answer/answer_text.hpp"
-#include "eval/answer/csv.hpp"
-#include "eval/answer/text_table.hpp"
+#include "eval/answer/render.hpp"
+#include "eval/statistics/statistics_report.hpp"
 
 namespace mosbench {
 namespace {
@@ -125,19 +125,18 @@ std::vector<Starts> squares_of(Scores first, Scores second, PoseErrors Trajector
   return sequences;
 }
 
-std::string number_text(const PathDifference& row, const std::optional<double>& value) {
-  return value ? fmt::format("{:.4f}", row.shown_factor * *value) : "-";
+/// The number under the title of the row.
+Cell shown(const PathDifference& row, const std::optional<double>& value) {
+  return value ? Cell(row.shown_factor * *value) : Cell();
 }
 
-std::string interval_of(const PathDifference& row) {
-  if (!row.difference.interval) return row.difference.value ? "none" : "-";
-  return fmt::format("[{:+.4f}, {:+.4f}]", row.shown_factor * row.difference.interval->low,
-                     row.shown_factor * row.difference.interval->high);
-}
-
-template <typename Bound>
-std::optional<double> bound_of(const Difference& difference, Bound bound) {
-  return difference.interval ? std::optional((*difference.interval).*bound) : std::nullopt;
+Cell shown_difference(const PathDifference& row) {
+  Spread spread = spread_of(row.difference);
+  if (!spread.value) return {};
+  for (std::optional<double>* number : {&spread.value, &spread.low, &spread.high}) {
+    if (*number) **number *= row.shown_factor;
+  }
+  return spread;
 }
 
 }  // namespace
@@ -197,63 +196,55 @@ std::vector<PathDifference> compare_paths(Scores first, Scores second) {
   return rows;
 }
 
-std::string path_differences_text(std::span<const PathDifference> differences) {
-  TextTable table({{"", TextTable::kLeft},
-                   {"first"},
-                   {"second"},
-                   {"difference"},
-                   {"95 % interval"},
-                   {"p"},
-                   {"detectable"}});
-  std::string reasons;
+Sheet path_differences_sheet(std::span<const PathDifference> differences) {
+  Sheet sheet{.columns = {{"error", Unit::kText},
+                          {"first", Unit::kNumber, 4},
+                          {"second", Unit::kNumber, 4},
+                          {"difference", Unit::kChange, 4},
+                          {"p", Unit::kNumber, 4},
+                          {"detectable", Unit::kNumber, 4}},
+              .notes = {"Difference: second - first, paired by segments and motions; below 0 the "
+                        "second is better. Scans: the poses where they begin."}};
   for (const PathDifference& row : differences) {
     const Difference& found = row.difference;
-    table.add_row({std::string(row.title), number_text(row, row.first),
-                   number_text(row, row.second),
-                   found.value ? fmt::format("{:+.4f}", row.shown_factor * *found.value) : "-",
-                   interval_of(row), found.p_value ? fmt::format("{:.4f}", *found.p_value) : "-",
-                   number_text(row, found.smallest_detectable)});
+    sheet.rows.push_back({std::string(row.title), shown(row, row.first), shown(row, row.second),
+                          shown_difference(row), or_missing(found.p_value),
+                          shown(row, found.smallest_detectable)});
     if (found.no_interval.empty()) continue;
-    reasons += fmt::format("no interval for {}: {}\n", row.title, found.no_interval);
+    sheet.notes.push_back(fmt::format("no interval for {}: {}", row.title, found.no_interval));
   }
-  return table.str() +
-         "\nDifference: second - first, paired by segments and motions; below 0 the second is "
-         "better. Scans: the poses where they begin.\n" +
-         reasons;
+  return sheet;
 }
 
 nlohmann::ordered_json path_differences_json(std::span<const PathDifference> differences) {
   nlohmann::ordered_json rows = nlohmann::ordered_json::object();
   for (const PathDifference& row : differences) {
     const Difference& found = row.difference;
-    rows[std::string(row.name)] = {
-        {"first", json_or_null(row.first)},
-        {"second", json_or_null(row.second)},
-        {"value", json_or_null(found.value)},
-        {"standard_error", json_or_null(found.standard_error)},
-        {"low", json_or_null(bound_of(found, &Interval::low))},
-        {"high", json_or_null(bound_of(found, &Interval::high))},
-        {"no_interval", found.no_interval.empty() ? nlohmann::ordered_json(nullptr)
-                                                  : nlohmann::ordered_json(found.no_interval)},
-        {"p_value", json_or_null(found.p_value)},
-        {"smallest_detectable", json_or_null(found.smallest_detectable)}};
+    nlohmann::ordered_json& json = rows[std::string(row.name)];
+    json = {{"first", json_or_null(row.first)},
+            {"second", json_or_null(row.second)},
+            {"value", json_or_null(found.value)},
+            {"standard_error", json_or_null(found.standard_error)}};
+    json.update(interval_json(spread_of(found)));
+    json["p_value"] = json_or_null(found.p_value);
+    json["smallest_detectable"] = json_or_null(found.smallest_detectable);
   }
   return rows;
 }
 
-std::string path_differences_csv(std::span<const PathDifference> differences) {
-  std::string csv = "error,first,second,difference,low,high,p_value,no_interval\n";
-  const auto cell = [](const std::optional<double>& value) {
-    return value ? fmt::to_string(*value) : "";
-  };
-  for (const PathDifference& row : differences) {
-    const Difference& found = row.difference;
-    csv += csv_row(std::vector{std::string(row.name), cell(row.first), cell(row.second),
-                               cell(found.value), cell(bound_of(found, &Interval::low)),
-                               cell(bound_of(found, &Interval::high)), cell(found.p_value),
-                               found.no_interval});
+Sheet path_difference_records(std::span<const PathDifference> differences) {
+  Sheet sheet{.columns = {{"error", Unit::kText}}};
+  for (const char* name : {"first", "second", "difference", "low", "high", "p_value"}) {
+    sheet.columns.push_back({name});
   }
-  return csv;
+  sheet.columns.push_back({"no_interval", Unit::kText});
+  for (const PathDifference& row : differences) {
+    const Spread spread = spread_of(row.difference);
+    sheet.rows.push_back({std::string(row.name), or_missing(row.first), or_missing(row.second),
+                          or_missing(spread.value), or_missing(spread.low), or_missing(spread.high),
+                          or_missing(row.difference.p_value), spread.no_interval});
+  }
+  return sheet;
 }
 
 }  // namespace mosbench

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "eval/answer/answer.hpp"
 #include "eval/statistics/intervals.hpp"
 #include "eval/trajectory/trajectory_scores.hpp"
 
@@ -32,9 +33,9 @@ void check_same_truth(std::span<const TrajectoryPair> first,
 std::vector<PathDifference> compare_paths(std::span<const TrajectoryScore> first,
                                           std::span<const TrajectoryScore> second);
 
-std::string path_differences_text(std::span<const PathDifference> differences);
+Sheet path_differences_sheet(std::span<const PathDifference> differences);
 nlohmann::ordered_json path_differences_json(std::span<const PathDifference> differences);
 /// A row per kind of error.
-std::string path_differences_csv(std::span<const PathDifference> differences);
+Sheet path_difference_records(std::span<const PathDifference> differences);
 
 }  // namespace mosbench

@@ -4,9 +4,6 @@
 #include <vector>
 
 #include "datasets/text/counted.hpp"
-#include "eval/answer/answer_text.hpp"
-#include "eval/answer/csv.hpp"
-#include "eval/answer/text_table.hpp"
 #include "eval/trajectory/trajectory_scores.hpp"
 
 namespace mosbench {
@@ -38,43 +35,43 @@ Overall overall(std::span<const TrajectoryScore> scores,
   return {mean_of(all), mean_of(means)};
 }
 
-std::string translation_text(const std::optional<MeanSegmentError>& mean) {
-  return mean ? fmt::format("{:.6g}", 100 * mean->translation) : "-";
+Cell translation_cell(const std::optional<MeanSegmentError>& mean) {
+  return mean ? Cell(100 * mean->translation) : Cell();
 }
-std::string rotation_text(const std::optional<MeanSegmentError>& mean) {
-  return mean ? fmt::format("{:.6g}", 100 * kDegrees * mean->rotation_rad_per_m) : "-";
+Cell rotation_cell(const std::optional<MeanSegmentError>& mean) {
+  return mean ? Cell(100 * kDegrees * mean->rotation_rad_per_m) : Cell();
 }
-std::string rmse_text(const std::vector<double>& errors, double factor) {
+Cell rmse_cell(const std::vector<double>& errors, double factor) {
   const auto summary = summary_of(errors);
-  return summary ? fmt::format("{:.4f}", factor * summary->rmse) : "-";
+  return summary ? Cell(factor * summary->rmse) : Cell();
 }
 
-std::vector<std::string> row_of(const TrajectoryScore& score) {
+std::vector<Cell> row_of(const TrajectoryScore& score) {
   const auto kitti = mean_of(score.kitti), brief = mean_of(score.brief);
   return {score.name,
-          std::to_string(score.poses),
-          fmt::format("{:.1f}", score.path_m),
-          std::to_string(score.kitti.size()),
-          translation_text(kitti),
-          rotation_text(kitti),
-          translation_text(brief),
-          rotation_text(brief),
-          rmse_text(score.absolute.translation_m, 1),
-          rmse_text(score.absolute.rotation_rad, kDegrees),
-          rmse_text(score.relative.translation_m, 1),
-          rmse_text(score.relative.rotation_rad, kDegrees)};
+          std::uint64_t{score.poses},
+          score.path_m,
+          std::uint64_t{score.kitti.size()},
+          translation_cell(kitti),
+          rotation_cell(kitti),
+          translation_cell(brief),
+          rotation_cell(brief),
+          rmse_cell(score.absolute.translation_m, 1),
+          rmse_cell(score.absolute.rotation_rad, kDegrees),
+          rmse_cell(score.relative.translation_m, 1),
+          rmse_cell(score.relative.rotation_rad, kDegrees)};
 }
 
-std::vector<std::string> overall_row(const char* name, const std::optional<MeanSegmentError>& kitti,
-                                     const std::optional<MeanSegmentError>& brief) {
+std::vector<Cell> overall_row(const char* name, const std::optional<MeanSegmentError>& kitti,
+                              const std::optional<MeanSegmentError>& brief) {
   return {name,
           "",
           "",
-          kitti ? std::to_string(kitti->segments) : "-",
-          translation_text(kitti),
-          rotation_text(kitti),
-          translation_text(brief),
-          rotation_text(brief)};
+          kitti ? Cell(std::uint64_t{kitti->segments}) : Cell(),
+          translation_cell(kitti),
+          rotation_cell(kitti),
+          translation_cell(brief),
+          rotation_cell(brief)};
 }
 
 std::string relative_name(const RelativePairs& pairs) {
@@ -140,44 +137,42 @@ ordered_json overall_json(const Overall& all) {
 
 }  // namespace
 
-std::string trajectory_text(std::span<const TrajectoryScore> scores, const ScoringRules& rules) {
-  TextTable table({{"sequence", TextTable::kLeft},
-                   {"poses"},
-                   {"path m"},
-                   {"segments"},
-                   {"KITTI %"},
-                   {"deg/100 m"},
-                   {"5-50 m %"},
-                   {"deg/100 m"},
-                   {"APE m"},
-                   {"APE deg"},
-                   {"RPE m"},
-                   {"RPE deg"}});
-  for (const TrajectoryScore& score : scores) table.add_row(row_of(score));
+Sheet trajectory_sheet(std::span<const TrajectoryScore> scores, const ScoringRules& rules) {
+  Sheet sheet{.columns = {{"sequence", Unit::kText},
+                          {"poses"},
+                          {"path m", Unit::kNumber, 1},
+                          {"segments"},
+                          {"KITTI %"},
+                          {"deg/100 m"},
+                          {"5-50 m %"},
+                          {"deg/100 m", Unit::kNumber, {}, "short_deg_100_m"},
+                          {"APE m", Unit::kNumber, 4},
+                          {"APE deg", Unit::kNumber, 4},
+                          {"RPE m", Unit::kNumber, 4},
+                          {"RPE deg", Unit::kNumber, 4}}};
+  for (const TrajectoryScore& score : scores) sheet.rows.push_back(row_of(score));
   if (scores.size() > 1) {
     const Overall kitti = overall(scores, &TrajectoryScore::kitti);
     const Overall brief = overall(scores, &TrajectoryScore::brief);
-    table.add_rule();
-    table.add_row(overall_row("all segments", kitti.pooled, brief.pooled));
-    table.add_row(
+    sheet.rows.emplace_back();
+    sheet.rows.push_back(overall_row("all segments", kitti.pooled, brief.pooled));
+    sheet.rows.push_back(
         overall_row("mean of sequences", kitti.mean_of_sequences, brief.mean_of_sequences));
   }
-  std::string text = table.str();
-  text += fmt::format(
-      "\nKITTI: segments of 100 to 800 m from every tenth pose; 5-50 m: of 5, 10, 20 and 50 m from "
-      "every "
-      "pose, not comparable with KITTI's. Neither is aligned.\n"
-      "APE and RPE: root mean square; alignment {}; RPE over {}.\n",
-      to_string(rules.alignment), relative_name(rules.relative));
+  sheet.notes = {
+      "KITTI: segments of 100 to 800 m from every tenth pose; 5-50 m: of 5, 10, 20 and 50 m from "
+      "every pose, not comparable with KITTI's. Neither is aligned.",
+      fmt::format("APE and RPE: root mean square; alignment {}; RPE over {}.",
+                  to_string(rules.alignment), relative_name(rules.relative))};
   for (const TrajectoryScore& score : scores) {
     if (rules.alignment == PathAlignment::kSimilarity) {
-      text += fmt::format("{}: scaled by {:.6f}\n", score.name, score.scale);
+      sheet.notes.push_back(fmt::format("{}: scaled by {:.6f}", score.name, score.scale));
     }
     for (const std::string& remark : score.remarks) {
-      text += fmt::format("{}: {}\n", score.name, remark);
+      sheet.notes.push_back(fmt::format("{}: {}", score.name, remark));
     }
   }
-  return text;
+  return sheet;
 }
 
 ordered_json trajectory_json(std::span<const TrajectoryScore> scores, const ScoringRules& rules,
@@ -191,16 +186,15 @@ ordered_json trajectory_json(std::span<const TrajectoryScore> scores, const Scor
           {"sequences", sequences}};
 }
 
-std::string trajectory_csv(std::span<const TrajectoryScore> scores) {
-  std::string csv = "sequence,pose,ape_m,ape_rad\n";
+Sheet pose_records(std::span<const TrajectoryScore> scores) {
+  Sheet sheet{.columns = {{"sequence", Unit::kText}, {"pose"}, {"ape_m"}, {"ape_rad"}}};
   for (const TrajectoryScore& score : scores) {
     for (std::size_t i = 0; i < score.poses; ++i) {
-      csv += csv_row(std::vector{score.name, fmt::to_string(i),
-                                 fmt::to_string(score.absolute.translation_m[i]),
-                                 fmt::to_string(score.absolute.rotation_rad[i])});
+      sheet.rows.push_back({score.name, std::uint64_t{i}, score.absolute.translation_m[i],
+                            score.absolute.rotation_rad[i]});
     }
   }
-  return csv;
+  return sheet;
 }
 
 }  // namespace mosbench

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "eval/answer/answer.hpp"
 #include "eval/trajectory/alignment.hpp"
 #include "eval/trajectory/pose_errors.hpp"
 #include "eval/trajectory/segment_errors.hpp"
@@ -35,12 +36,12 @@ TrajectoryScore score_of(const TrajectoryPair& pair, const ScoringRules& rules);
 
 /// A table of the sequences, all of them pooled and their mean; below it what was paired and
 /// aligned how.
-std::string trajectory_text(std::span<const TrajectoryScore> scores, const ScoringRules& rules);
+Sheet trajectory_sheet(std::span<const TrajectoryScore> scores, const ScoringRules& rules);
 /// Numbers in metres, radians and fractions; with `per_pose` also the errors of every pose and
 /// segment.
 nlohmann::ordered_json trajectory_json(std::span<const TrajectoryScore> scores,
                                        const ScoringRules& rules, bool per_pose);
 /// One row per pose and sequence: absolute errors.
-std::string trajectory_csv(std::span<const TrajectoryScore> scores);
+Sheet pose_records(std::span<const TrajectoryScore> scores);
 
 }  // namespace mosbench
