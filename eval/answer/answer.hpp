@@ -26,6 +26,7 @@ enum class Format : std::uint8_t {
 struct Spread {
   std::optional<double> value, low, high;
   std::string no_interval{};
+  bool operator==(const Spread&) const = default;
 };
 
 /// One value of a table: nothing, words, a count, a number (NaN: undefined), or one with its

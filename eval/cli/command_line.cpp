@@ -158,7 +158,11 @@ Printed printed(const Answer& answer, const std::string& asked, std::size_t colu
   Printed result{"", answer.exit_code, format == Format::kText || format == Format::kGithub};
   if (answer.file && !names_stdout(*answer.file)) {
     write_output(*answer.file, render(answer, format));
-    result.bytes = fmt::format("wrote {}\n", answer.file->string());
+    result.bytes = fmt::format("wrote {}", answer.file->string());
+    if (answer.standing) {
+      for (const std::string& doubt : answer.standing->doubts) result.bytes += "; " + doubt;
+    }
+    result.bytes += '\n';
     return result;
   }
   result.bytes = render(answer, format, columns);

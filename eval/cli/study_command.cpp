@@ -47,7 +47,7 @@ one small file in DIR/cells, put there in one step.
 Examples:
   mosbench study plan results/studies/demo.yaml --measure
   mosbench study run results/studies/demo.yaml
-  mosbench study table results/studies/demo.yaml --format html -o demo.html
+  mosbench study table results/studies/demo.yaml --as html -o demo.html
   mosbench study run my_study.yaml --profile slurm --yes --out /shared/my_study)";
 
 constexpr std::size_t kMostWithoutYes = 100;
@@ -58,9 +58,9 @@ struct StudyFlags {
   std::vector<std::string> keys;
   std::optional<std::filesystem::path> out;
   std::filesystem::path output = "-";
-  std::string profile = "local", format = "text";
+  std::string profile = "local";
   unsigned threads = 1;
-  bool json = false, measure = false, yes = false;
+  bool measure = false, yes = false;
 };
 
 std::string state_counts(const StudyPlan& plan) {
@@ -98,9 +98,9 @@ nlohmann::ordered_json plan_json(const StudyPlan& plan, const CostModel& costs) 
 Answer plan_answer(const StudyPlan& plan, const StudyFlags& flags) {
   if (flags.measure) measure_costs(plan);
   const CostModel costs = read_costs(plan.out);
-  if (flags.json) return {json_text(plan_json(plan, costs))};
-  return {fmt::format("{}\n{}\nresults in {}\n", state_counts(plan),
-                      work_text(work_of(plan, costs)), plan.out.string())};
+  return {.text = fmt::format("{}\n{}\nresults in {}\n", state_counts(plan),
+                              work_text(work_of(plan, costs)), plan.out.string()),
+          .json = json_text(plan_json(plan, costs))};
 }
 
 Answer cell_answer(const StudyPlan& plan, const StudyFlags& flags) {
@@ -125,25 +125,10 @@ Answer cell_answer(const StudyPlan& plan, const StudyFlags& flags) {
   return {text, failed ? 1 : 0};
 }
 
-std::string table_in(const std::string& format, const StudyPlan& plan, const StudyTable& table) {
-  if (format == "csv") return study_csv(plan);
-  if (format == "latex") return study_latex(table);
-  if (format == "json") return json_text(to_json(table));
-  if (format == "html") return study_html(table);
-  return study_text(table);
-}
-
 Answer table_answer(const StudyPlan& plan, const StudyFlags& flags) {
-  const StudyTable table = gather(plan);
-  const int exit_code = table.done == table.cells ? 0 : 1;
-  const std::string text = table_in(flags.format, plan, table);
-  if (flags.output == "-") return {text, exit_code};
-  write_output(flags.output, text);
-  const std::string rest = exit_code == 0
-                               ? ""
-                               : fmt::format("; {} of {} done", table.done,
-                                             counted(table.cells, "cell is", "cells are"));
-  return {fmt::format("wrote {}{}\n", flags.output.string(), rest), exit_code};
+  Answer answer = study_answer(plan, gather(plan));
+  answer.file = flags.output;
+  return answer;
 }
 
 Answer run_answer(const Study& study, const StudyPlan& plan, const StudyFlags& flags) {
@@ -196,9 +181,6 @@ CommandRun add_study(CLI::App& command) {
       .add_option("--profile", flags->profile, "local, slurm, or the folder of a Snakemake profile")
       ->type_name("PROFILE")
       ->capture_default_str();
-  command.add_option("--format", flags->format, "How to print the table")
-      ->check(CLI::IsMember({"text", "csv", "latex", "json", "html"}))
-      ->capture_default_str();
   command.add_option("-o,--output", flags->output, "File of the table; - is stdout")
       ->type_name("FILE")
       ->capture_default_str();
@@ -206,7 +188,6 @@ CommandRun add_study(CLI::App& command) {
   command.get_option("--threads")->description("Threads of each cell; results do not depend on it");
   command.add_flag("--measure", flags->measure, "With plan: measure what a scan costs first");
   command.add_flag("--yes", flags->yes, "With run: compute more than 100 cells");
-  command.add_flag("--json", flags->json, "With plan: print JSON instead of text");
   command.footer(kStudyFooter);
   return [flags] { return study(*flags); };
 }

@@ -5,9 +5,6 @@
 
 #include "datasets/text/counted.hpp"
 #include "eval/answer/answer_text.hpp"
-#include "eval/answer/csv.hpp"
-#include "eval/answer/latex.hpp"
-#include "eval/answer/text_table.hpp"
 #include "eval/protocols/protocol_list.hpp"
 #include "eval/report/report_asset.hpp"
 #include "eval/results/progress.hpp"
@@ -26,23 +23,23 @@ std::string mean_text(const StudyMean& mean) {
   return fmt::format("{} +- {:.1f}", percent_text(mean.value), 100 * mean.half_width);
 }
 
-std::string number_text(const std::optional<double>& value, const char* style) {
-  return value ? fmt::format(fmt::runtime(style), *value) : "-";
-}
-
-/// Lines of cells, the first of which is the head.
-using TextRows = std::vector<std::vector<std::string>>;
-
-TextRows overview_rows(const StudyTable& table) {
-  TextRows rows = {
-      {"method", "IoU %", "to best", "precision %", "recall %", "ms/scan", "front", "rank"}};
+Sheet overview_sheet(const StudyTable& table) {
+  Sheet sheet{.title = table.name,
+              .columns = {{"method", Unit::kText},
+                          {"IoU %"},
+                          {"to best"},
+                          {"precision %"},
+                          {"recall %"},
+                          {"ms/scan", Unit::kNumber, 1},
+                          {"front"},
+                          {"rank", Unit::kNumber, 2}}};
   for (const StudyRow& row : table.rows) {
-    rows.push_back({row.label, mean_text(row.metrics[0]),
-                    row.to_best ? mean_text(*row.to_best) : "", mean_text(row.metrics[1]),
-                    mean_text(row.metrics[2]), number_text(row.ms_per_scan, "{:.1f}"),
-                    row.is_on_front ? "*" : "", number_text(row.rank, "{:.2f}")});
+    sheet.rows.push_back({row.label, mean_text(row.metrics[0]),
+                          row.to_best ? mean_text(*row.to_best) : "", mean_text(row.metrics[1]),
+                          mean_text(row.metrics[2]), or_missing(row.ms_per_scan),
+                          row.is_on_front ? "*" : "", or_missing(row.rank)});
   }
-  return rows;
+  return sheet;
 }
 
 std::string axis_title(const StudyCurve& curve) {
@@ -50,14 +47,14 @@ std::string axis_title(const StudyCurve& curve) {
   return has_unit ? fmt::format("{}, {}", curve.axis, curve.unit) : curve.axis;
 }
 
-TextRows curve_rows(const StudyTable& table, const StudyCurve& curve, const std::string& title) {
-  TextRows rows = {{title}};
-  rows.front().insert(rows.front().end(), curve.values.begin(), curve.values.end());
+Sheet curve_sheet(const StudyTable& table, const StudyCurve& curve) {
+  Sheet sheet{.columns = {{fmt::format("IoU % by {}", axis_title(curve)), Unit::kText}}};
+  for (const std::string& value : curve.values) sheet.columns.push_back({value});
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
-    std::vector<std::string>& row = rows.emplace_back(1, table.rows[i].label);
-    for (const StudyMetrics& metrics : curve.metrics[i]) row.push_back(mean_text(metrics[0]));
+    std::vector<Cell>& row = sheet.rows.emplace_back(1, table.rows[i].label);
+    for (const StudyMetrics& metrics : curve.metrics[i]) row.emplace_back(mean_text(metrics[0]));
   }
-  return rows;
+  return sheet;
 }
 
 std::string effect_text(const std::optional<TotalEffect>& effect) {
@@ -67,22 +64,23 @@ std::string effect_text(const std::optional<TotalEffect>& effect) {
 }
 
 /// A line per sampled setting with its effect on the IoU of each method.
-TextRows effect_rows(const StudyTable& table) {
-  TextRows rows = {{"total effect"}};
-  for (const StudyEffects& effects : table.effects) rows.front().push_back(effects.label);
+Sheet effects_sheet(const StudyTable& table) {
+  Sheet sheet{.columns = {{"total effect", Unit::kText}}};
+  for (const StudyEffects& effects : table.effects) sheet.columns.push_back({effects.label});
   for (std::size_t column = 0; column < table.effects.size(); ++column) {
     const StudyEffects& effects = table.effects[column];
     for (std::size_t i = 0; i < effects.settings.size(); ++i) {
-      auto row = std::ranges::find(rows, effects.settings[i],
-                                   [](const std::vector<std::string>& each) { return each[0]; });
-      if (row == rows.end()) {
-        row = rows.insert(row, std::vector<std::string>(rows.front().size(), ""));
-        row->front() = effects.settings[i];
+      const Cell name = effects.settings[i];
+      auto row = std::ranges::find(sheet.rows, name,
+                                   [](const std::vector<Cell>& cells) { return cells.front(); });
+      if (row == sheet.rows.end()) {
+        row = sheet.rows.insert(row, std::vector<Cell>(sheet.columns.size(), std::string()));
+        row->front() = name;
       }
       (*row)[column + 1] = effect_text(effects.effects[i]);
     }
   }
-  return rows;
+  return sheet;
 }
 
 /// "36 of 36 cells are done; they took 12 s of one core, 1.20 times the 10 s that were expected".
@@ -95,50 +93,46 @@ std::string work_done_text(const StudyTable& table) {
                             *table.core_s / *table.predicted_s, duration_text(*table.predicted_s));
 }
 
-/// A line per reason: a bad scan fails every cell of its sequence.
-std::string gaps_text(const std::vector<StudyGap>& gaps) {
+/// Adds a line per reason: a bad scan fails every cell of its sequence.
+void add_gaps(const std::vector<StudyGap>& gaps, std::vector<std::string>& notes) {
   std::vector<std::string> reasons;
   std::map<std::string, std::vector<std::string>> cells;
   for (const StudyGap& gap : gaps) {
     if (cells[gap.why].empty()) reasons.push_back(gap.why);
     cells[gap.why].push_back(gap.title);
   }
-  std::string text;
   for (const std::string& why : reasons) {
     const std::vector<std::string>& same = cells[why];
     const std::string more =
         same.size() == 1 ? "" : " and " + counted(same.size() - 1, "more cell");
-    text += fmt::format("{}{}: {}\n", same.front(), more, why);
+    notes.push_back(fmt::format("{}{}: {}", same.front(), more, why));
   }
-  return text;
 }
 
-std::string remarks_text(const StudyTable& table) {
-  std::string text = table.rule ? rule_line(*table.rule) + '\n' : "";
-  text +=
-      "+- is half of the 95 % interval of the mean over sequences, each the mean of its seeds, or\n"
-      "over the seeds of one; of fewer than three there is none\n"
-      "\"to best\" is the paired difference of IoU\n";
-  text += fmt::format("results in {}\n", table.out);
+std::vector<std::string> notes_of(const StudyTable& table) {
+  std::vector<std::string> notes;
+  if (table.rule) notes.push_back(rule_line(*table.rule));
+  notes.insert(
+      notes.end(),
+      {"+- is half of the 95 % interval of the mean over sequences, each the mean of its seeds, or",
+       "over the seeds of one; of fewer than three there is none",
+       "\"to best\" is the paired difference of IoU", "results in " + table.out});
   for (const StudyEffects& effects : table.effects) {
-    text += fmt::format(
+    notes.push_back(fmt::format(
         "total effect on {}: the part of the IoU's variance that is left while all other sampled "
-        "settings are fixed, over {} points (Jansen; 95 % by bootstrap)\n",
-        effects.label, effects.points);
+        "settings are fixed, over {} points (Jansen; 95 % by bootstrap)",
+        effects.label, effects.points));
   }
   if (table.critical_difference) {
-    text += fmt::format(
+    notes.push_back(fmt::format(
         "Mean ranks over {} sequences, each by the mean IoU over all disturbances, differ at 5 % "
-        "where they are more than {:.2f} apart (Nemenyi).\n",
-        table.ranked_sequences, *table.critical_difference);
+        "where they are more than {:.2f} apart (Nemenyi).",
+        table.ranked_sequences, *table.critical_difference));
   }
-  if (table.simulated) text += "simulated data: not comparable with published numbers\n";
-  if (table.core_s) text += fmt::format("{}\n", work_done_text(table));
-  if (table.done < table.cells) {
-    text += fmt::format("INCOMPLETE: {} missing\n",
-                        counted(table.cells - table.done, "cell is", "cells are"));
-  }
-  return text + gaps_text(table.undefined) + gaps_text(table.failures);
+  if (table.core_s) notes.push_back(work_done_text(table));
+  add_gaps(table.undefined, notes);
+  add_gaps(table.failures, notes);
+  return notes;
 }
 
 ordered_json to_json(const StudyMean& mean) {
@@ -169,45 +163,39 @@ ordered_json to_json(const StudyEffects& effects) {
   return {{"label", effects.label}, {"points", effects.points}, {"settings", settings}};
 }
 
-std::string text_table(const TextRows& rows) {
-  std::vector<TextTable::Column> columns;
-  for (const std::string& title : rows.front()) columns.push_back({title});
-  columns.front().align = TextTable::kLeft;
-  TextTable text(columns);
-  for (std::size_t i = 1; i < rows.size(); ++i) text.add_row(rows[i]);
-  return text.str();
-}
-
-/// `foot` is the last line, across all columns.
-std::string latex_table(const TextRows& rows, const std::string& foot) {
-  const std::size_t columns = rows.front().size();
-  std::string text =
-      fmt::format("\\begin{{tabular}}{{l{}}}\n\\hline\n", std::string(columns - 1, 'r'));
-  text += latex_row(rows.front()) + "\\hline\n";
-  for (std::size_t i = 1; i < rows.size(); ++i) text += latex_row(rows[i]);
-  text += "\\hline\n";
-  if (!foot.empty()) {
-    text += fmt::format("\\multicolumn{{{}}}{{l}}{{{}}} \\\\\n", columns, latex_text(foot));
-  }
-  return text + "\\end{tabular}\n";
-}
-
-std::string cell_number(const PlannedCell& planned, const char* part, const char* what) {
-  if (planned.state != CellState::kDone) return "";
-  const auto value = number_in(planned.record, part, what);
-  return value ? ordered_json(*value).dump() : "";
-}
-
-/// Protocol, lowest and highest range.
-std::vector<std::string> csv_rule(const std::optional<ScoreRule>& rule) {
-  if (!rule) return {"", "", ""};
-  return {std::string(rule->protocol->name), fmt::format("{}", rule->range.min_m),
-          fmt::format("{}", rule->range.max_m)};
+Cell cell_number(const PlannedCell& planned, const char* part, const char* what) {
+  if (planned.state != CellState::kDone) return {};
+  return or_missing(number_in(planned.record, part, what));
 }
 
 std::string why_empty(const PlannedCell& planned) {
   return planned.state == CellState::kFailed ? planned.record.value("failure", "")
                                              : why_undefined(planned);
+}
+
+/// A row per cell.
+Sheet records_of(const StudyPlan& plan) {
+  Sheet sheet;
+  for (const char* name : {"key", "data", "group", "sequence", "method", "odometry", "axis",
+                           "value", "seed", "state", "protocol", "min_range_m", "max_range_m",
+                           "iou", "precision", "recall", "ms_per_scan", "wall_s", "why"}) {
+    sheet.columns.push_back({name});
+  }
+  const std::optional<ScoreRule>& rule = plan.rule;
+  for (const PlannedCell& planned : plan.cells) {
+    const StudyCell& cell = planned.cell;
+    sheet.rows.push_back(
+        {cell.key, cell.data->name, cell.data->group, cell.sequence, cell.method->name,
+         cell.odometry, cell.axis == nullptr ? "" : cell.axis->name, cell.value,
+         std::uint64_t{cell.seed}, std::string(to_string(planned.state)),
+         rule ? std::string(rule->protocol->name) : "",
+         rule ? Cell(double{rule->range.min_m}) : Cell(),
+         rule ? Cell(double{rule->range.max_m}) : Cell(), cell_number(planned, "summary", "iou"),
+         cell_number(planned, "summary", "precision"), cell_number(planned, "summary", "recall"),
+         cell_number(planned, "timing", "ms_per_scan"), cell_number(planned, "timing", "wall_s"),
+         why_empty(planned)});
+  }
+  return sheet;
 }
 
 ordered_json gaps_json(const std::vector<StudyGap>& gaps) {
@@ -217,47 +205,6 @@ ordered_json gaps_json(const std::vector<StudyGap>& gaps) {
 }
 
 }  // namespace
-
-std::string study_text(const StudyTable& table) {
-  std::string text = fmt::format("{}\n\n{}", table.name, text_table(overview_rows(table)));
-  for (const StudyCurve& curve : table.curves) {
-    const std::string title = fmt::format("IoU % by {}", axis_title(curve));
-    text += "\n" + text_table(curve_rows(table, curve, title));
-  }
-  if (!table.effects.empty()) text += "\n" + text_table(effect_rows(table));
-  return text + "\n" + remarks_text(table);
-}
-
-std::string study_latex(const StudyTable& table) {
-  std::string text;
-  if (table.simulated) text += "% simulated data: not comparable with published numbers\n";
-  const std::string rule = table.rule ? "protocol " + rule_name(*table.rule) : "";
-  text += latex_table(overview_rows(table), rule);
-  for (const StudyCurve& curve : table.curves) {
-    text += "\n" + latex_table(curve_rows(table, curve, axis_title(curve)), rule);
-  }
-  if (!table.effects.empty()) text += "\n" + latex_table(effect_rows(table), rule);
-  return text;
-}
-
-std::string study_csv(const StudyPlan& plan) {
-  std::string text = csv_row(
-      std::vector<std::string>{"key", "data", "group", "sequence", "method", "odometry", "axis",
-                               "value", "seed", "state", "protocol", "min_range_m", "max_range_m",
-                               "iou", "precision", "recall", "ms_per_scan", "wall_s", "why"});
-  const std::vector<std::string> rule = csv_rule(plan.rule);
-  for (const PlannedCell& planned : plan.cells) {
-    const StudyCell& cell = planned.cell;
-    text += csv_row(std::vector<std::string>{
-        cell.key, cell.data->name, cell.data->group, cell.sequence, cell.method->name,
-        cell.odometry, cell.axis == nullptr ? "" : cell.axis->name, cell.value,
-        std::to_string(cell.seed), std::string(to_string(planned.state)), rule[0], rule[1], rule[2],
-        cell_number(planned, "summary", "iou"), cell_number(planned, "summary", "precision"),
-        cell_number(planned, "summary", "recall"), cell_number(planned, "timing", "ms_per_scan"),
-        cell_number(planned, "timing", "wall_s"), why_empty(planned)});
-  }
-  return text;
-}
 
 ordered_json to_json(const StudyTable& table) {
   ordered_json json = {{"name", table.name},
@@ -315,8 +262,25 @@ ordered_json to_json(const StudyTable& table) {
   return json;
 }
 
-std::string study_html(const StudyTable& table) {
-  return filled_page(study_asset(), to_json(table));
+Answer study_answer(const StudyPlan& plan, const StudyTable& table) {
+  const ordered_json json = to_json(table);
+  Answer answer{.exit_code = table.done == table.cells ? 0 : 1,
+                .standing = Standing{table.simulated},
+                .sheets = {overview_sheet(table)},
+                .records = records_of(plan),
+                .json = json_text(json),
+                .page = filled_page(study_asset(), json)};
+  if (answer.exit_code != 0) {
+    answer.standing->doubts = {fmt::format(
+        "INCOMPLETE: {} missing", counted(table.cells - table.done, "cell is", "cells are"))};
+  }
+  for (const StudyCurve& curve : table.curves) answer.sheets.push_back(curve_sheet(table, curve));
+  if (!table.effects.empty()) answer.sheets.push_back(effects_sheet(table));
+  for (Sheet& sheet : answer.sheets) {
+    if (table.rule) sheet.caption = "protocol " + rule_name(*table.rule);
+  }
+  answer.sheets.back().notes = notes_of(table);
+  return answer;
 }
 
 }  // namespace mosbench

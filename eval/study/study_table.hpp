@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "eval/answer/answer.hpp"
 #include "eval/statistics/intervals.hpp"
 #include "eval/study/study_plan.hpp"
 #include "eval/study/study_sampling.hpp"
@@ -80,12 +81,9 @@ std::string why_undefined(const PlannedCell& planned);
 /// Gathers what lies there.
 StudyTable gather(const StudyPlan& plan);
 
-std::string study_text(const StudyTable& table);
-std::string study_latex(const StudyTable& table);
-/// Formats a line per cell.
-std::string study_csv(const StudyPlan& plan);
 nlohmann::ordered_json to_json(const StudyTable& table);
-/// Returns a page of its own with the curves.
-std::string study_html(const StudyTable& table);
+/// Says what a study found; CSV has a row per cell, and HTML is a page of its own with the curves.
+/// The exit code is 1 while cells are missing.
+Answer study_answer(const StudyPlan& plan, const StudyTable& table);
 
 }  // namespace mosbench

@@ -25,7 +25,7 @@ NOT_FROM_ZERO = ("beams", "every_nth_scan")  # whose scans are whole at another 
 
 def printed_table(chosen, form):
     """What `mosbench study table` prints, also where cells are missing."""
-    done = subprocess.run([chosen.program, "study", "table", chosen.study, "--out", chosen.out, "--format", form],
+    done = subprocess.run([chosen.program, "study", "table", chosen.study, "--out", chosen.out, "--as", form],
                           capture_output=True, text=True, check=False)
     if done.returncode > 1:
         sys.exit(f"study_findings.py: {done.stderr.strip()}")

@@ -8,6 +8,7 @@
 
 #include "datasets/text/errors.hpp"
 #include "eval/answer/answer_text.hpp"
+#include "eval/answer/render.hpp"
 #include "eval/job/method_choice.hpp"
 #include "eval/results/version.hpp"
 #include "eval/study/study_cell.hpp"
@@ -273,10 +274,13 @@ TEST(StudyTable, HasMeansRanksAndTheParetoFront) {
   EXPECT_NEAR(*table.core_s, 9 * 36.0, 1e-12);
   EXPECT_TRUE(table.simulated);
   EXPECT_EQ(table.worst.front().iou, 0.3);
-  EXPECT_THAT(study_text(table), AllOf(HasSubstr("simulated data"), HasSubstr("70.0 +- 24.8")));
-  EXPECT_THAT(study_latex(table), HasSubstr("\\begin{tabular}{lrrrrrrr}"));
-  EXPECT_THAT(study_latex(table), testing::Not(HasSubstr("\n\n\\hline"))) << "does not compile";
-  EXPECT_THAT(study_html(table), HasSubstr("\"name\":\"small\""));
+  const Answer answer = study_answer(plan, table);
+  EXPECT_THAT(render(answer, Format::kText),
+              AllOf(HasSubstr("SIMULATED data"), HasSubstr("70.0 +- 24.8")));
+  const std::string latex = render(answer, Format::kLatex);
+  EXPECT_THAT(latex, HasSubstr("\\begin{tabular}{lrrrrrrr}"));
+  EXPECT_THAT(latex, testing::Not(HasSubstr("\n\n\\hline"))) << "does not compile";
+  EXPECT_THAT(render(answer, Format::kHtml), HasSubstr("\"name\":\"small\""));
 }
 
 TEST(StudyTable, TellsTheCommandOfAWorstScanWithAllThatTheStudySays) {
@@ -376,11 +380,14 @@ TEST(StudyScoring, IsNamedInEveryTable) {
                0.5, 1);
   const StudyPlan plan = plan_study(study, folder.path());
   const StudyTable table = gather(plan);
-  EXPECT_THAT(study_text(table), HasSubstr("protocol mapmos: pooled; "));
-  EXPECT_THAT(study_text(table), HasSubstr("(1 to 20 m)"));
-  EXPECT_THAT(study_latex(table), HasSubstr("\\multicolumn{8}{l}{protocol mapmos (1 to 20 m)}"));
-  EXPECT_THAT(study_csv(plan), AllOf(HasSubstr("state,protocol,min_range_m,max_range_m,iou"),
-                                     HasSubstr(",done,mapmos,1,20,0.5,")));
+  const Answer answer = study_answer(plan, table);
+  EXPECT_THAT(render(answer, Format::kText),
+              AllOf(HasSubstr("protocol mapmos: pooled; "), HasSubstr("(1 to 20 m)")));
+  EXPECT_THAT(render(answer, Format::kLatex),
+              HasSubstr("\\multicolumn{8}{l}{protocol mapmos (1 to 20 m)}"));
+  EXPECT_THAT(render(answer, Format::kCsv),
+              AllOf(HasSubstr("state,protocol,min_range_m,max_range_m,iou"),
+                    HasSubstr(",done,mapmos,1,20,0.5,")));
   const ordered_json json = to_json(table);
   EXPECT_EQ(json.at("protocol"), "mapmos");
   EXPECT_EQ(json.at("min_range_m"), 1.0);
@@ -401,12 +408,13 @@ TEST(StudyTable, SaysWhyAMeanIsUndefined) {
   write_shared(record_file(plan.out, plan.cells[1].cell.key), json_text(record));
   const StudyPlan done = plan_study(study, folder.path());
   const StudyTable table = gather(done);
-  EXPECT_THAT(study_text(table),
-              HasSubstr("\nroom-1 08, near: undefined: no scan has truth that counts\n"));
-  EXPECT_THAT(study_text(table),
-              HasSubstr("\nroom-1 08, hmm-mos: undefined recall: no point that counts moves\n"));
+  EXPECT_THAT(
+      render(study_answer(done, table), Format::kText),
+      AllOf(HasSubstr("\nroom-1 08, near: undefined: no scan has truth that counts\n"),
+            HasSubstr("\nroom-1 08, hmm-mos: undefined recall: no point that counts moves\n")));
   EXPECT_EQ(to_json(table).at("undefined").size(), 2u);
-  EXPECT_THAT(study_csv(done), HasSubstr("undefined: no scan has truth that counts"));
+  EXPECT_THAT(render(study_answer(done, table), Format::kCsv),
+              HasSubstr("undefined: no scan has truth that counts"));
 }
 
 TEST(StudyTable, SaysWhatIsMissingAndOfAnotherVersion) {
@@ -422,7 +430,8 @@ TEST(StudyTable, SaysWhatIsMissingAndOfAnotherVersion) {
   EXPECT_EQ(again.cells[0].state, CellState::kOtherVersion);
   EXPECT_EQ(again.cells[1].state, CellState::kMissing);
   EXPECT_EQ(again.cells[2].state, CellState::kDone);
-  EXPECT_THAT(study_text(gather(again)), HasSubstr("INCOMPLETE: 3 cells are missing"));
+  EXPECT_THAT(render(study_answer(again, gather(again)), Format::kText),
+              HasSubstr("INCOMPLETE: 3 cells are missing"));
   EXPECT_EQ(work_of(again, {}).cells.size(), 3u);
 }
 
@@ -481,9 +490,11 @@ TEST(StudyTable, TellsHowMuchEachSampledSettingDecides) {
   EXPECT_GE(table.effects[0].effects[0]->interval.high, 1);
   EXPECT_EQ(table.effects[1].settings, std::vector<std::string>{"max_range_m"})
       << "underwood has no windows";
-  EXPECT_THAT(study_text(table), HasSubstr("local_window_scans  0.00 (0.00 to 0.00)"));
-  EXPECT_THAT(study_latex(table), HasSubstr("total effect & hmm-mos & near"));
-  EXPECT_THAT(study_html(table), HasSubstr("\"effects\":[{\"label\":\"hmm-mos\",\"points\":12,"));
+  const Answer answer = study_answer(plan, table);
+  EXPECT_THAT(render(answer, Format::kText), HasSubstr("local_window_scans  0.00 (0.00 to 0.00)"));
+  EXPECT_THAT(render(answer, Format::kLatex), HasSubstr("total effect & hmm-mos & near"));
+  EXPECT_THAT(render(answer, Format::kHtml),
+              HasSubstr("\"effects\":[{\"label\":\"hmm-mos\",\"points\":12,"));
 }
 
 // A study of a field: its plan and its tables must not keep anyone waiting.
