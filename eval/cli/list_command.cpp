@@ -14,7 +14,6 @@
 #include "datasets/text/errors.hpp"
 #include "datasets/text/nearest_name.hpp"
 #include "eval/answer/answer_text.hpp"
-#include "eval/answer/text_table.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/cli/list_json.hpp"
 #include "eval/job/presets.hpp"
@@ -34,137 +33,139 @@ constexpr const char* kListFooter = R"(Examples:
   mosbench list perturbations
   mosbench list methods --json)";
 
-std::string datasets_text() {
-  std::string text;
+/// "  what      value", below the name of a thing.
+std::string line_of(std::string_view what, std::string_view value) {
+  return fmt::format("  {:<10}{}", what, value);
+}
+
+std::vector<Sheet> datasets_sheets() {
+  Sheet sheet;
   for (const Layout* row : layouts()) {
-    text += fmt::format("{} ({})\n", row->name, row->title);
+    std::vector<std::string>& lines = sheet.lead;
+    lines.push_back(fmt::format("{} ({})", row->name, row->title));
     for (const auto& [what, value] :
          {std::pair{"content", row->content}, std::pair{"size", row->size},
           std::pair{"published", row->published}, std::pair{"licence", row->licence}}) {
-      text += fmt::format("  {:<10}{}\n", what, value);
+      lines.push_back(line_of(what, value));
     }
-    text += fmt::format("  {:<10}{}\n", "folders", row->folders.front());
-    for (const std::string_view line : std::span(row->folders).subspan(1)) {
-      text += fmt::format("  {:<10}{}\n", "", line);
+    for (const std::string_view folder : row->folders) {
+      lines.push_back(line_of(folder == row->folders.front() ? "folders" : "", folder));
     }
     for (const RelatedSet& set : row->related) {
-      text += fmt::format("  {:<10}{}: {}\n  {:<10}  {}; {}\n", "also", set.title, set.content, "",
-                          set.published, set.reading);
+      lines.push_back(line_of("also", fmt::format("{}: {}", set.title, set.content)));
+      lines.push_back(line_of("", fmt::format("  {}; {}", set.published, set.reading)));
     }
   }
-  return text;
+  return {sheet};
 }
 
-std::string presets_text() {
-  TextTable table({{"preset", TextTable::kLeft},
-                   {"data set", TextTable::kLeft},
-                   {"voxel m"},
-                   {"range m"},
-                   {"delay"},
-                   {"protocol", TextTable::kLeft},
-                   {"from", TextTable::kLeft}});
+std::vector<Sheet> presets_sheets() {
+  Sheet sheet{.columns = {{"preset", Unit::kText},
+                          {"data set", Unit::kText},
+                          {"voxel m"},
+                          {"range m"},
+                          {"delay"},
+                          {"protocol", Unit::kText},
+                          {"from", Unit::kText}},
+              .notes = {"All other settings keep the defaults that `mosbench list methods` shows. "
+                        "A preset of any data set takes what",
+                        "is left open from the data set's first one; of a method, it is run by no "
+                        "other."}};
   for (const Preset& preset : presets()) {
     if (!preset.kind) {
-      table.add_row({std::string(preset.name), "any", "", "as the data set's", "", "",
-                     fmt::format("{} by {}", preset.source, preset.method)});
+      sheet.rows.push_back({std::string(preset.name), "any", "", "as the data set's", "", "",
+                            fmt::format("{} by {}", preset.source, preset.method)});
       continue;
     }
     const auto value = [&](std::string_view setting) {
       return to_string(std::ranges::find(preset.values, setting, &PresetValue::setting)->value);
     };
-    table.add_row({std::string(preset.name), std::string(to_string(*preset.kind)),
-                   value(common_settings::kVoxelSize_m),
-                   fmt::format("{} to {}", value(common_settings::kMinRange_m),
-                               value(common_settings::kMaxRange_m)),
-                   value(common_settings::kDelay_scans), std::string(preset.protocol),
-                   std::string(preset.source)});
+    sheet.rows.push_back({std::string(preset.name), std::string(to_string(*preset.kind)),
+                          value(common_settings::kVoxelSize_m),
+                          fmt::format("{} to {}", value(common_settings::kMinRange_m),
+                                      value(common_settings::kMaxRange_m)),
+                          value(common_settings::kDelay_scans), std::string(preset.protocol),
+                          std::string(preset.source)});
   }
-  return table.str() +
-         "All other settings keep the defaults that `mosbench list methods` shows. A preset of any "
-         "data "
-         "set takes what\nis left open from the data set's first one; of a method, it is run by no "
-         "other.\n";
+  return {sheet};
 }
 
 std::string default_text(const Setting& setting) {
   return setting.is_set ? to_string(setting.value) : fmt::format("as {}", setting.follows);
 }
 
-std::string settings_text(const Settings& settings) {
-  TextTable table({{"  setting", TextTable::kLeft},
-                   {"default"},
-                   {"unit", TextTable::kLeft},
-                   {"legal", TextTable::kLeft},
-                   {"meaning", TextTable::kLeft}});
-  for (const Setting& setting : settings.all()) {
-    table.add_row({fmt::format("  {}", setting.name), default_text(setting), unit_of(setting),
-                   legal_values(setting), std::string(setting.meaning)});
+/// A method or an odometry with its settings.
+template <typename Kind>
+Sheet settings_sheet(const Kind& kind) {
+  Sheet sheet{.lead = {fmt::format("{}: {}", kind.name, kind.summary), std::string(kind.source)},
+              .columns = {{"  setting", Unit::kText},
+                          {"default"},
+                          {"unit", Unit::kText},
+                          {"legal", Unit::kText},
+                          {"meaning", Unit::kText}}};
+  for (const Setting& setting : kind.defaults.all()) {
+    sheet.rows.push_back({fmt::format("  {}", setting.name), default_text(setting),
+                          unit_of(setting), legal_values(setting), std::string(setting.meaning)});
   }
-  return table.str();
+  return sheet;
 }
 
-std::string method_text(const MethodKind& method) {
-  return fmt::format("{}: {}\n{}\n{}\n", method.name, method.summary, method.source,
-                     settings_text(method.defaults));
-}
-
-std::string odometry_text() {
-  std::string text;
-  for (const OdometryKind& kind : odometries()) {
-    text += fmt::format("{}: {}\n{}\n{}\n", kind.name, kind.summary, kind.source,
-                        settings_text(kind.defaults));
-  }
-  TextTable table({{"preset", TextTable::kLeft},
-                   {"odometry", TextTable::kLeft},
-                   {"settings", TextTable::kLeft}});
+std::vector<Sheet> odometry_sheets() {
+  std::vector<Sheet> sheets;
+  for (const OdometryKind& kind : odometries()) sheets.push_back(settings_sheet(kind));
+  Sheet& sheet = sheets.emplace_back();
+  sheet.columns = {{"preset", Unit::kText}, {"odometry", Unit::kText}, {"settings", Unit::kText}};
+  sheet.notes = {"Set by --odometry-preset and --odometry-set KEY=VALUE."};
   for (const OdometryPreset& preset : odometry_presets()) {
     std::vector<std::string> settings;
     for (const auto& [name, value] : preset.settings) {
       settings.push_back(fmt::format("{}={}", name, to_string(value)));
     }
-    table.add_row({std::string(preset.name), std::string(preset.odometry),
-                   fmt::format("{}", fmt::join(settings, ","))});
+    sheet.rows.push_back({std::string(preset.name), std::string(preset.odometry),
+                          fmt::format("{}", fmt::join(settings, ","))});
   }
-  return text + table.str() + "Set by --odometry-preset and --odometry-set KEY=VALUE.\n";
+  return sheets;
 }
 
-std::string methods_text() {
-  std::string text;
-  for (const MethodKind& method : methods()) text += method_text(method);
-  return text + "exec:COMMAND: a program of yours labels the scans, see `mosbench run --help`\n";
+std::vector<Sheet> methods_sheets() {
+  std::vector<Sheet> sheets;
+  for (const MethodKind& method : methods()) sheets.push_back(settings_sheet(method));
+  sheets.push_back(
+      {.lead = {"exec:COMMAND: a program of yours labels the scans, see `mosbench run --help`"}});
+  return sheets;
 }
 
-std::string protocols_text() {
-  std::string text;
+std::vector<Sheet> protocols_sheets() {
+  Sheet sheet;
   for (const ProtocolDescription& protocol : describe_protocols()) {
-    text += fmt::format("{}\n", protocol.name);
+    sheet.lead.emplace_back(protocol.name);
     for (const auto& [what, value] :
          {std::pair{"rule", &protocol.summary}, std::pair{"truth", &protocol.truth},
           std::pair{"moving", &protocol.prediction}, std::pair{"range", &protocol.range},
           std::pair{"average", &protocol.aggregation}, std::pair{"0/0", &protocol.empty_case},
           std::pair{"source", &protocol.source}}) {
-      text += fmt::format("  {:<10}{}\n", what, *value);
+      sheet.lead.push_back(line_of(what, *value));
     }
   }
-  return text;
+  return {sheet};
 }
 
-std::string scenes_text() {
-  TextTable table({{"scene", TextTable::kLeft}, {"what", TextTable::kLeft}});
+std::vector<Sheet> scenes_sheets() {
+  Sheet sheet{.columns = {{"scene", Unit::kText}, {"what", Unit::kText}}};
   for (const SceneSummary& scene : built_in_scenes()) {
-    table.add_row({std::string(scene.name), std::string(scene.content)});
+    sheet.rows.push_back({std::string(scene.name), std::string(scene.content)});
   }
-  return table.str();
+  return {sheet};
 }
 
-std::string formats_text() {
-  TextTable table(
-      {{"format", TextTable::kLeft}, {"files", TextTable::kLeft}, {"what", TextTable::kLeft}});
+std::vector<Sheet> formats_sheets() {
+  Sheet sheet{.columns = {{"format", Unit::kText}, {"files", Unit::kText}, {"what", Unit::kText}}};
   for (const DescribedFormat& format : prediction_formats()) {
-    table.add_row({std::string(format.name), format.per_scan ? "one per scan" : "one per sequence",
-                   std::string(format.description)});
+    sheet.rows.push_back({std::string(format.name),
+                          format.per_scan ? "one per scan" : "one per sequence",
+                          std::string(format.description)});
   }
-  return table.str();
+  return {sheet};
 }
 
 /// The strength that changes nothing.
@@ -172,51 +173,53 @@ std::string none_text(const PerturbKind& kind) {
   return std::isnan(kind.none) ? "beams_of" : fmt::format("{:g}", kind.none);
 }
 
-std::string perturbations_text() {
-  TextTable table({{"kind", TextTable::kLeft},
-                   {"unit", TextTable::kLeft},
-                   {"none"},
-                   {"from"},
-                   {"to"},
-                   {"what", TextTable::kLeft}});
+std::vector<Sheet> perturbations_sheets() {
+  Sheet sheet{.columns = {{"kind", Unit::kText},
+                          {"unit", Unit::kText},
+                          {"none"},
+                          {"from"},
+                          {"to"},
+                          {"what", Unit::kText}},
+              .notes = {"Keys that kinds share:"}};
   for (const PerturbKind& kind : perturb_kinds()) {
-    table.add_row({std::string(kind.name), std::string(kind.unit), none_text(kind),
-                   fmt::format("{:g}", kind.lowest), fmt::format("{:g}", kind.highest),
-                   fmt::format("{} [{}]", kind.definition, kind.source)});
+    sheet.rows.push_back({std::string(kind.name), std::string(kind.unit), none_text(kind),
+                          kind.lowest, kind.highest,
+                          fmt::format("{} [{}]", kind.definition, kind.source)});
   }
-  std::string text = table.str() + "Keys that kinds share:\n";
   for (const PerturbKey& key : perturb_keys()) {
-    text += fmt::format("  {:<17}{}\n", key.name, key.definition);
+    sheet.notes.push_back(fmt::format("  {:<17}{}", key.name, key.definition));
   }
-  return text;
+  return {sheet};
 }
 
 /// One of the things that can be listed.
 struct ListKind {
   std::string_view name, title;
-  std::string (*text)();
+  std::vector<Sheet> (*sheets)();
   nlohmann::ordered_json (*json)();
 };
 
 constexpr ListKind kKinds[] = {
-    {"datasets", "Data sets", datasets_text, datasets_json},
-    {"methods", "Methods", methods_text, methods_json},
-    {"odometry", "Odometry", odometry_text, odometry_json},
-    {"presets", "Presets", presets_text, presets_json},
-    {"protocols", "Protocols", protocols_text, protocols_json},
-    {"scenes", "Scenes", scenes_text, scenes_json},
-    {"formats", "Formats of predictions", formats_text, formats_json},
-    {"perturbations", "Disturbances for --perturb", perturbations_text, perturbations_json},
+    {"datasets", "Data sets", datasets_sheets, datasets_json},
+    {"methods", "Methods", methods_sheets, methods_json},
+    {"odometry", "Odometry", odometry_sheets, odometry_json},
+    {"presets", "Presets", presets_sheets, presets_json},
+    {"protocols", "Protocols", protocols_sheets, protocols_json},
+    {"scenes", "Scenes", scenes_sheets, scenes_json},
+    {"formats", "Formats of predictions", formats_sheets, formats_json},
+    {"perturbations", "Disturbances for --perturb", perturbations_sheets, perturbations_json},
 };
 constexpr std::string_view kAll = "all";
 
-std::string list(std::string_view what) {
-  std::vector<std::string> parts;
+std::vector<Sheet> list_sheets(std::string_view what) {
+  std::vector<Sheet> all;
   for (const ListKind& kind : kKinds) {
-    if (what == kind.name) return kind.text();
-    if (what == kAll) parts.push_back(fmt::format("{}\n\n{}", kind.title, kind.text()));
+    if (what != kind.name && what != kAll) continue;
+    if (what == kAll) all.push_back({.title = std::string(kind.title)});
+    const std::vector<Sheet> sheets = kind.sheets();
+    all.insert(all.end(), sheets.begin(), sheets.end());
   }
-  return fmt::format("{}", fmt::join(parts, "\n"));
+  return all;
 }
 
 nlohmann::ordered_json list_json(std::string_view what) {
@@ -241,7 +244,6 @@ const MethodKind& method_named_by_user(const std::string& name) {
 CommandRun add_list(CLI::App& command) {
   struct Listed {
     std::string what = "all", name;
-    bool json = false;
   };
   auto listed = std::make_shared<Listed>();
   std::vector<std::string> names = {std::string(kAll)};
@@ -253,18 +255,18 @@ CommandRun add_list(CLI::App& command) {
       ->capture_default_str()
       ->check(CLI::IsMember(names));
   command.add_option("NAME", listed->name, "One of the methods");
-  command.add_flag("--json", listed->json, "Print JSON instead of text");
   command.footer(kListFooter);
   return [listed] {
     if (listed->name.empty()) {
-      return Answer{listed->json ? json_text(list_json(listed->what)) : list(listed->what)};
+      return Answer{.sheets = list_sheets(listed->what),
+                    .json = json_text(list_json(listed->what))};
     }
     if (listed->what != "methods") {
       throw UsageError(
           fmt::format("{}: is one argument too many, expected a name after methods", listed->name));
     }
     const MethodKind& method = method_named_by_user(listed->name);
-    return Answer{listed->json ? json_text(method_json(method)) : method_text(method)};
+    return Answer{.sheets = {settings_sheet(method)}, .json = json_text(method_json(method))};
   };
 }
 
