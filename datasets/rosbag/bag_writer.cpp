@@ -58,7 +58,7 @@ rosbag::CompressionType compression_of(const std::string& name) {
   if (name == "none") return rosbag::compression::Uncompressed;
   if (name == "lz4") return rosbag::compression::LZ4;
   if (name == "bz2") return rosbag::compression::BZ2;
-  throw UsageError("--compression: '" + name + "' is not known, expected none, lz4 or bz2");
+  throw UsageError("compression: '" + name + "' is not known, expected none, lz4 or bz2");
 }
 
 }  // namespace

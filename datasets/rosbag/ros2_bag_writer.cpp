@@ -20,7 +20,7 @@ std::unique_ptr<Ros2BagWriter> Ros2BagWriter::open(Ros2Storage storage,
                                                    const std::string& compression) {
   const bool is_mcap = storage == Ros2Storage::kMcap;
   if (compression != "none" && compression != "zstd" && !(is_mcap && compression == "lz4")) {
-    throw UsageError("--compression: '" + compression + "' is not known, expected " +
+    throw UsageError("compression: '" + compression + "' is not known, expected " +
                      (is_mcap ? "none, lz4 or zstd" : "none or zstd"));
   }
   const std::string name = compression == "none" ? "" : compression;  // as both formats have it

@@ -158,6 +158,7 @@ Sheet sheet_of_lines(const Answer& answer) {
 }
 
 std::string csv_of(const Answer& answer) {
+  if (!answer.csv.empty()) return answer.csv;
   if (answer.records) return csv_of(*answer.records, answer.standing);
   std::string text;
   for (const Sheet& sheet : answer.sheets) {
@@ -329,7 +330,7 @@ std::string render(const Answer& answer, Format format, std::size_t columns) {
     case Format::kCsv:
       return csv_of(answer);
     case Format::kLatex:
-      return latex_of(answer);
+      return answer.latex.empty() ? latex_of(answer) : answer.latex;
     case Format::kMarkdown:
       return markdown_of(answer);
     case Format::kHtml:

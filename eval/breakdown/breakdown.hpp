@@ -57,6 +57,11 @@ std::vector<RecallBin> recall_by_age(const std::vector<ObjectTrack>& objects);
 
 /// List the worst `at_most` objects and false positives; all are counted.
 nlohmann::ordered_json to_json(const SequenceBreakdown& breakdown, std::size_t at_most);
-std::vector<Sheet> breakdown_sheets(const SequenceBreakdown& breakdown, std::size_t at_most);
+/// What of a breakdown is shown.
+struct BreakdownParts {
+  bool range = true, height = true, object = true;
+};
+std::vector<Sheet> breakdown_sheets(const SequenceBreakdown& breakdown, const BreakdownParts& parts,
+                                    std::size_t at_most);
 
 }  // namespace mosbench

@@ -180,20 +180,26 @@ ordered_json to_json(const SequenceBreakdown& breakdown, std::size_t at_most) {
   return json;
 }
 
-std::vector<Sheet> breakdown_sheets(const SequenceBreakdown& breakdown, std::size_t at_most) {
+std::vector<Sheet> breakdown_sheets(const SequenceBreakdown& breakdown, const BreakdownParts& parts,
+                                    std::size_t at_most) {
   const std::string headline = fmt::format(
       "sequence {}: {}, {}, speeds {}", breakdown.sequence, counted(breakdown.scans.size(), "scan"),
       counted(breakdown.objects.size(), "moving object"),
       breakdown.stamped ? "by the scans' stamps"
                         : "as if scans came at 10 Hz, as not all have rising stamps");
-  std::vector<Sheet> sheets = {
-      bins_sheet("range", kRangeEdges_m, breakdown.by_range),
-      bins_sheet("height above sensor", kHeightEdges_m, breakdown.by_height),
-      recall_sheet("object size", "objects", recall_by_size(breakdown.objects)),
-      recall_sheet("object speed", "objects", recall_by_speed(breakdown.objects)),
-      recall_sheet("scans since first seen", "sightings", recall_by_age(breakdown.objects)),
-      objects_sheet(breakdown, at_most),
-      false_positives_sheet(breakdown, at_most)};
+  std::vector<Sheet> sheets;
+  const auto& objects = breakdown.objects;
+  if (parts.range) sheets.push_back(bins_sheet("range", kRangeEdges_m, breakdown.by_range));
+  if (parts.height) {
+    sheets.push_back(bins_sheet("height above sensor", kHeightEdges_m, breakdown.by_height));
+  }
+  if (parts.object) {
+    sheets.push_back(recall_sheet("object size", "objects", recall_by_size(objects)));
+    sheets.push_back(recall_sheet("object speed", "objects", recall_by_speed(objects)));
+    sheets.push_back(recall_sheet("scans since first seen", "sightings", recall_by_age(objects)));
+    sheets.push_back(objects_sheet(breakdown, at_most));
+    sheets.push_back(false_positives_sheet(breakdown, at_most));
+  }
   sheets.front().lead.push_back(headline);
   return sheets;
 }

@@ -16,24 +16,14 @@
 #include "eval/answer/render.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/cli/help_text.hpp"
+#include "eval/cli/old_words.hpp"
 #include "eval/cli/output_file.hpp"
 #include "eval/cli/suggested_command.hpp"
+#include "eval/results/tell.hpp"
 #include "eval/results/version.hpp"
 
 namespace mosbench {
 namespace {
-
-constexpr const char* kProgramFooter = R"(Examples:
-  mosbench simulate --layout semantickitti --scene street --scans 40 --seed 1 --out sim
-  mosbench run sim --out results/runs/sim
-  mosbench score sim --predictions results/runs/sim --protocol semantickitti-mos
-  mosbench report results/runs/sim -o report.html
-  mosbench render results/runs/sim --scan 20 -o scan.png
-  mosbench list protocols
-
-Exit codes: 0 done, 1 done and the finding is bad (a regression, a warning), 2 wrong usage or
-configuration, 3 unusable files or too little memory or threads, 70 a fault of mosbench itself.
-`mosbench help COMMAND` shows the flags of a command with examples.)";
 
 /// Otherwise `run DATA --out --json` would write into a folder "--json".
 void refuse_flags_as_values(CLI::App& command) {
@@ -45,36 +35,17 @@ void refuse_flags_as_values(CLI::App& command) {
   }
 }
 
-/// Words of old that mean --as; those that take no value name the format.
-struct OldWord {
-  std::string_view command, flag, format;
-};
-constexpr OldWord kOldWords[] = {
-    {"rank", "--format", ""},           {"reproduce", "--format", ""}, {"table", "--format", ""},
-    {"curve", "--format", ""},          {"study", "--format", ""},     {"stats", "--csv", "csv"},
-    {"compare", "--output-format", ""}, {"trajectory", "--csv", "csv"}};
-
-/// Adds --as, --json and the words of old to a command. `format` gets the name.
+/// Adds --as and --json to a command. `format` gets the name.
 void add_format_flags(CLI::App& command, const Command& row, std::string& format) {
   std::vector<std::string> names(format_names().begin(), format_names().end());
   if (!row.draws) std::erase(names, "png");
   const CLI::IsMember known(names);
   CLI::Option* as = command.add_option("--as", format, "How to print the answer")->check(known);
-  CLI::Option* json = command.get_option_no_throw("--json");  // that of profile names a file
-  if (json == nullptr) {
-    const auto choose = [&format] { format = "json"; };
-    json = command.add_flag_callback("--json", choose, "As --as json")->excludes(as);
-  }
-  for (const OldWord& old : kOldWords) {
-    if (old.command != row.name || command.get_option_no_throw(std::string(old.flag)) != nullptr) {
-      continue;
-    }
-    CLI::Option* option = old.format.empty()
-                              ? command.add_option(std::string(old.flag), format)->check(known)
-                              : command.add_flag_callback(std::string(old.flag),
-                                                          [&format, &old] { format = old.format; });
-    option->group("")->excludes(as)->excludes(json);
-  }
+  if (command.get_option_no_throw("--json") != nullptr) return;
+  command
+      .add_flag_callback(
+          "--json", [&format] { format = "json"; }, "As --as json")
+      ->excludes(as);
 }
 
 /// The parser of the program, and what runs each of its commands.
@@ -87,17 +58,15 @@ struct Program {
   std::string format;  ///< empty where none was asked for
 
   Program() {
-    app.formatter(std::make_shared<HelpText>());
     app.set_version_flag("-V,--version",
                          fmt::format("mosbench {} ({})", kMosbenchVersion, kCompiler),
                          "Print version and compiler, and exit");
-    app.set_help_flag("-h,--help", "Print this help, and exit");
-    app.footer(kProgramFooter);
+    app.set_help_flag("-h,--help", "Print the usual flags and examples, and exit");
+    app.set_help_all_flag("--help-all", "Print all flags, details and more examples, and exit");
     app.require_subcommand(1);
     for (const Command& row : commands()) {
       CLI::App* command = app.add_subcommand(std::string(row.name), std::string(row.help));
       command->group("Commands");
-      if (!row.alias.empty()) command->alias(std::string(row.alias));
       runs[command] = row.add(*command);
       add_format_flags(*command, row, format);
       refuse_flags_as_values(*command);
@@ -174,33 +143,70 @@ Printed printed(const Answer& answer, const std::string& asked, std::size_t colu
   return result;
 }
 
-}  // namespace
-
-Printed answer_to(std::vector<std::string> arguments, std::size_t columns) {
-  refuse_unknown_command(arguments);
-  Program program;
-  const std::vector<std::string> typed = arguments;
-  const auto chosen = [&] {
-    const auto commands = program.app.get_subcommands();
-    return commands.empty() ? &program.app : commands.front();
+/// Returns the line in the words of today, and says it on stderr where it was another.
+std::vector<std::string> without_old_words(const CLI::App& app, std::vector<std::string> typed) {
+  const auto takes_value = [&](const std::string& command, const std::string& flag) {
+    const auto named =
+        app.get_subcommands([&](const CLI::App* row) { return row->get_name() == command; });
+    const CLI::Option* option = named.empty() ? nullptr : named.front()->get_option_no_throw(flag);
+    return option != nullptr && option->get_items_expected_max() > 0;
   };
+  std::vector<std::string> now = in_new_words(typed, takes_value);
+  if (now != typed) tell(fmt::format("the next release knows only the words{}", typed_line(now)));
+  return now;
+}
+
+/// Returns the command that was named, or the program where none was.
+const CLI::App& chosen(const Program& program) {
+  const auto commands = program.app.get_subcommands();
+  return commands.empty() ? program.app : *commands.front();
+}
+
+/// Parses the arguments and returns their command. Throws UsageError, and CLI::Success where help
+/// or version was asked for.
+const CLI::App& parse(Program& program, std::vector<std::string> arguments) {
+  refuse_unknown_command(arguments);
   try {
     std::ranges::reverse(arguments);  // as CLI11 expects them
     program.app.parse(std::move(arguments));
+  } catch (const CLI::Success&) {
+    throw;
+  } catch (const CLI::ParseError& error) {
+    const std::string name = full_name(chosen(program));
+    refuse_unknown_arguments(chosen(program), name);
+    throw UsageError(fmt::format("{}; see {} --help", error.what(), name));
+  }
+  return chosen(program);
+}
+
+}  // namespace
+
+Printed answer_to(std::vector<std::string> arguments, std::size_t columns) {
+  Program program;
+  arguments = without_old_words(program.app, std::move(arguments));
+  const CLI::App* command = nullptr;
+  try {
+    command = &parse(program, arguments);
   } catch (const CLI::CallForVersion& version) {
     return {std::string(version.what()) + '\n', 0, true};
   } catch (const CLI::CallForHelp&) {
-    return {help_of(*chosen()), 0, true};
-  } catch (const CLI::ParseError& error) {
-    const std::string name = full_name(*chosen());
-    refuse_unknown_arguments(*chosen(), name);
-    throw UsageError(fmt::format("{}; see {} --help", error.what(), name));
+    return {help_of(chosen(program)), 0, true};
+  } catch (const CLI::CallForAllHelp&) {
+    return {help_of(chosen(program), true), 0, true};
   }
   try {
-    return printed(program.runs.at(chosen())(), program.format, columns);
+    return printed(program.runs.at(command)(), program.format, columns);
   } catch (const MissingPoses& error) {
-    const std::string commands = commands_with_odometry(*chosen(), typed);
+    const std::string commands = commands_with_odometry(*command, arguments);
     throw DataError(error.what() + (commands.empty() ? "" : ":" + commands));
+  }
+}
+
+void check_line(std::vector<std::string> arguments) {
+  Program program;
+  try {
+    parse(program, std::move(arguments));
+  } catch (const CLI::Success&) {  // asks for help
   }
 }
 

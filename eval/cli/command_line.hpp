@@ -18,4 +18,7 @@ struct Printed {
 /// arguments that are not understood, naming the nearest command or flag.
 Printed answer_to(std::vector<std::string> arguments, std::size_t columns);
 
+/// Parses as `answer_to` does and runs nothing.
+void check_line(std::vector<std::string> arguments);
+
 }  // namespace mosbench

@@ -1,3 +1,5 @@
+#include "eval/cli/compare_command.hpp"
+
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -7,40 +9,15 @@
 #include "eval/answer/answer_text.hpp"
 #include "eval/answer/render.hpp"
 #include "eval/cli/commands.hpp"
+#include "eval/cli/dataset_flags.hpp"
+#include "eval/cli/help_text.hpp"
 #include "eval/cli/output_file.hpp"
 #include "eval/statistics/gate_report.hpp"
 #include "eval/statistics/paired_runs.hpp"
+#include "eval/statistics/statistics_report.hpp"
 
 namespace mosbench {
 namespace {
-
-constexpr const char* kCompareFooter =
-    R"(BASELINE and NEW are folders of results (mosbench run, mosbench score --out, mosbench bless). Their
-scans are paired. A sequence, or all of them together, regresses when its IoU drops by more than
---max-drop: both runs label the same scans, so no drop is chance. The 95 % interval of the paired
-difference is shown as a note; it says whether other scans like these would show the drop. With
---statistical a drop must also exceed the half-width of that interval. Runs of another protocol,
-method, setting, scans or input are refused; --even-if compares the scans that both have.
-
-For pull requests: --as github adds an annotation per regression to the text, and
---summary writes the table in markdown.
-
-Exit codes: 0 pass, 1 regression, 2 wrong usage, 3 unusable or unlike results.
-
-Examples:
-  mosbench compare results/baseline/highway-online results/runs/highway
-  mosbench compare results/baseline/highway-online results/runs/highway --max-drop 0.1 --json
-  mosbench compare results/baseline/highway-online results/runs/highway --as github \
-    --summary gate.md)";
-
-struct CompareFlags {
-  std::filesystem::path baseline, newer;
-  double max_drop_points = 0.5;
-  bool statistical = false;
-  bool even_if = false;
-  bool quiet = false;
-  std::filesystem::path summary;
-};
 
 Answer answer_of(const ResultSet& baseline, const ResultSet& newer, const PairedRuns& paired,
                  const GateResult& result) {
@@ -85,7 +62,30 @@ Answer compare(const CompareFlags& options) {
   return options.quiet && result.passed() ? Answer{} : answer;
 }
 
+Answer answer(const CompareFlags& options) {
+  if (options.accept) return accepted(options);
+  if (options.by.empty()) return compare(options);
+  if (!options.shows("sequence")) return scans_and_objects(options);
+  if (options.by.size() == 1) return paired_difference(options);
+  throw UsageError("--by sequence: goes with nothing else, expected it alone, or scan,object");
+}
+
 }  // namespace
+
+Answer paired_difference(const CompareFlags& options) {
+  const ResultSet first = load_result_set(options.baseline);
+  const ResultSet second = load_result_set(options.newer);
+  PairedRuns paired = pair_runs(first, second);
+  std::erase_if(paired.unlike,
+                [](const Unlike& unlike) { return unlike.kind == Unlike::Kind::kSetting; });
+  std::vector<Unlike> refused = paired.unlike;
+  std::erase_if(refused, [](const Unlike& unlike) { return unlike.kind == Unlike::Kind::kPoses; });
+  if (!refused.empty()) {
+    throw DataError(second.path, "is not like " + first.path.string() + ": " + unlike_text(refused),
+                    "the same protocol, scans and truth");
+  }
+  return difference_answer(first, second, paired);
+}
 
 CommandRun add_compare(CLI::App& command) {
   auto options = std::make_shared<CompareFlags>();
@@ -101,11 +101,26 @@ CommandRun add_compare(CLI::App& command) {
   command.add_flag("--statistical", options->statistical,
                    "Fail only when the drop also exceeds what its 95 % interval leaves open");
   command.add_flag("--even-if", options->even_if, "Also compare results of different kinds");
+  command
+      .add_option(
+          "--by", options->by,
+          "Judge nothing and show what NEW changes in each sequence (also of another method "
+          "or setting), or on which scans and objects the two disagree")
+      ->type_name("WHAT,...")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(CLI::IsMember({"sequence", "scan", "object"}));
+  command.add_option("--data", options->data, "Data set of both, for --by object")
+      ->type_name("DIR");
+  add_dataset_kind_flag(command, options->dataset);
+  command.get_option("--dataset")->group(kRareGroup);
+  command.add_option("--top", options->top, "How many scans and objects --by lists")
+      ->capture_default_str();
+  command.add_flag("--accept", options->accept, "Make NEW the baseline and show what changes");
   command.add_option("--summary", options->summary, "Also write the table in markdown to FILE")
       ->type_name("FILE");
   command.add_flag("-q,--quiet", options->quiet, "Print nothing when it passes");
-  command.footer(kCompareFooter);
-  return [options] { return compare(*options); };
+  return [options] { return answer(*options); };
 }
 
 }  // namespace mosbench

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
 #include <memory>
 #include <optional>
 
@@ -8,8 +10,10 @@
 #include "datasets/layouts/convert.hpp"
 #include "datasets/text/counted.hpp"
 #include "datasets/text/errors.hpp"
+#include "datasets/text/nearest_name.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/cli/dataset_flags.hpp"
+#include "eval/cli/help_text.hpp"
 #include "eval/cli/odometry_flags.hpp"
 #include "eval/engine/run_plan.hpp"
 #include "eval/results/progress.hpp"
@@ -18,27 +22,14 @@
 namespace mosbench {
 namespace {
 
-constexpr const char* kConvertFooter =
-    R"(Writes the scans, LiDAR poses, stamps and truth of DATA in another layout, for other programs.
-Points keep their bits and their order. Truth becomes .label files with the ids of the source. In
-the layouts of DOALS it becomes rows of indices.csv with the points of ids 251 to 259, and scans
-without stamps get stamps 0.1 s apart. ROS 2 bags have the topics /points, where truth is the field
-label, and /tf. OpenSceneFlow's .h5 files keep the flow of DATA; truth without speeds becomes the
-array mos_label. As nuscenes each sequence is a scene with tables of its own, and each moving
-point an annotation. As kitti-raw and kitti-tracking points that move are in boxes that do, and what
-the camera does not see has no label.
-
-Examples:
-  mosbench convert ~/doals/station/sequence_1 --layout semantickitti --out ~/doals-kitti
-  mosbench convert ~/doals --sequences 1,2 --layout doals --out ~/doals-bin
-  mosbench convert sim/doals --layout doals-bag --compression lz4 --out sim/bags
-  mosbench convert drive.bag --layout ros2-mcap --compression zstd --out ~/drive-ros2
-  mosbench convert ~/kitti --sequences 08 --poses suma.txt --layout semantickitti --out ~/kitti-suma
-  mosbench convert ~/folder-with-a-bag --odometry simple --layout semantickitti --out ~/posed)";
+constexpr std::array<std::string_view, 12> kLayouts = {
+    "doals",    "doals-bag", "sipailou",  "helimos",        "semantickitti", "opensceneflow",
+    "nuscenes", "helipr",    "kitti-raw", "kitti-tracking", "ros2-mcap",     "ros2-db3"};
+constexpr std::array<std::string_view, 4> kCompressions = {"none", "lz4", "bz2", "zstd"};
 
 struct ConvertFlags {
   std::filesystem::path input;
-  std::string dataset = "auto", layout, compression;
+  std::string dataset = "auto", layout;
   std::vector<std::string> sequences;
   ReadingOptions reading;
   OdometryOptions odometry;
@@ -46,8 +37,14 @@ struct ConvertFlags {
   unsigned threads = hardware_threads();
 };
 
-/// The layouts that are bags; any other is that of a data set.
-void set_layout(const std::string& name, ConvertOptions& conversion) {
+/// Takes "semantickitti" or, of bags, "ros2-mcap:zstd". Returns the name without compression.
+std::string set_layout(const std::string& text, ConvertOptions& conversion) {
+  const std::size_t colon = text.find(':');
+  const std::string name = text.substr(0, colon);
+  if (std::ranges::find(kLayouts, name) == kLayouts.end()) {
+    throw UsageError(fmt::format("--layout: '{}' is not known, expected one of {} (nearest: {})",
+                                 name, fmt::join(kLayouts, ", "), nearest_name(name, kLayouts)));
+  }
   conversion.writing.bag = name == "doals-bag"   ? BagKind::kRos1
                            : name == "ros2-mcap" ? BagKind::kMcap
                            : name == "ros2-db3"  ? BagKind::kDb3
@@ -57,12 +54,15 @@ void set_layout(const std::string& name, ConvertOptions& conversion) {
   } else {
     conversion.layout = name == "doals-bag" ? DatasetKind::kDoals : DatasetKind::kRecording;
   }
-}
-
-/// SQLite has no chunks that lz4 could pack.
-std::string compression_of(const ConvertFlags& options) {
-  if (!options.compression.empty()) return options.compression;
-  return options.layout == "ros2-db3" ? "none" : "lz4";
+  // SQLite has no chunks that lz4 could pack.
+  conversion.writing.compression = name == "ros2-db3" ? "none" : "lz4";
+  if (colon == std::string::npos) return name;
+  conversion.writing.compression = text.substr(colon + 1);
+  if (std::ranges::find(kCompressions, conversion.writing.compression) == kCompressions.end()) {
+    throw UsageError(fmt::format("--layout {}: the compression is not known, expected one of {}",
+                                 text, fmt::join(kCompressions, ", ")));
+  }
+  return name;
 }
 
 /// A flow has no threshold: who reads it chooses one.
@@ -77,8 +77,7 @@ void check_kept_speed(const ConvertFlags& options, DatasetKind source) {
 
 std::string convert_dataset(ConvertFlags options) {
   ConvertOptions& conversion = options.conversion;
-  set_layout(options.layout, conversion);
-  conversion.writing.compression = compression_of(options);
+  const std::string layout = set_layout(options.layout, conversion);
   const std::optional<OdometryChoice> odometry = named_odometry(options.odometry, options.reading);
   options.reading.poses_by_odometry = odometry.has_value();
   Dataset dataset = open_dataset(
@@ -101,7 +100,7 @@ std::string convert_dataset(ConvertFlags options) {
   };
   for (const std::string& sentence : convert(dataset, conversion, count)) tell(sentence);
   return fmt::format("converted {} of {} to {} in {}\n", counted(scans, "scan"),
-                     options.input.string(), options.layout, conversion.out.string());
+                     options.input.string(), layout, conversion.out.string());
 }
 
 }  // namespace
@@ -110,22 +109,18 @@ CommandRun add_convert(CLI::App& command) {
   auto options = std::make_shared<ConvertFlags>();
   add_dataset_flags(command, options->input, options->dataset, options->sequences,
                     options->reading);
-  command.add_option("--layout", options->layout, "Layout to write")
+  command
+      .add_option(
+          "--layout", options->layout,
+          "Layout to write; ros2-mcap:zstd also says how a bag is compressed: none, lz4, bz2 "
+          "(ROS 1) or zstd (ROS 2) (default: lz4, of ros2-db3 none)")
       ->required()
-      ->check(CLI::IsMember({"doals", "doals-bag", "sipailou", "helimos", "semantickitti",
-                             "opensceneflow", "nuscenes", "helipr", "kitti-raw", "kitti-tracking",
-                             "ros2-mcap", "ros2-db3"}));
+      ->type_name(type_of_names({kLayouts.begin(), kLayouts.end()}));
   command.add_option("--out", options->conversion.out, "Root of the data set to write")
       ->type_name("DIR")
       ->required();
-  command
-      .add_option("--compression", options->compression,
-                  "Of the bag: bz2 for ROS 1, zstd for ROS 2, lz4 not for ros2-db3 (default: lz4, "
-                  "there none)")
-      ->check(CLI::IsMember({"none", "lz4", "bz2", "zstd"}));
-  add_odometry_flags(command, options->odometry);
+  add_odometry_flag(command, options->odometry, "Find the poses by it instead of reading them");
   add_threads_flag(command, options->threads);
-  command.footer(kConvertFooter);
   return [options] { return Answer{convert_dataset(*options)}; };
 }
 

@@ -2,25 +2,30 @@
 #include <memory>
 
 #include "eval/cli/commands.hpp"
+#include "eval/cli/completion.hpp"
 #include "eval/cli/help_text.hpp"
 
 namespace mosbench {
 namespace {
 
-constexpr const char* kHelpFooter = R"(Examples:
-  mosbench help
-  mosbench help run)";
+struct HelpFlags {
+  std::string command, shell;
+};
 
 }  // namespace
 
 CommandRun add_help(CLI::App& command) {
-  auto name = std::make_shared<std::string>();
-  command.add_option("COMMAND", *name, "A command of mosbench (default: mosbench itself)");
-  command.footer(kHelpFooter);
-  return [name, &program = *command.get_parent()] {
-    if (name->empty()) return Answer{help_of(program)};
-    check_command_name(*name);
-    return Answer{help_of(*program.get_subcommand(*name))};
+  auto flags = std::make_shared<HelpFlags>();
+  command.add_option("COMMAND", flags->command, "A command of mosbench (default: mosbench itself)");
+  command
+      .add_option("--completion", flags->shell,
+                  "Print what completes words in this shell; or a table of the commands")
+      ->check(CLI::IsMember({"bash", "zsh", "commands"}));
+  return [flags, &program = *command.get_parent()] {
+    if (!flags->shell.empty()) return Answer{completion_of(program, flags->shell)};
+    if (flags->command.empty()) return Answer{help_of(program)};
+    check_command_name(flags->command);
+    return Answer{help_of(*program.get_subcommand(flags->command))};
   };
 }
 

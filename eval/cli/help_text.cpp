@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <sstream>
 #include <vector>
 
 #include "datasets/text/errors.hpp"
 #include "datasets/text/nearest_name.hpp"
 #include "eval/cli/commands.hpp"
+#include "eval/cli/dataset_flags.hpp"
 
 namespace mosbench {
 namespace {
@@ -71,7 +73,35 @@ std::string description_of(const CLI::Option& option, bool is_positional) {
 
 }  // namespace
 
-HelpText::HelpText() { label("Positionals", "Arguments"); }
+HelpText::HelpText(bool all) : all_(all) { label("Positionals", "Arguments"); }
+
+std::string HelpText::make_help(const CLI::App* app, std::string name,
+                                CLI::AppFormatMode mode) const {
+  return make_description(app) + make_usage(app, std::move(name)) + make_positionals(app) +
+         flags_of(*app) + make_subcommands(app, mode) + '\n' + page_of(*app);
+}
+
+std::string HelpText::flags_of(const CLI::App& command) const {
+  std::string text;
+  for (const std::string& group : command.get_groups()) {
+    if (group.empty() || (!all_ && (group == kRareGroup || group == kReadingGroup))) continue;
+    const auto options = command.get_options([&](const CLI::Option* option) {
+      return option->get_group() == group && option->nonpositional();
+    });
+    if (!options.empty()) text += make_group(group, false, options);
+  }
+  const bool reads = command.get_option_no_throw("--deskew") != nullptr;
+  return all_ && reads ? text + '\n' + read_keys_text() : text;
+}
+
+std::string HelpText::page_of(const CLI::App& command) const {
+  const std::string_view page = help_page(command.get_name());
+  constexpr std::string_view kRest = "---\n";
+  const std::size_t rest = std::min(page.find(kRest), page.size());
+  std::string text(page.substr(0, rest));
+  if (all_ && rest < page.size()) text += '\n' + std::string(page.substr(rest + kRest.size()));
+  return text;
+}
 
 std::string HelpText::make_usage(const CLI::App* app, std::string name) const {
   std::string usage = "\nUsage: " + name + (app->get_parent() == nullptr ? " COMMAND" : "");
@@ -84,12 +114,17 @@ std::string HelpText::make_usage(const CLI::App* app, std::string name) const {
 }
 
 std::string HelpText::make_option(const CLI::Option* option, bool is_positional) const {
-  std::string left = "  " + spaced(make_option_name(option, is_positional));
-  if (!is_positional && option->get_items_expected_max() > 0) left += ' ' + value_name(*option);
-  const std::size_t indent = get_column_width();
-  left += left.size() + 2 <= indent ? std::string(indent - left.size(), ' ')
-                                    : '\n' + std::string(indent, ' ');
-  return left + wrapped(description_of(*option, is_positional), indent) + '\n';
+  std::string name = spaced(make_option_name(option, is_positional));
+  if (!is_positional && option->get_items_expected_max() > 0) name += ' ' + value_name(*option);
+  return help_row(name, description_of(*option, is_positional));
+}
+
+std::string help_row(const std::string& name, const std::string& meaning) {
+  constexpr std::size_t kIndent = 30;
+  std::string left = "  " + name;
+  left += left.size() + 2 <= kIndent ? std::string(kIndent - left.size(), ' ')
+                                     : '\n' + std::string(kIndent, ' ');
+  return left + wrapped(meaning, kIndent) + '\n';
 }
 
 std::string type_of_names(const std::vector<std::string_view>& names) {
@@ -101,22 +136,16 @@ std::string full_name(const CLI::App& command) {
   return parent == nullptr ? command.get_name() : parent->get_name() + ' ' + command.get_name();
 }
 
-std::string help_of(const CLI::App& command) {
+std::string help_of(const CLI::App& command, bool all) {
   // App::help would show the help of the chosen command instead.
-  std::string text =
-      command.get_formatter()->make_help(&command, full_name(command), CLI::AppFormatMode::Normal);
-  // The groups of options come two blank lines apart.
-  for (std::size_t at = 0; (at = text.find("\n\n\n", at)) != std::string::npos;) text.erase(at, 1);
-  return text;
+  return HelpText(all).make_help(&command, full_name(command), CLI::AppFormatMode::Normal);
 }
 
 void check_command_name(const std::string& name) {
   std::vector<std::string_view> names;
   for (const Command& command : commands()) {
-    for (const std::string_view known : command.names()) {
-      if (name == known) return;
-      names.push_back(known);
-    }
+    if (name == command.name) return;
+    names.push_back(command.name);
   }
   throw UsageError(fmt::format("'{}' is not a command (nearest: {}); see mosbench --help", name,
                                nearest_name(name, names)));

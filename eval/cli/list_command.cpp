@@ -23,16 +23,6 @@
 namespace mosbench {
 namespace {
 
-constexpr const char* kListFooter = R"(Examples:
-  mosbench list
-  mosbench list methods
-  mosbench list methods dynablox
-  mosbench list odometry
-  mosbench list presets
-  mosbench list datasets
-  mosbench list perturbations
-  mosbench list methods --json)";
-
 /// "  what      value", below the name of a thing.
 std::string line_of(std::string_view what, std::string_view value) {
   return fmt::format("  {:<10}{}", what, value);
@@ -115,7 +105,7 @@ std::vector<Sheet> odometry_sheets() {
   for (const OdometryKind& kind : odometries()) sheets.push_back(settings_sheet(kind));
   Sheet& sheet = sheets.emplace_back();
   sheet.columns = {{"preset", Unit::kText}, {"odometry", Unit::kText}, {"settings", Unit::kText}};
-  sheet.notes = {"Set by --odometry-preset and --odometry-set KEY=VALUE."};
+  sheet.notes = {"Set by --odometry KIND:PRESET,KEY=VALUE."};
   for (const OdometryPreset& preset : odometry_presets()) {
     std::vector<std::string> settings;
     for (const auto& [name, value] : preset.settings) {
@@ -255,7 +245,6 @@ CommandRun add_list(CLI::App& command) {
       ->capture_default_str()
       ->check(CLI::IsMember(names));
   command.add_option("NAME", listed->name, "One of the methods");
-  command.footer(kListFooter);
   return [listed] {
     if (listed->name.empty()) {
       return Answer{.sheets = list_sheets(listed->what),

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "datasets/text/errors.hpp"
 #include "eval/cli/dataset_flags.hpp"
 #include "eval/cli/help_text.hpp"
 
@@ -26,15 +27,31 @@ void append_split(const std::string& assignments, std::vector<std::string>& list
   }
 }
 
-}  // namespace
+/// "@FILE", "moving=ever" or an assignment to one of the method's settings.
+void take_setting(const std::string& text, RunOptions& options) {
+  constexpr std::string_view kMoving = "moving=";
+  if (text.starts_with('@')) {
+    if (options.config_file) {
+      throw UsageError(fmt::format("--set {}: is a second file, expected one", text));
+    }
+    options.config_file = text.substr(1);
+  } else if (text.starts_with(kMoving)) {
+    options.moving = text.substr(kMoving.size());
+  } else {
+    options.assignments.push_back(text);
+  }
+}
 
 // --set takes one argument; what follows it as in `--set a=1 b=2 DATA` goes to a positional option
 // of its own, defined before DATA, that accepts assignments only.
-void add_set_flag(CLI::App& command, std::vector<std::string>& assignments) {
+void add_set_flag(CLI::App& command, RunOptions& options) {
   CLI::Option* set = command.add_option_function<std::vector<std::string>>(
-      "--set", [](const auto&) {}, "Settings, which win over all others");
+      "--set", [](const auto&) {},
+      "Settings, which win over all others; @FILE holds a JSON object of them");
   set->type_name("KEY=VALUE,...")->allow_extra_args(false)->check([](const std::string& text) {
-    return text.find('=') != std::string::npos ? "" : text + " has no value, expected key=value";
+    return text.starts_with('@') || text.find('=') != std::string::npos
+               ? ""
+               : text + " has no value, expected key=value or @FILE";
   });
   CLI::Option* further = command.add_option_function<std::vector<std::string>>(
       "SETTING", [](const auto&) {}, "Further settings of --set");
@@ -43,17 +60,21 @@ void add_set_flag(CLI::App& command, std::vector<std::string>& assignments) {
   });
   command.validate_positionals();
   // Where a setting is given twice, the later one counts.
-  command.final_callback([&command, &assignments, set, further] {
+  command.final_callback([&command, &options, set, further] {
+    std::vector<std::string> assignments;
     std::size_t of_flag = 0, positional = 0;
     for (const CLI::Option* option : command.parse_order()) {
       if (option == set) append_split(set->results().at(of_flag++), assignments);
       if (option == further) append_split(further->results().at(positional++), assignments);
     }
+    for (const std::string& assignment : assignments) take_setting(assignment, options);
   });
 }
 
+}  // namespace
+
 void add_method_options(CLI::App& command, RunOptions& options) {
-  add_set_flag(command, options.assignments);
+  add_set_flag(command, options);
   add_dataset_flags(command, options.input, options.dataset, options.sequences, options.reading);
   command
       .add_option("--method", options.method,
@@ -64,21 +85,6 @@ void add_method_options(CLI::App& command, RunOptions& options) {
       .add_option("--preset", options.preset,
                   "Published settings, or `best` (default: by data set)")
       ->type_name("PRESET");
-  const Settings& of_paper = default_method().defaults;
-  command
-      .add_option("--variant", options.variant,
-                  fmt::format("Short for --set variant=NAME (default: {})",
-                              of_paper.choice(common_settings::kVariant)))
-      ->type_name(type_of_names(of_paper.find(common_settings::kVariant)->choices));
-  command
-      .add_option(
-          "--moving", options.moving,
-          "What hmm-mos-plus calls moving: now, or with ever or ever:SECONDS whatever moved of "
-          "late, to 10 s")
-      ->type_name("WHEN")
-      ->capture_default_str();
-  command.add_option("--config", options.config_file, "JSON object of settings of the method")
-      ->type_name("FILE");
   add_threads_flag(command, options.threads);
 }
 

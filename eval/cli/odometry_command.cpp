@@ -13,7 +13,6 @@
 #include "eval/answer/answer_text.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/cli/dataset_flags.hpp"
-#include "eval/cli/method_options.hpp"
 #include "eval/cli/odometry_flags.hpp"
 #include "eval/cli/output_file.hpp"
 #include "eval/cli/suggested_command.hpp"
@@ -28,50 +27,22 @@
 namespace mosbench {
 namespace {
 
-constexpr const char* kOdometryFooter =
-    R"(Finds the poses of the scans from the scans alone and writes them: rows of 12 numbers (KITTI), or
-"stamp x y z qx qy qz qw" (TUM) if FILE ends in .tum or --format says so. The map frame is that of
-the first scan. They are the LiDAR's, also where the data set's own are a camera's: beside KITTI's
-rows, which do not tell, FILE.frame says so to the commands that read FILE. For several sequences
-FILE is a folder, and each is written to FILE/<sequence>.txt with a record in FILE/<sequence>.json.
-The same command again, after a kill, keeps the finished ones and starts the interrupted one again
-from its first scan.
-
-Scans whose points have times (those of bags, or by --point-times) are corrected for the motion of
-the sensor before they are registered: by the motion since the scan before (--deskew velocity, the
-default), or by the one that a first registration found (poses).
-
---drop-moving also runs hmm-mos with the preset of the data set; what it finds moving in a scan
-stays out of the map that the next scans are registered to.
-
-A pose is doubtful when registration was not possible, little of the scan overlaps the map, the
-surfaces hardly constrain some motion (corridor, empty field), registration from a little beside it
-settles elsewhere (flat ground, too fast), or the pose lies far off constant velocity. Doubtful
-poses are written anyway, listed in the answer, and set the exit code to 1.
-
-Settings: defaults < --preset < --config FILE < --set, as for methods. --json prints them and, per
-scan, the pose, its covariance (rotation in rad, then translation in m, map frame), condition,
-overlap and doubt.
-
-Examples:
-  mosbench odometry ~/kitti/sequences/04 -o poses.txt --preset kitti-online
-  mosbench odometry ~/drive.bag -o poses.tum --set min_range_m=1,max_range_m=60
-  mosbench odometry ~/kitti/2011_09_26 --sequences 0005 -o poses.txt --point-times azimuth
-  mosbench odometry ~/kitti/sequences/04 -o kiss.txt --odometry kiss --json > kiss.json
-  mosbench trajectory poses.txt --truth ~/kitti/sequences/04 --align origin)";
-
 struct OdometryFlags {
   std::filesystem::path input, out;
   std::string dataset = "auto";
   std::vector<std::string> sequences;
   ReadingOptions reading;
   OdometryOptions odometry;
-  std::optional<std::string> format;
+  bool as_tum = false;
   unsigned threads = hardware_threads();
 };
 
-bool writes_tum(const OdometryFlags& flags) {
-  return flags.format ? *flags.format == "tum" : flags.out.extension() == ".tum";
+/// FILE, or kitti:FILE or tum:FILE where its name does not say.
+void take_out(const std::string& text, OdometryFlags& flags) {
+  constexpr std::string_view kKitti = "kitti:", kTum = "tum:";
+  const bool says_tum = text.starts_with(kTum), says_kitti = text.starts_with(kKitti);
+  flags.out = text.substr(says_tum ? kTum.size() : says_kitti ? kKitti.size() : 0);
+  flags.as_tum = says_tum || (!says_kitti && flags.out.extension() == ".tum");
 }
 
 /// What two records must share for their poses to be the same.
@@ -123,7 +94,7 @@ FoundPoses find_poses_of(const Sequence& sequence, const std::filesystem::path& 
                          const OdometryChoice& choice, const OdometryFlags& flags) {
   FoundPoses found{sequence, file,
                    scans_json(sequence, estimate_poses(sequence, choice, flags.threads))};
-  write_pose_file(file, pose_rows(found, writes_tum(flags)), writes_tum(flags));
+  write_pose_file(file, pose_rows(found, flags.as_tum), flags.as_tum);
   return found;
 }
 
@@ -132,10 +103,10 @@ FoundPoses find_poses_of(const Sequence& sequence, const std::filesystem::path& 
 FoundPoses find_or_keep(const Sequence& sequence, const OdometryChoice& choice,
                         const OdometryFlags& flags) {
   const std::filesystem::path stem = flags.out / sequence.name();
-  const std::filesystem::path file = stem.string() + (writes_tum(flags) ? ".tum" : ".txt");
+  const std::filesystem::path file = stem.string() + (flags.as_tum ? ".tum" : ".txt");
   const std::filesystem::path record = stem.string() + ".json";
   const nlohmann::ordered_json identity = record_identity(sequence, choice);
-  if (auto scans = recorded_scans(record, identity, {sequence, file, {}}, writes_tum(flags))) {
+  if (auto scans = recorded_scans(record, identity, {sequence, file, {}}, flags.as_tum)) {
     tell(fmt::format("{}: finished by an earlier call, kept", sequence.name()));
     return {sequence, file, std::move(*scans)};
   }
@@ -162,7 +133,7 @@ Answer odometry_answer(OdometryFlags flags) {
       flags.input, {dataset_kind_option(flags.dataset), flags.sequences, flags.reading});
   choice = with_filter(std::move(choice), flags.odometry, dataset.kind);
   for (const auto& sequence : dataset.sequences) {
-    if (writes_tum(flags)) check_stamps_of_tum(*sequence);
+    if (flags.as_tum) check_stamps_of_tum(*sequence);
   }
   const bool single = dataset.sequences.size() == 1;
   if (flags.out == "-" && !single) {
@@ -193,26 +164,17 @@ Answer odometry_answer(OdometryFlags flags) {
 
 CommandRun add_odometry(CLI::App& command) {
   auto flags = std::make_shared<OdometryFlags>();
-  add_set_flag(command, flags->odometry.assignments);
   add_scan_dataset_flags(command, flags->input, flags->dataset, flags->sequences, flags->reading);
   command
-      .add_option("-o,--out", flags->out,
-                  "File of poses to write (- is stdout); a folder for several sequences")
+      .add_option_function<std::string>(
+          "-o,--out", [flags](const std::string& text) { take_out(text, *flags); },
+          "File of poses to write, TUM's if it ends in .tum or begins with tum:, else KITTI's; - "
+          "is "
+          "stdout; a folder for several sequences")
       ->type_name("FILE")
       ->required();
-  command
-      .add_option("--odometry", flags->odometry.kind,
-                  "See `mosbench list odometry` (default: simple)")
-      ->type_name(odometry_type());
-  command.add_option("--preset", flags->odometry.preset, "Settings that authors published")
-      ->type_name(odometry_preset_type());
-  command.add_option("--config", flags->odometry.config_file, "JSON object of settings")
-      ->type_name("FILE");
-  add_drop_moving_flag(command, flags->odometry);
-  command.add_option("--format", flags->format, "Of the file (default: by its name)")
-      ->check(CLI::IsMember({"kitti", "tum"}));
+  add_odometry_flag(command, flags->odometry, "What finds the poses (default: simple)");
   add_threads_flag(command, flags->threads);
-  command.footer(kOdometryFooter);
   return [flags] { return odometry_answer(*flags); };
 }
 

@@ -1,54 +1,54 @@
 #include "eval/cli/odometry_flags.hpp"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <mosbench/odometry.hpp>
-#include <span>
-#include <vector>
+#include <sstream>
+#include <string_view>
 
+#include "datasets/text/errors.hpp"
 #include "eval/cli/help_text.hpp"
 
 namespace mosbench {
 namespace {
 
-constexpr const char* kOdometryGroup = "Poses found from the scans";
-
-template <typename Row>
-std::vector<std::string_view> names_of(std::span<const Row> rows) {
-  std::vector<std::string_view> names;
-  for (const Row& row : rows) names.push_back(row.name);
-  return names;
+void take_part(const std::string& part, OdometryOptions& odometry) {
+  constexpr std::string_view kDropMoving = "drop_moving=";
+  if (part.starts_with('@')) {
+    odometry.config_file = part.substr(1);
+  } else if (part.starts_with(kDropMoving)) {
+    const std::string word = part.substr(kDropMoving.size());
+    if (word != "on" && word != "off") {
+      throw UsageError(fmt::format("--odometry {}: expected on or off", part));
+    }
+    odometry.drop_moving = word == "on";
+  } else if (part.find('=') != std::string::npos) {
+    odometry.assignments.push_back(part);
+  } else if (!odometry.kind && !odometry.preset) {
+    const std::size_t colon = part.find(':');
+    if (colon > 0) odometry.kind = part.substr(0, colon);
+    if (colon != std::string::npos) odometry.preset = part.substr(colon + 1);
+  } else {
+    throw UsageError(fmt::format("--odometry {}: has no value, expected key=value", part));
+  }
 }
 
 }  // namespace
 
-std::string odometry_type() { return type_of_names(names_of(odometries())); }
-
-std::string odometry_preset_type() { return type_of_names(names_of(odometry_presets())); }
-
-void add_odometry_flags(CLI::App& command, OdometryOptions& odometry) {
+void add_odometry_flag(CLI::App& command, OdometryOptions& odometry,
+                       const std::string& description) {
+  std::vector<std::string_view> kinds;
+  for (const OdometryKind& kind : odometries()) kinds.push_back(kind.name);
   command
-      .add_option("--odometry", odometry.kind,
-                  "Find the poses by it instead of reading them, see `mosbench list odometry`")
-      ->type_name(odometry_type())
-      ->group(kOdometryGroup);
-  command.add_option("--odometry-preset", odometry.preset, "Settings that its authors published")
-      ->type_name(odometry_preset_type())
-      ->group(kOdometryGroup);
-  command.add_option("--odometry-config", odometry.config_file, "JSON object of its settings")
-      ->type_name("FILE")
-      ->group(kOdometryGroup);
-  command.add_option("--odometry-set", odometry.assignments, "One of its settings, per flag")
-      ->type_name("KEY=VALUE")
-      ->allow_extra_args(false)
-      ->group(kOdometryGroup);
-  add_drop_moving_flag(command, odometry);
-}
-
-void add_drop_moving_flag(CLI::App& command, OdometryOptions& odometry) {
-  command
-      .add_flag("--drop-moving", odometry.drop_moving,
-                "Register scans to a map without the points that moved in earlier ones")
-      ->group(kOdometryGroup);
+      .add_option_function<std::string>(
+          "--odometry",
+          [&odometry](const std::string& text) {
+            std::istringstream parts(text);
+            for (std::string part; std::getline(parts, part, ',');) take_part(part, odometry);
+          },
+          description + ": KIND[:PRESET][,KEY=VALUE,...], see `mosbench list odometry`")
+      ->type_name(type_of_names(kinds));
 }
 
 }  // namespace mosbench

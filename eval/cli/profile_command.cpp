@@ -16,20 +16,6 @@
 namespace mosbench {
 namespace {
 
-constexpr const char* kProfileFooter =
-    R"(Segments the scans one after the other, without writing labels or scoring. Prints the wall time of
-each stage (min, median, p95, max), its share and the CPU time of all threads; then memory over the
-scans, and how many times faster than the sensor it ran. On a busy machine trust CPU times and
-shares; with several threads, CPU times include up to 60 us per stage and thread of waiting for
-work.
-
---json writes the same numbers, and those of each scan. --trace writes a file for ui.perfetto.dev or
-chrome://tracing, with a slice for every stage of every scan.
-
-Examples:
-  mosbench profile ~/kitti/sequences/08 --scans 200 --threads 1
-  mosbench profile sim/00 --set max_range_m=120 --json profile.json --trace trace.json)";
-
 struct ProfileFlags {
   RunOptions method;
   std::size_t scans = std::numeric_limits<std::size_t>::max();
@@ -68,7 +54,6 @@ CommandRun add_profile(CLI::App& command) {
       ->type_name("FILE");
   command.add_option("--trace", options->trace, "Write a trace to this file; - is stdout")
       ->type_name("FILE");
-  command.footer(kProfileFooter);
   return [options] { return profile(*options); };
 }
 

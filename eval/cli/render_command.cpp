@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <memory>
 #include <numbers>
 #include <optional>
@@ -23,48 +24,23 @@
 namespace mosbench {
 namespace {
 
-constexpr const char* kRenderFooter =
-    R"(Draws one scan without browser or graphics card: true and false points, their counts, range rings
-in metres. K counts from 0; "worst" is the scan with the most false points, not one in which the
-method did not look for motion yet. RESULT is of `mosbench run` or `mosbench score --out`; points
-and labels are read again from where they were read then, or points from --data.
-
---view top looks from above, orbit from a camera that circles the sensor and looks at it from 30
-degrees above; --azimuth says where the camera looks, in degrees counterclockwise from the front of
-the sensor. --scans draws several, given as for `mosbench report` (A-B, every:N, all), to a video
-(.mp4 or .gif, by ffmpeg, which `apt-get install ffmpeg` brings) or else to a folder, a PNG file
-each; the camera of an orbit then turns by --turn degrees from the first to the last.
-
---reasons colours points by why they are called moving, as `mosbench run --scores` with the method
-hmm-mos-plus wrote it: arrived in space that was free, left it free behind, where an object that
-moved before is expected, connected with such, or feet, what is next to the ground below them.
-
---boxes draws a box around each cluster of at least 5 points that are labelled moving, with its
-speed: that of the cluster's middle in the map over half a second before and after, where the
-clusters of the ten scans before and after are linked to it. A speed is of what is seen of an
-object: where more or less of it comes into sight, it is off by some tenths of a metre per second.
-
-Examples:
-  mosbench render results/runs/sim --scan 20 -o scan.png
-  mosbench render results/runs/doals --sequence hauptgebaeude/sequence_1 --scan worst -o worst.png
-  mosbench render results/runs/08 --scan 120 -o dark.png --dark --range 30 --size 1600
-  mosbench render results/runs/08-best --scan 120 -o why.png --reasons --range 30
-  mosbench render results/runs/08 --scans 40-90 -o street.mp4
-  mosbench render results/runs/08 --scan 120 -o boxes.png --view orbit --azimuth 30 --boxes
-  mosbench render results/runs/08 --scans 40-90 -o orbit.gif --view orbit --turn 360
-  mosbench render results/runs/08 --scans every:10 -o pictures)";
-
 constexpr double kUsualTurn_deg = 90.0;
 
 struct RenderFlags {
   std::filesystem::path input, out;
   std::optional<std::filesystem::path> dataset_root;
   std::optional<std::string> sequence;
-  std::optional<std::string> scan, scans;
+  std::string scans, view = "top";
   double per_s = 10.0;
-  std::string view = "top";
+  std::vector<std::string> shown;
   std::optional<double> azimuth_deg, turn_deg;
   bool boxes = false;
+
+  /// Whether one picture is drawn: of a scan by its number, or of the worst.
+  bool one_scan() const {
+    return scans == "worst" ||
+           (!scans.empty() && scans.find_first_not_of("0123456789") == scans.npos);
+  }
   ScanPictureOptions picture;
 };
 
@@ -93,7 +69,7 @@ FoundResult choose_result(const RenderFlags& options) {
   }
   if (results.size() == 1) return std::move(results.front());
   if (results.empty()) {
-    throw UsageError(fmt::format("--sequence: {} holds no results of {}, expected one of {}",
+    throw UsageError(fmt::format("--sequences: {} holds no results of {}, expected one of {}",
                                  options.input.string(), mosbench::quoted(*options.sequence),
                                  fmt::join(names, ", ")));
   }
@@ -101,7 +77,7 @@ FoundResult choose_result(const RenderFlags& options) {
     throw UsageError(fmt::format("{}: holds results of {} runs, expected one of {}",
                                  options.input.string(), runs.size(), fmt::join(runs, ", ")));
   }
-  throw UsageError(fmt::format("{}: holds results of {}, expected --sequence to name one",
+  throw UsageError(fmt::format("{}: holds results of {}, expected --sequences to name one",
                                options.input.string(), fmt::join(names, ", ")));
 }
 
@@ -115,16 +91,16 @@ std::size_t choose_scan(const std::string& text, const std::vector<ScanRow>& row
   const auto last = static_cast<std::ptrdiff_t>(rows.size()) - 1;
   if (text == "worst") {
     throw UsageError(
-        fmt::format("--scan: worst: no scan of the result has truth, expected 0 to {}", last));
+        fmt::format("--scans: worst: no scan of the result has truth, expected 0 to {}", last));
   }
   throw UsageError(
-      fmt::format("--scan: '{}' is no scan of the result, expected worst or 0 to {}", text, last));
+      fmt::format("--scans: '{}' is no scan of the result, expected worst or 0 to {}", text, last));
 }
 
 /// Throws UsageError for a scan that mosbench score left out.
 void check_has_labels(const ResultScans& scans, std::size_t scan_index) {
   if (scans.has(scan_index)) return;
-  throw UsageError(fmt::format("--scan: scan {} ({}) was not scored, expected one that was",
+  throw UsageError(fmt::format("--scans: scan {} ({}) was not scored, expected one that was",
                                scan_index, scans.rows()[scan_index].stem));
 }
 
@@ -148,16 +124,15 @@ std::vector<std::string> title_of(const FoundResult& result, std::size_t scan_in
 void check_has_reasons(const ResultScans& scans) {
   if (scans.has_reasons()) return;
   throw DataError(scans.result().folder / "reasons", "is not there",
-                  "a run of mosbench run --scores by a method that says why points move");
+                  "a run of mosbench run --write scores by a method that says why points move");
 }
 
 /// Where the camera looks in one of several pictures.
 ScanViewpoint viewpoint_of(const RenderFlags& options, std::size_t picture, std::size_t pictures) {
-  if (options.view == "top") return {};
+  if (!options.azimuth_deg) return {};
   const double share =
       pictures < 2 ? 0.0 : static_cast<double>(picture) / static_cast<double>(pictures - 1);
-  const double degrees =
-      options.azimuth_deg.value_or(0.0) + share * options.turn_deg.value_or(kUsualTurn_deg);
+  const double degrees = *options.azimuth_deg + share * options.turn_deg.value_or(kUsualTurn_deg);
   return {degrees * std::numbers::pi / 180.0};
 }
 
@@ -195,7 +170,7 @@ std::vector<std::size_t> chosen_scans(const ResultScans& scans, const std::strin
 }
 
 Answer render_several(RenderFlags& options, const ResultScans& scans) {
-  const std::vector<std::size_t> chosen = chosen_scans(scans, *options.scans);
+  const std::vector<std::size_t> chosen = chosen_scans(scans, options.scans);
   // One range for all pictures, or they would jump.
   if (options.picture.range_m <= 0.0) {
     options.picture.range_m = reach_m(scans.read(chosen[chosen.size() / 2]));
@@ -210,13 +185,31 @@ Answer render_several(RenderFlags& options, const ResultScans& scans) {
   return {pictures.finish()};
 }
 
-void check_view(const RenderFlags& options) {
-  if (options.view == "top" && (options.azimuth_deg || options.turn_deg)) {
-    throw UsageError("--azimuth and --turn: are of --view orbit, expected it, too");
+/// "top", or "orbit", "orbit:30", "orbit+360" or "orbit:30+90": where the camera looks, and by how
+/// much it turns.
+void take_view(RenderFlags& options) {
+  if (options.view == "top") return;
+  constexpr std::string_view kOrbit = "orbit";
+  const auto refuse = [&](const char* what) {
+    throw UsageError(fmt::format("--view: '{}' {}", options.view, what));
+  };
+  if (!options.view.starts_with(kOrbit)) refuse("is not known, expected top or orbit[:DEG][+DEG]");
+  const std::string angles = options.view.substr(kOrbit.size());
+  const std::size_t plus = angles.find('+');
+  const std::string azimuth = angles.substr(0, plus);
+  options.azimuth_deg = 0.0;
+  if (!azimuth.empty()) {
+    options.azimuth_deg = azimuth.starts_with(':') ? parse_double(azimuth.substr(1)) : std::nullopt;
+    if (!options.azimuth_deg || std::abs(*options.azimuth_deg) > 360.0) {
+      refuse("has no azimuth, expected orbit:DEG with -360 to 360 degrees");
+    }
   }
-  if (options.scan && options.turn_deg) {
-    throw UsageError("--turn: is of several pictures, expected --scans, or --azimuth alone");
+  if (plus == angles.npos) return;
+  options.turn_deg = parse_double(angles.substr(plus + 1));
+  if (!options.turn_deg || std::abs(*options.turn_deg) > 3600.0) {
+    refuse("has no turn, expected orbit+DEG with -3600 to 3600 degrees");
   }
+  if (options.one_scan()) refuse("turns over several pictures, expected several --scans");
 }
 
 /// Whether --out of --scans is a folder of pictures. Throws UsageError for another kind of file.
@@ -234,17 +227,17 @@ bool names_folder(const std::filesystem::path& out) {
 }
 
 Answer render(RenderFlags& options) {
-  check_view(options);
-  if (options.scan.has_value() == options.scans.has_value()) {
-    throw UsageError("--scan or --scans: say which scans to draw, expected one of them");
+  take_view(options);
+  for (const std::string& what : options.shown) {
+    (what == "boxes" ? options.boxes : options.picture.by_reason) = true;
   }
-  const bool is_folder = options.scans && names_folder(options.out);
+  const bool is_folder = !options.one_scan() && names_folder(options.out);
   check_output(is_folder ? options.out / "000000.png" : options.out);
   const FoundResult result = choose_result(options);
   const ResultScans scans(result, options.dataset_root);
   if (options.picture.by_reason) check_has_reasons(scans);
-  if (options.scans) return render_several(options, scans);
-  const std::size_t scan_index = choose_scan(*options.scan, scans.rows());
+  if (!options.one_scan()) return render_several(options, scans);
+  const std::size_t scan_index = choose_scan(options.scans, scans.rows());
   check_has_labels(scans, scan_index);
   write_output(options.out, Pictures(options, scans, {scan_index}).png(0));
   return answer_beside(options.out,
@@ -260,10 +253,12 @@ CommandRun add_render(CLI::App& command) {
       .add_option("RESULT", options->input, "Folder that `mosbench run` or `mosbench score` wrote")
       ->type_name("DIR")
       ->required();
-  command.add_option("--scan", options->scan, "Number of the scan from 0, or worst")
-      ->type_name("K");
-  command.add_option("--scans", options->scans, "Scans of a video or a folder of pictures")
-      ->type_name("SCANS");
+  command
+      .add_option("--scans", options->scans,
+                  "Number of the scan from 0, or worst; several, as for `mosbench report`, make a "
+                  "video or a folder of pictures")
+      ->type_name("SCANS")
+      ->required();
   command.add_option("--per-s", options->per_s, "Pictures per second of a video")
       ->check(CLI::Range(0.1, 120.0))
       ->capture_default_str();
@@ -272,7 +267,7 @@ CommandRun add_render(CLI::App& command) {
                   "PNG file to write, - is stdout; of --scans .mp4, .gif or a folder")
       ->type_name("FILE")
       ->required();
-  command.add_option("--sequence", options->sequence, "Sequence, where RESULT holds several")
+  command.add_option("--sequences", options->sequence, "Sequence, where RESULT holds several")
       ->type_name("NAME");
   command
       .add_option("--data", options->dataset_root,
@@ -285,22 +280,21 @@ CommandRun add_render(CLI::App& command) {
   command.add_option("--size", options->picture.size_pixels, "Width and height in pixels")
       ->check(CLI::Range(200, 8000))
       ->capture_default_str();
-  command.add_option("--view", options->view, "From above, or from a camera around the sensor")
-      ->check(CLI::IsMember({"top", "orbit"}))
+  command
+      .add_option("--view", options->view,
+                  "top, or orbit:AZIMUTH+TURN, from a camera around the sensor: degrees from the "
+                  "sensor's front (default: 0) and over several scans (default: 90)")
+      ->type_name("VIEW")
       ->capture_default_str();
   command
-      .add_option("--azimuth", options->azimuth_deg,
-                  "Degrees from the sensor's front to where the camera looks (default: 0)")
-      ->check(CLI::Range(-360.0, 360.0));
-  command
-      .add_option("--turn", options->turn_deg,
-                  "Degrees by which the camera turns over --scans (default: 90)")
-      ->check(CLI::Range(-3600.0, 3600.0));
-  command.add_flag("--boxes", options->boxes, "Draw boxes around what moves, with speeds");
-  command.add_flag("--reasons", options->picture.by_reason,
-                   "Colour what is called moving by why, as `mosbench run --scores` kept it");
+      .add_option("--show", options->shown,
+                  "Also boxes, around what moves, with speeds; reasons, colours by why a point is "
+                  "called moving, of a run with --write scores")
+      ->type_name("WHAT,...")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(CLI::IsMember({"boxes", "reasons"}));
   command.add_flag("--dark", options->picture.dark, "Draw light points on a dark ground");
-  command.footer(kRenderFooter);
   return [options] { return render(*options); };
 }
 

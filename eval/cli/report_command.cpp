@@ -12,29 +12,6 @@
 namespace mosbench {
 namespace {
 
-constexpr const char* kReportFooter =
-    R"(Writes one HTML file that opens in any browser without network or server: the scans in 3-D with
-true and false points, charts over the scans, tables and provenance. RESULT is a folder that
-`mosbench run` or `mosbench score --out` wrote, a folder above such ones (that of a run of several
-methods), or a result.json. Several runs of the same scans are ranked in a leaderboard; a menu puts
-up to six of them side by side, and a colour shows where they disagree. Runs with --scores have
-their precision over recall drawn. Points and labels are read again from where they were read,
-or points from --data.
-
---scans takes a list of K (that scan), A-B (from A to B), every:N (each N-th) and worst:N (the N
-worst), counted from 0, or one of
-  auto   the worst tenth first, then scans spread evenly, as many as fit (default)
-  all    from the first scan on, as many as fit
-  none   numbers only; needs neither data set nor labels
-The file says what was left out.
-
-Examples:
-  mosbench report results/runs/doals -o report.html
-  mosbench report results/runs/online results/runs/delayed -o compare.html --scans worst:20
-  mosbench report results/runs/all results/runs/4dmos -o methods.html
-  mosbench report results/runs/sipailou -o small.html --scans 100-149,every:50 --max-mb 10
-  mosbench report results/runs/helimos -o moved.html --data ~/HeLiMOS/Deskewed_LiDAR)";
-
 struct ReportFlags {
   std::vector<std::filesystem::path> inputs;
   std::filesystem::path out;
@@ -76,7 +53,6 @@ CommandRun add_report(CLI::App& command) {
   command.add_option("--max-mb", options->report.max_mb, "Largest size of the file, 1e6 bytes")
       ->check(CLI::Range(0.1, 1000.0))
       ->capture_default_str();
-  command.footer(kReportFooter);
   return [options] { return write_report(*options); };
 }
 

@@ -20,18 +20,6 @@
 namespace mosbench {
 namespace {
 
-constexpr const char* kReproduceFooter =
-    R"(Runs HMM-MOS with every setting that the paper's table needs (DOALS: range 20 m and 120 m; HeLiMOS:
-online and delayed by 10 scans), each to OUT/<preset>, and every other method of mosbench that has a
-row in the table (DOALS: Dynablox, and LC Free Space at 20 m, by Dynablox's protocol) or that preset
-`best` is of (HMM-MOS plus, a row of its own), to OUT/<preset>-<method>, and prints the table. The
-same command again keeps what is finished and runs the rest. Part of a data set fills part of the
-table. Another data set, or one without any sequence of the table, is refused (exit code 3).
-
-Examples:
-  mosbench reproduce doals --data ~/doals
-  mosbench reproduce helimos --data ~/HeLiMOS/KAIST05/Deskewed_LiDAR --out results/runs/helimos)";
-
 /// Presets that one table needs.
 struct Recipe {
   std::string_view dataset;
@@ -170,7 +158,6 @@ CommandRun add_reproduce(CLI::App& command) {
       ->delimiter(',')
       ->allow_extra_args(false);
   add_threads_flag(command, options->threads);
-  command.footer(kReproduceFooter);
   return [options] { return reproduce(*options); };
 }
 

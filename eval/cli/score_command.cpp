@@ -14,42 +14,23 @@
 #include "eval/job/presets.hpp"
 #include "eval/protocols/benchmark_split.hpp"
 #include "eval/results/machine.hpp"
+#include "eval/static_map/map_score.hpp"
 #include "eval/tables/score_report.hpp"
 
 namespace mosbench {
 namespace {
-
-constexpr const char* kScoreFooter =
-    R"(Scores the predictions of any method as `mosbench run` scores its own. They are searched for in
-DIR/<sequence>/{predictions,labels}, DIR/<sequence>, DIR/sequences/<sequence>/predictions,
-DIR/<sequence>.{txt,csv} and, for one sequence, DIR/{predictions,labels} and DIR itself, which may
-be a file. The format is recognised and printed; `mosbench list formats` shows all. Every scan with
-truth needs a prediction; a missing file, one of the wrong size or one without a scan is an error,
-unless --allow-missing leaves such scans out and marks the result. Under a protocol that is over a
-split of scans (helimos-test, mapmos), only those scans are scored and another --split is refused.
-
---protocol all prints the number of every protocol for the same labels, and why they differ.
---out writes result.json files, which stats, compare and table read.
-
-Examples:
-  mosbench score ~/sipailou-livox-kitti --predictions motionbev --protocol sipailou --split test
-  mosbench score ~/doals --predictions results/runs/doals --protocol doals-dynablox --range 0.5,20
-  mosbench score ~/doals/station/sequence_1 --predictions clouds.csv --level object
-  mosbench score ~/HeLiMOS/KAIST05/Deskewed_LiDAR --predictions 4dmos --protocol helimos-test \
-    --method 4DMOS --setting delayed --out results/runs/4dmos-delayed
-  mosbench score ~/kitti/sequences/08 --predictions mapmos/08/predictions --mask 0,50 --json
-  mosbench score ~/kitti/sequences/08 --predictions mine --protocol all)";
 
 struct ScoreFlags {
   std::filesystem::path input;
   std::string dataset = "auto";
   std::vector<std::string> sequences;
   ScoreTask task;
-  std::optional<std::string> protocol, range, format, mask, id_map;
-  std::string level = "object";
-  MethodName method{"unnamed", ""};
+  std::optional<std::string> protocol, range, format, id_map;
+  std::string method = "unnamed";
   ReadingOptions reading;
   std::optional<std::filesystem::path> out;
+  std::optional<std::filesystem::path> map;  ///< cleaned of what moved, instead of predictions
+  double same_within_m = kSameWithin_m;
 };
 
 void keep_split(const std::string& name, Dataset& dataset) {
@@ -65,9 +46,32 @@ void keep_split(const std::string& name, Dataset& dataset) {
                                dataset.root.string(), known.empty() ? "no --split" : known));
 }
 
-/// Reads MIN,MAX for any protocol.
-RangeGate mask_option(const std::string& text) {
-  return range_option(text, protocol_named("mapmos"));
+/// Reads "label-masked:MIN,MAX", "dynablox-clouds:LEVEL", "dynablox:LEVEL" for any file of
+/// Dynablox, or the name of a format alone.
+void take_format(const std::string& text, PredictionOptions& options) {
+  const std::size_t colon = text.find(':');
+  const std::string name = text.substr(0, colon);
+  const std::string more = colon == std::string::npos ? "" : text.substr(colon + 1);
+  // With a range, and as any file of Dynablox, the format is recognised.
+  if (!more.empty() && name == describe(PredictionFormat::kMaskedLabel).name) {
+    options.mask = range_option(more, protocol_named("mapmos"));  // MIN,MAX under any protocol
+    return;
+  }
+  if (more.empty() || name != "dynablox") options.format = prediction_format_named(name);
+  if (more.empty()) return;
+  if (name.starts_with("dynablox")) {
+    options.level = dynablox_level_named(more);
+  } else {
+    throw UsageError(
+        fmt::format("--format {}: format {} takes nothing behind a colon", text, name));
+  }
+}
+
+/// "4DMOS, delayed" is a method and its setting.
+MethodName method_name(const std::string& text) {
+  const std::size_t comma = text.find(", ");
+  if (comma == std::string::npos) return {text, ""};
+  return {text.substr(0, comma), text.substr(comma + 2)};
 }
 
 std::vector<ScoreRule> all_rules(const ScoreFlags& options) {
@@ -102,10 +106,8 @@ std::optional<std::string> settle_split(const ScoreTask& task, const Dataset& da
 
 PredictionOptions prediction_options(const ScoreFlags& options) {
   PredictionOptions settled = options.task.options;
-  if (options.format) settled.format = prediction_format_named(*options.format);
-  if (options.mask) settled.mask = mask_option(*options.mask);
+  if (options.format) take_format(*options.format, settled);
   if (options.id_map) settled.id_map = parse_id_map(*options.id_map);
-  settled.level = dynablox_level_named(options.level);
   return settled;
 }
 
@@ -117,7 +119,16 @@ Answer score_all(const ScoreFlags& options, const Dataset& dataset, ScoreTask ta
   return side_by_side_answer(dataset, task.rules, scores);
 }
 
+Answer score_of_map(const ScoreFlags& options) {
+  const MapScore score = score_map(*options.map, options.input, options.same_within_m);
+  return {.sheets = {map_score_sheet(score)}, .json = json_text(map_score_json(score))};
+}
+
 Answer score(const ScoreFlags& options) {
+  if (options.map) return score_of_map(options);
+  if (options.task.predictions.empty()) {
+    throw UsageError("--predictions is required, or --map; see mosbench score --help");
+  }
   keep_freed_memory();
   Dataset dataset = open_dataset(
       options.input, {dataset_kind_option(options.dataset), options.sequences, options.reading});
@@ -138,27 +149,35 @@ Answer score(const ScoreFlags& options) {
   }
   const std::vector<SequenceScores> scores = score_dataset(dataset, task);
   if (options.out) {
-    write_scores(dataset, options.reading, task, options.method, scores, *options.out);
+    write_scores(dataset, options.reading, task, method_name(options.method), scores, *options.out);
   }
   return score_answer(dataset, task, scores, !split_asked);
 }
 
 void add_prediction_options(CLI::App& command, ScoreFlags& options) {
   command.add_option("--predictions", options.task.predictions, "Folder or file of predictions")
-      ->type_name("PATH")
-      ->required();
-  command.add_option("--format", options.format, "Format of the predictions (default: recognised)")
-      ->type_name("FORMAT");
+      ->type_name("PATH");
   command
-      .add_option("--mask", options.mask,
-                  "Range in metres within which the method wrote labels (default: detected)")
-      ->type_name("MIN,MAX");
+      .add_option(
+          "--map", options.map,
+          "Score a map that was cleaned of what moved, instead of predictions; DATA then holds "
+          "its points with intensity 1 where they are dynamic")
+      ->type_name("FILE");
+  command
+      .add_option("--same-within-m", options.same_within_m,
+                  "Largest distance of a point of the map that stands for one of the truth, m")
+      ->check(CLI::Range(1e-6, 1e3))
+      ->capture_default_str()
+      ->group(kRareGroup);
+  command
+      .add_option("--format", options.format,
+                  "Format of the predictions (default: recognised); label-masked:MIN,MAX also says "
+                  "within which range in metres the labels are, dynablox:LEVEL which column counts "
+                  "(point, cluster or object)")
+      ->type_name("FORMAT");
   command
       .add_option("--id-map", options.id_map, "Meaning of the predicted ids, such as 0:0,1:9,2:251")
       ->type_name("MAP");
-  command.add_option("--level", options.level, "Of Dynablox's files")
-      ->type_name(type_of_names({"point", "cluster", "object"}))
-      ->capture_default_str();
   command.add_flag("--allow-missing", options.task.options.allow_missing,
                    "Leave out scans whose prediction is missing or faulty; marks the result");
 }
@@ -180,13 +199,12 @@ CommandRun add_score(CLI::App& command) {
       .add_option("--range", options->range,
                   "In metres, for protocols that limit it (default: that of the protocol)")
       ->type_name("MIN,MAX");
-  command.add_option("--method", options->method.name, "Name of the method, kept by --out")
+  command
+      .add_option("--method", options->method,
+                  "Name of the method, kept by --out; \"NAME, SETTING\" also keeps its setting")
       ->type_name("NAME");
-  command.add_option("--setting", options->method.setting, "Setting of the method, kept by --out")
-      ->type_name("TEXT");
   command.add_option("--out", options->out, "Write DIR/<sequence>/result.json")->type_name("DIR");
   add_threads_flag(command, options->task.threads);
-  command.footer(kScoreFooter);
   return [options] { return score(*options); };
 }
 

@@ -16,21 +16,6 @@
 namespace mosbench {
 namespace {
 
-constexpr const char* kSimulateFooter =
-    R"(Writes a data set with exact truth in the layout of a real one. The same scene, seed and number of
-scans give the same files for any number of threads. `mosbench list scenes` shows the built-in
-scenes. For a scene of your own, simulate one scan of a similar one, edit the scene.json that is
-written next to the scans, and pass that file as SCENE. Errors name the key that is missing, unknown
-or out of range.
-
-Examples:
-  mosbench simulate --layout semantickitti --scene street --scans 40 --seed 1 --out sim/street
-  mosbench simulate --layout doals --scene mall --scans 100 --seed 7 --out sim/doals
-  mosbench simulate --layout doals --scene mall --scans 9 --seed 7 --out fog --perturb fog_per_m=0.1
-  mosbench simulate --layout helimos --scene street --scans 1 --seed 1 --out near
-  cp near/scene.json my_street.json
-  mosbench simulate --layout helimos --scene my_street.json --scans 200 --seed 1 --out sim/helimos)";
-
 struct SimulateFlags {
   std::string layout;
   SimulateOptions simulation;
@@ -76,7 +61,6 @@ CommandRun add_simulate(CLI::App& command) {
       ->required();
   add_perturb_flag(command, simulation.perturb, "Disturb what is written");
   add_threads_flag(command, simulation.threads);
-  command.footer(kSimulateFooter);
   return [options] { return Answer{simulate_dataset(*options)}; };
 }
 

@@ -19,37 +19,6 @@
 namespace mosbench {
 namespace {
 
-constexpr const char* kStudyFooter =
-    R"(FILE is a YAML file that names data, methods with settings, disturbances with strengths, seeds and
-the protocol; docs/studies/study.md has all its keys. A small one:
-
-  name: mine
-  data: {name: drive, path: sim/street}
-  methods: [hmm-mos, hmm-mos-plus, {name: near, method: hmm-mos, set: {max_range_m: 10}}]
-  disturb: {kind: pose_noise_m, strengths: [0.05, 0.1]}
-  seeds: [1, 2, 3]
-
-Each combination is a cell with a key: the hash of everything that decides its result. Its result is
-one small file in DIR/cells, put there in one step.
-
-  plan   counts the cells that are done and missing; --measure runs the first scans of each method
-         on each sequence, so that it can tell how long it takes; --json lists all cells with
-         their keys
-  run    computes what is missing by Snakemake, on this machine or with --profile slurm on a
-         cluster, and prints the table; the same command goes on after a kill, and computes again
-         what another version of mosbench left; --yes above 100 cells
-  cell   computes the cells with these keys, without Snakemake
-  table  prints what is there: means with 95 % intervals over sequences (of a single one over
-         seeds), paired differences to the best, each disturbance by strength, effects of sampled
-         settings, the Pareto front of IoU and time, ranks with critical difference. The exit code
-         is 1 while cells are missing or failed; it says why those failed
-
-Examples:
-  mosbench study plan results/studies/demo.yaml --measure
-  mosbench study run results/studies/demo.yaml
-  mosbench study table results/studies/demo.yaml --as html -o demo.html
-  mosbench study run my_study.yaml --profile slurm --yes --out /shared/my_study)";
-
 constexpr std::size_t kMostWithoutYes = 100;
 
 struct StudyFlags {
@@ -188,7 +157,6 @@ CommandRun add_study(CLI::App& command) {
   command.get_option("--threads")->description("Threads of each cell; results do not depend on it");
   command.add_flag("--measure", flags->measure, "With plan: measure what a scan costs first");
   command.add_flag("--yes", flags->yes, "With run: compute more than 100 cells");
-  command.footer(kStudyFooter);
   return [flags] { return study(*flags); };
 }
 

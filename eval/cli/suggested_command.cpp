@@ -14,13 +14,13 @@ namespace {
 /// A file for one sequence, a folder for several: `--poses` takes either.
 constexpr std::string_view kFoundPoses = "found-poses";
 
-std::string typed_again(const std::vector<std::string>& arguments) {
+}  // namespace
+
+std::string typed_line(const std::vector<std::string>& arguments) {
   std::string line = "\n  mosbench";
   for (const std::string& argument : arguments) line += ' ' + shell_word(argument);
   return line;
 }
-
-}  // namespace
 
 std::string dataset_words(const std::filesystem::path& input, const std::string& dataset,
                           const std::vector<std::string>& sequences,
@@ -48,11 +48,11 @@ std::string given_words(const CLI::App& command,
 std::string commands_with_odometry(const CLI::App& command,
                                    const std::vector<std::string>& arguments) {
   if (command.get_option_no_throw("--odometry") != nullptr) {
-    return typed_again(arguments) + " --odometry simple";
+    return typed_line(arguments) + " --odometry simple";
   }
   if (command.get_option_no_throw("--poses") == nullptr) return "";
   return fmt::format("\n  mosbench odometry{} -o {}{} --poses {}",
-                     given_words(command, chooses_scans), kFoundPoses, typed_again(arguments),
+                     given_words(command, chooses_scans), kFoundPoses, typed_line(arguments),
                      kFoundPoses);
 }
 

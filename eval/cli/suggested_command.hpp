@@ -13,6 +13,9 @@
 
 namespace mosbench {
 
+/// Returns the arguments as a line to type, on a line of its own.
+std::string typed_line(const std::vector<std::string>& arguments);
+
 /// Returns DATA and the flags that say what of it is read and how, as words of a shell.
 std::string dataset_words(const std::filesystem::path& input, const std::string& dataset,
                           const std::vector<std::string>& sequences, const ReadingOptions& reading);

@@ -11,20 +11,6 @@
 namespace mosbench {
 namespace {
 
-constexpr const char* kTableFooter =
-    R"(Prints a published table with the values measured here next to it: published, measured, difference,
-95 % interval, and a verdict: within (the published value lies in the interval), outside, or not
-comparable, with the reasons (simulated data, another protocol or setting, missing scans). Cells
-without results say what to download and which command fills them.
-
-RESULTS are folders that `mosbench run` or `mosbench score --out` wrote; a method named by
-`score --method` becomes a row, too. Published numbers come from results/published.csv.
-
-Examples:
-  mosbench table I
-  mosbench table III results/runs/helimos results/runs/4dmos-delayed --as latex
-  mosbench table II results/runs/sipailou --as csv > table2.csv)";
-
 struct TableFlags {
   std::string name;
   std::vector<std::string> results;
@@ -54,7 +40,6 @@ CommandRun add_table(CLI::App& command) {
       .add_option("--published", options->published,
                   "CSV of published numbers, instead of the built-in ones")
       ->type_name("FILE");
-  command.footer(kTableFooter);
   return [options] { return table(*options); };
 }
 

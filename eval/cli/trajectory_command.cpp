@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -8,9 +9,11 @@
 #include "datasets/formats/calib_file.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/shell_text.hpp"
+#include "datasets/text/text.hpp"
 #include "eval/answer/answer_text.hpp"
 #include "eval/answer/render.hpp"
 #include "eval/cli/commands.hpp"
+#include "eval/cli/dataset_flags.hpp"
 #include "eval/cli/output_file.hpp"
 #include "eval/cli/suggested_command.hpp"
 #include "eval/cli/trajectory_plot.hpp"
@@ -20,55 +23,66 @@
 namespace mosbench {
 namespace {
 
-constexpr const char* kTrajectoryFooter =
-    R"(ESTIMATE and TRUTH are files of poses (KITTI: 12 numbers a row; TUM: stamp and quaternion; Dynablox
-rollouts), folders with files of the same names as `mosbench odometry` writes them, folders of
-`mosbench run --odometry`, or data sets, whose poses are the LiDAR's. Rows are paired by stamps if
-both sides have them, else one by one.
-
-Prints the errors of KITTI's odometry benchmark, those of segments of 5 to 50 m for paths that are
-too short for it, and the absolute and relative pose errors (APE, RPE). Every answer states the
-alignment.
-
-With OTHER, a second estimate of the same poses, also prints how much better or worse it is:
-differences paired by segments, their 95 % intervals and p-values, and the difference that as many
-poses would show.
-
---plot draws the paths from above and the distance to the truth over the way, as PNG; of folders
-with several sequences to FILE/<sequence>.png.
-
-A poses.txt of KITTI is in the camera frame. For an estimate in the LiDAR frame add
-  --camera truth --calib calib.txt
-
-Examples:
-  mosbench trajectory poses.txt --truth ~/kitti/sequences/04
-  mosbench trajectory results --truth poses --camera truth --calib dataset/sequences/00/calib.txt
-  mosbench trajectory simple.txt kiss.txt --truth truth.txt --align origin --plot paths.png
-  mosbench trajectory poses.tum --truth truth.tum --align rigid --delta-m 10 --all-pairs)";
-
 struct TrajectoryFlags {
   std::filesystem::path estimate, truth;
   std::optional<std::filesystem::path> other, plot;
-  std::optional<std::filesystem::path> calib;
-  std::string camera = "neither", alignment = "none";
-  std::optional<std::string> format;
-  double max_time_difference_s = 0.01;
+  std::string alignment = "none";
+  TrajectoryOptions reading;
   RelativePairs relative;
   bool per_pose = false;
 };
 
-TrajectoryOptions trajectory_options(const TrajectoryFlags& flags) {
-  TrajectoryOptions options;
-  options.max_time_difference_s = flags.max_time_difference_s;
-  if (flags.format) options.format = pose_format_from_string(*flags.format);
-  if (flags.camera == "estimate") options.camera = CameraFrame::kEstimate;
-  if (flags.camera == "truth") options.camera = CameraFrame::kTruth;
-  if ((options.camera == CameraFrame::kNeither) != !flags.calib) {
-    throw UsageError(
-        "--camera and --calib: say together which file is the camera's and where the lidar is");
+/// "truth:calib.txt": which path is the camera's, and where the lidar is.
+void take_camera(const std::string& text, TrajectoryOptions& options) {
+  const std::size_t colon = text.find(':');
+  const std::string whose = text.substr(0, colon);
+  if ((whose != "estimate" && whose != "truth") || colon == std::string::npos) {
+    throw UsageError(fmt::format(
+        "--camera: '{}' is not known, expected estimate:CALIB or truth:CALIB, which say together "
+        "which file is the camera's and where the lidar is",
+        text));
   }
-  if (flags.calib) options.camera_from_lidar = read_calib(*flags.calib);
-  return options;
+  options.camera = whose == "truth" ? CameraFrame::kTruth : CameraFrame::kEstimate;
+  options.camera_from_lidar = read_calib(text.substr(colon + 1));
+}
+
+/// How poses are read: "pose_format=tum,max_time_difference_s=0.02".
+void take_reading(const std::string& text, TrajectoryOptions& options) {
+  for (const auto& [key, value] : key_values("--read", text)) {
+    const auto number = parse_double(value);
+    if (key == "pose_format" && pose_format_from_string(value)) {
+      options.format = pose_format_from_string(value);
+    } else if (key == "max_time_difference_s" && number && *number >= 0.0 && *number <= 1e6) {
+      options.max_time_difference_s = *number;
+    } else {
+      throw UsageError(
+          fmt::format("--read {}={}: is not known, expected pose_format=kitti, tum or dynablox, or "
+                      "max_time_difference_s=0 to 1e6",
+                      key, value));
+    }
+  }
+}
+
+/// Which poses of RPE make a pair: "10" scans apart, "10m" along the estimated path, with ",all"
+/// one from every pose on.
+void take_delta(std::string text, RelativePairs& pairs) {
+  const std::string typed = text;
+  constexpr std::string_view kEvery = ",all";
+  pairs.all = text.ends_with(kEvery);
+  if (pairs.all) text.resize(text.size() - kEvery.size());
+  const bool in_metres = text.ends_with('m');
+  if (in_metres) text.pop_back();
+  const auto delta = parse_double(text);
+  if (in_metres && delta && *delta >= 1e-3 && *delta <= 1e9) {
+    pairs.delta_m = *delta;
+  } else if (!in_metres && delta && *delta >= 1 && *delta <= 1e6 && *delta == std::floor(*delta)) {
+    pairs.delta_scans = static_cast<decltype(pairs.delta_scans)>(*delta);
+  } else {
+    throw UsageError(fmt::format(
+        "--delta: '{}' is no distance, expected scans (1 to 1000000) or metres, as in 10m, and "
+        "behind it at most ,all",
+        typed));
+  }
 }
 
 /// The estimates of all sequences with their scores.
@@ -85,8 +99,7 @@ std::filesystem::path plot_file(const std::filesystem::path& out, const std::str
 
 ScoredEstimates scored_estimates(const std::filesystem::path& estimates,
                                  const TrajectoryFlags& flags, const ScoringRules& rules) {
-  ScoredEstimates scored{read_trajectory_pairs(estimates, flags.truth, trajectory_options(flags)),
-                         {}};
+  ScoredEstimates scored{read_trajectory_pairs(estimates, flags.truth, flags.reading), {}};
   for (const TrajectoryPair& pair : scored.pairs) {
     if (flags.plot) check_output(plot_file(*flags.plot, pair.name, scored.pairs.size()));
   }
@@ -160,7 +173,7 @@ Answer trajectory_answer(const TrajectoryFlags& flags, const CLI::App& command) 
   check_truth(flags, command);
   if (flags.other && flags.relative.delta_m) {
     throw UsageError(
-        "--delta-m: cuts each estimate by its own path, expected --delta for two estimates");
+        "--delta: metres cut each estimate by its own path, expected scans for two estimates");
   }
   if (flags.plot) check_plot(flags);
   const ScoringRules rules{.alignment = *path_alignment_from_string(flags.alignment),
@@ -189,31 +202,26 @@ CommandRun add_trajectory(CLI::App& command) {
   command.add_option("--align", flags->alignment, "Alignment before APE and RPE (default: none)")
       ->check(CLI::IsMember({"none", "origin", "rigid", "similarity"}));
   command
-      .add_option("--camera", flags->camera,
-                  "Which of the two is in the camera frame (default: neither)")
-      ->check(CLI::IsMember({"neither", "estimate", "truth"}));
-  command.add_option("--calib", flags->calib, "calib.txt of KITTI with the Tr of the LiDAR")
-      ->type_name("FILE");
-  command.add_option("--format", flags->format, "Of both files (default: recognised)")
-      ->check(CLI::IsMember({"kitti", "tum", "dynablox"}));
+      .add_option_function<std::string>(
+          "--camera", [flags](const std::string& text) { take_camera(text, flags->reading); },
+          "The path in the camera frame, estimate or truth, and KITTI's calib.txt with the Tr of "
+          "the LiDAR (default: both are the LiDAR's)")
+      ->type_name("WHOSE:CALIB");
   command
-      .add_option("--max-time-difference-s", flags->max_time_difference_s,
-                  "Between the stamps of a pair (default: 0.01)")
-      ->check(CLI::Range(0.0, 1e6));
-  CLI::Option* scans = command
-                           .add_option("--delta", flags->relative.delta_scans,
-                                       "Scans between the poses of RPE (default: 1)")
-                           ->check(CLI::Range(1, 1000000));
+      .add_option_function<std::string>(
+          "--read", [flags](const std::string& text) { take_reading(text, flags->reading); },
+          "pose_format=kitti, tum or dynablox, of both files (default: recognised); "
+          "max_time_difference_s, between the stamps of a pair (default: 0.01)")
+      ->type_name("KEY=VALUE,...");
   command
-      .add_option("--delta-m", flags->relative.delta_m,
-                  "Metres of the estimated path between the poses of RPE")
-      ->check(CLI::Range(1e-3, 1e9))
-      ->excludes(scans);
-  command.add_flag("--all-pairs", flags->relative.all, "Start a pair of RPE at every pose");
+      .add_option_function<std::string>(
+          "--delta", [flags](const std::string& text) { take_delta(text, flags->relative); },
+          "Scans between the poses of RPE, or metres of the estimated path, as in 10m; ,all behind "
+          "it starts a pair at every pose (default: 1)")
+      ->type_name("N|METRESm[,all]");
   command.add_flag("--per-pose", flags->per_pose, "With --json: errors of every pose and segment");
   command.add_option("--plot", flags->plot, "PNG file to draw the paths and their errors to")
       ->type_name("FILE");
-  command.footer(kTrajectoryFooter);
   return [flags, &command] { return trajectory_answer(*flags, command); };
 }
 

@@ -29,15 +29,15 @@ void check_stamps_of_tum(const Sequence& sequence) {
     const auto stamp_ns = sequence.stamp_ns(k);
     if (!stamp_ns) {
       throw UsageError(fmt::format(
-          "TUM rows (a file called *.tum, or --format tum) have stamps, but the scans of {} have "
-          "none, expected --format kitti or a file called *.txt",
+          "TUM rows (a file called *.tum, or tum:FILE) have stamps, but the scans of {} have "
+          "none, expected kitti:FILE or a file called *.txt",
           sequence.name()));
     }
     if (k == 0 || *stamp_ns > *sequence.stamp_ns(k - 1)) continue;
     throw UsageError(
-        fmt::format("TUM rows (a file called *.tum, or --format tum) are in the order of their "
+        fmt::format("TUM rows (a file called *.tum, or tum:FILE) are in the order of their "
                     "stamps, but that of scan {} of {} is not after the one before, expected "
-                    "--format kitti or a file called *.txt, which have no stamps",
+                    "kitti:FILE or a file called *.txt, which have no stamps",
                     sequence.stem(k), sequence.name()));
   }
 }

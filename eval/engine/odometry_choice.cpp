@@ -70,7 +70,7 @@ std::vector<std::uint8_t> moving_points(Method& method, const MovingFilter& filt
                                         const Frame& frame) {
   const std::vector<LabelledScan> labelled = push_scan(method, sequence, k, frame);
   if (labelled.empty() || labelled.back().scan_index != k) {
-    throw UsageError(fmt::format("--drop-moving: {} labels scans later, expected an online method",
+    throw UsageError(fmt::format("drop_moving: {} labels scans later, expected an online method",
                                  filter.method->name));
   }
   std::vector<std::uint8_t> moving;
@@ -124,8 +124,8 @@ MovingFilter moving_filter(const MethodKind& method, Settings settings) {
   try {
     method.check(settings);
   } catch (const std::invalid_argument& error) {
-    throw UsageError(fmt::format("--drop-moving: needs method {} with delay_scans=0: {}",
-                                 method.name, error.what()));
+    throw UsageError(fmt::format("drop_moving: needs method {} with delay_scans=0: {}", method.name,
+                                 error.what()));
   }
   return {&method, std::move(settings)};
 }

@@ -30,7 +30,7 @@ const Protocol& choose_protocol(const RunOptions& options, const Preset& preset)
   return protocol_named(options.protocol.value_or(std::string(preset.protocol)));
 }
 
-/// --variant is the short form of --set variant=NAME.
+/// A variant by its name.
 void apply_variant(const std::string& name, const MethodKind& method, Settings& settings) {
   if (settings.find(common_settings::kVariant) == nullptr) {
     throw UsageError(
@@ -45,7 +45,7 @@ void apply_variant(const std::string& name, const MethodKind& method, Settings& 
   }
 }
 
-/// --moving now, ever or ever:SECONDS: a short word of the methods that have it.
+/// moving=now, ever or ever:SECONDS: a short word of the methods that have it.
 void apply_word(std::string_view name, const std::string& text, const MethodKind& method,
                 Settings& settings) {
   const auto word_of = [&](const MethodKind& kind) {
@@ -60,11 +60,11 @@ void apply_word(std::string_view name, const std::string& text, const MethodKind
   const bool has_number =
       text.starts_with(with_number) && parse_double(text.substr(with_number.size())).has_value();
   if (text != word.value && !has_number) {
-    throw UsageError(fmt::format("--{}: '{}' is not known, expected {}, {} or {}{}", name, text,
+    throw UsageError(fmt::format("{}: '{}' is not known, expected {}, {} or {}{}", name, text,
                                  word.usual, word.value, with_number, word.number));
   }
   if (&owner != &method) {
-    throw UsageError(fmt::format("--{} {}: method {} {}, expected {}", name, text, method.name,
+    throw UsageError(fmt::format("{}={}: method {} {}, expected {}", name, text, method.name,
                                  word.lacking, owner.name));
   }
   for (const std::string_view taking : word.takes) {

@@ -119,7 +119,7 @@ bool parse_ready(std::string_view payload, const Greeting& greeting) {
   }
   const bool with_scores = number_at<std::uint32_t>(payload, 4) != 0;
   if (greeting.wants_scores && !with_scores) {
-    throw ProgramError("the program gives no scores", "scores, or a run without --scores");
+    throw ProgramError("the program gives no scores", "scores, or a run without --write scores");
   }
   return with_scores;
 }

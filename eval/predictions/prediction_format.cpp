@@ -19,7 +19,7 @@ constexpr std::array kFormats = {
     DescribedFormat{Format::kLabelByIndex, "label-index", ".label", true,
                     "uint32 per point, file named by the scan's position from 0 (HMM-MOS)"},
     DescribedFormat{Format::kMaskedLabel, "label-masked", ".label", true,
-                    "uint32 per point within a range only (MapMOS, 4DMOS); see --mask"},
+                    "uint32 per point within a range only (MapMOS, 4DMOS), label-masked:MIN,MAX"},
     DescribedFormat{Format::kText, "text", ".txt", true,
                     "a row per point: 0 or 1, or the three numbers of MOE, the second counts"},
     DescribedFormat{Format::kPcd, "pcd", ".pcd", true,
@@ -32,10 +32,11 @@ constexpr std::array kFormats = {
                     "scan number from 1, then its moving points: HMM-MOS on DOALS"},
     DescribedFormat{Format::kIndices, "indices", ".csv", false,
                     "stamp in ns, then its moving points: as DOALS's indices.csv"},
-    DescribedFormat{Format::kDynabloxClouds, "dynablox-clouds", ".csv", false,
-                    "clouds.csv of Dynablox, a row per point of each labelled scan; see --level"},
+    DescribedFormat{
+        Format::kDynabloxClouds, "dynablox-clouds", ".csv", false,
+        "clouds.csv of Dynablox, a row per point of each labelled scan, dynablox:LEVEL"},
     DescribedFormat{Format::kDynabloxScores, "dynablox-scores", ".csv", false,
-                    "scores.csv of Dynablox, its own counts per labelled scan; see --level"},
+                    "scores.csv of Dynablox, its own counts per labelled scan, dynablox:LEVEL"},
     DescribedFormat{Format::kHdf5, "h5", ".h5", false,
                     "dufo of each group of OpenSceneFlow's .h5, 0 or 1 per point; may be DATA"}};
 

@@ -52,7 +52,8 @@ RangeGate find_mask(std::span<const MaskedScan> scans) {
       }
       if (!fits) continue;
       if (found && !same_points) {
-        throw DataError(scans.front().file, "fits several range limits", "--mask MIN,MAX");
+        throw DataError(scans.front().file, "fits several range limits",
+                        "--format label-masked:MIN,MAX");
       }
       if (!found) found = mask;
     }
@@ -62,7 +63,7 @@ RangeGate find_mask(std::span<const MaskedScan> scans) {
       scans.front().file,
       fmt::format("has {} labels for {} points, and no common range limits leave that many",
                   scans.front().labels, scans.front().points.size()),
-      "a label per point, or --mask MIN,MAX");
+      "a label per point, or --format label-masked:MIN,MAX");
 }
 
 std::string mask_text(const RangeGate& mask) {

@@ -84,7 +84,7 @@ DynabloxLevel dynablox_level_named(std::string_view name) {
     if (name == to_string(level)) return level;
   }
   throw UsageError(
-      fmt::format("--level: '{}' is not known, expected point, cluster or object", name));
+      fmt::format("--format dynablox: '{}' is not known, expected point, cluster or object", name));
 }
 
 std::vector<std::uint32_t> parse_point_text(std::string_view text, std::size_t point_count,

@@ -79,7 +79,7 @@ std::vector<std::string> missing_scans(const Predictions& labels, const Predicti
 PredictionFormat settle_format(PredictionFormat found, const PredictionOptions& options) {
   if (!options.mask || found == PredictionFormat::kMaskedLabel) return found;
   if (found == PredictionFormat::kLabel && !options.format) return PredictionFormat::kMaskedLabel;
-  throw UsageError(fmt::format("--mask: is for format {}, not for {}, expected no --mask",
+  throw UsageError(fmt::format("--format {}: a range is not for format {}, expected none",
                                describe(PredictionFormat::kMaskedLabel).name,
                                describe(found).name));
 }

@@ -23,11 +23,11 @@ void add_sequence(const FoundResult& result, const std::optional<std::filesystem
   const ResultScans scans(result, root);
   if (result.file.content.contains("predictions")) {
     throw DataError(result.folder / "result.json", "is of mosbench score, which has labels alone",
-                    "a run of mosbench run --scores");
+                    "a run of mosbench run --write scores");
   }
   if (!scans.has_scores()) {
     throw DataError(result.folder / "scores", "is not there",
-                    "scores of points: give the same run command again, with --scores");
+                    "scores of points: give the same run command again, with --write scores");
   }
   add_counted_scans(result, scans, counts);
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 #include "datasets/formats/bin_columns.hpp"
 #include "datasets/sequence/scan_deskewer.hpp"
@@ -120,14 +121,19 @@ std::string told_flags(const ReadingOptions& options) {
   ordered_json told = told_json(options);
   if (options.poses) told["poses"] = options.poses->string();
   told.erase("odometry");
-  std::string flags;
+  constexpr std::array kFlags = {"poses", "topic", "deskew", "point_times", "perturb"};
+  std::string flags, rare;
   for (const auto& [key, value] : told.items()) {
+    const std::string word = value.is_string() ? value.get<std::string>() : value.dump();
+    if (std::ranges::find(kFlags, key) == kFlags.end()) {
+      rare += fmt::format("{}{}={}", rare.empty() ? "" : ",", key, word == "true" ? "on" : word);
+      continue;
+    }
     std::string flag = key;
     std::ranges::replace(flag, '_', '-');
-    const std::string word = value.is_string() ? value.get<std::string>() : value.dump();
     flags += fmt::format(" --{} {}", flag, shell_word(word));
   }
-  return flags;
+  return rare.empty() ? flags : fmt::format("{} --read {}", flags, shell_word(rare));
 }
 
 ordered_json to_json(const ReadingStatement& reading) {

@@ -18,7 +18,7 @@ struct DifferingSetting {
 std::string disturbance_of(const SequenceResult& result);
 
 /// Returns the settings of which two runs by one method have different values, or all runs have one
-/// and they differ, as recorded in result.json: those of the method (what `score --setting` said
+/// and they differ, as recorded in result.json: those of the method (what `score --method` said
 /// for other programs), where the poses are from, and the settings of odometry.
 std::vector<DifferingSetting> differing_settings(const std::vector<const ResultSet*>& runs);
 

@@ -45,13 +45,12 @@ std::optional<std::string> frame_remark(const TrajectoryPair& pair,
                        error_m, what);
   };
   const char* undo = "without --camera";
-  if (auto remark =
-          better(camera_from_lidar,
-                 given ? undo : "if the truth is the camera's: --camera truth --calib FILE")) {
+  if (auto remark = better(camera_from_lidar,
+                           given ? undo : "if the truth is the camera's: --camera truth:CALIB")) {
     return remark;
   }
   return better(camera_from_lidar.inverse(),
-                given ? undo : "if the estimate is the camera's: --camera estimate --calib FILE");
+                given ? undo : "if the estimate is the camera's: --camera estimate:CALIB");
 }
 
 }  // namespace mosbench

@@ -12,7 +12,7 @@ mkdir -p "$folder"
 page() {
   local name=$1 description=$2
   shift 2
-  help2man --no-info --name "$description" --version-string "$version" --source "mosbench $version" "$*" |
+  help2man --no-info --help-option=--help-all --name "$description" --version-string "$version" --source "mosbench $version" "$*" |
     sed -E -e "s/^\.TH MOSBENCH/.TH ${name^^}/" \
       -e "/^\.SH NAME/ { n; s/^.* \\\\-/$name \\\\-/ }" \
       -e '/^\.SH EXAMPLES/,$ { s/^\.IP/.IP\n.nf/; s/^\.PP/.fi\n.PP/ }' >"$folder/$name.1"

@@ -171,8 +171,8 @@ TEST_P(BadDrives, AreWrittenAsTumOnlyWhereStampsRise) {
   EXPECT_EQ(found.exit_code, rises ? GetParam().exit_code : 2) << found.err;
   EXPECT_EQ(std::filesystem::exists(path("poses.tum")), rises);
   if (rises) return;
-  EXPECT_THAT(found.err, AllOf(HasSubstr("a file called *.tum, or --format tum"),
-                               HasSubstr("is not after the one before, expected --format kitti")));
+  EXPECT_THAT(found.err, AllOf(HasSubstr("a file called *.tum, or tum:FILE"),
+                               HasSubstr("is not after the one before, expected kitti:FILE")));
 }
 
 TEST_P(BadDrives, AreNotRegisteredWhereThePosesHaveNoPlace) {

@@ -135,7 +135,7 @@ TEST_F(OdometryCommand, SaysWhenTheOtherFrameFitsFarBetter) {
   const cli::Answer found = run({"odometry", path("sim"), "-o", path("poses.txt")});
   ASSERT_LE(found.exit_code, 1);
   const cli::Answer mixed = run({"trajectory", path("poses.txt"), "--truth", truth_.string()});
-  EXPECT_THAT(mixed.out, HasSubstr("if the truth is the camera's: --camera truth --calib FILE"));
+  EXPECT_THAT(mixed.out, HasSubstr("if the truth is the camera's: --camera truth:CALIB"));
   const cli::Answer right = run({"trajectory", path("poses.txt"), "--truth", truth_.string(),
                                  "--camera", "truth", "--calib", calib_.string()});
   EXPECT_THAT(right.out, testing::Not(HasSubstr("--camera")));
@@ -158,7 +158,7 @@ TEST_F(OdometryCommand, TakesTheTimesOfPointsFromTheirAzimuth) {
   EXPECT_EQ(run(command).exit_code, 2);
   const cli::Answer next =
       run({"odometry", path("sim"), "-o", path("poses.txt"), "--point-times", "azimuth"});
-  EXPECT_THAT(next.out, HasSubstr(" --pose-frame lidar --point-times azimuth\n"));
+  EXPECT_THAT(next.out, HasSubstr(" --point-times azimuth --read pose_frame=lidar\n"));
 }
 
 TEST_F(OdometryCommand, PrintsCovarianceAndWritesTum) {
@@ -331,7 +331,7 @@ TEST_F(OdometryCommand, LeavesMovingPointsOutOfTheMapAndSaysSo) {
       run({"run", path("sim"), "--odometry", "simple", "--drop-moving", "--method", "underwood",
            "--set", "delay_scans=5,min_votes=2", "--out", path("votes")});
   EXPECT_EQ(votes.exit_code, 2);
-  EXPECT_THAT(votes.err, HasSubstr("--drop-moving: needs method underwood with delay_scans=0"));
+  EXPECT_THAT(votes.err, HasSubstr("drop_moving: needs method underwood with delay_scans=0"));
 }
 
 TEST_F(OdometryCommand, GivesAConversionItsPoses) {

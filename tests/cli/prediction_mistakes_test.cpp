@@ -77,10 +77,10 @@ TEST_F(PredictionMistakes, AMaskForAFormatThatCutsNoRangeIsRefused) {
   ASSERT_EQ(score(file).exit_code, 0);
   const cli::Answer in_rows = score(file, {"--mask", "0,50"});
   EXPECT_EQ(in_rows.exit_code, 2);
-  EXPECT_THAT(in_rows.err, HasSubstr("--mask: is for format label-masked, not for rows"));
+  EXPECT_THAT(in_rows.err, HasSubstr("--format label-masked: a range is not for format rows"));
   const cli::Answer told = score(folder_ / "mine", {"--mask", "0,50", "--format", "label"});
   EXPECT_EQ(told.exit_code, 2);
-  EXPECT_THAT(told.err, HasSubstr("not for label"));
+  EXPECT_THAT(told.err, HasSubstr("format label takes nothing behind a colon"));
 }
 
 TEST_F(PredictionMistakes, TextsThatHoldNoPredictionsArePassedOver) {

@@ -78,8 +78,9 @@ TEST_F(Render, TurnsACameraAroundTheSensorAndDrawsBoxes) {
             drawn("b.png", {"--scan", "6", "--range", "9"}));
   EXPECT_NE(drawn("c.png", {"--scan", "6", "--boxes", "--range", "9"}),
             read_file(folder_ / "b.png"));
-  for (const auto& flags : std::vector<std::vector<std::string>>{
-           {"--scan", "6", "--azimuth", "5"}, {"--scan", "6", "--view", "orbit", "--turn", "5"}}) {
+  for (const auto& flags :
+       std::vector<std::vector<std::string>>{{"--scans", "6", "--view", "top:5"},
+                                             {"--scan", "6", "--view", "orbit", "--turn", "5"}}) {
     std::vector<std::string> words = {"render", run(), "-o", folder_ / "d.png"};
     words.insert(words.end(), flags.begin(), flags.end());
     EXPECT_EQ(cli::run(words).exit_code, 2);
@@ -139,7 +140,7 @@ TEST_F(Render, KnowsNoWorstScanWithoutTruth) {
   const cli::Answer one = cli::run({"render", bare, "--scan", "worst", "-o", folder_ / "w.png"});
   EXPECT_EQ(one.exit_code, 2);
   EXPECT_THAT(one.err,
-              HasSubstr("--scan: worst: no scan of the result has truth, expected 0 to 7"));
+              HasSubstr("--scans: worst: no scan of the result has truth, expected 0 to 7"));
   EXPECT_EQ(cli::run({"render", bare, "--scans", "worst:2", "-o", folder_ / "pictures"}).exit_code,
             2);
 }
@@ -184,7 +185,8 @@ TEST_F(Render, ColoursReasonsWhereTheRunKeptThem) {
   EXPECT_EQ(refused.exit_code, 3);
   EXPECT_THAT(
       refused.err,
-      HasSubstr("reasons: is not there, expected a run of mosbench run --scores by a method"));
+      HasSubstr(
+          "reasons: is not there, expected a run of mosbench run --write scores by a method"));
 }
 
 TEST_F(Render, RefusesScansAndSequencesThatAreNotThere) {

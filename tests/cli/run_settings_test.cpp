@@ -181,10 +181,10 @@ TEST_F(RunSettings, OfMovingEverAreRefusedWhereTheyMeanNothing) {
   EXPECT_THAT(refusal("ever", "hmm-mos"),
               testing::HasSubstr("method hmm-mos does not remember what moved"));
   EXPECT_THAT(refusal("always", "hmm-mos-plus"),
-              testing::HasSubstr("--moving: 'always' is not known, expected now, ever"));
+              testing::HasSubstr("moving: 'always' is not known, expected now, ever"));
   for (const char* wrong : {"ever:", "ever:x", "ever:nan"}) {
     EXPECT_THAT(refusal(wrong, "hmm-mos-plus"),
-                testing::HasSubstr(std::string("--moving: '") + wrong + "' is not known"));
+                testing::HasSubstr(std::string("moving: '") + wrong + "' is not known"));
   }
   for (const char* wrong : {"ever:11", "ever:-1"}) {
     EXPECT_THAT(refusal(wrong, "hmm-mos-plus"), testing::HasSubstr("seed_age_s")) << wrong;

@@ -75,7 +75,7 @@ TEST_F(Suggestions, OfTheDoctorRun) {
   EXPECT_THAT(suggested_by({"doctor", path("set"), "--sequences", "01"}, 1),
               HasSubstr(" --sequences 01"));
   EXPECT_THAT(
-      suggested_by({"doctor", path("bare"), "--dataset", "semantickitti", "--raw-scans"}, 1),
+      suggested_by({"doctor", path("bare"), "--dataset", "semantickitti", "--deskew", "none"}, 1),
       testing::AllOf(HasSubstr("mosbench run "), HasSubstr(" --dataset semantickitti"),
                      HasSubstr(" --deskew none --odometry simple")));
 }
@@ -88,10 +88,10 @@ TEST_F(Suggestions, ForScansWithoutPosesCarryTheFlagsAndRun) {
                              HasSubstr(" --odometry simple")));
   EXPECT_TRUE(is_there(path("my runs/bare/result.json")));
   suggested_by({"convert", path("bare"), "--layout", "sipailou", "--out", path("converted")}, 1);
-  EXPECT_THAT(suggested_by({"score", path("bare"), "--predictions", path("predicted"),
-                            "--raw-scans", "--dataset=semantickitti"},
+  EXPECT_THAT(suggested_by({"score", path("bare"), "--predictions", path("predicted"), "--deskew",
+                            "none", "--dataset=semantickitti"},
                            2),
-              HasSubstr(" --dataset semantickitti --raw-scans -o found-poses\n"));
+              HasSubstr(" --dataset semantickitti --deskew none -o found-poses\n"));
   suggested_by({"profile", path("bare"), "--scans", "2"}, 2);
 }
 
@@ -107,7 +107,7 @@ TEST_F(Suggestions, OfOdometryRunOnTheSameSequences) {
 TEST_F(Suggestions, NameAFormatForPosesOfScansWithoutStamps) {
   const cli::Answer tum = cli::run({"odometry", path("bare"), "-o", path("p.tum")});
   EXPECT_EQ(tum.exit_code, 2);
-  EXPECT_THAT(tum.err, HasSubstr("expected --format kitti or a file called *.txt"));
+  EXPECT_THAT(tum.err, HasSubstr("expected kitti:FILE or a file called *.txt"));
 }
 
 TEST_F(Suggestions, OfTrajectoryKeepTheFlags) {

@@ -38,6 +38,15 @@ def _setting_flags(settings: Optional[Mapping[str, SettingValue]], flag: str = "
             for name, value in (settings or {}).items()]  # fmt: skip
 
 
+def _odometry_words(
+    kind: Optional[str], preset: Optional[str], settings: Optional[Mapping[str, SettingValue]], drop_moving: bool
+) -> Optional[str]:
+    """Returns the value of --odometry: KIND:PRESET,KEY=VALUE,..."""
+    chosen = (kind or "") + (f":{preset}" if preset else "")
+    parts = [chosen, *(flag.removeprefix("--set=") for flag in _setting_flags(settings))]
+    return ",".join(part for part in [*parts, "drop_moving=on" if drop_moving else ""] if part) or None
+
+
 def _how_to_read(data: Any, reading: Mapping[str, Any]) -> dict[str, Any]:
     """Returns the reading of what `mosbench.open` opened, with what is given now over it."""
     opened: Mapping[str, Any] = data.opened_by.reading if isinstance(data, (Dataset, Sequence)) else {}
@@ -229,10 +238,11 @@ def run(
                 reading |= {"point_times": "column", "bin_columns": 5}
             data = folder
         arguments = ["run", *_data_flags(data, dataset, sequences, _with_kept_poses(reading, out))]
-        arguments += flags(preset=preset, moving=moving, out=out, method=method, protocol=protocol, scores=scores)
-        arguments += flags(write=_names(write), overwrite=overwrite, threads=threads, drop_moving=drop_moving)
-        arguments += flags(odometry=odometry, odometry_preset=odometry_preset)
-        arguments += _setting_flags(odometry_settings, "--odometry-set")
+        written = [*(["scores"] if scores else []), *(_names(write) or [])]
+        arguments += flags(preset=preset, out=out, method=method, protocol=protocol, write=written or None)
+        arguments += flags(overwrite=overwrite, threads=threads)
+        arguments += flags(odometry=_odometry_words(odometry, odometry_preset, odometry_settings, drop_moving))
+        arguments += _setting_flags(None if moving is None else {"moving": moving})
         _, answer = _answer(arguments + _setting_flags(config), quiet=not progress)
     return Result(answer["out"])
 

@@ -27,6 +27,10 @@ READING = (
 )
 
 
+#: Those that have a flag of their own; the others are keys of --read.
+FLAGS = ("poses", "topic", "point_times", "deskew", "perturb")
+
+
 def flags(**values: Any) -> list[str]:
     """Returns --name=value of those that are given; true alone gives --name."""
     arguments = []
@@ -48,12 +52,18 @@ def reading_flags(reading: Mapping[str, Any]) -> list[str]:
     for name in reading:
         if name not in READING:
             raise TypeError(f"got an unexpected keyword argument {name!r}, expected one of {', '.join(READING)}")
-    return flags(**reading)
+    if reading.get("raw_scans"):
+        reading = {"deskew": "none", **{name: value for name, value in reading.items() if name != "raw_scans"}}
+    said = {name: value for name, value in reading.items() if name in FLAGS}
+    rare = [f"{name}={'on' if value is True else value}" for name, value in reading.items()
+            if name not in FLAGS and value is not None and value is not False]  # fmt: skip
+    return [*flags(**said), *flags(read=rare or None)]
 
 
 def _in_python(message: str) -> str:
     """Returns a message of the program with arguments where it names flags."""
     message = re.sub(r"mosbench run .* --odometry (\w+)", r"run(odometry='\1')", message)
+    message = message.replace("--read ", "")
     message = re.sub(r"; see mosbench [\w ]*--help", "", message)
     return re.sub(r"(?<![\w-])--([a-z][a-z0-9-]*)", lambda match: match[1].replace("-", "_"), message)
 

@@ -239,8 +239,8 @@ TEST(TrajectoryPairs, SayWhenTheOtherFrameFitsFarBetter) {
   };
   EXPECT_EQ(remark(lidar, lidar, {}), "none");
   EXPECT_EQ(remark(camera, camera, {}), "none");
-  EXPECT_THAT(remark(lidar, camera, {}), testing::HasSubstr("--camera truth --calib FILE"));
-  EXPECT_THAT(remark(camera, lidar, {}), testing::HasSubstr("--camera estimate --calib FILE"));
+  EXPECT_THAT(remark(lidar, camera, {}), testing::HasSubstr("--camera truth:CALIB"));
+  EXPECT_THAT(remark(camera, lidar, {}), testing::HasSubstr("--camera estimate:CALIB"));
   // Said of files that are both the lidar's: the estimate was turned before.
   TrajectoryOptions turned;
   turned.camera = CameraFrame::kTruth;

@@ -1,15 +1,14 @@
+#include "eval/cli/breakdown_answer.hpp"
+
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <deque>
-#include <memory>
 
 #include "core/base/thread_pool.hpp"
 #include "datasets/text/errors.hpp"
 #include "eval/answer/answer_text.hpp"
 #include "eval/breakdown/breakdown.hpp"
-#include "eval/cli/commands.hpp"
 #include "eval/cli/dataset_flags.hpp"
 #include "eval/cli/suggested_command.hpp"
 #include "eval/engine/run_plan.hpp"
@@ -21,31 +20,6 @@
 
 namespace mosbench {
 namespace {
-
-constexpr const char* kBreakdownFooter =
-    R"(Shows where predictions are right and wrong: by range, by height above the sensor, and by the size,
-speed and age of moving objects. Lists the objects that lost most points and the largest false
-positives, worst first, with scan and position. Objects are the instances of the truth if it has
-any, else clusters of moving points linked over scans. An object is detected once a tenth of its
-points is found. DATA may also be a folder of results, which tells where data and labels are and how
-they were scored. Speeds are in the map frame; if the stamps of the scans do not rise, 10 Hz is
-assumed.
-
-Examples:
-  mosbench breakdown results/runs/kitti
-  mosbench breakdown ~/kitti/sequences/08 --predictions mapmos/08/predictions
-  mosbench breakdown sim/room --predictions results/runs/room --top 5 --json)";
-
-struct BreakdownFlags {
-  std::filesystem::path input;
-  std::optional<std::filesystem::path> predictions;
-  std::string dataset = "auto";
-  std::vector<std::string> sequences;
-  std::optional<std::string> protocol, range, format;
-  ReadingOptions reading;
-  std::size_t top = 10;
-  unsigned threads = hardware_threads();
-};
 
 BreakdownTask settle(const BreakdownFlags& options, const Dataset& dataset) {
   const Protocol& protocol =
@@ -83,7 +57,7 @@ Answer answer_of(const BreakdownFlags& options, const Dataset& dataset, const Br
                 .sheets = {{.lead = {rule_line({task.protocol, task.range})}}}};
   for (const SequenceBreakdown& part : breakdowns) {
     json["sequences"].push_back(to_json(part, options.top));
-    for (Sheet& sheet : breakdown_sheets(part, options.top)) {
+    for (Sheet& sheet : breakdown_sheets(part, options.parts, options.top)) {
       answer.sheets.push_back(std::move(sheet));
     }
   }
@@ -138,39 +112,14 @@ Answer breakdown_of_run(const BreakdownFlags& options, const CLI::App& command) 
   return answer_of(options, scans.front().dataset(), task, breakdowns);
 }
 
-Answer breakdown(const BreakdownFlags& options, const CLI::App& command) {
+}  // namespace
+
+Answer breakdown_of(const BreakdownFlags& options, const CLI::App& command) {
   if (!options.predictions) return breakdown_of_run(options, command);
   const Dataset dataset = open_dataset(
       options.input, {dataset_kind_option(options.dataset), options.sequences, options.reading});
   const BreakdownTask task = settle(options, dataset);
   return answer_of(options, dataset, task, all_breakdowns(options, dataset, task));
-}
-
-}  // namespace
-
-CommandRun add_breakdown(CLI::App& command) {
-  auto options = std::make_shared<BreakdownFlags>();
-  add_dataset_flags(command, options->input, options->dataset, options->sequences,
-                    options->reading);
-  command
-      .add_option(
-          "--predictions", options->predictions,
-          "Folder or file of predictions, as for `mosbench score` (default: those of results "
-          "that are given as DATA)")
-      ->type_name("PATH");
-  command.add_option("--format", options->format, "Of the predictions (default: recognised)")
-      ->type_name("FORMAT");
-  command
-      .add_option("--protocol", options->protocol,
-                  "Rules of truth and range (default: by data set)")
-      ->type_name("PROTOCOL");
-  command.add_option("--range", options->range, "In metres, for protocols that limit it")
-      ->type_name("MIN,MAX");
-  command.add_option("--top", options->top, "How many objects and false positives to list")
-      ->capture_default_str();
-  add_threads_flag(command, options->threads);
-  command.footer(kBreakdownFooter);
-  return [options, &command] { return breakdown(*options, command); };
 }
 
 }  // namespace mosbench

@@ -1,10 +1,8 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <iterator>
 #include <map>
-#include <memory>
 #include <set>
 
 #include "core/base/thread_pool.hpp"
@@ -12,8 +10,7 @@
 #include "datasets/text/errors.hpp"
 #include "eval/answer/answer_text.hpp"
 #include "eval/breakdown/run_diff.hpp"
-#include "eval/cli/commands.hpp"
-#include "eval/cli/dataset_flags.hpp"
+#include "eval/cli/compare_command.hpp"
 #include "eval/engine/run_plan.hpp"
 #include "eval/report/result_scans.hpp"
 #include "eval/results/result_set.hpp"
@@ -21,22 +18,6 @@
 
 namespace mosbench {
 namespace {
-
-constexpr const char* kDiffFooter =
-    R"(Lists the scans whose counts differ between two runs, most changed first. With --data it also lists
-the moving objects of which they find different parts. The data set is read as each run read it, and
-must hold the scans and the truth of the runs.
-
-Examples:
-  mosbench diff results/runs/online results/runs/delayed
-  mosbench diff results/runs/online results/runs/delayed --data ~/kitti --top 20 --json)";
-
-struct DiffFlags {
-  std::filesystem::path first, second;
-  std::optional<std::filesystem::path> root;
-  std::string dataset = "auto";
-  std::size_t top = 10;
-};
 
 /// Labels of a run for the scans of another one, found by their stems.
 class LabelsByStem : public Predictions {
@@ -99,17 +80,17 @@ std::vector<ObjectDisagreement> objects_of(const SequenceResult& first,
                              break_down(scans.sequence(), counted, labels, task));
 }
 
-std::set<std::string> names_in(const DiffFlags& options) {
+std::set<std::string> names_in(const CompareFlags& options) {
   std::optional<DatasetKind> kind;
   std::set<std::string> names;
   for (const SequenceFolder& found :
-       find_sequences(*options.root, {dataset_kind_option(options.dataset), {}, {}}, kind)) {
+       find_sequences(*options.data, {dataset_kind_option(options.dataset), {}, {}}, kind)) {
     names.insert(found.name);
   }
   return names;
 }
 
-std::vector<ObjectDisagreement> objects_of(const DiffFlags& options, const ResultSet& first,
+std::vector<ObjectDisagreement> objects_of(const CompareFlags& options, const ResultSet& first,
                                            const ResultSet& second) {
   const std::set<std::string> there = names_in(options);
   std::vector<ObjectDisagreement> objects;
@@ -119,15 +100,15 @@ std::vector<ObjectDisagreement> objects_of(const DiffFlags& options, const Resul
         std::ranges::find(second.sequences, result.sequence, &SequenceResult::sequence);
     if (counted_scans(result).empty() || other == second.sequences.end()) continue;
     if (!there.contains(result.sequence)) {
-      tell(fmt::format("{}: has no sequence {}; its objects are left out", options.root->string(),
+      tell(fmt::format("{}: has no sequence {}; its objects are left out", options.data->string(),
                        result.sequence.text()));
       continue;
     }
     any = true;
-    std::ranges::move(objects_of(result, *other, *options.root), std::back_inserter(objects));
+    std::ranges::move(objects_of(result, *other, *options.data), std::back_inserter(objects));
   }
   if (any) return objects;
-  throw DataError(*options.root, "has none of the sequences that both runs hold",
+  throw DataError(*options.data, "has none of the sequences that both runs hold",
                   "the data set of the runs in --data");
 }
 
@@ -142,36 +123,23 @@ void check_has_truth(const ResultSet& run) {
                   "where labels differ without truth");
 }
 
-Answer diff(const DiffFlags& options) {
-  const ResultSet first = load_result_set(options.first);
-  const ResultSet second = load_result_set(options.second);
+}  // namespace
+
+Answer scans_and_objects(const CompareFlags& options) {
+  const ResultSet first = load_result_set(options.baseline);
+  const ResultSet second = load_result_set(options.newer);
   for (const ResultSet* run : {&first, &second}) check_has_truth(*run);
   const PairedRuns paired = pair_runs(first, second);
   if (paired.scans.empty()) {
-    throw DataError(options.second, "shares no counted scan with " + options.first.string(),
+    throw DataError(options.newer, "shares no counted scan with " + options.baseline.string(),
                     "results over the same scans");
   }
-  const auto objects =
-      options.root ? objects_of(options, first, second) : std::vector<ObjectDisagreement>{};
+  const auto objects = options.shows("object") && options.data ? objects_of(options, first, second)
+                                                               : std::vector<ObjectDisagreement>{};
   return {.standing = standing_of(first, "first", second, "second"),
-          .sheets =
-              diff_sheets(names_apart(options.first, options.second), paired, objects, options.top),
+          .sheets = diff_sheets(names_apart(options.baseline, options.newer), paired, objects,
+                                options.top),
           .json = json_text(diff_json(paired, objects, options.top))};
-}
-
-}  // namespace
-
-CommandRun add_diff(CLI::App& command) {
-  auto options = std::make_shared<DiffFlags>();
-  command.add_option("A", options->first, "Results of a run")->type_name("DIR")->required();
-  command.add_option("B", options->second, "Results of another run")->type_name("DIR")->required();
-  command.add_option("--data", options->root, "Data set of both; also lists objects")
-      ->type_name("DIR");
-  add_dataset_kind_flag(command, options->dataset);
-  command.add_option("--top", options->top, "How many scans and objects to list")
-      ->capture_default_str();
-  command.footer(kDiffFooter);
-  return [options] { return diff(*options); };
 }
 
 }  // namespace mosbench

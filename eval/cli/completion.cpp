@@ -1,8 +1,9 @@
+#include "eval/cli/completion.hpp"
+
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <memory>
 #include <mosbench/method.hpp>
 #include <sstream>
 #include <vector>
@@ -17,16 +18,8 @@
 namespace mosbench {
 namespace {
 
-constexpr const char* kCompletionFooter =
-    R"(`cmake --install` puts both scripts where the shells look for them. "commands" prints the name and
-the one-line help of every command, separated by a tab.
-
-Examples:
-  mosbench completion bash > ~/.local/share/bash-completion/completions/mosbench
-  mosbench completion zsh > ~/.zfunc/_mosbench)";
-
 constexpr const char* kBash =
-    R"(# Completes commands, flags and their values. Made by `mosbench completion bash`.
+    R"(# Completes commands, flags and their values. Made by `mosbench help --completion bash`.
 _mosbench() {{
   local word=${{COMP_WORDS[COMP_CWORD]}} words=
   if [ "$COMP_CWORD" = 1 ]; then
@@ -44,7 +37,7 @@ complete -o default -F _mosbench mosbench
 )";
 
 constexpr const char* kZsh = R"(#compdef mosbench
-# Completes commands, flags and their values. Made by `mosbench completion zsh`.
+# Completes commands, flags and their values. Made by `mosbench help --completion zsh`.
 _mosbench() {{
   local -a commands=(
 {}  )
@@ -107,16 +100,13 @@ std::string bash_completion(const CLI::App& program) {
       for (const std::string& flag : flags_of(*option)) {
         words.push_back(flag);
         if (is_flag(*option)) continue;
-        for (const std::string_view name : row.names()) {
-          values +=
-              fmt::format("      '{} {}') words='{}' ;;\n", name, flag, fmt::join(possible, " "));
-        }
+        values +=
+            fmt::format("      '{} {}') words='{}' ;;\n", row.name, flag, fmt::join(possible, " "));
       }
       if (option->get_positional()) words.insert(words.begin(), possible.begin(), possible.end());
     }
-    flags += fmt::format("        {}) words='{}' ;;\n", fmt::join(row.names(), "|"),
-                         fmt::join(words, " "));
-    for (const std::string_view name : row.names()) names.push_back(name);
+    flags += fmt::format("        {}) words='{}' ;;\n", row.name, fmt::join(words, " "));
+    names.push_back(row.name);
   }
   return fmt::format(kBash, fmt::join(names, " "), values, flags);
 }
@@ -146,10 +136,8 @@ std::string zsh_argument(const CLI::Option& option) {
 std::string zsh_completion(const CLI::App& program) {
   std::string names, cases;
   for (const Command& row : commands()) {
-    for (const std::string_view name : row.names()) {
-      names += fmt::format("    '{}:{}'\n", name, plain(std::string(row.help)));
-    }
-    cases += fmt::format("    {})\n      _arguments", fmt::join(row.names(), "|"));
+    names += fmt::format("    '{}:{}'\n", row.name, plain(std::string(row.help)));
+    cases += fmt::format("    {})\n      _arguments", row.name);
     for (const CLI::Option* option : program.get_subcommand(std::string(row.name))->get_options()) {
       if (!option->get_group().empty()) cases += zsh_argument(*option);
     }
@@ -166,16 +154,9 @@ std::string command_names() {
 
 }  // namespace
 
-CommandRun add_completion(CLI::App& command) {
-  auto what = std::make_shared<std::string>();
-  command.add_option("SHELL", *what, "bash or zsh; or commands")
-      ->required()
-      ->check(CLI::IsMember({"bash", "zsh", "commands"}));
-  command.footer(kCompletionFooter);
-  return [what, &program = *command.get_parent()] {
-    if (*what == "bash") return Answer{bash_completion(program)};
-    return Answer{*what == "zsh" ? zsh_completion(program) : command_names()};
-  };
+std::string completion_of(const CLI::App& program, const std::string& shell) {
+  if (shell == "bash") return bash_completion(program);
+  return shell == "zsh" ? zsh_completion(program) : command_names();
 }
 
 }  // namespace mosbench

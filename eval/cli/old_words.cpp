@@ -1,0 +1,198 @@
+#include "eval/cli/old_words.hpp"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <sstream>
+
+namespace mosbench {
+namespace {
+
+using Words = std::vector<std::string>;
+
+constexpr std::string_view kReaders = "run profile score breakdown stats convert doctor odometry";
+
+constexpr std::array kOldFlags = {
+    OldFlag{kReaders, "--pose-format", true, "--read", "pose_format={}"},
+    OldFlag{kReaders, "--pose-frame", true, "--read", "pose_frame={}"},
+    OldFlag{kReaders, "--pose-direction", true, "--read", "pose_direction={}"},
+    OldFlag{kReaders, "--max-pose-gap-s", true, "--read", "max_pose_gap_s={}"},
+    OldFlag{kReaders, "--map-frame", true, "--read", "map_frame={}"},
+    OldFlag{kReaders, "--pose-topic", true, "--read", "pose_topic={}"},
+    OldFlag{kReaders, "--bin-columns", true, "--read", "bin_columns={}"},
+    OldFlag{kReaders, "--moving-speed-m-s", true, "--read", "moving_speed_m_s={}"},
+    OldFlag{kReaders, "--hdl64-correction", false, "--read", "hdl64_correction=on"},
+    OldFlag{kReaders, "--raw-scans", false, "--deskew", "none"},
+    OldFlag{"run profile", "--config", true, "--set", "@{}"},
+    OldFlag{"run profile", "--variant", true, "--set", "variant={}"},
+    OldFlag{"run profile", "--moving", true, "--set", "moving={}"},
+    OldFlag{"odometry", "--preset", true, "--odometry", ":{}", "", ""},
+    OldFlag{"odometry", "--config", true, "--odometry", "@{}"},
+    OldFlag{"odometry", "--set", true, "--odometry", "{}"},
+    OldFlag{"run convert", "--odometry-preset", true, "--odometry", ":{}", "", ""},
+    OldFlag{"run convert", "--odometry-config", true, "--odometry", "@{}"},
+    OldFlag{"run convert", "--odometry-set", true, "--odometry", "{}"},
+    OldFlag{"run convert odometry", "--drop-moving", false, "--odometry", "drop_moving=on"},
+    OldFlag{"run", "--scores", false, "--write", "scores"},
+    OldFlag{"odometry", "--format", true, "--out", "{}:", "", "", true},
+    OldFlag{"convert", "--compression", true, "--layout", "{}", ":"},
+    OldFlag{"score", "--mask", true, "--format", "{}", ":", "label-masked"},
+    OldFlag{"score", "--level", true, "--format", "{}", ":", "dynablox"},
+    OldFlag{"score", "--setting", true, "--method", "{}", ", ", "unnamed"},
+    OldFlag{"curve rank reproduce table study", "--format", true, "--as"},
+    OldFlag{"compare", "--output-format", true, "--as"},
+    OldFlag{"stats", "--csv", false, "--as", "csv"},
+    OldFlag{"stats", "--per-scan", false, "--by", "scan"},
+    OldFlag{"trajectory", "--csv", false, "--as", "csv"},
+    OldFlag{"trajectory", "--format", true, "--read", "pose_format={}"},
+    OldFlag{"trajectory", "--max-time-difference-s", true, "--read", "max_time_difference_s={}"},
+    OldFlag{"trajectory", "--calib", true, "--camera", "{}", ":", "neither"},
+    OldFlag{"trajectory", "--delta-m", true, "--delta", "{}m"},
+    OldFlag{"trajectory", "--all-pairs", false, "--delta", "all", ",", "1"},
+    OldFlag{"render", "--scan", true, "--scans", "{}"},
+    OldFlag{"render", "--sequence", true, "--sequences", "{}"},
+    OldFlag{"render", "--azimuth", true, "--view", "{}", ":", "orbit"},
+    OldFlag{"render", "--turn", true, "--view", "{}", "+", "orbit"},
+    OldFlag{"render", "--boxes", false, "--show", "boxes"},
+    OldFlag{"render", "--reasons", false, "--show", "reasons"},
+};
+
+constexpr std::array kOldCommands = {
+    OldCommand{"leaderboard", "rank {}"},
+    OldCommand{"curve", "stats {} --by threshold"},
+    OldCommand{"breakdown", "stats {} --by range,height,object"},
+    OldCommand{"stats", "compare {} --by sequence", 2},
+    OldCommand{"diff", "compare {} --by scan,object"},
+    OldCommand{"bless", "compare {1} {0} --accept"},
+    OldCommand{"map-score", "score {1} --map {0}"},
+    OldCommand{"completion", "help --completion {}"},
+};
+
+Words split(std::string_view text) {
+  std::istringstream stream{std::string(text)};
+  Words words;
+  for (std::string word; stream >> word;) words.push_back(word);
+  return words;
+}
+
+std::string filled(std::string_view pattern, const std::string& value) {
+  const std::size_t hole = pattern.find("{}");
+  if (hole == std::string_view::npos) return std::string(pattern);
+  return std::string(pattern.substr(0, hole)) + value + std::string(pattern.substr(hole + 2));
+}
+
+/// Returns where the value of a flag stands, behind "=" or as a word of its own; `words` without
+/// the flag.
+struct Found {
+  Words::iterator word;
+  std::size_t value_at = 0;  ///< in `word`
+};
+
+std::optional<Found> find_flag(Words& words, std::string_view flag) {
+  if (flag == "--out") {
+    if (const auto found = find_flag(words, "-o")) return found;
+  }
+  for (auto word = words.begin(); word != words.end(); ++word) {
+    if (*word == "--") return std::nullopt;
+    if (*word == flag && word + 1 != words.end()) return Found{word + 1, 0};
+    if (word->starts_with(flag) && word->substr(flag.size()).starts_with('=')) {
+      return Found{word, flag.size() + 1};
+    }
+  }
+  return std::nullopt;
+}
+
+/// Takes an old flag out of the words. Returns its value, or nothing where it is not there.
+std::optional<std::string> taken(Words& words, const OldFlag& old) {
+  if (!old.has_value) {
+    const auto word = std::ranges::find(words, old.flag);
+    if (word == words.end()) return std::nullopt;
+    words.erase(word);
+    return "";
+  }
+  const std::optional<Found> found = find_flag(words, old.flag);
+  if (!found) return std::nullopt;
+  std::string value = found->word->substr(found->value_at);
+  words.erase(found->word - (found->value_at == 0 ? 1 : 0), found->word + 1);
+  return value;
+}
+
+void put(Words& words, const OldFlag& old, const std::string& value) {
+  const std::string part = filled(old.part, value);
+  if (const std::optional<Found> known = find_flag(words, old.now)) {
+    const std::size_t end = old.in_front ? known->value_at : known->word->size();
+    known->word->insert(end, old.in_front ? part : std::string(old.joint) + part);
+    return;
+  }
+  words.emplace_back(old.now);
+  words.push_back(old.head.empty() ? part : std::string(old.head) + std::string(old.joint) + part);
+}
+
+void replace_flags(Words& words) {
+  const std::string command = words.front();
+  for (const OldFlag& old : old_flags()) {
+    const Words commands = split(old.commands);
+    if (std::ranges::find(commands, command) == commands.end()) continue;
+    while (const auto value = taken(words, old)) put(words, old, *value);
+  }
+}
+
+/// Returns the words of today with the arguments of the old command in their places.
+Words filled_in(const OldCommand& old, const Words& arguments, const TakesValue& takes_value) {
+  const Words now = split(old.now);
+  Words free, flags;
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    if (!arguments[i].starts_with('-') || arguments[i] == "-") {
+      free.push_back(arguments[i]);
+      continue;
+    }
+    flags.push_back(arguments[i]);
+    if (takes_value(now.front(), arguments[i]) && i + 1 < arguments.size()) {
+      flags.push_back(arguments[++i]);
+    }
+  }
+  if (old.arguments != 0 && free.size() != old.arguments) return {};
+  Words words;
+  std::vector<bool> used(free.size());
+  for (const std::string& word : now) {
+    if (word == "{0}" || word == "{1}") {
+      const auto place = static_cast<std::size_t>(word[1] - '0');
+      if (place >= free.size()) continue;
+      words.push_back(free[place]);
+      used[place] = true;
+    } else if (word != "{}") {
+      words.push_back(word);
+    } else {
+      for (std::size_t i = 0; i < free.size(); ++i) {
+        if (!used[i]) words.push_back(free[i]);
+      }
+    }
+  }
+  words.insert(words.end(), flags.begin(), flags.end());
+  return words;
+}
+
+}  // namespace
+
+std::span<const OldFlag> old_flags() { return kOldFlags; }
+
+std::span<const OldCommand> old_commands() { return kOldCommands; }
+
+std::vector<std::string> in_new_words(std::vector<std::string> words,
+                                      const TakesValue& takes_value) {
+  if (words.empty()) return words;
+  replace_flags(words);
+  const bool asks_help = words.front() == "help" && words.size() > 1;
+  const auto begin = words.begin() + (asks_help ? 1 : 0);
+  for (const OldCommand& old : old_commands()) {
+    const Words name = split(old.name);
+    const auto length = static_cast<std::ptrdiff_t>(name.size());
+    if (words.end() - begin < length || !std::equal(name.begin(), name.end(), begin)) continue;
+    const Words now = filled_in(old, {begin + length, words.end()}, takes_value);
+    if (now.empty()) continue;
+    return asks_help ? Words{"help", now.front()} : now;
+  }
+  return words;
+}
+
+}  // namespace mosbench
