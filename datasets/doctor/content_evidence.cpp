@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <numeric>
 #include <set>
 #include <unordered_map>
 
@@ -47,22 +48,14 @@ bool same_points(const std::vector<Point>& a, const std::vector<Point>& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Point)) == 0;
 }
 
-/// Returns evenly spread ones of the scans.
-std::vector<std::size_t> spread(const std::vector<std::size_t>& scans, std::size_t most) {
-  const std::size_t count = std::min(most, scans.size());
-  std::vector<std::size_t> some;
-  for (std::size_t i = 0; i < count; ++i) some.push_back(scans[i * scans.size() / count]);
-  return some;
-}
-
 /// Returns evenly spread scans, and as many of the labelled ones.
 std::set<std::size_t> sampled_scans(const Sequence& sequence) {
-  const std::vector<std::size_t> labelled = scans_with_truth(sequence);
-  std::set<std::size_t> sampled;
-  for (std::size_t i = 0; i < kScansRead / 2; ++i) {
-    sampled.insert(i * sequence.size() / (kScansRead / 2));
-    if (!labelled.empty()) sampled.insert(labelled[i * labelled.size() / (kScansRead / 2)]);
-  }
+  std::vector<std::size_t> all(sequence.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  const auto any = picked(all, kScansRead / 2);
+  const auto labelled = picked(scans_with_truth(sequence), kScansRead / 2);
+  std::set<std::size_t> sampled(any.begin(), any.end());
+  sampled.insert(labelled.begin(), labelled.end());
   return sampled;
 }
 
@@ -76,7 +69,7 @@ class ContentCount {
     for (const std::size_t scan_index : sampled_scans(sequence_)) count_scan(scan_index);
     if (has_only_unlabelled()) {
       // Those read have no label by chance where key frames alone are labelled.
-      for (const std::size_t scan_index : spread(scans_with_labels(sequence_), kScansRead / 2)) {
+      for (const std::size_t scan_index : picked(scans_with_labels(sequence_), kScansRead / 2)) {
         count_scan(scan_index);
       }
     }

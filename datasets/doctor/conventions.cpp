@@ -78,28 +78,27 @@ void add_axes(const std::vector<Pose>& given, std::vector<PoseConvention>& conve
   const Eigen::Matrix3d swapped_xy = matrix({0, 1, 0, 1, 0, 0, 0, 0, 1});
   const Eigen::Matrix3d other_y = matrix({1, 0, 0, 0, -1, 0, 0, 0, 1});
   const Eigen::Matrix3d other_z = matrix({1, 0, 0, 0, 1, 0, 0, 0, -1});
-  const auto add_translations = [&](const char* name, const char* advice,
+  const Eigen::Matrix3d of_camera = matrix({0, 0, 1, -1, 0, 0, 0, -1, 0});
+  const auto add_translations = [&](std::string name, std::string advice,
                                     const Eigen::Matrix3d& change) {
     conventions.push_back(changed(name, advice, given, [&](Pose pose) {
       pose.translation() = (change * pose.translation()).eval();
       return pose;
     }));
   };
+  const auto add_points = [&](std::string name, std::string how, const Eigen::Matrix3d& axes) {
+    conventions.push_back({name, "export the scans again " + how, given, axes});
+  };
+  const char* turn = "turn the sign of the translations";
   add_translations("with x and y of their translations swapped", "exchange the two translations",
                    swapped_xy);
-  add_translations("with the other sign of y of their translations",
-                   "turn the sign of the translations", other_y);
-  add_translations("with the other sign of z of their translations",
-                   "turn the sign of the translations", other_z);
-  conventions.push_back({"with x and y of the points swapped",
-                         "export the scans again with x before y", given, swapped_xy});
-  conventions.push_back(
-      {"with the points mirrored", "export the scans again without a turned sign", given, other_y});
-  conventions.push_back({"with the points turned from upside down",
-                         "export the scans again with z upwards", given, other_z});
-  conventions.push_back({"with the points turned from a camera's axes",
-                         "export the scans again with x forward, y left and z up", given,
-                         matrix({0, 0, 1, -1, 0, 0, 0, -1, 0})});
+  add_translations("with the other sign of y of their translations", turn, other_y);
+  add_translations("with the other sign of z of their translations", turn, other_z);
+  add_points("with x and y of the points swapped", "with x before y", swapped_xy);
+  add_points("with the points mirrored", "without a turned sign", other_y);
+  add_points("with the points turned from upside down", "with z upwards", other_z);
+  add_points("with the points turned from a camera's axes", "with x forward, y left and z up",
+             of_camera);
 }
 
 // --- Corrections that are fitted.

@@ -92,8 +92,7 @@ class LabelExamination {
 
  private:
   void examine_some(const std::vector<std::size_t>& labelled) {
-    const std::size_t count = std::min(kLabelledScans, labelled.size());
-    for (std::size_t i = 0; i < count; ++i) examine(labelled[i * labelled.size() / count]);
+    for (const std::size_t scan_index : picked(labelled, kLabelledScans)) examine(scan_index);
   }
 
   void examine(std::size_t scan_index) {

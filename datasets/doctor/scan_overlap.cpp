@@ -8,6 +8,11 @@
 #include "datasets/text/quantile.hpp"
 
 namespace mosbench {
+namespace {
+
+constexpr double kCellM = 1.0;
+
+}  // namespace
 
 Pose relative(const std::vector<Pose>& poses, const ScanPair& pair) {
   return poses[pair.earlier].inverse() * poses[pair.later];
@@ -63,44 +68,20 @@ std::vector<Eigen::Vector3d> near_points(std::span<const Point> points) {
   return near_m;
 }
 
-std::vector<Eigen::Vector3d> picked(std::span<const Eigen::Vector3d> points_m, std::size_t most) {
-  if (points_m.size() <= most) return {points_m.begin(), points_m.end()};
-  std::vector<Eigen::Vector3d> picked_m;
-  for (std::size_t i = 0; i < most; ++i) picked_m.push_back(points_m[i * points_m.size() / most]);
-  return picked_m;
-}
-
-struct ScanOverlap::Scan {
-  struct Surface {
-    Eigen::Vector3d mean_m;
-    Eigen::Matrix3d information;
-  };
-  static constexpr double kCellM = 1.0;
-
-  explicit Scan(std::span<const Point> points) {
-    constexpr std::size_t kSurfacePoints = 40000, kMovedPoints = 1500, kFewestOfSurface = 5;
-    constexpr double kThinnestM = 0.08;  // noise and unevenness of a surface
-    const std::vector<Eigen::Vector3d> near_m = near_points(points);
-    moved_m = picked(near_m, kMovedPoints);
-    for (const auto& [key, moments] : moments_of_cells(picked(near_m, kSurfacePoints), kCellM)) {
-      if (moments.count < kFewestOfSurface) continue;
-      const Eigen::Matrix3d covariance_m2 =
-          moments.covariance_m2() + kThinnestM * kThinnestM * Eigen::Matrix3d::Identity();
-      surfaces.emplace(key, Surface{moments.mean_m(), covariance_m2.inverse()});
-    }
-  }
-
-  std::vector<Eigen::Vector3d> moved_m;
-  std::unordered_map<std::uint64_t, Surface> surfaces;
-};
-
-ScanOverlap::ScanOverlap(const Sequence& sequence) : sequence_(sequence) {}
-ScanOverlap::~ScanOverlap() = default;
-
 const ScanOverlap::Scan& ScanOverlap::at(std::size_t scan_index) {
-  auto& scan = scans_[scan_index];
-  if (!scan) scan = std::make_unique<Scan>(sequence_.read(scan_index).points);
-  return *scan;
+  constexpr std::size_t kSurfacePoints = 40000, kMovedPoints = 1500, kFewestOfSurface = 5;
+  constexpr double kThinnestM = 0.08;  // noise and unevenness of a surface
+  if (const auto known = scans_.find(scan_index); known != scans_.end()) return known->second;
+  const std::vector<Eigen::Vector3d> near_m = near_points(sequence_.read(scan_index).points);
+  Scan& scan = scans_[scan_index];
+  scan.moved_m = picked(near_m, kMovedPoints);
+  for (const auto& [key, moments] : moments_of_cells(picked(near_m, kSurfacePoints), kCellM)) {
+    if (moments.count < kFewestOfSurface) continue;
+    const Eigen::Matrix3d covariance_m2 =
+        moments.covariance_m2() + kThinnestM * kThinnestM * Eigen::Matrix3d::Identity();
+    scan.surfaces.emplace(key, Surface{moments.mean_m(), covariance_m2.inverse()});
+  }
+  return scan;
 }
 
 bool ScanOverlap::has_points(const ScanPair& pair) {
@@ -114,7 +95,7 @@ double ScanOverlap::overlap(const ScanPair& pair, const Pose& motion) {
   double sum = 0.0;
   for (const Eigen::Vector3d& point_m : points_m) {
     const Eigen::Vector3d moved_m = motion * point_m;
-    const auto surface = surfaces.find(cube_key(moved_m, Scan::kCellM));
+    const auto surface = surfaces.find(cube_key(moved_m, kCellM));
     if (surface == surfaces.end()) continue;
     const Eigen::Vector3d offset_m = moved_m - surface->second.mean_m;
     sum += std::exp(-0.5 * offset_m.dot(surface->second.information * offset_m));

@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
-#include <memory>
 #include <mosbench/scan.hpp>
 #include <span>
 #include <unordered_map>
@@ -47,8 +46,14 @@ std::unordered_map<std::uint64_t, CellMoments> moments_of_cells(
 /// Returns the points at 2 to 40 m, where scans are dense.
 std::vector<Eigen::Vector3d> near_points(std::span<const Point> points);
 
-/// Returns up to `most` of the points, evenly picked.
-std::vector<Eigen::Vector3d> picked(std::span<const Eigen::Vector3d> points_m, std::size_t most);
+/// Returns up to `most` of the items, evenly picked.
+template <typename Item>
+std::vector<Item> picked(const std::vector<Item>& items, std::size_t most) {
+  if (items.size() <= most) return items;
+  std::vector<Item> some;
+  for (std::size_t i = 0; i < most; ++i) some.push_back(items[i * items.size() / most]);
+  return some;
+}
 
 /// Scans of a sequence, each read once, in the forms that are needed to compare them. The surfaces
 /// of a scan are one normal distribution per cell of a grid (the NDT of Biber and Strasser, 2003).
@@ -56,8 +61,7 @@ std::vector<Eigen::Vector3d> picked(std::span<const Eigen::Vector3d> points_m, s
 /// of a sparse sensor on the ground.
 class ScanOverlap {
  public:
-  explicit ScanOverlap(const Sequence& sequence);
-  ~ScanOverlap();
+  explicit ScanOverlap(const Sequence& sequence) : sequence_(sequence) {}
 
   /// Returns whether the later scan has enough points. This and the others throw DataError.
   bool has_points(const ScanPair& pair);
@@ -66,11 +70,18 @@ class ScanOverlap {
   double overlap(const ScanPair& pair, const Pose& motion);
 
  private:
-  struct Scan;
+  struct Surface {
+    Eigen::Vector3d mean_m;
+    Eigen::Matrix3d information;
+  };
+  struct Scan {
+    std::vector<Eigen::Vector3d> moved_m;
+    std::unordered_map<std::uint64_t, Surface> surfaces;
+  };
   const Scan& at(std::size_t scan_index);
 
   const Sequence& sequence_;
-  std::map<std::size_t, std::unique_ptr<Scan>> scans_;
+  std::map<std::size_t, Scan> scans_;
 };
 
 }  // namespace mosbench
