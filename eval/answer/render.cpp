@@ -11,8 +11,8 @@
 
 #include "datasets/text/errors.hpp"
 #include "datasets/text/shown_text.hpp"
+#include "datasets/text/text.hpp"
 #include "eval/answer/answer_text.hpp"
-#include "eval/answer/csv.hpp"
 
 namespace mosbench {
 namespace {
@@ -87,6 +87,23 @@ std::string key_of(const Column& column) {
   }
   while (key.ends_with('_')) key.pop_back();
   return (key.empty() ? "row" : key) + style_of(column.unit).key;
+}
+
+bool is_formula(const std::string& cell) {
+  constexpr std::string_view kStarts = "=+-@\t\r";
+  return !cell.empty() && kStarts.find(cell.front()) != std::string_view::npos &&
+         !parse_double(cell);
+}
+
+std::string csv_cell(const std::string& cell) {
+  const bool formula = is_formula(cell);
+  if (!formula && cell.find_first_of(",\"\r\n") == std::string::npos) return cell;
+  std::string quoted = formula ? "\"'" : "\"";
+  for (const char c : cell) {
+    if (c == '"') quoted += '"';
+    quoted += c;
+  }
+  return quoted + '"';
 }
 
 /// All digits of a number; of percents and points, which a product has rounded, six.
@@ -258,6 +275,15 @@ std::string png_of(const Answer& answer) {
 }
 
 }  // namespace
+
+std::string csv_row(std::span<const std::string> cells) {
+  std::string line;
+  for (const std::string& cell : cells) {
+    if (&cell != cells.data()) line += ',';
+    line += csv_cell(cell);
+  }
+  return line + '\n';
+}
 
 Cell or_undefined(const std::optional<double>& value) {
   return value.value_or(std::numeric_limits<double>::quiet_NaN());

@@ -25,6 +25,15 @@ nlohmann::ordered_json interval_json(const Spread& spread);
 
 /// Returns `text` as one line of HTML that shows it.
 std::string html_text(std::string_view text);
+/// Returns `text` as one line of LaTeX that prints it, also within a comment.
+std::string latex_text(std::string_view text);
+/// Returns `text` as one line of markdown that shows it: what would end a cell, begin a tag, a link
+/// or an emphasis is escaped, line breaks become \x0a.
+std::string markdown_text(std::string_view text);
+/// Returns the cells as one line of CSV (RFC 4180), ended by a line feed: cells with a comma, a
+/// quote or a line break are quoted. A cell that is no number and begins with = + - @, a tab or a
+/// carriage return would be a formula in a spreadsheet: it is quoted, with an apostrophe in front.
+std::string csv_row(std::span<const std::string> cells);
 
 /// The cells of a sheet as people see them.
 struct ShownTable {

@@ -4,8 +4,6 @@
 #include <sstream>
 
 #include "datasets/text/shown_text.hpp"
-#include "eval/answer/latex.hpp"
-#include "eval/answer/markdown.hpp"
 #include "eval/answer/render.hpp"
 
 namespace mosbench {
@@ -37,6 +35,21 @@ std::string latex_comments(const std::vector<std::string>& lines) {
     if (!line.empty()) text += "% " + latex_text(line) + '\n';
   }
   return text;
+}
+
+std::string latex_character(char c) {
+  switch (c) {
+    case '\\':
+      return "\\textbackslash{}";
+    case '~':
+      return "\\textasciitilde{}";
+    case '^':
+      return "\\textasciicircum{}";
+    default:
+      break;
+  }
+  const bool special = std::string_view("&%$#_{}").find(c) != std::string_view::npos;
+  return special ? std::string("\\") + c : std::string(1, c);
 }
 
 /// A tabular. What must stay with the numbers is printed below them, and a dagger leads there.
@@ -136,6 +149,23 @@ std::string html_text(std::string_view text) {
       default:
         escaped += c;
     }
+  }
+  return escaped;
+}
+
+std::string latex_text(std::string_view text) {
+  std::string escaped;
+  for (const char c : shown_in_line(text)) escaped += latex_character(c);
+  return escaped;
+}
+
+std::string markdown_text(std::string_view text) {
+  std::string escaped;
+  for (const char c : shown_in_line(text)) {
+    // Brackets of intervals stay: only a parenthesis behind makes them a link.
+    const bool of_link = c == '(' && escaped.ends_with(']');
+    if (of_link || std::string_view("\\|`*<>").find(c) != std::string_view::npos) escaped += '\\';
+    escaped += c;
   }
   return escaped;
 }

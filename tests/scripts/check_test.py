@@ -116,7 +116,7 @@ class Includes(unittest.TestCase):
     def test_rooms_above_and_beside_are_refused(self):
         for name, header in (("core/voxel/rays.cpp", "core/methods/hmm_mos/hmm.hpp"),
                              ("core/odometry/kiss.cpp", "core/methods/hmm_mos/hmm.hpp"),
-                             ("datasets/text/text.cpp", "eval/answer/csv.hpp"),
+                             ("datasets/text/text.cpp", "eval/answer/render.hpp"),
                              ("core/base/rigid.cpp", "datasets/disk/files.hpp")):
             self.assertIn("must not include", includes.complaint(name, '"', header) or "", (name, header))
 

@@ -58,6 +58,16 @@ TEST(Answer, IsShownToPeopleWithItsStandingAndALineAcross) {
             "below\n");
 }
 
+TEST(Answer, AlignsColumnsAndEndsLinesAtTheirLastCell) {
+  EXPECT_EQ(text_of({.columns = {{"name", Unit::kText}, {"IoU"}},
+                     .rows = {{"a", "0.5"}, {}, {"longer"}}}),
+            "name    IoU\n"
+            "------  ---\n"
+            "a       0.5\n"
+            "------  ---\n"
+            "longer\n");
+}
+
 TEST(Answer, HasUnitsAndEndsOfIntervalsInItsCsv) {
   EXPECT_EQ(render(answer_of_all(), Format::kCsv),
             "sequence,scans,iou_percent,iou_low_percent,iou_high_percent,change_points,ms_scan,"

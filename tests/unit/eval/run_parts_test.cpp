@@ -7,7 +7,6 @@
 
 #include "datasets/text/errors.hpp"
 #include "eval/answer/render.hpp"
-#include "eval/answer/text_table.hpp"
 #include "eval/results/json_differences.hpp"
 #include "eval/results/progress.hpp"
 #include "eval/results/reading_json.hpp"
@@ -80,19 +79,6 @@ TEST(ReadingJson, RefusesColumnsThatNoScanFileHas) {
     const auto json = nlohmann::ordered_json::parse(columns);
     EXPECT_THROW(told_from_json({{"bin_columns", json}}), UsageError) << columns;
   }
-}
-
-TEST(TextTable, AlignsColumnsAndEndsLinesAtTheirLastCell) {
-  TextTable table({{"name", TextTable::Align::kLeft}, {"IoU"}});
-  table.add_row({"a", "0.5"});
-  table.add_rule();
-  table.add_row({"longer"});
-  EXPECT_EQ(table.str(),
-            "name    IoU\n"
-            "------  ---\n"
-            "a       0.5\n"
-            "------  ---\n"
-            "longer\n");
 }
 
 TEST(DurationText, ChangesItsUnitWithTheLength) {
