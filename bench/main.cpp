@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "bench/stage_benchmark.hpp"
-#include "eval/results/machine.hpp"
+#include "eval/result/machine.hpp"
 
 namespace mosbench {
 

@@ -14,9 +14,10 @@
 #include "eval/engine/run_plan.hpp"
 #include "eval/job/presets.hpp"
 #include "eval/protocols/protocol_list.hpp"
-#include "eval/report/result_scans.hpp"
-#include "eval/results/result_set.hpp"
-#include "eval/results/simulated.hpp"
+#include "eval/result/result_file.hpp"
+#include "eval/result/result_scans.hpp"
+#include "eval/result/result_set.hpp"
+#include "eval/result/simulated.hpp"
 
 namespace mosbench {
 namespace {
@@ -86,10 +87,10 @@ Answer breakdown_of_run(const BreakdownFlags& options, const CLI::App& command) 
   }
   refuse_flags_of_data(command);
   (void)load_result_set(options.input);  // throws where they are of several runs
-  std::vector<FoundResult> results = find_results(options.input);
-  std::erase_if(results, [&](const FoundResult& result) {
+  std::vector<Result> results = read_results(options.input);
+  std::erase_if(results, [&](const Result& result) {
     return !options.sequences.empty() &&
-           std::ranges::find(options.sequences, result.name.text()) == options.sequences.end();
+           std::ranges::find(options.sequences, result.sequence.text()) == options.sequences.end();
   });
   if (results.empty()) {
     throw UsageError(fmt::format("--sequences: {} has no results of {}, expected others",
@@ -98,7 +99,7 @@ Answer breakdown_of_run(const BreakdownFlags& options, const CLI::App& command) 
   std::deque<ResultScans> scans;
   std::vector<SequenceBreakdown> breakdowns;
   BreakdownTask task{};
-  for (const FoundResult& result : results) {
+  for (const Result& result : results) {
     const ResultScans& opened = scans.emplace_back(result, std::nullopt);
     task = {opened.rule().protocol, opened.rule().range, options.threads};
     if (opened.scored_scans().empty()) continue;

@@ -19,8 +19,8 @@
 #include "eval/cli/old_words.hpp"
 #include "eval/cli/output_file.hpp"
 #include "eval/cli/suggested_command.hpp"
-#include "eval/results/tell.hpp"
-#include "eval/results/version.hpp"
+#include "eval/result/tell.hpp"
+#include "eval/result/version.hpp"
 
 namespace mosbench {
 namespace {

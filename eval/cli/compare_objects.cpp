@@ -12,9 +12,9 @@
 #include "eval/breakdown/run_diff.hpp"
 #include "eval/cli/compare_command.hpp"
 #include "eval/engine/run_plan.hpp"
-#include "eval/report/result_scans.hpp"
-#include "eval/results/result_set.hpp"
-#include "eval/results/tell.hpp"
+#include "eval/result/result_scans.hpp"
+#include "eval/result/result_set.hpp"
+#include "eval/result/tell.hpp"
 
 namespace mosbench {
 namespace {
@@ -41,15 +41,15 @@ class LabelsByStem : public Predictions {
 
 [[noreturn]] void refuse_scan(const ResultScans& run, const char* why, const std::string& stem) {
   throw DataError(
-      run.result().folder / "result.json",
-      fmt::format("has {} for scan {} of sequence {}", why, stem, run.result().name.text()),
+      run.result().file,
+      fmt::format("has {} for scan {} of sequence {}", why, stem, run.result().sequence.text()),
       "runs over the same scans and truth, to list objects of");
 }
 
 /// Returns the counted scans of the first run. Throws DataError unless their truth is what both
 /// runs were scored by, and the second has labels of them.
 std::vector<std::size_t> scans_of(const ResultScans& first, const Predictions& second,
-                                  const SequenceResult& result) {
+                                  const Result& result) {
   std::set<std::string> counted;
   for (const ScanRow* row : counted_scans(result)) counted.insert(row->stem);
   std::vector<std::size_t> scans;
@@ -66,13 +66,10 @@ std::vector<std::size_t> scans_of(const ResultScans& first, const Predictions& s
 }
 
 /// Both runs are broken down over the scans as the first one read them, with its poses.
-std::vector<ObjectDisagreement> objects_of(const SequenceResult& first,
-                                           const SequenceResult& second,
+std::vector<ObjectDisagreement> objects_of(const Result& first, const Result& second,
                                            const std::filesystem::path& root) {
-  const FoundResult of_first = find_results(first.file).front();
-  const FoundResult of_second = find_results(second.file).front();
-  const ResultScans scans(of_first, root);
-  const ResultScans others(of_second, root);
+  const ResultScans scans(first, root);
+  const ResultScans others(second, root);
   const LabelsByStem labels(others, scans.sequence());
   const std::vector<std::size_t> counted = scans_of(scans, labels, first);
   const BreakdownTask task{first.protocol, first.range, hardware_threads()};
@@ -95,9 +92,8 @@ std::vector<ObjectDisagreement> objects_of(const CompareFlags& options, const Re
   const std::set<std::string> there = names_in(options);
   std::vector<ObjectDisagreement> objects;
   bool any = false;
-  for (const SequenceResult& result : first.sequences) {
-    const auto other =
-        std::ranges::find(second.sequences, result.sequence, &SequenceResult::sequence);
+  for (const Result& result : first.sequences) {
+    const auto other = std::ranges::find(second.sequences, result.sequence, &Result::sequence);
     if (counted_scans(result).empty() || other == second.sequences.end()) continue;
     if (!there.contains(result.sequence)) {
       tell(fmt::format("{}: has no sequence {}; its objects are left out", options.data->string(),
@@ -114,9 +110,8 @@ std::vector<ObjectDisagreement> objects_of(const CompareFlags& options, const Re
 
 /// Without truth there are no right and wrong points to compare.
 void check_has_truth(const ResultSet& run) {
-  const bool scored = std::ranges::any_of(run.sequences, [](const SequenceResult& sequence) {
-    return !counted_scans(sequence).empty();
-  });
+  const bool scored = std::ranges::any_of(
+      run.sequences, [](const Result& sequence) { return !counted_scans(sequence).empty(); });
   if (scored) return;
   throw DataError(run.front().file, "has no scan with truth, by which points are right or wrong",
                   "a run over labelled scans; the colour disagreement of mosbench report shows "

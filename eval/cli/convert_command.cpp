@@ -16,8 +16,8 @@
 #include "eval/cli/help_text.hpp"
 #include "eval/cli/odometry_flags.hpp"
 #include "eval/engine/run_plan.hpp"
-#include "eval/results/progress.hpp"
-#include "eval/results/tell.hpp"
+#include "eval/result/progress.hpp"
+#include "eval/result/tell.hpp"
 
 namespace mosbench {
 namespace {

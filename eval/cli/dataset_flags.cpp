@@ -16,7 +16,7 @@
 #include "datasets/text/text.hpp"
 #include "eval/cli/help_text.hpp"
 #include "eval/engine/run_plan.hpp"
-#include "eval/results/reading_json.hpp"
+#include "eval/result/reading_json.hpp"
 
 namespace mosbench {
 namespace {

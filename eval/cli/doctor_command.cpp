@@ -10,7 +10,7 @@
 #include "eval/cli/dataset_flags.hpp"
 #include "eval/cli/suggested_command.hpp"
 #include "eval/engine/run_plan.hpp"
-#include "eval/results/caller.hpp"
+#include "eval/result/caller.hpp"
 
 namespace mosbench {
 namespace {

@@ -10,7 +10,7 @@
 #include "eval/answer/terminal.hpp"
 #include "eval/cli/command_line.hpp"
 #include "eval/cli/failure.hpp"
-#include "eval/results/tell.hpp"
+#include "eval/result/tell.hpp"
 
 namespace {
 

@@ -19,10 +19,10 @@
 #include "eval/engine/found_poses.hpp"
 #include "eval/engine/odometry_choice.hpp"
 #include "eval/engine/run_plan.hpp"
-#include "eval/results/machine.hpp"
-#include "eval/results/reading_json.hpp"
-#include "eval/results/settings_json.hpp"
-#include "eval/results/tell.hpp"
+#include "eval/result/machine.hpp"
+#include "eval/result/reading_json.hpp"
+#include "eval/result/settings_json.hpp"
+#include "eval/result/tell.hpp"
 
 namespace mosbench {
 namespace {

@@ -9,7 +9,7 @@
 #include "datasets/text/errors.hpp"
 #include "datasets/text/shell_text.hpp"
 #include "datasets/text/text.hpp"
-#include "eval/results/tell.hpp"
+#include "eval/result/tell.hpp"
 
 namespace mosbench {
 namespace fs = std::filesystem;

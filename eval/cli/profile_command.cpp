@@ -10,8 +10,8 @@
 #include "eval/cli/method_options.hpp"
 #include "eval/cli/output_file.hpp"
 #include "eval/cli/profile_report.hpp"
-#include "eval/results/machine.hpp"
-#include "eval/results/tell.hpp"
+#include "eval/result/machine.hpp"
+#include "eval/result/tell.hpp"
 
 namespace mosbench {
 namespace {

@@ -8,9 +8,9 @@
 #include "datasets/text/counted.hpp"
 #include "datasets/text/quantile.hpp"
 #include "eval/answer/answer_text.hpp"
-#include "eval/results/machine.hpp"
-#include "eval/results/settings_json.hpp"
-#include "eval/results/simulated.hpp"
+#include "eval/result/machine.hpp"
+#include "eval/result/settings_json.hpp"
+#include "eval/result/simulated.hpp"
 
 namespace mosbench {
 namespace {
@@ -191,7 +191,7 @@ ordered_json profile_json(const RunPlan& plan, const std::vector<SequenceProfile
                        {"preset", plan.preset},
                        {"config", to_json(plan.settings.method_settings)},
                        {"code", code_json()},
-                       {"machine", machine_json()}};
+                       {"machine", to_json(this_machine())}};
   if (const auto origin = simulated_origin_json(plan.dataset)) json["simulated"] = *origin;
   json["sequences"] = ordered_json::array();
   for (const SequenceProfile& profile : profiles) {

@@ -18,8 +18,8 @@
 #include "eval/report/result_boxes.hpp"
 #include "eval/report/scan_choice.hpp"
 #include "eval/report/scan_picture.hpp"
-#include "eval/results/progress.hpp"
-#include "eval/results/result_set.hpp"
+#include "eval/result/progress.hpp"
+#include "eval/result/result_set.hpp"
 
 namespace mosbench {
 namespace {
@@ -44,28 +44,27 @@ struct RenderFlags {
   ScanPictureOptions picture;
 };
 
-std::set<std::string> names_of(const std::vector<FoundResult>& results) {
+std::set<std::string> names_of(const std::vector<Result>& results) {
   std::set<std::string> names;
-  for (const FoundResult& result : results) names.insert(result.name.text());
+  for (const Result& result : results) names.insert(result.sequence.text());
   return names;
 }
 
 /// Returns the folders of the runs that the results are of.
-std::set<std::string> run_folders(const std::vector<FoundResult>& results) {
+std::set<std::string> run_folders(const std::vector<Result>& results) {
   std::set<std::string> runs;
-  for (const FoundResult& result : results) {
-    runs.insert(folder_of_run(result.folder, result.name).string());
+  for (const Result& result : results) {
+    runs.insert(folder_of_run(result.folder(), result.sequence).string());
   }
   return runs;
 }
 
-FoundResult choose_result(const RenderFlags& options) {
-  std::vector<FoundResult> results = find_results(options.input);
+Result choose_result(const RenderFlags& options) {
+  std::vector<Result> results = read_results(options.input);
   const std::set<std::string> names = names_of(results);
   if (options.sequence) {
-    std::erase_if(results, [&](const FoundResult& result) {
-      return result.name.text() != *options.sequence;
-    });
+    std::erase_if(
+        results, [&](const Result& result) { return result.sequence.text() != *options.sequence; });
   }
   if (results.size() == 1) return std::move(results.front());
   if (results.empty()) {
@@ -104,10 +103,10 @@ void check_has_labels(const ResultScans& scans, std::size_t scan_index) {
                                scan_index, scans.rows()[scan_index].stem));
 }
 
-std::vector<std::string> title_of(const FoundResult& result, std::size_t scan_index) {
-  const ScanRow& row = result.file.rows.scans[scan_index];
+std::vector<std::string> title_of(const Result& result, std::size_t scan_index) {
+  const ScanRow& row = result.scans[scan_index];
   std::vector<std::string> lines = {
-      fmt::format("{}, scan {} ({})", result.name.text(), scan_index, row.stem)};
+      fmt::format("{}, scan {} ({})", result.sequence.text(), scan_index, row.stem)};
   if (row.counts) {
     const auto percent = [](const std::optional<double>& value) {
       return value ? fmt::format("{:.1f} %", 100.0 * *value) : std::string("undefined");
@@ -117,13 +116,13 @@ std::vector<std::string> title_of(const FoundResult& result, std::size_t scan_in
   } else {
     lines.emplace_back("without truth");
   }
-  if (result.file.content.contains("simulated")) lines.emplace_back("simulated");
+  if (result.is_simulated()) lines.emplace_back("simulated");
   return lines;
 }
 
 void check_has_reasons(const ResultScans& scans) {
   if (scans.has_reasons()) return;
-  throw DataError(scans.result().folder / "reasons", "is not there",
+  throw DataError(scans.result().folder() / "reasons", "is not there",
                   "a run of mosbench run --write scores by a method that says why points move");
 }
 
@@ -233,7 +232,7 @@ Answer render(RenderFlags& options) {
   }
   const bool is_folder = !options.one_scan() && names_folder(options.out);
   check_output(is_folder ? options.out / "000000.png" : options.out);
-  const FoundResult result = choose_result(options);
+  const Result result = choose_result(options);
   const ResultScans scans(result, options.dataset_root);
   if (options.picture.by_reason) check_has_reasons(scans);
   if (!options.one_scan()) return render_several(options, scans);
@@ -242,7 +241,7 @@ Answer render(RenderFlags& options) {
   write_output(options.out, Pictures(options, scans, {scan_index}).png(0));
   return answer_beside(options.out,
                        {fmt::format("scan {} of {} in {}\n", scans.rows()[scan_index].stem,
-                                    result.name.text(), options.out.string())});
+                                    result.sequence.text(), options.out.string())});
 }
 
 }  // namespace

@@ -13,7 +13,7 @@
 #include "eval/cli/help_text.hpp"
 #include "eval/engine/run_execute.hpp"
 #include "eval/job/presets.hpp"
-#include "eval/results/tell.hpp"
+#include "eval/result/tell.hpp"
 #include "eval/tables/table_match.hpp"
 #include "eval/tables/table_print.hpp"
 

@@ -14,7 +14,7 @@
 #include "eval/engine/run_plan.hpp"
 #include "eval/job/method_choice.hpp"
 #include "eval/report/written_products.hpp"
-#include "eval/results/simulated.hpp"
+#include "eval/result/simulated.hpp"
 
 namespace mosbench {
 namespace {

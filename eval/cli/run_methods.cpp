@@ -13,8 +13,8 @@
 #include "eval/engine/run_execute.hpp"
 #include "eval/job/method_choice.hpp"
 #include "eval/report/written_products.hpp"
-#include "eval/results/simulated.hpp"
-#include "eval/results/tell.hpp"
+#include "eval/result/simulated.hpp"
+#include "eval/result/tell.hpp"
 
 namespace mosbench {
 namespace {

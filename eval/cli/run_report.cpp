@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "eval/protocols/protocol_list.hpp"
-#include "eval/results/settings_json.hpp"
-#include "eval/results/simulated.hpp"
+#include "eval/result/settings_json.hpp"
+#include "eval/result/simulated.hpp"
 #include "eval/tables/score_table.hpp"
 
 namespace mosbench {
@@ -15,15 +15,16 @@ namespace {
 std::vector<SummaryRow> rows_of(const RunPlan& plan, const std::vector<SequenceOutcome>& outcomes) {
   std::vector<ScoredSequence> sequences;
   for (std::size_t i = 0; i < outcomes.size(); ++i) {
-    sequences.push_back({plan.dataset.sequences[i]->name(), outcomes[i].rows.scans,
-                         method_ms_per_scan(outcomes[i].rows)});
+    const Result& result = outcomes[i].result;
+    sequences.push_back(
+        {plan.dataset.sequences[i]->name(), result.scans, method_ms_per_scan(result)});
   }
   return summary_rows(*plan.settings.protocol, plan.dataset.splits, sequences);
 }
 
 bool has_truth(const std::vector<SequenceOutcome>& outcomes) {
   return std::ranges::any_of(outcomes, [](const SequenceOutcome& outcome) {
-    return std::ranges::any_of(outcome.rows.scans,
+    return std::ranges::any_of(outcome.result.scans,
                                [](const ScanRow& row) { return row.counts.has_value(); });
   });
 }
@@ -33,9 +34,9 @@ struct MovingPoints {
   std::size_t points = 0, moving = 0;
 };
 
-MovingPoints moving_points(const SequenceRows& rows) {
+MovingPoints moving_points(const Result& result) {
   MovingPoints counts;
-  for (const ScanRow& row : rows.scans) {
+  for (const ScanRow& row : result.scans) {
     counts.points += row.points;
     counts.moving += row.predicted_moving_points;
   }
@@ -53,20 +54,21 @@ void add_moving_points(const RunPlan& plan, const std::vector<SequenceOutcome>& 
                    {"moving", Unit::kPercent, 2},
                    {"ms/scan", Unit::kNumber, 1}};
   for (std::size_t i = 0; i < outcomes.size(); ++i) {
-    const SequenceRows& rows = outcomes[i].rows;
-    const auto [points, moving] = moving_points(rows);
+    const Result& result = outcomes[i].result;
+    const auto [points, moving] = moving_points(result);
     sheet.rows.push_back(
-        {plan.dataset.sequences[i]->name(), std::uint64_t{rows.scans.size()}, std::uint64_t{points},
-         std::uint64_t{moving},
+        {plan.dataset.sequences[i]->name(), std::uint64_t{result.scans.size()},
+         std::uint64_t{points}, std::uint64_t{moving},
          static_cast<double>(moving) / static_cast<double>(std::max<std::size_t>(points, 1)),
-         method_ms_per_scan(rows).value_or(0.0)});
+         method_ms_per_scan(result).value_or(0.0)});
   }
 }
 
 std::string method_line(const RunPlan& plan) {
   const RunSettings& settings = plan.settings;
-  return fmt::format("{}, preset {}: {}", settings.method->title, plan.preset,
-                     describe_settings(to_json(settings.method_settings), settings.method->name));
+  return fmt::format(
+      "{}, preset {}: {}", settings.method->title, plan.preset,
+      describe_settings(RecordedSettings(settings.method_settings), settings.method->name));
 }
 
 }  // namespace
@@ -80,7 +82,7 @@ Sheet run_sheet(const RunPlan& plan, const std::vector<SequenceOutcome>& outcome
                                          method_line(plan)});
   if (!scored) add_moving_points(plan, outcomes, sheet);
   for (std::size_t i = 0; i < outcomes.size(); ++i) {
-    for (const std::string& remark : outcomes[i].remarks) {
+    for (const std::string& remark : outcomes[i].result.remarks) {
       sheet.notes.push_back(fmt::format("{}: {}", plan.dataset.sequences[i]->name(), remark));
     }
   }
@@ -102,11 +104,11 @@ nlohmann::ordered_json run_report_json(const RunPlan& plan,
   json.update(rows_json(rows_of(plan, outcomes)));
   for (std::size_t i = 0; i < outcomes.size(); ++i) {
     json["sequences"][i]["folder"] = outcomes[i].folder.string();
-    const auto [points, moving] = moving_points(outcomes[i].rows);
+    const auto [points, moving] = moving_points(outcomes[i].result);
     json["sequences"][i]["points"] = points;
     json["sequences"][i]["predicted_moving_points"] = moving;
     json["sequences"][i]["reused"] = outcomes[i].reused;
-    json["sequences"][i]["remarks"] = outcomes[i].remarks;
+    json["sequences"][i]["remarks"] = outcomes[i].result.remarks;
   }
   return json;
 }

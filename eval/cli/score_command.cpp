@@ -13,7 +13,7 @@
 #include "eval/engine/run_plan.hpp"
 #include "eval/job/presets.hpp"
 #include "eval/protocols/benchmark_split.hpp"
-#include "eval/results/machine.hpp"
+#include "eval/result/machine.hpp"
 #include "eval/static_map/map_score.hpp"
 #include "eval/tables/score_report.hpp"
 

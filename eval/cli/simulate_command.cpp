@@ -10,8 +10,8 @@
 #include "datasets/text/errors.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/cli/dataset_flags.hpp"
-#include "eval/results/progress.hpp"
-#include "eval/results/tell.hpp"
+#include "eval/result/progress.hpp"
+#include "eval/result/tell.hpp"
 
 namespace mosbench {
 namespace {

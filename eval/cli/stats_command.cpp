@@ -10,7 +10,7 @@
 #include "eval/cli/help_text.hpp"
 #include "eval/cli/output_file.hpp"
 #include "eval/report/curve_report.hpp"
-#include "eval/results/tell.hpp"
+#include "eval/result/tell.hpp"
 #include "eval/statistics/statistics_report.hpp"
 
 namespace mosbench {

@@ -6,7 +6,7 @@
 
 #include "datasets/text/shell_text.hpp"
 #include "eval/cli/dataset_flags.hpp"
-#include "eval/results/reading_json.hpp"
+#include "eval/result/reading_json.hpp"
 
 namespace mosbench {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "datasets/disk/files.hpp"
 #include "eval/cli/commands.hpp"
-#include "eval/results/tell.hpp"
+#include "eval/result/tell.hpp"
 #include "eval/tables/table_print.hpp"
 
 namespace mosbench {

@@ -11,9 +11,9 @@
 #include "datasets/text/nearest_name.hpp"
 #include "eval/engine/sequence_runner.hpp"
 #include "eval/job/presets.hpp"
-#include "eval/results/progress.hpp"
-#include "eval/results/settings_json.hpp"
-#include "eval/results/tell.hpp"
+#include "eval/result/progress.hpp"
+#include "eval/result/settings_json.hpp"
+#include "eval/result/tell.hpp"
 
 namespace mosbench {
 namespace {
@@ -139,15 +139,21 @@ OdometryChoice with_filter(OdometryChoice choice, const OdometryOptions& options
   return choice;
 }
 
+OdometryDone odometry_done(const OdometryChoice& choice) {
+  OdometryDone done{
+      fmt::format("odometry {}", choice.kind->name), RecordedSettings(choice.settings), {}};
+  if (choice.filter) {
+    done.map = fmt::format("without what {} finds moving: {}", choice.filter->method->name,
+                           settings_text(choice.filter->settings));
+  }
+  return done;
+}
+
 ReadingStatement statement_of(const OdometryChoice& choice) {
   ReadingStatement statement = {{"poses", fmt::format("odometry {}", choice.kind->name)},
                                 {"pose_odometry", settings_text(choice.settings)}};
   if (choice.says_deskew) statement.emplace_back("deskew", to_string(choice.deskew));
-  if (choice.filter) {
-    statement.emplace_back(
-        "pose_map", fmt::format("without what {} finds moving: {}", choice.filter->method->name,
-                                settings_text(choice.filter->settings)));
-  }
+  if (choice.filter) statement.emplace_back("pose_map", odometry_done(choice).map);
   return statement;
 }
 

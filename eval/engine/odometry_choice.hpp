@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "datasets/layouts/dataset.hpp"
+#include "eval/result/result.hpp"
 
 namespace mosbench {
 
@@ -52,7 +53,9 @@ MovingFilter moving_filter(const MethodKind& method, Settings settings);
 /// The choice with the default method as a filter, as it is set for the data set, if asked for.
 OdometryChoice with_filter(OdometryChoice choice, const OdometryOptions& options, DatasetKind kind);
 
-/// Which odometry with which settings, for the statement on how a sequence was read.
+/// Which odometry with which settings, for results.
+OdometryDone odometry_done(const OdometryChoice& choice);
+/// The same for the statement on how a sequence was read.
 ReadingStatement statement_of(const OdometryChoice& choice);
 
 /// Wraps every sequence of a data set that was opened without poses into a PosedSequence.

@@ -8,8 +8,8 @@
 #include "core/base/stage_clock.hpp"
 #include "datasets/text/quantile.hpp"
 #include "eval/exec/child_process.hpp"
-#include "eval/results/machine.hpp"
-#include "eval/results/progress.hpp"
+#include "eval/result/machine.hpp"
+#include "eval/result/progress.hpp"
 
 namespace mosbench {
 namespace {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <system_error>
 
 #include "datasets/disk/files.hpp"
@@ -10,28 +11,14 @@
 #include "datasets/sequence/pose_frame_mark.hpp"
 #include "datasets/text/counted.hpp"
 #include "eval/exec/exec_method.hpp"
-#include "eval/protocols/benchmark_split.hpp"
-#include "eval/protocols/metrics.hpp"
-#include "eval/protocols/summary_json.hpp"
-#include "eval/results/machine.hpp"
-#include "eval/results/reading_json.hpp"
-#include "eval/results/result_format.hpp"
-#include "eval/results/simulated.hpp"
-#include "eval/results/tell.hpp"
+#include "eval/result/machine.hpp"
+#include "eval/result/result_file.hpp"
+#include "eval/result/simulated.hpp"
+#include "eval/result/tell.hpp"
 
 namespace mosbench {
 namespace fs = std::filesystem;
 namespace {
-
-using nlohmann::ordered_json;
-
-std::vector<std::string> scans_without_detection(const SequenceRows& rows) {
-  std::vector<std::string> stems;
-  for (const ScanRow& row : rows.scans) {
-    if (!row.judged) stems.push_back(row.stem);
-  }
-  return stems;
-}
 
 /// "000000 to 000009, 000058": the scans that were not judged, as far as there is room.
 std::string unjudged_text(const std::vector<ScanRow>& rows) {
@@ -52,19 +39,19 @@ std::string unjudged_text(const std::vector<ScanRow>& rows) {
   return fmt::format("{}", fmt::join(ranges, ", "));
 }
 
-std::vector<std::string> all_remarks(const RunSettings& settings, const Sequence& sequence,
-                                     const SequenceRows& rows) {
+std::vector<std::string> all_remarks(const Sequence& sequence, const Result& result) {
   std::vector<std::string> remarks = sequence.remarks();
-  if (const std::size_t unjudged = scans_without_detection(rows).size(); unjudged > 0) {
+  if (const auto unjudged = std::ranges::count(result.scans, false, &ScanRow::judged);
+      unjudged > 0) {
     remarks.push_back(fmt::format(
         "{} of {} labelled static without detection, because the method has seen too few "
         "scans before or after them: {}",
-        unjudged, counted(sequence.size(), "scan is", "scans are"), unjudged_text(rows.scans)));
+        unjudged, counted(sequence.size(), "scan is", "scans are"), unjudged_text(result.scans)));
   }
-  remarks.insert(remarks.end(), rows.remarks.begin(), rows.remarks.end());
+  remarks.insert(remarks.end(), result.remarks.begin(), result.remarks.end());
   std::size_t nonfinite_points = 0;
   std::uint64_t unknown_ids = 0;
-  for (const ScanRow& row : rows.scans) {
+  for (const ScanRow& row : result.scans) {
     nonfinite_points += row.nonfinite_points;
     if (row.counts) unknown_ids += row.counts->unknown_ids;
   }
@@ -75,64 +62,49 @@ std::vector<std::string> all_remarks(const RunSettings& settings, const Sequence
   if (unknown_ids > 0) {
     remarks.push_back(
         fmt::format("{} a label id that protocol {} does not know: counted as it says",
-                    counted(unknown_ids, "point has", "points have"), settings.protocol->name));
+                    counted(unknown_ids, "point has", "points have"), result.protocol->name));
   }
   return remarks;
 }
 
-ordered_json doubtful_poses(const Sequence& sequence, const std::vector<ScanPose>& poses) {
-  ordered_json json = ordered_json::array();
+std::vector<DoubtfulPose> doubtful_poses(const Sequence& sequence,
+                                         const std::vector<ScanPose>& poses) {
+  std::vector<DoubtfulPose> doubtful;
   for (std::size_t k = 0; k < poses.size(); ++k) {
-    if (!poses[k].doubtful()) continue;
-    json.push_back({{"stem", sequence.stem(k)}, {"doubt", poses[k].doubt}});
+    if (poses[k].doubtful()) doubtful.push_back({sequence.stem(k), poses[k].doubt});
   }
-  return json;
-}
-
-/// `found`: the poses by odometry, if the run asked for them.
-ordered_json header(const RunPlan& plan, const PlannedSequence& planned, const SequenceRows& rows,
-                    const std::vector<std::string>& remarks, const std::vector<ScanPose>& found) {
-  ordered_json json = {{"format", kResultFormat}};
-  json.update(planned.identity);
-  json["preset"] = plan.preset;
-  const Sequence& sequence = *plan.dataset.sequences[planned.position];
-  if (const auto origin = simulated_origin_json(plan.dataset, sequence)) {
-    json["simulated"] = *origin;
-  }
-  json["fingerprint"] = rows.fingerprint;
-  json["fingerprint_without_poses"] = rows.fingerprint_without_poses;
-  json["machine"] = machine_json();
-  json["remarks"] = remarks;
-  json["scans_without_detection"] = scans_without_detection(rows);
-  if (plan.odometry) json["doubtful_poses"] = doubtful_poses(sequence, found);
-  const Recording& recording = sequence.recording();
-  for (const ScanEntry& scan : recording.left_out) json["scans_left_out"].push_back(scan.stem);
-  const Split* benchmark = benchmark_scans(*plan.settings.protocol, plan.dataset.splits);
-  std::vector<Confusion> counts;
-  for (const ScanRow* row : counted_scans(plan, planned.position, rows)) {
-    counts.push_back(*row->counts);
-  }
-  if (const ordered_json splits = picked_stems(plan.dataset, planned.position); !splits.empty()) {
-    json["splits"] = splits;
-  }
-  json["summary_split"] =
-      benchmark == nullptr ? ordered_json(nullptr) : ordered_json(benchmark->name);
-  json["summary"] =
-      counts.empty() ? ordered_json(nullptr) : to_json(summarize(*plan.settings.protocol, counts));
-  return json;
+  return doubtful;
 }
 
 /// Where and how `report` and `render` find the points again; folders are this machine's. Of the
 /// run all sequences, by which an interrupted one is known.
-ordered_json clock_header(const RunPlan& plan, const PlannedSequence& planned) {
-  ordered_json json = {{"file_stamp", planned.stamp},
-                       {"dataset_root", fs::absolute(plan.dataset.root).string()},
-                       {"sequences_of_run", ordered_json::array()}};
+Places places_of(const RunPlan& plan, const PlannedSequence& planned) {
+  Places places{fs::absolute(plan.dataset.root), plan.reading, std::nullopt, planned.stamp, {}};
   for (const PlannedSequence& each : plan.sequences) {
-    json["sequences_of_run"].push_back(plan.dataset.sequences[each.position]->name());
+    places.sequences_of_run.push_back(plan.dataset.sequences[each.position]->name());
   }
-  json.update(told_json(plan.reading));
-  return json;
+  return places;
+}
+
+/// Adds to what the runner found what is known of the plan; `found` are the poses by odometry.
+Result completed(const RunPlan& plan, const PlannedSequence& planned, Result ran,
+                 const std::vector<ScanPose>& found) {
+  const Sequence& sequence = *plan.dataset.sequences[planned.position];
+  Result result = planned.asked;
+  result.scans = std::move(ran.scans);
+  result.timing = std::move(ran.timing);
+  result.remarks = std::move(ran.remarks);
+  result.remarks = all_remarks(sequence, result);
+  result.from.fingerprint = std::move(ran.from.fingerprint);
+  result.from.fingerprint_without_poses = std::move(ran.from.fingerprint_without_poses);
+  result.from.machine = this_machine();
+  result.from.simulated = origin_of(plan.dataset, sequence);
+  if (plan.odometry) result.doubtful_poses = doubtful_poses(sequence, found);
+  for (const ScanEntry& scan : sequence.recording().left_out) {
+    result.scans_left_out.push_back(scan.stem);
+  }
+  result.places = places_of(plan, planned);
+  return result;
 }
 
 void keep_poses(const std::vector<Pose>& poses, const fs::path& file) {
@@ -173,14 +145,11 @@ SequenceOutcome run_now(const RunPlan& plan, const PlannedSequence& planned) {
     }
     const std::vector<std::string> doubts = doubts_about_poses(plan, sequence);
     give_back_memory();  // of odometry, and of runs before
-    outcome.rows = run_sequence(sequence, plan.settings, partial);
-    outcome.remarks = all_remarks(plan.settings, sequence, outcome.rows);
-    outcome.remarks.insert(outcome.remarks.begin(), doubts.begin(), doubts.end());
+    outcome.result =
+        completed(plan, planned, run_sequence(sequence, plan.settings, partial), found);
+    outcome.result.remarks.insert(outcome.result.remarks.begin(), doubts.begin(), doubts.end());
     outcome.folder = planned.folder.path();
-    write_file_atomic(
-        partial / "result.json",
-        format_result(header(plan, planned, outcome.rows, outcome.remarks, found), outcome.rows,
-                      plan.settings.threads, clock_header(plan, planned)));
+    write_file_atomic(partial / "result.json", format_result(outcome.result));
     planned.folder.publish();
     return outcome;
   } catch (...) {
@@ -197,23 +166,10 @@ SequenceOutcome reuse(const RunPlan& plan, const PlannedSequence& planned) {
   const bool is_program = plan.settings.method->name == kExecKind;
   tell(fmt::format("{}: finished by an earlier run, kept{}", title_of(sequence, plan.settings),
                    is_program ? "; if the program has changed, --overwrite runs it again" : ""));
-  return {planned.finished->rows,
-          planned.finished->content.at("remarks").get<std::vector<std::string>>(),
-          planned.folder.path(), true};
+  return {*planned.finished, planned.folder.path(), true};
 }
 
 }  // namespace
-
-std::vector<const ScanRow*> counted_scans(const RunPlan& plan, std::size_t position,
-                                          const SequenceRows& rows) {
-  const Split* benchmark = benchmark_scans(*plan.settings.protocol, plan.dataset.splits);
-  const auto stems = benchmark == nullptr ? std::nullopt : stems_in_split(*benchmark, position);
-  std::vector<const ScanRow*> counted;
-  for (const ScanRow& row : rows.scans) {
-    if (row.counts && (!stems || stems->contains(row.stem))) counted.push_back(&row);
-  }
-  return counted;
-}
 
 RunExecution::RunExecution(const RunPlan& plan) : plan_(plan), lock_(plan.out) {
   keep_freed_memory();

@@ -11,16 +11,10 @@ namespace mosbench {
 
 /// What is known of one sequence when the run is over, whether it was segmented now or earlier.
 struct SequenceOutcome {
-  SequenceRows rows;
-  std::vector<std::string> remarks;
+  Result result;
   std::filesystem::path folder;
   bool reused = false;  ///< finished by an earlier run of the same command
 };
-
-/// Returns the scans with truth that the protocol's split counts; `position` is that of the
-/// sequence in the data set.
-std::vector<const ScanRow*> counted_scans(const RunPlan& plan, std::size_t position,
-                                          const SequenceRows& rows);
 
 /// A run that goes on by one sequence at a time. Tells on stderr what it does.
 class RunExecution {

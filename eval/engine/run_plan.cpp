@@ -13,10 +13,11 @@
 #include "eval/job/method_choice.hpp"
 #include "eval/job/presets.hpp"
 #include "eval/protocols/benchmark_split.hpp"
-#include "eval/results/machine.hpp"
-#include "eval/results/reading_json.hpp"
-#include "eval/results/settings_json.hpp"
-#include "eval/store/same_input.hpp"
+#include "eval/result/reading_json.hpp"
+#include "eval/result/result_json.hpp"
+#include "eval/result/result_scans.hpp"
+#include "eval/result/settings_json.hpp"
+#include "eval/result/version.hpp"
 
 namespace mosbench {
 namespace fs = std::filesystem;
@@ -127,25 +128,9 @@ fs::path default_out(const RunPlan& plan, const RunOptions& options) {
   return fs::path("results/runs") / (data + method + moving + poses + perturb);
 }
 
-nlohmann::ordered_json identity_of(const RunPlan& plan, const Sequence& sequence) {
-  const RunSettings& settings = plan.settings;
-  return {{"sequence", sequence.name()},
-          {"dataset", std::string(to_string(plan.dataset.kind))},
-          {"reading", to_json(sequence.reading())},
-          {"method",
-           {{"name", std::string(settings.method->title)},
-            {"kind", std::string(settings.method->name)}}},
-          {"protocol",
-           {{"name", std::string(settings.protocol->name)},
-            {"min_range_m", settings.range.min_m},
-            {"max_range_m", settings.range.max_m}}},
-          {"config", to_json(settings.method_settings)},
-          {"code", code_json()}};
-}
-
 /// What the results of all sequences of a run have in common.
 nlohmann::ordered_json shared_rules(const RunPlan& plan) {
-  nlohmann::ordered_json rules = identity_of(plan, *plan.dataset.sequences.front());
+  nlohmann::ordered_json rules = identity_json(asked_result(plan, 0));
   for (const char* own : {"sequence", "reading", "code"}) rules.erase(own);
   return rules;
 }
@@ -154,17 +139,14 @@ nlohmann::ordered_json shared_rules(const RunPlan& plan) {
 /// written.
 void check_unchanged(const RunPlan& plan, const PlannedSequence& planned, bool verify) {
   const Sequence& sequence = *plan.dataset.sequences[planned.position];
-  const ResultFile& result = *planned.finished;
+  const Result& result = *planned.finished;
   const auto refuse = [&](const std::string& other) {
     throw UsageError(
         fmt::format("{}: holds results of other {} than {} has now, expected the "
                     "same; give another --out, or --overwrite to replace them",
                     planned.folder.path().string(), other, sequence.name()));
   };
-  const nlohmann::ordered_json none = nlohmann::ordered_json::object();
-  if (result.content.value("splits", none) != picked_stems(plan.dataset, planned.position)) {
-    refuse("split files");
-  }
+  if (result.splits != picked_stems(plan.dataset, planned.position)) refuse("split files");
   const auto stamp = verify ? std::nullopt : std::optional(planned.stamp);
   if (!same_input(sequence, stamp, result)) refuse("input files");
   planned.folder.check_labels(result);
@@ -174,13 +156,12 @@ PlannedSequence plan_sequence(const RunPlan& plan, std::size_t position,
                               const RunOptions& options) {
   const Sequence& sequence = *plan.dataset.sequences[position];
   PlannedSequence planned{position, ResultFolder(plan.out / sequence.name()),
-                          identity_of(plan, sequence), file_stamp(sequence), std::nullopt};
+                          asked_result(plan, position), file_stamp(sequence), std::nullopt};
   if (options.overwrite) {
     planned.folder.check_replaceable();
     return planned;
   }
-  planned.finished =
-      planned.folder.finished(sequence, planned.identity, plan.settings.point_files());
+  planned.finished = planned.folder.finished(sequence, planned.asked, plan.settings.point_files());
   if (planned.finished) check_unchanged(plan, planned, options.verify);
   return planned;
 }
@@ -273,6 +254,28 @@ std::optional<DatasetKind> dataset_kind_option(const std::string& name) {
   if (const std::optional<DatasetKind> kind = dataset_kind_from_string(name)) return kind;
   throw UsageError(
       fmt::format("--dataset: '{}' is not known, expected auto, {}", name, dataset_kind_names()));
+}
+
+Result asked_result(const RunPlan& plan, std::size_t position) {
+  const RunSettings& settings = plan.settings;
+  const Sequence& sequence = *plan.dataset.sequences[position];
+  Result asked;
+  asked.sequence = SequenceName(sequence.name(), plan.dataset.root);
+  asked.dataset = to_string(plan.dataset.kind);
+  asked.method = settings.method->title;
+  asked.kind = settings.method->name;
+  asked.settings = RecordedSettings(settings.method_settings);
+  asked.preset = plan.preset;
+  asked.protocol = settings.protocol;
+  asked.range = settings.range;
+  asked.from.version = kMosbenchVersion;
+  asked.from.compiler = kCompiler;
+  asked.from.reading = sequence.reading();
+  if (plan.odometry) asked.from.odometry = odometry_done(*plan.odometry);
+  asked.splits = picked_stems(plan.dataset, position);
+  const Split* benchmark = benchmark_scans(*settings.protocol, plan.dataset.splits);
+  if (benchmark != nullptr) asked.summary_split = benchmark->name;
+  return asked;
 }
 
 RangeGate range_option(const std::string& text, const Protocol& protocol) {

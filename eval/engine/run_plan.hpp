@@ -39,9 +39,9 @@ struct RunOptions {
 struct PlannedSequence {
   std::size_t position;  ///< in Dataset::sequences
   ResultFolder folder;
-  nlohmann::ordered_json identity;  ///< what two runs must share to have the same results
-  std::string stamp;                ///< of the input files, see `file_stamp`
-  std::optional<ResultFile> finished;
+  Result asked;       ///< what is known before it runs, and two runs must share
+  std::string stamp;  ///< of the input files, see `file_stamp`
+  std::optional<Result> finished;
 };
 
 /// Everything decided before the first scan is read.
@@ -70,6 +70,9 @@ ScoreRule score_rule(const RunOptions& options, DatasetKind kind);
 
 /// "auto" is nothing. Throws UsageError for a name that is no data set kind.
 std::optional<DatasetKind> dataset_kind_option(const std::string& name);
+
+/// What is known of a sequence's result before it is computed.
+Result asked_result(const RunPlan& plan, std::size_t position);
 
 /// "MIN,MAX" in metres, MAX -1 for no limit. Throws UsageError, also for a limit that the protocol
 /// does not know.

@@ -10,7 +10,7 @@
 #include "datasets/text/errors.hpp"
 #include "eval/engine/label_shift.hpp"
 #include "eval/protocols/benchmark_split.hpp"
-#include "eval/results/progress.hpp"
+#include "eval/result/progress.hpp"
 
 namespace mosbench {
 namespace {

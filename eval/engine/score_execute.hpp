@@ -7,7 +7,7 @@
 
 #include "datasets/layouts/dataset.hpp"
 #include "eval/predictions/predictions.hpp"
-#include "eval/results/result_file.hpp"
+#include "eval/result/result_file.hpp"
 
 namespace mosbench {
 

@@ -13,10 +13,10 @@
 #include "datasets/sequence/fingerprint.hpp"
 #include "datasets/text/errors.hpp"
 #include "eval/exec/program_error.hpp"
-#include "eval/results/dynamic_score_file.hpp"
-#include "eval/results/machine.hpp"
-#include "eval/results/progress.hpp"
-#include "eval/results/reason_file.hpp"
+#include "eval/result/dynamic_score_file.hpp"
+#include "eval/result/machine.hpp"
+#include "eval/result/progress.hpp"
+#include "eval/result/reason_file.hpp"
 
 namespace mosbench {
 namespace {
@@ -69,20 +69,21 @@ class SequenceRun {
         launch_(settings.threads > 1 ? std::launch::async : std::launch::deferred),
         method_(settings.method->make(settings.method_settings, context_of(sequence, settings))) {
     // What stays is allocated before the large buffers that come and go.
-    rows_.scans.resize(sequence.size());
-    rows_.costs.resize(sequence.size());
-    for (std::size_t k = 0; k < sequence.size(); ++k) rows_.scans[k].stem = sequence.stem(k);
+    found_.scans.resize(sequence.size());
+    timing_.threads = settings.threads;
+    timing_.costs.resize(sequence.size());
+    for (std::size_t k = 0; k < sequence.size(); ++k) found_.scans[k].stem = sequence.stem(k);
   }
 
-  SequenceRows run() {
+  Result run() {
     const Clock::time_point start = Clock::now();
     Progress progress(title_of(sequence_, settings_), sequence_.size());
     std::future<ReadyScan> upcoming = prepare(0);
     for (std::size_t k = 0; k < sequence_.size(); ++k) {
       const Clock::time_point read_start = Clock::now();
       ReadyScan ready = upcoming.get();
-      rows_.costs[k].read_ms = milliseconds_since(read_start);
-      if (launch_ == std::launch::deferred) rows_.costs[k].read_ms -= ready.observe_ms;
+      timing_.costs[k].read_ms = milliseconds_since(read_start);
+      if (launch_ == std::launch::deferred) timing_.costs[k].read_ms -= ready.observe_ms;
       if (k + 1 < sequence_.size()) upcoming = prepare(k + 1);
       push(k, std::move(ready));
       progress.advance();
@@ -93,11 +94,12 @@ class SequenceRun {
     }
     finish_settling();
     if (!pending_.empty()) fault(fmt::format("leaves {} scans without labels", pending_.size()));
-    rows_.fingerprint = fingerprint_.hex();
-    rows_.fingerprint_without_poses = fingerprint_without_poses_.hex();
-    rows_.remarks = method_->remarks();
-    rows_.wall_s = milliseconds_since(start) / 1e3;
-    return std::move(rows_);
+    found_.from.fingerprint = fingerprint_.hex();
+    found_.from.fingerprint_without_poses = fingerprint_without_poses_.hex();
+    found_.remarks = method_->remarks();
+    timing_.wall_s = milliseconds_since(start) / 1e3;
+    found_.timing = std::move(timing_);
+    return std::move(found_);
   }
 
  private:
@@ -119,8 +121,8 @@ class SequenceRun {
     const Clock::time_point start = Clock::now();
     std::vector<LabelledScan> finals = naming_scan(
         sequence_, scan_index, [&] { return method_->push(std::move(ready.observed)); });
-    rows_.costs[scan_index].push_ms = ready.observe_ms + milliseconds_since(start);
-    rows_.costs[scan_index].resident_mib =
+    timing_.costs[scan_index].push_ms = ready.observe_ms + milliseconds_since(start);
+    timing_.costs[scan_index].resident_mib =
         resident_mib() - static_cast<double>(sequence_.kept_bytes()) / (1 << 20);
     remember(std::move(ready.frame));
     for (LabelledScan& result : finals) accept(std::move(result));
@@ -160,7 +162,7 @@ class SequenceRun {
 
   void accept(LabelledScan result) {
     check(result);
-    add_stages(result.stages, rows_, rows_.costs[result.scan_index]);
+    add_stages(result.stages, timing_, timing_.costs[result.scan_index]);
     finish_settling();
     settling_ = std::async(
         launch_, [this, scan = std::move(pending_.front()), result = std::move(result)]() mutable {
@@ -172,7 +174,7 @@ class SequenceRun {
   }
 
   void score(const PendingScan& scan, const LabelledScan& result) {
-    ScanRow& row = rows_.scans[result.scan_index];
+    ScanRow& row = found_.scans[result.scan_index];
     row.points = result.labels.size();
     row.predicted_moving_points =
         static_cast<std::size_t>(std::ranges::count(result.labels, kMovingLabel));
@@ -188,7 +190,7 @@ class SequenceRun {
 
   void write(const LabelledScan& result) const {
     if (!folder_) return;
-    const std::string& stem = rows_.scans[result.scan_index].stem;
+    const std::string& stem = found_.scans[result.scan_index].stem;
     write_labels(*folder_ / "labels" / (stem + ".label"), result.labels);
     const PointFiles wanted = settings_.point_files();
     if (wanted.scores) {
@@ -215,7 +217,8 @@ class SequenceRun {
   std::deque<PendingScan> pending_;
   std::size_t accepted_ = 0;  ///< results
   Frame spent_;               ///< gives its memory to a coming frame
-  SequenceRows rows_;
+  Result found_;
+  Timing timing_;
   /// Gives the points back that it scored with. Last: its end is awaited before what it uses goes.
   std::future<std::vector<Point>> settling_;
 };
@@ -237,8 +240,8 @@ RunContext context_of(const Sequence& sequence, const RunSettings& settings) {
   return context;
 }
 
-SequenceRows run_sequence(const Sequence& sequence, const RunSettings& settings,
-                          const std::optional<std::filesystem::path>& folder) {
+Result run_sequence(const Sequence& sequence, const RunSettings& settings,
+                    const std::optional<std::filesystem::path>& folder) {
   return SequenceRun(sequence, settings, folder).run();
 }
 

@@ -7,7 +7,7 @@
 
 #include "datasets/sequence/sequence.hpp"
 #include "eval/protocols/protocol.hpp"
-#include "eval/results/result_file.hpp"
+#include "eval/result/result.hpp"
 #include "eval/store/result_folder.hpp"
 
 namespace mosbench {
@@ -39,8 +39,8 @@ RunContext context_of(const Sequence& sequence, const RunSettings& settings);
 /// enters the map; what a whole run writes and which error is thrown do not depend on it. Holds up
 /// to three scans at a time, and the truth of those whose labels are still delayed. Throws
 /// DataError.
-SequenceRows run_sequence(const Sequence& sequence, const RunSettings& settings,
-                          const std::optional<std::filesystem::path>& folder);
+Result run_sequence(const Sequence& sequence, const RunSettings& settings,
+                    const std::optional<std::filesystem::path>& folder);
 
 /// Pushes one scan of `sequence`. Throws DataError naming the scan's file, or where it has none of
 /// its own the scan, for points and poses beyond the voxel grid.

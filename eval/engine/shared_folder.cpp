@@ -10,7 +10,9 @@
 #include "datasets/disk/folder_relation.hpp"
 #include "datasets/layouts/folder_search.hpp"
 #include "datasets/text/errors.hpp"
-#include "eval/results/json_differences.hpp"
+#include "eval/result/json_differences.hpp"
+#include "eval/result/result_file.hpp"
+#include "eval/result/result_json.hpp"
 
 namespace mosbench {
 namespace fs = std::filesystem;
@@ -32,9 +34,9 @@ bool same_dataset(const fs::path& a, const std::string& sequence_a, const fs::pa
 }
 
 /// Nothing when the file is no result of ours.
-std::optional<nlohmann::ordered_json> content_of(const fs::path& file) {
+std::optional<Result> result_in(const fs::path& file) {
   try {
-    return read_result(file).content;
+    return read_result(file);
   } catch (const DataError&) {
     return std::nullopt;
   }
@@ -43,25 +45,19 @@ std::optional<nlohmann::ordered_json> content_of(const fs::path& file) {
 /// Empty when the results can stand beside those of the plan.
 std::string other_run(const RunPlan& plan, const nlohmann::ordered_json& rules,
                       const fs::path& file) {
-  const std::optional<nlohmann::ordered_json> content = content_of(file);
-  if (!content) return "";
-  const nlohmann::ordered_json& there = *content;
-  try {
-    const std::string changed = changed_members(there, rules);
-    if (!changed.empty() || !there.contains("timing")) return changed;
-    const fs::path root = there.at("timing").value("dataset_root", "");
-    const fs::path& ours = plan.dataset.root;
-    const std::string name = there.at("sequence").get<std::string>();
-    const std::string our_name = plan.dataset.sequences.front()->name();
-    if (root.empty() || same_dataset(without_slash(root), name, without_slash(ours), our_name) ||
-        same_dataset(resolved(root), name, resolved(ours), our_name)) {
-      return "";
-    }
-    return fmt::format("data set is {} there and {} now", root.string(),
-                       without_slash(ours).string());
-  } catch (const nlohmann::ordered_json::exception& error) {
-    throw DataError(file, error.what(), "a result.json of mosbench");
+  const std::optional<Result> there = result_in(file);
+  if (!there) return "";
+  const std::string changed = changed_members(identity_json(*there), rules);
+  if (!changed.empty() || !there->places || !there->places->dataset_root) return changed;
+  const fs::path& root = *there->places->dataset_root;
+  const fs::path& ours = plan.dataset.root;
+  const std::string our_name = plan.dataset.sequences.front()->name();
+  if (same_dataset(without_slash(root), there->sequence, without_slash(ours), our_name) ||
+      same_dataset(resolved(root), there->sequence, resolved(ours), our_name)) {
+    return "";
   }
+  return fmt::format("data set is {} there and {} now", root.string(),
+                     without_slash(ours).string());
 }
 
 }  // namespace

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "eval/results/machine.hpp"
+#include "eval/result/machine.hpp"
 
 namespace mosbench {
 namespace {

@@ -24,14 +24,15 @@ std::optional<std::set<std::string>> stems_in_split(const Split& split, std::siz
   return part == split.parts.end() ? std::set<std::string>{} : part->stems;
 }
 
-nlohmann::ordered_json picked_stems(const Dataset& dataset, std::size_t position) {
-  nlohmann::ordered_json json = nlohmann::ordered_json::object();
+std::map<std::string, std::set<std::string>> picked_stems(const Dataset& dataset,
+                                                          std::size_t position) {
+  std::map<std::string, std::set<std::string>> picked;
   for (const Split& split : dataset.splits) {
     for (const SplitPart& part : split.parts) {
-      if (part.sequence == position && part.stems) json[split.name] = *part.stems;
+      if (part.sequence == position && part.stems) picked[split.name] = *part.stems;
     }
   }
-  return json;
+  return picked;
 }
 
 }  // namespace mosbench

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <cstddef>
-#include <nlohmann/json.hpp>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -27,7 +27,8 @@ const Split* benchmark_scans(const Protocol& protocol, const std::vector<Split>&
 /// them, an empty set when the sequence is not part of it.
 std::optional<std::set<std::string>> stems_in_split(const Split& split, std::size_t position);
 
-/// {"test": [stems], ...} for the splits that pick scans of the sequence at `position`.
-nlohmann::ordered_json picked_stems(const Dataset& dataset, std::size_t position);
+/// Stems by name for the splits that pick scans of the sequence at `position`.
+std::map<std::string, std::set<std::string>> picked_stems(const Dataset& dataset,
+                                                          std::size_t position);
 
 }  // namespace mosbench

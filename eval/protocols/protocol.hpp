@@ -54,23 +54,23 @@ struct PrintStyle {
 };
 
 /// The rules of one benchmark. A protocol is a row of data: no other code asks which protocol it
-/// has.
+/// has. What a row does not say is as most benchmarks have it.
 struct Protocol {
   std::string_view name;
   std::string_view summary;  ///< how it differs from the others, one line
   std::string_view source;   ///< owner/repository@commit:path of the program it reproduces
   IdMap truth;
   IdMap prediction;  ///< kMoving is a moving prediction, every other class a static one
-  RangeRule range_rule;
-  RangeGate default_range;
-  Arithmetic range_arithmetic;
-  Aggregation aggregation;
-  EmptyCase empty_case;
-  Arithmetic metric_arithmetic;
-  int file_significant_digits;  ///< of the scan values that its program averages; 0: all digits
-  PrintStyle program_print;     ///< of its own program
-  std::string_view
-      default_split;  ///< of the data set it is published for; empty: all labelled scans
+  RangeRule range_rule = RangeRule::kNone;
+  RangeGate default_range = {0.0, -1.0};  ///< no limits
+  Arithmetic range_arithmetic = Arithmetic::kDouble;
+  Aggregation aggregation = Aggregation::kPooled;
+  EmptyCase empty_case = EmptyCase::kNan;
+  Arithmetic metric_arithmetic = Arithmetic::kDouble;
+  int file_significant_digits = 0;  ///< of the scan values that its program averages; 0: all digits
+  PrintStyle program_print = {};    ///< of its own program
+  /// Of the data set it is published for; empty: all labelled scans.
+  std::string_view default_split = "";
 };
 
 /// A protocol with the range it is applied over.

@@ -12,8 +12,8 @@
 #include "eval/job/presets.hpp"
 #include "eval/python/arrays.hpp"
 #include "eval/python/bindings.hpp"
-#include "eval/results/machine.hpp"
-#include "eval/results/settings_json.hpp"
+#include "eval/result/machine.hpp"
+#include "eval/result/settings_json.hpp"
 
 namespace mosbench::python {
 namespace {

@@ -3,7 +3,7 @@
 
 #include "datasets/text/errors.hpp"
 #include "eval/python/bindings.hpp"
-#include "eval/results/version.hpp"
+#include "eval/result/version.hpp"
 
 namespace {
 

@@ -6,7 +6,8 @@
 #include "eval/protocols/scan_sums.hpp"
 #include "eval/python/arrays.hpp"
 #include "eval/python/bindings.hpp"
-#include "eval/results/result_set.hpp"
+#include "eval/result/result_json.hpp"
+#include "eval/result/result_set.hpp"
 
 namespace mosbench::python {
 namespace {
@@ -87,14 +88,14 @@ py::dict dict_of(const ScanRow& row) {
 
 py::list sequence_results(const ResultSet& set) {
   py::list sequences;
-  for (const SequenceResult& result : set.sequences) {
+  for (const Result& result : set.sequences) {
     py::dict sequence;
     sequence["name"] = result.sequence.text();
-    sequence["folder"] = result.file.parent_path();
+    sequence["folder"] = result.folder();
     const std::vector<SequenceCounts> counts = {counts_of(result)};
-    sequence["header"] = result.header.dump();
+    sequence["header"] = header_json(result).dump();
     sequence["metrics"] = dict_of(aggregate(*result.protocol, counts));
-    sequence["method_ms_per_scan"] = result.method_ms_per_scan;
+    sequence["method_ms_per_scan"] = method_ms_per_scan(result);
     py::list scans;
     for (const ScanRow& row : result.scans) scans.append(dict_of(row));
     sequence["scans"] = scans;
@@ -114,7 +115,7 @@ py::dict load_results(const std::filesystem::path& folder) {
   results["setting"] = set.front().setting;
   results["dataset"] = set.front().dataset;
   results["protocol"] = std::string(set.front().protocol->name);
-  results["simulated"] = set.front().simulated;
+  results["simulated"] = set.front().is_simulated();
   results["warnings"] = warnings(set);
   results["metrics"] = dict_of(aggregate(*set.front().protocol, counts_of(set)));
   results["sequences"] = sequence_results(set);

@@ -12,21 +12,22 @@
 #include "datasets/text/errors.hpp"
 #include "eval/answer/answer_text.hpp"
 #include "eval/protocols/metrics.hpp"
-#include "eval/results/progress.hpp"
+#include "eval/result/progress.hpp"
+#include "eval/result/result_file.hpp"
 #include "eval/statistics/statistics_report.hpp"
 
 namespace mosbench {
 namespace {
 
-void add_sequence(const FoundResult& result, const std::optional<std::filesystem::path>& root,
+void add_sequence(const Result& result, const std::optional<std::filesystem::path>& root,
                   ScoreCounts& counts) {
   const ResultScans scans(result, root);
-  if (result.file.content.contains("predictions")) {
-    throw DataError(result.folder / "result.json", "is of mosbench score, which has labels alone",
+  if (result.predictions) {
+    throw DataError(result.file, "is of mosbench score, which has labels alone",
                     "a run of mosbench run --write scores");
   }
   if (!scans.has_scores()) {
-    throw DataError(result.folder / "scores", "is not there",
+    throw DataError(result.folder() / "scores", "is not there",
                     "scores of points: give the same run command again, with --write scores");
   }
   add_counted_scans(result, scans, counts);
@@ -91,11 +92,10 @@ double rounded(double value) { return std::round(value * 1e4) / 1e4; }
 
 }  // namespace
 
-void add_counted_scans(const FoundResult& result, const ResultScans& scans, ScoreCounts& counts) {
-  const SequenceResult row = sequence_result(result.folder / "result.json", result.file);
+void add_counted_scans(const Result& result, const ResultScans& scans, ScoreCounts& counts) {
   std::set<std::string> counted;
-  for (const ScanRow* scan : counted_scans(row)) counted.insert(scan->stem);
-  Progress progress("curve " + result.name.text(), counted.size());
+  for (const ScanRow* scan : counted_scans(result)) counted.insert(scan->stem);
+  Progress progress("curve " + result.sequence.text(), counted.size());
   for (std::size_t k = 0; k < scans.sequence().size(); ++k) {
     if (!counted.contains(scans.sequence().stem(k))) continue;
     counts.add(scans.read(k), scans.rule());
@@ -107,7 +107,7 @@ CurveReport curve_of_run(const std::filesystem::path& path,
                          const std::optional<std::filesystem::path>& dataset_root) {
   CurveReport report{load_result_set(path), {}};
   ScoreCounts counts;
-  for (const FoundResult& result : find_results(path)) add_sequence(result, dataset_root, counts);
+  for (const Result& result : read_results(path)) add_sequence(result, dataset_root, counts);
   try {
     report.curve = counts.curve();
   } catch (const std::domain_error& error) {
@@ -144,7 +144,7 @@ LineChart curve_chart(const CurveReport& report) {
   const Curve labels{"labels of the run", kOfLabels, {place_of(report.curve.of_labels)}};
   return {.title = fmt::format("{}, average precision {} %{}", report.run.front().method,
                                percent_text(report.curve.average_precision),
-                               report.run.front().simulated ? " (simulated)" : ""),
+                               report.run.front().is_simulated() ? " (simulated)" : ""),
           .x_label = "recall %",
           .y_label = "precision %",
           .equal_scales = true,
@@ -155,7 +155,7 @@ LineChart curve_chart(const CurveReport& report) {
 }  // namespace
 
 Answer curve_answer(const CurveReport& report) {
-  const SequenceResult& first = report.run.front();
+  const Result& first = report.run.front();
   const ScoreCurve& curve = report.curve;
   const CurvePoint& best = best_point(curve);
   const Confusion& counts = best.counts;

@@ -6,7 +6,7 @@
 
 #include "eval/answer/answer.hpp"
 #include "eval/report/score_curve.hpp"
-#include "eval/results/result_set.hpp"
+#include "eval/result/result_set.hpp"
 
 namespace mosbench {
 
@@ -18,7 +18,7 @@ struct CurveReport {
 
 /// Adds the scores of the scans of a result that the protocol counts. `scans` are those of
 /// `result`, with scores. Throws DataError as ResultScans does.
-void add_counted_scans(const FoundResult& result, const ResultScans& scans, ScoreCounts& counts);
+void add_counted_scans(const Result& result, const ResultScans& scans, ScoreCounts& counts);
 
 /// Reads scans, truth, labels and scores of the run again. Throws DataError as ResultScans does,
 /// where the run kept no scores, where no scan has truth, and where no point moves.

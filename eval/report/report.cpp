@@ -7,7 +7,6 @@
 #include <set>
 
 #include "datasets/text/errors.hpp"
-#include "eval/protocols/protocol.hpp"
 #include "eval/report/point_planes.hpp"
 #include "eval/report/report_asset.hpp"
 #include "eval/report/report_numbers.hpp"
@@ -15,7 +14,9 @@
 #include "eval/report/report_runs.hpp"
 #include "eval/report/report_scans.hpp"
 #include "eval/report/result_boxes.hpp"
-#include "eval/results/version.hpp"
+#include "eval/result/result_file.hpp"
+#include "eval/result/result_json.hpp"
+#include "eval/result/version.hpp"
 
 namespace mosbench {
 namespace {
@@ -24,32 +25,35 @@ using nlohmann::ordered_json;
 
 constexpr std::size_t kBytesAroundBlock = 64;
 
-ordered_json result_json(const FoundResult& result) {
-  const ordered_json& content = result.file.content;
-  ordered_json json = {{"run", run_name(result)}, {"folder", result.folder.string()}};
-  const ordered_json name = content.value("/protocol/name"_json_pointer, ordered_json());
-  if (const Protocol* protocol =
-          name.is_string() ? find_protocol(name.get<std::string>()) : nullptr) {
-    json["protocol_summary"] = protocol->summary;
+/// Of scans that were not scored the page gets the stem alone.
+ordered_json shown_result(const Result& result) {
+  ordered_json json = to_json(result);
+  for (std::size_t k = 0; result.predictions && k < result.scans.size(); ++k) {
+    if (!result.scans[k].counts) json["scans"][k] = {{"stem", result.scans[k].stem}};
   }
-  const ordered_json kind = content.value("/method/kind"_json_pointer, ordered_json());
-  if (const MethodKind* method =
-          kind.is_string() ? find_method(kind.get<std::string>()) : nullptr) {
+  return json;
+}
+
+ordered_json result_json(const Result& result) {
+  ordered_json json = {{"run", run_name(result)},
+                       {"folder", result.folder().string()},
+                       {"protocol_summary", result.protocol->summary}};
+  if (const MethodKind* method = find_method(result.kind)) {
     json["score_name"] = method->score_name;
     json["threshold_name"] = method->threshold_name;
   }
   json["estimates"] = estimates_of(result);
-  json["result"] = content;
+  json["result"] = shown_result(result);
   return json;
 }
 
 /// Results of which an input and its folder are given are taken once.
-std::vector<FoundResult> find_all(const std::vector<std::filesystem::path>& inputs) {
-  std::vector<FoundResult> results;
+std::vector<Result> find_all(const std::vector<std::filesystem::path>& inputs) {
+  std::vector<Result> results;
   std::set<std::filesystem::path> known;
   for (const std::filesystem::path& input : inputs) {
-    for (FoundResult& result : find_results(input)) {
-      if (known.insert(std::filesystem::canonical(result.folder)).second) {
+    for (Result& result : read_results(input)) {
+      if (known.insert(std::filesystem::canonical(result.folder())).second) {
         results.push_back(std::move(result));
       }
     }
@@ -58,7 +62,7 @@ std::vector<FoundResult> find_all(const std::vector<std::filesystem::path>& inpu
 }
 
 ordered_json content_without_points(const std::vector<std::filesystem::path>& inputs,
-                                    const std::vector<FoundResult>& results,
+                                    const std::vector<Result>& results,
                                     const std::vector<ReportRun>& runs,
                                     const ReportOptions& options) {
   ordered_json json = {{"format", 1},
@@ -71,14 +75,14 @@ ordered_json content_without_points(const std::vector<std::filesystem::path>& in
                        {"curves", ordered_json::array()},
                        {"clouds", ordered_json::array()},
                        {"results", ordered_json::array()}};
-  for (const FoundResult& result : results) json["results"].push_back(result_json(result));
+  for (const Result& result : results) json["results"].push_back(result_json(result));
   return json;
 }
 
-std::size_t room_for_points(const ordered_json& content, const std::vector<FoundResult>& results,
+std::size_t room_for_points(const ordered_json& content, const std::vector<Result>& results,
                             const ReportOptions& options) {
   std::size_t scans = 0;
-  for (const FoundResult& result : results) scans += result.file.rows.scans.size();
+  for (const Result& result : results) scans += result.scans.size();
   const std::size_t taken =
       report_asset().size() + script_json(content).size() + scans * 6 * kBytesAroundBlock;
   const double room = options.max_mb * 1e6 - static_cast<double>(taken);
@@ -91,7 +95,7 @@ std::size_t room_for_points(const ordered_json& content, const std::vector<Found
 /// Opens the scans of every result that has labels, and says which has none; where none has, it
 /// throws DataError as ResultScans does.
 std::vector<std::optional<ResultScans>> open_sources(
-    const std::vector<FoundResult>& results, const std::optional<std::filesystem::path>& root,
+    const std::vector<Result>& results, const std::optional<std::filesystem::path>& root,
     std::vector<std::string>& remarks) {
   std::vector<std::optional<ResultScans>> sources(results.size());
   const bool any = std::ranges::any_of(results, has_labels);
@@ -100,7 +104,7 @@ std::vector<std::optional<ResultScans>> open_sources(
       sources[i].emplace(results[i], root);
     } else {
       remarks.push_back(fmt::format("{}: without points, because its labels are not known",
-                                    results[i].folder.string()));
+                                    results[i].folder().string()));
     }
   }
   return sources;
@@ -110,7 +114,7 @@ std::vector<std::optional<ResultScans>> open_sources(
 
 Report build_report(const std::vector<std::filesystem::path>& inputs,
                     const ReportOptions& options) {
-  const std::vector<FoundResult> results = find_all(inputs);
+  const std::vector<Result> results = find_all(inputs);
   const std::vector<ReportRun> runs = runs_of(results);
   ordered_json content = content_without_points(inputs, results, runs, options);
   if (options.scans.none()) {
@@ -124,7 +128,7 @@ Report build_report(const std::vector<std::filesystem::path>& inputs,
       open_sources(results, options.dataset_root, remarks);
   for (std::size_t i = 0; i < results.size(); ++i) {
     if (!sources[i]) continue;
-    content["results"][i]["result"] = sources[i]->result().file.content;
+    content["results"][i]["result"] = shown_result(sources[i]->result());
     content["results"][i]["breakdown"] = breakdown_of(*sources[i]);
     content["results"][i]["protocols"] = protocols_of(*sources[i]);
     content["results"][i]["path"] = path_of(results[i], *sources[i]);

@@ -24,7 +24,7 @@ struct Report {
 };
 
 /// Builds one self-contained page about the results in and below `inputs`. Equal results and scans
-/// give equal bytes. Throws DataError as find_results and ResultScans do, UsageError when the
+/// give equal bytes. Throws DataError as read_results and ResultScans do, UsageError when the
 /// numbers alone exceed `max_mb`.
 Report build_report(const std::vector<std::filesystem::path>& inputs, const ReportOptions& options);
 

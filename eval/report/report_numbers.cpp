@@ -40,7 +40,7 @@ std::vector<ResultSet> recorded_runs(const std::vector<std::filesystem::path>& i
   for (const std::filesystem::path& input : inputs) {
     try {
       for (ResultSet& run : load_result_sets(input)) {
-        if (!run.front().simulated) runs.push_back(std::move(run));
+        if (!run.front().is_simulated()) runs.push_back(std::move(run));
       }
     } catch (const DataError&) {
       continue;
@@ -51,11 +51,10 @@ std::vector<ResultSet> recorded_runs(const std::vector<std::filesystem::path>& i
 
 }  // namespace
 
-ordered_json estimates_of(const FoundResult& result) {
-  const SequenceResult read = sequence_result(result.folder / "result.json", result.file);
-  const std::vector<SequenceCounts> counts = {counts_of(read)};
+ordered_json estimates_of(const Result& result) {
+  const std::vector<SequenceCounts> counts = {counts_of(result)};
   if (counts.front().empty()) return nullptr;
-  return to_json(estimate(*read.protocol, counts, spacing_of(read)));
+  return to_json(estimate(*result.protocol, counts, spacing_of(result)));
 }
 
 ordered_json breakdown_of(const ResultScans& scans) {

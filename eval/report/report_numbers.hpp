@@ -5,12 +5,12 @@
 #include <optional>
 #include <vector>
 
-#include "eval/report/result_scans.hpp"
+#include "eval/result/result_scans.hpp"
 
 namespace mosbench {
 
 /// Returns the metrics of a result with intervals, as `mosbench stats` does; null without truth.
-nlohmann::ordered_json estimates_of(const FoundResult& result);
+nlohmann::ordered_json estimates_of(const Result& result);
 
 /// Returns the breakdown of a result, as `mosbench breakdown` does; null without truth.
 nlohmann::ordered_json breakdown_of(const ResultScans& scans);

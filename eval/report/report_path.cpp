@@ -4,7 +4,6 @@
 #include <optional>
 
 #include "datasets/text/errors.hpp"
-#include "eval/results/reading_json.hpp"
 #include "eval/trajectory/alignment.hpp"
 #include "eval/trajectory/pose_errors.hpp"
 #include "eval/trajectory/trajectory.hpp"
@@ -45,9 +44,8 @@ bool are_same_scans(const Sequence& one, const Sequence& other) {
 
 /// The poses that the data set itself has for the scans of a run that took others. Nothing if the
 /// run took these, or if they cannot be read.
-std::optional<std::vector<Pose>> poses_passed_over(const FoundResult& result,
-                                                   const ResultScans& scans) {
-  ReadingOptions reading = told_from_json(recorded_reading(result));
+std::optional<std::vector<Pose>> poses_passed_over(const Result& result, const ResultScans& scans) {
+  ReadingOptions reading = reading_of(result);
   if (!reading.poses && !reading.poses_by_odometry) return std::nullopt;
   const ReadingOptions untold;
   reading.poses.reset();
@@ -57,7 +55,7 @@ std::optional<std::vector<Pose>> poses_passed_over(const FoundResult& result,
   reading.poses_inverse = untold.poses_inverse;
   try {
     const Dataset own =
-        open_dataset(scans.dataset().root, {scans.dataset().kind, {result.name}, reading});
+        open_dataset(scans.dataset().root, {scans.dataset().kind, {result.sequence}, reading});
     const Sequence& sequence = *own.sequences.front();
     if (are_same_scans(sequence, scans.sequence())) return poses_of(sequence);
   } catch (const DataError&) {  // most runs take other poses because there are none
@@ -67,7 +65,7 @@ std::optional<std::vector<Pose>> poses_passed_over(const FoundResult& result,
 
 }  // namespace
 
-ordered_json path_of(const FoundResult& result, const ResultScans& scans) {
+ordered_json path_of(const Result& result, const ResultScans& scans) {
   const std::vector<Pose> of_run = poses_of(scans.sequence());
   const auto own = poses_passed_over(result, scans);
   if (!own) return {{"run_m", seen_from_above(of_run)}};

@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "eval/report/result_scans.hpp"
+#include "eval/result/result_scans.hpp"
 
 namespace mosbench {
 
@@ -10,6 +10,6 @@ namespace mosbench {
 /// If the data set has other poses for the same scans: also `own_m`, the length `way_m` of that
 /// path up to each scan, and the distance `off_m` of the run's positions to its; the run's first
 /// pose is then moved onto the data set's.
-nlohmann::ordered_json path_of(const FoundResult& result, const ResultScans& scans);
+nlohmann::ordered_json path_of(const Result& result, const ResultScans& scans);
 
 }  // namespace mosbench

@@ -15,14 +15,12 @@ namespace {
 using nlohmann::ordered_json;
 
 /// Where a run lies, whatever the folder from which the program was called.
-std::filesystem::path place_of(const FoundResult& result) {
-  const auto folder = std::filesystem::absolute(result.folder / "").lexically_normal();
-  return folder_of_run(folder.parent_path(), result.name);
+std::filesystem::path place_of(const Result& result) {
+  const auto folder = std::filesystem::absolute(result.folder() / "").lexically_normal();
+  return folder_of_run(folder.parent_path(), result.sequence);
 }
 
-std::filesystem::path file_of(const FoundResult& result) { return result.folder / "result.json"; }
-
-const ReportRun& run_with(const std::vector<ReportRun>& runs, const SequenceResult& sequence) {
+const ReportRun& run_with(const std::vector<ReportRun>& runs, const Result& sequence) {
   return *std::ranges::find(runs, sequence.file,
                             [](const ReportRun& run) { return run.set.front().file; });
 }
@@ -67,26 +65,26 @@ bool has_curve(const ReportRun& run, const std::vector<std::optional<ResultScans
 
 }  // namespace
 
-std::string run_name(const FoundResult& result) { return place_of(result).filename().string(); }
+std::string run_name(const Result& result) { return place_of(result).filename().string(); }
 
-std::vector<ReportRun> runs_of(const std::vector<FoundResult>& results) {
+std::vector<ReportRun> runs_of(const std::vector<Result>& results) {
   struct Place {
     std::filesystem::path folder;
-    std::vector<SequenceResult> sequences;
+    std::vector<Result> sequences;
   };
   std::vector<Place> places;
-  for (const FoundResult& result : results) {
+  for (const Result& result : results) {
     const auto known = std::ranges::find(places, place_of(result), &Place::folder);
     Place& place =
         known == places.end() ? places.emplace_back(Place{place_of(result), {}}) : *known;
-    place.sequences.push_back(sequence_result(file_of(result), result.file));
+    place.sequences.push_back(result);
   }
   std::vector<ReportRun> runs;
   for (Place& place : places) {
     for (ResultSet& set : sorted_into_runs(std::move(place.sequences), place.folder)) {
       ReportRun& run = runs.emplace_back(ReportRun{place.folder.filename().string(), {}, {}});
-      for (const SequenceResult& sequence : set.sequences) {
-        const auto found = std::ranges::find(results, sequence.file, file_of);
+      for (const Result& sequence : set.sequences) {
+        const auto found = std::ranges::find(results, sequence.file, &Result::file);
         run.results.push_back(static_cast<std::size_t>(found - results.begin()));
       }
       run.set = std::move(set);
@@ -106,7 +104,7 @@ ordered_json leaderboards_of(const std::vector<ReportRun>& runs) {
   return boards;
 }
 
-ordered_json curves_of(const std::vector<ReportRun>& runs, const std::vector<FoundResult>& results,
+ordered_json curves_of(const std::vector<ReportRun>& runs, const std::vector<Result>& results,
                        const std::vector<std::optional<ResultScans>>& sources) {
   ordered_json curves = ordered_json::array();
   for (const ReportRun& run : runs) {

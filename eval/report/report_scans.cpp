@@ -9,8 +9,8 @@
 #include "datasets/text/errors.hpp"
 #include "eval/report/compressed_text.hpp"
 #include "eval/report/point_planes.hpp"
-#include "eval/results/progress.hpp"
-#include "eval/results/reason_file.hpp"
+#include "eval/result/progress.hpp"
+#include "eval/result/reason_file.hpp"
 
 namespace mosbench {
 namespace {
@@ -82,9 +82,9 @@ bool are_of_same_files(const ResultScans& one, const ResultScans& other) {
 }
 
 bool are_of_same_frames(const ResultScans& one, const ResultScans& other) {
-  if (one.result().name != other.result().name) return false;
-  const std::string& fingerprint = one.result().file.rows.fingerprint;
-  const std::string& another = other.result().file.rows.fingerprint;
+  if (one.result().sequence != other.result().sequence) return false;
+  const std::string& fingerprint = one.result().from.fingerprint;
+  const std::string& another = other.result().from.fingerprint;
   const bool is_known = !fingerprint.empty() && !another.empty();
   return is_known ? fingerprint == another : are_of_same_files(one, other);
 }
@@ -96,7 +96,7 @@ std::vector<std::size_t> order_of_grouping(const Sources& sources) {
     if (sources[i]) order.push_back(i);
   }
   std::ranges::stable_partition(
-      order, [&](std::size_t i) { return !sources[i]->result().file.rows.fingerprint.empty(); });
+      order, [&](std::size_t i) { return !sources[i]->result().from.fingerprint.empty(); });
   return order;
 }
 
@@ -190,11 +190,11 @@ void check_packed(const std::vector<Cloud>& clouds) {
 
 }  // namespace
 
-void check_choice(const std::vector<FoundResult>& results, const ScanChoice& choice) {
+void check_choice(const std::vector<Result>& results, const ScanChoice& choice) {
   std::size_t longest = 0;
-  for (const FoundResult& result : results) {
-    if (!choice.wanted(result.file.rows.scans).empty()) return;
-    longest = std::max(longest, result.file.rows.scans.size());
+  for (const Result& result : results) {
+    if (!choice.wanted(result.scans).empty()) return;
+    longest = std::max(longest, result.scans.size());
   }
   if (longest == 0) return;
   throw UsageError(
@@ -203,7 +203,7 @@ void check_choice(const std::vector<FoundResult>& results, const ScanChoice& cho
                   longest - 1));
 }
 
-ReportScans choose_report_scans(const std::vector<FoundResult>& results, const Sources& sources,
+ReportScans choose_report_scans(const std::vector<Result>& results, const Sources& sources,
                                 const ScanChoice& choice, std::size_t max_bytes) {
   ReportScans report;
   report.results.resize(results.size());
@@ -212,11 +212,11 @@ ReportScans choose_report_scans(const std::vector<FoundResult>& results, const S
   check_packed(clouds);
   for (Cloud& cloud : clouds) {
     std::ranges::sort(cloud.packed, {}, &PackedScan::scan_index);
-    const FoundResult& first = results[cloud.members.front()];
+    const Result& first = results[cloud.members.front()];
     const std::size_t scans = sources[cloud.members.front()]->rows().size();
     const std::string remark = left_out(cloud, scans);
-    if (!remark.empty()) report.remarks.push_back(first.name.text() + ": " + remark);
-    ordered_json json = {{"sequence", first.name.text()},
+    if (!remark.empty()) report.remarks.push_back(first.sequence.text() + ": " + remark);
+    ordered_json json = {{"sequence", first.sequence.text()},
                          {"scans_in_sequence", scans},
                          {"left_out", remark},
                          {"scans", ordered_json::array()}};

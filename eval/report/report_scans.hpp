@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "eval/report/report.hpp"
-#include "eval/report/result_scans.hpp"
+#include "eval/result/result_scans.hpp"
 
 namespace mosbench {
 
@@ -30,12 +30,12 @@ struct ReportScans {
 };
 
 /// Throws UsageError when `choice` wants no scan of any result although they have some.
-void check_choice(const std::vector<FoundResult>& results, const ScanChoice& choice);
+void check_choice(const std::vector<Result>& results, const ScanChoice& choice);
 
 /// Takes scans in the order in which they are wanted, from all clouds alternately, until the next
 /// one would exceed `max_bytes`; throws UsageError when that leaves none. `sources` are the scans
 /// of `results`, none for a result without points.
-ReportScans choose_report_scans(const std::vector<FoundResult>& results,
+ReportScans choose_report_scans(const std::vector<Result>& results,
                                 const std::vector<std::optional<ResultScans>>& sources,
                                 const ScanChoice& choice, std::size_t max_bytes);
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "eval/breakdown/moving_boxes.hpp"
-#include "eval/report/result_scans.hpp"
+#include "eval/result/result_scans.hpp"
 
 namespace mosbench {
 

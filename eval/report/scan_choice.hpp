@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "eval/results/result_file.hpp"
+#include "eval/result/result_file.hpp"
 
 namespace mosbench {
 

@@ -7,8 +7,8 @@
 
 #include "eval/answer/picture.hpp"
 #include "eval/breakdown/moving_boxes.hpp"
-#include "eval/report/result_scans.hpp"
 #include "eval/report/scan_view.hpp"
+#include "eval/result/result_scans.hpp"
 
 namespace mosbench {
 

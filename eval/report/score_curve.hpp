@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "eval/protocols/confusion.hpp"
-#include "eval/report/result_scans.hpp"
+#include "eval/result/result_scans.hpp"
 
 namespace mosbench {
 

@@ -15,7 +15,8 @@
 #include "eval/answer/answer_text.hpp"
 #include "eval/report/point_planes.hpp"
 #include "eval/report/result_boxes.hpp"
-#include "eval/results/progress.hpp"
+#include "eval/result/progress.hpp"
+#include "eval/result/result_file.hpp"
 #include "eval/store/product_record.hpp"
 
 namespace mosbench {
@@ -223,8 +224,8 @@ std::vector<std::string> product_names() {
 
 void write_products(const fs::path& folder, std::span<const std::string> names) {
   if (names.empty()) return;
-  const std::vector<FoundResult> results = find_results(folder / "result.json");
-  const ResultScans scans(results.front(), std::nullopt);
+  const Result result = read_result(folder / "result.json");
+  const ResultScans scans(result, std::nullopt);
   ProductRecord record(folder);
   for (const Product& product : kProducts) {
     if (std::ranges::find(names, product.name) == names.end()) continue;

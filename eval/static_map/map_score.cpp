@@ -13,7 +13,7 @@
 #include "datasets/text/errors.hpp"
 #include "datasets/text/shown_text.hpp"
 #include "eval/answer/answer_text.hpp"
-#include "eval/results/machine.hpp"
+#include "eval/result/machine.hpp"
 
 namespace mosbench {
 namespace {

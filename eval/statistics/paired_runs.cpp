@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <unordered_map>
 
-#include "eval/results/json_differences.hpp"
 #include "eval/statistics/scan_spacing.hpp"
 
 namespace mosbench {
@@ -17,29 +16,34 @@ std::string range_text(const RangeGate& range) {
   return fmt::format("{:g} to {:g} m", range.min_m, range.max_m);
 }
 
-/// Returns the settings of the method; null for labels of other programs.
-nlohmann::ordered_json parameters_of(const SequenceResult& result) {
-  return result.header.value("config", nlohmann::ordered_json());
+std::string text_of(const SettingValue* value) {
+  return value == nullptr ? "nothing" : to_json(*value).dump();
 }
 
-/// Returns "voxel_size_m: 0.25 -> 0.4, ..."; empty if the parameters are equal or unknown. Two
-/// methods are compared by the parameters that both have.
-std::string changed_parameters(const SequenceResult& first, const SequenceResult& second) {
-  const nlohmann::ordered_json before = parameters_of(first);
-  const nlohmann::ordered_json after = parameters_of(second);
-  std::string text;
-  if (before.is_null() || after.is_null()) return text;
-  for (const JsonDifference& change : json_differences(before, after)) {
-    const bool of_both = before.contains(change.key) && after.contains(change.key);
-    if (first.method != second.method && !of_both) continue;
-    text += fmt::format("{}{}: {} -> {}", text.empty() ? "" : ", ", change.key, change.first,
-                        change.second);
+/// Returns "voxel_size_m: 0.25 -> 0.4, ..."; empty if the settings are equal or unknown. Two
+/// methods are compared by the settings that both have.
+std::string changed_settings(const Result& first, const Result& second) {
+  if (!first.settings || !second.settings) return "";
+  std::vector<std::string> names;
+  for (const RecordedSettings* settings : {&*second.settings, &*first.settings}) {
+    for (const auto& [name, value] : settings->all()) {
+      if (std::ranges::find(names, name) == names.end()) names.push_back(name);
+    }
   }
-  return text;
+  std::vector<std::string> changes;
+  for (const std::string& name : names) {
+    const SettingValue* before = first.settings->find(name);
+    const SettingValue* after = second.settings->find(name);
+    const bool of_both = before != nullptr && after != nullptr;
+    if ((first.method != second.method && !of_both) || (of_both && are_equal(*before, *after))) {
+      continue;
+    }
+    changes.push_back(fmt::format("{}: {} -> {}", name, text_of(before), text_of(after)));
+  }
+  return fmt::format("{}", fmt::join(changes, ", "));
 }
 
-void compare_rules(const SequenceResult& first, const SequenceResult& second,
-                   std::vector<Unlike>& unlike) {
+void compare_rules(const Result& first, const Result& second, std::vector<Unlike>& unlike) {
   const auto differ = [&unlike](Kind kind, const char* what, const std::string& a,
                                 const std::string& b) {
     if (a != b) unlike.push_back({kind, fmt::format("{} is {} and {}", what, a, b)});
@@ -49,7 +53,7 @@ void compare_rules(const SequenceResult& first, const SequenceResult& second,
   differ(Kind::kProtocol, "counted range", range_text(first.range), range_text(second.range));
   differ(Kind::kInput, "data set", first.dataset, second.dataset);
   differ(Kind::kSetting, "method", first.method, second.method);
-  const std::string changes = changed_parameters(first, second);
+  const std::string changes = changed_settings(first, second);
   if (changes.empty() && first.method == second.method) {
     differ(Kind::kSetting, "setting", first.setting, second.setting);
   } else if (!changes.empty()) {
@@ -61,9 +65,9 @@ class Pairing {
  public:
   explicit Pairing(PairedRuns& paired) : paired_(paired) {}
 
-  void add(const SequenceResult& first, const SequenceResult& second) {
+  void add(const Result& first, const Result& second) {
     compare_frames(first, second);
-    if (first.missing_predictions != second.missing_predictions) {
+    if (first.missing_predictions() != second.missing_predictions()) {
       add_unlike(Kind::kScans, first, "predictions are missing for different numbers of scans");
     }
     std::unordered_map<std::string, const ScanRow*> others;
@@ -84,25 +88,25 @@ class Pairing {
     }
   }
 
-  void add_unlike(Kind kind, const SequenceResult& sequence, const std::string& text) {
+  void add_unlike(Kind kind, const Result& sequence, const std::string& text) {
     paired_.unlike.push_back(
         {kind, fmt::format("sequence {}: {}", sequence.sequence.text(), text)});
   }
 
  private:
-  void compare_frames(const SequenceResult& first, const SequenceResult& second) {
-    if (!first.fingerprint || !second.fingerprint || first.fingerprint == second.fingerprint) {
-      return;
-    }
-    const std::string& without_poses = first.fingerprint_without_poses;
-    if (!without_poses.empty() && without_poses == second.fingerprint_without_poses) {
+  void compare_frames(const Result& first, const Result& second) {
+    const std::string& frames = first.from.fingerprint;
+    const std::string& others = second.from.fingerprint;
+    if (frames.empty() || others.empty() || frames == others) return;
+    const std::string& without_poses = first.from.fingerprint_without_poses;
+    if (!without_poses.empty() && without_poses == second.from.fingerprint_without_poses) {
       add_unlike(Kind::kPoses, first, "the poses differ, the scans do not");
     } else {
       add_unlike(Kind::kInput, first, "fingerprints of the scans differ");
     }
   }
 
-  void add_pair(const SequenceResult& sequence, const ScanRow& first, const ScanRow& second) {
+  void add_pair(const Result& sequence, const ScanRow& first, const ScanRow& second) {
     if (!first.truth_hash || !second.truth_hash) {
       add_unlike(Kind::kInput, sequence, "scan " + first.stem + " does not state its truth");
     } else if (first.truth_hash != second.truth_hash) {
@@ -124,9 +128,9 @@ PairedRuns pair_runs(const ResultSet& first, const ResultSet& second) {
   compare_rules(first.front(), second.front(), paired.unlike);
   Pairing pairing(paired);
   const auto named = [](const ResultSet& set, const SequenceName& name) {
-    return std::ranges::find(set.sequences, name, &SequenceResult::sequence);
+    return std::ranges::find(set.sequences, name, &Result::sequence);
   };
-  for (const SequenceResult& sequence : first.sequences) {
+  for (const Result& sequence : first.sequences) {
     const auto other = named(second, sequence.sequence);
     if (other == second.sequences.end()) {
       pairing.add_unlike(Kind::kScans, sequence, "is only in the first run");
@@ -134,7 +138,7 @@ PairedRuns pair_runs(const ResultSet& first, const ResultSet& second) {
       pairing.add(sequence, *other);
     }
   }
-  for (const SequenceResult& sequence : second.sequences) {
+  for (const Result& sequence : second.sequences) {
     if (named(first, sequence.sequence) == first.sequences.end()) {
       pairing.add_unlike(Kind::kScans, sequence, "is only in the second run");
     }

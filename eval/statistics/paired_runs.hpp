@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "eval/results/result_set.hpp"
+#include "eval/result/result_set.hpp"
 #include "eval/statistics/uncertainty.hpp"
 
 namespace mosbench {

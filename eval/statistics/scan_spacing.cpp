@@ -30,7 +30,7 @@ struct Neighbours {
   double shared = 0.0;
 
   /// Scans that have no row lie between others by their names only.
-  void add(const SequenceResult& result) {
+  void add(const Result& result) {
     const std::vector<const ScanRow*> scans = counted_scans(result);
     for (std::size_t k = 1; k < scans.size(); ++k) {
       const double apart_scans = std::max(static_cast<double>(scans[k] - scans[k - 1]),
@@ -46,7 +46,7 @@ struct Neighbours {
 
 }  // namespace
 
-Spacing spacing_of(const SequenceResult& result) {
+Spacing spacing_of(const Result& result) {
   Neighbours neighbours;
   neighbours.add(result);
   return neighbours.spacing();
@@ -54,7 +54,7 @@ Spacing spacing_of(const SequenceResult& result) {
 
 Spacing spacing_of(const ResultSet& set) {
   Neighbours neighbours;
-  for (const SequenceResult& result : set.sequences) neighbours.add(result);
+  for (const Result& result : set.sequences) neighbours.add(result);
   return neighbours.spacing();
 }
 

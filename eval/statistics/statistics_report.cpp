@@ -7,6 +7,7 @@
 #include "eval/answer/answer_text.hpp"
 #include "eval/answer/render.hpp"
 #include "eval/protocols/counts_json.hpp"
+#include "eval/result/result_json.hpp"
 #include "eval/statistics/scan_spacing.hpp"
 
 namespace mosbench {
@@ -29,7 +30,7 @@ std::vector<Cell> estimate_cells(const std::string& name, std::uint64_t scans,
   return cells;
 }
 
-ordered_json scan_json(const SequenceResult& sequence, const ScanRow& row) {
+ordered_json scan_json(const Result& sequence, const ScanRow& row) {
   ordered_json json = {
       {"sequence", sequence.sequence.text()}, {"scan", row.stem}, {"points", row.points}};
   json.update(counts_json(*row.counts));
@@ -42,7 +43,7 @@ ordered_json scan_json(const SequenceResult& sequence, const ScanRow& row) {
 }
 
 std::string headline(const ResultSet& set) {
-  const SequenceResult& first = set.front();
+  const Result& first = set.front();
   return fmt::format("{}, {}; data set {}, protocol {}", first.method, first.setting, first.dataset,
                      first.protocol->name);
 }
@@ -54,7 +55,7 @@ Sheet scan_sheet(const ResultSet& set) {
     sheet.columns.push_back({name});
   }
   for (const std::string_view name : kMetricNames) sheet.columns.push_back({std::string(name)});
-  for (const SequenceResult& sequence : set.sequences) {
+  for (const Result& sequence : set.sequences) {
     for (const ScanRow* row : counted_scans(sequence)) {
       const Confusion& counts = *row->counts;
       std::vector<Cell>& cells = sheet.rows.emplace_back();
@@ -115,7 +116,7 @@ ordered_json to_json(const Differences& differences) {
 }
 
 ordered_json provenance_json(const ResultSet& set) {
-  const SequenceResult& first = set.front();
+  const Result& first = set.front();
   ordered_json json = {{"path", set.path.string()},
                        {"method", first.method},
                        {"setting", first.setting},
@@ -123,11 +124,14 @@ ordered_json provenance_json(const ResultSet& set) {
                        {"protocol", std::string(first.protocol->name)},
                        {"min_range_m", first.range.min_m},
                        {"max_range_m", first.range.max_m}};
-  for (const char* key : {"preset", "config", "code", "predictions", "simulated"}) {
-    if (first.header.contains(key)) json[key] = first.header[key];
-  }
+  if (!first.preset.empty()) json["preset"] = first.preset;
+  if (first.settings) json["config"] = to_json(*first.settings);
+  json["code"]["version"] = first.from.version;
+  if (!first.from.compiler.empty()) json["code"]["compiler"] = first.from.compiler;
+  if (first.predictions) json["predictions"] = to_json(*first.predictions);
+  if (first.from.simulated) json["simulated"] = to_json(*first.from.simulated);
   json["missing_predictions"] = missing_predictions(set);
-  if (first.only_split) json["only_split"] = *first.only_split;
+  if (const auto split = only_split(first)) json["only_split"] = *split;
   return json;
 }
 
@@ -139,16 +143,16 @@ ordered_json statistics_json(const ResultSet& set, bool per_scan) {
   json["confidence"] = kConfidence;
   json["sequences"] = ordered_json::array();
   for (std::size_t s = 0; s < set.sequences.size(); ++s) {
-    const SequenceResult& sequence = set.sequences[s];
+    const Result& sequence = set.sequences[s];
     json["sequences"].push_back({{"name", sequence.sequence.text()},
                                  {"scans", counted_scans(sequence).size()},
-                                 {"fingerprint", sequence.fingerprint.value_or("")},
+                                 {"fingerprint", sequence.from.fingerprint},
                                  {"metrics", to_json(statistics.sequences[s])}});
   }
   json["all"] = to_json(statistics.all);
   if (!per_scan) return json;
   json["scans"] = ordered_json::array();
-  for (const SequenceResult& sequence : set.sequences) {
+  for (const Result& sequence : set.sequences) {
     for (const ScanRow* row : counted_scans(sequence)) {
       json["scans"].push_back(scan_json(sequence, *row));
     }

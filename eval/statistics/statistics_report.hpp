@@ -4,7 +4,7 @@
 #include <string>
 
 #include "eval/answer/answer.hpp"
-#include "eval/results/result_set.hpp"
+#include "eval/result/result_set.hpp"
 #include "eval/statistics/intervals.hpp"
 #include "eval/statistics/paired_runs.hpp"
 

@@ -11,6 +11,7 @@
 #include "datasets/disk/partial_file.hpp"
 #include "datasets/disk/replace_folder.hpp"
 #include "datasets/text/errors.hpp"
+#include "eval/result/result_file.hpp"
 
 namespace mosbench {
 namespace fs = std::filesystem;
@@ -25,7 +26,7 @@ struct BaselineChange {
 BaselineChange change_of(const ResultSet& run, const fs::path& folder) {
   BaselineChange change;
   std::set<fs::path> accepted;
-  for (const SequenceResult& sequence : run.sequences) {
+  for (const Result& sequence : run.sequences) {
     const fs::path file = sequence.sequence.folder() / "result.json";
     accepted.insert(file);
     std::string bytes = format_accepted(sequence);
@@ -58,10 +59,12 @@ void apply(const BaselineChange& change, const fs::path& folder) {
 
 }  // namespace
 
-std::string format_accepted(const SequenceResult& result) {
-  nlohmann::ordered_json header = result.header;
-  header.erase("machine");
-  return format_scored(header, result.scans);
+std::string format_accepted(const Result& result) {
+  Result accepted = result;
+  accepted.from.machine.reset();
+  accepted.timing.reset();
+  accepted.places.reset();
+  return format_result(accepted);
 }
 
 std::vector<ResultSet> accepted_runs(const fs::path& folder) {
@@ -77,7 +80,7 @@ void refuse_overlap(const ResultSet& newer, const fs::path& folder) {
     throw UsageError(folder.string() + ": overlaps with the results in " + newer.path.string() +
                      ", expected a folder apart from them");
   }
-  for (const SequenceResult& sequence : newer.sequences) {
+  for (const Result& sequence : newer.sequences) {
     const fs::path place = folder / sequence.sequence.folder();
     if (is_in(resolved(place / "result.json"), baseline)) continue;
     throw UsageError(place.string() + ": is a link that leads out of the baseline, expected none");

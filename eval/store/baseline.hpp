@@ -4,13 +4,13 @@
 #include <string>
 #include <vector>
 
-#include "eval/results/result_set.hpp"
+#include "eval/result/result_set.hpp"
 
 namespace mosbench {
 
-/// Formats an accepted result.json: what `read_sequence_result` reads, without anything that
+/// Formats an accepted result.json: what `read_result` reads, without anything that
 /// depends on the clock or the machine, so that accepting the same results again changes nothing.
-std::string format_accepted(const SequenceResult& result);
+std::string format_accepted(const Result& result);
 
 /// Returns the runs in a folder; empty when it does not exist or holds no result.
 std::vector<ResultSet> accepted_runs(const std::filesystem::path& folder);

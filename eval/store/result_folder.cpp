@@ -11,7 +11,9 @@
 #include "datasets/disk/replace_folder.hpp"
 #include "datasets/formats/label_file.hpp"
 #include "datasets/text/errors.hpp"
-#include "eval/results/json_differences.hpp"
+#include "eval/result/json_differences.hpp"
+#include "eval/result/result_file.hpp"
+#include "eval/result/result_json.hpp"
 
 namespace mosbench {
 namespace fs = std::filesystem;
@@ -49,8 +51,8 @@ void checked(const fs::path& path, const char* what, Operation&& operation) {
 }
 
 bool all_present(const fs::path& folder, const char* extension, std::size_t bytes_per_point,
-                 const ResultFile& result) {
-  for (const ScanRow& row : result.rows.scans) {
+                 const Result& result) {
+  for (const ScanRow& row : result.scans) {
     std::error_code error;
     const auto size = fs::file_size(folder / (row.stem + extension), error);
     if (error || size != row.points * bytes_per_point) return false;
@@ -96,13 +98,12 @@ void ResultFolder::check_replaceable() const {
   }
 }
 
-std::optional<ResultFile> ResultFolder::finished(const Sequence& sequence,
-                                                 const nlohmann::ordered_json& identity,
-                                                 const PointFiles& point_files) const {
+std::optional<Result> ResultFolder::finished(const Sequence& sequence, const Result& asked,
+                                             const PointFiles& point_files) const {
   check_replaceable();
   if (!fs::exists(folder_ / kResult)) return std::nullopt;
-  ResultFile result = read_result(folder_ / kResult);
-  const std::string different = changed_members(result.content, identity);
+  Result result = read_result(folder_ / kResult);
+  const std::string different = changed_members(identity_json(result), identity_json(asked));
   if (!different.empty()) {
     throw UsageError(fmt::format(
         "{}: holds results of another run ({}), expected the same; give another --out, or "
@@ -112,7 +113,7 @@ std::optional<ResultFile> ResultFolder::finished(const Sequence& sequence,
   refuse_extra(folder_ / kLabels, ".label", sequence);
   refuse_extra(folder_ / kScores, ".score", sequence);
   refuse_extra(folder_ / kReasons, ".reason", sequence);
-  if (result.rows.scans.size() != sequence.size()) return std::nullopt;
+  if (result.scans.size() != sequence.size()) return std::nullopt;
   if (!all_present(folder_ / kLabels, ".label", 4, result)) return std::nullopt;
   if (point_files.scores && !all_present(folder_ / kScores, ".score", 4, result)) {
     return std::nullopt;
@@ -123,8 +124,8 @@ std::optional<ResultFile> ResultFolder::finished(const Sequence& sequence,
   return result;
 }
 
-void ResultFolder::check_labels(const ResultFile& result) const {
-  for (const ScanRow& row : result.rows.scans) {
+void ResultFolder::check_labels(const Result& result) const {
+  for (const ScanRow& row : result.scans) {
     const fs::path file = folder_ / kLabels / (row.stem + ".label");
     if (are_labels_of(row, read_labels(file, row.points))) continue;
     throw UsageError(fmt::format(

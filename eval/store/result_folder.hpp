@@ -1,11 +1,10 @@
 #pragma once
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "datasets/sequence/sequence.hpp"
-#include "eval/results/result_file.hpp"
+#include "eval/result/result.hpp"
 
 namespace mosbench {
 
@@ -25,17 +24,16 @@ class ResultFolder {
 
   const std::filesystem::path& path() const { return folder_; }
 
-  /// The finished result when it answers the same question: the members of `identity` are equal in
-  /// its result.json, and every scan has its label file, and what `point_files` asks for.
-  /// Nothing when there is no folder or such files are missing or have the wrong size, so that the
-  /// sequence has to be run. Throws UsageError naming what differs when something else lies there.
-  std::optional<ResultFile> finished(const Sequence& sequence,
-                                     const nlohmann::ordered_json& identity,
-                                     const PointFiles& point_files) const;
+  /// The finished result when it answers the same question: its `identity_json` is that of `asked`,
+  /// and every scan has its label file, and what `point_files` asks for. Nothing when there is no
+  /// folder or such files are missing or have the wrong size, so that the sequence has to be run.
+  /// Throws UsageError naming what differs when something else lies there.
+  std::optional<Result> finished(const Sequence& sequence, const Result& asked,
+                                 const PointFiles& point_files) const;
 
   /// Throws UsageError naming a label file whose labels are not those that `result`, which lies
   /// there, counts.
-  void check_labels(const ResultFile& result) const;
+  void check_labels(const Result& result) const;
 
   /// Throws UsageError unless the folder is absent or holds nothing but a run's result, so that
   /// --overwrite never takes away anything else.

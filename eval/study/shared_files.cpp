@@ -10,7 +10,7 @@
 #include "datasets/disk/files.hpp"
 #include "datasets/simulator/simulate.hpp"
 #include "datasets/text/errors.hpp"
-#include "eval/results/machine.hpp"
+#include "eval/result/machine.hpp"
 #include "eval/study/study_plan.hpp"
 
 namespace mosbench {

@@ -17,10 +17,10 @@
 #include "eval/engine/run_plan.hpp"
 #include "eval/protocols/metrics.hpp"
 #include "eval/protocols/summary_json.hpp"
-#include "eval/results/machine.hpp"
-#include "eval/results/settings_json.hpp"
-#include "eval/results/tell.hpp"
-#include "eval/results/version.hpp"
+#include "eval/result/machine.hpp"
+#include "eval/result/settings_json.hpp"
+#include "eval/result/tell.hpp"
+#include "eval/result/version.hpp"
 #include "eval/study/study_scoring.hpp"
 
 namespace mosbench {
@@ -95,31 +95,31 @@ ordered_json computed_record(const StudyCell& cell, const Study& study, const fs
   if (plan.odometry) {
     set_poses(sequence, *plan.odometry, find_poses(sequence, *plan.odometry, threads));
   }
-  const SequenceRows rows = run_sequence(sequence, plan.settings, std::nullopt);
-  const std::vector<const ScanRow*> counted = counted_scans(plan, 0, rows);
-  std::vector<Confusion> counts;
-  for (const ScanRow* row : counted) counts.push_back(*row->counts);
-  double memory_mib = 0;
-  for (const ScanCost& cost : rows.costs) memory_mib = std::max(memory_mib, cost.resident_mib);
+  Result result = asked_result(plan, 0);
+  Result ran = run_sequence(sequence, plan.settings, std::nullopt);
+  result.scans = std::move(ran.scans);
+  result.timing = std::move(ran.timing);
+  const std::vector<const ScanRow*> counted = counted_scans(result);
+  const SequenceCounts counts = counts_of(result);
 
   ordered_json record = record_head(cell);
   record["simulated"] = cell.data->simulation.has_value();
   record["protocol"] = std::string(plan.settings.protocol->name);
   record["config"] = to_json(plan.settings.method_settings);
-  record["fingerprint"] = rows.fingerprint;
-  record["scans"] = rows.scans.size();
+  record["fingerprint"] = ran.from.fingerprint;
+  record["scans"] = result.scans.size();
   record["summary"] =
       counts.empty() ? ordered_json(nullptr) : to_json(summarize(*plan.settings.protocol, counts));
-  record["worst"] = worst_scans(counted, rows.scans);
+  record["worst"] = worst_scans(counted, result.scans);
   const auto seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  record["timing"] = {{"ms_per_scan", json_or_null(method_ms_per_scan(rows))},
+  record["timing"] = {{"ms_per_scan", json_or_null(method_ms_per_scan(result))},
                       {"wall_s", seconds},
                       {"cpu_s", 1e-3 * (process_cpu_ms() - begin_cpu_ms)},
-                      {"most_memory_mib", memory_mib},
+                      {"most_memory_mib", most_resident_mib(result).value_or(0.0)},
                       {"threads", threads},
                       {"host", host_name()},
-                      {"machine", machine_json()}};
+                      {"machine", to_json(this_machine())}};
   return record;
 }
 

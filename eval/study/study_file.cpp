@@ -17,8 +17,8 @@
 #include "eval/engine/run_plan.hpp"
 #include "eval/job/method_choice.hpp"
 #include "eval/job/presets.hpp"
-#include "eval/results/reading_json.hpp"
-#include "eval/results/settings_json.hpp"
+#include "eval/result/reading_json.hpp"
+#include "eval/result/settings_json.hpp"
 #include "eval/study/study_sampling.hpp"
 #include "eval/study/yaml_node.hpp"
 

@@ -17,8 +17,8 @@
 #include "datasets/text/text.hpp"
 #include "eval/engine/run_plan.hpp"
 #include "eval/job/method_choice.hpp"
-#include "eval/results/reading_json.hpp"
-#include "eval/results/version.hpp"
+#include "eval/result/reading_json.hpp"
+#include "eval/result/version.hpp"
 #include "eval/study/study_scoring.hpp"
 
 namespace mosbench {

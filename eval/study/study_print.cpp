@@ -7,8 +7,8 @@
 #include "eval/answer/answer_text.hpp"
 #include "eval/protocols/protocol_list.hpp"
 #include "eval/report/report_asset.hpp"
-#include "eval/results/progress.hpp"
-#include "eval/results/version.hpp"
+#include "eval/result/progress.hpp"
+#include "eval/result/version.hpp"
 #include "eval/study/study_table.hpp"
 
 namespace mosbench {

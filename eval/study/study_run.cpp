@@ -11,7 +11,7 @@
 #include "datasets/text/counted.hpp"
 #include "datasets/text/errors.hpp"
 #include "eval/answer/answer_text.hpp"
-#include "eval/results/tell.hpp"
+#include "eval/result/tell.hpp"
 #include "eval/study/engine_process.hpp"
 #include "eval/study/workflow_asset.hpp"
 

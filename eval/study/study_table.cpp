@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "datasets/text/shell_text.hpp"
-#include "eval/results/reading_json.hpp"
+#include "eval/result/reading_json.hpp"
 #include "eval/statistics/distributions.hpp"
 #include "eval/statistics/pareto_front.hpp"
 #include "eval/study/study_cell.hpp"

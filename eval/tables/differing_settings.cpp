@@ -1,71 +1,67 @@
 #include "eval/tables/differing_settings.hpp"
 
 #include <algorithm>
-#include <sstream>
 
 namespace mosbench {
 namespace {
 
-using nlohmann::ordered_json;
-
 /// Settings of one run, and whose they are: only those of one owner say the same by one name.
 struct OwnedSettings {
   std::string owner;
-  ordered_json values = ordered_json::object();
+  RecordedSettings values = {};
 };
 
-OwnedSettings of_method(const SequenceResult& result) {
-  OwnedSettings settings{result.method, result.header.value("config", ordered_json::object())};
-  if (!result.header.contains("config") && !result.setting.empty()) {
-    settings.values["setting"] = result.setting;
+OwnedSettings of_method(const Result& result) {
+  OwnedSettings settings{result.method, result.settings.value_or(RecordedSettings{})};
+  if (!result.settings && !result.setting.empty()) settings.values.set("setting", result.setting);
+  return settings;
+}
+
+OwnedSettings of_poses(const Result& result) {
+  OwnedSettings settings{result.method};
+  const bool tells = std::ranges::find(result.from.reading, "poses", [](const auto& statement) {
+                       return statement.first;
+                     }) != result.from.reading.end();
+  if (result.from.odometry) {
+    settings.values.set("poses", result.from.odometry->name);
+  } else if (tells) {
+    settings.values.set("poses", std::string("as given"));
   }
   return settings;
 }
 
-ordered_json reading_of(const SequenceResult& result) {
-  return result.header.value("reading", ordered_json::object());
-}
-
-OwnedSettings of_poses(const SequenceResult& result) {
-  OwnedSettings settings{result.method};
-  const ordered_json reading = reading_of(result);
-  if (!reading.contains("poses")) return settings;
-  settings.values["poses"] =
-      reading.contains("pose_odometry") ? reading.at("poses") : ordered_json("as given");
-  return settings;
-}
-
-OwnedSettings of_disturbance(const SequenceResult& result) {
+OwnedSettings of_disturbance(const Result& result) {
   OwnedSettings settings{result.method};
   const std::string perturb = disturbance_of(result);
-  settings.values["perturb"] = perturb.empty() ? "none" : perturb;
+  settings.values.set("perturb", perturb.empty() ? "none" : perturb);
   return settings;
 }
 
-/// Splits "voxel_size_m=0.5 ...", as the odometry states its settings.
-OwnedSettings of_odometry(const SequenceResult& result) {
-  const ordered_json reading = reading_of(result);
-  OwnedSettings settings{reading.value("poses", "")};
-  std::istringstream words(reading.value("pose_odometry", ""));
-  for (std::string word; words >> word;) {
-    const std::size_t equals = std::min(word.find('='), word.size() - 1);
-    settings.values["odometry." + word.substr(0, equals)] = word.substr(equals + 1);
+OwnedSettings of_odometry(const Result& result) {
+  if (!result.from.odometry) return {""};
+  const OdometryDone& odometry = *result.from.odometry;
+  OwnedSettings settings{odometry.name};
+  for (const auto& [name, value] : odometry.settings.all()) {
+    settings.values.set("odometry." + name, value);
   }
-  if (reading.contains("pose_map")) settings.values["odometry.map"] = reading.at("pose_map");
+  if (!odometry.map.empty()) settings.values.set("odometry.map", odometry.map);
   return settings;
 }
 
-ordered_json value_of(const OwnedSettings& settings, const std::string& name) {
-  return settings.values.value(name, ordered_json());
+bool are_same(const SettingValue* one, const SettingValue* other) {
+  if (one == nullptr || other == nullptr) return one == other;
+  return are_equal(*one, *other);
 }
 
 bool differs(const std::vector<OwnedSettings>& runs, const std::string& name) {
   const bool has_all = std::ranges::none_of(
-      runs, [&](const OwnedSettings& run) { return value_of(run, name).is_null(); });
+      runs, [&](const OwnedSettings& run) { return run.values.find(name) == nullptr; });
   for (std::size_t a = 0; a < runs.size(); ++a) {
     for (std::size_t b = 0; b < a; ++b) {
       const bool comparable = has_all || runs[a].owner == runs[b].owner;
-      if (comparable && value_of(runs[a], name) != value_of(runs[b], name)) return true;
+      if (comparable && !are_same(runs[a].values.find(name), runs[b].values.find(name))) {
+        return true;
+      }
     }
   }
   return false;
@@ -74,7 +70,7 @@ bool differs(const std::vector<OwnedSettings>& runs, const std::string& name) {
 std::vector<std::string> names_in(const std::vector<OwnedSettings>& runs) {
   std::vector<std::string> names;
   for (const OwnedSettings& run : runs) {
-    for (const auto& [name, value] : run.values.items()) {
+    for (const auto& [name, value] : run.values.all()) {
       if (std::ranges::find(names, name) == names.end()) names.push_back(name);
     }
   }
@@ -82,10 +78,6 @@ std::vector<std::string> names_in(const std::vector<OwnedSettings>& runs) {
 }
 
 }  // namespace
-
-std::string disturbance_of(const SequenceResult& result) {
-  return reading_of(result).value("perturb", "");
-}
 
 std::vector<DifferingSetting> differing_settings(const std::vector<const ResultSet*>& runs) {
   std::vector<DifferingSetting> differing;
@@ -95,7 +87,10 @@ std::vector<DifferingSetting> differing_settings(const std::vector<const ResultS
     for (const std::string& name : names_in(owned)) {
       if (!differs(owned, name)) continue;
       DifferingSetting& setting = differing.emplace_back(DifferingSetting{name, {}});
-      for (const OwnedSettings& run : owned) setting.values.push_back(value_of(run, name));
+      for (const OwnedSettings& run : owned) {
+        const SettingValue* value = run.values.find(name);
+        setting.values.push_back(value == nullptr ? std::nullopt : std::optional(*value));
+      }
     }
   }
   return differing;

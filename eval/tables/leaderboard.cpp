@@ -13,7 +13,7 @@
 namespace mosbench {
 namespace {
 
-bool lacks_truth(const SequenceResult& sequence) { return counted_scans(sequence).empty(); }
+bool lacks_truth(const Result& sequence) { return counted_scans(sequence).empty(); }
 
 void check_has_truth(const ResultSet& run) {
   const auto unscored = std::ranges::find_if(run.sequences, lacks_truth);
@@ -47,7 +47,7 @@ void check_is_like(const ResultSet& first, const ResultSet& run) {
 std::vector<std::string> sequences_of(const std::vector<ResultSet>& runs) {
   std::set<SequenceName> names;
   for (const ResultSet& run : runs) {
-    for (const SequenceResult& sequence : run.sequences) names.insert(sequence.sequence);
+    for (const Result& sequence : run.sequences) names.insert(sequence.sequence);
   }
   std::vector<std::string> texts;
   for (const SequenceName& name : names) texts.push_back(name.text());
@@ -57,10 +57,11 @@ std::vector<std::string> sequences_of(const std::vector<ResultSet>& runs) {
 /// Mean over all scans; nothing where a sequence was not timed, as of `mosbench score`.
 std::optional<double> ms_per_scan(const ResultSet& run) {
   double sum_ms = 0.0, scans = 0.0;
-  for (const SequenceResult& sequence : run.sequences) {
-    if (!sequence.method_ms_per_scan) return std::nullopt;
+  for (const Result& sequence : run.sequences) {
+    const std::optional<double> ms = method_ms_per_scan(sequence);
+    if (!ms) return std::nullopt;
     const auto count = static_cast<double>(sequence.scans.size());
-    sum_ms += count * *sequence.method_ms_per_scan;
+    sum_ms += count * *ms;
     scans += count;
   }
   return sum_ms / scans;
@@ -68,8 +69,8 @@ std::optional<double> ms_per_scan(const ResultSet& run) {
 
 std::optional<double> memory_mb(const ResultSet& run) {
   std::optional<double> most_mib;
-  for (const SequenceResult& sequence : run.sequences) {
-    most_mib = std::max(most_mib, sequence.most_resident_mib);
+  for (const Result& sequence : run.sequences) {
+    most_mib = std::max(most_mib, most_resident_mib(sequence));
   }
   return most_mib ? std::optional(*most_mib * 1.048576) : std::nullopt;
 }
@@ -80,9 +81,8 @@ LeaderboardRow row_of(const ResultSet& run, const std::vector<std::string>& sequ
   const Protocol& protocol = *run.front().protocol;
   bool is_complete = missing_predictions(run) == 0;
   for (const std::string& name : sequences) {
-    const auto found = std::ranges::find(run.sequences, name, [](const SequenceResult& sequence) {
-      return sequence.sequence.text();
-    });
+    const auto found = std::ranges::find(
+        run.sequences, name, [](const Result& sequence) { return sequence.sequence.text(); });
     is_complete = is_complete && found != run.sequences.end();
     std::optional<Estimates>& estimates = row.sequences.emplace_back();
     if (found == run.sequences.end()) continue;
@@ -138,10 +138,10 @@ void remark_on_times(const std::vector<ResultSet>& runs, std::vector<std::string
   std::set<unsigned> threads;
   std::set<std::string> processors;
   for (const ResultSet& run : runs) {
-    for (const SequenceResult& sequence : run.sequences) {
-      if (!sequence.threads) continue;
-      threads.insert(*sequence.threads);
-      processors.insert(sequence.processor);
+    for (const Result& sequence : run.sequences) {
+      if (!sequence.timing || sequence.timing->threads == 0) continue;
+      threads.insert(sequence.timing->threads);
+      processors.insert(sequence.from.machine.value_or(Machine{}).processor);
     }
   }
   if (threads.size() > 1) {
@@ -178,8 +178,8 @@ void add_folders_of_twins(Leaderboard& board) {
   DifferingSetting folders{"folder", {}};
   for (std::size_t a = 0; a < board.rows.size(); ++a) {
     for (std::size_t b = 0; b < a; ++b) any = any || looks_like(a, b);
-    const SequenceResult& first = board.rows[a].run->front();
-    folders.values.emplace_back(folder_of_run(first.file.parent_path(), first.sequence).string());
+    const Result& first = board.rows[a].run->front();
+    folders.values.emplace_back(folder_of_run(first.folder(), first.sequence).string());
   }
   if (any) board.differing.insert(board.differing.begin(), std::move(folders));
 }

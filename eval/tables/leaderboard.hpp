@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "eval/results/result_set.hpp"
+#include "eval/result/result_set.hpp"
 #include "eval/statistics/intervals.hpp"
 #include "eval/tables/differing_settings.hpp"
 

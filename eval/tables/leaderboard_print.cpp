@@ -28,16 +28,15 @@ Cell to_first_cell(const Leaderboard& board, const LeaderboardRow& row) {
 }
 
 /// Nothing where the run has no such setting.
-Cell setting_cell(const ordered_json& value) {
-  if (value.is_null()) return {};
-  return value.is_string() ? value.get<std::string>() : value.dump();
+Cell setting_cell(const std::optional<SettingValue>& value) {
+  return value ? Cell(mosbench::value_text(*value)) : Cell();
 }
 
 /// A sequence's own column would repeat that of all where there is but one.
 bool shows_sequences(const Leaderboard& board) { return board.sequences.size() > 1; }
 
 std::string rules_text(const Leaderboard& board) {
-  const SequenceResult& first = board.rows.front().run->front();
+  const Result& first = board.rows.front().run->front();
   const std::string range = counted_range_text(*first.protocol, first.range);
   return fmt::format("data set {}, protocol {}{}{}", first.dataset, first.protocol->name,
                      range.empty() ? "" : ", ", range);
@@ -51,7 +50,7 @@ std::vector<std::string> notes_of(const Leaderboard& board) {
   std::map<std::string, std::vector<std::size_t>> without_interval;
   for (std::size_t r = 0; r < board.rows.size(); ++r) {
     const LeaderboardRow& row = board.rows[r];
-    const SequenceResult& first = row.run->front();
+    const Result& first = row.run->front();
     notes.push_back(
         fmt::format("{}: {}, {} ({})", r + 1, first.method, first.setting, first.file.string()));
     if (!row.to_first || row.to_first->no_interval.empty()) continue;
@@ -128,7 +127,7 @@ Sheet records_of(const Leaderboard& board) {
   }
   for (std::size_t r = 0; r < board.rows.size(); ++r) {
     const LeaderboardRow& row = board.rows[r];
-    const SequenceResult& first = row.run->front();
+    const Result& first = row.run->front();
     const auto add = [&](const std::string& sequence, const std::optional<Estimates>& estimates,
                          bool is_all) {
       const Estimates metrics = estimates.value_or(Estimates{});
@@ -156,7 +155,9 @@ ordered_json to_json(const Leaderboard& board, std::size_t r) {
   ordered_json json = provenance_json(*row.run);
   json["differing_settings"] = ordered_json::object();
   for (const DifferingSetting& setting : board.differing) {
-    json["differing_settings"][setting.name] = setting.values[r];
+    const std::optional<SettingValue>& value = setting.values[r];
+    json["differing_settings"][setting.name] =
+        value ? mosbench::to_json(*value) : ordered_json(nullptr);
   }
   json["all"] = row.all ? to_json(*row.all) : ordered_json(nullptr);
   json["sequences"] = ordered_json::array();
@@ -184,13 +185,13 @@ Answer leaderboard_answer(const Leaderboard& board) {
 }
 
 ordered_json to_json(const Leaderboard& board) {
-  const SequenceResult& first = board.rows.front().run->front();
+  const Result& first = board.rows.front().run->front();
   ordered_json json = {
-      {"dataset", first.dataset},         {"protocol", std::string(first.protocol->name)},
-      {"min_range_m", first.range.min_m}, {"max_range_m", first.range.max_m},
-      {"simulated", first.simulated},     {"confidence", kConfidence},
-      {"sequences", board.sequences},     {"differing_settings", ordered_json::array()},
-      {"rows", ordered_json::array()},    {"remarks", board.doubts}};
+      {"dataset", first.dataset},          {"protocol", std::string(first.protocol->name)},
+      {"min_range_m", first.range.min_m},  {"max_range_m", first.range.max_m},
+      {"simulated", first.is_simulated()}, {"confidence", kConfidence},
+      {"sequences", board.sequences},      {"differing_settings", ordered_json::array()},
+      {"rows", ordered_json::array()},     {"remarks", board.doubts}};
   for (const DifferingSetting& setting : board.differing) {
     json["differing_settings"].push_back(setting.name);
   }

@@ -7,15 +7,15 @@
 #include "datasets/text/counted.hpp"
 #include "datasets/text/errors.hpp"
 #include "eval/answer/answer_text.hpp"
-#include "eval/engine/score_source.hpp"
 #include "eval/protocols/benchmark_split.hpp"
 #include "eval/protocols/metrics.hpp"
 #include "eval/protocols/protocol_list.hpp"
 #include "eval/protocols/summary_json.hpp"
-#include "eval/results/reading_json.hpp"
-#include "eval/results/result_set.hpp"
-#include "eval/results/simulated.hpp"
-#include "eval/results/version.hpp"
+#include "eval/result/result_file.hpp"
+#include "eval/result/result_json.hpp"
+#include "eval/result/result_set.hpp"
+#include "eval/result/simulated.hpp"
+#include "eval/result/version.hpp"
 #include "eval/tables/score_table.hpp"
 
 namespace mosbench {
@@ -54,12 +54,9 @@ std::string truth_remark(const Sequence& sequence) {
                      counted(sequence.size(), "scan"), names);
 }
 
-ordered_json predictions_json(const OpenedPredictions& opened) {
-  return {{"format", std::string(describe(opened.format).name)},
-          {"guessed", opened.guessed},
-          {"path", opened.path.string()},
-          {"missing", opened.missing},
-          {"remarks", opened.remarks}};
+ScoredPredictions scored_predictions(const OpenedPredictions& opened) {
+  return {std::string(describe(opened.format).name), opened.guessed, opened.path.string(),
+          opened.missing, opened.remarks};
 }
 
 /// Returns the split that picks scans and to which scoring was limited.
@@ -81,17 +78,43 @@ void refuse_other_results(const std::filesystem::path& folder) {
   for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
     const std::string name = entry.path().filename();
     if (is_partial_of(name, kResultFile)) continue;
-    if (name == kResultFile && read_result(entry.path()).content.contains("predictions")) continue;
+    if (name == kResultFile && read_result(entry.path()).predictions) continue;
     throw UsageError(
         entry.path().string() +
         ": was not written by mosbench score, expected --out to name a folder of its own");
   }
 }
 
-std::vector<Confusion> counts_in(const std::vector<ScanRow>& rows) {
-  std::vector<Confusion> counts;
-  for (const ScanRow& row : rows) counts.push_back(*row.counts);
-  return counts;
+/// Where the predictions and their data set lie.
+Places places_of(const Dataset& dataset, const ReadingOptions& reading, const ScoreTask& task,
+                 PredictionFormat format) {
+  Places places{std::filesystem::absolute(dataset.root),
+                reading,
+                PredictionSource{std::filesystem::absolute(task.predictions), task.options},
+                "",
+                {}};
+  places.predictions->options.format = format;
+  return places;
+}
+
+Result scored_result(const Dataset& dataset, const ScoreTask& task, const MethodName& method,
+                     const SequenceScores& scores) {
+  const Sequence& sequence = *dataset.sequences[scores.position];
+  Result result;
+  result.sequence = SequenceName(sequence.name(), dataset.root);
+  result.dataset = to_string(dataset.kind);
+  result.method = method.name;
+  result.setting = method.setting;
+  result.protocol = task.rules.front().protocol;
+  result.range = task.rules.front().range;
+  result.from.version = kMosbenchVersion;
+  result.from.reading = sequence.reading();
+  result.from.simulated = origin_of(dataset, sequence);
+  result.predictions = scored_predictions(*scores.opened);
+  result.splits = picked_stems(dataset, scores.position);
+  result.summary_split = picked_split(dataset, task);
+  result.scans = scores.by_rule.front();
+  return result;
 }
 
 }  // namespace
@@ -154,7 +177,7 @@ Answer score_answer(const Dataset& dataset, const ScoreTask& task,
   for (const SequenceScores& sequence : scores) {
     if (!sequence.opened) continue;
     json["predictions"][dataset.sequences[sequence.position]->name()] =
-        predictions_json(*sequence.opened);
+        to_json(scored_predictions(*sequence.opened));
   }
   json["remarks"] = sheet.notes;
   for (const std::string& doubt : standing.doubts) json["remarks"].push_back(doubt);
@@ -168,31 +191,11 @@ void check_scored_folders(const Dataset& dataset, const std::filesystem::path& o
 void write_scores(const Dataset& dataset, const ReadingOptions& reading, const ScoreTask& task,
                   const MethodName& method, const std::vector<SequenceScores>& scores,
                   const std::filesystem::path& out) {
-  const ScoreRule& rule = task.rules.front();
   for (const SequenceScores& sequence : scores) {
     if (!sequence.opened) continue;
-    const Sequence& recorded = *dataset.sequences[sequence.position];
-    ordered_json header = {
-        {"sequence", recorded.name()},
-        {"dataset", std::string(to_string(dataset.kind))},
-        {"method", {{"name", method.name}, {"setting", method.setting}}},
-        {"protocol",
-         {{"name", std::string(rule.protocol->name)},
-          {"min_range_m", rule.range.min_m},
-          {"max_range_m", rule.range.max_m}}},
-        {"reading", to_json(recorded.reading())},
-        {"code", {{"version", std::string(kMosbenchVersion)}}},
-        {"predictions", predictions_json(*sequence.opened)},
-        {"source", source_json(dataset, reading, task, sequence.opened->format)}};
-    if (const auto origin = simulated_origin_json(dataset, recorded)) {
-      header["simulated"] = *origin;
-    }
-    const ordered_json splits = picked_stems(dataset, sequence.position);
-    if (!splits.empty()) header["splits"] = splits;
-    const std::vector<ScanRow>& rows = sequence.by_rule.front();
-    header["summary_split"] = json_or_null(picked_split(dataset, task));
-    header["summary"] = to_json(summarize(*rule.protocol, counts_in(rows)));
-    commit_file(out / recorded.name() / "result.json", format_scored(header, rows));
+    Result result = scored_result(dataset, task, method, sequence);
+    result.places = places_of(dataset, reading, task, sequence.opened->format);
+    commit_file(out / result.sequence.folder() / "result.json", format_result(result));
   }
 }
 

@@ -10,7 +10,7 @@
 #include "datasets/layouts/dataset.hpp"
 #include "eval/answer/answer.hpp"
 #include "eval/protocols/metrics.hpp"
-#include "eval/results/result_file.hpp"
+#include "eval/result/result.hpp"
 
 namespace mosbench {
 

@@ -15,7 +15,7 @@ namespace {
 
 ResultSet in_column(const ResultSet& run, const TableColumn& column) {
   ResultSet part{run.path, {}};
-  for (const SequenceResult& sequence : run.sequences) {
+  for (const Result& sequence : run.sequences) {
     if (contains(column, sequence.sequence)) part.sequences.push_back(sequence);
   }
   return part;
@@ -25,13 +25,13 @@ ResultSet in_column(const ResultSet& run, const TableColumn& column) {
 std::vector<std::string> gaps(const ResultSet& part, const TableColumn& column) {
   std::vector<std::string> gaps;
   for (const std::string_view name : column.sequences) {
-    const bool there = std::ranges::any_of(part.sequences, [&](const SequenceResult& result) {
+    const bool there = std::ranges::any_of(part.sequences, [&](const Result& result) {
       return contains({.name = "", .sequences = {name}, .scans = {}}, result.sequence);
     });
     if (!there) gaps.push_back(fmt::format("sequence {} is missing", name));
   }
   std::size_t scans = 0;
-  for (const SequenceResult& sequence : part.sequences) scans += counted_scans(sequence).size();
+  for (const Result& sequence : part.sequences) scans += counted_scans(sequence).size();
   for (std::string& warning : warnings(part)) gaps.push_back(std::move(warning));
   const bool known =
       column.scans && !part.sequences.empty() &&
@@ -78,20 +78,22 @@ TableCell measured_cell(const PaperTable& table, const TableColumn& column, cons
     if (cell.published) cell.reasons = {how_to_fill(table, column, *cell.published)};
     return cell;
   }
-  for (const SequenceResult& sequence : part.sequences) {
+  for (const Result& sequence : part.sequences) {
     cell.sequences.push_back(sequence.sequence);
-    if (!sequence.simulated) continue;
-    cell.sequences.back() += fmt::format(" (simulated, {})", sequence.simulated_origin);
+    const std::optional<SimulatedOrigin>& origin = sequence.from.simulated;
+    if (!origin) continue;
+    cell.sequences.back() +=
+        fmt::format(" (simulated, scene {}, seed {})", origin->scene, origin->seed);
   }
   cell.measured = estimate(*run.front().protocol, counts_of(part), spacing_of(part))[Metric::kIou];
   if (row != nullptr) cell.reasons = mismatches(run, cell.published.value_or(row->cells.front()));
-  for (const SequenceResult& sequence : part.sequences) {
+  for (const Result& sequence : part.sequences) {
     const std::string perturb = disturbance_of(sequence);
     if (perturb.empty()) continue;
     cell.reasons.push_back(
         fmt::format("sequence {} is disturbed by {}", sequence.sequence.text(), perturb));
   }
-  cell.simulated = run.front().simulated;
+  cell.simulated = run.front().is_simulated();
   if (cell.simulated) cell.reasons.insert(cell.reasons.begin(), "simulated data");
   for (std::string& gap : gaps(part, column)) cell.reasons.push_back(std::move(gap));
   if (!cell.measured->value) {
@@ -137,7 +139,7 @@ TableRow best_row(const PaperTable& table, const Preset& best, const MethodKind&
 }
 
 TableRow measured_row(const PaperTable& table, const ResultSet& run, const PublishedRow* row) {
-  const SequenceResult& first = run.front();
+  const Result& first = run.front();
   const bool same_rules =
       row != nullptr && row->cells.front().protocol == std::string(first.protocol->name);
   TableRow filled{same_rules ? row->cells.front().section : "",
@@ -154,9 +156,8 @@ TableRow measured_row(const PaperTable& table, const ResultSet& run, const Publi
 }
 
 bool has_values(const PaperTable& table, const ResultSet& run) {
-  return std::ranges::any_of(run.sequences, [&](const SequenceResult& sequence) {
-    return contains(table, sequence.sequence);
-  });
+  return std::ranges::any_of(
+      run.sequences, [&](const Result& sequence) { return contains(table, sequence.sequence); });
 }
 
 }  // namespace
@@ -211,7 +212,7 @@ FilledTable fill_table(const PaperTable& table, const std::vector<PublishedCell>
 std::vector<std::string> left_out(const PaperTable& table, const std::vector<ResultSet>& runs) {
   std::vector<std::string> sentences;
   for (const ResultSet& run : runs) {
-    for (const SequenceResult& sequence : run.sequences) {
+    for (const Result& sequence : run.sequences) {
       std::string why;
       if (sequence.dataset != to_string(table.dataset)) {
         why = fmt::format("is of data set {}, not {}", sequence.dataset, to_string(table.dataset));

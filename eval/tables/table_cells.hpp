@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "eval/results/result_set.hpp"
+#include "eval/result/result_set.hpp"
 #include "eval/statistics/intervals.hpp"
 #include "eval/tables/paper_tables.hpp"
 #include "eval/tables/published.hpp"

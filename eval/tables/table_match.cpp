@@ -16,26 +16,28 @@ void differ(const char* what, double measured, const std::optional<double>& publ
   }
 }
 
-void own_mismatches(const nlohmann::ordered_json& config, const PublishedCell& cell,
+void own_mismatches(const RecordedSettings& settings, const PublishedCell& cell,
                     std::vector<std::string>& reasons) {
   const PublishedVariant published = variant_of(cell);
-  const std::string value = config.value(published.setting, "");
+  const std::string value = settings.word(published.setting);
   if (value != published.value) {
     reasons.push_back(fmt::format("{} {}, published {}", published.setting, value,
                                   published.value.empty() ? "another" : published.value));
   }
-  if (cell.variant.empty() && !cell.max_range_m && !config.contains(common_settings::kVariant)) {
+  if (cell.variant.empty() && !cell.max_range_m &&
+      settings.find(common_settings::kVariant) == nullptr) {
     reasons.emplace_back("the settings of the published run are not stated");
   }
-  differ("voxel size in m", config.value(common_settings::kVoxelSize_m, 0.0), cell.voxel_size_m,
+  differ("voxel size in m", settings.number(common_settings::kVoxelSize_m, 0.0), cell.voxel_size_m,
          reasons);
-  differ("range in m", config.value(common_settings::kMaxRange_m, 0.0), cell.max_range_m, reasons);
-  differ("delay in scans", config.value(common_settings::kDelay_scans, 0),
+  differ("range in m", settings.number(common_settings::kMaxRange_m, 0.0), cell.max_range_m,
+         reasons);
+  differ("delay in scans", settings.number(common_settings::kDelay_scans, 0.0),
          cell.delay_scans ? std::optional<double>(*cell.delay_scans) : std::nullopt, reasons);
 }
 
 /// Compares what the user of `mosbench score` says of the labels of another program.
-void scored_mismatches(const SequenceResult& result, const PublishedCell& cell,
+void scored_mismatches(const Result& result, const PublishedCell& cell,
                        std::vector<std::string>& reasons) {
   if (lower_case(result.setting) != lower_case(cell.setting)) {
     reasons.push_back(fmt::format("setting '{}', published '{}'", result.setting, cell.setting));
@@ -82,10 +84,10 @@ const MethodKind* own_method(const PublishedCell& cell) {
 }
 
 std::vector<std::string> mismatches(const ResultSet& run, const PublishedCell& cell) {
-  const SequenceResult& first = run.front();
+  const Result& first = run.front();
   std::vector<std::string> reasons;
-  if (first.header.contains("config")) {
-    own_mismatches(first.header.at("config"), cell, reasons);
+  if (first.settings) {
+    own_mismatches(*first.settings, cell, reasons);
   } else {
     scored_mismatches(first, cell, reasons);
   }
@@ -116,18 +118,14 @@ std::vector<ResultSet> with_splits(const PaperTable& table, const std::vector<Re
   for (const ResultSet& run : runs) {
     if (run.front().dataset != to_string(table.dataset)) continue;
     sets.push_back(run);
-    const bool has_test = std::ranges::any_of(run.sequences, [](const SequenceResult& sequence) {
-      return sequence.splits.contains("test");
-    });
+    const bool has_test = std::ranges::any_of(
+        run.sequences, [](const Result& sequence) { return sequence.splits.contains("test"); });
     if (run.front().protocol->name != "helimos-all" || !has_test) continue;
     ResultSet& test = sets.emplace_back(run);
     std::erase_if(test.sequences,
-                  [](const SequenceResult& sequence) { return !sequence.splits.contains("test"); });
+                  [](const Result& sequence) { return !sequence.splits.contains("test"); });
     // Both protocols count a scan in the same way; only the set of scans differs.
-    for (SequenceResult& sequence : test.sequences) {
-      sequence.protocol = &protocol_named("helimos-test");
-      sequence.only_split.reset();
-    }
+    for (Result& sequence : test.sequences) sequence.protocol = &protocol_named("helimos-test");
   }
   return sets;
 }

@@ -13,7 +13,7 @@ DATASETS = FILES | {"datasets/sequence", "datasets/perturb", "datasets/layouts"}
 # What eval uses of core apart from the public face: threads and clocks.
 THREADS = {"core/include", "core/base"}
 NUMBERS = {
-    "eval/answer", "eval/engine", "eval/job", "eval/protocols", "eval/predictions", "eval/results", "eval/statistics", "eval/store",
+    "eval/answer", "eval/engine", "eval/job", "eval/protocols", "eval/predictions", "eval/result", "eval/statistics", "eval/store",
 }
 # Rooms that the files of a room may include in addition to their own. A name with a slash at the end means
 # all rooms below it.
@@ -42,17 +42,17 @@ MAY_INCLUDE = {
     "eval/answer": {"datasets/text"},
     "eval/protocols": {"core/include", "datasets/"},
     "eval/predictions": {"core/include", "datasets/", "eval/protocols"},
-    "eval/results": {"core/include", "datasets/", "eval/answer", "eval/protocols"},
+    "eval/result": {"core/include", "datasets/", "eval/answer", "eval/protocols", "eval/predictions"},
     # A method that is a process of the user: it needs no data set, only how errors and files are written.
     "eval/exec": {"core/include"} | FILES,
     # What is asked, parsed once.
-    "eval/job": {"core/include", "datasets/", "eval/exec", "eval/protocols", "eval/predictions", "eval/results"},
+    "eval/job": {"core/include", "datasets/", "eval/exec", "eval/protocols", "eval/predictions", "eval/result"},
     # Where results lie; it knows nothing of methods.
-    "eval/store": {"core/include", "datasets/", "eval/answer", "eval/protocols", "eval/results"},
-    "eval/engine": THREADS | {"datasets/", "eval/exec", "eval/job", "eval/protocols", "eval/predictions", "eval/results", "eval/store"},
-    "eval/statistics": {"core/include", "datasets/", "eval/answer", "eval/protocols", "eval/results"},
-    "eval/trajectory": {"core/include", "datasets/", "eval/answer", "eval/results", "eval/statistics"},
-    "eval/static_map": {"core/include", "datasets/", "eval/answer", "eval/results"},
+    "eval/store": {"core/include", "datasets/", "eval/answer", "eval/protocols", "eval/result"},
+    "eval/engine": THREADS | {"datasets/", "eval/exec", "eval/job", "eval/protocols", "eval/predictions", "eval/result", "eval/store"},
+    "eval/statistics": {"core/include", "datasets/", "eval/answer", "eval/protocols", "eval/result"},
+    "eval/trajectory": {"core/include", "datasets/", "eval/answer", "eval/result", "eval/statistics"},
+    "eval/static_map": {"core/include", "datasets/", "eval/answer", "eval/result"},
     "eval/breakdown": THREADS | {"datasets/"} | NUMBERS,
     "eval/tables": {"core/include", "datasets/"} | NUMBERS,
     "eval/report": THREADS | {"datasets/", "eval/breakdown", "eval/tables", "eval/trajectory"} | NUMBERS,

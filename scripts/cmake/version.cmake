@@ -42,7 +42,7 @@ if(git AND EXISTS ${SOURCE_DIR}/.git)
 endif()
 
 file(CONFIGURE OUTPUT ${WRITTEN} @ONLY CONTENT [[
-#include "eval/results/version.hpp"
+#include "eval/result/version.hpp"
 
 namespace mosbench {
 

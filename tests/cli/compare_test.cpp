@@ -177,7 +177,7 @@ TEST_F(Compare, NamesOnlySettingsThatBothMethodsHave) {
                                       "--out", (folder_ / "out").string()});
   EXPECT_EQ(again.exit_code, 2);
   EXPECT_THAT(again.err, HasSubstr("method/kind is \"hmm-mos\" there and \"underwood\" now"));
-  EXPECT_THAT(again.err, Not(HasSubstr("config/")));
+  EXPECT_THAT(again.err, Not(HasSubstr("settings/")));
 }
 
 TEST_F(Compare, StatsComparesRunsWithOtherPosesAndSaysSo) {

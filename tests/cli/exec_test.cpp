@@ -68,7 +68,7 @@ TEST_F(Exec, TakesTheLabelsOfAProgramAndKeepsThem) {
   const auto result = cli::timeless_result(folder_ / "out/room");
   EXPECT_EQ(result.at("method").at("name"), "exec:" + client());
   EXPECT_EQ(result.at("method").at("kind"), "exec");
-  EXPECT_EQ(result.at("config"), (nlohmann::json{{"timeout_s", 60.0}}));
+  EXPECT_EQ(result.at("settings"), (nlohmann::json{{"timeout_s", 60.0}}));
   EXPECT_GT(result.at("summary").at("tp").get<int>(), 50) << "the box moves into new voxels";
   EXPECT_THAT(cli::run(command(client())).err, HasSubstr("finished by an earlier run, kept"));
   EXPECT_THAT(cli::run(command(client(), "out", {"--set", "timeout_s=90"})).err,

@@ -35,8 +35,9 @@ TEST_F(PerturbedRuns, RecordWhatWasDisturbed) {
   const ordered_json disturbed = run_to("disturbed", {"--perturb", kDropAndNoise});
   EXPECT_EQ(disturbed.at("reading").at("perturb"), kDropAndNoise);
   EXPECT_FALSE(plain.at("reading").contains("perturb"));
-  EXPECT_NE(disturbed.at("fingerprint"), plain.at("fingerprint"));
-  EXPECT_NE(disturbed.at("fingerprint_without_poses"), plain.at("fingerprint_without_poses"));
+  EXPECT_NE(disturbed.at("provenance").at("fingerprint"), plain.at("provenance").at("fingerprint"));
+  EXPECT_NE(disturbed.at("provenance").at("fingerprint_without_poses"),
+            plain.at("provenance").at("fingerprint_without_poses"));
   const ordered_json threads = run_to("threads", {"--perturb", kDropAndNoise, "--threads", "3"});
   EXPECT_EQ(threads, disturbed);
   // Other disturbances are other results.
@@ -65,7 +66,8 @@ TEST_F(PerturbedRuns, AreTheSameAsOfDataThatWereConvertedWithThem) {
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const ordered_json again = cli::timeless_result(folder_ / "again/s");
   EXPECT_EQ(again.at("summary"), disturbed.at("summary"));
-  EXPECT_EQ(again.at("fingerprint_without_poses"), disturbed.at("fingerprint_without_poses"));
+  EXPECT_EQ(again.at("provenance").at("fingerprint_without_poses"),
+            disturbed.at("provenance").at("fingerprint_without_poses"));
 }
 
 TEST_F(PerturbedRuns, AreScoredWithAWordWhereTheTruthIsOfOtherScans) {

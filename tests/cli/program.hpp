@@ -63,10 +63,11 @@ inline Answer run(const std::vector<std::string>& arguments,
   return answer;
 }
 
-/// result.json without what depends on the clock.
+/// result.json without what depends on the clock and on this machine's folders.
 inline nlohmann::ordered_json timeless_result(const std::filesystem::path& folder) {
   auto json = nlohmann::ordered_json::parse(read_file(folder / "result.json"));
   json.erase("timing");
+  json.erase("places");
   return json;
 }
 

@@ -368,7 +368,7 @@ TEST(Report, SaysWhereThereAreNoLabelsToShow) {
   EXPECT_THAT(without.err, HasSubstr("--scans none"));
   ASSERT_EQ(score_small_run(small_run() / "runs/mine", folder / "net").exit_code, 0);
   auto older = nlohmann::ordered_json::parse(read_file(folder / "net/00/result.json"));
-  older.erase("source");
+  older.erase("places");
   write_file_atomic(folder / "net/00/result.json", older.dump());
   const cli::Answer untold = cli::run({"report", folder / "net", "-o", folder / "r.html"});
   EXPECT_EQ(untold.exit_code, 3);
@@ -416,7 +416,7 @@ TEST(Report, SaysWhatIsReadInAnotherWayThanByTheRun) {
           .exit_code,
       0);
   auto json = nlohmann::ordered_json::parse(read_file(folder / "run/00/result.json"));
-  ASSERT_EQ(json.at("timing").erase("pose_direction"), 1U);
+  ASSERT_EQ(json.at("places").at("reading").erase("pose_direction"), 1U);
   write_file_atomic(folder / "run/00/result.json", json.dump());
   const cli::Answer answer = cli::run({"report", folder / "run", "-o", folder / "r.html"});
   EXPECT_EQ(answer.exit_code, 3);

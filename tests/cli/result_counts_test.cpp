@@ -84,16 +84,16 @@ TEST_F(ResultCounts, ThatDoNotFitTheirScanAreRefused) {
 TEST_F(ResultCounts, OfSettingsThatTheMethodCannotHaveAreRefused) {
   const auto with = [&](const char* name, const ordered_json& value) {
     ordered_json content = content_;
-    content["config"][name] = value;
+    content["settings"][name] = value;
     return refusal(content);
   };
   EXPECT_THAT(with("local_window_scans", "nan"),
-              HasSubstr("result.json: config: local_window_scans: \"nan\" "));
-  EXPECT_THAT(with("kernel_width_voxels", 2.5), HasSubstr("config: kernel_width_voxels: 2.5 "));
-  EXPECT_THAT(with("max_range_m", -3), HasSubstr("config: max_range_m: "));
-  EXPECT_THAT(with("variant", "paper-1924"), HasSubstr("config: variant: "));
+              HasSubstr("result.json: settings: local_window_scans: \"nan\" "));
+  EXPECT_THAT(with("kernel_width_voxels", 2.5), HasSubstr("settings: kernel_width_voxels: 2.5 "));
+  EXPECT_THAT(with("max_range_m", -3), HasSubstr("settings: max_range_m: "));
+  EXPECT_THAT(with("variant", "paper-1924"), HasSubstr("settings: variant: "));
   // What another version may have known.
-  content_["config"]["window_of_old"] = 3;
+  content_["settings"]["window_of_old"] = 3;
   write_file_atomic(file(), content_.dump());
   EXPECT_EQ(cli::run({"stats", folder_ / "out"}).exit_code, 0);
 }

@@ -126,12 +126,12 @@ TEST_F(Resume, RefusesResultsOfAnotherConfigurationAndNamesTheDifference) {
   const auto before = cli::contents(folder_ / "out");
   const cli::Answer refused = cli::run(command({"--set", "max_range_m=30"}));
   EXPECT_EQ(refused.exit_code, 2);
-  EXPECT_THAT(refused.err, HasSubstr("config/max_range_m is 50.0 there and 30.0 now"));
+  EXPECT_THAT(refused.err, HasSubstr("settings/max_range_m is 50.0 there and 30.0 now"));
   EXPECT_THAT(refused.err, HasSubstr("--overwrite"));
   EXPECT_EQ(cli::contents(folder_ / "out"), before);
   const cli::Answer replaced = cli::run(command({"--set", "max_range_m=30", "--overwrite"}));
   ASSERT_EQ(replaced.exit_code, 0) << replaced.err;
-  EXPECT_EQ(cli::timeless_result(results()).at("config").at("max_range_m"), 30.0);
+  EXPECT_EQ(cli::timeless_result(results()).at("settings").at("max_range_m"), 30.0);
 }
 
 /// What `stats` or `bless` of the folder could not tell apart later.
@@ -157,7 +157,7 @@ TEST_F(Resume, RefusesAFolderWithResultsOfAnotherDataSetOrSetting) {
     flags.insert(flags.end(), extra.begin(), extra.end());
     const cli::Answer setting = run("a", flags);
     EXPECT_EQ(setting.exit_code, 2);
-    EXPECT_THAT(setting.err, HasSubstr("config/max_range_m is 50.0 there and 30.0 now"));
+    EXPECT_THAT(setting.err, HasSubstr("settings/max_range_m is 50.0 there and 30.0 now"));
   }
   EXPECT_EQ(cli::contents(folder_ / "out"), before);
   // Sequences of one data set, however they are named.
@@ -217,11 +217,11 @@ TEST_F(Resume, ReadsAllInputAgainToVerifyOrWithoutAStampThatFits) {
   const auto content = nlohmann::ordered_json::parse(read_file(file));
   // As older programs wrote it: the frames are the same.
   auto older = content;
-  older["timing"]["file_stamp"] = "0123456789abcdef0123456789abcdef";
+  older["places"]["file_stamp"] = "0123456789abcdef0123456789abcdef";
   write_file_atomic(file, older.dump());
   EXPECT_THAT(cli::run(command()).err, HasSubstr("finished by an earlier run, kept"));
   auto other = content;
-  other["fingerprint"] = "0123456789abcdef0123456789abcdef";
+  other["provenance"]["fingerprint"] = "0123456789abcdef0123456789abcdef";
   write_file_atomic(file, other.dump());
   EXPECT_EQ(cli::run(command()).exit_code, 0);
   const cli::Answer refused = cli::run(command({"--verify"}));

@@ -112,7 +112,7 @@ TEST_F(RunMethods, TakeSettingsOfTheirOwn) {
           {"--set", "max_range_m=15,underwood.max_range_m=9", "hmm-mos.voxel_size_m=0.3"});
   ASSERT_EQ(answer.exit_code, 0) << answer.err;
   const auto config = [this](const char* method) {
-    return cli::timeless_result(folder_ / "out" / method / "room").at("config");
+    return cli::timeless_result(folder_ / "out" / method / "room").at("settings");
   };
   EXPECT_EQ(config("hmm-mos").at("max_range_m"), 15.0);
   EXPECT_EQ(config("hmm-mos").at("voxel_size_m"), 0.3);

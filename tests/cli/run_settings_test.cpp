@@ -7,7 +7,7 @@
 
 #include "datasets/text/errors.hpp"
 #include "eval/engine/run_plan.hpp"
-#include "eval/results/settings_json.hpp"
+#include "eval/result/settings_json.hpp"
 #include "tests/cli/program.hpp"
 #include "tests/cli/small_sequence.hpp"
 
@@ -63,7 +63,7 @@ class RunSettings : public testing::Test {
     // More votes than one need more references than the default.
     if (setting.name == "min_votes") options.assignments.push_back("references=3");
     try {
-      return plan_run(options).sequences.at(0).identity.at("config");
+      return to_json(*plan_run(options).sequences.at(0).asked.settings);
     } catch (const UsageError&) {
       return std::nullopt;
     }
@@ -74,7 +74,7 @@ class RunSettings : public testing::Test {
 
 TEST_F(RunSettings, OfEveryMethodStandInItsResult) {
   for (const MethodKind& method : methods()) {
-    const auto config = result_of({"--method", std::string(method.name)}).at("config");
+    const auto config = result_of({"--method", std::string(method.name)}).at("settings");
     EXPECT_EQ(config.size(), method.defaults.all().size()) << method.name;
     for (const Setting& setting : method.defaults.all()) {
       EXPECT_TRUE(config.contains(std::string(setting.name))) << method.name << setting.name;
@@ -84,9 +84,9 @@ TEST_F(RunSettings, OfEveryMethodStandInItsResult) {
 
 TEST_F(RunSettings, StandInTheResultWithTheValueThatWasGiven) {
   const auto json = result_of({"--set", "voxel_size_m=0.3,max_range_m=17,delay_scans=1"});
-  EXPECT_EQ(json.at("config").at("voxel_size_m"), 0.3);
-  EXPECT_EQ(json.at("config").at("max_range_m"), 17.0);
-  EXPECT_EQ(json.at("config").at("delay_scans"), 1);
+  EXPECT_EQ(json.at("settings").at("voxel_size_m"), 0.3);
+  EXPECT_EQ(json.at("settings").at("max_range_m"), 17.0);
+  EXPECT_EQ(json.at("settings").at("delay_scans"), 1);
   for (const MethodKind& method : methods()) {
     for (const Setting& setting : method.defaults.all()) {
       std::size_t accepted = 0;
@@ -123,7 +123,7 @@ TEST_F(RunSettings, OfPresetBestAreThoseOfPlusAndOfTheDataSet) {
   EXPECT_EQ(best.at("preset"), "best");
   EXPECT_EQ(best.at("method").at("kind"), "hmm-mos-plus");
   const auto plus = result_of({"--method", "hmm-mos-plus"});
-  EXPECT_EQ(best.at("config"), plus.at("config"));
+  EXPECT_EQ(best.at("settings"), plus.at("settings"));
   EXPECT_EQ(best.at("protocol"), plus.at("protocol"));
   RunOptions options;
   options.input = folder_ / "room";
@@ -158,7 +158,7 @@ TEST_F(RunSettings, OfMovingEverRememberWhatMovedAndSetWins) {
   const auto config = [&](const std::vector<std::string>& more) {
     std::vector<std::string> flags = {"--method", "hmm-mos-plus"};
     flags.insert(flags.end(), more.begin(), more.end());
-    return result_of(flags).at("config");
+    return result_of(flags).at("settings");
   };
   const auto now = config({}), ever = config({"--moving", "ever"});
   EXPECT_EQ(config({"--moving", "now"}), now);

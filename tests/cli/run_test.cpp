@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "eval/results/dynamic_score_file.hpp"
-#include "eval/results/reason_file.hpp"
+#include "eval/result/dynamic_score_file.hpp"
+#include "eval/result/reason_file.hpp"
 #include "tests/cli/program.hpp"
 #include "tests/cli/small_sequence.hpp"
 
@@ -132,22 +132,22 @@ TEST_F(Run, RecordsTheEffectiveConfigurationWithTheKeysOfTheParityCases) {
   ASSERT_EQ(answer.exit_code, 0) << answer.err;
   std::vector<std::string> keys;
   const auto json = result("out");
-  for (const auto& [key, value] : json.at("config").items()) keys.push_back(key);
+  for (const auto& [key, value] : json.at("settings").items()) keys.push_back(key);
   EXPECT_THAT(keys, testing::ElementsAre(
                         "variant", "voxel_size_m", "occupancy_sigma_m", "min_range_m",
                         "max_range_m", "delay_scans", "local_window_scans", "global_window_scans",
                         "kernel_width_voxels", "min_state_probability", "min_otsu_score",
                         "transition_epsilon", "dynamic_window_scans", "distance_field_scans"));
-  EXPECT_EQ(json.at("config").at("occupancy_sigma_m"), 0.3);
-  EXPECT_EQ(json.at("config").at("delay_scans"), 2);
-  EXPECT_EQ(json.at("config").at("variant"), "paper-2024");
+  EXPECT_EQ(json.at("settings").at("occupancy_sigma_m"), 0.3);
+  EXPECT_EQ(json.at("settings").at("delay_scans"), 2);
+  EXPECT_EQ(json.at("settings").at("variant"), "paper-2024");
   EXPECT_EQ(json.at("method").at("kind"), "hmm-mos");
-  EXPECT_EQ(json.at("format"), 2);
+  EXPECT_EQ(json.at("format"), 3);
   EXPECT_EQ(json.at("protocol").at("name"), "semantickitti-mos");
   EXPECT_THAT(json.at("remarks").dump(), HasSubstr("the last 2 scans have no 2 later ones"));
   EXPECT_EQ(json.at("scans_without_detection").back(), cli::stem(kScansOfRun - 2));
-  EXPECT_EQ(json.at("fingerprint").get<std::string>().size(), 32U);
-  for (const char* key : {"code", "machine", "summary", "timing"}) {
+  EXPECT_EQ(json.at("provenance").at("fingerprint").get<std::string>().size(), 32U);
+  for (const char* key : {"provenance", "places", "summary", "timing"}) {
     EXPECT_TRUE(json.contains(key)) << key;
   }
 }
@@ -158,7 +158,7 @@ TEST_F(Run, LayersTheCommandLineOverTheFileOverThePreset) {
   const cli::Answer answer =
       cli::run(command("out", {"--config", config.string(), "--set", "voxel_size_m=0.4"}));
   ASSERT_EQ(answer.exit_code, 0) << answer.err;
-  const auto effective = result("out").at("config");
+  const auto effective = result("out").at("settings");
   EXPECT_EQ(effective.at("min_range_m"), 1.5);
   EXPECT_EQ(effective.at("max_range_m"), 30.0);
   EXPECT_EQ(effective.at("voxel_size_m"), 0.4);

@@ -46,7 +46,7 @@ TEST_F(Simulate, GivesDataThatRunAndScoreTakeAndNeverPassForReal) {
     EXPECT_EQ(ran.at("simulated").at("notice"), kNotice);
     for (const auto& sequence : ran.at("sequences")) {
       const auto result = cli::timeless_result(sequence.at("folder").get<std::string>());
-      EXPECT_EQ(result.at("simulated").at("notice"), kNotice);
+      EXPECT_EQ(result.at("provenance").at("simulated").at("notice"), kNotice);
     }
     EXPECT_THAT(cli::run({"score", input, "--predictions", out}).out, HasSubstr(kMark));
     const cli::Answer score = cli::run({"score", input, "--predictions", out, "--json"});
@@ -106,8 +106,8 @@ TEST_F(Simulate, IsKnownWhereALinkLeadsToIt) {
   const cli::Answer run = cli::run({"run", folder_ / "mine", "--out", folder_ / "out"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.out, HasSubstr("SIMULATED data (scene room"));
-  EXPECT_TRUE(cli::timeless_result(folder_ / "out/01").contains("simulated"));
-  EXPECT_FALSE(cli::timeless_result(folder_ / "out/00").contains("simulated"));
+  EXPECT_TRUE(cli::timeless_result(folder_ / "out/01").at("provenance").contains("simulated"));
+  EXPECT_FALSE(cli::timeless_result(folder_ / "out/00").at("provenance").contains("simulated"));
 }
 
 TEST_F(Simulate, TellsThatAScenesOwnTimePerScanIsLostInLayoutsWithoutStamps) {

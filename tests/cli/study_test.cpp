@@ -101,7 +101,7 @@ TEST_F(Studies, AreComputedCellByCellAndGathered) {
   const ordered_json cell = record("out", keys().front());
   const ordered_json result = cli::timeless_result(folder_ / "run/00");
   EXPECT_EQ(cell.at("summary"), result.at("summary"));
-  EXPECT_EQ(cell.at("fingerprint"), result.at("fingerprint"));
+  EXPECT_EQ(cell.at("fingerprint"), result.at("provenance").at("fingerprint"));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "out/scratch"));
   for (const char* format : {"csv", "latex", "json", "html"}) {
     EXPECT_EQ(study("table", {"--format", format}).exit_code, 0) << format;
@@ -143,7 +143,8 @@ data:
   - {name: whole, path: data, dataset: semantickitti, sequences: ["00"]}
 methods: [underwood]
 )");
-  EXPECT_THAT(study("table", {"-o", path("table.txt")}).out, HasSubstr("; INCOMPLETE: 1 cell is missing"));
+  EXPECT_THAT(study("table", {"-o", path("table.txt")}).out,
+              HasSubstr("; INCOMPLETE: 1 cell is missing"));
   ASSERT_EQ(study("cell", keys()).exit_code, 0);
   EXPECT_THAT(study("table").out, HasSubstr("1 of 1 cell is done; it took "));
 }

@@ -33,9 +33,9 @@
 #include "datasets/simulator/scene_json.hpp"
 #include "datasets/text/errors.hpp"
 #include "eval/predictions/prediction_text.hpp"
-#include "eval/results/dynamic_score_file.hpp"
-#include "eval/results/result_set.hpp"
-#include "eval/results/settings_json.hpp"
+#include "eval/result/dynamic_score_file.hpp"
+#include "eval/result/result_file.hpp"
+#include "eval/result/settings_json.hpp"
 #include "eval/tables/published.hpp"
 #include "tests/fuzz/memory_file.hpp"
 #include "tests/temp_folder.hpp"
@@ -342,9 +342,8 @@ inline void config(std::string_view text) {
 /// A result.json.
 inline void result(std::string_view bytes) {
   with_file(bytes, [](const std::filesystem::path& file) {
-    const SequenceResult read = read_sequence_result(file);
-    const std::string formatted = format_scored({}, read.scans);
-    require(format_scored({}, read_result(MemoryFile(formatted).path()).rows.scans) == formatted);
+    const std::string formatted = format_result(read_result(file));
+    require(format_result(read_result(MemoryFile(formatted).path())) == formatted);
   });
 }
 

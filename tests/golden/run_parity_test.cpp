@@ -56,9 +56,9 @@ TEST_P(RunParity, LabelsAndCountsEqualTheAuthorsProgram) {
     }
     const auto result = cli::timeless_result(out / parity.sequence);
     for (const auto& [key, value] : original.at("config").items()) {
-      EXPECT_EQ(result.at("config").at(key), value) << key;
+      EXPECT_EQ(result.at("settings").at(key), value) << key;
     }
-    EXPECT_EQ(result.at("config").at("variant"), original.at("variant"));
+    EXPECT_EQ(result.at("settings").at("variant"), original.at("variant"));
     EXPECT_EQ(counts_of(result.at("summary")), counts_of(original.at(rule.counts)));
     EXPECT_DOUBLE_EQ(result.at("summary").at("iou"), original.at(rule.counts).at("iou"));
   }

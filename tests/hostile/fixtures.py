@@ -63,11 +63,13 @@ def _steady(value):
 def _steady_result(data):
     result = json.loads(data)
     if "timing" in result:
-        result["timing"] = {**_steady(result["timing"]), "dataset_root": "data"}
-    if "source" in result:
-        result["source"] = {**result["source"], "dataset_root": "data", "predictions": "run"}
-    if "machine" in result:
-        result["machine"] = {"processor": "one", "logical_cores": 2, "memory_mib": 4096.0, "system": "Linux x86_64"}
+        result["timing"] = _steady(result["timing"])
+    if "places" in result:
+        result["places"]["dataset_root"] = "data"
+        if "predictions" in result["places"]:
+            result["places"]["predictions"]["path"] = "run"
+    if "machine" in result.get("provenance", {}):
+        result["provenance"]["machine"] = {"processor": "one", "logical_cores": 2, "memory_mib": 4096.0, "system": "Linux x86_64"}
     return json.dumps(result, indent=1).encode()
 
 

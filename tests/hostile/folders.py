@@ -8,7 +8,7 @@ import shutil
 import stat
 
 # Members of result.json that tell when and where it was made.
-OWN_KEYS = ("timing", "wall_s", "source")
+OWN_KEYS = ("timing", "wall_s", "places")
 # Names of what an interrupted write may leave.
 UNFINISHED = r"\.partial|\.replaced|\.mosbench"
 

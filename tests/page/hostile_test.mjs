@@ -28,7 +28,7 @@ test('strings of result.json stay text wherever they are shown', async () => {
   const hostile = join(folder, `<img src=x onerror=globalThis.broken=5>`);
   mkdirSync(hostile);
   const result = poisoned(JSON.parse(readFileSync(join(run, '06/result.json'), 'utf8')));
-  result.config['<b onclick=1>'] = EVIL;
+  result.settings['<b onclick=1>'] = EVIL;
   // The program refuses a name that leads through folders.
   result.sequence = EVIL.replaceAll('/', '');
   writeFileSync(join(hostile, 'result.json'), JSON.stringify(result));

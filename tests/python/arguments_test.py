@@ -78,7 +78,7 @@ def test_answers_are_true_when_they_are_good(street, finished, near, tmp_path):
 
 def test_a_preset_stays_under_settings_by_name(street, tmp_path):
     plain = mosbench.run(street, preset="doals-20m", config={"min_otsu_score": 7}, out=tmp_path / "run")
-    config = plain.header["config"]
+    config = plain.header["settings"]
     assert config["min_otsu_score"] == 7 and config["max_range_m"] == 20.0 and plain.header["preset"] == "doals-20m"
 
 

@@ -178,7 +178,7 @@ def test_run_writes_what_is_asked_for(street, near, tmp_path):
 
 def test_run_takes_what_counts_as_moving(street, tmp_path):
     run = mosbench.run(street, preset="best", moving="ever:3", out=tmp_path / "run")["08"]
-    assert json.loads((run.folder / "result.json").read_text())["config"]["object_age_s"] == 3
+    assert json.loads((run.folder / "result.json").read_text())["settings"]["object_age_s"] == 3
     with pytest.raises(ValueError, match="hmm-mos-plus"):
         mosbench.run(street, method="hmm-mos", moving="ever", out=tmp_path / "refused")
 

@@ -97,7 +97,7 @@ def test_preset_best_is_of_plus():
 
 def test_settings_of_best_on_a_data_set_are_had_by_its_preset_and_the_method(tmp_path):
     mosbench.simulate(tmp_path / "sim", layout="semantickitti", scene="room", scans=2, seed=1)
-    ran = mosbench.run(tmp_path / "sim", preset="best", out=tmp_path / "run").header["config"]
+    ran = mosbench.run(tmp_path / "sim", preset="best", out=tmp_path / "run").header["settings"]
     config = mosbench.Config.preset("semantickitti", method="hmm-mos-plus")
     assert config.items() <= ran.items()  # the run adds what follows from them
 

@@ -53,7 +53,8 @@ class SequenceResult:
     """One sequence of a Result.
 
     name: of the sequence. folder: of its result.json and labels. header: what its result.json says beside its
-    scans. metrics: iou, precision, recall and f1 as fractions, as the protocol defines them, None where 0/0.
+    scans, in the present format (`settings`, `reading`, `provenance`, ...). metrics: iou, precision, recall and f1 as
+    fractions, as the protocol defines them, None where 0/0.
     method_ms_per_scan: wall time of the method. scans: what the result says of each scan.
     """
 
@@ -104,7 +105,8 @@ def _without_results(folder: pathlib.Path, sequences: list[SequenceResult]) -> l
         file = sequence.folder / "result.json"
         if sequence.folder == folder or not file.is_file():
             return []  # one result of a run was asked for, and not the run
-        wanted.update(dict.fromkeys(json.loads(file.read_bytes()).get("timing", {}).get("sequences_of_run", [])))
+        content = json.loads(file.read_bytes())
+        wanted.update(dict.fromkeys(content.get("places", content.get("timing", {})).get("sequences_of_run", [])))
     return [name for name in wanted if name not in {sequence.name for sequence in sequences}]
 
 

@@ -1,11 +1,11 @@
-#include "eval/results/caller.hpp"
+#include "eval/result/caller.hpp"
 
 #include <gtest/gtest.h>
 
 #include <stdexcept>
 
-#include "eval/results/progress.hpp"
-#include "eval/results/tell.hpp"
+#include "eval/result/progress.hpp"
+#include "eval/result/tell.hpp"
 
 namespace mosbench {
 namespace {

@@ -16,14 +16,13 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 
 /// `scans` scans of 1000 moving points, of which `found` plus or minus a few are; 200 scans apart.
-SequenceResult scored(const std::string& name, std::size_t scans, std::uint64_t found) {
-  SequenceResult result;
+Result scored(const std::string& name, std::size_t scans, std::uint64_t found) {
+  Result result;
   result.sequence = SequenceName(name, name);
   result.file = name + "/result.json";
   result.dataset = "semantickitti";
   result.protocol = &protocol_named("semantickitti-mos");
-  result.fingerprint = "of " + name;
-  result.header = nlohmann::ordered_json::object();
+  result.from.fingerprint = "of " + name;
   for (std::size_t k = 0; k < scans; ++k) {
     Confusion counts;
     counts.tp = found + 7 * (k % 3) - 7;
@@ -39,12 +38,12 @@ SequenceResult scored(const std::string& name, std::size_t scans, std::uint64_t 
 ResultSet run_of(const std::string& method, std::uint64_t found, std::optional<double> ms,
                  std::size_t scans = 40) {
   ResultSet run{"runs/" + method, {scored("00", scans, found), scored("01", scans, found - 100)}};
-  for (SequenceResult& sequence : run.sequences) {
+  for (Result& sequence : run.sequences) {
     sequence.method = method;
-    sequence.method_ms_per_scan = ms;
     if (!ms) continue;
-    sequence.most_resident_mib = 100.0;
-    sequence.threads = 1;
+    Timing& timing = sequence.timing.emplace();
+    timing.threads = 1;
+    timing.costs.push_back({.push_ms = *ms, .stages_ms = {}, .resident_mib = 100.0});
   }
   return run;
 }
@@ -107,7 +106,7 @@ TEST(Leaderboard, RanksNoRunThatLacksASequence) {
 TEST(Leaderboard, RanksNoRunThatLacksPredictions) {
   std::vector<ResultSet> runs = {run_of("whole", 500, 1.0), run_of("gaps", 900, 2.0)};
   runs[1].sequences[0].scans.pop_back();
-  runs[1].sequences[0].missing_predictions = 1;
+  runs[1].sequences[0].predictions.emplace().missing = {"9"};
   const Leaderboard board = leaderboard_of(runs);
   EXPECT_EQ(board.rows[1].run->front().method, "gaps");
   EXPECT_FALSE(board.rows[1].all);
@@ -118,8 +117,8 @@ TEST(Leaderboard, StandsForEachGroupOfRunsThatCanBeCompared) {
   std::vector<ResultSet> runs = {run_of("a", 900, 1.0), run_of("mapmos", 850, 2.0),
                                  run_of("b", 800, 1.0), run_of("elsewhere", 800, 1.0),
                                  run_of("untold", 800, 1.0)};
-  for (SequenceResult& sequence : runs[1].sequences) sequence.protocol = &protocol_named("mapmos");
-  for (SequenceResult& sequence : runs[3].sequences) {
+  for (Result& sequence : runs[1].sequences) sequence.protocol = &protocol_named("mapmos");
+  for (Result& sequence : runs[3].sequences) {
     sequence.sequence = SequenceName("9" + sequence.sequence.text(), "9");
   }
   runs[4].sequences[1].scans.clear();
@@ -145,13 +144,14 @@ TEST(ResultSet, LiesInTheFolderAboveThoseNamedLikeItsSequence) {
 TEST(Leaderboard, RefusesRunsOfAnotherKind) {
   const auto refusal = [](auto&& change) {
     std::vector<ResultSet> runs = {run_of("a", 900, 1.0), run_of("b", 850, 2.0)};
-    for (SequenceResult& sequence : runs[1].sequences) change(sequence);
+    for (Result& sequence : runs[1].sequences) change(sequence);
     return message_of<DataError>([&] { leaderboard_of(runs); });
   };
   EXPECT_THAT(refusal([](auto& run) { run.protocol = &protocol_named("mapmos"); }),
               HasSubstr("protocol is semantickitti-mos and mapmos"));
   EXPECT_THAT(refusal([](auto& run) { run.range.max_m = 50; }), HasSubstr("counted range"));
-  EXPECT_THAT(refusal([](auto& run) { run.fingerprint = "other"; }), HasSubstr("fingerprints"));
+  EXPECT_THAT(refusal([](auto& run) { run.from.fingerprint = "other"; }),
+              HasSubstr("fingerprints"));
   EXPECT_THAT(refusal([](auto& run) { run.scans[0].truth_hash->fill('1'); }),
               HasSubstr("the truth of scan 0 differs"));
   EXPECT_THAT(refusal([](auto& run) { run.scans.clear(); }), HasSubstr("no scan with truth"));
@@ -162,31 +162,33 @@ TEST(Leaderboard, RefusesRunsOfAnotherKind) {
 
 TEST(Leaderboard, RemarksOnTimesOfOtherThreadsAndProcessors) {
   std::vector<ResultSet> runs = {run_of("a", 900, 1.0), run_of("b", 850, 2.0)};
-  for (SequenceResult& sequence : runs[1].sequences) {
-    sequence.threads = 2;
-    sequence.processor = "other";
+  for (Result& sequence : runs[1].sequences) {
+    sequence.timing->threads = 2;
+    sequence.from.machine.emplace().processor = "other";
   }
   EXPECT_THAT(leaderboard_of(runs).remarks,
               ElementsAre("ms per scan are of different numbers of threads: 1, 2",
                           "ms per scan are of different processors: other, unknown"));
 }
 
+SettingValue is(const std::string& word) { return word; }
+
 /// A run of one method with settings of its own.
 ResultSet run_with(const std::string& name, std::uint64_t found, nlohmann::ordered_json config) {
   ResultSet run = run_of("HMM-MOS", found, 5.0);
   run.path = "runs/" + name;
-  for (SequenceResult& sequence : run.sequences) sequence.header["config"] = config;
+  for (Result& sequence : run.sequences) sequence.settings = recorded_settings(config);
   return run;
 }
 
 TEST(Leaderboard, ShowsByWhatRunsWereDisturbed) {
   std::vector<ResultSet> runs = {run_with("as_recorded", 900, {{"voxel_size_m", 0.2}}),
                                  run_with("shaken", 600, {{"voxel_size_m", 0.2}})};
-  runs[1].sequences[0].header["reading"] = {{"perturb", "pose_noise_m=0.05,seed=3"}};
+  runs[1].sequences[0].from.reading = {{"perturb", "pose_noise_m=0.05,seed=3"}};
   const Leaderboard board = leaderboard_of(runs);
   ASSERT_EQ(board.differing.size(), 1U);
   EXPECT_EQ(board.differing[0].name, "perturb");
-  EXPECT_THAT(board.differing[0].values, ElementsAre("none", "pose_noise_m=0.05,seed=3"));
+  EXPECT_THAT(board.differing[0].values, ElementsAre(is("none"), is("pose_noise_m=0.05,seed=3")));
 }
 
 TEST(Leaderboard, ShowsTheSettingsInWhichRunsOfOneMethodDiffer) {
@@ -195,15 +197,17 @@ TEST(Leaderboard, ShowsTheSettingsInWhichRunsOfOneMethodDiffer) {
       run_with("delayed", 900, {{"delay_scans", 10}, {"voxel_size_m", 0.2}}),
       run_of("Net", 700, std::nullopt)};
   runs[2].sequences[0].setting = "large";
-  runs[1].sequences[0].header["reading"] = {{"poses", "poses.txt"}};
-  runs[0].sequences[0].header["reading"] = {{"poses", "found by KISS-ICP"},
-                                            {"pose_odometry", "a=1"}};
+  runs[1].sequences[0].from.reading = {{"poses", "poses.txt"}};
+  runs[0].sequences[0].from.odometry = {"found by KISS-ICP", recorded_settings({{"a", 1}}), ""};
   const Leaderboard board = leaderboard_of(runs);
   ASSERT_EQ(board.differing.size(), 2U);
   EXPECT_EQ(board.differing[0].name, "delay_scans");
-  EXPECT_THAT(board.differing[0].values, ElementsAre(10, nullptr, 0)) << "in the order of the rows";
+  EXPECT_THAT(board.differing[0].values,
+              ElementsAre(SettingValue(10), std::nullopt, SettingValue(0)))
+      << "in the order of the rows";
   EXPECT_EQ(board.differing[1].name, "poses");
-  EXPECT_THAT(board.differing[1].values, ElementsAre("as given", nullptr, "found by KISS-ICP"));
+  EXPECT_THAT(board.differing[1].values,
+              ElementsAre(is("as given"), std::nullopt, is("found by KISS-ICP")));
   EXPECT_THAT(render(leaderboard_answer(board), Format::kText), HasSubstr("delay_scans"));
   EXPECT_EQ(to_json(board).at("rows").at(2).at("differing_settings").at("delay_scans"), 0);
   const std::string csv = render(leaderboard_answer(board), Format::kCsv);
@@ -214,7 +218,7 @@ TEST(Leaderboard, ShowsTheSettingsInWhichRunsOfOneMethodDiffer) {
 TEST(Leaderboard, ShowsSettingsThatAllRunsHaveWhateverTheirMethod) {
   std::vector<ResultSet> runs = {run_with("near", 600, {{"max_range_m", 20.0}, {"only_here", 1}}),
                                  run_with("far", 900, {{"max_range_m", 50.0}})};
-  for (SequenceResult& sequence : runs[1].sequences) sequence.method = "Dynablox";
+  for (Result& sequence : runs[1].sequences) sequence.method = "Dynablox";
   const Leaderboard board = leaderboard_of(runs);
   ASSERT_EQ(board.differing.size(), 1U);
   EXPECT_EQ(board.differing[0].name, "max_range_m");

@@ -8,8 +8,7 @@ namespace {
 
 /// A run of one scan, whose truth has this hash.
 ResultSet run_on(std::optional<LabelHash> truth_hash) {
-  SequenceResult street;
-  street.header = nlohmann::ordered_json::object();
+  Result street;
   street.sequence = SequenceName("street", "street");
   street.protocol = &protocol_named("sipailou");
   ScanRow& scan = street.scans.emplace_back();

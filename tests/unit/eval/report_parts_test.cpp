@@ -10,8 +10,8 @@
 #include "eval/report/point_planes.hpp"
 #include "eval/report/report_asset.hpp"
 #include "eval/report/scan_choice.hpp"
-#include "eval/results/dynamic_score_file.hpp"
-#include "eval/results/reason_file.hpp"
+#include "eval/result/dynamic_score_file.hpp"
+#include "eval/result/reason_file.hpp"
 #include "tests/temp_folder.hpp"
 
 namespace mosbench {

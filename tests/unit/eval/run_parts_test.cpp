@@ -7,9 +7,9 @@
 
 #include "datasets/text/errors.hpp"
 #include "eval/answer/render.hpp"
-#include "eval/results/json_differences.hpp"
-#include "eval/results/progress.hpp"
-#include "eval/results/reading_json.hpp"
+#include "eval/result/json_differences.hpp"
+#include "eval/result/progress.hpp"
+#include "eval/result/reading_json.hpp"
 #include "eval/tables/score_table.hpp"
 #include "tests/unit/eval/confusions.hpp"
 

@@ -6,8 +6,8 @@ namespace mosbench {
 namespace {
 
 /// A sequence with a row per name; those that a star ends have truth.
-SequenceResult sequence_of(const std::vector<std::string>& names) {
-  SequenceResult result;
+Result sequence_of(const std::vector<std::string>& names) {
+  Result result;
   result.sequence = SequenceName("street", "street");
   result.protocol = &protocol_named("doals-hmm");
   for (const std::string& name : names) {

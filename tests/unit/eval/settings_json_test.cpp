@@ -1,4 +1,4 @@
-#include "eval/results/settings_json.hpp"
+#include "eval/result/settings_json.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,6 +11,7 @@
 #include "eval/job/method_choice.hpp"
 #include "eval/job/presets.hpp"
 #include "eval/protocols/protocol.hpp"
+#include "eval/result/recorded_settings.hpp"
 #include "tests/temp_folder.hpp"
 
 namespace mosbench {
@@ -78,13 +79,14 @@ TEST(SettingsJson, TakesAVariantByItsName) {
 TEST(SettingsJson, DescribesWhatUsersAskForAndWhatIsNotTheDefault) {
   Settings settings = defaults();
   settings.set("min_otsu_score", 4);
-  EXPECT_EQ(describe_settings(to_json(settings), "hmm-mos"),
+  EXPECT_EQ(describe_settings(RecordedSettings(settings), "hmm-mos"),
             "paper-2024, voxel 0.2 m, range 0.5 to 20 m, online, min_otsu_score 4");
   settings.set("occupancy_sigma_m", 0.3);
-  EXPECT_EQ(describe_settings(to_json(settings), "hmm-mos"),
+  EXPECT_EQ(describe_settings(RecordedSettings(settings), "hmm-mos"),
             "paper-2024, voxel 0.2 m, range 0.5 to 20 m, online, occupancy_sigma_m 0.3, "
             "min_otsu_score 4");
-  EXPECT_EQ(describe_settings({{"cells", 3}}, "a method of tomorrow"), "cells 3");
+  EXPECT_EQ(describe_settings(recorded_settings({{"cells", 3}}), "a method of tomorrow"),
+            "cells 3");
 }
 
 TEST(SettingsJson, NamesFileKeyAndExpectation) {

@@ -10,7 +10,7 @@
 #include "eval/answer/answer_text.hpp"
 #include "eval/answer/render.hpp"
 #include "eval/job/method_choice.hpp"
-#include "eval/results/version.hpp"
+#include "eval/result/version.hpp"
 #include "eval/study/study_cell.hpp"
 #include "eval/study/study_file.hpp"
 #include "eval/study/study_run.hpp"

@@ -22,19 +22,18 @@ const std::vector<PublishedCell>& published() {
 }
 
 /// `scans` labelled scans of 1000 moving points, of which `found` plus or minus a few are.
-SequenceResult sequence(const std::string& name, std::size_t scans, std::uint64_t found,
-                        std::size_t apart_scans = 1) {
-  SequenceResult result;
+Result sequence(const std::string& name, std::size_t scans, std::uint64_t found,
+                std::size_t apart_scans = 1) {
+  Result result;
   result.sequence = SequenceName(name, name);
   result.dataset = "doals";
   result.method = "HMM-MOS";
   result.setting = "as the paper";
   result.protocol = &protocol_named("doals-hmm");
-  result.header = {{"config",
-                    {{"variant", "paper-2024"},
-                     {"voxel_size_m", 0.2},
-                     {"max_range_m", 20.0},
-                     {"delay_scans", 0}}}};
+  result.settings = recorded_settings({{"variant", "paper-2024"},
+                                       {"voxel_size_m", 0.2},
+                                       {"max_range_m", 20.0},
+                                       {"delay_scans", 0}});
   for (std::size_t k = 0; k < scans; ++k) {
     Confusion counts;
     counts.tp = found + 20 * (k % 2) - 10;
@@ -55,11 +54,11 @@ ResultSet station(std::uint64_t found, std::size_t apart_scans = 200) {
 
 /// The sequence of Sipailou's validation, of which enough scans are labelled for an interval.
 ResultSet valid(std::uint64_t found) {
-  SequenceResult result = sequence("06", 3191, found);
+  Result result = sequence("06", 3191, found);
   result.dataset = "sipailou";
   result.protocol = &protocol_named("sipailou");
-  result.header["config"]["voxel_size_m"] = 0.25;
-  result.header["config"]["max_range_m"] = 50.0;
+  result.settings->set("voxel_size_m", 0.25);
+  result.settings->set("max_range_m", 50.0);
   return {"runs/sipailou", {result}};
 }
 
@@ -124,7 +123,7 @@ TEST(FillTable, SaysWithinWhereThePublishedValueLiesInTheInterval) {
 
 TEST(FillTable, ComparesNoDisturbedScansWithPublishedOnes) {
   ResultSet run = station(889);
-  run.sequences[1].header["reading"] = {{"perturb", "beams=32,beams_of=64,seed=1"}};
+  run.sequences[1].from.reading = {{"perturb", "beams=32,beams_of=64,seed=1"}};
   const TableCell cell = cell_of(filled({run}));
   EXPECT_EQ(cell.verdict, Verdict::kNotComparable);
   EXPECT_THAT(cell.reasons, testing::ElementsAre("sequence station/sequence_2 is disturbed by "
@@ -156,7 +155,7 @@ TEST(FillTable, ComparesNothingThatIsOfAnotherKind) {
     return cell_of(table).reasons;
   };
   ResultSet simulated = station(889);
-  for (SequenceResult& part : simulated.sequences) part.simulated = true;
+  for (Result& part : simulated.sequences) part.from.simulated.emplace();
   EXPECT_THAT(reasons(simulated), ElementsAre("simulated data"));
 
   ResultSet half = station(889);
@@ -166,17 +165,17 @@ TEST(FillTable, ComparesNothingThatIsOfAnotherKind) {
 
   ResultSet lost = station(889);
   lost.sequences[0].scans.pop_back();
-  lost.sequences[0].missing_predictions = 1;
+  lost.sequences[0].predictions.emplace().missing = {"9"};
   EXPECT_THAT(reasons(lost),
               ElementsAre("INCOMPLETE: 1 scan without usable prediction is not counted",
                           "19 labelled scans, published over 20"));
 
   ResultSet coarse = station(889);
-  for (SequenceResult& part : coarse.sequences) part.header["config"]["voxel_size_m"] = 0.3;
+  for (Result& part : coarse.sequences) part.settings->set("voxel_size_m", 0.3);
   EXPECT_THAT(reasons(coarse), ElementsAre("voxel size in m 0.3, published 0.2"));
 
   ResultSet other = station(889);
-  for (SequenceResult& part : other.sequences) part.protocol = &protocol_named("doals-dynablox");
+  for (Result& part : other.sequences) part.protocol = &protocol_named("doals-dynablox");
   EXPECT_THAT(reasons(other), ElementsAre("protocol doals-dynablox, published doals-hmm"));
 }
 
@@ -200,12 +199,12 @@ TEST(FillTable, SaysHowToFillWhatIsEmpty) {
 TEST(FillTable, TakesRowsOfAnyMethod) {
   ResultSet dynablox = station(800);
   ResultSet own = station(700);
-  for (SequenceResult& part : dynablox.sequences) {
+  for (Result& part : dynablox.sequences) {
     part.method = "Dynablox";
     part.setting = "";
     part.protocol = &protocol_named("doals-dynablox");
   }
-  for (SequenceResult& part : own.sequences) part.method = "Mine";
+  for (Result& part : own.sequences) part.method = "Mine";
   const FilledTable table = filled({dynablox, own});
   const TableRow& last = table.rows.back();
   EXPECT_EQ(last.method, "Mine");
@@ -226,7 +225,7 @@ TEST(FillTable, HasARowOfPresetBestWhichIsNeverThePapers) {
     }
   }
   ResultSet plus = station(889);
-  for (SequenceResult& part : plus.sequences) part.method = "HMM-MOS plus";
+  for (Result& part : plus.sequences) part.method = "HMM-MOS plus";
   const FilledTable table = filled({plus});
   std::size_t rows = 0;
   for (const TableRow& row : table.rows) {
@@ -247,11 +246,11 @@ TEST(FillTable, PutsRunsOfPeersBesideThePublishedCellsOfTheirRange) {
   for (const auto& [range_m, section] :
        {std::pair{20.0, "range 20 m"}, std::pair{120.0, "full range"}}) {
     ResultSet run = station(880);
-    for (SequenceResult& part : run.sequences) {
+    for (Result& part : run.sequences) {
       part.method = "Dynablox";
       part.protocol = &protocol_named("doals-dynablox");
-      part.header["config"] = {
-          {"level", "object"}, {"voxel_size_m", 0.2}, {"max_range_m", range_m}};
+      part.settings =
+          recorded_settings({{"level", "object"}, {"voxel_size_m", 0.2}, {"max_range_m", range_m}});
     }
     const FilledTable table = filled({run});
     const auto row = std::ranges::find(table.rows, "runs/doals", &TableRow::results);
@@ -261,7 +260,7 @@ TEST(FillTable, PutsRunsOfPeersBesideThePublishedCellsOfTheirRange) {
     EXPECT_THAT(row->cells[0].reasons, IsEmpty());
     EXPECT_EQ(row->cells[0].published->iou_percent, range_m < 100 ? "87.3" : "86.2");
     EXPECT_EQ(row->cells[0].verdict, Verdict::kOutside);
-    for (SequenceResult& part : run.sequences) part.header["config"]["level"] = "point";
+    for (Result& part : run.sequences) part.settings->set("level", "point");
     EXPECT_THAT(cell_of(filled({run})).reasons, ElementsAre("level point, published object"));
   }
 }
@@ -289,7 +288,7 @@ TEST(FillTable, ComparesNothingWithAPeerWhoseSettingsAreNotStated) {
   run.sequences[0].dataset = "moe";
   run.sequences[0].method = "OctoMap";
   run.sequences[0].protocol = &protocol_named("moe");
-  run.sequences[0].header["config"] = {{"voxel_size_m", 0.2}, {"max_range_m", 120.0}};
+  run.sequences[0].settings = recorded_settings({{"voxel_size_m", 0.2}, {"max_range_m", 120.0}});
   const TableCell cell = cell_of(filled({run}, "moe"));
   EXPECT_EQ(cell.published.value().iou_percent, "32.8");
   EXPECT_EQ(cell.verdict, Verdict::kNotComparable);
@@ -300,13 +299,11 @@ TEST(FillTable, AveragesSensorsAndCountsBothFrameSetsOfHelimos) {
   ResultSet run{"runs/helimos", {}};
   for (const auto& [name, found] : {std::pair{"Aeva", 500U}, std::pair{"Avia", 600U},
                                     std::pair{"Ouster", 700U}, std::pair{"Velodyne", 400U}}) {
-    SequenceResult part = sequence(name, 40, found);
+    Result part = sequence(name, 40, found);
     part.dataset = "helimos";
     part.protocol = &protocol_named("helimos-all");
-    part.header["config"] = {{"variant", "paper-2024"},
-                             {"voxel_size_m", 0.25},
-                             {"max_range_m", 50.0},
-                             {"delay_scans", 0}};
+    part.settings->set("voxel_size_m", 0.25);
+    part.settings->set("max_range_m", 50.0);
     part.splits["test"] = {"1", "3"};
     run.sequences.push_back(part);
   }

@@ -5,7 +5,7 @@ export function notices(state, content, clouds) {
   const node = element('div', { class: 'notices' });
   state.follow(['result'], () => {
     const result = state.get('result');
-    const simulated = content.results[result].result.simulated?.notice;
+    const simulated = content.results[result].result.provenance.simulated?.notice;
     const leftOut = clouds.leftOut(result);
     node.replaceChildren(
       ...[

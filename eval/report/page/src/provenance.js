@@ -1,9 +1,9 @@
 import { element, table } from './dom.js';
 import { resultName } from './header.js';
 
-const NOT_PROVENANCE = new Set(['scans', 'summary', 'timing', 'remarks', 'scans_without_detection', 'splits', 'source', 'doubtful_poses']);
+const NOT_PROVENANCE = new Set(['scans', 'summary', 'timing', 'remarks', 'scans_without_detection', 'splits', 'places', 'doubtful_poses']);
 
-/** [["config.voxel_size_m", "0.25"], ...] of nested objects. */
+/** [["settings.voxel_size_m", "0.25"], ...] of nested objects. */
 export function flatten(value, prefix = '') {
   if (value === null || typeof value !== 'object' || Array.isArray(value)) {
     return [[prefix, typeof value === 'string' ? value : JSON.stringify(value)]];
@@ -13,8 +13,8 @@ export function flatten(value, prefix = '') {
 
 function factsOf({ folder, protocol_summary: rules, result }) {
   const kept = Object.fromEntries(Object.entries(result).filter(([key]) => !NOT_PROVENANCE.has(key)));
-  const { timing = {}, source = {} } = result;
-  const facts = [['results in', folder], ['data set at', timing.dataset_root ?? source.dataset_root], ['labels from', source.predictions], ['rules', rules], ...flatten(kept), ['threads', timing.threads], ['wall_s', timing.wall_s]];
+  const { timing = {}, places = {} } = result;
+  const facts = [['results in', folder], ['data set at', places.dataset_root], ['labels from', places.predictions?.path], ['rules', rules], ...flatten(kept), ['threads', timing.threads], ['wall_s', timing.wall_s]];
   return new Map(facts.filter(([, value]) => value !== undefined).map(([key, value]) => [key, String(value)]));
 }
 

@@ -19,7 +19,7 @@ export function summaryTable(content, choose) {
     const judged = s
       ? [withInterval(s.iou, estimates?.iou), withInterval(s.precision, estimates?.precision), withInterval(s.recall, estimates?.recall), percent(s.f1), count(s.tp), count(s.fp), count(s.fn), s.published_text]
       : ['no truth', '', '', '', '', '', '', ''];
-    return [run, result.sequence, result.protocol.name, [result.method?.name, result.config?.variant].filter(Boolean).join(', '), count(result.scans.length), ...judged, fixed(result.timing?.method_ms_per_scan, 1)];
+    return [run, result.sequence, result.protocol.name, [result.method?.name, result.settings?.variant].filter(Boolean).join(', '), count(result.scans.length), ...judged, fixed(result.timing?.method_ms_per_scan, 1)];
   });
   const titles = ['run', 'sequence', 'protocol', 'method', 'scans', 'IoU', 'precision', 'recall', 'F1', 'TP', 'FP', 'FN', "benchmark's rounding", 'ms/scan'];
   return block('Results', content.results.length > 1 ? 'A click on a row shows it above.' : null, table(titles, rows, { leftColumns: 4, onRow: choose }));

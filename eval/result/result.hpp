@@ -1,0 +1,159 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <mosbench/method.hpp>
+#include <optional>
+#include <set>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "datasets/layouts/simulated_origin.hpp"
+#include "datasets/sequence/fingerprint.hpp"
+#include "datasets/sequence/reading_options.hpp"
+#include "datasets/sequence/sequence_name.hpp"
+#include "eval/predictions/predictions.hpp"
+#include "eval/protocols/confusion.hpp"
+#include "eval/protocols/scan_sums.hpp"
+#include "eval/result/machine.hpp"
+#include "eval/result/recorded_settings.hpp"
+
+namespace mosbench {
+
+/// What a run found out about one scan. Depends on nothing but the input, the configuration and the
+/// code.
+struct ScanRow {
+  std::string stem;
+  std::size_t points = 0;
+  std::size_t predicted_moving_points = 0;
+  std::size_t nonfinite_points = 0;
+  bool judged = true;  ///< false: the method labelled all points static without looking
+  std::optional<double> threshold;      ///< see LabelledScan
+  std::optional<Confusion> counts;      ///< when the scan has truth
+  std::optional<LabelHash> truth_hash;  ///< of that truth; older files do not tell
+  std::optional<LabelHash> label_hash;  ///< of the labels that a run wrote; likewise
+};
+
+/// What one scan cost: wall milliseconds, and the memory the process held after it.
+struct ScanCost {
+  /// Spent waiting for the scan; with several threads it is read and observed ahead.
+  double read_ms = 0.0;
+  double push_ms = 0.0;           ///< the whole method, also what is done beside the scan before
+  std::vector<double> stages_ms;  ///< as Timing::stages; those after its end are 0
+  double resident_mib = 0.0;
+};
+
+/// What depends on the clock.
+struct Timing {
+  unsigned threads = 0;  ///< that the method was run with; 0 in results that do not tell
+  double wall_s = 0.0;
+  std::vector<std::string> stages;  ///< names, in the order in which they first ran
+  std::vector<ScanCost> costs;      ///< as many as scans
+};
+
+/// Settings of the odometry that found the poses.
+struct OdometryDone {
+  std::string name;
+  RecordedSettings settings;
+  std::string map;  ///< what its map leaves out; empty for nothing
+  bool operator==(const OdometryDone&) const = default;
+};
+
+/// What made a result, and of what.
+struct Provenance {
+  std::string version, compiler;  ///< of mosbench
+  std::optional<Machine> machine;
+  std::string fingerprint;                ///< of the frames; empty when only labels were read
+  std::string fingerprint_without_poses;  ///< empty where it is not known
+  ReadingStatement reading;               ///< how the sequence was read
+  std::optional<OdometryDone> odometry;
+  std::optional<SimulatedOrigin> simulated;  ///< its layout and scans are not recorded
+};
+
+/// The labels of another program that were scored.
+struct ScoredPredictions {
+  std::string format;
+  bool guessed = false;
+  std::string path;
+  std::vector<std::string> missing;  ///< stems of scans left out under --allow-missing
+  std::vector<std::string> remarks;
+};
+
+/// Where predictions lie and how they are read.
+struct PredictionSource {
+  std::filesystem::path path;  ///< a folder, or a file for a whole sequence
+  PredictionOptions options;
+};
+
+/// Where on this machine data and labels lie, and the flags by which they were read.
+struct Places {
+  std::optional<std::filesystem::path> dataset_root;
+  ReadingOptions reading;
+  std::optional<PredictionSource> predictions;  ///< of `mosbench score`
+  std::string file_stamp;                       ///< of the sequence's files, see `file_stamp`
+  std::vector<std::string> sequences_of_run;    ///< by which an interrupted run is known
+};
+
+/// A pose that odometry does not trust.
+struct DoubtfulPose {
+  std::string stem, doubt;
+};
+
+/// What is known of one sequence, whoever predicted its labels: the content of a result.json.
+struct Result {
+  std::filesystem::path file;  ///< that it was read from
+  std::string key;             ///< of the question, in a store that has keys
+  SequenceName sequence;
+  std::string dataset;
+  std::string method;   ///< its title: "HMM-MOS"
+  std::string kind;     ///< its name: "hmm-mos"; empty where the labels are of others
+  std::string setting;  ///< of the method, in words: "paper-2024, voxel 0.2 m, ..."
+  std::optional<RecordedSettings> settings;  ///< of a run
+  std::string preset;
+  const Protocol* protocol = nullptr;
+  RangeGate range;
+  Provenance from;
+  std::optional<ScoredPredictions> predictions;         ///< of `mosbench score`
+  std::map<std::string, std::set<std::string>> splits;  ///< stems, of splits that pick scans
+  std::optional<std::string> summary_split;  ///< whose scans the summary is over; else all scans
+  std::vector<ScanRow> scans;
+  std::vector<std::string> remarks;
+  std::vector<std::string> scans_left_out;                  ///< those without a pose
+  std::optional<std::vector<DoubtfulPose>> doubtful_poses;  ///< of a run with odometry
+  std::optional<Timing> timing;   ///< neither of scored labels nor of accepted results
+  std::optional<Places> places;   ///< not of accepted results
+  bool has_whole_scores = false;  ///< its .score files hold int32, as in format 1
+
+  std::filesystem::path folder() const { return file.parent_path(); }
+  bool is_simulated() const { return from.simulated.has_value(); }
+  std::size_t missing_predictions() const { return predictions ? predictions->missing.size() : 0; }
+};
+
+/// Returns whether labels are those that the row of a run counts.
+bool are_labels_of(const ScanRow& row, std::span<const std::uint32_t> labels);
+
+/// Adds the times of a scan's stages to `cost`, and their names to `timing`.
+void add_stages(const std::vector<StageTime>& stages, Timing& timing, ScanCost& cost);
+
+/// Mean of ScanCost::push_ms; nothing without scans that were timed.
+std::optional<double> method_ms_per_scan(const Result& result);
+/// Most memory that the process held after a scan.
+std::optional<double> most_resident_mib(const Result& result);
+
+/// The split whose scans alone were scored where that is not the protocol's own.
+std::optional<std::string> only_split(const Result& result);
+
+/// What --perturb said of the scans; empty where they were read as they are.
+std::string disturbance_of(const Result& result);
+
+/// The scans that the protocol counts, in order: those with truth, of the protocol's split where it
+/// picks scans.
+std::vector<const ScanRow*> counted_scans(const Result& result);
+SequenceCounts counts_of(const Result& result);
+
+}  // namespace mosbench

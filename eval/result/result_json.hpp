@@ -1,0 +1,30 @@
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "eval/result/result.hpp"
+
+namespace mosbench {
+
+/// "format" of the result.json files that this program writes. 1 (not written): `variant` beside
+/// the config, no `method` in results of `mosbench run`, settings left out where they were the
+/// default. 2: `config`, `code`, `machine`, `fingerprint` and `simulated` beside each other, the
+/// places of this machine in `timing` and `source`.
+inline constexpr int kResultFormat = 3;
+
+/// All of a result but its scans, what depends on the clock, and places on this machine.
+nlohmann::ordered_json header_json(const Result& result);
+/// All of a result, members as FORMATS.md describes them.
+nlohmann::ordered_json to_json(const Result& result);
+
+/// Of the header, what decides labels and scores: two runs that give the same asked the same.
+nlohmann::ordered_json identity_json(const Result& result);
+
+nlohmann::ordered_json to_json(const SimulatedOrigin& origin);
+nlohmann::ordered_json to_json(const ScoredPredictions& predictions);
+
+/// Returns what a result.json of any format says. Throws DataError naming `file`.
+Result result_from_json(nlohmann::ordered_json content, const std::filesystem::path& file);
+
+}  // namespace mosbench
