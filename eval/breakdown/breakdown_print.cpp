@@ -15,9 +15,9 @@ using nlohmann::ordered_json;
 
 ordered_json metrics_json(const Confusion& counts) {
   ordered_json json = counts_json(counts);
-  json["iou"] = json_or_null(moving_iou(counts));
-  json["precision"] = json_or_null(precision(counts));
-  json["recall"] = json_or_null(recall(counts));
+  for (const Metric metric : kBriefMetrics) {
+    json[std::string(row_of(metric).key)] = json_or_null(metric_of(counts, metric));
+  }
   return json;
 }
 
@@ -78,20 +78,21 @@ ordered_json object_json(const SequenceBreakdown& breakdown, const ObjectTrack& 
 template <std::size_t size>
 Sheet bins_sheet(const char* title, const std::array<double, size>& edges,
                  const std::array<Confusion, size>& bins) {
-  Sheet sheet{.columns = {{title, Unit::kText},
-                          {"IoU", Unit::kPercent},
-                          {"precision", Unit::kPercent},
-                          {"recall", Unit::kPercent},
-                          {"TP"},
-                          {"FP"},
-                          {"FN"}}};
+  Sheet sheet{.columns = {{title, Unit::kText}}};
+  for (const Metric metric : kBriefMetrics) {
+    sheet.columns.push_back({std::string(row_of(metric).title), Unit::kPercent});
+  }
+  for (const char* name : {"TP", "FP", "FN"}) sheet.columns.push_back({name});
   for (std::size_t b = 0; b < size; ++b) {
     if (bins[b].tp + bins[b].fp + bins[b].fn == 0) continue;
     const std::string from = edges[b] < -1e9 ? "below" : fmt::format("{:g} to", edges[b]);
-    sheet.rows.push_back({b + 1 < size ? fmt::format("{} {:g} m", from, edges[b + 1])
-                                       : fmt::format("from {:g} m", edges[b]),
-                          or_missing(moving_iou(bins[b])), or_missing(precision(bins[b])),
-                          or_missing(recall(bins[b])), bins[b].tp, bins[b].fp, bins[b].fn});
+    std::vector<Cell>& cells = sheet.rows.emplace_back();
+    cells.emplace_back(b + 1 < size ? fmt::format("{} {:g} m", from, edges[b + 1])
+                                    : fmt::format("from {:g} m", edges[b]));
+    for (const Metric metric : kBriefMetrics) {
+      cells.push_back(or_missing(metric_of(bins[b], metric)));
+    }
+    cells.insert(cells.end(), {bins[b].tp, bins[b].fp, bins[b].fn});
   }
   return sheet;
 }

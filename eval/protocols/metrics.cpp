@@ -2,12 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <cmath>
 #include <limits>
 #include <vector>
-
-#include "eval/protocols/scan_sums.hpp"
 
 namespace mosbench {
 namespace {
@@ -17,21 +14,14 @@ std::optional<double> defined(double value) {
   return value;
 }
 
-std::optional<double> metric_of(const Confusion& counts, Metric metric) {
-  return defined(metrics_of(counts)[static_cast<std::size_t>(metric)]);
-}
-
-constexpr std::array kSummaryMetrics = {&Summary::iou, &Summary::precision, &Summary::recall,
-                                        &Summary::f1};
-
 void set_metrics(const MetricValues& values, Summary& summary) {
-  for (std::size_t m = 0; m < values.size(); ++m) summary.*kSummaryMetrics[m] = defined(values[m]);
+  for (std::size_t m = 0; m < values.size(); ++m) summary.metrics[m] = defined(values[m]);
 }
 
 MetricValues values_of(const Summary& summary) {
   MetricValues values{};
   for (std::size_t m = 0; m < values.size(); ++m) {
-    values[m] = (summary.*kSummaryMetrics[m]).value_or(std::numeric_limits<double>::quiet_NaN());
+    values[m] = summary.metrics[m].value_or(std::numeric_limits<double>::quiet_NaN());
   }
   return values;
 }
@@ -106,6 +96,10 @@ double published_iou(const Protocol& protocol, std::span<const Confusion> scans,
 
 }  // namespace
 
+std::optional<double> metric_of(const Confusion& counts, Metric metric) {
+  return defined(metrics_of(counts)[static_cast<std::size_t>(metric)]);
+}
+
 std::optional<double> moving_iou(const Confusion& counts) {
   return metric_of(counts, Metric::kIou);
 }
@@ -115,8 +109,6 @@ std::optional<double> precision(const Confusion& counts) {
 }
 
 std::optional<double> recall(const Confusion& counts) { return metric_of(counts, Metric::kRecall); }
-
-std::optional<double> f1(const Confusion& counts) { return metric_of(counts, Metric::kF1); }
 
 Summary summarize(const Protocol& protocol, std::span<const Confusion> per_scan) {
   Summary summary;
@@ -128,8 +120,8 @@ Summary summarize(const Protocol& protocol, std::span<const Confusion> per_scan)
     if (!moving_iou(scan)) ++summary.undefined_scans;
   }
   set_metrics(metrics_of(protocol, sums), summary);
-  if (protocol.aggregation == Aggregation::kMeanOfScans && summary.iou) {
-    summary.iou_deviation = iou_deviation(per_scan, *summary.iou);
+  if (protocol.aggregation == Aggregation::kMeanOfScans && summary[Metric::kIou]) {
+    summary.iou_deviation = iou_deviation(per_scan, *summary[Metric::kIou]);
   }
   summary.published_iou = published_iou(protocol, per_scan, summary.pooled);
   summary.published_text = print(summary.published_iou, protocol.program_print);

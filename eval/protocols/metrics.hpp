@@ -1,13 +1,17 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <span>
 #include <string>
 
-#include "eval/protocols/confusion.hpp"
+#include "eval/protocols/scan_sums.hpp"
 
 namespace mosbench {
+
+/// Returns one metric, 0..1; nullopt where it is undefined.
+std::optional<double> metric_of(const Confusion& counts, Metric metric);
 
 /// Returns tp / (tp + fp + fn), 0..1; nullopt when no point moves, neither in the truth nor in the
 /// prediction.
@@ -16,14 +20,12 @@ std::optional<double> moving_iou(const Confusion& counts);
 std::optional<double> precision(const Confusion& counts);
 /// Returns tp / (tp + fn), 0..1; nullopt when no truth point moves.
 std::optional<double> recall(const Confusion& counts);
-/// Returns 2 tp / (2 tp + fp + fn), 0..1; nullopt where moving_iou is.
-std::optional<double> f1(const Confusion& counts);
 
 /// Metrics of several scans together. Metrics are fractions 0..1.
 struct Summary {
   /// Aggregated as the protocol says. A mean of scans is taken over the scans that have a value;
   /// `undefined_scans` is how many have none. A mean of sequences needs a value of each.
-  std::optional<double> iou, precision, recall, f1;
+  std::array<std::optional<double>, kMetrics.size()> metrics;
   /// Population standard deviation of the scans' IoU, for protocols that average scans.
   std::optional<double> iou_deviation;
   /// The moving IoU of the protocol's own program, with its arithmetic and its value for empty
@@ -33,6 +35,10 @@ struct Summary {
   Confusion pooled;
   std::size_t scans = 0;
   std::size_t undefined_scans = 0;  ///< scans without any moving point, true or predicted
+
+  const std::optional<double>& operator[](Metric metric) const {
+    return metrics[static_cast<std::size_t>(metric)];
+  }
 };
 
 /// Summarises one sequence, or all sequences of a split that the protocol pools.

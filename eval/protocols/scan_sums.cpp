@@ -12,10 +12,12 @@ double value_of(const Ratio& ratio) {
   return ratio.whole > 0.0 ? ratio.part / ratio.whole : kUndefined;
 }
 
-using Ratios = std::array<Ratio, kMetricNames.size()>;
+using Ratios = std::array<Ratio, kMetrics.size()>;
 
-Ratios ratios_of_counts(double tp, double fp, double fn) {
-  return {{{tp, tp + fp + fn}, {tp, tp + fp}, {tp, tp + fn}, {2.0 * tp, 2.0 * tp + fp + fn}}};
+Ratios ratios_of(const CountSums& sums) {
+  Ratios ratios{};
+  for (std::size_t m = 0; m < ratios.size(); ++m) ratios[m] = kMetrics[m].of(sums);
+  return ratios;
 }
 
 MetricValues values_of(const Ratios& ratios) {
@@ -27,8 +29,8 @@ MetricValues values_of(const Ratios& ratios) {
 }  // namespace
 
 MetricValues metrics_of(const Confusion& counts) {
-  return values_of(ratios_of_counts(static_cast<double>(counts.tp), static_cast<double>(counts.fp),
-                                    static_cast<double>(counts.fn)));
+  return values_of(ratios_of({static_cast<double>(counts.tp), static_cast<double>(counts.fp),
+                              static_cast<double>(counts.fn)}));
 }
 
 MetricValues mean_of(std::span<const MetricValues> values) {
@@ -60,9 +62,9 @@ ScanTerms& operator+=(ScanTerms& sums, const ScanTerms& terms) {
   return sums;
 }
 
-std::array<Ratio, kMetricNames.size()> ratios_of(const Protocol& protocol, const ScanTerms& sums) {
+std::array<Ratio, kMetrics.size()> ratios_of(const Protocol& protocol, const ScanTerms& sums) {
   if (protocol.aggregation != Aggregation::kMeanOfScans) {
-    return ratios_of_counts(sums[0], sums[1], sums[2]);
+    return ratios_of({sums[0], sums[1], sums[2]});
   }
   Ratios ratios{};
   for (std::size_t m = 0; m < ratios.size(); ++m) ratios[m] = {sums[2 * m], sums[2 * m + 1]};
@@ -73,7 +75,9 @@ MetricValues metrics_of(const Protocol& protocol, const ScanTerms& sums) {
   const bool pooled = protocol.aggregation != Aggregation::kMeanOfScans;
   const bool nothing_moves = pooled && sums[0] + sums[2] == 0.0;
   if (nothing_moves && protocol.empty_case == EmptyCase::kNanWithoutTruth) {
-    return {kUndefined, kUndefined, kUndefined, kUndefined};
+    MetricValues none;
+    none.fill(kUndefined);
+    return none;
   }
   return values_of(ratios_of(protocol, sums));
 }

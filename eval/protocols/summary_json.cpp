@@ -14,13 +14,13 @@ nlohmann::ordered_json number(const std::optional<double>& value) {
 }  // namespace
 
 nlohmann::ordered_json to_json(const Summary& summary) {
-  nlohmann::ordered_json json = {{"iou", number(summary.iou)},
-                                 {"precision", number(summary.precision)},
-                                 {"recall", number(summary.recall)},
-                                 {"f1", number(summary.f1)},
-                                 {"iou_deviation", number(summary.iou_deviation)},
-                                 {"published_iou", number(summary.published_iou)},
-                                 {"published_text", summary.published_text}};
+  nlohmann::ordered_json json;
+  for (std::size_t m = 0; m < kMetrics.size(); ++m) {
+    json[std::string(kMetrics[m].key)] = number(summary.metrics[m]);
+  }
+  json["iou_deviation"] = number(summary.iou_deviation);
+  json["published_iou"] = number(summary.published_iou);
+  json["published_text"] = summary.published_text;
   json.update(counts_json(summary.pooled));
   json["unknown_ids"] = summary.pooled.unknown_ids;
   json["labelled_scans"] = summary.scans;

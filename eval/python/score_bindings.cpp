@@ -70,7 +70,7 @@ py::dict dict_of(const MetricValues& values) {
   py::dict metrics;
   for (std::size_t i = 0; i < values.size(); ++i) {
     const bool defined = values[i] == values[i];
-    metrics[py::str(std::string(kMetricNames[i]))] = defined ? py::cast(values[i]) : py::none();
+    metrics[py::str(std::string(kMetrics[i].key))] = defined ? py::cast(values[i]) : py::none();
   }
   return metrics;
 }

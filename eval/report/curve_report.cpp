@@ -76,9 +76,11 @@ Sheet records_of(const ScoreCurve& curve) {
 }
 
 nlohmann::ordered_json point_json(const Confusion& counts) {
-  return {{"iou", json_or_null(moving_iou(counts))},
-          {"precision", json_or_null(precision(counts))},
-          {"recall", json_or_null(recall(counts))}};
+  nlohmann::ordered_json json;
+  for (const Metric metric : kBriefMetrics) {
+    json[std::string(row_of(metric).key)] = json_or_null(metric_of(counts, metric));
+  }
+  return json;
 }
 
 nlohmann::ordered_json threshold_json(const CurvePoint& point) {

@@ -29,7 +29,7 @@ struct Estimate {
 
 /// The four metrics of a run, by Metric.
 struct Estimates {
-  std::array<Estimate, kMetricNames.size()> metrics;
+  std::array<Estimate, kMetrics.size()> metrics;
   const Estimate& operator[](Metric metric) const {
     return metrics[static_cast<std::size_t>(metric)];
   }
@@ -58,7 +58,7 @@ Difference difference_of(double value, std::span<const ScanErrors> errors, Spaci
                          const Interval& within, double confidence = kConfidence);
 
 struct Differences {
-  std::array<Difference, kMetricNames.size()> metrics;
+  std::array<Difference, kMetrics.size()> metrics;
   const Difference& operator[](Metric metric) const {
     return metrics[static_cast<std::size_t>(metric)];
   }

@@ -36,7 +36,7 @@ ordered_json scan_json(const Result& sequence, const ScanRow& row) {
   json.update(counts_json(*row.counts));
   const MetricValues values = metrics_of(*row.counts);
   for (std::size_t m = 0; m < values.size(); ++m) {
-    json[std::string(kMetricNames[m])] =
+    json[std::string(kMetrics[m].key)] =
         std::isnan(values[m]) ? ordered_json(nullptr) : ordered_json(values[m]);
   }
   return json;
@@ -54,7 +54,7 @@ Sheet scan_sheet(const ResultSet& set) {
   for (const char* name : {"points", "tp", "fp", "fn", "tn", "ignored"}) {
     sheet.columns.push_back({name});
   }
-  for (const std::string_view name : kMetricNames) sheet.columns.push_back({std::string(name)});
+  for (const MetricRow& metric : kMetrics) sheet.columns.push_back({std::string(metric.key)});
   for (const Result& sequence : set.sequences) {
     for (const ScanRow* row : counted_scans(sequence)) {
       const Confusion& counts = *row->counts;
@@ -94,8 +94,8 @@ RunStatistics run_statistics(const ResultSet& set) {
 
 ordered_json to_json(const Estimates& estimates) {
   ordered_json json;
-  for (std::size_t m = 0; m < kMetricNames.size(); ++m) {
-    json[std::string(kMetricNames[m])] = spread_json(estimates.metrics[m]);
+  for (std::size_t m = 0; m < kMetrics.size(); ++m) {
+    json[std::string(kMetrics[m].key)] = spread_json(estimates.metrics[m]);
   }
   return json;
 }
@@ -109,8 +109,8 @@ ordered_json to_json(const Difference& difference) {
 
 ordered_json to_json(const Differences& differences) {
   ordered_json json;
-  for (std::size_t m = 0; m < kMetricNames.size(); ++m) {
-    json[std::string(kMetricNames[m])] = to_json(differences.metrics[m]);
+  for (std::size_t m = 0; m < kMetrics.size(); ++m) {
+    json[std::string(kMetrics[m].key)] = to_json(differences.metrics[m]);
   }
   return json;
 }
@@ -165,13 +165,11 @@ ordered_json statistics_json(const ResultSet& set, bool per_scan) {
 Answer statistics_answer(const ResultSet& set, bool per_scan) {
   const RunStatistics statistics = run_statistics(set);
   Sheet sheet{.lead = {headline(set)},
-              .columns = {{"sequence", Unit::kText},
-                          {"scans"},
-                          {"IoU", Unit::kPercent},
-                          {"precision", Unit::kPercent},
-                          {"recall", Unit::kPercent},
-                          {"F1", Unit::kPercent}},
+              .columns = {{"sequence", Unit::kText}, {"scans"}},
               .notes = {"95 %: where the value of many more scans like these would be"}};
+  for (const MetricRow& metric : kMetrics) {
+    sheet.columns.push_back({std::string(metric.title), Unit::kPercent});
+  }
   std::uint64_t scans = 0;
   const auto add = [&](const std::string& name, std::uint64_t counted, const Estimates& estimates) {
     sheet.rows.push_back(estimate_cells(name, counted, estimates));
@@ -208,9 +206,9 @@ Answer difference_answer(const ResultSet& first, const ResultSet& second,
                 "these show",
                 "at 5 % significance with 80 % probability; n times as many scans divide it by "
                 "sqrt(n)"}};
-  for (std::size_t m = 0; m < kMetricNames.size(); ++m) {
+  for (std::size_t m = 0; m < kMetrics.size(); ++m) {
     const Difference& metric = differences.metrics[m];
-    sheet.rows.push_back({std::string(kMetricNames[m]), spread_of(metric),
+    sheet.rows.push_back({std::string(kMetrics[m].key), spread_of(metric),
                           or_missing(metric.p_value), or_undefined(metric.smallest_detectable)});
   }
   if (const std::string& why = differences[Metric::kIou].no_interval; !why.empty()) {

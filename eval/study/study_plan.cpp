@@ -308,10 +308,10 @@ std::string_view to_string(CellState state) {
 }
 
 std::optional<double> number_in(const ordered_json& record, const std::string& part,
-                                const char* what) {
+                                std::string_view what) {
   const auto found = record.find(part);
   if (found == record.end() || !found->is_object()) return std::nullopt;
-  const auto value = found->find(what);
+  const auto value = found->find(std::string(what));
   if (value == found->end() || !value->is_number()) return std::nullopt;
   return value->get<double>();
 }

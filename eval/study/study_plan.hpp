@@ -86,7 +86,7 @@ StudyPlan plan_study(const Study& study, const std::filesystem::path& out,
 
 /// Returns the number `what` in the member `part` of a record; nothing where there is none.
 std::optional<double> number_in(const nlohmann::ordered_json& record, const std::string& part,
-                                const char* what);
+                                std::string_view what);
 
 std::filesystem::path record_file(const std::filesystem::path& out, const std::string& key);
 std::filesystem::path failure_file(const std::filesystem::path& out, const std::string& key);

@@ -146,7 +146,8 @@ ordered_json to_json(const StudyMean& mean) {
 
 ordered_json to_json(const StudyMetrics& metrics) {
   ordered_json json;
-  for (std::size_t i = 0; i < metrics.size(); ++i) json[kStudyMetrics[i]] = to_json(metrics[i]);
+  for (std::size_t i = 0; i < metrics.size(); ++i)
+    json[std::string(row_of(kBriefMetrics[i]).key)] = to_json(metrics[i]);
   return json;
 }
 

@@ -97,7 +97,7 @@ class DoneCells {
   }
 
   template <typename Wanted>
-  Samples samples(const char* metric, Wanted&& wanted) const {
+  Samples samples(std::string_view metric, Wanted&& wanted) const {
     Samples samples;
     for (const DoneCell& each : done) {
       if (!wanted(each)) continue;
@@ -111,7 +111,7 @@ class DoneCells {
   StudyMetrics metrics(Wanted&& wanted) const {
     StudyMetrics metrics;
     for (std::size_t i = 0; i < metrics.size(); ++i) {
-      metrics[i] = study_mean(samples(kStudyMetrics[i], wanted));
+      metrics[i] = study_mean(samples(row_of(kBriefMetrics[i]).key, wanted));
     }
     return metrics;
   }
@@ -144,10 +144,10 @@ void compare_with_best(const DoneCells& cells, std::vector<StudyRow>& rows) {
   const auto iou = [](const StudyRow& row) { return row.metrics[0].value.value_or(-1); };
   const auto best = std::ranges::max_element(rows, {}, iou);
   if (best == rows.end() || !best->metrics[0].value) return;
-  const Samples of_best = cells.samples(kStudyMetrics[0], is_plain_of(best->label));
+  const Samples of_best = cells.samples(row_of(Metric::kIou).key, is_plain_of(best->label));
   for (StudyRow& row : rows) {
     if (row.label == best->label) continue;
-    const Samples of_row = cells.samples(kStudyMetrics[0], is_plain_of(row.label));
+    const Samples of_row = cells.samples(row_of(Metric::kIou).key, is_plain_of(row.label));
     row.to_best = study_mean(differences(of_row, of_best), {-1, 1});
   }
 }
@@ -317,15 +317,13 @@ void count_cells(const StudyPlan& plan, StudyTable& table) {
 std::string why_undefined(const PlannedCell& planned) {
   if (planned.state != CellState::kDone) return "";
   if (planned.record.at("summary").is_null()) return "undefined: no scan has truth that counts";
-  static constexpr std::array kNames = {"IoU", "precision", "recall"};
-  static constexpr std::array kReasons = {"no point that counts moves, in truth or labels",
-                                          "no point that counts is labelled moving",
-                                          "no point that counts moves"};
   std::string text;
-  for (std::size_t i = 0; i < kStudyMetrics.size(); ++i) {
-    if (number_in(planned.record, "summary", kStudyMetrics[i])) continue;
-    text += fmt::format("{}undefined {}: {}", text.empty() ? "" : "; ", kNames[i], kReasons[i]);
-    if (i == 0) break;  // the others are, too, for the same reason
+  for (const Metric metric : kBriefMetrics) {
+    const MetricRow& row = row_of(metric);
+    if (number_in(planned.record, "summary", row.key)) continue;
+    text +=
+        fmt::format("{}undefined {}: {}", text.empty() ? "" : "; ", row.title, row.undefined_where);
+    if (metric == Metric::kIou) break;  // the others are, too, for the same reason
   }
   return text;
 }

@@ -21,9 +21,8 @@ struct StudyMean {
   std::size_t count = 0;             ///< sequences, or seeds of the single one
 };
 
-/// IoU, precision and recall.
-using StudyMetrics = std::array<StudyMean, 3>;
-inline constexpr std::array<const char*, 3> kStudyMetrics = {"iou", "precision", "recall"};
+/// By kBriefMetrics.
+using StudyMetrics = std::array<StudyMean, kBriefMetrics.size()>;
 
 /// A method with its poses, on all sequences without any disturbance.
 struct StudyRow {

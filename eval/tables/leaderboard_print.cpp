@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <map>
+#include <span>
 
 #include "eval/answer/answer_text.hpp"
 #include "eval/protocols/protocol_list.hpp"
@@ -64,20 +65,24 @@ std::vector<std::string> notes_of(const Leaderboard& board) {
   return notes;
 }
 
+/// What is told beside IoU.
+constexpr auto kBeside = std::span(kBriefMetrics).subspan<1>();
+
 Sheet sheet_of(const Leaderboard& board) {
   Sheet sheet{.lead = {rules_text(board)},
               .columns = {{""}, {"method", Unit::kText}},
               .notes = notes_of(board)};
   for (const DifferingSetting& setting : board.differing) sheet.columns.push_back({setting.name});
-  sheet.columns.push_back({"IoU", Unit::kPercent});
+  sheet.columns.push_back({std::string(row_of(Metric::kIou).title), Unit::kPercent});
   if (shows_sequences(board)) {
     for (const std::string& name : board.sequences) {
       sheet.columns.push_back({name, Unit::kPercent});
     }
   }
-  for (const Column& column : {Column{"precision", Unit::kPercent},
-                               {"recall", Unit::kPercent},
-                               {"ms/scan", Unit::kNumber, 1},
+  for (const Metric metric : kBeside) {
+    sheet.columns.push_back({std::string(row_of(metric).title), Unit::kPercent});
+  }
+  for (const Column& column : {Column{"ms/scan", Unit::kNumber, 1},
                                {"MB", Unit::kNumber, 1},
                                {"front"},
                                {"IoU to first", Unit::kPoints}}) {
@@ -96,9 +101,7 @@ Sheet sheet_of(const Leaderboard& board) {
         cells.push_back(value_cell(estimates, Metric::kIou));
       }
     }
-    for (const Metric metric : {Metric::kPrecision, Metric::kRecall}) {
-      cells.push_back(value_cell(row.all, metric));
-    }
+    for (const Metric metric : kBeside) cells.push_back(value_cell(row.all, metric));
     cells.push_back(or_missing(row.ms_per_scan));
     cells.push_back(or_missing(row.memory_mb));
     cells.emplace_back(row.is_on_front ? "*" : "");
@@ -112,16 +115,18 @@ Sheet records_of(const Leaderboard& board) {
   Sheet sheet{.columns = {{"method", Unit::kText},
                           {"setting", Unit::kText},
                           {"results", Unit::kText},
-                          {"sequence", Unit::kText},
-                          {"iou", Unit::kPercent},
-                          {"precision", Unit::kPercent},
-                          {"recall", Unit::kPercent},
-                          {"ms_per_scan"},
-                          {"memory_mb"},
-                          {"on_front"},
-                          {"to_first", Unit::kPoints},
-                          {"to_first_p_value"},
-                          {"no_interval", Unit::kText}}};
+                          {"sequence", Unit::kText}}};
+  for (const Metric metric : kBriefMetrics) {
+    sheet.columns.push_back({std::string(row_of(metric).key), Unit::kPercent});
+  }
+  for (const Column& column : {Column{"ms_per_scan"},
+                               {"memory_mb"},
+                               {"on_front"},
+                               {"to_first", Unit::kPoints},
+                               {"to_first_p_value"},
+                               {"no_interval", Unit::kText}}) {
+    sheet.columns.push_back(column);
+  }
   for (const DifferingSetting& setting : board.differing) {
     sheet.columns.push_back({.name = setting.name, .key = setting.name});
   }
@@ -132,14 +137,15 @@ Sheet records_of(const Leaderboard& board) {
                          bool is_all) {
       const Estimates metrics = estimates.value_or(Estimates{});
       const Difference to_first = is_all ? row.to_first.value_or(Difference{}) : Difference{};
-      sheet.rows.push_back(
-          {first.method, first.setting, first.file.string(), sequence,
-           spread_of(metrics[Metric::kIou]), spread_of(metrics[Metric::kPrecision]),
-           spread_of(metrics[Metric::kRecall]), is_all ? or_missing(row.ms_per_scan) : Cell(),
-           is_all ? or_missing(row.memory_mb) : Cell(), is_all && row.is_on_front ? "1" : "",
-           spread_of(to_first), or_missing(to_first.p_value), to_first.no_interval});
+      std::vector<Cell>& cells = sheet.rows.emplace_back();
+      cells = {first.method, first.setting, first.file.string(), sequence};
+      for (const Metric metric : kBriefMetrics) cells.emplace_back(spread_of(metrics[metric]));
+      cells.insert(cells.end(), {is_all ? or_missing(row.ms_per_scan) : Cell(),
+                                 is_all ? or_missing(row.memory_mb) : Cell(),
+                                 is_all && row.is_on_front ? "1" : "", spread_of(to_first),
+                                 or_missing(to_first.p_value), to_first.no_interval});
       for (const DifferingSetting& setting : board.differing) {
-        sheet.rows.back().push_back(setting_cell(setting.values[r]));
+        cells.push_back(setting_cell(setting.values[r]));
       }
     };
     add("all", row.all, true);

@@ -85,9 +85,10 @@ std::vector<Cell> cells_of(const SummaryRow& row, bool with_ms) {
   std::vector<Cell> cells = {row_title(row), std::uint64_t{row.scans},
                              std::uint64_t{summary.scans}};
   if (summary.scans == 0) {
-    cells.insert(cells.end(), {"no truth", "", "", "", "", "", "", ""});
+    cells.emplace_back("no truth");
+    cells.resize(cells.size() + kMetrics.size() + 3, "");
   } else {
-    for (const auto& metric : {summary.iou, summary.precision, summary.recall, summary.f1}) {
+    for (const auto& metric : summary.metrics) {
       cells.push_back(or_undefined(metric));
     }
     cells.insert(cells.end(),
@@ -117,17 +118,13 @@ Sheet score_sheet(const ScoreRule& rule, const std::vector<Split>& splits,
   if (const std::string remark = benchmark_remark(*rule.protocol, splits); !remark.empty()) {
     sheet.lead.push_back(remark);
   }
-  sheet.columns = {{"sequence", Unit::kText},
-                   {"scans"},
-                   {"labelled"},
-                   {"IoU", Unit::kPercent},
-                   {"precision", Unit::kPercent},
-                   {"recall", Unit::kPercent},
-                   {"F1", Unit::kPercent},
-                   {"TP"},
-                   {"FP"},
-                   {"FN"},
-                   {"benchmark's rounding"}};
+  sheet.columns = {{"sequence", Unit::kText}, {"scans"}, {"labelled"}};
+  for (const MetricRow& metric : kMetrics) {
+    sheet.columns.push_back({std::string(metric.title), Unit::kPercent});
+  }
+  for (const char* name : {"TP", "FP", "FN", "benchmark's rounding"}) {
+    sheet.columns.push_back({name});
+  }
   const bool with_ms = std::ranges::any_of(
       rows, [](const SummaryRow& row) { return row.method_ms_per_scan.has_value(); });
   if (with_ms) sheet.columns.push_back({"ms/scan", Unit::kNumber, 1});

@@ -87,8 +87,8 @@ Answer side_by_side_answer(const Dataset& dataset, const std::vector<ScoreRule>&
               .notes = score_remarks(dataset, scores)};
   for (const ProtocolRow& row : protocol_rows(rules, scores)) {
     const Confusion& pooled = row.summary.pooled;
-    sheet.rows.push_back({row.name, or_undefined(row.summary.iou), row.summary.published_text,
-                          pooled.tp, pooled.fp, pooled.fn, row.reason});
+    sheet.rows.push_back({row.name, or_undefined(row.summary[Metric::kIou]),
+                          row.summary.published_text, pooled.tp, pooled.fp, pooled.fn, row.reason});
   }
   return {.standing = standing_of(dataset, scores),
           .sheets = {std::move(sheet)},
@@ -105,7 +105,7 @@ ordered_json side_by_side_json(const Dataset& dataset, const std::vector<ScoreRu
     ordered_json protocol = {{"name", row.name},
                              {"min_range_m", row.range.min_m},
                              {"max_range_m", row.range.max_m},
-                             {"iou", json_or_null(row.summary.iou)},
+                             {"iou", json_or_null(row.summary[Metric::kIou])},
                              {"published_text", row.summary.published_text}};
     protocol.update(counts_json(row.summary.pooled));
     protocol["why"] = row.reason;

@@ -88,7 +88,7 @@ TEST_F(ScoreProperty, PooledCountsAreTheSumOverTheScans) {
     const Summary summary = summarize(protocol, counts);
     EXPECT_EQ(summary.pooled, sum) << protocol.name;
     if (protocol.aggregation != Aggregation::kMeanOfScans) {
-      EXPECT_EQ(summary.iou, moving_iou(sum)) << protocol.name;
+      EXPECT_EQ(summary[Metric::kIou], moving_iou(sum)) << protocol.name;
     }
   }
 }
@@ -115,12 +115,13 @@ TEST_F(ScoreProperty, MetricsLieBetweenZeroAndOneAndIouIsTheSmallest) {
   for (const Protocol& protocol : protocols()) {
     for (const RandomScan& scan : scans_) {
       const Confusion counts = score(protocol, scan);
-      ASSERT_TRUE(moving_iou(counts) && precision(counts) && recall(counts) && f1(counts));
+      ASSERT_TRUE(moving_iou(counts) && precision(counts) && recall(counts) &&
+                  metric_of(counts, Metric::kF1));
       EXPECT_GE(*moving_iou(counts), 0.0);
       EXPECT_LE(*moving_iou(counts), *precision(counts));
       EXPECT_LE(*moving_iou(counts), *recall(counts));
-      EXPECT_LE(*moving_iou(counts), *f1(counts));
-      EXPECT_LE(*f1(counts), 1.0);
+      EXPECT_LE(*moving_iou(counts), *metric_of(counts, Metric::kF1));
+      EXPECT_LE(*metric_of(counts, Metric::kF1), 1.0);
     }
   }
 }

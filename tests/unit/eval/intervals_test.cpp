@@ -194,10 +194,12 @@ TEST(Estimate, GivesTheValuesOfTheTable) {
                                 ? mean_of_sequences(protocol, summaries)
                                 : summarize(protocol, all);
     const Estimates estimates = estimate(protocol, sequences);
-    EXPECT_NEAR(estimates[Metric::kIou].value.value(), summary.iou.value(), 1e-12) << protocol.name;
-    EXPECT_NEAR(estimates[Metric::kPrecision].value.value(), summary.precision.value(), 1e-12);
-    EXPECT_NEAR(estimates[Metric::kRecall].value.value(), summary.recall.value(), 1e-12);
-    EXPECT_NEAR(estimates[Metric::kF1].value.value(), summary.f1.value(), 1e-12);
+    EXPECT_NEAR(estimates[Metric::kIou].value.value(), summary[Metric::kIou].value(), 1e-12)
+        << protocol.name;
+    EXPECT_NEAR(estimates[Metric::kPrecision].value.value(), summary[Metric::kPrecision].value(),
+                1e-12);
+    EXPECT_NEAR(estimates[Metric::kRecall].value.value(), summary[Metric::kRecall].value(), 1e-12);
+    EXPECT_NEAR(estimates[Metric::kF1].value.value(), summary[Metric::kF1].value(), 1e-12);
     EXPECT_TRUE(estimates[Metric::kIou].interval.has_value());
   }
 }

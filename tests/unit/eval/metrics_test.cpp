@@ -38,9 +38,9 @@ TEST(F1, IsTheHarmonicMeanOfPrecisionAndRecall) {
   const Confusion counts{.tp = 6, .fp = 2, .fn = 6};
   const double p = *precision(counts);
   const double r = *recall(counts);
-  EXPECT_DOUBLE_EQ(*f1(counts), 2.0 * p * r / (p + r));
-  EXPECT_EQ(f1({.fp = 1, .fn = 1}), 0.0);
-  EXPECT_EQ(f1({.tn = 1}), std::nullopt);
+  EXPECT_DOUBLE_EQ(*metric_of(counts, Metric::kF1), 2.0 * p * r / (p + r));
+  EXPECT_EQ(metric_of({.fp = 1, .fn = 1}, Metric::kF1), 0.0);
+  EXPECT_EQ(metric_of({.tn = 1}, Metric::kF1), std::nullopt);
 }
 
 TEST(Confusion, AddsUpFieldByField) {
@@ -52,7 +52,7 @@ TEST(Confusion, AddsUpFieldByField) {
 
 TEST(Summary, LeavesOutScansWithoutValueAndCountsThem) {
   const Summary summary = summarize_as("doals-hmm", {{.tp = 1, .fn = 1}, {.tn = 7}, {.tp = 2}});
-  EXPECT_EQ(summary.iou, 0.75);
+  EXPECT_EQ(summary[Metric::kIou], 0.75);
   EXPECT_EQ(summary.iou_deviation, 0.25);
   EXPECT_EQ(summary.scans, 3U);
   EXPECT_EQ(summary.undefined_scans, 1U);
@@ -62,16 +62,16 @@ TEST(Summary, LeavesOutScansWithoutValueAndCountsThem) {
 
 TEST(Summary, AveragesPrecisionOverTheScansThatPredictSomething) {
   const Summary summary = summarize_as("doals-hmm", {{.tp = 1, .fp = 1}, {.fn = 4}});
-  EXPECT_EQ(summary.precision, 0.5);
-  EXPECT_EQ(summary.recall, 0.5);
-  EXPECT_EQ(summary.iou, 0.25);
+  EXPECT_EQ(summary[Metric::kPrecision], 0.5);
+  EXPECT_EQ(summary[Metric::kRecall], 0.5);
+  EXPECT_EQ(summary[Metric::kIou], 0.25);
   EXPECT_EQ(summary.undefined_scans, 0U);
 }
 
 TEST(Summary, TakesThePopulationDeviationAsNumpyDoes) {
   const Summary summary =
       summarize_as("doals-dynablox", {{.tp = 1, .fn = 3}, {.tp = 3, .fn = 1}, {.tp = 2, .fn = 2}});
-  EXPECT_EQ(summary.iou, 0.5);
+  EXPECT_EQ(summary[Metric::kIou], 0.5);
   EXPECT_DOUBLE_EQ(*summary.iou_deviation, std::sqrt(0.125 / 3.0));
 }
 
@@ -82,18 +82,18 @@ TEST(Summary, HasNoDeviationWhenPooled) {
 TEST(Summary, OfNoScanIsUndefinedForEveryProtocol) {
   for (const Protocol& protocol : protocols()) {
     const Summary summary = summarize(protocol, {});
-    EXPECT_EQ(summary.iou, std::nullopt) << protocol.name;
-    EXPECT_EQ(summary.precision, std::nullopt) << protocol.name;
+    EXPECT_EQ(summary[Metric::kIou], std::nullopt) << protocol.name;
+    EXPECT_EQ(summary[Metric::kPrecision], std::nullopt) << protocol.name;
     EXPECT_EQ(summary.scans, 0U) << protocol.name;
   }
 }
 
 TEST(Summary, OfMapmosIsUndefinedWithoutMovingTruthEvenWithFalsePositives) {
   const Summary summary = summarize_as("mapmos", {{.fp = 3, .tn = 5}});
-  EXPECT_EQ(summary.iou, std::nullopt);
-  EXPECT_EQ(summary.precision, std::nullopt);
+  EXPECT_EQ(summary[Metric::kIou], std::nullopt);
+  EXPECT_EQ(summary[Metric::kPrecision], std::nullopt);
   EXPECT_EQ(summary.published_text, "nan");
-  EXPECT_EQ(summarize_as("semantickitti-mos", {{.fp = 3, .tn = 5}}).iou, 0.0);
+  EXPECT_EQ(summarize_as("semantickitti-mos", {{.fp = 3, .tn = 5}})[Metric::kIou], 0.0);
 }
 
 TEST(Summary, PrintsAsEachProgramDoes) {
@@ -112,7 +112,7 @@ TEST(MeanOfSequences, IsThePlainMeanWhateverTheirSizes) {
   const std::vector<Summary> sensors = {summarize_as("helimos-all", {{.tp = 1, .fn = 1}}),
                                         summarize_as("helimos-all", {{.tp = 900}, {.fp = 100}})};
   const Summary average = mean_of_sequences(protocol, sensors);
-  EXPECT_DOUBLE_EQ(*average.iou, 0.7);
+  EXPECT_DOUBLE_EQ(*average[Metric::kIou], 0.7);
   EXPECT_EQ(average.published_text, "0.700");
   EXPECT_EQ(average.scans, 3U);
   EXPECT_EQ(average.pooled, (Confusion{.tp = 901, .fp = 100, .fn = 1}));
@@ -123,9 +123,9 @@ TEST(MeanOfSequences, IsUndefinedWhenOneSequenceIs) {
   const std::vector<Summary> sequences = {summarize_as("moe", {{.tp = 1}}),
                                           summarize_as("moe", {{.tn = 1}})};
   const Summary average = mean_of_sequences(protocol, sequences);
-  EXPECT_EQ(average.iou, std::nullopt);
+  EXPECT_EQ(average[Metric::kIou], std::nullopt);
   EXPECT_EQ(average.published_text, "nan");
-  EXPECT_EQ(mean_of_sequences(protocol, {}).iou, std::nullopt);
+  EXPECT_EQ(mean_of_sequences(protocol, {})[Metric::kIou], std::nullopt);
 }
 
 }  // namespace

@@ -104,11 +104,11 @@ TEST(ScoreRows, PoolASplitOverItsSequences) {
   const Split split{"test", {{0, std::nullopt}, {1, std::nullopt}}};
   const auto rows = summary_rows(protocol_named("sipailou"), {split}, kTwoSequences);
   ASSERT_EQ(rows.size(), 3U);
-  EXPECT_DOUBLE_EQ(rows[0].summary.iou.value(), 4.0 / 6.0);
+  EXPECT_DOUBLE_EQ(rows[0].summary[Metric::kIou].value(), 4.0 / 6.0);
   EXPECT_EQ(rows[0].scans, 3U);
   EXPECT_EQ(rows[0].summary.scans, 2U);
   EXPECT_EQ(rows[2].kind, SummaryRow::Kind::kSplit);
-  EXPECT_DOUBLE_EQ(rows[2].summary.iou.value(), 94.0 / 106.0);
+  EXPECT_DOUBLE_EQ(rows[2].summary[Metric::kIou].value(), 94.0 / 106.0);
   EXPECT_DOUBLE_EQ(rows[2].method_ms_per_scan.value(), 15.0);
 }
 
@@ -117,10 +117,10 @@ TEST(ScoreRows, AverageSensorsWhereTheProtocolDoes) {
   const auto rows = summary_rows(protocol_named("helimos-test"), {split}, kTwoSequences);
   ASSERT_EQ(rows.size(), 4U);
   EXPECT_EQ(rows[2].kind, SummaryRow::Kind::kPart);
-  EXPECT_DOUBLE_EQ(rows[2].summary.iou.value(), 0.75);
-  EXPECT_DOUBLE_EQ(rows[0].summary.iou.value(), 0.75) << "of the scans of the split";
+  EXPECT_DOUBLE_EQ(rows[2].summary[Metric::kIou].value(), 0.75);
+  EXPECT_DOUBLE_EQ(rows[0].summary[Metric::kIou].value(), 0.75) << "of the scans of the split";
   EXPECT_EQ(rows[0].split, "test");
-  EXPECT_DOUBLE_EQ(rows[3].summary.iou.value(), (0.75 + 0.9) / 2.0);
+  EXPECT_DOUBLE_EQ(rows[3].summary[Metric::kIou].value(), (0.75 + 0.9) / 2.0);
 }
 
 TEST(ScoreRows, CoverWholeSequencesWhereTheSplitPicksNone) {

@@ -47,7 +47,7 @@ TEST(WorkedVectors, ThirdHasNothingMovingAndEveryProgramSaysSomethingElse) {
   for (const std::string_view name :
        {"semantickitti-mos", "mapmos", "doals-dynablox", "doals-hmm"}) {
     const Summary summary = summary_of(name, score(name, still, still));
-    EXPECT_EQ(summary.iou, std::nullopt) << name;
+    EXPECT_EQ(summary[Metric::kIou], std::nullopt) << name;
     EXPECT_EQ(summary.undefined_scans, 1U) << name;
   }
   const auto published = [&](std::string_view name) {
@@ -80,9 +80,9 @@ TEST(WorkedVectors, FourthCutsTheRangeOfTruthOrOfBoth) {
 TEST(WorkedVectors, FifthTellsTheMeanOfScansFromThePooledNumber) {
   const std::vector<Confusion> scans = {{.tp = 1, .fn = 1}, {.tp = 90, .fp = 5, .fn = 5}};
   const Protocol& mean_protocol = protocol_named("doals-hmm");
-  EXPECT_NEAR(summarize(mean_protocol, scans).iou.value(), 0.7, 1e-12);
+  EXPECT_NEAR(summarize(mean_protocol, scans)[Metric::kIou].value(), 0.7, 1e-12);
   const Summary pooled = summarize(protocol_named("sipailou"), scans);
-  EXPECT_EQ(pooled.iou, 91.0 / 102.0);
+  EXPECT_EQ(pooled[Metric::kIou], 91.0 / 102.0);
   EXPECT_EQ(pooled.published_text, "0.892");
 }
 
@@ -99,7 +99,7 @@ TEST(WorkedVectors, SeventhLeavesOutWhereSceneFlowIsNotEvaluated) {
   const Confusion still = score("sceneflow-dynamic", {9, 40}, {9, 9});
   const Summary summary =
       summarize(protocol_named("sceneflow-dynamic"), std::vector{counts, still});
-  EXPECT_EQ(summary.iou, 0.5);
+  EXPECT_EQ(summary[Metric::kIou], 0.5);
   EXPECT_EQ(summary.undefined_scans, 1U);
   EXPECT_EQ(summary.published_text, "0.25");
 }
