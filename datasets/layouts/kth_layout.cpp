@@ -37,7 +37,7 @@ const Layout& kth_layout() {
       .folders = {"<root>/<sequence>/",
                   "  pcd/%06d.pcd   points in the map's frame, pose in VIEWPOINT, intensity 1 is "
                   "dynamic",
-                  "  gt_cloud.pcd   read by mosbench map-score alone; identifies the layout"},
+                  "  gt_cloud.pcd   read by mosbench score alone; identifies the layout"},
       .files = {.label_ids = {kStaticLabel, kMovingLabel}, .sensor_range_m = 450.0},
       .expected =
           "folders with pcd/*.pcd in the map's frame (KTH DynamicMap_Benchmark), or one such "

@@ -39,12 +39,10 @@ CommandRun add_profile(CLI::App& command);
 CommandRun add_rank(CLI::App& command);
 CommandRun add_render(CLI::App& command);
 CommandRun add_report(CLI::App& command);
-CommandRun add_reproduce(CLI::App& command);
 CommandRun add_run(CLI::App& command);
 CommandRun add_score(CLI::App& command);
 CommandRun add_simulate(CLI::App& command);
 CommandRun add_stats(CLI::App& command);
-CommandRun add_study(CLI::App& command);
 CommandRun add_table(CLI::App& command);
 CommandRun add_trajectory(CLI::App& command);
 

@@ -117,7 +117,7 @@ CommandRun add_compare(CLI::App& command) {
   command.add_option("--top", options->top, "How many scans and objects --by lists")
       ->capture_default_str();
   command.add_flag("--accept", options->accept, "Make NEW the baseline and show what changes");
-  command.add_option("--summary", options->summary, "Also write the table in markdown to FILE")
+  command.add_option("-o,--out", options->summary, "Also write the table in markdown to FILE")
       ->type_name("FILE");
   command.add_flag("-q,--quiet", options->quiet, "Print nothing when it passes");
   return [options] { return answer(*options); };

@@ -1,5 +1,7 @@
 #include "eval/cli/old_words.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <optional>
@@ -40,6 +42,13 @@ constexpr std::array kOldFlags = {
     OldFlag{"score", "--level", true, "--format", "{}", ":", "dynablox"},
     OldFlag{"score", "--setting", true, "--method", "{}", ", ", "unnamed"},
     OldFlag{"curve rank reproduce table study", "--format", true, "--as"},
+    OldFlag{"study", "--profile", true, "--on"},
+    OldFlag{"study", "--output", true, "-o"},
+    OldFlag{"study", "--measure", false, ""},
+    OldFlag{"profile", "--trace", true, "--out"},
+    OldFlag{"trajectory", "--plot", true, "--out"},
+    OldFlag{"trajectory", "--per-pose", false, "--by", "pose"},
+    OldFlag{"compare", "--summary", true, "--out"},
     OldFlag{"compare", "--output-format", true, "--as"},
     OldFlag{"stats", "--csv", false, "--as", "csv"},
     OldFlag{"stats", "--per-scan", false, "--by", "scan"},
@@ -66,6 +75,12 @@ constexpr std::array kOldCommands = {
     OldCommand{"bless", "compare {1} {0} --accept"},
     OldCommand{"map-score", "score {1} --map {0}"},
     OldCommand{"completion", "help --completion {}"},
+    OldCommand{"reproduce", "run table:{0}"},
+    OldCommand{"study run", "run {}"},
+    OldCommand{"study plan", "run {} --dry-run"},
+    OldCommand{"study cell", "run {0} --only {,}"},
+    OldCommand{"study table", "rank {}"},
+    OldCommand{"study", "run {}"},
 };
 
 Words split(std::string_view text) {
@@ -118,6 +133,7 @@ std::optional<std::string> taken(Words& words, const OldFlag& old) {
 }
 
 void put(Words& words, const OldFlag& old, const std::string& value) {
+  if (old.now.empty()) return;
   const std::string part = filled(old.part, value);
   if (const std::optional<Found> known = find_flag(words, old.now)) {
     const std::size_t end = old.in_front ? known->value_at : known->word->size();
@@ -153,20 +169,27 @@ Words filled_in(const OldCommand& old, const Words& arguments, const TakesValue&
   }
   if (old.arguments != 0 && free.size() != old.arguments) return {};
   Words words;
-  std::vector<bool> used(free.size());
+  std::size_t placed = 0;  // how many have a place of their own
   for (const std::string& word : now) {
-    if (word == "{0}" || word == "{1}") {
-      const auto place = static_cast<std::size_t>(word[1] - '0');
-      if (place >= free.size()) continue;
-      words.push_back(free[place]);
-      used[place] = true;
-    } else if (word != "{}") {
-      words.push_back(word);
-    } else {
-      for (std::size_t i = 0; i < free.size(); ++i) {
-        if (!used[i]) words.push_back(free[i]);
+    for (std::size_t i = 0; i < free.size(); ++i) {
+      if (word.find(fmt::format("{{{}}}", i)) != std::string::npos)
+        placed = std::max(placed, i + 1);
+    }
+  }
+  const Words others(free.begin() + static_cast<std::ptrdiff_t>(placed), free.end());
+  for (std::string word : now) {
+    if (word == "{}") {
+      words.insert(words.end(), others.begin(), others.end());
+      continue;
+    }
+    if (word == "{,}") word = fmt::format("{}", fmt::join(others, ","));
+    for (std::size_t i = 0; i < placed; ++i) {
+      const std::string hole = fmt::format("{{{}}}", i);
+      if (const auto at = word.find(hole); at != std::string::npos) {
+        word.replace(at, hole.size(), free[i]);
       }
     }
+    words.push_back(word);
   }
   words.insert(words.end(), flags.begin(), flags.end());
   return words;

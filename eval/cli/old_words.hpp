@@ -13,7 +13,7 @@ struct OldFlag {
   std::string_view commands;  ///< that had it, with blanks between
   std::string_view flag;
   bool has_value = true;
-  std::string_view now;          ///< the flag of today
+  std::string_view now;          ///< the flag of today; empty: none is needed
   std::string_view part = "{}";  ///< "{}" is the old value
   std::string_view joint = ",";  ///< between the value of `now` and the part
   std::string_view head = {};    ///< value of `now` where the line has none
@@ -23,7 +23,8 @@ struct OldFlag {
 /// A command of an earlier release.
 struct OldCommand {
   std::string_view name;  ///< one or two words
-  /// The words of today: "{0}" is the first argument without a dash, "{}" are all others.
+  /// The words of today: "{0}" is the first argument without a dash, "{}" are all others, "{,}"
+  /// with commas between.
   std::string_view now;
   std::size_t arguments = 0;  ///< how many make it an old line; 0: any number
 };

@@ -24,7 +24,7 @@ struct ProfileFlags {
 
 Answer profile(const ProfileFlags& options) {
   if (options.json == "-" && options.trace == "-") {
-    throw UsageError("--json and --trace: both go to stdout, expected one of them to name a file");
+    throw UsageError("--json and --out: both go to stdout, expected one of them to name a file");
   }
   for (const auto& file : {options.json, options.trace}) {
     if (file) check_output(*file);
@@ -52,7 +52,7 @@ CommandRun add_profile(CLI::App& command) {
       ->default_str("all");
   command.add_option("--json", options->json, "Write the numbers to this file; - is stdout")
       ->type_name("FILE");
-  command.add_option("--trace", options->trace, "Write a trace to this file; - is stdout")
+  command.add_option("-o,--out", options->trace, "Write a trace to this file; - is stdout")
       ->type_name("FILE");
   return [options] { return profile(*options); };
 }

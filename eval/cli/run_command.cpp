@@ -1,15 +1,21 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
 #include <memory>
 
+#include "datasets/text/errors.hpp"
 #include "eval/answer/answer_text.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/cli/help_text.hpp"
 #include "eval/cli/method_options.hpp"
 #include "eval/cli/odometry_flags.hpp"
+#include "eval/cli/run_job.hpp"
 #include "eval/cli/run_methods.hpp"
 #include "eval/cli/run_report.hpp"
+#include "eval/cli/run_table.hpp"
+#include "eval/cli/suggested_command.hpp"
 #include "eval/engine/run_execute.hpp"
 #include "eval/engine/run_plan.hpp"
 #include "eval/job/method_choice.hpp"
@@ -19,15 +25,67 @@
 namespace mosbench {
 namespace {
 
+constexpr const char* kJobGroup = "Of JOB.yaml and table:NAME";
+
 /// Of --write, as the products that are made from labels.
 constexpr const char* kScores = "scores";
 
 struct RunFlags {
   RunOptions options;
   std::vector<std::string> written;
+  JobFlags job;
+  std::filesystem::path data;  ///< of a table
 };
 
-Answer run(const RunFlags& flags) {
+constexpr std::string_view kTablePrefix = "table:";
+
+enum class Input { kData, kJob, kTable };
+
+Input input_of(const std::filesystem::path& input) {
+  if (input.string().starts_with(kTablePrefix)) return Input::kTable;
+  return is_job(input) ? Input::kJob : Input::kData;
+}
+
+/// Throws UsageError where a flag was given that a run of this input does not heed.
+void check_flags(const CLI::App& command, Input input) {
+  constexpr std::array kAll = {"--out", "--threads", "--as", "--json"};
+  constexpr std::array kOfJob = {"--dry-run", "--on", "--only", "--yes", "-o"};
+  const auto has = [](const auto& list, const std::string& name) {
+    return std::ranges::find(list, name) != list.end();
+  };
+  const std::string given = given_words(command, [&](const CLI::Option& option) {
+    const std::string name = option.get_name();
+    if (!option.nonpositional() || has(kAll, name)) return false;
+    if (has(kOfJob, name)) return input != Input::kJob;
+    if (name == "--data") return input != Input::kTable;
+    return input == Input::kJob || (input == Input::kTable && name != "--sequences");
+  });
+  if (given.empty()) return;
+  constexpr std::array kNames = {"a run of data", "JOB.yaml", "table:NAME"};
+  throw UsageError(fmt::format("{}: is nothing for {}, expected it left out", given.substr(1),
+                               kNames[static_cast<std::size_t>(input)]));
+}
+
+Answer run_other(RunFlags flags, Input input, bool threads_given) {
+  const RunOptions& options = flags.options;
+  if (input == Input::kTable) {
+    if (flags.data.empty()) throw UsageError("--data: is missing, expected the data of the table");
+    return run_table({.name = options.input.string().substr(kTablePrefix.size()),
+                      .root = flags.data,
+                      .out = options.out,
+                      .sequences = options.sequences,
+                      .threads = options.threads});
+  }
+  flags.job.file = options.input;
+  flags.job.out = options.out;
+  if (threads_given) flags.job.threads = options.threads;
+  return run_job(flags.job);
+}
+
+Answer run(const RunFlags& flags, const CLI::App& command) {
+  const Input input = input_of(flags.options.input);
+  check_flags(command, input);
+  if (input != Input::kData) return run_other(flags, input, command.count("--threads") > 0);
   RunOptions options = flags.options;
   std::vector<std::string> products = flags.written;
   options.scores = std::erase(products, kScores) > 0;
@@ -40,6 +98,31 @@ Answer run(const RunFlags& flags) {
   return {.standing = standing_of(plan.dataset),
           .sheets = {run_sheet(plan, outcomes)},
           .json = json_text(run_report_json(plan, outcomes))};
+}
+
+/// Flags of files that name what to combine, and of tables.
+void add_job_flags(CLI::App& command, RunFlags& flags) {
+  JobFlags& job = flags.job;
+  command
+      .add_flag("--dry-run", job.dry_run,
+                "Of JOB.yaml: count what is done and missing, and tell how long that takes")
+      ->group(kJobGroup);
+  command
+      .add_option("--on", job.profile, "Where: local, slurm, or the folder of a Snakemake profile")
+      ->type_name("PROFILE")
+      ->group(kJobGroup);
+  command.add_option("--only", job.keys, "Compute only the cells with these keys, here")
+      ->type_name("KEYS")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->group(kJobGroup);
+  command.add_flag("--yes", job.yes, "Compute more than 100 cells")->group(kJobGroup);
+  command.add_option("-o", job.output, "File of the table; - is stdout")
+      ->type_name("FILE")
+      ->group(kJobGroup);
+  command.add_option("--data", flags.data, "Of table:NAME: the folder of its data set")
+      ->type_name("DIR")
+      ->group(kJobGroup);
 }
 
 }  // namespace
@@ -77,7 +160,8 @@ CommandRun add_run(CLI::App& command) {
       .add_flag("--verify", options->verify,
                 "Read all input of finished sequences again, not only its sizes and times")
       ->group(kRareGroup);
-  return [flags] { return run(*flags); };
+  add_job_flags(command, *flags);
+  return [flags, &command] { return run(*flags, command); };
 }
 
 }  // namespace mosbench

@@ -131,7 +131,7 @@ Answer answer_of_two(const ScoredEstimates& first, const ScoredEstimates& second
   return answer;
 }
 
-/// Adds the charts of every sequence, and writes them where --plot says.
+/// Adds the charts of every sequence, and writes them where --out says.
 void draw(const std::vector<TrajectoryScore>& first, const std::vector<TrajectoryScore>* second,
           const TrajectoryFlags& flags, PathAlignment alignment, Answer& answer) {
   for (std::size_t s = 0; s < first.size(); ++s) {
@@ -149,7 +149,7 @@ void check_plot(const TrajectoryFlags& flags) {
   for (const auto& input : {flags.estimate, flags.truth, flags.other.value_or("")}) {
     std::error_code ignored;
     if (!std::filesystem::equivalent(input, *flags.plot, ignored)) continue;
-    throw UsageError("--plot " + flags.plot->string() + ": is a file of poses, expected another");
+    throw UsageError("--out " + flags.plot->string() + ": is a file of poses, expected another");
   }
 }
 
@@ -219,8 +219,12 @@ CommandRun add_trajectory(CLI::App& command) {
           "Scans between the poses of RPE, or metres of the estimated path, as in 10m; ,all behind "
           "it starts a pair at every pose (default: 1)")
       ->type_name("N|METRESm[,all]");
-  command.add_flag("--per-pose", flags->per_pose, "With --json: errors of every pose and segment");
-  command.add_option("--plot", flags->plot, "PNG file to draw the paths and their errors to")
+  command
+      .add_option_function<std::string>(
+          "--by", [flags](const std::string&) { flags->per_pose = true; },
+          "With --json: also the errors of every pose and segment")
+      ->check(CLI::IsMember({"pose"}));
+  command.add_option("-o,--out", flags->plot, "PNG file to draw the paths and their errors to")
       ->type_name("FILE");
   return [flags, &command] { return trajectory_answer(*flags, command); };
 }

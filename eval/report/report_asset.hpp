@@ -10,7 +10,7 @@ namespace mosbench {
 
 // Embedded by CMakeLists.txt: the page without its content, as scripts/build_report.sh made it.
 std::string_view report_asset();
-/// The page of `mosbench study table --format html`, made likewise.
+/// The page of `mosbench rank JOB.yaml --as html`, made likewise.
 std::string_view study_asset();
 
 /// Returns the parts of a page before and after the content.

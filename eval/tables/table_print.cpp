@@ -88,8 +88,8 @@ std::string hint_on_runs(const FilledTable& table) {
         row.cells, [](const TableCell& cell) { return !cell.measured && !cell.reasons.empty(); });
   });
   if (!is_reproduced || !lacks_runs) return "";
-  return fmt::format("`mosbench reproduce {} --data DIR` does most of that at once",
-                     to_string(kind));
+  return fmt::format("`mosbench run table:{} --data DIR` does most of that at once",
+                     table.table->name);
 }
 
 Spread measured_spread(const TableCell& cell) {

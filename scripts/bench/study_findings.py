@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Says in numbers how much of each disturbance a method stands, and draws the curves of a computed study.
 
-Takes the study's file and the folder of its results. Prints what `mosbench study table` says, then in Markdown the
+Takes the study's file and the folder of its results. Prints what `mosbench rank JOB.yaml` says, then in Markdown the
 strength that costs 10 points of IoU, or half of it, read off the curve of means with straight lines between strengths;
 a method that never loses so much gets the strongest with ">". Last comes the paired change at the strongest.
 """
@@ -24,8 +24,8 @@ NOT_FROM_ZERO = ("beams", "every_nth_scan")  # whose scans are whole at another 
 
 
 def printed_table(chosen, form):
-    """What `mosbench study table` prints, also where cells are missing."""
-    done = subprocess.run([chosen.program, "study", "table", chosen.study, "--out", chosen.out, "--as", form],
+    """What `mosbench rank JOB.yaml` prints, also where cells are missing."""
+    done = subprocess.run([chosen.program, "rank", chosen.study, "--out", chosen.out, "--as", form],
                           capture_output=True, text=True, check=False)
     if done.returncode > 1:
         sys.exit(f"study_findings.py: {done.stderr.strip()}")
@@ -136,14 +136,14 @@ def plot(found):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("study", type=pathlib.Path, help="the study's YAML file")
-    parser.add_argument("out", type=pathlib.Path, help="folder of its results, as of `mosbench study run --out`")
+    parser.add_argument("out", type=pathlib.Path, help="folder of its results, as of `mosbench run JOB.yaml --out`")
     parser.add_argument("--program", default=str(ROOT / "build/release/eval/mosbench"))
     parser.add_argument("--svg", type=pathlib.Path, help="file for the curves")
     chosen = parser.parse_args()
     found = json.loads(printed_table(chosen, "json"))
     if found["done"] < found["cells"]:
         sys.exit(f"study_findings.py: {found['done']} of {found['cells']} cells of {chosen.study} are done in {chosen.out}, "
-                 "expected all: mosbench study run")
+                 "expected all: mosbench run")
     print(text_of(found, cells_of(chosen), printed_table(chosen, "text")))
     if chosen.svg:
         chosen.svg.write_text(plot(found))

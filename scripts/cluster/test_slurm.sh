@@ -36,7 +36,7 @@ disturb: {kind: range_noise_m, strengths: [$strengths]}
 seeds: [$seeds]
 YAML
 
-study() { "$mosbench" study "$1" "$dir/study.yaml" --out "$dir/$2" "${@:3}"; }
+study() { "$mosbench" run "$dir/study.yaml" --out "$dir/$1" "${@:2}"; }
 done_cells() { find "$dir/cluster/cells" -name '*.json' ! -name '.*' 2>/dev/null | wc -l; }
 running_job() { squeue -h -t R -o %i | head -n 1; }
 check() { if ! "${@:2}"; then echo "test_slurm.sh: FAILED: $1" >&2; exit 1; fi; echo "ok: $1"; }
@@ -52,7 +52,7 @@ wait_for() {
 has_some() { [ "$(done_cells)" -ge "$1" ]; }
 has_job() { [ -n "$(running_job)" ]; }
 
-"$mosbench" study run "$dir/study.yaml" --out "$dir/cluster" --profile slurm --yes >"$dir/first.log" 2>&1 &
+"$mosbench" run "$dir/study.yaml" --out "$dir/cluster" --on slurm --yes >"$dir/first.log" 2>&1 &
 scheduler=$!
 check "cells are computed by jobs" wait_for 120 has_some 3
 job=$(running_job)
@@ -69,13 +69,13 @@ scontrol update NodeName="$node" State=RESUME
 before=$(done_cells)
 check "the scheduler was killed in the middle" [ "$before" -lt "$cells" ]
 
-study run cluster --profile slurm --yes >"$dir/second.log" 2>&1 || { tail -n 40 "$dir/second.log"; exit 1; }
+study cluster --on slurm --yes >"$dir/second.log" 2>&1 || { tail -n 40 "$dir/second.log"; exit 1; }
 check "the same command completed it" [ "$(done_cells)" = "$cells" ]
 scontrol -o show jobs | grep -o 'JobId=[0-9]*\|JobName=[^ ]*\|JobState=[A-Z]*\|RunTime=[^ ]*' | paste -d' ' - - - -
 twice=$(cat "$dir"/cluster/slurm/*.log | grep ' computed: ' | cut -d' ' -f1 | sort | uniq -d | wc -l)
 check "no cell was computed twice" [ "$twice" = 0 ]
 
-study run local --yes >"$dir/local.log" 2>&1
+study local --yes >"$dir/local.log" 2>&1
 for file in "$dir"/local/cells/*.json; do
   cmp -s <(jq 'del(.timing)' "$file") <(jq 'del(.timing)' "$dir/cluster/cells/${file##*/}") || {
     echo "test_slurm.sh: FAILED: ${file##*/} differs" >&2

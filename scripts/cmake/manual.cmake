@@ -4,8 +4,8 @@ set(manual ${PROJECT_BINARY_DIR}/manual)
 set(made ${manual}/mosbench ${manual}/_mosbench)
 add_custom_command(
   OUTPUT ${made}
-  COMMAND mosbench completion bash > ${manual}/mosbench
-  COMMAND mosbench completion zsh > ${manual}/_mosbench
+  COMMAND mosbench help --completion bash > ${manual}/mosbench
+  COMMAND mosbench help --completion zsh > ${manual}/_mosbench
   DEPENDS mosbench
   VERBATIM)
 file(MAKE_DIRECTORY ${manual})

@@ -19,6 +19,6 @@ page() {
 }
 
 page mosbench "moving object segmentation in LiDAR scans" "$mosbench"
-"$mosbench" completion commands | while IFS=$'\t' read -r name description; do
+"$mosbench" help --completion commands | while IFS=$'\t' read -r name description; do
   page "mosbench-$name" "$description" "$mosbench" "$name"
 done

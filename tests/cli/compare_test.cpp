@@ -130,7 +130,7 @@ TEST_F(Compare, AnnotatesAPullRequest) {
   };
   const fs::path summary = folder_ / "gate.md";
   const cli::Answer worse =
-      compare_to_whole("flipped", {"--output-format", "github", "--summary", summary.string()});
+      compare_to_whole("flipped", {"--as", "github", "--out", summary.string()});
   EXPECT_EQ(worse.exit_code, 1) << worse.err;
   EXPECT_THAT(worse.out, HasSubstr("\nregression\n"));
   EXPECT_THAT(worse.out, HasSubstr("::error title=IoU of room dropped::100.0 %25 before, 97."));
@@ -138,18 +138,17 @@ TEST_F(Compare, AnnotatesAPullRequest) {
               HasSubstr("### MOS gate: REGRESSION\n\n12 paired scans\n\n| sequence | baseline"));
   EXPECT_THAT(read_file(summary), HasSubstr("\n| room | 100.0 | 97."));
 
-  const cli::Answer same =
-      compare_to_whole("whole", {"--output-format", "github", "--summary", summary.string()});
+  const cli::Answer same = compare_to_whole("whole", {"--as", "github", "--out", summary.string()});
   EXPECT_EQ(same.exit_code, 0) << same.err;
   EXPECT_THAT(same.out, Not(HasSubstr("::error")));
   EXPECT_THAT(read_file(summary), HasSubstr("### MOS gate: pass\n"));
 
   EXPECT_EQ(compare_to_whole("whole", {"-q"}).out, "");
   EXPECT_THAT(compare_to_whole("flipped", {"-q"}).out, HasSubstr("REGRESSION"));
-  const cli::Answer markdown = compare_to_whole("whole", {"--summary", "-"});
+  const cli::Answer markdown = compare_to_whole("whole", {"--out", "-"});
   EXPECT_THAT(markdown.out, testing::StartsWith("### MOS gate"));
   EXPECT_THAT(markdown.err, HasSubstr("\npass\n"));
-  EXPECT_EQ(compare_to_whole("whole", {"--json", "--output-format", "text"}).exit_code, 2);
+  EXPECT_EQ(compare_to_whole("whole", {"--json", "--as", "text"}).exit_code, 2);
 }
 
 TEST_F(Compare, RefusesUnlikeResultsUnlessTold) {

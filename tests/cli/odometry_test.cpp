@@ -108,13 +108,13 @@ TEST_F(OdometryCommand, ComparesTwoEstimatesAndDrawsThem) {
     flags.insert(flags.begin(), command.begin(), command.end());
     return run(flags);
   };
-  const cli::Answer text = asked({"--plot", path("paths.png")});
+  const cli::Answer text = asked({"--out", path("paths.png")});
   ASSERT_EQ(text.exit_code, 0) << text.err;
   EXPECT_THAT(text.out, HasSubstr("first: " + path("simple")));
   EXPECT_THAT(text.out, HasSubstr("no interval for RPE m: 7 scans, expected at least 100"));
   EXPECT_THAT(text.out, HasSubstr("no interval for APE m: one bad motion shifts all later"));
   EXPECT_EQ(read_file(folder_ / "paths.png").substr(1, 3), "PNG");
-  const cli::Answer refused = asked({"--plot", path("")});
+  const cli::Answer refused = asked({"--out", path("")});
   EXPECT_EQ(refused.exit_code, 3);
   EXPECT_THAT(refused.err, HasSubstr("is a folder, expected a file to write"));
   const ordered_json json = ordered_json::parse(asked({"--json"}).out);

@@ -36,6 +36,19 @@ constexpr OldLine kLines[] = {
     {"map-score OUT/map.ply OUT/truth.ply --same-within-m 0.1",
      "score OUT/truth.ply --map OUT/map.ply --same-within-m 0.1"},
     {"help leaderboard", "help rank"},
+    {"reproduce doals --data SIM --out OUT/no --format csv",
+     "run table:doals --data SIM --out OUT/no --as csv"},
+    {"study OUT/s.yaml --out OUT/s --profile OUT/no", "run OUT/s.yaml --out OUT/s --on OUT/no"},
+    {"study run OUT/s.yaml --out OUT/s --profile OUT/no", "run OUT/s.yaml --out OUT/s --on OUT/no"},
+    {"study plan OUT/s.yaml --measure --out OUT/s", "run OUT/s.yaml --dry-run --out OUT/s"},
+    {"study cell OUT/s.yaml 01 02 --out OUT/s", "run OUT/s.yaml --only 01,02 --out OUT/s"},
+    {"study table OUT/s.yaml --out OUT/s --format csv --output OUT/s.csv",
+     "rank OUT/s.yaml --out OUT/s --as csv -o OUT/s.csv"},
+    {"compare OUT/run OUT/run --summary OUT/s.md", "compare OUT/run OUT/run --out OUT/s.md"},
+    {"profile SIM --scans 1 --json OUT/p.json --trace -",
+     "profile SIM --scans 1 --json OUT/p.json --out -"},
+    {"trajectory OUT/t.txt --truth SIM --per-pose --plot OUT/x.png",
+     "trajectory OUT/t.txt --truth SIM --out OUT/x.png --by pose"},
     {"doctor SIM --pose-format kitti --pose-frame lidar --pose-direction map-from-sensor",
      "doctor SIM --read pose_format=kitti,pose_frame=lidar,pose_direction=map-from-sensor"},
     {"doctor SIM --max-pose-gap-s=1 --map-frame a --pose-topic b",
@@ -89,6 +102,10 @@ class OldWords : public testing::Test {
     ASSERT_EQ(ask("run SIM --out OUT/run --write scores").exit_code, 0);
     folder_->write("c.json", "{\"max_range_m\": 30}");
     folder_->write("o.json", "{}");
+    folder_->write("s.yaml",
+                   "name: s\nprotocol: sipailou\nmethods: [underwood]\ndata: {name: small, "
+                   "path: " +
+                       (*folder_ / "sim").string() + "}\n");
     ASSERT_LE(ask("odometry SIM -o OUT/t.txt").exit_code, 1);
   }
   static void TearDownTestSuite() { delete folder_; }

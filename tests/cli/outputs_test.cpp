@@ -83,7 +83,7 @@ TEST_F(Outputs, NamedAsDashAreAloneOnStdout) {
   const cli::Answer poses = cli::run({"odometry", room(), "-o", "-"});
   EXPECT_EQ(std::ranges::count(poses.out, '\n'), 6) << poses.err;
   EXPECT_FALSE(fs::exists("-"));
-  EXPECT_EQ(cli::run({"profile", room(), "--json", "-", "--trace", "-"}).exit_code, 2);
+  EXPECT_EQ(cli::run({"profile", room(), "--json", "-", "--out", "-"}).exit_code, 2);
 }
 
 TEST_F(Outputs, ThatLeadToStdoutAreWrittenThroughIt) {

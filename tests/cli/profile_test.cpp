@@ -25,7 +25,7 @@ cli::Answer profile_small(const TempFolder& folder, const std::vector<std::strin
   std::vector<std::string> arguments = {"profile",   (folder.path() / "room").string(),
                                         "--threads", "1",
                                         "--json",    (folder.path() / "profile.json").string(),
-                                        "--trace",   (folder.path() / "trace.json").string()};
+                                        "--out",     (folder.path() / "trace.json").string()};
   arguments.insert(arguments.end(), more.begin(), more.end());
   return cli::run(arguments);
 }

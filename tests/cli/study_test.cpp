@@ -50,7 +50,14 @@ disturb: {kind: range_noise_m, strengths: [0.05]}
   }
   std::string path(const std::string& name) const { return (folder_ / name).string(); }
   cli::Answer study(const std::string& action, std::vector<std::string> words = {}) const {
-    std::vector<std::string> all = {"study", action, path("s.yaml")};
+    std::vector<std::string> all = {action == "table" ? "rank" : "run", path("s.yaml")};
+    if (action == "plan") all.emplace_back("--dry-run");
+    if (action == "cell") {
+      const auto end = std::ranges::find_if(words, [](auto& word) { return word[0] == '-'; });
+      const std::vector<std::string> keys(words.begin(), end);
+      all.push_back(fmt::format("--only={}", fmt::join(keys, ",")));
+      words.erase(words.begin(), end);
+    }
     all.insert(all.end(), words.begin(), words.end());
     if (std::find(words.begin(), words.end(), "--out") == words.end()) {
       all.insert(all.end(), {"--out", path("out")});
@@ -104,10 +111,9 @@ TEST_F(Studies, AreComputedCellByCellAndGathered) {
   EXPECT_EQ(cell.at("fingerprint"), result.at("provenance").at("fingerprint"));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "out/scratch"));
   for (const char* format : {"csv", "latex", "json", "html"}) {
-    EXPECT_EQ(study("table", {"--format", format}).exit_code, 0) << format;
+    EXPECT_EQ(study("table", {"--as", format}).exit_code, 0) << format;
   }
-  EXPECT_THAT(study("table", {"--format", "csv"}).out,
-              testing::StartsWith("key,data,group,sequence,"));
+  EXPECT_THAT(study("table", {"--as", "csv"}).out, testing::StartsWith("key,data,group,sequence,"));
 }
 
 TEST_F(Studies, OfACopyOfTheDataHaveTheSameKeys) {
@@ -157,7 +163,7 @@ data:
   - {name: timeless, path: data, dataset: semantickitti, sequences: ["01"], reading: {deskew: velocity}}
 methods: [underwood]
 )");
-  const cli::Answer plan = study("plan", {"--measure"});
+  const cli::Answer plan = study("plan");
   EXPECT_EQ(plan.exit_code, 0) << plan.err;
   EXPECT_THAT(plan.err, HasSubstr("timeless 01, underwood: not measured: --deskew"));
   for (const std::string& key : keys()) study("cell", {key});
@@ -169,7 +175,7 @@ methods: [underwood]
 
 TEST_F(Studies, AreTheSameFromTwoProcessesAtOnce) {
   const std::vector<std::string> all = keys();
-  std::vector<std::string> words = {"study", "cell", path("s.yaml"), all[0], "--out", path("two")};
+  std::vector<std::string> words = {"run", path("s.yaml"), "--only", all[0], "--out", path("two")};
   const TempFolder one, two;
   const auto on_host = [](const char* name) {
     return [name] {  // without the right to it they are on one host
@@ -199,13 +205,11 @@ TEST_F(Studies, ComputeAgainWhatAnotherVersionLeft) {
 }
 
 TEST_F(Studies, TellTheHoursOnceTheyAreMeasured) {
-  EXPECT_THAT(study("plan").out, HasSubstr("--measure tells"));
-  EXPECT_THAT(study("plan", {"--measure"}).out, HasSubstr("of one core are to be computed"));
+  EXPECT_THAT(study("plan").out, HasSubstr("of one core are to be computed"));
   const std::string text = read_file(folder_ / "s.yaml");
   folder_.write("s.yaml", text + "odometry: [none]\nvary: {setting: max_range_m, values: [9]}\n");
   EXPECT_THAT(study("plan").out, HasSubstr("of one core are to be computed"));
   cli::write_small_sequence(folder_.path() / "data/sequences/01", 12);
-  EXPECT_THAT(study("plan").out, HasSubstr("--measure tells"));
 }
 
 /// A program that waits for a network or a GPU takes a core all the same, and jobs of a cluster
@@ -219,7 +223,7 @@ methods:
 odometry: [none, simple]
 )",
                                       MOSBENCH_BINARY_DIR));
-  ASSERT_EQ(study("plan", {"--measure"}).exit_code, 0);
+  ASSERT_EQ(study("plan").exit_code, 0);
   std::map<std::string, double> seconds;
   const auto plan = ordered_json::parse(study("plan", {"--json"}).out);
   for (const auto& cell : plan.at("cells")) {
@@ -228,16 +232,16 @@ odometry: [none, simple]
   EXPECT_GT(seconds["small 00, slow"], 0.3);
   EXPECT_GT(seconds["small 00, underwood, poses by simple"], seconds["small 00, underwood"]);
   ASSERT_EQ(study("cell", {keys().front()}).exit_code, 0);
-  const auto table = ordered_json::parse(study("table", {"--format", "json"}).out);
+  const auto table = ordered_json::parse(study("table", {"--as", "json"}).out);
   EXPECT_GT(table.at("cpu_s"), 0.3);
   EXPECT_GT(table.at("predicted_cpu_s"), 0.3);
 }
 
 TEST_F(Studies, GoOnWhenADiskWasFull) {
   const std::vector<std::string> all = keys();
-  std::vector<std::string> words = {"study", "cell", path("s.yaml")};
-  words.insert(words.end(), all.begin(), all.end());
-  words.insert(words.end(), {"--out", path("out")});
+  const std::vector<std::string> words = {"run",    path("s.yaml"),
+                                          "--only", fmt::format("{}", fmt::join(all, ",")),
+                                          "--out",  path("out")};
   const cli::Answer full = cli::run(words, [] {
     signal(SIGXFSZ, SIG_IGN);
     const struct rlimit small { 1000, 1000 };
@@ -262,11 +266,10 @@ TEST_F(Studies, AreRunBySnakemakeAndGoOnWhereTheyWereLeft) {
   const std::string odd = "out #1: {x}";  // neither YAML nor what Snakemake formats
   ASSERT_EQ(study("cell", {all[2], "--out", path(odd)}).exit_code, 0);
   const TempFolder streams;
-  const pid_t killed =
-      cli::start({"study", "run", path("s.yaml"), "--out", path(odd)}, streams.path(), [&] {
-        setpgid(0, 0);
-        go_there()();
-      });
+  const pid_t killed = cli::start({"run", path("s.yaml"), "--out", path(odd)}, streams.path(), [&] {
+    setpgid(0, 0);
+    go_there()();
+  });
   EXPECT_TRUE(within_10_s([&] { return cells_in(odd) > 1; })) << read_file(streams / "stderr.txt");
   kill(-killed, SIGKILL);  // Snakemake, too
   EXPECT_EQ(cli::wait_for(killed), 128 + SIGKILL);
@@ -276,7 +279,7 @@ TEST_F(Studies, AreRunBySnakemakeAndGoOnWhereTheyWereLeft) {
   EXPECT_THAT(study("run", {"--out", path(odd)}).err, HasSubstr("nothing is to be computed"));
   ASSERT_EQ(study("cell", {all[0], "--out", path("alone")}).exit_code, 0);
   EXPECT_EQ(record(odd, all[0]), record("alone", all[0]));
-  EXPECT_EQ(study("run", {"--profile", path("nothing"), "--out", path("new")}).exit_code, 2);
+  EXPECT_EQ(study("run", {"--on", path("nothing"), "--out", path("new")}).exit_code, 2);
 }
 
 /// Processes whose command names `word`.
@@ -309,8 +312,7 @@ methods: {{name: slow, method: "exec:test -d '{0}' && mkdir '{0}-again' && sleep
   const std::string left = fmt::format("out/cells/.{}-{}-00.partial", host.data(), gone);
   folder_.write(left, "half");
   const TempFolder streams;
-  const pid_t stopped =
-      cli::start({"study", "run", path("s.yaml"), "--out", path("out")}, streams.path());
+  const pid_t stopped = cli::start({"run", path("s.yaml"), "--out", path("out")}, streams.path());
   ASSERT_TRUE(within_10_s([&] { return std::filesystem::exists(started + "-again"); }))
       << read_file(streams / "stderr.txt");
   EXPECT_GT(processes_with(path("s.yaml")), 1U) << "the cell, besides the study";
@@ -331,7 +333,7 @@ methods:
   - {{name: small, method: "exec:{0}"}}
 )",
                                       MOSBENCH_BINARY_DIR "/examples/exec_client"));
-  ASSERT_EQ(study("plan", {"--measure"}).exit_code, 0);
+  ASSERT_EQ(study("plan").exit_code, 0);
   const auto costs = ordered_json::parse(read_file(folder_ / "out/costs.json"));
   std::map<std::string, double> mib;
   for (const auto& [name, cost] : costs.items()) {
@@ -352,7 +354,9 @@ data:
 methods: underwood
 )");
   for (const char* action : {"plan", "run", "table", "cell"}) {
-    const cli::Answer refused = study(action);
+    const bool is_cell = std::string_view(action) == "cell";
+    const cli::Answer refused =
+        study(action, is_cell ? std::vector<std::string>{"0123"} : std::vector<std::string>{});
     EXPECT_EQ(refused.exit_code, 2) << action;
     EXPECT_THAT(refused.err, HasSubstr("\"small\" by semantickitti-mos; \"other\" by sipailou"));
     EXPECT_THAT(refused.err, HasSubstr("give the key \"protocol:\""));
@@ -361,8 +365,8 @@ methods: underwood
 
 TEST_F(Studies, RefuseWhatIsNotUnderstood) {
   EXPECT_EQ(study("cell", {"0123"}).exit_code, 2);
-  EXPECT_EQ(study("cell").exit_code, 2);
-  EXPECT_EQ(study("fly").exit_code, 2);
+  EXPECT_EQ(cli::run({"run", path("s.yaml"), "--only"}).exit_code, 2);
+  EXPECT_EQ(cli::run({"study", "fly", path("s.yaml")}).exit_code, 2);
   folder_.write("s.yaml", "name: s\ndata: 3\nmethods: [yoon]\n");
   const cli::Answer wrong = study("plan");
   EXPECT_EQ(wrong.exit_code, 2);

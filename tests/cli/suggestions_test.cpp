@@ -128,10 +128,10 @@ methods: [underwood]
     words.insert(words.end(), study.begin(), study.end());
     return cli::run(words);
   };
-  const auto plan = nlohmann::json::parse(ask({"study", "plan", "--json"}).out);
+  const auto plan = nlohmann::json::parse(ask({"run", "--dry-run", "--json"}).out);
   const std::string key = plan.at("cells").at(0).at("key");
-  ASSERT_EQ(cli::run({"study", "cell", path("s.yaml"), key, "--out", path("out")}).exit_code, 0);
-  const auto table = nlohmann::json::parse(ask({"study", "table", "--format", "json"}).out);
+  ASSERT_EQ(cli::run({"run", path("s.yaml"), "--only", key, "--out", path("out")}).exit_code, 0);
+  const auto table = nlohmann::json::parse(ask({"rank", "--as", "json"}).out);
   ASSERT_FALSE(table.at("worst").empty());
   run_as_printed(table.at("worst").at(0).at("command"));
   EXPECT_TRUE(is_there(folder_ / "worst.html"));

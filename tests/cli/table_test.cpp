@@ -47,8 +47,8 @@ class Tables : public testing::Test {
     return ious;
   }
   cli::Answer reproduce(const std::string& layout, const std::string& format) const {
-    return cli::run({"reproduce", layout, "--data", (folder_ / layout).string(), "--out",
-                     (folder_ / ("out-" + layout)).string(), "--format", format});
+    return cli::run({"run", "table:" + layout, "--data", (folder_ / layout).string(), "--out",
+                     (folder_ / ("out-" + layout)).string(), "--as", format});
   }
   /// Every measured cell is not comparable because its data is simulated.
   void expect_nothing_compared(const nlohmann::json& table) const {
@@ -274,8 +274,8 @@ TEST_F(Tables, AreNotReproducedFromAnotherDataSet) {
         Case{"helimos", "semantickitti", "semantickitti", "HeLiMOS"},
         Case{"doals", "doals", "doals with mall/sequence_1", "station/sequence_1"}}) {
     const cli::Answer answer =
-        cli::run({"reproduce", wrong.name, "--data", (folder_ / wrong.folder).string(), "--out",
-                  (folder_ / "out").string()});
+        cli::run({"run", std::string("table:") + wrong.name, "--data",
+                  (folder_ / wrong.folder).string(), "--out", (folder_ / "out").string()});
     EXPECT_EQ(answer.exit_code, 3) << wrong.name << answer.out;
     EXPECT_THAT(answer.err, HasSubstr(wrong.found));
     EXPECT_THAT(answer.err, HasSubstr(wrong.expected));
@@ -294,7 +294,7 @@ TEST_F(Tables, ArePrintedWithoutResultsInEveryFormat) {
   EXPECT_EQ(cli::run({"table", "IV"}).exit_code, 2);
   EXPECT_EQ(cli::run({"table", "I", "--format", "word"}).exit_code, 2);
   EXPECT_EQ(cli::run({"table", "I", (folder_ / "nowhere").string()}).exit_code, 3);
-  EXPECT_EQ(cli::run({"reproduce", "kitti", "--data", folder_.path().string()}).exit_code, 2);
+  EXPECT_EQ(cli::run({"run", "table:kitti", "--data", folder_.path().string()}).exit_code, 2);
 }
 
 }  // namespace

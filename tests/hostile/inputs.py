@@ -12,7 +12,7 @@ READING = [
     RUN, f"{RUN} --json", f"{RUN} --perturb pose_noise_m=0.05,dropout_probability=0.2,fog_per_m=0.02,seed=3",
     f"{RUN} --scores --odometry kiss", "doctor data", "doctor data --json",
     "odometry data -o out.txt --threads 1", "odometry data -o out.tum --odometry kiss --json --threads 1",
-    "profile data --scans 3 --json p.json --trace t.json", *(f"convert data --layout {layout} --out out" for layout in LAYOUTS),
+    "profile data --scans 3 --json p.json -o t.json", *(f"convert data --layout {layout} --out out" for layout in LAYOUTS),
     "score data --predictions predicted --json", "score data --predictions predicted --protocol all",
     "breakdown data --predictions predicted --json",
 ]
@@ -81,7 +81,7 @@ def _sequences(trees):
         yield Kind(name, kitti, re.compile(pattern), READING)
     doals = _prefixed(trees, data="doals", predicted="doals_run")
     yield Kind("indices.csv", doals, re.compile(r"indices\.csv$"), READING)
-    reproduce = "reproduce {} --data data --out out --threads 1"
+    reproduce = "run table:{} --data data --out out --threads 1"
     yield Kind("data set doals", doals, re.compile(r"^data/"), [*READING, reproduce.format("doals")])
     for layout in ("sipailou", "helimos"):
         tree = _prefixed(trees, data=layout, predicted="predicted_all")
@@ -117,7 +117,7 @@ def _poses(trees):
             f"{RUN} --poses poses/{name} --pose-direction sensor-from-map",
             f"trajectory poses/{name} --truth poses/kitti.txt --json",
             f"trajectory poses/kitti.txt --truth poses/{name} --align rigid",
-            f"trajectory poses/{name} --truth poses/poses.tum --delta-m 1 --all-pairs --per-pose --json",
+            f"trajectory poses/{name} --truth poses/poses.tum --delta 1m,all --by pose --json",
             "trajectory poses --truth poses --csv"])
 
 
@@ -162,7 +162,7 @@ def _texts(trees, published):
                for layout in ("doals", "sipailou", "semantickitti", "opensceneflow")]
     yield Kind("scene", tree, re.compile("^scene.json$"), layouts)
     yield Kind("study", tree, re.compile("^study.yaml$"), [
-        "study plan study.yaml --out out", "study plan study.yaml --json --out out", "study table study.yaml --out out"])
+        "run study.yaml --dry-run --out out", "run study.yaml --dry-run --json --out out", "rank study.yaml --out out"])
     rows = _prefixed(trees, run="doals_run") | {"published.csv": published}
     yield Kind("published rows", rows, re.compile("^published.csv$"), [
         f"table {name} run --published published.csv --format {form}"

@@ -23,7 +23,7 @@ ENVIRONMENT = {
 SANITIZER = re.compile(r"ERROR: \w*Sanitizer|WARNING: ThreadSanitizer|runtime error:")
 DOCUMENTED = {0, 1, 2, 3}
 # Commands whose finding can be bad.
-MAY_FIND = {"compare", "doctor", "odometry", "study"}
+MAY_FIND = {"compare", "doctor", "odometry", "rank"}
 
 
 @dataclass(frozen=True)

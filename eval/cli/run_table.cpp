@@ -1,16 +1,12 @@
+#include "eval/cli/run_table.hpp"
+
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
-#include <memory>
 
-#include "core/base/thread_pool.hpp"
 #include "datasets/layouts/simulated_origin.hpp"
 #include "datasets/text/errors.hpp"
-#include "eval/cli/commands.hpp"
-#include "eval/cli/dataset_flags.hpp"
-#include "eval/cli/help_text.hpp"
 #include "eval/engine/run_execute.hpp"
 #include "eval/job/presets.hpp"
 #include "eval/result/tell.hpp"
@@ -32,10 +28,10 @@ const Recipe& recipe_named(const std::string& name) {
       Recipe{"doals", "I", {"doals-20m", "doals-120m"}}, Recipe{"sipailou", "II", {"sipailou"}},
       Recipe{"helimos", "III", {"helimos", "helimos-delayed"}}};
   for (const Recipe& recipe : kRecipes) {
-    if (recipe.dataset == name) return recipe;
+    if (recipe.dataset == name || recipe.table == name) return recipe;
   }
   throw UsageError(
-      fmt::format("reproduce: '{}' is not known, expected doals, sipailou or helimos", name));
+      fmt::format("table:{}: is not known, expected table:I, table:II or table:III", name));
 }
 
 /// A method of a table's rows, their protocol and ranges.
@@ -68,14 +64,6 @@ std::vector<TableMethod> methods_of(const PaperTable& table,
   return found;
 }
 
-struct ReproduceFlags {
-  std::string name;
-  std::filesystem::path root;
-  std::optional<std::filesystem::path> out;
-  std::vector<std::string> sequences;
-  unsigned threads = hardware_threads();
-};
-
 /// Says whether the recognised layout can be the wanted data set: Sipailou looks like
 /// SemanticKITTI, the layout of anything without a mark of its own.
 bool can_be(DatasetKind found, std::string_view wanted, const std::filesystem::path& root) {
@@ -85,8 +73,7 @@ bool can_be(DatasetKind found, std::string_view wanted, const std::filesystem::p
 
 /// Throws DataError unless a sequence of the table is there, before hours are spent on no cell of
 /// it.
-void check_is_in_table(const ReproduceFlags& options, const Recipe& recipe,
-                       const PaperTable& table) {
+void check_is_in_table(const TableRun& options, const Recipe& recipe, const PaperTable& table) {
   std::optional<DatasetKind> found;
   std::vector<std::string> names;
   for (const SequenceFolder& folder :
@@ -108,12 +95,12 @@ void check_is_in_table(const ReproduceFlags& options, const Recipe& recipe,
                   fmt::join(wanted, ", "), table.name, table.download));
 }
 
-RunOptions options_of(const ReproduceFlags& options, const std::string& preset,
+RunOptions options_of(const TableRun& options, const Recipe& recipe, const std::string& preset,
                       const TableMethod& method, const std::filesystem::path& out) {
   const bool is_papers = method.kind == &default_method();
   RunOptions run;
   run.input = options.root;
-  run.dataset = options.name;
+  run.dataset = std::string(recipe.dataset);
   run.sequences = options.sequences;
   run.preset = preset;
   run.method = std::string(method.kind->name);
@@ -123,17 +110,20 @@ RunOptions options_of(const ReproduceFlags& options, const std::string& preset,
   return run;
 }
 
-Answer reproduce(const ReproduceFlags& options) {
+}  // namespace
+
+Answer run_table(const TableRun& options) {
   const Recipe& recipe = recipe_named(options.name);
   const PaperTable& table = paper_table_named(recipe.table);
   check_is_in_table(options, recipe, table);
-  const std::filesystem::path out = options.out.value_or("results/runs/reproduce-" + options.name);
+  const std::filesystem::path out =
+      options.out.value_or(fmt::format("results/runs/reproduce-{}", recipe.dataset));
   const std::vector<PublishedCell> cells = built_in_cells();
   std::vector<ResultSet> runs;
   for (const TableMethod& method : methods_of(table, cells)) {
     for (const std::string& preset : recipe.presets) {
       if (!method.has_row_for(preset)) continue;
-      const RunOptions run = options_of(options, preset, method, out);
+      const RunOptions run = options_of(options, recipe, preset, method, out);
       tell(fmt::format("method {}, preset {}", method.kind->name, preset));
       execute_run(plan_run(run));
       runs.push_back(load_result_set(*run.out));
@@ -141,24 +131,6 @@ Answer reproduce(const ReproduceFlags& options) {
   }
   for (const std::string& sentence : left_out(table, runs)) tell(sentence);
   return table_answer(fill_table(table, cells, runs));
-}
-
-}  // namespace
-
-CommandRun add_reproduce(CLI::App& command) {
-  auto options = std::make_shared<ReproduceFlags>();
-  command.add_option("DATASET", options->name, "doals, sipailou or helimos")->required();
-  command.add_option("--data", options->root, "Root of the data set")->type_name("DIR")->required();
-  command
-      .add_option("--out", options->out,
-                  "Folder of the results (default: results/runs/reproduce-...)")
-      ->type_name("DIR");
-  command.add_option("--sequences", options->sequences, "Only these sequences, a,b (default: all)")
-      ->type_name("NAMES")
-      ->delimiter(',')
-      ->allow_extra_args(false);
-  add_threads_flag(command, options->threads);
-  return [options] { return reproduce(*options); };
 }
 
 }  // namespace mosbench
