@@ -25,8 +25,6 @@
 namespace mosbench {
 namespace {
 
-constexpr const char* kJobGroup = "Of JOB.yaml and table:NAME";
-
 /// Of --write, as the products that are made from labels.
 constexpr const char* kScores = "scores";
 
@@ -106,23 +104,23 @@ void add_job_flags(CLI::App& command, RunFlags& flags) {
   command
       .add_flag("--dry-run", job.dry_run,
                 "Of JOB.yaml: count what is done and missing, and tell how long that takes")
-      ->group(kJobGroup);
+      ->group(kRareGroup);
   command
       .add_option("--on", job.profile, "Where: local, slurm, or the folder of a Snakemake profile")
       ->type_name("PROFILE")
-      ->group(kJobGroup);
+      ->group(kRareGroup);
   command.add_option("--only", job.keys, "Compute only the cells with these keys, here")
       ->type_name("KEYS")
       ->delimiter(',')
       ->allow_extra_args(false)
-      ->group(kJobGroup);
-  command.add_flag("--yes", job.yes, "Compute more than 100 cells")->group(kJobGroup);
+      ->group(kRareGroup);
+  command.add_flag("--yes", job.yes, "Compute more than 100 cells")->group(kRareGroup);
   command.add_option("-o", job.output, "File of the table; - is stdout")
       ->type_name("FILE")
-      ->group(kJobGroup);
+      ->group(kRareGroup);
   command.add_option("--data", flags.data, "Of table:NAME: the folder of its data set")
       ->type_name("DIR")
-      ->group(kJobGroup);
+      ->group(kRareGroup);
 }
 
 }  // namespace
