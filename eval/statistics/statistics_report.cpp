@@ -137,8 +137,7 @@ ordered_json provenance_json(const ResultSet& set) {
 
 namespace {
 
-ordered_json statistics_json(const ResultSet& set, bool per_scan) {
-  const RunStatistics statistics = run_statistics(set);
+ordered_json statistics_json(const ResultSet& set, const RunStatistics& statistics, bool per_scan) {
   ordered_json json = provenance_json(set);
   json["confidence"] = kConfidence;
   json["sequences"] = ordered_json::array();
@@ -186,7 +185,7 @@ Answer statistics_answer(const ResultSet& set, bool per_scan) {
   return {.standing = standing_of(set),
           .sheets = {std::move(sheet)},
           .records = scan_sheet(set),
-          .json = json_text(statistics_json(set, per_scan))};
+          .json = json_text(statistics_json(set, statistics, per_scan))};
 }
 
 Answer difference_answer(const ResultSet& first, const ResultSet& second,

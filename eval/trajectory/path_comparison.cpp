@@ -9,7 +9,6 @@
 
 #include "datasets/text/errors.hpp"
 #include "eval/answer/answer_text.hpp"
-#include "eval/answer/render.hpp"
 #include "eval/statistics/statistics_report.hpp"
 
 namespace mosbench {
@@ -219,15 +218,9 @@ Sheet path_differences_sheet(std::span<const PathDifference> differences) {
 nlohmann::ordered_json path_differences_json(std::span<const PathDifference> differences) {
   nlohmann::ordered_json rows = nlohmann::ordered_json::object();
   for (const PathDifference& row : differences) {
-    const Difference& found = row.difference;
     nlohmann::ordered_json& json = rows[std::string(row.name)];
-    json = {{"first", json_or_null(row.first)},
-            {"second", json_or_null(row.second)},
-            {"value", json_or_null(found.value)},
-            {"standard_error", json_or_null(found.standard_error)}};
-    json.update(interval_json(spread_of(found)));
-    json["p_value"] = json_or_null(found.p_value);
-    json["smallest_detectable"] = json_or_null(found.smallest_detectable);
+    json = {{"first", json_or_null(row.first)}, {"second", json_or_null(row.second)}};
+    json.update(to_json(row.difference));
   }
   return rows;
 }
