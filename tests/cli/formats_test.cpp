@@ -18,7 +18,7 @@ using testing::StartsWith;
 
 /// A line for every command, some with several answers. SIM is a simulated data set, SIPAILOU one
 /// of a paper's table, and OUT a folder; NEW is another one each time.
-constexpr const char* kLines[] = {
+constexpr const char* kAnswered[] = {
     "simulate --layout semantickitti --scene room --scans 2 --seed 1 --out NEW",
     "run SIM --out OUT/run",
     "profile SIM --scans 2",
@@ -97,11 +97,11 @@ void expect_format(const std::string& out, Format format) {
 
 TEST_F(Formats, OfEveryCommandAreAllTakenOrClearlyRefused) {
   for (const Command& command : commands()) {
-    EXPECT_TRUE(std::ranges::any_of(kLines, [&](const std::string& line) {
+    EXPECT_TRUE(std::ranges::any_of(kAnswered, [&](const std::string& line) {
       return line.starts_with(command.name);
     })) << command.name;
   }
-  for (const std::string line : kLines) {
+  for (const std::string line : kAnswered) {
     for (const std::string_view name : format_names()) {
       const std::string asked = fmt::format("{} --as {}", line, name);
       SCOPED_TRACE(asked);
