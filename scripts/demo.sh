@@ -25,7 +25,7 @@ show() {
 # segment LAYOUT SCENE PRESET RUNS: segments and scores a data set; a row per sequence.
 segment() {
   local data=$demo/$1 runs=$4 run=$demo/$1-$3-run.json score=$demo/$1-$3-score.json
-  "$mosbench" run "$data" --preset "$3" --scores --out "$runs" --json >"$run"
+  "$mosbench" run "$data" --preset "$3" --write scores --out "$runs" --json >"$run"
   "$mosbench" score "$data" --predictions "$runs" --json \
     --protocol "$(jq -r .protocol "$run")" >"$score"
   # Scoring the label files again must give the numbers of the run.

@@ -51,7 +51,7 @@ class Config(collections.abc.Mapping):
 
     @classmethod
     def load(cls, file: Union[str, os.PathLike], method: str = "hmm-mos") -> "Config":
-        """Returns the defaults with the settings of a JSON object over them, as `--config` does."""
+        """Returns the defaults with the settings of a JSON object over them, as `--set @FILE` does."""
         settings = plain_errors(_mosbench.method_settings, method, None)
         with open(file, "rb"):
             pass  # OSError where there is no such file; ValueError is for what is in it

@@ -17,7 +17,7 @@ if ! "$python" -c 'import numpy' 2> /dev/null; then
   echo "numpy is not there: the Python client was not run"
   exit 0
 fi
-mosbench run "$work/sim" --method "exec:$python $here/client.py" --scores --out "$work/python"
+mosbench run "$work/sim" --method "exec:$python $here/client.py" --write scores --out "$work/python"
 diff -r "$work/runs/exec/08/labels" "$work/python/08/labels"
-mosbench curve "$work/python"
+mosbench stats "$work/python" --by threshold
 echo "both clients give the same labels"
