@@ -11,7 +11,7 @@
 #include <variant>
 #include <vector>
 
-#include "datasets/sequence/reading_options.hpp"
+#include "datasets/sequence/reading.hpp"
 
 namespace mosbench {
 
@@ -35,11 +35,11 @@ class Facts {
 /// The change of the reading options that mends a fault; none where reading cannot.
 struct Remedy {
   std::optional<PoseFrame> pose_frame = std::nullopt;
-  std::optional<bool> poses_inverse = std::nullopt;
+  std::optional<PoseDirection> pose_direction = std::nullopt;
 
-  explicit operator bool() const { return pose_frame || poses_inverse; }
+  explicit operator bool() const { return pose_frame || pose_direction; }
   bool operator==(const Remedy&) const = default;
-  ReadingOptions applied_to(ReadingOptions reading) const;
+  Reading applied_to(Reading reading) const;
 };
 
 /// Of a note all may be well, with a warning results are doubtful, with an error there are none.

@@ -63,7 +63,7 @@ void add_frames(const std::vector<Pose>& given, const std::optional<Pose>& camer
   conventions.push_back(changed("sensor_from_map (inverse)",
                                 "run with --pose-direction sensor-from-map", given,
                                 [](const Pose& pose) { return pose.inverse(); }));
-  conventions.back().remedy.poses_inverse = true;
+  conventions.back().remedy.pose_direction = PoseDirection::kSensorFromMap;
   conventions.push_back(changed("with transposed rotations", "write each row's rotation row by row",
                                 given, [&](const Pose& read) {
                                   Pose pose = stored(read);
@@ -197,9 +197,9 @@ PoseConvention fitted(const PoseConvention& given, const MeasuredMotions& measur
 
 }  // namespace
 
-ReadingOptions Remedy::applied_to(ReadingOptions reading) const {
+Reading Remedy::applied_to(Reading reading) const {
   if (pose_frame) reading.pose_frame = *pose_frame;
-  if (poses_inverse) reading.poses_inverse = poses_inverse;
+  if (pose_direction) reading.pose_direction = pose_direction;
   return reading;
 }
 

@@ -122,7 +122,7 @@ class Examination {
       part.remarks = sequence.remarks();
       part.labelled_scans = scans_with_truth(sequence).size();
       part.facts = folder_facts_[folders[i].name];
-      part.has_poses = !options.reading.poses_by_odometry;
+      part.has_poses = !options.reading.is_by_odometry();
       check_points(sequence, folder, expected, part);
       if (!part.has_poses) continue;
       check_poses(sequence, folder, part);
@@ -186,7 +186,7 @@ class Examination {
           check_opened(options, {folder});
         } catch (const MissingPoses& error) {
           missing.push_back(symptom_of(error, path_));
-          options.reading.poses_by_odometry = true;
+          options.reading.poses = ByOdometry{};
           check_opened(options, {folder});
         }
       });
@@ -205,11 +205,7 @@ class Examination {
 
 }  // namespace
 
-bool tr_is_applied(const ReadingStatement& reading) {
-  return std::ranges::any_of(reading, [](const auto& statement) {
-    return statement.first == "pose_frame" && statement.second.starts_with("camera");
-  });
-}
+bool tr_is_applied(const ReadingDone& reading) { return reading.poses.frame == PoseFrame::kCamera; }
 
 std::vector<Pose> poses_of(const Sequence& sequence) {
   std::vector<Pose> poses;

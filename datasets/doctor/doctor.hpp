@@ -30,7 +30,7 @@ struct LabelEvidence {
 struct SequenceCheckup {
   std::string name;
   std::size_t scans = 0, labelled_scans = 0, scans_read = 0;
-  ReadingStatement reading;
+  ReadingDone reading;
   std::vector<std::string> remarks;
   std::map<std::uint32_t, std::size_t> points_of_id;  ///< label ids of the scans read
   std::vector<std::size_t> points_of_range;           ///< per bin of `range_bins_m`
@@ -90,7 +90,7 @@ void examine_labels(const Sequence& sequence, SequenceCheckup& checkup);
 std::vector<std::size_t> scans_with_labels(const Sequence& sequence);
 
 /// Returns whether the poses read were turned from the camera of Tr in calib.txt to the lidar.
-bool tr_is_applied(const ReadingStatement& reading);
+bool tr_is_applied(const ReadingDone& reading);
 std::vector<Pose> poses_of(const Sequence& sequence);
 double share(std::size_t part, std::size_t whole);
 

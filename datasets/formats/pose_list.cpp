@@ -14,8 +14,6 @@
 namespace mosbench {
 namespace {
 
-constexpr std::array<std::pair<PoseFormat, std::string_view>, 3> kNames = {
-    {{PoseFormat::kKitti, "kitti"}, {PoseFormat::kTum, "tum"}, {PoseFormat::kRollout, "dynablox"}}};
 constexpr std::array<const char*, 3> kRowNames = {"12 numbers (row-major 3x4 matrix)",
                                                   "stamp tx ty tz qx qy qz qw, blanks between",
                                                   "tx,ty,tz,qx,qy,qz,qw"};
@@ -69,14 +67,13 @@ std::int64_t parse_stamp(const std::vector<std::string_view>& words, const PoseL
 }  // namespace
 
 std::string_view to_string(PoseFormat format) {
-  return std::ranges::find(kNames, format, &std::pair<PoseFormat, std::string_view>::first)->second;
+  return kPoseFormatNames[static_cast<std::size_t>(format)];
 }
 
 std::optional<PoseFormat> pose_format_from_string(std::string_view name) {
-  for (const auto& [format, known] : kNames) {
-    if (known == name) return format;
-  }
-  return std::nullopt;
+  const auto found = std::ranges::find(kPoseFormatNames, name);
+  if (found == kPoseFormatNames.end()) return std::nullopt;
+  return static_cast<PoseFormat>(found - kPoseFormatNames.begin());
 }
 
 PoseList parse_pose_list(std::string_view text, std::optional<PoseFormat> format,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <mosbench/scan.hpp>
@@ -15,6 +16,8 @@ enum class PoseFormat : std::uint8_t {
   kTum,     ///< "stamp_s tx ty tz qx qy qz qw", separated by blanks; lines with # are comments
   kRollout  ///< "tx,ty,tz,qx,qy,qz,qw" of Dynablox's drift simulation, sensor_from_map
 };
+
+inline constexpr std::array<std::string_view, 3> kPoseFormatNames = {"kitti", "tum", "dynablox"};
 
 std::string_view to_string(PoseFormat format);
 /// Returns nothing when the name is not one of kitti, tum, dynablox.

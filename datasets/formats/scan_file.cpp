@@ -100,8 +100,8 @@ void check_usual_bin_columns(std::span<const StemFile> scans) {
                     fmt::format("seems to hold {} float32 per point rather than {} (x y z "
                                 "intensity)",
                                 *columns, kUsualBinColumns),
-                    fmt::format("--bin-columns {}, or {} if it is as it should be", *columns,
-                                kUsualBinColumns));
+                    fmt::format("{}, or {} if it is as it should be",
+                                option("bin_columns", std::to_string(*columns)), kUsualBinColumns));
   }
 }
 

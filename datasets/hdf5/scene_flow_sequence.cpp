@@ -42,24 +42,20 @@ bool is_list_of(const Hdf5Array& array, std::uint64_t points) {
 }  // namespace
 
 SceneFlowSequence::SceneFlowSequence(std::string name, const std::filesystem::path& file,
-                                     const ReadingOptions& options)
+                                     const Reading& asked)
     : file_(file, scene_flow::kAll),
-      moving_speed_m_s_(options.moving_speed_m_s.value_or(kFlowMovingSpeed_m_s)) {
-  if (options.point_times == PointTimes::kColumn) {
-    throw UsageError("--point-times column: " + file.string() +
-                     " holds points that are moved to the stamp already, expected .bin files");
-  }
+      moving_speed_m_s_(asked.moving_speed_m_s.value_or(kFlowMovingSpeed_m_s)) {
   Recording& recording = mutable_recording();
   recording.name = SequenceName(std::move(name), file);
   recording.files = {file};
-  recording.reading = {{"scan_files", file.filename().string()}};
+  recording.reading.scan_files = file.filename().string();
   list_scans();
-  take_poses(options);
-  state_truth(options);
+  take_poses(asked);
+  state_truth(asked);
 }
 
 /// Labels that `convert` wrote stand in place of the flow.
-void SceneFlowSequence::state_truth(const ReadingOptions& options) {
+void SceneFlowSequence::state_truth(const Reading& asked) {
   bool by_labels = false;
   std::size_t by_flow = 0, by_any_flow = 0;
   for (std::size_t k = 0; k < scans_.size(); ++k) {
@@ -70,18 +66,17 @@ void SceneFlowSequence::state_truth(const ReadingOptions& options) {
       if (find_array(*scans_[k].group, scene_flow::kValid) == nullptr) ++by_any_flow;
     }
   }
-  if (by_labels && by_flow == 0 && options.moving_speed_m_s) {
+  if (by_labels && by_flow == 0 && asked.moving_speed_m_s) {
     throw UsageError(fmt::format(
-        "--moving-speed-m-s: the truth of {} is its array {}, without speeds, expected no such "
-        "flag, or files with flow",
-        file_.path().string(), scene_flow::kLabel));
+        "{}: the truth of {} is its array {}, without speeds, expected no such flag, or files with "
+        "flow",
+        option("moving_speed_m_s"), file_.path().string(), scene_flow::kLabel));
   }
   const std::string flow = fmt::format("flow, moving from {:g} m/s on", moving_speed_m_s_);
   const std::string labels(scene_flow::kLabel);
-  mutable_recording().reading.emplace_back("truth", !by_labels ? flow
-                                                    : by_flow > 0
-                                                        ? fmt::format("{}, else {}", labels, flow)
-                                                        : labels);
+  mutable_recording().reading.truth = !by_labels    ? flow
+                                      : by_flow > 0 ? fmt::format("{}, else {}", labels, flow)
+                                                    : labels;
   if (by_any_flow > 0) {
     mutable_recording().remarks.push_back(
         fmt::format("{} flow without {}: all of it is taken for valid",
@@ -155,7 +150,7 @@ void SceneFlowSequence::convert_stamps() {
     std::ranges::nth_element(steps, middle);
     is_us = *middle < kLongestUs;
   }
-  mutable_recording().reading.emplace_back("stamps", is_us ? "us" : "ns");
+  mutable_recording().reading.stamps = is_us ? "us" : "ns";
   if (!is_us) return;
   for (Scan& scan : scans_) {
     if (scan.stamp_ns > std::numeric_limits<std::int64_t>::max() / kThousand) {
@@ -183,45 +178,29 @@ void SceneFlowSequence::require_poses(bool of_all) const {
     }
     throw MissingPoses(
         file_.path(), lack,
-        "pose (4, 4) in each group, in a file given by --poses, or found by odometry");
+        fmt::format("pose (4, 4) in each group, in a file given by {}, or found by odometry",
+                    option("poses")));
   }
 }
 
-void SceneFlowSequence::take_poses(const ReadingOptions& options) {
+void SceneFlowSequence::take_poses(const Reading& asked) {
   Recording& recording = mutable_recording();
-  const bool by_file = !options.poses && !options.poses_by_odometry;
-  require_poses(by_file);
-  if (by_file) {
-    for (std::size_t k = 0; k < scans_.size(); ++k) enter(k, *scans_[k].map_from_sensor, false);
-    recording.reading.emplace_back("poses", "pose of each group");
-    recording.reading.emplace_back("pose_direction", "map_from_sensor");
-    state_pose_origin(file_.path(), recording.reading, recording.remarks);
-    return;
-  }
-  std::vector<std::int64_t> stamps_ns;
-  for (const Scan& scan : scans_) stamps_ns.push_back(scan.stamp_ns);
-  const SensorPoses poses = read_sensor_poses(file_.path().parent_path(), "poses.txt", options,
-                                              {scans_.size(), stamps_ns});
+  require_poses(asked.has_own_poses());
   for (std::size_t k = 0; k < scans_.size(); ++k) {
-    enter(k, poses.map_from_sensor[k], std::ranges::binary_search(poses.unknown, k));
+    ScanEntry& entry = recording.scans.emplace_back();
+    entry.stem = scans_[k].group->name;
+    entry.stamp_ns = scans_[k].stamp_ns;
+    entry.points = scans_[k].points;
+    entry.has_truth = has_flow(k) || has_labels(k);
   }
-  add_statements(poses, recording);
-}
-
-void SceneFlowSequence::enter(std::size_t scan, const Pose& map_from_sensor, bool is_left_out) {
-  ScanEntry entry;
-  entry.stem = scans_[scan].group->name;
-  entry.stamp_ns = scans_[scan].stamp_ns;
-  entry.points = scans_[scan].points;
-  entry.map_from_sensor = map_from_sensor;
-  Recording& recording = mutable_recording();
-  if (is_left_out) {
-    recording.left_out.push_back(std::move(entry));
+  if (!asked.has_own_poses()) {
+    places_ = place_scans(file_.path().parent_path(), "poses.txt", asked, recording);
     return;
   }
-  entry.has_truth = has_flow(scan) || has_labels(scan);
-  recording.scans.push_back(std::move(entry));
-  places_.push_back(scan);
+  SensorPoses own = own_poses("pose of each group", file_.path());
+  own.done.frame.reset();
+  for (const Scan& scan : scans_) own.map_from_sensor.push_back(scan.map_from_sensor);
+  places_ = place_scans(std::move(own), recording);
 }
 
 /// Returns the number of points, which every array has that tells something of them.

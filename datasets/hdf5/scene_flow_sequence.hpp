@@ -16,9 +16,8 @@ namespace mosbench {
 /// has a flow to the next one, from which truth is computed by speed; or `mos_label`.
 class SceneFlowSequence : public Sequence {
  public:
-  /// Throws DataError, UsageError for times of points in a column.
-  SceneFlowSequence(std::string name, const std::filesystem::path& file,
-                    const ReadingOptions& options);
+  /// Throws DataError.
+  SceneFlowSequence(std::string name, const std::filesystem::path& file, const Reading& asked);
 
   using Sequence::read;
   void read(std::size_t scan_index, Frame& frame) const override;
@@ -36,9 +35,8 @@ class SceneFlowSequence : public Sequence {
   void list_scans();
   void convert_stamps();
   void require_poses(bool of_all) const;
-  void take_poses(const ReadingOptions& options);
-  void state_truth(const ReadingOptions& options);
-  void enter(std::size_t scan, const Pose& map_from_sensor, bool is_left_out);
+  void take_poses(const Reading& asked);
+  void state_truth(const Reading& asked);
   Scan scan_of(const Hdf5Group& group, std::uint64_t stamp) const;
   Pose pose_in(const Hdf5Group& group, std::string_view name) const;
   std::size_t check_points(const Hdf5Group& group) const;

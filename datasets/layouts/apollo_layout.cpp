@@ -12,14 +12,13 @@ std::vector<SequenceFolder> list_apollo(const std::filesystem::path& path) {
   return list_with(path, "velodyne");
 }
 
-std::unique_ptr<Sequence> open_apollo(const SequenceFolder& sequence,
-                                      const ReadingOptions& options) {
+std::unique_ptr<Sequence> open_apollo(const SequenceFolder& sequence, const Reading& asked) {
   SequenceLayout layout;
   if (is_there(sequence.folder / kApolloPoses)) {
     layout.folder.poses_file = kApolloPoses;
     layout.folder.poses_of_lidar = true;
   }
-  return std::make_unique<KittiSequence>(sequence.name, sequence.folder, options, layout);
+  return std::make_unique<KittiSequence>(sequence.name, sequence.folder, asked, layout);
 }
 
 std::optional<std::string> recognise_apollo(const std::filesystem::path& path) {

@@ -107,18 +107,16 @@ std::string statement_of(const Dataset& dataset, const ConvertOptions& options) 
                                  {"compression", options.writing.compression}};
   for (const auto& sequence : dataset.sequences) {
     json["sequences"].push_back({{"name", sequence->name()},
-                                 {"reading", sequence->reading()},
+                                 {"reading", members_of(sequence->reading())},
                                  {"file_stamp", file_stamp(*sequence)}});
   }
   return json.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
-/// Returns what --perturb said of the data set; empty where it was read as it is.
+/// Returns how the data set was disturbed; empty where it was read as it is.
 std::string disturbance_of(const Dataset& dataset) {
-  for (const auto& [what, how] : dataset.sequences.front()->reading()) {
-    if (what == "perturb") return how;
-  }
-  return "";
+  const auto& perturb = dataset.sequences.front()->reading().perturb;
+  return perturb ? to_string(*perturb) : "";
 }
 
 void write_shared_files(const Dataset& dataset, const ConvertOptions& options) {
@@ -239,7 +237,7 @@ std::vector<std::string> convert(
       } else {
         if (options.before_sequence) options.before_sequence(i);
         convert_sequence(sequence, *layout.writer->open(folder, writing), lost, advance);
-        write_pose_origin(pose_file, pose_origin_of(sequence.reading()));
+        write_pose_origin(pose_file, pose_origin_of(sequence.reading().poses));
       }
     }
     unfinished.finish();

@@ -141,27 +141,23 @@ ListedSequences list_sequences(const std::filesystem::path& path, const OpenOpti
   return {layout, keep_named(std::move(found), options.sequences)};
 }
 
-/// A bag says whether its points have times, which only it may have without --point-times.
-bool says_undistortion(const Sequence& sequence) {
-  return std::ranges::any_of(sequence.reading(),
-                             [](const auto& line) { return line.first == "undistortion"; });
-}
-
 /// The sequence with the times of its points, and deskewed by them unless its poses are found
 /// later.
 std::unique_ptr<Sequence> with_point_times(std::unique_ptr<Sequence> sequence,
-                                           const ReadingOptions& reading) {
+                                           const Reading& reading) {
   if (!reading.undistorts()) return sequence;
-  if (reading.deskew && !reading.point_times && !says_undistortion(*sequence)) {
-    throw UsageError("--deskew: the points of " + sequence->name() +
-                     " have no times, expected --point-times column or azimuth");
+  // Of all recordings, only a bag says whether its points have times.
+  if (reading.deskew && !reading.point_times && !sequence->reading().undistortion) {
+    throw UsageError(fmt::format("{}: the points of {} have no times, expected {} or azimuth",
+                                 option("deskew"), sequence->name(),
+                                 option("point_times", "column")));
   }
   if (reading.point_times == PointTimes::kAzimuth) {
     sequence = std::make_unique<AzimuthTimes>(std::move(sequence));
   }
   const Deskew by = reading.deskew.value_or(Deskew::kPoses);
   const bool has_times = reading.point_times || by == Deskew::kVelocity;
-  if (reading.poses_by_odometry || !has_times) return sequence;
+  if (reading.is_by_odometry() || !has_times) return sequence;
   return std::make_unique<DeskewedSequence>(std::move(sequence), by);
 }
 
@@ -176,20 +172,43 @@ std::filesystem::path pose_file_in(const std::filesystem::path& folder, const st
                               name));
 }
 
-ReadingOptions reading_of(const SequenceFolder& sequence, ReadingOptions reading) {
+Reading reading_of(const SequenceFolder& sequence, Reading reading) {
+  const std::filesystem::path* poses = reading.pose_file();
   std::error_code ignored;
-  if (reading.poses && std::filesystem::is_directory(*reading.poses, ignored)) {
-    reading.poses = pose_file_in(*reading.poses, sequence.name);
+  if (poses != nullptr && std::filesystem::is_directory(*poses, ignored)) {
+    reading.poses = PoseFile{pose_file_in(*poses, sequence.name)};
   }
   return reading;
 }
 
-void check_pose_file(const ReadingOptions& reading, const std::vector<SequenceFolder>& folders) {
+/// Refuses what was asked of sequences that cannot have it.
+void check_asked(const Reading& asked, const Layout& layout,
+                 const std::vector<SequenceFolder>& folders) {
+  const std::filesystem::path* poses = asked.pose_file();
   std::error_code ignored;
-  if (!reading.poses || folders.size() == 1) return;
-  if (std::filesystem::is_directory(*reading.poses, ignored)) return;
-  throw UsageError("--poses is for one sequence, not for " + joined(folders) +
-                   ", expected one name in --sequences, or a folder with a file for each");
+  if (poses != nullptr && folders.size() > 1 && !std::filesystem::is_directory(*poses, ignored)) {
+    throw UsageError(
+        fmt::format("{} is for one sequence, not for {}, expected one name in {}, or a folder with "
+                    "a file for each",
+                    option("poses"), joined(folders), option("sequences")));
+  }
+  if (poses != nullptr && !layout.only_own_poses.empty()) {
+    throw UsageError(
+        fmt::format("{} is not for {}, {}", option("poses"), layout.name, layout.only_own_poses));
+  }
+  if (asked.moving_speed_m_s && !layout.truth_by_speed) {
+    throw UsageError(fmt::format(
+        "{}: the truth of {} is no speed, expected a data set of scene flow, as opensceneflow, or "
+        "of boxes, as kitti-raw",
+        option("moving_speed_m_s"), layout.name));
+  }
+}
+
+void check_point_times(const Reading& asked, const Layout& layout, const SequenceFolder& folder) {
+  const bool by_column = asked.undistorts() && asked.point_times == PointTimes::kColumn;
+  if (!by_column || layout.no_point_times == nullptr) return;
+  const std::string why = layout.no_point_times(folder.folder);
+  if (!why.empty()) throw UsageError(option("point_times", "column") + ": " + why);
 }
 
 /// Takes scans that were lost out of the splits.
@@ -206,15 +225,15 @@ void keep_left_scans(Dataset& dataset) {
   }
 }
 
-void perturb(Dataset& dataset, const ReadingOptions& reading) {
-  const Perturbation perturbation = parse_perturbation(*reading.perturb);
-  if (reading.poses_by_odometry && !changes_points_only(perturbation)) {
-    throw UsageError(
-        "--perturb: changes scans or poses, or needs poses, which odometry has yet to find, "
-        "expected kinds that change points only, or mosbench convert --perturb first");
+void perturb(Dataset& dataset, const Reading& reading) {
+  if (reading.is_by_odometry() && !changes_points_only(*reading.perturb)) {
+    throw UsageError(fmt::format(
+        "{0}: changes scans or poses, or needs poses, which odometry has yet to find, expected "
+        "kinds that change points only, or mosbench convert {0} first",
+        option("perturb")));
   }
   for (std::unique_ptr<Sequence>& sequence : dataset.sequences) {
-    sequence = perturbed(std::move(sequence), perturbation);
+    sequence = perturbed(std::move(sequence), *reading.perturb);
   }
   keep_left_scans(dataset);
 }
@@ -235,15 +254,10 @@ Dataset open_dataset(const std::filesystem::path& path, const OpenOptions& optio
   const auto [layout, folders] = list_sequences(path, options, dataset.remarks);
   dataset.kind = layout.kind;
   dataset.root = path;
-  check_pose_file(options.reading, folders);
-  if (options.reading.moving_speed_m_s && !layout.truth_by_speed) {
-    throw UsageError(
-        "--moving-speed-m-s: the truth of " + std::string(layout.name) +
-        " is no speed, expected a data set of scene flow, as opensceneflow, or of boxes, as "
-        "kitti-raw");
-  }
+  check_asked(options.reading, layout, folders);
   for (const SequenceFolder& folder : folders) {
-    const ReadingOptions reading = reading_of(folder, options.reading);
+    const Reading reading = reading_of(folder, options.reading);
+    check_point_times(reading, layout, folder);
     std::unique_ptr<Sequence> sequence = layout.open(folder, reading);
     if (reading.hdl64_correction) sequence = std::make_unique<Hdl64Corrected>(std::move(sequence));
     dataset.sequences.push_back(with_point_times(std::move(sequence), reading));

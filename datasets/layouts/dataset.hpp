@@ -61,7 +61,7 @@ struct OpenOptions {
   std::optional<DatasetKind> kind = std::nullopt;
   /// Names to keep; all when empty. The published sequences of DOALS have the numbers 1 to 8, too.
   std::vector<std::string> sequences = {};
-  ReadingOptions reading = {};
+  Reading reading = {};
 };
 
 /// A sequence found on disk and not yet opened.

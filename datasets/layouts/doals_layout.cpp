@@ -46,10 +46,9 @@ std::vector<SequenceFolder> list_doals(const std::filesystem::path& path) {
   return sequences;
 }
 
-std::unique_ptr<Sequence> open_doals(const SequenceFolder& sequence,
-                                     const ReadingOptions& options) {
+std::unique_ptr<Sequence> open_doals(const SequenceFolder& sequence, const Reading& asked) {
   return std::make_unique<DoalsSequence>(sequence.name, sequence.folder,
-                                         published_of(sequence.folder), options);
+                                         published_of(sequence.folder), asked);
 }
 
 /// Returns ST, SV, HG and ND: both sequences of a scene.
@@ -134,6 +133,7 @@ const Layout& doals_layout() {
           "indices.csv each (DOALS), or one such sequence folder, or a bag",
       .list = list_doals,
       .open = open_doals,
+      .no_point_times = recording_without_times,
       .splits = doals_splits,
       .evidence = Evidence::kFolders,
       .recognise = recognise_doals,

@@ -58,14 +58,14 @@ constexpr std::array<DoalsPublished, 8> kPublished = {{
 }};
 
 std::unique_ptr<Sequence> open_scans(std::string name, const std::filesystem::path& folder,
-                                     const ReadingOptions& options) {
-  if (is_bag_file(folder)) return std::make_unique<BagSequence>(std::move(name), folder, options);
+                                     const Reading& asked) {
+  if (is_bag_file(folder)) return std::make_unique<BagSequence>(std::move(name), folder, asked);
   if (!scan_folder_of(folder)) {
     if (const auto bag = bag_of(folder)) {
-      return std::make_unique<BagSequence>(std::move(name), *bag, options);
+      return std::make_unique<BagSequence>(std::move(name), *bag, asked);
     }
   }
-  return std::make_unique<FolderSequence>(std::move(name), folder, options);
+  return std::make_unique<FolderSequence>(std::move(name), folder, asked);
 }
 
 }  // namespace
@@ -80,8 +80,8 @@ const DoalsPublished* find_doals_published(std::string_view scene, std::string_v
 }
 
 DoalsSequence::DoalsSequence(std::string name, const std::filesystem::path& folder,
-                             const DoalsPublished* published, const ReadingOptions& options)
-    : SequenceAround(open_scans(std::move(name), folder, options)),
+                             const DoalsPublished* published, const Reading& asked)
+    : SequenceAround(open_scans(std::move(name), folder, asked)),
       indices_file_((is_bag_file(folder) ? folder.parent_path() : folder) / "indices.csv") {
   open_truth(published);
 }

@@ -41,7 +41,7 @@ class DoalsSequence : public SequenceAround {
   /// `published` is null for a recording that is none of the published ones. Throws DataError, also
   /// for a stamp or an index in indices.csv that no scan has.
   DoalsSequence(std::string name, const std::filesystem::path& folder,
-                const DoalsPublished* published, const ReadingOptions& options = {});
+                const DoalsPublished* published, const Reading& asked = {});
 
   using Sequence::read;
   void read(std::size_t scan_index, Frame& frame) const override;

@@ -6,6 +6,7 @@
 #include "datasets/disk/folder_listing.hpp"
 #include "datasets/formats/scan_file.hpp"
 #include "datasets/layouts/kitti_sequence.hpp"
+#include "datasets/rosbag/open_bag.hpp"
 #include "datasets/text/text.hpp"
 
 namespace mosbench {
@@ -75,9 +76,19 @@ bool any_holds(const std::vector<SequenceFolder>& sequences, const char* file) {
   });
 }
 
-std::unique_ptr<Sequence> open_kitti(const SequenceFolder& sequence,
-                                     const ReadingOptions& options) {
-  return std::make_unique<KittiSequence>(sequence.name, sequence.folder, options);
+std::string recording_without_times(const std::filesystem::path& recording) {
+  if (is_scan(recording)) {
+    return recording.string() + " is one scan, expected several to find a motion from";
+  }
+  const bool is_bag = is_bag_file(recording) || is_bag_folder(recording);
+  if (!is_bag && scan_folder_of(recording)) return "";
+  const auto bags =
+      is_bag ? std::vector<StemFile>{{recording, ""}} : list_by_stem(recording, {".bag"});
+  return bags.empty() ? "" : bags.front().file.string() + " is a bag, expected .bin files";
+}
+
+std::unique_ptr<Sequence> open_kitti(const SequenceFolder& sequence, const Reading& asked) {
+  return std::make_unique<KittiSequence>(sequence.name, sequence.folder, asked);
 }
 
 std::set<std::uint32_t> semantickitti_label_ids() {

@@ -53,7 +53,11 @@ std::vector<Split> splits_of_names(const std::vector<NamedSplit>& named,
 std::set<std::uint32_t> semantickitti_label_ids();
 
 /// Opens a KittiSequence with the default places of its files.
-std::unique_ptr<Sequence> open_kitti(const SequenceFolder& sequence, const ReadingOptions& options);
+/// Returns why a recording has no times of points in a column: it is a bag, or one scan; empty for
+/// the folder of scans.
+std::string recording_without_times(const std::filesystem::path& recording);
+
+std::unique_ptr<Sequence> open_kitti(const SequenceFolder& sequence, const Reading& asked);
 
 /// Returns sequences/NAME, with "_" for each slash in the name.
 std::filesystem::path kitti_folder(const std::string& name, std::size_t position);

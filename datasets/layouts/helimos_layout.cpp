@@ -128,8 +128,8 @@ std::optional<std::string> recognise_helimos(const std::filesystem::path& path) 
 std::filesystem::path helimos_sequence_folder(const std::string& name, std::size_t position) {
   if (is_sensor(name)) return helimos_folder() / name;
   if (position < kHelimosSensors.size()) return helimos_folder() / kHelimosSensors[position];
-  throw UsageError("--layout helimos has room for 4 sequences, not for " + name +
-                   ", expected fewer in --sequences");
+  throw UsageError(fmt::format("{} has room for 4 sequences, not for {}, expected fewer in {}",
+                               option("layout", "helimos"), name, option("sequences")));
 }
 
 }  // namespace

@@ -47,9 +47,8 @@ std::vector<SequenceFolder> list_helipr(const fs::path& path) {
   return sequences;
 }
 
-std::unique_ptr<Sequence> open_helipr(const SequenceFolder& sequence,
-                                      const ReadingOptions& options) {
-  return std::make_unique<HeliprSequence>(sequence.name, sequence.folder, options);
+std::unique_ptr<Sequence> open_helipr(const SequenceFolder& sequence, const Reading& asked) {
+  return std::make_unique<HeliprSequence>(sequence.name, sequence.folder, asked);
 }
 
 std::optional<std::string> recognise_helipr(const fs::path& path) {

@@ -26,17 +26,17 @@ HeliprSensor sensor_of_folder(const std::filesystem::path& folder) {
 }  // namespace
 
 HeliprSequence::HeliprSequence(std::string name, const std::filesystem::path& folder,
-                               const ReadingOptions& options)
+                               const Reading& asked)
     : sensor_(sensor_of_folder(folder)),
-      gives_times_(options.undistorts() && options.point_times == PointTimes::kColumn) {
+      gives_times_(asked.undistorts() && asked.point_times == PointTimes::kColumn) {
   Recording& recording = mutable_recording();
   recording.name = SequenceName(std::move(name), folder);
-  recording.reading = {{"scan_files", fmt::format(".bin of {}, packed", to_string(sensor_))}};
+  recording.reading.scan_files = fmt::format(".bin of {}, packed", to_string(sensor_));
   recording.has_radial_velocities = sensor_ == HeliprSensor::kAeva;
-  if (gives_times_) recording.reading.emplace_back("point_times", "of each point");
+  if (gives_times_) recording.reading.point_times = "of each point";
   recording.remarks = {"no truth: HeLiMOS labels part of KAIST05"};
   list_scans(folder);
-  take_poses(folder, options);
+  take_poses(folder, asked);
 }
 
 void HeliprSequence::list_scans(const std::filesystem::path& folder) {
@@ -55,19 +55,13 @@ void HeliprSequence::list_scans(const std::filesystem::path& folder) {
   if (size() == 0) throw DataError(folder, "holds no scan", "<stamp_ns>.bin");
 }
 
-void HeliprSequence::take_poses(const std::filesystem::path& folder,
-                                const ReadingOptions& options) {
-  Recording& recording = mutable_recording();
-  if (!options.poses && !options.poses_by_odometry) {
-    const auto place = parent_folder(folder).parent_path() / "LiDAR_GT";
-    return take_ground_truth(place / fmt::format("{}_gt.txt", to_string(sensor_)),
-                             options.max_pose_gap_s);
+void HeliprSequence::take_poses(const std::filesystem::path& folder, const Reading& asked) {
+  if (!asked.has_own_poses()) {
+    place_scans(folder, "", asked, mutable_recording());
+    return;
   }
-  std::vector<std::int64_t> stamps_ns;
-  for (const ScanEntry& scan : recording.scans) stamps_ns.push_back(*scan.stamp_ns);
-  const SensorPoses poses = read_sensor_poses(folder, "", options, {size(), stamps_ns});
-  place_scans(poses, recording);
-  add_statements(poses, recording);
+  const auto place = parent_folder(folder).parent_path() / "LiDAR_GT";
+  take_ground_truth(place / fmt::format("{}_gt.txt", to_string(sensor_)), asked.max_pose_gap_s);
 }
 
 void HeliprSequence::take_ground_truth(const std::filesystem::path& file, double max_gap_s) {
@@ -77,27 +71,23 @@ void HeliprSequence::take_ground_truth(const std::filesystem::path& file, double
     stamped.emplace_back(pose.stamp_ns, pose.map_from_sensor);
   }
   const PoseTrack track(std::move(stamped));
-  std::vector<ScanEntry> scans = std::exchange(recording.scans, {});
-  for (ScanEntry& scan : scans) {
-    const auto pose = track.at(*scan.stamp_ns);
-    const bool is_known =
-        pose && static_cast<double>(track.gap_ns(*scan.stamp_ns)) <= max_gap_s * 1e9;
-    if (is_known) scan.map_from_sensor = *pose;
-    (is_known ? recording.scans : recording.left_out).push_back(std::move(scan));
+  SensorPoses own = own_poses("LiDAR_GT/" + file.filename().string(), file);
+  own.files = {file};
+  for (const ScanEntry& scan : recording.scans) {
+    auto pose = track.at(*scan.stamp_ns);
+    if (static_cast<double>(track.gap_ns(*scan.stamp_ns)) > max_gap_s * 1e9) pose.reset();
+    own.map_from_sensor.push_back(pose);
   }
+  const std::size_t scans = size();
+  place_scans(std::move(own), recording);
   if (recording.scans.empty()) {
     throw DataError(file, "has a pose of no scan", "stamps of the scans");
   }
   if (!recording.left_out.empty()) {
-    recording.remarks.push_back(
-        fmt::format("left out {} of {}: no pose in {}", recording.left_out.size(),
-                    counted(scans.size(), "scan"), file.filename().string()));
+    recording.remarks.push_back(fmt::format("left out {} of {}: no pose in {}",
+                                            recording.left_out.size(), counted(scans, "scan"),
+                                            file.filename().string()));
   }
-  recording.files.push_back(file);
-  recording.reading.emplace_back("poses", "LiDAR_GT/" + file.filename().string());
-  recording.reading.emplace_back("pose_direction", "map_from_sensor");
-  recording.reading.emplace_back("pose_frame", "lidar");
-  state_pose_origin(file, recording.reading, recording.remarks);
 }
 
 void HeliprSequence::read(std::size_t scan_index, Frame& frame) const {

@@ -15,8 +15,7 @@ namespace mosbench {
 class HeliprSequence : public Sequence {
  public:
   /// `folder` is LiDAR/<sensor>. Throws DataError.
-  HeliprSequence(std::string name, const std::filesystem::path& folder,
-                 const ReadingOptions& options);
+  HeliprSequence(std::string name, const std::filesystem::path& folder, const Reading& asked);
 
   using Sequence::read;
   void read(std::size_t scan_index, Frame& frame) const override;
@@ -25,7 +24,7 @@ class HeliprSequence : public Sequence {
  private:
   void list_scans(const std::filesystem::path& folder);
   void take_ground_truth(const std::filesystem::path& file, double max_gap_s);
-  void take_poses(const std::filesystem::path& folder, const ReadingOptions& options);
+  void take_poses(const std::filesystem::path& folder, const Reading& asked);
 
   HeliprSensor sensor_;
   bool gives_times_;

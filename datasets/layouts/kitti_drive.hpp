@@ -12,7 +12,7 @@
 #include "datasets/disk/folder_listing.hpp"
 #include "datasets/formats/kitti_calib.hpp"
 #include "datasets/layouts/box_tracks.hpp"
-#include "datasets/sequence/reading_options.hpp"
+#include "datasets/sequence/reading.hpp"
 
 namespace mosbench {
 

@@ -29,9 +29,9 @@ bool is_placed(const KittiDrive& drive, std::size_t frame) {
 
 [[noreturn]] void refuse_speed(const KittiDrive& drive) {
   throw UsageError(
-      fmt::format("--moving-speed-m-s: the boxes of {} in {} were made of labels by mosbench and "
-                  "have no speeds, expected no such flag, or KITTI's own drive",
-                  drive.name, drive.folder.string()));
+      fmt::format("{}: the boxes of {} in {} were made of labels by mosbench and have no speeds, "
+                  "expected no such flag, or KITTI's own drive",
+                  option("moving_speed_m_s"), drive.name, drive.folder.string()));
 }
 
 bool holds(const ImageRegion& region, const Eigen::Vector3d& projected) {
@@ -41,33 +41,27 @@ bool holds(const ImageRegion& region, const Eigen::Vector3d& projected) {
 
 }  // namespace
 
-KittiDriveSequence::KittiDriveSequence(KittiDrive drive, const ReadingOptions& options)
-    : bin_columns_(options.bin_columns.value_or(kBinColumns)),
+KittiDriveSequence::KittiDriveSequence(KittiDrive drive, const Reading& asked)
+    : bin_columns_(asked.bin_columns.value_or(kBinColumns)),
       view_(drive.view),
       unlabelled_(std::move(drive.unlabelled)) {
-  if (options.undistorts() && options.point_times == PointTimes::kColumn) {
-    throw UsageError(
-        "--point-times column: the points of KITTI's drives have no times, expected "
-        "azimuth or none");
-  }
   Recording& recording = mutable_recording();
   recording.name = SequenceName(drive.name, drive.folder);
   recording.files = drive.files;
   recording.truth_files = drive.truth_files;
   recording.remarks = drive.remarks;
-  const double moving_speed_m_s = options.moving_speed_m_s.value_or(kFlowMovingSpeed_m_s);
-  recording.reading = {{"scan_files", ".bin of the drive"}};
+  const double moving_speed_m_s = asked.moving_speed_m_s.value_or(kFlowMovingSpeed_m_s);
+  recording.reading.scan_files = ".bin of the drive";
   if (drive.has_truth) {
     const bool of_labels = is_of_labels(drive.tracks);
-    if (of_labels && options.moving_speed_m_s) refuse_speed(drive);
-    recording.reading.emplace_back(
-        "truth", fmt::format("boxes of {}, {}, in the view of camera 2", drive.truth_source,
-                             of_labels ? "made of labels"
-                                       : fmt::format("moving from {:g} m/s on", moving_speed_m_s)));
+    if (of_labels && asked.moving_speed_m_s) refuse_speed(drive);
+    recording.reading.truth = fmt::format(
+        "boxes of {}, {}, in the view of camera 2", drive.truth_source,
+        of_labels ? "made of labels" : fmt::format("moving from {:g} m/s on", moving_speed_m_s));
     boxes_ = label_boxes(drive.tracks, drive.frames, moving_speed_m_s);
   }
   list_scans(drive);
-  take_poses(drive, options);
+  take_poses(drive, asked);
 }
 
 void KittiDriveSequence::list_scans(const KittiDrive& drive) {
@@ -94,12 +88,14 @@ void KittiDriveSequence::take_oxts(const KittiDrive& drive) {
                        "oxts and calibration, which give KITTI's drives their poses, or poses of "
                        "another source");
   }
-  for (ScanEntry& scan : std::exchange(recording.scans, {})) {
+  SensorPoses own = own_poses(drive.pose_source, drive.pose_file);
+  for (const ScanEntry& scan : recording.scans) {
     const std::size_t frame = frame_of(scan);
-    const bool is_known = is_placed(drive, frame);
-    if (is_known) scan.map_from_sensor = drive.frames[frame]->map_from_lidar;
-    (is_known ? recording.scans : recording.left_out).push_back(std::move(scan));
+    own.map_from_sensor.push_back(is_placed(drive, frame)
+                                      ? std::optional(drive.frames[frame]->map_from_lidar)
+                                      : std::nullopt);
   }
+  place_scans(std::move(own), recording);
   if (recording.scans.empty()) {
     throw DataError(drive.pose_file, "belongs to no scan", "packets of the frames of the scans");
   }
@@ -108,23 +104,11 @@ void KittiDriveSequence::take_oxts(const KittiDrive& drive) {
                                         "scan has no packet in oxts and is left out",
                                         "scans have no packet in oxts and are left out"));
   }
-  recording.reading.emplace_back("poses", drive.pose_source);
-  recording.reading.emplace_back("pose_direction", "map_from_sensor");
-  recording.reading.emplace_back("pose_frame", "lidar");
-  state_pose_origin(drive.pose_file, recording.reading, recording.remarks);
 }
 
-void KittiDriveSequence::take_poses(const KittiDrive& drive, const ReadingOptions& options) {
-  if (!options.poses && !options.poses_by_odometry) return take_oxts(drive);
-  Recording& recording = mutable_recording();
-  std::vector<std::int64_t> stamps_ns;
-  for (const ScanEntry& scan : recording.scans) {
-    if (scan.stamp_ns) stamps_ns.push_back(*scan.stamp_ns);
-  }
-  const SensorPoses poses = read_sensor_poses(drive.folder, "", options, {size(), stamps_ns});
-  place_scans(poses, recording);
-  for (ScanEntry& scan : recording.left_out) scan.has_truth = false;
-  add_statements(poses, recording);
+void KittiDriveSequence::take_poses(const KittiDrive& drive, const Reading& asked) {
+  if (asked.has_own_poses()) return take_oxts(drive);
+  place_scans(drive.folder, "", asked, mutable_recording());
 }
 
 std::vector<std::uint32_t> KittiDriveSequence::truth_of(std::size_t frame,

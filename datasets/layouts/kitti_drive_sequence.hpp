@@ -16,7 +16,7 @@ namespace mosbench {
 class KittiDriveSequence : public Sequence {
  public:
   /// Throws DataError; MissingPoses for a drive without oxts or calibration.
-  KittiDriveSequence(KittiDrive drive, const ReadingOptions& options);
+  KittiDriveSequence(KittiDrive drive, const Reading& asked);
 
   using Sequence::read;
   void read(std::size_t scan_index, Frame& frame) const override;
@@ -25,7 +25,7 @@ class KittiDriveSequence : public Sequence {
  private:
   void list_scans(const KittiDrive& drive);
   void take_oxts(const KittiDrive& drive);
-  void take_poses(const KittiDrive& drive, const ReadingOptions& options);
+  void take_poses(const KittiDrive& drive, const Reading& asked);
   std::vector<std::uint32_t> truth_of(std::size_t frame, std::span<const Point> points) const;
 
   std::size_t bin_columns_;

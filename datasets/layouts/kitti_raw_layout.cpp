@@ -41,10 +41,9 @@ std::vector<SequenceFolder> list_kitti_raw(const fs::path& path) {
   return drives;
 }
 
-std::unique_ptr<Sequence> open_kitti_raw(const SequenceFolder& sequence,
-                                         const ReadingOptions& options) {
+std::unique_ptr<Sequence> open_kitti_raw(const SequenceFolder& sequence, const Reading& asked) {
   return std::make_unique<KittiDriveSequence>(read_raw_drive(sequence.name, sequence.folder),
-                                              options);
+                                              asked);
 }
 
 std::optional<std::string> recognise_kitti_raw(const fs::path& path) {
@@ -79,6 +78,9 @@ const Layout& kitti_raw_layout() {
           "<date>/<drive>/velodyne_points/data/*.bin of KITTI's raw data, a date or one drive",
       .list = list_kitti_raw,
       .open = open_kitti_raw,
+      .no_point_times = [](const std::filesystem::path&) -> std::string {
+        return "the points of KITTI's drives have no times, expected azimuth or none";
+      },
       .splits = nullptr,
       .evidence = Evidence::kFolders,
       .recognise = recognise_kitti_raw,

@@ -15,8 +15,8 @@
 namespace mosbench {
 
 KittiSequence::KittiSequence(std::string name, const std::filesystem::path& folder,
-                             const ReadingOptions& options, const SequenceLayout& layout)
-    : FolderSequence(std::move(name), folder, options, layout.folder), layout_(layout) {
+                             const Reading& asked, const SequenceLayout& layout)
+    : FolderSequence(std::move(name), folder, asked, layout.folder), layout_(layout) {
   Recording& recording = mutable_recording();
   if (is_there(folder / layout_.label_folder)) {
     label_folder_ = folder / layout_.label_folder;

@@ -31,8 +31,8 @@ struct SequenceLayout {
 class KittiSequence : public FolderSequence {
  public:
   /// Throws DataError, also for a label file without scan or of another length than its scan.
-  KittiSequence(std::string name, const std::filesystem::path& folder,
-                const ReadingOptions& options = {}, const SequenceLayout& layout = {});
+  KittiSequence(std::string name, const std::filesystem::path& folder, const Reading& asked = {},
+                const SequenceLayout& layout = {});
 
   using Sequence::read;
   void read(std::size_t scan_index, Frame& frame) const override;

@@ -55,9 +55,9 @@ std::vector<SequenceFolder> list_kitti_tracking(const fs::path& path) {
 }
 
 std::unique_ptr<Sequence> open_kitti_tracking(const SequenceFolder& sequence,
-                                              const ReadingOptions& options) {
+                                              const Reading& asked) {
   return std::make_unique<KittiDriveSequence>(read_tracking_drive(sequence.name, sequence.folder),
-                                              options);
+                                              asked);
 }
 
 /// Scans alone may lie in such folders elsewhere, too, and one given itself with poses of its own.
@@ -98,6 +98,9 @@ const Layout& kitti_tracking_layout() {
           "training/{velodyne/<number>/*.bin,oxts,calib,label_02} of KITTI's tracking benchmark",
       .list = list_kitti_tracking,
       .open = open_kitti_tracking,
+      .no_point_times = [](const std::filesystem::path&) -> std::string {
+        return "the points of KITTI's drives have no times, expected azimuth or none";
+      },
       .splits = nullptr,
       .evidence = Evidence::kFolders,
       .recognise = recognise_kitti_tracking,

@@ -1,7 +1,6 @@
 #include "datasets/layouts/folder_search.hpp"
 #include "datasets/layouts/kth_sequence.hpp"
 #include "datasets/layouts/layout.hpp"
-#include "datasets/text/errors.hpp"
 
 namespace mosbench {
 namespace {
@@ -10,10 +9,7 @@ std::vector<SequenceFolder> list_kth(const std::filesystem::path& path) {
   return list_with(path, "pcd");
 }
 
-std::unique_ptr<Sequence> open_kth(const SequenceFolder& sequence, const ReadingOptions& options) {
-  if (options.poses) {
-    throw UsageError("--poses is not for kth, whose scans hold their poses in VIEWPOINT");
-  }
+std::unique_ptr<Sequence> open_kth(const SequenceFolder& sequence, const Reading&) {
   return std::make_unique<KthSequence>(sequence.name, sequence.folder);
 }
 
@@ -44,6 +40,7 @@ const Layout& kth_layout() {
           "folder",
       .list = list_kth,
       .open = open_kth,
+      .only_own_poses = "whose scans hold their poses in VIEWPOINT",
       .splits = nullptr,
       .evidence = Evidence::kFolders,
       .recognise = recognise_kth,

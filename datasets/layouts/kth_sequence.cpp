@@ -12,7 +12,9 @@
 namespace mosbench {
 namespace {
 
-constexpr std::string_view kOtherScans = "; --dataset semantickitti reads other scans";
+std::string other_scans() {
+  return "; " + option("dataset", "semantickitti") + " reads other scans";
+}
 
 }  // namespace
 
@@ -47,16 +49,16 @@ KthSequence::KthSequence(std::string name, const std::filesystem::path& folder) 
   }
   recording.remarks = {"points are turned from the map's into the sensor's frame by VIEWPOINT",
                        "intensity is taken as truth (1 is moving) and not passed on"};
-  recording.reading = {{"scan_files", ".pcd of pcd/, in the map's frame"},
-                       {"poses", "VIEWPOINT of each scan"},
-                       {"pose_direction", "map_from_sensor"},
-                       {"pose_frame", "lidar"}};
+  recording.reading.scan_files = ".pcd of pcd/, in the map's frame";
+  recording.reading.poses = {.source = "VIEWPOINT of each scan",
+                             .direction = PoseDirection::kMapFromSensor,
+                             .frame = PoseFrame::kLidar};
 }
 
 void KthSequence::read(std::size_t scan_index, Frame& frame) const {
   describe(scan_index, frame);
   frame.points = read_pcd(*scan_file(scan_index));
-  frame.truth = kth_truth(frame.points, *scan_file(scan_index), kOtherScans);
+  frame.truth = kth_truth(frame.points, *scan_file(scan_index), other_scans());
   const Pose sensor_from_map = frame.map_from_sensor.inverse();
   for (Point& point : frame.points) {
     const Eigen::Vector3d p = sensor_from_map * Eigen::Vector3d(point.x, point.y, point.z);
@@ -65,7 +67,7 @@ void KthSequence::read(std::size_t scan_index, Frame& frame) const {
 }
 
 std::vector<std::uint32_t> KthSequence::read_truth(std::size_t scan_index) const {
-  return kth_truth(read_pcd(*scan_file(scan_index)), *scan_file(scan_index), kOtherScans);
+  return kth_truth(read_pcd(*scan_file(scan_index)), *scan_file(scan_index), other_scans());
 }
 
 }  // namespace mosbench

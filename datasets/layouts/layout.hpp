@@ -94,7 +94,11 @@ struct Layout {
   /// Lists the sequences below a root, or the one of a sequence folder; empty when `path` is
   /// neither.
   std::vector<SequenceFolder> (*list)(const std::filesystem::path& path);
-  std::unique_ptr<Sequence> (*open)(const SequenceFolder& sequence, const ReadingOptions& options);
+  std::unique_ptr<Sequence> (*open)(const SequenceFolder& sequence, const Reading& options);
+  /// Returns why the points of a sequence have no times in a column or field, and what is expected
+  /// instead; empty where they may have. Null where they may always.
+  std::string (*no_point_times)(const std::filesystem::path& sequence) = nullptr;
+  std::string_view only_own_poses = {};  ///< why poses of the user are refused; empty: they are not
   /// Returns the splits of opened sequences; `folders` runs parallel to `sequences`. May add
   /// remarks. Null for a data set without splits.
   std::vector<Split> (*splits)(const std::vector<SequenceFolder>& folders,
@@ -107,7 +111,7 @@ struct Layout {
   /// where nothing that can be read is there. Null where there is no such.
   std::optional<std::string> (*recognise_part)(const std::filesystem::path& path) = nullptr;
   std::optional<LayoutWriter> writer;    ///< nothing for a data set that is only read
-  bool truth_by_speed = false;           ///< ReadingOptions::moving_speed_m_s is for it
+  bool truth_by_speed = false;           ///< Reading::moving_speed_m_s is for it
   std::vector<RelatedSet> related = {};  ///< that the same reader reads
 };
 

@@ -10,9 +10,9 @@ std::vector<SequenceFolder> list_moe(const std::filesystem::path& path) {
   return list_with(path, "pcd");
 }
 
-std::unique_ptr<Sequence> open_moe(const SequenceFolder& sequence, const ReadingOptions& options) {
+std::unique_ptr<Sequence> open_moe(const SequenceFolder& sequence, const Reading& asked) {
   return std::make_unique<KittiSequence>(
-      sequence.name, sequence.folder, options,
+      sequence.name, sequence.folder, asked,
       SequenceLayout{{"pcd", "gt_poses.txt", false}, "label", ".txt", read_moe_labels, nullptr});
 }
 

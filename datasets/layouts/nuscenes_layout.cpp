@@ -131,9 +131,8 @@ std::vector<SequenceFolder> list_nuscenes(const fs::path& path) {
   return sequences;
 }
 
-std::unique_ptr<Sequence> open_nuscenes(const SequenceFolder& sequence,
-                                        const ReadingOptions& options) {
-  return std::make_unique<NuscenesSequence>(sequence.name, sequence.folder, options);
+std::unique_ptr<Sequence> open_nuscenes(const SequenceFolder& sequence, const Reading& asked) {
+  return std::make_unique<NuscenesSequence>(sequence.name, sequence.folder, asked);
 }
 
 bool holds(std::span<const NumberRange> ranges, const std::string& scene) {
@@ -206,6 +205,9 @@ const Layout& nuscenes_layout() {
           "sweeps/, or one such folder of tables",
       .list = list_nuscenes,
       .open = open_nuscenes,
+      .no_point_times = [](const std::filesystem::path&) -> std::string {
+        return "the fifth column of nuScenes is the ring, expected azimuth or none";
+      },
       .splits = nuscenes_splits,
       .evidence = Evidence::kFolders,
       .recognise = recognise_nuscenes,

@@ -36,17 +36,12 @@ std::string stem_of(const std::filesystem::path& file) {
 }  // namespace
 
 NuscenesSequence::NuscenesSequence(std::string name, const std::filesystem::path& tables,
-                                   const ReadingOptions& options)
+                                   const Reading& asked)
     : tables_(read_nuscenes_tables(tables)) {
-  if (options.undistorts() && options.point_times == PointTimes::kColumn) {
-    throw UsageError(
-        "--point-times column: the fifth column of nuScenes is the ring, expected "
-        "azimuth or none");
-  }
   mutable_recording().name = SequenceName(name, tables);
   list_scans(parent_folder(tables), scene_named(*tables_, name, tables));
   say_what_is_read(tables);
-  take_poses(tables, options);
+  take_poses(tables, asked);
 }
 
 void NuscenesSequence::list_scans(const std::filesystem::path& root, const NuscenesScene& scene) {
@@ -61,7 +56,6 @@ void NuscenesSequence::list_scans(const std::filesystem::path& root, const Nusce
     entry.stem = stem_of(scan.file);
     entry.file = root / scan.file;
     entry.stamp_ns = scan.stamp_ns;
-    entry.map_from_sensor = scan.map_from_sensor;
     entry.points = read_scan_head(*entry.file, kColumns).points;
     entry.has_truth = scan.is_key_frame && tables_->has_annotations;
     scans_.push_back(&scan);
@@ -76,7 +70,7 @@ void NuscenesSequence::list_scans(const std::filesystem::path& root, const Nusce
 void NuscenesSequence::say_what_is_read(const std::filesystem::path& folder) {
   Recording& recording = mutable_recording();
   for (const char* table : kNuscenesTables) recording.files.push_back(folder / table);
-  recording.reading = {{"scan_files", ".pcd.bin of LIDAR_TOP, key frames and sweeps"}};
+  recording.reading.scan_files = ".pcd.bin of LIDAR_TOP, key frames and sweeps";
   const auto labelled = std::ranges::count(recording.scans, true, &ScanEntry::has_truth);
   if (labelled == 0) {
     const bool has_table = is_there(folder / "sample_annotation.json");
@@ -92,29 +86,17 @@ void NuscenesSequence::say_what_is_read(const std::filesystem::path& folder) {
                   counted(labelled, "key frame"), counted(recording.scans.size(), "scan")));
 }
 
-void NuscenesSequence::take_poses(const std::filesystem::path& folder,
-                                  const ReadingOptions& options) {
+void NuscenesSequence::take_poses(const std::filesystem::path& folder, const Reading& asked) {
   Recording& recording = mutable_recording();
-  if (!options.poses && !options.poses_by_odometry) {
-    recording.reading.emplace_back("poses", "ego_pose.json and calibrated_sensor.json");
-    recording.reading.emplace_back("pose_direction", "map_from_sensor");
-    recording.reading.emplace_back("pose_frame", "lidar");
-    state_pose_origin(folder / "ego_pose.json", recording.reading, recording.remarks);
+  if (asked.has_own_poses()) {
+    SensorPoses own =
+        own_poses("ego_pose.json and calibrated_sensor.json", folder / "ego_pose.json");
+    for (const NuscenesScan* scan : scans_) own.map_from_sensor.emplace_back(scan->map_from_sensor);
+    place_scans(std::move(own), recording);
     return;
   }
-  std::vector<std::int64_t> stamps_ns;
-  for (const NuscenesScan* scan : scans_) stamps_ns.push_back(scan->stamp_ns);
-  SensorPoses poses = read_sensor_poses(folder, "", options, {size(), stamps_ns});
-  const std::vector<ScanEntry> scans = std::exchange(recording.scans, {});
   const std::vector<const NuscenesScan*> rows = std::exchange(scans_, {});
-  for (std::size_t k = 0; k < scans.size(); ++k) {
-    const bool leaves_out = std::ranges::binary_search(poses.unknown, k);
-    ScanEntry& entry = (leaves_out ? recording.left_out : recording.scans).emplace_back(scans[k]);
-    entry.map_from_sensor = poses.map_from_sensor[k];
-    entry.has_truth = entry.has_truth && !leaves_out;
-    if (!leaves_out) scans_.push_back(rows[k]);
-  }
-  add_statements(poses, recording);
+  for (const std::size_t k : place_scans(folder, "", asked, recording)) scans_.push_back(rows[k]);
 }
 
 void NuscenesSequence::read(std::size_t scan_index, Frame& frame) const {

@@ -18,8 +18,7 @@ class NuscenesSequence : public Sequence {
  public:
   /// Throws DataError for tables that do not fit each other and for missing scans, UsageError for
   /// options that say how other files are read.
-  NuscenesSequence(std::string name, const std::filesystem::path& tables,
-                   const ReadingOptions& options);
+  NuscenesSequence(std::string name, const std::filesystem::path& tables, const Reading& asked);
 
   using Sequence::read;
   void read(std::size_t scan_index, Frame& frame) const override;
@@ -27,7 +26,7 @@ class NuscenesSequence : public Sequence {
 
  private:
   void list_scans(const std::filesystem::path& root, const NuscenesScene& scene);
-  void take_poses(const std::filesystem::path& folder, const ReadingOptions& options);
+  void take_poses(const std::filesystem::path& folder, const Reading& asked);
   void say_what_is_read(const std::filesystem::path& folder);
 
   std::shared_ptr<const NuscenesTables> tables_;

@@ -29,9 +29,8 @@ std::vector<SequenceFolder> list_scene_flow(const std::filesystem::path& path) {
   return sequences;
 }
 
-std::unique_ptr<Sequence> open_scene_flow(const SequenceFolder& sequence,
-                                          const ReadingOptions& options) {
-  return std::make_unique<SceneFlowSequence>(sequence.name, sequence.folder, options);
+std::unique_ptr<Sequence> open_scene_flow(const SequenceFolder& sequence, const Reading& asked) {
+  return std::make_unique<SceneFlowSequence>(sequence.name, sequence.folder, asked);
 }
 
 /// The scans that Argoverse 2's benchmark evaluates have a mask of its own.
@@ -93,6 +92,11 @@ const Layout& opensceneflow_layout() {
       .expected = "an .h5 file of OpenSceneFlow, or a folder with such files",
       .list = list_scene_flow,
       .open = open_scene_flow,
+      .no_point_times =
+          [](const std::filesystem::path& file) {
+            return file.string() +
+                   " holds points that are moved to the stamp already, expected .bin files";
+          },
       .splits = scene_flow_splits,
       .evidence = Evidence::kFolders,
       .recognise = recognise_scene_flow,

@@ -65,12 +65,11 @@ std::vector<SequenceFolder> list_recording(const std::filesystem::path& path) {
   return sequences;
 }
 
-std::unique_ptr<Sequence> open_recording(const SequenceFolder& sequence,
-                                         const ReadingOptions& options) {
+std::unique_ptr<Sequence> open_recording(const SequenceFolder& sequence, const Reading& asked) {
   const auto& path = sequence.folder;
-  if (is_bag(path)) return std::make_unique<BagSequence>(sequence.name, path, options);
-  if (is_scan(path)) return std::make_unique<SingleScan>(sequence.name, path, options);
-  return std::make_unique<KittiSequence>(sequence.name, path, options,
+  if (is_bag(path)) return std::make_unique<BagSequence>(sequence.name, path, asked);
+  if (is_scan(path)) return std::make_unique<SingleScan>(sequence.name, path, asked);
+  return std::make_unique<KittiSequence>(sequence.name, path, asked,
                                          SequenceLayout{.folder = {.scan_folder = "."}});
 }
 
@@ -114,6 +113,7 @@ const Layout& recording_layout() {
       .expected = "a bag, a .bin, .pcd or .ply scan, or a folder with bags or scans",
       .list = list_recording,
       .open = open_recording,
+      .no_point_times = recording_without_times,
       .splits = nullptr,
       .evidence = Evidence::kNone,
       .recognise = recognise_recording,

@@ -11,31 +11,22 @@
 
 namespace mosbench {
 
-SingleScan::SingleScan(std::string name, const std::filesystem::path& file,
-                       const ReadingOptions& options)
-    : bin_columns_(options.bin_columns.value_or(kUsualBinColumns)) {
-  if (options.point_times == PointTimes::kColumn && options.undistorts()) {
-    throw UsageError("--point-times column: " + file.string() +
-                     " is one scan, expected several to find a motion from");
-  }
+SingleScan::SingleScan(std::string name, const std::filesystem::path& file, const Reading& asked)
+    : bin_columns_(asked.bin_columns.value_or(kUsualBinColumns)) {
   Recording& recording = mutable_recording();
   recording.name = SequenceName(std::move(name), file);
   ScanEntry& entry = recording.scans.emplace_back();
   entry.stem = shown_in_line(file.stem().string());
   entry.file = file;
-  if (!options.bin_columns) check_usual_bin_columns(std::array{StemFile{file, entry.stem}});
+  if (!asked.bin_columns) check_usual_bin_columns(std::array{StemFile{file, entry.stem}});
   entry.points = read_scan_head(file, bin_columns_).points;
-  recording.reading = {{"scan_files", file.filename().string()}};
-  if (!options.poses) {
-    recording.reading.emplace_back("poses", "the identity, of one scan");
-    recording.remarks = {"one scan: its pose is the identity"};
+  recording.reading.scan_files = file.filename().string();
+  if (asked.pose_file() != nullptr) {
+    place_scans(file.parent_path(), "poses.txt", asked, recording);
     return;
   }
-  SensorPoses poses = read_sensor_poses(file.parent_path(), "poses.txt", options, {1, {}});
-  entry.map_from_sensor = poses.map_from_sensor.front();
-  recording.files = std::move(poses.files);
-  recording.remarks = std::move(poses.remarks);
-  recording.reading.insert(recording.reading.end(), poses.reading.begin(), poses.reading.end());
+  recording.reading.poses.source = "the identity, of one scan";
+  recording.remarks = {"one scan: its pose is the identity"};
 }
 
 void SingleScan::read(std::size_t scan_index, Frame& frame) const {

@@ -15,7 +15,7 @@ class SingleScan : public Sequence {
  public:
   /// Throws DataError for a file that is no scan, UsageError for times of points in a column: one
   /// scan alone shows no motion to correct.
-  SingleScan(std::string name, const std::filesystem::path& file, const ReadingOptions& options);
+  SingleScan(std::string name, const std::filesystem::path& file, const Reading& asked);
 
   using Sequence::read;
   void read(std::size_t scan_index, Frame& frame) const override;

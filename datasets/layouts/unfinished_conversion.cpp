@@ -22,7 +22,8 @@ void refuse_foreign(const fs::path& root, const std::set<fs::path>& expected) {
     if (is_folder || file == mark || expected.contains(name)) continue;
     if (file.ends_with(partial_of("").native())) continue;
     throw UsageError(entry.path().string() +
-                     ": is no file of this conversion, expected an empty folder in --out");
+                     ": is no file of this conversion, expected an empty folder in " +
+                     option("out"));
   }
 }
 
@@ -39,7 +40,8 @@ UnfinishedConversion::UnfinishedConversion(const fs::path& root, const std::stri
   } else {
     throw UsageError(root.string() +
                      ": holds an unfinished conversion of other files or to another layout, "
-                     "expected an empty folder in --out");
+                     "expected an empty folder in " +
+                     option("out"));
   }
 }
 

@@ -14,7 +14,7 @@ namespace mosbench {
 namespace {
 
 [[noreturn]] void refuse(std::string_view what, const std::string& expected) {
-  throw UsageError(fmt::format("--perturb: {}, expected {}", what, expected));
+  throw UsageError(fmt::format("{}: {}, expected {}", option("perturb"), what, expected));
 }
 
 [[noreturn]] void refuse_name(std::string_view name) {
@@ -68,7 +68,7 @@ void add_step(std::string_view name, std::string_view text, Perturbation& pertur
   if (counts && strength != std::floor(strength)) {
     refuse(fmt::format("{}: {} is no count", name, quoted(text)), "a whole number");
   }
-  perturbation.steps.push_back({&kind, strength});
+  perturbation.steps.push_back({kind.name, strength});
 }
 
 void check_beams(const Perturbation& perturbation) {
@@ -80,7 +80,7 @@ void check_beams(const Perturbation& perturbation) {
     refuse("beams_top_deg is not above beams_bottom_deg", "elevations from top to bottom");
   }
   for (const PerturbStep& step : perturbation.steps) {
-    if (step.kind->name != "beams") continue;
+    if (step.kind != "beams") continue;
     if (perturbation.beams_of % static_cast<std::size_t>(step.strength) == 0) continue;
     refuse(fmt::format("beams: {:g} of {} cannot be evenly spaced", step.strength,
                        perturbation.beams_of),
@@ -94,18 +94,12 @@ void check_used(const Perturbation& perturbation, const std::vector<std::string_
   for (const PerturbKey& key : perturb_keys()) {
     if (key.kinds.empty() || std::ranges::find(said, key.name) == said.end()) continue;
     const bool is_used = std::ranges::any_of(perturbation.steps, [&](const PerturbStep& step) {
-      return std::ranges::find(key.kinds, step.kind->name) != key.kinds.end();
+      return std::ranges::find(key.kinds, step.kind) != key.kinds.end();
     });
     if (is_used) continue;
     refuse(fmt::format("{} is given, but nothing that uses it", key.name),
            fmt::format("it with {}", fmt::join(key.kinds, " or ")));
   }
-}
-
-bool has(const Perturbation& perturbation, std::string_view prefix) {
-  return std::ranges::any_of(perturbation.steps, [&](const PerturbStep& step) {
-    return step.kind->name.starts_with(prefix);
-  });
 }
 
 }  // namespace
@@ -139,31 +133,10 @@ Perturbation parse_perturbation(std::string_view text) {
   return perturbation;
 }
 
-std::string to_string(const Perturbation& perturbation) {
-  std::vector<std::string> parts;
-  for (const PerturbStep& step : perturbation.steps) {
-    parts.push_back(fmt::format("{}={}", step.kind->name, step.strength));
-  }
-  if (has(perturbation, "pose_jump") && perturbation.jump_scan) {
-    parts.push_back(fmt::format("pose_jump_scan={}", *perturbation.jump_scan));
-  }
-  if (has(perturbation, "beams")) {
-    parts.push_back(fmt::format("beams_of={}", perturbation.beams_of));
-    if (perturbation.beams_top_deg) {
-      parts.push_back(fmt::format("beams_top_deg={},beams_bottom_deg={}",
-                                  *perturbation.beams_top_deg, *perturbation.beams_bottom_deg));
-    }
-  }
-  if (has(perturbation, "rain") || has(perturbation, "fog")) {
-    parts.push_back(fmt::format("sensor_range_m={}", perturbation.sensor_range_m));
-  }
-  parts.push_back(fmt::format("seed={}", perturbation.seed));
-  return fmt::format("{}", fmt::join(parts, ","));
-}
-
 bool changes_points_only(const Perturbation& perturbation) {
   return std::ranges::none_of(perturbation.steps, [](const PerturbStep& step) {
-    return step.kind->needs_poses || step.kind->change_scans != nullptr;
+    const PerturbKind& kind = perturb_kind_named(step.kind);
+    return kind.needs_poses || kind.change_scans != nullptr;
   });
 }
 

@@ -1,41 +1,15 @@
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
-#include <optional>
-#include <string>
+#include <memory>
 #include <string_view>
-#include <vector>
 
 #include "datasets/sequence/sequence.hpp"
 
 namespace mosbench {
 
-struct PerturbKind;
-
-/// One disturbance of a list.
-struct PerturbStep {
-  const PerturbKind* kind;
-  double strength;  ///< in the kind's unit
-};
-
-/// The value of --perturb: disturbances in the order in which they apply, and what they share.
-struct Perturbation {
-  std::vector<PerturbStep> steps;
-  std::uint64_t seed = 1;                ///< of everything random
-  std::optional<std::size_t> jump_scan;  ///< where poses jump; without it, the middle scan
-  std::size_t beams_of = 64;             ///< of the sensor
-  std::optional<double> beams_top_deg, beams_bottom_deg;  ///< elevations of the outer beams
-  double sensor_range_m = 120.0;  ///< of the weakest target that is seen in clear air
-};
-
-/// Parses "KIND=STRENGTH,...,seed=N". Throws UsageError that begins with "--perturb" and names the
+/// Parses "KIND=STRENGTH,...,seed=N". Throws UsageError that names the
 /// nearest key for unknown ones, and the limits of a strength out of them.
 Perturbation parse_perturbation(std::string_view text);
-
-/// Returns the text that says the same with every shared key that one of the kinds uses, for
-/// records: equal texts disturb equally.
-std::string to_string(const Perturbation& perturbation);
 
 /// Returns whether no kind changes scans or their poses or needs these, so that poses may be found
 /// later.

@@ -23,14 +23,14 @@ class PerturbedSequence : public SequenceAround {
     const Draws draws = Draws(perturbation.seed).of(word_of(name()));
     for (std::size_t i = 0; i < perturbation.steps.size(); ++i) {
       const PerturbStep& step = perturbation.steps[i];
-      if (step.strength == step.kind->none) continue;
-      add(*step.kind, {step.strength, draws.of(i), perturbation, this->inner().recording()}, list);
+      const PerturbKind& kind = perturb_kind_named(step.kind);
+      if (step.strength == kind.none) continue;
+      add(kind, {step.strength, draws.of(i), perturbation, this->inner().recording()}, list);
     }
     sources_ = std::move(list.sources);
     mutable_recording().scans = std::move(list.scans);
-    const std::string text = to_string(perturbation);
-    mutable_recording().reading.emplace_back("perturb", text);
-    mutable_recording().remarks.push_back("disturbed on purpose: " + text);
+    mutable_recording().reading.perturb = perturbation;
+    mutable_recording().remarks.push_back("disturbed on purpose: " + to_string(perturbation));
   }
 
   using Sequence::read;

@@ -70,9 +70,9 @@ void check_columns(const PerturbContext& context) {
                        scan.points == context.original.scans.front().points;
     if (whole) continue;
     throw UsageError(fmt::format(
-        "--perturb: beams: scan {} of {} has {} points, which are no columns of {} beams, expected "
+        "{}: beams: scan {} of {} has {} points, which are no columns of {} beams, expected "
         "beams_top_deg and beams_bottom_deg, the elevations of the outer beams",
-        scan.stem, context.original.name.text(), scan.points, beams));
+        option("perturb"), scan.stem, context.original.name.text(), scan.points, beams));
   }
 }
 

@@ -52,8 +52,8 @@ void jump(const PerturbContext& context, const Pose& by, ScanList& list) {
   const std::size_t count = context.original.scans.size();
   const std::size_t at = context.shared.jump_scan.value_or(count / 2);
   if (at >= count) {
-    throw UsageError(fmt::format("--perturb: pose_jump_scan={} is no scan of {}, expected 0 to {}",
-                                 at, context.original.name.text(), count - 1));
+    throw UsageError(fmt::format("{}: pose_jump_scan={} is no scan of {}, expected 0 to {}",
+                                 option("perturb"), at, context.original.name.text(), count - 1));
   }
   const auto first = std::ranges::lower_bound(list.sources, at);
   if (first == list.sources.end()) return;
@@ -80,9 +80,9 @@ void keep_scans(ScanList& list, Keep&& keep) {
 std::int64_t stamp_of(const ScanEntry& scan, const Recording& recording) {
   if (scan.stamp_ns) return *scan.stamp_ns;
   throw UsageError(
-      fmt::format("--perturb: stamp_jitter_s: the scans of {} have no stamps, expected "
+      fmt::format("{}: stamp_jitter_s: the scans of {} have no stamps, expected "
                   "a sequence with times",
-                  recording.name.text()));
+                  option("perturb"), recording.name.text()));
 }
 
 }  // namespace

@@ -36,26 +36,21 @@ std::optional<std::filesystem::path> bag_of(const std::filesystem::path& folder)
   return bags.front().file;
 }
 
-BagSequence::BagSequence(std::string name, const std::filesystem::path& bag,
-                         const ReadingOptions& options)
+BagSequence::BagSequence(std::string name, const std::filesystem::path& bag, const Reading& asked)
     : bag_(open_bag(bag)),
-      undistorts_(options.undistorts()),
-      keeps_times_(options.poses_by_odometry || options.deskew == Deskew::kVelocity),
-      by_azimuth_(options.point_times == PointTimes::kAzimuth) {
-  if (options.point_times == PointTimes::kColumn) {
-    throw UsageError("--point-times column: " + bag.string() + " is a bag, expected .bin files");
-  }
+      undistorts_(asked.undistorts()),
+      keeps_times_(asked.is_by_odometry() || asked.deskew == Deskew::kVelocity),
+      by_azimuth_(asked.point_times == PointTimes::kAzimuth) {
   Recording& recording = mutable_recording();
   recording.name = SequenceName(std::move(name), bag.parent_path());
   recording.files = bag_->files();
   recording.remarks = bag_->remarks();
-  const std::string topic = cloud_topic(*bag_, options.topic);
+  const std::string topic = cloud_topic(*bag_, asked.topic);
   list_scans(topic);
-  recording.reading.emplace_back("scan_files",
-                                 fmt::format("{}, topic {}", bag.filename().string(), topic));
-  options.poses || options.poses_by_odometry ? open_pose_file(options) : open_transforms(options);
+  recording.reading.scan_files = fmt::format("{}, topic {}", bag.filename().string(), topic);
+  asked.has_own_poses() ? open_transforms(asked) : open_pose_file(asked);
   state_undistortion();
-  enter_scans();
+  for (ScanEntry& scan : recording.scans) scan.map_from_sensor = *pose_at_(*scan.stamp_ns);
 }
 
 CloudHead BagSequence::head_of(const BagMessage& message) const {
@@ -70,6 +65,7 @@ TimedCloud BagSequence::cloud_of(const Scan& scan) const {
 
 ScanEntry BagSequence::entry_of(const Scan& scan) {
   ScanEntry entry;
+  entry.has_truth = scan.labelled;
   entry.stem = fmt::format("{:06}", scan.number);
   entry.stamp_ns = scan.stamp_ns;
   entry.points = scan.points;
@@ -77,11 +73,7 @@ ScanEntry BagSequence::entry_of(const Scan& scan) {
 }
 
 void BagSequence::enter_scans() {
-  for (const Scan& scan : scans_) {
-    ScanEntry& entry = mutable_recording().scans.emplace_back(entry_of(scan));
-    entry.map_from_sensor = *pose_at_(scan.stamp_ns);
-    entry.has_truth = scan.labelled;
-  }
+  for (const Scan& scan : scans_) mutable_recording().scans.push_back(entry_of(scan));
 }
 
 void BagSequence::list_scans(const std::string& topic) {
@@ -103,39 +95,33 @@ void BagSequence::list_scans(const std::string& topic) {
   }
 }
 
-void BagSequence::open_pose_file(const ReadingOptions& options) {
-  std::vector<std::int64_t> stamps_ns;
-  for (const Scan& scan : scans_) stamps_ns.push_back(scan.stamp_ns);
-  const SensorPoses poses = read_sensor_poses(bag_->path().parent_path(), "poses.txt", options,
-                                              {scans_.size(), stamps_ns});
-  std::vector<Scan> scans = std::exchange(scans_, {});
+void BagSequence::open_pose_file(const Reading& asked) {
+  enter_scans();
+  const std::vector<Scan> all = std::exchange(scans_, {});
   std::vector<std::pair<std::int64_t, Pose>> stamped;
-  for (std::size_t i = 0; i < scans.size(); ++i) {
-    if (std::ranges::binary_search(poses.unknown, i)) {
-      mutable_recording().left_out.push_back(entry_of(scans[i]));
-      continue;
-    }
-    stamped.emplace_back(stamps_ns[i], poses.map_from_sensor[i]);
-    scans_.push_back(std::move(scans[i]));
+  for (const std::size_t k :
+       place_scans(bag_->path().parent_path(), "poses.txt", asked, mutable_recording())) {
+    stamped.emplace_back(all[k].stamp_ns, map_from_sensor(scans_.size()));
+    scans_.push_back(all[k]);
   }
   pose_at_ = [track = PoseTrack(std::move(stamped))](std::int64_t stamp_ns) {
     return track.at(stamp_ns);
   };
   leaves_last_ = true;
-  add_statements(poses, mutable_recording());
 }
 
-void BagSequence::open_transforms(const ReadingOptions& options) {
+void BagSequence::open_transforms(const Reading& asked) {
   BagTransforms transforms =
-      bag_transforms(*bag_, options.map_frame, scans_.front().frame, options.pose_topic);
-  mutable_recording().reading.emplace_back("poses", transforms.source);
-  state_pose_origin(bag_->files().front(), mutable_recording().reading,
-                    mutable_recording().remarks);
-  mutable_recording().remarks.push_back("poses from the bag: " + transforms.source);
+      bag_transforms(*bag_, asked.map_frame, scans_.front().frame, asked.pose_topic);
+  Recording& recording = mutable_recording();
+  recording.reading.poses.source = transforms.source;
+  state_pose_origin(bag_->files().front(), recording.reading.poses, recording.remarks);
+  recording.remarks.push_back("poses from the bag: " + transforms.source);
   pose_at_ = [chain = std::move(transforms.map_from_sensor)](std::int64_t stamp_ns) {
     return chain.at(stamp_ns);
   };
   leave_out_uncovered();
+  enter_scans();
 }
 
 bool BagSequence::covered(const Scan& scan) const {
@@ -156,7 +142,7 @@ void BagSequence::leave_out_uncovered() {
   std::erase_if(scans_, [this](const Scan& scan) { return !covered(scan); });
   if (scans_.empty()) {
     throw DataError(bag_->path(), "no transform covers any of its " + counted(all, "scan"),
-                    "poses while the scans are taken, or --poses FILE");
+                    "poses while the scans are taken, or " + option("poses", "FILE"));
   }
   if (scans_.size() == all) return;
   mutable_recording().remarks.push_back(
@@ -166,13 +152,13 @@ void BagSequence::leave_out_uncovered() {
 
 void BagSequence::state_undistortion() {
   const bool timed = scans_.front().timed;
-  const std::string how = by_azimuth_    ? "not by the points' times"
-                          : !timed       ? "none, the points have no times"
-                          : !undistorts_ ? "none, as told"
-                          : leaves_last_ ? "by the points' times, the last scan not"
-                                         : "by the points' times";
-  mutable_recording().reading.emplace_back("undistortion", how);
-  mutable_recording().remarks.push_back("undistortion: " + how);
+  const BagUndistortion how = by_azimuth_    ? BagUndistortion::kOtherTimes
+                              : !timed       ? BagUndistortion::kNoTimes
+                              : !undistorts_ ? BagUndistortion::kAsTold
+                              : leaves_last_ ? BagUndistortion::kButLast
+                                             : BagUndistortion::kAll;
+  mutable_recording().reading.undistortion = how;
+  mutable_recording().remarks.push_back(fmt::format("undistortion: {}", to_string(how)));
 }
 
 void BagSequence::check_times(const Scan& scan, const TimedCloud& cloud) const {

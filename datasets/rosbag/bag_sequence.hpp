@@ -18,14 +18,14 @@ namespace mosbench {
 std::optional<std::filesystem::path> bag_of(const std::filesystem::path& folder);
 
 /// The scans of one topic of a bag (`open_bag`). Poses are those of its tf tree (/tf, /tf_static),
-/// else of `bag_transforms`, unless `options.poses` names a file. Scans whose points have times are
+/// else of `bag_transforms`, unless a file was asked for. Scans whose points have times are
 /// undistorted; their frames then have the pose at the first point's time. Scans that no transform
 /// covers are left out and counted in the remarks. Truth is the field "label" of the points.
 class BagSequence : public Sequence {
  public:
   /// `bag` is a file or the folder of a ROS 2 bag. Throws DataError if it is no bag, has no such
   /// topic, holds no scan in it, or lacks transforms from the scans' frame to the map's.
-  BagSequence(std::string name, const std::filesystem::path& bag, const ReadingOptions& options);
+  BagSequence(std::string name, const std::filesystem::path& bag, const Reading& asked);
 
   using Sequence::read;
   void read(std::size_t scan_index, Frame& frame) const override;
@@ -43,8 +43,8 @@ class BagSequence : public Sequence {
   };
 
   void list_scans(const std::string& topic);
-  void open_transforms(const ReadingOptions& options);
-  void open_pose_file(const ReadingOptions& options);
+  void open_transforms(const Reading& asked);
+  void open_pose_file(const Reading& asked);
   bool covered(const Scan& scan) const;
   void leave_out_uncovered();
   void state_undistortion();

@@ -1,5 +1,7 @@
 #include "datasets/rosbag/bag_topics.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <set>
 #include <utility>
@@ -145,8 +147,9 @@ std::optional<BagTransforms> find_poses(std::string_view type,
     found = std::move(chain);
   }
   if (fitting.size() > 1) {
-    throw DataError(bag.path(), "has poses in the topics " + listed(fitting),
-                    "one of them in --pose-topic, or --poses FILE");
+    throw DataError(
+        bag.path(), "has poses in the topics " + listed(fitting),
+        fmt::format("one of them in {}, or {}", option("pose_topic"), option("poses", "FILE")));
   }
   return found;
 }
@@ -166,8 +169,9 @@ std::optional<BagTransforms> poses_of_topic(const std::string& topic,
     }
     others.merge(topics);
   }
-  throw DataError(bag.path(), "has no topic of poses " + topic,
-                  others.empty() ? "--poses FILE, as it has none" : "one of " + listed(others));
+  throw DataError(
+      bag.path(), "has no topic of poses " + topic,
+      others.empty() ? option("poses", "FILE") + ", as it has none" : "one of " + listed(others));
 }
 
 /// Finds the poses of the first kind of topic that has some.
@@ -196,13 +200,14 @@ std::string cloud_topic(const BagReader& bag, const std::optional<std::string>& 
                     "one of what it holds: " + all_topics(bag));
   }
   if (topics.empty()) {
-    throw DataError(bag.path(), "holds no sensor_msgs/PointCloud2 but " + all_topics(bag),
-                    "scans as PointCloud2; of a folder with bags --sequences picks others");
+    throw DataError(
+        bag.path(), "holds no sensor_msgs/PointCloud2 but " + all_topics(bag),
+        "scans as PointCloud2; of a folder with bags " + option("sequences") + " picks others");
   }
   if (topics.contains(std::string(kDoalsTopic))) return std::string(kDoalsTopic);
   if (topics.size() == 1) return *topics.begin();
   throw DataError(bag.path(), "holds several PointCloud2 topics: " + listed(topics),
-                  "one of them in --topic");
+                  "one of them in " + option("topic"));
 }
 
 BagTransforms bag_transforms(const BagReader& bag, const std::optional<std::string>& map_frame,
@@ -218,8 +223,9 @@ BagTransforms bag_transforms(const BagReader& bag, const std::optional<std::stri
       "no transforms lead from " + map_frame.value_or("a map") + " to " + sensor_frame +
           " (/tf: " + frames_of(tf) + "; TransformStamped: " + frames_of(stamped) +
           "; Odometry: " + frames_of(transforms_of_type(bag, kOdometry)) + ")",
-      "such a chain (--map-frame names a map that is called otherwise), --poses FILE, or poses "
-      "found by odometry");
+      fmt::format("such a chain ({} names a map that is called otherwise), {}, or poses found by "
+                  "odometry",
+                  option("map_frame"), option("poses", "FILE")));
 }
 
 }  // namespace mosbench

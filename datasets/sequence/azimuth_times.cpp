@@ -44,7 +44,7 @@ AzimuthTimes::AzimuthTimes(std::unique_ptr<Sequence> inner)
     : SequenceAround(std::move(inner)), turn_ns_(median_interval_ns(recording().scans)) {
   const std::string how =
       fmt::format("by azimuth, a turn in {:g} s", static_cast<double>(turn_ns_) * 1e-9);
-  mutable_recording().reading.emplace_back("point_times", how);
+  mutable_recording().reading.point_times = how;
   mutable_recording().remarks.push_back("times of points " + how);
 }
 

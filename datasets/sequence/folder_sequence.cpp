@@ -41,24 +41,21 @@ std::vector<std::int64_t> stamps_from_stems(const std::vector<ScanEntry>& scans)
 }  // namespace
 
 FolderSequence::FolderSequence(std::string name, const std::filesystem::path& folder,
-                               const ReadingOptions& asked, const FolderLayout& layout)
+                               const Reading& asked, const FolderLayout& layout)
     : bin_columns_(asked.bin_columns.value_or(kUsualBinColumns)),
       times_in_column_(asked.undistorts() && asked.point_times == PointTimes::kColumn) {
-  ReadingOptions options = asked;
-  if (layout.poses_of_lidar && !options.poses && options.pose_frame == PoseFrame::kByCalib) {
-    options.pose_frame = PoseFrame::kLidar;
-  }
   Recording& recording = mutable_recording();
   recording.name = SequenceName(std::move(name), folder);
   list_scans(folder, layout, !asked.bin_columns);
   const std::vector<std::int64_t> stamps_ns = read_stamps(folder);
-  SensorPoses poses =
-      read_sensor_poses(folder, std::string(layout.poses_file), options, {size(), stamps_ns});
   for (std::size_t k = 0; k < stamps_ns.size(); ++k) recording.scans[k].stamp_ns = stamps_ns[k];
-  place_scans(poses, recording);
-  recording.files.insert(recording.files.begin(), poses.files.begin(), poses.files.end());
-  recording.remarks = std::move(poses.remarks);
-  recording.reading.insert(recording.reading.end(), poses.reading.begin(), poses.reading.end());
+  Reading posed = asked;
+  if (layout.poses_of_lidar && asked.has_own_poses() && !asked.pose_frame) {
+    posed.pose_frame = PoseFrame::kLidar;
+  }
+  const std::vector<std::filesystem::path> times = std::exchange(recording.files, {});
+  place_scans(folder, std::string(layout.poses_file), posed, recording);
+  recording.files.insert(recording.files.end(), times.begin(), times.end());
 }
 
 void FolderSequence::list_scans(const std::filesystem::path& folder, const FolderLayout& layout,
@@ -70,25 +67,22 @@ void FolderSequence::list_scans(const std::filesystem::path& folder, const Folde
                                  : list_scan_folder(is_flat ? folder : folder / layout.scan_folder);
   if (columns_are_usual) check_usual_bin_columns(scans);
   const std::filesystem::path& first = scans.front().file;
-  recording.reading = {
-      {"scan_files", fmt::format("{} of {}/", first.extension().string(),
-                                 is_flat ? "." : first.parent_path().filename().string())}};
-  if (bin_columns_ != kUsualBinColumns) {
-    recording.reading.emplace_back("bin_columns", std::to_string(bin_columns_));
-  }
+  recording.reading.scan_files =
+      fmt::format("{} of {}/", first.extension().string(),
+                  is_flat ? "." : first.parent_path().filename().string());
+  if (bin_columns_ != kUsualBinColumns) recording.reading.bin_columns = bin_columns_;
   if (times_in_column_) {
-    recording.reading.emplace_back("point_times",
-                                   first.extension() == ".bin" ? "fifth column" : "field of times");
+    recording.reading.point_times = first.extension() == ".bin" ? "fifth column" : "field of times";
   }
   recording.scans.reserve(scans.size());
   for (StemFile& scan : scans) {
     const ScanHead head = read_scan_head(scan.file, bin_columns_);
     labels_in_scans_ = labels_in_scans_ && head.has_labels;
     if (times_in_column_ && !head.has_times) {
-      throw DataError(scan.file, "holds no times of points",
-                      fmt::format("{} in .pcd and .ply files, --bin-columns 5 for .bin files, with "
-                                  "--point-times column",
-                                  kTimeFields));
+      throw DataError(
+          scan.file, "holds no times of points",
+          fmt::format("{} in .pcd and .ply files, {} for .bin files, with {}", kTimeFields,
+                      option("bin_columns", "5"), option("point_times", "column")));
     }
     ScanEntry& entry = recording.scans.emplace_back();
     entry.stem = std::move(scan.stem);

@@ -25,9 +25,9 @@ struct FolderLayout {
 /// truth of its own.
 class FolderSequence : public Sequence {
  public:
-  /// Reads poses by `read_sensor_poses`. Throws DataError.
-  FolderSequence(std::string name, const std::filesystem::path& folder,
-                 const ReadingOptions& options, const FolderLayout& layout = {});
+  /// Reads poses by `place_scans`. Throws DataError.
+  FolderSequence(std::string name, const std::filesystem::path& folder, const Reading& asked,
+                 const FolderLayout& layout = {});
 
   using Sequence::read;
   void read(std::size_t scan_index, Frame& frame) const override;

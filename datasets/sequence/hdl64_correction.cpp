@@ -19,7 +19,7 @@ Point raised_by_hdl64_correction(const Point& point) {
 }
 
 Hdl64Corrected::Hdl64Corrected(std::unique_ptr<Sequence> inner) : SequenceAround(std::move(inner)) {
-  mutable_recording().reading.emplace_back("hdl64_correction", "points raised by 0.205 degrees");
+  mutable_recording().reading.hdl64_correction = true;
 }
 
 void Hdl64Corrected::read(std::size_t scan_index, Frame& frame) const {

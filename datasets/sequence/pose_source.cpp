@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "datasets/disk/files.hpp"
 #include "datasets/formats/calib_file.hpp"
@@ -41,114 +42,126 @@ std::string hash_line(const fs::path& pose_file) {
                      hash_of_file(pose_file));
 }
 
+/// The stamps of the scans; none unless all have one.
+std::vector<std::int64_t> stamps_of(const std::vector<ScanEntry>& scans) {
+  std::vector<std::int64_t> stamps_ns;
+  for (const ScanEntry& scan : scans) {
+    if (!scan.stamp_ns) return {};
+    stamps_ns.push_back(*scan.stamp_ns);
+  }
+  return stamps_ns;
+}
+
 class SensorPoseReader {
  public:
-  SensorPoseReader(const fs::path& folder, const ReadingOptions& options, fs::path file)
-      : folder_(folder), options_(options), file_(std::move(file)) {}
+  SensorPoseReader(const fs::path& folder, const Reading& asked, fs::path file)
+      : folder_(folder), asked_(asked), file_(std::move(file)) {}
 
-  SensorPoses run(const PosedScans& scans) {
-    const PoseList list = read_pose_list(file_, options_.pose_format);
+  SensorPoses run(const std::vector<ScanEntry>& scans) {
+    const PoseList list = read_pose_list(file_, asked_.pose_format);
     result_.files.push_back(file_);
-    state("poses", options_.poses ? file_.string() : file_.filename().string());
-    state("pose_format", std::string(to_string(list.format)));
+    const bool is_users = asked_.pose_file() != nullptr;
+    if (is_users) result_.remarks.push_back("poses from " + file_.string());
+    result_.done.source = is_users ? file_.string() : file_.filename().string();
+    result_.done.format = list.format;
     pair_with_scans(list, scans);
-    invert_if(options_.poses_inverse.value_or(list.format == PoseFormat::kRollout));
-    move_to_lidar(list.format);
-    if (!options_.poses) state_pose_origin(file_, result_.reading, result_.remarks);
+    invert_or_not(asked_.pose_direction.value_or(list.format == PoseFormat::kRollout
+                                                     ? PoseDirection::kSensorFromMap
+                                                     : PoseDirection::kMapFromSensor));
+    result_.done.frame = move_to_lidar(list.format);
+    if (!is_users) state_pose_origin(file_, result_.done, result_.remarks);
     return std::move(result_);
   }
 
  private:
-  void state(const char* what, std::string how) {
-    result_.reading.emplace_back(what, std::move(how));
-  }
-
-  void pair_with_scans(const PoseList& list, const PosedScans& scans) {
-    if (!list.stamps_ns.empty() && !scans.stamps_ns.empty()) {
-      interpolate(track_of(list), scans);
+  void pair_with_scans(const PoseList& list, const std::vector<ScanEntry>& scans) {
+    const std::vector<std::int64_t> stamps_ns = stamps_of(scans);
+    if (!list.stamps_ns.empty() && !stamps_ns.empty()) {
+      interpolate(track_of(list), stamps_ns);
       return;
     }
-    if (list.poses.size() != scans.count) {
+    if (list.poses.size() != scans.size()) {
       throw DataError(file_,
-                      fmt::format("{} pose rows for {} scans", list.poses.size(), scans.count),
+                      fmt::format("{} pose rows for {} scans", list.poses.size(), scans.size()),
                       "one per scan");
     }
-    result_.map_from_sensor = list.poses;
-    state("pose_pairing", "row by row");
+    result_.map_from_sensor.assign(list.poses.begin(), list.poses.end());
+    result_.done.pairing = "row by row";
   }
 
   /// Takes the poses at the stamps of the scans.
-  void interpolate(const PoseTrack& track, const PosedScans& scans) {
-    std::size_t interpolated = 0;
-    for (const std::int64_t stamp_ns : scans.stamps_ns) {
-      result_.map_from_sensor.push_back(pose_at(track, stamp_ns, file_));
+  void interpolate(const PoseTrack& track, const std::vector<std::int64_t>& stamps_ns) {
+    std::size_t interpolated = 0, unknown = 0;
+    for (const std::int64_t stamp_ns : stamps_ns) {
+      result_.map_from_sensor.emplace_back(pose_at(track, stamp_ns, file_));
       const std::int64_t gap_ns = track.gap_ns(stamp_ns);
       if (gap_ns == 0) continue;
-      if (static_cast<double>(gap_ns) <= std::round(options_.max_pose_gap_s * 1e9)) {
+      if (static_cast<double>(gap_ns) <= std::round(asked_.max_pose_gap_s * 1e9)) {
         ++interpolated;
       } else {
-        result_.unknown.push_back(result_.map_from_sensor.size() - 1);
+        ++unknown;
+        result_.map_from_sensor.back().reset();
       }
     }
-    std::string how = fmt::format("by stamp, {} of {} interpolated", interpolated, scans.count);
-    if (!result_.unknown.empty()) how += "; " + state_gaps(scans);
-    state("pose_pairing", std::move(how));
+    const std::size_t scans = stamps_ns.size();
+    result_.done.pairing = fmt::format("by stamp, {} of {} interpolated", interpolated, scans);
+    if (unknown > 0) result_.done.pairing += "; " + state_gaps(unknown, scans);
   }
 
-  std::string state_gaps(const PosedScans& scans) {
+  std::string state_gaps(std::size_t unknown, std::size_t scans) {
     const std::string gaps =
-        fmt::format("lie between poses more than {:g} s apart", options_.max_pose_gap_s);
-    if (result_.unknown.size() == scans.count) {
-      throw DataError(file_, "all scans " + gaps, "more poses, or a longer --max-pose-gap-s");
+        fmt::format("lie between poses more than {:g} s apart", asked_.max_pose_gap_s);
+    if (unknown == scans) {
+      throw DataError(file_, "all scans " + gaps,
+                      "more poses, or a longer " + option("max_pose_gap_s"));
     }
     const std::string left_out =
-        fmt::format("{} of {} are left out", result_.unknown.size(), counted(scans.count, "scan"));
-    result_.remarks.push_back(fmt::format("{}: they {} in {} (--max-pose-gap-s)", left_out, gaps,
-                                          file_.filename().string()));
+        fmt::format("{} of {} are left out", unknown, counted(scans, "scan"));
+    result_.remarks.push_back(fmt::format("{}: they {} in {} ({})", left_out, gaps,
+                                          file_.filename().string(), option("max_pose_gap_s")));
     return left_out;
   }
 
-  void invert_if(bool inverse) {
-    state("pose_direction", inverse ? "sensor_from_map, inverted" : "map_from_sensor");
-    if (!inverse) return;
-    for (Pose& pose : result_.map_from_sensor) pose = pose.inverse();
+  void invert_or_not(PoseDirection direction) {
+    result_.done.direction = direction;
+    if (direction == PoseDirection::kMapFromSensor) return;
+    for (auto& pose : result_.map_from_sensor) {
+      if (pose) pose = pose->inverse();
+    }
     result_.remarks.push_back(file_.filename().string() +
                               " is read as sensor_from_map: its poses are inverted");
   }
 
-  void move_to_lidar(PoseFormat format) {
+  PoseFrame move_to_lidar(PoseFormat format) {
     const fs::path calib = folder_ / "calib.txt";
     if (!is_there(calib)) {
-      if (options_.pose_frame == PoseFrame::kCamera) {
+      if (asked_.pose_frame == PoseFrame::kCamera) {
         throw DataError(calib, "does not exist", "Tr there, as the poses are those of a camera");
       }
       result_.remarks.push_back("no calib.txt: the poses are read as the lidar's");
-      state("pose_frame", "lidar");
-      return;
+      return PoseFrame::kLidar;
     }
     const Pose camera_from_lidar = read_calib(calib);
     result_.files.push_back(calib);
-    const bool by_calib =
-        options_.pose_frame == PoseFrame::kByCalib && format == PoseFormat::kKitti;
-    const bool of_camera = options_.pose_frame == PoseFrame::kCamera || by_calib;
-    if (!of_camera || is_identity(camera_from_lidar)) {
-      state("pose_frame", "lidar");
-      return;
-    }
+    const bool by_calib = !asked_.pose_frame && format == PoseFormat::kKitti;
+    const bool of_camera = asked_.pose_frame == PoseFrame::kCamera || by_calib;
+    if (!of_camera || is_identity(camera_from_lidar)) return PoseFrame::kLidar;
     if (by_calib && is_marked_as_lidars(file_)) {
-      state("pose_frame", "lidar, as the .frame beside the file says");
-      return;
+      result_.done.frame_by_mark = true;
+      return PoseFrame::kLidar;
     }
-    for (Pose& pose : result_.map_from_sensor) pose = lidar_pose(pose, camera_from_lidar);
-    state("pose_frame", "camera, turned into the lidar's by Tr of calib.txt");
+    for (auto& pose : result_.map_from_sensor) {
+      if (pose) pose = lidar_pose(*pose, camera_from_lidar);
+    }
     result_.remarks.push_back(fmt::format(
         "calib.txt holds a Tr other than the identity: {} is read as camera poses, lidar pose = "
         "Tr^-1 * P * Tr (KITTI)",
         file_.filename().string()));
+    return PoseFrame::kCamera;
   }
 
   const fs::path& folder_;
-  const ReadingOptions& options_;
+  const Reading& asked_;
   fs::path file_;
   SensorPoses result_;
 };
@@ -160,38 +173,22 @@ MissingPoses missing_poses(const fs::path& folder, const fs::path& file) {
   const fs::path others = folder / "../../poses";
   const std::string expected =
       is_there(others / (name.string() + ".txt"))
-          ? fmt::format("one pose per scan there, or --poses {}",
-                        others.lexically_normal().string())
-          : "one pose per scan there, in a file given by --poses, or found by odometry";
+          ? "one pose per scan there, or " + option("poses", others.lexically_normal().string())
+          : fmt::format("one pose per scan there, in a file given by {}, or found by odometry",
+                        option("poses"));
   return {file, "does not exist", expected};
 }
 
 }  // namespace
 
-std::string pose_origin_of(const ReadingStatement& reading) {
+std::string pose_origin_of(const PosesDone& poses) {
+  if (!poses.origin.empty()) return poses.origin;  // of poses that were converted before
   std::string origin;
-  for (const auto& [what, how] : reading) {
-    if (what == "pose_origin") return how;  // of poses that were converted before
-    if (what != "poses" && !what.starts_with("pose_")) continue;
+  for (const auto& [what, how] : members_of(poses)) {
     origin += fmt::format("{}{}: {}", origin.empty() ? "" : "; ", what, how);
   }
   std::ranges::replace(origin, '\n', ' ');
   return origin;
-}
-
-void place_scans(const SensorPoses& poses, Recording& recording) {
-  std::vector<ScanEntry> scans = std::exchange(recording.scans, {});
-  for (std::size_t k = 0; k < scans.size(); ++k) {
-    scans[k].map_from_sensor = poses.map_from_sensor[k];
-    const bool leaves_out = std::ranges::binary_search(poses.unknown, k);
-    (leaves_out ? recording.left_out : recording.scans).push_back(std::move(scans[k]));
-  }
-}
-
-void add_statements(const SensorPoses& poses, Recording& recording) {
-  recording.files.insert(recording.files.end(), poses.files.begin(), poses.files.end());
-  recording.remarks.insert(recording.remarks.end(), poses.remarks.begin(), poses.remarks.end());
-  recording.reading.insert(recording.reading.end(), poses.reading.begin(), poses.reading.end());
 }
 
 fs::path pose_origin_file(const fs::path& pose_file) {
@@ -203,14 +200,14 @@ void write_pose_origin(const fs::path& pose_file, const std::string& origin) {
   write_file_atomic(pose_origin_file(pose_file), origin + "\n" + hash_line(pose_file));
 }
 
-void state_pose_origin(const fs::path& pose_file, ReadingStatement& reading,
+void state_pose_origin(const fs::path& pose_file, PosesDone& poses,
                        std::vector<std::string>& remarks) {
   const fs::path file = pose_origin_file(pose_file);
   if (!is_there(file)) return;
   const std::string text = read_file(file);
   const std::string origin = text.substr(0, text.find('\n'));
   if (text == origin + "\n" + hash_line(pose_file)) {
-    reading.emplace_back("pose_origin", origin);
+    poses.origin = origin;
   } else {
     remarks.push_back(fmt::format(
         "{} was not written for {} as it is now: where these poses came from is not known",
@@ -218,23 +215,42 @@ void state_pose_origin(const fs::path& pose_file, ReadingStatement& reading,
   }
 }
 
-SensorPoses read_sensor_poses(const fs::path& folder, const std::string& own_file,
-                              const ReadingOptions& options, const PosedScans& scans) {
-  if (options.poses_by_odometry) {
-    return {.map_from_sensor = std::vector<Pose>(scans.count, Pose::Identity()),
-            .unknown = {},
-            .files = {},
-            .remarks = {},
-            .reading = {{"poses", "none"}}};
+std::vector<std::size_t> place_scans(SensorPoses poses, Recording& recording) {
+  std::vector<std::size_t> kept;
+  std::vector<ScanEntry> scans = std::exchange(recording.scans, {});
+  for (std::size_t k = 0; k < scans.size(); ++k) {
+    if (const auto& pose = poses.map_from_sensor[k]) {
+      scans[k].map_from_sensor = *pose;
+      kept.push_back(k);
+      recording.scans.push_back(std::move(scans[k]));
+    } else {
+      scans[k].has_truth = false;
+      recording.left_out.push_back(std::move(scans[k]));
+    }
   }
-  const fs::path file = options.poses.value_or(folder / own_file);
-  if (!options.poses && !is_there(file)) {
-    throw missing_poses(folder, file);
+  recording.files.insert(recording.files.end(), poses.files.begin(), poses.files.end());
+  recording.remarks.insert(recording.remarks.end(), poses.remarks.begin(), poses.remarks.end());
+  recording.reading.poses = std::move(poses.done);
+  return kept;
+}
+
+std::vector<std::size_t> place_scans(const fs::path& folder, const std::string& own_file,
+                                     const Reading& asked, Recording& recording) {
+  if (asked.is_by_odometry()) {
+    const std::vector<std::optional<Pose>> unposed(recording.scans.size(), Pose::Identity());
+    return place_scans({.map_from_sensor = unposed, .done = {.source = "none"}}, recording);
   }
-  SensorPoses poses = SensorPoseReader(folder, options, file).run(scans);
-  if (options.poses) {
-    poses.remarks.insert(poses.remarks.begin(), "poses from " + file.string());
-  }
+  const fs::path file = asked.has_own_poses() ? folder / own_file : *asked.pose_file();
+  if (asked.has_own_poses() && !is_there(file)) throw missing_poses(folder, file);
+  return place_scans(SensorPoseReader(folder, asked, file).run(recording.scans), recording);
+}
+
+SensorPoses own_poses(std::string source, const fs::path& file) {
+  SensorPoses poses;
+  poses.done = {.source = std::move(source),
+                .direction = PoseDirection::kMapFromSensor,
+                .frame = PoseFrame::kLidar};
+  state_pose_origin(file, poses.done, poses.remarks);
   return poses;
 }
 

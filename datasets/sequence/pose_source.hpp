@@ -1,13 +1,12 @@
 #pragma once
 
-#include <cstdint>
+#include <cstddef>
 #include <filesystem>
 #include <mosbench/scan.hpp>
-#include <span>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "datasets/sequence/reading_options.hpp"
 #include "datasets/sequence/recording.hpp"
 #include "datasets/text/errors.hpp"
 
@@ -20,35 +19,30 @@ class MissingPoses : public DataError {
   using DataError::DataError;
 };
 
-/// LiDAR poses of a sequence and where they came from.
+/// LiDAR poses of the scans of a sequence and where they came from.
 struct SensorPoses {
-  std::vector<Pose> map_from_sensor;  ///< one per scan
-  std::vector<std::size_t> unknown;   ///< scans, in order, whose pose above says nothing
-  std::vector<std::filesystem::path> files;
-  std::vector<std::string> remarks;
-  ReadingStatement reading;
+  std::vector<std::optional<Pose>> map_from_sensor;  ///< one per scan; nothing where not known
+  std::vector<std::filesystem::path> files = {};
+  std::vector<std::string> remarks = {};
+  PosesDone done = {};
 };
 
-/// The scans that need poses.
-struct PosedScans {
-  std::size_t count = 0;
-  std::span<const std::int64_t> stamps_ns;  ///< one per scan, or none
-};
-
-/// Reads `options.poses`, else `folder`/`own_file`, and turns the poses into the LiDAR's by
+/// Gives the scans of a recording, which have none yet, the poses that were asked for. They are
+/// those of the user's file, else of `folder`/`own_file`, and are turned into the LiDAR's by
 /// `folder`/calib.txt. Poses with stamps are interpolated to the scans' stamps; without stamps rows
-/// and scans are paired in order. Scans between poses more than `options.max_pose_gap_s` apart have
-/// no pose. Throws MissingPoses where there is no file, DataError when counts differ, when the
-/// stamps of the poses do not cover a scan, or when no scan has a pose. Identities where
-/// `options.poses_by_odometry` is set.
-SensorPoses read_sensor_poses(const std::filesystem::path& folder, const std::string& own_file,
-                              const ReadingOptions& options, const PosedScans& scans);
+/// and scans are paired in order. Scans between poses more than `asked.max_pose_gap_s` apart have
+/// no pose: they are left out, without truth. All scans have the identity where odometry is to find
+/// poses. Returns the indices of the scans that stay. Throws MissingPoses where there is no file,
+/// DataError when counts differ, when the stamps of the poses do not cover a scan, or when no scan
+/// has a pose.
+std::vector<std::size_t> place_scans(const std::filesystem::path& folder,
+                                     const std::string& own_file, const Reading& asked,
+                                     Recording& recording);
+/// The same by poses that are known, as those that a data set has of its own.
+std::vector<std::size_t> place_scans(SensorPoses poses, Recording& recording);
 
-/// Gives the scans of a recording, which have none yet, their poses, and leaves those out whose
-/// pose is unknown.
-void place_scans(const SensorPoses& poses, Recording& recording);
-/// Adds where poses came from to what a recording says of itself.
-void add_statements(const SensorPoses& poses, Recording& recording);
+/// Returns what is said of poses that a data set itself has of the LiDAR, and kept in `file`.
+SensorPoses own_poses(std::string source, const std::filesystem::path& file);
 
 /// Beside poses that `convert` wrote: a line that says where they came from, and one with the hash
 /// of the file that holds them.
@@ -56,15 +50,15 @@ inline constexpr const char* kPoseOriginFile = "pose_origin.txt";
 /// Returns that file; of an .h5 file, which shares its folder with others, NAME.pose_origin.txt.
 std::filesystem::path pose_origin_file(const std::filesystem::path& pose_file);
 
-/// Returns the first line for the poses of a sequence that was read so.
-std::string pose_origin_of(const ReadingStatement& reading);
+/// Returns the first line for poses that came about so.
+std::string pose_origin_of(const PosesDone& poses);
 
 /// Writes both lines beside `pose_file`, which is complete.
 void write_pose_origin(const std::filesystem::path& pose_file, const std::string& origin);
 
 /// Adds the line beside `pose_file`, if there is one, to what is said of the poses; a remark in its
 /// place where the file is not the one that the line was written for.
-void state_pose_origin(const std::filesystem::path& pose_file, ReadingStatement& reading,
+void state_pose_origin(const std::filesystem::path& pose_file, PosesDone& poses,
                        std::vector<std::string>& remarks);
 
 }  // namespace mosbench

@@ -1,17 +1,16 @@
 #include "datasets/sequence/posed_sequence.hpp"
 
-#include <algorithm>
 #include <stdexcept>
 #include <utility>
 
 namespace mosbench {
 
-PosedSequence::PosedSequence(std::unique_ptr<Sequence> inner, const ReadingStatement& how,
-                             Deskew deskew)
+PosedSequence::PosedSequence(std::unique_ptr<Sequence> inner, PosesDone how, Deskew deskew,
+                             bool states_deskew)
     : SequenceAround(std::move(inner)), deskew_(deskew) {
-  ReadingStatement& reading = mutable_recording().reading;
-  std::erase_if(reading, [](const auto& statement) { return statement.first.starts_with("pose"); });
-  reading.insert(reading.end(), how.begin(), how.end());
+  ReadingDone& reading = mutable_recording().reading;
+  reading.poses = std::move(how);
+  if (states_deskew) reading.deskew = deskew;
 }
 
 void PosedSequence::set_poses(const std::vector<Pose>& map_from_sensor, std::string remark) {

@@ -9,14 +9,14 @@
 
 namespace mosbench {
 
-/// A sequence opened with `ReadingOptions::poses_by_odometry` whose poses are found later. Scans
+/// A sequence opened with `Reading::poses of ByOdometry` whose poses are found later. Scans
 /// whose points have times are undistorted by the poses.
 class PosedSequence : public SequenceAround {
  public:
   /// `how` replaces what the inner sequence states about poses. Poses are the identity until
-  /// `set_poses`.
-  PosedSequence(std::unique_ptr<Sequence> inner, const ReadingStatement& how,
-                Deskew deskew = Deskew::kPoses);
+  /// `set_poses`. Scans are deskewed by `deskew`, which is stated where the user asked for it.
+  PosedSequence(std::unique_ptr<Sequence> inner, PosesDone how, Deskew deskew = Deskew::kPoses,
+                bool states_deskew = false);
 
   /// One pose per scan. `remark` is what a reader of results should know about them. To be called
   /// before scans are read from several threads.

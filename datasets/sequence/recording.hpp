@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "datasets/sequence/reading_options.hpp"
+#include "datasets/sequence/reading.hpp"
 #include "datasets/sequence/sequence_name.hpp"
 
 namespace mosbench {
@@ -34,7 +34,7 @@ struct Recording {
   /// Plain sentences on what was assumed or found odd (pose frame, missing labels).
   std::vector<std::string> remarks;
   /// What was read in which convention; two runs on the same files may differ in it.
-  ReadingStatement reading;
+  ReadingDone reading;
   bool has_radial_velocities = false;  ///< whether frames have them
 };
 

@@ -21,11 +21,6 @@ Pose share_of(const Pose& motion, double share) {
 
 }  // namespace
 
-std::string_view to_string(Deskew deskew) {
-  if (deskew == Deskew::kNone) return "none";
-  return deskew == Deskew::kVelocity ? "velocity" : "poses";
-}
-
 ScanDeskewer::ScanDeskewer(Deskew by, const std::vector<ScanEntry>& scans) : by_(by) {
   std::vector<std::pair<std::int64_t, Pose>> stamped;
   for (const ScanEntry& scan : scans) {
@@ -74,7 +69,7 @@ void ScanDeskewer::apply(std::size_t scan_index, Frame& frame) const {
 
 DeskewedSequence::DeskewedSequence(std::unique_ptr<Sequence> inner, Deskew by)
     : SequenceAround(std::move(inner)), deskewer_(by, recording().scans) {
-  mutable_recording().reading.emplace_back("deskew", to_string(by));
+  mutable_recording().reading.deskew = by;
 }
 
 void DeskewedSequence::read(std::size_t scan_index, Frame& frame) const {

@@ -3,15 +3,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
-#include <string_view>
 #include <vector>
 
 #include "datasets/sequence/pose_track.hpp"
 #include "datasets/sequence/sequence.hpp"
 
 namespace mosbench {
-
-std::string_view to_string(Deskew deskew);
 
 /// Moves the points of scans to where the sensor would have seen them at the scan's stamp.
 class ScanDeskewer {

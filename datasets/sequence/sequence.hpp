@@ -75,7 +75,7 @@ class Sequence {
   std::size_t point_count(std::size_t scan_index) const { return scan(scan_index).points; }
   std::vector<std::filesystem::path> files() const { return files_of(recording_); }
   const std::vector<std::string>& remarks() const { return recording_.remarks; }
-  const ReadingStatement& reading() const { return recording_.reading; }
+  const ReadingDone& reading() const { return recording_.reading; }
 
  protected:
   Sequence() = default;

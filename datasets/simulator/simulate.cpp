@@ -48,7 +48,7 @@ SimulatedOrigin origin_of(const SimulateOptions& options, const Scene& scene) {
           .scene_fingerprint = fmt::format("{:016x}", XXH3_64bits(text.data(), text.size())),
           .scans = options.scans,
           .seed = options.seed,
-          .perturb = options.perturb};
+          .perturb = options.perturb ? std::optional(to_string(*options.perturb)) : std::nullopt};
 }
 
 /// Returns whether a folder is empty but for the first bytes of the marker, which a killed run may
@@ -69,7 +69,7 @@ void claim_folder(const fs::path& out, const SimulatedOrigin& origin) {
     write_file_atomic(marker, format_simulated_origin(origin));
     return;
   }
-  const std::string way_out = "; choose another --out or remove it";
+  const std::string way_out = "; choose another " + option("out") + " or remove it";
   if (!fs::exists(marker)) {
     throw UsageError(out.string() + ": holds files that are no simulation" + way_out);
   }
@@ -133,7 +133,8 @@ void check(const SimulateOptions& options) {
     throw UsageError(
         fmt::format("cannot simulate {} scans, expected 1 to {}", options.scans, kMostScans));
   }
-  if (options.out.empty()) throw UsageError("no folder to write to, expected --out DIR");
+  if (options.out.empty())
+    throw UsageError("no folder to write to, expected " + option("out", "DIR"));
 }
 
 }  // namespace

@@ -19,9 +19,9 @@ struct SimulateOptions {
   std::string scene;  ///< name of a built-in scene, or the path of a .json file
   std::size_t scans = 0;
   std::uint64_t seed = 1;
-  std::optional<std::string> perturb = std::nullopt;  ///< as `parse_perturbation` takes it
-  std::filesystem::path out;                          ///< becomes the data set's root
-  unsigned threads = hardware_threads();              ///< the files do not depend on it
+  std::optional<Perturbation> perturb = std::nullopt;
+  std::filesystem::path out;              ///< becomes the data set's root
+  unsigned threads = hardware_threads();  ///< the files do not depend on it
 };
 
 /// Writes a simulated data set in the layout of a real one, each file atomically and the poses

@@ -140,7 +140,7 @@ std::unique_ptr<Sequence> simulated_sequence(const SimulateOptions& options, con
   std::unique_ptr<Sequence> sequence =
       std::make_unique<SimulatedSequence>(options, scene, simulated);
   if (!options.perturb) return sequence;
-  return perturbed(std::move(sequence), parse_perturbation(*options.perturb));
+  return perturbed(std::move(sequence), *options.perturb);
 }
 
 }  // namespace mosbench

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 
 namespace mosbench {
 
@@ -23,5 +24,12 @@ class UsageError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
+
+/// How the user gives an option a value, in the words of the program that runs: of "pose_frame" the
+/// bare name and a blank, unless the program said otherwise when it started, as the one with flags
+/// does. Errors name options so.
+std::string option(std::string_view name, std::string_view value = {});
+using OptionWords = std::string (*)(std::string_view name, std::string_view value);
+void word_options_by(OptionWords words);
 
 }  // namespace mosbench

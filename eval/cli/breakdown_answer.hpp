@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/base/thread_pool.hpp"
-#include "datasets/sequence/reading_options.hpp"
+#include "datasets/sequence/reading.hpp"
 #include "eval/answer/answer.hpp"
 #include "eval/breakdown/breakdown.hpp"
 
@@ -20,7 +20,7 @@ struct BreakdownFlags {
   std::string dataset = "auto";
   std::vector<std::string> sequences;
   std::optional<std::string> protocol, range, format;
-  ReadingOptions reading;
+  Reading reading;
   BreakdownParts parts;
   std::size_t top = 10;
   unsigned threads = hardware_threads();

@@ -113,7 +113,8 @@ std::string labels_text(const SequenceCheckup& sequence) {
 std::string sequence_text(const SequenceCheckup& sequence) {
   std::string text = fmt::format("{}: {}, {} labelled\n", sequence.name,
                                  counted(sequence.scans, "scan"), sequence.labelled_scans);
-  for (const auto& [what, how] : sequence.reading) text += fmt::format("  {:<16}{}\n", what, how);
+  for (const auto& [what, how] : members_of(sequence.reading))
+    text += fmt::format("  {:<16}{}\n", what, how);
   for (const std::string& remark : sequence.remarks)
     text += fmt::format("  note            {}\n", remark);
   text += fmt::format("  returns         {} of {} in {}; {} NaN or infinite\n",
@@ -181,7 +182,7 @@ ordered_json checkup_json(const SequenceCheckup& sequence) {
                        {"points_of_range", sequence.points_of_range},
                        {"poses", nullptr},
                        {"truth", nullptr}};
-  for (const auto& [what, how] : sequence.reading) json["reading"][what] = how;
+  for (const auto& [what, how] : members_of(sequence.reading)) json["reading"][what] = how;
   for (const auto& [id, points] : sequence.points_of_id) {
     json["label_ids"][std::to_string(id)] = points;
   }

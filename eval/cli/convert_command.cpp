@@ -31,7 +31,7 @@ struct ConvertFlags {
   std::filesystem::path input;
   std::string dataset = "auto", layout;
   std::vector<std::string> sequences;
-  ReadingOptions reading;
+  Reading reading;
   OdometryOptions odometry;
   ConvertOptions conversion;
   unsigned threads = hardware_threads();
@@ -79,7 +79,7 @@ std::string convert_dataset(ConvertFlags options) {
   ConvertOptions& conversion = options.conversion;
   const std::string layout = set_layout(options.layout, conversion);
   const std::optional<OdometryChoice> odometry = named_odometry(options.odometry, options.reading);
-  options.reading.poses_by_odometry = odometry.has_value();
+  if (odometry) options.reading.poses = ByOdometry{};
   Dataset dataset = open_dataset(
       options.input, {dataset_kind_option(options.dataset), options.sequences, options.reading});
   check_kept_speed(options, dataset.kind);

@@ -4,16 +4,12 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <array>
-#include <functional>
-#include <limits>
+#include <cctype>
 #include <sstream>
 
-#include "datasets/formats/bin_columns.hpp"
 #include "datasets/perturb/perturbation.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/nearest_name.hpp"
-#include "datasets/text/text.hpp"
 #include "eval/cli/help_text.hpp"
 #include "eval/engine/run_plan.hpp"
 #include "eval/result/reading_json.hpp"
@@ -21,130 +17,62 @@
 namespace mosbench {
 namespace {
 
-/// Adds an option whose text is one of `names`; `take` puts it in its place.
-void add_choice(CLI::App& command, const std::string& flag, const std::vector<std::string>& names,
-                const std::string& description, std::function<void(const std::string&)> take) {
-  command.add_option_function<std::string>(flag, std::move(take), description)
-      ->check(CLI::IsMember(names))
-      ->group(kReadingGroup);
+std::string flag_of(std::string_view name) {
+  std::string flag = "--" + std::string(name);
+  std::ranges::replace(flag, '_', '-');
+  return flag;
 }
 
-/// One of the rare ways to read data, a KEY of --read.
-struct ReadKey {
-  std::string_view name, legal, meaning;
-  bool (*take)(ReadingOptions& options, const std::string& value);  ///< false for an illegal value
-};
-
-template <typename Option, typename Value>
-bool put(Option& option, const std::optional<Value>& value) {
-  if (value) option = *value;
-  return value.has_value();
+const ReadingField& field_named(std::string_view name) {
+  return *std::ranges::find(reading_fields(), name, &ReadingField::name);
 }
 
-bool put_text(std::optional<std::string>& option, const std::string& text) {
-  return put(option, text.empty() ? std::nullopt : std::optional(text));
-}
-
-std::optional<double> number_from(const std::string& text, double least) {
-  const auto number = parse_double(text);
-  return number && *number >= least ? number : std::nullopt;
-}
-
-std::optional<std::size_t> bin_columns_named(const std::string& text) {
-  const auto number = parse_double(text);
-  for (std::size_t columns = kFewestBinColumns; columns <= kMostBinColumns; ++columns) {
-    if (number && *number == static_cast<double>(columns)) return columns;
+std::vector<std::string_view> read_keys() {
+  std::vector<std::string_view> names;
+  for (const ReadingField& field : reading_fields()) {
+    if (field.is_rare) names.push_back(field.name);
   }
-  return std::nullopt;
+  return names;
 }
-
-std::optional<bool> switch_named(const std::string& text) {
-  if (text == "on" || text == "true") return true;
-  return text == "off" || text == "false" ? std::optional(false) : std::nullopt;
-}
-
-constexpr std::array kReadKeys = {
-    ReadKey{"pose_format", "kitti, tum or dynablox",
-            "rows of 12 numbers, stamped rows with a quaternion, or Dynablox's rollout CSV "
-            "(default: recognised)",
-            [](ReadingOptions& o, const std::string& t) {
-              return put(o.pose_format, pose_format_from_string(t));
-            }},
-    ReadKey{"pose_frame", "lidar or camera",
-            "sensor of the poses; Tr of calib.txt turns the camera's into the lidar's (default: "
-            "camera if calib.txt has a Tr and the poses are KITTI rows, unless `mosbench odometry` "
-            "wrote them)",
-            [](ReadingOptions& o, const std::string& t) {
-              return put(o.pose_frame, pose_frame_named(t));
-            }},
-    ReadKey{"pose_direction", "map-from-sensor or sensor-from-map",
-            "sensor-from-map poses are inverted (default: for dynablox only)",
-            [](ReadingOptions& o, const std::string& t) {
-              return put(o.poses_inverse, poses_inverse_named(t));
-            }},
-    ReadKey{"max_pose_gap_s", "0 or more",
-            "scans between stamped poses farther apart are left out (default: 0.5)",
-            [](ReadingOptions& o, const std::string& t) {
-              return put(o.max_pose_gap_s, number_from(t, 0.0));
-            }},
-    ReadKey{"map_frame", "a frame", "map frame in the tf tree of a bag",
-            [](ReadingOptions& o, const std::string& t) { return put_text(o.map_frame, t); }},
-    ReadKey{"pose_topic", "a topic", "topic of poses of a bag (default: found)",
-            [](ReadingOptions& o, const std::string& t) { return put_text(o.pose_topic, t); }},
-    ReadKey{"bin_columns", "3 to 7",
-            "float32 per point in .bin files: 3 (no intensity), 4, 5 (ring of nuScenes, times) or "
-            "more (default: 4; files that clearly hold others are refused)",
-            [](ReadingOptions& o, const std::string& t) {
-              return put(o.bin_columns, bin_columns_named(t));
-            }},
-    ReadKey{"moving_speed_m_s", "above 0",
-            "from this speed on points move, where truth is a flow or boxes: opensceneflow, "
-            "kitti-raw, kitti-tracking (default: 0.5)",
-            [](ReadingOptions& o, const std::string& t) {
-              return put(o.moving_speed_m_s, number_from(t, std::numeric_limits<double>::min()));
-            }},
-    ReadKey{"hdl64_correction", "on or off",
-            "points are raised by the 0.205 degrees that KITTI's calibration of its HDL-64E misses",
-            [](ReadingOptions& o, const std::string& t) {
-              return put(o.hdl64_correction, switch_named(t));
-            }},
-};
 
 /// Takes "pose_frame=camera,bin_columns=5". Throws UsageError naming the key.
-void take_read_keys(ReadingOptions& options, const std::string& text) {
+void take_read_keys(Reading& reading, const std::string& text) {
   for (const auto& [key, value] : key_values("--read", text)) {
-    const auto row = std::ranges::find(kReadKeys, key, &ReadKey::name);
-    if (row == kReadKeys.end()) {
-      const std::vector<std::string_view> names = read_keys();
+    const std::vector<std::string_view> names = read_keys();
+    if (std::ranges::find(names, key) == names.end()) {
       throw UsageError(fmt::format("--read {}: is not known, expected one of {} (nearest: {})", key,
                                    fmt::join(names, ", "), nearest_name(key, names)));
     }
-    if (row->take(options, value)) continue;
-    throw UsageError(
-        fmt::format("--read {}: '{}' is not legal, expected {}", key, value, row->legal));
+    try {
+      set_field(reading, key, value);
+    } catch (const UsageError&) {
+      throw UsageError(fmt::format("--read {}: '{}' is not legal, expected {}", key, value,
+                                   field_named(key).legal));
+    }
   }
 }
 
-void add_reading_flags(CLI::App& command, ReadingOptions& options) {
-  command.add_option("--topic", options.topic, "PointCloud2 topic of a bag")
-      ->type_name("TOPIC")
-      ->group(kReadingGroup);
-  add_choice(command, "--point-times", {"column", "azimuth"},
-             "When points were measured: fifth column of .bin files, in seconds after the stamp, a "
-             "field of .pcd and .ply files, or "
-             "azimuth as KITTI's sensor turns (default: what a bag says)",
-             [&](const std::string& name) { options.point_times = point_times_named(name); });
-  add_choice(command, "--deskew", {"none", "velocity", "poses"},
-             "Move points that have times to where the sensor saw them at the stamp, by the motion "
-             "since the scan before or by the poses around (default: poses; to register scans: "
-             "velocity)",
-             [&](const std::string& name) { options.deskew = deskew_named(name); });
-  add_perturb_flag(command, options.perturb, "Disturb what is read")->group(kReadingGroup);
+/// Adds a field of Reading as a flag that fills it.
+CLI::Option* add_field(CLI::App& command, const ReadingField& field, Reading& reading) {
+  CLI::Option* flag = command.add_option_function<std::string>(
+      flag_of(field.name),
+      [&reading, name = field.name](const std::string& text) { set_field(reading, name, text); },
+      field.meaning);
+  if (!field.type.empty()) flag->type_name(field.type);
+  if (!field.choices.empty()) flag->check(CLI::IsMember(field.choices));
+  return flag;
+}
+
+void add_reading_flags(CLI::App& command, Reading& reading) {
+  for (const ReadingField& field : reading_fields()) {
+    if (field.is_rare || field.name == "poses") continue;
+    add_field(command, field, reading)->group(kReadingGroup);
+  }
   command
       .add_option_function<std::vector<std::string>>(
           "--read",
-          [&options](const std::vector<std::string>& texts) {
-            for (const std::string& text : texts) take_read_keys(options, text);
+          [&reading](const std::vector<std::string>& texts) {
+            for (const std::string& text : texts) take_read_keys(reading, text);
           },
           "What is rarely to be said about the files; the keys stand below")
       ->type_name("KEY=VALUE,...")
@@ -152,25 +80,24 @@ void add_reading_flags(CLI::App& command, ReadingOptions& options) {
       ->group(kReadingGroup);
 }
 
-void add_poses_flag(CLI::App& command, ReadingOptions& options) {
-  command
-      .add_option(
-          "--poses", options.poses,
-          "Pose file to take instead of the sequence's own, or a folder with one per sequence")
-      ->type_name("FILE");
+void add_poses_flag(CLI::App& command, Reading& reading) {
+  add_field(command, field_named("poses"), reading);
 }
 
 }  // namespace
 
+std::string flag_words(std::string_view name, std::string_view value) {
+  return flag_of(name) + (value.empty() ? "" : " ") + std::string(value);
+}
+
 void add_dataset_flags(CLI::App& command, std::filesystem::path& input, std::string& dataset,
-                       std::vector<std::string>& sequences, ReadingOptions& reading,
-                       const char* name) {
+                       std::vector<std::string>& sequences, Reading& reading, const char* name) {
   add_scan_dataset_flags(command, input, dataset, sequences, reading, name);
   add_poses_flag(command, reading);
 }
 
 void add_scan_dataset_flags(CLI::App& command, std::filesystem::path& input, std::string& dataset,
-                            std::vector<std::string>& sequences, ReadingOptions& reading,
+                            std::vector<std::string>& sequences, Reading& reading,
                             const char* name) {
   command
       .add_option(
@@ -189,12 +116,11 @@ void add_scan_dataset_flags(CLI::App& command, std::filesystem::path& input, std
   add_reading_flags(command, reading);
 }
 
-CLI::Option* add_perturb_flag(CLI::App& command, std::optional<std::string>& perturb,
+CLI::Option* add_perturb_flag(CLI::App& command, std::optional<Perturbation>& perturb,
                               const std::string& description) {
   return command
       .add_option_function<std::string>(
-          "--perturb",
-          [&](const std::string& text) { perturb = to_string(parse_perturbation(text)); },
+          "--perturb", [&](const std::string& text) { perturb = parse_perturbation(text); },
           description + ", in this order, see `mosbench list perturbations`")
       ->type_name("KIND=STRENGTH,...,seed=N");
 }
@@ -203,16 +129,10 @@ bool chooses_scans(const CLI::Option& option) {
   std::filesystem::path input;
   std::string dataset;
   std::vector<std::string> sequences;
-  ReadingOptions reading;
+  Reading reading;
   CLI::App command;
   add_scan_dataset_flags(command, input, dataset, sequences, reading);
   return command.get_option_no_throw(option.get_name()) != nullptr;
-}
-
-std::vector<std::string_view> read_keys() {
-  std::vector<std::string_view> names;
-  for (const ReadKey& key : kReadKeys) names.push_back(key.name);
-  return names;
 }
 
 std::vector<std::pair<std::string, std::string>> key_values(std::string_view flag,
@@ -230,32 +150,25 @@ std::vector<std::pair<std::string, std::string>> key_values(std::string_view fla
 }
 
 std::vector<std::string> reading_names() {
-  ReadingOptions reading;
-  CLI::App command;
-  add_reading_flags(command, reading);
-  add_poses_flag(command, reading);
   std::vector<std::string> names;
-  for (const CLI::Option* option : command.get_options()) {
-    if ((option->get_group() != kReadingGroup && option->get_name() != "--poses") ||
-        option->get_name() == "--read")
-      continue;
-    std::string& name = names.emplace_back(option->get_name().substr(2));
-    std::ranges::replace(name, '-', '_');
-  }
-  for (const std::string_view key : read_keys()) names.emplace_back(key);
+  for (const ReadingField& field : reading_fields()) names.push_back(field.name);
   return names;
 }
 
 std::string read_keys_text() {
   std::string text = "Keys of --read:\n";
-  for (const ReadKey& key : kReadKeys) {
-    text += help_row(std::string(key.name), fmt::format("{}; {}", key.legal, key.meaning));
+  for (const ReadingField& field : reading_fields()) {
+    if (!field.is_rare) continue;
+    std::string meaning = field.meaning;
+    meaning[0] = static_cast<char>(std::tolower(meaning[0]));
+    if (!field.usual.empty()) meaning += fmt::format(" (default: {})", field.usual);
+    text += help_row(field.name, fmt::format("{}; {}", field.legal, meaning));
   }
   return text;
 }
 
-ReadingOptions reading_of(std::vector<std::string> flags) {
-  ReadingOptions reading;
+Reading reading_of(std::vector<std::string> flags) {
+  Reading reading;
   CLI::App command;
   add_reading_flags(command, reading);
   add_poses_flag(command, reading);

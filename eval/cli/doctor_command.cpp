@@ -19,7 +19,7 @@ struct DoctorFlags {
   std::filesystem::path input;
   std::string dataset = "auto";
   std::vector<std::string> sequences;
-  ReadingOptions reading;
+  Reading reading;
 };
 
 Answer check_dataset(const DoctorFlags& options) {

@@ -9,6 +9,7 @@
 #include "datasets/text/errors.hpp"
 #include "eval/answer/terminal.hpp"
 #include "eval/cli/command_line.hpp"
+#include "eval/cli/dataset_flags.hpp"
 #include "eval/cli/failure.hpp"
 #include "eval/result/tell.hpp"
 
@@ -32,6 +33,7 @@ int main(int argc, char** argv) {
   std::signal(SIGPIPE, SIG_IGN);
   // Who started mosbench may have ignored the ends of children, which are then lost.
   std::signal(SIGCHLD, SIG_DFL);
+  mosbench::word_options_by(mosbench::flag_words);
   try {
     occupy_standard_streams();
     const mosbench::Printed printed =

@@ -31,7 +31,7 @@ struct OdometryFlags {
   std::filesystem::path input, out;
   std::string dataset = "auto";
   std::vector<std::string> sequences;
-  ReadingOptions reading;
+  Reading reading;
   OdometryOptions odometry;
   bool as_tum = false;
   unsigned threads = hardware_threads();
@@ -47,10 +47,11 @@ void take_out(const std::string& text, OdometryFlags& flags) {
 
 /// What two records must share for their poses to be the same.
 nlohmann::ordered_json record_identity(const Sequence& sequence, const OdometryChoice& choice) {
-  ReadingStatement reading = sequence.reading();
-  for (auto& statement : statement_of(choice)) reading.push_back(std::move(statement));
+  ReadingDone reading = sequence.reading();
+  reading.poses = statement_of(choice);
+  if (choice.says_deskew) reading.deskew = choice.deskew;
   return {{"sequence", sequence.name()},
-          {"reading", to_json(reading)},
+          {"reading", to_json(members_of(reading))},
           {"file_stamp", file_stamp(sequence)},
           {"code", code_json()}};
 }
@@ -118,9 +119,8 @@ FoundPoses find_or_keep(const Sequence& sequence, const OdometryChoice& choice,
 /// The command that uses the poses: of the sensor itself, also where the layout's own are a
 /// camera's.
 std::string next_command(const OdometryFlags& flags) {
-  ReadingOptions reading = flags.reading;
-  reading.poses = flags.out;
-  reading.poses_by_odometry = false;
+  Reading reading = flags.reading;
+  reading.poses = PoseFile{flags.out};
   reading.pose_frame = PoseFrame::kLidar;
   return fmt::format("use them with\n  mosbench run {}\n",
                      dataset_words(flags.input, flags.dataset, flags.sequences, reading));
@@ -128,7 +128,7 @@ std::string next_command(const OdometryFlags& flags) {
 
 Answer odometry_answer(OdometryFlags flags) {
   OdometryChoice choice = choose_odometry(flags.odometry, flags.reading);
-  flags.reading.poses_by_odometry = true;
+  flags.reading.poses = ByOdometry{};
   const Dataset dataset = open_dataset(
       flags.input, {dataset_kind_option(flags.dataset), flags.sequences, flags.reading});
   choice = with_filter(std::move(choice), flags.odometry, dataset.kind);

@@ -27,7 +27,7 @@ struct ScoreFlags {
   ScoreTask task;
   std::optional<std::string> protocol, range, format, id_map;
   std::string method = "unnamed";
-  ReadingOptions reading;
+  Reading reading;
   std::optional<std::filesystem::path> out;
   std::optional<std::filesystem::path> map;  ///< cleaned of what moved, instead of predictions
   double same_within_m = kSameWithin_m;

@@ -23,8 +23,7 @@ std::string typed_line(const std::vector<std::string>& arguments) {
 }
 
 std::string dataset_words(const std::filesystem::path& input, const std::string& dataset,
-                          const std::vector<std::string>& sequences,
-                          const ReadingOptions& reading) {
+                          const std::vector<std::string>& sequences, const Reading& reading) {
   std::string words = shell_word(input.string());
   if (dataset != "auto") words += " --dataset " + shell_word(dataset);
   if (!sequences.empty()) {

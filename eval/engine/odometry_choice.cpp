@@ -84,7 +84,7 @@ bool OdometryOptions::says_anything() const {
   return preset || config_file || !assignments.empty() || drop_moving;
 }
 
-OdometryChoice choose_odometry(const OdometryOptions& options, const ReadingOptions& reading) {
+OdometryChoice choose_odometry(const OdometryOptions& options, const Reading& reading) {
   const std::string name = options.kind.value_or(std::string(odometries().front().name));
   OdometryChoice choice{.kind = &row_named(odometries(), name, "--odometry"), .settings = {}};
   choice.settings = choice.kind->defaults;
@@ -107,12 +107,12 @@ OdometryChoice choose_odometry(const OdometryOptions& options, const ReadingOpti
 }
 
 std::optional<OdometryChoice> named_odometry(const OdometryOptions& odometry,
-                                             const ReadingOptions& reading) {
+                                             const Reading& reading) {
   if (!odometry.kind) {
     if (!odometry.says_anything()) return std::nullopt;
     throw UsageError("--odometry: is missing, expected simple or kiss before its settings");
   }
-  if (reading.poses) {
+  if (reading.pose_file() != nullptr) {
     throw UsageError("--poses and --odometry: say where poses come from, expected one of them");
   }
   return choose_odometry(odometry, reading);
@@ -149,18 +149,15 @@ OdometryDone odometry_done(const OdometryChoice& choice) {
   return done;
 }
 
-ReadingStatement statement_of(const OdometryChoice& choice) {
-  ReadingStatement statement = {{"poses", fmt::format("odometry {}", choice.kind->name)},
-                                {"pose_odometry", settings_text(choice.settings)}};
-  if (choice.says_deskew) statement.emplace_back("deskew", to_string(choice.deskew));
-  if (choice.filter) statement.emplace_back("pose_map", odometry_done(choice).map);
-  return statement;
+PosesDone statement_of(const OdometryChoice& choice) {
+  const OdometryDone done = odometry_done(choice);
+  return {.source = done.name, .odometry = settings_text(choice.settings), .map = done.map};
 }
 
 void expect_poses(Dataset& dataset, const OdometryChoice& choice) {
   for (std::unique_ptr<Sequence>& sequence : dataset.sequences) {
-    sequence =
-        std::make_unique<PosedSequence>(std::move(sequence), statement_of(choice), choice.deskew);
+    sequence = std::make_unique<PosedSequence>(std::move(sequence), statement_of(choice),
+                                               choice.deskew, choice.says_deskew);
   }
 }
 

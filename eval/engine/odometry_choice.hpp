@@ -41,11 +41,11 @@ struct OdometryChoice {
 
 /// Settings are defaults < preset < file < deskewing of `reading` < assignments. The preset's kind
 /// is taken when none is named. Throws UsageError.
-OdometryChoice choose_odometry(const OdometryOptions& options, const ReadingOptions& reading);
+OdometryChoice choose_odometry(const OdometryOptions& options, const Reading& reading);
 
 /// The choice when a kind is named; `options.poses` is then refused. Throws UsageError.
 std::optional<OdometryChoice> named_odometry(const OdometryOptions& odometry,
-                                             const ReadingOptions& reading);
+                                             const Reading& reading);
 
 /// The method with these settings, but without a delay.
 MovingFilter moving_filter(const MethodKind& method, Settings settings);
@@ -56,7 +56,7 @@ OdometryChoice with_filter(OdometryChoice choice, const OdometryOptions& options
 /// Which odometry with which settings, for results.
 OdometryDone odometry_done(const OdometryChoice& choice);
 /// The same for the statement on how a sequence was read.
-ReadingStatement statement_of(const OdometryChoice& choice);
+PosesDone statement_of(const OdometryChoice& choice);
 
 /// Wraps every sequence of a data set that was opened without poses into a PosedSequence.
 void expect_poses(Dataset& dataset, const OdometryChoice& choice);

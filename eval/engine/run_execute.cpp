@@ -115,7 +115,7 @@ void keep_poses(const std::vector<Pose>& poses, const fs::path& file) {
 
 /// What the scans say about the frame of poses of a file, where nobody said it.
 std::vector<std::string> doubts_about_poses(const RunPlan& plan, const Sequence& sequence) {
-  if (!plan.reading.poses || plan.reading.pose_frame != PoseFrame::kByCalib) return {};
+  if (plan.reading.pose_file() == nullptr || plan.reading.pose_frame) return {};
   const std::optional<std::string> doubt = doubt_about_pose_frame(sequence);
   if (!doubt) return {};
   tell(fmt::format("{}: {}", sequence.name(), *doubt));

@@ -120,7 +120,8 @@ fs::path default_out(const RunPlan& plan, const RunOptions& options) {
   // A run with other poses has results of its own.
   const std::string poses = plan.odometry ? fmt::format("-{}", plan.odometry->kind->name) : "";
   // So has one with disturbed scans.
-  const std::string perturb = options.reading.perturb ? "-" + *options.reading.perturb : "";
+  const std::string perturb =
+      options.reading.perturb ? "-" + to_string(*options.reading.perturb) : "";
   const std::string data = fmt::format("{}-{}", folder.filename().string(), plan.preset);
   std::string moving = options.moving == "now" ? "" : "-" + options.moving;
   std::ranges::replace(moving, ':', '-');
@@ -202,7 +203,7 @@ RunPlan plan_method(const RunOptions& options) {
   plan.settings.threads = options.threads;
   plan.reading = options.reading;
   plan.odometry = named_odometry(options.odometry, options.reading);
-  plan.reading.poses_by_odometry = plan.odometry.has_value();
+  if (plan.odometry) plan.reading.poses = ByOdometry{};
   plan.dataset = open_dataset(
       options.input, {dataset_kind_option(options.dataset), options.sequences, plan.reading});
   plan.shared = options.shared;
@@ -270,7 +271,7 @@ Result asked_result(const RunPlan& plan, std::size_t position) {
   asked.range = settings.range;
   asked.from.version = kMosbenchVersion;
   asked.from.compiler = kCompiler;
-  asked.from.reading = sequence.reading();
+  asked.from.reading = members_of(sequence.reading());
   if (plan.odometry) asked.from.odometry = odometry_done(*plan.odometry);
   asked.splits = picked_stems(plan.dataset, position);
   const Split* benchmark = benchmark_scans(*settings.protocol, plan.dataset.splits);

@@ -24,7 +24,7 @@ struct RunOptions {
   std::optional<std::string> method, preset, variant, protocol, range;
   std::string moving = "now";  ///< or "ever" or "ever:SECONDS"
   std::optional<std::filesystem::path> config_file, out;
-  ReadingOptions reading = {};
+  Reading reading = {};
   OdometryOptions odometry;  ///< poses are found by it when a kind is named
   std::vector<std::string> assignments;
   unsigned threads = hardware_threads();
@@ -51,7 +51,7 @@ struct RunPlan {
   RunSettings settings;
   std::filesystem::path out;
   std::optional<OdometryChoice> odometry;  ///< finds the poses of every sequence that is run
-  ReadingOptions reading;                  ///< as the user told
+  Reading reading;                         ///< as the user told
   std::shared_ptr<SharedReading> shared;   ///< as the user's options have it
   std::vector<PlannedSequence> sequences;
   std::vector<std::string> notes;  ///< choices made for the user, plain sentences

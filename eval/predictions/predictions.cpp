@@ -96,9 +96,7 @@ std::string disturbance_remark(const PredictionPlace& place, const Sequence& seq
   } catch (const nlohmann::json::exception&) {
     return "";
   }
-  for (const auto& [what, how] : sequence.reading()) {
-    if (what == "perturb") now = how;
-  }
+  if (const auto& perturb = sequence.reading().perturb) now = to_string(*perturb);
   if (labelled == now) return "";
   const auto text = [](const std::string& perturb) {
     return perturb.empty() ? std::string("not disturbed") : "disturbed by " + perturb;

@@ -26,7 +26,7 @@ SharedDataset open_shared(const std::filesystem::path& path, const std::string& 
                           const std::vector<std::string>& sequences,
                           const std::vector<std::string>& reading_flags, bool with_poses) {
   OpenOptions options{dataset_kind_option(kind), sequences, reading_of(reading_flags)};
-  options.reading.poses_by_odometry = !with_poses;
+  if (!with_poses) options.reading.poses = ByOdometry{};
   const py::gil_scoped_release released;
   return std::make_shared<Dataset>(open_dataset(path, options));
 }

@@ -45,14 +45,12 @@ bool are_same_scans(const Sequence& one, const Sequence& other) {
 /// The poses that the data set itself has for the scans of a run that took others. Nothing if the
 /// run took these, or if they cannot be read.
 std::optional<std::vector<Pose>> poses_passed_over(const Result& result, const ResultScans& scans) {
-  ReadingOptions reading = reading_of(result);
-  if (!reading.poses && !reading.poses_by_odometry) return std::nullopt;
-  const ReadingOptions untold;
-  reading.poses.reset();
-  reading.poses_by_odometry = false;
-  reading.pose_format = untold.pose_format;
-  reading.pose_frame = untold.pose_frame;
-  reading.poses_inverse = untold.poses_inverse;
+  Reading reading = reading_of(result);
+  if (reading.has_own_poses()) return std::nullopt;
+  reading.poses = OwnPoses{};
+  reading.pose_format.reset();
+  reading.pose_frame.reset();
+  reading.pose_direction.reset();
   try {
     const Dataset own =
         open_dataset(scans.dataset().root, {scans.dataset().kind, {result.sequence}, reading});

@@ -61,8 +61,8 @@ std::vector<std::size_t> merged_round_robin(
 
 /// Says in which way the points were read; poses do not change them unless they undistort.
 std::map<std::string, std::string> reading_of_points(const ResultScans& scans) {
-  std::map<std::string, std::string> reading(scans.sequence().reading().begin(),
-                                             scans.sequence().reading().end());
+  const ReadingMembers members = members_of(scans.sequence().reading());
+  std::map<std::string, std::string> reading(members.begin(), members.end());
   if (reading.contains("deskew")) return reading;
   std::erase_if(reading, [](const auto& entry) { return entry.first.starts_with("pose"); });
   return reading;

@@ -4,139 +4,197 @@
 
 #include <algorithm>
 #include <array>
+#include <type_traits>
 
-#include "datasets/formats/bin_columns.hpp"
-#include "datasets/sequence/scan_deskewer.hpp"
+#include "datasets/perturb/perturbation.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/shell_text.hpp"
+#include "datasets/text/text.hpp"
 
 namespace mosbench {
 namespace {
 
 using nlohmann::ordered_json;
 
-/// Puts the member `key`, where there is one, into `option` by way of `named`.
-template <typename Option, typename Named>
-void take_word(const ordered_json& json, const char* key, Option& option, Named&& named) {
-  if (!json.contains(key)) return;
-  const std::string word = json.at(key);
-  const auto value = named(word);
-  if (!value) throw UsageError(fmt::format("{}: '{}' is not known", key, word));
-  option = *value;
-}
+template <typename Field>
+struct Held {
+  using Value = Field;
+};
+template <typename Optional>
+struct Held<std::optional<Optional>> {
+  using Value = Optional;
+};
 
-template <typename Value, typename Option>
-void take(const ordered_json& json, const char* key, Option& option) {
-  if (json.contains(key)) option = json.at(key).get<Value>();
-}
-
-void take_bin_columns(const ordered_json& json, ReadingOptions& options) {
-  if (!json.contains("bin_columns")) return;
-  const ordered_json& columns = json.at("bin_columns");
-  if (!columns.is_number_unsigned() || columns < kFewestBinColumns || columns > kMostBinColumns) {
-    throw UsageError(fmt::format("bin_columns: {}, expected {} to {}", columns.dump(),
-                                 kFewestBinColumns, kMostBinColumns));
+/// The value of this type that a text stands for. Throws UsageError without the field's name.
+template <typename Value, typename Legal>
+Value parsed(std::string_view text, const Legal& legal) {
+  if constexpr (std::is_enum_v<Value>) {
+    const auto found = std::ranges::find(legal, text);
+    if (found != legal.end()) return static_cast<Value>(found - legal.begin());
+    throw UsageError(
+        fmt::format("'{}' is not known, expected one of {}", text, fmt::join(legal, ", ")));
+  } else if constexpr (std::is_same_v<Value, double>) {
+    const auto number = parse_double(text);
+    if (number && (*number > legal.lowest || (*number == legal.lowest && legal.lowest_is_legal))) {
+      return *number;
+    }
+    throw UsageError(fmt::format("{} is no {}, expected {}", text, legal.noun, legal.expected));
+  } else if constexpr (std::is_same_v<Value, std::size_t>) {
+    const auto number = parse_unsigned(text);
+    if (number && *number >= legal.lowest && *number <= legal.highest) return *number;
+    throw UsageError(fmt::format("{}, expected {} to {}", text, legal.lowest, legal.highest));
+  } else if constexpr (std::is_same_v<Value, bool>) {
+    if (text == "on" || text == "true") return true;
+    if (text == "off" || text == "false") return false;
+    throw UsageError(fmt::format("'{}' is not understood, expected on or off", text));
+  } else if constexpr (std::is_same_v<Value, PosesFrom>) {
+    return PoseFile{text};
+  } else {
+    if (text.empty()) throw UsageError("is empty, expected a name");
+    return Value(text);
   }
-  options.bin_columns = columns.get<std::size_t>();
+}
+
+template <typename Value, typename Legal>
+ordered_json member_of(const Value& value, const Legal& legal) {
+  if constexpr (std::is_enum_v<Value>) {
+    return std::string(legal[static_cast<std::size_t>(value)]);
+  } else if constexpr (std::is_same_v<Value, Perturbation>) {
+    return to_string(value);
+  } else if constexpr (std::is_same_v<Value, PosesFrom>) {
+    const auto* file = std::get_if<PoseFile>(&value);
+    return file == nullptr ? ordered_json() : ordered_json(file->path.string());
+  } else {
+    return value;
+  }
+}
+
+/// A member per field that has a value, also one that nobody told.
+ordered_json members_of(const Reading& reading) {
+  ordered_json json = ordered_json::object();
+  visit_fields(reading, [&](const char* name, const auto& field, const auto& legal, const char*) {
+    if constexpr (requires { field.has_value(); }) {
+      if (field) json[name] = member_of(*field, legal);
+    } else {
+      json[name] = member_of(field, legal);
+    }
+  });
+  return json;
+}
+
+ordered_json told_members(const Reading& reading) {
+  ordered_json json = members_of(reading);
+  for (const auto& [name, usual] : members_of({}).items()) {
+    if (json[name] == usual) json.erase(name);
+  }
+  return json;
+}
+
+/// Says in words which texts are legal: "lidar or camera", "3 to 7".
+template <typename Legal>
+void describe(const Legal& legal, ReadingField& field) {
+  if constexpr (requires { legal.type; }) field.type = legal.type;
+  if constexpr (requires { legal.begin(); }) {
+    field.choices.assign(legal.begin(), legal.end());
+    field.legal =
+        fmt::format("{} or {}", fmt::join(legal.begin(), legal.end() - 1, ", "), legal.back());
+  } else if constexpr (std::is_same_v<Legal, FieldCount>) {
+    field.legal = fmt::format("{} to {}", legal.lowest, legal.highest);
+  } else if constexpr (std::is_same_v<Legal, FieldQuantity>) {
+    field.legal = legal.lowest_is_legal ? fmt::format("{} or more", legal.lowest)
+                                        : fmt::format("above {}", legal.lowest);
+  } else {
+    field.legal = field.type.empty() ? "on or off" : fmt::format("a {}", lower_case(field.type));
+  }
 }
 
 }  // namespace
 
-std::optional<PoseFrame> pose_frame_named(std::string_view word) {
-  if (word == "lidar") return PoseFrame::kLidar;
-  if (word == "camera") return PoseFrame::kCamera;
-  return std::nullopt;
+const std::vector<ReadingField>& reading_fields() {
+  static const std::vector<ReadingField> fields = [] {
+    std::vector<ReadingField> list;
+    constexpr std::array<std::string_view, 5> kFlags = {"poses", "topic", "deskew", "point_times",
+                                                        "perturb"};
+    const auto add = [&](const char* name, const auto& value, const auto& legal,
+                         const char* meaning) {
+      using Field = std::decay_t<decltype(value)>;
+      ReadingField& field = list.emplace_back();
+      field.name = name;
+      field.meaning = meaning;
+      field.is_rare = std::ranges::find(kFlags, field.name) == kFlags.end();
+      field.is_number =
+          std::is_arithmetic_v<typename Held<Field>::Value> && !std::is_same_v<Field, bool>;
+      if constexpr (std::is_same_v<Field, double>) field.usual = fmt::format("{}", value);
+      describe(legal, field);
+    };
+    const Reading usual;
+    visit_fields(usual, add);
+    return list;
+  }();
+  return fields;
 }
 
-std::optional<bool> poses_inverse_named(std::string_view word) {
-  if (word == "sensor-from-map") return true;
-  if (word == "map-from-sensor") return false;
-  return std::nullopt;
+void set_field(Reading& reading, std::string_view name, std::string_view text) {
+  visit_fields(reading, [&](std::string_view known, auto& field, const auto& legal, const char*) {
+    using Value = typename Held<std::decay_t<decltype(field)>>::Value;
+    if (known != name) return;
+    if constexpr (std::is_same_v<Value, Perturbation>) {
+      field = parse_perturbation(text);
+    } else {
+      try {
+        field = parsed<Value>(text, legal);
+      } catch (const UsageError& error) {
+        throw UsageError(fmt::format("{}: {}", option(name), error.what()));
+      }
+    }
+  });
 }
 
-std::optional<Deskew> deskew_named(std::string_view word) {
-  for (const Deskew deskew : {Deskew::kNone, Deskew::kVelocity, Deskew::kPoses}) {
-    if (to_string(deskew) == word) return deskew;
+ordered_json told_json(const Reading& reading) {
+  ordered_json json = told_members(reading);
+  if (const auto* file = reading.pose_file()) {
+    json["poses"] = std::filesystem::absolute(*file).string();
   }
-  return std::nullopt;
-}
-
-std::optional<PointTimes> point_times_named(std::string_view word) {
-  if (word == "column") return PointTimes::kColumn;
-  if (word == "azimuth") return PointTimes::kAzimuth;
-  return std::nullopt;
-}
-
-ordered_json told_json(const ReadingOptions& options) {
-  ordered_json json = ordered_json::object();
-  if (options.poses) json["poses"] = std::filesystem::absolute(*options.poses).string();
-  if (options.poses_by_odometry) json["odometry"] = true;
-  if (options.pose_format) json["pose_format"] = std::string(to_string(*options.pose_format));
-  if (options.pose_frame != PoseFrame::kByCalib) {
-    json["pose_frame"] = options.pose_frame == PoseFrame::kCamera ? "camera" : "lidar";
-  }
-  if (options.poses_inverse) {
-    json["pose_direction"] = *options.poses_inverse ? "sensor-from-map" : "map-from-sensor";
-  }
-  const ReadingOptions usual;
-  if (options.max_pose_gap_s != usual.max_pose_gap_s) {
-    json["max_pose_gap_s"] = options.max_pose_gap_s;
-  }
-  if (options.topic) json["topic"] = *options.topic;
-  if (options.map_frame) json["map_frame"] = *options.map_frame;
-  if (options.pose_topic) json["pose_topic"] = *options.pose_topic;
-  if (options.deskew) json["deskew"] = std::string(to_string(*options.deskew));
-  if (options.point_times) {
-    json["point_times"] = options.point_times == PointTimes::kColumn ? "column" : "azimuth";
-  }
-  if (options.moving_speed_m_s) json["moving_speed_m_s"] = *options.moving_speed_m_s;
-  if (options.bin_columns) json["bin_columns"] = *options.bin_columns;
-  if (options.hdl64_correction) json["hdl64_correction"] = true;
-  if (options.perturb) json["perturb"] = *options.perturb;
+  if (reading.is_by_odometry()) json["odometry"] = true;
   return json;
 }
 
-ReadingOptions told_from_json(const ordered_json& json) {
-  ReadingOptions options;
-  take<std::string>(json, "poses", options.poses);
-  options.poses_by_odometry = json.value("odometry", false);
-  take_word(json, "pose_format", options.pose_format, pose_format_from_string);
-  take_word(json, "pose_frame", options.pose_frame, pose_frame_named);
-  take_word(json, "pose_direction", options.poses_inverse, poses_inverse_named);
-  take<double>(json, "max_pose_gap_s", options.max_pose_gap_s);
-  take<std::string>(json, "topic", options.topic);
-  take<std::string>(json, "map_frame", options.map_frame);
-  take<std::string>(json, "pose_topic", options.pose_topic);
-  if (json.value("raw_scans", false)) options.deskew = Deskew::kNone;  // of earlier results
-  take_word(json, "deskew", options.deskew, deskew_named);
-  take_word(json, "point_times", options.point_times, point_times_named);
-  take_bin_columns(json, options);
-  take<double>(json, "moving_speed_m_s", options.moving_speed_m_s);
-  options.hdl64_correction = json.value("hdl64_correction", false);
-  take<std::string>(json, "perturb", options.perturb);
-  return options;
+Reading told_from_json(const ordered_json& json) {
+  Reading reading;
+  if (json.value("raw_scans", false)) reading.deskew = Deskew::kNone;  // of earlier results
+  for (const ReadingField& field : reading_fields()) {
+    if (!json.contains(field.name)) continue;
+    const ordered_json& value = json.at(field.name);
+    if (field.is_number != value.is_number()) {
+      throw UsageError(fmt::format("{}: {}, expected {}", option(field.name), value.dump(),
+                                   field.is_number ? "a number" : "a text"));
+    }
+    set_field(reading, field.name, value.is_string() ? value.get<std::string>() : value.dump());
+  }
+  if (json.value("odometry", false)) reading.poses = ByOdometry{};
+  return reading;
 }
 
-std::string told_flags(const ReadingOptions& options) {
-  ordered_json told = told_json(options);
-  if (options.poses) told["poses"] = options.poses->string();
-  told.erase("odometry");
-  constexpr std::array kFlags = {"poses", "topic", "deskew", "point_times", "perturb"};
+std::string told_flags(const Reading& reading) {
+  const ordered_json told = told_members(reading);
   std::string flags, rare;
-  for (const auto& [key, value] : told.items()) {
+  for (const ReadingField& field : reading_fields()) {
+    if (!told.contains(field.name)) continue;
+    const ordered_json& value = told[field.name];
     const std::string word = value.is_string() ? value.get<std::string>() : value.dump();
-    if (std::ranges::find(kFlags, key) == kFlags.end()) {
-      rare += fmt::format("{}{}={}", rare.empty() ? "" : ",", key, word == "true" ? "on" : word);
+    if (field.is_rare) {
+      rare +=
+          fmt::format("{}{}={}", rare.empty() ? "" : ",", field.name, word == "true" ? "on" : word);
       continue;
     }
-    std::string flag = key;
+    std::string flag = field.name;
     std::ranges::replace(flag, '_', '-');
     flags += fmt::format(" --{} {}", flag, shell_word(word));
   }
   return rare.empty() ? flags : fmt::format("{} --read {}", flags, shell_word(rare));
 }
 
-ordered_json to_json(const ReadingStatement& reading) {
+ordered_json to_json(const ReadingMembers& reading) {
   ordered_json json = ordered_json::object();
   for (const auto& [what, how] : reading) json[what] = how;
   return json;

@@ -1,36 +1,41 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
-#include "datasets/sequence/reading_options.hpp"
+#include "datasets/sequence/reading.hpp"
 
 namespace mosbench {
 
-/// "lidar" or "camera", as --pose-frame takes them; nothing for other words.
-std::optional<PoseFrame> pose_frame_named(std::string_view word);
-/// Whether "sensor-from-map" or "map-from-sensor" was said to --pose-direction; nothing for other
-/// words.
-std::optional<bool> poses_inverse_named(std::string_view word);
+/// A field of Reading, as those see it who give its value as text.
+struct ReadingField {
+  std::string name;  ///< "pose_frame"
+  std::string type;  ///< "FILE"; empty for choices and switches
+  std::string meaning;
+  std::vector<std::string> choices;  ///< the legal texts, where they are few
+  std::string legal;                 ///< the same in words: "lidar or camera", "0 or more"
+  std::string usual;                 ///< what holds where nothing is said; mostly empty
+  bool is_number = false;
+  bool is_rare = false;  ///< a key of --read, without a flag of its own
+};
+const std::vector<ReadingField>& reading_fields();
 
-/// "none", "velocity" or "poses" of --deskew, and "column" or "azimuth" of --point-times; nothing
-/// for other words.
-std::optional<Deskew> deskew_named(std::string_view word);
-std::optional<PointTimes> point_times_named(std::string_view word);
+/// Sets the field of this name to what the text says. Throws UsageError that begins with the name.
+void set_field(Reading& reading, std::string_view name, std::string_view text);
 
-/// The reading options that were given, named like the flags of `mosbench run`. A pose file's path
-/// is absolute.
-nlohmann::ordered_json told_json(const ReadingOptions& options);
-/// Reads what `told_json` wrote, passing over other members. Throws UsageError for words that are
-/// not known, a JSON exception for members of another type.
-ReadingOptions told_from_json(const nlohmann::ordered_json& json);
+/// The reading options that were given, named like the fields. A
+/// pose file's path is absolute; poses that odometry finds are the member "odometry".
+nlohmann::ordered_json told_json(const Reading& reading);
+/// Reads what `told_json` wrote, passing over other members. Throws UsageError for values that are
+/// not legal.
+Reading told_from_json(const nlohmann::ordered_json& json);
 
 /// The same as flags for a shell, each with a blank in front; a pose file's path is as given.
-std::string told_flags(const ReadingOptions& options);
+std::string told_flags(const Reading& reading);
 
 /// How a sequence was read, a member per statement.
-nlohmann::ordered_json to_json(const ReadingStatement& reading);
+nlohmann::ordered_json to_json(const ReadingMembers& reading);
 
 }  // namespace mosbench

@@ -45,7 +45,7 @@ std::optional<std::string> only_split(const Result& result) {
 
 std::string disturbance_of(const Result& result) {
   const auto perturb =
-      std::ranges::find(result.from.reading, "perturb", &ReadingStatement::value_type::first);
+      std::ranges::find(result.from.reading, "perturb", &ReadingMembers::value_type::first);
   return perturb == result.from.reading.end() ? "" : perturb->second;
 }
 

@@ -15,7 +15,7 @@
 
 #include "datasets/layouts/simulated_origin.hpp"
 #include "datasets/sequence/fingerprint.hpp"
-#include "datasets/sequence/reading_options.hpp"
+#include "datasets/sequence/reading.hpp"
 #include "datasets/sequence/sequence_name.hpp"
 #include "eval/predictions/predictions.hpp"
 #include "eval/protocols/confusion.hpp"
@@ -70,7 +70,7 @@ struct Provenance {
   std::optional<Machine> machine;
   std::string fingerprint;                ///< of the frames; empty when only labels were read
   std::string fingerprint_without_poses;  ///< empty where it is not known
-  ReadingStatement reading;               ///< how the sequence was read
+  ReadingMembers reading;                 ///< how the sequence was read
   std::optional<OdometryDone> odometry;
   std::optional<SimulatedOrigin> simulated;  ///< its layout and scans are not recorded
 };
@@ -93,7 +93,7 @@ struct PredictionSource {
 /// Where on this machine data and labels lie, and the flags by which they were read.
 struct Places {
   std::optional<std::filesystem::path> dataset_root;
-  ReadingOptions reading;
+  Reading reading;
   std::optional<PredictionSource> predictions;  ///< of `mosbench score`
   std::string file_stamp;                       ///< of the sequence's files, see `file_stamp`
   std::vector<std::string> sequences_of_run;    ///< by which an interrupted run is known

@@ -39,12 +39,16 @@ void check_has_labels(const Result& result) {
 
 /// The poses that odometry found stand next to the labels.
 void take_found_poses(const Result& result, Deskew deskew, Dataset& dataset) {
-  ReadingStatement how;
+  PosesDone how;
+  bool says_deskew = false;
   for (const auto& [what, said] : result.from.reading) {
-    if (what.starts_with("pose") || what == "deskew") how.emplace_back(what, said);
+    if (what == "poses") how.source = said;
+    if (what == "pose_odometry") how.odometry = said;
+    if (what == "pose_map") how.map = said;
+    if (what == "deskew") says_deskew = true;
   }
   for (std::unique_ptr<Sequence>& sequence : dataset.sequences) {
-    auto posed = std::make_unique<PosedSequence>(std::move(sequence), how, deskew);
+    auto posed = std::make_unique<PosedSequence>(std::move(sequence), how, deskew, says_deskew);
     const fs::path file = result.folder() / "poses.txt";
     const std::vector<Pose> poses = read_poses(file);
     if (poses.size() != posed->size()) {
@@ -66,10 +70,10 @@ Dataset open_dataset_of(const Result& result, std::optional<fs::path> root) {
                          : "does not say where its data set is",
                     "the data set's folder in --data");
   }
-  const ReadingOptions reading = reading_of(result);
+  const Reading reading = reading_of(result);
   try {
     Dataset dataset = open_dataset(*root, {kind, {result.sequence}, reading});
-    if (reading.poses_by_odometry) {
+    if (reading.is_by_odometry()) {
       take_found_poses(result, reading.deskew.value_or(Deskew::kPoses), dataset);
     }
     return dataset;
@@ -84,9 +88,9 @@ std::string read_otherwise(const Result& result, const Sequence& sequence) {
   const std::map<std::string, std::string> before(result.from.reading.begin(),
                                                   result.from.reading.end());
   // The same pose file may be given by another path; the file stamp identifies it.
-  const bool told_poses = reading_of(result).poses.has_value();
+  const bool told_poses = reading_of(result).pose_file() != nullptr;
   std::string text;
-  for (const auto& [what, how] : sequence.reading()) {
+  for (const auto& [what, how] : members_of(sequence.reading())) {
     const auto was = before.find(what);
     if (was == before.end() || was->second == how || (told_poses && what == "poses")) continue;
     text += fmt::format("; {} was \"{}\" and is \"{}\" now", what, was->second, how);
@@ -192,8 +196,8 @@ bool has_labels(const Result& result) {
          result.predictions->format != describe(PredictionFormat::kDynabloxScores).name;
 }
 
-ReadingOptions reading_of(const Result& result) {
-  return result.places ? result.places->reading : ReadingOptions{};
+Reading reading_of(const Result& result) {
+  return result.places ? result.places->reading : Reading{};
 }
 
 ResultScans::ResultScans(const Result& result, const std::optional<fs::path>& dataset_root)

@@ -24,7 +24,7 @@ bool same_input(const Sequence& sequence, const std::optional<std::string>& stam
 /// score` read them.
 bool has_labels(const Result& result);
 /// The flags by which the data of a result were read; the usual ones where it tells none.
-ReadingOptions reading_of(const Result& result);
+Reading reading_of(const Result& result);
 
 /// One scan with the outcome of each point.
 struct JudgedScan {

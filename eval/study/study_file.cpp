@@ -8,7 +8,6 @@
 #include <set>
 
 #include "datasets/disk/files.hpp"
-#include "datasets/formats/bin_columns.hpp"
 #include "datasets/simulator/simulate.hpp"
 #include "datasets/simulator/simulated_layouts.hpp"
 #include "datasets/text/errors.hpp"
@@ -50,29 +49,19 @@ fs::path path_of(const YamlNode& node, const fs::path& file) {
   return (fs::absolute(file).parent_path() / text).lexically_normal();
 }
 
-ReadingOptions reading_of_study(const YamlNode& node, const fs::path& file) {
-  node.check_keys({"poses", "pose_format", "pose_frame", "pose_direction", "max_pose_gap_s",
-                   "topic", "map_frame", "pose_topic", "deskew", "point_times", "bin_columns",
-                   "moving_speed_m_s", "hdl64_correction"});
-  nlohmann::ordered_json json = nlohmann::ordered_json::object();
-  for (const auto& [key, value] : node.members()) {
-    const auto number = parse_double(value.text());
-    if (key == "bin_columns") {
-      json[key] = value.whole(kFewestBinColumns, kMostBinColumns);
-    } else if (key == "max_pose_gap_s") {
-      if (!number || *number < 0) value.refuse("is no time", "seconds");
-      json[key] = *number;
-    } else if (key == "moving_speed_m_s") {
-      if (!number || *number <= 0) value.refuse("is no speed", "m/s above 0");
-      json[key] = *number;
-    } else if (key == "hdl64_correction") {
-      if (value.text() != "true") value.refuse("is not understood", "true, or no such key");
-      json[key] = true;
-    } else {
-      json[key] = key == "poses" ? path_of(value, file).string() : value.text();
-    }
+/// Disturbances stand in "disturb", and odometry finds poses by "odometry".
+Reading reading_of_study(const YamlNode& node, const fs::path& file) {
+  std::vector<std::string_view> names;
+  for (const ReadingField& field : reading_fields()) {
+    if (field.name != "perturb") names.push_back(field.name);
   }
-  return node.located([&] { return told_from_json(json); });
+  node.check_keys(names);
+  Reading reading;
+  for (const auto& [key, value] : node.members()) {
+    const std::string text = key == "poses" ? path_of(value, file).string() : value.text();
+    value.located([&, &name = key] { set_field(reading, name, text); });
+  }
+  return reading;
 }
 
 std::vector<StudyData> simulations_of(const std::string& name, const YamlNode& node,

@@ -10,7 +10,7 @@
 
 #include "datasets/layouts/dataset.hpp"
 #include "datasets/perturb/perturb_kinds.hpp"
-#include "datasets/sequence/reading_options.hpp"
+#include "datasets/sequence/reading.hpp"
 #include "eval/protocols/protocol.hpp"
 
 namespace mosbench {
@@ -31,7 +31,7 @@ struct StudyData {
   std::filesystem::path path;  ///< of data on disk
   std::string dataset = "auto";
   std::vector<std::string> sequences;  ///< all when empty
-  ReadingOptions reading;
+  Reading reading;
 };
 
 struct StudyMethod {

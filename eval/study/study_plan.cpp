@@ -49,10 +49,10 @@ std::string content_of(const Sequence& sequence) {
 ordered_json sequence_json(const StudyData& data, const std::string& name) {
   ordered_json json;
   try {
-    ReadingOptions reading = data.reading;
+    Reading reading = data.reading;
     const Dataset dataset =
         open_dataset(data.path, {dataset_kind_option(data.dataset), {name}, reading});
-    reading.poses.reset();
+    reading.poses = OwnPoses{};
     json = {{"dataset", to_string(dataset.kind)},
             {"content", content_of(*dataset.sequences.front())},
             {"reading", told_json(reading)}};
@@ -167,7 +167,7 @@ class CellLister {
                      {"preset", cell.method->preset.value_or("")},
                      {"set", cell.assignments},
                      {"odometry", cell.odometry},
-                     {"perturb", cell.perturb().value_or("")},
+                     {"perturb", cell.perturb() ? to_string(*cell.perturb()) : ""},
                      {"protocol", study_.protocol.value_or("")},
                      {"range", study_.range.value_or("")}};
     if (!program.empty()) cell.identity["program"] = program;
@@ -234,10 +234,9 @@ PlannedCell look_up(StudyCell cell, const fs::path& out) {
 
 }  // namespace
 
-std::optional<std::string> StudyCell::perturb() const {
+std::optional<Perturbation> StudyCell::perturb() const {
   if (axis == nullptr || axis->kind == nullptr) return std::nullopt;
-  return to_string(
-      parse_perturbation(fmt::format("{}={}{},seed={}", axis->name, value, axis->with, seed)));
+  return parse_perturbation(fmt::format("{}={}{},seed={}", axis->name, value, axis->with, seed));
 }
 
 std::string StudyCell::label() const {

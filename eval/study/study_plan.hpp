@@ -29,8 +29,8 @@ struct StudyCell {
   std::string key;                       ///< hash of it, 32 hexadecimal digits
   std::string cost_key;  ///< hash of what decides the cost of the method on the sequence
 
-  /// Returns the text of --perturb; nothing where scans stay as they are.
-  std::optional<std::string> perturb() const;
+  /// Returns how scans are disturbed; nothing where they stay as they are.
+  std::optional<Perturbation> perturb() const;
   /// Returns "hmm-mos", or "hmm-mos (kiss)" with poses by odometry: its row in tables.
   std::string label() const;
   /// Returns "street-1 08".

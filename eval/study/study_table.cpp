@@ -245,7 +245,7 @@ std::string command_for(const StudyPlan& plan, const StudyCell& cell) {
                                                  : cell.data->path.string();
   std::string command = fmt::format("mosbench run {} --sequences {} --method {}", shell_word(data),
                                     shell_word(cell.sequence), shell_word(cell.method->method));
-  ReadingOptions reading = cell.data->reading;
+  Reading reading = cell.data->reading;
   reading.perturb = cell.perturb();
   command += told_flags(reading);
   if (cell.data->dataset != "auto") command += " --dataset " + shell_word(cell.data->dataset);

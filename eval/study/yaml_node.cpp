@@ -24,7 +24,7 @@ void YamlNode::rethrow_here(const std::exception& error) const {
   throw UsageError(fmt::format("{}: {}", place(), error.what()));
 }
 
-void YamlNode::check_keys(std::initializer_list<std::string_view> known) const {
+void YamlNode::check_keys(const std::vector<std::string_view>& known) const {
   for (const auto& [key, value] : members()) {
     if (std::ranges::find(known, key) == known.end()) {
       const std::string_view nearest = nearest_name(key, std::span(known.begin(), known.size()));

@@ -3,7 +3,6 @@
 #include <yaml-cpp/yaml.h>
 
 #include <filesystem>
-#include <initializer_list>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -22,7 +21,7 @@ class YamlNode {
   [[noreturn]] void refuse(const std::string& wrong, const std::string& expected) const;
 
   /// Checks that this is a map with no other keys.
-  void check_keys(std::initializer_list<std::string_view> known) const;
+  void check_keys(const std::vector<std::string_view>& known) const;
   std::optional<YamlNode> find(const char* key) const;
   YamlNode at(const char* key) const;
   /// Returns the members of a list; of anything else that one value.

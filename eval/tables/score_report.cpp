@@ -86,7 +86,7 @@ void refuse_other_results(const std::filesystem::path& folder) {
 }
 
 /// Where the predictions and their data set lie.
-Places places_of(const Dataset& dataset, const ReadingOptions& reading, const ScoreTask& task,
+Places places_of(const Dataset& dataset, const Reading& reading, const ScoreTask& task,
                  PredictionFormat format) {
   Places places{std::filesystem::absolute(dataset.root),
                 reading,
@@ -108,7 +108,7 @@ Result scored_result(const Dataset& dataset, const ScoreTask& task, const Method
   result.protocol = task.rules.front().protocol;
   result.range = task.rules.front().range;
   result.from.version = kMosbenchVersion;
-  result.from.reading = sequence.reading();
+  result.from.reading = members_of(sequence.reading());
   result.from.simulated = origin_of(dataset, sequence);
   result.predictions = scored_predictions(*scores.opened);
   result.splits = picked_stems(dataset, scores.position);
@@ -188,7 +188,7 @@ void check_scored_folders(const Dataset& dataset, const std::filesystem::path& o
   for (const auto& sequence : dataset.sequences) refuse_other_results(out / sequence->name());
 }
 
-void write_scores(const Dataset& dataset, const ReadingOptions& reading, const ScoreTask& task,
+void write_scores(const Dataset& dataset, const Reading& reading, const ScoreTask& task,
                   const MethodName& method, const std::vector<SequenceScores>& scores,
                   const std::filesystem::path& out) {
   for (const SequenceScores& sequence : scores) {

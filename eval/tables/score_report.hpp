@@ -41,7 +41,7 @@ void check_scored_folders(const Dataset& dataset, const std::filesystem::path& o
 
 /// Writes <out>/<sequence>/result.json, which `table`, `stats`, `compare` and `report` read as they
 /// read those of a run; `reading` is how the data set was opened. Throws DataError.
-void write_scores(const Dataset& dataset, const ReadingOptions& reading, const ScoreTask& task,
+void write_scores(const Dataset& dataset, const Reading& reading, const ScoreTask& task,
                   const MethodName& method, const std::vector<SequenceScores>& scores,
                   const std::filesystem::path& out);
 

@@ -32,7 +32,7 @@ MAY_INCLUDE = {
     "datasets/text": {"core/include"},
     "datasets/disk": {"core/include", "datasets/text"},
     "datasets/formats": {"core/include", "datasets/text", "datasets/disk"},
-    "datasets/sequence": {"core/include"} | FILES,
+    "datasets/sequence": THREADS | FILES,
     "datasets/perturb": {"core/include", "datasets/sequence"} | FILES,
     "datasets/rosbag": {"core/include", "datasets/sequence"} | FILES,
     "datasets/hdf5": {"core/include", "datasets/sequence"} | FILES,

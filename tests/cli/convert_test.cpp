@@ -361,10 +361,7 @@ TEST_F(Convert, KeepsWherePosesCameFrom) {
   ASSERT_EQ(convert(source, "semantickitti", "posed", {"--odometry", "simple"}).exit_code, 0);
   const auto origin = [](const std::filesystem::path& root) {
     const Dataset dataset = open_dataset(root, {});
-    for (const auto& [what, how] : dataset.sequences.at(0)->reading()) {
-      if (what == "pose_origin") return how;
-    }
-    return std::string();
+    return dataset.sequences.at(0)->reading().poses.origin;
   };
   EXPECT_THAT(origin(folder_ / "posed"), StartsWith("poses: odometry simple; pose_odometry: "));
   ASSERT_EQ(convert((folder_ / "posed").string(), "sipailou", "twice").exit_code, 0);

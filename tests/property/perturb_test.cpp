@@ -206,7 +206,7 @@ TEST(Perturbation, GivesTheseBitsOnEveryMachine) {
 TEST(Perturbation, IsRecordedInACanonicalText) {
   const auto disturbed = drive_with(" dropout_probability=0.50 , seed=9,pose_noise_m=1e-1");
   const std::string text = "dropout_probability=0.5,pose_noise_m=0.1,seed=9";
-  EXPECT_THAT(disturbed->reading(), testing::Contains(testing::Pair("perturb", text)));
+  EXPECT_THAT(members_of(disturbed->reading()), testing::Contains(testing::Pair("perturb", text)));
   EXPECT_THAT(disturbed->remarks(), testing::Contains(HasSubstr(text)));
   EXPECT_EQ(to_string(parse_perturbation(text)), text);
   const std::string everything = to_string(parse_perturbation(kEverything));

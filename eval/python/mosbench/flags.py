@@ -7,24 +7,11 @@ import os
 import re
 from typing import Any, Callable, Mapping
 
-#: How data are read; `mosbench run --help` says what each means.
-READING = (
-    "poses",  # file, or (K, 4, 4) map_from_sensor of the LiDAR, to take instead of the sequence's own
-    "pose_format",  # "kitti", "tum" or "dynablox"
-    "pose_frame",  # "lidar" or "camera"
-    "pose_direction",  # "map-from-sensor" or "sensor-from-map"
-    "max_pose_gap_s",
-    "topic",  # of a bag
-    "map_frame",  # of a bag's tf tree
-    "pose_topic",  # of a bag
-    "raw_scans",  # True: as deskew="none"
-    "point_times",  # "column" or "azimuth"
-    "deskew",  # "none", "velocity" or "poses"
-    "moving_speed_m_s",  # from which on points of OpenSceneFlow's truth move
-    "bin_columns",  # float32 per point, 3 to 7
-    "hdl64_correction",  # True: KITTI's points raised by 0.205 degrees
-    "perturb",  # "KIND=STRENGTH,...,seed=N"
-)
+from mosbench import _mosbench
+
+#: How data are read; `mosbench run --help` says what each means. `poses` may also be an array (K, 4, 4) of
+#: map_from_sensor of the LiDAR; what is a switch there is True here.
+READING = tuple(_mosbench.reading_names())
 
 
 #: Those that have a flag of their own; the others are keys of --read.

@@ -51,10 +51,10 @@ class Bag : public testing::Test {
   std::filesystem::path write(const std::string& bytes) const {
     return folder_.write("s.bag", bytes);
   }
-  std::string error_of(const BagBytes& bag, const ReadingOptions& options = {}) const {
+  std::string error_of(const BagBytes& bag, const Reading& options = {}) const {
     return error_of(bag.str(), options);
   }
-  std::string error_of(const std::string& bytes, const ReadingOptions& options = {}) const {
+  std::string error_of(const std::string& bytes, const Reading& options = {}) const {
     const auto file = write(bytes);
     return message_of<DataError>([&] {
       const BagSequence recording("s", file, options);
@@ -117,7 +117,7 @@ TEST_F(Bag, TakesPosesOfTransformStampedOrOfAFile) {
   const BagSequence stamped("s", write(bag.str()), {});
   EXPECT_EQ(stamped.read(2).map_from_sensor.translation().x(), 2.0);
   const auto poses = folder_.write("p.csv", "-1,0,0,0,0,0,1\n-2,0,0,0,0,0,1\n-3,0,0,0,0,0,1\n");
-  const BagSequence told("s", write(bag.str()), {.poses = poses});
+  const BagSequence told("s", write(bag.str()), {.poses = PoseFile{poses}});
   EXPECT_EQ(told.read(2).map_from_sensor.translation().x(), 3.0);
 }
 
@@ -152,9 +152,9 @@ TEST_F(Bag, NamesWhatItLacks) {
   EXPECT_THAT(error_of(bag, {.topic = "/points"}),
               testing::AllOf(HasSubstr("no PointCloud2 topic /points"),
                              HasSubstr("/os1_cloud_node/points (sensor_msgs/PointCloud2)")));
-  EXPECT_THAT(error_of(bag, {.map_frame = "odom"}),
-              testing::AllOf(HasSubstr("no transforms lead from odom to lidar"),
-                             HasSubstr("--poses FILE")));
+  EXPECT_THAT(
+      error_of(bag, {.map_frame = "odom"}),
+      testing::AllOf(HasSubstr("no transforms lead from odom to lidar"), HasSubstr("poses FILE")));
   BagBytes two_topics = bag;
   two_topics.connections = {{"/a", std::string(kPointCloud2)}, {"/b", std::string(kPointCloud2)}};
   EXPECT_THAT(error_of(two_topics), HasSubstr("several PointCloud2 topics: /a, /b"));

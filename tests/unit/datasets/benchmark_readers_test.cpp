@@ -138,7 +138,8 @@ TEST_F(KittiReaders, ReadApolloWithItsLidarPosesWhereTheyAre) {
   const Dataset recognised = open_dataset(folder_ / "LiDAR-MOS", {});
   EXPECT_EQ(recognised.kind, DatasetKind::kApollo);
   EXPECT_EQ(x_of(recognised), 6.0);
-  EXPECT_THAT(recognised.sequences[0]->reading(), Contains(Pair("pose_frame", "lidar")));
+  EXPECT_THAT(members_of(recognised.sequences[0]->reading()),
+              Contains(Pair("pose_frame", "lidar")));
 }
 
 TEST_F(KittiReaders, ReadMdetectorsLabelsAsTheyAre) {
@@ -168,8 +169,9 @@ TEST_F(KittiReaders, ReadFiveColumnsWhenToldOrByTheNuscenesName) {
   }
   EXPECT_EQ(named.sequences[0]->stem(0), "1533151603547590");
   // Runs that read other columns of the same files are other runs.
-  EXPECT_THAT(told.sequences[0]->reading(), testing::Contains(testing::Pair("bin_columns", "5")));
-  EXPECT_THAT(named.sequences[0]->reading(),
+  EXPECT_THAT(members_of(told.sequences[0]->reading()),
+              testing::Contains(testing::Pair("bin_columns", "5")));
+  EXPECT_THAT(members_of(named.sequences[0]->reading()),
               testing::Not(testing::Contains(testing::Key("bin_columns"))));
   EXPECT_THAT(message_of<DataError>([&] { open_dataset(folder_ / "told", {}); }),
               HasSubstr("40 bytes are no multiple of 16"));

@@ -169,7 +169,7 @@ TEST_F(ScansOfFiveColumns, AreRefusedUntilTheirNumberIsTold) {
     const auto data = folder_ / place;
     EXPECT_THAT(message_of<DataError>([&] { open_dataset(data, {}); }),
                 AllOf(HasSubstr("0.bin: seems to hold 5 float32 per point rather than 4"),
-                      HasSubstr("expected --bin-columns 5, or 4 if it is as it should be")));
+                      HasSubstr("expected bin_columns 5, or 4 if it is as it should be")));
     const Dataset five = open_dataset(data, {.reading = {.bin_columns = 5}});
     const Frame frame = five.sequences.at(0)->read(0);
     EXPECT_EQ(frame.points.size(), simulated_points("street", "vlp-16").size());

@@ -284,10 +284,10 @@ TEST(OpenDataset, TakesAPoseFileForOneSequenceOnly) {
   write_sequence(root, "01", 1);
   const auto poses = root.write("other.txt", "1 0 0 7 0 1 0 0 0 0 1 0\n");
   const Dataset dataset =
-      open_dataset(root.path(), {.sequences = {"01"}, .reading = {.poses = poses}});
+      open_dataset(root.path(), {.sequences = {"01"}, .reading = {.poses = PoseFile{poses}}});
   EXPECT_EQ(dataset.sequences[0]->read(0).map_from_sensor.translation().x(), 7.0);
-  EXPECT_THAT(error_of<UsageError>(root.path(), {.reading = {.poses = poses}}),
-              HasSubstr("--poses is for one"));
+  EXPECT_THAT(error_of<UsageError>(root.path(), {.reading = {.poses = PoseFile{poses}}}),
+              HasSubstr("poses is for one"));
 }
 
 }  // namespace

@@ -109,7 +109,7 @@ class DeskewedScans : public testing::Test {
     }
   }
   /// How far points lie at most from where the sensor would have seen them at the stamp, metres.
-  double worst_m(const ReadingOptions& reading, int first, int last) const {
+  double worst_m(const Reading& reading, int first, int last) const {
     const Dataset dataset = open_dataset(folder_ / "s", {.reading = reading});
     double worst = 0;
     for (int k = first; k <= last; ++k) {
@@ -125,7 +125,7 @@ class DeskewedScans : public testing::Test {
     }
     return worst;
   }
-  std::string error_of(const ReadingOptions& reading) const {
+  std::string error_of(const Reading& reading) const {
     return message_of<DataError>(
         [&] { open_dataset(folder_ / "s", {.reading = reading}).sequences.at(0)->read(0); });
   }
@@ -135,10 +135,10 @@ class DeskewedScans : public testing::Test {
   double (*time_s_)(int) = nullptr;
 };
 
-ReadingOptions by_column(std::optional<Deskew> deskew) {
+Reading by_column(std::optional<Deskew> deskew) {
   return {.deskew = deskew, .point_times = PointTimes::kColumn, .bin_columns = 5};
 }
-ReadingOptions by_azimuth(std::optional<Deskew> deskew) {
+Reading by_azimuth(std::optional<Deskew> deskew) {
   return {.deskew = deskew, .point_times = PointTimes::kAzimuth};
 }
 
@@ -160,13 +160,14 @@ TEST_F(DeskewedScans, ComeBackWithinAMillimetreByTimesInAFieldOfEveryUnit) {
       std::filesystem::remove_all(folder_ / "s");
       write({}, begun_s, true);
       turn_into(extension, field, per_s);
-      ReadingOptions reading = by_column(Deskew::kPoses);
+      Reading reading = by_column(Deskew::kPoses);
       EXPECT_LT(worst_m(reading, 0, kScansSwept - 2), 1e-3) << field << extension;
       reading.deskew = Deskew::kNone;
       EXPECT_GT(worst_m(reading, 0, kScansSwept - 2), 0.45);
       reading.deskew = std::nullopt;
-      EXPECT_THAT(open_dataset(folder_ / "s", {.reading = reading}).sequences[0]->reading(),
-                  Contains(Pair("point_times", "field of times")));
+      EXPECT_THAT(
+          members_of(open_dataset(folder_ / "s", {.reading = reading}).sequences[0]->reading()),
+          Contains(Pair("point_times", "field of times")));
     }
   }
 }
@@ -194,17 +195,18 @@ TEST_F(DeskewedScans, FollowAnAccelerationByPosesBetterThanByVelocity) {
 TEST_F(DeskewedScans, AreStatedAndAreReadAsStoredUnlessTheyAreAskedFor) {
   write({}, begun_s, true);
   const Dataset plain = open_dataset(folder_ / "s", {.reading = {.bin_columns = 5}});
-  EXPECT_THAT(plain.sequences[0]->reading(), testing::Not(Contains(Key("deskew"))));
+  EXPECT_THAT(members_of(plain.sequences[0]->reading()), testing::Not(Contains(Key("deskew"))));
   const Frame stored = plain.sequences[0]->read(2);
   EXPECT_TRUE(stored.point_times_ns.empty());
   const Dataset moved = open_dataset(folder_ / "s", {.reading = by_column(std::nullopt)});
-  EXPECT_THAT(moved.sequences[0]->reading(), Contains(Pair("deskew", "poses")));
-  EXPECT_THAT(moved.sequences[0]->reading(), Contains(Pair("point_times", "fifth column")));
+  EXPECT_THAT(members_of(moved.sequences[0]->reading()), Contains(Pair("deskew", "poses")));
+  EXPECT_THAT(members_of(moved.sequences[0]->reading()),
+              Contains(Pair("point_times", "fifth column")));
   EXPECT_TRUE(moved.sequences[0]->read(2).point_times_ns.empty());
   // The first point was measured at the stamp and keeps its bits.
   EXPECT_EQ(moved.sequences[0]->read(2).points[0].x, stored.points[0].x);
-  ReadingOptions unposed = by_column(std::nullopt);
-  unposed.poses_by_odometry = true;
+  Reading unposed = by_column(std::nullopt);
+  unposed.poses = ByOdometry{};
   const Frame frame = open_dataset(folder_ / "s", {.reading = unposed}).sequences[0]->read(2);
   EXPECT_EQ(format_bin(frame.points), format_bin(stored.points));
   ASSERT_EQ(frame.point_times_ns.size(), frame.points.size());
@@ -213,11 +215,11 @@ TEST_F(DeskewedScans, AreStatedAndAreReadAsStoredUnlessTheyAreAskedFor) {
 
 TEST_F(DeskewedScans, AreRefusedWithoutSensibleTimes) {
   write({}, begun_s, false);
-  ReadingOptions four = by_column(std::nullopt);
+  Reading four = by_column(std::nullopt);
   four.bin_columns = 4;
   EXPECT_THAT(error_of(four),
               HasSubstr("000000.bin: holds no times of points, expected a field t, time, timestamp "
-                        "or offset_time in .pcd and .ply files, --bin-columns 5 for .bin files"));
+                        "or offset_time in .pcd and .ply files, bin_columns 5 for .bin files"));
   for (const float time_s : {31.0F, std::numeric_limits<float>::quiet_NaN()}) {
     std::string bytes(40, '\0');
     std::copy_n(reinterpret_cast<const char*>(&time_s), sizeof(time_s), bytes.begin() + 36);

@@ -42,10 +42,10 @@ TEST(Hdl64Correction, IsOffUnlessToldAndStated) {
   folder.write("s/poses.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n");
   const Dataset plain = open_dataset(folder / "s", {});
   EXPECT_EQ(plain.sequences.at(0)->read(0).points.at(0).z, -1.0F);
-  EXPECT_THAT(plain.sequences.at(0)->reading(), Not(Contains(Key("hdl64_correction"))));
+  EXPECT_THAT(members_of(plain.sequences.at(0)->reading()), Not(Contains(Key("hdl64_correction"))));
   const Dataset raised = open_dataset(folder / "s", {.reading = {.hdl64_correction = true}});
   EXPECT_NEAR(raised.sequences.at(0)->read(0).points.at(0).z, -0.9642144, 1e-6);
-  EXPECT_THAT(raised.sequences.at(0)->reading(),
+  EXPECT_THAT(members_of(raised.sequences.at(0)->reading()),
               Contains(Pair("hdl64_correction", "points raised by 0.205 degrees")));
 }
 

@@ -103,7 +103,7 @@ class KittiRawDrive : public testing::Test {
 
   void write(const std::string& file, const std::string& text) const { folder_.write(file, text); }
   static std::string drive(const std::string& file) { return kDrive + file; }
-  Dataset opened(const ReadingOptions& reading = {}) const {
+  Dataset opened(const Reading& reading = {}) const {
     return open_dataset(folder_ / "root", {.reading = reading});
   }
   std::string error_of_opening() const {
@@ -155,7 +155,7 @@ TEST_F(KittiRawDrive, IsReadByItsFrames) {
     expected.translation().x() = scan == 0 ? 0.0 : 3.0;
     EXPECT_LT((sequence.map_from_sensor(scan).matrix() - expected.matrix()).norm(), 1e-6);
   }
-  EXPECT_THAT(sequence.reading(), Contains(Pair("pose_frame", "lidar")));
+  EXPECT_THAT(members_of(sequence.reading()), Contains(Pair("pose_frame", "lidar")));
 }
 
 TEST_F(KittiRawDrive, TurnsAboutTheImu) {
@@ -177,7 +177,7 @@ TEST_F(KittiRawDrive, HasTruthByTheSpeedOfItsBoxes) {
   const Dataset slow = opened({.moving_speed_m_s = 10.5});
   EXPECT_THAT(readable(slow.sequences.front()->read_truth(0)),
               ElementsAre(1009U, 2009U, 9U, 0U, 9U));
-  EXPECT_THAT(slow.sequences.front()->reading(),
+  EXPECT_THAT(members_of(slow.sequences.front()->reading()),
               Contains(Pair("truth", HasSubstr("moving from 10.5 m/s on"))));
 }
 
@@ -224,7 +224,7 @@ TEST_F(KittiRawDrive, LeavesOutScansWithoutPacket) {
 
 TEST_F(KittiRawDrive, TakesOtherPosesAndKeepsItsTruth) {
   folder_.write("p.tum", "1317042130 1 0 0 0 0 0 1\n1317042150 1 0 0 0 0 0 1\n");
-  const Dataset dataset = opened({.poses = folder_ / "p.tum", .max_pose_gap_s = 60.0});
+  const Dataset dataset = opened({.poses = PoseFile{folder_ / "p.tum"}, .max_pose_gap_s = 60.0});
   EXPECT_EQ(dataset.sequences.front()->map_from_sensor(3).translation().x(), 1.0);
   EXPECT_THAT(readable(dataset.sequences.front()->read_truth(3)),
               ElementsAre(1251U, 2009U, 9U, 0U, 9U));
@@ -233,7 +233,7 @@ TEST_F(KittiRawDrive, TakesOtherPosesAndKeepsItsTruth) {
 TEST_F(KittiRawDrive, HasNoTruthOfFramesWithoutPacketWhereverPosesComeFrom) {
   std::filesystem::remove(folder_ / drive("oxts/data/0000000003.txt"));
   folder_.write("p.tum", "1317042130 1 0 0 0 0 0 1\n1317042150 1 0 0 0 0 0 1\n");
-  const Dataset dataset = opened({.poses = folder_ / "p.tum", .max_pose_gap_s = 60.0});
+  const Dataset dataset = opened({.poses = PoseFile{folder_ / "p.tum"}, .max_pose_gap_s = 60.0});
   ASSERT_EQ(dataset.sequences.front()->stem(2), "0000000003");
   EXPECT_FALSE(dataset.sequences.front()->has_truth(2)) << "what its boxes hold would be static";
   EXPECT_THAT(readable(dataset.sequences.front()->read_truth(3)),
@@ -258,13 +258,13 @@ TEST_F(KittiRawDrive, NeedsOxtsOrOtherPosesAndHasNoTruthWithoutOxts) {
   std::filesystem::remove_all(folder_ / drive("oxts"));
   EXPECT_THAT(message_of<MissingPoses>([&] { opened(); }),
               HasSubstr("2011_09_26_drive_0001_sync/oxts: is not there"));
-  const Dataset dataset = opened({.poses_by_odometry = true});
+  const Dataset dataset = opened({.poses = ByOdometry{}});
   EXPECT_EQ(dataset.sequences.front()->size(), 5U);
   EXPECT_FALSE(dataset.sequences.front()->has_truth(0));
   EXPECT_THAT(dataset.sequences.front()->remarks(),
               Contains(AllOf(HasSubstr("tracklet_labels.xml gives no truth"), HasSubstr("oxts"))));
   std::filesystem::remove(folder_ / drive("tracklet_labels.xml"));
-  EXPECT_THAT(opened({.poses_by_odometry = true}).sequences.front()->remarks(),
+  EXPECT_THAT(opened({.poses = ByOdometry{}}).sequences.front()->remarks(),
               Contains("no labels of objects: there is no truth"));
 }
 
@@ -273,7 +273,7 @@ TEST_F(KittiRawDrive, NeedsItsCalibrationOrOtherPoses) {
   EXPECT_THAT(message_of<MissingPoses>([&] { opened(); }),
               HasSubstr("calib_velo_to_cam.txt: is not there"));
   folder_.write("p.tum", "1317042130 1 0 0 0 0 0 1\n1317042150 1 0 0 0 0 0 1\n");
-  const Dataset dataset = opened({.poses = folder_ / "p.tum", .max_pose_gap_s = 60.0});
+  const Dataset dataset = opened({.poses = PoseFile{folder_ / "p.tum"}, .max_pose_gap_s = 60.0});
   EXPECT_EQ(dataset.sequences.front()->map_from_sensor(3).translation().x(), 1.0);
   EXPECT_FALSE(dataset.sequences.front()->has_truth(3));
   EXPECT_THAT(dataset.sequences.front()->remarks(), Contains(HasSubstr("calib_velo_to_cam.txt")));
@@ -366,8 +366,7 @@ TEST_F(KittiTrackingSequence, IsKnownWithoutOxtsOrCalib) {
       EXPECT_THAT(message_of<MissingPoses>([&] { open_dataset(folder_ / place, {}); }),
                   HasSubstr(fmt::format("training/{}: is not there", lacks)))
           << place;
-      const Dataset dataset =
-          open_dataset(folder_ / place, {.reading = {.poses_by_odometry = true}});
+      const Dataset dataset = open_dataset(folder_ / place, {.reading = {.poses = ByOdometry{}}});
       EXPECT_EQ(dataset.kind, DatasetKind::kKittiTracking) << place;
       ASSERT_EQ(dataset.sequences.front()->size(), 3U);
       EXPECT_FALSE(dataset.sequences.front()->has_truth(0));

@@ -164,7 +164,7 @@ TEST_F(NuscenesFolder, IsReadByItsTables) {
   EXPECT_EQ(frame.points[4].intensity, 5.0F);
   const Eigen::Vector3d ahead = frame.map_from_sensor * Eigen::Vector3d(0, 1, 0);
   EXPECT_LT((ahead - Eigen::Vector3d(102, 20, 2)).norm(), 1e-12);
-  EXPECT_THAT(scene.reading(), Contains(Pair("pose_frame", "lidar")));
+  EXPECT_THAT(members_of(scene.reading()), Contains(Pair("pose_frame", "lidar")));
 }
 
 TEST_F(NuscenesFolder, HasTruthAtKeyFramesByBoxesOfWhatMoves) {
@@ -218,7 +218,8 @@ TEST_F(NuscenesFolder, HasTheSplitsOfItsDevkit) {
 TEST_F(NuscenesFolder, TakesOtherPosesAndKeepsItsTruth) {
   folder_.write("p.tum", "0.9 1 0 0 0 0 0 1\n1.2 1 0 0 0 0 0 1\n");
   const Dataset dataset = open_dataset(
-      folder_ / "root", {.sequences = {"scene-0061"}, .reading = {.poses = folder_ / "p.tum"}});
+      folder_ / "root",
+      {.sequences = {"scene-0061"}, .reading = {.poses = PoseFile{folder_ / "p.tum"}}});
   const Frame frame = dataset.sequences.at(0)->read(0);
   EXPECT_EQ(frame.map_from_sensor.translation(), Eigen::Vector3d(1, 0, 0));
   EXPECT_EQ(frame.truth->front(), 251U);

@@ -89,9 +89,7 @@ class PoseSources : public testing::Test {
     folder_.write("times.txt", "10.0\n10.1\n10.2\n");
     folder_.write("calib.txt", "Tr: 0 -1 0 0 0 0 -1 0 1 0 0 0\n");
   }
-  FolderSequence open(const ReadingOptions& options) const {
-    return {"s", folder_.path(), options};
-  }
+  FolderSequence open(const Reading& options) const { return {"s", folder_.path(), options}; }
   double x_of(const FolderSequence& recording, std::size_t scan_index) const {
     return recording.read(scan_index).map_from_sensor.translation().x();
   }
@@ -102,22 +100,23 @@ class PoseSources : public testing::Test {
 TEST_F(PoseSources, TakeStampedPosesAtTheScansStamps) {
   const auto poses = folder_.write(
       "tum.txt", "9.9 0 0 0 0 0 0 1\n10.1 2 0 0 0 0 0 1\n10.3 4 0 0 0 0 0 1\n11 9 0 0 0 0 0 1\n");
-  const FolderSequence recording = open({.poses = poses});
+  const FolderSequence recording = open({.poses = PoseFile{poses}});
   EXPECT_DOUBLE_EQ(x_of(recording, 0), 1.0);
   EXPECT_EQ(x_of(recording, 1), 2.0);
   EXPECT_DOUBLE_EQ(x_of(recording, 2), 3.0);
-  EXPECT_THAT(recording.reading(), Contains(Pair("pose_format", "tum")));
-  EXPECT_THAT(recording.reading(), Contains(Pair("pose_frame", "lidar")));
-  EXPECT_THAT(recording.reading(), Contains(Pair("pose_pairing", "by stamp, 2 of 3 interpolated")));
+  EXPECT_THAT(members_of(recording.reading()), Contains(Pair("pose_format", "tum")));
+  EXPECT_THAT(members_of(recording.reading()), Contains(Pair("pose_frame", "lidar")));
+  EXPECT_THAT(members_of(recording.reading()),
+              Contains(Pair("pose_pairing", "by stamp, 2 of 3 interpolated")));
   const auto late = folder_.write("late.txt", "10.1 2 0 0 0 0 0 1\n10.3 4 0 0 0 0 0 1\n");
-  EXPECT_THAT(message_of<DataError>([&] { open({.poses = late}); }),
+  EXPECT_THAT(message_of<DataError>([&] { open({.poses = PoseFile{late}}); }),
               testing::AllOf(HasSubstr("no pose around the scan of 10.0"),
                              HasSubstr("10.100000 to 10.300000 s")));
 }
 
 TEST_F(PoseSources, LeaveOutScansInGapsOfThePoses) {
   const auto gap = folder_.write("gap.txt", "10 1 0 0 0 0 0 1\n10.6 7 0 0 0 0 0 1\n");
-  const FolderSequence recording = open({.poses = gap});
+  const FolderSequence recording = open({.poses = PoseFile{gap}});
   ASSERT_EQ(recording.size(), 1U);
   EXPECT_EQ(recording.stem(0), "000000");
   EXPECT_EQ(x_of(recording, 0), 1.0);
@@ -127,22 +126,24 @@ TEST_F(PoseSources, LeaveOutScansInGapsOfThePoses) {
               Contains("2 of 3 scans are left out: they lie between poses more than 0.5 s apart in "
                        "gap.txt (--max-pose-gap-s)"));
   EXPECT_THAT(
-      recording.reading(),
+      members_of(recording.reading()),
       Contains(Pair("pose_pairing", "by stamp, 0 of 3 interpolated; 2 of 3 scans are left out")));
-  EXPECT_EQ(open({.poses = gap, .max_pose_gap_s = 0.6}).size(), 3U);
-  EXPECT_EQ(open({.poses = gap, .max_pose_gap_s = 0.59}).size(), 1U);
+  EXPECT_EQ(open({.poses = PoseFile{gap}, .max_pose_gap_s = 0.6}).size(), 3U);
+  EXPECT_EQ(open({.poses = PoseFile{gap}, .max_pose_gap_s = 0.59}).size(), 1U);
   const auto wide = folder_.write("wide.txt", "9 1 0 0 0 0 0 1\n12 7 0 0 0 0 0 1\n");
   EXPECT_THAT(
-      message_of<DataError>([&] { open({.poses = wide}); }),
+      message_of<DataError>([&] { open({.poses = PoseFile{wide}}); }),
       HasSubstr("wide.txt: all scans lie between poses more than 0.5 s apart, expected more "
-                "poses, or a longer --max-pose-gap-s"));
+                "poses, or a longer max_pose_gap_s"));
 }
 
 TEST_F(PoseSources, InvertRolloutsAndWhateverIsToldToBeInverse) {
   const auto rollout = folder_.write("none.csv", "1,0,0,0,0,0,1\n2,0,0,0,0,0,1\n3,0,0,0,0,0,1\n");
-  EXPECT_EQ(x_of(open({.poses = rollout}), 2), -3.0);
-  EXPECT_EQ(x_of(open({.poses = rollout, .poses_inverse = false}), 2), 3.0);
-  EXPECT_THAT(open({.poses = rollout}).reading(),
+  EXPECT_EQ(x_of(open({.poses = PoseFile{rollout}}), 2), -3.0);
+  EXPECT_EQ(
+      x_of(open({.poses = PoseFile{rollout}, .pose_direction = PoseDirection::kMapFromSensor}), 2),
+      3.0);
+  EXPECT_THAT(members_of(open({.poses = PoseFile{rollout}}).reading()),
               Contains(Pair("pose_direction", "sensor_from_map, inverted")));
 }
 
@@ -151,10 +152,10 @@ TEST_F(PoseSources, TurnCameraPosesByTrUnlessToldOtherwise) {
   folder_.write("poses.txt", row + row + row);
   EXPECT_EQ(x_of(open({}), 0), 5.0);
   EXPECT_EQ(x_of(open({.pose_frame = PoseFrame::kLidar}), 0), 0.0);
-  EXPECT_THAT(open({}).reading(),
+  EXPECT_THAT(members_of(open({}).reading()),
               Contains(Pair("pose_frame", "camera, turned into the lidar's by Tr of calib.txt")));
   const auto tum = folder_.write("tum.txt", "9.9 0 0 5 0 0 0 1\n10.3 0 0 5 0 0 0 1\n");
-  EXPECT_EQ(x_of(open({.poses = tum, .pose_frame = PoseFrame::kCamera}), 0), 5.0);
+  EXPECT_EQ(x_of(open({.poses = PoseFile{tum}, .pose_frame = PoseFrame::kCamera}), 0), 5.0);
   std::filesystem::remove(folder_ / "calib.txt");
   EXPECT_THAT(message_of<DataError>([&] { open({.pose_frame = PoseFrame::kCamera}); }),
               HasSubstr("calib.txt: does not exist"));
@@ -162,7 +163,7 @@ TEST_F(PoseSources, TurnCameraPosesByTrUnlessToldOtherwise) {
 
 TEST_F(PoseSources, RefuseAnotherNumberOfRows) {
   const auto poses = folder_.write("p.csv", "1,0,0,0,0,0,1\n");
-  EXPECT_THAT(message_of<DataError>([&] { open({.poses = poses}); }),
+  EXPECT_THAT(message_of<DataError>([&] { open({.poses = PoseFile{poses}}); }),
               HasSubstr("1 pose rows for 3 scans"));
 }
 

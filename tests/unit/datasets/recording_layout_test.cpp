@@ -31,7 +31,7 @@ std::string ouster_bag() {
 
 class AnyRecording : public testing::Test {
  protected:
-  Dataset opened(const std::string& below, const ReadingOptions& reading = {}) const {
+  Dataset opened(const std::string& below, const Reading& reading = {}) const {
     return open_dataset(folder_ / below, {.reading = reading});
   }
   std::string error_of_opening(const std::string& below) const {
@@ -62,7 +62,7 @@ TEST_F(AnyRecording, IsAFolderOfPly) {
   folder_.write("drive/a.ply",
                 "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
                 "property float z\nend_header\n1 2 3\n");
-  const Dataset dataset = opened("drive", {.poses_by_odometry = true});
+  const Dataset dataset = opened("drive", {.poses = ByOdometry{}});
   EXPECT_THAT(dataset.remarks, Contains(HasSubstr("1 .ply file is")));
   EXPECT_EQ(dataset.sequences[0]->read(0).points[0].z, 3.0F);
 }
@@ -77,7 +77,7 @@ TEST_F(AnyRecording, IsOneScan) {
   EXPECT_EQ(dataset.sequences[0]->read(0).points[0].y, 2.0F);
   EXPECT_FALSE(dataset.sequences[0]->has_truth(0));
   folder_.write("p.txt", "1 0 0 7 0 1 0 0 0 0 1 0\n");
-  const Dataset posed = opened("one/scan.bin", {.poses = folder_ / "p.txt"});
+  const Dataset posed = opened("one/scan.bin", {.poses = PoseFile{folder_ / "p.txt"}});
   EXPECT_EQ(posed.sequences[0]->map_from_sensor(0).translation().x(), 7.0);
   EXPECT_THROW(opened("one/scan.bin", {.point_times = PointTimes::kColumn, .bin_columns = 5}),
                UsageError);

@@ -563,7 +563,7 @@ TEST_F(Ros2Bag, AsksWhichOfSeveralTopicsOfPosesIsMeant) {
     chunk.push_back({2, chunk[0].recorded_ns, chunk[0].message});
   }
   EXPECT_THAT(error_of(bag.str()), AllOf(HasSubstr("has poses in the topics /gps, /pose"),
-                                         HasSubstr("one of them in --pose-topic")));
+                                         HasSubstr("one of them in pose_topic")));
   const BagSequence recording("s", write(bag.str()), {.pose_topic = "/gps"});
   expect_good(recording);
   EXPECT_THAT(recording.remarks(), Contains(HasSubstr("poses from the bag: /gps")));

@@ -178,7 +178,7 @@ TEST_F(SceneFlowFile, TakesAnotherSpeedAndPosesButKeepsTheTruthOfItsOwnPoses) {
   const auto poses = folder_.write("p.txt",
                                    "1 0 0 5 0 1 0 0 0 0 1 0\n1 0 0 5 0 1 0 0 0 0 1 0\n"
                                    "1 0 0 5 0 1 0 0 0 0 1 0\n");
-  const auto told = open_dataset(file, {.reading = {.poses = poses}});
+  const auto told = open_dataset(file, {.reading = {.poses = PoseFile{poses}}});
   EXPECT_EQ(told.sequences.at(0)->map_from_sensor(2).translation().x(), 5.0);
   EXPECT_EQ(told.sequences.at(0)->read_truth(0)[1], 251U + (3U << 16U));
 }
@@ -235,8 +235,8 @@ TEST_F(SceneFlowFile, NeedsNoPosesWhereOthersAreGiven) {
     }
   };
   drop("pose");
-  ReadingOptions odometry;
-  odometry.poses_by_odometry = true;
+  Reading odometry;
+  odometry.poses = ByOdometry{};
   EXPECT_THAT(
       message_of<DataError>([&] { SceneFlowSequence("s", write(groups), odometry); }),
       HasSubstr("group 1600000000000000 has no pose, expected pose (4, 4) or ego_motion where"));
@@ -247,7 +247,7 @@ TEST_F(SceneFlowFile, NeedsNoPosesWhereOthersAreGiven) {
   EXPECT_EQ(bare.read(0).points.size(), 4u);
   EXPECT_THAT(message_of<MissingPoses>([&] { SceneFlowSequence("s", write(groups), {}); }),
               HasSubstr("has no pose, expected pose (4, 4) in each group, in a file given by "
-                        "--poses, or found by odometry"));
+                        "poses, or found by odometry"));
 }
 
 TEST_F(SceneFlowFile, NamesWhatIsWrong) {
@@ -383,7 +383,7 @@ TEST(MovingSpeed, IsForDataSetsOfSceneFlowAlone) {
   folder.write("poses.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n");
   EXPECT_THAT(message_of<UsageError>(
                   [&] { open_dataset(folder.path(), {.reading = {.moving_speed_m_s = 1.0}}); }),
-              HasSubstr("--moving-speed-m-s: the truth of semantickitti is no speed"));
+              HasSubstr("moving_speed_m_s: the truth of semantickitti is no speed"));
 }
 
 }  // namespace

@@ -109,10 +109,10 @@ TEST(KittiSequence, NamesPosesThatLieAsInKittisOdometryBenchmark) {
   const auto error = [&] {
     return message_of<DataError>([&] { KittiSequence("04", folder / "kitti/sequences/04"); });
   };
-  EXPECT_THAT(error(), HasSubstr("in a file given by --poses, or found by odometry"));
+  EXPECT_THAT(error(), HasSubstr("in a file given by poses, or found by odometry"));
   write_poses(folder / "kitti/poses/04.txt", std::vector<Pose>(1, Pose::Identity()));
   EXPECT_THAT(error(), HasSubstr("04/poses.txt: does not exist, expected one pose per scan there, "
-                                 "or --poses " +
+                                 "or poses " +
                                  (folder / "kitti/poses").string()));
 }
 
@@ -161,7 +161,7 @@ TEST(KittiSequence, TakesAnotherPoseFile) {
   std::filesystem::remove(folder / "poses.txt");
   write_poses(folder / "elsewhere.txt", std::vector<Pose>{pose_at_x(7)});
   const KittiSequence sequence("s", folder.path(),
-                               ReadingOptions{.poses = folder / "elsewhere.txt"});
+                               Reading{.poses = PoseFile{folder / "elsewhere.txt"}});
   EXPECT_EQ(sequence.read(0).map_from_sensor.translation().x(), 7.0);
 }
 
@@ -171,7 +171,7 @@ TEST(KittiSequence, NamesWhatIsMissing) {
   std::filesystem::create_directories(folder / "velodyne");
   EXPECT_THAT(kitti_error(folder), AllOf(HasSubstr("holds no scan"), HasSubstr(".bin")));
   write_bin(folder / "velodyne/0.bin", points_of(1));
-  EXPECT_THAT(kitti_error(folder), AllOf(HasSubstr("poses.txt"), HasSubstr("--poses")));
+  EXPECT_THAT(kitti_error(folder), AllOf(HasSubstr("poses.txt"), HasSubstr("poses")));
 }
 
 TEST(KittiSequence, NamesBothCountsWhenPosesOrTimesDoNotFit) {

@@ -34,25 +34,25 @@ TEST(JsonDifferences, NameWhatDiffersOnEitherSide) {
 }
 
 TEST(ReadingJson, KeepsWhatTheUserTold) {
-  const ReadingOptions told = {.poses = "/somewhere/p.csv",
-                               .pose_format = PoseFormat::kTum,
-                               .pose_frame = PoseFrame::kCamera,
-                               .poses_inverse = false,
-                               .max_pose_gap_s = 1.5,
-                               .topic = "/os1",
-                               .map_frame = "map",
-                               .pose_topic = "/gps",
-                               .deskew = Deskew::kVelocity,
-                               .point_times = PointTimes::kColumn,
-                               .moving_speed_m_s = 0.75,
-                               .bin_columns = 5,
-                               .hdl64_correction = true};
+  const Reading told = {.poses = PoseFile{"/somewhere/p.csv"},
+                        .pose_format = PoseFormat::kTum,
+                        .pose_frame = PoseFrame::kCamera,
+                        .pose_direction = PoseDirection::kMapFromSensor,
+                        .max_pose_gap_s = 1.5,
+                        .topic = "/os1",
+                        .map_frame = "map",
+                        .pose_topic = "/gps",
+                        .deskew = Deskew::kVelocity,
+                        .point_times = PointTimes::kColumn,
+                        .moving_speed_m_s = 0.75,
+                        .bin_columns = 5,
+                        .hdl64_correction = true};
   const nlohmann::ordered_json json = told_json(told);
-  const ReadingOptions read = told_from_json(json);
-  EXPECT_EQ(read.poses, told.poses);
+  const Reading read = told_from_json(json);
+  EXPECT_EQ(*read.pose_file(), *told.pose_file());
   EXPECT_EQ(read.pose_format, told.pose_format);
   EXPECT_EQ(read.pose_frame, told.pose_frame);
-  EXPECT_EQ(read.poses_inverse, told.poses_inverse);
+  EXPECT_EQ(read.pose_direction, told.pose_direction);
   EXPECT_EQ(read.max_pose_gap_s, told.max_pose_gap_s);
   EXPECT_EQ(read.topic, told.topic);
   EXPECT_EQ(read.map_frame, told.map_frame);

@@ -78,7 +78,7 @@ TEST(StudyFile, IsRefusedWithTheLineOfTheFault) {
               AllOf(StartsWith("s.yaml:7: "), HasSubstr("nearest: hmm-mos")));
   EXPECT_THAT(error("max_range_m", "max_range"),
               AllOf(StartsWith("s.yaml:8: "), HasSubstr("nearest: max_range_m")));
-  EXPECT_THAT(error("0.05", "-1"), StartsWith("s.yaml:10: --perturb: pose_noise_m"));
+  EXPECT_THAT(error("0.05", "-1"), StartsWith("s.yaml:10: perturb: pose_noise_m"));
   EXPECT_THAT(error("pose_noise_m", "pose_noise"), HasSubstr("nearest: pose_noise_m"));
   EXPECT_THAT(error("semantickitti-mos", "kitti"), StartsWith("s.yaml:2: "));
   EXPECT_THAT(error("name: near", "name: hmm-mos"), HasSubstr("given twice"));

@@ -1,0 +1,217 @@
+#pragma once
+
+#include <array>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "datasets/formats/bin_columns.hpp"
+#include "datasets/formats/pose_list.hpp"
+
+namespace mosbench {
+
+/// The sensor that the poses of a file belong to.
+enum class PoseFrame : std::uint8_t {
+  kLidar,
+  kCamera  ///< the camera of Tr in calib.txt
+};
+inline constexpr std::array<std::string_view, 2> kPoseFrameNames = {"lidar", "camera"};
+
+enum class PoseDirection : std::uint8_t { kMapFromSensor, kSensorFromMap };
+inline constexpr std::array<std::string_view, 2> kPoseDirectionNames = {"map-from-sensor",
+                                                                        "sensor-from-map"};
+
+/// The motion of the sensor by which scans are corrected whose points have times.
+enum class Deskew : std::uint8_t {
+  kNone,
+  kVelocity,  ///< that since the scan before
+  kPoses      ///< that between the poses around each point
+};
+inline constexpr std::array<std::string_view, 3> kDeskewNames = {"none", "velocity", "poses"};
+inline std::string_view to_string(Deskew deskew) {
+  return kDeskewNames[static_cast<std::size_t>(deskew)];
+}
+
+/// Where the times of points come from when the scans do not say.
+enum class PointTimes : std::uint8_t {
+  kColumn,  ///< the fifth float32 of each point in .bin files, seconds after the scan's stamp; a
+            ///< field of .pcd and .ply files, see `times_after_stamp_ns`
+  kAzimuth  ///< the direction of each point, as the sensor of KITTI turns
+};
+inline constexpr std::array<std::string_view, 2> kPointTimesNames = {"column", "azimuth"};
+
+/// Where poses come from: the data set, a file of the user or a folder with one per sequence, or
+/// later from odometry. Every scan has the identity until then.
+struct OwnPoses {};
+struct PoseFile {
+  std::filesystem::path path;
+};
+struct ByOdometry {};
+using PosesFrom = std::variant<OwnPoses, PoseFile, ByOdometry>;
+
+/// One disturbance of a list.
+struct PerturbStep {
+  std::string_view kind;  ///< the name in `perturb_kinds()`
+  double strength;        ///< in the kind's unit
+};
+
+/// Disturbances in the order in which they are applied, and what they share.
+struct Perturbation {
+  std::vector<PerturbStep> steps;
+  std::uint64_t seed = 1;                ///< of everything random
+  std::optional<std::size_t> jump_scan;  ///< where poses jump; without it, the middle scan
+  std::size_t beams_of = 64;             ///< of the sensor
+  std::optional<double> beams_top_deg, beams_bottom_deg;  ///< elevations of the outer beams
+  double sensor_range_m = 120.0;  ///< of the weakest target that is seen in clear air
+};
+
+/// Returns the text that says the same with every shared key that one of the kinds uses, for
+/// records: equal texts disturb equally.
+std::string to_string(const Perturbation& perturbation);
+
+/// What the user asked about how a sequence is to be read.
+struct Reading {
+  PosesFrom poses = OwnPoses{};
+  std::optional<PoseFormat> pose_format = std::nullopt;  ///< recognised when not set
+  /// When not set, KITTI rows are the camera's if calib.txt holds a Tr other than the identity and
+  /// no mark beside the file says otherwise; all others are the lidar's.
+  std::optional<PoseFrame> pose_frame = std::nullopt;
+  /// When not set, only poses of PoseFormat::kRollout are sensor_from_map.
+  std::optional<PoseDirection> pose_direction = std::nullopt;
+  /// Scans between stamped poses farther apart than this are left out.
+  double max_pose_gap_s = 0.5;
+  std::optional<std::string> topic = std::nullopt;      ///< of a bag's PointCloud2
+  std::optional<std::string> map_frame = std::nullopt;  ///< of a bag's tf tree
+  /// Of a bag's poses; searched when not set.
+  std::optional<std::string> pose_topic = std::nullopt;
+  /// When not set: by the poses, except that odometry registers scans as its own setting says.
+  std::optional<Deskew> deskew = std::nullopt;
+  std::optional<PointTimes> point_times = std::nullopt;  ///< when not set, those of a bag's points
+  /// Of truth that is a flow: from which speed on a point moves; when not set, 0.5.
+  std::optional<double> moving_speed_m_s = std::nullopt;
+  /// float32 per point in .bin files; when not set 4, and scans that clearly have others are
+  /// refused.
+  std::optional<std::size_t> bin_columns = std::nullopt;
+  /// Whether points of KITTI's HDL-64E are raised by the angle that its calibration misses.
+  bool hdl64_correction = false;
+  /// Disturbances of what is read.
+  std::optional<Perturbation> perturb = std::nullopt;
+
+  /// Whether points with times are to be moved.
+  bool undistorts() const { return deskew != Deskew::kNone; }
+  bool has_own_poses() const { return std::holds_alternative<OwnPoses>(poses); }
+  bool is_by_odometry() const { return std::holds_alternative<ByOdometry>(poses); }
+  /// Returns the file or folder of PoseFile; null for poses from elsewhere.
+  const std::filesystem::path* pose_file() const {
+    const auto* file = std::get_if<PoseFile>(&poses);
+    return file == nullptr ? nullptr : &file->path;
+  }
+};
+
+/// What a text is that is no number and no choice: "FILE", "TOPIC".
+struct FieldText {
+  std::string_view type;
+};
+/// The legal values of a quantity, and what to call one.
+struct FieldQuantity {
+  std::string_view type;      ///< "SECONDS"
+  std::string_view noun;      ///< "time"
+  std::string_view expected;  ///< "seconds"
+  double lowest = 0.0;
+  bool lowest_is_legal = true;
+};
+
+struct FieldCount {
+  std::size_t lowest, highest;
+};
+
+template <typename Record>
+concept IsReading = std::same_as<std::remove_const_t<Record>, Reading>;
+
+/// The one list of what can be asked: flags, keys of YAML and of result.json, keywords of Python
+/// and help follow from it. Calls visit(name, field, what is legal, meaning).
+template <IsReading Asked, typename Visit>
+void visit_fields(Asked& reading, Visit&& visit) {
+  visit("poses", reading.poses, FieldText{"FILE"},
+        "Pose file to take instead of the sequence's own, or a folder with one per sequence");
+  visit("pose_format", reading.pose_format, kPoseFormatNames,
+        "Rows of 12 numbers, stamped rows with a quaternion, or Dynablox's rollout CSV (default: "
+        "recognised)");
+  visit("pose_frame", reading.pose_frame, kPoseFrameNames,
+        "Sensor that the poses are of; Tr of calib.txt turns those of the camera into the lidar's "
+        "(default: camera if calib.txt has a Tr and the poses are KITTI rows, unless `mosbench "
+        "odometry` wrote them)");
+  visit("pose_direction", reading.pose_direction, kPoseDirectionNames,
+        "sensor-from-map poses are inverted (default: sensor-from-map for dynablox only)");
+  visit("max_pose_gap_s", reading.max_pose_gap_s, FieldQuantity{"SECONDS", "time", "seconds"},
+        "Scans between stamped poses farther apart are left out");
+  visit("topic", reading.topic, FieldText{"TOPIC"}, "PointCloud2 topic of a bag");
+  visit("map_frame", reading.map_frame, FieldText{"FRAME"}, "Map frame in the tf tree of a bag");
+  visit("pose_topic", reading.pose_topic, FieldText{"TOPIC"},
+        "Topic of poses of a bag (default: found)");
+  visit("deskew", reading.deskew, kDeskewNames,
+        "Move points that have times to where the sensor saw them at the stamp, by the motion "
+        "since the scan before or by the poses around (default: poses; to register scans: "
+        "velocity)");
+  visit("point_times", reading.point_times, kPointTimesNames,
+        "When points were measured: fifth column of .bin files, in seconds after the stamp, a "
+        "field of .pcd and .ply files, or azimuth as KITTI's sensor turns (default: what a bag "
+        "says)");
+  visit("moving_speed_m_s", reading.moving_speed_m_s,
+        FieldQuantity{"M/S", "speed", "m/s above 0", 0.0, false},
+        "Speed from which on points of truth by flow or boxes move: opensceneflow, kitti-raw, "
+        "kitti-tracking (default: 0.5)");
+  visit("bin_columns", reading.bin_columns, FieldCount{kFewestBinColumns, kMostBinColumns},
+        "float32 per point in .bin files: 4, 3 (no intensity), 5 (ring of nuScenes, times) or more "
+        "(default: 4, and files that clearly hold others are refused)");
+  visit("hdl64_correction", reading.hdl64_correction, FieldText{},
+        "Raise points by the 0.205 degrees that KITTI's calibration of its HDL-64E misses");
+  visit("perturb", reading.perturb, FieldText{"KIND=STRENGTH,...,seed=N"},
+        "Disturb what is read, in this order, see `mosbench list perturbations`");
+}
+
+/// How the poses of a sequence came about. What is empty does not apply.
+struct PosesDone {
+  std::string source;  ///< a file, a part of the data set, or a kind of odometry
+  std::optional<PoseFormat> format = std::nullopt;
+  std::string pairing = {};  ///< of rows and scans
+  std::optional<PoseDirection> direction = std::nullopt;
+  std::optional<PoseFrame> frame = std::nullopt;  ///< the camera's were turned into the lidar's
+  bool frame_by_mark = false;                     ///< whether a mark beside the file says so
+  std::string origin = {};                        ///< of poses that were converted
+  std::string odometry = {}, map = {};            ///< its settings, and what its map leaves out
+};
+
+/// What the times that the points of a bag have were used for.
+enum class BagUndistortion : std::uint8_t { kOtherTimes, kNoTimes, kAsTold, kButLast, kAll };
+
+/// How a sequence was read, for results. What is empty does not apply.
+struct ReadingDone {
+  std::string scan_files = {};
+  std::optional<std::size_t> bin_columns = std::nullopt;  ///< unless the usual
+  std::string point_times = {};
+  std::string stamps = {};  ///< their unit
+  std::string truth = {};
+  PosesDone poses = {};
+  std::optional<BagUndistortion> undistortion = std::nullopt;  ///< of bags
+  bool hdl64_correction = false;
+  std::optional<Deskew> deskew = std::nullopt;
+  std::optional<Perturbation> perturb = std::nullopt;
+};
+
+std::string_view to_string(BagUndistortion undistortion);
+
+/// Returns what stands in results and on pages: (what, how) in a fixed order.
+using ReadingMembers = std::vector<std::pair<std::string, std::string>>;
+ReadingMembers members_of(const PosesDone& poses);
+ReadingMembers members_of(const ReadingDone& reading);
+
+}  // namespace mosbench
