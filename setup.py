@@ -1,6 +1,6 @@
 """Compiles the module of the Python package by CMake. See pyproject.toml.
 
-Without PCL and ROS, which a wheel cannot bring along. CMAKE_ARGS, as in -DMOSBENCH_WITH_ROSBAG=ON, are
+Without ROS, which a wheel cannot bring along. CMAKE_ARGS, as in -DMOSBENCH_WITH_ROSBAG=ON, are
 passed on.
 """
 

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # demo.sh: installs missing packages, builds release, simulates a small sequence in the layout of each of
 # four data sets, segments and scores them, prints one table and writes a report of all to build/demo.
-# Leaves out what it does not need, unless MOSBENCH_WITH_PCL, MOSBENCH_WITH_ROSBAG or MOSBENCH_WITH_HDF5 is ON, and says so.
+# Leaves out what it does not need, unless MOSBENCH_WITH_ROSBAG or MOSBENCH_WITH_HDF5 is ON, and says so.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-export MOSBENCH_WITH_PCL=${MOSBENCH_WITH_PCL:-OFF} MOSBENCH_WITH_ROSBAG=${MOSBENCH_WITH_ROSBAG:-OFF}
+export MOSBENCH_WITH_PCL=OFF MOSBENCH_WITH_ROSBAG=${MOSBENCH_WITH_ROSBAG:-OFF}
 export MOSBENCH_WITH_HDF5=${MOSBENCH_WITH_HDF5:-OFF}
 export MOSBENCH_BUILD_TESTS=OFF MOSBENCH_BUILD_BENCH=OFF MOSBENCH_PRECOMPILED_HEADERS=ON
 scripts/setup.sh
@@ -58,6 +58,5 @@ column -t -s $'\t' -R 5,7,8,9,10 "$demo/table.tsv"
 
 echo
 echo "Left out of this build: the tests; scripts/test.sh installs and builds everything."
-[ "$MOSBENCH_WITH_PCL" != OFF ] || echo "  Reading .pcd scans needs PCL: MOSBENCH_WITH_PCL=ON scripts/demo.sh (400 packages more)"
 [ "$MOSBENCH_WITH_ROSBAG" != OFF ] || echo "  Writing bags needs ROS's library: MOSBENCH_WITH_ROSBAG=ON scripts/demo.sh (40 packages more)"
 [ "$MOSBENCH_WITH_HDF5" != OFF ] || echo "  Reading .h5 files needs libhdf5: MOSBENCH_WITH_HDF5=ON scripts/demo.sh (30 packages more)"

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # package.sh: builds release and makes Debian packages of it in build/release/packages: mosbench,
-# mosbench-pcl, mosbench-hdf5 and python3-mosbench, those of what is built.
+# mosbench-hdf5 and python3-mosbench, those of what is built.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 scripts/build.sh release --target mosbench --target manual

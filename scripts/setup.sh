@@ -5,7 +5,7 @@
 # packages; with --page what tests, lints and builds the report's page: a browser, node and the packages of
 # eval/report/page/package-lock.json; with --cluster Snakemake and Slurm; --tests is --python and --page.
 # Returns quickly when all are installed.
-# MOSBENCH_WITH_PCL=OFF leaves out PCL, which brings some 400 packages,
+# MOSBENCH_WITH_PCL=OFF leaves out PCL, which only tests need and which brings some 400 packages,
 # MOSBENCH_WITH_ROSBAG=OFF the 40 or so of ROS's bag library, which only writing bags needs,
 # MOSBENCH_WITH_HDF5=OFF the 30 or so of libhdf5, which only .h5 files need,
 # MOSBENCH_WITH_OCTOMAP=OFF the two of OctoMap, for the method of that name,

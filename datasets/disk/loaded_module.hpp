@@ -11,9 +11,9 @@ struct ModuleFunction {
 };
 
 /// Loads a module (a shared library beside the program, of the same build) when it is first needed:
-/// with all their libraries PCL and libhdf5 would cost every start of the program tens of
-/// milliseconds. Looks in three folders: relative to the installed program, in the installation
-/// prefix, and in the build tree.
+/// with all its libraries libhdf5 would cost every start of the program milliseconds. Looks in
+/// three folders: relative to the installed program, in the installation prefix, and in the build
+/// tree.
 ModuleFunction load_function(const char* module, const char* function);
 
 }  // namespace mosbench

@@ -4,10 +4,11 @@
 #include <filesystem>
 #include <mosbench/scan.hpp>
 #include <optional>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "datasets/formats/pcd_header.hpp"
-#include "datasets/formats/pcl_reader.hpp"
 
 namespace mosbench {
 
@@ -18,19 +19,25 @@ struct PcdScan {
   std::vector<double> times;  ///< as stored, of the field `find_time_field`, if asked for
 };
 
-/// Reads the header alone, and checks it against the size of the file. Throws DataError, in a build
-/// without PCL (MOSBENCH_WITH_PCL=OFF) always.
+/// Parses a whole .pcd file, ascii, binary or binary_compressed: fields x, y, z, intensity (0 when
+/// there is none), label, and with `timed` the times; all other fields are ignored. Throws
+/// DataError for a body that is not the points of its header, and for labels that are no whole
+/// numbers of 32 bits.
+PcdScan parse_pcd(std::string_view bytes, const std::filesystem::path& file, bool timed = false);
+
+/// Unpacks LZF, in which .pcd files are compressed, to exactly `size_bytes`. Returns nothing for
+/// bytes that do not unpack to that.
+std::optional<std::string> unpack_lzf(std::string_view packed, std::size_t size_bytes);
+
+/// Reads the header alone, and checks it against the size of the file. Throws DataError.
 PcdHeader read_pcd_header(const std::filesystem::path& file);
 
-/// Reads a .pcd scan once, unpacked by PCL: fields x, y, z, intensity (0 when there is none),
-/// label, and with `timed` the times; all other fields are ignored. Throws DataError for what PCL
-/// cannot read and for labels that are no whole numbers of 32 bits, and as `read_pcd_header`.
 PcdScan read_pcd_scan(const std::filesystem::path& file, bool timed = false);
 
-/// The points alone; throws as `read_pcd_scan`.
+/// The points alone; throws as `parse_pcd`.
 std::vector<Point> read_pcd(const std::filesystem::path& file);
 
-/// The labels alone; throws as `read_pcd_scan`, and when the points have no field "label".
+/// The labels alone; throws as `parse_pcd`, and when the points have no field "label".
 std::vector<std::uint32_t> read_pcd_labels(const std::filesystem::path& file);
 
 }  // namespace mosbench

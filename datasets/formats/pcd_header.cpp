@@ -2,12 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cstdint>
-#include <cstring>
 #include <map>
 #include <string>
-#include <system_error>
 #include <vector>
 
 #include "datasets/formats/point_times.hpp"
@@ -23,6 +20,17 @@ constexpr std::uint64_t kMostValues = 1ULL << 16;  // bytes of a point, numbers 
 constexpr std::size_t kShownBytes = 40;
 constexpr std::array<std::string_view, 10> kKnownLines = {
     "VERSION", "FIELDS", "SIZE", "TYPE", "COUNT", "WIDTH", "HEIGHT", "VIEWPOINT", "POINTS", "DATA"};
+
+/// As CloudField numbers types; 9 and 10 are of 64 bits, of which no numbers are taken.
+std::uint8_t datatype_of(std::string_view type, std::uint64_t size_bytes) {
+  if (type == "F") return size_bytes == 4 ? 7 : 8;
+  const std::uint8_t is_unsigned = type == "U" ? 1 : 0;
+  return static_cast<std::uint8_t>((size_bytes == 1   ? 1
+                                    : size_bytes == 2 ? 3
+                                    : size_bytes == 4 ? 5
+                                                      : 9) +
+                                   is_unsigned);
+}
 
 class PcdHeaderParser {
  public:
@@ -64,8 +72,8 @@ class PcdHeaderParser {
     }
   }
 
-  /// Refuses what PCL's reader would take otherwise: it ends the header at a line that it does not
-  /// know, even a blank one, and takes the last of two equal ones.
+  /// Refuses what PCL's reader takes otherwise: it ends the header at a line that it does not know,
+  /// even a blank one, and takes the last of two equal ones.
   void read_line(std::string_view line, std::size_t number) {
     if (line.empty()) return;
     const auto words = split_at_blanks(line);
@@ -133,10 +141,13 @@ class PcdHeaderParser {
         fail("field " + quoted(fields->second[i]) + " has no type of PCD",
              "F of 4 or 8, I or U of 1, 2, 4 or 8 bytes, COUNT from 1");
       }
+      header_.fields.push_back(
+          {std::string(fields->second[i]), static_cast<std::uint32_t>(header_.point_bytes),
+           datatype_of(types[i], size_bytes), static_cast<std::uint32_t>(repeats)});
       header_.point_bytes += size_bytes * repeats;
+      if (header_.point_bytes > kMostValues) fail("has points of too many bytes", "at most 65536");
       header_.point_values += repeats;
     }
-    if (header_.point_bytes > kMostValues) fail("has points of too many bytes", "at most 65536");
   }
 
   PcdStorage storage() const {
@@ -153,52 +164,6 @@ class PcdHeaderParser {
   PcdHeader header_;
 };
 
-void check_body_size(const PcdHeader& header, std::uintmax_t body_bytes,
-                     std::uintmax_t wanted_bytes, const std::filesystem::path& file) {
-  if (body_bytes >= wanted_bytes) return;
-  throw DataError(
-      file, std::to_string(body_bytes) + " bytes behind the header",
-      std::to_string(wanted_bytes) + " for its " + std::to_string(header.points) + " points");
-}
-
-void check_compressed(const PcdHeader& header, std::string_view body,
-                      const std::filesystem::path& file) {
-  std::array<std::uint32_t, 2> sizes_bytes{};  // compressed, uncompressed
-  check_body_size(header, body.size(), sizeof(sizes_bytes), file);
-  std::memcpy(sizes_bytes.data(), body.data(), sizeof(sizes_bytes));
-  check_body_size(header, body.size(), sizeof(sizes_bytes) + sizes_bytes[0], file);
-  const std::uintmax_t wanted_bytes = header.points * header.point_bytes;
-  if (sizes_bytes[1] == wanted_bytes) return;
-  throw DataError(file, std::to_string(sizes_bytes[1]) + " bytes of compressed points",
-                  std::to_string(wanted_bytes) + " for its " + std::to_string(header.points));
-}
-
-bool is_number(std::string_view word) {
-  double ignored = 0.0;  // "nan" is a number here
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), ignored);
-  return error == std::errc{} && end == word.data() + word.size();
-}
-
-void check_ascii(const PcdHeader& header, std::string_view body,
-                 const std::filesystem::path& file) {
-  std::size_t rows = 0;
-  for (const TextLine& line : split_lines(body, file)) {
-    const auto words = split_at_blanks(line.text);
-    const std::string point = "point " + std::to_string(rows++);
-    if (words.size() != header.point_values) {
-      throw DataError(file, point + " has " + std::to_string(words.size()) + " values",
-                      std::to_string(header.point_values));
-    }
-    const auto wrong = std::ranges::find_if_not(words, is_number);
-    if (wrong != words.end()) {
-      throw DataError(file, point + ": " + quoted(*wrong) + " is no number", "numbers");
-    }
-  }
-  if (rows != header.points) {
-    throw DataError(file, std::to_string(rows) + " rows of points", std::to_string(header.points));
-  }
-}
-
 }  // namespace
 
 PcdHeader parse_pcd_header(std::string_view bytes, const std::filesystem::path& file) {
@@ -207,18 +172,13 @@ PcdHeader parse_pcd_header(std::string_view bytes, const std::filesystem::path& 
 
 void check_pcd_size(const PcdHeader& header, std::uintmax_t file_bytes,
                     const std::filesystem::path& file) {
-  if (header.storage != PcdStorage::kBinary) return;
-  check_body_size(header,
-                  file_bytes - std::min<std::uintmax_t>(file_bytes, header.body_offset_bytes),
-                  std::uintmax_t{header.points} * header.point_bytes, file);
-}
-
-void check_pcd_body(const PcdHeader& header, std::string_view bytes,
-                    const std::filesystem::path& file) {
-  const std::string_view body = bytes.substr(header.body_offset_bytes);
-  if (header.storage == PcdStorage::kAscii) check_ascii(header, body, file);
-  if (header.storage == PcdStorage::kBinary) check_pcd_size(header, bytes.size(), file);
-  if (header.storage == PcdStorage::kCompressed) check_compressed(header, body, file);
+  const std::uintmax_t body_bytes =
+      file_bytes - std::min<std::uintmax_t>(file_bytes, header.body_offset_bytes);
+  const std::uintmax_t wanted_bytes = std::uintmax_t{header.points} * header.point_bytes;
+  if (header.storage != PcdStorage::kBinary || body_bytes >= wanted_bytes) return;
+  throw DataError(
+      file, std::to_string(body_bytes) + " bytes behind the header",
+      std::to_string(wanted_bytes) + " for its " + std::to_string(header.points) + " points");
 }
 
 }  // namespace mosbench

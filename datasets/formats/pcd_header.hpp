@@ -6,6 +6,9 @@
 #include <mosbench/scan.hpp>
 #include <optional>
 #include <string_view>
+#include <vector>
+
+#include "datasets/formats/point_records.hpp"
 
 namespace mosbench {
 
@@ -15,6 +18,7 @@ enum class PcdStorage : std::uint8_t { kAscii, kBinary, kCompressed };
 /// What the header of a PCD file says of its points.
 struct PcdHeader {
   std::size_t points = 0;
+  std::vector<CloudField> fields;
   std::size_t point_bytes = 0;        ///< of one point, all fields
   std::size_t point_values = 0;       ///< numbers of one point, all fields
   std::size_t body_offset_bytes = 0;  ///< where the line after DATA starts
@@ -31,12 +35,6 @@ PcdHeader parse_pcd_header(std::string_view bytes, const std::filesystem::path& 
 /// Throws DataError when a file of this size is too short for the points of a binary body; the
 /// other bodies' sizes are not known from the header.
 void check_pcd_size(const PcdHeader& header, std::uintmax_t file_bytes,
-                    const std::filesystem::path& file);
-
-/// Checks that all points of `header` are behind it in `bytes`, the whole file. PCL's own reader
-/// crashes on files without a header and reads text as zeros, so it only gets checked files.
-/// Throws DataError.
-void check_pcd_body(const PcdHeader& header, std::string_view bytes,
                     const std::filesystem::path& file);
 
 }  // namespace mosbench

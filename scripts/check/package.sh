@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # package.sh FOLDER: installs the packages of FOLDER (build/release/packages) where nothing else is
-# installed, and uses each: the program, the modules for .pcd scans and .h5 files, and the Python package.
+# installed, and uses each: the program, the module for .h5 files, and the Python package.
 # lintian must find no errors; that the project has no address is none.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
@@ -31,7 +31,6 @@ in_root sh -euc 'cd /root
   mosbench report run -o report.html' >/dev/null 2>"$root/log" || { cat "$root/log" >&2; exit 1; }
 [ -s "$root/root/report.html" ]
 
-install_package mosbench-pcl
 mkdir -p "$root/root/pcd/velodyne"
 printf '%s\n' 'VERSION .7' 'FIELDS x y z' 'SIZE 4 4 4' 'TYPE F F F' 'COUNT 1 1 1' 'WIDTH 1' 'HEIGHT 1' \
   'VIEWPOINT 0 0 0 1 0 0 0' 'POINTS 1' 'DATA ascii' '5 1 0' >"$root/root/pcd/velodyne/000000.pcd"

@@ -20,9 +20,6 @@ if(TARGET mosbench)
   if(TARGET mosbench_hdf5_module)
     install(TARGETS mosbench_hdf5_module LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/mosbench COMPONENT hdf5)
   endif()
-  if(TARGET mosbench_pcl)
-    install(TARGETS mosbench_pcl LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/mosbench COMPONENT pcl)
-  endif()
 endif()
 
 configure_package_config_file(scripts/cmake/mosbenchConfig.cmake.in

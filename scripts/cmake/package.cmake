@@ -1,5 +1,5 @@
 # `cmake --build --target package` (or scripts/package.sh, which builds no tests for it) makes mosbench_*.deb
-# (program, library, headers, manual), mosbench-pcl_*.deb (the module that reads .pcd scans), mosbench-hdf5_*.deb (.h5) and
+# (program, library, headers, manual), mosbench-hdf5_*.deb (the module for .h5 files) and
 # python3-mosbench_*.deb. dpkg-shlibdeps finds what they depend on.
 
 # Run by CPack on what it has gathered: Debian's manual pages are compressed.
@@ -54,11 +54,7 @@ endmacro()
 set(CPACK_COMPONENTS_ALL)
 mosbench_package(Unspecified mosbench science ""
   "Finds the moving points in LiDAR scans, and scores the labels of any method\nby each benchmark's own rules. Holds the program and the C++ library.")
-set(CPACK_DEBIAN_UNSPECIFIED_PACKAGE_SUGGESTS "mosbench-pcl, mosbench-hdf5, python3-mosbench, libeigen3-dev")
-if(TARGET mosbench_pcl)
-  mosbench_package(pcl mosbench-pcl science "mosbench (= ${PROJECT_VERSION}) | python3-mosbench (= ${PROJECT_VERSION})"
-    "The module that mosbench and python3-mosbench load when they read the\nfirst file in PCD format.")
-endif()
+set(CPACK_DEBIAN_UNSPECIFIED_PACKAGE_SUGGESTS "mosbench-hdf5, python3-mosbench, libeigen3-dev")
 if(TARGET mosbench_hdf5_module)
   mosbench_package(hdf5 mosbench-hdf5 science "mosbench (= ${PROJECT_VERSION}) | python3-mosbench (= ${PROJECT_VERSION})"
     "The module that mosbench and python3-mosbench load when they open the\nfirst .h5 file.")

@@ -142,7 +142,6 @@ std::string pcd_of(const std::vector<std::uint32_t>& labels, const char* moving,
 }
 
 TEST_F(PredictionsTest, OfKthInTheIntensityOfPcdFilesGiveTheSameNumbers) {
-  if (!reads_pcd()) GTEST_SKIP() << "this build is without PCL";
   const auto name = [](const std::string& stem) { return stem + ".pcd"; };
   write("kth", name, [](const auto& labels) { return pcd_of(labels, "1", "0"); });
   // ERASOR writes label numbers.

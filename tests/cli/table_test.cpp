@@ -216,7 +216,6 @@ INSTANTIATE_TEST_SUITE_P(Sets, TableCommand, testing::Values("apollo", "moe", "m
 TEST_P(TableCommand, FillsTheCellsOfItsTable) {
   constexpr std::size_t kScans = 8;
   const std::string table = GetParam();
-  if (table == "moe" && !reads_pcd()) GTEST_SKIP() << "this build is without PCL";
   const TempFolder folder;
   const std::map<std::string, std::vector<std::string>> sequences = {
       {"apollo", {"00", "03"}},

@@ -17,7 +17,7 @@
 #include "datasets/formats/label_file.hpp"
 #include "datasets/formats/moe_labels.hpp"
 #include "datasets/formats/nuscenes_table.hpp"
-#include "datasets/formats/pcd_header.hpp"
+#include "datasets/formats/pcd_file.hpp"
 #include "datasets/formats/ply_file.hpp"
 #include "datasets/formats/point_times.hpp"
 #include "datasets/formats/pose_file.hpp"
@@ -106,7 +106,9 @@ inline void split(std::string_view text) {
 inline void pcd(std::string_view bytes) {
   const PcdHeader header = parse_pcd_header(bytes, "f");
   require(header.body_offset_bytes <= bytes.size());
-  check_pcd_body(header, bytes, "f");
+  const PcdScan scan = parse_pcd(bytes, "f");
+  require(scan.points.size() == header.points);
+  require(!scan.labels || scan.labels->size() == header.points);
   check_pcd_size(header, bytes.size(), "f");
 }
 

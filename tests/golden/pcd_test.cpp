@@ -1,10 +1,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <string>
+#include <string_view>
 
 #include "datasets/formats/bin_file.hpp"
 #include "datasets/formats/pcd_file.hpp"
@@ -23,14 +26,17 @@ constexpr const char* kTwoPoints =
     "VERSION 0.7\nFIELDS z y x\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 2\nHEIGHT 1\n"
     "POINTS 2\nDATA ascii\n3 2 1\n6 5 4\n";
 
-class PcdFile : public testing::Test {
- protected:
-  void SetUp() override {
-    if (!reads_pcd()) GTEST_SKIP() << "this build is without PCL";
-  }
-};
+/// 23 bytes packed by hand: four as they are, nine from four back, three from one back, seven.
+constexpr std::string_view kPacked(
+    "\x03"
+    "abcd"
+    "\xe0\x00\x03"
+    "\x20\x00"
+    "\x06"
+    "1234567",
+    18);
 
-TEST_F(PcdFile, EqualsTheBinFilesOfTheSameRealScansBitForBit) {
+TEST(PcdFile, EqualsTheBinFilesOfTheSameRealScansBitForBit) {
   const auto folder = shared_folder() / "real/pcd";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << folder << " is not there";
   for (const char* stem : {"0000000000", "0000000001", "0000000002", "0000000003", "0000000004"}) {
@@ -46,7 +52,7 @@ TEST_F(PcdFile, EqualsTheBinFilesOfTheSameRealScansBitForBit) {
   }
 }
 
-TEST_F(PcdFile, TakesFourOfEightFields) {
+TEST(PcdFile, TakesFourOfEightFields) {
   const auto file = shared_folder() / "real/pcd/eight_fields.pcd";
   if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not there";
   const auto points = read_pcd(file);
@@ -59,7 +65,7 @@ TEST_F(PcdFile, TakesFourOfEightFields) {
   }
 }
 
-TEST_F(PcdFile, FindsFieldsByNameAndTakesAMissingIntensityAsZero) {
+TEST(PcdFile, FindsFieldsByNameAndTakesAMissingIntensityAsZero) {
   const TempFolder folder;
   const auto points = read_pcd(folder.write("scan.pcd", kTwoPoints));
   ASSERT_EQ(points.size(), 2U);
@@ -69,7 +75,7 @@ TEST_F(PcdFile, FindsFieldsByNameAndTakesAMissingIntensityAsZero) {
   EXPECT_EQ(points[1].intensity, 0.0F);
 }
 
-TEST_F(PcdFile, RefusesWhatIsNoPointCloudWithXyz) {
+TEST(PcdFile, RefusesWhatIsNoPointCloudWithXyz) {
   const TempFolder folder;
   const auto error_of = [&](const std::string& text) {
     const auto file = folder.write("scan.pcd", text);
@@ -102,7 +108,7 @@ TEST_F(PcdFile, RefusesWhatIsNoPointCloudWithXyz) {
               HasSubstr("absent.pcd"));
 }
 
-TEST_F(PcdFile, IsOpenedByItsHeaderAndCheckedAsAWholeWhenRead) {
+TEST(PcdFile, IsOpenedByItsHeaderAndCheckedAsAWholeWhenRead) {
   const TempFolder folder;
   std::string text = kTwoPoints;
   folder.write("velodyne/000000.pcd", text.replace(text.find("6 5 4"), 5, "6 x 4"));
@@ -112,7 +118,7 @@ TEST_F(PcdFile, IsOpenedByItsHeaderAndCheckedAsAWholeWhenRead) {
   EXPECT_THAT(message_of<DataError>([&] { sequence.read(0); }), HasSubstr("\"x\" is no number"));
 }
 
-TEST_F(PcdFile, IsRefusedByItsSizeWhenABinaryBodyIsCutOff) {
+TEST(PcdFile, IsRefusedByItsSizeWhenABinaryBodyIsCutOff) {
   const TempFolder folder;
   std::string text = kTwoPoints;
   const auto file = folder.write("0.pcd", text.replace(text.find("ascii"), 5, "binary"));
@@ -120,7 +126,7 @@ TEST_F(PcdFile, IsRefusedByItsSizeWhenABinaryBodyIsCutOff) {
               HasSubstr("12 bytes behind the header"));
 }
 
-TEST_F(PcdFile, IsAScanOfASequenceLikeAnyOther) {
+TEST(PcdFile, IsAScanOfASequenceLikeAnyOther) {
   const TempFolder folder;
   folder.write("velodyne/000000.pcd", kTwoPoints);
   folder.write("poses.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n");
@@ -129,14 +135,67 @@ TEST_F(PcdFile, IsAScanOfASequenceLikeAnyOther) {
   EXPECT_EQ(sequence.read(0).points.at(0).x, 1.0F);
 }
 
-TEST(PcdFileWithoutPcl, SaysHowToBuildWithIt) {
-  if (reads_pcd()) GTEST_SKIP() << "this build has PCL";
-  const TempFolder folder;
-  folder.write("velodyne/000000.pcd", kTwoPoints);
-  folder.write("poses.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n");
-  EXPECT_THAT(message_of<DataError>([&] { KittiSequence("s", folder.path()); }),
-              AllOf(HasSubstr("000000.pcd"), HasSubstr("-DMOSBENCH_WITH_PCL=ON")));
-  EXPECT_THROW(read_pcd(folder / "velodyne/000000.pcd"), DataError);
+TEST(Lzf, UnpacksLiteralsAndRunsThatReachIntoThemselves) {
+  EXPECT_EQ(unpack_lzf(kPacked, 23), "abcdabcdabcdaaaa1234567");
+  EXPECT_EQ(unpack_lzf("", 0), "");
+}
+
+TEST(Lzf, RefusesWhatIsCutOffOrReachesBeyondItsEnds) {
+  for (std::size_t size = 0; size < kPacked.size(); ++size) {
+    EXPECT_EQ(unpack_lzf(kPacked.substr(0, size), 23), std::nullopt) << size;
+  }
+  EXPECT_EQ(unpack_lzf(kPacked, 22), std::nullopt);
+  EXPECT_EQ(unpack_lzf(kPacked, 24), std::nullopt);
+  EXPECT_EQ(unpack_lzf(std::string_view("\x00"
+                                        "a"
+                                        "\x20\x01",
+                                        4),
+                       4),
+            std::nullopt)
+      << "before the start";
+  EXPECT_EQ(unpack_lzf("a", std::size_t{1} << 40U), std::nullopt) << "more than it can hold";
+}
+
+std::string compressed_cloud(std::string_view packed, std::uint32_t unpacked_bytes) {
+  std::string text = kTwoPoints;
+  text.replace(text.find("ascii"), std::string::npos, "binary_compressed\n");
+  const std::array<std::uint32_t, 2> sizes_bytes = {static_cast<std::uint32_t>(packed.size()),
+                                                    unpacked_bytes};
+  text.append(reinterpret_cast<const char*>(sizes_bytes.data()), sizeof(sizes_bytes));
+  return text.append(packed);
+}
+
+TEST(PcdFile, UnpacksFieldsThatLieOneAfterAnother) {
+  const std::array<float, 6> z_y_x = {3, 6, 2, 5, 1, 4};
+  std::string packed(1, static_cast<char>(sizeof(z_y_x) - 1));
+  packed.append(reinterpret_cast<const char*>(z_y_x.data()), sizeof(z_y_x));
+  const auto points = parse_pcd(compressed_cloud(packed, sizeof(z_y_x)), "f").points;
+  ASSERT_EQ(points.size(), 2U);
+  EXPECT_EQ(points[0].x, 1.0F);
+  EXPECT_EQ(points[0].z, 3.0F);
+  EXPECT_EQ(points[1].x, 4.0F);
+  EXPECT_EQ(points[1].y, 5.0F);
+  const auto error_of = [](const std::string& bytes) {
+    return message_of<DataError>([&] { parse_pcd(bytes, "f"); });
+  };
+  EXPECT_THAT(error_of(compressed_cloud(packed, 20)), HasSubstr("20 bytes of compressed points"));
+  EXPECT_THAT(error_of(compressed_cloud(packed.substr(0, 9), sizeof(z_y_x))),
+              HasSubstr("compressed points are damaged, expected 24 bytes packed by LZF"));
+}
+
+TEST(PcdFile, RoundsTextToTheTypeOfItsField) {
+  const auto value_of = [](std::string number, const std::string& type, const std::string& size) {
+    return parse_pcd("FIELDS x y z\nSIZE 4 4 " + size + "\nTYPE F F " + type +
+                         "\nWIDTH 1\nHEIGHT 1\nPOINTS 1\nDATA ascii\n0 nan " + number + "\n",
+                     "f")
+        .points.at(0)
+        .z;
+  };
+  EXPECT_EQ(value_of("0.1", "F", "4"), 0.1F);
+  EXPECT_EQ(value_of("0.1", "F", "8"), 0.1F);
+  EXPECT_EQ(value_of("300", "U", "1"), 255.0F);
+  EXPECT_EQ(value_of("-7", "I", "2"), -7.0F);
+  EXPECT_EQ(value_of("4294967295", "U", "4"), 4294967296.0F);
 }
 
 }  // namespace

@@ -50,9 +50,6 @@ TEST(MoeLabels, TakeTheSecondNumber) {
 
 class PcdReaders : public testing::Test {
  protected:
-  void SetUp() override {
-    if (!reads_pcd()) GTEST_SKIP() << "this build is without PCL";
-  }
   TempFolder folder_;
 };
 
