@@ -296,47 +296,47 @@ def breakdown(
     sequences: Iterable[str] = (),
     **reading: Any,
 ) -> dict[str, Any]:
-    """Returns where predictions are right and wrong: by range, size and speed, as `breakdown --json` has it."""
-    more = flags(predictions=_folder(predictions), protocol=protocol, top=top)
-    return _answer_on_data("breakdown", data, dataset, sequences, reading, more)[1]
+    """Returns where predictions are right and wrong: by range, size and speed, as `stats --by range,height,object --json` has it."""
+    more = flags(by="range,height,object", predictions=_folder(predictions), protocol=protocol, top=top)
+    return _answer_on_data("stats", data, dataset, sequences, reading, more)[1]
 
 
 def diff(
     first: Union[Result, PathLike], second: Union[Result, PathLike], *, top: Optional[int] = None
 ) -> dict[str, Any]:
-    """Returns the scans on which two runs disagree, as `diff --json` has it."""
-    return _answer(["diff", _folder(first), _folder(second), *flags(top=top)])[1]
+    """Returns the scans on which two runs disagree, as `compare --by scan,object --json` has it."""
+    return _answer(["compare", _folder(first), _folder(second), *flags(by="scan,object", top=top)])[1]
 
 
 def table(name: str, *results: Union[Result, PathLike]) -> dict[str, Any]:
-    """Returns a published table ("I", "II", ...) with measured values next to it, as `table --format json`."""
-    return json.loads(_command(["table", name, *map(_folder, results), "--format=json"])[1])
+    """Returns a published table ("I", "II", ...) with measured values next to it, as `table --json`."""
+    return json.loads(_command(["table", name, *map(_folder, results), "--json"])[1])
 
 
 def rank(*results: Union[Result, PathLike], order: str = "iou") -> dict[str, Any]:
-    """Returns runs by sequences with intervals and what is not beaten, as `rank --format json`.
+    """Returns runs by sequences with intervals and what is not beaten, as `rank --json`.
 
     order: "iou", the best first, or "given"; differences are to the first row.
     """
-    return json.loads(_command(["rank", *map(_folder, results), *flags(order=order), "--format=json"])[1])
+    return json.loads(_command(["rank", *map(_folder, results), *flags(order=order), "--json"])[1])
 
 
 def curve(result: Union[Result, PathLike], picture: Optional[PathLike] = None) -> dict[str, Any]:
-    """Returns precision and recall by the threshold of scores, as `curve --format json`.
+    """Returns precision and recall by the threshold of scores, as `stats --by threshold --json`.
 
     result: of `run(..., scores=True)`. picture: PNG file to draw the curve to.
     """
-    return json.loads(_command(["curve", _folder(result), *flags(out=picture), "--format=json"])[1])
+    return json.loads(_command(["stats", _folder(result), *flags(by="threshold", out=picture), "--json"])[1])
 
 
 def map_score(map: PathLike, truth: PathLike, *, same_within_m: float = 0.05) -> dict[str, Any]:
-    """Returns SA, DA, AA and HA (0 to 1) of a map that was cleaned of what moved, as `map-score --json`.
+    """Returns SA, DA, AA and HA (0 to 1) of a map that was cleaned of what moved, as `score --map --json`.
 
     map: .pcd or .ply file. truth: the points that it was made of, with intensity 1 where they are dynamic, or the
     folder of a sequence of KTH's DynamicMap_Benchmark. same_within_m: how near a point of the map stands for one of
     the truth.
     """
-    arguments = ["map-score", os.fspath(map), os.fspath(truth), *flags(same_within_m=same_within_m)]
+    arguments = ["score", os.fspath(truth), *flags(map=map, same_within_m=same_within_m)]
     return json.loads(_command([*arguments, "--json"])[1])
 
 
