@@ -296,7 +296,7 @@ def breakdown(
     sequences: Iterable[str] = (),
     **reading: Any,
 ) -> dict[str, Any]:
-    """Returns where predictions are right and wrong: by range, size and speed, as `stats --by range,height,object --json` has it."""
+    """Returns where predictions are right and wrong: as `stats --by range,height,object --json`."""
     more = flags(by="range,height,object", predictions=_folder(predictions), protocol=protocol, top=top)
     return _answer_on_data("stats", data, dataset, sequences, reading, more)[1]
 
