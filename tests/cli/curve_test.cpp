@@ -25,7 +25,7 @@ class ScoreCurves : public testing::Test {
 TEST_F(ScoreCurves, OfARunWithScoresHasItsLabelsAndAPicture) {
   ASSERT_EQ(run({"--scores"}).exit_code, 0);
   const cli::Answer answer =
-      cli::run({"curve", folder_ / "out", "--format", "json", "-o", folder_ / "curve.png"});
+      cli::run({"curve", folder_ / "out", "--as", "json", "-o", folder_ / "curve.png"});
   ASSERT_EQ(answer.exit_code, 0) << answer.err;
   const auto json = nlohmann::json::parse(answer.out);
   const auto summary = cli::timeless_result(folder_ / "out/room").at("summary");
@@ -36,7 +36,7 @@ TEST_F(ScoreCurves, OfARunWithScoresHasItsLabelsAndAPicture) {
   EXPECT_THAT(read_file(folder_ / "curve.png"), testing::StartsWith("\x89PNG"));
   const cli::Answer text = cli::run({"curve", folder_ / "out"});
   EXPECT_THAT(text.out, HasSubstr("average precision "));
-  const cli::Answer csv = cli::run({"curve", folder_ / "out", "--format", "csv"});
+  const cli::Answer csv = cli::run({"curve", folder_ / "out", "--as", "csv"});
   EXPECT_THAT(csv.out,
               testing::StartsWith("threshold,recall,precision,iou,tp,fp,fn,tn,standing\n"));
 }

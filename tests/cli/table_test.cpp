@@ -82,21 +82,21 @@ TEST_F(Tables, FromSimulatedDataCompareNothingAndNameWhatIsMissing) {
   EXPECT_THAT(again.out, HasSubstr("SIMULATED"));
 
   const cli::Answer other =
-      cli::run({"table", "III", (folder_ / "out-sipailou").string(), "--format", "csv"});
+      cli::run({"table", "III", (folder_ / "out-sipailou").string(), "--as", "csv"});
   ASSERT_EQ(other.exit_code, 0) << other.err;
   EXPECT_THAT(other.err, HasSubstr("left out of table III"));
   EXPECT_THAT(other.err, HasSubstr("06/result.json is of data set sipailou, not helimos"));
 
   const cli::Answer elsewhere =
-      cli::run({"table", "apollo", (folder_ / "out-sipailou").string(), "--format", "latex"});
+      cli::run({"table", "apollo", (folder_ / "out-sipailou").string(), "--as", "latex"});
   EXPECT_THAT(elsewhere.err, HasSubstr("left out of table apollo"));
   const cli::Answer latex =
-      cli::run({"table", "II", (folder_ / "out-sipailou").string(), "--format", "latex"});
+      cli::run({"table", "II", (folder_ / "out-sipailou").string(), "--as", "latex"});
   EXPECT_THAT(latex.out, HasSubstr("$^\\dagger$ SIMULATED data"));
 
   fs::remove_all(folder_ / "out-helimos/helimos/Ouster");
   const cli::Answer part =
-      cli::run({"table", "III", (folder_ / "out-helimos").string(), "--format", "markdown"});
+      cli::run({"table", "III", (folder_ / "out-helimos").string(), "--as", "markdown"});
   ASSERT_EQ(part.exit_code, 0) << part.err;
   EXPECT_THAT(part.out, HasSubstr("needs Ouster of HeLiMOS"));
   EXPECT_THAT(part.out, HasSubstr("sequence Ouster is missing"));
@@ -160,7 +160,7 @@ TEST_F(Tables, OneIsFilledFromASimulatedDoals) {
 /// The words behind "mosbench run DIR" in every command that table `name` gives for the first row
 /// of HMM-MOS which a variant of this program computes.
 std::set<std::vector<std::string>> command_words(const std::string& name) {
-  const auto table = nlohmann::json::parse(cli::run({"table", name, "--format", "json"}).out);
+  const auto table = nlohmann::json::parse(cli::run({"table", name, "--as", "json"}).out);
   const std::string start = "mosbench run DIR ";
   std::set<std::vector<std::string>> commands;
   for (const auto& row : table.at("rows")) {
@@ -236,8 +236,7 @@ TEST_P(TableCommand, FillsTheCellsOfItsTable) {
     ASSERT_EQ(run.exit_code, 0) << run.err;
   }
 
-  const cli::Answer answer =
-      cli::run({"table", table, (folder / "out").string(), "--format", "json"});
+  const cli::Answer answer = cli::run({"table", table, (folder / "out").string(), "--as", "json"});
   ASSERT_EQ(answer.exit_code, 0) << answer.err;
   EXPECT_EQ(answer.err, "") << "nothing is left out";
   std::size_t filled = 0;
@@ -285,13 +284,13 @@ TEST_F(Tables, AreNotReproducedFromAnotherDataSet) {
 TEST_F(Tables, ArePrintedWithoutResultsInEveryFormat) {
   for (const char* table : {"I", "II", "III", "apollo", "moe", "mdetector"}) {
     for (const char* format : {"markdown", "csv", "latex", "json"}) {
-      const cli::Answer answer = cli::run({"table", table, "--format", format});
+      const cli::Answer answer = cli::run({"table", table, "--as", format});
       ASSERT_EQ(answer.exit_code, 0) << answer.err;
       EXPECT_THAT(answer.out, HasSubstr("HMM-MOS"));
     }
   }
   EXPECT_EQ(cli::run({"table", "IV"}).exit_code, 2);
-  EXPECT_EQ(cli::run({"table", "I", "--format", "word"}).exit_code, 2);
+  EXPECT_EQ(cli::run({"table", "I", "--as", "word"}).exit_code, 2);
   EXPECT_EQ(cli::run({"table", "I", (folder_ / "nowhere").string()}).exit_code, 3);
   EXPECT_EQ(cli::run({"run", "table:kitti", "--data", folder_.path().string()}).exit_code, 2);
 }
