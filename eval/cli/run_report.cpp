@@ -7,6 +7,7 @@
 #include "eval/protocols/protocol_list.hpp"
 #include "eval/result/settings_json.hpp"
 #include "eval/result/simulated.hpp"
+#include "eval/tables/score_report.hpp"
 #include "eval/tables/score_table.hpp"
 
 namespace mosbench {

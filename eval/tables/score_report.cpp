@@ -16,7 +16,6 @@
 #include "eval/result/result_set.hpp"
 #include "eval/result/simulated.hpp"
 #include "eval/result/version.hpp"
-#include "eval/tables/score_table.hpp"
 
 namespace mosbench {
 namespace {
@@ -155,6 +154,21 @@ std::vector<std::string> all_remarks(const Dataset& dataset,
     remarks.push_back(std::move(doubt));
   }
   return remarks;
+}
+
+ordered_json rows_json(const std::vector<SummaryRow>& rows) {
+  ordered_json json = {{"sequences", ordered_json::array()},
+                       {"parts", ordered_json::array()},
+                       {"splits", ordered_json::array()}};
+  constexpr std::array kLists = {"sequences", "parts", "splits"};
+  for (const SummaryRow& row : rows) {
+    ordered_json object = {{"name", row.name}, {"scans", row.scans}};
+    if (!row.split.empty()) object["split"] = row.split;
+    object["summary"] = row.summary.scans == 0 ? nullptr : to_json(row.summary);
+    if (row.method_ms_per_scan) object["method_ms_per_scan"] = *row.method_ms_per_scan;
+    json[kLists.at(static_cast<std::size_t>(row.kind))].push_back(std::move(object));
+  }
+  return json;
 }
 
 Answer score_answer(const Dataset& dataset, const ScoreTask& task,

@@ -7,6 +7,7 @@
 
 #include "eval/answer/answer.hpp"
 #include "eval/engine/score_execute.hpp"
+#include "eval/tables/score_table.hpp"
 
 namespace mosbench {
 
@@ -44,5 +45,8 @@ void check_scored_folders(const Dataset& dataset, const std::filesystem::path& o
 void write_scores(const Dataset& dataset, const Reading& reading, const ScoreTask& task,
                   const MethodName& method, const std::vector<SequenceScores>& scores,
                   const std::filesystem::path& out);
+
+/// {"sequences": [...], "parts": [...], "splits": [...]}, undefined metrics as null.
+nlohmann::ordered_json rows_json(const std::vector<SummaryRow>& rows);
 
 }  // namespace mosbench

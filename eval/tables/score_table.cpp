@@ -6,7 +6,6 @@
 
 #include "eval/protocols/benchmark_split.hpp"
 #include "eval/protocols/protocol_list.hpp"
-#include "eval/protocols/summary_json.hpp"
 
 namespace mosbench {
 namespace {
@@ -144,21 +143,6 @@ std::string benchmark_remark(const Protocol& protocol, const std::vector<Split>&
   }
   return fmt::format("no row is the benchmark's number: it is over split {}, which was not scored",
                      protocol.default_split);
-}
-
-nlohmann::ordered_json rows_json(const std::vector<SummaryRow>& rows) {
-  nlohmann::ordered_json json = {{"sequences", nlohmann::ordered_json::array()},
-                                 {"parts", nlohmann::ordered_json::array()},
-                                 {"splits", nlohmann::ordered_json::array()}};
-  constexpr std::array kLists = {"sequences", "parts", "splits"};
-  for (const SummaryRow& row : rows) {
-    nlohmann::ordered_json object = {{"name", row.name}, {"scans", row.scans}};
-    if (!row.split.empty()) object["split"] = row.split;
-    object["summary"] = row.summary.scans == 0 ? nullptr : to_json(row.summary);
-    if (row.method_ms_per_scan) object["method_ms_per_scan"] = *row.method_ms_per_scan;
-    json[kLists.at(static_cast<std::size_t>(row.kind))].push_back(std::move(object));
-  }
-  return json;
 }
 
 }  // namespace mosbench

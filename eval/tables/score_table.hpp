@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
 #include <string>
@@ -46,8 +45,5 @@ Sheet score_sheet(const ScoreRule& rule, const std::vector<Split>& splits,
 /// Returns a line that names the row with the benchmark's number, or says that none has it; empty
 /// when the protocol has no split.
 std::string benchmark_remark(const Protocol& protocol, const std::vector<Split>& splits);
-
-/// {"sequences": [...], "parts": [...], "splits": [...]}, undefined metrics as null.
-nlohmann::ordered_json rows_json(const std::vector<SummaryRow>& rows);
 
 }  // namespace mosbench

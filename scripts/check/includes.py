@@ -82,6 +82,9 @@ EXTERNAL = {
     "nanoflann.hpp": {"eval"},
     "yaml-cpp": {"eval"},
 }
+# In these rooms only the files that print may use JSON: what computes takes and gives types.
+COMPUTE = {"eval/statistics", "eval/tables"}
+PRINTS = re.compile(r"\w+_(report|print)\.[ch]pp|side_by_side\.[ch]pp")
 # All that core may take from outside, apart from the above: it computes, and neither reads nor prints.
 FOR_CORE = set(
     "Eigen algorithm array atomic bit cassert cfloat chrono cmath condition_variable cstddef cstdint"
@@ -124,6 +127,8 @@ def complaint(name, quote, header):
     if quote == "<" and first == "mosbench":
         path = "core/include/" + header
     elif quote == "<":
+        if first == "nlohmann" and room in COMPUTE and not PRINTS.fullmatch(name.split("/")[-1]):
+            return f"{name.split('/')[-1]} computes, and must not use JSON"
         allowed = EXTERNAL.get(first, TOP if first in FOR_CORE else ABOVE_CORE)
         return None if {top, name} & allowed else f"{top} must not use <{header}>"
     else:

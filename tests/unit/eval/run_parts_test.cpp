@@ -10,6 +10,7 @@
 #include "eval/result/json_differences.hpp"
 #include "eval/result/progress.hpp"
 #include "eval/result/reading_json.hpp"
+#include "eval/tables/score_report.hpp"
 #include "eval/tables/score_table.hpp"
 #include "tests/unit/eval/confusions.hpp"
 
