@@ -72,7 +72,7 @@ CPP = ("hpp", "cpp", "h", "hh", "hxx", "ipp", "inl", "cc", "cxx", "c")
 EXTERNAL = {
     "CLI": {"eval", "tests"},
     "pybind11": {"eval"},
-    "pcl": {"core/include/mosbench/pcl.hpp", "datasets", "tests"},
+    "pcl": {"core/include/mosbench/pcl.hpp", "tests"},
     "octomap": {"core/methods/octomap/log_odds_map.cpp", "bench/octomap.cpp", "tests"},
     "hdf5.h": {"datasets/hdf5/hdf5_module.cpp"},
     "fmt": ABOVE_CORE,
