@@ -126,7 +126,7 @@ TEST(RealBagWithoutScans, SaysWhatItHoldsInstead) {
   if (!std::filesystem::exists(bag)) GTEST_SKIP() << bag << " is not there";
   EXPECT_THAT(message_of<DataError>([&] { BagSequence("s", bag, {}); }),
               AllOf(HasSubstr("holds no sensor_msgs/PointCloud2 but /scan"),
-                    HasSubstr("expected scans as PointCloud2; of a folder with bags --sequences")));
+                    HasSubstr("expected scans as PointCloud2; of a folder with bags sequences")));
 }
 
 }  // namespace

@@ -187,7 +187,7 @@ TEST(Simulate, RefusesAFolderWithOtherContent) {
   folder.write("photos/holiday.jpg", "x");
   EXPECT_THAT(message_of<UsageError>(
                   [&] { simulate(options_for(DatasetKind::kDoals, folder / "photos")); }),
-              HasSubstr("holds files that are no simulation; choose another --out"));
+              HasSubstr("holds files that are no simulation; choose another out"));
   EXPECT_EQ(files_below(folder / "photos").size(), 1U);
 
   SimulateOptions options = options_for(DatasetKind::kDoals, folder / "sim", 2);

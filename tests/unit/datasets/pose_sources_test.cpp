@@ -124,7 +124,7 @@ TEST_F(PoseSources, LeaveOutScansInGapsOfThePoses) {
   EXPECT_EQ(recording.recording().left_out[1].stem, "000002");
   EXPECT_THAT(recording.remarks(),
               Contains("2 of 3 scans are left out: they lie between poses more than 0.5 s apart in "
-                       "gap.txt (--max-pose-gap-s)"));
+                       "gap.txt (max_pose_gap_s)"));
   EXPECT_THAT(
       members_of(recording.reading()),
       Contains(Pair("pose_pairing", "by stamp, 0 of 3 interpolated; 2 of 3 scans are left out")));
