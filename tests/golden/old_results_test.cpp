@@ -115,11 +115,12 @@ class OldBesideNew : public testing::Test {
 TEST_F(OldBesideNew, IsRankedComparedAndGated) {
   const std::string run = old_results() / "run", underwood = old_results() / "underwood";
   const auto ranked =
-      ordered_json::parse(done({"rank", folder_ / "new", run, underwood, "--format", "json"}).out);
+      ordered_json::parse(done({"rank", folder_ / "new", run, underwood, "--as", "json"}).out);
   ASSERT_EQ(ranked.at("rows").size(), 3U);
   EXPECT_EQ(ranked.at("rows").at(0).at("all"), ranked.at("rows").at(1).at("all"));
   EXPECT_EQ(ranked.at("rows").at(2).at("method"), old_result("underwood").method);
-  const auto difference = ordered_json::parse(done({"stats", run, folder_ / "new", "--json"}).out);
+  const auto difference =
+      ordered_json::parse(done({"stats", run, folder_ / "new", "--as", "json"}).out);
   EXPECT_EQ(difference.at("paired_scans"), 14);
   EXPECT_EQ(difference.at("unlike"), "");
   EXPECT_EQ(difference.at("difference").at("iou").at("value"), 0.0);
