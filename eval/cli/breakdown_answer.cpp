@@ -11,7 +11,7 @@
 #include "eval/breakdown/breakdown.hpp"
 #include "eval/cli/dataset_flags.hpp"
 #include "eval/cli/suggested_command.hpp"
-#include "eval/engine/run_plan.hpp"
+#include "eval/job/job_words.hpp"
 #include "eval/job/presets.hpp"
 #include "eval/protocols/protocol_list.hpp"
 #include "eval/result/result_file.hpp"

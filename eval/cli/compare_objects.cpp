@@ -11,7 +11,7 @@
 #include "eval/answer/answer_text.hpp"
 #include "eval/breakdown/run_diff.hpp"
 #include "eval/cli/compare_command.hpp"
-#include "eval/engine/run_plan.hpp"
+#include "eval/job/job_words.hpp"
 #include "eval/result/result_scans.hpp"
 #include "eval/result/result_set.hpp"
 #include "eval/result/tell.hpp"

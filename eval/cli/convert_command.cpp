@@ -15,7 +15,8 @@
 #include "eval/cli/dataset_flags.hpp"
 #include "eval/cli/help_text.hpp"
 #include "eval/cli/odometry_flags.hpp"
-#include "eval/engine/run_plan.hpp"
+#include "eval/engine/pose_finding.hpp"
+#include "eval/job/job_words.hpp"
 #include "eval/result/progress.hpp"
 #include "eval/result/tell.hpp"
 
@@ -84,7 +85,7 @@ std::string convert_dataset(ConvertFlags options) {
       options.input, {dataset_kind_option(options.dataset), options.sequences, options.reading});
   check_kept_speed(options, dataset.kind);
   if (odometry) {
-    const OdometryChoice choice = with_filter(*odometry, options.odometry, dataset.kind);
+    const OdometryChoice choice = with_filter(*odometry, dataset.kind);
     expect_poses(dataset, choice);
     conversion.before_sequence = [&dataset, choice, &options](std::size_t i) {
       Sequence& sequence = *dataset.sequences[i];

@@ -11,7 +11,7 @@
 #include "datasets/text/errors.hpp"
 #include "datasets/text/nearest_name.hpp"
 #include "eval/cli/help_text.hpp"
-#include "eval/engine/run_plan.hpp"
+#include "eval/job/job_words.hpp"
 #include "eval/result/reading_json.hpp"
 
 namespace mosbench {

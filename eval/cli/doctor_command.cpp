@@ -8,8 +8,7 @@
 #include "eval/cli/checkup_report.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/cli/dataset_flags.hpp"
-#include "eval/cli/suggested_command.hpp"
-#include "eval/engine/run_plan.hpp"
+#include "eval/job/job_words.hpp"
 #include "eval/result/caller.hpp"
 
 namespace mosbench {
@@ -26,13 +25,15 @@ Answer check_dataset(const DoctorFlags& options) {
   const Checkup checkup = check_up(
       options.input, {dataset_kind_option(options.dataset), options.sequences, options.reading},
       caller().at_each_scan);
-  return {
-      .text = checkup_text(checkup, dataset_words(options.input, options.dataset, options.sequences,
-                                                  checkup.remedy().applied_to(options.reading))),
-      .exit_code = checkup.has(Severity::kError)     ? 3
-                   : checkup.has(Severity::kWarning) ? 1
-                                                     : 0,
-      .json = checkup_json(checkup)};
+  return {.text = checkup_text(
+              checkup, to_words(Data{.path = options.input,
+                                     .kind = dataset_kind_option(options.dataset),
+                                     .sequences = options.sequences,
+                                     .reading = checkup.remedy().applied_to(options.reading)})),
+          .exit_code = checkup.has(Severity::kError)     ? 3
+                       : checkup.has(Severity::kWarning) ? 1
+                                                         : 0,
+          .json = checkup_json(checkup)};
 }
 
 }  // namespace

@@ -28,23 +28,23 @@ void append_split(const std::string& assignments, std::vector<std::string>& list
 }
 
 /// "@FILE", "moving=ever" or an assignment to one of the method's settings.
-void take_setting(const std::string& text, RunOptions& options) {
+void take_setting(const std::string& text, JobWords& words) {
   constexpr std::string_view kMoving = "moving=";
   if (text.starts_with('@')) {
-    if (options.config_file) {
+    if (words.config_file) {
       throw UsageError(fmt::format("--set {}: is a second file, expected one", text));
     }
-    options.config_file = text.substr(1);
+    words.config_file = text.substr(1);
   } else if (text.starts_with(kMoving)) {
-    options.moving = text.substr(kMoving.size());
+    words.moving = text.substr(kMoving.size());
   } else {
-    options.assignments.push_back(text);
+    words.assignments.push_back(text);
   }
 }
 
 // --set takes one argument; what follows it as in `--set a=1 b=2 DATA` goes to a positional option
 // of its own, defined before DATA, that accepts assignments only.
-void add_set_flag(CLI::App& command, RunOptions& options) {
+void add_set_flag(CLI::App& command, JobWords& words) {
   CLI::Option* set = command.add_option_function<std::vector<std::string>>(
       "--set", [](const auto&) {},
       "Settings, which win over all others; @FILE holds a JSON object of them");
@@ -60,32 +60,31 @@ void add_set_flag(CLI::App& command, RunOptions& options) {
   });
   command.validate_positionals();
   // Where a setting is given twice, the later one counts.
-  command.final_callback([&command, &options, set, further] {
+  command.final_callback([&command, &words, set, further] {
     std::vector<std::string> assignments;
     std::size_t of_flag = 0, positional = 0;
     for (const CLI::Option* option : command.parse_order()) {
       if (option == set) append_split(set->results().at(of_flag++), assignments);
       if (option == further) append_split(further->results().at(positional++), assignments);
     }
-    for (const std::string& assignment : assignments) take_setting(assignment, options);
+    for (const std::string& assignment : assignments) take_setting(assignment, words);
   });
 }
 
 }  // namespace
 
-void add_method_options(CLI::App& command, RunOptions& options) {
-  add_set_flag(command, options);
-  add_dataset_flags(command, options.input, options.dataset, options.sequences, options.reading);
+void add_method_options(CLI::App& command, JobWords& words, unsigned& threads) {
+  add_set_flag(command, words);
+  add_dataset_flags(command, words.input, words.dataset, words.sequences, words.reading);
   command
-      .add_option("--method", options.method,
+      .add_option("--method", words.method,
                   "Method that segments, see `mosbench list methods`; for run also A,B or all "
                   "(default: hmm-mos)")
       ->type_name("METHOD");
   command
-      .add_option("--preset", options.preset,
-                  "Published settings, or `best` (default: by data set)")
+      .add_option("--preset", words.preset, "Published settings, or `best` (default: by data set)")
       ->type_name("PRESET");
-  add_threads_flag(command, options.threads);
+  add_threads_flag(command, threads);
 }
 
 }  // namespace mosbench

@@ -2,12 +2,12 @@
 
 #include <CLI/CLI.hpp>
 
-#include "eval/engine/run_plan.hpp"
+#include "eval/job/job_words.hpp"
 
 namespace mosbench {
 
 /// Adds the arguments that say what is segmented and how: those of `add_dataset_flags`, --method,
 /// --preset, --set and --threads.
-void add_method_options(CLI::App& command, RunOptions& options);
+void add_method_options(CLI::App& command, JobWords& words, unsigned& threads);
 
 }  // namespace mosbench

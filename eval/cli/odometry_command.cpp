@@ -15,10 +15,9 @@
 #include "eval/cli/dataset_flags.hpp"
 #include "eval/cli/odometry_flags.hpp"
 #include "eval/cli/output_file.hpp"
-#include "eval/cli/suggested_command.hpp"
 #include "eval/engine/found_poses.hpp"
-#include "eval/engine/odometry_choice.hpp"
-#include "eval/engine/run_plan.hpp"
+#include "eval/engine/pose_finding.hpp"
+#include "eval/job/job_words.hpp"
 #include "eval/result/machine.hpp"
 #include "eval/result/reading_json.hpp"
 #include "eval/result/settings_json.hpp"
@@ -123,7 +122,10 @@ std::string next_command(const OdometryFlags& flags) {
   reading.poses = PoseFile{flags.out};
   reading.pose_frame = PoseFrame::kLidar;
   return fmt::format("use them with\n  mosbench run {}\n",
-                     dataset_words(flags.input, flags.dataset, flags.sequences, reading));
+                     to_words(Data{.path = flags.input,
+                                   .kind = dataset_kind_option(flags.dataset),
+                                   .sequences = flags.sequences,
+                                   .reading = reading}));
 }
 
 Answer odometry_answer(OdometryFlags flags) {
@@ -131,7 +133,7 @@ Answer odometry_answer(OdometryFlags flags) {
   flags.reading.poses = ByOdometry{};
   const Dataset dataset = open_dataset(
       flags.input, {dataset_kind_option(flags.dataset), flags.sequences, flags.reading});
-  choice = with_filter(std::move(choice), flags.odometry, dataset.kind);
+  choice = with_filter(std::move(choice), dataset.kind);
   for (const auto& sequence : dataset.sequences) {
     if (flags.as_tum) check_stamps_of_tum(*sequence);
   }

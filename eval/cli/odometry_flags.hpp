@@ -3,7 +3,7 @@
 #include <CLI/App.hpp>
 #include <string>
 
-#include "eval/engine/odometry_choice.hpp"
+#include "eval/job/odometry_choice.hpp"
 
 namespace mosbench {
 

@@ -17,7 +17,8 @@ namespace mosbench {
 namespace {
 
 struct ProfileFlags {
-  RunOptions method;
+  JobWords method;
+  unsigned threads = hardware_threads();
   std::size_t scans = std::numeric_limits<std::size_t>::max();
   std::optional<std::filesystem::path> json, trace;
 };
@@ -30,7 +31,7 @@ Answer profile(const ProfileFlags& options) {
     if (file) check_output(*file);
   }
   keep_freed_memory();
-  const RunPlan plan = plan_method(options.method);
+  const RunPlan plan = open_job(job_of(options.method), options.threads);
   for (const std::string& note : plan.notes) tell(note);
   std::vector<SequenceProfile> profiles;
   for (const auto& sequence : plan.dataset.sequences) {
@@ -46,7 +47,7 @@ Answer profile(const ProfileFlags& options) {
 
 CommandRun add_profile(CLI::App& command) {
   auto options = std::make_shared<ProfileFlags>();
-  add_method_options(command, options->method);
+  add_method_options(command, options->method, options->threads);
   command.add_option("--scans", options->scans, "Only the first N scans of each sequence")
       ->check(CLI::Range(std::size_t{1}, std::size_t{1000000}))
       ->default_str("all");

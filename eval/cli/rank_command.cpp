@@ -1,9 +1,15 @@
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <optional>
+#include <utility>
 
+#include "datasets/text/counted.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/cli/output_file.hpp"
 #include "eval/cli/run_job.hpp"
+#include "eval/result/tell.hpp"
 #include "eval/tables/leaderboard_print.hpp"
 
 namespace mosbench {
@@ -15,6 +21,26 @@ struct RankFlags {
   JobFlags job;
 };
 
+/// What was done to the scans of a run: how they were disturbed, and of which simulation they are.
+std::pair<std::string, std::string> scans_of(const ResultSet& run) {
+  return {disturbance_of(run.front()), simulation_of(run.front())};
+}
+
+/// Leaves the cells of a study that are on the same scans, undisturbed if there are such; other
+/// results all stay.
+void keep_comparable_cells(std::vector<ResultSet>& runs) {
+  std::optional<std::pair<std::string, std::string>> kept;
+  for (const ResultSet& run : runs) {
+    if (run.front().key.empty()) return;
+    if (!kept || scans_of(run) < *kept) kept = scans_of(run);
+  }
+  const std::size_t left_out =
+      std::erase_if(runs, [&](const ResultSet& run) { return scans_of(run) != *kept; });
+  if (left_out == 0) return;
+  tell(fmt::format("{} of a study on other scans left out, `mosbench rank` of its file shows them",
+                   counted(left_out, "run")));
+}
+
 Answer rank(RankFlags options) {
   if (options.runs.size() == 1 && is_job(options.runs.front())) {
     options.job.file = options.runs.front();
@@ -25,6 +51,7 @@ Answer rank(RankFlags options) {
   for (const std::string& path : options.runs) {
     for (ResultSet& run : load_runs_of_folders(path)) runs.push_back(std::move(run));
   }
+  keep_comparable_cells(runs);
   Leaderboard board =
       leaderboard_of(runs, options.order == "given" ? RowOrder::kGiven : RowOrder::kIou);
   add_folders_of_twins(board);

@@ -18,6 +18,7 @@
 #include "eval/cli/suggested_command.hpp"
 #include "eval/engine/run_execute.hpp"
 #include "eval/engine/run_plan.hpp"
+#include "eval/job/job_words.hpp"
 #include "eval/job/method_choice.hpp"
 #include "eval/report/written_products.hpp"
 #include "eval/result/simulated.hpp"
@@ -29,7 +30,8 @@ namespace {
 constexpr const char* kScores = "scores";
 
 struct RunFlags {
-  RunOptions options;
+  JobWords words;
+  RunPlace place;
   std::vector<std::string> written;
   JobFlags job;
   std::filesystem::path data;  ///< of a table
@@ -65,32 +67,34 @@ void check_flags(const CLI::App& command, Input input) {
 }
 
 Answer run_other(RunFlags flags, Input input, bool threads_given) {
-  const RunOptions& options = flags.options;
+  const JobWords& words = flags.words;
+  const RunPlace& place = flags.place;
   if (input == Input::kTable) {
     if (flags.data.empty()) throw UsageError("--data: is missing, expected the data of the table");
-    return run_table({.name = options.input.string().substr(kTablePrefix.size()),
+    return run_table({.name = words.input.string().substr(kTablePrefix.size()),
                       .root = flags.data,
-                      .out = options.out,
-                      .sequences = options.sequences,
-                      .threads = options.threads});
+                      .out = place.out,
+                      .sequences = words.sequences,
+                      .threads = place.threads});
   }
-  flags.job.file = options.input;
-  flags.job.out = options.out;
-  if (threads_given) flags.job.threads = options.threads;
+  flags.job.file = words.input;
+  flags.job.out = place.out;
+  if (threads_given) flags.job.threads = place.threads;
   return run_job(flags.job);
 }
 
 Answer run(const RunFlags& flags, const CLI::App& command) {
-  const Input input = input_of(flags.options.input);
+  const Input input = input_of(flags.words.input);
   check_flags(command, input);
   if (input != Input::kData) return run_other(flags, input, command.count("--threads") > 0);
-  RunOptions options = flags.options;
+  const JobWords& words = flags.words;
+  RunPlace place = flags.place;
   std::vector<std::string> products = flags.written;
-  options.scores = std::erase(products, kScores) > 0;
-  if (options.method && names_several_methods(*options.method)) {
-    return run_methods(options, products);
+  place.scores = std::erase(products, kScores) > 0;
+  if (words.method && names_several_methods(*words.method)) {
+    return run_methods(words, place, products);
   }
-  const RunPlan plan = plan_run(options);
+  const RunPlan plan = plan_run(job_of(words), place);
   const std::vector<SequenceOutcome> outcomes = execute_run(plan);
   for (const SequenceOutcome& outcome : outcomes) write_products(outcome.folder, products);
   return {.standing = standing_of(plan.dataset),
@@ -106,7 +110,8 @@ void add_job_flags(CLI::App& command, RunFlags& flags) {
                 "Of JOB.yaml: count what is done and missing, and tell how long that takes")
       ->group(kRareGroup);
   command
-      .add_option("--on", job.profile, "Where: local, slurm, or the folder of a Snakemake profile")
+      .add_option("--on", job.profile,
+                  "By Snakemake: local, slurm, or the folder of a profile (default: this process)")
       ->type_name("PROFILE")
       ->group(kRareGroup);
   command.add_option("--only", job.keys, "Compute only the cells with these keys, here")
@@ -127,21 +132,22 @@ void add_job_flags(CLI::App& command, RunFlags& flags) {
 
 CommandRun add_run(CLI::App& command) {
   auto flags = std::make_shared<RunFlags>();
-  RunOptions* options = &flags->options;
-  add_method_options(command, *options);
-  command.add_option("--protocol", options->protocol, "How to score (default: by preset)")
+  JobWords* words = &flags->words;
+  RunPlace* place = &flags->place;
+  add_method_options(command, *words, place->threads);
+  command.add_option("--protocol", words->protocol, "How to score (default: by preset)")
       ->type_name("PROTOCOL");
   command
-      .add_option("--range", options->range,
+      .add_option("--range", words->range,
                   "Scoring range in metres, for protocols with a limit (default: the method's)")
       ->type_name("MIN,MAX")
       ->group(kRareGroup);
   command
-      .add_option("--out", options->out,
+      .add_option("--out", place->out,
                   "Folder of the results (default: results/runs/<data>-<preset>-<variant>, with "
                   "--odometry also -<kind>)")
       ->type_name("DIR");
-  add_odometry_flag(command, options->odometry, "Find the poses by it instead of reading them");
+  add_odometry_flag(command, words->odometry, "Find the poses by it instead of reading them");
   std::vector<std::string> names = product_names();
   names.insert(names.begin(), kScores);
   command
@@ -153,9 +159,9 @@ CommandRun add_run(CLI::App& command) {
       ->delimiter(',')
       ->allow_extra_args(false)
       ->check(CLI::IsMember(names));
-  command.add_flag("--overwrite", options->overwrite, "Run again and replace what is in --out");
+  command.add_flag("--overwrite", place->overwrite, "Run again and replace what is in --out");
   command
-      .add_flag("--verify", options->verify,
+      .add_flag("--verify", place->verify,
                 "Read all input of finished sequences again, not only its sizes and times")
       ->group(kRareGroup);
   add_job_flags(command, *flags);

@@ -4,14 +4,15 @@
 
 #include <algorithm>
 
+#include "core/base/thread_pool.hpp"
 #include "datasets/text/counted.hpp"
 #include "datasets/text/errors.hpp"
 #include "eval/answer/answer_text.hpp"
 #include "eval/cli/output_file.hpp"
+#include "eval/engine/study_cell.hpp"
+#include "eval/engine/study_run.hpp"
 #include "eval/result/progress.hpp"
 #include "eval/result/tell.hpp"
-#include "eval/study/study_cell.hpp"
-#include "eval/study/study_run.hpp"
 #include "eval/study/study_table.hpp"
 
 namespace mosbench {
@@ -71,7 +72,7 @@ Answer cell_answer(const StudyPlan& plan, const JobFlags& flags) {
                       "lists",
                       flags.file.string(), key, flags.file.string()));
     }
-    const CellOutcome outcome = compute_cell(*found, *plan.study, plan.out, flags.threads);
+    const CellOutcome outcome = compute_cell(*found, plan.out, std::max(1U, flags.threads));
     failed = failed || outcome == CellOutcome::kFailed;
     static constexpr std::array kOutcomes = {"computed", "kept", "failed"};
     text += fmt::format("{} {}: {}\n", key, kOutcomes[static_cast<std::size_t>(outcome)],
@@ -86,9 +87,19 @@ Answer table_answer(const StudyPlan& plan, const JobFlags& flags) {
   return answer;
 }
 
+void run_by_snakemake(const StudyPlan& plan, const CostModel& costs, const JobFlags& flags) {
+  std::error_code error;
+  const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
+  const int engine = run_engine(plan, costs,
+                                {.profile = *flags.profile,
+                                 .threads = std::max(1U, flags.threads),
+                                 .program = error ? std::filesystem::path("mosbench") : program});
+  if (engine != 0) tell(fmt::format("Snakemake ended with exit code {}", engine));
+}
+
 Answer run_answer(const Study& study, const StudyPlan& plan, const JobFlags& flags) {
   const std::size_t pending = work_of(plan, {}).cells.size();
-  if (pending > 0) measure_costs(plan);
+  if (pending > 0 && (flags.profile || pending > kMostWithoutYes)) measure_costs(plan);
   const CostModel costs = read_costs(plan.out);
   tell(state_counts(plan));
   tell(work_text(work_of(plan, costs)));
@@ -96,13 +107,11 @@ Answer run_answer(const Study& study, const StudyPlan& plan, const JobFlags& fla
     throw UsageError(fmt::format("{}: {} cells are to be computed, and {}, expected --yes",
                                  flags.file.string(), pending, work_text(work_of(plan, costs))));
   }
-  std::error_code error;
-  const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
-  const int engine = run_engine(plan, costs,
-                                {.profile = flags.profile,
-                                 .threads = flags.threads,
-                                 .program = error ? std::filesystem::path("mosbench") : program});
-  if (engine != 0) tell(fmt::format("Snakemake ended with exit code {}", engine));
+  if (flags.profile) {
+    run_by_snakemake(plan, costs, flags);
+  } else {
+    run_here(plan, flags.threads > 0 ? flags.threads : hardware_threads());
+  }
   return table_answer(plan_study(study, plan.out), flags);
 }
 

@@ -15,8 +15,8 @@ struct JobFlags {
   std::optional<std::filesystem::path> out;  ///< nothing: results/runs/<name of the file>
   std::filesystem::path output = "-";        ///< of the table
   std::vector<std::string> keys;             ///< of the only cells to compute, on this machine
-  std::string profile = "local";             ///< local, slurm, or the folder of a Snakemake profile
-  unsigned threads = 1;                      ///< of each cell
+  std::optional<std::string> profile;        ///< of Snakemake; nothing: this process
+  unsigned threads = 0;                      ///< of each cell; 0: not said
   bool dry_run = false, yes = false;
 };
 

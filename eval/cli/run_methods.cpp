@@ -47,16 +47,17 @@ std::vector<std::string> assignments_for(const std::string& method, const Method
   return own;
 }
 
-std::vector<RunPlan> plan_methods(const RunOptions& options, const MethodChoice& choice) {
+std::vector<RunPlan> plan_methods(const JobWords& words, const RunPlace& place,
+                                  const MethodChoice& choice) {
   std::vector<RunPlan> plans;
-  const auto shared = std::make_shared<SharedReading>();
+  RunPlace shared = place;
+  shared.shared = std::make_shared<SharedReading>();
   for (const std::string& name : choice.names) {
-    RunOptions one = options;
+    JobWords one = words;
     one.method = name;
-    one.shared = shared;
-    one.assignments = assignments_for(name, choice, options.assignments);
+    one.assignments = assignments_for(name, choice, words.assignments);
     try {
-      plans.push_back(plan_run(one));
+      plans.push_back(plan_run(job_of(one), shared));
     } catch (const UsageError& error) {
       throw UsageError(fmt::format("method {}: {}", name, error.what()));
     }
@@ -126,10 +127,11 @@ std::string json_of(const std::vector<MethodRun>& runs) {
 
 }  // namespace
 
-Answer run_methods(const RunOptions& options, std::span<const std::string> products) {
-  const MethodChoice choice = chosen_methods(*options.method);
+Answer run_methods(const JobWords& words, const RunPlace& place,
+                   std::span<const std::string> products) {
+  const MethodChoice choice = chosen_methods(*words.method);
   for (const std::string& note : choice.notes) tell(note);
-  const std::vector<RunPlan> plans = plan_methods(options, choice);
+  const std::vector<RunPlan> plans = plan_methods(words, place, choice);
   std::vector<MethodRun> runs = execute(plans);
   for (MethodRun& run : runs) {
     attempt(run, [&] {

@@ -5,6 +5,7 @@
 
 #include "eval/cli/commands.hpp"
 #include "eval/engine/run_plan.hpp"
+#include "eval/job/job_words.hpp"
 
 namespace mosbench {
 
@@ -12,6 +13,7 @@ namespace mosbench {
 /// each (see `write_products`). Throws UsageError and DataError for what is wrong before the first
 /// scan; a method that fails later is named in the answer, whose exit code is that of the first
 /// failure.
-Answer run_methods(const RunOptions& options, std::span<const std::string> products);
+Answer run_methods(const JobWords& words, const RunPlace& place,
+                   std::span<const std::string> products);
 
 }  // namespace mosbench

@@ -8,6 +8,7 @@
 #include "datasets/layouts/simulated_origin.hpp"
 #include "datasets/text/errors.hpp"
 #include "eval/engine/run_execute.hpp"
+#include "eval/job/job_words.hpp"
 #include "eval/job/presets.hpp"
 #include "eval/result/tell.hpp"
 #include "eval/tables/table_match.hpp"
@@ -95,19 +96,20 @@ void check_is_in_table(const TableRun& options, const Recipe& recipe, const Pape
                   fmt::join(wanted, ", "), table.name, table.download));
 }
 
-RunOptions options_of(const TableRun& options, const Recipe& recipe, const std::string& preset,
-                      const TableMethod& method, const std::filesystem::path& out) {
+Job job_for(const TableRun& options, const Recipe& recipe, const std::string& preset,
+            const TableMethod& method) {
+  Job job;
+  job.data = {.path = options.root,
+              .kind = dataset_kind_option(std::string(recipe.dataset)),
+              .sequences = options.sequences};
+  job.segment = {.method = method.kind, .preset = &preset_named(preset)};
+  if (method.protocol) job.rule.protocol = &protocol_named(*method.protocol);
+  return job;
+}
+
+std::filesystem::path folder_for(const std::string& preset, const TableMethod& method) {
   const bool is_papers = method.kind == &default_method();
-  RunOptions run;
-  run.input = options.root;
-  run.dataset = std::string(recipe.dataset);
-  run.sequences = options.sequences;
-  run.preset = preset;
-  run.method = std::string(method.kind->name);
-  run.protocol = method.protocol;
-  run.out = out / (is_papers ? preset : fmt::format("{}-{}", preset, method.kind->name));
-  run.threads = options.threads;
-  return run;
+  return is_papers ? preset : fmt::format("{}-{}", preset, method.kind->name);
 }
 
 }  // namespace
@@ -123,10 +125,10 @@ Answer run_table(const TableRun& options) {
   for (const TableMethod& method : methods_of(table, cells)) {
     for (const std::string& preset : recipe.presets) {
       if (!method.has_row_for(preset)) continue;
-      const RunOptions run = options_of(options, recipe, preset, method, out);
+      const RunPlace place{.out = out / folder_for(preset, method), .threads = options.threads};
       tell(fmt::format("method {}, preset {}", method.kind->name, preset));
-      execute_run(plan_run(run));
-      runs.push_back(load_result_set(*run.out));
+      execute_run(plan_run(job_for(options, recipe, preset, method), place));
+      runs.push_back(load_result_set(*place.out));
     }
   }
   for (const std::string& sentence : left_out(table, runs)) tell(sentence);

@@ -10,7 +10,7 @@
 #include "eval/cli/commands.hpp"
 #include "eval/cli/dataset_flags.hpp"
 #include "eval/cli/help_text.hpp"
-#include "eval/engine/run_plan.hpp"
+#include "eval/job/job_words.hpp"
 #include "eval/job/presets.hpp"
 #include "eval/protocols/benchmark_split.hpp"
 #include "eval/result/machine.hpp"

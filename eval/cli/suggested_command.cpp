@@ -6,7 +6,6 @@
 
 #include "datasets/text/shell_text.hpp"
 #include "eval/cli/dataset_flags.hpp"
-#include "eval/result/reading_json.hpp"
 
 namespace mosbench {
 namespace {
@@ -20,16 +19,6 @@ std::string typed_line(const std::vector<std::string>& arguments) {
   std::string line = "\n  mosbench";
   for (const std::string& argument : arguments) line += ' ' + shell_word(argument);
   return line;
-}
-
-std::string dataset_words(const std::filesystem::path& input, const std::string& dataset,
-                          const std::vector<std::string>& sequences, const Reading& reading) {
-  std::string words = shell_word(input.string());
-  if (dataset != "auto") words += " --dataset " + shell_word(dataset);
-  if (!sequences.empty()) {
-    words += " --sequences " + shell_word(fmt::format("{}", fmt::join(sequences, ",")));
-  }
-  return words + told_flags(reading);
 }
 
 std::string given_words(const CLI::App& command,

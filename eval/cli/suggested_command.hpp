@@ -1,12 +1,9 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <filesystem>
 #include <functional>
 #include <string>
 #include <vector>
-
-#include "datasets/sequence/reading.hpp"
 
 // Commands that messages tell users to type run as they are printed: in the user's shell and
 // folder, with the flags that were given. Each stands in a line of its own, after two blanks.
@@ -15,10 +12,6 @@ namespace mosbench {
 
 /// Returns the arguments as a line to type, on a line of its own.
 std::string typed_line(const std::vector<std::string>& arguments);
-
-/// Returns DATA and the flags that say what of it is read and how, as words of a shell.
-std::string dataset_words(const std::filesystem::path& input, const std::string& dataset,
-                          const std::vector<std::string>& sequences, const Reading& reading);
 
 /// Returns those of the arguments and flags that were given to `command` and are wanted, a blank in
 /// front of each word.

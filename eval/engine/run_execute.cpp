@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <system_error>
+#include <chrono>
 
+#include "core/base/stage_clock.hpp"
+#include "datasets/disk/disk_sync.hpp"
 #include "datasets/disk/files.hpp"
 #include "datasets/doctor/doctor.hpp"
 #include "datasets/formats/pose_file.hpp"
@@ -19,6 +21,8 @@
 namespace mosbench {
 namespace fs = std::filesystem;
 namespace {
+
+using Clock = std::chrono::steady_clock;
 
 /// "000000 to 000009, 000058": the scans that were not judged, as far as there is room.
 std::string unjudged_text(const std::vector<ScanRow>& rows) {
@@ -79,7 +83,8 @@ std::vector<DoubtfulPose> doubtful_poses(const Sequence& sequence,
 /// Where and how `report` and `render` find the points again; folders are this machine's. Of the
 /// run all sequences, by which an interrupted one is known.
 Places places_of(const RunPlan& plan, const PlannedSequence& planned) {
-  Places places{fs::absolute(plan.dataset.root), plan.reading, std::nullopt, planned.stamp, {}};
+  Places places{
+      fs::absolute(plan.dataset.root), plan.job.data.reading, std::nullopt, planned.stamp, {}};
   for (const PlannedSequence& each : plan.sequences) {
     places.sequences_of_run.push_back(plan.dataset.sequences[each.position]->name());
   }
@@ -115,7 +120,8 @@ void keep_poses(const std::vector<Pose>& poses, const fs::path& file) {
 
 /// What the scans say about the frame of poses of a file, where nobody said it.
 std::vector<std::string> doubts_about_poses(const RunPlan& plan, const Sequence& sequence) {
-  if (plan.reading.pose_file() == nullptr || plan.reading.pose_frame) return {};
+  const Reading& reading = plan.job.data.reading;
+  if (reading.pose_file() == nullptr || reading.pose_frame) return {};
   const std::optional<std::string> doubt = doubt_about_pose_frame(sequence);
   if (!doubt) return {};
   tell(fmt::format("{}: {}", sequence.name(), *doubt));
@@ -133,33 +139,6 @@ std::vector<ScanPose> take_poses(const RunPlan& plan, std::size_t position) {
   return found;
 }
 
-SequenceOutcome run_now(const RunPlan& plan, const PlannedSequence& planned) {
-  const Sequence& sequence = *plan.dataset.sequences[planned.position];
-  const fs::path partial = planned.folder.begin();
-  try {
-    SequenceOutcome outcome;
-    std::vector<ScanPose> found;
-    if (plan.odometry) {
-      found = take_poses(plan, planned.position);
-      keep_poses(poses_of(found), partial / "poses.txt");
-    }
-    const std::vector<std::string> doubts = doubts_about_poses(plan, sequence);
-    give_back_memory();  // of odometry, and of runs before
-    outcome.result =
-        completed(plan, planned, run_sequence(sequence, plan.settings, partial), found);
-    outcome.result.remarks.insert(outcome.result.remarks.begin(), doubts.begin(), doubts.end());
-    outcome.folder = planned.folder.path();
-    write_file_atomic(partial / "result.json", format_result(outcome.result));
-    planned.folder.publish();
-    return outcome;
-  } catch (...) {
-    // Unless the program is killed, a failed run leaves nothing behind; a full disk gets room back.
-    std::error_code ignored;
-    fs::remove_all(partial, ignored);
-    throw;
-  }
-}
-
 SequenceOutcome reuse(const RunPlan& plan, const PlannedSequence& planned) {
   const Sequence& sequence = *plan.dataset.sequences[planned.position];
   planned.folder.remove_leftovers();
@@ -171,6 +150,43 @@ SequenceOutcome reuse(const RunPlan& plan, const PlannedSequence& planned) {
 
 }  // namespace
 
+ComputedSequence compute_sequence(const RunPlan& plan, const PlannedSequence& planned) {
+  const Clock::time_point start = Clock::now();
+  const double start_cpu_ms = process_cpu_ms();
+  const Sequence& sequence = *plan.dataset.sequences[planned.position];
+  const RunSettings& settings = plan.settings;
+  ComputedSequence computed{planned.folder.begin(), settings.keeps_labels, {}};
+  const fs::path& partial = computed.claim->path();
+  std::vector<ScanPose> found;
+  if (plan.odometry) {
+    found = take_poses(plan, planned.position);
+    if (settings.keeps_labels) keep_poses(poses_of(found), partial / "poses.txt");
+  }
+  const std::vector<std::string> doubts = doubts_about_poses(plan, sequence);
+  give_back_memory();  // of odometry, and of runs before
+  Result ran = run_sequence(sequence, settings,
+                            settings.keeps_labels ? std::optional(partial) : std::nullopt);
+  Result& result = computed.outcome.result;
+  result = completed(plan, planned, std::move(ran), found);
+  result.remarks.insert(result.remarks.begin(), doubts.begin(), doubts.end());
+  computed.outcome.folder = planned.folder.path();
+  // A program of the user's is another process, and may wait for a GPU.
+  if (result.timing) {
+    result.timing->core_s = plan.job.segment.is_program()
+                                ? std::chrono::duration<double>(Clock::now() - start).count()
+                                : 1e-3 * (process_cpu_ms() - start_cpu_ms);
+  }
+  return computed;
+}
+
+SequenceOutcome put(ComputedSequence computed) {
+  const fs::path& partial = computed.claim->path();
+  commit_file(partial / "result.json", format_result(computed.outcome.result));
+  if (computed.has_labels) sync_file_system_of(partial);
+  computed.claim->put();
+  return std::move(computed.outcome);
+}
+
 RunExecution::RunExecution(const RunPlan& plan) : plan_(plan), lock_(plan.out) {
   keep_freed_memory();
   for (const std::string& note : plan.notes) tell(note);
@@ -179,7 +195,8 @@ RunExecution::RunExecution(const RunPlan& plan) : plan_(plan), lock_(plan.out) {
 
 void RunExecution::advance() {
   const PlannedSequence& planned = plan_.sequences.at(outcomes_.size());
-  outcomes_.push_back(planned.finished ? reuse(plan_, planned) : run_now(plan_, planned));
+  outcomes_.push_back(planned.finished ? reuse(plan_, planned)
+                                       : put(compute_sequence(plan_, planned)));
 }
 
 std::vector<SequenceOutcome> execute_run(const RunPlan& plan) {

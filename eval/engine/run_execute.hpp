@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,13 @@ struct SequenceOutcome {
   Result result;
   std::filesystem::path folder;
   bool reused = false;  ///< finished by an earlier run of the same command
+};
+
+/// A sequence whose results are not at their place yet, and go unless `put` puts them there.
+struct ComputedSequence {
+  std::unique_ptr<Claim> claim;
+  bool has_labels;
+  SequenceOutcome outcome;
 };
 
 /// A run that goes on by one sequence at a time. Tells on stderr what it does.

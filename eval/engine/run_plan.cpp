@@ -3,14 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdio>
-#include <stdexcept>
 
 #include "datasets/sequence/fingerprint.hpp"
 #include "datasets/text/errors.hpp"
-#include "datasets/text/text.hpp"
+#include "eval/engine/pose_finding.hpp"
 #include "eval/engine/shared_folder.hpp"
-#include "eval/job/method_choice.hpp"
 #include "eval/job/presets.hpp"
 #include "eval/protocols/benchmark_split.hpp"
 #include "eval/result/reading_json.hpp"
@@ -23,110 +20,22 @@ namespace mosbench {
 namespace fs = std::filesystem;
 namespace {
 
-Preset choose_preset(const RunOptions& options, DatasetKind kind) {
-  return options.preset ? preset_for(preset_named(*options.preset), kind) : default_preset(kind);
-}
-
-const Protocol& choose_protocol(const RunOptions& options, const Preset& preset) {
-  return protocol_named(options.protocol.value_or(std::string(preset.protocol)));
-}
-
-/// A variant by its name.
-void apply_variant(const std::string& name, const MethodKind& method, Settings& settings) {
-  if (settings.find(common_settings::kVariant) == nullptr) {
-    throw UsageError(
-        fmt::format("--variant: method {} has no variants, leave the flag out", method.name));
-  }
-  try {
-    settings.set(common_settings::kVariant, name);
-  } catch (const std::invalid_argument&) {
-    throw UsageError(
-        fmt::format("--variant: '{}' is not known, expected {}", name,
-                    fmt::join(settings.find(common_settings::kVariant)->choices, " or ")));
-  }
-}
-
-/// moving=now, ever or ever:SECONDS: a short word of the methods that have it.
-void apply_word(std::string_view name, const std::string& text, const MethodKind& method,
-                Settings& settings) {
-  const auto word_of = [&](const MethodKind& kind) {
-    const auto found = std::ranges::find(kind.words, name, &SettingWord::name);
-    return found == kind.words.end() ? nullptr : &*found;
-  };
-  const MethodKind& owner =
-      word_of(method) != nullptr ? method : *std::ranges::find_if(methods(), word_of);
-  const SettingWord& word = *word_of(owner);
-  if (text == word.usual) return;
-  const std::string with_number = fmt::format("{}:", word.value);
-  const bool has_number =
-      text.starts_with(with_number) && parse_double(text.substr(with_number.size())).has_value();
-  if (text != word.value && !has_number) {
-    throw UsageError(fmt::format("{}: '{}' is not known, expected {}, {} or {}{}", name, text,
-                                 word.usual, word.value, with_number, word.number));
-  }
-  if (&owner != &method) {
-    throw UsageError(fmt::format("{}={}: method {} {}, expected {}", name, text, method.name,
-                                 word.lacking, owner.name));
-  }
-  for (const std::string_view taking : word.takes) {
-    const std::string number =
-        has_number ? text.substr(with_number.size()) : to_string(settings.find(taking)->highest);
-    apply_setting_assignment(fmt::format("{}={}", taking, number), settings);
-  }
-  for (const PresetValue& set : word.sets) settings.set(set.setting, set.value);
-}
-
-Settings choose_settings(const RunOptions& options, const Preset& preset,
-                         const MethodKind& method) {
-  Settings settings = settings_of(preset, method);
-  if (options.config_file) apply_settings_file(*options.config_file, settings);
-  if (options.variant) apply_variant(*options.variant, method, settings);
-  apply_word("moving", options.moving, method, settings);
-  for (const std::string& assignment : options.assignments) {
-    apply_setting_assignment(assignment, settings);
-  }
-  try {
-    method.check(settings);
-  } catch (const std::invalid_argument& error) {
-    throw UsageError(fmt::format("configuration: {}", error.what()));
-  }
-  return settings;
-}
-
-/// A benchmark with a range limit is scored over the range it was run at.
-bool is_scored_where_run(const Protocol& protocol) {
-  return protocol.range_rule != RangeRule::kNone && protocol.default_range.max_m > 0;
-}
-
-RangeGate choose_range(const RunOptions& options, const Protocol& protocol,
-                       const Settings& settings) {
-  if (options.range) return range_option(*options.range, protocol);
-  const bool known = settings.find(common_settings::kMinRange_m) != nullptr &&
-                     settings.find(common_settings::kMaxRange_m) != nullptr;
-  return is_scored_where_run(protocol) && known
-             ? RangeGate{settings.number(common_settings::kMinRange_m),
-                         settings.number(common_settings::kMaxRange_m)}
-             : protocol.default_range;
-}
-
-fs::path default_out(const RunPlan& plan, const RunOptions& options) {
-  const fs::path folder = fs::absolute(options.input / "").lexically_normal().parent_path();
+fs::path default_out(const RunPlan& plan) {
+  const fs::path folder = fs::absolute(plan.job.data.path / "").lexically_normal().parent_path();
   const RunSettings& settings = plan.settings;
   const bool has_variant = settings.method_settings.find(common_settings::kVariant) != nullptr;
   // The default method's folders are named by its variant.
   const std::string_view kind = settings.method == &default_method() && has_variant
-                                    ? settings.method_settings.choice("variant")
+                                    ? settings.method_settings.choice(common_settings::kVariant)
                                     : settings.method->name;
-  // A run with other poses has results of its own.
-  const std::string poses = plan.odometry ? fmt::format("-{}", plan.odometry->kind->name) : "";
-  // So has one with disturbed scans.
-  const std::string perturb =
-      options.reading.perturb ? "-" + to_string(*options.reading.perturb) : "";
-  const std::string data = fmt::format("{}-{}", folder.filename().string(), plan.preset);
-  std::string moving = options.moving == "now" ? "" : "-" + options.moving;
-  std::ranges::replace(moving, ':', '-');
-  const std::string method = options.shared ? "" : fmt::format("-{}", kind);
-  return fs::path("results/runs") / (data + method + moving + poses + perturb);
+  std::string name = fmt::format("{}-{}", folder.filename().string(), plan.preset);
+  const auto add = [&](std::string_view part) { name += fmt::format("-{}", part); };
+  if (!plan.shared) add(kind);
+  if (!plan.job.segment.label.empty()) add(plan.job.segment.label);
+  // Runs with other poses or disturbed scans have results of their own.
+  if (plan.odometry) add(plan.odometry->kind->name);
+  if (plan.job.data.reading.perturb) add(to_string(*plan.job.data.reading.perturb));
+  return fs::path("results/runs") / name;
 }
 
 /// What the results of all sequences of a run have in common.
@@ -153,17 +62,29 @@ void check_unchanged(const RunPlan& plan, const PlannedSequence& planned, bool v
   planned.folder.check_labels(result);
 }
 
-PlannedSequence plan_sequence(const RunPlan& plan, std::size_t position,
-                              const RunOptions& options) {
+/// Whether a finished result is of other files than those that the program's command names now. An
+/// earlier mosbench did not keep what they were.
+bool has_other_program(const Result& then, const Result& now) {
+  return !then.from.program.empty() && then.from.program != now.from.program;
+}
+
+PlannedSequence plan_sequence(RunPlan& plan, std::size_t position, const RunPlace& place) {
   const Sequence& sequence = *plan.dataset.sequences[position];
   PlannedSequence planned{position, ResultFolder(plan.out / sequence.name()),
-                          asked_result(plan, position), file_stamp(sequence), std::nullopt};
-  if (options.overwrite) {
+                          asked_result(plan, position), file_stamp(sequence)};
+  if (place.overwrite) {
     planned.folder.check_replaceable();
     return planned;
   }
   planned.finished = planned.folder.finished(sequence, planned.asked, plan.settings.point_files());
-  if (planned.finished) check_unchanged(plan, planned, options.verify);
+  if (!planned.finished) return planned;
+  if (has_other_program(*planned.finished, planned.asked)) {
+    plan.notes.push_back(fmt::format("{}: the program has changed, it is run again",
+                                     title_of(sequence, plan.settings)));
+    planned.finished = std::nullopt;
+  } else {
+    check_unchanged(plan, planned, place.verify);
+  }
   return planned;
 }
 
@@ -197,64 +118,46 @@ void note_preset_without_settings(const Preset& preset, RunPlan& plan) {
 
 }  // namespace
 
-RunPlan plan_method(const RunOptions& options) {
+RunPlan open_job(const Job& job, unsigned threads, const std::shared_ptr<SharedReading>& shared) {
   RunPlan plan;
-  plan.settings.method = &method_of(options.method, options.preset);
-  plan.settings.threads = options.threads;
-  plan.reading = options.reading;
-  plan.odometry = named_odometry(options.odometry, options.reading);
-  if (plan.odometry) plan.reading.poses = ByOdometry{};
-  plan.dataset = open_dataset(
-      options.input, {dataset_kind_option(options.dataset), options.sequences, plan.reading});
-  plan.shared = options.shared;
-  if (plan.shared) plan.shared->share(plan.dataset);
-  const Preset preset = choose_preset(options, plan.dataset.kind);
+  plan.job = job;
+  plan.odometry = job.odometry;
+  plan.dataset = open_dataset(job.data.path, {job.data.kind, job.data.sequences, job.data.reading});
+  plan.shared = shared;
+  if (shared) shared->share(plan.dataset);
+  const Preset preset = preset_of(job, plan.dataset.kind);
   plan.preset = preset.name;
-  if (!options.preset) {
+  if (job.segment.preset == nullptr) {
     plan.notes.push_back(fmt::format("preset {} taken because the data set is {}", preset.name,
                                      to_string(plan.dataset.kind)));
   }
+  RunSettings& settings = plan.settings;
+  settings.method = job.segment.method;
+  settings.threads = threads;
   note_preset_without_settings(preset, plan);
-  plan.settings.method_settings = choose_settings(options, preset, *plan.settings.method);
-  plan.settings.protocol = &choose_protocol(options, preset);
-  plan.settings.range =
-      choose_range(options, *plan.settings.protocol, plan.settings.method_settings);
+  settings.method_settings = settings_of(job, plan.dataset.kind);
+  const ScoreRule rule = rule_of(job, plan.dataset.kind);
+  settings.protocol = rule.protocol;
+  settings.range = rule.range;
   if (!plan.odometry) return plan;
-  if (options.odometry.drop_moving) {
-    plan.odometry->filter = moving_filter(*plan.settings.method, plan.settings.method_settings);
+  if (plan.odometry->drop_moving) {
+    plan.odometry->filter = moving_filter(*settings.method, settings.method_settings);
   }
   expect_poses(plan.dataset, *plan.odometry);
   return plan;
 }
 
-RunPlan plan_run(const RunOptions& options) {
-  RunPlan plan = plan_method(options);
-  plan.settings.keeps_scores = options.scores;
-  plan.settings.is_one_of_several = options.shared != nullptr;
-  plan.out = options.out.value_or(default_out(plan, options));
-  if (options.shared) plan.out /= plan.settings.method->name;
+RunPlan plan_run(const Job& job, const RunPlace& place) {
+  RunPlan plan = open_job(job, place.threads, place.shared);
+  plan.settings.keeps_scores = place.scores;
+  plan.settings.is_one_of_several = place.shared != nullptr;
+  plan.out = place.out.value_or(default_out(plan));
+  if (place.shared) plan.out /= plan.settings.method->name;
   check_shared_folder(plan, shared_rules(plan));
   for (std::size_t i = 0; i < plan.dataset.sequences.size(); ++i) {
-    plan.sequences.push_back(plan_sequence(plan, i, options));
+    plan.sequences.push_back(plan_sequence(plan, i, place));
   }
   return plan;
-}
-
-ScoreRule score_rule(const RunOptions& options, DatasetKind kind) {
-  const Preset preset = choose_preset(options, kind);
-  const Protocol& protocol = choose_protocol(options, preset);
-  Settings settings;
-  if (!options.range && is_scored_where_run(protocol)) {
-    settings = choose_settings(options, preset, method_of(options.method, options.preset));
-  }
-  return {&protocol, choose_range(options, protocol, settings)};
-}
-
-std::optional<DatasetKind> dataset_kind_option(const std::string& name) {
-  if (name == "auto") return std::nullopt;
-  if (const std::optional<DatasetKind> kind = dataset_kind_from_string(name)) return kind;
-  throw UsageError(
-      fmt::format("--dataset: '{}' is not known, expected auto, {}", name, dataset_kind_names()));
 }
 
 Result asked_result(const RunPlan& plan, std::size_t position) {
@@ -272,28 +175,12 @@ Result asked_result(const RunPlan& plan, std::size_t position) {
   asked.from.version = kMosbenchVersion;
   asked.from.compiler = kCompiler;
   asked.from.reading = members_of(sequence.reading());
+  asked.from.program = program_files(*settings.method);
   if (plan.odometry) asked.from.odometry = odometry_done(*plan.odometry);
   asked.splits = picked_stems(plan.dataset, position);
   const Split* benchmark = benchmark_scans(*settings.protocol, plan.dataset.splits);
   if (benchmark != nullptr) asked.summary_split = benchmark->name;
   return asked;
-}
-
-RangeGate range_option(const std::string& text, const Protocol& protocol) {
-  RangeGate range;
-  int used = 0;
-  const int fields = std::sscanf(text.c_str(), "%lf,%lf%n", &range.min_m, &range.max_m, &used);
-  const bool whole = fields == 2 && static_cast<std::size_t>(used) == text.size();
-  if (!whole || !(range.min_m >= 0.0) || !(range.max_m > range.min_m || range.max_m == -1.0)) {
-    throw UsageError(fmt::format(
-        "--range: '{}' is no range, expected MIN,MAX in metres with 0 <= MIN < MAX (MAX -1: none)",
-        text));
-  }
-  if (protocol.range_rule == RangeRule::kNone && range != protocol.default_range) {
-    throw UsageError(fmt::format("--range: protocol {} counts points at every range, expected none",
-                                 protocol.name));
-  }
-  return range;
 }
 
 }  // namespace mosbench

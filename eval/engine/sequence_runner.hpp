@@ -19,6 +19,7 @@ struct RunSettings {
   const Protocol* protocol = nullptr;
   RangeGate range;
   unsigned threads = 1;
+  bool keeps_labels = true;        ///< writes a file per scan
   bool keeps_scores = false;       ///< also writes every point's score
   bool is_one_of_several = false;  ///< progress then names the method
 

@@ -7,7 +7,7 @@
 
 #include "datasets/layouts/dataset.hpp"
 #include "datasets/sequence/kept_scans.hpp"
-#include "eval/engine/odometry_choice.hpp"
+#include "eval/engine/pose_finding.hpp"
 
 namespace mosbench {
 

@@ -6,7 +6,6 @@
 #include <malloc.h>
 #endif
 
-#include <array>
 #include <fstream>
 #include <string>
 #include <thread>
@@ -46,12 +45,6 @@ nlohmann::ordered_json to_json(const Machine& machine) {
           {"logical_cores", machine.logical_cores},
           {"memory_mib", machine.memory_mib},
           {"system", machine.system}};
-}
-
-std::string host_name() {
-  std::array<char, 256> host{};
-  gethostname(host.data(), host.size() - 1);
-  return host.data();
 }
 
 nlohmann::ordered_json code_json() {

@@ -16,9 +16,6 @@ struct Machine {
 Machine this_machine();
 nlohmann::ordered_json to_json(const Machine& machine);
 
-/// Name of this host in its network, as far as it can be read.
-std::string host_name();
-
 /// Version of mosbench and the compiler that built it.
 nlohmann::ordered_json code_json();
 

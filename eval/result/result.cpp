@@ -1,5 +1,7 @@
 #include "eval/result/result.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "datasets/formats/label_file.hpp"
@@ -47,6 +49,12 @@ std::string disturbance_of(const Result& result) {
   const auto perturb =
       std::ranges::find(result.from.reading, "perturb", &ReadingMembers::value_type::first);
   return perturb == result.from.reading.end() ? "" : perturb->second;
+}
+
+std::string simulation_of(const Result& result) {
+  const std::optional<SimulatedOrigin>& origin = result.from.simulated;
+  return origin ? fmt::format("{} {} {}", origin->scene, origin->seed, origin->perturb.value_or(""))
+                : "";
 }
 
 std::vector<const ScanRow*> counted_scans(const Result& result) {

@@ -52,8 +52,9 @@ struct ScanCost {
 struct Timing {
   unsigned threads = 0;  ///< that the method was run with; 0 in results that do not tell
   double wall_s = 0.0;
-  std::vector<std::string> stages;  ///< names, in the order in which they first ran
-  std::vector<ScanCost> costs;      ///< as many as scans
+  std::optional<double> core_s = std::nullopt;  ///< that a core was taken, poses included
+  std::vector<std::string> stages;              ///< names, in the order in which they first ran
+  std::vector<ScanCost> costs;                  ///< as many as scans
 };
 
 /// Settings of the odometry that found the poses.
@@ -70,6 +71,7 @@ struct Provenance {
   std::optional<Machine> machine;
   std::string fingerprint;                ///< of the frames; empty when only labels were read
   std::string fingerprint_without_poses;  ///< empty where it is not known
+  std::string program;  ///< of the files that a user's command names; empty where it is not known
   ReadingMembers reading;                 ///< how the sequence was read
   std::optional<OdometryDone> odometry;
   std::optional<SimulatedOrigin> simulated;  ///< its layout and scans are not recorded
@@ -150,6 +152,8 @@ std::optional<std::string> only_split(const Result& result);
 
 /// What --perturb said of the scans; empty where they were read as they are.
 std::string disturbance_of(const Result& result);
+/// Which simulation its scans are of; empty for real data.
+std::string simulation_of(const Result& result);
 
 /// The scans that the protocol counts, in order: those with truth, of the protocol's split where it
 /// picks scans.

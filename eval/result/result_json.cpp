@@ -96,6 +96,7 @@ ordered_json timing_json(const Result& result) {
   const Timing& timing = *result.timing;
   ordered_json json = {{"threads", timing.threads},
                        {"wall_s", timing.wall_s},
+                       {"core_s", json_or_null(timing.core_s)},
                        {"method_ms_per_scan", json_or_null(method_ms_per_scan(result))},
                        {"stage_ms_per_scan", mean_stages_ms(timing)},
                        {"scan_columns", {"read_ms", "push_ms", "resident_mib"}},
@@ -166,6 +167,7 @@ ordered_json header_json(const Result& result) {
   json.update(identity_json(result));
   json.erase("code");
   if (!result.preset.empty()) json["preset"] = result.preset;
+  if (!result.from.program.empty()) json["program"] = result.from.program;
   if (result.from.odometry) json["odometry"] = to_json(*result.from.odometry);
   json["provenance"] = to_json(result.from);
   if (result.predictions) json["predictions"] = to_json(*result.predictions);

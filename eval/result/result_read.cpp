@@ -187,6 +187,7 @@ Timing timing_from(const ordered_json& json) {
   Timing timing;
   timing.threads = json.value("threads", 0U);
   timing.wall_s = json.at("wall_s");
+  if (json.contains("core_s") && !json.at("core_s").is_null()) timing.core_s = json.at("core_s");
   const ordered_json& columns = json.at("scan_columns");
   for (std::size_t i = kBeforeStages; i < columns.size(); ++i) {
     std::string stage = columns.at(i);
@@ -240,6 +241,7 @@ Result from_present_format(const ordered_json& content, const std::filesystem::p
   read_method(content, result);
   read_protocol(content, result);
   read_provenance(content, result.from);
+  result.from.program = content.value("program", "");
   read_findings(content, result);
   read_scans(content, result);
   check_summary(content, result);

@@ -16,7 +16,7 @@ namespace {
 bool same_run(const Result& a, const Result& b) {
   return a.dataset == b.dataset && a.method == b.method && a.setting == b.setting &&
          a.protocol == b.protocol && a.range == b.range && a.from.odometry == b.from.odometry &&
-         a.settings == b.settings;
+         a.settings == b.settings && disturbance_of(a) == disturbance_of(b);
 }
 
 void add_to_runs(Result result, std::vector<ResultSet>& sets, const fs::path& path) {
@@ -54,6 +54,18 @@ ResultSet joined(std::vector<ResultSet> runs) {
   }
   std::ranges::sort(whole.sequences, {}, &Result::sequence);
   return whole;
+}
+
+/// Runs that have sequences in common: those of one simulation are one, others stay as they are.
+std::vector<ResultSet> joined_by_simulation(std::vector<ResultSet> runs) {
+  std::map<std::string, std::vector<ResultSet>> of_simulation;
+  for (ResultSet& run : runs) of_simulation[simulation_of(run.front())].push_back(std::move(run));
+  std::vector<ResultSet> all;
+  for (auto& [simulation, same] : of_simulation) {
+    if (!simulation.empty() && !has_twins(same)) same = {joined(std::move(same))};
+    std::ranges::move(same, std::back_inserter(all));
+  }
+  return all;
 }
 
 /// The folders to give instead of the one that holds them all: ": one of a, b"; nothing where runs
@@ -103,7 +115,8 @@ std::vector<ResultSet> load_runs_of_folders(const fs::path& path) {
   }
   std::vector<ResultSet> all;
   for (std::vector<ResultSet>& runs : of_setting) {
-    if (!has_twins(runs)) runs = {joined(std::move(runs))};
+    runs = has_twins(runs) ? joined_by_simulation(std::move(runs))
+                           : std::vector{joined(std::move(runs))};
     std::ranges::move(runs, std::back_inserter(all));
   }
   return all;

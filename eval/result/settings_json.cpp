@@ -78,23 +78,30 @@ json parse_settings(std::string_view text, std::string_view origin) {
 
 }  // namespace
 
-void apply_settings_text(std::string_view text, std::string_view origin, Settings& settings) {
+std::vector<std::string> apply_settings_text(std::string_view text, std::string_view origin,
+                                             Settings& settings) {
   const json object = parse_settings(text, origin);
   if (!object.is_object()) {
     throw UsageError(fmt::format("{}: holds a {}, expected a JSON object with configuration keys",
                                  origin, object.type_name()));
   }
-  for (const auto& [key, value] : object.items()) apply_value(key, value, origin, settings);
+  std::vector<std::string> keys;
+  for (const auto& [key, value] : object.items()) {
+    apply_value(key, value, origin, settings);
+    keys.push_back(key);
+  }
+  return keys;
 }
 
-void apply_settings_file(const std::filesystem::path& file, Settings& settings) {
+std::vector<std::string> apply_settings_file(const std::filesystem::path& file,
+                                             Settings& settings) {
   std::string text;
   try {
     text = read_file(file);
   } catch (const DataError& error) {
     throw UsageError(error.what());
   }
-  apply_settings_text(text, file.string(), settings);
+  return apply_settings_text(text, file.string(), settings);
 }
 
 void apply_setting_assignment(std::string_view assignment, Settings& settings) {

@@ -141,14 +141,12 @@ void ResultFolder::remove_leftovers() const {
   }
 }
 
-fs::path ResultFolder::begin() const {
-  remove_leftovers();
-  const fs::path partial = with_suffix(".partial");
-  checked(partial, "made",
-          [&](std::error_code& error) { fs::create_directories(partial / kLabels, error); });
-  return partial;
+std::unique_ptr<Claim> ResultFolder::begin() const {
+  auto claim = writers_ == Writers::kOne ? std::make_unique<Claim>(folder_, with_suffix(".partial"))
+                                         : std::make_unique<Claim>(folder_);
+  checked(claim->path(), "made",
+          [&](std::error_code& error) { fs::create_directories(claim->path(), error); });
+  return claim;
 }
-
-void ResultFolder::publish() const { replace_folder(with_suffix(".partial"), folder_); }
 
 }  // namespace mosbench

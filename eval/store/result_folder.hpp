@@ -1,8 +1,12 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 
+#include "datasets/disk/claim.hpp"
 #include "datasets/sequence/sequence.hpp"
 #include "eval/result/result.hpp"
 
@@ -14,13 +18,20 @@ struct PointFiles {
   bool reasons = false;
 };
 
+/// Who writes to a folder of results.
+enum class Writers : std::uint8_t {
+  kOne,  ///< who holds the lock of the folder around it
+  kMany  ///< processes of several hosts, whose results are the same
+};
+
 /// The folder <out>/<sequence> of a run: labels/<stem>.label, scores/<stem>.score and
 /// reasons/<stem>.reason when they were asked for, and result.json. It appears as a whole when the
 /// sequence is done; until then everything lies in `<folder>.partial`, which the next run clears.
 /// So a killed or failed run never mixes with earlier results.
 class ResultFolder {
  public:
-  explicit ResultFolder(std::filesystem::path folder) : folder_(std::move(folder)) {}
+  explicit ResultFolder(std::filesystem::path folder, Writers writers = Writers::kOne)
+      : folder_(std::move(folder)), writers_(writers) {}
 
   const std::filesystem::path& path() const { return folder_; }
 
@@ -41,15 +52,14 @@ class ResultFolder {
 
   /// Removes what a killed run left beside the folder. Throws DataError.
   void remove_leftovers() const;
-  /// Makes an empty folder for new results and returns it. Throws DataError.
-  std::filesystem::path begin() const;
-  /// Puts what `begin` made in place of the folder. Throws DataError.
-  void publish() const;
+  /// Makes an empty folder for new results, whose place is this one's. Throws DataError.
+  std::unique_ptr<Claim> begin() const;
 
  private:
   std::filesystem::path with_suffix(const char* suffix) const;
 
   std::filesystem::path folder_;
+  Writers writers_;
 };
 
 }  // namespace mosbench

@@ -164,14 +164,12 @@ ordered_json to_json(const StudyEffects& effects) {
   return {{"label", effects.label}, {"points", effects.points}, {"settings", settings}};
 }
 
-Cell cell_number(const PlannedCell& planned, const char* part, const char* what) {
-  if (planned.state != CellState::kDone) return {};
-  return or_missing(number_in(planned.record, part, what));
+Cell cell_number(const PlannedCell& planned, const std::optional<double>& number) {
+  return planned.state == CellState::kDone ? or_missing(number) : Cell();
 }
 
 std::string why_empty(const PlannedCell& planned) {
-  return planned.state == CellState::kFailed ? planned.record.value("failure", "")
-                                             : why_undefined(planned);
+  return planned.state == CellState::kFailed ? planned.failure : why_undefined(planned);
 }
 
 /// A row per cell.
@@ -185,15 +183,16 @@ Sheet records_of(const StudyPlan& plan) {
   const std::optional<ScoreRule>& rule = plan.rule;
   for (const PlannedCell& planned : plan.cells) {
     const StudyCell& cell = planned.cell;
+    const CellNumbers& numbers = planned.numbers;
     sheet.rows.push_back(
         {cell.key, cell.data->name, cell.data->group, cell.sequence, cell.method->name,
          cell.odometry, cell.axis == nullptr ? "" : cell.axis->name, cell.value,
          std::uint64_t{cell.seed}, std::string(to_string(planned.state)),
          rule ? std::string(rule->protocol->name) : "",
          rule ? Cell(double{rule->range.min_m}) : Cell(),
-         rule ? Cell(double{rule->range.max_m}) : Cell(), cell_number(planned, "summary", "iou"),
-         cell_number(planned, "summary", "precision"), cell_number(planned, "summary", "recall"),
-         cell_number(planned, "timing", "ms_per_scan"), cell_number(planned, "timing", "wall_s"),
+         rule ? Cell(double{rule->range.max_m}) : Cell(), cell_number(planned, numbers.metrics[0]),
+         cell_number(planned, numbers.metrics[1]), cell_number(planned, numbers.metrics[2]),
+         cell_number(planned, numbers.ms_per_scan), cell_number(planned, numbers.wall_s),
          why_empty(planned)});
   }
   return sheet;

@@ -7,16 +7,12 @@
 #include <map>
 #include <utility>
 
-#include "datasets/text/shell_text.hpp"
-#include "eval/result/reading_json.hpp"
+#include "eval/engine/study_cell.hpp"
 #include "eval/statistics/distributions.hpp"
 #include "eval/statistics/pareto_front.hpp"
-#include "eval/study/study_cell.hpp"
 
 namespace mosbench {
 namespace {
-
-using nlohmann::ordered_json;
 
 /// Values by sequence, then by what differs in seeds alone.
 using Samples = std::map<std::string, std::map<std::string, std::optional<double>>>;
@@ -81,7 +77,7 @@ struct DoneCell {
   std::string label, sequence;
 
   const StudyCell& cell() const { return planned->cell; }
-  const ordered_json& record() const { return planned->record; }
+  const CellNumbers& numbers() const { return planned->numbers; }
 };
 
 /// The cells that were computed, as a table is made of them.
@@ -97,12 +93,12 @@ class DoneCells {
   }
 
   template <typename Wanted>
-  Samples samples(std::string_view metric, Wanted&& wanted) const {
+  Samples samples(std::size_t metric, Wanted&& wanted) const {
     Samples samples;
     for (const DoneCell& each : done) {
       if (!wanted(each)) continue;
       const std::string seed = fmt::format("{} {}", each.cell().data->name, each.cell().seed);
-      samples[each.sequence][seed] = number_in(each.record(), "summary", metric);
+      samples[each.sequence][seed] = each.numbers().metrics[metric];
     }
     return samples;
   }
@@ -111,7 +107,7 @@ class DoneCells {
   StudyMetrics metrics(Wanted&& wanted) const {
     StudyMetrics metrics;
     for (std::size_t i = 0; i < metrics.size(); ++i) {
-      metrics[i] = study_mean(samples(row_of(kBriefMetrics[i]).key, wanted));
+      metrics[i] = study_mean(samples(i, wanted));
     }
     return metrics;
   }
@@ -130,7 +126,7 @@ StudyRow row_of(const DoneCells& cells, const std::string& label) {
   const auto is_plain = is_plain_of(label);
   std::vector<std::optional<double>> ms;
   for (const DoneCell& each : cells.done) {
-    if (is_plain(each)) ms.push_back(number_in(each.record(), "timing", "ms_per_scan"));
+    if (is_plain(each)) ms.push_back(each.numbers().ms_per_scan);
   }
   StudyRow row;
   row.label = label;
@@ -144,10 +140,10 @@ void compare_with_best(const DoneCells& cells, std::vector<StudyRow>& rows) {
   const auto iou = [](const StudyRow& row) { return row.metrics[0].value.value_or(-1); };
   const auto best = std::ranges::max_element(rows, {}, iou);
   if (best == rows.end() || !best->metrics[0].value) return;
-  const Samples of_best = cells.samples(row_of(Metric::kIou).key, is_plain_of(best->label));
+  const Samples of_best = cells.samples(0, is_plain_of(best->label));
   for (StudyRow& row : rows) {
     if (row.label == best->label) continue;
-    const Samples of_row = cells.samples(row_of(Metric::kIou).key, is_plain_of(row.label));
+    const Samples of_row = cells.samples(0, is_plain_of(row.label));
     row.to_best = study_mean(differences(of_row, of_best), {-1, 1});
   }
 }
@@ -189,8 +185,8 @@ std::optional<std::vector<double>> scores_on(const StudyPlan& plan, const DoneCe
     if (cell.axis != nullptr && cell.axis->kind == nullptr) continue;
     const auto label = std::ranges::find(cells.labels, cell.label()) - cells.labels.begin();
     const bool done = planned.state == CellState::kDone;
-    values[static_cast<std::size_t>(label)].push_back(
-        done ? number_in(planned.record, "summary", "iou") : std::nullopt);
+    values[static_cast<std::size_t>(label)].push_back(done ? planned.numbers.metrics[0]
+                                                           : std::nullopt);
   }
   std::vector<double> scores;
   for (const auto& of_label : values) {
@@ -241,48 +237,28 @@ void rank(const StudyPlan& plan, const DoneCells& cells, StudyTable& table) {
 }
 
 std::string command_for(const StudyPlan& plan, const StudyCell& cell) {
-  const std::string data = cell.data->simulation ? simulated_folder(plan.out, *cell.data).string()
-                                                 : cell.data->path.string();
-  std::string command = fmt::format("mosbench run {} --sequences {} --method {}", shell_word(data),
-                                    shell_word(cell.sequence), shell_word(cell.method->method));
-  Reading reading = cell.data->reading;
-  reading.perturb = cell.perturb();
-  command += told_flags(reading);
-  if (cell.data->dataset != "auto") command += " --dataset " + shell_word(cell.data->dataset);
-  if (plan.study->protocol) command += " --protocol " + shell_word(*plan.study->protocol);
-  if (plan.study->range) command += " --range " + shell_word(*plan.study->range);
-  if (cell.method->preset) command += " --preset " + shell_word(*cell.method->preset);
-  if (!cell.odometry.empty()) command += " --odometry " + shell_word(cell.odometry);
-  for (const std::string& set : cell.assignments) command += " --set " + shell_word(set);
+  Job job = cell.job;
+  job.data.path = place_of(plan.out, job.data);
   const std::string runs = "results/runs/" + cell.key.substr(0, 12);
-  return fmt::format("{} --out {} && mosbench report {} -o worst.html", command, runs, runs);
+  return fmt::format("{} --out {} && mosbench report {} -o worst.html", to_words(job), runs, runs);
 }
-
-struct BadScan {
-  double iou = 0;
-  std::int64_t wrong = 0;  ///< points
-  std::string stem;
-  const StudyCell* cell = nullptr;
-};
 
 /// The worst scan of the worst cells of each label.
 void list_worst(const StudyPlan& plan, const DoneCells& cells, StudyTable& table) {
   constexpr std::size_t kOfEach = 3;
   for (const std::string& label : cells.labels) {
-    std::vector<BadScan> worst;
+    std::vector<const PlannedCell*> worst;
     for (const DoneCell& each : cells.done) {
-      if (each.label != label || !each.record().contains("worst")) continue;
-      const ordered_json& scans = each.record().at("worst");
-      if (scans.empty()) continue;
-      worst.push_back({scans[0].value("iou", 0.0), scans[0].value("wrong", std::int64_t{0}),
-                       scans[0].value("stem", ""), &each.cell()});
+      if (each.label == label && each.numbers().worst) worst.push_back(each.planned);
     }
-    std::ranges::stable_sort(worst, {},
-                             [](const BadScan& scan) { return std::pair(scan.iou, -scan.wrong); });
+    std::ranges::stable_sort(worst, {}, [](const PlannedCell* planned) {
+      return std::pair(planned->numbers.worst->iou, -planned->numbers.worst->wrong);
+    });
     worst.resize(std::min(worst.size(), kOfEach));
-    for (const BadScan& scan : worst) {
+    for (const PlannedCell* planned : worst) {
+      const BadScan& scan = *planned->numbers.worst;
       table.worst.push_back(
-          {label, scan.cell->title(), scan.stem, command_for(plan, *scan.cell), scan.iou});
+          {label, planned->cell.title(), scan.stem, command_for(plan, planned->cell), scan.iou});
     }
   }
 }
@@ -294,15 +270,14 @@ void count_cells(const StudyPlan& plan, StudyTable& table) {
   for (const PlannedCell& planned : plan.cells) {
     ++table.cells;
     if (planned.state == CellState::kFailed) {
-      table.failures.push_back({planned.cell.title(), planned.record.value("failure", "")});
+      table.failures.push_back({planned.cell.title(), planned.failure});
     }
     if (planned.state != CellState::kDone) continue;
     const std::string why = why_undefined(planned);
     if (!why.empty()) table.undefined.push_back({planned.cell.title(), why});
     ++table.done;
-    table.simulated = table.simulated || planned.record.value("simulated", false);
-    const char* time = is_program(*planned.cell.method) ? "wall_s" : "cpu_s";
-    core_s += number_in(planned.record, "timing", time).value_or(0);
+    table.simulated = table.simulated || planned.numbers.simulated;
+    core_s += planned.numbers.core_s.value_or(0);
     const auto expected_s = costs.seconds(planned.cell);
     all_predicted = all_predicted && expected_s.has_value();
     predicted_s += expected_s.value_or(0);
@@ -316,14 +291,14 @@ void count_cells(const StudyPlan& plan, StudyTable& table) {
 
 std::string why_undefined(const PlannedCell& planned) {
   if (planned.state != CellState::kDone) return "";
-  if (planned.record.at("summary").is_null()) return "undefined: no scan has truth that counts";
+  if (!planned.numbers.scored) return "undefined: no scan has truth that counts";
   std::string text;
-  for (const Metric metric : kBriefMetrics) {
-    const MetricRow& row = row_of(metric);
-    if (number_in(planned.record, "summary", row.key)) continue;
+  for (std::size_t i = 0; i < kBriefMetrics.size(); ++i) {
+    if (planned.numbers.metrics[i]) continue;
+    const MetricRow& row = row_of(kBriefMetrics[i]);
     text +=
         fmt::format("{}undefined {}: {}", text.empty() ? "" : "; ", row.title, row.undefined_where);
-    if (metric == Metric::kIou) break;  // the others are, too, for the same reason
+    if (i == 0) break;  // the others are, too, for the same reason
   }
   return text;
 }

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "eval/answer/answer.hpp"
+#include "eval/engine/study_plan.hpp"
 #include "eval/statistics/intervals.hpp"
-#include "eval/study/study_plan.hpp"
-#include "eval/study/study_sampling.hpp"
+#include "eval/study/study_effects.hpp"
 
 namespace mosbench {
 

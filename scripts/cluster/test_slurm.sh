@@ -37,7 +37,7 @@ seeds: [$seeds]
 YAML
 
 study() { "$mosbench" run "$dir/study.yaml" --out "$dir/$1" "${@:2}"; }
-done_cells() { find "$dir/cluster/cells" -name '*.json' ! -name '.*' 2>/dev/null | wc -l; }
+done_cells() { find "$dir/cluster/cells" -name result.json ! -path '*/.*' 2>/dev/null | wc -l; }
 running_job() { squeue -h -t R -o %i | head -n 1; }
 check() { if ! "${@:2}"; then echo "test_slurm.sh: FAILED: $1" >&2; exit 1; fi; echo "ok: $1"; }
 
@@ -75,10 +75,10 @@ scontrol -o show jobs | grep -o 'JobId=[0-9]*\|JobName=[^ ]*\|JobState=[A-Z]*\|R
 twice=$(cat "$dir"/cluster/slurm/*.log | grep ' computed: ' | cut -d' ' -f1 | sort | uniq -d | wc -l)
 check "no cell was computed twice" [ "$twice" = 0 ]
 
-study local --yes >"$dir/local.log" 2>&1
-for file in "$dir"/local/cells/*.json; do
-  cmp -s <(jq 'del(.timing)' "$file") <(jq 'del(.timing)' "$dir/cluster/cells/${file##*/}") || {
-    echo "test_slurm.sh: FAILED: ${file##*/} differs" >&2
+study local --on local --yes >"$dir/local.log" 2>&1
+for file in "$dir"/local/cells/*/result.json; do
+  cmp -s <(jq 'del(.timing)' "$file") <(jq 'del(.timing)' "$dir/cluster/${file#"$dir/local/"}") || {
+    echo "test_slurm.sh: FAILED: ${file#"$dir/local/"} differs" >&2
     exit 1
   }
 done

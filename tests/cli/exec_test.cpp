@@ -81,6 +81,24 @@ TEST_F(Exec, TakesTheLabelsOfAProgramAndKeepsThem) {
   EXPECT_EQ(cli::contents(folder_ / "threads"), cli::contents(folder_ / "out"));
 }
 
+TEST_F(Exec, IsRunAgainWhenItsFilesHaveChanged) {
+  const std::string script = folder_.write("ours.sh", client() + "\n").string();
+  const std::vector<std::string> words = command("sh '" + script + "'");
+  ASSERT_EQ(cli::run(words).exit_code, 0);
+  EXPECT_THAT(cli::run(words).err, HasSubstr("finished by an earlier run, kept"));
+  folder_.write("ours.sh", "# better\n" + client() + "\n");
+  const cli::Answer again = cli::run(words);
+  EXPECT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_THAT(again.err, HasSubstr("room: the program has changed, it is run again"));
+  EXPECT_THAT(cli::run(words).err, HasSubstr("finished by an earlier run, kept"));
+  // What an earlier mosbench wrote does not tell.
+  const auto file = folder_ / "out/room/result.json";
+  auto json = nlohmann::ordered_json::parse(read_file(file));
+  json.erase("program");
+  write_file_atomic(file, json.dump());
+  EXPECT_THAT(cli::run(words).err, HasSubstr("finished by an earlier run, kept"));
+}
+
 TEST_F(Exec, PassesOnWhatTheProgramSaysOnStderr) {
   EXPECT_THAT(cli::run(command("echo weights are read >&2; " + client())).err,
               HasSubstr("weights are read\n"));

@@ -7,6 +7,7 @@
 
 #include "datasets/text/errors.hpp"
 #include "eval/engine/run_plan.hpp"
+#include "eval/job/job_words.hpp"
 #include "eval/result/settings_json.hpp"
 #include "tests/cli/program.hpp"
 #include "tests/cli/small_sequence.hpp"
@@ -55,15 +56,15 @@ class RunSettings : public testing::Test {
   /// other settings.
   std::optional<nlohmann::ordered_json> planned(const MethodKind& method, const Setting& setting,
                                                 const SettingValue& value) const {
-    RunOptions options;
+    JobWords options;
     options.input = folder_ / "room";
-    options.out = folder_ / "planned";
     options.method = std::string(method.name);
     options.assignments = {assignment_of(setting, value)};
     // More votes than one need more references than the default.
     if (setting.name == "min_votes") options.assignments.push_back("references=3");
     try {
-      return to_json(*plan_run(options).sequences.at(0).asked.settings);
+      return to_json(
+          *plan_run(job_of(options), {.out = folder_ / "planned"}).sequences.at(0).asked.settings);
     } catch (const UsageError&) {
       return std::nullopt;
     }
@@ -106,15 +107,15 @@ TEST_F(RunSettings, StandInTheResultWithTheValueThatWasGiven) {
 }
 
 TEST_F(RunSettings, OfAPresetThatAMethodLacksAreNamed) {
-  RunOptions options;
+  JobWords options;
   options.input = folder_ / "room";
   options.preset = "helimos-delayed";
   options.method = "yoon";
-  EXPECT_THAT(plan_run(options).notes,
+  EXPECT_THAT(plan_run(job_of(options), {}).notes,
               testing::Contains("preset helimos-delayed: method yoon has no voxel_size_m, "
                                 "delay_scans, it runs without"));
   options.method = "hmm-mos";
-  EXPECT_THAT(plan_run(options).notes,
+  EXPECT_THAT(plan_run(job_of(options), {}).notes,
               testing::Not(testing::Contains(testing::HasSubstr("runs without"))));
 }
 
@@ -125,11 +126,11 @@ TEST_F(RunSettings, OfPresetBestAreThoseOfPlusAndOfTheDataSet) {
   const auto plus = result_of({"--method", "hmm-mos-plus"});
   EXPECT_EQ(best.at("settings"), plus.at("settings"));
   EXPECT_EQ(best.at("protocol"), plus.at("protocol"));
-  RunOptions options;
+  JobWords options;
   options.input = folder_ / "room";
   options.preset = "best";
   options.method = "yoon";
-  EXPECT_THROW(plan_run(options), UsageError);
+  EXPECT_THROW(job_of(options), UsageError);
 }
 
 TEST_F(RunSettings, OfOdometryStandInTheResultToo) {

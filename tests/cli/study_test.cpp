@@ -81,9 +81,7 @@ disturb: {kind: range_noise_m, strengths: [0.05]}
     }));
   }
   ordered_json record(const std::string& out, const std::string& key) const {
-    auto json = ordered_json::parse(read_file(folder_.path() / out / "cells" / (key + ".json")));
-    json.erase("timing");
-    return json;
+    return cli::timeless_result(folder_.path() / out / "cells" / key);
   }
 
   TempFolder folder_;
@@ -114,6 +112,43 @@ TEST_F(Studies, AreComputedCellByCellAndGathered) {
     EXPECT_EQ(study("table", {"--as", format}).exit_code, 0) << format;
   }
   EXPECT_THAT(study("table", {"--as", "csv"}).out, testing::StartsWith("key,data,group,sequence,"));
+}
+
+TEST_F(Studies, AreRunInThisProcessAndReadByOtherCommands) {
+  const cli::Answer run = study("run", {"--threads", "2"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("8 of 8 cells are done"));
+  EXPECT_THAT(study("run").err, HasSubstr("nothing is to be computed"));
+  const std::string plain = path("out/cells/" + keys()[0]), noisy = path("out/cells/" + keys()[1]);
+  const cli::Answer rank = cli::run({"rank", path("out")});
+  EXPECT_EQ(rank.exit_code, 0) << rank.err;
+  EXPECT_THAT(rank.out, AllOf(HasSubstr("HMM-MOS"), HasSubstr("Underwood")));
+  EXPECT_EQ(cli::run({"stats", plain}).exit_code, 0);
+  EXPECT_EQ(cli::run({"compare", plain, plain}).exit_code, 0);
+  const cli::Answer compared = cli::run({"compare", plain, noisy});
+  EXPECT_THAT(compared.out + compared.err, HasSubstr("fingerprints of the scans differ"));
+  EXPECT_EQ(cli::run({"report", plain, "--scans", "none", "-o", path("r.html")}).exit_code, 0);
+}
+
+TEST_F(Studies, GoOnWhereTheirProcessWasKilled) {
+  const TempFolder streams;
+  const pid_t killed = cli::start({"run", path("s.yaml"), "--out", path("out")}, streams.path());
+  EXPECT_TRUE(within_10_s(
+      [&] { return std::filesystem::exists(folder_ / "out/cells") && cells_in("out") > 1; }));
+  kill(killed, SIGKILL);
+  cli::wait_for(killed);
+  EXPECT_EQ(study("run").exit_code, 0);
+  EXPECT_EQ(cells_in("out"), 8U);
+  for (const auto& entry : std::filesystem::directory_iterator(folder_ / "out/cells")) {
+    EXPECT_FALSE(entry.path().filename().string().starts_with('.')) << entry.path();
+  }
+}
+
+TEST_F(Studies, SayThatRecordsOfAnEarlierVersionAreNotUsed) {
+  folder_.write("out/cells/0123.json", "{}");
+  const cli::Answer plan = study("plan");
+  EXPECT_EQ(plan.exit_code, 0);
+  EXPECT_THAT(plan.err, HasSubstr("1 record is of an earlier mosbench, not used"));
 }
 
 TEST_F(Studies, OfACopyOfTheDataHaveTheSameKeys) {
@@ -194,9 +229,9 @@ TEST_F(Studies, AreTheSameFromTwoProcessesAtOnce) {
 TEST_F(Studies, ComputeAgainWhatAnotherVersionLeft) {
   const std::string key = keys().front();
   ASSERT_EQ(study("cell", {key}).exit_code, 0);
-  const auto file = folder_.path() / "out/cells" / (key + ".json");
+  const auto file = folder_.path() / "out/cells" / key / "result.json";
   auto json = ordered_json::parse(read_file(file));
-  json["version"] = "0.0.1";
+  json["code"]["version"] = "0.0.1";
   write_file_atomic(file, json.dump());
   EXPECT_THAT(study("plan").out, HasSubstr("1 of another version"));
   const cli::Answer again = study("cell", {key});
@@ -248,7 +283,7 @@ TEST_F(Studies, GoOnWhenADiskWasFull) {
     setrlimit(RLIMIT_FSIZE, &small);
   });
   EXPECT_EQ(full.exit_code, 3);
-  EXPECT_THAT(full.err, HasSubstr(all.front() + ".json, as "));
+  EXPECT_THAT(full.err, HasSubstr(all.front() + "/result.json, as "));
   EXPECT_THAT(full.err, HasSubstr("cannot be written"));
   EXPECT_TRUE(std::filesystem::is_empty(folder_ / "out/cells")) << "no half of a record";
   EXPECT_EQ(study("cell", all).exit_code, 0);
@@ -266,14 +301,15 @@ TEST_F(Studies, AreRunBySnakemakeAndGoOnWhereTheyWereLeft) {
   const std::string odd = "out #1: {x}";  // neither YAML nor what Snakemake formats
   ASSERT_EQ(study("cell", {all[2], "--out", path(odd)}).exit_code, 0);
   const TempFolder streams;
-  const pid_t killed = cli::start({"run", path("s.yaml"), "--out", path(odd)}, streams.path(), [&] {
-    setpgid(0, 0);
-    go_there()();
-  });
+  const pid_t killed =
+      cli::start({"run", path("s.yaml"), "--on", "local", "--out", path(odd)}, streams.path(), [&] {
+        setpgid(0, 0);
+        go_there()();
+      });
   EXPECT_TRUE(within_10_s([&] { return cells_in(odd) > 1; })) << read_file(streams / "stderr.txt");
   kill(-killed, SIGKILL);  // Snakemake, too
   EXPECT_EQ(cli::wait_for(killed), 128 + SIGKILL);
-  const cli::Answer run = study("run", {"--out", path(odd)});
+  const cli::Answer run = study("run", {"--on", "local", "--out", path(odd)});
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.out, HasSubstr("8 of 8 cells are done"));
   EXPECT_THAT(study("run", {"--out", path(odd)}).err, HasSubstr("nothing is to be computed"));
@@ -312,7 +348,8 @@ methods: {{name: slow, method: "exec:test -d '{0}' && mkdir '{0}-again' && sleep
   const std::string left = fmt::format("out/cells/.{}-{}-00.partial", host.data(), gone);
   folder_.write(left, "half");
   const TempFolder streams;
-  const pid_t stopped = cli::start({"run", path("s.yaml"), "--out", path("out")}, streams.path());
+  const pid_t stopped =
+      cli::start({"run", path("s.yaml"), "--on", "local", "--out", path("out")}, streams.path());
   ASSERT_TRUE(within_10_s([&] { return std::filesystem::exists(started + "-again"); }))
       << read_file(streams / "stderr.txt");
   EXPECT_GT(processes_with(path("s.yaml")), 1U) << "the cell, besides the study";

@@ -6,14 +6,16 @@
 #include <map>
 #include <set>
 
+#include "datasets/disk/files.hpp"
 #include "datasets/text/errors.hpp"
 #include "eval/answer/answer_text.hpp"
 #include "eval/answer/render.hpp"
+#include "eval/engine/study_cell.hpp"
+#include "eval/engine/study_run.hpp"
 #include "eval/job/method_choice.hpp"
+#include "eval/job/study_file.hpp"
+#include "eval/result/result_file.hpp"
 #include "eval/result/version.hpp"
-#include "eval/study/study_cell.hpp"
-#include "eval/study/study_file.hpp"
-#include "eval/study/study_run.hpp"
 #include "eval/study/study_table.hpp"
 #include "tests/temp_folder.hpp"
 
@@ -44,6 +46,11 @@ std::string replaced_in(std::string text, const std::string& what, const std::st
   return text.replace(at, what.size(), by);
 }
 
+std::string without_disturbances() {
+  const std::string text = kSmallStudy;
+  return text.substr(0, text.find("disturb:"));
+}
+
 std::string study_error(const std::string& text) {
   return message_of<UsageError>([&] { parse_study(text, "s.yaml"); });
 }
@@ -58,8 +65,9 @@ TEST(StudyFile, IsReadAsItIsWritten) {
   const Study study = parse_study(kSmallStudy, "s.yaml");
   ASSERT_EQ(study.data.size(), 2u);
   EXPECT_EQ(study.data[1].name, "room-2");
-  EXPECT_EQ(study.data[1].simulation->seed, 2u);
-  EXPECT_EQ(study.methods[1].assignments, std::vector<std::string>{"max_range_m=15"});
+  EXPECT_EQ(study.data[1].data.simulation->seed, 2u);
+  const SettingChange near{"max_range_m", 15.0};
+  EXPECT_EQ(study.methods[1].segment.changes, std::vector<SettingChange>{near});
   EXPECT_EQ(study.axes[0].values, (std::vector<std::string>{"0", "0.05", "0.1"}));
   EXPECT_EQ(study.seeds, (std::vector<std::uint64_t>{1, 2, 3}));
 }
@@ -126,7 +134,7 @@ TEST(StudyFile, ReadsDataWithEveryFlagOfARun) {
   const std::string from = "seed: [1, 2]}";
   const std::string plain =
       replaced_in(kSmallStudy, from, from + "\n    reading: {hdl64_correction: true}");
-  EXPECT_TRUE(parse_study(plain, "s.yaml").data.front().reading.hdl64_correction);
+  EXPECT_TRUE(parse_study(plain, "s.yaml").data.front().data.reading.hdl64_correction);
   EXPECT_THAT(study_error(replaced_in(plain, "true", "maybe")),
               StartsWith("s.yaml:6: is not understood, expected true"));
 }
@@ -187,6 +195,34 @@ TEST(StudyPlan, KeepsTheKeysOfWhatDidNotChange) {
   EXPECT_EQ(shared("scans: 6", "scans: 7"), 0u);
 }
 
+TEST(StudyPlan, KnowsACellByItsValuesAndNotByTheirWords) {
+  const auto keys = [](const std::string& method) {
+    const Study study =
+        parse_study(replaced_in(without_disturbances(), "- hmm-mos", method), "s.yaml");
+    return keys_of(plan_study(study, "/nowhere"));
+  };
+  const auto whole = keys("- {name: far, method: hmm-mos, set: {max_range_m: 30}}");
+  EXPECT_EQ(keys("- {name: far, method: hmm-mos, set: {max_range_m: 30.0}}"), whole);
+  EXPECT_EQ(keys("- {name: far, method: hmm-mos, set: {max_range_m: 3e1}}"), whole);
+  EXPECT_NE(keys("- {name: far, method: hmm-mos, set: {max_range_m: 31}}"), whole);
+  const auto preset = keys("- {name: far, method: hmm-mos, preset: doals-20m}");
+  EXPECT_NE(preset, whole);
+  EXPECT_EQ(keys("- {name: far, method: hmm-mos, set: {voxel_size_m: 0.20, min_range_m: 0.5, "
+                 "max_range_m: 20, delay_scans: 0}}"),
+            preset)
+      << "a preset and its values are one";
+}
+
+TEST(StudyPlan, ShowsOneResultAtEachValueThatMeansIt) {
+  const Study study = parse_study(replaced_in(without_disturbances(), "seed: [1, 2]", "seed: 1") +
+                                      "vary: {setting: max_range_m, values: [50, 9]}\n",
+                                  "s.yaml");
+  StudyPlan plan = plan_study(study, "/nowhere");
+  EXPECT_EQ(plan.cells.size(), 2U * 3);
+  EXPECT_EQ(keys_of(plan).size(), 5U) << "50 m is the usual range of hmm-mos";
+  EXPECT_EQ(work_of(plan, {}).cells.size(), 5U);
+}
+
 TEST(StudyPlan, ComputesAgainWhatAChangedProgramLabelled) {
   const TempFolder folder;
   const std::string text = replaced_in(kSmallStudy, "- hmm-mos",
@@ -214,21 +250,37 @@ TEST(StudyPlan, KnowsTheCostOfACellByWhatItIs) {
   EXPECT_NE(cost_key("method: underwood, set: {max_range_m: 15}", "method: yoon"), before);
 }
 
-/// Writes the record of a cell as if it had been computed.
-void write_record(const StudyPlan& plan, const StudyCell& cell, double iou, double ms,
-                  const std::string& version = std::string(kMosbenchVersion)) {
-  const ordered_json record = {{"key", cell.key},
-                               {"version", version},
-                               {"simulated", true},
-                               {"summary", {{"iou", iou}, {"precision", 0.5}, {"recall", nullptr}}},
-                               {"worst", {{{"stem", "000003"}, {"iou", iou / 2}}}},
-                               {"timing", {{"ms_per_scan", ms}, {"cpu_s", 36.0}}}};
-  write_shared(record_file(plan.out, cell.key), json_text(record));
+/// Says of a cell what it would if it had been computed.
+void mark_done(PlannedCell& planned, double iou, double ms) {
+  planned.state = CellState::kDone;
+  planned.numbers = {.version = std::string(kMosbenchVersion),
+                     .simulated = true,
+                     .scored = true,
+                     .metrics = {iou, 0.5, std::nullopt},
+                     .ms_per_scan = ms,
+                     .wall_s = 1.0,
+                     .core_s = 36.0,
+                     .worst = BadScan{"000003", iou / 2, 1}};
 }
 
-std::string without_disturbances() {
-  const std::string text = kSmallStudy;
-  return text.substr(0, text.find("disturb:"));
+/// Writes the result of a cell as if it had been computed.
+void write_result(const StudyPlan& plan, const StudyCell& cell, const std::string& version) {
+  Result result;
+  result.key = cell.key;
+  result.sequence = SequenceName(cell.sequence, plan.out);
+  result.dataset = "semantickitti";
+  result.method = "HMM-MOS";
+  result.kind = "hmm-mos";
+  result.settings = RecordedSettings(default_method().defaults);
+  result.protocol = &protocol_named("semantickitti-mos");
+  result.range = result.protocol->default_range;
+  result.from.version = version;
+  ScanRow& row = result.scans.emplace_back();
+  row.stem = "000000";
+  row.points = 6;
+  row.predicted_moving_points = 3;
+  row.counts = Confusion{.tp = 2, .fp = 1, .fn = 1, .tn = 2};
+  write_file_atomic(cell_folder(plan.out, cell.key) / "result.json", format_result(result));
 }
 
 /// The two methods on three scenes.
@@ -247,13 +299,12 @@ TEST(StudyTable, HasMeansRanksAndTheParetoFront) {
   const TempFolder folder;
   const Study study =
       parse_study(replaced_in(three_scenes(), "- hmm-mos", "- hmm-mos\n  - yoon"), "s.yaml");
-  const StudyPlan plan = plan_study(study, folder.path());
+  StudyPlan plan = plan_study(study, folder.path());
   ASSERT_EQ(plan.cells.size(), 9u);
   // hmm-mos, yoon, near on three sequences
   const double ious[] = {0.8, 0.6, 0.4, 0.6, 0.6, 0.2, 0.7, 0.6, 0.3};
-  for (std::size_t i = 0; i < 9; ++i)
-    write_record(plan, plan.cells[i].cell, ious[i], i % 3 ? 40 : 20);
-  const StudyTable table = gather(plan_study(study, folder.path()));
+  for (std::size_t i = 0; i < 9; ++i) mark_done(plan.cells[i], ious[i], i % 3 ? 40 : 20);
+  const StudyTable table = gather(plan);
   ASSERT_EQ(table.rows.size(), 3u);
   const StudyMean& mean = table.rows[0].metrics[0];
   EXPECT_NEAR(*mean.value, 0.7, 1e-12);
@@ -288,15 +339,15 @@ TEST(StudyTable, TellsTheCommandOfAWorstScanWithAllThatTheStudySays) {
   std::string text = replaced_in(kSmallStudy, "semantickitti-mos", "mapmos\nrange_m: [1, 20]");
   text = replaced_in(text, "name: room", "name: room\n    reading: {deskew: none}");
   const Study study = parse_study(text, "s.yaml");
-  const StudyPlan plan = plan_study(study, folder.path());
-  write_record(plan, plan.cells.back().cell, 0.5, 1);
-  const StudyTable table = gather(plan_study(study, folder.path()));
+  StudyPlan plan = plan_study(study, folder.path());
+  mark_done(plan.cells.back(), 0.5, 1);
+  const StudyTable table = gather(plan);
   ASSERT_EQ(table.worst.size(), 1u);
   EXPECT_THAT(
       table.worst.front().command,
-      HasSubstr(
-          " --method underwood --deskew none --perturb mount_tilt_deg=1,seed=0 "
-          "--dataset semantickitti --protocol mapmos --range 1,20 --set max_range_m=15 --out "));
+      HasSubstr(" --dataset semantickitti --sequences 08 --deskew none --perturb "
+                "mount_tilt_deg=1,seed=0 --method underwood --protocol mapmos --range 1,20 --set "
+                "max_range_m=15 --out "));
 }
 
 TEST(StudyTable, AveragesSeedsBeforeSequences) {
@@ -308,13 +359,13 @@ TEST(StudyTable, AveragesSeedsBeforeSequences) {
           "  - name: mall\n    simulate: {layout: semantickitti, scene: mall, scans: 6, seed: 1}\n"
           "methods: hmm-mos\n"),
       "s.yaml");
-  const StudyPlan plan = plan_study(study, folder.path());
+  StudyPlan plan = plan_study(study, folder.path());
   const std::map<std::string, double> ious = {{"room-1", 0.2}, {"room-2", 0.4}, {"mall", 0.7}};
-  for (const PlannedCell& planned : plan.cells) {
+  for (PlannedCell& planned : plan.cells) {
     const double seed = static_cast<double>(planned.cell.seed);
-    write_record(plan, planned.cell, ious.at(planned.cell.data->name) + 0.01 * seed, 1);
+    mark_done(planned, ious.at(planned.cell.data->name) + 0.01 * seed, 1);
   }
-  const StudyTable table = gather(plan_study(study, folder.path()));
+  const StudyTable table = gather(plan);
   const StudyMean& mean = table.curves[0].metrics[0][2][0];
   EXPECT_EQ(mean.count, 2u) << "seeds of one scene are one sequence";
   EXPECT_NEAR(*mean.value, 0.52, 1e-12);
@@ -376,9 +427,8 @@ TEST(StudyScoring, IsNamedInEveryTable) {
   const Study study = parse_study(
       replaced_in(without_disturbances(), "semantickitti-mos", "mapmos\nrange_m: [1, 20]"),
       "s.yaml");
-  write_record(plan_study(study, folder.path()), plan_study(study, folder.path()).cells[0].cell,
-               0.5, 1);
-  const StudyPlan plan = plan_study(study, folder.path());
+  StudyPlan plan = plan_study(study, folder.path());
+  mark_done(plan.cells[0], 0.5, 1);
   const StudyTable table = gather(plan);
   const Answer answer = study_answer(plan, table);
   EXPECT_THAT(render(answer, Format::kText),
@@ -397,16 +447,9 @@ TEST(StudyScoring, IsNamedInEveryTable) {
 TEST(StudyTable, SaysWhyAMeanIsUndefined) {
   const TempFolder folder;
   const Study study = parse_study(without_disturbances(), "s.yaml");
-  const StudyPlan plan = plan_study(study, folder.path());
-  write_record(plan, plan.cells[0].cell, 0.5, 1);  // without recall
-  ordered_json record = {{"key", plan.cells[1].cell.key},
-                         {"version", std::string(kMosbenchVersion)},
-                         {"simulated", true},
-                         {"summary", nullptr},
-                         {"worst", ordered_json::array()},
-                         {"timing", ordered_json::object()}};
-  write_shared(record_file(plan.out, plan.cells[1].cell.key), json_text(record));
-  const StudyPlan done = plan_study(study, folder.path());
+  StudyPlan done = plan_study(study, folder.path());
+  mark_done(done.cells[0], 0.5, 1);  // without recall
+  done.cells[1].state = CellState::kDone;
   const StudyTable table = gather(done);
   EXPECT_THAT(
       render(study_answer(done, table), Format::kText),
@@ -421,15 +464,16 @@ TEST(StudyTable, SaysWhatIsMissingAndOfAnotherVersion) {
   const TempFolder folder;
   const Study study = parse_study(without_disturbances(), "s.yaml");
   const StudyPlan plan = plan_study(study, folder.path());
-  write_record(plan, plan.cells[0].cell, 0.5, 1, "0.0.1");
+  write_result(plan, plan.cells[0].cell, "0.0.1");
   const std::string& key = plan.cells[1].cell.key;
-  write_shared(record_file(folder.path(), key),
-               fmt::format("{{\"key\": \"{}\", \"version\": 3}}", key));
-  write_record(plan, plan.cells[2].cell, 0.5, 1);
+  write_file_atomic(cell_folder(folder.path(), key) / "result.json",
+                    fmt::format("{{\"key\": \"{}\", \"version\": 3}}", key));
+  write_result(plan, plan.cells[2].cell, std::string(kMosbenchVersion));
   const StudyPlan again = plan_study(study, folder.path());
   EXPECT_EQ(again.cells[0].state, CellState::kOtherVersion);
   EXPECT_EQ(again.cells[1].state, CellState::kMissing);
   EXPECT_EQ(again.cells[2].state, CellState::kDone);
+  EXPECT_EQ(again.cells[2].numbers.metrics[0], 0.5);
   EXPECT_THAT(render(study_answer(again, gather(again)), Format::kText),
               HasSubstr("INCOMPLETE: 3 cells are missing"));
   EXPECT_EQ(work_of(again, {}).cells.size(), 3u);
@@ -446,20 +490,20 @@ TEST(StudyFile, DrawsSettingsEvenlyBetweenLegalValues) {
   const StudyAxis& axis = study.axes[0];
   ASSERT_EQ(axis.values.size(), 12u * 3);
   EXPECT_EQ(axis.values[4], "2 max_range_m");
-  std::set<std::string> windows;
+  std::set<int> windows;
   double sum = 0;
   for (std::size_t i = 0; i < axis.values.size(); i += 3) {
-    const auto& base = axis.assignments[i];
-    sum += std::stod(base[0].value) / 12;
-    EXPECT_GE(std::stod(base[0].value), 5);
-    EXPECT_LE(std::stod(base[0].value), 20);
-    windows.insert(base[1].value);
-    EXPECT_NE(axis.assignments[i + 1][0].value, base[0].value);
-    EXPECT_EQ(axis.assignments[i + 1][1].value, base[1].value);
-    EXPECT_EQ(axis.assignments[i + 2][0].value, base[0].value);
+    const auto& base = axis.changes[i];
+    sum += std::get<double>(base[0].value) / 12;
+    EXPECT_GE(std::get<double>(base[0].value), 5);
+    EXPECT_LE(std::get<double>(base[0].value), 20);
+    windows.insert(std::get<int>(base[1].value));
+    EXPECT_NE(axis.changes[i + 1][0].value, base[0].value);
+    EXPECT_EQ(axis.changes[i + 1][1].value, base[1].value);
+    EXPECT_EQ(axis.changes[i + 2][0].value, base[0].value);
   }
   EXPECT_NEAR(sum, 12.5, 2.5);
-  EXPECT_EQ(windows, (std::set<std::string>{"1", "2", "3"}));
+  EXPECT_EQ(windows, (std::set<int>{1, 2, 3}));
   const auto error = [](const std::string& what, const std::string& by) {
     return study_error(replaced_in(sampled_study(), what, by));
   };
@@ -473,14 +517,15 @@ TEST(StudyFile, DrawsSettingsEvenlyBetweenLegalValues) {
 TEST(StudyTable, TellsHowMuchEachSampledSettingDecides) {
   const TempFolder folder;
   const Study study = parse_study(sampled_study(), "s.yaml");
-  const StudyPlan plan = plan_study(study, folder.path());
-  for (const PlannedCell& planned : plan.cells) {
+  StudyPlan plan = plan_study(study, folder.path());
+  for (PlannedCell& planned : plan.cells) {
     if (planned.cell.axis == nullptr) continue;
-    const std::string& range = planned.cell.assignments[planned.cell.method->assignments.size()];
-    ASSERT_THAT(range, StartsWith("max_range_m="));
-    write_record(plan, planned.cell, std::stod(range.substr(12)) / 30, 1);
+    const SettingChange& range =
+        planned.cell.job.segment.changes[planned.cell.method->segment.changes.size()];
+    ASSERT_EQ(range.name, "max_range_m");
+    mark_done(planned, std::get<double>(range.value) / 30, 1);
   }
-  const StudyTable table = gather(plan_study(study, folder.path()));
+  const StudyTable table = gather(plan);
   ASSERT_EQ(table.effects.size(), 2u);
   EXPECT_EQ(table.effects[0].points, 12u);
   EXPECT_EQ(table.effects[0].settings,

@@ -1,11 +1,10 @@
-#include "eval/study/study_scoring.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
+#include "eval/job/study_cells.hpp"
 #include "eval/protocols/protocol_list.hpp"
 
 namespace mosbench {
@@ -17,18 +16,18 @@ struct RuledCells {
   std::vector<const StudyCell*> cells;
 };
 
-std::optional<ScoreRule> rule_of(const StudyCell& cell, const Study& study) {
+std::optional<ScoreRule> rule_unless_refused(const StudyCell& cell) {
   try {
-    return score_rule(scoring_options(cell, study), cell.kind);
+    return rule_of(cell.job, cell.kind);
   } catch (const UsageError&) {
     return std::nullopt;
   }
 }
 
-std::vector<RuledCells> by_rule(const Study& study, const std::vector<StudyCell>& cells) {
+std::vector<RuledCells> by_rule(const std::vector<StudyCell>& cells) {
   std::vector<RuledCells> groups;
   for (const StudyCell& cell : cells) {
-    const auto rule = rule_of(cell, study);
+    const auto rule = rule_unless_refused(cell);
     if (!rule) continue;
     auto group = std::ranges::find(groups, *rule, &RuledCells::rule);
     if (group == groups.end()) group = groups.insert(group, {*rule, {}});
@@ -70,7 +69,8 @@ std::string missing_keys(const Study& study, const std::vector<RuledCells>& grou
     return fmt::format("give the key \"protocol:\", as `protocol: {}`", first->name);
   }
   const std::string range = "give the key \"range_m:\", as `range_m: [0.5, 20]`";
-  return study.protocol ? range : fmt::format("{}, and `protocol: {}`", range, first->name);
+  return study.rule.protocol != nullptr ? range
+                                        : fmt::format("{}, and `protocol: {}`", range, first->name);
 }
 
 [[noreturn]] void refuse(const Study& study, const std::vector<RuledCells>& groups) {
@@ -87,18 +87,8 @@ std::string missing_keys(const Study& study, const std::vector<RuledCells>& grou
 
 }  // namespace
 
-RunOptions scoring_options(const StudyCell& cell, const Study& study) {
-  RunOptions options;
-  options.method = cell.method->method;
-  options.preset = cell.method->preset;
-  options.protocol = study.protocol;
-  options.range = study.range;
-  options.assignments = cell.assignments;
-  return options;
-}
-
 std::optional<ScoreRule> shared_rule(const Study& study, const std::vector<StudyCell>& cells) {
-  const std::vector<RuledCells> groups = by_rule(study, cells);
+  const std::vector<RuledCells> groups = by_rule(cells);
   if (groups.empty()) return std::nullopt;
   if (groups.size() > 1) refuse(study, groups);
   return groups.front().rule;

@@ -1,25 +1,23 @@
-#include "eval/study/study_file.hpp"
+#include "eval/job/study_file.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "datasets/disk/files.hpp"
+#include "datasets/sequence/portable_math.hpp"
 #include "datasets/simulator/simulate.hpp"
 #include "datasets/simulator/simulated_layouts.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
-#include "eval/engine/odometry_choice.hpp"
-#include "eval/engine/run_plan.hpp"
+#include "eval/job/job_words.hpp"
 #include "eval/job/method_choice.hpp"
-#include "eval/job/presets.hpp"
+#include "eval/job/yaml_node.hpp"
 #include "eval/result/reading_json.hpp"
-#include "eval/result/settings_json.hpp"
-#include "eval/study/study_sampling.hpp"
-#include "eval/study/yaml_node.hpp"
 
 namespace mosbench {
 namespace {
@@ -67,7 +65,7 @@ Reading reading_of_study(const YamlNode& node, const fs::path& file) {
 std::vector<StudyData> simulations_of(const std::string& name, const YamlNode& node,
                                       const fs::path& file) {
   node.check_keys({"layout", "scene", "scans", "seed"});
-  StudySimulation simulation;
+  Simulation simulation;
   const YamlNode layout = node.at("layout");
   const auto kind = simulated_layout_from_string(layout.text());
   if (!kind) {
@@ -86,8 +84,8 @@ std::vector<StudyData> simulations_of(const std::string& name, const YamlNode& n
     StudyData& one = data.emplace_back();
     one.group = name;
     one.name = seeds.size() == 1 ? name : fmt::format("{}-{}", name, simulation.seed);
-    one.simulation = simulation;
-    one.dataset = to_string(simulation.layout);  // a folder's name does not say which
+    one.data.simulation = simulation;
+    one.data.kind = simulation.layout;  // a folder's name does not say which
   }
   return data;
 }
@@ -104,58 +102,55 @@ std::vector<StudyData> data_of(const YamlNode& node, const fs::path& file) {
   } else {
     data.front().name = data.front().group = name;
     const YamlNode path = node.at("path");
-    data.front().path = path_of(path, file);
-    if (!is_there(data.front().path)) {
-      path.refuse(fmt::format("{} is not there", data.front().path.string()), "a folder or file");
+    fs::path& place = data.front().data.path;
+    place = path_of(path, file);
+    if (!is_there(place)) {
+      path.refuse(fmt::format("{} is not there", place.string()), "a folder or file");
     }
   }
   for (StudyData& one : data) {
     if (const auto dataset = node.find("dataset")) {
-      one.dataset = dataset->text();
-      dataset->located([&] { return dataset_kind_option(one.dataset).has_value(); });
+      one.data.kind = dataset->located([&] { return dataset_kind_option(dataset->text()); });
     }
     if (const auto sequences = node.find("sequences")) {
-      for (const YamlNode& sequence : sequences->list()) one.sequences.push_back(sequence.text());
+      for (const YamlNode& sequence : sequences->list())
+        one.data.sequences.push_back(sequence.text());
     }
-    if (const auto reading = node.find("reading")) one.reading = reading_of_study(*reading, file);
+    if (const auto reading = node.find("reading"))
+      one.data.reading = reading_of_study(*reading, file);
   }
   return data;
-}
-
-StudyMethod plain_method(const std::string& name) {
-  StudyMethod method;
-  method.name = method.method = name;
-  return method;
 }
 
 /// A method by its name, or "all" of them.
 std::vector<StudyMethod> plain_methods(const YamlNode& node) {
   std::vector<StudyMethod> methods;
   if (node.text() == "all") {
-    for (const std::string& name : chosen_methods("all").names)
-      methods.push_back(plain_method(name));
+    for (const std::string& name : chosen_methods("all").names) {
+      methods.push_back({name, {.method = &method_named(name)}});
+    }
   } else {
-    node.located([&] { return &method_named(node.text()); });
-    methods.push_back(plain_method(node.text()));
+    methods.push_back(
+        {node.text(), {.method = node.located([&] { return &method_named(node.text()); })}});
   }
   return methods;
 }
 
-StudyMethod method_of(const YamlNode& node) {
-  StudyMethod method;
+StudyMethod described_method(const YamlNode& node) {
   node.check_keys({"name", "method", "preset", "set"});
-  method.method = node.at("method").text();
-  const MethodKind* kind = node.at("method").located([&] { return &method_named(method.method); });
-  method.name = node.find("name") ? name_of(node.at("name")) : method.method;
+  StudyMethod method;
+  Segment& segment = method.segment;
+  const YamlNode named = node.at("method");
+  segment.method = named.located([&] { return &method_named(named.text()); });
+  method.name = node.find("name") ? name_of(node.at("name")) : named.text();
   if (const auto preset = node.find("preset")) {
-    method.preset = preset->text();
-    preset->located([&] { return &preset_named(*method.preset); });
+    segment.preset = preset->located([&] { return &preset_named(preset->text()); });
+    preset->located([&] { return &method_of(named.text(), preset->text()); });
   }
   if (const auto set = node.find("set")) {
-    Settings settings = kind->defaults;
     for (const auto& [key, value] : set->members()) {
-      method.assignments.push_back(fmt::format("{}={}", key, value.text()));
-      value.located([&] { apply_setting_assignment(method.assignments.back(), settings); });
+      segment.changes.push_back(value.located(
+          [&] { return change_of(fmt::format("{}={}", key, value.text()), *segment.method); }));
     }
   }
   return method;
@@ -203,22 +198,27 @@ void check_names(const YamlNode& node, const std::vector<Named>& rows) {
   }
 }
 
-/// Checks a setting and its values by all methods that have it, and returns what one of them says
+/// Returns the values of a setting, checked by all methods that have it, and what one of them says
 /// of it. `place` is where its name stands.
-Setting checked_setting(const std::string& name, const YamlNode& place,
-                        const std::vector<YamlNode>& values,
-                        const std::vector<StudyMethod>& methods) {
+std::pair<Setting, std::vector<SettingValue>> setting_values(
+    const std::string& name, const YamlNode& place, const std::vector<YamlNode>& nodes,
+    const std::vector<StudyMethod>& methods) {
   std::optional<Setting> known;
+  std::vector<SettingValue> values;
   for (const StudyMethod& method : methods) {
-    Settings settings = method_named(method.method).defaults;
-    if (settings.find(name) == nullptr) continue;
-    known = *settings.find(name);
-    for (const YamlNode& value : values) {
-      value.located(
-          [&] { apply_setting_assignment(fmt::format("{}={}", name, value.text()), settings); });
+    const Setting* setting = method.segment.method->defaults.find(name);
+    if (setting == nullptr) continue;
+    known = *setting;
+    values.clear();
+    for (const YamlNode& node : nodes) {
+      values.push_back(node.located([&] {
+                             return change_of(fmt::format("{}={}", name, node.text()),
+                                              *method.segment.method);
+                           })
+                           .value);
     }
   }
-  if (known) return *known;
+  if (known) return {*known, values};
   place.refuse(fmt::format("no method has a setting {}", mosbench::quoted(name)),
                "one of `mosbench list methods`");
 }
@@ -227,25 +227,68 @@ StudyAxis setting_of(const YamlNode& node, const std::vector<StudyMethod>& metho
   node.check_keys({"setting", "values"});
   StudyAxis axis;
   axis.name = node.at("setting").text();
-  const std::vector<YamlNode> values = node.at("values").list();
-  checked_setting(axis.name, node.at("setting"), values, methods);
-  for (const YamlNode& value : values) {
-    axis.values.push_back(value.text());
-    axis.assignments.push_back({{axis.name, value.text()}});
+  const auto nodes = node.at("values").list();
+  for (const SettingValue& value :
+       setting_values(axis.name, node.at("setting"), nodes, methods).second) {
+    axis.values.push_back(to_string(value));
+    axis.changes.push_back({{axis.name, value}});
   }
   return axis;
 }
 
+/// A setting that is drawn evenly between two legal values.
+struct SampledSetting {
+  std::string name;
+  double low, high;
+  bool is_whole;
+};
+
 SampledSetting sampled_setting_of(const std::string& name, const YamlNode& limits,
                                   const std::vector<StudyMethod>& methods) {
   const std::vector<YamlNode> ends = limits.list();
-  const Setting setting = checked_setting(name, limits, ends, methods);
+  const Setting setting = setting_values(name, limits, ends, methods).first;
   if (ends.size() != 2 || std::holds_alternative<std::string>(setting.value)) {
     limits.refuse(fmt::format("{} cannot be drawn", name), "a number's [LOWEST, HIGHEST]");
   }
   const double low = *parse_double(ends[0].text()), high = *parse_double(ends[1].text());
   if (low >= high) limits.refuse(fmt::format("{} cannot be drawn", name), "LOWEST below HIGHEST");
   return {name, low, high, std::holds_alternative<int>(setting.value)};
+}
+
+/// The n-th number of one setting's stream, with six digits.
+SettingValue drawn(const SampledSetting& setting, std::uint64_t stream, std::uint64_t n) {
+  const double part = uniform(random_word(stream, n));
+  if (setting.is_whole) {
+    return static_cast<int>(setting.low + std::floor(part * (setting.high - setting.low + 1)));
+  }
+  const std::string number =
+      fmt::format("{:.6g}", setting.low + part * (setting.high - setting.low));
+  // Digits that are cut must not lead out of what is legal.
+  return std::clamp(std::stod(number), setting.low, setting.high);
+}
+
+/// Draws all settings at once, after Saltelli et al. 2010: per point a value with all of them, and
+/// one for each setting with that one drawn anew. The same arguments give the same values on every
+/// machine.
+StudyAxis sampled_axis(const std::vector<SampledSetting>& settings, std::size_t points,
+                       std::uint64_t seed) {
+  StudyAxis axis;
+  axis.name = "sample";
+  for (const SampledSetting& setting : settings) axis.sampled.push_back(setting.name);
+  for (std::size_t point = 0; point < points; ++point) {
+    std::vector<SettingChange> all;
+    for (std::size_t i = 0; i < settings.size(); ++i) {
+      all.push_back({settings[i].name, drawn(settings[i], random_word(seed, i), 2 * point)});
+    }
+    axis.values.push_back(std::to_string(point + 1));
+    axis.changes.push_back(all);
+    for (std::size_t i = 0; i < settings.size(); ++i) {
+      axis.values.push_back(fmt::format("{} {}", point + 1, settings[i].name));
+      axis.changes.push_back(all);
+      axis.changes.back()[i].value = drawn(settings[i], random_word(seed, i), 2 * point + 1);
+    }
+  }
+  return axis;
 }
 
 StudyAxis sample_of(const YamlNode& node, const std::vector<StudyMethod>& methods) {
@@ -260,30 +303,32 @@ StudyAxis sample_of(const YamlNode& node, const std::vector<StudyMethod>& method
                       node.find("seed") ? node.at("seed").whole(0, UINT64_MAX) : 1);
 }
 
-std::string range_of(const YamlNode& node, const std::optional<std::string>& protocol) {
+RangeGate range_of(const YamlNode& node, const Protocol* protocol) {
   const std::vector<YamlNode> limits = node.list();
-  if (limits.size() != 2 || !protocol) {
+  if (limits.size() != 2 || protocol == nullptr) {
     node.refuse("range_m is not understood", "[MIN, MAX] together with a protocol");
   }
   const std::string range = fmt::format("{},{}", limits[0].text(), limits[1].text());
-  node.located([&] { return range_option(range, protocol_named(*protocol)).min_m; });
-  return range;
+  return node.located([&] { return range_option(range, *protocol); });
+}
+
+std::optional<OdometryChoice> odometry_of(const YamlNode& kind) {
+  if (kind.text() == "none") return std::nullopt;
+  OdometryOptions options;
+  options.kind = kind.text();
+  return kind.located([&] { return choose_odometry(options, {}); });
 }
 
 void read_rest(const YamlNode& root, Study& study) {
   if (const auto protocol = root.find("protocol")) {
-    study.protocol = protocol->text();
-    protocol->located([&] { return &protocol_named(*study.protocol); });
+    study.rule.protocol = protocol->located([&] { return &protocol_named(protocol->text()); });
   }
-  if (const auto range = root.find("range_m")) study.range = range_of(*range, study.protocol);
+  if (const auto range = root.find("range_m")) {
+    study.rule.range = range_of(*range, study.rule.protocol);
+  }
   if (const auto odometry = root.find("odometry")) {
     study.odometries.clear();
-    for (const YamlNode& kind : odometry->list()) {
-      study.odometries.push_back(kind.text() == "none" ? "" : kind.text());
-      OdometryOptions options;
-      if (!study.odometries.back().empty()) options.kind = study.odometries.back();
-      kind.located([&] { return choose_odometry(options, {}).kind; });
-    }
+    for (const YamlNode& kind : odometry->list()) study.odometries.push_back(odometry_of(kind));
   }
   if (const auto disturb = root.find("disturb")) {
     for (const YamlNode& kind : disturb->list()) study.axes.push_back(disturbance_of(kind));
@@ -316,7 +361,7 @@ Study parse_study(const std::string& text, const fs::path& file) {
     for (StudyData& data : data_of(node, file)) study.data.push_back(std::move(data));
   }
   for (const YamlNode& node : root.at("methods").list()) {
-    const auto methods = node.is_map() ? std::vector{method_of(node)} : plain_methods(node);
+    const auto methods = node.is_map() ? std::vector{described_method(node)} : plain_methods(node);
     study.methods.insert(study.methods.end(), methods.begin(), methods.end());
   }
   check_names(root.at("data"), study.data);

@@ -1,4 +1,4 @@
-#include "eval/study/engine_process.hpp"
+#include "eval/engine/engine_process.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-#include "eval/study/study_cell.hpp"
+#include "eval/engine/study_cell.hpp"
 
 namespace mosbench {
 
@@ -13,6 +13,10 @@ struct StudyWork {
   std::optional<double> cpu_s;            ///< of one core; nothing where a cost is not known
 };
 StudyWork work_of(const StudyPlan& plan, const CostModel& costs);
+
+/// Computes what is missing in this process, a cell after the other with so many threads. Throws
+/// DataError where the folder cannot be written.
+void run_here(const StudyPlan& plan, unsigned threads);
 
 struct EngineOptions {
   std::string profile = "local";  ///< local, slurm, or the folder of a profile of the user's

@@ -1,4 +1,4 @@
-#include "eval/study/study_run.hpp"
+#include "eval/engine/study_run.hpp"
 
 #include <fmt/format.h>
 #include <signal.h>
@@ -11,9 +11,10 @@
 #include "datasets/text/counted.hpp"
 #include "datasets/text/errors.hpp"
 #include "eval/answer/answer_text.hpp"
+#include "eval/engine/engine_process.hpp"
+#include "eval/engine/workflow_asset.hpp"
+#include "eval/result/machine.hpp"
 #include "eval/result/tell.hpp"
-#include "eval/study/engine_process.hpp"
-#include "eval/study/workflow_asset.hpp"
 
 namespace mosbench {
 namespace {
@@ -65,7 +66,10 @@ ordered_json group_json(const Group& group, std::size_t number) {
 /// Where cells are computed: a program's command may name files from where it is typed. Other nodes
 /// need not have that folder for anything else.
 fs::path folder_of_commands(const StudyPlan& plan, const fs::path& out) {
-  return std::ranges::any_of(plan.study->methods, is_program) ? fs::current_path() : out;
+  return std::ranges::any_of(plan.study->methods,
+                             [](const StudyMethod& method) { return method.segment.is_program(); })
+             ? fs::current_path()
+             : out;
 }
 
 /// Writes what Snakemake reads to OUT/workflow, and returns the folder of the profile.
@@ -90,8 +94,9 @@ StudyWork work_of(const StudyPlan& plan, const CostModel& costs) {
   StudyWork work;
   double seconds = 0;
   bool known = true;
+  std::set<std::string> keys;
   for (const PlannedCell& planned : plan.cells) {
-    if (planned.state == CellState::kDone) continue;
+    if (planned.state == CellState::kDone || !keys.insert(planned.cell.key).second) continue;
     work.cells.push_back(&planned);
     const auto expected_s = costs.seconds(planned.cell);
     known = known && expected_s.has_value();
@@ -101,14 +106,24 @@ StudyWork work_of(const StudyPlan& plan, const CostModel& costs) {
   return work;
 }
 
+void run_here(const StudyPlan& plan, unsigned threads) {
+  clear_study(plan.out);
+  const StudyWork work = work_of(plan, {});
+  keep_freed_memory();
+  for (std::size_t i = 0; i < work.cells.size(); ++i) {
+    tell(fmt::format("cell {} of {}: {}", i + 1, work.cells.size(), work.cells[i]->cell.title()));
+    compute_cell(*work.cells[i], plan.out, threads);
+  }
+}
+
 int run_engine(const StudyPlan& plan, const CostModel& costs, const EngineOptions& options) {
   const fs::path out = fs::absolute(plan.out);
   const StudyWork work = work_of(plan, costs);
-  remove_abandoned(plan.out);
+  clear_study(plan.out);
   if (work.cells.empty()) return 0;
   std::set<const StudyData*> made;
   for (const PlannedCell* planned : work.cells) {
-    if (made.insert(planned->cell.data).second) made_data(plan.out, *planned->cell.data);
+    if (made.insert(planned->cell.data).second) made_data(plan.out, planned->cell.data->data);
   }
   const bool local = options.profile == "local";
   const double even_s = work.cpu_s.value_or(0) / 64;  // so that cores end together
@@ -130,7 +145,7 @@ int run_engine(const StudyPlan& plan, const CostModel& costs, const EngineOption
   const EngineEnd end = run_in_group({"snakemake", "--snakefile", out / "workflow/Snakefile",
                                       "--directory", out, "--profile", profile});
   if (end.stopped_by) {
-    remove_abandoned(plan.out);
+    clear_study(plan.out);
     raise(*end.stopped_by);  // ends this process, as it would have without us
   }
   return end.exit_code;

@@ -1,4 +1,4 @@
-#include "eval/study/yaml_node.hpp"
+#include "eval/job/yaml_node.hpp"
 
 #include <fmt/format.h>
 

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "eval/job/study_cells.hpp"
+#include "eval/result/result_set.hpp"
+
+namespace mosbench {
+
+/// What lies where a cell's result belongs.
+enum class CellState : std::uint8_t {
+  kMissing,
+  kFailed,        ///< and what it said lies there
+  kOtherVersion,  ///< a result of another version of mosbench
+  kDone
+};
+
+/// Returns "missing", "failed", "other version" or "done".
+std::string_view to_string(CellState state);
+
+/// A scan with a poor IoU.
+struct BadScan {
+  std::string stem;
+  double iou = 0;
+  std::int64_t wrong = 0;  ///< points
+};
+
+/// What tables need of the result of a cell.
+struct CellNumbers {
+  std::string version;  ///< of mosbench
+  bool simulated = false;
+  bool scored = false;  ///< whether any scan counts
+  std::array<std::optional<double>, kBriefMetrics.size()> metrics;
+  std::optional<double> ms_per_scan, wall_s, core_s;
+  std::optional<BadScan> worst;
+};
+
+/// Returns what tables need of a result.
+CellNumbers numbers_of(const Result& result);
+
+struct PlannedCell {
+  StudyCell cell;
+  CellState state = CellState::kMissing;
+  CellNumbers numbers = {};  ///< of a result that lies there
+  std::string failure = {};  ///< why there is none
+};
+
+/// All cells of a study, in the order of its file.
+struct StudyPlan {
+  const Study* study = nullptr;
+  std::filesystem::path out;
+  std::vector<PlannedCell> cells;
+  /// By which every cell is scored; nothing where the settings of all are refused.
+  std::optional<ScoreRule> rule;
+};
+
+/// Lists the cells and what is known of them. Data on disk are opened, simulated ones are not made.
+/// With `only` given, of these keys alone. Throws UsageError, also where cells would be scored by
+/// different rules, and DataError; a sequence that cannot be opened is a cell that will fail.
+StudyPlan plan_study(const Study& study, const std::filesystem::path& out,
+                     const std::vector<std::string>& only = {});
+
+/// Looks again at what lies where a cell's result belongs.
+void look_up(PlannedCell& planned, const std::filesystem::path& out);
+
+/// Returns the folder of a cell: its result.json, or its failure.json.
+std::filesystem::path cell_folder(const std::filesystem::path& out, const std::string& key);
+
+/// Returns where data lie; simulated ones below the folder of the study.
+std::filesystem::path place_of(const std::filesystem::path& out, const Data& data);
+
+/// Removes what processes of this host that have ended left half-written in a study's folder.
+void clear_study(const std::filesystem::path& out);
+
+}  // namespace mosbench

@@ -1,0 +1,190 @@
+#include "eval/job/job.hpp"
+
+#include <fmt/format.h>
+
+#include <iomanip>
+#include <sstream>
+#include <stdexcept>
+
+#include "datasets/sequence/fingerprint.hpp"
+#include "datasets/text/errors.hpp"
+#include "datasets/text/shell_text.hpp"
+#include "eval/exec/exec_method.hpp"
+#include "eval/result/reading_json.hpp"
+#include "eval/result/settings_json.hpp"
+
+namespace mosbench {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::ordered_json;
+
+/// A benchmark with a range limit is scored over the range it was run at.
+bool is_scored_where_run(const Protocol& protocol) {
+  return protocol.range_rule != RangeRule::kNone && protocol.default_range.max_m > 0;
+}
+
+const Protocol& protocol_of(const Job& job, DatasetKind kind) {
+  return job.rule.protocol != nullptr ? *job.rule.protocol
+                                      : protocol_named(preset_of(job, kind).protocol);
+}
+
+/// Returns the effective settings; where they are refused, why.
+ordered_json config_of(const Job& job, DatasetKind kind) {
+  try {
+    ordered_json config = to_json(settings_of(job, kind));
+    if (job.segment.is_program()) config.erase("timeout_s");  // decides no label
+    return config;
+  } catch (const UsageError& error) {
+    return {{"refused", error.what()}};
+  }
+}
+
+ordered_json rule_json(const Job& job, DatasetKind kind) {
+  try {
+    const ScoreRule rule = rule_of(job, kind);
+    return {{"name", std::string(rule.protocol->name)},
+            {"min_range_m", rule.range.min_m},
+            {"max_range_m", rule.range.max_m}};
+  } catch (const UsageError&) {
+    return nullptr;  // as the settings are refused
+  }
+}
+
+std::string flag(const char* name, const std::string& value) {
+  return fmt::format(" --{} {}", name, shell_word(value));
+}
+
+/// "a=1,b=2", or nothing.
+std::string assignments(const std::vector<SettingChange>& changes) {
+  std::string words;
+  for (const SettingChange& change : changes) {
+    words += fmt::format("{}{}={}", words.empty() ? "" : ",", change.name, to_string(change.value));
+  }
+  return words;
+}
+
+/// The settings that were given by name.
+std::vector<SettingChange> changes_of(const OdometryChoice& choice) {
+  std::vector<SettingChange> changes;
+  for (const Setting& setting : choice.settings.all()) {
+    const Setting& usual = *choice.kind->defaults.find(setting.name);
+    const bool is_flag = choice.says_deskew && setting.name == "deskew";
+    if (setting.value == usual.value || is_flag) continue;
+    changes.push_back({std::string(setting.name), setting.value});
+  }
+  return changes;
+}
+
+}  // namespace
+
+bool Segment::is_program() const { return method->name == kExecKind; }
+
+Preset preset_of(const Job& job, DatasetKind kind) {
+  return job.segment.preset != nullptr ? preset_for(*job.segment.preset, kind)
+                                       : default_preset(kind);
+}
+
+Settings settings_of(const Job& job, DatasetKind kind) {
+  const MethodKind& method = *job.segment.method;
+  Settings settings = settings_of(preset_of(job, kind), method);
+  for (const SettingChange& change : job.segment.changes) settings.set(change.name, change.value);
+  try {
+    method.check(settings);
+  } catch (const std::invalid_argument& error) {
+    throw UsageError(fmt::format("configuration: {}", error.what()));
+  }
+  return settings;
+}
+
+ScoreRule rule_of(const Job& job, DatasetKind kind) {
+  const Protocol& protocol = protocol_of(job, kind);
+  if (job.rule.range) {
+    check_range(*job.rule.range, protocol);
+    return {&protocol, *job.rule.range};
+  }
+  if (!is_scored_where_run(protocol)) return {&protocol, protocol.default_range};
+  const Settings settings = settings_of(job, kind);
+  const bool known = settings.find(common_settings::kMinRange_m) != nullptr &&
+                     settings.find(common_settings::kMaxRange_m) != nullptr;
+  return {&protocol, known ? RangeGate{settings.number(common_settings::kMinRange_m),
+                                       settings.number(common_settings::kMaxRange_m)}
+                           : protocol.default_range};
+}
+
+void check_range(const RangeGate& range, const Protocol& protocol) {
+  if (protocol.range_rule != RangeRule::kNone || range == protocol.default_range) return;
+  throw UsageError(fmt::format("--range: protocol {} counts points at every range, expected none",
+                               protocol.name));
+}
+
+std::string perturb_text(const Job& job) {
+  return job.data.reading.perturb ? to_string(*job.data.reading.perturb) : "";
+}
+
+ordered_json identity_of(const Job& job, DatasetKind kind, const ordered_json& input,
+                         const std::string& files) {
+  ordered_json identity = {{"input", input},
+                           {"method", std::string(job.segment.method->title)},
+                           {"config", config_of(job, kind)},
+                           {"protocol", rule_json(job, kind)},
+                           {"perturb", perturb_text(job)}};
+  if (job.odometry) {
+    identity["poses"] = to_json(members_of(statement_of(*job.odometry)));
+    if (job.odometry->says_deskew) identity["deskew"] = to_string(job.odometry->deskew);
+  }
+  if (job.odometry && job.odometry->drop_moving) identity["drop_moving"] = true;
+  if (!files.empty()) identity["program"] = files;
+  return identity;
+}
+
+std::string key_of(const ordered_json& identity) { return hash_of_text(identity.dump()); }
+
+std::string program_files(const MethodKind& method) {
+  std::string contents;
+  if (method.name != kExecKind) return contents;
+  std::istringstream command{std::string(method.title.substr(std::string_view("exec:").size()))};
+  for (std::string word; !(command >> std::ws).eof();) {
+    const char quote = static_cast<char>(command.peek());
+    if (quote == '"' || quote == '\'') {
+      command >> std::quoted(word, quote);
+    } else {
+      command >> word;
+    }
+    std::error_code ignored;
+    if (fs::is_regular_file(word, ignored)) contents += hash_of_file(word) + "\n";
+  }
+  return contents.empty() ? contents : hash_of_text(contents);
+}
+
+std::string to_words(const Data& data) {
+  std::string words = shell_word(data.path.string());
+  if (data.kind) words += flag("dataset", std::string(to_string(*data.kind)));
+  if (!data.sequences.empty()) {
+    words += flag("sequences", fmt::format("{}", fmt::join(data.sequences, ",")));
+  }
+  return words + told_flags(data.reading);
+}
+
+std::string to_words(const Job& job) {
+  std::string words = "mosbench run " + to_words(job.data);
+  const bool is_program = job.segment.is_program();
+  words += flag("method",
+                std::string(is_program ? job.segment.method->title : job.segment.method->name));
+  if (job.segment.preset != nullptr) words += flag("preset", std::string(job.segment.preset->name));
+  if (job.odometry) {
+    std::string odometry(job.odometry->kind->name);
+    const std::string changes = assignments(changes_of(*job.odometry));
+    if (!changes.empty()) odometry += "," + changes;
+    if (job.odometry->drop_moving) odometry += ",drop_moving=on";
+    words += flag("odometry", odometry);
+  }
+  if (job.rule.protocol != nullptr) words += flag("protocol", std::string(job.rule.protocol->name));
+  if (job.rule.range) {
+    words += flag("range", fmt::format("{},{}", job.rule.range->min_m, job.rule.range->max_m));
+  }
+  const std::string changes = assignments(job.segment.changes);
+  return changes.empty() ? words : words + flag("set", changes);
+}
+
+}  // namespace mosbench

@@ -1,0 +1,104 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <mosbench/method.hpp>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "datasets/layouts/dataset.hpp"
+#include "eval/job/odometry_choice.hpp"
+#include "eval/job/presets.hpp"
+#include "eval/protocols/protocol.hpp"
+
+namespace mosbench {
+
+/// Data that are simulated when they are needed.
+struct Simulation {
+  DatasetKind layout = DatasetKind::kSemanticKitti;
+  std::string scene;  ///< a name, or the path of a file
+  std::size_t scans = 0;
+  std::uint64_t seed = 1;
+};
+
+/// Which sequences, and how they are read.
+struct Data {
+  std::filesystem::path path;
+  std::optional<DatasetKind> kind = std::nullopt;  ///< recognised when not set
+  std::vector<std::string> sequences = {};         ///< all when empty
+  Reading reading = {};
+  std::optional<Simulation> simulation = std::nullopt;  ///< makes the data; then `path` is unused
+};
+
+/// A setting and the value that was given to it.
+struct SettingChange {
+  std::string name;
+  SettingValue value;
+
+  bool operator==(const SettingChange&) const = default;
+  auto operator<=>(const SettingChange&) const = default;
+};
+
+/// A method, and what was said about its settings.
+struct Segment {
+  const MethodKind* method = nullptr;
+  const Preset* preset = nullptr;           ///< null: the usual one of the data set
+  std::vector<SettingChange> changes = {};  ///< of the preset's values; the last one of a name wins
+  std::string label = {};  ///< what the name of a folder of results should also say
+
+  bool is_program() const;  ///< of the user, in a process of its own
+};
+
+/// What was said about scoring; the rest is the preset's.
+struct RuleChoice {
+  const Protocol* protocol = nullptr;
+  std::optional<RangeGate> range = std::nullopt;
+};
+
+/// A question to be answered: what to read, how to find poses, segment and score. Nothing in it is
+/// text that is still to be parsed.
+struct Job {
+  Data data = {};
+  std::optional<OdometryChoice> odometry = std::nullopt;  ///< finds the poses; nothing: the data's
+  Segment segment = {};
+  RuleChoice rule = {};
+};
+
+/// Returns the preset of a job on data of this kind, the named or the usual one.
+Preset preset_of(const Job& job, DatasetKind kind);
+
+/// Returns the effective settings of the method: defaults < preset < changes. Throws UsageError
+/// where they contradict each other.
+Settings settings_of(const Job& job, DatasetKind kind);
+
+/// Returns the rule by which labels on data of this kind are scored. Throws UsageError as
+/// `settings_of` where the rule depends on settings.
+ScoreRule rule_of(const Job& job, DatasetKind kind);
+
+/// Throws UsageError for a limit that the protocol does not know.
+void check_range(const RangeGate& range, const Protocol& protocol);
+
+/// Says how a job's scans are disturbed, in the words of --perturb; empty for not at all.
+std::string perturb_text(const Job& job);
+
+/// Returns what decides the result of a job on one sequence, but the program: effective values,
+/// whatever words were used. `input` stands for the sequence as it is before the job reads it,
+/// `files` are the `program_files` of the method.
+nlohmann::ordered_json identity_of(const Job& job, DatasetKind kind,
+                                   const nlohmann::ordered_json& input, const std::string& files);
+
+/// Returns the hash of an identity, 32 hexadecimal digits.
+std::string key_of(const nlohmann::ordered_json& identity);
+
+/// Returns a hash of all files that the command of a program of the user names; empty for other
+/// methods, and where it names none.
+std::string program_files(const MethodKind& method);
+
+/// Returns the command line that asks for a job, for a shell: "mosbench run DATA ...".
+std::string to_words(const Job& job);
+/// The part of it that says which sequences and how they are read.
+std::string to_words(const Data& data);
+
+}  // namespace mosbench

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "eval/job/job.hpp"
+
+namespace mosbench {
+
+/// What the user asked of `mosbench run`, as typed.
+struct JobWords {
+  std::filesystem::path input;
+  std::string dataset = "auto";
+  std::vector<std::string> sequences;
+  std::optional<std::string> method, preset, protocol, range;
+  std::string moving = "now";  ///< or "ever" or "ever:SECONDS"
+  std::optional<std::filesystem::path> config_file;
+  Reading reading = {};
+  OdometryOptions odometry;  ///< poses are found by it when a kind is named
+  std::vector<std::string> assignments;
+};
+
+/// Parses them. Throws UsageError.
+Job job_of(const JobWords& words);
+
+/// Returns what "KEY=VALUE" of --set says to a method. Throws UsageError.
+SettingChange change_of(const std::string& assignment, const MethodKind& method);
+
+/// "auto" is nothing. Throws UsageError for a name that is no data set kind.
+std::optional<DatasetKind> dataset_kind_option(const std::string& name);
+
+/// "MIN,MAX" in metres, MAX -1 for no limit. Throws UsageError, also for a limit that the protocol
+/// does not know.
+RangeGate range_option(const std::string& text, const Protocol& protocol);
+
+}  // namespace mosbench

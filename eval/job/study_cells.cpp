@@ -1,0 +1,232 @@
+#include "eval/job/study_cells.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "datasets/disk/files.hpp"
+#include "datasets/perturb/perturbation.hpp"
+#include "datasets/sequence/fingerprint.hpp"
+#include "datasets/simulator/scene_json.hpp"
+#include "datasets/simulator/simulate.hpp"
+#include "datasets/text/errors.hpp"
+#include "datasets/text/text.hpp"
+#include "eval/result/reading_json.hpp"
+
+namespace mosbench {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::ordered_json;
+
+ordered_json simulation_json(const Simulation& simulation) {
+  return {{"layout", to_string(simulation.layout)},
+          {"scene", hash_of_text(format_scene(load_scene(simulation.scene)))},
+          {"scans", simulation.scans},
+          {"seed", simulation.seed}};
+}
+
+/// Names and sizes of all files, and the bytes of those that are no scans: the same for a copy of
+/// the data, and known without reading scans.
+std::string content_of(const Sequence& sequence) {
+  std::string listing;
+  for (const fs::path& file : sequence.files()) {
+    listing += fmt::format("{} {}\n", file.filename().string(), size_of(file));
+  }
+  for (const fs::path& file : sequence.recording().files) listing += hash_of_file(file) + "\n";
+  return hash_of_text(listing);
+}
+
+/// What a cell has to say of a sequence on disk. One that cannot be opened says why.
+ordered_json sequence_json(const Data& data, const std::string& name) {
+  ordered_json json;
+  try {
+    Reading reading = data.reading;
+    const Dataset dataset = open_dataset(data.path, {data.kind, {name}, reading});
+    reading.poses = OwnPoses{};
+    json = {{"dataset", to_string(dataset.kind)},
+            {"content", content_of(*dataset.sequences.front())},
+            {"reading", told_json(reading)}};
+  } catch (const std::runtime_error& error) {  // DataError, or UsageError of what it lacks
+    json = {{"unreadable", error.what()}};
+  }
+  return json;
+}
+
+struct KnownSequence {
+  DatasetKind kind;
+  std::string name;
+  ordered_json input;
+};
+
+/// Throws UsageError for a sequence that the simulation does not write.
+std::vector<KnownSequence> simulated_sequences(const StudyData& data) {
+  const Simulation& simulation = *data.data.simulation;
+  const std::vector<std::string> written =
+      simulated_names(simulation.layout, load_scene(simulation.scene));
+  const std::vector<std::string>& wanted = data.data.sequences;
+  const ordered_json json = {{"simulated", simulation_json(simulation)},
+                             {"reading", told_json(data.data.reading)}};
+  std::vector<KnownSequence> sequences;
+  for (const std::string& name : wanted.empty() ? written : wanted) {
+    if (std::ranges::find(written, name) == written.end()) {
+      throw UsageError(fmt::format("{}: simulates no sequence {}, expected {}", data.name,
+                                   mosbench::quoted(name), fmt::join(written, ", ")));
+    }
+    sequences.push_back({simulation.layout, name, json});
+  }
+  return sequences;
+}
+
+std::vector<KnownSequence> sequences_of(const StudyData& data) {
+  if (data.data.simulation) return simulated_sequences(data);
+  std::vector<KnownSequence> sequences;
+  std::optional<DatasetKind> kind;
+  const OpenOptions options{data.data.kind, data.data.sequences, data.data.reading};
+  try {
+    for (const SequenceFolder& folder : find_sequences(data.data.path, options, kind)) {
+      sequences.push_back({*kind, folder.name, sequence_json(data.data, folder.name)});
+    }
+  } catch (const UsageError& error) {
+    throw UsageError(fmt::format("{}: {}", data.name, error.what()));
+  }
+  return sequences;
+}
+
+/// As --perturb says it; nothing where scans stay as they are.
+std::optional<Perturbation> perturb_of(const StudyCell& cell) {
+  if (cell.axis == nullptr || cell.axis->kind == nullptr) return std::nullopt;
+  return parse_perturbation(
+      fmt::format("{}={}{},seed={}", cell.axis->name, cell.value, cell.axis->with, cell.seed));
+}
+
+/// Lists the cells of one method on one sequence after the other.
+class CellLister {
+ public:
+  explicit CellLister(const Study& study) : study_(study) {
+    for (const StudyMethod& method : study.methods) {
+      program_of_[&method] = program_files(*method.segment.method);
+    }
+  }
+
+  void list(const StudyData& data, const KnownSequence& sequence, const StudyMethod& method,
+            const std::optional<OdometryChoice>& odometry) {
+    StudyCell cell = {.data = &data,
+                      .kind = sequence.kind,
+                      .sequence = sequence.name,
+                      .method = &method,
+                      .odometry = odometry ? std::string(odometry->kind->name) : ""};
+    cell.job = {
+        .data = data.data, .odometry = odometry, .segment = method.segment, .rule = study_.rule};
+    cell.job.data.sequences = {sequence.name};
+    if (odometry) cell.job.data.reading.poses = ByOdometry{};
+    const ordered_json input = {{"data", sequence.input}, {"sequence", sequence.name}};
+    identify(cell, input);
+    cell.cost_key = cost_key(identity_);
+    add(cell);
+    for (const StudyAxis& axis : study_.axes) list_axis(cell, axis, input);
+  }
+
+  std::vector<StudyCell> cells;
+
+ private:
+  void list_axis(StudyCell cell, const StudyAxis& axis, const ordered_json& input) {
+    cell.axis = &axis;
+    for (std::size_t i = 0; i < axis.values.size(); ++i) {
+      cell.value = axis.values[i];
+      cell.job.segment.changes = changes_of(cell.method->segment, axis, i);
+      const bool lacks_settings =
+          cell.job.segment.changes.size() == cell.method->segment.changes.size();
+      if (axis.kind == nullptr && lacks_settings) continue;
+      identify(cell, input);
+      const bool random = axis.kind != nullptr && axis.kind->is_random;
+      for (const std::uint64_t seed : random ? study_.seeds : std::vector<std::uint64_t>{0}) {
+        cell.seed = seed;
+        cell.job.data.reading.perturb = perturb_of(cell);
+        identity_["perturb"] = perturb_text(cell.job);
+        add(cell);
+      }
+    }
+  }
+
+  void identify(const StudyCell& cell, const ordered_json& input) {
+    identity_ = identity_of(cell.job, cell.kind, input, program_of_.at(cell.method));
+  }
+
+  static std::string cost_key(ordered_json identity) {
+    for (const char* free : {"protocol", "perturb", "program"}) identity.erase(free);
+    return key_of(identity);
+  }
+
+  void add(StudyCell& cell) {
+    cell.key = key_of(identity_);
+    const auto [known, is_new] = known_.emplace(cell.key, cells.size());
+    if (is_new || asks_otherwise(cells[known->second], cell)) cells.push_back(cell);
+  }
+
+  /// Returns whether two cells with one result are two places in tables: a value may be the usual
+  /// one. Data or methods that are the same under two names would be one row too many.
+  bool asks_otherwise(const StudyCell& first, const StudyCell& second) const {
+    const bool same = first.data == second.data && first.sequence == second.sequence &&
+                      first.method == second.method && first.odometry == second.odometry;
+    if (same) return first.job.segment.changes != second.job.segment.changes;
+    throw UsageError(
+        fmt::format("{}: \"{}\" and \"{}\" are the same run, expected data and methods "
+                    "that differ in more than the name",
+                    study_.file.string(), first.title(), second.title()));
+  }
+
+  const Study& study_;
+  std::map<const StudyMethod*, std::string> program_of_;
+  std::map<std::string, std::size_t> known_;  ///< place in `cells` of each key
+  ordered_json identity_;
+};
+
+}  // namespace
+
+std::string StudyCell::label() const {
+  return odometry.empty() ? method->name : fmt::format("{} ({})", method->name, odometry);
+}
+
+std::string StudyCell::sequence_label() const { return fmt::format("{} {}", data->name, sequence); }
+
+std::string StudyCell::group_label() const { return fmt::format("{} {}", data->group, sequence); }
+
+std::string StudyCell::title() const {
+  std::string text = fmt::format("{}, {}", sequence_label(), method->name);
+  if (!odometry.empty()) text += fmt::format(", poses by {}", odometry);
+  if (axis != nullptr) text += fmt::format(", {}={}", axis->name, value);
+  if (seed != 0) text += fmt::format(", seed {}", seed);
+  return text;
+}
+
+std::vector<SettingChange> changes_of(const Segment& segment, const StudyAxis& axis,
+                                      std::size_t value) {
+  std::vector<SettingChange> changes = segment.changes;
+  if (axis.kind != nullptr) return changes;
+  for (const SettingChange& change : axis.changes[value]) {
+    if (segment.method->defaults.find(change.name) != nullptr) changes.push_back(change);
+  }
+  return changes;
+}
+
+std::vector<StudyCell> cells_of(const Study& study) {
+  CellLister lister(study);
+  for (const StudyData& data : study.data) {
+    for (const KnownSequence& sequence : sequences_of(data)) {
+      for (const StudyMethod& method : study.methods) {
+        for (const auto& odometry : study.odometries) {
+          lister.list(data, sequence, method, odometry);
+        }
+      }
+    }
+  }
+  return std::move(lister.cells);
+}
+
+std::string simulation_key(const Simulation& simulation) {
+  return hash_of_text(simulation_json(simulation).dump()).substr(0, 16);
+}
+
+}  // namespace mosbench
