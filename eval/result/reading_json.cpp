@@ -84,7 +84,8 @@ ordered_json members_of(const Reading& reading) {
 
 ordered_json told_members(const Reading& reading) {
   ordered_json json = members_of(reading);
-  for (const auto& [name, usual] : members_of({}).items()) {
+  const ordered_json unset = members_of({});  // outlives the loop over its items
+  for (const auto& [name, usual] : unset.items()) {
     if (json[name] == usual) json.erase(name);
   }
   return json;
