@@ -117,6 +117,10 @@ std::optional<Found> find_flag(Words& words, std::string_view flag) {
   return std::nullopt;
 }
 
+bool is_assignment(const std::string& word) {
+  return !word.starts_with('-') && word.find('=') != std::string::npos;
+}
+
 /// Takes an old flag out of the words. Returns its value, or nothing where it is not there.
 std::optional<std::string> taken(Words& words, const OldFlag& old) {
   if (!old.has_value) {
@@ -128,7 +132,11 @@ std::optional<std::string> taken(Words& words, const OldFlag& old) {
   const std::optional<Found> found = find_flag(words, old.flag);
   if (!found) return std::nullopt;
   std::string value = found->word->substr(found->value_at);
-  words.erase(found->word - (found->value_at == 0 ? 1 : 0), found->word + 1);
+  auto end = found->word + 1;
+  // Settings may be words of their own: --set a=1 b=2.
+  const bool takes_more = old.flag.ends_with("set") && found->value_at == 0;
+  for (; takes_more && end != words.end() && is_assignment(*end); ++end) value += "," + *end;
+  words.erase(found->word - (found->value_at == 0 ? 1 : 0), end);
   return value;
 }
 
@@ -163,7 +171,9 @@ Words filled_in(const OldCommand& old, const Words& arguments, const TakesValue&
       continue;
     }
     flags.push_back(arguments[i]);
-    if (takes_value(now.front(), arguments[i]) && i + 1 < arguments.size()) {
+    const bool has_value =
+        takes_value(now.front(), arguments[i]) || takes_value(std::string(old.name), arguments[i]);
+    if (has_value && i + 1 < arguments.size()) {
       flags.push_back(arguments[++i]);
     }
   }

@@ -48,14 +48,14 @@ Input input_of(const std::filesystem::path& input) {
 
 /// Throws UsageError where a flag was given that a run of this input does not heed.
 void check_flags(const CLI::App& command, Input input) {
-  constexpr std::array kAll = {"--out", "--threads", "--as", "--json"};
+  constexpr std::array kOfAnyInput = {"--out", "--threads", "--as", "--json"};
   constexpr std::array kOfJob = {"--dry-run", "--on", "--only", "--yes", "-o"};
   const auto has = [](const auto& list, const std::string& name) {
     return std::ranges::find(list, name) != list.end();
   };
   const std::string given = given_words(command, [&](const CLI::Option& option) {
     const std::string name = option.get_name();
-    if (!option.nonpositional() || has(kAll, name)) return false;
+    if (!option.nonpositional() || has(kOfAnyInput, name)) return false;
     if (has(kOfJob, name)) return input != Input::kJob;
     if (name == "--data") return input != Input::kTable;
     return input == Input::kJob || (input == Input::kTable && name != "--sequences");

@@ -25,7 +25,7 @@ namespace {
 
 struct TrajectoryFlags {
   std::filesystem::path estimate, truth;
-  std::optional<std::filesystem::path> other, plot;
+  std::optional<std::filesystem::path> other, plot, calib;
   std::string alignment = "none";
   TrajectoryOptions reading;
   RelativePairs relative;
@@ -33,7 +33,7 @@ struct TrajectoryFlags {
 };
 
 /// "truth:calib.txt": which path is the camera's, and where the lidar is.
-void take_camera(const std::string& text, TrajectoryOptions& options) {
+void take_camera(const std::string& text, TrajectoryFlags& flags) {
   const std::size_t colon = text.find(':');
   const std::string whose = text.substr(0, colon);
   if ((whose != "estimate" && whose != "truth") || colon == std::string::npos) {
@@ -42,8 +42,8 @@ void take_camera(const std::string& text, TrajectoryOptions& options) {
         "which file is the camera's and where the lidar is",
         text));
   }
-  options.camera = whose == "truth" ? CameraFrame::kTruth : CameraFrame::kEstimate;
-  options.camera_from_lidar = read_calib(text.substr(colon + 1));
+  flags.reading.camera = whose == "truth" ? CameraFrame::kTruth : CameraFrame::kEstimate;
+  flags.calib = text.substr(colon + 1);
 }
 
 /// How poses are read: "pose_format=tum,max_time_difference_s=0.02".
@@ -203,7 +203,7 @@ CommandRun add_trajectory(CLI::App& command) {
       ->check(CLI::IsMember({"none", "origin", "rigid", "similarity"}));
   command
       .add_option_function<std::string>(
-          "--camera", [flags](const std::string& text) { take_camera(text, flags->reading); },
+          "--camera", [flags](const std::string& text) { take_camera(text, *flags); },
           "The path in the camera frame, estimate or truth, and KITTI's calib.txt with the Tr of "
           "the LiDAR (default: both are the LiDAR's)")
       ->type_name("WHOSE:CALIB");
@@ -226,7 +226,10 @@ CommandRun add_trajectory(CLI::App& command) {
       ->check(CLI::IsMember({"pose"}));
   command.add_option("-o,--out", flags->plot, "PNG file to draw the paths and their errors to")
       ->type_name("FILE");
-  return [flags, &command] { return trajectory_answer(*flags, command); };
+  return [flags, &command] {
+    if (flags->calib) flags->reading.camera_from_lidar = read_calib(*flags->calib);
+    return trajectory_answer(*flags, command);
+  };
 }
 
 }  // namespace mosbench

@@ -72,7 +72,7 @@ struct Provenance {
   std::string fingerprint;                ///< of the frames; empty when only labels were read
   std::string fingerprint_without_poses;  ///< empty where it is not known
   std::string program;  ///< of the files that a user's command names; empty where it is not known
-  ReadingMembers reading;                 ///< how the sequence was read
+  ReadingMembers reading;  ///< how the sequence was read
   std::optional<OdometryDone> odometry;
   std::optional<SimulatedOrigin> simulated;  ///< its layout and scans are not recorded
 };

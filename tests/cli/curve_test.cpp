@@ -46,7 +46,7 @@ TEST_F(ScoreCurves, IsRefusedWithoutScoresAndSaysWhatToDo) {
   const cli::Answer answer = cli::run({"curve", folder_ / "out"});
   EXPECT_EQ(answer.exit_code, 3);
   EXPECT_THAT(answer.err, HasSubstr("out/room/scores: is not there, expected scores of points: "
-                                    "give the same run command again, with --scores"));
+                                    "give the same run command again, with --write scores"));
 }
 
 TEST_F(ScoreCurves, IsRefusedForLabelsOfOthersAndForSeveralRuns) {

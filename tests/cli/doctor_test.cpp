@@ -95,7 +95,7 @@ TEST_F(DoctorCommand, KeepsTheReadingFlagsInTheNextCommand) {
   EXPECT_EQ(answer.exit_code, 0) << answer.out << answer.err;
   EXPECT_THAT(answer.out, HasSubstr("\n  mosbench run " + room() +
                                     " --dataset semantickitti --sequences room --poses '" + poses +
-                                    "' --pose-frame lidar --deskew none\n"));
+                                    "' --deskew none --read pose_frame=lidar\n"));
 }
 
 TEST_F(DoctorCommand, PutsTheFlagThatMendsThePosesIntoTheNextCommand) {
@@ -114,7 +114,7 @@ TEST_F(DoctorCommand, PutsTheFlagThatMendsThePosesIntoTheNextCommand) {
   const cli::Answer wrong = cli::run({"doctor", sequence});
   EXPECT_EQ(wrong.exit_code, 1) << wrong.out;
   EXPECT_THAT(wrong.out, HasSubstr("the lidar's, Tr not to be applied"));
-  const std::string next = sequence + " --pose-frame lidar";
+  const std::string next = sequence + " --read pose_frame=lidar";
   EXPECT_THAT(wrong.out, HasSubstr("\n  mosbench run " + next + "\n"));
   const cli::Answer mended = cli::run({"doctor", sequence, "--pose-frame", "lidar"});
   EXPECT_EQ(mended.exit_code, 0) << mended.out;

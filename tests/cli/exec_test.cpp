@@ -152,7 +152,7 @@ INSTANTIATE_TEST_SUITE_P(
               "the program speaks version 2, expected version 1"},
         Fault{"hasNoScores",
               kReady + "cat > /dev/null",
-              "the program gives no scores, expected scores, or a run without --scores",
+              "the program gives no scores, expected scores, or a run without --write scores",
               {"--scores"}},
         Fault{"announcesTooMuch",
               kReady + kScan + R"(printf 'MOSlabel\377\377\377\377\377\377\377\177'; cat)",

@@ -70,7 +70,7 @@ TEST_F(OdometryCommand, FindsPosesThatTheTrajectoryCommandFindsGood) {
 TEST_F(OdometryCommand, PrintsTheCommandThatReadsItsPosesAsTheLidars) {
   const cli::Answer found = run({"odometry", path("sim"), "-o", path("poses.txt")});
   EXPECT_THAT(found.out, HasSubstr("mosbench run " + path("sim") + " --poses " + path("poses.txt") +
-                                   " --pose-frame lidar\n"));
+                                   " --read pose_frame=lidar\n"));
 }
 
 TEST_F(OdometryCommand, MarksItsPosesAsTheLidarsForCommandsThatReadThem) {

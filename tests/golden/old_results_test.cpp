@@ -76,7 +76,7 @@ TEST(OldResults, KeepSettingsReadingAndProvenance) {
   EXPECT_EQ(odometry.from.odometry->name, "odometry kiss");
   EXPECT_EQ(odometry.from.odometry->settings.number("max_iterations", 0.0), 500.0);
   EXPECT_EQ(odometry.from.odometry->settings.word("deskew"), "velocity");
-  EXPECT_THAT(odometry.from.odometry->map, HasSubstr("without what hmm-mos finds moving"));
+  EXPECT_THAT(odometry.from.odometry->map, HasSubstr("without what hmm-mos-plus finds moving"));
   EXPECT_TRUE(odometry.places->reading.is_by_odometry());
   EXPECT_TRUE(odometry.doubtful_poses);
 

@@ -65,7 +65,7 @@ class Findings(unittest.TestCase):
         (self.folder / "csv").write_text(CELLS)
         program = self.folder / "program"  # in the place of mosbench
         (self.folder / "text").write_text("what the table says\nresults in /here\n")
-        program.write_text(f'#!/bin/sh\ncat "{self.folder}/$7"\n')
+        program.write_text(f'#!/bin/sh\ncat "{self.folder}/$6"\n')
         program.chmod(0o755)
         return subprocess.run([sys.executable, str(SCRIPT), "tried.yaml", "out", "--program", str(program),
                                "--svg", str(self.folder / "tried.svg")], capture_output=True, text=True, check=False)

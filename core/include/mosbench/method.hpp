@@ -113,7 +113,8 @@ struct PresetValue {
   SettingValue value;
 };
 
-/// A short word for settings of a method that go together, as `--set moving=ever:5` of hmm-mos-plus.
+/// A short word for settings of a method that go together, as `--set moving=ever:5` of
+/// hmm-mos-plus.
 struct SettingWord {
   std::string_view name;                ///< "moving"
   std::string_view usual;               ///< its value that sets nothing: "now"

@@ -78,4 +78,4 @@ TEST(TickClock, CountsPeriodsOfTheScans) {
 }
 
 }  // namespace
-}  // namespace mosbench::hmm_mos
+}  // namespace mosbench::hmm_mos_plus

@@ -135,8 +135,9 @@ TEST(StudyFile, ReadsDataWithEveryFlagOfARun) {
   const std::string plain =
       replaced_in(kSmallStudy, from, from + "\n    reading: {hdl64_correction: true}");
   EXPECT_TRUE(parse_study(plain, "s.yaml").data.front().data.reading.hdl64_correction);
-  EXPECT_THAT(study_error(replaced_in(plain, "true", "maybe")),
-              StartsWith("s.yaml:6: is not understood, expected true"));
+  EXPECT_THAT(
+      study_error(replaced_in(plain, "true", "maybe")),
+      StartsWith("s.yaml:6: hdl64_correction: 'maybe' is not understood, expected on or off"));
 }
 
 TEST(StudyFile, IsOneDocument) {
