@@ -9,13 +9,12 @@ import folders
 import fixtures
 import program
 
-READERS = {"stats", "table", "rank", "breakdown", "diff", "compare", "doctor", "trajectory", "map-score", "list", "help",
-           "completion"}
+READERS = {"stats", "table", "rank", "compare", "doctor", "trajectory", "list", "help"}
 WRITERS = {
-    "run": "run data --config config.json --threads 1 --scores --out out",
-    "run on two threads": "run data --config config.json --threads 2 --out out",
-    "run with odometry": "run data --config config.json --threads 1 --odometry kiss --out out",
-    "run --overwrite": "run data --config other.json --scores --threads 1 --overwrite --out run",
+    "run": "run data --set @config.json --threads 1 --write scores --out out",
+    "run on two threads": "run data --set @config.json --threads 2 --out out",
+    "run with odometry": "run data --set @config.json --threads 1 --odometry kiss --out out",
+    "run --overwrite": "run data --set @other.json --write scores --threads 1 --overwrite --out run",
     "score": "score data --predictions run --method one --out out",
     "simulate": "simulate --layout semantickitti --scene scene.json --scans 8 --seed 2 --threads 1 --out out",
     "simulate doals": "simulate --layout doals --scene scene.json --scans 8 --seed 2 --threads 2 --out out",
