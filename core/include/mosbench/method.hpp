@@ -109,8 +109,8 @@ struct RunContext {
 
 /// A setting with a value of its own.
 struct PresetValue {
-  std::string_view setting;
-  SettingValue value;
+  std::string_view setting;  ///< its name
+  SettingValue value;        ///< taken instead of the default
 };
 
 /// A short word for settings of a method that go together, as `--set moving=ever:5` of
@@ -142,9 +142,9 @@ struct MethodKind {
   std::string_view score_name = "score";  ///< what scores are, with unit: "margin, m"
   /// What LabelledScan::threshold is, "Otsu threshold"; empty when no threshold is worth showing.
   std::string_view threshold_name = "";
-  bool gives_reasons = false;        ///< results with scores also say why each point moves
-  bool is_named_by_variant = false;  ///< folders of its runs are called by its variant
-  std::vector<SettingWord> words = {};
+  bool gives_reasons = false;           ///< results with scores also say why each point moves
+  bool is_named_by_variant = false;     ///< folders of its runs are called by its variant
+  std::vector<SettingWord> words = {};  ///< short words that --set takes
 };
 
 /// All methods, the default one first.
@@ -159,10 +159,10 @@ const MethodKind* find_method(std::string_view name);
 /// Published settings. Methods take the values of the settings that they have; the others keep
 /// their defaults.
 struct MethodPreset {
-  std::string_view name;
-  std::vector<PresetValue> values;
-  std::string_view source;       ///< where the values come from
-  std::string_view method = {};  ///< the one that it is of; empty: any
+  std::string_view name;            ///< "doals-20m"
+  std::vector<PresetValue> values;  ///< in the order in which they are set
+  std::string_view source;          ///< where the values come from
+  std::string_view method = {};     ///< the one that it is of; empty: any
 };
 
 /// All presets, in the order in which they are shown.
