@@ -8,7 +8,7 @@
 
 #include "core/base/thread_pool.hpp"
 #include "eval/breakdown/scan_times.hpp"
-#include "eval/result/progress.hpp"
+#include "eval/result/tell.hpp"
 
 namespace mosbench {
 namespace {

@@ -12,12 +12,11 @@
 #include "eval/cli/dataset_flags.hpp"
 #include "eval/cli/suggested_command.hpp"
 #include "eval/job/job_words.hpp"
-#include "eval/job/presets.hpp"
+#include "eval/job/method_choice.hpp"
 #include "eval/protocols/protocol_list.hpp"
 #include "eval/result/result_file.hpp"
 #include "eval/result/result_scans.hpp"
 #include "eval/result/result_set.hpp"
-#include "eval/result/simulated.hpp"
 
 namespace mosbench {
 namespace {

@@ -11,7 +11,7 @@
 #include "datasets/layouts/layout.hpp"
 #include "datasets/simulator/built_in_scenes.hpp"
 #include "eval/cli/commands.hpp"
-#include "eval/job/presets.hpp"
+#include "eval/job/method_choice.hpp"
 #include "eval/predictions/prediction_format.hpp"
 #include "eval/protocols/protocol.hpp"
 

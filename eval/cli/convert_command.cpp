@@ -17,7 +17,6 @@
 #include "eval/cli/odometry_flags.hpp"
 #include "eval/engine/pose_finding.hpp"
 #include "eval/job/job_words.hpp"
-#include "eval/result/progress.hpp"
 #include "eval/result/tell.hpp"
 
 namespace mosbench {

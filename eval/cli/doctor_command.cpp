@@ -9,7 +9,7 @@
 #include "eval/cli/commands.hpp"
 #include "eval/cli/dataset_flags.hpp"
 #include "eval/job/job_words.hpp"
-#include "eval/result/caller.hpp"
+#include "eval/result/tell.hpp"
 
 namespace mosbench {
 namespace {

@@ -16,7 +16,7 @@
 #include "eval/answer/answer_text.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/cli/list_json.hpp"
-#include "eval/job/presets.hpp"
+#include "eval/job/method_choice.hpp"
 #include "eval/predictions/prediction_format.hpp"
 #include "eval/protocols/protocol_list.hpp"
 

@@ -7,7 +7,7 @@
 #include "datasets/layouts/layout.hpp"
 #include "datasets/perturb/perturb_kinds.hpp"
 #include "datasets/simulator/built_in_scenes.hpp"
-#include "eval/job/presets.hpp"
+#include "eval/job/method_choice.hpp"
 #include "eval/predictions/prediction_format.hpp"
 #include "eval/protocols/protocol_list.hpp"
 

@@ -15,7 +15,6 @@
 #include "eval/cli/dataset_flags.hpp"
 #include "eval/cli/odometry_flags.hpp"
 #include "eval/cli/output_file.hpp"
-#include "eval/engine/found_poses.hpp"
 #include "eval/engine/pose_finding.hpp"
 #include "eval/job/job_words.hpp"
 #include "eval/result/machine.hpp"

@@ -9,8 +9,8 @@
 #include "datasets/text/quantile.hpp"
 #include "eval/answer/answer_text.hpp"
 #include "eval/result/machine.hpp"
+#include "eval/result/result_set.hpp"
 #include "eval/result/settings_json.hpp"
-#include "eval/result/simulated.hpp"
 
 namespace mosbench {
 namespace {

@@ -18,8 +18,8 @@
 #include "eval/report/result_boxes.hpp"
 #include "eval/report/scan_choice.hpp"
 #include "eval/report/scan_picture.hpp"
-#include "eval/result/progress.hpp"
 #include "eval/result/result_set.hpp"
+#include "eval/result/tell.hpp"
 
 namespace mosbench {
 namespace {

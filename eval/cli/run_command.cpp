@@ -21,7 +21,7 @@
 #include "eval/job/job_words.hpp"
 #include "eval/job/method_choice.hpp"
 #include "eval/report/written_products.hpp"
-#include "eval/result/simulated.hpp"
+#include "eval/result/result_set.hpp"
 
 namespace mosbench {
 namespace {

@@ -9,9 +9,8 @@
 #include "datasets/text/errors.hpp"
 #include "eval/answer/answer_text.hpp"
 #include "eval/cli/output_file.hpp"
-#include "eval/engine/study_cell.hpp"
+#include "eval/engine/study_plan.hpp"
 #include "eval/engine/study_run.hpp"
-#include "eval/result/progress.hpp"
 #include "eval/result/tell.hpp"
 #include "eval/study/study_table.hpp"
 

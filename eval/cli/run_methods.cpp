@@ -13,7 +13,7 @@
 #include "eval/engine/run_execute.hpp"
 #include "eval/job/method_choice.hpp"
 #include "eval/report/written_products.hpp"
-#include "eval/result/simulated.hpp"
+#include "eval/result/result_set.hpp"
 #include "eval/result/tell.hpp"
 
 namespace mosbench {

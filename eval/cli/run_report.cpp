@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "eval/protocols/protocol_list.hpp"
+#include "eval/result/result_set.hpp"
 #include "eval/result/settings_json.hpp"
-#include "eval/result/simulated.hpp"
 #include "eval/tables/score_report.hpp"
 #include "eval/tables/score_table.hpp"
 

@@ -9,7 +9,7 @@
 #include "datasets/text/errors.hpp"
 #include "eval/engine/run_execute.hpp"
 #include "eval/job/job_words.hpp"
-#include "eval/job/presets.hpp"
+#include "eval/job/method_choice.hpp"
 #include "eval/result/tell.hpp"
 #include "eval/tables/table_match.hpp"
 #include "eval/tables/table_print.hpp"

@@ -11,7 +11,7 @@
 #include "eval/cli/dataset_flags.hpp"
 #include "eval/cli/help_text.hpp"
 #include "eval/job/job_words.hpp"
-#include "eval/job/presets.hpp"
+#include "eval/job/method_choice.hpp"
 #include "eval/protocols/benchmark_split.hpp"
 #include "eval/result/machine.hpp"
 #include "eval/static_map/map_score.hpp"

@@ -10,7 +10,6 @@
 #include "datasets/text/errors.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/cli/dataset_flags.hpp"
-#include "eval/result/progress.hpp"
 #include "eval/result/tell.hpp"
 
 namespace mosbench {

@@ -3,12 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
+#include "datasets/formats/pose_file.hpp"
+#include "datasets/formats/times_file.hpp"
 #include "datasets/sequence/posed_sequence.hpp"
+#include "datasets/text/counted.hpp"
 #include "datasets/text/errors.hpp"
 #include "eval/engine/sequence_runner.hpp"
-#include "eval/job/presets.hpp"
-#include "eval/result/progress.hpp"
+#include "eval/job/method_choice.hpp"
+#include "eval/result/machine.hpp"
 #include "eval/result/tell.hpp"
 
 namespace mosbench {
@@ -22,7 +26,8 @@ std::string odometry_remark(const Sequence& sequence, const OdometryChoice& choi
   const auto first = std::ranges::find_if(scans, &ScanPose::doubtful);
   if (first == scans.end()) return remark;
   const auto k = static_cast<std::size_t>(first - scans.begin());
-  const std::size_t doubtful = doubtful_count(scans);
+  const auto doubtful =
+      static_cast<std::size_t>(std::ranges::count_if(scans, &ScanPose::doubtful));
   const char* loud = 2 * doubtful > scans.size()
                          ? "MOST POSES ARE DOUBTFUL, and labels made with them are, too: "
                          : "";
@@ -43,6 +48,18 @@ std::vector<std::uint8_t> moving_points(Method& method, const MovingFilter& filt
   std::vector<std::uint8_t> moving;
   for (const std::uint32_t label : labelled.back().labels) moving.push_back(label == kMovingLabel);
   return moving;
+}
+
+std::size_t most_kept_bytes() { return std::min(memory_bytes() / 4, std::size_t{2} << 30); }
+
+template <typename Matrix>
+nlohmann::ordered_json rows_json(const Matrix& matrix) {
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
+    nlohmann::ordered_json& row = rows.emplace_back(nlohmann::ordered_json::array());
+    for (Eigen::Index j = 0; j < matrix.cols(); ++j) row.push_back(matrix(i, j));
+  }
+  return rows;
 }
 
 }  // namespace
@@ -106,8 +123,117 @@ std::vector<Pose> poses_of(const std::vector<ScanPose>& scans) {
   return poses;
 }
 
-std::size_t doubtful_count(const std::vector<ScanPose>& scans) {
-  return static_cast<std::size_t>(std::ranges::count_if(scans, &ScanPose::doubtful));
+void SharedReading::share(Dataset& dataset) {
+  for (std::size_t i = 0; i < dataset.sequences.size(); ++i) {
+    std::shared_ptr<KeptScans>& scans = scans_[i];
+    if (!scans) scans = std::make_shared<KeptScans>(most_kept_bytes());
+    dataset.sequences[i] = std::make_unique<KeptSequence>(std::move(dataset.sequences[i]), scans);
+  }
+}
+
+std::vector<ScanPose> SharedReading::poses_of(std::size_t position, const Sequence& sequence,
+                                              const OdometryChoice& choice, unsigned threads) {
+  if (choice.filter) return find_poses(sequence, choice, threads);
+  const auto known = poses_.find(position);
+  if (known != poses_.end()) return known->second;
+  return poses_[position] = find_poses(sequence, choice, threads);
+}
+
+void SharedReading::forget(std::size_t position) {
+  scans_.at(position)->clear();
+  poses_.erase(position);
+}
+
+void check_stamps_of_tum(const Sequence& sequence) {
+  for (std::size_t k = 0; k < sequence.size(); ++k) {
+    const auto stamp_ns = sequence.stamp_ns(k);
+    if (!stamp_ns) {
+      throw UsageError(fmt::format(
+          "TUM rows (a file called *.tum, or tum:FILE) have stamps, but the scans of {} have "
+          "none, expected kitti:FILE or a file called *.txt",
+          sequence.name()));
+    }
+    if (k == 0 || *stamp_ns > *sequence.stamp_ns(k - 1)) continue;
+    throw UsageError(
+        fmt::format("TUM rows (a file called *.tum, or tum:FILE) are in the order of their "
+                    "stamps, but that of scan {} of {} is not after the one before, expected "
+                    "kitti:FILE or a file called *.txt, which have no stamps",
+                    sequence.stem(k), sequence.name()));
+  }
+}
+
+nlohmann::ordered_json scans_json(const Sequence& sequence, const std::vector<ScanPose>& poses) {
+  nlohmann::ordered_json scans = nlohmann::ordered_json::array();
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    const ScanPose& pose = poses[k];
+    scans.push_back({{"stem", sequence.stem(k)},
+                     {"map_from_sensor", rows_json(pose.map_from_sensor.matrix().topRows<3>())},
+                     {"covariance", rows_json(pose.covariance)},
+                     {"geometry", pose.geometry},
+                     {"condition", pose.condition},
+                     {"overlap", pose.overlap},
+                     {"registered_points", pose.registered_points},
+                     {"doubt", pose.doubtful() ? nlohmann::ordered_json(pose.doubt) : nullptr}});
+  }
+  return scans;
+}
+
+std::string tum_rows(const std::vector<std::int64_t>& stamps_ns, const std::vector<Pose>& poses) {
+  std::string rows;
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    const Pose& pose = poses[k];
+    const Eigen::Quaterniond q = Eigen::Quaterniond(pose.linear()).normalized();
+    rows += fmt::format("{} {} {} {} {} {} {} {}\n", seconds_text(stamps_ns.at(k)),
+                        pose.translation().x(), pose.translation().y(), pose.translation().z(),
+                        q.x(), q.y(), q.z(), q.w());
+  }
+  return rows;
+}
+
+std::string pose_rows(const FoundPoses& found, bool as_tum) {
+  std::vector<Pose> poses;
+  for (const auto& scan : found.scans) {
+    Pose& pose = poses.emplace_back(Pose::Identity());
+    for (std::size_t i = 0; i < 12; ++i) {
+      pose.matrix()(static_cast<Eigen::Index>(i / 4), static_cast<Eigen::Index>(i % 4)) =
+          scan.at("map_from_sensor").at(i / 4).at(i % 4).get<double>();
+    }
+  }
+  if (!as_tum) return format_poses(poses);
+  std::vector<std::int64_t> stamps_ns;
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    stamps_ns.push_back(found.sequence.stamp_ns(k).value());
+  }
+  return tum_rows(stamps_ns, poses);
+}
+
+std::size_t doubtful_scans(const FoundPoses& found) {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      found.scans, [](const auto& scan) { return !scan.at("doubt").is_null(); }));
+}
+
+std::string found_text(const FoundPoses& found, std::string_view odometry) {
+  constexpr std::size_t kListed = 10;
+  const std::size_t doubtful = doubtful_scans(found);
+  std::string text =
+      fmt::format("{}: {} by {} in {}, {} doubtful\n", found.sequence.name(),
+                  counted(found.scans.size(), "pose"), odometry, found.file.string(), doubtful);
+  std::size_t listed = 0;
+  for (const auto& scan : found.scans) {
+    if (scan.at("doubt").is_null() || listed == kListed) continue;
+    text += fmt::format("  scan {}: {}\n", scan.at("stem").get<std::string>(),
+                        scan.at("doubt").get<std::string>());
+    ++listed;
+  }
+  if (doubtful > listed) text += fmt::format("  and {} more\n", doubtful - listed);
+  return text;
+}
+
+nlohmann::ordered_json found_json(const FoundPoses& found) {
+  return {{"sequence", found.sequence.name()},
+          {"file", found.file.string()},
+          {"doubtful", doubtful_scans(found)},
+          {"scans", found.scans}};
 }
 
 }  // namespace mosbench

@@ -9,7 +9,7 @@
 #include "datasets/text/quantile.hpp"
 #include "eval/exec/child_process.hpp"
 #include "eval/result/machine.hpp"
-#include "eval/result/progress.hpp"
+#include "eval/result/tell.hpp"
 
 namespace mosbench {
 namespace {

@@ -15,7 +15,7 @@
 #include "eval/exec/exec_method.hpp"
 #include "eval/result/machine.hpp"
 #include "eval/result/result_file.hpp"
-#include "eval/result/simulated.hpp"
+#include "eval/result/result_set.hpp"
 #include "eval/result/tell.hpp"
 
 namespace mosbench {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "core/base/thread_pool.hpp"
+#include "eval/engine/pose_finding.hpp"
 #include "eval/engine/sequence_runner.hpp"
-#include "eval/engine/shared_reading.hpp"
 #include "eval/job/job.hpp"
 #include "eval/store/result_folder.hpp"
 

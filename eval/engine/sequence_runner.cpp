@@ -13,10 +13,9 @@
 #include "datasets/sequence/fingerprint.hpp"
 #include "datasets/text/errors.hpp"
 #include "eval/exec/program_error.hpp"
-#include "eval/result/dynamic_score_file.hpp"
 #include "eval/result/machine.hpp"
-#include "eval/result/progress.hpp"
-#include "eval/result/reason_file.hpp"
+#include "eval/result/point_files.hpp"
+#include "eval/result/tell.hpp"
 
 namespace mosbench {
 namespace {

@@ -1,9 +1,12 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <string_view>
+#include <vector>
 
-#include "eval/engine/study_cell.hpp"
+#include "eval/engine/study_plan.hpp"
 
 namespace mosbench {
 

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "datasets/layouts/dataset.hpp"
+#include "eval/job/method_choice.hpp"
 #include "eval/job/odometry_choice.hpp"
-#include "eval/job/presets.hpp"
 #include "eval/protocols/protocol.hpp"
 
 namespace mosbench {

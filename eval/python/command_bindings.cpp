@@ -4,7 +4,7 @@
 
 #include "eval/cli/command_line.hpp"
 #include "eval/python/bindings.hpp"
-#include "eval/result/caller.hpp"
+#include "eval/result/tell.hpp"
 
 namespace mosbench::python {
 namespace {

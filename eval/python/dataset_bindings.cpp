@@ -6,7 +6,7 @@
 #include "datasets/layouts/dataset.hpp"
 #include "datasets/sequence/pose_frame_mark.hpp"
 #include "eval/cli/dataset_flags.hpp"
-#include "eval/engine/found_poses.hpp"
+#include "eval/engine/pose_finding.hpp"
 #include "eval/job/job_words.hpp"
 #include "eval/python/arrays.hpp"
 #include "eval/python/bindings.hpp"

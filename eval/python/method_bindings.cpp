@@ -9,7 +9,6 @@
 
 #include "datasets/text/nearest_name.hpp"
 #include "eval/job/method_choice.hpp"
-#include "eval/job/presets.hpp"
 #include "eval/python/arrays.hpp"
 #include "eval/python/bindings.hpp"
 #include "eval/result/machine.hpp"

@@ -12,8 +12,8 @@
 #include "datasets/text/errors.hpp"
 #include "eval/answer/answer_text.hpp"
 #include "eval/protocols/metrics.hpp"
-#include "eval/result/progress.hpp"
 #include "eval/result/result_file.hpp"
+#include "eval/result/tell.hpp"
 #include "eval/statistics/statistics_report.hpp"
 
 namespace mosbench {

@@ -9,8 +9,8 @@
 #include "datasets/text/errors.hpp"
 #include "eval/report/compressed_text.hpp"
 #include "eval/report/point_planes.hpp"
-#include "eval/result/progress.hpp"
-#include "eval/result/reason_file.hpp"
+#include "eval/result/point_files.hpp"
+#include "eval/result/tell.hpp"
 
 namespace mosbench {
 namespace {

@@ -15,8 +15,8 @@
 #include "eval/answer/answer_text.hpp"
 #include "eval/report/point_planes.hpp"
 #include "eval/report/result_boxes.hpp"
-#include "eval/result/progress.hpp"
 #include "eval/result/result_file.hpp"
+#include "eval/result/tell.hpp"
 #include "eval/store/product_record.hpp"
 
 namespace mosbench {

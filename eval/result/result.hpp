@@ -21,7 +21,7 @@
 #include "eval/protocols/confusion.hpp"
 #include "eval/protocols/scan_sums.hpp"
 #include "eval/result/machine.hpp"
-#include "eval/result/recorded_settings.hpp"
+#include "eval/result/settings_json.hpp"
 
 namespace mosbench {
 

@@ -11,7 +11,7 @@
 #include "eval/protocols/metrics.hpp"
 #include "eval/protocols/summary_json.hpp"
 #include "eval/result/reading_json.hpp"
-#include "eval/result/simulated.hpp"
+#include "eval/result/result_set.hpp"
 
 namespace mosbench {
 namespace {

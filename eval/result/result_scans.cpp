@@ -10,8 +10,7 @@
 #include "datasets/sequence/fingerprint.hpp"
 #include "datasets/sequence/posed_sequence.hpp"
 #include "datasets/text/errors.hpp"
-#include "eval/result/dynamic_score_file.hpp"
-#include "eval/result/reason_file.hpp"
+#include "eval/result/point_files.hpp"
 
 namespace mosbench {
 namespace fs = std::filesystem;

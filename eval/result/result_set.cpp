@@ -8,10 +8,12 @@
 #include "datasets/text/counted.hpp"
 #include "datasets/text/errors.hpp"
 #include "eval/result/result_file.hpp"
+#include "eval/result/result_json.hpp"
 
 namespace mosbench {
-namespace fs = std::filesystem;
 namespace {
+
+namespace fs = std::filesystem;
 
 bool same_run(const Result& a, const Result& b) {
   return a.dataset == b.dataset && a.method == b.method && a.setting == b.setting &&
@@ -82,6 +84,11 @@ std::string folders_text(const std::vector<ResultSet>& sets) {
 std::string run_text(const Result& result) {
   return fmt::format("{} ({}; {}; {})", result.file.string(), result.method, result.setting,
                      result.protocol->name);
+}
+
+std::string words_of(const SimulatedOrigin& origin) {
+  return fmt::format("scene {}, seed {}{}", origin.scene, origin.seed,
+                     origin.perturb ? ", disturbed by " + *origin.perturb : "");
 }
 
 }  // namespace
@@ -200,6 +207,35 @@ std::vector<SequenceCounts> counts_of(const ResultSet& set) {
   std::vector<SequenceCounts> counts;
   for (const Result& result : set.sequences) counts.push_back(counts_of(result));
   return counts;
+}
+
+std::string simulated_notice(const SimulatedOrigin& origin) {
+  return fmt::format("simulated data ({}): not comparable with published numbers",
+                     words_of(origin));
+}
+
+std::optional<SimulatedOrigin> origin_of(const Dataset& dataset, const Sequence& sequence) {
+  if (auto origin = simulated_origin(dataset.root)) return origin;
+  if (const auto scan = sequence.scan_file(0)) return simulated_origin(*scan);
+  const std::vector<std::filesystem::path>& files = sequence.recording().files;
+  return files.empty() ? std::nullopt : simulated_origin(files.front());
+}
+
+std::optional<SimulatedOrigin> origin_of(const Dataset& dataset) {
+  for (const std::unique_ptr<Sequence>& sequence : dataset.sequences) {
+    if (auto origin = origin_of(dataset, *sequence)) return origin;
+  }
+  return std::nullopt;
+}
+
+std::optional<nlohmann::ordered_json> simulated_origin_json(const Dataset& dataset) {
+  const std::optional<SimulatedOrigin> origin = origin_of(dataset);
+  return origin ? std::optional(to_json(*origin)) : std::nullopt;
+}
+
+Standing standing_of(const Dataset& dataset) {
+  const std::optional<SimulatedOrigin> origin = origin_of(dataset);
+  return origin ? Standing{true, words_of(*origin)} : Standing{};
 }
 
 }  // namespace mosbench

@@ -23,6 +23,16 @@ struct BaselineChange {
   std::vector<fs::path> superseded;
 };
 
+/// Formats an accepted result.json: what `read_result` reads, without anything that
+/// depends on the clock or the machine, so that accepting the same results again changes nothing.
+std::string format_accepted(const Result& result) {
+  Result accepted = result;
+  accepted.from.machine.reset();
+  accepted.timing.reset();
+  accepted.places.reset();
+  return format_result(accepted);
+}
+
 BaselineChange change_of(const ResultSet& run, const fs::path& folder) {
   BaselineChange change;
   std::set<fs::path> accepted;
@@ -58,14 +68,6 @@ void apply(const BaselineChange& change, const fs::path& folder) {
 }
 
 }  // namespace
-
-std::string format_accepted(const Result& result) {
-  Result accepted = result;
-  accepted.from.machine.reset();
-  accepted.timing.reset();
-  accepted.places.reset();
-  return format_result(accepted);
-}
 
 std::vector<ResultSet> accepted_runs(const fs::path& folder) {
   if (!is_there(folder) || find_result_files(folder).empty()) return {};

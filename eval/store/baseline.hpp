@@ -8,10 +8,6 @@
 
 namespace mosbench {
 
-/// Formats an accepted result.json: what `read_result` reads, without anything that
-/// depends on the clock or the machine, so that accepting the same results again changes nothing.
-std::string format_accepted(const Result& result);
-
 /// Returns the runs in a folder; empty when it does not exist or holds no result.
 std::vector<ResultSet> accepted_runs(const std::filesystem::path& folder);
 

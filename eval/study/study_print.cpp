@@ -7,7 +7,7 @@
 #include "eval/answer/answer_text.hpp"
 #include "eval/protocols/protocol_list.hpp"
 #include "eval/report/report_asset.hpp"
-#include "eval/result/progress.hpp"
+#include "eval/result/tell.hpp"
 #include "eval/result/version.hpp"
 #include "eval/study/study_table.hpp"
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -8,9 +9,17 @@
 #include "eval/answer/answer.hpp"
 #include "eval/engine/study_plan.hpp"
 #include "eval/statistics/intervals.hpp"
-#include "eval/study/study_effects.hpp"
+#include "eval/statistics/total_effect.hpp"
 
 namespace mosbench {
+
+/// How much each sampled setting of a method decides its IoU.
+struct StudyEffects {
+  std::string label;       ///< of the row
+  std::size_t points = 0;  ///< whose cells are all done, and defined on all sequences
+  std::vector<std::string> settings;
+  std::vector<std::optional<TotalEffect>> effects;  ///< of the IoU's mean over sequences
+};
 
 /// Mean of a metric over the sequences of a study, each the mean of its seeds, also of those of its
 /// simulation; with a single sequence, over seeds.

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "eval/job/presets.hpp"
+#include "eval/job/method_choice.hpp"
 #include "eval/tables/paper_tables.hpp"
 #include "eval/tables/published.hpp"
 

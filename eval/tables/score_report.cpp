@@ -14,7 +14,6 @@
 #include "eval/result/result_file.hpp"
 #include "eval/result/result_json.hpp"
 #include "eval/result/result_set.hpp"
-#include "eval/result/simulated.hpp"
 #include "eval/result/version.hpp"
 
 namespace mosbench {

@@ -4,7 +4,7 @@
 #include "eval/protocols/counts_json.hpp"
 #include "eval/protocols/metrics.hpp"
 #include "eval/protocols/protocol_list.hpp"
-#include "eval/result/simulated.hpp"
+#include "eval/result/result_set.hpp"
 #include "eval/tables/score_report.hpp"
 
 namespace mosbench {

@@ -5,8 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "eval/result/dynamic_score_file.hpp"
-#include "eval/result/reason_file.hpp"
+#include "eval/result/point_files.hpp"
 #include "tests/cli/program.hpp"
 #include "tests/cli/small_sequence.hpp"
 

@@ -33,7 +33,7 @@
 #include "datasets/simulator/scene_json.hpp"
 #include "datasets/text/errors.hpp"
 #include "eval/predictions/prediction_text.hpp"
-#include "eval/result/dynamic_score_file.hpp"
+#include "eval/result/point_files.hpp"
 #include "eval/result/result_file.hpp"
 #include "eval/result/settings_json.hpp"
 #include "eval/tables/published.hpp"

@@ -1,10 +1,7 @@
-#include "eval/result/caller.hpp"
-
 #include <gtest/gtest.h>
 
 #include <stdexcept>
 
-#include "eval/result/progress.hpp"
 #include "eval/result/tell.hpp"
 
 namespace mosbench {

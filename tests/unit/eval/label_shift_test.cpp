@@ -1,5 +1,3 @@
-#include "eval/engine/label_shift.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -7,6 +5,8 @@
 #include <numeric>
 #include <string>
 #include <vector>
+
+#include "eval/engine/score_execute.hpp"
 
 namespace mosbench {
 namespace {

@@ -10,8 +10,7 @@
 #include "eval/report/point_planes.hpp"
 #include "eval/report/report_asset.hpp"
 #include "eval/report/scan_choice.hpp"
-#include "eval/result/dynamic_score_file.hpp"
-#include "eval/result/reason_file.hpp"
+#include "eval/result/point_files.hpp"
 #include "tests/temp_folder.hpp"
 
 namespace mosbench {

@@ -7,9 +7,9 @@
 
 #include "datasets/text/errors.hpp"
 #include "eval/answer/render.hpp"
-#include "eval/result/json_differences.hpp"
-#include "eval/result/progress.hpp"
 #include "eval/result/reading_json.hpp"
+#include "eval/result/tell.hpp"
+#include "eval/store/result_folder.hpp"
 #include "eval/tables/score_report.hpp"
 #include "eval/tables/score_table.hpp"
 #include "tests/unit/eval/confusions.hpp"

@@ -9,9 +9,7 @@
 #include "datasets/layouts/layout.hpp"
 #include "datasets/text/errors.hpp"
 #include "eval/job/method_choice.hpp"
-#include "eval/job/presets.hpp"
 #include "eval/protocols/protocol.hpp"
-#include "eval/result/recorded_settings.hpp"
 #include "tests/temp_folder.hpp"
 
 namespace mosbench {

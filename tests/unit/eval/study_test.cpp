@@ -10,7 +10,7 @@
 #include "datasets/text/errors.hpp"
 #include "eval/answer/answer_text.hpp"
 #include "eval/answer/render.hpp"
-#include "eval/engine/study_cell.hpp"
+#include "eval/engine/study_plan.hpp"
 #include "eval/engine/study_run.hpp"
 #include "eval/job/method_choice.hpp"
 #include "eval/job/study_file.hpp"
