@@ -3,6 +3,8 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <signal.h>
+#include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <array>
@@ -13,8 +15,8 @@
 #include <system_error>
 #include <vector>
 
-#include "datasets/disk/disk_sync.hpp"
 #include "datasets/disk/files.hpp"
+#include "datasets/disk/partial_file.hpp"
 #include "datasets/text/errors.hpp"
 
 namespace mosbench {
@@ -22,6 +24,33 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::string_view kEnd = ".partial";
+
+/// Returns whether an open folder is still the one of that name; another may have replaced it.
+bool is_at(int descriptor, const fs::path& folder) {
+  struct stat opened {};
+  struct stat named {};
+  return fstat(descriptor, &opened) == 0 && stat(folder.c_str(), &named) == 0 &&
+         opened.st_ino == named.st_ino && opened.st_dev == named.st_dev;
+}
+
+bool exchange(const fs::path& a, const fs::path& b) {
+  return renameat2(AT_FDCWD, a.c_str(), AT_FDCWD, b.c_str(), RENAME_EXCHANGE) == 0;
+}
+
+/// Returns where the old folder is then.
+fs::path put_in_place(const fs::path& fresh, const fs::path& folder) {
+  if (exchange(fresh, folder)) return fresh;
+  const fs::path old = replaced_by(folder);
+  if (is_there(folder)) {
+    fs::remove_all(old);
+    fs::rename(folder, old);
+  }
+  std::error_code error;
+  fs::rename(fresh, folder, error);
+  if (!error) return old;
+  restore_folder(folder);
+  throw std::system_error(error);
+}
 
 std::string own_start() { return fmt::format(".{}-", host_name()); }
 
@@ -43,10 +72,6 @@ bool is_abandoned(const std::string& name) {
   return kill(process, 0) != 0 && errno == ESRCH;
 }
 
-bool exchange(const fs::path& a, const fs::path& b) {
-  return renameat2(AT_FDCWD, a.c_str(), AT_FDCWD, b.c_str(), RENAME_EXCHANGE) == 0;
-}
-
 /// Moves what lies at `place` aside, where it can be removed.
 void move_aside(const fs::path& place) {
   const fs::path old = own_path(place.parent_path());
@@ -56,6 +81,47 @@ void move_aside(const fs::path& place) {
 }
 
 }  // namespace
+
+FolderLock::FolderLock(const fs::path& folder) : folder_(folder) {
+  try {
+    do {
+      made_ = fs::create_directories(folder);
+      descriptor_ = FileDescriptor(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+      require_success(descriptor_.is_open());
+      if (flock(descriptor_.number(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+        throw UsageError(folder.string() +
+                         ": another mosbench is writing there, expected one at a time");
+      }
+    } while (!is_at(descriptor_.number(), folder));
+  } catch (const std::system_error& error) {
+    throw DataError(folder, "cannot be opened (" + error.code().message() + ")",
+                    "a writable output folder");
+  }
+}
+
+FolderLock::~FolderLock() {
+  if (made_) rmdir(folder_.c_str());
+}
+
+fs::path replaced_by(const fs::path& folder) { return folder.native() + ".mosbench.replaced"; }
+
+void restore_folder(const fs::path& folder) {
+  if (!is_there(folder) && is_there(replaced_by(folder))) {
+    fs::rename(replaced_by(folder), folder);
+  }
+}
+
+void replace_folder(const fs::path& fresh, const fs::path& folder) {
+  try {
+    sync_file_system_of(fresh);
+    const fs::path old = put_in_place(fresh, folder);
+    sync_names_of(folder.parent_path());
+    fs::remove_all(old);
+  } catch (const std::system_error& error) {
+    throw DataError(folder, "cannot be replaced (" + error.code().message() + ")",
+                    "a writable output folder with free space");
+  }
+}
 
 Claim::Claim(const fs::path& place) : Claim(place, own_path(place.parent_path())) {}
 

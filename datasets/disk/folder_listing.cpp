@@ -4,7 +4,6 @@
 #include <system_error>
 
 #include "datasets/text/errors.hpp"
-#include "datasets/text/shown_text.hpp"
 #include "datasets/text/text.hpp"
 
 namespace mosbench {
@@ -94,6 +93,18 @@ std::vector<std::filesystem::path> list_folders(const std::filesystem::path& fol
     return in_order(a.filename().string(), b.filename().string()) < 0;
   });
   return folders;
+}
+
+std::filesystem::path resolved(const std::filesystem::path& path) {
+  std::error_code error;
+  std::filesystem::path real = std::filesystem::weakly_canonical(path, error);
+  if (error) real = path;
+  real = std::filesystem::absolute(real).lexically_normal();
+  return real.has_filename() ? real : real.parent_path();
+}
+
+bool is_in(const std::filesystem::path& path, const std::filesystem::path& folder) {
+  return std::ranges::mismatch(folder, path).in1 == folder.end();
 }
 
 }  // namespace mosbench

@@ -29,4 +29,10 @@ std::vector<StemFile> list_by_stem(const std::filesystem::path& folder,
 /// followed. Returns none when it cannot be read: a search skips what it may not read.
 std::vector<std::filesystem::path> list_folders(const std::filesystem::path& folder);
 
+/// Returns the path from the root with symbolic links resolved as far as they can be.
+std::filesystem::path resolved(const std::filesystem::path& path);
+
+/// Returns whether `path` is `folder` or below it; both as `resolved` returns them.
+bool is_in(const std::filesystem::path& path, const std::filesystem::path& folder);
+
 }  // namespace mosbench

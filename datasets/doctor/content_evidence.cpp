@@ -12,7 +12,7 @@
 #include "datasets/disk/files.hpp"
 #include "datasets/doctor/doctor.hpp"
 #include "datasets/formats/point_range.hpp"
-#include "datasets/text/counted.hpp"
+#include "datasets/text/text.hpp"
 
 namespace mosbench {
 namespace {

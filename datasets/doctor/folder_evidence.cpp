@@ -7,7 +7,7 @@
 #include "datasets/disk/folder_listing.hpp"
 #include "datasets/doctor/doctor.hpp"
 #include "datasets/formats/scan_file.hpp"
-#include "datasets/text/counted.hpp"
+#include "datasets/text/text.hpp"
 
 namespace mosbench {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "datasets/doctor/doctor.hpp"
 #include "datasets/formats/point_range.hpp"
-#include "datasets/text/counted.hpp"
+#include "datasets/text/text.hpp"
 
 namespace mosbench {
 namespace {

@@ -5,8 +5,8 @@
 #include <cstdlib>
 
 #include "datasets/doctor/pose_evidence.hpp"
-#include "datasets/text/counted.hpp"
-#include "datasets/text/quantile.hpp"
+#include "datasets/text/numbers.hpp"
+#include "datasets/text/text.hpp"
 
 namespace mosbench {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "datasets/text/quantile.hpp"
+#include "datasets/text/numbers.hpp"
 
 namespace mosbench {
 namespace {

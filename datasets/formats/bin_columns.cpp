@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <cstring>
 
-#include "datasets/text/scatter_bits.hpp"
+#include "datasets/text/numbers.hpp"
 
 namespace mosbench {
 namespace {

@@ -11,7 +11,7 @@
 #include "datasets/formats/byte_cursor.hpp"
 #include "datasets/hdf5/process_copy.hpp"
 #include "datasets/text/errors.hpp"
-#include "datasets/text/shown_text.hpp"
+#include "datasets/text/text.hpp"
 
 namespace mosbench {
 namespace {

@@ -1,8 +1,42 @@
-#include "datasets/disk/loaded_module.hpp"
+#include <dlfcn.h>
+
+#include <filesystem>
+#include <system_error>
+
 #include "datasets/hdf5/hdf5_module.hpp"
 #include "datasets/text/errors.hpp"
 
 namespace mosbench {
+namespace {
+
+/// A function of a module of the program, or why there is none.
+struct ModuleFunction {
+  void* function = nullptr;
+  std::string error = "it is in none of its folders";
+};
+
+/// Loads a module (a shared library beside the program, of the same build) when it is first needed:
+/// with all its libraries libhdf5 would cost every start of the program milliseconds. Looks in
+/// three folders: relative to the installed program, in the installation prefix, and in the build
+/// tree.
+ModuleFunction load_function(const char* module, const char* function) {
+  std::error_code ignored;
+  const auto program = std::filesystem::read_symlink("/proc/self/exe", ignored);
+  ModuleFunction loaded;
+  for (const std::filesystem::path& folder : {program.parent_path() / MOSBENCH_MODULES_FROM_PROGRAM,
+                                              std::filesystem::path(MOSBENCH_MODULES_INSTALLED),
+                                              std::filesystem::path(MOSBENCH_MODULES_BUILT)}) {
+    const auto file = folder / module;
+    if (!file.is_absolute() || !std::filesystem::exists(file, ignored)) continue;
+    void* opened = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
+    loaded.function = opened == nullptr ? nullptr : dlsym(opened, function);
+    if (loaded.function != nullptr) return loaded;
+    loaded.error = dlerror();
+  }
+  return loaded;
+}
+
+}  // namespace
 
 bool has_hdf5() { return true; }
 

@@ -13,9 +13,8 @@
 #include "datasets/formats/pose_file.hpp"
 #include "datasets/hdf5/scene_flow_names.hpp"
 #include "datasets/sequence/pose_source.hpp"
-#include "datasets/text/counted.hpp"
 #include "datasets/text/errors.hpp"
-#include "datasets/text/shown_text.hpp"
+#include "datasets/text/text.hpp"
 
 namespace mosbench {
 namespace {

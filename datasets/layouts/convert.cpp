@@ -7,9 +7,9 @@
 #include <set>
 #include <vector>
 
+#include "datasets/disk/claim.hpp"
 #include "datasets/disk/files.hpp"
 #include "datasets/disk/folder_listing.hpp"
-#include "datasets/disk/folder_lock.hpp"
 #include "datasets/formats/kitti_calib.hpp"
 #include "datasets/formats/point_range.hpp"
 #include "datasets/layouts/helimos_layout.hpp"
@@ -22,8 +22,8 @@
 #include "datasets/rosbag/ros2_bag_writer.hpp"
 #include "datasets/sequence/fingerprint.hpp"
 #include "datasets/sequence/pose_source.hpp"
-#include "datasets/text/counted.hpp"
 #include "datasets/text/errors.hpp"
+#include "datasets/text/text.hpp"
 
 namespace mosbench {
 namespace {

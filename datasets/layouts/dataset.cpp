@@ -17,9 +17,8 @@
 #include "datasets/sequence/azimuth_times.hpp"
 #include "datasets/sequence/hdl64_correction.hpp"
 #include "datasets/sequence/scan_deskewer.hpp"
-#include "datasets/text/counted.hpp"
 #include "datasets/text/errors.hpp"
-#include "datasets/text/shown_text.hpp"
+#include "datasets/text/text.hpp"
 
 namespace mosbench {
 namespace {

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "datasets/disk/disk_sync.hpp"
 #include "datasets/disk/files.hpp"
+#include "datasets/disk/partial_file.hpp"
 #include "datasets/formats/helipr_points.hpp"
 #include "datasets/text/errors.hpp"
 

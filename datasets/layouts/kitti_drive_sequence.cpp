@@ -10,8 +10,8 @@
 #include "datasets/hdf5/flow_truth.hpp"
 #include "datasets/layouts/points_in_boxes.hpp"
 #include "datasets/sequence/pose_source.hpp"
-#include "datasets/text/counted.hpp"
 #include "datasets/text/errors.hpp"
+#include "datasets/text/text.hpp"
 
 namespace mosbench {
 namespace {

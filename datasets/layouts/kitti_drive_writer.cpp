@@ -8,8 +8,8 @@
 #include <numbers>
 #include <optional>
 
-#include "datasets/disk/disk_sync.hpp"
 #include "datasets/disk/files.hpp"
+#include "datasets/disk/partial_file.hpp"
 #include "datasets/formats/bin_file.hpp"
 #include "datasets/formats/kitti_calib.hpp"
 #include "datasets/formats/kitti_oxts.hpp"

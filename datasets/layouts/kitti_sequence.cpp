@@ -9,8 +9,8 @@
 #include "datasets/disk/folder_listing.hpp"
 #include "datasets/formats/pcd_file.hpp"
 #include "datasets/formats/point_times.hpp"
-#include "datasets/text/counted.hpp"
 #include "datasets/text/errors.hpp"
+#include "datasets/text/text.hpp"
 
 namespace mosbench {
 

@@ -4,7 +4,7 @@
 #include <array>
 
 #include "datasets/layouts/layout.hpp"
-#include "datasets/text/counted.hpp"
+#include "datasets/text/text.hpp"
 
 namespace mosbench {
 

@@ -9,9 +9,8 @@
 #include "datasets/formats/scan_file.hpp"
 #include "datasets/layouts/folder_search.hpp"
 #include "datasets/sequence/pose_source.hpp"
-#include "datasets/text/counted.hpp"
 #include "datasets/text/errors.hpp"
-#include "datasets/text/shown_text.hpp"
+#include "datasets/text/text.hpp"
 
 namespace mosbench {
 namespace {

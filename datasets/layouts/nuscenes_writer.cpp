@@ -9,7 +9,6 @@
 #include <optional>
 #include <system_error>
 
-#include "datasets/disk/disk_sync.hpp"
 #include "datasets/disk/files.hpp"
 #include "datasets/disk/partial_file.hpp"
 #include "datasets/formats/byte_cursor.hpp"

@@ -6,8 +6,8 @@
 #include "datasets/hdf5/scene_flow_sequence.hpp"
 #include "datasets/layouts/folder_search.hpp"
 #include "datasets/layouts/layout.hpp"
-#include "datasets/text/counted.hpp"
 #include "datasets/text/errors.hpp"
+#include "datasets/text/text.hpp"
 
 namespace mosbench {
 namespace {

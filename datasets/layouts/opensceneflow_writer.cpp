@@ -7,7 +7,6 @@
 #include <system_error>
 #include <utility>
 
-#include "datasets/disk/disk_sync.hpp"
 #include "datasets/disk/partial_file.hpp"
 #include "datasets/hdf5/flow_truth.hpp"
 #include "datasets/hdf5/hdf5_module.hpp"

@@ -11,8 +11,8 @@
 #include "datasets/layouts/single_scan.hpp"
 #include "datasets/rosbag/bag_sequence.hpp"
 #include "datasets/rosbag/open_bag.hpp"
-#include "datasets/text/counted.hpp"
 #include "datasets/text/errors.hpp"
+#include "datasets/text/text.hpp"
 
 namespace mosbench {
 namespace {

@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "datasets/disk/disk_sync.hpp"
 #include "datasets/disk/files.hpp"
+#include "datasets/disk/partial_file.hpp"
 #include "datasets/formats/bin_file.hpp"
 #include "datasets/formats/byte_cursor.hpp"
 #include "datasets/formats/calib_file.hpp"

@@ -2,7 +2,6 @@
 
 #include <system_error>
 
-#include "datasets/disk/disk_sync.hpp"
 #include "datasets/disk/files.hpp"
 #include "datasets/disk/partial_file.hpp"
 #include "datasets/text/errors.hpp"

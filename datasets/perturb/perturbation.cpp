@@ -7,7 +7,6 @@
 
 #include "datasets/perturb/perturb_kinds.hpp"
 #include "datasets/text/errors.hpp"
-#include "datasets/text/nearest_name.hpp"
 #include "datasets/text/text.hpp"
 
 namespace mosbench {

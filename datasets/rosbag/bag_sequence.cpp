@@ -10,8 +10,8 @@
 #include "datasets/rosbag/open_bag.hpp"
 #include "datasets/sequence/pose_source.hpp"
 #include "datasets/sequence/pose_track.hpp"
-#include "datasets/text/counted.hpp"
 #include "datasets/text/errors.hpp"
+#include "datasets/text/text.hpp"
 
 namespace mosbench {
 namespace {

@@ -9,7 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include "datasets/disk/disk_sync.hpp"
 #include "datasets/disk/partial_file.hpp"
 #include "datasets/rosbag/ros_messages.hpp"
 #include "datasets/text/errors.hpp"

@@ -4,7 +4,6 @@
 
 #include <system_error>
 
-#include "datasets/disk/disk_sync.hpp"
 #include "datasets/disk/partial_file.hpp"
 #include "datasets/rosbag/bag_compression.hpp"
 #include "datasets/text/errors.hpp"

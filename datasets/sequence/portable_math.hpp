@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <mosbench/scan.hpp>
 
-#include "datasets/text/scatter_bits.hpp"
+#include "datasets/text/numbers.hpp"
 
 namespace mosbench {
 

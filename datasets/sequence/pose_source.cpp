@@ -11,8 +11,8 @@
 #include "datasets/sequence/fingerprint.hpp"
 #include "datasets/sequence/pose_frame_mark.hpp"
 #include "datasets/sequence/pose_track.hpp"
-#include "datasets/text/counted.hpp"
 #include "datasets/text/errors.hpp"
+#include "datasets/text/text.hpp"
 
 namespace mosbench {
 namespace {

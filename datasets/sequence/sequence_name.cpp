@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "datasets/text/errors.hpp"
-#include "datasets/text/shown_text.hpp"
+#include "datasets/text/text.hpp"
 
 namespace mosbench {
 namespace {

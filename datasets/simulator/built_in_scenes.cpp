@@ -5,7 +5,7 @@
 
 #include "datasets/simulator/scene_builder.hpp"
 #include "datasets/text/errors.hpp"
-#include "datasets/text/nearest_name.hpp"
+#include "datasets/text/text.hpp"
 
 namespace mosbench {
 namespace {

@@ -12,7 +12,7 @@
 #include "datasets/simulator/trajectory.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/json_text.hpp"
-#include "datasets/text/nearest_name.hpp"
+#include "datasets/text/text.hpp"
 
 namespace mosbench {
 namespace {

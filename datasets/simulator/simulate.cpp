@@ -23,7 +23,7 @@
 #include "datasets/simulator/simulated_layouts.hpp"
 #include "datasets/simulator/simulated_sequence.hpp"
 #include "datasets/text/errors.hpp"
-#include "datasets/text/shell_text.hpp"
+#include "datasets/text/text.hpp"
 
 namespace mosbench {
 namespace {

@@ -8,7 +8,7 @@
 #include "datasets/simulator/built_in_scenes.hpp"
 #include "datasets/simulator/trajectory.hpp"
 #include "datasets/text/errors.hpp"
-#include "datasets/text/nearest_name.hpp"
+#include "datasets/text/text.hpp"
 
 namespace mosbench {
 namespace {

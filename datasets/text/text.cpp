@@ -1,7 +1,14 @@
 #include "datasets/text/text.hpp"
 
+#include <fmt/format.h>
+#include <utf8.h>
+
+#include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <iterator>
+#include <limits>
+#include <numeric>
 
 #include "datasets/text/errors.hpp"
 
@@ -9,6 +16,59 @@ namespace mosbench {
 namespace {
 
 constexpr std::string_view kBlanks = " \t\r";
+
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i + 1;
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({replaced, row[j] + 1, row[j + 1] + 1});
+    }
+  }
+  return row.back();
+}
+
+/// C0, DEL and C1: a terminal that reads UTF-8 obeys the last like ESC.
+bool is_control(std::uint32_t character) {
+  return character < 0x20 || (character >= 0x7F && character < 0xA0);
+}
+
+void append_escaped(std::string_view bytes, std::string& text) {
+  for (const char byte : bytes) {
+    fmt::format_to(std::back_inserter(text), "\\x{:02x}", static_cast<unsigned char>(byte));
+  }
+}
+
+std::string escaped_but(std::string_view text, std::string_view kept) {
+  std::string safe;
+  safe.reserve(text.size());
+  while (!text.empty()) {
+    const auto valid =
+        static_cast<std::size_t>(utf8::find_invalid(text.begin(), text.end()) - text.begin());
+    for (auto at = text.begin(), end = at + static_cast<std::ptrdiff_t>(valid); at != end;) {
+      const auto from = at;
+      const std::uint32_t character = utf8::unchecked::next(at);
+      const std::string_view bytes(from, at);
+      if (is_control(character) && kept.find(bytes) == std::string_view::npos) {
+        append_escaped(bytes, safe);
+      } else {
+        safe += bytes;
+      }
+    }
+    append_escaped(text.substr(valid, 1), safe);
+    text.remove_prefix(std::min(valid + 1, text.size()));
+  }
+  return safe;
+}
+
+bool is_plain(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+         std::string_view("_-./:=,+@%").find(c) != std::string_view::npos;
+}
 
 }  // namespace
 
@@ -88,6 +148,32 @@ std::string quoted(std::string_view text) {
   std::string shown = "\"";
   for (const char c : text.substr(0, kLongest)) shown += c >= ' ' && c <= '~' ? c : '?';
   return shown + (text.size() > kLongest ? "...\"" : "\"");
+}
+
+std::string_view nearest_name(std::string_view name, std::span<const std::string_view> candidates) {
+  std::string_view nearest;
+  std::size_t least = std::numeric_limits<std::size_t>::max();
+  for (const std::string_view candidate : candidates) {
+    const std::size_t distance = edit_distance(name, candidate);
+    if (distance < least) {
+      least = distance;
+      nearest = candidate;
+    }
+  }
+  return nearest;
+}
+
+bool is_printable(std::string_view text) { return shown_in_line(text) == text; }
+
+std::string shown(std::string_view text) { return escaped_but(text, "\n\t"); }
+
+std::string shown_in_line(std::string_view text) { return escaped_but(text, ""); }
+
+std::string shell_word(std::string_view text) {
+  if (!text.empty() && std::ranges::all_of(text, is_plain)) return std::string(text);
+  std::string word = "'";
+  for (const char c : text) word += c == '\'' ? "'\\''" : std::string(1, c);
+  return word + '\'';
 }
 
 }  // namespace mosbench

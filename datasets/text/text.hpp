@@ -1,9 +1,11 @@
 #pragma once
 
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -43,5 +45,36 @@ std::string lower_case(std::string text);
 
 /// Returns `text` in quotes for an error message: cut when long, unprintable bytes as '?'.
 std::string quoted(std::string_view text);
+
+/// Returns "1 scan has" or "12 scans have" of the words for one and for many.
+template <std::integral Count>
+std::string counted(Count count, std::string_view one, std::string_view many) {
+  std::string text = std::to_string(count) + ' ';
+  text += count == 1 ? one : many;
+  return text;
+}
+
+/// Returns "1 scan" or "12 scans" of a noun that takes an s.
+template <std::integral Count>
+std::string counted(Count count, std::string_view one) {
+  return counted(count, one, std::string(one) + 's');
+}
+
+/// Returns the candidate with the fewest inserted, deleted or replaced characters, the first of
+/// equals; empty when there is no candidate. For "did you mean" in errors.
+std::string_view nearest_name(std::string_view name, std::span<const std::string_view> candidates);
+
+/// Returns whether `text` is UTF-8 without control characters (C0, DEL, C1).
+bool is_printable(std::string_view text);
+
+/// Returns `text` as a terminal may show it: control characters other than line feeds and tabs,
+/// which a terminal would obey, and bytes that are no UTF-8 as \xNN.
+std::string shown(std::string_view text);
+
+/// The same for one line, such as a name: line feeds and tabs become \x0a and \x09, too.
+std::string shown_in_line(std::string_view text);
+
+/// Returns `text` as one word of a POSIX shell: unchanged where it is one, otherwise in quotes.
+std::string shell_word(std::string_view text);
 
 }  // namespace mosbench

@@ -10,7 +10,6 @@
 #include <sstream>
 
 #include "datasets/text/errors.hpp"
-#include "datasets/text/shown_text.hpp"
 #include "datasets/text/text.hpp"
 #include "eval/answer/answer_text.hpp"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <sstream>
 
-#include "datasets/text/shown_text.hpp"
+#include "datasets/text/text.hpp"
 #include "eval/answer/render.hpp"
 
 namespace mosbench {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "datasets/text/counted.hpp"
+#include "datasets/text/text.hpp"
 #include "eval/answer/answer_text.hpp"
 #include "eval/breakdown/breakdown.hpp"
 #include "eval/protocols/counts_json.hpp"

@@ -4,7 +4,7 @@
 #include <iterator>
 #include <tuple>
 
-#include "datasets/text/quantile.hpp"
+#include "datasets/text/numbers.hpp"
 
 namespace mosbench {
 namespace {

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "datasets/text/counted.hpp"
+#include "datasets/text/text.hpp"
 #include "eval/answer/answer_text.hpp"
 
 namespace mosbench {

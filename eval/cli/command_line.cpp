@@ -11,8 +11,7 @@
 
 #include "datasets/sequence/pose_source.hpp"
 #include "datasets/text/errors.hpp"
-#include "datasets/text/nearest_name.hpp"
-#include "datasets/text/shown_text.hpp"
+#include "datasets/text/text.hpp"
 #include "eval/answer/render.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/cli/help_text.hpp"

@@ -1,8 +1,7 @@
 #include <fmt/format.h>
 
-#include "datasets/disk/folder_lock.hpp"
-#include "datasets/disk/folder_relation.hpp"
-#include "datasets/disk/replace_folder.hpp"
+#include "datasets/disk/claim.hpp"
+#include "datasets/disk/folder_listing.hpp"
 #include "datasets/text/errors.hpp"
 #include "eval/cli/compare_command.hpp"
 #include "eval/statistics/paired_runs.hpp"

@@ -8,9 +8,8 @@
 
 #include "core/base/thread_pool.hpp"
 #include "datasets/layouts/convert.hpp"
-#include "datasets/text/counted.hpp"
 #include "datasets/text/errors.hpp"
-#include "datasets/text/nearest_name.hpp"
+#include "datasets/text/text.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/cli/dataset_flags.hpp"
 #include "eval/cli/help_text.hpp"

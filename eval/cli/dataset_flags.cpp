@@ -9,7 +9,7 @@
 
 #include "datasets/perturb/perturbation.hpp"
 #include "datasets/text/errors.hpp"
-#include "datasets/text/nearest_name.hpp"
+#include "datasets/text/text.hpp"
 #include "eval/cli/help_text.hpp"
 #include "eval/job/job_words.hpp"
 #include "eval/result/reading_json.hpp"

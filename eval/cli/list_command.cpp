@@ -12,7 +12,7 @@
 #include "datasets/perturb/perturb_kinds.hpp"
 #include "datasets/simulator/built_in_scenes.hpp"
 #include "datasets/text/errors.hpp"
-#include "datasets/text/nearest_name.hpp"
+#include "datasets/text/text.hpp"
 #include "eval/answer/answer_text.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/cli/list_json.hpp"

@@ -5,8 +5,8 @@
 #include <optional>
 
 #include "core/base/thread_pool.hpp"
+#include "datasets/disk/claim.hpp"
 #include "datasets/disk/files.hpp"
-#include "datasets/disk/folder_lock.hpp"
 #include "datasets/sequence/fingerprint.hpp"
 #include "datasets/sequence/pose_frame_mark.hpp"
 #include "datasets/text/errors.hpp"

@@ -7,7 +7,6 @@
 
 #include "datasets/disk/files.hpp"
 #include "datasets/text/errors.hpp"
-#include "datasets/text/shell_text.hpp"
 #include "datasets/text/text.hpp"
 #include "eval/result/tell.hpp"
 

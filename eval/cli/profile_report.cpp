@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <numeric>
 
-#include "datasets/text/counted.hpp"
-#include "datasets/text/quantile.hpp"
+#include "datasets/text/numbers.hpp"
+#include "datasets/text/text.hpp"
 #include "eval/answer/answer_text.hpp"
 #include "eval/result/machine.hpp"
 #include "eval/result/result_set.hpp"

@@ -5,7 +5,7 @@
 #include <optional>
 #include <utility>
 
-#include "datasets/text/counted.hpp"
+#include "datasets/text/text.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/cli/output_file.hpp"
 #include "eval/cli/run_job.hpp"

@@ -3,8 +3,8 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
-#include "datasets/text/counted.hpp"
 #include "datasets/text/errors.hpp"
+#include "datasets/text/text.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/cli/output_file.hpp"
 #include "eval/report/report.hpp"

@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "core/base/thread_pool.hpp"
-#include "datasets/text/counted.hpp"
 #include "datasets/text/errors.hpp"
+#include "datasets/text/text.hpp"
 #include "eval/answer/answer_text.hpp"
 #include "eval/cli/output_file.hpp"
 #include "eval/engine/study_plan.hpp"

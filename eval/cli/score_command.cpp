@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "core/base/thread_pool.hpp"
-#include "datasets/disk/folder_lock.hpp"
+#include "datasets/disk/claim.hpp"
 #include "datasets/text/errors.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/cli/dataset_flags.hpp"

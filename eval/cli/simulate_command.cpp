@@ -6,8 +6,8 @@
 
 #include "datasets/simulator/simulate.hpp"
 #include "datasets/simulator/simulated_layouts.hpp"
-#include "datasets/text/counted.hpp"
 #include "datasets/text/errors.hpp"
+#include "datasets/text/text.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/cli/dataset_flags.hpp"
 #include "eval/result/tell.hpp"

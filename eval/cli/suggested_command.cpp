@@ -4,7 +4,7 @@
 
 #include <string_view>
 
-#include "datasets/text/shell_text.hpp"
+#include "datasets/text/text.hpp"
 #include "eval/cli/dataset_flags.hpp"
 
 namespace mosbench {

@@ -8,7 +8,6 @@
 
 #include "datasets/formats/calib_file.hpp"
 #include "datasets/text/errors.hpp"
-#include "datasets/text/shell_text.hpp"
 #include "datasets/text/text.hpp"
 #include "eval/answer/answer_text.hpp"
 #include "eval/answer/render.hpp"

@@ -8,8 +8,8 @@
 #include "datasets/formats/pose_file.hpp"
 #include "datasets/formats/times_file.hpp"
 #include "datasets/sequence/posed_sequence.hpp"
-#include "datasets/text/counted.hpp"
 #include "datasets/text/errors.hpp"
+#include "datasets/text/text.hpp"
 #include "eval/engine/sequence_runner.hpp"
 #include "eval/job/method_choice.hpp"
 #include "eval/result/machine.hpp"
@@ -26,8 +26,7 @@ std::string odometry_remark(const Sequence& sequence, const OdometryChoice& choi
   const auto first = std::ranges::find_if(scans, &ScanPose::doubtful);
   if (first == scans.end()) return remark;
   const auto k = static_cast<std::size_t>(first - scans.begin());
-  const auto doubtful =
-      static_cast<std::size_t>(std::ranges::count_if(scans, &ScanPose::doubtful));
+  const auto doubtful = static_cast<std::size_t>(std::ranges::count_if(scans, &ScanPose::doubtful));
   const char* loud = 2 * doubtful > scans.size()
                          ? "MOST POSES ARE DOUBTFUL, and labels made with them are, too: "
                          : "";

@@ -6,7 +6,7 @@
 #include <mosbench/method.hpp>
 
 #include "core/base/stage_clock.hpp"
-#include "datasets/text/quantile.hpp"
+#include "datasets/text/numbers.hpp"
 #include "eval/exec/child_process.hpp"
 #include "eval/result/machine.hpp"
 #include "eval/result/tell.hpp"

@@ -6,12 +6,12 @@
 #include <chrono>
 
 #include "core/base/stage_clock.hpp"
-#include "datasets/disk/disk_sync.hpp"
 #include "datasets/disk/files.hpp"
+#include "datasets/disk/partial_file.hpp"
 #include "datasets/doctor/doctor.hpp"
 #include "datasets/formats/pose_file.hpp"
 #include "datasets/sequence/pose_frame_mark.hpp"
-#include "datasets/text/counted.hpp"
+#include "datasets/text/text.hpp"
 #include "eval/exec/exec_method.hpp"
 #include "eval/result/machine.hpp"
 #include "eval/result/result_file.hpp"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "datasets/disk/folder_lock.hpp"
+#include "datasets/disk/claim.hpp"
 #include "eval/engine/run_plan.hpp"
 
 namespace mosbench {

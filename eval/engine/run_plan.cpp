@@ -7,7 +7,7 @@
 #include <system_error>
 #include <vector>
 
-#include "datasets/disk/folder_relation.hpp"
+#include "datasets/disk/folder_listing.hpp"
 #include "datasets/layouts/folder_search.hpp"
 #include "datasets/sequence/fingerprint.hpp"
 #include "datasets/text/errors.hpp"

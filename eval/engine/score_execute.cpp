@@ -9,8 +9,8 @@
 
 #include "core/base/thread_pool.hpp"
 #include "datasets/sequence/fingerprint.hpp"
-#include "datasets/text/counted.hpp"
 #include "datasets/text/errors.hpp"
+#include "datasets/text/text.hpp"
 #include "eval/protocols/benchmark_split.hpp"
 #include "eval/protocols/metrics.hpp"
 #include "eval/result/tell.hpp"

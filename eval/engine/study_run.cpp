@@ -17,8 +17,8 @@
 #include <thread>
 
 #include "datasets/disk/files.hpp"
-#include "datasets/text/counted.hpp"
 #include "datasets/text/errors.hpp"
+#include "datasets/text/text.hpp"
 #include "eval/answer/answer_text.hpp"
 #include "eval/result/machine.hpp"
 #include "eval/result/tell.hpp"

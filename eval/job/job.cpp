@@ -8,7 +8,7 @@
 
 #include "datasets/sequence/fingerprint.hpp"
 #include "datasets/text/errors.hpp"
-#include "datasets/text/shell_text.hpp"
+#include "datasets/text/text.hpp"
 #include "eval/exec/exec_method.hpp"
 #include "eval/result/reading_json.hpp"
 #include "eval/result/settings_json.hpp"

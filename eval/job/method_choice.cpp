@@ -9,7 +9,7 @@
 
 #include "datasets/layouts/layout.hpp"
 #include "datasets/text/errors.hpp"
-#include "datasets/text/nearest_name.hpp"
+#include "datasets/text/text.hpp"
 #include "eval/exec/exec_method.hpp"
 
 namespace mosbench {

@@ -6,7 +6,7 @@
 
 #include "datasets/sequence/scan_deskewer.hpp"
 #include "datasets/text/errors.hpp"
-#include "datasets/text/nearest_name.hpp"
+#include "datasets/text/text.hpp"
 #include "eval/result/settings_json.hpp"
 
 namespace mosbench {

@@ -6,7 +6,6 @@
 #include <set>
 
 #include "datasets/text/errors.hpp"
-#include "datasets/text/nearest_name.hpp"
 #include "datasets/text/text.hpp"
 
 namespace mosbench {

@@ -9,7 +9,6 @@
 #include "datasets/disk/folder_listing.hpp"
 #include "datasets/formats/label_file.hpp"
 #include "datasets/formats/pcd_file.hpp"
-#include "datasets/text/shown_text.hpp"
 #include "datasets/text/text.hpp"
 #include "eval/predictions/npy_file.hpp"
 #include "eval/predictions/prediction_mask.hpp"

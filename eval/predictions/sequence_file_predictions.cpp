@@ -10,7 +10,7 @@
 #include "datasets/formats/indices_file.hpp"
 #include "datasets/hdf5/hdf5_file.hpp"
 #include "datasets/hdf5/scene_flow_names.hpp"
-#include "datasets/text/shown_text.hpp"
+#include "datasets/text/text.hpp"
 
 namespace mosbench {
 namespace fs = std::filesystem;

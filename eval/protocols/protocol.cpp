@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "datasets/text/errors.hpp"
-#include "datasets/text/nearest_name.hpp"
+#include "datasets/text/text.hpp"
 
 namespace mosbench {
 namespace {

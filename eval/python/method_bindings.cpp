@@ -7,7 +7,7 @@
 #include <mutex>
 #include <stdexcept>
 
-#include "datasets/text/nearest_name.hpp"
+#include "datasets/text/text.hpp"
 #include "eval/job/method_choice.hpp"
 #include "eval/python/arrays.hpp"
 #include "eval/python/bindings.hpp"

@@ -8,8 +8,8 @@
 #include <set>
 #include <stdexcept>
 
-#include "datasets/text/counted.hpp"
 #include "datasets/text/errors.hpp"
+#include "datasets/text/text.hpp"
 #include "eval/answer/answer_text.hpp"
 #include "eval/protocols/metrics.hpp"
 #include "eval/result/result_file.hpp"

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <map>
 
-#include "datasets/text/counted.hpp"
 #include "datasets/text/errors.hpp"
+#include "datasets/text/text.hpp"
 #include "eval/report/compressed_text.hpp"
 #include "eval/report/point_planes.hpp"
 #include "eval/result/point_files.hpp"

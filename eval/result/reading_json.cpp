@@ -8,7 +8,6 @@
 
 #include "datasets/perturb/perturbation.hpp"
 #include "datasets/text/errors.hpp"
-#include "datasets/text/shell_text.hpp"
 #include "datasets/text/text.hpp"
 
 namespace mosbench {

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <iterator>
 
-#include "datasets/text/counted.hpp"
 #include "datasets/text/errors.hpp"
+#include "datasets/text/text.hpp"
 #include "eval/result/result_file.hpp"
 #include "eval/result/result_json.hpp"
 

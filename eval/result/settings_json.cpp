@@ -14,10 +14,9 @@
 #include <vector>
 
 #include "datasets/disk/files.hpp"
-#include "datasets/text/counted.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/json_text.hpp"
-#include "datasets/text/nearest_name.hpp"
+#include "datasets/text/text.hpp"
 
 namespace mosbench {
 namespace {

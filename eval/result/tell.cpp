@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <utility>
 
-#include "datasets/text/shown_text.hpp"
+#include "datasets/text/text.hpp"
 
 namespace mosbench {
 namespace {

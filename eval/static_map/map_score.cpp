@@ -9,9 +9,8 @@
 #include "datasets/formats/scan_file.hpp"
 #include "datasets/layouts/kth_sequence.hpp"
 #include "datasets/sequence/fingerprint.hpp"
-#include "datasets/text/counted.hpp"
 #include "datasets/text/errors.hpp"
-#include "datasets/text/shown_text.hpp"
+#include "datasets/text/text.hpp"
 #include "eval/answer/answer_text.hpp"
 #include "eval/result/machine.hpp"
 

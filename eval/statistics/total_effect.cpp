@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "datasets/text/scatter_bits.hpp"
+#include "datasets/text/numbers.hpp"
 
 namespace mosbench {
 namespace {

@@ -5,11 +5,10 @@
 #include <set>
 #include <system_error>
 
+#include "datasets/disk/claim.hpp"
 #include "datasets/disk/files.hpp"
-#include "datasets/disk/folder_lock.hpp"
-#include "datasets/disk/folder_relation.hpp"
+#include "datasets/disk/folder_listing.hpp"
 #include "datasets/disk/partial_file.hpp"
-#include "datasets/disk/replace_folder.hpp"
 #include "datasets/text/errors.hpp"
 #include "eval/result/result_file.hpp"
 

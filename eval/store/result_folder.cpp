@@ -8,7 +8,7 @@
 #include <system_error>
 #include <vector>
 
-#include "datasets/disk/replace_folder.hpp"
+#include "datasets/disk/claim.hpp"
 #include "datasets/formats/label_file.hpp"
 #include "datasets/text/errors.hpp"
 #include "eval/result/result_file.hpp"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <map>
 
-#include "datasets/text/counted.hpp"
+#include "datasets/text/text.hpp"
 #include "eval/answer/answer_text.hpp"
 #include "eval/protocols/protocol_list.hpp"
 #include "eval/report/report_asset.hpp"

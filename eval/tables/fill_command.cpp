@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "datasets/text/shell_text.hpp"
+#include "datasets/text/text.hpp"
 #include "eval/protocols/protocol.hpp"
 #include "eval/tables/table_match.hpp"
 

@@ -4,8 +4,8 @@
 
 #include "datasets/disk/files.hpp"
 #include "datasets/disk/partial_file.hpp"
-#include "datasets/text/counted.hpp"
 #include "datasets/text/errors.hpp"
+#include "datasets/text/text.hpp"
 #include "eval/answer/answer_text.hpp"
 #include "eval/protocols/benchmark_split.hpp"
 #include "eval/protocols/metrics.hpp"

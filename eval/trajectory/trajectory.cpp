@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "datasets/text/counted.hpp"
 #include "datasets/text/errors.hpp"
+#include "datasets/text/text.hpp"
 #include "eval/trajectory/frame_check.hpp"
 #include "eval/trajectory/pose_paths.hpp"
 

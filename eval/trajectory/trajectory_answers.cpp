@@ -3,7 +3,7 @@
 #include <numbers>
 #include <vector>
 
-#include "datasets/text/counted.hpp"
+#include "datasets/text/text.hpp"
 #include "eval/trajectory/trajectory_scores.hpp"
 
 namespace mosbench {

@@ -6,7 +6,7 @@
 #include <thread>
 #include <vector>
 
-#include "datasets/disk/folder_lock.hpp"
+#include "datasets/disk/claim.hpp"
 #include "tests/cli/program.hpp"
 #include "tests/cli/small_sequence.hpp"
 

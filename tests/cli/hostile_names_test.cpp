@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "datasets/text/shown_text.hpp"
+#include "datasets/text/text.hpp"
 #include "tests/cli/program.hpp"
 #include "tests/cli/small_sequence.hpp"
 

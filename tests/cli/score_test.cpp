@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "datasets/disk/folder_lock.hpp"
+#include "datasets/disk/claim.hpp"
 #include "tests/cli/program.hpp"
 #include "tests/cli/small_sequence.hpp"
 

@@ -1,6 +1,6 @@
-#include "datasets/text/quantile.hpp"
-
 #include <gtest/gtest.h>
+
+#include "datasets/text/numbers.hpp"
 
 namespace mosbench {
 namespace {

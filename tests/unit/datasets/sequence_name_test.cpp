@@ -6,7 +6,7 @@
 #include <string>
 
 #include "datasets/text/errors.hpp"
-#include "datasets/text/shown_text.hpp"
+#include "datasets/text/text.hpp"
 #include "tests/temp_folder.hpp"
 
 namespace mosbench {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "datasets/text/shell_text.hpp"
+#include "datasets/text/text.hpp"
 #include "eval/answer/render.hpp"
 
 namespace mosbench {

@@ -14,7 +14,7 @@
 
 #include "datasets/disk/files.hpp"
 #include "datasets/text/errors.hpp"
-#include "datasets/text/nearest_name.hpp"
+#include "datasets/text/text.hpp"
 #include "eval/predictions/prediction_format.hpp"
 #include "eval/protocols/protocol_list.hpp"
 

@@ -1,4 +1,4 @@
-#include "datasets/text/quantile.hpp"
+#include "datasets/text/numbers.hpp"
 
 #include <algorithm>
 #include <cmath>
