@@ -9,6 +9,7 @@
 #include "datasets/text/text.hpp"
 #include "eval/answer/answer_text.hpp"
 #include "eval/result/machine.hpp"
+#include "eval/result/result_json.hpp"
 #include "eval/result/result_set.hpp"
 #include "eval/result/settings_json.hpp"
 

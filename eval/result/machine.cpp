@@ -28,7 +28,7 @@ std::string processor_name() {
 
 constexpr double kMiB = 1048576;
 
-double page_mib() { return static_cast<double>(sysconf(_SC_PAGESIZE)) / kMiB; }
+std::size_t page_bytes() { return static_cast<std::size_t>(sysconf(_SC_PAGESIZE)); }
 
 }  // namespace
 
@@ -38,13 +38,6 @@ Machine this_machine() {
   return {processor_name(), std::thread::hardware_concurrency(),
           static_cast<double>(memory_bytes()) / kMiB,
           std::string(system.sysname) + " " + system.machine};
-}
-
-nlohmann::ordered_json to_json(const Machine& machine) {
-  return {{"processor", machine.processor},
-          {"logical_cores", machine.logical_cores},
-          {"memory_mib", machine.memory_mib},
-          {"system", machine.system}};
 }
 
 nlohmann::ordered_json code_json() {
@@ -65,8 +58,7 @@ void give_back_memory() {
 }
 
 std::size_t memory_bytes() {
-  return static_cast<std::size_t>(sysconf(_SC_PHYS_PAGES)) *
-         static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+  return static_cast<std::size_t>(sysconf(_SC_PHYS_PAGES)) * page_bytes();
 }
 
 double resident_mib() {
@@ -74,7 +66,7 @@ double resident_mib() {
   double total_pages = 0.0;
   double resident_pages = 0.0;
   statm >> total_pages >> resident_pages;
-  return statm ? resident_pages * page_mib() : 0.0;
+  return statm ? resident_pages * static_cast<double>(page_bytes()) / kMiB : 0.0;
 }
 
 }  // namespace mosbench

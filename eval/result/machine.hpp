@@ -14,7 +14,6 @@ struct Machine {
   std::string system;
 };
 Machine this_machine();
-nlohmann::ordered_json to_json(const Machine& machine);
 
 /// Version of mosbench and the compiler that built it.
 nlohmann::ordered_json code_json();

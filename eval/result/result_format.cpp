@@ -1,5 +1,3 @@
-#include "eval/result/result_format.hpp"
-
 #include <fmt/format.h>
 
 #include <sstream>

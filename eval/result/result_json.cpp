@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <concepts>
+#include <set>
 #include <stdexcept>
 
 #include "datasets/text/errors.hpp"
-#include "eval/answer/answer_text.hpp"
 #include "eval/protocols/counts_json.hpp"
 #include "eval/protocols/metrics.hpp"
 #include "eval/protocols/summary_json.hpp"
@@ -18,20 +18,178 @@ namespace {
 
 using nlohmann::ordered_json;
 
-std::string_view text_of(const LabelHash& hash) { return {hash.data(), hash.size()}; }
+/// How a member is written, and whether it may be missing where it is read.
+enum class Member : std::uint8_t {
+  kNeeded,
+  kUsual,  ///< is written always, but not by every earlier mosbench
+  kIfSet,  ///< is left out where there is none
+  kIfAny   ///< of a list: likewise, or where it is empty
+};
 
-ordered_json to_json(const ScanRow& row) {
-  ordered_json json = {{"stem", row.stem},
-                       {"points", row.points},
-                       {"predicted_moving_points", row.predicted_moving_points},
-                       {"nonfinite_points", row.nonfinite_points},
-                       {"threshold", json_or_null(row.threshold)}};
-  if (row.label_hash) json["label_hash"] = text_of(*row.label_hash);
-  if (!row.counts) return json;
-  json.update(counts_json(*row.counts));
-  json["unknown_ids"] = row.counts->unknown_ids;
-  if (row.truth_hash) json["truth_hash"] = text_of(*row.truth_hash);
+// The one list of the members of each record, by which they are written and read.
+template <typename Type, typename Record>
+concept Is = std::same_as<std::remove_const_t<Type>, Record>;
+
+template <Is<Machine> Record>
+void visit_members(Record& machine, auto&& visit) {
+  visit("processor", machine.processor, Member::kUsual);
+  visit("logical_cores", machine.logical_cores, Member::kUsual);
+  visit("memory_mib", machine.memory_mib, Member::kUsual);
+  visit("system", machine.system, Member::kUsual);
+}
+
+template <Is<SimulatedOrigin> Record>
+void visit_members(Record& origin, auto&& visit) {
+  visit("scene", origin.scene, Member::kNeeded);
+  visit("seed", origin.seed, Member::kNeeded);
+  visit("scene_fingerprint", origin.scene_fingerprint, Member::kUsual);
+  std::string notice = simulated_notice(origin);  // for those who read the file
+  visit("notice", notice, Member::kUsual);
+  visit("perturb", origin.perturb, Member::kIfSet);
+}
+
+template <Is<Provenance> Record>
+void visit_members(Record& from, auto&& visit) {
+  visit("version", from.version, Member::kUsual);
+  visit("compiler", from.compiler, Member::kIfSet);
+  visit("machine", from.machine, Member::kIfSet);
+  visit("fingerprint", from.fingerprint, Member::kIfSet);
+  visit("fingerprint_without_poses", from.fingerprint_without_poses, Member::kIfSet);
+  visit("simulated", from.simulated, Member::kIfSet);
+}
+
+template <Is<OdometryDone> Record>
+void visit_members(Record& odometry, auto&& visit) {
+  visit("name", odometry.name, Member::kNeeded);
+  visit("settings", odometry.settings, Member::kNeeded);
+  visit("map", odometry.map, Member::kIfSet);
+}
+
+template <Is<ScoredPredictions> Record>
+void visit_members(Record& predictions, auto&& visit) {
+  visit("format", predictions.format, Member::kUsual);
+  visit("guessed", predictions.guessed, Member::kUsual);
+  visit("path", predictions.path, Member::kUsual);
+  visit("missing", predictions.missing, Member::kNeeded);
+  visit("remarks", predictions.remarks, Member::kUsual);
+}
+
+template <Is<DoubtfulPose> Record>
+void visit_members(Record& pose, auto&& visit) {
+  visit("stem", pose.stem, Member::kNeeded);
+  visit("doubt", pose.doubt, Member::kNeeded);
+}
+
+template <Is<PredictionSource> Record>
+void visit_members(Record& source, auto&& visit) {
+  visit("path", source.path, Member::kNeeded);
+  visit("level", source.options.level, Member::kUsual);
+  visit("format", source.options.format, Member::kIfSet);
+  visit("mask_m", source.options.mask, Member::kIfSet);
+  visit("id_map", source.options.id_map, Member::kIfSet);
+}
+
+template <Is<Places> Record>
+void visit_members(Record& places, auto&& visit) {
+  visit("dataset_root", places.dataset_root, Member::kIfSet);
+  visit("reading", places.reading, Member::kNeeded);
+  visit("predictions", places.predictions, Member::kIfSet);
+  visit("file_stamp", places.file_stamp, Member::kIfSet);
+  visit("sequences_of_run", places.sequences_of_run, Member::kIfAny);
+}
+
+/// What decides no labels; `unjudged` are the stems of scans that the method did not look at.
+void visit_findings(auto& result, auto& unjudged, auto&& visit) {
+  visit("preset", result.preset, Member::kIfSet);
+  visit("program", result.from.program, Member::kIfSet);
+  visit("odometry", result.from.odometry, Member::kIfSet);
+  visit("provenance", result.from, Member::kNeeded);
+  visit("predictions", result.predictions, Member::kIfSet);
+  visit("remarks", result.remarks, Member::kUsual);
+  visit("scans_without_detection", unjudged, Member::kUsual);
+  visit("scans_left_out", result.scans_left_out, Member::kIfAny);
+  visit("doubtful_poses", result.doubtful_poses, Member::kIfSet);
+  visit("splits", result.splits, Member::kIfAny);
+  visit("summary_split", result.summary_split, Member::kUsual);
+}
+
+template <typename Record>
+concept HasMembers = requires(Record& record) {
+  visit_members(record, [](const char*, auto&, Member) {});
+};
+
+ordered_json written(const std::filesystem::path& path) { return path.string(); }
+ordered_json written(const RecordedSettings& settings) { return to_json(settings); }
+ordered_json written(const Reading& reading) { return told_json(reading); }
+ordered_json written(const RangeGate& range) { return {range.min_m, range.max_m}; }
+ordered_json written(const LabelIdMap& map) { return id_map_text(map); }
+ordered_json written(DynabloxLevel level) { return to_string(level); }
+ordered_json written(PredictionFormat format) { return describe(format).name; }
+template <typename Value>
+ordered_json written(const Value& value);
+
+/// Visits members and adds them to an object.
+auto adding_to(ordered_json& json) {
+  return [&json](const char* name, const auto& member, Member kind) {
+    ordered_json value = written(member);
+    const bool is_left_out = kind == Member::kIfSet ? value.is_null() || value == ""
+                                                    : kind == Member::kIfAny && value.empty();
+    if (!is_left_out) json[name] = std::move(value);
+  };
+}
+
+template <typename Value>
+ordered_json written(const Value& value) {
+  ordered_json json;
+  if constexpr (HasMembers<const Value>) {
+    visit_members(value, adding_to(json = ordered_json::object()));
+  } else if constexpr (std::same_as<Value, std::vector<DoubtfulPose>>) {
+    json = ordered_json::array();
+    for (const DoubtfulPose& pose : value) json.push_back(written(pose));
+  } else if constexpr (requires { value.has_value(); }) {
+    if (value) json = written(*value);
+  } else {
+    json = value;
+  }
   return json;
+}
+
+void read(const ordered_json& json, std::filesystem::path& path) { path = json.get<std::string>(); }
+void read(const ordered_json& json, RecordedSettings& settings) {
+  settings = recorded_settings(json);
+}
+void read(const ordered_json& json, Reading& reading) { reading = told_from_json(json); }
+void read(const ordered_json& json, RangeGate& range) { range = {json.at(0), json.at(1)}; }
+void read(const ordered_json& json, LabelIdMap& map) { map = parse_id_map(json); }
+void read(const ordered_json& json, DynabloxLevel& level) {
+  level = dynablox_level_named(json.get<std::string>());
+}
+void read(const ordered_json& json, PredictionFormat& format) {
+  format = prediction_format_named(json.get<std::string>());
+}
+template <typename Value>
+void read(const ordered_json& json, Value& value);
+
+/// Visits members and reads those that an object has.
+auto taking_from(const ordered_json& json) {
+  return [&json](const char* name, auto& member, Member kind) {
+    if (!json.is_object() || kind == Member::kNeeded || json.contains(name)) {
+      read(json.at(name), member);  // throws for what is no object
+    }
+  };
+}
+
+template <typename Value>
+void read(const ordered_json& json, Value& value) {
+  if constexpr (HasMembers<Value>) {
+    visit_members(value, taking_from(json));
+  } else if constexpr (std::same_as<Value, std::vector<DoubtfulPose>>) {
+    for (const ordered_json& pose : json) read(pose, value.emplace_back());
+  } else if constexpr (requires { value.has_value(); }) {
+    if (!json.is_null()) read(json, value.emplace());
+  } else {
+    json.get_to(value);
+  }
 }
 
 ordered_json method_json(const Result& result) {
@@ -39,36 +197,33 @@ ordered_json method_json(const Result& result) {
   return {{"name", result.method}, {"kind", result.kind}};
 }
 
-ordered_json protocol_json(const Result& result) {
-  return {{"name", result.protocol->name},
-          {"min_range_m", result.range.min_m},
-          {"max_range_m", result.range.max_m}};
-}
-
-ordered_json to_json(const OdometryDone& odometry) {
-  ordered_json json = {{"name", odometry.name}, {"settings", to_json(odometry.settings)}};
-  if (!odometry.map.empty()) json["map"] = odometry.map;
-  return json;
-}
-
-ordered_json to_json(const Provenance& from) {
-  ordered_json json = {{"version", from.version}};
-  if (!from.compiler.empty()) json["compiler"] = from.compiler;
-  if (from.machine) json["machine"] = to_json(*from.machine);
-  if (!from.fingerprint.empty()) json["fingerprint"] = from.fingerprint;
-  if (!from.fingerprint_without_poses.empty()) {
-    json["fingerprint_without_poses"] = from.fingerprint_without_poses;
+/// Results of `mosbench run` hold the settings themselves, those of `mosbench score` what the user
+/// calls them.
+void read_method(const ordered_json& content, Result& result) {
+  const ordered_json& method = content.at("method");
+  result.method = method.at("name");
+  if (method.contains("setting")) {
+    result.setting = method.at("setting").get<std::string>();
+    return;
   }
-  if (from.simulated) json["simulated"] = to_json(*from.simulated);
-  return json;
+  result.kind = method.at("kind").get<std::string>();
+  try {
+    result.settings = recorded_settings(content.at("settings"));
+    check_recorded_settings(*result.settings, result.kind);
+  } catch (const std::invalid_argument& error) {
+    throw DataError(fmt::format("{}: settings: {}", result.file.string(), error.what()));
+  }
+  result.setting = describe_settings(*result.settings, result.kind);
 }
 
-std::vector<std::string> scans_without_detection(const Result& result) {
-  std::vector<std::string> stems;
-  for (const ScanRow& row : result.scans) {
-    if (!row.judged) stems.push_back(row.stem);
+void read_protocol(const ordered_json& content, Result& result) {
+  const ordered_json& protocol = content.at("protocol");
+  result.protocol = find_protocol(protocol.at("name").get<std::string>());
+  if (result.protocol == nullptr) {
+    throw DataError(result.file, "names protocol " + protocol.at("name").dump(),
+                    "one that `mosbench list protocols` shows");
   }
-  return stems;
+  result.range = {protocol.at("min_range_m"), protocol.at("max_range_m")};
 }
 
 ordered_json summary_json(const Result& result) {
@@ -76,86 +231,63 @@ ordered_json summary_json(const Result& result) {
   return counts.empty() ? ordered_json() : to_json(summarize(*result.protocol, counts));
 }
 
-ordered_json mean_stages_ms(const Timing& timing) {
-  ordered_json means = ordered_json::object();
-  if (timing.costs.empty()) return means;
-  for (std::size_t s = 0; s < timing.stages.size(); ++s) {
-    double sum_ms = 0.0;
-    for (const ScanCost& cost : timing.costs) {
-      if (s < cost.stages_ms.size()) sum_ms += cost.stages_ms[s];
-    }
-    means[timing.stages[s]] = sum_ms / static_cast<double>(timing.costs.size());
+/// Throws DataError where a summary is not that of the scans, as in a file that was edited.
+void check_summary(const ordered_json& content, const Result& result) {
+  const ordered_json summary = content.value("summary", ordered_json());
+  if (!summary.is_object()) return;
+  Confusion pooled;
+  for (const ScanRow* row : counted_scans(result)) pooled += *row->counts;
+  const ordered_json added_up = counts_json(pooled);
+  for (const auto& [name, count] : added_up.items()) {
+    if (!summary.contains(name) || summary.at(name) == count) continue;
+    throw DataError(result.file,
+                    fmt::format("\"{}\" of its scans add up to {}, that of its summary is {}", name,
+                                count.dump(), summary.at(name).dump()),
+                    "a result.json that nobody has changed");
   }
-  return means;
 }
 
-// One array per scan, its meaning in "scan_columns": a tenth of the size of named members.
-constexpr std::size_t kCostColumns = 3;
-
-ordered_json timing_json(const Result& result) {
-  const Timing& timing = *result.timing;
-  ordered_json json = {{"threads", timing.threads},
-                       {"wall_s", timing.wall_s},
-                       {"core_s", json_or_null(timing.core_s)},
-                       {"method_ms_per_scan", json_or_null(method_ms_per_scan(result))},
-                       {"stage_ms_per_scan", mean_stages_ms(timing)},
-                       {"scan_columns", {"read_ms", "push_ms", "resident_mib"}},
-                       {"scans", ordered_json::array()}};
-  for (const std::string& stage : timing.stages) json["scan_columns"].push_back(stage + "_ms");
-  for (const ScanCost& cost : timing.costs) {
-    ordered_json row = {cost.read_ms, cost.push_ms, cost.resident_mib};
-    for (std::size_t s = 0; s < timing.stages.size(); ++s) {
-      row.push_back(s < cost.stages_ms.size() ? cost.stages_ms[s] : 0.0);
-    }
-    json["scans"].push_back(std::move(row));
+Result from_present_format(const ordered_json& content, const std::filesystem::path& file) {
+  Result result;
+  result.file = file;
+  result.key = content.value("key", "");
+  result.sequence = SequenceName(content.at("sequence"), file);
+  result.dataset = content.at("dataset");
+  read_method(content, result);
+  read_protocol(content, result);
+  const ordered_json reading = content.value("reading", ordered_json::object());
+  for (const auto& [what, how] : reading.items()) {
+    result.from.reading.emplace_back(what, how.get<std::string>());
   }
-  return json;
-}
-
-ordered_json to_json(const PredictionSource& source) {
-  const PredictionOptions& options = source.options;
-  ordered_json json = {{"path", source.path.string()}, {"level", to_string(options.level)}};
-  if (options.format) json["format"] = describe(*options.format).name;
-  if (options.mask) json["mask_m"] = {options.mask->min_m, options.mask->max_m};
-  if (options.id_map) json["id_map"] = id_map_text(*options.id_map);
-  return json;
-}
-
-ordered_json to_json(const Places& places) {
-  ordered_json json = ordered_json::object();
-  if (places.dataset_root) json["dataset_root"] = places.dataset_root->string();
-  json["reading"] = told_json(places.reading);
-  if (places.predictions) json["predictions"] = to_json(*places.predictions);
-  if (!places.file_stamp.empty()) json["file_stamp"] = places.file_stamp;
-  if (!places.sequences_of_run.empty()) json["sequences_of_run"] = places.sequences_of_run;
-  return json;
+  std::vector<std::string> stems;  // none in scores of others' labels
+  visit_findings(result, stems, taking_from(content));
+  const std::set<std::string> unjudged(stems.begin(), stems.end());
+  for (const ordered_json& json : content.at("scans")) {
+    ScanRow& row = result.scans.emplace_back(row_from_json(json, file));
+    row.judged = !unjudged.contains(row.stem);
+  }
+  check_summary(content, result);
+  // Accepted results (baselines) and scores of others' labels come without a clock.
+  if (content.contains("timing")) result.timing = timing_from_json(content.at("timing"));
+  if (content.contains("places")) read(content.at("places"), result.places.emplace());
+  return result;
 }
 
 }  // namespace
 
-ordered_json to_json(const SimulatedOrigin& origin) {
-  ordered_json members = {{"scene", origin.scene},
-                          {"seed", origin.seed},
-                          {"scene_fingerprint", origin.scene_fingerprint},
-                          {"notice", simulated_notice(origin)}};
-  if (origin.perturb) members["perturb"] = *origin.perturb;
-  return members;
-}
-
-ordered_json to_json(const ScoredPredictions& predictions) {
-  return {{"format", predictions.format},
-          {"guessed", predictions.guessed},
-          {"path", predictions.path},
-          {"missing", predictions.missing},
-          {"remarks", predictions.remarks}};
-}
+ordered_json to_json(const Machine& machine) { return written(machine); }
+ordered_json to_json(const SimulatedOrigin& origin) { return written(origin); }
+ordered_json to_json(const ScoredPredictions& predictions) { return written(predictions); }
 
 ordered_json identity_json(const Result& result) {
   ordered_json json = {{"sequence", result.sequence.text()},
                        {"dataset", result.dataset},
                        {"reading", to_json(result.from.reading)},
                        {"method", method_json(result)},
-                       {"protocol", protocol_json(result)}};
+                       {"protocol",
+                        {{"name", result.protocol->name},
+                         {"min_range_m", result.range.min_m},
+                         {"max_range_m", result.range.max_m}}}};
   if (result.settings) json["settings"] = to_json(*result.settings);
   json["code"] = {{"version", result.from.version}, {"compiler", result.from.compiler}};
   return json;
@@ -166,22 +298,11 @@ ordered_json header_json(const Result& result) {
   if (!result.key.empty()) json["key"] = result.key;
   json.update(identity_json(result));
   json.erase("code");
-  if (!result.preset.empty()) json["preset"] = result.preset;
-  if (!result.from.program.empty()) json["program"] = result.from.program;
-  if (result.from.odometry) json["odometry"] = to_json(*result.from.odometry);
-  json["provenance"] = to_json(result.from);
-  if (result.predictions) json["predictions"] = to_json(*result.predictions);
-  json["remarks"] = result.remarks;
-  json["scans_without_detection"] = scans_without_detection(result);
-  if (!result.scans_left_out.empty()) json["scans_left_out"] = result.scans_left_out;
-  if (result.doubtful_poses) {
-    json["doubtful_poses"] = ordered_json::array();
-    for (const DoubtfulPose& pose : *result.doubtful_poses) {
-      json["doubtful_poses"].push_back({{"stem", pose.stem}, {"doubt", pose.doubt}});
-    }
+  std::vector<std::string> unjudged;
+  for (const ScanRow& row : result.scans) {
+    if (!row.judged) unjudged.push_back(row.stem);
   }
-  if (!result.splits.empty()) json["splits"] = result.splits;
-  json["summary_split"] = json_or_null(result.summary_split);
+  visit_findings(result, unjudged, adding_to(json));
   json["summary"] = summary_json(result);
   return json;
 }
@@ -189,10 +310,23 @@ ordered_json header_json(const Result& result) {
 ordered_json to_json(const Result& result) {
   ordered_json json = header_json(result);
   json["scans"] = ordered_json::array();
-  for (const ScanRow& row : result.scans) json["scans"].push_back(to_json(row));
+  for (const ScanRow& row : result.scans) json["scans"].push_back(row_json(row));
   if (result.timing) json["timing"] = timing_json(result);
-  if (result.places) json["places"] = to_json(*result.places);
+  if (result.places) json["places"] = written(*result.places);
   return json;
+}
+
+Result result_from_json(ordered_json content, const std::filesystem::path& file) {
+  try {
+    const bool is_first = content.is_object() && !content.contains("format");
+    Result result = from_present_format(in_present_format(std::move(content), file), file);
+    result.has_whole_scores = is_first;
+    return result;
+  } catch (const ordered_json::exception& error) {
+    throw DataError(file, error.what(), "a result.json of mosbench");
+  } catch (const UsageError& error) {
+    throw DataError(file, error.what(), "a result.json of this mosbench");
+  }
 }
 
 }  // namespace mosbench

@@ -21,8 +21,19 @@ nlohmann::ordered_json to_json(const Result& result);
 /// Of the header, what decides labels and scores: two runs that give the same asked the same.
 nlohmann::ordered_json identity_json(const Result& result);
 
+nlohmann::ordered_json row_json(const ScanRow& row);
+ScanRow row_from_json(const nlohmann::ordered_json& json, const std::filesystem::path& file);
+nlohmann::ordered_json timing_json(const Result& result);
+Timing timing_from_json(const nlohmann::ordered_json& json);
+
+nlohmann::ordered_json to_json(const Machine& machine);
 nlohmann::ordered_json to_json(const SimulatedOrigin& origin);
 nlohmann::ordered_json to_json(const ScoredPredictions& predictions);
+
+/// Returns the content of a result.json of any format as one of kResultFormat. Throws DataError for
+/// a format that is newer than this program, nlohmann's exceptions for what is no result.
+nlohmann::ordered_json in_present_format(nlohmann::ordered_json content,
+                                         const std::filesystem::path& file);
 
 /// Returns what a result.json of any format says. Throws DataError naming `file`.
 Result result_from_json(nlohmann::ordered_json content, const std::filesystem::path& file);
