@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "datasets/formats/byte_cursor.hpp"
-#include "datasets/rosbag/bag_compression.hpp"
-#include "datasets/rosbag/mcap_record.hpp"
+#include "datasets/rosbag/chunk_reader.hpp"
+#include "datasets/rosbag/mcap_file.hpp"
 
 namespace mosbench {
 

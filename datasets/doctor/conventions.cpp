@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "datasets/doctor/pose_evidence.hpp"
-#include "datasets/formats/calib_file.hpp"
+#include "datasets/formats/pose_file.hpp"
 
 namespace mosbench {
 namespace {

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "datasets/disk/files.hpp"
-#include "datasets/formats/calib_file.hpp"
+#include "datasets/formats/pose_file.hpp"
 #include "datasets/layouts/folder_search.hpp"
 #include "datasets/layouts/simulated_origin.hpp"
 #include "datasets/sequence/pose_source.hpp"

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "datasets/doctor/doctor.hpp"
-#include "datasets/formats/calib_file.hpp"
+#include "datasets/formats/pose_file.hpp"
 
 namespace mosbench {
 namespace {

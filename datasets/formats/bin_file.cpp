@@ -7,8 +7,127 @@
 
 #include "datasets/disk/files.hpp"
 #include "datasets/text/errors.hpp"
+#include "datasets/text/numbers.hpp"
 
 namespace mosbench {
+namespace {
+
+constexpr std::size_t kFewestPoints = 64;
+constexpr std::size_t kPairs = 4096;
+
+struct Mean {
+  double value = 0.0;
+  double error = 0.0;  ///< its standard error
+};
+
+/// Roots of the differences within columns.
+struct Spread {
+  Mean of_neighbours;  ///< of points that follow each other
+  Mean of_any;         ///< of points anywhere in the scan
+};
+
+float number_at(std::string_view bytes, std::size_t index) {
+  float number = 0;
+  std::memcpy(&number, bytes.data() + index * sizeof(number), sizeof(number));
+  return number;
+}
+
+/// The mean over pairs of points; numbers that are not finite say nothing.
+class RootDifferences {
+ public:
+  RootDifferences(std::string_view bytes, std::size_t columns) : bytes_(bytes), columns_(columns) {}
+
+  void add(std::size_t one, std::size_t other) {
+    for (std::size_t column = 0; column < columns_; ++column) {
+      const double difference = std::abs(double{number_at(bytes_, one * columns_ + column)} -
+                                         double{number_at(bytes_, other * columns_ + column)});
+      if (!std::isfinite(difference)) continue;
+      sum_ += std::sqrt(difference);
+      sum_of_squares_ += difference;
+      ++count_;
+    }
+  }
+  Mean mean() const {
+    if (count_ == 0) return {};
+    const auto count = static_cast<double>(count_);
+    const double value = sum_ / count;
+    return {value, std::sqrt(std::max(sum_of_squares_ / count - value * value, 0.0) / count)};
+  }
+
+ private:
+  std::string_view bytes_;
+  std::size_t columns_;
+  double sum_ = 0.0, sum_of_squares_ = 0.0;
+  std::size_t count_ = 0;
+};
+
+Spread spread_of(std::string_view bytes, std::size_t columns) {
+  const std::size_t points = bytes.size() / (columns * sizeof(float));
+  RootDifferences of_neighbours(bytes, columns);
+  RootDifferences of_any(bytes, columns);
+  for (std::size_t pair = 0; pair < kPairs; ++pair) {
+    const std::size_t one = scatter_bits(2 * pair) % points;
+    of_neighbours.add(one, one + 1 < points ? one + 1 : 0);
+    of_any.add(one, scatter_bits(2 * pair + 1) % points);
+  }
+  return {of_neighbours.mean(), of_any.mean()};
+}
+
+bool is_return(std::string_view bytes, std::size_t columns, std::size_t point) {
+  bool any = false;
+  for (std::size_t column = 0; column < columns; ++column) {
+    const float number = number_at(bytes, point * columns + column);
+    if (!std::isfinite(number)) return false;
+    any = any || number != 0.0F;
+  }
+  return any;
+}
+
+/// Where most points are missing returns, the few others decide the means.
+bool holds_mostly_returns(std::string_view bytes, std::size_t columns) {
+  const std::size_t points = bytes.size() / (columns * sizeof(float));
+  std::size_t returns = 0;
+  for (std::size_t pair = 0; pair < kPairs; ++pair) {
+    returns += is_return(bytes, columns, scatter_bits(2 * pair) % points);
+  }
+  return 2 * returns > kPairs;
+}
+
+/// Whether `mean` is below that share of `other`, and not by chance: a few numbers that are far off
+/// the rest may make up most of a mean.
+bool is_clearly_below(double share, const Mean& mean, const Mean& other) {
+  constexpr double kSure = 5.0;
+  return mean.value < share * other.value &&
+         other.value - mean.value > kSure * std::hypot(mean.error, other.error);
+}
+
+/// Either differences are clearly smaller between any points, or a little and between neighbours,
+/// which scans measure side by side, by far.
+bool fits_clearly_better(const Spread& other, const Spread& told) {
+  return is_clearly_below(0.9, other.of_any, told.of_any) ||
+         (is_clearly_below(0.97, other.of_any, told.of_any) &&
+          is_clearly_below(0.5, other.of_neighbours, told.of_neighbours));
+}
+
+}  // namespace
+
+std::optional<std::size_t> other_bin_columns(std::string_view bytes, std::size_t columns) {
+  if (bytes.size() < kFewestPoints * columns * sizeof(float)) return std::nullopt;
+  if (!holds_mostly_returns(bytes, columns)) return std::nullopt;
+  const Spread told = spread_of(bytes, columns);
+  std::optional<std::size_t> best;
+  Spread spread_of_best = told;
+  for (std::size_t other = kFewestBinColumns; other <= kMostBinColumns; ++other) {
+    if (other == columns || bytes.size() % (other * sizeof(float)) != 0) continue;
+    const Spread spread = spread_of(bytes, other);
+    if (!fits_clearly_better(spread, told)) continue;
+    // Multiples of the right number fit as well.
+    if (best && spread.of_any.value >= 0.97 * spread_of_best.of_any.value) continue;
+    best = other;
+    spread_of_best = spread;
+  }
+  return best;
+}
 
 static_assert(std::endian::native == std::endian::little, "scans are copied as they are stored");
 

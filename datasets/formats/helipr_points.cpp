@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "datasets/formats/byte_cursor.hpp"
-#include "datasets/formats/quaternion.hpp"
+#include "datasets/formats/pose_file.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
 

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -23,5 +24,40 @@ void check_label_size(std::uintmax_t size_bytes, std::size_t point_count,
 
 std::vector<std::uint32_t> read_labels(const std::filesystem::path& file, std::size_t point_count);
 void write_labels(const std::filesystem::path& file, std::span<const std::uint32_t> labels);
+
+/// Parses labels of MOE: a row "Moveable_ID Moving_Status Class_ID" per point. The second number
+/// decides: 1 is kMovingLabel, 0 kStaticLabel. Throws DataError with the line for other rows, and
+/// for another number of rows than points.
+std::vector<std::uint32_t> parse_moe_labels(std::string_view text, std::size_t point_count,
+                                            const std::filesystem::path& file);
+std::vector<std::uint32_t> read_moe_labels(const std::filesystem::path& file,
+                                           std::size_t point_count);
+
+/// The truth of one scan in a DOALS indices.csv.
+struct IndicesRow {
+  std::int64_t stamp_ns = 0;
+  std::vector<std::uint32_t> moving;  ///< 0-based, raw firing order; sorted, each once
+  std::size_t line = 0;               ///< in its file, from 1; not needed for writing
+};
+
+/// Parses rows "stamp_ns,index,index,...". A row without index is a scan in which nothing moves.
+/// Throws DataError with the line for text, a negative number or a repeated stamp.
+std::vector<IndicesRow> parse_indices(std::string_view text, const std::filesystem::path& file);
+std::string format_indices(std::span<const IndicesRow> rows);
+
+/// Throws DataError with the row's line when an index lies beyond its scan's `point_count`.
+void check_indices(const IndicesRow& row, std::size_t point_count,
+                   const std::filesystem::path& file);
+
+std::vector<IndicesRow> read_indices(const std::filesystem::path& file);
+void write_indices(const std::filesystem::path& file, std::span<const IndicesRow> rows);
+
+/// Parses the frame numbers of a HeLiMOS split (train.txt, val.txt, test.txt), one per line. Throws
+/// DataError with the line for anything but a number, and for a file without numbers.
+std::set<std::uint64_t> parse_split(std::string_view text, const std::filesystem::path& file);
+std::string format_split(const std::set<std::uint64_t>& numbers);
+
+std::set<std::uint64_t> read_split(const std::filesystem::path& file);
+void write_split(const std::filesystem::path& file, const std::set<std::uint64_t>& numbers);
 
 }  // namespace mosbench

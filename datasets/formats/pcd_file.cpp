@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "datasets/disk/files.hpp"
-#include "datasets/formats/point_times.hpp"
+#include "datasets/formats/point_records.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "datasets/formats/point_times.hpp"
-#include "datasets/formats/quaternion.hpp"
+#include "datasets/formats/point_records.hpp"
+#include "datasets/formats/pose_file.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
 

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "datasets/formats/point_records.hpp"
-#include "datasets/formats/point_times.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
 

@@ -7,11 +7,10 @@
 #include <utility>
 
 #include "datasets/disk/files.hpp"
-#include "datasets/formats/bin_columns.hpp"
 #include "datasets/formats/bin_file.hpp"
 #include "datasets/formats/pcd_file.hpp"
 #include "datasets/formats/ply_file.hpp"
-#include "datasets/formats/point_times.hpp"
+#include "datasets/formats/point_records.hpp"
 #include "datasets/text/errors.hpp"
 
 namespace mosbench {

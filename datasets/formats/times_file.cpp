@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
+#include <chrono>
 #include <limits>
 
 #include "datasets/disk/files.hpp"
@@ -64,6 +66,59 @@ std::optional<std::uint64_t> leading_number(const std::string& digits, std::int6
   return value;
 }
 
+constexpr std::int64_t kNsPerSecond = 1'000'000'000;
+constexpr std::size_t kMostDecimals = 9;
+
+/// Reads the digits at a place, which have to be `count`.
+std::optional<std::int64_t> digits_at(std::string_view text, std::size_t from, std::size_t count) {
+  const std::string_view digits = text.substr(std::min(from, text.size()), count);
+  if (digits.size() != count || !std::ranges::all_of(digits, is_digit)) return std::nullopt;
+  std::int64_t value = 0;
+  for (const char digit : digits) value = value * 10 + (digit - '0');
+  return value;
+}
+
+/// Reads "" or ".594360375" as nanoseconds.
+std::optional<std::int64_t> fraction_ns(std::string_view text) {
+  if (text.empty()) return 0;
+  const std::size_t decimals = text.size() - 1;
+  if (text.front() != '.' || decimals == 0 || decimals > kMostDecimals) return std::nullopt;
+  auto value = digits_at(text, 1, decimals);
+  for (std::size_t i = decimals; value && i < kMostDecimals; ++i) *value *= 10;
+  return value;
+}
+
+std::optional<std::int64_t> parse_stamp(std::string_view text) {
+  constexpr std::string_view kForm = "0000-00-00 00:00:00";
+  if (text.size() < kForm.size()) return std::nullopt;
+  for (std::size_t i = 0; i < kForm.size(); ++i) {
+    if (kForm[i] != '0' && text[i] != kForm[i]) return std::nullopt;
+  }
+  const auto year = digits_at(text, 0, 4), month = digits_at(text, 5, 2),
+             day = digits_at(text, 8, 2);
+  const auto hour = digits_at(text, 11, 2), minute = digits_at(text, 14, 2);
+  const auto second = digits_at(text, 17, 2), ns = fraction_ns(text.substr(kForm.size()));
+  if (!year || !month || !day || !hour || !minute || !second || !ns) return std::nullopt;
+  const std::chrono::year_month_day date{std::chrono::year(static_cast<int>(*year)),
+                                         std::chrono::month(static_cast<unsigned>(*month)),
+                                         std::chrono::day(static_cast<unsigned>(*day))};
+  // Nanoseconds of 64 bits end in 2262.
+  const bool is_time = date.ok() && *hour < 24 && *minute < 60 && *second < 60 && *year < 2262;
+  if (!is_time || *year < 1970) return std::nullopt;
+  const std::int64_t days = std::chrono::sys_days(date).time_since_epoch().count();
+  return (((days * 24 + *hour) * 60 + *minute) * 60 + *second) * kNsPerSecond + *ns;
+}
+
+std::string format_stamp(std::int64_t stamp_ns) {
+  const std::chrono::sys_time<std::chrono::nanoseconds> time{std::chrono::nanoseconds(stamp_ns)};
+  const auto days = std::chrono::floor<std::chrono::days>(time);
+  const std::chrono::year_month_day date(days);
+  const std::int64_t ns = (time - days).count(), s = ns / kNsPerSecond;
+  return fmt::format("{:04}-{:02}-{:02} {:02}:{:02}:{:02}.{:09}", static_cast<int>(date.year()),
+                     static_cast<unsigned>(date.month()), static_cast<unsigned>(date.day()),
+                     s / 3600, s / 60 % 60, s % 60, ns % kNsPerSecond);
+}
+
 }  // namespace
 
 std::optional<std::int64_t> parse_seconds_as_ns(std::string_view text) {
@@ -116,6 +171,28 @@ std::vector<std::int64_t> read_times(const std::filesystem::path& file) {
 
 void write_times(const std::filesystem::path& file, std::span<const std::int64_t> stamps_ns) {
   write_file_atomic(file, format_times(stamps_ns));
+}
+
+std::vector<std::optional<std::int64_t>> parse_kitti_stamps(std::string_view text,
+                                                            const std::filesystem::path& file) {
+  std::vector<std::optional<std::int64_t>> stamps_ns;
+  for (std::size_t number = 1; !text.empty(); ++number) {
+    const auto end = text.find('\n');
+    const std::string_view line = trim(text.substr(0, end));
+    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+    stamps_ns.push_back(line.empty() ? std::nullopt : parse_stamp(line));
+    if (!line.empty() && !stamps_ns.back()) {
+      throw DataError(file, number, quoted(line) + " is no time",
+                      "one as 2011-09-26 13:02:25.594360375, between 1970 and 2261");
+    }
+  }
+  return stamps_ns;
+}
+
+std::string format_kitti_stamps(std::span<const std::optional<std::int64_t>> stamps_ns) {
+  std::string text;
+  for (const auto& stamp_ns : stamps_ns) text += (stamp_ns ? format_stamp(*stamp_ns) : "") + "\n";
+  return text;
 }
 
 }  // namespace mosbench

@@ -11,7 +11,7 @@
 #include "datasets/disk/folder_listing.hpp"
 #include "datasets/formats/point_range.hpp"
 #include "datasets/formats/pose_file.hpp"
-#include "datasets/hdf5/scene_flow_names.hpp"
+#include "datasets/hdf5/flow_truth.hpp"
 #include "datasets/sequence/pose_source.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"

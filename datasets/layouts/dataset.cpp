@@ -14,9 +14,7 @@
 #include "datasets/layouts/simulated_origin.hpp"
 #include "datasets/layouts/unfinished_conversion.hpp"
 #include "datasets/perturb/perturbation.hpp"
-#include "datasets/sequence/azimuth_times.hpp"
-#include "datasets/sequence/hdl64_correction.hpp"
-#include "datasets/sequence/scan_deskewer.hpp"
+#include "datasets/sequence/corrected_sequence.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
 

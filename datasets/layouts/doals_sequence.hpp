@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "datasets/formats/indices_file.hpp"
+#include "datasets/formats/label_file.hpp"
 #include "datasets/sequence/sequence.hpp"
 
 namespace mosbench {

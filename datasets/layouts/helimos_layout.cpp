@@ -9,8 +9,8 @@
 
 #include "datasets/disk/files.hpp"
 #include "datasets/disk/folder_listing.hpp"
+#include "datasets/formats/label_file.hpp"
 #include "datasets/formats/scan_file.hpp"
-#include "datasets/formats/split_file.hpp"
 #include "datasets/layouts/folder_search.hpp"
 #include "datasets/layouts/layout.hpp"
 #include "datasets/text/errors.hpp"

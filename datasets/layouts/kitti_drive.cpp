@@ -9,7 +9,7 @@
 
 #include "datasets/disk/files.hpp"
 #include "datasets/formats/kitti_oxts.hpp"
-#include "datasets/formats/kitti_stamps.hpp"
+#include "datasets/formats/times_file.hpp"
 #include "datasets/formats/tracking_labels.hpp"
 #include "datasets/formats/tracklets.hpp"
 #include "datasets/layouts/folder_search.hpp"

@@ -8,7 +8,7 @@
 #include "datasets/disk/files.hpp"
 #include "datasets/disk/folder_listing.hpp"
 #include "datasets/formats/pcd_file.hpp"
-#include "datasets/formats/point_times.hpp"
+#include "datasets/formats/point_records.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
 

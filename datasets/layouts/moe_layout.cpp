@@ -1,4 +1,4 @@
-#include "datasets/formats/moe_labels.hpp"
+#include "datasets/formats/label_file.hpp"
 #include "datasets/layouts/folder_search.hpp"
 #include "datasets/layouts/kitti_sequence.hpp"
 #include "datasets/layouts/layout.hpp"

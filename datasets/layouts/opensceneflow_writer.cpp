@@ -10,7 +10,6 @@
 #include "datasets/disk/partial_file.hpp"
 #include "datasets/hdf5/flow_truth.hpp"
 #include "datasets/hdf5/hdf5_module.hpp"
-#include "datasets/hdf5/scene_flow_names.hpp"
 #include "datasets/layouts/sequence_writer.hpp"
 #include "datasets/text/errors.hpp"
 

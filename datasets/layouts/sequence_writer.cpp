@@ -10,8 +10,6 @@
 #include "datasets/disk/partial_file.hpp"
 #include "datasets/formats/bin_file.hpp"
 #include "datasets/formats/byte_cursor.hpp"
-#include "datasets/formats/calib_file.hpp"
-#include "datasets/formats/indices_file.hpp"
 #include "datasets/formats/label_file.hpp"
 #include "datasets/formats/pose_file.hpp"
 #include "datasets/formats/times_file.hpp"

@@ -3,7 +3,7 @@
 #include <array>
 #include <utility>
 
-#include "datasets/formats/bin_columns.hpp"
+#include "datasets/formats/bin_file.hpp"
 #include "datasets/formats/scan_file.hpp"
 #include "datasets/sequence/pose_source.hpp"
 #include "datasets/text/errors.hpp"

@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "datasets/disk/files.hpp"
-#include "datasets/rosbag/bag_compression.hpp"
 #include "datasets/rosbag/bag_record.hpp"
+#include "datasets/rosbag/chunk_reader.hpp"
 #include "datasets/text/errors.hpp"
 
 namespace mosbench {

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "datasets/rosbag/bag_reader.hpp"
-#include "datasets/rosbag/point_cloud2.hpp"
+#include "datasets/rosbag/ros_messages.hpp"
+#include "datasets/sequence/corrected_sequence.hpp"
 #include "datasets/sequence/sequence.hpp"
-#include "datasets/sequence/undistort.hpp"
 
 namespace mosbench {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <set>
 
-#include "datasets/rosbag/ros_type.hpp"
+#include "datasets/rosbag/message_format.hpp"
 #include "datasets/text/errors.hpp"
 
 namespace mosbench {

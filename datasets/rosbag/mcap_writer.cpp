@@ -6,7 +6,7 @@
 #include <system_error>
 
 #include "datasets/disk/files.hpp"
-#include "datasets/rosbag/bag_compression.hpp"
+#include "datasets/rosbag/chunk_reader.hpp"
 #include "datasets/rosbag/ros2_definitions.hpp"
 #include "datasets/text/errors.hpp"
 

@@ -11,7 +11,7 @@
 
 #include "datasets/disk/partial_file.hpp"
 #include "datasets/formats/byte_cursor.hpp"
-#include "datasets/rosbag/mcap_record.hpp"
+#include "datasets/rosbag/mcap_file.hpp"
 #include "datasets/rosbag/ros2_bag_writer.hpp"
 
 namespace mosbench {

@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "datasets/disk/files.hpp"
-#include "datasets/rosbag/bag_compression.hpp"
 #include "datasets/rosbag/bag_file.hpp"
 #include "datasets/rosbag/bag_metadata.hpp"
+#include "datasets/rosbag/chunk_reader.hpp"
 #include "datasets/rosbag/joined_bag.hpp"
 #include "datasets/rosbag/mcap_file.hpp"
 #include "datasets/rosbag/sqlite_bag.hpp"

@@ -5,7 +5,7 @@
 
 #include "datasets/disk/files.hpp"
 #include "datasets/rosbag/mcap_writer.hpp"
-#include "datasets/rosbag/ros_type.hpp"
+#include "datasets/rosbag/message_format.hpp"
 #include "datasets/rosbag/sqlite_bag_writer.hpp"
 #include "datasets/text/errors.hpp"
 

@@ -7,8 +7,8 @@
 #include <array>
 
 #include "datasets/disk/files.hpp"
-#include "datasets/rosbag/bag_compression.hpp"
-#include "datasets/rosbag/ros_type.hpp"
+#include "datasets/rosbag/chunk_reader.hpp"
+#include "datasets/rosbag/message_format.hpp"
 #include "datasets/text/errors.hpp"
 
 namespace mosbench {

@@ -5,7 +5,7 @@
 #include <system_error>
 
 #include "datasets/disk/partial_file.hpp"
-#include "datasets/rosbag/bag_compression.hpp"
+#include "datasets/rosbag/chunk_reader.hpp"
 #include "datasets/text/errors.hpp"
 
 namespace mosbench {

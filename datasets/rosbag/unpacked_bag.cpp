@@ -10,7 +10,7 @@
 
 #include "datasets/disk/file_descriptor.hpp"
 #include "datasets/disk/files.hpp"
-#include "datasets/rosbag/bag_compression.hpp"
+#include "datasets/rosbag/chunk_reader.hpp"
 #include "datasets/rosbag/mcap_file.hpp"
 #include "datasets/rosbag/sqlite_bag.hpp"
 #include "datasets/text/errors.hpp"

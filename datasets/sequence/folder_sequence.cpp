@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "datasets/disk/files.hpp"
-#include "datasets/formats/bin_columns.hpp"
-#include "datasets/formats/point_times.hpp"
+#include "datasets/formats/bin_file.hpp"
+#include "datasets/formats/point_records.hpp"
 #include "datasets/formats/scan_file.hpp"
 #include "datasets/formats/times_file.hpp"
 #include "datasets/text/errors.hpp"

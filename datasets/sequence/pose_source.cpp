@@ -1,23 +1,28 @@
 #include "datasets/sequence/pose_source.hpp"
 
 #include <fmt/format.h>
+#include <xxhash.h>
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "datasets/disk/files.hpp"
-#include "datasets/formats/calib_file.hpp"
+#include "datasets/formats/pose_file.hpp"
 #include "datasets/sequence/fingerprint.hpp"
-#include "datasets/sequence/pose_frame_mark.hpp"
 #include "datasets/sequence/pose_track.hpp"
-#include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
 
 namespace mosbench {
+namespace fs = std::filesystem;
 namespace {
 
-namespace fs = std::filesystem;
+std::filesystem::path mark_of(std::filesystem::path file) { return file += ".frame"; }
+
+/// With the hash, so that the mark of an overwritten file says nothing about the new one.
+std::string lidars(std::string_view text) {
+  return fmt::format("lidar {:016x}\n", XXH3_64bits(text.data(), text.size()));
+}
 
 double seconds(std::int64_t time_ns) { return static_cast<double>(time_ns) * 1e-9; }
 
@@ -180,6 +185,15 @@ MissingPoses missing_poses(const fs::path& folder, const fs::path& file) {
 }
 
 }  // namespace
+
+void mark_as_lidars(const std::filesystem::path& file, std::string_view text) {
+  write_file_atomic(mark_of(file), lidars(text));
+}
+
+bool is_marked_as_lidars(const std::filesystem::path& file) {
+  const std::filesystem::path mark = mark_of(file);
+  return is_there(mark) && read_file(mark) == lidars(read_file(file));
+}
 
 std::string pose_origin_of(const PosesDone& poses) {
   if (!poses.origin.empty()) return poses.origin;  // of poses that were converted before

@@ -13,8 +13,8 @@
 #include <variant>
 #include <vector>
 
-#include "datasets/formats/bin_columns.hpp"
-#include "datasets/formats/pose_list.hpp"
+#include "datasets/formats/bin_file.hpp"
+#include "datasets/formats/pose_file.hpp"
 
 namespace mosbench {
 

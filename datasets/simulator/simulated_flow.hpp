@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 
-#include "datasets/sequence/point_motions.hpp"
+#include "datasets/sequence/sequence.hpp"
 #include "datasets/simulator/scene_snapshot.hpp"
 #include "datasets/simulator/simulator.hpp"
 

@@ -8,7 +8,7 @@
 #include "datasets/disk/claim.hpp"
 #include "datasets/disk/files.hpp"
 #include "datasets/sequence/fingerprint.hpp"
-#include "datasets/sequence/pose_frame_mark.hpp"
+#include "datasets/sequence/pose_source.hpp"
 #include "datasets/text/errors.hpp"
 #include "eval/answer/answer_text.hpp"
 #include "eval/cli/commands.hpp"

@@ -6,7 +6,7 @@
 #include <memory>
 #include <optional>
 
-#include "datasets/formats/calib_file.hpp"
+#include "datasets/formats/pose_file.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
 #include "eval/answer/answer_text.hpp"

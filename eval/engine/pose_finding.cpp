@@ -7,7 +7,7 @@
 
 #include "datasets/formats/pose_file.hpp"
 #include "datasets/formats/times_file.hpp"
-#include "datasets/sequence/posed_sequence.hpp"
+#include "datasets/sequence/corrected_sequence.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
 #include "eval/engine/sequence_runner.hpp"

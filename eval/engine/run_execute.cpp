@@ -10,7 +10,7 @@
 #include "datasets/disk/partial_file.hpp"
 #include "datasets/doctor/doctor.hpp"
 #include "datasets/formats/pose_file.hpp"
-#include "datasets/sequence/pose_frame_mark.hpp"
+#include "datasets/sequence/pose_source.hpp"
 #include "datasets/text/text.hpp"
 #include "eval/exec/exec_method.hpp"
 #include "eval/result/machine.hpp"

@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-#include "datasets/sequence/scan_deskewer.hpp"
+#include "datasets/sequence/corrected_sequence.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
 #include "eval/result/settings_json.hpp"

@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "datasets/disk/files.hpp"
-#include "datasets/formats/indices_file.hpp"
+#include "datasets/formats/label_file.hpp"
+#include "datasets/hdf5/flow_truth.hpp"
 #include "datasets/hdf5/hdf5_file.hpp"
-#include "datasets/hdf5/scene_flow_names.hpp"
 #include "datasets/text/text.hpp"
 
 namespace mosbench {

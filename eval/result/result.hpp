@@ -16,7 +16,7 @@
 #include "datasets/layouts/simulated_origin.hpp"
 #include "datasets/sequence/fingerprint.hpp"
 #include "datasets/sequence/reading.hpp"
-#include "datasets/sequence/sequence_name.hpp"
+#include "datasets/sequence/recording.hpp"
 #include "eval/predictions/predictions.hpp"
 #include "eval/protocols/confusion.hpp"
 #include "eval/protocols/scan_sums.hpp"

@@ -7,7 +7,7 @@
 #include <system_error>
 
 #include "datasets/disk/files.hpp"
-#include "datasets/sequence/sequence_name.hpp"
+#include "datasets/sequence/recording.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/json_text.hpp"
 #include "eval/result/result_json.hpp"

@@ -7,8 +7,8 @@
 #include "datasets/disk/files.hpp"
 #include "datasets/formats/label_file.hpp"
 #include "datasets/formats/pose_file.hpp"
+#include "datasets/sequence/corrected_sequence.hpp"
 #include "datasets/sequence/fingerprint.hpp"
-#include "datasets/sequence/posed_sequence.hpp"
 #include "datasets/text/errors.hpp"
 #include "eval/result/point_files.hpp"
 

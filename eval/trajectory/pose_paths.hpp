@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "datasets/formats/pose_list.hpp"
+#include "datasets/formats/pose_file.hpp"
 
 namespace mosbench {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "datasets/formats/indices_file.hpp"
+#include "datasets/formats/label_file.hpp"
 #include "tests/cli/program.hpp"
 #include "tests/cli/small_sequence.hpp"
 

@@ -9,11 +9,11 @@
 
 #include "datasets/disk/files.hpp"
 #include "datasets/layouts/doals_sequence.hpp"
-#include "datasets/rosbag/bag_compression.hpp"
 #include "datasets/rosbag/bag_file.hpp"
 #include "datasets/rosbag/bag_sequence.hpp"
 #include "datasets/rosbag/bag_writer.hpp"
-#include "datasets/rosbag/point_cloud2.hpp"
+#include "datasets/rosbag/chunk_reader.hpp"
+#include "datasets/rosbag/ros_messages.hpp"
 #include "datasets/text/errors.hpp"
 #include "tests/bag_bytes.hpp"
 #include "tests/temp_folder.hpp"

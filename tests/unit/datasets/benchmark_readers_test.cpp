@@ -6,7 +6,6 @@
 #include "datasets/formats/bin_file.hpp"
 #include "datasets/formats/byte_cursor.hpp"
 #include "datasets/formats/label_file.hpp"
-#include "datasets/formats/moe_labels.hpp"
 #include "datasets/formats/pcd_file.hpp"
 #include "datasets/formats/pose_file.hpp"
 #include "datasets/layouts/dataset.hpp"

@@ -1,5 +1,3 @@
-#include "datasets/formats/bin_columns.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -14,7 +14,7 @@
 #include "datasets/formats/bin_file.hpp"
 #include "datasets/formats/pose_file.hpp"
 #include "datasets/layouts/dataset.hpp"
-#include "datasets/sequence/azimuth_times.hpp"
+#include "datasets/sequence/corrected_sequence.hpp"
 #include "datasets/text/errors.hpp"
 #include "tests/temp_folder.hpp"
 

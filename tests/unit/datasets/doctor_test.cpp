@@ -16,7 +16,6 @@
 
 #include "datasets/disk/files.hpp"
 #include "datasets/formats/bin_file.hpp"
-#include "datasets/formats/calib_file.hpp"
 #include "datasets/formats/label_file.hpp"
 #include "datasets/formats/pose_file.hpp"
 #include "datasets/formats/times_file.hpp"

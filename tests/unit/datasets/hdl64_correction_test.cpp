@@ -1,5 +1,3 @@
-#include "datasets/sequence/hdl64_correction.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -9,6 +7,7 @@
 
 #include "datasets/formats/bin_file.hpp"
 #include "datasets/layouts/dataset.hpp"
+#include "datasets/sequence/corrected_sequence.hpp"
 #include "tests/temp_folder.hpp"
 
 namespace mosbench {

@@ -7,7 +7,7 @@
 
 #include "datasets/formats/kitti_calib.hpp"
 #include "datasets/formats/kitti_oxts.hpp"
-#include "datasets/formats/kitti_stamps.hpp"
+#include "datasets/formats/times_file.hpp"
 #include "datasets/formats/tracking_labels.hpp"
 #include "datasets/formats/tracklets.hpp"
 #include "datasets/text/errors.hpp"

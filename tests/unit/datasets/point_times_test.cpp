@@ -1,11 +1,10 @@
-#include "datasets/formats/point_times.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <limits>
 
 #include "datasets/formats/ply_file.hpp"
+#include "datasets/formats/point_records.hpp"
 #include "datasets/text/errors.hpp"
 #include "tests/temp_folder.hpp"
 

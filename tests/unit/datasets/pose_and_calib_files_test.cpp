@@ -1,7 +1,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "datasets/formats/calib_file.hpp"
 #include "datasets/formats/pose_file.hpp"
 #include "datasets/text/errors.hpp"
 #include "tests/temp_folder.hpp"

@@ -11,7 +11,7 @@
 
 #include "datasets/disk/files.hpp"
 #include "datasets/hdf5/flow_truth.hpp"
-#include "datasets/hdf5/process_copy.hpp"
+#include "datasets/hdf5/hdf5_file.hpp"
 #include "datasets/hdf5/scene_flow_sequence.hpp"
 #include "datasets/layouts/dataset.hpp"
 #include "datasets/layouts/sequence_writer.hpp"

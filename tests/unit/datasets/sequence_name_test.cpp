@@ -1,10 +1,9 @@
-#include "datasets/sequence/sequence_name.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <string>
 
+#include "datasets/sequence/recording.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
 #include "tests/temp_folder.hpp"

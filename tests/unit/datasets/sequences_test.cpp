@@ -7,7 +7,6 @@
 #include <set>
 
 #include "datasets/formats/bin_file.hpp"
-#include "datasets/formats/calib_file.hpp"
 #include "datasets/formats/label_file.hpp"
 #include "datasets/formats/pose_file.hpp"
 #include "datasets/formats/times_file.hpp"

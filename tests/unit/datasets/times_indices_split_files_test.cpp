@@ -3,8 +3,7 @@
 
 #include <limits>
 
-#include "datasets/formats/indices_file.hpp"
-#include "datasets/formats/split_file.hpp"
+#include "datasets/formats/label_file.hpp"
 #include "datasets/formats/times_file.hpp"
 #include "datasets/text/errors.hpp"
 #include "tests/temp_folder.hpp"

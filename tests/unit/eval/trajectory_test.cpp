@@ -6,7 +6,6 @@
 
 #include "datasets/disk/files.hpp"
 #include "datasets/formats/bin_file.hpp"
-#include "datasets/formats/calib_file.hpp"
 #include "datasets/formats/pose_file.hpp"
 #include "datasets/text/errors.hpp"
 #include "eval/trajectory/frame_check.hpp"

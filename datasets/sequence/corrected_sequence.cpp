@@ -1,0 +1,198 @@
+#include "datasets/sequence/corrected_sequence.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <unordered_map>
+#include <utility>
+
+#include "datasets/sequence/portable_math.hpp"
+
+namespace mosbench {
+namespace {
+
+Point moved(const Pose& pose, const Point& point) {
+  const Eigen::Vector3d p = pose * Eigen::Vector3d(point.x, point.y, point.z);
+  return {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z()),
+          point.intensity};
+}
+
+constexpr std::int64_t kUsualPeriod_ns = 100'000'000;
+
+/// `share` of a motion: translation linearly, rotation about its axis. May be negative.
+Pose share_of(const Pose& motion, double share) {
+  const Eigen::AngleAxisd turn(Eigen::Quaterniond(motion.linear()).normalized());
+  Pose part = Pose::Identity();
+  part.linear() = Eigen::AngleAxisd(share * turn.angle(), turn.axis()).toRotationMatrix();
+  part.translation() = share * motion.translation();
+  return part;
+}
+
+constexpr std::int64_t kUsualTurn_ns = 100'000'000, kLongestTurn_ns = 1'000'000'000;
+// All points of one step are moved by one pose. At 30 m/s a step is 0.3 mm long.
+constexpr double kSteps = 10'000;
+
+std::int64_t median_interval_ns(const std::vector<ScanEntry>& scans) {
+  std::vector<std::int64_t> intervals_ns;
+  for (std::size_t k = 1; k < scans.size(); ++k) {
+    if (!scans[k].stamp_ns || !scans[k - 1].stamp_ns) return kUsualTurn_ns;
+    intervals_ns.push_back(*scans[k].stamp_ns - *scans[k - 1].stamp_ns);
+  }
+  if (intervals_ns.empty()) return kUsualTurn_ns;
+  const auto middle = intervals_ns.begin() + static_cast<std::ptrdiff_t>(intervals_ns.size() / 2);
+  std::ranges::nth_element(intervals_ns, middle);
+  return *middle > 0 && *middle <= kLongestTurn_ns ? *middle : kUsualTurn_ns;
+}
+
+}  // namespace
+
+bool undistort(std::span<Point> points, std::span<const std::int64_t> times_ns,
+               std::int64_t stamp_ns, std::int64_t reference_ns, const PoseAt& map_from_sensor) {
+  const std::optional<Pose> reference = map_from_sensor(reference_ns);
+  if (!reference) return false;
+  const Pose reference_from_map = reference->inverse();
+  // All points of a column of a spinning sensor have the same time.
+  std::unordered_map<std::int64_t, Pose> reference_from_time;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const std::int64_t at_ns = stamp_ns + times_ns[i];
+    if (at_ns == reference_ns) continue;
+    auto known = reference_from_time.find(at_ns);
+    if (known == reference_from_time.end()) {
+      const std::optional<Pose> pose = map_from_sensor(at_ns);
+      if (!pose) return false;
+      known = reference_from_time.emplace(at_ns, reference_from_map * *pose).first;
+    }
+    points[i] = moved(known->second, points[i]);
+  }
+  return true;
+}
+
+ScanDeskewer::ScanDeskewer(Deskew by, const std::vector<ScanEntry>& scans) : by_(by) {
+  std::vector<std::pair<std::int64_t, Pose>> stamped;
+  for (const ScanEntry& scan : scans) {
+    poses_.push_back(scan.map_from_sensor);
+    stamps_ns_.push_back(
+        scan.stamp_ns.value_or(kUsualPeriod_ns * static_cast<std::int64_t>(stamps_ns_.size())));
+    stamped.emplace_back(stamps_ns_.back(), poses_.back());
+  }
+  track_ = PoseTrack(std::move(stamped));
+}
+
+/// The motion since the scan before; in the first scan that to the next.
+std::optional<ScanDeskewer::Motion> ScanDeskewer::motion_at(std::size_t scan_index) const {
+  if (poses_.size() < 2) return std::nullopt;
+  const std::size_t to = scan_index == 0 ? 1 : scan_index;
+  const std::int64_t period_ns = stamps_ns_[to] - stamps_ns_[to - 1];
+  if (period_ns <= 0) return std::nullopt;
+  return Motion{poses_[scan_index], poses_[to - 1].inverse() * poses_[to], period_ns};
+}
+
+bool ScanDeskewer::move_by(std::size_t scan_index, Frame& frame) const {
+  const std::int64_t stamp_ns = stamps_ns_[scan_index];
+  const auto moves = [&](const PoseAt& pose_at) {
+    return undistort(frame.points, frame.point_times_ns, stamp_ns, stamp_ns, pose_at);
+  };
+  if (by_ == Deskew::kPoses) {
+    return moves([&](std::int64_t at_ns) { return track_.at(at_ns); });
+  }
+  const std::optional<Motion> motion = motion_at(scan_index);
+  return motion && moves([&](std::int64_t at_ns) {
+           const double periods =
+               static_cast<double>(at_ns - stamp_ns) / static_cast<double>(motion->period_ns);
+           return std::optional<Pose>(motion->map_from_sensor * share_of(motion->to_next, periods));
+         });
+}
+
+void ScanDeskewer::apply(std::size_t scan_index, Frame& frame) const {
+  if (by_ == Deskew::kNone || frame.point_times_ns.empty()) return;
+  std::vector<Point> as_measured = frame.points;
+  if (!move_by(scan_index, frame)) {
+    frame.points = std::move(as_measured);
+    return;
+  }
+  frame.point_times_ns.clear();
+}
+
+DeskewedSequence::DeskewedSequence(std::unique_ptr<Sequence> inner, Deskew by)
+    : SequenceAround(std::move(inner)), deskewer_(by, recording().scans) {
+  mutable_recording().reading.deskew = by;
+}
+
+void DeskewedSequence::read(std::size_t scan_index, Frame& frame) const {
+  SequenceAround::read(scan_index, frame);
+  deskewer_.apply(scan_index, frame);
+}
+
+PosedSequence::PosedSequence(std::unique_ptr<Sequence> inner, PosesDone how, Deskew deskew,
+                             bool states_deskew)
+    : SequenceAround(std::move(inner)), deskew_(deskew) {
+  ReadingDone& reading = mutable_recording().reading;
+  reading.poses = std::move(how);
+  if (states_deskew) reading.deskew = deskew;
+}
+
+void PosedSequence::set_poses(const std::vector<Pose>& map_from_sensor, std::string remark) {
+  if (map_from_sensor.size() != size()) throw std::invalid_argument("one pose per scan is needed");
+  for (std::size_t k = 0; k < size(); ++k) {
+    mutable_recording().scans[k].map_from_sensor = map_from_sensor[k];
+  }
+  deskewer_ = ScanDeskewer(deskew_, recording().scans);
+  mutable_recording().remarks.push_back(std::move(remark));
+}
+
+void PosedSequence::read(std::size_t scan_index, Frame& frame) const {
+  SequenceAround::read(scan_index, frame);
+  frame.map_from_sensor = map_from_sensor(scan_index);
+  deskewer_.apply(scan_index, frame);
+}
+
+std::vector<std::int64_t> azimuth_times_ns(std::span<const Point> points, std::int64_t turn_ns) {
+  std::vector<std::int64_t> times_ns;
+  times_ns.reserve(points.size());
+  for (const Point& point : points) {
+    const double turns = -std::atan2(static_cast<double>(point.y), static_cast<double>(point.x)) /
+                         (2 * std::numbers::pi);
+    const double step = std::isfinite(turns) ? std::round(kSteps * turns) : 0;
+    times_ns.push_back(std::llround(step / kSteps * static_cast<double>(turn_ns)));
+  }
+  return times_ns;
+}
+
+AzimuthTimes::AzimuthTimes(std::unique_ptr<Sequence> inner)
+    : SequenceAround(std::move(inner)), turn_ns_(median_interval_ns(recording().scans)) {
+  const std::string how =
+      fmt::format("by azimuth, a turn in {:g} s", static_cast<double>(turn_ns_) * 1e-9);
+  mutable_recording().reading.point_times = how;
+  mutable_recording().remarks.push_back("times of points " + how);
+}
+
+void AzimuthTimes::read(std::size_t scan_index, Frame& frame) const {
+  SequenceAround::read(scan_index, frame);
+  frame.point_times_ns = azimuth_times_ns(frame.points, turn_ns_);
+}
+
+Point raised_by_hdl64_correction(const Point& point) {
+  constexpr double kRadPerDeg = 3.14159265358979323846 / 180.0;
+  static const SinCos raise = sin_cos(0.205 * kRadPerDeg);
+  const double x = point.x, y = point.y, z = point.z;
+  const double across_m = std::sqrt(x * x + y * y);
+  if (across_m == 0.0) return point;
+  const double scale = (across_m * raise.cos - z * raise.sin) / across_m;
+  return {static_cast<float>(x * scale), static_cast<float>(y * scale),
+          static_cast<float>(z * raise.cos + across_m * raise.sin), point.intensity};
+}
+
+Hdl64Corrected::Hdl64Corrected(std::unique_ptr<Sequence> inner) : SequenceAround(std::move(inner)) {
+  mutable_recording().reading.hdl64_correction = true;
+}
+
+void Hdl64Corrected::read(std::size_t scan_index, Frame& frame) const {
+  inner().read(scan_index, frame);
+  for (Point& point : frame.points) point = raised_by_hdl64_correction(point);
+}
+
+}  // namespace mosbench
