@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "eval/answer/palette.hpp"
+#include "eval/answer/picture.hpp"
 
 namespace mosbench {
 namespace {

@@ -3,14 +3,32 @@
 #include <png.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <numbers>
 #include <stdexcept>
 
-#include "eval/answer/answer_assets.hpp"
+#include "datasets/text/json_text.hpp"
 
 namespace mosbench {
+
+// Embedded by CMakeLists.txt: a PGM picture of the letters that pictures hold, and the colours of
+// pictures and of the report's page as JSON.
+std::string_view glyphs_asset();
+std::string_view palette_asset();
+
 namespace {
+
+/// Parses "#rrggbb".
+Colour colour_from(const std::string& text) {
+  const auto channel = [&text](std::size_t start) {
+    std::uint8_t value = 0;
+    std::from_chars(text.data() + start, text.data() + start + 2, value, 16);
+    return value;
+  };
+  return {channel(1), channel(3), channel(5)};
+}
 
 constexpr int kFirstGlyph = 32;
 constexpr int kGlyphs = 95;
@@ -27,6 +45,27 @@ std::string_view glyph_levels() {
 int floor_pixel(double position) { return static_cast<int>(std::floor(position)); }
 
 }  // namespace
+
+Palette palette(bool dark) {
+  const char* theme = dark ? "dark" : "light";
+  const auto json = parse_json(palette_asset(), "palette.json");
+  const auto colour = [&](const nlohmann::ordered_json& entry) {
+    return colour_from(entry.at(theme));
+  };
+  Palette palette{
+      {}, {}, colour(json.at("background")), colour(json.at("text")), colour(json.at("guide"))};
+  const auto swatch = [&](const nlohmann::ordered_json& entry) {
+    const std::string name = entry.at("name");
+    return Swatch{colour(entry), name, entry.value("without_truth", name)};
+  };
+  for (const nlohmann::ordered_json& entry : json.at("outcomes")) {
+    palette.outcomes.push_back(swatch(entry));
+  }
+  for (const nlohmann::ordered_json& entry : json.at("reasons")) {
+    palette.reasons.push_back(swatch(entry));
+  }
+  return palette;
+}
 
 Picture::Picture(std::size_t width, std::size_t height, Colour background)
     : width_(width), height_(height), pixels_(width * height, background) {}

@@ -12,7 +12,6 @@
 #include "eval/cli/dataset_flags.hpp"
 #include "eval/cli/help_text.hpp"
 #include "eval/cli/output_file.hpp"
-#include "eval/statistics/gate_report.hpp"
 #include "eval/statistics/paired_runs.hpp"
 #include "eval/statistics/statistics_report.hpp"
 

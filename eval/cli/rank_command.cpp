@@ -10,7 +10,7 @@
 #include "eval/cli/output_file.hpp"
 #include "eval/cli/run_job.hpp"
 #include "eval/result/tell.hpp"
-#include "eval/tables/leaderboard_print.hpp"
+#include "eval/tables/table_print.hpp"
 
 namespace mosbench {
 namespace {

@@ -127,12 +127,13 @@ void check_has_reasons(const ResultScans& scans) {
 }
 
 /// Where the camera looks in one of several pictures.
-ScanViewpoint viewpoint_of(const RenderFlags& options, std::size_t picture, std::size_t pictures) {
-  if (!options.azimuth_deg) return {};
+std::optional<double> orbit_rad_of(const RenderFlags& options, std::size_t picture,
+                                   std::size_t pictures) {
+  if (!options.azimuth_deg) return std::nullopt;
   const double share =
       pictures < 2 ? 0.0 : static_cast<double>(picture) / static_cast<double>(pictures - 1);
   const double degrees = *options.azimuth_deg + share * options.turn_deg.value_or(kUsualTurn_deg);
-  return {degrees * std::numbers::pi / 180.0};
+  return degrees * std::numbers::pi / 180.0;
 }
 
 /// Draws scans one after the other.
@@ -146,7 +147,7 @@ class Pictures {
   std::string png(std::size_t i) const {
     ScanPictureOptions picture = options_.picture;
     picture.title = title_of(scans_.result(), chosen_[i]);
-    picture.viewpoint = viewpoint_of(options_, i, chosen_.size());
+    picture.orbit_rad = orbit_rad_of(options_, i, chosen_.size());
     if (options_.boxes) picture.boxes = boxes_[i];
     return scan_picture(scans_.read(chosen_[i]), picture).png();
   }

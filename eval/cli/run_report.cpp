@@ -8,7 +8,6 @@
 #include "eval/result/result_set.hpp"
 #include "eval/result/settings_json.hpp"
 #include "eval/tables/score_report.hpp"
-#include "eval/tables/score_table.hpp"
 
 namespace mosbench {
 namespace {

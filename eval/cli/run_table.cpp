@@ -11,7 +11,6 @@
 #include "eval/job/job_words.hpp"
 #include "eval/job/method_choice.hpp"
 #include "eval/result/tell.hpp"
-#include "eval/tables/table_match.hpp"
 #include "eval/tables/table_print.hpp"
 
 namespace mosbench {

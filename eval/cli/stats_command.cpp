@@ -9,7 +9,7 @@
 #include "eval/cli/dataset_flags.hpp"
 #include "eval/cli/help_text.hpp"
 #include "eval/cli/output_file.hpp"
-#include "eval/report/curve_report.hpp"
+#include "eval/report/score_curve.hpp"
 #include "eval/result/tell.hpp"
 #include "eval/statistics/statistics_report.hpp"
 

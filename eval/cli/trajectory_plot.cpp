@@ -7,7 +7,7 @@
 #include <string>
 
 #include "eval/answer/line_chart.hpp"
-#include "eval/answer/palette.hpp"
+#include "eval/answer/picture.hpp"
 
 namespace mosbench {
 namespace {

@@ -4,6 +4,7 @@
 #include <mosbench/scan.hpp>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "eval/protocols/confusion.hpp"
@@ -35,5 +36,9 @@ std::string velocity_planes(std::span<const float> radial_velocity_m_s);
 /// Encodes four bytes per point, the bits of its float32 score: the lowest bytes of all scores,
 /// then the next ones. Most are 0.
 std::string score_planes(std::span<const float> scores);
+
+/// Compresses `bytes` in zlib's format (RFC 1950) and encodes them in base64 (RFC 4648), for a
+/// browser's atob() and DecompressionStream("deflate").
+std::string compressed_text(std::string_view bytes);
 
 }  // namespace mosbench

@@ -1,5 +1,3 @@
-#include "eval/report/report_scans.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,8 +5,8 @@
 
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
-#include "eval/report/compressed_text.hpp"
 #include "eval/report/point_planes.hpp"
+#include "eval/report/report.hpp"
 #include "eval/result/point_files.hpp"
 #include "eval/result/tell.hpp"
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -10,12 +11,30 @@
 #include <utility>
 
 #include "datasets/formats/point_range.hpp"
-#include "eval/answer/palette.hpp"
+#include "eval/answer/picture.hpp"
 #include "eval/report/point_planes.hpp"
 #include "eval/report/result_boxes.hpp"
 
 namespace mosbench {
 namespace {
+
+constexpr double kElevation_rad = std::numbers::pi / 6.0;
+/// Distance of the camera from the sensor in ranges: near enough for depth, far enough for all.
+constexpr double kRangesAway = 1.6;
+/// What is nearer than this share of it hides the picture.
+constexpr double kNearest = 0.05;
+
+/// Returns the corners of a box in the map: the four of its bottom in a circle, then those above.
+std::array<Eigen::Vector3d, 8> corners_of(const MovingBox& box) {
+  std::array<Eigen::Vector3d, 8> corners;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const double x = i % 4 == 0 || i % 4 == 3 ? 0.5 : -0.5;
+    const double y = i % 4 < 2 ? 0.5 : -0.5;
+    const double z = i < 4 ? -0.5 : 0.5;
+    corners[i] = box.map_from_box * box.size_m.cwiseProduct(Eigen::Vector3d(x, y, z));
+  }
+  return corners;
+}
 
 constexpr int kMargin = 12;
 
@@ -92,7 +111,7 @@ class ScanPicture {
         kinds_(options.by_reason ? kinds_of(scan.reasons, palette_.reasons)
                                  : kinds_of_outcomes(scan, palette_.outcomes)),
         range_m_(options.range_m > 0.0 ? options.range_m : reach_m(scan)),
-        view_(options.viewpoint, range_m_, static_cast<double>(options.size_pixels)),
+        view_(options.orbit_rad, range_m_, static_cast<double>(options.size_pixels)),
         text_scale_(std::max(1, static_cast<int>(options.size_pixels + 500) / 1000)),
         picture_(options.size_pixels, options.size_pixels, palette_.background) {}
 
@@ -271,6 +290,32 @@ class ScanPicture {
 
 }  // namespace
 
+ScanView::ScanView(const std::optional<double>& orbit_rad, double range_m, double size_pixels)
+    : orbits_(orbit_rad.has_value()), middle_(size_pixels / 2.0), pixels_per_m_(middle_ / range_m) {
+  if (!orbits_) return;
+  away_m_ = kRangesAway * range_m;
+  const Eigen::Vector3d forward(std::cos(*orbit_rad) * std::cos(kElevation_rad),
+                                std::sin(*orbit_rad) * std::cos(kElevation_rad),
+                                -std::sin(kElevation_rad));
+  const Eigen::Vector3d right = forward.cross(Eigen::Vector3d::UnitZ()).normalized();
+  camera_from_sensor_.row(0) = right;
+  camera_from_sensor_.row(1) = right.cross(forward);
+  camera_from_sensor_.row(2) = forward;
+}
+
+std::optional<ViewedPoint> ScanView::seen(const Eigen::Vector3d& point_m) const {
+  if (!orbits_) {
+    return ViewedPoint{middle_ - point_m.y() * pixels_per_m_,
+                       middle_ - point_m.x() * pixels_per_m_};
+  }
+  const Eigen::Vector3d in_camera = camera_from_sensor_ * point_m;
+  const double distance_m = in_camera.z() + away_m_;
+  if (distance_m < kNearest * away_m_) return std::nullopt;
+  const double scale = away_m_ / distance_m;
+  return ViewedPoint{middle_ + in_camera.x() * pixels_per_m_ * scale,
+                     middle_ - in_camera.y() * pixels_per_m_ * scale, distance_m, scale};
+}
+
 double reach_m(const JudgedScan& scan) {
   std::vector<double> distances_m;
   for (const Point& point : scan.frame.points) {
@@ -282,17 +327,6 @@ double reach_m(const JudgedScan& scan) {
                     static_cast<std::ptrdiff_t>(0.98 * static_cast<double>(distances_m.size() - 1));
   std::ranges::nth_element(distances_m, most);
   return 5.0 * std::max(1.0, std::ceil(*most / 5.0));
-}
-
-std::array<Eigen::Vector3d, 8> corners_of(const MovingBox& box) {
-  std::array<Eigen::Vector3d, 8> corners;
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    const double x = i % 4 == 0 || i % 4 == 3 ? 0.5 : -0.5;
-    const double y = i % 4 < 2 ? 0.5 : -0.5;
-    const double z = i < 4 ? -0.5 : 0.5;
-    corners[i] = box.map_from_box * box.size_m.cwiseProduct(Eigen::Vector3d(x, y, z));
-  }
-  return corners;
 }
 
 Picture scan_picture(const JudgedScan& scan, const ScanPictureOptions& options) {

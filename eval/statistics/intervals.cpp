@@ -1,11 +1,10 @@
 #include "eval/statistics/intervals.hpp"
 
 #include <algorithm>
+#include <boost/math/distributions/students_t.hpp>  // nowhere else: it takes a second to compile
 #include <cmath>
 #include <stdexcept>
 #include <vector>
-
-#include "eval/statistics/distributions.hpp"
 
 namespace mosbench {
 namespace {
@@ -98,6 +97,14 @@ void check_same_scans(Sequences first, Sequences second) {
 }
 
 }  // namespace
+
+double student_probability(double t, double freedom) {
+  return boost::math::cdf(boost::math::students_t(freedom), t);
+}
+
+double student_quantile(double probability, double freedom) {
+  return boost::math::quantile(boost::math::students_t(freedom), probability);
+}
 
 Estimates estimate(const Protocol& protocol, Sequences sequences, Spacing spacing,
                    double confidence) {

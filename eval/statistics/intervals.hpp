@@ -11,6 +11,12 @@
 
 namespace mosbench {
 
+/// Distribution function of Student's t with `freedom` >= 1 degrees of freedom.
+double student_probability(double t, double freedom);
+/// Quantile of Student's t with `freedom` >= 1 degrees of freedom, which need not be whole;
+/// `probability` in (0, 1).
+double student_quantile(double probability, double freedom);
+
 /// Confidence of all intervals that are printed.
 inline constexpr double kConfidence = 0.95;
 

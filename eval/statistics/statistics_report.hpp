@@ -1,12 +1,11 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
-#include <string>
+#include <vector>
 
 #include "eval/answer/answer.hpp"
 #include "eval/result/result_set.hpp"
-#include "eval/statistics/intervals.hpp"
-#include "eval/statistics/paired_runs.hpp"
+#include "eval/statistics/gate.hpp"
 
 namespace mosbench {
 
@@ -36,5 +35,14 @@ Answer statistics_answer(const ResultSet& set, bool per_scan);
 
 /// Describes the second run minus the first.
 Answer difference_answer(const ResultSet& first, const ResultSet& second, const PairedRuns& paired);
+
+/// Says the verdict and a row per check. The paired interval is shown under every rule: it says
+/// whether other scans like these would show the difference.
+Sheet gate_sheet(const GateResult& result);
+
+/// Returns one per check that failed.
+std::vector<Annotation> gate_annotations(const GateResult& result);
+
+nlohmann::ordered_json to_json(const GateResult& result);
 
 }  // namespace mosbench

@@ -37,4 +37,26 @@ struct SumUncertainty {
 /// scans cannot tell, there is no estimate.
 SumUncertainty uncertainty_of_sum(std::span<const ScanErrors> sequences, Spacing spacing);
 
+/// Correlation of neighbouring values with its standard error.
+struct Correlation {
+  double value = 0.0;
+  double error = 0.0;
+  /// Returns the value so many standard errors higher.
+  double bound(double errors) const { return value + errors * error; }
+};
+
+/// Measures the correlation over all series, without the bias (1 + 3 r) / n of short ones (Kendall
+/// 1954). That of equal values is 0.
+Correlation neighbour_correlation(std::span<const std::vector<double>> series);
+
+/// Estimates the uncertainty of the sum of all values in `sequences`, consecutive values of
+/// stationary series that are independent of each other and remember as long as `measured` says.
+/// The variance is the mean square of the first cosine coefficients of each series (Mueller and
+/// Watson 2008; Lazarus, Lewis, Stock and Watson 2018), corrected for what an autoregressive
+/// process of first order has more power at frequency 0 than at theirs. How many coefficients are
+/// taken follows from the correlation of neighbours: those whose frequencies are slower than the
+/// series' memory. When even the first two are not, there is no estimate.
+SumUncertainty long_run_uncertainty(std::span<const std::vector<double>> sequences,
+                                    const Correlation& measured);
+
 }  // namespace mosbench

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "eval/engine/study_plan.hpp"
-#include "eval/statistics/distributions.hpp"
+#include "eval/statistics/intervals.hpp"
 #include "eval/statistics/pareto_front.hpp"
 
 namespace mosbench {

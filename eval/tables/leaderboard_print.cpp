@@ -1,5 +1,3 @@
-#include "eval/tables/leaderboard_print.hpp"
-
 #include <fmt/format.h>
 
 #include <map>
@@ -8,6 +6,7 @@
 #include "eval/answer/answer_text.hpp"
 #include "eval/protocols/protocol_list.hpp"
 #include "eval/statistics/statistics_report.hpp"
+#include "eval/tables/table_print.hpp"
 
 namespace mosbench {
 namespace {

@@ -1,11 +1,10 @@
-#include "eval/tables/score_table.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "eval/protocols/benchmark_split.hpp"
 #include "eval/protocols/protocol_list.hpp"
+#include "eval/tables/score_report.hpp"
 
 namespace mosbench {
 namespace {

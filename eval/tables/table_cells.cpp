@@ -6,9 +6,7 @@
 #include <cmath>
 
 #include "eval/statistics/scan_spacing.hpp"
-#include "eval/tables/differing_settings.hpp"
-#include "eval/tables/fill_command.hpp"
-#include "eval/tables/table_match.hpp"
+#include "eval/tables/leaderboard.hpp"
 
 namespace mosbench {
 namespace {

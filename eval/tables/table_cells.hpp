@@ -1,12 +1,13 @@
 #pragma once
 
+#include <mosbench/method.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "eval/job/method_choice.hpp"
 #include "eval/result/result_set.hpp"
 #include "eval/statistics/intervals.hpp"
-#include "eval/tables/paper_tables.hpp"
 #include "eval/tables/published.hpp"
 
 namespace mosbench {
@@ -53,5 +54,37 @@ FilledTable fill_table(const PaperTable& table, const std::vector<PublishedCell>
 
 /// Returns a sentence for each result that belongs in no cell of the table.
 std::vector<std::string> left_out(const PaperTable& table, const std::vector<ResultSet>& runs);
+
+/// The published cells of one method, setting and section.
+struct PublishedRow {
+  std::vector<PublishedCell> cells;  ///< at least one
+};
+
+/// Returns the rows of a table in the order of publication.
+std::vector<PublishedRow> published_rows(const PaperTable& table,
+                                         const std::vector<PublishedCell>& published);
+
+/// Returns the method of `mosbench run` that the row is of; null for other programs.
+const MethodKind* own_method(const PublishedCell& cell);
+
+/// Lists how the run differs from the published one: variant, voxel size, range, delay, setting in
+/// words, protocol.
+std::vector<std::string> mismatches(const ResultSet& run, const PublishedCell& cell);
+
+/// Returns the row of the run's method with the fewest mismatches; the first of equal ones.
+std::optional<std::size_t> nearest_row(const ResultSet& run, const std::vector<PublishedRow>& rows);
+
+/// Returns the runs of the table's data set and, for each HeLiMOS run over all labelled scans, the
+/// same labels counted over the test split.
+std::vector<ResultSet> with_splits(const PaperTable& table, const std::vector<ResultSet>& runs);
+
+/// Returns what to download and the command whose results then fill `column` of the row that
+/// `published` belongs to: for methods of mosbench `mosbench run` with the preset of the table's
+/// data set that comes nearest to the published settings, for other methods `mosbench score`.
+std::string how_to_fill(const PaperTable& table, const TableColumn& column,
+                        const PublishedCell& published);
+
+/// The same for a preset of a method that was published nowhere.
+std::string how_to_fill(const PaperTable& table, const TableColumn& column, const Preset& preset);
 
 }  // namespace mosbench

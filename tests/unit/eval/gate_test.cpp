@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "eval/answer/render.hpp"
-#include "eval/statistics/gate_report.hpp"
+#include "eval/statistics/statistics_report.hpp"
 
 namespace mosbench {
 namespace {

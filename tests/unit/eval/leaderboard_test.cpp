@@ -1,11 +1,9 @@
-#include "eval/tables/leaderboard.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "datasets/text/errors.hpp"
 #include "eval/answer/render.hpp"
-#include "eval/tables/leaderboard_print.hpp"
+#include "eval/tables/table_print.hpp"
 #include "tests/temp_folder.hpp"
 
 namespace mosbench {

@@ -1,11 +1,11 @@
-#include "eval/statistics/long_run_variance.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstdint>
 #include <numbers>
 #include <vector>
+
+#include "eval/statistics/uncertainty.hpp"
 
 namespace mosbench {
 namespace {

@@ -11,7 +11,6 @@
 #include <optional>
 
 #include "eval/answer/line_chart.hpp"
-#include "eval/answer/palette.hpp"
 #include "eval/report/scan_picture.hpp"
 
 namespace mosbench {
@@ -220,7 +219,7 @@ TEST(ScanPicture, DrawsBoxesWithTheirSpeeds) {
   options.boxes[0].velocity_m_s = Eigen::Vector3d(3.0, 4.0, 0.0);
   EXPECT_GT(pixels_of(scan_picture(scan, options), palette(false).text), small + 20);
   options.boxes[0].size_m = box.size_m;
-  options.viewpoint.orbit_rad = 1.0;
+  options.orbit_rad = 1.0;
   EXPECT_GT(pixels_of(scan_picture(scan, options), palette(false).text), without + 100);
 }
 
@@ -269,7 +268,7 @@ TEST(ScanPicture, DrawsAScanWithoutPointsAndWithImpossibleOnes) {
   scan.outcomes.assign(3, PointOutcome::kFalsePositive);
   const Picture picture = scan_picture(scan, {});
   ScanPictureOptions orbit;
-  orbit.viewpoint.orbit_rad = 2.0;
+  orbit.orbit_rad = 2.0;
   EXPECT_EQ(scan_picture(scan, orbit).width(), 1000U);
   // Only in the key to the colours.
   EXPECT_LT(pixels_of(picture, palette(false).outcomes[1].colour), 120U);

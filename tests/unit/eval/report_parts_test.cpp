@@ -6,7 +6,6 @@
 #include <set>
 
 #include "datasets/text/errors.hpp"
-#include "eval/report/compressed_text.hpp"
 #include "eval/report/point_planes.hpp"
 #include "eval/report/report_asset.hpp"
 #include "eval/report/scan_choice.hpp"

@@ -11,7 +11,6 @@
 #include "eval/result/tell.hpp"
 #include "eval/store/result_folder.hpp"
 #include "eval/tables/score_report.hpp"
-#include "eval/tables/score_table.hpp"
 #include "tests/unit/eval/confusions.hpp"
 
 namespace mosbench {

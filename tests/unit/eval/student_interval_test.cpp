@@ -3,7 +3,6 @@
 #include <cmath>
 #include <random>
 
-#include "eval/statistics/distributions.hpp"
 #include "eval/statistics/intervals.hpp"
 
 namespace mosbench {

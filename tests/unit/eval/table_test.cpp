@@ -3,8 +3,6 @@
 
 #include "datasets/text/errors.hpp"
 #include "eval/answer/render.hpp"
-#include "eval/tables/table_cells.hpp"
-#include "eval/tables/table_match.hpp"
 #include "eval/tables/table_print.hpp"
 #include "tests/temp_folder.hpp"
 
