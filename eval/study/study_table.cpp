@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <ranges>
 #include <set>
 #include <utility>
 
@@ -15,81 +16,28 @@
 namespace mosbench {
 namespace {
 
-/// IoU of each cell of one row, by what the cell sets and by sequence.
-using IousBySettings = std::map<std::vector<SettingChange>, std::map<std::string, double>>;
-
-/// All cells of one method with its poses.
-struct SampledRow {
-  const Segment* segment;
-  std::set<std::string> sequences;
-  IousBySettings ious;
-
-  /// Mean over sequences at one value of the axis; nothing where one is missing or undefined.
-  std::optional<double> iou(const StudyAxis& axis, std::size_t value) const {
-    const auto found = ious.find(changes_of(*segment, axis, value));
-    if (found == ious.end() || found->second.size() != sequences.size()) return std::nullopt;
-    double sum = 0;
-    for (const auto& [sequence, each] : found->second) sum += each;
-    return sum / static_cast<double>(sequences.size());
+/// Mean of optional numbers; nothing where one is missing, and of none.
+std::optional<double> mean_of(auto&& values) {
+  double sum = 0, count = 0;
+  for (const std::optional<double>& value : values) {
+    if (!value) return std::nullopt;
+    sum += *value;
+    ++count;
   }
-};
-
-std::map<std::string, SampledRow> rows_of(const StudyPlan& plan, std::vector<std::string>& labels) {
-  std::map<std::string, SampledRow> rows;
-  for (const PlannedCell& planned : plan.cells) {
-    const StudyCell& cell = planned.cell;
-    const auto [row, is_new] =
-        rows.try_emplace(cell.label(), SampledRow{&cell.method->segment, {}, {}});
-    if (is_new) labels.push_back(row->first);
-    row->second.sequences.insert(cell.sequence_label());
-    if (planned.state != CellState::kDone) continue;
-    if (const auto iou = planned.numbers.metrics[0]) {
-      row->second.ious[cell.job.segment.changes][cell.sequence_label()] = *iou;
-    }
-  }
-  return rows;
-}
-
-/// IoU at each whole point: first with all settings as drawn, then with each drawn anew.
-std::vector<std::vector<double>> ious_of(const SampledRow& row, const StudyAxis& axis) {
-  const std::size_t stride = axis.sampled.size() + 1;
-  std::vector<std::vector<double>> ious(stride);
-  for (std::size_t first = 0; first < axis.values.size(); first += stride) {
-    std::vector<std::optional<double>> point;
-    for (std::size_t i = 0; i < stride; ++i) point.push_back(row.iou(axis, first + i));
-    if (!std::ranges::all_of(point, [](const auto& iou) { return iou.has_value(); })) continue;
-    for (std::size_t i = 0; i < stride; ++i) ious[i].push_back(*point[i]);
-  }
-  return ious;
+  return count > 0 ? std::optional(sum / count) : std::nullopt;
 }
 
 /// Values by sequence, then by what differs in seeds alone.
-using Samples = std::map<std::string, std::map<std::string, std::optional<double>>>;
-
-std::optional<double> mean_of(const std::vector<std::optional<double>>& values) {
-  double sum = 0;
-  for (const auto& value : values) {
-    if (!value) return std::nullopt;
-    sum += *value;
-  }
-  if (values.empty()) return std::nullopt;
-  return sum / static_cast<double>(values.size());
-}
-
-std::vector<std::optional<double>> values_of(
-    const std::map<std::string, std::optional<double>>& seeds) {
-  std::vector<std::optional<double>> values;
-  for (const auto& [seed, value] : seeds) values.push_back(value);
-  return values;
-}
+using Seeds = std::map<std::string, std::optional<double>>;
+using Samples = std::map<std::string, Seeds>;
 
 StudyMean study_mean(const Samples& samples, const Interval& within = {0, 1}) {
   constexpr std::size_t kFewest = 3;  // of two, Student's t spans more than there is
   std::vector<std::optional<double>> values;
-  if (samples.size() == 1) {
-    values = values_of(samples.begin()->second);
-  } else {
-    for (const auto& [sequence, seeds] : samples) values.push_back(mean_of(values_of(seeds)));
+  for (const auto& [sequence, seeds] : samples) {
+    const auto of_seeds = std::views::values(seeds);
+    if (samples.size() == 1) values.assign(of_seeds.begin(), of_seeds.end());
+    if (samples.size() > 1) values.push_back(mean_of(of_seeds));
   }
   StudyMean mean;
   mean.value = mean_of(values);
@@ -109,9 +57,9 @@ StudyMean study_mean(const Samples& samples, const Interval& within = {0, 1}) {
 Samples differences(const Samples& first, const Samples& second) {
   Samples paired;
   for (const auto& [sequence, seeds] : first) {
+    const auto others = second.find(sequence);
+    if (others == second.end()) continue;
     for (const auto& [seed, value] : seeds) {
-      const auto others = second.find(sequence);
-      if (others == second.end()) continue;
       const auto other = others->second.find(seed);
       if (other == others->second.end() || !value || !other->second) continue;
       paired[sequence][seed] = *value - *other->second;
@@ -123,10 +71,9 @@ Samples differences(const Samples& first, const Samples& second) {
 /// A computed cell, with the names under which a table gathers it.
 struct DoneCell {
   const PlannedCell* planned;
+  const StudyCell& cell;
+  const CellNumbers& numbers;
   std::string label, sequence;
-
-  const StudyCell& cell() const { return planned->cell; }
-  const CellNumbers& numbers() const { return planned->numbers; }
 };
 
 /// The cells that were computed, as a table is made of them.
@@ -137,23 +84,22 @@ class DoneCells {
       std::string label = planned.cell.label();
       if (std::ranges::find(labels, label) == labels.end()) labels.push_back(label);
       if (planned.state != CellState::kDone) continue;
-      done.push_back({&planned, std::move(label), planned.cell.group_label()});
+      done.push_back(
+          {&planned, planned.cell, planned.numbers, std::move(label), planned.cell.group_label()});
     }
   }
 
-  template <typename Wanted>
-  Samples samples(std::size_t metric, Wanted&& wanted) const {
+  Samples samples(std::size_t metric, auto&& wanted) const {
     Samples samples;
     for (const DoneCell& each : done) {
       if (!wanted(each)) continue;
-      const std::string seed = fmt::format("{} {}", each.cell().data->name, each.cell().seed);
-      samples[each.sequence][seed] = each.numbers().metrics[metric];
+      const std::string seed = fmt::format("{} {}", each.cell.data->name, each.cell.seed);
+      samples[each.sequence][seed] = each.numbers.metrics[metric];
     }
     return samples;
   }
 
-  template <typename Wanted>
-  StudyMetrics metrics(Wanted&& wanted) const {
+  StudyMetrics metrics(auto&& wanted) const {
     StudyMetrics metrics;
     for (std::size_t i = 0; i < metrics.size(); ++i) {
       metrics[i] = study_mean(samples(i, wanted));
@@ -167,15 +113,14 @@ class DoneCells {
 
 /// Whether a cell is of this row, without any disturbance.
 auto is_plain_of(const std::string& label) {
-  return
-      [label](const DoneCell& each) { return each.cell().axis == nullptr && each.label == label; };
+  return [label](const DoneCell& each) { return each.cell.axis == nullptr && each.label == label; };
 }
 
 StudyRow row_of(const DoneCells& cells, const std::string& label) {
   const auto is_plain = is_plain_of(label);
   std::vector<std::optional<double>> ms;
   for (const DoneCell& each : cells.done) {
-    if (is_plain(each)) ms.push_back(each.numbers().ms_per_scan);
+    if (is_plain(each)) ms.push_back(each.numbers.ms_per_scan);
   }
   StudyRow row;
   row.label = label;
@@ -216,7 +161,7 @@ StudyCurve curve_of(const DoneCells& cells, const StudyAxis& axis,
     line.push_back(row.metrics);
     for (const std::string& value : axis.values) {
       line.push_back(cells.metrics([&](const DoneCell& each) {
-        return each.cell().axis == &axis && each.cell().value == value && each.label == row.label;
+        return each.cell.axis == &axis && each.cell.value == value && each.label == row.label;
       }));
     }
   }
@@ -298,7 +243,7 @@ void list_worst(const StudyPlan& plan, const DoneCells& cells, StudyTable& table
   for (const std::string& label : cells.labels) {
     std::vector<const PlannedCell*> worst;
     for (const DoneCell& each : cells.done) {
-      if (each.label == label && each.numbers().worst) worst.push_back(each.planned);
+      if (each.label == label && each.numbers.worst) worst.push_back(each.planned);
     }
     std::ranges::stable_sort(worst, {}, [](const PlannedCell* planned) {
       return std::pair(planned->numbers.worst->iou, -planned->numbers.worst->wrong);
@@ -336,21 +281,55 @@ void count_cells(const StudyPlan& plan, StudyTable& table) {
   if (all_predicted) table.predicted_s = predicted_s;
 }
 
-/// Gathers what is done of a sampled axis, per method with its poses.
-std::vector<StudyEffects> effects_of(const StudyPlan& plan, const StudyAxis& axis) {
-  std::vector<std::string> labels;
-  const auto rows = rows_of(plan, labels);
-  std::vector<StudyEffects> all;
-  for (const std::string& label : labels) {
-    const SampledRow& row = rows.at(label);
-    const auto ious = ious_of(row, axis);
-    StudyEffects& effects = all.emplace_back(StudyEffects{label, ious.front().size(), {}, {}});
-    for (std::size_t i = 0; i < axis.sampled.size(); ++i) {
-      if (row.segment->method->defaults.find(axis.sampled[i]) == nullptr) continue;
-      effects.settings.push_back(axis.sampled[i]);
-      effects.effects.push_back(total_effect(ious.front(), ious[i + 1]));
+/// IoU of the cells of one row, by what they set and by sequence.
+using Ious = std::map<std::vector<SettingChange>, Seeds>;
+
+/// Mean IoU of a row at each whole point: first with all settings as drawn, then with each drawn
+/// anew. A point counts where all of its cells are done, and defined, on all sequences.
+std::vector<std::vector<double>> sampled_ious(const Ious& ious, std::size_t sequences,
+                                              const Segment& segment, const StudyAxis& axis) {
+  const std::size_t stride = axis.sampled.size() + 1;
+  std::vector<std::vector<double>> sampled(stride);
+  for (std::size_t first = 0; first < axis.values.size(); first += stride) {
+    std::vector<double> point;
+    for (std::size_t i = first; i < first + stride; ++i) {
+      const auto found = ious.find(changes_of(segment, axis, i));
+      if (found == ious.end() || found->second.size() != sequences) break;
+      const auto mean = mean_of(std::views::values(found->second));
+      if (mean) point.push_back(*mean);
     }
-    if (effects.settings.empty()) all.pop_back();
+    if (point.size() < stride) continue;
+    for (std::size_t i = 0; i < stride; ++i) sampled[i].push_back(point[i]);
+  }
+  return sampled;
+}
+
+/// Gathers what is done of a sampled axis, per method with its poses.
+std::vector<StudyEffects> effects_of(const StudyPlan& plan, const DoneCells& cells,
+                                     const StudyAxis& axis) {
+  std::map<std::string, const Segment*> segments;
+  std::map<std::string, std::set<std::string>> sequences;
+  std::map<std::string, Ious> ious;
+  for (const PlannedCell& planned : plan.cells) {
+    const std::string label = planned.cell.label();
+    segments[label] = &planned.cell.method->segment;
+    sequences[label].insert(planned.cell.sequence_label());
+  }
+  for (const DoneCell& each : cells.done) {
+    ious[each.label][each.cell.job.segment.changes][each.cell.sequence_label()] =
+        each.numbers.metrics[0];
+  }
+  std::vector<StudyEffects> all;
+  for (const std::string& label : cells.labels) {
+    const Segment& segment = *segments[label];
+    const auto sampled = sampled_ious(ious[label], sequences[label].size(), segment, axis);
+    StudyEffects effects{label, sampled.front().size(), {}, {}};
+    for (std::size_t i = 0; i < axis.sampled.size(); ++i) {
+      if (segment.method->defaults.find(axis.sampled[i]) == nullptr) continue;
+      effects.settings.push_back(axis.sampled[i]);
+      effects.effects.push_back(total_effect(sampled.front(), sampled[i + 1]));
+    }
+    if (!effects.settings.empty()) all.push_back(std::move(effects));
   }
   return all;
 }
@@ -384,7 +363,7 @@ StudyTable gather(const StudyPlan& plan) {
     if (axis.sampled.empty()) {
       table.curves.push_back(curve_of(cells, axis, table.rows));
     } else {
-      table.effects = effects_of(plan, axis);
+      table.effects = effects_of(plan, cells, axis);
     }
   }
   rank(plan, cells, table);
