@@ -76,47 +76,35 @@ class HeldSignals {
   sigset_t held_{}, before_{};
 };
 
-/// How a program is started: alone in its group, with signals as they were.
-class SpawnRules {
- public:
-  explicit SpawnRules(const HeldSignals& signals) {
-    posix_spawn_file_actions_init(&files_);
-    posix_spawn_file_actions_adddup2(&files_, STDERR_FILENO, STDOUT_FILENO);
-    // A group that is not the terminal's would be stopped by reading from it.
-    posix_spawn_file_actions_addopen(&files_, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-    sigset_t stops;
-    sigemptyset(&stops);
-    for (const int stop : kStops) sigaddset(&stops, stop);
-    posix_spawnattr_init(&attributes_);
-    posix_spawnattr_setpgroup(&attributes_, 0);
-    posix_spawnattr_setsigdefault(&attributes_, &stops);
-    posix_spawnattr_setsigmask(&attributes_, &signals.before());
-    posix_spawnattr_setflags(
-        &attributes_, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETSIGMASK);
-  }
-  ~SpawnRules() {
-    posix_spawn_file_actions_destroy(&files_);
-    posix_spawnattr_destroy(&attributes_);
-  }
-  SpawnRules(const SpawnRules&) = delete;
-  SpawnRules& operator=(const SpawnRules&) = delete;
-
-  pid_t start(const std::vector<std::string>& words) const {
-    std::vector<char*> arguments;
-    for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
-    arguments.push_back(nullptr);
-    pid_t child = 0;
-    const int error =
-        posix_spawnp(&child, arguments[0], &files_, &attributes_, arguments.data(), environ);
-    if (error == 0) return child;
-    throw DataError(words.front(), fmt::format("cannot be started ({})", std::strerror(error)),
-                    "Snakemake 7 (Debian: snakemake)");
-  }
-
- private:
-  posix_spawn_file_actions_t files_{};
-  posix_spawnattr_t attributes_{};
-};
+/// Starts a program alone in its group, with signals as they were.
+pid_t start(const std::vector<std::string>& words, const HeldSignals& signals) {
+  posix_spawn_file_actions_t files{};
+  posix_spawn_file_actions_init(&files);
+  posix_spawn_file_actions_adddup2(&files, STDERR_FILENO, STDOUT_FILENO);
+  // A group that is not the terminal's would be stopped by reading from it.
+  posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+  sigset_t stops;
+  sigemptyset(&stops);
+  for (const int stop : kStops) sigaddset(&stops, stop);
+  posix_spawnattr_t attributes{};
+  posix_spawnattr_init(&attributes);
+  posix_spawnattr_setpgroup(&attributes, 0);
+  posix_spawnattr_setsigdefault(&attributes, &stops);
+  posix_spawnattr_setsigmask(&attributes, &signals.before());
+  posix_spawnattr_setflags(&attributes,
+                           POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETSIGMASK);
+  std::vector<char*> arguments;
+  for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
+  arguments.push_back(nullptr);
+  pid_t child = 0;
+  const int error =
+      posix_spawnp(&child, arguments[0], &files, &attributes, arguments.data(), environ);
+  posix_spawn_file_actions_destroy(&files);
+  posix_spawnattr_destroy(&attributes);
+  if (error == 0) return child;
+  throw DataError(words.front(), fmt::format("cannot be started ({})", std::strerror(error)),
+                  "Snakemake 7 (Debian: snakemake)");
+}
 
 /// Waits until no process of a group is left, and kills what is left at the deadline.
 void clear_group(pid_t group, Clock::time_point deadline) {
@@ -198,7 +186,7 @@ fs::path write_workflow(const fs::path& out, const ordered_json& plan, const std
 EngineEnd run_in_group(const std::vector<std::string>& words) {
   constexpr std::chrono::seconds kGrace{20};
   const HeldSignals signals;
-  const pid_t child = SpawnRules(signals).start(words);
+  const pid_t child = start(words, signals);
   EngineEnd end;
   Clock::time_point deadline = Clock::time_point::max();
   int status = 0;

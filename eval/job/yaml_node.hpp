@@ -19,6 +19,8 @@ class YamlNode {
 
   /// Throws "<file>:<line>: <wrong>, expected <expected>".
   [[noreturn]] void refuse(const std::string& wrong, const std::string& expected) const;
+  /// The same, and begins with the quoted value.
+  [[noreturn]] void refuse_value(const char* wrong, const std::string& expected) const;
 
   /// Checks that this is a map with no other keys.
   void check_keys(const std::vector<std::string_view>& known) const;
