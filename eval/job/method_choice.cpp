@@ -67,14 +67,7 @@ std::span<const Preset> presets() {
   return kPresets;
 }
 
-const Preset& preset_named(std::string_view name) {
-  const auto found = std::ranges::find(presets(), name, &Preset::name);
-  if (found != presets().end()) return *found;
-  std::vector<std::string_view> names;
-  for (const Preset& preset : presets()) names.push_back(preset.name);
-  throw UsageError(fmt::format("--preset: '{}' is not known, expected one of {} (nearest: {})",
-                               name, fmt::join(names, ", "), nearest_name(name, names)));
-}
+const Preset& preset_named(std::string_view name) { return row_named(presets(), name, "--preset"); }
 
 Settings settings_of(const Preset& preset, const MethodKind& method) {
   Settings settings = method.defaults;

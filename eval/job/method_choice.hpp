@@ -1,5 +1,7 @@
 #pragma once
 
+#include <fmt/format.h>
+
 #include <mosbench/method.hpp>
 #include <mosbench/settings.hpp>
 #include <optional>
@@ -9,6 +11,8 @@
 #include <vector>
 
 #include "datasets/layouts/dataset.hpp"
+#include "datasets/text/errors.hpp"
+#include "datasets/text/text.hpp"
 
 namespace mosbench {
 
@@ -19,6 +23,18 @@ struct Preset : MethodPreset {
 };
 
 std::span<const Preset> presets();
+
+/// Returns the row of a table with that name. Throws UsageError with the nearest one.
+template <typename Row>
+const Row& row_named(std::span<const Row> rows, std::string_view name, const char* flag) {
+  std::vector<std::string_view> names;
+  for (const Row& row : rows) {
+    if (row.name == name) return row;
+    names.push_back(row.name);
+  }
+  throw UsageError(fmt::format("{}: '{}' is not known, expected one of {} (nearest: {})", flag,
+                               name, fmt::join(names, ", "), nearest_name(name, names)));
+}
 
 /// Throws UsageError naming the known presets.
 const Preset& preset_named(std::string_view name);

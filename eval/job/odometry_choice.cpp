@@ -6,23 +6,11 @@
 
 #include "datasets/sequence/corrected_sequence.hpp"
 #include "datasets/text/errors.hpp"
-#include "datasets/text/text.hpp"
+#include "eval/job/method_choice.hpp"
 #include "eval/result/settings_json.hpp"
 
 namespace mosbench {
 namespace {
-
-/// The row of a table with that name. Throws UsageError with the nearest one.
-template <typename Row>
-const Row& row_named(std::span<const Row> rows, const std::string& name, const char* flag) {
-  std::vector<std::string_view> names;
-  for (const Row& row : rows) {
-    if (row.name == name) return row;
-    names.push_back(row.name);
-  }
-  throw UsageError(fmt::format("{}: '{}' is not known, expected one of {} (nearest: {})", flag,
-                               name, fmt::join(names, ", "), nearest_name(name, names)));
-}
 
 void apply_odometry_preset(const std::string& name, const OdometryKind& kind, Settings& settings) {
   const OdometryPreset& preset = row_named(odometry_presets(), name, "preset of odometry");

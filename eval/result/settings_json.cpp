@@ -22,7 +22,6 @@ namespace mosbench {
 namespace {
 
 using nlohmann::ordered_json;
-using json = nlohmann::ordered_json;
 
 std::optional<double> number_in(const SettingValue& value) {
   if (const int* whole = std::get_if<int>(&value)) return *whole;
@@ -41,27 +40,21 @@ std::optional<SettingValue> usual_value(const RecordedSettings& settings, const 
   return followed == nullptr ? std::nullopt : std::optional(*followed);
 }
 
-std::vector<std::string_view> names_of(const Settings& settings) {
-  std::vector<std::string_view> names;
-  for (const Setting& setting : settings.all()) names.push_back(setting.name);
-  return names;
-}
-
 /// Nothing for a value that no setting can have.
-std::optional<SettingValue> setting_value(const json& value) {
+std::optional<SettingValue> setting_value(const ordered_json& value) {
   if (value.is_string()) return value.get<std::string>();
   if (!value.is_number()) return std::nullopt;
   const auto number = value.get<double>();
-  // What does not fit an int is outside every range.
-  const bool fits = std::abs(number) < 2e9;
+  // What does not fit an int is outside every range, and kept as the number it is.
+  const bool fits = std::abs(number) < std::numeric_limits<int>::max();
   if (value.is_number_integer() && fits) return value.get<int>();
   return number;
 }
 
 /// Throws std::invalid_argument for a value of another type or outside its range.
-void set_value(const Setting& setting, const json& value, Settings& settings) {
+void set_value(const Setting& setting, const ordered_json& value, Settings& settings) {
   const auto refuse = [&](std::string_view wrong) {
-    const std::string text = value.dump(-1, ' ', false, json::error_handler_t::replace);
+    const std::string text = value.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
     throw std::invalid_argument(
         fmt::format("{}: {} {}, expected {}", setting.name, text, wrong, legal_values(setting)));
   };
@@ -73,11 +66,12 @@ void set_value(const Setting& setting, const json& value, Settings& settings) {
   settings.set(setting.name, *wanted);
 }
 
-void apply_value(std::string_view key, const json& value, std::string_view origin,
+void apply_value(std::string_view key, const ordered_json& value, std::string_view origin,
                  Settings& settings) {
   const Setting* setting = settings.find(key);
   if (setting == nullptr) {
-    const std::vector<std::string_view> names = names_of(settings);
+    std::vector<std::string_view> names;
+    for (const Setting& known : settings.all()) names.push_back(known.name);
     throw UsageError(fmt::format("{}: key '{}' is not known, expected one of {} (nearest: {})",
                                  origin, key, fmt::join(names, ", "), nearest_name(key, names)));
   }
@@ -88,10 +82,10 @@ void apply_value(std::string_view key, const json& value, std::string_view origi
   }
 }
 
-/// What is wrong with a configuration is wrong usage.
-json parse_settings(std::string_view text, std::string_view origin) {
+/// Does some work, in which what is wrong with a file is wrong usage.
+auto blaming_user(auto&& work) {
   try {
-    return parse_json(text, origin);
+    return work();
   } catch (const DataError& error) {
     throw UsageError(error.what());
   }
@@ -130,10 +124,10 @@ std::string RecordedSettings::word(std::string_view name) const {
 
 void RecordedSettings::set(std::string_view name, const SettingValue& value) {
   const auto found = std::ranges::find(entries_, name, &Entry::first);
-  if (found == entries_.end()) {
-    entries_.emplace_back(name, value);
-  } else {
+  if (found != entries_.end()) {
     found->second = value;
+  } else {
+    entries_.emplace_back(name, value);
   }
 }
 
@@ -166,21 +160,9 @@ ordered_json to_json(const RecordedSettings& settings) {
 RecordedSettings recorded_settings(const ordered_json& json) {
   RecordedSettings settings;
   for (const auto& [name, value] : json.get_ref<const ordered_json::object_t&>()) {
-    if (value.is_string()) {
-      settings.set(name, value.get<std::string>());
-      continue;
-    }
-    if (!value.is_number())
-      throw std::invalid_argument(name + ": " + value.dump() + " is no value");
-    // What does not fit an int is kept as the number it is.
-    const auto number = value.get<double>();
-    const bool is_whole =
-        value.is_number_integer() && std::abs(number) < std::numeric_limits<int>::max();
-    if (is_whole) {
-      settings.set(name, value.get<int>());
-    } else {
-      settings.set(name, number);
-    }
+    const std::optional<SettingValue> held = setting_value(value);
+    if (!held) throw std::invalid_argument(name + ": " + value.dump() + " is no value");
+    settings.set(name, *held);
   }
   return settings;
 }
@@ -227,7 +209,7 @@ std::string describe_settings(const RecordedSettings& settings, std::string_view
 
 std::vector<std::string> apply_settings_text(std::string_view text, std::string_view origin,
                                              Settings& settings) {
-  const json object = parse_settings(text, origin);
+  const ordered_json object = blaming_user([&] { return parse_json(text, origin); });
   if (!object.is_object()) {
     throw UsageError(fmt::format("{}: holds a {}, expected a JSON object with configuration keys",
                                  origin, object.type_name()));
@@ -242,12 +224,7 @@ std::vector<std::string> apply_settings_text(std::string_view text, std::string_
 
 std::vector<std::string> apply_settings_file(const std::filesystem::path& file,
                                              Settings& settings) {
-  std::string text;
-  try {
-    text = read_file(file);
-  } catch (const DataError& error) {
-    throw UsageError(error.what());
-  }
+  const std::string text = blaming_user([&] { return read_file(file); });
   return apply_settings_text(text, file.string(), settings);
 }
 
@@ -258,7 +235,7 @@ void apply_setting_assignment(std::string_view assignment, Settings& settings) {
     throw UsageError(origin + ": has no key and value, expected key=value");
   }
   const std::string_view value = assignment.substr(equals + 1);
-  json parsed = std::string(value);
+  ordered_json parsed = std::string(value);
   try {
     parsed = parse_json(value, origin);
   } catch (const DataError&) {  // a name

@@ -30,12 +30,26 @@ std::string text_at(const ordered_json& members, const std::string& key) {
   return members[key].dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }
 
+/// What differs, in the order of `now` and then what only the first has.
+std::string differences(const ordered_json& there, const ordered_json& now) {
+  const ordered_json theirs = flat(there), ours = flat(now);
+  std::string text;
+  for (const ordered_json* side : {&ours, &theirs}) {
+    for (const auto& [key, unused] : side->items()) {
+      if (side == &theirs && ours.contains(key)) continue;
+      const std::string first = text_at(theirs, key), second = text_at(ours, key);
+      if (first == second) continue;
+      text += fmt::format("{}{} is {} there and {} now", text.empty() ? "" : "; ",
+                          key.substr(key.starts_with('/') ? 1 : 0), first, second);
+    }
+  }
+  return text;
+}
+
 constexpr const char* kLabels = "labels";
-constexpr const char* kScores = "scores";
-constexpr const char* kReasons = "reasons";
 constexpr const char* kResult = "result.json";
 // What a run writes; poses.txt with its mark where it found them, the last six by --write.
-constexpr std::array kWritten = {kLabels,     kScores,      kReasons,          kResult,
+constexpr std::array kWritten = {kLabels,     "scores",     "reasons",         kResult,
                                  "poses.txt", "boxes.txt",  "poses.txt.frame", "boxes.json",
                                  "moving",    "static.ply", "static.pcd",      "products.json"};
 
@@ -61,14 +75,22 @@ void checked(const fs::path& path, const char* what, Operation&& operation) {
   }
 }
 
-bool all_present(const fs::path& folder, const char* extension, std::size_t bytes_per_point,
-                 const Result& result) {
-  for (const ScanRow& row : result.scans) {
+fs::path place_until_done(const fs::path& folder) { return folder.native() + ".partial"; }
+
+/// A file per scan with so many bytes for each point.
+struct ScanFiles {
+  const char* folder;
+  const char* extension;
+  std::size_t bytes_per_point;
+  bool are_wanted;
+};
+
+bool all_present(const fs::path& folder, const ScanFiles& files, const Result& result) {
+  return std::ranges::all_of(result.scans, [&](const ScanRow& row) {
     std::error_code error;
-    const auto size = fs::file_size(folder / (row.stem + extension), error);
-    if (error || size != row.points * bytes_per_point) return false;
-  }
-  return true;
+    const auto size = fs::file_size(folder / (row.stem + files.extension), error);
+    return !error && size == row.points * files.bytes_per_point;
+  });
 }
 
 void refuse_extra(const fs::path& folder, const char* extension, const Sequence& sequence) {
@@ -85,22 +107,6 @@ void refuse_extra(const fs::path& folder, const char* extension, const Sequence&
 
 }  // namespace
 
-std::vector<JsonDifference> json_differences(const ordered_json& first,
-                                             const ordered_json& second) {
-  const ordered_json theirs = flat(first);
-  const ordered_json ours = flat(second);
-  std::vector<JsonDifference> differences;
-  for (const ordered_json* side : {&ours, &theirs}) {
-    for (const auto& [key, unused] : side->items()) {
-      if (side == &theirs && ours.contains(key)) continue;
-      JsonDifference difference{key.substr(key.starts_with('/') ? 1 : 0), text_at(theirs, key),
-                                text_at(ours, key)};
-      if (difference.first != difference.second) differences.push_back(std::move(difference));
-    }
-  }
-  return differences;
-}
-
 std::string changed_members(const ordered_json& there, const ordered_json& now) {
   ordered_json same_keys;
   ordered_json compared = now;
@@ -116,18 +122,7 @@ std::string changed_members(const ordered_json& there, const ordered_json& now) 
     const auto settings = side->find("settings");
     if (settings != side->end() && settings->is_object()) settings->erase("timeout_s");
   }
-  std::string text;
-  for (const JsonDifference& difference : json_differences(same_keys, compared)) {
-    text += fmt::format("{}{} is {} there and {} now", text.empty() ? "" : "; ", difference.key,
-                        difference.first, difference.second);
-  }
-  return text;
-}
-
-fs::path ResultFolder::with_suffix(const char* suffix) const {
-  fs::path path = folder_;
-  path += suffix;
-  return path;
+  return differences(same_keys, compared);
 }
 
 void ResultFolder::check_replaceable() const {
@@ -160,16 +155,17 @@ std::optional<Result> ResultFolder::finished(const Sequence& sequence, const Res
         "--overwrite to replace them",
         folder_.string(), different));
   }
-  refuse_extra(folder_ / kLabels, ".label", sequence);
-  refuse_extra(folder_ / kScores, ".score", sequence);
-  refuse_extra(folder_ / kReasons, ".reason", sequence);
-  if (result.scans.size() != sequence.size()) return std::nullopt;
-  if (!all_present(folder_ / kLabels, ".label", 4, result)) return std::nullopt;
-  if (point_files.scores && !all_present(folder_ / kScores, ".score", 4, result)) {
-    return std::nullopt;
+  const std::array<ScanFiles, 3> kinds = {{{kLabels, ".label", 4, true},
+                                           {"scores", ".score", 4, point_files.scores},
+                                           {"reasons", ".reason", 1, point_files.reasons}}};
+  for (const ScanFiles& files : kinds) {
+    refuse_extra(folder_ / files.folder, files.extension, sequence);
   }
-  if (point_files.reasons && !all_present(folder_ / kReasons, ".reason", 1, result)) {
-    return std::nullopt;
+  if (result.scans.size() != sequence.size()) return std::nullopt;
+  for (const ScanFiles& files : kinds) {
+    if (files.are_wanted && !all_present(folder_ / files.folder, files, result)) {
+      return std::nullopt;
+    }
   }
   return result;
 }
@@ -186,14 +182,15 @@ void ResultFolder::check_labels(const Result& result) const {
 }
 
 void ResultFolder::remove_leftovers() const {
-  for (const fs::path& leftover : {with_suffix(".partial"), replaced_by(folder_)}) {
+  for (const fs::path& leftover : {place_until_done(folder_), replaced_by(folder_)}) {
     checked(leftover, "removed", [&](std::error_code& error) { fs::remove_all(leftover, error); });
   }
 }
 
 std::unique_ptr<Claim> ResultFolder::begin() const {
-  auto claim = writers_ == Writers::kOne ? std::make_unique<Claim>(folder_, with_suffix(".partial"))
-                                         : std::make_unique<Claim>(folder_);
+  auto claim = writers_ == Writers::kOne
+                   ? std::make_unique<Claim>(folder_, place_until_done(folder_))
+                   : std::make_unique<Claim>(folder_);
   checked(claim->path(), "made",
           [&](std::error_code& error) { fs::create_directories(claim->path(), error); });
   return claim;
