@@ -7,7 +7,7 @@
 
 #include "datasets/formats/byte_cursor.hpp"
 #include "datasets/rosbag/chunk_reader.hpp"
-#include "datasets/rosbag/mcap_file.hpp"
+#include "datasets/rosbag/mcap_record.hpp"
 
 namespace mosbench {
 

@@ -23,14 +23,13 @@ MessageFormat BagReader::format_of(const BagMessage& message) const {
   return {connection->type, connection->encoding};
 }
 
-std::vector<BagMessage> BagReader::of_topic(const std::vector<BagMessage>& all,
-                                            std::string_view topic) const {
+std::vector<BagMessage> BagReader::messages(std::string_view topic) const {
   std::set<std::uint32_t> ids;
   for (const BagConnection& connection : connections_) {
     if (connection.topic == topic) ids.insert(connection.id);
   }
   std::vector<BagMessage> found;
-  for (const BagMessage& message : all) {
+  for (const BagMessage& message : messages_) {
     if (ids.contains(message.connection)) found.push_back(message);
   }
   std::ranges::stable_sort(found, {}, &BagMessage::recorded_ns);

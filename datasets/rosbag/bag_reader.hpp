@@ -3,6 +3,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -47,7 +49,7 @@ class BagReader {
   const BagConnection* find_connection(std::uint32_t id) const;
 
   /// Returns the messages of a topic in the order in which they were recorded.
-  virtual std::vector<BagMessage> messages(std::string_view topic) const = 0;
+  virtual std::vector<BagMessage> messages(std::string_view topic) const;
   /// Returns the bytes of a message, no more than `most_bytes` where that spares reading them. Safe
   /// to call from several threads. Throws DataError.
   virtual std::string read(const BagMessage& message, std::size_t most_bytes = SIZE_MAX) const = 0;
@@ -56,14 +58,21 @@ class BagReader {
 
  protected:
   explicit BagReader(const std::filesystem::path& path) : path_(path), files_{path} {}
-  /// Returns those of `all` whose connection is of the topic, in the order of their times.
-  std::vector<BagMessage> of_topic(const std::vector<BagMessage>& all,
-                                   std::string_view topic) const;
 
   std::filesystem::path path_;
   std::vector<std::filesystem::path> files_;
   std::vector<std::string> remarks_;
   std::vector<BagConnection> connections_;
+  std::vector<BagMessage> messages_;  ///< of all topics
 };
+
+/// Open a ROS 1 bag of version 2.0; a ROS 2 bag in one MCAP file (mcap.dev); one in a database of
+/// SQLite (.db3), or in the content of such a file, which outlives it and may be changed. Throw
+/// DataError for a file that is none, or is damaged.
+std::unique_ptr<const BagReader> open_ros1_bag(const std::filesystem::path& file);
+std::unique_ptr<const BagReader> open_mcap(const std::filesystem::path& file);
+std::unique_ptr<const BagReader> open_sqlite_bag(const std::filesystem::path& file);
+std::unique_ptr<const BagReader> open_sqlite_bag(const std::filesystem::path& file,
+                                                 std::span<unsigned char> content);
 
 }  // namespace mosbench

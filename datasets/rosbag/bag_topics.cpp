@@ -246,11 +246,6 @@ std::optional<Pose> TransformTree::Chain::at(std::int64_t stamp_ns) const {
   return product ? product : Pose::Identity();
 }
 
-bool TransformTree::Chain::covers(std::int64_t from_ns, std::int64_t to_ns) const {
-  return std::ranges::all_of(tracks_,
-                             [&](const PoseTrack& track) { return track.covers(from_ns, to_ns); });
-}
-
 std::string cloud_topic(const BagReader& bag, const std::optional<std::string>& asked) {
   std::set<std::string> topics;
   for (const std::string_view type : {kPointCloud2, kLivoxCustomMsg, kOldLivoxCustomMsg}) {

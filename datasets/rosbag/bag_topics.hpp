@@ -29,7 +29,6 @@ class TransformTree {
    public:
     /// Returns nothing when a track does not cover the time.
     std::optional<Pose> at(std::int64_t stamp_ns) const;
-    bool covers(std::int64_t from_ns, std::int64_t to_ns) const;
 
    private:
     friend class TransformTree;

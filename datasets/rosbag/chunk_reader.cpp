@@ -161,6 +161,18 @@ std::shared_ptr<const std::string> ChunkReader::content_of(const BagChunk& chunk
   return kept_.second;
 }
 
+ChunkPart ChunkReader::part_of(const BagChunk& chunk, std::uint64_t offset_bytes,
+                               std::uint64_t most_bytes) const {
+  if (chunk.is_packed()) {
+    auto content = content_of(chunk);
+    const std::string_view bytes = std::string_view(*content).substr(offset_bytes);
+    return {std::move(content), bytes};
+  }
+  auto start = std::make_shared<const std::string>(bytes_at(
+      chunk.offset_bytes + offset_bytes, std::min(chunk.size_bytes - offset_bytes, most_bytes)));
+  return {start, *start};
+}
+
 std::string decompress_chunk(std::string_view compression, std::string_view bytes,
                              std::uint64_t size_bytes, const std::filesystem::path& file) {
   if (may_give(compression, bytes, size_bytes)) {

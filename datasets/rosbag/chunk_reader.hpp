@@ -30,6 +30,12 @@ inline constexpr std::uint64_t kMostChunkBytes = 1ULL << 29U;
 void check_chunk_size(const BagChunk& chunk, std::uint64_t room_bytes,
                       const std::filesystem::path& file);
 
+/// Bytes of a chunk.
+struct ChunkPart {
+  std::shared_ptr<const std::string> held;
+  std::string_view bytes;
+};
+
 /// Reads the bytes of a bag and keeps one unpacked chunk. Safe to call from several threads.
 class ChunkReader {
  public:
@@ -42,6 +48,10 @@ class ChunkReader {
   /// Returns the content of a chunk, which is within the file and at most kMostChunkBytes long.
   /// Throws DataError for one that is damaged.
   std::shared_ptr<const std::string> content_of(const BagChunk& chunk) const;
+  /// Returns what a chunk holds from `offset_bytes` on, within it: all where it is packed, else the
+  /// first `most_bytes`.
+  ChunkPart part_of(const BagChunk& chunk, std::uint64_t offset_bytes,
+                    std::uint64_t most_bytes) const;
 
  private:
   std::filesystem::path file_;

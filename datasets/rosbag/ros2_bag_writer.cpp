@@ -4,9 +4,7 @@
 #include <utility>
 
 #include "datasets/disk/files.hpp"
-#include "datasets/rosbag/mcap_writer.hpp"
 #include "datasets/rosbag/message_format.hpp"
-#include "datasets/rosbag/sqlite_bag_writer.hpp"
 #include "datasets/text/errors.hpp"
 
 namespace mosbench {
@@ -24,8 +22,7 @@ std::unique_ptr<Ros2BagWriter> Ros2BagWriter::open(Ros2Storage storage,
                      (is_mcap ? "none, lz4 or zstd" : "none or zstd"));
   }
   const std::string name = compression == "none" ? "" : compression;  // as both formats have it
-  if (is_mcap) return std::make_unique<McapWriter>(folder, name);
-  return std::make_unique<SqliteBagWriter>(folder, name);
+  return is_mcap ? open_mcap_writer(folder, name) : open_sqlite_writer(folder, name);
 }
 
 Ros2BagWriter::Ros2BagWriter(const std::filesystem::path& folder, BagSummary summary)

@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <map>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -53,5 +52,11 @@ class Ros2BagWriter {
   std::filesystem::path folder_;
   BagSummary summary_;
 };
+
+/// Open the two kinds of `Ros2BagWriter::open`; `compression` is "" for none.
+std::unique_ptr<Ros2BagWriter> open_mcap_writer(const std::filesystem::path& folder,
+                                                const std::string& compression);
+std::unique_ptr<Ros2BagWriter> open_sqlite_writer(const std::filesystem::path& folder,
+                                                  const std::string& compression);
 
 }  // namespace mosbench

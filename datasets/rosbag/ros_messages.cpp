@@ -187,11 +187,6 @@ std::vector<StampedTransform> parse_transforms(std::string_view bytes, const Mes
   return transforms;
 }
 
-std::vector<StampedTransform> parse_tf_message(std::string_view bytes,
-                                               const std::filesystem::path& file) {
-  return parse_transforms(bytes, {kTfMessage, MessageEncoding::kRos1}, file);
-}
-
 std::string format_tf_message(const std::vector<StampedTransform>& transforms,
                               MessageEncoding encoding) {
   MessageSink sink(encoding);

@@ -26,9 +26,6 @@ struct StampedTransform {
 /// quaternion that is not of length 1.
 std::vector<StampedTransform> parse_transforms(std::string_view bytes, const MessageFormat& format,
                                                const std::filesystem::path& file);
-/// The same for what ROS 1 writes.
-std::vector<StampedTransform> parse_tf_message(std::string_view bytes,
-                                               const std::filesystem::path& file);
 std::string format_tf_message(const std::vector<StampedTransform>& transforms,
                               MessageEncoding encoding = MessageEncoding::kRos1);
 

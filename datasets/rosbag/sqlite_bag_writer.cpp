@@ -1,11 +1,15 @@
-#include "datasets/rosbag/sqlite_bag_writer.hpp"
-
 #include <sqlite3.h>
 
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
 #include <system_error>
 
 #include "datasets/disk/partial_file.hpp"
 #include "datasets/rosbag/chunk_reader.hpp"
+#include "datasets/rosbag/ros2_bag_writer.hpp"
 #include "datasets/text/errors.hpp"
 
 namespace mosbench {
@@ -23,98 +27,111 @@ constexpr const char* kTables =
     "timestamp INTEGER NOT NULL, data BLOB NOT NULL);"
     "CREATE INDEX timestamp_idx ON messages (timestamp ASC);";
 
-}  // namespace
-
-void SqliteBagWriter::Close::operator()(sqlite3* database) const { sqlite3_close(database); }
-void SqliteBagWriter::Close::operator()(sqlite3_stmt* statement) const {
-  sqlite3_finalize(statement);
-}
-
-SqliteBagWriter::SqliteBagWriter(const std::filesystem::path& folder,
-                                 const std::string& compression)
-    : Ros2BagWriter(folder,
-                    {"sqlite3", message_file_of(Ros2Storage::kSqlite), compression, 0, 0, {}}),
-      partial_(partial_of(file())) {
-  // What a killed run left.
-  std::error_code ignored;
-  std::filesystem::remove(partial_, ignored);
-  sqlite3* opened = nullptr;
-  const int result = sqlite3_open_v2(partial_.c_str(), &opened,
-                                     SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, nullptr);
-  database_.reset(opened);
-  try {
-    check(result);
-    run(kTables);
-    insertion_ = prepared("INSERT INTO messages(topic_id, timestamp, data) VALUES(?, ?, ?)");
-  } catch (const DataError&) {
-    database_.reset();
+/// Writes a database of SQLite with the tables of rosbag2, version 3.
+class SqliteBagWriter : public Ros2BagWriter {
+ public:
+  /// `compression` is "" or "zstd".
+  SqliteBagWriter(const std::filesystem::path& folder, const std::string& compression)
+      : Ros2BagWriter(folder,
+                      {"sqlite3", message_file_of(Ros2Storage::kSqlite), compression, 0, 0, {}}),
+        partial_(partial_of(file())) {
+    // What a killed run left.
+    std::error_code ignored;
     std::filesystem::remove(partial_, ignored);
-    throw;
+    sqlite3* opened = nullptr;
+    const int result = sqlite3_open_v2(partial_.c_str(), &opened,
+                                       SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, nullptr);
+    database_.reset(opened);
+    try {
+      check(result);
+      run(kTables);
+      insertion_ = prepared("INSERT INTO messages(topic_id, timestamp, data) VALUES(?, ?, ?)");
+    } catch (const DataError&) {
+      database_.reset();
+      std::filesystem::remove(partial_, ignored);
+      throw;
+    }
   }
-}
 
-SqliteBagWriter::~SqliteBagWriter() {
-  insertion_.reset();
-  database_.reset();
-  std::error_code ignored;
-  std::filesystem::remove(partial_, ignored);
-}
+  ~SqliteBagWriter() override {
+    insertion_.reset();
+    database_.reset();
+    std::error_code ignored;
+    std::filesystem::remove(partial_, ignored);
+  }
 
-void SqliteBagWriter::check(int result) const {
-  if (result == SQLITE_OK || result == SQLITE_DONE) return;
-  throw DataError(file(),
-                  std::string("cannot be written (") + sqlite3_errmsg(database_.get()) + ")",
-                  "a writable output folder with free space");
-}
+ private:
+  struct Close {
+    void operator()(sqlite3* database) const { sqlite3_close(database); }
+    void operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }
+  };
 
-void SqliteBagWriter::run(const char* statements) const {
-  check(sqlite3_exec(database_.get(), statements, nullptr, nullptr, nullptr));
-}
+  void append(std::size_t topic, bool is_new, std::int64_t stamp_ns,
+              std::string_view message) override {
+    if (is_new) add_topic(topic);
+    const bool packs = !summary().compression.empty();
+    const std::string stored = packs ? compress_zstd(message) : std::string(message);
+    check(sqlite3_bind_int64(insertion_.get(), 1, static_cast<sqlite3_int64>(topic + 1)));
+    check(sqlite3_bind_int64(insertion_.get(), 2, stamp_ns));
+    check(sqlite3_bind_blob64(insertion_.get(), 3, stored.data(), stored.size(), nullptr));
+    check(sqlite3_step(insertion_.get()));
+    check(sqlite3_reset(insertion_.get()));
+  }
 
-std::unique_ptr<sqlite3_stmt, SqliteBagWriter::Close> SqliteBagWriter::prepared(
-    const char* statement) const {
-  sqlite3_stmt* made = nullptr;
-  check(sqlite3_prepare_v2(database_.get(), statement, -1, &made, nullptr));
-  return std::unique_ptr<sqlite3_stmt, Close>(made);
-}
+  void end() override {
+    insertion_.reset();
+    run("COMMIT");
+    check(sqlite3_close(database_.get()));
+    database_.release();
+  }
 
-void SqliteBagWriter::add_topic(std::size_t topic) const {
-  const TopicCount& of = summary().topics.at(topic);
-  const auto insertion = prepared("INSERT INTO topics VALUES(?, ?, ?, 'cdr', '')");
-  check(sqlite3_bind_int64(insertion.get(), 1, static_cast<sqlite3_int64>(topic + 1)));
-  check(sqlite3_bind_text(insertion.get(), 2, of.name.c_str(), -1, nullptr));
-  check(sqlite3_bind_text(insertion.get(), 3, of.type.c_str(), -1, nullptr));
-  check(sqlite3_step(insertion.get()));
-}
+  void put_in_place() override {
+    sync_file_system_of(partial_.parent_path());
+    std::error_code error;
+    std::filesystem::rename(partial_, file(), error);
+    if (error) {
+      throw DataError(file(), "cannot be written (" + error.message() + ")",
+                      "a writable output folder with free space");
+    }
+    sync_names_of(partial_.parent_path());
+  }
 
-void SqliteBagWriter::append(std::size_t topic, bool is_new, std::int64_t stamp_ns,
-                             std::string_view message) {
-  if (is_new) add_topic(topic);
-  const bool packs = !summary().compression.empty();
-  const std::string stored = packs ? compress_zstd(message) : std::string(message);
-  check(sqlite3_bind_int64(insertion_.get(), 1, static_cast<sqlite3_int64>(topic + 1)));
-  check(sqlite3_bind_int64(insertion_.get(), 2, stamp_ns));
-  check(sqlite3_bind_blob64(insertion_.get(), 3, stored.data(), stored.size(), nullptr));
-  check(sqlite3_step(insertion_.get()));
-  check(sqlite3_reset(insertion_.get()));
-}
-
-void SqliteBagWriter::end() {
-  insertion_.reset();
-  run("COMMIT");
-  check(sqlite3_close(database_.get()));
-  database_.release();
-}
-
-void SqliteBagWriter::put_in_place() {
-  sync_file_system_of(partial_.parent_path());
-  std::error_code error;
-  std::filesystem::rename(partial_, file(), error);
-  if (error) {
-    throw DataError(file(), "cannot be written (" + error.message() + ")",
+  void check(int result) const {
+    if (result == SQLITE_OK || result == SQLITE_DONE) return;
+    throw DataError(file(),
+                    std::string("cannot be written (") + sqlite3_errmsg(database_.get()) + ")",
                     "a writable output folder with free space");
   }
-  sync_names_of(partial_.parent_path());
+
+  void run(const char* statements) const {
+    check(sqlite3_exec(database_.get(), statements, nullptr, nullptr, nullptr));
+  }
+
+  std::unique_ptr<sqlite3_stmt, Close> prepared(const char* statement) const {
+    sqlite3_stmt* made = nullptr;
+    check(sqlite3_prepare_v2(database_.get(), statement, -1, &made, nullptr));
+    return std::unique_ptr<sqlite3_stmt, Close>(made);
+  }
+
+  void add_topic(std::size_t topic) const {
+    const TopicCount& of = summary().topics.at(topic);
+    const auto insertion = prepared("INSERT INTO topics VALUES(?, ?, ?, 'cdr', '')");
+    check(sqlite3_bind_int64(insertion.get(), 1, static_cast<sqlite3_int64>(topic + 1)));
+    check(sqlite3_bind_text(insertion.get(), 2, of.name.c_str(), -1, nullptr));
+    check(sqlite3_bind_text(insertion.get(), 3, of.type.c_str(), -1, nullptr));
+    check(sqlite3_step(insertion.get()));
+  }
+
+  std::filesystem::path partial_;
+  std::unique_ptr<sqlite3, Close> database_;
+  std::unique_ptr<sqlite3_stmt, Close> insertion_;
+};
+
+}  // namespace
+
+std::unique_ptr<Ros2BagWriter> open_sqlite_writer(const std::filesystem::path& folder,
+                                                  const std::string& compression) {
+  return std::make_unique<SqliteBagWriter>(folder, compression);
 }
 
 }  // namespace mosbench

@@ -7,8 +7,8 @@
 
 #include "datasets/hdf5/hdf5_module.hpp"
 #include "datasets/layouts/dataset.hpp"
-#include "datasets/rosbag/bag_file.hpp"
 #include "datasets/rosbag/bag_writer.hpp"
+#include "datasets/rosbag/open_bag.hpp"
 #include "datasets/text/errors.hpp"
 #include "tests/cli/program.hpp"
 #include "tests/cli/small_sequence.hpp"
@@ -92,7 +92,7 @@ TEST_F(Convert, MakesABagOfSeveralChunksThatReadsAndScoresAsTheExportedScans) {
       if (entry.path().extension() == ".bag") bag = entry.path();
     }
     ASSERT_FALSE(bag.empty());
-    const auto messages = BagFile(bag).messages("/os1_cloud_node/points");
+    const auto messages = open_bag(bag)->messages("/os1_cloud_node/points");
     ASSERT_EQ(messages.size(), 12U);
     EXPECT_GT(messages.back().chunk, 3U);
     expect_same_frames(exported, folder_ / bags, 1e-12);

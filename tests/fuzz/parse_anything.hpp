@@ -159,7 +159,7 @@ inline void ros_message(std::string_view bytes) {
   if (bytes.empty()) return;
   const std::string_view message = bytes.substr(1);
   if (bytes.front() == 't') {
-    for (const auto& transform : parse_tf_message(message, "f")) {
+    for (const auto& transform : parse_transforms(message, {kTfMessage}, "f")) {
       require(transform.parent_from_child.matrix().allFinite());
     }
     return;

@@ -10,8 +10,8 @@
 
 #include "datasets/disk/files.hpp"
 #include "datasets/formats/bin_file.hpp"
-#include "datasets/rosbag/bag_file.hpp"
 #include "datasets/rosbag/bag_sequence.hpp"
+#include "datasets/rosbag/open_bag.hpp"
 #include "datasets/rosbag/ros_messages.hpp"
 #include "datasets/text/errors.hpp"
 #include "tests/shared_folder.hpp"
@@ -77,12 +77,12 @@ TEST_P(RealBag, GivesTheRecordedPoses) {
 }
 
 TEST_P(RealBag, HoldsTheTransformsBitForBit) {
-  const BagFile file(bag());
-  const auto messages = file.messages("/tf");
+  const auto file = open_bag(bag());
+  const auto messages = file->messages("/tf");
   const auto& transforms = expected_.at("tf");
   ASSERT_EQ(messages.size(), transforms.size());
   for (std::size_t i = 0; i < messages.size(); ++i) {
-    const std::string bytes = file.read(messages[i]);
+    const std::string bytes = file->read(messages[i]);
     ASSERT_GE(bytes.size(), 56U);
     std::array<double, 7> stored{};
     std::memcpy(stored.data(), bytes.data() + bytes.size() - sizeof(stored), sizeof(stored));
