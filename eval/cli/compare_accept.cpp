@@ -6,7 +6,7 @@
 #include "eval/cli/compare_command.hpp"
 #include "eval/statistics/paired_runs.hpp"
 #include "eval/statistics/statistics_report.hpp"
-#include "eval/store/baseline.hpp"
+#include "eval/store/store.hpp"
 
 namespace mosbench {
 namespace {

@@ -3,7 +3,7 @@
 #include <CLI/App.hpp>
 #include <string>
 
-#include "eval/job/odometry_choice.hpp"
+#include "eval/job/method_choice.hpp"
 
 namespace mosbench {
 

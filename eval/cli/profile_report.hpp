@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "eval/answer/answer.hpp"
-#include "eval/engine/profile.hpp"
+#include "eval/engine/run_plan.hpp"
 
 namespace mosbench {
 

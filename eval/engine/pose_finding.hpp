@@ -13,7 +13,7 @@
 #include "datasets/layouts/dataset.hpp"
 #include "datasets/sequence/kept_scans.hpp"
 #include "datasets/sequence/sequence.hpp"
-#include "eval/job/odometry_choice.hpp"
+#include "eval/job/method_choice.hpp"
 
 namespace mosbench {
 

@@ -20,7 +20,7 @@
 #include "eval/result/result_scans.hpp"
 #include "eval/result/settings_json.hpp"
 #include "eval/result/version.hpp"
-#include "eval/store/result_folder.hpp"
+#include "eval/store/store.hpp"
 
 namespace mosbench {
 namespace {

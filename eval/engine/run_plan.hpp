@@ -11,7 +11,7 @@
 #include "eval/engine/pose_finding.hpp"
 #include "eval/engine/sequence_runner.hpp"
 #include "eval/job/job.hpp"
-#include "eval/store/result_folder.hpp"
+#include "eval/store/store.hpp"
 
 namespace mosbench {
 

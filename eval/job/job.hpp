@@ -10,7 +10,6 @@
 
 #include "datasets/layouts/dataset.hpp"
 #include "eval/job/method_choice.hpp"
-#include "eval/job/odometry_choice.hpp"
 #include "eval/protocols/protocol.hpp"
 
 namespace mosbench {

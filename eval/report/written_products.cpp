@@ -17,7 +17,7 @@
 #include "eval/report/result_boxes.hpp"
 #include "eval/result/result_file.hpp"
 #include "eval/result/tell.hpp"
-#include "eval/store/product_record.hpp"
+#include "eval/store/store.hpp"
 
 namespace mosbench {
 namespace {

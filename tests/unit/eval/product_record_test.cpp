@@ -1,7 +1,6 @@
-#include "eval/store/product_record.hpp"
-
 #include <gtest/gtest.h>
 
+#include "eval/store/store.hpp"
 #include "tests/temp_folder.hpp"
 
 namespace mosbench {

@@ -9,7 +9,7 @@
 #include "eval/answer/render.hpp"
 #include "eval/result/reading_json.hpp"
 #include "eval/result/tell.hpp"
-#include "eval/store/result_folder.hpp"
+#include "eval/store/store.hpp"
 #include "eval/tables/score_report.hpp"
 #include "tests/unit/eval/confusions.hpp"
 

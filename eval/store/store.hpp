@@ -1,16 +1,19 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "datasets/disk/claim.hpp"
 #include "datasets/sequence/sequence.hpp"
 #include "eval/result/result.hpp"
+#include "eval/result/result_set.hpp"
 
 namespace mosbench {
 
@@ -64,6 +67,41 @@ class ResultFolder {
  private:
   std::filesystem::path folder_;
   Writers writers_;
+};
+
+/// Returns the runs in a folder; empty when it does not exist or holds no result.
+std::vector<ResultSet> accepted_runs(const std::filesystem::path& folder);
+
+/// Throws UsageError if accepting the results below `newer` as the baseline in `folder` would take
+/// some of them away: one folder is the other or above it, or a sequence of the baseline is a link
+/// that leads out of it.
+void refuse_overlap(const ResultSet& newer, const std::filesystem::path& folder);
+
+/// Writes <folder>/<sequence>/result.json for every sequence of the run, and removes sequences of
+/// the folder that the run does not have; other files stay. After a kill at any moment the old or
+/// the new baseline is whole. `folder` must be locked. Throws DataError.
+void accept_baseline(const ResultSet& run, const std::filesystem::path& folder);
+
+/// Writes files of `run --write` into a folder and keeps their hashes in its products.json, so that
+/// a later run knows which are as they were written.
+class ProductRecord {
+ public:
+  /// Throws DataError for a damaged products.json.
+  explicit ProductRecord(std::filesystem::path folder);
+
+  /// Returns whether `file`, a path below the folder, is there and known. Throws UsageError when it
+  /// was changed since it was written.
+  bool has(const std::string& file) const;
+  /// Writes the file as a whole. `save` makes it known; every 50th call does so, so that a killed
+  /// run makes few files again.
+  void write(const std::string& file, std::string_view bytes);
+  void save();
+  const std::filesystem::path& folder() const { return folder_; }
+
+ private:
+  std::filesystem::path folder_;
+  nlohmann::ordered_json hashes_;  ///< by file
+  std::size_t unsaved_ = 0;
 };
 
 }  // namespace mosbench

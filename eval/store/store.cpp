@@ -1,16 +1,23 @@
-#include "eval/store/result_folder.hpp"
+#include "eval/store/store.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <set>
 #include <system_error>
 #include <vector>
 
 #include "datasets/disk/claim.hpp"
+#include "datasets/disk/files.hpp"
+#include "datasets/disk/folder_listing.hpp"
+#include "datasets/disk/partial_file.hpp"
 #include "datasets/formats/label_file.hpp"
+#include "datasets/sequence/fingerprint.hpp"
 #include "datasets/text/errors.hpp"
+#include "datasets/text/json_text.hpp"
+#include "eval/answer/answer_text.hpp"
 #include "eval/result/result_file.hpp"
 #include "eval/result/result_json.hpp"
 
@@ -105,6 +112,69 @@ void refuse_extra(const fs::path& folder, const char* extension, const Sequence&
   }
 }
 
+/// The changes of a baseline; files are named from its folder.
+struct BaselineChange {
+  std::map<fs::path, std::string> written;  ///< with their bytes
+  std::vector<fs::path> superseded;
+};
+
+/// Formats an accepted result.json: what `read_result` reads, without anything that
+/// depends on the clock or the machine, so that accepting the same results again changes nothing.
+std::string format_accepted(const Result& result) {
+  Result accepted = result;
+  accepted.from.machine.reset();
+  accepted.timing.reset();
+  accepted.places.reset();
+  return format_result(accepted);
+}
+
+BaselineChange change_of(const ResultSet& run, const fs::path& folder) {
+  BaselineChange change;
+  std::set<fs::path> accepted;
+  for (const Result& sequence : run.sequences) {
+    const fs::path file = sequence.sequence.folder() / "result.json";
+    accepted.insert(file);
+    std::string bytes = format_accepted(sequence);
+    if (!is_there(folder / file) || read_file(folder / file) != bytes) {
+      change.written[file] = std::move(bytes);
+    }
+  }
+  for (const fs::path& file : find_result_files(folder)) {
+    const fs::path name = file.lexically_relative(folder);
+    if (!accepted.contains(name)) change.superseded.push_back(name);
+  }
+  return change;
+}
+
+/// Makes a folder with the files of another. The same bytes have two names then, where links are
+/// possible; the writes that follow replace names, not bytes.
+void make_twin(const fs::path& folder, const fs::path& twin) {
+  constexpr auto kAll = fs::copy_options::recursive | fs::copy_options::copy_symlinks;
+  std::error_code error;
+  fs::copy(folder, twin, kAll | fs::copy_options::create_hard_links, error);
+  if (!error) return;
+  fs::remove_all(twin);
+  fs::copy(folder, twin, kAll);
+}
+
+void apply(const BaselineChange& change, const fs::path& folder) {
+  for (const auto& [file, bytes] : change.written) write_file_atomic(folder / file, bytes);
+  for (const fs::path& file : change.superseded) fs::remove(folder / file);
+}
+
+constexpr const char* kRecord = "products.json";
+
+/// The hashes by file of an earlier run, none where there was none.
+ordered_json read_hashes(const fs::path& file) {
+  if (!is_there(file)) return ordered_json::object();
+  const ordered_json json = parse_json(read_file(file), file);
+  const auto files = json.is_object() ? json.find("files") : json.end();
+  const bool fits = json.is_object() && files != json.end() && files->is_object() &&
+                    std::ranges::all_of(*files, &ordered_json::is_string);
+  if (fits) return *files;
+  throw DataError(file, "has no hashes by file", "it as `mosbench run --write` wrote it, or none");
+}
+
 }  // namespace
 
 std::string changed_members(const ordered_json& there, const ordered_json& now) {
@@ -194,6 +264,73 @@ std::unique_ptr<Claim> ResultFolder::begin() const {
   checked(claim->path(), "made",
           [&](std::error_code& error) { fs::create_directories(claim->path(), error); });
   return claim;
+}
+
+std::vector<ResultSet> accepted_runs(const fs::path& folder) {
+  if (!is_there(folder) || find_result_files(folder).empty()) return {};
+  return load_result_sets(folder);
+}
+
+void refuse_overlap(const ResultSet& newer, const fs::path& folder) {
+  const fs::path baseline = resolved(folder);
+  const bool is_file = newer.path.filename() == "result.json";
+  const fs::path results = resolved(is_file ? newer.path.parent_path() : newer.path);
+  if (is_in(baseline, results) || is_in(results, baseline)) {
+    throw UsageError(folder.string() + ": overlaps with the results in " + newer.path.string() +
+                     ", expected a folder apart from them");
+  }
+  for (const Result& sequence : newer.sequences) {
+    const fs::path place = folder / sequence.sequence.folder();
+    if (is_in(resolved(place / "result.json"), baseline)) continue;
+    throw UsageError(place.string() + ": is a link that leads out of the baseline, expected none");
+  }
+}
+
+void accept_baseline(const ResultSet& run, const fs::path& folder) {
+  const fs::path baseline = resolved(folder);
+  const fs::path fresh = partial_of(baseline);
+  fs::remove_all(fresh);  // what a killed one left
+  const BaselineChange change = change_of(run, baseline);
+  if (change.superseded.empty() && change.written.size() <= 1) {
+    for (const auto& [file, bytes] : change.written) commit_file(baseline / file, bytes);
+    return;
+  }
+  // Several files change at the same moment only with the folder that they are in.
+  try {
+    make_twin(baseline, fresh);
+    const FolderLock lock(fresh);  // goes on holding the baseline under its name
+    apply(change, fresh);
+    replace_folder(fresh, baseline);
+  } catch (...) {
+    std::error_code ignored;
+    fs::remove_all(fresh, ignored);
+    throw;
+  }
+}
+
+ProductRecord::ProductRecord(fs::path folder)
+    : folder_(std::move(folder)), hashes_(read_hashes(folder_ / kRecord)) {}
+
+bool ProductRecord::has(const std::string& file) const {
+  const auto hash = hashes_.find(file);
+  if (hash == hashes_.end() || !is_there(folder_ / file)) return false;
+  if (*hash == hash_of_text(read_file(folder_ / file))) return true;
+  throw UsageError(fmt::format(
+      "{}: was changed after the run, expected what --write made of its labels; remove it, and the "
+      "same command makes it again",
+      (folder_ / file).string()));
+}
+
+void ProductRecord::write(const std::string& file, std::string_view bytes) {
+  constexpr std::size_t kUnsaved = 50;
+  write_file_atomic(folder_ / file, bytes);
+  hashes_[file] = hash_of_text(bytes);
+  if (++unsaved_ == kUnsaved) save();
+}
+
+void ProductRecord::save() {
+  unsaved_ = 0;
+  write_file_atomic(folder_ / kRecord, json_text({{"files", hashes_}}));
 }
 
 }  // namespace mosbench
