@@ -7,7 +7,7 @@
 #include <mutex>
 
 #include "core/base/thread_pool.hpp"
-#include "eval/breakdown/scan_times.hpp"
+#include "eval/breakdown/object_tracks.hpp"
 #include "eval/result/tell.hpp"
 
 namespace mosbench {
@@ -77,7 +77,7 @@ SequenceBreakdown break_down(const Sequence& sequence, const std::vector<std::si
   breakdown.sequence = sequence.name();
   breakdown.scans = scans;
   for (std::size_t k = 0; k < sequence.size(); ++k) breakdown.stems.push_back(sequence.stem(k));
-  const ScanTimes times = scan_times(sequence, scans);
+  const ScanClock times = scan_times(sequence, scans);
   breakdown.stamped = times.stamped;
   std::vector<ScanObjects> objects;
   std::vector<ScanBreakdown> parts = per_scan(sequence, scans, predictions, task);

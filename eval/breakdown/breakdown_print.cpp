@@ -5,7 +5,6 @@
 #include "datasets/text/text.hpp"
 #include "eval/answer/answer_text.hpp"
 #include "eval/breakdown/breakdown.hpp"
-#include "eval/protocols/counts_json.hpp"
 #include "eval/protocols/metrics.hpp"
 
 namespace mosbench {

@@ -7,9 +7,8 @@
 #include <numbers>
 
 #include "core/base/thread_pool.hpp"
-#include "eval/breakdown/clusters.hpp"
 #include "eval/breakdown/object_tracks.hpp"
-#include "eval/breakdown/scan_times.hpp"
+#include "eval/breakdown/scan_breakdown.hpp"
 
 namespace mosbench {
 namespace {
@@ -106,7 +105,7 @@ std::vector<std::vector<MovingBox>> moving_boxes(const Sequence& sequence,
   pool.for_ranges(scans.size(), 1, [&](std::size_t begin, std::size_t end, unsigned) {
     for (std::size_t i = begin; i < end; ++i) found[i] = clusters_of(moving_points(scans[i]));
   });
-  const ScanTimes times = scan_times(sequence, scans);
+  const ScanClock times = scan_times(sequence, scans);
   std::vector<ScanObjects> objects;
   for (std::size_t i = 0; i < scans.size(); ++i) {
     objects.push_back({scans[i], times.times_s[i], found[i].clusters});

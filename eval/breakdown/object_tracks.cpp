@@ -2,12 +2,32 @@
 
 #include <algorithm>
 #include <iterator>
+#include <optional>
 #include <tuple>
 
 #include "datasets/text/numbers.hpp"
 
 namespace mosbench {
 namespace {
+
+/// Assumed without stamps: the LiDARs of all supported data sets turn at 10 Hz.
+constexpr double kScanPeriod_s = 0.1;
+
+/// Returns seconds since the first scan; nullopt unless every scan has a stamp and the stamps
+/// increase.
+std::optional<std::vector<double>> stamped_times_s(const Sequence& sequence,
+                                                   const std::vector<std::size_t>& scans) {
+  std::vector<double> times_s;
+  std::optional<std::int64_t> first_ns;
+  for (const std::size_t k : scans) {
+    const std::optional<std::int64_t> stamp_ns = sequence.stamp_ns(k);
+    if (!stamp_ns) return std::nullopt;
+    if (!first_ns) first_ns = stamp_ns;
+    times_s.push_back(static_cast<double>(*stamp_ns - *first_ns) * 1e-9);
+    if (times_s.size() > 1 && times_s.back() <= times_s[times_s.size() - 2]) return std::nullopt;
+  }
+  return times_s;
+}
 
 /// Largest distance between a cluster and the predicted position of its track, for truth without
 /// instances. The prediction has constant velocity, so only acceleration and the change of what is
@@ -87,6 +107,15 @@ bool may_go_on(const ObjectTrack& track, std::size_t scan_index) {
 }
 
 }  // namespace
+
+ScanClock scan_times(const Sequence& sequence, const std::vector<std::size_t>& scans) {
+  if (auto times_s = stamped_times_s(sequence, scans)) return {*std::move(times_s), true};
+  ScanClock assumed;
+  for (const std::size_t k : scans) {
+    assumed.times_s.push_back(static_cast<double>(k) * kScanPeriod_s);
+  }
+  return assumed;
+}
 
 std::size_t ObjectTrack::points() const {
   std::size_t points = 0;

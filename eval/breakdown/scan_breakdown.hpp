@@ -13,6 +13,14 @@
 
 namespace mosbench {
 
+/// Indices of points that form one cluster.
+using Cluster = std::vector<std::uint32_t>;
+
+/// Groups points (metres) whose cells of edge length `cell_m` are equal or touch, also at an edge
+/// or a corner. Largest cluster first, equal ones by their first point. Points that are not finite
+/// are in no cluster.
+std::vector<Cluster> cluster_points(std::span<const Eigen::Vector3d> points, double cell_m);
+
 /// Bins [edge, next edge) of the distance from the sensor, metres; the last one has no upper end.
 inline constexpr std::array kRangeEdges_m = {0.0, 5.0, 10.0, 20.0, 30.0, 40.0, 50.0, 75.0, 100.0};
 /// Bins of the height above the sensor in the map's upward direction; the first one has no lower

@@ -13,7 +13,7 @@
 #include "eval/cli/suggested_command.hpp"
 #include "eval/job/job_words.hpp"
 #include "eval/job/method_choice.hpp"
-#include "eval/protocols/protocol_list.hpp"
+#include "eval/protocols/protocol.hpp"
 #include "eval/result/result_file.hpp"
 #include "eval/result/result_scans.hpp"
 #include "eval/result/result_set.hpp"

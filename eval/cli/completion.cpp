@@ -12,7 +12,7 @@
 #include "datasets/simulator/built_in_scenes.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/job/method_choice.hpp"
-#include "eval/predictions/prediction_format.hpp"
+#include "eval/predictions/predictions.hpp"
 #include "eval/protocols/protocol.hpp"
 
 namespace mosbench {

@@ -17,8 +17,8 @@
 #include "eval/cli/commands.hpp"
 #include "eval/cli/list_json.hpp"
 #include "eval/job/method_choice.hpp"
-#include "eval/predictions/prediction_format.hpp"
-#include "eval/protocols/protocol_list.hpp"
+#include "eval/predictions/predictions.hpp"
+#include "eval/protocols/protocol.hpp"
 
 namespace mosbench {
 namespace {

@@ -8,8 +8,8 @@
 #include "datasets/perturb/perturb_kinds.hpp"
 #include "datasets/simulator/built_in_scenes.hpp"
 #include "eval/job/method_choice.hpp"
-#include "eval/predictions/prediction_format.hpp"
-#include "eval/protocols/protocol_list.hpp"
+#include "eval/predictions/predictions.hpp"
+#include "eval/protocols/protocol.hpp"
 
 namespace mosbench {
 namespace {

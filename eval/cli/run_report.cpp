@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "eval/protocols/protocol_list.hpp"
+#include "eval/protocols/protocol.hpp"
 #include "eval/result/result_set.hpp"
 #include "eval/result/settings_json.hpp"
 #include "eval/tables/score_report.hpp"

@@ -7,6 +7,7 @@
 #include "core/base/thread_pool.hpp"
 #include "datasets/disk/claim.hpp"
 #include "datasets/text/errors.hpp"
+#include "eval/answer/answer_text.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/cli/dataset_flags.hpp"
 #include "eval/cli/help_text.hpp"
@@ -54,7 +55,7 @@ void take_format(const std::string& text, PredictionOptions& options) {
   const std::string more = colon == std::string::npos ? "" : text.substr(colon + 1);
   // With a range, and as any file of Dynablox, the format is recognised.
   if (!more.empty() && name == describe(PredictionFormat::kMaskedLabel).name) {
-    options.mask = range_option(more, protocol_named("mapmos"));  // MIN,MAX under any protocol
+    options.mask = parsed_range(more);
     return;
   }
   if (more.empty() || name != "dynablox") options.format = prediction_format_named(name);

@@ -117,7 +117,7 @@ std::vector<ScanRow> score_one(const Sequence& sequence, std::size_t k, const Sc
 /// Dynablox's own counts are by one protocol at one range, whatever was asked.
 void check_rules_of_counts(const OpenedPredictions& opened, const ScoreTask& task) {
   if (opened.format != PredictionFormat::kDynabloxScores) return;
-  const Protocol& own = protocol_named("doals-dynablox");
+  const Protocol& own = *std::ranges::find(protocols(), true, &Protocol::has_dynablox_counts);
   for (const ScoreRule& rule : task.rules) {
     if (rule.protocol == &own && rule.range == own.default_range) continue;
     throw UsageError(fmt::format(

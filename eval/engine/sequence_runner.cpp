@@ -18,7 +18,7 @@
 #include "datasets/text/errors.hpp"
 #include "datasets/text/numbers.hpp"
 #include "eval/exec/child_process.hpp"
-#include "eval/exec/program_error.hpp"
+#include "eval/exec/pipe_messages.hpp"
 #include "eval/result/machine.hpp"
 #include "eval/result/point_files.hpp"
 #include "eval/result/tell.hpp"

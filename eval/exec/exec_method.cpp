@@ -13,7 +13,6 @@
 #include "datasets/formats/point_range.hpp"
 #include "eval/exec/child_process.hpp"
 #include "eval/exec/pipe_messages.hpp"
-#include "eval/exec/program_error.hpp"
 
 namespace mosbench {
 namespace {

@@ -8,7 +8,6 @@
 #include <cstring>
 
 #include "datasets/text/text.hpp"
-#include "eval/exec/program_error.hpp"
 
 namespace mosbench {
 namespace {

@@ -8,7 +8,22 @@
 #include <string_view>
 #include <vector>
 
+#include "datasets/text/errors.hpp"
+
 namespace mosbench {
+
+/// A program behind --method exec: does not do what it should. Whoever knows the scan names it.
+class ProgramError : public DataError {
+ public:
+  ProgramError(const std::string& wrong, const std::string& expected)
+      : DataError("exec", wrong, expected), wrong_(wrong), expected_(expected) {}
+
+  const std::string& wrong() const { return wrong_; }
+  const std::string& expected() const { return expected_; }
+
+ private:
+  std::string wrong_, expected_;
+};
 
 /// The messages between mosbench and a program that labels scans, as docs/formats/exec.md describes
 /// them: a header of 16 bytes, then a payload; little endian, without padding.

@@ -84,19 +84,6 @@ Segment segment_of(const JobWords& words) {
   return segment;
 }
 
-RangeGate parsed_range(const std::string& text) {
-  RangeGate range;
-  int used = 0;
-  const int fields = std::sscanf(text.c_str(), "%lf,%lf%n", &range.min_m, &range.max_m, &used);
-  const bool whole = fields == 2 && static_cast<std::size_t>(used) == text.size();
-  if (whole && range.min_m >= 0.0 && (range.max_m > range.min_m || range.max_m == -1.0)) {
-    return range;
-  }
-  throw UsageError(fmt::format(
-      "--range: '{}' is no range, expected MIN,MAX in metres with 0 <= MIN < MAX (MAX -1: none)",
-      text));
-}
-
 }  // namespace
 
 Job job_of(const JobWords& words) {
@@ -124,6 +111,19 @@ std::optional<DatasetKind> dataset_kind_option(const std::string& name) {
   if (const std::optional<DatasetKind> kind = dataset_kind_from_string(name)) return kind;
   throw UsageError(
       fmt::format("--dataset: '{}' is not known, expected auto, {}", name, dataset_kind_names()));
+}
+
+RangeGate parsed_range(const std::string& text) {
+  RangeGate range;
+  int used = 0;
+  const int fields = std::sscanf(text.c_str(), "%lf,%lf%n", &range.min_m, &range.max_m, &used);
+  const bool whole = fields == 2 && static_cast<std::size_t>(used) == text.size();
+  if (whole && range.min_m >= 0.0 && (range.max_m > range.min_m || range.max_m == -1.0)) {
+    return range;
+  }
+  throw UsageError(fmt::format(
+      "--range: '{}' is no range, expected MIN,MAX in metres with 0 <= MIN < MAX (MAX -1: none)",
+      text));
 }
 
 RangeGate range_option(const std::string& text, const Protocol& protocol) {

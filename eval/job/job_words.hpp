@@ -31,8 +31,9 @@ SettingChange change_of(const std::string& assignment, const MethodKind& method)
 /// "auto" is nothing. Throws UsageError for a name that is no data set kind.
 std::optional<DatasetKind> dataset_kind_option(const std::string& name);
 
-/// "MIN,MAX" in metres, MAX -1 for no limit. Throws UsageError, also for a limit that the protocol
-/// does not know.
+/// "MIN,MAX" in metres, MAX -1 for no limit. Throws UsageError.
+RangeGate parsed_range(const std::string& text);
+/// The same, and throws for a limit that the protocol does not know.
 RangeGate range_option(const std::string& text, const Protocol& protocol);
 
 }  // namespace mosbench

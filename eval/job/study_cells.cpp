@@ -12,7 +12,7 @@
 #include "datasets/simulator/simulate.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
-#include "eval/protocols/protocol_list.hpp"
+#include "eval/protocols/protocol.hpp"
 #include "eval/result/reading_json.hpp"
 
 namespace mosbench {

@@ -1,5 +1,3 @@
-#include "eval/predictions/prediction_place.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,6 +10,7 @@
 #include "datasets/hdf5/hdf5_file.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
+#include "eval/predictions/prediction_files.hpp"
 
 namespace mosbench {
 namespace fs = std::filesystem;

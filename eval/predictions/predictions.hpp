@@ -8,16 +8,73 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "datasets/sequence/sequence.hpp"
 #include "datasets/text/errors.hpp"
-#include "eval/predictions/predicted_ids.hpp"
-#include "eval/predictions/prediction_format.hpp"
-#include "eval/predictions/prediction_text.hpp"
+#include "eval/protocols/confusion.hpp"
 #include "eval/protocols/protocol.hpp"
 
 namespace mosbench {
+
+/// File formats of predictions; docs/formats/predictions.md describes them.
+enum class PredictionFormat : std::uint8_t {
+  kLabel,
+  kLabelByIndex,
+  kMaskedLabel,
+  kText,
+  kPcd,
+  kCsv,
+  kNpy,
+  kRows,
+  kIndices,
+  kDynabloxClouds,
+  kDynabloxScores,
+  kHdf5
+};
+
+struct DescribedFormat {
+  PredictionFormat format;
+  std::string_view name;       ///< for --format
+  std::string_view extension;  ///< of its files
+  bool per_scan;               ///< a file per scan; otherwise one for the whole sequence
+  std::string_view description;
+};
+
+std::span<const DescribedFormat> prediction_formats();
+const DescribedFormat& describe(PredictionFormat format);
+/// Throws UsageError naming all formats.
+PredictionFormat prediction_format_named(std::string_view name);
+
+/// Which of Dynablox's three decisions per point counts; its paper reports objects.
+enum class DynabloxLevel : std::uint8_t { kPoint, kCluster, kObject };
+
+/// Throws UsageError for a name that is not point, cluster or object.
+DynabloxLevel dynablox_level_named(std::string_view name);
+/// Returns the name that `dynablox_level_named` takes.
+std::string_view to_string(DynabloxLevel level);
+
+/// A label id in prediction files.
+struct PredictedId {
+  std::uint16_t id;
+  std::uint64_t points;              ///< that have it, in all files
+  std::filesystem::path first_file;  ///< that holds it
+};
+
+/// Reads every .label file and returns the ids in them in ascending order. Throws DataError naming
+/// the first file that holds something else than little-endian uint32: big-endian numbers or
+/// float32.
+std::vector<PredictedId> ids_in(std::span<const std::filesystem::path> files);
+
+/// Returns "0 (8,640 points), 251 (12 points)", of more than eight ids those of most points.
+std::string ids_text(std::span<const PredictedId> ids);
+
+/// Returns a remark if no point is predicted moving, or more than half of the points: methods find
+/// few moving points, so the ids may have another meaning. Empty otherwise. `ids` are those of the
+/// files, empty for formats without ids.
+std::string strange_share(std::uint64_t moving, std::uint64_t points,
+                          std::span<const PredictedId> ids, const Protocol& protocol);
 
 /// From a network's class numbers to the data set's label ids.
 using LabelIdMap = std::map<std::uint16_t, std::uint16_t>;

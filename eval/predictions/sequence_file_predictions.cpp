@@ -1,5 +1,3 @@
-#include "eval/predictions/sequence_file_predictions.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,6 +9,7 @@
 #include "datasets/hdf5/flow_truth.hpp"
 #include "datasets/hdf5/hdf5_file.hpp"
 #include "datasets/text/text.hpp"
+#include "eval/predictions/prediction_files.hpp"
 
 namespace mosbench {
 namespace fs = std::filesystem;

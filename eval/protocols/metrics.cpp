@@ -4,10 +4,31 @@
 
 #include <cmath>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <vector>
 
 namespace mosbench {
 namespace {
+
+using Ratios = std::array<Ratio, kMetrics.size()>;
+
+constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
+
+double value_of(const Ratio& ratio) {
+  return ratio.whole > 0.0 ? ratio.part / ratio.whole : kUndefined;
+}
+
+Ratios ratios_of(const CountSums& sums) {
+  Ratios ratios{};
+  for (std::size_t m = 0; m < ratios.size(); ++m) ratios[m] = kMetrics[m].of(sums);
+  return ratios;
+}
+
+MetricValues values_of(const Ratios& ratios) {
+  MetricValues values{};
+  for (std::size_t m = 0; m < values.size(); ++m) values[m] = value_of(ratios[m]);
+  return values;
+}
 
 std::optional<double> defined(double value) {
   if (std::isnan(value)) return std::nullopt;
@@ -21,7 +42,7 @@ void set_metrics(const MetricValues& values, Summary& summary) {
 MetricValues values_of(const Summary& summary) {
   MetricValues values{};
   for (std::size_t m = 0; m < values.size(); ++m) {
-    values[m] = summary.metrics[m].value_or(std::numeric_limits<double>::quiet_NaN());
+    values[m] = summary.metrics[m].value_or(kUndefined);
   }
   return values;
 }
@@ -45,27 +66,17 @@ bool has_value(const Protocol& protocol, const Confusion& counts) {
   return truth_moves || (counts.fp > 0 && protocol.empty_case != EmptyCase::kNanWithoutTruth);
 }
 
-double published_value_of_nothing(EmptyCase empty_case) {
-  switch (empty_case) {
-    case EmptyCase::kOne:
-      return 1.0;
-    case EmptyCase::kEpsilon:
-      return 0.0;
-    case EmptyCase::kNan:
-    case EmptyCase::kNanWithoutTruth:
-      break;
-  }
-  return std::numeric_limits<double>::quiet_NaN();
-}
-
 double published_ratio(const Protocol& protocol, const Confusion& counts) {
-  if (!has_value(protocol, counts)) return published_value_of_nothing(protocol.empty_case);
+  const bool is_epsilon = protocol.empty_case == EmptyCase::kEpsilon;
+  if (!has_value(protocol, counts)) {
+    return protocol.empty_case == EmptyCase::kOne ? 1.0 : is_epsilon ? 0.0 : kUndefined;
+  }
   const std::uint64_t all = counts.tp + counts.fp + counts.fn;
   if (protocol.metric_arithmetic == Arithmetic::kFloat) {
     return static_cast<double>(static_cast<float>(counts.tp) / static_cast<float>(all));
   }
   // Rounding loses the epsilon from a denominator of 16 on, not below.
-  const double epsilon = protocol.empty_case == EmptyCase::kEpsilon ? 1e-15 : 0.0;
+  const double epsilon = is_epsilon ? 1e-15 : 0.0;
   return static_cast<double>(counts.tp) / (static_cast<double>(all) + epsilon);
 }
 
@@ -94,7 +105,78 @@ double published_iou(const Protocol& protocol, std::span<const Confusion> scans,
   return sum / static_cast<double>(scans.size());
 }
 
+nlohmann::ordered_json number(const std::optional<double>& value) {
+  return value && std::isfinite(*value) ? nlohmann::ordered_json(*value) : nullptr;
+}
+
 }  // namespace
+
+MetricValues metrics_of(const Confusion& counts) {
+  return values_of(ratios_of({static_cast<double>(counts.tp), static_cast<double>(counts.fp),
+                              static_cast<double>(counts.fn)}));
+}
+
+MetricValues mean_of(std::span<const MetricValues> values) {
+  MetricValues means{};
+  for (std::size_t m = 0; m < means.size(); ++m) {
+    for (const MetricValues& value : values) means[m] += value[m];
+    means[m] = value_of({means[m], static_cast<double>(values.size())});
+  }
+  return means;
+}
+
+ScanTerms scan_terms(const Protocol& protocol, const Confusion& scan) {
+  if (protocol.aggregation != Aggregation::kMeanOfScans) {
+    return {static_cast<double>(scan.tp), static_cast<double>(scan.fp),
+            static_cast<double>(scan.fn)};
+  }
+  ScanTerms terms{};
+  const MetricValues values = metrics_of(scan);
+  for (std::size_t m = 0; m < values.size(); ++m) {
+    if (std::isnan(values[m])) continue;
+    terms[2 * m] = values[m];
+    terms[2 * m + 1] = 1.0;
+  }
+  return terms;
+}
+
+ScanTerms& operator+=(ScanTerms& sums, const ScanTerms& terms) {
+  for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += terms[i];
+  return sums;
+}
+
+std::array<Ratio, kMetrics.size()> ratios_of(const Protocol& protocol, const ScanTerms& sums) {
+  if (protocol.aggregation != Aggregation::kMeanOfScans) {
+    return ratios_of({sums[0], sums[1], sums[2]});
+  }
+  Ratios ratios{};
+  for (std::size_t m = 0; m < ratios.size(); ++m) ratios[m] = {sums[2 * m], sums[2 * m + 1]};
+  return ratios;
+}
+
+MetricValues metrics_of(const Protocol& protocol, const ScanTerms& sums) {
+  const bool pooled = protocol.aggregation != Aggregation::kMeanOfScans;
+  const bool nothing_moves = pooled && sums[0] + sums[2] == 0.0;
+  if (nothing_moves && protocol.empty_case == EmptyCase::kNanWithoutTruth) {
+    MetricValues none;
+    none.fill(kUndefined);
+    return none;
+  }
+  return values_of(ratios_of(protocol, sums));
+}
+
+MetricValues aggregate(const Protocol& protocol, std::span<const SequenceCounts> sequences) {
+  ScanTerms all{};
+  std::vector<MetricValues> values;
+  for (const SequenceCounts& scans : sequences) {
+    ScanTerms sums{};
+    for (const Confusion& scan : scans) sums += scan_terms(protocol, scan);
+    all += sums;
+    values.push_back(metrics_of(protocol, sums));
+  }
+  return protocol.aggregation == Aggregation::kMeanOfSequences ? mean_of(values)
+                                                               : metrics_of(protocol, all);
+}
 
 std::optional<double> metric_of(const Confusion& counts, Metric metric) {
   return defined(metrics_of(counts)[static_cast<std::size_t>(metric)]);
@@ -143,6 +225,29 @@ Summary mean_of_sequences(const Protocol& protocol, std::span<const Summary> seq
   average.published_iou = published_sum / static_cast<double>(sequences.size());
   average.published_text = print(average.published_iou, protocol.program_print);
   return average;
+}
+
+nlohmann::ordered_json counts_json(const Confusion& counts) {
+  return {{"tp", counts.tp},
+          {"fp", counts.fp},
+          {"fn", counts.fn},
+          {"tn", counts.tn},
+          {"ignored", counts.ignored}};
+}
+
+nlohmann::ordered_json to_json(const Summary& summary) {
+  nlohmann::ordered_json json;
+  for (std::size_t m = 0; m < kMetrics.size(); ++m) {
+    json[std::string(kMetrics[m].key)] = number(summary.metrics[m]);
+  }
+  json["iou_deviation"] = number(summary.iou_deviation);
+  json["published_iou"] = number(summary.published_iou);
+  json["published_text"] = summary.published_text;
+  json.update(counts_json(summary.pooled));
+  json["unknown_ids"] = summary.pooled.unknown_ids;
+  json["labelled_scans"] = summary.scans;
+  json["undefined_scans"] = summary.undefined_scans;
+  return json;
 }
 
 }  // namespace mosbench

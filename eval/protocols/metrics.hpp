@@ -2,13 +2,94 @@
 
 #include <array>
 #include <cstddef>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
+#include <vector>
 
-#include "eval/protocols/scan_sums.hpp"
+#include "eval/protocols/confusion.hpp"
 
 namespace mosbench {
+
+/// Points of scans, added up.
+struct CountSums {
+  double tp, fp, fn;
+};
+
+/// A metric is part / whole; both are sums over scans.
+struct Ratio {
+  double part, whole;
+};
+
+enum class Metric : std::size_t { kIou, kPrecision, kRecall, kF1 };
+
+/// A metric that is reported, a fraction 0..1 with an interval. All that counts, sums up, compares
+/// or shows metrics walks the rows.
+struct MetricRow {
+  std::string_view key;    ///< in JSON, CSV and Python
+  std::string_view title;  ///< of a column
+  Ratio (*of)(const CountSums& sums);
+  std::string_view undefined_where;  ///< the whole is 0
+};
+
+/// In the order of Metric.
+inline constexpr std::array kMetrics = {
+    MetricRow{"iou", "IoU",
+              [](const CountSums& n) {
+                return Ratio{n.tp, n.tp + n.fp + n.fn};
+              },
+              "no point that counts moves, in truth or labels"},
+    MetricRow{"precision", "precision",
+              [](const CountSums& n) {
+                return Ratio{n.tp, n.tp + n.fp};
+              },
+              "no point that counts is labelled moving"},
+    MetricRow{"recall", "recall",
+              [](const CountSums& n) {
+                return Ratio{n.tp, n.tp + n.fn};
+              },
+              "no point that counts moves"},
+    MetricRow{"f1", "F1",
+              [](const CountSums& n) {
+                return Ratio{2.0 * n.tp, 2.0 * n.tp + n.fp + n.fn};
+              },
+              "no point that counts moves, in truth or labels"}};
+
+constexpr const MetricRow& row_of(Metric metric) {
+  return kMetrics[static_cast<std::size_t>(metric)];
+}
+
+/// Of tables that have much else to show: F1 follows from IoU.
+inline constexpr std::array kBriefMetrics = {Metric::kIou, Metric::kPrecision, Metric::kRecall};
+
+/// Fractions 0..1 by Metric, NaN where undefined.
+using MetricValues = std::array<double, kMetrics.size()>;
+
+/// Returns all metrics; NaN where the whole is 0.
+MetricValues metrics_of(const Confusion& counts);
+
+/// Returns the mean of each metric; NaN if any value is NaN, and for an empty list.
+MetricValues mean_of(std::span<const MetricValues> values);
+
+/// Counts of the scans of one sequence that have truth, in scan order.
+using SequenceCounts = std::vector<Confusion>;
+
+/// Terms that are summed over scans to get a protocol's metrics, so that the metrics of any
+/// selection of scans cost one sum. Pooled protocols: tp, fp, fn. Means of scans: per metric the
+/// sum of the scans' values and the number of scans that have one.
+using ScanTerms = std::array<double, 2 * kMetrics.size()>;
+
+ScanTerms scan_terms(const Protocol& protocol, const Confusion& scan);
+ScanTerms& operator+=(ScanTerms& sums, const ScanTerms& terms);
+/// Returns the ratio behind each metric of scans whose terms add up to `sums`.
+std::array<Ratio, kMetrics.size()> ratios_of(const Protocol& protocol, const ScanTerms& sums);
+/// Returns the metrics of scans whose terms add up to `sums`.
+MetricValues metrics_of(const Protocol& protocol, const ScanTerms& sums);
+
+/// Returns the metrics of a whole run, aggregated as the protocol says.
+MetricValues aggregate(const Protocol& protocol, std::span<const SequenceCounts> sequences);
 
 /// Returns one metric, 0..1; nullopt where it is undefined.
 std::optional<double> metric_of(const Confusion& counts, Metric metric);
@@ -46,5 +127,11 @@ Summary summarize(const Protocol& protocol, std::span<const Confusion> per_scan)
 
 /// Averages sequences (HeLiMOS's "Avg"): a metric is nullopt when one sequence lacks it.
 Summary mean_of_sequences(const Protocol& protocol, std::span<const Summary> sequences);
+
+/// Returns {"tp", "fp", "fn", "tn", "ignored"}, the names that every JSON of the program uses.
+nlohmann::ordered_json counts_json(const Confusion& counts);
+
+/// Fractions 0..1, null where undefined; counts are those of all scans together.
+nlohmann::ordered_json to_json(const Summary& summary);
 
 }  // namespace mosbench

@@ -1,5 +1,7 @@
 #include "eval/protocols/protocol.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <string>
@@ -60,14 +62,28 @@ constexpr std::array kSceneFlowIds = {
     IdRange{251, 258, kMoving}, IdRange{259, 259, kIgnored}, IdRange{260, 65535, kMoving}};
 constexpr IdMap kSceneFlow{kSceneFlowIds, kStatic};
 
-constexpr PrintStyle kPercent1{.percent = true, .digits = 1};
-constexpr PrintStyle kPercent2{.percent = true, .digits = 2};
-constexpr PrintStyle kPercent3{.percent = true, .digits = 3};
 constexpr PrintStyle kSixSignificant{.percent = false, .digits = 6, .significant = true};
 
 constexpr std::string_view kEvaluateMos = "PRBonn/semantic-kitti-api@a9c749e:evaluate_mos.py";
 constexpr std::string_view kCalRecall = "hku-mars/M-detector@5ce002f:src/cal_recall_multi.cpp";
 constexpr std::string_view kMapmosSource = "PRBonn/MapMOS@4092d93:src/mapmos/pipeline.py";
+
+/// The program of MapMOS, which skips points out of range, on one of its data sets.
+constexpr Protocol of_mapmos(std::string_view name, std::string_view summary,
+                             std::string_view source, const IdMap& truth,
+                             std::string_view default_split = "", RangeGate range = kNoLimits) {
+  return {.name = name,
+          .summary = summary,
+          .source = source,
+          .truth = truth,
+          .prediction = kAbove250,
+          .range_rule = RangeRule::kTruthAndPrediction,
+          .default_range = range,
+          .empty_case = EmptyCase::kNanWithoutTruth,
+          .metric_arithmetic = Arithmetic::kFloat,
+          .program_print = {.percent = true, .digits = 3},
+          .default_split = default_split};
+}
 
 constexpr std::array kProtocols = {
     Protocol{.name = "doals-hmm",
@@ -78,7 +94,7 @@ constexpr std::array kProtocols = {
              .range_rule = RangeRule::kTruthOnly,
              .default_range = {0.5, 20.0},
              .aggregation = Aggregation::kMeanOfScans,
-             .program_print = kPercent2},
+             .program_print = {.percent = true, .digits = 2}},
     Protocol{.name = "doals-dynablox",
              .summary = "mean of per-scan IoU; the range cuts truth and prediction",
              .source = "ethz-asl/dynablox@58d8a59:dynablox/src/evaluation/evaluator.cpp",
@@ -91,7 +107,8 @@ constexpr std::array kProtocols = {
              .empty_case = EmptyCase::kOne,
              .metric_arithmetic = Arithmetic::kFloat,
              .file_significant_digits = 6,
-             .program_print = kPercent1},
+             .program_print = {.percent = true, .digits = 1},
+             .has_dynablox_counts = true},
     Protocol{.name = "semantickitti-mos",
              .summary = "pooled over all points; unlabelled and unknown truth is ignored",
              .source = kEvaluateMos,
@@ -112,7 +129,8 @@ constexpr std::array kProtocols = {
              .truth = kSemanticKitti,
              .prediction = kSemanticKitti,
              .aggregation = Aggregation::kMeanOfSequences,
-             .empty_case = EmptyCase::kEpsilon},
+             .empty_case = EmptyCase::kEpsilon,
+             .within_split = "helimos-test"},
     Protocol{.name = "helimos-test",
              .summary = "pooled per sensor over the scans of test.txt; unlabelled truth is ignored",
              .source = kEvaluateMos,
@@ -121,44 +139,15 @@ constexpr std::array kProtocols = {
              .aggregation = Aggregation::kMeanOfSequences,
              .empty_case = EmptyCase::kEpsilon,
              .default_split = "test"},
-    Protocol{.name = "mapmos",
-             .summary = "pooled; truth ids 0 and 1 ignored, above 250 moving, all between static",
-             .source = kMapmosSource,
-             .truth = kMapmosHelimos,
-             .prediction = kAbove250,
-             .range_rule = RangeRule::kTruthAndPrediction,
-             .empty_case = EmptyCase::kNanWithoutTruth,
-             .metric_arithmetic = Arithmetic::kFloat,
-             .program_print = kPercent3,
-             .default_split = "test"},
-    Protocol{.name = "mapmos-apollo",
-             .summary = "pooled; nothing ignored: truth ids up to 250 static, above moving",
-             .source = "PRBonn/MapMOS@4092d93:src/mapmos/datasets/apollo.py",
-             .truth = kAbove250,
-             .prediction = kAbove250,
-             .range_rule = RangeRule::kTruthAndPrediction,
-             .empty_case = EmptyCase::kNanWithoutTruth,
-             .metric_arithmetic = Arithmetic::kFloat,
-             .program_print = kPercent3},
-    Protocol{.name = "mapmos-kitti-tracking",
-             .summary = "pooled; truth ids 0 to 2 ignored, above 250 moving, all between static",
-             .source = "PRBonn/MapMOS@4092d93:src/mapmos/datasets/kitti_tracking.py",
-             .truth = kMapmosTracking,
-             .prediction = kAbove250,
-             .range_rule = RangeRule::kTruthAndPrediction,
-             .empty_case = EmptyCase::kNanWithoutTruth,
-             .metric_arithmetic = Arithmetic::kFloat,
-             .program_print = kPercent3},
-    Protocol{.name = "mapmos-nuscenes",
-             .summary = "pooled; as mapmos, all scans with boxes",
-             .source = kMapmosSource,
-             .truth = kMapmosHelimos,
-             .prediction = kAbove250,
-             .range_rule = RangeRule::kTruthAndPrediction,
-             .default_range = {3.0, -1.0},
-             .empty_case = EmptyCase::kNanWithoutTruth,
-             .metric_arithmetic = Arithmetic::kFloat,
-             .program_print = kPercent3},
+    of_mapmos("mapmos", "pooled; truth ids 0 and 1 ignored, above 250 moving, all between static",
+              kMapmosSource, kMapmosHelimos, "test"),
+    of_mapmos("mapmos-apollo", "pooled; nothing ignored: truth ids up to 250 static, above moving",
+              "PRBonn/MapMOS@4092d93:src/mapmos/datasets/apollo.py", kAbove250),
+    of_mapmos("mapmos-kitti-tracking",
+              "pooled; truth ids 0 to 2 ignored, above 250 moving, all between static",
+              "PRBonn/MapMOS@4092d93:src/mapmos/datasets/kitti_tracking.py", kMapmosTracking),
+    of_mapmos("mapmos-nuscenes", "pooled; as mapmos, all scans with boxes", kMapmosSource,
+              kMapmosHelimos, "", {3.0, -1.0}),
     Protocol{.name = "moe",
              .summary = "pooled per sequence, mean of sequences; nothing is ignored",
              .source = "DeepDuke/MOE-Dataset:README.md",
@@ -194,7 +183,76 @@ constexpr std::array kProtocols = {
              .default_split = "eval"},
 };
 
+// In the order of TruthClass, of Aggregation and of EmptyCase.
+constexpr std::array<std::string_view, 4> kClassWords = {"ignored", "static", "moving",
+                                                         "always a true negative"};
+constexpr std::array<std::string_view, 3> kAggregationWords = {
+    "pooled", "mean of scans", "pooled per sequence, mean of sequences"};
+constexpr std::array<std::string_view, 4> kEmptyWords = {"NaN", "NaN without moving truth", "1",
+                                                         "0"};
+
+template <typename Words, typename Value>
+std::string word(const Words& words, Value value) {
+  return std::string(words[static_cast<std::size_t>(value)]);
+}
+
+std::string ids_text(const IdRange& range) {
+  return range.first == range.last ? fmt::format("{}", range.first)
+                                   : fmt::format("{}-{}", range.first, range.last);
+}
+
+/// "0-1 9 20": the ids of one class.
+std::string ids_of(const IdMap& map, TruthClass wanted) {
+  std::string text;
+  for (const IdRange& range : map.ranges) {
+    if (range.becomes != wanted) continue;
+    if (!text.empty()) text += ' ';
+    text += ids_text(range);
+  }
+  return text;
+}
+
+bool knows_every_id(const IdMap& map) {
+  const LabelTable table(map);
+  for (std::uint32_t id = 0; id <= 0xFFFF; ++id) {
+    if (!table.is_known(id)) return false;
+  }
+  return true;
+}
+
+std::string describe_truth(const IdMap& map) {
+  std::string text;
+  for (const TruthClass wanted : {TruthClass::kIgnored, TruthClass::kStatic, TruthClass::kMoving,
+                                  TruthClass::kAlwaysNegative}) {
+    const std::string listed = ids_of(map, wanted);
+    if (!listed.empty()) text += fmt::format("{} {}, ", listed, word(kClassWords, wanted));
+  }
+  if (!knows_every_id(map)) return text + fmt::format("others {}", word(kClassWords, map.unknown));
+  return text.substr(0, text.size() - 2);
+}
+
+std::string describe_range(const Protocol& protocol) {
+  if (protocol.range_rule == RangeRule::kNone) return "none";
+  const std::string_view what =
+      protocol.range_rule == RangeRule::kTruthOnly ? "truth only" : "truth and prediction";
+  const RangeGate& range = protocol.default_range;
+  return fmt::format("{}, {} by default", what, range == kNoLimits ? "no limit" : gate_text(range));
+}
+
+std::string in_brackets(const ScoreRule& rule) {
+  const std::string range = counted_range_text(*rule.protocol, rule.range);
+  return range.empty() ? "" : fmt::format(" ({})", range);
+}
+
 }  // namespace
+
+LabelTable::LabelTable(const IdMap& map) {
+  entries_.fill(static_cast<std::uint8_t>(static_cast<std::uint8_t>(map.unknown) | kUnknown));
+  for (const IdRange& range : map.ranges) {
+    std::fill(entries_.begin() + range.first, entries_.begin() + range.last + 1,
+              static_cast<std::uint8_t>(range.becomes));
+  }
+}
 
 std::span<const Protocol> protocols() { return kProtocols; }
 
@@ -207,9 +265,44 @@ const Protocol& protocol_named(std::string_view name) {
   if (const Protocol* protocol = find_protocol(name)) return *protocol;
   std::vector<std::string_view> names;
   for (const Protocol& protocol : kProtocols) names.push_back(protocol.name);
-  throw UsageError("protocol: \"" + std::string(name) + "\" does not exist, expected a name that " +
-                   "`mosbench list` shows, such as \"" + std::string(nearest_name(name, names)) +
-                   "\"");
+  throw UsageError(fmt::format(
+      "protocol: \"{}\" does not exist, expected a name that `mosbench list` shows, such as \"{}\"",
+      name, nearest_name(name, names)));
+}
+
+std::string gate_text(const RangeGate& range) {
+  return range.max_m > 0.0 ? fmt::format("{:g} to {:g} m", range.min_m, range.max_m)
+                           : fmt::format("from {:g} m", range.min_m);
+}
+
+std::vector<ProtocolDescription> describe_protocols() {
+  std::vector<ProtocolDescription> rows;
+  for (const Protocol& protocol : protocols()) {
+    rows.push_back({.name = std::string(protocol.name),
+                    .truth = describe_truth(protocol.truth),
+                    .prediction = ids_of(protocol.prediction, TruthClass::kMoving),
+                    .range = describe_range(protocol),
+                    .aggregation = word(kAggregationWords, protocol.aggregation),
+                    .split = protocol.default_split.empty() ? "all labelled scans"
+                                                            : std::string(protocol.default_split),
+                    .empty_case = word(kEmptyWords, protocol.empty_case),
+                    .summary = std::string(protocol.summary),
+                    .source = std::string(protocol.source)});
+  }
+  return rows;
+}
+
+std::string counted_range_text(const Protocol& protocol, const RangeGate& range) {
+  return protocol.range_rule == RangeRule::kNone ? "" : gate_text(range);
+}
+
+std::string rule_line(const ScoreRule& rule) {
+  return fmt::format("protocol {}: {}{}", rule.protocol->name, rule.protocol->summary,
+                     in_brackets(rule));
+}
+
+std::string rule_name(const ScoreRule& rule) {
+  return std::string(rule.protocol->name) + in_brackets(rule);
 }
 
 }  // namespace mosbench

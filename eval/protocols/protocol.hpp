@@ -1,12 +1,50 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <string_view>
-
-#include "eval/protocols/label_map.hpp"
+#include <vector>
 
 namespace mosbench {
+
+/// How a point's truth is counted.
+enum class TruthClass : std::uint8_t {
+  kIgnored,        ///< not counted at all
+  kStatic,         ///< true negative or false positive
+  kMoving,         ///< true positive or false negative
+  kAlwaysNegative  ///< a true negative whatever is predicted (M-detector on nuScenes, ids 251..999)
+};
+
+/// Label ids first..last, both inclusive, belong to one class.
+struct IdRange {
+  std::uint16_t first, last;
+  TruthClass becomes;
+};
+
+/// Maps label ids to classes. The lower 16 bits of a label are its id, the upper 16 an instance
+/// number.
+struct IdMap {
+  std::span<const IdRange> ranges;  ///< where two overlap, the later one applies
+  TruthClass unknown;               ///< class of the ids in no range; they are counted as unknown
+};
+
+/// An IdMap expanded to all 65536 ids, so that each point costs one look-up.
+class LabelTable {
+ public:
+  explicit LabelTable(const IdMap& map);
+
+  TruthClass operator[](std::uint32_t label) const {
+    return static_cast<TruthClass>(entries_[label & 0xFFFFU] & ~kUnknown);
+  }
+  bool is_known(std::uint32_t label) const { return (entries_[label & 0xFFFFU] & kUnknown) == 0; }
+
+ private:
+  static constexpr std::uint8_t kUnknown = 0x80;
+  std::array<std::uint8_t, 65536> entries_;
+};
 
 /// How a point outside the range limits is counted.
 enum class RangeRule : std::uint8_t {
@@ -26,6 +64,10 @@ struct RangeGate {
   }
   bool operator==(const RangeGate&) const = default;
 };
+inline constexpr RangeGate kNoLimits = {0.0, -1.0};
+
+/// Returns "0.5 to 20 m" or "from 0.5 m".
+std::string gate_text(const RangeGate& range);
 
 /// How the counts of many scans are combined into one number.
 enum class Aggregation : std::uint8_t {
@@ -62,7 +104,7 @@ struct Protocol {
   IdMap truth;
   IdMap prediction;  ///< kMoving is a moving prediction, every other class a static one
   RangeRule range_rule = RangeRule::kNone;
-  RangeGate default_range = {0.0, -1.0};  ///< no limits
+  RangeGate default_range = kNoLimits;
   Arithmetic range_arithmetic = Arithmetic::kDouble;
   Aggregation aggregation = Aggregation::kPooled;
   EmptyCase empty_case = EmptyCase::kNan;
@@ -71,6 +113,9 @@ struct Protocol {
   PrintStyle program_print = {};    ///< of its own program
   /// Of the data set it is published for; empty: all labelled scans.
   std::string_view default_split = "";
+  /// The protocol that counts every scan in the same way, over its own default split alone.
+  std::string_view within_split = "";
+  bool has_dynablox_counts = false;  ///< scores.csv of Dynablox holds its counts
 };
 
 /// A protocol with the range it is applied over.
@@ -89,5 +134,29 @@ const Protocol* find_protocol(std::string_view name);
 
 /// Returns the protocol of this name. Throws UsageError naming the nearest one if there is none.
 const Protocol& protocol_named(std::string_view name);
+
+/// A protocol in words, one member per line of `mosbench list protocols`.
+struct ProtocolDescription {
+  std::string name;
+  std::string truth;        ///< "0-1 ignored, 9 static, 251-259 moving, others ignored"
+  std::string prediction;   ///< ids that count as a moving prediction
+  std::string range;        ///< "truth and prediction, 0.5 to 20 m"
+  std::string aggregation;  ///< "mean of scans"
+  std::string split;        ///< scans its published numbers are over: "test", "all labelled scans"
+  std::string empty_case;   ///< what its own program gives for 0/0
+  std::string summary;
+  std::string source;
+};
+
+/// All protocols, in the order of `protocols()`.
+std::vector<ProtocolDescription> describe_protocols();
+
+/// Returns the range of the points that count; empty when the protocol does not limit it.
+std::string counted_range_text(const Protocol& protocol, const RangeGate& range);
+
+/// Returns "protocol mapmos: pooled; ... (from 3 m)", the range that is really applied.
+std::string rule_line(const ScoreRule& rule);
+/// Returns "mapmos (from 3 m)".
+std::string rule_name(const ScoreRule& rule);
 
 }  // namespace mosbench

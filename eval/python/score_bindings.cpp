@@ -3,7 +3,7 @@
 #include <pybind11/stl/filesystem.h>
 
 #include "eval/protocols/confusion.hpp"
-#include "eval/protocols/scan_sums.hpp"
+#include "eval/protocols/metrics.hpp"
 #include "eval/python/arrays.hpp"
 #include "eval/python/bindings.hpp"
 #include "eval/result/result_json.hpp"

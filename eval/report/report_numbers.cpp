@@ -16,7 +16,6 @@
 #include "eval/statistics/statistics_report.hpp"
 #include "eval/tables/score_report.hpp"
 #include "eval/tables/table_print.hpp"
-#include "eval/trajectory/alignment.hpp"
 #include "eval/trajectory/pose_errors.hpp"
 #include "eval/trajectory/trajectory.hpp"
 

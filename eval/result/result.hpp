@@ -19,7 +19,7 @@
 #include "datasets/sequence/recording.hpp"
 #include "eval/predictions/predictions.hpp"
 #include "eval/protocols/confusion.hpp"
-#include "eval/protocols/scan_sums.hpp"
+#include "eval/protocols/metrics.hpp"
 #include "eval/result/machine.hpp"
 #include "eval/result/settings_json.hpp"
 

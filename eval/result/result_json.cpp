@@ -7,9 +7,8 @@
 #include <stdexcept>
 
 #include "datasets/text/errors.hpp"
-#include "eval/protocols/counts_json.hpp"
+#include "eval/answer/answer_text.hpp"
 #include "eval/protocols/metrics.hpp"
-#include "eval/protocols/summary_json.hpp"
 #include "eval/result/reading_json.hpp"
 #include "eval/result/result_set.hpp"
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <string>
 
-#include "eval/protocols/scan_sums.hpp"
+#include "eval/protocols/metrics.hpp"
 #include "eval/statistics/uncertainty.hpp"
 
 namespace mosbench {

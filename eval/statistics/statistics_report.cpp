@@ -6,7 +6,7 @@
 
 #include "eval/answer/answer_text.hpp"
 #include "eval/answer/render.hpp"
-#include "eval/protocols/counts_json.hpp"
+#include "eval/protocols/metrics.hpp"
 #include "eval/result/result_json.hpp"
 #include "eval/statistics/scan_spacing.hpp"
 

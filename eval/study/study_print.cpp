@@ -5,7 +5,7 @@
 
 #include "datasets/text/text.hpp"
 #include "eval/answer/answer_text.hpp"
-#include "eval/protocols/protocol_list.hpp"
+#include "eval/protocols/protocol.hpp"
 #include "eval/report/report_asset.hpp"
 #include "eval/result/tell.hpp"
 #include "eval/result/version.hpp"

@@ -4,7 +4,7 @@
 #include <span>
 
 #include "eval/answer/answer_text.hpp"
-#include "eval/protocols/protocol_list.hpp"
+#include "eval/protocols/protocol.hpp"
 #include "eval/statistics/statistics_report.hpp"
 #include "eval/tables/table_print.hpp"
 

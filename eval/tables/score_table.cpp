@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "eval/protocols/benchmark_split.hpp"
-#include "eval/protocols/protocol_list.hpp"
+#include "eval/protocols/protocol.hpp"
 #include "eval/tables/score_report.hpp"
 
 namespace mosbench {

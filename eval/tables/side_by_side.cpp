@@ -1,9 +1,8 @@
 #include <fmt/format.h>
 
 #include "eval/answer/answer_text.hpp"
-#include "eval/protocols/counts_json.hpp"
 #include "eval/protocols/metrics.hpp"
-#include "eval/protocols/protocol_list.hpp"
+#include "eval/protocols/protocol.hpp"
 #include "eval/result/result_set.hpp"
 #include "eval/tables/score_report.hpp"
 

@@ -195,14 +195,14 @@ std::vector<ResultSet> with_splits(const PaperTable& table, const std::vector<Re
   for (const ResultSet& run : runs) {
     if (run.front().dataset != to_string(table.dataset)) continue;
     sets.push_back(run);
-    const bool has_test = std::ranges::any_of(
-        run.sequences, [](const Result& sequence) { return sequence.splits.contains("test"); });
-    if (run.front().protocol->name != "helimos-all" || !has_test) continue;
-    ResultSet& test = sets.emplace_back(run);
-    std::erase_if(test.sequences,
-                  [](const Result& sequence) { return !sequence.splits.contains("test"); });
-    // Both protocols count a scan in the same way; only the set of scans differs.
-    for (Result& sequence : test.sequences) sequence.protocol = &protocol_named("helimos-test");
+    const Protocol* within = find_protocol(run.front().protocol->within_split);
+    if (within == nullptr) continue;
+    ResultSet part = run;
+    std::erase_if(part.sequences, [&](const Result& sequence) {
+      return !sequence.splits.contains(std::string(within->default_split));
+    });
+    for (Result& sequence : part.sequences) sequence.protocol = within;
+    if (!part.sequences.empty()) sets.push_back(std::move(part));
   }
   return sets;
 }

@@ -1,6 +1,9 @@
 #include "eval/trajectory/pose_errors.hpp"
 
+#include <Eigen/Geometry>
+#include <Eigen/SVD>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -9,9 +12,31 @@
 namespace mosbench {
 namespace {
 
-constexpr double kDeltaTolerance = 0.1;
-
+using Positions = Eigen::Matrix<double, 3, Eigen::Dynamic>;
 using IndexPairs = std::vector<std::pair<std::size_t, std::size_t>>;
+
+constexpr std::array<std::string_view, 4> kAlignmentNames = {"none", "origin", "rigid",
+                                                             "similarity"};
+// Singular values below this share of the largest are none.
+constexpr double kOnALine = 1e-12;
+
+Positions positions_of(std::span<const Pose> poses) {
+  Positions positions(3, static_cast<Eigen::Index>(poses.size()));
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    positions.col(static_cast<Eigen::Index>(i)) = poses[i].translation();
+  }
+  return positions;
+}
+
+bool has_single_answer(const Positions& from, const Positions& to) {
+  const Positions from_mean = from.colwise() - from.rowwise().mean();
+  const Positions to_mean = to.colwise() - to.rowwise().mean();
+  const Eigen::Vector3d singular =
+      Eigen::JacobiSVD<Eigen::Matrix3d>(to_mean * from_mean.transpose()).singularValues();
+  return singular[1] > kOnALine * singular[0];
+}
+
+constexpr double kDeltaTolerance = 0.1;
 
 double angle_of(const Eigen::Matrix3d& rotation) {
   // By the quaternion, which keeps small angles of rows with 6 digits.
@@ -65,7 +90,61 @@ IndexPairs pairs_of(std::span<const Pose> estimate, const RelativePairs& pairs) 
   return pairs.all ? all_pairs(path_m, *pairs.delta_m) : consecutive_pairs(path_m, *pairs.delta_m);
 }
 
+std::vector<float> distances_m(std::span<const Pose> truth) {
+  std::vector<float> distances(truth.size(), 0.0F);
+  for (std::size_t i = 1; i < truth.size(); ++i) {
+    const Eigen::Vector3f step =
+        (truth[i - 1].translation() - truth[i].translation()).cast<float>();
+    distances[i] = distances[i - 1] +
+                   std::sqrt(step.x() * step.x() + step.y() * step.y() + step.z() * step.z());
+  }
+  return distances;
+}
+
+Eigen::Matrix4d motion(const Pose& from, const Pose& to) {
+  return from.matrix().inverse() * to.matrix();
+}
+
+float devkit_angle(const Eigen::Matrix4d& error) {
+  const auto a = static_cast<float>(error(0, 0)), b = static_cast<float>(error(1, 1)),
+             c = static_cast<float>(error(2, 2));
+  const auto cosine = static_cast<float>(0.5 * (static_cast<double>(a + b + c) - 1.0));
+  return std::acos(std::clamp(cosine, -1.0F, 1.0F));
+}
+
 }  // namespace
+
+std::string_view to_string(PathAlignment alignment) {
+  return kAlignmentNames[static_cast<std::size_t>(alignment)];
+}
+
+std::optional<PathAlignment> path_alignment_from_string(std::string_view name) {
+  const auto found = std::ranges::find(kAlignmentNames, name);
+  if (found == kAlignmentNames.end()) return std::nullopt;
+  return static_cast<PathAlignment>(found - kAlignmentNames.begin());
+}
+
+std::optional<AlignedPath> aligned(std::span<const Pose> estimate, std::span<const Pose> truth,
+                                   PathAlignment alignment) {
+  AlignedPath result{.poses = {estimate.begin(), estimate.end()}};
+  if (alignment == PathAlignment::kNone) return result;
+  if (alignment == PathAlignment::kOrigin) {
+    const Pose move = truth.front() * estimate.front().inverse();
+    for (Pose& pose : result.poses) pose = move * pose;
+    return result;
+  }
+  const Positions from = positions_of(estimate), to = positions_of(truth);
+  if (estimate.size() < 3 || !has_single_answer(from, to)) return std::nullopt;
+  const Eigen::Matrix4d move = Eigen::umeyama(from, to, alignment == PathAlignment::kSimilarity);
+  result.scale = std::cbrt(move.topLeftCorner<3, 3>().determinant());
+  const Eigen::Matrix3d rotation = move.topLeftCorner<3, 3>() / result.scale;
+  for (Pose& pose : result.poses) {
+    pose.translation() =
+        result.scale * (rotation * pose.translation()) + move.topRightCorner<3, 1>();
+    pose.linear() = rotation * pose.linear();
+  }
+  return result;
+}
 
 PoseErrors absolute_errors(std::span<const Pose> truth, std::span<const Pose> estimate) {
   PoseErrors errors;
@@ -108,6 +187,48 @@ std::optional<ErrorSummary> summary_of(std::span<const double> errors) {
   summary.median =
       sorted.size() % 2 == 1 ? sorted[middle] : (sorted[middle - 1] + sorted[middle]) / 2;
   return summary;
+}
+
+const SegmentRule& kitti_segments() {
+  static const SegmentRule rule{"kitti", {100, 200, 300, 400, 500, 600, 700, 800}, 10};
+  return rule;
+}
+
+const SegmentRule& short_segments() {
+  static const SegmentRule rule{"short", {5, 10, 20, 50}, 1};
+  return rule;
+}
+
+std::vector<SegmentError> segment_errors(std::span<const Pose> truth,
+                                         std::span<const Pose> estimate, const SegmentRule& rule) {
+  const std::vector<float> distances = distances_m(truth);
+  std::vector<SegmentError> errors;
+  for (std::size_t first = 0; first < truth.size(); first += rule.step_scans) {
+    for (const double length_m : rule.lengths_m) {
+      const float end_m = distances[first] + static_cast<float>(length_m);
+      const auto behind = std::upper_bound(distances.begin() + static_cast<std::ptrdiff_t>(first),
+                                           distances.end(), end_m);
+      if (behind == distances.end()) continue;
+      const auto last = static_cast<std::size_t>(behind - distances.begin());
+      const Eigen::Matrix4d error =
+          motion(estimate[first], estimate[last]).inverse() * motion(truth[first], truth[last]);
+      errors.push_back({first, last, length_m, error.block<3, 1>(0, 3).norm() / length_m,
+                        static_cast<double>(devkit_angle(error)) / length_m});
+    }
+  }
+  return errors;
+}
+
+std::optional<MeanSegmentError> mean_of(std::span<const SegmentError> errors) {
+  if (errors.empty()) return std::nullopt;
+  MeanSegmentError mean{.segments = errors.size()};
+  for (const SegmentError& error : errors) {
+    mean.translation += error.translation;
+    mean.rotation_rad_per_m += error.rotation_rad_per_m;
+  }
+  mean.translation /= static_cast<double>(errors.size());
+  mean.rotation_rad_per_m /= static_cast<double>(errors.size());
+  return mean;
 }
 
 }  // namespace mosbench

@@ -4,18 +4,110 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
+#include "datasets/disk/files.hpp"
+#include "datasets/layouts/dataset.hpp"
+#include "datasets/rosbag/open_bag.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
-#include "eval/trajectory/frame_check.hpp"
-#include "eval/trajectory/pose_paths.hpp"
+#include "eval/trajectory/pose_errors.hpp"
 
 namespace mosbench {
+namespace fs = std::filesystem;
 namespace {
 
-void to_camera(std::vector<Pose>& poses, const Pose& camera_from_lidar) {
-  const Pose lidar_from_camera = camera_from_lidar.inverse();
-  for (Pose& pose : poses) pose = camera_from_lidar * pose * lidar_from_camera;
+using NamedFiles = std::map<std::string, fs::path>;
+
+constexpr const char* kExpected =
+    "a data set, a folder of mosbench run --odometry, or files .txt, .csv or .tum";
+
+PosePath path_of_file(std::string name, const fs::path& file, std::optional<PoseFormat> format) {
+  PosePath path{std::move(name), file, false, read_pose_list(file, format)};
+  if (path.list.poses.empty()) throw DataError(file, "holds no pose", "one row per scan");
+  if (path.list.format == PoseFormat::kRollout) {
+    for (Pose& pose : path.list.poses) pose = pose.inverse();
+  }
+  return path;
+}
+
+bool holds_poses(const fs::path& file) {
+  const fs::path extension = file.extension();
+  return extension == ".txt" || extension == ".csv" || extension == ".tum";
+}
+
+void add_file(std::string name, const fs::path& file, NamedFiles& files) {
+  if (files.emplace(std::move(name), file).second) return;
+  throw DataError(file, "another file has the same name but for its extension",
+                  "one file of poses per sequence");
+}
+
+/// The poses that odometry found for runs, by the names of their sequences.
+NamedFiles files_of_runs(const fs::path& folder) {
+  NamedFiles files;
+  const auto add = [&](const fs::path& run) {
+    const fs::path poses = run / "poses.txt";
+    if (!is_there(run / "result.json") || !is_there(poses)) return;
+    const fs::path name =
+        run == folder ? fs::absolute(run / "").parent_path().filename() : fs::relative(run, folder);
+    add_file(name.string(), poses, files);
+  };
+  add(folder);
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    if (entry.is_directory()) add(entry.path());
+  }
+  return files;
+}
+
+NamedFiles files_below(const fs::path& folder) {
+  NamedFiles files;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    if (!entry.is_regular_file() || !holds_poses(entry.path())) continue;
+    add_file(fs::relative(entry.path(), folder).replace_extension().string(), entry.path(), files);
+  }
+  return files;
+}
+
+bool is_data_set(const fs::path& folder) {
+  try {
+    std::optional<DatasetKind> kind;
+    return !find_sequences(folder, {}, kind).empty();
+  } catch (const DataError&) {
+    return false;
+  }
+}
+
+bool do_increase(const std::vector<std::int64_t>& stamps_ns) {
+  for (std::size_t k = 1; k < stamps_ns.size(); ++k) {
+    if (stamps_ns[k] <= stamps_ns[k - 1]) return false;
+  }
+  return true;
+}
+
+PosePath path_of_sequence(const Sequence& sequence, const fs::path& root) {
+  PosePath path{sequence.name(), root, true, {}};
+  for (std::size_t k = 0; k < sequence.size(); ++k) {
+    path.list.poses.push_back(sequence.map_from_sensor(k));
+    if (const auto stamp_ns = sequence.stamp_ns(k)) path.list.stamps_ns.push_back(*stamp_ns);
+  }
+  std::vector<std::int64_t>& stamps_ns = path.list.stamps_ns;
+  if (stamps_ns.size() != sequence.size() || !do_increase(stamps_ns)) stamps_ns.clear();
+  return path;
+}
+
+std::vector<PosePath> paths_of_data_set(const fs::path& root) {
+  std::vector<PosePath> paths;
+  const Dataset dataset = open_dataset(root, {});
+  for (const auto& sequence : dataset.sequences) {
+    paths.push_back(path_of_sequence(*sequence, root));
+  }
+  return paths;
+}
+
+std::vector<Pose> turned(std::vector<Pose> poses, const Pose& other_from_own) {
+  const Pose own_from_other = other_from_own.inverse();
+  for (Pose& pose : poses) pose = other_from_own * pose * own_from_other;
+  return poses;
 }
 
 std::size_t nearest_stamp(const std::vector<std::int64_t>& stamps_ns, std::int64_t stamp_ns) {
@@ -79,13 +171,44 @@ TrajectoryPair paired(PosePath estimate, PosePath truth, const TrajectoryOptions
     pair.truth = std::move(truth.list.poses);
     pair.remarks.emplace_back("poses are paired row by row");
   }
-  if (options.camera == CameraFrame::kEstimate) to_camera(pair.truth, *options.camera_from_lidar);
-  if (options.camera == CameraFrame::kTruth) to_camera(pair.estimate, *options.camera_from_lidar);
+  if (options.camera == CameraFrame::kEstimate) {
+    pair.truth = turned(std::move(pair.truth), *options.camera_from_lidar);
+  }
+  if (options.camera == CameraFrame::kTruth) {
+    pair.estimate = turned(std::move(pair.estimate), *options.camera_from_lidar);
+  }
   if (auto remark = frame_remark(pair, options)) pair.remarks.push_back(std::move(*remark));
   return pair;
 }
 
+// Axes that are mistaken for others make errors as large as the motion.
+constexpr double kFarBetter = 3.0;
+constexpr double kLeastError_m = 0.01;
+
+Pose kitti_camera_from_lidar() {
+  Pose pose = Pose::Identity();
+  pose.linear() << 0, -1, 0, 0, 0, -1, 1, 0, 0;
+  return pose;
+}
+
+double mean_motion_error_m(const TrajectoryPair& pair, const std::vector<Pose>& estimate) {
+  const auto summary = summary_of(relative_errors(pair.truth, estimate, {}).translation_m);
+  return summary ? summary->mean : 0;
+}
+
 }  // namespace
+
+std::vector<PosePath> read_pose_paths(const fs::path& path, std::optional<PoseFormat> format) {
+  if (is_bag_file(path)) return paths_of_data_set(path);
+  if (!fs::is_directory(path)) return {path_of_file(path.stem().string(), path, format)};
+  NamedFiles files = files_of_runs(path);
+  if (files.empty() && is_data_set(path)) return paths_of_data_set(path);
+  if (files.empty()) files = files_below(path);
+  if (files.empty()) throw DataError(path, "holds no poses", kExpected);
+  std::vector<PosePath> paths;
+  for (const auto& [name, file] : files) paths.push_back(path_of_file(name, file, format));
+  return paths;
+}
 
 std::vector<double> path_lengths_m(const std::vector<Pose>& poses) {
   std::vector<double> lengths_m(poses.size(), 0.0);
@@ -115,6 +238,27 @@ std::vector<TrajectoryPair> read_trajectory_pairs(const std::filesystem::path& e
     pairs.push_back(paired(std::move(estimate), std::move(*truth), options));
   }
   return pairs;
+}
+
+std::optional<std::string> frame_remark(const TrajectoryPair& pair,
+                                        const TrajectoryOptions& options) {
+  const double as_given_m = mean_motion_error_m(pair, pair.estimate);
+  if (!(as_given_m > kLeastError_m)) return std::nullopt;
+  const Pose camera_from_lidar = options.camera_from_lidar.value_or(kitti_camera_from_lidar());
+  const bool given = options.camera != CameraFrame::kNeither;
+  const auto better = [&](const Pose& turn, const char* what) -> std::optional<std::string> {
+    const double error_m = mean_motion_error_m(pair, turned(pair.estimate, turn));
+    if (!(kFarBetter * error_m < as_given_m)) return std::nullopt;
+    return fmt::format("motions from pose to pose are {:.3f} m off, and {:.3f} m {}", as_given_m,
+                       error_m, what);
+  };
+  const char* undo = "without --camera";
+  if (auto remark = better(camera_from_lidar,
+                           given ? undo : "if the truth is the camera's: --camera truth:CALIB")) {
+    return remark;
+  }
+  return better(camera_from_lidar.inverse(),
+                given ? undo : "if the estimate is the camera's: --camera estimate:CALIB");
 }
 
 }  // namespace mosbench

@@ -7,9 +7,7 @@
 #include <vector>
 
 #include "eval/answer/answer.hpp"
-#include "eval/trajectory/alignment.hpp"
 #include "eval/trajectory/pose_errors.hpp"
-#include "eval/trajectory/segment_errors.hpp"
 #include "eval/trajectory/trajectory.hpp"
 
 namespace mosbench {

@@ -26,7 +26,7 @@
 #include "datasets/rosbag/ros_messages.hpp"
 #include "datasets/simulator/scene_json.hpp"
 #include "datasets/text/errors.hpp"
-#include "eval/predictions/prediction_text.hpp"
+#include "eval/predictions/prediction_files.hpp"
 #include "eval/result/point_files.hpp"
 #include "eval/result/result_file.hpp"
 #include "eval/result/settings_json.hpp"

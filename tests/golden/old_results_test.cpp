@@ -7,7 +7,6 @@
 
 #include "datasets/disk/files.hpp"
 #include "eval/protocols/metrics.hpp"
-#include "eval/protocols/summary_json.hpp"
 #include "eval/result/result_file.hpp"
 #include "eval/result/result_json.hpp"
 #include "eval/result/result_set.hpp"

@@ -5,8 +5,8 @@
 
 #include <limits>
 
-#include "eval/breakdown/clusters.hpp"
 #include "eval/breakdown/run_diff.hpp"
+#include "eval/breakdown/scan_breakdown.hpp"
 
 namespace mosbench {
 namespace {

@@ -1,8 +1,8 @@
-#include "eval/protocols/label_map.hpp"
-
 #include <gtest/gtest.h>
 
 #include <array>
+
+#include "eval/protocols/protocol.hpp"
 
 namespace mosbench {
 namespace {

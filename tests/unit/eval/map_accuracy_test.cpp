@@ -1,11 +1,11 @@
-#include "eval/static_map/map_accuracy.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 #include <random>
 #include <vector>
+
+#include "eval/static_map/map_score.hpp"
 
 namespace mosbench {
 namespace {

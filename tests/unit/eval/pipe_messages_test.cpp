@@ -5,7 +5,6 @@
 
 #include <limits>
 
-#include "eval/exec/program_error.hpp"
 #include "tests/temp_folder.hpp"
 
 namespace mosbench {

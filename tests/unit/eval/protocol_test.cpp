@@ -15,8 +15,7 @@
 #include "datasets/disk/files.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
-#include "eval/predictions/prediction_format.hpp"
-#include "eval/protocols/protocol_list.hpp"
+#include "eval/predictions/predictions.hpp"
 
 namespace mosbench {
 namespace {
