@@ -4,7 +4,6 @@
 #include <optional>
 
 #include "bench/stage_benchmark.hpp"
-#include "core/methods/hmm_mos_plus/look_back.hpp"
 #include "core/methods/hmm_mos_plus/objects.hpp"
 #include "core/methods/hmm_mos_plus/pipeline.hpp"
 #include "core/methods/hmm_mos_plus/tracks.hpp"

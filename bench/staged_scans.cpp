@@ -5,10 +5,9 @@
 #include <stdexcept>
 #include <utility>
 
-#include "core/methods/hmm_mos/dilation.hpp"
-#include "core/methods/hmm_mos/label_projection.hpp"
 #include "core/methods/hmm_mos/median.hpp"
-#include "core/methods/hmm_mos/threshold.hpp"
+#include "core/methods/hmm_mos/otsu.hpp"
+#include "core/methods/hmm_mos/pipeline.hpp"
 #include "core/voxel/neighbourhood.hpp"
 #include "datasets/layouts/dataset.hpp"
 #include "datasets/simulator/simulator.hpp"

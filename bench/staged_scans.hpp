@@ -9,7 +9,6 @@
 #include "core/methods/hmm_mos/config.hpp"
 #include "core/methods/hmm_mos/convolution.hpp"
 #include "core/methods/hmm_mos/dynamic_region.hpp"
-#include "core/methods/hmm_mos/local_window.hpp"
 #include "core/methods/hmm_mos/pipeline.hpp"
 #include "core/methods/hmm_mos/voxel_map.hpp"
 #include "core/voxel/raycast.hpp"

@@ -6,10 +6,9 @@
 #include "bench/near_blocks.hpp"
 #include "bench/stage_benchmark.hpp"
 #include "core/methods/hmm_mos/change_detection.hpp"
-#include "core/methods/hmm_mos/dilation.hpp"
-#include "core/methods/hmm_mos/label_projection.hpp"
 #include "core/methods/hmm_mos/median.hpp"
-#include "core/methods/hmm_mos/threshold.hpp"
+#include "core/methods/hmm_mos/otsu.hpp"
+#include "core/methods/hmm_mos/pipeline.hpp"
 #include "datasets/formats/bin_file.hpp"
 #include "datasets/formats/label_file.hpp"
 

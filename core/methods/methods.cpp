@@ -3,7 +3,7 @@
 
 namespace mosbench {
 
-/// Each method's folder defines its own in row.cpp.
+/// Each method defines its own, at the end of its pipeline.cpp or row.cpp.
 // clang-format off
 namespace hmm_mos { MethodKind method_kind(); MethodKind reference_kind(); }
 namespace hmm_mos_plus { MethodKind method_kind(); }

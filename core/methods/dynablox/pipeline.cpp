@@ -1,7 +1,11 @@
 #include "core/methods/dynablox/pipeline.hpp"
 
+#include <stdexcept>
+
+#include "core/base/method_row.hpp"
 #include "core/base/stage_clock.hpp"
 #include "core/methods/dynablox/clusters.hpp"
+#include "core/methods/dynablox/config.hpp"
 #include "core/methods/dynablox/ever_free.hpp"
 #include "core/voxel/point_labels.hpp"
 
@@ -83,5 +87,29 @@ void Pipeline::take(const ObservedScan& observed, LabelledScan& result) {
 }
 
 MemoryUse Pipeline::map_memory() const { return {map_.memory_bytes(), map_.tsdf.blocks.size()}; }
+
+void check(const Config& config) {
+  check_ranges(config);
+  tsdf::check_common(config);
+  if (config.occupied_below_voxels > config.truncation_voxels) {
+    throw std::invalid_argument(
+        "occupied_below_voxels: above truncation_voxels, which no distance exceeds, expected "
+        "occupied <= truncation");
+  }
+}
+
+/// "dynablox": objects in space that was free for long.
+MethodKind method_kind() {
+  return {.name = "dynablox",
+          .title = "Dynablox",
+          .source =
+              "Schmid, Andersson, Sulser, Pfreundschuh, Siegwart: Dynablox: Real-time Detection of "
+              "Diverse Dynamic Objects in Complex Environments, RA-L 2023, arXiv:2304.10049",
+          .summary = "clusters of points in space that a volumetric map has seen free for long",
+          .defaults = settings_of(Config{}),
+          .check = check_settings<Config>,
+          .make = make_method<Pipeline, Config>,
+          .score_name = "distance to surfaces (tau more if ever-free), m"};
+}
 
 }  // namespace mosbench::dynablox

@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
+#include "core/methods/dynablox/clusters.hpp"
 #include "core/methods/dynablox/config.hpp"
-#include "core/methods/dynablox/ever_free_map.hpp"
-#include "core/methods/dynablox/tracks.hpp"
+#include "core/methods/dynablox/ever_free.hpp"
 #include "core/tsdf/tsdf_method.hpp"
 
 namespace mosbench::dynablox {

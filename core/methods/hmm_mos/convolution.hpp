@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <span>
 
 #include "core/base/thread_pool.hpp"
@@ -26,5 +28,24 @@ VoteField convolve(const VoxelizedScan& scan, std::span<const std::uint32_t> slo
 /// keeps them out of the dynamic region.
 VoxelSet beside_unknown(const VoxelizedScan& scan, std::span<const std::uint32_t> slots,
                         const VoxelSet& known, int kernel_width_voxels, ThreadPool& pool);
+
+/// The local window of the paper (III): the filtered votes of the last w_l scans, whose sum is the
+/// dynamic score L^dyn = sum over w_l of K_m * P'_chg.
+class LocalWindow {
+ public:
+  explicit LocalWindow(int scans) : scans_(static_cast<std::size_t>(scans)) {}
+
+  /// Takes the votes of a scan in; those of the oldest scan leave.
+  void join(VoteField votes);
+
+  /// Returns L^dyn at the occupied voxels of the scan.
+  SumField sums(const VoxelizedScan& scan) const;
+
+  std::size_t memory_bytes() const;
+
+ private:
+  std::size_t scans_;
+  std::deque<VoteField> window_;
+};
 
 }  // namespace mosbench::hmm_mos

@@ -5,7 +5,6 @@
 
 #include "core/methods/hmm_mos/convolution.hpp"
 #include "core/methods/hmm_mos/otsu.hpp"
-#include "core/methods/hmm_mos/threshold.hpp"
 #include "core/voxel/neighbourhood.hpp"
 
 namespace mosbench::hmm_mos {

@@ -4,6 +4,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <vector>
+
+#include "core/voxel/neighbourhood.hpp"
 
 namespace mosbench::hmm_mos {
 namespace {
@@ -65,6 +68,49 @@ std::optional<double> otsu_threshold(std::span<const ValueCount> values) {
   }
   if (!level) return std::nullopt;
   return limits.low + static_cast<double>(*level - 1) * (limits.high - limits.low) / kBins;
+}
+
+std::optional<double> threshold_of(const VoxelizedScan& scan, const SumField& sums) {
+  std::vector<ValueCount> values;
+  std::size_t zeros = scan.occupied_count;
+  for (std::size_t i = 0; i < sums.blocks.size(); ++i) {
+    const BlockMask* occupied = scan.occupied_in(sums.blocks[i]);
+    for_each_cell(*occupied, [&](std::uint32_t cell) {
+      const std::int32_t sum = sums.values[i][cell];
+      if (sum == 0) return;
+      values.push_back({sum, 1});
+      --zeros;
+    });
+  }
+  values.push_back({0, zeros});
+  return otsu_threshold(values);
+}
+
+VoxelSet above_threshold(const VoxelizedScan& scan, const SumField& sums,
+                         std::optional<double> threshold, const VoxelSet& carried,
+                         int min_otsu_score) {
+  VoxelSet dynamic;
+  for (std::size_t i = 0; i < sums.blocks.size(); ++i) {
+    const BlockMask* carried_here = carried.mask_of(sums.blocks[i]);
+    BlockMask chosen;
+    for_each_cell(*scan.occupied_in(sums.blocks[i]), [&](std::uint32_t cell) {
+      const std::int32_t sum = sums.values[i][cell];
+      const bool above = threshold && sum > *threshold;
+      const bool kept = carried_here != nullptr && carried_here->test(cell) && sum > min_otsu_score;
+      if (above || kept) chosen.set(cell);
+    });
+    if (chosen.any()) dynamic.masks[dynamic.insert(sums.blocks[i])] = chosen;
+  }
+  return dynamic;
+}
+
+VoxelSet dilate_occupied(const VoxelizedScan& scan, const VoxelSet& dynamic, ThreadPool& pool) {
+  const std::vector<std::uint32_t> slots = slots_within(scan, dynamic, 1);
+  std::vector<BlockMask> dilated(slots.size());
+  for_each_block_near(
+      dynamic, 1, scan, slots, pool,
+      [&](std::size_t i, const HaloRows&, const BlockMask& reach) { dilated[i] = reach; });
+  return set_of(scan, slots, dilated);
 }
 
 }  // namespace mosbench::hmm_mos

@@ -8,11 +8,10 @@
 
 #include "core/base/slot_pool.hpp"
 #include "core/base/thread_pool.hpp"
-#include "core/methods/hmm_mos/change_log.hpp"
+#include "core/methods/hmm_mos/change_detection.hpp"
 #include "core/methods/hmm_mos/config.hpp"
-#include "core/methods/hmm_mos/eviction.hpp"
+#include "core/methods/hmm_mos/global_window.hpp"
 #include "core/methods/hmm_mos/hmm.hpp"
-#include "core/methods/hmm_mos/last_seen.hpp"
 #include "core/voxel/block_map.hpp"
 #include "core/voxel/source_grid.hpp"
 

@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "core/base/thread_pool.hpp"
-#include "core/methods/hmm_mos_plus/block_memory.hpp"
+#include "core/methods/hmm_mos_plus/block_history.hpp"
 #include "core/methods/hmm_mos_plus/config.hpp"
 #include "core/methods/hmm_mos_plus/scan_masks.hpp"
 

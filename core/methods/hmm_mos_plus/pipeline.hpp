@@ -4,10 +4,9 @@
 #include <deque>
 #include <vector>
 
-#include "core/methods/hmm_mos/mapped_method.hpp"
+#include "core/methods/hmm_mos/mapping.hpp"
 #include "core/methods/hmm_mos_plus/arrivals.hpp"
 #include "core/methods/hmm_mos_plus/config.hpp"
-#include "core/methods/hmm_mos_plus/look_back.hpp"
 #include "core/methods/hmm_mos_plus/tracks.hpp"
 
 namespace mosbench::hmm_mos_plus {

@@ -7,8 +7,15 @@
 #include "core/methods/yoon/config.hpp"
 #include "core/methods/yoon/residual.hpp"
 #include "core/voxel/direction_grid.hpp"
+#include "core/voxel/directions.hpp"
 
 namespace mosbench::yoon {
+
+/// Returns the seeds that stay, a flag per point: at least half of the points in the 3x3 pixels of
+/// the scan's image around a seed, itself included, must be seeds. Pixels have the edge
+/// `pixel_rad`; points with the range 0 are left out.
+std::vector<std::uint8_t> filter_seeds(std::span<const Direction> directions,
+                                       std::span<const std::uint8_t> seeds, double pixel_rad);
 
 /// A scan and what is known of its points. All spans are one per point.
 struct GrowthInput {

@@ -8,7 +8,6 @@
 #include "core/methods/dynablox/clusters.hpp"
 #include "core/methods/dynablox/ever_free.hpp"
 #include "core/methods/dynablox/pipeline.hpp"
-#include "core/methods/dynablox/tracks.hpp"
 
 /// Numbers worked by hand from the published settings.
 namespace mosbench::dynablox {

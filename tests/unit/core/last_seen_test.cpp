@@ -1,10 +1,10 @@
-#include "core/methods/hmm_mos/last_seen.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <random>
 #include <vector>
+
+#include "core/methods/hmm_mos/global_window.hpp"
 
 namespace mosbench {
 using namespace hmm_mos;

@@ -4,7 +4,6 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "core/methods/lc_free_space/free_space.hpp"
 #include "core/methods/lc_free_space/pipeline.hpp"
 #include "core/tsdf/integration.hpp"
 #include "core/tsdf/ray_blocks.hpp"

@@ -1,12 +1,10 @@
-#include "core/methods/hmm_mos/threshold.hpp"
-
 #include <gtest/gtest.h>
 
 #include <map>
 
-#include "core/methods/hmm_mos/dilation.hpp"
-#include "core/methods/hmm_mos/label_projection.hpp"
-#include "core/methods/hmm_mos/local_window.hpp"
+#include "core/methods/hmm_mos/convolution.hpp"
+#include "core/methods/hmm_mos/otsu.hpp"
+#include "core/methods/hmm_mos/pipeline.hpp"
 #include "tests/voxel_twins.hpp"
 
 namespace mosbench {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/methods/yoon/box_filter.hpp"
 #include "core/methods/yoon/growth.hpp"
 #include "core/methods/yoon/pipeline.hpp"
 

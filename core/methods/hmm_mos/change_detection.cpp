@@ -1,4 +1,4 @@
-#include "core/methods/hmm_mos/change_log.hpp"
+#include "core/methods/hmm_mos/change_detection.hpp"
 
 #include <utility>
 
