@@ -81,9 +81,7 @@ std::vector<double> KittiCalibLines::numbers(const std::string& key, std::size_t
 
 Pose KittiCalibLines::rigid(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& translation_m,
                             const std::string& key) const {
-  const double off =
-      (rotation.transpose() * rotation - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
-  if (!(off <= kRotationTolerance && rotation.determinant() > 0.0)) {
+  if (!is_rotation(rotation)) {
     throw DataError(file_, key + " is no rotation", "rows of length 1 at right angles");
   }
   Pose pose = Pose::Identity();

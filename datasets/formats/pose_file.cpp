@@ -17,16 +17,22 @@ constexpr int kRows = 3;
 constexpr int kColumns = 4;
 constexpr std::size_t kNumbers = 12;
 
+Eigen::Array33d deviation_of(const Eigen::Matrix3d& matrix) {
+  return (matrix.transpose() * matrix - Eigen::Matrix3d::Identity()).cwiseAbs();
+}
+
+/// Element by element, so that an overflow to NaN is refused as well.
+bool is_orthonormal(const Eigen::Matrix3d& matrix) {
+  return (deviation_of(matrix) <= kRotationTolerance).all();
+}
+
 void check_rotation(const Eigen::Matrix3d& rotation, const std::filesystem::path& file,
                     std::size_t line) {
-  const Eigen::Matrix3d deviation =
-      (rotation.transpose() * rotation - Eigen::Matrix3d::Identity()).cwiseAbs();
-  // Element by element, so that an overflow to NaN is refused as well.
-  if (!(deviation.array() <= kRotationTolerance).all()) {
+  if (!is_orthonormal(rotation)) {
     throw DataError(file, line,
                     fmt::format("rotation is not orthonormal, R^T R differs from the identity by "
                                 "{:.3g}",
-                                deviation.maxCoeff()),
+                                deviation_of(rotation).maxCoeff()),
                     fmt::format("at most {} (12 numbers, row-major 3x4)", kRotationTolerance));
   }
   if (rotation.determinant() < 0.0) {
@@ -87,6 +93,10 @@ std::int64_t parse_stamp(const std::vector<std::string_view>& words, const PoseL
 }
 
 }  // namespace
+
+bool is_rotation(const Eigen::Matrix3d& matrix) {
+  return is_orthonormal(matrix) && matrix.determinant() > 0.0;
+}
 
 Pose parse_pose_row(std::string_view row, const std::filesystem::path& file, std::size_t line) {
   const auto numbers = split_at_blanks(row);

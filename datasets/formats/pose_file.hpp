@@ -35,6 +35,7 @@ inline std::optional<Pose> pose_of(const Eigen::Vector3d& translation_m,
 /// below 1e-5 and chains of float32 products below 1e-4; a wrong column order or a scale is far
 /// above.
 inline constexpr double kRotationTolerance = 1e-3;
+bool is_rotation(const Eigen::Matrix3d& matrix);
 
 /// Parses poses in KITTI's form: a row-major 3x4 matrix in 12 numbers per line, metres, kept bit
 /// for bit as parsed to double. Throws DataError with the line for another count of numbers, text,

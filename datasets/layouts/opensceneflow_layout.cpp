@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "datasets/disk/folder_listing.hpp"
+#include "datasets/hdf5/hdf5_file.hpp"
 #include "datasets/hdf5/scene_flow_sequence.hpp"
 #include "datasets/layouts/folder_search.hpp"
 #include "datasets/layouts/layout.hpp"
@@ -30,7 +31,7 @@ std::vector<SequenceFolder> list_scene_flow(const std::filesystem::path& path) {
 }
 
 std::unique_ptr<Sequence> open_scene_flow(const SequenceFolder& sequence, const Reading& asked) {
-  return std::make_unique<SceneFlowSequence>(sequence.name, sequence.folder, asked);
+  return open_scene_flow_file(sequence.name, sequence.folder, asked);
 }
 
 /// The scans that Argoverse 2's benchmark evaluates have a mask of its own.

@@ -117,9 +117,7 @@ void BagSequence::open_transforms(const Reading& asked) {
   recording.reading.poses.source = transforms.source;
   state_pose_origin(bag_->files().front(), recording.reading.poses, recording.remarks);
   recording.remarks.push_back("poses from the bag: " + transforms.source);
-  pose_at_ = [chain = std::move(transforms.map_from_sensor)](std::int64_t stamp_ns) {
-    return chain.at(stamp_ns);
-  };
+  pose_at_ = std::move(transforms.map_from_sensor);
   leave_out_uncovered();
   enter_scans();
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 #include <utility>
 
@@ -36,6 +37,87 @@ std::string all_topics(const BagReader& bag) {
   }
   return topics.empty() ? "nothing" : listed(topics);
 }
+
+/// The tf tree of a bag: every frame has one parent.
+class TransformTree {
+ public:
+  /// An `always` transform, of /tf_static, holds at all times. Throws DataError when a frame has
+  /// two parents.
+  TransformTree(const std::vector<StampedTransform>& transforms,
+                const std::vector<StampedTransform>& always, const std::filesystem::path& file) {
+    const auto add = [&](const std::vector<StampedTransform>& source, bool holds_always) {
+      std::map<std::string, std::vector<std::pair<std::int64_t, Pose>>> poses_of_child;
+      for (const StampedTransform& transform : source) {
+        auto& edge = edge_of_child_[transform.child];
+        if (edge.parent.empty()) edge.parent = transform.parent;
+        if (edge.parent != transform.parent) {
+          throw DataError(file,
+                          "frame " + transform.child + " has the parents " + edge.parent + " and " +
+                              transform.parent,
+                          "a tf tree");
+        }
+        poses_of_child[transform.child].emplace_back(transform.stamp_ns,
+                                                     transform.parent_from_child);
+      }
+      for (auto& [child, poses] : poses_of_child) {
+        edge_of_child_[child].track = PoseTrack(std::move(poses), holds_always);
+      }
+    };
+    add(transforms, false);
+    add(always, true);
+  }
+
+  /// Returns the frames from `frame` up to the root, `frame` first.
+  std::vector<std::string> ancestors(const std::string& frame) const {
+    std::vector<std::string> frames = {frame};
+    auto edge = edge_of_child_.find(frame);
+    // Parents may form a loop in a damaged bag.
+    while (edge != edge_of_child_.end() &&
+           std::ranges::find(frames, edge->second.parent) == frames.end()) {
+      frames.push_back(edge->second.parent);
+      edge = edge_of_child_.find(frames.back());
+    }
+    return frames;
+  }
+
+  /// Tracks whose product, first to last, is to_from_from: those of `from` and its ancestors below
+  /// `to`.
+  class Chain {
+   public:
+    /// Returns nothing when a track does not cover the time.
+    std::optional<Pose> at(std::int64_t stamp_ns) const {
+      std::optional<Pose> product;
+      for (const PoseTrack& track : tracks_) {
+        const std::optional<Pose> pose = track.at(stamp_ns);
+        if (!pose) return std::nullopt;
+        product = product ? Pose(*product * *pose) : *pose;
+      }
+      return product ? product : Pose::Identity();
+    }
+
+   private:
+    friend class TransformTree;
+    std::vector<PoseTrack> tracks_;
+  };
+  /// Returns nothing when `to` is not an ancestor of `from`.
+  std::optional<Chain> chain(const std::string& to, const std::string& from) const {
+    const std::vector<std::string> frames = ancestors(from);
+    const auto end = std::ranges::find(frames, to);
+    if (end == frames.end()) return std::nullopt;
+    Chain chain;
+    for (auto frame = frames.begin(); frame != end; ++frame) {
+      chain.tracks_.insert(chain.tracks_.begin(), edge_of_child_.at(*frame).track);
+    }
+    return chain;
+  }
+
+ private:
+  struct Edge {
+    std::string parent;
+    PoseTrack track;
+  };
+  std::map<std::string, Edge> edge_of_child_;
+};
 
 /// Transforms of a bag and the topics that they come from.
 struct Transforms {
@@ -124,8 +206,9 @@ std::optional<BagTransforms> find_chain(const Transforms& transforms, const BagR
   if (!map_frame && std::ranges::none_of(transforms.changing, moves)) return std::nullopt;
   auto chain = tree.chain(map, sensor_frame);
   if (!chain) return std::nullopt;
-  return BagTransforms{std::move(*chain),
-                       listed(transforms.topics) + ", " + map + " from " + sensor_frame};
+  return BagTransforms{
+      [chain = *std::move(chain)](std::int64_t stamp_ns) { return chain.at(stamp_ns); },
+      listed(transforms.topics) + ", " + map + " from " + sensor_frame};
 }
 
 /// Finds the one topic of a type whose poses lead to the sensor.
@@ -187,64 +270,6 @@ std::optional<BagTransforms> first_poses(const Transforms& tf, const Transforms&
 }
 
 }  // namespace
-
-TransformTree::TransformTree(const std::vector<StampedTransform>& transforms,
-                             const std::vector<StampedTransform>& always,
-                             const std::filesystem::path& file) {
-  const auto add = [&](const std::vector<StampedTransform>& source, bool holds_always) {
-    std::map<std::string, std::vector<std::pair<std::int64_t, Pose>>> poses_of_child;
-    for (const StampedTransform& transform : source) {
-      auto& edge = edge_of_child_[transform.child];
-      if (edge.parent.empty()) edge.parent = transform.parent;
-      if (edge.parent != transform.parent) {
-        throw DataError(file,
-                        "frame " + transform.child + " has the parents " + edge.parent + " and " +
-                            transform.parent,
-                        "a tf tree");
-      }
-      poses_of_child[transform.child].emplace_back(transform.stamp_ns, transform.parent_from_child);
-    }
-    for (auto& [child, poses] : poses_of_child) {
-      edge_of_child_[child].track = PoseTrack(std::move(poses), holds_always);
-    }
-  };
-  add(transforms, false);
-  add(always, true);
-}
-
-std::vector<std::string> TransformTree::ancestors(const std::string& frame) const {
-  std::vector<std::string> frames = {frame};
-  auto edge = edge_of_child_.find(frame);
-  // Parents may form a loop in a damaged bag.
-  while (edge != edge_of_child_.end() &&
-         std::ranges::find(frames, edge->second.parent) == frames.end()) {
-    frames.push_back(edge->second.parent);
-    edge = edge_of_child_.find(frames.back());
-  }
-  return frames;
-}
-
-std::optional<TransformTree::Chain> TransformTree::chain(const std::string& to,
-                                                         const std::string& from) const {
-  const std::vector<std::string> frames = ancestors(from);
-  const auto end = std::ranges::find(frames, to);
-  if (end == frames.end()) return std::nullopt;
-  Chain chain;
-  for (auto frame = frames.begin(); frame != end; ++frame) {
-    chain.tracks_.insert(chain.tracks_.begin(), edge_of_child_.at(*frame).track);
-  }
-  return chain;
-}
-
-std::optional<Pose> TransformTree::Chain::at(std::int64_t stamp_ns) const {
-  std::optional<Pose> product;
-  for (const PoseTrack& track : tracks_) {
-    const std::optional<Pose> pose = track.at(stamp_ns);
-    if (!pose) return std::nullopt;
-    product = product ? Pose(*product * *pose) : *pose;
-  }
-  return product ? product : Pose::Identity();
-}
 
 std::string cloud_topic(const BagReader& bag, const std::optional<std::string>& asked) {
   std::set<std::string> topics;

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "datasets/sequence/portable_math.hpp"
+#include "datasets/text/numbers.hpp"
 
 namespace mosbench {
 namespace {
@@ -37,15 +38,15 @@ constexpr std::int64_t kUsualTurn_ns = 100'000'000, kLongestTurn_ns = 1'000'000'
 constexpr double kSteps = 10'000;
 
 std::int64_t median_interval_ns(const std::vector<ScanEntry>& scans) {
-  std::vector<std::int64_t> intervals_ns;
+  std::vector<double> intervals_ns;
   for (std::size_t k = 1; k < scans.size(); ++k) {
     if (!scans[k].stamp_ns || !scans[k - 1].stamp_ns) return kUsualTurn_ns;
-    intervals_ns.push_back(*scans[k].stamp_ns - *scans[k - 1].stamp_ns);
+    intervals_ns.push_back(static_cast<double>(*scans[k].stamp_ns - *scans[k - 1].stamp_ns));
   }
   if (intervals_ns.empty()) return kUsualTurn_ns;
-  const auto middle = intervals_ns.begin() + static_cast<std::ptrdiff_t>(intervals_ns.size() / 2);
-  std::ranges::nth_element(intervals_ns, middle);
-  return *middle > 0 && *middle <= kLongestTurn_ns ? *middle : kUsualTurn_ns;
+  const double median_ns = quantile(std::move(intervals_ns), 0.5, QuantileRule::kUpper);
+  const bool is_turn = median_ns > 0.0 && median_ns <= kLongestTurn_ns;
+  return is_turn ? static_cast<std::int64_t>(median_ns) : kUsualTurn_ns;
 }
 
 }  // namespace

@@ -246,7 +246,8 @@ inline void sqlite_bag(std::string_view bytes) { with_named_file("s.db3", bytes,
 /// A file of OpenSceneFlow with all its scans.
 inline void hdf5(std::string_view bytes) {
   with_named_file("s.h5", bytes, [](const std::filesystem::path& file) {
-    const SceneFlowSequence drive("s", file, {});
+    const auto opened = open_scene_flow_file("s", file, {});
+    const Sequence& drive = *opened;
     for (std::size_t i = 0; i < drive.size(); ++i) {
       const Frame frame = drive.read(i);
       require(frame.points.size() == drive.point_count(i));

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "datasets/hdf5/hdf5_module.hpp"
 #include "tests/fuzz/parse_anything.hpp"
 
 namespace mosbench {

@@ -128,7 +128,7 @@ class SceneFlowFile : public testing::Test {
     return folder_ / name;
   }
   std::string error_of(const std::vector<Hdf5GroupBytes>& groups) const {
-    return message_of<DataError>([&] { SceneFlowSequence("s", write(groups), {}).read(0); });
+    return message_of<DataError>([&] { open_scene_flow_file("s", write(groups), {})->read(0); });
   }
   /// The error of a file whose second group has another array of this name.
   template <typename Value>
@@ -186,9 +186,9 @@ TEST_F(SceneFlowFile, TakesAnotherSpeedAndPosesButKeepsTheTruthOfItsOwnPoses) {
 TEST_F(SceneFlowFile, KnowsNanosecondsByTheTimeBetweenScans) {
   auto groups = scans();
   for (auto& group : groups) group.name += "000";
-  EXPECT_EQ(SceneFlowSequence("s", write(groups), {}).stamp_ns(1), 1'600'000'000'100'000'000);
+  EXPECT_EQ(open_scene_flow_file("s", write(groups), {})->stamp_ns(1), 1'600'000'000'100'000'000);
   groups = {scan("100000000", 0), scan("200000000", 1)};
-  EXPECT_EQ(SceneFlowSequence("s", write(groups), {}).stamp_ns(1), 200'000'000);
+  EXPECT_EQ(open_scene_flow_file("s", write(groups), {})->stamp_ns(1), 200'000'000);
 }
 
 TEST_F(SceneFlowFile, MakesASplitOfTheScansThatHaveAMask) {
@@ -207,14 +207,14 @@ TEST_F(SceneFlowFile, TakesTheEgoMotionByWhichTheFlowWasMade) {
   auto groups = scans();
   groups[0].arrays.push_back(hdf5_array<float>(
       "ego_motion", Kind::kReal, {4, 4}, {1, 0, 0, -0.9F, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}));
-  EXPECT_EQ(SceneFlowSequence("s", write(groups), {}).read_truth(0)[0], 251U);
+  EXPECT_EQ(open_scene_flow_file("s", write(groups), {})->read_truth(0)[0], 251U);
 }
 
 TEST_F(SceneFlowFile, TakesTheFourthColumnForTheIntensity) {
   auto groups = scans();
   groups[0].arrays[0] = hdf5_array<float>(
       "lidar", Kind::kReal, {4, 5}, {5, 0, 0, 7, 1, 6, 1, 0, 8, 1, 7, 0, 0, 9, 1, 8, 0, -1, 10, 1});
-  const Frame frame = SceneFlowSequence("s", write(groups), {}).read(0);
+  const Frame frame = open_scene_flow_file("s", write(groups), {})->read(0);
   EXPECT_EQ(frame.points[1].intensity, 8.0F);
   EXPECT_EQ(frame.points[3].z, -1.0F);
 }
@@ -292,7 +292,7 @@ TEST_F(SceneFlowFile, RefusesNumbersThatLabelsAndClassesCannotHold) {
 
 TEST_F(SceneFlowFile, SaysWhereNothingTellsWhichFlowIsValid) {
   auto groups = scans();
-  EXPECT_THAT(SceneFlowSequence("s", write(groups), {}).remarks(),
+  EXPECT_THAT(open_scene_flow_file("s", write(groups), {})->remarks(),
               Not(Contains(HasSubstr("flow_is_valid"))));
   std::erase_if(groups[1].arrays,
                 [](const auto& array) { return array.first.name == "flow_is_valid"; });
