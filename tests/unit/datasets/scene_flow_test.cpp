@@ -222,9 +222,9 @@ TEST_F(SceneFlowFile, TakesTheFourthColumnForTheIntensity) {
 TEST_F(SceneFlowFile, LeavesOutGroupsThatADriveWasCutAt) {
   auto groups = scans();
   groups.push_back({"1600000000300000", {hdf5_array<float>("else", Kind::kReal, {1}, {1})}});
-  const SceneFlowSequence drive("s", write(groups), {});
-  EXPECT_EQ(drive.size(), 3U);
-  EXPECT_THAT(drive.remarks(), Contains(HasSubstr("the first is 1600000000300000")));
+  const auto drive = open_scene_flow_file("s", write(groups), {});
+  EXPECT_EQ(drive->size(), 3U);
+  EXPECT_THAT(drive->remarks(), Contains(HasSubstr("the first is 1600000000300000")));
 }
 
 TEST_F(SceneFlowFile, NeedsNoPosesWhereOthersAreGiven) {
@@ -238,14 +238,14 @@ TEST_F(SceneFlowFile, NeedsNoPosesWhereOthersAreGiven) {
   Reading odometry;
   odometry.poses = ByOdometry{};
   EXPECT_THAT(
-      message_of<DataError>([&] { SceneFlowSequence("s", write(groups), odometry); }),
+      message_of<DataError>([&] { open_scene_flow_file("s", write(groups), odometry); }),
       HasSubstr("group 1600000000000000 has no pose, expected pose (4, 4) or ego_motion where"));
   drop("flow");
-  const SceneFlowSequence bare("s", write(groups), odometry);
-  EXPECT_EQ(bare.size(), 3u);
-  EXPECT_FALSE(bare.has_truth(0));
-  EXPECT_EQ(bare.read(0).points.size(), 4u);
-  EXPECT_THAT(message_of<MissingPoses>([&] { SceneFlowSequence("s", write(groups), {}); }),
+  const auto bare = open_scene_flow_file("s", write(groups), odometry);
+  EXPECT_EQ(bare->size(), 3u);
+  EXPECT_FALSE(bare->has_truth(0));
+  EXPECT_EQ(bare->read(0).points.size(), 4u);
+  EXPECT_THAT(message_of<MissingPoses>([&] { open_scene_flow_file("s", write(groups), {}); }),
               HasSubstr("has no pose, expected pose (4, 4) in each group, in a file given by "
                         "poses, or found by odometry"));
 }
@@ -296,20 +296,20 @@ TEST_F(SceneFlowFile, SaysWhereNothingTellsWhichFlowIsValid) {
               Not(Contains(HasSubstr("flow_is_valid"))));
   std::erase_if(groups[1].arrays,
                 [](const auto& array) { return array.first.name == "flow_is_valid"; });
-  const SceneFlowSequence drive("s", write(groups), {});
-  EXPECT_THAT(drive.remarks(),
+  const auto drive = open_scene_flow_file("s", write(groups), {});
+  EXPECT_THAT(drive->remarks(),
               Contains("1 scan has flow without flow_is_valid: all of it is taken for valid"));
-  EXPECT_EQ(drive.read(1).truth->at(2) & 0xFFFFU, 251U);
+  EXPECT_EQ(drive->read(1).truth->at(2) & 0xFFFFU, 251U);
 }
 
 TEST_F(SceneFlowFile, RefusesFilesThatAreNoneOrCut) {
   const auto text = folder_.write("text.h5", "text");
-  EXPECT_THAT(message_of<DataError>([&] { SceneFlowSequence("s", text, {}); }),
+  EXPECT_THAT(message_of<DataError>([&] { open_scene_flow_file("s", text, {}); }),
               AllOf(StartsWith(text.string()), HasSubstr("does not begin as a file of HDF5")));
   const std::string bytes = read_file(write(scans()));
   for (const std::size_t size : {bytes.size() - 1, bytes.size() / 2, std::size_t{8}}) {
     const auto cut = folder_.write("cut.h5", bytes.substr(0, size));
-    EXPECT_THAT(message_of<DataError>([&] { SceneFlowSequence("s", cut, {}); }),
+    EXPECT_THAT(message_of<DataError>([&] { open_scene_flow_file("s", cut, {}); }),
                 AllOf(StartsWith(cut.string()), HasSubstr("expected a whole HDF5 file")));
   }
   EXPECT_THROW(open_dataset(write(scans()), {.reading = {.point_times = PointTimes::kColumn}}),
@@ -339,12 +339,12 @@ TEST_F(SceneFlowFile, IsWrittenWithTheSameBytesInAnyOrder) {
     return read_file(folder_ / name);
   };
   EXPECT_EQ(written("a.h5", {0, 1, 2}), written("b.h5", {2, 0, 1}));
-  const SceneFlowSequence again("s", folder_ / "a.h5", {});
-  ASSERT_EQ(again.size(), 3U);
+  const auto again = open_scene_flow_file("s", folder_ / "a.h5", {});
+  ASSERT_EQ(again->size(), 3U);
   for (std::size_t k = 0; k < 3; ++k) {
-    EXPECT_EQ(again.read(k).truth, drive.read(k).truth);
-    EXPECT_EQ(again.stamp_ns(k), drive.stamp_ns(k));
-    EXPECT_EQ(again.map_from_sensor(k).matrix(), drive.map_from_sensor(k).matrix());
+    EXPECT_EQ(again->read(k).truth, drive.read(k).truth);
+    EXPECT_EQ(again->stamp_ns(k), drive.stamp_ns(k));
+    EXPECT_EQ(again->map_from_sensor(k).matrix(), drive.map_from_sensor(k).matrix());
   }
 }
 
