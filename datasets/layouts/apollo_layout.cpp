@@ -30,7 +30,6 @@ std::optional<std::string> recognise_apollo(const std::filesystem::path& path) {
 
 const Layout& apollo_layout() {
   static const Layout row = {
-      .kind = DatasetKind::kApollo,
       .name = "apollo",
       .usual = {"apollo", "semantickitti-mos"},
       .title = "Apollo, labelled by the authors of 4DMOS",

@@ -12,14 +12,9 @@
 #include "datasets/disk/folder_listing.hpp"
 #include "datasets/formats/kitti_calib.hpp"
 #include "datasets/formats/point_range.hpp"
-#include "datasets/layouts/helimos_layout.hpp"
-#include "datasets/layouts/helipr_writer.hpp"
-#include "datasets/layouts/kitti_drive_writer.hpp"
 #include "datasets/layouts/layout.hpp"
-#include "datasets/layouts/nuscenes_writer.hpp"
 #include "datasets/layouts/simulated_origin.hpp"
 #include "datasets/layouts/unfinished_conversion.hpp"
-#include "datasets/rosbag/ros2_bag_writer.hpp"
 #include "datasets/sequence/fingerprint.hpp"
 #include "datasets/sequence/pose_source.hpp"
 #include "datasets/text/errors.hpp"
@@ -30,10 +25,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-HelimosSplits split_numbers(const Dataset& dataset) {
-  HelimosSplits splits;
+SplitNumbers split_numbers(const Dataset& dataset) {
+  SplitNumbers splits;
   for (const Split& split : dataset.splits) {
-    if (split.name != "train" && split.name != "val" && split.name != "test") continue;
     for (const SplitPart& part : split.parts) {
       if (!part.stems) continue;
       for (const std::string& stem : *part.stems) {
@@ -44,60 +38,40 @@ HelimosSplits split_numbers(const Dataset& dataset) {
   return splits;
 }
 
-std::vector<fs::path> sequence_folders(const Dataset& dataset, const Layout& layout) {
-  std::vector<fs::path> folders;
+/// Where a sequence is written, from the root, and how.
+struct Target {
+  fs::path folder;
+  fs::path pose_file;  ///< that appears when all of it is on the disk
+  WriteOptions writing;
+};
+
+std::vector<Target> targets_of(const Dataset& dataset, const LayoutWriter& writer,
+                               const WriteOptions& asked) {
+  std::vector<Target> targets;
   for (std::size_t i = 0; i < dataset.sequences.size(); ++i) {
-    folders.push_back(layout.writer->folder(dataset.sequences[i]->name(), i));
+    const Sequence& sequence = *dataset.sequences[i];
+    Target& target = targets.emplace_back();
+    target.folder = writer.folder(sequence.name(), i);
+    target.writing = asked;
+    target.writing.scans = sequence.size();
+    target.writing.radial_velocities = sequence.recording().has_radial_velocities;
+    const std::string last = writer.last_file(target.writing);
+    target.pose_file = last.empty() ? target.folder : target.folder / last;
   }
-  return folders;
+  return targets;
 }
 
 /// Returns every file that may be written, named from the root.
-std::set<fs::path> expected_files(const Dataset& dataset, const Layout& layout,
-                                  const std::vector<fs::path>& folders) {
+std::set<fs::path> expected_files(const Dataset& dataset, const LayoutWriter& writer,
+                                  const std::vector<Target>& targets) {
   std::set<fs::path> files = {kSimulatedMarker};
-  for (std::size_t i = 0; i < folders.size(); ++i) {
-    for (const char* name : {"times.txt", "calib.txt", "poses.txt", "indices.csv", "bag.bag",
-                             kBagMetadataFile, message_file_of(Ros2Storage::kMcap),
-                             message_file_of(Ros2Storage::kSqlite), kPoseOriginFile}) {
-      files.insert(folders[i] / name);
-    }
-    if (layout.writer->one_file) files.insert({folders[i], pose_origin_file(folders[i])});
-    for (const fs::path& file : nuscenes_table_files()) files.insert(folders[i] / file);
-    for (const auto& names : {kitti_raw_files(dataset.sequences[i]->size()),
-                              kitti_tracking_files(dataset.sequences[i]->size())}) {
-      for (const fs::path& file : names) files.insert((folders[i] / file).lexically_normal());
-    }
-    std::vector<fs::path> pose_files = helipr_pose_files();
-    for (const char* last : {kNuscenesLastFile, kKittiRawLastFile, kKittiTrackingLastFile}) {
-      pose_files.emplace_back(last);
-    }
-    for (const fs::path& file : pose_files) {
-      files.insert(folders[i] / file);
-      files.insert((folders[i] / file).parent_path() / kPoseOriginFile);
-    }
-    for (const char* split : {"train.txt", "val.txt", "test.txt"}) {
-      files.insert(folders[i].parent_path() / split);
-    }
-    const Sequence& sequence = *dataset.sequences[i];
-    for (std::size_t k = 0; k < sequence.size(); ++k) {
-      files.insert(folders[i] / "velodyne" / (sequence.stem(k) + ".bin"));
-      files.insert(folders[i] / "labels" / (sequence.stem(k) + ".label"));
-      const std::int64_t stamp_ns = stamp_or_period_ns(k, sequence.stamp_ns(k));
-      for (const fs::path& file : helipr_scan_files(stamp_ns)) files.insert(folders[i] / file);
-      for (const fs::path& file : nuscenes_scan_files(sequence.stem(k))) {
-        files.insert(folders[i] / file);
-      }
+  for (std::size_t i = 0; i < targets.size(); ++i) {
+    files.insert({targets[i].pose_file, pose_origin_file(targets[i].pose_file)});
+    for (const fs::path& file : writer.files(*dataset.sequences[i])) {
+      files.insert((targets[i].folder / file).lexically_normal());
     }
   }
   return files;
-}
-
-/// Returns the file that appears when all of a sequence is on the disk.
-fs::path pose_file_of(const LayoutWriter& writer, const fs::path& folder,
-                      const WriteOptions& writing) {
-  if (writer.one_file) return folder;
-  return folder / writer.last_file(writing);
 }
 
 /// Says what is converted to what.
@@ -119,7 +93,8 @@ std::string disturbance_of(const Dataset& dataset) {
   return perturb ? to_string(*perturb) : "";
 }
 
-void write_shared_files(const Dataset& dataset, const ConvertOptions& options) {
+void write_shared_files(const Dataset& dataset, const LayoutWriter& writer,
+                        const ConvertOptions& options) {
   if (auto origin = simulated_origin(dataset.root)) {
     origin->layout = options.layout;
     if (const std::string perturb = disturbance_of(dataset); !perturb.empty()) {
@@ -127,9 +102,7 @@ void write_shared_files(const Dataset& dataset, const ConvertOptions& options) {
     }
     write_file_atomic(options.out / kSimulatedMarker, format_simulated_origin(*origin));
   }
-  if (options.layout == DatasetKind::kHelimos) {
-    write_helimos_splits(options.out, split_numbers(dataset));
-  }
+  if (writer.write_splits != nullptr) writer.write_splits(options.out, split_numbers(dataset));
 }
 
 /// Counts what is not written.
@@ -211,34 +184,32 @@ std::vector<std::string> convert(
     const std::function<void(std::size_t done, std::size_t total)>& progress) {
   const Layout& layout = layout_of(options.layout);
   if (!layout.writer) throw UsageError("layout " + std::string(layout.name) + " is read only");
-  const std::vector<fs::path> folders = sequence_folders(dataset, layout);
+  const LayoutWriter& writer = *layout.writer;
+  const std::vector<Target> targets = targets_of(dataset, writer, options.writing);
   const FolderLock lock(options.out);
   const UnfinishedConversion unfinished(options.out, statement_of(dataset, options),
-                                        expected_files(dataset, layout, folders));
+                                        expected_files(dataset, writer, targets));
   std::size_t total = 0;
   for (const auto& sequence : dataset.sequences) total += sequence->size();
   std::size_t done = 0;
-  LostContent lost{.keeps = layout.writer->keeps};
+  LostContent lost{.keeps = writer.keeps};
   const auto advance = [&] {
     if (progress) progress(++done, total);
   };
   try {
-    write_shared_files(dataset, options);
+    write_shared_files(dataset, writer, options);
     for (std::size_t i = 0; i < dataset.sequences.size(); ++i) {
       const Sequence& sequence = *dataset.sequences[i];
-      const fs::path folder = options.out / folders[i];
-      WriteOptions writing = options.writing;
-      writing.scans = sequence.size();
-      writing.radial_velocities = sequence.recording().has_radial_velocities;
-      const fs::path pose_file = pose_file_of(*layout.writer, folder, writing);
+      const fs::path pose_file = options.out / targets[i].pose_file;
       // Finished by a conversion that was killed.
       if (is_there(pose_file) && is_there(pose_origin_file(pose_file))) {
         for (std::size_t k = 0; k < sequence.size(); ++k) advance();
-      } else {
-        if (options.before_sequence) options.before_sequence(i);
-        convert_sequence(sequence, *layout.writer->open(folder, writing), lost, advance);
-        write_pose_origin(pose_file, pose_origin_of(sequence.reading().poses));
+        continue;
       }
+      if (options.before_sequence) options.before_sequence(i);
+      const auto files = writer.open(options.out / targets[i].folder, targets[i].writing);
+      convert_sequence(sequence, *files, lost, advance);
+      write_pose_origin(pose_file, pose_origin_of(sequence.reading().poses));
     }
     unfinished.finish();
   } catch (...) {

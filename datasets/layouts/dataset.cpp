@@ -67,7 +67,7 @@ const Layout& recognise(const std::filesystem::path& path, std::vector<std::stri
   throw DataError(
       path, "holds no sequence" + what_is_there(path),
       "a data set, one sequence folder (velodyne/ or binFiles/ with scans, poses.txt), " +
-          std::string(recording_layout().expected));
+          std::string(layout_of(DatasetKind::kRecording).expected));
 }
 
 std::string joined(const std::vector<SequenceFolder>& folders) {
@@ -242,14 +242,14 @@ std::vector<SequenceFolder> find_sequences(const std::filesystem::path& path,
                                            std::optional<DatasetKind>& kind) {
   std::vector<std::string> ignored;
   ListedSequences listed = list_sequences(path, options, ignored);
-  kind = listed.layout.kind;
+  kind = listed.layout.kind();
   return std::move(listed.folders);
 }
 
 Dataset open_dataset(const std::filesystem::path& path, const OpenOptions& options) {
   Dataset dataset;
   const auto [layout, folders] = list_sequences(path, options, dataset.remarks);
-  dataset.kind = layout.kind;
+  dataset.kind = layout.kind();
   dataset.root = path;
   check_asked(options.reading, layout, folders);
   for (const SequenceFolder& folder : folders) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <compare>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -12,24 +13,34 @@
 
 namespace mosbench {
 
-enum class DatasetKind {
-  kDoals,
-  kSipailou,
-  kHelimos,
-  kSemanticKitti,
-  kApollo,
-  kMoe,
-  kKth,
-  kMdetector,
-  kOpenSceneFlow,
-  kNuscenes,
-  kHelipr,
-  kKittiRaw,
-  kKittiTracking,
-  kRecording  ///< a bag, a scan, or a folder of either, of no published set
+/// A data set by its name in options, presets and results. Those that the program or its tests ask
+/// for have constants; any row of `layouts()` is one.
+struct DatasetKind {
+  std::string_view name;
+
+  auto operator<=>(const DatasetKind&) const = default;
+
+  static const DatasetKind kDoals, kSipailou, kHelimos, kSemanticKitti, kApollo, kMoe, kKth,
+      kMdetector, kOpenSceneFlow, kNuscenes, kHelipr, kKittiRaw, kKittiTracking;
+  static const DatasetKind kRecording;  ///< a bag, a scan, or a folder of either
 };
 
-std::string_view to_string(DatasetKind kind);
+inline constexpr DatasetKind DatasetKind::kDoals{"doals"};
+inline constexpr DatasetKind DatasetKind::kSipailou{"sipailou"};
+inline constexpr DatasetKind DatasetKind::kHelimos{"helimos"};
+inline constexpr DatasetKind DatasetKind::kSemanticKitti{"semantickitti"};
+inline constexpr DatasetKind DatasetKind::kApollo{"apollo"};
+inline constexpr DatasetKind DatasetKind::kMoe{"moe"};
+inline constexpr DatasetKind DatasetKind::kKth{"kth"};
+inline constexpr DatasetKind DatasetKind::kMdetector{"mdetector"};
+inline constexpr DatasetKind DatasetKind::kOpenSceneFlow{"opensceneflow"};
+inline constexpr DatasetKind DatasetKind::kNuscenes{"nuscenes"};
+inline constexpr DatasetKind DatasetKind::kHelipr{"helipr"};
+inline constexpr DatasetKind DatasetKind::kKittiRaw{"kitti-raw"};
+inline constexpr DatasetKind DatasetKind::kKittiTracking{"kitti-tracking"};
+inline constexpr DatasetKind DatasetKind::kRecording{"recording"};
+
+inline std::string_view to_string(DatasetKind kind) { return kind.name; }
 /// Returns nothing when the name is not one of `dataset_kind_names()`.
 std::optional<DatasetKind> dataset_kind_from_string(std::string_view name);
 /// Returns "doals, sipailou, ...".

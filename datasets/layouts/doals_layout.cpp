@@ -94,6 +94,23 @@ std::filesystem::path doals_folder(const std::string& name, std::size_t) {
   return std::filesystem::path(flat_name(name)) / "sequence_1";
 }
 
+/// By appearance: moving are the points of what moves and of what looks as if it could.
+std::uint32_t simulated_doals_label(const SimulatedReturn& seen) {
+  const bool moves = seen.owner.moving || seen.owner.dynamic_by_appearance;
+  return moves ? kMovingLabel : kStaticLabel;
+}
+
+/// The last scan included, from the fifth on.
+std::set<std::size_t> ten_labelled(std::size_t scans) {
+  constexpr std::size_t kFirst = 4, kLabelled = 10;
+  std::set<std::size_t> labelled;
+  for (std::size_t i = 1; i <= kLabelled; ++i) {
+    const std::size_t end = i * scans / kLabelled;
+    if (end > kFirst) labelled.insert(end - 1);
+  }
+  return labelled;
+}
+
 std::vector<PublishedCount> published_counts() {
   constexpr std::size_t kSlots = 131072;
   std::vector<PublishedCount> counts;
@@ -108,7 +125,6 @@ std::vector<PublishedCount> published_counts() {
 
 const Layout& doals_layout() {
   static const Layout row = {
-      .kind = DatasetKind::kDoals,
       .name = "doals",
       .usual = {"doals-20m", "doals-hmm"},
       .title = "Urban Dynamic Objects LiDAR, ICRA 2021",
@@ -137,8 +153,17 @@ const Layout& doals_layout() {
       .splits = doals_splits,
       .evidence = Evidence::kFolders,
       .recognise = recognise_doals,
-      .writer = LayoutWriter{
-          .open = write_as_doals, .folder = doals_folder, .keeps = KeptTruth::kMoving}};
+      .writer = LayoutWriter{.open = write_as_doals,
+                             .folder = doals_folder,
+                             .files = files_of_doals,
+                             .keeps = KeptTruth::kMoving},
+      .simulation = LayoutSimulation{
+          .recordings = {{"{}/sequence_1", "{}/sequence_1", SensorKind::kOs1_64}},
+          .truth =
+              "Truth is by appearance as in DOALS: a person who stands still is listed as dynamic.",
+          .label = simulated_doals_label,
+          .labelled = ten_labelled,
+          .keeps_lost = true}};
   return row;
 }
 

@@ -1,8 +1,7 @@
-#include "datasets/layouts/helimos_layout.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <set>
 #include <span>
@@ -10,6 +9,7 @@
 #include "datasets/disk/files.hpp"
 #include "datasets/disk/folder_listing.hpp"
 #include "datasets/formats/label_file.hpp"
+#include "datasets/formats/point_range.hpp"
 #include "datasets/formats/scan_file.hpp"
 #include "datasets/layouts/folder_search.hpp"
 #include "datasets/layouts/layout.hpp"
@@ -19,12 +19,20 @@
 namespace mosbench {
 namespace {
 
+// Folders as published: the place, in it the scans, in it the sensors.
+constexpr const char* kPlace = "KAIST05";
+constexpr const char* kScans = "Deskewed_LiDAR";
+constexpr std::array<const char*, 4> kSensors = {"Aeva", "Avia", "Ouster", "Velodyne"};
+
+/// The folder of the sensors and of the split files, relative to the root.
+std::filesystem::path folder_of_sensors() { return std::filesystem::path(kPlace) / kScans; }
+
 /// The four recordings differ by up to this many scans (12475 to 12477) and share their split
 /// files.
 constexpr std::uint64_t kLongestTail = 2;
 
 bool is_sensor(const std::string& name) {
-  return std::ranges::find(kHelimosSensors, name) != kHelimosSensors.end();
+  return std::ranges::find(kSensors, name) != kSensors.end();
 }
 
 /// Lists all sensor folders if one has scans: one without is listed too, so that opening it says
@@ -32,7 +40,7 @@ bool is_sensor(const std::string& name) {
 std::vector<SequenceFolder> list_sensors(const std::filesystem::path& root) {
   std::vector<SequenceFolder> sequences;
   bool has_scans = false;
-  for (const char* sensor : kHelimosSensors) {
+  for (const char* sensor : kSensors) {
     if (!is_there(root / sensor)) continue;
     sequences.push_back({sensor, root / sensor, ""});
     has_scans = has_scans || scan_folder_of(root / sensor);
@@ -44,8 +52,7 @@ std::vector<SequenceFolder> list_sensors(const std::filesystem::path& root) {
 std::vector<SequenceFolder> list_deskewed(const std::filesystem::path& root) {
   if (auto sequences = list_sensors(root); !sequences.empty()) return sequences;
   for (const auto& folder : list_folders(root)) {
-    if (lower_case(folder.filename().string()) == lower_case(kHelimosScans))
-      return list_sensors(folder);
+    if (lower_case(folder.filename().string()) == lower_case(kScans)) return list_sensors(folder);
   }
   return {};
 }
@@ -53,7 +60,7 @@ std::vector<SequenceFolder> list_deskewed(const std::filesystem::path& root) {
 std::vector<SequenceFolder> list_helimos(const std::filesystem::path& path) {
   if (scan_folder_of(path)) return {{folder_name(path), path, ""}};
   if (auto sequences = list_deskewed(path); !sequences.empty()) return sequences;
-  const auto kaist = path / kHelimosPlace;
+  const auto kaist = path / kPlace;
   return std::filesystem::is_directory(kaist) ? list_deskewed(kaist)
                                               : std::vector<SequenceFolder>{};
 }
@@ -126,23 +133,49 @@ std::optional<std::string> recognise_helimos(const std::filesystem::path& path) 
 }
 
 std::filesystem::path helimos_sequence_folder(const std::string& name, std::size_t position) {
-  if (is_sensor(name)) return helimos_folder() / name;
-  if (position < kHelimosSensors.size()) return helimos_folder() / kHelimosSensors[position];
+  if (is_sensor(name)) return folder_of_sensors() / name;
+  if (position < kSensors.size()) return folder_of_sensors() / kSensors[position];
   throw UsageError(fmt::format("{} has room for 4 sequences, not for {}, expected fewer in {}",
                                option("layout", "helimos"), name, option("sequences")));
 }
 
-}  // namespace
+constexpr std::array<const char*, 3> kSplits = {"train", "val", "test"};
 
-void write_helimos_splits(const std::filesystem::path& root, const HelimosSplits& splits) {
-  for (const auto& [name, numbers] : splits) {
-    if (!numbers.empty()) write_split(root / helimos_folder() / (name + ".txt"), numbers);
+std::vector<std::filesystem::path> files_of_helimos(const Sequence& sequence) {
+  std::vector<std::filesystem::path> files = files_of_kitti(sequence);
+  for (const std::string name : kSplits) files.push_back("../" + name + ".txt");
+  return files;
+}
+
+/// Writes the split files, one set for all sensors, of the splits that have a scan.
+void write_splits(const std::filesystem::path& root, const SplitNumbers& splits) {
+  for (const std::string name : kSplits) {
+    const auto numbers = splits.find(name);
+    if (numbers == splits.end() || numbers->second.empty()) continue;
+    write_split(root / folder_of_sensors() / (name + ".txt"), numbers->second);
   }
 }
 
+/// 9 or 251 within 80 m, else 0.
+std::uint32_t simulated_helimos_label(const SimulatedReturn& seen) {
+  constexpr double kFarthest_m = 80.0;
+  return range_m(seen.point) > kFarthest_m ? 0 : moving_label(seen);
+}
+
+std::vector<SimulatedRecording> simulated_recordings() {
+  constexpr std::array<SensorKind, kSensors.size()> kModels = {
+      SensorKind::kAeva, SensorKind::kAvia, SensorKind::kOs2_128, SensorKind::kVlp16};
+  std::vector<SimulatedRecording> recordings;
+  for (std::size_t i = 0; i < kModels.size(); ++i) {
+    recordings.push_back({folder_of_sensors() / kSensors[i], kSensors[i], kModels[i]});
+  }
+  return recordings;
+}
+
+}  // namespace
+
 const Layout& helimos_layout() {
   static const Layout row = {
-      .kind = DatasetKind::kHelimos,
       .name = "helimos",
       .usual = {"helimos", "helimos-all"},
       .title = "HeLiMOS, IROS 2024",
@@ -171,7 +204,16 @@ const Layout& helimos_layout() {
       .splits = helimos_splits,
       .evidence = Evidence::kFolders,
       .recognise = recognise_helimos,
-      .writer = LayoutWriter{write_as_kitti, helimos_sequence_folder}};
+      .writer = LayoutWriter{.open = write_as_kitti,
+                             .folder = helimos_sequence_folder,
+                             .files = files_of_helimos,
+                             .write_splits = write_splits},
+      .simulation =
+          LayoutSimulation{.recordings = simulated_recordings(),
+                           .label = simulated_helimos_label,
+                           .labelled = [](std::size_t scans) { return every_labelled(4, scans); },
+                           .is_global = true,
+                           .stamp_ns = no_stamp}};
   return row;
 }
 

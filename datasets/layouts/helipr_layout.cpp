@@ -63,7 +63,6 @@ fs::path helipr_folder(const std::string& name, std::size_t) { return flat_name(
 
 const Layout& helipr_layout() {
   static const Layout row = {
-      .kind = DatasetKind::kHelipr,
       .name = "helipr",
       .usual = {"helipr", "semantickitti-mos"},
       .title = "HeLiPR, IJRR 2024, as recorded",
@@ -86,9 +85,16 @@ const Layout& helipr_layout() {
       .recognise = recognise_helipr,
       .writer = LayoutWriter{.open = write_as_helipr,
                              .folder = helipr_folder,
+                             .files = files_of_helipr,
                              .last_file = helipr_last_file,
                              .keeps = KeptTruth::kNone,
-                             .keeps_radial_velocities = true}};
+                             .keeps_radial_velocities = true},
+      .simulation = LayoutSimulation{
+          .recordings = {{"{}", "{}/Aeva", SensorKind::kAeva},
+                         {"{}", "{}/Ouster", SensorKind::kOs2_128}},
+          .truth = "There is no truth: HeLiPR has no place for it.",
+          .is_global = true,
+          .stem = [](std::size_t, std::int64_t stamp_ns) { return std::to_string(stamp_ns); }}};
   return row;
 }
 

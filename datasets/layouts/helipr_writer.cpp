@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,10 +14,8 @@
 namespace mosbench {
 namespace {
 
-constexpr std::array kWritten = {HeliprSensor::kOuster, HeliprSensor::kAeva};
-
-HeliprSensor sensor_of(const WriteOptions& options) {
-  return options.radial_velocities ? HeliprSensor::kAeva : HeliprSensor::kOuster;
+HeliprSensor sensor_of(bool radial_velocities) {
+  return radial_velocities ? HeliprSensor::kAeva : HeliprSensor::kOuster;
 }
 
 std::filesystem::path scan_file(HeliprSensor sensor, std::int64_t stamp_ns) {
@@ -29,7 +26,7 @@ class HeliprWriter : public SequenceWriter {
  public:
   HeliprWriter(std::filesystem::path folder, const WriteOptions& options)
       : folder_(std::move(folder)),
-        sensor_(sensor_of(options)),
+        sensor_(sensor_of(options.radial_velocities)),
         last_file_(helipr_last_file(options)),
         poses_(options.scans) {}
 
@@ -79,14 +76,12 @@ const char* helipr_last_file(const WriteOptions& options) {
   return options.radial_velocities ? "LiDAR_GT/Aeva_gt.txt" : "LiDAR_GT/Ouster_gt.txt";
 }
 
-std::vector<std::filesystem::path> helipr_pose_files() {
-  return {helipr_last_file({.radial_velocities = false}),
-          helipr_last_file({.radial_velocities = true})};
-}
-
-std::vector<std::filesystem::path> helipr_scan_files(std::int64_t stamp_ns) {
+std::vector<std::filesystem::path> files_of_helipr(const Sequence& sequence) {
+  const HeliprSensor sensor = sensor_of(sequence.recording().has_radial_velocities);
   std::vector<std::filesystem::path> files;
-  for (const HeliprSensor sensor : kWritten) files.push_back(scan_file(sensor, stamp_ns));
+  for (std::size_t k = 0; k < sequence.size(); ++k) {
+    files.push_back(scan_file(sensor, stamp_or_period_ns(k, sequence.stamp_ns(k))));
+  }
   return files;
 }
 

@@ -12,10 +12,8 @@ namespace mosbench {
 /// Returns the file of the poses, which is written last.
 const char* helipr_last_file(const WriteOptions& options);
 
-/// Returns the files of poses that a folder of `write_as_helipr` may hold.
-std::vector<std::filesystem::path> helipr_pose_files();
-/// Returns the places that a scan with this stamp may have.
-std::vector<std::filesystem::path> helipr_scan_files(std::int64_t stamp_ns);
+/// Returns the files that `write_as_helipr` may write of a sequence.
+std::vector<std::filesystem::path> files_of_helipr(const Sequence& sequence);
 
 /// Writes the scans as those of HeLiPR's Aeva where they have radial velocities, else of its
 /// Ouster: neither loses a bit of a point. Without truth, for which HeLiPR has no place. Scans

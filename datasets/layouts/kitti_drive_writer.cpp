@@ -279,20 +279,26 @@ class KittiTrackingWriter : public DriveWriter {
 
 }  // namespace
 
-std::vector<fs::path> kitti_raw_files(std::size_t scans) {
-  std::vector<fs::path> files = {"tracklet_labels.xml",      "velodyne_points/timestamps.txt",
-                                 kKittiRawLastFile,          "../calib_imu_to_velo.txt",
-                                 "../calib_velo_to_cam.txt", "../calib_cam_to_cam.txt"};
-  for (std::size_t k = 0; k <= scans; ++k) files.push_back(raw_oxts_file(k));
-  for (std::size_t k = 0; k < scans; ++k) files.push_back(raw_scan_file(k));
+std::vector<fs::path> files_of_kitti_raw(const Sequence& sequence) {
+  std::vector<fs::path> files = {"tracklet_labels.xml", "velodyne_points/timestamps.txt",
+                                 "../calib_imu_to_velo.txt", "../calib_velo_to_cam.txt",
+                                 "../calib_cam_to_cam.txt"};
+  for (std::size_t k = 0; k <= sequence.size(); ++k) files.push_back(raw_oxts_file(k));
+  for (std::size_t k = 0; k < sequence.size(); ++k) files.push_back(raw_scan_file(k));
   return files;
 }
 
-std::vector<fs::path> kitti_tracking_files(std::size_t scans) {
-  std::vector<fs::path> files = {"training/calib/0000.txt", "training/label_02/0000.txt",
-                                 kKittiTrackingLastFile};
-  for (std::size_t k = 0; k < scans; ++k) files.push_back(tracking_scan_file(k));
+std::vector<fs::path> files_of_kitti_tracking(const Sequence& sequence) {
+  std::vector<fs::path> files = {"training/calib/0000.txt", "training/label_02/0000.txt"};
+  for (std::size_t k = 0; k < sequence.size(); ++k) files.push_back(tracking_scan_file(k));
   return files;
+}
+
+std::uint32_t kitti_label_in_view(const SimulatedReturn& seen) {
+  static const CameraView kView = written_kitti_mounting().view;
+  if (!kView.sees(position_of(seen.point))) return 0;
+  const std::uint32_t label = moving_label(seen);
+  return label == kMovingLabel ? with_instance(label, seen.owner_number) : label;
 }
 
 std::unique_ptr<SequenceWriter> write_as_kitti_raw(const fs::path& folder,

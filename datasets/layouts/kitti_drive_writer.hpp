@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "datasets/layouts/sequence_writer.hpp"
+#include "datasets/layouts/simulation.hpp"
 
 namespace mosbench {
 
@@ -13,9 +14,13 @@ namespace mosbench {
 inline constexpr const char* kKittiRawLastFile = "oxts/timestamps.txt";
 inline constexpr const char* kKittiTrackingLastFile = "training/oxts/0000.txt";
 
-/// Returns every file that the writers may write for a sequence of so many scans, from its folder.
-std::vector<std::filesystem::path> kitti_raw_files(std::size_t scans);
-std::vector<std::filesystem::path> kitti_tracking_files(std::size_t scans);
+/// Returns the files that the writers may write of a sequence.
+std::vector<std::filesystem::path> files_of_kitti_raw(const Sequence& sequence);
+std::vector<std::filesystem::path> files_of_kitti_tracking(const Sequence& sequence);
+
+/// Returns the label of a simulated point: 9, 251 with the owner as instance or, without a label
+/// and all beyond the camera's view, 0.
+std::uint32_t kitti_label_in_view(const SimulatedReturn& seen);
 
 /// Writes a drive of KITTI's raw data, the calibration beside its folder. Scans are called by their
 /// numbers; frames without stamps get ones 0.1 s apart. Points in the view of camera 2 keep whether

@@ -60,7 +60,6 @@ fs::path kitti_raw_folder(const std::string& name, std::size_t) {
 
 const Layout& kitti_raw_layout() {
   static const Layout row = {
-      .kind = DatasetKind::kKittiRaw,
       .name = "kitti-raw",
       .usual = {"kitti-raw", "semantickitti-mos"},
       .title = "KITTI raw data, IJRR 2013, with truth made of its tracklets",
@@ -86,9 +85,14 @@ const Layout& kitti_raw_layout() {
       .recognise = recognise_kitti_raw,
       .writer = LayoutWriter{.open = write_as_kitti_raw,
                              .folder = kitti_raw_folder,
+                             .files = files_of_kitti_raw,
                              .last_file = [](const WriteOptions&) { return kKittiRawLastFile; },
                              .keeps = KeptTruth::kInView},
-      .truth_by_speed = true};
+      .truth_by_speed = true,
+      .simulation = LayoutSimulation{
+          .recordings = {{"date/{}", "{}", SensorKind::kHdl64e}},
+          .label = kitti_label_in_view,
+          .stem = [](std::size_t k, std::int64_t) { return fmt::format("{:010}", k); }}};
   return row;
 }
 

@@ -82,7 +82,6 @@ fs::path kitti_tracking_folder(const std::string& name, std::size_t) { return fl
 
 const Layout& kitti_tracking_layout() {
   static const Layout row = {
-      .kind = DatasetKind::kKittiTracking,
       .name = "kitti-tracking",
       .usual = {"kitti-tracking", "semantickitti-mos"},
       .title = "KITTI tracking, CVPR 2012, with truth made of its boxes",
@@ -108,10 +107,14 @@ const Layout& kitti_tracking_layout() {
       .writer =
           LayoutWriter{.open = write_as_kitti_tracking,
                        .folder = kitti_tracking_folder,
+                       .files = files_of_kitti_tracking,
                        .last_file = [](const WriteOptions&) { return kKittiTrackingLastFile; },
                        .keeps = KeptTruth::kInView,
                        .keeps_stamps = false},
-      .truth_by_speed = true};
+      .truth_by_speed = true,
+      .simulation = LayoutSimulation{.recordings = {{"{}", "{}/0000", SensorKind::kHdl64e}},
+                                     .label = kitti_label_in_view,
+                                     .stamp_ns = no_stamp}};
   return row;
 }
 

@@ -22,7 +22,6 @@ std::optional<std::string> recognise_kth(const std::filesystem::path& path) {
 
 const Layout& kth_layout() {
   static const Layout row = {
-      .kind = DatasetKind::kKth,
       .name = "kth",
       .usual = {"kth", "semantickitti-mos"},
       .title = "KTH DynamicMap_Benchmark, ITSC 2023",

@@ -13,6 +13,7 @@
 
 #include "datasets/layouts/dataset.hpp"
 #include "datasets/layouts/sequence_writer.hpp"
+#include "datasets/layouts/simulation.hpp"
 
 namespace mosbench {
 
@@ -47,15 +48,19 @@ enum class KeptTruth : std::uint8_t { kId, kMoving, kInView, kNone };
 struct LayoutWriter {
   std::unique_ptr<SequenceWriter> (*open)(const std::filesystem::path& folder,
                                           const WriteOptions& options);
-  /// Returns the folder of a sequence below the root; `position` is its place in the source, from
-  /// 0.
+  /// Returns the folder of a sequence below the root, or the one file that holds all of it;
+  /// `position` is its place in the source, from 0.
   std::filesystem::path (*folder)(const std::string& name, std::size_t position);
-  bool one_file = false;  ///< `folder` is a file, which holds all of the sequence
-  /// Returns the file in a sequence's folder that appears when all of it is on the disk.
+  /// Returns the files that may be written of a sequence, named from its folder.
+  std::vector<std::filesystem::path> (*files)(const Sequence& sequence);
+  /// Returns the file in a sequence's folder that appears when all of it is on the disk; empty
+  /// where the folder is that file.
   const char* (*last_file)(const WriteOptions& options) = last_file_of;
   KeptTruth keeps = KeptTruth::kId;
   bool keeps_radial_velocities = false;
   bool keeps_stamps = true;
+  /// Writes which scans are of which split; null for a layout without such files.
+  void (*write_splits)(const std::filesystem::path& root, const SplitNumbers& splits) = nullptr;
 };
 
 /// The preset and the protocol that a data set is run and scored with unless the user says others.
@@ -73,10 +78,8 @@ struct RelatedSet {
   std::string_view reading;    ///< what to give mosbench for its rules
 };
 
-/// All facts about one data set. Adding one: a value of DatasetKind, a file with its row, and the
-/// row in `layouts()`.
+/// All facts about one data set. Adding one: a file with its row, named in layouts.cpp.
 struct Layout {
-  DatasetKind kind;
   std::string_view name;  ///< in --dataset, presets and results
   UsualRule usual;
 
@@ -110,25 +113,13 @@ struct Layout {
   /// The same of a data set that lacks files or has damaged ones, which opening it names; asked
   /// where nothing that can be read is there. Null where there is no such.
   std::optional<std::string> (*recognise_part)(const std::filesystem::path& path) = nullptr;
-  std::optional<LayoutWriter> writer;    ///< nothing for a data set that is only read
-  bool truth_by_speed = false;           ///< Reading::moving_speed_m_s is for it
-  std::vector<RelatedSet> related = {};  ///< that the same reader reads
-};
+  std::optional<LayoutWriter> writer;               ///< nothing for a data set that is only read
+  bool truth_by_speed = false;                      ///< Reading::moving_speed_m_s is for it
+  std::vector<RelatedSet> related = {};             ///< that the same reader reads
+  std::optional<LayoutSimulation> simulation = {};  ///< with a writer; nothing: is not simulated
 
-const Layout& doals_layout();
-const Layout& sipailou_layout();
-const Layout& helimos_layout();
-const Layout& semantickitti_layout();
-const Layout& apollo_layout();
-const Layout& moe_layout();
-const Layout& kth_layout();
-const Layout& mdetector_layout();
-const Layout& opensceneflow_layout();
-const Layout& nuscenes_layout();
-const Layout& helipr_layout();
-const Layout& kitti_raw_layout();
-const Layout& kitti_tracking_layout();
-const Layout& recording_layout();
+  DatasetKind kind() const { return {name}; }
+};
 
 /// Returns all rows, in the order in which they are listed.
 std::span<const Layout* const> layouts();

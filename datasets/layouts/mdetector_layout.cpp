@@ -47,7 +47,6 @@ std::optional<std::string> recognise_mdetector(const std::filesystem::path& path
 
 const Layout& mdetector_layout() {
   static const Layout row = {
-      .kind = DatasetKind::kMdetector,
       .name = "mdetector",
       .usual = {"mdetector", "mdetector"},
       .title = "M-detector's sets, Nature Communications 2024",

@@ -25,7 +25,6 @@ std::optional<std::string> recognise_moe(const std::filesystem::path& path) {
 
 const Layout& moe_layout() {
   static const Layout row = {
-      .kind = DatasetKind::kMoe,
       .name = "moe",
       .usual = {"moe", "moe"},
       .title = "MOE",

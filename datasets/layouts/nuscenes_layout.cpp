@@ -183,11 +183,20 @@ std::optional<std::string> recognise_part_of_nuscenes(const fs::path& path) {
 
 fs::path nuscenes_folder(const std::string& name, std::size_t) { return flat_name(name); }
 
+/// What is in no box is static; the owner of a moving point is its instance, as that of a box.
+std::uint32_t simulated_nuscenes_label(const SimulatedReturn& seen) {
+  return seen.owner.moving ? with_instance(kMovingLabel, seen.owner_number) : kStaticLabel;
+}
+
+std::optional<std::int64_t> whole_microseconds(std::int64_t stamp_ns, std::int64_t) {
+  constexpr std::int64_t kNsPerUs = 1000;
+  return stamp_ns / kNsPerUs * kNsPerUs;
+}
+
 }  // namespace
 
 const Layout& nuscenes_layout() {
   static const Layout row = {
-      .kind = DatasetKind::kNuscenes,
       .name = "nuscenes",
       .usual = {"nuscenes", "mapmos-nuscenes"},
       .title = "nuScenes, CVPR 2020, with the truth that MapMOS makes of its boxes",
@@ -214,8 +223,14 @@ const Layout& nuscenes_layout() {
       .recognise_part = recognise_part_of_nuscenes,
       .writer = LayoutWriter{.open = write_as_nuscenes,
                              .folder = nuscenes_folder,
+                             .files = files_of_nuscenes,
                              .last_file = [](const WriteOptions&) { return kNuscenesLastFile; },
-                             .keeps = KeptTruth::kMoving}};
+                             .keeps = KeptTruth::kMoving},
+      .simulation =
+          LayoutSimulation{.recordings = {{"{}", "{}", SensorKind::kHdl32e}},
+                           .label = simulated_nuscenes_label,
+                           .labelled = [](std::size_t scans) { return every_labelled(5, scans); },
+                           .stamp_ns = whole_microseconds}};
   return row;
 }
 

@@ -298,15 +298,17 @@ class NuscenesWriter : public SequenceWriter {
 
 }  // namespace
 
-std::vector<fs::path> nuscenes_table_files() {
+std::vector<fs::path> files_of_nuscenes(const Sequence& sequence) {
   std::vector<fs::path> files;
-  for (const char* name : kNames)
+  for (const char* name : kNames) {
     files.push_back(fs::path(kTables) / (std::string(name) + ".json"));
+  }
+  for (std::size_t k = 0; k < sequence.size(); ++k) {
+    for (const bool is_key_frame : {true, false}) {
+      files.push_back(scan_file(sequence.stem(k), is_key_frame));
+    }
+  }
   return files;
-}
-
-std::vector<fs::path> nuscenes_scan_files(const std::string& stem) {
-  return {scan_file(stem, true), scan_file(stem, false)};
 }
 
 std::unique_ptr<SequenceWriter> write_as_nuscenes(const fs::path& folder,

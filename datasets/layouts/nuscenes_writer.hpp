@@ -12,10 +12,8 @@ namespace mosbench {
 /// The file of the poses, which is written last.
 inline constexpr const char* kNuscenesLastFile = "v1.0-mini/ego_pose.json";
 
-/// Returns every file but the scans that a folder of `write_as_nuscenes` may hold.
-std::vector<std::filesystem::path> nuscenes_table_files();
-/// Returns the places that a scan may have.
-std::vector<std::filesystem::path> nuscenes_scan_files(const std::string& stem);
+/// Returns the files that `write_as_nuscenes` may write of a sequence.
+std::vector<std::filesystem::path> files_of_nuscenes(const Sequence& sequence);
 
 /// Writes one scene, called as the folder, with tables of its own in v1.0-mini/: those that
 /// `read_nuscenes_tables` reads. Scans with truth are key frames. Each moving point is an

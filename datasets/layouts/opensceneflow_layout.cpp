@@ -73,11 +73,18 @@ std::filesystem::path scene_flow_file(const std::string& name, std::size_t) {
   return flat_name(name) + ".h5";
 }
 
+/// The owner of movable things is their instance, an int16 there.
+std::uint32_t simulated_scene_flow_label(const SimulatedReturn& seen) {
+  constexpr std::uint32_t kInstances = 32768;
+  const std::uint32_t label = moving_label(seen);
+  if (label == 0 || !is_movable(seen.owner)) return label;
+  return with_instance(label, seen.owner_number, kInstances);
+}
+
 }  // namespace
 
 const Layout& opensceneflow_layout() {
   static const Layout row = {
-      .kind = DatasetKind::kOpenSceneFlow,
       .name = "opensceneflow",
       .usual = {"opensceneflow", "sceneflow-dynamic"},
       .title = "OpenSceneFlow's .h5: Argoverse 2, Waymo, nuScenes, ZOD, TruckScenes",
@@ -102,8 +109,17 @@ const Layout& opensceneflow_layout() {
       .evidence = Evidence::kFolders,
       .recognise = recognise_scene_flow,
       .recognise_part = recognise_damaged_scene_flow,
-      .writer = LayoutWriter{write_as_scene_flow, scene_flow_file, true},
-      .truth_by_speed = true};
+      .writer = LayoutWriter{
+          .open = write_as_scene_flow,
+          .folder = scene_flow_file,
+          .files = [](const Sequence&) { return std::vector<std::filesystem::path>(); },
+          .last_file = [](const WriteOptions&) { return ""; }},
+      .truth_by_speed = true,
+      .simulation = LayoutSimulation{
+          .recordings = {{"{}.h5", "{}", SensorKind::kHdl64e}},
+          .truth = "Truth is the flow of rigid bodies from each scan to the next one.",
+          .label = simulated_scene_flow_label,
+          .has_flow = true}};
   return row;
 }
 

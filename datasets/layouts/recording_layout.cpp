@@ -95,7 +95,6 @@ std::optional<std::string> recognise_recording(const std::filesystem::path& path
 
 const Layout& recording_layout() {
   static const Layout row = {
-      .kind = DatasetKind::kRecording,
       .name = "recording",
       .usual = {"recording", "semantickitti-mos"},
       .title = "A recording of your own: a bag, a scan, or a folder of either",
@@ -117,7 +116,7 @@ const Layout& recording_layout() {
       .splits = nullptr,
       .evidence = Evidence::kNone,
       .recognise = recognise_recording,
-      .writer = LayoutWriter{write_as_ros2_bag, recording_folder}};
+      .writer = LayoutWriter{write_as_ros2_bag, recording_folder, files_of_ros2_bag}};
   return row;
 }
 

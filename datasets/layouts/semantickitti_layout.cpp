@@ -34,11 +34,58 @@ std::optional<std::string> recognise_part_of_semantickitti(const std::filesystem
   return "it has the folders and nothing of another data set";
 }
 
+// The class ids of semantic-kitti.yaml.
+std::uint32_t class_of_mover(const OwnerState& owner) {
+  switch (owner.mover) {
+    case MoverKind::kPedestrian:
+      return owner.moving ? 254 : 30;
+    case MoverKind::kCyclist:
+      return owner.moving ? 253 : 31;
+    case MoverKind::kCar:
+      return owner.moving ? 252 : 10;
+    case MoverKind::kTruck:
+      return owner.moving ? 258 : 18;
+  }
+  return 0;
+}
+
+std::uint32_t class_of(const OwnerState& owner) {
+  if (!owner.labelled) return 0;
+  switch (owner.substance) {
+    case Substance::kGround:
+      return 40;
+    case Substance::kBuilding:
+      return 50;
+    case Substance::kPole:
+      return 80;
+    case Substance::kVegetation:
+      return 70;
+    case Substance::kMoverBody:
+      return class_of_mover(owner);
+    case Substance::kDoor:
+    case Substance::kBall:
+      return owner.moving ? 259 : 99;
+  }
+  return 0;
+}
+
+std::uint32_t simulated_semantickitti_label(const SimulatedReturn& seen) {
+  const std::uint32_t id = class_of(seen.owner);
+  return is_movable(seen.owner) ? with_instance(id, seen.owner_number) : id;
+}
+
+/// KITTI's cameras look along the car: camera x is lidar -y, camera y lidar -z, camera z lidar x.
+Pose simulated_camera_from_lidar() {
+  Pose tr = Pose::Identity();
+  tr.linear() << 0.0, -1.0, 0.0, 0.0, 0.0, -1.0, 1.0, 0.0, 0.0;
+  tr.translation() << 0.0, -0.08, -0.27;
+  return tr;
+}
+
 }  // namespace
 
 const Layout& semantickitti_layout() {
   static const Layout row = {
-      .kind = DatasetKind::kSemanticKitti,
       .name = "semantickitti",
       .usual = {"semantickitti", "semantickitti-mos"},
       .title = "SemanticKITTI-MOS, and data laid out like it",
@@ -69,7 +116,7 @@ const Layout& semantickitti_layout() {
       .evidence = Evidence::kNone,
       .recognise = recognise_semantickitti,
       .recognise_part = recognise_part_of_semantickitti,
-      .writer = LayoutWriter{write_as_kitti, kitti_folder},
+      .writer = LayoutWriter{write_as_kitti, kitti_folder, files_of_kitti},
       .related = {{"KITTI-Road-MOS, IROS 2022",
                    "12 of KITTI's raw drives on roads as sequences 30 to 41, 5794 scans, labels 9 "
                    "and 251",
@@ -77,7 +124,14 @@ const Layout& semantickitti_layout() {
                    "score --split road-train or road-valid"},
                   {"KITTI tracking 19, RA-L 2023",
                    "one sequence of KITTI's tracking benchmark with labels of points",
-                   "github.com/PRBonn/MapMOS", "run or score --protocol mapmos-kitti-tracking"}}};
+                   "github.com/PRBonn/MapMOS", "run or score --protocol mapmos-kitti-tracking"}},
+      // The valid split.
+      .simulation = LayoutSimulation{
+          .recordings = {{"sequences/08", "08", SensorKind::kHdl64e}},
+          .label = simulated_semantickitti_label,
+          .stamp_ns = [](std::int64_t stamp_ns,
+                         std::int64_t first_ns) { return std::optional(stamp_ns - first_ns); },
+          .camera_from_lidar = simulated_camera_from_lidar()}};
   return row;
 }
 

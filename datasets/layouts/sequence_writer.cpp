@@ -252,6 +252,25 @@ const char* last_file_of(const WriteOptions& options) {
   return options.bag == BagKind::kRos1 ? "bag.bag" : message_file_of(storage_of(options));
 }
 
+std::vector<fs::path> files_of_kitti(const Sequence& sequence) {
+  std::vector<fs::path> files = {"times.txt", "calib.txt"};
+  for (std::size_t k = 0; k < sequence.size(); ++k) {
+    files.push_back(fs::path("velodyne") / (sequence.stem(k) + ".bin"));
+    files.push_back(fs::path("labels") / (sequence.stem(k) + ".label"));
+  }
+  return files;
+}
+
+std::vector<fs::path> files_of_doals(const Sequence& sequence) {
+  std::vector<fs::path> files = {"times.txt", "indices.csv"};
+  for (std::size_t k = 0; k < sequence.size(); ++k) {
+    files.push_back(fs::path("velodyne") / (sequence.stem(k) + ".bin"));
+  }
+  return files;
+}
+
+std::vector<fs::path> files_of_ros2_bag(const Sequence&) { return {kBagMetadataFile}; }
+
 std::unique_ptr<SequenceWriter> write_as_ros2_bag(const fs::path& folder,
                                                   const WriteOptions& options) {
   return std::make_unique<Ros2SequenceWriter>(folder, options);

@@ -3,10 +3,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "datasets/sequence/sequence.hpp"
 
@@ -45,6 +48,9 @@ bool is_moving(std::uint32_t label);
 /// lie as far apart as those of most sensors.
 std::int64_t stamp_or_period_ns(std::size_t scan_index, std::optional<std::int64_t> stamp_ns);
 
+/// Numbers of scans by the name of their split.
+using SplitNumbers = std::map<std::string, std::set<std::uint64_t>>;
+
 /// Returns the name of the file that appears when all of a sequence is on the disk.
 const char* last_file_of(const WriteOptions& options);
 
@@ -60,6 +66,11 @@ std::unique_ptr<SequenceWriter> write_as_scene_flow(const std::filesystem::path&
 /// calib.txt and poses.txt.
 std::unique_ptr<SequenceWriter> write_as_kitti(const std::filesystem::path& folder,
                                                const WriteOptions& options);
+
+/// Returns the files that the writer of the same layout may write of a sequence.
+std::vector<std::filesystem::path> files_of_kitti(const Sequence& sequence);
+std::vector<std::filesystem::path> files_of_doals(const Sequence& sequence);
+std::vector<std::filesystem::path> files_of_ros2_bag(const Sequence& sequence);
 
 /// Writes velodyne/, times.txt and poses.txt, or bag.bag with /os1_cloud_node/points and /tf from
 /// map to os1_lidar; and indices.csv with the points of an id of 251 to 259. Frames without stamps

@@ -18,11 +18,23 @@ std::optional<std::string> recognise_sipailou(const std::filesystem::path& path)
   return "\"sipailou\" is in the folder name " + *named;
 }
 
+/// 9, 251 or for vehicles 252 within 3 and 50 m, else 0.
+std::uint32_t simulated_sipailou_label(const SimulatedReturn& seen) {
+  constexpr double kNearest_m = 3.0, kFarthest_m = 50.0;
+  constexpr std::uint32_t kMovingVehicle = 252;
+  const double distance_m = range_m(seen.point);
+  if (distance_m < kNearest_m || distance_m > kFarthest_m) return 0;
+  const OwnerState& owner = seen.owner;
+  const bool is_vehicle = owner.substance == Substance::kMoverBody &&
+                          (owner.mover == MoverKind::kCar || owner.mover == MoverKind::kTruck);
+  const std::uint32_t label = moving_label(seen);
+  return label == kMovingLabel && is_vehicle ? kMovingVehicle : label;
+}
+
 }  // namespace
 
 const Layout& sipailou_layout() {
   static const Layout row = {
-      .kind = DatasetKind::kSipailou,
       .name = "sipailou",
       .usual = {"sipailou", "sipailou"},
       .title = "Sipailou Campus, of MotionBEV, RA-L 2023",
@@ -46,7 +58,11 @@ const Layout& sipailou_layout() {
       .splits = sipailou_splits,
       .evidence = Evidence::kName,
       .recognise = recognise_sipailou,
-      .writer = LayoutWriter{write_as_kitti, kitti_folder}};
+      .writer = LayoutWriter{write_as_kitti, kitti_folder, files_of_kitti},
+      // The valid split.
+      .simulation = LayoutSimulation{.recordings = {{"sequences/06", "06", SensorKind::kAvia}},
+                                     .label = simulated_sipailou_label,
+                                     .stamp_ns = no_stamp}};
   return row;
 }
 

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "datasets/layouts/simulation.hpp"
+
 namespace mosbench {
 
 /// One piece of a route: stand for `wait_s`, then go straight to `to_m` at constant speed.
@@ -60,8 +62,6 @@ struct Structure {
   std::optional<bool> mirrors{};
   bool labelled = true;  ///< if not, its points have truth 0
 };
-
-enum class MoverKind : std::uint8_t { kPedestrian, kCyclist, kCar, kTruck };
 
 /// A person or vehicle that follows a route over the ground.
 struct Mover {

@@ -8,9 +8,9 @@
 #include <string_view>
 #include <vector>
 
-namespace mosbench {
+#include "datasets/layouts/simulation.hpp"
 
-enum class SensorKind : std::uint8_t { kOs1_64, kOs2_128, kVlp16, kHdl64e, kAvia, kAeva, kHdl32e };
+namespace mosbench {
 
 /// The mounting of a sensor on its carrier and the properties of its returns.
 struct SensorModel {

@@ -14,13 +14,11 @@
 #include "core/base/thread_pool.hpp"
 #include "datasets/disk/files.hpp"
 #include "datasets/disk/partial_file.hpp"
-#include "datasets/layouts/helimos_layout.hpp"
 #include "datasets/layouts/layout.hpp"
 #include "datasets/layouts/simulated_origin.hpp"
 #include "datasets/sequence/portable_math.hpp"
 #include "datasets/simulator/built_in_scenes.hpp"
 #include "datasets/simulator/scene_json.hpp"
-#include "datasets/simulator/simulated_layouts.hpp"
 #include "datasets/simulator/simulated_sequence.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
@@ -31,15 +29,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMostScans = 1'000'000;
-
-/// KITTI's cameras look along the car: camera x is lidar -y, camera y lidar -z, camera z lidar x.
-Pose camera_from_lidar(DatasetKind layout) {
-  Pose tr = Pose::Identity();
-  if (layout != DatasetKind::kSemanticKitti) return tr;
-  tr.linear() << 0.0, -1.0, 0.0, 0.0, 0.0, -1.0, 1.0, 0.0, 0.0;
-  tr.translation() << 0.0, -0.08, -0.27;
-  return tr;
-}
 
 SimulatedOrigin origin_of(const SimulateOptions& options, const Scene& scene) {
   const std::string text = format_scene(scene);
@@ -79,26 +68,16 @@ void claim_folder(const fs::path& out, const SimulatedOrigin& origin) {
   }
 }
 
-const char* truth_note(DatasetKind layout) {
-  if (layout == DatasetKind::kDoals) {
-    return "Truth is by appearance as in DOALS: a person who stands still is listed as dynamic.\n";
-  }
-  if (layout == DatasetKind::kOpenSceneFlow) {
-    return "Truth is the flow of rigid bodies from each scan to the next one.\n";
-  }
-  if (layout == DatasetKind::kHelipr) return "There is no truth: HeLiPR has no place for it.\n";
-  return "Truth is by speed: above 0.5 m/s is moving, for vehicles above 1.0 m/s.\n";
-}
-
 std::string readme(const SimulatedOrigin& origin) {
   return fmt::format(
       "These scans are simulated. Nothing in this folder was recorded by a sensor, and no number\n"
       "computed from it may be shown next to those published for the real data set.\n\n"
       "Scene \"{}\" is in scene.json. To make the same files again:\n"
       "mosbench simulate --layout {} --scene scene.json --scans {} --seed {}{} --out DIR\n"
-      "{}",
+      "{}\n",
       origin.scene, to_string(origin.layout), origin.scans, origin.seed,
-      origin.perturb ? " --perturb " + shell_word(*origin.perturb) : "", truth_note(origin.layout));
+      origin.perturb ? " --perturb " + shell_word(*origin.perturb) : "",
+      layout_of(origin.layout).simulation->truth);
 }
 
 /// A recording and what writes it.
@@ -142,7 +121,7 @@ void check(const SimulateOptions& options) {
 std::vector<std::string> simulated_names(DatasetKind layout, const Scene& scene) {
   std::vector<std::string> names;
   for (const SimulatedRecording& recording : recordings_of(layout, scene)) {
-    names.push_back(simulated_name(layout, recording));
+    names.push_back(recording.name);
   }
   return names;
 }
@@ -159,18 +138,19 @@ std::vector<std::string> simulate(
   check(options);
   const Scene scene = load_scene(options.scene);
   const SimulatedOrigin origin = origin_of(options, scene);
-  const Pose tr = camera_from_lidar(options.layout);
   std::vector<RecordingWriter> writers;
   std::vector<std::pair<std::size_t, std::size_t>> scans;  // of which writer, and which
-  for (const SimulatedRecording& recording : recordings_of(options.layout, scene)) {
+  const auto recordings = recordings_of(options.layout, scene);
+  const Layout& layout = layout_of(options.layout);
+  const Pose& tr = layout.simulation->camera_from_lidar;
+  for (const SimulatedRecording& recording : recordings) {
     auto sequence = simulated_sequence(options, scene, recording);
     for (std::size_t k = 0; k < sequence->size(); ++k) scans.emplace_back(writers.size(), k);
     auto files =
-        layout_of(options.layout)
-            .writer->open(options.out / recording.folder,
-                          {.scans = sequence->size(),
-                           .camera_from_lidar = tr,
-                           .radial_velocities = sequence->recording().has_radial_velocities});
+        layout.writer->open(options.out / recording.folder,
+                            {.scans = sequence->size(),
+                             .camera_from_lidar = tr,
+                             .radial_velocities = sequence->recording().has_radial_velocities});
     writers.push_back({std::move(sequence), std::move(files)});
   }
   claim_folder(options.out, origin);
@@ -186,12 +166,11 @@ std::vector<std::string> simulate(
     const std::lock_guard lock(progress_mutex);
     progress(++done, scans.size());
   });
-  if (options.layout == DatasetKind::kHelimos) {
-    write_helimos_splits(options.out,
-                         simulated_splits(labelled_scans(options.layout, options.scans)));
+  if (const auto write_splits = layout.writer->write_splits) {
+    write_splits(options.out, simulated_splits(labelled_scans(options.layout, options.scans)));
   }
   for (const RecordingWriter& writer : writers) writer.files->finish();
-  return remarks_of(writers, scene, layout_of(options.layout));
+  return remarks_of(writers, scene, layout);
 }
 
 }  // namespace mosbench

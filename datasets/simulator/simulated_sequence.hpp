@@ -1,19 +1,34 @@
 #pragma once
 
+#include <cstddef>
 #include <memory>
+#include <set>
 #include <string>
+#include <string_view>
+#include <vector>
 
-#include "datasets/layouts/dataset.hpp"
+#include "datasets/layouts/layout.hpp"
 #include "datasets/sequence/sequence.hpp"
 #include "datasets/simulator/scene.hpp"
 #include "datasets/simulator/simulate.hpp"
-#include "datasets/simulator/simulated_layouts.hpp"
 
 namespace mosbench {
 
-/// Returns the name that readers give a sequence: of DOALS with the scene's folder, of HeLiPR with
-/// the sensor.
-std::string simulated_name(DatasetKind layout, const SimulatedRecording& recording);
+/// Returns nothing when no layout of that name is simulated.
+std::optional<DatasetKind> simulated_layout_from_string(std::string_view name);
+/// Returns "doals, ... or kitti-tracking", for help and errors.
+std::string simulated_layout_names();
+
+/// Returns the recordings that a layout consists of, with the scene's name and the sensor that it
+/// asks for. Throws UsageError where it may not, or no data set of the layout is simulated.
+std::vector<SimulatedRecording> recordings_of(DatasetKind layout, const Scene& scene);
+
+/// Returns the indices of the scans that get labels.
+std::set<std::size_t> labelled_scans(DatasetKind layout, std::size_t scans);
+
+/// Returns train, val and test, blocks of 68, 16 and 16 % of labelled scans; the test block is
+/// never empty.
+SplitNumbers simulated_splits(const std::set<std::size_t>& labelled);
 
 /// Returns one recording as its layout stores it, but with the LiDAR's poses; disturbed where the
 /// options say so.

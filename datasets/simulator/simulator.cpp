@@ -112,13 +112,6 @@ SimulatedScan Simulator::scan(std::size_t scan_index) const {
   return result;
 }
 
-std::uint32_t moving_label(const SimulatedScan& scan, std::size_t point) {
-  if (scan.owners[point] == SimulatedScan::kNoReturn) return 0;
-  const OwnerState& owner = scan.scene.owners[scan.owners[point]];
-  if (!owner.labelled) return 0;
-  return owner.moving ? kMovingLabel : kStaticLabel;
-}
-
 Frame Simulator::frame(std::size_t scan_index) const {
   SimulatedScan simulated = scan(scan_index);
   Frame frame;
@@ -129,7 +122,8 @@ Frame Simulator::frame(std::size_t scan_index) const {
   frame.truth.emplace();
   frame.truth->reserve(simulated.points.size());
   for (std::size_t i = 0; i < simulated.points.size(); ++i) {
-    frame.truth->push_back(moving_label(simulated, i));
+    const bool is_lost = simulated.owners[i] == SimulatedScan::kNoReturn;
+    frame.truth->push_back(is_lost ? 0 : moving_label(simulated.at(i)));
   }
   frame.points = std::move(simulated.points);
   return frame;

@@ -22,6 +22,11 @@ struct SimulatedScan {
   SceneSnapshot scene;
   Pose map_from_sensor = Pose::Identity();
   std::int64_t stamp_ns = 0;
+
+  /// Of a point that has a return.
+  SimulatedReturn at(std::size_t point) const {
+    return {points[point], scene.owners[owners[point]], owners[point]};
+  }
 };
 
 /// Ray casting of a scene by one sensor. A scan depends on nothing but scene, sensor, seed and its
@@ -54,9 +59,6 @@ class Simulator {
   std::uint64_t seed_;
   std::vector<Eigen::Vector3d> directions_;  // of sensors that repeat every scan
 };
-
-/// Returns 251, 9 or, without a label or return, 0.
-std::uint32_t moving_label(const SimulatedScan& scan, std::size_t point);
 
 /// Returns a simulator of a built-in scene and the sensor of that name. Throws UsageError for
 /// unknown names.

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "datasets/simulator/simulate.hpp"
-#include "datasets/simulator/simulated_layouts.hpp"
+#include "datasets/simulator/simulated_sequence.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
 #include "eval/cli/commands.hpp"

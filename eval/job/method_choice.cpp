@@ -24,7 +24,7 @@ constexpr std::pair<std::string_view, DatasetKind> kOthers[] = {
 /// The data set that a preset is of; nothing: any.
 std::optional<DatasetKind> kind_of(std::string_view preset) {
   for (const Layout* layout : layouts()) {
-    if (layout->usual.preset == preset) return layout->kind;
+    if (layout->usual.preset == preset) return layout->kind();
   }
   for (const auto& [other, kind] : kOthers) {
     if (other == preset) return kind;

@@ -80,9 +80,9 @@ std::vector<std::string> measured_sequences(const FilledTable& table) {
 
 /// Names the command that does what the footnotes say one by one, where there is one.
 std::string hint_on_runs(const FilledTable& table) {
-  using enum DatasetKind;
   const DatasetKind kind = table.table->dataset;
-  const bool is_reproduced = kind == kDoals || kind == kSipailou || kind == kHelimos;
+  const bool is_reproduced = kind == DatasetKind::kDoals || kind == DatasetKind::kSipailou ||
+                             kind == DatasetKind::kHelimos;
   const bool lacks_runs = std::ranges::any_of(table.rows, [](const TableRow& row) {
     return std::ranges::any_of(
         row.cells, [](const TableCell& cell) { return !cell.measured && !cell.reasons.empty(); });

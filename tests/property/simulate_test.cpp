@@ -11,11 +11,11 @@
 #include <string>
 
 #include "datasets/disk/files.hpp"
-#include "datasets/layouts/dataset.hpp"
+#include "datasets/layouts/layout.hpp"
 #include "datasets/layouts/simulated_origin.hpp"
 #include "datasets/simulator/built_in_scenes.hpp"
 #include "datasets/simulator/scene_json.hpp"
-#include "datasets/simulator/simulated_layouts.hpp"
+#include "datasets/simulator/simulated_sequence.hpp"
 #include "datasets/simulator/simulator.hpp"
 #include "datasets/text/errors.hpp"
 #include "tests/temp_folder.hpp"
@@ -47,6 +47,10 @@ OpenOptions as(DatasetKind kind) {
 
 double distance_between(const Pose& a, const Pose& b) {
   return (a.matrix() - b.matrix()).cwiseAbs().maxCoeff();
+}
+
+std::uint32_t layout_label(DatasetKind layout, const SimulatedScan& scan, std::size_t point) {
+  return layout_of(layout).simulation->label(scan.at(point));
 }
 
 class EveryLayout : public testing::TestWithParam<DatasetKind> {};
@@ -235,12 +239,12 @@ TEST(SimulatedDoals, ListsAPersonWhoStandsStillAsDynamic) {
   const Simulator simulator(scene, sensor_model(SensorKind::kOs1_64), 1);
   const SimulatedScan scan = simulator.scan(3);
   const auto owner_of_pedestrian = static_cast<std::uint32_t>(1 + scene.structures.size());
-  const std::vector<std::uint32_t> truth = doals_truth(scan);
   std::size_t of_pedestrian = 0;
-  for (std::size_t i = 0; i < truth.size(); ++i) {
-    if (truth[i] != kMovingLabel || scan.owners[i] != owner_of_pedestrian) continue;
+  for (std::size_t i = 0; i < scan.points.size(); ++i) {
+    if (scan.owners[i] != owner_of_pedestrian) continue;
     ++of_pedestrian;
-    EXPECT_EQ(moving_label(scan, i), kStaticLabel);
+    EXPECT_EQ(layout_label(DatasetKind::kDoals, scan, i), kMovingLabel);
+    EXPECT_EQ(moving_label(scan.at(i)), kStaticLabel);
   }
   EXPECT_GT(of_pedestrian, 300U);
 }
@@ -255,13 +259,13 @@ TEST(SimulatedDoals, LabelsTenScansByStampOrFewerWhenShort) {
 TEST(SimulatedHelimos, LabelsPartOfTheScansAndSplitsThemInBlocks) {
   const auto labelled = labelled_scans(DatasetKind::kHelimos, 200);
   EXPECT_EQ(labelled.size(), 49U);
-  HelimosSplits splits = simulated_splits(labelled);
+  SplitNumbers splits = simulated_splits(labelled);
   EXPECT_EQ(splits["test"].size(), 7U);
   EXPECT_EQ(splits["val"].size(), 7U);
   EXPECT_EQ(splits["train"].size(), 35U);
   EXPECT_LT(*splits["train"].rbegin(), *splits["val"].begin());
   EXPECT_LT(*splits["val"].rbegin(), *splits["test"].begin());
-  EXPECT_EQ(simulated_splits({7}), (HelimosSplits{{"test", {7}}}));
+  EXPECT_EQ(simulated_splits({7}), (SplitNumbers{{"test", {7}}}));
 }
 
 TEST(SimulatedNuscenes, HasKeyFramesTwiceASecondAndTurnsNothingUnlabelled) {
@@ -318,7 +322,7 @@ TEST(SimulatedSemanticKitti, NamesClassesAndInstances) {
   for (std::size_t i = 0; i < scan.points.size(); ++i) {
     if (scan.owners[i] == SimulatedScan::kNoReturn) continue;
     const std::uint32_t label = layout_label(DatasetKind::kSemanticKitti, scan, i);
-    EXPECT_EQ((label & 0xFFFF) > 250, moving_label(scan, i) == kMovingLabel);
+    EXPECT_EQ((label & 0xFFFF) > 250, moving_label(scan.at(i)) == kMovingLabel);
     classes.insert(label & 0xFFFF);
     has_instances = has_instances || label > 0xFFFF;
   }

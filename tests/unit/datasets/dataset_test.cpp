@@ -52,10 +52,10 @@ std::string error_of(const std::filesystem::path& path, const OpenOptions& optio
 TEST(Layouts, HaveOneCompleteRowPerDataSet) {
   std::set<DatasetKind> kinds;
   for (const Layout* row : layouts()) {
-    EXPECT_TRUE(kinds.insert(row->kind).second) << row->name;
-    EXPECT_EQ(&layout_of(row->kind), row);
-    EXPECT_EQ(dataset_kind_from_string(row->name), row->kind);
-    EXPECT_EQ(to_string(row->kind), row->name);
+    EXPECT_TRUE(kinds.insert(row->kind()).second) << row->name;
+    EXPECT_EQ(&layout_of(row->kind()), row);
+    EXPECT_EQ(dataset_kind_from_string(row->name), row->kind());
+    EXPECT_EQ(to_string(row->kind()), row->name);
     for (const std::string_view text : {row->title, row->content, row->size, row->published,
                                         row->licence, row->folders.front(), row->expected}) {
       EXPECT_FALSE(text.empty()) << row->name;

@@ -12,7 +12,7 @@ namespace {
 
 std::vector<std::string> sequences_in(const std::filesystem::path& path) {
   std::vector<std::string> names;
-  for (const SequenceFolder& sequence : mdetector_layout().list(path)) {
+  for (const SequenceFolder& sequence : layout_of(DatasetKind::kMdetector).list(path)) {
     names.push_back(sequence.name);
   }
   return names;

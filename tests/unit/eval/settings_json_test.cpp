@@ -135,8 +135,8 @@ TEST(Presets, HaveThePapersSettingsAndAKnownProtocol) {
 
 TEST(Presets, OfEachDataSetIsOneOfItsOwnWithItsProtocol) {
   for (const Layout* layout : layouts()) {
-    const Preset& usual = default_preset(layout->kind);
-    EXPECT_EQ(usual.kind, layout->kind) << layout->name;
+    const Preset& usual = default_preset(layout->kind());
+    EXPECT_EQ(usual.kind, layout->kind()) << layout->name;
     EXPECT_EQ(usual.name, layout->usual.preset);
     EXPECT_EQ(usual.protocol, layout->usual.protocol);
     EXPECT_NE(find_protocol(layout->usual.protocol), nullptr) << layout->name;
