@@ -49,14 +49,10 @@ std::vector<std::uint8_t> moving_points(Method& method, const MovingFilter& filt
   return moving;
 }
 
-std::size_t most_kept_bytes() { return std::min(memory_bytes() / 4, std::size_t{2} << 30); }
-
-template <typename Matrix>
-nlohmann::ordered_json rows_json(const Matrix& matrix) {
+nlohmann::ordered_json rows_json(const auto& matrix) {
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
-  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
-    nlohmann::ordered_json& row = rows.emplace_back(nlohmann::ordered_json::array());
-    for (Eigen::Index j = 0; j < matrix.cols(); ++j) row.push_back(matrix(i, j));
+  for (const auto row : matrix.rowwise()) {
+    rows.push_back(std::vector<double>(row.begin(), row.end()));
   }
   return rows;
 }
@@ -84,10 +80,8 @@ std::vector<ScanPose> estimate_poses(const Sequence& sequence, const OdometryCho
   Progress progress(fmt::format("{} of {}", choice.kind->title, sequence.name()), scans);
   const std::unique_ptr<Odometry> odometry = choice.kind->make(choice.settings, threads);
   const auto& filter = choice.filter;
-  const std::unique_ptr<Method> method =
-      filter ? filter->method->make(filter->settings,
-                                    {.threads = threads, .scan_count = sequence.size()})
-             : nullptr;
+  const RunContext context{.threads = threads, .scan_count = sequence.size()};
+  const auto method = filter ? filter->method->make(filter->settings, context) : nullptr;
   std::vector<ScanPose> poses;
   Frame frame;
   for (std::size_t k = 0; k < scans; ++k) {
@@ -123,9 +117,10 @@ std::vector<Pose> poses_of(const std::vector<ScanPose>& scans) {
 }
 
 void SharedReading::share(Dataset& dataset) {
+  const std::size_t most_bytes = std::min(memory_bytes() / 4, std::size_t{2} << 30);
   for (std::size_t i = 0; i < dataset.sequences.size(); ++i) {
     std::shared_ptr<KeptScans>& scans = scans_[i];
-    if (!scans) scans = std::make_shared<KeptScans>(most_kept_bytes());
+    if (!scans) scans = std::make_shared<KeptScans>(most_bytes);
     dataset.sequences[i] = std::make_unique<KeptSequence>(std::move(dataset.sequences[i]), scans);
   }
 }
@@ -219,12 +214,11 @@ std::string found_text(const FoundPoses& found, std::string_view odometry) {
                   counted(found.scans.size(), "pose"), odometry, found.file.string(), doubtful);
   std::size_t listed = 0;
   for (const auto& scan : found.scans) {
-    if (scan.at("doubt").is_null() || listed == kListed) continue;
+    if (scan.at("doubt").is_null() || listed++ >= kListed) continue;
     text += fmt::format("  scan {}: {}\n", scan.at("stem").get<std::string>(),
                         scan.at("doubt").get<std::string>());
-    ++listed;
   }
-  if (doubtful > listed) text += fmt::format("  and {} more\n", doubtful - listed);
+  if (doubtful > kListed) text += fmt::format("  and {} more\n", doubtful - kListed);
   return text;
 }
 

@@ -46,35 +46,6 @@ std::optional<BadScan> worst_scan(const Result& result) {
   return worst;
 }
 
-/// What a file says of a cell; nothing where it is missing, damaged or of another cell, which is
-/// then computed again.
-template <typename Read>
-auto unless_damaged(const fs::path& file, Read&& read) -> decltype(read()) {
-  if (!is_there(file)) return std::nullopt;
-  try {
-    return read();
-  } catch (const DataError&) {
-  } catch (const nlohmann::json::exception&) {
-  }
-  return std::nullopt;
-}
-
-std::optional<CellNumbers> result_in(const fs::path& file, const std::string& key) {
-  return unless_damaged(file, [&]() -> std::optional<CellNumbers> {
-    const Result result = read_result(file);
-    if (result.key != key) return std::nullopt;
-    return numbers_of(result);
-  });
-}
-
-std::optional<std::string> failure_in(const fs::path& file, const std::string& key) {
-  return unless_damaged(file, [&]() -> std::optional<std::string> {
-    const ordered_json json = parse_json(read_file(file), file);
-    if (json.at("key") != key) return std::nullopt;
-    return json.at("failure").get<std::string>();
-  });
-}
-
 /// Tells of what an earlier mosbench kept as one file per cell.
 void note_old_records(const fs::path& out) {
   std::size_t records = 0;
@@ -188,19 +159,33 @@ ordered_json measured_cost(const StudyPlan& study, const StudyCell& cell) {
           {"memory_mib", memory_mib}};
 }
 
-/// Looks again at what lies where a cell's result belongs.
+/// Looks again at what lies where a cell's result belongs. A file that is damaged, or of another
+/// cell, is none.
 void look_up(PlannedCell& planned, const fs::path& out) {
   const std::string& key = planned.cell.key;
-  const fs::path folder = cell_folder(out, key);
-  const auto result = result_in(folder / "result.json", key);
-  const auto failure = result ? std::nullopt : failure_in(folder / "failure.json", key);
-  planned.numbers = result.value_or(CellNumbers{});
-  planned.failure = failure.value_or("");
-  if (result) {
-    const bool is_own = result->version == kMosbenchVersion;
-    planned.state = is_own ? CellState::kDone : CellState::kOtherVersion;
-  } else {
-    planned.state = failure ? CellState::kFailed : CellState::kMissing;
+  const fs::path result = cell_folder(out, key) / "result.json";
+  const fs::path failure = cell_folder(out, key) / "failure.json";
+  planned.state = CellState::kMissing;
+  planned.numbers = {};
+  planned.failure.clear();
+  try {
+    const Result found = is_there(result) ? read_result(result) : Result{};
+    if (found.key == key) {
+      planned.numbers = numbers_of(found);
+      const bool is_own = found.from.version == kMosbenchVersion;
+      planned.state = is_own ? CellState::kDone : CellState::kOtherVersion;
+      return;
+    }
+  } catch (const DataError&) {
+  }
+  try {
+    const ordered_json found =
+        is_there(failure) ? parse_json(read_file(failure), failure) : nullptr;
+    if (found.is_null() || found.at("key") != key) return;
+    planned.failure = found.at("failure").get<std::string>();
+    planned.state = CellState::kFailed;
+  } catch (const DataError&) {
+  } catch (const ordered_json::exception&) {
   }
 }
 

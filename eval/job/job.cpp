@@ -19,16 +19,6 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
-/// A benchmark with a range limit is scored over the range it was run at.
-bool is_scored_where_run(const Protocol& protocol) {
-  return protocol.range_rule != RangeRule::kNone && protocol.default_range.max_m > 0;
-}
-
-const Protocol& protocol_of(const Job& job, DatasetKind kind) {
-  return job.rule.protocol != nullptr ? *job.rule.protocol
-                                      : protocol_named(preset_of(job, kind).protocol);
-}
-
 /// Returns the effective settings; where they are refused, why.
 ordered_json config_of(const Job& job, DatasetKind kind) {
   try {
@@ -98,12 +88,17 @@ Settings settings_of(const Job& job, DatasetKind kind) {
 }
 
 ScoreRule rule_of(const Job& job, DatasetKind kind) {
-  const Protocol& protocol = protocol_of(job, kind);
+  const Protocol& protocol = job.rule.protocol != nullptr
+                                 ? *job.rule.protocol
+                                 : protocol_named(preset_of(job, kind).protocol);
   if (job.rule.range) {
     check_range(*job.rule.range, protocol);
     return {&protocol, *job.rule.range};
   }
-  if (!is_scored_where_run(protocol)) return {&protocol, protocol.default_range};
+  // A benchmark with a range limit is scored over the range it was run at.
+  if (protocol.range_rule == RangeRule::kNone || protocol.default_range.max_m <= 0) {
+    return {&protocol, protocol.default_range};
+  }
   const Settings settings = settings_of(job, kind);
   const bool known = settings.find(common_settings::kMinRange_m) != nullptr &&
                      settings.find(common_settings::kMaxRange_m) != nullptr;

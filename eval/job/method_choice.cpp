@@ -17,6 +17,8 @@
 namespace mosbench {
 namespace {
 
+constexpr std::string_view kExec = "exec:";
+
 /// Presets that are of a data set, but not its usual one.
 constexpr std::pair<std::string_view, DatasetKind> kOthers[] = {
     {"doals-120m", DatasetKind::kDoals}, {"helimos-delayed", DatasetKind::kHelimos}};
@@ -32,32 +34,17 @@ std::optional<DatasetKind> kind_of(std::string_view preset) {
   return std::nullopt;
 }
 
-/// Numbers of a data set are computed by its usual protocol with any of its presets.
-std::vector<Preset> all_presets() {
-  std::vector<Preset> presets;
-  for (const MethodPreset& row : method_presets()) {
-    const std::optional<DatasetKind> kind = kind_of(row.name);
-    presets.push_back({row, kind, kind ? layout_of(*kind).usual.protocol : ""});
-  }
-  return presets;
-}
-
-constexpr std::string_view kExec = "exec:";
-
-/// Adds a method to those of a benchmark, unless this build cannot run it.
-void add_if_runnable(const MethodKind& method, MethodChoice& choice) {
-  try {
-    method.check(method.defaults);
-    choice.names.emplace_back(method.name);
-  } catch (const std::invalid_argument& error) {
-    choice.notes.push_back(fmt::format("{} is left out: {}", method.name, error.what()));
-  }
-}
-
+/// All methods of a benchmark that this build can run.
 MethodChoice all_methods() {
   MethodChoice choice;
   for (const MethodKind& method : methods()) {
-    if (!method.is_twin) add_if_runnable(method, choice);
+    if (method.is_twin) continue;
+    try {
+      method.check(method.defaults);
+      choice.names.emplace_back(method.name);
+    } catch (const std::invalid_argument& error) {
+      choice.notes.push_back(fmt::format("{} is left out: {}", method.name, error.what()));
+    }
   }
   return choice;
 }
@@ -82,7 +69,15 @@ std::string settings_text(const Settings& settings) {
 }  // namespace
 
 std::span<const Preset> presets() {
-  static const std::vector<Preset> kPresets = all_presets();
+  // Numbers of a data set are computed by its usual protocol with any of its presets.
+  static const std::vector<Preset> kPresets = [] {
+    std::vector<Preset> presets;
+    for (const MethodPreset& row : method_presets()) {
+      const std::optional<DatasetKind> kind = kind_of(row.name);
+      presets.push_back({row, kind, kind ? layout_of(*kind).usual.protocol : ""});
+    }
+    return presets;
+  }();
   return kPresets;
 }
 

@@ -41,24 +41,22 @@ std::string content_of(const Sequence& sequence) {
 
 /// What a cell has to say of a sequence on disk. One that cannot be opened says why.
 ordered_json sequence_json(const Data& data, const std::string& name) {
-  ordered_json json;
   try {
     Reading reading = data.reading;
     const Dataset dataset = open_dataset(data.path, {data.kind, {name}, reading});
     reading.poses = OwnPoses{};
-    json = {{"dataset", to_string(dataset.kind)},
+    return {{"dataset", to_string(dataset.kind)},
             {"content", content_of(*dataset.sequences.front())},
             {"reading", told_json(reading)}};
   } catch (const std::runtime_error& error) {  // DataError, or UsageError of what it lacks
-    json = {{"unreadable", error.what()}};
+    return {{"unreadable", error.what()}};
   }
-  return json;
 }
 
 struct KnownSequence {
   DatasetKind kind;
   std::string name;
-  ordered_json input;
+  ordered_json input;  ///< what its key says of it
 };
 
 /// Throws UsageError for a sequence that the simulation does not write.
@@ -93,13 +91,6 @@ std::vector<KnownSequence> sequences_of(const StudyData& data) {
     throw UsageError(fmt::format("{}: {}", data.name, error.what()));
   }
   return sequences;
-}
-
-/// As --perturb says it; nothing where scans stay as they are.
-std::optional<Perturbation> perturb_of(const StudyCell& cell) {
-  if (cell.axis == nullptr || cell.axis->kind == nullptr) return std::nullopt;
-  return parse_perturbation(
-      fmt::format("{}={}{},seed={}", cell.axis->name, cell.value, cell.axis->with, cell.seed));
 }
 
 /// Lists the cells of one method on one sequence after the other.
@@ -144,7 +135,10 @@ class CellLister {
       const bool random = axis.kind != nullptr && axis.kind->is_random;
       for (const std::uint64_t seed : random ? study_.seeds : std::vector<std::uint64_t>{0}) {
         cell.seed = seed;
-        cell.job.data.reading.perturb = perturb_of(cell);
+        if (axis.kind != nullptr) {
+          cell.job.data.reading.perturb = parse_perturbation(
+              fmt::format("{}={}{},seed={}", axis.name, cell.value, axis.with, seed));
+        }
         identity_["perturb"] = perturb_text(cell.job);
         add(cell);
       }
@@ -190,22 +184,16 @@ struct RuledCells {
   std::vector<const StudyCell*> cells;
 };
 
-std::optional<ScoreRule> rule_unless_refused(const StudyCell& cell) {
-  try {
-    return rule_of(cell.job, cell.kind);
-  } catch (const UsageError&) {
-    return std::nullopt;
-  }
-}
-
 std::vector<RuledCells> by_rule(const std::vector<StudyCell>& cells) {
   std::vector<RuledCells> groups;
   for (const StudyCell& cell : cells) {
-    const auto rule = rule_unless_refused(cell);
-    if (!rule) continue;
-    auto group = std::ranges::find(groups, *rule, &RuledCells::rule);
-    if (group == groups.end()) group = groups.insert(group, {*rule, {}});
-    group->cells.push_back(&cell);
+    try {
+      const ScoreRule rule = rule_of(cell.job, cell.kind);
+      auto group = std::ranges::find(groups, rule, &RuledCells::rule);
+      if (group == groups.end()) group = groups.insert(group, {rule, {}});
+      group->cells.push_back(&cell);
+    } catch (const UsageError&) {  // its settings are refused when it is computed
+    }
   }
   return groups;
 }
