@@ -71,15 +71,6 @@ std::vector<std::string> all_remarks(const Sequence& sequence, const Result& res
   return remarks;
 }
 
-std::vector<DoubtfulPose> doubtful_poses(const Sequence& sequence,
-                                         const std::vector<ScanPose>& poses) {
-  std::vector<DoubtfulPose> doubtful;
-  for (std::size_t k = 0; k < poses.size(); ++k) {
-    if (poses[k].doubtful()) doubtful.push_back({sequence.stem(k), poses[k].doubt});
-  }
-  return doubtful;
-}
-
 /// Where and how `report` and `render` find the points again; folders are this machine's. Of the
 /// run all sequences, by which an interrupted one is known.
 Places places_of(const RunPlan& plan, const PlannedSequence& planned) {
@@ -104,18 +95,15 @@ Result completed(const RunPlan& plan, const PlannedSequence& planned, Result ran
   result.from.fingerprint_without_poses = std::move(ran.from.fingerprint_without_poses);
   result.from.machine = this_machine();
   result.from.simulated = origin_of(plan.dataset, sequence);
-  if (plan.odometry) result.doubtful_poses = doubtful_poses(sequence, found);
+  if (plan.odometry) result.doubtful_poses.emplace();
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    if (found[k].doubtful()) result.doubtful_poses->push_back({sequence.stem(k), found[k].doubt});
+  }
   for (const ScanEntry& scan : sequence.recording().left_out) {
     result.scans_left_out.push_back(scan.stem);
   }
   result.places = places_of(plan, planned);
   return result;
-}
-
-void keep_poses(const std::vector<Pose>& poses, const fs::path& file) {
-  const std::string rows = format_poses(poses);
-  mark_as_lidars(file, rows);
-  write_file_atomic(file, rows);
 }
 
 /// What the scans say about the frame of poses of a file, where nobody said it.
@@ -139,15 +127,6 @@ std::vector<ScanPose> take_poses(const RunPlan& plan, std::size_t position) {
   return found;
 }
 
-SequenceOutcome reuse(const RunPlan& plan, const PlannedSequence& planned) {
-  const Sequence& sequence = *plan.dataset.sequences[planned.position];
-  planned.folder.remove_leftovers();
-  const bool is_program = plan.settings.method->name == kExecKind;
-  tell(fmt::format("{}: finished by an earlier run, kept{}", title_of(sequence, plan.settings),
-                   is_program ? "; if the program has changed, --overwrite runs it again" : ""));
-  return {*planned.finished, planned.folder.path(), true};
-}
-
 }  // namespace
 
 ComputedSequence compute_sequence(const RunPlan& plan, const PlannedSequence& planned) {
@@ -160,7 +139,11 @@ ComputedSequence compute_sequence(const RunPlan& plan, const PlannedSequence& pl
   std::vector<ScanPose> found;
   if (plan.odometry) {
     found = take_poses(plan, planned.position);
-    if (settings.keeps_labels) keep_poses(poses_of(found), partial / "poses.txt");
+    if (settings.keeps_labels) {
+      const std::string rows = format_poses(poses_of(found));
+      mark_as_lidars(partial / "poses.txt", rows);
+      write_file_atomic(partial / "poses.txt", rows);
+    }
   }
   const std::vector<std::string> doubts = doubts_about_poses(plan, sequence);
   give_back_memory();  // of odometry, and of runs before
@@ -195,8 +178,17 @@ RunExecution::RunExecution(const RunPlan& plan) : plan_(plan), lock_(plan.out) {
 
 void RunExecution::advance() {
   const PlannedSequence& planned = plan_.sequences.at(outcomes_.size());
-  outcomes_.push_back(planned.finished ? reuse(plan_, planned)
-                                       : put(compute_sequence(plan_, planned)));
+  if (!planned.finished) {
+    outcomes_.push_back(put(compute_sequence(plan_, planned)));
+    return;
+  }
+  planned.folder.remove_leftovers();
+  tell(fmt::format("{}: finished by an earlier run, kept{}",
+                   title_of(*plan_.dataset.sequences[planned.position], plan_.settings),
+                   plan_.job.segment.is_program()
+                       ? "; if the program has changed, --overwrite runs it again"
+                       : ""));
+  outcomes_.push_back({*planned.finished, planned.folder.path(), true});
 }
 
 std::vector<SequenceOutcome> execute_run(const RunPlan& plan) {

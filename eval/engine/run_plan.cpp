@@ -45,13 +45,6 @@ fs::path default_out(const RunPlan& plan) {
   return fs::path("results/runs") / name;
 }
 
-/// What the results of all sequences of a run have in common.
-nlohmann::ordered_json shared_rules(const RunPlan& plan) {
-  nlohmann::ordered_json rules = identity_json(asked_result(plan, 0));
-  for (const char* own : {"sequence", "reading", "code"}) rules.erase(own);
-  return rules;
-}
-
 /// Throws UsageError unless a finished result is of the input that there is now and as it was
 /// written.
 void check_unchanged(const RunPlan& plan, const PlannedSequence& planned, bool verify) {
@@ -69,12 +62,6 @@ void check_unchanged(const RunPlan& plan, const PlannedSequence& planned, bool v
   planned.folder.check_labels(result);
 }
 
-/// Whether a finished result is of other files than those that the program's command names now. An
-/// earlier mosbench did not keep what they were.
-bool has_other_program(const Result& then, const Result& now) {
-  return !then.from.program.empty() && then.from.program != now.from.program;
-}
-
 PlannedSequence plan_sequence(RunPlan& plan, std::size_t position, const RunPlace& place) {
   const Sequence& sequence = *plan.dataset.sequences[position];
   PlannedSequence planned{position, ResultFolder(plan.out / sequence.name()),
@@ -85,7 +72,9 @@ PlannedSequence plan_sequence(RunPlan& plan, std::size_t position, const RunPlac
   }
   planned.finished = planned.folder.finished(sequence, planned.asked, plan.settings.point_files());
   if (!planned.finished) return planned;
-  if (has_other_program(*planned.finished, planned.asked)) {
+  // An earlier mosbench did not keep which files the command of a program named.
+  const std::string& program = planned.finished->from.program;
+  if (!program.empty() && program != planned.asked.from.program) {
     plan.notes.push_back(fmt::format("{}: the program has changed, it is run again",
                                      title_of(sequence, plan.settings)));
     planned.finished = std::nullopt;
@@ -95,32 +84,29 @@ PlannedSequence plan_sequence(RunPlan& plan, std::size_t position, const RunPlac
   return planned;
 }
 
-/// Names what a preset changes of the paper's method, but not of this one.
+/// A preset sets what a method has. Names what it changes of the paper's method but not of this
+/// one; of a method that has none of it, only the protocol is left.
 void note_lacking_settings(const Preset& preset, RunPlan& plan) {
   const MethodKind& method = *plan.settings.method;
   const Settings& of_paper = default_method().defaults;
+  bool has_any = false;
   std::vector<std::string_view> lacking;
   for (const PresetValue& value : preset.values) {
-    if (method.defaults.find(value.setting) || !of_paper.find(value.setting)) continue;
+    const bool is_known = method.defaults.find(value.setting) != nullptr;
+    has_any = has_any || is_known;
+    if (is_known || !of_paper.find(value.setting)) continue;
     Settings changed = of_paper;
     changed.set(value.setting, value.value);
     if (to_json(changed) != to_json(of_paper)) lacking.push_back(value.setting);
   }
-  if (lacking.empty()) return;
-  plan.notes.push_back(fmt::format("preset {}: method {} has no {}, it runs without", preset.name,
-                                   method.name, fmt::join(lacking, ", ")));
-}
-
-/// A preset sets what a method has; of a method that has none of it, only the protocol is left.
-void note_preset_without_settings(const Preset& preset, RunPlan& plan) {
-  const MethodKind& method = *plan.settings.method;
-  const bool has_any = std::ranges::any_of(preset.values, [&](const PresetValue& value) {
-    return method.defaults.find(value.setting) != nullptr;
-  });
-  if (has_any) return note_lacking_settings(preset, plan);
-  plan.notes.push_back(
-      fmt::format("method {} has none of the settings of preset {}: it chooses the protocol alone",
-                  method.name, preset.name));
+  if (!has_any) {
+    plan.notes.push_back(fmt::format(
+        "method {} has none of the settings of preset {}: it chooses the protocol alone",
+        method.name, preset.name));
+  } else if (!lacking.empty()) {
+    plan.notes.push_back(fmt::format("preset {}: method {} has no {}, it runs without", preset.name,
+                                     method.name, fmt::join(lacking, ", ")));
+  }
 }
 
 /// `root` without the name of the sequence at its end: what holds all sequences, also where a
@@ -138,27 +124,16 @@ bool same_dataset(const fs::path& a, const std::string& sequence_a, const fs::pa
   return is_in(a, b) || is_in(b, a) || without_name(a, sequence_a) == without_name(b, sequence_b);
 }
 
-/// Nothing when the file is no result of ours.
-std::optional<Result> result_in(const fs::path& file) {
-  try {
-    return read_result(file);
-  } catch (const DataError&) {
-    return std::nullopt;
-  }
-}
-
-/// Empty when the results can stand beside those of the plan.
+/// Empty when a result can stand beside those of the plan.
 std::string other_run(const RunPlan& plan, const nlohmann::ordered_json& rules,
-                      const fs::path& file) {
-  const std::optional<Result> there = result_in(file);
-  if (!there) return "";
-  const std::string changed = changed_members(identity_json(*there), rules);
-  if (!changed.empty() || !there->places || !there->places->dataset_root) return changed;
-  const fs::path& root = *there->places->dataset_root;
+                      const Result& there) {
+  const std::string changed = changed_members(identity_json(there), rules);
+  if (!changed.empty() || !there.places || !there.places->dataset_root) return changed;
+  const fs::path& root = *there.places->dataset_root;
   const fs::path& ours = plan.dataset.root;
   const std::string our_name = plan.dataset.sequences.front()->name();
-  if (same_dataset(without_slash(root), there->sequence, without_slash(ours), our_name) ||
-      same_dataset(resolved(root), there->sequence, resolved(ours), our_name)) {
+  if (same_dataset(without_slash(root), there.sequence, without_slash(ours), our_name) ||
+      same_dataset(resolved(root), there.sequence, resolved(ours), our_name)) {
     return "";
   }
   return fmt::format("data set is {} there and {} now", root.string(),
@@ -167,10 +142,12 @@ std::string other_run(const RunPlan& plan, const nlohmann::ordered_json& rules,
 
 /// Throws UsageError naming what lies there when the plan's folder holds results that are not of
 /// the plan's sequences and come from another data set, method or setting: together they would be
-/// no run that `stats`, `compare` or `table` could read. `rules` are the members of result.json
-/// that all sequences of a run share.
-void check_shared_folder(const RunPlan& plan, const nlohmann::ordered_json& rules) {
+/// no run that `stats`, `compare` or `table` could read.
+void check_shared_folder(const RunPlan& plan) {
   if (std::error_code error; !fs::is_directory(plan.out, error)) return;
+  // What all sequences of a run share.
+  nlohmann::ordered_json rules = identity_json(asked_result(plan, 0));
+  for (const char* own : {"sequence", "reading", "code"}) rules.erase(own);
   // Sequences lie there or in scenes. Deeper ones are not looked for: it may be a home.
   constexpr int kDeepest = 2;
   for (const fs::path& file :
@@ -178,7 +155,11 @@ void check_shared_folder(const RunPlan& plan, const nlohmann::ordered_json& rule
     const bool planned = std::ranges::any_of(plan.dataset.sequences, [&](const auto& sequence) {
       return plan.out / sequence->name() == file.parent_path();
     });
-    const std::string other = planned ? "" : other_run(plan, rules, file);
+    std::string other;
+    try {
+      if (!planned) other = other_run(plan, rules, read_result(file));
+    } catch (const DataError&) {  // no result of ours
+    }
     if (other.empty()) continue;
     throw UsageError(fmt::format(
         "{}: holds results of another run ({}: {}), expected those of one data set and setting; "
@@ -205,7 +186,7 @@ RunPlan open_job(const Job& job, unsigned threads, const std::shared_ptr<SharedR
   RunSettings& settings = plan.settings;
   settings.method = job.segment.method;
   settings.threads = threads;
-  note_preset_without_settings(preset, plan);
+  note_lacking_settings(preset, plan);
   settings.method_settings = settings_of(job, plan.dataset.kind);
   const ScoreRule rule = rule_of(job, plan.dataset.kind);
   settings.protocol = rule.protocol;
@@ -224,7 +205,7 @@ RunPlan plan_run(const Job& job, const RunPlace& place) {
   plan.settings.is_one_of_several = place.shared != nullptr;
   plan.out = place.out.value_or(default_out(plan));
   if (place.shared) plan.out /= plan.settings.method->name;
-  check_shared_folder(plan, shared_rules(plan));
+  check_shared_folder(plan);
   for (std::size_t i = 0; i < plan.dataset.sequences.size(); ++i) {
     plan.sequences.push_back(plan_sequence(plan, i, place));
   }

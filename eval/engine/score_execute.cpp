@@ -66,12 +66,6 @@ std::string shift_text(int shift, double iou, double unshifted_iou, std::size_t 
   return text;
 }
 
-bool looks_at_ranges(const ScoreTask& task) {
-  return std::ranges::any_of(task.rules, [](const ScoreRule& rule) {
-    return rule.protocol->range_rule != RangeRule::kNone;
-  });
-}
-
 std::vector<std::size_t> wanted_scans(const Dataset& dataset, std::size_t position,
                                       const ScoreTask& task) {
   const Sequence& sequence = *dataset.sequences[position];
@@ -83,19 +77,12 @@ std::vector<std::size_t> wanted_scans(const Dataset& dataset, std::size_t positi
   return wanted;
 }
 
-/// Truth and, where a rule looks at ranges, points of a scan.
-Frame read_truth_of(const Sequence& sequence, std::size_t k, bool with_points) {
-  if (with_points) return sequence.read(k);
-  Frame frame;
-  frame.stem = sequence.stem(k);
-  frame.truth = sequence.read_truth(k);
-  return frame;
-}
-
-/// One row per rule.
+/// One row per rule. Points are read where a rule looks at ranges.
 std::vector<ScanRow> score_one(const Sequence& sequence, std::size_t k, const ScoreTask& task,
                                const Predictions& labels, bool with_points) {
-  const Frame frame = read_truth_of(sequence, k, with_points);
+  Frame frame;
+  if (with_points) sequence.read(k, frame);
+  if (!with_points) frame.truth = sequence.read_truth(k);
   const std::optional<Confusion> counted = labels.counts(k);
   const std::vector<std::uint32_t> predicted =
       counted ? std::vector<std::uint32_t>{} : labels.read(k);
@@ -103,7 +90,7 @@ std::vector<ScanRow> score_one(const Sequence& sequence, std::size_t k, const Sc
   std::vector<ScanRow> rows;
   for (const ScoreRule& rule : task.rules) {
     ScanRow& row = rows.emplace_back();
-    row.stem = frame.stem;
+    row.stem = sequence.stem(k);
     row.points = frame.truth->size();
     row.truth_hash = hash;
     row.counts =
@@ -130,7 +117,9 @@ void check_rules_of_counts(const OpenedPredictions& opened, const ScoreTask& tas
 
 void score_scans(const Sequence& sequence, const std::vector<std::size_t>& scans,
                  const ScoreTask& task, ThreadPool& pool, SequenceScores& scores) {
-  const bool with_points = looks_at_ranges(task);
+  const bool with_points = std::ranges::any_of(task.rules, [](const ScoreRule& rule) {
+    return rule.protocol->range_rule != RangeRule::kNone;
+  });
   for (auto& rows : scores.by_rule) rows.resize(scans.size());
   Progress progress("score " + sequence.name(), scans.size());
   std::mutex progress_mutex;

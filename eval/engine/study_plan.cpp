@@ -78,14 +78,6 @@ ComputedSequence computed(const StudyCell& cell, const fs::path& out, unsigned t
   return compute_sequence(plan, plan.sequences.front());
 }
 
-void put_cell(ComputedSequence result, const fs::path& folder) {
-  try {
-    put(std::move(result));
-  } catch (const DataError& full) {
-    throw DataError(fmt::format("{}, as {}", (folder / "result.json").string(), full.what()));
-  }
-}
-
 CellOutcome fail(const StudyCell& cell, const fs::path& out, const char* why) {
   tell(fmt::format("{}: {}", cell.title(), why));
   Claim claim(cell_folder(out, cell.key));
@@ -265,7 +257,12 @@ CellOutcome compute_cell(const PlannedCell& before, const fs::path& out, unsigne
   } catch (const std::bad_alloc&) {
     return fail(cell, out, "needs more memory than there is");
   }
-  put_cell(*std::move(result), cell_folder(out, cell.key));
+  try {
+    put(*std::move(result));
+  } catch (const DataError& full) {
+    const fs::path file = cell_folder(out, cell.key) / "result.json";
+    throw DataError(fmt::format("{}, as {}", file.string(), full.what()));
+  }
   return CellOutcome::kComputed;
 }
 

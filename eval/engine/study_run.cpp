@@ -154,15 +154,6 @@ ordered_json group_json(const Group& group, std::size_t number) {
   return json;
 }
 
-/// Where cells are computed: a program's command may name files from where it is typed. Other nodes
-/// need not have that folder for anything else.
-fs::path folder_of_commands(const StudyPlan& plan, const fs::path& out) {
-  return std::ranges::any_of(plan.study->methods,
-                             [](const StudyMethod& method) { return method.segment.is_program(); })
-             ? fs::current_path()
-             : out;
-}
-
 /// Writes what Snakemake reads to OUT/workflow, and returns the folder of the profile.
 fs::path write_workflow(const fs::path& out, const ordered_json& plan, const std::string& profile) {
   const fs::path folder = out / "workflow";
@@ -241,11 +232,15 @@ int run_engine(const StudyPlan& plan, const CostModel& costs, const EngineOption
   for (const PlannedCell* planned : work.cells) {
     if (made.insert(planned->cell.data).second) made_data(plan.out, planned->cell.data->data);
   }
+  // A program's command may name files from where it is typed. Other nodes need not have that
+  // folder for anything else.
+  const bool has_program = std::ranges::any_of(
+      plan.study->methods, [](const StudyMethod& method) { return method.segment.is_program(); });
   const bool local = options.profile == "local";
   const double even_s = work.cpu_s.value_or(0) / 64;  // so that cores end together
   const auto groups = groups_of(work, costs, local ? std::min(kGroup_s, even_s) : kGroup_s);
   ordered_json json = {{"program", options.program.string()},
-                       {"folder", folder_of_commands(plan, out).string()},
+                       {"folder", (has_program ? fs::current_path() : out).string()},
                        {"study", fs::absolute(plan.study->file).string()},
                        {"out", out.string()},
                        {"threads", options.threads},
