@@ -1,4 +1,3 @@
-#include "datasets/doctor/checks.hpp"
 
 #include <fmt/args.h>
 #include <fmt/format.h>

@@ -2,17 +2,15 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <array>
 #include <cmath>
 
 #include "datasets/doctor/pose_evidence.hpp"
 #include "datasets/formats/pose_file.hpp"
+#include "datasets/text/errors.hpp"
 
 namespace mosbench {
 namespace {
-
-Eigen::Matrix3d matrix(std::initializer_list<double> rows) {
-  return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(rows.begin());
-}
 
 /// Returns the pose of a quaternion that was stored w x y z and read as x y z w.
 Pose with_w_first(const Pose& pose) {
@@ -48,12 +46,12 @@ void add_frames(const std::vector<Pose>& given, const std::optional<Pose>& camer
   const auto stored = [&](const Pose& pose) { return applied ? tr * pose * tr.inverse() : pose; };
   const auto of_camera = [&](const Pose& pose) { return lidar_pose(pose, tr); };
   if (applied) {
-    conventions.push_back(
-        changed("the lidar's, Tr not to be applied", "run with --pose-frame lidar", given, stored));
+    conventions.push_back(changed("the lidar's, Tr not to be applied",
+                                  "run with " + option("pose_frame", "lidar"), given, stored));
     conventions.back().remedy.pose_frame = PoseFrame::kLidar;
   } else if (camera_from_lidar) {
-    conventions.push_back(changed("the camera's, Tr to be applied", "run with --pose-frame camera",
-                                  given, of_camera));
+    conventions.push_back(changed("the camera's, Tr to be applied",
+                                  "run with " + option("pose_frame", "camera"), given, of_camera));
     conventions.back().remedy.pose_frame = PoseFrame::kCamera;
   } else {
     conventions.push_back(changed("the camera's, Tr is missing",
@@ -61,7 +59,7 @@ void add_frames(const std::vector<Pose>& given, const std::optional<Pose>& camer
                                   given, of_camera));
   }
   conventions.push_back(changed("sensor_from_map (inverse)",
-                                "run with --pose-direction sensor-from-map", given,
+                                "run with " + option("pose_direction", "sensor-from-map"), given,
                                 [](const Pose& pose) { return pose.inverse(); }));
   conventions.back().remedy.pose_direction = PoseDirection::kSensorFromMap;
   conventions.push_back(changed("with transposed rotations", "write each row's rotation row by row",
@@ -72,33 +70,37 @@ void add_frames(const std::vector<Pose>& given, const std::optional<Pose>& camer
                                 }));
 }
 
-/// Adds other signs and orders of axes, of the translations relative to the first pose and of the
-/// points.
-void add_axes(const std::vector<Pose>& given, std::vector<PoseConvention>& conventions) {
-  const Eigen::Matrix3d swapped_xy = matrix({0, 1, 0, 1, 0, 0, 0, 0, 1});
-  const Eigen::Matrix3d other_y = matrix({1, 0, 0, 0, -1, 0, 0, 0, 1});
-  const Eigen::Matrix3d other_z = matrix({1, 0, 0, 0, 1, 0, 0, 0, -1});
-  const Eigen::Matrix3d of_camera = matrix({0, 0, 1, -1, 0, 0, 0, -1, 0});
-  const auto add_translations = [&](std::string name, std::string advice,
-                                    const Eigen::Matrix3d& change) {
-    conventions.push_back(changed(name, advice, given, [&](Pose pose) {
-      pose.translation() = (change * pose.translation()).eval();
-      return pose;
-    }));
-  };
-  const auto add_points = [&](std::string name, std::string how, const Eigen::Matrix3d& axes) {
-    conventions.push_back({name, "export the scans again " + how, given, axes});
-  };
-  const char* turn = "turn the sign of the translations";
-  add_translations("with x and y of their translations swapped", "exchange the two translations",
-                   swapped_xy);
-  add_translations("with the other sign of y of their translations", turn, other_y);
-  add_translations("with the other sign of z of their translations", turn, other_z);
-  add_points("with x and y of the points swapped", "with x before y", swapped_xy);
-  add_points("with the points mirrored", "without a turned sign", other_y);
-  add_points("with the points turned from upside down", "with z upwards", other_z);
-  add_points("with the points turned from a camera's axes", "with x forward, y left and z up",
-             of_camera);
+using Axes = std::array<double, 9>;
+constexpr Axes kSwappedXy = {0, 1, 0, 1, 0, 0, 0, 0, 1}, kOtherY = {1, 0, 0, 0, -1, 0, 0, 0, 1},
+               kOtherZ = {1, 0, 0, 0, 1, 0, 0, 0, -1}, kOfCamera = {0, 0, 1, -1, 0, 0, 0, -1, 0};
+
+/// Another sign or order of axes, of the translations relative to the first pose or of the points.
+struct OtherAxes {
+  const char *name, *advice;
+  const Axes& axes;
+  bool of_points = true;
+};
+
+constexpr const char* kTurnSign = "turn the sign of the translations";
+constexpr OtherAxes kOtherAxes[] = {
+    {"with x and y of their translations swapped", "exchange the two translations", kSwappedXy,
+     false},
+    {"with the other sign of y of their translations", kTurnSign, kOtherY, false},
+    {"with the other sign of z of their translations", kTurnSign, kOtherZ, false},
+    {"with x and y of the points swapped", "export the scans again with x before y", kSwappedXy},
+    {"with the points mirrored", "export the scans again without a turned sign", kOtherY},
+    {"with the points turned from upside down", "export the scans again with z upwards", kOtherZ},
+    {"with the points turned from a camera's axes",
+     "export the scans again with x forward, y left and z up", kOfCamera}};
+
+PoseConvention with_axes(const OtherAxes& other, const std::vector<Pose>& given) {
+  const Eigen::Matrix3d axes =
+      Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(other.axes.data());
+  if (other.of_points) return {other.name, other.advice, given, axes};
+  return changed(other.name, other.advice, given, [&](Pose pose) {
+    pose.translation() = (axes * pose.translation()).eval();
+    return pose;
+  });
 }
 
 // --- Corrections that are fitted.
@@ -175,16 +177,6 @@ Eigen::Vector3d lever_of(const std::vector<Weighed>& pairs) {
   return squares.ldlt().solve(sides);
 }
 
-std::vector<Pose> moved(std::vector<Pose> poses, const Eigen::Vector3d& lever_m) {
-  for (Pose& pose : poses) pose.translate(lever_m);
-  return poses;
-}
-
-std::vector<Pose> scaled(std::vector<Pose> poses, double factor) {
-  for (Pose& pose : poses) pose.translation() *= factor;
-  return poses;
-}
-
 template <typename Fit, typename Apply>
 PoseConvention fitted(const PoseConvention& given, const MeasuredMotions& measured, Fit&& fit,
                       Apply&& apply) {
@@ -243,7 +235,7 @@ std::vector<PoseConvention> other_conventions(const std::vector<Pose>& given,
                                 with_radians));
   conventions.push_back(
       {"in reverse order", "reverse the order of the rows", {given.rbegin(), given.rend()}});
-  add_axes(given, conventions);
+  for (const OtherAxes& other : kOtherAxes) conventions.push_back(with_axes(other, given));
   conventions.push_back(changed("of points that are in the map's frame already",
                                 "export the scans again in the sensor's frame", given,
                                 [](const Pose&) { return Pose(Pose::Identity()); }));
@@ -263,7 +255,8 @@ std::vector<PoseConvention> fitted_corrections(const std::vector<Pose>& given,
   PoseConvention larger = fitted(
       as_given, measured, [&](const auto& pairs) { return scale = scale_of(pairs); },
       [&](PoseConvention& convention, double by) {
-        convention.map_from_sensor = scaled(given, by);
+        convention.map_from_sensor = given;
+        for (Pose& pose : convention.map_from_sensor) pose.translation() *= by;
       });
   if (scale > 0.0 && std::abs(std::log(scale)) > kLeastScaleChange) {
     larger.name = fmt::format("{:.3g} times as long", scale);
@@ -290,7 +283,8 @@ std::vector<PoseConvention> fitted_corrections(const std::vector<Pose>& given,
   PoseConvention levered = fitted(
       as_given, measured, [&](const auto& pairs) { return lever_m = lever_of(pairs); },
       [&](PoseConvention& convention, const Eigen::Vector3d& by_m) {
-        convention.map_from_sensor = moved(given, by_m);
+        convention.map_from_sensor = given;
+        for (Pose& pose : convention.map_from_sensor) pose.translate(by_m);
       });
   if (lever_m.norm() > kLeastLeverM) {
     levered.name = fmt::format("of a place {:.1f}, {:.1f}, {:.1f} m (x, y, z) from the sensor",

@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "datasets/doctor/checks.hpp"
 #include "datasets/doctor/pose_evidence.hpp"
 #include "datasets/layouts/dataset.hpp"
 #include "datasets/layouts/layout.hpp"

@@ -48,7 +48,7 @@ double detour_m(const std::vector<Pose>& poses, std::size_t row) {
 /// Returns the steps into and out of the rows.
 std::vector<ScanPair> pairs_around(const MisplacedRows& rows, std::size_t scans) {
   std::set<std::size_t> earlier;
-  for (const std::size_t row : {rows.first, rows.second}) {
+  for (const std::size_t row : {rows.first, rows.last}) {
     if (row > 0) earlier.insert(row - 1);
     if (row + 1 < scans) earlier.insert(row);
   }
@@ -134,8 +134,7 @@ class Search {
       saved_m *= kSingleRowShare;
     } else if (after.longest_m > kStepShare * before.longest_m) {
       return;
-    } else if (rows.second - rows.first == 1 &&
-               (rows.first == 0 || rows.second + 1 == poses_.size())) {
+    } else if (rows.last - rows.first == 1 && (rows.first == 0 || rows.last + 1 == poses_.size())) {
       saved_m *= kEndFactor;
     }
     if (saved_m <= std::max(needed_m, saved_m_)) return;
@@ -161,7 +160,7 @@ std::string sentence_on(const MisplacedRows& rows, const Sequence& sequence) {
       "the poses of scans {} and {} (rows {} and {}) are exchanged: the other way round the "
       "trajectory is shorter and scans overlap better; expected the poses in the order of the "
       "scans",
-      sequence.stem(rows.first), sequence.stem(rows.second), rows.first + 1, rows.second + 1);
+      sequence.stem(rows.first), sequence.stem(rows.last), rows.first + 1, rows.last + 1);
 }
 
 }  // namespace
@@ -170,7 +169,7 @@ std::vector<Pose> mended(std::vector<Pose> poses, const MisplacedRows& rows) {
   if (rows.single()) {
     poses[rows.first] = midway(poses[rows.first - 1], poses[rows.first + 1]);
   } else {
-    std::swap(poses[rows.first], poses[rows.second]);
+    std::swap(poses[rows.first], poses[rows.last]);
   }
   return poses;
 }

@@ -1,13 +1,88 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <cstdint>
+#include <map>
 #include <mosbench/scan.hpp>
 #include <span>
 #include <unordered_map>
 #include <vector>
 
+#include "datasets/sequence/sequence.hpp"
+
 namespace mosbench {
+
+/// Two scans of a sequence.
+struct ScanPair {
+  std::size_t earlier = 0, later = 0;
+};
+
+Pose relative(const std::vector<Pose>& poses, const ScanPair& pair);
+
+/// Returns about how far apart the two motions put a point 10 m away, metres.
+double difference_m(const Pose& a, const Pose& b);
+
+/// Median of a list, for even sizes the upper middle value; 0 of an empty one.
+double median(std::vector<double> values);
+
+/// Returns a key of the cube of a grid that holds the point; one and the same key for all points
+/// that are too far away for the grid.
+std::uint64_t cube_key(const Eigen::Vector3d& point_m, double size_m);
+
+/// Points of a cube, summed up.
+struct CellMoments {
+  std::size_t count = 0;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
+
+  Eigen::Vector3d mean_m() const { return sum / static_cast<double>(count); }
+  Eigen::Matrix3d covariance_m2() const;
+};
+
+std::unordered_map<std::uint64_t, CellMoments> moments_of_cells(
+    std::span<const Eigen::Vector3d> points_m, double size_m);
+
+/// Returns the points at 2 to 40 m, where scans are dense.
+std::vector<Eigen::Vector3d> near_points(std::span<const Point> points);
+
+/// Returns up to `most` of the items, evenly picked.
+template <typename Item>
+std::vector<Item> picked(const std::vector<Item>& items, std::size_t most) {
+  if (items.size() <= most) return items;
+  std::vector<Item> some;
+  for (std::size_t i = 0; i < most; ++i) some.push_back(items[i * items.size() / most]);
+  return some;
+}
+
+/// Scans of a sequence, each read once, in the forms that are needed to compare them. The surfaces
+/// of a scan are one normal distribution per cell of a grid (the NDT of Biber and Strasser, 2003).
+/// Unlike the distance to the nearest point it does not favour standing still because of the rings
+/// of a sparse sensor on the ground.
+class ScanOverlap {
+ public:
+  explicit ScanOverlap(const Sequence& sequence) : sequence_(sequence) {}
+
+  /// Returns whether the later scan has enough points. This and the others throw DataError.
+  bool has_points(const ScanPair& pair);
+  /// Returns how well points of the later scan lie on surfaces of the earlier one: the mean over
+  /// the points of a likelihood that is 1 in the middle of a surface and 0 where there is none.
+  double overlap(const ScanPair& pair, const Pose& motion);
+
+ private:
+  struct Surface {
+    Eigen::Vector3d mean_m;
+    Eigen::Matrix3d information;
+  };
+  struct Scan {
+    std::vector<Eigen::Vector3d> moved_m;
+    std::unordered_map<std::uint64_t, Surface> surfaces;
+  };
+  const Scan& at(std::size_t scan_index);
+
+  const Sequence& sequence_;
+  std::map<std::size_t, Scan> scans_;
+};
 
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;

@@ -40,7 +40,7 @@ TEST(SuspectedRows, AreAnyTwoThatWereExchanged) {
       const auto suspected = suspected_rows(poses);
       ASSERT_EQ(suspected.size(), 1U) << first << " " << second;
       EXPECT_EQ(suspected.front().first, first);
-      EXPECT_EQ(suspected.front().second, second);
+      EXPECT_EQ(suspected.front().last, second);
     }
   }
 }
