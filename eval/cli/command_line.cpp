@@ -14,10 +14,10 @@
 #include "datasets/text/text.hpp"
 #include "eval/answer/render.hpp"
 #include "eval/cli/commands.hpp"
+#include "eval/cli/flags.hpp"
 #include "eval/cli/help_text.hpp"
 #include "eval/cli/old_words.hpp"
 #include "eval/cli/output_file.hpp"
-#include "eval/cli/suggested_command.hpp"
 #include "eval/result/tell.hpp"
 #include "eval/result/version.hpp"
 
@@ -140,6 +140,29 @@ Printed printed(const Answer& answer, const std::string& asked, std::size_t colu
   std::fputs(result.bytes.c_str(), stderr);
   result.bytes.clear();
   return result;
+}
+
+/// Returns the arguments as a line to type, on a line of its own.
+std::string typed_line(const std::vector<std::string>& arguments) {
+  std::string line = "\n  mosbench";
+  for (const std::string& argument : arguments) line += ' ' + shell_word(argument);
+  return line;
+}
+
+/// Returns the commands that get on where the scans of `command` have no poses: the same with
+/// odometry, where it has that, else odometry and then the same with its poses. `arguments` are
+/// what was typed. Empty for a command that takes no poses.
+std::string commands_with_odometry(const CLI::App& command,
+                                   const std::vector<std::string>& arguments) {
+  if (command.get_option_no_throw("--odometry") != nullptr) {
+    return typed_line(arguments) + " --odometry simple";
+  }
+  if (command.get_option_no_throw("--poses") == nullptr) return "";
+  // A file for one sequence, a folder for several: `--poses` takes either.
+  constexpr std::string_view kFoundPoses = "found-poses";
+  return fmt::format("\n  mosbench odometry{} -o {}{} --poses {}",
+                     given_words(command, chooses_scans), kFoundPoses, typed_line(arguments),
+                     kFoundPoses);
 }
 
 /// Returns the line in the words of today, and says it on stderr where it was another.

@@ -26,6 +26,15 @@ struct Command {
   bool draws = false;  ///< its answers have charts
 };
 
+/// How the program ends after an error, and what it says.
+struct Failure {
+  int exit_code;
+  std::string message;
+};
+
+/// Returns that of the exception that is being handled.
+Failure current_failure();
+
 /// All commands, in the order in which --help shows them.
 std::span<const Command> commands();
 

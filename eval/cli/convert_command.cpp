@@ -11,11 +11,8 @@
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
 #include "eval/cli/commands.hpp"
-#include "eval/cli/dataset_flags.hpp"
-#include "eval/cli/help_text.hpp"
-#include "eval/cli/odometry_flags.hpp"
+#include "eval/cli/flags.hpp"
 #include "eval/engine/pose_finding.hpp"
-#include "eval/job/job_words.hpp"
 #include "eval/result/tell.hpp"
 
 namespace mosbench {
@@ -26,11 +23,8 @@ constexpr std::array<std::string_view, 12> kLayouts = {
     "nuscenes", "helipr",    "kitti-raw", "kitti-tracking", "ros2-mcap",     "ros2-db3"};
 constexpr std::array<std::string_view, 4> kCompressions = {"none", "lz4", "bz2", "zstd"};
 
-struct ConvertFlags {
-  std::filesystem::path input;
-  std::string dataset = "auto", layout;
-  std::vector<std::string> sequences;
-  Reading reading;
+struct ConvertFlags : DataWords {
+  std::string layout;
   OdometryOptions odometry;
   ConvertOptions conversion;
   unsigned threads = hardware_threads();
@@ -79,8 +73,7 @@ std::string convert_dataset(ConvertFlags options) {
   const std::string layout = set_layout(options.layout, conversion);
   const std::optional<OdometryChoice> odometry = named_odometry(options.odometry, options.reading);
   if (odometry) options.reading.poses = ByOdometry{};
-  Dataset dataset = open_dataset(
-      options.input, {dataset_kind_option(options.dataset), options.sequences, options.reading});
+  Dataset dataset = open_dataset(options);
   check_kept_speed(options, dataset.kind);
   if (odometry) {
     const OdometryChoice choice = with_filter(*odometry, dataset.kind);
@@ -106,18 +99,12 @@ std::string convert_dataset(ConvertFlags options) {
 
 CommandRun add_convert(CLI::App& command) {
   auto options = std::make_shared<ConvertFlags>();
-  add_dataset_flags(command, options->input, options->dataset, options->sequences,
-                    options->reading);
-  command
-      .add_option(
-          "--layout", options->layout,
-          "Layout to write; ros2-mcap:zstd also says how a bag is compressed: none, lz4, bz2 "
-          "(ROS 1) or zstd (ROS 2) (default: lz4, of ros2-db3 none)")
-      ->required()
-      ->type_name(type_of_names({kLayouts.begin(), kLayouts.end()}));
-  command.add_option("--out", options->conversion.out, "Root of the data set to write")
-      ->type_name("DIR")
+  add_dataset_flags(command, *options);
+  add(command, "--layout " + type_of_names({kLayouts.begin(), kLayouts.end()}), options->layout,
+      "Layout to write; ros2-mcap:zstd also says how a bag is compressed: none, lz4, bz2 "
+      "(ROS 1) or zstd (ROS 2) (default: lz4, of ros2-db3 none)")
       ->required();
+  add(command, "--out DIR", options->conversion.out, "Root of the data set to write")->required();
   add_odometry_flag(command, options->odometry, "Find the poses by it instead of reading them");
   add_threads_flag(command, options->threads);
   return [options] { return Answer{convert_dataset(*options)}; };

@@ -3,13 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <sstream>
 #include <vector>
 
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
 #include "eval/cli/commands.hpp"
-#include "eval/cli/dataset_flags.hpp"
+#include "eval/cli/flags.hpp"
+#include "eval/result/reading_json.hpp"
 
 namespace mosbench {
 namespace {
@@ -71,54 +73,6 @@ std::string description_of(const CLI::Option& option, bool is_positional) {
   return text;
 }
 
-}  // namespace
-
-HelpText::HelpText(bool all) : all_(all) { label("Positionals", "Arguments"); }
-
-std::string HelpText::make_help(const CLI::App* app, std::string name,
-                                CLI::AppFormatMode mode) const {
-  return make_description(app) + make_usage(app, std::move(name)) + make_positionals(app) +
-         flags_of(*app) + make_subcommands(app, mode) + '\n' + page_of(*app);
-}
-
-std::string HelpText::flags_of(const CLI::App& command) const {
-  std::string text;
-  for (const std::string& group : command.get_groups()) {
-    if (group.empty() || (!all_ && (group == kRareGroup || group == kReadingGroup))) continue;
-    const auto options = command.get_options([&](const CLI::Option* option) {
-      return option->get_group() == group && option->nonpositional();
-    });
-    if (!options.empty()) text += make_group(group, false, options);
-  }
-  const bool reads = command.get_option_no_throw("--deskew") != nullptr;
-  return all_ && reads ? text + '\n' + read_keys_text() : text;
-}
-
-std::string HelpText::page_of(const CLI::App& command) const {
-  const std::string_view page = help_page(command.get_name());
-  constexpr std::string_view kRest = "---\n";
-  const std::size_t rest = std::min(page.find(kRest), page.size());
-  std::string text(page.substr(0, rest));
-  if (all_ && rest < page.size()) text += '\n' + std::string(page.substr(rest + kRest.size()));
-  return text;
-}
-
-std::string HelpText::make_usage(const CLI::App* app, std::string name) const {
-  std::string usage = "\nUsage: " + name + (app->get_parent() == nullptr ? " COMMAND" : "");
-  for (const CLI::Option* option : app->get_options()) {
-    if (option->get_positional() && !option->get_group().empty()) {
-      usage += ' ' + make_option_usage(option);
-    }
-  }
-  return usage + " [OPTIONS]\n";
-}
-
-std::string HelpText::make_option(const CLI::Option* option, bool is_positional) const {
-  std::string name = spaced(make_option_name(option, is_positional));
-  if (!is_positional && option->get_items_expected_max() > 0) name += ' ' + value_name(*option);
-  return help_row(name, description_of(*option, is_positional));
-}
-
 std::string help_row(const std::string& name, const std::string& meaning) {
   constexpr std::size_t kIndent = 30;
   std::string left = "  " + name;
@@ -127,9 +81,73 @@ std::string help_row(const std::string& name, const std::string& meaning) {
   return left + wrapped(meaning, kIndent) + '\n';
 }
 
-std::string type_of_names(const std::vector<std::string_view>& names) {
-  return fmt::format("NAME:{{{}}}", fmt::join(names, ","));
+/// The keys of --read with their values and meanings.
+std::string read_keys_text() {
+  std::string text = "Keys of --read:\n";
+  for (const ReadingField& field : reading_fields()) {
+    if (!field.is_rare) continue;
+    std::string meaning = field.meaning;
+    meaning[0] = static_cast<char>(std::tolower(meaning[0]));
+    if (!field.usual.empty()) meaning += fmt::format(" (default: {})", field.usual);
+    text += help_row(field.name, fmt::format("{}; {}", field.legal, meaning));
+  }
+  return text;
 }
+
+/// Lays out --help-all where `all`, else --help, which fits a screen.
+class HelpText : public CLI::Formatter {
+ public:
+  explicit HelpText(bool all) : all_(all) { label("Positionals", "Arguments"); }
+
+  std::string make_help(const CLI::App* app, std::string name,
+                        CLI::AppFormatMode mode) const override {
+    return make_description(app) + make_usage(app, std::move(name)) + make_positionals(app) +
+           groups_of(*app) + make_subcommands(app, mode) + '\n' + page_of(*app);
+  }
+
+  std::string make_usage(const CLI::App* app, std::string name) const override {
+    std::string usage = "\nUsage: " + name + (app->get_parent() == nullptr ? " COMMAND" : "");
+    for (const CLI::Option* option : app->get_options()) {
+      if (option->get_positional() && !option->get_group().empty()) {
+        usage += ' ' + make_option_usage(option);
+      }
+    }
+    return usage + " [OPTIONS]\n";
+  }
+
+  std::string make_option(const CLI::Option* option, bool is_positional) const override {
+    std::string name = spaced(make_option_name(option, is_positional));
+    if (!is_positional && option->get_items_expected_max() > 0) name += ' ' + value_name(*option);
+    return help_row(name, description_of(*option, is_positional));
+  }
+
+ private:
+  std::string groups_of(const CLI::App& command) const {
+    std::string text;
+    for (const std::string& group : command.get_groups()) {
+      if (group.empty() || (!all_ && (group == kRareGroup || group == kReadingGroup))) continue;
+      const auto options = command.get_options([&](const CLI::Option* option) {
+        return option->get_group() == group && option->nonpositional();
+      });
+      if (!options.empty()) text += make_group(group, false, options);
+    }
+    const bool reads = command.get_option_no_throw("--deskew") != nullptr;
+    return all_ && reads ? text + '\n' + read_keys_text() : text;
+  }
+
+  std::string page_of(const CLI::App& command) const {
+    const std::string_view page = help_page(command.get_name());
+    constexpr std::string_view kRest = "---\n";
+    const std::size_t rest = std::min(page.find(kRest), page.size());
+    std::string text(page.substr(0, rest));
+    if (all_ && rest < page.size()) text += '\n' + std::string(page.substr(rest + kRest.size()));
+    return text;
+  }
+
+  bool all_;
+};
+
+}  // namespace
 
 std::string full_name(const CLI::App& command) {
   const CLI::App* parent = command.get_parent();

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <memory>
 #include <mosbench/method.hpp>
 #include <mosbench/odometry.hpp>
@@ -15,13 +16,138 @@
 #include "datasets/text/text.hpp"
 #include "eval/answer/answer_text.hpp"
 #include "eval/cli/commands.hpp"
-#include "eval/cli/list_json.hpp"
+#include "eval/cli/flags.hpp"
 #include "eval/job/method_choice.hpp"
 #include "eval/predictions/predictions.hpp"
 #include "eval/protocols/protocol.hpp"
 
 namespace mosbench {
 namespace {
+
+using nlohmann::ordered_json;
+
+/// Returns the unit with which the name of a setting ends; empty for numbers without one.
+std::string unit_of(const Setting& setting) {
+  const std::string_view last = setting.name.substr(setting.name.rfind('_') + 1);
+  constexpr std::string_view kUnits[] = {"m",     "s",      "rad",    "deg",
+                                         "scans", "voxels", "points", "ranges"};
+  return std::ranges::find(kUnits, last) != std::end(kUnits) ? std::string(last) : "";
+}
+
+ordered_json value_json(const SettingValue& value) {
+  return std::visit([](const auto& held) { return ordered_json(held); }, value);
+}
+
+ordered_json setting_json(const Setting& setting) {
+  ordered_json json = {{"name", setting.name}};
+  if (setting.is_set) {
+    json["default"] = value_json(setting.value);
+  } else {
+    json["follows"] = setting.follows;
+  }
+  if (!setting.choices.empty()) {
+    json["choices"] = setting.choices;
+  } else {
+    json["unit"] = unit_of(setting);
+    json["lowest"] = setting.lowest;
+    json["highest"] = setting.highest;
+  }
+  json["meaning"] = setting.meaning;
+  return json;
+}
+
+template <typename Rows, typename ToJson>
+ordered_json rows_json(const Rows& rows, ToJson&& row_json) {
+  ordered_json json = ordered_json::array();
+  std::ranges::transform(rows, std::back_inserter(json), row_json);
+  return json;
+}
+
+ordered_json related_json(const RelatedSet& set) {
+  return {{"title", set.title},
+          {"content", set.content},
+          {"published", set.published},
+          {"reading", set.reading}};
+}
+
+ordered_json dataset_json(const Layout* row) {
+  return {{"name", row->name},
+          {"title", row->title},
+          {"content", row->content},
+          {"size", row->size},
+          {"published", row->published},
+          {"licence", row->licence},
+          {"folders", row->folders},
+          {"written", row->writer.has_value()},
+          {"related", rows_json(row->related, related_json)}};
+}
+
+ordered_json preset_json(const Preset& preset) {
+  ordered_json settings = ordered_json::object();
+  for (const PresetValue& value : preset.values) {
+    settings[std::string(value.setting)] = value_json(value.value);
+  }
+  return {{"name", preset.name},
+          {"dataset", preset.kind ? ordered_json(to_string(*preset.kind)) : nullptr},
+          {"method", preset.method.empty() ? nullptr : ordered_json(preset.method)},
+          {"protocol", preset.kind ? ordered_json(preset.protocol) : nullptr},
+          {"settings", settings},
+          {"source", preset.source}};
+}
+
+/// A method or an odometry with its settings.
+template <typename Kind>
+ordered_json kind_json(const Kind& kind) {
+  return {{"name", kind.name},
+          {"title", kind.title},
+          {"summary", kind.summary},
+          {"source", kind.source},
+          {"settings", rows_json(kind.defaults.all(), setting_json)}};
+}
+
+ordered_json odometry_preset_json(const OdometryPreset& preset) {
+  ordered_json settings = ordered_json::object();
+  for (const auto& [name, value] : preset.settings) settings[std::string(name)] = value_json(value);
+  return {{"name", preset.name}, {"odometry", preset.odometry}, {"settings", settings}};
+}
+
+ordered_json scene_json(const SceneSummary& scene) {
+  return {{"name", scene.name}, {"content", scene.content}};
+}
+
+ordered_json format_json(const DescribedFormat& format) {
+  return {{"name", format.name},
+          {"extension", format.extension},
+          {"per_scan", format.per_scan},
+          {"description", format.description}};
+}
+
+ordered_json perturbation_json(const PerturbKind& kind) {
+  return {{"name", kind.name},     {"unit", kind.unit},       {"none", kind.none},
+          {"lowest", kind.lowest}, {"highest", kind.highest}, {"definition", kind.definition},
+          {"source", kind.source}};
+}
+
+/// A member of a protocol; without a title it is not in the text.
+struct ProtocolLine {
+  const char *title, *key;
+  std::string ProtocolDescription::*value;
+};
+constexpr ProtocolLine kProtocolLines[] = {
+    {"rule", "rule", &ProtocolDescription::summary},
+    {"truth", "truth", &ProtocolDescription::truth},
+    {"moving", "moving", &ProtocolDescription::prediction},
+    {"range", "range", &ProtocolDescription::range},
+    {"average", "average", &ProtocolDescription::aggregation},
+    {nullptr, "split", &ProtocolDescription::split},
+    {"0/0", "zero_by_zero", &ProtocolDescription::empty_case},
+    {"source", "source", &ProtocolDescription::source}};
+
+ordered_json protocol_json(const ProtocolDescription& protocol) {
+  ordered_json json = {{"name", protocol.name}};
+  for (const ProtocolLine& line : kProtocolLines) json[line.key] = protocol.*line.value;
+  return json;
+}
 
 /// "  what      value", below the name of a thing.
 std::string line_of(std::string_view what, std::string_view value) {
@@ -129,12 +255,8 @@ std::vector<Sheet> protocols_sheets() {
   Sheet sheet;
   for (const ProtocolDescription& protocol : describe_protocols()) {
     sheet.lead.emplace_back(protocol.name);
-    for (const auto& [what, value] :
-         {std::pair{"rule", &protocol.summary}, std::pair{"truth", &protocol.truth},
-          std::pair{"moving", &protocol.prediction}, std::pair{"range", &protocol.range},
-          std::pair{"average", &protocol.aggregation}, std::pair{"0/0", &protocol.empty_case},
-          std::pair{"source", &protocol.source}}) {
-      sheet.lead.push_back(line_of(what, *value));
+    for (const ProtocolLine& line : kProtocolLines) {
+      if (line.title) sheet.lead.push_back(line_of(line.title, protocol.*line.value));
     }
   }
   return {sheet};
@@ -186,18 +308,26 @@ std::vector<Sheet> perturbations_sheets() {
 struct ListKind {
   std::string_view name, title;
   std::vector<Sheet> (*sheets)();
-  nlohmann::ordered_json (*json)();
+  ordered_json (*json)();
 };
 
 constexpr ListKind kKinds[] = {
-    {"datasets", "Data sets", datasets_sheets, datasets_json},
-    {"methods", "Methods", methods_sheets, methods_json},
-    {"odometry", "Odometry", odometry_sheets, odometry_json},
-    {"presets", "Presets", presets_sheets, presets_json},
-    {"protocols", "Protocols", protocols_sheets, protocols_json},
-    {"scenes", "Scenes", scenes_sheets, scenes_json},
-    {"formats", "Formats of predictions", formats_sheets, formats_json},
-    {"perturbations", "Disturbances for --perturb", perturbations_sheets, perturbations_json},
+    {"datasets", "Data sets", datasets_sheets, [] { return rows_json(layouts(), dataset_json); }},
+    {"methods", "Methods", methods_sheets,
+     [] { return rows_json(methods(), kind_json<MethodKind>); }},
+    {"odometry", "Odometry", odometry_sheets,
+     [] {
+       return ordered_json{{"kinds", rows_json(odometries(), kind_json<OdometryKind>)},
+                           {"presets", rows_json(odometry_presets(), odometry_preset_json)}};
+     }},
+    {"presets", "Presets", presets_sheets, [] { return rows_json(presets(), preset_json); }},
+    {"protocols", "Protocols", protocols_sheets,
+     [] { return rows_json(describe_protocols(), protocol_json); }},
+    {"scenes", "Scenes", scenes_sheets, [] { return rows_json(built_in_scenes(), scene_json); }},
+    {"formats", "Formats of predictions", formats_sheets,
+     [] { return rows_json(prediction_formats(), format_json); }},
+    {"perturbations", "Disturbances for --perturb", perturbations_sheets,
+     [] { return rows_json(perturb_kinds(), perturbation_json); }},
 };
 constexpr std::string_view kAll = "all";
 
@@ -212,17 +342,23 @@ std::vector<Sheet> list_sheets(std::string_view what) {
   return all;
 }
 
-nlohmann::ordered_json list_json(std::string_view what) {
-  nlohmann::ordered_json json;
+ordered_json list_json(std::string_view what) {
+  ordered_json json;
   for (const ListKind& kind : kKinds) {
     if (what == kind.name || what == kAll) json[std::string(kind.name)] = kind.json();
   }
   return json;
 }
 
-const MethodKind& method_named_by_user(const std::string& name) {
-  const MethodKind* method = find_method(name);
-  if (method != nullptr) return *method;
+Answer list_answer(const std::string& what, const std::string& name) {
+  if (name.empty()) return {.sheets = list_sheets(what), .json = json_text(list_json(what))};
+  if (what != "methods") {
+    throw UsageError(
+        fmt::format("{}: is one argument too many, expected a name after methods", name));
+  }
+  if (const MethodKind* method = find_method(name)) {
+    return {.sheets = {settings_sheet(*method)}, .json = json_text(kind_json(*method))};
+  }
   std::vector<std::string_view> names;
   for (const MethodKind& kind : methods()) names.push_back(kind.name);
   throw UsageError(fmt::format("{}: is no method, expected one of {} (nearest: {})", name,
@@ -238,25 +374,12 @@ CommandRun add_list(CLI::App& command) {
   auto listed = std::make_shared<Listed>();
   std::vector<std::string> names = {std::string(kAll)};
   for (const ListKind& kind : kKinds) names.emplace_back(kind.name);
-  command
-      .add_option("WHAT", listed->what,
-                  "datasets, methods, odometry, presets, protocols, scenes, formats, perturbations "
-                  "or all")
+  add(command, "WHAT", listed->what,
+      "datasets, methods, odometry, presets, protocols, scenes, formats, perturbations or all")
       ->capture_default_str()
       ->check(CLI::IsMember(names));
-  command.add_option("NAME", listed->name, "One of the methods");
-  return [listed] {
-    if (listed->name.empty()) {
-      return Answer{.sheets = list_sheets(listed->what),
-                    .json = json_text(list_json(listed->what))};
-    }
-    if (listed->what != "methods") {
-      throw UsageError(
-          fmt::format("{}: is one argument too many, expected a name after methods", listed->name));
-    }
-    const MethodKind& method = method_named_by_user(listed->name);
-    return Answer{.sheets = {settings_sheet(method)}, .json = json_text(method_json(method))};
-  };
+  add(command, "NAME", listed->name, "One of the methods");
+  return [listed] { return list_answer(listed->what, listed->name); };
 }
 
 }  // namespace mosbench

@@ -9,8 +9,8 @@
 #include "datasets/text/errors.hpp"
 #include "eval/answer/terminal.hpp"
 #include "eval/cli/command_line.hpp"
-#include "eval/cli/dataset_flags.hpp"
-#include "eval/cli/failure.hpp"
+#include "eval/cli/commands.hpp"
+#include "eval/cli/flags.hpp"
 #include "eval/result/tell.hpp"
 
 namespace {

@@ -12,11 +12,9 @@
 #include "datasets/text/errors.hpp"
 #include "eval/answer/answer_text.hpp"
 #include "eval/cli/commands.hpp"
-#include "eval/cli/dataset_flags.hpp"
-#include "eval/cli/odometry_flags.hpp"
+#include "eval/cli/flags.hpp"
 #include "eval/cli/output_file.hpp"
 #include "eval/engine/pose_finding.hpp"
-#include "eval/job/job_words.hpp"
 #include "eval/result/machine.hpp"
 #include "eval/result/reading_json.hpp"
 #include "eval/result/settings_json.hpp"
@@ -25,11 +23,8 @@
 namespace mosbench {
 namespace {
 
-struct OdometryFlags {
-  std::filesystem::path input, out;
-  std::string dataset = "auto";
-  std::vector<std::string> sequences;
-  Reading reading;
+struct OdometryFlags : DataWords {
+  std::filesystem::path out;
   OdometryOptions odometry;
   bool as_tum = false;
   unsigned threads = hardware_threads();
@@ -117,21 +112,16 @@ FoundPoses find_or_keep(const Sequence& sequence, const OdometryChoice& choice,
 /// The command that uses the poses: of the sensor itself, also where the layout's own are a
 /// camera's.
 std::string next_command(const OdometryFlags& flags) {
-  Reading reading = flags.reading;
-  reading.poses = PoseFile{flags.out};
-  reading.pose_frame = PoseFrame::kLidar;
-  return fmt::format("use them with\n  mosbench run {}\n",
-                     to_words(Data{.path = flags.input,
-                                   .kind = dataset_kind_option(flags.dataset),
-                                   .sequences = flags.sequences,
-                                   .reading = reading}));
+  Data data = data_of(flags);
+  data.reading.poses = PoseFile{flags.out};
+  data.reading.pose_frame = PoseFrame::kLidar;
+  return fmt::format("use them with\n  mosbench run {}\n", to_words(data));
 }
 
 Answer odometry_answer(OdometryFlags flags) {
   OdometryChoice choice = choose_odometry(flags.odometry, flags.reading);
   flags.reading.poses = ByOdometry{};
-  const Dataset dataset = open_dataset(
-      flags.input, {dataset_kind_option(flags.dataset), flags.sequences, flags.reading});
+  const Dataset dataset = open_dataset(flags);
   choice = with_filter(std::move(choice), dataset.kind);
   for (const auto& sequence : dataset.sequences) {
     if (flags.as_tum) check_stamps_of_tum(*sequence);
@@ -165,14 +155,11 @@ Answer odometry_answer(OdometryFlags flags) {
 
 CommandRun add_odometry(CLI::App& command) {
   auto flags = std::make_shared<OdometryFlags>();
-  add_scan_dataset_flags(command, flags->input, flags->dataset, flags->sequences, flags->reading);
-  command
-      .add_option_function<std::string>(
-          "-o,--out", [flags](const std::string& text) { take_out(text, *flags); },
-          "File of poses to write, TUM's if it ends in .tum or begins with tum:, else KITTI's; - "
-          "is "
-          "stdout; a folder for several sequences")
-      ->type_name("FILE")
+  add_scan_dataset_flags(command, *flags);
+  const auto take = [flags](const std::string& text) { take_out(text, *flags); };
+  add(command, "-o,--out FILE", take,
+      "File of poses to write, TUM's if it ends in .tum or begins with tum:, else KITTI's; - is "
+      "stdout; a folder for several sequences")
       ->required();
   add_odometry_flag(command, flags->odometry, "What finds the poses (default: simple)");
   add_threads_flag(command, flags->threads);

@@ -7,8 +7,9 @@
 
 #include "datasets/text/text.hpp"
 #include "eval/cli/commands.hpp"
+#include "eval/cli/flags.hpp"
 #include "eval/cli/output_file.hpp"
-#include "eval/cli/run_job.hpp"
+#include "eval/cli/run_kinds.hpp"
 #include "eval/result/tell.hpp"
 #include "eval/tables/table_print.hpp"
 
@@ -64,20 +65,15 @@ Answer rank(RankFlags options) {
 
 CommandRun add_rank(CLI::App& command) {
   auto options = std::make_shared<RankFlags>();
-  command
-      .add_option("RUNS", options->runs,
-                  "Folders of results, or JOB.yaml, as given to `mosbench run`")
-      ->type_name("PATH")
+  add(command, "RUNS PATH", options->runs,
+      "Folders of results, or JOB.yaml, as given to `mosbench run`")
       ->required();
-  command.add_option("--order", options->order, "Best IoU first, or as RUNS are given")
+  add(command, "--order", options->order, "Best IoU first, or as RUNS are given")
       ->check(CLI::IsMember({"iou", "given"}))
       ->capture_default_str();
-  command
-      .add_option("--out", options->job.out,
-                  "Folder of the results of JOB.yaml (default: results/runs/<its name>)")
-      ->type_name("DIR");
-  command.add_option("-o", options->job.output, "File of the table; - is stdout")
-      ->type_name("FILE");
+  add(command, "--out DIR", options->job.out,
+      "Folder of the results of JOB.yaml (default: results/runs/<its name>)");
+  add(command, "-o FILE", options->job.output, "File of the table; - is stdout");
   return [options] { return rank(*options); };
 }
 

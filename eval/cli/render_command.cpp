@@ -4,16 +4,20 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <memory>
 #include <numbers>
 #include <optional>
 #include <set>
+#include <utility>
 
+#include "datasets/disk/files.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
 #include "eval/cli/commands.hpp"
+#include "eval/cli/flags.hpp"
 #include "eval/cli/output_file.hpp"
-#include "eval/cli/picture_sequence.hpp"
 #include "eval/protocols/metrics.hpp"
 #include "eval/report/result_boxes.hpp"
 #include "eval/report/scan_choice.hpp"
@@ -124,6 +128,93 @@ void check_has_reasons(const ResultScans& scans) {
   if (scans.has_reasons()) return;
   throw DataError(scans.result().folder() / "reasons", "is not there",
                   "a run of mosbench run --write scores by a method that says why points move");
+}
+
+bool has_ffmpeg() { return std::system("command -v ffmpeg >/dev/null 2>&1") == 0; }
+
+std::string extension_of(const std::filesystem::path& file) {
+  return lower_case(file.extension().string());
+}
+
+/// Videos that every player shows have an even size; a gif has colours of its own.
+std::string ffmpeg_command(const std::string& pictures, const std::filesystem::path& file,
+                           double per_s) {
+  const bool gif = extension_of(file) == ".gif";
+  const char* picture = gif ? "-filter_complex '[0:v]split[a][b];[a]palettegen[p];[b][p]paletteuse'"
+                            : "-vf 'pad=ceil(iw/2)*2:ceil(ih/2)*2' -pix_fmt yuv420p";
+  return fmt::format("ffmpeg -loglevel error -y -framerate {:g} {} {} {}", per_s, pictures, picture,
+                     shell_word(file.string()));
+}
+
+/// Whether pictures of several scans go into one file.
+bool is_video(const std::filesystem::path& out) {
+  return extension_of(out) == ".mp4" || extension_of(out) == ".gif";
+}
+
+/// Where the pictures of several scans go: into a video (.mp4, .gif) by ffmpeg, or into a folder, a
+/// PNG file each. Without ffmpeg the folder is named like the video.
+class PictureSequence {
+ public:
+  /// `per_s`: pictures per second of a video. Throws DataError where ffmpeg cannot be started.
+  PictureSequence(const std::filesystem::path& out, double per_s);
+  ~PictureSequence();
+  PictureSequence(const PictureSequence&) = delete;
+  PictureSequence& operator=(const PictureSequence&) = delete;
+
+  /// Throws DataError.
+  void add(const std::string& stem, std::string_view png);
+  /// Returns what was made, as a sentence. Throws DataError where ffmpeg failed.
+  std::string finish();
+
+ private:
+  std::filesystem::path out_, partial_;  ///< of a video; empty for a folder
+  std::filesystem::path folder_;
+  FILE* ffmpeg_ = nullptr;
+  std::size_t pictures_ = 0;
+};
+
+PictureSequence::PictureSequence(const std::filesystem::path& out, double per_s) {
+  if (!is_video(out)) {
+    folder_ = out;
+    return;
+  }
+  if (!has_ffmpeg()) {
+    folder_ = std::filesystem::path(out).replace_extension();
+    const std::string all = "-pattern_type glob -i " + shell_word((folder_ / "*.png").string());
+    tell(
+        fmt::format("ffmpeg is not there (Debian's package ffmpeg): pictures go to {} instead, of "
+                    "which it makes the video by\n  {}",
+                    folder_.string(), ffmpeg_command(all, out, per_s)));
+    return;
+  }
+  out_ = std::filesystem::absolute(out);
+  std::filesystem::create_directories(out_.parent_path());
+  partial_ = out_.parent_path() /
+             fmt::format("{}.partial{}", out_.stem().string(), out_.extension().string());
+  ffmpeg_ = popen(ffmpeg_command("-f image2pipe -i -", partial_, per_s).c_str(), "w");
+  if (ffmpeg_ == nullptr) throw DataError(out, "ffmpeg cannot be started", "room for a process");
+}
+
+PictureSequence::~PictureSequence() {
+  if (ffmpeg_ != nullptr) pclose(ffmpeg_);
+  std::error_code ignored;
+  if (!partial_.empty()) std::filesystem::remove(partial_, ignored);
+}
+
+void PictureSequence::add(const std::string& stem, std::string_view png) {
+  ++pictures_;
+  if (ffmpeg_ == nullptr) return write_file_atomic(folder_ / (stem + ".png"), png);
+  // What ffmpeg thinks of it shows when it ends.
+  std::fwrite(png.data(), 1, png.size(), ffmpeg_);
+}
+
+std::string PictureSequence::finish() {
+  if (ffmpeg_ == nullptr) return fmt::format("{} pictures in {}\n", pictures_, folder_.string());
+  if (pclose(std::exchange(ffmpeg_, nullptr)) != 0) {
+    throw DataError(out_, "could not be made by ffmpeg", "that it takes PNG files and knows H.264");
+  }
+  std::filesystem::rename(partial_, out_);
+  return fmt::format("{} pictures in the video {}\n", pictures_, out_.string());
 }
 
 /// Where the camera looks in one of several pictures.
@@ -249,50 +340,34 @@ Answer render(RenderFlags& options) {
 
 CommandRun add_render(CLI::App& command) {
   auto options = std::make_shared<RenderFlags>();
-  command
-      .add_option("RESULT", options->input, "Folder that `mosbench run` or `mosbench score` wrote")
-      ->type_name("DIR")
+  add(command, "RESULT DIR", options->input, "Folder that `mosbench run` or `mosbench score` wrote")
       ->required();
-  command
-      .add_option("--scans", options->scans,
-                  "Number of the scan from 0, or worst; several, as for `mosbench report`, make a "
-                  "video or a folder of pictures")
-      ->type_name("SCANS")
+  add(command, "--scans SCANS", options->scans,
+      "Number of the scan from 0, or worst; several, as for `mosbench report`, make a "
+      "video or a folder of pictures")
       ->required();
-  command.add_option("--per-s", options->per_s, "Pictures per second of a video")
+  add(command, "--per-s", options->per_s, "Pictures per second of a video")
       ->check(CLI::Range(0.1, 120.0))
       ->capture_default_str();
-  command
-      .add_option("-o,--out", options->out,
-                  "PNG file to write, - is stdout; of --scans .mp4, .gif or a folder")
-      ->type_name("FILE")
+  add(command, "-o,--out FILE", options->out,
+      "PNG file to write, - is stdout; of --scans .mp4, .gif or a folder")
       ->required();
-  command.add_option("--sequences", options->sequence, "Sequence, where RESULT holds several")
-      ->type_name("NAME");
-  command
-      .add_option("--data", options->dataset_root,
-                  "Folder of the data set (default: where the run read it)")
-      ->type_name("DIR");
-  command
-      .add_option("--range", options->picture.range_m,
-                  "Metres from the sensor to the edge (default: what holds 98 % of the points)")
+  add(command, "--sequences NAME", options->sequence, "Sequence, where RESULT holds several");
+  add(command, "--data DIR", options->dataset_root,
+      "Folder of the data set (default: where the run read it)");
+  add(command, "--range", options->picture.range_m,
+      "Metres from the sensor to the edge (default: what holds 98 % of the points)")
       ->check(CLI::Range(1.0, 1000.0));
-  command.add_option("--size", options->picture.size_pixels, "Width and height in pixels")
+  add(command, "--size", options->picture.size_pixels, "Width and height in pixels")
       ->check(CLI::Range(200, 8000))
       ->capture_default_str();
-  command
-      .add_option("--view", options->view,
-                  "top, or orbit:AZIMUTH+TURN, from a camera around the sensor: degrees from the "
-                  "sensor's front (default: 0) and over several scans (default: 90)")
-      ->type_name("VIEW")
+  add(command, "--view VIEW", options->view,
+      "top, or orbit:AZIMUTH+TURN, from a camera around the sensor: degrees from the "
+      "sensor's front (default: 0) and over several scans (default: 90)")
       ->capture_default_str();
-  command
-      .add_option("--show", options->shown,
-                  "Also boxes, around what moves, with speeds; reasons, colours by why a point is "
-                  "called moving, of a run with --write scores")
-      ->type_name("WHAT,...")
-      ->delimiter(',')
-      ->allow_extra_args(false)
+  add_list(command, "--show WHAT,...", options->shown,
+           "Also boxes, around what moves, with speeds; reasons, colours by why a point is "
+           "called moving, of a run with --write scores")
       ->check(CLI::IsMember({"boxes", "reasons"}));
   command.add_flag("--dark", options->picture.dark, "Draw light points on a dark ground");
   return [options] { return render(*options); };

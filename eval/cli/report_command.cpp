@@ -3,9 +3,9 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
-#include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
 #include "eval/cli/commands.hpp"
+#include "eval/cli/flags.hpp"
 #include "eval/cli/output_file.hpp"
 #include "eval/report/report.hpp"
 
@@ -35,22 +35,14 @@ Answer write_report(ReportFlags& options) {
 
 CommandRun add_report(CLI::App& command) {
   auto options = std::make_shared<ReportFlags>();
-  command
-      .add_option("RESULT", options->inputs,
-                  "Folders that `mosbench run` or `mosbench score` wrote")
-      ->type_name("DIR")
+  add(command, "RESULT DIR", options->inputs,
+      "Folders that `mosbench run` or `mosbench score` wrote")
       ->required();
-  command.add_option("-o,--out", options->out, "HTML file to write; - is stdout")
-      ->type_name("FILE")
-      ->required();
-  command
-      .add_option("--data", options->report.dataset_root,
-                  "Folder of the data set (default: where the run read it)")
-      ->type_name("DIR");
-  command.add_option("--scans", options->scans, "Scans to show in 3-D")
-      ->type_name("SCANS")
-      ->capture_default_str();
-  command.add_option("--max-mb", options->report.max_mb, "Largest size of the file, 1e6 bytes")
+  add(command, "-o,--out FILE", options->out, "HTML file to write; - is stdout")->required();
+  add(command, "--data DIR", options->report.dataset_root,
+      "Folder of the data set (default: where the run read it)");
+  add(command, "--scans SCANS", options->scans, "Scans to show in 3-D")->capture_default_str();
+  add(command, "--max-mb", options->report.max_mb, "Largest size of the file, 1e6 bytes")
       ->check(CLI::Range(0.1, 1000.0))
       ->capture_default_str();
   return [options] { return write_report(*options); };

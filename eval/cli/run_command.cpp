@@ -6,22 +6,10 @@
 #include <memory>
 
 #include "datasets/text/errors.hpp"
-#include "eval/answer/answer_text.hpp"
 #include "eval/cli/commands.hpp"
-#include "eval/cli/help_text.hpp"
-#include "eval/cli/method_options.hpp"
-#include "eval/cli/odometry_flags.hpp"
-#include "eval/cli/run_job.hpp"
-#include "eval/cli/run_methods.hpp"
-#include "eval/cli/run_report.hpp"
-#include "eval/cli/run_table.hpp"
-#include "eval/cli/suggested_command.hpp"
-#include "eval/engine/run_execute.hpp"
-#include "eval/engine/run_plan.hpp"
-#include "eval/job/job_words.hpp"
-#include "eval/job/method_choice.hpp"
+#include "eval/cli/flags.hpp"
+#include "eval/cli/run_kinds.hpp"
 #include "eval/report/written_products.hpp"
-#include "eval/result/result_set.hpp"
 
 namespace mosbench {
 namespace {
@@ -66,40 +54,23 @@ void check_flags(const CLI::App& command, Input input) {
                                kNames[static_cast<std::size_t>(input)]));
 }
 
-Answer run_other(RunFlags flags, Input input, bool threads_given) {
-  const JobWords& words = flags.words;
-  const RunPlace& place = flags.place;
-  if (input == Input::kTable) {
-    if (flags.data.empty()) throw UsageError("--data: is missing, expected the data of the table");
-    return run_table({.name = words.input.string().substr(kTablePrefix.size()),
-                      .root = flags.data,
-                      .out = place.out,
-                      .sequences = words.sequences,
-                      .threads = place.threads});
-  }
-  flags.job.file = words.input;
-  flags.job.out = place.out;
-  if (threads_given) flags.job.threads = place.threads;
-  return run_job(flags.job);
-}
-
-Answer run(const RunFlags& flags, const CLI::App& command) {
+Answer run(RunFlags flags, const CLI::App& command) {
   const Input input = input_of(flags.words.input);
   check_flags(command, input);
-  if (input != Input::kData) return run_other(flags, input, command.count("--threads") > 0);
-  const JobWords& words = flags.words;
-  RunPlace place = flags.place;
-  std::vector<std::string> products = flags.written;
-  place.scores = std::erase(products, kScores) > 0;
-  if (words.method && names_several_methods(*words.method)) {
-    return run_methods(words, place, products);
+  if (input == Input::kTable) {
+    if (flags.data.empty()) throw UsageError("--data: is missing, expected the data of the table");
+    const std::string name = flags.words.input.string().substr(kTablePrefix.size());
+    flags.words.input = flags.data;
+    return run_table(name, flags.words, flags.place);
   }
-  const RunPlan plan = plan_run(job_of(words), place);
-  const std::vector<SequenceOutcome> outcomes = execute_run(plan);
-  for (const SequenceOutcome& outcome : outcomes) write_products(outcome.folder, products);
-  return {.standing = standing_of(plan.dataset),
-          .sheets = {run_sheet(plan, outcomes)},
-          .json = json_text(run_report_json(plan, outcomes))};
+  if (input == Input::kJob) {
+    flags.job.file = flags.words.input;
+    flags.job.out = flags.place.out;
+    if (command.count("--threads") > 0) flags.job.threads = flags.place.threads;
+    return run_job(flags.job);
+  }
+  flags.place.scores = std::erase(flags.written, kScores) > 0;
+  return run_data(flags.words, flags.place, flags.written);
 }
 
 /// Flags of files that name what to combine, and of tables.
@@ -109,22 +80,14 @@ void add_job_flags(CLI::App& command, RunFlags& flags) {
       .add_flag("--dry-run", job.dry_run,
                 "Of JOB.yaml: count what is done and missing, and tell how long that takes")
       ->group(kRareGroup);
-  command
-      .add_option("--on", job.profile,
-                  "By Snakemake: local, slurm, or the folder of a profile (default: this process)")
-      ->type_name("PROFILE")
+  add(command, "--on PROFILE", job.profile,
+      "By Snakemake: local, slurm, or the folder of a profile (default: this process)")
       ->group(kRareGroup);
-  command.add_option("--only", job.keys, "Compute only the cells with these keys, here")
-      ->type_name("KEYS")
-      ->delimiter(',')
-      ->allow_extra_args(false)
+  add_list(command, "--only KEYS", job.keys, "Compute only the cells with these keys, here")
       ->group(kRareGroup);
   command.add_flag("--yes", job.yes, "Compute more than 100 cells")->group(kRareGroup);
-  command.add_option("-o", job.output, "File of the table; - is stdout")
-      ->type_name("FILE")
-      ->group(kRareGroup);
-  command.add_option("--data", flags.data, "Of table:NAME: the folder of its data set")
-      ->type_name("DIR")
+  add(command, "-o FILE", job.output, "File of the table; - is stdout")->group(kRareGroup);
+  add(command, "--data DIR", flags.data, "Of table:NAME: the folder of its data set")
       ->group(kRareGroup);
 }
 
@@ -132,36 +95,26 @@ void add_job_flags(CLI::App& command, RunFlags& flags) {
 
 CommandRun add_run(CLI::App& command) {
   auto flags = std::make_shared<RunFlags>();
-  JobWords* words = &flags->words;
-  RunPlace* place = &flags->place;
-  add_method_options(command, *words, place->threads);
-  command.add_option("--protocol", words->protocol, "How to score (default: by preset)")
-      ->type_name("PROTOCOL");
-  command
-      .add_option("--range", words->range,
-                  "Scoring range in metres, for protocols with a limit (default: the method's)")
-      ->type_name("MIN,MAX")
+  JobWords& words = flags->words;
+  RunPlace& place = flags->place;
+  add_method_flags(command, words, place.threads);
+  add(command, "--protocol PROTOCOL", words.protocol, "How to score (default: by preset)");
+  add(command, "--range MIN,MAX", words.range,
+      "Scoring range in metres, for protocols with a limit (default: the method's)")
       ->group(kRareGroup);
-  command
-      .add_option("--out", place->out,
-                  "Folder of the results (default: results/runs/<data>-<preset>-<variant>, with "
-                  "--odometry also -<kind>)")
-      ->type_name("DIR");
-  add_odometry_flag(command, words->odometry, "Find the poses by it instead of reading them");
+  add(command, "--out DIR", place.out,
+      "Folder of the results (default: results/runs/<data>-<preset>-<variant>, with "
+      "--odometry also -<kind>)");
+  add_odometry_flag(command, words.odometry, "Find the poses by it instead of reading them");
   std::vector<std::string> names = product_names();
   names.insert(names.begin(), kScores);
-  command
-      .add_option(
-          "--write", flags->written,
-          fmt::format("Also write {}; scores: of every point, and of hmm-mos-plus why it moves",
-                      fmt::join(names, ", ")))
-      ->type_name("WHAT,...")
-      ->delimiter(',')
-      ->allow_extra_args(false)
+  add_list(command, "--write WHAT,...", flags->written,
+           fmt::format("Also write {}; scores: of every point, and of hmm-mos-plus why it moves",
+                       fmt::join(names, ", ")))
       ->check(CLI::IsMember(names));
-  command.add_flag("--overwrite", place->overwrite, "Run again and replace what is in --out");
+  command.add_flag("--overwrite", place.overwrite, "Run again and replace what is in --out");
   command
-      .add_flag("--verify", place->verify,
+      .add_flag("--verify", place.verify,
                 "Read all input of finished sequences again, not only its sizes and times")
       ->group(kRareGroup);
   add_job_flags(command, *flags);

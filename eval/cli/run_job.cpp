@@ -1,5 +1,3 @@
-#include "eval/cli/run_job.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,6 +7,7 @@
 #include "datasets/text/text.hpp"
 #include "eval/answer/answer_text.hpp"
 #include "eval/cli/output_file.hpp"
+#include "eval/cli/run_kinds.hpp"
 #include "eval/engine/study_plan.hpp"
 #include "eval/engine/study_run.hpp"
 #include "eval/result/tell.hpp"

@@ -1,5 +1,3 @@
-#include "eval/cli/run_table.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,8 +5,8 @@
 
 #include "datasets/layouts/simulated_origin.hpp"
 #include "datasets/text/errors.hpp"
+#include "eval/cli/run_kinds.hpp"
 #include "eval/engine/run_execute.hpp"
-#include "eval/job/job_words.hpp"
 #include "eval/job/method_choice.hpp"
 #include "eval/result/tell.hpp"
 #include "eval/tables/table_print.hpp"
@@ -73,15 +71,15 @@ bool can_be(DatasetKind found, std::string_view wanted, const std::filesystem::p
 
 /// Throws DataError unless a sequence of the table is there, before hours are spent on no cell of
 /// it.
-void check_is_in_table(const TableRun& options, const Recipe& recipe, const PaperTable& table) {
+void check_is_in_table(const DataWords& data, const Recipe& recipe, const PaperTable& table) {
   std::optional<DatasetKind> found;
   std::vector<std::string> names;
   for (const SequenceFolder& folder :
-       find_sequences(options.root, {.sequences = options.sequences}, found)) {
+       find_sequences(data.input, {.sequences = data.sequences}, found)) {
     names.push_back(folder.name);
   }
   const auto in_table = [&](const std::string& name) { return contains(table, name); };
-  if (can_be(*found, recipe.dataset, options.root) && std::ranges::any_of(names, in_table)) return;
+  if (can_be(*found, recipe.dataset, data.input) && std::ranges::any_of(names, in_table)) return;
   std::vector<std::string_view> wanted;
   for (const TableColumn& column : table.columns) {
     for (const std::string_view name : column.sequences) {
@@ -89,18 +87,17 @@ void check_is_in_table(const TableRun& options, const Recipe& recipe, const Pape
     }
   }
   throw DataError(
-      options.root,
+      data.input,
       fmt::format("holds data set {} with {}", to_string(*found), fmt::join(names, ", ")),
       fmt::format("{} with one or more of {} for table {}: {}", recipe.dataset,
                   fmt::join(wanted, ", "), table.name, table.download));
 }
 
-Job job_for(const TableRun& options, const Recipe& recipe, const std::string& preset,
+Job job_for(const DataWords& data, const Recipe& recipe, const std::string& preset,
             const TableMethod& method) {
   Job job;
-  job.data = {.path = options.root,
-              .kind = dataset_kind_option(std::string(recipe.dataset)),
-              .sequences = options.sequences};
+  job.data = data_of(data);
+  job.data.kind = dataset_kind_option(std::string(recipe.dataset));
   job.segment = {.method = method.kind, .preset = &preset_named(preset)};
   if (method.protocol) job.rule.protocol = &protocol_named(*method.protocol);
   return job;
@@ -113,21 +110,21 @@ std::filesystem::path folder_for(const std::string& preset, const TableMethod& m
 
 }  // namespace
 
-Answer run_table(const TableRun& options) {
-  const Recipe& recipe = recipe_named(options.name);
+Answer run_table(const std::string& name, const DataWords& words, const RunPlace& place) {
+  const Recipe& recipe = recipe_named(name);
   const PaperTable& table = paper_table_named(recipe.table);
-  check_is_in_table(options, recipe, table);
+  check_is_in_table(words, recipe, table);
   const std::filesystem::path out =
-      options.out.value_or(fmt::format("results/runs/reproduce-{}", recipe.dataset));
+      place.out.value_or(fmt::format("results/runs/reproduce-{}", recipe.dataset));
   const std::vector<PublishedCell> cells = built_in_cells();
   std::vector<ResultSet> runs;
   for (const TableMethod& method : methods_of(table, cells)) {
     for (const std::string& preset : recipe.presets) {
       if (!method.has_row_for(preset)) continue;
-      const RunPlace place{.out = out / folder_for(preset, method), .threads = options.threads};
+      const RunPlace one{.out = out / folder_for(preset, method), .threads = place.threads};
       tell(fmt::format("method {}, preset {}", method.kind->name, preset));
-      execute_run(plan_run(job_for(options, recipe, preset, method), place));
-      runs.push_back(load_result_set(*place.out));
+      execute_run(plan_run(job_for(words, recipe, preset, method), one));
+      runs.push_back(load_result_set(*one.out));
     }
   }
   for (const std::string& sentence : left_out(table, runs)) tell(sentence);

@@ -9,9 +9,7 @@
 #include "datasets/text/errors.hpp"
 #include "eval/answer/answer_text.hpp"
 #include "eval/cli/commands.hpp"
-#include "eval/cli/dataset_flags.hpp"
-#include "eval/cli/help_text.hpp"
-#include "eval/job/job_words.hpp"
+#include "eval/cli/flags.hpp"
 #include "eval/job/method_choice.hpp"
 #include "eval/protocols/benchmark_split.hpp"
 #include "eval/result/machine.hpp"
@@ -21,14 +19,10 @@
 namespace mosbench {
 namespace {
 
-struct ScoreFlags {
-  std::filesystem::path input;
-  std::string dataset = "auto";
-  std::vector<std::string> sequences;
+struct ScoreFlags : DataWords {
   ScoreTask task;
   std::optional<std::string> protocol, range, format, id_map;
   std::string method = "unnamed";
-  Reading reading;
   std::optional<std::filesystem::path> out;
   std::optional<std::filesystem::path> map;  ///< cleaned of what moved, instead of predictions
   double same_within_m = kSameWithin_m;
@@ -131,8 +125,7 @@ Answer score(const ScoreFlags& options) {
     throw UsageError("--predictions is required, or --map; see mosbench score --help");
   }
   keep_freed_memory();
-  Dataset dataset = open_dataset(
-      options.input, {dataset_kind_option(options.dataset), options.sequences, options.reading});
+  Dataset dataset = open_dataset(options);
   ScoreTask task = options.task;
   task.options = prediction_options(options);
   if (options.protocol == "all") {
@@ -156,29 +149,21 @@ Answer score(const ScoreFlags& options) {
 }
 
 void add_prediction_options(CLI::App& command, ScoreFlags& options) {
-  command.add_option("--predictions", options.task.predictions, "Folder or file of predictions")
-      ->type_name("PATH");
-  command
-      .add_option(
-          "--map", options.map,
-          "Score a map that was cleaned of what moved, instead of predictions; DATA then holds "
-          "its points with intensity 1 where they are dynamic")
-      ->type_name("FILE");
-  command
-      .add_option("--same-within-m", options.same_within_m,
-                  "Largest distance of a point of the map that stands for one of the truth, m")
+  add(command, "--predictions PATH", options.task.predictions, "Folder or file of predictions");
+  add(command, "--map FILE", options.map,
+      "Score a map that was cleaned of what moved, instead of predictions; DATA then holds "
+      "its points with intensity 1 where they are dynamic");
+  add(command, "--same-within-m", options.same_within_m,
+      "Largest distance of a point of the map that stands for one of the truth, m")
       ->check(CLI::Range(1e-6, 1e3))
       ->capture_default_str()
       ->group(kRareGroup);
-  command
-      .add_option("--format", options.format,
-                  "Format of the predictions (default: recognised); label-masked:MIN,MAX also says "
-                  "within which range in metres the labels are, dynablox:LEVEL which column counts "
-                  "(point, cluster or object)")
-      ->type_name("FORMAT");
-  command
-      .add_option("--id-map", options.id_map, "Meaning of the predicted ids, such as 0:0,1:9,2:251")
-      ->type_name("MAP");
+  add(command, "--format FORMAT", options.format,
+      "Format of the predictions (default: recognised); label-masked:MIN,MAX also says "
+      "within which range in metres the labels are, dynablox:LEVEL which column counts "
+      "(point, cluster or object)");
+  add(command, "--id-map MAP", options.id_map,
+      "Meaning of the predicted ids, such as 0:0,1:9,2:251");
   command.add_flag("--allow-missing", options.task.options.allow_missing,
                    "Leave out scans whose prediction is missing or faulty; marks the result");
 }
@@ -188,23 +173,16 @@ void add_prediction_options(CLI::App& command, ScoreFlags& options) {
 CommandRun add_score(CLI::App& command) {
   auto options = std::make_shared<ScoreFlags>();
   options->task.threads = hardware_threads();
-  add_dataset_flags(command, options->input, options->dataset, options->sequences,
-                    options->reading);
+  add_dataset_flags(command, *options);
   add_prediction_options(command, *options);
-  command
-      .add_option("--protocol", options->protocol, "How to score, or all (default: by data set)")
-      ->type_name("PROTOCOL");
-  command.add_option("--split", options->task.split, "Only the scans of this split")
-      ->type_name("NAME");
-  command
-      .add_option("--range", options->range,
-                  "In metres, for protocols that limit it (default: that of the protocol)")
-      ->type_name("MIN,MAX");
-  command
-      .add_option("--method", options->method,
-                  "Name of the method, kept by --out; \"NAME, SETTING\" also keeps its setting")
-      ->type_name("NAME");
-  command.add_option("--out", options->out, "Write DIR/<sequence>/result.json")->type_name("DIR");
+  add(command, "--protocol PROTOCOL", options->protocol,
+      "How to score, or all (default: by data set)");
+  add(command, "--split NAME", options->task.split, "Only the scans of this split");
+  add(command, "--range MIN,MAX", options->range,
+      "In metres, for protocols that limit it (default: that of the protocol)");
+  add(command, "--method NAME", options->method,
+      "Name of the method, kept by --out; \"NAME, SETTING\" also keeps its setting");
+  add(command, "--out DIR", options->out, "Write DIR/<sequence>/result.json");
   add_threads_flag(command, options->task.threads);
   return [options] { return score(*options); };
 }

@@ -4,12 +4,13 @@
 #include <memory>
 #include <optional>
 
+#include "datasets/perturb/perturbation.hpp"
 #include "datasets/simulator/simulate.hpp"
 #include "datasets/simulator/simulated_sequence.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
 #include "eval/cli/commands.hpp"
-#include "eval/cli/dataset_flags.hpp"
+#include "eval/cli/flags.hpp"
 #include "eval/result/tell.hpp"
 
 namespace mosbench {
@@ -43,22 +44,20 @@ std::string simulate_dataset(SimulateFlags options) {
 CommandRun add_simulate(CLI::App& command) {
   auto options = std::make_shared<SimulateFlags>();
   SimulateOptions& simulation = options->simulation;
-  command.add_option("--layout", options->layout, simulated_layout_names())
-      ->type_name("LAYOUT")
-      ->required();
-  command.add_option("--scene", simulation.scene, "Name of a scene, or a JSON file")
-      ->type_name("SCENE")
-      ->required();
-  command.add_option("--scans", simulation.scans, "Scans per sequence")
+  add(command, "--layout LAYOUT", options->layout, simulated_layout_names())->required();
+  add(command, "--scene SCENE", simulation.scene, "Name of a scene, or a JSON file")->required();
+  add(command, "--scans", simulation.scans, "Scans per sequence")
       ->required()
       ->check(CLI::Range(std::size_t{1}, std::size_t{1000000}));
-  command.add_option("--seed", simulation.seed, "Seed of everything random")
+  add(command, "--seed", simulation.seed, "Seed of everything random")
       ->required()
       ->check(CLI::NonNegativeNumber);
-  command.add_option("--out", simulation.out, "Root of the data set to write")
-      ->type_name("DIR")
-      ->required();
-  add_perturb_flag(command, simulation.perturb, "Disturb what is written");
+  add(command, "--out DIR", simulation.out, "Root of the data set to write")->required();
+  const auto perturb = [options](const std::string& text) {
+    options->simulation.perturb = parse_perturbation(text);
+  };
+  add(command, "--perturb KIND=STRENGTH,...,seed=N", perturb,
+      "Disturb what is written, in this order, see `mosbench list perturbations`");
   add_threads_flag(command, simulation.threads);
   return [options] { return Answer{simulate_dataset(*options)}; };
 }

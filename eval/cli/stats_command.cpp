@@ -1,91 +1,183 @@
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <deque>
 #include <memory>
 
+#include "core/base/thread_pool.hpp"
 #include "datasets/text/errors.hpp"
+#include "eval/answer/answer_text.hpp"
 #include "eval/answer/render.hpp"
-#include "eval/cli/breakdown_answer.hpp"
+#include "eval/breakdown/breakdown.hpp"
 #include "eval/cli/commands.hpp"
-#include "eval/cli/dataset_flags.hpp"
-#include "eval/cli/help_text.hpp"
+#include "eval/cli/flags.hpp"
 #include "eval/cli/output_file.hpp"
+#include "eval/job/method_choice.hpp"
+#include "eval/protocols/protocol.hpp"
 #include "eval/report/score_curve.hpp"
-#include "eval/result/tell.hpp"
+#include "eval/result/result_file.hpp"
+#include "eval/result/result_scans.hpp"
+#include "eval/result/result_set.hpp"
 #include "eval/statistics/statistics_report.hpp"
 
 namespace mosbench {
 namespace {
 
-struct StatsFlags {
-  BreakdownFlags run;
+/// What `input` names is a run, or data with `predictions`.
+struct StatsFlags : DataWords {
+  std::optional<std::filesystem::path> predictions, data, picture;
+  std::optional<std::string> protocol, range, format;
   std::vector<std::string> by;
-  std::optional<std::filesystem::path> data, picture;
+  BreakdownParts parts;
+  std::size_t top = 10;
+  unsigned threads = hardware_threads();
 
   bool shows(std::string_view what) const { return std::ranges::find(by, what) != by.end(); }
 };
 
+BreakdownTask settle(const StatsFlags& options, const Dataset& dataset) {
+  const Protocol& protocol =
+      protocol_named(options.protocol.value_or(std::string(default_preset(dataset.kind).protocol)));
+  return {&protocol,
+          options.range ? range_option(*options.range, protocol) : protocol.default_range,
+          options.threads};
+}
+
+std::vector<SequenceBreakdown> all_breakdowns(const StatsFlags& options, const Dataset& dataset,
+                                              const BreakdownTask& task) {
+  PredictionOptions prediction;
+  if (options.format) prediction.format = prediction_format_named(*options.format);
+  std::vector<SequenceBreakdown> breakdowns;
+  for (const auto& sequence : dataset.sequences) {
+    const std::vector<std::size_t> scans = scans_with_truth(*sequence);
+    if (scans.empty()) continue;
+    const OpenedPredictions opened = open_predictions(*options.predictions, *sequence, scans,
+                                                      dataset.sequences.size() == 1, prediction);
+    breakdowns.push_back(break_down(*sequence, scans, *opened.labels, task));
+  }
+  if (!breakdowns.empty()) return breakdowns;
+  throw DataError(dataset.root, "no scan has truth", "labels next to the scans");
+}
+
+Answer answer_of(const StatsFlags& options, const Dataset& dataset, const BreakdownTask& task,
+                 const std::vector<SequenceBreakdown>& breakdowns) {
+  nlohmann::ordered_json json = {{"dataset", std::string(to_string(dataset.kind))},
+                                 {"protocol", std::string(task.protocol->name)},
+                                 {"min_range_m", task.range.min_m},
+                                 {"max_range_m", task.range.max_m},
+                                 {"sequences", nlohmann::ordered_json::array()}};
+  if (const auto origin = simulated_origin_json(dataset)) json["simulated"] = *origin;
+  Answer answer{.standing = standing_of(dataset),
+                .sheets = {{.lead = {rule_line({task.protocol, task.range})}}}};
+  for (const SequenceBreakdown& part : breakdowns) {
+    json["sequences"].push_back(to_json(part, options.top));
+    for (Sheet& sheet : breakdown_sheets(part, options.parts, options.top)) {
+      answer.sheets.push_back(std::move(sheet));
+    }
+  }
+  answer.json = json_text(json);
+  return answer;
+}
+
+/// A folder of results tells by itself how its data were read and scored.
+void refuse_flags_of_data(const CLI::App& command) {
+  const std::string given = given_words(command, [](const CLI::Option& option) {
+    const std::string name = option.get_name();
+    return option.get_group() == kReadingGroup || name == "--dataset" || name == "--format" ||
+           name == "--protocol" || name == "--range";
+  });
+  if (given.empty()) return;
+  throw UsageError(fmt::format("{}: is told by the results already, expected it with --predictions",
+                               given.substr(1)));
+}
+
+Answer breakdown_of_run(const StatsFlags& options, const CLI::App& command) {
+  if (find_result_files(options.input).empty()) {
+    throw UsageError(
+        fmt::format("--predictions: is missing, expected the labels of {}, or results of `mosbench "
+                    "run` or `mosbench score` in its place",
+                    options.input.string()));
+  }
+  refuse_flags_of_data(command);
+  (void)load_result_set(options.input);  // throws where they are of several runs
+  std::vector<Result> results = read_results(options.input);
+  std::erase_if(results, [&](const Result& result) {
+    return !options.sequences.empty() &&
+           std::ranges::find(options.sequences, result.sequence.text()) == options.sequences.end();
+  });
+  if (results.empty()) {
+    throw UsageError(fmt::format("--sequences: {} has no results of {}, expected others",
+                                 options.input.string(), fmt::join(options.sequences, ",")));
+  }
+  std::deque<ResultScans> scans;
+  std::vector<SequenceBreakdown> breakdowns;
+  BreakdownTask task{};
+  for (const Result& result : results) {
+    const ResultScans& opened = scans.emplace_back(result, std::nullopt);
+    task = {opened.rule().protocol, opened.rule().range, options.threads};
+    if (opened.scored_scans().empty()) continue;
+    breakdowns.push_back(
+        break_down(opened.sequence(), opened.scored_scans(), opened.labels(), task));
+  }
+  if (breakdowns.empty()) {
+    throw DataError(options.input, "has no scan with truth",
+                    "results of a labelled sequence, or another name in --sequences");
+  }
+  return answer_of(options, scans.front().dataset(), task, breakdowns);
+}
+
+Answer breakdown_of(const StatsFlags& options, const CLI::App& command) {
+  if (!options.predictions) return breakdown_of_run(options, command);
+  const Dataset dataset = open_dataset(options);
+  const BreakdownTask task = settle(options, dataset);
+  return answer_of(options, dataset, task, all_breakdowns(options, dataset, task));
+}
+
 Answer curve(const StatsFlags& options) {
   if (options.picture) check_output(*options.picture);
-  Answer answer = curve_answer(curve_of_run(options.run.input, options.data));
+  Answer answer = curve_answer(curve_of_run(options.input, options.data));
   if (options.picture) write_output(*options.picture, render(answer, Format::kPng));
   return answer_beside(options.picture.value_or(""), std::move(answer));
 }
 
 Answer stats(StatsFlags options, const CLI::App& command) {
-  BreakdownParts& parts = options.run.parts;
+  BreakdownParts& parts = options.parts;
   parts = {options.shows("range"), options.shows("height"), options.shows("object")};
   const bool breaks_down = parts.range || parts.height || parts.object;
   if (options.shows("threshold") + options.shows("scan") + breaks_down > 1) {
     throw UsageError("--by: threshold and scan go with nothing else, expected one of them alone");
   }
   if (options.shows("threshold")) return curve(options);
-  if (breaks_down) return breakdown_of(options.run, command);
-  return statistics_answer(load_result_set(options.run.input), options.shows("scan"));
-}
-
-void add_breakdown_flags(CLI::App& command, BreakdownFlags& run) {
-  command
-      .add_option("--predictions", run.predictions,
-                  "Folder or file of predictions for RUN, which then is a data set")
-      ->type_name("PATH")
-      ->group(kRareGroup);
-  command.add_option("--format", run.format, "Of the predictions (default: recognised)")
-      ->type_name("FORMAT")
-      ->group(kRareGroup);
-  command.add_option("--protocol", run.protocol, "Rules of truth and range (default: by data set)")
-      ->type_name("PROTOCOL")
-      ->group(kRareGroup);
-  command.add_option("--range", run.range, "In metres, for protocols that limit it")
-      ->type_name("MIN,MAX")
-      ->group(kRareGroup);
-  command.add_option("--top", run.top, "How many objects and false positives to list")
-      ->capture_default_str();
-  add_threads_flag(command, run.threads);
-  for (const char* flag : {"--dataset", "--poses"}) command.get_option(flag)->group(kRareGroup);
+  if (breaks_down) return breakdown_of(options, command);
+  return statistics_answer(load_result_set(options.input), options.shows("scan"));
 }
 
 }  // namespace
 
 CommandRun add_stats(CLI::App& command) {
   auto options = std::make_shared<StatsFlags>();
-  BreakdownFlags& run = options->run;
-  add_dataset_flags(command, run.input, run.dataset, run.sequences, run.reading, "RUN");
-  command
-      .add_option(
-          "--by", options->by,
-          "Show right and wrong points by range, height and object; or precision over recall "
-          "by threshold; or, in JSON and CSV, by scan (default: intervals by sequence)")
-      ->type_name("WHAT,...")
-      ->delimiter(',')
-      ->allow_extra_args(false)
+  add_dataset_flags(command, *options, "RUN");
+  add_list(command, "--by WHAT,...", options->by,
+           "Show right and wrong points by range, height and object; or precision over recall "
+           "by threshold; or, in JSON and CSV, by scan (default: intervals by sequence)")
       ->check(CLI::IsMember({"range", "height", "object", "threshold", "scan"}));
-  command
-      .add_option("--data", options->data,
-                  "Folder of the data set (default: where the run read it)")
-      ->type_name("DIR");
-  command.add_option("-o,--out", options->picture, "PNG file to draw the curve to; - is stdout")
-      ->type_name("FILE");
-  add_breakdown_flags(command, run);
+  add(command, "--data DIR", options->data,
+      "Folder of the data set (default: where the run read it)");
+  add(command, "-o,--out FILE", options->picture, "PNG file to draw the curve to; - is stdout");
+  add(command, "--predictions PATH", options->predictions,
+      "Folder or file of predictions for RUN, which then is a data set");
+  add(command, "--format FORMAT", options->format, "Of the predictions (default: recognised)");
+  add(command, "--protocol PROTOCOL", options->protocol,
+      "Rules of truth and range (default: by data set)");
+  add(command, "--range MIN,MAX", options->range, "In metres, for protocols that limit it");
+  add(command, "--top", options->top, "How many objects and false positives to list")
+      ->capture_default_str();
+  add_threads_flag(command, options->threads);
+  for (const char* flag :
+       {"--dataset", "--poses", "--predictions", "--format", "--protocol", "--range"}) {
+    command.get_option(flag)->group(kRareGroup);
+  }
   return [options, &command] { return stats(*options, command); };
 }
 

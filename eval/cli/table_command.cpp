@@ -5,6 +5,7 @@
 
 #include "datasets/disk/files.hpp"
 #include "eval/cli/commands.hpp"
+#include "eval/cli/flags.hpp"
 #include "eval/result/tell.hpp"
 #include "eval/tables/table_print.hpp"
 
@@ -34,12 +35,10 @@ Answer table(const TableFlags& options) {
 
 CommandRun add_table(CLI::App& command) {
   auto options = std::make_shared<TableFlags>();
-  command.add_option("TABLE", options->name, "I, II, III, apollo, moe or mdetector")->required();
-  command.add_option("RESULTS", options->results, "Folders of results")->type_name("DIR");
-  command
-      .add_option("--published", options->published,
-                  "CSV of published numbers, instead of the built-in ones")
-      ->type_name("FILE");
+  add(command, "TABLE", options->name, "I, II, III, apollo, moe or mdetector")->required();
+  add(command, "RESULTS DIR", options->results, "Folders of results");
+  add(command, "--published FILE", options->published,
+      "CSV of published numbers, instead of the built-in ones");
   return [options] { return table(*options); };
 }
 

@@ -12,10 +12,8 @@
 #include "eval/answer/answer_text.hpp"
 #include "eval/answer/render.hpp"
 #include "eval/cli/commands.hpp"
-#include "eval/cli/dataset_flags.hpp"
+#include "eval/cli/flags.hpp"
 #include "eval/cli/output_file.hpp"
-#include "eval/cli/suggested_command.hpp"
-#include "eval/cli/trajectory_plot.hpp"
 #include "eval/trajectory/path_comparison.hpp"
 #include "eval/trajectory/trajectory_scores.hpp"
 
@@ -190,41 +188,29 @@ Answer trajectory_answer(const TrajectoryFlags& flags, const CLI::App& command) 
 
 CommandRun add_trajectory(CLI::App& command) {
   auto flags = std::make_shared<TrajectoryFlags>();
-  command.add_option("ESTIMATE", flags->estimate, "File or folder of estimated poses, or data set")
-      ->type_name("PATH")
+  add(command, "ESTIMATE PATH", flags->estimate, "File or folder of estimated poses, or data set")
       ->required();
-  command.add_option("OTHER", flags->other, "Second file or folder of estimated poses, to compare")
-      ->type_name("PATH");
-  command
-      .add_option("--truth", flags->truth, "File or folder of true poses, or data set (required)")
-      ->type_name("PATH");
-  command.add_option("--align", flags->alignment, "Alignment before APE and RPE (default: none)")
+  add(command, "OTHER PATH", flags->other, "Second file or folder of estimated poses, to compare");
+  add(command, "--truth PATH", flags->truth,
+      "File or folder of true poses, or data set (required)");
+  add(command, "--align", flags->alignment, "Alignment before APE and RPE (default: none)")
       ->check(CLI::IsMember({"none", "origin", "rigid", "similarity"}));
-  command
-      .add_option_function<std::string>(
-          "--camera", [flags](const std::string& text) { take_camera(text, *flags); },
-          "The path in the camera frame, estimate or truth, and KITTI's calib.txt with the Tr of "
-          "the LiDAR (default: both are the LiDAR's)")
-      ->type_name("WHOSE:CALIB");
-  command
-      .add_option_function<std::string>(
-          "--read", [flags](const std::string& text) { take_reading(text, flags->reading); },
-          "pose_format=kitti, tum or dynablox, of both files (default: recognised); "
-          "max_time_difference_s, between the stamps of a pair (default: 0.01)")
-      ->type_name("KEY=VALUE,...");
-  command
-      .add_option_function<std::string>(
-          "--delta", [flags](const std::string& text) { take_delta(text, flags->relative); },
-          "Scans between the poses of RPE, or metres of the estimated path, as in 10m; ,all behind "
-          "it starts a pair at every pose (default: 1)")
-      ->type_name("N|METRESm[,all]");
-  command
-      .add_option_function<std::string>(
-          "--by", [flags](const std::string&) { flags->per_pose = true; },
-          "With --json: also the errors of every pose and segment")
+  const auto camera = [flags](const std::string& text) { take_camera(text, *flags); };
+  add(command, "--camera WHOSE:CALIB", camera,
+      "The path in the camera frame, estimate or truth, and KITTI's calib.txt with the Tr of "
+      "the LiDAR (default: both are the LiDAR's)");
+  const auto read = [flags](const std::string& text) { take_reading(text, flags->reading); };
+  add(command, "--read KEY=VALUE,...", read,
+      "pose_format=kitti, tum or dynablox, of both files (default: recognised); "
+      "max_time_difference_s, between the stamps of a pair (default: 0.01)");
+  const auto delta = [flags](const std::string& text) { take_delta(text, flags->relative); };
+  add(command, "--delta N|METRESm[,all]", delta,
+      "Scans between the poses of RPE, or metres of the estimated path, as in 10m; ,all behind "
+      "it starts a pair at every pose (default: 1)");
+  const auto by = [flags](const std::string&) { flags->per_pose = true; };
+  add(command, "--by", by, "With --json: also the errors of every pose and segment")
       ->check(CLI::IsMember({"pose"}));
-  command.add_option("-o,--out", flags->plot, "PNG file to draw the paths and their errors to")
-      ->type_name("FILE");
+  add(command, "-o,--out FILE", flags->plot, "PNG file to draw the paths and their errors to");
   return [flags, &command] {
     if (flags->calib) flags->reading.camera_from_lidar = read_calib(*flags->calib);
     return trajectory_answer(*flags, command);

@@ -86,14 +86,23 @@ Segment segment_of(const JobWords& words) {
 
 }  // namespace
 
+Data data_of(const DataWords& words) {
+  return {.path = words.input,
+          .kind = dataset_kind_option(words.dataset),
+          .sequences = words.sequences,
+          .reading = words.reading};
+}
+
+Dataset open_dataset(const DataWords& words) {
+  return open_dataset(words.input,
+                      {dataset_kind_option(words.dataset), words.sequences, words.reading});
+}
+
 Job job_of(const JobWords& words) {
   Job job;
   job.segment = segment_of(words);
   job.odometry = named_odometry(words.odometry, words.reading);
-  job.data = {.path = words.input,
-              .kind = dataset_kind_option(words.dataset),
-              .sequences = words.sequences,
-              .reading = words.reading};
+  job.data = data_of(words);
   if (job.odometry) job.data.reading.poses = ByOdometry{};
   if (words.protocol) job.rule.protocol = &protocol_named(*words.protocol);
   if (words.range) job.rule.range = parsed_range(*words.range);

@@ -9,21 +9,29 @@
 
 namespace mosbench {
 
-/// What the user asked of `mosbench run`, as typed.
-struct JobWords {
-  std::filesystem::path input;
+/// Which data the user named, as typed.
+struct DataWords {
+  std::filesystem::path input = {};
   std::string dataset = "auto";
-  std::vector<std::string> sequences;
+  std::vector<std::string> sequences = {};
+  Reading reading = {};
+};
+
+/// What the user asked of `mosbench run`, as typed.
+struct JobWords : DataWords {
   std::optional<std::string> method, preset, protocol, range;
   std::string moving = "now";  ///< or "ever" or "ever:SECONDS"
   std::optional<std::filesystem::path> config_file;
-  Reading reading = {};
   OdometryOptions odometry;  ///< poses are found by it when a kind is named
   std::vector<std::string> assignments;
 };
 
-/// Parses them. Throws UsageError.
+/// Parse them. Throw UsageError.
+Data data_of(const DataWords& words);
 Job job_of(const JobWords& words);
+
+/// Opens the data. Throws UsageError and DataError.
+Dataset open_dataset(const DataWords& words);
 
 /// Returns what "KEY=VALUE" of --set says to a method. Throws UsageError.
 SettingChange change_of(const std::string& assignment, const MethodKind& method);

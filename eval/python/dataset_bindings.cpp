@@ -5,7 +5,7 @@
 #include "datasets/formats/pose_file.hpp"
 #include "datasets/layouts/dataset.hpp"
 #include "datasets/sequence/pose_source.hpp"
-#include "eval/cli/dataset_flags.hpp"
+#include "eval/cli/flags.hpp"
 #include "eval/engine/pose_finding.hpp"
 #include "eval/job/job_words.hpp"
 #include "eval/python/arrays.hpp"

@@ -41,5 +41,9 @@ nlohmann::ordered_json trajectory_json(std::span<const TrajectoryScore> scores,
                                        const ScoringRules& rules, bool per_pose);
 /// One row per pose and sequence: absolute errors.
 Sheet pose_records(std::span<const TrajectoryScore> scores);
+/// Charts of one sequence as one or two estimates see it: from above beside the truth, and the
+/// distance to it over the way driven. `alignment` is stated.
+std::vector<LineChart> trajectory_charts(std::span<const TrajectoryScore* const> estimates,
+                                         PathAlignment alignment);
 
 }  // namespace mosbench

@@ -1,5 +1,3 @@
-#include "eval/cli/trajectory_plot.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 
 #include "eval/answer/line_chart.hpp"
 #include "eval/answer/picture.hpp"
+#include "eval/trajectory/trajectory_scores.hpp"
 
 namespace mosbench {
 namespace {

@@ -2,12 +2,22 @@
 
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "eval/answer/answer.hpp"
+#include "eval/engine/run_plan.hpp"
+#include "eval/job/job_words.hpp"
+
+// What `mosbench run` is given: data, a file that names methods and data, or a published table.
 
 namespace mosbench {
+
+/// Runs one method or those of a list, and writes products of each (see `write_products`). Throws
+/// UsageError and DataError.
+Answer run_data(const JobWords& words, const RunPlace& place,
+                std::span<const std::string> products);
 
 /// What to do with a file that names methods, data and disturbances to combine.
 struct JobFlags {
@@ -20,13 +30,15 @@ struct JobFlags {
   bool dry_run = false, yes = false;
 };
 
-/// Returns whether DATA of `mosbench run` names such a file.
+/// Returns whether DATA names such a file.
 bool is_job(const std::filesystem::path& input);
-
 /// Computes the cells that are missing, or with `dry_run` counts them.
 Answer run_job(const JobFlags& flags);
-
 /// Returns the table of what is computed.
 Answer rank_job(const JobFlags& flags);
+
+/// Runs all that a table of the paper, "I" or "doals", needs of the data in `words`, keeps what is
+/// finished, and returns the table.
+Answer run_table(const std::string& name, const DataWords& words, const RunPlace& place);
 
 }  // namespace mosbench
