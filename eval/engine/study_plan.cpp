@@ -187,10 +187,10 @@ CellNumbers numbers_of(const Result& result) {
   CellNumbers numbers;
   numbers.version = result.from.version;
   numbers.simulated = result.is_simulated();
-  const SequenceCounts counts = counts_of(result);
-  numbers.scored = !counts.empty();
-  if (numbers.scored) {
-    const Summary summary = summarize(*result.protocol, counts);
+  numbers.counts = counts_of(result);
+  numbers.gaps = gaps_of(result);
+  if (!numbers.counts.empty()) {
+    const Summary summary = summarize(*result.protocol, numbers.counts);
     for (std::size_t i = 0; i < kBriefMetrics.size(); ++i) {
       numbers.metrics[i] = summary[kBriefMetrics[i]];
     }

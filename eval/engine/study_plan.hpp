@@ -37,7 +37,8 @@ struct BadScan {
 struct CellNumbers {
   std::string version;  ///< of mosbench
   bool simulated = false;
-  bool scored = false;  ///< whether any scan counts
+  SequenceCounts counts;  ///< of the scans that count
+  ScanGaps gaps;          ///< between them
   std::array<std::optional<double>, kBriefMetrics.size()> metrics;
   std::optional<double> ms_per_scan, wall_s, core_s;
   std::optional<BadScan> worst;

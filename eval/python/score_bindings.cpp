@@ -117,7 +117,7 @@ py::dict load_results(const std::filesystem::path& folder) {
   results["protocol"] = std::string(set.front().protocol->name);
   results["simulated"] = set.front().is_simulated();
   results["warnings"] = warnings(set);
-  results["metrics"] = dict_of(aggregate(*set.front().protocol, counts_of(set)));
+  results["metrics"] = dict_of(aggregate(*set.front().protocol, counts_of(set.sequences)));
   results["sequences"] = sequence_results(set);
   return results;
 }

@@ -12,7 +12,6 @@
 #include "datasets/text/errors.hpp"
 #include "eval/breakdown/breakdown.hpp"
 #include "eval/report/score_curve.hpp"
-#include "eval/statistics/scan_spacing.hpp"
 #include "eval/statistics/statistics_report.hpp"
 #include "eval/tables/score_report.hpp"
 #include "eval/tables/table_print.hpp"
@@ -162,9 +161,8 @@ bool has_curve(const ReportRun& run, const std::vector<std::optional<ResultScans
 }  // namespace
 
 ordered_json estimates_of(const Result& result) {
-  const std::vector<SequenceCounts> counts = {counts_of(result)};
-  if (counts.front().empty()) return nullptr;
-  return to_json(estimate(*result.protocol, counts, spacing_of(result)));
+  if (counted_scans(result).empty()) return nullptr;
+  return to_json(estimate({&result, 1}));
 }
 
 ordered_json breakdown_of(const ResultScans& scans) {

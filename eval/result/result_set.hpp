@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -59,7 +60,15 @@ Standing standing_of(const ResultSet& set);
 Standing standing_of(const ResultSet& first, const char* first_name, const ResultSet& second,
                      const char* second_name);
 
-std::vector<SequenceCounts> counts_of(const ResultSet& set);
+std::vector<SequenceCounts> counts_of(std::span<const Result> sequences);
+
+/// How far counted scans are apart, by their names where these are numbers or stamps.
+struct ScanGaps {
+  double neighbours = 0;  ///< pairs of scans that follow each other
+  double shared = 0;      ///< objects that both of a pair see, a part of 1 per pair
+  ScanGaps& operator+=(const ScanGaps& other);
+};
+ScanGaps gaps_of(const Result& result);
 
 /// "simulated data (scene mall, seed 1): not comparable with published numbers".
 std::string simulated_notice(const SimulatedOrigin& origin);

@@ -1,5 +1,7 @@
 #include "eval/statistics/intervals.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <boost/math/distributions/students_t.hpp>  // nowhere else: it takes a second to compile
 #include <cmath>
@@ -117,6 +119,26 @@ Estimates estimate(const Protocol& protocol, Sequences sequences, Spacing spacin
     set_interval(scan_errors(protocol, sequences, m), spacing, {0.0, 1.0}, confidence, metric);
   }
   return estimates;
+}
+
+Estimate mean_of_estimates(std::span<const Estimate> seeds, const Interval& within) {
+  constexpr std::size_t kFewest = 3;  // of two, Student's t spans more than there is
+  if (seeds.size() == 1) return seeds.front();
+  const bool defined =
+      std::ranges::all_of(seeds, [](const auto& seed) { return seed.value.has_value(); });
+  if (seeds.empty() || !defined) return {};
+  const double count = static_cast<double>(seeds.size());
+  double sum = 0.0, squares = 0.0;
+  for (const Estimate& seed : seeds) sum += *seed.value;
+  const double mean = sum / count;
+  if (seeds.size() < kFewest) {
+    return {mean, {}, {}, fmt::format("{} seeds, expected at least {}", seeds.size(), kFewest)};
+  }
+  for (const Estimate& seed : seeds) squares += (*seed.value - mean) * (*seed.value - mean);
+  const double error = std::sqrt(squares / (count - 1.0) / count);
+  const double half = student_quantile(0.5 + 0.5 * kConfidence, count - 1.0) * error;
+  const Interval interval{std::max(within.low, mean - half), std::min(within.high, mean + half)};
+  return {mean, error, interval, ""};
 }
 
 Difference difference_of(double value, std::span<const ScanErrors> errors, Spacing spacing,

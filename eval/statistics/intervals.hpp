@@ -48,6 +48,10 @@ struct Estimates {
 Estimates estimate(const Protocol& protocol, std::span<const SequenceCounts> sequences,
                    Spacing spacing = Spacing::kNear, double confidence = kConfidence);
 
+/// Returns the estimate of a single seed; of several their mean, and by Student's t of their spread
+/// where that of many more seeds would be. `interval` stays in `within`.
+Estimate mean_of_estimates(std::span<const Estimate> seeds, const Interval& within);
+
 /// One metric of a second run minus that of a first on the same scans.
 struct Difference : Estimate {
   /// Two-sided, of the same Student's t as the interval: below 1 - confidence exactly where 0 is

@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <unordered_map>
 
-#include "eval/statistics/scan_spacing.hpp"
-
 namespace mosbench {
 namespace {
 
@@ -122,9 +120,25 @@ class Pairing {
 
 }  // namespace
 
+Spacing spacing_of(const ScanGaps& gaps) {
+  constexpr double kShared = 0.05;  // the part of their objects that far scans share at most
+  const bool far = gaps.neighbours > 0.0 && gaps.shared <= kShared * gaps.neighbours;
+  return far ? Spacing::kFar : Spacing::kNear;
+}
+
+Spacing spacing_of(std::span<const Result> sequences) {
+  ScanGaps gaps;
+  for (const Result& result : sequences) gaps += gaps_of(result);
+  return spacing_of(gaps);
+}
+
+Estimates estimate(std::span<const Result> sequences) {
+  return estimate(*sequences.front().protocol, counts_of(sequences), spacing_of(sequences));
+}
+
 PairedRuns pair_runs(const ResultSet& first, const ResultSet& second) {
   PairedRuns paired;
-  paired.spacing = spacing_of(first);
+  paired.spacing = spacing_of(first.sequences);
   compare_rules(first.front(), second.front(), paired.unlike);
   Pairing pairing(paired);
   const auto named = [](const ResultSet& set, const SequenceName& name) {

@@ -1,12 +1,21 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
 #include "eval/result/result_set.hpp"
-#include "eval/statistics/uncertainty.hpp"
+#include "eval/statistics/intervals.hpp"
 
 namespace mosbench {
+
+/// Returns how far the scans are apart.
+Spacing spacing_of(const ScanGaps& gaps);
+Spacing spacing_of(std::span<const Result> sequences);
+
+/// Estimates the metrics of sequences that were scored by one rule, as its protocol aggregates
+/// them.
+Estimates estimate(std::span<const Result> sequences);
 
 /// One respect in which two runs differ besides their labels.
 struct Unlike {

@@ -8,7 +8,6 @@
 #include "eval/answer/render.hpp"
 #include "eval/protocols/metrics.hpp"
 #include "eval/result/result_json.hpp"
-#include "eval/statistics/scan_spacing.hpp"
 
 namespace mosbench {
 namespace {
@@ -80,18 +79,6 @@ Spread spread_of(const Estimate& estimate) {
   return {estimate.value, estimate.interval->low, estimate.interval->high};
 }
 
-RunStatistics run_statistics(const ResultSet& set) {
-  const std::vector<SequenceCounts> counts = counts_of(set);
-  const Protocol& protocol = *set.front().protocol;
-  RunStatistics statistics;
-  for (std::size_t s = 0; s < counts.size(); ++s) {
-    statistics.sequences.push_back(
-        estimate(protocol, {&counts[s], 1}, spacing_of(set.sequences[s])));
-  }
-  statistics.all = estimate(protocol, counts, spacing_of(set));
-  return statistics;
-}
-
 ordered_json to_json(const Estimates& estimates) {
   ordered_json json;
   for (std::size_t m = 0; m < kMetrics.size(); ++m) {
@@ -137,18 +124,17 @@ ordered_json provenance_json(const ResultSet& set) {
 
 namespace {
 
-ordered_json statistics_json(const ResultSet& set, const RunStatistics& statistics, bool per_scan) {
+ordered_json statistics_json(const ResultSet& set, bool per_scan) {
   ordered_json json = provenance_json(set);
   json["confidence"] = kConfidence;
   json["sequences"] = ordered_json::array();
-  for (std::size_t s = 0; s < set.sequences.size(); ++s) {
-    const Result& sequence = set.sequences[s];
+  for (const Result& sequence : set.sequences) {
     json["sequences"].push_back({{"name", sequence.sequence.text()},
                                  {"scans", counted_scans(sequence).size()},
                                  {"fingerprint", sequence.from.fingerprint},
-                                 {"metrics", to_json(statistics.sequences[s])}});
+                                 {"metrics", to_json(estimate({&sequence, 1}))}});
   }
-  json["all"] = to_json(statistics.all);
+  json["all"] = to_json(estimate(set.sequences));
   if (!per_scan) return json;
   json["scans"] = ordered_json::array();
   for (const Result& sequence : set.sequences) {
@@ -162,7 +148,6 @@ ordered_json statistics_json(const ResultSet& set, const RunStatistics& statisti
 }  // namespace
 
 Answer statistics_answer(const ResultSet& set, bool per_scan) {
-  const RunStatistics statistics = run_statistics(set);
   Sheet sheet{.lead = {headline(set)},
               .columns = {{"sequence", Unit::kText}, {"scans"}},
               .notes = {"95 %: where the value of many more scans like these would be"}};
@@ -175,17 +160,17 @@ Answer statistics_answer(const ResultSet& set, bool per_scan) {
     const std::string& why = estimates[Metric::kIou].no_interval;
     if (!why.empty()) sheet.notes.push_back(fmt::format("no interval for {}: {}", name, why));
   };
-  for (std::size_t s = 0; s < set.sequences.size(); ++s) {
-    const std::uint64_t counted = counted_scans(set.sequences[s]).size();
+  for (const Result& sequence : set.sequences) {
+    const std::uint64_t counted = counted_scans(sequence).size();
     scans += counted;
-    add(set.sequences[s].sequence.text(), counted, statistics.sequences[s]);
+    add(sequence.sequence.text(), counted, estimate({&sequence, 1}));
   }
   sheet.rows.emplace_back();
-  add("all", scans, statistics.all);
+  add("all", scans, estimate(set.sequences));
   return {.standing = standing_of(set),
           .sheets = {std::move(sheet)},
           .records = scan_sheet(set),
-          .json = json_text(statistics_json(set, statistics, per_scan))};
+          .json = json_text(statistics_json(set, per_scan))};
 }
 
 Answer difference_answer(const ResultSet& first, const ResultSet& second,

@@ -9,14 +9,6 @@
 
 namespace mosbench {
 
-/// Metrics of a run with intervals: each sequence alone, and all as the protocol aggregates them.
-struct RunStatistics {
-  std::vector<Estimates> sequences;  ///< in the order of the set
-  Estimates all;
-};
-
-RunStatistics run_statistics(const ResultSet& set);
-
 /// Returns a cell of it.
 Spread spread_of(const Estimate& estimate);
 

@@ -5,10 +5,12 @@
 
 #include "datasets/text/text.hpp"
 #include "eval/answer/answer_text.hpp"
+#include "eval/answer/render.hpp"
 #include "eval/protocols/protocol.hpp"
 #include "eval/report/report_asset.hpp"
 #include "eval/result/tell.hpp"
 #include "eval/result/version.hpp"
+#include "eval/statistics/statistics_report.hpp"
 #include "eval/study/study_table.hpp"
 
 namespace mosbench {
@@ -18,9 +20,11 @@ using nlohmann::ordered_json;
 
 /// "62.3 +- 1.2".
 std::string mean_text(const StudyMean& mean) {
-  if (!mean.value) return mean.count == 0 ? "-" : "undefined";
+  if (!mean.value) return mean.seeds == 0 ? "-" : "undefined";
   if (!mean.interval) return percent_text(mean.value);
-  return fmt::format("{} +- {:.1f}", percent_text(mean.value), 100 * mean.half_width);
+  // One end may be cut.
+  const double half = std::max(mean.interval->high - *mean.value, *mean.value - mean.interval->low);
+  return fmt::format("{} +- {:.1f}", percent_text(mean.value), 100 * half);
 }
 
 Sheet overview_sheet(const StudyTable& table) {
@@ -114,8 +118,8 @@ std::vector<std::string> notes_of(const StudyTable& table) {
   if (table.rule) notes.push_back(rule_line(*table.rule));
   notes.insert(
       notes.end(),
-      {"+- is half of the 95 % interval of the mean over sequences, each the mean of its seeds, or",
-       "over the seeds of one; of fewer than three there is none",
+      {"+- is half of the 95 % interval: where many more scans like these would be, as `mosbench",
+       "rank` says it; with several seeds their spread, of fewer than three there is none",
        "\"to best\" is the paired difference of IoU", "results in " + table.out});
   for (const StudyEffects& effects : table.effects) {
     notes.push_back(fmt::format(
@@ -136,11 +140,8 @@ std::vector<std::string> notes_of(const StudyTable& table) {
 }
 
 ordered_json to_json(const StudyMean& mean) {
-  ordered_json json = {{"value", json_or_null(mean.value)}, {"count", mean.count}};
-  if (mean.interval) {
-    json["low"] = mean.interval->low;
-    json["high"] = mean.interval->high;
-  }
+  ordered_json json = {{"value", json_or_null(mean.value)}, {"seeds", mean.seeds}};
+  json.update(interval_json(spread_of(mean)));
   return json;
 }
 

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "eval/engine/study_plan.hpp"
-#include "eval/statistics/intervals.hpp"
+#include "eval/statistics/paired_runs.hpp"
 #include "eval/statistics/pareto_front.hpp"
 
 namespace mosbench {
@@ -27,45 +27,59 @@ std::optional<double> mean_of(auto&& values) {
   return count > 0 ? std::optional(sum / count) : std::nullopt;
 }
 
-/// Values by sequence, then by what differs in seeds alone.
-using Seeds = std::map<std::string, std::optional<double>>;
-using Samples = std::map<std::string, Seeds>;
+/// Cells by sequence, then by what differs in seeds alone.
+using CellsOfSeeds = std::map<std::string, std::map<std::string, const CellNumbers*>>;
 
-StudyMean study_mean(const Samples& samples, const Interval& within = {0, 1}) {
-  constexpr std::size_t kFewest = 3;  // of two, Student's t spans more than there is
-  std::vector<std::optional<double>> values;
-  for (const auto& [sequence, seeds] : samples) {
-    const auto of_seeds = std::views::values(seeds);
-    if (samples.size() == 1) values.assign(of_seeds.begin(), of_seeds.end());
-    if (samples.size() > 1) values.push_back(mean_of(of_seeds));
+/// All sequences with one seed each.
+struct SeedRun {
+  std::vector<SequenceCounts> sequences;
+  ScanGaps gaps;
+};
+
+/// Returns a run per seed; a sequence with fewer seeds stands in several runs.
+std::vector<SeedRun> runs_of(const CellsOfSeeds& cells) {
+  std::size_t most = 0;
+  for (const auto& [sequence, seeds] : cells) most = std::max(most, seeds.size());
+  std::vector<SeedRun> runs(most);
+  for (const auto& [sequence, seeds] : cells) {
+    auto seed = seeds.begin();
+    for (SeedRun& run : runs) {
+      run.sequences.push_back(seed->second->counts);
+      run.gaps += seed->second->gaps;
+      if (++seed == seeds.end()) seed = seeds.begin();
+    }
   }
-  StudyMean mean;
-  mean.value = mean_of(values);
-  mean.count = values.size();
-  if (!mean.value || values.size() < kFewest) return mean;
-  const double count = static_cast<double>(values.size());
-  double squares = 0;
-  for (const auto& value : values) squares += (*value - *mean.value) * (*value - *mean.value);
-  mean.half_width = student_quantile(1 - (1 - kConfidence) / 2, count - 1) *
-                    std::sqrt(squares / (count - 1) / count);
-  mean.interval = Interval{std::max(within.low, *mean.value - mean.half_width),
-                           std::min(within.high, *mean.value + mean.half_width)};
-  return mean;
+  return runs;
 }
 
-/// First minus second, where both are.
-Samples differences(const Samples& first, const Samples& second) {
-  Samples paired;
+/// The metrics of a run as `mosbench rank` has them; nothing where a sequence has no truth.
+Estimates estimate_of(const Protocol& protocol, const SeedRun& run) {
+  if (std::ranges::any_of(run.sequences, &SequenceCounts::empty)) return {};
+  return estimate(protocol, run.sequences, spacing_of(run.gaps));
+}
+
+/// IoU of the second minus the first, by seed, on what both have.
+std::vector<Estimate> differences(const Protocol& protocol, const CellsOfSeeds& first,
+                                  const CellsOfSeeds& second) {
+  CellsOfSeeds of_first, of_second;
   for (const auto& [sequence, seeds] : first) {
     const auto others = second.find(sequence);
     if (others == second.end()) continue;
-    for (const auto& [seed, value] : seeds) {
+    for (const auto& [seed, cell] : seeds) {
       const auto other = others->second.find(seed);
-      if (other == others->second.end() || !value || !other->second) continue;
-      paired[sequence][seed] = *value - *other->second;
+      if (other == others->second.end()) continue;
+      if (other->second->counts.size() != cell->counts.size()) continue;
+      of_first[sequence][seed] = cell;
+      of_second[sequence][seed] = other->second;
     }
   }
-  return paired;
+  const std::vector<SeedRun> before = runs_of(of_first), after = runs_of(of_second);
+  std::vector<Estimate> ious;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    ious.push_back(paired_difference(protocol, before[i].sequences, after[i].sequences,
+                                     spacing_of(before[i].gaps))[Metric::kIou]);
+  }
+  return ious;
 }
 
 /// A computed cell, with the names under which a table gathers it.
@@ -79,7 +93,7 @@ struct DoneCell {
 /// The cells that were computed, as a table is made of them.
 class DoneCells {
  public:
-  explicit DoneCells(const StudyPlan& plan) {
+  explicit DoneCells(const StudyPlan& plan) : protocol(plan.rule ? plan.rule->protocol : nullptr) {
     for (const PlannedCell& planned : plan.cells) {
       std::string label = planned.cell.label();
       if (std::ranges::find(labels, label) == labels.end()) labels.push_back(label);
@@ -89,24 +103,32 @@ class DoneCells {
     }
   }
 
-  Samples samples(std::size_t metric, auto&& wanted) const {
-    Samples samples;
+  CellsOfSeeds by_seed(auto&& wanted) const {
+    CellsOfSeeds cells;
     for (const DoneCell& each : done) {
       if (!wanted(each)) continue;
       const std::string seed = fmt::format("{} {}", each.cell.data->name, each.cell.seed);
-      samples[each.sequence][seed] = each.numbers.metrics[metric];
+      cells[each.sequence][seed] = &each.numbers;
     }
-    return samples;
+    return cells;
   }
 
   StudyMetrics metrics(auto&& wanted) const {
+    std::array<std::vector<Estimate>, kBriefMetrics.size()> seeds;
+    for (const SeedRun& run : runs_of(by_seed(wanted))) {
+      const Estimates estimates = estimate_of(*protocol, run);
+      for (std::size_t i = 0; i < seeds.size(); ++i) {
+        seeds[i].push_back(estimates[kBriefMetrics[i]]);
+      }
+    }
     StudyMetrics metrics;
-    for (std::size_t i = 0; i < metrics.size(); ++i) {
-      metrics[i] = study_mean(samples(i, wanted));
+    for (std::size_t i = 0; i < seeds.size(); ++i) {
+      metrics[i] = {mean_of_estimates(seeds[i], {0, 1}), seeds[i].size()};
     }
     return metrics;
   }
 
+  const Protocol* protocol = nullptr;  ///< of the cells; null where none is done
   std::vector<std::string> labels;
   std::vector<DoneCell> done;
 };
@@ -134,11 +156,11 @@ void compare_with_best(const DoneCells& cells, std::vector<StudyRow>& rows) {
   const auto iou = [](const StudyRow& row) { return row.metrics[0].value.value_or(-1); };
   const auto best = std::ranges::max_element(rows, {}, iou);
   if (best == rows.end() || !best->metrics[0].value) return;
-  const Samples of_best = cells.samples(0, is_plain_of(best->label));
+  const CellsOfSeeds of_best = cells.by_seed(is_plain_of(best->label));
   for (StudyRow& row : rows) {
     if (row.label == best->label) continue;
-    const Samples of_row = cells.samples(0, is_plain_of(row.label));
-    row.to_best = study_mean(differences(of_row, of_best), {-1, 1});
+    const auto ious = differences(*cells.protocol, of_best, cells.by_seed(is_plain_of(row.label)));
+    row.to_best = {mean_of_estimates(ious, {-1, 1}), ious.size()};
   }
 }
 
@@ -282,7 +304,7 @@ void count_cells(const StudyPlan& plan, StudyTable& table) {
 }
 
 /// IoU of the cells of one row, by what they set and by sequence.
-using Ious = std::map<std::vector<SettingChange>, Seeds>;
+using Ious = std::map<std::vector<SettingChange>, std::map<std::string, std::optional<double>>>;
 
 /// Mean IoU of a row at each whole point: first with all settings as drawn, then with each drawn
 /// anew. A point counts where all of its cells are done, and defined, on all sequences.
@@ -338,7 +360,7 @@ std::vector<StudyEffects> effects_of(const StudyPlan& plan, const DoneCells& cel
 
 std::string why_undefined(const PlannedCell& planned) {
   if (planned.state != CellState::kDone) return "";
-  if (!planned.numbers.scored) return "undefined: no scan has truth that counts";
+  if (planned.numbers.counts.empty()) return "undefined: no scan has truth that counts";
   std::string text;
   for (std::size_t i = 0; i < kBriefMetrics.size(); ++i) {
     if (planned.numbers.metrics[i]) continue;

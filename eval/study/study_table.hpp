@@ -21,13 +21,11 @@ struct StudyEffects {
   std::vector<std::optional<TotalEffect>> effects;  ///< of the IoU's mean over sequences
 };
 
-/// Mean of a metric over the sequences of a study, each the mean of its seeds, also of those of its
-/// simulation; with a single sequence, over seeds.
-struct StudyMean {
-  std::optional<double> value;       ///< fraction; nothing without cells, or where one is undefined
-  std::optional<Interval> interval;  ///< 95 %, Student's t, cut to 0 and 1; nothing below three
-  double half_width = 0;             ///< of the interval before it was cut
-  std::size_t count = 0;             ///< sequences, or seeds of the single one
+/// A metric over the sequences of a study as the protocol aggregates them, which is what `mosbench
+/// rank` says of the same scans. Of several seeds, also those of simulations, it is the mean, and
+/// the interval is that of their spread: 95 %, Student's t, of at least three.
+struct StudyMean : Estimate {
+  std::size_t seeds = 0;  ///< 0 without cells
 };
 
 /// By kBriefMetrics.

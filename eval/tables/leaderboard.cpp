@@ -8,7 +8,6 @@
 #include "datasets/text/errors.hpp"
 #include "eval/statistics/paired_runs.hpp"
 #include "eval/statistics/pareto_front.hpp"
-#include "eval/statistics/scan_spacing.hpp"
 
 namespace mosbench {
 namespace {
@@ -150,7 +149,6 @@ std::optional<double> memory_mb(const ResultSet& run) {
 LeaderboardRow row_of(const ResultSet& run, const std::vector<std::string>& sequences) {
   LeaderboardRow row;
   row.run = &run;
-  const Protocol& protocol = *run.front().protocol;
   bool is_complete = missing_predictions(run) == 0;
   for (const std::string& name : sequences) {
     const auto found = std::ranges::find(
@@ -158,10 +156,9 @@ LeaderboardRow row_of(const ResultSet& run, const std::vector<std::string>& sequ
     is_complete = is_complete && found != run.sequences.end();
     std::optional<Estimates>& estimates = row.sequences.emplace_back();
     if (found == run.sequences.end()) continue;
-    const SequenceCounts counts = counts_of(*found);
-    estimates = estimate(protocol, {&counts, 1}, spacing_of(*found));
+    estimates = estimate({&*found, 1});
   }
-  if (is_complete) row.all = estimate(protocol, counts_of(run), spacing_of(run));
+  if (is_complete) row.all = estimate(run.sequences);
   row.ms_per_scan = ms_per_scan(run);
   row.memory_mb = memory_mb(run);
   return row;

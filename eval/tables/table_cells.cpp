@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "eval/statistics/scan_spacing.hpp"
+#include "eval/statistics/paired_runs.hpp"
 #include "eval/tables/leaderboard.hpp"
 
 namespace mosbench {
@@ -83,7 +83,7 @@ TableCell measured_cell(const PaperTable& table, const TableColumn& column, cons
     cell.sequences.back() +=
         fmt::format(" (simulated, scene {}, seed {})", origin->scene, origin->seed);
   }
-  cell.measured = estimate(*run.front().protocol, counts_of(part), spacing_of(part))[Metric::kIou];
+  cell.measured = estimate(part.sequences)[Metric::kIou];
   if (row != nullptr) cell.reasons = mismatches(run, cell.published.value_or(row->cells.front()));
   for (const Result& sequence : part.sequences) {
     const std::string perturb = disturbance_of(sequence);

@@ -28,7 +28,7 @@ export function resultOf(folder) {
   return JSON.parse(readFileSync(join(folder, 'result.json'), 'utf8'));
 }
 
-/** Dynamic scores of one scan of a run, from the file that --scores writes. */
+/** Dynamic scores of one scan of a run, from the file that --write scores writes. */
 export function scoresOf(folder, stem) {
   const bytes = readFileSync(join(folder, 'scores', `${stem}.score`));
   return Array.from({ length: bytes.length / 4 }, (_, i) => bytes.readFloatLE(4 * i));

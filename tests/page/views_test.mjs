@@ -125,7 +125,7 @@ test('dynamic scores are not offered beside a run without them, which is told ho
   await beside(page, 'delayed');
   await settled(page);
   assert.equal(await page.evaluate(() => mosbenchReport.state.get('colouring')), 'outcome');
-  assert.equal(await page.locator('[aria-label=colour] option[disabled]').textContent(), 'dynamic score: needs mosbench run --scores');
+  assert.equal(await page.locator('[aria-label=colour] option[disabled]').textContent(), 'dynamic score: needs mosbench run --write scores');
   await beside(page, 'delayed');
   assert.equal(await page.locator('[aria-label=colour] option[value=score][disabled]').count(), 0);
   refuseComplaints(page);

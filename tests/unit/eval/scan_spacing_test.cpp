@@ -1,9 +1,11 @@
-#include "eval/statistics/scan_spacing.hpp"
-
 #include <gtest/gtest.h>
+
+#include "eval/statistics/paired_runs.hpp"
 
 namespace mosbench {
 namespace {
+
+Spacing spacing_of(const Result& result) { return mosbench::spacing_of({&result, 1}); }
 
 /// A sequence with a row per name; those that a star ends have truth.
 Result sequence_of(const std::vector<std::string>& names) {
@@ -59,10 +61,9 @@ TEST(SpacingOf, TakesLongNumbersForNanoseconds) {
 }
 
 TEST(SpacingOf, IsThatOfAllSequencesTogether) {
-  EXPECT_EQ(spacing_of(ResultSet{"", {sequence_of({"0*", "150*"}), sequence_of({"0*", "100*"})}}),
-            Spacing::kFar);
-  EXPECT_EQ(spacing_of(ResultSet{"", {sequence_of({"0*", "150*"}), sequence_of({"0*", "10*"})}}),
-            Spacing::kNear);
+  const Result far = sequence_of({"0*", "150*"});
+  EXPECT_EQ(mosbench::spacing_of(std::vector{far, sequence_of({"0*", "100*"})}), Spacing::kFar);
+  EXPECT_EQ(mosbench::spacing_of(std::vector{far, sequence_of({"0*", "10*"})}), Spacing::kNear);
 }
 
 }  // namespace

@@ -55,7 +55,7 @@ function dots(marks, state) {
 /** A vertical bar from low to high at each of [{x, low, high, colour}] that has both. */
 function whiskers(bars, state) {
   return (plot) => {
-    for (const { x, low, high, colour } of bars.filter((bar) => bar.low !== undefined && bar.high !== undefined)) {
+    for (const { x, low, high, colour } of bars.filter((bar) => bar.low !== null)) {
       plot.ctx.save();
       plot.ctx.strokeStyle = colour[state.get('theme')];
       plot.ctx.lineWidth = devicePixelRatio;

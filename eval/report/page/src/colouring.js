@@ -18,7 +18,7 @@ const LARGER = 1.8;
 /** Why a colouring cannot be shown; null where it can. Scores of different methods have no common scale. */
 function obstacle(key, clouds, results, view) {
   if (key === 'score') {
-    if (!results.every((result) => clouds.hasScores(result))) return 'needs mosbench run --scores';
+    if (!results.every((result) => clouds.hasScores(result))) return 'needs mosbench run --write scores';
     const kinds = new Set(results.map((result) => clouds.scoreKind(result)));
     return kinds.size > 1 ? 'not of different methods' : null;
   }

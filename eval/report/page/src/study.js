@@ -10,7 +10,7 @@ const PERCENT_TICKS = (_, values) => values.map((v) => `${Math.round(100 * v)} %
 
 /** "62.3 % (60.1 to 64.4)" of a mean with its interval. */
 function meanText({ value, low, high }) {
-  const interval = low === undefined ? '' : ` (${(100 * low).toFixed(1)} to ${(100 * high).toFixed(1)})`;
+  const interval = low === null ? '' : ` (${(100 * low).toFixed(1)} to ${(100 * high).toFixed(1)})`;
   return percent(value) + interval;
 }
 
@@ -111,7 +111,7 @@ export function gapLines(gaps) {
 /** What is bad, and what one should know. */
 function remarks(study) {
   const bad = [];
-  const lines = ['Means are over sequences, each the mean of its seeds, or over the seeds of one. Numbers behind them, and bars, are 95 % intervals; of fewer than three there are none.'];
+  const lines = ['Metrics are those of all sequences, as the protocol aggregates them; of several seeds their mean. Numbers behind them, and bars, are 95 % intervals: over scans, or of the spread of at least three seeds.'];
   if (study.protocol) lines.unshift(`Scored by ${rulesText(study)}.`);
   if (study.simulated) bad.push('Simulated data: not comparable with published numbers.');
   if (study.critical_difference !== null) {

@@ -71,7 +71,7 @@ test('scores are offered only where every shown run kept them, and of one kind',
     { scores: [3], score_name: 'margin', result: of('A') }, { scores: [] }, {}, { scores: [4], result: of('B') },
     { scores: [3], score_name: 'margin', result: of('B') }, { scores: [3], score_name: 'margin', result: of('A') }] });
   const score = (...results) => allColourings(clouds, results, 'orbit').find(({ key }) => key === 'score');
-  assert.deepEqual([score(0).why, score(0, 1).why, score(0, 3).why], [null, 'needs mosbench run --scores', 'not of different methods']);
+  assert.deepEqual([score(0).why, score(0, 1).why, score(0, 3).why], [null, 'needs mosbench run --write scores', 'not of different methods']);
   assert.deepEqual([score(0, 4).why, score(0, 5).why], ['not of different methods', null]);
   assert.deepEqual([score(0).name, score(3).name], ['margin', 'score']);
   assert.equal(colouringsOf(clouds, [1], 'orbit').some(({ key }) => key === 'score'), false);

@@ -3,7 +3,7 @@ import { test } from 'node:test';
 import { rulesText } from '../src/format.js';
 import { curveChart, gapLines, logTicks, paretoChart } from '../src/study.js';
 
-const point = (value, low, high) => ({ iou: { value, low, high }, precision: { value: 1 }, recall: { value: null } });
+const point = (value, low = null, high = null) => ({ iou: { value, low, high }, precision: { value: 1 }, recall: { value: null } });
 const curve = {
   axis: 'pose_noise_m', unit: 'm', values: ['none', '0.05'],
   lines: [{ label: 'a', points: [point(0.8, 0.7, 0.9), point(0.6)] }, { label: 'b', points: [point(0.5), point(null)] }],
@@ -14,7 +14,7 @@ test('a curve has a line per method over the strengths, and bars where there are
   assert.deepEqual(chart.x, [0, 1]);
   assert.deepEqual(chart.series.map(({ label, values }) => [label, values]), [['a', [0.8, 0.6]], ['b', [0.5, null]]]);
   assert.deepEqual(chart.options.xAxis.values(null, [0, 1, 2]), ['none', '0.05', '']);
-  const bars = chart.options.whiskers.filter(({ low }) => low !== undefined);
+  const bars = chart.options.whiskers.filter(({ low }) => low !== null);
   assert.deepEqual(bars.map(({ x, low, high }) => [x, low, high]), [[-0.025, 0.7, 0.9]]);
   assert.equal(curveChart({ ...curve, unit: '1' }, 'iou').note, '');
 });
