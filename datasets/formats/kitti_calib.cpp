@@ -51,9 +51,7 @@ std::string calib_row(const std::string& key, const auto& matrix) {
 
 KittiCalibLines::KittiCalibLines(std::string_view text, fs::path file) : file_(std::move(file)) {
   for (std::size_t number = 1; !text.empty(); ++number) {
-    const auto end = text.find('\n');
-    const std::string_view line = trim(text.substr(0, end));
-    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+    const std::string_view line = take_line(text);
     if (line.empty()) continue;
     const auto key_end = std::min(line.find_first_of(": \t"), line.size());
     const std::string key(line.substr(0, key_end));
@@ -67,12 +65,10 @@ std::vector<double> KittiCalibLines::numbers(const std::string& key, std::size_t
   const std::string expected = fmt::format("\"{}\" and {} numbers", key, count);
   const auto line = lines_.find(key);
   if (line == lines_.end()) throw DataError(file_, "has no line \"" + key + "\"", expected);
-  std::vector<double> numbers;
-  for (const std::string_view text : split_at_blanks(line->second)) {
-    const auto number = parse_double(text);
-    if (!number) throw DataError(file_, key + ": " + quoted(text) + " is no number", expected);
-    numbers.push_back(*number);
-  }
+  const auto words = split_at_blanks(line->second);
+  std::vector<double> numbers = parse_numbers(words, [&](std::string_view text) {
+    throw DataError(file_, key + ": " + quoted(text) + " is no number", expected);
+  });
   if (numbers.size() != count) {
     throw DataError(file_, fmt::format("{}: has {} numbers", key, numbers.size()), expected);
   }

@@ -23,12 +23,9 @@ OxtsPacket parse_packet(const TextLine& line, const std::filesystem::path& file)
     throw DataError(file, line.number, fmt::format("has {} numbers", texts.size()),
                     "the 30 of a packet of KITTI's GPS/IMU");
   }
-  std::array<double, kPacketNumbers> numbers{};
-  for (std::size_t i = 0; i < kPacketNumbers; ++i) {
-    const auto number = parse_double(texts[i]);
-    if (!number) throw DataError(file, line.number, quoted(texts[i]) + " is no number", "a number");
-    numbers[i] = *number;
-  }
+  const std::vector<double> numbers = parse_numbers(texts, [&](std::string_view text) {
+    throw DataError(file, line.number, quoted(text) + " is no number", "a number");
+  });
   const OxtsPacket packet = {numbers[0], numbers[1], numbers[2],
                              numbers[3], numbers[4], numbers[5]};
   if (!is_on_map(packet)) {

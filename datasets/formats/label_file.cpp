@@ -150,10 +150,6 @@ std::vector<IndicesRow> read_indices(const std::filesystem::path& file) {
   return parse_indices(read_file(file), file);
 }
 
-void write_indices(const std::filesystem::path& file, std::span<const IndicesRow> rows) {
-  write_file_atomic(file, format_indices(rows));
-}
-
 std::set<std::uint64_t> parse_split(std::string_view text, const std::filesystem::path& file) {
   std::set<std::uint64_t> numbers;
   for (const TextLine& line : split_lines(text, file)) {
@@ -172,14 +168,6 @@ std::string format_split(const std::set<std::uint64_t>& numbers) {
   std::string text;
   for (const std::uint64_t number : numbers) text += std::to_string(number) + '\n';
   return text;
-}
-
-std::set<std::uint64_t> read_split(const std::filesystem::path& file) {
-  return parse_split(read_file(file), file);
-}
-
-void write_split(const std::filesystem::path& file, const std::set<std::uint64_t>& numbers) {
-  write_file_atomic(file, format_split(numbers));
 }
 
 }  // namespace mosbench

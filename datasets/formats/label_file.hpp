@@ -50,14 +50,10 @@ void check_indices(const IndicesRow& row, std::size_t point_count,
                    const std::filesystem::path& file);
 
 std::vector<IndicesRow> read_indices(const std::filesystem::path& file);
-void write_indices(const std::filesystem::path& file, std::span<const IndicesRow> rows);
 
 /// Parses the frame numbers of a HeLiMOS split (train.txt, val.txt, test.txt), one per line. Throws
 /// DataError with the line for anything but a number, and for a file without numbers.
 std::set<std::uint64_t> parse_split(std::string_view text, const std::filesystem::path& file);
 std::string format_split(const std::set<std::uint64_t>& numbers);
-
-std::set<std::uint64_t> read_split(const std::filesystem::path& file);
-void write_split(const std::filesystem::path& file, const std::set<std::uint64_t>& numbers);
 
 }  // namespace mosbench

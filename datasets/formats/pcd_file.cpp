@@ -1,5 +1,7 @@
 #include "datasets/formats/pcd_file.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -115,9 +117,8 @@ std::string ascii_records(const PcdHeader& header, std::string_view body,
 void check_body_size(const PcdHeader& header, std::uintmax_t body_bytes,
                      std::uintmax_t wanted_bytes, const std::filesystem::path& file) {
   if (body_bytes >= wanted_bytes) return;
-  throw DataError(
-      file, std::to_string(body_bytes) + " bytes behind the header",
-      std::to_string(wanted_bytes) + " for its " + std::to_string(header.points) + " points");
+  throw DataError(file, fmt::format("{} bytes behind the header", body_bytes),
+                  fmt::format("{} for its {} points", wanted_bytes, header.points));
 }
 
 /// Compressed bodies hold one field after another, each of all points.
@@ -143,8 +144,8 @@ std::string compressed_records(const PcdHeader& header, std::string_view body,
   check_body_size(header, body.size(), sizeof(sizes_bytes) + sizes_bytes[0], file);
   const std::uintmax_t wanted_bytes = std::uintmax_t{header.points} * header.point_bytes;
   if (sizes_bytes[1] != wanted_bytes) {
-    throw DataError(file, std::to_string(sizes_bytes[1]) + " bytes of compressed points",
-                    std::to_string(wanted_bytes) + " for its " + std::to_string(header.points));
+    throw DataError(file, fmt::format("{} bytes of compressed points", sizes_bytes[1]),
+                    fmt::format("{} for its {}", wanted_bytes, header.points));
   }
   const auto records = unpack_lzf(body.substr(sizeof(sizes_bytes), sizes_bytes[0]), sizes_bytes[1]);
   if (!records) {
@@ -164,7 +165,7 @@ PcdRecords parse_records(std::string_view bytes, const std::filesystem::path& fi
   } else if (header.storage == PcdStorage::kCompressed) {
     records.bytes = compressed_records(header, body, file);
   } else {
-    check_pcd_size(header, bytes.size(), file);
+    check_body_size(header, body.size(), header.points * header.point_bytes, file);
     records.bytes = body.substr(0, header.points * header.point_bytes);
   }
   records.head.fields = header.fields;
@@ -246,12 +247,11 @@ PcdScan parse_pcd(std::string_view bytes, const std::filesystem::path& file, boo
 
 PcdHeader read_pcd_header(const std::filesystem::path& file) {
   const PcdHeader header = parse_pcd_header(read_head(file, "DATA"), file);
-  check_pcd_size(header, size_of(file), file);
+  if (header.storage != PcdStorage::kBinary) return header;  // other sizes are not known from it
+  const std::uintmax_t file_bytes = size_of(file);
+  check_body_size(header, file_bytes - std::min(file_bytes, header.body_offset_bytes),
+                  header.points * header.point_bytes, file);
   return header;
-}
-
-PcdScan read_pcd_scan(const std::filesystem::path& file, bool timed) {
-  return parse_pcd(read_file(file), file, timed);
 }
 
 std::vector<Point> read_pcd(const std::filesystem::path& file) {

@@ -8,9 +8,29 @@
 #include <string_view>
 #include <vector>
 
-#include "datasets/formats/pcd_header.hpp"
+#include "datasets/formats/point_records.hpp"
 
 namespace mosbench {
+
+/// How the points behind the header of a PCD file are stored.
+enum class PcdStorage : std::uint8_t { kAscii, kBinary, kCompressed };
+
+/// What the header of a PCD file says of its points.
+struct PcdHeader {
+  std::size_t points = 0;
+  std::vector<CloudField> fields;
+  std::size_t point_bytes = 0;        ///< of one point, all fields
+  std::size_t point_values = 0;       ///< numbers of one point, all fields
+  std::size_t body_offset_bytes = 0;  ///< where the line after DATA starts
+  PcdStorage storage = PcdStorage::kAscii;
+  bool has_labels = false;        ///< there is a field "label"
+  bool has_times = false;         ///< there is a field of `is_time_field`
+  std::optional<Pose> viewpoint;  ///< map_from_sensor, when the header has one
+};
+
+/// Parses the header of a PCD file from `bytes`, which reach at least to the end of the line DATA.
+/// Throws DataError for a missing or wrong line.
+PcdHeader parse_pcd_header(std::string_view bytes, const std::filesystem::path& file);
 
 /// A .pcd scan whose points may have labels and times.
 struct PcdScan {
@@ -31,8 +51,6 @@ std::optional<std::string> unpack_lzf(std::string_view packed, std::size_t size_
 
 /// Reads the header alone, and checks it against the size of the file. Throws DataError.
 PcdHeader read_pcd_header(const std::filesystem::path& file);
-
-PcdScan read_pcd_scan(const std::filesystem::path& file, bool timed = false);
 
 /// The points alone; throws as `parse_pcd`.
 std::vector<Point> read_pcd(const std::filesystem::path& file);

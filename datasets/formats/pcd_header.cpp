@@ -1,5 +1,3 @@
-#include "datasets/formats/pcd_header.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -7,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "datasets/formats/pcd_file.hpp"
 #include "datasets/formats/point_records.hpp"
 #include "datasets/formats/pose_file.hpp"
 #include "datasets/text/errors.hpp"
@@ -111,12 +110,9 @@ class PcdHeaderParser {
   /// Reads tx ty tz qw qx qy qz.
   Pose viewpoint() const {
     const auto& words = words_of("VIEWPOINT", 7);
-    std::array<double, 7> numbers{};
-    for (std::size_t i = 0; i < numbers.size(); ++i) {
-      const auto number = parse_double(words[i]);
-      if (!number) fail("VIEWPOINT " + quoted(words[i]), "tx ty tz qw qx qy qz");
-      numbers[i] = *number;
-    }
+    const std::vector<double> numbers = parse_numbers(words, [&](std::string_view word) {
+      fail("VIEWPOINT " + quoted(word), "tx ty tz qw qx qy qz");
+    });
     const auto pose = pose_of({numbers[0], numbers[1], numbers[2]},
                               {numbers[4], numbers[5], numbers[6], numbers[3]});
     if (!pose) fail("VIEWPOINT is no pose", "tx ty tz qw qx qy qz of length 1");
@@ -168,17 +164,6 @@ class PcdHeaderParser {
 
 PcdHeader parse_pcd_header(std::string_view bytes, const std::filesystem::path& file) {
   return PcdHeaderParser(bytes, file).run();
-}
-
-void check_pcd_size(const PcdHeader& header, std::uintmax_t file_bytes,
-                    const std::filesystem::path& file) {
-  const std::uintmax_t body_bytes =
-      file_bytes - std::min<std::uintmax_t>(file_bytes, header.body_offset_bytes);
-  const std::uintmax_t wanted_bytes = std::uintmax_t{header.points} * header.point_bytes;
-  if (header.storage != PcdStorage::kBinary || body_bytes >= wanted_bytes) return;
-  throw DataError(
-      file, std::to_string(body_bytes) + " bytes behind the header",
-      std::to_string(wanted_bytes) + " for its " + std::to_string(header.points) + " points");
 }
 
 }  // namespace mosbench

@@ -57,19 +57,14 @@ PoseFormat format_of(std::string_view row) {
 /// Position and quaternion in x y z w order.
 Pose parse_seven(const std::vector<std::string_view>& words, std::size_t from, PoseFormat format,
                  const TextLine& line, const std::filesystem::path& file) {
-  std::array<double, kPoseNumbers> numbers{};
   if (words.size() != from + kPoseNumbers) {
     throw DataError(file, line.number, std::to_string(words.size()) + " numbers in the row",
                     row_of(format));
   }
-  for (std::size_t i = 0; i < kPoseNumbers; ++i) {
-    const auto value = parse_double(words[from + i]);
-    if (!value) {
-      throw DataError(file, line.number, quoted(words[from + i]) + " is no finite number",
-                      row_of(format));
-    }
-    numbers[i] = *value;
-  }
+  const std::vector<double> numbers =
+      parse_numbers(std::span(words).subspan(from), [&](std::string_view word) {
+        throw DataError(file, line.number, quoted(word) + " is no finite number", row_of(format));
+      });
   const auto pose = pose_of({numbers[0], numbers[1], numbers[2]},
                             {numbers[3], numbers[4], numbers[5], numbers[6]});
   if (!pose) {
@@ -104,18 +99,13 @@ Pose parse_pose_row(std::string_view row, const std::filesystem::path& file, std
     throw DataError(file, line, fmt::format("{} numbers in the row", numbers.size()),
                     "12 (row-major 3x4 matrix)");
   }
+  const std::vector<double> values = parse_numbers(numbers, [&](std::string_view number) {
+    throw DataError(file, line, quoted(number) + " is no finite number",
+                    "12 numbers separated by blanks");
+  });
   Pose pose = Pose::Identity();
-  for (int r = 0; r < kRows; ++r) {
-    for (int c = 0; c < kColumns; ++c) {
-      const std::string_view number = numbers[static_cast<std::size_t>(r * kColumns + c)];
-      const auto value = parse_double(number);
-      if (!value) {
-        throw DataError(file, line, quoted(number) + " is no finite number",
-                        "12 numbers separated by blanks");
-      }
-      pose.matrix()(r, c) = *value;
-    }
-  }
+  pose.matrix().topRows<kRows>() =
+      Eigen::Map<const Eigen::Matrix<double, kRows, kColumns, Eigen::RowMajor>>(values.data());
   check_rotation(pose.linear(), file, line);
   return pose;
 }
@@ -156,9 +146,7 @@ void write_poses(const std::filesystem::path& file, std::span<const Pose> poses)
 Pose parse_calib(std::string_view text, const std::filesystem::path& file) {
   std::optional<Pose> camera_from_lidar;
   for (std::size_t number = 1; !text.empty(); ++number) {
-    const auto end = text.find('\n');
-    const std::string_view line = trim(text.substr(0, end));
-    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+    const std::string_view line = take_line(text);
     if (!line.starts_with(kKey)) continue;
     if (camera_from_lidar) throw DataError(file, number, "a second line \"Tr:\"", "one");
     camera_from_lidar = parse_pose_row(line.substr(kKey.size()), file, number);

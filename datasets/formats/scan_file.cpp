@@ -76,7 +76,7 @@ std::vector<Point> read_scan(const std::filesystem::path& file, std::size_t bin_
 TimedScan read_timed_scan(const std::filesystem::path& file, std::size_t bin_columns,
                           std::optional<std::int64_t> stamp_ns) {
   if (has_extension(file, ".pcd")) {
-    PcdScan scan = read_pcd_scan(file, true);
+    PcdScan scan = parse_pcd(read_file(file), file, true);
     return {std::move(scan.points), times_after_stamp_ns(scan.times, stamp_ns, file)};
   }
   const std::string bytes = read_file(file);

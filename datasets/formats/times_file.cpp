@@ -177,9 +177,7 @@ std::vector<std::optional<std::int64_t>> parse_kitti_stamps(std::string_view tex
                                                             const std::filesystem::path& file) {
   std::vector<std::optional<std::int64_t>> stamps_ns;
   for (std::size_t number = 1; !text.empty(); ++number) {
-    const auto end = text.find('\n');
-    const std::string_view line = trim(text.substr(0, end));
-    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+    const std::string_view line = take_line(text);
     stamps_ns.push_back(line.empty() ? std::nullopt : parse_stamp(line));
     if (!line.empty() && !stamps_ns.back()) {
       throw DataError(file, number, quoted(line) + " is no time",

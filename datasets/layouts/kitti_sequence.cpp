@@ -58,7 +58,7 @@ void KittiSequence::read(std::size_t scan_index, Frame& frame) const {
     return FolderSequence::read(scan_index, frame);
   }
   const std::filesystem::path& file = *scan_file(scan_index);
-  PcdScan scan = read_pcd_scan(file, times_in_column());
+  PcdScan scan = parse_pcd(read_file(file), file, times_in_column());
   check_count(scan_index, scan.points.size());
   describe(scan_index, frame);
   frame.points = std::move(scan.points);

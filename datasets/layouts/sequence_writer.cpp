@@ -103,7 +103,7 @@ class DoalsRows {
     for (const auto& row : rows_) {
       if (row) labelled.push_back(*row);
     }
-    if (!labelled.empty()) write_indices(folder / "indices.csv", labelled);
+    if (!labelled.empty()) write_file_atomic(folder / "indices.csv", format_indices(labelled));
   }
 
  private:

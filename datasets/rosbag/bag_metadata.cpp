@@ -30,9 +30,7 @@ BagMetadata parse_bag_metadata(std::string_view text, const std::filesystem::pat
   BagMetadata metadata;
   bool lists_files = false;
   while (!text.empty()) {
-    const std::size_t end = text.find('\n');
-    const std::string_view line = trim(text.substr(0, end));
-    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+    const std::string_view line = take_line(text);
     if (lists_files && line.starts_with("- ")) {
       metadata.files.push_back(unquoted(line.substr(2)));
       continue;

@@ -78,15 +78,20 @@ std::string_view trim(std::string_view text) {
   return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
 }
 
+std::string_view take_line(std::string_view& text) {
+  const auto end = text.find('\n');
+  const std::string_view line = trim(text.substr(0, end));
+  text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+  return line;
+}
+
 std::vector<TextLine> split_lines(std::string_view text, const std::filesystem::path& file) {
   std::vector<TextLine> lines;
   std::optional<std::size_t> blank_line;
   std::size_t number = 0;
   while (!text.empty()) {
     ++number;
-    const auto end = text.find('\n');
-    const std::string_view line = trim(text.substr(0, end));
-    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+    const std::string_view line = take_line(text);
     if (line.empty()) {
       if (!blank_line) blank_line = number;
       continue;
@@ -129,6 +134,18 @@ std::optional<double> parse_double(std::string_view text) {
   if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
   if (!std::isfinite(value)) return std::nullopt;
   return value;
+}
+
+std::vector<double> parse_numbers(std::span<const std::string_view> words,
+                                  const std::function<void(std::string_view)>& refuse) {
+  std::vector<double> numbers;
+  numbers.reserve(words.size());
+  for (const std::string_view word : words) {
+    const auto number = parse_double(word);
+    if (!number) refuse(word);
+    numbers.push_back(number.value());
+  }
+  return numbers;
 }
 
 std::optional<std::uint64_t> parse_unsigned(std::string_view text) {

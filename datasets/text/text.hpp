@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -28,11 +29,18 @@ std::vector<std::string_view> split_at_blanks(std::string_view line);
 /// Splits a line at commas and trims the parts: one more than there are commas.
 std::vector<std::string_view> split_at_commas(std::string_view line);
 
+/// Takes the first line off `text`, and returns it trimmed.
+std::string_view take_line(std::string_view& text);
+
 /// Returns `text` without blanks, tabs and carriage returns at both ends.
 std::string_view trim(std::string_view text);
 
 /// Returns the whole of `text` as a finite double, or nothing.
 std::optional<double> parse_double(std::string_view text);
+
+/// Returns the words as finite doubles. The first that is none goes to `refuse`, which throws.
+std::vector<double> parse_numbers(std::span<const std::string_view> words,
+                                  const std::function<void(std::string_view)>& refuse);
 
 /// Whether this is a decimal digit, in any locale.
 constexpr bool is_digit(char c) { return c >= '0' && c <= '9'; }

@@ -103,7 +103,8 @@ inline void pcd(std::string_view bytes) {
   const PcdScan scan = parse_pcd(bytes, "f");
   require(scan.points.size() == header.points);
   require(!scan.labels || scan.labels->size() == header.points);
-  check_pcd_size(header, bytes.size(), "f");
+  require(header.storage != PcdStorage::kBinary ||
+          bytes.size() - header.body_offset_bytes >= header.points * header.point_bytes);
 }
 
 /// The first byte chooses the format, the second is a number of points.

@@ -3,6 +3,7 @@
 
 #include <limits>
 
+#include "datasets/disk/files.hpp"
 #include "datasets/formats/label_file.hpp"
 #include "datasets/formats/times_file.hpp"
 #include "datasets/text/errors.hpp"
@@ -108,7 +109,7 @@ TEST(IndicesFile, WritesWhatItReads) {
   const TempFolder folder;
   const std::vector<IndicesRow> rows = {{.stamp_ns = 7, .moving = {1, 2, 131071}, .line = 1},
                                         {.stamp_ns = 8, .moving = {}, .line = 2}};
-  write_indices(folder / "indices.csv", rows);
+  write_file_atomic(folder / "indices.csv", format_indices(rows));
   const auto again = read_indices(folder / "indices.csv");
   ASSERT_EQ(again.size(), 2U);
   EXPECT_EQ(again[0].moving, rows[0].moving);
@@ -131,8 +132,8 @@ TEST(SplitFile, RefusesTextAndAnEmptyFile) {
 
 TEST(SplitFile, WritesWhatItReads) {
   const TempFolder folder;
-  write_split(folder / "val.txt", {3, 1, 12476});
-  EXPECT_THAT(read_split(folder / "val.txt"), ElementsAre(1U, 3U, 12476U));
+  write_file_atomic(folder / "val.txt", format_split({3, 1, 12476}));
+  EXPECT_THAT(parse_split(read_file(folder / "val.txt"), "val.txt"), ElementsAre(1U, 3U, 12476U));
 }
 
 }  // namespace
