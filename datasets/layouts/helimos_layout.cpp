@@ -83,7 +83,7 @@ std::set<std::string> stems_of_split(const Sequence& sequence, const std::filesy
   std::size_t beyond = 0;
   std::size_t poseless = 0;
   std::size_t unlabelled = 0;
-  for (const std::uint64_t number : read_split(file)) {
+  for (const std::uint64_t number : parse_split(read_file(file), file)) {
     const auto scan = scan_of_number.find(number);
     if (scan != scan_of_number.end()) {
       stems.insert(sequence.stem(scan->second));
@@ -152,7 +152,7 @@ void write_splits(const std::filesystem::path& root, const SplitNumbers& splits)
   for (const std::string name : kSplits) {
     const auto numbers = splits.find(name);
     if (numbers == splits.end() || numbers->second.empty()) continue;
-    write_split(root / folder_of_sensors() / (name + ".txt"), numbers->second);
+    write_file_atomic(root / folder_of_sensors() / (name + ".txt"), format_split(numbers->second));
   }
 }
 
