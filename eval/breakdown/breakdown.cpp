@@ -36,9 +36,8 @@ std::vector<ScanBreakdown> per_scan(const Sequence& sequence, const std::vector<
   return parts;
 }
 
-template <std::size_t size>
-void add(const std::array<Confusion, size>& part, std::array<Confusion, size>& sum) {
-  for (std::size_t b = 0; b < size; ++b) sum[b] += part[b];
+void add(const BinCounts& part, BinCounts& sum) {
+  for (std::size_t b = 0; b < sum.size(); ++b) sum[b] += part[b];
 }
 
 /// Bins between edges; the last one has no upper end.

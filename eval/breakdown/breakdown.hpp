@@ -24,8 +24,7 @@ struct SequenceBreakdown {
   std::vector<std::string> stems;  ///< of all scans, by scan index
   std::vector<std::size_t> scans;  ///< indices of the scored scans
   bool stamped = false;            ///< speeds use the scans' stamps; otherwise 10 Hz is assumed
-  std::array<Confusion, kRangeEdges_m.size()> by_range;
-  std::array<Confusion, kHeightEdges_m.size()> by_height;
+  BinCounts by_range, by_height;
   std::vector<ObjectTrack> objects;
   std::vector<FalseCluster> false_positives;  ///< worst first
 };

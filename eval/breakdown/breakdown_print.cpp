@@ -20,14 +20,12 @@ ordered_json metrics_json(const Confusion& counts) {
   return json;
 }
 
-template <std::size_t size>
-ordered_json bins_json(const std::array<double, size>& edges,
-                       const std::array<Confusion, size>& bins) {
+ordered_json bins_json(const BinEdges& edges, const BinCounts& bins) {
   ordered_json json = ordered_json::array();
-  for (std::size_t b = 0; b < size; ++b) {
+  for (std::size_t b = 0; b < bins.size(); ++b) {
     ordered_json bin = {
         {"from_m", edges[b] < -1e9 ? ordered_json(nullptr) : ordered_json(edges[b])}};
-    bin["to_m"] = b + 1 < size ? ordered_json(edges[b + 1]) : ordered_json(nullptr);
+    bin["to_m"] = b + 1 < bins.size() ? ordered_json(edges[b + 1]) : ordered_json(nullptr);
     bin.update(metrics_json(bins[b]));
     json.push_back(std::move(bin));
   }
@@ -74,20 +72,18 @@ ordered_json object_json(const SequenceBreakdown& breakdown, const ObjectTrack& 
           {"last_position_map_m", position(last.cluster.centre_map_m)}};
 }
 
-template <std::size_t size>
-Sheet bins_sheet(const char* title, const std::array<double, size>& edges,
-                 const std::array<Confusion, size>& bins) {
+Sheet bins_sheet(const char* title, const BinEdges& edges, const BinCounts& bins) {
   Sheet sheet{.columns = {{title, Unit::kText}}};
   for (const Metric metric : kBriefMetrics) {
     sheet.columns.push_back({std::string(row_of(metric).title), Unit::kPercent});
   }
   for (const char* name : {"TP", "FP", "FN"}) sheet.columns.push_back({name});
-  for (std::size_t b = 0; b < size; ++b) {
+  for (std::size_t b = 0; b < bins.size(); ++b) {
     if (bins[b].tp + bins[b].fp + bins[b].fn == 0) continue;
     const std::string from = edges[b] < -1e9 ? "below" : fmt::format("{:g} to", edges[b]);
     std::vector<Cell>& cells = sheet.rows.emplace_back();
-    cells.emplace_back(b + 1 < size ? fmt::format("{} {:g} m", from, edges[b + 1])
-                                    : fmt::format("from {:g} m", edges[b]));
+    cells.emplace_back(b + 1 < bins.size() ? fmt::format("{} {:g} m", from, edges[b + 1])
+                                           : fmt::format("from {:g} m", edges[b]));
     for (const Metric metric : kBriefMetrics) {
       cells.push_back(or_missing(metric_of(bins[b], metric)));
     }

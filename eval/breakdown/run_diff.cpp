@@ -20,6 +20,37 @@ long long change(std::uint64_t from, std::uint64_t to) {
   return static_cast<long long>(to) - static_cast<long long>(from);
 }
 
+/// Short names of two runs.
+struct RunNames {
+  std::string first, second;
+};
+
+/// Returns the last components of both paths, or the whole paths where those are equal.
+RunNames names_apart(const std::filesystem::path& first, const std::filesystem::path& second) {
+  RunNames names{folder_name(first), folder_name(second)};
+  if (names.first == names.second) return {first.string(), second.string()};
+  return names;
+}
+
+/// A scan in which two runs count differently.
+struct ScanDisagreement {
+  PairedRuns::Scan scan;
+  std::uint64_t changed_points = 0;  ///< change of tp plus change of fp: a lower bound
+};
+
+/// Returns the scans whose counts differ, most changed first.
+std::vector<ScanDisagreement> disagreeing_scans(const PairedRuns& paired) {
+  std::vector<ScanDisagreement> scans;
+  for (const PairedRuns::Scan& scan : paired.scans) {
+    const Confusion& first = *scan.first->counts;
+    const Confusion& second = *scan.second->counts;
+    const std::uint64_t changed = apart(first.tp, second.tp) + apart(first.fp, second.fp);
+    if (changed > 0) scans.push_back({scan, changed});
+  }
+  std::ranges::stable_sort(scans, std::ranges::greater{}, &ScanDisagreement::changed_points);
+  return scans;
+}
+
 Sheet scans_sheet(const RunNames& names, const std::vector<ScanDisagreement>& scans,
                   std::size_t at_most) {
   Sheet sheet{.columns = {{"scan", Unit::kText},
@@ -63,24 +94,6 @@ Sheet objects_sheet(const RunNames& names, const std::vector<ObjectDisagreement>
 }
 
 }  // namespace
-
-RunNames names_apart(const std::filesystem::path& first, const std::filesystem::path& second) {
-  RunNames names{folder_name(first), folder_name(second)};
-  if (names.first == names.second) return {first.string(), second.string()};
-  return names;
-}
-
-std::vector<ScanDisagreement> disagreeing_scans(const PairedRuns& paired) {
-  std::vector<ScanDisagreement> scans;
-  for (const PairedRuns::Scan& scan : paired.scans) {
-    const Confusion& first = *scan.first->counts;
-    const Confusion& second = *scan.second->counts;
-    const std::uint64_t changed = apart(first.tp, second.tp) + apart(first.fp, second.fp);
-    if (changed > 0) scans.push_back({scan, changed});
-  }
-  std::ranges::stable_sort(scans, std::ranges::greater{}, &ScanDisagreement::changed_points);
-  return scans;
-}
 
 std::vector<ObjectDisagreement> disagreeing_objects(const SequenceBreakdown& first,
                                                     const SequenceBreakdown& second) {
@@ -136,14 +149,16 @@ ordered_json diff_json(const PairedRuns& paired, const std::vector<ObjectDisagre
   return json;
 }
 
-std::vector<Sheet> diff_sheets(const RunNames& names, const PairedRuns& paired,
+std::vector<Sheet> diff_sheets(const std::filesystem::path& first,
+                               const std::filesystem::path& second, const PairedRuns& paired,
                                const std::vector<ObjectDisagreement>& objects,
                                std::size_t at_most) {
+  const RunNames names = names_apart(first, second);
   const std::vector<ScanDisagreement> scans = disagreeing_scans(paired);
-  Sheet first = scans.empty() ? Sheet{} : scans_sheet(names, scans, at_most);
-  first.lead = {fmt::format("{} of {} paired scans differ", scans.size(), paired.scans.size())};
-  if (!paired.unlike.empty()) first.lead.push_back("unlike: " + unlike_text(paired.unlike));
-  std::vector<Sheet> sheets = {std::move(first)};
+  Sheet sheet = scans.empty() ? Sheet{} : scans_sheet(names, scans, at_most);
+  sheet.lead = {fmt::format("{} of {} paired scans differ", scans.size(), paired.scans.size())};
+  if (!paired.unlike.empty()) sheet.lead.push_back("unlike: " + unlike_text(paired.unlike));
+  std::vector<Sheet> sheets = {std::move(sheet)};
   if (!objects.empty()) sheets.push_back(objects_sheet(names, objects, at_most));
   return sheets;
 }

@@ -11,12 +11,6 @@
 
 namespace mosbench {
 
-/// A scan in which two runs count differently.
-struct ScanDisagreement {
-  PairedRuns::Scan scan;
-  std::uint64_t changed_points = 0;  ///< change of tp plus change of fp: a lower bound
-};
-
 /// A moving object of which two runs find different numbers of points.
 struct ObjectDisagreement {
   std::string sequence, first_scan, last_scan;
@@ -24,17 +18,6 @@ struct ObjectDisagreement {
   double mean_range_m = 0.0;
   Eigen::Vector3d position_map_m = Eigen::Vector3d::Zero();  ///< in its first scan
 };
-
-/// Short names of two runs.
-struct RunNames {
-  std::string first, second;
-};
-
-/// Returns the last components of both paths, or the whole paths where those are equal.
-RunNames names_apart(const std::filesystem::path& first, const std::filesystem::path& second);
-
-/// Returns the scans whose counts differ, most changed first.
-std::vector<ScanDisagreement> disagreeing_scans(const PairedRuns& paired);
 
 /// Returns the objects of which different numbers of points are found, most changed first. Throws
 /// std::invalid_argument unless both break down the same truth.
@@ -45,7 +28,9 @@ std::vector<ObjectDisagreement> disagreeing_objects(const SequenceBreakdown& fir
 nlohmann::ordered_json diff_json(const PairedRuns& paired,
                                  const std::vector<ObjectDisagreement>& objects,
                                  std::size_t at_most);
-std::vector<Sheet> diff_sheets(const RunNames& names, const PairedRuns& paired,
+/// `first` and `second` are where the runs lie, which names them.
+std::vector<Sheet> diff_sheets(const std::filesystem::path& first,
+                               const std::filesystem::path& second, const PairedRuns& paired,
                                const std::vector<ObjectDisagreement>& objects, std::size_t at_most);
 
 }  // namespace mosbench

@@ -77,15 +77,15 @@ void merge_neighbours(const CellMembers& cells, const GridCell& cell, std::uint3
   }
 }
 
-template <std::size_t size>
-std::size_t bin_of(const std::array<double, size>& edges, double value) {
+std::size_t bin_of(const BinEdges& edges, double value) {
   const auto above = std::upper_bound(edges.begin(), edges.end(), value);
   return above == edges.begin() ? 0 : static_cast<std::size_t>(above - edges.begin()) - 1;
 }
 
-template <std::size_t size>
-std::array<Confusion, size> to_confusions(const std::array<OutcomeCounts, size>& bins) {
-  std::array<Confusion, size> confusions;
+using BinOutcomes = std::array<OutcomeCounts, BinEdges().size()>;
+
+BinCounts to_confusions(const BinOutcomes& bins) {
+  BinCounts confusions;
   std::ranges::transform(bins, confusions.begin(), to_confusion);
   return confusions;
 }
@@ -159,8 +159,7 @@ ScanBreakdown break_down_scan(const Protocol& protocol, const RangeGate& limits,
   ScanBreakdown breakdown;
   std::map<std::uint32_t, Selection> moving;  // by instance
   Selection false_positives;
-  std::array<OutcomeCounts, kRangeEdges_m.size()> by_range{};
-  std::array<OutcomeCounts, kHeightEdges_m.size()> by_height{};
+  BinOutcomes by_range{}, by_height{};
   for (std::size_t i = 0; i < outcomes.size(); ++i) {
     const Point& point = frame.points[i];
     const Eigen::Vector3d position =

@@ -21,11 +21,14 @@ using Cluster = std::vector<std::uint32_t>;
 /// are in no cluster.
 std::vector<Cluster> cluster_points(std::span<const Eigen::Vector3d> points, double cell_m);
 
-/// Bins [edge, next edge) of the distance from the sensor, metres; the last one has no upper end.
-inline constexpr std::array kRangeEdges_m = {0.0, 5.0, 10.0, 20.0, 30.0, 40.0, 50.0, 75.0, 100.0};
-/// Bins of the height above the sensor in the map's upward direction; the first one has no lower
-/// end.
-inline constexpr std::array kHeightEdges_m = {-1e30, -2.0, -1.5, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0};
+/// Bins [edge, next edge), and the counts in them; the last one has no upper end.
+using BinEdges = std::array<double, 9>;
+using BinCounts = std::array<Confusion, 9>;
+
+/// Of the distance from the sensor, metres.
+inline constexpr BinEdges kRangeEdges_m = {0.0, 5.0, 10.0, 20.0, 30.0, 40.0, 50.0, 75.0, 100.0};
+/// Of the height above the sensor in the map's upward direction; the first has no lower end.
+inline constexpr BinEdges kHeightEdges_m = {-1e30, -2.0, -1.5, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0};
 
 /// A group of points in one scan: one object, or one cluster of false positives.
 struct ScanCluster {
@@ -44,8 +47,7 @@ inline constexpr double kClusterCell_m = 0.5;
 
 /// Counts of one scan by range, height and object.
 struct ScanBreakdown {
-  std::array<Confusion, kRangeEdges_m.size()> by_range;
-  std::array<Confusion, kHeightEdges_m.size()> by_height;
+  BinCounts by_range, by_height;
   std::vector<ScanCluster> objects;          ///< of moving truth, largest first
   std::vector<ScanCluster> false_positives;  ///< largest first; `found` equals `points`
 };

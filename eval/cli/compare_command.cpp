@@ -214,8 +214,7 @@ Answer scans_and_objects(const CompareFlags& options) {
   const auto objects = options.shows("object") && options.data ? objects_of(options, first, second)
                                                                : std::vector<ObjectDisagreement>{};
   return {.standing = standing_of(first, "first", second, "second"),
-          .sheets = diff_sheets(names_apart(options.baseline, options.newer), paired, objects,
-                                options.top),
+          .sheets = diff_sheets(options.baseline, options.newer, paired, objects, options.top),
           .json = json_text(diff_json(paired, objects, options.top))};
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <utility>
 
 #include "datasets/disk/files.hpp"
@@ -21,26 +22,35 @@ void check_rows(std::size_t rows, const std::vector<std::size_t>& scans, const f
                   fmt::format("one for each labelled scan of the sequence, {}", scans.size()));
 }
 
-class IndexRows : public Predictions {
+using Labels = std::vector<std::uint32_t>;
+
+/// What one file says of scans.
+class ScansOfFile : public Predictions {
  public:
-  IndexRows(const Sequence& sequence, std::map<std::size_t, IndicesRow> rows)
-      : sequence_(sequence), rows_(std::move(rows)) {}
-  bool has(std::size_t scan_index) const override { return rows_.contains(scan_index); }
-  std::vector<std::uint32_t> read(std::size_t scan_index) const override {
-    std::vector<std::uint32_t> labels(sequence_.point_count(scan_index), kStaticLabel);
-    for (const std::uint32_t index : rows_.at(scan_index).moving) labels.at(index) = kMovingLabel;
-    return labels;
+  bool has(std::size_t scan_index) const override { return labels.contains(scan_index); }
+  Labels read(std::size_t scan_index) const override { return labels.at(scan_index)(); }
+  std::optional<Confusion> counts(std::size_t scan_index) const override {
+    const auto found = counted.find(scan_index);
+    return found == counted.end() ? std::nullopt : std::optional(found->second);
   }
 
- private:
-  const Sequence& sequence_;
-  std::map<std::size_t, IndicesRow> rows_;
+  std::map<std::size_t, std::function<Labels()>> labels;
+  std::map<std::size_t, Confusion> counted;
 };
+
+std::function<Labels()> labels_of(IndicesRow row, std::size_t points, const fs::path& file) {
+  check_indices(row, points, file);
+  return [moving = std::move(row.moving), points] {
+    Labels labels(points, kStaticLabel);
+    for (const std::uint32_t index : moving) labels.at(index) = kMovingLabel;
+    return labels;
+  };
+}
 
 std::unique_ptr<Predictions> open_rows(const fs::path& file, const Sequence& sequence,
                                        PredictionErrors& errors) {
   check_positions(file, sequence);
-  std::map<std::size_t, IndicesRow> rows;
+  auto scans = std::make_unique<ScansOfFile>();
   for (IndicesRow& row : read_indices(file)) {
     const auto number = static_cast<std::size_t>(row.stamp_ns);
     if (number == 0 || number > sequence.size()) {
@@ -48,10 +58,9 @@ std::unique_ptr<Predictions> open_rows(const fs::path& file, const Sequence& seq
                               fmt::format("scans 1 to {}", sequence.size())));
       continue;
     }
-    check_indices(row, sequence.point_count(number - 1), file);
-    rows[number - 1] = std::move(row);
+    scans->labels[number - 1] = labels_of(std::move(row), sequence.point_count(number - 1), file);
   }
-  return std::make_unique<IndexRows>(sequence, std::move(rows));
+  return scans;
 }
 
 /// Pairs rows by exact stamp where the scans have stamps, otherwise in order.
@@ -64,7 +73,7 @@ std::unique_ptr<Predictions> open_indices(const fs::path& file, const Sequence& 
     if (const auto stamp_ns = sequence.read(k).stamp_ns) by_stamp[*stamp_ns] = k;
   }
   if (by_stamp.empty()) check_rows(found.size(), scans, file);
-  std::map<std::size_t, IndicesRow> rows;
+  auto labelled = std::make_unique<ScansOfFile>();
   for (std::size_t r = 0; r < found.size(); ++r) {
     const auto stamped = by_stamp.find(found[r].stamp_ns);
     if (!by_stamp.empty() && stamped == by_stamp.end()) {
@@ -73,10 +82,9 @@ std::unique_ptr<Predictions> open_indices(const fs::path& file, const Sequence& 
       continue;
     }
     const std::size_t k = by_stamp.empty() ? scans[r] : stamped->second;
-    check_indices(found[r], sequence.point_count(k), file);
-    rows[k] = std::move(found[r]);
+    labelled->labels[k] = labels_of(std::move(found[r]), sequence.point_count(k), file);
   }
-  return std::make_unique<IndexRows>(sequence, std::move(rows));
+  return labelled;
 }
 
 /// Throws DataError unless the rows of Dynablox's scores.csv are of the labelled scans, in order:
@@ -99,19 +107,6 @@ void check_stamps(const std::vector<std::uint64_t>& stamps_ns, const Sequence& s
   check_rows(stamps_ns.size(), scans, file);
 }
 
-class Clouds : public Predictions {
- public:
-  explicit Clouds(std::map<std::size_t, std::vector<std::uint32_t>> clouds)
-      : clouds_(std::move(clouds)) {}
-  bool has(std::size_t scan_index) const override { return clouds_.contains(scan_index); }
-  std::vector<std::uint32_t> read(std::size_t scan_index) const override {
-    return clouds_.at(scan_index);
-  }
-
- private:
-  std::map<std::size_t, std::vector<std::uint32_t>> clouds_;
-};
-
 std::unique_ptr<Predictions> open_clouds(const fs::path& file, const Sequence& sequence,
                                          DynabloxLevel level) {
   const std::vector<std::size_t> scans = scans_with_truth(sequence);
@@ -123,34 +118,17 @@ std::unique_ptr<Predictions> open_clouds(const fs::path& file, const Sequence& s
     throw DataError(scores, "does not exist", "the stamps of the clouds in clouds.csv");
   }
   check_stamps(parse_dynablox_stamps_ns(read_file(scores), scores), sequence, scans, scores);
-  std::map<std::size_t, std::vector<std::uint32_t>> clouds;
+  auto clouds = std::make_unique<ScansOfFile>();
   for (std::size_t i = 0; i < scans.size(); ++i) {
     if (parsed[i].size() != sequence.point_count(scans[i])) {
       throw DataError(file, fmt::format("has {} points in cloud {}", parsed[i].size(), i),
                       fmt::format("those of scan {}, {}", sequence.stem(scans[i]),
                                   sequence.point_count(scans[i])));
     }
-    clouds[scans[i]] = std::move(parsed[i]);
+    clouds->labels[scans[i]] = [labels = std::move(parsed[i])] { return labels; };
   }
-  return std::make_unique<Clouds>(std::move(clouds));
+  return clouds;
 }
-
-class CountedScans : public Predictions {
- public:
-  CountedScans(fs::path file, std::map<std::size_t, Confusion> scans)
-      : file_(std::move(file)), scans_(std::move(scans)) {}
-  bool has(std::size_t scan_index) const override { return scans_.contains(scan_index); }
-  std::vector<std::uint32_t> read(std::size_t) const override {
-    throw DataError(file_, "holds counts, no labels", "labels, which this command needs");
-  }
-  std::optional<Confusion> counts(std::size_t scan_index) const override {
-    return scans_.at(scan_index);
-  }
-
- private:
-  fs::path file_;
-  std::map<std::size_t, Confusion> scans_;
-};
 
 std::unique_ptr<Predictions> open_scores(const fs::path& file, const Sequence& sequence,
                                          DynabloxLevel level) {
@@ -158,66 +136,61 @@ std::unique_ptr<Predictions> open_scores(const fs::path& file, const Sequence& s
   const std::string text = read_file(file);
   const auto scores = parse_dynablox_counts(text, level, file);
   check_stamps(parse_dynablox_stamps_ns(text, file), sequence, scans, file);
-  std::map<std::size_t, Confusion> counts;
+  auto counts = std::make_unique<ScansOfFile>();
   for (std::size_t i = 0; i < scans.size(); ++i) {
     if (scores[i].total_points != sequence.point_count(scans[i])) {
       throw DataError(file, i + 2, fmt::format("is of {} points", scores[i].total_points),
                       fmt::format("those of scan {}, {}", sequence.stem(scans[i]),
                                   sequence.point_count(scans[i])));
     }
-    counts[scans[i]] = scores[i].counts;
+    counts->counted[scans[i]] = scores[i].counts;
+    counts->labels[scans[i]] = [file]() -> Labels {
+      throw DataError(file, "holds counts, no labels", "labels, which this command needs");
+    };
   }
-  return std::make_unique<CountedScans>(file, std::move(counts));
+  return counts;
 }
 
-class DufoArrays : public Predictions {
- public:
-  DufoArrays(const fs::path& file, const Sequence& sequence, PredictionErrors& errors)
-      : file_(file, kNames) {
-    std::map<std::string, std::size_t> scans;
-    for (std::size_t k = 0; k < sequence.size(); ++k) scans[sequence.stem(k)] = k;
-    for (const Hdf5Group& group : file_.groups()) {
-      if (group.arrays.empty() || is_left_out(sequence.recording(), group.name)) continue;
-      const auto scan = scans.find(group.name);
-      if (scan == scans.end()) {
-        errors.report(DataError(file, "group " + shown_in_line(group.name) + " is of no scan",
-                                "groups named as those of sequence " + sequence.name()));
-      } else {
-        enter(group, scan->second, sequence.point_count(scan->second));
-      }
+Labels read_dufo(const Hdf5File& file, const Hdf5Group& group) {
+  Labels labels;
+  for (const std::int64_t moves : file.integers(group, group.arrays.front())) {
+    if (moves != 0 && moves != 1) {
+      throw DataError(
+          file.path(),
+          fmt::format("{} of group {} holds {}", group.arrays.front().name, group.name, moves),
+          "0 (static) or 1 (moving)");
     }
+    labels.push_back(moves == 1 ? kMovingLabel : kStaticLabel);
   }
-  bool has(std::size_t scan_index) const override { return scans_.contains(scan_index); }
-  std::vector<std::uint32_t> read(std::size_t scan_index) const override {
-    const Hdf5Group& group = *scans_.at(scan_index);
-    std::vector<std::uint32_t> labels;
-    for (const std::int64_t moves : file_.integers(group, group.arrays.front())) {
-      if (moves != 0 && moves != 1) {
-        throw DataError(
-            file_.path(),
-            fmt::format("{} of group {} holds {}", group.arrays.front().name, group.name, moves),
-            "0 (static) or 1 (moving)");
-      }
-      labels.push_back(moves == 1 ? kMovingLabel : kStaticLabel);
-    }
-    return labels;
-  }
+  return labels;
+}
 
- private:
-  void enter(const Hdf5Group& group, std::size_t scan_index, std::size_t points) {
-    if (count_of(group.arrays.front()) != points) {
-      throw DataError(file_.path(),
+std::unique_ptr<Predictions> open_dufo(const fs::path& path, const Sequence& sequence,
+                                       PredictionErrors& errors) {
+  constexpr std::array kNames = {scene_flow::kDufo, scene_flow::kOlderDufo};
+  const auto file = std::make_shared<Hdf5File>(path, kNames);
+  std::map<std::string, std::size_t> scans;
+  for (std::size_t k = 0; k < sequence.size(); ++k) scans[sequence.stem(k)] = k;
+  auto labelled = std::make_unique<ScansOfFile>();
+  for (const Hdf5Group& group : file->groups()) {
+    if (group.arrays.empty() || is_left_out(sequence.recording(), group.name)) continue;
+    const auto scan = scans.find(group.name);
+    if (scan == scans.end()) {
+      errors.report(DataError(path, "group " + shown_in_line(group.name) + " is of no scan",
+                              "groups named as those of sequence " + sequence.name()));
+      continue;
+    }
+    const std::size_t points = sequence.point_count(scan->second);
+    if (const std::size_t values = count_of(group.arrays.front()); values != points) {
+      throw DataError(path,
                       fmt::format("{} of group {} has {} values", group.arrays.front().name,
-                                  group.name, count_of(group.arrays.front())),
+                                  group.name, values),
                       fmt::format("one per point of the scan, {}", points));
     }
-    scans_[scan_index] = &group;
+    labelled->labels[scan->second] = [file, &group] { return read_dufo(*file, group); };
   }
-
-  static constexpr std::array kNames = {scene_flow::kDufo, scene_flow::kOlderDufo};
-  Hdf5File file_;
-  std::map<std::size_t, const Hdf5Group*> scans_;
-};
+  return labelled;
+}
 
 }  // namespace
 
@@ -233,7 +206,7 @@ std::unique_ptr<Predictions> open_sequence_file(const PredictionPlace& place,
     case PredictionFormat::kDynabloxScores:
       return open_scores(place.path, sequence, options.level);
     case PredictionFormat::kHdf5:
-      return std::make_unique<DufoArrays>(place.path, sequence, errors);
+      return open_dufo(place.path, sequence, errors);
     default:
       return open_rows(place.path, sequence, errors);
   }

@@ -78,22 +78,16 @@ std::vector<ScanErrors> start_errors(const std::vector<Starts>& sequences, const
   return errors;
 }
 
-PathDifference mean_difference(PathDifference named, const std::vector<Starts>& sequences) {
+/// Compares the means of errors, or the roots of their means.
+PathDifference compared(PathDifference named, const std::vector<Starts>& sequences, bool of_roots) {
   const Start sum = sum_of(sequences);
   if (sum.errors == 0 || !std::isfinite(sum.first + sum.second)) return named;
-  named.first = sum.first / sum.errors;
-  named.second = sum.second / sum.errors;
-  named.difference = difference_of(*named.second - *named.first, start_errors(sequences, sum, 1, 1),
-                                   Spacing::kNear, {-kInfinity, kInfinity});
-  return named;
-}
-
-PathDifference root_difference(PathDifference named, const std::vector<Starts>& sequences) {
-  const Start sum = sum_of(sequences);
-  if (sum.errors == 0 || !std::isfinite(sum.first + sum.second)) return named;
-  named.first = std::sqrt(sum.first / sum.errors);
-  named.second = std::sqrt(sum.second / sum.errors);
-  const auto slope = [](double root) { return root > 0 ? 0.5 / root : 0; };
+  const auto value = [&](double errors) {
+    return of_roots ? std::sqrt(errors / sum.errors) : errors / sum.errors;
+  };
+  const auto slope = [&](double at) { return !of_roots ? 1.0 : at > 0 ? 0.5 / at : 0.0; };
+  named.first = value(sum.first);
+  named.second = value(sum.second);
   named.difference =
       difference_of(*named.second - *named.first,
                     start_errors(sequences, sum, slope(*named.first), slope(*named.second)),
@@ -164,12 +158,12 @@ std::vector<PathDifference> compare_paths(Scores first, Scores second) {
   using Score = TrajectoryScore;
   const auto segments = [&](std::string_view name, std::string_view title, double factor,
                             std::vector<SegmentError> Score::*of, double SegmentError::*error) {
-    return mean_difference({name, title, factor, {}, {}, {}},
-                           segments_of(first, second, of, error));
+    return compared({name, title, factor, {}, {}, {}}, segments_of(first, second, of, error),
+                    false);
   };
   const auto roots = [&](std::string_view name, std::string_view title, double factor,
                          PoseErrors Score::*of, std::vector<double> PoseErrors::*error) {
-    return root_difference({name, title, factor, {}, {}, {}}, squares_of(first, second, of, error));
+    return compared({name, title, factor, {}, {}, {}}, squares_of(first, second, of, error), true);
   };
   constexpr double kPer100m = 100 * kDegreesPerRad;
   std::vector<PathDifference> rows = {

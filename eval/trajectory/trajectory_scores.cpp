@@ -41,53 +41,40 @@ Overall overall(std::span<const TrajectoryScore> scores,
     const std::vector<SegmentError>& own = score.*segments;
     all.insert(all.end(), own.begin(), own.end());
     if (const auto mean = mean_of(own)) {
-      means.push_back({.first = 0,
-                       .last = 0,
-                       .length_m = 0,
-                       .translation = mean->translation,
-                       .rotation_rad_per_m = mean->rotation_rad_per_m});
+      means.push_back({0, 0, 0.0, mean->translation, mean->rotation_rad_per_m});
     }
   }
   return {mean_of(all), mean_of(means)};
 }
 
-Cell translation_cell(const std::optional<MeanSegmentError>& mean) {
-  return mean ? Cell(100 * mean->translation) : Cell();
+/// Adds the translation in percent and the rotation in degrees per 100 m.
+void add_segments(const std::optional<MeanSegmentError>& mean, std::vector<Cell>& row) {
+  row.push_back(mean ? Cell(100 * mean->translation) : Cell());
+  row.push_back(mean ? Cell(100 * kDegrees * mean->rotation_rad_per_m) : Cell());
 }
-Cell rotation_cell(const std::optional<MeanSegmentError>& mean) {
-  return mean ? Cell(100 * kDegrees * mean->rotation_rad_per_m) : Cell();
-}
-Cell rmse_cell(const std::vector<double>& errors, double factor) {
-  const auto summary = summary_of(errors);
-  return summary ? Cell(factor * summary->rmse) : Cell();
+
+void add_roots(const PoseErrors& errors, std::vector<Cell>& row) {
+  const auto translation = summary_of(errors.translation_m);
+  row.push_back(translation ? Cell(translation->rmse) : Cell());
+  row.push_back(translation ? Cell(kDegrees * summary_of(errors.rotation_rad)->rmse) : Cell());
 }
 
 std::vector<Cell> row_of(const TrajectoryScore& score) {
-  const auto kitti = mean_of(score.kitti), brief = mean_of(score.brief);
-  return {score.name,
-          std::uint64_t{score.poses},
-          score.path_m,
-          std::uint64_t{score.kitti.size()},
-          translation_cell(kitti),
-          rotation_cell(kitti),
-          translation_cell(brief),
-          rotation_cell(brief),
-          rmse_cell(score.absolute.translation_m, 1),
-          rmse_cell(score.absolute.rotation_rad, kDegrees),
-          rmse_cell(score.relative.translation_m, 1),
-          rmse_cell(score.relative.rotation_rad, kDegrees)};
+  std::vector<Cell> row = {score.name, std::uint64_t{score.poses}, score.path_m,
+                           std::uint64_t{score.kitti.size()}};
+  add_segments(mean_of(score.kitti), row);
+  add_segments(mean_of(score.brief), row);
+  add_roots(score.absolute, row);
+  add_roots(score.relative, row);
+  return row;
 }
 
 std::vector<Cell> overall_row(const char* name, const std::optional<MeanSegmentError>& kitti,
                               const std::optional<MeanSegmentError>& brief) {
-  return {name,
-          "",
-          "",
-          kitti ? Cell(std::uint64_t{kitti->segments}) : Cell(),
-          translation_cell(kitti),
-          rotation_cell(kitti),
-          translation_cell(brief),
-          rotation_cell(brief)};
+  std::vector<Cell> row = {name, "", "", kitti ? Cell(std::uint64_t{kitti->segments}) : Cell()};
+  add_segments(kitti, row);
+  add_segments(brief, row);
+  return row;
 }
 
 std::string relative_name(const RelativePairs& pairs) {
