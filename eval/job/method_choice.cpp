@@ -49,15 +49,6 @@ MethodChoice all_methods() {
   return choice;
 }
 
-void apply_odometry_preset(const std::string& name, const OdometryKind& kind, Settings& settings) {
-  const OdometryPreset& preset = row_named(odometry_presets(), name, "preset of odometry");
-  if (preset.odometry != kind.name) {
-    throw UsageError(fmt::format("preset of odometry: {} is of {}, expected one of {}", name,
-                                 preset.odometry, kind.name));
-  }
-  for (const auto& [key, value] : preset.settings) settings.set(key, value);
-}
-
 std::string settings_text(const Settings& settings) {
   std::vector<std::string> words;
   for (const Setting& setting : settings.all()) {
@@ -149,15 +140,18 @@ MethodChoice chosen_methods(const std::string& text) {
   return choice;
 }
 
-bool OdometryOptions::says_anything() const {
-  return preset || config_file || !assignments.empty() || drop_moving;
-}
-
 OdometryChoice choose_odometry(const OdometryOptions& options, const Reading& reading) {
   const std::string name = options.kind.value_or(std::string(odometries().front().name));
   OdometryChoice choice{.kind = &row_named(odometries(), name, "--odometry"), .settings = {}};
   choice.settings = choice.kind->defaults;
-  if (options.preset) apply_odometry_preset(*options.preset, *choice.kind, choice.settings);
+  if (options.preset) {
+    const auto& preset = row_named(odometry_presets(), *options.preset, "preset of odometry");
+    if (preset.odometry != choice.kind->name) {
+      throw UsageError(fmt::format("preset of odometry: {} is of {}, expected one of {}",
+                                   preset.name, preset.odometry, choice.kind->name));
+    }
+    for (const auto& [key, value] : preset.settings) choice.settings.set(key, value);
+  }
   if (options.config_file) apply_settings_file(*options.config_file, choice.settings);
   if (reading.deskew) {
     choice.deskew = *reading.deskew;
@@ -179,7 +173,9 @@ OdometryChoice choose_odometry(const OdometryOptions& options, const Reading& re
 std::optional<OdometryChoice> named_odometry(const OdometryOptions& odometry,
                                              const Reading& reading) {
   if (!odometry.kind) {
-    if (!odometry.says_anything()) return std::nullopt;
+    const bool says_nothing = !odometry.preset && !odometry.config_file &&
+                              odometry.assignments.empty() && !odometry.drop_moving;
+    if (says_nothing) return std::nullopt;
     throw UsageError("--odometry: is missing, expected simple or kiss before its settings");
   }
   if (reading.pose_file() != nullptr) {

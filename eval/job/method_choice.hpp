@@ -77,13 +77,10 @@ MethodChoice chosen_methods(const std::string& text);
 
 /// What the user asked of odometry, as typed.
 struct OdometryOptions {
-  std::optional<std::string> kind, preset;
-  std::optional<std::filesystem::path> config_file;
-  std::vector<std::string> assignments;
+  std::optional<std::string> kind = {}, preset = {};
+  std::optional<std::filesystem::path> config_file = {};
+  std::vector<std::string> assignments = {};
   bool drop_moving = false;
-
-  /// Whether anything was said without a kind.
-  bool says_anything() const;
 };
 
 /// An online method whose moving points stay out of the map that scans are registered to.

@@ -27,12 +27,10 @@ namespace fs = std::filesystem;
 /// Names stand in tables and in files.
 std::string name_of(const YamlNode& node) {
   const std::string name = node.text();
-  const bool plain = std::ranges::all_of(name, [](char c) {
-    return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
-           std::string_view(" ._+-").find(c) != std::string_view::npos;
-  });
-  const bool blank = name.find_first_not_of(' ') == std::string::npos;
-  if (!plain || blank || name.size() > 60) {
+  constexpr std::string_view kLegal =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789 ._+-";
+  if (name.find_first_not_of(kLegal) != std::string::npos ||
+      name.find_first_not_of(' ') == std::string::npos || name.size() > 60) {
     node.refuse(fmt::format("{} is no name", mosbench::quoted(name)),
                 "1 to 60 letters, digits, blanks and . _ + -");
   }
@@ -112,28 +110,31 @@ std::vector<StudyData> data_of(const YamlNode& node, const fs::path& file) {
     if (const auto dataset = node.find("dataset")) {
       one.data.kind = dataset->located([&] { return dataset_kind_option(dataset->text()); });
     }
-    if (const auto sequences = node.find("sequences")) {
-      for (const YamlNode& sequence : sequences->list())
-        one.data.sequences.push_back(sequence.text());
+    for (const YamlNode& sequence : node.list("sequences")) {
+      one.data.sequences.push_back(sequence.text());
     }
-    if (const auto reading = node.find("reading"))
+    if (const auto reading = node.find("reading")) {
       one.data.reading = reading_of_study(*reading, file);
+    }
   }
   return data;
 }
 
 /// A method by its name, or "all" of them.
 std::vector<StudyMethod> plain_methods(const YamlNode& node) {
+  const auto named = [](const std::string& name) {
+    return StudyMethod{name, {.method = &method_named(name)}};
+  };
+  if (node.text() != "all") return {node.located([&] { return named(node.text()); })};
   std::vector<StudyMethod> methods;
-  if (node.text() == "all") {
-    for (const std::string& name : chosen_methods("all").names) {
-      methods.push_back({name, {.method = &method_named(name)}});
-    }
-  } else {
-    methods.push_back(
-        {node.text(), {.method = node.located([&] { return &method_named(node.text()); })}});
-  }
+  for (const std::string& name : chosen_methods("all").names) methods.push_back(named(name));
   return methods;
+}
+
+SettingChange change_by(const std::string& setting, const YamlNode& value,
+                        const MethodKind& method) {
+  return value.located(
+      [&] { return change_of(fmt::format("{}={}", setting, value.text()), method); });
 }
 
 StudyMethod described_method(const YamlNode& node) {
@@ -144,13 +145,14 @@ StudyMethod described_method(const YamlNode& node) {
   segment.method = named.located([&] { return &method_named(named.text()); });
   method.name = node.find("name") ? name_of(node.at("name")) : named.text();
   if (const auto preset = node.find("preset")) {
-    segment.preset = preset->located([&] { return &preset_named(preset->text()); });
-    preset->located([&] { return &method_of(named.text(), preset->text()); });
+    segment.preset = preset->located([&] {
+      method_of(named.text(), preset->text());
+      return &preset_named(preset->text());
+    });
   }
   if (const auto set = node.find("set")) {
     for (const auto& [key, value] : set->members()) {
-      segment.changes.push_back(value.located(
-          [&] { return change_of(fmt::format("{}={}", key, value.text()), *segment.method); }));
+      segment.changes.push_back(change_by(key, value, *segment.method));
     }
   }
   return method;
@@ -211,11 +213,7 @@ std::pair<Setting, std::vector<SettingValue>> setting_values(
     known = *setting;
     values.clear();
     for (const YamlNode& node : nodes) {
-      values.push_back(node.located([&] {
-                             return change_of(fmt::format("{}={}", name, node.text()),
-                                              *method.segment.method);
-                           })
-                           .value);
+      values.push_back(change_by(name, node, *method.segment.method).value);
     }
   }
   if (known) return {*known, values};
@@ -303,20 +301,9 @@ StudyAxis sample_of(const YamlNode& node, const std::vector<StudyMethod>& method
                       node.find("seed") ? node.at("seed").whole(0, UINT64_MAX) : 1);
 }
 
-RangeGate range_of(const YamlNode& node, const Protocol* protocol) {
-  const std::vector<YamlNode> limits = node.list();
-  if (limits.size() != 2 || protocol == nullptr) {
-    node.refuse("range_m is not understood", "[MIN, MAX] together with a protocol");
-  }
-  const std::string range = fmt::format("{},{}", limits[0].text(), limits[1].text());
-  return node.located([&] { return range_option(range, *protocol); });
-}
-
 std::optional<OdometryChoice> odometry_of(const YamlNode& kind) {
   if (kind.text() == "none") return std::nullopt;
-  OdometryOptions options;
-  options.kind = kind.text();
-  return kind.located([&] { return choose_odometry(options, {}); });
+  return kind.located([&] { return choose_odometry({.kind = kind.text()}, {}); });
 }
 
 void read_rest(const YamlNode& root, Study& study) {
@@ -324,28 +311,25 @@ void read_rest(const YamlNode& root, Study& study) {
     study.rule.protocol = protocol->located([&] { return &protocol_named(protocol->text()); });
   }
   if (const auto range = root.find("range_m")) {
-    study.rule.range = range_of(*range, study.rule.protocol);
-  }
-  if (const auto odometry = root.find("odometry")) {
-    study.odometries.clear();
-    for (const YamlNode& kind : odometry->list()) study.odometries.push_back(odometry_of(kind));
-  }
-  if (const auto disturb = root.find("disturb")) {
-    for (const YamlNode& kind : disturb->list()) study.axes.push_back(disturbance_of(kind));
-  }
-  if (const auto vary = root.find("vary")) {
-    for (const YamlNode& one : vary->list()) {
-      study.axes.push_back(setting_of(one, study.methods));
+    const std::vector<YamlNode> limits = range->list();
+    if (limits.size() != 2 || study.rule.protocol == nullptr) {
+      range->refuse("range_m is not understood", "[MIN, MAX] together with a protocol");
     }
+    const std::string text = fmt::format("{},{}", limits[0].text(), limits[1].text());
+    study.rule.range = range->located([&] { return range_option(text, *study.rule.protocol); });
+  }
+  if (root.find("odometry")) study.odometries.clear();
+  for (const YamlNode& kind : root.list("odometry")) study.odometries.push_back(odometry_of(kind));
+  for (const YamlNode& kind : root.list("disturb")) study.axes.push_back(disturbance_of(kind));
+  for (const YamlNode& one : root.list("vary")) {
+    study.axes.push_back(setting_of(one, study.methods));
   }
   if (const auto sample = root.find("sample")) {
     study.axes.push_back(sample_of(*sample, study.methods));
   }
   check_names(root, study.axes);
-  if (const auto seeds = root.find("seeds")) {
-    study.seeds.clear();
-    for (const YamlNode& seed : seeds->list()) study.seeds.push_back(seed.whole(0, UINT64_MAX));
-  }
+  if (root.find("seeds")) study.seeds.clear();
+  for (const YamlNode& seed : root.list("seeds")) study.seeds.push_back(seed.whole(0, UINT64_MAX));
 }
 
 }  // namespace

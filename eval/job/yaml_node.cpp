@@ -19,10 +19,6 @@ void YamlNode::refuse(const std::string& wrong, const std::string& expected) con
   throw UsageError(fmt::format("{}: {}, expected {}", place(), wrong, expected));
 }
 
-void YamlNode::rethrow_here(const std::exception& error) const {
-  throw UsageError(fmt::format("{}: {}", place(), error.what()));
-}
-
 void YamlNode::check_keys(const std::vector<std::string_view>& known) const {
   for (const auto& [key, value] : members()) {
     if (std::ranges::find(known, key) == known.end()) {
@@ -50,6 +46,11 @@ std::vector<YamlNode> YamlNode::list() const {
   for (const YAML::Node& node : node_) nodes.emplace_back(node, file_);
   if (nodes.empty()) refuse("is an empty list", "at least one value");
   return nodes;
+}
+
+std::vector<YamlNode> YamlNode::list(const char* key) const {
+  const std::optional<YamlNode> node = find(key);
+  return node ? node->list() : std::vector<YamlNode>();
 }
 
 std::vector<std::pair<std::string, YamlNode>> YamlNode::members() const {

@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "datasets/text/errors.hpp"
+
 namespace mosbench {
 
 /// A value of a YAML file that knows where it stands. All functions throw UsageError with file and
@@ -19,8 +21,6 @@ class YamlNode {
 
   /// Throws "<file>:<line>: <wrong>, expected <expected>".
   [[noreturn]] void refuse(const std::string& wrong, const std::string& expected) const;
-  /// The same, and begins with the quoted value.
-  [[noreturn]] void refuse_value(const char* wrong, const std::string& expected) const;
 
   /// Checks that this is a map with no other keys.
   void check_keys(const std::vector<std::string_view>& known) const;
@@ -28,6 +28,8 @@ class YamlNode {
   YamlNode at(const char* key) const;
   /// Returns the members of a list; of anything else that one value.
   std::vector<YamlNode> list() const;
+  /// Does the same for the value of a key; none where it is not given.
+  std::vector<YamlNode> list(const char* key) const;
   /// Returns the members of a map in order. Refuses keys that are given twice.
   std::vector<std::pair<std::string, YamlNode>> members() const;
   bool is_map() const { return node_.IsMap(); }
@@ -42,12 +44,11 @@ class YamlNode {
     try {
       return call();
     } catch (const std::exception& error) {
-      rethrow_here(error);
+      throw UsageError(place() + ": " + error.what());
     }
   }
 
  private:
-  [[noreturn]] void rethrow_here(const std::exception& error) const;
   std::string place() const;
 
   YAML::Node node_;

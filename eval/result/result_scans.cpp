@@ -163,22 +163,6 @@ PredictionSource source_of(const Result& result) {
   return source;
 }
 
-bool same_counts(const OutcomeCounts& counts, const std::optional<Confusion>& recorded) {
-  if (!recorded) return true;
-  Confusion confusion = to_confusion(counts);
-  confusion.unknown_ids = recorded->unknown_ids;
-  return confusion == *recorded;
-}
-
-std::vector<PointOutcome> outcomes_without_truth(const std::vector<std::uint32_t>& labels) {
-  std::vector<PointOutcome> outcomes;
-  for (const std::uint32_t label : labels) {
-    outcomes.push_back(label == kMovingLabel ? PointOutcome::kIgnoredMoving
-                                             : PointOutcome::kIgnoredStatic);
-  }
-  return outcomes;
-}
-
 }  // namespace
 
 bool same_input(const Sequence& sequence, const std::optional<std::string>& stamp,
@@ -236,9 +220,12 @@ JudgedScan ResultScans::read(std::size_t scan_index) const {
                        gated ? std::span<const Point>(scan.frame.points) : std::span<const Point>(),
                        result_.range);
   } else {
-    scan.outcomes = outcomes_without_truth(labels);
+    for (const std::uint32_t label : labels) {
+      scan.outcomes.push_back(label == kMovingLabel ? PointOutcome::kIgnoredMoving
+                                                    : PointOutcome::kIgnoredStatic);
+    }
   }
-  check_counts(scan, rows()[scan_index]);
+  if (recorded) check_counts(scan, *recorded);
   if (has_scores_) {
     const fs::path file = dynamic_score_file(result_.folder(), scan.frame.stem);
     scan.scores = parse_dynamic_scores(
@@ -252,10 +239,12 @@ JudgedScan ResultScans::read(std::size_t scan_index) const {
   return scan;
 }
 
-void ResultScans::check_counts(const JudgedScan& scan, const ScanRow& row) const {
+void ResultScans::check_counts(const JudgedScan& scan, const Confusion& recorded) const {
   OutcomeCounts counts{};
   for (const PointOutcome outcome : scan.outcomes) ++counts[static_cast<std::size_t>(outcome)];
-  if (same_counts(counts, row.counts)) return;
+  Confusion confusion = to_confusion(counts);
+  confusion.unknown_ids = recorded.unknown_ids;
+  if (confusion == recorded) return;
   throw DataError(source_.path / (scan.frame.stem + (aligned_ ? "" : ".label")), kOtherCounts,
                   aligned_ ? "the predictions that were scored" : "the label file of that run");
 }

@@ -66,7 +66,7 @@ class ResultScans {
   JudgedScan read(std::size_t scan_index) const;
 
  private:
-  void check_counts(const JudgedScan& scan, const ScanRow& row) const;
+  void check_counts(const JudgedScan& scan, const Confusion& recorded) const;
 
   const Result& result_;
   Dataset dataset_;

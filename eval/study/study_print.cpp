@@ -46,25 +46,16 @@ Sheet overview_sheet(const StudyTable& table) {
   return sheet;
 }
 
-std::string axis_title(const StudyCurve& curve) {
-  const bool has_unit = !curve.unit.empty() && curve.unit != "1";  // as of a probability
-  return has_unit ? fmt::format("{}, {}", curve.axis, curve.unit) : curve.axis;
-}
-
 Sheet curve_sheet(const StudyTable& table, const StudyCurve& curve) {
-  Sheet sheet{.columns = {{fmt::format("IoU % by {}", axis_title(curve)), Unit::kText}}};
+  const bool has_unit = !curve.unit.empty() && curve.unit != "1";  // as of a probability
+  const std::string title = has_unit ? fmt::format("{}, {}", curve.axis, curve.unit) : curve.axis;
+  Sheet sheet{.columns = {{fmt::format("IoU % by {}", title), Unit::kText}}};
   for (const std::string& value : curve.values) sheet.columns.push_back({value});
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
     std::vector<Cell>& row = sheet.rows.emplace_back(1, table.rows[i].label);
     for (const StudyMetrics& metrics : curve.metrics[i]) row.emplace_back(mean_text(metrics[0]));
   }
   return sheet;
-}
-
-std::string effect_text(const std::optional<TotalEffect>& effect) {
-  if (!effect) return "-";
-  return fmt::format("{:.2f} ({:.2f} to {:.2f})", effect->index, effect->interval.low,
-                     effect->interval.high);
 }
 
 /// A line per sampled setting with its effect on the IoU of each method.
@@ -81,7 +72,10 @@ Sheet effects_sheet(const StudyTable& table) {
         row = sheet.rows.insert(row, std::vector<Cell>(sheet.columns.size(), std::string()));
         row->front() = name;
       }
-      (*row)[column + 1] = effect_text(effects.effects[i]);
+      const auto& effect = effects.effects[i];
+      (*row)[column + 1] = effect ? fmt::format("{:.2f} ({:.2f} to {:.2f})", effect->index,
+                                                effect->interval.low, effect->interval.high)
+                                  : "-";
     }
   }
   return sheet;
@@ -157,7 +151,7 @@ ordered_json to_json(const StudyEffects& effects) {
   for (std::size_t i = 0; i < effects.settings.size(); ++i) {
     ordered_json& one = settings.emplace_back(ordered_json{{"name", effects.settings[i]}});
     const std::optional<TotalEffect>& effect = effects.effects[i];
-    one["total_effect"] = effect ? ordered_json(effect->index) : ordered_json(nullptr);
+    one["total_effect"] = effect ? ordered_json(effect->index) : ordered_json();
     if (!effect) continue;
     one["low"] = effect->interval.low;
     one["high"] = effect->interval.high;
@@ -167,10 +161,6 @@ ordered_json to_json(const StudyEffects& effects) {
 
 Cell cell_number(const PlannedCell& planned, const std::optional<double>& number) {
   return planned.state == CellState::kDone ? or_missing(number) : Cell();
-}
-
-std::string why_empty(const PlannedCell& planned) {
-  return planned.state == CellState::kFailed ? planned.failure : why_undefined(planned);
 }
 
 /// A row per cell.
@@ -194,7 +184,7 @@ Sheet records_of(const StudyPlan& plan) {
          rule ? Cell(double{rule->range.max_m}) : Cell(), cell_number(planned, numbers.metrics[0]),
          cell_number(planned, numbers.metrics[1]), cell_number(planned, numbers.metrics[2]),
          cell_number(planned, numbers.ms_per_scan), cell_number(planned, numbers.wall_s),
-         why_empty(planned)});
+         planned.state == CellState::kFailed ? planned.failure : why_undefined(planned)});
   }
   return sheet;
 }
@@ -232,13 +222,12 @@ ordered_json to_json(const StudyTable& table) {
     json["max_range_m"] = table.rule->range.max_m;
   }
   for (const StudyRow& row : table.rows) {
-    json["rows"].push_back(
-        {{"label", row.label},
-         {"metrics", to_json(row.metrics)},
-         {"to_best", row.to_best ? to_json(*row.to_best) : ordered_json(nullptr)},
-         {"ms_per_scan", json_or_null(row.ms_per_scan)},
-         {"front", row.is_on_front},
-         {"rank", json_or_null(row.rank)}});
+    json["rows"].push_back({{"label", row.label},
+                            {"metrics", to_json(row.metrics)},
+                            {"to_best", row.to_best ? to_json(*row.to_best) : ordered_json()},
+                            {"ms_per_scan", json_or_null(row.ms_per_scan)},
+                            {"front", row.is_on_front},
+                            {"rank", json_or_null(row.rank)}});
   }
   for (const StudyCurve& curve : table.curves) {
     ordered_json lines = ordered_json::array();
