@@ -63,6 +63,17 @@ auto naming_scan(const Sequence& sequence, std::size_t scan_index, Work&& work) 
   }
 }
 
+/// Returns the conditions under which the method of `settings` runs on a sequence.
+RunContext context_of(const Sequence& sequence, const RunSettings& settings) {
+  RunContext context{
+      .threads = settings.threads, .scan_count = sequence.size(), .scores = settings.keeps_scores};
+  for (const ScanEntry& scan : sequence.recording().scans) {
+    if (scan.stamp_ns) context.stamps_ns.push_back(*scan.stamp_ns);
+  }
+  if (context.stamps_ns.size() != sequence.size()) context.stamps_ns.clear();
+  return context;
+}
+
 class SequenceRun {
  public:
   SequenceRun(const Sequence& sequence, const RunSettings& settings,
@@ -269,16 +280,6 @@ void add_stages(const std::vector<StageTime>& stages, SequenceProfile& profile) 
 std::string title_of(const Sequence& sequence, const RunSettings& settings) {
   const std::string& name = sequence.name();
   return settings.is_one_of_several ? fmt::format("{}, {}", settings.method->name, name) : name;
-}
-
-RunContext context_of(const Sequence& sequence, const RunSettings& settings) {
-  RunContext context{
-      .threads = settings.threads, .scan_count = sequence.size(), .scores = settings.keeps_scores};
-  for (const ScanEntry& scan : sequence.recording().scans) {
-    if (scan.stamp_ns) context.stamps_ns.push_back(*scan.stamp_ns);
-  }
-  if (context.stamps_ns.size() != sequence.size()) context.stamps_ns.clear();
-  return context;
 }
 
 Result run_sequence(const Sequence& sequence, const RunSettings& settings,

@@ -34,9 +34,6 @@ struct RunSettings {
 /// the method's.
 std::string title_of(const Sequence& sequence, const RunSettings& settings);
 
-/// Returns the conditions under which the method of `settings` runs on a sequence.
-RunContext context_of(const Sequence& sequence, const RunSettings& settings);
-
 /// Segments a sequence and scores the scans with truth. Where there is a folder, writes
 /// `folder`/labels/<stem>.label for every scan, also what `point_files` asks for. With more than
 /// one thread the next scan is read and observed and the last one scored and written while a scan

@@ -43,12 +43,6 @@ void append_members(const ordered_json& object, const std::string& indent, std::
   text.erase(text.size() - 2, 1);
 }
 
-std::string format_members(const ordered_json& json) {
-  std::string text = "{\n";
-  append_members(json, " ", text);
-  return text + "}\n";
-}
-
 /// Returns whether the result in a folder is of a sequence of that name.
 bool holds_own_result(const std::filesystem::path& folder) {
   try {
@@ -73,7 +67,11 @@ bool is_passed_over(const std::filesystem::path& folder) {
 
 }  // namespace
 
-std::string format_result(const Result& result) { return format_members(to_json(result)); }
+std::string format_result(const Result& result) {
+  std::string text = "{\n";
+  append_members(to_json(result), " ", text);
+  return text + "}\n";
+}
 
 std::vector<std::filesystem::path> find_result_files(const std::filesystem::path& path,
                                                      std::filesystem::directory_options how,
@@ -95,20 +93,17 @@ std::vector<std::filesystem::path> find_result_files(const std::filesystem::path
   return files;
 }
 
-std::vector<std::filesystem::path> result_files(const std::filesystem::path& path) {
-  std::vector<std::filesystem::path> files = find_result_files(path);
-  if (!files.empty()) return files;
-  throw DataError(path, "holds no result.json", "results of mosbench run or mosbench score");
-}
-
 Result read_result(const std::filesystem::path& file) {
   return result_from_json(parse_json(read_file(file), file), file);
 }
 
 std::vector<Result> read_results(const std::filesystem::path& path) {
   std::vector<Result> results;
-  for (const std::filesystem::path& file : result_files(path)) results.push_back(read_result(file));
-  return results;
+  for (const std::filesystem::path& file : find_result_files(path)) {
+    results.push_back(read_result(file));
+  }
+  if (!results.empty()) return results;
+  throw DataError(path, "holds no result.json", "results of mosbench run or mosbench score");
 }
 
 }  // namespace mosbench

@@ -19,13 +19,11 @@ std::vector<std::filesystem::path> find_result_files(
     const std::filesystem::path& path,
     std::filesystem::directory_options how = std::filesystem::directory_options::none,
     int deepest = std::numeric_limits<int>::max());
-/// The same where there has to be one: throws DataError when there is none.
-std::vector<std::filesystem::path> result_files(const std::filesystem::path& path);
 
 /// Reads what `format_result` wrote, or an earlier version; throws DataError naming the file for
 /// anything else.
 Result read_result(const std::filesystem::path& file);
-/// Reads all of `result_files`.
+/// Reads all of `find_result_files`. Throws DataError when there is none.
 std::vector<Result> read_results(const std::filesystem::path& path);
 
 }  // namespace mosbench

@@ -29,7 +29,7 @@ Result old_result(const std::string& name) {
 }
 
 TEST(OldResults, HaveTheNumbersThatTheirVersionGaveThem) {
-  const std::vector<fs::path> files = result_files(old_results());
+  const std::vector<fs::path> files = find_result_files(old_results());
   ASSERT_EQ(files.size(), 8U);
   for (const fs::path& file : files) {
     const auto written = ordered_json::parse(read_file(file));
@@ -47,7 +47,7 @@ TEST(OldResults, HaveTheNumbersThatTheirVersionGaveThem) {
 
 TEST(OldResults, AreTheSameAfterTheyWereWrittenInThePresentFormat) {
   const TempFolder folder;
-  for (const fs::path& file : result_files(old_results())) {
+  for (const fs::path& file : find_result_files(old_results())) {
     const Result result = read_result(file);
     const std::string text = format_result(result);
     EXPECT_EQ(ordered_json::parse(text).at("format"), kResultFormat);
