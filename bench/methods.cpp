@@ -7,7 +7,7 @@
 #include "core/methods/hmm_mos_plus/objects.hpp"
 #include "core/methods/hmm_mos_plus/pipeline.hpp"
 #include "core/methods/hmm_mos_plus/tracks.hpp"
-#include "core/voxel/point_labels.hpp"
+#include "core/voxel/voxelize.hpp"
 
 namespace mosbench {
 namespace {

@@ -6,7 +6,6 @@
 #include "bench/staged_scans.hpp"
 #include "core/methods/hmm_mos/hmm.hpp"
 #include "core/voxel/distance_field.hpp"
-#include "core/voxel/source_grid.hpp"
 
 namespace mosbench {
 using namespace hmm_mos;

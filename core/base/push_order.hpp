@@ -1,6 +1,7 @@
 #pragma once
 
 #include <mosbench/method.hpp>
+#include <mosbench/scan.hpp>
 #include <optional>
 #include <stdexcept>
 
@@ -65,5 +66,9 @@ inline const RunContext& checked(const RunContext& context) {
   if (context.threads == 0) throw std::invalid_argument("threads: 0, expected at least 1");
   return context;
 }
+
+/// Throws std::range_error for a pose that is not finite, or whose rotation departs from an
+/// orthonormal right-handed one by more than a thousandth.
+void check_rigid(const Pose& pose);
 
 }  // namespace mosbench

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "core/base/rigid.hpp"
+#include "core/base/push_order.hpp"
 
 namespace mosbench {
 namespace {

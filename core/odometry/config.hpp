@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "core/base/fields.hpp"
+#include "core/base/method_row.hpp"
 
 namespace mosbench::odometry {
 
@@ -112,9 +113,12 @@ void visit_fields(AnyConfig& config, Visitor&& visit) {
   visit_scan_fields(config.scan, visit);
 }
 
-/// Throw std::invalid_argument "<key>: <what is wrong>, <what was expected>" for a field outside
+/// Throws std::invalid_argument "<key>: <what is wrong>, <what was expected>" for a field outside
 /// its range and for range limits that leave nothing.
-void check(const SimpleConfig& config);
-void check(const KissConfig& config);
+template <typename Config>
+void check(const Config& config) {
+  check_ranges(config);
+  check_range_limits(config.scan.min_range_m, config.scan.max_range_m);
+}
 
 }  // namespace mosbench::odometry

@@ -2,8 +2,8 @@
 #include <cmath>
 
 #include "core/odometry/engine.hpp"
+#include "core/odometry/point_grid.hpp"
 #include "core/odometry/rigid_motion.hpp"
-#include "core/odometry/thinning.hpp"
 
 namespace mosbench::odometry {
 namespace {

@@ -23,8 +23,7 @@ OdometryKind kind_of(std::string_view name, std::string_view title, std::string_
           .defaults = settings_of(Config{}),
           .check = [](const Settings& settings) { check(config_of<Config>(settings)); },
           .make = [](const Settings& settings, unsigned threads) -> std::unique_ptr<Odometry> {
-            const auto config = config_of<Config>(settings);
-            check(config);
+            const auto config = checked(config_of<Config>(settings));
             if (threads == 0) throw std::invalid_argument("threads: 0, expected at least 1");
             return std::make_unique<ScanOdometry>(config, threads);
           }};

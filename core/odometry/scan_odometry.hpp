@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <mosbench/odometry.hpp>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -9,10 +11,28 @@
 #include "core/odometry/config.hpp"
 #include "core/odometry/engine.hpp"
 #include "core/odometry/pose_certainty.hpp"
-#include "core/odometry/scan_clock.hpp"
 #include "core/odometry/scan_points.hpp"
 
 namespace mosbench::odometry {
+
+/// The time between scans.
+class ScanClock {
+ public:
+  explicit ScanClock(double default_period_s);
+
+  struct Interval {
+    std::int64_t period_ns;  ///< usual time between scans
+    double periods = 1;      ///< since the scan before; 1 unless scans are missing
+    std::string doubt;       ///< what is wrong with the stamp; empty when nothing is
+  };
+  /// Takes the stamp of the next scan. Intervals up to 2.5 times the usual one are taken as usual.
+  Interval tick(std::optional<std::int64_t> stamp_ns);
+
+ private:
+  std::optional<std::int64_t> last_ns_;
+  std::int64_t period_ns_;
+  bool measured_ = false;
+};
 
 /// Odometry by any engine: takes points in range, corrects them for the sensor's motion, predicts
 /// by constant velocity, registers, and judges the result.

@@ -28,4 +28,11 @@ Eigen::Vector3d raised(const Eigen::Vector3d& point_m);
 /// The points whose row of the scan is not marked as moving.
 ScanPoints without(const ScanPoints& scan, std::span<const std::uint8_t> moving);
 
+/// Moves every point to where the sensor would have seen it at the scan's stamp, given that it
+/// moved by `motion` within `period_ns`. `times_ns` holds the time after the stamp of every row of
+/// the scan; times farther than three periods from the stamp are taken for three.
+std::vector<Eigen::Vector3d> deskewed(const ScanPoints& scan,
+                                      std::span<const std::int64_t> times_ns, const Pose& motion,
+                                      std::int64_t period_ns);
+
 }  // namespace mosbench::odometry

@@ -1,8 +1,8 @@
 #include <algorithm>
 
 #include "core/odometry/engine.hpp"
+#include "core/odometry/point_grid.hpp"
 #include "core/odometry/simple_cost.hpp"
-#include "core/odometry/thinning.hpp"
 
 namespace mosbench::odometry {
 namespace {

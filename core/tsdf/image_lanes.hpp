@@ -1,10 +1,54 @@
 #pragma once
 
-#include "core/tsdf/lane_math.hpp"
+#include <cmath>
+
+#include "core/base/simd_lanes.hpp"
 #include "core/tsdf/sensor_model.hpp"
 
+/// Roots and angles of eight numbers, the same bits on every machine, which those of the C library
+/// are not.
 /// Places in a range image and depths there, eight at a time.
 namespace mosbench::tsdf {
+
+inline __attribute__((always_inline)) FloatLanes sqrt_of(const FloatLanes& lanes) {
+#if defined(__SSE2__)
+  using Half = float __attribute__((vector_size(16)));
+  const Half low = __builtin_shufflevector(lanes, lanes, 0, 1, 2, 3);
+  const Half high = __builtin_shufflevector(lanes, lanes, 4, 5, 6, 7);
+  const auto low_root = static_cast<Half>(_mm_sqrt_ps(low));
+  const auto high_root = static_cast<Half>(_mm_sqrt_ps(high));
+  return __builtin_shufflevector(low_root, high_root, 0, 1, 2, 3, 4, 5, 6, 7);
+#else
+  FloatLanes roots{};
+  for (std::size_t i = 0; i < kLanes; ++i) roots[i] = std::sqrt(lanes[i]);
+  return roots;
+#endif
+}
+
+/// Returns the angle of (x, y) in turns, -1/2 to 1/2, within 1e-7: the polynomial of Cephes' atanf
+/// (Moshier, 1989) after folding into an eighth of a turn. 0 at the origin.
+inline __attribute__((always_inline)) FloatLanes angle_turns(const FloatLanes& y,
+                                                             const FloatLanes& x) {
+  constexpr float kTanOfSixteenth = 0.41421356F;  // of a turn
+  constexpr float kTurnsPerRadian = 0.15915494F;
+  const FloatLanes ax = magnitude(x), ay = magnitude(y);
+  const FloatLanes greater = ax > ay ? ax : ay, less = ax > ay ? ay : ax;
+  const IntLanes folds = less > kTanOfSixteenth * greater;
+  const FloatLanes above = folds ? less - greater : less;
+  const FloatLanes below = folds ? less + greater : greater;
+  const FloatLanes t = above / (below > 0.0F ? below : FloatLanes{} + 1.0F);
+  const FloatLanes z = t * t;
+  const FloatLanes radians =
+      (((8.05374449538e-2F * z - 1.38776856032e-1F) * z + 1.99777106478e-1F) * z -
+       3.33329491539e-1F) *
+          z * t +
+      t;
+  const FloatLanes octant =
+      radians * kTurnsPerRadian + (folds ? FloatLanes{} + 0.125F : FloatLanes{});
+  const FloatLanes quadrant = ay > ax ? 0.25F - octant : octant;
+  const FloatLanes half = x < 0.0F ? 0.5F - quadrant : quadrant;
+  return y < 0.0F ? -half : half;
+}
 
 /// Turns directions into places, as place_in_image does.
 struct ImageProjection {

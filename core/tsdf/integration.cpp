@@ -6,8 +6,8 @@
 #include <numbers>
 
 #include "core/base/multiarch.hpp"
-#include "core/tsdf/depth_bounds.hpp"
 #include "core/tsdf/image_lanes.hpp"
+#include "core/tsdf/range_image.hpp"
 
 namespace mosbench::tsdf {
 namespace {

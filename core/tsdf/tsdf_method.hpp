@@ -11,7 +11,6 @@
 #include "core/base/thread_pool.hpp"
 #include "core/tsdf/config.hpp"
 #include "core/tsdf/range_image.hpp"
-#include "core/tsdf/ray_blocks.hpp"
 #include "core/tsdf/sensor_model.hpp"
 #include "core/tsdf/tsdf_map.hpp"
 #include "core/voxel/voxelize.hpp"

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <mosbench/scan.hpp>
 #include <span>
 #include <string>
@@ -49,5 +50,60 @@ class NeighbourAngle {
   double row_deg_ = 0;  // where the angle was widened
   bool is_measured_ = false;
 };
+
+/// b - a of two bearings in [-pi, pi], the short way round.
+inline float bearing_difference_rad(float a, float b) {
+  constexpr float kPi = 3.14159274F;
+  const float difference = b - a;
+  return difference > kPi ? difference - 2 * kPi
+                          : (difference < -kPi ? difference + 2 * kPi : difference);
+}
+
+/// The finding of a reference scan about a query point.
+struct Look {
+  enum class Finding {
+    kUnknown,   ///< it does not surround the point
+    kOccupied,  ///< one of its points is too near, or before the point
+    kFree       ///< it sees past the point
+  };
+  Finding finding = Finding::kUnknown;
+  float margin_m = 0;
+};
+
+/// The points of a reference scan, sorted into cells of bearing and elevation.
+class DirectionGrid {
+ public:
+  /// Points with the range 0 are left out.
+  DirectionGrid(std::span<const Direction> points, double neighbour_angle_rad);
+
+  /// Returns by how much the reference sees past a query point: with N the reference points n with
+  /// (b_n - b)^2 + (e_n - e)^2 <= alpha^2, the least r_n - r in metres. 0 where the reference does
+  /// not tell: N is empty, or the point is not inside its box, min b_n <= b <= max b_n and
+  /// min e_n < e < max e_n, and where the result is below `least_m`. All in single precision.
+  float free_margin_m(const Direction& query, float least_m) const {
+    return look(query, least_m).margin_m;
+  }
+  /// Returns the same, and why it is 0.
+  Look look(const Direction& query, float least_m) const;
+
+  std::size_t memory_bytes() const;
+
+ private:
+  std::uint32_t cell_of(std::uint32_t row, std::uint32_t column) const {
+    return row * columns_ + column;
+  }
+  std::uint32_t row_of(float elevation_rad) const;
+  std::uint32_t column_of(float bearing_rad) const;
+
+  float angle_sq_rad2_;
+  float rows_per_rad_, columns_per_rad_;
+  std::uint32_t rows_, columns_;
+  std::vector<std::uint32_t> first_;  ///< per cell, into the arrays below; one more at the end
+  std::vector<float> range_m_, bearing_rad_, elevation_rad_;  ///< with a few more at their ends
+};
+
+/// Returns what the reference says about each query, as DirectionGrid::look does.
+std::vector<Look> looks_at(std::span<const Direction> queries, const DirectionGrid& reference,
+                           float least_m, ThreadPool& pool);
 
 }  // namespace mosbench

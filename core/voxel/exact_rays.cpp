@@ -4,7 +4,6 @@
 #include <span>
 
 #include "core/base/multiarch.hpp"
-#include "core/voxel/half_lanes.hpp"
 
 namespace mosbench {
 namespace {

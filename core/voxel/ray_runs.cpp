@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "core/base/multiarch.hpp"
-#include "core/voxel/half_lanes.hpp"
+#include "core/voxel/exact_rays.hpp"
 
 namespace mosbench {
 namespace {

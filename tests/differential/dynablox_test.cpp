@@ -3,7 +3,7 @@
 #include <random>
 
 #include "core/methods/dynablox/pipeline.hpp"
-#include "core/tsdf/depth_bounds.hpp"
+#include "core/tsdf/range_image.hpp"
 #include "tests/dynablox_twin.hpp"
 #include "tests/small_world.hpp"
 

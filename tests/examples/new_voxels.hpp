@@ -13,7 +13,6 @@
 
 #include "core/base/fields.hpp"
 #include "core/base/method_row.hpp"
-#include "core/base/range_limits.hpp"
 #include "core/base/sequential_method.hpp"
 #include "core/base/stage_clock.hpp"
 

@@ -2,8 +2,8 @@
 
 #include <random>
 
+#include "core/odometry/point_grid.hpp"
 #include "core/odometry/simple_cost.hpp"
-#include "core/odometry/thinning.hpp"
 #include "tests/odometry_scenes.hpp"
 #include "tests/random_scans.hpp"
 

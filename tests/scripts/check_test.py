@@ -101,23 +101,23 @@ class Headers(unittest.TestCase):
 
 class Includes(unittest.TestCase):
     def test_each_room_has_its_name(self):
-        self.assertEqual(includes.room_of("core/voxel/rays.cpp"), "core/voxel")
+        self.assertEqual(includes.room_of("core/voxel/raycast.cpp"), "core/voxel")
         self.assertEqual(includes.room_of("core/methods/methods.cpp"), "core/methods")
         self.assertEqual(includes.room_of("core/include/mosbench/scan.hpp"), "core/include")
         self.assertEqual(includes.room_of("tests/unit/core/otsu_test.cpp"), "tests")
 
     def test_lower_rooms_may_be_included(self):
         for name, quote, header in (
-                ("core/methods/hmm_mos/hmm.cpp", '"', "core/voxel/voxel.hpp"), ("core/voxel/rays.cpp", "<", "vector"),
+                ("core/methods/hmm_mos/hmm.cpp", '"', "core/voxel/voxel.hpp"), ("core/voxel/raycast.cpp", "<", "vector"),
                 ("eval/cli/run_command.cpp", "<", "CLI/CLI.hpp"), ("eval/report/report.cpp", "<", "mosbench/scan.hpp"),
                 ("tests/unit/core/otsu_test.cpp", '"', "core/methods/hmm_mos/otsu.hpp")):
             self.assertIsNone(includes.complaint(name, quote, header), (name, header))
 
     def test_rooms_above_and_beside_are_refused(self):
-        for name, header in (("core/voxel/rays.cpp", "core/methods/hmm_mos/hmm.hpp"),
+        for name, header in (("core/voxel/raycast.cpp", "core/methods/hmm_mos/hmm.hpp"),
                              ("core/odometry/kiss.cpp", "core/methods/hmm_mos/hmm.hpp"),
                              ("datasets/text/text.cpp", "eval/answer/render.hpp"),
-                             ("core/base/rigid.cpp", "datasets/disk/files.hpp")):
+                             ("core/base/push_order.cpp", "datasets/disk/files.hpp")):
             self.assertIn("must not include", includes.complaint(name, '"', header) or "", (name, header))
 
     def test_core_neither_reads_nor_prints(self):

@@ -6,7 +6,7 @@
 
 #include "core/base/multiarch.hpp"
 #include "core/base/simd_lanes.hpp"
-#include "core/voxel/halo.hpp"
+#include "core/voxel/neighbourhood.hpp"
 
 namespace mosbench::dynablox {
 namespace {

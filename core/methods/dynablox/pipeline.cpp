@@ -7,7 +7,7 @@
 #include "core/methods/dynablox/clusters.hpp"
 #include "core/methods/dynablox/config.hpp"
 #include "core/methods/dynablox/ever_free.hpp"
-#include "core/voxel/point_labels.hpp"
+#include "core/voxel/voxelize.hpp"
 
 namespace mosbench::dynablox {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/base/rigid.hpp"
+#include "core/base/push_order.hpp"
 #include "core/base/stage_clock.hpp"
 
 namespace mosbench::hmm_mos {

@@ -6,7 +6,7 @@
 #include <span>
 
 #include "core/base/thread_pool.hpp"
-#include "core/voxel/voxel_field.hpp"
+#include "core/voxel/voxel_set.hpp"
 #include "core/voxel/voxelize.hpp"
 
 namespace mosbench::hmm_mos {

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "core/base/method_row.hpp"
-#include "core/base/range_limits.hpp"
 #include "core/base/stage_clock.hpp"
 #include "core/methods/hmm_mos/config.hpp"
 #include "core/methods/hmm_mos/convolution.hpp"
@@ -17,8 +16,8 @@
 #include "core/methods/hmm_mos/reference.hpp"
 #include "core/voxel/distance_field.hpp"
 #include "core/voxel/neighbourhood.hpp"
-#include "core/voxel/point_labels.hpp"
 #include "core/voxel/raycast.hpp"
+#include "core/voxel/voxelize.hpp"
 
 namespace mosbench::hmm_mos {
 namespace {

@@ -14,7 +14,6 @@
 #include "core/methods/hmm_mos/dynamic_region.hpp"
 #include "core/methods/hmm_mos/mapping.hpp"
 #include "core/methods/hmm_mos/voxel_map.hpp"
-#include "core/voxel/voxel_field.hpp"
 #include "core/voxel/voxel_set.hpp"
 #include "core/voxel/voxelize.hpp"
 

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "core/base/push_order.hpp"
-#include "core/base/rigid.hpp"
 #include "core/methods/hmm_mos/pipeline.hpp"
 #include "core/methods/hmm_mos/reference_voxels.hpp"
 

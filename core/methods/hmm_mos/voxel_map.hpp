@@ -13,7 +13,7 @@
 #include "core/methods/hmm_mos/global_window.hpp"
 #include "core/methods/hmm_mos/hmm.hpp"
 #include "core/voxel/block_map.hpp"
-#include "core/voxel/source_grid.hpp"
+#include "core/voxel/distance_field.hpp"
 
 namespace mosbench::hmm_mos {
 

@@ -7,7 +7,7 @@
 #include "core/base/fields.hpp"
 #include "core/methods/hmm_mos/config.hpp"
 #include "core/methods/hmm_mos_plus/block_history.hpp"
-#include "core/voxel/halo.hpp"
+#include "core/voxel/neighbourhood.hpp"
 
 namespace mosbench::hmm_mos_plus {
 

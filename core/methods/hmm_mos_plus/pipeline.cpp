@@ -7,7 +7,7 @@
 #include "core/base/stage_clock.hpp"
 #include "core/methods/hmm_mos_plus/config.hpp"
 #include "core/methods/hmm_mos_plus/objects.hpp"
-#include "core/voxel/point_labels.hpp"
+#include "core/voxel/voxelize.hpp"
 
 namespace mosbench::hmm_mos_plus {
 namespace {

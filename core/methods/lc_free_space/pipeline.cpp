@@ -6,7 +6,7 @@
 
 #include "core/base/method_row.hpp"
 #include "core/base/stage_clock.hpp"
-#include "core/voxel/point_labels.hpp"
+#include "core/voxel/voxelize.hpp"
 
 namespace mosbench::lc_free_space {
 namespace {

@@ -1,7 +1,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "core/base/range_limits.hpp"
+#include "core/base/method_row.hpp"
 #include "core/methods/octomap/config.hpp"
 #include "core/methods/octomap/pipeline.hpp"
 #include "core/voxel/raycast.hpp"

@@ -8,9 +8,8 @@
 #include <utility>
 
 #include "core/base/method_row.hpp"
-#include "core/base/range_limits.hpp"
 #include "core/base/stage_clock.hpp"
-#include "core/voxel/direction_grid.hpp"
+#include "core/voxel/directions.hpp"
 
 namespace mosbench::underwood {
 namespace {

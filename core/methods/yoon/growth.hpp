@@ -6,7 +6,6 @@
 
 #include "core/methods/yoon/config.hpp"
 #include "core/methods/yoon/residual.hpp"
-#include "core/voxel/direction_grid.hpp"
 #include "core/voxel/directions.hpp"
 
 namespace mosbench::yoon {

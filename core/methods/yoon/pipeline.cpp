@@ -4,12 +4,11 @@
 #include <utility>
 
 #include "core/base/method_row.hpp"
-#include "core/base/range_limits.hpp"
 #include "core/base/stage_clock.hpp"
 #include "core/methods/yoon/config.hpp"
 #include "core/methods/yoon/growth.hpp"
 #include "core/methods/yoon/residual.hpp"
-#include "core/voxel/direction_grid.hpp"
+#include "core/voxel/directions.hpp"
 
 namespace mosbench::yoon {
 namespace {

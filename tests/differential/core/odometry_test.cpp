@@ -2,8 +2,8 @@
 
 #include <random>
 
+#include "core/odometry/point_grid.hpp"
 #include "core/odometry/simple_cost.hpp"
-#include "core/odometry/thinning.hpp"
 
 /// Fast parts of odometry against ones that compare all pairs.
 namespace mosbench::odometry {

@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "core/methods/underwood/pipeline.hpp"
-#include "core/voxel/direction_grid.hpp"
+#include "core/voxel/directions.hpp"
 #include "tests/small_world.hpp"
 
 /// underwood against all pairs of points.

@@ -6,7 +6,7 @@
 
 #include "core/methods/yoon/pipeline.hpp"
 #include "core/methods/yoon/residual.hpp"
-#include "core/voxel/direction_grid.hpp"
+#include "core/voxel/directions.hpp"
 #include "tests/small_world.hpp"
 
 /// yoon against all pairs of points, step by step.

@@ -1,7 +1,6 @@
-#include "core/voxel/halo.hpp"
-
 #include <gtest/gtest.h>
 
+#include "core/voxel/neighbourhood.hpp"
 #include "tests/voxel_twins.hpp"
 
 namespace mosbench {

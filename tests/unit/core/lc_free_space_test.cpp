@@ -6,7 +6,7 @@
 
 #include "core/methods/lc_free_space/pipeline.hpp"
 #include "core/tsdf/integration.hpp"
-#include "core/tsdf/ray_blocks.hpp"
+#include "core/tsdf/tsdf_map.hpp"
 
 /// Numbers worked by hand.
 namespace mosbench::lc_free_space {

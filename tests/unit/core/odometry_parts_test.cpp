@@ -3,14 +3,13 @@
 #include <cmath>
 
 #include "core/odometry/bfgs.hpp"
-#include "core/odometry/deskew.hpp"
 #include "core/odometry/engine.hpp"
+#include "core/odometry/point_grid.hpp"
 #include "core/odometry/pose_certainty.hpp"
 #include "core/odometry/rigid_motion.hpp"
-#include "core/odometry/scan_clock.hpp"
+#include "core/odometry/scan_odometry.hpp"
+#include "core/odometry/scan_points.hpp"
 #include "core/odometry/simple_cost.hpp"
-#include "core/odometry/surface_samples.hpp"
-#include "core/odometry/thinning.hpp"
 
 namespace mosbench::odometry {
 namespace {

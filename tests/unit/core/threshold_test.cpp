@@ -159,8 +159,9 @@ TEST(ProjectScores, PointsTakeTheSumOverTheWindowAtTheirVoxel) {
   window.join(field_of<VoteField>({{{101, 0, 0}, 1000}}));
   window.join(field_of<VoteField>({{{101, 0, 0}, 40}, {{100, 0, 0}, 7}, {{102, 0, 0}, 9}}));
   window.join(field_of<VoteField>({{{101, 0, 0}, 2}}));
-  EXPECT_EQ(project_scores(scan, window.sums(scan)), (std::vector<float>{42, 0, 0, 7, 42}));
-  EXPECT_EQ(project_scores(scan, {}), std::vector<float>(5, 0));
+  EXPECT_EQ(hmm_mos::project_scores(scan, window.sums(scan)),
+            (std::vector<float>{42, 0, 0, 7, 42}));
+  EXPECT_EQ(hmm_mos::project_scores(scan, {}), std::vector<float>(5, 0));
 }
 
 TEST(ProjectLabels, PointsTakeTheLabelOfTheirVoxel) {

@@ -6,7 +6,7 @@
 #include <random>
 
 #include "core/tsdf/integration.hpp"
-#include "core/tsdf/ray_blocks.hpp"
+#include "core/tsdf/tsdf_map.hpp"
 
 /// Numbers worked by hand from the published settings of Dynablox.
 namespace mosbench::tsdf {

@@ -6,7 +6,6 @@
 #include <span>
 
 #include "core/methods/underwood/pipeline.hpp"
-#include "core/voxel/direction_grid.hpp"
 #include "core/voxel/directions.hpp"
 
 namespace mosbench::underwood {

@@ -1,4 +1,4 @@
-#include "core/base/rigid.hpp"
+#include "core/base/push_order.hpp"
 
 #include <stdexcept>
 
