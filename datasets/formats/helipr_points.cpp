@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
-#include <utility>
+#include <span>
 
 #include "datasets/formats/byte_cursor.hpp"
+#include "datasets/formats/point_records.hpp"
 #include "datasets/formats/pose_file.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
@@ -16,14 +18,47 @@
 namespace mosbench {
 namespace {
 
-constexpr std::array<std::pair<HeliprSensor, std::string_view>, 4> kSensors = {
-    {{HeliprSensor::kAeva, "Aeva"},
-     {HeliprSensor::kAvia, "Avia"},
-     {HeliprSensor::kOuster, "Ouster"},
-     {HeliprSensor::kVelodyne, "Velodyne"}}};
-
 /// The last scan whose points have no intensity.
 constexpr std::int64_t kLastWithout_ns = 1'691'936'557'946'849'179;
+
+constexpr std::uint8_t kUint8 = 2, kInt32 = 5, kUint32 = 6, kFloat32 = 7;
+constexpr std::uint32_t kIntensityAt = 12, kVelocityAt = 16, kAevaIntensityAt = 25;
+
+/// Where a point, which begins with x, y and z in float32, keeps the rest.
+struct PointLayout {
+  std::string_view name;
+  std::uint32_t size_bytes;
+  std::uint8_t intensity_type;
+  std::uint32_t time_at_bytes;
+  std::uint8_t time_type;
+  double time_unit_s;
+};
+/// By HeliprSensor. What is left out: line of Aeva; tag and line of Avia; reflectivity, ring and
+/// ambient of Ouster; ring of Velodyne.
+constexpr std::array<PointLayout, 4> kLayouts = {{{"Aeva", 29, kFloat32, 20, kInt32, 1e-9},
+                                                  {"Avia", 19, kUint8, 15, kUint32, 1e-9},
+                                                  {"Ouster", 26, kFloat32, 16, kUint32, 1e-9},
+                                                  {"Velodyne", 22, kFloat32, 18, kFloat32, 1.0}}};
+
+const PointLayout& layout_of(HeliprSensor sensor) {
+  return kLayouts[static_cast<std::size_t>(sensor)];
+}
+
+CloudHead head_of(HeliprSensor sensor, std::int64_t stamp_ns, std::size_t points) {
+  const PointLayout& layout = layout_of(sensor);
+  const bool is_at_end = sensor == HeliprSensor::kAeva && stamp_ns > kLastWithout_ns;
+  CloudHead head;
+  head.height = 1;
+  head.width = static_cast<std::uint32_t>(points);
+  head.point_step_bytes = static_cast<std::uint32_t>(helipr_point_bytes(sensor, stamp_ns));
+  head.fields = {{"x", 0, kFloat32},
+                 {"y", 4, kFloat32},
+                 {"z", 8, kFloat32},
+                 {"intensity", is_at_end ? kAevaIntensityAt : kIntensityAt, layout.intensity_type},
+                 {"velocity", kVelocityAt, kFloat32},
+                 {"time", layout.time_at_bytes, layout.time_type}};
+  return head;
+}
 
 std::int64_t expect_within_second(double time_s, const std::filesystem::path& file,
                                   std::size_t point) {
@@ -34,76 +69,19 @@ std::int64_t expect_within_second(double time_s, const std::filesystem::path& fi
   return std::llround(time_s * 1e9);
 }
 
-/// Reads what follows x, y and z of one point.
-class PointReader {
- public:
-  PointReader(HeliprSensor sensor, std::int64_t stamp_ns, HeliprScan& scan)
-      : sensor_(sensor), has_intensity_(stamp_ns > kLastWithout_ns), scan_(scan) {}
-
-  /// Returns the time after the stamp in seconds.
-  double read_rest(ByteCursor& cursor, Point& point) const {
-    switch (sensor_) {
-      case HeliprSensor::kAeva:
-        return read_aeva(cursor, point);
-      case HeliprSensor::kAvia: {
-        point.intensity = cursor.take<std::uint8_t>();
-        cursor.take_bytes(2);  // tag, line
-        return 1e-9 * cursor.take<std::uint32_t>();
-      }
-      case HeliprSensor::kOuster: {
-        point.intensity = cursor.take<float>();
-        const double time_s = 1e-9 * cursor.take<std::uint32_t>();
-        cursor.take_bytes(6);  // reflectivity, ring, ambient
-        return time_s;
-      }
-      case HeliprSensor::kVelodyne:
-        point.intensity = cursor.take<float>();
-        cursor.take_bytes(2);  // ring
-        return double{cursor.take<float>()};
-    }
-    return 0.0;
-  }
-
- private:
-  double read_aeva(ByteCursor& cursor, Point& point) const {
-    point.intensity = cursor.take<float>();  // reflectivity
-    scan_.radial_velocity_m_s.push_back(cursor.take<float>());
-    const double time_s = 1e-9 * cursor.take<std::int32_t>();
-    cursor.take_bytes(1);  // line
-    if (has_intensity_) point.intensity = cursor.take<float>();
-    return time_s;
-  }
-
-  HeliprSensor sensor_;
-  bool has_intensity_;
-  HeliprScan& scan_;
-};
-
 }  // namespace
 
-std::string_view to_string(HeliprSensor sensor) {
-  return kSensors[static_cast<std::size_t>(sensor)].second;
-}
+std::string_view to_string(HeliprSensor sensor) { return layout_of(sensor).name; }
 
 std::optional<HeliprSensor> helipr_sensor_from_string(std::string_view name) {
-  for (const auto& [sensor, known] : kSensors) {
-    if (known == name) return sensor;
-  }
-  return std::nullopt;
+  const auto found = std::ranges::find(kLayouts, name, &PointLayout::name);
+  if (found == kLayouts.end()) return std::nullopt;
+  return static_cast<HeliprSensor>(found - kLayouts.begin());
 }
 
 std::size_t helipr_point_bytes(HeliprSensor sensor, std::int64_t stamp_ns) {
-  switch (sensor) {
-    case HeliprSensor::kAeva:
-      return stamp_ns > kLastWithout_ns ? 29 : 25;
-    case HeliprSensor::kAvia:
-      return 19;
-    case HeliprSensor::kOuster:
-      return 26;
-    case HeliprSensor::kVelodyne:
-      return 22;
-  }
-  return 0;
+  const bool lacks = sensor == HeliprSensor::kAeva && stamp_ns <= kLastWithout_ns;
+  return layout_of(sensor).size_bytes - (lacks ? sizeof(float) : 0);
 }
 
 std::size_t helipr_point_count(std::uintmax_t size_bytes, HeliprSensor sensor,
@@ -117,17 +95,16 @@ std::size_t helipr_point_count(std::uintmax_t size_bytes, HeliprSensor sensor,
 HeliprScan parse_helipr_scan(std::string_view bytes, HeliprSensor sensor, std::int64_t stamp_ns,
                              const std::filesystem::path& file) {
   const std::size_t points = helipr_point_count(bytes.size(), sensor, stamp_ns, file);
+  const CloudHead head = head_of(sensor, stamp_ns, points);
   HeliprScan scan;
-  const PointReader reader(sensor, stamp_ns, scan);
-  ByteCursor cursor(bytes, file, "a point");
-  for (std::size_t i = 0; i < points; ++i) {
-    Point point = {};
-    point.x = cursor.take<float>();
-    point.y = cursor.take<float>();
-    point.z = cursor.take<float>();
-    const double time_s = reader.read_rest(cursor, point);
-    scan.times_ns.push_back(expect_within_second(time_s, file, i));
-    scan.points.push_back(point);
+  for (const double time : numbers_of(head, head.fields[5], bytes, file)) {
+    scan.times_ns.push_back(
+        expect_within_second(layout_of(sensor).time_unit_s * time, file, scan.times_ns.size()));
+  }
+  scan.points = points_of(head, bytes, file);
+  if (sensor != HeliprSensor::kAeva) return scan;
+  for (const double velocity_m_s : numbers_of(head, head.fields[4], bytes, file)) {
+    scan.radial_velocity_m_s.push_back(static_cast<float>(velocity_m_s));
   }
   return scan;
 }
@@ -163,22 +140,17 @@ std::vector<HeliprPose> parse_helipr_poses(std::string_view text,
   for (const TextLine& line : split_lines(text, file)) {
     const auto parts = split_at_blanks(line.text);
     const auto stamp_ns = parts.empty() ? std::nullopt : parse_unsigned(parts.front());
-    const bool is_stamp =
-        stamp_ns && *stamp_ns <= std::uint64_t{std::numeric_limits<std::int64_t>::max()};
-    std::array<double, kNumbers - 1> numbers = {};
-    bool is_row = is_stamp && parts.size() == kNumbers;
-    for (std::size_t i = 1; is_row && i < kNumbers; ++i) {
-      const auto number = parse_double(parts[i]);
-      is_row = number.has_value();
-      if (number) numbers[i - 1] = *number;
-    }
-    const auto pose = is_row ? pose_of({numbers[0], numbers[1], numbers[2]},
-                                       {numbers[3], numbers[4], numbers[5], numbers[6]})
-                             : std::nullopt;
-    if (!pose) {
+    const auto refuse = [&](std::string_view) {
       throw DataError(file, line.number, quoted(line.text) + " is no pose",
                       "stamp_ns x y z qx qy qz qw with a quaternion of length 1");
+    };
+    if (!stamp_ns || *stamp_ns > std::uint64_t{std::numeric_limits<std::int64_t>::max()} ||
+        parts.size() != kNumbers) {
+      refuse("");
     }
+    const auto n = parse_numbers(std::span(parts).subspan(1), refuse);
+    const auto pose = pose_of({n[0], n[1], n[2]}, {n[3], n[4], n[5], n[6]});
+    if (!pose) refuse("");
     poses.push_back({static_cast<std::int64_t>(*stamp_ns), *pose});
   }
   return poses;

@@ -9,10 +9,8 @@
 #include <cstring>
 #include <limits>
 #include <system_error>
-#include <utility>
 
 #include "datasets/disk/files.hpp"
-#include "datasets/formats/point_records.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
 

@@ -4,7 +4,6 @@
 #include <array>
 #include <charconv>
 #include <string>
-#include <utility>
 
 #include "datasets/formats/point_records.hpp"
 #include "datasets/text/errors.hpp"

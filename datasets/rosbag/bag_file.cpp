@@ -8,7 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "datasets/disk/files.hpp"
 #include "datasets/formats/byte_cursor.hpp"
 #include "datasets/rosbag/bag_reader.hpp"
 #include "datasets/rosbag/chunk_reader.hpp"

@@ -11,7 +11,6 @@
 #include <utility>
 #include <vector>
 
-#include "datasets/disk/files.hpp"
 #include "datasets/disk/partial_file.hpp"
 #include "datasets/formats/byte_cursor.hpp"
 #include "datasets/rosbag/chunk_reader.hpp"

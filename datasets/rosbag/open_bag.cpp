@@ -9,8 +9,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <filesystem>
-#include <memory>
 #include <set>
 #include <span>
 #include <string>
@@ -21,7 +19,6 @@
 #include "datasets/disk/file_descriptor.hpp"
 #include "datasets/disk/files.hpp"
 #include "datasets/rosbag/bag_metadata.hpp"
-#include "datasets/rosbag/bag_reader.hpp"
 #include "datasets/rosbag/chunk_reader.hpp"
 #include "datasets/rosbag/mcap_record.hpp"
 #include "datasets/text/errors.hpp"

@@ -5,7 +5,6 @@
 #include <xxhash.h>
 
 #include <cerrno>
-#include <cstdint>
 #include <cstring>
 #include <fstream>
 #include <new>

@@ -1,6 +1,5 @@
 #include "datasets/sequence/kept_scans.hpp"
 
-#include <algorithm>
 #include <utility>
 
 namespace mosbench {
