@@ -3,18 +3,21 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <string>
+#include <system_error>
 #include <vector>
 
 #include "datasets/disk/claim.hpp"
 #include "datasets/disk/files.hpp"
 #include "datasets/disk/folder_listing.hpp"
+#include "datasets/disk/partial_file.hpp"
 #include "datasets/formats/kitti_calib.hpp"
 #include "datasets/formats/point_range.hpp"
 #include "datasets/layouts/layout.hpp"
 #include "datasets/layouts/simulated_origin.hpp"
-#include "datasets/layouts/unfinished_conversion.hpp"
 #include "datasets/sequence/fingerprint.hpp"
 #include "datasets/sequence/pose_source.hpp"
 #include "datasets/text/errors.hpp"
@@ -24,6 +27,69 @@ namespace mosbench {
 namespace {
 
 namespace fs = std::filesystem;
+
+fs::path mark_of(const fs::path& root) { return partial_of(root / "convert"); }
+
+void refuse_foreign(const fs::path& root, const std::set<fs::path>& expected) {
+  const std::string mark = mark_of(root).filename();
+  for (const auto& entry : fs::recursive_directory_iterator(root)) {
+    const fs::path name = entry.path().lexically_relative(root);
+    const std::string file = name.filename();
+    const bool is_folder = entry.is_directory() && !entry.is_symlink();
+    if (is_folder || file == mark || expected.contains(name)) continue;
+    if (file.ends_with(partial_of("").native())) continue;
+    throw UsageError(entry.path().string() +
+                     ": is no file of this conversion, expected an empty folder in " +
+                     option("out"));
+  }
+}
+
+/// Marks a folder to which `convert` writes, until all is written. `statement` says what is
+/// converted from where to what: the same conversion may go on after a kill.
+class UnfinishedConversion {
+ public:
+  /// `expected` are the files that the conversion writes, named from `root`. Throws UsageError when
+  /// the folder holds another one, or another conversion was not finished there.
+  UnfinishedConversion(const fs::path& root, const std::string& statement,
+                       const std::set<fs::path>& expected)
+      : root_(root), is_resumed_(is_unfinished_conversion(root)) {
+    if (!is_resumed_) {
+      refuse_foreign(root, {});
+      commit_file(mark_of(root), statement);
+    } else if (read_file(mark_of(root)) == statement) {
+      refuse_foreign(root, expected);
+    } else {
+      throw UsageError(root.string() +
+                       ": holds an unfinished conversion of other files or to another layout, "
+                       "expected an empty folder in " +
+                       option("out"));
+    }
+  }
+
+  /// Removes the mark: all is written.
+  void finish() const {
+    fs::remove(mark_of(root_));
+    sync_names_of(root_);
+  }
+
+  /// Removes all that was written, unless an earlier conversion went on.
+  void give_up() const {
+    if (is_resumed_) return;
+    std::error_code failed;
+    const fs::path mark = mark_of(root_);
+    for (const auto& entry : fs::directory_iterator(root_, failed)) {
+      std::error_code error;
+      if (entry.path() != mark) fs::remove_all(entry.path(), error);
+      if (error) failed = error;
+    }
+    // As long as something is left, the mark lets the same conversion go on.
+    if (!failed) fs::remove(mark, failed);
+  }
+
+ private:
+  std::filesystem::path root_;
+  bool is_resumed_;
+};
 
 SplitNumbers split_numbers(const Dataset& dataset) {
   SplitNumbers splits;
@@ -178,6 +244,8 @@ void convert_sequence(const Sequence& sequence, SequenceWriter& writer, LostCont
 }
 
 }  // namespace
+
+bool is_unfinished_conversion(const fs::path& root) { return is_there(mark_of(root)); }
 
 std::vector<std::string> convert(
     const Dataset& dataset, const ConvertOptions& options,

@@ -19,6 +19,9 @@ struct ConvertOptions {
   std::function<void(std::size_t sequence)> before_sequence = {};
 };
 
+/// Returns whether a conversion to the folder was not finished.
+bool is_unfinished_conversion(const std::filesystem::path& root);
+
 /// Writes every frame of a data set in the layout, with the LiDAR's own poses, and for HeLiMOS the
 /// splits that the source has. Simulated data stay marked as such. After a kill the same conversion
 /// goes on with the first sequence that is not finished. Throws UsageError when `out` holds

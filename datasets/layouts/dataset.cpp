@@ -9,10 +9,10 @@
 #include <utility>
 
 #include "datasets/disk/files.hpp"
+#include "datasets/layouts/convert.hpp"
 #include "datasets/layouts/folder_search.hpp"
 #include "datasets/layouts/layout.hpp"
 #include "datasets/layouts/simulated_origin.hpp"
-#include "datasets/layouts/unfinished_conversion.hpp"
 #include "datasets/perturb/perturbation.hpp"
 #include "datasets/sequence/corrected_sequence.hpp"
 #include "datasets/text/errors.hpp"

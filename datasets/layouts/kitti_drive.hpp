@@ -11,7 +11,7 @@
 
 #include "datasets/disk/folder_listing.hpp"
 #include "datasets/formats/kitti_calib.hpp"
-#include "datasets/layouts/box_tracks.hpp"
+#include "datasets/layouts/boxes.hpp"
 #include "datasets/sequence/reading.hpp"
 
 namespace mosbench {

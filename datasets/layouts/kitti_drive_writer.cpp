@@ -1,5 +1,3 @@
-#include "datasets/layouts/kitti_drive_writer.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,9 +15,9 @@
 #include "datasets/formats/times_file.hpp"
 #include "datasets/formats/tracking_labels.hpp"
 #include "datasets/formats/tracklets.hpp"
-#include "datasets/layouts/box_tracks.hpp"
+#include "datasets/layouts/boxes.hpp"
 #include "datasets/layouts/kitti_drive.hpp"
-#include "datasets/layouts/pure_boxes.hpp"
+#include "datasets/layouts/sequence_writer.hpp"
 #include "datasets/text/errors.hpp"
 
 namespace mosbench {
@@ -292,13 +290,6 @@ std::vector<fs::path> files_of_kitti_tracking(const Sequence& sequence) {
   std::vector<fs::path> files = {"training/calib/0000.txt", "training/label_02/0000.txt"};
   for (std::size_t k = 0; k < sequence.size(); ++k) files.push_back(tracking_scan_file(k));
   return files;
-}
-
-std::uint32_t kitti_label_in_view(const SimulatedReturn& seen) {
-  static const CameraView kView = written_kitti_mounting().view;
-  if (!kView.sees(position_of(seen.point))) return 0;
-  const std::uint32_t label = moving_label(seen);
-  return label == kMovingLabel ? with_instance(label, seen.owner_number) : label;
 }
 
 std::unique_ptr<SequenceWriter> write_as_kitti_raw(const fs::path& folder,

@@ -15,8 +15,7 @@
 #include "datasets/formats/label_file.hpp"
 #include "datasets/formats/nuscenes_table.hpp"
 #include "datasets/formats/pose_file.hpp"
-#include "datasets/layouts/box_tracks.hpp"
-#include "datasets/layouts/points_in_boxes.hpp"
+#include "datasets/layouts/boxes.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
 

@@ -1,5 +1,3 @@
-#include "datasets/layouts/nuscenes_writer.hpp"
-
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
@@ -16,6 +14,7 @@
 #include "datasets/formats/scan_file.hpp"
 #include "datasets/layouts/folder_search.hpp"
 #include "datasets/layouts/nuscenes_tables.hpp"
+#include "datasets/layouts/sequence_writer.hpp"
 #include "datasets/text/errors.hpp"
 
 namespace mosbench {

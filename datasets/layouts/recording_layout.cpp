@@ -1,21 +1,71 @@
 #include <fmt/format.h>
 
+#include <array>
+#include <cstdint>
+#include <filesystem>
 #include <map>
 #include <memory>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "datasets/disk/folder_listing.hpp"
+#include "datasets/formats/bin_file.hpp"
 #include "datasets/formats/scan_file.hpp"
 #include "datasets/layouts/folder_search.hpp"
 #include "datasets/layouts/kitti_sequence.hpp"
 #include "datasets/layouts/layout.hpp"
-#include "datasets/layouts/single_scan.hpp"
 #include "datasets/rosbag/bag_sequence.hpp"
 #include "datasets/rosbag/open_bag.hpp"
+#include "datasets/sequence/pose_source.hpp"
+#include "datasets/sequence/sequence.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
 
 namespace mosbench {
 namespace {
+
+/// One scan file (.bin, .pcd or .ply) as a sequence of its own. Its pose is the identity unless
+/// `options.poses` names a file with one. It has no truth.
+class SingleScan : public Sequence {
+ public:
+  /// Throws DataError for a file that is no scan, UsageError for times of points in a column: one
+  /// scan alone shows no motion to correct.
+  SingleScan(std::string name, const std::filesystem::path& file, const Reading& asked)
+      : bin_columns_(asked.bin_columns.value_or(kUsualBinColumns)) {
+    Recording& recording = mutable_recording();
+    recording.name = SequenceName(std::move(name), file);
+    ScanEntry& entry = recording.scans.emplace_back();
+    entry.stem = shown_in_line(file.stem().string());
+    entry.file = file;
+    if (!asked.bin_columns) check_usual_bin_columns(std::array{StemFile{file, entry.stem}});
+    entry.points = read_scan_head(file, bin_columns_).points;
+    recording.reading.scan_files = file.filename().string();
+    if (asked.pose_file() != nullptr) {
+      place_scans(file.parent_path(), "poses.txt", asked, recording);
+      return;
+    }
+    recording.reading.poses.source = "the identity, of one scan";
+    recording.remarks = {"one scan: its pose is the identity"};
+  }
+
+  using Sequence::read;
+
+  void read(std::size_t scan_index, Frame& frame) const override {
+    const ScanEntry& entry = scan(scan_index);
+    frame.points = read_scan(*entry.file, bin_columns_, std::move(frame.points));
+    if (frame.points.size() != entry.points) {
+      throw DataError(*entry.file, "changed since it was opened",
+                      std::to_string(entry.points) + " points");
+    }
+    describe(scan_index, frame);
+    frame.point_times_ns.clear();
+    frame.truth.reset();
+  }
+
+ private:
+  std::size_t bin_columns_;
+};
 
 bool is_bag(const std::filesystem::path& path) { return is_bag_file(path) || is_bag_folder(path); }
 

@@ -16,6 +16,11 @@ void Sequence::describe(std::size_t scan_index, Frame& frame) const {
   frame.radial_velocity_m_s.clear();
 }
 
+std::vector<std::uint32_t> Sequence::read_truth(std::size_t scan_index) const {
+  if (!has_truth(scan_index)) refuse_truth(scan_index);
+  return *read(scan_index).truth;
+}
+
 void Sequence::add_truth(std::size_t scan_index, Frame& frame) const {
   frame.truth.reset();
   if (has_truth(scan_index)) frame.truth = read_truth(scan_index);

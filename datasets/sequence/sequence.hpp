@@ -44,7 +44,7 @@ struct Frame {
 
 /// An ordered recording of one sensor. Opening it checks everything that needs no scan to be read
 /// (pairing of files, numbers of poses, file sizes) and leaves it in `recording()`; reading a scan
-/// checks the scan. A data set implements `read` and `read_truth`.
+/// checks the scan. A data set implements `read`, and `read_truth` where truth needs no points.
 class Sequence {
  public:
   virtual ~Sequence() = default;
@@ -56,7 +56,7 @@ class Sequence {
   virtual void read(std::size_t scan_index, Frame& frame) const = 0;
   /// Reads the truth of a labelled scan, without its points where the format allows; one raw label
   /// id per point. Safe to call from several threads. Throws DataError.
-  virtual std::vector<std::uint32_t> read_truth(std::size_t scan_index) const = 0;
+  virtual std::vector<std::uint32_t> read_truth(std::size_t scan_index) const;
 
   /// Memory of scans that are kept after reading, for others who read them.
   virtual std::size_t kept_bytes() const { return 0; }

@@ -67,13 +67,6 @@ class SimulatedSequence : public Sequence {
       if (doppler) frame.radial_velocity_m_s.push_back(doppler->radial_velocity_m_s(scan, i));
     }
   }
-  std::vector<std::uint32_t> read_truth(std::size_t scan_index) const override {
-    Frame frame;
-    read(scan_index, frame);
-    if (!frame.truth) refuse_truth(scan_index);
-    return std::move(*frame.truth);
-  }
-
  private:
   double period_s(std::size_t scan_index) const {
     return static_cast<double>(simulator_.stamp_ns(scan_index + 1) -

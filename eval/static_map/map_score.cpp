@@ -11,7 +11,7 @@
 
 #include "datasets/formats/point_range.hpp"
 #include "datasets/formats/scan_file.hpp"
-#include "datasets/layouts/kth_sequence.hpp"
+#include "datasets/layouts/kth_layout.hpp"
 #include "datasets/sequence/fingerprint.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"

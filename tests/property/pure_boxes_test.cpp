@@ -1,11 +1,9 @@
-#include "datasets/layouts/pure_boxes.hpp"
-
 #include <gtest/gtest.h>
 
 #include <numeric>
 #include <random>
 
-#include "datasets/layouts/points_in_boxes.hpp"
+#include "datasets/layouts/boxes.hpp"
 
 namespace mosbench {
 namespace {

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "datasets/disk/files.hpp"
-#include "datasets/layouts/doals_sequence.hpp"
+#include "datasets/layouts/layout.hpp"
 #include "datasets/rosbag/bag_sequence.hpp"
 #include "datasets/rosbag/bag_writer.hpp"
 #include "datasets/rosbag/chunk_reader.hpp"
@@ -138,12 +138,16 @@ TEST_F(Bag, ReadsThroughAChainOfFrames) {
 TEST_F(Bag, IsTheScansOfADoalsSequence) {
   write(good_bag().str());
   folder_.write("indices.csv", std::to_string(kStart + kPeriod) + ",2\n");
-  const DoalsSequence sequence("s", folder_.path(), nullptr);
+  const auto open = layout_of(DatasetKind::kDoals).open;
+  const auto opened = open({"s", folder_.path(), ""}, {});
+  const Sequence& sequence = *opened;
   EXPECT_EQ(sequence.size(), 3U);
   EXPECT_TRUE(sequence.has_truth(1));
   EXPECT_THAT(*sequence.read(1).truth, ElementsAre(kStaticLabel, kStaticLabel, kMovingLabel));
   folder_.write("indices.csv", std::to_string(kStart + 1) + ",2\n");
-  EXPECT_THAT(message_of<DataError>([&] { DoalsSequence("s", folder_.path(), nullptr); }),
+  EXPECT_THAT(message_of<DataError>([&] {
+                open({"s", folder_.path(), ""}, {});
+              }),
               HasSubstr("0 scans have the stamp"));
 }
 

@@ -1,9 +1,9 @@
-#include "datasets/layouts/box_tracks.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+
+#include "datasets/layouts/boxes.hpp"
 
 namespace mosbench {
 namespace {

@@ -10,8 +10,8 @@
 #include "datasets/formats/label_file.hpp"
 #include "datasets/formats/pose_file.hpp"
 #include "datasets/formats/times_file.hpp"
-#include "datasets/layouts/doals_sequence.hpp"
 #include "datasets/layouts/kitti_sequence.hpp"
+#include "datasets/layouts/layout.hpp"
 #include "datasets/sequence/fingerprint.hpp"
 #include "datasets/sequence/kept_scans.hpp"
 #include "datasets/text/errors.hpp"
@@ -206,12 +206,17 @@ TEST(KittiSequence, NoticesAScanThatChangedAfterOpening) {
   EXPECT_THAT(message_of<DataError>([&] { sequence.read(0); }), HasSubstr("changed since"));
 }
 
+std::unique_ptr<Sequence> open_doals(const std::filesystem::path& folder) {
+  return layout_of(DatasetKind::kDoals).open({"s", folder, ""}, {});
+}
+
 TEST(DoalsSequence, FindsTheLabelledScansByStampAndKeepsRawOrder) {
   const TempFolder folder;
   write_recording(folder, {"000000", "000001", "000002"}, "binFiles");
   folder.write("times.txt", "1582193985.1\n1582193985.200000001\n1582193985.3\n");
   folder.write("indices.csv", "1582193985200000001,3,0,3\n1582193985300000000\n");
-  const DoalsSequence sequence("a/sequence_1", folder.path(), nullptr);
+  const auto opened = open_doals(folder.path());
+  const Sequence& sequence = *opened;
   EXPECT_FALSE(sequence.has_truth(0));
   ASSERT_TRUE(sequence.has_truth(1));
   EXPECT_THAT(sequence.read_truth(1), ElementsAre(251U, 9U, 9U, 251U));
@@ -224,7 +229,8 @@ TEST(DoalsSequence, TakesScanNamesInNanosecondsAsStamps) {
   const TempFolder folder;
   write_recording(folder, {"1582193985123456788", "1582193985123456789"});
   folder.write("indices.csv", "1582193985123456789,1\n");
-  const DoalsSequence sequence("s", folder.path(), nullptr);
+  const auto opened = open_doals(folder.path());
+  const Sequence& sequence = *opened;
   EXPECT_FALSE(sequence.has_truth(0));
   EXPECT_TRUE(sequence.has_truth(1));
 }
@@ -235,7 +241,7 @@ TEST(DoalsSequence, NeverTakesTheNearestStamp) {
   folder.write("times.txt", "1.000000000\n1.100000000\n");
   folder.write("indices.csv", "1000000000,1\n1100000001,1\n");
   const auto error_of_opening = [&] {
-    return message_of<DataError>([&] { DoalsSequence("s", folder.path(), nullptr); });
+    return message_of<DataError>([&] { open_doals(folder.path()); });
   };
   EXPECT_THAT(error_of_opening(), HasSubstr("indices.csv:2: 0 scans have the stamp 1100000001"));
   folder.write("times.txt", "1\n1\n");
@@ -247,53 +253,48 @@ TEST(DoalsSequence, RefusesAnIndexBeyondItsScan) {
   write_recording(folder, {"0", "1"});
   folder.write("times.txt", "1\n2\n");
   folder.write("indices.csv", "1000000000,2\n2000000000,4\n");
-  EXPECT_THAT(message_of<DataError>([&] { DoalsSequence("s", folder.path(), nullptr); }),
+  EXPECT_THAT(message_of<DataError>([&] { open_doals(folder.path()); }),
               HasSubstr("indices.csv:2: index 4 is beyond the scan"));
 }
 
 TEST(DoalsSequence, UsesThePublishedListOnlyForTheWholePublishedRecording) {
   const TempFolder folder;
-  const DoalsPublished* published = find_doals_published("shopville", "sequence_1");
-  ASSERT_NE(published, nullptr);
-  std::string poses;
-  for (std::size_t i = 0; i < published->scans; ++i) {
-    folder.write("velodyne/" + std::to_string(i) + ".bin", "");
-    poses += "1 0 0 0 0 1 0 0 0 0 1 0\n";
-  }
-  folder.write("poses.txt", poses);
-  std::string rows;
+  std::string poses, rows;
+  for (std::size_t i = 0; i < 1068; ++i) poses += "1 0 0 0 0 1 0 0 0 0 1 0\n";
   for (int row = 1; row <= 10; ++row) rows += std::to_string(row) + "\n";
-  folder.write("indices.csv", rows);
-  const DoalsSequence sequence("shopville/sequence_1", folder.path(), published);
-  for (std::size_t i = 0; i < sequence.size(); ++i) {
-    const auto& list = published->truth;
-    EXPECT_EQ(sequence.has_truth(i), std::find(list.begin(), list.end(), i + 1) != list.end()) << i;
+  for (const std::string place : {"shopville/sequence_1/", "station/sequence_1/", "a/"}) {
+    for (std::size_t i = 0; i < 1068; ++i) {
+      folder.write(place + "velodyne/" + std::to_string(i) + ".bin", "");
+    }
+    folder.write(place + "poses.txt", poses);
+    folder.write(place + "indices.csv", rows);
   }
-  EXPECT_THAT(sequence.remarks(), Contains(HasSubstr("DOALS sequence 5")));
+  const auto sequence = open_doals(folder / "shopville/sequence_1");
+  ASSERT_EQ(sequence->size(), 1068U);
+  for (std::size_t i = 0; i < sequence->size(); ++i) {
+    EXPECT_EQ(sequence->has_truth(i), i % 100 == 78 && i < 1000) << i;
+  }
+  EXPECT_THAT(sequence->remarks(), Contains(HasSubstr("DOALS sequence 5")));
 
-  EXPECT_THAT(message_of<DataError>([&] { DoalsSequence("s", folder.path(), nullptr); }),
+  EXPECT_THAT(message_of<DataError>([&] { open_doals(folder / "a"); }),
               HasSubstr("stamps cannot be matched"));
-  EXPECT_THAT(message_of<DataError>([&] {
-                DoalsSequence("s", folder.path(), find_doals_published("station", "sequence_1"));
-              }),
+  EXPECT_THAT(message_of<DataError>([&] { open_doals(folder / "station/sequence_1"); }),
               AllOf(HasSubstr("10 rows for 1068 scans"), HasSubstr("2008 scans")));
 }
 
 TEST(DoalsSequence, KnowsTheEightPublishedRecordings) {
   std::size_t scans = 0;
-  for (const DoalsPublished& published : doals_published()) {
-    scans += published.scans;
-    EXPECT_TRUE(std::is_sorted(published.truth.begin(), published.truth.end()));
-    EXPECT_LE(published.truth.back(), published.scans);
-  }
-  EXPECT_EQ(doals_published().size(), 8U);
+  const auto& published = layout_of(DatasetKind::kDoals).files.published;
+  for (const PublishedCount& recording : published) scans += recording.scans;
+  EXPECT_EQ(published.size(), 8U);
   EXPECT_EQ(scans, 12825U);
 }
 
 TEST(DoalsSequence, HasNoTruthWithoutIndices) {
   const TempFolder folder;
   write_recording(folder, {"0"});
-  const DoalsSequence sequence("s", folder.path(), nullptr);
+  const auto opened = open_doals(folder.path());
+  const Sequence& sequence = *opened;
   EXPECT_FALSE(sequence.has_truth(0));
   EXPECT_THAT(message_of<DataError>([&] { sequence.read_truth(0); }), HasSubstr("no truth"));
   EXPECT_THAT(sequence.remarks(), Contains(HasSubstr("no indices.csv")));

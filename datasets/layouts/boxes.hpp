@@ -60,4 +60,30 @@ std::vector<std::vector<LabelledBox>> label_boxes(std::span<const BoxTrack> trac
 /// holds all that a LiDAR reaches, and no box with one comes there.
 bool is_unlabelled(std::span<const LabelledBox> boxes);
 
+/// The points of a scan in the order of x, to find those in a box without looking at all.
+class PointsInBoxes {
+ public:
+  /// Keeps `points`, which have to outlive it.
+  explicit PointsInBoxes(std::span<const Point> points);
+
+  /// Gives all points within a box, its sides included, one label.
+  void label(const Pose& box_from_sensor, const Eigen::Vector3d& half_size_m, std::uint32_t label,
+             std::span<std::uint32_t> labels) const;
+
+ private:
+  std::span<const Point> points_;
+  std::vector<std::uint32_t> order_;
+};
+
+/// A box along the axes of the points' frame.
+struct AxisBox {
+  Eigen::Vector3d low_m, high_m;
+};
+
+/// Returns boxes that hold the points at the places `inside` and none of those at `outside`,
+/// however they lie, unless two of both lie within some hundredths of a millimetre. Few boxes where
+/// points of one kind keep together.
+std::vector<AxisBox> pure_boxes(std::span<const Point> points, std::vector<std::uint32_t> inside,
+                                std::vector<std::uint32_t> outside);
+
 }  // namespace mosbench

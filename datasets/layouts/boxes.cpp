@@ -1,9 +1,11 @@
-#include "datasets/layouts/box_tracks.hpp"
+#include "datasets/layouts/boxes.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "datasets/formats/label_file.hpp"
+#include "datasets/formats/point_range.hpp"
 #include "datasets/sequence/sequence.hpp"
 
 namespace mosbench {
@@ -46,6 +48,53 @@ std::uint32_t id_at(std::span<const Sighting> track, std::size_t at, double movi
   return speed_m_s >= moving_speed_m_s ? kMovingLabel : kStaticLabel;
 }
 
+/// What boxes reach beyond their points, and twice that keeps others out: rounding in a file must
+/// change nothing.
+constexpr double kReach_m = 1e-5;
+
+AxisBox box_around(std::span<const Point> points, std::span<const std::uint32_t> places) {
+  AxisBox box{position_of(points[places.front()]), position_of(points[places.front()])};
+  for (const std::uint32_t i : places) {
+    box.low_m = box.low_m.cwiseMin(position_of(points[i]));
+    box.high_m = box.high_m.cwiseMax(position_of(points[i]));
+  }
+  box.low_m.array() -= kReach_m;
+  box.high_m.array() += kReach_m;
+  return box;
+}
+
+bool holds_nearly(const AxisBox& box, const Eigen::Vector3d& p) {
+  return (p.array() >= box.low_m.array() - kReach_m).all() &&
+         (p.array() <= box.high_m.array() + kReach_m).all();
+}
+
+class BoxSplitter {
+ public:
+  explicit BoxSplitter(std::span<const Point> points) : points_(points) {}
+
+  void split(std::span<std::uint32_t> inside, std::vector<std::uint32_t> outside) {
+    const AxisBox box = box_around(points_, inside);
+    std::erase_if(outside,
+                  [&](std::uint32_t i) { return !holds_nearly(box, position_of(points_[i])); });
+    if (outside.empty() || inside.size() == 1) {
+      boxes_.push_back(box);
+      return;
+    }
+    Eigen::Index axis = 0;
+    (box.high_m - box.low_m).maxCoeff(&axis);
+    const std::size_t half = inside.size() / 2;
+    std::ranges::nth_element(inside, inside.begin() + static_cast<std::ptrdiff_t>(half), {},
+                             [&](std::uint32_t i) { return position_of(points_[i])[axis]; });
+    split(inside.first(half), outside);
+    split(inside.subspan(half), std::move(outside));
+  }
+  std::vector<AxisBox> boxes() && { return std::move(boxes_); }
+
+ private:
+  std::span<const Point> points_;
+  std::vector<AxisBox> boxes_;
+};
+
 }  // namespace
 
 std::uint32_t instance_of_number(std::uint64_t number) {
@@ -87,6 +136,34 @@ bool is_unlabelled(std::span<const LabelledBox> boxes) {
     covers = covers || (id_of(box) == 0 && (reached_m <= box.half_size_m.array()).all());
   }
   return covers;
+}
+
+PointsInBoxes::PointsInBoxes(std::span<const Point> points) : points_(points) {
+  for (std::uint32_t i = 0; i < points.size(); ++i) {
+    if (!std::isnan(points[i].x)) order_.push_back(i);
+  }
+  std::ranges::sort(order_, {}, [&](std::uint32_t i) { return points_[i].x; });
+}
+
+void PointsInBoxes::label(const Pose& box_from_sensor, const Eigen::Vector3d& half_size_m,
+                          std::uint32_t label, std::span<std::uint32_t> labels) const {
+  const double x_m = box_from_sensor.inverse().translation().x();
+  // A little more on either side: the rounding of the motion must lose no point.
+  const double reach_m = half_size_m.norm() + 1e-5 * (1.0 + std::abs(x_m));
+  const auto x_of = [&](std::uint32_t i) { return static_cast<double>(points_[i].x); };
+  const double low_m = x_m - reach_m, high_m = x_m + reach_m;
+  for (auto i = std::ranges::lower_bound(order_, low_m, {}, x_of); i != order_.end(); ++i) {
+    if (x_of(*i) > high_m) break;
+    const Eigen::Vector3d p = box_from_sensor * position_of(points_[*i]);
+    if ((p.cwiseAbs().array() <= half_size_m.array()).all()) labels[*i] = label;
+  }
+}
+
+std::vector<AxisBox> pure_boxes(std::span<const Point> points, std::vector<std::uint32_t> inside,
+                                std::vector<std::uint32_t> outside) {
+  BoxSplitter splitter(points);
+  if (!inside.empty()) splitter.split(inside, std::move(outside));
+  return std::move(splitter).boxes();
 }
 
 }  // namespace mosbench
