@@ -14,7 +14,6 @@
 #include "eval/cli/commands.hpp"
 #include "eval/cli/flags.hpp"
 #include "eval/cli/output_file.hpp"
-#include "eval/trajectory/path_comparison.hpp"
 #include "eval/trajectory/trajectory_scores.hpp"
 
 namespace mosbench {

@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "eval/breakdown/moving_boxes.hpp"
+#include "eval/breakdown/object_tracks.hpp"
 #include "eval/result/result_scans.hpp"
 
 namespace mosbench {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "eval/answer/picture.hpp"
-#include "eval/breakdown/moving_boxes.hpp"
+#include "eval/breakdown/object_tracks.hpp"
 #include "eval/result/result_scans.hpp"
 
 namespace mosbench {

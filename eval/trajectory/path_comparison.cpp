@@ -1,5 +1,3 @@
-#include "eval/trajectory/path_comparison.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,6 +8,7 @@
 #include "datasets/text/errors.hpp"
 #include "eval/answer/answer_text.hpp"
 #include "eval/statistics/statistics_report.hpp"
+#include "eval/trajectory/trajectory_scores.hpp"
 
 namespace mosbench {
 namespace {

@@ -1,9 +1,9 @@
-#include "eval/breakdown/moving_boxes.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
+
+#include "eval/breakdown/object_tracks.hpp"
 
 namespace mosbench {
 namespace {

@@ -10,7 +10,6 @@
 #include "datasets/formats/bin_file.hpp"
 #include "datasets/formats/pose_file.hpp"
 #include "datasets/text/errors.hpp"
-#include "eval/trajectory/path_comparison.hpp"
 #include "eval/trajectory/trajectory_scores.hpp"
 #include "tests/temp_folder.hpp"
 
