@@ -59,10 +59,22 @@ Eigen::Vector3d expected_at(const ObjectTrack& track, std::size_t scan_index) {
          step * (last.cluster.centre_map_m - before.cluster.centre_map_m);
 }
 
+bool may_go_on(const ObjectTrack& track, std::size_t scan_index) {
+  const Sighting& last = track.sightings.back();
+  return last.cluster.instance != 0 || scan_index - last.scan_index <= kLongestGap_scans;
+}
+
 bool is_open(const ObjectTrack& track, const ScanCluster& cluster, std::size_t scan_index) {
   const Sighting& last = track.sightings.back();
-  if (last.cluster.instance != cluster.instance || last.scan_index == scan_index) return false;
-  return cluster.instance != 0 || scan_index - last.scan_index <= kLongestGap_scans;
+  return last.cluster.instance == cluster.instance && last.scan_index != scan_index &&
+         may_go_on(track, scan_index);
+}
+
+template <typename Value>
+Value sum_of(const ObjectTrack& track, Value ScanCluster::*member) {
+  Value sum{};
+  for (const Sighting& sighting : track.sightings) sum += sighting.cluster.*member;
+  return sum;
 }
 
 struct Pair {
@@ -105,11 +117,6 @@ void extend(std::vector<ObjectTrack>& tracks, const ScanObjects& scan) {
 
 double speed_between(const Sighting& from, const Sighting& to) {
   return (to.cluster.centre_map_m - from.cluster.centre_map_m).norm() / (to.time_s - from.time_s);
-}
-
-bool may_go_on(const ObjectTrack& track, std::size_t scan_index) {
-  const Sighting& last = track.sightings.back();
-  return last.cluster.instance != 0 || scan_index - last.scan_index <= kLongestGap_scans;
 }
 
 constexpr int kTurnsTried = 45;  // of a quarter turn
@@ -181,22 +188,12 @@ ScanClock scan_times(const Sequence& sequence, const std::vector<std::size_t>& s
   return assumed;
 }
 
-std::size_t ObjectTrack::points() const {
-  std::size_t points = 0;
-  for (const Sighting& sighting : sightings) points += sighting.cluster.points;
-  return points;
-}
+std::size_t ObjectTrack::points() const { return sum_of(*this, &ScanCluster::points); }
 
-std::size_t ObjectTrack::found() const {
-  std::size_t found = 0;
-  for (const Sighting& sighting : sightings) found += sighting.cluster.found;
-  return found;
-}
+std::size_t ObjectTrack::found() const { return sum_of(*this, &ScanCluster::found); }
 
 double ObjectTrack::mean_range_m() const {
-  double sum_m = 0.0;
-  for (const Sighting& sighting : sightings) sum_m += sighting.cluster.range_m;
-  return sum_m / static_cast<double>(sightings.size());
+  return sum_of(*this, &ScanCluster::range_m) / static_cast<double>(sightings.size());
 }
 
 double ObjectTrack::largest_size_m() const {

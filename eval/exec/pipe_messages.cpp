@@ -56,23 +56,18 @@ void check_header(const MessageHeader& header, std::string_view tag, std::uint64
   }
 }
 
-void check_labels(const std::vector<std::uint32_t>& labels) {
-  const auto wrong = std::ranges::find_if(
-      labels, [](std::uint32_t label) { return label != kStaticLabel && label != kMovingLabel; });
-  if (wrong == labels.end()) return;
+/// Throws ProgramError for the first value that is wrong.
+template <typename Value>
+void check_each(const std::vector<Value>& values, bool (*is_right)(Value), const char* what,
+                const std::string& expected) {
+  const auto wrong = std::ranges::find_if_not(values, is_right);
+  if (wrong == values.end()) return;
   throw ProgramError(
-      fmt::format("the program gives point {} the label {}", wrong - labels.begin(), *wrong),
-      fmt::format("{} (static) or {} (moving)", kStaticLabel, kMovingLabel));
+      fmt::format("the program gives point {} the {} {}", wrong - values.begin(), what, *wrong),
+      expected);
 }
 
-void check_scores(const std::vector<float>& scores) {
-  const auto wrong =
-      std::ranges::find_if(scores, [](float score) { return !std::isfinite(score); });
-  if (wrong == scores.end()) return;
-  throw ProgramError(
-      fmt::format("the program gives point {} the score {}", wrong - scores.begin(), *wrong),
-      "a finite number");
-}
+bool is_label(std::uint32_t label) { return label == kStaticLabel || label == kMovingLabel; }
 
 }  // namespace
 
@@ -141,10 +136,12 @@ LabelMessage parse_labels(std::string_view payload, std::uint64_t scan_index, st
                        fmt::format("the {} points of scan {}", points, scan_index));
   }
   LabelMessage message{numbers_at<std::uint32_t>(payload, kLabelStartBytes, points), {}};
-  check_labels(message.labels);
+  check_each(message.labels, is_label, "label",
+             fmt::format("{} (static) or {} (moving)", kStaticLabel, kMovingLabel));
   if (!with_scores) return message;
   message.scores = numbers_at<float>(payload, kLabelStartBytes + 4 * points, points);
-  check_scores(message.scores);
+  check_each<float>(
+      message.scores, [](float score) { return std::isfinite(score); }, "score", "a finite number");
   return message;
 }
 

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <fstream>
 #include <set>
 #include <system_error>
@@ -141,35 +140,33 @@ std::optional<fs::path> table_in(const fs::path& folder, std::optional<Format> w
   return tables.front();
 }
 
-/// Recognises the predictions of the sequence in a folder, if there are any.
-std::optional<PredictionPlace> recognise_in(const fs::path& folder, const Sequence& sequence) {
+/// Recognises predictions in files per scan.
+std::optional<Format> format_per_scan(const fs::path& folder, const Sequence& sequence) {
   if (const auto labels = files_with_extension(folder, ".label"); !labels.empty()) {
-    return PredictionPlace{folder, label_format(labels, sequence)};
+    return label_format(labels, sequence);
   }
-  if (!prediction_files({folder, Format::kNpy}).empty())
-    return PredictionPlace{folder, Format::kNpy};
-  constexpr std::array kPerScan = {std::pair{".pcd", Format::kPcd},
-                                   std::pair{".txt", Format::kText},
-                                   std::pair{".csv", Format::kCsv}};
-  for (const auto& [extension, format] : kPerScan) {
-    const auto files = files_with_extension(folder, extension);
-    if (!files.empty() && names_a_scan(files, sequence)) return PredictionPlace{folder, format};
+  if (!prediction_files({folder, Format::kNpy}).empty()) return Format::kNpy;
+  for (const Format format : {Format::kPcd, Format::kText, Format::kCsv}) {
+    const auto files = files_with_extension(folder, describe(format).extension);
+    if (names_a_scan(files, sequence)) return format;
   }
-  const auto table = table_in(folder, std::nullopt);
-  if (!table) return std::nullopt;
-  return PredictionPlace{*table, format_of_named(*table)};
+  return std::nullopt;
 }
 
-/// Finds predictions of a given format.
-std::optional<PredictionPlace> find_format_in(const fs::path& folder, PredictionFormat format) {
-  const DescribedFormat& wanted = describe(format);
-  if (wanted.per_scan) {
-    if (prediction_files({folder, format}).empty()) return std::nullopt;
-    return PredictionPlace{folder, format};
+/// Finds the predictions of the sequence in a folder, if there are any. Without a format it is
+/// recognised.
+std::optional<PredictionPlace> find_in(const fs::path& folder, const Sequence& sequence,
+                                       std::optional<Format> format) {
+  if (!format) {
+    const auto found = format_per_scan(folder, sequence);
+    if (found) return PredictionPlace{folder, *found};
+  } else if (describe(*format).per_scan) {
+    if (prediction_files({folder, *format}).empty()) return std::nullopt;
+    return PredictionPlace{folder, *format};
   }
   const auto table = table_in(folder, format);
   if (!table) return std::nullopt;
-  return PredictionPlace{*table, format};
+  return PredictionPlace{*table, format ? *format : format_of_named(*table)};
 }
 
 bool is_truth(const fs::path& path, const Sequence& sequence) {
@@ -184,8 +181,7 @@ bool is_truth(const fs::path& path, const Sequence& sequence) {
 std::optional<PredictionPlace> look_below(const fs::path& root, const Sequence& sequence,
                                           bool only_sequence, std::optional<Format> format) {
   for (const fs::path& folder : candidate_folders(root, sequence.name(), only_sequence)) {
-    const auto found = format ? find_format_in(folder, *format) : recognise_in(folder, sequence);
-    if (found) return found;
+    if (const auto found = find_in(folder, sequence, format)) return found;
   }
   return std::nullopt;
 }

@@ -57,10 +57,6 @@ constexpr std::uint32_t kLargestFloatBits = 0x477FFF00;
 /// Of semantic-kitti-mos.yaml.
 constexpr std::uint32_t kLargestId = 259;
 
-std::uint32_t with_bytes_reversed(std::uint32_t word) {
-  return (word >> 24U) | ((word >> 8U) & 0xFF00U) | ((word << 8U) & 0xFF0000U) | (word << 24U);
-}
-
 bool may_be_float(std::uint32_t word) {
   const std::uint32_t magnitude = word & 0x7FFFFFFFU;
   return magnitude >= kSmallestFloatBits && magnitude <= kLargestFloatBits;
@@ -81,7 +77,7 @@ std::string other_encoding(const std::vector<std::uint32_t>& labels) {
     if (label == 0) continue;
     any = true;
     floats = floats && may_be_float(label);
-    const std::uint32_t reversed_id = id_of(with_bytes_reversed(label));
+    const std::uint32_t reversed_id = id_of(__builtin_bswap32(label));
     big_endian = big_endian && is_id(reversed_id) && !is_id(id_of(label));
     // Larger ones could be instances of id 0.
     small_id = small_id || reversed_id < 256;
@@ -109,26 +105,6 @@ std::string moving_ids(const Protocol& protocol) {
                                       : fmt::format("{} to {}", range.first, range.last);
   }
   return text;
-}
-
-/// Positions first to last in a list, both inclusive.
-struct Run {
-  std::size_t first, last;
-};
-
-/// Returns where `is_in` holds without a gap.
-template <typename Condition>
-std::vector<Run> runs_of(std::size_t size, const Condition& is_in) {
-  std::vector<Run> runs;
-  for (std::size_t i = 0; i < size; ++i) {
-    if (!is_in(i)) continue;
-    if (!runs.empty() && runs.back().last + 1 == i) {
-      runs.back().last = i;
-    } else {
-      runs.push_back({i, i});
-    }
-  }
-  return runs;
 }
 
 DataError no_rows(const PredictionPlace& place, const std::string& first, const std::string& last) {
@@ -159,9 +135,12 @@ std::vector<std::string> missing_scans(const Predictions& labels, const Predicti
   const auto is_unreported = [&](std::size_t i) {
     return !labels.has(wanted[i]) && !(format.per_scan && is_there(file(i)));
   };
-  for (const Run& run : runs_of(wanted.size(), is_unreported)) {
-    errors.report(format.per_scan ? no_files(file(run.first), file(run.last))
-                                  : no_rows(place, stem(run.first), stem(run.last)));
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    if (!is_unreported(i)) continue;
+    const std::size_t first = i;
+    while (i + 1 < wanted.size() && is_unreported(i + 1)) ++i;
+    errors.report(format.per_scan ? no_files(file(first), file(i))
+                                  : no_rows(place, stem(first), stem(i)));
   }
   std::vector<std::string> missing;
   for (std::size_t i = 0; i < wanted.size(); ++i) {

@@ -77,13 +77,6 @@ bool is_data_set(const fs::path& folder) {
   }
 }
 
-bool do_increase(const std::vector<std::int64_t>& stamps_ns) {
-  for (std::size_t k = 1; k < stamps_ns.size(); ++k) {
-    if (stamps_ns[k] <= stamps_ns[k - 1]) return false;
-  }
-  return true;
-}
-
 PosePath path_of_sequence(const Sequence& sequence, const fs::path& root) {
   PosePath path{sequence.name(), root, true, {}};
   for (std::size_t k = 0; k < sequence.size(); ++k) {
@@ -91,7 +84,8 @@ PosePath path_of_sequence(const Sequence& sequence, const fs::path& root) {
     if (const auto stamp_ns = sequence.stamp_ns(k)) path.list.stamps_ns.push_back(*stamp_ns);
   }
   std::vector<std::int64_t>& stamps_ns = path.list.stamps_ns;
-  if (stamps_ns.size() != sequence.size() || !do_increase(stamps_ns)) stamps_ns.clear();
+  const auto fall = std::ranges::adjacent_find(stamps_ns, std::ranges::greater_equal());
+  if (stamps_ns.size() != sequence.size() || fall != stamps_ns.end()) stamps_ns.clear();
   return path;
 }
 
@@ -117,26 +111,17 @@ std::size_t nearest_stamp(const std::vector<std::int64_t>& stamps_ns, std::int64
   return i > 0 && stamp_ns - stamps_ns[i - 1] <= stamps_ns[i] - stamp_ns ? i - 1 : i;
 }
 
-/// Positions in the lists of poses with about the same stamp.
-std::vector<std::pair<std::size_t, std::size_t>> paired_by_time(
-    const std::vector<std::int64_t>& shorter, const std::vector<std::int64_t>& longer,
-    double max_difference_s) {
-  std::vector<std::pair<std::size_t, std::size_t>> pairs;
-  for (std::size_t i = 0; i < shorter.size(); ++i) {
-    const std::size_t j = nearest_stamp(longer, shorter[i]);
-    const double difference_s = std::abs(static_cast<double>(longer[j] - shorter[i])) * 1e-9;
-    if (difference_s <= max_difference_s) pairs.emplace_back(i, j);
-  }
-  return pairs;
-}
-
 void pair_by_time(const PoseList& estimate, const PoseList& truth,
                   const std::filesystem::path& file, double max_difference_s,
                   TrajectoryPair& pair) {
   const bool estimate_shorter = estimate.poses.size() <= truth.poses.size();
   const PoseList& shorter = estimate_shorter ? estimate : truth;
   const PoseList& longer = estimate_shorter ? truth : estimate;
-  for (const auto& [i, j] : paired_by_time(shorter.stamps_ns, longer.stamps_ns, max_difference_s)) {
+  for (std::size_t i = 0; i < shorter.poses.size(); ++i) {
+    const std::int64_t stamp_ns = shorter.stamps_ns[i];
+    const std::size_t j = nearest_stamp(longer.stamps_ns, stamp_ns);
+    const double apart_s = std::abs(static_cast<double>(longer.stamps_ns[j] - stamp_ns)) * 1e-9;
+    if (apart_s > max_difference_s) continue;
     pair.estimate.push_back(estimate.poses[estimate_shorter ? i : j]);
     pair.truth.push_back(truth.poses[estimate_shorter ? j : i]);
   }
