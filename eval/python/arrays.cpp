@@ -61,29 +61,15 @@ Pose pose_of(const py::array& array) {
     throw py::value_error(fmt::format("pose[{}, {}]: is {}, expected a finite number", i / 4, i % 4,
                                       matrix.data()[i]));
   }
-  Pose pose;
-  for (int row = 0; row < 4; ++row) {
-    for (int column = 0; column < 4; ++column) {
-      const double value = matrix.at(row, column);
-      if (row < 3) {
-        pose.matrix()(row, column) = value;
-      } else if (value != (column == 3 ? 1.0 : 0.0)) {
-        throw py::value_error("pose: has another last row, expected 0 0 0 1");
-      }
-    }
+  using Rows = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
+  const Eigen::Map<const Rows> rows(matrix.data());
+  if (rows.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) {
+    throw py::value_error("pose: has another last row, expected 0 0 0 1");
   }
+  Pose pose;
+  pose.matrix().topRows<3>() = rows.topRows<3>();
   pose.makeAffine();
   return pose;
-}
-
-py::array_t<double> matrix_of(const Pose& pose) {
-  py::array_t<double> matrix({4, 4});
-  for (int row = 0; row < 4; ++row) {
-    for (int column = 0; column < 4; ++column) {
-      matrix.mutable_at(row, column) = pose.matrix()(row, column);
-    }
-  }
-  return matrix;
 }
 
 py::array_t<float> array_of(std::vector<Point>&& points) {

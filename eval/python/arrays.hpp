@@ -36,8 +36,12 @@ class ArrayPoints {
 
 /// Returns the pose of an array (4, 4) with the last row 0 0 0 1. Throws py::value_error.
 Pose pose_of(const py::array& matrix);
-/// Returns an array (4, 4).
-py::array_t<double> matrix_of(const Pose& pose);
+/// Returns an array of the same numbers, its rows one after the other.
+template <int kRows, int kColumns>
+py::array_t<double> matrix_of(const Eigen::Matrix<double, kRows, kColumns>& numbers) {
+  const Eigen::Matrix<double, kRows, kColumns, Eigen::RowMajor> rows = numbers;
+  return py::array_t<double>({kRows, kColumns}, rows.data());
+}
 /// Returns an array (N, 4) that owns the points.
 py::array_t<float> array_of(std::vector<Point>&& points);
 /// Returns the labels of an array (N) of integers. Throws py::value_error for other shapes and for
@@ -57,6 +61,20 @@ template <typename Value>
 py::array_t<Value> array_of(std::vector<Value>&& values) {
   const auto [owner, kept] = owned(std::move(values));
   return py::array_t<Value>(static_cast<py::ssize_t>(kept->size()), kept->data(), owner);
+}
+
+/// Returns the same, or None of an empty vector.
+template <typename Value>
+py::object array_or_none(std::vector<Value>&& values) {
+  return values.empty() ? py::object(py::none()) : array_of(std::move(values));
+}
+
+/// Returns the names of the rows of a table.
+template <typename Rows>
+std::vector<std::string> names_of(const Rows& rows) {
+  std::vector<std::string> names;
+  for (const auto& row : rows) names.emplace_back(row.name);
+  return names;
 }
 
 }  // namespace mosbench::python

@@ -12,7 +12,5 @@ void bind_methods(py::module_& module);
 void bind_datasets(py::module_& module);
 /// Adds protocols and results.
 void bind_scores(py::module_& module);
-/// Adds the commands of the program.
-void bind_commands(py::module_& module);
 
 }  // namespace mosbench::python

@@ -10,9 +10,12 @@
 #include "eval/job/job_words.hpp"
 #include "eval/python/arrays.hpp"
 #include "eval/python/bindings.hpp"
+#include "eval/result/reading_json.hpp"
 
 namespace mosbench::python {
 namespace {
+
+using namespace py::literals;
 
 using SharedDataset = std::shared_ptr<Dataset>;
 
@@ -38,32 +41,20 @@ py::dict read_scan(const OpenSequence& opened, std::size_t scan_index) {
     const py::gil_scoped_release released;
     opened.sequence->read(scan_index, frame);
   }
-  py::dict scan;
-  scan["index"] = scan_index;
-  scan["stem"] = frame.stem;
-  scan["points"] = array_of(std::move(frame.points));
-  scan["pose"] = matrix_of(frame.map_from_sensor);
-  scan["stamp_ns"] = frame.stamp_ns;
-  const bool timed = !frame.point_times_ns.empty();
-  scan["point_times_ns"] =
-      timed ? py::object(array_of(std::move(frame.point_times_ns))) : py::none();
-  const bool has_velocities = !frame.radial_velocity_m_s.empty();
-  scan["radial_velocity_m_s"] =
-      has_velocities ? py::object(array_of(std::move(frame.radial_velocity_m_s))) : py::none();
-  scan["truth"] = frame.truth ? py::object(array_of(std::move(*frame.truth))) : py::none();
-  return scan;
+  return py::dict(
+      "index"_a = scan_index, "stem"_a = frame.stem, "points"_a = array_of(std::move(frame.points)),
+      "pose"_a = matrix_of(frame.map_from_sensor.matrix()), "stamp_ns"_a = frame.stamp_ns,
+      "point_times_ns"_a = array_or_none(std::move(frame.point_times_ns)),
+      "radial_velocity_m_s"_a = array_or_none(std::move(frame.radial_velocity_m_s)),
+      "truth"_a = frame.truth ? py::object(array_of(std::move(*frame.truth))) : py::none());
 }
 
 py::array_t<double> poses_of(const OpenSequence& opened) {
-  const auto count = static_cast<py::ssize_t>(opened.sequence->size());
-  py::array_t<double> poses({count, py::ssize_t{4}, py::ssize_t{4}});
-  for (py::ssize_t k = 0; k < count; ++k) {
-    const Pose& pose = opened.sequence->map_from_sensor(static_cast<std::size_t>(k));
-    for (int row = 0; row < 4; ++row) {
-      for (int column = 0; column < 4; ++column) {
-        poses.mutable_at(k, row, column) = pose.matrix()(row, column);
-      }
-    }
+  const std::size_t count = opened.sequence->size();
+  py::array_t<double> poses({count, std::size_t{4}, std::size_t{4}});
+  using Rows = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
+  for (std::size_t k = 0; k < count; ++k) {
+    Eigen::Map<Rows>(poses.mutable_data() + 16 * k) = opened.sequence->map_from_sensor(k).matrix();
   }
   return poses;
 }
@@ -88,7 +79,7 @@ void write_pose_file(const std::filesystem::path& file, const std::vector<py::ar
 
 void bind_datasets(py::module_& module) {
   module.def("open", open_shared);
-  module.def("reading_names", reading_names);
+  module.def("reading_names", [] { return names_of(reading_fields()); });
   module.def("write_poses", write_pose_file);
   py::class_<Dataset, SharedDataset>(module, "Dataset")
       .def_property_readonly("kind",

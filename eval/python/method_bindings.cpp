@@ -5,9 +5,7 @@
 #include <mosbench/method.hpp>
 #include <mosbench/odometry.hpp>
 #include <mutex>
-#include <stdexcept>
 
-#include "datasets/text/text.hpp"
 #include "eval/job/method_choice.hpp"
 #include "eval/python/arrays.hpp"
 #include "eval/python/bindings.hpp"
@@ -17,42 +15,31 @@
 namespace mosbench::python {
 namespace {
 
-[[noreturn]] void refuse_name(std::string_view what, const std::string& name, const auto& kinds) {
-  std::vector<std::string_view> known;
-  for (const auto& kind : kinds) known.push_back(kind.name);
-  throw py::value_error(fmt::format("{}: '{}' is not known, expected one of {} (nearest: {})", what,
-                                    name, fmt::join(known, ", "), nearest_name(name, known)));
-}
+using namespace py::literals;
 
-/// A symbol of the paper, with which the meaning of its setting begins, is answered by that
-/// setting.
-[[noreturn]] void refuse_setting(const std::string& name, const Settings& settings) {
+/// Throws UsageError; a symbol of the paper, with which the meaning of its setting begins, is
+/// answered by that setting.
+void check_setting(const std::string& name, const Settings& settings) {
   for (const Setting& setting : settings.all()) {
     if (!setting.meaning.starts_with(name + ",")) continue;
     throw py::value_error(
         fmt::format("setting: '{}' is not known, expected {}", name, setting.name));
   }
-  refuse_name("setting", name, settings.all());
+  row_named(settings.all(), name, "setting");
 }
 
-const MethodKind& method_named(const std::string& name) {
-  if (const MethodKind* kind = find_method(name)) return *kind;
-  refuse_name("method", name, methods());
-}
-
-const OdometryKind& odometry_named(const std::string& name) {
-  if (const OdometryKind* kind = find_odometry(name)) return *kind;
-  refuse_name("odometry", name, odometries());
+const MethodKind& method_known(const std::string& name) {
+  return row_named(methods(), name, "method");
 }
 
 /// Returns the defaults of a method, or of odometry, with the values of a preset.
 Settings base_settings(const std::string& method, const std::optional<std::string>& preset) {
-  const MethodKind& kind = method_named(method);
+  const MethodKind& kind = method_known(method);
   return preset ? settings_of(preset_named(*preset), kind) : kind.defaults;
 }
 
 Settings odometry_settings(const std::string& name, const std::optional<std::string>& preset) {
-  Settings settings = odometry_named(name).defaults;
+  Settings settings = row_named(odometries(), name, "odometry").defaults;
   if (!preset) return settings;
   for (const OdometryPreset& row : odometry_presets()) {
     if (row.name != *preset || row.odometry != name) continue;
@@ -74,12 +61,10 @@ py::dict dict_of(const Settings& settings) {
 py::list descriptions_of(const Settings& settings) {
   py::list rows;
   for (const Setting& setting : settings.all()) {
-    py::dict row;
-    row["name"] = std::string(setting.name);
-    row["default"] = setting.is_set ? py::cast(setting.value) : py::none();
-    row["legal"] = legal_values(setting);
-    row["meaning"] = std::string(setting.meaning);
-    rows.append(row);
+    rows.append(py::dict("name"_a = std::string(setting.name),
+                         "default"_a = setting.is_set ? py::cast(setting.value) : py::none(),
+                         "legal"_a = legal_values(setting),
+                         "meaning"_a = std::string(setting.meaning)));
   }
   return rows;
 }
@@ -97,17 +82,12 @@ py::dict result_of(LabelledScan&& scan, bool with_scores, bool with_reasons) {
     const double before = stages.contains(name) ? stages[name].cast<double>() : 0.0;
     stages[name] = before + stage.wall_ms;
   }
-  py::dict result;
-  result["index"] = scan.scan_index;
-  result["labels"] = array_of(std::move(scan.labels));
-  result["scores"] = with_scores ? py::object(array_of(std::move(scan.scores))) : py::none();
-  result["reasons"] = with_reasons ? py::object(numbers_of(scan.reasons)) : py::none();
-  const bool has_objects = !scan.objects.empty();
-  result["objects"] = has_objects ? py::object(array_of(std::move(scan.objects))) : py::none();
-  result["threshold"] = scan.threshold;
-  result["judged"] = scan.judged;
-  result["stages_ms"] = stages;
-  return result;
+  return py::dict(
+      "index"_a = scan.scan_index, "labels"_a = array_of(std::move(scan.labels)),
+      "scores"_a = with_scores ? py::object(array_of(std::move(scan.scores))) : py::none(),
+      "reasons"_a = with_reasons ? py::object(numbers_of(scan.reasons)) : py::none(),
+      "objects"_a = array_or_none(std::move(scan.objects)), "threshold"_a = scan.threshold,
+      "judged"_a = scan.judged, "stages_ms"_a = stages);
 }
 
 /// A method that Python threads may push to: the lock is what a thread without the GIL needs.
@@ -116,8 +96,8 @@ class LockedMethod {
   LockedMethod(const std::string& name, const Settings& settings, unsigned threads,
                std::optional<std::size_t> scan_count, bool scores)
       : scores_(scores),
-        reasons_(scores && method_named(name).gives_reasons),
-        method_(method_named(name).make(
+        reasons_(scores && method_known(name).gives_reasons),
+        method_(method_known(name).make(
             settings, {.threads = threads, .scan_count = scan_count, .scores = scores})) {
     keep_freed_memory();
   }
@@ -161,7 +141,7 @@ class LockedMethod {
 class LockedOdometry {
  public:
   LockedOdometry(const std::string& name, const Settings& settings, unsigned threads)
-      : odometry_(odometry_named(name).make(settings, threads)) {}
+      : odometry_(row_named(odometries(), name, "odometry").make(settings, threads)) {}
 
   py::dict push(const py::array& array, std::optional<std::int64_t> stamp_ns,
                 const std::vector<std::int64_t>& point_times_ns) {
@@ -172,20 +152,10 @@ class LockedOdometry {
       const std::lock_guard lock(mutex_);
       pose = odometry_->push(points.span(padded_), {stamp_ns, point_times_ns});
     }
-    py::array_t<double> covariance({6, 6});
-    for (int row = 0; row < 6; ++row) {
-      for (int column = 0; column < 6; ++column) {
-        covariance.mutable_at(row, column) = pose.covariance(row, column);
-      }
-    }
-    py::dict result;
-    result["pose"] = matrix_of(pose.map_from_sensor);
-    result["covariance"] = covariance;
-    result["geometry"] = pose.geometry;
-    result["condition"] = pose.condition;
-    result["overlap"] = pose.overlap;
-    result["doubt"] = pose.doubt;
-    return result;
+    return py::dict("pose"_a = matrix_of(pose.map_from_sensor.matrix()),
+                    "covariance"_a = matrix_of(pose.covariance), "geometry"_a = pose.geometry,
+                    "condition"_a = pose.condition, "overlap"_a = pose.overlap,
+                    "doubt"_a = pose.doubt);
   }
 
  private:
@@ -202,7 +172,7 @@ void bind_methods(py::module_& module) {
   py::class_<Settings>(module, "Settings")
       .def("set",
            [](Settings& settings, const std::string& name, const SettingValue& value) {
-             if (settings.find(name) == nullptr) refuse_setting(name, settings);
+             if (settings.find(name) == nullptr) check_setting(name, settings);
              settings.set(name, value);
            })
       .def("load", [](Settings& settings,
@@ -210,17 +180,9 @@ void bind_methods(py::module_& module) {
       .def("to_dict", dict_of)
       .def("describe", descriptions_of)
       .def("__copy__", [](const Settings& settings) { return Settings(settings); });
-  module.def("method_names", [] {
-    std::vector<std::string> names;
-    for (const MethodKind& kind : methods()) names.emplace_back(kind.name);
-    return names;
-  });
+  module.def("method_names", [] { return names_of(methods()); });
   module.def("names_several_methods", names_several_methods);
-  module.def("preset_names", [] {
-    std::vector<std::string> names;
-    for (const Preset& preset : presets()) names.emplace_back(preset.name);
-    return names;
-  });
+  module.def("preset_names", [] { return names_of(presets()); });
   module.def("method_name", [](const std::optional<std::string>& method,
                                const std::optional<std::string>& preset) {
     const MethodKind& kind = method_of(method, preset);
@@ -229,7 +191,7 @@ void bind_methods(py::module_& module) {
   module.def("method_settings", base_settings);
   module.def("odometry_settings", odometry_settings);
   module.def("check_settings", [](const std::string& method, const Settings& settings) {
-    method_named(method).check(settings);
+    method_known(method).check(settings);
   });
   py::class_<LockedMethod>(module, "Method")
       .def(py::init<const std::string&, const Settings&, unsigned, std::optional<std::size_t>,

@@ -12,15 +12,11 @@
 namespace mosbench::python {
 namespace {
 
+using namespace py::literals;
+
 py::dict dict_of(const Confusion& counts) {
-  py::dict values;
-  values["tp"] = counts.tp;
-  values["fp"] = counts.fp;
-  values["fn"] = counts.fn;
-  values["tn"] = counts.tn;
-  values["ignored"] = counts.ignored;
-  values["unknown_ids"] = counts.unknown_ids;
-  return values;
+  return py::dict("tp"_a = counts.tp, "fp"_a = counts.fp, "fn"_a = counts.fn, "tn"_a = counts.tn,
+                  "ignored"_a = counts.ignored, "unknown_ids"_a = counts.unknown_ids);
 }
 
 /// Returns an id of the class under the map: those of a range whose ids no later range takes.
@@ -76,30 +72,23 @@ py::dict dict_of(const MetricValues& values) {
 }
 
 py::dict dict_of(const ScanRow& row) {
-  py::dict values;
-  values["stem"] = row.stem;
-  values["points"] = row.points;
-  values["moving"] = row.predicted_moving_points;
-  values["judged"] = row.judged;
-  values["threshold"] = row.threshold;
-  values["counts"] = row.counts ? py::object(dict_of(*row.counts)) : py::none();
-  return values;
+  return py::dict("stem"_a = row.stem, "points"_a = row.points,
+                  "moving"_a = row.predicted_moving_points, "judged"_a = row.judged,
+                  "threshold"_a = row.threshold,
+                  "counts"_a = row.counts ? py::object(dict_of(*row.counts)) : py::none());
 }
 
 py::list sequence_results(const ResultSet& set) {
   py::list sequences;
   for (const Result& result : set.sequences) {
-    py::dict sequence;
-    sequence["name"] = result.sequence.text();
-    sequence["folder"] = result.folder();
     const std::vector<SequenceCounts> counts = {counts_of(result)};
-    sequence["header"] = header_json(result).dump();
-    sequence["metrics"] = dict_of(aggregate(*result.protocol, counts));
-    sequence["method_ms_per_scan"] = method_ms_per_scan(result);
     py::list scans;
     for (const ScanRow& row : result.scans) scans.append(dict_of(row));
-    sequence["scans"] = scans;
-    sequences.append(sequence);
+    sequences.append(py::dict("name"_a = result.sequence.text(), "folder"_a = result.folder(),
+                              "header"_a = header_json(result).dump(),
+                              "metrics"_a = dict_of(aggregate(*result.protocol, counts)),
+                              "method_ms_per_scan"_a = method_ms_per_scan(result),
+                              "scans"_a = scans));
   }
   return sequences;
 }
@@ -110,26 +99,18 @@ py::dict load_results(const std::filesystem::path& folder) {
     const py::gil_scoped_release released;
     return load_result_set(folder);
   }();
-  py::dict results;
-  results["method"] = set.front().method;
-  results["setting"] = set.front().setting;
-  results["dataset"] = set.front().dataset;
-  results["protocol"] = std::string(set.front().protocol->name);
-  results["simulated"] = set.front().is_simulated();
-  results["warnings"] = warnings(set);
-  results["metrics"] = dict_of(aggregate(*set.front().protocol, counts_of(set.sequences)));
-  results["sequences"] = sequence_results(set);
-  return results;
+  const Result& first = set.front();
+  return py::dict("method"_a = first.method, "setting"_a = first.setting,
+                  "dataset"_a = first.dataset, "protocol"_a = std::string(first.protocol->name),
+                  "simulated"_a = first.is_simulated(), "warnings"_a = warnings(set),
+                  "metrics"_a = dict_of(aggregate(*first.protocol, counts_of(set.sequences))),
+                  "sequences"_a = sequence_results(set));
 }
 
 }  // namespace
 
 void bind_scores(py::module_& module) {
-  module.def("protocol_names", [] {
-    std::vector<std::string> names;
-    for (const Protocol& protocol : protocols()) names.emplace_back(protocol.name);
-    return names;
-  });
+  module.def("protocol_names", [] { return names_of(protocols()); });
   module.def("count", [](const py::array& predicted, const py::array& truth,
                          const std::string& protocol, const std::optional<py::array>& points) {
     return dict_of(count(predicted, truth, protocol, points));
