@@ -136,47 +136,17 @@ void add_transforms(const BagReader& bag, const std::string& topic,
   }
 }
 
-Transforms tf_transforms(const BagReader& bag) {
+/// What all topics of these types say.
+Transforms transforms_of(const BagReader& bag, std::initializer_list<std::string_view> types) {
   Transforms found;
-  for (const std::string_view type : {kTfMessage, kOldTfMessage}) {
+  for (const std::string_view type : types) {
     for (const std::string& topic : topics_of_type(bag, type)) {
-      add_transforms(bag, topic, topic.ends_with(kTfStatic) ? found.always : found.changing);
+      const bool always =
+          topic.ends_with(kTfStatic) && (type == kTfMessage || type == kOldTfMessage);
+      add_transforms(bag, topic, always ? found.always : found.changing);
       found.topics.insert(topic);
     }
   }
-  return found;
-}
-
-/// Those of all topics of TransformStamped or Odometry.
-Transforms transforms_of_type(const BagReader& bag, std::string_view type) {
-  Transforms found;
-  for (const std::string& topic : topics_of_type(bag, type)) {
-    add_transforms(bag, topic, found.changing);
-    found.topics.insert(topic);
-  }
-  return found;
-}
-
-/// The poses of one topic of Odometry, PoseStamped or Path. A Path repeats what the one before had:
-/// the last is whole. Poses without child are the sensor's.
-Transforms poses_in(const BagReader& bag, std::string_view type, const std::string& topic,
-                    const std::vector<StampedTransform>& always, const std::string& sensor_frame) {
-  Transforms found{{}, always, {topic}};
-  if (type == kPath) {
-    const std::vector<BagMessage> messages = bag.messages(topic);
-    if (messages.empty()) return found;
-    found.changing =
-        parse_transforms(bag.read(messages.back()), bag.format_of(messages.back()), bag.path());
-  } else {
-    add_transforms(bag, topic, found.changing);
-  }
-  for (StampedTransform& transform : found.changing) {
-    if (transform.child.empty()) transform.child = sensor_frame;
-  }
-  // A frame has one parent: what is fixed above it is not the way to these poses.
-  std::set<std::string> posed;
-  for (const StampedTransform& transform : found.changing) posed.insert(transform.child);
-  std::erase_if(found.always, [&](const auto& fixed) { return posed.contains(fixed.child); });
   return found;
 }
 
@@ -191,83 +161,115 @@ std::string frames_of(const Transforms& transforms) {
   return frames.empty() ? "no frame" : listed(frames);
 }
 
-std::optional<BagTransforms> find_chain(const Transforms& transforms, const BagReader& bag,
-                                        const std::optional<std::string>& map_frame,
-                                        const std::string& sensor_frame) {
-  const TransformTree tree(transforms.changing, transforms.always, bag.path());
-  const auto frames = tree.ancestors(sensor_frame);
-  const auto named_map = std::ranges::find(frames, "map");
-  const std::string map = map_frame.value_or(named_map != frames.end() ? "map" : frames.back());
-  if (map == sensor_frame) return std::nullopt;
-  const auto moves = [&](const StampedTransform& transform) {
-    return std::ranges::find(frames, transform.child) < std::ranges::find(frames, map);
-  };
-  // How the sensor is mounted is no pose of it.
-  if (!map_frame && std::ranges::none_of(transforms.changing, moves)) return std::nullopt;
-  auto chain = tree.chain(map, sensor_frame);
-  if (!chain) return std::nullopt;
-  return BagTransforms{
-      [chain = *std::move(chain)](std::int64_t stamp_ns) { return chain.at(stamp_ns); },
-      listed(transforms.topics) + ", " + map + " from " + sensor_frame};
-}
+/// Finds the poses of the sensor's frame in that of the map: see `bag_transforms`.
+class PoseSearch {
+ public:
+  PoseSearch(const BagReader& bag, const std::optional<std::string>& map_frame,
+             const std::string& sensor_frame)
+      : bag_(bag), map_frame_(map_frame), sensor_frame_(sensor_frame) {}
 
-/// Finds the one topic of a type whose poses lead to the sensor.
-std::optional<BagTransforms> find_poses(std::string_view type,
-                                        const std::vector<StampedTransform>& always,
-                                        const BagReader& bag,
-                                        const std::optional<std::string>& map_frame,
-                                        const std::string& sensor_frame) {
-  std::optional<BagTransforms> found;
-  std::set<std::string> fitting;
-  for (const std::string& topic : topics_of_type(bag, type)) {
-    const Transforms poses = poses_in(bag, type, topic, always, sensor_frame);
-    // A single one is a goal or a start, and no way of the sensor.
-    if (poses.changing.size() < 2) continue;
-    auto chain = find_chain(poses, bag, map_frame, sensor_frame);
-    if (!chain) continue;
-    fitting.insert(topic);
-    found = std::move(chain);
+  BagTransforms run(const std::optional<std::string>& pose_topic) const {
+    if (auto found = pose_topic ? of_topic(*pose_topic) : of_first_kind()) return *std::move(found);
+    throw MissingPoses(
+        bag_.path(),
+        "no transforms lead from " + map_frame_.value_or("a map") + " to " + sensor_frame_ +
+            " (/tf: " + frames_of(tf_) + "; TransformStamped: " + frames_of(stamped_) +
+            "; Odometry: " + frames_of(transforms_of(bag_, {kOdometry})) + ")",
+        fmt::format("such a chain ({} names a map that is called otherwise), {}, or poses found by "
+                    "odometry",
+                    option("map_frame"), option("poses", "FILE")));
   }
-  if (fitting.size() > 1) {
-    throw DataError(
-        bag.path(), "has poses in the topics " + listed(fitting),
-        fmt::format("one of them in {}, or {}", option("pose_topic"), option("poses", "FILE")));
-  }
-  return found;
-}
 
-/// Finds the poses of the topic that the user named.
-std::optional<BagTransforms> poses_of_topic(const std::string& topic,
-                                            const std::vector<StampedTransform>& always,
-                                            const BagReader& bag,
-                                            const std::optional<std::string>& map_frame,
-                                            const std::string& sensor_frame) {
-  std::set<std::string> others;
-  for (const std::string_view type : {kTransformStamped, kOdometry, kPoseStamped, kPath}) {
-    std::set<std::string> topics = topics_of_type(bag, type);
-    if (topics.contains(topic)) {
-      return find_chain(poses_in(bag, type, topic, always, sensor_frame), bag, map_frame,
-                        sensor_frame);
+ private:
+  /// The poses of one topic of Odometry, PoseStamped or Path. A Path repeats what the one before
+  /// had: the last is whole. Poses without child are the sensor's.
+  Transforms poses_in(std::string_view type, const std::string& topic) const {
+    Transforms found{{}, tf_.always, {topic}};
+    if (type == kPath) {
+      const std::vector<BagMessage> messages = bag_.messages(topic);
+      if (messages.empty()) return found;
+      found.changing = parse_transforms(bag_.read(messages.back()), bag_.format_of(messages.back()),
+                                        bag_.path());
+    } else {
+      add_transforms(bag_, topic, found.changing);
     }
-    others.merge(topics);
+    // A frame has one parent: what is fixed above it is not the way to these poses.
+    std::set<std::string> posed;
+    for (StampedTransform& transform : found.changing) {
+      if (transform.child.empty()) transform.child = sensor_frame_;
+      posed.insert(transform.child);
+    }
+    std::erase_if(found.always, [&](const auto& fixed) { return posed.contains(fixed.child); });
+    return found;
   }
-  throw DataError(
-      bag.path(), "has no topic of poses " + topic,
-      others.empty() ? option("poses", "FILE") + ", as it has none" : "one of " + listed(others));
-}
 
-/// Finds the poses of the first kind of topic that has some.
-std::optional<BagTransforms> first_poses(const Transforms& tf, const Transforms& stamped,
-                                         const BagReader& bag,
-                                         const std::optional<std::string>& map_frame,
-                                         const std::string& sensor_frame) {
-  if (auto found = find_chain(tf, bag, map_frame, sensor_frame)) return found;
-  if (auto found = find_chain(stamped, bag, map_frame, sensor_frame)) return found;
-  for (const std::string_view type : {kOdometry, kPoseStamped, kPath}) {
-    if (auto found = find_poses(type, tf.always, bag, map_frame, sensor_frame)) return found;
+  std::optional<BagTransforms> chain_of(const Transforms& transforms) const {
+    const TransformTree tree(transforms.changing, transforms.always, bag_.path());
+    const auto frames = tree.ancestors(sensor_frame_);
+    const auto named_map = std::ranges::find(frames, "map");
+    const std::string map = map_frame_.value_or(named_map != frames.end() ? "map" : frames.back());
+    if (map == sensor_frame_) return std::nullopt;
+    const auto moves = [&](const StampedTransform& transform) {
+      return std::ranges::find(frames, transform.child) < std::ranges::find(frames, map);
+    };
+    // How the sensor is mounted is no pose of it.
+    if (!map_frame_ && std::ranges::none_of(transforms.changing, moves)) return std::nullopt;
+    auto chain = tree.chain(map, sensor_frame_);
+    if (!chain) return std::nullopt;
+    return BagTransforms{
+        [chain = *std::move(chain)](std::int64_t stamp_ns) { return chain.at(stamp_ns); },
+        listed(transforms.topics) + ", " + map + " from " + sensor_frame_};
   }
-  return std::nullopt;
-}
+
+  /// The one topic of a type whose poses lead to the sensor.
+  std::optional<BagTransforms> of_type(std::string_view type) const {
+    std::optional<BagTransforms> found;
+    std::set<std::string> fitting;
+    for (const std::string& topic : topics_of_type(bag_, type)) {
+      const Transforms poses = poses_in(type, topic);
+      // A single one is a goal or a start, and no way of the sensor.
+      if (poses.changing.size() < 2) continue;
+      auto chain = chain_of(poses);
+      if (!chain) continue;
+      fitting.insert(topic);
+      found = std::move(chain);
+    }
+    if (fitting.size() > 1) {
+      throw DataError(
+          bag_.path(), "has poses in the topics " + listed(fitting),
+          fmt::format("one of them in {}, or {}", option("pose_topic"), option("poses", "FILE")));
+    }
+    return found;
+  }
+
+  /// The topic that the user named.
+  std::optional<BagTransforms> of_topic(const std::string& topic) const {
+    std::set<std::string> others;
+    for (const std::string_view type : {kTransformStamped, kOdometry, kPoseStamped, kPath}) {
+      std::set<std::string> topics = topics_of_type(bag_, type);
+      if (topics.contains(topic)) return chain_of(poses_in(type, topic));
+      others.merge(topics);
+    }
+    throw DataError(
+        bag_.path(), "has no topic of poses " + topic,
+        others.empty() ? option("poses", "FILE") + ", as it has none" : "one of " + listed(others));
+  }
+
+  std::optional<BagTransforms> of_first_kind() const {
+    auto found = chain_of(tf_);
+    if (!found) found = chain_of(stamped_);
+    for (const std::string_view type : {kOdometry, kPoseStamped, kPath}) {
+      if (!found) found = of_type(type);
+    }
+    return found;
+  }
+
+  const BagReader& bag_;
+  const std::optional<std::string>& map_frame_;
+  const std::string& sensor_frame_;
+  Transforms tf_ = transforms_of(bag_, {kTfMessage, kOldTfMessage});
+  Transforms stamped_ = transforms_of(bag_, {kTransformStamped});
+};
 
 }  // namespace
 
@@ -295,19 +297,7 @@ std::string cloud_topic(const BagReader& bag, const std::optional<std::string>& 
 BagTransforms bag_transforms(const BagReader& bag, const std::optional<std::string>& map_frame,
                              const std::string& sensor_frame,
                              const std::optional<std::string>& pose_topic) {
-  const Transforms tf = tf_transforms(bag);
-  const Transforms stamped = transforms_of_type(bag, kTransformStamped);
-  auto found = pose_topic ? poses_of_topic(*pose_topic, tf.always, bag, map_frame, sensor_frame)
-                          : first_poses(tf, stamped, bag, map_frame, sensor_frame);
-  if (found) return *std::move(found);
-  throw MissingPoses(
-      bag.path(),
-      "no transforms lead from " + map_frame.value_or("a map") + " to " + sensor_frame +
-          " (/tf: " + frames_of(tf) + "; TransformStamped: " + frames_of(stamped) +
-          "; Odometry: " + frames_of(transforms_of_type(bag, kOdometry)) + ")",
-      fmt::format("such a chain ({} names a map that is called otherwise), {}, or poses found by "
-                  "odometry",
-                  option("map_frame"), option("poses", "FILE")));
+  return PoseSearch(bag, map_frame, sensor_frame).run(pose_topic);
 }
 
 }  // namespace mosbench

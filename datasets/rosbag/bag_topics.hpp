@@ -25,6 +25,6 @@ struct BagTransforms {
 /// `pose_topic` that holds none.
 BagTransforms bag_transforms(const BagReader& bag, const std::optional<std::string>& map_frame,
                              const std::string& sensor_frame,
-                             const std::optional<std::string>& pose_topic = std::nullopt);
+                             const std::optional<std::string>& pose_topic);
 
 }  // namespace mosbench

@@ -20,32 +20,17 @@ namespace {
 struct MessageType {
   std::string_view name;
   const char* md5;
-  const char* definition;
+  std::string definition;
 };
 
-#define MOSBENCH_RULE \
-  "================================================================================\n"
-#define MOSBENCH_HEADER \
-  MOSBENCH_RULE "MSG: std_msgs/Header\nuint32 seq\ntime stamp\nstring frame_id\n"
-
-constexpr std::array<MessageType, 2> kTypes = {
-    {{kPointCloud2, "1158d486dd51d683ce2f1be655c3c181",
-      "Header header\nuint32 height\nuint32 width\nPointField[] fields\nbool is_bigendian\n"
-      "uint32 point_step\nuint32 row_step\nuint8[] data\nbool is_dense\n\n" MOSBENCH_HEADER
-      "\n" MOSBENCH_RULE
-      "MSG: sensor_msgs/PointField\nuint8 INT8=1\nuint8 UINT8=2\nuint8 INT16=3\nuint8 UINT16=4\n"
-      "uint8 INT32=5\nuint8 UINT32=6\nuint8 FLOAT32=7\nuint8 FLOAT64=8\nstring name\n"
-      "uint32 offset\nuint8 datatype\nuint32 count\n"},
-     {kTfMessage, "94810edda583a504dfda3829e70d7eec",
-      "geometry_msgs/TransformStamped[] transforms\n\n" MOSBENCH_RULE
-      "MSG: geometry_msgs/TransformStamped\nHeader header\nstring child_frame_id\n"
-      "Transform transform\n\n" MOSBENCH_HEADER "\n" MOSBENCH_RULE
-      "MSG: geometry_msgs/Transform\nVector3 translation\nQuaternion rotation\n\n" MOSBENCH_RULE
-      "MSG: geometry_msgs/Vector3\nfloat64 x\nfloat64 y\nfloat64 z\n\n" MOSBENCH_RULE
-      "MSG: geometry_msgs/Quaternion\nfloat64 x\nfloat64 y\nfloat64 z\nfloat64 w\n"}}};
-
-#undef MOSBENCH_HEADER
-#undef MOSBENCH_RULE
+const MessageType& type_of(std::string_view name) {
+  static const std::array<MessageType, 2> kTypes = {
+      {{kPointCloud2, "1158d486dd51d683ce2f1be655c3c181",
+        message_definition(kPointCloud2, MessageEncoding::kRos1)},
+       {kTfMessage, "94810edda583a504dfda3829e70d7eec",
+        message_definition(kTfMessage, MessageEncoding::kRos1)}}};
+  return *std::ranges::find(kTypes, name, &MessageType::name);
+}
 
 /// A message that is already serialized.
 struct SerializedMessage {
@@ -81,7 +66,7 @@ struct DataType<mosbench::SerializedMessage> {
 template <>
 struct Definition<mosbench::SerializedMessage> {
   static const char* value(const mosbench::SerializedMessage& message) {
-    return message.type->definition;
+    return message.type->definition.c_str();
   }
 };
 
@@ -172,8 +157,7 @@ void BagWriter::write(const std::string& topic, std::int64_t stamp_ns, std::stri
     throw DataError(file_, "a stamp to be written is beyond 2^32 s",
                     "seconds of 32 bits, as in bags");
   }
-  const auto known = std::ranges::find(kTypes, type, &MessageType::name);
-  const SerializedMessage serialized{message, &*known};
+  const SerializedMessage serialized{message, &type_of(type)};
   ros::Time time;
   // This is the time of recording, which the library wants above 0; the message has its own stamp.
   time.fromNSec(static_cast<std::uint64_t>(std::max<std::int64_t>(stamp_ns, 1)));

@@ -264,4 +264,33 @@ TimedCloud parse_cloud(std::string_view message, const std::filesystem::path& fi
   return cloud;
 }
 
+std::string message_definition(std::string_view type, MessageEncoding encoding) {
+  const bool is_ros1 = encoding == MessageEncoding::kRos1;
+  // ROS 1 leaves out the package of Header, and of types in the same one.
+  const std::string header = is_ros1 ? "Header" : "std_msgs/Header";
+  const std::string sensor = is_ros1 ? "" : "sensor_msgs/",
+                    geometry = is_ros1 ? "" : "geometry_msgs/";
+  const std::string rule = (is_ros1 ? "\n" : "") + std::string(80, '=') + "\n";
+  const std::string header_definition =
+      is_ros1 ? "MSG: std_msgs/Header\nuint32 seq\ntime stamp\nstring frame_id\n"
+              : "MSG: std_msgs/Header\nbuiltin_interfaces/Time stamp\nstring frame_id\n" + rule +
+                    "MSG: builtin_interfaces/Time\nint32 sec\nuint32 nanosec\n";
+  if (type == kPointCloud2) {
+    return header + " header\nuint32 height\nuint32 width\n" + sensor +
+           "PointField[] fields\nbool is_bigendian\nuint32 point_step\nuint32 row_step\n"
+           "uint8[] data\nbool is_dense\n" +
+           rule + header_definition + rule +
+           "MSG: sensor_msgs/PointField\nuint8 INT8=1\nuint8 UINT8=2\nuint8 INT16=3\n"
+           "uint8 UINT16=4\nuint8 INT32=5\nuint8 UINT32=6\nuint8 FLOAT32=7\nuint8 FLOAT64=8\n"
+           "string name\nuint32 offset\nuint8 datatype\nuint32 count\n";
+  }
+  return "geometry_msgs/TransformStamped[] transforms\n" + rule +
+         "MSG: geometry_msgs/TransformStamped\n" + header + " header\nstring child_frame_id\n" +
+         geometry + "Transform transform\n" + rule + header_definition + rule +
+         "MSG: geometry_msgs/Transform\n" + geometry + "Vector3 translation\n" + geometry +
+         "Quaternion rotation\n" + rule +
+         "MSG: geometry_msgs/Vector3\nfloat64 x\nfloat64 y\nfloat64 z\n" + rule +
+         "MSG: geometry_msgs/Quaternion\nfloat64 x\nfloat64 y\nfloat64 z\nfloat64 w\n";
+}
+
 }  // namespace mosbench

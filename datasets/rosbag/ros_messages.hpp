@@ -59,4 +59,8 @@ TimedCloud parse_cloud(std::string_view message, const std::filesystem::path& fi
 /// Returns whether `head` names a field that `parse_cloud` reads times from.
 bool has_times(const CloudHead& head);
 
+/// Returns the definition of kPointCloud2 or kTfMessage with the types that it is made of, as bags
+/// keep it for other programs.
+std::string message_definition(std::string_view type, MessageEncoding encoding);
+
 }  // namespace mosbench
