@@ -87,9 +87,7 @@ struct Answer {
   std::optional<Standing> standing{};  ///< of answers about results
   std::vector<Sheet> sheets{};
   std::optional<Sheet> records{};  ///< rows for programs, which CSV has instead of the sheets
-  std::string csv{};               ///< its own; empty: the records, or the sheets
   std::string json{};              ///< its own, by `json_text`; empty: the sheets
-  std::string latex{};             ///< its own; empty: the sheets
   std::string page{};              ///< HTML of its own; empty: the sheets
   std::vector<LineChart> charts{};
   std::vector<Annotation> annotations{};

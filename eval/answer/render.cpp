@@ -47,16 +47,24 @@ std::string number_text(double value, const Column& column) {
   return style.is_signed && !std::signbit(shown) ? '+' + text : text;
 }
 
-std::string value_text(const Spread& spread, const Column& column) {
-  return number_text(spread.value.value_or(std::numeric_limits<double>::quiet_NaN()), column);
+/// The number of a cell; NaN where it is undefined.
+double number_of(const Cell& cell) {
+  constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
+  if (const auto* spread = std::get_if<Spread>(&cell)) return spread->value.value_or(kUndefined);
+  const auto* number = std::get_if<double>(&cell);
+  return number == nullptr ? kUndefined : *number;
+}
+
+/// The words or the count of a cell, `nothing` of an empty one; no value for a number.
+std::optional<std::string> words_of(const Cell& cell, const char* nothing) {
+  if (const auto* words = std::get_if<std::string>(&cell)) return *words;
+  if (const auto* count = std::get_if<std::uint64_t>(&cell)) return fmt::format("{}", *count);
+  return std::holds_alternative<std::monostate>(cell) ? std::optional(nothing) : std::nullopt;
 }
 
 std::string value_text(const Cell& cell, const Column& column) {
-  if (const auto* words = std::get_if<std::string>(&cell)) return shown_in_line(*words);
-  if (const auto* count = std::get_if<std::uint64_t>(&cell)) return fmt::format("{}", *count);
-  if (const auto* number = std::get_if<double>(&cell)) return number_text(*number, column);
-  if (const auto* spread = std::get_if<Spread>(&cell)) return value_text(*spread, column);
-  return "-";
+  const std::optional<std::string> words = words_of(cell, "-");
+  return words ? shown_in_line(*words) : number_text(number_of(cell), column);
 }
 
 std::string interval_text(const Cell& cell, const Column& column) {
@@ -106,17 +114,10 @@ std::string csv_cell(const std::string& cell) {
 }
 
 /// All digits of a number; of percents and points, which a product has rounded, six.
-std::string csv_number(const std::optional<double>& value, const Column& column) {
-  if (!value || std::isnan(*value)) return "";
+std::string csv_number(double value, const Column& column) {
+  if (std::isnan(value)) return "";
   const double factor = style_of(column.unit).factor;
-  return factor == 1 ? fmt::format("{}", *value) : fmt::format("{:.6g}", factor * *value);
-}
-
-std::string csv_value(const Cell& cell, const Column& column) {
-  if (const auto* words = std::get_if<std::string>(&cell)) return *words;
-  if (const auto* count = std::get_if<std::uint64_t>(&cell)) return fmt::format("{}", *count);
-  if (const auto* number = std::get_if<double>(&cell)) return csv_number(*number, column);
-  return "";
+  return factor == 1 ? fmt::format("{}", value) : fmt::format("{:.6g}", factor * value);
 }
 
 /// The key of an end of the interval around a value: "iou_low_percent" of "iou_percent".
@@ -144,13 +145,13 @@ std::string csv_of(const Sheet& sheet, const std::optional<Standing>& standing) 
     cells.clear();
     for (std::size_t c = 0; c < sheet.columns.size(); ++c) {
       const Cell cell = c < row.size() ? row[c] : Cell();
-      const auto* spread = std::get_if<Spread>(&cell);
-      cells.push_back(spread == nullptr ? csv_value(cell, sheet.columns[c])
-                                        : csv_number(spread->value, sheet.columns[c]));
+      const std::optional<std::string> words = words_of(cell, "");
+      cells.push_back(words ? *words : csv_number(number_of(cell), sheet.columns[c]));
       if (!wide[c]) continue;
-      const Spread ends = spread == nullptr ? Spread{} : *spread;
-      for (const auto& end : {ends.low, ends.high}) {
-        cells.push_back(csv_number(end, sheet.columns[c]));
+      const auto* spread = std::get_if<Spread>(&cell);
+      for (const auto end : {&Spread::low, &Spread::high}) {
+        const bool is_known = spread != nullptr && spread->*end;
+        cells.push_back(is_known ? csv_number(*(spread->*end), sheet.columns[c]) : "");
       }
     }
     if (standing) cells.push_back(mark);
@@ -174,7 +175,6 @@ Sheet sheet_of_lines(const Answer& answer) {
 }
 
 std::string csv_of(const Answer& answer) {
-  if (!answer.csv.empty()) return answer.csv;
   if (answer.records) return csv_of(*answer.records, answer.standing);
   std::string text;
   for (const Sheet& sheet : answer.sheets) {
@@ -184,17 +184,15 @@ std::string csv_of(const Answer& answer) {
   return text.empty() ? csv_of(sheet_of_lines(answer), answer.standing) : text;
 }
 
-ordered_json number_json(const std::optional<double>& value) {
-  return value && !std::isnan(*value) ? ordered_json(*value) : ordered_json(nullptr);
-}
-
 ordered_json cell_json(const Cell& cell) {
-  if (const auto* words = std::get_if<std::string>(&cell)) return *words;
   if (const auto* count = std::get_if<std::uint64_t>(&cell)) return *count;
-  if (const auto* number = std::get_if<double>(&cell)) return number_json(*number);
+  if (std::holds_alternative<std::monostate>(cell)) return nullptr;
+  if (const auto* words = std::get_if<std::string>(&cell)) return *words;
+  const double value = number_of(cell);
+  const ordered_json number = std::isnan(value) ? ordered_json() : ordered_json(value);
   const auto* spread = std::get_if<Spread>(&cell);
-  if (spread == nullptr) return nullptr;
-  ordered_json json = {{"value", number_json(spread->value)}};
+  if (spread == nullptr) return number;
+  ordered_json json = {{"value", number}};
   json.update(interval_json(*spread));
   return json;
 }
@@ -355,7 +353,7 @@ std::string render(const Answer& answer, Format format, std::size_t columns) {
     case Format::kCsv:
       return csv_of(answer);
     case Format::kLatex:
-      return answer.latex.empty() ? latex_of(answer) : answer.latex;
+      return latex_of(answer);
     case Format::kMarkdown:
       return markdown_of(answer);
     case Format::kHtml:

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <sstream>
+#include <utility>
 
 #include "datasets/text/text.hpp"
 #include "eval/answer/render.hpp"
@@ -9,7 +10,9 @@
 namespace mosbench {
 namespace {
 
-std::string joined(const std::vector<std::string>& cells, std::string (*escape)(std::string_view),
+using Lines = std::vector<std::string>;
+
+std::string joined(const Lines& cells, std::string (*escape)(std::string_view),
                    const char* between) {
   std::string line;
   for (const std::string& cell : cells) {
@@ -19,17 +22,13 @@ std::string joined(const std::vector<std::string>& cells, std::string (*escape)(
   return line;
 }
 
-std::vector<std::string> titles_of(const ShownTable& table) {
-  std::vector<std::string> titles;
+Lines titles_of(const ShownTable& table) {
+  Lines titles;
   for (const ShownTable::Head& head : table.heads) titles.push_back(head.title);
   return titles;
 }
 
-std::vector<std::string> marks_of(const Answer& answer) {
-  return answer.standing ? sentences(*answer.standing) : std::vector<std::string>();
-}
-
-std::string latex_comments(const std::vector<std::string>& lines) {
+std::string latex_comments(const Lines& lines) {
   std::string text;
   for (const std::string& line : lines) {
     if (!line.empty()) text += "% " + latex_text(line) + '\n';
@@ -37,29 +36,30 @@ std::string latex_comments(const std::vector<std::string>& lines) {
   return text;
 }
 
-std::string latex_character(char c) {
-  switch (c) {
-    case '\\':
-      return "\\textbackslash{}";
-    case '~':
-      return "\\textasciitilde{}";
-    case '^':
-      return "\\textasciicircum{}";
-    default:
-      break;
+using Replacements = std::initializer_list<std::pair<char, std::string_view>>;
+
+/// The text as one line, with what stands for some characters.
+std::string replaced(std::string_view text, Replacements by) {
+  std::string line;
+  for (const char c : shown_in_line(text)) {
+    const auto found = std::ranges::find(by, c, &Replacements::value_type::first);
+    if (found == by.end()) {
+      line += c;
+    } else {
+      line += found->second;
+    }
   }
-  const bool special = std::string_view("&%$#_{}").find(c) != std::string_view::npos;
-  return special ? std::string("\\") + c : std::string(1, c);
+  return line;
 }
 
 /// A tabular. What must stay with the numbers is printed below them, and a dagger leads there.
-std::string latex_table(const Sheet& sheet, const std::vector<std::string>& marks) {
+std::string latex_table(const Sheet& sheet, const Lines& marks) {
   const ShownTable table = shown_table(sheet);
   std::string text = "\\begin{tabular}{";
   for (const ShownTable::Head& head : table.heads) text += head.is_left ? 'l' : 'r';
   text += "}\n\\hline\n" + joined(titles_of(table), latex_text, " & ");
   text += fmt::format("{} \\\\\n\\hline\n", marks.empty() ? "" : "$^\\dagger$");
-  for (const std::vector<std::string>& row : table.rows) {
+  for (const Lines& row : table.rows) {
     text += row.empty() ? "\\hline\n" : joined(row, latex_text, " & ") + " \\\\\n";
   }
   text += "\\hline\n";
@@ -76,13 +76,13 @@ std::string markdown_table(const ShownTable& table) {
   std::string text = "| " + joined(titles_of(table), markdown_text, " | ") + " |\n|";
   for (const ShownTable::Head& head : table.heads) text += head.is_left ? "---|" : "--:|";
   text += '\n';
-  for (const std::vector<std::string>& row : table.rows) {
+  for (const Lines& row : table.rows) {
     if (!row.empty()) text += "| " + joined(row, markdown_text, " | ") + " |\n";
   }
   return text;
 }
 
-std::string markdown_of(const Sheet& sheet, const std::vector<std::string>& marks) {
+std::string markdown_of(const Sheet& sheet, const Lines& marks) {
   std::string text;
   if (!sheet.title.empty()) text += "### " + markdown_text(sheet.title) + "\n\n";
   for (const std::string& line : sheet.lead) {
@@ -96,8 +96,7 @@ std::string markdown_of(const Sheet& sheet, const std::vector<std::string>& mark
   return text.ends_with("\n\n") ? text.substr(0, text.size() - 1) : text;
 }
 
-std::string html_cells(const std::vector<std::string>& cells, const ShownTable& table,
-                       const char* tag) {
+std::string html_cells(const Lines& cells, const ShownTable& table, const char* tag) {
   std::string text = "<tr>";
   for (std::size_t c = 0; c < cells.size(); ++c) {
     text += fmt::format("<{0}{1}>{2}</{0}>", tag, table.heads[c].is_left ? " class=\"l\"" : "",
@@ -106,7 +105,7 @@ std::string html_cells(const std::vector<std::string>& cells, const ShownTable& 
   return text + "</tr>\n";
 }
 
-std::string html_of(const Sheet& sheet, const std::vector<std::string>& marks) {
+std::string html_of(const Sheet& sheet, const Lines& marks) {
   std::string text;
   const auto add = [&](const char* tag, const std::string& line) {
     if (!line.empty()) text += fmt::format("<{0}>{1}</{0}>\n", tag, html_text(line));
@@ -119,7 +118,7 @@ std::string html_of(const Sheet& sheet, const std::vector<std::string>& marks) {
     text += "<table>\n";
     add("caption", sheet.caption);
     text += html_cells(titles_of(table), table, "th");
-    for (const std::vector<std::string>& row : table.rows) {
+    for (const Lines& row : table.rows) {
       if (!row.empty()) text += html_cells(row, table, "td");
     }
     text += "</table>\n";
@@ -128,35 +127,38 @@ std::string html_of(const Sheet& sheet, const std::vector<std::string>& marks) {
   return text;
 }
 
+Lines marks_of(const Answer& answer) {
+  return answer.standing ? sentences(*answer.standing) : Lines();
+}
+
+/// All sheets, the first with what standing says.
+std::string joined_sheets(const Answer& answer, std::string (*shown)(const Sheet&, const Lines&),
+                          const char* between) {
+  std::string text;
+  for (const Sheet& sheet : answer.sheets) {
+    const bool is_first = &sheet == answer.sheets.data();
+    text += (text.empty() ? "" : between) + shown(sheet, is_first ? marks_of(answer) : Lines());
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string html_text(std::string_view text) {
-  std::string escaped;
-  for (const char c : shown_in_line(text)) {
-    switch (c) {
-      case '&':
-        escaped += "&amp;";
-        break;
-      case '<':
-        escaped += "&lt;";
-        break;
-      case '>':
-        escaped += "&gt;";
-        break;
-      case '"':
-        escaped += "&quot;";
-        break;
-      default:
-        escaped += c;
-    }
-  }
-  return escaped;
+  return replaced(text, {{'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}});
 }
 
 std::string latex_text(std::string_view text) {
-  std::string escaped;
-  for (const char c : shown_in_line(text)) escaped += latex_character(c);
-  return escaped;
+  return replaced(text, {{'\\', "\\textbackslash{}"},
+                         {'~', "\\textasciitilde{}"},
+                         {'^', "\\textasciicircum{}"},
+                         {'&', "\\&"},
+                         {'%', "\\%"},
+                         {'$', "\\$"},
+                         {'#', "\\#"},
+                         {'_', "\\_"},
+                         {'{', "\\{"},
+                         {'}', "\\}"}});
 }
 
 std::string markdown_text(std::string_view text) {
@@ -183,12 +185,7 @@ std::string latex_of(const Answer& answer) {
 }
 
 std::string markdown_of(const Answer& answer) {
-  std::string text;
-  for (const Sheet& sheet : answer.sheets) {
-    if (!text.empty()) text += '\n';
-    text += markdown_of(
-        sheet, &sheet == answer.sheets.data() ? marks_of(answer) : std::vector<std::string>());
-  }
+  std::string text = joined_sheets(answer, markdown_of, "\n");
   if (answer.text.empty()) return text;
   return text + (text.empty() ? "" : "\n") + "```\n" + answer.text + "```\n";
 }
@@ -197,11 +194,8 @@ std::string html_of(const Answer& answer) {
   std::string text =
       "<!doctype html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n<title>mosbench</title>\n"
       "<style>body{font-family:sans-serif}th,td{text-align:right;padding:0 .5em}"
-      ".l{text-align:left}</style>\n";
-  for (const Sheet& sheet : answer.sheets) {
-    text += html_of(sheet,
-                    &sheet == answer.sheets.data() ? marks_of(answer) : std::vector<std::string>());
-  }
+      ".l{text-align:left}</style>\n" +
+      joined_sheets(answer, html_of, "");
   if (!answer.text.empty()) {
     text += "<pre>\n";
     std::istringstream lines(answer.text);

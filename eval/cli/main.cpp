@@ -7,7 +7,7 @@
 
 #include "datasets/disk/files.hpp"
 #include "datasets/text/errors.hpp"
-#include "eval/answer/terminal.hpp"
+#include "eval/answer/render.hpp"
 #include "eval/cli/command_line.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/cli/flags.hpp"

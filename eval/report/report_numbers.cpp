@@ -1,5 +1,3 @@
-#include "eval/report/report_numbers.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,6 +9,7 @@
 #include "core/base/thread_pool.hpp"
 #include "datasets/text/errors.hpp"
 #include "eval/breakdown/breakdown.hpp"
+#include "eval/report/report.hpp"
 #include "eval/report/score_curve.hpp"
 #include "eval/statistics/statistics_report.hpp"
 #include "eval/tables/score_report.hpp"

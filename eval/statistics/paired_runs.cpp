@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <unordered_map>
 
 namespace mosbench {
@@ -118,6 +119,36 @@ class Pairing {
   PairedRuns& paired_;
 };
 
+/// Rounding of a difference of two fractions must not decide at exactly max_drop.
+constexpr double kRounding = 1e-12;
+
+std::optional<double> iou_of(const Protocol& protocol, std::span<const SequenceCounts> sequences) {
+  const double iou = aggregate(protocol, sequences)[static_cast<std::size_t>(Metric::kIou)];
+  if (std::isnan(iou)) return std::nullopt;
+  return iou;
+}
+
+GateCheck check(std::string name, const Protocol& protocol, std::span<const SequenceCounts> first,
+                std::span<const SequenceCounts> second, Spacing spacing, double max_drop,
+                GateRule rule) {
+  GateCheck check;
+  check.name = std::move(name);
+  check.baseline = iou_of(protocol, first);
+  check.newer = iou_of(protocol, second);
+  check.tolerance = max_drop;
+  if (!check.baseline || !check.newer) {
+    check.passed = !check.baseline;
+    return check;
+  }
+  check.difference = paired_difference(protocol, first, second, spacing)[Metric::kIou];
+  const double value = *check.difference.value;
+  if (rule == GateRule::kStatistical && check.difference.interval) {
+    check.tolerance = std::max(max_drop, check.difference.interval->high - value);
+  }
+  check.passed = value >= -check.tolerance - kRounding;
+  return check;
+}
+
 }  // namespace
 
 Spacing spacing_of(const ScanGaps& gaps) {
@@ -160,13 +191,33 @@ PairedRuns pair_runs(const ResultSet& first, const ResultSet& second) {
   return paired;
 }
 
-std::string unlike_text(const std::vector<Unlike>& unlike, std::size_t at_most) {
+std::string unlike_text(const std::vector<Unlike>& unlike) {
+  constexpr std::size_t kMost = 5;
   std::string text;
-  for (std::size_t i = 0; i < std::min(at_most, unlike.size()); ++i) {
+  for (std::size_t i = 0; i < std::min(kMost, unlike.size()); ++i) {
     text += (i == 0 ? "" : "; ") + unlike[i].text;
   }
-  if (unlike.size() > at_most) text += fmt::format("; and {} more", unlike.size() - at_most);
+  if (unlike.size() > kMost) text += fmt::format("; and {} more", unlike.size() - kMost);
   return text;
+}
+
+bool GateResult::passed() const { return std::ranges::all_of(checks, &GateCheck::passed); }
+
+GateResult judge(const PairedRuns& paired, const Protocol& protocol, double max_drop,
+                 GateRule rule) {
+  GateResult result{rule, {}};
+  std::size_t scan = 0;
+  for (std::size_t s = 0; s < paired.first.size(); ++s) {
+    if (paired.first[s].empty()) continue;
+    result.checks.push_back(check(paired.scans[scan].sequence, protocol, {&paired.first[s], 1},
+                                  {&paired.second[s], 1}, paired.spacing, max_drop, rule));
+    scan += paired.first[s].size();
+  }
+  if (result.checks.size() > 1) {
+    result.checks.push_back(
+        check("all", protocol, paired.first, paired.second, paired.spacing, max_drop, rule));
+  }
+  return result;
 }
 
 }  // namespace mosbench

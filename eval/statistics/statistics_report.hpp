@@ -5,7 +5,7 @@
 
 #include "eval/answer/answer.hpp"
 #include "eval/result/result_set.hpp"
-#include "eval/statistics/gate.hpp"
+#include "eval/statistics/paired_runs.hpp"
 
 namespace mosbench {
 

@@ -7,7 +7,7 @@
 #include "eval/answer/answer_text.hpp"
 #include "eval/answer/render.hpp"
 #include "eval/protocols/protocol.hpp"
-#include "eval/report/report_asset.hpp"
+#include "eval/report/report.hpp"
 #include "eval/result/tell.hpp"
 #include "eval/result/version.hpp"
 #include "eval/statistics/statistics_report.hpp"

@@ -34,6 +34,9 @@ struct SummaryRow {
   std::optional<double> method_ms_per_scan;
 };
 
+/// Summarises sequences together, as the protocol aggregates them.
+Summary summary_of(const Protocol& protocol, const std::vector<SequenceCounts>& sequences);
+
 /// Returns a row per sequence, then per split a row for each part that does not cover its sequence
 /// and one that aggregates the parts as the protocol says. `sequences` are in the data set's order.
 /// Where the protocol's split picks scans, the rows of sequences are over those scans and say so.
@@ -63,10 +66,6 @@ std::vector<std::string> score_remarks(const Dataset& dataset,
                                        const std::vector<SequenceScores>& scores);
 /// What every format has to show: simulated data and missing predictions.
 Standing standing_of(const Dataset& dataset, const std::vector<SequenceScores>& scores);
-/// Returns the remarks and what is missing.
-std::vector<std::string> all_remarks(const Dataset& dataset,
-                                     const std::vector<SequenceScores>& scores);
-
 /// Says what `mosbench score` found by one rule, the first of the task.
 Answer score_answer(const Dataset& dataset, const ScoreTask& task,
                     const std::vector<SequenceScores>& scores, bool with_sequences);

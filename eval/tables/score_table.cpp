@@ -11,26 +11,18 @@ namespace {
 
 using Stems = std::optional<std::set<std::string>>;
 
-/// The counts of the scans with truth among those named by `stems`, and how many are named.
-std::vector<Confusion> counts_of(const ScoredSequence& sequence, const Stems& stems,
-                                 std::size_t& scans) {
-  std::vector<Confusion> counts;
-  for (const ScanRow& scan : sequence.scans) {
-    if (stems && !stems->contains(scan.stem)) continue;
-    ++scans;
-    if (scan.counts) counts.push_back(*scan.counts);
-  }
-  return counts;
-}
-
-SummaryRow sequence_row(const Protocol& protocol, const ScoredSequence& sequence,
-                        std::size_t position, const Split* benchmark) {
+/// A row over the scans of a sequence that `stems` names, or all; gathers the counts of those with
+/// truth.
+SummaryRow row_over(const Protocol& protocol, const ScoredSequence& sequence, const Stems& stems,
+                    SequenceCounts& counts) {
   SummaryRow row;
   row.name = sequence.name;
-  row.method_ms_per_scan = sequence.method_ms_per_scan;
-  if (benchmark != nullptr) row.split = benchmark->name;
-  const Stems stems = benchmark == nullptr ? std::nullopt : stems_in_split(*benchmark, position);
-  row.summary = summarize(protocol, counts_of(sequence, stems, row.scans));
+  for (const ScanRow& scan : sequence.scans) {
+    if (stems && !stems->contains(scan.stem)) continue;
+    ++row.scans;
+    if (scan.counts) counts.push_back(*scan.counts);
+  }
+  row.summary = summarize(protocol, counts);
   return row;
 }
 
@@ -53,23 +45,15 @@ void add_split(const Protocol& protocol, const Split& split,
   whole.kind = SummaryRow::Kind::kSplit;
   whole.name = split.name;
   whole.method_ms_per_scan = mean_ms(split, sequences);
-  std::vector<Confusion> pooled;
-  std::vector<Summary> summaries;
+  std::vector<SequenceCounts> all;
   for (const SplitPart& part : split.parts) {
-    const ScoredSequence& sequence = sequences[part.sequence];
-    SummaryRow row;
+    SummaryRow row = row_over(protocol, sequences[part.sequence], part.stems, all.emplace_back());
     row.kind = SummaryRow::Kind::kPart;
-    row.name = sequence.name + " " + split.name;
-    const std::vector<Confusion> counts = counts_of(sequence, part.stems, row.scans);
-    row.summary = summarize(protocol, counts);
-    pooled.insert(pooled.end(), counts.begin(), counts.end());
-    summaries.push_back(row.summary);
+    row.name += " " + split.name;
     whole.scans += row.scans;
     if (part.stems) rows.push_back(std::move(row));
   }
-  whole.summary = protocol.aggregation == Aggregation::kMeanOfSequences
-                      ? mean_of_sequences(protocol, summaries)
-                      : summarize(protocol, pooled);
+  whole.summary = summary_of(protocol, all);
   rows.push_back(std::move(whole));
 }
 
@@ -86,9 +70,7 @@ std::vector<Cell> cells_of(const SummaryRow& row, bool with_ms) {
     cells.emplace_back("no truth");
     cells.resize(cells.size() + kMetrics.size() + 3, "");
   } else {
-    for (const auto& metric : summary.metrics) {
-      cells.push_back(or_undefined(metric));
-    }
+    for (const auto& metric : summary.metrics) cells.push_back(or_undefined(metric));
     cells.insert(cells.end(),
                  {summary.pooled.tp, summary.pooled.fp, summary.pooled.fn, summary.published_text});
   }
@@ -98,12 +80,28 @@ std::vector<Cell> cells_of(const SummaryRow& row, bool with_ms) {
 
 }  // namespace
 
+Summary summary_of(const Protocol& protocol, const std::vector<SequenceCounts>& sequences) {
+  SequenceCounts all;
+  std::vector<Summary> summaries;
+  for (const SequenceCounts& counts : sequences) {
+    summaries.push_back(summarize(protocol, counts));
+    all.insert(all.end(), counts.begin(), counts.end());
+  }
+  return protocol.aggregation == Aggregation::kMeanOfSequences
+             ? mean_of_sequences(protocol, summaries)
+             : summarize(protocol, all);
+}
+
 std::vector<SummaryRow> summary_rows(const Protocol& protocol, const std::vector<Split>& splits,
                                      const std::vector<ScoredSequence>& sequences) {
   std::vector<SummaryRow> rows;
   const Split* benchmark = benchmark_scans(protocol, splits);
   for (std::size_t i = 0; i < sequences.size(); ++i) {
-    rows.push_back(sequence_row(protocol, sequences[i], i, benchmark));
+    SequenceCounts counts;
+    const Stems stems = benchmark == nullptr ? std::nullopt : stems_in_split(*benchmark, i);
+    SummaryRow& row = rows.emplace_back(row_over(protocol, sequences[i], stems, counts));
+    row.method_ms_per_scan = sequences[i].method_ms_per_scan;
+    if (benchmark != nullptr) row.split = benchmark->name;
   }
   for (const Split& split : splits) add_split(protocol, split, sequences, rows);
   return rows;
@@ -120,9 +118,7 @@ Sheet score_sheet(const ScoreRule& rule, const std::vector<Split>& splits,
   for (const MetricRow& metric : kMetrics) {
     sheet.columns.push_back({std::string(metric.title), Unit::kPercent});
   }
-  for (const char* name : {"TP", "FP", "FN", "benchmark's rounding"}) {
-    sheet.columns.push_back({name});
-  }
+  sheet.columns.insert(sheet.columns.end(), {{"TP"}, {"FP"}, {"FN"}, {"benchmark's rounding"}});
   const bool with_ms = std::ranges::any_of(
       rows, [](const SummaryRow& row) { return row.method_ms_per_scan.has_value(); });
   if (with_ms) sheet.columns.push_back({"ms/scan", Unit::kNumber, 1});

@@ -7,7 +7,7 @@
 
 #include "datasets/text/errors.hpp"
 #include "eval/report/point_planes.hpp"
-#include "eval/report/report_asset.hpp"
+#include "eval/report/report.hpp"
 #include "eval/report/scan_choice.hpp"
 #include "eval/result/point_files.hpp"
 #include "tests/temp_folder.hpp"

@@ -1,6 +1,6 @@
-#include "eval/answer/terminal.hpp"
-
 #include <gtest/gtest.h>
+
+#include "eval/answer/render.hpp"
 
 namespace mosbench {
 namespace {
