@@ -39,8 +39,11 @@ struct ScanList {
   std::vector<std::size_t> sources;
 };
 
+struct PerturbKind;
+
 /// What a disturbance needs to know.
 struct PerturbContext {
+  const PerturbKind& kind;
   double strength;
   Draws draws;
   const Perturbation& shared;
@@ -53,8 +56,8 @@ using ChangePoints = std::function<void(std::size_t source, Frame& frame)>;
 /// One kind of disturbance: what is known of it without a sequence, and one of the two functions.
 struct PerturbKind {
   std::string_view name;
-  double none;  ///< the strength that changes nothing; NaN where that depends on the sensor
-  double lowest, highest;
+  double none = 0;  ///< the strength that changes nothing; NaN where that depends on the sensor
+  double lowest = 0, highest = 1e6;
   std::string_view unit, definition, source;
   bool needs_poses = false;
   bool is_random = true;       ///< whether the seed counts
@@ -82,13 +85,10 @@ void lose_point(Frame& frame, std::size_t point);
 /// Moves a return along its ray.
 void set_range(Point& point, double range_m, double new_range_m);
 
-// Poses, stamps and scans.
-void add_pose_noise_m(const PerturbContext& context, ScanList& list);
-void add_pose_noise_deg(const PerturbContext& context, ScanList& list);
-void add_pose_drift_m(const PerturbContext& context, ScanList& list);
-void add_pose_drift_deg(const PerturbContext& context, ScanList& list);
-void add_pose_jump_m(const PerturbContext& context, ScanList& list);
-void add_pose_jump_deg(const PerturbContext& context, ScanList& list);
+// Poses, stamps and scans. Poses are changed by metres or, where the unit says so, degrees.
+void add_pose_noise(const PerturbContext& context, ScanList& list);
+void add_pose_drift(const PerturbContext& context, ScanList& list);
+void add_pose_jump(const PerturbContext& context, ScanList& list);
 void keep_every_nth_scan(const PerturbContext& context, ScanList& list);
 void lose_scans(const PerturbContext& context, ScanList& list);
 void jitter_stamps(const PerturbContext& context, ScanList& list);

@@ -24,27 +24,14 @@ double length_of(const Eigen::Vector3d& v) {
   return std::sqrt(v.x() * v.x() + v.y() * v.y() + v.z() * v.z());
 }
 
-/// Noise is added in the sensor's frame: map_from_sensor * noise.
-void add_pose_noise(const PerturbContext& context, double m, double rad, ScanList& list) {
-  for (std::size_t k = 0; k < list.scans.size(); ++k) {
-    const Eigen::Vector3d noise = normal_vector(context.draws.of(list.sources[k]));
-    Pose& pose = list.scans[k].map_from_sensor;
-    pose = compose(pose, motion(noise * m, noise * rad));
-  }
-}
+/// How far a pose may move and turn: one of both, as the unit of the disturbance says.
+struct Strength {
+  double m, rad;
+};
 
-/// The motion between scans gets noise that grows with the root of how far it went, or turned; the
-/// first pose stays.
-void add_drift(const PerturbContext& context, double m, double rad, ScanList& list) {
-  const std::vector<ScanEntry> before = list.scans;
-  for (std::size_t k = 1; k < list.scans.size(); ++k) {
-    const Pose step = compose(inverse_of(before[k - 1].map_from_sensor), before[k].map_from_sensor);
-    const double walked = std::sqrt(length_of(step.translation()));
-    const double turned = std::sqrt(length_of(rotation_vector(step.linear())) / kRadPerDeg);
-    const Eigen::Vector3d noise = normal_vector(context.draws.of(list.sources[k]));
-    list.scans[k].map_from_sensor = compose(compose(list.scans[k - 1].map_from_sensor, step),
-                                            motion(noise * (m * walked), noise * (rad * turned)));
-  }
+Strength strength_of(const PerturbContext& context) {
+  const bool is_angle = context.kind.unit.starts_with("deg");
+  return is_angle ? Strength{0, context.strength * kRadPerDeg} : Strength{context.strength, 0};
 }
 
 /// Moves all poses from the jump on by a motion of the map.
@@ -87,32 +74,35 @@ std::int64_t stamp_of(const ScanEntry& scan, const Recording& recording) {
 
 }  // namespace
 
-void add_pose_noise_m(const PerturbContext& context, ScanList& list) {
-  add_pose_noise(context, context.strength, 0, list);
+/// Noise is added in the sensor's frame: map_from_sensor * noise.
+void add_pose_noise(const PerturbContext& context, ScanList& list) {
+  const auto [m, rad] = strength_of(context);
+  for (std::size_t k = 0; k < list.scans.size(); ++k) {
+    const Eigen::Vector3d noise = normal_vector(context.draws.of(list.sources[k]));
+    Pose& pose = list.scans[k].map_from_sensor;
+    pose = compose(pose, motion(noise * m, noise * rad));
+  }
 }
 
-void add_pose_noise_deg(const PerturbContext& context, ScanList& list) {
-  add_pose_noise(context, 0, context.strength * kRadPerDeg, list);
+/// The motion between scans gets noise that grows with the root of how far it went, or turned; the
+/// first pose stays.
+void add_pose_drift(const PerturbContext& context, ScanList& list) {
+  const auto [m, rad] = strength_of(context);
+  const std::vector<ScanEntry> before = list.scans;
+  for (std::size_t k = 1; k < list.scans.size(); ++k) {
+    const Pose step = compose(inverse_of(before[k - 1].map_from_sensor), before[k].map_from_sensor);
+    const double walked = std::sqrt(length_of(step.translation()));
+    const double turned = std::sqrt(length_of(rotation_vector(step.linear())) / kRadPerDeg);
+    const Eigen::Vector3d noise = normal_vector(context.draws.of(list.sources[k]));
+    list.scans[k].map_from_sensor = compose(compose(list.scans[k - 1].map_from_sensor, step),
+                                            motion(noise * (m * walked), noise * (rad * turned)));
+  }
 }
 
-void add_pose_drift_m(const PerturbContext& context, ScanList& list) {
-  add_drift(context, context.strength, 0, list);
-}
-
-void add_pose_drift_deg(const PerturbContext& context, ScanList& list) {
-  add_drift(context, 0, context.strength * kRadPerDeg, list);
-}
-
-void add_pose_jump_m(const PerturbContext& context, ScanList& list) {
+void add_pose_jump(const PerturbContext& context, ScanList& list) {
+  const auto [m, rad] = strength_of(context);
   const SinCos heading = sin_cos(kFullTurn_rad * context.draws.uniform(0));
-  jump(context,
-       motion({context.strength * heading.cos, context.strength * heading.sin, 0},
-              Eigen::Vector3d::Zero()),
-       list);
-}
-
-void add_pose_jump_deg(const PerturbContext& context, ScanList& list) {
-  jump(context, motion(Eigen::Vector3d::Zero(), {0, 0, context.strength * kRadPerDeg}), list);
+  jump(context, motion({m * heading.cos, m * heading.sin, 0}, {0, 0, rad}), list);
 }
 
 void keep_every_nth_scan(const PerturbContext& context, ScanList& list) {

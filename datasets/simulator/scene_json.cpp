@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <concepts>
 #include <nlohmann/json.hpp>
+#include <type_traits>
 #include <vector>
 
 #include "datasets/disk/files.hpp"
-#include "datasets/simulator/scene_fields.hpp"
 #include "datasets/simulator/sensor_model.hpp"
 #include "datasets/simulator/trajectory.hpp"
 #include "datasets/text/errors.hpp"
@@ -16,6 +18,121 @@
 
 namespace mosbench {
 namespace {
+
+/// What a scene file may hold for a field: the closed interval of a number (for a list, of each of
+/// its numbers) and whether the key must be there.
+struct FieldRule {
+  double lowest = -1e5;
+  double highest = 1e5;
+  bool required = false;
+};
+
+constexpr FieldRule kPosition{.required = true};
+constexpr FieldRule kDuration{.lowest = 0.0, .highest = 1e6};
+constexpr FieldRule kSize{.lowest = 0.01, .highest = 1e4};
+constexpr FieldRule kSpeed{.lowest = 0.01, .highest = 100.0, .required = true};
+constexpr FieldRule kAngle{.lowest = -10.0, .highest = 10.0};
+constexpr FieldRule kMust{.required = true};
+
+template <typename T, typename Record>
+concept Of = std::same_as<std::remove_const_t<T>, Record>;
+
+// The one list of fields per record: visit_fields(record, visit) calls visit(key, member, rule) for
+// each. Reading, writing and the unknown-key check of scene files all walk these.
+
+void visit_fields(Of<Leg> auto& leg, auto&& visit) {
+  visit("to_m", leg.to_m, kPosition);
+  visit("speed_m_s", leg.speed_m_s, kSpeed);
+  visit("wait_s", leg.wait_s, kDuration);
+}
+
+void visit_fields(Of<Route> auto& route, auto&& visit) {
+  visit("from_m", route.from_m, kPosition);
+  visit("legs", route.legs);
+  visit("after", route.after);
+  visit("start_s", route.start_s, kDuration);
+}
+
+void visit_fields(Of<Ego> auto& ego, auto&& visit) {
+  visit("carrier", ego.carrier, kMust);
+  visit("sensor_height_m", ego.sensor_height_m, FieldRule{.lowest = 0.1, .highest = 100.0});
+  visit("route", ego.route, kMust);
+}
+
+void visit_fields(Of<GroundPlane> auto& plane, auto&& visit) {
+  visit("height_m", plane.height_m);
+  visit("slope_x", plane.slope_x, FieldRule{.lowest = -2.0, .highest = 2.0});
+  visit("slope_y", plane.slope_y, FieldRule{.lowest = -2.0, .highest = 2.0});
+}
+
+void visit_fields(Of<Structure> auto& structure, auto&& visit) {
+  visit("shape", structure.shape, kMust);
+  visit("center_m", structure.center_m, kPosition);
+  visit("size_m", structure.size_m, FieldRule{.lowest = 0.01, .highest = 1e4, .required = true});
+  visit("yaw_rad", structure.yaw_rad, kAngle);
+  visit("density", structure.density, FieldRule{.lowest = 0.01, .highest = 1.0});
+  visit("sway_m", structure.sway_m, FieldRule{.lowest = 0.0, .highest = 2.0});
+  visit("let_through", structure.let_through, FieldRule{.lowest = 0.0, .highest = 1.0});
+  visit("mirrors", structure.mirrors);
+  visit("labelled", structure.labelled);
+}
+
+void visit_fields(Of<Mover> auto& mover, auto&& visit) {
+  visit("kind", mover.kind, kMust);
+  visit("route", mover.route, kMust);
+  visit("labelled", mover.labelled);
+  visit("dynamic_by_appearance", mover.dynamic_by_appearance);
+}
+
+void visit_fields(Of<Door> auto& door, auto&& visit) {
+  visit("hinge_m", door.hinge_m, kPosition);
+  visit("width_m", door.width_m, kSize);
+  visit("height_m", door.height_m, kSize);
+  visit("closed_yaw_rad", door.closed_yaw_rad, kAngle);
+  visit("open_yaw_rad", door.open_yaw_rad, kAngle);
+  visit("swing_s", door.swing_s, FieldRule{.lowest = 0.05, .highest = 1e4});
+  visit("period_s", door.period_s, FieldRule{.lowest = 0.1, .highest = 1e6});
+  visit("start_s", door.start_s, kDuration);
+  visit("labelled", door.labelled);
+}
+
+void visit_fields(Of<Ball> auto& ball, auto&& visit) {
+  visit("from_m", ball.from_m, kPosition);
+  visit("velocity_m_s", ball.velocity_m_s, FieldRule{.lowest = -100.0, .highest = 100.0});
+  visit("radius_m", ball.radius_m, FieldRule{.lowest = 0.01, .highest = 10.0});
+  visit("period_s", ball.period_s, FieldRule{.lowest = 0.1, .highest = 1e6});
+  visit("start_s", ball.start_s, kDuration);
+  visit("labelled", ball.labelled);
+}
+
+void visit_fields(Of<Scene> auto& scene, auto&& visit) {
+  visit("name", scene.name, kMust);
+  visit("scan_period_s", scene.scan_period_s, FieldRule{.lowest = 0.001, .highest = 10.0});
+  visit("sensor", scene.sensor);
+  visit("columns", scene.columns, FieldRule{.lowest = 16, .highest = 8192});
+  visit("range_noise_m", scene.range_noise_m, FieldRule{.lowest = 0.0, .highest = 1.0});
+  visit("dropout_probability", scene.dropout_probability, FieldRule{.lowest = 0.0, .highest = 1.0});
+  visit("beam_width_rad", scene.beam_width_rad, FieldRule{.lowest = 0.0, .highest = 0.05});
+  visit("ground_bumps_m", scene.ground_bumps_m, FieldRule{.lowest = 0.0, .highest = 0.5});
+  visit("ego", scene.ego, kMust);
+  visit("ground", scene.ground);
+  visit("structures", scene.structures);
+  visit("movers", scene.movers);
+  visit("doors", scene.doors);
+  visit("balls", scene.balls);
+}
+
+// The names that enumerators have in scene files, in their order.
+constexpr std::array<std::string_view, 3> names_of(AfterRoute) {
+  return {"stay", "return", "restart"};
+}
+constexpr std::array<std::string_view, 4> names_of(Carrier) {
+  return {"tripod", "hand-held", "ground-robot", "car"};
+}
+constexpr std::array<std::string_view, 3> names_of(Shape) { return {"box", "cylinder", "sphere"}; }
+constexpr std::array<std::string_view, 4> names_of(MoverKind) {
+  return {"pedestrian", "cyclist", "car", "truck"};
+}
 
 // Ordered, so that a written scene reads in the order of its field lists.
 using Json = nlohmann::ordered_json;
@@ -109,13 +226,11 @@ requires std::is_enum_v<Enum>
 void read(const Json& value, Enum& member, const FieldRule& rule, const Place& place) {
   std::string name;
   read(value, name, rule, place);
-  std::vector<std::string_view> known;
-  for (const auto& [enumerator, its_name] : names_of(Enum{})) {
-    if (its_name == name) {
-      member = enumerator;
-      return;
-    }
-    known.push_back(its_name);
+  constexpr auto known = names_of(Enum{});
+  const auto found = std::ranges::find(known, name);
+  if (found != known.end()) {
+    member = static_cast<Enum>(found - known.begin());
+    return;
   }
   place.refuse(
       shown(value) + " is unknown",
@@ -174,8 +289,9 @@ void check_record(const Scene& scene, const Place& place) {
 
 void check_keys(const Json& value, const auto& record, const Place& place) {
   std::vector<std::string_view> known;
-  visit_fields(record,
-               [&](std::string_view key, const auto&, const FieldRule&) { known.push_back(key); });
+  visit_fields(record, [&](std::string_view key, const auto&, const FieldRule& = {}) {
+    known.push_back(key);
+  });
   for (const auto& [key, ignored] : value.items()) {
     if (std::find(known.begin(), known.end(), key) == known.end()) {
       place.refuse(fmt::format("unknown key {}", shown(Json(key))),
@@ -188,7 +304,7 @@ template <typename Record>
 void read(const Json& value, Record& record, const FieldRule&, const Place& place) {
   if (!value.is_object()) place.refuse(shown(value) + " is no record", "an object {...}");
   check_keys(value, record, place);
-  visit_fields(record, [&](std::string_view key, auto& member, const FieldRule& rule) {
+  visit_fields(record, [&](std::string_view key, auto& member, const FieldRule& rule = {}) {
     const auto found = value.find(std::string(key));
     if (found != value.end()) {
       read(*found, member, rule, place.key(key));
@@ -202,15 +318,12 @@ void read(const Json& value, Record& record, const FieldRule&, const Place& plac
 Json to_json(const auto& value) { return value; }
 
 Json to_json(const auto& value) requires std::is_enum_v<std::remove_cvref_t<decltype(value)>> {
-  for (const auto& [enumerator, name] : names_of(value)) {
-    if (enumerator == value) return std::string(name);
-  }
-  return {};
+  return std::string(names_of(value)[static_cast<std::size_t>(value)]);
 }
 
 template <typename Record>
 concept HasFields = requires(const Record& record) {
-  visit_fields(record, [](std::string_view, const auto&, const FieldRule&) {});
+  visit_fields(record, [](std::string_view, const auto&, const FieldRule& = {}) {});
 };
 
 template <HasFields Record>
@@ -231,7 +344,7 @@ Json to_json(const std::optional<Value>& value) {
 template <HasFields Record>
 Json to_json(const Record& record) {
   Json object = Json::object();
-  visit_fields(record, [&](std::string_view key, const auto& member, const FieldRule&) {
+  visit_fields(record, [&](std::string_view key, const auto& member, const FieldRule& = {}) {
     Json value = to_json(member);
     if (!value.is_null()) object[std::string(key)] = std::move(value);
   });
@@ -249,39 +362,5 @@ Scene parse_scene(std::string_view text, const std::filesystem::path& file) {
 std::string format_scene(const Scene& scene) { return to_json(scene).dump(2) + "\n"; }
 
 Scene read_scene(const std::filesystem::path& file) { return parse_scene(read_file(file), file); }
-
-std::string example_scene_json() {
-  return R"({
-  "name": "crossing",
-  "scan_period_s": 0.1,
-  "ego": {
-    "carrier": "ground-robot",
-    "sensor_height_m": 0.9,
-    "route": {
-      "from_m": [0, 0],
-      "legs": [{"to_m": [12, 0], "speed_m_s": 1.0}, {"to_m": [12, 8], "speed_m_s": 0.8, "wait_s": 2}]
-    }
-  },
-  "ground": [{"height_m": 0, "slope_x": 0.01}],
-  "structures": [
-    {"shape": "box", "center_m": [6, 9, 2], "size_m": [20, 0.3, 4]},
-    {"shape": "box", "center_m": [6, -6, 2], "size_m": [20, 0.3, 4], "yaw_rad": 0.1},
-    {"shape": "cylinder", "center_m": [4, 3, 2], "size_m": [0.3, 0.3, 4]},
-    {"shape": "sphere", "center_m": [15, 4, 3], "size_m": [3, 3, 3], "density": 0.35}
-  ],
-  "movers": [
-    {"kind": "pedestrian", "route": {
-      "from_m": [3, 6], "after": "return",
-      "legs": [{"to_m": [10, 6], "speed_m_s": 1.3}, {"to_m": [10, -4], "speed_m_s": 1.1, "wait_s": 2}]}},
-    {"kind": "cyclist", "route": {
-      "from_m": [-10, -3], "after": "restart", "legs": [{"to_m": [40, -3], "speed_m_s": 4}]}},
-    {"kind": "car", "route": {
-      "from_m": [30, -4], "start_s": 1, "legs": [{"to_m": [-30, -4], "speed_m_s": 7}]}}
-  ],
-  "doors": [{"hinge_m": [8, 8.7], "width_m": 1.1, "closed_yaw_rad": 0, "open_yaw_rad": -1.4}],
-  "balls": [{"from_m": [9, 4, 1.5], "velocity_m_s": [-3, 1, 4]}]
-}
-)";
-}
 
 }  // namespace mosbench

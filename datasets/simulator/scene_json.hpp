@@ -18,7 +18,4 @@ std::string format_scene(const Scene& scene);
 
 Scene read_scene(const std::filesystem::path& file);
 
-/// Returns a short scene with every kind of record, to start an own one from.
-std::string example_scene_json();
-
 }  // namespace mosbench

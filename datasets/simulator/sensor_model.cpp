@@ -1,7 +1,7 @@
 #include "datasets/simulator/sensor_model.hpp"
 
+#include <algorithm>
 #include <array>
-#include <utility>
 
 #include "datasets/sequence/portable_math.hpp"
 
@@ -11,47 +11,76 @@ namespace {
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kRadPerDeg = kPi / 180.0;
 
-constexpr std::array<std::pair<SensorKind, std::string_view>, 7> kNames = {{
-    {SensorKind::kOs1_64, "os1-64"},
-    {SensorKind::kOs2_128, "os2-128"},
-    {SensorKind::kVlp16, "vlp-16"},
-    {SensorKind::kHdl64e, "hdl-64e"},
-    {SensorKind::kAvia, "avia"},
-    {SensorKind::kAeva, "aeva"},
-    {SensorKind::kHdl32e, "hdl-32e"},
-}};
-
-// Elevations of the highest and lowest ring, and the horizontal field of view.
+/// Elevations of the highest and lowest ring, and the horizontal field of view.
 struct FieldOfView {
   double top_rad, bottom_rad, width_rad;
 };
 
-FieldOfView field_of_view(SensorKind kind) {
-  switch (kind) {
-    case SensorKind::kOs1_64:
-      return {16.61 * kRadPerDeg, -16.61 * kRadPerDeg, 2 * kPi};
-    case SensorKind::kOs2_128:
-      return {11.25 * kRadPerDeg, -11.25 * kRadPerDeg, 2 * kPi};
-    case SensorKind::kVlp16:
-      return {15.0 * kRadPerDeg, -15.0 * kRadPerDeg, 2 * kPi};
-    case SensorKind::kHdl64e:
-      return {2.0 * kRadPerDeg, -24.8 * kRadPerDeg, 2 * kPi};
-    case SensorKind::kAvia:
-      return {38.6 * kRadPerDeg, -38.6 * kRadPerDeg, 70.4 * kRadPerDeg};
-    case SensorKind::kAeva:
-      return {9.6 * kRadPerDeg, -9.6 * kRadPerDeg, 120.0 * kRadPerDeg};
-    case SensorKind::kHdl32e:
-      return {10.67 * kRadPerDeg, -30.67 * kRadPerDeg, 2 * kPi};
-  }
-  return {};
+struct SensorRow {
+  std::string_view name;
+  FieldOfView view;
+  SensorModel model;
+};
+
+/// In the order of SensorKind.
+const std::array<SensorRow, 7>& sensor_rows() {
+  static const std::array<SensorRow, 7> rows = {{
+      {"os1-64", {16.61 * kRadPerDeg, -16.61 * kRadPerDeg, 2 * kPi}, {.kind = SensorKind::kOs1_64}},
+      {"os2-128",
+       {11.25 * kRadPerDeg, -11.25 * kRadPerDeg, 2 * kPi},
+       {.kind = SensorKind::kOs2_128,
+        .columns = 1024,
+        .rings = 128,
+        .min_range_m = 0.8,
+        .max_range_m = 210.0,
+        .range_noise_m = 0.03,
+        .mount_m = {0.0, 0.0, 0.2}}},
+      {"vlp-16",
+       {15.0 * kRadPerDeg, -15.0 * kRadPerDeg, 2 * kPi},
+       {.kind = SensorKind::kVlp16,
+        .columns = 1800,
+        .rings = 16,
+        .min_range_m = 0.5,
+        .max_range_m = 100.0,
+        .mount_m = {-0.6, 0.0, 0.0}}},
+      {"hdl-64e",
+       {2.0 * kRadPerDeg, -24.8 * kRadPerDeg, 2 * kPi},
+       {.kind = SensorKind::kHdl64e, .columns = 2000, .min_range_m = 0.9}},
+      {"avia",
+       {38.6 * kRadPerDeg, -38.6 * kRadPerDeg, 70.4 * kRadPerDeg},
+       {.kind = SensorKind::kAvia,
+        .columns = 4000,
+        .rings = 6,
+        .min_range_m = 1.0,
+        .max_range_m = 190.0,
+        .mount_m = {0.5, 0.3, 0.0}}},
+      {"aeva",
+       {9.6 * kRadPerDeg, -9.6 * kRadPerDeg, 120.0 * kRadPerDeg},
+       {.kind = SensorKind::kAeva,
+        .columns = 800,
+        .min_range_m = 1.0,
+        .max_range_m = 150.0,
+        .range_noise_m = 0.03,
+        .mount_m = {0.5, -0.3, 0.0}}},
+      {"hdl-32e",
+       {10.67 * kRadPerDeg, -30.67 * kRadPerDeg, 2 * kPi},
+       {.kind = SensorKind::kHdl32e,
+        .columns = 1084,
+        .rings = 32,
+        .min_range_m = 1.0,
+        .max_range_m = 100.0}},
+  }};
+  return rows;
 }
+
+const SensorRow& row_of(SensorKind kind) { return sensor_rows()[static_cast<std::size_t>(kind)]; }
 
 Eigen::Vector3d direction(SinCos azimuth, SinCos elevation) {
   return {elevation.cos * azimuth.cos, elevation.cos * azimuth.sin, elevation.sin};
 }
 
 std::vector<Eigen::Vector3d> raster(const SensorModel& sensor) {
-  const FieldOfView view = field_of_view(sensor.kind);
+  const FieldOfView view = row_of(sensor.kind).view;
   const double columns = static_cast<double>(sensor.columns);
   const double ring_step_rad =
       (view.top_rad - view.bottom_rad) / static_cast<double>(sensor.rings - 1);
@@ -75,7 +104,7 @@ std::vector<Eigen::Vector3d> raster(const SensorModel& sensor) {
 std::vector<Eigen::Vector3d> rosette(const SensorModel& sensor, std::size_t scan_index) {
   constexpr double kFirstTurnsPerScan = 12.1832, kSecondTurnsPerScan = -7.5297;
   constexpr double kLaserSpacingRad = 0.0045;
-  const FieldOfView view = field_of_view(sensor.kind);
+  const FieldOfView view = row_of(sensor.kind).view;
   const double spread_rad = kLaserSpacingRad * static_cast<double>(sensor.rings - 1) / 2;
   const double half_width_rad = view.width_rad / 2 - spread_rad;
   std::vector<Eigen::Vector3d> rays;
@@ -97,68 +126,21 @@ std::vector<Eigen::Vector3d> rosette(const SensorModel& sensor, std::size_t scan
 
 }  // namespace
 
-std::string_view to_string(SensorKind kind) {
-  for (const auto& [named, name] : kNames) {
-    if (named == kind) return name;
-  }
-  return {};
-}
+std::string_view to_string(SensorKind kind) { return row_of(kind).name; }
 
 std::optional<SensorKind> sensor_kind_from_string(std::string_view name) {
-  for (const auto& [kind, known] : kNames) {
-    if (known == name) return kind;
-  }
-  return std::nullopt;
+  const auto row = std::ranges::find(sensor_rows(), name, &SensorRow::name);
+  if (row == sensor_rows().end()) return std::nullopt;
+  return row->model.kind;
 }
 
 std::vector<std::string_view> sensor_names() {
   std::vector<std::string_view> names;
-  for (const auto& entry : kNames) names.push_back(entry.second);
+  for (const SensorRow& row : sensor_rows()) names.push_back(row.name);
   return names;
 }
 
-SensorModel sensor_model(SensorKind kind) {
-  switch (kind) {
-    case SensorKind::kOs1_64:
-      return {.kind = kind};
-    case SensorKind::kOs2_128:
-      return {.kind = kind,
-              .columns = 1024,
-              .rings = 128,
-              .min_range_m = 0.8,
-              .max_range_m = 210.0,
-              .range_noise_m = 0.03,
-              .mount_m = {0.0, 0.0, 0.2}};
-    case SensorKind::kVlp16:
-      return {.kind = kind,
-              .columns = 1800,
-              .rings = 16,
-              .min_range_m = 0.5,
-              .max_range_m = 100.0,
-              .range_noise_m = 0.02,
-              .mount_m = {-0.6, 0.0, 0.0}};
-    case SensorKind::kHdl64e:
-      return {.kind = kind, .columns = 2000, .rings = 64, .min_range_m = 0.9};
-    case SensorKind::kAvia:
-      return {.kind = kind,
-              .columns = 4000,
-              .rings = 6,
-              .min_range_m = 1.0,
-              .max_range_m = 190.0,
-              .mount_m = {0.5, 0.3, 0.0}};
-    case SensorKind::kAeva:
-      return {.kind = kind,
-              .columns = 800,
-              .rings = 64,
-              .min_range_m = 1.0,
-              .max_range_m = 150.0,
-              .range_noise_m = 0.03,
-              .mount_m = {0.5, -0.3, 0.0}};
-    case SensorKind::kHdl32e:
-      return {.kind = kind, .columns = 1084, .rings = 32, .min_range_m = 1.0, .max_range_m = 100.0};
-  }
-  return {};
-}
+SensorModel sensor_model(SensorKind kind) { return row_of(kind).model; }
 
 std::vector<Eigen::Vector3d> beam_directions(const SensorModel& sensor, std::size_t scan_index) {
   return repeats_every_scan(sensor) ? raster(sensor) : rosette(sensor, scan_index);

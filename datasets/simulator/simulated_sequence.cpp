@@ -11,8 +11,7 @@
 #include "datasets/formats/label_file.hpp"
 #include "datasets/perturb/perturbation.hpp"
 #include "datasets/sequence/portable_math.hpp"
-#include "datasets/simulator/simulated_doppler.hpp"
-#include "datasets/simulator/simulated_flow.hpp"
+#include "datasets/simulator/simulated_motion.hpp"
 #include "datasets/simulator/simulator.hpp"
 #include "datasets/text/errors.hpp"
 
@@ -67,6 +66,7 @@ class SimulatedSequence : public Sequence {
       if (doppler) frame.radial_velocity_m_s.push_back(doppler->radial_velocity_m_s(scan, i));
     }
   }
+
  private:
   double period_s(std::size_t scan_index) const {
     return static_cast<double>(simulator_.stamp_ns(scan_index + 1) -

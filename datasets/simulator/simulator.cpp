@@ -1,5 +1,7 @@
 #include "datasets/simulator/simulator.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <string>
 #include <utility>
@@ -115,8 +117,7 @@ SimulatedScan Simulator::scan(std::size_t scan_index) const {
 Frame Simulator::frame(std::size_t scan_index) const {
   SimulatedScan simulated = scan(scan_index);
   Frame frame;
-  frame.stem = std::to_string(scan_index);
-  frame.stem.insert(0, frame.stem.size() < 6 ? 6 - frame.stem.size() : 0, '0');
+  frame.stem = fmt::format("{:06}", scan_index);
   frame.map_from_sensor = simulated.map_from_sensor;
   frame.stamp_ns = simulated.stamp_ns;
   frame.truth.emplace();

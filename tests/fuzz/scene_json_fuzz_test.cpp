@@ -8,6 +8,7 @@
 #include "datasets/simulator/scene_json.hpp"
 #include "datasets/simulator/simulator.hpp"
 #include "datasets/text/errors.hpp"
+#include "tests/example_scene.hpp"
 
 namespace mosbench {
 namespace {

@@ -1,10 +1,9 @@
-#include "datasets/simulator/simulated_doppler.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "datasets/simulator/built_in_scenes.hpp"
+#include "datasets/simulator/simulated_motion.hpp"
 
 namespace mosbench {
 namespace {

@@ -5,6 +5,7 @@
 
 #include "datasets/simulator/simulator.hpp"
 #include "datasets/text/errors.hpp"
+#include "tests/example_scene.hpp"
 #include "tests/temp_folder.hpp"
 
 namespace mosbench {
