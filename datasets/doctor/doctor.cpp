@@ -25,6 +25,21 @@ std::optional<Pose> tr_of(const std::filesystem::path& folder) {
   return tr;
 }
 
+/// Returns whether the poses read were turned from the camera of Tr in calib.txt to the lidar.
+bool tr_is_applied(const ReadingDone& reading) { return reading.poses.frame == PoseFrame::kCamera; }
+
+/// Compares the poses with the motions that scans show.
+void examine_poses(const Sequence& sequence, const std::filesystem::path& folder,
+                   SequenceCheckup& checkup) {
+  constexpr std::size_t kFewestScans = 6;
+  if (sequence.size() < kFewestScans || checkup.is_partly_turned) return;
+  std::vector<Pose> given = poses_of(sequence);
+  examine_misplaced_rows(sequence, given, checkup.facts);
+  const auto conventions = other_conventions(given, tr_of(folder), tr_is_applied(checkup.reading));
+  checkup.poses =
+      measure_poses(sequence, given, conventions, checkup.facts.number("step_s"), checkup.facts);
+}
+
 /// Turns an error into a symptom. The file that it names first becomes `where` if it is below
 /// `path`.
 Symptom symptom_of(const DataError& error, const std::filesystem::path& path) {
@@ -228,8 +243,6 @@ std::vector<ScanPair> telling_pairs(const std::vector<Pose>& poses, const std::v
 
 }  // namespace
 
-bool tr_is_applied(const ReadingDone& reading) { return reading.poses.frame == PoseFrame::kCamera; }
-
 std::vector<Pose> poses_of(const Sequence& sequence) {
   std::vector<Pose> poses;
   for (const ScanEntry& scan : sequence.recording().scans) poses.push_back(scan.map_from_sensor);
@@ -255,17 +268,6 @@ Remedy Checkup::remedy() const {
     if (!(remedy == common)) return {};
   }
   return common;
-}
-
-void examine_poses(const Sequence& sequence, const std::filesystem::path& folder,
-                   SequenceCheckup& checkup) {
-  constexpr std::size_t kFewestScans = 6;
-  if (sequence.size() < kFewestScans || checkup.is_partly_turned) return;
-  std::vector<Pose> given = poses_of(sequence);
-  examine_misplaced_rows(sequence, given, checkup.facts);
-  const auto conventions = other_conventions(given, tr_of(folder), tr_is_applied(checkup.reading));
-  checkup.poses =
-      measure_poses(sequence, given, conventions, checkup.facts.number("step_s"), checkup.facts);
 }
 
 double share(std::size_t part, std::size_t whole) {

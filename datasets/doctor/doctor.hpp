@@ -78,9 +78,6 @@ void examine_stamps(const Sequence& sequence, Facts& facts);
 /// Reads some dozens of scans.
 void examine_content(const Sequence& sequence, const LayoutContent& expected,
                      SequenceCheckup& checkup);
-/// Compares the poses with the motions that scans show.
-void examine_poses(const Sequence& sequence, const std::filesystem::path& folder,
-                   SequenceCheckup& checkup);
 /// Compares labels with what other scans see, in up to a dozen labelled scans.
 void examine_labels(const Sequence& sequence, SequenceCheckup& checkup);
 
@@ -88,8 +85,6 @@ void examine_labels(const Sequence& sequence, SequenceCheckup& checkup);
 /// frames alone and files of zeros for the scans between. Reads the truth of all.
 std::vector<std::size_t> scans_with_labels(const Sequence& sequence);
 
-/// Returns whether the poses read were turned from the camera of Tr in calib.txt to the lidar.
-bool tr_is_applied(const ReadingDone& reading);
 std::vector<Pose> poses_of(const Sequence& sequence);
 double share(std::size_t part, std::size_t whole);
 

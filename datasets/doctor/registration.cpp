@@ -25,6 +25,43 @@ constexpr double kCoarseM = 0.4;
 constexpr double kSpreadM = 0.12;
 constexpr double kNone = 1e12;
 
+/// Points of a cube, summed up.
+struct CellMoments {
+  std::size_t count = 0;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
+
+  Eigen::Vector3d mean_m() const { return sum / static_cast<double>(count); }
+  Eigen::Matrix3d covariance_m2() const {
+    const Eigen::Vector3d mean = mean_m();
+    return squares / static_cast<double>(count) - mean * mean.transpose();
+  }
+};
+
+std::unordered_map<std::uint64_t, CellMoments> moments_of_cells(
+    std::span<const Eigen::Vector3d> points_m, double size_m) {
+  std::unordered_map<std::uint64_t, CellMoments> cells;
+  for (const Eigen::Vector3d& point_m : points_m) {
+    CellMoments& cell = cells[cube_key(point_m, size_m)];
+    ++cell.count;
+    cell.sum += point_m;
+    cell.squares += point_m * point_m.transpose();
+  }
+  return cells;
+}
+
+/// Returns the points at 2 to 40 m, where scans are dense.
+std::vector<Eigen::Vector3d> near_points(std::span<const Point> points) {
+  constexpr double kNearestM = 2.0, kFurthestM = 40.0;
+  std::vector<Eigen::Vector3d> near_m;
+  for (const Point& point : points) {
+    const Eigen::Vector3d point_m(point.x, point.y, point.z);
+    const double range_m = point_m.norm();
+    if (range_m >= kNearestM && range_m <= kFurthestM) near_m.push_back(point_m);
+  }
+  return near_m;
+}
+
 std::uint64_t column_key(const Eigen::Vector3d& point_m) {
   return cube_key({point_m.x(), point_m.y(), 0.0}, kColumnM);
 }
@@ -172,34 +209,6 @@ std::uint64_t cube_key(const Eigen::Vector3d& point_m, double size_m) {
     key = (key << 21U) | (static_cast<std::uint64_t>(static_cast<std::int64_t>(cell)) & 0x1FFFFFU);
   }
   return key;
-}
-
-Eigen::Matrix3d CellMoments::covariance_m2() const {
-  const Eigen::Vector3d mean = mean_m();
-  return squares / static_cast<double>(count) - mean * mean.transpose();
-}
-
-std::unordered_map<std::uint64_t, CellMoments> moments_of_cells(
-    std::span<const Eigen::Vector3d> points_m, double size_m) {
-  std::unordered_map<std::uint64_t, CellMoments> cells;
-  for (const Eigen::Vector3d& point_m : points_m) {
-    CellMoments& cell = cells[cube_key(point_m, size_m)];
-    ++cell.count;
-    cell.sum += point_m;
-    cell.squares += point_m * point_m.transpose();
-  }
-  return cells;
-}
-
-std::vector<Eigen::Vector3d> near_points(std::span<const Point> points) {
-  constexpr double kNearestM = 2.0, kFurthestM = 40.0;
-  std::vector<Eigen::Vector3d> near_m;
-  for (const Point& point : points) {
-    const Eigen::Vector3d point_m(point.x, point.y, point.z);
-    const double range_m = point_m.norm();
-    if (range_m >= kNearestM && range_m <= kFurthestM) near_m.push_back(point_m);
-  }
-  return near_m;
 }
 
 const ScanOverlap::Scan& ScanOverlap::at(std::size_t scan_index) {

@@ -30,22 +30,6 @@ double median(std::vector<double> values);
 /// that are too far away for the grid.
 std::uint64_t cube_key(const Eigen::Vector3d& point_m, double size_m);
 
-/// Points of a cube, summed up.
-struct CellMoments {
-  std::size_t count = 0;
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
-
-  Eigen::Vector3d mean_m() const { return sum / static_cast<double>(count); }
-  Eigen::Matrix3d covariance_m2() const;
-};
-
-std::unordered_map<std::uint64_t, CellMoments> moments_of_cells(
-    std::span<const Eigen::Vector3d> points_m, double size_m);
-
-/// Returns the points at 2 to 40 m, where scans are dense.
-std::vector<Eigen::Vector3d> near_points(std::span<const Point> points);
-
 /// Returns up to `most` of the items, evenly picked.
 template <typename Item>
 std::vector<Item> picked(const std::vector<Item>& items, std::size_t most) {

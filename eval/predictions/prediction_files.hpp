@@ -99,35 +99,11 @@ std::vector<DynabloxCounts> parse_dynablox_counts(std::string_view text, Dynablo
 std::vector<std::uint64_t> parse_dynablox_stamps_ns(std::string_view text,
                                                     const std::filesystem::path& file);
 
-/// Parses confidences 0..1 per point from the bytes of a NumPy .npy file (float32, float64 or
-/// bool, of any shape with as many numbers as the scan has points): above 0.5 a point is moving,
-/// as in 4DMOS's confidences_to_labels.py. Throws DataError.
-std::vector<std::uint32_t> parse_npy_labels(std::string_view bytes, std::size_t point_count,
-                                            const std::filesystem::path& file);
-
+/// Reads confidences 0..1 per point from a NumPy .npy file (float32, float64 or bool, of any shape
+/// with as many numbers as the scan has points): above 0.5 a point is moving, as in 4DMOS's
+/// confidences_to_labels.py. Throws DataError.
 std::vector<std::uint32_t> read_npy_labels(const std::filesystem::path& file,
                                            std::size_t point_count);
-
-/// A scan and the number of labels that a method with a range limit wrote for it.
-struct MaskedScan {
-  std::filesystem::path file;
-  std::size_t labels;
-  std::vector<Point> points;
-};
-
-/// Finds the range limits, among the usual ones of methods, that leave as many points of every scan
-/// as there are labels. Throws DataError if none does, or if several do that leave different
-/// points.
-RangeGate find_mask(std::span<const MaskedScan> scans);
-
-/// Returns "3 to 50 m" or "from 3 m".
-std::string mask_text(const RangeGate& mask);
-
-/// Returns one label per point: those given for the points within `mask`, static for the rest.
-/// Throws DataError when their numbers differ.
-std::vector<std::uint32_t> spread_over_scan(std::span<const std::uint32_t> labels,
-                                            std::span<const Point> points, const RangeGate& mask,
-                                            const std::filesystem::path& file);
 
 /// Opens predictions in a file per scan, paired by stem or by position. Files without scan and
 /// label files of the wrong size go to `errors`, what was recognised to `remarks`.

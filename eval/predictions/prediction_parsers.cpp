@@ -232,18 +232,14 @@ std::vector<std::uint64_t> parse_dynablox_stamps_ns(std::string_view text, const
   return stamps_ns;
 }
 
-std::vector<std::uint32_t> parse_npy_labels(std::string_view bytes, std::size_t point_count,
-                                            const fs::path& file) {
+std::vector<std::uint32_t> read_npy_labels(const fs::path& file, std::size_t point_count) {
+  const std::string bytes = read_file(file);
   const NpyParts parts = split_npy(bytes, file);
   const std::string_view type = type_of(parts.header, file);
   if (type == "<f4") return threshold<float>(parts.numbers, point_count, file);
   if (type == "<f8") return threshold<double>(parts.numbers, point_count, file);
   if (type == "|b1") return threshold<unsigned char>(parts.numbers, point_count, file);
   refuse_npy(file, fmt::format("holds numbers of type {}", type));
-}
-
-std::vector<std::uint32_t> read_npy_labels(const fs::path& file, std::size_t point_count) {
-  return parse_npy_labels(read_file(file), point_count, file);
 }
 
 }  // namespace mosbench

@@ -26,6 +26,13 @@ constexpr std::array kLowest_m = {0.0, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0};
 constexpr std::array kHighest_m = {-1.0, 20.0, 25.0, 30.0,  40.0,  50.0,  60.0,
                                    70.0, 75.0, 80.0, 100.0, 120.0, 150.0, 200.0};
 
+/// A scan and the number of labels that a method with a range limit wrote for it.
+struct MaskedScan {
+  fs::path file;
+  std::size_t labels;
+  std::vector<Point> points;
+};
+
 std::vector<double> ranges_of(const MaskedScan& scan) {
   std::vector<double> ranges_m;
   for (const Point& point : scan.points) ranges_m.push_back(range_m(point, Arithmetic::kDouble));
@@ -41,6 +48,55 @@ std::pair<std::size_t, std::size_t> within(const std::vector<double>& ranges_m,
       mask.max_m <= 0.0 ? ranges_m.end() : std::ranges::upper_bound(ranges_m, mask.max_m);
   return {static_cast<std::size_t>(first - ranges_m.begin()),
           static_cast<std::size_t>(last - ranges_m.begin())};
+}
+
+/// Finds the range limits, among the usual ones of methods, that leave as many points of every scan
+/// as there are labels. Throws DataError if none does, or if several do that leave different
+/// points.
+RangeGate find_mask(std::span<const MaskedScan> scans) {
+  std::vector<std::vector<double>> sorted;
+  for (const MaskedScan& scan : scans) sorted.push_back(ranges_of(scan));
+  std::optional<RangeGate> found;
+  for (const double min_m : kLowest_m) {
+    for (const double max_m : kHighest_m) {
+      const RangeGate mask{min_m, max_m};
+      bool fits = true;
+      bool same_points = true;
+      for (std::size_t i = 0; i < scans.size() && fits; ++i) {
+        const auto [first, end] = within(sorted[i], mask);
+        fits = end >= first && end - first == scans[i].labels;
+        same_points = same_points && found && within(sorted[i], *found) == std::pair{first, end};
+      }
+      if (!fits) continue;
+      if (found && !same_points) {
+        throw DataError(scans.front().file, "fits several range limits",
+                        "--format label-masked:MIN,MAX");
+      }
+      if (!found) found = mask;
+    }
+  }
+  if (found) return *found;
+  throw DataError(
+      scans.front().file,
+      fmt::format("has {} labels for {} points, and no common range limits leave that many",
+                  scans.front().labels, scans.front().points.size()),
+      "a label per point, or --format label-masked:MIN,MAX");
+}
+
+/// Returns one label per point: those given for the points within `mask`, static for the rest.
+std::vector<std::uint32_t> spread_over_scan(std::span<const std::uint32_t> labels,
+                                            std::span<const Point> points, const RangeGate& mask,
+                                            const fs::path& file) {
+  std::vector<std::uint32_t> spread(points.size(), kStaticLabel);
+  std::size_t used = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!mask.contains(range_m(points[i], Arithmetic::kDouble))) continue;
+    if (used < labels.size()) spread[i] = labels[used];
+    ++used;
+  }
+  if (used == labels.size()) return spread;
+  throw DataError(file, fmt::format("has {} labels", labels.size()),
+                  fmt::format("one for each of the {} points {}", used, gate_text(mask)));
 }
 
 constexpr std::size_t kScansToGuessFrom = 5;
@@ -256,56 +312,6 @@ void check_mapped(const std::vector<PredictedId>& ids, const LabelIdMap& map) {
 
 }  // namespace
 
-RangeGate find_mask(std::span<const MaskedScan> scans) {
-  std::vector<std::vector<double>> sorted;
-  for (const MaskedScan& scan : scans) sorted.push_back(ranges_of(scan));
-  std::optional<RangeGate> found;
-  for (const double min_m : kLowest_m) {
-    for (const double max_m : kHighest_m) {
-      const RangeGate mask{min_m, max_m};
-      bool fits = true;
-      bool same_points = true;
-      for (std::size_t i = 0; i < scans.size() && fits; ++i) {
-        const auto [first, end] = within(sorted[i], mask);
-        fits = end >= first && end - first == scans[i].labels;
-        same_points = same_points && found && within(sorted[i], *found) == std::pair{first, end};
-      }
-      if (!fits) continue;
-      if (found && !same_points) {
-        throw DataError(scans.front().file, "fits several range limits",
-                        "--format label-masked:MIN,MAX");
-      }
-      if (!found) found = mask;
-    }
-  }
-  if (found) return *found;
-  throw DataError(
-      scans.front().file,
-      fmt::format("has {} labels for {} points, and no common range limits leave that many",
-                  scans.front().labels, scans.front().points.size()),
-      "a label per point, or --format label-masked:MIN,MAX");
-}
-
-std::string mask_text(const RangeGate& mask) {
-  return mask.max_m <= 0.0 ? fmt::format("from {:g} m", mask.min_m)
-                           : fmt::format("{:g} to {:g} m", mask.min_m, mask.max_m);
-}
-
-std::vector<std::uint32_t> spread_over_scan(std::span<const std::uint32_t> labels,
-                                            std::span<const Point> points, const RangeGate& mask,
-                                            const std::filesystem::path& file) {
-  std::vector<std::uint32_t> spread(points.size(), kStaticLabel);
-  std::size_t used = 0;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (!mask.contains(range_m(points[i], Arithmetic::kDouble))) continue;
-    if (used < labels.size()) spread[i] = labels[used];
-    ++used;
-  }
-  if (used == labels.size()) return spread;
-  throw DataError(file, fmt::format("has {} labels", labels.size()),
-                  fmt::format("one for each of the {} points {}", used, mask_text(mask)));
-}
-
 std::unique_ptr<Predictions> open_scan_files(const PredictionPlace& place, const Sequence& sequence,
                                              const std::vector<std::size_t>& wanted,
                                              const PredictionOptions& options,
@@ -318,7 +324,7 @@ std::unique_ptr<Predictions> open_scan_files(const PredictionPlace& place, const
     const RangeGate mask =
         options.mask ? *options.mask : mask_of_sample(labels->files(), sequence, sample);
     labels->set_mask(mask);
-    remarks.push_back("labels are for points " + mask_text(mask) + " only; all others are static");
+    remarks.push_back("labels are for points " + gate_text(mask) + " only; all others are static");
   }
   const bool has_ids = describe(place.format).extension == ".label";
   std::vector<PredictedId> ids;

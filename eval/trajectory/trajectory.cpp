@@ -19,6 +19,14 @@ namespace {
 
 using NamedFiles = std::map<std::string, fs::path>;
 
+/// The poses of one sequence, map_from_sensor.
+struct PosePath {
+  std::string name;             ///< of the sequence, or the file's without extension
+  std::filesystem::path place;  ///< the file, or the data set
+  bool of_data_set = false;     ///< in the lidar's frame then, whatever its files hold
+  PoseList list;                ///< stamps also where those of the data set's scans increase
+};
+
 constexpr const char* kExpected =
     "a data set, a folder of mosbench run --odometry, or files .txt, .csv or .tum";
 
@@ -95,6 +103,22 @@ std::vector<PosePath> paths_of_data_set(const fs::path& root) {
   for (const auto& sequence : dataset.sequences) {
     paths.push_back(path_of_sequence(*sequence, root));
   }
+  return paths;
+}
+
+/// Reads the poses of a file; of a folder of `mosbench run --odometry`, which has poses.txt beside
+/// the results; of a data set's sequences; or of all files .txt, .csv and .tum in and below another
+/// folder. They are ordered by name, or as the data set orders its sequences. Poses of Dynablox's
+/// rollouts are inverted. Throws DataError if there are none, and for two files of one name.
+std::vector<PosePath> read_pose_paths(const fs::path& path, std::optional<PoseFormat> format) {
+  if (is_bag_file(path)) return paths_of_data_set(path);
+  if (!fs::is_directory(path)) return {path_of_file(path.stem().string(), path, format)};
+  NamedFiles files = files_of_runs(path);
+  if (files.empty() && is_data_set(path)) return paths_of_data_set(path);
+  if (files.empty()) files = files_below(path);
+  if (files.empty()) throw DataError(path, "holds no poses", kExpected);
+  std::vector<PosePath> paths;
+  for (const auto& [name, file] : files) paths.push_back(path_of_file(name, file, format));
   return paths;
 }
 
@@ -182,18 +206,6 @@ double mean_motion_error_m(const TrajectoryPair& pair, const std::vector<Pose>& 
 }
 
 }  // namespace
-
-std::vector<PosePath> read_pose_paths(const fs::path& path, std::optional<PoseFormat> format) {
-  if (is_bag_file(path)) return paths_of_data_set(path);
-  if (!fs::is_directory(path)) return {path_of_file(path.stem().string(), path, format)};
-  NamedFiles files = files_of_runs(path);
-  if (files.empty() && is_data_set(path)) return paths_of_data_set(path);
-  if (files.empty()) files = files_below(path);
-  if (files.empty()) throw DataError(path, "holds no poses", kExpected);
-  std::vector<PosePath> paths;
-  for (const auto& [name, file] : files) paths.push_back(path_of_file(name, file, format));
-  return paths;
-}
 
 std::vector<double> path_lengths_m(const std::vector<Pose>& poses) {
   std::vector<double> lengths_m(poses.size(), 0.0);

@@ -11,21 +11,6 @@
 
 namespace mosbench {
 
-/// The poses of one sequence, map_from_sensor.
-struct PosePath {
-  std::string name;             ///< of the sequence, or the file's without extension
-  std::filesystem::path place;  ///< the file, or the data set
-  bool of_data_set = false;     ///< in the lidar's frame then, whatever its files hold
-  PoseList list;                ///< stamps also where those of the data set's scans increase
-};
-
-/// Reads the poses of a file; of a folder of `mosbench run --odometry`, which has poses.txt beside
-/// the results; of a data set's sequences; or of all files .txt, .csv and .tum in and below another
-/// folder. They are ordered by name, or as the data set orders its sequences. Poses of Dynablox's
-/// rollouts are inverted. Throws DataError if there are none, and for two files of one name.
-std::vector<PosePath> read_pose_paths(const std::filesystem::path& path,
-                                      std::optional<PoseFormat> format);
-
 /// Which of the two files of a pair is in the frame of KITTI's camera, the other being the lidar's.
 enum class CameraFrame { kNeither, kEstimate, kTruth };
 
@@ -43,8 +28,8 @@ struct TrajectoryPair {
   std::vector<std::string> remarks;  ///< how poses were paired
 };
 
-/// The poses of two places, see `read_pose_paths`: one and one, whatever their names, else those of
-/// the same name, in the order of the estimates. Poses with stamps on both sides are paired by
+/// The poses of two places, `estimates` and `truths`: one and one, whatever their names, else those
+/// of the same name, in the order of the estimates. Poses with stamps on both sides are paired by
 /// time: for each of the shorter list the nearest of the longer one, if near enough. Otherwise row
 /// by row. Poses of the lidar are taken to the camera where the other file is the camera's. Throws
 /// DataError for an estimate without truth, another number of rows, and no common stamps;
