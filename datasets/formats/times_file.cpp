@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <charconv>
 #include <chrono>
 #include <limits>
@@ -69,44 +68,37 @@ std::optional<std::uint64_t> leading_number(const std::string& digits, std::int6
 constexpr std::int64_t kNsPerSecond = 1'000'000'000;
 constexpr std::size_t kMostDecimals = 9;
 
-/// Reads the digits at a place, which have to be `count`.
-std::optional<std::int64_t> digits_at(std::string_view text, std::size_t from, std::size_t count) {
-  const std::string_view digits = text.substr(std::min(from, text.size()), count);
-  if (digits.size() != count || !std::ranges::all_of(digits, is_digit)) return std::nullopt;
-  std::int64_t value = 0;
-  for (const char digit : digits) value = value * 10 + (digit - '0');
-  return value;
-}
-
 /// Reads "" or ".594360375" as nanoseconds.
 std::optional<std::int64_t> fraction_ns(std::string_view text) {
   if (text.empty()) return 0;
-  const std::size_t decimals = text.size() - 1;
-  if (text.front() != '.' || decimals == 0 || decimals > kMostDecimals) return std::nullopt;
-  auto value = digits_at(text, 1, decimals);
-  for (std::size_t i = decimals; value && i < kMostDecimals; ++i) *value *= 10;
-  return value;
+  const std::string_view decimals = text.substr(1);
+  if (text.front() != '.' || decimals.empty() || decimals.size() > kMostDecimals) {
+    return std::nullopt;
+  }
+  const auto value =
+      parse_unsigned(std::string(decimals) + std::string(kMostDecimals - decimals.size(), '0'));
+  return value ? std::optional(static_cast<std::int64_t>(*value)) : std::nullopt;
 }
 
 std::optional<std::int64_t> parse_stamp(std::string_view text) {
   constexpr std::string_view kForm = "0000-00-00 00:00:00";
   if (text.size() < kForm.size()) return std::nullopt;
   for (std::size_t i = 0; i < kForm.size(); ++i) {
-    if (kForm[i] != '0' && text[i] != kForm[i]) return std::nullopt;
+    if (kForm[i] == '0' ? !is_digit(text[i]) : text[i] != kForm[i]) return std::nullopt;
   }
-  const auto year = digits_at(text, 0, 4), month = digits_at(text, 5, 2),
-             day = digits_at(text, 8, 2);
-  const auto hour = digits_at(text, 11, 2), minute = digits_at(text, 14, 2);
-  const auto second = digits_at(text, 17, 2), ns = fraction_ns(text.substr(kForm.size()));
-  if (!year || !month || !day || !hour || !minute || !second || !ns) return std::nullopt;
-  const std::chrono::year_month_day date{std::chrono::year(static_cast<int>(*year)),
-                                         std::chrono::month(static_cast<unsigned>(*month)),
-                                         std::chrono::day(static_cast<unsigned>(*day))};
+  const auto at = [&](std::size_t from, std::size_t count) {
+    return static_cast<int>(parse_unsigned(text.substr(from, count)).value());
+  };
+  const int year = at(0, 4), hour = at(11, 2), minute = at(14, 2), second = at(17, 2);
+  const std::chrono::year_month_day date{std::chrono::year(year),
+                                         std::chrono::month(static_cast<unsigned>(at(5, 2))),
+                                         std::chrono::day(static_cast<unsigned>(at(8, 2)))};
+  const auto ns = fraction_ns(text.substr(kForm.size()));
   // Nanoseconds of 64 bits end in 2262.
-  const bool is_time = date.ok() && *hour < 24 && *minute < 60 && *second < 60 && *year < 2262;
-  if (!is_time || *year < 1970) return std::nullopt;
+  const bool is_time = ns && date.ok() && hour < 24 && minute < 60 && second < 60;
+  if (!is_time || year < 1970 || year >= 2262) return std::nullopt;
   const std::int64_t days = std::chrono::sys_days(date).time_since_epoch().count();
-  return (((days * 24 + *hour) * 60 + *minute) * 60 + *second) * kNsPerSecond + *ns;
+  return (((days * 24 + hour) * 60 + minute) * 60 + second) * kNsPerSecond + *ns;
 }
 
 std::string format_stamp(std::int64_t stamp_ns) {

@@ -150,12 +150,12 @@ std::unique_ptr<Sequence> with_point_times(std::unique_ptr<Sequence> sequence,
                                  option("point_times", "column")));
   }
   if (reading.point_times == PointTimes::kAzimuth) {
-    sequence = std::make_unique<AzimuthTimes>(std::move(sequence));
+    sequence = with_azimuth_times(std::move(sequence));
   }
   const Deskew by = reading.deskew.value_or(Deskew::kPoses);
   const bool has_times = reading.point_times || by == Deskew::kVelocity;
   if (reading.is_by_odometry() || !has_times) return sequence;
-  return std::make_unique<DeskewedSequence>(std::move(sequence), by);
+  return deskewed(std::move(sequence), by);
 }
 
 /// The file of a sequence's poses in a folder as `mosbench odometry` and `run --odometry` write it.
@@ -256,7 +256,7 @@ Dataset open_dataset(const std::filesystem::path& path, const OpenOptions& optio
     const Reading reading = reading_of(folder, options.reading);
     check_point_times(reading, layout, folder);
     std::unique_ptr<Sequence> sequence = layout.open(folder, reading);
-    if (reading.hdl64_correction) sequence = std::make_unique<Hdl64Corrected>(std::move(sequence));
+    if (reading.hdl64_correction) sequence = with_hdl64_correction(std::move(sequence));
     dataset.sequences.push_back(with_point_times(std::move(sequence), reading));
   }
   if (layout.splits != nullptr) {

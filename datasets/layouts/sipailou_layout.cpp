@@ -1,3 +1,4 @@
+#include "datasets/formats/point_range.hpp"
 #include "datasets/layouts/folder_search.hpp"
 #include "datasets/layouts/layout.hpp"
 

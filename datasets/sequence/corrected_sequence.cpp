@@ -48,6 +48,24 @@ std::int64_t median_interval_ns(const std::vector<ScanEntry>& scans) {
   return is_turn ? static_cast<std::int64_t>(median_ns) : kUsualTurn_ns;
 }
 
+/// A sequence whose frames are changed after they are read.
+class ChangedSequence : public SequenceAround {
+ public:
+  using Change = std::function<void(std::size_t scan_index, Frame& frame)>;
+  ChangedSequence(std::unique_ptr<Sequence> inner, Change change)
+      : SequenceAround(std::move(inner)), change_(std::move(change)) {}
+
+  using Sequence::mutable_recording;
+  using SequenceAround::read;
+  void read(std::size_t scan_index, Frame& frame) const override {
+    SequenceAround::read(scan_index, frame);
+    change_(scan_index, frame);
+  }
+
+ private:
+  Change change_;
+};
+
 }  // namespace
 
 bool undistort(std::span<Point> points, std::span<const std::int64_t> times_ns,
@@ -117,16 +135,6 @@ void ScanDeskewer::apply(std::size_t scan_index, Frame& frame) const {
   frame.point_times_ns.clear();
 }
 
-DeskewedSequence::DeskewedSequence(std::unique_ptr<Sequence> inner, Deskew by)
-    : SequenceAround(std::move(inner)), deskewer_(by, recording().scans) {
-  mutable_recording().reading.deskew = by;
-}
-
-void DeskewedSequence::read(std::size_t scan_index, Frame& frame) const {
-  SequenceAround::read(scan_index, frame);
-  deskewer_.apply(scan_index, frame);
-}
-
 PosedSequence::PosedSequence(std::unique_ptr<Sequence> inner, PosesDone how, Deskew deskew,
                              bool states_deskew)
     : SequenceAround(std::move(inner)), deskew_(deskew) {
@@ -162,19 +170,6 @@ std::vector<std::int64_t> azimuth_times_ns(std::span<const Point> points, std::i
   return times_ns;
 }
 
-AzimuthTimes::AzimuthTimes(std::unique_ptr<Sequence> inner)
-    : SequenceAround(std::move(inner)), turn_ns_(median_interval_ns(recording().scans)) {
-  const std::string how =
-      fmt::format("by azimuth, a turn in {:g} s", static_cast<double>(turn_ns_) * 1e-9);
-  mutable_recording().reading.point_times = how;
-  mutable_recording().remarks.push_back("times of points " + how);
-}
-
-void AzimuthTimes::read(std::size_t scan_index, Frame& frame) const {
-  SequenceAround::read(scan_index, frame);
-  frame.point_times_ns = azimuth_times_ns(frame.points, turn_ns_);
-}
-
 Point raised_by_hdl64_correction(const Point& point) {
   constexpr double kRadPerDeg = 3.14159265358979323846 / 180.0;
   static const SinCos raise = sin_cos(0.205 * kRadPerDeg);
@@ -186,13 +181,34 @@ Point raised_by_hdl64_correction(const Point& point) {
           static_cast<float>(z * raise.cos + across_m * raise.sin), point.intensity};
 }
 
-Hdl64Corrected::Hdl64Corrected(std::unique_ptr<Sequence> inner) : SequenceAround(std::move(inner)) {
-  mutable_recording().reading.hdl64_correction = true;
+std::unique_ptr<Sequence> deskewed(std::unique_ptr<Sequence> inner, Deskew by) {
+  const ScanDeskewer deskewer(by, inner->recording().scans);
+  auto changed = std::make_unique<ChangedSequence>(
+      std::move(inner),
+      [deskewer](std::size_t scan_index, Frame& frame) { deskewer.apply(scan_index, frame); });
+  changed->mutable_recording().reading.deskew = by;
+  return changed;
 }
 
-void Hdl64Corrected::read(std::size_t scan_index, Frame& frame) const {
-  inner().read(scan_index, frame);
-  for (Point& point : frame.points) point = raised_by_hdl64_correction(point);
+std::unique_ptr<Sequence> with_azimuth_times(std::unique_ptr<Sequence> inner) {
+  const std::int64_t turn_ns = median_interval_ns(inner->recording().scans);
+  auto changed =
+      std::make_unique<ChangedSequence>(std::move(inner), [turn_ns](std::size_t, Frame& frame) {
+        frame.point_times_ns = azimuth_times_ns(frame.points, turn_ns);
+      });
+  const std::string how =
+      fmt::format("by azimuth, a turn in {:g} s", static_cast<double>(turn_ns) * 1e-9);
+  changed->mutable_recording().reading.point_times = how;
+  changed->mutable_recording().remarks.push_back("times of points " + how);
+  return changed;
+}
+
+std::unique_ptr<Sequence> with_hdl64_correction(std::unique_ptr<Sequence> inner) {
+  auto changed = std::make_unique<ChangedSequence>(std::move(inner), [](std::size_t, Frame& frame) {
+    for (Point& point : frame.points) point = raised_by_hdl64_correction(point);
+  });
+  changed->mutable_recording().reading.hdl64_correction = true;
+  return changed;
 }
 
 }  // namespace mosbench

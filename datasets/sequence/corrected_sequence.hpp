@@ -50,18 +50,6 @@ class ScanDeskewer {
   PoseTrack track_;
 };
 
-/// A sequence whose scans are deskewed by its own poses.
-class DeskewedSequence : public SequenceAround {
- public:
-  DeskewedSequence(std::unique_ptr<Sequence> inner, Deskew by);
-
-  using SequenceAround::read;
-  void read(std::size_t scan_index, Frame& frame) const override;
-
- private:
-  ScanDeskewer deskewer_;
-};
-
 /// A sequence opened with `Reading::poses of ByOdometry` whose poses are found later. Scans
 /// whose points have times are undistorted by the poses.
 class PosedSequence : public SequenceAround {
@@ -91,30 +79,17 @@ class PosedSequence : public SequenceAround {
 /// that of KITTI does. In steps of a 10,000th of a turn; 0 for points that have no direction.
 std::vector<std::int64_t> azimuth_times_ns(std::span<const Point> points, std::int64_t turn_ns);
 
-/// A sequence whose points get the times of their azimuths. A turn takes as long as scans are
-/// apart: the median of the stamps' intervals, or 0.1 s.
-class AzimuthTimes : public SequenceAround {
- public:
-  explicit AzimuthTimes(std::unique_ptr<Sequence> inner);
-
-  using SequenceAround::read;
-  void read(std::size_t scan_index, Frame& frame) const override;
-
- private:
-  std::int64_t turn_ns_;
-};
-
 /// Returns the point raised by 0.205 degrees in the upright plane of its ray: KITTI's calibration
 /// of its HDL-64E misses that angle (Deschaud, IMLS-SLAM, ICRA 2018; CT-ICP and KISS-ICP do the
 /// same). A point on the z axis, a missing return among them, stays.
 Point raised_by_hdl64_correction(const Point& point);
 
-/// A sequence whose points are raised so.
-class Hdl64Corrected : public SequenceAround {
- public:
-  explicit Hdl64Corrected(std::unique_ptr<Sequence> inner);
-  using Sequence::read;
-  void read(std::size_t scan_index, Frame& frame) const override;
-};
+/// Return a sequence whose scans are changed after they are read, which its recording says:
+/// deskewed by its own poses; with the times of their points' azimuths, where a turn takes as long
+/// as scans are apart (the median of the stamps' intervals, or 0.1 s); with points raised by
+/// `raised_by_hdl64_correction`.
+std::unique_ptr<Sequence> deskewed(std::unique_ptr<Sequence> inner, Deskew by);
+std::unique_ptr<Sequence> with_azimuth_times(std::unique_ptr<Sequence> inner);
+std::unique_ptr<Sequence> with_hdl64_correction(std::unique_ptr<Sequence> inner);
 
 }  // namespace mosbench
