@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "eval/job/job_words.hpp"
+#include "eval/job/job.hpp"
 
 // Flags that several commands have, and what adds one.
 

@@ -16,8 +16,8 @@
 #include "eval/cli/output_file.hpp"
 #include "eval/engine/run_plan.hpp"
 #include "eval/result/machine.hpp"
+#include "eval/result/result.hpp"
 #include "eval/result/result_json.hpp"
-#include "eval/result/result_set.hpp"
 #include "eval/result/settings_json.hpp"
 #include "eval/result/tell.hpp"
 

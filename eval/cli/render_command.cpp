@@ -22,7 +22,7 @@
 #include "eval/report/result_boxes.hpp"
 #include "eval/report/scan_choice.hpp"
 #include "eval/report/scan_picture.hpp"
-#include "eval/result/result_set.hpp"
+#include "eval/result/result.hpp"
 #include "eval/result/tell.hpp"
 
 namespace mosbench {

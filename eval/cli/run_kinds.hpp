@@ -8,7 +8,7 @@
 
 #include "eval/answer/answer.hpp"
 #include "eval/engine/run_plan.hpp"
-#include "eval/job/job_words.hpp"
+#include "eval/job/job.hpp"
 
 // What `mosbench run` is given: data, a file that names methods and data, or a published table.
 

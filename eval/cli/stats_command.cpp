@@ -16,9 +16,9 @@
 #include "eval/job/method_choice.hpp"
 #include "eval/protocols/protocol.hpp"
 #include "eval/report/score_curve.hpp"
+#include "eval/result/result.hpp"
 #include "eval/result/result_file.hpp"
 #include "eval/result/result_scans.hpp"
-#include "eval/result/result_set.hpp"
 #include "eval/statistics/statistics_report.hpp"
 
 namespace mosbench {

@@ -14,8 +14,8 @@
 #include "datasets/text/text.hpp"
 #include "eval/exec/exec_method.hpp"
 #include "eval/result/machine.hpp"
+#include "eval/result/result.hpp"
 #include "eval/result/result_file.hpp"
-#include "eval/result/result_set.hpp"
 #include "eval/result/tell.hpp"
 
 namespace mosbench {

@@ -20,7 +20,7 @@
 #include "eval/exec/child_process.hpp"
 #include "eval/exec/pipe_messages.hpp"
 #include "eval/result/machine.hpp"
-#include "eval/result/point_files.hpp"
+#include "eval/result/result_scans.hpp"
 #include "eval/result/tell.hpp"
 
 namespace mosbench {

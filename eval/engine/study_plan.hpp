@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "eval/job/study_cells.hpp"
-#include "eval/result/result_set.hpp"
+#include "eval/result/result.hpp"
 
 namespace mosbench {
 

@@ -14,7 +14,7 @@
 #include "datasets/simulator/simulated_sequence.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
-#include "eval/job/job_words.hpp"
+#include "eval/job/job.hpp"
 #include "eval/job/method_choice.hpp"
 #include "eval/job/yaml_node.hpp"
 #include "eval/result/reading_json.hpp"

@@ -6,8 +6,8 @@
 #include "eval/protocols/metrics.hpp"
 #include "eval/python/arrays.hpp"
 #include "eval/python/bindings.hpp"
+#include "eval/result/result.hpp"
 #include "eval/result/result_json.hpp"
-#include "eval/result/result_set.hpp"
 
 namespace mosbench::python {
 namespace {

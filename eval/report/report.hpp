@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "eval/report/scan_choice.hpp"
+#include "eval/result/result.hpp"
 #include "eval/result/result_scans.hpp"
-#include "eval/result/result_set.hpp"
 
 namespace mosbench {
 

@@ -7,7 +7,7 @@
 #include "datasets/text/text.hpp"
 #include "eval/report/point_planes.hpp"
 #include "eval/report/report.hpp"
-#include "eval/result/point_files.hpp"
+#include "eval/result/result_scans.hpp"
 #include "eval/result/tell.hpp"
 
 namespace mosbench {

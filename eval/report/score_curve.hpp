@@ -10,8 +10,8 @@
 
 #include "eval/answer/answer.hpp"
 #include "eval/protocols/confusion.hpp"
+#include "eval/result/result.hpp"
 #include "eval/result/result_scans.hpp"
-#include "eval/result/result_set.hpp"
 
 namespace mosbench {
 

@@ -3,10 +3,112 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <iterator>
 
+#include "datasets/disk/folder_listing.hpp"
 #include "datasets/formats/label_file.hpp"
+#include "datasets/text/errors.hpp"
+#include "datasets/text/text.hpp"
+#include "eval/result/result_file.hpp"
+#include "eval/result/result_json.hpp"
 
 namespace mosbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Objects stay in view for so many scans, 3 s at 10 Hz. A measured cell of DOALS holds scans that
+/// are 72 to 200 scans apart.
+constexpr double kInViewScans = 30.0;
+/// Longer numbers are stamps in nanoseconds.
+constexpr std::uint64_t kLargestScanNumber = 1'000'000'000'000;
+constexpr double kNsPerScan = 1e8;
+
+double number_difference(const std::string& earlier, const std::string& later) {
+  const auto from = stem_number(earlier), to = stem_number(later);
+  if (!from || !to || *to < *from) return 0.0;
+  const auto difference = static_cast<double>(*to - *from);
+  return *from > kLargestScanNumber ? difference / kNsPerScan : difference;
+}
+
+bool same_run(const Result& a, const Result& b) {
+  return a.dataset == b.dataset && a.method == b.method && a.setting == b.setting &&
+         a.protocol == b.protocol && a.range == b.range && a.from.odometry == b.from.odometry &&
+         a.settings == b.settings && disturbance_of(a) == disturbance_of(b);
+}
+
+void add_to_runs(Result result, std::vector<ResultSet>& sets, const fs::path& path) {
+  const auto set = std::ranges::find_if(
+      sets, [&](const ResultSet& known) { return same_run(known.front(), result); });
+  if (set == sets.end()) {
+    sets.push_back({path, {std::move(result)}});
+    return;
+  }
+  const auto twin = std::ranges::find(set->sequences, result.sequence, &Result::sequence);
+  if (twin != set->sequences.end()) {
+    throw DataError(result.file,
+                    "scores sequence " + result.sequence.text() + " like " + twin->file.string(),
+                    "one result per sequence of a run");
+  }
+  set->sequences.push_back(std::move(result));
+}
+
+/// Whether two runs have the same sequence.
+bool has_twins(const std::vector<ResultSet>& runs) {
+  std::set<SequenceName> names;
+  for (const ResultSet& run : runs) {
+    for (const Result& sequence : run.sequences) {
+      if (!names.insert(sequence.sequence).second) return true;
+    }
+  }
+  return false;
+}
+
+/// One run of several, as jobs of a cluster leave a folder each.
+ResultSet joined(std::vector<ResultSet> runs) {
+  ResultSet whole = std::move(runs.front());
+  for (std::size_t i = 1; i < runs.size(); ++i) {
+    std::ranges::move(runs[i].sequences, std::back_inserter(whole.sequences));
+  }
+  std::ranges::sort(whole.sequences, {}, &Result::sequence);
+  return whole;
+}
+
+/// Runs that have sequences in common: those of one simulation are one, others stay as they are.
+std::vector<ResultSet> joined_by_simulation(std::vector<ResultSet> runs) {
+  std::map<std::string, std::vector<ResultSet>> of_simulation;
+  for (ResultSet& run : runs) of_simulation[simulation_of(run.front())].push_back(std::move(run));
+  std::vector<ResultSet> all;
+  for (auto& [simulation, same] : of_simulation) {
+    if (!simulation.empty() && !has_twins(same)) same = {joined(std::move(same))};
+    std::ranges::move(same, std::back_inserter(all));
+  }
+  return all;
+}
+
+/// The folders to give instead of the one that holds them all: ": one of a, b"; nothing where runs
+/// share a folder.
+std::string folders_text(const std::vector<ResultSet>& sets) {
+  std::set<std::string> folders;
+  for (const ResultSet& set : sets) {
+    folders.insert(folder_of_run(set.front().folder(), set.front().sequence).string());
+  }
+  return folders.size() < sets.size() ? "" : fmt::format(": one of {}", fmt::join(folders, ", "));
+}
+
+/// Names the file and what tells its run from others.
+std::string run_text(const Result& result) {
+  return fmt::format("{} ({}; {}; {})", result.file.string(), result.method, result.setting,
+                     result.protocol->name);
+}
+
+std::string words_of(const SimulatedOrigin& origin) {
+  return fmt::format("scene {}, seed {}{}", origin.scene, origin.seed,
+                     origin.perturb ? ", disturbed by " + *origin.perturb : "");
+}
+
+}  // namespace
 
 bool are_labels_of(const ScanRow& row, std::span<const std::uint32_t> labels) {
   if (row.label_hash) return hash_of_labels(labels) == row.label_hash;
@@ -74,6 +176,169 @@ SequenceCounts counts_of(const Result& result) {
   SequenceCounts counts;
   for (const ScanRow* row : counted_scans(result)) counts.push_back(*row->counts);
   return counts;
+}
+
+std::vector<ResultSet> sorted_into_runs(std::vector<Result> results, const fs::path& path) {
+  std::vector<ResultSet> sets;
+  for (Result& result : results) add_to_runs(std::move(result), sets, path);
+  for (ResultSet& set : sets) std::ranges::sort(set.sequences, {}, &Result::sequence);
+  return sets;
+}
+
+std::vector<ResultSet> load_result_sets(const fs::path& path) {
+  return sorted_into_runs(read_results(path), path);
+}
+
+std::vector<ResultSet> load_runs_of_folders(const fs::path& path) {
+  std::map<fs::path, std::vector<Result>> places;
+  for (Result& result : read_results(path)) {
+    const fs::path folder = folder_of_run(result.folder(), result.sequence);
+    places[folder].push_back(std::move(result));
+  }
+  std::vector<std::vector<ResultSet>> of_setting;
+  for (auto& [folder, results] : places) {
+    for (ResultSet& run : sorted_into_runs(std::move(results), path)) {
+      const auto known = std::ranges::find_if(of_setting, [&](const auto& runs) {
+        return same_run(runs.front().front(), run.front());
+      });
+      auto& runs = known == of_setting.end() ? of_setting.emplace_back() : *known;
+      runs.push_back(std::move(run));
+    }
+  }
+  std::vector<ResultSet> all;
+  for (std::vector<ResultSet>& runs : of_setting) {
+    runs = has_twins(runs) ? joined_by_simulation(std::move(runs))
+                           : std::vector{joined(std::move(runs))};
+    std::ranges::move(runs, std::back_inserter(all));
+  }
+  return all;
+}
+
+ResultSet load_result_set(const fs::path& path) {
+  std::vector<ResultSet> sets = load_result_sets(path);
+  if (sets.size() == 1) return std::move(sets.front());
+  throw DataError(path,
+                  fmt::format("holds {} runs: {} differs from {}", sets.size(),
+                              run_text(sets[1].front()), run_text(sets[0].front())),
+                  "the results of one run" + folders_text(sets));
+}
+
+fs::path folder_of_run(const fs::path& result_folder, const SequenceName& sequence) {
+  fs::path run = result_folder;
+  fs::path rest = sequence.folder();
+  while (!rest.empty() && run.filename() == rest.filename()) {
+    run = run.parent_path();
+    rest = rest.parent_path();
+  }
+  return rest.empty() && run.has_filename() ? run : result_folder;
+}
+
+std::size_t missing_predictions(const ResultSet& set) {
+  std::size_t missing = 0;
+  for (const Result& sequence : set.sequences) missing += sequence.missing_predictions();
+  return missing;
+}
+
+std::string incomplete_warning(std::size_t missing_predictions) {
+  return fmt::format("INCOMPLETE: {} not counted",
+                     counted(missing_predictions, "scan without usable prediction is",
+                             "scans without usable prediction are"));
+}
+
+std::string split_warning(const std::string& split) {
+  return fmt::format(
+      "only the scans of split {}: not the protocol's number, which is over all labelled scans",
+      split);
+}
+
+std::vector<std::string> warnings(const ResultSet& set) {
+  std::vector<std::string> texts;
+  if (const std::size_t missing = missing_predictions(set); missing > 0) {
+    texts.push_back(incomplete_warning(missing));
+  }
+  for (const Result& sequence : set.sequences) {
+    const std::optional<std::string> split = only_split(sequence);
+    if (!split) continue;
+    texts.push_back(split_warning(*split));
+    break;
+  }
+  return texts;
+}
+
+Standing standing_of(const ResultSet& set) {
+  Standing standing{.doubts = warnings(set)};
+  for (const Result& sequence : set.sequences) {
+    const std::optional<SimulatedOrigin>& origin = sequence.from.simulated;
+    if (!origin) continue;
+    standing.simulated = true;
+    if (!standing.origin.empty()) continue;
+    standing.origin = fmt::format("scene {}, seed {}", origin->scene, origin->seed);
+  }
+  return standing;
+}
+
+Standing standing_of(const ResultSet& first, const char* first_name, const ResultSet& second,
+                     const char* second_name) {
+  Standing both{standing_of(first).simulated || standing_of(second).simulated};
+  for (const auto& [set, name] : {std::pair{&first, first_name}, std::pair{&second, second_name}}) {
+    for (const std::string& doubt : warnings(*set)) {
+      both.doubts.push_back(fmt::format("{}: {}", name, doubt));
+    }
+  }
+  return both;
+}
+
+std::vector<SequenceCounts> counts_of(std::span<const Result> sequences) {
+  std::vector<SequenceCounts> counts;
+  for (const Result& result : sequences) counts.push_back(counts_of(result));
+  return counts;
+}
+
+ScanGaps& ScanGaps::operator+=(const ScanGaps& other) {
+  neighbours += other.neighbours;
+  shared += other.shared;
+  return *this;
+}
+
+ScanGaps gaps_of(const Result& result) {
+  ScanGaps gaps;
+  const std::vector<const ScanRow*> scans = counted_scans(result);
+  for (std::size_t k = 1; k < scans.size(); ++k) {
+    // Scans that have no row lie between others by their names only.
+    const double apart_scans = std::max(static_cast<double>(scans[k] - scans[k - 1]),
+                                        number_difference(scans[k - 1]->stem, scans[k]->stem));
+    gaps += {1.0, std::exp(-apart_scans / kInViewScans)};
+  }
+  return gaps;
+}
+
+std::string simulated_notice(const SimulatedOrigin& origin) {
+  return fmt::format("simulated data ({}): not comparable with published numbers",
+                     words_of(origin));
+}
+
+std::optional<SimulatedOrigin> origin_of(const Dataset& dataset, const Sequence& sequence) {
+  if (auto origin = simulated_origin(dataset.root)) return origin;
+  if (const auto scan = sequence.scan_file(0)) return simulated_origin(*scan);
+  const std::vector<std::filesystem::path>& files = sequence.recording().files;
+  return files.empty() ? std::nullopt : simulated_origin(files.front());
+}
+
+std::optional<SimulatedOrigin> origin_of(const Dataset& dataset) {
+  for (const std::unique_ptr<Sequence>& sequence : dataset.sequences) {
+    if (auto origin = origin_of(dataset, *sequence)) return origin;
+  }
+  return std::nullopt;
+}
+
+std::optional<nlohmann::ordered_json> simulated_origin_json(const Dataset& dataset) {
+  const std::optional<SimulatedOrigin> origin = origin_of(dataset);
+  return origin ? std::optional(to_json(*origin)) : std::nullopt;
+}
+
+Standing standing_of(const Dataset& dataset) {
+  const std::optional<SimulatedOrigin> origin = origin_of(dataset);
+  return origin ? Standing{true, words_of(*origin)} : Standing{};
 }
 
 }  // namespace mosbench

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <sstream>
 #include <string>
 #include <system_error>
 
@@ -10,6 +11,7 @@
 #include "datasets/sequence/recording.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/json_text.hpp"
+#include "eval/result/reading_json.hpp"
 #include "eval/result/result_json.hpp"
 
 namespace mosbench {
@@ -65,6 +67,96 @@ bool is_passed_over(const std::filesystem::path& folder) {
   return leftover && !holds_own_result(folder);
 }
 
+/// Format 1 knew one method.
+void upgrade_method(ordered_json& content) {
+  if (!content.contains("config") || content.contains("method")) return;
+  ordered_json config = {{"variant", content.at("variant")}};
+  config.update(content.at("config"));
+  // In the order of the settings, by which configs are compared.
+  const int distance_field_scans = config.value("distance_field_scans", 2);
+  config.erase("distance_field_scans");
+  if (!config.contains("dynamic_window_scans")) config["dynamic_window_scans"] = 100;
+  config["distance_field_scans"] = distance_field_scans;
+  content["method"] = {{"name", "HMM-MOS"}, {"kind", "hmm-mos"}};
+  content["config"] = std::move(config);
+}
+
+/// Moves a member from one object to another, where there is one.
+void move_member(ordered_json& from, const char* key, ordered_json& to, const char* new_key) {
+  if (!from.contains(key)) return;
+  ordered_json value = std::move(from.at(key));
+  from.erase(key);
+  to[new_key] = std::move(value);
+}
+
+/// Splits "voxel_size_m=0.5 deskew=none", as format 2 states the settings of odometry.
+ordered_json settings_in(const std::string& text) {
+  ordered_json settings = ordered_json::object();
+  std::istringstream words(text);
+  for (std::string word; words >> word;) {
+    const std::size_t equals = std::min(word.find('='), word.size() - 1);
+    const std::string value = word.substr(equals + 1);
+    const ordered_json number = ordered_json::parse(value, nullptr, false);
+    settings[word.substr(0, equals)] = number.is_number() ? number : ordered_json(value);
+  }
+  return settings;
+}
+
+void upgrade_odometry(ordered_json& content) {
+  const ordered_json reading = content.value("reading", ordered_json::object());
+  if (!reading.contains("pose_odometry")) return;
+  content["odometry"] = {{"name", reading.value("poses", "")},
+                         {"settings", settings_in(reading.at("pose_odometry"))},
+                         {"map", reading.value("pose_map", "")}};
+}
+
+/// What format 2 kept in "timing" or "source", beside the flags of reading.
+void upgrade_places(ordered_json& content) {
+  const bool is_scored = content.contains("source");
+  if (!is_scored && !content.contains("timing")) return;
+  ordered_json& old = content.at(is_scored ? "source" : "timing");
+  ordered_json places = ordered_json::object();
+  for (const char* key : {"dataset_root", "file_stamp", "sequences_of_run"}) {
+    move_member(old, key, places, key);
+  }
+  places["reading"] = told_json(told_from_json(old));
+  if (is_scored) {
+    ordered_json& source = places["predictions"] = ordered_json::object();
+    move_member(old, "predictions", source, "path");
+    for (const char* key : {"format", "level", "mask_m", "id_map"}) {
+      move_member(old, key, source, key);
+    }
+  }
+  content["places"] = std::move(places);
+}
+
+void upgrade_to_provenance(ordered_json& content) {
+  ordered_json from = content.value("code", ordered_json::object());
+  for (const char* key : {"machine", "fingerprint", "fingerprint_without_poses", "simulated"}) {
+    move_member(content, key, from, key);
+  }
+  content["provenance"] = std::move(from);
+  move_member(content, "config", content, "settings");
+  upgrade_odometry(content);
+  upgrade_places(content);
+}
+
+/// Returns the content of a result.json of any format as one of kResultFormat. Throws DataError for
+/// a format that is newer than this program, nlohmann's exceptions for what is no result.
+ordered_json in_present_format(ordered_json content, const std::filesystem::path& file) {
+  const ordered_json stated =
+      content.is_object() ? content.value("format", ordered_json(1U)) : ordered_json(1U);
+  const auto format = stated.is_number_unsigned() ? stated.get<std::uint64_t>() : 0;
+  if (format < 1 || format > kResultFormat) {
+    throw DataError(file, fmt::format("has format {}", stated.dump()),
+                    fmt::format("a whole number from 1 to {}{}", kResultFormat,
+                                format > 0 ? "; a newer mosbench wrote it" : ""));
+  }
+  if (format < 2) upgrade_method(content);
+  if (format < 3) upgrade_to_provenance(content);
+  return content;
+}
+
 }  // namespace
 
 std::string format_result(const Result& result) {
@@ -94,7 +186,17 @@ std::vector<std::filesystem::path> find_result_files(const std::filesystem::path
 }
 
 Result read_result(const std::filesystem::path& file) {
-  return result_from_json(parse_json(read_file(file), file), file);
+  ordered_json content = parse_json(read_file(file), file);
+  try {
+    const bool is_first = content.is_object() && !content.contains("format");
+    Result result = result_from_json(in_present_format(std::move(content), file), file);
+    result.has_whole_scores = is_first;
+    return result;
+  } catch (const ordered_json::exception& error) {
+    throw DataError(file, error.what(), "a result.json of mosbench");
+  } catch (const UsageError& error) {
+    throw DataError(file, error.what(), "a result.json of this mosbench");
+  }
 }
 
 std::vector<Result> read_results(const std::filesystem::path& path) {

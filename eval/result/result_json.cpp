@@ -10,7 +10,7 @@
 #include "eval/answer/answer_text.hpp"
 #include "eval/protocols/metrics.hpp"
 #include "eval/result/reading_json.hpp"
-#include "eval/result/result_set.hpp"
+#include "eval/result/result.hpp"
 
 namespace mosbench {
 namespace {
@@ -246,32 +246,6 @@ void check_summary(const ordered_json& content, const Result& result) {
   }
 }
 
-Result from_present_format(const ordered_json& content, const std::filesystem::path& file) {
-  Result result;
-  result.file = file;
-  result.key = content.value("key", "");
-  result.sequence = SequenceName(content.at("sequence"), file);
-  result.dataset = content.at("dataset");
-  read_method(content, result);
-  read_protocol(content, result);
-  const ordered_json reading = content.value("reading", ordered_json::object());
-  for (const auto& [what, how] : reading.items()) {
-    result.from.reading.emplace_back(what, how.get<std::string>());
-  }
-  std::vector<std::string> stems;  // none in scores of others' labels
-  visit_findings(result, stems, taking_from(content));
-  const std::set<std::string> unjudged(stems.begin(), stems.end());
-  for (const ordered_json& json : content.at("scans")) {
-    ScanRow& row = result.scans.emplace_back(row_from_json(json, file));
-    row.judged = !unjudged.contains(row.stem);
-  }
-  check_summary(content, result);
-  // Accepted results (baselines) and scores of others' labels come without a clock.
-  if (content.contains("timing")) result.timing = timing_from_json(content.at("timing"));
-  if (content.contains("places")) read(content.at("places"), result.places.emplace());
-  return result;
-}
-
 }  // namespace
 
 ordered_json to_json(const Machine& machine) { return written(machine); }
@@ -315,17 +289,30 @@ ordered_json to_json(const Result& result) {
   return json;
 }
 
-Result result_from_json(ordered_json content, const std::filesystem::path& file) {
-  try {
-    const bool is_first = content.is_object() && !content.contains("format");
-    Result result = from_present_format(in_present_format(std::move(content), file), file);
-    result.has_whole_scores = is_first;
-    return result;
-  } catch (const ordered_json::exception& error) {
-    throw DataError(file, error.what(), "a result.json of mosbench");
-  } catch (const UsageError& error) {
-    throw DataError(file, error.what(), "a result.json of this mosbench");
+Result result_from_json(const ordered_json& content, const std::filesystem::path& file) {
+  Result result;
+  result.file = file;
+  result.key = content.value("key", "");
+  result.sequence = SequenceName(content.at("sequence"), file);
+  result.dataset = content.at("dataset");
+  read_method(content, result);
+  read_protocol(content, result);
+  const ordered_json reading = content.value("reading", ordered_json::object());
+  for (const auto& [what, how] : reading.items()) {
+    result.from.reading.emplace_back(what, how.get<std::string>());
   }
+  std::vector<std::string> stems;  // none in scores of others' labels
+  visit_findings(result, stems, taking_from(content));
+  const std::set<std::string> unjudged(stems.begin(), stems.end());
+  for (const ordered_json& json : content.at("scans")) {
+    ScanRow& row = result.scans.emplace_back(row_from_json(json, file));
+    row.judged = !unjudged.contains(row.stem);
+  }
+  check_summary(content, result);
+  // Accepted results (baselines) and scores of others' labels come without a clock.
+  if (content.contains("timing")) result.timing = timing_from_json(content.at("timing"));
+  if (content.contains("places")) read(content.at("places"), result.places.emplace());
+  return result;
 }
 
 }  // namespace mosbench

@@ -30,12 +30,8 @@ nlohmann::ordered_json to_json(const Machine& machine);
 nlohmann::ordered_json to_json(const SimulatedOrigin& origin);
 nlohmann::ordered_json to_json(const ScoredPredictions& predictions);
 
-/// Returns the content of a result.json of any format as one of kResultFormat. Throws DataError for
-/// a format that is newer than this program, nlohmann's exceptions for what is no result.
-nlohmann::ordered_json in_present_format(nlohmann::ordered_json content,
-                                         const std::filesystem::path& file);
-
-/// Returns what a result.json of any format says. Throws DataError naming `file`.
-Result result_from_json(nlohmann::ordered_json content, const std::filesystem::path& file);
+/// Returns what a result.json of kResultFormat says. Throws DataError, UsageError and nlohmann's
+/// exceptions.
+Result result_from_json(const nlohmann::ordered_json& content, const std::filesystem::path& file);
 
 }  // namespace mosbench

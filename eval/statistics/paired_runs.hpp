@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "eval/result/result_set.hpp"
+#include "eval/result/result.hpp"
 #include "eval/statistics/intervals.hpp"
 
 namespace mosbench {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "eval/answer/answer.hpp"
-#include "eval/result/result_set.hpp"
+#include "eval/result/result.hpp"
 #include "eval/statistics/paired_runs.hpp"
 
 namespace mosbench {

@@ -13,7 +13,6 @@
 #include "datasets/disk/claim.hpp"
 #include "datasets/sequence/sequence.hpp"
 #include "eval/result/result.hpp"
-#include "eval/result/result_set.hpp"
 
 namespace mosbench {
 

@@ -10,9 +10,9 @@
 #include "eval/protocols/benchmark_split.hpp"
 #include "eval/protocols/metrics.hpp"
 #include "eval/protocols/protocol.hpp"
+#include "eval/result/result.hpp"
 #include "eval/result/result_file.hpp"
 #include "eval/result/result_json.hpp"
-#include "eval/result/result_set.hpp"
 #include "eval/result/version.hpp"
 
 namespace mosbench {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "eval/job/method_choice.hpp"
-#include "eval/result/result_set.hpp"
+#include "eval/result/result.hpp"
 #include "eval/statistics/intervals.hpp"
 #include "eval/tables/published.hpp"
 

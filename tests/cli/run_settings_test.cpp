@@ -7,7 +7,7 @@
 
 #include "datasets/text/errors.hpp"
 #include "eval/engine/run_plan.hpp"
-#include "eval/job/job_words.hpp"
+#include "eval/job/job.hpp"
 #include "eval/result/settings_json.hpp"
 #include "tests/cli/program.hpp"
 #include "tests/cli/small_sequence.hpp"

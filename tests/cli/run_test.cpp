@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "eval/result/point_files.hpp"
+#include "eval/result/result_scans.hpp"
 #include "tests/cli/program.hpp"
 #include "tests/cli/small_sequence.hpp"
 

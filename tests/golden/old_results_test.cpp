@@ -7,9 +7,9 @@
 
 #include "datasets/disk/files.hpp"
 #include "eval/protocols/metrics.hpp"
+#include "eval/result/result.hpp"
 #include "eval/result/result_file.hpp"
 #include "eval/result/result_json.hpp"
-#include "eval/result/result_set.hpp"
 #include "tests/cli/program.hpp"
 
 // tests/golden/old_results/README.md says how the files were made.

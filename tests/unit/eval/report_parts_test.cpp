@@ -9,7 +9,7 @@
 #include "eval/report/point_planes.hpp"
 #include "eval/report/report.hpp"
 #include "eval/report/scan_choice.hpp"
-#include "eval/result/point_files.hpp"
+#include "eval/result/result_scans.hpp"
 #include "tests/temp_folder.hpp"
 
 namespace mosbench {
