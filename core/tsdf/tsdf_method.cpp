@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "core/base/method_row.hpp"
-#include "core/base/push_order.hpp"
+#include "core/base/scan_method.hpp"
 #include "core/base/stage_clock.hpp"
 #include "core/tsdf/integration.hpp"
 #include "core/voxel/raycast.hpp"
@@ -25,18 +25,12 @@ VoxelGrid wide_grid_around(const Eigen::Vector3d& sensor_m, double voxel_size_m)
 }  // namespace
 
 TsdfMethod::TsdfMethod(const Config& config, const RunContext& context, Wants wants)
-    : config_(config),
-      context_(checked(context)),
-      wants_(wants),
-      order_(context.scan_count),
-      pool_(context.threads),
-      sensor_(configured_sensor(config)) {}
+    : ScanMethod(context), config_(config), wants_(wants), sensor_(configured_sensor(config)) {}
 
-std::unique_ptr<ObservedScan> TsdfMethod::observe_by(std::span<const Point> points,
-                                                     const Pose& pose, ThreadPool& pool) {
-  check_rigid(pose);
+std::unique_ptr<ObservedScan> TsdfMethod::see(std::span<const Point> points, const Pose& pose,
+                                              ThreadPool& pool) {
   auto current = std::make_unique<ObservedScan>();
-  const StageRecord record{current->stages, context_.cpu_times};
+  const StageRecord record{current->stages, context().cpu_times};
   const VoxelGrid around =
       grid_ ? *grid_ : wide_grid_around(pose.translation(), config_.voxel_size_m);
   current->map_from_sensor = pose;
@@ -44,13 +38,12 @@ std::unique_ptr<ObservedScan> TsdfMethod::observe_by(std::span<const Point> poin
     return voxelize(points, pose, around, wants_.nearest_m, config_.max_range_m, pool);
   });
   if (!grid_) grid_ = around;  // written once: the previous scan may be pushed meanwhile
-  timed(record, "range_image", [&] { see(points, *current, pool); });
+  timed(record, "range_image", [&] { cast(points, *current, pool); });
   if (wants_.points) current->points.assign(points.begin(), points.end());
-  order_.number(*current);
   return current;
 }
 
-void TsdfMethod::see(std::span<const Point> points, ObservedScan& observed, ThreadPool& pool) {
+void TsdfMethod::cast(std::span<const Point> points, ObservedScan& observed, ThreadPool& pool) {
   if (!sensor_) sensor_ = measured_sensor(points, config_);
   observed.sensor = sensor_;
   if (!sensor_) return;
@@ -65,18 +58,10 @@ void TsdfMethod::see(std::span<const Point> points, ObservedScan& observed, Thre
       ray_blocks(points, pixels, observed.map_from_sensor, limits, scratch_, pool);
 }
 
-std::unique_ptr<Observed> TsdfMethod::observe(std::span<const Point> points,
-                                              const Pose& map_from_sensor) {
-  // The other half of the threads pushes the previous scan.
-  if (!observing_pool_) observing_pool_.emplace(std::max(1U, pool_.size() / 2));
-  return observe_by(points, map_from_sensor, *observing_pool_);
-}
-
-std::vector<LabelledScan> TsdfMethod::push(std::unique_ptr<Observed> observed) {
+std::vector<LabelledScan> TsdfMethod::enter(ObservedScan& scan) {
   std::vector<LabelledScan> results(1);
   LabelledScan& result = results.front();
-  result.scan_index = order_.pushed();
-  auto& scan = order_.take<ObservedScan>(observed.get());
+  result.scan_index = k();
   result.nonfinite_points = scan.scan.nonfinite_points;
   result.stages = std::move(scan.stages);
   result.judged = true;
@@ -85,22 +70,11 @@ std::vector<LabelledScan> TsdfMethod::push(std::unique_ptr<Observed> observed) {
   return results;
 }
 
-std::vector<LabelledScan> TsdfMethod::push(std::span<const Point> points,
-                                           const Pose& map_from_sensor) {
-  order_.expect_scan();
-  return push(observe_by(points, map_from_sensor, pool_));
-}
-
-std::vector<LabelledScan> TsdfMethod::finish() {
-  order_.finish();
-  return {};
-}
-
 void TsdfMethod::integrate_scan(TsdfMap& map, std::span<const std::uint32_t> slots,
                                 const ObservedScan& observed) {
   if (!observed.sensor) return;
   integrate(map, slots, grid(), {observed.image, *observed.sensor, observed.map_from_sensor},
-            config_, pool_);
+            config_, pool());
 }
 
 std::optional<MemoryUse> TsdfMethod::memory() const {

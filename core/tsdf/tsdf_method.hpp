@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "core/base/push_order.hpp"
+#include "core/base/scan_method.hpp"
 #include "core/base/thread_pool.hpp"
 #include "core/tsdf/config.hpp"
 #include "core/tsdf/range_image.hpp"
@@ -30,13 +30,8 @@ struct ObservedScan final : NumberedScan {
 
 /// Base of methods that judge scans by a TsdfMap, online. Here scans are observed, and the sensor
 /// is measured unless it is configured; what a scan does to the map is the method's own.
-class TsdfMethod : public Method {
+class TsdfMethod : public ScanMethod<ObservedScan> {
  public:
-  std::unique_ptr<Observed> observe(std::span<const Point> points,
-                                    const Pose& map_from_sensor) final;
-  std::vector<LabelledScan> push(std::unique_ptr<Observed> observed) final;
-  std::vector<LabelledScan> push(std::span<const Point> points, const Pose& map_from_sensor) final;
-  std::vector<LabelledScan> finish() final;
   std::optional<MemoryUse> memory() const final;
   std::vector<std::string> remarks() const final;
 
@@ -50,8 +45,6 @@ class TsdfMethod : public Method {
   /// Throws std::invalid_argument for 0 threads.
   TsdfMethod(const Config& config, const RunContext& context, Wants wants);
 
-  const RunContext& context() const { return context_; }
-  ThreadPool& pool() { return pool_; }
   /// Known once a scan was observed: whole wide blocks of the map frame.
   const VoxelGrid& grid() const { return *grid_; }
   /// Integrates a scan into blocks that were touched for it; does nothing while the sensor is
@@ -65,17 +58,14 @@ class TsdfMethod : public Method {
   /// The map, and what the method keeps beside it.
   virtual MemoryUse map_memory() const = 0;
 
-  std::unique_ptr<ObservedScan> observe_by(std::span<const Point> points, const Pose& pose,
-                                           ThreadPool& pool);
-  void see(std::span<const Point> points, ObservedScan& observed, ThreadPool& pool);
+  std::unique_ptr<ObservedScan> see(std::span<const Point> points, const Pose& map_from_sensor,
+                                    ThreadPool& pool) final;
+  std::vector<LabelledScan> enter(ObservedScan& scan) final;
+  void cast(std::span<const Point> points, ObservedScan& observed, ThreadPool& pool);
 
   Config config_;
-  RunContext context_;
   Wants wants_;
-  PushOrder order_;
-  ThreadPool pool_;
-  std::optional<ThreadPool> observing_pool_;  // for scans observed during a push
-  std::optional<VoxelGrid> grid_;             // around the first scan
+  std::optional<VoxelGrid> grid_;  // around the first scan
   std::optional<SensorModel> sensor_;
   RayBlocksScratch scratch_;
 };

@@ -13,7 +13,7 @@
 
 #include "core/base/fields.hpp"
 #include "core/base/method_row.hpp"
-#include "core/base/sequential_method.hpp"
+#include "core/base/scan_method.hpp"
 #include "core/base/stage_clock.hpp"
 
 namespace mosbench::new_voxels {

@@ -117,7 +117,7 @@ class Includes(unittest.TestCase):
         for name, header in (("core/voxel/raycast.cpp", "core/methods/hmm_mos/hmm.hpp"),
                              ("core/odometry/kiss.cpp", "core/methods/hmm_mos/hmm.hpp"),
                              ("datasets/text/text.cpp", "eval/answer/render.hpp"),
-                             ("core/base/push_order.cpp", "datasets/disk/files.hpp")):
+                             ("core/base/scan_method.cpp", "datasets/disk/files.hpp")):
             self.assertIn("must not include", includes.complaint(name, '"', header) or "", (name, header))
 
     def test_core_neither_reads_nor_prints(self):

@@ -38,7 +38,7 @@ std::vector<LabelledScan> Pipeline::take(PosedScan& posed, LabelledScan result) 
   leave_out_far_points(posed.points, config_.max_range_m, scan);
   std::vector<LabelledScan> results;
   if (config_.when == When::kOnline && result.scan_index > 0) judge(scan, result);
-  enter(scan, record);
+  add_voids(scan, record);
   if (config_.when == When::kFinal) {
     held_.push_back({std::move(scan), std::move(result)});
   } else {
@@ -59,9 +59,9 @@ std::vector<LabelledScan> Pipeline::release() {
 }
 
 /// Adds what is void in a scan to the map.
-void Pipeline::enter(const VoxelizedScan& scan, const StageRecord& record) {
-  const SeenSpace seen =
-      timed(record, "raycast", [&] { return see(scan, *grid_, config_, scratch_, pool()); });
+void Pipeline::add_voids(const VoxelizedScan& scan, const StageRecord& record) {
+  const SeenSpace seen = timed(
+      record, "raycast", [&] { return dufomap::see(scan, *grid_, config_, scratch_, pool()); });
   const VoxelList voids = timed(record, "void", [&] {
     return new_voids(seen, ever_void_, config_.pose_error_voxels, pool());
   });

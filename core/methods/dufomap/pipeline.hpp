@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/base/sequential_method.hpp"
+#include "core/base/scan_method.hpp"
 #include "core/base/stage_clock.hpp"
 #include "core/methods/dufomap/config.hpp"
 #include "core/methods/dufomap/seen_space.hpp"
@@ -31,7 +31,7 @@ class Pipeline final : public SequentialMethod {
 
   std::vector<LabelledScan> take(PosedScan& scan, LabelledScan result) override;
   std::vector<LabelledScan> release() override;
-  void enter(const VoxelizedScan& scan, const StageRecord& record);
+  void add_voids(const VoxelizedScan& scan, const StageRecord& record);
   void judge(const VoxelizedScan& scan, LabelledScan& result) const;
   void forget(const VoxelizedScan& scan);
 

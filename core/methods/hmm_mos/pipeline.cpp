@@ -111,13 +111,11 @@ Detection Detector::detect(const VoxelizedScan& scan, VoxelMap& map, std::uint32
 Pipeline::Pipeline(const Config& config, const RunContext& context)
     : MappedMethod(checked(config), context), config_(config) {}
 
-std::vector<LabelledScan> Pipeline::entered(ObservedScan& current) {
-  const std::uint32_t k = mapping().k();
-  if (!detector_) detector_.emplace(config_, mapping().grid());
-  LabelledScan result = begun_result(current, k);
-  held_.push_back({std::move(current.scan), std::move(result)});
+std::vector<LabelledScan> Pipeline::entered(ObservedScan& current, LabelledScan begun) {
+  if (!detector_) detector_.emplace(config_, grid());
+  held_.push_back({std::move(current.scan), std::move(begun)});
 
-  const DueScans due = due_at(k, config_, context().scan_count);
+  const DueScans due = due_at(k(), config_, context().scan_count);
   if (due.none_yet) detector_->skip();
   if (due.oldest) judge(held_.front());
   if (due.newest) judge(held_.back());
@@ -128,8 +126,7 @@ std::vector<LabelledScan> Pipeline::entered(ObservedScan& current) {
 void Pipeline::judge(HeldScan& held) {
   LabelledScan& result = held.result;
   const StageRecord record{result.stages, context().cpu_times};
-  const Detection found =
-      detector_->detect(held.scan, mapping().map(), mapping().k(), mapping().pool(), record);
+  const Detection found = detector_->detect(held.scan, map(), k(), pool(), record);
   result.judged = true;
   result.threshold = found.threshold;
   const StageClock clock(record, "labels");

@@ -84,8 +84,8 @@ class Pipeline final : public MappedMethod {
     LabelledScan result;
   };
 
-  std::vector<LabelledScan> entered(ObservedScan& current) override;
-  std::vector<LabelledScan> release_all() override { return release(held_.size()); }
+  std::vector<LabelledScan> entered(ObservedScan& current, LabelledScan begun) override;
+  std::vector<LabelledScan> release() override { return release(held_.size()); }
   std::size_t held_bytes() const override;
   void judge(HeldScan& held);
   std::vector<LabelledScan> release(std::size_t count);

@@ -4,7 +4,7 @@
 #include <limits>
 #include <utility>
 
-#include "core/base/push_order.hpp"
+#include "core/base/scan_method.hpp"
 #include "core/methods/hmm_mos/pipeline.hpp"
 #include "core/methods/hmm_mos/reference_voxels.hpp"
 
@@ -20,14 +20,15 @@ struct Scan final : NumberedScan {
   LabelledScan result;
 };
 
-class Reference final : public Method {
+class Reference final : public ScanMethod<Scan> {
  public:
-  Reference(const Config& config, const RunContext& context)
-      : c_(config), context_(checked(context)), order_(context.scan_count) {}
+  Reference(const Config& config, const RunContext& context) : ScanMethod(context), c_(config) {}
 
+  std::vector<std::string> remarks() const override { return remarks_on_delay(c_, context()); }
+
+ private:
   /// P'_obs: voxels on the lines from the sensor to P'_M.
-  std::unique_ptr<Observed> observe(std::span<const Point> points, const Pose& t) override {
-    check_rigid(t);
+  std::unique_ptr<Scan> see(std::span<const Point> points, const Pose& t, ThreadPool&) override {
     auto scan = std::make_unique<Scan>();
     scan->sensor_m = t.translation();
     scan->voxels = voxels_of(points, t, c_.min_range_m, c_.voxel_size_m);
@@ -42,42 +43,33 @@ class Reference final : public Method {
         if (d_sq <= squared(c_.max_range_m)) scan->observed.insert(q);
       }
     }
-    order_.number(*scan);
     return scan;
   }
 
   /// Scan k enters M; scan k - n is judged.
-  using Method::push;
-  std::vector<LabelledScan> push(std::unique_ptr<Observed> observed) override {
-    auto* scan = &order_.take<Scan>(observed.get());
-    const int n = c_.delay_scans, scan_count = static_cast<int>(context_.scan_count.value_or(0));
-    scan->result.scan_index = static_cast<std::size_t>(++k_);
-    scan->result.labels.assign(scan->voxels.of_point.size(), kStaticLabel);
-    if (context_.scores) scan->result.scores.assign(scan->voxels.of_point.size(), 0);
-    SetOf sources = std::exchange(previous_measured_, scan->measured);
+  std::vector<LabelledScan> enter(Scan& scan) override {
+    const int n = c_.delay_scans, scan_count = static_cast<int>(context().scan_count.value_or(0));
+    scan.result.scan_index = static_cast<std::size_t>(++k_);
+    scan.result.labels.assign(scan.voxels.of_point.size(), kStaticLabel);
+    if (context().scores) scan.result.scores.assign(scan.voxels.of_point.size(), 0);
+    SetOf sources = std::exchange(previous_measured_, scan.measured);
     if (c_.distance_field_scans == 1) sources.clear();
-    sources.insert(scan->measured.begin(), scan->measured.end());
-    update_map(*scan, sources);
-    forget(scan->sensor_m);
-    held_.push_back(std::move(*scan));
+    sources.insert(scan.measured.begin(), scan.measured.end());
+    update_map(scan, sources);
+    forget(scan.sensor_m);
+    held_.push_back(std::move(scan));
     if (k_ <= c_.local_window_scans) {
       join_window({});
     } else if (n == 0 || k_ > n) {
       detect(held_.front());
       // The last n scans, but for the first of them, are judged online.
-      if (n > 0 && context_.scan_count && k_ + n > scan_count) detect(held_.back());
+      if (n > 0 && context().scan_count && k_ + n > scan_count) detect(held_.back());
     }
     return release(static_cast<std::size_t>(n));
   }
 
-  std::vector<LabelledScan> finish() override {
-    order_.finish();
-    return release(0);
-  }
+  std::vector<LabelledScan> release() override { return release(0); }
 
-  std::vector<std::string> remarks() const override { return remarks_on_delay(c_, context_); }
-
- private:
   /// x_k = eta B A x_{k-1} with B = diag(0, L, 1 - L), L = exp(-d^2 / (2 sigma_o^2)), d the
   /// distance to the nearest measured voxel (EDF). S = argmax x where max x > p_min; P'_chg where S
   /// changed.
@@ -196,7 +188,7 @@ class Reference final : public Method {
       const ScanVoxel* voxel = v ? find(scan.occupied, *v) : nullptr;
       if (voxel == nullptr) continue;
       if (moves(scan) && voxel->dynamic) scan.result.labels[i] = kMovingLabel;
-      if (context_.scores) scan.result.scores[i] = static_cast<float>(voxel->sum);
+      if (context().scores) scan.result.scores[i] = static_cast<float>(voxel->sum);
     }
   }
 
@@ -245,7 +237,6 @@ class Reference final : public Method {
   bool moves(const Scan& s) const { return s.result.threshold.value_or(0) > c_.min_otsu_score; }
 
   const Config c_;
-  const RunContext context_;
   const bool paper_ = c_.variant == Variant::kPaper2024;
   const int radius_ = (c_.kernel_width_voxels - 1) / 2;
   int k_ = -1;                     // the current scan
@@ -256,7 +247,6 @@ class Reference final : public Method {
   MapOf<RegionVoxel> region_;      // dynamic voxels of the last w_d scans
   double region_threshold_ = 0;
   std::deque<Scan> held_;  // the last n + 1 scans
-  PushOrder order_;
 };
 
 }  // namespace

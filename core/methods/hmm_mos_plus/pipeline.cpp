@@ -54,20 +54,19 @@ Pipeline::Pipeline(const Config& config, const RunContext& context)
       tracks_(config),
       look_back_(config),
       memory_(context.stamps_ns) {
-  mapping().tell(memory_);
+  tell(memory_);
 }
 
-RememberedMap Pipeline::remembered() { return {mapping().map(), memory_, mapping().k()}; }
+RememberedMap Pipeline::remembered() { return {map(), memory_, k()}; }
 
-std::vector<LabelledScan> Pipeline::entered(hmm_mos::ObservedScan& current) {
+std::vector<LabelledScan> Pipeline::entered(hmm_mos::ObservedScan& current, LabelledScan begun) {
   HeldScan& held = held_.emplace_back();
-  held.result = begun_result(current, mapping().k());
+  held.result = std::move(begun);
   held.scan = std::move(current.scan);
   held.tick = memory_.tick();
   const StageRecord record{held.result.stages, context().cpu_times};
-  held.classes = timed(record, "arrivals", [&] {
-    return classify(held.scan, remembered(), config_, mapping().pool());
-  });
+  held.classes =
+      timed(record, "arrivals", [&] { return classify(held.scan, remembered(), config_, pool()); });
   const auto n = static_cast<std::size_t>(config_.map.delay_scans);
   return held_.size() > n ? release(1) : std::vector<LabelledScan>{};
 }
@@ -80,16 +79,15 @@ void Pipeline::judge(HeldScan& held) {
   const ScanMasks arrived = context().scores ? held.classes.seeds : ScanMasks();
   if (config_.map.delay_scans > 0) {
     const StageClock clock(record, "departures");
-    add_departures(scan, remembered(), config_, mapping().pool(), held.classes);
+    add_departures(scan, remembered(), config_, pool(), held.classes);
   }
   const auto ground =
       timed(record, "ground", [&] { return std::make_shared<const Ground>(scan, config_); });
   LowVoxels low(scan, *ground);
   ArrivalClasses& classes = held.classes;
   if (predicts()) {
-    timed(record, "look_back", [&] {
-      look_back_.enter(scan, classes, ground, held.tick, remembered(), mapping().pool());
-    });
+    timed(record, "look_back",
+          [&] { look_back_.enter(scan, classes, ground, held.tick, remembered(), pool()); });
     const StageClock clock(record, "prediction");
     look_back_.add_seeds(scan, low, classes);
     tracks_.add_seeds(scan, low, held.tick, classes);
@@ -110,7 +108,7 @@ void Pipeline::judge(HeldScan& held) {
     result.reasons = reasons_of(scan, arrived, classes.seeds, other, motion);
   }
   result.threshold = config_.min_seed_share;
-  result.judged = mapping().k() > 0;  // the first scan has nothing to have arrived since
+  result.judged = k() > 0;  // the first scan has nothing to have arrived since
 }
 
 std::vector<LabelledScan> Pipeline::release(std::size_t count) {

@@ -30,8 +30,8 @@ class Pipeline final : public hmm_mos::MappedMethod {
     Tick tick;
   };
 
-  std::vector<LabelledScan> entered(hmm_mos::ObservedScan& current) override;
-  std::vector<LabelledScan> release_all() override { return release(held_.size()); }
+  std::vector<LabelledScan> entered(hmm_mos::ObservedScan& current, LabelledScan begun) override;
+  std::vector<LabelledScan> release() override { return release(held_.size()); }
   std::size_t held_bytes() const override;
   RememberedMap remembered();
   void judge(HeldScan& held);

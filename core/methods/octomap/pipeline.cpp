@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/base/sequential_method.hpp"
+#include "core/base/scan_method.hpp"
 #include "core/base/stage_clock.hpp"
 #include "core/methods/octomap/log_odds_map.hpp"
 

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "core/base/sequential_method.hpp"
+#include "core/base/scan_method.hpp"
 #include "core/methods/octomap/config.hpp"
 #include "core/voxel/exact_rays.hpp"
 #include "core/voxel/voxelize.hpp"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/base/fields.hpp"
-#include "core/base/sequential_method.hpp"
+#include "core/base/scan_method.hpp"
 #include "core/voxel/directions.hpp"
 
 namespace mosbench::underwood {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/base/sequential_method.hpp"
+#include "core/base/scan_method.hpp"
 #include "core/methods/yoon/config.hpp"
 #include "core/voxel/directions.hpp"
 

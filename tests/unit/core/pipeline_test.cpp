@@ -87,20 +87,6 @@ TEST(Pipeline, RefusesImpossibleSettings) {
   EXPECT_NO_THROW(Pipeline(of_variant(easily_moving(), Variant::kRelease2025)));
 }
 
-TEST(Pipeline, MovesWithItsState) {
-  const SmallWorld world = small_world({.seed = 3, .scans = 12});
-  const auto expected = labels_of(world, easily_moving(), Variant::kPaper2024);
-  ASSERT_GT(moving_points(expected), 0U);
-  Pipeline pipeline(easily_moving());
-  for (std::size_t k = 0; k < 12; ++k) {
-    if (k == 5) {
-      Pipeline other(std::move(pipeline));
-      pipeline = std::move(other);
-    }
-    EXPECT_EQ(pipeline.push(world.scans[k], world.poses[k])[0].labels, expected[k]);
-  }
-}
-
 TEST(Pipeline, InterleavedPipelinesAreIndependent) {
   const SmallWorld a = small_world({.seed = 4}), b = small_world({.seed = 5, .walk_m = 0.3});
   const auto expected_a = labels_of(a, easily_moving(), Variant::kPaper2024);

@@ -1,11 +1,8 @@
-#include "core/base/sequential_method.hpp"
+#include "core/base/scan_method.hpp"
 
 #include <cmath>
 #include <sstream>
-#include <stdexcept>
 #include <utility>
-
-#include "core/base/push_order.hpp"
 
 namespace mosbench {
 namespace {
@@ -33,36 +30,40 @@ std::size_t count_nonfinite(std::span<const Point> points, double reach_m) {
 
 }  // namespace
 
-SequentialMethod::SequentialMethod(const RunContext& context, double reach_m)
-    : context_(checked(context)),
-      reach_m_(reach_m),
-      order_(context.scan_count),
-      pool_(context.threads) {}
+void check_rigid(const Pose& pose) {
+  // Wider than what readers accept, so that no pose of a file is refused here.
+  constexpr double kTolerance = 2e-3;
+  const Eigen::Matrix3d rotation = pose.linear();
+  const double departure =
+      (rotation.transpose() * rotation - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
+  // Negated, so that NaN fails as well.
+  if (!pose.matrix().allFinite() || !(departure <= kTolerance) || !(rotation.determinant() > 0)) {
+    throw std::range_error(
+        "pose: is not a rigid motion, expected finite numbers and an orthonormal rotation");
+  }
+}
 
-std::unique_ptr<Observed> SequentialMethod::observe(std::span<const Point> points,
-                                                    const Pose& map_from_sensor) {
-  check_rigid(map_from_sensor);
+const RunContext& checked(const RunContext& context) {
+  if (context.threads == 0) throw std::invalid_argument("threads: 0, expected at least 1");
+  return context;
+}
+
+std::unique_ptr<PosedScan> SequentialMethod::see(std::span<const Point> points,
+                                                 const Pose& map_from_sensor, ThreadPool&) {
   auto scan = std::make_unique<PosedScan>();
   scan->nonfinite_points = count_nonfinite(points, reach_m_);
   scan->points.assign(points.begin(), points.end());
   scan->map_from_sensor = map_from_sensor;
-  order_.number(*scan);
   return scan;
 }
 
-std::vector<LabelledScan> SequentialMethod::push(std::unique_ptr<Observed> observed) {
+std::vector<LabelledScan> SequentialMethod::enter(PosedScan& scan) {
   LabelledScan result;
-  result.scan_index = order_.pushed();
-  auto& scan = order_.take<PosedScan>(observed.get());
+  result.scan_index = k();
   result.labels.assign(scan.points.size(), kStaticLabel);
-  if (context_.scores) result.scores.assign(scan.points.size(), 0);
+  if (context().scores) result.scores.assign(scan.points.size(), 0);
   result.nonfinite_points = scan.nonfinite_points;
   return take(scan, std::move(result));
-}
-
-std::vector<LabelledScan> SequentialMethod::finish() {
-  order_.finish();
-  return release();
 }
 
 }  // namespace mosbench
