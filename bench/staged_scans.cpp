@@ -60,11 +60,14 @@ constexpr std::size_t kScans = 24;
 
 Workload simulated(const std::string& name, const char* scene, const char* sensor,
                    double voxel_size_m, double max_range_m) {
-  Workload workload{name, {}, {}};
+  Workload workload{name, {}, [scene, sensor] {
+                      const Simulator simulator = built_in_simulator(scene, sensor, 1);
+                      std::vector<Frame> frames;
+                      for (std::size_t k = 0; k < kScans; ++k) frames.push_back(simulator.frame(k));
+                      return frames;
+                    }};
   workload.config.voxel_size_m = voxel_size_m;
   workload.config.max_range_m = max_range_m;
-  const Simulator simulator = built_in_simulator(scene, sensor, 1);
-  for (std::size_t k = 0; k < kScans; ++k) workload.frames.push_back(simulator.frame(k));
   return workload;
 }
 
@@ -89,23 +92,25 @@ Workload recorded_workload(const std::filesystem::path& folder) {
     throw DataError(folder, "has " + std::to_string(sequence.size()) + " scans",
                     "at least " + std::to_string(needed) + ", so that detection runs");
   }
+  std::vector<Frame> frames;
   for (std::size_t k = 0; k < std::min(kScans, sequence.size()); ++k) {
-    workload.frames.push_back(sequence.read(k));
+    frames.push_back(sequence.read(k));
   }
+  workload.read = [frames = std::move(frames)] { return frames; };
   return workload;
 }
 
 StagedScans::StagedScans(const Workload& chosen)
     : workload(chosen),
-      grid(grid_around(chosen.frames.front().map_from_sensor.translation(),
-                       chosen.config.voxel_size_m)) {
+      frames(chosen.read()),
+      grid(grid_around(frames.front().map_from_sensor.translation(), chosen.config.voxel_size_m)) {
   const Config& config = workload.config;
   ThreadPool pool(1);
   RaycastScratch scratch;
   VoxelMap map(config, grid);
   DetectionMemory detection{LocalWindow(config.local_window_scans), new_region(), {}};
   Pipeline pipeline(config);
-  for (const Frame& frame : workload.frames) {
+  for (const Frame& frame : frames) {
     StagedScan& staged = all.emplace_back(frame, static_cast<std::uint32_t>(all.size()));
     staged.scan = voxelize(frame.points, frame.map_from_sensor, grid, config.min_range_m,
                            config.max_range_m, pool);

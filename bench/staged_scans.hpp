@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -21,7 +22,7 @@ using namespace hmm_mos;
 struct Workload {
   std::string name;
   Config config;
-  std::vector<Frame> frames;
+  std::function<std::vector<Frame>()> read;  ///< takes long
 };
 
 /// Simulated: `indoor` (hand-held OS1-64, 20 m), `campus` (robot with a Livox Avia, 50 m) and
@@ -67,6 +68,7 @@ class StagedScans {
   StagedScans& operator=(const StagedScans&) = delete;
 
   const Workload& workload;
+  const std::vector<Frame> frames;
   const VoxelGrid grid;
   std::vector<StagedScan> all;
   /// The scans that stages are measured on: several, because one alone would stay in the caches and

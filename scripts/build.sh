@@ -15,6 +15,11 @@ options=(-DMOSBENCH_WITH_PCL="${MOSBENCH_WITH_PCL:-ON}"
 for option in MOSBENCH_PRECOMPILED_HEADERS MOSBENCH_WARNINGS_AS_ERRORS MOSBENCH_BUILD_TESTS MOSBENCH_BUILD_BENCH; do
   [ -z "${!option:-}" ] || options+=("-D$option=${!option}")
 done
-if command -v ccache >/dev/null; then options+=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache); fi
+# ccache does not know what a precompiled header holds; clang-tidy and clang's fuzzers read headers themselves.
+if command -v ccache >/dev/null; then
+  options+=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
+elif [ -z "${MOSBENCH_PRECOMPILED_HEADERS:-}" ] && [[ $preset != tidy && $preset != fuzz ]]; then
+  options+=(-DMOSBENCH_PRECOMPILED_HEADERS=ON)
+fi
 cmake --preset "$preset" "${options[@]}"
 cmake --build --preset "$preset" -j "$(nproc)" "$@"

@@ -11,17 +11,23 @@ endif()
 option(MOSBENCH_PRECOMPILED_HEADERS
        "Read the standard library, Eigen, fmt and JSON once per set of options: sooner built from nothing" OFF)
 
-# mosbench_precompile(TARGET OPTIONS...): gives the target the headers that most rooms read, precompiled with its options.
-# Off where developers work: a header that lacks an #include would find it here.
+# mosbench_precompile(TARGET [TESTS] [OPTIONS...]): gives the target the headers that most rooms read, for TESTS also Google
+# Test's, precompiled with its options. scripts/check/headers.py finds what a header fails to include.
 function(mosbench_precompile target)
+  cmake_parse_arguments(arg "TESTS" "" "" ${ARGN})
   string(MAKE_C_IDENTIFIER "mosbench_headers${ARGN}" headers)
   if(NOT TARGET ${headers})
     file(GENERATE OUTPUT ${PROJECT_BINARY_DIR}/${headers}.cpp CONTENT "")
     add_library(${headers} OBJECT ${PROJECT_BINARY_DIR}/${headers}.cpp)
-    target_compile_options(${headers} PRIVATE ${ARGN})
-    set_target_properties(${headers} PROPERTIES POSITION_INDEPENDENT_CODE ${MOSBENCH_WITH_PYTHON})
-    target_link_libraries(${headers} PRIVATE mosbench_options mosbench_room_options Eigen3::Eigen fmt::fmt
-                          nlohmann_json::nlohmann_json)
+    target_compile_options(${headers} PRIVATE ${arg_UNPARSED_ARGUMENTS})
+    target_link_libraries(${headers} PRIVATE mosbench_options Eigen3::Eigen fmt::fmt nlohmann_json::nlohmann_json)
+    if(arg_TESTS)
+      target_link_libraries(${headers} PRIVATE GTest::gmock GTest::gtest)
+      target_precompile_headers(${headers} PRIVATE <gmock/gmock.h> <gtest/gtest.h>)
+    else()
+      target_link_libraries(${headers} PRIVATE mosbench_room_options)
+      set_target_properties(${headers} PROPERTIES POSITION_INDEPENDENT_CODE ${MOSBENCH_WITH_PYTHON})
+    endif()
     target_precompile_headers(${headers} PRIVATE <algorithm> <array> <charconv> <chrono> <cmath> <cstdint> <filesystem>
       <fstream> <functional> <iostream> <map> <memory> <mutex> <numeric> <optional> <random> <ranges> <set> <span>
       <sstream> <string> <string_view> <thread> <tuple> <unordered_map> <utility> <variant> <vector> <Eigen/Core>
