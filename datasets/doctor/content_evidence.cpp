@@ -113,7 +113,7 @@ class ContentCount {
             .points_of_range[std::min(static_cast<std::size_t>(bin), range_bins_m().size() - 1)];
       if (range_m <= expected_.sensor_range_m) return;
       ++beyond_sensor_;
-      const Eigen::Vector3d from_place_m = Eigen::Vector3d(point.x, point.y, point.z) - place_m;
+      const Eigen::Vector3d from_place_m = position_of(point) - place_m;
       if (from_place_m.norm() < expected_.sensor_range_m) ++near_place_;
     }
   }

@@ -5,6 +5,7 @@
 
 #include "datasets/doctor/doctor.hpp"
 #include "datasets/formats/point_range.hpp"
+#include "datasets/layouts/sequence_writer.hpp"
 #include "datasets/text/text.hpp"
 
 namespace mosbench {
@@ -18,20 +19,12 @@ constexpr double kLeastRangeM = 1.0, kMostRangeM = 50.0;
 /// Moving points are compared with those in the same cube.
 constexpr double kCubeM = 0.5;
 
-Eigen::Vector3d position_m(const Point& point) { return {point.x, point.y, point.z}; }
-
-bool is_moving_id(std::uint32_t label) {
-  constexpr std::uint32_t kLast = 259;  // of SemanticKITTI
-  const std::uint32_t id = label & 0xFFFFU;
-  return id >= kMovingLabel && id <= kLast;
-}
-
 /// The nearest return in each direction.
 class RangeImage {
  public:
   explicit RangeImage(const std::vector<Point>& points) : nearest_m_(kRows * kColumns, kNothingM) {
     for (const Point& point : points) {
-      const auto cell = cell_of({point.x, point.y, point.z});
+      const auto cell = cell_of(position_of(point));
       if (!cell) continue;
       float& nearest_m = nearest_m_[*cell];
       nearest_m = std::min(nearest_m, static_cast<float>(range_m(point)));
@@ -103,8 +96,8 @@ class LabelExamination {
     for (std::size_t i = 0; i < frame.points.size(); ++i) {
       const double range = range_m(frame.points[i]);
       if (((*frame.truth)[i] & 0xFFFFU) == 0 || !(range > kLeastRangeM)) continue;
-      const bool moves = is_moving_id((*frame.truth)[i]);
-      auto& [moving_in_cube, all_in_cube] = cubes[cube_key(position_m(frame.points[i]), kCubeM)];
+      const bool moves = is_moving((*frame.truth)[i]);
+      auto& [moving_in_cube, all_in_cube] = cubes[cube_key(position_of(frame.points[i]), kCubeM)];
       all_in_cube += 1.0;
       if (moves) moving_in_cube += 1.0;
       (moves ? moving : still).push_back(i);
@@ -127,7 +120,7 @@ class LabelExamination {
                           relative(poses_, {index, scan_index}));
     }
     const auto count = [&](std::size_t i, std::size_t& seen, std::size_t& left) {
-      const Eigen::Vector3d point_m = position_m(points[i]);
+      const Eigen::Vector3d point_m = position_of(points[i]);
       if (!(point_m.norm() < kMostRangeM)) return;
       bool is_seen = false, is_left = false;
       for (const auto& [image, other_from_this] : others) {
@@ -163,7 +156,7 @@ class LabelExamination {
   void look_for_moving() {
     const std::vector<std::size_t> labelled = scans_with_truth(sequence_);
     const bool none = std::ranges::none_of(labelled, [&](std::size_t scan_index) {
-      return std::ranges::any_of(sequence_.read_truth(scan_index), is_moving_id);
+      return std::ranges::any_of(sequence_.read_truth(scan_index), is_moving);
     });
     if (!none) return;
     const std::size_t span = labelled.back() - labelled.front() + 1;

@@ -8,6 +8,7 @@
 #include <unordered_set>
 #include <utility>
 
+#include "datasets/formats/point_range.hpp"
 #include "datasets/text/numbers.hpp"
 
 namespace mosbench {
@@ -55,7 +56,7 @@ std::vector<Eigen::Vector3d> near_points(std::span<const Point> points) {
   constexpr double kNearestM = 2.0, kFurthestM = 40.0;
   std::vector<Eigen::Vector3d> near_m;
   for (const Point& point : points) {
-    const Eigen::Vector3d point_m(point.x, point.y, point.z);
+    const Eigen::Vector3d point_m = position_of(point);
     const double range_m = point_m.norm();
     if (range_m >= kNearestM && range_m <= kFurthestM) near_m.push_back(point_m);
   }

@@ -3,13 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <mutex>
 
 #include "core/base/thread_pool.hpp"
 #include "datasets/text/text.hpp"
 #include "eval/answer/answer_text.hpp"
-#include "eval/breakdown/object_tracks.hpp"
 #include "eval/protocols/metrics.hpp"
 #include "eval/result/tell.hpp"
 

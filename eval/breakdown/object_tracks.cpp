@@ -6,12 +6,10 @@
 #include <iterator>
 #include <limits>
 #include <numbers>
-#include <optional>
 #include <tuple>
 
 #include "core/base/thread_pool.hpp"
 #include "datasets/text/numbers.hpp"
-#include "eval/breakdown/scan_breakdown.hpp"
 
 namespace mosbench {
 namespace {

@@ -1,12 +1,12 @@
 #include "eval/breakdown/scan_breakdown.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstddef>
 #include <map>
 #include <numeric>
 #include <unordered_map>
+
+#include "datasets/formats/point_range.hpp"
 
 namespace mosbench {
 namespace {
@@ -162,10 +162,7 @@ ScanBreakdown break_down_scan(const Protocol& protocol, const RangeGate& limits,
   BinOutcomes by_range{}, by_height{};
   for (std::size_t i = 0; i < outcomes.size(); ++i) {
     const Point& point = frame.points[i];
-    const Eigen::Vector3d position =
-        frame.map_from_sensor * Eigen::Vector3d(static_cast<double>(point.x),
-                                                static_cast<double>(point.y),
-                                                static_cast<double>(point.z));
+    const Eigen::Vector3d position = frame.map_from_sensor * position_of(point);
     const auto outcome = static_cast<std::size_t>(outcomes[i]);
     ++by_range[bin_of(kRangeEdges_m, range_m(point, Arithmetic::kDouble))][outcome];
     ++by_height[bin_of(kHeightEdges_m, position.z() - sensor.z())][outcome];

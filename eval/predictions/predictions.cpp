@@ -6,11 +6,9 @@
 #include <array>
 #include <functional>
 #include <nlohmann/json.hpp>
-#include <string>
 
 #include "datasets/disk/files.hpp"
 #include "datasets/formats/label_file.hpp"
-#include "datasets/text/errors.hpp"
 #include "datasets/text/json_text.hpp"
 #include "datasets/text/text.hpp"
 #include "eval/predictions/prediction_files.hpp"

@@ -1,7 +1,6 @@
 #include "eval/protocols/confusion.hpp"
 
 #include <cmath>
-#include <cstddef>
 #include <stdexcept>
 #include <string>
 

@@ -3,9 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <string>
-#include <vector>
 
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <limits>
 #include <nanoflann.hpp>
-#include <vector>
 
 #include "datasets/formats/point_range.hpp"
 #include "datasets/formats/scan_file.hpp"

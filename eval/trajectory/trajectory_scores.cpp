@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <numbers>
-#include <vector>
 
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
