@@ -39,17 +39,14 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, epilog=EXAMPLES,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--most", type=float, help="CPU seconds; exit code 1 above them")
-    parser.add_argument("--source", default=ROOT, help="folder of the project (default: this one)")
-    parser.add_argument("--build", help="folder to build in, which stays (default: a temporary one)")
     parser.add_argument("--target", default="mosbench", help="what is built (default: mosbench)")
     options, definitions = parser.parse_known_args()
     if any(not definition.startswith("-D") for definition in definitions):
         parser.error(f"{' '.join(definitions)}: expected -DNAME=VALUE")
-    with tempfile.TemporaryDirectory() as temporary:
-        build = options.build or temporary
-        log = pathlib.Path(temporary) / "compile.log"
+    with tempfile.TemporaryDirectory() as build:
+        log = pathlib.Path(build) / "compile.log"
         environment = {**os.environ, LOG: str(log)}
-        configure = ["cmake", "-S", str(options.source), "-B", build, "-G", "Ninja",
+        configure = ["cmake", "-S", str(ROOT), "-B", build, "-G", "Ninja",
                      "-DCMAKE_BUILD_TYPE=Release", "-DMOSBENCH_BUILD_TESTS=OFF",
                      "-DMOSBENCH_BUILD_BENCH=OFF", "-DMOSBENCH_WITH_PCL=OFF",
                      "-DMOSBENCH_PRECOMPILED_HEADERS=ON", "-DMOSBENCH_WITH_ROSBAG=OFF", "-DMOSBENCH_WITH_HDF5=OFF",
