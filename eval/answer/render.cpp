@@ -203,27 +203,17 @@ std::string json_key(const Column& column) {
   return key.substr(0, key.size() - std::string_view(style_of(column.unit).key).size());
 }
 
-ordered_json sheet_json(const Sheet& sheet) {
-  ordered_json json = {{"title", sheet.title},
-                       {"lead", sheet.lead},
-                       {"rows", ordered_json::array()},
-                       {"notes", sheet.notes}};
-  for (const std::vector<Cell>& row : sheet.rows) {
-    if (row.empty()) continue;
-    ordered_json& members = json["rows"].emplace_back(ordered_json::object());
-    for (std::size_t c = 0; c < sheet.columns.size(); ++c) {
-      members[json_key(sheet.columns[c])] = c < row.size() ? cell_json(row[c]) : nullptr;
-    }
-  }
-  return json;
-}
-
 std::string json_of(const Answer& answer) {
   if (!answer.json.empty()) return answer.json;
   ordered_json json = ordered_json::object();
   if (answer.standing) json["standing"] = sentences(*answer.standing);
   if (!answer.sheets.empty()) json["sheets"] = ordered_json::array();
-  for (const Sheet& sheet : answer.sheets) json["sheets"].push_back(sheet_json(sheet));
+  for (const Sheet& sheet : answer.sheets) {
+    json["sheets"].push_back({{"title", sheet.title},
+                              {"lead", sheet.lead},
+                              {"rows", records_json(sheet)},
+                              {"notes", sheet.notes}});
+  }
   if (!answer.text.empty()) json["text"] = answer.text;
   return json_text(json);
 }
@@ -333,6 +323,18 @@ ShownTable shown_table(const Sheet& sheet) {
     }
   }
   return table;
+}
+
+ordered_json records_json(const Sheet& sheet) {
+  ordered_json json = ordered_json::array();
+  for (const std::vector<Cell>& row : sheet.rows) {
+    if (row.empty()) continue;
+    ordered_json& members = json.emplace_back(ordered_json::object());
+    for (std::size_t c = 0; c < sheet.columns.size(); ++c) {
+      members[json_key(sheet.columns[c])] = c < row.size() ? cell_json(row[c]) : nullptr;
+    }
+  }
+  return json;
 }
 
 ordered_json interval_json(const Spread& spread) {

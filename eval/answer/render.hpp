@@ -20,6 +20,8 @@ Format format_named(std::string_view name);
 /// number). Nothing stays nothing. Throws UsageError for a picture of an answer without charts.
 std::string render(const Answer& answer, Format format, std::size_t columns = 0);
 
+/// Returns the rows of a sheet as objects.
+nlohmann::ordered_json records_json(const Sheet& sheet);
 /// Returns {"low", "high", "no_interval"}, null where there is none.
 nlohmann::ordered_json interval_json(const Spread& spread);
 

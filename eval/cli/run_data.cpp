@@ -10,6 +10,7 @@
 #include "eval/cli/run_kinds.hpp"
 #include "eval/engine/run_execute.hpp"
 #include "eval/job/method_choice.hpp"
+#include "eval/protocols/metrics.hpp"
 #include "eval/protocols/protocol.hpp"
 #include "eval/report/written_products.hpp"
 #include "eval/result/result.hpp"
@@ -102,12 +103,10 @@ nlohmann::ordered_json run_report_json(const RunPlan& plan,
                                        const std::vector<SequenceOutcome>& outcomes) {
   nlohmann::ordered_json json = {{"dataset", std::string(to_string(plan.dataset.kind))},
                                  {"method", std::string(plan.settings.method->name)},
-                                 {"preset", plan.preset},
-                                 {"protocol", std::string(plan.settings.protocol->name)},
-                                 {"min_range_m", plan.settings.range.min_m},
-                                 {"max_range_m", plan.settings.range.max_m},
-                                 {"config", to_json(plan.settings.method_settings)},
-                                 {"out", plan.out.string()}};
+                                 {"preset", plan.preset}};
+  json.update(rule_json({plan.settings.protocol, plan.settings.range}));
+  json["config"] = to_json(plan.settings.method_settings);
+  json["out"] = plan.out.string();
   if (const auto origin = simulated_origin_json(plan.dataset)) json["simulated"] = *origin;
   json.update(rows_json(rows_of(plan, outcomes)));
   for (std::size_t i = 0; i < outcomes.size(); ++i) {

@@ -14,6 +14,7 @@
 #include "eval/cli/flags.hpp"
 #include "eval/cli/output_file.hpp"
 #include "eval/job/method_choice.hpp"
+#include "eval/protocols/metrics.hpp"
 #include "eval/protocols/protocol.hpp"
 #include "eval/report/score_curve.hpp"
 #include "eval/result/result.hpp"
@@ -62,11 +63,9 @@ std::vector<SequenceBreakdown> all_breakdowns(const StatsFlags& options, const D
 
 Answer answer_of(const StatsFlags& options, const Dataset& dataset, const BreakdownTask& task,
                  const std::vector<SequenceBreakdown>& breakdowns) {
-  nlohmann::ordered_json json = {{"dataset", std::string(to_string(dataset.kind))},
-                                 {"protocol", std::string(task.protocol->name)},
-                                 {"min_range_m", task.range.min_m},
-                                 {"max_range_m", task.range.max_m},
-                                 {"sequences", nlohmann::ordered_json::array()}};
+  nlohmann::ordered_json json = {{"dataset", std::string(to_string(dataset.kind))}};
+  json.update(rule_json({task.protocol, task.range}));
+  json["sequences"] = nlohmann::ordered_json::array();
   if (const auto origin = simulated_origin_json(dataset)) json["simulated"] = *origin;
   Answer answer{.standing = standing_of(dataset),
                 .sheets = {{.lead = {rule_line({task.protocol, task.range})}}}};

@@ -13,6 +13,7 @@
 #include "datasets/text/text.hpp"
 #include "eval/exec/exec_method.hpp"
 #include "eval/job/method_choice.hpp"
+#include "eval/protocols/metrics.hpp"
 #include "eval/result/reading_json.hpp"
 #include "eval/result/settings_json.hpp"
 
@@ -35,10 +36,7 @@ ordered_json config_of(const Job& job, DatasetKind kind) {
 
 ordered_json rule_json(const Job& job, DatasetKind kind) {
   try {
-    const ScoreRule rule = rule_of(job, kind);
-    return {{"name", std::string(rule.protocol->name)},
-            {"min_range_m", rule.range.min_m},
-            {"max_range_m", rule.range.max_m}};
+    return rule_json(rule_of(job, kind), "name");
   } catch (const UsageError&) {
     return nullptr;  // as the settings are refused
   }

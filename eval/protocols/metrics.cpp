@@ -234,6 +234,12 @@ nlohmann::ordered_json counts_json(const Confusion& counts) {
           {"ignored", counts.ignored}};
 }
 
+nlohmann::ordered_json rule_json(const ScoreRule& rule, const char* name) {
+  return {{name, std::string(rule.protocol->name)},
+          {"min_range_m", rule.range.min_m},
+          {"max_range_m", rule.range.max_m}};
+}
+
 nlohmann::ordered_json to_json(const Summary& summary) {
   nlohmann::ordered_json json;
   for (std::size_t m = 0; m < kMetrics.size(); ++m) {

@@ -131,6 +131,9 @@ Summary mean_of_sequences(const Protocol& protocol, std::span<const Summary> seq
 /// Returns {"tp", "fp", "fn", "tn", "ignored"}, the names that every JSON of the program uses.
 nlohmann::ordered_json counts_json(const Confusion& counts);
 
+/// Returns {"protocol", "min_range_m", "max_range_m"}; `name` is the first member's.
+nlohmann::ordered_json rule_json(const ScoreRule& rule, const char* name = "protocol");
+
 /// Fractions 0..1, null where undefined; counts are those of all scans together.
 nlohmann::ordered_json to_json(const Summary& summary);
 

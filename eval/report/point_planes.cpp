@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <stdexcept>
+#include <vector>
 
 namespace mosbench {
 namespace {
@@ -14,8 +15,21 @@ namespace {
 constexpr double kMaxSteps = 32767.0;
 constexpr unsigned kNotDrawable = 8;
 
-double steps(float position_m) {
-  return std::round(static_cast<double>(position_m) / kPositionStep_m);
+double steps(float value, double step) { return std::round(static_cast<double>(value) / step); }
+
+std::uint16_t bits_of(double steps) {
+  return static_cast<std::uint16_t>(static_cast<std::int16_t>(steps));
+}
+
+/// The lowest bytes of all numbers, then the next ones.
+template <typename Number>
+std::string byte_planes(const std::vector<Number>& numbers) {
+  std::string planes;
+  planes.reserve(sizeof(Number) * numbers.size());
+  for (unsigned bits = 0; bits < 8 * sizeof(Number); bits += 8) {
+    for (const Number number : numbers) planes += static_cast<char>(number >> bits & 0xFFU);
+  }
+  return planes;
 }
 
 std::uint16_t zigzag(std::uint16_t difference) {
@@ -61,28 +75,26 @@ bool is_drawable(const Point& point) {
   const bool at_sensor = point.x == 0.0F && point.y == 0.0F && point.z == 0.0F;
   bool reachable = !at_sensor;
   for (const float position_m : {point.x, point.y, point.z}) {
-    reachable = reachable && std::abs(steps(position_m)) <= kMaxSteps;  // false for NaN
+    reachable =
+        reachable && std::abs(steps(position_m, kPositionStep_m)) <= kMaxSteps;  // false for NaN
   }
   return reachable;
 }
 
 std::string position_planes(std::span<const Point> points) {
   const std::size_t n = points.size();
-  std::string planes(6 * n, '\0');
+  std::vector<std::uint16_t> codes(3 * n);
   std::array<std::uint16_t, 3> before{};
   for (std::size_t i = 0; i < n; ++i) {
     if (!is_drawable(points[i])) continue;
     const std::array<float, 3> position_m = {points[i].x, points[i].y, points[i].z};
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const auto now =
-          static_cast<std::uint16_t>(static_cast<std::int16_t>(steps(position_m[axis])));
-      const std::uint16_t code = zigzag(static_cast<std::uint16_t>(now - before[axis]));
-      planes[axis * n + i] = static_cast<char>(code & 0xFFU);
-      planes[(3 + axis) * n + i] = static_cast<char>(code >> 8);
+      const std::uint16_t now = bits_of(steps(position_m[axis], kPositionStep_m));
+      codes[axis * n + i] = zigzag(static_cast<std::uint16_t>(now - before[axis]));
       before[axis] = now;
     }
   }
-  return planes;
+  return byte_planes(codes);
 }
 
 std::string outcome_plane(std::span<const PointOutcome> outcomes, std::span<const Point> points) {
@@ -97,29 +109,18 @@ std::string outcome_plane(std::span<const PointOutcome> outcomes, std::span<cons
 
 std::string velocity_planes(std::span<const float> radial_velocity_m_s) {
   constexpr std::uint16_t kUnknown = 0x8000U;
-  const std::size_t n = radial_velocity_m_s.size();
-  std::string planes(2 * n, '\0');
-  for (std::size_t i = 0; i < n; ++i) {
-    const double steps =
-        std::round(static_cast<double>(radial_velocity_m_s[i]) / kVelocityStep_m_s);
-    const bool is_known = std::abs(steps) <= kMaxSteps;  // false for NaN
-    const std::uint16_t code =
-        is_known ? static_cast<std::uint16_t>(static_cast<std::int16_t>(steps)) : kUnknown;
-    planes[i] = static_cast<char>(code & 0xFFU);
-    planes[n + i] = static_cast<char>(code >> 8);
+  std::vector<std::uint16_t> codes;
+  for (const float velocity_m_s : radial_velocity_m_s) {
+    const double code = steps(velocity_m_s, kVelocityStep_m_s);
+    codes.push_back(std::abs(code) <= kMaxSteps ? bits_of(code) : kUnknown);  // also of NaN
   }
-  return planes;
+  return byte_planes(codes);
 }
 
 std::string score_planes(std::span<const float> scores) {
-  std::string planes;
-  planes.reserve(4 * scores.size());
-  for (unsigned bits = 0; bits < 32; bits += 8) {
-    for (const float score : scores) {
-      planes += static_cast<char>(std::bit_cast<std::uint32_t>(score) >> bits & 0xFFU);
-    }
-  }
-  return planes;
+  std::vector<std::uint32_t> bits;
+  for (const float score : scores) bits.push_back(std::bit_cast<std::uint32_t>(score));
+  return byte_planes(bits);
 }
 
 std::string compressed_text(std::string_view bytes) { return base64(deflated(bytes)); }

@@ -123,13 +123,7 @@ std::string script_json(const ordered_json& json) {
   const std::string text = json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
   std::string escaped;
   escaped.reserve(text.size());
-  for (const char c : text) {
-    if (c == '<') {
-      escaped += "\\u003c";
-    } else {
-      escaped += c;
-    }
-  }
+  for (const char c : text) c == '<' ? escaped += "\\u003c" : escaped += c;
   return escaped;
 }
 
@@ -139,9 +133,7 @@ std::string filled_page(std::string_view asset, const ordered_json& content,
   std::string html(before);
   html += "<script type=\"application/json\" id=\"report\">" + script_json(content) + "</script>\n";
   for (std::size_t i = 0; i < blocks.size(); ++i) {
-    html += fmt::format("<script type=\"text/plain\" id=\"block-{}\">", i);
-    html += blocks[i];
-    html += "</script>\n";
+    html += fmt::format("<script type=\"text/plain\" id=\"block-{}\">{}</script>\n", i, blocks[i]);
   }
   html += behind;
   return html;

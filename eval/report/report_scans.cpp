@@ -17,20 +17,23 @@ using nlohmann::ordered_json;
 
 using Sources = std::vector<std::optional<ResultScans>>;
 
+/// What the labels of one result say of a scan; empty what the run did not keep.
+struct Planes {
+  std::string outcomes, scores, reasons;
+};
+
 struct PackedScan {
   std::size_t scan_index;
   ordered_json header;
   std::string positions;
-  std::string velocities;             ///< empty where the sensor measures none
-  std::vector<std::string> outcomes;  ///< per member of the cloud
-  std::vector<std::string> scores;    ///< per member, empty where the run kept none
-  std::vector<std::string> reasons;   ///< the same
+  std::string velocities;       ///< empty where the sensor measures none
+  std::vector<Planes> members;  ///< of the cloud
 
   std::size_t bytes() const {
     std::size_t sum = positions.size() + velocities.size();
-    for (const std::string& plane : outcomes) sum += plane.size();
-    for (const std::string& planes : scores) sum += planes.size();
-    for (const std::string& plane : reasons) sum += plane.size();
+    for (const Planes& member : members) {
+      sum += member.outcomes.size() + member.scores.size() + member.reasons.size();
+    }
     return sum;
   }
 };
@@ -121,14 +124,14 @@ std::vector<Cloud> group_by_frames(const Sources& sources, const ScanChoice& cho
 
 ordered_json pose_json(const Pose& pose) {
   ordered_json numbers = ordered_json::array();
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 4; ++column) numbers.push_back(pose.matrix()(row, column));
+  for (const auto& row : pose.matrix().topRows<3>().rowwise()) {
+    for (const double number : row) numbers.push_back(number);
   }
   return numbers;
 }
 
 PackedScan pack(const Cloud& cloud, const Sources& sources, std::size_t scan_index) {
-  PackedScan packed{scan_index, {}, {}, {}, {}, {}, {}};
+  PackedScan packed{scan_index, {}, {}, {}, {}};
   for (const std::size_t member : cloud.members) {
     const JudgedScan scan = sources[member]->read(scan_index);
     if (packed.positions.empty()) {
@@ -141,11 +144,11 @@ PackedScan pack(const Cloud& cloud, const Sources& sources, std::size_t scan_ind
         packed.velocities = compressed_text(velocity_planes(scan.frame.radial_velocity_m_s));
       }
     }
-    packed.outcomes.push_back(compressed_text(outcome_plane(scan.outcomes, scan.frame.points)));
-    packed.scores.push_back(
-        sources[member]->has_scores() ? compressed_text(score_planes(scan.scores)) : "");
-    packed.reasons.push_back(
-        sources[member]->has_reasons() ? compressed_text(format_reasons(scan.reasons)) : "");
+    const ResultScans& source = *sources[member];
+    packed.members.push_back(
+        {compressed_text(outcome_plane(scan.outcomes, scan.frame.points)),
+         source.has_scores() ? compressed_text(score_planes(scan.scores)) : "",
+         source.has_reasons() ? compressed_text(format_reasons(scan.reasons)) : ""});
   }
   return packed;
 }
@@ -154,8 +157,7 @@ void pack_until_full(std::vector<Cloud>& clouds, const Sources& sources, std::si
   std::size_t wanted = 0, bytes = 0;
   for (const Cloud& cloud : clouds) wanted += cloud.wanted.size();
   Progress progress("report", wanted);
-  bool any = true;
-  while (any) {
+  for (bool any = true; any;) {
     any = false;
     for (Cloud& cloud : clouds) {
       if (cloud.full || cloud.tried == cloud.wanted.size()) continue;
@@ -220,25 +222,21 @@ ReportScans choose_report_scans(const std::vector<Result>& results, const Source
                          {"scans", ordered_json::array()}};
     for (const std::size_t i : cloud.members) report.results[i].cloud = report.clouds.size();
     for (PackedScan& scan : cloud.packed) {
-      scan.header["positions"] = report.blocks.size();
-      report.blocks.push_back(std::move(scan.positions));
-      if (!scan.velocities.empty()) {
-        scan.header["radial_velocities"] = report.blocks.size();
-        report.blocks.push_back(std::move(scan.velocities));
-      }
+      // Returns the number of the block.
+      const auto add = [&](std::string& text) {
+        report.blocks.push_back(std::move(text));
+        return report.blocks.size() - 1;
+      };
+      scan.header["positions"] = add(scan.positions);
+      if (!scan.velocities.empty()) scan.header["radial_velocities"] = add(scan.velocities);
       json["scans"].push_back(std::move(scan.header));
       for (std::size_t m = 0; m < cloud.members.size(); ++m) {
         ReportScans::OfResult& result = report.results[cloud.members[m]];
+        Planes& planes = scan.members[m];
         result.scans.push_back(scan.scan_index);
-        result.outcome_blocks.push_back(report.blocks.size());
-        report.blocks.push_back(std::move(scan.outcomes[m]));
-        const auto add = [&](std::string& block, std::vector<std::size_t>& blocks) {
-          if (block.empty()) return;
-          blocks.push_back(report.blocks.size());
-          report.blocks.push_back(std::move(block));
-        };
-        add(scan.scores[m], result.score_blocks);
-        add(scan.reasons[m], result.reason_blocks);
+        result.outcome_blocks.push_back(add(planes.outcomes));
+        if (!planes.scores.empty()) result.score_blocks.push_back(add(planes.scores));
+        if (!planes.reasons.empty()) result.reason_blocks.push_back(add(planes.reasons));
       }
     }
     report.clouds.push_back(std::move(json));

@@ -3,30 +3,24 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <limits>
 #include <numeric>
 #include <optional>
+#include <sstream>
 #include <string_view>
 #include <utility>
 
 #include "datasets/text/errors.hpp"
+#include "datasets/text/text.hpp"
 
 namespace mosbench {
 namespace {
 
 constexpr std::size_t kLast = std::numeric_limits<std::size_t>::max();
 
-std::optional<std::size_t> whole_number(std::string_view text) {
-  std::size_t number = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  return number;
-}
-
-std::optional<std::size_t> behind(std::string_view prefix, const std::string& word) {
+std::optional<std::size_t> behind(std::string_view prefix, std::string_view word) {
   if (!word.starts_with(prefix)) return std::nullopt;
-  return whole_number(std::string_view(word).substr(prefix.size()));
+  return parse_unsigned(word.substr(prefix.size()));
 }
 
 std::uint64_t false_points(const ScanRow& row) {
@@ -51,15 +45,15 @@ std::vector<std::size_t> spread(std::size_t n) {
 ScanChoice::Part ScanChoice::parse(const std::string& word) {
   if (word == "auto") return {Part::Kind::kAuto};
   if (word == "all") return {Part::Kind::kRange, 0, kLast};
-  if (const auto scan = whole_number(word)) return {Part::Kind::kRange, *scan, *scan};
+  if (const auto scan = parse_unsigned(word)) return {Part::Kind::kRange, *scan, *scan};
   if (const auto step = behind("every:", word); step && *step > 0) {
     return {Part::Kind::kEvery, *step};
   }
   if (const auto count = behind("worst:", word)) return {Part::Kind::kWorst, *count};
   const std::size_t dash = word.find('-');
   if (dash != std::string::npos) {
-    const auto first = whole_number(std::string_view(word).substr(0, dash));
-    const auto last = whole_number(std::string_view(word).substr(dash + 1));
+    const auto first = parse_unsigned(std::string_view(word).substr(0, dash));
+    const auto last = parse_unsigned(std::string_view(word).substr(dash + 1));
     if (first && last && *first <= *last) return {Part::Kind::kRange, *first, *last};
   }
   throw UsageError(fmt::format(
@@ -68,12 +62,8 @@ ScanChoice::Part ScanChoice::parse(const std::string& word) {
 
 ScanChoice::ScanChoice(const std::string& text) {
   if (text == "none") return;
-  std::size_t start = 0;
-  while (start <= text.size()) {
-    const std::size_t comma = std::min(text.find(',', start), text.size());
-    parts_.push_back(parse(text.substr(start, comma - start)));
-    start = comma + 1;
-  }
+  std::istringstream words(text + ',');
+  for (std::string word; std::getline(words, word, ',');) parts_.push_back(parse(word));
 }
 
 std::vector<std::size_t> ScanChoice::wanted(const std::vector<ScanRow>& rows) const {

@@ -234,13 +234,11 @@ CurveReport curve_of_run(const std::filesystem::path& path,
 }
 
 Answer curve_answer(const CurveReport& report) {
-  const Result& first = report.run.front();
   const ScoreCurve& curve = report.curve;
   const CurvePoint& best = best_point(curve);
   const Confusion& counts = best.counts;
   Sheet sheet = levels_sheet(curve);
-  sheet.lead = {fmt::format("{}, {}; data set {}, protocol {}", first.method, first.setting,
-                            first.dataset, first.protocol->name),
+  sheet.lead = {headline(report.run),
                 fmt::format("{}, {} of {} counted points move", counted(curve.scans, "scan"),
                             counts.tp + counts.fn, counts.tp + counts.fp + counts.fn + counts.tn),
                 fmt::format("average precision {} %", percent_text(curve.average_precision)),

@@ -257,10 +257,7 @@ ordered_json identity_json(const Result& result) {
                        {"dataset", result.dataset},
                        {"reading", to_json(result.from.reading)},
                        {"method", method_json(result)},
-                       {"protocol",
-                        {{"name", result.protocol->name},
-                         {"min_range_m", result.range.min_m},
-                         {"max_range_m", result.range.max_m}}}};
+                       {"protocol", rule_json({result.protocol, result.range}, "name")}};
   if (result.settings) json["settings"] = to_json(*result.settings);
   json["code"] = {{"version", result.from.version}, {"compiler", result.from.compiler}};
   return json;

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "eval/answer/answer_text.hpp"
 #include "eval/answer/render.hpp"
 #include "eval/protocols/metrics.hpp"
@@ -14,11 +12,10 @@ namespace {
 
 using nlohmann::ordered_json;
 
-template <typename Value>
-ordered_json spread_json(const Value& value) {
-  ordered_json json = {{"value", json_or_null(value.value)},
-                       {"standard_error", json_or_null(value.standard_error)}};
-  json.update(interval_json(spread_of(value)));
+ordered_json spread_json(const Estimate& estimate) {
+  ordered_json json = {{"value", json_or_null(estimate.value)},
+                       {"standard_error", json_or_null(estimate.standard_error)}};
+  json.update(interval_json(spread_of(estimate)));
   return json;
 }
 
@@ -29,17 +26,7 @@ std::vector<Cell> estimate_cells(const std::string& name, std::uint64_t scans,
   return cells;
 }
 
-ordered_json scan_json(const Result& sequence, const ScanRow& row) {
-  ordered_json json = {
-      {"sequence", sequence.sequence.text()}, {"scan", row.stem}, {"points", row.points}};
-  json.update(counts_json(*row.counts));
-  const MetricValues values = metrics_of(*row.counts);
-  for (std::size_t m = 0; m < values.size(); ++m) {
-    json[std::string(kMetrics[m].key)] =
-        std::isnan(values[m]) ? ordered_json(nullptr) : ordered_json(values[m]);
-  }
-  return json;
-}
+}  // namespace
 
 std::string headline(const ResultSet& set) {
   const Result& first = set.front();
@@ -47,12 +34,18 @@ std::string headline(const ResultSet& set) {
                      first.protocol->name);
 }
 
+namespace {
+
 /// A row per counted scan.
 Sheet scan_sheet(const ResultSet& set) {
-  Sheet sheet{.columns = {{"sequence", Unit::kText}, {"scan", Unit::kText}}};
-  for (const char* name : {"points", "tp", "fp", "fn", "tn", "ignored"}) {
-    sheet.columns.push_back({name});
-  }
+  Sheet sheet{.columns = {{"sequence", Unit::kText},
+                          {"scan", Unit::kText},
+                          {"points"},
+                          {"tp"},
+                          {"fp"},
+                          {"fn"},
+                          {"tn"},
+                          {"ignored"}}};
   for (const MetricRow& metric : kMetrics) sheet.columns.push_back({std::string(metric.key)});
   for (const Result& sequence : set.sequences) {
     for (const ScanRow* row : counted_scans(sequence)) {
@@ -107,10 +100,8 @@ ordered_json provenance_json(const ResultSet& set) {
   ordered_json json = {{"path", set.path.string()},
                        {"method", first.method},
                        {"setting", first.setting},
-                       {"dataset", first.dataset},
-                       {"protocol", std::string(first.protocol->name)},
-                       {"min_range_m", first.range.min_m},
-                       {"max_range_m", first.range.max_m}};
+                       {"dataset", first.dataset}};
+  json.update(rule_json({first.protocol, first.range}));
   if (!first.preset.empty()) json["preset"] = first.preset;
   if (first.settings) json["config"] = to_json(*first.settings);
   json["code"]["version"] = first.from.version;
@@ -135,13 +126,7 @@ ordered_json statistics_json(const ResultSet& set, bool per_scan) {
                                  {"metrics", to_json(estimate({&sequence, 1}))}});
   }
   json["all"] = to_json(estimate(set.sequences));
-  if (!per_scan) return json;
-  json["scans"] = ordered_json::array();
-  for (const Result& sequence : set.sequences) {
-    for (const ScanRow* row : counted_scans(sequence)) {
-      json["scans"].push_back(scan_json(sequence, *row));
-    }
-  }
+  if (per_scan) json["scans"] = records_json(scan_sheet(set));
   return json;
 }
 

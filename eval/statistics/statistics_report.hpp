@@ -18,6 +18,9 @@ nlohmann::ordered_json to_json(const Estimates& estimates);
 nlohmann::ordered_json to_json(const Difference& difference);
 nlohmann::ordered_json to_json(const Differences& differences);
 
+/// "HMM-MOS, 0.25 m; data set doals, protocol doals-hmm".
+std::string headline(const ResultSet& set);
+
 /// Returns method, protocol, range, data set and whether the input is simulated.
 nlohmann::ordered_json provenance_json(const ResultSet& set);
 

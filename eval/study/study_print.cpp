@@ -6,6 +6,7 @@
 #include "datasets/text/text.hpp"
 #include "eval/answer/answer_text.hpp"
 #include "eval/answer/render.hpp"
+#include "eval/protocols/metrics.hpp"
 #include "eval/protocols/protocol.hpp"
 #include "eval/report/report.hpp"
 #include "eval/result/tell.hpp"
@@ -216,11 +217,7 @@ ordered_json to_json(const StudyTable& table) {
                        {"worst", ordered_json::array()},
                        {"undefined", gaps_json(table.undefined)},
                        {"failures", gaps_json(table.failures)}};
-  if (table.rule) {
-    json["protocol"] = table.rule->protocol->name;
-    json["min_range_m"] = table.rule->range.min_m;
-    json["max_range_m"] = table.rule->range.max_m;
-  }
+  if (table.rule) json.update(rule_json(*table.rule));
   for (const StudyRow& row : table.rows) {
     json["rows"].push_back({{"label", row.label},
                             {"metrics", to_json(row.metrics)},

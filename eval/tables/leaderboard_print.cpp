@@ -191,12 +191,14 @@ Answer leaderboard_answer(const Leaderboard& board) {
 
 ordered_json to_json(const Leaderboard& board) {
   const Result& first = board.rows.front().run->front();
-  ordered_json json = {
-      {"dataset", first.dataset},          {"protocol", std::string(first.protocol->name)},
-      {"min_range_m", first.range.min_m},  {"max_range_m", first.range.max_m},
-      {"simulated", first.is_simulated()}, {"confidence", kConfidence},
-      {"sequences", board.sequences},      {"differing_settings", ordered_json::array()},
-      {"rows", ordered_json::array()},     {"remarks", board.doubts}};
+  ordered_json json = {{"dataset", first.dataset}};
+  json.update(rule_json({first.protocol, first.range}));
+  json.update(ordered_json{{"simulated", first.is_simulated()},
+                           {"confidence", kConfidence},
+                           {"sequences", board.sequences},
+                           {"differing_settings", ordered_json::array()},
+                           {"rows", ordered_json::array()},
+                           {"remarks", board.doubts}});
   for (const DifferingSetting& setting : board.differing) {
     json["differing_settings"].push_back(setting.name);
   }

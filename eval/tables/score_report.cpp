@@ -116,8 +116,7 @@ Result scored_result(const Dataset& dataset, const ScoreTask& task, const Method
 
 /// Summary of all scored scans under one protocol.
 struct ProtocolRow {
-  std::string name;
-  RangeGate range;
+  ScoreRule rule;
   Summary summary;
   std::string reason;
 };
@@ -161,11 +160,11 @@ std::vector<ProtocolRow> protocol_rows(const std::vector<ScoreRule>& rules,
   const std::vector<ProtocolDescription> words = describe_protocols();
   std::vector<ProtocolRow> rows;
   for (std::size_t r = 0; r < rules.size(); ++r) {
-    ProtocolRow row{std::string(rules[r].protocol->name), rules[r].range,
-                    summary_of(*rules[r].protocol, scores, r), ""};
-    const auto described = std::ranges::find(words, row.name, &ProtocolDescription::name);
-    row.reason = why(*described, rules[r], row.summary.pooled);
-    rows.push_back(std::move(row));
+    const auto described =
+        std::ranges::find(words, rules[r].protocol->name, &ProtocolDescription::name);
+    Summary summary = summary_of(*rules[r].protocol, scores, r);
+    std::string reason = why(*described, rules[r], summary.pooled);
+    rows.push_back({rules[r], std::move(summary), std::move(reason)});
   }
   return rows;
 }
@@ -226,10 +225,8 @@ Answer score_answer(const Dataset& dataset, const ScoreTask& task,
   if (const auto split = other_split(dataset, task)) {
     standing.doubts.push_back(split_warning(*split));
   }
-  ordered_json json = {{"dataset", std::string(to_string(dataset.kind))},
-                       {"protocol", std::string(rule.protocol->name)},
-                       {"min_range_m", rule.range.min_m},
-                       {"max_range_m", rule.range.max_m}};
+  ordered_json json = {{"dataset", std::string(to_string(dataset.kind))}};
+  json.update(rule_json(rule));
   if (const auto origin = simulated_origin_json(dataset)) json["simulated"] = *origin;
   json.update(rows_json(rows));
   json["predictions"] = ordered_json::object();
@@ -271,8 +268,9 @@ Answer side_by_side_answer(const Dataset& dataset, const std::vector<ScoreRule>&
               .notes = score_remarks(dataset, scores)};
   for (const ProtocolRow& row : protocol_rows(rules, scores)) {
     const Confusion& pooled = row.summary.pooled;
-    sheet.rows.push_back({row.name, or_undefined(row.summary[Metric::kIou]),
-                          row.summary.published_text, pooled.tp, pooled.fp, pooled.fn, row.reason});
+    sheet.rows.push_back({std::string(row.rule.protocol->name),
+                          or_undefined(row.summary[Metric::kIou]), row.summary.published_text,
+                          pooled.tp, pooled.fp, pooled.fn, row.reason});
   }
   return {.standing = standing_of(dataset, scores),
           .sheets = {std::move(sheet)},
@@ -290,11 +288,9 @@ ordered_json side_by_side_json(const Dataset& dataset, const std::vector<ScoreRu
                        {"remarks", remarks}};
   if (const auto origin = simulated_origin_json(dataset)) json["simulated"] = *origin;
   for (const ProtocolRow& row : protocol_rows(rules, scores)) {
-    ordered_json protocol = {{"name", row.name},
-                             {"min_range_m", row.range.min_m},
-                             {"max_range_m", row.range.max_m},
-                             {"iou", json_or_null(row.summary[Metric::kIou])},
-                             {"published_text", row.summary.published_text}};
+    ordered_json protocol = rule_json(row.rule, "name");
+    protocol["iou"] = json_or_null(row.summary[Metric::kIou]);
+    protocol["published_text"] = row.summary.published_text;
     protocol.update(counts_json(row.summary.pooled));
     protocol["why"] = row.reason;
     json["protocols"].push_back(std::move(protocol));
