@@ -37,7 +37,7 @@ def add(addition, project):
     touched = re.findall(r"^\+\+\+ b/(.+)$", patch.read_text(), flags=re.MULTILINE)
     # Within another repository git would skip files without a word.
     environment = {**os.environ, "GIT_CEILING_DIRECTORIES": str(project.parent)}
-    subprocess.run(["git", "apply", str(patch)], cwd=project, env=environment, check=True)
+    subprocess.run(["git", "apply", "-C1", str(patch)], cwd=project, env=environment, check=True)
     if addition in COPIED:
         source, target = COPIED[addition]
         (project / target).parent.mkdir()
@@ -47,41 +47,39 @@ def add(addition, project):
     return touched
 
 
+def call(*command):
+    done = subprocess.run(list(map(str, command)), capture_output=True, text=True)
+    assert done.returncode == 0, f"{command}: {done.stdout[-4000:]}{done.stderr}"
+    return done.stdout
+
+
 def compile_program(project, build):
     """Compiles the program without PCL, ROS and HDF5 from nothing, and prints the CPU seconds of that."""
     off = ("BUILD_TESTS", "BUILD_BENCH", "WITH_PCL", "WITH_ROSBAG", "WITH_HDF5")
     on = ("PRECOMPILED_HEADERS", "WARNINGS_AS_ERRORS")
-    subprocess.run(["cmake", "-S", project, "-B", build, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
-                    *(f"-DMOSBENCH_{name}=OFF" for name in off), *(f"-DMOSBENCH_{name}=ON" for name in on)],
-                   check=True, stdout=subprocess.DEVNULL)
+    call("cmake", "-S", project, "-B", build, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
+         *(f"-DMOSBENCH_{name}=OFF" for name in off), *(f"-DMOSBENCH_{name}=ON" for name in on))
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    subprocess.run(["cmake", "--build", build, "-j", str(os.cpu_count()), "--target", "mosbench"], check=True,
-                   stdout=subprocess.DEVNULL)
+    call("cmake", "--build", build, "-j", os.cpu_count(), "--target", "mosbench")
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     print(f"compiled in {after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime:.0f} CPU seconds")
 
 
-def run(program, *arguments):
-    done = subprocess.run([program, *map(str, arguments)], capture_output=True, text=True)
-    assert done.returncode == 0, f"{arguments}: {done.stderr}"
-    return done.stdout
-
-
 def use_all(program, folder):
     """Simulates a sequence, gives it the data set's name for poses, and judges it by all that was added."""
-    run(program, "simulate", "--layout", "semantickitti", "--scene", "street", "--scans", 8, "--seed", 1, "--out", folder)
+    call(program, "simulate", "--layout", "semantickitti", "--scene", "street", "--scans", 8, "--seed", 1, "--out", folder)
     for poses in (folder / "sequences").glob("*/poses.txt"):
         poses.rename(poses.with_name("lab_poses.txt"))
     asked = ("run", folder, "--method", "new-voxels", "--protocol", "near", "--json")
-    read_as_it_is = json.loads(run(program, *asked, "--out", folder / "out"))
-    raised = json.loads(run(program, *asked, "--read", "raise_m=0.25", "--out", folder / "raised"))
+    read_as_it_is = json.loads(call(program, *asked, "--out", folder / "out"))
+    raised = json.loads(call(program, *asked, "--read", "raise_m=0.25", "--out", folder / "raised"))
     summary = read_as_it_is["sequences"][0]["summary"]
     assert summary["iou"] <= summary["f1"] and 0 < summary["f2"] <= 1, summary
     text = json.dumps(read_as_it_is)
     for name in ('"new-voxels"', '"near"', '"lab"'):
         assert name in text, f"{name} is not in {text}"
     assert "raise_m" in json.dumps(raised) and raised["sequences"][0]["summary"] != summary
-    assert "raise_m" in run(program, "run", "--help-all")
+    assert "raise_m" in call(program, "run", "--help-all")
 
 
 def main():
