@@ -13,18 +13,7 @@ namespace {
 
 using GridCell = std::array<std::int64_t, 3>;
 
-struct CellHash {
-  std::size_t operator()(const GridCell& cell) const {
-    std::uint64_t hash = 0;
-    for (const std::int64_t index : cell) {
-      hash = (hash ^ static_cast<std::uint64_t>(index)) * 0x9E3779B97F4A7C15ULL;
-      hash ^= hash >> 29U;
-    }
-    return hash;
-  }
-};
-
-using CellMembers = std::unordered_map<GridCell, std::vector<std::uint32_t>, CellHash>;
+using CellMembers = std::map<GridCell, std::vector<std::uint32_t>>;
 
 /// Coordinates beyond this, far outside any map, would overflow the cell's index.
 constexpr double kFarthest_m = 1e9;

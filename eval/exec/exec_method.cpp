@@ -83,23 +83,16 @@ class ExecMethod : public Method {
   }
 
   void greet() {
-    const auto deadline = new_deadline();
-    await(greeting_message(greeting_), kHeaderBytes, kReadyBytes, deadline);
-    check_ready_header(parse_header(program_.take(kHeaderBytes)));
-    await({}, kReadyBytes, 0, deadline);
-    sends_scores_ = parse_ready(program_.take(kReadyBytes), greeting_);
+    sends_scores_ = parse_ready(receive(greeting_message(greeting_), ready_answer()), greeting_);
     expect_silence();
   }
 
   void label(const WaitingScan& scan, LabelledScan& result) {
     const std::size_t points = scan.points.size();
-    const auto deadline = new_deadline();
-    const std::size_t bytes = label_bytes(points, sends_scores_);
-    await(scan_message({scans_, stamp_ns(), scan.points, scan.map_from_sensor}), kHeaderBytes,
-          bytes, deadline);
-    check_label_header(parse_header(program_.take(kHeaderBytes)), points, sends_scores_);
-    await({}, bytes, 0, deadline);
-    LabelMessage message = parse_labels(program_.take(bytes), scans_, points, sends_scores_);
+    const std::string payload =
+        receive(scan_message({scans_, stamp_ns(), scan.points, scan.map_from_sensor}),
+                label_answer(points, sends_scores_));
+    LabelMessage message = parse_labels(payload, scans_, points, sends_scores_);
     expect_silence();
     result.scan_index = scans_;
     result.labels = std::move(message.labels);
@@ -110,6 +103,15 @@ class ExecMethod : public Method {
 
   std::int64_t stamp_ns() const {
     return scans_ < context_.stamps_ns.size() ? context_.stamps_ns[scans_] : ScanMessage::kNoStamp;
+  }
+
+  /// Sends, and returns the payload of the answer.
+  std::string receive(std::string_view outgoing, const ExpectedAnswer& answer) {
+    const auto deadline = new_deadline();
+    await(outgoing, kHeaderBytes, answer.payload_bytes, deadline);
+    check_header(program_.take(kHeaderBytes), answer);
+    await({}, answer.payload_bytes, 0, deadline);
+    return program_.take(answer.payload_bytes);
   }
 
   /// Sends, and waits until so many bytes are there. At most `further` bytes may follow.

@@ -43,19 +43,6 @@ std::string header(std::string_view tag, std::uint64_t payload_bytes) {
   return bytes;
 }
 
-void check_header(const MessageHeader& header, std::string_view tag, std::uint64_t payload_bytes,
-                  const std::string& what) {
-  if (header.tag != tag) {
-    throw ProgramError(fmt::format("the program answers {}", mosbench::quoted(header.tag)),
-                       fmt::format("a message {} on stdout, and other text on stderr", tag));
-  }
-  if (header.payload_bytes != payload_bytes) {
-    throw ProgramError(
-        fmt::format("the program announces {} bytes in {}", header.payload_bytes, tag),
-        fmt::format("{} bytes: {}", payload_bytes, what));
-  }
-}
-
 /// Throws ProgramError for the first value that is wrong.
 template <typename Value>
 void check_each(const std::vector<Value>& values, bool (*is_right)(Value), const char* what,
@@ -97,12 +84,23 @@ std::string scan_message(const ScanMessage& scan) {
   return bytes;
 }
 
-MessageHeader parse_header(std::string_view bytes) {
-  return {std::string(bytes.substr(0, 8)), number_at<std::uint64_t>(bytes, 8)};
+ExpectedAnswer ready_answer() { return {"MOSready", 8, "version and whether scores come"}; }
+
+ExpectedAnswer label_answer(std::size_t points, bool with_scores) {
+  return {"MOSlabel", kLabelStartBytes + points * (with_scores ? 8 : 4),
+          fmt::format("the labels{} of {} points", with_scores ? " and scores" : "", points)};
 }
 
-void check_ready_header(const MessageHeader& header) {
-  check_header(header, "MOSready", kReadyBytes, "version and whether scores come");
+void check_header(std::string_view header, const ExpectedAnswer& expected) {
+  if (const std::string_view tag = header.substr(0, 8); tag != expected.tag) {
+    throw ProgramError(
+        fmt::format("the program answers {}", mosbench::quoted(tag)),
+        fmt::format("a message {} on stdout, and other text on stderr", expected.tag));
+  }
+  if (const auto bytes = number_at<std::uint64_t>(header, 8); bytes != expected.payload_bytes) {
+    throw ProgramError(fmt::format("the program announces {} bytes in {}", bytes, expected.tag),
+                       fmt::format("{} bytes: {}", expected.payload_bytes, expected.payload));
+  }
 }
 
 bool parse_ready(std::string_view payload, const Greeting& greeting) {
@@ -116,15 +114,6 @@ bool parse_ready(std::string_view payload, const Greeting& greeting) {
     throw ProgramError("the program gives no scores", "scores, or a run without --write scores");
   }
   return with_scores;
-}
-
-std::size_t label_bytes(std::size_t points, bool with_scores) {
-  return kLabelStartBytes + points * (with_scores ? 8 : 4);
-}
-
-void check_label_header(const MessageHeader& header, std::size_t points, bool with_scores) {
-  check_header(header, "MOSlabel", label_bytes(points, with_scores),
-               fmt::format("the labels{} of {} points", with_scores ? " and scores" : "", points));
 }
 
 LabelMessage parse_labels(std::string_view payload, std::uint64_t scan_index, std::size_t points,

@@ -29,13 +29,6 @@ class ProgramError : public DataError {
 /// them: a header of 16 bytes, then a payload; little endian, without padding.
 inline constexpr std::uint32_t kPipeVersion = 1;
 inline constexpr std::size_t kHeaderBytes = 16;
-inline constexpr std::size_t kReadyBytes = 8;  ///< of the payload of MOSready
-
-/// What a header says.
-struct MessageHeader {
-  std::string tag;                  ///< 8 bytes, "MOSlabel"
-  std::uint64_t payload_bytes = 0;  ///< that follow
-};
 
 /// What mosbench says first.
 struct Greeting {
@@ -62,19 +55,24 @@ struct LabelMessage {
 std::string greeting_message(const Greeting& greeting);
 std::string scan_message(const ScanMessage& scan);
 
-/// Takes kHeaderBytes bytes.
-MessageHeader parse_header(std::string_view bytes);
+/// The message that a program has to answer with.
+struct ExpectedAnswer {
+  std::string_view tag;  ///< 8 bytes
+  std::uint64_t payload_bytes;
+  std::string payload;  ///< what it holds, in words
+};
 
-/// Checks the header of the answer to a greeting. Throws ProgramError.
-void check_ready_header(const MessageHeader& header);
+/// The answer to a greeting.
+ExpectedAnswer ready_answer();
+/// The answer to a scan of so many points.
+ExpectedAnswer label_answer(std::size_t points, bool with_scores);
+/// Checks kHeaderBytes bytes. Throws ProgramError for another message, or another size of one.
+void check_header(std::string_view header, const ExpectedAnswer& expected);
+
 /// Returns whether scores will come. Throws ProgramError for another version, or when scores are
 /// wanted and will not come.
 bool parse_ready(std::string_view payload, const Greeting& greeting);
 
-/// Returns the size of the payload of MOSlabel.
-std::size_t label_bytes(std::size_t points, bool with_scores);
-/// Checks the header of the answer to a scan of so many points. Throws ProgramError.
-void check_label_header(const MessageHeader& header, std::size_t points, bool with_scores);
 /// Throws ProgramError for another scan, for labels other than 9 and 251 and for scores that are
 /// not finite.
 LabelMessage parse_labels(std::string_view payload, std::uint64_t scan_index, std::size_t points,

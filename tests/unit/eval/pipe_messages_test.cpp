@@ -49,7 +49,7 @@ TEST(PipeMessages, HoldAScanAsDocumented) {
 TEST(PipeMessages, GiveTheLabelsAndScoresOfAnAnswer) {
   const std::string payload =
       bytes_of("0300000000000000 0200000000000000 09000000 fb000000 0000803f 000080bf");
-  ASSERT_EQ(payload.size(), label_bytes(2, true));
+  ASSERT_EQ(payload.size(), label_answer(2, true).payload_bytes);
   const LabelMessage message = parse_labels(payload, 3, 2, true);
   EXPECT_THAT(message.labels, testing::ElementsAre(9, 251));
   EXPECT_THAT(message.scores, testing::ElementsAre(1, -1));
@@ -58,15 +58,16 @@ TEST(PipeMessages, GiveTheLabelsAndScoresOfAnAnswer) {
 
 TEST(PipeMessages, RefuseWhatIsNoAnswer) {
   const auto refusal = [](auto&& read) { return message_of<ProgramError>(read); };
-  const MessageHeader header = parse_header("MOSlabel" + bytes_of("1800000000000000"));
-  EXPECT_EQ(header.payload_bytes, label_bytes(2, false));
-  check_label_header(header, 2, false);
+  const std::string header = "MOSlabel" + bytes_of("1800000000000000");
+  check_header(header, label_answer(2, false));
   EXPECT_THAT(
-      refusal([&] { check_label_header(header, 2, true); }),
+      refusal([&] { check_header(header, label_answer(2, true)); }),
       HasSubstr("announces 24 bytes in MOSlabel, expected 32 bytes: the labels and scores"));
-  EXPECT_THAT(refusal([&] { check_ready_header(header); }), HasSubstr("answers \"MOSlabel\""));
+  EXPECT_THAT(refusal([&] { check_header(header, ready_answer()); }),
+              HasSubstr("answers \"MOSlabel\""));
   EXPECT_THAT(refusal([&] {
-                check_ready_header({std::string("\0\x1b[2J\xff\n\r", 8), 8});
+                check_header(std::string("\0\x1b[2J\xff\n\r", 8) + bytes_of("0800000000000000"),
+                             ready_answer());
               }),
               HasSubstr("answers \"??[2J???\""));
   const std::string start = "0000000000000000 0100000000000000 ";
