@@ -82,16 +82,19 @@ ordered_json dataset_json(const Layout* row) {
           {"related", rows_json(row->related, related_json)}};
 }
 
+template <typename Values>
+ordered_json values_json(const Values& values) {
+  ordered_json json = ordered_json::object();
+  for (const auto& [name, value] : values) json[std::string(name)] = value_json(value);
+  return json;
+}
+
 ordered_json preset_json(const Preset& preset) {
-  ordered_json settings = ordered_json::object();
-  for (const PresetValue& value : preset.values) {
-    settings[std::string(value.setting)] = value_json(value.value);
-  }
   return {{"name", preset.name},
           {"dataset", preset.kind ? ordered_json(to_string(*preset.kind)) : nullptr},
           {"method", preset.method.empty() ? nullptr : ordered_json(preset.method)},
           {"protocol", preset.kind ? ordered_json(preset.protocol) : nullptr},
-          {"settings", settings},
+          {"settings", values_json(preset.values)},
           {"source", preset.source}};
 }
 
@@ -106,9 +109,9 @@ ordered_json kind_json(const Kind& kind) {
 }
 
 ordered_json odometry_preset_json(const OdometryPreset& preset) {
-  ordered_json settings = ordered_json::object();
-  for (const auto& [name, value] : preset.settings) settings[std::string(name)] = value_json(value);
-  return {{"name", preset.name}, {"odometry", preset.odometry}, {"settings", settings}};
+  return {{"name", preset.name},
+          {"odometry", preset.odometry},
+          {"settings", values_json(preset.settings)}};
 }
 
 ordered_json scene_json(const SceneSummary& scene) {

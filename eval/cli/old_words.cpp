@@ -5,7 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <optional>
-#include <sstream>
+
+#include "datasets/text/text.hpp"
 
 namespace mosbench {
 namespace {
@@ -83,21 +84,7 @@ constexpr std::array kOldCommands = {
     OldCommand{"study", "run {}"},
 };
 
-Words split(std::string_view text) {
-  std::istringstream stream{std::string(text)};
-  Words words;
-  for (std::string word; stream >> word;) words.push_back(word);
-  return words;
-}
-
-std::string filled(std::string_view pattern, const std::string& value) {
-  const std::size_t hole = pattern.find("{}");
-  if (hole == std::string_view::npos) return std::string(pattern);
-  return std::string(pattern.substr(0, hole)) + value + std::string(pattern.substr(hole + 2));
-}
-
-/// Returns where the value of a flag stands, behind "=" or as a word of its own; `words` without
-/// the flag.
+/// Where the value of a flag stands, behind "=" or as a word of its own.
 struct Found {
   Words::iterator word;
   std::size_t value_at = 0;  ///< in `word`
@@ -107,8 +94,7 @@ std::optional<Found> find_flag(Words& words, std::string_view flag) {
   if (flag == "--out") {
     if (const auto found = find_flag(words, "-o")) return found;
   }
-  for (auto word = words.begin(); word != words.end(); ++word) {
-    if (*word == "--") return std::nullopt;
+  for (auto word = words.begin(); word != words.end() && *word != "--"; ++word) {
     if (*word == flag && word + 1 != words.end()) return Found{word + 1, 0};
     if (word->starts_with(flag) && word->substr(flag.size()).starts_with('=')) {
       return Found{word, flag.size() + 1};
@@ -142,7 +128,7 @@ std::optional<std::string> taken(Words& words, const OldFlag& old) {
 
 void put(Words& words, const OldFlag& old, const std::string& value) {
   if (old.now.empty()) return;
-  const std::string part = filled(old.part, value);
+  const std::string part = fmt::format(fmt::runtime(old.part), value);
   if (const std::optional<Found> known = find_flag(words, old.now)) {
     const std::size_t end = old.in_front ? known->value_at : known->word->size();
     known->word->insert(end, old.in_front ? part : std::string(old.joint) + part);
@@ -155,7 +141,7 @@ void put(Words& words, const OldFlag& old, const std::string& value) {
 void replace_flags(Words& words) {
   const std::string command = words.front();
   for (const OldFlag& old : old_flags()) {
-    const Words commands = split(old.commands);
+    const auto commands = split_at_blanks(old.commands);
     if (std::ranges::find(commands, command) == commands.end()) continue;
     while (const auto value = taken(words, old)) put(words, old, *value);
   }
@@ -163,39 +149,32 @@ void replace_flags(Words& words) {
 
 /// Returns the words of today with the arguments of the old command in their places.
 Words filled_in(const OldCommand& old, const Words& arguments, const TakesValue& takes_value) {
-  const Words now = split(old.now);
+  const std::vector<std::string_view> now = split_at_blanks(old.now);
+  const std::string today(now.front()), before(old.name);
   Words free, flags;
   for (std::size_t i = 0; i < arguments.size(); ++i) {
-    if (!arguments[i].starts_with('-') || arguments[i] == "-") {
-      free.push_back(arguments[i]);
-      continue;
-    }
-    flags.push_back(arguments[i]);
-    const bool has_value =
-        takes_value(now.front(), arguments[i]) || takes_value(std::string(old.name), arguments[i]);
-    if (has_value && i + 1 < arguments.size()) {
-      flags.push_back(arguments[++i]);
-    }
+    const std::string& word = arguments[i];
+    const bool is_flag = word.starts_with('-') && word != "-";
+    (is_flag ? flags : free).push_back(word);
+    if (!is_flag || i + 1 == arguments.size()) continue;
+    if (takes_value(today, word) || takes_value(before, word)) flags.push_back(arguments[++i]);
   }
   if (old.arguments != 0 && free.size() != old.arguments) return {};
-  Words words;
-  std::size_t placed = 0;  // how many have a place of their own
-  for (const std::string& word : now) {
-    for (std::size_t i = 0; i < free.size(); ++i) {
-      if (word.find(fmt::format("{{{}}}", i)) != std::string::npos)
-        placed = std::max(placed, i + 1);
-    }
-  }
+  // How many have a place of their own.
+  std::size_t placed =
+      old.now.find("{1}") != old.now.npos ? 2 : old.now.find("{0}") != old.now.npos;
+  placed = std::min(placed, free.size());
   const Words others(free.begin() + static_cast<std::ptrdiff_t>(placed), free.end());
-  for (std::string word : now) {
-    if (word == "{}") {
+  Words words;
+  for (const std::string_view pattern : now) {
+    if (pattern == "{}") {
       words.insert(words.end(), others.begin(), others.end());
       continue;
     }
-    if (word == "{,}") word = fmt::format("{}", fmt::join(others, ","));
+    std::string word(pattern == "{,}" ? fmt::format("{}", fmt::join(others, ",")) : pattern);
     for (std::size_t i = 0; i < placed; ++i) {
       const std::string hole = fmt::format("{{{}}}", i);
-      if (const auto at = word.find(hole); at != std::string::npos) {
+      if (const auto at = pattern.find(hole); at != pattern.npos) {
         word.replace(at, hole.size(), free[i]);
       }
     }
@@ -218,7 +197,7 @@ std::vector<std::string> in_new_words(std::vector<std::string> words,
   const bool asks_help = words.front() == "help" && words.size() > 1;
   const auto begin = words.begin() + (asks_help ? 1 : 0);
   for (const OldCommand& old : old_commands()) {
-    const Words name = split(old.name);
+    const auto name = split_at_blanks(old.name);
     const auto length = static_cast<std::ptrdiff_t>(name.size());
     if (words.end() - begin < length || !std::equal(name.begin(), name.end(), begin)) continue;
     const Words now = filled_in(old, {begin + length, words.end()}, takes_value);

@@ -77,13 +77,14 @@ std::vector<CostRow> cost_rows(const SequenceProfile& profile) {
 }
 
 Sheet stage_sheet(const SequenceProfile& profile) {
-  Sheet sheet{.columns = {{"stage", Unit::kText}}};
-  for (const char* title : {"min", "median", "p95", "max"}) {
-    sheet.columns.push_back({title, Unit::kNumber, 3});
-  }
-  sheet.columns.insert(sheet.columns.end(), {{"share", Unit::kPercent},
-                                             {"CPU median", Unit::kNumber, 3},
-                                             {"CPU mean", Unit::kNumber, 3}});
+  Sheet sheet{.columns = {{"stage", Unit::kText},
+                          {"min", Unit::kNumber, 3},
+                          {"median", Unit::kNumber, 3},
+                          {"p95", Unit::kNumber, 3},
+                          {"max", Unit::kNumber, 3},
+                          {"share", Unit::kPercent},
+                          {"CPU median", Unit::kNumber, 3},
+                          {"CPU mean", Unit::kNumber, 3}}};
   const std::vector<CostRow> rows = cost_rows(profile);
   const double whole_ms = sum(rows.back().wall_ms);
   for (const CostRow& row : rows) {
@@ -161,19 +162,19 @@ ordered_json sequence_json(const SequenceProfile& profile) {
   }
   ordered_json scans = ordered_json::array();
   for (const ScanProfile& scan : profile.scans) {
-    ordered_json& entry = scans.emplace_back();
-    entry = {{"stem", scan.stem},
-             {"points", scan.points},
-             {"read_ms", scan.read.wall_ms},
-             {"method_wall_ms", scan.method.wall_ms},
-             {"method_cpu_ms", scan.method.cpu_ms},
-             {"resident_mib", scan.resident_mib},
-             {"method_bytes", scan.memory ? ordered_json(scan.memory->bytes) : ordered_json()},
-             {"map_blocks", scan.memory ? ordered_json(scan.memory->map_blocks) : ordered_json()}};
+    scans.push_back(
+        {{"stem", scan.stem},
+         {"points", scan.points},
+         {"read_ms", scan.read.wall_ms},
+         {"method_wall_ms", scan.method.wall_ms},
+         {"method_cpu_ms", scan.method.cpu_ms},
+         {"resident_mib", scan.resident_mib},
+         {"method_bytes", scan.memory ? ordered_json(scan.memory->bytes) : ordered_json()},
+         {"map_blocks", scan.memory ? ordered_json(scan.memory->map_blocks) : ordered_json()}});
   }
   return {{"sequence", profile.name},
           {"threads", profile.threads},
-          {"period_ms", profile.period_ms ? ordered_json(*profile.period_ms) : ordered_json()},
+          {"period_ms", json_or_null(profile.period_ms)},
           {"ms_per_scan", scan_ms(profile)},
           {"points_per_s", points_per_s(profile)},
           {"real_time_factor", real_time_factor(profile)},
@@ -219,41 +220,29 @@ ordered_json profile_trace(const std::vector<SequenceProfile>& profiles) {
   const auto at_us = [&](std::chrono::steady_clock::time_point time) {
     return std::chrono::duration<double, std::micro>(time - origin).count();
   };
-  const auto slice = [&](std::size_t process, const std::string& name, double start_us,
-                         double wall_ms, ordered_json arguments) {
-    events.push_back({{"name", name},
-                      {"ph", "X"},
-                      {"pid", process},
-                      {"tid", 1},
-                      {"ts", start_us},
-                      {"dur", wall_ms * 1e3},
-                      {"args", std::move(arguments)}});
-  };
   for (std::size_t process = 0; process < profiles.size(); ++process) {
-    events.push_back({{"name", "process_name"},
-                      {"ph", "M"},
-                      {"pid", process},
-                      {"args", {{"name", profiles[process].name}}}});
+    const auto add_event = [&](const std::string& name, const char* phase, ordered_json members) {
+      events.push_back({{"name", name}, {"ph", phase}, {"pid", process}});
+      events.back().update(members);
+    };
+    const auto add_slice = [&](const std::string& name, double start_us, double wall_ms,
+                               ordered_json arguments) {
+      add_event(name, "X",
+                {{"tid", 1}, {"ts", start_us}, {"dur", wall_ms * 1e3}, {"args", arguments}});
+    };
+    add_event("process_name", "M", {{"args", {{"name", profiles[process].name}}}});
     for (const ScanProfile& scan : profiles[process].scans) {
       const double start_us = at_us(scan.start);
-      slice(process, "scan " + scan.stem, start_us, (at_us(scan.end) - start_us) * 1e-3,
-            {{"points", scan.points}});
-      slice(process, "read", start_us, scan.read.wall_ms, {{"cpu_ms", scan.read.cpu_ms}});
+      add_slice("scan " + scan.stem, start_us, (at_us(scan.end) - start_us) * 1e-3,
+                {{"points", scan.points}});
+      add_slice("read", start_us, scan.read.wall_ms, {{"cpu_ms", scan.read.cpu_ms}});
       for (const StageTime& event : scan.stages) {
-        slice(process, std::string(event.name), at_us(event.start), event.wall_ms,
-              {{"cpu_ms", event.cpu_ms}});
+        add_slice(std::string(event.name), at_us(event.start), event.wall_ms,
+                  {{"cpu_ms", event.cpu_ms}});
       }
-      events.push_back({{"name", "memory"},
-                        {"ph", "C"},
-                        {"pid", process},
-                        {"ts", start_us},
-                        {"args", {{"resident MiB", scan.resident_mib}}}});
+      add_event("memory", "C", {{"ts", start_us}, {"args", {{"resident MiB", scan.resident_mib}}}});
       if (!scan.memory) continue;
-      events.push_back({{"name", "map"},
-                        {"ph", "C"},
-                        {"pid", process},
-                        {"ts", start_us},
-                        {"args", {{"blocks", scan.memory->map_blocks}}}});
+      add_event("map", "C", {{"ts", start_us}, {"args", {{"blocks", scan.memory->map_blocks}}}});
     }
   }
   return {{"displayTimeUnit", "ms"}, {"traceEvents", std::move(events)}};

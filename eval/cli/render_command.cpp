@@ -2,10 +2,10 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <functional>
 #include <memory>
 #include <numbers>
 #include <optional>
@@ -48,24 +48,17 @@ struct RenderFlags {
   ScanPictureOptions picture;
 };
 
-std::set<std::string> names_of(const std::vector<Result>& results) {
-  std::set<std::string> names;
-  for (const Result& result : results) names.insert(result.sequence.text());
-  return names;
-}
-
-/// Returns the folders of the runs that the results are of.
-std::set<std::string> run_folders(const std::vector<Result>& results) {
-  std::set<std::string> runs;
-  for (const Result& result : results) {
-    runs.insert(folder_of_run(result.folder(), result.sequence).string());
-  }
-  return runs;
+template <typename Text>
+std::set<std::string> texts_of(const std::vector<Result>& results, Text&& text) {
+  std::set<std::string> texts;
+  for (const Result& result : results) texts.insert(text(result));
+  return texts;
 }
 
 Result choose_result(const RenderFlags& options) {
   std::vector<Result> results = read_results(options.input);
-  const std::set<std::string> names = names_of(results);
+  const std::set<std::string> names =
+      texts_of(results, [](const Result& result) { return result.sequence.text(); });
   if (options.sequence) {
     std::erase_if(
         results, [&](const Result& result) { return result.sequence.text() != *options.sequence; });
@@ -76,7 +69,10 @@ Result choose_result(const RenderFlags& options) {
                                  options.input.string(), mosbench::quoted(*options.sequence),
                                  fmt::join(names, ", ")));
   }
-  if (const std::set<std::string> runs = run_folders(results); runs.size() > 1) {
+  const std::set<std::string> runs = texts_of(results, [](const Result& result) {
+    return folder_of_run(result.folder(), result.sequence).string();
+  });
+  if (runs.size() > 1) {
     throw UsageError(fmt::format("{}: holds results of {} runs, expected one of {}",
                                  options.input.string(), runs.size(), fmt::join(runs, ", ")));
   }
@@ -88,9 +84,8 @@ std::size_t choose_scan(const std::string& text, const std::vector<ScanRow>& row
   const bool has_truth =
       std::ranges::any_of(rows, [](const ScanRow& row) { return row.counts.has_value(); });
   if (text == "worst" && has_truth) return worst_first(rows).front();
-  std::size_t scan = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), scan);
-  if (error == std::errc() && end == text.data() + text.size() && scan < rows.size()) return scan;
+  const auto scan = parse_unsigned(text);
+  if (scan && *scan < rows.size()) return *scan;
   const auto last = static_cast<std::ptrdiff_t>(rows.size()) - 1;
   if (text == "worst") {
     throw UsageError(
@@ -155,16 +150,49 @@ bool is_video(const std::filesystem::path& out) {
 /// PNG file each. Without ffmpeg the folder is named like the video.
 class PictureSequence {
  public:
-  /// `per_s`: pictures per second of a video. Throws DataError where ffmpeg cannot be started.
-  PictureSequence(const std::filesystem::path& out, double per_s);
-  ~PictureSequence();
+  PictureSequence(const std::filesystem::path& out, double per_s) : folder_(out) {
+    if (!is_video(out)) return;
+    if (!has_ffmpeg()) {
+      folder_.replace_extension();
+      const std::string all = "-pattern_type glob -i " + shell_word((folder_ / "*.png").string());
+      tell(fmt::format(
+          "ffmpeg is not there (Debian's package ffmpeg): pictures go to {} instead, of "
+          "which it makes the video by\n  {}",
+          folder_.string(), ffmpeg_command(all, out, per_s)));
+      return;
+    }
+    out_ = std::filesystem::absolute(out);
+    std::filesystem::create_directories(out_.parent_path());
+    partial_ = out_.parent_path() /
+               fmt::format("{}.partial{}", out_.stem().string(), out_.extension().string());
+    ffmpeg_ = popen(ffmpeg_command("-f image2pipe -i -", partial_, per_s).c_str(), "w");
+    if (ffmpeg_ == nullptr) throw DataError(out, "ffmpeg cannot be started", "room for a process");
+  }
+  ~PictureSequence() {
+    if (ffmpeg_ != nullptr) pclose(ffmpeg_);
+    std::error_code ignored;
+    if (!partial_.empty()) std::filesystem::remove(partial_, ignored);
+  }
   PictureSequence(const PictureSequence&) = delete;
   PictureSequence& operator=(const PictureSequence&) = delete;
 
-  /// Throws DataError.
-  void add(const std::string& stem, std::string_view png);
+  void add(const std::string& stem, std::string_view png) {
+    ++pictures_;
+    if (ffmpeg_ == nullptr) return write_file_atomic(folder_ / (stem + ".png"), png);
+    // What ffmpeg thinks of it shows when it ends.
+    std::fwrite(png.data(), 1, png.size(), ffmpeg_);
+  }
+
   /// Returns what was made, as a sentence. Throws DataError where ffmpeg failed.
-  std::string finish();
+  std::string finish() {
+    if (ffmpeg_ == nullptr) return fmt::format("{} pictures in {}\n", pictures_, folder_.string());
+    if (pclose(std::exchange(ffmpeg_, nullptr)) != 0) {
+      throw DataError(out_, "could not be made by ffmpeg",
+                      "that it takes PNG files and knows H.264");
+    }
+    std::filesystem::rename(partial_, out_);
+    return fmt::format("{} pictures in the video {}\n", pictures_, out_.string());
+  }
 
  private:
   std::filesystem::path out_, partial_;  ///< of a video; empty for a folder
@@ -172,50 +200,6 @@ class PictureSequence {
   FILE* ffmpeg_ = nullptr;
   std::size_t pictures_ = 0;
 };
-
-PictureSequence::PictureSequence(const std::filesystem::path& out, double per_s) {
-  if (!is_video(out)) {
-    folder_ = out;
-    return;
-  }
-  if (!has_ffmpeg()) {
-    folder_ = std::filesystem::path(out).replace_extension();
-    const std::string all = "-pattern_type glob -i " + shell_word((folder_ / "*.png").string());
-    tell(
-        fmt::format("ffmpeg is not there (Debian's package ffmpeg): pictures go to {} instead, of "
-                    "which it makes the video by\n  {}",
-                    folder_.string(), ffmpeg_command(all, out, per_s)));
-    return;
-  }
-  out_ = std::filesystem::absolute(out);
-  std::filesystem::create_directories(out_.parent_path());
-  partial_ = out_.parent_path() /
-             fmt::format("{}.partial{}", out_.stem().string(), out_.extension().string());
-  ffmpeg_ = popen(ffmpeg_command("-f image2pipe -i -", partial_, per_s).c_str(), "w");
-  if (ffmpeg_ == nullptr) throw DataError(out, "ffmpeg cannot be started", "room for a process");
-}
-
-PictureSequence::~PictureSequence() {
-  if (ffmpeg_ != nullptr) pclose(ffmpeg_);
-  std::error_code ignored;
-  if (!partial_.empty()) std::filesystem::remove(partial_, ignored);
-}
-
-void PictureSequence::add(const std::string& stem, std::string_view png) {
-  ++pictures_;
-  if (ffmpeg_ == nullptr) return write_file_atomic(folder_ / (stem + ".png"), png);
-  // What ffmpeg thinks of it shows when it ends.
-  std::fwrite(png.data(), 1, png.size(), ffmpeg_);
-}
-
-std::string PictureSequence::finish() {
-  if (ffmpeg_ == nullptr) return fmt::format("{} pictures in {}\n", pictures_, folder_.string());
-  if (pclose(std::exchange(ffmpeg_, nullptr)) != 0) {
-    throw DataError(out_, "could not be made by ffmpeg", "that it takes PNG files and knows H.264");
-  }
-  std::filesystem::rename(partial_, out_);
-  return fmt::format("{} pictures in the video {}\n", pictures_, out_.string());
-}
 
 /// Where the camera looks in one of several pictures.
 std::optional<double> orbit_rad_of(const RenderFlags& options, std::size_t picture,
@@ -227,28 +211,20 @@ std::optional<double> orbit_rad_of(const RenderFlags& options, std::size_t pictu
   return degrees * std::numbers::pi / 180.0;
 }
 
-/// Draws scans one after the other.
-class Pictures {
- public:
-  Pictures(const RenderFlags& options, const ResultScans& scans, std::vector<std::size_t> chosen)
-      : options_(options), scans_(scans), chosen_(std::move(chosen)) {
-    if (options.boxes) boxes_ = boxes_of(scans, chosen_);
+/// Draws scans one after the other, each as a PNG file that `take` gets.
+void draw(const RenderFlags& options, const ResultScans& scans,
+          const std::vector<std::size_t>& chosen,
+          const std::function<void(const std::string& stem, std::string_view png)>& take) {
+  std::vector<std::vector<MovingBox>> boxes;
+  if (options.boxes) boxes = boxes_of(scans, chosen);
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    ScanPictureOptions picture = options.picture;
+    picture.title = title_of(scans.result(), chosen[i]);
+    picture.orbit_rad = orbit_rad_of(options, i, chosen.size());
+    if (options.boxes) picture.boxes = boxes[i];
+    take(scans.rows()[chosen[i]].stem, scan_picture(scans.read(chosen[i]), picture).png());
   }
-
-  std::string png(std::size_t i) const {
-    ScanPictureOptions picture = options_.picture;
-    picture.title = title_of(scans_.result(), chosen_[i]);
-    picture.orbit_rad = orbit_rad_of(options_, i, chosen_.size());
-    if (options_.boxes) picture.boxes = boxes_[i];
-    return scan_picture(scans_.read(chosen_[i]), picture).png();
-  }
-
- private:
-  const RenderFlags& options_;
-  const ResultScans& scans_;
-  std::vector<std::size_t> chosen_;
-  std::vector<std::vector<MovingBox>> boxes_;
-};
+}
 
 /// The scans that --scans names, in their own order.
 std::vector<std::size_t> chosen_scans(const ResultScans& scans, const std::string& text) {
@@ -266,13 +242,12 @@ Answer render_several(RenderFlags& options, const ResultScans& scans) {
   if (options.picture.range_m <= 0.0) {
     options.picture.range_m = reach_m(scans.read(chosen[chosen.size() / 2]));
   }
-  const Pictures drawn(options, scans, chosen);
   PictureSequence pictures(options.out, options.per_s);
   Progress progress("render", chosen.size());
-  for (std::size_t i = 0; i < chosen.size(); ++i) {
-    pictures.add(scans.rows()[chosen[i]].stem, drawn.png(i));
+  draw(options, scans, chosen, [&](const std::string& stem, std::string_view png) {
+    pictures.add(stem, png);
     progress.advance();
-  }
+  });
   return {pictures.finish()};
 }
 
@@ -330,7 +305,8 @@ Answer render(RenderFlags& options) {
   if (!options.one_scan()) return render_several(options, scans);
   const std::size_t scan_index = choose_scan(options.scans, scans.rows());
   check_has_labels(scans, scan_index);
-  write_output(options.out, Pictures(options, scans, {scan_index}).png(0));
+  draw(options, scans, {scan_index},
+       [&](const std::string&, std::string_view png) { write_output(options.out, png); });
   return answer_beside(options.out,
                        {fmt::format("scan {} of {} in {}\n", scans.rows()[scan_index].stem,
                                     result.sequence.text(), options.out.string())});

@@ -69,21 +69,13 @@ MethodName method_name(const std::string& text) {
   return {text.substr(0, comma), text.substr(comma + 2)};
 }
 
-std::vector<ScoreRule> all_rules(const ScoreFlags& options) {
+std::vector<ScoreRule> all_rules(const std::optional<std::string>& range) {
   std::vector<ScoreRule> rules;
   for (const Protocol& protocol : protocols()) {
-    const bool ranged = options.range && protocol.range_rule != RangeRule::kNone;
     rules.push_back(
-        {&protocol, ranged ? range_option(*options.range, protocol) : protocol.default_range});
+        rule_of(protocol, protocol.range_rule != RangeRule::kNone ? range : std::nullopt));
   }
   return rules;
-}
-
-ScoreRule one_rule(const ScoreFlags& options, const Dataset& dataset) {
-  const Protocol& protocol =
-      protocol_named(options.protocol.value_or(std::string(default_preset(dataset.kind).protocol)));
-  return {&protocol,
-          options.range ? range_option(*options.range, protocol) : protocol.default_range};
 }
 
 /// Returns the split to score, or nothing for all scans. A protocol that is over the scans of a
@@ -109,7 +101,7 @@ PredictionOptions prediction_options(const ScoreFlags& options) {
 Answer score_all(const ScoreFlags& options, const Dataset& dataset, ScoreTask task) {
   if (options.out)
     throw UsageError("--out: keeps the results of one protocol, expected no --protocol all");
-  task.rules = all_rules(options);
+  task.rules = all_rules(options.range);
   const std::vector<SequenceScores> scores = score_dataset(dataset, task);
   return side_by_side_answer(dataset, task.rules, scores);
 }
@@ -132,7 +124,7 @@ Answer score(const ScoreFlags& options) {
     if (task.split) keep_split(*task.split, dataset);
     return score_all(options, dataset, std::move(task));
   }
-  task.rules = {one_rule(options, dataset)};
+  task.rules = {rule_of(options.protocol, options.range, dataset.kind)};
   const bool split_asked = task.split.has_value();
   task.split = settle_split(task, dataset);
   if (task.split) keep_split(*task.split, dataset);

@@ -37,14 +37,6 @@ struct StatsFlags : DataWords {
   bool shows(std::string_view what) const { return std::ranges::find(by, what) != by.end(); }
 };
 
-BreakdownTask settle(const StatsFlags& options, const Dataset& dataset) {
-  const Protocol& protocol =
-      protocol_named(options.protocol.value_or(std::string(default_preset(dataset.kind).protocol)));
-  return {&protocol,
-          options.range ? range_option(*options.range, protocol) : protocol.default_range,
-          options.threads};
-}
-
 std::vector<SequenceBreakdown> all_breakdowns(const StatsFlags& options, const Dataset& dataset,
                                               const BreakdownTask& task) {
   PredictionOptions prediction;
@@ -129,7 +121,8 @@ Answer breakdown_of_run(const StatsFlags& options, const CLI::App& command) {
 Answer breakdown_of(const StatsFlags& options, const CLI::App& command) {
   if (!options.predictions) return breakdown_of_run(options, command);
   const Dataset dataset = open_dataset(options);
-  const BreakdownTask task = settle(options, dataset);
+  const ScoreRule rule = rule_of(options.protocol, options.range, dataset.kind);
+  const BreakdownTask task = {rule.protocol, rule.range, options.threads};
   return answer_of(options, dataset, task, all_breakdowns(options, dataset, task));
 }
 

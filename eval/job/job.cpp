@@ -302,10 +302,17 @@ RangeGate parsed_range(const std::string& text) {
       text));
 }
 
-RangeGate range_option(const std::string& text, const Protocol& protocol) {
-  const RangeGate range = parsed_range(text);
-  check_range(range, protocol);
-  return range;
+ScoreRule rule_of(const Protocol& protocol, const std::optional<std::string>& range) {
+  if (!range) return {&protocol, protocol.default_range};
+  const RangeGate asked = parsed_range(*range);
+  check_range(asked, protocol);
+  return {&protocol, asked};
+}
+
+ScoreRule rule_of(const std::optional<std::string>& protocol,
+                  const std::optional<std::string>& range, DatasetKind kind) {
+  return rule_of(protocol_named(protocol.value_or(std::string(default_preset(kind).protocol))),
+                 range);
 }
 
 }  // namespace mosbench

@@ -132,7 +132,11 @@ std::optional<DatasetKind> dataset_kind_option(const std::string& name);
 
 /// "MIN,MAX" in metres, MAX -1 for no limit. Throws UsageError.
 RangeGate parsed_range(const std::string& text);
-/// The same, and throws for a limit that the protocol does not know.
-RangeGate range_option(const std::string& text, const Protocol& protocol);
+/// Returns the protocol with that range, or its own. Throws UsageError also for a limit that the
+/// protocol does not know.
+ScoreRule rule_of(const Protocol& protocol, const std::optional<std::string>& range);
+/// The same by the protocol's name; without one, by that of the data set's usual preset.
+ScoreRule rule_of(const std::optional<std::string>& protocol,
+                  const std::optional<std::string>& range, DatasetKind kind);
 
 }  // namespace mosbench

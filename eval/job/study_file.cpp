@@ -316,7 +316,7 @@ void read_rest(const YamlNode& root, Study& study) {
       range->refuse("range_m is not understood", "[MIN, MAX] together with a protocol");
     }
     const std::string text = fmt::format("{},{}", limits[0].text(), limits[1].text());
-    study.rule.range = range->located([&] { return range_option(text, *study.rule.protocol); });
+    study.rule.range = range->located([&] { return rule_of(*study.rule.protocol, text).range; });
   }
   if (root.find("odometry")) study.odometries.clear();
   for (const YamlNode& kind : root.list("odometry")) study.odometries.push_back(odometry_of(kind));
