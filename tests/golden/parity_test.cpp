@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <deque>
 #include <string>
 #include <vector>
 
@@ -69,7 +70,7 @@ TEST_P(ParityLabels, EqualTheAuthorsOnEveryPointForAnyThreadCount) {
     GTEST_SKIP() << "sanitized builds run avia_params and vlp16_params with 2 threads only";
   }
   const std::vector<Pose> poses = poses_of(parity);
-  std::vector<Comparison> comparisons;
+  std::deque<Comparison> comparisons;
   for (const unsigned threads : kThreads) comparisons.emplace_back(parity, threads);
   std::vector<std::vector<std::uint32_t>> expected;
   std::size_t points_read = 0;
