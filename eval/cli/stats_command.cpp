@@ -128,7 +128,7 @@ Answer breakdown_of(const StatsFlags& options, const CLI::App& command) {
 
 Answer curve(const StatsFlags& options) {
   if (options.picture) check_output(*options.picture);
-  Answer answer = curve_answer(curve_of_run(options.input, options.data));
+  Answer answer = curve_answer(options.input, options.data);
   if (options.picture) write_output(*options.picture, render(answer, Format::kPng));
   return answer_beside(options.picture.value_or(""), std::move(answer));
 }

@@ -60,22 +60,17 @@ std::string metrics_text(const Confusion& counts) {
                      percent_text(precision(counts)), percent_text(recall(counts)));
 }
 
-/// Returns the first point that reaches a recall, or null.
-const CurvePoint* reaching(const ScoreCurve& curve, double wanted) {
-  const auto found = std::ranges::find_if(curve.points, [&](const CurvePoint& point) {
-    return recall(point.counts).value() >= wanted - 1e-12;
-  });
-  return found == curve.points.end() ? nullptr : &*found;
-}
-
+/// Precision at levels of recall, of the first point that reaches each.
 Sheet levels_sheet(const ScoreCurve& curve) {
   Sheet sheet{.columns = {{"recall % from"},
                           {"score from"},
                           {"precision", Unit::kPercent},
                           {"IoU", Unit::kPercent}}};
   for (int tenth = 1; tenth <= 10; ++tenth) {
-    const CurvePoint* point = reaching(curve, 0.1 * tenth);
-    if (point == nullptr) continue;
+    const auto point = std::ranges::find_if(curve.points, [&](const CurvePoint& each) {
+      return recall(each.counts).value() >= 0.1 * tenth - 1e-12;
+    });
+    if (point == curve.points.end()) break;
     sheet.rows.push_back({10.0 * tenth, point->threshold, or_undefined(precision(point->counts)),
                           or_undefined(moving_iou(point->counts))});
   }
@@ -114,38 +109,47 @@ nlohmann::ordered_json threshold_json(const CurvePoint& point) {
 /// A chart shows no more digits.
 double rounded(double value) { return std::round(value * 1e4) / 1e4; }
 
-nlohmann::ordered_json curve_json(const CurveReport& report) {
-  nlohmann::ordered_json json = provenance_json(report.run);
-  json["scans"] = report.curve.scans;
-  json["average_precision"] = report.curve.average_precision;
-  json["best"] = threshold_json(best_point(report.curve));
-  json["labels"] = point_json(report.curve.of_labels);
+nlohmann::ordered_json curve_json(const ResultSet& run, const ScoreCurve& curve) {
+  nlohmann::ordered_json json = provenance_json(run);
+  json["scans"] = curve.scans;
+  json["average_precision"] = curve.average_precision;
+  json["best"] = threshold_json(best_point(curve));
+  json["labels"] = point_json(curve.of_labels);
   json["curve"] = nlohmann::ordered_json::array();
-  for (const CurvePoint& point : thinned(report.curve)) {
-    json["curve"].push_back(threshold_json(point));
-  }
+  for (const CurvePoint& point : thinned(curve)) json["curve"].push_back(threshold_json(point));
   return json;
 }
 
 /// Draws precision over recall, and where the labels of the run are.
-LineChart curve_chart(const CurveReport& report) {
+LineChart curve_chart(const ResultSet& run, const ScoreCurve& curve) {
   constexpr Colour kThresholds{0, 90, 170}, kOfLabels{200, 60, 0};
   const auto place_of = [](const Confusion& counts) {
     return std::array{100 * recall(counts).value_or(0), 100 * precision(counts).value_or(0)};
   };
   Curve thresholds{"thresholds of the score", kThresholds, {}};
-  for (const CurvePoint& point : thinned(report.curve)) {
+  for (const CurvePoint& point : thinned(curve)) {
     thresholds.points.push_back(place_of(point.counts));
   }
-  const Curve labels{"labels of the run", kOfLabels, {place_of(report.curve.of_labels)}};
-  return {.title = fmt::format("{}, average precision {} %{}", report.run.front().method,
-                               percent_text(report.curve.average_precision),
-                               report.run.front().is_simulated() ? " (simulated)" : ""),
+  const Curve labels{"labels of the run", kOfLabels, {place_of(curve.of_labels)}};
+  return {.title = fmt::format("{}, average precision {} %{}", run.front().method,
+                               percent_text(curve.average_precision),
+                               run.front().is_simulated() ? " (simulated)" : ""),
           .x_label = "recall %",
           .y_label = "precision %",
           .equal_scales = true,
           .curves = {thresholds, labels},
           .limits = std::array{0.0, 100.0}};
+}
+
+ScoreCurve curve_of_run(const std::filesystem::path& path,
+                        const std::optional<std::filesystem::path>& dataset_root) {
+  ScoreCounts counts;
+  for (const Result& result : read_results(path)) add_sequence(result, dataset_root, counts);
+  try {
+    return counts.curve();
+  } catch (const std::domain_error& error) {
+    throw DataError(path, error.what(), "scans with truth in which points move");
+  }
 }
 
 }  // namespace
@@ -220,25 +224,14 @@ void add_counted_scans(const Result& result, const ResultScans& scans, ScoreCoun
   }
 }
 
-CurveReport curve_of_run(const std::filesystem::path& path,
-                         const std::optional<std::filesystem::path>& dataset_root) {
-  CurveReport report{load_result_set(path), {}};
-  ScoreCounts counts;
-  for (const Result& result : read_results(path)) add_sequence(result, dataset_root, counts);
-  try {
-    report.curve = counts.curve();
-  } catch (const std::domain_error& error) {
-    throw DataError(path, error.what(), "scans with truth in which points move");
-  }
-  return report;
-}
-
-Answer curve_answer(const CurveReport& report) {
-  const ScoreCurve& curve = report.curve;
+Answer curve_answer(const std::filesystem::path& path,
+                    const std::optional<std::filesystem::path>& dataset_root) {
+  const ResultSet run = load_result_set(path);
+  const ScoreCurve curve = curve_of_run(path, dataset_root);
   const CurvePoint& best = best_point(curve);
   const Confusion& counts = best.counts;
   Sheet sheet = levels_sheet(curve);
-  sheet.lead = {headline(report.run),
+  sheet.lead = {headline(run),
                 fmt::format("{}, {} of {} counted points move", counted(curve.scans, "scan"),
                             counts.tp + counts.fn, counts.tp + counts.fp + counts.fn + counts.tn),
                 fmt::format("average precision {} %", percent_text(curve.average_precision)),
@@ -248,11 +241,11 @@ Answer curve_answer(const CurveReport& report) {
     sheet.notes.push_back(fmt::format("the scores take {}: the method says no more than its labels",
                                       counted(curve.points.size(), "value")));
   }
-  return {.standing = standing_of(report.run),
+  return {.standing = standing_of(run),
           .sheets = {std::move(sheet)},
           .records = records_of(curve),
-          .json = json_text(curve_json(report)),
-          .charts = {curve_chart(report)}};
+          .json = json_text(curve_json(run, curve)),
+          .charts = {curve_chart(run, curve)}};
 }
 
 nlohmann::ordered_json drawn_curve_json(const ScoreCurve& curve) {

@@ -195,8 +195,7 @@ StaticMap static_map_of(const ResultScans& scans) {
 }
 
 void write_static_ply(const ResultScans& scans, ProductRecord& record) {
-  const std::string file = "static.ply";
-  if (!record.has(file)) record.write(file, static_map_of(scans).ply());
+  if (!record.has("static.ply")) record.write("static.ply", static_map_of(scans).ply());
 }
 
 void write_static_pcd(const ResultScans& scans, ProductRecord& record) {

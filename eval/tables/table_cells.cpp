@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "eval/statistics/paired_runs.hpp"
@@ -105,26 +106,27 @@ TableCell measured_cell(const PaperTable& table, const TableColumn& column, cons
   return cell;
 }
 
+/// The empty row of a published setting.
 TableRow published_row(const PaperTable& table, const PublishedRow& row) {
   const PublishedCell& first = row.cells.front();
   TableRow filled{first.section, first.method, first.setting, first.protocol, first.source, "", {}};
   for (const TableColumn& column : table.columns) {
-    TableCell cell;
+    TableCell& cell = filled.cells.emplace_back();
     cell.column = column.name;
     cell.published = find_cell(row, column.name);
-    if (own_method(first) != nullptr)
-      cell.reasons = {how_to_fill(table, column, cell.published.value_or(first))};
-    filled.cells.push_back(std::move(cell));
+    if (own_method(first) == nullptr) continue;
+    cell.reasons = {how_to_fill(table, column, cell.published.value_or(first))};
   }
   return filled;
 }
 
 /// Returns the empty row of the method that is better than the paper's and published nowhere.
 TableRow best_row(const PaperTable& table, const Preset& best, const MethodKind& method) {
+  const std::string_view protocol = preset_for(best, table.dataset).protocol;
   TableRow row{"",
                std::string(method.title),
                fmt::format("preset {}", best.name),
-               std::string(preset_for(best, table.dataset).protocol),
+               std::string(protocol),
                std::string(method.source),
                "",
                {}};
@@ -138,15 +140,15 @@ TableRow best_row(const PaperTable& table, const Preset& best, const MethodKind&
 
 TableRow measured_row(const PaperTable& table, const ResultSet& run, const PublishedRow* row) {
   const Result& first = run.front();
-  const bool same_rules =
-      row != nullptr && row->cells.front().protocol == std::string(first.protocol->name);
-  TableRow filled{same_rules ? row->cells.front().section : "",
-                  first.method,
-                  first.setting,
-                  std::string(first.protocol->name),
-                  row == nullptr ? "" : row->cells.front().source,
-                  run.path.string(),
-                  {}};
+  TableRow filled{.section = "",
+                  .method = first.method,
+                  .setting = first.setting,
+                  .protocol = std::string(first.protocol->name),
+                  .source = row == nullptr ? "" : row->cells.front().source,
+                  .results = run.path.string(),
+                  .cells = {}};
+  const bool same_rules = row != nullptr && row->cells.front().protocol == filled.protocol;
+  if (same_rules) filled.section = row->cells.front().section;
   for (const TableColumn& column : table.columns) {
     filled.cells.push_back(measured_cell(table, column, run, row));
   }
@@ -161,19 +163,9 @@ bool has_values(const PaperTable& table, const ResultSet& run) {
 }  // namespace
 
 std::string_view to_string(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::kPublishedOnly:
-      return "not measured";
-    case Verdict::kMeasuredOnly:
-      return "not published";
-    case Verdict::kWithin:
-      return "within";
-    case Verdict::kOutside:
-      return "outside";
-    case Verdict::kNotComparable:
-      break;
-  }
-  return "not comparable";
+  static constexpr std::array<std::string_view, 5> kTexts = {"not measured", "not published",
+                                                             "within", "outside", "not comparable"};
+  return kTexts[static_cast<std::size_t>(verdict)];
 }
 
 bool FilledTable::simulated() const {
