@@ -23,6 +23,13 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
+/// Throws UsageError for a limit that the protocol does not know.
+void check_range(const RangeGate& range, const Protocol& protocol) {
+  if (protocol.range_rule != RangeRule::kNone || range == protocol.default_range) return;
+  throw UsageError(fmt::format("--range: protocol {} counts points at every range, expected none",
+                               protocol.name));
+}
+
 /// Returns the effective settings; where they are refused, why.
 ordered_json config_of(const Job& job, DatasetKind kind) {
   try {
@@ -176,12 +183,6 @@ ScoreRule rule_of(const Job& job, DatasetKind kind) {
   return {&protocol, known ? RangeGate{settings.number(common_settings::kMinRange_m),
                                        settings.number(common_settings::kMaxRange_m)}
                            : protocol.default_range};
-}
-
-void check_range(const RangeGate& range, const Protocol& protocol) {
-  if (protocol.range_rule != RangeRule::kNone || range == protocol.default_range) return;
-  throw UsageError(fmt::format("--range: protocol {} counts points at every range, expected none",
-                               protocol.name));
 }
 
 std::string perturb_text(const Job& job) {

@@ -76,9 +76,6 @@ Settings settings_of(const Job& job, DatasetKind kind);
 /// `settings_of` where the rule depends on settings.
 ScoreRule rule_of(const Job& job, DatasetKind kind);
 
-/// Throws UsageError for a limit that the protocol does not know.
-void check_range(const RangeGate& range, const Protocol& protocol);
-
 /// Says how a job's scans are disturbed, in the words of --perturb; empty for not at all.
 std::string perturb_text(const Job& job);
 

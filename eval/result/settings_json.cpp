@@ -29,17 +29,6 @@ std::optional<double> number_in(const SettingValue& value) {
   return std::nullopt;
 }
 
-/// The value that a setting has while a result does not say another: that of the setting it
-/// follows, or the method's default.
-std::optional<SettingValue> usual_value(const RecordedSettings& settings, const Settings& defaults,
-                                        std::string_view name) {
-  const Setting* setting = defaults.find(name);
-  if (setting == nullptr) return std::nullopt;
-  if (setting->follows.empty()) return setting->value;
-  const SettingValue* followed = settings.find(setting->follows);
-  return followed == nullptr ? std::nullopt : std::optional(*followed);
-}
-
 /// Nothing for a value that no setting can have.
 std::optional<SettingValue> setting_value(const ordered_json& value) {
   if (value.is_string()) return value.get<std::string>();
@@ -199,8 +188,14 @@ std::string describe_settings(const RecordedSettings& settings, std::string_view
     parts.push_back(delay_scans == 0 ? "online" : "delayed by " + counted(delay_scans, "scan"));
   }
   for (const auto& [name, value] : settings.all()) {
-    const auto usual = kind == nullptr ? std::nullopt : usual_value(settings, kind->defaults, name);
-    if (said.contains(name) || (usual && are_equal(*usual, value))) continue;
+    if (said.contains(name)) continue;
+    // Usual is the value of the setting that this one follows, or the method's default.
+    const Setting* setting = kind == nullptr ? nullptr : kind->defaults.find(name);
+    const bool follows = setting != nullptr && !setting->follows.empty();
+    const SettingValue* usual = follows              ? settings.find(setting->follows)
+                                : setting == nullptr ? nullptr
+                                                     : &setting->value;
+    if (usual != nullptr && are_equal(*usual, value)) continue;
     parts.push_back(fmt::format("{} {}", name, value_text(value)));
   }
   if (parts.empty()) return settings.all().empty() ? "" : "default settings";

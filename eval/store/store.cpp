@@ -157,11 +157,6 @@ void make_twin(const fs::path& folder, const fs::path& twin) {
   fs::copy(folder, twin, kAll);
 }
 
-void apply(const BaselineChange& change, const fs::path& folder) {
-  for (const auto& [file, bytes] : change.written) write_file_atomic(folder / file, bytes);
-  for (const fs::path& file : change.superseded) fs::remove(folder / file);
-}
-
 constexpr const char* kRecord = "products.json";
 
 /// The hashes by file of an earlier run, none where there was none.
@@ -299,7 +294,8 @@ void accept_baseline(const ResultSet& run, const fs::path& folder) {
   try {
     make_twin(baseline, fresh);
     const FolderLock lock(fresh);  // goes on holding the baseline under its name
-    apply(change, fresh);
+    for (const auto& [file, bytes] : change.written) write_file_atomic(fresh / file, bytes);
+    for (const fs::path& file : change.superseded) fs::remove(fresh / file);
     replace_folder(fresh, baseline);
   } catch (...) {
     std::error_code ignored;
