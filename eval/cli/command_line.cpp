@@ -15,9 +15,7 @@
 #include "eval/answer/render.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/cli/flags.hpp"
-#include "eval/cli/help_text.hpp"
 #include "eval/cli/old_words.hpp"
-#include "eval/cli/output_file.hpp"
 #include "eval/result/tell.hpp"
 #include "eval/result/version.hpp"
 

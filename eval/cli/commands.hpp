@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <span>
 #include <string>
@@ -37,6 +38,35 @@ Failure current_failure();
 
 /// All commands, in the order in which --help shows them.
 std::span<const Command> commands();
+
+/// Returns docs/help/<name>.txt as it was when the program was built: what --help shows of a
+/// command behind its flags and, below a line "---", what only --help-all shows.
+std::string_view help_page(std::string_view name);
+
+/// Returns "mosbench", or "mosbench run" of the command run.
+std::string full_name(const CLI::App& command);
+
+/// Returns --help of a command or of the program, or --help-all: texts of options are wrapped at
+/// 100 columns and have their defaults behind them.
+std::string help_of(const CLI::App& command, bool all = false);
+
+/// Throws UsageError naming the nearest command when there is none of this name.
+void check_command_name(const std::string& name);
+
+/// Writes a file that the user named; "-" is stdout. Returns when the bytes are on the disk. Throws
+/// DataError.
+void write_output(const std::filesystem::path& file, std::string_view bytes);
+
+/// Throws DataError where `file` can be no file to write, so that hours of work are not lost on it:
+/// it is a folder, or lies below what is none.
+void check_output(const std::filesystem::path& file);
+
+/// Returns whether a file that the user named is stdout.
+bool names_stdout(const std::filesystem::path& file);
+
+/// Returns the answer of a command that wrote `file`. Where that is stdout, which then holds
+/// nothing else, the answer goes to stderr.
+Answer answer_beside(const std::filesystem::path& file, Answer answer);
 
 CommandRun add_compare(CLI::App& command);
 CommandRun add_convert(CLI::App& command);

@@ -17,7 +17,6 @@
 #include "eval/breakdown/run_diff.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/cli/flags.hpp"
-#include "eval/cli/output_file.hpp"
 #include "eval/result/result.hpp"
 #include "eval/result/result_scans.hpp"
 #include "eval/result/tell.hpp"

@@ -13,7 +13,6 @@
 #include "eval/answer/answer_text.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/cli/flags.hpp"
-#include "eval/cli/output_file.hpp"
 #include "eval/engine/pose_finding.hpp"
 #include "eval/result/machine.hpp"
 #include "eval/result/reading_json.hpp"

@@ -8,7 +8,6 @@
 #include "datasets/text/text.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/cli/flags.hpp"
-#include "eval/cli/output_file.hpp"
 #include "eval/cli/run_kinds.hpp"
 #include "eval/result/tell.hpp"
 #include "eval/tables/table_print.hpp"

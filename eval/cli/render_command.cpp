@@ -17,7 +17,6 @@
 #include "datasets/text/text.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/cli/flags.hpp"
-#include "eval/cli/output_file.hpp"
 #include "eval/protocols/metrics.hpp"
 #include "eval/report/result_boxes.hpp"
 #include "eval/report/scan_choice.hpp"

@@ -6,7 +6,6 @@
 #include "datasets/text/text.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/cli/flags.hpp"
-#include "eval/cli/output_file.hpp"
 #include "eval/report/report.hpp"
 
 namespace mosbench {

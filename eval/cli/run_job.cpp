@@ -6,7 +6,7 @@
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
 #include "eval/answer/answer_text.hpp"
-#include "eval/cli/output_file.hpp"
+#include "eval/cli/commands.hpp"
 #include "eval/cli/run_kinds.hpp"
 #include "eval/engine/study_plan.hpp"
 #include "eval/engine/study_run.hpp"

@@ -37,8 +37,4 @@ Answer run_job(const JobFlags& flags);
 /// Returns the table of what is computed.
 Answer rank_job(const JobFlags& flags);
 
-/// Runs all that a table of the paper, "I" or "doals", needs of the data in `words`, keeps what is
-/// finished, and returns the table.
-Answer run_table(const std::string& name, const DataWords& words, const RunPlace& place);
-
 }  // namespace mosbench

@@ -12,7 +12,6 @@
 #include "eval/breakdown/breakdown.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/cli/flags.hpp"
-#include "eval/cli/output_file.hpp"
 #include "eval/job/method_choice.hpp"
 #include "eval/protocols/metrics.hpp"
 #include "eval/protocols/protocol.hpp"

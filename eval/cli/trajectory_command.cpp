@@ -13,7 +13,6 @@
 #include "eval/answer/render.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/cli/flags.hpp"
-#include "eval/cli/output_file.hpp"
 #include "eval/trajectory/trajectory_scores.hpp"
 
 namespace mosbench {
