@@ -10,7 +10,7 @@
 #include <memory>
 #include <system_error>
 
-#include "datasets/disk/file_descriptor.hpp"
+#include "datasets/disk/partial_file.hpp"
 #include "datasets/text/errors.hpp"
 
 namespace mosbench {

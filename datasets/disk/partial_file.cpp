@@ -5,11 +5,9 @@
 #include <sys/file.h>
 #include <sys/stat.h>
 
-#include <cerrno>
 #include <cstdio>
 #include <optional>
 #include <random>
-#include <system_error>
 
 #include "datasets/disk/files.hpp"
 #include "datasets/text/errors.hpp"

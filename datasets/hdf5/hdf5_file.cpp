@@ -15,8 +15,8 @@
 #include <limits>
 #include <utility>
 
-#include "datasets/disk/file_descriptor.hpp"
 #include "datasets/disk/files.hpp"
+#include "datasets/disk/partial_file.hpp"
 #include "datasets/formats/byte_cursor.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"

@@ -6,7 +6,7 @@
 #include "datasets/disk/folder_listing.hpp"
 #include "datasets/formats/scan_file.hpp"
 #include "datasets/layouts/kitti_sequence.hpp"
-#include "datasets/rosbag/open_bag.hpp"
+#include "datasets/rosbag/bag_reader.hpp"
 #include "datasets/text/text.hpp"
 
 namespace mosbench {

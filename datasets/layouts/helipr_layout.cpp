@@ -15,7 +15,6 @@
 #include "datasets/layouts/folder_search.hpp"
 #include "datasets/layouts/layout.hpp"
 #include "datasets/sequence/pose_source.hpp"
-#include "datasets/sequence/pose_track.hpp"
 #include "datasets/sequence/sequence.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"

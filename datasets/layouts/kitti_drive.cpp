@@ -8,9 +8,8 @@
 #include <utility>
 
 #include "datasets/disk/files.hpp"
-#include "datasets/formats/kitti_oxts.hpp"
+#include "datasets/formats/kitti_calib.hpp"
 #include "datasets/formats/times_file.hpp"
-#include "datasets/formats/tracking_labels.hpp"
 #include "datasets/formats/tracklets.hpp"
 #include "datasets/layouts/folder_search.hpp"
 #include "datasets/text/errors.hpp"

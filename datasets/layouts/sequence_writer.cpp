@@ -14,7 +14,7 @@
 #include "datasets/formats/pose_file.hpp"
 #include "datasets/formats/times_file.hpp"
 #include "datasets/rosbag/bag_writer.hpp"
-#include "datasets/rosbag/ros2_bag_writer.hpp"
+#include "datasets/rosbag/ros2_bag.hpp"
 #include "datasets/rosbag/ros_messages.hpp"
 #include "datasets/text/errors.hpp"
 

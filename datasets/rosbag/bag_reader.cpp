@@ -1,9 +1,206 @@
 #include "datasets/rosbag/bag_reader.hpp"
 
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <stdlib.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <array>
 #include <set>
+#include <utility>
+
+#include "datasets/disk/files.hpp"
+#include "datasets/disk/partial_file.hpp"
+#include "datasets/rosbag/chunk_reader.hpp"
+#include "datasets/rosbag/mcap_record.hpp"
+#include "datasets/rosbag/ros2_bag.hpp"
+#include "datasets/text/errors.hpp"
 
 namespace mosbench {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr std::string_view kRos1Start = "#ROSBAG";
+constexpr std::string_view kSqliteStart{"SQLite format 3\0", 16};
+constexpr std::array<std::string_view, 5> kBagNames = {".bag", ".mcap", ".db3", ".mcap.zstd",
+                                                       ".db3.zstd"};
+
+std::string start_of(const fs::path& file) { return read_start(file, kSqliteStart.size()); }
+
+/// The files of one recording as one bag.
+class JoinedBag : public BagReader {
+ public:
+  JoinedBag(const fs::path& folder, std::vector<std::unique_ptr<const BagReader>> parts)
+      : BagReader(folder), parts_(std::move(parts)) {
+    files_.clear();
+    for (const auto& part : parts_) {
+      files_.insert(files_.end(), part->files().begin(), part->files().end());
+      remarks_.insert(remarks_.end(), part->remarks().begin(), part->remarks().end());
+      for (const BagConnection& connection : part->connections()) {
+        connections_.push_back(connection);
+      }
+    }
+  }
+
+  std::vector<BagMessage> messages(std::string_view topic) const override {
+    std::vector<BagMessage> joined;
+    for (std::size_t part = 0; part < parts_.size(); ++part) {
+      for (BagMessage message : parts_[part]->messages(topic)) {
+        message.part = part;
+        joined.push_back(message);
+      }
+    }
+    std::ranges::stable_sort(joined, {}, &BagMessage::recorded_ns);
+    return joined;
+  }
+
+  std::string read(const BagMessage& message, std::size_t most_bytes = SIZE_MAX) const override {
+    return parts_.at(message.part)->read(message, most_bytes);
+  }
+
+  MessageFormat format_of(const BagMessage& message) const override {
+    return parts_.at(message.part)->format_of(message);
+  }
+
+ private:
+  std::vector<std::unique_ptr<const BagReader>> parts_;
+};
+
+/// Opens a file that no folder lists.
+FileDescriptor nameless_file() {
+  std::string name = fs::temp_directory_path() / "mosbench_bag_XXXXXX";
+  FileDescriptor made(mkostemp(name.data(), O_CLOEXEC));
+  if (!made.is_open() || unlink(name.c_str()) != 0) {
+    throw DataError(name, "cannot be made", "a writable folder in TMPDIR");
+  }
+  return made;
+}
+
+/// The path by which this process opens it again.
+fs::path path_of(const FileDescriptor& file) {
+  return fmt::format("/proc/self/fd/{}", file.number());
+}
+
+/// Returns what `work` does with an unpacked bag; its errors name the file that the user knows.
+template <typename Work>
+auto naming(const fs::path& file, Work&& work) {
+  try {
+    return work();
+  } catch (const DataError& error) {
+    throw DataError(file, fmt::format("is unpacked to no bag ({})", error.what()),
+                    "a packed .mcap or .db3");
+  }
+}
+
+/// A bag that is packed as a whole by Zstandard. It is unpacked into the folder of temporary files
+/// (TMPDIR). Its name there is removed before anything is written: no bag is left, however the
+/// process ends.
+class UnpackedBag : public BagReader {
+ public:
+  /// Throws DataError.
+  explicit UnpackedBag(const fs::path& file) : BagReader(file), unpacked_(nameless_file()) {
+    const fs::path unpacked = path_of(unpacked_);
+    decompress_zstd_file(file, unpacked);
+    bag_ = naming(path_, [&] { return opened(unpacked); });
+    connections_ = bag_->connections();
+    remarks_ = bag_->remarks();
+    const std::string number = unpacked.filename().string();
+    for (std::string& remark : remarks_) {
+      if (remark.starts_with(number)) remark.replace(0, number.size(), file.filename().string());
+    }
+  }
+
+  std::vector<BagMessage> messages(std::string_view topic) const override {
+    return bag_->messages(topic);
+  }
+
+  std::string read(const BagMessage& message, std::size_t most_bytes = SIZE_MAX) const override {
+    return naming(path_, [&] { return bag_->read(message, most_bytes); });
+  }
+
+ private:
+  /// The content of a file, which must not become shorter; changes stay in this process.
+  class Mapping {
+   public:
+    /// Throws std::system_error.
+    explicit Mapping(const FileDescriptor& file) {
+      const off_t bytes = lseek(file.number(), 0, SEEK_END);
+      require_success(bytes >= 0);
+      if (bytes == 0) return;
+      const auto size = static_cast<std::size_t>(bytes);
+      void* start = mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE, file.number(), 0);
+      require_success(start != MAP_FAILED);
+      content_ = {static_cast<unsigned char*>(start), size};
+    }
+
+    ~Mapping() {
+      if (!content_.empty()) munmap(content_.data(), content_.size());
+    }
+
+    Mapping(const Mapping&) = delete;
+    Mapping& operator=(const Mapping&) = delete;
+    std::span<unsigned char> content() const { return content_; }
+
+   private:
+    std::span<unsigned char> content_;
+  };
+
+  /// SQLite opens no file without a name, but takes its content.
+  std::unique_ptr<const BagReader> opened(const fs::path& unpacked) {
+    if (read_start(unpacked, kMcapMagic.size()) == kMcapMagic) {
+      return open_mcap(unpacked);
+    }
+    mapping_ = std::make_unique<Mapping>(unpacked_);
+    return open_sqlite_bag(path_, mapping_->content());
+  }
+
+  FileDescriptor unpacked_;
+  std::unique_ptr<const Mapping> mapping_;  ///< of a database
+  std::unique_ptr<const BagReader> bag_;
+};
+
+std::unique_ptr<const BagReader> open_bag_file(const fs::path& file) {
+  const std::string start = start_of(file);
+  if (start.starts_with(kMcapMagic)) return open_mcap(file);
+  if (start.starts_with(kSqliteStart)) return open_sqlite_bag(file);
+  if (is_zstd(start)) return std::make_unique<UnpackedBag>(file);
+  if (file.extension() == ".bag" || start.starts_with(kRos1Start)) return open_ros1_bag(file);
+  throw DataError(file, "does not start like a bag",
+                  "\"#ROSBAG V2.0\", MCAP's or SQLite's first bytes");
+}
+
+/// Finds a file that metadata.yaml names: the first recorders wrote the folder's name before it,
+/// and some leave out that it is packed.
+fs::path part_of(const fs::path& folder, const std::string& name) {
+  const fs::path inside = folder / fs::path(name).filename();
+  for (const fs::path& file : {folder / name, inside, fs::path(inside.native() + ".zstd")}) {
+    if (is_there(file)) return file;
+  }
+  throw DataError(folder / kBagMetadataFile, "names " + name + ", which is not there",
+                  "all files of the bag");
+}
+
+std::unique_ptr<const BagReader> open_bag_folder(const fs::path& folder) {
+  const fs::path file = folder / kBagMetadataFile;
+  const BagMetadata metadata = parse_bag_metadata(read_file(file), file);
+  if (!metadata.compression.empty() && metadata.compression != "zstd") {
+    throw DataError(file, "is of a ROS 2 bag with compression " + metadata.compression, "zstd");
+  }
+  std::vector<std::unique_ptr<const BagReader>> parts;
+  std::set<fs::path> known;
+  for (const std::string& name : metadata.files) {
+    const fs::path part = part_of(folder, name);
+    if (!known.insert(part.lexically_normal()).second) {
+      throw DataError(file, "names " + name + " twice", "each file of the bag once");
+    }
+    parts.push_back(open_bag_file(part));
+  }
+  return std::make_unique<JoinedBag>(folder, std::move(parts));
+}
+
+}  // namespace
 
 std::vector<BagConnection> BagReader::connections_of_type(std::string_view type) const {
   std::vector<BagConnection> found;
@@ -34,6 +231,28 @@ std::vector<BagMessage> BagReader::messages(std::string_view topic) const {
   }
   std::ranges::stable_sort(found, {}, &BagMessage::recorded_ns);
   return found;
+}
+
+bool is_bag_file(const fs::path& path) {
+  std::error_code ignored;
+  if (!fs::is_regular_file(path, ignored)) return false;
+  const std::string name = path.filename().string();
+  if (std::ranges::any_of(kBagNames, [&](auto end) { return name.ends_with(end); })) return true;
+  const std::string start = start_of(path);
+  return start.starts_with(kRos1Start) || start.starts_with(kMcapMagic) ||
+         start.starts_with(kSqliteStart);
+}
+
+bool is_bag_folder(const fs::path& path) {
+  std::error_code ignored;
+  const fs::path file = path / kBagMetadataFile;
+  if (!fs::is_regular_file(file, ignored)) return false;
+  return read_start(file, kBagMetadataStart.size()) == kBagMetadataStart;
+}
+
+std::unique_ptr<const BagReader> open_bag(const fs::path& path) {
+  std::error_code ignored;
+  return fs::is_directory(path, ignored) ? open_bag_folder(path) : open_bag_file(path);
 }
 
 }  // namespace mosbench

@@ -6,10 +6,9 @@
 #include <utility>
 
 #include "datasets/disk/folder_listing.hpp"
+#include "datasets/rosbag/bag_reader.hpp"
 #include "datasets/rosbag/bag_topics.hpp"
-#include "datasets/rosbag/open_bag.hpp"
 #include "datasets/sequence/pose_source.hpp"
-#include "datasets/sequence/pose_track.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
 

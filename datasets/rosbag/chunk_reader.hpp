@@ -8,7 +8,7 @@
 #include <string_view>
 #include <utility>
 
-#include "datasets/disk/file_descriptor.hpp"
+#include "datasets/disk/partial_file.hpp"
 
 namespace mosbench {
 

@@ -15,7 +15,7 @@
 #include "datasets/formats/byte_cursor.hpp"
 #include "datasets/rosbag/chunk_reader.hpp"
 #include "datasets/rosbag/mcap_record.hpp"
-#include "datasets/rosbag/ros2_bag_writer.hpp"
+#include "datasets/rosbag/ros2_bag.hpp"
 #include "datasets/rosbag/ros_messages.hpp"
 #include "datasets/text/errors.hpp"
 

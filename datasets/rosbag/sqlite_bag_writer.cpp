@@ -9,7 +9,7 @@
 
 #include "datasets/disk/partial_file.hpp"
 #include "datasets/rosbag/chunk_reader.hpp"
-#include "datasets/rosbag/ros2_bag_writer.hpp"
+#include "datasets/rosbag/ros2_bag.hpp"
 #include "datasets/text/errors.hpp"
 
 namespace mosbench {

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "datasets/sequence/pose_track.hpp"
+#include "datasets/sequence/pose_source.hpp"
 #include "datasets/sequence/sequence.hpp"
 
 namespace mosbench {

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "datasets/disk/file_descriptor.hpp"
+#include "datasets/disk/partial_file.hpp"
 
 namespace mosbench {
 

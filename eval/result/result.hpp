@@ -18,7 +18,7 @@
 #include "datasets/layouts/simulated_origin.hpp"
 #include "datasets/sequence/fingerprint.hpp"
 #include "datasets/sequence/reading.hpp"
-#include "datasets/sequence/recording.hpp"
+#include "datasets/sequence/sequence.hpp"
 #include "eval/answer/answer.hpp"
 #include "eval/predictions/predictions.hpp"
 #include "eval/protocols/confusion.hpp"

@@ -8,7 +8,7 @@
 #include <system_error>
 
 #include "datasets/disk/files.hpp"
-#include "datasets/sequence/recording.hpp"
+#include "datasets/sequence/sequence.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/json_text.hpp"
 #include "eval/result/reading_json.hpp"

@@ -8,7 +8,7 @@
 
 #include "datasets/disk/files.hpp"
 #include "datasets/layouts/dataset.hpp"
-#include "datasets/rosbag/open_bag.hpp"
+#include "datasets/rosbag/bag_reader.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
 #include "eval/trajectory/pose_errors.hpp"

@@ -7,8 +7,8 @@
 
 #include "datasets/hdf5/hdf5_module.hpp"
 #include "datasets/layouts/dataset.hpp"
+#include "datasets/rosbag/bag_reader.hpp"
 #include "datasets/rosbag/bag_writer.hpp"
-#include "datasets/rosbag/open_bag.hpp"
 #include "datasets/text/errors.hpp"
 #include "tests/cli/program.hpp"
 #include "tests/cli/small_sequence.hpp"

@@ -10,8 +10,8 @@
 
 #include "datasets/disk/files.hpp"
 #include "datasets/formats/bin_file.hpp"
+#include "datasets/rosbag/bag_reader.hpp"
 #include "datasets/rosbag/bag_sequence.hpp"
-#include "datasets/rosbag/open_bag.hpp"
 #include "datasets/rosbag/ros_messages.hpp"
 #include "datasets/text/errors.hpp"
 #include "tests/shared_folder.hpp"

@@ -9,10 +9,10 @@
 
 #include "datasets/disk/files.hpp"
 #include "datasets/layouts/layout.hpp"
+#include "datasets/rosbag/bag_reader.hpp"
 #include "datasets/rosbag/bag_sequence.hpp"
 #include "datasets/rosbag/bag_writer.hpp"
 #include "datasets/rosbag/chunk_reader.hpp"
-#include "datasets/rosbag/open_bag.hpp"
 #include "datasets/rosbag/ros_messages.hpp"
 #include "datasets/text/errors.hpp"
 #include "tests/bag_bytes.hpp"

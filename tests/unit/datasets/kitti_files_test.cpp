@@ -6,9 +6,7 @@
 #include <numbers>
 
 #include "datasets/formats/kitti_calib.hpp"
-#include "datasets/formats/kitti_oxts.hpp"
 #include "datasets/formats/times_file.hpp"
-#include "datasets/formats/tracking_labels.hpp"
 #include "datasets/formats/tracklets.hpp"
 #include "datasets/text/errors.hpp"
 #include "tests/temp_folder.hpp"

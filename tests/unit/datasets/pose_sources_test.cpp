@@ -7,7 +7,7 @@
 #include "datasets/formats/pose_file.hpp"
 #include "datasets/sequence/corrected_sequence.hpp"
 #include "datasets/sequence/folder_sequence.hpp"
-#include "datasets/sequence/pose_track.hpp"
+#include "datasets/sequence/pose_source.hpp"
 #include "datasets/text/errors.hpp"
 #include "tests/temp_folder.hpp"
 #include "tests/unit/datasets/pose_at_x.hpp"

@@ -1,3 +1,5 @@
+#include "datasets/rosbag/ros2_bag.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sqlite3.h>
@@ -13,12 +15,11 @@
 #include "datasets/disk/files.hpp"
 #include "datasets/layouts/dataset.hpp"
 #include "datasets/layouts/sequence_writer.hpp"
-#include "datasets/rosbag/bag_metadata.hpp"
+#include "datasets/rosbag/bag_reader.hpp"
 #include "datasets/rosbag/bag_sequence.hpp"
 #include "datasets/rosbag/chunk_reader.hpp"
 #include "datasets/rosbag/message_format.hpp"
-#include "datasets/rosbag/open_bag.hpp"
-#include "datasets/rosbag/ros2_bag_writer.hpp"
+#include "datasets/rosbag/ros2_bag.hpp"
 #include "datasets/text/errors.hpp"
 #include "tests/bag_bytes.hpp"
 #include "tests/mcap_bytes.hpp"

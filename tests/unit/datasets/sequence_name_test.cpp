@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "datasets/sequence/recording.hpp"
+#include "datasets/sequence/sequence.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
 #include "tests/temp_folder.hpp"
