@@ -106,13 +106,6 @@ pid_t start(const std::vector<std::string>& words, const HeldSignals& signals) {
                   "Snakemake 7 (Debian: snakemake)");
 }
 
-/// Waits until no process of a group is left, and kills what is left at the deadline.
-void clear_group(pid_t group, Clock::time_point deadline) {
-  constexpr std::chrono::milliseconds kLook{20};
-  while (kill(-group, 0) == 0 && Clock::now() < deadline) std::this_thread::sleep_for(kLook);
-  kill(-group, SIGKILL);
-}
-
 constexpr double kGroup_s = 120;          // starting a job of a cluster takes seconds
 constexpr std::size_t kMostInGroup = 50;  // a killed job loses at most one cell, but waits again
 
@@ -190,7 +183,11 @@ EngineEnd run_in_group(const std::vector<std::string>& words) {
     }
     if (Clock::now() >= deadline) kill(-child, SIGKILL);
   }
-  if (end.stopped_by) clear_group(child, deadline);
+  constexpr std::chrono::milliseconds kLook{20};
+  while (end.stopped_by && kill(-child, 0) == 0 && Clock::now() < deadline) {
+    std::this_thread::sleep_for(kLook);
+  }
+  if (end.stopped_by) kill(-child, SIGKILL);  // what is left of the group
   end.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   return end;
 }

@@ -118,23 +118,18 @@ struct BaselineChange {
   std::vector<fs::path> superseded;
 };
 
-/// Formats an accepted result.json: what `read_result` reads, without anything that
-/// depends on the clock or the machine, so that accepting the same results again changes nothing.
-std::string format_accepted(const Result& result) {
-  Result accepted = result;
-  accepted.from.machine.reset();
-  accepted.timing.reset();
-  accepted.places.reset();
-  return format_result(accepted);
-}
-
 BaselineChange change_of(const ResultSet& run, const fs::path& folder) {
   BaselineChange change;
   std::set<fs::path> accepted;
   for (const Result& sequence : run.sequences) {
     const fs::path file = sequence.sequence.folder() / "result.json";
     accepted.insert(file);
-    std::string bytes = format_accepted(sequence);
+    // Nothing that depends on the clock or the machine: accepting again changes nothing.
+    Result plain = sequence;
+    plain.from.machine.reset();
+    plain.timing.reset();
+    plain.places.reset();
+    std::string bytes = format_result(plain);
     if (!is_there(folder / file) || read_file(folder / file) != bytes) {
       change.written[file] = std::move(bytes);
     }
