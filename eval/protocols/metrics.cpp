@@ -29,21 +29,9 @@ MetricValues values_of(const Ratios& ratios) {
   return values;
 }
 
-std::optional<double> defined(double value) {
-  if (std::isnan(value)) return std::nullopt;
-  return value;
-}
-
-void set_metrics(const MetricValues& values, Summary& summary) {
-  for (std::size_t m = 0; m < values.size(); ++m) summary.metrics[m] = defined(values[m]);
-}
-
-MetricValues values_of(const Summary& summary) {
-  MetricValues values{};
-  for (std::size_t m = 0; m < values.size(); ++m) {
-    values[m] = summary.metrics[m].value_or(kUndefined);
-  }
-  return values;
+std::optional<double> value_in(const MetricValues& values, Metric metric) {
+  const double value = values[static_cast<std::size_t>(metric)];
+  return std::isnan(value) ? std::nullopt : std::optional(value);
 }
 
 /// Population standard deviation of the IoU of those scans that have one.
@@ -178,7 +166,7 @@ MetricValues aggregate(const Protocol& protocol, std::span<const SequenceCounts>
 }
 
 std::optional<double> metric_of(const Confusion& counts, Metric metric) {
-  return defined(metrics_of(counts)[static_cast<std::size_t>(metric)]);
+  return value_in(metrics_of(counts), metric);
 }
 
 std::optional<double> moving_iou(const Confusion& counts) {
@@ -191,6 +179,8 @@ std::optional<double> precision(const Confusion& counts) {
 
 std::optional<double> recall(const Confusion& counts) { return metric_of(counts, Metric::kRecall); }
 
+std::optional<double> Summary::operator[](Metric metric) const { return value_in(metrics, metric); }
+
 Summary summarize(const Protocol& protocol, std::span<const Confusion> per_scan) {
   Summary summary;
   summary.scans = per_scan.size();
@@ -200,7 +190,7 @@ Summary summarize(const Protocol& protocol, std::span<const Confusion> per_scan)
     sums += scan_terms(protocol, scan);
     if (!moving_iou(scan)) ++summary.undefined_scans;
   }
-  set_metrics(metrics_of(protocol, sums), summary);
+  summary.metrics = metrics_of(protocol, sums);
   if (protocol.aggregation == Aggregation::kMeanOfScans && summary[Metric::kIou]) {
     summary.iou_deviation = iou_deviation(per_scan, *summary[Metric::kIou]);
   }
@@ -214,13 +204,13 @@ Summary mean_of_sequences(const Protocol& protocol, std::span<const Summary> seq
   double published_sum = 0.0;
   std::vector<MetricValues> values;
   for (const Summary& sequence : sequences) {
-    values.push_back(values_of(sequence));
+    values.push_back(sequence.metrics);
     average.pooled += sequence.pooled;
     average.scans += sequence.scans;
     average.undefined_scans += sequence.undefined_scans;
     published_sum += sequence.published_iou;
   }
-  set_metrics(mean_of(values), average);
+  average.metrics = mean_of(values);
   average.published_iou = published_sum / static_cast<double>(sequences.size());
   average.published_text = print(average.published_iou, protocol.program_print);
   return average;

@@ -106,7 +106,7 @@ std::optional<double> recall(const Confusion& counts);
 struct Summary {
   /// Aggregated as the protocol says. A mean of scans is taken over the scans that have a value;
   /// `undefined_scans` is how many have none. A mean of sequences needs a value of each.
-  std::array<std::optional<double>, kMetrics.size()> metrics;
+  MetricValues metrics{};
   /// Population standard deviation of the scans' IoU, for protocols that average scans.
   std::optional<double> iou_deviation;
   /// The moving IoU of the protocol's own program, with its arithmetic and its value for empty
@@ -117,9 +117,8 @@ struct Summary {
   std::size_t scans = 0;
   std::size_t undefined_scans = 0;  ///< scans without any moving point, true or predicted
 
-  const std::optional<double>& operator[](Metric metric) const {
-    return metrics[static_cast<std::size_t>(metric)];
-  }
+  /// Returns nullopt where the metric is undefined.
+  std::optional<double> operator[](Metric metric) const;
 };
 
 /// Summarises one sequence, or all sequences of a split that the protocol pools.

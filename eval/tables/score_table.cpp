@@ -70,7 +70,7 @@ std::vector<Cell> cells_of(const SummaryRow& row, bool with_ms) {
     cells.emplace_back("no truth");
     cells.resize(cells.size() + kMetrics.size() + 3, "");
   } else {
-    for (const auto& metric : summary.metrics) cells.push_back(or_undefined(metric));
+    for (const double metric : summary.metrics) cells.emplace_back(metric);
     cells.insert(cells.end(),
                  {summary.pooled.tp, summary.pooled.fp, summary.pooled.fn, summary.published_text});
   }
