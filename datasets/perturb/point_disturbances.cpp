@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "datasets/formats/point_range.hpp"
-#include "datasets/perturb/perturb_kinds.hpp"
+#include "datasets/perturb/perturbation.hpp"
 #include "datasets/text/errors.hpp"
 
 namespace mosbench {

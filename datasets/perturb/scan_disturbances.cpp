@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "datasets/perturb/perturb_kinds.hpp"
+#include "datasets/perturb/perturbation.hpp"
 #include "datasets/text/errors.hpp"
 
 namespace mosbench {

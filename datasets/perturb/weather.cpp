@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "datasets/formats/point_range.hpp"
-#include "datasets/perturb/perturb_kinds.hpp"
+#include "datasets/perturb/perturbation.hpp"
 
 namespace mosbench {
 namespace {

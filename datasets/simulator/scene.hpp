@@ -2,8 +2,10 @@
 
 #include <array>
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "datasets/layouts/simulation.hpp"
@@ -114,5 +116,26 @@ struct Scene {
   std::vector<Door> doors;
   std::vector<Ball> balls;
 };
+
+struct SceneSummary {
+  std::string_view name;
+  std::string_view content;  ///< one line for lists
+};
+
+/// Returns the scenes that need no file, in the order in which they are listed.
+std::vector<SceneSummary> built_in_scenes();
+
+/// Returns a scene by name. Throws UsageError with the nearest name for an unknown one.
+Scene built_in_scene(std::string_view name);
+
+/// Parses a scene in JSON strictly: throws DataError "<file>: <path in the JSON>: ..." for an
+/// unknown or repeated key (naming the nearest known one), a missing key, a wrong type, a value out
+/// of range, and a route that cannot be followed.
+Scene parse_scene(std::string_view text, const std::filesystem::path& file);
+/// Formats every field of the scene, indented; `parse_scene` gives the same scene again, bit for
+/// bit.
+std::string format_scene(const Scene& scene);
+
+Scene read_scene(const std::filesystem::path& file);
 
 }  // namespace mosbench

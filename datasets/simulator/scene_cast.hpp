@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "datasets/simulator/scene.hpp"
@@ -70,5 +71,14 @@ class SceneCast {
   std::vector<std::uint32_t> sector_begins_;  // into sector_members_, one more than sectors
   std::vector<std::uint32_t> sector_members_;
 };
+
+/// A scene at one instant: its bodies and the state of each owner by the number in its bodies.
+/// Owner 0 is the ground; then follow structures, movers, doors and balls in the scene's order.
+struct SceneSnapshot {
+  std::vector<Solid> solids;
+  std::vector<OwnerState> owners;
+};
+
+SceneSnapshot snapshot(const Scene& scene, double time_s);
 
 }  // namespace mosbench

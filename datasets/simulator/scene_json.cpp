@@ -1,5 +1,3 @@
-#include "datasets/simulator/scene_json.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,6 +8,7 @@
 #include <vector>
 
 #include "datasets/disk/files.hpp"
+#include "datasets/simulator/scene.hpp"
 #include "datasets/simulator/sensor_model.hpp"
 #include "datasets/simulator/trajectory.hpp"
 #include "datasets/text/errors.hpp"

@@ -1,10 +1,9 @@
-#include "datasets/simulator/scene_snapshot.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
 #include "datasets/sequence/portable_math.hpp"
+#include "datasets/simulator/scene_cast.hpp"
 #include "datasets/simulator/trajectory.hpp"
 
 namespace mosbench {

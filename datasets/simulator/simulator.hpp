@@ -7,7 +7,7 @@
 
 #include "datasets/sequence/sequence.hpp"
 #include "datasets/simulator/scene.hpp"
-#include "datasets/simulator/scene_snapshot.hpp"
+#include "datasets/simulator/scene_cast.hpp"
 #include "datasets/simulator/sensor_model.hpp"
 
 namespace mosbench {

@@ -106,6 +106,32 @@ double route_duration_s(const Route& route) {
   return duration_s;
 }
 
+Route rectangle_route(std::array<double, 2> low_m, std::array<double, 2> high_m, bool clockwise,
+                      double fraction, double speed_m_s, double wait_s) {
+  std::array<std::array<double, 2>, 4> corners = {
+      {{low_m[0], low_m[1]}, {high_m[0], low_m[1]}, {high_m[0], high_m[1]}, {low_m[0], high_m[1]}}};
+  if (clockwise) std::reverse(corners.begin(), corners.end());
+  const double width_m = std::abs(corners[1][0] - corners[0][0]);
+  const double depth_m = std::abs(corners[1][1] - corners[0][1]);
+  const std::array<double, 4> sides_m = {width_m, depth_m, width_m, depth_m};
+
+  double along_m = fraction * 2.0 * (width_m + depth_m);
+  std::size_t side = 0;
+  while (side < 3 && along_m >= sides_m[side]) along_m -= sides_m[side++];
+  const auto& before = corners[side];
+  const auto& behind = corners[(side + 1) % 4];
+  const double part = along_m / sides_m[side];
+  Route route{.from_m = {before[0] + part * (behind[0] - before[0]),
+                         before[1] + part * (behind[1] - before[1])},
+              .after = AfterRoute::kRestart};
+  for (std::size_t i = 1; i <= 4; ++i) {
+    route.legs.push_back(
+        {.to_m = corners[(side + i) % 4], .speed_m_s = speed_m_s, .wait_s = i == 1 ? 0.0 : wait_s});
+  }
+  route.legs.push_back({.to_m = route.from_m, .speed_m_s = speed_m_s, .wait_s = wait_s});
+  return route;
+}
+
 RouteState route_state(const Route& route, double time_s) {
   const double elapsed_s = std::max(0.0, time_s - route.start_s);
   if (time_s < route.start_s || route.after == AfterRoute::kStay) {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "datasets/layouts/layout.hpp"
-#include "datasets/simulator/built_in_scenes.hpp"
+#include "datasets/simulator/scene.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
 #include "eval/cli/commands.hpp"

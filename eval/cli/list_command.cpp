@@ -10,8 +10,8 @@
 #include <span>
 
 #include "datasets/layouts/layout.hpp"
-#include "datasets/perturb/perturb_kinds.hpp"
-#include "datasets/simulator/built_in_scenes.hpp"
+#include "datasets/perturb/perturbation.hpp"
+#include "datasets/simulator/scene.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
 #include "eval/answer/answer_text.hpp"

@@ -6,7 +6,6 @@
 
 #include "datasets/perturb/perturbation.hpp"
 #include "datasets/simulator/simulate.hpp"
-#include "datasets/simulator/simulated_sequence.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
 #include "eval/cli/commands.hpp"

@@ -8,7 +8,7 @@
 #include "datasets/disk/files.hpp"
 #include "datasets/perturb/perturbation.hpp"
 #include "datasets/sequence/fingerprint.hpp"
-#include "datasets/simulator/scene_json.hpp"
+#include "datasets/simulator/scene.hpp"
 #include "datasets/simulator/simulate.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"

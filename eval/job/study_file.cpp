@@ -11,7 +11,6 @@
 #include "datasets/disk/files.hpp"
 #include "datasets/sequence/portable_math.hpp"
 #include "datasets/simulator/simulate.hpp"
-#include "datasets/simulator/simulated_sequence.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
 #include "eval/job/job.hpp"

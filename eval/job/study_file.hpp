@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "datasets/perturb/perturb_kinds.hpp"
+#include "datasets/perturb/perturbation.hpp"
 #include "eval/job/job.hpp"
 
 namespace mosbench {

@@ -22,7 +22,7 @@
 #include "datasets/rosbag/bag_sequence.hpp"
 #include "datasets/rosbag/ros2_bag.hpp"
 #include "datasets/rosbag/ros_messages.hpp"
-#include "datasets/simulator/scene_json.hpp"
+#include "datasets/simulator/scene.hpp"
 #include "datasets/text/errors.hpp"
 #include "eval/predictions/prediction_files.hpp"
 #include "eval/result/result_file.hpp"

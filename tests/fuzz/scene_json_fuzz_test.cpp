@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "datasets/simulator/scene_json.hpp"
+#include "datasets/simulator/scene.hpp"
 #include "datasets/simulator/simulator.hpp"
 #include "datasets/text/errors.hpp"
 #include "tests/example_scene.hpp"

@@ -9,7 +9,6 @@
 #include <thread>
 
 #include "datasets/formats/point_range.hpp"
-#include "datasets/perturb/perturb_kinds.hpp"
 #include "datasets/perturb/perturbation.hpp"
 #include "datasets/sequence/corrected_sequence.hpp"
 #include "datasets/sequence/fingerprint.hpp"

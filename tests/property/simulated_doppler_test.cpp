@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "datasets/simulator/built_in_scenes.hpp"
+#include "datasets/simulator/scene.hpp"
 #include "datasets/simulator/simulated_motion.hpp"
 
 namespace mosbench {

@@ -10,8 +10,7 @@
 #include <thread>
 
 #include "datasets/sequence/portable_math.hpp"
-#include "datasets/simulator/built_in_scenes.hpp"
-#include "datasets/simulator/scene_json.hpp"
+#include "datasets/simulator/scene.hpp"
 #include "datasets/text/errors.hpp"
 
 namespace mosbench {

@@ -12,7 +12,7 @@
 #include "datasets/disk/files.hpp"
 #include "datasets/formats/bin_file.hpp"
 #include "datasets/layouts/dataset.hpp"
-#include "datasets/simulator/built_in_scenes.hpp"
+#include "datasets/simulator/scene.hpp"
 #include "datasets/simulator/simulator.hpp"
 #include "datasets/text/errors.hpp"
 #include "tests/shared_folder.hpp"

@@ -13,7 +13,7 @@
 #include "datasets/hdf5/hdf5_module.hpp"
 #include "datasets/layouts/convert.hpp"
 #include "datasets/layouts/sequence_writer.hpp"
-#include "datasets/simulator/simulated_sequence.hpp"
+#include "datasets/simulator/simulate.hpp"
 #include "tests/sanitizers.hpp"
 #include "tests/temp_folder.hpp"
 

@@ -1,8 +1,7 @@
-#include "datasets/simulator/scene_json.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "datasets/simulator/scene.hpp"
 #include "datasets/simulator/simulator.hpp"
 #include "datasets/text/errors.hpp"
 #include "tests/example_scene.hpp"

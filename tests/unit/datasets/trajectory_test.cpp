@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "datasets/simulator/built_in_scenes.hpp"
-#include "datasets/simulator/scene_snapshot.hpp"
+#include "datasets/simulator/scene.hpp"
+#include "datasets/simulator/scene_cast.hpp"
 
 namespace mosbench {
 namespace {
