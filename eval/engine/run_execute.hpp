@@ -23,6 +23,10 @@ struct ComputedSequence {
   bool has_labels;
   SequenceOutcome outcome;
 };
+/// Computes a sequence. Throws DataError.
+ComputedSequence compute_sequence(const RunPlan& plan, const PlannedSequence& planned);
+/// Puts its results at their place.
+SequenceOutcome put(ComputedSequence computed);
 
 /// A run that goes on by one sequence at a time. Tells on stderr what it does.
 class RunExecution {
