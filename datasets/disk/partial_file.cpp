@@ -105,20 +105,18 @@ void write_directly(const fs::path& file, std::string_view bytes) {
 }
 
 void write(const fs::path& file, std::string_view bytes, bool on_disk) {
-  try {
+  write_by(file, [&] {
     const bool in_new_folder = make_folder_of(file);
-    if (const auto target = replaceable(file)) {
-      replace(*target, bytes, on_disk, in_new_folder);
-    } else {
-      write_directly(file, bytes);
-    }
-  } catch (const std::system_error& error) {
-    throw DataError(file, "cannot be written (" + error.code().message() + ")",
-                    "a writable output folder with free space");
-  }
+    const auto target = replaceable(file);
+    target ? replace(*target, bytes, on_disk, in_new_folder) : write_directly(file, bytes);
+  });
 }
 
 }  // namespace
+
+DataError not_written(const fs::path& file, const std::string& why) {
+  return {file, "cannot be written (" + why + ")", "a writable output folder with free space"};
+}
 
 void sync_names_of(const std::filesystem::path& folder) { sync_with(folder, fsync); }
 

@@ -9,6 +9,8 @@
 #include <system_error>
 #include <utility>
 
+#include "datasets/text/errors.hpp"
+
 namespace mosbench {
 
 /// Throws std::system_error with the errno of a call that failed.
@@ -79,5 +81,18 @@ class PartialFile {
 
 /// Writes all bytes to an open file, pipe or device; throws std::system_error.
 void write_bytes(int descriptor, std::string_view bytes);
+
+/// Returns the error of a file that cannot be written, and why.
+DataError not_written(const std::filesystem::path& file, const std::string& why);
+
+/// Writes a file by `call`, whose std::system_error becomes `not_written`.
+template <typename Call>
+void write_by(const std::filesystem::path& file, Call&& call) {
+  try {
+    call();
+  } catch (const std::system_error& error) {
+    throw not_written(file, error.code().message());
+  }
+}
 
 }  // namespace mosbench

@@ -1,5 +1,7 @@
 #include "datasets/formats/bin_file.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -134,12 +136,12 @@ static_assert(std::endian::native == std::endian::little, "scans are copied as t
 void check_bin_size(std::uintmax_t size_bytes, std::size_t columns,
                     const std::filesystem::path& file) {
   if (size_bytes % (columns * sizeof(float)) == 0) return;
-  throw DataError(file,
-                  std::to_string(size_bytes) + " bytes are no multiple of " +
-                      std::to_string(columns * sizeof(float)) +
-                      ": cut off, or raw data of another layout",
-                  std::to_string(columns) + " float32 per point (x y z" +
-                      (columns > 3 ? " intensity" : "") + (columns > 4 ? " ...)" : ")"));
+  throw DataError(
+      file,
+      fmt::format("{} bytes are no multiple of {}: cut off, or raw data of another layout",
+                  size_bytes, columns * sizeof(float)),
+      fmt::format("{} float32 per point (x y z{}{})", columns, columns > 3 ? " intensity" : "",
+                  columns > 4 ? " ..." : ""));
 }
 
 std::vector<Point> parse_bin(std::string_view bytes, std::size_t columns,

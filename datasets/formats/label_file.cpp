@@ -58,10 +58,9 @@ static_assert(std::endian::native == std::endian::little, "labels are copied as 
 void check_label_size(std::uintmax_t size_bytes, std::size_t point_count,
                       const std::filesystem::path& file) {
   if (size_bytes == point_count * sizeof(std::uint32_t)) return;
-  const std::string expected = "one uint32 for each of the " + std::to_string(point_count) +
-                               " points of its scan (" +
-                               std::to_string(point_count * sizeof(std::uint32_t)) + " bytes)";
-  throw DataError(file, "has " + std::to_string(size_bytes) + " bytes", expected);
+  throw DataError(file, fmt::format("has {} bytes", size_bytes),
+                  fmt::format("one uint32 for each of the {} points of its scan ({} bytes)",
+                              point_count, point_count * sizeof(std::uint32_t)));
 }
 
 std::vector<std::uint32_t> parse_labels(std::string_view bytes, std::size_t point_count,
@@ -103,8 +102,8 @@ std::vector<std::uint32_t> parse_moe_labels(std::string_view text, std::size_t p
     labels.push_back(moving == 1.0 ? kMovingLabel : kStaticLabel);
   }
   if (labels.size() != point_count) {
-    throw DataError(file, std::to_string(labels.size()) + " rows",
-                    "one for each of the " + std::to_string(point_count) + " points of its scan");
+    throw DataError(file, fmt::format("{} rows", labels.size()),
+                    fmt::format("one for each of the {} points of its scan", point_count));
   }
   return labels;
 }

@@ -53,9 +53,8 @@ const StoredType& type_of(const CloudHead& head, const CloudField& field,
                           const std::filesystem::path& file) {
   if (field.datatype < 1 || field.datatype > kStoredTypes.size() || field.count != 1) {
     throw DataError(file,
-                    "field " + field.name + " of the points has datatype " +
-                        std::to_string(field.datatype) + " and count " +
-                        std::to_string(field.count),
+                    fmt::format("field {} of the points has datatype {} and count {}", field.name,
+                                field.datatype, field.count),
                     "one number of datatype 1 to 8");
   }
   const StoredType& type = kStoredTypes[field.datatype - 1U];

@@ -82,7 +82,7 @@ std::vector<MovingPoint> moving_points(const Frame& frame) {
 class TableFile {
  public:
   explicit TableFile(fs::path file) : file_(std::move(file)) {
-    checked([&] {
+    write_by(file_, [&] {
       fs::create_directories(file_.parent_path());
       partial_.emplace(file_);
     });
@@ -98,13 +98,13 @@ class TableFile {
 
   void finish() {
     end();
-    checked([&] { partial_->put_in_place_of(file_); });
+    write_by(file_, [&] { partial_->put_in_place_of(file_); });
   }
 
   /// Waits until it is on the disk, too.
   void commit() {
     end();
-    checked([&] {
+    write_by(file_, [&] {
       partial_->sync();
       partial_->put_in_place_of(file_);
     });
@@ -118,18 +118,8 @@ class TableFile {
   }
 
   void flush() {
-    checked([&] { partial_->write(text_); });
+    write_by(file_, [&] { partial_->write(text_); });
     text_.clear();
-  }
-
-  template <typename Call>
-  void checked(Call&& call) const {
-    try {
-      call();
-    } catch (const std::system_error& error) {
-      throw DataError(file_, "cannot be written (" + error.code().message() + ")",
-                      "a writable output folder with free space");
-    }
   }
 
   fs::path file_;

@@ -38,11 +38,6 @@ bool is_ground_id(std::uint32_t label) {
   return id == 40 || id == 44 || id == 48 || id == 49 || id == 60 || id == 72;
 }
 
-[[noreturn]] void refuse(const fs::path& file, const std::string& why) {
-  throw DataError(file, "cannot be written (" + why + ")",
-                  "a writable output folder with free space");
-}
-
 /// The file beside the one that it becomes, which libhdf5 writes by its name.
 class PartialHdf5 {
  public:
@@ -52,7 +47,7 @@ class PartialHdf5 {
       fs::create_directories(fs::absolute(file_).parent_path());
       partial_.emplace(file_);
     } catch (const std::system_error& error) {
-      refuse(file_, error.code().message());
+      throw not_written(file_, error.code().message());
     }
     check(functions.create(partial_->path(), output_));
   }
@@ -73,14 +68,14 @@ class PartialHdf5 {
       partial_->sync();
       partial_->put_in_place_of(file_);
     } catch (const std::system_error& error) {
-      refuse(file_, error.code().message());
+      throw not_written(file_, error.code().message());
     }
     sync_names_of(fs::absolute(file_).parent_path());
   }
 
  private:
   void check(const std::string& error) const {
-    if (!error.empty()) refuse(file_, error);
+    if (!error.empty()) throw not_written(file_, error);
   }
 
   fs::path file_;

@@ -106,8 +106,7 @@ void checked(const std::filesystem::path& file, std::size_t message_bytes, Call&
     expect_memory(message_bytes);
     call();
   } catch (const std::exception& error) {
-    throw DataError(file, std::string("cannot be written (") + error.what() + ")",
-                    "a writable output folder with free space");
+    throw not_written(file, error.what());
   }
 }
 

@@ -44,17 +44,6 @@ std::string packed(const std::string& compression, const std::string& bytes) {
 
 std::uint16_t channel_of(std::size_t topic) { return static_cast<std::uint16_t>(topic); }
 
-/// Turns what a disk says into DataError.
-template <typename Call>
-void checked(const std::filesystem::path& file, Call&& call) {
-  try {
-    call();
-  } catch (const std::system_error& error) {
-    throw DataError(file, std::string("cannot be written (") + error.code().message() + ")",
-                    "a writable output folder with free space");
-  }
-}
-
 /// Writes an MCAP file in chunks, each with an index of its messages, and a summary.
 class McapWriter : public Ros2BagWriter {
  public:
@@ -62,7 +51,7 @@ class McapWriter : public Ros2BagWriter {
   McapWriter(const std::filesystem::path& folder, const std::string& compression)
       : Ros2BagWriter(folder, {"mcap", message_file_of(Ros2Storage::kMcap), "", 0, 0, {}}),
         compression_(compression) {
-    checked(file(), [&] { out_ = std::make_unique<PartialFile>(file()); });
+    write_by(file(), [&] { out_ = std::make_unique<PartialFile>(file()); });
     ByteSink header;
     header.put_counted("ros2");
     header.put_counted("mosbench");
@@ -111,14 +100,14 @@ class McapWriter : public Ros2BagWriter {
   }
 
   void put_in_place() override {
-    checked(file(), [&] {
+    write_by(file(), [&] {
       out_->sync();
       out_->put_in_place_of(file());
     });
   }
 
   void put(std::string_view bytes) {
-    checked(file(), [&] { out_->write(bytes); });
+    write_by(file(), [&] { out_->write(bytes); });
     written_bytes_ += bytes.size();
   }
 

@@ -87,20 +87,13 @@ class SqliteBagWriter : public Ros2BagWriter {
 
   void put_in_place() override {
     sync_file_system_of(partial_.parent_path());
-    std::error_code error;
-    std::filesystem::rename(partial_, file(), error);
-    if (error) {
-      throw DataError(file(), "cannot be written (" + error.message() + ")",
-                      "a writable output folder with free space");
-    }
+    write_by(file(), [&] { std::filesystem::rename(partial_, file()); });
     sync_names_of(partial_.parent_path());
   }
 
   void check(int result) const {
     if (result == SQLITE_OK || result == SQLITE_DONE) return;
-    throw DataError(file(),
-                    std::string("cannot be written (") + sqlite3_errmsg(database_.get()) + ")",
-                    "a writable output folder with free space");
+    throw not_written(file(), sqlite3_errmsg(database_.get()));
   }
 
   void run(const char* statements) const {

@@ -6,7 +6,6 @@
 
 #include <cerrno>
 #include <cstring>
-#include <fstream>
 #include <new>
 #include <type_traits>
 
@@ -83,14 +82,7 @@ std::string hash_of_file(const std::filesystem::path& file) {
   if (size_bytes <= 2 * kEndBytes) {
     bytes += read_file(file);
   } else {
-    std::ifstream in(file, std::ios::binary);
-    for (const std::uintmax_t from : {std::uintmax_t{0}, size_bytes - kEndBytes}) {
-      const std::size_t so_far = bytes.size();
-      bytes.resize(so_far + kEndBytes);
-      in.seekg(static_cast<std::streamoff>(from));
-      in.read(bytes.data() + so_far, static_cast<std::streamsize>(kEndBytes));
-    }
-    if (!in) throw DataError(file, "cannot be read", "a readable file");
+    bytes += read_part(file, 0, kEndBytes) + read_part(file, size_bytes - kEndBytes, kEndBytes);
   }
   return hash_of_text(bytes);
 }
