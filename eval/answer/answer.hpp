@@ -7,7 +7,7 @@
 #include <variant>
 #include <vector>
 
-#include "eval/answer/line_chart.hpp"
+#include "eval/answer/picture.hpp"
 
 namespace mosbench {
 

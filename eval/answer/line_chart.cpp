@@ -1,5 +1,3 @@
-#include "eval/answer/line_chart.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -7,7 +7,7 @@
 
 #include "eval/answer/answer.hpp"
 #include "eval/breakdown/breakdown.hpp"
-#include "eval/statistics/paired_runs.hpp"
+#include "eval/statistics/run_statistics.hpp"
 
 namespace mosbench {
 

@@ -20,7 +20,7 @@
 #include "eval/result/result.hpp"
 #include "eval/result/result_scans.hpp"
 #include "eval/result/tell.hpp"
-#include "eval/statistics/paired_runs.hpp"
+#include "eval/statistics/run_statistics.hpp"
 #include "eval/statistics/statistics_report.hpp"
 #include "eval/store/store.hpp"
 

@@ -18,7 +18,7 @@
 #include "eval/cli/commands.hpp"
 #include "eval/cli/flags.hpp"
 #include "eval/protocols/metrics.hpp"
-#include "eval/report/result_boxes.hpp"
+#include "eval/report/label_products.hpp"
 #include "eval/report/scan_choice.hpp"
 #include "eval/report/scan_picture.hpp"
 #include "eval/result/result.hpp"

@@ -12,7 +12,7 @@
 #include "eval/cli/run_kinds.hpp"
 #include "eval/engine/run_execute.hpp"
 #include "eval/job/method_choice.hpp"
-#include "eval/report/written_products.hpp"
+#include "eval/report/label_products.hpp"
 #include "eval/result/tell.hpp"
 #include "eval/tables/table_print.hpp"
 

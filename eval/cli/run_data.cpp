@@ -12,7 +12,7 @@
 #include "eval/job/method_choice.hpp"
 #include "eval/protocols/metrics.hpp"
 #include "eval/protocols/protocol.hpp"
-#include "eval/report/written_products.hpp"
+#include "eval/report/label_products.hpp"
 #include "eval/result/result.hpp"
 #include "eval/result/settings_json.hpp"
 #include "eval/result/tell.hpp"

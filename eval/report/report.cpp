@@ -9,8 +9,8 @@
 #include <stdexcept>
 
 #include "datasets/text/errors.hpp"
+#include "eval/report/label_products.hpp"
 #include "eval/report/point_planes.hpp"
-#include "eval/report/result_boxes.hpp"
 #include "eval/result/result_file.hpp"
 #include "eval/result/result_json.hpp"
 #include "eval/result/version.hpp"

@@ -12,8 +12,8 @@
 
 #include "datasets/formats/point_range.hpp"
 #include "eval/answer/picture.hpp"
+#include "eval/report/label_products.hpp"
 #include "eval/report/point_planes.hpp"
-#include "eval/report/result_boxes.hpp"
 
 namespace mosbench {
 namespace {

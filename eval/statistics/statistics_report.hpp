@@ -5,7 +5,7 @@
 
 #include "eval/answer/answer.hpp"
 #include "eval/result/result.hpp"
-#include "eval/statistics/paired_runs.hpp"
+#include "eval/statistics/run_statistics.hpp"
 
 namespace mosbench {
 

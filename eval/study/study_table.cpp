@@ -10,8 +10,7 @@
 #include <utility>
 
 #include "eval/engine/study_plan.hpp"
-#include "eval/statistics/paired_runs.hpp"
-#include "eval/statistics/pareto_front.hpp"
+#include "eval/statistics/run_statistics.hpp"
 
 namespace mosbench {
 namespace {

@@ -6,8 +6,7 @@
 #include <set>
 
 #include "datasets/text/errors.hpp"
-#include "eval/statistics/paired_runs.hpp"
-#include "eval/statistics/pareto_front.hpp"
+#include "eval/statistics/run_statistics.hpp"
 
 namespace mosbench {
 namespace {

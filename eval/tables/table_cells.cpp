@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "eval/statistics/paired_runs.hpp"
+#include "eval/statistics/run_statistics.hpp"
 #include "eval/tables/leaderboard.hpp"
 
 namespace mosbench {

@@ -3,7 +3,6 @@
 #include <array>
 #include <string>
 
-#include "eval/answer/line_chart.hpp"
 #include "eval/answer/picture.hpp"
 #include "eval/trajectory/trajectory_scores.hpp"
 

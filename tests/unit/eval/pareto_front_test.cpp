@@ -1,7 +1,7 @@
-#include "eval/statistics/pareto_front.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include "eval/statistics/run_statistics.hpp"
 
 namespace mosbench {
 namespace {

@@ -10,7 +10,6 @@
 #include <numbers>
 #include <optional>
 
-#include "eval/answer/line_chart.hpp"
 #include "eval/report/scan_picture.hpp"
 
 namespace mosbench {

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "eval/statistics/paired_runs.hpp"
+#include "eval/statistics/run_statistics.hpp"
 
 namespace mosbench {
 namespace {

@@ -1,4 +1,4 @@
-#include "eval/report/written_products.hpp"
+#include "eval/report/label_products.hpp"
 
 #include <fmt/format.h>
 
@@ -10,11 +10,11 @@
 #include <set>
 #include <string_view>
 
+#include "core/base/thread_pool.hpp"
 #include "datasets/formats/point_range.hpp"
 #include "datasets/text/errors.hpp"
 #include "eval/answer/answer_text.hpp"
 #include "eval/report/point_planes.hpp"
-#include "eval/report/result_boxes.hpp"
 #include "eval/result/result_file.hpp"
 #include "eval/result/tell.hpp"
 #include "eval/store/store.hpp"
@@ -26,6 +26,50 @@ namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
 constexpr double kMapVoxel_m = 0.1;
+
+std::vector<Eigen::Vector3d> moving_points_of(const JudgedScan& scan) {
+  std::vector<Eigen::Vector3d> positions_map_m;
+  for (std::size_t i = 0; i < scan.outcomes.size(); ++i) {
+    const Point& point = scan.frame.points[i];
+    if (!is_labelled_moving(scan.outcomes[i])) continue;
+    positions_map_m.push_back(scan.frame.map_from_sensor * position_of(point));
+  }
+  return positions_map_m;
+}
+
+/// To the hundredth, or to another part of 1.
+double rounded_to_part(double value, double parts = 100.0) {
+  return std::round(parts * value) / parts;
+}
+
+ordered_json numbers_of(const MovingBox& box, const Pose& sensor_from_map) {
+  const Pose sensor_from_box = sensor_from_map * box.map_from_box;
+  const Eigen::Vector3d ahead = sensor_from_box.linear().col(0);
+  ordered_json numbers = ordered_json::array();
+  for (const double value : sensor_from_box.translation())
+    numbers.push_back(rounded_to_part(value));
+  numbers.push_back(rounded_to_part(std::atan2(ahead.y(), ahead.x())));
+  for (const double value : box.size_m) numbers.push_back(rounded_to_part(value));
+  const auto& velocity_m_s = box.velocity_m_s;
+  numbers.push_back(velocity_m_s ? ordered_json(rounded_to_part(velocity_m_s->norm(), 1e3))
+                                 : nullptr);
+  return numbers;
+}
+
+/// The scans with labels that are wanted or near to one.
+std::vector<std::size_t> scans_around(const ResultScans& scans,
+                                      const std::vector<std::size_t>& wanted) {
+  std::vector<bool> near(scans.rows().size(), false);
+  for (const std::size_t k : wanted) {
+    const std::size_t last = std::min(k + kScansAroundBoxes, near.size() - 1);
+    for (std::size_t i = k - std::min(k, kScansAroundBoxes); i <= last; ++i) near[i] = true;
+  }
+  std::vector<std::size_t> around;
+  for (std::size_t k = 0; k < near.size(); ++k) {
+    if (near[k] && scans.has(k)) around.push_back(k);
+  }
+  return around;
+}
 
 ordered_json triple(const Eigen::Vector3d& vector) { return {vector.x(), vector.y(), vector.z()}; }
 
@@ -214,6 +258,38 @@ constexpr std::array kProducts = {
     Product{"static-cloud", write_static_ply}, Product{"static-cloud-pcd", write_static_pcd}};
 
 }  // namespace
+
+bool is_labelled_moving(PointOutcome outcome) {
+  return outcome == PointOutcome::kTruePositive || outcome == PointOutcome::kFalsePositive ||
+         outcome == PointOutcome::kIgnoredMoving;
+}
+
+ordered_json boxes_json(const ResultScans& scans, const std::vector<std::size_t>& wanted) {
+  ordered_json json = ordered_json::array();
+  const std::vector<std::vector<MovingBox>> boxes = boxes_of(scans, wanted);
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    ordered_json& of_scan = json.emplace_back(ordered_json::array());
+    const Pose sensor_from_map = scans.sequence().map_from_sensor(wanted[i]).inverse();
+    for (const MovingBox& box : boxes[i]) of_scan.push_back(numbers_of(box, sensor_from_map));
+  }
+  return json;
+}
+
+std::vector<std::vector<MovingBox>> boxes_of(const ResultScans& scans,
+                                             const std::vector<std::size_t>& wanted) {
+  const std::vector<std::size_t> around = scans_around(scans, wanted);
+  std::vector<std::vector<MovingBox>> found = moving_boxes(
+      scans.sequence(), around, [&](std::size_t k) { return moving_points_of(scans.read(k)); },
+      hardware_threads());
+  std::vector<std::vector<MovingBox>> boxes;
+  for (const std::size_t k : wanted) {
+    const auto at = std::ranges::lower_bound(around, k);
+    const bool has = at != around.end() && *at == k;
+    boxes.push_back(has ? std::move(found[static_cast<std::size_t>(at - around.begin())])
+                        : std::vector<MovingBox>());
+  }
+  return boxes;
+}
 
 std::vector<std::string> product_names() {
   std::vector<std::string> names;

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "eval/breakdown/object_tracks.hpp"
@@ -24,5 +27,13 @@ std::vector<std::vector<MovingBox>> boxes_of(const ResultScans& scans,
 /// speed] in the sensor's frame, metres and radians, to 0.01; the speed in m/s to 0.001, null
 /// for an object seen once.
 nlohmann::ordered_json boxes_json(const ResultScans& scans, const std::vector<std::size_t>& wanted);
+
+/// The files that `mosbench run --write` can write beside the labels.
+std::vector<std::string> product_names();
+
+/// Writes products of a finished sequence of `mosbench run` into its folder, in the formats of
+/// docs/formats/files.md. Each file appears whole; those that are there as they were written are
+/// kept. Throws DataError, and UsageError for one that was changed since.
+void write_products(const std::filesystem::path& folder, std::span<const std::string> names);
 
 }  // namespace mosbench

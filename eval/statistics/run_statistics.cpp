@@ -1,4 +1,4 @@
-#include "eval/statistics/paired_runs.hpp"
+#include "eval/statistics/run_statistics.hpp"
 
 #include <fmt/format.h>
 
@@ -149,6 +149,15 @@ GateCheck check(std::string name, const Protocol& protocol, std::span<const Sequ
   return check;
 }
 
+bool is_whole(const IouAndTime& run) { return run.iou && run.ms_per_scan; }
+
+/// Whether `other` is at least as good and as fast, and better in one.
+bool beats(const IouAndTime& other, const IouAndTime& run) {
+  if (!is_whole(other)) return false;
+  const bool as_good = *other.iou >= *run.iou && *other.ms_per_scan <= *run.ms_per_scan;
+  return as_good && (*other.iou > *run.iou || *other.ms_per_scan < *run.ms_per_scan);
+}
+
 }  // namespace
 
 Spacing spacing_of(const ScanGaps& gaps) {
@@ -218,6 +227,16 @@ GateResult judge(const PairedRuns& paired, const Protocol& protocol, double max_
         check("all", protocol, paired.first, paired.second, paired.spacing, max_drop, rule));
   }
   return result;
+}
+
+std::vector<bool> pareto_front(std::span<const IouAndTime> runs) {
+  std::vector<bool> front;
+  for (const IouAndTime& run : runs) {
+    front.push_back(is_whole(run) && std::ranges::none_of(runs, [&](const IouAndTime& other) {
+                      return beats(other, run);
+                    }));
+  }
+  return front;
 }
 
 }  // namespace mosbench
