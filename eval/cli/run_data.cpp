@@ -23,10 +23,8 @@ namespace {
 
 std::vector<SummaryRow> rows_of(const RunPlan& plan, const std::vector<SequenceOutcome>& outcomes) {
   std::vector<ScoredSequence> sequences;
-  for (std::size_t i = 0; i < outcomes.size(); ++i) {
-    const Result& result = outcomes[i].result;
-    sequences.push_back(
-        {plan.dataset.sequences[i]->name(), result.scans, method_ms_per_scan(result)});
+  for (const auto& [result, folder, reused] : outcomes) {
+    sequences.push_back({result.sequence.text(), result.scans, method_ms_per_scan(result)});
   }
   return summary_rows(*plan.settings.protocol, plan.dataset.splits, sequences);
 }
@@ -53,8 +51,7 @@ MovingPoints moving_points(const Result& result) {
 }
 
 /// Without truth there is nothing to score, but still something to look at.
-void add_moving_points(const RunPlan& plan, const std::vector<SequenceOutcome>& outcomes,
-                       Sheet& sheet) {
+void add_moving_points(const std::vector<SequenceOutcome>& outcomes, Sheet& sheet) {
   sheet.lead.emplace_back("no scan has truth: nothing to score");
   sheet.columns = {{"sequence", Unit::kText},
                    {"scans"},
@@ -62,12 +59,11 @@ void add_moving_points(const RunPlan& plan, const std::vector<SequenceOutcome>& 
                    {"moving"},
                    {"moving", Unit::kPercent, 2},
                    {"ms/scan", Unit::kNumber, 1}};
-  for (std::size_t i = 0; i < outcomes.size(); ++i) {
-    const Result& result = outcomes[i].result;
+  for (const auto& [result, folder, reused] : outcomes) {
     const auto [points, moving] = moving_points(result);
     sheet.rows.push_back(
-        {plan.dataset.sequences[i]->name(), std::uint64_t{result.scans.size()},
-         std::uint64_t{points}, std::uint64_t{moving},
+        {result.sequence.text(), std::uint64_t{result.scans.size()}, std::uint64_t{points},
+         std::uint64_t{moving},
          static_cast<double>(moving) / static_cast<double>(std::max<std::size_t>(points, 1)),
          method_ms_per_scan(result).value_or(0.0)});
   }
@@ -88,10 +84,10 @@ Sheet run_sheet(const RunPlan& plan, const std::vector<SequenceOutcome>& outcome
   sheet.lead.insert(sheet.lead.begin(), {fmt::format("{} data set {}", to_string(plan.dataset.kind),
                                                      plan.dataset.root.string()),
                                          method_line(plan)});
-  if (!scored) add_moving_points(plan, outcomes, sheet);
-  for (std::size_t i = 0; i < outcomes.size(); ++i) {
-    for (const std::string& remark : outcomes[i].result.remarks) {
-      sheet.notes.push_back(fmt::format("{}: {}", plan.dataset.sequences[i]->name(), remark));
+  if (!scored) add_moving_points(outcomes, sheet);
+  for (const auto& [result, folder, reused] : outcomes) {
+    for (const std::string& remark : result.remarks) {
+      sheet.notes.push_back(fmt::format("{}: {}", result.sequence.text(), remark));
     }
   }
   sheet.notes.push_back(fmt::format("results in {}", plan.out.string()));
@@ -110,12 +106,12 @@ nlohmann::ordered_json run_report_json(const RunPlan& plan,
   if (const auto origin = simulated_origin_json(plan.dataset)) json["simulated"] = *origin;
   json.update(rows_json(rows_of(plan, outcomes)));
   for (std::size_t i = 0; i < outcomes.size(); ++i) {
-    json["sequences"][i]["folder"] = outcomes[i].folder.string();
     const auto [points, moving] = moving_points(outcomes[i].result);
-    json["sequences"][i]["points"] = points;
-    json["sequences"][i]["predicted_moving_points"] = moving;
-    json["sequences"][i]["reused"] = outcomes[i].reused;
-    json["sequences"][i]["remarks"] = outcomes[i].result.remarks;
+    json["sequences"][i].update({{"folder", outcomes[i].folder.string()},
+                                 {"points", points},
+                                 {"predicted_moving_points", moving},
+                                 {"reused", outcomes[i].reused},
+                                 {"remarks", outcomes[i].result.remarks}});
   }
   return json;
 }

@@ -1,11 +1,11 @@
-#include "eval/python/arrays.hpp"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <cmath>
 #include <limits>
 #include <string_view>
+
+#include "eval/python/bindings.hpp"
 
 namespace mosbench::python {
 namespace {

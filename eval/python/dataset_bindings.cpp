@@ -8,7 +8,6 @@
 #include "eval/cli/flags.hpp"
 #include "eval/engine/pose_finding.hpp"
 #include "eval/job/job.hpp"
-#include "eval/python/arrays.hpp"
 #include "eval/python/bindings.hpp"
 #include "eval/result/reading_json.hpp"
 

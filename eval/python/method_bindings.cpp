@@ -7,7 +7,6 @@
 #include <mutex>
 
 #include "eval/job/method_choice.hpp"
-#include "eval/python/arrays.hpp"
 #include "eval/python/bindings.hpp"
 #include "eval/result/machine.hpp"
 #include "eval/result/settings_json.hpp"

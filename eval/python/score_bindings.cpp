@@ -4,7 +4,6 @@
 
 #include "eval/protocols/confusion.hpp"
 #include "eval/protocols/metrics.hpp"
-#include "eval/python/arrays.hpp"
 #include "eval/python/bindings.hpp"
 #include "eval/result/result.hpp"
 #include "eval/result/result_json.hpp"
@@ -111,12 +110,13 @@ py::dict load_results(const std::filesystem::path& folder) {
 
 void bind_scores(py::module_& module) {
   module.def("protocol_names", [] { return names_of(protocols()); });
+  using Points = std::optional<py::array>;
   module.def("count", [](const py::array& predicted, const py::array& truth,
-                         const std::string& protocol, const std::optional<py::array>& points) {
+                         const std::string& protocol, const Points& points) {
     return dict_of(count(predicted, truth, protocol, points));
   });
   module.def("metrics", [](const py::array& predicted, const py::array& truth,
-                           const std::string& protocol, const std::optional<py::array>& points) {
+                           const std::string& protocol, const Points& points) {
     const std::vector<SequenceCounts> one = {{count(predicted, truth, protocol, points)}};
     return dict_of(aggregate(protocol_named(protocol), one));
   });
