@@ -43,32 +43,28 @@ void add(const BinCounts& part, BinCounts& sum) {
   for (std::size_t b = 0; b < sum.size(); ++b) sum[b] += part[b];
 }
 
-/// Bins between edges; the last one has no upper end.
-class Bins {
- public:
-  Bins(std::vector<double> edges, const char* unit) : edges_(std::move(edges)) {
-    for (std::size_t b = 0; b < edges_.size(); ++b) {
-      bins_.push_back({b + 1 < edges_.size()
-                           ? fmt::format("{:g} to {:g} {}", edges_[b], edges_[b + 1], unit)
-                           : fmt::format("from {:g} {}", edges_[b], unit)});
-    }
-  }
-  RecallBin& at(double value) {
-    std::size_t b = 0;
-    while (b + 1 < edges_.size() && value >= edges_[b + 1]) ++b;
-    return bins_[b];
-  }
-  std::vector<RecallBin> take() { return std::move(bins_); }
-
- private:
-  std::vector<double> edges_;
-  std::vector<RecallBin> bins_;
+/// Points of moving objects with the property by which they are sorted.
+struct SeenPoints {
+  double property;
+  std::size_t points, found;
 };
 
-void add(const ObjectTrack& object, RecallBin& bin) {
-  ++bin.count;
-  bin.tp += object.found();
-  bin.fn += object.points() - object.found();
+/// Sorts into bins between edges; the last one has no upper end.
+std::vector<RecallBin> binned(const std::vector<double>& edges, const char* unit,
+                              const std::vector<SeenPoints>& seen) {
+  std::vector<RecallBin> bins;
+  for (std::size_t b = 0; b + 1 < edges.size(); ++b) {
+    bins.push_back({fmt::format("{:g} to {:g} {}", edges[b], edges[b + 1], unit)});
+  }
+  bins.push_back({fmt::format("from {:g} {}", edges.back(), unit)});
+  for (const auto& [property, points, found] : seen) {
+    std::size_t b = 0;
+    while (b + 1 < edges.size() && property >= edges[b + 1]) ++b;
+    ++bins[b].count;
+    bins[b].tp += found;
+    bins[b].fn += points - found;
+  }
+  return bins;
 }
 
 ordered_json metrics_json(const Confusion& counts) {
@@ -231,31 +227,31 @@ SequenceBreakdown break_down(const Sequence& sequence, const std::vector<std::si
 }
 
 std::vector<RecallBin> recall_by_size(const std::vector<ObjectTrack>& objects) {
-  Bins bins({0.0, 0.5, 1.0, 2.0, 4.0, 8.0}, "m");
-  for (const ObjectTrack& object : objects) add(object, bins.at(object.largest_size_m()));
-  return bins.take();
+  std::vector<SeenPoints> seen;
+  for (const ObjectTrack& object : objects) {
+    seen.push_back({object.largest_size_m(), object.points(), object.found()});
+  }
+  return binned({0.0, 0.5, 1.0, 2.0, 4.0, 8.0}, "m", seen);
 }
 
 std::vector<RecallBin> recall_by_speed(const std::vector<ObjectTrack>& objects) {
-  Bins bins({0.0, 0.5, 1.0, 2.0, 5.0, 10.0}, "m/s");
+  std::vector<SeenPoints> seen;
   for (const ObjectTrack& object : objects) {
-    if (const auto speed_m_s = object.speed_m_s()) add(object, bins.at(*speed_m_s));
+    const auto speed_m_s = object.speed_m_s();
+    if (speed_m_s) seen.push_back({*speed_m_s, object.points(), object.found()});
   }
-  return bins.take();
+  return binned({0.0, 0.5, 1.0, 2.0, 5.0, 10.0}, "m/s", seen);
 }
 
 std::vector<RecallBin> recall_by_age(const std::vector<ObjectTrack>& objects) {
-  Bins bins({0.0, 1.0, 4.0, 10.0, 30.0, 100.0}, "scans");
+  std::vector<SeenPoints> seen;
   for (const ObjectTrack& object : objects) {
-    for (const Sighting& sighting : object.sightings) {
-      const std::size_t age = sighting.scan_index - object.sightings.front().scan_index;
-      RecallBin& bin = bins.at(static_cast<double>(age));
-      ++bin.count;
-      bin.tp += sighting.cluster.found;
-      bin.fn += sighting.cluster.points - sighting.cluster.found;
+    for (const auto& [scan_index, unused, cluster] : object.sightings) {
+      const std::size_t age_scans = scan_index - object.sightings.front().scan_index;
+      seen.push_back({static_cast<double>(age_scans), cluster.points, cluster.found});
     }
   }
-  return bins.take();
+  return binned({0.0, 1.0, 4.0, 10.0, 30.0, 100.0}, "scans", seen);
 }
 
 ordered_json to_json(const SequenceBreakdown& breakdown, std::size_t at_most) {
