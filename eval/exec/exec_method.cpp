@@ -25,10 +25,6 @@ struct WaitingScan : Observed {
   Pose map_from_sensor;
 };
 
-std::size_t nonfinite_points(const std::vector<Point>& points) {
-  return static_cast<std::size_t>(std::ranges::count(points, false, is_finite));
-}
-
 class ExecMethod : public Method {
  public:
   ExecMethod(const std::string& command, double timeout_s, RunContext context)
@@ -98,7 +94,8 @@ class ExecMethod : public Method {
     result.labels = std::move(message.labels);
     if (context_.scores) result.scores = std::move(message.scores);
     result.judged = true;
-    result.nonfinite_points = nonfinite_points(scan.points);
+    result.nonfinite_points =
+        static_cast<std::size_t>(std::ranges::count(scan.points, false, is_finite));
   }
 
   std::int64_t stamp_ns() const {

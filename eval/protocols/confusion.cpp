@@ -136,9 +136,4 @@ Confusion to_confusion(const OutcomeCounts& counts) {
           .ignored = of(PointOutcome::kIgnoredStatic) + of(PointOutcome::kIgnoredMoving)};
 }
 
-Confusion score_scan(const Protocol& protocol, std::span<const std::uint32_t> truth,
-                     std::span<const std::uint32_t> prediction, std::span<const Point> points) {
-  return score_scan(protocol, truth, prediction, points, protocol.default_range);
-}
-
 }  // namespace mosbench

@@ -52,8 +52,11 @@ Confusion score_scan(const Protocol& protocol, std::span<const std::uint32_t> tr
                      const RangeGate& limits);
 
 /// Counts the points within the protocol's default limits.
-Confusion score_scan(const Protocol& protocol, std::span<const std::uint32_t> truth,
-                     std::span<const std::uint32_t> prediction, std::span<const Point> points);
+inline Confusion score_scan(const Protocol& protocol, std::span<const std::uint32_t> truth,
+                            std::span<const std::uint32_t> prediction,
+                            std::span<const Point> points) {
+  return score_scan(protocol, truth, prediction, points, protocol.default_range);
+}
 
 /// Returns the outcome of every point under the rules of `score_scan`, in stored order.
 std::vector<PointOutcome> point_outcomes(const Protocol& protocol,

@@ -15,11 +15,6 @@ using nlohmann::ordered_json;
 // First poses farther apart than this are hardly in the same frame.
 constexpr double kFarStart_m = 5.0;
 
-std::string_view what_is_missing(PathAlignment alignment) {
-  return alignment == PathAlignment::kRigid ? "rigid alignment is undefined"
-                                            : "similarity alignment is undefined";
-}
-
 std::vector<Eigen::Vector3d> positions_m(const std::vector<Pose>& poses) {
   std::vector<Eigen::Vector3d> positions;
   for (const Pose& pose : poses) positions.emplace_back(pose.translation());
@@ -142,9 +137,10 @@ ordered_json overall_json(const Overall& all) {
 TrajectoryScore score_of(const TrajectoryPair& pair, const ScoringRules& rules) {
   const auto estimate = aligned(pair.estimate, pair.truth, rules.alignment);
   if (!estimate) {
-    throw DataError(pair.name + ": the positions lie on a line, so that " +
-                    std::string(what_is_missing(rules.alignment)) +
-                    ", expected --align none or origin");
+    throw DataError(fmt::format(
+        "{}: the positions lie on a line, so that {} alignment is undefined, expected --align none "
+        "or origin",
+        pair.name, to_string(rules.alignment)));
   }
   TrajectoryScore score{.name = pair.name,
                         .poses = pair.truth.size(),
