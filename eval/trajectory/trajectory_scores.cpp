@@ -43,14 +43,17 @@ Overall overall(std::span<const TrajectoryScore> scores,
 
 /// Adds the translation in percent and the rotation in degrees per 100 m.
 void add_segments(const std::optional<MeanSegmentError>& mean, std::vector<Cell>& row) {
-  row.push_back(mean ? Cell(100 * mean->translation) : Cell());
-  row.push_back(mean ? Cell(100 * kDegrees * mean->rotation_rad_per_m) : Cell());
+  std::optional<double> translation, rotation;
+  if (mean) translation = 100 * mean->translation;
+  if (mean) rotation = 100 * kDegrees * mean->rotation_rad_per_m;
+  row.insert(row.end(), {or_missing(translation), or_missing(rotation)});
 }
 
 void add_roots(const PoseErrors& errors, std::vector<Cell>& row) {
-  const auto translation = summary_of(errors.translation_m);
-  row.push_back(translation ? Cell(translation->rmse) : Cell());
-  row.push_back(translation ? Cell(kDegrees * summary_of(errors.rotation_rad)->rmse) : Cell());
+  std::optional<double> translation_m, rotation_deg;
+  if (const auto summary = summary_of(errors.translation_m)) translation_m = summary->rmse;
+  if (const auto summary = summary_of(errors.rotation_rad)) rotation_deg = kDegrees * summary->rmse;
+  row.insert(row.end(), {or_missing(translation_m), or_missing(rotation_deg)});
 }
 
 std::vector<Cell> row_of(const TrajectoryScore& score) {
