@@ -2,7 +2,6 @@
 
 #include "bench/stage_benchmark.hpp"
 #include "core/methods/octomap/log_odds_map.hpp"
-#include "core/methods/octomap/scan_rays.hpp"
 
 /// The update of OctoMap's map by our rays and block by block, beside the library's own
 /// insertPointCloud: the same leaves. Times of the two compare within one run of the program.

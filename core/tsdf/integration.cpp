@@ -6,7 +6,6 @@
 #include <numbers>
 
 #include "core/base/multiarch.hpp"
-#include "core/tsdf/image_lanes.hpp"
 #include "core/tsdf/range_image.hpp"
 
 namespace mosbench::tsdf {

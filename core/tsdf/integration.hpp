@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "core/base/thread_pool.hpp"
-#include "core/tsdf/config.hpp"
 #include "core/tsdf/range_image.hpp"
 #include "core/tsdf/sensor_model.hpp"
 #include "core/tsdf/tsdf_map.hpp"

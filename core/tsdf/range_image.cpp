@@ -7,7 +7,6 @@
 #include <limits>
 
 #include "core/base/multiarch.hpp"
-#include "core/tsdf/image_lanes.hpp"
 
 namespace mosbench::tsdf {
 namespace {

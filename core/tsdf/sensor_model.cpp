@@ -5,7 +5,7 @@
 #include <numbers>
 #include <vector>
 
-#include "core/base/beam_rows.hpp"
+#include "core/voxel/directions.hpp"
 
 namespace mosbench::tsdf {
 namespace {

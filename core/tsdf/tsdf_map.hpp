@@ -7,10 +7,9 @@
 #include <span>
 #include <vector>
 
-#include "core/base/slot_pool.hpp"
 #include "core/base/thread_pool.hpp"
-#include "core/tsdf/config.hpp"
 #include "core/tsdf/range_image.hpp"
+#include "core/tsdf/sensor_model.hpp"
 #include "core/voxel/block_map.hpp"
 #include "core/voxel/voxel_set.hpp"
 

@@ -9,7 +9,6 @@
 
 #include "core/base/scan_method.hpp"
 #include "core/base/thread_pool.hpp"
-#include "core/tsdf/config.hpp"
 #include "core/tsdf/range_image.hpp"
 #include "core/tsdf/sensor_model.hpp"
 #include "core/tsdf/tsdf_map.hpp"

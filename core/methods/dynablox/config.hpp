@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include "core/base/fields.hpp"
-#include "core/tsdf/config.hpp"
+#include "core/tsdf/sensor_model.hpp"
 
 namespace mosbench::dynablox {
 

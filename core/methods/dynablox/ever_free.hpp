@@ -4,10 +4,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/base/slot_pool.hpp"
 #include "core/base/thread_pool.hpp"
 #include "core/methods/dynablox/config.hpp"
 #include "core/tsdf/tsdf_map.hpp"
+#include "core/voxel/block_map.hpp"
 #include "core/voxel/voxel_set.hpp"
 
 namespace mosbench::dynablox {

@@ -13,7 +13,6 @@
 #include "core/methods/hmm_mos/hmm.hpp"
 #include "core/methods/hmm_mos/median.hpp"
 #include "core/methods/hmm_mos/otsu.hpp"
-#include "core/methods/hmm_mos/reference.hpp"
 #include "core/voxel/distance_field.hpp"
 #include "core/voxel/neighbourhood.hpp"
 #include "core/voxel/raycast.hpp"

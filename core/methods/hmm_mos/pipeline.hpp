@@ -3,6 +3,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <memory>
+#include <mosbench/method.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -97,5 +99,10 @@ class Pipeline final : public MappedMethod {
 
 /// Describes how the end of a delayed sequence is labelled; empty when online or of unknown length.
 std::vector<std::string> remarks_on_delay(const Config& config, const RunContext& context);
+
+/// Makes the method that follows the paper's section III step by step: hash maps of single voxels,
+/// all pairs, triple loops. Its labels equal those of Pipeline, with which it shares the config and
+/// nothing else. Throws std::invalid_argument as `check` does.
+std::unique_ptr<Method> make_reference(const Config& config, const RunContext& context = {});
 
 }  // namespace mosbench::hmm_mos

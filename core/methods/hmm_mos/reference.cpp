@@ -1,5 +1,3 @@
-#include "core/methods/hmm_mos/reference.hpp"
-
 #include <deque>
 #include <limits>
 #include <utility>

@@ -6,7 +6,6 @@
 #include <span>
 #include <vector>
 
-#include "core/base/slot_pool.hpp"
 #include "core/base/thread_pool.hpp"
 #include "core/methods/hmm_mos/change_detection.hpp"
 #include "core/methods/hmm_mos/config.hpp"

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/methods/hmm_mos_plus/arrivals.hpp"
 #include "core/methods/hmm_mos_plus/config.hpp"
-#include "core/methods/hmm_mos_plus/scan_masks.hpp"
 
 namespace mosbench::hmm_mos_plus {
 

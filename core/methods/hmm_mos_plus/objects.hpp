@@ -6,7 +6,6 @@
 #include "core/methods/hmm_mos_plus/arrivals.hpp"
 #include "core/methods/hmm_mos_plus/config.hpp"
 #include "core/methods/hmm_mos_plus/ground.hpp"
-#include "core/methods/hmm_mos_plus/scan_masks.hpp"
 
 namespace mosbench::hmm_mos_plus {
 

@@ -13,7 +13,6 @@
 #include "core/methods/hmm_mos_plus/config.hpp"
 #include "core/methods/hmm_mos_plus/ground.hpp"
 #include "core/methods/hmm_mos_plus/objects.hpp"
-#include "core/methods/hmm_mos_plus/tick_clock.hpp"
 
 namespace mosbench::hmm_mos_plus {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/base/fields.hpp"
-#include "core/tsdf/config.hpp"
+#include "core/tsdf/sensor_model.hpp"
 #include "core/tsdf/tsdf_map.hpp"
 #include "core/tsdf/tsdf_method.hpp"
 #include "core/voxel/voxel_set.hpp"

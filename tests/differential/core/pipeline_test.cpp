@@ -5,7 +5,6 @@
 #include <sstream>
 #include <string>
 
-#include "core/methods/hmm_mos/reference.hpp"
 #include "tests/small_world.hpp"
 
 /// The core against the slow twin, label for label and score for score, on small seeded worlds.

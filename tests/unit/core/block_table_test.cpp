@@ -4,7 +4,7 @@
 #include <map>
 #include <set>
 
-#include "core/base/slot_pool.hpp"
+#include "core/voxel/block_map.hpp"
 #include "tests/voxel_twins.hpp"
 
 namespace mosbench {

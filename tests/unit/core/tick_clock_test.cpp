@@ -1,8 +1,8 @@
-#include "core/methods/hmm_mos_plus/tick_clock.hpp"
-
 #include <gtest/gtest.h>
 
 #include <limits>
+
+#include "core/methods/hmm_mos_plus/block_history.hpp"
 
 namespace mosbench::hmm_mos_plus {
 namespace {
