@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <numbers>
 
 #include "datasets/disk/files.hpp"
@@ -30,6 +31,73 @@ constexpr std::array<RecordingDay, 5> kRecordingDays = {{{721.5377, 1242, 375},
                                                          {718.3351, 1238, 374},
                                                          {707.0912, 1226, 370},
                                                          {718.8560, 1241, 376}}};
+
+/// The lines "key: numbers" of a calibration file of KITTI's drives; the colon may be missing, as
+/// in part of the lines of its tracking benchmark.
+class KittiCalibLines {
+ public:
+  /// Throws DataError for a key that is there twice.
+  KittiCalibLines(std::string_view text, fs::path file) : file_(std::move(file)) {
+    for (std::size_t number = 1; !text.empty(); ++number) {
+      const std::string_view line = take_line(text);
+      if (line.empty()) continue;
+      const auto key_end = std::min(line.find_first_of(": \t"), line.size());
+      const std::string key(line.substr(0, key_end));
+      const auto rest = line.substr(std::min(key_end + 1, line.size()));
+      if (lines_.emplace(key, rest).second) continue;
+      throw DataError(file_, number, "a second line " + mosbench::quoted(key), "one");
+    }
+  }
+
+  /// Returns the numbers of a key. Throws DataError unless there are `count` finite ones.
+  std::vector<double> numbers(const std::string& key, std::size_t count) const {
+    const std::string expected = fmt::format("\"{}\" and {} numbers", key, count);
+    const auto line = lines_.find(key);
+    if (line == lines_.end()) throw DataError(file_, "has no line \"" + key + "\"", expected);
+    const auto words = split_at_blanks(line->second);
+    std::vector<double> numbers = parse_numbers(words, [&](std::string_view text) {
+      throw DataError(file_, key + ": " + quoted(text) + " is no number", expected);
+    });
+    if (numbers.size() != count) {
+      throw DataError(file_, fmt::format("{}: has {} numbers", key, numbers.size()), expected);
+    }
+    return numbers;
+  }
+
+  /// Returns a rigid motion: the rotation of nine numbers that is nearest to the rounded one, and
+  /// a translation of three. Throws DataError for what is no rotation.
+  Pose motion(const std::string& rotation_key, const std::string& translation_key) const {
+    const std::vector<double> rotation = numbers(rotation_key, 9), t = numbers(translation_key, 3);
+    return rigid(Eigen::Map<const RowMajor3>(rotation.data()), {t[0], t[1], t[2]}, rotation_key);
+  }
+
+  /// The same for one key with 9 (a rotation) or 12 numbers (rows of 3x4).
+  Pose motion(const std::string& key, std::size_t count) const {
+    const std::vector<double> values = numbers(key, count);
+    if (count == 9) {
+      return rigid(Eigen::Map<const RowMajor3>(values.data()), Eigen::Vector3d::Zero(), key);
+    }
+    const RowMajor34 rows = Eigen::Map<const RowMajor34>(values.data());
+    return rigid(rows.leftCols<3>(), rows.col(3), key);
+  }
+
+  const std::filesystem::path& file() const { return file_; }
+
+ private:
+  Pose rigid(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& translation_m,
+             const std::string& key) const {
+    if (!is_rotation(rotation)) {
+      throw DataError(file_, key + " is no rotation", "rows of length 1 at right angles");
+    }
+    Pose pose = Pose::Identity();
+    pose.linear() = Eigen::Quaterniond(rotation).normalized().toRotationMatrix();
+    pose.translation() = translation_m;
+    return pose;
+  }
+
+  std::filesystem::path file_;
+  std::map<std::string, std::string, std::less<>> lines_;
+};
 
 CameraView view_of(const Pose& rectified_from_lidar, const std::vector<double>& projection,
                    const std::string& key, const fs::path& file) {
@@ -95,58 +163,6 @@ void set_attitude(const Eigen::Matrix3d& r, OxtsPacket& packet) {
 }
 
 }  // namespace
-
-KittiCalibLines::KittiCalibLines(std::string_view text, fs::path file) : file_(std::move(file)) {
-  for (std::size_t number = 1; !text.empty(); ++number) {
-    const std::string_view line = take_line(text);
-    if (line.empty()) continue;
-    const auto key_end = std::min(line.find_first_of(": \t"), line.size());
-    const std::string key(line.substr(0, key_end));
-    const auto rest = line.substr(std::min(key_end + 1, line.size()));
-    if (lines_.emplace(key, rest).second) continue;
-    throw DataError(file_, number, "a second line " + mosbench::quoted(key), "one");
-  }
-}
-
-std::vector<double> KittiCalibLines::numbers(const std::string& key, std::size_t count) const {
-  const std::string expected = fmt::format("\"{}\" and {} numbers", key, count);
-  const auto line = lines_.find(key);
-  if (line == lines_.end()) throw DataError(file_, "has no line \"" + key + "\"", expected);
-  const auto words = split_at_blanks(line->second);
-  std::vector<double> numbers = parse_numbers(words, [&](std::string_view text) {
-    throw DataError(file_, key + ": " + quoted(text) + " is no number", expected);
-  });
-  if (numbers.size() != count) {
-    throw DataError(file_, fmt::format("{}: has {} numbers", key, numbers.size()), expected);
-  }
-  return numbers;
-}
-
-Pose KittiCalibLines::rigid(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& translation_m,
-                            const std::string& key) const {
-  if (!is_rotation(rotation)) {
-    throw DataError(file_, key + " is no rotation", "rows of length 1 at right angles");
-  }
-  Pose pose = Pose::Identity();
-  pose.linear() = Eigen::Quaterniond(rotation).normalized().toRotationMatrix();
-  pose.translation() = translation_m;
-  return pose;
-}
-
-Pose KittiCalibLines::motion(const std::string& rotation_key,
-                             const std::string& translation_key) const {
-  const std::vector<double> rotation = numbers(rotation_key, 9), t = numbers(translation_key, 3);
-  return rigid(Eigen::Map<const RowMajor3>(rotation.data()), {t[0], t[1], t[2]}, rotation_key);
-}
-
-Pose KittiCalibLines::motion(const std::string& key, std::size_t count) const {
-  const std::vector<double> values = numbers(key, count);
-  if (count == 9) {
-    return rigid(Eigen::Map<const RowMajor3>(values.data()), Eigen::Vector3d::Zero(), key);
-  }
-  const RowMajor34 rows = Eigen::Map<const RowMajor34>(values.data());
-  return rigid(rows.leftCols<3>(), rows.col(3), key);
-}
 
 Eigen::Vector3d CameraView::project(const Eigen::Vector3d& lidar_m) const {
   return pixel_from_rectified * (rectified_from_lidar * lidar_m).homogeneous();

@@ -2,7 +2,6 @@
 
 #include <Eigen/Core>
 #include <filesystem>
-#include <map>
 #include <mosbench/scan.hpp>
 #include <span>
 #include <string>
@@ -10,30 +9,6 @@
 #include <vector>
 
 namespace mosbench {
-
-/// The lines "key: numbers" of a calibration file of KITTI's drives; the colon may be missing, as
-/// in part of the lines of its tracking benchmark.
-class KittiCalibLines {
- public:
-  /// Throws DataError for a key that is there twice.
-  KittiCalibLines(std::string_view text, std::filesystem::path file);
-
-  /// Returns the numbers of a key. Throws DataError unless there are `count` finite ones.
-  std::vector<double> numbers(const std::string& key, std::size_t count) const;
-  /// Returns a rigid motion: the rotation of nine numbers that is nearest to the rounded one, and
-  /// a translation of three. Throws DataError for what is no rotation.
-  Pose motion(const std::string& rotation_key, const std::string& translation_key) const;
-  /// The same for one key with 9 (a rotation) or 12 numbers (rows of 3x4).
-  Pose motion(const std::string& key, std::size_t count) const;
-  const std::filesystem::path& file() const { return file_; }
-
- private:
-  Pose rigid(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& translation_m,
-             const std::string& key) const;
-
-  std::filesystem::path file_;
-  std::map<std::string, std::string, std::less<>> lines_;
-};
 
 /// What a camera sees of LiDAR points.
 struct CameraView {
