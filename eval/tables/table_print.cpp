@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "eval/answer/answer_text.hpp"
 #include "eval/answer/render.hpp"
@@ -13,20 +14,16 @@ namespace {
 
 using nlohmann::ordered_json;
 
-bool is_measured(const TableCell& cell) {
-  return cell.verdict != Verdict::kPublishedOnly && cell.measured;
-}
-
 /// Formats a cell without its reasons.
 std::string cell_text(const TableCell& cell) {
   const std::string published = cell.published ? cell.published->iou_percent : "";
-  if (!is_measured(cell)) return published.empty() ? "-" : published;
+  if (!cell.measured) return published.empty() ? "-" : published;
   std::string text = published.empty() ? "" : published + " / ";
-  text += percent_text(cell.measured->value, "{:.1f}");
+  text += percent_text(cell.measured->value);
   if (cell.difference) text += fmt::format(" ({:+.1f})", *cell.difference * 100.0);
   if (cell.measured->interval) {
-    text += fmt::format(" [{}, {}]", percent_text(cell.measured->interval->low, "{:.1f}"),
-                        percent_text(cell.measured->interval->high, "{:.1f}"));
+    text += fmt::format(" [{}, {}]", percent_text(cell.measured->interval->low),
+                        percent_text(cell.measured->interval->high));
   } else if (!cell.measured->no_interval.empty()) {
     text += " [no interval]";
   }
@@ -37,26 +34,14 @@ std::string joined(const std::vector<std::string>& texts, const char* between) {
   return fmt::format("{}", fmt::join(texts, between));
 }
 
-/// Numbered footnotes without duplicates.
-class Notes {
- public:
-  std::string mark(const std::vector<std::string>& reasons) {
-    if (reasons.empty()) return "";
-    const std::string text = joined(reasons, "; ");
-    const auto known = std::ranges::find(texts_, text);
-    const auto number = known - texts_.begin() + 1;
-    if (known == texts_.end()) texts_.push_back(text);
-    return fmt::format(" ({})", number);
-  }
-  void add_to(std::vector<std::string>& notes) const {
-    for (std::size_t i = 0; i < texts_.size(); ++i) {
-      notes.push_back(fmt::format("({}) {}", i + 1, texts_[i]));
-    }
-  }
-
- private:
-  std::vector<std::string> texts_;
-};
+/// Returns " (2)" of the second footnote, which is added if no other says the same.
+std::string mark_of(const std::vector<std::string>& reasons, std::vector<std::string>& footnotes) {
+  if (reasons.empty()) return "";
+  const std::string text = joined(reasons, "; ");
+  const auto number = std::ranges::find(footnotes, text) - footnotes.begin() + 1;
+  if (std::cmp_greater(number, footnotes.size())) footnotes.push_back(text);
+  return fmt::format(" ({})", number);
+}
 
 std::string row_setting(const TableRow& row) {
   return row.section.empty() ? row.setting
@@ -106,15 +91,17 @@ Sheet sheet_of(const FilledTable& table) {
   for (const TableColumn& column : table.table->columns) {
     sheet.columns.push_back({std::string(column.name)});
   }
-  Notes notes;
+  std::vector<std::string> footnotes;
   for (const TableRow& row : table.rows) {
     sheet.rows.push_back({row.method, row_setting(row), row.protocol});
     for (const TableCell& cell : row.cells) {
-      sheet.rows.back().push_back(cell_text(cell) + notes.mark(cell.reasons));
+      sheet.rows.back().push_back(cell_text(cell) + mark_of(cell.reasons, footnotes));
     }
   }
   for (std::string& line : measured_sequences(table)) sheet.notes.push_back(std::move(line));
-  notes.add_to(sheet.notes);
+  for (std::size_t i = 0; i < footnotes.size(); ++i) {
+    sheet.notes.push_back(fmt::format("({}) {}", i + 1, footnotes[i]));
+  }
   if (std::string hint = hint_on_runs(table); !hint.empty()) sheet.notes.push_back(std::move(hint));
   return sheet;
 }
