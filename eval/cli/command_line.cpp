@@ -156,6 +156,11 @@ std::string commands_with_odometry(const CLI::App& command,
     return typed_line(arguments) + " --odometry simple";
   }
   if (command.get_option_no_throw("--poses") == nullptr) return "";
+  const auto chooses_scans = [](const CLI::Option& option) {
+    const std::string name = option.get_name();
+    return option.get_group() == kReadingGroup || name == "DATA" || name == "--dataset" ||
+           name == "--sequences";
+  };
   // A file for one sequence, a folder for several: `--poses` takes either.
   constexpr std::string_view kFoundPoses = "found-poses";
   return fmt::format("\n  mosbench odometry{} -o {}{} --poses {}",

@@ -59,6 +59,12 @@ Answer answer_of(const ResultSet& baseline, const ResultSet& newer, const Paired
           .annotations = gate_annotations(result)};
 }
 
+void check_shares_scans(const PairedRuns& paired, const CompareFlags& options) {
+  if (!paired.scans.empty()) return;
+  throw DataError(options.newer, "shares no counted scan with " + options.baseline.string(),
+                  "results over the same scans");
+}
+
 Answer compare(const CompareFlags& options) {
   if (!options.summary.empty()) check_output(options.summary);
   const ResultSet baseline = load_result_set(options.baseline);
@@ -69,10 +75,7 @@ Answer compare(const CompareFlags& options) {
                     "is not like " + options.baseline.string() + ": " + unlike_text(paired.unlike),
                     "results of the same kind; --even-if compares them anyway");
   }
-  if (paired.scans.empty()) {
-    throw DataError(options.newer, "shares no counted scan with " + options.baseline.string(),
-                    "results over the same scans");
-  }
+  check_shares_scans(paired, options);
   const GateResult result =
       judge(paired, *baseline.front().protocol, options.max_drop_points / 100.0,
             options.statistical ? GateRule::kStatistical : GateRule::kMaxDrop);
@@ -159,19 +162,13 @@ std::vector<ObjectDisagreement> objects_of(const Result& first, const Result& se
                              break_down(scans.sequence(), counted, labels, task));
 }
 
-std::set<std::string> names_in(const CompareFlags& options) {
-  std::optional<DatasetKind> kind;
-  std::set<std::string> names;
-  for (const SequenceFolder& found :
-       find_sequences(*options.data, {dataset_kind_option(options.dataset), {}, {}}, kind)) {
-    names.insert(found.name);
-  }
-  return names;
-}
-
 std::vector<ObjectDisagreement> objects_of(const CompareFlags& options, const ResultSet& first,
                                            const ResultSet& second) {
-  const std::set<std::string> there = names_in(options);
+  std::optional<DatasetKind> kind = dataset_kind_option(options.dataset);
+  std::set<std::string> there;
+  for (const SequenceFolder& found : find_sequences(*options.data, {kind}, kind)) {
+    there.insert(found.name);
+  }
   std::vector<ObjectDisagreement> objects;
   bool any = false;
   for (const Result& result : first.sequences) {
@@ -206,10 +203,7 @@ Answer scans_and_objects(const CompareFlags& options) {
   const ResultSet second = load_result_set(options.newer);
   for (const ResultSet* run : {&first, &second}) check_has_truth(*run);
   const PairedRuns paired = pair_runs(first, second);
-  if (paired.scans.empty()) {
-    throw DataError(options.newer, "shares no counted scan with " + options.baseline.string(),
-                    "results over the same scans");
-  }
+  check_shares_scans(paired, options);
   const auto objects = options.shows("object") && options.data ? objects_of(options, first, second)
                                                                : std::vector<ObjectDisagreement>{};
   return {.standing = standing_of(first, "first", second, "second"),

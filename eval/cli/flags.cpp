@@ -231,13 +231,6 @@ std::string flag_words(std::string_view name, std::string_view value) {
   return flag_of(name) + (value.empty() ? "" : " ") + std::string(value);
 }
 
-bool chooses_scans(const CLI::Option& option) {
-  DataWords words;
-  CLI::App command;
-  add_scan_dataset_flags(command, words);
-  return command.get_option_no_throw(option.get_name()) != nullptr;
-}
-
 std::string given_words(const CLI::App& command,
                         const std::function<bool(const CLI::Option&)>& wanted) {
   std::string words;

@@ -70,9 +70,6 @@ std::vector<std::pair<std::string, std::string>> key_values(std::string_view fla
 /// Words an option as a flag, for `word_options_by`: "--pose-frame lidar".
 std::string flag_words(std::string_view name, std::string_view value);
 
-/// Returns whether an option of any command is one of `add_scan_dataset_flags`.
-bool chooses_scans(const CLI::Option& option);
-
 /// Returns those of the arguments and flags that were given to `command` and are wanted, a blank in
 /// front of each word.
 std::string given_words(const CLI::App& command,
