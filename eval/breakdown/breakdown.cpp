@@ -100,12 +100,14 @@ ordered_json position(const Eigen::Vector3d& position_m) {
   return {position_m.x(), position_m.y(), position_m.z()};
 }
 
-std::vector<const ObjectTrack*> worst_first(const std::vector<ObjectTrack>& objects) {
+std::vector<const ObjectTrack*> worst_of(const std::vector<ObjectTrack>& objects,
+                                         std::size_t at_most) {
   std::vector<const ObjectTrack*> sorted;
   for (const ObjectTrack& object : objects) sorted.push_back(&object);
   std::ranges::stable_sort(sorted, std::ranges::greater{}, [](const ObjectTrack* object) {
     return object->points() - object->found();
   });
+  sorted.resize(std::min(at_most, sorted.size()));
   return sorted;
 }
 
@@ -169,15 +171,13 @@ Sheet objects_sheet(const SequenceBreakdown& breakdown, std::size_t at_most) {
                           {"m/s", Unit::kNumber, 1},
                           {"delay"},
                           {"position in the map m"}}};
-  const std::vector<const ObjectTrack*> sorted = worst_first(breakdown.objects);
-  for (std::size_t i = 0; i < std::min(at_most, sorted.size()); ++i) {
-    const ObjectTrack& object = *sorted[i];
-    const Sighting& first = object.sightings.front();
-    const auto delay = object.detection_delay_scans();
+  for (const ObjectTrack* object : worst_of(breakdown.objects, at_most)) {
+    const Sighting& first = object->sightings.front();
+    const auto delay = object->detection_delay_scans();
     sheet.rows.push_back({"from " + breakdown.stems[first.scan_index],
-                          std::uint64_t{object.sightings.size()}, std::uint64_t{object.points()},
-                          object.recall(), object.mean_range_m(), object.largest_size_m(),
-                          or_missing(object.speed_m_s()),
+                          std::uint64_t{object->sightings.size()}, std::uint64_t{object->points()},
+                          object->recall(), object->mean_range_m(), object->largest_size_m(),
+                          or_missing(object->speed_m_s()),
                           delay ? Cell(std::uint64_t{*delay}) : Cell("never"),
                           position_text(first.cluster.centre_map_m)});
   }
@@ -267,9 +267,8 @@ ordered_json to_json(const SequenceBreakdown& breakdown, std::size_t at_most) {
       {"object_count", breakdown.objects.size()},
       {"objects", ordered_json::array()},
       {"false_positive_clusters", ordered_json::array()}};
-  const std::vector<const ObjectTrack*> sorted = worst_first(breakdown.objects);
-  for (std::size_t i = 0; i < std::min(at_most, sorted.size()); ++i) {
-    json["objects"].push_back(object_json(breakdown, *sorted[i]));
+  for (const ObjectTrack* object : worst_of(breakdown.objects, at_most)) {
+    json["objects"].push_back(object_json(breakdown, *object));
   }
   const auto& clusters = breakdown.false_positives;
   for (std::size_t i = 0; i < std::min(at_most, clusters.size()); ++i) {
