@@ -46,10 +46,8 @@ const Layout& apollo_layout() {
           "and calib.txt (Apollo of LiDAR-MOS), or one such folder",
       .list = list_apollo,
       .open = open_apollo,
-      .splits = nullptr,
       .evidence = Evidence::kFolders,
-      .recognise = recognise_apollo,
-      .writer = std::nullopt};
+      .recognise = recognise_apollo};
   return row;
 }
 

@@ -222,6 +222,16 @@ void keep_left_scans(Dataset& dataset) {
   }
 }
 
+std::vector<Split> named_splits(const Layout& layout, const std::vector<SequenceFolder>& folders) {
+  std::vector<std::string_view> names;
+  for (const NamedSplit& split : layout.named_splits) names.emplace_back(split.name);
+  return splits_of_sequences(
+      names, folders, [&](std::string_view name, const SequenceFolder& folder) {
+        const auto split = std::ranges::find(layout.named_splits, name, &NamedSplit::name);
+        return std::ranges::find(split->sequences, folder.name) != split->sequences.end();
+      });
+}
+
 void perturb(Dataset& dataset, const Reading& reading) {
   if (reading.is_by_odometry() && !changes_points_only(*reading.perturb)) {
     throw UsageError(fmt::format(
@@ -259,9 +269,9 @@ Dataset open_dataset(const std::filesystem::path& path, const OpenOptions& optio
     if (reading.hdl64_correction) sequence = with_hdl64_correction(std::move(sequence));
     dataset.sequences.push_back(with_point_times(std::move(sequence), reading));
   }
-  if (layout.splits != nullptr) {
-    dataset.splits = layout.splits(folders, dataset.sequences, dataset.remarks);
-  }
+  dataset.splits = layout.splits != nullptr
+                       ? layout.splits(folders, dataset.sequences, dataset.remarks)
+                       : named_splits(layout, folders);
   if (options.reading.perturb) perturb(dataset, options.reading);
   return dataset;
 }

@@ -25,20 +25,13 @@ struct DatasetKind {
   static const DatasetKind kRecording;  ///< a bag, a scan, or a folder of either
 };
 
-inline constexpr DatasetKind DatasetKind::kDoals{"doals"};
-inline constexpr DatasetKind DatasetKind::kSipailou{"sipailou"};
-inline constexpr DatasetKind DatasetKind::kHelimos{"helimos"};
-inline constexpr DatasetKind DatasetKind::kSemanticKitti{"semantickitti"};
-inline constexpr DatasetKind DatasetKind::kApollo{"apollo"};
-inline constexpr DatasetKind DatasetKind::kMoe{"moe"};
-inline constexpr DatasetKind DatasetKind::kKth{"kth"};
-inline constexpr DatasetKind DatasetKind::kMdetector{"mdetector"};
-inline constexpr DatasetKind DatasetKind::kOpenSceneFlow{"opensceneflow"};
-inline constexpr DatasetKind DatasetKind::kNuscenes{"nuscenes"};
-inline constexpr DatasetKind DatasetKind::kHelipr{"helipr"};
-inline constexpr DatasetKind DatasetKind::kKittiRaw{"kitti-raw"};
-inline constexpr DatasetKind DatasetKind::kKittiTracking{"kitti-tracking"};
-inline constexpr DatasetKind DatasetKind::kRecording{"recording"};
+inline constexpr DatasetKind DatasetKind::kDoals{"doals"}, DatasetKind::kSipailou{"sipailou"},
+    DatasetKind::kHelimos{"helimos"}, DatasetKind::kSemanticKitti{"semantickitti"},
+    DatasetKind::kApollo{"apollo"}, DatasetKind::kMoe{"moe"}, DatasetKind::kKth{"kth"},
+    DatasetKind::kMdetector{"mdetector"}, DatasetKind::kOpenSceneFlow{"opensceneflow"},
+    DatasetKind::kNuscenes{"nuscenes"}, DatasetKind::kHelipr{"helipr"},
+    DatasetKind::kKittiRaw{"kitti-raw"}, DatasetKind::kKittiTracking{"kitti-tracking"},
+    DatasetKind::kRecording{"recording"};
 
 inline std::string_view to_string(DatasetKind kind) { return kind.name; }
 /// Returns nothing when the name is not one of `dataset_kind_names()`.

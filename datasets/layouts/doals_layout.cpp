@@ -219,18 +219,12 @@ std::unique_ptr<Sequence> open_doals(const SequenceFolder& sequence, const Readi
 std::vector<Split> doals_splits(const std::vector<SequenceFolder>& folders,
                                 const std::vector<std::unique_ptr<Sequence>>&,
                                 std::vector<std::string>&) {
-  std::vector<Split> splits;
-  for (const std::string_view name : {"ST", "SV", "HG", "ND"}) {
-    Split split{std::string(name), {}};
-    for (std::size_t i = 0; i < folders.size(); ++i) {
-      const std::string scene = folder_name(parent_folder(folders[i].folder));
-      const auto published = std::ranges::find(kPublished, scene, &DoalsPublished::scene);
-      if (published != kPublished.end() && published->split == name)
-        split.parts.push_back({i, std::nullopt});
-    }
-    if (!split.parts.empty()) splits.push_back(std::move(split));
-  }
-  return splits;
+  return splits_of_sequences(
+      {"ST", "SV", "HG", "ND"}, folders, [](std::string_view split, const SequenceFolder& folder) {
+        const std::string scene = folder_name(parent_folder(folder.folder));
+        const auto published = std::ranges::find(kPublished, scene, &DoalsPublished::scene);
+        return published != kPublished.end() && published->split == split;
+      });
 }
 
 /// Many a bag holds an Ouster's scans: only what lies around it tells that it is of this set.

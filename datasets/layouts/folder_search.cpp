@@ -101,19 +101,20 @@ std::string flat_name(std::string name) {
   return name;
 }
 
+std::filesystem::path flat_folder(const std::string& name, std::size_t) { return flat_name(name); }
+
 std::filesystem::path kitti_folder(const std::string& name, std::size_t) {
   return std::filesystem::path("sequences") / flat_name(name);
 }
 
-std::vector<Split> splits_of_names(const std::vector<NamedSplit>& named,
-                                   const std::vector<SequenceFolder>& folders) {
+std::vector<Split> splits_of_sequences(
+    const std::vector<std::string_view>& names, const std::vector<SequenceFolder>& folders,
+    const std::function<bool(std::string_view split, const SequenceFolder& folder)>& holds) {
   std::vector<Split> splits;
-  for (const NamedSplit& candidate : named) {
-    Split split{candidate.name, {}};
+  for (const std::string_view name : names) {
+    Split split{std::string(name), {}};
     for (std::size_t i = 0; i < folders.size(); ++i) {
-      if (std::ranges::find(candidate.sequences, folders[i].name) != candidate.sequences.end()) {
-        split.parts.push_back({i, std::nullopt});
-      }
+      if (holds(name, folders[i])) split.parts.push_back({i, std::nullopt});
     }
     if (!split.parts.empty()) splits.push_back(std::move(split));
   }

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <initializer_list>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "datasets/layouts/dataset.hpp"
@@ -40,23 +42,19 @@ std::vector<SequenceFolder> list_kitti(const std::filesystem::path& path);
 
 bool any_holds(const std::vector<SequenceFolder>& sequences, const char* file);
 
-/// A split that consists of whole sequences.
-struct NamedSplit {
-  const char* name;
-  std::vector<std::string> sequences;
-};
-/// Returns the splits of which at least one sequence is in `folders`.
-std::vector<Split> splits_of_names(const std::vector<NamedSplit>& named,
-                                   const std::vector<SequenceFolder>& folders);
+/// Returns the splits of these names that hold whole sequences, if any of those that are there.
+std::vector<Split> splits_of_sequences(
+    const std::vector<std::string_view>& names, const std::vector<SequenceFolder>& folders,
+    const std::function<bool(std::string_view split, const SequenceFolder& folder)>& holds);
 
 /// Returns the label ids of semantic-kitti-mos.yaml.
 std::set<std::uint32_t> semantickitti_label_ids();
 
-/// Opens a KittiSequence with the default places of its files.
 /// Returns why a recording has no times of points in a column: it is a bag, or one scan; empty for
 /// the folder of scans.
 std::string recording_without_times(const std::filesystem::path& recording);
 
+/// Opens a KittiSequence with the default places of its files.
 std::unique_ptr<Sequence> open_kitti(const SequenceFolder& sequence, const Reading& asked);
 
 /// Returns sequences/NAME, with "_" for each slash in the name.
@@ -64,5 +62,7 @@ std::filesystem::path kitti_folder(const std::string& name, std::size_t position
 
 /// Returns `name` with "_" for each slash.
 std::string flat_name(std::string name);
+/// Returns the same as folder of a sequence.
+std::filesystem::path flat_folder(const std::string& name, std::size_t position);
 
 }  // namespace mosbench

@@ -238,8 +238,6 @@ std::optional<std::string> recognise_helipr(const fs::path& path) {
   return "packed scans of HeLiPR's " + folder_name(sequences.front().folder) + " are there";
 }
 
-fs::path helipr_folder(const std::string& name, std::size_t) { return flat_name(name); }
-
 }  // namespace
 
 const Layout& helipr_layout() {
@@ -261,11 +259,10 @@ const Layout& helipr_layout() {
           "recordings, or one such folder of scans",
       .list = list_helipr,
       .open = open_helipr,
-      .splits = nullptr,
       .evidence = Evidence::kFolders,
       .recognise = recognise_helipr,
       .writer = LayoutWriter{.open = write_as_helipr,
-                             .folder = helipr_folder,
+                             .folder = flat_folder,
                              .files = files_of_helipr,
                              .last_file = helipr_last_file,
                              .keeps = KeptTruth::kNone,

@@ -277,8 +277,6 @@ std::optional<std::string> recognise_part_of_kitti_tracking(const fs::path& path
   return "scans are in velodyne/" + folder_name(sequences.front().folder);
 }
 
-fs::path kitti_tracking_folder(const std::string& name, std::size_t) { return flat_name(name); }
-
 /// 9, 251 with the owner as instance or, without a label
 /// and all beyond the camera's view, 0.
 std::uint32_t kitti_label_in_view(const SimulatedReturn& seen) {
@@ -312,7 +310,6 @@ const Layout& kitti_raw_layout() {
       .no_point_times = [](const std::filesystem::path&) -> std::string {
         return "the points of KITTI's drives have no times, expected azimuth or none";
       },
-      .splits = nullptr,
       .evidence = Evidence::kFolders,
       .recognise = recognise_kitti_raw,
       .writer = LayoutWriter{.open = write_as_kitti_raw,
@@ -348,13 +345,12 @@ const Layout& kitti_tracking_layout() {
       .no_point_times = [](const std::filesystem::path&) -> std::string {
         return "the points of KITTI's drives have no times, expected azimuth or none";
       },
-      .splits = nullptr,
       .evidence = Evidence::kFolders,
       .recognise = recognise_kitti_tracking,
       .recognise_part = recognise_part_of_kitti_tracking,
       .writer =
           LayoutWriter{.open = write_as_kitti_tracking,
-                       .folder = kitti_tracking_folder,
+                       .folder = flat_folder,
                        .files = files_of_kitti_tracking,
                        .last_file = [](const WriteOptions&) { return kKittiTrackingLastFile; },
                        .keeps = KeptTruth::kInView,

@@ -121,10 +121,8 @@ const Layout& kth_layout() {
       .list = list_kth,
       .open = open_kth,
       .only_own_poses = "whose scans hold their poses in VIEWPOINT",
-      .splits = nullptr,
       .evidence = Evidence::kFolders,
-      .recognise = recognise_kth,
-      .writer = std::nullopt};
+      .recognise = recognise_kth};
   return row;
 }
 

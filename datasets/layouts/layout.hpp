@@ -78,6 +78,12 @@ struct RelatedSet {
   std::string_view reading;    ///< what to give mosbench for its rules
 };
 
+/// A split that consists of whole sequences.
+struct NamedSplit {
+  const char* name;
+  std::vector<std::string> sequences;
+};
+
 /// All facts about one data set. Adding one: a file with its row, named in layouts.cpp.
 struct Layout {
   std::string_view name;  ///< in --dataset, presets and results
@@ -102,18 +108,19 @@ struct Layout {
   /// instead; empty where they may have. Null where they may always.
   std::string (*no_point_times)(const std::filesystem::path& sequence) = nullptr;
   std::string_view only_own_poses = {};  ///< why poses of the user are refused; empty: they are not
-  /// Returns the splits of opened sequences; `folders` runs parallel to `sequences`. May add
-  /// remarks. Null for a data set without splits.
+  std::vector<NamedSplit> named_splits = {};
+  /// Returns other splits of opened sequences; `folders` runs parallel to `sequences`. May add
+  /// remarks. Null for a data set without.
   std::vector<Split> (*splits)(const std::vector<SequenceFolder>& folders,
                                const std::vector<std::unique_ptr<Sequence>>& sequences,
-                               std::vector<std::string>& remarks);
+                               std::vector<std::string>& remarks) = nullptr;
   Evidence evidence;
   /// Returns why `path` looks like this data set, or nothing if it does not.
   std::optional<std::string> (*recognise)(const std::filesystem::path& path);
   /// The same of a data set that lacks files or has damaged ones, which opening it names; asked
   /// where nothing that can be read is there. Null where there is no such.
   std::optional<std::string> (*recognise_part)(const std::filesystem::path& path) = nullptr;
-  std::optional<LayoutWriter> writer;               ///< nothing for a data set that is only read
+  std::optional<LayoutWriter> writer = {};          ///< nothing for a data set that is only read
   bool truth_by_speed = false;                      ///< Reading::moving_speed_m_s is for it
   std::vector<RelatedSet> related = {};             ///< that the same reader reads
   std::optional<LayoutSimulation> simulation = {};  ///< with a writer; nothing: is not simulated

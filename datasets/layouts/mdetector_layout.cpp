@@ -66,10 +66,8 @@ const Layout& mdetector_layout() {
           "(M-detector), or one such folder",
       .list = list_mdetector,
       .open = open_kitti,
-      .splits = nullptr,
       .evidence = Evidence::kName,
-      .recognise = recognise_mdetector,
-      .writer = std::nullopt};
+      .recognise = recognise_mdetector};
   return row;
 }
 

@@ -39,10 +39,8 @@ const Layout& moe_layout() {
       .expected = "NN with pcd/*.pcd, label/*.txt and gt_poses.txt (MOE), or one such folder",
       .list = list_moe,
       .open = open_moe,
-      .splits = nullptr,
       .evidence = Evidence::kFolders,
-      .recognise = recognise_moe,
-      .writer = std::nullopt};
+      .recognise = recognise_moe};
   return row;
 }
 

@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <map>
 #include <memory>
-#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -139,57 +138,26 @@ class NuscenesSequence : public Sequence {
 
 constexpr std::string_view kScenePrefix = "scene-";
 
-/// Numbers of scenes, both ends included.
-struct NumberRange {
-  std::uint64_t first, last;
-};
-
-// The lists of nuscenes-devkit, python-sdk/nuscenes/utils/splits.py: 700, 150 and 150 scenes.
-constexpr std::array<NumberRange, 79> kTrain = {
-    {{1, 2},       {4, 11},     {19, 34},   {41, 76},   {120, 135}, {138, 139},  {149, 152},
-     {154, 155},   {157, 168},  {170, 185}, {187, 188}, {190, 196}, {199, 200},  {202, 204},
-     {206, 214},   {218, 220},  {222, 222}, {224, 264}, {283, 306}, {315, 318},  {321, 321},
-     {323, 324},   {328, 328},  {347, 386}, {388, 403}, {405, 408}, {410, 459},  {461, 465},
-     {467, 469},   {471, 472},  {474, 480}, {499, 502}, {504, 515}, {517, 518},  {525, 539},
-     {541, 546},   {566, 566},  {568, 568}, {570, 578}, {580, 580}, {582, 600},  {639, 679},
-     {681, 681},   {683, 689},  {695, 698}, {700, 701}, {703, 719}, {726, 728},  {730, 731},
-     {733, 741},   {744, 744},  {746, 747}, {749, 752}, {757, 765}, {767, 769},  {786, 787},
-     {789, 792},   {803, 806},  {808, 813}, {815, 817}, {819, 822}, {847, 856},  {858, 858},
-     {860, 866},   {868, 873},  {875, 878}, {880, 880}, {882, 903}, {945, 945},  {947, 947},
-     {949, 949},   {952, 953},  {955, 961}, {975, 984}, {988, 992}, {994, 1025}, {1044, 1058},
-     {1074, 1102}, {1104, 1110}}};
-constexpr std::array<NumberRange, 26> kVal = {
-    {{3, 3},     {12, 18},   {35, 36},   {38, 39},   {92, 110},   {221, 221}, {268, 278},
-     {329, 332}, {344, 346}, {519, 524}, {552, 565}, {625, 627},  {629, 630}, {632, 638},
-     {770, 771}, {775, 775}, {777, 778}, {780, 784}, {794, 800},  {802, 802}, {904, 917},
-     {919, 931}, {962, 963}, {966, 969}, {971, 972}, {1059, 1073}}};
-constexpr std::array<NumberRange, 18> kTest = {{{77, 91},
-                                                {111, 119},
-                                                {140, 140},
-                                                {142, 148},
-                                                {265, 266},
-                                                {279, 282},
-                                                {307, 314},
-                                                {333, 343},
-                                                {481, 498},
-                                                {547, 551},
-                                                {601, 604},
-                                                {606, 624},
-                                                {827, 831},
-                                                {833, 842},
-                                                {844, 846},
-                                                {932, 933},
-                                                {935, 943},
-                                                {1026, 1043}}};
-constexpr std::array<NumberRange, 8> kMiniTrain = {{{61, 61},
-                                                    {553, 553},
-                                                    {655, 655},
-                                                    {757, 757},
-                                                    {796, 796},
-                                                    {1077, 1077},
-                                                    {1094, 1094},
-                                                    {1100, 1100}}};
-constexpr std::array<NumberRange, 2> kMiniVal = {{{103, 103}, {916, 916}}};
+/// The numbers of the scenes of each split, of nuscenes-devkit,
+/// python-sdk/nuscenes/utils/splits.py: 700, 150 and 150 scenes.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 5> kSceneSplits = {
+    {{"train",
+      "1-2 4-11 19-34 41-76 120-135 138-139 149-152 154-155 157-168 170-185 187-188 190-196 "
+      "199-200 202-204 206-214 218-220 222 224-264 283-306 315-318 321 323-324 328 347-386 "
+      "388-403 405-408 410-459 461-465 467-469 471-472 474-480 499-502 504-515 517-518 525-539 "
+      "541-546 566 568 570-578 580 582-600 639-679 681 683-689 695-698 700-701 703-719 726-728 "
+      "730-731 733-741 744 746-747 749-752 757-765 767-769 786-787 789-792 803-806 808-813 "
+      "815-817 819-822 847-856 858 860-866 868-873 875-878 880 882-903 945 947 949 952-953 "
+      "955-961 975-984 988-992 994-1025 1044-1058 1074-1102 1104-1110"},
+     {"val",
+      "3 12-18 35-36 38-39 92-110 221 268-278 329-332 344-346 519-524 552-565 625-627 629-630 "
+      "632-638 770-771 775 777-778 780-784 794-800 802 904-917 919-931 962-963 966-969 971-972 "
+      "1059-1073"},
+     {"test",
+      "77-91 111-119 140 142-148 265-266 279-282 307-314 333-343 481-498 547-551 601-604 "
+      "606-624 827-831 833-842 844-846 932-933 935-943 1026-1043"},
+     {"mini_train", "61 553 655 757 796 1077 1094 1100"},
+     {"mini_val", "103 916"}}};
 
 /// Whether a folder holds tables of nuScenes, if only half of them.
 bool has_tables(const fs::path& folder) {
@@ -250,31 +218,27 @@ std::unique_ptr<Sequence> open_nuscenes(const SequenceFolder& sequence, const Re
   return std::make_unique<NuscenesSequence>(sequence.name, sequence.folder, asked);
 }
 
-bool holds(std::span<const NumberRange> ranges, const std::string& scene) {
-  const auto number = stem_number(alias_of(scene));
-  return number && std::ranges::any_of(ranges, [&](const NumberRange& range) {
-           return *number >= range.first && *number <= range.last;
-         });
+/// Whether a number is one of "1-2 4-11 61".
+bool holds(std::string_view ranges, std::uint64_t number) {
+  return std::ranges::any_of(split_at_blanks(ranges), [&](std::string_view range) {
+    const auto first = parse_unsigned(range.substr(0, range.find('-')));
+    const auto last = parse_unsigned(range.substr(range.find('-') + 1));
+    return number >= first && number <= last;
+  });
 }
 
 std::vector<Split> nuscenes_splits(const std::vector<SequenceFolder>& folders,
                                    const std::vector<std::unique_ptr<Sequence>>&,
                                    std::vector<std::string>&) {
-  const std::array<std::pair<const char*, std::span<const NumberRange>>, 5> named = {
-      {{"train", kTrain},
-       {"val", kVal},
-       {"test", kTest},
-       {"mini_train", kMiniTrain},
-       {"mini_val", kMiniVal}}};
-  std::vector<Split> splits;
-  for (const auto& [name, ranges] : named) {
-    Split split{name, {}};
-    for (std::size_t i = 0; i < folders.size(); ++i) {
-      if (holds(ranges, folders[i].name)) split.parts.push_back({i, std::nullopt});
-    }
-    if (!split.parts.empty()) splits.push_back(std::move(split));
-  }
-  return splits;
+  std::vector<std::string_view> names;
+  for (const auto& [name, ranges] : kSceneSplits) names.push_back(name);
+  return splits_of_sequences(
+      names, folders, [](std::string_view split, const SequenceFolder& folder) {
+        const auto number = stem_number(alias_of(folder.name));
+        const auto row =
+            std::ranges::find(kSceneSplits, split, [](const auto& r) { return r.first; });
+        return number && holds(row->second, *number);
+      });
 }
 
 /// Whether half of the tables are there, and one whose name no other data set has.
@@ -295,8 +259,6 @@ std::optional<std::string> recognise_part_of_nuscenes(const fs::path& path) {
   if (versions.empty()) return std::nullopt;
   return "some tables of " + folder_name(versions.front()) + " are there";
 }
-
-fs::path nuscenes_folder(const std::string& name, std::size_t) { return flat_name(name); }
 
 /// What is in no box is static; the owner of a moving point is its instance, as that of a box.
 std::uint32_t simulated_nuscenes_label(const SimulatedReturn& seen) {
@@ -337,7 +299,7 @@ const Layout& nuscenes_layout() {
       .recognise = recognise_nuscenes,
       .recognise_part = recognise_part_of_nuscenes,
       .writer = LayoutWriter{.open = write_as_nuscenes,
-                             .folder = nuscenes_folder,
+                             .folder = flat_folder,
                              .files = files_of_nuscenes,
                              .last_file = [](const WriteOptions&) { return kNuscenesLastFile; },
                              .keeps = KeptTruth::kMoving},

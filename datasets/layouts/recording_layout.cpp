@@ -123,10 +123,6 @@ std::unique_ptr<Sequence> open_recording(const SequenceFolder& sequence, const R
                                          SequenceLayout{.folder = {.scan_folder = "."}});
 }
 
-std::filesystem::path recording_folder(const std::string& name, std::size_t) {
-  return flat_name(name);
-}
-
 std::optional<std::string> recognise_recording(const std::filesystem::path& path) {
   const auto sequences = list_recording(path);
   if (sequences.empty()) return std::nullopt;
@@ -163,10 +159,9 @@ const Layout& recording_layout() {
       .list = list_recording,
       .open = open_recording,
       .no_point_times = recording_without_times,
-      .splits = nullptr,
       .evidence = Evidence::kNone,
       .recognise = recognise_recording,
-      .writer = LayoutWriter{write_as_ros2_bag, recording_folder, files_of_ros2_bag}};
+      .writer = LayoutWriter{write_as_ros2_bag, flat_folder, files_of_ros2_bag}};
   return row;
 }
 

@@ -7,19 +7,6 @@
 namespace mosbench {
 namespace {
 
-std::vector<Split> semantickitti_splits(const std::vector<SequenceFolder>& folders,
-                                        const std::vector<std::unique_ptr<Sequence>>&,
-                                        std::vector<std::string>&) {
-  return splits_of_names(
-      {{"train", {"00", "01", "02", "03", "04", "05", "06", "07", "09", "10"}},
-       {"valid", {"08"}},
-       {"test", {"11", "12", "13", "14", "15", "16", "17", "18", "19", "20", "21"}},
-       // Those of KITTI-Road-MOS in MotionSeg3D's semantic-kitti-mos.yaml.
-       {"road-train", {"30", "31", "32", "33", "34", "40"}},
-       {"road-valid", {"35", "36", "37", "38", "39", "41"}}},
-      folders);
-}
-
 std::optional<std::string> recognise_semantickitti(const std::filesystem::path& path) {
   const bool has_scans = std::ranges::any_of(list_kitti(path), [](const SequenceFolder& sequence) {
     const auto folder = scan_folder_of(sequence.folder);
@@ -112,7 +99,12 @@ const Layout& semantickitti_layout() {
           "(SemanticKITTI), or one such sequence folder",
       .list = list_kitti,
       .open = open_kitti,
-      .splits = semantickitti_splits,
+      .named_splits = {{"train", {"00", "01", "02", "03", "04", "05", "06", "07", "09", "10"}},
+                       {"valid", {"08"}},
+                       {"test", {"11", "12", "13", "14", "15", "16", "17", "18", "19", "20", "21"}},
+                       // Those of KITTI-Road-MOS in MotionSeg3D's semantic-kitti-mos.yaml.
+                       {"road-train", {"30", "31", "32", "33", "34", "40"}},
+                       {"road-valid", {"35", "36", "37", "38", "39", "41"}}},
       .evidence = Evidence::kNone,
       .recognise = recognise_semantickitti,
       .recognise_part = recognise_part_of_semantickitti,

@@ -5,14 +5,6 @@
 namespace mosbench {
 namespace {
 
-std::vector<Split> sipailou_splits(const std::vector<SequenceFolder>& folders,
-                                   const std::vector<std::unique_ptr<Sequence>>&,
-                                   std::vector<std::string>&) {
-  return splits_of_names(
-      {{"train", {"01", "02", "03", "04", "05"}}, {"valid", {"06"}}, {"test", {"00", "07"}}},
-      folders);
-}
-
 std::optional<std::string> recognise_sipailou(const std::filesystem::path& path) {
   const auto named = folder_with_word(path, {"sipailou"});
   if (!named || list_kitti(path).empty()) return std::nullopt;
@@ -56,7 +48,9 @@ const Layout& sipailou_layout() {
           "(Sipailou Campus), or one such sequence folder",
       .list = list_kitti,
       .open = open_kitti,
-      .splits = sipailou_splits,
+      .named_splits = {{"train", {"01", "02", "03", "04", "05"}},
+                       {"valid", {"06"}},
+                       {"test", {"00", "07"}}},
       .evidence = Evidence::kName,
       .recognise = recognise_sipailou,
       .writer = LayoutWriter{write_as_kitti, kitti_folder, files_of_kitti},
