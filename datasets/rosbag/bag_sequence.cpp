@@ -52,32 +52,24 @@ BagSequence::BagSequence(std::string name, const std::filesystem::path& bag, con
   for (ScanEntry& scan : recording.scans) scan.map_from_sensor = *pose_at_(*scan.stamp_ns);
 }
 
-CloudHead BagSequence::head_of(const BagMessage& message) const {
-  const MessageFormat format = bag_->format_of(message);
-  return parse_cloud_head(bag_->read(message, kHeadBytes), bag_->path(), format);
-}
-
 TimedCloud BagSequence::cloud_of(const Scan& scan) const {
-  const MessageFormat format = bag_->format_of(scan.message);
-  return parse_cloud(bag_->read(scan.message), bag_->path(), format);
-}
-
-ScanEntry BagSequence::entry_of(const Scan& scan) {
-  ScanEntry entry;
-  entry.has_truth = scan.labelled;
-  entry.stem = fmt::format("{:06}", scan.number);
-  entry.stamp_ns = scan.stamp_ns;
-  entry.points = scan.points;
-  return entry;
+  return parse_cloud(bag_->read(scan.message), bag_->path(), bag_->format_of(scan.message));
 }
 
 void BagSequence::enter_scans() {
-  for (const Scan& scan : scans_) mutable_recording().scans.push_back(entry_of(scan));
+  for (const Scan& scan : scans_) {
+    ScanEntry& entry = mutable_recording().scans.emplace_back();
+    entry.has_truth = scan.labelled;
+    entry.stem = fmt::format("{:06}", scan.number);
+    entry.stamp_ns = scan.stamp_ns;
+    entry.points = scan.points;
+  }
 }
 
 void BagSequence::list_scans(const std::string& topic) {
   for (const BagMessage& message : bag_->messages(topic)) {
-    const CloudHead head = head_of(message);
+    const CloudHead head =
+        parse_cloud_head(bag_->read(message, kHeadBytes), bag_->path(), bag_->format_of(message));
     scans_.push_back({message, scans_.size(), head.stamp_ns, head.points(),
                       has_times(head) && !by_azimuth_, find_field(head, "label") != nullptr,
                       head.frame});

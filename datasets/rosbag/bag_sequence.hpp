@@ -48,10 +48,8 @@ class BagSequence : public Sequence {
   bool covered(const Scan& scan) const;
   void leave_out_uncovered();
   void state_undistortion();
-  static ScanEntry entry_of(const Scan& scan);
   void enter_scans();
 
-  CloudHead head_of(const BagMessage& message) const;
   TimedCloud cloud_of(const Scan& scan) const;
   void check_times(const Scan& scan, const TimedCloud& cloud) const;
 

@@ -18,12 +18,6 @@ namespace {
 /// A stem of this value or above is a time in nanoseconds (11 days and more), not a scan's number.
 constexpr std::uint64_t kSmallestStampStem = 1'000'000'000'000'000;
 
-void check_rows(std::size_t rows, const char* what, std::size_t scans,
-                const std::filesystem::path& file) {
-  if (rows == scans) return;
-  throw DataError(file, fmt::format("{} {} for {} scans", rows, what, scans), "one per scan");
-}
-
 std::vector<std::int64_t> stamps_from_stems(const std::vector<ScanEntry>& scans) {
   std::vector<std::int64_t> stamps_ns;
   for (const ScanEntry& scan : scans) {
@@ -95,7 +89,10 @@ std::vector<std::int64_t> FolderSequence::read_stamps(const std::filesystem::pat
   const std::filesystem::path times = folder / "times.txt";
   if (!is_there(times)) return stamps_from_stems(recording().scans);
   std::vector<std::int64_t> stamps_ns = read_times(times);
-  check_rows(stamps_ns.size(), "times", size(), times);
+  if (stamps_ns.size() != size()) {
+    throw DataError(times, fmt::format("{} times for {} scans", stamps_ns.size(), size()),
+                    "one per scan");
+  }
   mutable_recording().files.push_back(times);
   return stamps_ns;
 }
