@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
@@ -359,6 +360,7 @@ TEST(StudyTable, TellsTheCommandOfAWorstScanWithAllThatTheStudySays) {
 Result many_scans(const StudyPlan& plan, const StudyCell& cell, std::uint64_t scans) {
   Result result = result_of(plan, cell, std::string(kMosbenchVersion));
   result.method = cell.label();
+  result.sequence = SequenceName(cell.data->name, plan.out);
   for (std::uint64_t k = 0; k < scans; ++k) {
     ScanRow& row = result.scans.emplace_back();
     row.stem = fmt::format("{:06}", k);
@@ -380,6 +382,7 @@ TEST(StudyTable, SaysOfOneSeedWhatRankSays) {
     plan.cells[i].numbers = numbers_of(result);
     runs[i % 2].sequences.push_back(result);
   }
+  for (ResultSet& run : runs) std::ranges::sort(run.sequences, {}, &Result::sequence);
   const StudyTable table = gather(plan);
   const Leaderboard board = leaderboard_of(runs, RowOrder::kGiven);
   ASSERT_EQ(table.rows.size(), 2u);
