@@ -36,18 +36,14 @@ bool has_truth(const std::vector<SequenceOutcome>& outcomes) {
   });
 }
 
-/// How much of a sequence the method labelled moving.
-struct MovingPoints {
-  std::size_t points = 0, moving = 0;
-};
-
-MovingPoints moving_points(const Result& result) {
-  MovingPoints counts;
+/// Returns the points of a sequence, and those that the method labelled moving.
+std::pair<std::uint64_t, std::uint64_t> moving_points(const Result& result) {
+  std::uint64_t points = 0, moving = 0;
   for (const ScanRow& row : result.scans) {
-    counts.points += row.points;
-    counts.moving += row.predicted_moving_points;
+    points += row.points;
+    moving += row.predicted_moving_points;
   }
-  return counts;
+  return {points, moving};
 }
 
 /// Without truth there is nothing to score, but still something to look at.
@@ -61,11 +57,10 @@ void add_moving_points(const std::vector<SequenceOutcome>& outcomes, Sheet& shee
                    {"ms/scan", Unit::kNumber, 1}};
   for (const auto& [result, folder, reused] : outcomes) {
     const auto [points, moving] = moving_points(result);
-    sheet.rows.push_back(
-        {result.sequence.text(), std::uint64_t{result.scans.size()}, std::uint64_t{points},
-         std::uint64_t{moving},
-         static_cast<double>(moving) / static_cast<double>(std::max<std::size_t>(points, 1)),
-         method_ms_per_scan(result).value_or(0.0)});
+    const auto all = static_cast<double>(std::max<std::uint64_t>(points, 1));
+    sheet.rows.push_back({result.sequence.text(), std::uint64_t{result.scans.size()}, points,
+                          moving, static_cast<double>(moving) / all,
+                          method_ms_per_scan(result).value_or(0.0)});
   }
 }
 

@@ -62,13 +62,12 @@ Answer cell_answer(const StudyPlan& plan, const JobFlags& flags) {
   std::string text;
   bool failed = false;
   for (const std::string& key : flags.keys) {
-    const auto found = std::ranges::find_if(
-        plan.cells, [&](const PlannedCell& planned) { return planned.cell.key == key; });
+    const auto found =
+        std::ranges::find(plan.cells, key, [](const PlannedCell& one) { return one.cell.key; });
     if (found == plan.cells.end()) {
-      throw UsageError(
-          fmt::format("{}: has no cell {}, expected one that `mosbench run {} --dry-run --json` "
-                      "lists",
-                      flags.file.string(), key, flags.file.string()));
+      throw UsageError(fmt::format(
+          "{0}: has no cell {1}, expected one that `mosbench run {0} --dry-run --json` lists",
+          flags.file.string(), key));
     }
     const CellOutcome outcome = compute_cell(*found, plan.out, std::max(1U, flags.threads));
     failed = failed || outcome == CellOutcome::kFailed;
@@ -99,11 +98,12 @@ Answer run_answer(const Study& study, const StudyPlan& plan, const JobFlags& fla
   const std::size_t pending = work_of(plan, {}).cells.size();
   if (pending > 0 && (flags.profile || pending > kMostWithoutYes)) measure_costs(plan);
   const CostModel costs = read_costs(plan.out);
+  const std::string work = work_text(work_of(plan, costs));
   tell(state_counts(plan));
-  tell(work_text(work_of(plan, costs)));
+  tell(work);
   if (pending > kMostWithoutYes && !flags.yes) {
     throw UsageError(fmt::format("{}: {} cells are to be computed, and {}, expected --yes",
-                                 flags.file.string(), pending, work_text(work_of(plan, costs))));
+                                 flags.file.string(), pending, work));
   }
   if (flags.profile) {
     run_by_snakemake(plan, costs, flags);
