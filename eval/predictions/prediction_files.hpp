@@ -63,11 +63,6 @@ std::vector<NamedFile> prediction_files(const PredictionPlace& place);
 /// are left out.
 void check_positions(const std::filesystem::path& path, const Sequence& sequence);
 
-/// Lists the files of `folder` with this extension, without hidden ones, sorted; empty when the
-/// folder cannot be read.
-std::vector<std::filesystem::path> files_with_extension(const std::filesystem::path& folder,
-                                                        std::string_view extension);
-
 /// Parses labels (9 or 251) from a text file with a row per point: "0" or "1", or "moveable moving
 /// class". Throws DataError with the line.
 std::vector<std::uint32_t> parse_point_text(std::string_view text, std::size_t point_count,

@@ -32,6 +32,19 @@ std::vector<fs::path> candidate_folders(const fs::path& root, const std::string&
   return folders;
 }
 
+/// Lists the files of `folder` with this extension, without hidden ones, sorted; empty when the
+/// folder cannot be read.
+std::vector<fs::path> files_with_extension(const fs::path& folder, std::string_view extension) {
+  std::error_code error;
+  std::vector<fs::path> files;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+    const std::string name = it->path().filename().string();
+    if (it->path().extension() == extension && !name.starts_with('.')) files.push_back(it->path());
+  }
+  std::ranges::sort(files);
+  return files;
+}
+
 std::string first_line(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
   std::string line(4096, '\0');
@@ -219,17 +232,6 @@ void check_positions(const fs::path& path, const Sequence& sequence) {
                   fmt::format("names scans by their position, and {} of sequence {} are left out",
                               left_out, sequence.name()),
                   "files named like the scans, or poses for all scans");
-}
-
-std::vector<fs::path> files_with_extension(const fs::path& folder, std::string_view extension) {
-  std::error_code error;
-  std::vector<fs::path> files;
-  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
-    const std::string name = it->path().filename().string();
-    if (it->path().extension() == extension && !name.starts_with('.')) files.push_back(it->path());
-  }
-  std::ranges::sort(files);
-  return files;
 }
 
 std::vector<NamedFile> prediction_files(const PredictionPlace& place) {

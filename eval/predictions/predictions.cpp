@@ -93,6 +93,21 @@ std::string with_commas(std::uint64_t number) {
   return digits;
 }
 
+/// Returns "0 (8,640 points), 251 (12 points)", of more than eight ids those of most points.
+std::string ids_text(std::span<const PredictedId> ids) {
+  std::vector<PredictedId> listed(ids.begin(), ids.end());
+  std::ranges::stable_sort(listed, std::ranges::greater(), &PredictedId::points);
+  listed.resize(std::min(listed.size(), kListedIds));
+  std::ranges::sort(listed, std::ranges::less(), &PredictedId::id);
+  std::string text;
+  for (const PredictedId& id : listed) {
+    text +=
+        fmt::format("{}{} ({} points)", text.empty() ? "" : ", ", id.id, with_commas(id.points));
+  }
+  if (ids.size() > listed.size()) text += fmt::format(" and {} more", ids.size() - listed.size());
+  return text;
+}
+
 /// Returns "251 to 259" of the ids that count as moving.
 std::string moving_ids(const Protocol& protocol) {
   std::string text;
@@ -231,20 +246,6 @@ std::vector<PredictedId> ids_in(std::span<const fs::path> files) {
       ids.push_back({static_cast<std::uint16_t>(id), points[id], *first_file[id]});
   }
   return ids;
-}
-
-std::string ids_text(std::span<const PredictedId> ids) {
-  std::vector<PredictedId> listed(ids.begin(), ids.end());
-  std::ranges::stable_sort(listed, std::ranges::greater(), &PredictedId::points);
-  listed.resize(std::min(listed.size(), kListedIds));
-  std::ranges::sort(listed, std::ranges::less(), &PredictedId::id);
-  std::string text;
-  for (const PredictedId& id : listed) {
-    text +=
-        fmt::format("{}{} ({} points)", text.empty() ? "" : ", ", id.id, with_commas(id.points));
-  }
-  if (ids.size() > listed.size()) text += fmt::format(" and {} more", ids.size() - listed.size());
-  return text;
 }
 
 std::string strange_share(std::uint64_t moving, std::uint64_t points,

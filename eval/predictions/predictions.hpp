@@ -67,9 +67,6 @@ struct PredictedId {
 /// float32.
 std::vector<PredictedId> ids_in(std::span<const std::filesystem::path> files);
 
-/// Returns "0 (8,640 points), 251 (12 points)", of more than eight ids those of most points.
-std::string ids_text(std::span<const PredictedId> ids);
-
 /// Returns a remark if no point is predicted moving, or more than half of the points: methods find
 /// few moving points, so the ids may have another meaning. Empty otherwise. `ids` are those of the
 /// files, empty for formats without ids.
