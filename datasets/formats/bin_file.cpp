@@ -174,10 +174,6 @@ std::vector<std::int64_t> parse_bin_times(std::string_view bytes, std::size_t co
   return times_ns;
 }
 
-std::vector<Point> parse_bin(std::string_view bytes, const std::filesystem::path& file) {
-  return parse_bin(bytes, 4, file);
-}
-
 std::string_view format_bin(std::span<const Point> points) {
   return {reinterpret_cast<const char*>(points.data()), points.size_bytes()};
 }

@@ -26,12 +26,10 @@ inline constexpr std::size_t kMostBinColumns = 7;
 /// standard errors.
 std::optional<std::size_t> other_bin_columns(std::string_view bytes, std::size_t columns);
 
-/// Returns the points of a scan stored as little-endian float32 x y z intensity, metres. No bytes
-/// are an empty scan; NaN and infinite values are kept. Throws DataError when the size is no
-/// multiple of 16 bytes.
-std::vector<Point> parse_bin(std::string_view bytes, const std::filesystem::path& file);
-/// Parses `columns` float32 per point, at least three, and keeps the first four: nuScenes adds the
-/// ring. The intensity of three is 0.
+/// Returns the points of a scan stored as `columns` little-endian float32 per point, at least
+/// three: x y z intensity, metres, and others that are left out, as nuScenes adds the ring. The
+/// intensity of three is 0. No bytes are an empty scan; NaN and infinite values are kept. Throws
+/// DataError when the size is no multiple of a point's.
 std::vector<Point> parse_bin(std::string_view bytes, std::size_t columns,
                              const std::filesystem::path& file);
 /// Returns the number after x y z intensity of every point: seconds after the stamp of its scan, in

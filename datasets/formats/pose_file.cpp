@@ -177,10 +177,6 @@ Pose lidar_pose(const Pose& pose, const Pose& camera_from_lidar) {
 
 Pose read_calib(const std::filesystem::path& file) { return parse_calib(read_file(file), file); }
 
-void write_calib(const std::filesystem::path& file, const Pose& camera_from_lidar) {
-  write_file_atomic(file, format_calib(camera_from_lidar));
-}
-
 std::string_view to_string(PoseFormat format) {
   return kPoseFormatNames[static_cast<std::size_t>(format)];
 }

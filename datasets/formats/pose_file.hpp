@@ -66,7 +66,6 @@ bool is_identity(const Pose& pose);
 Pose lidar_pose(const Pose& pose, const Pose& camera_from_lidar);
 
 Pose read_calib(const std::filesystem::path& file);
-void write_calib(const std::filesystem::path& file, const Pose& camera_from_lidar);
 
 /// The formats of pose files.
 enum class PoseFormat : std::uint8_t {

@@ -50,7 +50,7 @@ class KittiWriter : public SequenceWriter {
       if (stamp_ns) times_ns.push_back(*stamp_ns);
     }
     if (times_ns.size() == poses_.size()) write_times(folder_ / "times.txt", times_ns);
-    write_calib(folder_ / "calib.txt", camera_from_lidar_);
+    write_file_atomic(folder_ / "calib.txt", format_calib(camera_from_lidar_));
     write_poses_last(folder_, poses_);
   }
 

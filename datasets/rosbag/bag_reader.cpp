@@ -27,8 +27,6 @@ constexpr std::string_view kSqliteStart{"SQLite format 3\0", 16};
 constexpr std::array<std::string_view, 5> kBagNames = {".bag", ".mcap", ".db3", ".mcap.zstd",
                                                        ".db3.zstd"};
 
-std::string start_of(const fs::path& file) { return read_start(file, kSqliteStart.size()); }
-
 /// The files of one recording as one bag.
 class JoinedBag : public BagReader {
  public:
@@ -78,11 +76,6 @@ FileDescriptor nameless_file() {
   return made;
 }
 
-/// The path by which this process opens it again.
-fs::path path_of(const FileDescriptor& file) {
-  return fmt::format("/proc/self/fd/{}", file.number());
-}
-
 /// Returns what `work` does with an unpacked bag; its errors name the file that the user knows.
 template <typename Work>
 auto naming(const fs::path& file, Work&& work) {
@@ -101,7 +94,8 @@ class UnpackedBag : public BagReader {
  public:
   /// Throws DataError.
   explicit UnpackedBag(const fs::path& file) : BagReader(file), unpacked_(nameless_file()) {
-    const fs::path unpacked = path_of(unpacked_);
+    // The path by which this process opens it again.
+    const fs::path unpacked = fmt::format("/proc/self/fd/{}", unpacked_.number());
     decompress_zstd_file(file, unpacked);
     bag_ = naming(path_, [&] { return opened(unpacked); });
     connections_ = bag_->connections();
@@ -162,7 +156,7 @@ class UnpackedBag : public BagReader {
 };
 
 std::unique_ptr<const BagReader> open_bag_file(const fs::path& file) {
-  const std::string start = start_of(file);
+  const std::string start = read_start(file, kSqliteStart.size());
   if (start.starts_with(kMcapMagic)) return open_mcap(file);
   if (start.starts_with(kSqliteStart)) return open_sqlite_bag(file);
   if (is_zstd(start)) return std::make_unique<UnpackedBag>(file);
@@ -238,7 +232,7 @@ bool is_bag_file(const fs::path& path) {
   if (!fs::is_regular_file(path, ignored)) return false;
   const std::string name = path.filename().string();
   if (std::ranges::any_of(kBagNames, [&](auto end) { return name.ends_with(end); })) return true;
-  const std::string start = start_of(path);
+  const std::string start = read_start(path, kSqliteStart.size());
   return start.starts_with(kRos1Start) || start.starts_with(kMcapMagic) ||
          start.starts_with(kSqliteStart);
 }

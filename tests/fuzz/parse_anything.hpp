@@ -40,7 +40,7 @@ inline void require(bool holds) {
   if (!holds) std::abort();
 }
 
-inline void bin(std::string_view bytes) { require(format_bin(parse_bin(bytes, "f")) == bytes); }
+inline void bin(std::string_view bytes) { require(format_bin(parse_bin(bytes, 4, "f")) == bytes); }
 
 /// The first byte is the number of points.
 inline void label(std::string_view bytes) {

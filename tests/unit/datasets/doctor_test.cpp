@@ -169,7 +169,7 @@ const std::vector<Fault>& faults() {
   static const std::vector<Fault> all = {
       {"camera_poses_without_tr", kKitti,
        [](const fs::path& root) {
-         write_calib(root / kKittiSequence / "calib.txt", Pose::Identity());
+         write_file_atomic(root / kKittiSequence / "calib.txt", format_calib(Pose::Identity()));
        },
        "the poses fit better as the camera's, Tr is missing"},
       {"inverse_poses", kKitti, invert_poses, "the poses fit better as sensor_from_map (inverse)"},

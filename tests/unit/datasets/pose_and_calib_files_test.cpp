@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "datasets/disk/files.hpp"
 #include "datasets/formats/pose_file.hpp"
 #include "datasets/text/errors.hpp"
 #include "tests/temp_folder.hpp"
@@ -121,7 +122,7 @@ TEST(CalibFile, RefusesAMissingATwofoldAndAShortTr) {
 TEST(CalibFile, ReadsBackFromDisk) {
   const TempFolder folder;
   const Pose tr = turned(0.4, {1, 1, 0}, {0.1, 0.2, 0.3});
-  write_calib(folder / "calib.txt", tr);
+  write_file_atomic(folder / "calib.txt", format_calib(tr));
   EXPECT_EQ(read_calib(folder / "calib.txt").matrix(), tr.matrix());
 }
 

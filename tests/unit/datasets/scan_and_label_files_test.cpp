@@ -20,7 +20,7 @@ using testing::IsEmpty;
 
 TEST(BinFile, IsLittleEndianFloat32InTheOrderXyzIntensity) {
   const std::string bytes("\0\0\x80\x3f\0\0\0\x40\0\0\x40\xc0\0\0\0\x3f", 16);
-  const auto points = parse_bin(bytes, "scan.bin");
+  const auto points = parse_bin(bytes, 4, "scan.bin");
   ASSERT_EQ(points.size(), 1U);
   EXPECT_EQ(points[0].x, 1.0F);
   EXPECT_EQ(points[0].y, 2.0F);
@@ -30,7 +30,7 @@ TEST(BinFile, IsLittleEndianFloat32InTheOrderXyzIntensity) {
 }
 
 TEST(BinFile, WithoutBytesIsAnEmptyScan) {
-  EXPECT_THAT(parse_bin("", "scan.bin"), IsEmpty());
+  EXPECT_THAT(parse_bin("", 4, "scan.bin"), IsEmpty());
   EXPECT_EQ(format_bin({}), "");
 }
 
@@ -39,11 +39,11 @@ TEST(BinFile, KeepsNanAndInfinityAsTheyAre) {
   const std::vector<Point> points = {
       {payload_nan, std::numeric_limits<float>::infinity(), -0.0F, 1}};
   const auto bytes = format_bin(points);
-  EXPECT_EQ(format_bin(parse_bin(bytes, "scan.bin")), bytes);
+  EXPECT_EQ(format_bin(parse_bin(bytes, 4, "scan.bin")), bytes);
 }
 
 TEST(BinFile, RefusesASizeThatIsNoMultipleOf16) {
-  const auto message = message_of<DataError>([] { parse_bin(std::string(30, 'x'), "a/7.bin"); });
+  const auto message = message_of<DataError>([] { parse_bin(std::string(30, 'x'), 4, "a/7.bin"); });
   EXPECT_THAT(message, AllOf(HasSubstr("a/7.bin: 30 bytes"), HasSubstr("another layout"),
                              HasSubstr("expected 4 float32")));
 }

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <set>
 
+#include "datasets/disk/files.hpp"
 #include "datasets/formats/bin_file.hpp"
 #include "datasets/formats/label_file.hpp"
 #include "datasets/formats/pose_file.hpp"
@@ -135,7 +136,7 @@ TEST(KittiSequence, TakesPosesBitForBitWhenTrIsTheIdentityOrMissing) {
   folder.write("poses.txt", "1 0 0 0.1 0 1 0 0.2 0 0 1 0.3\n1 0 0 1e-17 0 1 0 7 0 0 1 9\n");
   const KittiSequence without("s", folder.path());
   EXPECT_THAT(without.remarks(), Contains(HasSubstr("no calib.txt")));
-  write_calib(folder / "calib.txt", Pose::Identity());
+  write_file_atomic(folder / "calib.txt", format_calib(Pose::Identity()));
   const KittiSequence with("s", folder.path());
   for (const KittiSequence* sequence : {&without, &with}) {
     EXPECT_EQ(sequence->read(0).map_from_sensor.translation(), Eigen::Vector3d(0.1, 0.2, 0.3));

@@ -204,7 +204,7 @@ TEST(TrajectoryPairs, TakeTheLidarsPosesOfADataSetAndThoseThatRunsFound) {
     write_bin(scans / "velodyne" / (std::string(stem) + ".bin"), std::vector<Point>(5));
   }
   write_poses(scans / "poses.txt", camera);
-  write_calib(scans / "calib.txt", tr);
+  write_file_atomic(scans / "calib.txt", format_calib(tr));
   write_poses(folder / "runs/08/poses.txt", lidar);
   write_file_atomic(folder / "runs/08/result.json", "{}");
   for (const char* estimate : {"runs", "runs/08", "runs/08/poses.txt", "kitti"}) {
