@@ -11,7 +11,6 @@
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
 #include "eval/engine/sequence_runner.hpp"
-#include "eval/job/method_choice.hpp"
 #include "eval/result/machine.hpp"
 #include "eval/result/tell.hpp"
 

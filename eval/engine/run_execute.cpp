@@ -12,7 +12,6 @@
 #include "datasets/formats/pose_file.hpp"
 #include "datasets/sequence/pose_source.hpp"
 #include "datasets/text/text.hpp"
-#include "eval/exec/exec_method.hpp"
 #include "eval/result/machine.hpp"
 #include "eval/result/result.hpp"
 #include "eval/result/result_file.hpp"

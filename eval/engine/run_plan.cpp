@@ -3,15 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <optional>
 #include <system_error>
-#include <vector>
 
 #include "datasets/disk/folder_listing.hpp"
 #include "datasets/layouts/folder_search.hpp"
 #include "datasets/sequence/fingerprint.hpp"
 #include "datasets/text/errors.hpp"
-#include "eval/engine/pose_finding.hpp"
 #include "eval/job/method_choice.hpp"
 #include "eval/protocols/benchmark_split.hpp"
 #include "eval/result/reading_json.hpp"
@@ -20,7 +17,6 @@
 #include "eval/result/result_scans.hpp"
 #include "eval/result/settings_json.hpp"
 #include "eval/result/version.hpp"
-#include "eval/store/store.hpp"
 
 namespace mosbench {
 namespace {

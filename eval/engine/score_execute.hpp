@@ -9,7 +9,7 @@
 #include "datasets/layouts/dataset.hpp"
 #include "datasets/sequence/sequence.hpp"
 #include "eval/predictions/predictions.hpp"
-#include "eval/result/result_file.hpp"
+#include "eval/result/result.hpp"
 
 namespace mosbench {
 

@@ -3,12 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <deque>
 #include <future>
 #include <iterator>
 #include <memory>
-#include <mosbench/method.hpp>
 #include <stdexcept>
 
 #include "core/base/stage_clock.hpp"

@@ -12,7 +12,6 @@
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
 #include "eval/exec/exec_method.hpp"
-#include "eval/job/method_choice.hpp"
 #include "eval/protocols/metrics.hpp"
 #include "eval/result/reading_json.hpp"
 #include "eval/result/settings_json.hpp"

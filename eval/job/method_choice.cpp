@@ -1,16 +1,10 @@
 #include "eval/job/method_choice.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <stdexcept>
 #include <utility>
-#include <vector>
 
 #include "datasets/layouts/layout.hpp"
-#include "datasets/sequence/corrected_sequence.hpp"
-#include "datasets/text/errors.hpp"
-#include "datasets/text/text.hpp"
 #include "eval/exec/exec_method.hpp"
 #include "eval/result/settings_json.hpp"
 

@@ -13,7 +13,6 @@
 #include "datasets/simulator/simulate.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
-#include "eval/job/job.hpp"
 #include "eval/job/method_choice.hpp"
 #include "eval/job/yaml_node.hpp"
 #include "eval/result/reading_json.hpp"

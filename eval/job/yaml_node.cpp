@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <set>
 
-#include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
 
 namespace mosbench {

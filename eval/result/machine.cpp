@@ -7,7 +7,6 @@
 #endif
 
 #include <fstream>
-#include <string>
 #include <thread>
 
 #include "eval/result/version.hpp"

@@ -10,8 +10,6 @@
 #include <set>
 #include <span>
 #include <string>
-#include <string_view>
-#include <utility>
 #include <vector>
 
 #include "datasets/layouts/dataset.hpp"

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <sstream>
-#include <string>
 #include <system_error>
 
 #include "datasets/disk/files.hpp"

@@ -10,7 +10,6 @@
 #include "eval/answer/answer_text.hpp"
 #include "eval/protocols/metrics.hpp"
 #include "eval/result/reading_json.hpp"
-#include "eval/result/result.hpp"
 
 namespace mosbench {
 namespace {

@@ -6,12 +6,9 @@
 #include <cmath>
 #include <limits>
 #include <mosbench/method.hpp>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 #include <stdexcept>
-#include <string>
-#include <vector>
 
 #include "datasets/disk/files.hpp"
 #include "datasets/text/errors.hpp"

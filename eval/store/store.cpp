@@ -7,9 +7,7 @@
 #include <map>
 #include <set>
 #include <system_error>
-#include <vector>
 
-#include "datasets/disk/claim.hpp"
 #include "datasets/disk/files.hpp"
 #include "datasets/disk/folder_listing.hpp"
 #include "datasets/disk/partial_file.hpp"
