@@ -16,17 +16,28 @@ Eigen::Vector3d still_flow(const Point& point, const SensorStep& step) {
 
 }  // namespace
 
-std::vector<Eigen::Vector3f> velocities(std::span<const Point> points,
-                                        std::span<const float> flow_m,
-                                        std::span<const std::int64_t> valid,
-                                        const SensorStep& step) {
-  constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
-  std::vector<Eigen::Vector3f> velocities_m_s(points.size(), Eigen::Vector3f::Constant(kUnknown));
+std::vector<Eigen::Vector3d> displacements(std::span<const Point> points,
+                                           std::span<const float> flow_m,
+                                           std::span<const std::int64_t> valid,
+                                           const SensorStep& step) {
+  const Eigen::Vector3d unknown =
+      Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
+  std::vector<Eigen::Vector3d> displacements_m(points.size(), unknown);
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (valid[i] == 0) continue;
     const Eigen::Vector3d flow(flow_m[3 * i], flow_m[3 * i + 1], flow_m[3 * i + 2]);
-    const Eigen::Vector3d velocity = (flow - still_flow(points[i], step)) / step.time_s;
-    if (velocity.allFinite()) velocities_m_s[i] = velocity.cast<float>();
+    const Eigen::Vector3d moved = flow - still_flow(points[i], step);
+    if (moved.allFinite()) displacements_m[i] = moved;
+  }
+  return displacements_m;
+}
+
+std::vector<Eigen::Vector3f> velocities(std::span<const Eigen::Vector3d> displacements_m,
+                                        const SensorStep& step) {
+  std::vector<Eigen::Vector3f> velocities_m_s;
+  velocities_m_s.reserve(displacements_m.size());
+  for (const Eigen::Vector3d& moved : displacements_m) {
+    velocities_m_s.push_back((moved / step.time_s).cast<float>());
   }
   return velocities_m_s;
 }
@@ -47,14 +58,17 @@ std::vector<float> flow_of(std::span<const Point> points,
   return flow_m;
 }
 
-std::vector<std::uint32_t> flow_labels(const PointMotions& motions, double moving_speed_m_s) {
-  std::vector<std::uint32_t> labels(motions.velocities_m_s.size(), 0);
+std::vector<std::uint32_t> flow_labels(std::span<const Eigen::Vector3d> displacements_m,
+                                       const PointMotions& motions, double moving_step_m) {
+  std::vector<std::uint32_t> labels(displacements_m.size(), 0);
   for (std::size_t i = 0; i < labels.size(); ++i) {
-    const double speed_m_s = motions.velocities_m_s[i].cast<double>().norm();
-    if (std::isnan(speed_m_s)) continue;
+    const double moved_m = displacements_m[i].norm();
+    if (std::isnan(moved_m)) continue;
     const bool on_ground = !motions.on_ground.empty() && motions.on_ground[i] != 0;
-    const bool evaluated = motions.evaluated.empty() ? !on_ground : motions.evaluated[i] != 0;
-    if (speed_m_s >= moving_speed_m_s) {
+    const bool masked = motions.evaluated.empty() || motions.evaluated[i] != 0;
+    const bool of_category = motions.classes.empty() || motions.classes[i] <= kLastFlowCategory;
+    const bool evaluated = masked && of_category && !on_ground;
+    if (moved_m >= moving_step_m) {
       labels[i] = evaluated ? kMovingLabel : kLeftOutMoving;
     } else {
       labels[i] = evaluated ? kStaticLabel : on_ground ? kGroundLabel : kLeftOutStatic;

@@ -40,8 +40,7 @@ class SceneFlowSequence : public Sequence {
  public:
   /// Throws DataError.
   SceneFlowSequence(std::string name, const std::filesystem::path& file, const Reading& asked)
-      : file_(file, scene_flow::kAll),
-        moving_speed_m_s_(asked.moving_speed_m_s.value_or(kFlowMovingSpeed_m_s)) {
+      : file_(file, scene_flow::kAll), moving_speed_m_s_(asked.moving_speed_m_s) {
     Recording& recording = mutable_recording();
     recording.name = SequenceName(std::move(name), file);
     recording.files = {file};
@@ -60,8 +59,9 @@ class SceneFlowSequence : public Sequence {
     if (has_labels(place)) {
       frame.truth = values_as<std::uint32_t>(scans_[place], scene_flow::kLabel);
     } else if (has_flow(place)) {
-      frame.motions = motions_of(place, frame.points);
-      frame.truth = labels_of(place, *frame.motions);
+      FlowTruth flow = flow_truth(place, frame.points);
+      frame.motions = std::move(flow.motions);
+      frame.truth = std::move(flow.labels);
     }
   }
 
@@ -69,7 +69,7 @@ class SceneFlowSequence : public Sequence {
     if (!has_truth(scan_index)) refuse_truth(scan_index);
     const std::size_t place = places_.at(scan_index);
     if (has_labels(place)) return values_as<std::uint32_t>(scans_[place], scene_flow::kLabel);
-    return labels_of(place, motions_of(place, points_of(scans_[place], {})));
+    return flow_truth(place, points_of(scans_[place], {})).labels;
   }
 
  private:
@@ -81,6 +81,11 @@ class SceneFlowSequence : public Sequence {
     std::optional<Pose> map_from_sensor;  ///< the file's own
 
     const Hdf5Array* find(std::string_view name) const { return find_array(*group, name); }
+  };
+
+  struct FlowTruth {
+    PointMotions motions;
+    std::vector<std::uint32_t> labels;
   };
 
   /// Takes groups in the order of their stamps. A drive that was cut may leave a group without
@@ -194,7 +199,10 @@ class SceneFlowSequence : public Sequence {
                       "or files with flow",
                       option("moving_speed_m_s"), file_.path().string(), scene_flow::kLabel));
     }
-    const std::string flow = fmt::format("flow, moving from {:g} m/s on", moving_speed_m_s_);
+    const std::string flow =
+        moving_speed_m_s_
+            ? fmt::format("flow, moving from {:g} m/s on", *moving_speed_m_s_)
+            : fmt::format("flow, moving from {:g} m to the next scan on", kFlowMovingStep_m);
     const std::string labels(scene_flow::kLabel);
     mutable_recording().reading.truth = !by_labels    ? flow
                                         : by_flow > 0 ? fmt::format("{}, else {}", labels, flow)
@@ -269,14 +277,18 @@ class SceneFlowSequence : public Sequence {
     return scans_[scan].find(scene_flow::kLabel) != nullptr;
   }
 
+  double moving_step_m(double time_s) const {
+    return moving_speed_m_s_ ? *moving_speed_m_s_ * time_s : kFlowMovingStep_m;
+  }
+
   /// Far from the origin float32 moves a sensor by steps that would pass for motion of the points.
   void refuse_coarse_pose(const Scan& scan, double time_s) const {
-    constexpr double kMostShare = 0.2;  // of the speed that counts as motion
+    constexpr double kMostShare = 0.2;  // of the step that counts as motion
     if (scan.find(scene_flow::kPose)->number.bytes != sizeof(float)) return;
     const auto far_m =
         static_cast<float>(scan.map_from_sensor->translation().cwiseAbs().maxCoeff());
     const float step_m = float_step_m(far_m);
-    if (step_m <= kMostShare * moving_speed_m_s_ * time_s) return;
+    if (step_m <= kMostShare * moving_step_m(time_s)) return;
     refuse(fmt::format("{} is float32, {} m apart at {:.0f} m, too coarse for flow",
                        arrow(*scan.group, scene_flow::kPose), step_m, far_m),
            "float64, or ego_motion");
@@ -332,30 +344,27 @@ class SceneFlowSequence : public Sequence {
     return flags;
   }
 
-  PointMotions motions_of(std::size_t scan_place, std::span<const Point> points) const {
+  /// The objects' numbers are the labels' instances.
+  FlowTruth flow_truth(std::size_t scan_place, std::span<const Point> points) const {
     const Scan& scan = scans_[scan_place];
     const Hdf5Array& flow = *scan.find(scene_flow::kFlow);
     std::vector<std::int64_t> valid = values(scan, scene_flow::kValid);
     if (valid.empty()) valid.assign(points.size(), 1);
-    PointMotions motions;
-    motions.velocities_m_s =
-        velocities(points, file_.floats(*scan.group, flow), valid, step_after(scan_place));
-    motions.classes = values_as<std::uint8_t>(scan, scene_flow::kClass);
-    motions.on_ground = flags(scan, scene_flow::kGround);
-    motions.evaluated = flags(scan, scene_flow::kEvaluated);
-    return motions;
-  }
-
-  /// Adds the objects' numbers as instances to the labels by speed.
-  std::vector<std::uint32_t> labels_of(std::size_t scan_place, const PointMotions& motions) const {
+    const SensorStep step = step_after(scan_place);
+    const auto moved_m = displacements(points, file_.floats(*scan.group, flow), valid, step);
+    FlowTruth truth;
+    truth.motions.velocities_m_s = velocities(moved_m, step);
+    truth.motions.classes = values_as<std::uint8_t>(scan, scene_flow::kClass);
+    truth.motions.on_ground = flags(scan, scene_flow::kGround);
+    truth.motions.evaluated = flags(scan, scene_flow::kEvaluated);
+    truth.labels = flow_labels(moved_m, truth.motions, moving_step_m(step.time_s));
     constexpr std::int64_t kInstances = 65536;
-    std::vector<std::uint32_t> labels = flow_labels(motions, moving_speed_m_s_);
-    const std::vector<std::int64_t> objects = values(scans_[scan_place], scene_flow::kInstance);
+    const std::vector<std::int64_t> objects = values(scan, scene_flow::kInstance);
     for (std::size_t i = 0; i < objects.size(); ++i) {
-      if (labels[i] == 0 || objects[i] <= 0 || objects[i] >= kInstances) continue;
-      labels[i] |= static_cast<std::uint32_t>(objects[i]) << 16U;
+      if (truth.labels[i] == 0 || objects[i] <= 0 || objects[i] >= kInstances) continue;
+      truth.labels[i] |= static_cast<std::uint32_t>(objects[i]) << 16U;
     }
-    return labels;
+    return truth;
   }
 
   [[noreturn]] void refuse(const std::string& wrong, const std::string& expected) const {
@@ -363,9 +372,9 @@ class SceneFlowSequence : public Sequence {
   }
 
   Hdf5File file_;
-  double moving_speed_m_s_;
-  std::vector<Scan> scans_;          ///< all of the file
-  std::vector<std::size_t> places_;  ///< of the recording's scans in scans_
+  std::optional<double> moving_speed_m_s_;  ///< in place of a displacement
+  std::vector<Scan> scans_;                 ///< all of the file
+  std::vector<std::size_t> places_;         ///< of the recording's scans in scans_
 };
 
 }  // namespace

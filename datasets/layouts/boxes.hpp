@@ -47,6 +47,9 @@ inline constexpr double kFall_m = 1e6;
 /// Whether boxes fall so: their truth is one of labels, and no speed.
 bool is_of_labels(std::span<const BoxTrack> tracks);
 
+/// From which speed on a box moves when nothing else is asked.
+inline constexpr double kBoxMovingSpeed_m_s = 0.5;
+
 /// Returns the boxes of every frame: 251 from `moving_speed_m_s` on, 9 below, 0 for an object that
 /// is seen in one frame alone, which has no instance. The speed is that of the box's centre in the
 /// map between the first and the last box of its track within `kTrackWindow_s`, but at least those

@@ -10,7 +10,6 @@
 #include "datasets/disk/folder_listing.hpp"
 #include "datasets/formats/point_range.hpp"
 #include "datasets/formats/scan_file.hpp"
-#include "datasets/hdf5/flow_truth.hpp"
 #include "datasets/layouts/boxes.hpp"
 #include "datasets/layouts/folder_search.hpp"
 #include "datasets/layouts/kitti_drive.hpp"
@@ -64,7 +63,7 @@ class KittiDriveSequence : public Sequence {
     recording.files = drive.files;
     recording.truth_files = drive.truth_files;
     recording.remarks = drive.remarks;
-    const double moving_speed_m_s = asked.moving_speed_m_s.value_or(kFlowMovingSpeed_m_s);
+    const double moving_speed_m_s = asked.moving_speed_m_s.value_or(kBoxMovingSpeed_m_s);
     recording.reading.scan_files = ".bin of the drive";
     if (drive.has_truth) {
       const bool of_labels = is_of_labels(drive.tracks);

@@ -95,7 +95,8 @@ struct Reading {
   /// When not set: by the poses, except that odometry registers scans as its own setting says.
   std::optional<Deskew> deskew = std::nullopt;
   std::optional<PointTimes> point_times = std::nullopt;  ///< when not set, those of a bag's points
-  /// Of truth that is a flow: from which speed on a point moves; when not set, 0.5.
+  /// Of truth that has speeds: from which one on a point moves; when not set, 0.5, and 0.05 m until
+  /// the next scan where the truth is a flow.
   std::optional<double> moving_speed_m_s = std::nullopt;
   /// float32 per point in .bin files; when not set 4, and scans that clearly have others are
   /// refused.

@@ -62,10 +62,8 @@ std::vector<std::string> all_remarks(const Sequence& sequence, const Result& res
     remarks.push_back(fmt::format("{} NaN or infinite: left out of the map and labelled static",
                                   counted(nonfinite_points, "point is", "points are")));
   }
-  if (unknown_ids > 0) {
-    remarks.push_back(
-        fmt::format("{} a label id that protocol {} does not know: counted as it says",
-                    counted(unknown_ids, "point has", "points have"), result.protocol->name));
+  if (const auto remark = unknown_ids_remark(*result.protocol, unknown_ids); !remark.empty()) {
+    remarks.push_back(remark);
   }
   return remarks;
 }

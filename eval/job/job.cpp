@@ -172,8 +172,10 @@ ScoreRule rule_of(const Job& job, DatasetKind kind) {
     check_range(*job.rule.range, protocol);
     return {&protocol, *job.rule.range};
   }
-  // A benchmark with a range limit is scored over the range it was run at.
-  if (protocol.range_rule == RangeRule::kNone || protocol.default_range.max_m <= 0) {
+  // A benchmark with a limit of the distance is scored over the range it was run at; a box is its
+  // own.
+  if (protocol.range_rule == RangeRule::kNone || protocol.default_range.max_m <= 0 ||
+      protocol.range_shape == RangeShape::kBox) {
     return {&protocol, protocol.default_range};
   }
   const Settings settings = settings_of(job, kind);

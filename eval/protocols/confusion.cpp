@@ -1,6 +1,8 @@
 #include "eval/protocols/confusion.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -38,6 +40,15 @@ RangeGate rounded(const RangeGate& limits, Arithmetic arithmetic) {
           static_cast<double>(static_cast<float>(limits.max_m))};
 }
 
+/// Returns what the protocol's limits are for.
+double limited_m(const Protocol& protocol, const Point& point) {
+  if (protocol.range_shape == RangeShape::kDistance) {
+    return range_m(point, protocol.range_arithmetic);
+  }
+  if (std::isnan(point.x + point.y + point.z)) return std::numeric_limits<double>::quiet_NaN();
+  return std::max(std::abs(point.x), std::abs(point.y));
+}
+
 /// Returns the truth class of a point that is out of range.
 TruthClass class_out_of_range(RangeRule rule, TruthClass inside) {
   if (rule == RangeRule::kTruthAndPrediction) return TruthClass::kIgnored;
@@ -71,10 +82,14 @@ void judge_points(const Protocol& protocol, std::span<const std::uint32_t> truth
   const LabelTable prediction_classes(protocol.prediction);
   for (std::size_t i = 0; i < truth.size(); ++i) {
     TruthClass truth_class = truth_classes[truth[i]];
-    if (gated && !gate.contains(range_m(points[i], protocol.range_arithmetic))) {
+    if (gated && !gate.contains(limited_m(protocol, points[i]))) {
       truth_class = class_out_of_range(protocol.range_rule, truth_class);
     }
-    const bool moving = prediction_classes[prediction[i]] == TruthClass::kMoving;
+    const TruthClass predicted = prediction_classes[prediction[i]];
+    const bool moving = predicted == TruthClass::kMoving;
+    const bool left_out =
+        protocol.counts_known_predictions_only && predicted == TruthClass::kIgnored;
+    if (left_out || truth.size() < protocol.min_points) truth_class = TruthClass::kIgnored;
     accept(outcome_of(truth_class, moving),
            truth_classes.is_known(truth[i]) && prediction_classes.is_known(prediction[i]));
   }

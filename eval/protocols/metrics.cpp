@@ -62,8 +62,8 @@ double published_ratio(const Protocol& protocol, const Confusion& counts) {
   if (protocol.metric_arithmetic == Arithmetic::kFloat) {
     return static_cast<double>(static_cast<float>(counts.tp) / static_cast<float>(all));
   }
-  // Rounding loses the epsilon from a denominator of 16 on, not below.
-  const double epsilon = is_epsilon ? 1e-15 : 0.0;
+  // Rounding loses an epsilon of 1e-15 from a denominator of 16 on, not below.
+  const double epsilon = is_epsilon ? protocol.epsilon : 0.0;
   return static_cast<double>(counts.tp) / (static_cast<double>(all) + epsilon);
 }
 

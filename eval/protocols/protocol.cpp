@@ -15,8 +15,8 @@ constexpr auto kStatic = TruthClass::kStatic;
 constexpr auto kMoving = TruthClass::kMoving;
 
 // The learning_map of semantic-kitti-mos.yaml. Ids outside it become class 0, as
-// unlabelled points do, because the look-up table is filled with zeros; ids from 359 on crash the
-// original program.
+// unlabelled points do, because the look-up table is filled with zeros; it ends 100 ids behind the
+// last listed one.
 constexpr std::array kSemanticKittiIds = {
     IdRange{0, 1, kIgnored},  IdRange{9, 11, kStatic},  IdRange{13, 13, kStatic},
     IdRange{15, 16, kStatic}, IdRange{18, 18, kStatic}, IdRange{20, 20, kStatic},
@@ -46,6 +46,14 @@ constexpr std::array kMdetectorIds = {IdRange{0, 250, kStatic}, IdRange{251, 655
                                       IdRange{65535, 65535, kIgnored}};
 constexpr IdMap kMdetector{kMdetectorIds, kStatic};
 
+constexpr std::array kMdetectorMovingIds = {IdRange{0, 250, kStatic}, IdRange{251, 65534, kMoving},
+                                            IdRange{65535, 65535, kStatic}};
+constexpr IdMap kMdetectorMoving{kMdetectorMovingIds, kStatic};
+
+// KITTI's and Avia's scorers count a miss, and a true negative, where the prediction is 9.
+constexpr std::array kMovingOr9Ids = {IdRange{9, 9, kStatic}, IdRange{251, 65534, kMoving}};
+constexpr IdMap kMovingOr9{kMovingOr9Ids, kIgnored};
+
 constexpr std::array kNuscenesIds = {
     IdRange{0, 250, kStatic}, IdRange{251, 999, TruthClass::kAlwaysNegative},
     IdRange{1000, 65534, kMoving}, IdRange{65535, 65535, kIgnored}};
@@ -64,6 +72,7 @@ constexpr PrintStyle kSixSignificant{.percent = false, .digits = 6, .significant
 constexpr std::string_view kEvaluateMos = "PRBonn/semantic-kitti-api@a9c749e:evaluate_mos.py";
 constexpr std::string_view kCalRecall = "hku-mars/M-detector@5ce002f:src/cal_recall_multi.cpp";
 constexpr std::string_view kMapmosSource = "PRBonn/MapMOS@4092d93:src/mapmos/pipeline.py";
+constexpr std::string_view kAv2Eval = "KTH-RPL/OpenSceneFlow@2a9c474:src/utils/av2_eval.py";
 
 /// The program of MapMOS, which skips points out of range, on one of its data sets.
 constexpr Protocol of_mapmos(std::string_view name, std::string_view summary,
@@ -80,6 +89,38 @@ constexpr Protocol of_mapmos(std::string_view name, std::string_view summary,
           .metric_arithmetic = Arithmetic::kFloat,
           .program_print = {.percent = true, .digits = 3},
           .default_split = default_split};
+}
+
+/// The scorers of M-detector, one per data set in the same file.
+constexpr Protocol of_mdetector(std::string_view name, std::string_view summary, const IdMap& truth,
+                                const IdMap& prediction, std::size_t min_points = 0) {
+  return {.name = name,
+          .summary = summary,
+          .source = kCalRecall,
+          .truth = truth,
+          .prediction = prediction,
+          .counts_known_predictions_only = true,
+          .min_points = min_points,
+          .aggregation = Aggregation::kMeanOfSequences,
+          .metric_arithmetic = Arithmetic::kFloat,
+          .program_print = kSixSignificant};
+}
+
+constexpr Protocol of_scene_flow(std::string_view name, std::string_view summary, RangeShape shape,
+                                 RangeGate range) {
+  return {.name = name,
+          .summary = summary,
+          .source = kAv2Eval,
+          .truth = kSceneFlow,
+          .prediction = kAbove250,
+          .range_rule = RangeRule::kTruthAndPrediction,
+          .range_shape = shape,
+          .default_range = range,
+          .aggregation = Aggregation::kMeanOfScans,
+          .empty_case = EmptyCase::kEpsilon,
+          .epsilon = 1e-6,
+          .program_print = kSixSignificant,
+          .default_split = "eval"};
 }
 
 constexpr std::array kProtocols = {
@@ -110,6 +151,7 @@ constexpr std::array kProtocols = {
              .summary = "pooled over all points; unlabelled and unknown truth is ignored",
              .source = kEvaluateMos,
              .truth = kSemanticKitti,
+             .stops_at_id = 359,
              .prediction = kSemanticKitti,
              .empty_case = EmptyCase::kEpsilon,
              .default_split = "valid"},
@@ -117,6 +159,7 @@ constexpr std::array kProtocols = {
              .summary = "pooled over all points; unlabelled and unknown truth is static",
              .source = "xieKKKi/MotionBEV@233a348:config/livox-SEU-MOS.yaml",
              .truth = kSipailou,
+             .stops_at_id = 352,
              .prediction = kSipailou,
              .empty_case = EmptyCase::kEpsilon,
              .default_split = "test"},
@@ -124,6 +167,7 @@ constexpr std::array kProtocols = {
              .summary = "pooled per sensor over every labelled scan; unlabelled truth is ignored",
              .source = kEvaluateMos,
              .truth = kSemanticKitti,
+             .stops_at_id = 359,
              .prediction = kSemanticKitti,
              .aggregation = Aggregation::kMeanOfSequences,
              .empty_case = EmptyCase::kEpsilon,
@@ -132,12 +176,13 @@ constexpr std::array kProtocols = {
              .summary = "pooled per sensor over the scans of test.txt; unlabelled truth is ignored",
              .source = kEvaluateMos,
              .truth = kSemanticKitti,
+             .stops_at_id = 359,
              .prediction = kSemanticKitti,
              .aggregation = Aggregation::kMeanOfSequences,
              .empty_case = EmptyCase::kEpsilon,
              .default_split = "test"},
     of_mapmos("mapmos", "pooled; truth ids 0 and 1 ignored, above 250 moving, all between static",
-              kMapmosSource, kMapmosHelimos, "test"),
+              "PRBonn/MapMOS@3c627f0:src/mapmos/pipeline.py", kMapmosHelimos, "test"),
     of_mapmos("mapmos-apollo", "pooled; nothing ignored: truth ids up to 250 static, above moving",
               "PRBonn/MapMOS@4092d93:src/mapmos/datasets/apollo.py", kAbove250),
     of_mapmos("mapmos-kitti-tracking",
@@ -151,33 +196,20 @@ constexpr std::array kProtocols = {
              .truth = kAbove250,
              .prediction = kAbove250,
              .aggregation = Aggregation::kMeanOfSequences},
-    Protocol{.name = "mdetector",
-             .summary = "pooled per sequence; ids from 251 moving, 65535 ignored",
-             .source = kCalRecall,
-             .truth = kMdetector,
-             .prediction = kMdetector,
-             .aggregation = Aggregation::kMeanOfSequences,
-             .metric_arithmetic = Arithmetic::kFloat,
-             .program_print = kSixSignificant},
-    Protocol{.name = "mdetector-nuscenes",
-             .summary = "as mdetector, but truth ids 251 to 999 are always true negatives",
-             .source = kCalRecall,
-             .truth = kMdetectorNuscenes,
-             .prediction = kMdetector,
-             .aggregation = Aggregation::kMeanOfSequences,
-             .metric_arithmetic = Arithmetic::kFloat,
-             .program_print = kSixSignificant},
-    Protocol{.name = "sceneflow-dynamic",
-             .summary = "mean of per-scan dynamic IoU where the flow is valid: within eval_mask, "
-                        "without one off the ground at any range",
-             .source = "KTH-RPL/OpenSceneFlow@2a9c474:src/utils/av2_eval.py",
-             .truth = kSceneFlow,
-             .prediction = kAbove250,
-             .range_rule = RangeRule::kTruthAndPrediction,
-             .aggregation = Aggregation::kMeanOfScans,
-             .empty_case = EmptyCase::kEpsilon,
-             .program_print = kSixSignificant,
-             .default_split = "eval"},
+    of_mdetector("mdetector", "pooled per sequence; ids from 251 moving, 65535 ignored", kMdetector,
+                 kMdetectorMoving),
+    of_mdetector("mdetector-kitti",
+                 "as mdetector, but points whose prediction is neither moving nor 9 do not count",
+                 kMdetector, kMovingOr9),
+    of_mdetector("mdetector-nuscenes",
+                 "as mdetector, but truth ids 251 to 999 are always true negatives",
+                 kMdetectorNuscenes, kMdetectorMoving, 2),
+    of_scene_flow("sceneflow-dynamic",
+                  "mean of per-scan dynamic IoU of the points off the ground where the flow is "
+                  "valid, within eval_mask",
+                  RangeShape::kBox, {0.0, 35.0}),
+    of_scene_flow("sceneflow-dynamic-far", "as sceneflow-dynamic, at any distance",
+                  RangeShape::kDistance, kNoLimits),
 };
 
 // In the order of TruthClass, of Aggregation and of EmptyCase.
@@ -233,7 +265,8 @@ std::string describe_range(const Protocol& protocol) {
   const std::string_view what =
       protocol.range_rule == RangeRule::kTruthOnly ? "truth only" : "truth and prediction";
   const RangeGate& range = protocol.default_range;
-  return fmt::format("{}, {} by default", what, range == kNoLimits ? "no limit" : gate_text(range));
+  return fmt::format("{}, {} by default", what,
+                     range == kNoLimits ? "no limit" : counted_range_text(protocol, range));
 }
 
 std::string in_brackets(const ScoreRule& rule) {
@@ -290,7 +323,18 @@ std::vector<ProtocolDescription> describe_protocols() {
 }
 
 std::string counted_range_text(const Protocol& protocol, const RangeGate& range) {
-  return protocol.range_rule == RangeRule::kNone ? "" : gate_text(range);
+  if (protocol.range_rule == RangeRule::kNone) return "";
+  return gate_text(range) + (protocol.range_shape == RangeShape::kBox ? " in x and y" : "");
+}
+
+std::string unknown_ids_remark(const Protocol& protocol, std::uint64_t points) {
+  if (points == 0) return "";
+  return fmt::format(
+      "{} a label id that protocol {} does not know: counted as it says{}",
+      counted(points, "point has", "points have"), protocol.name,
+      protocol.stops_at_id == 0
+          ? ""
+          : fmt::format(", while its own program stops at ids from {} on", protocol.stops_at_id));
 }
 
 std::string rule_line(const ScoreRule& rule) {

@@ -52,6 +52,12 @@ enum class RangeRule : std::uint8_t {
   kTruthAndPrediction  ///< it is ignored
 };
 
+/// What the range limits are for.
+enum class RangeShape : std::uint8_t {
+  kDistance,  ///< from the sensor
+  kBox        ///< the larger of |x| and |y|
+};
+
 /// Distances from the sensor that count, both ends inclusive, metres.
 struct RangeGate {
   double min_m = 0.5;
@@ -80,7 +86,7 @@ enum class EmptyCase : std::uint8_t {
   kNan,              ///< 0/0
   kNanWithoutTruth,  ///< NaN whenever no truth point moves, even with false positives
   kOne,              ///< a perfect score
-  kEpsilon           ///< 0: the denominator is enlarged by 1e-15
+  kEpsilon           ///< 0: the denominator is enlarged by Protocol::epsilon
 };
 
 /// The number type in which the protocol's own program computes.
@@ -101,12 +107,17 @@ struct Protocol {
   std::string_view summary;  ///< how it differs from the others, one line
   std::string_view source;   ///< owner/repository@commit:path of the program it reproduces
   IdMap truth;
-  IdMap prediction;  ///< kMoving is a moving prediction, every other class a static one
+  int stops_at_id = 0;  ///< from which id on its program stops; 0: at none
+  IdMap prediction;     ///< kMoving is a moving prediction, every other class a static one
+  bool counts_known_predictions_only = false;  ///< kIgnored leaves a point out
+  std::size_t min_points = 0;                  ///< a scan of fewer counts nowhere
   RangeRule range_rule = RangeRule::kNone;
+  RangeShape range_shape = RangeShape::kDistance;
   RangeGate default_range = kNoLimits;
   Arithmetic range_arithmetic = Arithmetic::kDouble;
   Aggregation aggregation = Aggregation::kPooled;
   EmptyCase empty_case = EmptyCase::kNan;
+  double epsilon = 1e-15;  ///< of EmptyCase::kEpsilon
   Arithmetic metric_arithmetic = Arithmetic::kDouble;
   int file_significant_digits = 0;  ///< of the scan values that its program averages; 0: all digits
   PrintStyle program_print = {};    ///< of its own program
@@ -152,6 +163,9 @@ std::vector<ProtocolDescription> describe_protocols();
 
 /// Returns the range of the points that count; empty when the protocol does not limit it.
 std::string counted_range_text(const Protocol& protocol, const RangeGate& range);
+
+/// Returns what is to be said of points whose ids the protocol does not list; empty without any.
+std::string unknown_ids_remark(const Protocol& protocol, std::uint64_t points);
 
 /// Returns "protocol mapmos: pooled; ... (from 3 m)", the range that is really applied.
 std::string rule_line(const ScoreRule& rule);

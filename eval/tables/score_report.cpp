@@ -140,7 +140,9 @@ std::string why(const ProtocolDescription& words, const ScoreRule& rule, const C
   if (!rule.protocol->default_split.empty()) {
     text += fmt::format("; published over split {} alone", rule.protocol->default_split);
   }
-  return text + fmt::format("; truth ids: {}; 0/0 gives {}", words.truth, words.empty_case);
+  const std::string unknown = unknown_ids_remark(*rule.protocol, pooled.unknown_ids);
+  return text + fmt::format("; truth ids: {}; 0/0 gives {}{}{}", words.truth, words.empty_case,
+                            unknown.empty() ? "" : "; ", unknown);
 }
 
 /// Of the scans that were scored.
@@ -221,6 +223,13 @@ Answer score_answer(const Dataset& dataset, const ScoreTask& task,
   const std::vector<SummaryRow> rows = table_rows(dataset, rule, scores, with_sequences);
   Sheet sheet = score_sheet(rule, dataset.splits, rows);
   sheet.notes = score_remarks(dataset, scores);
+  for (const SequenceScores& sequence : scores) {
+    std::uint64_t unknown = 0;
+    for (const ScanRow& row : sequence.by_rule.front()) unknown += row.counts->unknown_ids;
+    if (const auto remark = unknown_ids_remark(*rule.protocol, unknown); !remark.empty()) {
+      sheet.notes.push_back(dataset.sequences[sequence.position]->name() + ": " + remark);
+    }
+  }
   Standing standing = standing_of(dataset, scores);
   if (const auto split = other_split(dataset, task)) {
     standing.doubts.push_back(split_warning(*split));

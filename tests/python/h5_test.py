@@ -26,25 +26,29 @@ def drive(seed=3, scans=4):
         points = now["lidar"].astype(np.float64)
         rigid = points @ motion[:3, :3].T + motion[:3, 3] - points
         objects = random.integers(0, 4, POINTS)
-        # 0, 0.3, 0.7 and 20 m/s, away from the limit of 0.5.
-        speed = np.array([0.0, 0.03, 0.07, 2.0])[objects]
-        now["flow"] = (rigid + speed[:, None] * [0.6, 0.8, 0.0]).astype(np.float32)
+        # Away from the limit of 0.05 m.
+        moved = np.array([0.0, 0.03, 0.07, 2.0])[objects]
+        now["flow"] = (rigid + moved[:, None] * [0.6, 0.8, 0.0]).astype(np.float32)
         now["flow_is_valid"] = random.random(POINTS) > 0.1
-        now["flow_category_indices"] = np.where(objects > 0, 19, 0).astype(np.uint8)
+        now["flow_category_indices"] = np.where(objects > 0, random.integers(29, 32, POINTS), 0).astype(np.uint8)
         now["flow_instance_id"] = objects.astype(np.int16)
         now["ego_motion"] = motion.astype(np.float32)
         now["moving"] = np.linalg.norm(now["flow"] - rigid, axis=1) >= 0.05
+        now["counted"] = now["flow_is_valid"] & (now["flow_category_indices"] <= 30)
     for scan in made:
         scan["ground_mask"] = scan["lidar"][:, 2] < -20
     return made
 
 
-def write(file, scans, **storage):
+TOLD = ("moving", "counted")  # not of the file
+
+
+def write(file, scans, step_ns=10**8, **storage):
     with h5py.File(file, "w") as out:
         for k, scan in enumerate(scans):
-            group = out.create_group(str(START_NS + k * 10**8))
+            group = out.create_group(str(START_NS + k * step_ns))
             for name, values in scan.items():
-                if name != "moving":
+                if name not in TOLD:
                     group.create_dataset(name, data=values, **(storage if values.shape != (4, 4) else {}))
     return file
 
@@ -69,7 +73,7 @@ def check(file, scans):
         if "flow" not in scan:
             assert found.truth is None
             continue
-        seen = ~scan["ground_mask"] & scan["flow_is_valid"]
+        seen = ~scan["ground_mask"] & scan["counted"]
         assert 0 < (seen & scan["moving"]).sum() < seen.sum() < POINTS
         ids = found.truth & 0xFFFF
         assert np.array_equal(ids == 251, seen & scan["moving"])
@@ -93,7 +97,7 @@ def test_reads_other_numbers_and_newer_files(tmp_path):
         for k, scan in enumerate(scans):
             group = out.create_group(str(START_NS + k * 10**8))
             for name, values in scan.items():
-                if name == "moving":
+                if name in TOLD:
                     continue
                 kind = {"f": ">f8" if name in ("lidar", "pose") else ">f4", "b": "?", "u": "u1", "i": ">i8"}[values.dtype.kind]
                 group.create_dataset(name, data=values.astype(kind))
@@ -109,29 +113,33 @@ def test_microseconds_are_told_by_the_time_between_scans(tmp_path):
     assert scan.stamp_ns == 1_531_883_530_549_377_000 and scan.truth is None
 
 
+@pytest.mark.parametrize("step_ns", [5 * 10**7, 10**8, 101 * 10**6, 5 * 10**8])
 @pytest.mark.parametrize("masked", [False, True])
-def test_scores_dufo_as_openSceneFlow_scores_flow(tmp_path, masked):
+def test_scores_dufo_as_openSceneFlow_scores_flow(tmp_path, masked, step_ns):
     scans = drive()
     random = np.random.default_rng(7)
-    file = write(tmp_path / "scene.h5", scans)
+    file = write(tmp_path / "scene.h5", scans, step_ns)
     opened(file)
-    ious = []
+    near, far = [], []
     with h5py.File(file, "r+") as out:
         for k, scan in enumerate(scans):
-            group = out[str(START_NS + k * 10**8)]
+            group = out[str(START_NS + k * step_ns)]
             dufo = random.random(POINTS) > 0.5
             group.create_dataset("dufo", data=dufo.astype(np.uint8))
             mask = ~scan["ground_mask"]
             if masked and k == 1:
-                mask = random.random(POINTS) > 0.5
-                group.create_dataset("eval_mask", data=mask[:, None])
+                evaluated = random.random(POINTS) > 0.5
+                group.create_dataset("eval_mask", data=evaluated[:, None])
+                mask &= evaluated
             if "flow" in scan and (k == 1 or not masked):
-                mask = mask & scan["flow_is_valid"]
-                both = (dufo & scan["moving"] & mask).sum()
-                ious.append(both / ((dufo | scan["moving"]) & mask).sum())
-    result = mosbench.score(file, file, protocol="sceneflow-dynamic")
-    assert len(ious) == (1 if masked else 3) and 0 < np.mean(ious) < 1
-    assert result.iou == pytest.approx(np.mean(ious), abs=1e-12)
+                close = np.all(np.abs(scan["lidar"][:, :2]) <= 35, axis=1)
+                for ious, mask_ in ((near, mask & scan["counted"] & close), (far, mask & scan["counted"])):
+                    both = (dufo & scan["moving"] & mask_).sum()
+                    ious.append(both / ((dufo | scan["moving"]) & mask_).sum())
+    assert len(near) == (1 if masked else 3) and near != far
+    for protocol, ious in (("sceneflow-dynamic", near), ("sceneflow-dynamic-far", far)):
+        result = mosbench.score(file, file, protocol=protocol)
+        assert result.iou == pytest.approx(np.mean(ious), abs=1e-12)
 
 
 def test_labels_of_a_method_are_filled_in_and_scored(tmp_path, near):
@@ -182,5 +190,5 @@ def test_poses_too_coarse_for_the_flow_are_refused(tmp_path):
     for kind, with_ego_motion in ((np.float32, True), (np.float64, False)):
         ids = far(kind, with_ego_motion).scan(0).truth & 0xFFFF
         scan = drive()[0]
-        seen = ~scan["ground_mask"] & scan["flow_is_valid"]
+        seen = ~scan["ground_mask"] & scan["counted"]
         assert np.array_equal(ids == 251, seen & scan["moving"])

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <csignal>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -74,7 +75,7 @@ TEST(FlowTruth, TakesTheSensorsOwnMotionOutOfTheFlow) {
   // The second went 0.2 m to the side that is ahead of the sensor then; the third is not valid.
   const std::vector<float> flow = {-3, -2, 0, -2.8F, -2, 0, 9, 9, 9, kNoNumber, 0, 0};
   const std::vector<std::int64_t> valid = {1, 1, 0, 1};
-  const auto found = velocities(points, flow, valid, quarter_turn());
+  const auto found = velocities(displacements(points, flow, valid, quarter_turn()), quarter_turn());
   ASSERT_EQ(found.size(), 4U);
   EXPECT_NEAR(found[0].norm(), 0.0, 1e-6);
   EXPECT_NEAR(found[1].x(), 2.0, 1e-5);
@@ -85,17 +86,21 @@ TEST(FlowTruth, TakesTheSensorsOwnMotionOutOfTheFlow) {
   EXPECT_THAT(std::vector<float>(again.begin() + 6, again.end()), testing::Each(0.0F));
 }
 
-TEST(FlowTruth, MovesFromTheSpeedOnAndKnowsWhereTheBenchmarkDoesNotLook) {
-  PointMotions motions;
-  for (const float speed : {0.0F, 0.49F, 0.5F, 3.0F, kNoNumber}) {
-    motions.velocities_m_s.push_back({0, speed, 0});
+TEST(FlowTruth, MovesFromTheStepOnAndKnowsWhereTheBenchmarkDoesNotLook) {
+  std::vector<Eigen::Vector3d> moved_m;
+  for (const double step_m : {0.0, 0.049, 0.05, 0.3, double{kNoNumber}}) {
+    moved_m.push_back({0, step_m, 0});
   }
-  EXPECT_THAT(flow_labels(motions, 0.5), ElementsAre(9, 9, 251, 251, 0));
-  EXPECT_THAT(flow_labels(motions, 1.0), ElementsAre(9, 9, 9, 251, 0));
+  PointMotions motions;
+  EXPECT_THAT(flow_labels(moved_m, motions, 0.05), ElementsAre(9, 9, 251, 251, 0));
+  EXPECT_THAT(flow_labels(moved_m, motions, 0.1), ElementsAre(9, 9, 9, 251, 0));
   motions.on_ground = {1, 0, 0, 1, 1};
-  EXPECT_THAT(flow_labels(motions, 0.5), ElementsAre(40, 9, 251, 259, 0));
+  EXPECT_THAT(flow_labels(moved_m, motions, 0.05), ElementsAre(40, 9, 251, 259, 0));
   motions.evaluated = {0, 0, 1, 1, 1};
-  EXPECT_THAT(flow_labels(motions, 0.5), ElementsAre(40, 99, 251, 251, 0));
+  EXPECT_THAT(flow_labels(moved_m, motions, 0.05), ElementsAre(40, 99, 251, 259, 0));
+  motions.evaluated = {1, 1, 1, 1, 1};
+  motions.classes = {0, 31, 31, 30, 0};
+  EXPECT_THAT(flow_labels(moved_m, motions, 0.05), ElementsAre(40, 99, 259, 259, 0));
 }
 
 class SceneFlowFile : public testing::Test {
@@ -181,6 +186,19 @@ TEST_F(SceneFlowFile, TakesAnotherSpeedAndPosesButKeepsTheTruthOfItsOwnPoses) {
   const auto told = open_dataset(file, {.reading = {.poses = PoseFile{poses}}});
   EXPECT_EQ(told.sequences.at(0)->map_from_sensor(2).translation().x(), 5.0);
   EXPECT_EQ(told.sequences.at(0)->read_truth(0)[1], 251U + (3U << 16U));
+}
+
+TEST_F(SceneFlowFile, MovesByTheStepWhateverTheStampsUnlessASpeedIsAsked) {
+  for (const int step_us : {50'000, 100'000, 101'000, 500'000}) {
+    const auto file = write(
+        {scan("1600000000000000", 0), scan(std::to_string(1'600'000'000'000'000 + step_us), 1)});
+    const auto moves = [&](std::optional<double> speed_m_s) {
+      const auto data = open_dataset(file, {.reading = {.moving_speed_m_s = speed_m_s}});
+      return (data.sequences.at(0)->read_truth(0)[1] & 0xFFFFU) == 251U;
+    };
+    EXPECT_TRUE(moves({})) << step_us;
+    EXPECT_EQ(moves(0.5), step_us < 120'000) << step_us;
+  }
 }
 
 TEST_F(SceneFlowFile, KnowsNanosecondsByTheTimeBetweenScans) {

@@ -95,8 +95,10 @@ TEST(ScoreScan, FollowsMdetectorThresholds) {
   EXPECT_EQ(score("mdetector", {65535}, {251}), kIgnoredPoint);
   EXPECT_EQ(score("mdetector", {251}, {65535}), kFalseNegative);
   EXPECT_EQ(score("mdetector", {300}, {251}), kTruePositive);
-  EXPECT_EQ(score("mdetector-nuscenes", {999}, {251}), kTrueNegative);
-  EXPECT_EQ(score("mdetector-nuscenes", {1000}, {251}), kTruePositive);
+  EXPECT_EQ(score("mdetector-nuscenes", {999, 65535}, {251, 0}),
+            (Confusion{.tn = 1, .ignored = 1}));
+  EXPECT_EQ(score("mdetector-nuscenes", {1000, 65535}, {251, 0}),
+            (Confusion{.tp = 1, .ignored = 1}));
 }
 
 TEST(ScoreScan, CountsAPredictionOutOfRangeAgainstTheMethodOnlyUnderDoalsHmm) {

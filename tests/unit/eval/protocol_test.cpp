@@ -24,7 +24,8 @@ TEST(Protocols, HoldEveryBenchmarkThatIsPromised) {
   for (const std::string_view name :
        {"doals-hmm", "doals-dynablox", "semantickitti-mos", "sipailou", "helimos-all",
         "helimos-test", "mapmos", "mapmos-apollo", "mapmos-kitti-tracking", "mapmos-nuscenes",
-        "moe", "mdetector", "mdetector-nuscenes", "sceneflow-dynamic"}) {
+        "moe", "mdetector", "mdetector-kitti", "mdetector-nuscenes", "sceneflow-dynamic",
+        "sceneflow-dynamic-far"}) {
     ASSERT_NE(find_protocol(name), nullptr) << name;
     EXPECT_EQ(find_protocol(name)->name, name);
   }
@@ -80,6 +81,8 @@ TEST(Protocols, AreDescribedInWords) {
   EXPECT_EQ(mapmos.range, "truth and prediction, no limit by default");
   EXPECT_EQ(rows[9].name, "mapmos-nuscenes");
   EXPECT_EQ(rows[9].range, "truth and prediction, from 3 m by default");
+  EXPECT_EQ(rows[14].name, "sceneflow-dynamic");
+  EXPECT_EQ(rows[14].range, "truth and prediction, 0 to 35 m in x and y by default");
 }
 
 TEST(RangeGate, IncludesBothEnds) {

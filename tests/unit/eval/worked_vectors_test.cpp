@@ -93,27 +93,43 @@ TEST(WorkedVectors, SixthReadsAnIdBelowAnInstanceNumber) {
 TEST(WorkedVectors, SeventhLeavesOutWhereSceneFlowIsNotEvaluated) {
   const Labels truth = {9, 251, 251, 40, 259, 99, 0, 0x000300FB};
   const Labels prediction = {251, 251, 9, 251, 251, 9, 251, 251};
-  const Confusion counts = score("sceneflow-dynamic", truth, prediction);
+  const Confusion counts = score("sceneflow-dynamic-far", truth, prediction);
   EXPECT_EQ(counts, (Confusion{.tp = 2, .fp = 1, .fn = 1, .ignored = 4}));
   // Its program counts a scan in which nothing moves as 0.
-  const Confusion still = score("sceneflow-dynamic", {9, 40}, {9, 9});
+  const Confusion still = score("sceneflow-dynamic-far", {9, 40}, {9, 9});
   const Summary summary =
-      summarize(protocol_named("sceneflow-dynamic"), std::vector{counts, still});
+      summarize(protocol_named("sceneflow-dynamic-far"), std::vector{counts, still});
   EXPECT_EQ(summary[Metric::kIou], 0.5);
   EXPECT_EQ(summary.undefined_scans, 1U);
+  EXPECT_EQ(summary.published_iou, 2.0 / (4.0 + 1e-6) / 2.0);
   EXPECT_EQ(summary.published_text, "0.25");
 }
 
-TEST(WorkedVectors, EighthCountsSceneFlowAtAnyRangeAsItsProgramDoes) {
-  // Inside of the box of 70 x 70 m, at its corner, outside of it within 50 m, beyond both.
-  const std::vector<Point> points = {{10, 0, 0, 0}, {35, 35, 0, 0}, {36, 0, 0, 0}, {0, -80, 0, 0}};
-  const Labels truth = {251, 251, 9, 251};
-  const Labels prediction = {251, 9, 251, 9};
-  const Protocol& protocol = protocol_named("sceneflow-dynamic");
-  EXPECT_EQ(score_scan(protocol, truth, prediction, points),
-            (Confusion{.tp = 1, .fp = 1, .fn = 2}));
-  EXPECT_EQ(score_scan(protocol, truth, prediction, points, {0.0, 50.0}),
-            (Confusion{.tp = 1, .fp = 1, .fn = 1, .ignored = 1}));
+TEST(WorkedVectors, EighthCountsSceneFlowInABoxAndNotByTheDistance) {
+  constexpr float kOut = 35.000004F;
+  const float nan = std::nanf("");
+  const std::vector<Point> points = {{10, 0, 0, 0},   {35, -35, 99, 0}, {-kOut, 0, 0, 0},
+                                     {0, kOut, 0, 0}, {nan, 0, 0, 0},   {0, 0, nan, 0}};
+  const Labels truth = {251, 251, 9, 251, 251, 251};
+  const Labels prediction = {251, 9, 251, 9, 251, 251};
+  const Protocol& box = protocol_named("sceneflow-dynamic");
+  EXPECT_EQ(score_scan(box, truth, prediction, points),
+            (Confusion{.tp = 1, .fn = 1, .ignored = 4}));
+  EXPECT_EQ(score_scan(box, truth, prediction, points, {0.0, 50.0}),
+            (Confusion{.tp = 1, .fp = 1, .fn = 2, .ignored = 2}));
+  EXPECT_EQ(score_scan(protocol_named("sceneflow-dynamic-far"), truth, prediction, points),
+            (Confusion{.tp = 1, .fp = 1, .fn = 2, .ignored = 2}));
+}
+
+TEST(WorkedVectors, NinthFollowsTheScorerOfEachOfMDetectorsSets) {
+  const Labels truth = {251, 251, 251, 9, 9, 9, 65535, 300};
+  const Labels prediction = {251, 9, 0, 251, 9, 1, 251, 65535};
+  EXPECT_EQ(score("mdetector", truth, prediction),
+            (Confusion{.tp = 1, .fp = 1, .fn = 3, .tn = 2, .ignored = 1}));
+  EXPECT_EQ(score("mdetector-kitti", truth, prediction),
+            (Confusion{.tp = 1, .fp = 1, .fn = 1, .tn = 1, .ignored = 4, .unknown_ids = 3}));
+  EXPECT_EQ(score("mdetector-nuscenes", {1000}, {9}), (Confusion{.ignored = 1}));
+  EXPECT_EQ(score("mdetector-nuscenes", {1000, 9}, {9, 9}), (Confusion{.fn = 1, .tn = 1}));
 }
 
 TEST(WorkedVectors, TheAuthorsExampleAverages8922) {
