@@ -2,8 +2,10 @@
 
 #include <fcntl.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -21,11 +23,26 @@ struct FileCloser {
 };
 using OpenFile = std::unique_ptr<std::FILE, FileCloser>;
 
+/// Of a pointer of Git LFS.
+constexpr std::uintmax_t kMostPointerBytes = 1024;
+
 std::string reason(int error_number) { return std::strerror(error_number); }
 
 void refuse_folder(const std::filesystem::path& file) {
   std::error_code ignored;
   if (std::filesystem::is_directory(file, ignored)) throw DataError(file, "is a folder", "a file");
+}
+
+/// Git leaves a small text in the place of a file that it keeps elsewhere.
+void refuse_lfs_pointer(int file_number, off_t size_bytes, const std::filesystem::path& file) {
+  constexpr std::string_view kStart = "version https://git-lfs.github.com/spec/";
+  std::array<char, kStart.size()> start{};
+  if (size_bytes > static_cast<off_t>(kMostPointerBytes) ||
+      pread(file_number, start.data(), start.size(), 0) < 0)
+    return;
+  if (std::string_view(start.data(), start.size()) != kStart) return;
+  throw DataError(file, "is a Git LFS pointer, not the file itself",
+                  "the file that `git lfs pull` puts in its place");
 }
 
 /// Does not wait for what may never come, as from a FIFO.
@@ -39,6 +56,7 @@ OpenFile open_to_read(const std::filesystem::path& file) {
   if (!S_ISREG(found.st_mode)) {
     throw DataError(file, "is a pipe or device", "a regular file; write its bytes to one first");
   }
+  refuse_lfs_pointer(opened.number(), found.st_size, file);
   return OpenFile(fdopen(opened.release(), "rb"));
 }
 
@@ -128,6 +146,7 @@ void read_file(const std::filesystem::path& file, std::span<std::byte> bytes) {
 std::uintmax_t size_of(const std::filesystem::path& file) {
   std::error_code error;
   const std::uintmax_t size_bytes = std::filesystem::file_size(file, error);
+  if (!error && size_bytes <= kMostPointerBytes) open_to_read(file);  // refuses a pointer
   if (!error) return size_bytes;
   refuse_folder(file);
   throw DataError(file, "cannot be opened (" + error.message() + ")", "a readable file");

@@ -49,9 +49,28 @@ constexpr std::array<StoredType, 8> kStoredTypes = {
     stored_type<std::uint16_t>(), stored_type<std::int32_t>(), stored_type<std::uint32_t>(),
     stored_type<float>(),         stored_type<double>()};
 
+/// Where the field behind another begins: at most the end of the record.
+std::uint32_t next_offset_bytes(const CloudHead& head, const CloudField& field) {
+  std::uint32_t next_bytes = head.point_step_bytes;
+  for (const CloudField& other : head.fields) {
+    if (other.offset_bytes > field.offset_bytes)
+      next_bytes = std::min(next_bytes, other.offset_bytes);
+  }
+  return next_bytes;
+}
+
+/// Whether a field is one number. PCL takes a count of 0 for 1. A count that does not fit before
+/// the next field is that of the points, as some simulators write it.
+bool is_one_number(const CloudHead& head, const CloudField& field) {
+  if (field.datatype < 1 || field.datatype > kStoredTypes.size()) return false;
+  const std::uint64_t all_bytes =
+      std::uint64_t{field.count} * kStoredTypes[field.datatype - 1U].size_bytes;
+  return field.count <= 1 || field.offset_bytes + all_bytes > next_offset_bytes(head, field);
+}
+
 const StoredType& type_of(const CloudHead& head, const CloudField& field,
                           const std::filesystem::path& file) {
-  if (field.datatype < 1 || field.datatype > kStoredTypes.size() || field.count != 1) {
+  if (!is_one_number(head, field)) {
     throw DataError(file,
                     fmt::format("field {} of the points has datatype {} and count {}", field.name,
                                 field.datatype, field.count),

@@ -137,6 +137,22 @@ std::vector<std::uint64_t> shape_of(hid_t dataset, const std::string& name) {
   return {sizes.begin(), sizes.begin() + dimensions};
 }
 
+/// Says which filter packed the numbers of an array if libhdf5 cannot unpack it by itself.
+std::string missing_filter(hid_t dataset) {
+  const Handle properties(H5Dget_create_plist(dataset), H5Pclose, "tell its filters");
+  for (int i = 0; i < H5Pget_nfilters(properties); ++i) {
+    std::array<char, 64> name{};
+    unsigned flags = 0;
+    std::size_t values = 0;
+    const auto filter = H5Pget_filter2(properties, static_cast<unsigned>(i), &flags, &values,
+                                       nullptr, name.size() - 1, name.data(), nullptr);
+    if (filter < 0 || H5Zfilter_avail(filter) > 0) continue;
+    return ": packed by the filter " + std::string(name.data()) + " (" + std::to_string(filter) +
+           "), pack it by gzip or not at all";
+  }
+  return "";
+}
+
 Hdf5Array describe(hid_t dataset, const std::string& name) {
   Hdf5Array array;
   array.name = name;
@@ -219,7 +235,7 @@ std::string read(const std::string& path, const std::string& group_name, const H
   if (count == 0) return "";
   if (H5Tget_size(native) != array.number.bytes ||
       H5Dread(dataset, native, kWhole, kWhole, H5P_DEFAULT, bytes.data()) < 0) {
-    return "libhdf5 cannot read " + group_name + "/" + array.name;
+    return "libhdf5 cannot read " + group_name + "/" + array.name + missing_filter(dataset);
   }
   return "";
 } catch (const std::exception& error) {

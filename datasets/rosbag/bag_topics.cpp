@@ -274,10 +274,8 @@ class PoseSearch {
 }  // namespace
 
 std::string cloud_topic(const BagReader& bag, const std::optional<std::string>& asked) {
-  std::set<std::string> topics;
-  for (const std::string_view type : {kPointCloud2, kLivoxCustomMsg, kOldLivoxCustomMsg}) {
-    topics.merge(topics_of_type(bag, type));
-  }
+  std::set<std::string> topics = topics_of_type(bag, kPointCloud2);
+  for (const std::string_view type : kLivoxMessages) topics.merge(topics_of_type(bag, type));
   if (asked && topics.contains(*asked)) return *asked;
   if (asked) {
     throw DataError(bag.path(), "has no PointCloud2 topic " + *asked,

@@ -21,8 +21,9 @@ enum class MessageEncoding : std::uint8_t {
 
 /// The message types that are read; messages of other types are skipped.
 inline constexpr std::string_view kPointCloud2 = "sensor_msgs/PointCloud2";
-inline constexpr std::string_view kLivoxCustomMsg = "livox_ros_driver2/CustomMsg";
-inline constexpr std::string_view kOldLivoxCustomMsg = "livox_ros_driver/CustomMsg";
+/// Of its drivers for both ROS, for ROS 1 and its first one for ROS 2: all with the same content.
+inline constexpr std::array<std::string_view, 3> kLivoxMessages = {
+    "livox_ros_driver2/CustomMsg", "livox_ros_driver/CustomMsg", "livox_interfaces/CustomMsg"};
 inline constexpr std::string_view kTfMessage = "tf2_msgs/TFMessage";
 inline constexpr std::string_view kOldTfMessage = "tf/tfMessage";
 inline constexpr std::string_view kTransformStamped = "geometry_msgs/TransformStamped";

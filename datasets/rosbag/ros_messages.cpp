@@ -80,17 +80,23 @@ void put_transform(MessageSink& sink, const StampedTransform& transform) {
   for (const double value : {q.x(), q.y(), q.z(), q.w()}) sink.put(value);
 }
 
-void check_size(const CloudHead& head, const std::filesystem::path& file) {
-  const bool fits = head.points() <= kMostPoints &&
-                    std::uint64_t{head.width} * head.point_step_bytes <= head.row_step_bytes &&
-                    std::uint64_t{head.row_step_bytes} * head.height == head.records_bytes;
-  if (fits || head.points() == 0) return;
-  throw DataError(file,
-                  fmt::format("a PointCloud2 of {} x {} points of {} bytes, {} bytes a row, has "
-                              "{} bytes",
-                              head.width, head.height, head.point_step_bytes, head.row_step_bytes,
-                              head.records_bytes),
-                  "height rows of at least width points");
+/// Returns how far apart rows begin. Many drivers write row_step wrongly (0, the width, that of
+/// another message) or append bytes: where it does not fit, rows follow one another, as PCL and
+/// ROS's own Python reader take them. Throws DataError when the bytes are too few for the points.
+std::uint32_t fitting_row_step_bytes(const CloudHead& head, const std::filesystem::path& file) {
+  const std::uint64_t row_bytes = std::uint64_t{head.width} * head.point_step_bytes;
+  const bool fits = head.points() <= kMostPoints && row_bytes * head.height <= head.records_bytes;
+  if (!fits && head.points() != 0) {
+    throw DataError(file,
+                    fmt::format("a PointCloud2 of {} x {} points of {} bytes, {} bytes a row, has "
+                                "{} bytes",
+                                head.width, head.height, head.point_step_bytes, head.row_step_bytes,
+                                head.records_bytes),
+                    "all its points");
+  }
+  const bool is_padded = head.row_step_bytes > row_bytes &&
+                         std::uint64_t{head.row_step_bytes} * head.height <= head.records_bytes;
+  return is_padded ? head.row_step_bytes : static_cast<std::uint32_t>(row_bytes);
 }
 
 /// The points of a CustomMsg are records of 19 bytes, which CDR begins at multiples of 4.
@@ -197,7 +203,7 @@ std::string format_tf_message(const std::vector<StampedTransform>& transforms,
 
 CloudHead parse_cloud_head(std::string_view bytes, const std::filesystem::path& file,
                            const MessageFormat& format) {
-  if (format.type == kLivoxCustomMsg || format.type == kOldLivoxCustomMsg) {
+  if (std::ranges::find(kLivoxMessages, format.type) != kLivoxMessages.end()) {
     MessageCursor points(bytes, format.encoding, file, "a CustomMsg");
     return parse_livox_head(points);
   }
@@ -220,7 +226,7 @@ CloudHead parse_cloud_head(std::string_view bytes, const std::filesystem::path& 
   head.row_step_bytes = cursor.take<std::uint32_t>();
   head.records_bytes = cursor.take<std::uint32_t>();
   head.records_at_bytes = cursor.position_bytes();
-  check_size(head, file);
+  head.row_step_bytes = fitting_row_step_bytes(head, file);
   return head;
 }
 

@@ -191,7 +191,7 @@ inline void ros2_message(std::string_view bytes) {
     default:
       break;
   }
-  const std::string_view type = bytes.front() == 'l' ? kLivoxCustomMsg : kPointCloud2;
+  const std::string_view type = bytes.front() == 'l' ? kLivoxMessages[0] : kPointCloud2;
   const TimedCloud cloud = parse_cloud(message, "f", {type, MessageEncoding::kCdr});
   require(cloud.times_ns.empty() || cloud.times_ns.size() == cloud.points.size());
   require(!cloud.labels || cloud.labels->size() == cloud.points.size());

@@ -271,7 +271,11 @@ TEST_F(Bag, RefusesCloudsWithoutXyzOrWithOddTypes) {
               HasSubstr("have no field y"));
   EXPECT_THAT(error_with([](CloudHead& head) { head.fields[1].datatype = 9; }),
               HasSubstr("datatype 9"));
-  EXPECT_THAT(error_with([](CloudHead& head) { head.fields[1].count = 3; }), HasSubstr("count 3"));
+  EXPECT_THAT(error_with([](CloudHead& head) {
+                head.fields[1].datatype = 1;  // three bytes before z
+                head.fields[1].count = 3;
+              }),
+              HasSubstr("count 3"));
   EXPECT_THAT(error_with([](CloudHead& head) { head.fields[1].offset_bytes = 17; }),
               HasSubstr("lies beyond them"));
   EXPECT_THAT(error_with([](CloudHead& head) { head.width = 4; }), HasSubstr("4 x 1 points"));

@@ -596,22 +596,24 @@ std::string livox_message(std::int64_t stamp_ns, MessageEncoding encoding) {
 TEST_F(Ros2Bag, ReadsCustomMsgOfLivox) {
   for (const auto encoding : {kCdr, MessageEncoding::kCdrBigEndian, MessageEncoding::kRos1}) {
     const std::string message = livox_message(kRos2Start, encoding);
-    const TimedCloud cloud = parse_cloud(message, "f", {kLivoxCustomMsg, encoding});
+    const TimedCloud cloud = parse_cloud(message, "f", {kLivoxMessages[0], encoding});
     ASSERT_EQ(cloud.points.size(), 3U);
     EXPECT_EQ(std::memcmp(cloud.points.data(), kRos2Points.data(), sizeof(Point) * 3), 0);
     EXPECT_THAT(cloud.times_ns, ElementsAre(0, 50'000'000, 100'000'000));
     for (std::size_t bytes = 0; bytes + 2 < message.size(); ++bytes) {
-      EXPECT_THROW(parse_cloud(message.substr(0, bytes), "f", {kLivoxCustomMsg, encoding}),
+      EXPECT_THROW(parse_cloud(message.substr(0, bytes), "f", {kLivoxMessages[0], encoding}),
                    DataError)
           << bytes;
     }
   }
   McapBytes bag = good_mcap();
-  bag.channels[0].type = "livox_ros_driver2/msg/CustomMsg";
   for (auto& chunk : bag.chunks) {
     if (chunk.size() > 1) chunk[1].message = livox_message(chunk[1].recorded_ns, kCdr);
   }
-  expect_good(BagSequence("s", write(bag.str()), {.deskew = Deskew::kNone}));
+  for (const char* package : {"livox_ros_driver", "livox_interfaces", "livox_ros_driver2"}) {
+    bag.channels[0].type = package + std::string("/msg/CustomMsg");
+    expect_good(BagSequence("s", write(bag.str()), {.deskew = Deskew::kNone}));
+  }
   const BagSequence moved("s", write(bag.str()), {});
   EXPECT_FLOAT_EQ(moved.read(0).points[2].x, 6.0F);  // a metre further on after 0.1 s
 }
