@@ -13,9 +13,12 @@
 #include "eval/protocols/metrics.hpp"
 #include "eval/protocols/protocol.hpp"
 #include "eval/report/label_products.hpp"
+#include "eval/report/score_curve.hpp"
 #include "eval/result/result.hpp"
+#include "eval/result/result_file.hpp"
 #include "eval/result/settings_json.hpp"
 #include "eval/result/tell.hpp"
+#include "eval/tables/curve_report.hpp"
 #include "eval/tables/score_report.hpp"
 
 namespace mosbench {
@@ -71,8 +74,20 @@ std::string method_line(const RunPlan& plan) {
       describe_settings(RecordedSettings(settings.method_settings), settings.method->name));
 }
 
+/// Of a run that kept scores of points with truth.
+std::optional<ScoreCurve> curve_of(const RunPlan& plan,
+                                   const std::vector<SequenceOutcome>& outcomes) {
+  if (!plan.settings.point_files().scores || !has_truth(outcomes)) return std::nullopt;
+  std::vector<Result> results;
+  for (const SequenceOutcome& outcome : outcomes) {
+    results.push_back(read_result(outcome.folder / "result.json"));
+  }
+  return curve_of_results(results, std::nullopt);
+}
+
 /// How it was run, the table, the remarks on each sequence.
-Sheet run_sheet(const RunPlan& plan, const std::vector<SequenceOutcome>& outcomes) {
+Sheet run_sheet(const RunPlan& plan, const std::vector<SequenceOutcome>& outcomes,
+                const std::optional<ScoreCurve>& curve) {
   const bool scored = has_truth(outcomes);
   Sheet sheet = score_sheet({plan.settings.protocol, plan.settings.range}, plan.dataset.splits,
                             scored ? rows_of(plan, outcomes) : std::vector<SummaryRow>());
@@ -80,6 +95,7 @@ Sheet run_sheet(const RunPlan& plan, const std::vector<SequenceOutcome>& outcome
                                                      plan.dataset.root.string()),
                                          method_line(plan)});
   if (!scored) add_moving_points(outcomes, sheet);
+  if (curve) sheet.notes = curve_lines(*curve);
   for (const auto& [result, folder, reused] : outcomes) {
     for (const std::string& remark : result.remarks) {
       sheet.notes.push_back(fmt::format("{}: {}", result.sequence.text(), remark));
@@ -91,7 +107,8 @@ Sheet run_sheet(const RunPlan& plan, const std::vector<SequenceOutcome>& outcome
 
 /// The same as one JSON object.
 nlohmann::ordered_json run_report_json(const RunPlan& plan,
-                                       const std::vector<SequenceOutcome>& outcomes) {
+                                       const std::vector<SequenceOutcome>& outcomes,
+                                       const std::optional<ScoreCurve>& curve) {
   nlohmann::ordered_json json = {{"dataset", std::string(to_string(plan.dataset.kind))},
                                  {"method", std::string(plan.settings.method->name)},
                                  {"preset", plan.preset}};
@@ -108,6 +125,7 @@ nlohmann::ordered_json run_report_json(const RunPlan& plan,
                                  {"reused", outcomes[i].reused},
                                  {"remarks", outcomes[i].result.remarks}});
   }
+  if (curve) json["confidences"] = curve_summary_json(*curve);
   return json;
 }
 
@@ -116,6 +134,7 @@ struct MethodRun {
   const RunPlan* plan;
   std::unique_ptr<RunExecution> execution;
   std::optional<Failure> failure;  ///< nothing is done after it
+  std::optional<ScoreCurve> curve{};
 };
 
 /// Returns the settings of one method: those for all, and "underwood.references=3" for itself.
@@ -197,7 +216,7 @@ std::vector<Sheet> sheets_of(const std::vector<MethodRun>& runs) {
       failures.push_back(fmt::format("method {} failed: {}", run.plan->settings.method->name,
                                      run.failure->message));
     } else {
-      sheets.push_back(run_sheet(*run.plan, run.execution->outcomes()));
+      sheets.push_back(run_sheet(*run.plan, run.execution->outcomes(), run.curve));
     }
   }
   if (!failures.empty()) sheets.push_back({.notes = std::move(failures)});
@@ -205,7 +224,7 @@ std::vector<Sheet> sheets_of(const std::vector<MethodRun>& runs) {
 }
 
 nlohmann::ordered_json json_of(const MethodRun& run) {
-  if (!run.failure) return run_report_json(*run.plan, run.execution->outcomes());
+  if (!run.failure) return run_report_json(*run.plan, run.execution->outcomes(), run.curve);
   return {{"method", std::string(run.plan->settings.method->name)},
           {"out", run.plan->out.string()},
           {"failure", run.failure->message}};
@@ -225,6 +244,7 @@ Answer run_methods(const JobWords& words, const RunPlace& place,
       for (const SequenceOutcome& done : run.execution->outcomes()) {
         write_products(done.folder, products);
       }
+      run.curve = curve_of(*run.plan, run.execution->outcomes());
     });
   }
   nlohmann::ordered_json methods = nlohmann::ordered_json::array();
@@ -247,9 +267,10 @@ Answer run_data(const JobWords& words, const RunPlace& place,
   const RunPlan plan = plan_run(job_of(words), place);
   const std::vector<SequenceOutcome> outcomes = execute_run(plan);
   for (const SequenceOutcome& outcome : outcomes) write_products(outcome.folder, products);
+  const std::optional<ScoreCurve> curve = curve_of(plan, outcomes);
   return {.standing = standing_of(plan.dataset),
-          .sheets = {run_sheet(plan, outcomes)},
-          .json = json_text(run_report_json(plan, outcomes))};
+          .sheets = {run_sheet(plan, outcomes, curve)},
+          .json = json_text(run_report_json(plan, outcomes, curve))};
 }
 
 }  // namespace mosbench

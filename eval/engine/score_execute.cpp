@@ -77,12 +77,20 @@ std::vector<std::size_t> wanted_scans(const Dataset& dataset, std::size_t positi
   return wanted;
 }
 
-/// One row per rule. Points are read where a rule looks at ranges.
-std::vector<ScanRow> score_one(const Sequence& sequence, std::size_t k, const ScoreTask& task,
-                               const Predictions& labels, bool with_points) {
+/// Points are read where a rule looks at ranges.
+Frame frame_to_score(const Sequence& sequence, std::size_t k, const ScoreTask& task) {
+  const bool with_points = std::ranges::any_of(task.rules, [](const ScoreRule& rule) {
+    return rule.protocol->range_rule != RangeRule::kNone;
+  });
   Frame frame;
   if (with_points) sequence.read(k, frame);
   if (!with_points) frame.truth = sequence.read_truth(k);
+  return frame;
+}
+
+/// One row per rule.
+std::vector<ScanRow> score_one(const Frame& frame, const std::string& stem, std::size_t k,
+                               const ScoreTask& task, const Predictions& labels) {
   const std::optional<Confusion> counted = labels.counts(k);
   const std::vector<std::uint32_t> predicted =
       counted ? std::vector<std::uint32_t>{} : labels.read(k);
@@ -90,7 +98,7 @@ std::vector<ScanRow> score_one(const Sequence& sequence, std::size_t k, const Sc
   std::vector<ScanRow> rows;
   for (const ScoreRule& rule : task.rules) {
     ScanRow& row = rows.emplace_back();
-    row.stem = sequence.stem(k);
+    row.stem = stem;
     row.points = frame.truth->size();
     row.truth_hash = hash;
     row.counts =
@@ -117,18 +125,22 @@ void check_rules_of_counts(const OpenedPredictions& opened, const ScoreTask& tas
 
 void score_scans(const Sequence& sequence, const std::vector<std::size_t>& scans,
                  const ScoreTask& task, ThreadPool& pool, SequenceScores& scores) {
-  const bool with_points = std::ranges::any_of(task.rules, [](const ScoreRule& rule) {
-    return rule.protocol->range_rule != RangeRule::kNone;
-  });
   for (auto& rows : scores.by_rule) rows.resize(scans.size());
   Progress progress("score " + sequence.name(), scans.size());
   std::mutex progress_mutex;
   pool.for_ranges(scans.size(), 1, [&](std::size_t begin, std::size_t end, unsigned) {
     for (std::size_t i = begin; i < end; ++i) {
-      std::vector<ScanRow> rows =
-          score_one(sequence, scans[i], task, *scores.opened->labels, with_points);
-      for (std::size_t r = 0; r < rows.size(); ++r) scores.by_rule[r][i] = std::move(rows[r]);
+      const Predictions& labels = *scores.opened->labels;
+      const Frame frame = frame_to_score(sequence, scans[i], task);
+      std::vector<ScanRow> rows = score_one(frame, sequence.stem(scans[i]), scans[i], task, labels);
+      const std::vector<double> confidences = labels.confidences(scans[i]);
       const std::lock_guard lock(progress_mutex);
+      if (!confidences.empty()) {
+        if (!scores.confidences) scores.confidences.emplace();
+        scores.confidences->add({*frame.truth, confidences, frame.points, *rows.front().counts},
+                                task.rules.front());
+      }
+      for (std::size_t r = 0; r < rows.size(); ++r) scores.by_rule[r][i] = std::move(rows[r]);
       progress.advance();
     }
   });

@@ -9,6 +9,7 @@
 #include "datasets/layouts/dataset.hpp"
 #include "datasets/sequence/sequence.hpp"
 #include "eval/predictions/predictions.hpp"
+#include "eval/protocols/score_counts.hpp"
 #include "eval/result/result.hpp"
 
 namespace mosbench {
@@ -34,6 +35,7 @@ struct SequenceScores {
   std::size_t position;                       ///< in the data set
   std::optional<OpenedPredictions> opened;    ///< nothing when no scan was wanted
   std::vector<std::vector<ScanRow>> by_rule;  ///< as many as rules, each the same scans
+  std::optional<ScoreCounts> confidences{};   ///< by the first rule, where the predictions have any
 };
 
 /// Scores every wanted scan of the data set by every rule, each scan read once, several at a time;

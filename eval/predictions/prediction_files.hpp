@@ -6,6 +6,7 @@
 #include <memory>
 #include <mosbench/scan.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -93,11 +94,13 @@ std::vector<DynabloxCounts> parse_dynablox_counts(std::string_view text, Dynablo
 std::vector<std::uint64_t> parse_dynablox_stamps_ns(std::string_view text,
                                                     const std::filesystem::path& file);
 
-/// Reads confidences 0..1 per point from a NumPy .npy file (float32, float64 or bool, of any shape
-/// with as many numbers as the scan has points): above 0.5 a point is moving, as in 4DMOS's
-/// confidences_to_labels.py. Throws DataError.
-std::vector<std::uint32_t> read_npy_labels(const std::filesystem::path& file,
-                                           std::size_t point_count);
+/// Reads confidences 0..1 per point from a NumPy .npy file (float16, float32, float64 or bool, of
+/// any shape with as many numbers as the scan has points). Throws DataError.
+std::vector<double> read_npy_confidences(const std::filesystem::path& file,
+                                         std::size_t point_count);
+
+/// Above 0.5 a point is moving, as in 4DMOS's confidences_to_labels.py.
+std::vector<std::uint32_t> labels_of_confidences(std::span<const double> confidences);
 
 /// Opens predictions in a file per scan, paired by stem or by position. Files without scan and
 /// label files of the wrong size go to `errors`, what was recognised to `remarks`.

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cstring>
@@ -78,7 +79,7 @@ Row row_of(const TextLine& line, const fs::path& file) {
 constexpr std::string_view kNpyMagic = "\x93NUMPY";
 
 [[noreturn]] void refuse_npy(const fs::path& file, const std::string& wrong) {
-  throw DataError(file, wrong, "a .npy array of float32, float64 or bool confidences");
+  throw DataError(file, wrong, "a .npy array of float16, float32, float64 or bool confidences");
 }
 
 /// A .npy file: its header, a Python dictionary as text, and what follows it.
@@ -110,24 +111,25 @@ std::string_view type_of(std::string_view header, const fs::path& file) {
 }
 
 template <typename Number>
-std::vector<std::uint32_t> threshold(std::string_view numbers, std::size_t point_count,
-                                     const fs::path& file) {
+std::vector<double> confidences_in(std::string_view numbers, std::size_t point_count,
+                                   const fs::path& file) {
   if (numbers.size() != point_count * sizeof(Number)) {
     throw DataError(file, fmt::format("holds {} numbers", numbers.size() / sizeof(Number)),
                     fmt::format("one for each of the {} points of its scan", point_count));
   }
-  std::vector<std::uint32_t> labels;
-  labels.reserve(point_count);
+  std::vector<double> confidences;
+  confidences.reserve(point_count);
   for (std::size_t i = 0; i < point_count; ++i) {
     Number number;
     std::memcpy(&number, numbers.data() + i * sizeof(Number), sizeof(Number));
-    if (!(number >= Number{0} && number <= Number{1})) {
-      throw DataError(file, fmt::format("holds {} at point {}", number, i),
+    const auto confidence = static_cast<double>(number);
+    if (!(confidence >= 0.0 && confidence <= 1.0)) {
+      throw DataError(file, fmt::format("holds {} at point {}", confidence, i),
                       "confidences from 0 to 1");
     }
-    labels.push_back(static_cast<double>(number) > 0.5 ? kMovingLabel : kStaticLabel);
+    confidences.push_back(confidence);
   }
-  return labels;
+  return confidences;
 }
 
 }  // namespace
@@ -232,14 +234,24 @@ std::vector<std::uint64_t> parse_dynablox_stamps_ns(std::string_view text, const
   return stamps_ns;
 }
 
-std::vector<std::uint32_t> read_npy_labels(const fs::path& file, std::size_t point_count) {
+std::vector<double> read_npy_confidences(const fs::path& file, std::size_t point_count) {
   const std::string bytes = read_file(file);
   const NpyParts parts = split_npy(bytes, file);
   const std::string_view type = type_of(parts.header, file);
-  if (type == "<f4") return threshold<float>(parts.numbers, point_count, file);
-  if (type == "<f8") return threshold<double>(parts.numbers, point_count, file);
-  if (type == "|b1") return threshold<unsigned char>(parts.numbers, point_count, file);
+  if (type == "<f2") return confidences_in<Eigen::half>(parts.numbers, point_count, file);
+  if (type == "<f4") return confidences_in<float>(parts.numbers, point_count, file);
+  if (type == "<f8") return confidences_in<double>(parts.numbers, point_count, file);
+  if (type == "|b1") return confidences_in<unsigned char>(parts.numbers, point_count, file);
   refuse_npy(file, fmt::format("holds numbers of type {}", type));
+}
+
+std::vector<std::uint32_t> labels_of_confidences(std::span<const double> confidences) {
+  std::vector<std::uint32_t> labels;
+  labels.reserve(confidences.size());
+  for (const double confidence : confidences) {
+    labels.push_back(confidence > 0.5 ? kMovingLabel : kStaticLabel);
+  }
+  return labels;
 }
 
 }  // namespace mosbench

@@ -93,6 +93,8 @@ class Predictions {
   /// Reads raw labels, one per point of the scan. Safe to call from several threads. Throws
   /// DataError.
   virtual std::vector<std::uint32_t> read(std::size_t scan_index) const = 0;
+  /// Reads how sure it is that each point moves; none for formats of labels. Throws DataError.
+  virtual std::vector<double> confidences(std::size_t) const { return {}; }
   /// Returns the scan's counts for formats that hold counts instead of labels.
   virtual std::optional<Confusion> counts(std::size_t) const { return std::nullopt; }
   /// Returns the ids in the files of the wanted scans; none for formats without ids.

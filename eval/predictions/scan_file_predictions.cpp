@@ -146,6 +146,11 @@ class ScanFiles : public Predictions {
     return labels;
   }
 
+  std::vector<double> confidences(std::size_t scan_index) const override {
+    if (format_ != Format::kNpy) return {};
+    return read_npy_confidences(files_.at(scan_index), sequence_.point_count(scan_index));
+  }
+
   std::span<const PredictedId> ids() const override { return ids_; }
   const Files& files() const { return files_; }
   void set_ids(std::vector<PredictedId> ids) { ids_ = std::move(ids); }
@@ -163,7 +168,7 @@ class ScanFiles : public Predictions {
       case Format::kPcd:
         return read_pcd_labels(file, points);
       case Format::kNpy:
-        return read_npy_labels(file, points);
+        return labels_of_confidences(read_npy_confidences(file, points));
       case Format::kMaskedLabel:
         return spread_over_scan(read_any_labels(file), sequence_.read(scan_index).points, mask_,
                                 file);

@@ -254,12 +254,11 @@ ordered_json curves_of(const std::vector<ReportRun>& runs, const std::vector<Res
     if (!has_curve(run, sources)) continue;
     ScoreCounts counts;
     for (const std::size_t i : run.results) add_counted_scans(results[i], *sources[i], counts);
-    try {
-      ordered_json curve = {{"run", run.name}, {"results", run.results}};
-      curve.update(drawn_curve_json(counts.curve()));
-      curves.push_back(std::move(curve));
-    } catch (const std::domain_error&) {  // no point moves
-    }
+    const std::optional<ScoreCurve> found = counts.curve();
+    if (!found) continue;  // no point moves
+    ordered_json curve = {{"run", run.name}, {"results", run.results}};
+    curve.update(drawn_curve_json(*found));
+    curves.push_back(std::move(curve));
   }
   return curves;
 }

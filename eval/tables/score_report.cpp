@@ -14,6 +14,7 @@
 #include "eval/result/result_file.hpp"
 #include "eval/result/result_json.hpp"
 #include "eval/result/version.hpp"
+#include "eval/tables/curve_report.hpp"
 
 namespace mosbench {
 namespace {
@@ -171,6 +172,15 @@ std::vector<ProtocolRow> protocol_rows(const std::vector<ScoreRule>& rules,
   return rows;
 }
 
+/// Of the confidences of all sequences, where the predictions have some and points move.
+std::optional<ScoreCurve> curve_of(const std::vector<SequenceScores>& scores) {
+  ScoreCounts counts;
+  for (const SequenceScores& sequence : scores) {
+    if (sequence.confidences) counts += *sequence.confidences;
+  }
+  return counts.curve();
+}
+
 }  // namespace
 
 std::vector<std::string> score_remarks(const Dataset& dataset,
@@ -230,6 +240,11 @@ Answer score_answer(const Dataset& dataset, const ScoreTask& task,
       sheet.notes.push_back(dataset.sequences[sequence.position]->name() + ": " + remark);
     }
   }
+  const std::optional<ScoreCurve> curve = curve_of(scores);
+  if (curve) {
+    const std::vector<std::string> lines = curve_lines(*curve);
+    sheet.notes.insert(sheet.notes.begin(), lines.begin(), lines.end());
+  }
   Standing standing = standing_of(dataset, scores);
   if (const auto split = other_split(dataset, task)) {
     standing.doubts.push_back(split_warning(*split));
@@ -244,6 +259,7 @@ Answer score_answer(const Dataset& dataset, const ScoreTask& task,
     json["predictions"][dataset.sequences[sequence.position]->name()] =
         to_json(scored_predictions(*sequence.opened));
   }
+  if (curve) json["confidences"] = curve_summary_json(*curve);
   json["remarks"] = sheet.notes;
   for (const std::string& doubt : standing.doubts) json["remarks"].push_back(doubt);
   return {.standing = std::move(standing), .sheets = {std::move(sheet)}, .json = json_text(json)};
