@@ -31,6 +31,7 @@ namespace {
 struct CompareFlags {
   std::filesystem::path baseline, newer;
   double max_drop_points = 0.5;
+  std::optional<double> max_added_false_positives;
   bool statistical = false, even_if = false, quiet = false, accept = false;
   std::vector<std::string> by;
   std::optional<std::filesystem::path> data;
@@ -77,8 +78,10 @@ Answer compare(const CompareFlags& options) {
   }
   check_shares_scans(paired, options);
   const GateResult result =
-      judge(paired, *baseline.front().protocol, options.max_drop_points / 100.0,
-            options.statistical ? GateRule::kStatistical : GateRule::kMaxDrop);
+      judge(paired, *baseline.front().protocol,
+            {options.max_drop_points / 100.0,
+             options.statistical ? GateRule::kStatistical : GateRule::kMaxDrop,
+             options.max_added_false_positives});
   Answer answer = answer_of(baseline, newer, paired, result);
   if (!options.summary.empty()) {
     write_output(options.summary, render(answer, Format::kMarkdown));
@@ -261,6 +264,10 @@ CommandRun add_compare(CLI::App& command) {
   add(command, "--max-drop", options->max_drop_points, "Percentage points of IoU that may be lost")
       ->check(CLI::Range(0.0, 100.0))
       ->capture_default_str();
+  add(command, "--max-added-fp", options->max_added_false_positives,
+      "False positives per scan that may be added (default: 10 where nothing moves, any number "
+      "elsewhere)")
+      ->check(CLI::NonNegativeNumber);
   command.add_flag("--statistical", options->statistical,
                    "Fail only when the drop also exceeds what its 95 % interval leaves open");
   command.add_flag("--even-if", options->even_if, "Also compare results of different kinds");

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <new>
+#include <set>
 
 #include "core/base/stage_clock.hpp"
 #include "core/base/thread_pool.hpp"
@@ -313,6 +314,16 @@ std::optional<double> CostModel::seconds(const StudyCell& cell) const {
 
 std::optional<double> CostModel::memory_mib(const StudyCell& cell) const {
   return number_in(costs, cost_name(cell), "memory_mib");
+}
+
+std::string default_title(const StudyPlan& plan) {
+  std::set<std::string> presets;
+  for (const PlannedCell& planned : plan.cells) {
+    const StudyCell& cell = planned.cell;
+    if (cell.axis == nullptr) presets.insert(std::string(preset_of(cell.job, cell.kind).name));
+  }
+  return fmt::format("default of preset{} {}", presets.size() == 1 ? "" : "s",
+                     fmt::join(presets, ", "));
 }
 
 }  // namespace mosbench

@@ -62,6 +62,9 @@ struct StudyPlan {
   std::optional<ScoreRule> rule;
 };
 
+/// Returns "default of preset semantickitti": where the settings that no axis changes come from.
+std::string default_title(const StudyPlan& plan);
+
 /// Lists the cells and what is known of them. Data on disk are opened, simulated ones are not made.
 /// With `only` given, of these keys alone. Throws UsageError, also where cells would be scored by
 /// different rules, and DataError; a sequence that cannot be opened is a cell that will fail.

@@ -216,6 +216,11 @@ Summary mean_of_sequences(const Protocol& protocol, std::span<const Summary> seq
   return average;
 }
 
+std::optional<double> false_positives_per_scan(const Summary& summary) {
+  if (summary.scans == 0) return std::nullopt;
+  return static_cast<double>(summary.pooled.fp) / static_cast<double>(summary.scans);
+}
+
 nlohmann::ordered_json counts_json(const Confusion& counts) {
   return {{"tp", counts.tp},
           {"fp", counts.fp},
@@ -239,6 +244,7 @@ nlohmann::ordered_json to_json(const Summary& summary) {
   json["published_iou"] = number(summary.published_iou);
   json["published_text"] = summary.published_text;
   json.update(counts_json(summary.pooled));
+  json["false_positives_per_scan"] = number(false_positives_per_scan(summary));
   json["unknown_ids"] = summary.pooled.unknown_ids;
   json["labelled_scans"] = summary.scans;
   json["undefined_scans"] = summary.undefined_scans;

@@ -121,6 +121,10 @@ struct Summary {
   std::optional<double> operator[](Metric metric) const;
 };
 
+/// Returns the points per scan that are called moving and are not; nullopt without scans. Defined
+/// where the IoU is not, because nothing moves.
+std::optional<double> false_positives_per_scan(const Summary& summary);
+
 /// Summarises one sequence, or all sequences of a split that the protocol pools.
 Summary summarize(const Protocol& protocol, std::span<const Confusion> per_scan);
 

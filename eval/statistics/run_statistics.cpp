@@ -128,24 +128,49 @@ std::optional<double> iou_of(const Protocol& protocol, std::span<const SequenceC
   return iou;
 }
 
+/// Where nothing moves a drop of the IoU cannot tell of false positives.
+constexpr double kFewFalsePositives = 10.0;
+
+Confusion pooled(std::span<const SequenceCounts> sequences) {
+  Confusion all;
+  for (const SequenceCounts& scans : sequences) {
+    for (const Confusion& scan : scans) all += scan;
+  }
+  return all;
+}
+
+void count_false_positives(std::span<const SequenceCounts> first,
+                           std::span<const SequenceCounts> second, const GateLimits& limits,
+                           GateCheck& check) {
+  double scans = 0.0;
+  for (const SequenceCounts& sequence : second) scans += static_cast<double>(sequence.size());
+  const Confusion before = pooled(first), after = pooled(second);
+  check.baseline_false_positives = static_cast<double>(before.fp) / scans;
+  check.new_false_positives = static_cast<double>(after.fp) / scans;
+  check.most_added_false_positives = limits.max_added_false_positives;
+  if (!check.most_added_false_positives && after.tp + after.fn == 0) {
+    check.most_added_false_positives = kFewFalsePositives;
+  }
+}
+
 GateCheck check(std::string name, const Protocol& protocol, std::span<const SequenceCounts> first,
-                std::span<const SequenceCounts> second, Spacing spacing, double max_drop,
-                GateRule rule) {
+                std::span<const SequenceCounts> second, Spacing spacing, const GateLimits& limits) {
   GateCheck check;
   check.name = std::move(name);
   check.baseline = iou_of(protocol, first);
   check.newer = iou_of(protocol, second);
-  check.tolerance = max_drop;
+  check.tolerance = limits.max_drop;
+  count_false_positives(first, second, limits, check);
   if (!check.baseline || !check.newer) {
-    check.passed = !check.baseline;
+    check.iou_passed = !check.baseline;
     return check;
   }
   check.difference = paired_difference(protocol, first, second, spacing)[Metric::kIou];
   const double value = *check.difference.value;
-  if (rule == GateRule::kStatistical && check.difference.interval) {
-    check.tolerance = std::max(max_drop, check.difference.interval->high - value);
+  if (limits.rule == GateRule::kStatistical && check.difference.interval) {
+    check.tolerance = std::max(limits.max_drop, check.difference.interval->high - value);
   }
-  check.passed = value >= -check.tolerance - kRounding;
+  check.iou_passed = value >= -check.tolerance - kRounding;
   return check;
 }
 
@@ -210,21 +235,26 @@ std::string unlike_text(const std::vector<Unlike>& unlike) {
   return text;
 }
 
+bool GateCheck::passed() const {
+  const double added = new_false_positives - baseline_false_positives;
+  return iou_passed &&
+         (!most_added_false_positives || added <= *most_added_false_positives + kRounding);
+}
+
 bool GateResult::passed() const { return std::ranges::all_of(checks, &GateCheck::passed); }
 
-GateResult judge(const PairedRuns& paired, const Protocol& protocol, double max_drop,
-                 GateRule rule) {
-  GateResult result{rule, {}};
+GateResult judge(const PairedRuns& paired, const Protocol& protocol, const GateLimits& limits) {
+  GateResult result{limits.rule, {}};
   std::size_t scan = 0;
   for (std::size_t s = 0; s < paired.first.size(); ++s) {
     if (paired.first[s].empty()) continue;
     result.checks.push_back(check(paired.scans[scan].sequence, protocol, {&paired.first[s], 1},
-                                  {&paired.second[s], 1}, paired.spacing, max_drop, rule));
+                                  {&paired.second[s], 1}, paired.spacing, limits));
     scan += paired.first[s].size();
   }
   if (result.checks.size() > 1) {
     result.checks.push_back(
-        check("all", protocol, paired.first, paired.second, paired.spacing, max_drop, rule));
+        check("all", protocol, paired.first, paired.second, paired.spacing, limits));
   }
   return result;
 }

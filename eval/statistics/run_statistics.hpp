@@ -56,7 +56,11 @@ struct GateCheck {
   std::optional<double> baseline, newer;  ///< IoU, fractions
   Difference difference;                  ///< newer - baseline
   double tolerance = 0.0;                 ///< largest drop that passes, fraction
-  bool passed = false;
+  /// Points called moving that are not, per scan.
+  double baseline_false_positives = 0.0, new_false_positives = 0.0;
+  std::optional<double> most_added_false_positives{};  ///< per scan; nothing: any number passes
+  bool iou_passed = false;
+  bool passed() const;
 };
 
 struct GateResult {
@@ -65,11 +69,20 @@ struct GateResult {
   bool passed() const;
 };
 
+/// What a run may lose.
+struct GateLimits {
+  double max_drop = 0.005;  ///< of the IoU, fraction
+  GateRule rule = GateRule::kMaxDrop;
+  /// False positives per scan that may be added. By default 10 where nothing moves, so that no IoU
+  /// tells, and any number elsewhere.
+  std::optional<double> max_added_false_positives{};
+};
+
 /// Checks that the IoU of the second run is not lower than that of the first by more than
 /// `max_drop` (fraction) or, if larger under GateRule::kStatistical, the half-width of the paired
-/// 95 % interval. A run whose IoU became undefined fails; one whose IoU was undefined passes.
-GateResult judge(const PairedRuns& paired, const Protocol& protocol, double max_drop,
-                 GateRule rule = GateRule::kMaxDrop);
+/// 95 % interval, and that it does not add too many false positives. A run whose IoU became
+/// undefined fails; one whose IoU was undefined is judged by the false positives alone.
+GateResult judge(const PairedRuns& paired, const Protocol& protocol, const GateLimits& limits);
 
 /// How good a run is, and how fast.
 struct IouAndTime {

@@ -194,6 +194,17 @@ Answer difference_answer(const ResultSet& first, const ResultSet& second,
           .json = json_text(json)};
 }
 
+namespace {
+
+/// "room: 1503.6 false positives per scan were added, at most 10 may be".
+std::string added_text(const GateCheck& check) {
+  return fmt::format("{}: {:.1f} false positives per scan were added, at most {:g} may be",
+                     check.name, check.new_false_positives - check.baseline_false_positives,
+                     *check.most_added_false_positives);
+}
+
+}  // namespace
+
 Sheet gate_sheet(const GateResult& result) {
   Sheet sheet{
       .title = result.passed() ? "MOS gate: pass" : "MOS gate: REGRESSION",
@@ -203,6 +214,8 @@ Sheet gate_sheet(const GateResult& result) {
                   {"difference", Unit::kPoints},
                   {"tolerance", Unit::kPercent, 2},
                   {"p", Unit::kNumber, 4},
+                  {"baseline FP/scan", Unit::kNumber, 1},
+                  {"new FP/scan", Unit::kNumber, 1},
                   {"verdict", Unit::kText}},
       .notes = {result.rule == GateRule::kStatistical
                     ? "95 %: interval of the difference; a drop within its half-width passes"
@@ -211,8 +224,9 @@ Sheet gate_sheet(const GateResult& result) {
   for (const GateCheck& check : result.checks) {
     sheet.rows.push_back({check.name, or_undefined(check.baseline), or_undefined(check.newer),
                           spread_of(check.difference), check.tolerance,
-                          or_missing(check.difference.p_value),
-                          check.passed ? "pass" : "REGRESSION"});
+                          or_missing(check.difference.p_value), check.baseline_false_positives,
+                          check.new_false_positives, check.passed() ? "pass" : "REGRESSION"});
+    if (!check.passed() && check.iou_passed) sheet.notes.push_back(added_text(check));
     const std::string& why = check.difference.no_interval;
     if (!why.empty()) sheet.notes.push_back(fmt::format("no interval for {}: {}", check.name, why));
   }
@@ -223,7 +237,11 @@ Sheet gate_sheet(const GateResult& result) {
 std::vector<Annotation> gate_annotations(const GateResult& result) {
   std::vector<Annotation> annotations;
   for (const GateCheck& check : result.checks) {
-    if (check.passed) continue;
+    if (check.passed()) continue;
+    if (check.iou_passed) {
+      annotations.push_back({fmt::format("False positives of {}", check.name), added_text(check)});
+      continue;
+    }
     const std::string now =
         check.newer ? fmt::format("{} % now: {} points, tolerance {}", percent_text(check.newer),
                                   percent_text(check.difference.value, "{:+.2f}"),
@@ -248,7 +266,10 @@ ordered_json to_json(const GateResult& result) {
     one.update(interval_json(spread_of(check.difference)));
     one["p_value"] = json_or_null(check.difference.p_value);
     one["tolerance"] = check.tolerance;
-    one["passed"] = check.passed;
+    one["baseline_false_positives_per_scan"] = check.baseline_false_positives;
+    one["new_false_positives_per_scan"] = check.new_false_positives;
+    one["most_added_false_positives_per_scan"] = json_or_null(check.most_added_false_positives);
+    one["passed"] = check.passed();
   }
   return json;
 }

@@ -7,6 +7,7 @@
 #include <map>
 #include <ranges>
 #include <set>
+#include <string_view>
 #include <utility>
 
 #include "eval/engine/study_plan.hpp"
@@ -171,11 +172,11 @@ void mark_front(std::vector<StudyRow>& rows) {
 }
 
 StudyCurve curve_of(const DoneCells& cells, const StudyAxis& axis,
-                    const std::vector<StudyRow>& rows) {
+                    const std::vector<StudyRow>& rows, std::string_view unchanged) {
   StudyCurve curve;
   curve.axis = axis.name;
   if (axis.kind != nullptr) curve.unit = axis.kind->unit;
-  curve.values = {axis.kind != nullptr ? "none" : "default"};
+  curve.values = {axis.kind != nullptr ? "none" : std::string(unchanged)};
   curve.values.insert(curve.values.end(), axis.values.begin(), axis.values.end());
   for (const StudyRow& row : rows) {
     std::vector<StudyMetrics>& line = curve.metrics.emplace_back();
@@ -382,7 +383,7 @@ StudyTable gather(const StudyPlan& plan) {
   compare_with_best(cells, table.rows);
   for (const StudyAxis& axis : plan.study->axes) {
     if (axis.sampled.empty()) {
-      table.curves.push_back(curve_of(cells, axis, table.rows));
+      table.curves.push_back(curve_of(cells, axis, table.rows, default_title(plan)));
     } else {
       table.effects = effects_of(plan, cells, axis);
     }

@@ -44,7 +44,7 @@ struct StudyRow {
 /// Metrics of every row by the strength of one disturbance, or by the value of one setting.
 struct StudyCurve {
   std::string axis, unit;
-  std::vector<std::string> values;                 ///< first "none", of a setting "default"
+  std::vector<std::string> values;  ///< first "none", of a setting "default of preset best"
   std::vector<std::vector<StudyMetrics>> metrics;  ///< by row, by value
 };
 

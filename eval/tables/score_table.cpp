@@ -68,11 +68,11 @@ std::vector<Cell> cells_of(const SummaryRow& row, bool with_ms) {
                              std::uint64_t{summary.scans}};
   if (summary.scans == 0) {
     cells.emplace_back("no truth");
-    cells.resize(cells.size() + kMetrics.size() + 3, "");
+    cells.resize(cells.size() + kMetrics.size() + 4, "");
   } else {
     for (const double metric : summary.metrics) cells.emplace_back(metric);
-    cells.insert(cells.end(),
-                 {summary.pooled.tp, summary.pooled.fp, summary.pooled.fn, summary.published_text});
+    cells.insert(cells.end(), {summary.pooled.tp, summary.pooled.fp, summary.pooled.fn,
+                               false_positives_per_scan(summary).value(), summary.published_text});
   }
   if (with_ms) cells.push_back(or_missing(row.method_ms_per_scan));
   return cells;
@@ -118,7 +118,9 @@ Sheet score_sheet(const ScoreRule& rule, const std::vector<Split>& splits,
   for (const MetricRow& metric : kMetrics) {
     sheet.columns.push_back({std::string(metric.title), Unit::kPercent});
   }
-  sheet.columns.insert(sheet.columns.end(), {{"TP"}, {"FP"}, {"FN"}, {"benchmark's rounding"}});
+  sheet.columns.insert(
+      sheet.columns.end(),
+      {{"TP"}, {"FP"}, {"FN"}, {"FP/scan", Unit::kNumber, 1}, {"benchmark's rounding"}});
   const bool with_ms = std::ranges::any_of(
       rows, [](const SummaryRow& row) { return row.method_ms_per_scan.has_value(); });
   if (with_ms) sheet.columns.push_back({"ms/scan", Unit::kNumber, 1});

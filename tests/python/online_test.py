@@ -1,5 +1,6 @@
 """Methods and odometry, scan by scan."""
 
+import pickle
 import threading
 
 import numpy as np
@@ -194,3 +195,17 @@ def test_every_method_labels(wall):
         results = [*mos.push(wall, IDENTITY), *mos.push(wall, IDENTITY), *mos.finish()]
         assert [len(result.labels) for result in results] == [400, 400], method
         assert mos.memory_bytes is None or mos.memory_bytes > 0
+
+
+def test_a_method_says_its_preset_its_range_and_what_differs_from_the_defaults():
+    plain = mosbench.MOS()
+    assert plain.range_m == (0.5, 20.0)
+    assert repr(plain) == "MOS('hmm-mos', no preset: the method's defaults, judges 0.5 to 20 m)"
+    config = mosbench.Config.preset("semantickitti").replace(delay_scans=3)
+    mos = mosbench.MOS(config)
+    assert mos.config.preset_name == "semantickitti" and "preset 'semantickitti'" in repr(mos)
+    assert "judges 1.5 to 50 m" in repr(mos) and "delay_scans=3" in repr(mos)
+    changed = config.changed()
+    assert changed == {name: value for name, value in config.items() if mosbench.Config()[name] != value}
+    assert all(f"{name}={value!r}" in repr(mos) for name, value in changed.items())
+    assert pickle.loads(pickle.dumps(config)).preset_name == "semantickitti"

@@ -33,7 +33,7 @@ class Config(collections.abc.Mapping):
 
     def __init__(self, method: str = "hmm-mos", **settings: SettingValue):
         """Takes the method's defaults with these settings over them."""
-        self._method = method
+        self._method, self._preset = method, None
         self._settings = plain_errors(_mosbench.method_settings, method, None)
         self._set(settings)
 
@@ -47,7 +47,7 @@ class Config(collections.abc.Mapping):
         `Config.preset("semantickitti", method="hmm-mos-plus")`, with the preset of your data set.
         """
         method = plain_errors(_mosbench.method_name, method, name)
-        return cls._of(method, plain_errors(_mosbench.method_settings, method, name))
+        return cls._of(method, plain_errors(_mosbench.method_settings, method, name), name)
 
     @classmethod
     def load(cls, file: Union[str, os.PathLike], method: str = "hmm-mos") -> "Config":
@@ -60,14 +60,14 @@ class Config(collections.abc.Mapping):
         return cls._of(method, settings)
 
     @classmethod
-    def _of(cls, method: str, settings: Any) -> "Config":
+    def _of(cls, method: str, settings: Any, preset: Optional[str] = None) -> "Config":
         config = cls.__new__(cls)
-        config._method, config._settings = method, settings
+        config._method, config._settings, config._preset = method, settings, preset
         return config
 
     def replace(self, **settings: SettingValue) -> "Config":
         """Returns a copy with other values of some settings."""
-        replaced = self._of(self._method, copy.copy(self._settings))
+        replaced = self._of(self._method, copy.copy(self._settings), self._preset)
         replaced._set(settings)
         return replaced
 
@@ -79,6 +79,16 @@ class Config(collections.abc.Mapping):
     def method(self) -> str:
         """Name of the method."""
         return self._method
+
+    @property
+    def preset_name(self) -> Optional[str]:
+        """Name of the preset that it was made from, None for the method's defaults."""
+        return self._preset
+
+    def changed(self) -> dict[str, SettingValue]:
+        """Returns the settings that differ from the method's defaults, which for "hmm-mos" are the paper's."""
+        defaults = plain_errors(_mosbench.method_settings, self._method, None).to_dict()
+        return {name: value for name, value in self.to_dict().items() if defaults.get(name) != value}
 
     def to_dict(self) -> dict[str, SettingValue]:
         """Returns every setting that has a value of its own, in the method's order."""
@@ -98,7 +108,7 @@ class Config(collections.abc.Mapping):
         return len(self.to_dict())
 
     def __reduce__(self) -> tuple:
-        return _config_of, (self._method, self.to_dict())
+        return _config_of, (self._method, self.to_dict(), self._preset)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Config):
@@ -110,8 +120,10 @@ class Config(collections.abc.Mapping):
         return f"Config({self._method!r}, {values})"
 
 
-def _config_of(method: str, settings: dict[str, SettingValue]) -> Config:
-    return Config(method, **settings)
+def _config_of(method: str, settings: dict[str, SettingValue], preset: Optional[str]) -> Config:
+    config = Config(method, **settings)
+    config._preset = preset
+    return config
 
 
 def refuse_no_settings(config: Any) -> None:
@@ -161,7 +173,8 @@ class MOS:
         """Takes a config, or settings by name over the method's defaults ("hmm-mos" when none is named).
 
         `MOS()` is `MOS(Config())`, the defaults of "hmm-mos", and no preset: `run` without one takes that of
-        the data set instead. Presets: `MOS(Config.preset(name))`.
+        the data set instead. Presets: `MOS(Config.preset(name))`. They judge points to 20 m; `repr` says preset, range and all settings
+        that differ from the method's defaults.
         A config is of one method: `Config.preset(name, method=...)` and `Config(method, ...)` make one.
         `scan_count` is the length of the sequence where it is known: the end of a delayed run may be
         labelled in another way.
@@ -180,6 +193,21 @@ class MOS:
     def config(self) -> Config:
         """The settings that it runs with."""
         return self._config
+
+    @property
+    def range_m(self) -> Optional[tuple[float, float]]:
+        """From and to which range points are judged; what lies outside is static. None for methods without range."""
+        settings = self._config.to_dict()
+        limits = tuple(settings.get(name) for name in ("min_range_m", "max_range_m"))
+        return None if None in limits else limits
+
+    def __repr__(self) -> str:
+        preset = self._config.preset_name
+        parts = [repr(self._config.method), f"preset {preset!r}" if preset else "no preset: the method's defaults"]
+        if self.range_m is not None:
+            parts.append("judges {:g} to {:g} m".format(*self.range_m))
+        parts += [f"{name}={value!r}" for name, value in self._config.changed().items()]
+        return f"MOS({', '.join(parts)})"
 
     def push(self, points: Any, pose: Any) -> list[Labels]:
         """Takes a scan in and returns the scans whose labels became final.

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,7 +27,7 @@ struct DropInFewScans : testing::Test {
     }
   }
   GateResult judged(GateRule rule) const {
-    return judge({names_, {first_}, {second_}, {}}, protocol_named("sipailou"), 0.005, rule);
+    return judge({names_, {first_}, {second_}, {}}, protocol_named("sipailou"), {0.005, rule});
   }
   std::vector<PairedRuns::Scan> names_;
   SequenceCounts first_, second_;
@@ -45,25 +46,50 @@ TEST_F(DropInFewScans, IsComparedWithTheIntervalByTheStatisticalRule) {
   const GateCheck check = judged(GateRule::kStatistical).checks.at(0);
   const Interval interval = check.difference.interval.value();
   EXPECT_NEAR(check.tolerance, std::max(0.005, 0.5 * (interval.high - interval.low)), 1e-12);
-  EXPECT_EQ(check.passed, check.difference.p_value.value() >= 0.05);
+  EXPECT_EQ(check.passed(), check.difference.p_value.value() >= 0.05);
 }
 
 TEST(Gate, FailsWhereAnIouBecomesUndefinedAndPassesWhereItWas) {
   const Confusion false_alarm{.fp = 1}, nothing{.tn = 1};
   const auto passes = [](const Confusion& first, const Confusion& second) {
     const PairedRuns paired{{{"street", "0", nullptr, nullptr}}, {{first}}, {{second}}, {}};
-    return judge(paired, protocol_named("sipailou"), 0.005, GateRule::kMaxDrop).passed();
+    return judge(paired, protocol_named("sipailou"), {0.005, GateRule::kMaxDrop}).passed();
   };
   EXPECT_FALSE(passes(false_alarm, nothing));
   EXPECT_TRUE(passes(nothing, false_alarm));
   EXPECT_TRUE(passes(nothing, nothing));
 }
 
+TEST(Gate, FailsWhereNothingMovesAndManyPointsAreCalledMoving) {
+  const auto judged = [](std::uint64_t before, std::uint64_t after, std::uint64_t moving,
+                         std::optional<double> limit) {
+    const SequenceCounts first(2, {.tp = moving, .fp = before, .tn = 100'000});
+    const SequenceCounts second(2, {.tp = moving, .fp = after, .tn = 100'000});
+    const PairedRuns paired{
+        {{"room", "0", nullptr, nullptr}, {"room", "1", nullptr, nullptr}}, {first}, {second}, {}};
+    return judge(paired, protocol_named("sipailou"), {1.0, GateRule::kMaxDrop, limit});
+  };
+  const GateResult alarm = judged(0, 15'036, 0, {});
+  EXPECT_FALSE(alarm.passed());
+  EXPECT_THAT(render({.sheets = {gate_sheet(alarm)}}, Format::kText),
+              testing::HasSubstr("room: 15036.0 false positives per scan were added, at most 10"));
+  EXPECT_THAT(gate_annotations(alarm).at(0).title, testing::Eq("False positives of room"));
+  EXPECT_EQ(to_json(alarm).at("checks").at(0).at("new_false_positives_per_scan"), 15'036.0);
+  EXPECT_TRUE(judged(0, 10, 0, {}).passed());
+  EXPECT_FALSE(judged(0, 11, 0, {}).passed());
+  EXPECT_TRUE(judged(20'000, 15'036, 0, {}).passed());
+  // Where points move the IoU tells, unless a limit is asked for.
+  EXPECT_TRUE(judged(0, 15'036, 1000, {}).passed());
+  EXPECT_FALSE(judged(0, 15'036, 1000, 15'035).passed());
+  EXPECT_TRUE(judged(0, 15'036, 1000, 15'036).passed());
+  EXPECT_TRUE(judged(0, 15'036, 0, 15'036).passed());
+}
+
 TEST(Gate, SaysWhyThereIsNoInterval) {
   const Confusion counts{.tp = 1};
   const PairedRuns paired{{{"street", "0", nullptr, nullptr}}, {{counts}}, {{counts}}, {}};
   const GateResult result =
-      judge(paired, protocol_named("sipailou"), 0.005, GateRule::kStatistical);
+      judge(paired, protocol_named("sipailou"), {0.005, GateRule::kStatistical});
   EXPECT_TRUE(result.passed());
   EXPECT_THAT(render({.sheets = {gate_sheet(result)}}, Format::kText),
               testing::HasSubstr("no interval for street: 1 scans, expected at least 100"));
@@ -75,7 +101,7 @@ TEST(Gate, EscapesNamesInAnnotationsAndMarkdown) {
   const std::string name = "day|50%: a,\nb";
   const auto judged = [&](const Confusion& first, const Confusion& second) {
     const PairedRuns paired{{{name, "0", nullptr, nullptr}}, {{first}}, {{second}}, {}};
-    return judge(paired, protocol_named("sipailou"), 0.005);
+    return judge(paired, protocol_named("sipailou"), {0.005});
   };
   const auto shown = [](const GateResult& result, Format format) {
     return render({.sheets = {gate_sheet(result)}, .annotations = gate_annotations(result)},

@@ -425,12 +425,12 @@ TEST(StudyTable, SaysTheMeanAndTheSpreadOfSeeds) {
   EXPECT_EQ(table.curves[0].values, (std::vector<std::string>{"none", "0", "0.05", "0.1"}));
 }
 
-TEST(StudyTable, CallsTheValueOfASettingThatIsNotVariedDefault) {
+TEST(StudyTable, SaysWhosePresetASettingThatIsNotVariedIsOf) {
   const TempFolder folder;
   const Study study = parse_study(
       without_disturbances() + "vary: {setting: voxel_size_m, values: [0.2]}\n", "s.yaml");
   EXPECT_EQ(gather(plan_study(study, folder.path())).curves[0].values,
-            (std::vector<std::string>{"default", "0.2"}));
+            (std::vector<std::string>{"default of preset semantickitti", "0.2"}));
 }
 
 /// Two data whose own protocols differ, and a study that names none.
