@@ -73,18 +73,49 @@ Pose parse_seven(const std::vector<std::string_view>& words, std::size_t from, P
   return *pose;
 }
 
+/// Decimals of a stamp as it is printed: 4 of "1.2345"; many of one with an exponent.
+std::size_t decimals_of(std::string_view stamp) {
+  const std::size_t point = stamp.find('.');
+  if (stamp.find_first_of("eE") != stamp.npos) return 9;
+  return point == stamp.npos ? 0 : stamp.size() - point - 1;
+}
+
+/// Half a unit of the last decimal; not of stamps to the hundredth, which say less of a scan.
+std::int64_t rounding_of(std::size_t decimals) {
+  constexpr std::int64_t kLeast_ns = 1'000, kMost_ns = 500'000;
+  std::int64_t half_unit_ns = 500'000'000;
+  for (std::size_t i = 0; i < decimals; ++i) half_unit_ns /= 10;
+  return half_unit_ns > kMost_ns ? kLeast_ns : std::max(half_unit_ns, kLeast_ns);
+}
+
 std::int64_t parse_stamp(const std::vector<std::string_view>& words, const PoseList& list,
                          const TextLine& line, const std::filesystem::path& file) {
   const auto stamp_ns = parse_seconds_as_ns(words.front());
   if (!stamp_ns) {
-    throw DataError(file, line.number, quoted(words.front()) + " is no time in seconds",
+    const bool is_number = parse_double(words.front()).has_value();
+    throw DataError(file, line.number,
+                    quoted(words.front()) + " is no time in seconds" +
+                        (is_number ? " (is it in nanoseconds?)" : ""),
                     row_of(list.format));
   }
-  if (!list.stamps_ns.empty() && *stamp_ns <= list.stamps_ns.back()) {
-    throw DataError(file, line.number, "its stamp is not behind the one before",
-                    "stamps in order, each once");
+  if (!list.stamps_ns.empty() && *stamp_ns < list.stamps_ns.back()) {
+    throw DataError(file, line.number, "its stamp is before that of the row before",
+                    "stamps in order");
   }
   return *stamp_ns;
+}
+
+/// Takes a row of kTum; of those with the same stamp the first.
+void add_stamped(const std::vector<std::string_view>& words, const TextLine& line, PoseList& list,
+                 const std::filesystem::path& file) {
+  const Pose pose = parse_seven(words, 1, list.format, line, file);
+  const std::int64_t stamp_ns = parse_stamp(words, list, line, file);
+  if (!list.stamps_ns.empty() && stamp_ns == list.stamps_ns.back()) {
+    ++list.repeated;
+    return;
+  }
+  list.poses.push_back(pose);
+  list.stamps_ns.push_back(stamp_ns);
 }
 
 }  // namespace
@@ -187,10 +218,19 @@ std::optional<PoseFormat> pose_format_from_string(std::string_view name) {
   return static_cast<PoseFormat>(found - kPoseFormatNames.begin());
 }
 
+std::vector<std::string> PoseList::remarks(const std::filesystem::path& file) const {
+  if (repeated == 0) return {};
+  return {fmt::format("{}: {} the stamp of the row before and {} left out",
+                      file.filename().string(),
+                      repeated == 1 ? "1 row has" : fmt::format("{} rows have", repeated),
+                      repeated == 1 ? "is" : "are")};
+}
+
 PoseList parse_pose_list(std::string_view text, std::optional<PoseFormat> format,
                          const std::filesystem::path& file) {
   PoseList list;
   bool first = true;
+  std::size_t decimals = 0;
   for (const TextLine& line : split_lines(text, file)) {
     if (line.text.starts_with('#')) continue;
     if (first) list.format = format.value_or(format_of(line.text));
@@ -201,10 +241,11 @@ PoseList parse_pose_list(std::string_view text, std::optional<PoseFormat> format
       list.poses.push_back(parse_seven(split_at_commas(line.text), 0, list.format, line, file));
     } else {
       const auto words = split_at_blanks(line.text);
-      list.poses.push_back(parse_seven(words, 1, list.format, line, file));
-      list.stamps_ns.push_back(parse_stamp(words, list, line, file));
+      decimals = std::max(decimals, decimals_of(words.front()));
+      add_stamped(words, line, list, file);
     }
   }
+  list.rounding_ns = rounding_of(decimals);
   return list;
 }
 

@@ -21,8 +21,9 @@ inline constexpr double kQuaternionTolerance = 1e-3;
 /// Returns the pose of a translation and a quaternion (x y z w), which is normalized; nothing when
 /// a number is not finite or the quaternion is not of length 1.
 inline std::optional<Pose> pose_of(const Eigen::Vector3d& translation_m,
-                                   const Eigen::Vector4d& xyzw) {
-  if (!translation_m.allFinite() || !(std::abs(xyzw.norm() - 1.0) <= kQuaternionTolerance)) {
+                                   const Eigen::Vector4d& xyzw,
+                                   double tolerance = kQuaternionTolerance) {
+  if (!translation_m.allFinite() || !(std::abs(xyzw.norm() - 1.0) <= tolerance)) {
     return std::nullopt;
   }
   Pose pose = Pose::Identity();
@@ -85,6 +86,11 @@ struct PoseList {
   PoseFormat format = PoseFormat::kKitti;
   std::vector<Pose> poses;
   std::vector<std::int64_t> stamps_ns;  ///< one per pose, increasing; of kTum only
+  std::size_t repeated = 0;             ///< rows that were dropped: the row before has their stamp
+  std::int64_t rounding_ns = 1'000;  ///< what printing the stamps can have changed, at least 1 us
+
+  /// Returns what is odd about the rows, or nothing.
+  std::vector<std::string> remarks(const std::filesystem::path& file) const;
 };
 
 /// Recognises the format from the first row when it is not given. Throws DataError with the line.

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <filesystem>
@@ -95,20 +96,23 @@ void expect_own_names(const std::filesystem::path& folder,
   }
 }
 
-/// A bag or a scan that is given itself, the bags of a folder, or the folder of scans. One bag is
-/// called as its folder.
+/// A bag or a scan that is given itself, the bags of a folder, each with its parts, or the folder
+/// of scans. One bag is called as its folder.
 std::vector<SequenceFolder> list_recording(const std::filesystem::path& path) {
   if (is_bag_folder(path)) return {{folder_name(path), path, ""}};
   if (is_bag_file(path) || is_scan(path)) return {{path.stem().string(), path, ""}};
   if (!std::filesystem::is_directory(path)) return {};
-  const auto bags = bags_of(path);
-  if (bags.size() == 1 && is_bag_file(bags.front())) {
-    return {{folder_name(path), bags.front(), ""}};
-  }
+  const std::vector<BagParts> bags = group_parts(bags_of(path));
+  const bool is_one = bags.size() == 1;
   std::vector<SequenceFolder> sequences;
-  for (const auto& bag : bags) {
-    const auto name = is_bag_folder(bag) ? bag.filename() : bag.stem();
-    sequences.push_back({name.string(), bag, ""});
+  for (const BagParts& bag : bags) {
+    const std::filesystem::path& first = bag.files.front();
+    const std::filesystem::path own_name = is_bag_folder(first) ? first.filename() : first.stem();
+    const bool is_joined = bag.files.size() > 1;
+    std::string name = is_joined && !bag.name.empty() ? bag.name : own_name.string();
+    if (is_one && !is_bag_folder(first)) name = folder_name(path);
+    // Only a recording in parts has a second name.
+    sequences.push_back({std::move(name), first, is_joined ? own_name.string() : ""});
   }
   expect_own_names(path, sequences);
   if (sequences.empty() && !scans_in(path).empty()) return {{folder_name(path), path, ""}};
@@ -117,6 +121,14 @@ std::vector<SequenceFolder> list_recording(const std::filesystem::path& path) {
 
 std::unique_ptr<Sequence> open_recording(const SequenceFolder& sequence, const Reading& asked) {
   const auto& path = sequence.folder;
+  if (!sequence.alias.empty()) {
+    const auto bags = group_parts(bags_of(path.parent_path()));
+    const auto parts =
+        std::ranges::find_if(bags, [&](const BagParts& bag) { return bag.files.front() == path; });
+    if (parts == bags.end())
+      throw DataError(path, "changed while it was read", "a whole recording");
+    return std::make_unique<BagSequence>(sequence.name, open_bag(*parts), asked);
+  }
   if (is_bag(path)) return std::make_unique<BagSequence>(sequence.name, path, asked);
   if (is_scan(path)) return std::make_unique<SingleScan>(sequence.name, path, asked);
   return std::make_unique<KittiSequence>(sequence.name, path, asked,
@@ -150,7 +162,8 @@ const Layout& recording_layout() {
       .licence = "yours",
       .folders = {"<file>.bag (ROS 1), .mcap or .db3 (ROS 2), each of these also packed as .zstd",
                   "<root>/metadata.yaml and the files that it names: a ROS 2 bag",
-                  "<root>/ with such files or folders: a sequence each",
+                  "<root>/ with such files or folders: a sequence each; parts of one recording,",
+                  "  numbered as drive_0.bag, drive_1.bag, are one",
                   "<root>/*.bin, *.pcd or *.ply, with or without", "  poses.txt   12 numbers a row",
                   "  times.txt   seconds", "  labels/*.label",
                   "<file>.bin, .pcd or .ply: one scan"},

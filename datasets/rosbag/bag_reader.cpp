@@ -30,9 +30,11 @@ constexpr std::array<std::string_view, 5> kBagNames = {".bag", ".mcap", ".db3", 
 /// The files of one recording as one bag.
 class JoinedBag : public BagReader {
  public:
-  JoinedBag(const fs::path& folder, std::vector<std::unique_ptr<const BagReader>> parts)
-      : BagReader(folder), parts_(std::move(parts)) {
+  JoinedBag(const fs::path& path, std::vector<std::unique_ptr<const BagReader>> parts,
+            std::vector<std::string> remarks)
+      : BagReader(path), parts_(std::move(parts)) {
     files_.clear();
+    remarks_ = std::move(remarks);
     for (const auto& part : parts_) {
       files_.insert(files_.end(), part->files().begin(), part->files().end());
       remarks_.insert(remarks_.end(), part->remarks().begin(), part->remarks().end());
@@ -108,6 +110,10 @@ class UnpackedBag : public BagReader {
 
   std::vector<BagMessage> messages(std::string_view topic) const override {
     return bag_->messages(topic);
+  }
+
+  std::optional<std::pair<std::int64_t, std::int64_t>> extent_ns() const override {
+    return bag_->extent_ns();
   }
 
   std::string read(const BagMessage& message, std::size_t most_bytes = SIZE_MAX) const override {
@@ -191,7 +197,7 @@ std::unique_ptr<const BagReader> open_bag_folder(const fs::path& folder) {
     }
     parts.push_back(open_bag_file(part));
   }
-  return std::make_unique<JoinedBag>(folder, std::move(parts));
+  return join_bags(folder, std::move(parts), {});
 }
 
 }  // namespace
@@ -212,6 +218,12 @@ const BagConnection* BagReader::find_connection(std::uint32_t id) const {
 MessageFormat BagReader::format_of(const BagMessage& message) const {
   const BagConnection* connection = find_connection(message.connection);
   return {connection->type, connection->encoding};
+}
+
+std::optional<std::pair<std::int64_t, std::int64_t>> BagReader::extent_ns() const {
+  if (messages_.empty()) return std::nullopt;
+  const auto [first, last] = std::ranges::minmax_element(messages_, {}, &BagMessage::recorded_ns);
+  return std::pair(first->recorded_ns, last->recorded_ns);
 }
 
 std::vector<BagMessage> BagReader::messages(std::string_view topic) const {
@@ -242,6 +254,12 @@ bool is_bag_folder(const fs::path& path) {
   const fs::path file = path / kBagMetadataFile;
   if (!fs::is_regular_file(file, ignored)) return false;
   return read_start(file, kBagMetadataStart.size()) == kBagMetadataStart;
+}
+
+std::unique_ptr<const BagReader> join_bags(const fs::path& path,
+                                           std::vector<std::unique_ptr<const BagReader>> parts,
+                                           std::vector<std::string> remarks) {
+  return std::make_unique<JoinedBag>(path, std::move(parts), std::move(remarks));
 }
 
 std::unique_ptr<const BagReader> open_bag(const fs::path& path) {

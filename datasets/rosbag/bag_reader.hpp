@@ -4,9 +4,11 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "datasets/rosbag/message_format.hpp"
@@ -48,6 +50,8 @@ class BagReader {
   /// Returns the connection with this id, or nullptr.
   const BagConnection* find_connection(std::uint32_t id) const;
 
+  /// Returns when the first and the last message were recorded; nothing without any.
+  virtual std::optional<std::pair<std::int64_t, std::int64_t>> extent_ns() const;
   /// Returns the messages of a topic in the order in which they were recorded.
   virtual std::vector<BagMessage> messages(std::string_view topic) const;
   /// Returns the bytes of a message, no more than `most_bytes` where that spares reading them. Safe
@@ -84,5 +88,25 @@ bool is_bag_folder(const std::filesystem::path& path);
 
 /// Opens a ROS 1 bag, a file or a folder of ROS 2, told apart by their bytes. Throws DataError.
 std::unique_ptr<const BagReader> open_bag(const std::filesystem::path& path);
+
+/// Returns the files of one recording as one bag, which errors name by `path`.
+std::unique_ptr<const BagReader> join_bags(const std::filesystem::path& path,
+                                           std::vector<std::unique_ptr<const BagReader>> parts,
+                                           std::vector<std::string> remarks);
+
+/// Files that a recorder made of one drive, in their order.
+struct BagParts {
+  std::string
+      name;  ///< "drive" of drive_2024-01-01-12-00-00_0.bag and drive_2024-01-01-12-00-30_1.bag
+  std::vector<std::filesystem::path> files;
+};
+
+/// Returns the bags of one folder, those together that `rosbag record --split` or a ROS 2 recorder
+/// that was killed left as parts: numbered by their names, each recorded right after the one
+/// before.
+std::vector<BagParts> group_parts(const std::vector<std::filesystem::path>& bags);
+
+/// Opens the parts as one bag. Throws DataError.
+std::unique_ptr<const BagReader> open_bag(const BagParts& parts);
 
 }  // namespace mosbench

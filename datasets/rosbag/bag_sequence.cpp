@@ -36,20 +36,31 @@ std::optional<std::filesystem::path> bag_of(const std::filesystem::path& folder)
 }
 
 BagSequence::BagSequence(std::string name, const std::filesystem::path& bag, const Reading& asked)
-    : bag_(open_bag(bag)),
+    : BagSequence(std::move(name), open_bag(bag), asked) {}
+
+BagSequence::BagSequence(std::string name, std::unique_ptr<const BagReader> bag,
+                         const Reading& asked)
+    : bag_(std::move(bag)),
       undistorts_(asked.undistorts()),
       keeps_times_(asked.is_by_odometry() || asked.deskew == Deskew::kVelocity),
       by_azimuth_(asked.point_times == PointTimes::kAzimuth) {
   Recording& recording = mutable_recording();
-  recording.name = SequenceName(std::move(name), bag.parent_path());
+  recording.name = SequenceName(std::move(name), bag_->path().parent_path());
   recording.files = bag_->files();
   recording.remarks = bag_->remarks();
   const std::string topic = cloud_topic(*bag_, asked.topic);
   list_scans(topic);
-  recording.reading.scan_files = fmt::format("{}, topic {}", bag.filename().string(), topic);
+  expect_one_frame(topic);
+  recording.reading.scan_files =
+      fmt::format("{}, topic {}", bag_->path().filename().string(), topic);
   asked.has_own_poses() ? open_transforms(asked) : open_pose_file(asked);
   state_undistortion();
-  for (ScanEntry& scan : recording.scans) scan.map_from_sensor = *pose_at_(*scan.stamp_ns);
+}
+
+PoseAt BagSequence::pose_at(std::size_t scan_index) const {
+  if (transforms_) return [this](std::int64_t stamp_ns) { return transforms_->at(stamp_ns); };
+  return
+      [&track = tracks_.around(scan_index)](std::int64_t stamp_ns) { return track.at(stamp_ns); };
 }
 
 TimedCloud BagSequence::cloud_of(const Scan& scan) const {
@@ -77,66 +88,96 @@ void BagSequence::list_scans(const std::string& topic) {
   if (scans_.empty()) {
     throw DataError(bag_->path(), "topic " + topic + " holds no message", "one per scan");
   }
+}
+
+/// Throws DataError for scans of two sensors. Those without a frame are told nothing of.
+void BagSequence::expect_one_frame(const std::string& topic) const {
+  std::string frame;
   for (const Scan& scan : scans_) {
-    if (scan.frame == scans_.front().frame) continue;
-    throw DataError(bag_->path(),
-                    fmt::format("topic {} has scans in the frames {} and {}", topic,
-                                scans_.front().frame, scan.frame),
-                    "one sensor");
+    if (frame.empty()) frame = scan.frame;
+    if (scan.frame.empty() || scan.frame == frame) continue;
+    throw DataError(
+        bag_->path(),
+        fmt::format("topic {} has scans in the frames {} and {}", topic, frame, scan.frame),
+        "one sensor");
   }
 }
 
 void BagSequence::open_pose_file(const Reading& asked) {
   enter_scans();
   const std::vector<Scan> all = std::exchange(scans_, {});
-  std::vector<std::pair<std::int64_t, Pose>> stamped;
   for (const std::size_t k :
        place_scans(bag_->path().parent_path(), "poses.txt", asked, mutable_recording())) {
-    stamped.emplace_back(all[k].stamp_ns, map_from_sensor(scans_.size()));
     scans_.push_back(all[k]);
   }
-  pose_at_ = [track = PoseTrack(std::move(stamped))](std::int64_t stamp_ns) {
-    return track.at(stamp_ns);
-  };
-  leaves_last_ = true;
+  std::vector<std::pair<std::int64_t, Pose>> stamped;
+  for (std::size_t k = 0; k < scans_.size(); ++k) {
+    stamped.emplace_back(scans_[k].stamp_ns, map_from_sensor(k));
+  }
+  tracks_ = ScanTracks(stamped);
+  if (tracks_.breaks() == 0) return;
+  mutable_recording().remarks.push_back(fmt::format(
+      "the stamps of {} of {} are not later than the one before: scans before these are "
+      "not undistorted",
+      tracks_.breaks(), counted(scans_.size(), "scan")));
 }
 
 void BagSequence::open_transforms(const Reading& asked) {
-  BagTransforms transforms =
-      bag_transforms(*bag_, asked.map_frame, scans_.front().frame, asked.pose_topic);
+  const auto named = std::ranges::find_if(scans_, [](const Scan& s) { return !s.frame.empty(); });
+  const std::string frame = named == scans_.end() ? "" : named->frame;
+  const std::size_t all = scans_.size();
+  std::erase_if(scans_, [&](const Scan& scan) { return scan.frame != frame; });
   Recording& recording = mutable_recording();
+  if (scans_.size() < all) {
+    recording.remarks.push_back(fmt::format("{} of {} are left out: they name no frame",
+                                            all - scans_.size(), counted(all, "scan")));
+  }
+  BagTransforms transforms = bag_transforms(*bag_, asked, frame);
   recording.reading.poses.source = transforms.source;
   state_pose_origin(bag_->files().front(), recording.reading.poses, recording.remarks);
   recording.remarks.push_back("poses from the bag: " + transforms.source);
-  pose_at_ = std::move(transforms.map_from_sensor);
+  for (std::string& remark : transforms.remarks) recording.remarks.push_back(std::move(remark));
+  transforms_ = std::move(transforms.map_from_sensor);
   leave_out_uncovered();
   enter_scans();
+  for (ScanEntry& scan : recording.scans) scan.map_from_sensor = *transforms_->at(*scan.stamp_ns);
 }
 
 bool BagSequence::covered(const Scan& scan) const {
-  if (!pose_at_(scan.stamp_ns)) return false;
+  if (!transforms_->at(scan.stamp_ns)) return false;
   if (!undistorts_ || !scan.timed) return true;
   // Points may also have been measured before the stamp.
-  if (pose_at_(scan.stamp_ns - kLongestScanNs) && pose_at_(scan.stamp_ns + kLongestScanNs)) {
+  if (transforms_->covers(scan.stamp_ns - kLongestScanNs, scan.stamp_ns + kLongestScanNs)) {
     return true;
   }
   const TimedCloud cloud = cloud_of(scan);
   check_times(scan, cloud);
-  return cloud.times_ns.empty() || (pose_at_(cloud.stamp_ns + std::ranges::max(cloud.times_ns)) &&
-                                    pose_at_(cloud.stamp_ns + std::ranges::min(cloud.times_ns)));
+  return cloud.times_ns.empty() ||
+         transforms_->covers(cloud.stamp_ns + std::ranges::min(cloud.times_ns),
+                             cloud.stamp_ns + std::ranges::max(cloud.times_ns));
 }
 
 void BagSequence::leave_out_uncovered() {
-  const std::size_t all = scans_.size();
+  const std::vector<Scan> all = scans_;
   std::erase_if(scans_, [this](const Scan& scan) { return !covered(scan); });
-  if (scans_.empty()) {
-    throw DataError(bag_->path(), "no transform covers any of its " + counted(all, "scan"),
-                    "poses while the scans are taken, or " + option("poses", "FILE"));
+  if (scans_.size() == all.size()) return;
+  std::string why;
+  for (std::size_t k = 0; k < all.size() && why.empty(); ++k) {
+    why = transforms_->lacks(all[k].stamp_ns);
   }
-  if (scans_.size() == all) return;
-  mutable_recording().remarks.push_back(
-      fmt::format("{} of {} are left out: no transform covers them{}", all - scans_.size(),
-                  counted(all, "scan"), undistorts_ ? " from first to last point" : ""));
+  if (!why.empty()) why = "; " + why;
+  if (are_too_few(scans_.size(), all.size())) {
+    throw DataError(
+        bag_->path(),
+        fmt::format("transforms cover {} of {}, from {:.3f} to {:.3f} s{}", scans_.size(),
+                    counted(all.size(), "scan"), seconds_of(all.front().stamp_ns),
+                    seconds_of(all.back().stamp_ns), why),
+        fmt::format("poses while the scans are taken, another frame in {}, a longer {}, or {}",
+                    option("map_frame"), option("max_pose_gap_s"), option("poses", "FILE")));
+  }
+  mutable_recording().remarks.push_back(fmt::format(
+      "{} of {} are left out: no transform covers them{}{}", all.size() - scans_.size(),
+      counted(all.size(), "scan"), undistorts_ ? " from first to last point" : "", why));
 }
 
 void BagSequence::state_undistortion() {
@@ -144,7 +185,7 @@ void BagSequence::state_undistortion() {
   const BagUndistortion how = by_azimuth_    ? BagUndistortion::kOtherTimes
                               : !timed       ? BagUndistortion::kNoTimes
                               : !undistorts_ ? BagUndistortion::kAsTold
-                              : leaves_last_ ? BagUndistortion::kButLast
+                              : !transforms_ ? BagUndistortion::kButLast
                                              : BagUndistortion::kAll;
   mutable_recording().reading.undistortion = how;
   mutable_recording().remarks.push_back(fmt::format("undistortion: {}", to_string(how)));
@@ -164,12 +205,13 @@ void BagSequence::read(std::size_t scan_index, Frame& frame) const {
   TimedCloud cloud = cloud_of(scan);
   if (by_azimuth_) cloud.times_ns.clear();
   check_times(scan, cloud);
-  const bool last = leaves_last_ && scan_index + 1 == scans_.size();
+  // After the last pose of a file nothing is known.
+  const bool last = !transforms_ && tracks_.is_last(scan_index);
   const bool moves = undistorts_ && !keeps_times_ && !cloud.times_ns.empty() && !last;
-  const std::int64_t at_ns = moves && !leaves_last_ ? reference_ns(cloud) : cloud.stamp_ns;
-  const auto pose = pose_at_(at_ns);
-  if (!pose ||
-      (moves && !undistort(cloud.points, cloud.times_ns, cloud.stamp_ns, at_ns, pose_at_))) {
+  const std::int64_t at_ns = moves && transforms_ ? reference_ns(cloud) : cloud.stamp_ns;
+  const PoseAt poses = pose_at(scan_index);
+  const auto pose = poses(at_ns);
+  if (!pose || (moves && !undistort(cloud.points, cloud.times_ns, cloud.stamp_ns, at_ns, poses))) {
     throw DataError(bag_->path(), scan.number, "no pose covers the scan",
                     "poses while it was taken");
   }

@@ -9,6 +9,7 @@
 
 #include "datasets/rosbag/bag_reader.hpp"
 #include "datasets/rosbag/ros_messages.hpp"
+#include "datasets/rosbag/transform_tree.hpp"
 #include "datasets/sequence/corrected_sequence.hpp"
 #include "datasets/sequence/sequence.hpp"
 
@@ -26,6 +27,7 @@ class BagSequence : public Sequence {
   /// `bag` is a file or the folder of a ROS 2 bag. Throws DataError if it is no bag, has no such
   /// topic, holds no scan in it, or lacks transforms from the scans' frame to the map's.
   BagSequence(std::string name, const std::filesystem::path& bag, const Reading& asked);
+  BagSequence(std::string name, std::unique_ptr<const BagReader> bag, const Reading& asked);
 
   using Sequence::read;
   void read(std::size_t scan_index, Frame& frame) const override;
@@ -43,6 +45,7 @@ class BagSequence : public Sequence {
   };
 
   void list_scans(const std::string& topic);
+  void expect_one_frame(const std::string& topic) const;
   void open_transforms(const Reading& asked);
   void open_pose_file(const Reading& asked);
   bool covered(const Scan& scan) const;
@@ -50,14 +53,14 @@ class BagSequence : public Sequence {
   void state_undistortion();
   void enter_scans();
 
+  PoseAt pose_at(std::size_t scan_index) const;
   TimedCloud cloud_of(const Scan& scan) const;
   void check_times(const Scan& scan, const TimedCloud& cloud) const;
 
   std::unique_ptr<const BagReader> bag_;
   std::vector<Scan> scans_;
-  PoseAt pose_at_;
-  /// With a pose file the last scan is not undistorted: no pose follows its own.
-  bool leaves_last_ = false;
+  std::optional<TransformChain> transforms_;  ///< of the bag
+  ScanTracks tracks_;                         ///< of a pose file
   bool undistorts_ = true;
   /// Points are moved later, by poses that are found later or by the velocity; their times are
   /// kept.

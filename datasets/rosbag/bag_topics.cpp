@@ -9,6 +9,7 @@
 
 #include "datasets/sequence/pose_source.hpp"
 #include "datasets/text/errors.hpp"
+#include "datasets/text/text.hpp"
 
 namespace mosbench {
 namespace {
@@ -38,117 +39,13 @@ std::string all_topics(const BagReader& bag) {
   return topics.empty() ? "nothing" : listed(topics);
 }
 
-/// The tf tree of a bag: every frame has one parent.
-class TransformTree {
- public:
-  /// An `always` transform, of /tf_static, holds at all times. Throws DataError when a frame has
-  /// two parents.
-  TransformTree(const std::vector<StampedTransform>& transforms,
-                const std::vector<StampedTransform>& always, const std::filesystem::path& file) {
-    const auto add = [&](const std::vector<StampedTransform>& source, bool holds_always) {
-      std::map<std::string, std::vector<std::pair<std::int64_t, Pose>>> poses_of_child;
-      for (const StampedTransform& transform : source) {
-        auto& edge = edge_of_child_[transform.child];
-        if (edge.parent.empty()) edge.parent = transform.parent;
-        if (edge.parent != transform.parent) {
-          throw DataError(file,
-                          "frame " + transform.child + " has the parents " + edge.parent + " and " +
-                              transform.parent,
-                          "a tf tree");
-        }
-        poses_of_child[transform.child].emplace_back(transform.stamp_ns,
-                                                     transform.parent_from_child);
-      }
-      for (auto& [child, poses] : poses_of_child) {
-        edge_of_child_[child].track = PoseTrack(std::move(poses), holds_always);
-      }
-    };
-    add(transforms, false);
-    add(always, true);
-  }
-
-  /// Returns the frames from `frame` up to the root, `frame` first.
-  std::vector<std::string> ancestors(const std::string& frame) const {
-    std::vector<std::string> frames = {frame};
-    auto edge = edge_of_child_.find(frame);
-    // Parents may form a loop in a damaged bag.
-    while (edge != edge_of_child_.end() &&
-           std::ranges::find(frames, edge->second.parent) == frames.end()) {
-      frames.push_back(edge->second.parent);
-      edge = edge_of_child_.find(frames.back());
-    }
-    return frames;
-  }
-
-  /// Tracks whose product, first to last, is to_from_from: those of `from` and its ancestors below
-  /// `to`.
-  class Chain {
-   public:
-    /// Returns nothing when a track does not cover the time.
-    std::optional<Pose> at(std::int64_t stamp_ns) const {
-      std::optional<Pose> product;
-      for (const PoseTrack& track : tracks_) {
-        const std::optional<Pose> pose = track.at(stamp_ns);
-        if (!pose) return std::nullopt;
-        product = product ? Pose(*product * *pose) : *pose;
-      }
-      return product ? product : Pose::Identity();
-    }
-
-   private:
-    friend class TransformTree;
-    std::vector<PoseTrack> tracks_;
-  };
-  /// Returns nothing when `to` is not an ancestor of `from`.
-  std::optional<Chain> chain(const std::string& to, const std::string& from) const {
-    const std::vector<std::string> frames = ancestors(from);
-    const auto end = std::ranges::find(frames, to);
-    if (end == frames.end()) return std::nullopt;
-    Chain chain;
-    for (auto frame = frames.begin(); frame != end; ++frame) {
-      chain.tracks_.insert(chain.tracks_.begin(), edge_of_child_.at(*frame).track);
-    }
-    return chain;
-  }
-
- private:
-  struct Edge {
-    std::string parent;
-    PoseTrack track;
-  };
-  std::map<std::string, Edge> edge_of_child_;
-};
-
 /// Transforms of a bag and the topics that they come from.
 struct Transforms {
   std::vector<StampedTransform> changing, always;
   std::set<std::string> topics;
+  std::size_t poses = 0;    ///< of a topic of poses
+  std::string remark = {};  ///< on whose they are
 };
-
-/// Appends what a topic says.
-void add_transforms(const BagReader& bag, const std::string& topic,
-                    std::vector<StampedTransform>& transforms) {
-  for (const BagMessage& message : bag.messages(topic)) {
-    for (StampedTransform& transform :
-         parse_transforms(bag.read(message), bag.format_of(message), bag.path())) {
-      transforms.push_back(std::move(transform));
-    }
-  }
-}
-
-/// What all topics of these types say.
-Transforms transforms_of(const BagReader& bag, std::initializer_list<std::string_view> types) {
-  Transforms found;
-  for (const std::string_view type : types) {
-    for (const std::string& topic : topics_of_type(bag, type)) {
-      const bool always =
-          topic.ends_with(kTfStatic) && (type == kTfMessage || type == kOldTfMessage);
-      add_transforms(bag, topic, always ? found.always : found.changing);
-      found.topics.insert(topic);
-    }
-  }
-  return found;
-}
 
 std::string frames_of(const Transforms& transforms) {
   std::set<std::string> frames;
@@ -161,78 +58,176 @@ std::string frames_of(const Transforms& transforms) {
   return frames.empty() ? "no frame" : listed(frames);
 }
 
+/// A way of the sensor that was found.
+struct Way {
+  TransformChain chain;
+  std::vector<std::string> frames;  ///< the sensor's first, the map's last
+  std::string source, remark;
+};
+
 /// Finds the poses of the sensor's frame in that of the map: see `bag_transforms`.
 class PoseSearch {
  public:
-  PoseSearch(const BagReader& bag, const std::optional<std::string>& map_frame,
-             const std::string& sensor_frame)
-      : bag_(bag), map_frame_(map_frame), sensor_frame_(sensor_frame) {}
+  PoseSearch(const BagReader& bag, const Reading& asked, const std::string& sensor_frame)
+      : bag_(bag), asked_(asked), map_frame_(asked.map_frame), sensor_frame_(sensor_frame) {}
 
-  BagTransforms run(const std::optional<std::string>& pose_topic) const {
-    if (auto found = pose_topic ? of_topic(*pose_topic) : of_first_kind()) return *std::move(found);
+  BagTransforms run() {
+    std::optional<Way> found = asked_.pose_topic ? of_topic(*asked_.pose_topic) : of_first_kind();
+    if (found) {
+      std::vector<std::string> remarks = ignored();
+      if (!found->remark.empty()) remarks.push_back(std::move(found->remark));
+      return {std::move(found->chain), std::move(found->source), std::move(remarks)};
+    }
+    const Transforms odometry = transforms_of({kOdometry});
     throw MissingPoses(
         bag_.path(),
         "no transforms lead from " + map_frame_.value_or("a map") + " to " + sensor_frame_ +
             " (/tf: " + frames_of(tf_) + "; TransformStamped: " + frames_of(stamped_) +
-            "; Odometry: " + frames_of(transforms_of(bag_, {kOdometry})) + ")",
+            "; Odometry: " + frames_of(odometry) + ")" + in_brackets(ignored()),
         fmt::format("such a chain ({} names a map that is called otherwise), {}, or poses found by "
                     "odometry",
                     option("map_frame"), option("poses", "FILE")));
   }
 
  private:
+  /// Says which transforms were ignored.
+  std::vector<std::string> ignored() const {
+    if (unsound_.empty()) return {};
+    std::set<std::string> frames;
+    std::size_t count = 0;
+    for (const auto& [frame, times] : unsound_) {
+      frames.insert(frame.empty() ? "no frame" : frame);
+      count += times;
+    }
+    return {fmt::format("{} of {} ignored, as tf2 does: not finite, no rotation, or without frames",
+                        counted(count, "transform"),
+                        listed(frames) + (count == 1 ? " is" : " are"))};
+  }
+
+  static std::string in_brackets(const std::vector<std::string>& remarks) {
+    return remarks.empty() ? "" : " (" + remarks.front() + ")";
+  }
+
+  /// Appends what a topic says, but for what tf2 ignores.
+  void add_transforms(const std::string& topic, std::vector<StampedTransform>& transforms) {
+    for (const BagMessage& message : bag_.messages(topic)) {
+      take(parse_transforms(bag_.read(message), bag_.format_of(message), bag_.path()), transforms);
+    }
+  }
+
+  void take(std::vector<StampedTransform> parsed, std::vector<StampedTransform>& transforms) {
+    for (StampedTransform& transform : parsed) {
+      if (transform.is_sound) {
+        transforms.push_back(std::move(transform));
+      } else {
+        ++unsound_[transform.child];
+      }
+    }
+  }
+
+  /// What all topics of these types say.
+  Transforms transforms_of(std::initializer_list<std::string_view> types) {
+    Transforms found;
+    for (const std::string_view type : types) {
+      for (const std::string& topic : topics_of_type(bag_, type)) {
+        const bool always =
+            topic.ends_with(kTfStatic) && (type == kTfMessage || type == kOldTfMessage);
+        add_transforms(topic, always ? found.always : found.changing);
+        found.topics.insert(topic);
+      }
+    }
+    return found;
+  }
+
   /// The poses of one topic of Odometry, PoseStamped or Path. A Path repeats what the one before
-  /// had: the last is whole. Poses without child are the sensor's.
-  Transforms poses_in(std::string_view type, const std::string& topic) const {
+  /// had: the last is whole. Poses without child are the sensor's, or of the frame that was asked.
+  Transforms poses_in(std::string_view type, const std::string& topic) {
     Transforms found{{}, tf_.always, {topic}};
     if (type == kPath) {
       const std::vector<BagMessage> messages = bag_.messages(topic);
       if (messages.empty()) return found;
-      found.changing = parse_transforms(bag_.read(messages.back()), bag_.format_of(messages.back()),
-                                        bag_.path());
+      take(parse_transforms(bag_.read(messages.back()), bag_.format_of(messages.back()),
+                            bag_.path()),
+           found.changing);
     } else {
-      add_transforms(bag_, topic, found.changing);
+      add_transforms(topic, found.changing);
     }
-    // A frame has one parent: what is fixed above it is not the way to these poses.
+    found.poses = found.changing.size();
     std::set<std::string> posed;
     for (StampedTransform& transform : found.changing) {
-      if (transform.child.empty()) transform.child = sensor_frame_;
+      if (posed_frame_) transform.child = *posed_frame_;
+      if (transform.child.empty()) {
+        transform.child = sensor_frame_;
+        found.remark = remark_on_sensor(topic);
+      }
       posed.insert(transform.child);
     }
+    // A frame has one parent: what is fixed above it is not the way to these poses.
     std::erase_if(found.always, [&](const auto& fixed) { return posed.contains(fixed.child); });
+    add_mounts(posed, found);
     return found;
   }
 
-  std::optional<BagTransforms> chain_of(const Transforms& transforms) const {
+  /// What is doubtful about poses without a frame where the sensor is mounted on another.
+  std::string remark_on_sensor(const std::string& topic) const {
+    const auto mount = [&](const StampedTransform& transform) {
+      return transform.child == sensor_frame_ && !is_identity(transform.parent_from_child);
+    };
+    for (const auto* source : {&tf_.changing, &tf_.always}) {
+      const auto found = std::ranges::find_if(*source, mount);
+      if (found == source->end()) continue;
+      return fmt::format(
+          "poses of {} name no frame and are taken as those of {}: if they are of "
+          "{}, ask for {}",
+          topic, sensor_frame_, found->parent, option("pose_topic", topic + "@" + found->parent));
+    }
+    return "";
+  }
+
+  /// Adds the transforms of /tf by which the sensor is mounted on a frame with poses. One that
+  /// never changes holds at all times, as if it were in /tf_static.
+  void add_mounts(const std::set<std::string>& posed, Transforms& found) const {
+    const TransformTree tree(tf_.changing, tf_.always, bag_.path());
+    for (const std::string& frame : posed) {
+      const std::vector<std::string> way = tree.way(sensor_frame_, frame);
+      for (std::size_t i = 0; i + 1 < way.size(); ++i) {
+        const bool moves = tree.chain({way[i], way[i + 1]}, asked_.max_pose_gap_s).moves();
+        for (const StampedTransform& transform : tf_.changing) {
+          if (transform.child != way[i] || transform.parent != way[i + 1]) continue;
+          (moves ? found.changing : found.always).push_back(transform);
+        }
+      }
+      if (way.size() > 1) found.topics.insert(tf_.topics.begin(), tf_.topics.end());
+    }
+  }
+
+  std::optional<Way> way_of(const Transforms& transforms) const {
     const TransformTree tree(transforms.changing, transforms.always, bag_.path());
-    const auto frames = tree.ancestors(sensor_frame_);
-    const auto named_map = std::ranges::find(frames, "map");
-    const std::string map = map_frame_.value_or(named_map != frames.end() ? "map" : frames.back());
-    if (map == sensor_frame_) return std::nullopt;
-    const auto moves = [&](const StampedTransform& transform) {
-      return std::ranges::find(frames, transform.child) < std::ranges::find(frames, map);
+    const std::vector<std::string> frames =
+        map_frame_ ? tree.way(sensor_frame_, *map_frame_) : tree.ancestors(sensor_frame_);
+    if (frames.size() < 2) return std::nullopt;
+    const auto changes = [&](const StampedTransform& transform) {
+      return std::ranges::find(frames, transform.child) < std::prev(frames.end());
     };
     // How the sensor is mounted is no pose of it.
-    if (!map_frame_ && std::ranges::none_of(transforms.changing, moves)) return std::nullopt;
-    auto chain = tree.chain(map, sensor_frame_);
-    if (!chain) return std::nullopt;
-    return BagTransforms{
-        [chain = *std::move(chain)](std::int64_t stamp_ns) { return chain.at(stamp_ns); },
-        listed(transforms.topics) + ", " + map + " from " + sensor_frame_};
+    if (!map_frame_ && std::ranges::none_of(transforms.changing, changes)) return std::nullopt;
+    return Way{tree.chain(frames, asked_.max_pose_gap_s), frames,
+               listed(transforms.topics) + ", " + frames.back() + " from " + sensor_frame_,
+               transforms.remark};
   }
 
   /// The one topic of a type whose poses lead to the sensor.
-  std::optional<BagTransforms> of_type(std::string_view type) const {
-    std::optional<BagTransforms> found;
+  std::optional<Way> of_type(std::string_view type) {
+    std::optional<Way> found;
     std::set<std::string> fitting;
     for (const std::string& topic : topics_of_type(bag_, type)) {
       const Transforms poses = poses_in(type, topic);
       // A single one is a goal or a start, and no way of the sensor.
-      if (poses.changing.size() < 2) continue;
-      auto chain = chain_of(poses);
-      if (!chain) continue;
+      if (poses.poses < 2) continue;
+      auto way = way_of(poses);
+      if (!way) continue;
       fitting.insert(topic);
-      found = std::move(chain);
+      found = std::move(way);
     }
     if (fitting.size() > 1) {
       throw DataError(
@@ -242,12 +237,15 @@ class PoseSearch {
     return found;
   }
 
-  /// The topic that the user named.
-  std::optional<BagTransforms> of_topic(const std::string& topic) const {
+  /// The topic that the user named, "TOPIC" or "TOPIC@FRAME".
+  std::optional<Way> of_topic(const std::string& asked) {
+    const std::size_t at = asked.find('@');
+    const std::string topic = asked.substr(0, at);
+    if (at != asked.npos) posed_frame_ = asked.substr(at + 1);
     std::set<std::string> others;
     for (const std::string_view type : {kTransformStamped, kOdometry, kPoseStamped, kPath}) {
       std::set<std::string> topics = topics_of_type(bag_, type);
-      if (topics.contains(topic)) return chain_of(poses_in(type, topic));
+      if (topics.contains(topic)) return way_of(poses_in(type, topic));
       others.merge(topics);
     }
     throw DataError(
@@ -255,20 +253,45 @@ class PoseSearch {
         others.empty() ? option("poses", "FILE") + ", as it has none" : "one of " + listed(others));
   }
 
-  std::optional<BagTransforms> of_first_kind() const {
-    auto found = chain_of(tf_);
-    if (!found) found = chain_of(stamped_);
-    for (const std::string_view type : {kOdometry, kPoseStamped, kPath}) {
-      if (!found) found = of_type(type);
+  /// Whether Odometry says where a frame is: transforms below it are a mount, even a turning one.
+  bool has_odometry_of(const std::string& frame) {
+    for (const std::string& topic : topics_of_type(bag_, kOdometry)) {
+      const std::vector<BagMessage> messages = bag_.messages(topic);
+      if (messages.size() < 2) continue;
+      const BagMessage& last = messages.back();
+      if (parse_transforms(bag_.read(last), bag_.format_of(last), bag_.path()).front().child ==
+          frame) {
+        return true;
+      }
     }
-    return found;
+    return false;
+  }
+
+  /// The first that moves; else the first.
+  std::optional<Way> of_first_kind() {
+    std::optional<Way> standing;
+    const auto is_the_way = [&](std::optional<Way> way, bool may_be_mount) {
+      if (!way) return false;
+      const bool fits = map_frame_ || (way->chain.moves() &&
+                                       !(may_be_mount && has_odometry_of(way->frames.back())));
+      if (fits || !standing) standing = std::move(way);
+      return fits;
+    };
+    if (is_the_way(way_of(tf_), true) || is_the_way(way_of(stamped_), true)) return standing;
+    for (const std::string_view type : {kOdometry, kPoseStamped, kPath}) {
+      if (is_the_way(of_type(type), false)) return standing;
+    }
+    return standing;
   }
 
   const BagReader& bag_;
+  const Reading& asked_;
   const std::optional<std::string>& map_frame_;
   const std::string& sensor_frame_;
-  Transforms tf_ = transforms_of(bag_, {kTfMessage, kOldTfMessage});
-  Transforms stamped_ = transforms_of(bag_, {kTransformStamped});
+  std::optional<std::string> posed_frame_;      ///< of poses, as the user says
+  std::map<std::string, std::size_t> unsound_;  ///< transforms that are ignored, by frame
+  Transforms tf_ = transforms_of({kTfMessage, kOldTfMessage});
+  Transforms stamped_ = transforms_of({kTransformStamped});
 };
 
 }  // namespace
@@ -292,10 +315,9 @@ std::string cloud_topic(const BagReader& bag, const std::optional<std::string>& 
                   "one of them in " + option("topic"));
 }
 
-BagTransforms bag_transforms(const BagReader& bag, const std::optional<std::string>& map_frame,
-                             const std::string& sensor_frame,
-                             const std::optional<std::string>& pose_topic) {
-  return PoseSearch(bag, map_frame, sensor_frame).run(pose_topic);
+BagTransforms bag_transforms(const BagReader& bag, const Reading& asked,
+                             const std::string& sensor_frame) {
+  return PoseSearch(bag, asked, sensor_frame).run();
 }
 
 }  // namespace mosbench

@@ -2,9 +2,11 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "datasets/rosbag/bag_reader.hpp"
-#include "datasets/sequence/corrected_sequence.hpp"
+#include "datasets/rosbag/transform_tree.hpp"
+#include "datasets/sequence/reading.hpp"
 
 namespace mosbench {
 
@@ -13,18 +15,21 @@ namespace mosbench {
 std::string cloud_topic(const BagReader& bag, const std::optional<std::string>& asked);
 
 struct BagTransforms {
-  PoseAt map_from_sensor;
+  TransformChain map_from_sensor;
   std::string source;  ///< "/tf, map from os1_lidar"
+  std::vector<std::string> remarks;
 };
 
-/// Returns the transforms from the sensor's frame to `map_frame`. If that is not given, to "map" if
-/// it is an ancestor, else to the root. Searches /tf with /tf_static first; then topics of
-/// TransformStamped; then topics of Odometry with /tf_static, of PoseStamped and of Path, both
-/// taken as the sensor's poses. If `pose_topic` is given, only that. Throws MissingPoses that lists
-/// the frames of the bag; DataError for poses of the same type in several topics, and for a
-/// `pose_topic` that holds none.
-BagTransforms bag_transforms(const BagReader& bag, const std::optional<std::string>& map_frame,
-                             const std::string& sensor_frame,
-                             const std::optional<std::string>& pose_topic);
+/// Returns the transforms from the sensor's frame to `asked.map_frame`. If that is not given, to
+/// "map" if it is an ancestor, else to the root. Searches /tf with /tf_static first; then topics of
+/// TransformStamped; then topics of Odometry with the mount of the sensor in /tf or /tf_static, of
+/// PoseStamped and of Path, both taken as the sensor's poses. Transforms that never change, or lead
+/// to a frame whose Odometry is there, are a mount: they are the way only where there is no other.
+/// If `asked.pose_topic` is given, only that; "TOPIC@FRAME" says whose poses these are. Transforms
+/// that tf2 ignores are ignored, too, and counted in the remarks. Throws MissingPoses that lists
+/// the frames of the bag; DataError for poses of the same type in several topics, for a frame with
+/// two parents on the way, and for a topic that holds no poses.
+BagTransforms bag_transforms(const BagReader& bag, const Reading& asked,
+                             const std::string& sensor_frame);
 
 }  // namespace mosbench

@@ -72,6 +72,16 @@ bool is_zstd(std::string_view bytes);
 /// for content beyond kMostChunkBytes.
 std::string decompress_zstd(std::string_view bytes, std::size_t most_bytes,
                             const std::filesystem::path& file);
+/// Returns a message whose first bytes `stored` gives, no more than `most_bytes`, unpacked where it
+/// is packed on its own, as rosbag2 does with `--compression-mode message`. Throws DataError.
+template <typename Stored>
+std::string unpacked_message(const Stored& stored, std::size_t most_bytes,
+                             const std::filesystem::path& file) {
+  std::string bytes = stored(most_bytes);
+  if (!is_zstd(bytes)) return bytes;
+  if (bytes.size() == most_bytes) bytes = stored(SIZE_MAX);
+  return decompress_zstd(bytes, most_bytes, file);
+}
 /// Decompresses a file of any size. Throws DataError.
 void decompress_zstd_file(const std::filesystem::path& packed, const std::filesystem::path& file);
 

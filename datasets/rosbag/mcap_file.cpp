@@ -46,6 +46,13 @@ class McapFile : public BagReader {
   }
 
   std::string read(const BagMessage& message, std::size_t most_bytes = SIZE_MAX) const override {
+    if (format_of(message).encoding != MessageEncoding::kCdr) return stored(message, most_bytes);
+    return unpacked_message([&](std::size_t most) { return stored(message, most); }, most_bytes,
+                            path_);
+  }
+
+ private:
+  std::string stored(const BagMessage& message, std::size_t most_bytes) const {
     constexpr std::uint64_t kStartBytes = kMcapRecordHeadBytes + kMessageHeadBytes;
     const BagChunk whole{0, in_.size_bytes(), in_.size_bytes()};
     const BagChunk& chunk = message.chunk == kNoChunk ? whole : chunks_.at(message.chunk).chunk;
@@ -68,7 +75,6 @@ class McapFile : public BagReader {
     return std::string(cursor.take_bytes(wanted_bytes));
   }
 
- private:
   struct IndexedChunk {
     BagChunk chunk;
     bool has_index = false;

@@ -47,26 +47,26 @@ void put_header(MessageSink& sink, std::int64_t stamp_ns, const std::string& fra
   sink.put_text(frame);
 }
 
-/// Reads a position and a quaternion.
-Pose take_pose(MessageCursor& cursor, const StampedTransform& of,
-               const std::filesystem::path& file) {
+/// Reads a position and a quaternion; nothing where tf2 would ignore them.
+std::optional<Pose> take_pose(MessageCursor& cursor) {
   Eigen::Vector3d translation_m;
   for (int axis = 0; axis < 3; ++axis) translation_m[axis] = cursor.take<double>();
   Eigen::Vector4d xyzw;
   for (int i = 0; i < 4; ++i) xyzw[i] = cursor.take<double>();
-  if (const auto pose = pose_of(translation_m, xyzw)) return *pose;
-  throw DataError(file,
-                  "the transform from " + of.child + " to " + of.parent +
-                      " is not finite or its quaternion not of length 1",
-                  "a rigid motion");
+  // tf2 takes squares of the length within 0.01 of 1.
+  constexpr double kTolerance = 0.005;
+  return pose_of(translation_m, xyzw, kTolerance);
 }
 
-StampedTransform take_transform(MessageCursor& cursor, bool names_child,
-                                const std::filesystem::path& file) {
+/// Reads a transform between two frames, or a pose, whose frames may be empty.
+StampedTransform take_transform(MessageCursor& cursor, bool names_child, bool is_pose) {
   const Header header = take_header(cursor);
   StampedTransform transform{header.stamp_ns, header.frame, "", Pose::Identity()};
   if (names_child) transform.child = without_slash(cursor.take_text());
-  transform.parent_from_child = take_pose(cursor, transform, file);
+  const std::optional<Pose> pose = take_pose(cursor);
+  if (pose) transform.parent_from_child = *pose;
+  const bool has_frames = !transform.parent.empty() && !transform.child.empty();
+  transform.is_sound = pose && transform.parent != transform.child && (has_frames || is_pose);
   return transform;
 }
 
@@ -180,15 +180,14 @@ std::vector<StampedTransform> parse_transforms(std::string_view bytes, const Mes
                                                const std::filesystem::path& file) {
   const auto name = std::string(format.type.substr(format.type.find('/') + 1));
   MessageCursor cursor(bytes, format.encoding, file, "a " + name);
-  if (format.type == kTransformStamped || format.type == kOdometry) {
-    return {take_transform(cursor, true, file)};
-  }
-  if (format.type == kPoseStamped) return {take_transform(cursor, false, file)};
-  const bool is_path = format.type == kPath;
+  const bool is_path = format.type == kPath, is_odometry = format.type == kOdometry;
+  const bool is_pose = is_path || is_odometry || format.type == kPoseStamped;
+  const bool names_child = !is_pose || is_odometry;
   if (is_path) take_header(cursor);
+  const bool is_list = is_path || format.type == kTfMessage || format.type == kOldTfMessage;
   std::vector<StampedTransform> transforms;
-  for (auto left = cursor.take<std::uint32_t>(); left > 0; --left) {
-    transforms.push_back(take_transform(cursor, !is_path, file));
+  for (auto left = is_list ? cursor.take<std::uint32_t>() : 1; left > 0; --left) {
+    transforms.push_back(take_transform(cursor, names_child, is_pose));
   }
   return transforms;
 }

@@ -19,11 +19,11 @@ struct StampedTransform {
   std::string parent;  ///< frames without a leading slash
   std::string child;   ///< empty for a pose, whose message names no child
   Pose parent_from_child = Pose::Identity();
+  bool is_sound = true;  ///< else tf2 ignores it: not finite, no rotation, or without frames
 };
 
 /// Returns the transforms of a TFMessage, a TransformStamped, an Odometry, a PoseStamped or a Path.
-/// Throws DataError naming `file` for bytes that are cut off, numbers that are not finite, and a
-/// quaternion that is not of length 1.
+/// Throws DataError naming `file` for bytes that are cut off.
 std::vector<StampedTransform> parse_transforms(std::string_view bytes, const MessageFormat& format,
                                                const std::filesystem::path& file);
 std::string format_tf_message(const std::vector<StampedTransform>& transforms,

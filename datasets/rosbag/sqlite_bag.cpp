@@ -103,10 +103,7 @@ class SqliteBag : public BagReader {
 
   std::string read(const BagMessage& message, std::size_t most_bytes = SIZE_MAX) const override {
     const auto row = static_cast<std::int64_t>(message.offset_bytes);
-    std::string bytes = stored(row, most_bytes);
-    if (!is_zstd(bytes)) return bytes;
-    if (bytes.size() == most_bytes) bytes = stored(row, SIZE_MAX);
-    return decompress_zstd(bytes, most_bytes, path_);
+    return unpacked_message([&](std::size_t most) { return stored(row, most); }, most_bytes, path_);
   }
 
  private:

@@ -97,7 +97,7 @@ ScanDeskewer::ScanDeskewer(Deskew by, const std::vector<ScanEntry>& scans) : by_
         scan.stamp_ns.value_or(kUsualPeriod_ns * static_cast<std::int64_t>(stamps_ns_.size())));
     stamped.emplace_back(stamps_ns_.back(), poses_.back());
   }
-  track_ = PoseTrack(std::move(stamped));
+  tracks_ = ScanTracks(stamped);
 }
 
 /// The motion since the scan before; in the first scan that to the next.
@@ -115,7 +115,7 @@ bool ScanDeskewer::move_by(std::size_t scan_index, Frame& frame) const {
     return undistort(frame.points, frame.point_times_ns, stamp_ns, stamp_ns, pose_at);
   };
   if (by_ == Deskew::kPoses) {
-    return moves([&](std::int64_t at_ns) { return track_.at(at_ns); });
+    return moves([&](std::int64_t at_ns) { return tracks_.around(scan_index).at(at_ns); });
   }
   const std::optional<Motion> motion = motion_at(scan_index);
   return motion && moves([&](std::int64_t at_ns) {

@@ -47,7 +47,7 @@ class ScanDeskewer {
   Deskew by_ = Deskew::kNone;
   std::vector<Pose> poses_;
   std::vector<std::int64_t> stamps_ns_;
-  PoseTrack track_;
+  ScanTracks tracks_;
 };
 
 /// A sequence opened with `Reading::poses of ByOdometry` whose poses are found later. Scans

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <utility>
 
 #include "datasets/disk/files.hpp"
@@ -23,8 +24,6 @@ std::string lidars(std::string_view text) {
   return fmt::format("lidar {:016x}\n", XXH3_64bits(text.data(), text.size()));
 }
 
-double seconds(std::int64_t time_ns) { return static_cast<double>(time_ns) * 1e-9; }
-
 PoseTrack track_of(const PoseList& list) {
   std::vector<std::pair<std::int64_t, Pose>> stamped;
   for (std::size_t i = 0; i < list.poses.size(); ++i) {
@@ -33,12 +32,41 @@ PoseTrack track_of(const PoseList& list) {
   return PoseTrack(std::move(stamped));
 }
 
-Pose pose_at(const PoseTrack& track, std::int64_t stamp_ns, const fs::path& file) {
-  if (const auto pose = track.at(stamp_ns)) return *pose;
-  throw DataError(file, fmt::format("holds no pose around the scan of {:.6f} s", seconds(stamp_ns)),
-                  track.empty() ? "poses"
-                                : fmt::format("stamps that cover all scans, not {:.6f} to {:.6f} s",
-                                              seconds(track.first_ns()), seconds(track.last_ns())));
+/// How far stamps of poses lie behind those of the scans that they belong to, where that is about
+/// the same for all: the poses have the time of another clock, or of their recording.
+std::optional<std::int64_t> constant_offset_ns(const std::vector<std::int64_t>& poses_ns,
+                                               const std::vector<std::int64_t>& scans_ns) {
+  constexpr std::size_t kFewest = 5;
+  constexpr std::int64_t kLeast_ns = 5'000'000, kSpread_ns = 2'000'000;
+  if (poses_ns.size() != scans_ns.size() || scans_ns.size() < kFewest) return std::nullopt;
+  std::vector<std::int64_t> offsets_ns;
+  for (std::size_t k = 0; k < scans_ns.size(); ++k) {
+    offsets_ns.push_back(poses_ns[k] - scans_ns[k]);
+  }
+  std::ranges::sort(offsets_ns);
+  const std::int64_t middle_ns = offsets_ns[offsets_ns.size() / 2];
+  const std::size_t tenth = offsets_ns.size() / 10;
+  const std::int64_t spread_ns = offsets_ns[offsets_ns.size() - 1 - tenth] - offsets_ns[tenth];
+  if (std::abs(middle_ns) < kLeast_ns || spread_ns > kSpread_ns) return std::nullopt;
+  return middle_ns;
+}
+
+/// The unit in which stamps that were read as seconds fit those of the scans; empty for none.
+std::string fitting_unit(const std::vector<std::int64_t>& poses_ns,
+                         const std::vector<std::int64_t>& scans_ns) {
+  std::string unit;
+  std::ptrdiff_t most = static_cast<std::ptrdiff_t>(scans_ns.size() / 2);
+  std::int64_t divisor = 1;
+  for (const char* name : {"milliseconds", "microseconds", "nanoseconds"}) {
+    divisor *= 1000;
+    const std::int64_t from_ns = poses_ns.front() / divisor, to_ns = poses_ns.back() / divisor;
+    const auto inside = std::ranges::count_if(
+        scans_ns, [&](std::int64_t at_ns) { return from_ns <= at_ns && at_ns <= to_ns; });
+    if (inside <= most) continue;
+    most = inside;
+    unit = name;
+  }
+  return unit;
 }
 
 std::string hash_line(const fs::path& pose_file) {
@@ -79,9 +107,10 @@ class SensorPoseReader {
 
  private:
   void pair_with_scans(const PoseList& list, const std::vector<ScanEntry>& scans) {
+    for (std::string& remark : list.remarks(file_)) result_.remarks.push_back(std::move(remark));
     const std::vector<std::int64_t> stamps_ns = stamps_of(scans);
     if (!list.stamps_ns.empty() && !stamps_ns.empty()) {
-      interpolate(track_of(list), stamps_ns);
+      interpolate(list, stamps_ns);
       return;
     }
     if (list.poses.size() != scans.size()) {
@@ -94,36 +123,76 @@ class SensorPoseReader {
   }
 
   /// Takes the poses at the stamps of the scans.
-  void interpolate(const PoseTrack& track, const std::vector<std::int64_t>& stamps_ns) {
-    std::size_t interpolated = 0, unknown = 0;
+  void interpolate(const PoseList& list, const std::vector<std::int64_t>& stamps_ns) {
+    const PoseTrack track = track_of(list);
+    std::size_t interpolated = 0, outside = 0, in_gaps = 0;
     for (const std::int64_t stamp_ns : stamps_ns) {
-      result_.map_from_sensor.emplace_back(pose_at(track, stamp_ns, file_));
-      const std::int64_t gap_ns = track.gap_ns(stamp_ns);
-      if (gap_ns == 0) continue;
-      if (static_cast<double>(gap_ns) <= std::round(asked_.max_pose_gap_s * 1e9)) {
+      auto& pose = result_.map_from_sensor.emplace_back(track.near(stamp_ns, list.rounding_ns));
+      if (pose) continue;
+      pose = track.at(stamp_ns);
+      const auto gap_ns = static_cast<double>(track.gap_ns(stamp_ns));
+      if (!pose) {
+        ++outside;
+      } else if (gap_ns <= std::round(asked_.max_pose_gap_s * 1e9)) {
         ++interpolated;
       } else {
-        ++unknown;
-        result_.map_from_sensor.back().reset();
+        ++in_gaps;
+        pose.reset();
       }
     }
     const std::size_t scans = stamps_ns.size();
     result_.done.pairing = fmt::format("by stamp, {} of {} interpolated", interpolated, scans);
-    if (unknown > 0) result_.done.pairing += "; " + state_gaps(unknown, scans);
-  }
-
-  std::string state_gaps(std::size_t unknown, std::size_t scans) {
     const std::string gaps =
         fmt::format("lie between poses more than {:g} s apart", asked_.max_pose_gap_s);
-    if (unknown == scans) {
+    if (in_gaps == scans) {
       throw DataError(file_, "all scans " + gaps,
                       "more poses, or a longer " + option("max_pose_gap_s"));
     }
-    const std::string left_out =
-        fmt::format("{} of {} are left out", unknown, counted(scans, "scan"));
-    result_.remarks.push_back(fmt::format("{}: they {} in {} ({})", left_out, gaps,
-                                          file_.filename().string(), option("max_pose_gap_s")));
-    return left_out;
+    const std::size_t unknown = outside + in_gaps;
+    const std::string clocks = compare_clocks(list.stamps_ns, stamps_ns);
+    if (unknown > 0 && are_too_few(scans - unknown, scans)) {
+      refuse_few(list.stamps_ns, stamps_ns, scans - unknown, clocks);
+    }
+    if (!clocks.empty()) result_.remarks.push_back(clocks);
+    const auto left_out = [&](std::size_t count, const std::string& why) {
+      if (count == 0) return;
+      result_.remarks.push_back(
+          fmt::format("{} of {} are left out: they {}", count, counted(scans, "scan"), why));
+    };
+    const std::string name = file_.filename().string();
+    left_out(in_gaps, fmt::format("{} in {} ({})", gaps, name, option("max_pose_gap_s")));
+    left_out(outside, fmt::format("are before or after the poses of {}", name));
+    if (unknown > 0) {
+      result_.done.pairing +=
+          fmt::format("; {} of {} are left out", unknown, counted(scans, "scan"));
+    }
+  }
+
+  std::string compare_clocks(const std::vector<std::int64_t>& poses_ns,
+                             const std::vector<std::int64_t>& scans_ns) const {
+    const auto offset_ns = constant_offset_ns(poses_ns, scans_ns);
+    if (!offset_ns) return "";
+    return fmt::format(
+        "all stamps of {} are {:.1f} ms {} those of the scans: if these are times of "
+        "recording, every pose is of another moment",
+        file_.filename().string(), std::abs(seconds_of(*offset_ns)) * 1e3,
+        *offset_ns > 0 ? "after" : "before");
+  }
+
+  [[noreturn]] void refuse_few(const std::vector<std::int64_t>& poses_ns,
+                               const std::vector<std::int64_t>& scans_ns, std::size_t posed,
+                               const std::string& clocks) const {
+    if (poses_ns.empty()) throw DataError(file_, "holds no pose", "poses of the scans");
+    const std::string unit = fitting_unit(poses_ns, scans_ns);
+    throw DataError(
+        file_,
+        fmt::format("holds poses for {} of {}: its stamps are {:.6f} to {:.6f} s, those of the "
+                    "scans {:.6f} to {:.6f} s{}",
+                    posed, counted(scans_ns.size(), "scan"), seconds_of(poses_ns.front()),
+                    seconds_of(poses_ns.back()), seconds_of(scans_ns.front()),
+                    seconds_of(scans_ns.back()), clocks.empty() ? "" : "; " + clocks),
+        unit.empty() ? "stamps by the clock of the scans, or a longer " + option("max_pose_gap_s")
+                     : "stamps in seconds: these fit as " + unit);
   }
 
   void invert_or_not(PoseDirection direction) {
@@ -185,47 +254,9 @@ MissingPoses missing_poses(const fs::path& folder, const fs::path& file) {
 
 }  // namespace
 
-PoseTrack::PoseTrack(std::vector<std::pair<std::int64_t, Pose>> poses, bool always)
-    : poses_(std::move(poses)), always_(always) {
-  const auto stamp = [](const auto& stamped) { return stamped.first; };
-  std::ranges::stable_sort(poses_, {}, stamp);
-  // clang 14 does not compile std::ranges::unique of libstdc++ 12.
-  poses_.erase(std::unique(poses_.begin(), poses_.end(),
-                           [&](const auto& a, const auto& b) { return stamp(a) == stamp(b); }),
-               poses_.end());
-}
-
-bool PoseTrack::covers(std::int64_t from_ns, std::int64_t to_ns) const {
-  if (poses_.empty()) return false;
-  return always_ || (first_ns() <= from_ns && to_ns <= last_ns());
-}
-
-PoseTrack::Stamped::const_iterator PoseTrack::not_before(std::int64_t stamp_ns) const {
-  return std::ranges::lower_bound(poses_, stamp_ns, {},
-                                  [](const auto& stamped) { return stamped.first; });
-}
-
-std::int64_t PoseTrack::gap_ns(std::int64_t stamp_ns) const {
-  if (always_ || !covers(stamp_ns, stamp_ns)) return 0;
-  const auto after = not_before(stamp_ns);
-  return after->first == stamp_ns ? 0 : after->first - std::prev(after)->first;
-}
-
-std::optional<Pose> PoseTrack::at(std::int64_t stamp_ns) const {
-  if (!covers(stamp_ns, stamp_ns)) return std::nullopt;
-  if (always_) return poses_.front().second;
-  const auto after = not_before(stamp_ns);
-  if (after->first == stamp_ns) return after->second;
-  const auto& [before_ns, before] = *std::prev(after);
-  const double share =
-      static_cast<double>(stamp_ns - before_ns) / static_cast<double>(after->first - before_ns);
-  const Eigen::Quaterniond from(before.linear());
-  const Eigen::Quaterniond to(after->second.linear());
-  Pose pose = Pose::Identity();
-  pose.linear() = from.slerp(share, to).normalized().toRotationMatrix();
-  pose.translation() =
-      before.translation() + share * (after->second.translation() - before.translation());
-  return pose;
+bool are_too_few(std::size_t posed, std::size_t scans) {
+  constexpr std::size_t kMany = 10, kFew = 2, kShare = 50;
+  return posed == 0 || (scans >= kMany && (posed <= kFew || posed * kShare < scans));
 }
 
 void mark_as_lidars(const std::filesystem::path& file, std::string_view text) {

@@ -9,39 +9,14 @@
 #include <string_view>
 #include <vector>
 
+#include "datasets/sequence/pose_track.hpp"
 #include "datasets/sequence/sequence.hpp"
 #include "datasets/text/errors.hpp"
 
 namespace mosbench {
 
-/// The pose of one frame in another as a function of time.
-class PoseTrack {
- public:
-  PoseTrack() = default;
-  /// Poses may be in any order; of those with the same stamp the first is kept. `always` is for a
-  /// transform that does not change: one pose for all times.
-  explicit PoseTrack(std::vector<std::pair<std::int64_t, Pose>> poses, bool always = false);
-
-  bool empty() const { return poses_.empty(); }
-  std::int64_t first_ns() const { return poses_.front().first; }
-  std::int64_t last_ns() const { return poses_.back().first; }
-  bool covers(std::int64_t from_ns, std::int64_t to_ns) const;
-  /// Returns the pose stored for that time, bit for bit, else one interpolated between its
-  /// neighbours: positions linearly, rotations on the shortest arc. Returns nothing outside the
-  /// track: no pose is extrapolated.
-  std::optional<Pose> at(std::int64_t stamp_ns) const;
-  /// Returns the time between the two poses that `at` interpolates; 0 for a stored pose and outside
-  /// the track.
-  std::int64_t gap_ns(std::int64_t stamp_ns) const;
-
- private:
-  using Stamped = std::vector<std::pair<std::int64_t, Pose>>;
-  /// The first pose that is not before a time.
-  Stamped::const_iterator not_before(std::int64_t stamp_ns) const;
-
-  Stamped poses_;
-  bool always_ = false;
-};
+/// Returns whether so few of many scans have poses that these are not meant for them.
+bool are_too_few(std::size_t posed, std::size_t scans);
 
 /// Writes FILE.frame beside a file of poses in KITTI's rows, which have no room to say whose poses
 /// they are: that these are the lidar's, and the XXH3-64 of `text`, the content of FILE. Throws

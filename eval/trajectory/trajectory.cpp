@@ -169,6 +169,11 @@ TrajectoryPair paired(PosePath estimate, PosePath truth, const TrajectoryOptions
   check_camera(estimate, options.camera == CameraFrame::kEstimate, "estimate");
   check_camera(truth, options.camera == CameraFrame::kTruth, "truth");
   TrajectoryPair pair{.name = estimate.name, .estimate = {}, .truth = {}, .remarks = {}};
+  for (const PosePath* path : {&estimate, &truth}) {
+    for (std::string& remark : path->list.remarks(path->place)) {
+      pair.remarks.push_back(std::move(remark));
+    }
+  }
   if (!estimate.list.stamps_ns.empty() && !truth.list.stamps_ns.empty()) {
     pair_by_time(estimate.list, truth.list, estimate.place, options.max_time_difference_s, pair);
   } else if (estimate.list.poses.size() != truth.list.poses.size()) {

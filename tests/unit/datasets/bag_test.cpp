@@ -170,7 +170,7 @@ TEST_F(Bag, NamesWhatItLacks) {
   BagBytes late = bag;
   late.chunks.resize(1);
   late.chunks[0][0].message = tf_at(kStart + 5 * kPeriod, pose_at_x(0));
-  EXPECT_THAT(error_of(late), HasSubstr("no transform covers any of its 1 scan"));
+  EXPECT_THAT(error_of(late), HasSubstr("transforms cover 0 of 1 scan"));
 }
 
 TEST_F(Bag, RefusesWhatIsDamaged) {

@@ -1,0 +1,90 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <regex>
+#include <tuple>
+
+#include "datasets/rosbag/bag_reader.hpp"
+#include "datasets/text/errors.hpp"
+
+namespace mosbench {
+namespace fs = std::filesystem;
+namespace {
+
+/// What a name says of a part.
+struct PartName {
+  std::string drive;   ///< "drive" of drive_2024-01-01-12-00-00_0.bag
+  std::string ending;  ///< ".bag"
+  std::uint64_t number = 0;
+  auto operator<=>(const PartName&) const = default;
+};
+
+/// Returns nothing for a name without a number at its end. rosbag puts the time at which a part
+/// began before its number, rosbag2 that of the drive.
+std::optional<PartName> part_name(const fs::path& file) {
+  static const std::regex kPart(
+      R"((.*?)_?(?:\d{4}-\d\d-\d\d-\d\d-\d\d-\d\d)?_(\d{1,9})(\.bag|\.mcap|\.db3)(?:\.zstd)?)");
+  const std::string name = file.filename().string();
+  std::smatch found;
+  if (!std::regex_match(name, found, kPart)) return std::nullopt;
+  return PartName{found[1], found[3], std::stoull(found[2])};
+}
+
+/// Returns whether the second of two bags was recorded right after the first; not of one that
+/// cannot be read, which opening it says.
+bool follows(const fs::path& first, const fs::path& second) {
+  constexpr std::int64_t kMostBetween_ns = 2'000'000'000, kMostOverlap_ns = 100'000'000;
+  try {
+    const auto before = open_bag(first)->extent_ns(), after = open_bag(second)->extent_ns();
+    if (!before || !after) return false;
+    const std::int64_t between_ns = after->first - before->second;
+    return -kMostOverlap_ns <= between_ns && between_ns <= kMostBetween_ns &&
+           before->first < after->first;
+  } catch (const DataError&) {
+    return false;
+  }
+}
+
+}  // namespace
+
+std::vector<BagParts> group_parts(const std::vector<fs::path>& bags) {
+  std::map<PartName, fs::path> parts;
+  std::vector<BagParts> found;
+  for (const fs::path& bag : bags) {
+    const auto name = is_bag_folder(bag) ? std::nullopt : part_name(bag);
+    if (name && parts.emplace(*name, bag).second) continue;
+    found.push_back({"", {bag}});
+  }
+  const PartName* last = nullptr;
+  for (const auto& [name, file] : parts) {
+    const bool is_next =
+        last != nullptr && std::tie(last->drive, last->ending) == std::tie(name.drive, name.ending);
+    if (is_next && follows(found.back().files.back(), file)) {
+      found.back().name = name.drive;
+      found.back().files.push_back(file);
+    } else {
+      found.push_back({"", {file}});
+    }
+    last = &name;
+  }
+  // Files before folders, as they were given.
+  std::ranges::stable_sort(found, {}, [&](const BagParts& one) {
+    return std::ranges::find(bags, one.files.front()) - bags.begin();
+  });
+  return found;
+}
+
+std::unique_ptr<const BagReader> open_bag(const BagParts& parts) {
+  if (parts.files.size() == 1) return open_bag(parts.files.front());
+  std::vector<std::unique_ptr<const BagReader>> opened;
+  for (const fs::path& file : parts.files) opened.push_back(open_bag(file));
+  const fs::path& first = parts.files.front();
+  return join_bags(
+      first.parent_path() / (parts.name + "_*" + first.extension().string()), std::move(opened),
+      {fmt::format("{} files are read as one drive, as their names and times say: {} to {}",
+                   parts.files.size(), first.filename().string(),
+                   parts.files.back().filename().string())});
+}
+
+}  // namespace mosbench

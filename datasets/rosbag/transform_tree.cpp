@@ -1,0 +1,125 @@
+#include "datasets/rosbag/transform_tree.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <utility>
+
+#include "datasets/text/errors.hpp"
+
+namespace mosbench {
+namespace {
+
+std::string extent_of(const PoseTrack& track) {
+  if (track.first_ns() == track.last_ns())
+    return fmt::format("at {:.3f} s alone", seconds_of(track.first_ns()));
+  return fmt::format("from {:.3f} to {:.3f} s", seconds_of(track.first_ns()),
+                     seconds_of(track.last_ns()));
+}
+
+}  // namespace
+
+std::optional<Pose> TransformChain::at(std::int64_t stamp_ns) const {
+  std::optional<Pose> product;
+  for (const Link& link : links_) {
+    const std::optional<Pose> pose = link.track.at(stamp_ns);
+    if (!pose || link.track.has_hole(stamp_ns, stamp_ns, most_gap_ns_)) return std::nullopt;
+    product = product ? Pose(*product * *pose) : *pose;
+  }
+  return product ? product : Pose::Identity();
+}
+
+bool TransformChain::covers(std::int64_t from_ns, std::int64_t to_ns) const {
+  return std::ranges::all_of(links_, [&](const Link& link) {
+    return link.track.covers(from_ns, to_ns) && !link.track.has_hole(from_ns, to_ns, most_gap_ns_);
+  });
+}
+
+bool TransformChain::moves() const {
+  return std::ranges::any_of(links_, [](const Link& link) { return link.track.moves(); });
+}
+
+std::string TransformChain::lacks(std::int64_t stamp_ns) const {
+  for (const Link& link : links_) {
+    if (!link.track.covers(stamp_ns, stamp_ns)) {
+      return fmt::format("{} is known {}", link.name, extent_of(link.track));
+    }
+    if (link.track.has_hole(stamp_ns, stamp_ns, most_gap_ns_)) {
+      return fmt::format("{} has holes of more than {:g} s", link.name, seconds_of(most_gap_ns_));
+    }
+  }
+  return "";
+}
+
+TransformTree::TransformTree(const std::vector<StampedTransform>& transforms,
+                             const std::vector<StampedTransform>& always,
+                             const std::filesystem::path& file)
+    : file_(file) {
+  using Edge = std::pair<std::string, std::string>;
+  const auto add = [&](const std::vector<StampedTransform>& source, bool holds_always) {
+    std::map<Edge, std::vector<std::pair<std::int64_t, Pose>>> poses_of;
+    for (const StampedTransform& transform : source) {
+      poses_of[{transform.child, transform.parent}].emplace_back(transform.stamp_ns,
+                                                                 transform.parent_from_child);
+    }
+    for (auto& [edge, poses] : poses_of) {
+      PoseTrack& track = parents_of_[edge.first][edge.second];
+      if (!track.moves()) track = PoseTrack(std::move(poses), holds_always);
+    }
+  };
+  add(transforms, false);
+  add(always, true);
+}
+
+std::vector<std::string> TransformTree::way(const std::string& from, const std::string& to) const {
+  std::map<std::string, std::string> below = {{from, ""}};
+  std::deque<std::string> open = {from};
+  while (!open.empty() && !below.contains(to)) {
+    const auto parents = parents_of_.find(open.front());
+    if (parents != parents_of_.end()) {
+      for (const auto& [parent, track] : parents->second) {
+        if (below.emplace(parent, open.front()).second) open.push_back(parent);
+      }
+    }
+    open.pop_front();
+  }
+  std::vector<std::string> frames;
+  if (!below.contains(to)) return frames;
+  for (std::string frame = to; frame != from; frame = below.at(frame)) frames.push_back(frame);
+  frames.push_back(from);
+  std::ranges::reverse(frames);
+  return frames;
+}
+
+std::vector<std::string> TransformTree::ancestors(const std::string& from) const {
+  std::vector<std::string> frames = {from};
+  for (auto parents = parents_of_.find(from);
+       frames.back() != "map" && parents != parents_of_.end();
+       parents = parents_of_.find(frames.back())) {
+    const std::string& parent = parents->second.begin()->first;
+    if (parents->second.size() > 1) {
+      throw DataError(file_,
+                      "frame " + frames.back() + " has the parents " + parent + " and " +
+                          std::next(parents->second.begin())->first,
+                      "one, or the map's frame in " + option("map_frame"));
+    }
+    // Parents may form a loop in a damaged bag.
+    if (std::ranges::find(frames, parent) != frames.end()) break;
+    frames.push_back(parent);
+  }
+  return frames;
+}
+
+TransformChain TransformTree::chain(const std::vector<std::string>& way, double max_gap_s) const {
+  TransformChain chain;
+  chain.most_gap_ns_ = std::llround(std::min(max_gap_s * 1e9, 9e18));
+  for (std::size_t i = 0; i + 1 < way.size(); ++i) {
+    chain.links_.insert(chain.links_.begin(),
+                        {way[i + 1] + " from " + way[i], parents_of_.at(way[i]).at(way[i + 1])});
+  }
+  return chain;
+}
+
+}  // namespace mosbench

@@ -1,0 +1,73 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "datasets/layouts/dataset.hpp"
+#include "tests/unit/datasets/drive_bags.hpp"
+
+namespace mosbench {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+
+class BagParts : public BagPoses {};
+
+INSTANTIATE_TEST_SUITE_P(Of, BagParts,
+                         testing::Values(BagKind::kRos1, BagKind::kMcap,
+                                         BagKind::kMcapWithoutChunks, BagKind::kDb3));
+
+TEST_P(BagParts, OfADriveAreOneDrive) {
+  const bool is_ros1 = GetParam() == BagKind::kRos1;
+  const std::vector<std::string> names =
+      is_ros1 ? std::vector<std::string>{"a_2024-01-01-12-00-00_0", "a_2024-01-01-12-00-30_1",
+                                         "a_2024-01-01-12-01-00_2"}
+              : std::vector<std::string>{"a_9", "a_10", "a_11"};
+  const auto part = [](int from) {
+    Drive drive;
+    if (from == 0) add_tf(drive, {at(0), "base", "lidar", pose_at_x(10.0)}, "/tf_static");
+    for (int k = from; k < from + 4; ++k) {
+      add_cloud(drive, at(k));
+      add_tf(drive, {at(k), "map", "base", pose_at_x(k)});
+    }
+    return drive;
+  };
+  for (int i = 0; i < 3; ++i) {
+    const auto file = write(part(4 * i), names[static_cast<std::size_t>(i)]);
+    std::filesystem::create_directories(folder_ / "drive");
+    std::filesystem::rename(file, folder_ / "drive" / file.filename());
+  }
+  const Dataset dataset = open_dataset(folder_ / "drive", {});
+  ASSERT_EQ(dataset.sequences.size(), 1U);
+  EXPECT_EQ(dataset.sequences[0]->name(), "drive");
+  EXPECT_EQ(dataset.sequences[0]->size(), 12U);
+  EXPECT_EQ(xs_of(*dataset.sequences[0]).back(), 21.0);
+  EXPECT_EQ(dataset.sequences[0]->recording().files.size(), 3U);
+  EXPECT_THAT(dataset.sequences[0]->remarks(),
+              Contains(HasSubstr("3 files are read as one drive")));
+}
+
+TEST_P(BagParts, AreNoneWhereTheirTimesAreApart) {
+  std::filesystem::create_directories(folder_ / "drives");
+  const auto add_part = [&](const std::string& name, double from) {
+    Drive drive;
+    for (int k = 0; k < 3; ++k) {
+      add_cloud(drive, at(from + k));
+      add_tf(drive, {at(from + k), "map", "lidar", pose_at_x(k)});
+    }
+    const auto file = write(drive, name);
+    std::filesystem::rename(file, folder_ / "drives" / file.filename());
+  };
+  add_part("run_0", 0);
+  add_part("run_1", 0);
+  add_part("run_2", 100);
+  add_part("other_3", 103);
+  const Dataset dataset = open_dataset(folder_ / "drives", {});
+  EXPECT_EQ(dataset.sequences.size(), 4U);
+  EXPECT_EQ(dataset.sequences[0]->name(), "other_3");
+}
+
+}  // namespace
+}  // namespace mosbench
