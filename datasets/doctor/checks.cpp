@@ -122,6 +122,11 @@ std::vector<Check> table() {
           "scan {after_gap} comes {longest_step_s:.2f} s after the one before it, others "
           "{step_s:.2f} s; expected no gap in time"),
 
+      row(kStill, "equal poses", {{"equal_poses", '>', 1}},
+          "all {equal_poses} poses are equal; expected those of a sensor that moves, unless it "
+          "stood still",
+          false, kNote),
+
       row(kPoses, "no rotation", {{"missing_turn", '>', kMoves}},
           "all poses have the same rotation, but the scans show that the sensor turns; expected "
           "rotations",

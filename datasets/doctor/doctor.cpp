@@ -9,7 +9,6 @@
 #include "datasets/disk/files.hpp"
 #include "datasets/formats/pose_file.hpp"
 #include "datasets/layouts/folder_search.hpp"
-#include "datasets/layouts/simulated_origin.hpp"
 #include "datasets/sequence/pose_source.hpp"
 #include "datasets/text/errors.hpp"
 
@@ -137,13 +136,15 @@ class Examination {
       part.scans = sequence.size();
       part.reading = sequence.reading();
       part.remarks = sequence.remarks();
+      const std::vector<std::string>& doubts = sequence.recording().doubts;
+      part.remarks.insert(part.remarks.end(), doubts.begin(), doubts.end());
       part.labelled_scans = scans_with_truth(sequence).size();
       part.facts = folder_facts_[folders[i].name];
       part.has_poses = !options.reading.is_by_odometry();
       check_points(sequence, folder, expected, part);
       if (!part.has_poses) continue;
       check_poses(sequence, folder, part);
-      if (!simulated_origin(path_)) check_published(sequence, folder, expected, part);
+      if (!sequence.simulated()) check_published(sequence, folder, expected, part);
     }
   }
 

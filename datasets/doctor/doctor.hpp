@@ -63,6 +63,23 @@ Checkup check_up(
     const std::filesystem::path& path, const OpenOptions& options,
     const std::function<void()>& at_each_scan = [] {});
 
+/// Returns the doubts of a recording, and what its stamps and poses show: no scan is read.
+std::vector<std::string> doubts_of(const Sequence& sequence);
+
+/// Finds scans that were measured over longer than the time to the next one, as they are read.
+class SweepWatch {
+ public:
+  explicit SweepWatch(const Sequence& sequence) : sequence_(sequence) {}
+  void add(std::size_t scan_index, const Frame& frame);
+  /// Returns a sentence; nothing where there are none.
+  std::optional<std::string> doubt() const;
+
+ private:
+  const Sequence& sequence_;
+  std::size_t long_sweeps_ = 0, first_ = 0;
+  std::int64_t first_sweep_ns_ = 0;
+};
+
 /// A sentence for poses that were turned from the camera to the lidar by the Tr in calib.txt, where
 /// scans overlap clearly better under the rows as they stand in the file: nobody said that they are
 /// the camera's, and they seem to be the lidar's. Reads some scans, at most 10. Throws DataError.

@@ -63,6 +63,7 @@ enum class Subject : std::uint8_t {
   kPoints,
   kLabelIds,
   kStamps,
+  kStill,  ///< poses before any scan is read, which may tell whether the sensor stands
   kPoses,
   kRows,  ///< of sound poses: others have detours of their own
   kLabels,

@@ -9,6 +9,7 @@
 
 #include "datasets/disk/files.hpp"
 #include "datasets/text/errors.hpp"
+#include "datasets/text/json_text.hpp"
 #include "datasets/text/text.hpp"
 
 namespace mosbench {
@@ -111,6 +112,7 @@ class NuscenesRowReader final : public nlohmann::json_sax<nlohmann::json> {
       if (values[i].key == name)
         row_.refuse("key " + mosbench::quoted(name) + " is there twice", "one");
     }
+    if (row_.size_ == kMostKeys) row_.refuse("has more than 1000 keys", "fewer");
     if (row_.size_ == values.size()) values.emplace_back();
     NuscenesRow::Value& value = values[row_.size_++];
     value.key = name;
@@ -140,11 +142,12 @@ class NuscenesRowReader final : public nlohmann::json_sax<nlohmann::json> {
   bool parse_error(std::size_t, const std::string&,
                    const nlohmann::json::exception& error) override {
     // It names the line itself, which is no index of a row.
-    throw DataError(file_, std::string("is no JSON (") + error.what() + ")", "JSON");
+    throw DataError(file_, "is no JSON (" + mosbench::sentence_of(error) + ")", "JSON");
   }
 
  private:
   using Kind = NuscenesRow::Kind;
+  static constexpr std::size_t kMostKeys = 1000;
   static constexpr int kOutside = 0, kInTable = 1, kInRow = 2, kInList = 3;
 
   NuscenesRow::Value& current() { return row_.values_[row_.size_ - 1]; }
@@ -179,6 +182,8 @@ void parse_nuscenes_table(std::istream& bytes, const std::filesystem::path& file
                           const std::function<void(const NuscenesRow&)>& take) {
   NuscenesRowReader reader(file, take);
   nlohmann::json::sax_parse(bytes, &reader);
+  // The library takes a NUL for the end.
+  if (!bytes.eof()) throw DataError(file, "is no JSON (it holds a NUL)", "JSON");
 }
 
 void read_nuscenes_table(const std::filesystem::path& file,

@@ -118,6 +118,15 @@ void add_stamped(const std::vector<std::string_view>& words, const TextLine& lin
   list.stamps_ns.push_back(stamp_ns);
 }
 
+/// Checks the last pose, which stands in `line`.
+void check_near_first(const std::vector<Pose>& poses, const TextLine& line,
+                      const std::filesystem::path& file) {
+  const double far_m = distance_m(poses.front(), poses.back());
+  if (far_m <= kFarthestPose_m) return;
+  throw DataError(file, line.number, fmt::format("is {:g} m from the first pose", far_m),
+                  fmt::format("at most {:g} m", kFarthestPose_m));
+}
+
 }  // namespace
 
 bool is_rotation(const Eigen::Matrix3d& matrix) {
@@ -152,10 +161,15 @@ std::string format_pose_row(const Pose& pose) {
   return row;
 }
 
+double distance_m(const Pose& from, const Pose& to) {
+  return (to.translation() - from.translation()).stableNorm();
+}
+
 std::vector<Pose> parse_poses(std::string_view text, const std::filesystem::path& file) {
   std::vector<Pose> poses;
   for (const TextLine& line : split_lines(text, file)) {
     poses.push_back(parse_pose_row(line.text, file, line.number));
+    check_near_first(poses, line, file);
   }
   return poses;
 }
@@ -244,6 +258,7 @@ PoseList parse_pose_list(std::string_view text, std::optional<PoseFormat> format
       decimals = std::max(decimals, decimals_of(words.front()));
       add_stamped(words, line, list, file);
     }
+    check_near_first(list.poses, line, file);
   }
   list.rounding_ns = rounding_of(decimals);
   return list;

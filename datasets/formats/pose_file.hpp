@@ -38,9 +38,14 @@ inline std::optional<Pose> pose_of(const Eigen::Vector3d& translation_m,
 inline constexpr double kRotationTolerance = 1e-3;
 bool is_rotation(const Eigen::Matrix3d& matrix);
 
+/// No recording reaches farther from its first pose: a quarter of the Earth's circumference.
+inline constexpr double kFarthestPose_m = 1e7;
+double distance_m(const Pose& from, const Pose& to);
+
 /// Parses poses in KITTI's form: a row-major 3x4 matrix in 12 numbers per line, metres, kept bit
 /// for bit as parsed to double. Throws DataError with the line for another count of numbers, text,
-/// numbers that are not finite, and a rotation part that is no rotation.
+/// numbers that are not finite, a rotation part that is no rotation, and a pose that is farther
+/// than kFarthestPose_m from the first.
 std::vector<Pose> parse_poses(std::string_view text, const std::filesystem::path& file);
 /// Formats with the shortest decimals that read back as the same doubles.
 std::string format_poses(std::span<const Pose> poses);

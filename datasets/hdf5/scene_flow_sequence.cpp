@@ -109,7 +109,7 @@ class SceneFlowSequence : public Sequence {
              "a stamp per scan");
     }
     if (!empty.empty()) {
-      mutable_recording().remarks.push_back(
+      mutable_recording().doubts.push_back(
           fmt::format("{} groups without arrays are left out, the first is {}", empty.size(),
                       shown_in_line(empty.front()->name)));
     }

@@ -17,9 +17,9 @@
 #include "datasets/formats/kitti_calib.hpp"
 #include "datasets/formats/point_range.hpp"
 #include "datasets/layouts/layout.hpp"
-#include "datasets/layouts/simulated_origin.hpp"
 #include "datasets/sequence/fingerprint.hpp"
 #include "datasets/sequence/pose_source.hpp"
+#include "datasets/sequence/simulated_origin.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
 
@@ -127,11 +127,18 @@ std::vector<Target> targets_of(const Dataset& dataset, const LayoutWriter& write
   return targets;
 }
 
+/// Returns where the mark of a simulated sequence is written: in its folder, or beside its file.
+fs::path marker_of(const Target& target) {
+  const bool is_file = target.pose_file == target.folder;
+  return (is_file ? target.folder.parent_path() : target.folder) / kSimulatedMarker;
+}
+
 /// Returns every file that may be written, named from the root.
 std::set<fs::path> expected_files(const Dataset& dataset, const LayoutWriter& writer,
                                   const std::vector<Target>& targets) {
   std::set<fs::path> files = {kSimulatedMarker};
   for (std::size_t i = 0; i < targets.size(); ++i) {
+    files.insert(marker_of(targets[i]));
     files.insert({targets[i].pose_file, pose_origin_file(targets[i].pose_file)});
     for (const fs::path& file : writer.files(*dataset.sequences[i])) {
       files.insert((targets[i].folder / file).lexically_normal());
@@ -159,15 +166,29 @@ std::string disturbance_of(const Dataset& dataset) {
   return perturb ? to_string(*perturb) : "";
 }
 
-void write_shared_files(const Dataset& dataset, const LayoutWriter& writer,
-                        const ConvertOptions& options) {
-  if (auto origin = simulated_origin(dataset.root)) {
-    origin->layout = options.layout;
-    if (const std::string perturb = disturbance_of(dataset); !perturb.empty()) {
+/// Marks what is made of simulated sequences, and the whole where all of them are.
+void write_markers(const Dataset& dataset, const std::vector<Target>& targets,
+                   const ConvertOptions& options) {
+  const std::string perturb = disturbance_of(dataset);
+  bool all = true;
+  std::string text;
+  for (std::size_t i = 0; i < targets.size(); ++i) {
+    std::optional<SimulatedOrigin> origin = dataset.sequences[i]->simulated();
+    all = all && origin;
+    if (!origin) continue;
+    origin->layout = to_string(options.layout);
+    if (!perturb.empty()) {
       origin->perturb = origin->perturb ? *origin->perturb + ", then " + perturb : perturb;
     }
-    write_file_atomic(options.out / kSimulatedMarker, format_simulated_origin(*origin));
+    text = format_simulated_origin(*origin);
+    write_file_atomic(options.out / marker_of(targets[i]), text);
   }
+  if (all) write_file_atomic(options.out / kSimulatedMarker, text);
+}
+
+void write_shared_files(const Dataset& dataset, const LayoutWriter& writer,
+                        const std::vector<Target>& targets, const ConvertOptions& options) {
+  write_markers(dataset, targets, options);
   if (writer.write_splits != nullptr) writer.write_splits(options.out, split_numbers(dataset));
 }
 
@@ -265,7 +286,7 @@ std::vector<std::string> convert(
     if (progress) progress(++done, total);
   };
   try {
-    write_shared_files(dataset, writer, options);
+    write_shared_files(dataset, writer, targets, options);
     for (std::size_t i = 0; i < dataset.sequences.size(); ++i) {
       const Sequence& sequence = *dataset.sequences[i];
       const fs::path pose_file = options.out / targets[i].pose_file;

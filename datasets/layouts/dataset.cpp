@@ -9,12 +9,13 @@
 #include <utility>
 
 #include "datasets/disk/files.hpp"
+#include "datasets/formats/pose_file.hpp"
 #include "datasets/layouts/convert.hpp"
 #include "datasets/layouts/folder_search.hpp"
 #include "datasets/layouts/layout.hpp"
-#include "datasets/layouts/simulated_origin.hpp"
 #include "datasets/perturb/perturbation.hpp"
 #include "datasets/sequence/corrected_sequence.hpp"
+#include "datasets/sequence/simulated_origin.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
 
@@ -41,11 +42,14 @@ std::string what_is_there(const std::filesystem::path& path) {
 }
 
 const Layout& recognise(const std::filesystem::path& path, std::vector<std::string>& remarks) {
-  const auto origin = is_scan(path) ? std::nullopt : simulated_origin(path);
-  if (origin) {
-    remarks.push_back("recognised as " + std::string(to_string(origin->layout)) +
-                      ": it is simulated in this layout");
-    return layout_of(origin->layout);
+  if (const auto origin = simulated_origin(path)) {
+    const auto kind = dataset_kind_from_string(origin->layout);
+    if (!kind) {
+      throw DataError(path / kSimulatedMarker, "names the layout '" + origin->layout + "'",
+                      "one of " + dataset_kind_names());
+    }
+    remarks.push_back("recognised as " + origin->layout + ": it is simulated in this layout");
+    return layout_of(*kind);
   }
   for (const Evidence evidence : {Evidence::kFolders, Evidence::kName, Evidence::kNone}) {
     for (const Layout* layout : layouts()) {
@@ -208,6 +212,38 @@ void check_point_times(const Reading& asked, const Layout& layout, const Sequenc
   if (!why.empty()) throw UsageError(option("point_times", "column") + ": " + why);
 }
 
+/// Returns what made a sequence. A data set with a marker of its own alone was simulated before
+/// sequences had them, or got recorded ones since: neither may pass for the other.
+std::optional<SimulatedOrigin> origin_of(const Sequence& sequence, const SequenceFolder& folder,
+                                         const Layout& layout, const std::filesystem::path& root) {
+  auto origin = simulated_origin(folder.folder);
+  const Recording& recording = sequence.recording();
+  if (!origin && !recording.scans.empty() && recording.scans.front().file) {
+    origin = origin_of_file(*recording.scans.front().file, layout.scan_folders);
+  } else if (!origin && !recording.files.empty()) {
+    origin = origin_of_file(recording.files.front(), 0);
+  }
+  if (!origin && simulated_origin(root)) {
+    throw DataError(
+        folder.folder,
+        fmt::format("has no {0}, but the data set {1} has", kSimulatedMarker, root.string()),
+        "one in each simulated sequence: mosbench simulate, called as before, adds it");
+  }
+  return origin;
+}
+
+/// Throws DataError for a sequence whose poses no sensor can have had.
+void check_positions(const Sequence& sequence, const SequenceFolder& folder) {
+  const std::vector<ScanEntry>& scans = sequence.recording().scans;
+  for (const ScanEntry& scan : scans) {
+    const double far_m = distance_m(scan.map_from_sensor, scans.front().map_from_sensor);
+    if (far_m <= kFarthestPose_m) continue;
+    throw DataError(folder.folder,
+                    fmt::format("the pose of scan {} is {:g} m from the first", scan.stem, far_m),
+                    fmt::format("at most {:g} m", kFarthestPose_m));
+  }
+}
+
 /// Takes scans that were lost out of the splits.
 void keep_left_scans(Dataset& dataset) {
   for (Split& split : dataset.splits) {
@@ -266,6 +302,8 @@ Dataset open_dataset(const std::filesystem::path& path, const OpenOptions& optio
     const Reading reading = reading_of(folder, options.reading);
     check_point_times(reading, layout, folder);
     std::unique_ptr<Sequence> sequence = layout.open(folder, reading);
+    check_positions(*sequence, folder);
+    sequence->set_simulated(origin_of(*sequence, folder, layout, path));
     if (reading.hdl64_correction) sequence = with_hdl64_correction(std::move(sequence));
     dataset.sequences.push_back(with_point_times(std::move(sequence), reading));
   }

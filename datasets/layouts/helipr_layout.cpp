@@ -99,9 +99,9 @@ class HeliprSequence : public Sequence {
       throw DataError(file, "has a pose of no scan", "stamps of the scans");
     }
     if (!recording.left_out.empty()) {
-      recording.remarks.push_back(fmt::format("left out {} of {}: no pose in {}",
-                                              recording.left_out.size(), counted(scans, "scan"),
-                                              file.filename().string()));
+      recording.doubts.push_back(fmt::format("left out {} of {}: no pose in {}",
+                                             recording.left_out.size(), counted(scans, "scan"),
+                                             file.filename().string()));
     }
   }
 
@@ -261,6 +261,7 @@ const Layout& helipr_layout() {
       .open = open_helipr,
       .evidence = Evidence::kFolders,
       .recognise = recognise_helipr,
+      .scan_folders = 2,
       .writer = LayoutWriter{.open = write_as_helipr,
                              .folder = flat_folder,
                              .files = files_of_helipr,

@@ -126,9 +126,9 @@ class KittiDriveSequence : public Sequence {
       throw DataError(drive.pose_file, "belongs to no scan", "packets of the frames of the scans");
     }
     if (!recording.left_out.empty()) {
-      recording.remarks.push_back(counted(recording.left_out.size(),
-                                          "scan has no packet in oxts and is left out",
-                                          "scans have no packet in oxts and are left out"));
+      recording.doubts.push_back(counted(recording.left_out.size(),
+                                         "scan has no packet in oxts and is left out",
+                                         "scans have no packet in oxts and are left out"));
     }
   }
 
@@ -311,6 +311,7 @@ const Layout& kitti_raw_layout() {
       },
       .evidence = Evidence::kFolders,
       .recognise = recognise_kitti_raw,
+      .scan_folders = 2,
       .writer = LayoutWriter{.open = write_as_kitti_raw,
                              .folder = kitti_raw_folder,
                              .files = files_of_kitti_raw,
@@ -347,6 +348,7 @@ const Layout& kitti_tracking_layout() {
       .evidence = Evidence::kFolders,
       .recognise = recognise_kitti_tracking,
       .recognise_part = recognise_part_of_kitti_tracking,
+      .scan_folders = 3,
       .writer =
           LayoutWriter{.open = write_as_kitti_tracking,
                        .folder = flat_folder,

@@ -120,9 +120,10 @@ struct Layout {
   /// The same of a data set that lacks files or has damaged ones, which opening it names; asked
   /// where nothing that can be read is there. Null where there is no such.
   std::optional<std::string> (*recognise_part)(const std::filesystem::path& path) = nullptr;
-  std::optional<LayoutWriter> writer = {};          ///< nothing for a data set that is only read
-  bool truth_by_speed = false;                      ///< Reading::moving_speed_m_s is for it
-  std::vector<RelatedSet> related = {};             ///< that the same reader reads
+  int scan_folders = 1;                     ///< from the sequence's folder down to its scan files
+  std::optional<LayoutWriter> writer = {};  ///< nothing for a data set that is only read
+  bool truth_by_speed = false;              ///< Reading::moving_speed_m_s is for it
+  std::vector<RelatedSet> related = {};     ///< that the same reader reads
   std::optional<LayoutSimulation> simulation = {};  ///< with a writer; nothing: is not simulated
 
   DatasetKind kind() const { return {name}; }

@@ -93,7 +93,7 @@ class NuscenesSequence : public Sequence {
       scans_.push_back(&scan);
     }
     if (absent > 0) {
-      mutable_recording().remarks.push_back(fmt::format(
+      mutable_recording().doubts.push_back(fmt::format(
           "left out {} on the disk", counted(absent, "sweep of sample_data.json that is not",
                                              "sweeps of sample_data.json that are not")));
     }
@@ -298,6 +298,7 @@ const Layout& nuscenes_layout() {
       .evidence = Evidence::kFolders,
       .recognise = recognise_nuscenes,
       .recognise_part = recognise_part_of_nuscenes,
+      .scan_folders = 2,
       .writer = LayoutWriter{.open = write_as_nuscenes,
                              .folder = flat_folder,
                              .files = files_of_nuscenes,

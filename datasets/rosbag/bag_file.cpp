@@ -239,8 +239,8 @@ class BagFile : public BagReader {
   void add_connection(std::string_view header, std::string_view content) {
     const BagFields fields(header, path_);
     const BagFields description(content, path_);
-    connections_.push_back({fields.u32("conn"), std::string(fields.text("topic")),
-                            std::string(description.text("type"))});
+    add({fields.u32("conn"), std::string(fields.text("topic")),
+         std::string(description.text("type"))});
   }
 
   void check_counts(std::uint32_t connections, std::uint32_t chunks) const {
@@ -248,8 +248,8 @@ class BagFile : public BagReader {
       throw DataError(path_, fmt::format("has {} chunks", chunks_.size()),
                       fmt::format("{} by its header", chunks));
     }
-    if (connections_.size() != connections) {
-      throw DataError(path_, fmt::format("has {} connections", connections_.size()),
+    if (this->connections().size() != connections) {
+      throw DataError(path_, fmt::format("has {} connections", this->connections().size()),
                       fmt::format("{} by its header", connections));
     }
     if (messages_.size() != summarised_messages_) {

@@ -38,9 +38,7 @@ class JoinedBag : public BagReader {
     for (const auto& part : parts_) {
       files_.insert(files_.end(), part->files().begin(), part->files().end());
       remarks_.insert(remarks_.end(), part->remarks().begin(), part->remarks().end());
-      for (const BagConnection& connection : part->connections()) {
-        connections_.push_back(connection);
-      }
+      for (const BagConnection& connection : part->connections()) add(connection);
     }
   }
 
@@ -100,7 +98,7 @@ class UnpackedBag : public BagReader {
     const fs::path unpacked = fmt::format("/proc/self/fd/{}", unpacked_.number());
     decompress_zstd_file(file, unpacked);
     bag_ = naming(path_, [&] { return opened(unpacked); });
-    connections_ = bag_->connections();
+    for (const BagConnection& connection : bag_->connections()) add(connection);
     remarks_ = bag_->remarks();
     const std::string number = unpacked.filename().string();
     for (std::string& remark : remarks_) {
@@ -211,8 +209,14 @@ std::vector<BagConnection> BagReader::connections_of_type(std::string_view type)
 }
 
 const BagConnection* BagReader::find_connection(std::uint32_t id) const {
-  const auto found = std::ranges::find(connections_, id, &BagConnection::id);
-  return found == connections_.end() ? nullptr : &*found;
+  const auto found = position_.find(id);
+  return found == position_.end() ? nullptr : &connections_[found->second];
+}
+
+bool BagReader::add(BagConnection connection) {
+  const bool is_new = position_.emplace(connection.id, connections_.size()).second;
+  connections_.push_back(std::move(connection));
+  return is_new;
 }
 
 MessageFormat BagReader::format_of(const BagMessage& message) const {

@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -66,8 +67,14 @@ class BagReader {
   std::filesystem::path path_;
   std::vector<std::filesystem::path> files_;
   std::vector<std::string> remarks_;
-  std::vector<BagConnection> connections_;
   std::vector<BagMessage> messages_;  ///< of all topics
+
+  /// Adds a connection; returns false where one of its id is there, which the others find.
+  bool add(BagConnection connection);
+
+ private:
+  std::vector<BagConnection> connections_;
+  std::unordered_map<std::uint32_t, std::size_t> position_;  ///< by id
 };
 
 /// Open a ROS 1 bag of version 2.0; a ROS 2 bag in one MCAP file (mcap.dev); one in a database of

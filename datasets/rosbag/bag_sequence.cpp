@@ -129,12 +129,12 @@ void BagSequence::open_transforms(const Reading& asked) {
   std::erase_if(scans_, [&](const Scan& scan) { return scan.frame != frame; });
   Recording& recording = mutable_recording();
   if (scans_.size() < all) {
-    recording.remarks.push_back(fmt::format("{} of {} are left out: they name no frame",
-                                            all - scans_.size(), counted(all, "scan")));
+    recording.doubts.push_back(fmt::format("{} of {} are left out: they name no frame",
+                                           all - scans_.size(), counted(all, "scan")));
   }
   BagTransforms transforms = bag_transforms(*bag_, asked, frame);
   recording.reading.poses.source = transforms.source;
-  state_pose_origin(bag_->files().front(), recording.reading.poses, recording.remarks);
+  state_pose_origin(bag_->files().front(), recording.reading.poses, recording.doubts);
   recording.remarks.push_back("poses from the bag: " + transforms.source);
   for (std::string& remark : transforms.remarks) recording.remarks.push_back(std::move(remark));
   transforms_ = std::move(transforms.map_from_sensor);
@@ -175,7 +175,7 @@ void BagSequence::leave_out_uncovered() {
         fmt::format("poses while the scans are taken, another frame in {}, a longer {}, or {}",
                     option("map_frame"), option("max_pose_gap_s"), option("poses", "FILE")));
   }
-  mutable_recording().remarks.push_back(fmt::format(
+  mutable_recording().doubts.push_back(fmt::format(
       "{} of {} are left out: no transform covers them{}{}", all.size() - scans_.size(),
       counted(all.size(), "scan"), undistorts_ ? " from first to last point" : "", why));
 }

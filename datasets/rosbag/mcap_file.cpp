@@ -209,7 +209,7 @@ class McapFile : public BagReader {
       // Another name, so that nothing parses it and errors tell it.
       connection.type += fmt::format(" as {}", encoding);
     }
-    connections_.push_back(std::move(connection));
+    add(std::move(connection));
   }
 
   void add_message(std::string_view head, std::size_t chunk, std::uint64_t offset_bytes) {
@@ -233,7 +233,7 @@ class McapFile : public BagReader {
       if (!chunks_[chunk].has_index) unknown.insert(chunk);
     }
     std::set<std::uint32_t> known;
-    for (const BagConnection& connection : connections_) known.insert(connection.id);
+    for (const BagConnection& connection : connections()) known.insert(connection.id);
     // Without a summary channels are told within chunks only.
     for (const BagMessage& message : messages_) {
       if (message.chunk != kNoChunk && !known.contains(message.connection)) {
@@ -258,7 +258,7 @@ class McapFile : public BagReader {
 
   void check_channels() const {
     std::set<std::uint32_t> known;
-    for (const BagConnection& connection : connections_) known.insert(connection.id);
+    for (const BagConnection& connection : connections()) known.insert(connection.id);
     for (const BagMessage& message : messages_) {
       if (known.contains(message.connection)) continue;
       throw DataError(path_, fmt::format("channel {} of a message is missing", message.connection),

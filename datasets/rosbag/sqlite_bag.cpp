@@ -173,10 +173,10 @@ class SqliteBag : public BagReader {
       connection.encoding = MessageEncoding::kCdr;
       // Another name, so that nothing parses it and errors tell it.
       if (rows.text(3) != "cdr") connection.type += " as " + rows.text(3);
-      if (find_connection(connection.id) != nullptr) {
-        throw DataError(path_, fmt::format("has two topics {}", connection.id), kDatabase);
+      const std::uint32_t id = connection.id;
+      if (!add(std::move(connection))) {
+        throw DataError(path_, fmt::format("has two topics {}", id), kDatabase);
       }
-      connections_.push_back(std::move(connection));
     }
     if (result != SQLITE_DONE) refuse();
   }

@@ -101,7 +101,7 @@ class SensorPoseReader {
                                                      ? PoseDirection::kSensorFromMap
                                                      : PoseDirection::kMapFromSensor));
     result_.done.frame = move_to_lidar(list.format);
-    if (!is_users) state_pose_origin(file_, result_.done, result_.remarks);
+    if (!is_users) state_pose_origin(file_, result_.done, result_.doubts);
     return std::move(result_);
   }
 
@@ -153,10 +153,10 @@ class SensorPoseReader {
     if (unknown > 0 && are_too_few(scans - unknown, scans)) {
       refuse_few(list.stamps_ns, stamps_ns, scans - unknown, clocks);
     }
-    if (!clocks.empty()) result_.remarks.push_back(clocks);
+    if (!clocks.empty()) result_.doubts.push_back(clocks);
     const auto left_out = [&](std::size_t count, const std::string& why) {
       if (count == 0) return;
-      result_.remarks.push_back(
+      result_.doubts.push_back(
           fmt::format("{} of {} are left out: they {}", count, counted(scans, "scan"), why));
     };
     const std::string name = file_.filename().string();
@@ -288,7 +288,7 @@ void write_pose_origin(const fs::path& pose_file, const std::string& origin) {
 }
 
 void state_pose_origin(const fs::path& pose_file, PosesDone& poses,
-                       std::vector<std::string>& remarks) {
+                       std::vector<std::string>& doubts) {
   const fs::path file = pose_origin_file(pose_file);
   if (!is_there(file)) return;
   const std::string text = read_file(file);
@@ -296,7 +296,7 @@ void state_pose_origin(const fs::path& pose_file, PosesDone& poses,
   if (text == origin + "\n" + hash_line(pose_file)) {
     poses.origin = origin;
   } else {
-    remarks.push_back(fmt::format(
+    doubts.push_back(fmt::format(
         "{} was not written for {} as it is now: where these poses came from is not known",
         file.filename().string(), pose_file.filename().string()));
   }
@@ -317,6 +317,7 @@ std::vector<std::size_t> place_scans(SensorPoses poses, Recording& recording) {
   }
   recording.files.insert(recording.files.end(), poses.files.begin(), poses.files.end());
   recording.remarks.insert(recording.remarks.end(), poses.remarks.begin(), poses.remarks.end());
+  recording.doubts.insert(recording.doubts.end(), poses.doubts.begin(), poses.doubts.end());
   recording.reading.poses = std::move(poses.done);
   return kept;
 }
@@ -337,7 +338,7 @@ SensorPoses own_poses(std::string source, const fs::path& file) {
   poses.done = {.source = std::move(source),
                 .direction = PoseDirection::kMapFromSensor,
                 .frame = PoseFrame::kLidar};
-  state_pose_origin(file, poses.done, poses.remarks);
+  state_pose_origin(file, poses.done, poses.doubts);
   return poses;
 }
 

@@ -37,7 +37,7 @@ class MissingPoses : public DataError {
 struct SensorPoses {
   std::vector<std::optional<Pose>> map_from_sensor;  ///< one per scan; nothing where not known
   std::vector<std::filesystem::path> files = {};
-  std::vector<std::string> remarks = {};
+  std::vector<std::string> remarks = {}, doubts = {};  ///< as of a Recording
   PosesDone done = {};
 };
 
@@ -73,6 +73,6 @@ void write_pose_origin(const std::filesystem::path& pose_file, const std::string
 /// Adds the line beside `pose_file`, if there is one, to what is said of the poses; a remark in its
 /// place where the file is not the one that the line was written for.
 void state_pose_origin(const std::filesystem::path& pose_file, PosesDone& poses,
-                       std::vector<std::string>& remarks);
+                       std::vector<std::string>& doubts);
 
 }  // namespace mosbench

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "datasets/sequence/reading.hpp"
+#include "datasets/sequence/simulated_origin.hpp"
 
 namespace mosbench {
 
@@ -60,8 +61,10 @@ struct Recording {
   /// Files that decide what is read besides those of single scans: bag, poses, calibration, times.
   std::vector<std::filesystem::path> files;
   std::vector<std::filesystem::path> truth_files;
-  /// Plain sentences on what was assumed or found odd (pose frame, missing labels).
-  std::vector<std::string> remarks;
+  /// Plain sentences on what was assumed (pose frame), and on what makes numbers doubtful (scans
+  /// left out): every output shows these.
+  std::vector<std::string> remarks, doubts;
+  std::optional<SimulatedOrigin> simulated;  ///< nothing for recorded data
   /// What was read in which convention; two runs on the same files may differ in it.
   ReadingDone reading;
   bool has_radial_velocities = false;  ///< whether frames have them
@@ -145,6 +148,10 @@ class Sequence {
   std::vector<std::filesystem::path> files() const { return files_of(recording_); }
   const std::vector<std::string>& remarks() const { return recording_.remarks; }
   const ReadingDone& reading() const { return recording_.reading; }
+  const std::optional<SimulatedOrigin>& simulated() const { return recording_.simulated; }
+  void set_simulated(std::optional<SimulatedOrigin> origin) {
+    recording_.simulated = std::move(origin);
+  }
 
  protected:
   Sequence() = default;

@@ -20,9 +20,9 @@
 #include "datasets/disk/partial_file.hpp"
 #include "datasets/formats/label_file.hpp"
 #include "datasets/layouts/layout.hpp"
-#include "datasets/layouts/simulated_origin.hpp"
 #include "datasets/perturb/perturbation.hpp"
 #include "datasets/sequence/portable_math.hpp"
+#include "datasets/sequence/simulated_origin.hpp"
 #include "datasets/simulator/scene.hpp"
 #include "datasets/simulator/simulated_motion.hpp"
 #include "datasets/simulator/simulator.hpp"
@@ -121,7 +121,7 @@ constexpr std::size_t kMostScans = 1'000'000;
 
 SimulatedOrigin origin_of(const SimulateOptions& options, const Scene& scene) {
   const std::string text = format_scene(scene);
-  return {.layout = options.layout,
+  return {.layout = std::string(to_string(options.layout)),
           .scene = scene.name,
           .scene_fingerprint = fmt::format("{:016x}", XXH3_64bits(text.data(), text.size())),
           .scans = options.scans,
@@ -157,16 +157,15 @@ void claim_folder(const fs::path& out, const SimulatedOrigin& origin) {
   }
 }
 
-std::string readme(const SimulatedOrigin& origin) {
+std::string readme(const SimulatedOrigin& origin, const Layout& layout) {
   return fmt::format(
       "These scans are simulated. Nothing in this folder was recorded by a sensor, and no number\n"
       "computed from it may be shown next to those published for the real data set.\n\n"
       "Scene \"{}\" is in scene.json. To make the same files again:\n"
       "mosbench simulate --layout {} --scene scene.json --scans {} --seed {}{} --out DIR\n"
       "{}\n",
-      origin.scene, to_string(origin.layout), origin.scans, origin.seed,
-      origin.perturb ? " --perturb " + shell_word(*origin.perturb) : "",
-      layout_of(origin.layout).simulation->truth);
+      origin.scene, origin.layout, origin.scans, origin.seed,
+      origin.perturb ? " --perturb " + shell_word(*origin.perturb) : "", layout.simulation->truth);
 }
 
 /// A recording and what writes it.
@@ -304,7 +303,13 @@ std::vector<std::string> simulate(
     writers.push_back({std::move(sequence), std::move(files)});
   }
   claim_folder(options.out, origin);
-  write_file_atomic(options.out / "README.txt", readme(origin));
+  for (const SimulatedRecording& recording : recordings) {
+    const fs::path place = options.out / recording.folder;
+    const bool is_file = *layout.writer->last_file({}) == '\0';
+    write_file_atomic((is_file ? place.parent_path() : place) / kSimulatedMarker,
+                      format_simulated_origin(origin));
+  }
+  write_file_atomic(options.out / "README.txt", readme(origin, layout));
   write_file_atomic(options.out / "scene.json", format_scene(scene));
 
   std::size_t done = 0;

@@ -140,8 +140,17 @@ class ChartPainter {
 
 }  // namespace
 
-Picture line_charts(std::span<const LineChart> charts, std::size_t size_pixels) {
-  Picture picture(charts.size() * size_pixels, size_pixels, palette(false).background);
+Picture line_charts(std::span<const LineChart> charts, std::size_t size_pixels,
+                    std::span<const std::string> marks) {
+  constexpr int kMarkLine = Picture::kGlyphHeight + 4;
+  const Palette colours = palette(false);
+  Picture picture(charts.size() * size_pixels, size_pixels + marks.size() * kMarkLine,
+                  colours.background);
+  int below = static_cast<int>(size_pixels);
+  for (const std::string& mark : marks) {
+    picture.text(8, below, mark, colours.text);
+    below += kMarkLine;
+  }
   int left = 0;
   for (const LineChart& chart : charts) {
     ChartPainter(chart, left, size_pixels, picture).draw();

@@ -80,7 +80,9 @@ struct LineChart {
 };
 
 /// Draws charts side by side, each `size_pixels` wide and high, with axes that show all points and
-/// the names of the curves. A later curve lies over an earlier one.
-Picture line_charts(std::span<const LineChart> charts, std::size_t size_pixels);
+/// the names of the curves. A later curve lies over an earlier one. Below them stand the marks, as
+/// far as there is room for their words.
+Picture line_charts(std::span<const LineChart> charts, std::size_t size_pixels,
+                    std::span<const std::string> marks = {});
 
 }  // namespace mosbench

@@ -203,8 +203,17 @@ std::string json_key(const Column& column) {
   return key.substr(0, key.size() - std::string_view(style_of(column.unit).key).size());
 }
 
+/// An answer's own JSON, and what makes its numbers doubtful.
+std::string own_json(const Answer& answer) {
+  const std::vector<std::string> marks = marks_of(answer);
+  if (marks.empty()) return answer.json;
+  ordered_json json = ordered_json::parse(answer.json);
+  if (json.is_object()) json["standing"] = marks;
+  return json_text(json);
+}
+
 std::string json_of(const Answer& answer) {
-  if (!answer.json.empty()) return answer.json;
+  if (!answer.json.empty()) return own_json(answer);
   ordered_json json = ordered_json::object();
   if (answer.standing) json["standing"] = sentences(*answer.standing);
   if (!answer.sheets.empty()) json["sheets"] = ordered_json::array();
@@ -219,11 +228,10 @@ std::string json_of(const Answer& answer) {
 }
 
 std::string text_of(const Answer& answer, std::size_t columns) {
-  std::vector<Sheet> sheets = answer.sheets;
-  if (answer.standing) {
-    if (sheets.empty()) sheets.emplace_back();
+  std::vector<Sheet> sheets = shown_sheets(answer);
+  const std::vector<std::string> marks = marks_of(answer);
+  if (!marks.empty()) {
     std::vector<std::string>& lead = sheets.front().lead;
-    const std::vector<std::string> marks = sentences(*answer.standing);
     lead.insert(lead.end(), marks.begin(), marks.end());
   }
   std::string text;
@@ -258,7 +266,7 @@ std::string png_of(const Answer& answer) {
   if (answer.charts.empty()) {
     throw UsageError("--as png: the answer has no chart, expected another format");
   }
-  return line_charts(answer.charts, kChartPixels).png();
+  return line_charts(answer.charts, kChartPixels, marks_of(answer)).png();
 }
 
 }  // namespace
@@ -289,18 +297,14 @@ std::vector<std::string> sentences(const Standing& standing) {
   return texts;
 }
 
-std::span<const std::string_view> format_names() {
-  static constexpr std::array<std::string_view, 8> kNames = {"text",     "json", "csv",    "latex",
-                                                             "markdown", "html", "github", "png"};
-  return kNames;
+std::vector<std::string> marks_of(const Answer& answer) {
+  return answer.standing ? sentences(*answer.standing) : std::vector<std::string>();
 }
 
-Format format_named(std::string_view name) {
-  const auto names = format_names();
-  const auto found = std::ranges::find(names, name);
-  if (found != names.end()) return static_cast<Format>(found - names.begin());
-  throw UsageError(
-      fmt::format("--as: '{}' is no format, expected one of {}", name, fmt::join(names, ", ")));
+std::vector<Sheet> shown_sheets(const Answer& answer) {
+  std::vector<Sheet> sheets = answer.sheets;
+  if (sheets.empty() && !marks_of(answer).empty()) sheets.emplace_back();
+  return sheets;
 }
 
 ShownTable shown_table(const Sheet& sheet) {

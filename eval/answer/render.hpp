@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -15,6 +17,18 @@ namespace mosbench {
 std::span<const std::string_view> format_names();
 /// Throws UsageError for a name that is none of them.
 Format format_named(std::string_view name);
+
+/// Returns the format that the end of a file's name says: .txt, .json, .csv, .tex, .md, .html,
+/// .png.
+std::optional<Format> format_of_name(const std::filesystem::path& file);
+/// Throws UsageError where the end of a file's name says another kind of file than what is written:
+/// also .pdf, .svg, .jpg and others that nothing writes.
+void check_name(const std::filesystem::path& file, Format written);
+
+/// Returns what makes the numbers of an answer doubtful, a sentence each.
+std::vector<std::string> marks_of(const Answer& answer);
+/// Returns its sheets, or an empty one where there is none and something to say above it.
+std::vector<Sheet> shown_sheets(const Answer& answer);
 
 /// Formats an answer; text has its tables folded into so many columns of a terminal (0: any
 /// number). Nothing stays nothing. Throws UsageError for a picture of an answer without charts.

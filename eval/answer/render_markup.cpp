@@ -127,16 +127,13 @@ std::string html_of(const Sheet& sheet, const Lines& marks) {
   return text;
 }
 
-Lines marks_of(const Answer& answer) {
-  return answer.standing ? sentences(*answer.standing) : Lines();
-}
-
 /// All sheets, the first with what standing says.
 std::string joined_sheets(const Answer& answer, std::string (*shown)(const Sheet&, const Lines&),
                           const char* between) {
   std::string text;
-  for (const Sheet& sheet : answer.sheets) {
-    const bool is_first = &sheet == answer.sheets.data();
+  const std::vector<Sheet> sheets = shown_sheets(answer);
+  for (const Sheet& sheet : sheets) {
+    const bool is_first = &sheet == sheets.data();
     text += (text.empty() ? "" : between) + shown(sheet, is_first ? marks_of(answer) : Lines());
   }
   return text;
@@ -174,11 +171,15 @@ std::string markdown_text(std::string_view text) {
 
 std::string latex_of(const Answer& answer) {
   std::string text;
-  for (const Sheet& sheet : answer.sheets) {
+  const Lines marks = marks_of(answer);
+  for (const Sheet& sheet : shown_sheets(answer)) {
     if (!text.empty()) text += '\n';
     text += latex_comments({sheet.title}) + latex_comments(sheet.lead);
-    if (!sheet.columns.empty()) text += latex_table(sheet, marks_of(answer));
+    if (!sheet.columns.empty()) text += latex_table(sheet, marks);
     text += latex_comments(sheet.notes);
+  }
+  if (std::ranges::all_of(answer.sheets, [](const Sheet& each) { return each.columns.empty(); })) {
+    for (const std::string& mark : marks) text += "$^\\dagger$ " + latex_text(mark) + "\n\n";
   }
   if (answer.text.empty()) return text;
   return text + "\\begin{verbatim}\n" + answer.text + "\\end{verbatim}\n";

@@ -120,9 +120,12 @@ void refuse_unknown_arguments(const CLI::App& command, const std::string& name) 
 
 /// Says on stdout where the answer is when it is in a file, or on stderr when stdout holds another.
 Printed printed(const Answer& answer, const std::string& asked, std::size_t columns) {
-  const Format format = asked.empty() ? answer.usual : format_named(asked);
+  const bool in_file = answer.file && !names_stdout(*answer.file);
+  const auto named = in_file ? format_of_name(*answer.file) : std::nullopt;
+  const Format format = asked.empty() ? named.value_or(answer.usual) : format_named(asked);
   Printed result{"", answer.exit_code, format == Format::kText || format == Format::kGithub};
-  if (answer.file && !names_stdout(*answer.file)) {
+  if (in_file) {
+    check_name(*answer.file, format);
     write_output(*answer.file, render(answer, format));
     result.bytes = fmt::format("wrote {}", answer.file->string());
     if (answer.standing) {

@@ -9,6 +9,7 @@
 
 #include "datasets/disk/files.hpp"
 #include "datasets/text/errors.hpp"
+#include "eval/answer/render.hpp"
 
 namespace mosbench {
 namespace {
@@ -72,8 +73,9 @@ void write_output(const std::filesystem::path& file, std::string_view bytes) {
   }
 }
 
-void check_output(const std::filesystem::path& file) {
+void check_output(const std::filesystem::path& file, std::optional<Format> written) {
   if (names_stdout(file)) return;
+  if (written) check_name(file, *written);
   std::error_code ignored;
   if (std::filesystem::is_directory(file, ignored) || !file.has_filename()) {
     throw DataError(file, "is a folder", "a file to write");

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -58,8 +59,9 @@ void check_command_name(const std::string& name);
 void write_output(const std::filesystem::path& file, std::string_view bytes);
 
 /// Throws DataError where `file` can be no file to write, so that hours of work are not lost on it:
-/// it is a folder, or lies below what is none.
-void check_output(const std::filesystem::path& file);
+/// it is a folder, or lies below what is none. Throws UsageError for a name of another kind of file
+/// than what is written.
+void check_output(const std::filesystem::path& file, std::optional<Format> written = std::nullopt);
 
 /// Returns whether a file that the user named is stdout.
 bool names_stdout(const std::filesystem::path& file);

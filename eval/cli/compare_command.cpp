@@ -32,7 +32,7 @@ struct CompareFlags {
   std::filesystem::path baseline, newer;
   double max_drop_points = 0.5;
   std::optional<double> max_added_false_positives;
-  bool statistical = false, even_if = false, quiet = false, accept = false;
+  bool statistical = false, even_if = false, quiet = false, accept = false, allow_stale = false;
   std::vector<std::string> by;
   std::optional<std::filesystem::path> data;
   std::string dataset = "auto";
@@ -67,9 +67,10 @@ void check_shares_scans(const PairedRuns& paired, const CompareFlags& options) {
 }
 
 Answer compare(const CompareFlags& options) {
-  if (!options.summary.empty()) check_output(options.summary);
+  if (!options.summary.empty()) check_output(options.summary, Format::kMarkdown);
   const ResultSet baseline = load_result_set(options.baseline);
   const ResultSet newer = load_result_set(options.newer);
+  refuse_stale({newer}, options.allow_stale);
   const PairedRuns paired = pair_runs(baseline, newer);
   if (!paired.unlike.empty() && !options.even_if) {
     throw DataError(options.newer,
@@ -237,6 +238,7 @@ Answer change(const CompareFlags& options, const ResultSet& newer) {
 /// Makes the new run the baseline and returns what that changes.
 Answer accepted(const CompareFlags& options) {
   const ResultSet newer = load_result_set(options.newer);
+  refuse_stale({newer}, options.allow_stale);
   refuse_overlap(newer, options.baseline);
   restore_folder(resolved(options.baseline));
   const FolderLock lock(options.baseline);
@@ -271,6 +273,7 @@ CommandRun add_compare(CLI::App& command) {
   command.add_flag("--statistical", options->statistical,
                    "Fail only when the drop also exceeds what its 95 % interval leaves open");
   command.add_flag("--even-if", options->even_if, "Also compare results of different kinds");
+  add_stale_flag(command, options->allow_stale);
   add_list(command, "--by WHAT,...", options->by,
            "Judge nothing and show what NEW changes in each sequence (also of another method "
            "or setting), or on which scans and objects the two disagree")

@@ -13,6 +13,7 @@
 #include "eval/cli/commands.hpp"
 #include "eval/cli/flags.hpp"
 #include "eval/engine/pose_finding.hpp"
+#include "eval/result/result.hpp"
 #include "eval/result/tell.hpp"
 
 namespace mosbench {
@@ -68,7 +69,7 @@ void check_kept_speed(const ConvertFlags& options, DatasetKind source) {
       "expected the flag where the converted files are read");
 }
 
-std::string convert_dataset(ConvertFlags options) {
+Answer convert_dataset(ConvertFlags options) {
   ConvertOptions& conversion = options.conversion;
   const std::string layout = set_layout(options.layout, conversion);
   const std::optional<OdometryChoice> odometry = named_odometry(options.odometry, options.reading);
@@ -91,8 +92,9 @@ std::string convert_dataset(ConvertFlags options) {
     scans = done;
   };
   for (const std::string& sentence : convert(dataset, conversion, count)) tell(sentence);
-  return fmt::format("converted {} of {} to {} in {}\n", counted(scans, "scan"),
-                     options.input.string(), layout, conversion.out.string());
+  return {.text = fmt::format("converted {} of {} to {} in {}\n", counted(scans, "scan"),
+                              options.input.string(), layout, conversion.out.string()),
+          .standing = standing_of(dataset)};
 }
 
 }  // namespace
@@ -107,7 +109,7 @@ CommandRun add_convert(CLI::App& command) {
   add(command, "--out DIR", options->conversion.out, "Root of the data set to write")->required();
   add_odometry_flag(command, options->odometry, "Find the poses by it instead of reading them");
   add_threads_flag(command, options->threads);
-  return [options] { return Answer{convert_dataset(*options)}; };
+  return [options] { return convert_dataset(*options); };
 }
 
 }  // namespace mosbench

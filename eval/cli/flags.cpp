@@ -204,6 +204,12 @@ void add_odometry_flag(CLI::App& command, OdometryOptions& odometry,
       description + ": KIND[:PRESET][,KEY=VALUE,...], see `mosbench list odometry`");
 }
 
+void add_stale_flag(CLI::App& command, bool& allow_stale) {
+  command.add_flag(
+      "--allow-stale", allow_stale,
+      "Also show results whose program (--method exec:) has changed since; marks them");
+}
+
 void add_threads_flag(CLI::App& command, unsigned& threads) {
   add(command, "--threads", threads, "Threads; results do not depend on it (default: all)")
       ->check(CLI::Range(1U, 1024U));

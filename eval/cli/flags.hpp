@@ -58,6 +58,8 @@ void add_odometry_flag(CLI::App& command, OdometryOptions& odometry,
 
 /// Adds --threads; without it, `threads` stays as it is.
 void add_threads_flag(CLI::App& command, unsigned& threads);
+/// Adds --allow-stale, for tables of results, see `refuse_stale`.
+void add_stale_flag(CLI::App& command, bool& allow_stale);
 
 /// Returns the name of a type whose values are `names`, as CLI11 names those that it checks: help
 /// and completion list them.

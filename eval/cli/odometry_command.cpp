@@ -16,6 +16,7 @@
 #include "eval/engine/pose_finding.hpp"
 #include "eval/result/machine.hpp"
 #include "eval/result/reading_json.hpp"
+#include "eval/result/result.hpp"
 #include "eval/result/settings_json.hpp"
 #include "eval/result/tell.hpp"
 
@@ -145,6 +146,7 @@ Answer odometry_answer(OdometryFlags flags) {
   if (flags.out != "-") text += next_command(flags);
   return answer_beside(flags.out, {.text = text,
                                    .exit_code = doubtful > 0 ? 1 : 0,
+                                   .standing = standing_of(dataset),
                                    .json = json_text({{"odometry", std::string(choice.kind->name)},
                                                       {"settings", to_json(choice.settings)},
                                                       {"sequences", sequences}})});

@@ -18,6 +18,7 @@ namespace {
 struct RankFlags {
   std::vector<std::string> runs;
   std::string order = "iou";
+  bool allow_stale = false;
   JobFlags job;
 };
 
@@ -51,6 +52,7 @@ Answer rank(RankFlags options) {
   for (const std::string& path : options.runs) {
     for (ResultSet& run : load_runs_of_folders(path)) runs.push_back(std::move(run));
   }
+  refuse_stale(runs, options.allow_stale);
   keep_comparable_cells(runs);
   Leaderboard board =
       leaderboard_of(runs, options.order == "given" ? RowOrder::kGiven : RowOrder::kIou);
@@ -70,6 +72,7 @@ CommandRun add_rank(CLI::App& command) {
   add(command, "--order", options->order, "Best IoU first, or as RUNS are given")
       ->check(CLI::IsMember({"iou", "given"}))
       ->capture_default_str();
+  add_stale_flag(command, options->allow_stale);
   add(command, "--out DIR", options->job.out,
       "Folder of the results of JOB.yaml (default: results/runs/<its name>)");
   add(command, "-o FILE", options->job.output, "File of the table; - is stdout");

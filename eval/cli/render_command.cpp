@@ -115,6 +115,7 @@ std::vector<std::string> title_of(const Result& result, std::size_t scan_index) 
     lines.emplace_back("without truth");
   }
   if (result.is_simulated()) lines.emplace_back("simulated");
+  std::ranges::move(doubts_of(result), std::back_inserter(lines));
   return lines;
 }
 
@@ -297,7 +298,9 @@ Answer render(RenderFlags& options) {
     (what == "boxes" ? options.boxes : options.picture.by_reason) = true;
   }
   const bool is_folder = !options.one_scan() && names_folder(options.out);
-  check_output(is_folder ? options.out / "000000.png" : options.out);
+  const bool is_film = !options.one_scan() && is_video(options.out);
+  check_output(is_folder ? options.out / "000000.png" : options.out,
+               is_film ? std::nullopt : std::optional(Format::kPng));
   const Result result = choose_result(options);
   const ResultScans scans(result, options.dataset_root);
   if (options.picture.by_reason) check_has_reasons(scans);

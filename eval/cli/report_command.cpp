@@ -19,7 +19,7 @@ struct ReportFlags {
 };
 
 Answer write_report(ReportFlags& options) {
-  check_output(options.out);
+  check_output(options.out, Format::kHtml);
   options.report.scans = ScanChoice(options.scans);
   const Report report = build_report(options.inputs, options.report);
   write_output(options.out, report.html);

@@ -5,7 +5,7 @@
 #include <array>
 #include <memory>
 
-#include "datasets/layouts/simulated_origin.hpp"
+#include "datasets/sequence/simulated_origin.hpp"
 #include "datasets/text/errors.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/cli/flags.hpp"

@@ -32,6 +32,12 @@ std::vector<SummaryRow> rows_of(const RunPlan& plan, const std::vector<SequenceO
   return summary_rows(*plan.settings.protocol, plan.dataset.splits, sequences);
 }
 
+ResultSet results_of(const std::vector<SequenceOutcome>& outcomes) {
+  ResultSet set;
+  for (const SequenceOutcome& outcome : outcomes) set.sequences.push_back(outcome.result);
+  return set;
+}
+
 bool has_truth(const std::vector<SequenceOutcome>& outcomes) {
   return std::ranges::any_of(outcomes, [](const SequenceOutcome& outcome) {
     return std::ranges::any_of(outcome.result.scans,
@@ -123,7 +129,8 @@ nlohmann::ordered_json run_report_json(const RunPlan& plan,
                                  {"points", points},
                                  {"predicted_moving_points", moving},
                                  {"reused", outcomes[i].reused},
-                                 {"remarks", outcomes[i].result.remarks}});
+                                 {"remarks", outcomes[i].result.remarks},
+                                 {"doubts", doubts_of(outcomes[i].result)}});
   }
   if (curve) json["confidences"] = curve_summary_json(*curve);
   return json;
@@ -223,6 +230,22 @@ std::vector<Sheet> sheets_of(const std::vector<MethodRun>& runs) {
   return sheets;
 }
 
+/// Of all methods that did not fail; else of the data.
+Standing standing_of(const std::vector<MethodRun>& runs) {
+  std::optional<Standing> all;
+  std::vector<Doubt> doubts;
+  for (const MethodRun& run : runs) {
+    if (run.failure) continue;
+    all = standing_of(results_of(run.execution->outcomes()));
+    for (std::string& doubt : all->doubts) {
+      doubts.push_back({std::string(run.plan->settings.method->name), std::move(doubt)});
+    }
+  }
+  if (!all) return standing_of(runs.front().plan->dataset);
+  all->doubts = told(doubts);
+  return *all;
+}
+
 nlohmann::ordered_json json_of(const MethodRun& run) {
   if (!run.failure) return run_report_json(*run.plan, run.execution->outcomes(), run.curve);
   return {{"method", std::string(run.plan->settings.method->name)},
@@ -252,7 +275,7 @@ Answer run_methods(const JobWords& words, const RunPlace& place,
   const auto failed =
       std::ranges::find_if(runs, [](const MethodRun& run) { return run.failure.has_value(); });
   return {.exit_code = failed == runs.end() ? 0 : failed->failure->exit_code,
-          .standing = standing_of(plans.front().dataset),
+          .standing = standing_of(runs),
           .sheets = sheets_of(runs),
           .json = json_text({{"methods", methods}})};
 }
@@ -268,7 +291,7 @@ Answer run_data(const JobWords& words, const RunPlace& place,
   const std::vector<SequenceOutcome> outcomes = execute_run(plan);
   for (const SequenceOutcome& outcome : outcomes) write_products(outcome.folder, products);
   const std::optional<ScoreCurve> curve = curve_of(plan, outcomes);
-  return {.standing = standing_of(plan.dataset),
+  return {.standing = standing_of(results_of(outcomes)),
           .sheets = {run_sheet(plan, outcomes, curve)},
           .json = json_text(run_report_json(plan, outcomes, curve))};
 }

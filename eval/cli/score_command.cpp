@@ -24,6 +24,7 @@ struct ScoreFlags : DataWords {
   std::optional<std::string> protocol, range, format, id_map;
   std::string method = "unnamed";
   std::optional<std::filesystem::path> out;
+  bool overwrite = false;
   std::optional<std::filesystem::path> map;  ///< cleaned of what moved, instead of predictions
   double same_within_m = kSameWithin_m;
 };
@@ -135,7 +136,8 @@ Answer score(const ScoreFlags& options) {
   }
   const std::vector<SequenceScores> scores = score_dataset(dataset, task);
   if (options.out) {
-    write_scores(dataset, options.reading, task, method_name(options.method), scores, *options.out);
+    write_scores(dataset, options.reading, task, method_name(options.method), scores, *options.out,
+                 options.overwrite);
   }
   return score_answer(dataset, task, scores, !split_asked);
 }
@@ -175,6 +177,7 @@ CommandRun add_score(CLI::App& command) {
   add(command, "--method NAME", options->method,
       "Name of the method, kept by --out; \"NAME, SETTING\" also keeps its setting");
   add(command, "--out DIR", options->out, "Write DIR/<sequence>/result.json");
+  command.add_flag("--overwrite", options->overwrite, "Replace other scores in --out");
   add_threads_flag(command, options->task.threads);
   return [options] { return score(*options); };
 }

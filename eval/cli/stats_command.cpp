@@ -32,6 +32,7 @@ struct StatsFlags : DataWords {
   BreakdownParts parts;
   std::size_t top = 10;
   unsigned threads = hardware_threads();
+  bool allow_stale = false;
 
   bool shows(std::string_view what) const { return std::ranges::find(by, what) != by.end(); }
 };
@@ -52,13 +53,13 @@ std::vector<SequenceBreakdown> all_breakdowns(const StatsFlags& options, const D
   throw DataError(dataset.root, "no scan has truth", "labels next to the scans");
 }
 
-Answer answer_of(const StatsFlags& options, const Dataset& dataset, const BreakdownTask& task,
-                 const std::vector<SequenceBreakdown>& breakdowns) {
+Answer answer_of(const StatsFlags& options, const Dataset& dataset, Standing standing,
+                 const BreakdownTask& task, const std::vector<SequenceBreakdown>& breakdowns) {
   nlohmann::ordered_json json = {{"dataset", std::string(to_string(dataset.kind))}};
   json.update(rule_json({task.protocol, task.range}));
   json["sequences"] = nlohmann::ordered_json::array();
   if (const auto origin = simulated_origin_json(dataset)) json["simulated"] = *origin;
-  Answer answer{.standing = standing_of(dataset),
+  Answer answer{.standing = std::move(standing),
                 .sheets = {{.lead = {rule_line({task.protocol, task.range})}}}};
   for (const SequenceBreakdown& part : breakdowns) {
     json["sequences"].push_back(to_json(part, options.top));
@@ -90,7 +91,8 @@ Answer breakdown_of_run(const StatsFlags& options, const CLI::App& command) {
                     options.input.string()));
   }
   refuse_flags_of_data(command);
-  (void)load_result_set(options.input);  // throws where they are of several runs
+  const ResultSet run = load_result_set(options.input);
+  refuse_stale({run}, options.allow_stale);
   std::vector<Result> results = read_results(options.input);
   std::erase_if(results, [&](const Result& result) {
     return !options.sequences.empty() &&
@@ -114,7 +116,7 @@ Answer breakdown_of_run(const StatsFlags& options, const CLI::App& command) {
     throw DataError(options.input, "has no scan with truth",
                     "results of a labelled sequence, or another name in --sequences");
   }
-  return answer_of(options, scans.front().dataset(), task, breakdowns);
+  return answer_of(options, scans.front().dataset(), standing_of(run), task, breakdowns);
 }
 
 Answer breakdown_of(const StatsFlags& options, const CLI::App& command) {
@@ -122,11 +124,12 @@ Answer breakdown_of(const StatsFlags& options, const CLI::App& command) {
   const Dataset dataset = open_dataset(options);
   const ScoreRule rule = rule_of(options.protocol, options.range, dataset.kind);
   const BreakdownTask task = {rule.protocol, rule.range, options.threads};
-  return answer_of(options, dataset, task, all_breakdowns(options, dataset, task));
+  return answer_of(options, dataset, standing_of(dataset), task,
+                   all_breakdowns(options, dataset, task));
 }
 
 Answer curve(const StatsFlags& options) {
-  if (options.picture) check_output(*options.picture);
+  if (options.picture) check_output(*options.picture, Format::kPng);
   Answer answer = curve_answer(options.input, options.data);
   if (options.picture) write_output(*options.picture, render(answer, Format::kPng));
   return answer_beside(options.picture.value_or(""), std::move(answer));
@@ -139,9 +142,11 @@ Answer stats(StatsFlags options, const CLI::App& command) {
   if (options.shows("threshold") + options.shows("scan") + breaks_down > 1) {
     throw UsageError("--by: threshold and scan go with nothing else, expected one of them alone");
   }
-  if (options.shows("threshold")) return curve(options);
   if (breaks_down) return breakdown_of(options, command);
-  return statistics_answer(load_result_set(options.input), options.shows("scan"));
+  const ResultSet run = load_result_set(options.input);
+  refuse_stale({run}, options.allow_stale);
+  if (options.shows("threshold")) return curve(options);
+  return statistics_answer(run, options.shows("scan"));
 }
 
 }  // namespace
@@ -165,6 +170,7 @@ CommandRun add_stats(CLI::App& command) {
   add(command, "--top", options->top, "How many objects and false positives to list")
       ->capture_default_str();
   add_threads_flag(command, options->threads);
+  add_stale_flag(command, options->allow_stale);
   for (const char* flag :
        {"--dataset", "--poses", "--predictions", "--format", "--protocol", "--range"}) {
     command.get_option(flag)->group(kRareGroup);

@@ -16,6 +16,7 @@ struct TableFlags {
   std::string name;
   std::vector<std::string> results;
   std::optional<std::filesystem::path> published;
+  bool allow_stale = false;
 };
 
 Answer table(const TableFlags& options) {
@@ -23,6 +24,7 @@ Answer table(const TableFlags& options) {
   for (const std::string& path : options.results) {
     for (ResultSet& run : load_result_sets(path)) runs.push_back(std::move(run));
   }
+  refuse_stale(runs, options.allow_stale);
   const std::vector<PublishedCell> published =
       options.published ? parse_published(read_file(*options.published), *options.published)
                         : built_in_cells();
@@ -39,6 +41,7 @@ CommandRun add_table(CLI::App& command) {
   add(command, "RESULTS DIR", options->results, "Folders of results");
   add(command, "--published FILE", options->published,
       "CSV of published numbers, instead of the built-in ones");
+  add_stale_flag(command, options->allow_stale);
   return [options] { return table(*options); };
 }
 

@@ -96,7 +96,8 @@ ScoredEstimates scored_estimates(const std::filesystem::path& estimates,
                                  const TrajectoryFlags& flags, const ScoringRules& rules) {
   ScoredEstimates scored{read_trajectory_pairs(estimates, flags.truth, flags.reading), {}};
   for (const TrajectoryPair& pair : scored.pairs) {
-    if (flags.plot) check_output(plot_file(*flags.plot, pair.name, scored.pairs.size()));
+    if (flags.plot)
+      check_output(plot_file(*flags.plot, pair.name, scored.pairs.size()), Format::kPng);
   }
   for (const TrajectoryPair& pair : scored.pairs) scored.scores.push_back(score_of(pair, rules));
   return scored;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <iterator>
 
 #include "core/base/stage_clock.hpp"
 #include "datasets/disk/files.hpp"
@@ -11,6 +12,7 @@
 #include "datasets/doctor/doctor.hpp"
 #include "datasets/formats/pose_file.hpp"
 #include "datasets/sequence/pose_source.hpp"
+#include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
 #include "eval/result/machine.hpp"
 #include "eval/result/result.hpp"
@@ -53,17 +55,10 @@ std::vector<std::string> all_remarks(const Sequence& sequence, const Result& res
   }
   remarks.insert(remarks.end(), result.remarks.begin(), result.remarks.end());
   std::size_t nonfinite_points = 0;
-  std::uint64_t unknown_ids = 0;
-  for (const ScanRow& row : result.scans) {
-    nonfinite_points += row.nonfinite_points;
-    if (row.counts) unknown_ids += row.counts->unknown_ids;
-  }
+  for (const ScanRow& row : result.scans) nonfinite_points += row.nonfinite_points;
   if (nonfinite_points > 0) {
     remarks.push_back(fmt::format("{} NaN or infinite: left out of the map and labelled static",
                                   counted(nonfinite_points, "point is", "points are")));
-  }
-  if (const auto remark = unknown_ids_remark(*result.protocol, unknown_ids); !remark.empty()) {
-    remarks.push_back(remark);
   }
   return remarks;
 }
@@ -87,11 +82,13 @@ Result completed(const RunPlan& plan, const PlannedSequence& planned, Result ran
   result.scans = std::move(ran.scans);
   result.timing = std::move(ran.timing);
   result.remarks = std::move(ran.remarks);
+  result.doubts = doubts_of(sequence);
+  std::ranges::move(ran.doubts, std::back_inserter(result.doubts));
   result.remarks = all_remarks(sequence, result);
   result.from.fingerprint = std::move(ran.from.fingerprint);
   result.from.fingerprint_without_poses = std::move(ran.from.fingerprint_without_poses);
   result.from.machine = this_machine();
-  result.from.simulated = origin_of(plan.dataset, sequence);
+  result.from.simulated = sequence.simulated();
   if (plan.odometry) result.doubtful_poses.emplace();
   for (std::size_t k = 0; k < found.size(); ++k) {
     if (found[k].doubtful()) result.doubtful_poses->push_back({sequence.stem(k), found[k].doubt});
@@ -104,13 +101,12 @@ Result completed(const RunPlan& plan, const PlannedSequence& planned, Result ran
 }
 
 /// What the scans say about the frame of poses of a file, where nobody said it.
-std::vector<std::string> doubts_about_poses(const RunPlan& plan, const Sequence& sequence) {
+std::optional<std::string> doubt_about_poses(const RunPlan& plan, const Sequence& sequence) {
   const Reading& reading = plan.job.data.reading;
-  if (reading.pose_file() == nullptr || reading.pose_frame) return {};
-  const std::optional<std::string> doubt = doubt_about_pose_frame(sequence);
-  if (!doubt) return {};
-  tell(fmt::format("{}: {}", sequence.name(), *doubt));
-  return {*doubt};
+  if (reading.pose_file() == nullptr || reading.pose_frame) return std::nullopt;
+  std::optional<std::string> doubt = doubt_about_pose_frame(sequence);
+  if (doubt) tell(fmt::format("{}: {}", sequence.name(), *doubt));
+  return doubt;
 }
 
 /// Finds and sets the poses of a sequence.
@@ -142,13 +138,13 @@ ComputedSequence compute_sequence(const RunPlan& plan, const PlannedSequence& pl
       write_file_atomic(partial / "poses.txt", rows);
     }
   }
-  const std::vector<std::string> doubts = doubts_about_poses(plan, sequence);
+  std::optional<std::string> doubt = doubt_about_poses(plan, sequence);
   give_back_memory();  // of odometry, and of runs before
   Result ran = run_sequence(sequence, settings,
                             settings.keeps_labels ? std::optional(partial) : std::nullopt);
   Result& result = computed.outcome.result;
   result = completed(plan, planned, std::move(ran), found);
-  result.remarks.insert(result.remarks.begin(), doubts.begin(), doubts.end());
+  if (doubt) result.doubts.push_back(std::move(*doubt));
   computed.outcome.folder = planned.folder.path();
   // A program of the user's is another process, and may wait for a GPU.
   if (result.timing) {
@@ -159,8 +155,22 @@ ComputedSequence compute_sequence(const RunPlan& plan, const PlannedSequence& pl
   return computed;
 }
 
+/// A folder that is removed meanwhile is made anew for the next file: what was there is lost.
+void check_kept(const fs::path& folder, const Result& result) {
+  std::size_t lost = 0;
+  for (const ScanRow& row : result.scans) {
+    if (!is_there(folder / "labels" / (row.stem + ".label"))) ++lost;
+  }
+  if (lost == 0) return;
+  throw DataError(folder,
+                  fmt::format("{} of {} were removed during the run", lost,
+                              counted(result.scans.size(), "label file")),
+                  "a folder that nobody else changes");
+}
+
 SequenceOutcome put(ComputedSequence computed) {
   const fs::path& partial = computed.claim->path();
+  if (computed.has_labels) check_kept(partial, computed.outcome.result);
   commit_file(partial / "result.json", format_result(computed.outcome.result));
   if (computed.has_labels) sync_file_system_of(partial);
   computed.claim->put();
@@ -174,6 +184,16 @@ RunExecution::RunExecution(const RunPlan& plan) : plan_(plan), lock_(plan.out) {
 }
 
 void RunExecution::advance() {
+  advance_one();
+  if (outcomes_.size() < plan_.sequences.size()) return;
+  for (const SequenceOutcome& outcome : outcomes_) {
+    if (is_there(outcome.folder / "result.json")) continue;
+    throw DataError(outcome.folder / "result.json", "was removed during the run",
+                    "a folder that nobody else changes");
+  }
+}
+
+void RunExecution::advance_one() {
   const PlannedSequence& planned = plan_.sequences.at(outcomes_.size());
   if (!planned.finished) {
     outcomes_.push_back(put(compute_sequence(plan_, planned)));

@@ -34,11 +34,13 @@ class RunExecution {
   explicit RunExecution(const RunPlan& plan);
 
   /// Segments the next sequence, unless it has a result, and writes its folder. Throws DataError;
-  /// sequences finished before stay.
+  /// sequences finished before stay, or where one of them was removed meanwhile.
   void advance();
   const std::vector<SequenceOutcome>& outcomes() const { return outcomes_; }
 
  private:
+  void advance_one();
+
   const RunPlan& plan_;
   FolderLock lock_;
   std::vector<SequenceOutcome> outcomes_;

@@ -223,7 +223,8 @@ Result asked_result(const RunPlan& plan, std::size_t position) {
   asked.from.version = kMosbenchVersion;
   asked.from.compiler = kCompiler;
   asked.from.reading = members_of(sequence.reading());
-  asked.from.program = program_files(*settings.method);
+  asked.from.program_files = files_of_program(*settings.method);
+  asked.from.program = hash_of_program(asked.from.program_files);
   if (plan.odometry) asked.from.odometry = odometry_done(*plan.odometry);
   asked.splits = picked_stems(plan.dataset, position);
   const Split* benchmark = benchmark_scans(*settings.protocol, plan.dataset.splits);

@@ -146,7 +146,7 @@ void score_scans(const Sequence& sequence, const std::vector<std::size_t>& scans
   });
 }
 
-/// Adds remarks when nothing or most is predicted moving, and when labels fit other scans better.
+/// Adds doubts when nothing or most is predicted moving, and when labels fit other scans better.
 void add_doubts(const Sequence& sequence, const std::vector<std::size_t>& scans,
                 const ScoreRule& rule, SequenceScores& scores) {
   Confusion all;
@@ -154,10 +154,10 @@ void add_doubts(const Sequence& sequence, const std::vector<std::size_t>& scans,
   OpenedPredictions& opened = *scores.opened;
   const std::string remark = strange_share(all.tp + all.fp, all.points() - all.ignored,
                                            opened.labels->ids(), *rule.protocol);
-  if (!remark.empty()) opened.remarks.push_back(remark);
+  if (!remark.empty()) opened.doubts.push_back(remark);
   if (opened.format == PredictionFormat::kDynabloxScores) return;
   const std::string shift = shift_remark(sequence, scans, *opened.labels, rule);
-  if (!shift.empty()) opened.remarks.push_back(shift);
+  if (!shift.empty()) opened.doubts.push_back(shift);
 }
 
 SequenceScores score_sequence(const Dataset& dataset, std::size_t position, const ScoreTask& task,

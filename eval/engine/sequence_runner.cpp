@@ -11,6 +11,7 @@
 
 #include "core/base/stage_clock.hpp"
 #include "datasets/disk/files.hpp"
+#include "datasets/doctor/doctor.hpp"
 #include "datasets/formats/label_file.hpp"
 #include "datasets/sequence/fingerprint.hpp"
 #include "datasets/text/errors.hpp"
@@ -111,6 +112,7 @@ class SequenceRun {
     found_.from.fingerprint = fingerprint_.hex();
     found_.from.fingerprint_without_poses = fingerprint_without_poses_.hex();
     found_.remarks = method_->remarks();
+    if (auto doubt = sweeps_.doubt()) found_.doubts.push_back(std::move(*doubt));
     timing_.wall_s = milliseconds_since(start) / 1e3;
     found_.timing = std::move(timing_);
     return std::move(found_);
@@ -121,6 +123,7 @@ class SequenceRun {
     // One scan at a time, so the fingerprints see the frames in order.
     return std::async(launch_, [this, scan_index, frame = std::move(spent_)]() mutable {
       sequence_.read(scan_index, frame);
+      sweeps_.add(scan_index, frame);
       fingerprint_.add(frame);
       fingerprint_without_poses_.add(frame);
       const Clock::time_point start = Clock::now();
@@ -226,6 +229,7 @@ class SequenceRun {
   const std::optional<std::filesystem::path>& folder_;
   std::launch launch_;
   std::unique_ptr<Method> method_;
+  SweepWatch sweeps_{sequence_};
   ContentFingerprint fingerprint_;
   ContentFingerprint fingerprint_without_poses_{ContentFingerprint::Of::kAllButPoses};
   std::deque<PendingScan> pending_;

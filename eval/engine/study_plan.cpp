@@ -188,6 +188,7 @@ CellNumbers numbers_of(const Result& result) {
   CellNumbers numbers;
   numbers.version = result.from.version;
   numbers.simulated = result.is_simulated();
+  numbers.doubts = doubts_of(result);
   numbers.counts = counts_of(result);
   numbers.gaps = gaps_of(result);
   if (!numbers.counts.empty()) {

@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <iomanip>
 #include <sstream>
 #include <stdexcept>
 
+#include "datasets/disk/files.hpp"
 #include "datasets/sequence/fingerprint.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
@@ -21,6 +23,20 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
+
+/// Where the shell finds a command that is no path; empty where that is a part of the system, which
+/// changes with every update.
+fs::path found_by_path(const std::string& command) {
+  const char* path = std::getenv("PATH");
+  if (path == nullptr || command.find('/') != std::string::npos) return command;
+  std::istringstream folders(path);
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    if (!is_there(fs::path(folder) / command)) continue;
+    const bool is_system = folder.starts_with("/usr") || folder.starts_with("/bin");
+    return is_system ? fs::path() : fs::path(folder) / command;
+  }
+  return command;
+}
 
 /// Throws UsageError for a limit that the protocol does not know.
 void check_range(const RangeGate& range, const Protocol& protocol) {
@@ -208,20 +224,30 @@ ordered_json identity_of(const Job& job, DatasetKind kind, const ordered_json& i
 
 std::string key_of(const ordered_json& identity) { return hash_of_text(identity.dump()); }
 
-std::string program_files(const MethodKind& method) {
-  std::string contents;
-  if (method.name != kExecKind) return contents;
+std::vector<ProgramFile> files_of_program(const MethodKind& method) {
+  std::vector<ProgramFile> files;
+  if (method.name != kExecKind) return files;
   std::istringstream command{std::string(method.title.substr(std::string_view("exec:").size()))};
   for (std::string word; !(command >> std::ws).eof();) {
+    const bool is_first = command.tellg() == 0;
     const char quote = static_cast<char>(command.peek());
     if (quote == '"' || quote == '\'') {
       command >> std::quoted(word, quote);
     } else {
       command >> word;
     }
+    fs::path file = is_first ? found_by_path(word) : fs::path(word);
     std::error_code ignored;
-    if (fs::is_regular_file(word, ignored)) contents += hash_of_file(word) + "\n";
+    if (!fs::is_regular_file(file, ignored)) continue;
+    files.push_back(
+        {fs::absolute(file).lexically_normal(), fs::file_size(file), hash_of_file(file)});
   }
+  return files;
+}
+
+std::string hash_of_program(const std::vector<ProgramFile>& files) {
+  std::string contents;
+  for (const ProgramFile& file : files) contents += file.hash + "\n";
   return contents.empty() ? contents : hash_of_text(contents);
 }
 

@@ -11,6 +11,7 @@
 #include "datasets/layouts/dataset.hpp"
 #include "eval/job/method_choice.hpp"
 #include "eval/protocols/protocol.hpp"
+#include "eval/result/result.hpp"
 
 namespace mosbench {
 
@@ -88,9 +89,11 @@ nlohmann::ordered_json identity_of(const Job& job, DatasetKind kind,
 /// Returns the hash of an identity, 32 hexadecimal digits.
 std::string key_of(const nlohmann::ordered_json& identity);
 
-/// Returns a hash of all files that the command of a program of the user names; empty for other
-/// methods, and where it names none.
-std::string program_files(const MethodKind& method);
+/// Returns the files that the command of a program of the user names, also behind a # that ends it
+/// for the shell, and the command itself where it is found by PATH and is no part of the system.
+std::vector<ProgramFile> files_of_program(const MethodKind& method);
+/// Returns a hash of them; empty where there are none.
+std::string hash_of_program(const std::vector<ProgramFile>& files);
 
 /// Returns the command line that asks for a job, for a shell: "mosbench run DATA ...".
 std::string to_words(const Job& job);

@@ -98,7 +98,7 @@ class CellLister {
  public:
   explicit CellLister(const Study& study) : study_(study) {
     for (const StudyMethod& method : study.methods) {
-      program_of_[&method] = program_files(*method.segment.method);
+      program_of_[&method] = hash_of_program(files_of_program(*method.segment.method));
     }
   }
 

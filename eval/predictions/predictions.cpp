@@ -307,7 +307,7 @@ OpenedPredictions open_predictions(const std::filesystem::path& root, const Sequ
     throw opened.with_format(error);
   }
   if (std::string remark = disturbance_remark(place, sequence); !remark.empty()) {
-    opened.remarks.push_back(std::move(remark));
+    opened.doubts.push_back(std::move(remark));
   }
   opened.remarks.insert(opened.remarks.end(), errors.texts().begin(), errors.texts().end());
   return opened;

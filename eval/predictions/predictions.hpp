@@ -108,7 +108,8 @@ struct OpenedPredictions {
   std::filesystem::path path;  ///< file or folder
   std::vector<std::string>
       remarks;  ///< what was recognised and, with allow_missing, what was left out
-  std::vector<std::string> missing;  ///< stems of wanted scans without a usable prediction
+  std::vector<std::string> missing;   ///< stems of wanted scans without a usable prediction
+  std::vector<std::string> doubts{};  ///< whether these are labels of these scans
   /// Returns the error with the format in which the predictions were read.
   DataError with_format(const DataError& error) const;
 };

@@ -89,6 +89,10 @@ void bind_datasets(py::module_& module) {
   py::class_<OpenSequence>(module, "Sequence")
       .def_property_readonly("name", [](const OpenSequence& s) { return s.sequence->name(); })
       .def_property_readonly("remarks", [](const OpenSequence& s) { return s.sequence->remarks(); })
+      .def_property_readonly("warnings",
+                             [](const OpenSequence& s) { return doubts_of(*s.sequence); })
+      .def_property_readonly(
+          "simulated", [](const OpenSequence& s) { return s.sequence->simulated().has_value(); })
       .def_property_readonly("poses", poses_of)
       .def("__len__", [](const OpenSequence& s) { return s.sequence->size(); })
       .def("read", read_scan);

@@ -2,6 +2,10 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <algorithm>
+#include <iterator>
+#include <map>
+
 #include "eval/protocols/confusion.hpp"
 #include "eval/protocols/metrics.hpp"
 #include "eval/python/bindings.hpp"
@@ -60,6 +64,16 @@ Confusion count(const py::array& predicted, const py::array& truth, const std::s
   return score_scan(rules, true_ids, prediction, coordinates.span(padded));
 }
 
+/// What `dict_of` made of counts.
+Confusion confusion_of(const std::map<std::string, std::uint64_t>& counts) {
+  return {.tp = counts.at("tp"),
+          .fp = counts.at("fp"),
+          .fn = counts.at("fn"),
+          .tn = counts.at("tn"),
+          .ignored = counts.at("ignored"),
+          .unknown_ids = counts.at("unknown_ids")};
+}
+
 /// A NaN is undefined: None.
 py::dict dict_of(const MetricValues& values) {
   py::dict metrics;
@@ -87,7 +101,7 @@ py::list sequence_results(const ResultSet& set) {
                               "header"_a = header_json(result).dump(),
                               "metrics"_a = dict_of(aggregate(*result.protocol, counts)),
                               "method_ms_per_scan"_a = method_ms_per_scan(result),
-                              "scans"_a = scans));
+                              "warnings"_a = doubts_of(result), "scans"_a = scans));
   }
   return sequences;
 }
@@ -119,6 +133,15 @@ void bind_scores(py::module_& module) {
                            const std::string& protocol, const Points& points) {
     const std::vector<SequenceCounts> one = {{count(predicted, truth, protocol, points)}};
     return dict_of(aggregate(protocol_named(protocol), one));
+  });
+  using Counts = std::map<std::string, std::uint64_t>;
+  module.def("pooled", [](const std::vector<std::vector<Counts>>& sequences,
+                          const std::string& protocol) {
+    std::vector<SequenceCounts> counts;
+    for (const std::vector<Counts>& scans : sequences) {
+      std::ranges::transform(scans, std::back_inserter(counts.emplace_back()), confusion_of);
+    }
+    return dict_of(aggregate(protocol_named(protocol), counts));
   });
   module.def("load_results", load_results);
 }

@@ -103,11 +103,6 @@ std::string run_text(const Result& result) {
                      result.protocol->name);
 }
 
-std::string words_of(const SimulatedOrigin& origin) {
-  return fmt::format("scene {}, seed {}{}", origin.scene, origin.seed,
-                     origin.perturb ? ", disturbed by " + *origin.perturb : "");
-}
-
 }  // namespace
 
 bool are_labels_of(const ScanRow& row, std::span<const std::uint32_t> labels) {
@@ -233,61 +228,6 @@ fs::path folder_of_run(const fs::path& result_folder, const SequenceName& sequen
   return rest.empty() && run.has_filename() ? run : result_folder;
 }
 
-std::size_t missing_predictions(const ResultSet& set) {
-  std::size_t missing = 0;
-  for (const Result& sequence : set.sequences) missing += sequence.missing_predictions();
-  return missing;
-}
-
-std::string incomplete_warning(std::size_t missing_predictions) {
-  return fmt::format("INCOMPLETE: {} not counted",
-                     counted(missing_predictions, "scan without usable prediction is",
-                             "scans without usable prediction are"));
-}
-
-std::string split_warning(const std::string& split) {
-  return fmt::format(
-      "only the scans of split {}: not the protocol's number, which is over all labelled scans",
-      split);
-}
-
-std::vector<std::string> warnings(const ResultSet& set) {
-  std::vector<std::string> texts;
-  if (const std::size_t missing = missing_predictions(set); missing > 0) {
-    texts.push_back(incomplete_warning(missing));
-  }
-  for (const Result& sequence : set.sequences) {
-    const std::optional<std::string> split = only_split(sequence);
-    if (!split) continue;
-    texts.push_back(split_warning(*split));
-    break;
-  }
-  return texts;
-}
-
-Standing standing_of(const ResultSet& set) {
-  Standing standing{.doubts = warnings(set)};
-  for (const Result& sequence : set.sequences) {
-    const std::optional<SimulatedOrigin>& origin = sequence.from.simulated;
-    if (!origin) continue;
-    standing.simulated = true;
-    if (!standing.origin.empty()) continue;
-    standing.origin = fmt::format("scene {}, seed {}", origin->scene, origin->seed);
-  }
-  return standing;
-}
-
-Standing standing_of(const ResultSet& first, const char* first_name, const ResultSet& second,
-                     const char* second_name) {
-  Standing both{standing_of(first).simulated || standing_of(second).simulated};
-  for (const auto& [set, name] : {std::pair{&first, first_name}, std::pair{&second, second_name}}) {
-    for (const std::string& doubt : warnings(*set)) {
-      both.doubts.push_back(fmt::format("{}: {}", name, doubt));
-    }
-  }
-  return both;
-}
-
 std::vector<SequenceCounts> counts_of(std::span<const Result> sequences) {
   std::vector<SequenceCounts> counts;
   for (const Result& result : sequences) counts.push_back(counts_of(result));
@@ -310,35 +250,6 @@ ScanGaps gaps_of(const Result& result) {
     gaps += {1.0, std::exp(-apart_scans / kInViewScans)};
   }
   return gaps;
-}
-
-std::string simulated_notice(const SimulatedOrigin& origin) {
-  return fmt::format("simulated data ({}): not comparable with published numbers",
-                     words_of(origin));
-}
-
-std::optional<SimulatedOrigin> origin_of(const Dataset& dataset, const Sequence& sequence) {
-  if (auto origin = simulated_origin(dataset.root)) return origin;
-  if (const auto scan = sequence.scan_file(0)) return simulated_origin(*scan);
-  const std::vector<std::filesystem::path>& files = sequence.recording().files;
-  return files.empty() ? std::nullopt : simulated_origin(files.front());
-}
-
-std::optional<SimulatedOrigin> origin_of(const Dataset& dataset) {
-  for (const std::unique_ptr<Sequence>& sequence : dataset.sequences) {
-    if (auto origin = origin_of(dataset, *sequence)) return origin;
-  }
-  return std::nullopt;
-}
-
-std::optional<nlohmann::ordered_json> simulated_origin_json(const Dataset& dataset) {
-  const std::optional<SimulatedOrigin> origin = origin_of(dataset);
-  return origin ? std::optional(to_json(*origin)) : std::nullopt;
-}
-
-Standing standing_of(const Dataset& dataset) {
-  const std::optional<SimulatedOrigin> origin = origin_of(dataset);
-  return origin ? Standing{true, words_of(*origin)} : Standing{};
 }
 
 }  // namespace mosbench

@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "datasets/layouts/dataset.hpp"
-#include "datasets/layouts/simulated_origin.hpp"
 #include "datasets/sequence/fingerprint.hpp"
 #include "datasets/sequence/reading.hpp"
 #include "datasets/sequence/sequence.hpp"
@@ -66,14 +65,22 @@ struct OdometryDone {
   bool operator==(const OdometryDone&) const = default;
 };
 
+/// A file that the command of a program of the user names, as it was.
+struct ProgramFile {
+  std::filesystem::path path;
+  std::uint64_t bytes = 0;
+  std::string hash;  ///< see `hash_of_file`
+};
+
 /// What made a result, and of what.
 struct Provenance {
   std::string version, compiler;  ///< of mosbench
   std::optional<Machine> machine;
   std::string fingerprint;                ///< of the frames; empty when only labels were read
   std::string fingerprint_without_poses;  ///< empty where it is not known
-  std::string program;  ///< of the files that a user's command names; empty where it is not known
-  ReadingMembers reading;  ///< how the sequence was read
+  std::string program;  ///< hash of `program_files`; empty where they are not known
+  std::vector<ProgramFile> program_files;  ///< those that a user's command names
+  ReadingMembers reading;                  ///< how the sequence was read
   std::optional<OdometryDone> odometry;
   std::optional<SimulatedOrigin> simulated;  ///< its layout and scans are not recorded
 };
@@ -125,7 +132,7 @@ struct Result {
   std::map<std::string, std::set<std::string>> splits;  ///< stems, of splits that pick scans
   std::optional<std::string> summary_split;  ///< whose scans the summary is over; else all scans
   std::vector<ScanRow> scans;
-  std::vector<std::string> remarks;
+  std::vector<std::string> remarks, doubts;                 ///< as of a Recording
   std::vector<std::string> scans_left_out;                  ///< those without a pose
   std::optional<std::vector<DoubtfulPose>> doubtful_poses;  ///< of a run with odometry
   std::optional<Timing> timing;   ///< neither of scored labels nor of accepted results
@@ -197,6 +204,24 @@ std::size_t missing_predictions(const ResultSet& set);
 std::string incomplete_warning(std::size_t missing_predictions);
 /// "only the scans of split val, ...".
 std::string split_warning(const std::string& split);
+/// What makes the numbers of a result doubtful: what was found in its data, labels that the
+/// protocol does not know, one class alone in the truth, poses that odometry does not trust.
+std::vector<std::string> doubts_of(const Result& result);
+
+/// Returns the first file of the program that made a result that holds something else by now;
+/// nothing where it is gone, as on another machine.
+std::optional<std::filesystem::path> changed_program_file(const Result& result);
+/// Throws DataError for results whose program has changed since, unless they are allowed: then
+/// their doubts say so.
+void refuse_stale(const std::vector<ResultSet>& sets, bool allowed);
+
+/// A sentence about a sequence or run.
+struct Doubt {
+  std::string about, what;
+};
+/// Returns a line per sentence, after the names of all that it is about: "00, 01 and 3 more: ...".
+std::vector<std::string> told(const std::vector<Doubt>& doubts);
+
 /// What has to be said wherever numbers of the set are shown.
 std::vector<std::string> warnings(const ResultSet& set);
 
@@ -219,11 +244,7 @@ ScanGaps gaps_of(const Result& result);
 /// "simulated data (scene mall, seed 1): not comparable with published numbers".
 std::string simulated_notice(const SimulatedOrigin& origin);
 
-/// What made a sequence that `mosbench simulate` wrote, also where a link leads to it; nothing for
-/// real data.
-std::optional<SimulatedOrigin> origin_of(const Dataset& dataset, const Sequence& sequence);
-/// The same of the first such sequence of a data set.
-std::optional<SimulatedOrigin> origin_of(const Dataset& dataset);
+/// What made the first simulated sequence of a data set; nothing for recorded data.
 std::optional<nlohmann::ordered_json> simulated_origin_json(const Dataset& dataset);
 
 /// What every format has to show beside numbers of a data set.

@@ -192,7 +192,9 @@ Result read_result(const std::filesystem::path& file) {
     result.has_whole_scores = is_first;
     return result;
   } catch (const ordered_json::exception& error) {
-    throw DataError(file, error.what(), "a result.json of mosbench");
+    throw DataError(file, sentence_of(error), "a result.json of mosbench");
+  } catch (const MemberFault& fault) {
+    throw DataError(file, fault.what(), "a result.json of mosbench");
   } catch (const UsageError& error) {
     throw DataError(file, error.what(), "a result.json of this mosbench");
   }

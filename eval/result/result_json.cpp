@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "datasets/text/errors.hpp"
+#include "datasets/text/json_text.hpp"
 #include "eval/answer/answer_text.hpp"
 #include "eval/protocols/metrics.hpp"
 #include "eval/result/reading_json.hpp"
@@ -56,6 +57,13 @@ void visit_members(Record& from, auto&& visit) {
   visit("simulated", from.simulated, Member::kIfSet);
 }
 
+template <Is<ProgramFile> Record>
+void visit_members(Record& file, auto&& visit) {
+  visit("path", file.path, Member::kNeeded);
+  visit("bytes", file.bytes, Member::kNeeded);
+  visit("hash", file.hash, Member::kNeeded);
+}
+
 template <Is<OdometryDone> Record>
 void visit_members(Record& odometry, auto&& visit) {
   visit("name", odometry.name, Member::kNeeded);
@@ -100,10 +108,12 @@ void visit_members(Record& places, auto&& visit) {
 void visit_findings(auto& result, auto& unjudged, auto&& visit) {
   visit("preset", result.preset, Member::kIfSet);
   visit("program", result.from.program, Member::kIfSet);
+  visit("program_files", result.from.program_files, Member::kIfAny);
   visit("odometry", result.from.odometry, Member::kIfSet);
   visit("provenance", result.from, Member::kNeeded);
   visit("predictions", result.predictions, Member::kIfSet);
   visit("remarks", result.remarks, Member::kUsual);
+  visit("doubts", result.doubts, Member::kIfAny);
   visit("scans_without_detection", unjudged, Member::kUsual);
   visit("scans_left_out", result.scans_left_out, Member::kIfAny);
   visit("doubtful_poses", result.doubtful_poses, Member::kIfSet);
@@ -115,6 +125,10 @@ template <typename Record>
 concept HasMembers = requires(Record& record) {
   visit_members(record, [](const char*, auto&, Member) {});
 };
+
+template <typename Value>
+concept IsListOfRecords =
+    std::same_as<Value, std::vector<DoubtfulPose>> || std::same_as<Value, std::vector<ProgramFile>>;
 
 ordered_json written(const std::filesystem::path& path) { return path.string(); }
 ordered_json written(const RecordedSettings& settings) { return to_json(settings); }
@@ -141,9 +155,9 @@ ordered_json written(const Value& value) {
   ordered_json json;
   if constexpr (HasMembers<const Value>) {
     visit_members(value, adding_to(json = ordered_json::object()));
-  } else if constexpr (std::same_as<Value, std::vector<DoubtfulPose>>) {
+  } else if constexpr (IsListOfRecords<Value>) {
     json = ordered_json::array();
-    for (const DoubtfulPose& pose : value) json.push_back(written(pose));
+    for (const auto& each : value) json.push_back(written(each));
   } else if constexpr (requires { value.has_value(); }) {
     if (value) json = written(*value);
   } else {
@@ -171,8 +185,17 @@ void read(const ordered_json& json, Value& value);
 /// Visits members and reads those that an object has.
 auto taking_from(const ordered_json& json) {
   return [&json](const char* name, auto& member, Member kind) {
-    if (!json.is_object() || kind == Member::kNeeded || json.contains(name)) {
-      read(json.at(name), member);  // throws for what is no object
+    if (!json.is_object()) throw MemberFault("is no object");
+    if (!json.contains(name)) {
+      if (kind == Member::kNeeded) throw MemberFault(fmt::format("lacks \"{}\"", name));
+      return;
+    }
+    try {
+      read(json.at(name), member);
+    } catch (const MemberFault& fault) {
+      throw MemberFault(fmt::format("\"{}\" {}", name, fault.what()));
+    } catch (const ordered_json::exception& error) {
+      throw MemberFault(fmt::format("\"{}\" {}", name, sentence_of(error)));
     }
   };
 }
@@ -181,8 +204,8 @@ template <typename Value>
 void read(const ordered_json& json, Value& value) {
   if constexpr (HasMembers<Value>) {
     visit_members(value, taking_from(json));
-  } else if constexpr (std::same_as<Value, std::vector<DoubtfulPose>>) {
-    for (const ordered_json& pose : json) read(pose, value.emplace_back());
+  } else if constexpr (IsListOfRecords<Value>) {
+    for (const ordered_json& each : json) read(each, value.emplace_back());
   } else if constexpr (requires { value.has_value(); }) {
     if (!json.is_null()) read(json, value.emplace());
   } else {

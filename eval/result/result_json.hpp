@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
 #include "eval/result/result.hpp"
 
@@ -12,6 +13,12 @@ namespace mosbench {
 /// default. 2: `config`, `code`, `machine`, `fingerprint` and `simulated` beside each other, the
 /// places of this machine in `timing` and `source`.
 inline constexpr int kResultFormat = 3;
+
+/// What is wrong with a result's JSON: which member, and what it lacks or holds.
+class MemberFault : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
 
 /// All of a result but its scans, what depends on the clock, and places on this machine.
 nlohmann::ordered_json header_json(const Result& result);

@@ -202,6 +202,7 @@ ordered_json to_json(const StudyTable& table) {
   ordered_json json = {{"name", table.name},
                        {"version", std::string(kMosbenchVersion)},
                        {"simulated", table.simulated},
+                       {"doubts", table.doubts},
                        {"protocol", nullptr},
                        {"min_range_m", nullptr},
                        {"max_range_m", nullptr},
@@ -252,14 +253,14 @@ ordered_json to_json(const StudyTable& table) {
 Answer study_answer(const StudyPlan& plan, const StudyTable& table) {
   const ordered_json json = to_json(table);
   Answer answer{.exit_code = table.done == table.cells ? 0 : 1,
-                .standing = Standing{table.simulated},
+                .standing = Standing{table.simulated, "", table.doubts},
                 .sheets = {overview_sheet(table)},
                 .records = records_of(plan),
                 .json = json_text(json),
                 .page = filled_page(study_asset(), json)};
   if (answer.exit_code != 0) {
-    answer.standing->doubts = {fmt::format(
-        "INCOMPLETE: {} missing", counted(table.cells - table.done, "cell is", "cells are"))};
+    answer.standing->doubts.push_back(fmt::format(
+        "INCOMPLETE: {} missing", counted(table.cells - table.done, "cell is", "cells are")));
   }
   for (const StudyCurve& curve : table.curves) answer.sheets.push_back(curve_sheet(table, curve));
   if (!table.effects.empty()) answer.sheets.push_back(effects_sheet(table));

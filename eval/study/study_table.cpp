@@ -283,6 +283,7 @@ void count_cells(const StudyPlan& plan, StudyTable& table) {
   const CostModel costs = read_costs(plan.out);
   double core_s = 0, predicted_s = 0;
   bool all_predicted = true;
+  std::vector<Doubt> doubts;
   for (const PlannedCell& planned : plan.cells) {
     ++table.cells;
     if (planned.state == CellState::kFailed) {
@@ -293,11 +294,14 @@ void count_cells(const StudyPlan& plan, StudyTable& table) {
     if (!why.empty()) table.undefined.push_back({planned.cell.title(), why});
     ++table.done;
     table.simulated = table.simulated || planned.numbers.simulated;
+    for (const auto& doubt : planned.numbers.doubts)
+      doubts.push_back({planned.cell.title(), doubt});
     core_s += planned.numbers.core_s.value_or(0);
     const auto expected_s = costs.seconds(planned.cell);
     all_predicted = all_predicted && expected_s.has_value();
     predicted_s += expected_s.value_or(0);
   }
+  table.doubts = told(doubts);
   if (table.done == 0) return;
   table.core_s = core_s;
   if (all_predicted) table.predicted_s = predicted_s;

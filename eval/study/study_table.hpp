@@ -64,6 +64,7 @@ struct StudyTable {
   std::string name;
   std::string out;         ///< folder of the results
   bool simulated = false;  ///< any of its data
+  std::vector<std::string> doubts;
   std::optional<ScoreRule> rule;
   std::vector<StudyRow> rows;
   std::vector<StudyCurve> curves;

@@ -224,12 +224,14 @@ void remark_on_times(const std::vector<ResultSet>& runs, std::vector<std::string
 
 void add_settings_and_doubts(Leaderboard& board) {
   std::vector<const ResultSet*> runs;
+  std::vector<Doubt> doubts;
   for (const LeaderboardRow& row : board.rows) {
     runs.push_back(row.run);
     for (const std::string& warning : warnings(*row.run)) {
-      board.doubts.push_back(fmt::format("{}: {}", name_of(board, row), warning));
+      doubts.push_back({name_of(board, row), warning});
     }
   }
+  board.doubts = told(doubts);
   board.differing = differing_settings(runs);
 }
 

@@ -4,6 +4,7 @@
 
 #include "datasets/disk/files.hpp"
 #include "datasets/disk/partial_file.hpp"
+#include "datasets/doctor/doctor.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
 #include "eval/answer/answer_text.hpp"
@@ -83,6 +84,19 @@ void refuse_other_results(const std::filesystem::path& folder) {
   }
 }
 
+/// Throws UsageError where its file holds the scores of another question, or other scores.
+void refuse_other_scores(const Result& result) {
+  if (!is_there(result.file)) return;
+  const auto said = [](const Result& scored) {
+    ordered_json json = to_json(scored);
+    for (const char* of_this_call : {"provenance", "places"}) json.erase(of_this_call);
+    return json;
+  };
+  if (said(read_result(result.file)) == said(result)) return;
+  throw UsageError(result.file.string() +
+                   ": holds other scores, expected --overwrite, or --out to name another folder");
+}
+
 /// Where the predictions and their data set lie.
 Places places_of(const Dataset& dataset, const Reading& reading, const ScoreTask& task,
                  PredictionFormat format) {
@@ -95,24 +109,33 @@ Places places_of(const Dataset& dataset, const Reading& reading, const ScoreTask
   return places;
 }
 
-Result scored_result(const Dataset& dataset, const ScoreTask& task, const MethodName& method,
-                     const SequenceScores& scores) {
+/// The scores of a sequence by the first rule.
+Result scored_result(const Dataset& dataset, const ScoreRule& rule, const SequenceScores& scores) {
   const Sequence& sequence = *dataset.sequences[scores.position];
   Result result;
   result.sequence = SequenceName(sequence.name(), dataset.root);
   result.dataset = to_string(dataset.kind);
-  result.method = method.name;
-  result.setting = method.setting;
-  result.protocol = task.rules.front().protocol;
-  result.range = task.rules.front().range;
+  result.protocol = rule.protocol;
+  result.range = rule.range;
   result.from.version = kMosbenchVersion;
   result.from.reading = members_of(sequence.reading());
-  result.from.simulated = origin_of(dataset, sequence);
+  result.from.simulated = sequence.simulated();
+  result.doubts = doubts_of(sequence);
+  result.doubts.insert(result.doubts.end(), scores.opened->doubts.begin(),
+                       scores.opened->doubts.end());
   result.predictions = scored_predictions(*scores.opened);
   result.splits = picked_stems(dataset, scores.position);
-  result.summary_split = picked_split(dataset, task);
   result.scans = scores.by_rule.front();
   return result;
+}
+
+Standing standing_of(const Dataset& dataset, const ScoreRule& rule,
+                     const std::vector<SequenceScores>& scores) {
+  ResultSet set;
+  for (const SequenceScores& sequence : scores) {
+    if (sequence.opened) set.sequences.push_back(scored_result(dataset, rule, sequence));
+  }
+  return standing_of(set);
 }
 
 /// Summary of all scored scans under one protocol.
@@ -202,16 +225,6 @@ std::vector<std::string> score_remarks(const Dataset& dataset,
   return remarks;
 }
 
-Standing standing_of(const Dataset& dataset, const std::vector<SequenceScores>& scores) {
-  Standing standing = standing_of(dataset);
-  for (const SequenceScores& sequence : scores) {
-    if (!sequence.opened || sequence.opened->missing.empty()) continue;
-    standing.doubts.push_back(dataset.sequences[sequence.position]->name() + ": " +
-                              incomplete_warning(sequence.opened->missing.size()));
-  }
-  return standing;
-}
-
 ordered_json rows_json(const std::vector<SummaryRow>& rows) {
   ordered_json json = {{"sequences", ordered_json::array()},
                        {"parts", ordered_json::array()},
@@ -233,19 +246,12 @@ Answer score_answer(const Dataset& dataset, const ScoreTask& task,
   const std::vector<SummaryRow> rows = table_rows(dataset, rule, scores, with_sequences);
   Sheet sheet = score_sheet(rule, dataset.splits, rows);
   sheet.notes = score_remarks(dataset, scores);
-  for (const SequenceScores& sequence : scores) {
-    std::uint64_t unknown = 0;
-    for (const ScanRow& row : sequence.by_rule.front()) unknown += row.counts->unknown_ids;
-    if (const auto remark = unknown_ids_remark(*rule.protocol, unknown); !remark.empty()) {
-      sheet.notes.push_back(dataset.sequences[sequence.position]->name() + ": " + remark);
-    }
-  }
   const std::optional<ScoreCurve> curve = curve_of(scores);
   if (curve) {
     const std::vector<std::string> lines = curve_lines(*curve);
     sheet.notes.insert(sheet.notes.begin(), lines.begin(), lines.end());
   }
-  Standing standing = standing_of(dataset, scores);
+  Standing standing = standing_of(dataset, rule, scores);
   if (const auto split = other_split(dataset, task)) {
     standing.doubts.push_back(split_warning(*split));
   }
@@ -271,13 +277,19 @@ void check_scored_folders(const Dataset& dataset, const std::filesystem::path& o
 
 void write_scores(const Dataset& dataset, const Reading& reading, const ScoreTask& task,
                   const MethodName& method, const std::vector<SequenceScores>& scores,
-                  const std::filesystem::path& out) {
+                  const std::filesystem::path& out, bool overwrite) {
+  std::vector<Result> results;
   for (const SequenceScores& sequence : scores) {
     if (!sequence.opened) continue;
-    Result result = scored_result(dataset, task, method, sequence);
+    Result& result = results.emplace_back(scored_result(dataset, task.rules.front(), sequence));
+    result.method = method.name;
+    result.setting = method.setting;
+    result.summary_split = picked_split(dataset, task);
     result.places = places_of(dataset, reading, task, sequence.opened->format);
-    commit_file(out / result.sequence.folder() / "result.json", format_result(result));
+    result.file = out / result.sequence.folder() / "result.json";
+    if (!overwrite) refuse_other_scores(result);
   }
+  for (const Result& result : results) commit_file(result.file, format_result(result));
 }
 
 Answer side_by_side_answer(const Dataset& dataset, const std::vector<ScoreRule>& rules,
@@ -297,7 +309,7 @@ Answer side_by_side_answer(const Dataset& dataset, const std::vector<ScoreRule>&
                           or_undefined(row.summary[Metric::kIou]), row.summary.published_text,
                           pooled.tp, pooled.fp, pooled.fn, row.reason});
   }
-  return {.standing = standing_of(dataset, scores),
+  return {.standing = standing_of(dataset, rules.front(), scores),
           .sheets = {std::move(sheet)},
           .json = json_text(side_by_side_json(dataset, rules, scores))};
 }
@@ -305,7 +317,7 @@ Answer side_by_side_answer(const Dataset& dataset, const std::vector<ScoreRule>&
 ordered_json side_by_side_json(const Dataset& dataset, const std::vector<ScoreRule>& rules,
                                const std::vector<SequenceScores>& scores) {
   std::vector<std::string> remarks = score_remarks(dataset, scores);
-  for (std::string& doubt : standing_of(dataset, scores).doubts) {
+  for (std::string& doubt : standing_of(dataset, rules.front(), scores).doubts) {
     remarks.push_back(std::move(doubt));
   }
   ordered_json json = {{"dataset", std::string(to_string(dataset.kind))},

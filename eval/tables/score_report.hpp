@@ -64,8 +64,6 @@ struct MethodName {
 /// Returns one line for each thing recognised about the predictions.
 std::vector<std::string> score_remarks(const Dataset& dataset,
                                        const std::vector<SequenceScores>& scores);
-/// What every format has to show: simulated data and missing predictions.
-Standing standing_of(const Dataset& dataset, const std::vector<SequenceScores>& scores);
 /// Says what `mosbench score` found by one rule, the first of the task.
 Answer score_answer(const Dataset& dataset, const ScoreTask& task,
                     const std::vector<SequenceScores>& scores, bool with_sequences);
@@ -81,9 +79,10 @@ nlohmann::ordered_json side_by_side_json(const Dataset& dataset,
 void check_scored_folders(const Dataset& dataset, const std::filesystem::path& out);
 
 /// Writes <out>/<sequence>/result.json, which `table`, `stats`, `compare` and `report` read as they
-/// read those of a run; `reading` is how the data set was opened. Throws DataError.
+/// read those of a run; `reading` is how the data set was opened. Throws DataError, and UsageError
+/// for a result there that holds other scores, unless they are to be overwritten.
 void write_scores(const Dataset& dataset, const Reading& reading, const ScoreTask& task,
                   const MethodName& method, const std::vector<SequenceScores>& scores,
-                  const std::filesystem::path& out);
+                  const std::filesystem::path& out, bool overwrite);
 
 }  // namespace mosbench

@@ -94,6 +94,7 @@ TableCell measured_cell(const PaperTable& table, const TableColumn& column, cons
   }
   cell.simulated = run.front().is_simulated();
   if (cell.simulated) cell.reasons.insert(cell.reasons.begin(), "simulated data");
+  for (const std::string& doubt : warnings(part)) cell.doubts.push_back(doubt);
   for (std::string& gap : gaps(part, column)) cell.reasons.push_back(std::move(gap));
   if (!cell.measured->value) {
     cell.reasons.push_back("IoU is undefined");

@@ -29,6 +29,7 @@ struct TableCell {
   std::optional<double> difference;  ///< measured - published, fraction
   Verdict verdict = Verdict::kPublishedOnly;
   bool simulated = false;              ///< what was measured is of simulated data
+  std::vector<std::string> doubts;     ///< about what was measured
   std::vector<std::string> sequences;  ///< measured ones, with the scene of simulated ones
   std::vector<std::string> reasons;    ///< why not comparable, or what to download and run
 };

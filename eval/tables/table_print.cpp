@@ -149,11 +149,21 @@ ordered_json to_json(const TableCell& cell) {
   return json;
 }
 
+Standing standing_of(const FilledTable& table) {
+  std::vector<Doubt> doubts;
+  for (const TableRow& row : table.rows) {
+    for (const TableCell& cell : row.cells) {
+      for (const std::string& doubt : cell.doubts) doubts.push_back({row.method, doubt});
+    }
+  }
+  return {table.simulated(), "", told(doubts)};
+}
+
 }  // namespace
 
 Answer table_answer(const FilledTable& table) {
   return {.usual = Format::kMarkdown,
-          .standing = Standing{table.simulated()},
+          .standing = standing_of(table),
           .sheets = {sheet_of(table)},
           .records = records_of(table),
           .json = json_text(to_json(table))};

@@ -99,6 +99,57 @@ TEST_F(Exec, IsRunAgainWhenItsFilesHaveChanged) {
   EXPECT_THAT(cli::run(words).err, HasSubstr("finished by an earlier run, kept"));
 }
 
+TEST_F(Exec, IsRefusedByTablesWhenItsFilesHaveChangedSince) {
+  const fs::path script = folder_.write("ours.sh", client() + "\n");
+  const fs::path weights = folder_.write("weights.pt", "1");
+  const std::string out = (folder_ / "out").string();
+  const auto words =
+      command("sh '" + script.string() + "' # behind a comment: " + weights.string());
+  for (const fs::path& file : {script, weights}) {
+    ASSERT_EQ(cli::run(words).exit_code, 0);
+    const std::string before = read_file(file);
+    write_file_atomic(file, before + "\n");
+    for (const std::vector<std::string>& table : {std::vector<std::string>{"stats", out},
+                                                  {"rank", out},
+                                                  {"table", "I", out},
+                                                  {"stats", out, "--by", "range"},
+                                                  {"compare", out, out}}) {
+      const cli::Answer refused = cli::run(table);
+      EXPECT_EQ(refused.exit_code, 3) << table.front();
+      EXPECT_THAT(refused.err, HasSubstr("stale: its program has changed since, " + file.string()));
+      if (table.front() == "table") continue;
+      std::vector<std::string> allowed = table;
+      allowed.insert(allowed.end(), {"--allow-stale", "--as", "csv"});
+      const cli::Answer marked = cli::run(allowed);
+      EXPECT_EQ(marked.exit_code, 0) << marked.err;
+      EXPECT_THAT(marked.out, HasSubstr("STALE: " + file.string())) << table.front();
+    }
+    EXPECT_THAT(cli::run(words).err, HasSubstr("the program has changed, it is run again"));
+    EXPECT_EQ(cli::run({"stats", out}).exit_code, 0);
+  }
+  fs::remove(weights);  // as on another machine
+  EXPECT_EQ(cli::run({"stats", out}).exit_code, 0);
+}
+
+TEST_F(Exec, FailsWhenItsFolderIsRemovedMeanwhile) {
+  // The answers to the start and to two scans have 24 + 2 * (16 + 34,576) bytes.
+  const std::string partial = (folder_ / "out/room.partial").string();
+  const std::string then = "head -c 69208; sleep 0.3; rm -r '" + partial + "'; cat";
+  const cli::Answer answer = cli::run(command(client() + " | (" + then + ")"));
+  EXPECT_EQ(answer.exit_code, 3);
+  EXPECT_THAT(answer.err, HasSubstr("2 of 4 label files were removed during the run"));
+  EXPECT_FALSE(fs::exists(folder_ / "out/room"));
+}
+
+TEST_F(Exec, FailsWhenAFinishedSequenceIsRemovedMeanwhile) {
+  for (const char* name : {"a", "b"}) cli::write_small_sequence(folder_.path() / "set" / name, 3);
+  const std::string finished = (folder_ / "out/a").string();
+  const cli::Answer answer = cli::run({"run", folder_ / "set", "--out", folder_ / "out", "--method",
+                                       "exec:rm -rf '" + finished + "'; " + client()});
+  EXPECT_EQ(answer.exit_code, 3);
+  EXPECT_THAT(answer.err, HasSubstr("out/a/result.json: was removed during the run"));
+}
+
 TEST_F(Exec, PassesOnWhatTheProgramSaysOnStderr) {
   EXPECT_THAT(cli::run(command("echo weights are read >&2; " + client())).err,
               HasSubstr("weights are read\n"));

@@ -88,8 +88,8 @@ TEST_F(OdometryCommand, MarksItsPosesAsTheLidarsForCommandsThatReadThem) {
   // A copy has no mark, and that of other content says nothing.
   std::filesystem::copy(folder_ / "poses.txt", folder_ / "copied.txt");
   EXPECT_THAT(labels_by(path("copied.txt"), "copied"), HasSubstr(doubt));
-  const ordered_json remarks = cli::timeless_result(folder_ / "copied/08").at("remarks");
-  EXPECT_THAT(remarks.at(0).get<std::string>(), HasSubstr("expected --pose-frame lidar"));
+  const ordered_json doubts = cli::timeless_result(folder_ / "copied/08").at("doubts");
+  EXPECT_THAT(doubts.at(0).get<std::string>(), HasSubstr("expected --pose-frame lidar"));
   std::filesystem::copy(truth_, folder_ / "poses.txt",
                         std::filesystem::copy_options::overwrite_existing);
   labels_by(path("poses.txt"), "overwritten");

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Scores the labels of a network by a benchmark's rules, scan by scan and as a whole.
+"""Scores the labels of a network by a benchmark's rules, in Python and by the program.
 
 Here the "network" calls moving what is nearer than 15 m and, under a sensor at 1.7 m, above 30 cm.
 """
@@ -20,11 +20,15 @@ def main(folder: pathlib.Path) -> None:
     data = mosbench.simulate(folder / "street", scene="street", scans=20)
     predictions = folder / "predictions"
     predictions.mkdir()
+    counts = []
     for scan in mosbench.open(data):
         moving = network(scan.points)
-        print(scan.stem, "IoU", mosbench.iou(moving, scan.truth, protocol="semantickitti-mos"))
+        counts.append(mosbench.confusion(moving, scan.truth, protocol="semantickitti-mos"))
         labels = np.where(moving, mosbench.MOVING_LABEL, mosbench.STATIC_LABEL)
         labels.astype(np.uint32).tofile(predictions / f"{scan.stem}.label")
+    # The benchmark adds up the points of all scans; the mean of the scans' own IoU is another number.
+    print("IoU", mosbench.pooled(counts, protocol="semantickitti-mos")["iou"])
+    print("mean IoU of single scans", mosbench.mean_of_scans(counts))
 
     mine = mosbench.score(data, predictions, protocol="semantickitti-mos", method="my network", out=folder / "mine")
     theirs = mosbench.run(data, preset="semantickitti", out=folder / "hmm-mos")

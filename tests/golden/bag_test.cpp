@@ -106,7 +106,7 @@ TEST(RealBagWithTimes, IsUndistortedAndLeavesOutTheScanThatTheTransformsDoNotCov
   const BagSequence recording("s", bag, {});
   ASSERT_EQ(raw.size(), 3U);
   ASSERT_EQ(recording.size(), 2U);
-  EXPECT_THAT(recording.remarks(),
+  EXPECT_THAT(recording.recording().doubts,
               testing::Contains(HasSubstr("1 of 3 scans are left out: no transform covers them")));
   double furthest_m = 0.0;
   const auto before = raw.read(0).points;

@@ -12,7 +12,7 @@
 
 #include "datasets/disk/files.hpp"
 #include "datasets/layouts/layout.hpp"
-#include "datasets/layouts/simulated_origin.hpp"
+#include "datasets/sequence/simulated_origin.hpp"
 #include "datasets/simulator/scene.hpp"
 #include "datasets/simulator/simulator.hpp"
 #include "datasets/text/errors.hpp"
@@ -156,12 +156,11 @@ TEST_P(EveryLayout, CompletesWhatAKilledRunLeft) {
 TEST_P(EveryLayout, SaysThatItIsSimulated) {
   const TempFolder folder;
   simulate(options_for(GetParam(), folder / "sim", 5));
-  const auto deep =
-      (folder / "sim") / recordings_of(GetParam(), built_in_scene("room")).front().folder;
-  for (const auto& path : {folder / "sim", deep, deep / "velodyne"}) {
-    const auto origin = simulated_origin(path);
-    ASSERT_TRUE(origin) << path;
-    EXPECT_EQ(origin->layout, GetParam());
+  const Dataset dataset = open_dataset(folder / "sim", as(GetParam()));
+  for (const auto& sequence : dataset.sequences) {
+    const auto origin = sequence->simulated();
+    ASSERT_TRUE(origin) << sequence->name();
+    EXPECT_EQ(origin->layout, to_string(GetParam()));
     EXPECT_EQ(origin->scene, "room");
     EXPECT_EQ(origin->scans, 5U);
     EXPECT_EQ(origin->seed, 5U);

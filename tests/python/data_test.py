@@ -2,6 +2,7 @@
 
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -69,6 +70,31 @@ def test_score_of_the_labels_is_the_score_of_the_run(street, finished, tmp_path)
         mosbench.score(street, finished.folder, protocol="nothing")
     with pytest.raises(OSError):
         mosbench.Result(street)
+
+
+@pytest.mark.parametrize("protocol", ["semantickitti-mos", "doals-hmm", "helimos-all", "mapmos"])
+def test_pooled_counts_give_the_numbers_of_score(street, finished, protocol):
+    counts = [
+        mosbench.confusion(finished["08"].labels(scan.stem), scan.truth, protocol, scan.points)
+        for scan in mosbench.open(street)
+    ]
+    scored = mosbench.score(street, finished, protocol)
+    assert mosbench.pooled(counts, protocol) == scored.metrics
+    assert mosbench.pooled([counts], protocol) == scored.metrics
+    ious = finished.per_scan["iou"]
+    if protocol == "semantickitti-mos":
+        assert mosbench.mean_of_scans(counts) == pytest.approx(np.nanmean(ious))
+        assert mosbench.mean_of_scans(counts) != mosbench.pooled(counts, protocol)["iou"]
+    with pytest.raises(ValueError, match="scans: is empty"):
+        mosbench.pooled([])
+
+
+def test_a_simulated_sequence_says_so_wherever_it_lies(street, tmp_path):
+    assert mosbench.open(street).simulated
+    moved = shutil.copytree(next(street.rglob("velodyne")).parent, tmp_path / "mine")
+    assert mosbench.open(moved).simulated and "simulated" in repr(mosbench.open(moved))
+    (moved / "simulated.json").unlink()
+    assert not mosbench.open(moved).simulated
 
 
 def test_iou_counts_as_the_protocol_does(street, finished):

@@ -33,7 +33,7 @@ from mosbench.commands import (
 from mosbench.datasets import Dataset, Scan, Sequence, open
 from mosbench.flags import READING
 from mosbench.flow import moving_for_h5
-from mosbench.metrics import confusion, iou, metrics
+from mosbench.metrics import confusion, iou, mean_of_scans, metrics, pooled
 from mosbench.online import MOS, Config, Labels, Odometry, OdometryPose, odometry
 from mosbench.poses import write_poses
 from mosbench.results import Result, SequenceResult
@@ -64,11 +64,13 @@ __all__ = [
     "evaluate_trajectory",
     "iou",
     "map_score",
+    "mean_of_scans",
     "methods",
     "metrics",
     "moving_for_h5",
     "odometry",
     "open",
+    "pooled",
     "presets",
     "protocols",
     "rank",

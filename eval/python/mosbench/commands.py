@@ -260,6 +260,7 @@ def score(
     split: Optional[str] = None,
     method: Optional[str] = None,
     allow_missing: bool = False,
+    overwrite: bool = False,
     threads: Optional[int] = None,
     **reading: Any,
 ) -> Result:
@@ -267,6 +268,7 @@ def score(
 
     predictions: a folder or file, or a Result; for labels in arrays there is `mosbench.metrics`.
     out: folder to keep the results in; without it they are dropped after they are read.
+    overwrite: replace other scores there.
     data, reading: as for `run`.
     """
     if not isinstance(predictions, (Result, str, os.PathLike)):
@@ -281,6 +283,7 @@ def score(
         kept = pathlib.Path(out) if out is not None else pathlib.Path(scratch) / "score"
         arguments = flags(predictions=_folder(predictions), protocol=protocol, out=kept, format=format)
         arguments += flags(id_map=id_map, split=split, method=method, allow_missing=allow_missing, threads=threads)
+        arguments += flags(overwrite=overwrite)
         with _removed_on_error(_data_folder(kept)):
             _answer(["score", *_data_flags(data, dataset, sequences, _with_kept_poses(reading, kept)), *arguments])
         return Result(kept)

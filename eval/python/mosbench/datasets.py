@@ -70,8 +70,18 @@ class Sequence:
 
     @property
     def remarks(self) -> list[str]:
-        """What was assumed or found odd."""
+        """What was assumed."""
         return self._opened.remarks
+
+    @property
+    def warnings(self) -> list[str]:
+        """What makes numbers of it doubtful, as far as no scan has to be read."""
+        return self._opened.warnings
+
+    @property
+    def simulated(self) -> bool:
+        """Whether it was simulated, or made of a sequence that was."""
+        return self._opened.simulated
 
     @property
     def gt_poses(self) -> np.ndarray:
@@ -101,7 +111,8 @@ class Sequence:
         return scan.points[:, :3].astype(np.float64), times
 
     def __repr__(self) -> str:
-        return f"<mosbench.Sequence {self.name}: {len(self)} scans>"
+        simulated = ", simulated" if self.simulated else ""
+        return f"<mosbench.Sequence {self.name}: {len(self)} scans{simulated}>"
 
 
 class Dataset:

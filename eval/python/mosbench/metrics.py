@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Optional
+from typing import Any, Iterable, Mapping, Optional, Union
 
 import numpy as np
 
@@ -56,3 +56,28 @@ def iou(
 ) -> Optional[float]:
     """Returns the IoU of moving points, 0 to 1; None when nothing moves in either."""
     return metrics(predicted, truth, protocol, points)["iou"]
+
+
+def pooled(
+    scans: Iterable[Union[Mapping[str, int], Iterable[Mapping[str, int]]]], protocol: str = "semantickitti-mos"
+) -> dict[str, Optional[float]]:
+    """Returns iou, precision, recall and f1 of many scans as `mosbench score` gives them, 0 to 1; None where 0/0.
+
+    scans: what `confusion` returned for each scan of a sequence, or an iterable of such for each of several
+    sequences. Most protocols add the counts up; those that average say so in `mosbench list protocols`.
+    """
+    items = list(scans)
+    if not items:
+        raise ValueError("scans: is empty, expected counts of at least one scan")
+    of_one = isinstance(items[0], Mapping)
+    return _mosbench.pooled([items] if of_one else [list(one) for one in items], protocol)
+
+
+def mean_of_scans(scans: Iterable[Mapping[str, int]]) -> Optional[float]:
+    """Returns the mean IoU of single scans, where a scan of few moving points counts as much as one of many.
+
+    scans: as of `pooled`. Scans where nothing moves in truth or prediction are left out; None where no scan is left.
+    """
+    unions = [(one["tp"], one["tp"] + one["fp"] + one["fn"]) for one in scans]
+    ious = [tp / union for tp, union in unions if union]
+    return float(np.mean(ious)) if ious else None

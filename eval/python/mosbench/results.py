@@ -7,7 +7,6 @@ import html
 import json
 import os
 import pathlib
-import re
 from typing import Any, Iterator, Optional, Union
 
 import numpy as np
@@ -33,10 +32,6 @@ _SCAN_TYPE = np.dtype(
 )
 
 
-#: How the program begins what it says loudly: "THE POSES FIT AS ...", "MOST POSES ARE DOUBTFUL, ...".
-_LOUD = re.compile(r"(\b[A-Z]{2,} ){2}|INCOMPLETE")
-
-
 def _scan_row(sequence: str, scan: dict[str, Any]) -> tuple:
     counts = scan["counts"] or {"tp": 0, "fp": 0, "fn": 0, "tn": 0}
     union = counts["tp"] + counts["fp"] + counts["fn"]
@@ -55,7 +50,7 @@ class SequenceResult:
     name: of the sequence. folder: of its result.json and labels. header: what its result.json says beside its
     scans, in the present format (`settings`, `reading`, `provenance`, ...). metrics: iou, precision, recall and f1 as
     fractions, as the protocol defines them, None where 0/0.
-    method_ms_per_scan: wall time of the method. scans: what the result says of each scan.
+    method_ms_per_scan: wall time of the method. warnings: what makes its numbers doubtful. scans: what the result says of each scan.
     """
 
     name: str
@@ -63,6 +58,7 @@ class SequenceResult:
     header: dict[str, Any] = dataclasses.field(repr=False)
     metrics: dict[str, Optional[float]]
     method_ms_per_scan: Optional[float]
+    warnings: list[str] = dataclasses.field(repr=False)
     scans: list[dict[str, Any]] = dataclasses.field(repr=False)
 
     @property
@@ -78,20 +74,9 @@ class SequenceResult:
 
     @property
     def remarks(self) -> list[str]:
-        """What was assumed or found odd, of the data and of the predictions."""
-        return [*self.header.get("remarks", []), *self._of_predictions()]
-
-    @property
-    def warnings(self) -> list[str]:
-        """The remarks that make the numbers doubtful."""
-        loud = [remark for remark in self.header.get("remarks", []) if _LOUD.search(remark)]
-        unjudged = len(self.header.get("scans_without_detection", []))
-        if unjudged and unjudged == len(self.scans):
-            loud.append("all scans are labelled static without detection")
-        return loud + self._of_predictions()
-
-    def _of_predictions(self) -> list[str]:
-        return self.header.get("predictions", {}).get("remarks", [])
+        """What was assumed of the data and of the predictions, and the warnings."""
+        of_predictions = self.header.get("predictions", {}).get("remarks", [])
+        return [*self.header.get("remarks", []), *of_predictions, *self.warnings]
 
     def labels(self, stem: str) -> np.ndarray:
         """uint32 (N,), as the run wrote them."""
@@ -139,8 +124,7 @@ class Result:
 
     def _own_warnings(self) -> list[str]:
         missing = _without_results(self.folder, self.sequences)
-        half = [f"INCOMPLETE: the run is interrupted, {', '.join(missing)} have no results"] if missing else []
-        return half + [f"{one.name}: {warning}" for one in self.sequences for warning in one.warnings]
+        return [f"INCOMPLETE: the run is interrupted, {', '.join(missing)} have no results"] if missing else []
 
     @property
     def remarks(self) -> list[str]:

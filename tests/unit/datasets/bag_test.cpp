@@ -106,7 +106,7 @@ TEST_F(Bag, CountsScansThatNoTransformCovers) {
   bag.chunks.pop_back();
   const BagSequence recording("s", write(bag.str()), {});
   EXPECT_EQ(recording.size(), 2U);
-  EXPECT_THAT(recording.remarks(), Contains(HasSubstr("1 of 3 scans are left out")));
+  EXPECT_THAT(recording.recording().doubts, Contains(HasSubstr("1 of 3 scans are left out")));
   EXPECT_EQ(recording.stamp_ns(1), kStart + kPeriod);
 }
 

@@ -19,7 +19,7 @@
 #include "datasets/formats/label_file.hpp"
 #include "datasets/formats/pose_file.hpp"
 #include "datasets/formats/times_file.hpp"
-#include "datasets/layouts/simulated_origin.hpp"
+#include "datasets/sequence/simulated_origin.hpp"
 #include "datasets/simulator/simulate.hpp"
 #include "tests/sanitizers.hpp"
 #include "tests/temp_folder.hpp"
@@ -511,6 +511,7 @@ TEST(DoctorOnAnExcerpt, IsQuietAboutFewerScansThanPublished) {
   const TempFolder folder;
   fs::copy(good_copy(kKitti), folder / "data", fs::copy_options::recursive);
   fs::remove(folder / "data/simulated.json");
+  fs::remove(folder / "data" / kKittiSequence / "simulated.json");
   const Checkup checkup = check_up(folder / "data", {});
   EXPECT_EQ(all_symptoms(checkup), "");
   ASSERT_EQ(checkup.sequences.size(), 1U);

@@ -157,7 +157,7 @@ TEST_F(HeliprFolder, LeavesScansWithoutPoseOut) {
   folder_.write("set/KAIST05/LiDAR_GT/Aeva_gt.txt", std::to_string(kNew_ns) + kStill);
   const Dataset dataset = open_dataset(folder_ / "set/KAIST05/LiDAR/Aeva", {});
   EXPECT_EQ(dataset.sequences.at(0)->size(), 1U);
-  EXPECT_THAT(dataset.sequences.at(0)->remarks(),
+  EXPECT_THAT(dataset.sequences.at(0)->recording().doubts,
               Contains("left out 1 of 2 scans: no pose in Aeva_gt.txt"));
 }
 

@@ -218,7 +218,7 @@ TEST_F(KittiRawDrive, LeavesOutScansWithoutPacket) {
   std::filesystem::remove(folder_ / drive("oxts/data/0000000003.txt"));
   const Dataset dataset = opened();
   EXPECT_EQ(dataset.sequences.front()->size(), 4U);
-  EXPECT_THAT(dataset.sequences.front()->remarks(),
+  EXPECT_THAT(dataset.sequences.front()->recording().doubts,
               Contains("1 scan has no packet in oxts and is left out"));
 }
 

@@ -290,7 +290,7 @@ TEST_F(NuscenesFolder, IsReadWithoutItsSweepsButNotWithoutAKeyFrame) {
   std::filesystem::remove_all(folder_ / "root/sweeps");
   const Dataset dataset = opened();
   EXPECT_EQ(dataset.sequences.at(0)->size(), 1U);
-  EXPECT_THAT(dataset.sequences.at(0)->recording().remarks,
+  EXPECT_THAT(dataset.sequences.at(0)->recording().doubts,
               testing::Contains(HasSubstr("left out 1 sweep of")));
   std::filesystem::remove(folder_ / "root/samples/LIDAR_TOP/a.pcd.bin");
   EXPECT_THAT(error_of_opening(), HasSubstr("a.pcd.bin"));

@@ -126,7 +126,7 @@ TEST_F(PoseSources, LeaveOutScansInGapsOfThePoses) {
   EXPECT_EQ(x_of(recording, 0), 1.0);
   ASSERT_EQ(recording.recording().left_out.size(), 2U);
   EXPECT_EQ(recording.recording().left_out[1].stem, "000002");
-  EXPECT_THAT(recording.remarks(),
+  EXPECT_THAT(recording.recording().doubts,
               Contains("2 of 3 scans are left out: they lie between poses more than 0.5 s apart in "
                        "gap.txt (max_pose_gap_s)"));
   EXPECT_THAT(

@@ -675,7 +675,7 @@ McapBytes with_times(const std::vector<float>& times_s) {
 
 TEST_F(Ros2Bag, LeavesOutAScanWhosePointsWereMeasuredBeforeTheFirstPose) {
   const BagSequence recording("s", write(with_times({-0.05F, -0.02F, 0.0F}).str()), {});
-  EXPECT_THAT(recording.remarks(), Contains(HasSubstr("1 of 3 scans are left out")));
+  EXPECT_THAT(recording.recording().doubts, Contains(HasSubstr("1 of 3 scans are left out")));
   ASSERT_EQ(recording.size(), 2U);
   EXPECT_EQ(recording.read(0).stamp_ns, kRos2Start + kRos2Period);
   EXPECT_NEAR(recording.read(0).map_from_sensor.translation().x(), 0.5, 1e-6);

@@ -1,7 +1,7 @@
 import { element, table } from './dom.js';
 import { resultName } from './header.js';
 
-const NOT_PROVENANCE = new Set(['scans', 'summary', 'timing', 'remarks', 'scans_without_detection', 'splits', 'places', 'doubtful_poses']);
+const NOT_PROVENANCE = new Set(['scans', 'summary', 'timing', 'remarks', 'doubts', 'scans_without_detection', 'splits', 'places', 'doubtful_poses']);
 
 /** [["settings.voxel_size_m", "0.25"], ...] of nested objects. */
 export function flatten(value, prefix = '') {

@@ -114,6 +114,7 @@ function remarks(study) {
   const lines = ['Metrics are those of all sequences, as the protocol aggregates them; of several seeds their mean. Numbers behind them, and bars, are 95 % intervals: over scans, or of the spread of at least three seeds.'];
   if (study.protocol) lines.unshift(`Scored by ${rulesText(study)}.`);
   if (study.simulated) bad.push('Simulated data: not comparable with published numbers.');
+  bad.push(...study.doubts);
   if (study.critical_difference !== null) {
     lines.push(`Mean ranks over ${study.ranked_sequences} sequences differ at 5 % where they are more than ${study.critical_difference.toFixed(2)} apart (Nemenyi).`);
   }

@@ -7,14 +7,12 @@
 #include <string>
 #include <string_view>
 
-#include "datasets/layouts/dataset.hpp"
-
 namespace mosbench {
 
-/// What made a simulated data set. It is stored in `simulated.json` at its root, so that results
-/// from it are never mistaken for those of the real one.
+/// What made a simulated sequence. It is stored in `simulated.json` in the sequence's own folder,
+/// and moves with it, so that results from it are never mistaken for those of recorded data.
 struct SimulatedOrigin {
-  DatasetKind layout = DatasetKind::kSemanticKitti;
+  std::string layout;             ///< of its files
   std::string scene;              ///< its name
   std::string scene_fingerprint;  ///< hash of the whole scene
   std::size_t scans = 0;
@@ -26,9 +24,13 @@ struct SimulatedOrigin {
 
 inline constexpr std::string_view kSimulatedMarker = "simulated.json";
 
-/// Returns the origin of the data set that `path` belongs to, searched there and up to four folders
-/// above; nothing for recorded data. Throws DataError for a marker that cannot be read.
-std::optional<SimulatedOrigin> simulated_origin(const std::filesystem::path& path);
+/// Returns the origin that `folder` holds; nothing for recorded data. Throws DataError for a marker
+/// that cannot be read.
+std::optional<SimulatedOrigin> simulated_origin(const std::filesystem::path& folder);
+
+/// Returns the origin that lies beside one of a sequence's files, wherever links lead, or at most
+/// `folders_above` folders above that.
+std::optional<SimulatedOrigin> origin_of_file(const std::filesystem::path& file, int folders_above);
 
 SimulatedOrigin parse_simulated_origin(std::string_view text, const std::filesystem::path& file);
 std::string format_simulated_origin(const SimulatedOrigin& origin);

@@ -1,0 +1,61 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "datasets/doctor/doctor.hpp"
+#include "datasets/text/text.hpp"
+
+namespace mosbench {
+namespace {
+
+/// A sweep may be as long as the step; stamps of sensors jitter by some percent.
+constexpr double kLongestSweep_steps = 1.5;
+
+/// The time to the next scan; 0 where it is not known.
+std::int64_t step_ns(const Sequence& sequence, std::size_t scan_index) {
+  if (scan_index + 1 >= sequence.size()) return 0;
+  const auto stamp = sequence.stamp_ns(scan_index), next = sequence.stamp_ns(scan_index + 1);
+  return stamp && next ? *next - *stamp : 0;
+}
+
+}  // namespace
+
+std::vector<std::string> doubts_of(const Sequence& sequence) {
+  std::vector<std::string> doubts = sequence.recording().doubts;
+  Facts facts;
+  examine_stamps(sequence, facts);
+  const std::vector<ScanEntry>& scans = sequence.recording().scans;
+  const auto is_first = [&](const ScanEntry& scan) {
+    return scan.map_from_sensor.matrix() == scans.front().map_from_sensor.matrix();
+  };
+  const bool is_still = std::ranges::all_of(scans, is_first);
+  if (is_still && !sequence.reading().poses.source.empty()) facts["equal_poses"] = scans.size();
+  for (const Subject subject : {Subject::kStamps, Subject::kStill}) {
+    for (Symptom& symptom : judged(checks(), subject, facts, sequence.name())) {
+      doubts.push_back(std::move(symptom.what));
+    }
+  }
+  return doubts;
+}
+
+void SweepWatch::add(std::size_t scan_index, const Frame& frame) {
+  const std::int64_t step = step_ns(sequence_, scan_index);
+  if (step <= 0 || frame.point_times_ns.empty()) return;
+  const auto [first, last] = std::ranges::minmax(frame.point_times_ns);
+  if (static_cast<double>(last - first) <= kLongestSweep_steps * static_cast<double>(step)) return;
+  if (long_sweeps_++ > 0) return;
+  first_ = scan_index;
+  first_sweep_ns_ = last - first;
+}
+
+std::optional<std::string> SweepWatch::doubt() const {
+  if (long_sweeps_ == 0) return std::nullopt;
+  return fmt::format(
+      "{} measured over longer than the time to the next scan, first scan {}: {:g} s, the next "
+      "follows after {:g} s",
+      counted(long_sweeps_, "scan was", "scans were"), sequence_.stem(first_),
+      1e-9 * static_cast<double>(first_sweep_ns_),
+      1e-9 * static_cast<double>(step_ns(sequence_, first_)));
+}
+
+}  // namespace mosbench

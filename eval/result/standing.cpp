@@ -1,0 +1,191 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+
+#include "datasets/doctor/doctor.hpp"
+#include "datasets/sequence/fingerprint.hpp"
+#include "datasets/text/errors.hpp"
+#include "datasets/text/text.hpp"
+#include "eval/result/result.hpp"
+#include "eval/result/result_json.hpp"
+
+namespace mosbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kNamedAtMost = 3;
+
+std::string words_of(const SimulatedOrigin& origin) {
+  return fmt::format("scene {}, seed {}{}", origin.scene, origin.seed,
+                     origin.perturb ? ", disturbed by " + *origin.perturb : "");
+}
+
+/// The first simulated sequence's.
+const SimulatedOrigin* origin_of(const Dataset& dataset) {
+  for (const std::unique_ptr<Sequence>& sequence : dataset.sequences) {
+    if (sequence->simulated()) return &*sequence->simulated();
+  }
+  return nullptr;
+}
+
+/// "00", "00, 01 and 02", "00, 01, 02 and 4 more".
+std::string names_text(const std::vector<std::string>& names) {
+  const bool all = names.size() <= kNamedAtMost;
+  const std::size_t listed = all ? names.size() - 1 : kNamedAtMost;
+  if (listed == 0) return names.front();
+  const auto end = names.begin() + static_cast<std::ptrdiff_t>(listed);
+  return fmt::format("{} and {}", fmt::join(names.begin(), end, ", "),
+                     all ? names.back() : fmt::format("{} more", names.size() - listed));
+}
+
+void add_doubts_of_truth(const Result& result, std::vector<std::string>& doubts) {
+  const SequenceCounts counts = counts_of(result);
+  Confusion all;
+  for (const Confusion& scan : counts) all += scan;
+  if (auto unknown = unknown_ids_remark(*result.protocol, all.unknown_ids); !unknown.empty()) {
+    doubts.push_back(std::move(unknown));
+  }
+  const auto moving = all.tp + all.fn, still = all.tn + all.fp;
+  if (moving + still == 0 || (moving > 0 && still > 0)) return;
+  doubts.push_back(fmt::format("by the truth no counted point of {} {}",
+                               counted(counts.size(), "scan"),
+                               moving == 0 ? "moves: an IoU is 0 or undefined" : "stands still"));
+}
+
+}  // namespace
+
+std::size_t missing_predictions(const ResultSet& set) {
+  std::size_t missing = 0;
+  for (const Result& sequence : set.sequences) missing += sequence.missing_predictions();
+  return missing;
+}
+
+std::string incomplete_warning(std::size_t missing_predictions) {
+  return fmt::format("INCOMPLETE: {} not counted",
+                     counted(missing_predictions, "scan without usable prediction is",
+                             "scans without usable prediction are"));
+}
+
+std::string split_warning(const std::string& split) {
+  return fmt::format(
+      "only the scans of split {}: not the protocol's number, which is over all labelled scans",
+      split);
+}
+
+std::vector<std::string> doubts_of(const Result& result) {
+  std::vector<std::string> doubts = result.doubts;
+  if (const auto changed = changed_program_file(result)) {
+    doubts.push_back(fmt::format("STALE: {} has changed since", changed->string()));
+  }
+  add_doubts_of_truth(result, doubts);
+  if (result.doubtful_poses && !result.doubtful_poses->empty()) {
+    const DoubtfulPose& first = result.doubtful_poses->front();
+    doubts.push_back(fmt::format("{} of {} found are doubtful, first that of scan {}: {}",
+                                 result.doubtful_poses->size(),
+                                 counted(result.scans.size(), "pose"), first.stem, first.doubt));
+  }
+  if (!result.scans.empty() && std::ranges::none_of(result.scans, &ScanRow::judged)) {
+    doubts.push_back(fmt::format("all {} labelled static without detection",
+                                 counted(result.scans.size(), "scan is", "scans are")));
+  }
+  return doubts;
+}
+
+std::optional<fs::path> changed_program_file(const Result& result) {
+  for (const ProgramFile& file : result.from.program_files) {
+    std::error_code gone;
+    const std::uintmax_t bytes = fs::file_size(file.path, gone);
+    if (!gone && (bytes != file.bytes || hash_of_file(file.path) != file.hash)) return file.path;
+  }
+  return std::nullopt;
+}
+
+void refuse_stale(const std::vector<ResultSet>& sets, bool allowed) {
+  if (allowed) return;
+  for (const ResultSet& set : sets) {
+    for (const Result& sequence : set.sequences) {
+      const auto changed = changed_program_file(sequence);
+      if (!changed) continue;
+      throw DataError(sequence.file,
+                      "is stale: its program has changed since, " + changed->string(),
+                      "mosbench run again, which computes it anew; --allow-stale shows it anyway");
+    }
+  }
+}
+
+std::vector<std::string> told(const std::vector<Doubt>& doubts) {
+  std::vector<std::pair<std::string, std::vector<std::string>>> about_same;
+  for (const Doubt& doubt : doubts) {
+    auto same =
+        std::ranges::find(about_same, doubt.what, [](const auto& each) { return each.first; });
+    if (same == about_same.end()) same = about_same.insert(same, {doubt.what, {}});
+    same->second.push_back(doubt.about);
+  }
+  std::vector<std::string> lines;
+  for (const auto& [what, names] : about_same) lines.push_back(names_text(names) + ": " + what);
+  return lines;
+}
+
+std::vector<std::string> warnings(const ResultSet& set) {
+  std::vector<std::string> texts;
+  if (const std::size_t missing = missing_predictions(set); missing > 0) {
+    texts.push_back(incomplete_warning(missing));
+  }
+  const auto with_split = std::ranges::find_if(
+      set.sequences, [](const Result& sequence) { return only_split(sequence).has_value(); });
+  if (with_split != set.sequences.end()) texts.push_back(split_warning(*only_split(*with_split)));
+  std::vector<Doubt> doubts;
+  for (const Result& sequence : set.sequences) {
+    for (std::string& doubt : doubts_of(sequence)) {
+      doubts.push_back({sequence.sequence.text(), std::move(doubt)});
+    }
+  }
+  std::ranges::move(told(doubts), std::back_inserter(texts));
+  return texts;
+}
+
+Standing standing_of(const ResultSet& set) {
+  Standing standing{.doubts = warnings(set)};
+  for (const Result& sequence : set.sequences) {
+    const std::optional<SimulatedOrigin>& origin = sequence.from.simulated;
+    if (!origin) continue;
+    standing.simulated = true;
+    if (standing.origin.empty()) standing.origin = words_of(*origin);
+  }
+  return standing;
+}
+
+Standing standing_of(const ResultSet& first, const char* first_name, const ResultSet& second,
+                     const char* second_name) {
+  const Standing one = standing_of(first), other = standing_of(second);
+  std::vector<Doubt> doubts;
+  for (const std::string& doubt : one.doubts) doubts.push_back({first_name, doubt});
+  for (const std::string& doubt : other.doubts) doubts.push_back({second_name, doubt});
+  return {one.simulated || other.simulated, one.simulated ? one.origin : other.origin,
+          told(doubts)};
+}
+
+std::string simulated_notice(const SimulatedOrigin& origin) {
+  return fmt::format("simulated data ({}): not comparable with published numbers",
+                     words_of(origin));
+}
+
+std::optional<nlohmann::ordered_json> simulated_origin_json(const Dataset& dataset) {
+  const SimulatedOrigin* origin = origin_of(dataset);
+  return origin != nullptr ? std::optional(to_json(*origin)) : std::nullopt;
+}
+
+Standing standing_of(const Dataset& dataset) {
+  std::vector<Doubt> doubts;
+  for (const std::unique_ptr<Sequence>& sequence : dataset.sequences) {
+    for (std::string& doubt : doubts_of(*sequence)) {
+      doubts.push_back({sequence->name(), std::move(doubt)});
+    }
+  }
+  const SimulatedOrigin* origin = origin_of(dataset);
+  return {origin != nullptr, origin != nullptr ? words_of(*origin) : "", told(doubts)};
+}
+
+}  // namespace mosbench
