@@ -114,8 +114,9 @@ TEST_F(PoseSources, TakeStampedPosesAtTheScansStamps) {
   const FolderSequence later = open({.poses = PoseFile{late}});
   ASSERT_EQ(later.size(), 2U);
   EXPECT_EQ(x_of(later, 0), 2.0);
-  EXPECT_THAT(later.remarks(), Contains("1 of 3 scans are left out: they are before or after the "
-                                        "poses of late.txt"));
+  EXPECT_THAT(later.recording().doubts,
+              Contains("1 of 3 scans are left out: they are before or after the "
+                       "poses of late.txt"));
 }
 
 TEST_F(PoseSources, LeaveOutScansInGapsOfThePoses) {
@@ -199,12 +200,12 @@ class ManyPoseSources : public PoseSources {
 TEST_F(ManyPoseSources, SayByHowMuchAllStampsAreOff) {
   for (const double offset_s : {0.08, -0.03, 0.02}) {
     const FolderSequence recording = open({.poses = PoseFile{poses(1.0, offset_s)}});
-    EXPECT_THAT(recording.remarks(),
+    EXPECT_THAT(recording.recording().doubts,
                 Contains(HasSubstr(fmt::format("all stamps of many.txt are {:.1f} ms {} those",
                                                std::abs(offset_s) * 1e3,
                                                offset_s > 0 ? "after" : "before"))));
   }
-  EXPECT_THAT(open({.poses = PoseFile{poses(1.0, 0.001)}}).remarks(),
+  EXPECT_THAT(open({.poses = PoseFile{poses(1.0, 0.001)}}).recording().doubts,
               testing::Not(Contains(HasSubstr("all stamps"))));
 }
 
