@@ -135,14 +135,14 @@ void bind_scores(py::module_& module) {
     return dict_of(aggregate(protocol_named(protocol), one));
   });
   using Counts = std::map<std::string, std::uint64_t>;
-  module.def("pooled", [](const std::vector<std::vector<Counts>>& sequences,
-                          const std::string& protocol) {
-    std::vector<SequenceCounts> counts;
-    for (const std::vector<Counts>& scans : sequences) {
-      std::ranges::transform(scans, std::back_inserter(counts.emplace_back()), confusion_of);
-    }
-    return dict_of(aggregate(protocol_named(protocol), counts));
-  });
+  module.def(
+      "pooled", [](const std::vector<std::vector<Counts>>& sequences, const std::string& protocol) {
+        std::vector<SequenceCounts> counts;
+        for (const std::vector<Counts>& scans : sequences) {
+          std::ranges::transform(scans, std::back_inserter(counts.emplace_back()), confusion_of);
+        }
+        return dict_of(aggregate(protocol_named(protocol), counts));
+      });
   module.def("load_results", load_results);
 }
 
