@@ -116,7 +116,7 @@ void BagSequence::open_pose_file(const Reading& asked) {
   }
   tracks_ = ScanTracks(stamped);
   if (tracks_.breaks() == 0) return;
-  mutable_recording().remarks.push_back(fmt::format(
+  mutable_recording().doubts.push_back(fmt::format(
       "the stamps of {} of {} are not later than the one before: scans before these are "
       "not undistorted",
       tracks_.breaks(), counted(scans_.size(), "scan")));

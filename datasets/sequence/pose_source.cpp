@@ -107,7 +107,7 @@ class SensorPoseReader {
 
  private:
   void pair_with_scans(const PoseList& list, const std::vector<ScanEntry>& scans) {
-    for (std::string& remark : list.remarks(file_)) result_.remarks.push_back(std::move(remark));
+    for (std::string& doubt : list.remarks(file_)) result_.doubts.push_back(std::move(doubt));
     const std::vector<std::int64_t> stamps_ns = stamps_of(scans);
     if (!list.stamps_ns.empty() && !stamps_ns.empty()) {
       interpolate(list, stamps_ns);

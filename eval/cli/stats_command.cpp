@@ -129,7 +129,6 @@ Answer breakdown_of(const StatsFlags& options, const CLI::App& command) {
 }
 
 Answer curve(const StatsFlags& options) {
-  if (options.picture) check_output(*options.picture, Format::kPng);
   Answer answer = curve_answer(options.input, options.data);
   if (options.picture) write_output(*options.picture, render(answer, Format::kPng));
   return answer_beside(options.picture.value_or(""), std::move(answer));
@@ -143,6 +142,7 @@ Answer stats(StatsFlags options, const CLI::App& command) {
     throw UsageError("--by: threshold and scan go with nothing else, expected one of them alone");
   }
   if (breaks_down) return breakdown_of(options, command);
+  if (options.picture) check_output(*options.picture, Format::kPng);
   const ResultSet run = load_result_set(options.input);
   refuse_stale({run}, options.allow_stale);
   if (options.shows("threshold")) return curve(options);

@@ -222,7 +222,9 @@ struct Doubt {
 /// Returns a line per sentence, after the names of all that it is about: "00, 01 and 3 more: ...".
 std::vector<std::string> told(const std::vector<Doubt>& doubts);
 
-/// What has to be said wherever numbers of the set are shown.
+/// Which scans of the protocol are not counted: without predictions, of other splits.
+std::vector<std::string> shortfalls(const ResultSet& set);
+/// What has to be said wherever numbers of the set are shown: shortfalls and doubts.
 std::vector<std::string> warnings(const ResultSet& set);
 
 /// What every format has to show beside numbers of the set.

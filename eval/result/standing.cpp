@@ -128,7 +128,7 @@ std::vector<std::string> told(const std::vector<Doubt>& doubts) {
   return lines;
 }
 
-std::vector<std::string> warnings(const ResultSet& set) {
+std::vector<std::string> shortfalls(const ResultSet& set) {
   std::vector<std::string> texts;
   if (const std::size_t missing = missing_predictions(set); missing > 0) {
     texts.push_back(incomplete_warning(missing));
@@ -136,6 +136,11 @@ std::vector<std::string> warnings(const ResultSet& set) {
   const auto with_split = std::ranges::find_if(
       set.sequences, [](const Result& sequence) { return only_split(sequence).has_value(); });
   if (with_split != set.sequences.end()) texts.push_back(split_warning(*only_split(*with_split)));
+  return texts;
+}
+
+std::vector<std::string> warnings(const ResultSet& set) {
+  std::vector<std::string> texts = shortfalls(set);
   std::vector<Doubt> doubts;
   for (const Result& sequence : set.sequences) {
     for (std::string& doubt : doubts_of(sequence)) {

@@ -31,7 +31,7 @@ std::vector<std::string> gaps(const ResultSet& part, const TableColumn& column) 
   }
   std::size_t scans = 0;
   for (const Result& sequence : part.sequences) scans += counted_scans(sequence).size();
-  for (std::string& warning : warnings(part)) gaps.push_back(std::move(warning));
+  for (std::string& shortfall : shortfalls(part)) gaps.push_back(std::move(shortfall));
   const bool known =
       column.scans && !part.sequences.empty() &&
       (column.scans_protocol.empty() || column.scans_protocol == part.front().protocol->name);

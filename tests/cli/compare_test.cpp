@@ -135,7 +135,8 @@ TEST_F(Compare, AnnotatesAPullRequest) {
   EXPECT_THAT(worse.out, HasSubstr("\nregression\n"));
   EXPECT_THAT(worse.out, HasSubstr("::error title=IoU of room dropped::100.0 %25 before, 97."));
   EXPECT_THAT(read_file(summary),
-              HasSubstr("### MOS gate: REGRESSION\n\n12 paired scans\n\n| sequence | baseline"));
+              AllOf(HasSubstr("### MOS gate: REGRESSION\n\n12 paired scans\n\n"),
+                    HasSubstr("\n\n| sequence | baseline")));
   EXPECT_THAT(read_file(summary), HasSubstr("\n| room | 100.0 | 97."));
 
   const cli::Answer same = compare_to_whole("whole", {"--as", "github", "--out", summary.string()});

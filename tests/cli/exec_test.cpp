@@ -134,7 +134,8 @@ TEST_F(Exec, IsRefusedByTablesWhenItsFilesHaveChangedSince) {
 TEST_F(Exec, FailsWhenItsFolderIsRemovedMeanwhile) {
   // The answers to the start and to two scans have 24 + 2 * (16 + 34,576) bytes.
   const std::string partial = (folder_ / "out/room.partial").string();
-  const std::string then = "head -c 69208; sleep 0.3; rm -r '" + partial + "'; cat";
+  const std::string then =
+      "dd bs=4 count=17302 iflag=fullblock status=none; sleep 0.3; rm -r '" + partial + "'; cat";
   const cli::Answer answer = cli::run(command(client() + " | (" + then + ")"));
   EXPECT_EQ(answer.exit_code, 3);
   EXPECT_THAT(answer.err, HasSubstr("2 of 4 label files were removed during the run"));

@@ -75,9 +75,11 @@ TEST(SimulatedMark, StaysWithASequenceThatIsRenamedMovedCopiedOrLinkedTo) {
   fs::create_directory_symlink(sequence / "velodyne", folder / "mine/velodyne");
   for (const char* file : {"poses.txt", "calib.txt"})
     fs::copy(sequence / file, folder / "mine" / file);
+  const std::string poses = (sequence / "poses.txt").string();
   const auto is_marked = [&](const fs::path& data) {
-    const fs::path out = folder / "out" / data.filename();
-    const cli::Answer answer = succeed({"run", data.string(), "--out", out.string(), "--json"});
+    const std::string out = (folder / "out" / data.filename()).string();
+    const cli::Answer answer =
+        succeed({"run", data.string(), "--poses", poses, "--out", out, "--json"});
     return ordered_json::parse(answer.out).contains("simulated");
   };
   EXPECT_TRUE(is_marked(folder / "copy/anything"));

@@ -165,6 +165,7 @@ TEST(ScoreHelimos, RefusesAnotherSplitThanTheProtocolsAndMarksThatOfAnOpenOne) {
   EXPECT_EQ(cli::timeless_result(folder / "out/Velodyne").at("summary_split"), "val");
   EXPECT_THAT(cli::run({"stats", folder / "out"}).out, HasSubstr(mark));
   EXPECT_THAT(cli::run({"table", "III", folder / "out", "--format", "csv"}).out, HasSubstr(mark));
+  fs::remove_all(folder / "out");
   const cli::Answer test = score("helimos-test", "test");
   ASSERT_EQ(test.exit_code, 0) << test.err;
   EXPECT_EQ(test.out.find("only the scans"), std::string::npos);

@@ -143,7 +143,7 @@ TEST_F(Tables, OneIsFilledFromASimulatedDoals) {
     EXPECT_NEAR(station.at("measured").get<double>(), mean, 1e-12);
     EXPECT_EQ(station.at("sequences"),
               (nlohmann::json{"station/sequence_1 (simulated, scene mall, seed 1)",
-                              "station/sequence_2 (simulated, scene mall, seed 1)"}));
+                              "station/sequence_2 (simulated, scene mall, seed 2)"}));
     for (std::size_t c = 1; c < 4; ++c) {
       EXPECT_TRUE(row.at("cells").at(c).at("measured").is_null());
       if (is_plus) continue;  // nothing was published that could be filled

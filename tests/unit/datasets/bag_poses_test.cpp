@@ -37,7 +37,8 @@ TEST_P(BagPoses, OfRowsBelongToTheirScansWhateverTheStamps) {
     }
     const BagSequence sequence = open(drive, {.poses = PoseFile{file}});
     EXPECT_THAT(xs_of(sequence), testing::ElementsAre(0.0, 1.0, 2.0, 3.0));
-    EXPECT_THAT(sequence.remarks(), Contains(HasSubstr("are not later than the one before")));
+    EXPECT_THAT(sequence.recording().doubts,
+                Contains(HasSubstr("are not later than the one before")));
   }
 }
 

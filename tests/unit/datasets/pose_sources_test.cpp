@@ -169,7 +169,7 @@ TEST_F(PoseSources, KeepTheFirstOfRowsWithOneStamp) {
     const FolderSequence recording = open({.poses = PoseFile{folder_.write("twice.txt", rows)}});
     ASSERT_EQ(recording.size(), 3U);
     for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(x_of(recording, k), static_cast<double>(k));
-    EXPECT_THAT(recording.remarks(),
+    EXPECT_THAT(recording.recording().doubts,
                 Contains("twice.txt: 1 row has the stamp of the row before and is left out"));
   }
 }
