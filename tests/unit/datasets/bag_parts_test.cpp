@@ -16,11 +16,11 @@ using testing::HasSubstr;
 class BagParts : public BagPoses {};
 
 INSTANTIATE_TEST_SUITE_P(Of, BagParts,
-                         testing::Values(BagKind::kRos1, BagKind::kMcap,
-                                         BagKind::kMcapWithoutChunks, BagKind::kDb3));
+                         testing::Values(DriveBag::kRos1, DriveBag::kMcap,
+                                         DriveBag::kMcapWithoutChunks, DriveBag::kDb3));
 
 TEST_P(BagParts, OfADriveAreOneDrive) {
-  const bool is_ros1 = GetParam() == BagKind::kRos1;
+  const bool is_ros1 = GetParam() == DriveBag::kRos1;
   const std::vector<std::string> names =
       is_ros1 ? std::vector<std::string>{"a_2024-01-01-12-00-00_0", "a_2024-01-01-12-00-30_1",
                                          "a_2024-01-01-12-01-00_2"}

@@ -19,8 +19,8 @@ using testing::HasSubstr;
 using testing::Not;
 
 INSTANTIATE_TEST_SUITE_P(Of, BagPoses,
-                         testing::Values(BagKind::kRos1, BagKind::kMcap,
-                                         BagKind::kMcapWithoutChunks, BagKind::kDb3));
+                         testing::Values(DriveBag::kRos1, DriveBag::kMcap,
+                                         DriveBag::kMcapWithoutChunks, DriveBag::kDb3));
 
 TEST_P(BagPoses, OfRowsBelongToTheirScansWhateverTheStamps) {
   const std::vector<std::vector<double>> stamps = {{5, 5, 5, 5}, {0, 0, 0, 1}, {0, 1, 1, 2},
@@ -216,7 +216,7 @@ TEST_P(BagPoses, AreTakenForScansThatNameAFrame) {
 }
 
 TEST_P(BagPoses, AreReadFromMessagesThatArePackedOneByOne) {
-  if (GetParam() == BagKind::kRos1) GTEST_SKIP() << "ROS 1 packs no single messages";
+  if (GetParam() == DriveBag::kRos1) GTEST_SKIP() << "ROS 1 packs no single messages";
   const Drive drive = drive_of([](Drive& to, std::int64_t stamp_ns, double k) {
     add_tf(to, {stamp_ns, "map", "lidar", pose_at_x(k)});
   });

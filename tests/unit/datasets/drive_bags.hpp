@@ -30,10 +30,10 @@ struct DriveMessage {
 };
 using Drive = std::vector<DriveMessage>;
 
-enum class BagKind { kRos1, kMcap, kMcapWithoutChunks, kDb3 };
+enum class DriveBag { kRos1, kMcap, kMcapWithoutChunks, kDb3 };
 
 /// Poses and clouds in bags of every kind.
-class BagPoses : public testing::TestWithParam<BagKind> {
+class BagPoses : public testing::TestWithParam<DriveBag> {
  protected:
   static std::int64_t at(double scan) {
     return kDrive_ns + static_cast<std::int64_t>(std::llround(scan * 10.0)) * kStep_ns / 10;
@@ -87,10 +87,10 @@ class BagPoses : public testing::TestWithParam<BagKind> {
   }
 
   std::filesystem::path write(const Drive& drive, const std::string& name = "s") const {
-    if (GetParam() == BagKind::kRos1) return write_ros1(drive, name);
-    if (GetParam() == BagKind::kDb3) return write_db3(drive, name);
+    if (GetParam() == DriveBag::kRos1) return write_ros1(drive, name);
+    if (GetParam() == DriveBag::kDb3) return write_db3(drive, name);
     McapBytes bag;
-    bag.in_chunks = GetParam() == BagKind::kMcap;
+    bag.in_chunks = GetParam() == DriveBag::kMcap;
     bag.chunks.emplace_back();
     for (const DriveMessage& message : drive) {
       const std::size_t channel = place_of(bag.channels, message);
