@@ -19,10 +19,10 @@ using testing::HasSubstr;
 /// A recording as people have it, and what has to become of it.
 struct SharedRecording {
   const char* id;
-  const char* poses;   ///< file beside it, or nothing
-  const char* map;     ///< frame, or nothing
-  std::size_t scans;   ///< 0: an error
-  const char* remark;  ///< part of one, or of the error
+  const char* poses;  ///< file beside it, or nothing
+  const char* map;    ///< frame, or nothing
+  std::size_t scans;  ///< 0: an error
+  const char* said;   ///< part of a remark, a doubt or the error
 };
 
 const std::vector<SharedRecording> kSharedRecordings = {
@@ -57,16 +57,17 @@ TEST(SharedRecordings, GivePosesOrSayWhatIsWrong) {
     if (*recording.map != '\0') asked.map_frame = recording.map;
     const auto open = [&] { return open_dataset(inputs / recording.id, {.reading = asked}); };
     if (recording.scans == 0) {
-      EXPECT_THAT(message_of<DataError>(open), HasSubstr(recording.remark));
+      EXPECT_THAT(message_of<DataError>(open), HasSubstr(recording.said));
       continue;
     }
     const Dataset dataset = open();
     ASSERT_EQ(dataset.sequences.size(), 1U);
     const Sequence& sequence = *dataset.sequences.front();
     EXPECT_EQ(sequence.size(), recording.scans);
-    if (*recording.remark != '\0') {
-      EXPECT_THAT(sequence.remarks(), Contains(HasSubstr(recording.remark)));
-    }
+    std::vector<std::string> said = sequence.remarks();
+    const std::vector<std::string>& doubts = sequence.recording().doubts;
+    said.insert(said.end(), doubts.begin(), doubts.end());
+    EXPECT_THAT(said, Contains(HasSubstr(recording.said)));
     // The drives go 1 m in 1 s from x = -8 m on; X08 goes in a circle.
     if (recording.id == std::string("X08")) continue;
     for (std::size_t k = 0; k < sequence.size(); ++k) {
