@@ -2,6 +2,7 @@
 #include <pybind11/stl/filesystem.h>
 
 #include "datasets/disk/files.hpp"
+#include "datasets/doctor/doctor.hpp"
 #include "datasets/formats/pose_file.hpp"
 #include "datasets/layouts/dataset.hpp"
 #include "datasets/sequence/pose_source.hpp"
