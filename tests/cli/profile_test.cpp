@@ -127,7 +127,7 @@ TEST(Profile, NamesTheFileOfAScanThatIsOutOfReach) {
   const TempFolder folder;
   cli::write_small_sequence(folder.path() / "room", kScansProfiled);
   std::vector<Pose> poses(kScansProfiled, Pose::Identity());
-  poses[7].translation().x() = 1e6;
+  poses[7].translation().x() = 9e6;
   write_poses(folder.path() / "room/poses.txt", poses);
   const cli::Answer answer = cli::run({"profile", (folder.path() / "room").string()});
   EXPECT_EQ(answer.exit_code, 3);

@@ -35,7 +35,9 @@ TEST(OldResults, HaveTheNumbersThatTheirVersionGaveThem) {
     const auto written = ordered_json::parse(read_file(file));
     const Result result = read_result(file);
     const SequenceCounts counts = counts_of(result);
-    EXPECT_EQ(to_json(summarize(*result.protocol, counts)), written.at("summary")) << file;
+    ordered_json summary = to_json(summarize(*result.protocol, counts));
+    summary.erase("false_positives_per_scan");  // younger than these files
+    EXPECT_EQ(summary, written.at("summary")) << file;
     EXPECT_EQ(result.scans.size(), written.at("scans").size()) << file;
     if (!written.contains("timing")) continue;
     EXPECT_EQ(method_ms_per_scan(result), written.at("timing").at("method_ms_per_scan")) << file;

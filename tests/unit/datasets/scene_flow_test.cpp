@@ -242,7 +242,7 @@ TEST_F(SceneFlowFile, LeavesOutGroupsThatADriveWasCutAt) {
   groups.push_back({"1600000000300000", {hdf5_array<float>("else", Kind::kReal, {1}, {1})}});
   const auto drive = open_scene_flow_file("s", write(groups), {});
   EXPECT_EQ(drive->size(), 3U);
-  EXPECT_THAT(drive->remarks(), Contains(HasSubstr("the first is 1600000000300000")));
+  EXPECT_THAT(drive->recording().doubts, Contains(HasSubstr("the first is 1600000000300000")));
 }
 
 TEST_F(SceneFlowFile, NeedsNoPosesWhereOthersAreGiven) {
