@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "datasets/doctor/doctor.hpp"
+#include "datasets/sequence/pose_track.hpp"
 #include "datasets/text/text.hpp"
 
 namespace mosbench {
@@ -54,8 +55,7 @@ std::optional<std::string> SweepWatch::doubt() const {
       "{} measured over longer than the time to the next scan, first scan {}: {:g} s, the next "
       "follows after {:g} s",
       counted(long_sweeps_, "scan was", "scans were"), sequence_.stem(first_),
-      1e-9 * static_cast<double>(first_sweep_ns_),
-      1e-9 * static_cast<double>(step_ns(sequence_, first_)));
+      seconds_of(first_sweep_ns_), seconds_of(step_ns(sequence_, first_)));
 }
 
 }  // namespace mosbench

@@ -112,7 +112,8 @@ class NuscenesRowReader final : public nlohmann::json_sax<nlohmann::json> {
       if (values[i].key == name)
         row_.refuse("key " + mosbench::quoted(name) + " is there twice", "one");
     }
-    if (row_.size_ == kMostKeys) row_.refuse("has more than 1000 keys", "fewer");
+    if (row_.size_ == kMostKeys)
+      row_.refuse("has more than " + std::to_string(kMostKeys) + " keys", "fewer");
     if (row_.size_ == values.size()) values.emplace_back();
     NuscenesRow::Value& value = values[row_.size_++];
     value.key = name;

@@ -127,18 +127,12 @@ std::vector<Target> targets_of(const Dataset& dataset, const LayoutWriter& write
   return targets;
 }
 
-/// Returns where the mark of a simulated sequence is written: in its folder, or beside its file.
-fs::path marker_of(const Target& target) {
-  const bool is_file = target.pose_file == target.folder;
-  return (is_file ? target.folder.parent_path() : target.folder) / kSimulatedMarker;
-}
-
 /// Returns every file that may be written, named from the root.
 std::set<fs::path> expected_files(const Dataset& dataset, const LayoutWriter& writer,
                                   const std::vector<Target>& targets) {
   std::set<fs::path> files = {kSimulatedMarker};
   for (std::size_t i = 0; i < targets.size(); ++i) {
-    files.insert(marker_of(targets[i]));
+    files.insert(marker_of(writer, targets[i].folder));
     files.insert({targets[i].pose_file, pose_origin_file(targets[i].pose_file)});
     for (const fs::path& file : writer.files(*dataset.sequences[i])) {
       files.insert((targets[i].folder / file).lexically_normal());
@@ -167,8 +161,8 @@ std::string disturbance_of(const Dataset& dataset) {
 }
 
 /// Marks what is made of simulated sequences, and the whole where all of them are.
-void write_markers(const Dataset& dataset, const std::vector<Target>& targets,
-                   const ConvertOptions& options) {
+void write_markers(const Dataset& dataset, const LayoutWriter& writer,
+                   const std::vector<Target>& targets, const ConvertOptions& options) {
   const std::string perturb = disturbance_of(dataset);
   bool all = true;
   std::string text;
@@ -181,14 +175,14 @@ void write_markers(const Dataset& dataset, const std::vector<Target>& targets,
       origin->perturb = origin->perturb ? *origin->perturb + ", then " + perturb : perturb;
     }
     text = format_simulated_origin(*origin);
-    write_file_atomic(options.out / marker_of(targets[i]), text);
+    write_file_atomic(options.out / marker_of(writer, targets[i].folder), text);
   }
   if (all) write_file_atomic(options.out / kSimulatedMarker, text);
 }
 
 void write_shared_files(const Dataset& dataset, const LayoutWriter& writer,
                         const std::vector<Target>& targets, const ConvertOptions& options) {
-  write_markers(dataset, targets, options);
+  write_markers(dataset, writer, targets, options);
   if (writer.write_splits != nullptr) writer.write_splits(options.out, split_numbers(dataset));
 }
 

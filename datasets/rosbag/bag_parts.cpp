@@ -31,19 +31,24 @@ std::optional<PartName> part_name(const fs::path& file) {
   return PartName{found[1], found[3], std::stoull(found[2])};
 }
 
-/// Returns whether the second of two bags was recorded right after the first; not of one that
-/// cannot be read, which opening it says.
-bool follows(const fs::path& first, const fs::path& second) {
-  constexpr std::int64_t kMostBetween_ns = 2'000'000'000, kMostOverlap_ns = 100'000'000;
+using Extent = std::optional<std::pair<std::int64_t, std::int64_t>>;
+
+/// Returns nothing for a bag that cannot be read, which opening it says.
+Extent extent_of(const fs::path& bag) {
   try {
-    const auto before = open_bag(first)->extent_ns(), after = open_bag(second)->extent_ns();
-    if (!before || !after) return false;
-    const std::int64_t between_ns = after->first - before->second;
-    return -kMostOverlap_ns <= between_ns && between_ns <= kMostBetween_ns &&
-           before->first < after->first;
+    return open_bag(bag)->extent_ns();
   } catch (const DataError&) {
-    return false;
+    return std::nullopt;
   }
+}
+
+/// Returns whether the second of two bags was recorded right after the first.
+bool follows(const Extent& before, const Extent& after) {
+  constexpr std::int64_t kMostBetween_ns = 2'000'000'000, kMostOverlap_ns = 100'000'000;
+  if (!before || !after) return false;
+  const std::int64_t between_ns = after->first - before->second;
+  return -kMostOverlap_ns <= between_ns && between_ns <= kMostBetween_ns &&
+         before->first < after->first;
 }
 
 }  // namespace
@@ -57,10 +62,17 @@ std::vector<BagParts> group_parts(const std::vector<fs::path>& bags) {
     found.push_back({"", {bag}});
   }
   const PartName* last = nullptr;
+  // Opening a packed bag takes long: none is opened that is alone, and none twice.
+  std::map<fs::path, Extent> extents;
+  const auto extent = [&](const fs::path& bag) -> const Extent& {
+    const auto [known, is_new] = extents.try_emplace(bag);
+    if (is_new) known->second = extent_of(bag);
+    return known->second;
+  };
   for (const auto& [name, file] : parts) {
     const bool is_next =
         last != nullptr && std::tie(last->drive, last->ending) == std::tie(name.drive, name.ending);
-    if (is_next && follows(found.back().files.back(), file)) {
+    if (is_next && follows(extent(found.back().files.back()), extent(file))) {
       found.back().name = name.drive;
       found.back().files.push_back(file);
     } else {

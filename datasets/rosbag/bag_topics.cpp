@@ -187,11 +187,10 @@ class PoseSearch {
   /// Adds the transforms of /tf by which the sensor is mounted on a frame with poses. One that
   /// never changes holds at all times, as if it were in /tf_static.
   void add_mounts(const std::set<std::string>& posed, Transforms& found) const {
-    const TransformTree tree(tf_.changing, tf_.always, bag_.path());
     for (const std::string& frame : posed) {
-      const std::vector<std::string> way = tree.way(sensor_frame_, frame);
+      const std::vector<std::string> way = tf_tree_.way(sensor_frame_, frame);
       for (std::size_t i = 0; i + 1 < way.size(); ++i) {
-        const bool moves = tree.chain({way[i], way[i + 1]}, asked_.max_pose_gap_s).moves();
+        const bool moves = tf_tree_.chain({way[i], way[i + 1]}, asked_.max_pose_gap_s).moves();
         for (const StampedTransform& transform : tf_.changing) {
           if (transform.child != way[i] || transform.parent != way[i + 1]) continue;
           (moves ? found.changing : found.always).push_back(transform);
@@ -201,8 +200,15 @@ class PoseSearch {
     }
   }
 
+  TransformTree tree_of(const Transforms& transforms) const {
+    return {transforms.changing, transforms.always, bag_.path()};
+  }
+
   std::optional<Way> way_of(const Transforms& transforms) const {
-    const TransformTree tree(transforms.changing, transforms.always, bag_.path());
+    return way_of(transforms, tree_of(transforms));
+  }
+
+  std::optional<Way> way_of(const Transforms& transforms, const TransformTree& tree) const {
     const std::vector<std::string> frames =
         map_frame_ ? tree.way(sensor_frame_, *map_frame_) : tree.ancestors(sensor_frame_);
     if (frames.size() < 2) return std::nullopt;
@@ -277,7 +283,8 @@ class PoseSearch {
       if (fits || !standing) standing = std::move(way);
       return fits;
     };
-    if (is_the_way(way_of(tf_), true) || is_the_way(way_of(stamped_), true)) return standing;
+    if (is_the_way(way_of(tf_, tf_tree_), true) || is_the_way(way_of(stamped_), true))
+      return standing;
     for (const std::string_view type : {kOdometry, kPoseStamped, kPath}) {
       if (is_the_way(of_type(type), false)) return standing;
     }
@@ -291,6 +298,7 @@ class PoseSearch {
   std::optional<std::string> posed_frame_;      ///< of poses, as the user says
   std::map<std::string, std::size_t> unsound_;  ///< transforms that are ignored, by frame
   Transforms tf_ = transforms_of({kTfMessage, kOldTfMessage});
+  TransformTree tf_tree_ = tree_of(tf_);
   Transforms stamped_ = transforms_of({kTransformStamped});
 };
 

@@ -304,9 +304,7 @@ std::vector<std::string> simulate(
   }
   claim_folder(options.out, origin);
   for (const SimulatedRecording& recording : recordings) {
-    const fs::path place = options.out / recording.folder;
-    const bool is_file = *layout.writer->last_file({}) == '\0';
-    write_file_atomic((is_file ? place.parent_path() : place) / kSimulatedMarker,
+    write_file_atomic(options.out / marker_of(*layout.writer, recording.folder),
                       format_simulated_origin(origin));
   }
   write_file_atomic(options.out / "README.txt", readme(origin, layout));

@@ -90,10 +90,11 @@ Frame frame_to_score(const Sequence& sequence, std::size_t k, const ScoreTask& t
 
 /// One row per rule.
 std::vector<ScanRow> score_one(const Frame& frame, const std::string& stem, std::size_t k,
-                               const ScoreTask& task, const Predictions& labels) {
+                               const ScoreTask& task, const Predictions& labels,
+                               std::span<const double> confidences) {
   const std::optional<Confusion> counted = labels.counts(k);
   const std::vector<std::uint32_t> predicted =
-      counted ? std::vector<std::uint32_t>{} : labels.read(k);
+      counted ? std::vector<std::uint32_t>{} : labels.labels(k, confidences);
   const LabelHash hash = hash_of_labels(*frame.truth);
   std::vector<ScanRow> rows;
   for (const ScoreRule& rule : task.rules) {
@@ -132,13 +133,18 @@ void score_scans(const Sequence& sequence, const std::vector<std::size_t>& scans
     for (std::size_t i = begin; i < end; ++i) {
       const Predictions& labels = *scores.opened->labels;
       const Frame frame = frame_to_score(sequence, scans[i], task);
-      std::vector<ScanRow> rows = score_one(frame, sequence.stem(scans[i]), scans[i], task, labels);
       const std::vector<double> confidences = labels.confidences(scans[i]);
+      std::vector<ScanRow> rows =
+          score_one(frame, sequence.stem(scans[i]), scans[i], task, labels, confidences);
+      ScoreCounts counts;
+      if (!confidences.empty()) {
+        counts.add({*frame.truth, confidences, frame.points, *rows.front().counts},
+                   task.rules.front());
+      }
       const std::lock_guard lock(progress_mutex);
       if (!confidences.empty()) {
         if (!scores.confidences) scores.confidences.emplace();
-        scores.confidences->add({*frame.truth, confidences, frame.points, *rows.front().counts},
-                                task.rules.front());
+        *scores.confidences += counts;
       }
       for (std::size_t r = 0; r < rows.size(); ++r) scores.by_rule[r][i] = std::move(rows[r]);
       progress.advance();

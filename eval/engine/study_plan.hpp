@@ -36,7 +36,7 @@ struct BadScan {
 struct CellNumbers {
   std::string version;  ///< of mosbench
   bool simulated = false;
-  std::vector<std::string> doubts;
+  std::vector<std::string> doubts{};
   SequenceCounts counts;  ///< of the scans that count
   ScanGaps gaps;          ///< between them
   std::array<std::optional<double>, kBriefMetrics.size()> metrics;

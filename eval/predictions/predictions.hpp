@@ -95,6 +95,11 @@ class Predictions {
   virtual std::vector<std::uint32_t> read(std::size_t scan_index) const = 0;
   /// Reads how sure it is that each point moves; none for formats of labels. Throws DataError.
   virtual std::vector<double> confidences(std::size_t) const { return {}; }
+  /// Returns what `read` returns, without reading again what `confidences` returned.
+  virtual std::vector<std::uint32_t> labels(std::size_t scan_index,
+                                            std::span<const double> /*confidences*/) const {
+    return read(scan_index);
+  }
   /// Returns the scan's counts for formats that hold counts instead of labels.
   virtual std::optional<Confusion> counts(std::size_t) const { return std::nullopt; }
   /// Returns the ids in the files of the wanted scans; none for formats without ids.

@@ -138,12 +138,15 @@ class ScanFiles : public Predictions {
   bool has(std::size_t scan_index) const override { return files_.contains(scan_index); }
 
   std::vector<std::uint32_t> read(std::size_t scan_index) const override {
+    if (format_ == Format::kNpy) return labels(scan_index, confidences(scan_index));
     const fs::path& file = files_.at(scan_index);
-    std::vector<std::uint32_t> labels = read_stored(file, scan_index);
-    if (!id_map_.empty()) {
-      for (std::uint32_t& label : labels) label = mapped(label, file);
-    }
-    return labels;
+    return mapped(read_stored(file, scan_index), file);
+  }
+
+  std::vector<std::uint32_t> labels(std::size_t scan_index,
+                                    std::span<const double> confidences) const override {
+    if (format_ != Format::kNpy) return read(scan_index);
+    return mapped(labels_of_confidences(confidences), files_.at(scan_index));
   }
 
   std::vector<double> confidences(std::size_t scan_index) const override {
@@ -167,8 +170,6 @@ class ScanFiles : public Predictions {
         return parse_point_csv(read_file(file), points, file);
       case Format::kPcd:
         return read_pcd_labels(file, points);
-      case Format::kNpy:
-        return labels_of_confidences(read_npy_confidences(file, points));
       case Format::kMaskedLabel:
         return spread_over_scan(read_any_labels(file), sequence_.read(scan_index).points, mask_,
                                 file);
@@ -177,10 +178,17 @@ class ScanFiles : public Predictions {
     }
   }
 
-  std::uint32_t mapped(std::uint32_t label, const fs::path& file) const {
-    const auto found = id_map_.find(static_cast<std::uint16_t>(label & 0xFFFFU));
-    if (found != id_map_.end()) return found->second;
-    throw DataError(file, fmt::format("has id {}", label & 0xFFFFU), "one that the id map maps");
+  std::vector<std::uint32_t> mapped(std::vector<std::uint32_t> labels, const fs::path& file) const {
+    if (id_map_.empty()) return labels;
+    for (std::uint32_t& label : labels) {
+      const auto found = id_map_.find(static_cast<std::uint16_t>(label & 0xFFFFU));
+      if (found == id_map_.end()) {
+        throw DataError(file, fmt::format("has id {}", label & 0xFFFFU),
+                        "one that the id map maps");
+      }
+      label = found->second;
+    }
+    return labels;
   }
 
   const Sequence& sequence_;

@@ -43,6 +43,10 @@ void ScoreCounts::add(const ScoredPoints& scan, const ScoreRule& rule) {
   }
   of_labels_ += scan.of_labels;
   ++scans_;
+  join_when_many();
+}
+
+void ScoreCounts::join_when_many() {
   // Twice as many as were left: all joins together cost as much as sorting everything once.
   if (buckets_.size() < std::max(kManyBuckets, 2 * joined_buckets_)) return;
   join(buckets_);
@@ -53,6 +57,7 @@ ScoreCounts& ScoreCounts::operator+=(const ScoreCounts& other) {
   buckets_.insert(buckets_.end(), other.buckets_.begin(), other.buckets_.end());
   of_labels_ += other.of_labels_;
   scans_ += other.scans_;
+  join_when_many();
   return *this;
 }
 

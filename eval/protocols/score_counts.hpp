@@ -48,6 +48,7 @@ class ScoreCounts {
     std::uint64_t moving, still;
   };
   static void join(std::vector<Bucket>& buckets);
+  void join_when_many();
 
   std::vector<Bucket> buckets_;     ///< in any order
   std::size_t joined_buckets_ = 0;  ///< how many there were after the last `join`

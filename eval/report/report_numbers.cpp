@@ -178,8 +178,7 @@ ordered_json protocols_of(const ResultScans& scans) {
   const std::vector<ScoreRule> rules = rules_beside(scans.rule());
   const ScoreTask task{scans.source().path, scans.source().options, rules, std::nullopt,
                        hardware_threads()};
-  const auto scores = score_dataset(scans.dataset(), task);
-  return side_by_side_json(scans.dataset(), rules, scores).at("protocols");
+  return protocols_json(rules, score_dataset(scans.dataset(), task));
 }
 
 ordered_json covered_tables(const std::vector<std::filesystem::path>& inputs) {

@@ -7,7 +7,6 @@
 #include <map>
 #include <ranges>
 #include <set>
-#include <string_view>
 #include <utility>
 
 #include "eval/engine/study_plan.hpp"
@@ -172,11 +171,11 @@ void mark_front(std::vector<StudyRow>& rows) {
 }
 
 StudyCurve curve_of(const DoneCells& cells, const StudyAxis& axis,
-                    const std::vector<StudyRow>& rows, std::string_view unchanged) {
+                    const std::vector<StudyRow>& rows, const std::string& unchanged) {
   StudyCurve curve;
   curve.axis = axis.name;
   if (axis.kind != nullptr) curve.unit = axis.kind->unit;
-  curve.values = {axis.kind != nullptr ? "none" : std::string(unchanged)};
+  curve.values = {axis.kind != nullptr ? "none" : unchanged};
   curve.values.insert(curve.values.end(), axis.values.begin(), axis.values.end());
   for (const StudyRow& row : rows) {
     std::vector<StudyMetrics>& line = curve.metrics.emplace_back();

@@ -309,30 +309,26 @@ Answer side_by_side_answer(const Dataset& dataset, const std::vector<ScoreRule>&
                           or_undefined(row.summary[Metric::kIou]), row.summary.published_text,
                           pooled.tp, pooled.fp, pooled.fn, row.reason});
   }
-  return {.standing = standing_of(dataset, rules.front(), scores),
-          .sheets = {std::move(sheet)},
-          .json = json_text(side_by_side_json(dataset, rules, scores))};
+  Standing standing = standing_of(dataset, rules.front(), scores);
+  ordered_json json = {{"dataset", std::string(to_string(dataset.kind))},
+                       {"protocols", protocols_json(rules, scores)},
+                       {"remarks", sheet.notes}};
+  for (const std::string& doubt : standing.doubts) json["remarks"].push_back(doubt);
+  if (const auto origin = simulated_origin_json(dataset)) json["simulated"] = *origin;
+  return {.standing = std::move(standing), .sheets = {std::move(sheet)}, .json = json_text(json)};
 }
 
-ordered_json side_by_side_json(const Dataset& dataset, const std::vector<ScoreRule>& rules,
-                               const std::vector<SequenceScores>& scores) {
-  std::vector<std::string> remarks = score_remarks(dataset, scores);
-  for (std::string& doubt : standing_of(dataset, rules.front(), scores).doubts) {
-    remarks.push_back(std::move(doubt));
-  }
-  ordered_json json = {{"dataset", std::string(to_string(dataset.kind))},
-                       {"protocols", ordered_json::array()},
-                       {"remarks", remarks}};
-  if (const auto origin = simulated_origin_json(dataset)) json["simulated"] = *origin;
+ordered_json protocols_json(const std::vector<ScoreRule>& rules,
+                            const std::vector<SequenceScores>& scores) {
+  ordered_json protocols = ordered_json::array();
   for (const ProtocolRow& row : protocol_rows(rules, scores)) {
-    ordered_json protocol = rule_json(row.rule, "name");
+    ordered_json& protocol = protocols.emplace_back(rule_json(row.rule, "name"));
     protocol["iou"] = json_or_null(row.summary[Metric::kIou]);
     protocol["published_text"] = row.summary.published_text;
     protocol.update(counts_json(row.summary.pooled));
     protocol["why"] = row.reason;
-    json["protocols"].push_back(std::move(protocol));
   }
-  return json;
+  return protocols;
 }
 
 }  // namespace mosbench

@@ -71,9 +71,9 @@ Answer score_answer(const Dataset& dataset, const ScoreTask& task,
 /// Says what `mosbench score --protocol all` found: a row per rule and why it differs.
 Answer side_by_side_answer(const Dataset& dataset, const std::vector<ScoreRule>& rules,
                            const std::vector<SequenceScores>& scores);
-nlohmann::ordered_json side_by_side_json(const Dataset& dataset,
-                                         const std::vector<ScoreRule>& rules,
-                                         const std::vector<SequenceScores>& scores);
+/// The rows as JSON, which reports show beside the results of a run.
+nlohmann::ordered_json protocols_json(const std::vector<ScoreRule>& rules,
+                                      const std::vector<SequenceScores>& scores);
 
 /// Throws UsageError where <out>/<sequence> holds anything that `write_scores` did not write.
 void check_scored_folders(const Dataset& dataset, const std::filesystem::path& out);
