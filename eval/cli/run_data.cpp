@@ -86,9 +86,11 @@ std::optional<ScoreCurve> curve_of(const RunPlan& plan,
   if (!plan.settings.point_files().scores || !has_truth(outcomes)) return std::nullopt;
   std::vector<Result> results;
   for (const SequenceOutcome& outcome : outcomes) {
-    results.push_back(read_result(outcome.folder / "result.json"));
+    Result& result = results.emplace_back(read_result(outcome.folder / "result.json"));
+    // An earlier run may have read the same scans elsewhere.
+    if (result.places) result.places->reading = plan.job.data.reading;
   }
-  return curve_of_results(results, std::nullopt);
+  return curve_of_results(results, plan.dataset.root);
 }
 
 /// How it was run, the table, the remarks on each sequence.

@@ -75,6 +75,20 @@ TEST_F(Resume, SkipsWhatIsFinished) {
   EXPECT_EQ(second.out, first.out);
 }
 
+TEST_F(Resume, ScoresConfidencesOfAFinishedRunWhereItsDataAreNow) {
+  const std::vector<std::string> scored = command({"--write", "scores"});
+  const cli::Answer first = cli::run(scored);
+  ASSERT_EQ(first.exit_code, 0) << first.err;
+  ASSERT_THAT(first.out, HasSubstr("average precision"));
+  fs::create_directories(folder_ / "new");
+  fs::rename(folder_ / "room", folder_ / "new/room");
+  const cli::Answer second = cli::run({"run", (folder_ / "new/room").string(), "--out",
+                                       (folder_ / "out").string(), "--write", "scores"});
+  ASSERT_EQ(second.exit_code, 0) << second.err;
+  EXPECT_THAT(second.err, HasSubstr("room: finished by an earlier run, kept"));
+  EXPECT_THAT(second.out, HasSubstr("average precision"));
+}
+
 TEST_F(Resume, RunsASequenceAnewWhenALabelFileIsMissingOrCut) {
   ASSERT_EQ(cli::run(command()).exit_code, 0);
   const auto whole = cli::contents(results());
