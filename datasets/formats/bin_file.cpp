@@ -156,22 +156,12 @@ std::vector<Point> parse_bin(std::string_view bytes, std::size_t columns,
   return points;
 }
 
-std::vector<std::int64_t> parse_bin_times(std::string_view bytes, std::size_t columns,
-                                          const std::filesystem::path& file) {
+std::vector<double> parse_bin_times(std::string_view bytes, std::size_t columns,
+                                    const std::filesystem::path& file) {
   check_bin_size(bytes.size(), columns, file);
-  const std::size_t record_bytes = columns * sizeof(float);
-  std::vector<std::int64_t> times_ns(bytes.size() / record_bytes);
-  for (std::size_t i = 0; i < times_ns.size(); ++i) {
-    float time_s = 0;
-    std::memcpy(&time_s, bytes.data() + i * record_bytes + sizeof(Point), sizeof(time_s));
-    if (!(std::abs(time_s) <= 1.0F)) {
-      throw DataError(file,
-                      "point " + std::to_string(i) + " has the time " + std::to_string(time_s),
-                      "seconds after the scan's stamp in the fifth column, within a second");
-    }
-    times_ns[i] = std::llround(static_cast<double>(time_s) * 1e9);
-  }
-  return times_ns;
+  std::vector<double> times(bytes.size() / (columns * sizeof(float)));
+  for (std::size_t i = 0; i < times.size(); ++i) times[i] = number_at(bytes, i * columns + 4);
+  return times;
 }
 
 std::string_view format_bin(std::span<const Point> points) {

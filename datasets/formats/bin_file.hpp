@@ -32,10 +32,9 @@ std::optional<std::size_t> other_bin_columns(std::string_view bytes, std::size_t
 /// DataError when the size is no multiple of a point's.
 std::vector<Point> parse_bin(std::string_view bytes, std::size_t columns,
                              const std::filesystem::path& file);
-/// Returns the number after x y z intensity of every point: seconds after the stamp of its scan, in
-/// nanoseconds. Throws DataError also for times that are not within a second.
-std::vector<std::int64_t> parse_bin_times(std::string_view bytes, std::size_t columns,
-                                          const std::filesystem::path& file);
+/// Returns the number after x y z intensity of every point.
+std::vector<double> parse_bin_times(std::string_view bytes, std::size_t columns,
+                                    const std::filesystem::path& file);
 /// Returns the points' own memory as the bytes of a file.
 std::string_view format_bin(std::span<const Point> points);
 

@@ -73,16 +73,14 @@ std::vector<Point> read_scan(const std::filesystem::path& file, std::size_t bin_
   return read_bin(file, columns_of(file, bin_columns), std::move(reused));
 }
 
-TimedScan read_timed_scan(const std::filesystem::path& file, std::size_t bin_columns,
-                          std::optional<std::int64_t> stamp_ns) {
+TimedScan read_timed_scan(const std::filesystem::path& file, std::size_t bin_columns) {
   if (has_extension(file, ".pcd")) {
     PcdScan scan = parse_pcd(read_file(file), file, true);
-    return {std::move(scan.points), times_after_stamp_ns(scan.times, stamp_ns, file)};
+    return {std::move(scan.points), std::move(scan.times)};
   }
   const std::string bytes = read_file(file);
   if (has_extension(file, ".ply")) {
-    return {parse_ply(bytes, file),
-            times_after_stamp_ns(parse_ply_times(bytes, file), stamp_ns, file)};
+    return {parse_ply(bytes, file), parse_ply_times(bytes, file)};
   }
   const std::size_t columns = columns_of(file, bin_columns);
   return {parse_bin(bytes, columns, file), parse_bin_times(bytes, columns, file)};

@@ -34,12 +34,11 @@ std::vector<Point> read_scan(const std::filesystem::path& file, std::size_t bin_
 
 struct TimedScan {
   std::vector<Point> points;
-  std::vector<std::int64_t> times_ns;  ///< of each point after the scan's stamp
+  std::vector<double> times;  ///< of each point, as stored
 };
-/// Reads a scan whose points have times: of a .bin file in seconds after x y z intensity, of a .pcd
-/// or .ply file in the field `find_time_field`, see `times_after_stamp_ns`. Throws DataError.
-TimedScan read_timed_scan(const std::filesystem::path& file, std::size_t bin_columns,
-                          std::optional<std::int64_t> stamp_ns);
+/// Reads a scan whose points have times: of a .bin file after x y z intensity, of a .pcd or .ply
+/// file in the field `find_time_field`. Throws DataError.
+TimedScan read_timed_scan(const std::filesystem::path& file, std::size_t bin_columns);
 
 /// Looks into some of the scans, if they are .bin files, whether they have four float32 per point,
 /// which nothing in them says. Throws DataError where they clearly have others.

@@ -113,13 +113,13 @@ std::string format_stamp(std::int64_t stamp_ns) {
 
 }  // namespace
 
-std::optional<std::int64_t> parse_seconds_as_ns(std::string_view text) {
+std::optional<std::int64_t> parse_seconds_as_ns(std::string_view text, int decimals_of_unit) {
   const bool negative = text.starts_with('-');
   if (negative || text.starts_with('+')) text.remove_prefix(1);
   const auto decimal = parse_decimal(text);
   if (!decimal) return std::nullopt;
   const auto digit_count = static_cast<std::int64_t>(decimal->digits.size());
-  const std::int64_t kept = digit_count - decimal->decimals + 9;
+  const std::int64_t kept = digit_count - decimal->decimals + 9 - decimals_of_unit;
   auto magnitude = leading_number(decimal->digits, kept);
   if (!magnitude) return std::nullopt;
   const bool rounds_up =
@@ -129,10 +129,11 @@ std::optional<std::int64_t> parse_seconds_as_ns(std::string_view text) {
   return negative ? -ns : ns;
 }
 
-std::vector<std::int64_t> parse_times(std::string_view text, const std::filesystem::path& file) {
+std::vector<std::int64_t> parse_times(std::string_view text, const std::filesystem::path& file,
+                                      TimeUnit unit) {
   std::vector<std::int64_t> stamps_ns;
   for (const TextLine& line : split_lines(text, file)) {
-    const auto stamp_ns = parse_seconds_as_ns(line.text);
+    const auto stamp_ns = parse_seconds_as_ns(line.text, 3 * static_cast<int>(unit));
     if (!stamp_ns) {
       throw DataError(file, line.number,
                       quoted(line.text) + " is no time in seconds that fits 64-bit nanoseconds",
@@ -141,6 +142,14 @@ std::vector<std::int64_t> parse_times(std::string_view text, const std::filesyst
     stamps_ns.push_back(*stamp_ns);
   }
   return stamps_ns;
+}
+
+std::vector<double> parse_time_numbers(std::string_view text, const std::filesystem::path& file) {
+  std::vector<double> numbers;
+  for (const TextLine& line : split_lines(text, file)) {
+    numbers.push_back(parse_double(line.text).value_or(0.0));
+  }
+  return numbers;
 }
 
 std::string seconds_text(std::int64_t stamp_ns) {

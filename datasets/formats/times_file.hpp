@@ -8,15 +8,22 @@
 #include <string_view>
 #include <vector>
 
+#include "datasets/formats/point_times.hpp"
+
 namespace mosbench {
 
 /// Returns a decimal number of seconds (with or without exponent) as nanoseconds, exact because it
 /// works on the digits; those after the ninth decimal round half away from zero. Returns nothing
 /// for text or beyond 64 bits.
-std::optional<std::int64_t> parse_seconds_as_ns(std::string_view text);
+/// The text is in a unit of 10^-decimals_of_unit seconds.
+std::optional<std::int64_t> parse_seconds_as_ns(std::string_view text, int decimals_of_unit = 0);
 
-/// Parses times.txt: one time in seconds per scan. Throws DataError with the line.
-std::vector<std::int64_t> parse_times(std::string_view text, const std::filesystem::path& file);
+/// Parses times.txt: one time per scan, in seconds or another unit up to ns. Throws DataError with
+/// the line.
+std::vector<std::int64_t> parse_times(std::string_view text, const std::filesystem::path& file,
+                                      TimeUnit unit = TimeUnit::kSeconds);
+/// Returns the numbers as they stand, 0 for text.
+std::vector<double> parse_time_numbers(std::string_view text, const std::filesystem::path& file);
 /// Formats nanoseconds as seconds with nine decimals.
 std::string seconds_text(std::int64_t stamp_ns);
 /// Formats times.txt: seconds with nine decimals, one per line.

@@ -147,8 +147,8 @@ ListedSequences list_sequences(const std::filesystem::path& path, const OpenOpti
 std::unique_ptr<Sequence> with_point_times(std::unique_ptr<Sequence> sequence,
                                            const Reading& reading) {
   if (!reading.undistorts()) return sequence;
-  // Of all recordings, only a bag says whether its points have times.
-  if (reading.deskew && !reading.point_times && !sequence->reading().undistortion) {
+  const ReadingDone& done = sequence->reading();
+  if (reading.deskew && !reading.point_times && done.point_times.empty() && !done.undistortion) {
     throw UsageError(fmt::format("{}: the points of {} have no times, expected {} or azimuth",
                                  option("deskew"), sequence->name(),
                                  option("point_times", "column")));
@@ -157,7 +157,8 @@ std::unique_ptr<Sequence> with_point_times(std::unique_ptr<Sequence> sequence,
     sequence = with_azimuth_times(std::move(sequence));
   }
   const Deskew by = reading.deskew.value_or(Deskew::kPoses);
-  const bool has_times = reading.point_times || by == Deskew::kVelocity;
+  const bool has_times = reading.point_times == PointTimes::kAzimuth || by == Deskew::kVelocity ||
+                         (!done.point_times.empty() && !done.undistortion);
   if (reading.is_by_odometry() || !has_times) return sequence;
   return deskewed(std::move(sequence), by);
 }
@@ -206,7 +207,7 @@ void check_asked(const Reading& asked, const Layout& layout,
 }
 
 void check_point_times(const Reading& asked, const Layout& layout, const SequenceFolder& folder) {
-  const bool by_column = asked.undistorts() && asked.point_times == PointTimes::kColumn;
+  const bool by_column = asked.undistorts() && asked.takes_column();
   if (!by_column || layout.no_point_times == nullptr) return;
   const std::string why = layout.no_point_times(folder.folder);
   if (!why.empty()) throw UsageError(option("point_times", "column") + ": " + why);

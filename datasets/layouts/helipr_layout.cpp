@@ -37,7 +37,7 @@ class HeliprSequence : public Sequence {
   /// `folder` is LiDAR/<sensor>. Throws DataError.
   HeliprSequence(std::string name, const fs::path& folder, const Reading& asked)
       : sensor_(sensor_of_folder(folder)),
-        gives_times_(asked.undistorts() && asked.point_times == PointTimes::kColumn) {
+        gives_times_(asked.undistorts() && asked.takes_column()) {
     Recording& recording = mutable_recording();
     recording.name = SequenceName(std::move(name), folder);
     recording.reading.scan_files = fmt::format(".bin of {}, packed", to_string(sensor_));

@@ -58,11 +58,11 @@ void KittiSequence::read(std::size_t scan_index, Frame& frame) const {
     return FolderSequence::read(scan_index, frame);
   }
   const std::filesystem::path& file = *scan_file(scan_index);
-  PcdScan scan = parse_pcd(read_file(file), file, times_in_column());
+  PcdScan scan = parse_pcd(read_file(file), file, reads_times());
   check_count(scan_index, scan.points.size());
   describe(scan_index, frame);
   frame.points = std::move(scan.points);
-  frame.point_times_ns = times_after_stamp_ns(scan.times, frame.stamp_ns, file);
+  frame.point_times_ns = times_ns(scan_index, std::move(scan.times));
   frame.truth = std::move(scan.labels);
 }
 

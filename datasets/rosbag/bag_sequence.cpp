@@ -6,9 +6,11 @@
 #include <utility>
 
 #include "datasets/disk/folder_listing.hpp"
+#include "datasets/rosbag/bag_clocks.hpp"
 #include "datasets/rosbag/bag_reader.hpp"
 #include "datasets/rosbag/bag_topics.hpp"
 #include "datasets/sequence/pose_source.hpp"
+#include "datasets/sequence/stamps.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
 
@@ -17,12 +19,8 @@ namespace {
 
 /// Enough bytes of a message for all that precedes the points; a field takes some 20 bytes.
 constexpr std::size_t kHeadBytes = 4096;
-/// Scans last 0.1 s; a longer time is not measured from the scan's stamp.
+/// No scan takes longer.
 constexpr std::int64_t kLongestScanNs = 1'000'000'000;
-
-std::int64_t reference_ns(const TimedCloud& cloud) {
-  return cloud.stamp_ns + (cloud.times_ns.empty() ? 0 : cloud.times_ns.front());
-}
 
 }  // namespace
 
@@ -43,6 +41,7 @@ BagSequence::BagSequence(std::string name, std::unique_ptr<const BagReader> bag,
     : bag_(std::move(bag)),
       undistorts_(asked.undistorts()),
       keeps_times_(asked.is_by_odometry() || asked.deskew == Deskew::kVelocity),
+      has_stamped_points_(keeps_times_ || !asked.has_own_poses()),
       by_azimuth_(asked.point_times == PointTimes::kAzimuth) {
   Recording& recording = mutable_recording();
   recording.name = SequenceName(std::move(name), bag_->path().parent_path());
@@ -51,6 +50,7 @@ BagSequence::BagSequence(std::string name, std::unique_ptr<const BagReader> bag,
   const std::string topic = cloud_topic(*bag_, asked.topic);
   list_scans(topic);
   expect_one_frame(topic);
+  judge_times(asked);
   recording.reading.scan_files =
       fmt::format("{}, topic {}", bag_->path().filename().string(), topic);
   asked.has_own_poses() ? open_transforms(asked) : open_pose_file(asked);
@@ -63,8 +63,32 @@ PoseAt BagSequence::pose_at(std::size_t scan_index) const {
       [&track = tracks_.around(scan_index)](std::int64_t stamp_ns) { return track.at(stamp_ns); };
 }
 
-TimedCloud BagSequence::cloud_of(const Scan& scan) const {
-  return parse_cloud(bag_->read(scan.message), bag_->path(), bag_->format_of(scan.message));
+TimedCloud BagSequence::stored_cloud(const Scan& scan, bool timed) const {
+  return parse_cloud(bag_->read(scan.message), bag_->path(), bag_->format_of(scan.message), timed);
+}
+
+BagSequence::MovingCloud BagSequence::cloud_of(const Scan& scan) const {
+  MovingCloud cloud{stored_cloud(scan, clock_.knows_unit()), {}};
+  cloud.times_ns = clock_.after_stamp_ns({std::move(cloud.times), cloud.stamp_ns});
+  const auto good = std::ranges::find_if(cloud.times_ns, [](auto time) { return time != kNoTime; });
+  if (good == cloud.times_ns.end()) return cloud;
+  settle_times(cloud.times_ns, has_stamped_points_ ? 0 : *good);
+  return cloud;
+}
+
+void BagSequence::judge_times(const Reading& asked) {
+  if (!undistorts_ || std::ranges::none_of(scans_, &Scan::timed)) return;
+  Recording as_listed;
+  for (const Scan& scan : scans_) as_listed.scans.emplace_back().stamp_ns = scan.stamp_ns;
+  clock_ = judged_clock(
+      as_listed, [&](std::size_t k) { return stored_cloud(scans_[k], true).times; },
+      told_unit(asked));
+  Recording& recording = mutable_recording();
+  recording.reading.point_times = as_listed.reading.point_times;
+  for (const auto said : {&Recording::remarks, &Recording::doubts}) {
+    (recording.*said)
+        .insert((recording.*said).end(), (as_listed.*said).begin(), (as_listed.*said).end());
+  }
 }
 
 void BagSequence::enter_scans() {
@@ -138,7 +162,11 @@ void BagSequence::open_transforms(const Reading& asked) {
   recording.remarks.push_back("poses from the bag: " + transforms.source);
   for (std::string& remark : transforms.remarks) recording.remarks.push_back(std::move(remark));
   transforms_ = std::move(transforms.map_from_sensor);
-  leave_out_uncovered();
+  std::vector<MessageTimes> times;
+  for (const Scan& scan : scans_) times.push_back({scan.stamp_ns, scan.message.recorded_ns});
+  const std::string clocks = doubt_about_clocks(*bag_, times).value_or("");
+  if (!clocks.empty()) recording.doubts.push_back(clocks);
+  leave_out_uncovered(clocks);
   enter_scans();
   for (ScanEntry& scan : recording.scans) scan.map_from_sensor = *transforms_->at(*scan.stamp_ns);
 }
@@ -150,14 +178,13 @@ bool BagSequence::covered(const Scan& scan) const {
   if (transforms_->covers(scan.stamp_ns - kLongestScanNs, scan.stamp_ns + kLongestScanNs)) {
     return true;
   }
-  const TimedCloud cloud = cloud_of(scan);
-  check_times(scan, cloud);
+  const MovingCloud cloud = cloud_of(scan);
   return cloud.times_ns.empty() ||
          transforms_->covers(cloud.stamp_ns + std::ranges::min(cloud.times_ns),
                              cloud.stamp_ns + std::ranges::max(cloud.times_ns));
 }
 
-void BagSequence::leave_out_uncovered() {
+void BagSequence::leave_out_uncovered(const std::string& clocks) {
   const std::vector<Scan> all = scans_;
   std::erase_if(scans_, [this](const Scan& scan) { return !covered(scan); });
   if (scans_.size() == all.size()) return;
@@ -169,9 +196,9 @@ void BagSequence::leave_out_uncovered() {
   if (are_too_few(scans_.size(), all.size())) {
     throw DataError(
         bag_->path(),
-        fmt::format("transforms cover {} of {}, from {:.3f} to {:.3f} s{}", scans_.size(),
+        fmt::format("transforms cover {} of {}, from {:.3f} to {:.3f} s{}{}{}", scans_.size(),
                     counted(all.size(), "scan"), seconds_of(all.front().stamp_ns),
-                    seconds_of(all.back().stamp_ns), why),
+                    seconds_of(all.back().stamp_ns), why, clocks.empty() ? "" : "; ", clocks),
         fmt::format("poses while the scans are taken, another frame in {}, a longer {}, or {}",
                     option("map_frame"), option("max_pose_gap_s"), option("poses", "FILE")));
   }
@@ -182,33 +209,24 @@ void BagSequence::leave_out_uncovered() {
 
 void BagSequence::state_undistortion() {
   const bool timed = scans_.front().timed;
-  const BagUndistortion how = by_azimuth_    ? BagUndistortion::kOtherTimes
-                              : !timed       ? BagUndistortion::kNoTimes
-                              : !undistorts_ ? BagUndistortion::kAsTold
-                              : !transforms_ ? BagUndistortion::kButLast
-                                             : BagUndistortion::kAll;
+  const BagUndistortion how = by_azimuth_            ? BagUndistortion::kOtherTimes
+                              : !timed               ? BagUndistortion::kNoTimes
+                              : !undistorts_         ? BagUndistortion::kAsTold
+                              : !clock_.knows_unit() ? BagUndistortion::kNoUnit
+                              : !transforms_         ? BagUndistortion::kButLast
+                                                     : BagUndistortion::kAll;
   mutable_recording().reading.undistortion = how;
   mutable_recording().remarks.push_back(fmt::format("undistortion: {}", to_string(how)));
 }
 
-void BagSequence::check_times(const Scan& scan, const TimedCloud& cloud) const {
-  for (const std::int64_t time_ns : cloud.times_ns) {
-    if (time_ns >= -kLongestScanNs && time_ns <= kLongestScanNs) continue;
-    throw DataError(bag_->path(), scan.number,
-                    fmt::format("a point was measured {} ns after the scan's stamp", time_ns),
-                    "times within a second of it");
-  }
-}
-
 void BagSequence::read(std::size_t scan_index, Frame& frame) const {
   const Scan& scan = scans_.at(scan_index);
-  TimedCloud cloud = cloud_of(scan);
-  if (by_azimuth_) cloud.times_ns.clear();
-  check_times(scan, cloud);
+  MovingCloud cloud = cloud_of(scan);
   // After the last pose of a file nothing is known.
   const bool last = !transforms_ && tracks_.is_last(scan_index);
   const bool moves = undistorts_ && !keeps_times_ && !cloud.times_ns.empty() && !last;
-  const std::int64_t at_ns = moves && transforms_ ? reference_ns(cloud) : cloud.stamp_ns;
+  const std::int64_t at_ns =
+      moves && transforms_ ? cloud.stamp_ns + cloud.times_ns.front() : cloud.stamp_ns;
   const PoseAt poses = pose_at(scan_index);
   const auto pose = poses(at_ns);
   if (!pose || (moves && !undistort(cloud.points, cloud.times_ns, cloud.stamp_ns, at_ns, poses))) {
@@ -224,7 +242,7 @@ void BagSequence::read(std::size_t scan_index, Frame& frame) const {
 
 std::vector<std::uint32_t> BagSequence::read_truth(std::size_t scan_index) const {
   if (!has_truth(scan_index)) refuse_truth(scan_index);
-  return cloud_of(scans_.at(scan_index)).labels.value();
+  return stored_cloud(scans_.at(scan_index), false).labels.value();
 }
 
 }  // namespace mosbench

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "datasets/formats/point_times.hpp"
 #include "datasets/rosbag/bag_reader.hpp"
 #include "datasets/rosbag/ros_messages.hpp"
 #include "datasets/rosbag/transform_tree.hpp"
@@ -49,22 +50,30 @@ class BagSequence : public Sequence {
   void open_transforms(const Reading& asked);
   void open_pose_file(const Reading& asked);
   bool covered(const Scan& scan) const;
-  void leave_out_uncovered();
+  void leave_out_uncovered(const std::string& clocks);
   void state_undistortion();
   void enter_scans();
 
+  /// A scan with the times of its points after the stamp; points without one are not moved.
+  struct MovingCloud : TimedCloud {
+    std::vector<std::int64_t> times_ns;
+  };
+  void judge_times(const Reading& asked);
+  TimedCloud stored_cloud(const Scan& scan, bool timed) const;
+  MovingCloud cloud_of(const Scan& scan) const;
   PoseAt pose_at(std::size_t scan_index) const;
-  TimedCloud cloud_of(const Scan& scan) const;
-  void check_times(const Scan& scan, const TimedCloud& cloud) const;
 
   std::unique_ptr<const BagReader> bag_;
   std::vector<Scan> scans_;
+  PointClock clock_;
   std::optional<TransformChain> transforms_;  ///< of the bag
   ScanTracks tracks_;                         ///< of a pose file
   bool undistorts_ = true;
   /// Points are moved later, by poses that are found later or by the velocity; their times are
   /// kept.
   bool keeps_times_ = false;
+  /// Points are moved to where the sensor is at the stamp, not at the first point.
+  bool has_stamped_points_ = false;
   /// The points' own times do not count.
   bool by_azimuth_ = false;
 };

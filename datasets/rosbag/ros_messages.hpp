@@ -42,19 +42,16 @@ std::string format_cloud(const CloudHead& head, std::string_view records,
 struct TimedCloud {
   std::int64_t stamp_ns = 0;
   std::vector<Point> points;
-  /// When each point was measured, since the stamp, in nanoseconds. Fields "t" (Ouster) and
-  /// "offset_time" (Livox) of integers hold nanoseconds, "time" (Velodyne) of floats seconds;
-  /// "timestamp" (Hesai, RoboSense, Livox) and others what `times_after_stamp_ns` finds. All 0
-  /// where all are the same, empty without such a field.
-  std::vector<std::int64_t> times_ns;
+  /// When each point was measured, as the field of `find_time_field` holds it; empty without one.
+  std::vector<double> times;
   std::optional<std::vector<std::uint32_t>> labels;  ///< field "label"
 };
 
 /// Parses a whole message. Fields may have any offset and any numeric type; intensity is 0 when
 /// there is none. Throws DataError when x, y or z is missing or no single number, or a field lies
-/// beyond the point.
+/// beyond the point. Reads times if they are wanted.
 TimedCloud parse_cloud(std::string_view message, const std::filesystem::path& file,
-                       const MessageFormat& format = {});
+                       const MessageFormat& format = {}, bool timed = true);
 
 /// Returns whether `head` names a field that `parse_cloud` reads times from.
 bool has_times(const CloudHead& head);

@@ -2,46 +2,23 @@
 
 #include <fmt/format.h>
 
-#include <limits>
 #include <utility>
 
-#include "datasets/disk/files.hpp"
 #include "datasets/formats/bin_file.hpp"
 #include "datasets/formats/point_records.hpp"
 #include "datasets/formats/scan_file.hpp"
-#include "datasets/formats/times_file.hpp"
+#include "datasets/sequence/stamps.hpp"
 #include "datasets/text/errors.hpp"
 
 namespace mosbench {
-namespace {
-
-/// A stem of this value or above is a time in nanoseconds (11 days and more), not a scan's number.
-constexpr std::uint64_t kSmallestStampStem = 1'000'000'000'000'000;
-
-std::vector<std::int64_t> stamps_from_stems(const std::vector<ScanEntry>& scans) {
-  std::vector<std::int64_t> stamps_ns;
-  for (const ScanEntry& scan : scans) {
-    const auto number = stem_number(scan.stem);
-    if (!number || *number < kSmallestStampStem ||
-        *number > static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max())) {
-      return {};
-    }
-    stamps_ns.push_back(static_cast<std::int64_t>(*number));
-  }
-  return stamps_ns;
-}
-
-}  // namespace
-
 FolderSequence::FolderSequence(std::string name, const std::filesystem::path& folder,
                                const Reading& asked, const FolderLayout& layout)
     : bin_columns_(asked.bin_columns.value_or(kUsualBinColumns)),
-      times_in_column_(asked.undistorts() && asked.point_times == PointTimes::kColumn) {
+      times_in_column_(asked.undistorts() && asked.takes_column()) {
   Recording& recording = mutable_recording();
   recording.name = SequenceName(std::move(name), folder);
   list_scans(folder, layout, !asked.bin_columns);
-  const std::vector<std::int64_t> stamps_ns = read_stamps(folder);
-  for (std::size_t k = 0; k < stamps_ns.size(); ++k) recording.scans[k].stamp_ns = stamps_ns[k];
+  read_stamps(folder, recording);
   Reading posed = asked;
   if (layout.poses_of_lidar && asked.has_own_poses() && !asked.pose_frame) {
     posed.pose_frame = PoseFrame::kLidar;
@@ -49,6 +26,7 @@ FolderSequence::FolderSequence(std::string name, const std::filesystem::path& fo
   const std::vector<std::filesystem::path> times = std::exchange(recording.files, {});
   place_scans(folder, std::string(layout.poses_file), posed, recording);
   recording.files.insert(recording.files.end(), times.begin(), times.end());
+  judge_times(asked);
 }
 
 void FolderSequence::list_scans(const std::filesystem::path& folder, const FolderLayout& layout,
@@ -64,13 +42,11 @@ void FolderSequence::list_scans(const std::filesystem::path& folder, const Folde
       fmt::format("{} of {}/", first.extension().string(),
                   is_flat ? "." : first.parent_path().filename().string());
   if (bin_columns_ != kUsualBinColumns) recording.reading.bin_columns = bin_columns_;
-  if (times_in_column_) {
-    recording.reading.point_times = first.extension() == ".bin" ? "fifth column" : "field of times";
-  }
   recording.scans.reserve(scans.size());
   for (StemFile& scan : scans) {
     const ScanHead head = read_scan_head(scan.file, bin_columns_);
     labels_in_scans_ = labels_in_scans_ && head.has_labels;
+    times_in_fields_ = times_in_fields_ && head.has_times && scan.file.extension() != ".bin";
     if (times_in_column_ && !head.has_times) {
       throw DataError(
           scan.file, "holds no times of points",
@@ -84,31 +60,43 @@ void FolderSequence::list_scans(const std::filesystem::path& folder, const Folde
   }
 }
 
-/// Returns one stamp per scan, or none.
-std::vector<std::int64_t> FolderSequence::read_stamps(const std::filesystem::path& folder) {
-  const std::filesystem::path times = folder / "times.txt";
-  if (!is_there(times)) return stamps_from_stems(recording().scans);
-  std::vector<std::int64_t> stamps_ns = read_times(times);
-  if (stamps_ns.size() != size()) {
-    throw DataError(times, fmt::format("{} times for {} scans", stamps_ns.size(), size()),
-                    "one per scan");
+void FolderSequence::judge_times(const Reading& asked) {
+  Recording& recording = mutable_recording();
+  if (!asked.undistorts() || recording.scans.empty()) return;
+  const bool is_bin = recording.scans.front().file->extension() == ".bin";
+  if (!times_in_column_ && (asked.point_times || !times_in_fields_ || is_bin)) return;
+  if (!times_in_column_ && !usual_step_s(recording.scans)) {
+    recording.remarks.push_back(
+        fmt::format("point times: not used, as scans have no stamps; with {} scans are taken to be "
+                    "0.1 s apart",
+                    option("point_times", "column")));
+    return;
   }
-  mutable_recording().files.push_back(times);
-  return stamps_ns;
+  clock_ = judged_clock(
+      recording, [&](std::size_t k) { return read_timed_scan(*scan(k).file, bin_columns_).times; },
+      told_unit(asked), !is_bin);
+}
+
+std::vector<std::int64_t> FolderSequence::times_ns(std::size_t scan_index,
+                                                   std::vector<double> times) const {
+  std::vector<std::int64_t> after_ns =
+      clock_.after_stamp_ns({std::move(times), stamp_ns(scan_index)});
+  settle_times(after_ns, 0);
+  return after_ns;
 }
 
 void FolderSequence::read(std::size_t scan_index, Frame& frame) const {
   const std::filesystem::path& file = *scan(scan_index).file;
   TimedScan timed;
-  if (times_in_column_) {
-    timed = read_timed_scan(file, bin_columns_, stamp_ns(scan_index));
+  if (reads_times()) {
+    timed = read_timed_scan(file, bin_columns_);
   } else {
     timed.points = read_scan(file, bin_columns_, std::move(frame.points));
   }
   frame.points = std::move(timed.points);
   check_count(scan_index, frame.points.size());
   describe(scan_index, frame);
-  frame.point_times_ns = std::move(timed.times_ns);
+  frame.point_times_ns = times_ns(scan_index, std::move(timed.times));
   add_truth(scan_index, frame);
 }
 

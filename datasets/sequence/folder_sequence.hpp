@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "datasets/formats/point_times.hpp"
 #include "datasets/sequence/pose_source.hpp"
 #include "datasets/sequence/sequence.hpp"
 
@@ -36,17 +37,19 @@ class FolderSequence : public Sequence {
  protected:
   /// Whether the points of every scan have a field "label".
   bool labels_in_scans() const { return labels_in_scans_; }
-  /// Whether the times of points are to be read from the scans.
-  bool times_in_column() const { return times_in_column_; }
+  /// Whether the times of points are to be read from the scans, and what they are after its stamp.
+  bool reads_times() const { return clock_.knows_unit(); }
+  std::vector<std::int64_t> times_ns(std::size_t scan_index, std::vector<double> times) const;
 
  private:
   void list_scans(const std::filesystem::path& folder, const FolderLayout& layout,
                   bool columns_are_usual);
-  std::vector<std::int64_t> read_stamps(const std::filesystem::path& folder);
+  void judge_times(const Reading& asked);
 
   std::size_t bin_columns_;
   bool times_in_column_;
-  bool labels_in_scans_ = true;
+  bool labels_in_scans_ = true, times_in_fields_ = true;
+  PointClock clock_;
 };
 
 }  // namespace mosbench

@@ -42,11 +42,17 @@ inline std::string_view to_string(Deskew deskew) {
 
 /// Where the times of points come from when the scans do not say.
 enum class PointTimes : std::uint8_t {
-  kColumn,  ///< the fifth float32 of each point in .bin files, seconds after the scan's stamp; a
-            ///< field of .pcd and .ply files, see `times_after_stamp_ns`
-  kAzimuth  ///< the direction of each point, as the sensor of KITTI turns
+  kColumn,   ///< the fifth float32 of each point in .bin files, a field of .pcd and .ply files, in
+             ///< the unit that `PointClock` finds
+  kAzimuth,  ///< the direction of each point, as the sensor of KITTI turns
+  kSeconds,  ///< as kColumn, and of a bag's field, in this unit; the others follow as in TimeUnit
+  kMilliseconds,
+  kMicroseconds,
+  kNanoseconds,
+  kSteps
 };
-inline constexpr std::array<std::string_view, 2> kPointTimesNames = {"column", "azimuth"};
+inline constexpr std::array<std::string_view, 7> kPointTimesNames = {
+    "column", "azimuth", "s", "ms", "us", "ns", "steps"};
 
 /// Where poses come from: the data set, a file of the user or a folder with one per sequence, or
 /// later from odometry. Every scan has the identity until then.
@@ -106,6 +112,8 @@ struct Reading {
   /// Disturbances of what is read.
   std::optional<Perturbation> perturb = std::nullopt;
 
+  /// Whether the times of points that scans hold are wanted by name.
+  bool takes_column() const { return point_times && *point_times != PointTimes::kAzimuth; }
   /// Whether points with times are to be moved.
   bool undistorts() const { return deskew != Deskew::kNone; }
   bool has_own_poses() const { return std::holds_alternative<OwnPoses>(poses); }
@@ -162,10 +170,10 @@ void visit_fields(Asked& reading, Visit&& visit) {
         "Move points that have times to where the sensor saw them at the stamp, by the motion "
         "since the scan before or by the poses around (default: poses; to register scans: "
         "velocity)");
-  visit("point_times", reading.point_times, kPointTimesNames,
-        "When points were measured: fifth column of .bin files, in seconds after the stamp, a "
-        "field of .pcd and .ply files, or azimuth as KITTI's sensor turns (default: what a bag "
-        "says)");
+  visit(
+      "point_times", reading.point_times, kPointTimesNames,
+      "When points were measured: a column (fifth of .bin files, or a field), whose unit is found "
+      "or told, or azimuth as KITTI's sensor turns (default: fields of bags, .pcd and .ply)");
   visit("moving_speed_m_s", reading.moving_speed_m_s,
         FieldQuantity{"M/S", "speed", "m/s above 0", 0.0, false},
         "Speed from which on points of truth by flow or boxes move: opensceneflow, kitti-raw, "
@@ -192,7 +200,14 @@ struct PosesDone {
 };
 
 /// What the times that the points of a bag have were used for.
-enum class BagUndistortion : std::uint8_t { kOtherTimes, kNoTimes, kAsTold, kButLast, kAll };
+enum class BagUndistortion : std::uint8_t {
+  kOtherTimes,
+  kNoTimes,
+  kAsTold,
+  kButLast,
+  kAll,
+  kNoUnit
+};
 
 /// How a sequence was read, for results. What is empty does not apply.
 struct ReadingDone {

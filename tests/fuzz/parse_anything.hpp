@@ -15,6 +15,7 @@
 #include "datasets/formats/pcd_file.hpp"
 #include "datasets/formats/ply_file.hpp"
 #include "datasets/formats/point_records.hpp"
+#include "datasets/formats/point_times.hpp"
 #include "datasets/formats/pose_file.hpp"
 #include "datasets/formats/times_file.hpp"
 #include "datasets/formats/tracklets.hpp"
@@ -134,9 +135,10 @@ inline void ply(std::string_view bytes) {
   const PlySummary summary = parse_ply_summary(bytes, bytes.size(), "f");
   require(parse_ply(bytes, "f").size() == summary.points);
   if (!summary.has_times) return;
-  const auto stored = parse_ply_times(bytes, "f");
-  require(stored.size() == summary.points);
-  require(times_after_stamp_ns(stored, std::nullopt, "f").size() == summary.points);
+  const StoredTimes stored{parse_ply_times(bytes, "f"), std::nullopt};
+  require(stored.times.size() == summary.points);
+  const auto times_ns = PointClock(std::span(&stored, 1), 0.1).after_stamp_ns(stored);
+  require(times_ns.empty() || times_ns.size() == summary.points);
 }
 
 /// The first byte is the number of points.
@@ -164,7 +166,7 @@ inline void ros_message(std::string_view bytes) {
     return;
   }
   const TimedCloud cloud = parse_cloud(message, "f");
-  require(cloud.times_ns.empty() || cloud.times_ns.size() == cloud.points.size());
+  require(cloud.times.empty() || cloud.times.size() == cloud.points.size());
   require(cloud.points.size() <= message.size());
 }
 
@@ -193,7 +195,7 @@ inline void ros2_message(std::string_view bytes) {
   }
   const std::string_view type = bytes.front() == 'l' ? kLivoxMessages[0] : kPointCloud2;
   const TimedCloud cloud = parse_cloud(message, "f", {type, MessageEncoding::kCdr});
-  require(cloud.times_ns.empty() || cloud.times_ns.size() == cloud.points.size());
+  require(cloud.times.empty() || cloud.times.size() == cloud.points.size());
   require(!cloud.labels || cloud.labels->size() == cloud.points.size());
   require(cloud.points.size() <= message.size());
 }

@@ -7,6 +7,9 @@ namespace mosbench::hmm_mos_plus {
 namespace {
 
 constexpr double kTick_ns = TickClock::kSeconds * 1e9;
+/// Stamps of scans that are apart by less or more tell no time: they are equal, fall, or are in
+/// another unit.
+constexpr double kShortestPeriod_ns = 2e6, kLongestPeriod_ns = 20e9;
 /// More periods than these between two scans change nothing any more.
 constexpr double kLongestGapPeriods = 1e4;
 
@@ -37,7 +40,7 @@ TickClock::TickClock(std::span<const std::int64_t> stamps_ns) {
   const std::vector<double> apart_ns = distances_ns(stamps_ns);
   if (apart_ns.empty()) return;
   const double period_ns = median(apart_ns);
-  if (period_ns <= 0) return;  // stamps that tell no time
+  if (period_ns < kShortestPeriod_ns || period_ns > kLongestPeriod_ns) return;
   const double measured = period_ns / kTick_ns;
   const double ticks_per_period = measured >= 0.8 && measured <= 1.25 ? 1.0 : measured;
   double periods = 0, last_tick = 0;

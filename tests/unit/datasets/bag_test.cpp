@@ -1,4 +1,5 @@
 #include <bzlib.h>
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <lz4frame.h>
@@ -99,6 +100,37 @@ TEST_F(Bag, KeepsRawScansWhenTold) {
   const BagSequence recording("s", write(good_bag({0, 50'000'000, 0}).str()),
                               {.deskew = Deskew::kNone});
   EXPECT_EQ(recording.read(0).points[1].x, 0.0F);
+}
+
+TEST_F(Bag, SaysThatScansAndPosesAreStampedByTwoClocks) {
+  // Sixteen scans of 0.1 s, stamped by a clock that is so far ahead of the recorder's and of tf's.
+  const auto bag_of_clocks = [](double ahead_s, double recorder_s) {
+    BagBytes bag = good_bag();
+    bag.chunks.clear();
+    for (std::int64_t i = -40; i < 60; ++i) {
+      const std::int64_t stamp_ns = kStart + i * kPeriod;
+      const std::int64_t recorded_ns = stamp_ns + std::llround(1e9 * recorder_s);
+      bag.chunks.push_back({{1, recorded_ns, tf_at(stamp_ns, pose_at_x(static_cast<double>(i)))}});
+      if (i < 0 || i >= 16) continue;
+      bag.chunks.back().push_back(
+          {0, recorded_ns, timed_cloud(stamp_ns + std::llround(1e9 * ahead_s), kPoints, {})});
+    }
+    return bag.str();
+  };
+  // A bag that was recorded from another one has the recorder's clock elsewhere.
+  for (const double recorder_s : {0.0, 0.4, 86400.0}) {
+    for (const double ahead_s : {0.0, -0.3, 0.9}) {
+      const BagSequence one("s", write(bag_of_clocks(ahead_s, recorder_s)), {});
+      EXPECT_THAT(one.recording().doubts, testing::IsEmpty()) << ahead_s << " " << recorder_s;
+    }
+    for (const double ahead_s : {2.0, -2.5, 3.0}) {
+      const BagSequence two("s", write(bag_of_clocks(ahead_s, recorder_s)), {});
+      EXPECT_THAT(two.recording().doubts,
+                  Contains(HasSubstr(fmt::format("the clock of the scans is {:+.3f} s", ahead_s))));
+    }
+    EXPECT_THAT(error_of(bag_of_clocks(-1e-9 * static_cast<double>(kStart), recorder_s)),
+                HasSubstr("the times of recording would fit"));
+  }
 }
 
 TEST_F(Bag, CountsScansThatNoTransformCovers) {
@@ -310,7 +342,7 @@ TEST_F(Bag, FindsFieldsAtAnyOffsetAndOfAnyType) {
   EXPECT_EQ(frame.points[1].intensity, 0.0F);
 }
 
-TEST(PointCloud2, GivesTimesOfVelodyneInNanoseconds) {
+TEST(PointCloud2, GivesTimesAsTheyAreStored) {
   CloudHead head;
   head.height = 1;
   head.width = 2;
@@ -320,7 +352,7 @@ TEST(PointCloud2, GivesTimesOfVelodyneInNanoseconds) {
   ByteSink records;
   for (const float time_s : {0.0F, 0.25F}) records.put(Point{1, 2, 3, time_s});
   const TimedCloud cloud = parse_cloud(format_cloud(head, std::move(records).bytes()), "f");
-  EXPECT_THAT(cloud.times_ns, ElementsAre(0, 250'000'000));
+  EXPECT_THAT(cloud.times, ElementsAre(0, 0.25));
 }
 
 TEST_F(Bag, WrittenByTheLibraryGivesBackWhatWentIn) {

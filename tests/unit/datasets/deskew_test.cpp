@@ -165,7 +165,7 @@ TEST_F(DeskewedScans, ComeBackWithinAMillimetreByTimesInAFieldOfEveryUnit) {
       reading.deskew = std::nullopt;
       EXPECT_THAT(
           members_of(open_dataset(folder_ / "s", {.reading = reading}).sequences[0]->reading()),
-          Contains(Pair("point_times", "field of times")));
+          Contains(Pair("point_times", HasSubstr("since the scan's stamp, span"))));
     }
   }
 }
@@ -199,7 +199,7 @@ TEST_F(DeskewedScans, AreStatedAndAreReadAsStoredUnlessTheyAreAskedFor) {
   const Dataset moved = open_dataset(folder_ / "s", {.reading = by_column(std::nullopt)});
   EXPECT_THAT(members_of(moved.sequences[0]->reading()), Contains(Pair("deskew", "poses")));
   EXPECT_THAT(members_of(moved.sequences[0]->reading()),
-              Contains(Pair("point_times", "fifth column")));
+              Contains(Pair("point_times", HasSubstr("s since the scan's stamp, span"))));
   EXPECT_TRUE(moved.sequences[0]->read(2).point_times_ns.empty());
   // The first point was measured at the stamp and keeps its bits.
   EXPECT_EQ(moved.sequences[0]->read(2).points[0].x, stored.points[0].x);
@@ -218,11 +218,20 @@ TEST_F(DeskewedScans, AreRefusedWithoutSensibleTimes) {
   EXPECT_THAT(error_of(four),
               HasSubstr("000000.bin: holds no times of points, expected a field t, time, timestamp "
                         "or offset_time in .pcd and .ply files, bin_columns 5 for .bin files"));
-  for (const float time_s : {31.0F, std::numeric_limits<float>::quiet_NaN()}) {
-    std::string bytes(40, '\0');
-    std::copy_n(reinterpret_cast<const char*>(&time_s), sizeof(time_s), bytes.begin() + 36);
-    EXPECT_THAT(message_of<DataError>([&] { parse_bin_times(bytes, 5, "f.bin"); }),
-                HasSubstr("f.bin: point 1 has the time "));
+}
+
+TEST_F(DeskewedScans, OfPcdAndPlyFilesWithTimesAreMovedUnlessToldOtherwise) {
+  for (const char* extension : {".ply", ".pcd"}) {
+    std::filesystem::remove_all(folder_ / "s");
+    write({}, begun_s, true);
+    turn_into(extension, "time_stamp", 1e6);
+    EXPECT_LT(worst_m({}, 0, kScansSwept - 2), 1e-3) << extension;
+    EXPECT_GT(worst_m({.deskew = Deskew::kNone}, 0, kScansSwept - 2), 0.45);
+    std::filesystem::remove(folder_ / "s/times.txt");
+    const Dataset unstamped = open_dataset(folder_ / "s", {});
+    EXPECT_THAT(unstamped.sequences[0]->remarks(),
+                Contains(HasSubstr("not used, as scans have no stamps")));
+    EXPECT_GT(worst_m({}, 0, kScansSwept - 2), 0.45);
   }
 }
 

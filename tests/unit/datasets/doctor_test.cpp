@@ -292,13 +292,13 @@ const std::vector<Fault>& faults() {
          });
        },
        "are static and moving exchanged?"},
-      {"stamps_in_milliseconds", kKitti,
+      {"stamps_of_another_clock", kKitti,
        [](const fs::path& root) {
          auto stamps_ns = read_times(root / kKittiSequence / "times.txt");
-         for (auto& stamp_ns : stamps_ns) stamp_ns *= 1000;
+         for (auto& stamp_ns : stamps_ns) stamp_ns /= 1000;
          write_times(root / kKittiSequence / "times.txt", stamps_ns);
        },
-       "stamps are 100 s apart (median); expected seconds"},
+       "stamps are 0.0001 s apart (median); expected seconds"},
       {"a_gap_in_time", kKitti,
        [](const fs::path& root) {
          auto stamps_ns = read_times(root / kKittiSequence / "times.txt");

@@ -1,10 +1,16 @@
+#include "datasets/formats/point_times.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "datasets/formats/ply_file.hpp"
-#include "datasets/formats/point_records.hpp"
 #include "datasets/text/errors.hpp"
 #include "tests/temp_folder.hpp"
 
@@ -14,40 +20,155 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-constexpr std::int64_t kStamp_ns = 1'700'000'000'000'000'000;
+/// How a driver keeps the times of a sweep that lasts a tenth of a second.
+struct Stored {
+  double per_s = 1.0;        ///< units in a second
+  bool since_stamp = true;   ///< or by the clock of the stamps
+  double clock_off_s = 0.0;  ///< of the points' clock from that of the stamps
+  double from_s = 0.0;       ///< of the first point, after the stamp
+  bool as_float32 = false;
+};
 
-std::string error_of(const std::vector<double>& stored) {
-  return message_of<DataError>([&] { times_after_stamp_ns(stored, std::nullopt, "f.ply"); });
+constexpr std::size_t kPoints = 200, kScans = 12;
+
+double after_stamp_s(const Stored& stored, std::size_t i) {
+  return stored.from_s + 0.1 * static_cast<double>(i) / (kPoints - 1);
 }
 
-TEST(PointTimes, AreToldFromTheirSpanInEveryUnit) {
-  for (const double per_s : {1.0, 1e3, 1e6, 1e9}) {
-    EXPECT_THAT(times_after_stamp_ns(std::vector{0.05 * per_s, -0.05 * per_s, 0.0}, kStamp_ns, "f"),
-                ElementsAre(50'000'000, -50'000'000, 0));
+std::vector<StoredTimes> scans_of(const Stored& stored, double start_s) {
+  std::vector<StoredTimes> scans;
+  for (std::size_t k = 0; k < kScans; ++k) {
+    const double stamp_s = start_s + 0.1 * static_cast<double>(k);
+    StoredTimes& scan = scans.emplace_back();
+    scan.stamp_ns = std::llround(stamp_s * 1e9);
+    for (std::size_t i = 0; i < kPoints; ++i) {
+      const double time =
+          ((stored.since_stamp ? 0.0 : stamp_s + stored.clock_off_s) + after_stamp_s(stored, i)) *
+          stored.per_s;
+      scan.times.push_back(stored.as_float32 ? static_cast<double>(static_cast<float>(time))
+                                             : time);
+    }
+  }
+  return scans;
+}
+
+/// The largest error in nanoseconds of the points that have a time; their number in `timed`.
+double worst_ns(const PointClock& clock, const Stored& stored,
+                const std::vector<StoredTimes>& scans, std::size_t& timed) {
+  double worst = 0.0;
+  for (const StoredTimes& scan : scans) {
+    const auto times_ns = clock.after_stamp_ns(scan);
+    for (std::size_t i = 0; i < times_ns.size(); ++i) {
+      if (times_ns[i] == kNoTime) continue;
+      ++timed;
+      worst = std::max(worst,
+                       std::abs(static_cast<double>(times_ns[i]) - 1e9 * after_stamp_s(stored, i)));
+    }
+  }
+  return worst;
+}
+
+void expect_all(const Stored& stored, double start_s, double tolerance_ns, const char* text) {
+  const auto scans = scans_of(stored, start_s);
+  const PointClock clock(scans, 0.1);
+  std::size_t timed = 0;
+  EXPECT_LE(worst_ns(clock, stored, scans, timed), tolerance_ns) << text;
+  EXPECT_EQ(timed, kPoints * kScans) << text;
+  EXPECT_THAT(clock.text(), HasSubstr(text));
+  EXPECT_EQ(clock.doubt(), "");
+}
+
+TEST(PointTimes, AreToldInEveryUnitAndClock) {
+  for (const auto& [per_s, unit] : {std::pair{1.0, "s"}, {1e3, "ms"}, {1e6, "us"}, {1e9, "ns"}}) {
+    for (const double from_s : {0.0, -0.05, -0.1}) {
+      for (const double start_s : {0.0, 0.3, 2.0, 5e3, 1.7e9}) {
+        const double rounding_ns = 1e9 * start_s * 0x1p-51 + 1.0;
+        expect_all({.per_s = per_s, .from_s = from_s}, start_s, 1.0, unit);
+        expect_all({.per_s = per_s, .from_s = from_s, .as_float32 = true}, start_s, 10.0, unit);
+        expect_all({.per_s = per_s, .since_stamp = false, .from_s = from_s}, start_s, rounding_ns,
+                   unit);
+      }
+    }
+    expect_all({.per_s = per_s, .since_stamp = false, .clock_off_s = 1.7e9}, 5e3, 2000.0,
+               "by another clock");
   }
 }
 
-TEST(PointTimes, SinceAnEpochAreTakenAfterTheStampOrTheFirstOfThem) {
-  const std::vector<double> ns = {1.7e18 + 1.28e8, 1.7e18 + 0.28e8};
-  EXPECT_THAT(times_after_stamp_ns(ns, kStamp_ns, "f"), ElementsAre(128'000'000, 28'000'000));
-  EXPECT_THAT(times_after_stamp_ns(ns, std::nullopt, "f"), ElementsAre(100'000'000, 0));
-  EXPECT_THAT(times_after_stamp_ns(ns, 5'000'000'000, "f"), ElementsAre(100'000'000, 0));
-  EXPECT_THAT(times_after_stamp_ns(std::vector{1.7e9, 1.7e9 + 0.0625}, kStamp_ns, "f"),
-              ElementsAre(0, 62'500'000));
+TEST(PointTimes, FromZeroToOneAreSharesOfTheTimeBetweenScans) {
+  const Stored stored{.per_s = 10.0};
+  expect_all(stored, 1.7e9, 1.0, "shares of the time between scans");
+  const auto scans = scans_of(stored, 1.7e9);
+  EXPECT_TRUE(PointClock(scans, 0.1).is_odd());
+  EXPECT_FALSE(PointClock(scans, std::nullopt).knows_unit()) << "a second, or shares of less";
+  EXPECT_THAT(PointClock(scans, std::nullopt, TimeUnit::kSeconds).text(), HasSubstr("s since"));
 }
 
-TEST(PointTimes, OfLessThanTwoPointsAreTheStamp) {
-  EXPECT_THAT(times_after_stamp_ns({}, kStamp_ns, "f"), ElementsAre());
-  EXPECT_THAT(times_after_stamp_ns(std::vector{7e5}, kStamp_ns, "f"), ElementsAre(0));
+TEST(PointTimes, ThatAreOffLeaveTheOthers) {
+  for (const double bad : {std::numeric_limits<double>::quiet_NaN(), 4294667296.0, -1.0e18, 1e30,
+                           std::numeric_limits<double>::infinity()}) {
+    for (const std::size_t at : {std::size_t{0}, kPoints / 2, kPoints - 1}) {
+      for (const std::size_t count : {1U, 6U, 90U}) {
+        const Stored stored{.per_s = 1e9};
+        auto scans = scans_of(stored, 1.7e9);
+        for (std::size_t i = 0; i < count; ++i) {
+          scans[at % kScans].times[(at + 2 * i) % kPoints] = bad;
+        }
+        const PointClock clock(scans, 0.1);
+        std::size_t timed = 0;
+        EXPECT_LE(worst_ns(clock, stored, scans, timed), 1.0) << bad;
+        EXPECT_EQ(timed, kPoints * kScans - count) << bad << " " << at;
+        EXPECT_THAT(clock.doubt(), HasSubstr(std::to_string(count) + " points in 1 scans"));
+      }
+    }
+  }
 }
 
-TEST(PointTimes, ThatNoScanHasAreRefused) {
-  EXPECT_THAT(error_of({3.0, 3.0}), HasSubstr("f.ply: the times of its points span 0, expected"));
-  EXPECT_THAT(error_of({0.0, 3e-4}), HasSubstr("span 0.0003"));
-  EXPECT_THAT(error_of({0.0, 3e9}), HasSubstr("span 3e+09"));
-  EXPECT_THAT(error_of({-1.7e308, 1.7e308}), HasSubstr("span inf"));
-  EXPECT_THAT(error_of({0.0, 0.1, std::numeric_limits<double>::quiet_NaN()}),
-              HasSubstr("f.ply: point 2 has no finite time"));
+TEST(PointTimes, OfMissingReturnsMayBeZeroInMostOfAScan) {
+  const Stored stored{.since_stamp = false};
+  auto scans = scans_of(stored, 1.7e9);
+  for (StoredTimes& scan : scans) {
+    for (std::size_t i = 0; i < scan.times.size(); ++i) {
+      if (i % 5 < 3) scan.times[i] = 0.0;
+    }
+  }
+  std::size_t timed = 0;
+  EXPECT_LE(worst_ns(PointClock(scans, 0.1), stored, scans, timed), 400.0);
+  EXPECT_EQ(timed, kPoints * kScans * 2 / 5);
+}
+
+TEST(PointTimes, OfAScanThatIsOffLeaveItAsItWasMeasured) {
+  for (const std::size_t at : {std::size_t{0}, std::size_t{5}, kScans - 1}) {
+    auto scans = scans_of({.per_s = 1e9}, 1.7e9);
+    for (double& time : scans[at].times) time *= 36.0;
+    const PointClock clock(scans, 0.1);
+    EXPECT_TRUE(clock.after_stamp_ns(scans[at]).empty());
+    EXPECT_EQ(clock.after_stamp_ns(scans[(at + 1) % kScans]).size(), kPoints);
+    EXPECT_THAT(clock.doubt(), HasSubstr("1 whole scans"));
+  }
+}
+
+TEST(PointTimes, OfSweepsThatAreLongerThanTheStepAreNotUsed) {
+  for (const double times_longer : {2.0, 3.0, 5.0, 30.0}) {
+    for (const double per_s : {1e3, 1e9}) {
+      const auto scans = scans_of({.per_s = times_longer * per_s}, 1.7e9);
+      EXPECT_FALSE(PointClock(scans, 0.1).knows_unit()) << times_longer;
+    }
+  }
+}
+
+TEST(PointTimes, OfNoSweepAreNotUsed) {
+  for (const double per_s : {3e-3, 20.0, 1e4, 2e-5, 1e15}) {
+    const auto scans = scans_of({.per_s = per_s}, 1.7e9);
+    const PointClock clock(scans, 0.1);
+    EXPECT_FALSE(clock.knows_unit()) << per_s;
+    EXPECT_TRUE(clock.after_stamp_ns(scans[0]).empty());
+    EXPECT_THAT(clock.text(), HasSubstr("not used, they span"));
+    EXPECT_TRUE(clock.is_odd());
+  }
+  for (const auto& same : {scans_of({.per_s = 0.0}, 1.7e9), std::vector<StoredTimes>()}) {
+    EXPECT_FALSE(PointClock(same, 0.1).knows_unit());
+    EXPECT_FALSE(PointClock(same, 0.1).is_odd()) << "they say nothing";
+  }
 }
 
 TEST(PointTimes, StandInAPropertyOfPlyFiles) {

@@ -599,7 +599,7 @@ TEST_F(Ros2Bag, ReadsCustomMsgOfLivox) {
     const TimedCloud cloud = parse_cloud(message, "f", {kLivoxMessages[0], encoding});
     ASSERT_EQ(cloud.points.size(), 3U);
     EXPECT_EQ(std::memcmp(cloud.points.data(), kRos2Points.data(), sizeof(Point) * 3), 0);
-    EXPECT_THAT(cloud.times_ns, ElementsAre(0, 50'000'000, 100'000'000));
+    EXPECT_THAT(cloud.times, ElementsAre(0, 50'000'000, 100'000'000));
     for (std::size_t bytes = 0; bytes + 2 < message.size(); ++bytes) {
       EXPECT_THROW(parse_cloud(message.substr(0, bytes), "f", {kLivoxMessages[0], encoding}),
                    DataError)
@@ -616,42 +616,6 @@ TEST_F(Ros2Bag, ReadsCustomMsgOfLivox) {
   }
   const BagSequence moved("s", write(bag.str()), {});
   EXPECT_FLOAT_EQ(moved.read(0).points[2].x, 6.0F);  // a metre further on after 0.1 s
-}
-
-/// A cloud of two points 0.1 s apart whose time is a field of this name and type.
-TimedCloud cloud_with_times(const char* name, std::uint8_t datatype, double first, double second) {
-  CloudHead head;
-  head.stamp_ns = kRos2Start;
-  head.height = 1;
-  head.width = 2;
-  head.fields = {{"x", 0, 7, 1}, {"y", 4, 7, 1}, {"z", 8, 7, 1}, {name, 12, datatype, 1}};
-  head.point_step_bytes = 20;
-  head.row_step_bytes = 40;
-  ByteSink records;
-  for (const double time : {first, second}) {
-    for (int i = 0; i < 3; ++i) records.put(1.0F);
-    if (datatype == 8) records.put(time);
-    if (datatype == 7) records.put_bytes(bag_bytes_of(static_cast<float>(time)) + "....");
-    if (datatype == 6) records.put_bytes(bag_bytes_of(static_cast<std::uint32_t>(time)) + "....");
-  }
-  return parse_cloud(format_cloud(head, std::move(records).bytes(), kCdr), "f",
-                     {kPointCloud2, kCdr});
-}
-
-TEST(PointCloud2, GivesTimesInTheFieldsAndUnitsOfSeveralDrivers) {
-  const auto after = ElementsAre(0, 100'000'000);
-  EXPECT_THAT(cloud_with_times("t", 6, 0, 1e8).times_ns, after) << "Ouster";
-  EXPECT_THAT(cloud_with_times("offset_time", 6, 0, 1e8).times_ns, after) << "Livox";
-  EXPECT_THAT(cloud_with_times("offset_time", 7, 0, 1e8).times_ns, after) << "Livox, as floats";
-  EXPECT_THAT(cloud_with_times("time", 6, 0, 1e5).times_ns, after) << "in us";
-  // A double of seconds since the epoch is a multiple of 0.24 us.
-  const auto epoch = cloud_with_times("timestamp", 8, 1.7e9, 1.7e9 + 0.1).times_ns;
-  ASSERT_EQ(epoch.size(), 2U) << "Hesai, RoboSense";
-  EXPECT_EQ(epoch[0], 0);
-  EXPECT_NEAR(static_cast<double>(epoch[1]), 1e8, 240.0);
-  const auto livox = cloud_with_times("timestamp", 8, 1.7e18, 1.7e18 + 1e8).times_ns;
-  EXPECT_NEAR(static_cast<double>(livox[1]), 1e8, 256.0) << "Livox, in ns since the epoch";
-  EXPECT_THAT(cloud_with_times("timestamp", 8, 5.0, 5.0).times_ns, ElementsAre(0, 0));
 }
 
 /// The three scans with a time for each point, and poses until two seconds later.
@@ -682,11 +646,32 @@ TEST_F(Ros2Bag, LeavesOutAScanWhosePointsWereMeasuredBeforeTheFirstPose) {
   EXPECT_EQ(BagSequence("s", folder_ / "s.mcap", {.deskew = Deskew::kNone}).size(), 3U);
 }
 
-TEST_F(Ros2Bag, SaysThatTimesOfPointsAreNotInSeconds) {
-  McapBytes bag = with_times({0.0F, 50.0F, 100.0F});
-  bag.chunks.pop_back();  // near the last pose such scans seemed to be covered by none
-  EXPECT_THAT(error_of(bag.str()),
-              HasSubstr("a point was measured 50000000000 ns after the scan's stamp"));
+TEST_F(Ros2Bag, ReadsScansWithTimesOfNoUnitAsTheyWereMeasured) {
+  for (const std::vector<float>& times :
+       {std::vector{0.0F, 1500.0F, 3000.0F}, {NAN, NAN, NAN}, {3.0F, 3.0F, 3.0F}}) {
+    const BagSequence raw("s", write(with_times(times).str()), {});
+    EXPECT_THAT(raw.reading().point_times, HasSubstr("not used"));
+    EXPECT_EQ(raw.size(), 3U);
+    EXPECT_EQ(std::memcmp(raw.read(1).points.data(), kRos2Points.data(), sizeof(Point) * 3), 0);
+  }
+}
+
+TEST_F(Ros2Bag, MovesPointsByTimesInEveryUnitAndLeavesThoseThatAreOff) {
+  for (const auto& [per_s, unit] : {std::pair{1.0F, PointTimes::kSeconds},
+                                    {1e3F, PointTimes::kMilliseconds},
+                                    {1e6F, PointTimes::kMicroseconds},
+                                    {1e9F, PointTimes::kNanoseconds}}) {
+    const auto file = write(with_times({0.0F, 0.05F * per_s, 0.1F * per_s}).str());
+    const BagSequence moved("s", file, {});
+    EXPECT_NEAR(moved.read(0).points[2].x, kRos2Points[2].x + 1.0F, 1e-5F);
+    const BagSequence told("s", file, {.point_times = unit});
+    EXPECT_EQ(told.read(0).points[2].x, moved.read(0).points[2].x);
+    EXPECT_EQ(told.reading().point_times, moved.reading().point_times);
+    const BagSequence spoiled("s", write(with_times({NAN, 0.0F, 0.1F * per_s}).str()), {});
+    EXPECT_EQ(spoiled.read(0).points[0].x, kRos2Points[0].x);
+    EXPECT_NEAR(spoiled.read(0).points[2].x, kRos2Points[2].x + 1.0F, 1e-5F);
+    EXPECT_THAT(spoiled.recording().doubts, Contains(HasSubstr("3 points in 3 scans")));
+  }
 }
 
 TEST(BagMetadata, NamesFilesInListsOfEitherKind) {

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "datasets/rosbag/bag_reader.hpp"
+
+namespace mosbench {
+
+/// When a message says that it was measured, and when it was recorded.
+struct MessageTimes {
+  std::int64_t stamp_ns = 0, recorded_ns = 0;
+};
+
+/// Returns a sentence where scans and poses are stamped by clocks that differ by more than 1.5 s,
+/// measured against the recorder's: since boot instead of since 1970, or without leap seconds. Some
+/// messages of each topic of poses are read. Throws DataError for damaged ones.
+std::optional<std::string> doubt_about_clocks(const BagReader& bag,
+                                              std::span<const MessageTimes> scans);
+
+}  // namespace mosbench

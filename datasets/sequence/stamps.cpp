@@ -1,0 +1,165 @@
+#include "datasets/sequence/stamps.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "datasets/disk/files.hpp"
+#include "datasets/disk/folder_listing.hpp"
+#include "datasets/formats/times_file.hpp"
+#include "datasets/text/errors.hpp"
+#include "datasets/text/numbers.hpp"
+
+namespace mosbench {
+namespace {
+
+constexpr double kShortestStep_s = 0.005, kLongestStep_s = 5.0;
+/// No sensor is slower, but recordings may keep few scans.
+constexpr double kLongestKept_s = 20.0;
+/// Stamps since 1970 of the years from 1990 to 2110.
+constexpr double kEarliest_s = 6.3e8, kLatest_s = 4.4e9;
+constexpr std::size_t kMostJudgedScans = 64;
+
+/// Median, or another quantile, of the steps that lead on; 0 where none does.
+double usual_step(const std::vector<double>& stamps, double q = 0.5) {
+  std::vector<double> steps;
+  for (std::size_t k = 1; k < stamps.size(); ++k) {
+    if (stamps[k] > stamps[k - 1]) steps.push_back(stamps[k] - stamps[k - 1]);
+  }
+  return steps.empty() ? 0.0 : quantile(std::move(steps), q, QuantileRule::kUpper);
+}
+
+/// The unit of whole numbers in names; nothing for the numbers of scans. Small numbers that count
+/// in steps of some milliseconds or seconds are numbers.
+std::optional<TimeUnit> unit_of_stems(const std::vector<double>& numbers) {
+  constexpr double kSmallestStepOfStamps = 5000.0, kOldestStampStem = 1e15;
+  const auto since_1970 = unit_within(numbers.front(), kEarliest_s, kLatest_s);
+  const double step = usual_step(numbers);
+  const auto by_step = unit_within(step, kShortestStep_s, kLongestStep_s);
+  // Seconds and milliseconds could as well be numbers that begin with a date.
+  if (by_step && by_step == since_1970 && step >= 5.0) return by_step;
+  if (by_step && step >= kSmallestStepOfStamps) return by_step;
+  if (numbers.front() < kOldestStampStem) return std::nullopt;
+  return since_1970.value_or(TimeUnit::kNanoseconds);
+}
+
+std::int64_t ns_per(TimeUnit unit) {
+  constexpr std::array<std::int64_t, 4> kNs = {1'000'000'000, 1'000'000, 1'000, 1};
+  return kNs.at(static_cast<std::size_t>(unit));
+}
+
+void state_unit(Recording& recording, const std::string& where, TimeUnit unit, double step) {
+  recording.reading.stamps = to_string(unit);
+  recording.doubts.push_back(fmt::format(
+      "stamps: {} of {} scans are taken as {}, these are {:g} s apart", where,
+      recording.scans.size(), to_string(unit), step * 1e-9 * static_cast<double>(ns_per(unit))));
+}
+
+void stamp_by_stems(Recording& recording) {
+  std::vector<std::uint64_t> stems;
+  std::vector<double> numbers;
+  for (const ScanEntry& scan : recording.scans) {
+    const auto number = stem_number(scan.stem);
+    if (!number) return;
+    stems.push_back(*number);
+    numbers.push_back(static_cast<double>(*number));
+  }
+  const auto unit = unit_of_stems(numbers);
+  if (!unit) return;
+  const auto most = static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
+  const auto ns = static_cast<std::uint64_t>(ns_per(*unit));
+  if (std::ranges::any_of(stems, [&](std::uint64_t stem) { return stem > most / ns; })) return;
+  for (std::size_t k = 0; k < stems.size(); ++k) {
+    recording.scans[k].stamp_ns = static_cast<std::int64_t>(stems[k] * ns);
+  }
+  if (*unit != TimeUnit::kNanoseconds) {
+    state_unit(recording, "the names", *unit, usual_step(numbers));
+  }
+}
+
+/// The unit of a file that should be in seconds.
+TimeUnit unit_of_times(const std::vector<double>& times) {
+  const double step = usual_step(times);
+  // A gap between two of few scans is no unit.
+  if (usual_step(times, 0.1) <= kLongestKept_s) return TimeUnit::kSeconds;
+  return unit_within(step, 0.02, kLongestStep_s).value_or(TimeUnit::kSeconds);
+}
+
+void stamp_by_file(const std::filesystem::path& file, Recording& recording) {
+  const std::string text = read_file(file);
+  const std::vector<double> numbers = parse_time_numbers(text, file);
+  if (numbers.size() != recording.scans.size()) {
+    throw DataError(file,
+                    fmt::format("{} times for {} scans", numbers.size(), recording.scans.size()),
+                    "one per scan");
+  }
+  const TimeUnit unit = unit_of_times(numbers);
+  const std::vector<std::int64_t> stamps_ns = parse_times(text, file, unit);
+  for (std::size_t k = 0; k < stamps_ns.size(); ++k) {
+    recording.scans[k].stamp_ns = stamps_ns[k];
+  }
+  recording.files.push_back(file);
+  if (unit != TimeUnit::kSeconds) {
+    state_unit(recording, file.filename().string(), unit, usual_step(numbers));
+  }
+}
+
+/// Rings and other small whole numbers may be milliseconds by their span alone.
+bool may_be_rings(std::span<const StoredTimes> scans) {
+  return std::ranges::all_of(scans, [](const StoredTimes& scan) {
+    return std::ranges::all_of(scan.times, [](double time) {
+      return time >= 0.0 && time < 256.0 && time == std::floor(time);
+    });
+  });
+}
+
+}  // namespace
+
+std::optional<double> usual_step_s(const std::vector<ScanEntry>& scans) {
+  std::vector<double> stamps_s;
+  for (const ScanEntry& scan : scans) {
+    if (scan.stamp_ns) stamps_s.push_back(1e-9 * static_cast<double>(*scan.stamp_ns));
+  }
+  const double step_s = usual_step(stamps_s);
+  if (step_s < kShortestStep_s || step_s > kLongestKept_s) return std::nullopt;
+  return step_s;
+}
+
+void read_stamps(const std::filesystem::path& folder, Recording& recording) {
+  const std::filesystem::path times = folder / "times.txt";
+  if (is_there(times)) return stamp_by_file(times, recording);
+  stamp_by_stems(recording);
+}
+
+PointClock judged_clock(Recording& recording,
+                        const std::function<std::vector<double>(std::size_t)>& read,
+                        std::optional<TimeUnit> told, bool is_named) {
+  const std::size_t all = recording.scans.size(), judged = std::min(all, kMostJudgedScans);
+  std::vector<StoredTimes> scans;
+  for (std::size_t i = 0; i < judged; ++i) {
+    const std::size_t k = i * all / judged;
+    scans.push_back({read(k), recording.scans[k].stamp_ns});
+  }
+  std::erase_if(scans, [](const StoredTimes& scan) { return scan.times.empty(); });
+  const bool are_rings = !told && !is_named && may_be_rings(scans);
+  if (are_rings) scans.clear();
+  PointClock clock(scans, usual_step_s(recording.scans), told);
+  recording.reading.point_times =
+      are_rings ? "not used, the fifth column holds whole numbers as rings do" : clock.text();
+  const std::string found = "point times: " + recording.reading.point_times;
+  (clock.is_odd() ? recording.doubts : recording.remarks).push_back(found);
+  if (!clock.doubt().empty()) recording.doubts.push_back("point times: " + clock.doubt());
+  return clock;
+}
+
+std::optional<TimeUnit> told_unit(const Reading& asked) {
+  if (!asked.point_times || *asked.point_times < PointTimes::kSeconds) return std::nullopt;
+  return static_cast<TimeUnit>(static_cast<int>(*asked.point_times) -
+                               static_cast<int>(PointTimes::kSeconds));
+}
+
+}  // namespace mosbench
