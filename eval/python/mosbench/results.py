@@ -119,7 +119,7 @@ class Result:
         self.dataset: str = content["dataset"]
         self.protocol: str = content["protocol"]
         self.simulated: bool = content["simulated"]
-        self.warnings: list[str] = content["warnings"] + self._own_warnings()
+        self.warnings: list[str] = self._own_warnings() + content["warnings"]
         self.metrics: dict[str, Optional[float]] = content["metrics"]
 
     def _own_warnings(self) -> list[str]:

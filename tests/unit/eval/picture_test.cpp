@@ -94,6 +94,24 @@ TEST(LineCharts, AreDrawnOfPointsFarAwayAndOfNumbersThatDoNotFit) {
   }
 }
 
+TEST(LineCharts, HaveTheirMarksBelow) {
+  const std::array charts = {LineChart{.title = "t", .x_label = "x", .y_label = "y", .curves = {}}};
+  const std::array<std::string, 2> marks = {"SIMULATED data", "a: all 3 poses are equal"};
+  const Picture plain = line_charts(charts, 300), marked = line_charts(charts, 300, marks);
+  ASSERT_EQ(marked.height(), plain.height() + 2 * (Picture::kGlyphHeight + 4));
+  const auto inked = [&](std::size_t from, std::size_t to) {
+    std::size_t pixels = 0;
+    for (std::size_t y = from; y < to; ++y) {
+      for (std::size_t x = 0; x < marked.width(); ++x) {
+        if (!(marked.at(x, y) == palette(false).background)) ++pixels;
+      }
+    }
+    return pixels;
+  };
+  EXPECT_GT(inked(300, 324), 100U);
+  EXPECT_GT(inked(324, 348), 100U);
+}
+
 TEST(Picture, WritesLettersThatDifferAndNothingForABlank) {
   const auto lit = [](const char* text) {
     Picture picture(Picture::kGlyphWidth, Picture::kGlyphHeight, kBlack);
