@@ -85,7 +85,7 @@ void stamp_by_stems(Recording& recording) {
 TimeUnit unit_of_times(const std::vector<double>& times) {
   const double step = usual_step(times);
   // A gap between two of few scans is no unit.
-  if (usual_step(times, 0.1) <= kLongestKept_s) return TimeUnit::kSeconds;
+  if (times.size() < 4 || usual_step(times, 0.1) <= kLongestKept_s) return TimeUnit::kSeconds;
   return unit_within(step, 0.02, kLongestStep_s).value_or(TimeUnit::kSeconds);
 }
 
