@@ -1,5 +1,5 @@
-# mosbench_library(ROOM [OPTIONS ...] [EXCLUDE ...] [DEPENDS ...] [PRIVATE ...])
-# Makes the library mosbench_ROOM of every .cpp of the calling folder. DEPENDS names rooms and imported
+# mosbench_library(ROOM [FOLDER folder] [OPTIONS ...] [EXCLUDE ...] [DEPENDS ...] [PRIVATE ...])
+# Makes the library mosbench_ROOM of every .cpp of the calling folder, or of a folder in it. DEPENDS names rooms and imported
 # targets that its headers need, PRIVATE those that only its sources need. The files of a room are compiled
 # together: most of a file's time is spent in the headers of JSON, fmt and Eigen. With MOSBENCH_WITH_PYTHON
 # rooms can be linked into a shared library; calls within them stay direct and may be inlined.
@@ -39,9 +39,10 @@ function(mosbench_precompile target)
 endfunction()
 
 function(mosbench_library room)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "OPTIONS;EXCLUDE;DEPENDS;PRIVATE")
-  file(GLOB sources RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} CONFIGURE_DEPENDS *.cpp)
-  file(GLOB headers RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} CONFIGURE_DEPENDS *.hpp)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "FOLDER" "OPTIONS;EXCLUDE;DEPENDS;PRIVATE")
+  set(folder ${CMAKE_CURRENT_SOURCE_DIR}/${arg_FOLDER})
+  file(GLOB sources RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} CONFIGURE_DEPENDS ${folder}/*.cpp)
+  file(GLOB headers RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} CONFIGURE_DEPENDS ${folder}/*.hpp)
   list(REMOVE_ITEM sources ${arg_EXCLUDE} "")
   set(target mosbench_${room})
   add_library(${target} ${sources})
