@@ -7,7 +7,6 @@
 
 #include "core/methods/hmm_mos/median.hpp"
 #include "core/methods/hmm_mos/otsu.hpp"
-#include "core/methods/hmm_mos/pipeline.hpp"
 #include "core/voxel/neighbourhood.hpp"
 #include "datasets/layouts/dataset.hpp"
 #include "datasets/simulator/simulator.hpp"

@@ -1,7 +1,6 @@
 #include "core/base/thread_pool.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <exception>
 

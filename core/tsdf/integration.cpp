@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <numbers>
 
 #include "core/base/multiarch.hpp"
-#include "core/tsdf/range_image.hpp"
 
 namespace mosbench::tsdf {
 namespace {

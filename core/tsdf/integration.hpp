@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <mosbench/scan.hpp>
 #include <span>
-#include <vector>
 
 #include "core/base/thread_pool.hpp"
 #include "core/tsdf/range_image.hpp"

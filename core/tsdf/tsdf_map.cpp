@@ -1,7 +1,5 @@
 #include "core/tsdf/tsdf_map.hpp"
 
-#include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 

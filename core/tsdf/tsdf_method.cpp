@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "core/base/method_row.hpp"
-#include "core/base/scan_method.hpp"
 #include "core/base/stage_clock.hpp"
 #include "core/tsdf/integration.hpp"
 #include "core/voxel/raycast.hpp"

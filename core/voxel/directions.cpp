@@ -1,12 +1,9 @@
 #include "core/voxel/directions.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstddef>
 #include <limits>
 #include <numbers>
-#include <optional>
 #include <sstream>
 
 #include "core/base/multiarch.hpp"

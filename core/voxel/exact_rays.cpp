@@ -1,8 +1,5 @@
 #include "core/voxel/exact_rays.hpp"
 
-#include <algorithm>
-#include <span>
-
 #include "core/base/multiarch.hpp"
 
 namespace mosbench {

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "core/base/multiarch.hpp"
-#include "core/voxel/exact_rays.hpp"
 
 namespace mosbench {
 namespace {

@@ -1,7 +1,6 @@
 #include "core/voxel/raycast.hpp"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <span>

@@ -5,8 +5,6 @@
 #include <cfloat>
 #include <cmath>
 #include <limits>
-#include <mosbench/scan.hpp>
-#include <stdexcept>
 #include <string>
 
 #include "core/base/multiarch.hpp"

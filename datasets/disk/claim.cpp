@@ -10,13 +10,11 @@
 #include <array>
 #include <cerrno>
 #include <charconv>
-#include <cstdio>
 #include <random>
 #include <system_error>
 #include <vector>
 
 #include "datasets/disk/files.hpp"
-#include "datasets/disk/partial_file.hpp"
 #include "datasets/text/errors.hpp"
 
 namespace mosbench {

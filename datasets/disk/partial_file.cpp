@@ -10,7 +10,6 @@
 #include <random>
 
 #include "datasets/disk/files.hpp"
-#include "datasets/text/errors.hpp"
 
 namespace mosbench {
 namespace fs = std::filesystem;

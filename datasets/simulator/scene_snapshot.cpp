@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "datasets/sequence/portable_math.hpp"
 #include "datasets/simulator/scene_cast.hpp"

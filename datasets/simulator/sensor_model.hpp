@@ -2,9 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
-#include <cstdint>
 #include <optional>
-#include <span>
 #include <string_view>
 #include <vector>
 

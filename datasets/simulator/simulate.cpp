@@ -6,24 +6,16 @@
 
 #include <algorithm>
 #include <array>
-#include <memory>
 #include <mutex>
-#include <optional>
-#include <set>
-#include <string>
 #include <system_error>
 #include <utility>
-#include <vector>
 
-#include "core/base/thread_pool.hpp"
 #include "datasets/disk/files.hpp"
 #include "datasets/disk/partial_file.hpp"
 #include "datasets/formats/label_file.hpp"
-#include "datasets/layouts/layout.hpp"
 #include "datasets/perturb/perturbation.hpp"
 #include "datasets/sequence/portable_math.hpp"
 #include "datasets/sequence/simulated_origin.hpp"
-#include "datasets/simulator/scene.hpp"
 #include "datasets/simulator/simulated_motion.hpp"
 #include "datasets/simulator/simulator.hpp"
 #include "datasets/text/errors.hpp"

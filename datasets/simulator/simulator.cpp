@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "datasets/sequence/portable_math.hpp"
-#include "datasets/simulator/scene.hpp"
 #include "datasets/simulator/trajectory.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"

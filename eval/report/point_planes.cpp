@@ -5,9 +5,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <cstdint>
 #include <stdexcept>
-#include <vector>
 
 namespace mosbench {
 namespace {

@@ -1,11 +1,9 @@
 #pragma once
 
-#include <cstdint>
 #include <mosbench/scan.hpp>
 #include <span>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "eval/protocols/confusion.hpp"
 

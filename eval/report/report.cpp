@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <mosbench/method.hpp>
-#include <nlohmann/json.hpp>
 #include <set>
 #include <stdexcept>
 

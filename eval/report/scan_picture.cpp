@@ -7,11 +7,9 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
-#include <optional>
 #include <utility>
 
 #include "datasets/formats/point_range.hpp"
-#include "eval/answer/picture.hpp"
 #include "eval/report/label_products.hpp"
 #include "eval/report/point_planes.hpp"
 

@@ -1,7 +1,6 @@
 #include "eval/statistics/total_effect.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 #include <stdexcept>
 #include <vector>

@@ -9,7 +9,6 @@
 #include <set>
 #include <utility>
 
-#include "eval/engine/study_plan.hpp"
 #include "eval/statistics/run_statistics.hpp"
 
 namespace mosbench {

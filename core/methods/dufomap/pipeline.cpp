@@ -3,7 +3,6 @@
 #include <utility>
 
 #include "core/base/method_row.hpp"
-#include "core/methods/dufomap/config.hpp"
 #include "core/voxel/raycast.hpp"
 
 namespace mosbench::dufomap {

@@ -1,7 +1,6 @@
 #include "core/methods/dufomap/seen_space.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <span>
 #include <utility>

@@ -1,7 +1,6 @@
 #include "core/methods/dynablox/ever_free.hpp"
 
 #include <algorithm>
-#include <array>
 #include <limits>
 
 #include "core/base/multiarch.hpp"

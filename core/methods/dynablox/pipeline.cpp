@@ -4,9 +4,6 @@
 
 #include "core/base/method_row.hpp"
 #include "core/base/stage_clock.hpp"
-#include "core/methods/dynablox/clusters.hpp"
-#include "core/methods/dynablox/config.hpp"
-#include "core/methods/dynablox/ever_free.hpp"
 #include "core/voxel/voxelize.hpp"
 
 namespace mosbench::dynablox {

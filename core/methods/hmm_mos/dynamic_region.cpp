@@ -1,6 +1,5 @@
 #include "core/methods/hmm_mos/dynamic_region.hpp"
 
-#include <algorithm>
 #include <utility>
 
 #include "core/methods/hmm_mos/convolution.hpp"

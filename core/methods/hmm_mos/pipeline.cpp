@@ -2,21 +2,15 @@
 
 #include <mosbench/scan.hpp>
 #include <stdexcept>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include "core/base/method_row.hpp"
-#include "core/base/stage_clock.hpp"
-#include "core/methods/hmm_mos/config.hpp"
-#include "core/methods/hmm_mos/convolution.hpp"
 #include "core/methods/hmm_mos/hmm.hpp"
 #include "core/methods/hmm_mos/median.hpp"
 #include "core/methods/hmm_mos/otsu.hpp"
 #include "core/voxel/distance_field.hpp"
 #include "core/voxel/neighbourhood.hpp"
 #include "core/voxel/raycast.hpp"
-#include "core/voxel/voxelize.hpp"
 
 namespace mosbench::hmm_mos {
 namespace {

@@ -8,7 +8,6 @@
 #include <mosbench/scan.hpp>
 #include <optional>
 #include <span>
-#include <stdexcept>
 #include <unordered_map>
 #include <unordered_set>
 #include <vector>

@@ -1,7 +1,5 @@
 #include "core/methods/hmm_mos/voxel_map.hpp"
 
-#include "core/methods/hmm_mos/change_detection.hpp"
-
 namespace mosbench::hmm_mos {
 namespace {
 

@@ -4,12 +4,10 @@
 #include <functional>
 #include <limits>
 #include <stdexcept>
-#include <string>
 #include <utility>
 
 #include "core/base/method_row.hpp"
 #include "core/base/stage_clock.hpp"
-#include "core/voxel/directions.hpp"
 
 namespace mosbench::underwood {
 namespace {

@@ -5,10 +5,8 @@
 
 #include "core/base/method_row.hpp"
 #include "core/base/stage_clock.hpp"
-#include "core/methods/yoon/config.hpp"
 #include "core/methods/yoon/growth.hpp"
 #include "core/methods/yoon/residual.hpp"
-#include "core/voxel/directions.hpp"
 
 namespace mosbench::yoon {
 namespace {
