@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <map>
-#include <memory>
 #include <mosbench/method.hpp>
 
 #include "datasets/sequence/pose_source.hpp"
@@ -16,6 +15,7 @@
 #include "eval/cli/commands.hpp"
 #include "eval/cli/flags.hpp"
 #include "eval/cli/old_words.hpp"
+#include "eval/result/output.hpp"
 #include "eval/result/tell.hpp"
 #include "eval/result/version.hpp"
 

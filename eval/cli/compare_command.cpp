@@ -17,6 +17,7 @@
 #include "eval/breakdown/run_diff.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/cli/flags.hpp"
+#include "eval/result/output.hpp"
 #include "eval/result/result.hpp"
 #include "eval/result/result_scans.hpp"
 #include "eval/result/tell.hpp"

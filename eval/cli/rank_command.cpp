@@ -9,6 +9,7 @@
 #include "eval/cli/commands.hpp"
 #include "eval/cli/flags.hpp"
 #include "eval/cli/run_kinds.hpp"
+#include "eval/result/output.hpp"
 #include "eval/result/tell.hpp"
 #include "eval/tables/table_print.hpp"
 

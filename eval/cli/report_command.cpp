@@ -7,6 +7,7 @@
 #include "eval/cli/commands.hpp"
 #include "eval/cli/flags.hpp"
 #include "eval/report/report.hpp"
+#include "eval/result/output.hpp"
 
 namespace mosbench {
 namespace {

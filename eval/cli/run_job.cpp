@@ -10,6 +10,7 @@
 #include "eval/cli/run_kinds.hpp"
 #include "eval/engine/study_plan.hpp"
 #include "eval/engine/study_run.hpp"
+#include "eval/result/output.hpp"
 #include "eval/result/tell.hpp"
 #include "eval/study/study_table.hpp"
 

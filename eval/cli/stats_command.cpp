@@ -16,6 +16,7 @@
 #include "eval/protocols/metrics.hpp"
 #include "eval/protocols/protocol.hpp"
 #include "eval/report/score_curve.hpp"
+#include "eval/result/output.hpp"
 #include "eval/result/result.hpp"
 #include "eval/result/result_file.hpp"
 #include "eval/result/result_scans.hpp"

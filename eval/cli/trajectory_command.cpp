@@ -2,7 +2,6 @@
 
 #include <CLI/CLI.hpp>
 #include <cmath>
-#include <functional>
 #include <memory>
 #include <optional>
 
@@ -13,6 +12,7 @@
 #include "eval/answer/render.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/cli/flags.hpp"
+#include "eval/result/output.hpp"
 #include "eval/trajectory/trajectory_scores.hpp"
 
 namespace mosbench {

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <mosbench/settings.hpp>
-#include <string>
 
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "datasets/layouts/dataset.hpp"
+#include "eval/engine/pose_finding.hpp"
+
+namespace mosbench {
+
+/// Where the poses of a data set are written to.
+struct PoseFiles {
+  std::filesystem::path out = {};  ///< a file, "-" is stdout; a folder for several sequences
+  bool as_tum = false;             ///< else as KITTI's rows
+  unsigned threads = 1;
+};
+
+/// Finds and writes the poses of every sequence of a data set that was opened without poses. Of
+/// several, those that an earlier call finished are kept. Throws UsageError and DataError.
+std::vector<FoundPoses> write_poses(const Dataset& dataset, const OdometryChoice& choice,
+                                    const PoseFiles& files);
+
+}  // namespace mosbench

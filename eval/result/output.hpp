@@ -1,0 +1,27 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string_view>
+
+#include "eval/answer/answer.hpp"
+
+namespace mosbench {
+
+/// Writes a file that the user named; "-" is stdout. Returns when the bytes are on the disk. Throws
+/// DataError.
+void write_output(const std::filesystem::path& file, std::string_view bytes);
+
+/// Throws DataError where `file` can be no file to write, so that hours of work are not lost on it:
+/// it is a folder, or lies below what is none. Throws UsageError for a name of another kind of file
+/// than what is written.
+void check_output(const std::filesystem::path& file, std::optional<Format> written = std::nullopt);
+
+/// Returns whether a file that the user named is stdout.
+bool names_stdout(const std::filesystem::path& file);
+
+/// Returns the answer of a command that wrote `file`. Where that is stdout, which then holds
+/// nothing else, the answer goes to stderr.
+Answer answer_beside(const std::filesystem::path& file, Answer answer);
+
+}  // namespace mosbench
