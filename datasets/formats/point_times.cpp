@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "datasets/text/text.hpp"
+
 namespace mosbench {
 namespace {
 
@@ -201,10 +203,12 @@ void PointClock::count_bad(std::span<const StoredTimes> scans) {
     scans_of_bad += bad > 0;
   }
   if (raw_scans + bad_points == 0) return;
+  std::string bad;
+  if (bad_points > 0) bad = counted(bad_points, "point") + " in " + counted(scans_of_bad, "scan");
+  if (raw_scans > 0) bad += (bad.empty() ? "" : " and ") + counted(raw_scans, "whole scan");
   doubt_ = fmt::format(
-      "{} points in {} scans, and {} whole scans, of the {} scans looked at have "
-      "times that cannot be: they are left as they were measured",
-      bad_points, scans_of_bad, raw_scans, scans.size());
+      "the times of {}, of {} looked at, cannot be: they are left as they were measured", bad,
+      counted(scans.size(), "scan"));
 }
 
 std::vector<std::int64_t> PointClock::after_stamp_ns(const StoredTimes& scan) const {

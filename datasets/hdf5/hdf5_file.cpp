@@ -27,6 +27,8 @@ namespace {
 /// The first byte of a message, whose last one follows the bytes.
 enum Mark : char { kAnswer = 'a', kFailure = 'f', kEnd = 'e' };
 
+constexpr int kMostAttempts = 2;
+
 void send(int descriptor, std::string_view bytes) {
   while (!bytes.empty()) {
     const ssize_t sent = write(descriptor, bytes.data(), bytes.size());
@@ -74,13 +76,21 @@ void restrict_copy(unsigned most_cpu_s) {
   _exit(0);
 }
 
-std::string ending_of(pid_t copy) {
+/// How a copy ended.
+struct Ending {
+  std::string text = "ended without an answer";
+  bool only_waited = false;  ///< until its time was over, without computing
+};
+
+Ending ending_of(pid_t copy) {
   int status = 0;
-  while (waitpid(copy, &status, 0) < 0) {
-    if (errno != EINTR) return "ended without an answer";
+  rusage used{};
+  while (wait4(copy, &status, 0, &used) < 0) {
+    if (errno != EINTR) return {};
   }
-  if (!WIFSIGNALED(status)) return "ended without an answer";
-  return std::string("ended by signal ") + strsignal(WTERMSIG(status));
+  if (!WIFSIGNALED(status)) return {};
+  return {std::string("ended by signal ") + strsignal(WTERMSIG(status)),
+          WTERMSIG(status) == SIGALRM && used.ru_utime.tv_sec + used.ru_stime.tv_sec == 0};
 }
 
 CopyAnswer parsed(std::string message, std::string ending) {
@@ -185,18 +195,24 @@ std::vector<Value> converted(std::string_view bytes, const Hdf5Number& number) {
 }  // namespace
 
 CopyAnswer in_process_copy(const std::function<std::string()>& work, unsigned most_cpu_s) {
-  std::array<int, 2> ends{};
-  if (pipe2(ends.data(), O_CLOEXEC) != 0) return {"", std::strerror(errno)};
-  FileDescriptor from(ends[0]), to(ends[1]);
-  const pid_t copy = fork();
-  if (copy < 0) return {"", std::strerror(errno)};
-  if (copy == 0) {
-    restrict_copy(most_cpu_s);
-    answer(work, to.number());
+  for (int attempt = 1;; ++attempt) {
+    std::array<int, 2> ends{};
+    if (pipe2(ends.data(), O_CLOEXEC) != 0) return {"", std::strerror(errno)};
+    FileDescriptor from(ends[0]), to(ends[1]);
+    const pid_t copy = fork();
+    if (copy < 0) return {"", std::strerror(errno)};
+    if (copy == 0) {
+      restrict_copy(most_cpu_s);
+      answer(work, to.number());
+    }
+    to = FileDescriptor();
+    std::string message = receive(from.number());
+    Ending ending = ending_of(copy);
+    // Another thread may have held a lock of the memory allocator as the copy was made. That of the
+    // C library is free in a copy, those of the sanitizers are not.
+    if (ending.only_waited && attempt < kMostAttempts) continue;
+    return parsed(std::move(message), std::move(ending.text));
   }
-  to = FileDescriptor();
-  std::string message = receive(from.number());
-  return parsed(std::move(message), ending_of(copy));
 }
 
 bool is_hdf5_file(const std::filesystem::path& file) {

@@ -12,6 +12,7 @@
 
 #include "datasets/formats/ply_file.hpp"
 #include "datasets/text/errors.hpp"
+#include "datasets/text/text.hpp"
 #include "tests/temp_folder.hpp"
 
 namespace mosbench {
@@ -117,7 +118,7 @@ TEST(PointTimes, ThatAreOffLeaveTheOthers) {
         std::size_t timed = 0;
         EXPECT_LE(worst_ns(clock, stored, scans, timed), 1.0) << bad;
         EXPECT_EQ(timed, kPoints * kScans - count) << bad << " " << at;
-        EXPECT_THAT(clock.doubt(), HasSubstr(std::to_string(count) + " points in 1 scans"));
+        EXPECT_THAT(clock.doubt(), HasSubstr(counted(count, "point") + " in 1 scan,"));
       }
     }
   }
@@ -143,7 +144,7 @@ TEST(PointTimes, OfAScanThatIsOffLeaveItAsItWasMeasured) {
     const PointClock clock(scans, 0.1);
     EXPECT_TRUE(clock.after_stamp_ns(scans[at]).empty());
     EXPECT_EQ(clock.after_stamp_ns(scans[(at + 1) % kScans]).size(), kPoints);
-    EXPECT_THAT(clock.doubt(), HasSubstr("1 whole scans"));
+    EXPECT_THAT(clock.doubt(), HasSubstr("times of 1 whole scan, of 12 scans"));
   }
 }
 

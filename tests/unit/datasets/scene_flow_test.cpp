@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cmath>
 #include <csignal>
+#include <filesystem>
 #include <limits>
 #include <optional>
 #include <stdexcept>
@@ -59,6 +60,20 @@ TEST(ProcessCopy, EndsACopyThatComputesForEver) {
       },
       1);
   EXPECT_THAT(answer.failure, HasSubstr("ended by signal"));
+}
+
+TEST(ProcessCopy, MakesACopyThatOnlyWaitedOnceMore) {
+  TempFolder folder;
+  const auto waits_at_first = [&]() -> std::string {
+    if (std::filesystem::exists(folder / "was_here")) return "answer";
+    folder.write("was_here", "");
+    while (true) pause();
+  };
+  EXPECT_EQ(in_process_copy(waits_at_first, 1).bytes, "answer");
+  const auto waits = []() -> std::string {
+    while (true) pause();
+  };
+  EXPECT_EQ(in_process_copy(waits, 1).failure, "ended by signal Alarm clock");
 }
 
 /// The sensor goes 1 m ahead and turns left by 90 degrees within 0.1 s.
