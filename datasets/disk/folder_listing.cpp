@@ -68,7 +68,7 @@ void sort_by_stem(std::vector<StemFile>& files) {
 std::optional<std::uint64_t> stem_number(std::string_view stem) { return parse_unsigned(stem); }
 
 std::vector<StemFile> list_by_stem(const std::filesystem::path& folder,
-                                   std::initializer_list<std::string_view> extensions) {
+                                   const std::vector<std::string_view>& extensions) {
   std::vector<StemFile> files;
   std::error_code error;
   for (const auto& entry : visible_entries(folder, error)) {

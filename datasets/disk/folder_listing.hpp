@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <initializer_list>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -23,7 +22,7 @@ std::optional<std::uint64_t> stem_number(std::string_view stem);
 /// a digit as a fraction ("1650.25" before "1650.5"), all else by bytes. Throws DataError if the
 /// folder cannot be read, or if two stems differ only by zeros.
 std::vector<StemFile> list_by_stem(const std::filesystem::path& folder,
-                                   std::initializer_list<std::string_view> extensions);
+                                   const std::vector<std::string_view>& extensions);
 
 /// Lists the folders in `folder` that are not hidden, in the order of `list_by_stem`; links are
 /// followed. Returns none when it cannot be read: a search skips what it may not read.

@@ -12,6 +12,7 @@
 #include "datasets/disk/files.hpp"
 #include "datasets/disk/folder_listing.hpp"
 #include "datasets/doctor/doctor.hpp"
+#include "datasets/formats/label_formats.hpp"
 #include "datasets/formats/point_range.hpp"
 #include "datasets/formats/scan_file.hpp"
 #include "datasets/text/text.hpp"
@@ -351,7 +352,7 @@ void examine_folder(const fs::path& folder, Facts& facts) {
   facts["first_scan"] = scans.empty() ? "" : scans.front().stem;
   facts["last_scan"] = scans.empty() ? "" : scans.back().stem;
   if (is_there(folder / "labels")) {
-    const auto labels = list_by_stem(folder / "labels", {".label"});
+    const auto labels = list_by_stem(folder / "labels", kLabelExtensions);
     const auto orphans = stems_without(labels, scans), unlabelled = stems_without(scans, labels);
     facts["orphans"] = orphans.size();
     facts["orphan_names"] = some_of(orphans);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstring>
 #include <limits>
 #include <mosbench/scan.hpp>
@@ -51,6 +52,12 @@ IndicesRow parse_row(const TextLine& line, const std::filesystem::path& file) {
   return row;
 }
 
+constexpr const char* kLabelId = "a label id, a whole number of 32 bits";
+
+bool is_label_id(double number) {
+  return number >= 0.0 && number <= 4294967295.0 && number == std::floor(number);
+}
+
 }  // namespace
 
 static_assert(std::endian::native == std::endian::little, "labels are copied as they are stored");
@@ -82,6 +89,56 @@ std::vector<std::uint32_t> read_labels(const std::filesystem::path& file, std::s
   return labels;
 }
 
+std::vector<std::uint32_t> label_ids(std::span<const double> numbers,
+                                     const std::filesystem::path& file) {
+  std::vector<std::uint32_t> labels;
+  labels.reserve(numbers.size());
+  for (const double number : numbers) {
+    if (!is_label_id(number)) {
+      throw DataError(file, fmt::format("point {} has the label {:.6g}", labels.size(), number),
+                      kLabelId);
+    }
+    labels.push_back(static_cast<std::uint32_t>(number));
+  }
+  return labels;
+}
+
+void check_label_count(std::size_t labels, std::size_t point_count,
+                       const std::filesystem::path& file) {
+  if (labels == point_count) return;
+  throw DataError(file, fmt::format("has {}", counted(labels, "label")),
+                  fmt::format("one for each of the {} points of its scan", point_count));
+}
+
+std::vector<std::uint32_t> parse_point_csv(std::string_view text, std::size_t point_count,
+                                           const std::filesystem::path& file) {
+  const std::vector<TextLine> lines = split_lines(text, file);
+  if (lines.empty()) throw DataError(file, "is empty", "a header and rows");
+  const std::vector<std::string_view> header = split_at_commas(lines.front().text);
+  const auto named = [&](std::string_view name) { return std::ranges::find(header, name); };
+  const bool has_ids = named("label") != header.end();
+  const auto column = has_ids ? named("label") : named("moving");
+  if (column == header.end()) {
+    throw DataError(file, 1, "names no column label or moving", "a header");
+  }
+  std::vector<double> ids;
+  for (const TextLine& line : std::span(lines).subspan(1)) {
+    const std::vector<std::string_view> fields = split_at_commas(line.text);
+    const auto at = static_cast<std::size_t>(column - header.begin());
+    const auto value = at < fields.size() ? parse_double(fields[at]) : std::nullopt;
+    const bool fits = has_ids ? value && is_label_id(*value) : value == 0.0 || value == 1.0;
+    if (!fits) {
+      throw DataError(
+          file, line.number,
+          fmt::format("{} is {}", *column, at < fields.size() ? quoted(fields[at]) : "not there"),
+          has_ids ? kLabelId : "0 or 1");
+    }
+    ids.push_back(has_ids ? *value : *value == 1.0 ? kMovingLabel : kStaticLabel);
+  }
+  check_label_count(ids.size(), point_count, file);
+  return label_ids(ids, file);
+}
+
 void write_labels(const std::filesystem::path& file, std::span<const std::uint32_t> labels) {
   write_file_atomic(file, format_labels(labels));
 }
@@ -101,10 +158,7 @@ std::vector<std::uint32_t> parse_moe_labels(std::string_view text, std::size_t p
     }
     labels.push_back(moving == 1.0 ? kMovingLabel : kStaticLabel);
   }
-  if (labels.size() != point_count) {
-    throw DataError(file, fmt::format("{} rows", labels.size()),
-                    fmt::format("one for each of the {} points of its scan", point_count));
-  }
+  check_label_count(labels.size(), point_count, file);
   return labels;
 }
 

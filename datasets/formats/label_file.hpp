@@ -23,6 +23,21 @@ void check_label_size(std::uintmax_t size_bytes, std::size_t point_count,
                       const std::filesystem::path& file);
 
 std::vector<std::uint32_t> read_labels(const std::filesystem::path& file, std::size_t point_count);
+
+/// Returns numbers of any type as raw label ids, one per point; 251.0 is 251. Throws DataError for
+/// the first that is no whole number of 32 bits.
+std::vector<std::uint32_t> label_ids(std::span<const double> numbers,
+                                     const std::filesystem::path& file);
+
+/// Throws DataError unless there is one label per point.
+void check_label_count(std::size_t labels, std::size_t point_count,
+                       const std::filesystem::path& file);
+
+/// Parses labels from a CSV file with a row per point and a header with a column `label` (ids) or
+/// `moving` (0 or 1); other columns are ignored. Throws DataError with the line.
+std::vector<std::uint32_t> parse_point_csv(std::string_view text, std::size_t point_count,
+                                           const std::filesystem::path& file);
+
 void write_labels(const std::filesystem::path& file, std::span<const std::uint32_t> labels);
 
 /// Parses labels of MOE: a row "Moveable_ID Moving_Status Class_ID" per point. The second number

@@ -11,6 +11,7 @@
 #include <system_error>
 
 #include "datasets/disk/files.hpp"
+#include "datasets/formats/label_file.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
 
@@ -178,22 +179,6 @@ std::vector<Point> points_in(const PcdRecords& records, const std::filesystem::p
   return points_of(records.head, records.bytes, file);
 }
 
-std::optional<std::vector<std::uint32_t>> labels_in(const PcdRecords& records,
-                                                    const std::filesystem::path& file) {
-  const CloudField* field = find_field(records.head, "label");
-  if (field == nullptr) return std::nullopt;
-  std::vector<std::uint32_t> labels;
-  labels.reserve(records.head.points());
-  for (const double value : numbers_of(records.head, *field, records.bytes, file)) {
-    if (!(value >= 0.0 && value <= 4294967295.0 && value == std::floor(value))) {
-      throw DataError(file, "point " + std::to_string(labels.size()) + " has a label that is no id",
-                      "whole numbers");
-    }
-    labels.push_back(static_cast<std::uint32_t>(value));
-  }
-  return labels;
-}
-
 std::vector<double> times_in(const PcdRecords& records, const std::filesystem::path& file) {
   if (records.head.points() == 0) return {};
   const CloudField* field = find_time_field(records.head);
@@ -239,8 +224,7 @@ std::optional<std::string> unpack_lzf(std::string_view packed, std::size_t size_
 
 PcdScan parse_pcd(std::string_view bytes, const std::filesystem::path& file, bool timed) {
   const PcdRecords records = parse_records(bytes, file);
-  return {points_in(records, file), labels_in(records, file),
-          timed ? times_in(records, file) : std::vector<double>()};
+  return {points_in(records, file), timed ? times_in(records, file) : std::vector<double>()};
 }
 
 PcdHeader read_pcd_header(const std::filesystem::path& file) {
@@ -256,12 +240,13 @@ std::vector<Point> read_pcd(const std::filesystem::path& file) {
   return points_in(parse_records(read_file(file), file), file);
 }
 
-std::vector<std::uint32_t> read_pcd_labels(const std::filesystem::path& file) {
-  const PcdRecords records = parse_records(read_file(file), file);
+std::vector<std::uint32_t> parse_pcd_labels(std::string_view bytes,
+                                            const std::filesystem::path& file) {
+  const PcdRecords records = parse_records(bytes, file);
+  const CloudField* field = find_label_field(records.head);
+  if (field == nullptr) throw DataError(file, "the points have no labels", kLabelFields);
   if (records.head.points() == 0) return {};
-  auto labels = labels_in(records, file);
-  if (!labels) throw DataError(file, "the points have no field label", "a number of that name");
-  return *labels;
+  return label_ids(numbers_of(records.head, *field, records.bytes, file), file);
 }
 
 }  // namespace mosbench

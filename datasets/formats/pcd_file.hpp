@@ -23,7 +23,7 @@ struct PcdHeader {
   std::size_t point_values = 0;       ///< numbers of one point, all fields
   std::size_t body_offset_bytes = 0;  ///< where the line after DATA starts
   PcdStorage storage = PcdStorage::kAscii;
-  bool has_labels = false;        ///< there is a field "label"
+  bool has_labels = false;        ///< there is a field of `is_label_field`
   bool has_times = false;         ///< there is a field of `is_time_field`
   std::optional<Pose> viewpoint;  ///< map_from_sensor, when the header has one
 };
@@ -32,17 +32,15 @@ struct PcdHeader {
 /// Throws DataError for a missing or wrong line.
 PcdHeader parse_pcd_header(std::string_view bytes, const std::filesystem::path& file);
 
-/// A .pcd scan whose points may have labels and times.
+/// A .pcd scan whose points may have times.
 struct PcdScan {
   std::vector<Point> points;
-  std::optional<std::vector<std::uint32_t>> labels;  ///< one per point, of the field "label"
   std::vector<double> times;  ///< as stored, of the field `find_time_field`, if asked for
 };
 
 /// Parses a whole .pcd file, ascii, binary or binary_compressed: fields x, y, z, intensity (0 when
-/// there is none), label, and with `timed` the times; all other fields are ignored. Throws
-/// DataError for a body that is not the points of its header, and for labels that are no whole
-/// numbers of 32 bits.
+/// there is none), and with `timed` the times; all other fields are ignored. Throws DataError for a
+/// body that is not the points of its header.
 PcdScan parse_pcd(std::string_view bytes, const std::filesystem::path& file, bool timed = false);
 
 /// Unpacks LZF, in which .pcd files are compressed, to exactly `size_bytes`. Returns nothing for
@@ -55,7 +53,9 @@ PcdHeader read_pcd_header(const std::filesystem::path& file);
 /// The points alone; throws as `parse_pcd`.
 std::vector<Point> read_pcd(const std::filesystem::path& file);
 
-/// The labels alone; throws as `parse_pcd`, and when the points have no field "label".
-std::vector<std::uint32_t> read_pcd_labels(const std::filesystem::path& file);
+/// Returns one raw label id per point, of the field `find_label_field`. Throws as `parse_pcd`, and
+/// when there is none, or a label is no whole number of 32 bits.
+std::vector<std::uint32_t> parse_pcd_labels(std::string_view bytes,
+                                            const std::filesystem::path& file);
 
 }  // namespace mosbench

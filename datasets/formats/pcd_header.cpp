@@ -45,7 +45,7 @@ class PcdHeaderParser {
     if (width * height != points) fail("POINTS is not WIDTH * HEIGHT", "their product");
     header_.points = static_cast<std::size_t>(points);
     const auto& fields = lines_["FIELDS"];
-    header_.has_labels = std::ranges::find(fields, "label") != fields.end();
+    header_.has_labels = std::ranges::any_of(fields, is_label_field);
     header_.has_times = std::ranges::any_of(fields, is_time_field);
     if (lines_.contains("VIEWPOINT")) header_.viewpoint = viewpoint();
     header_.storage = storage();

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <string>
 
+#include "datasets/formats/label_file.hpp"
 #include "datasets/formats/point_records.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
@@ -199,6 +200,25 @@ std::vector<Point> parse_ascii(const CloudHead& head, std::string_view body,
   return points;
 }
 
+/// Returns the numbers of the field that `find` finds, one per point.
+std::vector<double> numbers_in(std::string_view bytes, const CloudField* (*find)(const CloudHead&),
+                               const std::string& what, const char* fields,
+                               const std::filesystem::path& file) {
+  const PlyHead ply = PlyHeadParser(bytes, bytes.size(), file).run();
+  const CloudHead& head = ply.vertices;
+  const CloudField* field = find(head);
+  if (field == nullptr) throw DataError(file, "the points have no " + what, fields);
+  if (head.width == 0) return {};
+  if (!ply.ascii) return numbers_of(head, *field, bytes, file);
+  const auto column = static_cast<std::size_t>(field - head.fields.data());
+  std::vector<double> numbers;
+  for_each_row(head, bytes.substr(head.records_at_bytes), file,
+               [&](std::size_t point, const Row& row) {
+                 numbers.push_back(number_in<double>(row, column, point, head, file));
+               });
+  return numbers;
+}
+
 }  // namespace
 
 std::vector<Point> parse_ply(std::string_view bytes, const std::filesystem::path& file) {
@@ -211,24 +231,19 @@ std::vector<Point> parse_ply(std::string_view bytes, const std::filesystem::path
 }
 
 std::vector<double> parse_ply_times(std::string_view bytes, const std::filesystem::path& file) {
-  const PlyHead ply = PlyHeadParser(bytes, bytes.size(), file).run();
-  const CloudHead& head = ply.vertices;
-  const CloudField* field = find_time_field(head);
-  if (field == nullptr) throw DataError(file, "the points have no times", kTimeFields);
-  if (!ply.ascii) return numbers_of(head, *field, bytes, file);
-  const auto column = static_cast<std::size_t>(field - head.fields.data());
-  std::vector<double> times;
-  for_each_row(head, bytes.substr(head.records_at_bytes), file,
-               [&](std::size_t point, const Row& row) {
-                 times.push_back(number_in<double>(row, column, point, head, file));
-               });
-  return times;
+  return numbers_in(bytes, find_time_field, "times", kTimeFields, file);
+}
+
+std::vector<std::uint32_t> parse_ply_labels(std::string_view bytes,
+                                            const std::filesystem::path& file) {
+  return label_ids(numbers_in(bytes, find_label_field, "labels", kLabelFields, file), file);
 }
 
 PlySummary parse_ply_summary(std::string_view head, std::uintmax_t file_bytes,
                              const std::filesystem::path& file) {
   const CloudHead vertices = PlyHeadParser(head, file_bytes, file).run().vertices;
-  return {vertices.points(), find_time_field(vertices) != nullptr};
+  return {vertices.points(), find_label_field(vertices) != nullptr,
+          find_time_field(vertices) != nullptr};
 }
 
 }  // namespace mosbench

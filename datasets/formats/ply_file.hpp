@@ -19,10 +19,15 @@ std::vector<Point> parse_ply(std::string_view bytes, const std::filesystem::path
 /// `parse_ply`, and when there is none.
 std::vector<double> parse_ply_times(std::string_view bytes, const std::filesystem::path& file);
 
+/// Returns one raw label id per point, of the property that `find_label_field` names. Throws as
+/// `parse_ply`, and when there is none.
+std::vector<std::uint32_t> parse_ply_labels(std::string_view bytes,
+                                            const std::filesystem::path& file);
+
 /// What the header of a PLY file says of its points.
 struct PlySummary {
   std::size_t points = 0;
-  bool has_times = false;
+  bool has_labels = false, has_times = false;
 };
 
 /// Reads the header in `head`, the start of a file of `file_bytes` bytes, and checks it against

@@ -9,6 +9,7 @@
 #include <type_traits>
 
 #include "datasets/text/errors.hpp"
+#include "datasets/text/text.hpp"
 
 namespace mosbench {
 namespace {
@@ -163,6 +164,16 @@ bool is_time_field(std::string_view name) {
 
 const CloudField* find_time_field(const CloudHead& head) {
   const auto field = std::ranges::find_if(head.fields, is_time_field, &CloudField::name);
+  return field == head.fields.end() ? nullptr : &*field;
+}
+
+bool is_label_field(std::string_view name) {
+  const std::string lower = lower_case(std::string(name));
+  return lower == "label" || lower == "scalar_label";
+}
+
+const CloudField* find_label_field(const CloudHead& head) {
+  const auto field = std::ranges::find_if(head.fields, is_label_field, &CloudField::name);
   return field == head.fields.end() ? nullptr : &*field;
 }
 

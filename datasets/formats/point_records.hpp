@@ -59,4 +59,14 @@ bool is_time_field(std::string_view name);
 /// Returns the first such field; nullptr when there is none.
 const CloudField* find_time_field(const CloudHead& head);
 
+/// What an error expects where points have no labels.
+inline constexpr const char* kLabelFields = "a field label or scalar_label";
+
+/// Whether points have their label id in a field of this name: label, or as CloudCompare names it,
+/// scalar_label.
+bool is_label_field(std::string_view name);
+
+/// Returns the first such field; nullptr when there is none.
+const CloudField* find_label_field(const CloudHead& head);
+
 }  // namespace mosbench

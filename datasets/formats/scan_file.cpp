@@ -110,7 +110,7 @@ ScanHead read_scan_head(const std::filesystem::path& file, std::size_t bin_colum
   if (has_extension(file, ".ply")) {
     const PlySummary summary =
         parse_ply_summary(read_head(file, "end_header"), size_of(file), file);
-    return {.points = summary.points, .has_times = summary.has_times};
+    return {summary.points, summary.has_labels, summary.has_times};
   }
   const std::uintmax_t size_bytes = size_of(file);
   const std::size_t columns = columns_of(file, bin_columns);

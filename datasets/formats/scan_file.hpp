@@ -47,7 +47,7 @@ void check_usual_bin_columns(std::span<const StemFile> scans);
 /// What the size or the header of a scan file says.
 struct ScanHead {
   std::size_t points = 0;
-  bool has_labels = false;  ///< the points have a field "label"
+  bool has_labels = false;  ///< the points have a field of `is_label_field`
   bool has_times = false;   ///< the points have times, or a fifth column that may be
 };
 

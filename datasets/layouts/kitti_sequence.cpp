@@ -2,13 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Core>
+#include <algorithm>
 #include <unordered_map>
 #include <utility>
 
 #include "datasets/disk/files.hpp"
 #include "datasets/disk/folder_listing.hpp"
-#include "datasets/formats/pcd_file.hpp"
-#include "datasets/formats/point_records.hpp"
+#include "datasets/formats/scan_file.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
 
@@ -17,15 +18,28 @@ namespace mosbench {
 KittiSequence::KittiSequence(std::string name, const std::filesystem::path& folder,
                              const Reading& asked, const SequenceLayout& layout)
     : FolderSequence(std::move(name), folder, asked, layout.folder), layout_(layout) {
-  Recording& recording = mutable_recording();
   if (is_there(folder / layout_.label_folder)) {
     label_folder_ = folder / layout_.label_folder;
     pair_labels();
-  } else if (labels_in_scans()) {
-    for (ScanEntry& entry : recording.scans) entry.has_truth = true;
+  } else {
+    take_labels_of_scans();
+  }
+}
+
+void KittiSequence::take_labels_of_scans() {
+  Recording& recording = mutable_recording();
+  std::size_t labelled = 0;
+  for (std::size_t k = 0; k < size(); ++k) {
+    recording.scans[k].has_truth = has_labels(k);
+    if (has_labels(k)) ++labelled;
+  }
+  if (labelled == 0) {
+    recording.remarks.push_back(fmt::format("no {}/: there is no truth", layout_.label_folder));
+  } else if (labelled == size()) {
     recording.remarks.push_back("labels from the field \"label\" of the scans");
   } else {
-    recording.remarks.push_back(fmt::format("no {}/: there is no truth", layout_.label_folder));
+    recording.remarks.push_back(fmt::format("labels from the field \"label\" of {} of {}", labelled,
+                                            counted(size(), "scan")));
   }
 }
 
@@ -34,15 +48,13 @@ void KittiSequence::pair_labels() {
   std::unordered_map<std::string, std::size_t> scan_of_stem;
   for (std::size_t k = 0; k < size(); ++k) scan_of_stem.emplace(stem(k), k);
   label_files_.resize(size());
-  for (StemFile& label : list_by_stem(label_folder_, {layout_.label_extension})) {
+  for (StemFile& label : list_by_stem(label_folder_, layout_.label_extensions)) {
     const auto scan = scan_of_stem.find(label.stem);
     if (scan == scan_of_stem.end() && is_left_out(recording, label.stem)) continue;
     if (scan == scan_of_stem.end()) {
       throw DataError(label.file, "belongs to no scan", "a scan of the same name");
     }
-    if (layout_.check_size != nullptr) {
-      layout_.check_size(size_of(label.file), point_count(scan->second), label.file);
-    }
+    check_labels_fit(label.file, point_count(scan->second));
     recording.scans[scan->second].has_truth = true;
     label_files_[scan->second] = label.file;
     recording.truth_files.push_back(std::move(label.file));
@@ -53,23 +65,27 @@ void KittiSequence::pair_labels() {
   }
 }
 
-void KittiSequence::read(std::size_t scan_index, Frame& frame) const {
-  if (!has_truth(scan_index) || !label_folder_.empty()) {
-    return FolderSequence::read(scan_index, frame);
+/// A labelled cloud with its points in another order would label the wrong ones.
+void KittiSequence::check_same_points(std::size_t scan_index) const {
+  constexpr float kSame_m = 0.01F;  // clouds are written with a few digits
+  const std::filesystem::path& file = label_files_[scan_index];
+  const std::vector<Point> scan = read_points(scan_index), labelled = read_scan(file);
+  for (std::size_t i = 0; i < std::min(scan.size(), labelled.size()); ++i) {
+    const Eigen::Vector3f at(scan[i].x, scan[i].y, scan[i].z);
+    const Eigen::Vector3f other(labelled[i].x, labelled[i].y, labelled[i].z);
+    if (!at.allFinite() || !((at - other).cwiseAbs().maxCoeff() > kSame_m)) continue;
+    throw DataError(file, fmt::format("point {} is not where it is in the scan", i),
+                    "the points of " + scan_file(scan_index)->filename().string() +
+                        ", in their order and frame");
   }
-  const std::filesystem::path& file = *scan_file(scan_index);
-  PcdScan scan = parse_pcd(read_file(file), file, reads_times());
-  check_count(scan_index, scan.points.size());
-  describe(scan_index, frame);
-  frame.points = std::move(scan.points);
-  frame.point_times_ns = times_ns(scan_index, std::move(scan.times));
-  frame.truth = std::move(scan.labels);
 }
 
 std::vector<std::uint32_t> KittiSequence::read_truth(std::size_t scan_index) const {
   if (!has_truth(scan_index)) refuse_truth(scan_index);
-  if (label_folder_.empty()) return read_pcd_labels(*scan_file(scan_index));
-  return layout_.read_labels(label_files_[scan_index], point_count(scan_index));
+  if (label_folder_.empty()) return read_cloud_labels(*scan_file(scan_index));
+  const std::filesystem::path& file = label_files_[scan_index];
+  if (is_named_as_scan(file)) check_same_points(scan_index);
+  return layout_.read_labels(file, point_count(scan_index));
 }
 
 }  // namespace mosbench

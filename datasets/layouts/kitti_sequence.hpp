@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "datasets/formats/label_file.hpp"
+#include "datasets/formats/label_formats.hpp"
 #include "datasets/sequence/folder_sequence.hpp"
 
 namespace mosbench {
@@ -15,31 +15,28 @@ namespace mosbench {
 struct SequenceLayout {
   FolderLayout folder = {};
   std::string_view label_folder = "labels";
-  std::string_view label_extension = ".label";
+  std::vector<std::string_view> label_extensions = kLabelExtensions;
   /// Reads the labels of a scan with `point_count` points.
   std::vector<std::uint32_t> (*read_labels)(const std::filesystem::path& file,
-                                            std::size_t point_count) = mosbench::read_labels;
-  /// Throws DataError for a size that does not fit; null where sizes do not depend on the count.
-  void (*check_size)(std::uintmax_t size_bytes, std::size_t point_count,
-                     const std::filesystem::path& file) = check_label_size;
+                                            std::size_t point_count) = read_any_labels;
 };
 
 /// One sequence in the SemanticKITTI layout, which Sipailou Campus and HeLiMOS use too: velodyne/,
 /// poses.txt, calib.txt, times.txt and labels/, the last three optional; labels may exist for part
-/// of the scans. Truth is the raw label ids of the files, or without labels/ those of the field
-/// "label" if all scans are .pcd files that have it.
+/// of the scans. Truth is the raw label ids of the files, or without labels/ those that the points
+/// of .pcd and .ply scans have.
 class KittiSequence : public FolderSequence {
  public:
   /// Throws DataError, also for a label file without scan or of another length than its scan.
   KittiSequence(std::string name, const std::filesystem::path& folder, const Reading& asked = {},
                 const SequenceLayout& layout = {});
 
-  using Sequence::read;
-  void read(std::size_t scan_index, Frame& frame) const override;
   std::vector<std::uint32_t> read_truth(std::size_t scan_index) const override;
 
  private:
   void pair_labels();
+  void take_labels_of_scans();
+  void check_same_points(std::size_t scan_index) const;
 
   SequenceLayout layout_;
   std::filesystem::path label_folder_;              ///< empty when the labels are in the scans

@@ -13,7 +13,7 @@ std::vector<SequenceFolder> list_moe(const std::filesystem::path& path) {
 std::unique_ptr<Sequence> open_moe(const SequenceFolder& sequence, const Reading& asked) {
   return std::make_unique<KittiSequence>(
       sequence.name, sequence.folder, asked,
-      SequenceLayout{{"pcd", "gt_poses.txt", false}, "label", ".txt", read_moe_labels, nullptr});
+      SequenceLayout{{"pcd", "gt_poses.txt", false}, "label", {".txt"}, read_moe_labels});
 }
 
 std::optional<std::string> recognise_moe(const std::filesystem::path& path) {

@@ -45,7 +45,7 @@ void FolderSequence::list_scans(const std::filesystem::path& folder, const Folde
   recording.scans.reserve(scans.size());
   for (StemFile& scan : scans) {
     const ScanHead head = read_scan_head(scan.file, bin_columns_);
-    labels_in_scans_ = labels_in_scans_ && head.has_labels;
+    labelled_.push_back(head.has_labels);
     times_in_fields_ = times_in_fields_ && head.has_times && scan.file.extension() != ".bin";
     if (times_in_column_ && !head.has_times) {
       throw DataError(
@@ -91,13 +91,18 @@ void FolderSequence::read(std::size_t scan_index, Frame& frame) const {
   if (reads_times()) {
     timed = read_timed_scan(file, bin_columns_);
   } else {
-    timed.points = read_scan(file, bin_columns_, std::move(frame.points));
+    timed.points = read_points(scan_index, std::move(frame.points));
   }
   frame.points = std::move(timed.points);
   check_count(scan_index, frame.points.size());
   describe(scan_index, frame);
   frame.point_times_ns = times_ns(scan_index, std::move(timed.times));
   add_truth(scan_index, frame);
+}
+
+std::vector<Point> FolderSequence::read_points(std::size_t scan_index,
+                                               std::vector<Point> reused) const {
+  return read_scan(*scan(scan_index).file, bin_columns_, std::move(reused));
 }
 
 std::vector<std::uint32_t> FolderSequence::read_truth(std::size_t scan_index) const {

@@ -35,20 +35,23 @@ class FolderSequence : public Sequence {
   std::vector<std::uint32_t> read_truth(std::size_t scan_index) const override;
 
  protected:
-  /// Whether the points of every scan have a field "label".
-  bool labels_in_scans() const { return labels_in_scans_; }
+  /// Whether the points of a scan have labels of their own.
+  bool has_labels(std::size_t scan_index) const { return labelled_[scan_index]; }
+  /// Reads the points of a scan alone.
+  std::vector<Point> read_points(std::size_t scan_index, std::vector<Point> reused = {}) const;
+
+ private:
   /// Whether the times of points are to be read from the scans, and what they are after its stamp.
   bool reads_times() const { return clock_.knows_unit(); }
   std::vector<std::int64_t> times_ns(std::size_t scan_index, std::vector<double> times) const;
-
- private:
   void list_scans(const std::filesystem::path& folder, const FolderLayout& layout,
                   bool columns_are_usual);
   void judge_times(const Reading& asked);
 
   std::size_t bin_columns_;
   bool times_in_column_;
-  bool labels_in_scans_ = true, times_in_fields_ = true;
+  bool times_in_fields_ = true;
+  std::vector<bool> labelled_;  ///< by scan
   PointClock clock_;
 };
 

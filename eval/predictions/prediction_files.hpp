@@ -69,11 +69,6 @@ void check_positions(const std::filesystem::path& path, const Sequence& sequence
 std::vector<std::uint32_t> parse_point_text(std::string_view text, std::size_t point_count,
                                             const std::filesystem::path& file);
 
-/// Parses labels from a CSV file with a row per point and a header with a column `label` (ids) or
-/// `moving` (0 or 1); other columns are ignored. Throws DataError with the line.
-std::vector<std::uint32_t> parse_point_csv(std::string_view text, std::size_t point_count,
-                                           const std::filesystem::path& file);
-
 /// Parses the labels of each cloud of Dynablox's clouds.csv, by CloudNo from 0. Throws DataError.
 std::vector<std::vector<std::uint32_t>> parse_dynablox_clouds(std::string_view text,
                                                               DynabloxLevel level,
@@ -94,8 +89,8 @@ std::vector<DynabloxCounts> parse_dynablox_counts(std::string_view text, Dynablo
 std::vector<std::uint64_t> parse_dynablox_stamps_ns(std::string_view text,
                                                     const std::filesystem::path& file);
 
-/// Reads confidences 0..1 per point from a NumPy .npy file (float16, float32, float64 or bool, of
-/// any shape with as many numbers as the scan has points). Throws DataError.
+/// Reads confidences 0..1 per point from a NumPy .npy file (of any type and
+/// shape with as many numbers as the scan has points). Throws DataError.
 std::vector<double> read_npy_confidences(const std::filesystem::path& file,
                                          std::size_t point_count);
 

@@ -1,15 +1,15 @@
 #include <fmt/format.h>
 
-#include <Eigen/Core>
 #include <algorithm>
 #include <array>
-#include <cstring>
 #include <mosbench/scan.hpp>
 #include <optional>
 #include <span>
 #include <string>
 
 #include "datasets/disk/files.hpp"
+#include "datasets/formats/label_file.hpp"
+#include "datasets/formats/npy_file.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
 #include "eval/predictions/prediction_files.hpp"
@@ -76,62 +76,6 @@ Row row_of(const TextLine& line, const fs::path& file) {
   return {split_at_commas(line.text), line.number, file};
 }
 
-constexpr std::string_view kNpyMagic = "\x93NUMPY";
-
-[[noreturn]] void refuse_npy(const fs::path& file, const std::string& wrong) {
-  throw DataError(file, wrong, "a .npy array of float16, float32, float64 or bool confidences");
-}
-
-/// A .npy file: its header, a Python dictionary as text, and what follows it.
-struct NpyParts {
-  std::string_view header, numbers;
-};
-
-NpyParts split_npy(std::string_view bytes, const fs::path& file) {
-  if (!bytes.starts_with(kNpyMagic) || bytes.size() < 12) refuse_npy(file, "is no .npy file");
-  const auto byte = [&](std::size_t at) {
-    return static_cast<std::size_t>(static_cast<unsigned char>(bytes[at]));
-  };
-  // The length of the header has two bytes in version 1 and four since.
-  const bool short_length = byte(6) == 1;
-  std::size_t length = byte(8) + (byte(9) << 8U);
-  if (!short_length) length += (byte(10) << 16U) + (byte(11) << 24U);
-  const std::size_t start = short_length ? 10 : 12;
-  if (length > bytes.size() - start) refuse_npy(file, "ends within its header");
-  return {bytes.substr(start, length), bytes.substr(start + length)};
-}
-
-/// Returns the type in the header, such as "<f4".
-std::string_view type_of(std::string_view header, const fs::path& file) {
-  constexpr std::string_view kKey = "'descr': '";
-  const std::size_t key = header.find(kKey);
-  if (key == std::string_view::npos) refuse_npy(file, "has no type in its header");
-  const std::string_view rest = header.substr(key + kKey.size());
-  return rest.substr(0, rest.find('\''));
-}
-
-template <typename Number>
-std::vector<double> confidences_in(std::string_view numbers, std::size_t point_count,
-                                   const fs::path& file) {
-  if (numbers.size() != point_count * sizeof(Number)) {
-    throw DataError(file, fmt::format("holds {} numbers", numbers.size() / sizeof(Number)),
-                    fmt::format("one for each of the {} points of its scan", point_count));
-  }
-  std::vector<double> confidences;
-  confidences.reserve(point_count);
-  for (std::size_t i = 0; i < point_count; ++i) {
-    Number number;
-    std::memcpy(&number, numbers.data() + i * sizeof(Number), sizeof(Number));
-    const auto confidence = static_cast<double>(number);
-    if (!(confidence >= 0.0 && confidence <= 1.0)) {
-      throw DataError(file, fmt::format("holds {} at point {}", confidence, i),
-                      "confidences from 0 to 1");
-    }
-    confidences.push_back(confidence);
-  }
-  return confidences;
-}
-
 }  // namespace
 
 std::vector<std::uint32_t> parse_point_text(std::string_view text, std::size_t point_count,
@@ -144,24 +88,6 @@ std::vector<std::uint32_t> parse_point_text(std::string_view text, std::size_t p
       row.refuse(fmt::format("has {} numbers", numbers), "0 or 1, or moveable, moving and class");
     }
     labels.push_back(row.label_of(row.at(numbers == 1 ? 0 : 1)));
-  }
-  check_count(labels.size(), point_count, file);
-  return labels;
-}
-
-std::vector<std::uint32_t> parse_point_csv(std::string_view text, std::size_t point_count,
-                                           const fs::path& file) {
-  const std::vector<TextLine> lines = table_of(text, file);
-  const std::vector<std::string_view> header = split_at_commas(lines.front().text);
-  const auto label = column_named(header, "label");
-  const auto moving = column_named(header, "moving");
-  if (!label && !moving) throw DataError(file, 1, "names no column label or moving", "a header");
-  std::vector<std::uint32_t> labels;
-  for (const TextLine& line : std::span(lines).subspan<1>()) {
-    const Row row = row_of(line, file);
-    const std::uint64_t value = row.at(label ? *label : *moving);
-    if (value > kLargestLabel) row.refuse(fmt::format("says {}", value), "a label of 32 bits");
-    labels.push_back(label ? static_cast<std::uint32_t>(value) : row.label_of(value));
   }
   check_count(labels.size(), point_count, file);
   return labels;
@@ -235,14 +161,17 @@ std::vector<std::uint64_t> parse_dynablox_stamps_ns(std::string_view text, const
 }
 
 std::vector<double> read_npy_confidences(const fs::path& file, std::size_t point_count) {
-  const std::string bytes = read_file(file);
-  const NpyParts parts = split_npy(bytes, file);
-  const std::string_view type = type_of(parts.header, file);
-  if (type == "<f2") return confidences_in<Eigen::half>(parts.numbers, point_count, file);
-  if (type == "<f4") return confidences_in<float>(parts.numbers, point_count, file);
-  if (type == "<f8") return confidences_in<double>(parts.numbers, point_count, file);
-  if (type == "|b1") return confidences_in<unsigned char>(parts.numbers, point_count, file);
-  refuse_npy(file, fmt::format("holds numbers of type {}", type));
+  NumpyArray array = parse_npy(read_file(file), file);
+  if (array.numbers.size() != point_count) {
+    throw DataError(file, fmt::format("holds {} numbers", array.numbers.size()),
+                    fmt::format("one for each of the {} points of its scan", point_count));
+  }
+  const auto outside =
+      std::ranges::find_if(array.numbers, [](double c) { return !(c >= 0.0 && c <= 1.0); });
+  if (outside == array.numbers.end()) return std::move(array.numbers);
+  throw DataError(file,
+                  fmt::format("holds {} at point {}", *outside, outside - array.numbers.begin()),
+                  "confidences from 0 to 1");
 }
 
 std::vector<std::uint32_t> labels_of_confidences(std::span<const double> confidences) {

@@ -11,6 +11,7 @@
 #include "datasets/formats/helipr_points.hpp"
 #include "datasets/formats/kitti_calib.hpp"
 #include "datasets/formats/label_file.hpp"
+#include "datasets/formats/npy_file.hpp"
 #include "datasets/formats/nuscenes_table.hpp"
 #include "datasets/formats/pcd_file.hpp"
 #include "datasets/formats/ply_file.hpp"
@@ -99,11 +100,20 @@ inline void split(std::string_view text) {
 inline void pcd(std::string_view bytes) {
   const PcdHeader header = parse_pcd_header(bytes, "f");
   require(header.body_offset_bytes <= bytes.size());
-  const PcdScan scan = parse_pcd(bytes, "f");
-  require(scan.points.size() == header.points);
-  require(!scan.labels || scan.labels->size() == header.points);
+  require(parse_pcd(bytes, "f").points.size() == header.points);
+  require(!header.has_labels || parse_pcd_labels(bytes, "f").size() == header.points);
   require(header.storage != PcdStorage::kBinary ||
           bytes.size() - header.body_offset_bytes >= header.points * header.point_bytes);
+}
+
+/// An array, or an archive of arrays.
+inline void numpy(std::string_view bytes) {
+  if (!bytes.starts_with("PK")) {
+    const std::size_t numbers = parse_npy(bytes, "f").numbers.size();
+    require(numbers <= bytes.size());
+    return;
+  }
+  for (const ArchiveMember& member : unpack_npz(bytes, "f")) (void)parse_npy(member.bytes, "f");
 }
 
 /// The first byte chooses the format, the second is a number of points.
@@ -350,7 +360,7 @@ struct Parser {
   void (*parse)(std::string_view);
   std::size_t mutations = 3000;  ///< that the replay tries; fewer where each takes a process
 };
-inline constexpr std::array<Parser, 30> kParsers = {{{"bin", bin},
+inline constexpr std::array<Parser, 31> kParsers = {{{"bin", bin},
                                                      {"nuscenes_table", nuscenes_table},
                                                      {"tracklets", tracklets},
                                                      {"tracking_labels", tracking_labels},
@@ -367,6 +377,7 @@ inline constexpr std::array<Parser, 30> kParsers = {{{"bin", bin},
                                                      {"split", split},
                                                      {"pcd", pcd},
                                                      {"ply", ply},
+                                                     {"numpy", numpy},
                                                      {"moe_labels", moe_labels},
                                                      {"pose_list", pose_list},
                                                      {"ros_message", ros_message},

@@ -42,7 +42,7 @@ TEST(MoeLabels, TakeTheSecondNumber) {
   const auto error_of = [](const char* text) {
     return message_of<DataError>([&] { parse_moe_labels(text, 2, "f"); });
   };
-  EXPECT_THAT(error_of("1 1 3\n"), HasSubstr("1 rows, expected one for each of the 2 points"));
+  EXPECT_THAT(error_of("1 1 3\n"), HasSubstr("has 1 label, expected one for each of the 2 points"));
   EXPECT_THAT(error_of("1 1 3\n1 2 3\n"), HasSubstr("f:2: \"1 2 3\" is no label of MOE"));
   EXPECT_THAT(error_of("1 1\n1 0\n"), HasSubstr("f:1: "));
 }
@@ -107,7 +107,7 @@ TEST_F(PcdReaders, TakeLabelsFromAFieldOfThatName) {
   folder_.write("s/velodyne/000000.pcd", pcd("x y z label", kOrigin, "1 2 3 0.5\n"));
   const Dataset spoiled = open_dataset(folder_ / "s", {});
   EXPECT_THAT(message_of<DataError>([&] { spoiled.sequences[0]->read(0); }),
-              HasSubstr("point 0 has a label that is no id"));
+              HasSubstr("point 0 has the label 0.5"));
 }
 
 class KittiReaders : public testing::Test {

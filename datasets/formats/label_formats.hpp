@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <string_view>
+#include <vector>
+
+namespace mosbench {
+
+/// Files with the labels of a scan: raw uint32, NumPy arrays, a table, or a labelled cloud.
+inline const std::vector<std::string_view> kLabelExtensions = {".label", ".npy", ".npz",
+                                                               ".csv",   ".ply", ".pcd"};
+
+/// Reads the labels of a scan, one raw label id per point. A .npy array of booleans says what
+/// moves. A .npz archive holds one array, or one that is named label or labels. A .csv file is read
+/// by `parse_point_csv`, a cloud by its field `find_label_field`. Throws DataError.
+std::vector<std::uint32_t> read_any_labels(const std::filesystem::path& file,
+                                           std::size_t point_count);
+
+/// Reads the labels of a .pcd or .ply cloud. Throws DataError, also when it has none.
+std::vector<std::uint32_t> read_cloud_labels(const std::filesystem::path& file);
+
+/// Throws DataError where the size or the header of a file shows that it does not fit its scan.
+void check_labels_fit(const std::filesystem::path& file, std::size_t point_count);
+
+}  // namespace mosbench
