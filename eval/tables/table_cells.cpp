@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
+#include <utility>
 
 #include "eval/statistics/run_statistics.hpp"
 #include "eval/tables/leaderboard.hpp"
@@ -20,25 +22,50 @@ ResultSet in_column(const ResultSet& run, const TableColumn& column) {
   return part;
 }
 
-/// Lists what the run lacks of the column's scans.
-std::vector<std::string> gaps(const ResultSet& part, const TableColumn& column) {
-  std::vector<std::string> gaps;
-  for (const std::string_view name : column.sequences) {
-    const bool there = std::ranges::any_of(part.sequences, [&](const Result& result) {
+/// Returns the sequences of the column that a run lacks.
+std::vector<std::string_view> missing_members(const ResultSet& part, const TableColumn& column) {
+  std::vector<std::string_view> missing = column.sequences;
+  std::erase_if(missing, [&](std::string_view name) {
+    return std::ranges::any_of(part.sequences, [&](const Result& result) {
       return contains({.name = "", .sequences = {name}, .scans = {}}, result.sequence);
     });
-    if (!there) gaps.push_back(fmt::format("sequence {} is missing", name));
-  }
+  });
+  return missing;
+}
+
+/// Says how many scans of a column were counted where published values are over another number.
+std::string other_count(const ResultSet& part, const TableColumn& column) {
   std::size_t scans = 0;
   for (const Result& sequence : part.sequences) scans += counted_scans(sequence).size();
-  for (std::string& shortfall : shortfalls(part)) gaps.push_back(std::move(shortfall));
-  const bool known =
-      column.scans && !part.sequences.empty() &&
-      (column.scans_protocol.empty() || column.scans_protocol == part.front().protocol->name);
-  if (known && scans != *column.scans) {
-    gaps.push_back(fmt::format("{} labelled scans, published over {}", scans, *column.scans));
+  const bool known = column.scans && (column.scans_protocol.empty() ||
+                                      column.scans_protocol == part.front().protocol->name);
+  if (!known || scans == *column.scans) return "";
+  return fmt::format("{} labelled scans, published over {}", scans, *column.scans);
+}
+
+/// Lists how a run's scans of a column, or of one within it, differ from the published ones.
+std::vector<std::string> other_scans(const ResultSet& part, const PaperTable& table,
+                                     const TableColumn& column) {
+  std::vector<std::string> reasons;
+  for (const Result& sequence : part.sequences) {
+    const std::string perturb = disturbance_of(sequence);
+    if (perturb.empty()) continue;
+    reasons.push_back(
+        fmt::format("sequence {} is disturbed by {}", sequence.sequence.text(), perturb));
   }
-  return gaps;
+  // An average that lacks a sequence is empty: which of its scans are there says nothing more.
+  if (!missing_members(part, column).empty()) return reasons;
+  for (std::string& shortfall : shortfalls(part)) reasons.push_back(std::move(shortfall));
+  for (const TableColumn& inner : table.columns) {
+    const bool is_within = std::ranges::all_of(inner.sequences, [&](std::string_view name) {
+      return contains(column, std::string(name));
+    });
+    if (!is_within) continue;
+    std::string count = other_count(in_column(part, inner), inner);
+    if (&inner != &column && !count.empty()) count = fmt::format("{}: {}", inner.name, count);
+    if (!count.empty()) reasons.push_back(std::move(count));
+  }
+  return reasons;
 }
 
 /// Half a unit of the last printed digit, as a fraction.
@@ -49,6 +76,7 @@ double rounding(const PublishedCell& cell) {
 }
 
 Verdict judge(const TableCell& cell) {
+  if (cell.is_apart) return Verdict::kNotComparable;
   if (!cell.published) return Verdict::kMeasuredOnly;
   if (!cell.reasons.empty()) return Verdict::kNotComparable;
   const double published = cell.published->iou();
@@ -67,43 +95,99 @@ std::optional<PublishedCell> find_cell(const PublishedRow& row, std::string_view
   return *found;
 }
 
-TableCell measured_cell(const PaperTable& table, const TableColumn& column, const ResultSet& run,
-                        const PublishedRow* row) {
+/// A run among the published rows of its table; `row` is the one of its method.
+struct Placed {
+  const PaperTable& table;
+  const std::vector<PublishedRow>& rows;
+  const ResultSet& run;
+  const PublishedRow* row;
+};
+
+/// Returns how the protocol differs from that of the published cell or, where the method was not
+/// published, from those of all rows.
+std::string other_protocol(const Placed& placed, const std::optional<PublishedCell>& published) {
+  if (placed.row != nullptr) {
+    return other_protocol(placed.run, published.value_or(placed.row->cells.front()));
+  }
+  const bool is_published = std::ranges::any_of(placed.rows, [&](const PublishedRow& row) {
+    return other_protocol(placed.run, row.cells.front()).empty();
+  });
+  return is_published ? ""
+                      : fmt::format("protocol {}, by which nothing was published",
+                                    placed.run.front().protocol->name);
+}
+
+/// The published value, and how to measure one beside it.
+TableCell unmeasured_cell(const Placed& placed, const TableColumn& column) {
   TableCell cell;
   cell.column = column.name;
-  if (row != nullptr) cell.published = find_cell(*row, column.name);
-  const ResultSet part = in_column(run, column);
-  if (part.sequences.empty()) {
-    if (cell.published) cell.reasons = {how_to_fill(table, column, *cell.published)};
-    return cell;
-  }
+  if (placed.row != nullptr) cell.published = find_cell(*placed.row, column.name);
+  if (cell.published) cell.reasons = {how_to_fill(placed.table, column, *cell.published)};
+  return cell;
+}
+
+/// Lists why a value stands apart from the published ones.
+std::vector<std::string> reasons_apart(const Placed& placed, const TableColumn& column,
+                                       const ResultSet& part, const TableCell& cell) {
+  std::vector<std::string> reasons;
+  if (cell.simulated) reasons.emplace_back("simulated data");
+  std::string protocol = other_protocol(placed, cell.published);
+  if (!protocol.empty()) reasons.push_back(std::move(protocol));
+  for (std::string& reason : other_scans(part, placed.table, column))
+    reasons.push_back(std::move(reason));
+  return reasons;
+}
+
+std::vector<std::string> named_sequences(const ResultSet& part) {
+  std::vector<std::string> names;
   for (const Result& sequence : part.sequences) {
-    cell.sequences.push_back(sequence.sequence);
+    names.push_back(sequence.sequence);
     const std::optional<SimulatedOrigin>& origin = sequence.from.simulated;
     if (!origin) continue;
-    cell.sequences.back() +=
-        fmt::format(" (simulated, scene {}, seed {})", origin->scene, origin->seed);
+    names.back() += fmt::format(" (simulated, scene {}, seed {})", origin->scene, origin->seed);
   }
+  return names;
+}
+
+/// Measures a cell whose sequences are all there.
+void measure(const Placed& placed, const ResultSet& part, TableCell& cell) {
   cell.measured = estimate(part.sequences)[Metric::kIou];
-  if (row != nullptr) cell.reasons = mismatches(run, cell.published.value_or(row->cells.front()));
-  for (const Result& sequence : part.sequences) {
-    const std::string perturb = disturbance_of(sequence);
-    if (perturb.empty()) continue;
-    cell.reasons.push_back(
-        fmt::format("sequence {} is disturbed by {}", sequence.sequence.text(), perturb));
+  if (placed.row != nullptr) {
+    const PublishedCell& nearest = cell.published.value_or(placed.row->cells.front());
+    for (std::string& reason : other_settings(placed.run, nearest)) {
+      cell.reasons.push_back(std::move(reason));
+    }
   }
-  cell.simulated = run.front().is_simulated();
-  if (cell.simulated) cell.reasons.insert(cell.reasons.begin(), "simulated data");
-  for (const std::string& doubt : warnings(part)) cell.doubts.push_back(doubt);
-  for (std::string& gap : gaps(part, column)) cell.reasons.push_back(std::move(gap));
   if (!cell.measured->value) {
     cell.reasons.push_back("IoU is undefined");
-  } else if (cell.published) {
+  } else if (cell.published && !cell.is_apart) {
     cell.difference = *cell.measured->value - cell.published->iou();
   }
   cell.verdict = judge(cell);
   if (cell.verdict == Verdict::kNotComparable && cell.reasons.empty())
     cell.reasons.push_back("no interval: " + cell.measured->no_interval);
+}
+
+TableCell measured_cell(const Placed& placed, const TableColumn& column) {
+  TableCell cell = unmeasured_cell(placed, column);
+  const ResultSet part = in_column(placed.run, column);
+  if (part.sequences.empty()) return cell;
+  cell.sequences = named_sequences(part);
+  cell.simulated = part.front().is_simulated();
+  cell.doubts = warnings(part);
+  cell.reasons = reasons_apart(placed, column, part, cell);
+  cell.is_apart = !cell.reasons.empty();
+  const std::vector<std::string_view> missing = missing_members(part, column);
+  if (missing.empty()) {
+    measure(placed, part, cell);
+  } else {
+    cell.reasons.push_back(fmt::format("no value over {}: sequence {} is missing",
+                                       fmt::join(column.sequences, ", "),
+                                       fmt::join(missing, ", ")));
+    if (cell.published && !cell.is_apart) {
+      cell.reasons.push_back(how_to_fill(placed.table, column, *cell.published));
+    }
+  }
   return cell;
 }
 
@@ -139,21 +223,53 @@ TableRow best_row(const PaperTable& table, const Preset& best, const MethodKind&
   return row;
 }
 
-TableRow measured_row(const PaperTable& table, const ResultSet& run, const PublishedRow* row) {
-  const Result& first = run.front();
-  TableRow filled{.section = "",
+/// Returns the section of the published row; where the method was not published, that of all rows
+/// by the protocol, if they share one.
+std::string section_of(const Placed& placed) {
+  std::optional<std::string> section;
+  for (const PublishedRow& row : placed.rows) {
+    const PublishedCell& first = row.cells.front();
+    if (placed.row != nullptr && placed.row != &row) continue;
+    if (!other_protocol(placed.run, first).empty()) continue;
+    if (section && *section != first.section) return "";
+    section = first.section;
+  }
+  return section.value_or("");
+}
+
+/// The rows of a run: beside published values, and apart from them.
+struct MeasuredRows {
+  std::optional<TableRow> beside, apart;
+};
+
+MeasuredRows measured_rows(const Placed& placed) {
+  const Result& first = placed.run.front();
+  TableRow beside{.section = section_of(placed),
                   .method = first.method,
                   .setting = first.setting,
                   .protocol = std::string(first.protocol->name),
-                  .source = row == nullptr ? "" : row->cells.front().source,
-                  .results = run.path.string(),
+                  .source = placed.row == nullptr ? "" : placed.row->cells.front().source,
+                  .results = placed.run.path.string(),
                   .cells = {}};
-  const bool same_rules = row != nullptr && row->cells.front().protocol == filled.protocol;
-  if (same_rules) filled.section = row->cells.front().section;
-  for (const TableColumn& column : table.columns) {
-    filled.cells.push_back(measured_cell(table, column, run, row));
+  TableRow apart = beside;
+  apart.is_apart = true;
+  MeasuredRows rows;
+  bool has_apart = false, has_beside = false;
+  for (const TableColumn& column : placed.table.columns) {
+    TableCell cell = measured_cell(placed, column);
+    TableCell& other = apart.cells.emplace_back();
+    other.column = cell.column;
+    has_apart = has_apart || cell.is_apart;
+    has_beside = has_beside || (!cell.is_apart && !cell.sequences.empty());
+    if (cell.is_apart) {
+      cell.published.reset();
+      other = std::exchange(cell, unmeasured_cell(placed, column));
+    }
+    beside.cells.push_back(std::move(cell));
   }
-  return filled;
+  if (has_beside) rows.beside = std::move(beside);
+  if (has_apart) rows.apart = std::move(apart);
+  return rows;
 }
 
 bool has_values(const PaperTable& table, const ResultSet& run) {
@@ -186,17 +302,26 @@ FilledTable fill_table(const PaperTable& table, const std::vector<PublishedCell>
     const auto nearest = nearest_row(run, rows);
     (nearest ? of_row[*nearest] : unmatched).push_back(std::move(run));
   }
+  std::vector<TableRow> apart;
+  /// Returns whether the run has a row beside published values.
+  const auto add = [&](const ResultSet& run, const PublishedRow* row) {
+    MeasuredRows measured = measured_rows({table, rows, run, row});
+    if (measured.apart) apart.push_back(std::move(*measured.apart));
+    if (measured.beside) filled.rows.push_back(std::move(*measured.beside));
+    return measured.beside.has_value();
+  };
   for (std::size_t r = 0; r < rows.size(); ++r) {
-    if (of_row[r].empty()) filled.rows.push_back(published_row(table, rows[r]));
-    for (const ResultSet& run : of_row[r])
-      filled.rows.push_back(measured_row(table, run, &rows[r]));
+    bool has_run = false;
+    for (const ResultSet& run : of_row[r]) has_run = add(run, &rows[r]) || has_run;
+    if (!has_run) filled.rows.push_back(published_row(table, rows[r]));
   }
   const Preset& best = preset_named("best");
   const MethodKind& method = *find_method(best.method);
   const bool is_measured = std::ranges::any_of(
       unmatched, [&](const ResultSet& run) { return run.front().method == method.title; });
   if (!is_measured) filled.rows.push_back(best_row(table, best, method));
-  for (const ResultSet& run : unmatched) filled.rows.push_back(measured_row(table, run, nullptr));
+  for (const ResultSet& run : unmatched) add(run, nullptr);
+  std::ranges::move(apart, std::back_inserter(filled.rows));
   return filled;
 }
 

@@ -28,16 +28,19 @@ struct TableCell {
   std::optional<Estimate> measured;
   std::optional<double> difference;  ///< measured - published, fraction
   Verdict verdict = Verdict::kPublishedOnly;
-  bool simulated = false;              ///< what was measured is of simulated data
+  bool is_apart = false;   ///< measured by another protocol or over other scans than published
+  bool simulated = false;  ///< what was measured is of simulated data
   std::vector<std::string> doubts;     ///< about what was measured
-  std::vector<std::string> sequences;  ///< measured ones, with the scene of simulated ones
-  std::vector<std::string> reasons;    ///< why not comparable, or what to download and run
+  std::vector<std::string> sequences;  ///< of the run, with the scene of simulated ones
+  /// Why not comparable, why there is no average, or what to download and run.
+  std::vector<std::string> reasons;
 };
 
 /// One method and setting; `results` is the folder of the measured results.
 struct TableRow {
   std::string section, method, setting, protocol, source, results;
   std::vector<TableCell> cells;  ///< one per column of the table
+  bool is_apart = false;         ///< without published values, because no cell compares with one
 };
 
 struct FilledTable {
@@ -49,7 +52,9 @@ struct FilledTable {
 /// Fills the published rows: each run goes to the row of its method that is nearest in variant,
 /// voxel size, range, delay and protocol; runs of methods without a published row follow at the
 /// end, among them always the method of preset `best`. A HeLiMOS run over all labelled scans
-/// also gives the numbers of the test split.
+/// also gives the numbers of the test split. Values of another protocol, other scans or sequences
+/// than the published ones have rows apart, which come last. A column of several sequences is empty
+/// where one is missing.
 FilledTable fill_table(const PaperTable& table, const std::vector<PublishedCell>& published,
                        const std::vector<ResultSet>& runs);
 
@@ -68,11 +73,15 @@ std::vector<PublishedRow> published_rows(const PaperTable& table,
 /// Returns the method of `mosbench run` that the row is of; null for other programs.
 const MethodKind* own_method(const PublishedCell& cell);
 
-/// Lists how the run differs from the published one: variant, voxel size, range, delay, setting in
-/// words, protocol.
-std::vector<std::string> mismatches(const ResultSet& run, const PublishedCell& cell);
+/// Returns how the protocol differs from the published one; empty where it does not.
+std::string other_protocol(const ResultSet& run, const PublishedCell& cell);
 
-/// Returns the row of the run's method with the fewest mismatches; the first of equal ones.
+/// Lists how the run's method differs from the published one: variant, voxel size, range, delay,
+/// setting in words.
+std::vector<std::string> other_settings(const ResultSet& run, const PublishedCell& cell);
+
+/// Returns the row of the run's method that differs in the fewest respects; the first of equal
+/// ones.
 std::optional<std::size_t> nearest_row(const ResultSet& run, const std::vector<PublishedRow>& rows);
 
 /// Returns the runs of the table's data set and, for each HeLiMOS run over all labelled scans, the

@@ -56,8 +56,8 @@ bool is_method(const std::string& published, const std::string& title) {
 }
 
 /// Returns "key=value" for each published setting that the preset has otherwise.
-std::vector<std::string> other_settings(const Preset& preset, const MethodKind& method,
-                                        const PublishedCell& published) {
+std::vector<std::string> settings_beyond(const Preset& preset, const MethodKind& method,
+                                         const PublishedCell& published) {
   const Settings ours = settings_of(preset, method);
   std::vector<std::string> assignments;
   const auto compare = [&](std::string_view name, const std::optional<double>& theirs) {
@@ -78,7 +78,7 @@ std::vector<std::string> other_settings(const Preset& preset, const MethodKind& 
 const Preset& nearest_preset(DatasetKind dataset, const MethodKind& method,
                              const PublishedCell& published) {
   const auto count = [&](const Preset& preset) {
-    return other_settings(preset, method, published).size();
+    return settings_beyond(preset, method, published).size();
   };
   const Preset* nearest = &default_preset(dataset);
   for (const Preset& preset : presets()) {
@@ -99,7 +99,7 @@ std::string run_command(const PaperTable& table, const TableColumn& column,
   const Preset& preset = nearest_preset(table.dataset, method, published);
   std::string command = run_command(table, column, preset);
   if (&method != &default_method()) command += fmt::format(" --method {}", method.name);
-  std::vector<std::string> differing = other_settings(preset, method, published);
+  std::vector<std::string> differing = settings_beyond(preset, method, published);
   if (!differing.empty()) command += fmt::format(" --set {}", fmt::join(differing, ","));
   if (preset.protocol != published.protocol) {
     command += " --protocol " + shell_word(published.protocol);
@@ -160,17 +160,18 @@ const MethodKind* own_method(const PublishedCell& cell) {
   return found == methods().end() ? nullptr : &*found;
 }
 
-std::vector<std::string> mismatches(const ResultSet& run, const PublishedCell& cell) {
+std::string other_protocol(const ResultSet& run, const PublishedCell& cell) {
+  const std::string_view name = run.front().protocol->name;
+  return name == cell.protocol ? "" : fmt::format("protocol {}, published {}", name, cell.protocol);
+}
+
+std::vector<std::string> other_settings(const ResultSet& run, const PublishedCell& cell) {
   const Result& first = run.front();
   std::vector<std::string> reasons;
   if (first.settings) {
     own_mismatches(*first.settings, cell, reasons);
   } else {
     scored_mismatches(first, cell, reasons);
-  }
-  if (first.protocol->name != cell.protocol) {
-    reasons.push_back(
-        fmt::format("protocol {}, published {}", first.protocol->name, cell.protocol));
   }
   return reasons;
 }
@@ -182,7 +183,8 @@ std::optional<std::size_t> nearest_row(const ResultSet& run,
   for (std::size_t r = 0; r < rows.size(); ++r) {
     const PublishedCell& cell = rows[r].cells.front();
     if (!is_method(cell.method, run.front().method)) continue;
-    const std::size_t count = mismatches(run, cell).size();
+    const std::size_t count =
+        other_settings(run, cell).size() + (other_protocol(run, cell).empty() ? 0 : 1);
     if (nearest && count >= fewest) continue;
     nearest = r;
     fewest = count;

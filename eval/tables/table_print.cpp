@@ -43,21 +43,32 @@ std::string mark_of(const std::vector<std::string>& reasons, std::vector<std::st
   return fmt::format(" ({})", number);
 }
 
-std::string row_setting(const TableRow& row) {
-  return row.section.empty() ? row.setting
-                             : row.section + (row.setting.empty() ? "" : ", " + row.setting);
+/// The rows that stand in one block: of a published section, or apart from all of them.
+struct Block {
+  std::string title;
+  std::vector<const TableRow*> rows;
+};
+
+std::vector<Block> blocks_of(const FilledTable& table) {
+  std::vector<Block> blocks;
+  for (const TableRow& row : table.rows) {
+    const std::string title = row.is_apart ? "not comparable with published values" : row.section;
+    auto block = std::ranges::find(blocks, title, &Block::title);
+    if (block == blocks.end()) block = blocks.insert(block, Block{title, {}});
+    block->rows.push_back(&row);
+  }
+  return blocks;
 }
 
 /// "results/runs/doals: ST is station/sequence_1, ...; SV is ...", one line per run.
-std::vector<std::string> measured_sequences(const FilledTable& table) {
+std::vector<std::string> measured_sequences(const Block& block) {
   std::vector<std::string> lines;
-  for (const TableRow& row : table.rows) {
+  for (const TableRow* row : block.rows) {
     std::vector<std::string> columns;
-    for (const TableCell& cell : row.cells) {
-      if (!cell.sequences.empty())
-        columns.push_back(cell.column + " is " + joined(cell.sequences, ", "));
+    for (const TableCell& cell : row->cells) {
+      if (cell.measured) columns.push_back(cell.column + " is " + joined(cell.sequences, ", "));
     }
-    const std::string line = row.results + ": " + joined(columns, "; ");
+    const std::string line = row->results + ": " + joined(columns, "; ");
     if (!columns.empty() && std::ranges::find(lines, line) == lines.end()) lines.push_back(line);
   }
   return lines;
@@ -81,29 +92,49 @@ Spread measured_spread(const TableCell& cell) {
   return spread_of(cell.measured.value_or(Estimate{}));
 }
 
-Sheet sheet_of(const FilledTable& table) {
+Sheet sheet_of(const Block& block, const PaperTable& table) {
   Sheet sheet{
-      .title = fmt::format("Table {}: {}", table.table->name, table.table->title),
-      .lead = {fmt::format("Average: {}.", table.table->averaging)},
-      .columns = {{"method", Unit::kText}, {"setting", Unit::kText}, {"protocol", Unit::kText}},
-      .notes = {"Cells: published, or published / measured (difference) [95 % interval] "
-                "verdict."}};
-  for (const TableColumn& column : table.table->columns) {
+      .title = fmt::format("Table {}: {}{}{}", table.name, table.title,
+                           block.title.empty() ? "" : ", ", block.title),
+      .columns = {{"method", Unit::kText}, {"setting", Unit::kText}, {"protocol", Unit::kText}}};
+  for (const TableColumn& column : table.columns) {
     sheet.columns.push_back({std::string(column.name)});
   }
   std::vector<std::string> footnotes;
-  for (const TableRow& row : table.rows) {
-    sheet.rows.push_back({row.method, row_setting(row), row.protocol});
-    for (const TableCell& cell : row.cells) {
+  for (const TableRow* row : block.rows) {
+    sheet.rows.push_back({row->method, row->setting, row->protocol});
+    for (const TableCell& cell : row->cells) {
       sheet.rows.back().push_back(cell_text(cell) + mark_of(cell.reasons, footnotes));
     }
   }
-  for (std::string& line : measured_sequences(table)) sheet.notes.push_back(std::move(line));
+  for (std::string& line : measured_sequences(block)) sheet.notes.push_back(std::move(line));
+  const char* why = block.rows.front()->is_apart ? "not comparable: " : "";
   for (std::size_t i = 0; i < footnotes.size(); ++i) {
-    sheet.notes.push_back(fmt::format("({}) {}", i + 1, footnotes[i]));
+    sheet.notes.push_back(fmt::format("({}) {}{}", i + 1, why, footnotes[i]));
   }
-  if (std::string hint = hint_on_runs(table); !hint.empty()) sheet.notes.push_back(std::move(hint));
   return sheet;
+}
+
+/// "Average: points pooled per sensor. ST: station/sequence_1, station/sequence_2."
+std::string averages_line(const PaperTable& table) {
+  std::string line = fmt::format("Average: {}.", table.averaging);
+  for (const TableColumn& column : table.columns) {
+    if (column.sequences.size() == 1) continue;
+    line += fmt::format(" {}: {}.", column.name, fmt::join(column.sequences, ", "));
+  }
+  return line;
+}
+
+std::vector<Sheet> sheets_of(const FilledTable& table) {
+  std::vector<Sheet> sheets;
+  for (const Block& block : blocks_of(table)) sheets.push_back(sheet_of(block, *table.table));
+  sheets.front().lead = {averages_line(*table.table),
+                         "Cells: published, or published / measured (difference) [95 % interval] "
+                         "verdict."};
+  if (std::string hint = hint_on_runs(table); !hint.empty()) {
+    sheets.back().notes.push_back(std::move(hint));
+  }
+  return sheets;
 }
 
 /// A row per cell with all of its members.
@@ -117,18 +148,20 @@ Sheet records_of(const FilledTable& table) {
   sheet.columns.push_back({"difference", Unit::kPoints});
   sheet.columns.push_back({"low", Unit::kPercent});
   sheet.columns.push_back({"high", Unit::kPercent});
-  for (const char* name : {"verdict", "reasons", "source", "results", "sequences"}) {
+  for (const char* name : {"verdict", "reasons", "source", "results", "sequences", "over"}) {
     sheet.columns.push_back({name});
   }
   for (const TableRow& row : table.rows) {
-    for (const TableCell& cell : row.cells) {
+    for (std::size_t c = 0; c < row.cells.size(); ++c) {
+      const TableCell& cell = row.cells[c];
       const Spread measured = measured_spread(cell);
       sheet.rows.push_back(
           {std::string(table.table->name), row.section, row.method, row.setting, row.protocol,
            cell.column, cell.published ? cell.published->iou_percent : "",
            or_missing(measured.value), or_missing(cell.difference), or_missing(measured.low),
            or_missing(measured.high), std::string(to_string(cell.verdict)),
-           joined(cell.reasons, "; "), row.source, row.results, joined(cell.sequences, "; ")});
+           joined(cell.reasons, "; "), row.source, row.results, joined(cell.sequences, "; "),
+           fmt::format("{}", fmt::join(table.table->columns[c].sequences, "; "))});
     }
   }
   return sheet;
@@ -164,7 +197,7 @@ Standing standing_of(const FilledTable& table) {
 Answer table_answer(const FilledTable& table) {
   return {.usual = Format::kMarkdown,
           .standing = standing_of(table),
-          .sheets = {sheet_of(table)},
+          .sheets = sheets_of(table),
           .records = records_of(table),
           .json = json_text(to_json(table))};
 }
@@ -176,9 +209,11 @@ ordered_json to_json(const FilledTable& table) {
                        {"download", std::string(table.table->download)},
                        {"simulated", table.simulated()},
                        {"columns", ordered_json::array()},
+                       {"column_sequences", ordered_json::array()},
                        {"rows", ordered_json::array()}};
   for (const TableColumn& column : table.table->columns) {
     json["columns"].push_back(std::string(column.name));
+    json["column_sequences"].push_back(column.sequences);
   }
   for (const TableRow& row : table.rows) {
     ordered_json cells = ordered_json::array();
@@ -189,6 +224,7 @@ ordered_json to_json(const FilledTable& table) {
                             {"protocol", row.protocol},
                             {"source", row.source},
                             {"results", row.results},
+                            {"apart", row.is_apart},
                             {"cells", cells}});
   }
   return json;

@@ -5,6 +5,7 @@
 #include "eval/answer/render.hpp"
 #include "eval/tables/table_print.hpp"
 #include "tests/temp_folder.hpp"
+#include "tests/unit/eval/table_runs.hpp"
 
 namespace mosbench {
 namespace {
@@ -13,63 +14,6 @@ using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
-
-const std::vector<PublishedCell>& published() {
-  static const std::vector<PublishedCell> cells = built_in_cells();
-  return cells;
-}
-
-/// `scans` labelled scans of 1000 moving points, of which `found` plus or minus a few are.
-Result sequence(const std::string& name, std::size_t scans, std::uint64_t found,
-                std::size_t apart_scans = 1) {
-  Result result;
-  result.sequence = SequenceName(name, name);
-  result.dataset = "doals";
-  result.method = "HMM-MOS";
-  result.setting = "as the paper";
-  result.protocol = &protocol_named("doals-hmm");
-  result.settings = recorded_settings({{"variant", "paper-2024"},
-                                       {"voxel_size_m", 0.2},
-                                       {"max_range_m", 20.0},
-                                       {"delay_scans", 0}});
-  for (std::size_t k = 0; k < scans; ++k) {
-    Confusion counts;
-    counts.tp = found + 20 * (k % 2) - 10;
-    counts.fn = 1000 - counts.tp;
-    ScanRow& row = result.scans.emplace_back();
-    row.stem = std::to_string(k * apart_scans);
-    row.counts = counts;
-  }
-  return result;
-}
-
-/// Labelled scans of DOALS are 100 to 200 scans apart.
-ResultSet station(std::uint64_t found, std::size_t apart_scans = 200) {
-  return {"runs/doals",
-          {sequence("station/sequence_1", 10, found, apart_scans),
-           sequence("station/sequence_2", 10, found, apart_scans)}};
-}
-
-/// The sequence of Sipailou's validation, of which enough scans are labelled for an interval.
-ResultSet valid(std::uint64_t found) {
-  Result result = sequence("06", 3191, found);
-  result.dataset = "sipailou";
-  result.protocol = &protocol_named("sipailou");
-  result.settings->set("voxel_size_m", 0.25);
-  result.settings->set("max_range_m", 50.0);
-  return {"runs/sipailou", {result}};
-}
-
-TableCell cell_of(const FilledTable& table, std::size_t column = 0) {
-  for (const TableRow& row : table.rows) {
-    if (!row.results.empty()) return row.cells.at(column);
-  }
-  throw std::runtime_error("no measured row");
-}
-
-FilledTable filled(const std::vector<ResultSet>& runs, const char* table = "I") {
-  return fill_table(paper_table_named(table), published(), runs);
-}
 
 TEST(Published, HoldsTheTablesWithTheirSources) {
   EXPECT_GT(published().size(), 150U);
@@ -124,6 +68,7 @@ TEST(FillTable, ComparesNoDisturbedScansWithPublishedOnes) {
   run.sequences[1].from.reading = {{"perturb", "beams=32,beams_of=64,seed=1"}};
   const TableCell cell = cell_of(filled({run}));
   EXPECT_EQ(cell.verdict, Verdict::kNotComparable);
+  EXPECT_TRUE(cell.is_apart);
   EXPECT_THAT(cell.reasons, testing::ElementsAre("sequence station/sequence_2 is disturbed by "
                                                  "beams=32,beams_of=64,seed=1"));
 }
@@ -146,35 +91,14 @@ TEST(FillTable, JudgesNoDifferenceWhereScansAreTooFewForAnInterval) {
   EXPECT_THAT(cell.reasons, testing::ElementsAre(HasSubstr("no interval: 20 scans")));
 }
 
-TEST(FillTable, ComparesNothingThatIsOfAnotherKind) {
-  const auto reasons = [](const ResultSet& run) {
-    const FilledTable table = filled({run});
-    EXPECT_EQ(cell_of(table).verdict, Verdict::kNotComparable);
-    return cell_of(table).reasons;
-  };
-  ResultSet simulated = station(889);
-  for (Result& part : simulated.sequences) part.from.simulated.emplace();
-  EXPECT_THAT(reasons(simulated), ElementsAre("simulated data"));
-
-  ResultSet half = station(889);
-  half.sequences.pop_back();
-  EXPECT_THAT(reasons(half), ElementsAre("sequence station/sequence_2 is missing",
-                                         "10 labelled scans, published over 20"));
-
-  ResultSet lost = station(889);
-  lost.sequences[0].scans.pop_back();
-  lost.sequences[0].predictions.emplace().missing = {"9"};
-  EXPECT_THAT(reasons(lost),
-              ElementsAre("INCOMPLETE: 1 scan without usable prediction is not counted",
-                          "19 labelled scans, published over 20"));
-
+/// The published value stands beside it, because both are of the same scans by the same rules.
+TEST(FillTable, JudgesNoDifferenceOfOtherSettings) {
   ResultSet coarse = station(889);
   for (Result& part : coarse.sequences) part.settings->set("voxel_size_m", 0.3);
-  EXPECT_THAT(reasons(coarse), ElementsAre("voxel size in m 0.3, published 0.2"));
-
-  ResultSet other = station(889);
-  for (Result& part : other.sequences) part.protocol = &protocol_named("doals-dynablox");
-  EXPECT_THAT(reasons(other), ElementsAre("protocol doals-dynablox, published doals-hmm"));
+  const TableCell cell = cell_of(filled({coarse}));
+  EXPECT_EQ(cell.verdict, Verdict::kNotComparable);
+  EXPECT_EQ(cell.published.value().iou_percent, "88.9");
+  EXPECT_THAT(cell.reasons, ElementsAre("voxel size in m 0.3, published 0.2"));
 }
 
 TEST(FillTable, SaysHowToFillWhatIsEmpty) {
@@ -307,13 +231,14 @@ TEST(FillTable, AveragesSensorsAndCountsBothFrameSetsOfHelimos) {
   }
   const FilledTable table = filled({run}, "III");
   std::vector<double> averages;
-  for (const TableRow& row : table.rows) {
-    if (!row.results.empty()) averages.push_back(row.cells.at(4).measured->value.value());
+  for (const TableRow& row : rows_of_runs(table, true)) {
+    averages.push_back(row.cells.at(4).measured->value.value());
   }
   ASSERT_EQ(averages.size(), 2U);
   EXPECT_NEAR(averages[0], 0.55, 1e-12);
   EXPECT_NEAR(averages[1], 0.56, 1e-12) << "the odd scans find 10 points more";
-  EXPECT_EQ(table.rows.size(), 10U) << "nine published ones and that of preset best";
+  EXPECT_EQ(table.rows.size(), 11U)
+      << "nine published ones, one of them measured, two apart and that of preset best";
 }
 
 TEST(TablePrint, GivesEachFormatTheSameNumbers) {

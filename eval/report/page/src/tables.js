@@ -69,15 +69,20 @@ function paperCell({ published_percent: published, measured, low, high, no_inter
   if (measured === null || measured === undefined) return published || '–';
   const missing = noInterval ? ' [no interval]' : '';
   const interval = low === null ? missing : ` [${(100 * low).toFixed(1)}, ${(100 * high).toFixed(1)}]`;
-  return element('span', { title: (reasons ?? []).join('; ') }, `${published || '–'} / `, element('strong', {}, `${(100 * measured).toFixed(1)}${interval}`), element('span', { class: 'hint' }, ` ${verdict}`));
+  return element('span', { title: (reasons ?? []).join('; ') }, published ? `${published} / ` : '', element('strong', {}, `${(100 * measured).toFixed(1)}${interval}`), element('span', { class: 'hint' }, ` ${verdict}`));
 }
 
-/** Published tables with what these results put beside them. */
+/** Published tables with what these results put beside them; apart from them what does not compare. */
 export function paperTables(content) {
-  const shown = (content.tables ?? []).map(({ title, averaging, columns, rows }) =>
-    block(title, `IoU in percent, published / measured [95 % interval]; ${averaging}`, table(['method', 'setting', ...columns],
-      rows.map(({ method, setting, cells }) => [method, setting, ...cells.map(paperCell)]), { leftColumns: 2 })));
-  return element('div', { class: 'paper' }, ...shown);
+  const shown = (content.tables ?? []).flatMap(({ title, averaging, columns, rows }) => [false, true].map((isApart) => {
+    const chosen = rows.filter(({ apart }) => Boolean(apart) === isApart);
+    if (chosen.length === 0) return null;
+    const why = ({ cells }) => [...new Set(cells.flatMap(({ reasons }) => reasons ?? []))].join('; ');
+    const lines = chosen.map((row) => [row.method, row.setting, ...row.cells.map(paperCell), ...(isApart ? [why(row)] : [])]);
+    return block(isApart ? `${title}: not comparable` : title, `IoU in percent, ${isApart ? 'measured' : 'published / measured'} [95 % interval]; ${averaging}`,
+      table(['method', 'setting', ...columns, ...(isApart ? ['why not comparable'] : [])], lines, { leftColumns: 2 }));
+  }));
+  return element('div', { class: 'paper' }, ...shown.filter(Boolean));
 }
 
 /** Everything about the chosen result. */
