@@ -19,6 +19,7 @@ enum class Format : std::uint8_t {
   kMarkdown,
   kHtml,
   kGithub,  ///< text and the annotations of a pull request
+  kJunit,   ///< the checks, as XML that CI servers read
   kPng,     ///< the charts
 };
 
@@ -74,9 +75,11 @@ struct Standing {
 /// Returns a sentence for each.
 std::vector<std::string> sentences(const Standing& standing);
 
-/// What a failed check says in the list of changed files of a pull request.
-struct Annotation {
-  std::string title, message;
+/// One thing that was checked.
+struct CheckResult {
+  std::string name;            ///< the same in every run: "room"
+  std::string title, message;  ///< what a pull request says of a failed one; empty of others
+  bool passed() const { return message.empty(); }
 };
 
 /// What a command answers. Renderers make text, tables and pictures of it.
@@ -90,7 +93,7 @@ struct Answer {
   std::string json{};              ///< its own, by `json_text`; empty: the sheets
   std::string page{};              ///< HTML of its own; empty: the sheets
   std::vector<LineChart> charts{};
-  std::vector<Annotation> annotations{};
+  std::vector<CheckResult> checks{};
   std::optional<std::filesystem::path> file{};  ///< where to write it instead of on stdout
   bool goes_beside_stdout = false;              ///< stdout holds a file that the user named so
 };

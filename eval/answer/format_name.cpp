@@ -14,20 +14,21 @@ struct Ending {
   std::string_view text;
   Format format;
 };
-constexpr std::array<Ending, 8> kEndings = {{{".txt", Format::kText},
+constexpr std::array<Ending, 9> kEndings = {{{".txt", Format::kText},
                                              {".json", Format::kJson},
                                              {".csv", Format::kCsv},
                                              {".tex", Format::kLatex},
                                              {".md", Format::kMarkdown},
                                              {".html", Format::kHtml},
                                              {".htm", Format::kHtml},
+                                             {".xml", Format::kJunit},
                                              {".png", Format::kPng}}};
 
 }  // namespace
 
 std::span<const std::string_view> format_names() {
-  static constexpr std::array<std::string_view, 8> kNames = {"text",     "json", "csv",    "latex",
-                                                             "markdown", "html", "github", "png"};
+  static constexpr std::array<std::string_view, 9> kNames = {
+      "text", "json", "csv", "latex", "markdown", "html", "github", "junit", "png"};
   return kNames;
 }
 

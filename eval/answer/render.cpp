@@ -255,7 +255,8 @@ std::string workflow_text(std::string_view text, std::string_view also = "") {
 
 std::string github_of(const Answer& answer) {
   std::string text = text_of(answer, 0);
-  for (const Annotation& each : answer.annotations) {
+  for (const CheckResult& each : answer.checks) {
+    if (each.passed()) continue;
     text += fmt::format("::error title={}::{}\n", workflow_text(each.title, ":,"),
                         workflow_text(each.message));
   }
@@ -366,6 +367,8 @@ std::string render(const Answer& answer, Format format, std::size_t columns) {
       return answer.page.empty() ? html_of(answer) : answer.page;
     case Format::kGithub:
       return github_of(answer);
+    case Format::kJunit:
+      return junit_of(answer);
     case Format::kPng:
       return png_of(answer);
     case Format::kText:

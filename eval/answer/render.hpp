@@ -19,7 +19,7 @@ std::span<const std::string_view> format_names();
 Format format_named(std::string_view name);
 
 /// Returns the format that the end of a file's name says: .txt, .json, .csv, .tex, .md, .html,
-/// .png.
+/// .xml, .png.
 std::optional<Format> format_of_name(const std::filesystem::path& file);
 /// Throws UsageError where the end of a file's name says another kind of file than what is written:
 /// also .pdf, .svg, .jpg and others that nothing writes.
@@ -31,7 +31,8 @@ std::vector<std::string> marks_of(const Answer& answer);
 std::vector<Sheet> shown_sheets(const Answer& answer);
 
 /// Formats an answer; text has its tables folded into so many columns of a terminal (0: any
-/// number). Nothing stays nothing. Throws UsageError for a picture of an answer without charts.
+/// number). Nothing stays nothing. Throws UsageError for a picture of an answer without charts, and
+/// for test cases of one without checks.
 std::string render(const Answer& answer, Format format, std::size_t columns = 0);
 
 /// Returns the rows of a sheet as objects.
@@ -68,6 +69,9 @@ std::string text_of(const Sheet& sheet, std::size_t columns = 0);
 std::string latex_of(const Answer& answer);
 std::string markdown_of(const Answer& answer);
 std::string html_of(const Answer& answer);
+/// Formats the checks as test cases in the XML of JUnit, with all sheets as the output of the
+/// tests.
+std::string junit_of(const Answer& answer);
 
 /// Returns how many columns the terminal behind stdout has; 0 where stdout is none.
 std::size_t terminal_columns();

@@ -4,6 +4,7 @@
 #include <sstream>
 #include <utility>
 
+#include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
 #include "eval/answer/render.hpp"
 
@@ -139,6 +140,28 @@ std::string joined_sheets(const Answer& answer, std::string (*shown)(const Sheet
   return text;
 }
 
+/// As HTML, except for the two characters that XML cannot hold.
+std::string xml_text(std::string_view text) {
+  std::string line = html_text(text);
+  for (const auto& [character, shown] :
+       {std::pair{"\xEF\xBF\xBE", "\\ufffe"}, std::pair{"\xEF\xBF\xBF", "\\uffff"}}) {
+    for (std::size_t at = line.find(character); at != std::string::npos;
+         at = line.find(character)) {
+      line.replace(at, 3, shown);
+    }
+  }
+  return line;
+}
+
+std::string test_case(const CheckResult& check) {
+  const std::string head =
+      fmt::format("<testcase classname=\"mosbench\" name=\"{}\"", xml_text(check.name));
+  if (check.passed()) return head + "/>\n";
+  const std::string message = xml_text(check.message);
+  return fmt::format("{}><failure message=\"{}: {}\">{}</failure></testcase>\n", head,
+                     xml_text(check.title), message, message);
+}
+
 }  // namespace
 
 std::string html_text(std::string_view text) {
@@ -204,6 +227,28 @@ std::string html_of(const Answer& answer) {
     text += "</pre>\n";
   }
   return text + "</html>\n";
+}
+
+std::string junit_of(const Answer& answer) {
+  if (answer.checks.empty()) {
+    throw UsageError("--as junit: the answer has no checks, expected another format");
+  }
+  const auto failed = std::ranges::count(answer.checks, false, &CheckResult::passed);
+  std::string text = fmt::format(
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n"
+      "<testsuite name=\"mosbench\" tests=\"{}\" failures=\"{}\" errors=\"0\" skipped=\"0\">\n",
+      answer.checks.size(), failed);
+  if (const Lines marks = marks_of(answer); !marks.empty()) {
+    text += fmt::format("<properties><property name=\"standing\" value=\"{}\"/></properties>\n",
+                        joined(marks, xml_text, "; "));
+  }
+  for (const CheckResult& check : answer.checks) text += test_case(check);
+  text += "<system-out>\n";
+  for (const Sheet& sheet : answer.sheets) {
+    std::istringstream lines(text_of(sheet));
+    for (std::string line; std::getline(lines, line);) text += xml_text(line) + '\n';
+  }
+  return text + "</system-out>\n</testsuite>\n</testsuites>\n";
 }
 
 }  // namespace mosbench

@@ -35,7 +35,9 @@ void refuse_flags_as_values(CLI::App& command) {
 /// Adds --as and --json to a command. `format` gets the name.
 void add_format_flags(CLI::App& command, const Command& row, std::string& format) {
   std::vector<std::string> names(format_names().begin(), format_names().end());
-  if (!row.draws) std::erase(names, "png");
+  std::erase_if(names, [&](const std::string& name) {
+    return (name == "png" || name == "junit") && name != row.own_format;
+  });
   const CLI::IsMember known(names);
   CLI::Option* as = command.add_option("--as", format, "How to print the answer")->check(known);
   if (command.get_option_no_throw("--json") != nullptr) return;

@@ -22,7 +22,7 @@ struct Command {
   std::string_view help;  ///< one line
   /// Adds the command's flags to its parser and returns what runs it after the parsing.
   CommandRun (*add)(CLI::App& command);
-  bool draws = false;  ///< its answers have charts
+  std::string_view own_format = "";  ///< that only its answers have: png or junit
 };
 
 /// How the program ends after an error, and what it says.

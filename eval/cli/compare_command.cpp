@@ -38,7 +38,7 @@ struct CompareFlags {
   std::optional<std::filesystem::path> data;
   std::string dataset = "auto";
   std::size_t top = 10;
-  std::filesystem::path summary;
+  std::filesystem::path out, summary;
 
   bool shows(std::string_view what) const { return std::ranges::find(by, what) != by.end(); }
 };
@@ -58,7 +58,7 @@ Answer answer_of(const ResultSet& baseline, const ResultSet& newer, const Paired
           .standing = standing_of(baseline, "baseline", newer, "new"),
           .sheets = {std::move(sheet)},
           .json = json_text(json),
-          .annotations = gate_annotations(result)};
+          .checks = gate_checks(result)};
 }
 
 void check_shares_scans(const PairedRuns& paired, const CompareFlags& options) {
@@ -68,6 +68,8 @@ void check_shares_scans(const PairedRuns& paired, const CompareFlags& options) {
 }
 
 Answer compare(const CompareFlags& options) {
+  const Format written = format_of_name(options.out).value_or(Format::kMarkdown);
+  if (!options.out.empty()) check_output(options.out, written);
   if (!options.summary.empty()) check_output(options.summary, Format::kMarkdown);
   const ResultSet baseline = load_result_set(options.baseline);
   const ResultSet newer = load_result_set(options.newer);
@@ -85,9 +87,12 @@ Answer compare(const CompareFlags& options) {
              options.statistical ? GateRule::kStatistical : GateRule::kMaxDrop,
              options.max_added_false_positives});
   Answer answer = answer_of(baseline, newer, paired, result);
+  if (!options.out.empty()) {
+    write_output(options.out, render(answer, written));
+    answer = answer_beside(options.out, std::move(answer));
+  }
   if (!options.summary.empty()) {
-    write_output(options.summary, render(answer, Format::kMarkdown));
-    answer = answer_beside(options.summary, std::move(answer));
+    append_output(options.summary, render(answer, Format::kMarkdown));
   }
   return options.quiet && result.passed() ? Answer{} : answer;
 }
@@ -284,7 +289,9 @@ CommandRun add_compare(CLI::App& command) {
   add(command, "--top", options->top, "How many scans and objects --by lists")
       ->capture_default_str();
   command.add_flag("--accept", options->accept, "Make NEW the baseline and show what changes");
-  add(command, "-o,--out FILE", options->summary, "Also write the table in markdown to FILE");
+  add(command, "-o,--out FILE", options->out,
+      "Also write the table to FILE, as its name ends: .md, .html, .json, or .xml for JUnit");
+  add(command, "--summary FILE", options->summary, "Also append the table in markdown to FILE");
   command.add_flag("-q,--quiet", options->quiet, "Print nothing when it passes");
   return [options] { return answer(*options); };
 }

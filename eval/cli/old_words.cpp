@@ -49,7 +49,6 @@ constexpr std::array kOldFlags = {
     OldFlag{"profile", "--trace", true, "--out"},
     OldFlag{"trajectory", "--plot", true, "--out"},
     OldFlag{"trajectory", "--per-pose", false, "--by", "pose"},
-    OldFlag{"compare", "--summary", true, "--out"},
     OldFlag{"compare", "--output-format", true, "--as"},
     OldFlag{"stats", "--csv", false, "--as", "csv"},
     OldFlag{"stats", "--per-scan", false, "--by", "scan"},

@@ -1,5 +1,6 @@
 #include "eval/result/output.hpp"
 
+#include <fstream>
 #include <system_error>
 
 #include "datasets/disk/files.hpp"
@@ -18,6 +19,14 @@ void write_output(const std::filesystem::path& file, std::string_view bytes) {
   } else {
     commit_file(file, bytes);
   }
+}
+
+void append_output(const std::filesystem::path& file, std::string_view bytes) {
+  if (names_stdout(file)) return write_stdout(bytes);
+  std::ofstream end(file, std::ios::binary | std::ios::app);
+  end.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  end.close();
+  if (!end) throw DataError(file, "cannot be written", "a file that can");
 }
 
 void check_output(const std::filesystem::path& file, std::optional<Format> written) {

@@ -12,6 +12,9 @@ namespace mosbench {
 /// DataError.
 void write_output(const std::filesystem::path& file, std::string_view bytes);
 
+/// The same behind what the file holds.
+void append_output(const std::filesystem::path& file, std::string_view bytes);
+
 /// Throws DataError where `file` can be no file to write, so that hours of work are not lost on it:
 /// it is a folder, or lies below what is none. Throws UsageError for a name of another kind of file
 /// than what is written.

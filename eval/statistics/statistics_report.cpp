@@ -234,12 +234,14 @@ Sheet gate_sheet(const GateResult& result) {
   return sheet;
 }
 
-std::vector<Annotation> gate_annotations(const GateResult& result) {
-  std::vector<Annotation> annotations;
+std::vector<CheckResult> gate_checks(const GateResult& result) {
+  std::vector<CheckResult> checks;
   for (const GateCheck& check : result.checks) {
+    CheckResult& told = checks.emplace_back(CheckResult{check.name, "", ""});
     if (check.passed()) continue;
     if (check.iou_passed) {
-      annotations.push_back({fmt::format("False positives of {}", check.name), added_text(check)});
+      told.title = fmt::format("False positives of {}", check.name);
+      told.message = added_text(check);
       continue;
     }
     const std::string now =
@@ -247,10 +249,10 @@ std::vector<Annotation> gate_annotations(const GateResult& result) {
                                   percent_text(check.difference.value, "{:+.2f}"),
                                   percent_text(check.tolerance, "{:.2f}"))
                     : "undefined now";
-    annotations.push_back({fmt::format("IoU of {} dropped", check.name),
-                           percent_text(check.baseline) + " % before, " + now});
+    told.title = fmt::format("IoU of {} dropped", check.name);
+    told.message = percent_text(check.baseline) + " % before, " + now;
   }
-  return annotations;
+  return checks;
 }
 
 ordered_json to_json(const GateResult& result) {

@@ -35,8 +35,7 @@ Answer difference_answer(const ResultSet& first, const ResultSet& second, const 
 /// whether other scans like these would show the difference.
 Sheet gate_sheet(const GateResult& result);
 
-/// Returns one per check that failed.
-std::vector<Annotation> gate_annotations(const GateResult& result);
+std::vector<CheckResult> gate_checks(const GateResult& result);
 
 nlohmann::ordered_json to_json(const GateResult& result);
 

@@ -152,6 +152,32 @@ TEST_F(Compare, AnnotatesAPullRequest) {
   EXPECT_EQ(compare_to_whole("whole", {"--json", "--as", "text"}).exit_code, 2);
 }
 
+/// The first failed step of a job must not hide what the table says.
+TEST_F(Compare, WritesTestCasesAndAppendsToASummary) {
+  score_changed("whole", [](std::size_t) { return false; });
+  score_changed("flipped", [](std::size_t moving) { return moving % 33 == 0; });
+  folder_.write("summary.md", "before\n");
+  const auto compare_to_whole = [this](const std::string& newer) {
+    return cli::run(
+        {"compare", (folder_ / "whole/results").string(), (folder_ / newer / "results").string(),
+         "--out", (folder_ / "gate.xml").string(), "--summary", (folder_ / "summary.md").string()});
+  };
+  EXPECT_EQ(compare_to_whole("flipped").exit_code, 1);
+  EXPECT_THAT(
+      read_file(folder_ / "gate.xml"),
+      AllOf(HasSubstr("tests=\"1\" failures=\"1\""),
+            HasSubstr("name=\"room\"><failure message=\"IoU of room dropped: 100.0 % before")));
+  EXPECT_EQ(compare_to_whole("whole").exit_code, 0);
+  EXPECT_THAT(read_file(folder_ / "gate.xml"), HasSubstr("tests=\"1\" failures=\"0\""));
+  EXPECT_THAT(read_file(folder_ / "summary.md"),
+              testing::ContainsRegex("^before\n### MOS gate: REGRESSION(.|\n)*### MOS gate: pass"));
+
+  const cli::Answer printed = compare("out", {"--as", "junit"});
+  EXPECT_EQ(printed.exit_code, 0);
+  EXPECT_THAT(printed.out, testing::StartsWith("<?xml"));
+  EXPECT_EQ(compare("out", {"--summary", (folder_ / "room").string()}).exit_code, 3);
+}
+
 TEST_F(Compare, RefusesUnlikeResultsUnlessTold) {
   run_again("coarse", {"--set", "voxel_size_m=0.4"});
   const cli::Answer setting = compare("coarse");

@@ -44,7 +44,6 @@ constexpr OldLine kLines[] = {
     {"study cell OUT/s.yaml 01 02 --out OUT/s", "run OUT/s.yaml --only 01,02 --out OUT/s"},
     {"study table OUT/s.yaml --out OUT/s --format csv --output OUT/s.csv",
      "rank OUT/s.yaml --out OUT/s --as csv -o OUT/s.csv"},
-    {"compare OUT/run OUT/run --summary OUT/s.md", "compare OUT/run OUT/run --out OUT/s.md"},
     {"profile OUT/no --trace OUT/t.json", "profile OUT/no --out OUT/t.json"},
     {"trajectory OUT/t.txt --truth SIM --per-pose --plot OUT/x.png",
      "trajectory OUT/t.txt --truth SIM --out OUT/x.png --by pose"},

@@ -147,10 +147,23 @@ TEST(Answer, HasRecordsOnlyInItsCsv) {
 
 TEST(Answer, TellsGithubWhatFailed) {
   Answer answer{"regression\n", 1};
-  answer.annotations = {{"IoU of a,b: dropped", "50 % before\nnow"}};
+  answer.checks = {{"a,b", "IoU of a,b: dropped", "50 % before\nnow"}, {"c", "", ""}};
   EXPECT_EQ(render(answer, Format::kGithub),
             "regression\n::error title=IoU of a%2Cb%3A dropped::50 %25 before%0Anow\n");
   EXPECT_EQ(render(answer, Format::kText), "regression\n");
+}
+
+TEST(Answer, TellsCiServersWhatWasChecked) {
+  Answer answer = answer_of_all();
+  EXPECT_THROW(render(answer, Format::kJunit), UsageError) << "nothing was checked";
+  answer.checks = {{"a<b>&\"c\"\x1b\xff\xef\xbf\xbf", "IoU", "was > is"}, {"d", "", ""}};
+  EXPECT_THAT(
+      render(answer, Format::kJunit),
+      AllOf(testing::StartsWith("<?xml version=\"1.0\""), HasSubstr("tests=\"2\" failures=\"1\""),
+            HasSubstr("name=\"a&lt;b&gt;&amp;&quot;c&quot;\\x1b\\xff\\uffff\"><failure "
+                      "message=\"IoU: was &gt; is\">was &gt; is</failure></testcase>\n"),
+            HasSubstr("<testcase classname=\"mosbench\" name=\"d\"/>\n"),
+            HasSubstr("<system-out>\n")));
 }
 
 TEST(Answer, WithoutAChartIsNoPicture) {

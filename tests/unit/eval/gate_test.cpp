@@ -73,7 +73,7 @@ TEST(Gate, FailsWhereNothingMovesAndManyPointsAreCalledMoving) {
   EXPECT_FALSE(alarm.passed());
   EXPECT_THAT(render({.sheets = {gate_sheet(alarm)}}, Format::kText),
               testing::HasSubstr("room: 15036.0 false positives per scan were added, at most 10"));
-  EXPECT_THAT(gate_annotations(alarm).at(0).title, testing::Eq("False positives of room"));
+  EXPECT_THAT(gate_checks(alarm).at(0).title, testing::Eq("False positives of room"));
   EXPECT_EQ(to_json(alarm).at("checks").at(0).at("new_false_positives_per_scan"), 15'036.0);
   EXPECT_TRUE(judged(0, 10, 0, {}).passed());
   EXPECT_FALSE(judged(0, 11, 0, {}).passed());
@@ -104,8 +104,7 @@ TEST(Gate, EscapesNamesInAnnotationsAndMarkdown) {
     return judge(paired, protocol_named("sipailou"), {0.005});
   };
   const auto shown = [](const GateResult& result, Format format) {
-    return render({.sheets = {gate_sheet(result)}, .annotations = gate_annotations(result)},
-                  format);
+    return render({.sheets = {gate_sheet(result)}, .checks = gate_checks(result)}, format);
   };
   EXPECT_THAT(shown(judged(right, wrong), Format::kGithub),
               testing::EndsWith("\n::error title=IoU of day|50%25%3A a%2C%0Ab dropped::100.0 %25 "
@@ -113,7 +112,7 @@ TEST(Gate, EscapesNamesInAnnotationsAndMarkdown) {
   EXPECT_THAT(shown(judged(wrong, nothing), Format::kGithub),
               testing::EndsWith("\n::error title=IoU of day|50%25%3A a%2C%0Ab dropped::0.0 %25 "
                                 "before, undefined now\n"));
-  EXPECT_TRUE(gate_annotations(judged(right, right)).empty());
+  EXPECT_TRUE(gate_checks(judged(right, right)).at(0).passed());
   EXPECT_THAT(shown(judged(right, wrong), Format::kMarkdown),
               testing::HasSubstr("\n| day\\|50%: a,\\\\x0ab | 100.0 | 0.0 | -100.00 |"));
 }
