@@ -109,6 +109,12 @@ struct Places {
   std::vector<std::string> sequences_of_run;    ///< by which an interrupted run is known
 };
 
+/// Why a result was accepted as a baseline, and on which day (UTC): "2026-01-31".
+struct Acceptance {
+  std::string why, on;
+  bool operator==(const Acceptance&) const = default;
+};
+
 /// A pose that odometry does not trust.
 struct DoubtfulPose {
   std::string stem, doubt;
@@ -135,9 +141,10 @@ struct Result {
   std::vector<std::string> remarks, doubts;                 ///< as of a Recording
   std::vector<std::string> scans_left_out;                  ///< those without a pose
   std::optional<std::vector<DoubtfulPose>> doubtful_poses;  ///< of a run with odometry
-  std::optional<Timing> timing;   ///< neither of scored labels nor of accepted results
-  std::optional<Places> places;   ///< not of accepted results
-  bool has_whole_scores = false;  ///< its .score files hold int32, as in format 1
+  std::optional<Timing> timing;        ///< neither of scored labels nor of accepted results
+  std::optional<Places> places;        ///< not of accepted results
+  std::optional<Acceptance> accepted;  ///< of those for which somebody said why
+  bool has_whole_scores = false;       ///< its .score files hold int32, as in format 1
 
   std::filesystem::path folder() const { return file.parent_path(); }
   bool is_simulated() const { return from.simulated.has_value(); }

@@ -86,6 +86,12 @@ void visit_members(Record& pose, auto&& visit) {
   visit("doubt", pose.doubt, Member::kNeeded);
 }
 
+template <Is<Acceptance> Record>
+void visit_members(Record& accepted, auto&& visit) {
+  visit("why", accepted.why, Member::kNeeded);
+  visit("on", accepted.on, Member::kNeeded);
+}
+
 template <Is<PredictionSource> Record>
 void visit_members(Record& source, auto&& visit) {
   visit("path", source.path, Member::kNeeded);
@@ -107,6 +113,7 @@ void visit_members(Record& places, auto&& visit) {
 /// What decides no labels; `unjudged` are the stems of scans that the method did not look at.
 void visit_findings(auto& result, auto& unjudged, auto&& visit) {
   visit("preset", result.preset, Member::kIfSet);
+  visit("accepted", result.accepted, Member::kIfSet);
   visit("program", result.from.program, Member::kIfSet);
   visit("program_files", result.from.program_files, Member::kIfAny);
   visit("odometry", result.from.odometry, Member::kIfSet);

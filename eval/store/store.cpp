@@ -116,22 +116,34 @@ struct BaselineChange {
   std::vector<fs::path> superseded;
 };
 
-BaselineChange change_of(const ResultSet& run, const fs::path& folder) {
+/// The bytes of a result that is accepted where `before` is; nothing where it is the same.
+std::optional<std::string> accepted_bytes(const Result& result, const fs::path& before,
+                                          const std::optional<Acceptance>& why) {
+  // Nothing that depends on the clock or the machine: accepting again changes nothing.
+  Result plain = result;
+  plain.from.machine.reset();
+  plain.timing.reset();
+  plain.places.reset();
+  if (is_there(before)) {
+    plain.accepted = read_result(before).accepted;
+    if (format_result(plain) == read_file(before)) return std::nullopt;
+  }
+  plain.accepted = why;
+  return format_result(plain);
+}
+
+BaselineChange change_of(const ResultSet& run, const fs::path& folder,
+                         const std::optional<Acceptance>& why, Others others) {
   BaselineChange change;
   std::set<fs::path> accepted;
   for (const Result& sequence : run.sequences) {
     const fs::path file = sequence.sequence.folder() / "result.json";
     accepted.insert(file);
-    // Nothing that depends on the clock or the machine: accepting again changes nothing.
-    Result plain = sequence;
-    plain.from.machine.reset();
-    plain.timing.reset();
-    plain.places.reset();
-    std::string bytes = format_result(plain);
-    if (!is_there(folder / file) || read_file(folder / file) != bytes) {
-      change.written[file] = std::move(bytes);
+    if (auto bytes = accepted_bytes(sequence, folder / file, why)) {
+      change.written[file] = std::move(*bytes);
     }
   }
+  if (others == Others::kKeep) return change;
   for (const fs::path& file : find_result_files(folder)) {
     const fs::path name = file.lexically_relative(folder);
     if (!accepted.contains(name)) change.superseded.push_back(name);
@@ -274,11 +286,12 @@ void refuse_overlap(const ResultSet& newer, const fs::path& folder) {
   }
 }
 
-void accept_baseline(const ResultSet& run, const fs::path& folder) {
+void accept_baseline(const ResultSet& run, const fs::path& folder,
+                     const std::optional<Acceptance>& why, Others others) {
   const fs::path baseline = resolved(folder);
   const fs::path fresh = partial_of(baseline);
   fs::remove_all(fresh);  // what a killed one left
-  const BaselineChange change = change_of(run, baseline);
+  const BaselineChange change = change_of(run, baseline, why, others);
   if (change.superseded.empty() && change.written.size() <= 1) {
     for (const auto& [file, bytes] : change.written) commit_file(baseline / file, bytes);
     return;

@@ -76,10 +76,15 @@ std::vector<ResultSet> accepted_runs(const std::filesystem::path& folder);
 /// that leads out of it.
 void refuse_overlap(const ResultSet& newer, const std::filesystem::path& folder);
 
-/// Writes <folder>/<sequence>/result.json for every sequence of the run, and removes sequences of
-/// the folder that the run does not have; other files stay. After a kill at any moment the old or
-/// the new baseline is whole. `folder` must be locked. Throws DataError.
-void accept_baseline(const ResultSet& run, const std::filesystem::path& folder);
+/// What becomes of the sequences of a baseline that a run does not have.
+enum class Others : std::uint8_t { kRemove, kKeep };
+
+/// Writes <folder>/<sequence>/result.json for every sequence of the run; other files stay. Results
+/// that change keep `why`. After a kill at any moment the old or the new baseline is whole.
+/// `folder` must be locked. Throws DataError.
+void accept_baseline(const ResultSet& run, const std::filesystem::path& folder,
+                     const std::optional<Acceptance>& why = std::nullopt,
+                     Others others = Others::kRemove);
 
 /// Writes files of `run --write` into a folder and keeps their hashes in its products.json, so that
 /// a later run knows which are as they were written.

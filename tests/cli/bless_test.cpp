@@ -110,6 +110,76 @@ TEST_F(Bless, LeavesTheOldOrTheNewBaselineWheneverItIsKilled) {
   EXPECT_THAT(beside(), ElementsAre("baseline"));
 }
 
+TEST_F(Bless, KeepsWhyAndWhenInWhatChanges) {
+  const auto accepted = [&](const char* sequence) {
+    const auto json = nlohmann::json::parse(read_file(baseline() / sequence / "result.json"));
+    return json.value("accepted", nlohmann::json());
+  };
+  const auto accept = [&](const std::string& newer, const std::string& flag,
+                          const std::vector<std::string>& more = {}) {
+    std::vector<std::string> words = {"compare", baseline().string(), (folder_ / newer).string(),
+                                      flag, "--even-if"};
+    words.insert(words.end(), more.begin(), more.end());
+    return cli::run(words);
+  };
+  const cli::Answer answer = accept("second", "--accept=more \"rooms\"");
+  ASSERT_EQ(answer.exit_code, 0) << answer.err;
+  EXPECT_THAT(answer.out, HasSubstr(": more \"rooms\"\n"));
+  EXPECT_THAT(answer.out, HasSubstr("MOS gate: pass")) << "sequence by sequence";
+  EXPECT_EQ(accepted("02").at("why"), "more \"rooms\"");
+  EXPECT_THAT(accepted("02").at("on").get<std::string>(), testing::MatchesRegex("20..-..-.."));
+  EXPECT_TRUE(accepted("01").is_null()) << "its result did not change";
+  EXPECT_THAT(cli::run({"compare", baseline().string(), (folder_ / "second").string()}).out,
+              HasSubstr(": more \"rooms\"\n"));
+  const Files before = cli::contents(baseline());
+  ASSERT_EQ(accept("second", "--accept=again").exit_code, 0);
+  EXPECT_EQ(cli::contents(baseline()), before) << "nothing changed";
+
+  // Sequence 00 alone; 01 and 02 stay, although the new run has no 02.
+  const cli::Answer one = accept("first", "--accept", {"--sequences", "00"});
+  ASSERT_EQ(one.exit_code, 0) << one.err;
+  EXPECT_THAT(sequences(), ElementsAre("00", "01", "02"));
+  EXPECT_EQ(accepted("02").at("why"), "more \"rooms\"");
+  EXPECT_TRUE(accepted("00").is_null());
+  EXPECT_EQ(accept("first", "--accept", {"--sequences", "07"}).exit_code, 3);
+  const cli::Answer coarse =
+      cli::run({"run", (folder_ / "data").string(), "--sequences", "00", "--out",
+                (folder_ / "coarse").string(), "--set", "voxel_size_m=0.4"});
+  ASSERT_EQ(coarse.exit_code, 0) << coarse.err;
+  EXPECT_THAT(accept("coarse", "--accept", {"--sequences", "00"}).err,
+              HasSubstr("keeps sequences of another kind"));
+  EXPECT_EQ(cli::run({"compare", baseline().string(), (folder_ / "first").string(), "--sequences",
+                      "00,01"})
+                .exit_code,
+            0);
+}
+
+TEST_F(Bless, TakesOneMethodOfSeveral) {
+  const auto run_both = [&](const char* out, const std::vector<std::string>& more) {
+    std::vector<std::string> words = {"run",      (folder_ / "data").string(),
+                                      "--method", "yoon,hmm-mos",
+                                      "--out",    (folder_ / out).string()};
+    words.insert(words.end(), more.begin(), more.end());
+    const cli::Answer answer = cli::run(words);
+    ASSERT_EQ(answer.exit_code, 0) << answer.err;
+  };
+  run_both("both", {"--sequences", "00"});
+  const auto asked = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words = {"compare", (folder_ / "base").string(),
+                                      (folder_ / "both").string()};
+    words.insert(words.end(), more.begin(), more.end());
+    return cli::run(words);
+  };
+  EXPECT_EQ(asked({"--accept"}).exit_code, 3) << "two runs";
+  for (const char* method : {"yoon", "hmm-mos"}) {
+    const cli::Answer answer = asked({"--accept=first", "--method", method});
+    ASSERT_EQ(answer.exit_code, 0) << answer.err;
+    EXPECT_TRUE(fs::exists(folder_ / "base" / method / "00/result.json"));
+    EXPECT_EQ(asked({"--method", method}).exit_code, 0);
+  }
+  EXPECT_THAT(asked({"--method", "octomap"}).err, HasSubstr("holds no results of octomap"));
+}
+
 TEST_F(Bless, RefusesFoldersThatOverlap) {
   fs::create_directory_symlink(folder_ / "first", folder_ / "link");
   const Files before = cli::contents(folder_ / "first");

@@ -1,0 +1,72 @@
+#include <fmt/format.h>
+
+#include <set>
+
+#include "datasets/text/errors.hpp"
+#include "datasets/text/text.hpp"
+#include "eval/cli/compare_kinds.hpp"
+#include "eval/store/store.hpp"
+
+namespace mosbench {
+namespace {
+
+/// Returns the folder with the results of the method; nothing where there are none.
+std::optional<std::filesystem::path> folder_of_method(const std::filesystem::path& place,
+                                                      const std::string& method) {
+  std::set<std::filesystem::path> folders;
+  for (const ResultSet& run : accepted_runs(place)) {
+    for (const Result& result : run.sequences) {
+      const bool is_it = result.kind == method || lower_case(result.method) == lower_case(method);
+      if (is_it) folders.insert(folder_of_run(result.folder(), result.sequence));
+    }
+  }
+  if (folders.size() > 1) {
+    throw DataError(place, fmt::format("holds results of {} in {} folders", method, folders.size()),
+                    "results of the method in one folder");
+  }
+  return folders.empty() ? std::nullopt : std::optional(*folders.begin());
+}
+
+}  // namespace
+
+void choose_method(CompareFlags& options) {
+  if (options.method.empty()) return;
+  const auto newer = folder_of_method(options.newer, options.method);
+  if (!newer) throw DataError(options.newer, "holds no results of " + options.method, "some");
+  const auto before = folder_of_method(options.baseline, options.method);
+  const std::filesystem::path within = newer->lexically_relative(options.newer);
+  if (before || within != ".") options.baseline = before.value_or(options.baseline / within);
+  options.newer = *newer;
+}
+
+bool is_chosen(const CompareFlags& options, const std::string& sequence) {
+  return options.sequences.empty() ||
+         std::ranges::find(options.sequences, sequence) != options.sequences.end();
+}
+
+ResultSet chosen(const CompareFlags& options, const std::filesystem::path& folder) {
+  ResultSet run = load_result_set(folder);
+  for (const std::string& name : options.sequences) {
+    const bool is_there = std::ranges::any_of(
+        run.sequences, [&](const Result& result) { return result.sequence.text() == name; });
+    if (is_there) continue;
+    throw DataError(folder, "has no sequence " + name, "those that --sequences names");
+  }
+  std::erase_if(run.sequences,
+                [&](const Result& result) { return !is_chosen(options, result.sequence); });
+  return run;
+}
+
+void check_shares_scans(const PairedRuns& paired, const CompareFlags& options) {
+  if (!paired.scans.empty()) return;
+  throw DataError(options.newer, "shares no counted scan with " + options.baseline.string(),
+                  "results over the same scans");
+}
+
+GateLimits limits_of(const CompareFlags& options) {
+  return {options.max_drop_points / 100.0,
+          options.statistical ? GateRule::kStatistical : GateRule::kMaxDrop,
+          options.max_added_false_positives};
+}
+
+}  // namespace mosbench
