@@ -33,8 +33,9 @@ Answer change(const CompareFlags& options, const ResultSet& newer,
   }
   if (paired.scans.empty()) return {"no scan in common with the baseline before\n"};
   Answer answer = difference_answer(baseline, newer, paired);
-  answer.sheets.push_back(
-      gate_sheet(judge(paired, *baseline.front().protocol, limits_of(options))));
+  const GateResult result = judged(options, baseline, newer, paired);
+  answer.sheets.push_back(gate_sheet(result));
+  if (!result.costs.empty()) answer.sheets.push_back(cost_sheet(result));
   return answer;
 }
 
@@ -56,7 +57,7 @@ void check_stays_one_run(const CompareFlags& options, const ResultSet& newer,
 }  // namespace
 
 Answer accept_newer(const CompareFlags& options) {
-  const ResultSet newer = chosen(options, options.newer);
+  const ResultSet newer = chosen_run(options, options.newer);
   refuse_stale({newer}, options.allow_stale);
   refuse_overlap(newer, options.baseline);
   restore_folder(resolved(options.baseline));

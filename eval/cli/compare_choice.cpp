@@ -44,7 +44,7 @@ bool is_chosen(const CompareFlags& options, const std::string& sequence) {
          std::ranges::find(options.sequences, sequence) != options.sequences.end();
 }
 
-ResultSet chosen(const CompareFlags& options, const std::filesystem::path& folder) {
+ResultSet chosen_run(const CompareFlags& options, const std::filesystem::path& folder) {
   ResultSet run = load_result_set(folder);
   for (const std::string& name : options.sequences) {
     const bool is_there = std::ranges::any_of(
@@ -63,10 +63,14 @@ void check_shares_scans(const PairedRuns& paired, const CompareFlags& options) {
                   "results over the same scans");
 }
 
-GateLimits limits_of(const CompareFlags& options) {
-  return {options.max_drop_points / 100.0,
-          options.statistical ? GateRule::kStatistical : GateRule::kMaxDrop,
-          options.max_added_false_positives};
+GateResult judged(const CompareFlags& options, const ResultSet& baseline, const ResultSet& newer,
+                  const PairedRuns& paired) {
+  const GateRule rule = options.statistical ? GateRule::kStatistical : GateRule::kMaxDrop;
+  GateResult result =
+      judge(paired, *baseline.front().protocol,
+            {options.max_drop_points / 100.0, rule, options.max_added_false_positives});
+  result.costs = check_costs(baseline, newer, cost_limits("--max-cost", options.max_cost));
+  return result;
 }
 
 }  // namespace mosbench

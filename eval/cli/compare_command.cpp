@@ -36,14 +36,20 @@ Answer answer_of(const ResultSet& baseline, const ResultSet& newer, const Paired
   sheet.lead.push_back(fmt::format("{} paired scans", paired.scans.size()));
   if (!unlike.empty()) sheet.lead.push_back("unlike: " + unlike);
   std::ranges::move(acceptances(baseline), std::back_inserter(sheet.lead));
+  if (!paired.added_settings.empty()) {
+    sheet.lead.push_back("settings that the baseline does not have: " + paired.added_settings);
+  }
+  std::vector<Sheet> sheets = {std::move(sheet)};
+  if (!result.costs.empty()) sheets.push_back(cost_sheet(result));
   nlohmann::ordered_json json = to_json(result);
   json["paired_scans"] = paired.scans.size();
   json["missing_predictions"] = {{"baseline", missing_predictions(baseline)},
                                  {"new", missing_predictions(newer)}};
   json["unlike"] = unlike;
+  json["added_settings"] = paired.added_settings;
   return {.exit_code = result.passed() ? 0 : 1,
           .standing = standing_of(baseline, "baseline", newer, "new"),
-          .sheets = {std::move(sheet)},
+          .sheets = std::move(sheets),
           .json = json_text(json),
           .checks = gate_checks(result)};
 }
@@ -52,8 +58,8 @@ Answer compare(const CompareFlags& options) {
   const Format written = format_of_name(options.out).value_or(Format::kMarkdown);
   if (!options.out.empty()) check_output(options.out, written);
   if (!options.summary.empty()) check_output(options.summary, Format::kMarkdown);
-  const ResultSet baseline = chosen(options, options.baseline);
-  const ResultSet newer = chosen(options, options.newer);
+  const ResultSet baseline = chosen_run(options, options.baseline);
+  const ResultSet newer = chosen_run(options, options.newer);
   refuse_stale({newer}, options.allow_stale);
   const PairedRuns paired = pair_runs(baseline, newer);
   if (!paired.unlike.empty() && !options.even_if) {
@@ -62,7 +68,7 @@ Answer compare(const CompareFlags& options) {
                     "results of the same kind; --even-if compares them anyway");
   }
   check_shares_scans(paired, options);
-  const GateResult result = judge(paired, *baseline.front().protocol, limits_of(options));
+  const GateResult result = judged(options, baseline, newer, paired);
   Answer answer = answer_of(baseline, newer, paired, result);
   if (!options.out.empty()) {
     write_output(options.out, render(answer, written));
@@ -93,6 +99,8 @@ CommandRun add_compare(CLI::App& command) {
       "False positives per scan that may be added (default: 10 where nothing moves, any number "
       "elsewhere)")
       ->check(CLI::NonNegativeNumber);
+  add(command, "--max-cost KEY=PERCENT,...", options->max_cost,
+      "By how much cpu, memory and bytes may grow; a cost without a limit is a warning at most");
   command.add_flag("--statistical", options->statistical,
                    "Fail only when the drop also exceeds what its 95 % interval leaves open");
   command.add_flag("--even-if", options->even_if, "Also compare results of different kinds");

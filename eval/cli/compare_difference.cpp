@@ -21,8 +21,8 @@ namespace {
 /// Returns what the new run changes, paired scan by scan. Throws DataError unless both are under
 /// one protocol, over the same scans and truth.
 Answer paired_difference(const CompareFlags& options) {
-  const ResultSet first = chosen(options, options.baseline);
-  const ResultSet second = chosen(options, options.newer);
+  const ResultSet first = chosen_run(options, options.baseline);
+  const ResultSet second = chosen_run(options, options.newer);
   PairedRuns paired = pair_runs(first, second);
   std::erase_if(paired.unlike,
                 [](const Unlike& unlike) { return unlike.kind == Unlike::Kind::kSetting; });
@@ -130,8 +130,8 @@ void check_has_truth(const ResultSet& run) {
 
 /// Returns the scans and, with --data, the objects on which the runs disagree.
 Answer scans_and_objects(const CompareFlags& options) {
-  const ResultSet first = chosen(options, options.baseline);
-  const ResultSet second = chosen(options, options.newer);
+  const ResultSet first = chosen_run(options, options.baseline);
+  const ResultSet second = chosen_run(options, options.newer);
   for (const ResultSet* run : {&first, &second}) check_has_truth(*run);
   const PairedRuns paired = pair_runs(first, second);
   check_shares_scans(paired, options);

@@ -25,6 +25,7 @@ struct CompareFlags {
   std::string accept;  ///< why; "true" where nothing was said
   std::vector<std::string> by, sequences;
   std::string method;
+  std::string max_cost;
   std::optional<std::filesystem::path> data;
   std::string dataset = "auto";
   std::size_t top = 10;
@@ -38,10 +39,12 @@ struct CompareFlags {
 void choose_method(CompareFlags& options);
 bool is_chosen(const CompareFlags& options, const std::string& sequence);
 /// Returns the chosen sequences of the run in a folder. Throws DataError where one is not there.
-ResultSet chosen(const CompareFlags& options, const std::filesystem::path& folder);
+ResultSet chosen_run(const CompareFlags& options, const std::filesystem::path& folder);
 /// Throws DataError for runs without a scan in common.
 void check_shares_scans(const PairedRuns& paired, const CompareFlags& options);
-GateLimits limits_of(const CompareFlags& options);
+/// Judges labels and cost by the limits that were asked for. Throws UsageError.
+GateResult judged(const CompareFlags& options, const ResultSet& baseline, const ResultSet& newer,
+                  const PairedRuns& paired);
 
 /// Shows what the new run changes in each sequence, or on which scans and objects the two disagree.
 /// Throws UsageError and DataError.

@@ -151,6 +151,7 @@ ComputedSequence compute_sequence(const RunPlan& plan, const PlannedSequence& pl
     result.timing->core_s = plan.job.segment.is_program()
                                 ? std::chrono::duration<double>(Clock::now() - start).count()
                                 : 1e-3 * (process_cpu_ms() - start_cpu_ms);
+    result.timing->calibration_ms = calibration_ms();
   }
   return computed;
 }

@@ -15,6 +15,10 @@ struct Machine {
 };
 Machine this_machine();
 
+/// Returns the CPU milliseconds that a fixed piece of work takes here, the least of some rounds,
+/// which this process measures once: CPU times of two machines compare by the ratio of theirs.
+double calibration_ms();
+
 /// Version of mosbench and the compiler that built it.
 nlohmann::ordered_json code_json();
 

@@ -154,6 +154,23 @@ std::string simulation_of(const Result& result) {
                 : "";
 }
 
+std::optional<RunCost> run_cost(const Result& result) {
+  if (result.cost || !result.timing || !result.timing->core_s || result.scans.empty()) {
+    return result.cost;
+  }
+  RunCost cost{
+      .core_ms_per_scan = 1e3 * *result.timing->core_s / static_cast<double>(result.scans.size()),
+      .calibration_ms = result.timing->calibration_ms,
+      .most_resident_mib = most_resident_mib(result).value_or(0.0)};
+  std::error_code error;
+  for (fs::recursive_directory_iterator it(result.folder(), error), end; !error && it != end;
+       it.increment(error)) {
+    if (!it->is_regular_file(error) || it->path().filename() == "result.json") continue;
+    cost.bytes_written += it->file_size(error);
+  }
+  return cost;
+}
+
 std::vector<const ScanRow*> counted_scans(const Result& result) {
   const std::string own_split(result.protocol->default_split);
   const auto split = result.splits.find(own_split);

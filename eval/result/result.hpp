@@ -52,9 +52,10 @@ struct ScanCost {
 struct Timing {
   unsigned threads = 0;  ///< that the method was run with; 0 in results that do not tell
   double wall_s = 0.0;
-  std::optional<double> core_s = std::nullopt;  ///< that a core was taken, poses included
-  std::vector<std::string> stages;              ///< names, in the order in which they first ran
-  std::vector<ScanCost> costs;                  ///< as many as scans
+  std::optional<double> core_s = std::nullopt;          ///< that a core was taken, poses included
+  std::optional<double> calibration_ms = std::nullopt;  ///< of the machine, see `calibration_ms`
+  std::vector<std::string> stages;  ///< names, in the order in which they first ran
+  std::vector<ScanCost> costs;      ///< as many as scans
 };
 
 /// Settings of the odometry that found the poses.
@@ -115,6 +116,14 @@ struct Acceptance {
   bool operator==(const Acceptance&) const = default;
 };
 
+/// What a run cost.
+struct RunCost {
+  double core_ms_per_scan = 0.0;
+  std::optional<double> calibration_ms;  ///< of the machine
+  double most_resident_mib = 0.0;
+  std::uint64_t bytes_written = 0;  ///< beside result.json
+};
+
 /// A pose that odometry does not trust.
 struct DoubtfulPose {
   std::string stem, doubt;
@@ -143,6 +152,7 @@ struct Result {
   std::optional<std::vector<DoubtfulPose>> doubtful_poses;  ///< of a run with odometry
   std::optional<Timing> timing;        ///< neither of scored labels nor of accepted results
   std::optional<Places> places;        ///< not of accepted results
+  std::optional<RunCost> cost;         ///< of accepted results, see `run_cost`
   std::optional<Acceptance> accepted;  ///< of those for which somebody said why
   bool has_whole_scores = false;       ///< its .score files hold int32, as in format 1
 
@@ -161,6 +171,10 @@ void add_stages(const std::vector<StageTime>& stages, Timing& timing, ScanCost& 
 std::optional<double> method_ms_per_scan(const Result& result);
 /// Most memory that the process held after a scan.
 std::optional<double> most_resident_mib(const Result& result);
+
+/// Returns what the run of a result cost, or the one that was accepted; nothing where nobody timed
+/// it. Looks at the files of the run.
+std::optional<RunCost> run_cost(const Result& result);
 
 /// The split whose scans alone were scored where that is not the protocol's own.
 std::optional<std::string> only_split(const Result& result);

@@ -92,6 +92,14 @@ void visit_members(Record& accepted, auto&& visit) {
   visit("on", accepted.on, Member::kNeeded);
 }
 
+template <Is<RunCost> Record>
+void visit_members(Record& cost, auto&& visit) {
+  visit("core_ms_per_scan", cost.core_ms_per_scan, Member::kNeeded);
+  visit("calibration_ms", cost.calibration_ms, Member::kIfSet);
+  visit("most_resident_mib", cost.most_resident_mib, Member::kNeeded);
+  visit("bytes_written", cost.bytes_written, Member::kNeeded);
+}
+
 template <Is<PredictionSource> Record>
 void visit_members(Record& source, auto&& visit) {
   visit("path", source.path, Member::kNeeded);
@@ -114,6 +122,7 @@ void visit_members(Record& places, auto&& visit) {
 void visit_findings(auto& result, auto& unjudged, auto&& visit) {
   visit("preset", result.preset, Member::kIfSet);
   visit("accepted", result.accepted, Member::kIfSet);
+  visit("cost", result.cost, Member::kIfSet);
   visit("program", result.from.program, Member::kIfSet);
   visit("program_files", result.from.program_files, Member::kIfAny);
   visit("odometry", result.from.odometry, Member::kIfSet);

@@ -20,8 +20,9 @@ std::string text_of(const SettingValue* value) {
 }
 
 /// Returns "voxel_size_m: 0.25 -> 0.4, ..."; empty if the settings are equal or unknown. Two
-/// methods are compared by the settings that both have.
-std::string changed_settings(const Result& first, const Result& second) {
+/// methods are compared by the settings that both have. What the second one has besides is no
+/// change but `added`: a later release may have more settings.
+std::string changed_settings(const Result& first, const Result& second, std::string& added) {
   if (!first.settings || !second.settings) return "";
   std::vector<std::string> names;
   for (const RecordedSettings* settings : {&*second.settings, &*first.settings}) {
@@ -37,12 +38,17 @@ std::string changed_settings(const Result& first, const Result& second) {
     if ((first.method != second.method && !of_both) || (of_both && are_equal(*before, *after))) {
       continue;
     }
+    if (before == nullptr) {
+      added += fmt::format("{}{}: {}", added.empty() ? "" : ", ", name, text_of(after));
+      continue;
+    }
     changes.push_back(fmt::format("{}: {} -> {}", name, text_of(before), text_of(after)));
   }
   return fmt::format("{}", fmt::join(changes, ", "));
 }
 
-void compare_rules(const Result& first, const Result& second, std::vector<Unlike>& unlike) {
+void compare_rules(const Result& first, const Result& second, PairedRuns& paired) {
+  std::vector<Unlike>& unlike = paired.unlike;
   const auto differ = [&unlike](Kind kind, const char* what, const std::string& a,
                                 const std::string& b) {
     if (a != b) unlike.push_back({kind, fmt::format("{} is {} and {}", what, a, b)});
@@ -52,8 +58,9 @@ void compare_rules(const Result& first, const Result& second, std::vector<Unlike
   differ(Kind::kProtocol, "counted range", range_text(first.range), range_text(second.range));
   differ(Kind::kInput, "data set", first.dataset, second.dataset);
   differ(Kind::kSetting, "method", first.method, second.method);
-  const std::string changes = changed_settings(first, second);
-  if (changes.empty() && first.method == second.method) {
+  const std::string changes = changed_settings(first, second, paired.added_settings);
+  const bool are_recorded = first.settings && second.settings;
+  if (!are_recorded && first.method == second.method) {
     differ(Kind::kSetting, "setting", first.setting, second.setting);
   } else if (!changes.empty()) {
     unlike.push_back({Kind::kSetting, changes});
@@ -204,7 +211,7 @@ Estimates estimate(std::span<const Result> sequences) {
 PairedRuns pair_runs(const ResultSet& first, const ResultSet& second) {
   PairedRuns paired;
   paired.spacing = spacing_of(first.sequences);
-  compare_rules(first.front(), second.front(), paired.unlike);
+  compare_rules(first.front(), second.front(), paired);
   Pairing pairing(paired);
   const auto named = [](const ResultSet& set, const SequenceName& name) {
     return std::ranges::find(set.sequences, name, &Result::sequence);
@@ -241,7 +248,10 @@ bool GateCheck::passed() const {
          (!most_added_false_positives || added <= *most_added_false_positives + kRounding);
 }
 
-bool GateResult::passed() const { return std::ranges::all_of(checks, &GateCheck::passed); }
+bool GateResult::passed() const {
+  return std::ranges::all_of(checks, &GateCheck::passed) &&
+         std::ranges::all_of(costs, &CostCheck::passed);
+}
 
 GateResult judge(const PairedRuns& paired, const Protocol& protocol, const GateLimits& limits) {
   GateResult result{limits.rule, {}};

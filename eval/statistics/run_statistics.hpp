@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "eval/result/result.hpp"
+#include "eval/statistics/cost_check.hpp"
 #include "eval/statistics/intervals.hpp"
 
 namespace mosbench {
@@ -35,6 +36,7 @@ struct PairedRuns {
   std::vector<Scan> scans;                    ///< by sequence, in the order of the first run
   std::vector<SequenceCounts> first, second;  ///< their counts, per sequence
   std::vector<Unlike> unlike;                 ///< why a difference may not be due to the labels
+  std::string added_settings{};               ///< "p: 3", those that only the second run has
   Spacing spacing = Spacing::kNear;           ///< of the scans
 };
 
@@ -65,7 +67,8 @@ struct GateCheck {
 
 struct GateResult {
   GateRule rule = GateRule::kMaxDrop;
-  std::vector<GateCheck> checks;  ///< each sequence with counted scans, then all
+  std::vector<GateCheck> checks;   ///< each sequence with counted scans, then all
+  std::vector<CostCheck> costs{};  ///< of all sequences together, where both runs know them
   bool passed() const;
 };
 

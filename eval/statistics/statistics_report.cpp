@@ -234,6 +234,22 @@ Sheet gate_sheet(const GateResult& result) {
   return sheet;
 }
 
+Sheet cost_sheet(const GateResult& result) {
+  Sheet sheet{.columns = {{"cost", Unit::kText},
+                          {"baseline", Unit::kNumber, 1},
+                          {"new", Unit::kNumber, 1},
+                          {"change", Unit::kPercent},
+                          {"tolerance", Unit::kPercent},
+                          {"verdict", Unit::kText}},
+              .notes = {"CPU as on the baseline's machine; a cost fails only by --max-cost"}};
+  for (const CostCheck& cost : result.costs) {
+    const char* bad = cost.limit ? "REGRESSION" : "warning";
+    sheet.rows.push_back({std::string(cost.kind->title), cost.baseline, cost.newer, cost.growth(),
+                          cost.tolerance(), cost.is_within() ? "pass" : bad});
+  }
+  return sheet;
+}
+
 std::vector<CheckResult> gate_checks(const GateResult& result) {
   std::vector<CheckResult> checks;
   for (const GateCheck& check : result.checks) {
@@ -251,6 +267,15 @@ std::vector<CheckResult> gate_checks(const GateResult& result) {
                     : "undefined now";
     told.title = fmt::format("IoU of {} dropped", check.name);
     told.message = percent_text(check.baseline) + " % before, " + now;
+  }
+  for (const CostCheck& cost : result.costs) {
+    if (!cost.limit) continue;
+    CheckResult& told = checks.emplace_back(CheckResult{std::string(cost.kind->title), "", ""});
+    if (cost.passed()) continue;
+    told.title = fmt::format("{} grew", cost.kind->title);
+    told.message =
+        fmt::format("{:.1f} before, {:.1f} now: {} %, tolerance {} %", cost.baseline, cost.newer,
+                    percent_text(cost.growth(), "{:+.1f}"), percent_text(cost.tolerance()));
   }
   return checks;
 }
@@ -272,6 +297,16 @@ ordered_json to_json(const GateResult& result) {
     one["new_false_positives_per_scan"] = check.new_false_positives;
     one["most_added_false_positives_per_scan"] = json_or_null(check.most_added_false_positives);
     one["passed"] = check.passed();
+  }
+  json["costs"] = ordered_json::array();
+  for (const CostCheck& cost : result.costs) {
+    json["costs"].push_back({{"name", std::string(cost.kind->key)},
+                             {"baseline", cost.baseline},
+                             {"new", cost.newer},
+                             {"change", cost.growth()},
+                             {"tolerance", cost.tolerance()},
+                             {"decides", cost.limit.has_value()},
+                             {"passed", cost.is_within()}});
   }
   return json;
 }

@@ -35,6 +35,10 @@ Answer difference_answer(const ResultSet& first, const ResultSet& second, const 
 /// whether other scans like these would show the difference.
 Sheet gate_sheet(const GateResult& result);
 
+/// Says what both runs cost; without rows where that is not known.
+Sheet cost_sheet(const GateResult& result);
+
+/// Returns one per check, and per cost that has a limit.
 std::vector<CheckResult> gate_checks(const GateResult& result);
 
 nlohmann::ordered_json to_json(const GateResult& result);

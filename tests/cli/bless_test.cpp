@@ -128,7 +128,7 @@ TEST_F(Bless, KeepsWhyAndWhenInWhatChanges) {
   EXPECT_THAT(answer.out, HasSubstr("MOS gate: pass")) << "sequence by sequence";
   EXPECT_EQ(accepted("02").at("why"), "more \"rooms\"");
   EXPECT_THAT(accepted("02").at("on").get<std::string>(), testing::MatchesRegex("20..-..-.."));
-  EXPECT_TRUE(accepted("01").is_null()) << "its result did not change";
+  EXPECT_EQ(accepted("01").at("why"), "more \"rooms\"") << "its cost changed";
   EXPECT_THAT(cli::run({"compare", baseline().string(), (folder_ / "second").string()}).out,
               HasSubstr(": more \"rooms\"\n"));
   const Files before = cli::contents(baseline());
@@ -152,6 +152,35 @@ TEST_F(Bless, KeepsWhyAndWhenInWhatChanges) {
                       "00,01"})
                 .exit_code,
             0);
+}
+
+/// The calibration makes the CPU of two machines comparable; here it says that this one is slow.
+TEST_F(Bless, KeepsTheCostThatAGateComparesWith) {
+  const fs::path file = baseline() / "00/result.json";
+  auto json = nlohmann::ordered_json::parse(read_file(file));
+  const auto& cost = json.at("cost");
+  EXPECT_GT(cost.at("core_ms_per_scan").get<double>(), 0.0);
+  EXPECT_GT(cost.at("calibration_ms").get<double>(), 0.0);
+  EXPECT_GT(cost.at("bytes_written").get<int>(), 6 * 4 * 100);
+  const auto compare = [&](const std::string& max_cost) {
+    return cli::run(
+        {"compare", baseline().string(), (folder_ / "first").string(), "--max-cost", max_cost});
+  };
+  EXPECT_EQ(compare("cpu=0,memory=0,bytes=0").exit_code, 0) << "the same run";
+  json["cost"]["core_ms_per_scan"] = cost.at("core_ms_per_scan").get<double>() / 100.0;
+  json["settings"].erase("min_otsu_score");  // of a release before
+  write_file_atomic(file, json.dump());
+  const cli::Answer warned =
+      cli::run({"compare", baseline().string(), (folder_ / "first").string(), "--sequences", "00"});
+  EXPECT_EQ(warned.exit_code, 0) << warned.err;
+  EXPECT_THAT(warned.out, testing::ContainsRegex("CPU ms per scan .* warning"));
+  EXPECT_THAT(warned.out, HasSubstr("settings that the baseline does not have: min_otsu_score: 3"));
+  const cli::Answer failed =
+      cli::run({"compare", baseline().string(), (folder_ / "first").string(), "--sequences", "00",
+                "--max-cost", "cpu=50", "--as", "github"});
+  EXPECT_EQ(failed.exit_code, 1) << failed.err;
+  EXPECT_THAT(failed.out, HasSubstr("::error title=CPU ms per scan grew::"));
+  EXPECT_EQ(compare("gpu=3").exit_code, 2);
 }
 
 TEST_F(Bless, TakesOneMethodOfSeveral) {

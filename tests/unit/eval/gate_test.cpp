@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "datasets/text/errors.hpp"
 #include "eval/answer/render.hpp"
 #include "eval/statistics/statistics_report.hpp"
 
@@ -83,6 +84,48 @@ TEST(Gate, FailsWhereNothingMovesAndManyPointsAreCalledMoving) {
   EXPECT_FALSE(judged(0, 15'036, 1000, 15'035).passed());
   EXPECT_TRUE(judged(0, 15'036, 1000, 15'036).passed());
   EXPECT_TRUE(judged(0, 15'036, 0, 15'036).passed());
+}
+
+ResultSet run_that_cost(const RunCost& cost) {
+  Result result;
+  result.sequence = SequenceName("street", "street");
+  result.scans.resize(4);
+  result.cost = cost;
+  return {"run", {result}};
+}
+
+TEST(Gate, ComparesCpuByTheSpeedOfBothMachines) {
+  const ResultSet slow = run_that_cost({40.0, 10.0, 100.0, 1000});
+  const ResultSet fast = run_that_cost({22.0, 5.0, 130.0, 1000});
+  const auto checks = check_costs(slow, fast, cost_limits("--max-cost", "cpu=9"));
+  ASSERT_EQ(checks.size(), 3U);
+  EXPECT_NEAR(checks[0].growth(), 0.1, 1e-12) << "44 ms on the slower machine";
+  EXPECT_FALSE(checks[0].passed());
+  EXPECT_FALSE(checks[1].is_within());
+  EXPECT_TRUE(checks[1].passed()) << "a warning";
+  EXPECT_TRUE(checks[2].is_within());
+  EXPECT_TRUE(check_costs(slow, fast, cost_limits("--max-cost", "cpu=10"))[0].passed());
+  const GateResult result{GateRule::kMaxDrop, {}, checks};
+  EXPECT_FALSE(result.passed());
+  EXPECT_THAT(
+      render({.sheets = {cost_sheet(result)}}, Format::kText),
+      testing::AllOf(testing::ContainsRegex("CPU ms per scan +40.0 +44.0 +10.0 +9.0  REGRESSION"),
+                     testing::ContainsRegex("most memory, MiB .* warning")));
+  ASSERT_EQ(gate_checks(result).size(), 1U) << "a warning is no check";
+  EXPECT_EQ(gate_checks(result)[0].title, "CPU ms per scan grew");
+}
+
+TEST(Gate, ComparesNoCpuWithoutACalibrationAndNoCostThatIsNotKnown) {
+  const ResultSet known = run_that_cost({40.0, 10.0, 100.0, 1000});
+  const ResultSet old = run_that_cost({40.0, std::nullopt, 100.0, 1000});
+  ASSERT_EQ(check_costs(old, known, {}).size(), 2U);
+  EXPECT_EQ(check_costs(old, known, {})[0].kind->key, "memory");
+  ResultSet untimed = known;
+  untimed.sequences[0].cost.reset();
+  EXPECT_TRUE(check_costs(untimed, known, {}).empty());
+  for (const char* wrong : {"cpu", "cpu=", "cpu=x", "cpu=-1", "gpu=3"}) {
+    EXPECT_THROW(cost_limits("--max-cost", wrong), UsageError) << wrong;
+  }
 }
 
 TEST(Gate, SaysWhyThereIsNoInterval) {
