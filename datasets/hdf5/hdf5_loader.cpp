@@ -15,17 +15,26 @@ struct ModuleFunction {
   std::string error = "it is in none of its folders";
 };
 
+/// Where this code lies: the program, or the library of the Python package.
+std::filesystem::path own_folder() {
+  static const char kAddress = 0;
+  Dl_info found{};
+  if (dladdr(&kAddress, &found) == 0) return {};
+  return std::filesystem::path(found.dli_fname).parent_path();
+}
+
 /// Loads a module (a shared library beside the program, of the same build) when it is first needed:
 /// with all its libraries libhdf5 would cost every start of the program milliseconds. Looks in
-/// three folders: relative to the installed program, in the installation prefix, and in the build
-/// tree.
+/// four folders: beside this code, where a wheel has it, relative to the installed program, in the
+/// installation prefix, and in the build tree.
 ModuleFunction load_function(const char* module, const char* function) {
   std::error_code ignored;
   const auto program = std::filesystem::read_symlink("/proc/self/exe", ignored);
   ModuleFunction loaded;
-  for (const std::filesystem::path& folder : {program.parent_path() / MOSBENCH_MODULES_FROM_PROGRAM,
-                                              std::filesystem::path(MOSBENCH_MODULES_INSTALLED),
-                                              std::filesystem::path(MOSBENCH_MODULES_BUILT)}) {
+  for (const std::filesystem::path& folder :
+       {own_folder(), program.parent_path() / MOSBENCH_MODULES_FROM_PROGRAM,
+        std::filesystem::path(MOSBENCH_MODULES_INSTALLED),
+        std::filesystem::path(MOSBENCH_MODULES_BUILT)}) {
     const auto file = folder / module;
     if (!file.is_absolute() || !std::filesystem::exists(file, ignored)) continue;
     void* opened = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);

@@ -1,5 +1,11 @@
 """Files of OpenSceneFlow as its own scripts write them, by h5py."""
 
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 
@@ -192,3 +198,17 @@ def test_poses_too_coarse_for_the_flow_are_refused(tmp_path):
         scan = drive()[0]
         seen = ~scan["ground_mask"] & scan["counted"]
         assert np.array_equal(ids == 251, seen & scan["moving"])
+
+
+def test_a_wheel_has_the_module_of_libhdf5_beside_its_own(tmp_path):
+    package = pathlib.Path(mosbench.__file__).parent
+    module = package.parents[1] / "datasets/modules/mosbench_hdf5.so"
+    if not module.exists():
+        pytest.skip("this build has no libhdf5")
+    wheel = tmp_path / "site/mosbench"
+    shutil.copytree(package, wheel)
+    shutil.copy(module, wheel)
+    code = "import mosbench, sys; print(len(mosbench.open(sys.argv[1]).sequences), open('/proc/self/maps').read())"
+    done = subprocess.run([sys.executable, "-c", code, write(tmp_path / "a.h5", drive())], capture_output=True, text=True,
+                          env={**os.environ, "PYTHONPATH": str(wheel.parent)}, check=True)
+    assert str(wheel / module.name) in done.stdout
