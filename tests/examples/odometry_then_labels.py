@@ -7,7 +7,7 @@ import mosbench
 
 
 def main(folder: str) -> None:
-    sequence = mosbench.open(mosbench.simulate(f"{folder}/street", scene="street", scans=20))
+    sequence = mosbench.open(mosbench.simulate(f"{folder}/street", scene="street", scans=20), sequence="08")
     poses = mosbench.odometry(sequence, kind="simple", min_range_m=1.5)
     errors = mosbench.evaluate_trajectory(poses, sequence.gt_poses, align="origin")
     off_m = errors["sequences"][0]["absolute"]["translation_m"]["rmse"]

@@ -8,12 +8,14 @@ import pathlib
 import tempfile
 
 import numpy as np
+from numpy.typing import NDArray
 
 import mosbench
 
 
-def network(points: np.ndarray) -> np.ndarray:
-    return (points[:, 2] > -1.4) & (np.linalg.norm(points[:, :2], axis=1) < 15.0)
+def network(points: NDArray[np.float32]) -> NDArray[np.bool_]:
+    moving: NDArray[np.bool_] = (points[:, 2] > -1.4) & (np.linalg.norm(points[:, :2], axis=1) < 15.0)
+    return moving
 
 
 def main(folder: pathlib.Path) -> None:
@@ -21,7 +23,7 @@ def main(folder: pathlib.Path) -> None:
     predictions = folder / "predictions"
     predictions.mkdir()
     counts = []
-    for scan in mosbench.open(data):
+    for scan in mosbench.open(data, sequence="08"):
         moving = network(scan.points)
         counts.append(mosbench.confusion(moving, scan.truth, protocol="semantickitti-mos"))
         labels = np.where(moving, mosbench.MOVING_LABEL, mosbench.STATIC_LABEL)

@@ -14,23 +14,28 @@ from typing import Any, Iterable, Iterator, Mapping, Optional, Union
 import numpy as np
 
 from mosbench import _mosbench
-from mosbench.arrays import as_array
+from mosbench.arrays import Array, as_array
 from mosbench.datasets import Dataset, Opened, Sequence, seconds_after_stamp
 from mosbench.flags import flags, plain_errors, reading_flags, whole_number
 from mosbench.online import Config, SettingValue, refuse_no_settings
 from mosbench.poses import checked_poses, is_path, keep_poses, pose_files, write_changed
 from mosbench.results import Result
 
-PathLike = Union[str, os.PathLike]
+PathLike = Union[str, os.PathLike[str]]
 
 
 def _command(arguments: list[str], quiet: bool = True) -> tuple[int, str]:
     return plain_errors(_mosbench.command, arguments, quiet)
 
 
-def _answer(arguments: list[str], quiet: bool = True) -> tuple[int, Any]:
+def _json(text: str) -> dict[str, Any]:
+    content: dict[str, Any] = json.loads(text)
+    return content
+
+
+def _answer(arguments: list[str], quiet: bool = True) -> tuple[int, dict[str, Any]]:
     exit_code, text = _command([*arguments, "--json"], quiet)
-    return exit_code, json.loads(text)
+    return exit_code, _json(text)
 
 
 def _setting_flags(settings: Optional[Mapping[str, SettingValue]], flag: str = "--set") -> list[str]:
@@ -65,16 +70,16 @@ def _names(names: Union[str, Iterable[str]]) -> Optional[list[str]]:
 
 def _data_flags(data: Any, dataset: str, sequences: Iterable[str], reading: Mapping[str, Any]) -> list[str]:
     """Returns the folder of data, or of what `mosbench.open` opened, and how to read it."""
-    names = _names(sequences)
+    names: Optional[Iterable[str]] = _names(sequences)
     if isinstance(data, (Dataset, Sequence)):
         by: Opened = data.opened_by
         data, dataset, names = by.path, by.dataset, names or by.sequences
-    return [os.fspath(data), *flags(dataset=dataset, sequences=names or None), *reading_flags(reading)]
+    return [os.fspath(data), *flags(dataset=dataset, sequences=list(names) if names else None), *reading_flags(reading)]
 
 
 def _answer_on_data(
     command: str, data: Any, dataset: str, sequences: Iterable[str], reading: Mapping[str, Any], more: list[str]
-) -> tuple[int, Any]:
+) -> tuple[int, dict[str, Any]]:
     """Answers a command that needs poses and keeps no results."""
     reading = _how_to_read(data, reading)
     _refuse_no_poses(reading)
@@ -95,16 +100,16 @@ def _data_folder(out: PathLike) -> pathlib.Path:
 @contextlib.contextmanager
 def _removed_on_error(folder: Optional[pathlib.Path]) -> Iterator[None]:
     """Removes a folder that a failed call made; what Ctrl-C ends goes on from there."""
-    made = folder is not None and not folder.exists()
+    made = folder if folder is not None and not folder.exists() else None
     try:
         yield
     except Exception:
-        if made:
-            shutil.rmtree(folder, ignore_errors=True)
+        if made is not None:
+            shutil.rmtree(made, ignore_errors=True)
         raise
 
 
-def _points_of(item: Any, index: int) -> np.ndarray:
+def _points_of(item: Any, index: int) -> Array:
     points = as_array((item or (None,))[0] if isinstance(item, tuple) else item, f"scan {index}")
     if points.dtype.kind not in "fiu":
         raise ValueError(f"scan {index}: is {type(item).__name__} without points, expected (points (N, 3), times)")
@@ -127,7 +132,7 @@ def _scan_rows(item: Any, index: int, with_times: bool) -> bytes:
     return rows.tobytes()
 
 
-def _gt_poses(dataset: Any) -> np.ndarray:
+def _gt_poses(dataset: Any) -> Array:
     poses = getattr(dataset, "gt_poses", None)
     if poses is None:
         raise ValueError("data: has no gt_poses, one (4, 4) per scan; expected them, or odometry='simple'")
@@ -230,7 +235,7 @@ def run(
     if is_object and out is None:
         out = f"results/runs/{name}"
     with _removed_on_error(None if out is None else _data_folder(out)):
-        if is_object:
+        if is_object and out is not None:
             folder = _data_folder(out) / name
             with_times = reading.get("deskew") in ("velocity", "poses") and "point_times" not in reading
             _write_sequence(data, folder, odometry is None and reading.get("poses") is None, with_times)
@@ -313,7 +318,7 @@ def diff(
 
 def table(name: str, *results: Union[Result, PathLike]) -> dict[str, Any]:
     """Returns a published table ("I", "II", ...) with measured values next to it, as `table --json`."""
-    return json.loads(_command(["table", name, *map(_folder, results), "--json"])[1])
+    return _json(_command(["table", name, *map(_folder, results), "--json"])[1])
 
 
 def rank(*results: Union[Result, PathLike], order: str = "iou") -> dict[str, Any]:
@@ -321,7 +326,7 @@ def rank(*results: Union[Result, PathLike], order: str = "iou") -> dict[str, Any
 
     order: "iou", the best first, or "given"; differences are to the first row.
     """
-    return json.loads(_command(["rank", *map(_folder, results), *flags(order=order), "--json"])[1])
+    return _json(_command(["rank", *map(_folder, results), *flags(order=order), "--json"])[1])
 
 
 def curve(result: Union[Result, PathLike], picture: Optional[PathLike] = None) -> dict[str, Any]:
@@ -329,7 +334,7 @@ def curve(result: Union[Result, PathLike], picture: Optional[PathLike] = None) -
 
     result: of `run(..., scores=True)`. picture: PNG file to draw the curve to.
     """
-    return json.loads(_command(["stats", _folder(result), *flags(by="threshold", out=picture), "--json"])[1])
+    return _json(_command(["stats", _folder(result), *flags(by="threshold", out=picture), "--json"])[1])
 
 
 def map_score(map: PathLike, truth: PathLike, *, same_within_m: float = 0.05) -> dict[str, Any]:
@@ -340,7 +345,7 @@ def map_score(map: PathLike, truth: PathLike, *, same_within_m: float = 0.05) ->
     the truth.
     """
     arguments = ["score", os.fspath(truth), *flags(map=map, same_within_m=same_within_m)]
-    return json.loads(_command([*arguments, "--json"])[1])
+    return _json(_command([*arguments, "--json"])[1])
 
 
 @dataclasses.dataclass(frozen=True)
@@ -361,13 +366,20 @@ def compare(
     max_drop: Optional[float] = None,
     statistical: bool = False,
     even_if: bool = False,
+    max_cost: Optional[Mapping[str, float]] = None,
+    sequences: Iterable[str] = (),
+    method: Optional[str] = None,
 ) -> Comparison:
     """Judges whether IoU dropped, as `mosbench compare` does.
 
-    max_drop: in percentage points. even_if: also compare results of different kinds.
+    max_drop: in percentage points. even_if: also compare results of different kinds. max_cost: in percent, by how
+    much "cpu", "memory" and "bytes" may grow; without it such growth is in `content` alone. sequences, method: to
+    look at these only, where the folders hold more.
     """
     arguments = ["compare", _folder(baseline), _folder(new)]
-    exit_code, content = _answer(arguments + flags(max_drop=max_drop, statistical=statistical, even_if=even_if))
+    arguments += flags(max_drop=max_drop, statistical=statistical, even_if=even_if, sequences=_names(sequences))
+    cost = [f"{kind}={percent}" for kind, percent in (max_cost or {}).items()]
+    exit_code, content = _answer(arguments + flags(max_cost=cost or None, method=method))
     return Comparison(exit_code == 0, content)
 
 
@@ -407,7 +419,8 @@ class Checkup:
     @property
     def symptoms(self) -> list[dict[str, Any]]:
         """Severity, place and sentence of everything that is wrong."""
-        return self.content["symptoms"]
+        symptoms: list[dict[str, Any]] = self.content["symptoms"]
+        return symptoms
 
 
 def doctor(data: Any, *, dataset: str = "auto", sequences: Iterable[str] = (), **reading: Any) -> Checkup:
@@ -426,4 +439,4 @@ def evaluate_trajectory(estimate: Any, truth: Any, *, align: str = "none") -> di
     with pose_files() as files:
         arguments = ["trajectory", files.path(estimate, "estimate")]
         arguments += [*flags(truth=files.path(truth, "truth"), align=align), "--json"]
-        return json.loads(files.named(_command(arguments)[1]))
+        return _json(files.named(_command(arguments)[1]))

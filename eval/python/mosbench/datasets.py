@@ -10,10 +10,11 @@ from typing import Any, Iterator, Optional, Sequence as List, Union, overload
 import numpy as np
 
 from mosbench import _mosbench
+from mosbench.arrays import Array
 from mosbench.flags import plain_errors, reading_flags
 from mosbench.poses import pose_files
 
-PathLike = Union[str, os.PathLike]
+PathLike = Union[str, os.PathLike[str]]
 SCAN_S = 0.1  #: how long a scan is taken to last where nothing says it
 
 
@@ -33,16 +34,16 @@ class Scan:
 
     index: int  #: in the sequence, from 0
     stem: str  #: file name without extension
-    points: np.ndarray  #: float32 (N, 4): x, y, z in metres in the sensor frame, intensity
-    pose: np.ndarray  #: float64 (4, 4), map_from_sensor
+    points: Array  #: float32 (N, 4): x, y, z in metres in the sensor frame, intensity
+    pose: Array  #: float64 (4, 4), map_from_sensor
     stamp_ns: Optional[int]  #: when it was measured; None when the data set has no stamps
-    point_times_ns: Optional[np.ndarray]  #: int64 (N,), when each point was measured after the stamp
+    point_times_ns: Optional[Array]  #: int64 (N,), when each point was measured after the stamp
     #: float32 (N,), of the surface relative to the sensor, positive away from it; of an Aeva, else None
-    radial_velocity_m_s: Optional[np.ndarray]
-    truth: Optional[np.ndarray]  #: uint32 (N,), raw labels: id, and in the upper 16 bits instance; None without
+    radial_velocity_m_s: Optional[Array]
+    truth: Optional[Array]  #: uint32 (N,), raw labels: id, and in the upper 16 bits instance; None without
 
     @property
-    def truth_ids(self) -> Optional[np.ndarray]:
+    def truth_ids(self) -> Optional[Array]:
         """uint32 (N,), the ids of truth alone: of SemanticKITTI, 251 to 259 move."""
         return None if self.truth is None else self.truth & 0xFFFF
 
@@ -59,7 +60,7 @@ class Sequence:
     `sequence[i]` is no Scan but (points (N, 3) float64, times (N,) 0 to 1); `gt_poses` is (K, 4, 4).
     """
 
-    def __init__(self, opened: Any, opened_by: "Opened"):
+    def __init__(self, opened: _mosbench.Sequence, opened_by: Opened):
         self._opened = opened
         self.opened_by = dataclasses.replace(opened_by, sequences=(self.name,))
 
@@ -84,7 +85,7 @@ class Sequence:
         return self._opened.simulated
 
     @property
-    def gt_poses(self) -> np.ndarray:
+    def gt_poses(self) -> Array:
         """float64 (K, 4, 4), map_from_sensor."""
         return self._opened.poses
 
@@ -101,7 +102,7 @@ class Sequence:
     def __iter__(self) -> Iterator[Scan]:
         return (self.scan(index) for index in range(len(self)))
 
-    def __getitem__(self, index: int) -> tuple[np.ndarray, np.ndarray]:
+    def __getitem__(self, index: int) -> tuple[Array, Array]:
         """Points and times as KISS-ICP takes them."""
         scan = self.scan(index)
         times = np.zeros(0)
@@ -118,7 +119,7 @@ class Sequence:
 class Dataset:
     """The sequences of a data set, by name or number: `len`, `data[i]`, `data["08"]` and iteration are of them."""
 
-    def __init__(self, opened: Any, opened_by: "Opened"):
+    def __init__(self, opened: _mosbench.Dataset, opened_by: Opened):
         self._opened = opened
         self.opened_by = dataclasses.replace(opened_by, dataset=opened.kind)
         self.sequences: list[Sequence] = [Sequence(one, self.opened_by) for one in opened.sequences()]
@@ -157,21 +158,21 @@ class Dataset:
         return f"<mosbench.Dataset {self.kind} at {self.root}: {len(self)} sequences>"
 
 
-def seconds_after_stamp(times: Any, count: int, index: int) -> Optional[np.ndarray]:
+def seconds_after_stamp(times: Any, count: int, index: int) -> Optional[Array]:
     """The times that KISS-ICP's data sets give beside points, 0 to 1 over a scan or in any unit, as (N,) seconds.
 
     A scan is taken to begin at its stamp and to last 0.1 s. None where there are no times.
     Raises ValueError for another count and for times that are not finite.
     """
-    times = np.asarray(times, dtype=np.float64).ravel()
-    if times.size == 0:
+    given: Array = np.asarray(times, dtype=np.float64).ravel()
+    if given.size == 0:
         return None
-    if times.size != count or not np.isfinite(times).all():
-        raise ValueError(f"scan {index}: has {times.size} times for {count} points, expected a finite one for each")
-    low, high = times.min(), times.max()
+    if given.size != count or not np.isfinite(given).all():
+        raise ValueError(f"scan {index}: has {given.size} times for {count} points, expected a finite one for each")
+    low, high = given.min(), given.max()
     if low < 0 or high > 1:
-        times = (times - low) / (high - low or 1.0)
-    return SCAN_S * times
+        given = (given - low) / (high - low or 1.0)
+    return SCAN_S * given
 
 
 @overload

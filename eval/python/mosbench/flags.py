@@ -5,7 +5,7 @@ from __future__ import annotations
 import operator
 import os
 import re
-from typing import Any, Callable, Mapping
+from typing import Any, Callable, Mapping, TypeVar
 
 from mosbench import _mosbench
 
@@ -55,7 +55,10 @@ def _in_python(message: str) -> str:
     return re.sub(r"(?<![\w-])--([a-z][a-z0-9-]*)", lambda match: match[1].replace("-", "_"), message)
 
 
-def plain_errors(call: Callable[..., Any], *arguments: Any) -> Any:
+Answer = TypeVar("Answer")
+
+
+def plain_errors(call: Callable[..., Answer], *arguments: Any) -> Answer:
     """Calls; ValueError and OSError come in the words of Python."""
     try:
         return call(*arguments)

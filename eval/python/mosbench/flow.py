@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import os
 import shutil
-from typing import Mapping, Optional, Union
+from typing import Any, Mapping, Optional, Union
 
 import numpy as np
 
-from mosbench.online import MOS, Config, SettingValue
+from mosbench.online import MOS, Config, Labels, SettingValue
 
 
 def moving_for_h5(
-    path: Union[str, os.PathLike],
+    path: Union[str, os.PathLike[str]],
     config: Union[Config, Mapping[str, SettingValue], None] = None,
     *,
     threads: int = 1,
@@ -41,7 +41,7 @@ def moving_for_h5(
     return len(stamps)
 
 
-def _stamps(file, path: str, overwrite: bool) -> list[str]:
+def _stamps(file: Any, path: str, overwrite: bool) -> list[str]:
     if not len(file):
         raise ValueError(f"{path}: holds no groups, expected one per scan, named by its stamp")
     for name, group in file.items():
@@ -54,8 +54,8 @@ def _stamps(file, path: str, overwrite: bool) -> list[str]:
     return sorted(file, key=int)
 
 
-def _label(file, stamps: list[str], mos: MOS) -> None:
-    def write(results) -> None:
+def _label(file: Any, stamps: list[str], mos: MOS) -> None:
+    def write(results: list[Labels]) -> None:
         for result in results:
             group = file[stamps[result.index]]
             if "dufo" in group:

@@ -7,10 +7,10 @@ from typing import Any, Iterable, Mapping, Optional, Union
 import numpy as np
 
 from mosbench import _mosbench
-from mosbench.arrays import as_array
+from mosbench.arrays import Array, as_array
 
 
-def _label_array(values: Any, name: str) -> np.ndarray:
+def _label_array(values: Any, name: str) -> Array:
     if values is None:
         raise ValueError(f"{name}: is None, expected labels (N,); a scan without truth has no score")
     labels = as_array(values, name)
@@ -23,7 +23,7 @@ def _label_array(values: Any, name: str) -> np.ndarray:
     return labels
 
 
-def _counted_arrays(predicted: Any, truth: Any, points: Any) -> tuple:
+def _counted_arrays(predicted: Any, truth: Any, points: Any) -> tuple[Array, Array, Optional[Array]]:
     return (
         _label_array(predicted, "predicted"),
         _label_array(truth, "truth"),
@@ -66,7 +66,7 @@ def pooled(
     scans: what `confusion` returned for each scan of a sequence, or an iterable of such for each of several
     sequences. Most protocols add the counts up; those that average say so in `mosbench list protocols`.
     """
-    items = list(scans)
+    items: list[Any] = list(scans)
     if not items:
         raise ValueError("scans: is empty, expected counts of at least one scan")
     of_one = isinstance(items[0], Mapping)

@@ -11,7 +11,7 @@ from typing import Any, Iterable, Iterator, Mapping, Optional, Union
 import numpy as np
 
 from mosbench import _mosbench
-from mosbench.arrays import as_array
+from mosbench.arrays import Array, as_array
 from mosbench.datasets import open as open_data
 from mosbench.datasets import seconds_after_stamp
 from mosbench.flags import plain_errors, whole_number
@@ -20,7 +20,7 @@ SettingValue = Union[int, float, str]
 MOST_THREADS = 1024
 
 
-def _set(settings: Any, values: Mapping[str, SettingValue]) -> None:
+def _set(settings: _mosbench.Settings, values: Mapping[str, SettingValue]) -> None:
     for name, value in values.items():
         value = value.item() if isinstance(value, np.generic) else value
         if not isinstance(value, (int, float, str)):
@@ -28,12 +28,13 @@ def _set(settings: Any, values: Mapping[str, SettingValue]) -> None:
         settings.set(name, value)
 
 
-class Config(collections.abc.Mapping):
+class Config(collections.abc.Mapping[str, SettingValue]):
     """A method and its settings, a mapping of them. They carry their unit in their name, as in `voxel_size_m`."""
 
     def __init__(self, method: str = "hmm-mos", **settings: SettingValue):
         """Takes the method's defaults with these settings over them."""
-        self._method, self._preset = method, None
+        self._method = method
+        self._preset: Optional[str] = None
         self._settings = plain_errors(_mosbench.method_settings, method, None)
         self._set(settings)
 
@@ -46,11 +47,11 @@ class Config(collections.abc.Mapping):
         `run(data, preset="best")` takes voxels and range of the data set's own preset. Those settings are
         `Config.preset("semantickitti", method="hmm-mos-plus")`, with the preset of your data set.
         """
-        method = plain_errors(_mosbench.method_name, method, name)
-        return cls._of(method, plain_errors(_mosbench.method_settings, method, name), name)
+        named = plain_errors(_mosbench.method_name, method, name)
+        return cls._of(named, plain_errors(_mosbench.method_settings, named, name), name)
 
     @classmethod
-    def load(cls, file: Union[str, os.PathLike], method: str = "hmm-mos") -> "Config":
+    def load(cls, file: Union[str, os.PathLike[str]], method: str = "hmm-mos") -> "Config":
         """Returns the defaults with the settings of a JSON object over them, as `--set @FILE` does."""
         settings = plain_errors(_mosbench.method_settings, method, None)
         with open(file, "rb"):
@@ -60,7 +61,7 @@ class Config(collections.abc.Mapping):
         return cls._of(method, settings)
 
     @classmethod
-    def _of(cls, method: str, settings: Any, preset: Optional[str] = None) -> "Config":
+    def _of(cls, method: str, settings: _mosbench.Settings, preset: Optional[str] = None) -> "Config":
         config = cls.__new__(cls)
         config._method, config._settings, config._preset = method, settings, preset
         return config
@@ -107,7 +108,7 @@ class Config(collections.abc.Mapping):
     def __len__(self) -> int:
         return len(self.to_dict())
 
-    def __reduce__(self) -> tuple:
+    def __reduce__(self) -> tuple[Any, ...]:
         return _config_of, (self._method, self.to_dict(), self._preset)
 
     def __eq__(self, other: object) -> bool:
@@ -139,13 +140,13 @@ class Labels:
     """The final labels of one scan."""
 
     index: int  #: which pushed scan, from 0
-    labels: np.ndarray  #: uint32 (N,): 9 static, 251 moving
-    scores: Optional[np.ndarray]  #: float32 (N,), larger is more likely to move; None unless asked for
-    reasons: Optional[np.ndarray]
+    labels: Array  #: uint32 (N,): 9 static, 251 moving
+    scores: Optional[Array]  #: float32 (N,), larger is more likely to move; None unless asked for
+    reasons: Optional[Array]
     """uint8 (N,), with scores of "hmm-mos-plus": why a point moves: 0 it does not, 1 arrived in free space,
     2 left free space behind, 3 connected with such, 4 feet of what moves, 5 where what moved before is
     expected. Else None."""
-    objects: Optional[np.ndarray]
+    objects: Optional[Array]
     """uint32 (N,): number of the moving object, from 1 and the same in all scans, 0 for none; None when
     the method finds no objects."""
     threshold: Optional[float]  #: that the method compared scores with
@@ -153,9 +154,10 @@ class Labels:
     stages_ms: dict[str, float]  #: wall time of each stage
 
     @property
-    def moving(self) -> np.ndarray:
+    def moving(self) -> Array:
         """bool (N,)."""
-        return self.labels == _mosbench.MOVING_LABEL
+        moving: Array = self.labels == _mosbench.MOVING_LABEL
+        return moving
 
 
 class MOS:
@@ -198,8 +200,8 @@ class MOS:
     def range_m(self) -> Optional[tuple[float, float]]:
         """From and to which range points are judged; what lies outside is static. None for methods without range."""
         settings = self._config.to_dict()
-        limits = tuple(settings.get(name) for name in ("min_range_m", "max_range_m"))
-        return None if None in limits else limits
+        low, high = settings.get("min_range_m"), settings.get("max_range_m")
+        return None if low is None or high is None else (float(low), float(high))
 
     def __repr__(self) -> str:
         preset = self._config.preset_name
@@ -236,8 +238,8 @@ class MOS:
 class OdometryPose:
     """The pose of one scan."""
 
-    pose: np.ndarray  #: (4, 4), map_from_sensor; the map's frame is that of the first scan
-    covariance: np.ndarray  #: (6, 6), rotation (rad), then translation (m), in the map's frame
+    pose: Array  #: (4, 4), map_from_sensor; the map's frame is that of the first scan
+    covariance: Array  #: (6, 6), rotation (rad), then translation (m), in the map's frame
     geometry: float  #: how much the surfaces constrain the least constrained motion, 0 to 1/3
     condition: float  #: of the covariance's inverse
     overlap: float  #: share of the points that lie where the map has points
@@ -273,10 +275,11 @@ def _times_ns(times: Any) -> list[int]:
     times = as_array(times, "point_times_ns")
     if times.ndim != 1 or times.dtype.kind not in "fiu" or not np.isfinite(times).all():
         raise ValueError(f"point_times_ns: has shape {times.shape}, type {times.dtype}, expected (N,) finite numbers")
-    return times.astype(np.int64).tolist()
+    whole: list[int] = times.astype(np.int64).tolist()
+    return whole
 
 
-def odometry(scans: Iterable[Any], kind: str = "simple", **options: Any) -> np.ndarray:
+def odometry(scans: Iterable[Any], kind: str = "simple", **options: Any) -> Array:
     """Returns the poses (K, 4, 4) of scans in order.
 
     scans: arrays of points, a sequence of `mosbench.open`, the folder of one, or an object with

@@ -11,7 +11,7 @@ from typing import Any, Iterator, Optional, Sequence, Union
 import numpy as np
 
 from mosbench import _mosbench
-from mosbench.arrays import as_array
+from mosbench.arrays import Array, as_array
 from mosbench.flags import whole_number
 
 ROTATION_TOLERANCE = 1e-3  #: of R^T R, as readers of files have it
@@ -22,7 +22,7 @@ def is_path(poses: Any) -> bool:
     return isinstance(poses, (str, os.PathLike))
 
 
-def checked_poses(poses: Any, name: str) -> np.ndarray:
+def checked_poses(poses: Any, name: str) -> Array:
     """Returns poses as float64 (K, 4, 4). Raises ValueError naming the first that is no rigid motion."""
     if isinstance(poses, (list, tuple)):
         poses = [as_array(pose, name) for pose in poses]
@@ -45,7 +45,7 @@ def checked_poses(poses: Any, name: str) -> np.ndarray:
 
 
 def write_poses(
-    path: Union[str, os.PathLike], poses: Any, format: str = "kitti", stamps: Optional[Sequence[int]] = None
+    path: Union[str, os.PathLike[str]], poses: Any, format: str = "kitti", stamps: Optional[Sequence[int]] = None
 ) -> None:
     """Writes a file for `poses=` and `--poses`, of poses map_from_sensor in the LiDAR's frame.
 
@@ -99,7 +99,8 @@ class PoseFiles:
     def path(self, poses: Any, name: str) -> str:
         """Returns the file, or that to which it wrote the array."""
         if is_path(poses):
-            return os.fspath(poses)
+            named: str = os.fspath(poses)
+            return named
         file = os.path.join(self._folder, f"{name}.txt")
         write_poses(file, checked_poses(poses, name))
         self._names[file] = name

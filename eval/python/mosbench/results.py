@@ -12,6 +12,7 @@ from typing import Any, Iterator, Optional, Union
 import numpy as np
 
 from mosbench import _mosbench
+from mosbench.arrays import Array
 from mosbench.flags import plain_errors
 
 _SCAN_TYPE = np.dtype(
@@ -32,7 +33,7 @@ _SCAN_TYPE = np.dtype(
 )
 
 
-def _scan_row(sequence: str, scan: dict[str, Any]) -> tuple:
+def _scan_row(sequence: str, scan: dict[str, Any]) -> tuple[Any, ...]:
     counts = scan["counts"] or {"tp": 0, "fp": 0, "fn": 0, "tn": 0}
     union = counts["tp"] + counts["fp"] + counts["fn"]
     iou = counts["tp"] / union if union else np.nan
@@ -67,7 +68,7 @@ class SequenceResult:
         return self.metrics["iou"]
 
     @property
-    def per_scan(self) -> np.ndarray:
+    def per_scan(self) -> Array:
         """Structured array, a row per scan: stem, points, moving, judged, threshold (NaN without one),
         labelled, tp, fp, fn, tn, iou (NaN where nothing moves)."""
         return np.array([_scan_row(self.name, scan) for scan in self.scans], dtype=_SCAN_TYPE)
@@ -78,7 +79,7 @@ class SequenceResult:
         of_predictions = self.header.get("predictions", {}).get("remarks", [])
         return [*self.header.get("remarks", []), *of_predictions, *self.warnings]
 
-    def labels(self, stem: str) -> np.ndarray:
+    def labels(self, stem: str) -> Array:
         """uint32 (N,), as the run wrote them."""
         return np.fromfile(self.folder / "labels" / f"{stem}.label", dtype="<u4")
 
@@ -106,7 +107,7 @@ class Result:
     all sequences, 0 to 1, None where 0/0. warnings: what has to be said wherever the numbers are shown.
     """
 
-    def __init__(self, folder: Union[str, os.PathLike]):
+    def __init__(self, folder: Union[str, os.PathLike[str]]):
         """Raises OSError when the folder holds no results or those of several runs."""
         self.folder = pathlib.Path(folder)
         content = plain_errors(_mosbench.load_results, os.fspath(folder))
@@ -152,7 +153,7 @@ class Result:
         return self.metrics["f1"]
 
     @property
-    def per_scan(self) -> np.ndarray:
+    def per_scan(self) -> Array:
         """SequenceResult.per_scan of all sequences, one after the other."""
         return np.concatenate([sequence.per_scan for sequence in self.sequences])
 
@@ -177,7 +178,7 @@ class Result:
 
         return pandas.DataFrame.from_records(self.per_scan)
 
-    def report(self, file: Union[str, os.PathLike], *, max_mb: Optional[float] = None) -> pathlib.Path:
+    def report(self, file: Union[str, os.PathLike[str]], *, max_mb: Optional[float] = None) -> pathlib.Path:
         """Writes the report, one .html file with the scans in 3-D, and returns its path.
 
         Raises ValueError for another kind of file, OSError.
