@@ -15,6 +15,7 @@
 #include "datasets/layouts/layout.hpp"
 #include "datasets/perturb/perturbation.hpp"
 #include "datasets/sequence/corrected_sequence.hpp"
+#include "datasets/sequence/scan_range.hpp"
 #include "datasets/sequence/simulated_origin.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
@@ -282,6 +283,13 @@ void perturb(Dataset& dataset, const Reading& reading) {
   keep_left_scans(dataset);
 }
 
+void keep_range(Dataset& dataset, const ScanRange& range) {
+  for (std::unique_ptr<Sequence>& sequence : dataset.sequences) {
+    sequence = with_scan_range(std::move(sequence), range);
+  }
+  keep_left_scans(dataset);
+}
+
 }  // namespace
 
 std::vector<SequenceFolder> find_sequences(const std::filesystem::path& path,
@@ -311,6 +319,7 @@ Dataset open_dataset(const std::filesystem::path& path, const OpenOptions& optio
   dataset.splits = layout.splits != nullptr
                        ? layout.splits(folders, dataset.sequences, dataset.remarks)
                        : named_splits(layout, folders);
+  if (options.reading.scans) keep_range(dataset, *options.reading.scans);
   if (options.reading.perturb) perturb(dataset, options.reading);
   return dataset;
 }

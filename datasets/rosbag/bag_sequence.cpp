@@ -98,6 +98,7 @@ void BagSequence::enter_scans() {
     entry.stem = fmt::format("{:06}", scan.number);
     entry.stamp_ns = scan.stamp_ns;
     entry.points = scan.points;
+    entry.number = scan.number;
   }
 }
 

@@ -122,21 +122,25 @@ class SensorPoseReader {
     result_.done.pairing = "row by row";
   }
 
-  /// Takes the poses at the stamps of the scans.
-  void interpolate(const PoseList& list, const std::vector<std::int64_t>& stamps_ns) {
+  /// Takes the poses at the stamps of the scans. Only scans that are asked for can lack one.
+  void interpolate(const PoseList& list, const std::vector<std::int64_t>& all_ns) {
     const PoseTrack track = track_of(list);
+    const ScanRange range = asked_.scans.value_or(ScanRange{});
+    std::vector<std::int64_t> stamps_ns;
     std::size_t interpolated = 0, outside = 0, in_gaps = 0;
-    for (const std::int64_t stamp_ns : stamps_ns) {
+    for (const std::int64_t stamp_ns : all_ns) {
+      const bool is_asked = range.holds(result_.map_from_sensor.size());
+      if (is_asked) stamps_ns.push_back(stamp_ns);
       auto& pose = result_.map_from_sensor.emplace_back(track.near(stamp_ns, list.rounding_ns));
       if (pose) continue;
       pose = track.at(stamp_ns);
       const auto gap_ns = static_cast<double>(track.gap_ns(stamp_ns));
       if (!pose) {
-        ++outside;
+        outside += is_asked;
       } else if (gap_ns <= std::round(asked_.max_pose_gap_s * 1e9)) {
-        ++interpolated;
+        interpolated += is_asked;
       } else {
-        ++in_gaps;
+        in_gaps += is_asked;
         pose.reset();
       }
     }
@@ -144,12 +148,13 @@ class SensorPoseReader {
     result_.done.pairing = fmt::format("by stamp, {} of {} interpolated", interpolated, scans);
     const std::string gaps =
         fmt::format("lie between poses more than {:g} s apart", asked_.max_pose_gap_s);
-    if (in_gaps == scans) {
+    if (in_gaps == scans && scans > 0) {
       throw DataError(file_, "all scans " + gaps,
                       "more poses, or a longer " + option("max_pose_gap_s"));
     }
     const std::size_t unknown = outside + in_gaps;
-    const std::string clocks = compare_clocks(list.stamps_ns, stamps_ns);
+    const bool has_all = list.stamps_ns.size() == all_ns.size();
+    const std::string clocks = compare_clocks(list.stamps_ns, has_all ? all_ns : stamps_ns);
     if (unknown > 0 && are_too_few(scans - unknown, scans)) {
       refuse_few(list.stamps_ns, stamps_ns, scans - unknown, clocks);
     }
@@ -306,6 +311,7 @@ std::vector<std::size_t> place_scans(SensorPoses poses, Recording& recording) {
   std::vector<std::size_t> kept;
   std::vector<ScanEntry> scans = std::exchange(recording.scans, {});
   for (std::size_t k = 0; k < scans.size(); ++k) {
+    scans[k].number = k;
     if (const auto& pose = poses.map_from_sensor[k]) {
       scans[k].map_from_sensor = *pose;
       kept.push_back(k);

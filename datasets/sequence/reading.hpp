@@ -15,6 +15,7 @@
 
 #include "datasets/formats/bin_file.hpp"
 #include "datasets/formats/pose_file.hpp"
+#include "datasets/sequence/scan_range.hpp"
 
 namespace mosbench {
 
@@ -85,6 +86,8 @@ std::string to_string(const Perturbation& perturbation);
 
 /// What the user asked about how a sequence is to be read.
 struct Reading {
+  /// Of each sequence; its poses, truth and times of points are found as if all were read.
+  std::optional<ScanRange> scans = std::nullopt;
   PosesFrom poses = OwnPoses{};
   std::optional<PoseFormat> pose_format = std::nullopt;  ///< recognised when not set
   /// When not set, KITTI rows are the camera's if calib.txt holds a Tr other than the identity and
@@ -149,6 +152,9 @@ concept IsReading = std::same_as<std::remove_const_t<Record>, Reading>;
 /// and help follow from it. Calls visit(name, field, what is legal, meaning).
 template <IsReading Asked, typename Visit>
 void visit_fields(Asked& reading, Visit&& visit) {
+  visit("scans", reading.scans, FieldText{"FROM:TO:STEP"},
+        "Only these scans of each sequence, counted from 0, TO not among them; each part may be "
+        "left out, and N means :N (default: all)");
   visit("poses", reading.poses, FieldText{"FILE"},
         "Pose file to take instead of the sequence's own, or a folder with one per sequence");
   visit("pose_format", reading.pose_format, kPoseFormatNames,
@@ -211,6 +217,7 @@ enum class BagUndistortion : std::uint8_t {
 
 /// How a sequence was read, for results. What is empty does not apply.
 struct ReadingDone {
+  std::string scans = {};  ///< the range, and how many of how many these are
   std::string scan_files = {};
   std::optional<std::size_t> bin_columns = std::nullopt;  ///< unless the usual
   std::string point_times = {};

@@ -49,7 +49,9 @@ SequenceName::SequenceName(std::string text, const std::filesystem::path& file)
 }
 
 bool is_left_out(const Recording& recording, const std::string& stem) {
-  return std::ranges::find(recording.left_out, stem, &ScanEntry::stem) != recording.left_out.end();
+  const auto is_of = [&](const ScanEntry& scan) { return scan.stem == stem; };
+  return std::ranges::any_of(recording.left_out, is_of) ||
+         std::ranges::any_of(recording.not_asked, is_of);
 }
 
 std::vector<std::filesystem::path> files_of(const Recording& recording) {

@@ -51,13 +51,16 @@ struct ScanEntry {
   Pose map_from_sensor = Pose::Identity();  ///< LiDAR frame, at the scan's stamp
   std::size_t points = 0;
   bool has_truth = false;
+  /// Among all of the sequence, from 0; when not set, none is left out before it.
+  std::optional<std::size_t> number = std::nullopt;
 };
 
 /// What is known of a sequence once it is opened.
 struct Recording {
   SequenceName name;  ///< unique in a data set
   std::vector<ScanEntry> scans;
-  std::vector<ScanEntry> left_out;  ///< scans on disk whose pose is not known; without truth
+  std::vector<ScanEntry> left_out;   ///< scans on disk whose pose is not known; without truth
+  std::vector<ScanEntry> not_asked;  ///< scans on disk that `Reading::scans` leaves out
   /// Files that decide what is read besides those of single scans: bag, poses, calibration, times.
   std::vector<std::filesystem::path> files;
   std::vector<std::filesystem::path> truth_files;
@@ -70,7 +73,7 @@ struct Recording {
   bool has_radial_velocities = false;  ///< whether frames have them
 };
 
-/// Returns whether a stem is that of a scan that was left out.
+/// Returns whether a stem is that of a scan that was left out, or not asked for.
 bool is_left_out(const Recording& recording, const std::string& stem);
 
 /// Returns every file that decides the content, for fingerprints: `files`, scans, `truth_files`.

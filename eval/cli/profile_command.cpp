@@ -1,5 +1,4 @@
 #include <CLI/CLI.hpp>
-#include <limits>
 #include <memory>
 
 #include "core/base/thread_pool.hpp"
@@ -18,7 +17,6 @@ namespace {
 struct ProfileFlags {
   JobWords method;
   unsigned threads = hardware_threads();
-  std::size_t scans = std::numeric_limits<std::size_t>::max();
   std::optional<std::filesystem::path> json, trace;
 };
 
@@ -34,7 +32,7 @@ Answer profile(const ProfileFlags& options) {
   for (const std::string& note : plan.notes) tell(note);
   std::vector<SequenceProfile> profiles;
   for (const auto& sequence : plan.dataset.sequences) {
-    profiles.push_back(profile_sequence(*sequence, plan.settings, options.scans));
+    profiles.push_back(profile_sequence(*sequence, plan.settings));
   }
   if (options.json) write_output(*options.json, json_text(profile_json(plan, profiles)));
   if (options.trace) write_output(*options.trace, json_text(profile_trace(profiles)));
@@ -47,9 +45,6 @@ Answer profile(const ProfileFlags& options) {
 CommandRun add_profile(CLI::App& command) {
   auto options = std::make_shared<ProfileFlags>();
   add_method_flags(command, options->method, options->threads);
-  add(command, "--scans", options->scans, "Only the first N scans of each sequence")
-      ->check(CLI::Range(std::size_t{1}, std::size_t{1000000}))
-      ->default_str("all");
   add(command, "--json FILE", options->json, "Write the numbers to this file; - is stdout");
   add(command, "-o,--out FILE", options->trace, "Write a trace to this file; - is stdout");
   return [options] { return profile(*options); };

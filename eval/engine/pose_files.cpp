@@ -67,6 +67,15 @@ void write_pose_file(const std::filesystem::path& file, const std::string& rows,
   write_output(file, rows);
 }
 
+/// KITTI's rows belong to all scans, the first to the first.
+void refuse_part(const Sequence& sequence) {
+  if (sequence.reading().scans.empty()) return;
+  throw UsageError(fmt::format(
+      "{}: KITTI's rows belong to all scans of {}, expected TUM's, which have stamps (a file "
+      "called *.tum, or tum:FILE), or all scans",
+      option("scans"), sequence.name()));
+}
+
 FoundPoses find_poses_of(const Sequence& sequence, const std::filesystem::path& file,
                          const OdometryChoice& choice, const PoseFiles& files) {
   FoundPoses found{sequence, file,
@@ -97,7 +106,7 @@ FoundPoses find_or_keep(const Sequence& sequence, const OdometryChoice& choice,
 std::vector<FoundPoses> write_poses(const Dataset& dataset, const OdometryChoice& choice,
                                     const PoseFiles& files) {
   for (const auto& sequence : dataset.sequences) {
-    if (files.as_tum) check_stamps_of_tum(*sequence);
+    files.as_tum ? check_stamps_of_tum(*sequence) : refuse_part(*sequence);
   }
   const bool single = dataset.sequences.size() == 1;
   if (files.out == "-" && !single) {

@@ -35,7 +35,12 @@ fs::path default_out(const RunPlan& plan) {
   const auto add = [&](std::string_view part) { name += fmt::format("-{}", part); };
   if (!plan.shared) add(kind);
   if (!plan.job.segment.label.empty()) add(plan.job.segment.label);
-  // Runs with other poses or disturbed scans have results of their own.
+  // Runs over a part, with other poses or disturbed scans have results of their own.
+  if (plan.job.data.reading.scans) {
+    std::string range = to_string(*plan.job.data.reading.scans);
+    std::ranges::replace(range, ':', '_');
+    add("scans" + range);
+  }
   if (plan.odometry) add(plan.odometry->kind->name);
   if (plan.job.data.reading.perturb) add(to_string(*plan.job.data.reading.perturb));
   return fs::path("results/runs") / name;

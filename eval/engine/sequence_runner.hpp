@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstddef>
 #include <filesystem>
+#include <limits>
 #include <mosbench/method.hpp>
 #include <optional>
 #include <string>
@@ -77,6 +78,6 @@ struct SequenceProfile {
 /// Segments the first `most_scans` scans of a sequence, one after the other, and measures. Throws
 /// DataError.
 SequenceProfile profile_sequence(const Sequence& sequence, const RunSettings& settings,
-                                 std::size_t most_scans);
+                                 std::size_t most_scans = std::numeric_limits<std::size_t>::max());
 
 }  // namespace mosbench

@@ -226,12 +226,13 @@ DataError nothing_found(const fs::path& root, const Sequence& sequence,
 }  // namespace
 
 void check_positions(const fs::path& path, const Sequence& sequence) {
-  const std::size_t left_out = sequence.recording().left_out.size();
+  const Recording& recording = sequence.recording();
+  const std::size_t left_out = recording.left_out.size() + recording.not_asked.size();
   if (left_out == 0) return;
   throw DataError(path,
                   fmt::format("names scans by their position, and {} of sequence {} are left out",
                               left_out, sequence.name()),
-                  "files named like the scans, or poses for all scans");
+                  "files named like the scans, or all scans to be read");
 }
 
 std::vector<NamedFile> prediction_files(const PredictionPlace& place) {

@@ -63,6 +63,11 @@ std::unique_ptr<Predictions> open_rows(const fs::path& file, const Sequence& seq
   return scans;
 }
 
+bool is_not_asked(const Sequence& sequence, std::int64_t stamp_ns) {
+  return std::ranges::any_of(sequence.recording().not_asked,
+                             [&](const ScanEntry& scan) { return scan.stamp_ns == stamp_ns; });
+}
+
 /// Pairs rows by exact stamp where the scans have stamps, otherwise in order.
 std::unique_ptr<Predictions> open_indices(const fs::path& file, const Sequence& sequence,
                                           PredictionErrors& errors) {
@@ -77,6 +82,7 @@ std::unique_ptr<Predictions> open_indices(const fs::path& file, const Sequence& 
   for (std::size_t r = 0; r < found.size(); ++r) {
     const auto stamped = by_stamp.find(found[r].stamp_ns);
     if (!by_stamp.empty() && stamped == by_stamp.end()) {
+      if (is_not_asked(sequence, found[r].stamp_ns)) continue;
       errors.report(DataError(file, found[r].line, fmt::format("has stamp {}", found[r].stamp_ns),
                               "that of a labelled scan"));
       continue;

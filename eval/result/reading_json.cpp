@@ -46,6 +46,8 @@ Value parsed(std::string_view text, const Legal& legal) {
     if (text == "on" || text == "true") return true;
     if (text == "off" || text == "false") return false;
     throw UsageError(fmt::format("'{}' is not understood, expected on or off", text));
+  } else if constexpr (std::is_same_v<Value, ScanRange>) {
+    return parse_scan_range(text);
   } else if constexpr (std::is_same_v<Value, PosesFrom>) {
     return PoseFile{text};
   } else {
@@ -58,7 +60,7 @@ template <typename Value, typename Legal>
 ordered_json member_of(const Value& value, const Legal& legal) {
   if constexpr (std::is_enum_v<Value>) {
     return std::string(legal[static_cast<std::size_t>(value)]);
-  } else if constexpr (std::is_same_v<Value, Perturbation>) {
+  } else if constexpr (std::is_same_v<Value, Perturbation> || std::is_same_v<Value, ScanRange>) {
     return to_string(value);
   } else if constexpr (std::is_same_v<Value, PosesFrom>) {
     const auto* file = std::get_if<PoseFile>(&value);
@@ -113,8 +115,8 @@ void describe(const Legal& legal, ReadingField& field) {
 const std::vector<ReadingField>& reading_fields() {
   static const std::vector<ReadingField> fields = [] {
     std::vector<ReadingField> list;
-    constexpr std::array<std::string_view, 5> kFlags = {"poses", "topic", "deskew", "point_times",
-                                                        "perturb"};
+    constexpr std::array<std::string_view, 6> kFlags = {"scans",  "poses",       "topic",
+                                                        "deskew", "point_times", "perturb"};
     const auto add = [&](const char* name, const auto& value, const auto& legal,
                          const char* meaning) {
       using Field = std::decay_t<decltype(value)>;

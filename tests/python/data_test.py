@@ -220,6 +220,18 @@ def test_reading_has_every_flag_of_the_program():
     assert set(mosbench.READING) == set(_mosbench.reading_names())
 
 
+def test_scans_are_chosen_as_from_a_list(street):
+    stems = [scan.stem for scan in mosbench.open(street)]
+    for part in (slice(3, None), slice(None, 5), slice(1, 9, 3), slice(None, None, 2), slice(4, 100)):
+        assert [scan.stem for scan in mosbench.open(street, scans=part)] == stems[part]
+    assert [scan.stem for scan in mosbench.open(street, scans="2:9:4")] == stems[2:9:4]
+    for bad in (slice(-3, None), slice(5, 5), "5:x"):
+        with pytest.raises(ValueError, match="^scans: .* is no range of scans"):
+            mosbench.open(street, scans=bad)
+    with pytest.raises(ValueError, match="^scans 99:: chooses no scan of sequence 08, which has 12 scans"):
+        mosbench.open(street, scans=slice(99, None))
+
+
 def test_disturbances_are_those_of_the_program(street, tmp_path):
     plain, tilted = mosbench.open(street).scan(3), mosbench.open(street, perturb="mount_tilt_deg=5").scan(3)
     assert plain.points.shape == tilted.points.shape

@@ -10,12 +10,12 @@ from typing import Any, Callable, Mapping, TypeVar
 from mosbench import _mosbench
 
 #: How data are read; `mosbench run --help` says what each means. `poses` may also be an array (K, 4, 4) of
-#: map_from_sensor of the LiDAR; what is a switch there is True here.
+#: map_from_sensor of the LiDAR, `scans` a slice; what is a switch there is True here.
 READING = tuple(_mosbench.reading_names())
 
 
 #: Those that have a flag of their own; the others are keys of --read.
-FLAGS = ("poses", "topic", "point_times", "deskew", "perturb")
+FLAGS = ("scans", "poses", "topic", "point_times", "deskew", "perturb")
 
 
 def flags(**values: Any) -> list[str]:
@@ -41,6 +41,9 @@ def reading_flags(reading: Mapping[str, Any]) -> list[str]:
             raise TypeError(f"got an unexpected keyword argument {name!r}, expected one of {', '.join(READING)}")
     if reading.get("raw_scans"):
         reading = {"deskew": "none", **{name: value for name, value in reading.items() if name != "raw_scans"}}
+    if isinstance(part := reading.get("scans"), (slice, range)):
+        words = ("" if number is None else str(number) for number in (part.start, part.stop, part.step))
+        reading = {**reading, "scans": ":".join(words)}
     said = {name: value for name, value in reading.items() if name in FLAGS}
     rare = [f"{name}={'on' if value is True else value}" for name, value in reading.items()
             if name not in FLAGS and value is not None and value is not False]  # fmt: skip

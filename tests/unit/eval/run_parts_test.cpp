@@ -30,7 +30,8 @@ TEST(ChangedMembers, NameWhatDiffersOnEitherSide) {
 }
 
 TEST(ReadingJson, KeepsWhatTheUserTold) {
-  const Reading told = {.poses = PoseFile{"/somewhere/p.csv"},
+  const Reading told = {.scans = parse_scan_range("10:60:5"),
+                        .poses = PoseFile{"/somewhere/p.csv"},
                         .pose_format = PoseFormat::kTum,
                         .pose_frame = PoseFrame::kCamera,
                         .pose_direction = PoseDirection::kMapFromSensor,
@@ -45,6 +46,7 @@ TEST(ReadingJson, KeepsWhatTheUserTold) {
                         .hdl64_correction = true};
   const nlohmann::ordered_json json = told_json(told);
   const Reading read = told_from_json(json);
+  EXPECT_EQ(to_string(read.scans.value()), "10:60:5");
   EXPECT_EQ(*read.pose_file(), *told.pose_file());
   EXPECT_EQ(read.pose_format, told.pose_format);
   EXPECT_EQ(read.pose_frame, told.pose_frame);

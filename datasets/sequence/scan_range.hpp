@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace mosbench {
+
+class Sequence;
+
+/// Which scans of a sequence are read, by Python's rules for slices of numbers from 0 on.
+struct ScanRange {
+  std::size_t from = 0;
+  std::optional<std::size_t> to = std::nullopt;  ///< one past the last; nothing: up to the end
+  std::size_t step = 1;
+
+  bool holds(std::size_t scan) const {
+    return scan >= from && (!to || scan < *to) && (scan - from) % step == 0;
+  }
+};
+
+/// Parses "FROM:TO:STEP", where each part may be missing, or "TO" alone. Throws UsageError without
+/// the option's name, also for a range that holds no number.
+ScanRange parse_scan_range(std::string_view text);
+/// Returns the shortest text that `parse_scan_range` takes: equal ranges have equal texts.
+std::string to_string(const ScanRange& range);
+
+/// Returns the sequence with only the scans in the range, which its recording says. Each keeps its
+/// name, pose and truth; scans without a pose count, too. Throws UsageError when there is none.
+std::unique_ptr<Sequence> with_scan_range(std::unique_ptr<Sequence> inner, const ScanRange& range);
+
+}  // namespace mosbench
