@@ -79,8 +79,8 @@ Answer cell_answer(const StudyPlan& plan, const JobFlags& flags) {
   return {text, failed ? 1 : 0};
 }
 
-Answer table_answer(const StudyPlan& plan, const JobFlags& flags) {
-  Answer answer = study_answer(plan, gather(plan));
+Answer table_answer(const StudyPlan& plan, const StudyTable& table, const JobFlags& flags) {
+  Answer answer = study_answer(plan, table);
   answer.file = flags.output;
   return answer;
 }
@@ -111,7 +111,10 @@ Answer run_answer(const Study& study, const StudyPlan& plan, const JobFlags& fla
   } else {
     run_here(plan, flags.threads > 0 ? flags.threads : hardware_threads());
   }
-  return table_answer(plan_study(study, plan.out), flags);
+  const StudyPlan computed = plan_study(study, plan.out);
+  const StudyTable table = gather(computed);
+  write_presets(table.choices);
+  return table_answer(computed, table, flags);
 }
 
 StudyPlan plan_of(const Study& study, const JobFlags& flags) {
@@ -138,7 +141,8 @@ Answer run_job(const JobFlags& flags) {
 Answer rank_job(const JobFlags& flags) {
   check_output(flags.output);
   const Study study = read_study(flags.file);
-  return table_answer(plan_of(study, flags), flags);
+  const StudyPlan plan = plan_of(study, flags);
+  return table_answer(plan, gather(plan), flags);
 }
 
 }  // namespace mosbench

@@ -14,6 +14,7 @@
 #include "datasets/sequence/pose_source.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
+#include "eval/job/tuned_preset.hpp"
 #include "eval/result/machine.hpp"
 #include "eval/result/result.hpp"
 #include "eval/result/result_file.hpp"
@@ -46,6 +47,7 @@ std::string unjudged_text(const std::vector<ScanRow>& rows) {
 
 std::vector<std::string> all_remarks(const Sequence& sequence, const Result& result) {
   std::vector<std::string> remarks = sequence.remarks();
+  if (!result.settings_from.empty()) remarks.push_back("settings of " + result.settings_from);
   if (const auto unjudged = std::ranges::count(result.scans, false, &ScanRow::judged);
       unjudged > 0) {
     remarks.push_back(fmt::format(
@@ -89,6 +91,10 @@ Result completed(const RunPlan& plan, const PlannedSequence& planned, Result ran
   result.from.fingerprint_without_poses = std::move(ran.from.fingerprint_without_poses);
   result.from.machine = this_machine();
   result.from.simulated = sequence.simulated();
+  if (plan.job.segment.tuned) {
+    std::string doubt = tuning_doubt(*plan.job.segment.tuned, result);
+    if (!doubt.empty()) result.doubts.push_back(std::move(doubt));
+  }
   if (plan.odometry) result.doubtful_poses.emplace();
   for (std::size_t k = 0; k < found.size(); ++k) {
     if (found[k].doubtful()) result.doubtful_poses->push_back({sequence.stem(k), found[k].doubt});

@@ -10,6 +10,7 @@
 #include "datasets/sequence/fingerprint.hpp"
 #include "datasets/text/errors.hpp"
 #include "eval/job/method_choice.hpp"
+#include "eval/job/tuned_preset.hpp"
 #include "eval/protocols/benchmark_split.hpp"
 #include "eval/result/reading_json.hpp"
 #include "eval/result/result_file.hpp"
@@ -223,6 +224,7 @@ Result asked_result(const RunPlan& plan, std::size_t position) {
   asked.kind = settings.method->name;
   asked.settings = RecordedSettings(settings.method_settings);
   asked.preset = plan.preset;
+  if (plan.job.segment.tuned) asked.settings_from = plan.job.segment.tuned->title();
   asked.protocol = settings.protocol;
   asked.range = settings.range;
   asked.from.version = kMosbenchVersion;

@@ -188,6 +188,8 @@ CellNumbers numbers_of(const Result& result) {
   CellNumbers numbers;
   numbers.version = result.from.version;
   numbers.simulated = result.is_simulated();
+  numbers.simulation = simulation_of(result);
+  numbers.fingerprint = result.from.fingerprint_without_poses;
   numbers.doubts = doubts_of(result);
   numbers.counts = counts_of(result);
   numbers.gaps = gaps_of(result);

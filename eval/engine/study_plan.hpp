@@ -36,6 +36,7 @@ struct BadScan {
 struct CellNumbers {
   std::string version;  ///< of mosbench
   bool simulated = false;
+  std::string simulation, fingerprint;  ///< of the sequence, without poses; see `simulation_of`
   std::vector<std::string> doubts{};
   SequenceCounts counts;  ///< of the scans that count
   ScanGaps gaps;          ///< between them

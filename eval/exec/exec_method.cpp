@@ -7,6 +7,7 @@
 #include <cmath>
 #include <list>
 #include <mutex>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <utility>
 
@@ -25,12 +26,36 @@ struct WaitingScan : Observed {
   Pose map_from_sensor;
 };
 
+/// The settings of the program as one JSON object; empty where it has none. Whole numbers have no
+/// decimals, as a program may count with them.
+std::string own_settings(const Settings& settings) {
+  nlohmann::ordered_json json;
+  for (const Setting& setting : settings.all()) {
+    if (setting.name == kTimeout_s) continue;
+    nlohmann::ordered_json& value = json[std::string(setting.name)];
+    if (const auto* text = std::get_if<std::string>(&setting.value)) {
+      value = *text;
+      continue;
+    }
+    constexpr double kMostExact = 9007199254740992.0;
+    const double number = settings.number(setting.name);
+    const bool is_whole = number == std::floor(number) && std::abs(number) < kMostExact;
+    if (is_whole) {
+      value = static_cast<std::int64_t>(number);
+    } else {
+      value = number;
+    }
+  }
+  return json.empty() ? ""
+                      : json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
 class ExecMethod : public Method {
  public:
-  ExecMethod(const std::string& command, double timeout_s, RunContext context)
-      : timeout_s_(timeout_s),
+  ExecMethod(const std::string& command, const Settings& settings, RunContext context)
+      : timeout_s_(settings.number(kTimeout_s)),
         context_(std::move(context)),
-        greeting_{context_.scan_count.value_or(0), context_.scores},
+        greeting_{context_.scan_count.value_or(0), context_.scores, own_settings(settings)},
         program_(command) {
     if (context_.threads == 0) throw std::invalid_argument("threads: is 0, expected at least 1");
   }
@@ -149,47 +174,62 @@ class ExecMethod : public Method {
   std::vector<std::string> remarks_;
 };
 
-Settings default_settings() {
+/// The row keeps views of the names.
+struct NamedKind {
+  std::string command, title;
+  std::vector<std::string> names = {};  ///< of the program's own settings
+  std::vector<Setting> own = {};
+  MethodKind kind = {};
+};
+
+Settings default_settings(const NamedKind& named) {
   Setting timeout;
-  timeout.name = "timeout_s";
+  timeout.name = kTimeout_s;
   timeout.value = 60.0;
   timeout.meaning = "the program answers its start and every scan within this time";
   timeout.lowest = 0.01;
   timeout.highest = 86400.0;
-  return Settings({timeout});
+  std::vector<Setting> settings = {timeout};
+  settings.insert(settings.end(), named.own.begin(), named.own.end());
+  return Settings(std::move(settings));
 }
 
-/// The row keeps views of the title.
-struct NamedKind {
-  std::string command, title;
-  MethodKind kind;
-};
+bool are_alike(const std::vector<Setting>& one, const std::vector<Setting>& other) {
+  return std::ranges::equal(one, other, [](const Setting& a, const Setting& b) {
+    return a.name == b.name && a.value.index() == b.value.index();
+  });
+}
 
 MethodKind kind_of(const NamedKind& named) {
   return {.name = kExecKind,
           .title = named.title,
           .source = "a program of the user",
           .summary = "labels of a program of the user, over a pipe",
-          .defaults = default_settings(),
+          .defaults = default_settings(named),
           .check = [](const Settings&) {},
           .make = [command = named.command](const Settings& settings,
                                             const RunContext& context) -> std::unique_ptr<Method> {
-            return std::make_unique<ExecMethod>(command, settings.number("timeout_s"), context);
+            return std::make_unique<ExecMethod>(command, settings, context);
           }};
 }
 
 }  // namespace
 
-const MethodKind& exec_method(const std::string& command) {
+const MethodKind& exec_method(const std::string& command, const std::vector<Setting>& own) {
   if (command.empty()) {
     throw UsageError("--method exec: names no program, expected exec:COMMAND");
   }
   static std::mutex mutex;
   static std::list<NamedKind> kinds;
   const std::lock_guard lock(mutex);
-  const auto known = std::ranges::find(kinds, command, &NamedKind::command);
+  const auto known = std::ranges::find_if(kinds, [&](const NamedKind& kind) {
+    return kind.command == command && are_alike(kind.own, own);
+  });
   if (known != kinds.end()) return known->kind;
-  NamedKind& named = kinds.emplace_back(NamedKind{command, "exec:" + command, {}});
+  NamedKind& named = kinds.emplace_back(NamedKind{command, "exec:" + command});
+  for (const Setting& setting : own) named.names.emplace_back(setting.name);
+  named.own = own;
+  for (std::size_t i = 0; i < own.size(); ++i) named.own[i].name = named.names[i];
   named.kind = kind_of(named);
   return named.kind;
 }

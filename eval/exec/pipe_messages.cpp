@@ -59,13 +59,13 @@ bool is_label(std::uint32_t label) { return label == kStaticLabel || label == kM
 }  // namespace
 
 std::string greeting_message(const Greeting& greeting) {
-  std::string bytes = header("MOShello", 24);
-  append(bytes, kPipeVersion);
+  std::string bytes = header("MOShello", 24 + greeting.settings.size());
+  append(bytes, greeting.version());
   append(bytes, kColumns);
   append(bytes, greeting.scans);
   append(bytes, std::uint32_t{greeting.wants_scores});
   append(bytes, std::uint32_t{0});
-  return bytes;
+  return bytes + greeting.settings;
 }
 
 std::string scan_message(const ScanMessage& scan) {
@@ -105,9 +105,9 @@ void check_header(std::string_view header, const ExpectedAnswer& expected) {
 
 bool parse_ready(std::string_view payload, const Greeting& greeting) {
   const auto version = number_at<std::uint32_t>(payload, 0);
-  if (version != kPipeVersion) {
+  if (version != greeting.version()) {
     throw ProgramError(fmt::format("the program speaks version {}", version),
-                       fmt::format("version {}", kPipeVersion));
+                       fmt::format("version {}", greeting.version()));
   }
   const bool with_scores = number_at<std::uint32_t>(payload, 4) != 0;
   if (greeting.wants_scores && !with_scores) {

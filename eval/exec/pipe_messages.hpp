@@ -27,13 +27,16 @@ class ProgramError : public DataError {
 
 /// The messages between mosbench and a program that labels scans, as docs/formats/exec.md describes
 /// them: a header of 16 bytes, then a payload; little endian, without padding.
-inline constexpr std::uint32_t kPipeVersion = 1;
 inline constexpr std::size_t kHeaderBytes = 16;
 
 /// What mosbench says first.
 struct Greeting {
   std::uint64_t scans = 0;  ///< of the sequence; 0: not known
   bool wants_scores = false;
+  std::string settings;  ///< a JSON object; empty for none
+
+  /// Of the messages: programs that know no settings need not know of the second one.
+  std::uint32_t version() const { return settings.empty() ? 1 : 2; }
 };
 
 /// One scan on its way to the program.

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <iomanip>
+#include <iterator>
 #include <sstream>
 #include <stdexcept>
 
@@ -14,6 +15,7 @@
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
 #include "eval/exec/exec_method.hpp"
+#include "eval/job/tuned_preset.hpp"
 #include "eval/protocols/metrics.hpp"
 #include "eval/result/reading_json.hpp"
 #include "eval/result/settings_json.hpp"
@@ -66,15 +68,6 @@ ordered_json rule_json(const Job& job, DatasetKind kind) {
 
 std::string flag(const char* name, const std::string& value) {
   return fmt::format(" --{} {}", name, shell_word(value));
-}
-
-/// "a=1,b=2", or nothing.
-std::string assignments(const std::vector<SettingChange>& changes) {
-  std::string words;
-  for (const SettingChange& change : changes) {
-    words += fmt::format("{}{}={}", words.empty() ? "" : ",", change.name, to_string(change.value));
-  }
-  return words;
 }
 
 /// The settings that were given by name.
@@ -146,20 +139,48 @@ class ChangeReader {
   Settings settings_;
 };
 
+/// The method with the settings that a study chose.
+Segment tuned_segment(const std::filesystem::path& file, const std::optional<std::string>& method) {
+  const auto tuned = std::make_shared<const TunedPreset>(read_tuned_preset(file));
+  if (method && method_named(*method).title != tuned->method->title) {
+    throw UsageError(fmt::format("--preset {}: is of method {}, expected no --method or this one",
+                                 file.string(), tuned->method->title));
+  }
+  return {.method = tuned->method,
+          .preset = tuned->base,
+          .changes = tuned->settings,
+          .tuned = tuned,
+          .label = file.stem().string()};
+}
+
+Segment segment_before_changes(const JobWords& words) {
+  if (!words.preset) return {.method = &method_of(words.method, words.preset)};
+  if (is_preset_file(*words.preset)) return tuned_segment(*words.preset, words.method);
+  return {.method = &method_of(words.method, words.preset), .preset = &preset_named(*words.preset)};
+}
+
 Segment segment_of(const JobWords& words) {
-  Segment segment{.method = &method_of(words.method, words.preset)};
-  if (words.preset) segment.preset = &preset_named(*words.preset);
+  Segment segment = segment_before_changes(words);
+  segment.method = &taking(*segment.method, words.assignments);
   ChangeReader reader(*segment.method);
   if (words.config_file) reader.read_file(*words.config_file);
   reader.read_word("moving", words.moving);
   for (const std::string& assignment : words.assignments) reader.read_assignment(assignment);
-  segment.changes = std::move(reader.changes);
-  if (words.moving != "now") segment.label = words.moving;
+  std::ranges::move(reader.changes, std::back_inserter(segment.changes));
+  if (words.moving != "now") segment.label += words.moving;
   std::ranges::replace(segment.label, ':', '-');
   return segment;
 }
 
 }  // namespace
+
+std::string to_words(const std::vector<SettingChange>& changes) {
+  std::string words;
+  for (const SettingChange& change : changes) {
+    words += fmt::format("{}{}={}", words.empty() ? "" : ",", change.name, to_string(change.value));
+  }
+  return words;
+}
 
 bool Segment::is_program() const { return method->name == kExecKind; }
 
@@ -265,10 +286,15 @@ std::string to_words(const Job& job) {
   const bool is_program = job.segment.is_program();
   words += flag("method",
                 std::string(is_program ? job.segment.method->title : job.segment.method->name));
-  if (job.segment.preset != nullptr) words += flag("preset", std::string(job.segment.preset->name));
+  const std::shared_ptr<const TunedPreset>& tuned = job.segment.tuned;
+  if (tuned) {
+    words += flag("preset", tuned->file.string());
+  } else if (job.segment.preset != nullptr) {
+    words += flag("preset", std::string(job.segment.preset->name));
+  }
   if (job.odometry) {
     std::string odometry(job.odometry->kind->name);
-    const std::string changes = assignments(changes_of(*job.odometry));
+    const std::string changes = to_words(changes_of(*job.odometry));
     if (!changes.empty()) odometry += "," + changes;
     if (job.odometry->drop_moving) odometry += ",drop_moving=on";
     words += flag("odometry", odometry);
@@ -277,7 +303,9 @@ std::string to_words(const Job& job) {
   if (job.rule.range) {
     words += flag("range", fmt::format("{},{}", job.rule.range->min_m, job.rule.range->max_m));
   }
-  const std::string changes = assignments(job.segment.changes);
+  const auto of_preset = static_cast<std::ptrdiff_t>(tuned ? tuned->settings.size() : 0);
+  const std::string changes = to_words(std::vector<SettingChange>(
+      job.segment.changes.begin() + of_preset, job.segment.changes.end()));
   return changes.empty() ? words : words + flag("set", changes);
 }
 

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <mosbench/method.hpp>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -41,11 +42,17 @@ struct SettingChange {
   auto operator<=>(const SettingChange&) const = default;
 };
 
+/// "a=1,b=2", as --set takes it.
+std::string to_words(const std::vector<SettingChange>& changes);
+
+struct TunedPreset;
+
 /// A method, and what was said about its settings.
 struct Segment {
   const MethodKind* method = nullptr;
   const Preset* preset = nullptr;           ///< null: the usual one of the data set
   std::vector<SettingChange> changes = {};  ///< of the preset's values; the last one of a name wins
+  std::shared_ptr<const TunedPreset> tuned = nullptr;  ///< holds the preset and first changes
   std::string label = {};  ///< what the name of a folder of results should also say
 
   bool is_program() const;  ///< of the user, in a process of its own

@@ -1,6 +1,7 @@
 #include "eval/job/method_choice.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <stdexcept>
 #include <utility>
 
@@ -100,6 +101,26 @@ const MethodKind& method_named(const std::string& name) {
   throw UsageError(
       fmt::format("--method: '{}' is not known, expected one of {} or exec:COMMAND (nearest: {})",
                   name, fmt::join(names, ", "), nearest_name(name, names)));
+}
+
+const MethodKind& taking(const MethodKind& method, const std::vector<std::string>& assignments) {
+  if (method.name != kExecKind) return method;
+  const auto known = method.defaults.all().subspan(1);  // without timeout_s
+  std::vector<Setting> own(known.begin(), known.end());
+  for (const std::string& assignment : assignments) {
+    const std::string_view text = assignment;
+    const std::size_t equals = text.find('=');
+    const std::string_view name = text.substr(0, equals);
+    if (equals == text.npos || equals == 0 || name == kTimeout_s) continue;  // refused when set
+    if (std::ranges::find(own, name, &Setting::name) != own.end()) continue;
+    Setting& setting = own.emplace_back();
+    setting.name = name;
+    setting.meaning = "of the program";
+    setting.lowest = std::numeric_limits<double>::lowest();
+    setting.highest = std::numeric_limits<double>::max();
+    setting.value = parse_double(text.substr(equals + 1)) ? SettingValue(0.0) : std::string();
+  }
+  return exec_method(std::string(method.title.substr(kExec.size())), own);
 }
 
 const MethodKind& method_of(const std::optional<std::string>& method,

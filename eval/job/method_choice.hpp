@@ -56,6 +56,9 @@ const Preset& default_preset(DatasetKind kind);
 /// UsageError naming the nearest one.
 const MethodKind& method_named(const std::string& name);
 
+/// Returns the method; of a program of the user one that also has the settings of "KEY=VALUE".
+const MethodKind& taking(const MethodKind& method, const std::vector<std::string>& assignments);
+
 /// Returns the method that is named, else that of the preset, else the paper's. Throws UsageError
 /// where the preset is of another method than the one that is named.
 const MethodKind& method_of(const std::optional<std::string>& method,

@@ -247,6 +247,29 @@ std::string missing_keys(const Study& study, const std::vector<RuledCells>& grou
       study.file.string(), rules, missing_keys(study, groups)));
 }
 
+/// Refuses names of no sequence, and sequences that are judged on which settings are chosen.
+void check_tuning(const Study& study, const std::vector<StudyCell>& cells) {
+  std::vector<std::string> known;
+  for (const StudyCell& cell : cells) {
+    const std::string label = cell.sequence_label();
+    if (std::ranges::find(known, label) == known.end()) known.push_back(label);
+    if (!names_sequence(study.tuning->tune_on, cell)) continue;
+    if (!names_sequence(study.tuning->judge_on, cell)) continue;
+    throw UsageError(
+        fmt::format("{}: best_of tunes and judges on sequence \"{}\", expected others in judge_on",
+                    study.file.string(), label));
+  }
+  for (const auto& names : {study.tuning->tune_on, study.tuning->judge_on}) {
+    for (const std::string& name : names) {
+      const auto is_named = [&](const StudyCell& cell) { return names_sequence({name}, cell); };
+      if (std::ranges::any_of(cells, is_named)) continue;
+      throw UsageError(fmt::format(
+          "{}: best_of names {}, which is no sequence of the study, expected some of {}",
+          study.file.string(), mosbench::quoted(name), fmt::join(known, ", ")));
+    }
+  }
+}
+
 }  // namespace
 
 std::string StudyCell::label() const {
@@ -263,6 +286,13 @@ std::string StudyCell::title() const {
   if (axis != nullptr) text += fmt::format(", {}={}", axis->name, value);
   if (seed != 0) text += fmt::format(", seed {}", seed);
   return text;
+}
+
+bool names_sequence(const std::vector<std::string>& names, const StudyCell& cell) {
+  return std::ranges::any_of(names, [&](const std::string& name) {
+    return name == cell.data->name || name == cell.data->group || name == cell.sequence ||
+           name == cell.sequence_label() || name == cell.group_label();
+  });
 }
 
 std::vector<SettingChange> changes_of(const Segment& segment, const StudyAxis& axis,
@@ -286,6 +316,7 @@ std::vector<StudyCell> cells_of(const Study& study) {
       }
     }
   }
+  if (study.tuning) check_tuning(study, lister.cells);
   return std::move(lister.cells);
 }
 

@@ -38,9 +38,13 @@ struct StudyCell {
 std::vector<SettingChange> changes_of(const Segment& segment, const StudyAxis& axis,
                                       std::size_t value);
 
+/// Returns whether a list of a study's tuning names the sequence of a cell.
+bool names_sequence(const std::vector<std::string>& names, const StudyCell& cell);
+
 /// Lists the cells in the order of the study's file. Data on disk are opened, simulated ones are
-/// not made. Throws UsageError, also for one run under two names, and DataError; a sequence that
-/// cannot be opened is a cell that will fail.
+/// not made. Throws UsageError, also for one run under two names and for a tuning whose names are
+/// of no sequence, or that judges where it tunes, and DataError; a sequence that cannot be opened
+/// is a cell that will fail.
 std::vector<StudyCell> cells_of(const Study& study);
 
 /// Returns the rule by which all cells are scored; nothing where the settings of all are refused,

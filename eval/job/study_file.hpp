@@ -8,6 +8,7 @@
 
 #include "datasets/perturb/perturbation.hpp"
 #include "eval/job/job.hpp"
+#include "eval/protocols/metrics.hpp"
 
 namespace mosbench {
 
@@ -23,7 +24,8 @@ struct StudyMethod {
   Segment segment;
 };
 
-/// One kind of disturbance, or settings, at several values; all else stays as it is.
+/// One kind of disturbance, or settings, at several values; all else stays as it is. The values of
+/// a grid are in its order: those of the last setting change first.
 struct StudyAxis {
   const PerturbKind* kind = nullptr;  ///< null for settings
   std::string name;                   ///< of the kind or the setting; "sample" of several settings
@@ -31,6 +33,14 @@ struct StudyAxis {
   std::string with;                   ///< shared keys of --perturb, each with a comma in front
   std::vector<std::vector<SettingChange>> changes;  ///< by value; none of a disturbance
   std::vector<std::string> sampled;                 ///< the settings that are drawn all at once
+  bool is_grid = false;                             ///< values are combinations of settings
+};
+
+/// Of the grid, the settings with the best metric on some sequences are judged on others.
+struct StudyTuning {
+  Metric metric = Metric::kIou;
+  /// Names of data, of sequences, or of both with a blank between.
+  std::vector<std::string> tune_on, judge_on;
 };
 
 /// What study.yaml says: jobs that differ in data, method, poses, or in one value of one axis.
@@ -42,6 +52,7 @@ struct Study {
   std::vector<StudyMethod> methods;
   std::vector<std::optional<OdometryChoice>> odometries = {std::nullopt};  ///< nothing: the data's
   std::vector<StudyAxis> axes;
+  std::optional<StudyTuning> tuning = std::nullopt;
   std::vector<std::uint64_t> seeds = {1};
 };
 

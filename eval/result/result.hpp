@@ -140,6 +140,7 @@ struct Result {
   std::string setting;  ///< of the method, in words: "paper-2024, voxel 0.2 m, ..."
   std::optional<RecordedSettings> settings;  ///< of a run
   std::string preset;
+  std::string settings_from;  ///< a preset file, and what it was tuned on; empty for none
   const Protocol* protocol = nullptr;
   RangeGate range;
   Provenance from;

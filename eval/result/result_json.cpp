@@ -123,6 +123,7 @@ void visit_findings(auto& result, auto& unjudged, auto&& visit) {
   visit("preset", result.preset, Member::kIfSet);
   visit("accepted", result.accepted, Member::kIfSet);
   visit("cost", result.cost, Member::kIfSet);
+  visit("settings_from", result.settings_from, Member::kIfSet);
   visit("program", result.from.program, Member::kIfSet);
   visit("program_files", result.from.program_files, Member::kIfAny);
   visit("odometry", result.from.odometry, Member::kIfSet);

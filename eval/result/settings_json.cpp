@@ -82,7 +82,7 @@ auto blaming_user(auto&& work) {
 RecordedSettings::RecordedSettings(const Settings& settings) {
   for (const Setting& setting : settings.all()) {
     SettingValue value;
-    if (!setting.choices.empty()) {
+    if (std::holds_alternative<std::string>(setting.value)) {
       value = settings.choice(setting.name);
     } else if (std::holds_alternative<int>(setting.value)) {
       value = settings.whole(setting.name);
@@ -232,6 +232,7 @@ void apply_setting_assignment(std::string_view assignment, Settings& settings) {
     parsed = parse_json(value, origin);
   } catch (const DataError&) {  // a name
   }
+  if (parsed.is_boolean()) parsed = std::string(value);
   apply_value(assignment.substr(0, equals), parsed, origin, settings);
 }
 

@@ -59,6 +59,63 @@ Sheet curve_sheet(const StudyTable& table, const StudyCurve& curve) {
   return sheet;
 }
 
+/// A line per combination of settings.
+Sheet grid_sheet(const StudyTable& table, const StudyCurve& curve) {
+  const std::string where = table.choices.empty() ? "grid" : "grid, on tune_on";
+  Sheet sheet{.columns = {{"IoU % by " + where, Unit::kText}}};
+  for (const StudyRow& row : table.rows) sheet.columns.push_back({row.label});
+  for (std::size_t value = 0; value < curve.values.size(); ++value) {
+    std::vector<Cell>& row = sheet.rows.emplace_back(1, curve.values[value]);
+    for (const auto& line : curve.metrics) row.emplace_back(mean_text(line[value][0]));
+  }
+  return sheet;
+}
+
+std::string part_text(const std::optional<StudyMetrics>& metrics, std::size_t metric) {
+  return metrics ? mean_text((*metrics)[metric]) : "-";
+}
+
+/// Two lines per row: the settings that were chosen, and the preset without them.
+Sheet choices_sheet(const StudyTable& table) {
+  Sheet sheet{.columns = {{"best of the grid", Unit::kText}, {"settings", Unit::kText}}};
+  for (const char* part : {"tuned", "judged"}) {
+    for (const Metric metric : kBriefMetrics) {
+      sheet.columns.push_back({fmt::format("{} {} %", part, row_of(metric).title)});
+    }
+  }
+  const auto add = [&](const std::string& label, const std::string& settings,
+                       const TunedAndJudged& numbers) {
+    std::vector<Cell>& row = sheet.rows.emplace_back(std::vector<Cell>{label, settings});
+    for (const auto* part : {&numbers.tuned, &numbers.judged}) {
+      for (std::size_t i = 0; i < kBriefMetrics.size(); ++i) row.emplace_back(part_text(*part, i));
+    }
+  };
+  for (const StudyChoice& choice : table.choices) {
+    const bool has_one = choice.preset.has_value();
+    add(choice.label, has_one ? to_words(choice.preset->settings) : "none: " + choice.why_none,
+        choice.chosen);
+    add("", table.unchanged, choice.base);
+  }
+  return sheet;
+}
+
+void add_choice_notes(const StudyTable& table, std::vector<std::string>& notes) {
+  if (table.choices.empty()) return;
+  notes.push_back(
+      "settings are chosen by tuned alone, the first of equals; judged is what they are worth "
+      "elsewhere");
+  for (const StudyChoice& choice : table.choices) {
+    if (choice.preset) {
+      notes.push_back(fmt::format("`mosbench run DATA --preset {}`", choice.preset->title()));
+    }
+    if (choice.passed_over > 0) {
+      notes.push_back(fmt::format("{}: {} of {} passed over, because they fail or lack the metric",
+                                  choice.label, choice.passed_over,
+                                  counted(choice.candidates, "combination")));
+    }
+  }
+}
+
 /// A line per sampled setting with its effect on the IoU of each method.
 Sheet effects_sheet(const StudyTable& table) {
   Sheet sheet{.columns = {{"total effect", Unit::kText}}};
@@ -129,8 +186,10 @@ std::vector<std::string> notes_of(const StudyTable& table) {
         table.ranked_sequences, *table.critical_difference));
   }
   if (table.core_s) notes.push_back(work_done_text(table));
+  add_choice_notes(table, notes);
   add_gaps(table.undefined, notes);
   add_gaps(table.failures, notes);
+  add_gaps(table.missing, notes);
   return notes;
 }
 
@@ -158,6 +217,28 @@ ordered_json to_json(const StudyEffects& effects) {
     one["high"] = effect->interval.high;
   }
   return {{"label", effects.label}, {"points", effects.points}, {"settings", settings}};
+}
+
+ordered_json to_json(const TunedAndJudged& numbers) {
+  const auto part = [](const std::optional<StudyMetrics>& metrics) {
+    return metrics ? to_json(*metrics) : ordered_json();
+  };
+  return {{"tuned", part(numbers.tuned)}, {"judged", part(numbers.judged)}};
+}
+
+ordered_json to_json(const StudyChoice& choice) {
+  ordered_json json = {{"label", choice.label},
+                       {"preset_file", nullptr},
+                       {"preset", nullptr},
+                       {"why_none", choice.why_none},
+                       {"combinations", choice.candidates},
+                       {"passed_over", choice.passed_over},
+                       {"chosen", to_json(choice.chosen)},
+                       {"base", to_json(choice.base)}};
+  if (!choice.preset) return json;
+  json["preset_file"] = choice.preset->file.string();
+  json["preset"] = to_json(*choice.preset);
+  return json;
 }
 
 Cell cell_number(const PlannedCell& planned, const std::optional<double>& number) {
@@ -215,7 +296,9 @@ ordered_json to_json(const StudyTable& table) {
                        {"rows", ordered_json::array()},
                        {"curves", ordered_json::array()},
                        {"effects", ordered_json::array()},
+                       {"choices", ordered_json::array()},
                        {"worst", ordered_json::array()},
+                       {"missing", gaps_json(table.missing)},
                        {"undefined", gaps_json(table.undefined)},
                        {"failures", gaps_json(table.failures)}};
   if (table.rule) json.update(rule_json(*table.rule));
@@ -240,6 +323,7 @@ ordered_json to_json(const StudyTable& table) {
   for (const StudyEffects& effects : table.effects) {
     json["effects"].push_back(to_json(effects));
   }
+  for (const StudyChoice& choice : table.choices) json["choices"].push_back(to_json(choice));
   for (const StudyWorst& scan : table.worst) {
     json["worst"].push_back({{"label", scan.label},
                              {"cell", scan.title},
@@ -262,7 +346,10 @@ Answer study_answer(const StudyPlan& plan, const StudyTable& table) {
     answer.standing->doubts.push_back(fmt::format(
         "INCOMPLETE: {} missing", counted(table.cells - table.done, "cell is", "cells are")));
   }
-  for (const StudyCurve& curve : table.curves) answer.sheets.push_back(curve_sheet(table, curve));
+  for (const StudyCurve& curve : table.curves) {
+    answer.sheets.push_back(curve.is_grid ? grid_sheet(table, curve) : curve_sheet(table, curve));
+  }
+  if (!table.choices.empty()) answer.sheets.push_back(choices_sheet(table));
   if (!table.effects.empty()) answer.sheets.push_back(effects_sheet(table));
   for (Sheet& sheet : answer.sheets) {
     if (table.rule) sheet.caption = "protocol " + rule_name(*table.rule);

@@ -9,8 +9,6 @@
 #include <set>
 #include <utility>
 
-#include "eval/statistics/run_statistics.hpp"
-
 namespace mosbench {
 namespace {
 
@@ -25,122 +23,11 @@ std::optional<double> mean_of(auto&& values) {
   return count > 0 ? std::optional(sum / count) : std::nullopt;
 }
 
-/// Cells by sequence, then by what differs in seeds alone.
-using CellsOfSeeds = std::map<std::string, std::map<std::string, const CellNumbers*>>;
-
-/// All sequences with one seed each.
-struct SeedRun {
-  std::vector<SequenceCounts> sequences;
-  ScanGaps gaps;
-};
-
-/// Returns a run per seed; a sequence with fewer seeds stands in several runs.
-std::vector<SeedRun> runs_of(const CellsOfSeeds& cells) {
-  std::size_t most = 0;
-  for (const auto& [sequence, seeds] : cells) most = std::max(most, seeds.size());
-  std::vector<SeedRun> runs(most);
-  for (const auto& [sequence, seeds] : cells) {
-    auto seed = seeds.begin();
-    for (SeedRun& run : runs) {
-      run.sequences.push_back(seed->second->counts);
-      run.gaps += seed->second->gaps;
-      if (++seed == seeds.end()) seed = seeds.begin();
-    }
-  }
-  return runs;
-}
-
-/// The metrics of a run as `mosbench rank` has them; nothing where a sequence has no truth.
-Estimates estimate_of(const Protocol& protocol, const SeedRun& run) {
-  if (std::ranges::any_of(run.sequences, &SequenceCounts::empty)) return {};
-  return estimate(protocol, run.sequences, spacing_of(run.gaps));
-}
-
-/// IoU of the second minus the first, by seed, on what both have.
-std::vector<Estimate> differences(const Protocol& protocol, const CellsOfSeeds& first,
-                                  const CellsOfSeeds& second) {
-  CellsOfSeeds of_first, of_second;
-  for (const auto& [sequence, seeds] : first) {
-    const auto others = second.find(sequence);
-    if (others == second.end()) continue;
-    for (const auto& [seed, cell] : seeds) {
-      const auto other = others->second.find(seed);
-      if (other == others->second.end()) continue;
-      if (other->second->counts.size() != cell->counts.size()) continue;
-      of_first[sequence][seed] = cell;
-      of_second[sequence][seed] = other->second;
-    }
-  }
-  const std::vector<SeedRun> before = runs_of(of_first), after = runs_of(of_second);
-  std::vector<Estimate> ious;
-  for (std::size_t i = 0; i < before.size(); ++i) {
-    ious.push_back(paired_difference(protocol, before[i].sequences, after[i].sequences,
-                                     spacing_of(before[i].gaps))[Metric::kIou]);
-  }
-  return ious;
-}
-
-/// A computed cell, with the names under which a table gathers it.
-struct DoneCell {
-  const PlannedCell* planned;
-  const StudyCell& cell;
-  const CellNumbers& numbers;
-  std::string label, sequence;
-};
-
-/// The cells that were computed, as a table is made of them.
-class DoneCells {
- public:
-  explicit DoneCells(const StudyPlan& plan) : protocol(plan.rule ? plan.rule->protocol : nullptr) {
-    for (const PlannedCell& planned : plan.cells) {
-      std::string label = planned.cell.label();
-      if (std::ranges::find(labels, label) == labels.end()) labels.push_back(label);
-      if (planned.state != CellState::kDone) continue;
-      done.push_back(
-          {&planned, planned.cell, planned.numbers, std::move(label), planned.cell.group_label()});
-    }
-  }
-
-  CellsOfSeeds by_seed(auto&& wanted) const {
-    CellsOfSeeds cells;
-    for (const DoneCell& each : done) {
-      if (!wanted(each)) continue;
-      const std::string seed = fmt::format("{} {}", each.cell.data->name, each.cell.seed);
-      cells[each.sequence][seed] = &each.numbers;
-    }
-    return cells;
-  }
-
-  StudyMetrics metrics(auto&& wanted) const {
-    std::array<std::vector<Estimate>, kBriefMetrics.size()> seeds;
-    for (const SeedRun& run : runs_of(by_seed(wanted))) {
-      const Estimates estimates = estimate_of(*protocol, run);
-      for (std::size_t i = 0; i < seeds.size(); ++i) {
-        seeds[i].push_back(estimates[kBriefMetrics[i]]);
-      }
-    }
-    StudyMetrics metrics;
-    for (std::size_t i = 0; i < seeds.size(); ++i) {
-      metrics[i] = {mean_of_estimates(seeds[i], {0, 1}), seeds[i].size()};
-    }
-    return metrics;
-  }
-
-  const Protocol* protocol = nullptr;  ///< of the cells; null where none is done
-  std::vector<std::string> labels;
-  std::vector<DoneCell> done;
-};
-
-/// Whether a cell is of this row, without any disturbance.
-auto is_plain_of(const std::string& label) {
-  return [label](const DoneCell& each) { return each.cell.axis == nullptr && each.label == label; };
-}
-
 StudyRow row_of(const DoneCells& cells, const std::string& label) {
   const auto is_plain = is_plain_of(label);
   std::vector<std::optional<double>> ms;
   for (const DoneCell& each : cells.done) {
-    if (is_plain(each)) ms.push_back(each.numbers.ms_per_scan);
+    if (is_plain(each.cell)) ms.push_back(each.numbers.ms_per_scan);
   }
   StudyRow row;
   row.label = label;
@@ -169,20 +56,25 @@ void mark_front(std::vector<StudyRow>& rows) {
   for (std::size_t i = 0; i < rows.size(); ++i) rows[i].is_on_front = front[i];
 }
 
-StudyCurve curve_of(const DoneCells& cells, const StudyAxis& axis,
-                    const std::vector<StudyRow>& rows, const std::string& unchanged) {
-  StudyCurve curve;
-  curve.axis = axis.name;
+/// The curve of an axis. A grid that settings are chosen from shows nothing of the sequences on
+/// which they are judged.
+StudyCurve curve_of(const StudyPlan& plan, const DoneCells& cells, const StudyAxis& axis,
+                    const std::string& unchanged) {
+  StudyCurve curve{.axis = axis.name, .is_grid = axis.is_grid};
   if (axis.kind != nullptr) curve.unit = axis.kind->unit;
   curve.values = {axis.kind != nullptr ? "none" : unchanged};
   curve.values.insert(curve.values.end(), axis.values.begin(), axis.values.end());
-  for (const StudyRow& row : rows) {
+  const StudyTuning* tuning = axis.is_grid && plan.study->tuning ? &*plan.study->tuning : nullptr;
+  const auto metrics = [&](const WantedCell& wanted) {
+    return cells.metrics([&](const StudyCell& cell) {
+      return wanted(cell) && (tuning == nullptr || names_sequence(tuning->tune_on, cell));
+    });
+  };
+  for (const std::string& label : cells.labels) {
     std::vector<StudyMetrics>& line = curve.metrics.emplace_back();
-    line.push_back(row.metrics);
-    for (const std::string& value : axis.values) {
-      line.push_back(cells.metrics([&](const DoneCell& each) {
-        return each.cell.axis == &axis && each.cell.value == value && each.label == row.label;
-      }));
+    line.push_back(metrics(is_plain_of(label)));
+    for (std::size_t i = 0; i < axis.values.size(); ++i) {
+      line.push_back(metrics(is_at_value(label, axis, i)));
     }
   }
   return curve;
@@ -287,6 +179,9 @@ void count_cells(const StudyPlan& plan, StudyTable& table) {
     if (planned.state == CellState::kFailed) {
       table.failures.push_back({planned.cell.title(), planned.failure});
     }
+    if (planned.state == CellState::kMissing || planned.state == CellState::kOtherVersion) {
+      table.missing.push_back({planned.cell.title(), std::string(to_string(planned.state))});
+    }
     if (planned.state != CellState::kDone) continue;
     const std::string why = why_undefined(planned);
     if (!why.empty()) table.undefined.push_back({planned.cell.title(), why});
@@ -379,17 +274,19 @@ StudyTable gather(const StudyPlan& plan) {
   table.name = plan.study->name;
   table.out = plan.out.string();
   table.rule = plan.rule;
+  table.unchanged = default_title(plan);
   const DoneCells cells(plan);
   for (const std::string& label : cells.labels) table.rows.push_back(row_of(cells, label));
   mark_front(table.rows);
   compare_with_best(cells, table.rows);
   for (const StudyAxis& axis : plan.study->axes) {
     if (axis.sampled.empty()) {
-      table.curves.push_back(curve_of(cells, axis, table.rows, default_title(plan)));
+      table.curves.push_back(curve_of(plan, cells, axis, table.unchanged));
     } else {
       table.effects = effects_of(plan, cells, axis);
     }
   }
+  if (plan.study->tuning) table.choices = choices_of(plan, cells);
   rank(plan, cells, table);
   list_worst(plan, cells, table);
   count_cells(plan, table);

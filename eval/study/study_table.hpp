@@ -8,8 +8,9 @@
 
 #include "eval/answer/answer.hpp"
 #include "eval/engine/study_plan.hpp"
-#include "eval/statistics/intervals.hpp"
 #include "eval/statistics/total_effect.hpp"
+#include "eval/study/done_cells.hpp"
+#include "eval/study/tuning.hpp"
 
 namespace mosbench {
 
@@ -20,16 +21,6 @@ struct StudyEffects {
   std::vector<std::string> settings;
   std::vector<std::optional<TotalEffect>> effects;  ///< of the IoU's mean over sequences
 };
-
-/// A metric over the sequences of a study as the protocol aggregates them, which is what `mosbench
-/// rank` says of the same scans. Of several seeds, also those of simulations, it is the mean, and
-/// the interval is that of their spread: 95 %, Student's t, of at least three.
-struct StudyMean : Estimate {
-  std::size_t seeds = 0;  ///< 0 without cells
-};
-
-/// By kBriefMetrics.
-using StudyMetrics = std::array<StudyMean, kBriefMetrics.size()>;
 
 /// A method with its poses, on all sequences without any disturbance.
 struct StudyRow {
@@ -46,6 +37,7 @@ struct StudyCurve {
   std::string axis, unit;
   std::vector<std::string> values;  ///< first "none", of a setting "default of preset best"
   std::vector<std::vector<StudyMetrics>> metrics;  ///< by row, by value
+  bool is_grid = false;                            ///< of combinations of settings
 };
 
 /// What cannot be shown, and why.
@@ -66,14 +58,17 @@ struct StudyTable {
   bool simulated = false;  ///< any of its data
   std::vector<std::string> doubts;
   std::optional<ScoreRule> rule;
+  std::string unchanged;  ///< see `default_title`
   std::vector<StudyRow> rows;
   std::vector<StudyCurve> curves;
   std::vector<StudyEffects> effects;
+  std::vector<StudyChoice> choices;  ///< of a tuning, by row
   std::size_t ranked_sequences = 0;
   /// Two mean ranks that are farther apart differ at 5 % (Nemenyi; Demsar 2006, eq. 5 and table 5).
   std::optional<double> critical_difference;
   std::vector<StudyWorst> worst;
   std::vector<StudyGap> failures;
+  std::vector<StudyGap> missing;    ///< cells that are still to be computed
   std::vector<StudyGap> undefined;  ///< cells that have no IoU, precision or recall
   std::size_t cells = 0, done = 0;
   /// Time of one core for what is done, and what costs.json said of it. Programs of the user's

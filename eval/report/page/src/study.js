@@ -96,6 +96,27 @@ function effects(study) {
   });
 }
 
+/** Of a part of the sequences, "-" where cells of it are missing. */
+const partText = (metrics) => (metrics ? meanText(metrics.iou) : '-');
+
+/** The settings that were chosen from a grid, and the unchanged preset, where it was tuned and where it is judged. */
+export function choiceRows(choices) {
+  return choices.flatMap(({ label, preset, why_none, chosen, base }) => {
+    const words = Object.entries(preset?.settings ?? {}).map(([name, value]) => `${name}=${value}`).join(', ');
+    return [
+      [label, preset ? words : `none: ${why_none}`, partText(chosen.tuned), partText(chosen.judged)],
+      ['', 'the preset', partText(base.tuned), partText(base.judged)],
+    ];
+  });
+}
+
+function choiceTable(study) {
+  if (!study.choices?.length) return [];
+  const files = study.choices.filter(({ preset_file }) => preset_file).map(({ preset_file }) => preset_file).join(', ');
+  return [block('Best of the grid', `Chosen where it is tuned alone. ${files}`,
+    table(['method', 'settings', 'tuned IoU', 'judged IoU'], choiceRows(study.choices), { leftColumns: 2 }))];
+}
+
 /** Cells by why they lack something: a bad scan fails every cell of its sequence. */
 function byReason(gaps) {
   const cells = new Map();
@@ -121,7 +142,7 @@ function remarks(study) {
   if (study.cpu_s !== null && study.predicted_cpu_s) {
     lines.push(`The ${study.done} cells that are done took ${(study.cpu_s / study.predicted_cpu_s).toFixed(2)} times the time that was expected.`);
   }
-  if (study.done < study.cells) bad.push(`${study.cells - study.done} of ${study.cells} cells are missing.`);
+  if (study.done < study.cells) bad.push(`${study.cells - study.done} of ${study.cells} cells are missing.`, ...gapLines(study.missing ?? []));
   bad.push(...gapLines(study.undefined), ...gapLines(study.failures).map((line) => `Failed: ${line}`));
   return [...bad.map((line) => element('p', { class: 'notice' }, line)), ...lines.map((line) => element('p', { class: 'notice quiet' }, line))];
 }
@@ -146,7 +167,7 @@ function draw(study) {
   document.documentElement.dataset.theme = state.get('theme');
   document.body.append(element('main', {},
     element('h1', {}, `Study ${study.name}`), ...remarks(study), element('div', { class: 'block' }, overview(study)),
-    element('div', { class: 'charts' }, ...charts.map((chart) => chart.node)), ...effects(study), ...worstScans(study)));
+    element('div', { class: 'charts' }, ...charts.map((chart) => chart.node)), ...choiceTable(study), ...effects(study), ...worstScans(study)));
 }
 
 if (globalThis.document?.getElementById('report')) draw(readContent());

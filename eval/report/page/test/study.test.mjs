@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { rulesText } from '../src/format.js';
-import { curveChart, gapLines, logTicks, paretoChart } from '../src/study.js';
+import { choiceRows, curveChart, gapLines, logTicks, paretoChart } from '../src/study.js';
 
 const point = (value, low = null, high = null) => ({ iou: { value, low, high }, precision: { value: 1 }, recall: { value: null } });
 const curve = {
@@ -30,6 +30,17 @@ test('the default of a setting is a dot apart, which no line joins to the values
 test('cells that failed alike are told once', () => {
   const failures = [{ cell: 'a', why: 'cut off' }, { cell: 'b', why: 'no pose' }, { cell: 'c', why: 'cut off' }];
   assert.deepEqual(gapLines(failures), ['a and 1 more cell: cut off', 'b: no pose']);
+});
+
+test('chosen settings stand above the preset, and a part with missing cells is a dash', () => {
+  const rows = choiceRows([
+    { label: 'a', preset: { settings: { max_range_m: 20, variant: 'x' } }, chosen: { tuned: point(0.8), judged: null }, base: { tuned: point(0.5), judged: point(0.6) } },
+    { label: 'b', preset: null, why_none: '1 cell of tune_on is missing', chosen: { tuned: null, judged: null }, base: { tuned: null, judged: null } },
+  ]);
+  assert.deepEqual(rows, [
+    ['a', 'max_range_m=20, variant=x', '80.0 %', '-'], ['', 'the preset', '50.0 %', '60.0 %'],
+    ['b', 'none: 1 cell of tune_on is missing', '-', '-'], ['', 'the preset', '-', '-'],
+  ]);
 });
 
 test('the rules of a number say which points count', () => {

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <filesystem>
+#include <mosbench/method.hpp>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "eval/job/job.hpp"
+
+namespace mosbench {
+
+/// A sequence on which settings were chosen.
+struct TunedSequence {
+  std::string label;  ///< "street-1 08": its data in the study, and its name
+  std::string dataset, sequence;
+  std::string simulation;   ///< which one; empty for recorded data
+  std::string fingerprint;  ///< of its scans, without poses
+};
+
+/// Settings that a study chose: what its preset file holds.
+struct TunedPreset {
+  std::filesystem::path file;
+  const MethodKind* method = nullptr;
+  const Preset* base = nullptr;         ///< null: the usual one of each data set
+  std::vector<SettingChange> settings;  ///< over those of the base
+  std::string metric, study;
+  std::vector<TunedSequence> tuned_on;
+
+  /// Returns "best.json: preset semantickitti with max_range_m=30, tuned on a 08, b 08 by iou
+  /// (study mine)".
+  std::string title() const;
+};
+
+nlohmann::ordered_json to_json(const TunedPreset& preset);
+/// Throws UsageError naming the file for what is no such file, and for methods, presets and
+/// settings that this mosbench does not have.
+TunedPreset read_tuned_preset(const std::filesystem::path& file);
+
+/// Returns whether --preset names such a file.
+bool is_preset_file(const std::string& preset);
+
+/// Returns the doubt about a result with these settings on a sequence that they were chosen on:
+/// also where only its name tells, as of another part of it. Empty for other sequences.
+std::string tuning_doubt(const TunedPreset& preset, const Result& result);
+
+}  // namespace mosbench

@@ -1,0 +1,137 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "tests/cli/program.hpp"
+#include "tests/cli/small_sequence.hpp"
+
+namespace mosbench {
+namespace {
+
+using nlohmann::ordered_json;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+/// Two sequences of different lengths: tuned on one, judged on the other.
+class Tuning : public testing::Test {
+ protected:
+  Tuning() {
+    cli::write_small_sequence(folder_ / "data/sequences/00", 9);
+    cli::write_small_sequence(folder_ / "data/sequences/01", 12);
+    folder_.write("s.yaml", R"(name: tune
+protocol: semantickitti-mos
+data: {name: small, path: data, dataset: semantickitti}
+methods: [{method: underwood, set: {reference_offset_scans: 2}}]
+grid: {max_range_m: [3, 40], range_tolerance_m: [0.15, 0.3]}
+best_of: {metric: iou, tune_on: ["00"], judge_on: ["01"]}
+)");
+  }
+  cli::Answer run(std::vector<std::string> words) const { return cli::run(words); }
+  std::string path(const char* name) const { return folder_ / name; }
+
+  TempFolder folder_;
+};
+
+TEST_F(Tuning, WritesAPresetThatRunTakes) {
+  const cli::Answer half = run({"rank", path("s.yaml"), "--out", path("out")});
+  EXPECT_EQ(half.exit_code, 1);
+  EXPECT_THAT(half.out, AllOf(HasSubstr("5 cells of tune_on are missing"),
+                              HasSubstr("small 00, underwood and 9 more cells: missing")));
+  const cli::Answer study = run({"run", path("s.yaml"), "--out", path("out"), "--threads", "1"});
+  ASSERT_EQ(study.exit_code, 0) << study.err;
+  const std::string preset = path("out/underwood.preset.json");
+  ASSERT_TRUE(is_there(preset));
+  const auto json = ordered_json::parse(read_file(preset));
+  EXPECT_EQ(json.at("method"), "underwood");
+  EXPECT_EQ(json.at("preset"), "semantickitti");
+  EXPECT_EQ(json.at("settings").at("max_range_m"), 40.0);
+  EXPECT_EQ(json.at("metric"), "iou");
+  EXPECT_EQ(json.at("tuned_on").at(0).at("label"), "small 00");
+  EXPECT_EQ(json.at("tuned_on").size(), 1U);
+  EXPECT_THAT(study.out, AllOf(HasSubstr("tuned IoU %"), HasSubstr("judged IoU %"),
+                               HasSubstr("tuned on small 00 by iou (study tune)")));
+  const auto table =
+      ordered_json::parse(run({"rank", path("s.yaml"), "--out", path("out"), "--as", "json"}).out);
+  const auto& choice = table.at("choices").at(0);
+  EXPECT_EQ(choice.at("preset").at("settings"), json.at("settings"));
+
+  // The same numbers as in the study, and a doubt where it was tuned.
+  const cli::Answer judged =
+      run({"run", path("data"), "--dataset", "semantickitti", "--sequences", "01", "--preset",
+           preset, "--protocol", "semantickitti-mos", "--out", path("judged")});
+  ASSERT_EQ(judged.exit_code, 0) << judged.err;
+  EXPECT_THAT(judged.out, AllOf(HasSubstr("settings of "), Not(HasSubstr("tuned on this"))));
+  const auto result = cli::timeless_result(folder_ / "judged/01");
+  EXPECT_EQ(result.at("summary").at("iou"), choice.at("chosen").at("judged").at("iou").at("value"));
+  EXPECT_THAT(result.at("settings_from").get<std::string>(),
+              HasSubstr("tuned on small 00 by iou (study tune)"));
+  EXPECT_FALSE(result.contains("doubts"));
+  const cli::Answer tuned = run({"run", path("data"), "--dataset", "semantickitti", "--sequences",
+                                 "00", "--preset", preset, "--out", path("tuned")});
+  ASSERT_EQ(tuned.exit_code, 0) << tuned.err;
+  EXPECT_THAT(tuned.out, HasSubstr("tuned on this sequence"));
+  const cli::Answer part = run({"run", path("data"), "--dataset", "semantickitti", "--sequences",
+                                "00", "--scans", ":8", "--preset", preset, "--out", path("part")});
+  EXPECT_THAT(part.out, HasSubstr("tuned on a sequence of this name"));
+}
+
+TEST_F(Tuning, RefusesPresetsOfAnotherMethodAndOtherFiles) {
+  folder_.write("p.json",
+                R"({"method": "underwood", "preset": null, "settings": {}, "metric": "iou",
+                             "study": "s", "tuned_on": []})");
+  const cli::Answer other = run({"run", path("data/sequences/00"), "--method", "yoon", "--preset",
+                                 path("p.json"), "--out", path("x")});
+  EXPECT_EQ(other.exit_code, 2);
+  EXPECT_THAT(other.err, HasSubstr("p.json: is of method Underwood, expected no --method"));
+  const cli::Answer gone =
+      run({"run", path("data/sequences/00"), "--preset", path("gone.json"), "--out", path("x")});
+  EXPECT_EQ(gone.exit_code, 2);
+  EXPECT_THAT(gone.err, HasSubstr("gone.json"));
+  folder_.write("s.yaml", read_file(folder_ / "s.yaml") + "seeds: [1]\n");
+  std::string text = read_file(folder_ / "s.yaml");
+  folder_.write("s.yaml", text.replace(text.find("[\"01\"]"), 6, "[\"00\"]"));
+  const cli::Answer cheat = run({"run", path("s.yaml"), "--out", path("out")});
+  EXPECT_EQ(cheat.exit_code, 2);
+  EXPECT_THAT(cheat.err, HasSubstr("best_of tunes and judges on sequence \"small 00\""));
+}
+
+TEST_F(Tuning, GivesAProgramItsSettings) {
+  const std::string client = std::string(MOSBENCH_SOURCE_DIR) + "/tests/examples/exec/client.py";
+  const std::string program = "exec:/usr/bin/python3 " + client;
+  const auto labels = [&](const std::string& out, std::vector<std::string> more) {
+    std::vector<std::string> words = {
+        "run",      path("data/sequences/00"), "--method", program,
+        "--preset", "semantickitti",           "--out",    folder_ / out};
+    words.insert(words.end(), more.begin(), more.end());
+    const cli::Answer answer = cli::run(words);
+    EXPECT_EQ(answer.exit_code, 0) << answer.err;
+    return read_file(folder_ / out / "00/labels/000008.label");
+  };
+  const std::string plain = labels("plain", {});
+  EXPECT_EQ(labels("same", {"--set", "voxel_size_m=0.5"}), plain) << "its own default";
+  EXPECT_NE(labels("other", {"--set", "voxel_size_m=3,name=mine,timeout_s=30"}), plain);
+  EXPECT_EQ(cli::timeless_result(folder_ / "other/00").at("settings"),
+            ordered_json::parse(R"({"timeout_s": 30.0, "voxel_size_m": 3.0, "name": "mine"})"));
+  folder_.write("s.yaml", R"(name: tune
+protocol: semantickitti-mos
+data: {name: small, path: data, dataset: semantickitti}
+methods: {name: ours, method: ")" +
+                              program + R"(", preset: semantickitti, set: {voxel_size_m: 1}}
+grid: {voxel_size_m: [3, 0.5]}
+best_of: {metric: iou, tune_on: ["00"], judge_on: ["01"]}
+)");
+  const cli::Answer study = run({"run", path("s.yaml"), "--out", path("out"), "--threads", "1"});
+  ASSERT_EQ(study.exit_code, 0) << study.err;
+  const std::string preset = path("out/ours.preset.json");
+  EXPECT_EQ(ordered_json::parse(read_file(preset)).at("settings").at("voxel_size_m"), 0.5);
+  const cli::Answer again =
+      run({"run", path("data/sequences/01"), "--preset", preset, "--out", path("again")});
+  ASSERT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_EQ(cli::timeless_result(folder_ / "again/01").at("settings").at("voxel_size_m"), 0.5);
+}
+
+}  // namespace
+}  // namespace mosbench
