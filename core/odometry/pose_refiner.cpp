@@ -11,7 +11,14 @@
 namespace mosbench {
 namespace {
 
-using namespace odometry;
+using odometry::fit_m;
+using odometry::moved_by;
+using odometry::offset;
+using odometry::Offset6;
+using odometry::registered;
+using odometry::rigid;
+using odometry::SurfaceMap;
+using odometry::SurfacePoints;
 
 /// Scans apart whose fit decides: single steps hide a steady error.
 constexpr std::size_t kApart = 10;
@@ -19,12 +26,6 @@ constexpr std::size_t kApart = 10;
 constexpr double kClearlyBetter = 0.9;
 /// The given poses hold over stretches longer than this.
 constexpr double kHolding_scans = 100.0;
-
-/// Two scans, and whether they fit clearly better as registered.
-struct Span {
-  std::size_t earlier, later;
-  bool is_better;
-};
 
 /// Returns x with x[0] = 0 that minimises the sum of |x[k] - wanted[k]|^2 and, times the square of
 /// kHolding_scans, |x[k] - x[k-1]|^2.
@@ -62,17 +63,16 @@ double median(std::vector<double> values) {
 }  // namespace
 
 struct PoseRefiner::State {
-  Pose map_from_first = Pose::Identity();
-  std::vector<Pose> given, found;  ///< from the first scan's frame
+  std::vector<Pose> pushed;        ///< map_from_sensor
+  std::vector<Pose> given, found;  ///< first_from_sensor
   SurfaceMap map;
   std::deque<SurfaceMap> recent;  ///< of single scans
-  std::vector<Span> spans;
+  std::vector<int> votes;         ///< of pairs of scans, for the motion found to each scan
   std::vector<std::size_t> failed;
   std::vector<double> given_fits_m, fits_m;
 
   void place(const SurfacePoints& scan);
   void compare(const SurfacePoints& scan);
-  bool is_corrected(std::size_t later) const;
 };
 
 /// Finds the pose of the last scan.
@@ -94,18 +94,10 @@ void PoseRefiner::State::compare(const SurfacePoints& scan) {
   };
   const std::optional<double> as_given = fit(given), as_found = fit(found);
   if (!as_given || !as_found) return;
-  spans.push_back({earlier, later, *as_found < kClearlyBetter * *as_given});
+  const int vote = *as_found < kClearlyBetter * *as_given ? 1 : -1;
+  for (std::size_t k = earlier + 1; k <= later; ++k) votes[k] += vote;
   given_fits_m.push_back(*as_given);
   fits_m.push_back(*as_found);
-}
-
-/// Whether the motion to a scan is that found, not that given.
-bool PoseRefiner::State::is_corrected(std::size_t later) const {
-  std::ptrdiff_t better = 0;
-  for (const Span& span : spans) {
-    if (span.earlier < later && later <= span.later) better += span.is_better ? 1 : -1;
-  }
-  return better > 0;
 }
 
 PoseRefiner::PoseRefiner() : state_(std::make_unique<State>()) {}
@@ -113,8 +105,9 @@ PoseRefiner::~PoseRefiner() = default;
 
 void PoseRefiner::push(std::span<const Point> points, const Pose& given) {
   State& state = *state_;
-  if (state.given.empty()) state.map_from_first = given;
-  state.given.push_back(state.map_from_first.inverse() * given);
+  state.pushed.push_back(given);
+  state.given.push_back(state.pushed.front().inverse() * given);
+  state.votes.push_back(0);
   const SurfacePoints scan(points);
   state.place(scan);
   state.compare(scan);
@@ -126,21 +119,21 @@ void PoseRefiner::push(std::span<const Point> points, const Pose& given) {
 RefinedPoses PoseRefiner::finish() const {
   const State& state = *state_;
   const std::vector<Pose>& given = state.given;
-  RefinedPoses refined{.map_from_sensor = {}, .failed = state.failed};
+  RefinedPoses refined{.map_from_sensor = state.pushed, .failed = state.failed};
+  refined.given_fit_m = median(state.given_fits_m);
+  refined.fit_m = median(state.fits_m);
   std::vector<Pose> poses;
   for (std::size_t k = 0; k < given.size(); ++k) {
-    const bool corrects = state.is_corrected(k);
+    const bool corrects = state.votes[k] > 0;
     const std::vector<Pose>& by = corrects ? state.found : given;
     poses.push_back(k == 0 ? given[0] : rigid(poses.back() * (by[k - 1].inverse() * by[k])));
     refined.corrected += corrects ? 1 : 0;
   }
-  if (refined.corrected == 0)
-    poses = given;
-  else
-    poses = held_by(given, std::move(poses));
-  for (const Pose& pose : poses) refined.map_from_sensor.push_back(state.map_from_first * pose);
-  refined.given_fit_m = median(state.given_fits_m);
-  refined.fit_m = median(state.fits_m);
+  if (refined.corrected == 0) return refined;
+  poses = held_by(given, std::move(poses));
+  for (std::size_t k = 1; k < poses.size(); ++k) {
+    refined.map_from_sensor[k] = state.pushed.front() * poses[k];
+  }
   return refined;
 }
 

@@ -30,7 +30,8 @@ std::vector<std::string> doubts_of(const Sequence& sequence) {
     return scan.map_from_sensor.matrix() == scans.front().map_from_sensor.matrix();
   };
   const bool is_still = std::ranges::all_of(scans, is_first);
-  if (is_still && !sequence.reading().poses.source.empty()) facts["equal_poses"] = scans.size();
+  const std::string& source = sequence.reading().poses.source;
+  if (is_still && !source.empty() && source != kStaticPoses) facts["equal_poses"] = scans.size();
   for (const Subject subject : {Subject::kStamps, Subject::kStill}) {
     for (Symptom& symptom : judged(checks(), subject, facts, sequence.name())) {
       doubts.push_back(std::move(symptom.what));

@@ -143,6 +143,20 @@ ListedSequences list_sequences(const std::filesystem::path& path, const OpenOpti
   return {layout, keep_named(std::move(found), options.sequences)};
 }
 
+/// Returns how points are to be moved; nothing unless they have times.
+std::optional<Deskew> deskew_of(const Sequence& sequence, const Reading& reading) {
+  const ReadingDone& done = sequence.reading();
+  const Deskew by = reading.deskew.value_or(Deskew::kPoses);
+  const bool has_times = reading.point_times == PointTimes::kAzimuth || by == Deskew::kVelocity ||
+                         (!done.point_times.empty() && !done.undistortion);
+  return by != Deskew::kNone && has_times ? std::optional(by) : std::nullopt;
+}
+
+/// Whether the poses that deskew are yet to be refined. Disturbed ones, which are, do not deskew.
+bool deskews_by_refined_poses(const Reading& reading) {
+  return reading.refine_poses && !reading.perturb;
+}
+
 /// The sequence with the times of its points, and deskewed by them unless its poses are found
 /// later.
 std::unique_ptr<Sequence> with_point_times(std::unique_ptr<Sequence> sequence,
@@ -157,11 +171,9 @@ std::unique_ptr<Sequence> with_point_times(std::unique_ptr<Sequence> sequence,
   if (reading.point_times == PointTimes::kAzimuth) {
     sequence = with_azimuth_times(std::move(sequence));
   }
-  const Deskew by = reading.deskew.value_or(Deskew::kPoses);
-  const bool has_times = reading.point_times == PointTimes::kAzimuth || by == Deskew::kVelocity ||
-                         (!done.point_times.empty() && !done.undistortion);
-  if (reading.is_by_odometry() || !has_times) return sequence;
-  return deskewed(std::move(sequence), by);
+  const bool later = reading.is_by_odometry() || deskews_by_refined_poses(reading);
+  const std::optional<Deskew> by = deskew_of(*sequence, reading);
+  return later || !by ? std::move(sequence) : deskewed(std::move(sequence), *by);
 }
 
 /// The file of a sequence's poses in a folder as `mosbench odometry` and `run --odometry` write it.
@@ -184,6 +196,28 @@ Reading reading_of(const SequenceFolder& sequence, Reading reading) {
   return reading;
 }
 
+/// How far the sensor moves by the poses that the data set itself has; 0 without any.
+double moved_m(const Layout& layout, const SequenceFolder& folder, Reading reading) {
+  reading.poses = OwnPoses{};
+  double most_m = 0.0;
+  try {
+    const std::unique_ptr<Sequence> sequence = layout.open(folder, reading);
+    for (const ScanEntry& scan : sequence->recording().scans) {
+      most_m = std::max(most_m, distance_m(scan.map_from_sensor, sequence->map_from_sensor(0)));
+    }
+  } catch (const DataError&) {  // it may have none
+  }
+  return most_m;
+}
+
+std::unique_ptr<Sequence> opened(const Layout& layout, const SequenceFolder& folder,
+                                 const Reading& reading) {
+  if (!reading.is_static()) return layout.open(folder, reading);
+  Reading unposed = reading;
+  unposed.poses = ByOdometry{};
+  return with_static_poses(layout.open(folder, unposed), moved_m(layout, folder, reading));
+}
+
 /// Refuses what was asked of sequences that cannot have it.
 void check_asked(const Reading& asked, const Layout& layout,
                  const std::vector<SequenceFolder>& folders) {
@@ -198,6 +232,10 @@ void check_asked(const Reading& asked, const Layout& layout,
   if (poses != nullptr && !layout.only_own_poses.empty()) {
     throw UsageError(
         fmt::format("{} is not for {}, {}", option("poses"), layout.name, layout.only_own_poses));
+  }
+  if (asked.refine_poses && asked.is_by_odometry()) {
+    throw UsageError(option("refine_poses") +
+                     ": corrects poses that are given, expected it without odometry");
   }
   if (asked.moving_speed_m_s && !layout.truth_by_speed) {
     throw UsageError(fmt::format(
@@ -290,6 +328,14 @@ void keep_range(Dataset& dataset, const ScanRange& range) {
   keep_left_scans(dataset);
 }
 
+void refine(Dataset& dataset, const Reading& reading, const ScanCount& count) {
+  for (std::unique_ptr<Sequence>& sequence : dataset.sequences) {
+    const auto deskew =
+        deskews_by_refined_poses(reading) ? deskew_of(*sequence, reading) : std::nullopt;
+    sequence = with_refined_poses(std::move(sequence), deskew, count);
+  }
+}
+
 }  // namespace
 
 std::vector<SequenceFolder> find_sequences(const std::filesystem::path& path,
@@ -301,7 +347,8 @@ std::vector<SequenceFolder> find_sequences(const std::filesystem::path& path,
   return std::move(listed.folders);
 }
 
-Dataset open_dataset(const std::filesystem::path& path, const OpenOptions& options) {
+Dataset open_dataset(const std::filesystem::path& path, const OpenOptions& options,
+                     const ScanCount& refined) {
   Dataset dataset;
   const auto [layout, folders] = list_sequences(path, options, dataset.remarks);
   dataset.kind = layout.kind();
@@ -310,7 +357,7 @@ Dataset open_dataset(const std::filesystem::path& path, const OpenOptions& optio
   for (const SequenceFolder& folder : folders) {
     const Reading reading = reading_of(folder, options.reading);
     check_point_times(reading, layout, folder);
-    std::unique_ptr<Sequence> sequence = layout.open(folder, reading);
+    std::unique_ptr<Sequence> sequence = opened(layout, folder, reading);
     check_positions(*sequence, folder);
     sequence->set_simulated(origin_of(*sequence, folder, layout, path));
     if (reading.hdl64_correction) sequence = with_hdl64_correction(std::move(sequence));
@@ -321,6 +368,7 @@ Dataset open_dataset(const std::filesystem::path& path, const OpenOptions& optio
                        : named_splits(layout, folders);
   if (options.reading.scans) keep_range(dataset, *options.reading.scans);
   if (options.reading.perturb) perturb(dataset, options.reading);
+  if (options.reading.refine_poses) refine(dataset, options.reading, refined);
   return dataset;
 }
 

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "datasets/sequence/replaced_poses.hpp"
 #include "datasets/sequence/sequence.hpp"
 
 namespace mosbench {
@@ -92,6 +93,8 @@ std::vector<SequenceFolder> find_sequences(const std::filesystem::path& path,
 /// says what is missing. A remark says so. Throws DataError when nothing usable is there,
 /// UsageError for a sequence name that does not exist or a pose file given for several sequences.
 /// For poses in a folder each sequence takes NAME.txt, NAME.tum or NAME/poses.txt.
-Dataset open_dataset(const std::filesystem::path& path, const OpenOptions& options);
+/// `refined` is called for each scan while poses are refined.
+Dataset open_dataset(const std::filesystem::path& path, const OpenOptions& options,
+                     const ScanCount& refined = {});
 
 }  // namespace mosbench

@@ -149,7 +149,7 @@ void PosedSequence::set_poses(const std::vector<Pose>& map_from_sensor, std::str
     mutable_recording().scans[k].map_from_sensor = map_from_sensor[k];
   }
   deskewer_ = ScanDeskewer(deskew_, recording().scans);
-  mutable_recording().remarks.push_back(std::move(remark));
+  if (!remark.empty()) mutable_recording().remarks.push_back(std::move(remark));
 }
 
 void PosedSequence::read(std::size_t scan_index, Frame& frame) const {

@@ -61,7 +61,7 @@ class PosedSequence : public SequenceAround {
 
   /// One pose per scan. `remark` is what a reader of results should know about them. To be called
   /// before scans are read from several threads.
-  void set_poses(const std::vector<Pose>& map_from_sensor, std::string remark);
+  void set_poses(const std::vector<Pose>& map_from_sensor, std::string remark = {});
 
   /// The sequence as it is without poses.
   const Sequence& unposed() const { return inner(); }

@@ -84,6 +84,7 @@ ReadingMembers members_of(const PosesDone& poses) {
   members.add("pose_origin", poses.origin);
   members.add("pose_odometry", poses.odometry);
   members.add("pose_map", poses.map);
+  if (poses.refined) members.add("pose_refinement", "registration to the scans before");
   return members.take();
 }
 

@@ -55,14 +55,17 @@ enum class PointTimes : std::uint8_t {
 inline constexpr std::array<std::string_view, 7> kPointTimesNames = {
     "column", "azimuth", "s", "ms", "us", "ns", "steps"};
 
-/// Where poses come from: the data set, a file of the user or a folder with one per sequence, or
-/// later from odometry. Every scan has the identity until then.
+/// Where poses come from: the data set, a file of the user or a folder with one per sequence, later
+/// odometry, or nowhere, as the sensor stands still. Without poses every scan has the identity.
 struct OwnPoses {};
 struct PoseFile {
   std::filesystem::path path;
 };
 struct ByOdometry {};
-using PosesFrom = std::variant<OwnPoses, PoseFile, ByOdometry>;
+struct StaticPoses {};
+using PosesFrom = std::variant<OwnPoses, PoseFile, ByOdometry, StaticPoses>;
+/// What stands for StaticPoses in options, and in PosesDone::source.
+inline constexpr std::string_view kStaticPoses = "static";
 
 /// One disturbance of a list.
 struct PerturbStep {
@@ -110,6 +113,7 @@ struct Reading {
   /// float32 per point in .bin files; when not set 4, and scans that clearly have others are
   /// refused.
   std::optional<std::size_t> bin_columns = std::nullopt;
+  bool refine_poses = false;  ///< whether scans are registered to correct them
   /// Whether points of KITTI's HDL-64E are raised by the angle that its calibration misses.
   bool hdl64_correction = false;
   /// Disturbances of what is read.
@@ -121,6 +125,7 @@ struct Reading {
   bool undistorts() const { return deskew != Deskew::kNone; }
   bool has_own_poses() const { return std::holds_alternative<OwnPoses>(poses); }
   bool is_by_odometry() const { return std::holds_alternative<ByOdometry>(poses); }
+  bool is_static() const { return std::holds_alternative<StaticPoses>(poses); }
   /// Returns the file or folder of PoseFile; null for poses from elsewhere.
   const std::filesystem::path* pose_file() const {
     const auto* file = std::get_if<PoseFile>(&poses);
@@ -156,7 +161,10 @@ void visit_fields(Asked& reading, Visit&& visit) {
         "Only these scans of each sequence, counted from 0, TO not among them; each part may be "
         "left out, and N means :N (default: all)");
   visit("poses", reading.poses, FieldText{"FILE"},
-        "Pose file to take instead of the sequence's own, or a folder with one per sequence");
+        "Pose file to take instead of the sequence's own, a folder with one per sequence, or "
+        "static: the sensor stands still");
+  visit("refine_poses", reading.refine_poses, FieldText{},
+        "Correct the poses by registering each scan to those before");
   visit("pose_format", reading.pose_format, kPoseFormatNames,
         "Rows of 12 numbers, stamped rows with a quaternion, or Dynablox's rollout CSV (default: "
         "recognised)");
@@ -201,6 +209,7 @@ struct PosesDone {
   std::optional<PoseDirection> direction = std::nullopt;
   std::optional<PoseFrame> frame = std::nullopt;  ///< the camera's were turned into the lidar's
   bool frame_by_mark = false;                     ///< whether a mark beside the file says so
+  bool refined = false;                           ///< whether registration corrected them
   std::string origin = {};                        ///< of poses that were converted
   std::string odometry = {}, map = {};            ///< its settings, and what its map leaves out
 };

@@ -154,17 +154,18 @@ std::string typed_line(const std::vector<std::string>& arguments) {
 
 /// Returns the commands that get on where the scans of `command` have no poses: the same with
 /// odometry, where it has that, else odometry and then the same with its poses. `arguments` are
-/// what was typed. Empty for a command that takes no poses.
-std::string commands_with_odometry(const CLI::App& command,
-                                   const std::vector<std::string>& arguments) {
+/// what was typed; there are no poses to refine. Empty for a command that takes no poses.
+std::string commands_with_odometry(const CLI::App& command, std::vector<std::string> arguments) {
+  constexpr std::string_view kRefines = "--refine-poses";
+  std::erase(arguments, kRefines);
   if (command.get_option_no_throw("--odometry") != nullptr) {
     return typed_line(arguments) + " --odometry simple";
   }
   if (command.get_option_no_throw("--poses") == nullptr) return "";
   const auto chooses_scans = [](const CLI::Option& option) {
     const std::string name = option.get_name();
-    return option.get_group() == kReadingGroup || name == "DATA" || name == "--dataset" ||
-           name == "--sequences";
+    return name != kRefines && (option.get_group() == kReadingGroup || name == "DATA" ||
+                                name == "--dataset" || name == "--sequences");
   };
   // A file for one sequence, a folder for several: `--poses` takes either.
   constexpr std::string_view kFoundPoses = "found-poses";

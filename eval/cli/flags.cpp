@@ -46,6 +46,11 @@ void take_read_keys(Reading& reading, const std::string& text) {
 
 /// Adds a field of Reading as a flag that fills it.
 CLI::Option* add_field(CLI::App& command, const ReadingField& field, Reading& reading) {
+  if (field.is_switch()) {
+    return command.add_flag_callback(
+        flag_of(field.name), [&reading, &field] { set_field(reading, field.name, "on"); },
+        field.meaning);
+  }
   const auto take = [&reading, &field](const std::string& text) {
     set_field(reading, field.name, text);
   };

@@ -2,6 +2,8 @@
 
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <optional>
+#include <utility>
 
 #include "core/base/thread_pool.hpp"
 #include "eval/answer/answer_text.hpp"
@@ -33,31 +35,36 @@ void take_out(const std::string& text, OdometryFlags& flags) {
 std::string next_command(const OdometryFlags& flags) {
   Data data = data_of(flags);
   data.reading.poses = PoseFile{flags.files.out};
+  data.reading.refine_poses = false;
   data.reading.pose_frame = PoseFrame::kLidar;
   return fmt::format("use them with\n  mosbench run {}\n", to_words(data));
 }
 
 Answer odometry_answer(OdometryFlags flags) {
-  OdometryChoice choice = choose_odometry(flags.odometry, flags.reading);
-  flags.reading.poses = ByOdometry{};
+  std::optional<OdometryChoice> choice = flags.reading.refine_poses
+                                             ? named_odometry(flags.odometry, flags.reading)
+                                             : choose_odometry(flags.odometry, flags.reading);
+  if (choice) flags.reading.poses = ByOdometry{};
   const Dataset dataset = open_dataset(flags);
-  choice = with_filter(std::move(choice), dataset.kind);
+  if (choice) choice = with_filter(*std::move(choice), dataset.kind);
   std::string text;
   nlohmann::ordered_json sequences = nlohmann::ordered_json::array();
   std::size_t doubtful = 0;
   for (const FoundPoses& found : write_poses(dataset, choice, flags.files)) {
     doubtful += doubtful_scans(found);
-    text += found_text(found, choice.kind->title);
+    text += found_text(found, choice ? choice->kind->title : "refining those given");
     sequences.push_back(found_json(found));
   }
   if (flags.files.out != "-") text += next_command(flags);
-  return answer_beside(flags.files.out,
-                       {.text = text,
-                        .exit_code = doubtful > 0 ? 1 : 0,
-                        .standing = standing_of(dataset),
-                        .json = json_text({{"odometry", std::string(choice.kind->name)},
-                                           {"settings", to_json(choice.settings)},
-                                           {"sequences", sequences}})});
+  nlohmann::ordered_json json = {{"refined", true}};
+  if (choice) {
+    json = {{"odometry", std::string(choice->kind->name)}, {"settings", to_json(choice->settings)}};
+  }
+  json["sequences"] = std::move(sequences);
+  return answer_beside(flags.files.out, {.text = text,
+                                         .exit_code = doubtful > 0 ? 1 : 0,
+                                         .standing = standing_of(dataset),
+                                         .json = json_text(json)});
 }
 
 }  // namespace

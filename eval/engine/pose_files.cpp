@@ -22,10 +22,11 @@ namespace mosbench {
 namespace {
 
 /// What two records must share for their poses to be the same.
-nlohmann::ordered_json record_identity(const Sequence& sequence, const OdometryChoice& choice) {
+nlohmann::ordered_json record_identity(const Sequence& sequence,
+                                       const std::optional<OdometryChoice>& choice) {
   ReadingDone reading = sequence.reading();
-  reading.poses = statement_of(choice);
-  if (choice.says_deskew) reading.deskew = choice.deskew;
+  if (choice) reading.poses = statement_of(*choice);
+  if (choice && choice->says_deskew) reading.deskew = choice->deskew;
   return {{"sequence", sequence.name()},
           {"reading", to_json(members_of(reading))},
           {"file_stamp", file_stamp(sequence)},
@@ -77,16 +78,17 @@ void refuse_part(const Sequence& sequence) {
 }
 
 FoundPoses find_poses_of(const Sequence& sequence, const std::filesystem::path& file,
-                         const OdometryChoice& choice, const PoseFiles& files) {
+                         const std::optional<OdometryChoice>& choice, const PoseFiles& files) {
   FoundPoses found{sequence, file,
-                   scans_json(sequence, estimate_poses(sequence, choice, files.threads))};
+                   choice ? scans_json(sequence, estimate_poses(sequence, *choice, files.threads))
+                          : scans_json(sequence)};
   write_pose_file(file, pose_rows(found, files.as_tum), files.as_tum);
   return found;
 }
 
 /// One of several sequences: with a record beside its poses, so that a call after a kill goes on
 /// with the first sequence that is not finished.
-FoundPoses find_or_keep(const Sequence& sequence, const OdometryChoice& choice,
+FoundPoses find_or_keep(const Sequence& sequence, const std::optional<OdometryChoice>& choice,
                         const PoseFiles& files) {
   const std::filesystem::path stem = files.out / sequence.name();
   const std::filesystem::path file = stem.string() + (files.as_tum ? ".tum" : ".txt");
@@ -103,7 +105,8 @@ FoundPoses find_or_keep(const Sequence& sequence, const OdometryChoice& choice,
 
 }  // namespace
 
-std::vector<FoundPoses> write_poses(const Dataset& dataset, const OdometryChoice& choice,
+std::vector<FoundPoses> write_poses(const Dataset& dataset,
+                                    const std::optional<OdometryChoice>& choice,
                                     const PoseFiles& files) {
   for (const auto& sequence : dataset.sequences) {
     files.as_tum ? check_stamps_of_tum(*sequence) : refuse_part(*sequence);

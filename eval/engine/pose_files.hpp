@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include "datasets/layouts/dataset.hpp"
@@ -15,9 +16,11 @@ struct PoseFiles {
   unsigned threads = 1;
 };
 
-/// Finds and writes the poses of every sequence of a data set that was opened without poses. Of
-/// several, those that an earlier call finished are kept. Throws UsageError and DataError.
-std::vector<FoundPoses> write_poses(const Dataset& dataset, const OdometryChoice& choice,
+/// Finds and writes the poses of every sequence of a data set that was opened without poses; writes
+/// those that it has without a choice. Of several, those that an earlier call finished are kept.
+/// Throws UsageError and DataError.
+std::vector<FoundPoses> write_poses(const Dataset& dataset,
+                                    const std::optional<OdometryChoice>& choice,
                                     const PoseFiles& files);
 
 }  // namespace mosbench

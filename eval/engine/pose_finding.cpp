@@ -171,6 +171,16 @@ nlohmann::ordered_json scans_json(const Sequence& sequence, const std::vector<Sc
   return scans;
 }
 
+nlohmann::ordered_json scans_json(const Sequence& sequence) {
+  nlohmann::ordered_json scans = nlohmann::ordered_json::array();
+  for (const ScanEntry& scan : sequence.recording().scans) {
+    scans.push_back({{"stem", scan.stem},
+                     {"map_from_sensor", rows_json(scan.map_from_sensor.matrix().topRows<3>())},
+                     {"doubt", nullptr}});
+  }
+  return scans;
+}
+
 std::string tum_rows(const std::vector<std::int64_t>& stamps_ns, const std::vector<Pose>& poses) {
   std::string rows;
   for (std::size_t k = 0; k < poses.size(); ++k) {

@@ -69,6 +69,8 @@ struct FoundPoses {
 
 /// What is known of every scan's pose, as `FoundPoses::scans`.
 nlohmann::ordered_json scans_json(const Sequence& sequence, const std::vector<ScanPose>& poses);
+/// The same of poses that the sequence has, of which no more is known.
+nlohmann::ordered_json scans_json(const Sequence& sequence);
 
 /// Throws UsageError unless every scan has a stamp, and a later one than the scan before: rows of
 /// TUM are found by their stamps.

@@ -17,6 +17,7 @@
 #include "eval/result/result_json.hpp"
 #include "eval/result/result_scans.hpp"
 #include "eval/result/settings_json.hpp"
+#include "eval/result/tell.hpp"
 #include "eval/result/version.hpp"
 
 namespace mosbench {
@@ -36,14 +37,17 @@ fs::path default_out(const RunPlan& plan) {
   const auto add = [&](std::string_view part) { name += fmt::format("-{}", part); };
   if (!plan.shared) add(kind);
   if (!plan.job.segment.label.empty()) add(plan.job.segment.label);
+  const Reading& reading = plan.job.data.reading;
   // Runs over a part, with other poses or disturbed scans have results of their own.
-  if (plan.job.data.reading.scans) {
-    std::string range = to_string(*plan.job.data.reading.scans);
+  if (reading.scans) {
+    std::string range = to_string(*reading.scans);
     std::ranges::replace(range, ':', '_');
     add("scans" + range);
   }
   if (plan.odometry) add(plan.odometry->kind->name);
-  if (plan.job.data.reading.perturb) add(to_string(*plan.job.data.reading.perturb));
+  if (reading.is_static()) add(kStaticPoses);
+  if (reading.perturb) add(to_string(*reading.perturb));
+  if (reading.refine_poses) add("refined");
   return fs::path("results/runs") / name;
 }
 
@@ -176,7 +180,8 @@ RunPlan open_job(const Job& job, unsigned threads, const std::shared_ptr<SharedR
   RunPlan plan;
   plan.job = job;
   plan.odometry = job.odometry;
-  plan.dataset = open_dataset(job.data.path, {job.data.kind, job.data.sequences, job.data.reading});
+  plan.dataset = open_dataset(job.data.path, {job.data.kind, job.data.sequences, job.data.reading},
+                              progress_over_sequences("refine poses of"));
   plan.shared = shared;
   if (shared) shared->share(plan.dataset);
   const Preset preset = preset_of(job, plan.dataset.kind);

@@ -19,6 +19,7 @@
 #include "eval/protocols/metrics.hpp"
 #include "eval/result/reading_json.hpp"
 #include "eval/result/settings_json.hpp"
+#include "eval/result/tell.hpp"
 
 namespace mosbench {
 namespace {
@@ -318,7 +319,8 @@ Data data_of(const DataWords& words) {
 
 Dataset open_dataset(const DataWords& words) {
   return open_dataset(words.input,
-                      {dataset_kind_option(words.dataset), words.sequences, words.reading});
+                      {dataset_kind_option(words.dataset), words.sequences, words.reading},
+                      progress_over_sequences("refine poses of"));
 }
 
 Job job_of(const JobWords& words) {

@@ -193,7 +193,12 @@ std::optional<OdometryChoice> named_odometry(const OdometryOptions& odometry,
     if (says_nothing) return std::nullopt;
     throw UsageError("--odometry: is missing, expected simple or kiss before its settings");
   }
-  if (reading.pose_file() != nullptr) {
+  if (reading.refine_poses) {
+    throw UsageError(
+        "--refine-poses and --odometry: correct given poses and find new ones, expected one of "
+        "them");
+  }
+  if (!reading.has_own_poses()) {
     throw UsageError("--poses and --odometry: say where poses come from, expected one of them");
   }
   return choose_odometry(odometry, reading);

@@ -43,8 +43,10 @@ std::string content_of(const Sequence& sequence) {
 ordered_json sequence_json(const Data& data, const std::string& name) {
   try {
     Reading reading = data.reading;
+    const bool refines = std::exchange(reading.refine_poses, false);  // which reads all scans
     const Dataset dataset = open_dataset(data.path, {data.kind, {name}, reading});
-    reading.poses = OwnPoses{};
+    if (reading.pose_file() != nullptr) reading.poses = OwnPoses{};
+    reading.refine_poses = refines;
     return {{"dataset", to_string(dataset.kind)},
             {"content", content_of(*dataset.sequences.front())},
             {"reading", told_json(reading)}};

@@ -51,7 +51,8 @@ Reading reading_of_study(const YamlNode& node, const fs::path& file) {
   node.check_keys(names);
   Reading reading;
   for (const auto& [key, value] : node.members()) {
-    const std::string text = key == "poses" ? path_of(value, file).string() : value.text();
+    const bool is_path = key == "poses" && value.text() != kStaticPoses;
+    const std::string text = is_path ? path_of(value, file).string() : value.text();
     value.located([&, &name = key] { set_field(reading, name, text); });
   }
   return reading;

@@ -93,6 +93,7 @@ std::optional<std::vector<Pose>> poses_passed_over(const Result& result, const R
   Reading reading = reading_of(result);
   if (reading.has_own_poses()) return std::nullopt;
   reading.poses = OwnPoses{};
+  reading.refine_poses = false;
   reading.pose_format.reset();
   reading.pose_frame.reset();
   reading.pose_direction.reset();

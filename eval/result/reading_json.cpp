@@ -49,6 +49,7 @@ Value parsed(std::string_view text, const Legal& legal) {
   } else if constexpr (std::is_same_v<Value, ScanRange>) {
     return parse_scan_range(text);
   } else if constexpr (std::is_same_v<Value, PosesFrom>) {
+    if (text == kStaticPoses) return StaticPoses{};
     return PoseFile{text};
   } else {
     if (text.empty()) throw UsageError("is empty, expected a name");
@@ -63,6 +64,7 @@ ordered_json member_of(const Value& value, const Legal& legal) {
   } else if constexpr (std::is_same_v<Value, Perturbation> || std::is_same_v<Value, ScanRange>) {
     return to_string(value);
   } else if constexpr (std::is_same_v<Value, PosesFrom>) {
+    if (std::holds_alternative<StaticPoses>(value)) return std::string(kStaticPoses);
     const auto* file = std::get_if<PoseFile>(&value);
     return file == nullptr ? ordered_json() : ordered_json(file->path.string());
   } else {
@@ -115,8 +117,8 @@ void describe(const Legal& legal, ReadingField& field) {
 const std::vector<ReadingField>& reading_fields() {
   static const std::vector<ReadingField> fields = [] {
     std::vector<ReadingField> list;
-    constexpr std::array<std::string_view, 6> kFlags = {"scans",  "poses",       "topic",
-                                                        "deskew", "point_times", "perturb"};
+    constexpr std::array<std::string_view, 7> kFlags = {
+        "scans", "poses", "refine_poses", "topic", "deskew", "point_times", "perturb"};
     const auto add = [&](const char* name, const auto& value, const auto& legal,
                          const char* meaning) {
       using Field = std::decay_t<decltype(value)>;
@@ -191,7 +193,8 @@ std::string told_flags(const Reading& reading) {
     }
     std::string flag = field.name;
     std::ranges::replace(flag, '_', '-');
-    flags += fmt::format(" --{} {}", flag, shell_word(word));
+    flags += fmt::format(" --{}", flag);
+    if (!field.is_switch()) flags += ' ' + shell_word(word);
   }
   return rare.empty() ? flags : fmt::format("{} --read {}", flags, shell_word(rare));
 }

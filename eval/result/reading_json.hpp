@@ -19,6 +19,9 @@ struct ReadingField {
   std::string usual;                 ///< what holds where nothing is said; mostly empty
   bool is_number = false;
   bool is_rare = false;  ///< a key of --read, without a flag of its own
+
+  /// Whether it is on or off, so that its flag takes no value.
+  bool is_switch() const { return type.empty() && choices.empty() && !is_number; }
 };
 const std::vector<ReadingField>& reading_fields();
 

@@ -5,6 +5,8 @@
 
 #include <cmath>
 #include <cstdio>
+#include <memory>
+#include <optional>
 #include <utility>
 
 #include "datasets/text/text.hpp"
@@ -58,6 +60,16 @@ void Progress::print(Clock::time_point now) {
   std::fputs((terminal_ ? "\r" + line + "\x1b[K" : line + "\n").c_str(), stderr);
   std::fflush(stderr);
   line_open_ = terminal_;
+}
+
+std::function<void(const std::string&, std::size_t, std::size_t)> progress_over_sequences(
+    std::string title) {
+  return [title = std::move(title), progress = std::make_shared<std::optional<Progress>>()](
+             const std::string& sequence, std::size_t done, std::size_t scans) {
+    if (done == 1) progress->emplace(title + " " + sequence, scans);
+    progress->value().advance();
+    if (done == scans) progress->reset();
+  };
 }
 
 std::string duration_text(double seconds_s) {

@@ -56,6 +56,11 @@ class Progress {
   Clock::time_point printed_ = start_;
 };
 
+/// Returns what tells on stderr how far the sequences are, one after the other, that something is
+/// done to.
+std::function<void(const std::string& sequence, std::size_t done, std::size_t scans)>
+progress_over_sequences(std::string title);
+
 /// "41 s", "3 min 05 s" or "2 h 07 min".
 std::string duration_text(double seconds_s);
 

@@ -86,3 +86,15 @@ def test_doubtful_poses_are_a_warning_of_the_result(street, near, own, tmp_path)
     loud = [text for text in result.warnings if text.startswith("08: THE POSES FIT AS THOSE OF THE LIDAR")]
     assert len(loud) == 1 and f"WARNING: {loud[0]}" in repr(result) and loud[0] in result.remarks
     assert "THE POSES FIT" in mosbench.Result(result.folder)._repr_html_()
+
+
+def test_poses_are_refined_or_static_by_keywords(street, own, near, tmp_path):
+    drifting = own.copy()
+    drifting[:, :3, 3] += 0.04 * np.arange(len(own))[:, None] * own[0, :3, 0]
+    refined = mosbench.open(street, poses=drifting, refine_poses=True).gt_poses
+    assert np.array_equal(refined[0], drifting[0])
+    off = [np.abs(poses[-1, :3, 3] - own[-1, :3, 3]).max() for poses in (drifting, refined)]
+    assert off[1] < 0.5 * off[0]
+    result = mosbench.run(street, poses="static", config=near, out=tmp_path / "run")
+    assert result.header["reading"]["poses"] == "static"
+    assert np.array_equal(mosbench.open(street, poses="static").gt_poses[-1], np.eye(4))

@@ -15,7 +15,7 @@ READING = tuple(_mosbench.reading_names())
 
 
 #: Those that have a flag of their own; the others are keys of --read.
-FLAGS = ("scans", "poses", "topic", "point_times", "deskew", "perturb")
+FLAGS = ("scans", "poses", "refine_poses", "topic", "point_times", "deskew", "perturb")
 
 
 def flags(**values: Any) -> list[str]:

@@ -78,8 +78,7 @@ TEST(PoseRefiner, KeepsPosesThatFitAlready) {
   const RefinedPoses poses = refined(truth, truth);
   EXPECT_EQ(poses.corrected, 0U);
   for (std::size_t k = 0; k < truth.size(); ++k) {
-    EXPECT_LT((poses.map_from_sensor[k].inverse() * far_away() * truth[k]).translation().norm(),
-              1e-9);
+    EXPECT_EQ(poses.map_from_sensor[k].matrix(), (far_away() * truth[k]).matrix());
   }
 }
 
@@ -111,7 +110,7 @@ TEST(PoseRefiner, MovesAScanThatCannotBeRegisteredAsGiven) {
   EXPECT_THAT(refiner.finish().failed, ElementsAre(6U));
 }
 
-TEST(PoseRefiner, DistrustsARegistrationFarFromTheGuess) {
+TEST(PoseRefiner, KeepsPosesThatScansContradictByMetres) {
   // The scans show a sensor that stands; the poses say that it moves by 3 m a scan.
   std::vector<Pose> given;
   for (int k = 0; k < 5; ++k) given.push_back(pose_at({3.0 * k, 0, 0}, 0));
