@@ -19,6 +19,11 @@ constexpr const char* kPosesDoNotFit =
     "the poses do not fit the scans in any convention: they are off the motion of the scans by "
     "{off_m:.2f} m (median of {motions}), and scans overlap by {overlap:.2f} instead of "
     "{best_overlap:.2f}; expected the poses of this sequence";
+constexpr const char* kPosesAreOff =
+    "the poses {pose_fit_kind}: over {fit_scans} scans they put surfaces 10 m away "
+    "{fit_10_cm:.1f} cm and 30 m away {fit_30_cm:.1f} cm off (median of {places} places, scan "
+    "matching errs by {match_cm:.1f} cm), worst from {worst_fit}, {worst_fit_cm:.1f} cm; expected "
+    "at most {most_off_cm:.0f} cm: run with {cure}";
 constexpr const char* kUnit =
     "stamps are {step_s:g} s apart (median); expected seconds, about 0.1 from scan to scan";
 
@@ -174,6 +179,9 @@ std::vector<Check> table() {
       row(kPoses, "rotation not to be told", {{"missing_turn", '<', kMoves}},
           "all poses have the same rotation; the scans do not show whether the sensor turns",
           kDecides, kNote),
+      row(kFit, "poses that are off", {{"off_places", '>', 1}, {"off_share", '>', kMostlyOff}},
+          kPosesAreOff, kDecides),
+      row(kFit, "poses that are far off somewhere", {{"far_off_places", '>', 1}}, kPosesAreOff),
       row(kRows, "misplaced rows", {{"misplaced_rows", '>', 0}}, "{misplaced}"),
 
       // Labels without anything moving for longer, a minute at 10 Hz, are doubtful: excerpts of

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "datasets/disk/files.hpp"
+#include "datasets/doctor/pose_fit.hpp"
 #include "datasets/formats/pose_file.hpp"
 #include "datasets/layouts/folder_search.hpp"
 #include "datasets/sequence/pose_source.hpp"
@@ -167,7 +168,10 @@ class Examination {
     attempt(folder, [&] {
       examine_poses(sequence, folder, part);
       is_sound = part.poses && !judge(Subject::kPoses, part);
-      if (is_sound) judge(Subject::kRows, part);
+      if (!is_sound) return;
+      examine_pose_fit(sequence, part.poses->given, FitDetail::kFull, part.facts);
+      is_sound = !judge(Subject::kFit, part);
+      judge(Subject::kRows, part);
     });
     if (!is_sound) return;
     attempt(folder, [&] {

@@ -65,6 +65,7 @@ enum class Subject : std::uint8_t {
   kStamps,
   kStill,  ///< poses before any scan is read, which may tell whether the sensor stands
   kPoses,
+  kFit,   ///< of poses in which nothing else was found
   kRows,  ///< of sound poses: others have detours of their own
   kLabels,
   kPublished,
@@ -131,6 +132,8 @@ inline constexpr double kLeastRowGain = 0.005;
 
 /// More of the flat places may be above the sensor only if it hangs upside down.
 inline constexpr double kMostFlatAbove = 0.8;
+/// Share of the places at which poses that are off altogether are off.
+inline constexpr double kMostlyOff = 0.5;
 /// A smaller scan, as share of the median size of those around, was cut off while it was copied:
 /// far below what scenes change.
 inline constexpr double kSmallestShare = 0.6;

@@ -253,6 +253,8 @@ Eigen::Matrix3d RegisteredScan::Surface::information(double thickness_m) const {
   return directions * weights.asDiagonal() * directions.transpose();
 }
 
+bool RegisteredScan::Surface::is_plane() const { return variance_m2[1] == kNone; }
+
 RegisteredScan::RegisteredScan(std::span<const Point> points, double size_m) : cell_m(size_m) {
   constexpr std::size_t kSurfacePoints = 40000, kUpright = 1500, kGround = 500;
   constexpr double kUprightCellM = 0.4, kGroundCellM = 1.0;

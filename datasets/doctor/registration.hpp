@@ -82,6 +82,8 @@ struct RegisteredScan {
     Eigen::Matrix3d directions = Eigen::Matrix3d::Identity();
     Eigen::Vector3d variance_m2 = Eigen::Vector3d::Zero();
     Eigen::Matrix3d information(double thickness_m) const;
+    /// Returns whether it holds a point along its first direction only.
+    bool is_plane() const;
   };
 
   RegisteredScan(std::span<const Point> points, double size_m);

@@ -10,6 +10,7 @@
 #include "datasets/disk/files.hpp"
 #include "datasets/disk/partial_file.hpp"
 #include "datasets/doctor/doctor.hpp"
+#include "datasets/doctor/pose_fit.hpp"
 #include "datasets/formats/pose_file.hpp"
 #include "datasets/sequence/pose_source.hpp"
 #include "datasets/text/errors.hpp"
@@ -106,13 +107,19 @@ Result completed(const RunPlan& plan, const PlannedSequence& planned, Result ran
   return result;
 }
 
-/// What the scans say about the frame of poses of a file, where nobody said it.
-std::optional<std::string> doubt_about_poses(const RunPlan& plan, const Sequence& sequence) {
+/// What the scans say about the frame of poses of a file, where nobody said it, and about poses
+/// that were not found by the scans.
+std::vector<std::string> doubts_about_poses(const RunPlan& plan, const Sequence& sequence) {
+  std::vector<std::string> doubts;
+  const auto add = [&](std::optional<std::string> doubt) {
+    if (!doubt) return;
+    tell(fmt::format("{}: {}", sequence.name(), *doubt));
+    doubts.push_back(std::move(*doubt));
+  };
   const Reading& reading = plan.job.data.reading;
-  if (reading.pose_file() == nullptr || reading.pose_frame) return std::nullopt;
-  std::optional<std::string> doubt = doubt_about_pose_frame(sequence);
-  if (doubt) tell(fmt::format("{}: {}", sequence.name(), *doubt));
-  return doubt;
+  if (reading.pose_file() != nullptr && !reading.pose_frame) add(doubt_about_pose_frame(sequence));
+  if (!plan.odometry && doubts.empty()) add(doubt_about_pose_fit(sequence));
+  return doubts;
 }
 
 /// Finds and sets the poses of a sequence.
@@ -144,13 +151,13 @@ ComputedSequence compute_sequence(const RunPlan& plan, const PlannedSequence& pl
       write_file_atomic(partial / "poses.txt", rows);
     }
   }
-  std::optional<std::string> doubt = doubt_about_poses(plan, sequence);
+  std::vector<std::string> doubts = doubts_about_poses(plan, sequence);
   give_back_memory();  // of odometry, and of runs before
   Result ran = run_sequence(sequence, settings,
                             settings.keeps_labels ? std::optional(partial) : std::nullopt);
   Result& result = computed.outcome.result;
   result = completed(plan, planned, std::move(ran), found);
-  if (doubt) result.doubts.push_back(std::move(*doubt));
+  std::ranges::move(doubts, std::back_inserter(result.doubts));
   computed.outcome.folder = planned.folder.path();
   // A program of the user's is another process, and may wait for a GPU.
   if (result.timing) {
