@@ -96,6 +96,7 @@ void plus_stage(benchmark::State& state, StagedScans& staged, ThreadPool& pool) 
     VoxelMap map(config.map, staged.grid, &memory);
     hmm_mos_plus::LookBack past(config);
     hmm_mos_plus::Tracks tracks(config);
+    hmm_mos_plus::Attachments attachments(config);
     for (const StagedScan& s : staged.all) {
       const bool measured = s.k >= staged.measured.front().k;
       const auto run = [&](PlusStage which, auto&& work) {
@@ -126,11 +127,10 @@ void plus_stage(benchmark::State& state, StagedScans& staged, ThreadPool& pool) 
         return 0;
       });
       const auto motion = run(PlusStage::kObjects, [&] {
-        return hmm_mos_plus::find_motion(inputs.scan, classes, *ground, low, config);
-      });
-      run(PlusStage::kPrediction, [&] {
-        tracks.follow(inputs.scan, motion.components, tick);
-        return 0;
+        auto found = hmm_mos_plus::find_components(inputs.scan, classes, *ground, low, config);
+        tracks.follow(inputs.scan, found, tick);
+        attachments.judge(inputs.scan, classes, low, s.k, found);
+        return hmm_mos_plus::motion_of(inputs.scan, classes, low, std::move(found));
       });
       auto moving = motion.objects;
       for (std::size_t i = 0; i < moving.size(); ++i) moving[i] = moving[i] | motion.feet[i];

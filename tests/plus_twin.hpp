@@ -28,10 +28,12 @@ struct Cell {
 
 struct Scan final : Observed {
   PointVoxels voxels;
-  SetOf measured, observed, occupied, ground, seeds, fresh, settled, aged, standing, departed;
+  SetOf measured, observed, occupied, ground, seeds, arrived, fresh, settled, aged, standing,
+      departed;
   SetOf predicted;
   Eigen::Vector3d sensor_m = Eigen::Vector3d::Zero();
   int periods = 1;  // since the scan before
+  int tick = 0;
   LabelledScan result;
 };
 
@@ -40,13 +42,21 @@ struct Component {
   SetOf voxels;  // of one that moves, those near its seeds
   float share = 0;
   bool moves = false;
+  int steady_steps = 0;
+};
+
+/// A component that passed all tests but that for what stands.
+struct Seen {
+  SetOf voxels;
+  double arrived = 0, settled_beside = 0;
+  int tick = 0;
 };
 
 /// What moved in a scan before.
 struct Object {
   SetOf voxels;
   Eigen::Vector3d centre, velocity = Eigen::Vector3d::Zero();  // voxels, voxels per period
-  int steps = 0;
+  int steps = 0, steady_steps = 0;
 };
 
 class PlusTwin final : public Method {
@@ -82,6 +92,7 @@ class PlusTwin final : public Method {
     const int tick_before = tick_;
     tick_ = tick_of_scan(static_cast<std::size_t>(k_));
     ticks_passed_ = tick_ - tick_before;
+    scan.tick = tick_;
     scan.periods = periods_before(static_cast<std::size_t>(k_));
     for (const Voxel& v : scan.observed) update(v, scan.measured);
     std::erase_if(map_, [&](const auto& entry) {
@@ -93,6 +104,7 @@ class PlusTwin final : public Method {
     for (const Voxel& v : scan.occupied) {
       const Cell* cell = find(map_, v);
       if (cell == nullptr || cell->state != kOccupied) continue;
+      if (young(*cell)) scan.arrived.insert(v);
       if (young(*cell) && may_be_seed(v, true)) scan.seeds.insert(v);
       if (young(*cell) && is_within(*cell, c_.fresh_age_s)) scan.fresh.insert(v);
       if (cell->occupied_ticks >= 5) scan.aged.insert(v);
@@ -205,6 +217,7 @@ class PlusTwin final : public Method {
       scan.aged.erase(v);
       scan.standing.erase(v);
       scan.fresh.insert(v);
+      scan.arrived.insert(v);
       if (may_be_seed(v, false) && scan.seeds.insert(v).second) scan.departed.insert(v);
     }
   }
@@ -259,8 +272,9 @@ class PlusTwin final : public Method {
       predict(late_, since, scan);
       predict(last_, scan.periods, scan);
     }
-    const std::vector<Component> components = components_of(scan);
+    std::vector<Component> components = components_of(scan);
     last_ = followed(components, scan.periods, last_);
+    judge_attachments(scan, components);
     SetOf low, objects;
     for (const Voxel& v : scan.occupied)
       if (!scan.settled.contains(v) && is_low(v, scan.ground)) low.insert(v);
@@ -289,6 +303,49 @@ class PlusTwin final : public Method {
     }
   }
 
+  /// What is beside settled voxels and did not arrive is part of what stands. Looks at all that was
+  /// near, by boxes, in the last second.
+  void judge_attachments(const Scan& scan, std::vector<Component>& components) {
+    const int reach = std::min(8, static_cast<int>(0.6 / c_.map.voxel_size_m));
+    std::erase_if(seen_, [&](const Seen& seen) { return scan.tick - seen.tick > 10; });
+    for (const Component& component : components) {
+      if (!component.moves) continue;
+      const SetOf& own = component.voxels;
+      Seen& seen = seen_.emplace_back(Seen{own, 0, 0, scan.tick});
+      for (const Voxel& v : own) seen.arrived += scan.arrived.contains(v) ? 1 : 0;
+      for (const Voxel& v : scan.settled) {
+        const bool is_beside =
+            count_neighbours(v, reach, [&](const Voxel& u) { return own.contains(u); }) > 0;
+        if (is_beside && !own.contains(v) && !is_low(v, scan.ground)) ++seen.settled_beside;
+      }
+    }
+    for (Component& component : components) {
+      if (!component.moves) continue;
+      double voxels = 0, arrived = 0, settled = 0;
+      for (const Seen& seen : seen_) {
+        if (gap_between(seen.voxels, component.voxels) > reach) continue;
+        voxels += static_cast<double>(seen.voxels.size());
+        arrived += seen.arrived, settled += seen.settled_beside;
+      }
+      component.moves = component.steady_steps >= 2 || settled <= c_.max_settled_share * voxels ||
+                        arrived >= 0.8 * voxels;
+    }
+  }
+
+  /// Between the boxes around voxels, along the axis where it is widest.
+  static int gap_between(const SetOf& a, const SetOf& b) {
+    const auto gap = [](const SetOf& first, const SetOf& second, auto axis) {
+      int highest = std::numeric_limits<int>::min(), lowest = std::numeric_limits<int>::max();
+      for (const Voxel& v : first) highest = std::max(highest, axis(v));
+      for (const Voxel& v : second) lowest = std::min(lowest, axis(v));
+      return lowest - highest;
+    };
+    const auto either = [&](auto axis) { return std::max(gap(a, b, axis), gap(b, a, axis)); };
+    return std::max({either([](const Voxel& v) { return v.x; }),
+                     either([](const Voxel& v) { return v.y; }),
+                     either([](const Voxel& v) { return v.z; })});
+  }
+
   /// What moved two scans ago, as its departures tell by now. Settled voxels do not depart.
   void look_back() {
     if (past_.size() < 2) return;
@@ -299,7 +356,8 @@ class PlusTwin final : public Method {
     });
     then.settled.clear();
     add_departures(then);
-    late_ = followed(components_of(then), then.periods, late_);
+    std::vector<Component> components = components_of(then);
+    late_ = followed(components, then.periods, late_);
   }
 
   /// Where objects of a scan `periods` before are by now: moved on by their last step, corrected by
@@ -335,11 +393,14 @@ class PlusTwin final : public Method {
     }
   }
 
-  std::vector<Object> followed(const std::vector<Component>& components, int periods,
+  std::vector<Object> followed(std::vector<Component>& components, int periods,
                                const std::vector<Object>& before) const {
     std::vector<Object> objects;
-    for (const Component& component : components)
-      if (component.moves) objects.push_back(followed(component.voxels, periods, before));
+    for (Component& component : components) {
+      if (!component.moves) continue;
+      objects.push_back(followed(component.voxels, periods, before));
+      component.steady_steps = objects.back().steady_steps;
+    }
     return objects;
   }
 
@@ -362,6 +423,9 @@ class PlusTwin final : public Method {
     if (nearest != nullptr) {
       found.velocity = (found.centre - nearest->centre) / periods;
       found.steps = nearest->steps + 1;
+      const double was_sq = nearest->velocity.squaredNorm();
+      const double off_sq = (found.velocity - nearest->velocity).squaredNorm();
+      if (was_sq >= 0.25 && 4 * off_sq <= was_sq) found.steady_steps = nearest->steady_steps + 1;
     }
     return found;
   }
@@ -431,6 +495,7 @@ class PlusTwin final : public Method {
   MapOf<Cell> map_;
   std::deque<Scan> held_;
   std::deque<Scan> past_;            // to look back at
+  std::vector<Seen> seen_;           // of the last second
   std::vector<Object> last_, late_;  // of the scan before, and of the one looked back at
   std::vector<std::int64_t> stamps_ns_;
   int k_ = -1, tick_ = -1, ticks_passed_ = 1;

@@ -88,26 +88,25 @@ ArrivalClasses classify(const VoxelizedScan& scan, const RememberedMap& map, con
                         ThreadPool& pool) {
   const std::size_t blocks = scan.measured.block_count();
   const ScanMasks none(blocks);
-  ArrivalClasses classes{none, none, none, none, none};
+  ArrivalClasses classes{none, none, none, none, none, none};
   const std::uint32_t seed_age_ticks = ticks_of(config.seed_age_s);
   const std::uint32_t fresh_age_ticks = ticks_of(config.fresh_age_s);
   const std::uint32_t object_age_ticks = ticks_of(config.object_age_s);
-  ScanMasks young = none;
   for (std::size_t i = 0; i < blocks; ++i) {
     if (!scan.occupied[i].any()) continue;
     const auto past = map.past_at(scan.measured.blocks[i]);
     if (!past) continue;  // at the range limit not every occupied voxel is observed
     const auto& history = past->history;
     const BlockMask occupied = scan.occupied[i] & past->known.occupied;
-    young[i] = history.sure_within(occupied, seed_age_ticks, past->tick);
-    classes.fresh[i] = history.sure_within(young[i], fresh_age_ticks, past->tick);
+    classes.arrived[i] = history.sure_within(occupied, seed_age_ticks, past->tick);
+    classes.fresh[i] = history.sure_within(classes.arrived[i], fresh_age_ticks, past->tick);
     classes.aged[i] = history.aged() & occupied;
     const BlockMask came = history.arrived_within(classes.aged[i], object_age_ticks, past->tick);
     classes.settled[i] = without(history.settled() & occupied, came);
     classes.standing[i] =
         without(classes.aged[i], history.arrived_within(came, object_age_ticks / 2, past->tick));
   }
-  add_seeds(scan, std::move(young), map, config, Evidence::kArrival, pool, classes.seeds);
+  add_seeds(scan, classes.arrived, map, config, Evidence::kArrival, pool, classes.seeds);
   return classes;
 }
 
@@ -121,6 +120,7 @@ void add_departures(const VoxelizedScan& scan, const RememberedMap& map, const C
     classes.aged[i] = without(classes.aged[i], departed[i]);
     classes.standing[i] = without(classes.standing[i], departed[i]);
     classes.fresh[i] = classes.fresh[i] | departed[i];
+    classes.arrived[i] = classes.arrived[i] | departed[i];
   }
   add_seeds(scan, std::move(departed), map, config, Evidence::kDeparture, pool, classes.seeds);
 }

@@ -26,12 +26,13 @@ inline std::vector<std::uint32_t> slots_with_any(const ScanMasks& masks) {
 struct ArrivalClasses {
   ScanMasks
       seeds;  ///< arrived of late, apart from what is settled or was just left, in known space
+  ScanMasks arrived;   ///< of late: those that are seeds where nothing firm is near
   ScanMasks fresh;     ///< arrived just now: among the seeds, a sign that an object still moves
   ScanMasks settled;   ///< there for longer: they connect nothing
   ScanMasks aged;      ///< there for some scans: most of an object that moves is not
   ScanMasks standing;  ///< aged, did not arrive within half of object_age_s: not grown into
 
-  std::size_t memory_bytes() const { return 5 * seeds.capacity() * sizeof(BlockMask); }
+  std::size_t memory_bytes() const { return 6 * seeds.capacity() * sizeof(BlockMask); }
 };
 
 /// Returns the classes of scan k, with the map as it is after it.
@@ -39,8 +40,8 @@ ArrivalClasses classify(const VoxelizedScan& scan, const RememberedMap& map, con
                         ThreadPool& pool);
 
 /// For a scan that is judged later, with the map as it is after scan k: its voxels that are free by
-/// then departed. They are neither settled, aged nor standing, and fresh seeds as far as they pass
-/// a seed's tests but the one for what was just left.
+/// then departed. They arrived, are neither settled, aged nor standing, and are fresh seeds as far
+/// as they pass a seed's tests but the one for what was just left.
 void add_departures(const VoxelizedScan& scan, const RememberedMap& map, const Config& config,
                     ThreadPool& pool, ArrivalClasses& classes);
 

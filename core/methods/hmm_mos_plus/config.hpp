@@ -42,6 +42,7 @@ struct Config {
   double fresh_age_s = 0.2;
   double min_fresh_share = 0.2;
   double max_aged_share = 0.5;
+  double max_settled_share = 0.3;
   double rise_radius_m = 6.0;
   int min_rise_voxels = 2;
   double max_growth_m = 3.0;
@@ -88,6 +89,10 @@ void visit_fields(AnyConfig& config, Visitor&& visit) {
   visit("max_aged_share", config.max_aged_share, FieldRange{0.0, 1.0},
         "at most this share of an object's voxels was seen occupied for 0.5 s or more, unless half "
         "or more are seeds");
+  visit(
+      "max_settled_share", config.max_settled_share, FieldRange{0.0, 1000.0},
+      "settled voxels beside an object, per voxel of its own: with more it is part of what stands, "
+      "unless four fifths of it arrived");
   visit("rise_radius_m", config.rise_radius_m, FieldRange{0.0, 20.0},
         "the ground around a voxel is the lowest one in the columns within this distance");
   visit("min_rise_voxels", config.min_rise_voxels, FieldRange{0, 100},

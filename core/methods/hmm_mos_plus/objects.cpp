@@ -77,21 +77,6 @@ std::vector<std::uint32_t> take_connected(std::span<const std::uint32_t> first, 
   return taken;
 }
 
-struct Box {
-  Voxel low, high;  // both included
-};
-
-Box box_of(const VoxelizedScan& scan, const std::vector<std::uint32_t>& voxels) {
-  constexpr int kMax = std::numeric_limits<int>::max();
-  Voxel low{kMax, kMax, kMax}, high{-kMax, -kMax, -kMax};
-  for (const std::uint32_t voxel : voxels) {
-    const Voxel v = voxel_at(scan.measured.blocks[voxel / kBlockVoxels], voxel % kBlockVoxels);
-    low = {std::min(low.x, v.x), std::min(low.y, v.y), std::min(low.z, v.z)};
-    high = {std::max(high.x, v.x), std::max(high.y, v.y), std::max(high.z, v.z)};
-  }
-  return {low, high};
-}
-
 bool has_size_of_object(const Box& box, double max_extent_m, const Config& config) {
   const double size_m = config.map.voxel_size_m;
   const Voxel& low = box.low;
@@ -231,10 +216,20 @@ std::vector<Component> find_components(const VoxelizedScan& scan, const ArrivalC
   return components;
 }
 
-Motion find_motion(const VoxelizedScan& scan, const ArrivalClasses& classes, const Ground& ground,
-                   LowVoxels& low, const Config& config) {
-  Motion motion{
-      find_components(scan, classes, ground, low, config), ScanMasks(scan.occupied.size()), {}};
+Box box_of(const VoxelizedScan& scan, const std::vector<std::uint32_t>& voxels) {
+  constexpr int kMax = std::numeric_limits<int>::max();
+  Voxel low{kMax, kMax, kMax}, high{-kMax, -kMax, -kMax};
+  for (const std::uint32_t voxel : voxels) {
+    const Voxel v = voxel_at(scan.measured.blocks[voxel / kBlockVoxels], voxel % kBlockVoxels);
+    low = {std::min(low.x, v.x), std::min(low.y, v.y), std::min(low.z, v.z)};
+    high = {std::max(high.x, v.x), std::max(high.y, v.y), std::max(high.z, v.z)};
+  }
+  return {low, high};
+}
+
+Motion motion_of(const VoxelizedScan& scan, const ArrivalClasses& classes, LowVoxels& low,
+                 std::vector<Component> components) {
+  Motion motion{std::move(components), ScanMasks(scan.occupied.size()), {}};
   for (const Component& component : motion.components) {
     if (!component.moves) continue;
     for (const std::uint32_t voxel : component.voxels) {

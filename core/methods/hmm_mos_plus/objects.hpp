@@ -15,7 +15,15 @@ struct Component {
   std::vector<std::uint32_t> voxels;
   double seed_share = 0;  ///< seeds / voxels
   bool moves = false;     ///< enough seeds, some of them fresh, of an object's age and size
+  int steady_steps = 0;   ///< over which it was followed at a steady velocity
 };
+
+struct Box {
+  Voxel low, high;  // both included
+};
+
+/// Returns the box around some voxels of a scan.
+Box box_of(const VoxelizedScan& scan, const std::vector<std::uint32_t>& voxels);
 
 /// The motion found in a scan.
 struct Motion {
@@ -29,8 +37,8 @@ struct Motion {
 std::vector<Component> find_components(const VoxelizedScan& scan, const ArrivalClasses& classes,
                                        const Ground& ground, LowVoxels& low, const Config& config);
 
-/// Finds what moves in a scan: components, and the feet of those that move.
-Motion find_motion(const VoxelizedScan& scan, const ArrivalClasses& classes, const Ground& ground,
-                   LowVoxels& low, const Config& config);
+/// Returns the motion of a scan's components: the voxels of those that move, and their feet.
+Motion motion_of(const VoxelizedScan& scan, const ArrivalClasses& classes, LowVoxels& low,
+                 std::vector<Component> components);
 
 }  // namespace mosbench::hmm_mos_plus

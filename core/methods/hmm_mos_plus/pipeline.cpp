@@ -53,6 +53,7 @@ Pipeline::Pipeline(const Config& config, const RunContext& context)
       config_(config),
       tracks_(config),
       look_back_(config),
+      attachments_(config),
       memory_(context.stamps_ns) {
   tell(memory_);
 }
@@ -92,12 +93,12 @@ void Pipeline::judge(HeldScan& held) {
     look_back_.add_seeds(scan, low, classes);
     tracks_.add_seeds(scan, low, held.tick, classes);
   }
-  const Motion motion =
-      timed(record, "objects", [&] { return find_motion(scan, classes, *ground, low, config_); });
-  if (predicts()) {
-    const StageClock clock(record, "prediction");
-    tracks_.follow(scan, motion.components, held.tick);
-  }
+  const Motion motion = timed(record, "objects", [&] {
+    std::vector<Component> found = find_components(scan, classes, *ground, low, config_);
+    tracks_.follow(scan, found, held.tick);
+    attachments_.judge(scan, classes, low, held.tick.at, found);
+    return motion_of(scan, classes, low, std::move(found));
+  });
   const StageClock clock(record, "labels");
   ScanMasks moving = motion.objects;
   for (std::size_t i = 0; i < moving.size(); ++i) moving[i] = moving[i] | motion.feet[i];
@@ -122,7 +123,8 @@ std::vector<LabelledScan> Pipeline::release(std::size_t count) {
 }
 
 std::size_t Pipeline::held_bytes() const {
-  std::size_t bytes = tracks_.memory_bytes() + look_back_.memory_bytes() + memory_.memory_bytes();
+  std::size_t bytes = tracks_.memory_bytes() + look_back_.memory_bytes() +
+                      attachments_.memory_bytes() + memory_.memory_bytes();
   for (const HeldScan& held : held_) {
     bytes += held.scan.memory_bytes() + held.classes.memory_bytes();
   }

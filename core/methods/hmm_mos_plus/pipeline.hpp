@@ -6,6 +6,7 @@
 
 #include "core/methods/hmm_mos/mapping.hpp"
 #include "core/methods/hmm_mos_plus/arrivals.hpp"
+#include "core/methods/hmm_mos_plus/attachments.hpp"
 #include "core/methods/hmm_mos_plus/config.hpp"
 #include "core/methods/hmm_mos_plus/tracks.hpp"
 
@@ -40,8 +41,9 @@ class Pipeline final : public hmm_mos::MappedMethod {
   bool predicts() const { return config_.map.delay_scans == 0 && config_.min_track_steps > 0; }
 
   Config config_;
-  Tracks tracks_;              // of the last scan judged, when it predicts
-  LookBack look_back_;         // the same
+  Tracks tracks_;       // of the last scan judged, when it predicts
+  LookBack look_back_;  // the same
+  Attachments attachments_;
   BlockMemory memory_;         // of the map
   std::deque<HeldScan> held_;  // the last delay + 1 scans, current one last
 };

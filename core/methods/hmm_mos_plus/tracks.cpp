@@ -77,6 +77,18 @@ std::vector<std::uint32_t> best_match(const std::vector<Voxel>& voxels, const Vo
   return best;
 }
 
+/// Whether velocities, in voxels, are of something that goes on: half a voxel or more, and at most
+/// half of that off.
+bool are_alike(const std::array<double, 3>& velocity, const std::array<double, 3>& before) {
+  double length_sq = 0, error_sq = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double error = velocity[axis] - before[axis];
+    length_sq += before[axis] * before[axis];
+    error_sq += error * error;
+  }
+  return length_sq >= 0.25 && 4 * error_sq <= length_sq;
+}
+
 double seconds_of(const Tick& tick) { return tick.period_s * tick.periods; }
 
 /// After so many scans most voxels that an object left are free.
@@ -127,11 +139,11 @@ const Tracks::Track* Tracks::nearest_to(const Vector& centre, const Tick& tick) 
   return nearest;
 }
 
-void Tracks::follow(const VoxelizedScan& scan, const std::vector<Component>& components,
+void Tracks::follow(const VoxelizedScan& scan, std::vector<Component>& components,
                     const Tick& tick) {
   if (seconds_of(tick) > kLongestStep_s) tracks_.clear();
   std::vector<Track> followed;
-  for (const Component& component : components) {
+  for (Component& component : components) {
     if (!component.moves) continue;
     Track& track = followed.emplace_back();
     for (const std::uint32_t voxel : component.voxels) {
@@ -145,6 +157,8 @@ void Tracks::follow(const VoxelizedScan& scan, const std::vector<Component>& com
     for (std::size_t axis = 0; axis < 3; ++axis) {
       track.velocity[axis] = (track.centre[axis] - before->centre[axis]) / tick.periods;
     }
+    if (are_alike(track.velocity, before->velocity)) track.steady_steps = before->steady_steps + 1;
+    component.steady_steps = track.steady_steps;
   }
   tracks_ = std::move(followed);
 }
@@ -162,8 +176,9 @@ void LookBack::look(const RememberedMap& map, ThreadPool& pool) {
   Past& then = past_.front();
   add_departures(then.scan, map, config_, pool, then.classes);
   LowVoxels low(then.scan, *then.ground);
-  tracks_.follow(then.scan, find_components(then.scan, then.classes, *then.ground, low, config_),
-                 then.tick);
+  std::vector<Component> found =
+      find_components(then.scan, then.classes, *then.ground, low, config_);
+  tracks_.follow(then.scan, found, then.tick);
   past_.pop_front();
 }
 
@@ -194,6 +209,7 @@ void LookBack::enter(const VoxelizedScan& scan, const ArrivalClasses& classes,
   part.occupied = of_slots(may_move);
   past_.push_back({std::move(part),
                    {.seeds = of_slots(classes.seeds),
+                    .arrived = ScanMasks(slots.size()),
                     .fresh = of_slots(classes.fresh),
                     .settled = ScanMasks(slots.size()),
                     .aged = of_slots(classes.aged),

@@ -29,9 +29,8 @@ class Tracks {
   void add_seeds(const VoxelizedScan& scan, LowVoxels& low, const Tick& tick,
                  ArrivalClasses& classes) const;
   /// Makes the components that move in the scan those of the last one. Each is the next step of the
-  /// one that comes nearest when moved on, if that is near enough.
-  void follow(const VoxelizedScan& scan, const std::vector<Component>& components,
-              const Tick& tick);
+  /// one that comes nearest when moved on, if that is near enough. Sets its steady steps.
+  void follow(const VoxelizedScan& scan, std::vector<Component>& components, const Tick& tick);
   std::size_t memory_bytes() const;
 
  private:
@@ -40,8 +39,9 @@ class Tracks {
   /// Lengths in voxels.
   struct Track {
     Vector centre{};
-    Vector velocity{};  ///< per period of the scans
-    int steps = 0;      ///< over which it was followed
+    Vector velocity{};     ///< per period of the scans
+    int steps = 0;         ///< over which it was followed
+    int steady_steps = 0;  ///< the last ones, of like velocity
     std::vector<Voxel> voxels;
   };
 

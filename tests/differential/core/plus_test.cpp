@@ -217,6 +217,7 @@ TEST(PlusAgainstItsTwin, AgreesOnRandomConfigurations) {
     config.fresh_age_s = one_of(0.0, 0.2, 3.0);
     config.min_fresh_share = one_of(0.0, 0.2, 0.7);
     config.max_aged_share = one_of(0.0, 0.3, 0.6, 1.0);
+    config.max_settled_share = one_of(0.0, 0.3, 0.3, 1000.0);
     config.rise_radius_m = one_of(0.0, 0.7, 6.0);
     config.min_rise_voxels = one_of(0, 1, 2, 4);
     config.max_growth_m = one_of(0.0, 0.4, 0.8, 3.0);

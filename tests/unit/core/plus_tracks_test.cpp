@@ -47,7 +47,7 @@ std::vector<Voxel> predicted(const Box& box, const Tracks& tracks,
   const Ground ground(with_floor.scan, config);
   LowVoxels low(box.scan, ground);
   const ScanMasks none(box.scan.occupied.size());
-  ArrivalClasses classes{none, none, none, none, kind.standing ? box.scan.occupied : none};
+  ArrivalClasses classes{none, none, none, none, none, kind.standing ? box.scan.occupied : none};
   tracks.add_seeds(box.scan, low, tick, classes);
   EXPECT_EQ(classes.seeds, classes.fresh);
   std::vector<Voxel> seeds;
@@ -71,9 +71,33 @@ Tracks followed(const std::vector<int>& xs, const hmm_mos_plus::Tick& tick = kTi
   Tracks tracks(config);
   for (const int x : xs) {
     const Box box(x);
-    tracks.follow(box.scan, {box.component}, tick);
+    std::vector<Component> components = {box.component};
+    tracks.follow(box.scan, components, tick);
   }
   return tracks;
+}
+
+/// Returns the steady steps of a box that was at these places.
+int steady_steps(const std::vector<int>& xs) {
+  Tracks tracks((Config()));
+  int steps = 0;
+  for (const int x : xs) {
+    const Box box(x);
+    std::vector<Component> components = {box.component};
+    tracks.follow(box.scan, components, kTick);
+    steps = components.front().steady_steps;
+  }
+  return steps;
+}
+
+TEST(PlusTracks, CountTheStepsOfLikeVelocity) {
+  EXPECT_EQ(steady_steps({0, 4}), 0) << "one step is like none";
+  EXPECT_EQ(steady_steps({0, 4, 8}), 1);
+  EXPECT_EQ(steady_steps({0, 4, 8, 12}), 2);
+  EXPECT_EQ(steady_steps({0, 4, 10}), 1) << "half more";
+  EXPECT_EQ(steady_steps({0, 4, 11}), 0);
+  EXPECT_EQ(steady_steps({0, 4, 8, 12, 12}), 0) << "it stops";
+  EXPECT_EQ(steady_steps({0, 0, 0, 0}), 0) << "it stands";
 }
 
 TEST(PlusTracks, PredictOneStepOfTheLastLength) {
@@ -160,7 +184,8 @@ TEST(PlusTracks, EndWhereNothingMoves) {
   Tracks tracks = followed({0, 4});
   Box still(8);
   still.component.moves = false;
-  tracks.follow(still.scan, {still.component}, kTick);
+  std::vector<Component> components = {still.component};
+  tracks.follow(still.scan, components, kTick);
   EXPECT_EQ(seeds_at(8, tracks), 0U);
   EXPECT_EQ(seeds_at(12, tracks), 0U);
 }

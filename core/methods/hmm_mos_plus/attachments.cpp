@@ -1,0 +1,87 @@
+#include "core/methods/hmm_mos_plus/attachments.hpp"
+
+#include <algorithm>
+
+#include "core/voxel/neighbourhood.hpp"
+
+namespace mosbench::hmm_mos_plus {
+namespace {
+
+/// Voxels that are so near are joined: beams leave gaps.
+constexpr double kReach_m = 0.6;
+constexpr std::uint32_t kSeenTicks = 10;
+/// An object that moves arrived by this share or more. The rest came into view or is one with what
+/// it touches.
+constexpr double kArrivedShare = 0.8;
+
+/// What was followed at a steady velocity over so many steps is no part of what stands.
+constexpr int kSteadySteps = 2;
+
+VoxelSet voxels_of(const VoxelizedScan& scan, const Component& component) {
+  VoxelSet voxels;
+  for (const std::uint32_t voxel : component.voxels) {
+    const std::uint32_t slot = voxels.insert(scan.measured.blocks[voxel / kBlockVoxels]);
+    voxels.masks[slot].set(voxel % kBlockVoxels);
+  }
+  return voxels;
+}
+
+bool are_within(int reach, const Box& a, const Box& b) {
+  return a.low.x - b.high.x <= reach && b.low.x - a.high.x <= reach &&
+         a.low.y - b.high.y <= reach && b.low.y - a.high.y <= reach &&
+         a.low.z - b.high.z <= reach && b.low.z - a.high.z <= reach;
+}
+
+}  // namespace
+
+Attachments::Attachments(const Config& config)
+    : reach_(std::min(static_cast<int>(kReach_m / config.map.voxel_size_m), kMaxHalo)),
+      max_settled_share_(config.max_settled_share) {}
+
+Attachments::Seen Attachments::look_at(const VoxelizedScan& scan, const ArrivalClasses& classes,
+                                       LowVoxels& low, const Component& component) const {
+  Seen seen{.box = box_of(scan, component.voxels), .voxels = component.voxels.size()};
+  const VoxelSet voxels = voxels_of(scan, component);
+  for (const std::uint32_t slot : slots_within(scan, voxels, reach_)) {
+    const BlockIndex& block = scan.measured.blocks[slot];
+    const BlockMask* own = voxels.mask_of(block);
+    if (own != nullptr) seen.arrived += (*own & classes.arrived[slot]).count();
+    BlockMask beside = without(classes.settled[slot], low.in(slot));
+    if (own != nullptr) beside = without(beside, *own);
+    if (!beside.any()) continue;
+    HaloRows rows;
+    gather_around(voxels, block, reach_, rows);
+    seen.settled += (dilate(rows) & beside).count();
+  }
+  return seen;
+}
+
+bool Attachments::is_attached(const Seen& component) const {
+  double voxels = 0, arrived = 0, settled = 0;
+  for (const Seen& seen : seen_) {
+    if (!are_within(reach_, seen.box, component.box)) continue;
+    voxels += static_cast<double>(seen.voxels);
+    arrived += static_cast<double>(seen.arrived);
+    settled += static_cast<double>(seen.settled);
+  }
+  return settled > max_settled_share_ * voxels && arrived < kArrivedShare * voxels;
+}
+
+void Attachments::judge(const VoxelizedScan& scan, const ArrivalClasses& classes, LowVoxels& low,
+                        std::uint32_t at, std::vector<Component>& components) {
+  while (!seen_.empty() && at - seen_.front().at > kSeenTicks) seen_.pop_front();
+  const std::size_t before = seen_.size();
+  for (const Component& component : components) {
+    if (!component.moves) continue;
+    seen_.push_back(look_at(scan, classes, low, component));
+    seen_.back().at = at;
+  }
+  std::size_t next = before;
+  for (Component& component : components) {
+    if (!component.moves) continue;
+    component.moves = component.steady_steps >= kSteadySteps || !is_attached(seen_[next]);
+    ++next;
+  }
+}
+
+}  // namespace mosbench::hmm_mos_plus

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <vector>
+
+#include "core/methods/hmm_mos_plus/arrivals.hpp"
+#include "core/methods/hmm_mos_plus/config.hpp"
+#include "core/methods/hmm_mos_plus/ground.hpp"
+#include "core/methods/hmm_mos_plus/objects.hpp"
+
+namespace mosbench::hmm_mos_plus {
+
+/// Tells what is part of a surface that has been standing: it lies beside settled voxels, and much
+/// of it did not arrive. Parts of a parked car that come into view are seen one after the other, so
+/// it sums what lay near in the last second.
+class Attachments {
+ public:
+  explicit Attachments(const Config& config);
+
+  /// Lets the components not move that are part of what stands. `at` is the tick of the scan.
+  void judge(const VoxelizedScan& scan, const ArrivalClasses& classes, LowVoxels& low,
+             std::uint32_t at, std::vector<Component>& components);
+  std::size_t memory_bytes() const { return seen_.size() * sizeof(Seen); }
+
+ private:
+  /// A component that passed all other tests.
+  struct Seen {
+    Box box;
+    std::size_t voxels = 0;
+    std::size_t arrived = 0;  ///< of these
+    std::size_t settled = 0;  ///< beside these, not low
+    std::uint32_t at = 0;
+  };
+
+  Seen look_at(const VoxelizedScan& scan, const ArrivalClasses& classes, LowVoxels& low,
+               const Component& component) const;
+  bool is_attached(const Seen& component) const;
+
+  int reach_;  // voxels
+  double max_settled_share_;
+  std::deque<Seen> seen_;  // of the last second
+};
+
+}  // namespace mosbench::hmm_mos_plus
