@@ -147,7 +147,8 @@ StudyAxis sample_of(const YamlNode& node, const std::vector<StudyMethod>& method
 /// All combinations of the settings' values; those of the last setting change first.
 StudyAxis grid_of(const YamlNode& node, const std::vector<StudyMethod>& methods) {
   constexpr std::size_t kMostCombinations = 10'000;
-  StudyAxis axis{.name = "grid"};
+  StudyAxis axis;
+  axis.name = "grid";
   axis.is_grid = true;
   axis.changes.emplace_back();
   for (const auto& [name, list] : node.members()) {

@@ -31,7 +31,8 @@ TunedPreset parsed(const ordered_json& json) {
     preset.base = &preset_named(base.get<std::string>());
   }
   std::vector<std::string> assignments;
-  for (const auto& [name, value] : recorded_settings(json.at("settings")).all()) {
+  const RecordedSettings settings = recorded_settings(json.at("settings"));
+  for (const auto& [name, value] : settings.all()) {
     assignments.push_back(fmt::format("{}={}", name, value_text(value)));
   }
   preset.method = &taking(*preset.method, assignments);

@@ -60,7 +60,9 @@ void mark_front(std::vector<StudyRow>& rows) {
 /// which they are judged.
 StudyCurve curve_of(const StudyPlan& plan, const DoneCells& cells, const StudyAxis& axis,
                     const std::string& unchanged) {
-  StudyCurve curve{.axis = axis.name, .is_grid = axis.is_grid};
+  StudyCurve curve;
+  curve.axis = axis.name;
+  curve.is_grid = axis.is_grid;
   if (axis.kind != nullptr) curve.unit = axis.kind->unit;
   curve.values = {axis.kind != nullptr ? "none" : unchanged};
   curve.values.insert(curve.values.end(), axis.values.begin(), axis.values.end());

@@ -35,10 +35,12 @@ class Chooser {
     std::optional<std::size_t> best;
     std::optional<double> best_value;
     std::size_t missing = 0;
+    std::set<std::vector<SettingChange>> known;
     for (std::size_t i = 0; i < grid_.values.size(); ++i) {
       const WantedCell wanted = is_at_value(choice_.label, grid_, i);
       const Part part = part_of(wanted, tuning_.tune_on);
-      if (part.cells == 0) continue;  // the run of another combination
+      // A method that lacks a setting has the same run at several combinations.
+      if (part.cells == 0 || !known.insert(part.changes).second) continue;
       ++choice_.candidates;
       missing += part.missing;
       const auto value = part.missing > 0 ? std::nullopt : value_of(part);
@@ -64,6 +66,7 @@ class Chooser {
   struct Part {
     std::size_t cells = 0, missing = 0;
     bool failed = false;
+    std::vector<SettingChange> changes = {};
     StudyMetrics metrics = {};
   };
 
@@ -76,6 +79,7 @@ class Chooser {
     for (const PlannedCell& planned : plan_.cells) {
       if (!is_part(planned.cell)) continue;
       ++part.cells;
+      part.changes = planned.cell.job.segment.changes;
       part.failed = part.failed || planned.state == CellState::kFailed;
       part.missing += planned.state != CellState::kFailed && planned.state != CellState::kDone;
     }
@@ -100,9 +104,10 @@ class Chooser {
   }
 
   TunedPreset preset_of_value(std::size_t value) const {
-    TunedPreset preset{.file = preset_file(plan_.out, choice_.label),
-                       .metric = std::string(row_of(tuning_.metric).key),
-                       .study = plan_.study->name};
+    TunedPreset preset;
+    preset.file = preset_file(plan_.out, choice_.label);
+    preset.metric = row_of(tuning_.metric).key;
+    preset.study = plan_.study->name;
     std::set<std::string_view> bases;
     const WantedCell wanted = is_at_value(choice_.label, grid_, value);
     for (const DoneCell& each : cells_.done) {

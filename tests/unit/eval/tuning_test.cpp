@@ -132,8 +132,8 @@ TEST(StudyTuningChoice, IsTheBestOfTuneOnAndJudgedElsewhere) {
   EXPECT_NEAR(*(*choice.base.tuned)[0].value, 0.5, 1e-9);
   EXPECT_NEAR(*(*choice.base.judged)[0].value, 0.65, 1e-9);
   EXPECT_EQ(table.choices[1].candidates, 2U);
-  EXPECT_EQ(to_words(table.choices[1].preset->settings), "max_range_m=20,local_window_scans=3")
-      << "what underwood lacks";
+  EXPECT_EQ(to_words(table.choices[1].preset->settings), "max_range_m=20")
+      << "underwood has no windows";
   const std::string text = render(study_answer(scored.plan, table), Format::kText);
   EXPECT_THAT(text, AllOf(HasSubstr("IoU % by grid, on tune_on"), HasSubstr("tuned IoU %"),
                           HasSubstr("judged IoU %"), HasSubstr("default of preset semantickitti"),
