@@ -14,9 +14,6 @@
 namespace mosbench {
 namespace {
 
-/// Mends poses that are off: an option, and its value.
-constexpr std::pair<const char*, const char*> kCure = {"odometry", "simple"};
-
 /// Scans apart: drift adds up over many, jitter shows from scan to scan.
 constexpr std::array<std::size_t, 3> kApart = {20, 5, 1};
 /// Farther on, scans may share no more than the traffic that they move with.
@@ -173,7 +170,7 @@ void examine_pose_fit(const Sequence& sequence, const std::vector<Pose>& given, 
                                    sequence.stem(worst.pair.later));
   facts["most_off_cm"] = 100.0 * kOff10M;
   facts["pose_fit_kind"] = facts.told(kind_of(facts, detail));
-  facts["cure"] = option(kCure.first, kCure.second);
+  facts["cure"] = option("refine_poses");
 }
 
 std::optional<std::string> doubt_about_pose_fit(const Sequence& sequence) {
