@@ -26,7 +26,7 @@ std::string dump(const ordered_json& json) {
 void append_members(const ordered_json& object, const std::string& indent, std::string& text) {
   for (const auto& [key, value] : object.items()) {
     text += indent + ordered_json(key).dump() + ": ";
-    if (key == "scans") {
+    if (key == "scans" && value.is_array()) {
       text += "[";
       for (std::size_t i = 0; i < value.size(); ++i) {
         text += (i == 0 ? "\n" : ",\n") + indent + " " + dump(value[i]);
