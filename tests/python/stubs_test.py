@@ -3,6 +3,7 @@
 import ast
 import inspect
 import pathlib
+import re
 import typing
 
 import pytest
@@ -44,6 +45,40 @@ def test_the_package_is_marked_as_typed_and_says_what_everything_is():
             for member, one in vars(value).items():
                 if inspect.isfunction(one) and not member.startswith("_"):
                     assert one.__doc__, f"{name}.{member}"
+
+
+def described(doc):
+    """Names that a text describes, as in "points: (N, 3), metres. pose, truth: (4, 4)"."""
+    starts = re.findall(r"(?:^|\n\s*|\. |; )([a-z]\w*(?:, [a-z]\w*)*): ", doc or "")
+    return {name for start in starts for name in start.split(", ")}
+
+
+def test_help_describes_arguments_that_there_are():
+    calls = {name: getattr(mosbench, name) for name in mosbench.__all__}
+    for name, one in list(calls.items()):
+        if inspect.isclass(one):
+            calls.update({f"{name}.{member}": call for member, call in vars(one).items() if inspect.isfunction(call)})
+    found = set()
+    for name, call in calls.items():
+        if not inspect.isfunction(call):
+            continue
+        taken = set(inspect.signature(call).parameters)
+        told = described(call.__doc__)
+        assert told <= taken | {"data", "reading"}, name
+        found |= told
+    assert len(found) > 30, found
+
+
+def test_help_describes_arguments_that_cannot_be_guessed():
+    """Arrays have shapes, lengths and shares units; what every function calls the same is told once, by `run`."""
+    told_once = {"data", "dataset", "sequences", "reading", "protocol", "preset", "method", "threads", "overwrite"}
+    for name in mosbench.__all__:
+        call = getattr(mosbench, name)
+        if not inspect.isfunction(call):
+            continue
+        for argument in inspect.signature(call).parameters.values():
+            if argument.annotation in ("Any", "Iterable[Any]") and argument.name not in told_once:
+                assert re.search(rf"\b{argument.name}\b", call.__doc__), f"{name}({argument.name})"
 
 
 @pytest.mark.skipif(not hasattr(typing, "get_overloads"), reason="Python before 3.11 does not tell overloads")

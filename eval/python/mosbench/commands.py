@@ -430,8 +430,9 @@ def doctor(data: Any, *, dataset: str = "auto", sequences: Iterable[str] = (), *
 
 
 def evaluate_trajectory(estimate: Any, truth: Any, *, align: str = "none") -> dict[str, Any]:
-    """Returns KITTI's errors, APE and RPE of poses (files, or arrays (K, 4, 4)), as `trajectory --json`.
+    """Returns KITTI's errors, APE and RPE of poses, as `trajectory --json`.
 
+    estimate, truth: files, or arrays (K, 4, 4), metres, map_from_sensor.
     align: "none", "origin", "rigid" or "similarity".
     KITTI's errors are the devkit's to every digit, and so of numbers in float32: an error of rotation under
     about 0.02 degrees may round to 0 there, or to that; APE and RPE are of float64.

@@ -46,7 +46,10 @@ def confusion(
 def metrics(
     predicted: Any, truth: Any, protocol: str = "semantickitti-mos", points: Any = None
 ) -> dict[str, Optional[float]]:
-    """Returns iou, precision, recall and f1 of moving points, 0 to 1; None where they are 0/0."""
+    """Returns iou, precision, recall and f1 of moving points, 0 to 1; None where they are 0/0.
+
+    predicted, truth, points: as of `confusion`.
+    """
     predicted, truth, points = _counted_arrays(predicted, truth, points)
     return _mosbench.metrics(predicted, truth, protocol, points)
 
@@ -54,7 +57,10 @@ def metrics(
 def iou(
     predicted: Any, truth: Any, protocol: str = "semantickitti-mos", points: Any = None
 ) -> Optional[float]:
-    """Returns the IoU of moving points, 0 to 1; None when nothing moves in either."""
+    """Returns the IoU of moving points, 0 to 1; None when nothing moves in either.
+
+    predicted, truth, points: as of `confusion`.
+    """
     return metrics(predicted, truth, protocol, points)["iou"]
 
 
