@@ -56,7 +56,8 @@ const Hdf5Functions& hdf5_functions(const std::string& file) {
   }
   throw DataError(file,
                   std::string("cannot be used without ") + kHdf5Module + " (" + module.error + ")",
-                  "the module where mosbench was built or installed, and Debian's libhdf5");
+                  "it there: `apt-get install` the package mosbench-hdf5 of the same build, or run "
+                  "`cmake --install` again");
 }
 
 }  // namespace mosbench

@@ -96,31 +96,32 @@ CommandRun add_compare(CLI::App& command) {
       ->check(CLI::Range(0.0, 100.0))
       ->capture_default_str();
   add(command, "--max-added-fp", options->max_added_false_positives,
-      "False positives per scan that may be added (default: 10 where nothing moves, any number "
-      "elsewhere)")
+      "False positives per scan that may be added (10 where nothing moves)")
       ->check(CLI::NonNegativeNumber);
   add(command, "--max-cost KEY=PERCENT,...", options->max_cost,
-      "By how much cpu, memory and bytes may grow; a cost without a limit is a warning at most");
+      "Percents by which cpu, memory and bytes may grow; else they only warn");
   command.add_flag("--statistical", options->statistical,
-                   "Fail only when the drop also exceeds what its 95 % interval leaves open");
+                   "A drop must also exceed what its 95 % interval leaves open");
   command.add_flag("--even-if", options->even_if, "Also compare results of different kinds");
   add_stale_flag(command, options->allow_stale);
-  add_list(command, "--by WHAT,...", options->by,
-           "Judge nothing and show what NEW changes in each sequence (also of another method "
-           "or setting), or on which scans and objects the two disagree")
+  add_list(
+      command, "--by WHAT,...", options->by,
+      "Judge nothing; show what NEW changes in each sequence, or on which scans and objects the "
+      "two disagree")
       ->check(CLI::IsMember({"sequence", "scan", "object"}));
   add(command, "--data DIR", options->data, "Data set of both, for --by object");
   add_dataset_kind_flag(command, options->dataset)->group(kRareGroup);
   add(command, "--top", options->top, "How many scans and objects --by lists")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->group(kRareGroup);
   command.add_flag("--accept", options->accept,
-                   "Make NEW the baseline and show what changes; --accept=WHY keeps why and when");
+                   "Make NEW the baseline; --accept=WHY keeps why and when");
   add_list(command, "--sequences NAMES", options->sequences,
-           "Look at, or accept, these sequences only");
+           "Judge or accept these sequences only");
   add(command, "--method NAME", options->method,
-      "Look at, or accept, the results of this method, where folders hold several");
+      "Judge or accept this method only, where folders hold several");
   add(command, "-o,--out FILE", options->out,
-      "Also write the table to FILE, as its name ends: .md, .html, .json, or .xml for JUnit");
+      "Also write the table to FILE: .md, .html, .json, or .xml for JUnit");
   add(command, "--summary FILE", options->summary, "Also append the table in markdown to FILE");
   command.add_flag("-q,--quiet", options->quiet, "Print nothing when it passes");
   return [options] { return answer(*options); };
