@@ -69,7 +69,17 @@ GateResult judged(const CompareFlags& options, const ResultSet& baseline, const 
   GateResult result =
       judge(paired, *baseline.front().protocol,
             {options.max_drop_points / 100.0, rule, options.max_added_false_positives});
-  result.costs = check_costs(baseline, newer, cost_limits("--max-cost", options.max_cost));
+  const CostLimits limits = cost_limits("--max-cost", options.max_cost);
+  result.costs = check_costs(baseline, newer, limits);
+  for (std::size_t k = 0; k < limits.size(); ++k) {
+    const bool is_known = std::ranges::any_of(
+        result.costs, [&](const CostCheck& cost) { return cost.kind == &kCostKinds[k]; });
+    if (!limits[k] || is_known) continue;
+    throw DataError(
+        options.baseline,
+        fmt::format("or {} does not tell its {}", options.newer.string(), kCostKinds[k].title),
+        "results of a run by this version, or no --max-cost");
+  }
   return result;
 }
 
