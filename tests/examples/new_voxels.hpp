@@ -66,7 +66,11 @@ class NewVoxels final : public SequentialMethod {
   std::vector<LabelledScan> take(PosedScan& scan, LabelledScan result) override {
     const StageRecord record{result.stages, context().cpu_times};
     const auto voxels = timed(record, "voxels", [&] { return voxels_of(scan, config_); });
-    const StageClock clock(record, "labels");
+    timed(record, "labels", [&] { label(voxels, result); });
+    return {std::move(result)};
+  }
+
+  void label(const std::vector<std::optional<Voxel>>& voxels, LabelledScan& result) {
     result.judged = result.scan_index > 0;  // the first scan has nothing to have moved from
     for (std::size_t i = 0; i < voxels.size(); ++i) {
       if (!result.judged || !voxels[i] || seen_.contains(*voxels[i])) continue;
@@ -76,7 +80,6 @@ class NewVoxels final : public SequentialMethod {
     for (const auto& voxel : voxels) {
       if (voxel) seen_.insert(*voxel);
     }
-    return {std::move(result)};
   }
 
   Config config_;
