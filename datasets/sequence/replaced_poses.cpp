@@ -70,7 +70,7 @@ std::string remark_on(const Sequence& sequence, const std::vector<Pose>& given,
   };
   std::string remark;
   if (refined.corrected == 0) {
-    remark = fmt::format("poses kept as given: registration of the scans is not better, {}",
+    remark = fmt::format("poses kept as given: registration of the scans is hardly better, {}",
                          fits(" as given, as registered "));
   } else {
     const Moves moves = moves_between(given, refined.map_from_sensor);
@@ -81,8 +81,8 @@ std::string remark_on(const Sequence& sequence, const std::vector<Pose>& given,
         sequence.stem(moves.most_scan), fits(" as given, now "));
     if (refined.corrected < motions) {
       remark +=
-          fmt::format("; {} of {} kept, as registration is not better", motions - refined.corrected,
-                      counted(motions, "motion is", "motions are"));
+          fmt::format("; {} of {} kept, as registration is hardly better",
+                      motions - refined.corrected, counted(motions, "motion is", "motions are"));
     }
   }
   if (failed == 0) return remark;
