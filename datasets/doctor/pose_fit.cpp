@@ -21,8 +21,8 @@ constexpr double kMostApartM = 30.0;
 constexpr std::size_t kMostPlaces = 12;
 /// One place per so many scans costs a run little.
 constexpr std::size_t kScansPerPlace = 15;
-/// Of a scan; more do not match better. No multiple of a sensor's rows, all of which are picked.
-constexpr std::size_t kPoints = 30011;
+/// Of a scan; more do not match better. No multiples of a sensor's rows, all of which are picked.
+constexpr std::size_t kPoints = 30011, kPointsInBrief = 15013;
 constexpr double kFitCellM = 1.0;
 
 // Sound poses of KITTI and of simulated drives, walks and rosettes were off by 1.6 cm at 10 m and
@@ -95,28 +95,28 @@ std::optional<PairFit> fit_of(const RegisteredScan& earlier, const RegisteredSca
   return tells ? std::optional(PairFit{pair, *off, *error}) : std::nullopt;
 }
 
-RegisteredScan scan_at(const Sequence& sequence, std::size_t scan_index) {
-  return {picked(sequence.read(scan_index).points, kPoints), kFitCellM};
-}
-
 std::vector<Place> measured_places(const Sequence& sequence, const std::vector<Pose>& given,
                                    FitDetail detail) {
   const bool brief = detail == FitDetail::kBrief;
   const std::size_t scans = given.size(), farthest = std::min(kApart.front(), (scans - 1) / 2);
   const std::size_t count =
       std::min(brief ? scans / kScansPerPlace : scans - farthest, kMostPlaces);
+  const auto scan_at = [&](std::size_t scan_index) {
+    const std::vector<Point> points = sequence.read(scan_index).points;
+    return RegisteredScan(picked(points, brief ? kPointsInBrief : kPoints), kFitCellM);
+  };
   std::vector<Place> places;
   // A single place could be wrong.
   for (std::size_t i = 0; i < count && count > 1; ++i) {
     const std::size_t first = i * (scans - 1 - farthest) / (count - 1);
-    const RegisteredScan earlier = scan_at(sequence, first);
+    const RegisteredScan earlier = scan_at(first);
     Place place;
     for (const std::size_t apart : kApart) {
       const ScanPair pair{first, first + std::min(apart, farthest)};
       if (!place.empty() && (brief || place.back().pair.later == pair.later)) continue;
       const Pose motion = relative(given, pair);
       if (apart > 1 && motion.translation().norm() > kMostApartM) continue;
-      const RegisteredScan later = scan_at(sequence, pair.later);
+      const RegisteredScan later = scan_at(pair.later);
       const auto fit = fit_of(earlier, later, pair, motion);
       if (fit) place.push_back(*fit);
     }

@@ -447,7 +447,7 @@ FAULTS = {
     ),
 }
 # Sound data, without and with noise that is still sound: nothing may be found.
-SOUND = {"sound": (lambda copy: None, None), "sound, 5 cm of noise": (noisy(0.05, 0.1), None)}
+SOUND = {"sound": (lambda copy: None, None), "sound, 2 cm of noise": (noisy(0.02, 0.1), None)}
 NOTED = {"labels_static"}  # faults that may be sound: a note names them, no symptom
 NEEDS = {"stamps": "times.txt", "labels": "labels", "indices": "indices.csv"}
 
